@@ -18,6 +18,7 @@ mod feel;
 mod gallery;
 mod gradients;
 mod hand_csv;
+mod identify;
 mod input;
 mod interrupt;
 mod jitter;
@@ -110,6 +111,7 @@ fn obey(command: &Command, interrupt: &Interrupt) -> Result<Outcome, Failure> {
         Command::Schema => schema::run(),
         Command::Shapes(options) => shapes::run(options),
         Command::Devices(options) => devices::run(options),
+        Command::Identify(options) => identify::run(options, interrupt),
         Command::Jitter(options) => jitter::run(options),
     }
 }

@@ -71,6 +71,10 @@ impl Wrist {
     /// Fingers on a stylus: 1e-4 kg·m², 0.5 N·m/rad, 0.01 N·m·s/rad.
     const GRIP: Self =
         Self { path: None, inertia: 1e-4, stiffness: 0.5, damping: 0.01, push: Vector::ZERO };
+
+    /// No hand.
+    const NONE: Self =
+        Self { path: None, inertia: 0.0, stiffness: 0.0, damping: 0.0, push: Vector::ZERO };
 }
 
 impl<const D: usize> Hand<D> {
@@ -91,6 +95,23 @@ impl<const D: usize> Hand<D> {
     pub fn resting(place: impl Into<Point<D>>) -> Result<Self, DeviceError> {
         HandPath::new(vec![0.0, 1.0], vec![place.into(); 2], Interpolation::Linear)
             .map(Self::new)
+    }
+
+    /// No hand at all, at a device whose handle is at `place` [m] at first.
+    ///
+    /// # Errors
+    ///
+    /// As [`resting`](Self::resting).
+    ///
+    /// ```
+    /// use palpate_devices::Hand;
+    ///
+    /// let free = Hand::free([0.0, 0.1]).unwrap();
+    /// assert_eq!((free.mass(), free.stiffness(), free.damping()), (0.0, 0.0, 0.0));
+    /// ```
+    pub fn free(place: impl Into<Point<D>>) -> Result<Self, DeviceError> {
+        let hand = Self::resting(place)?;
+        Ok(Self { mass: 0.0, stiffness: 0.0, damping: 0.0, wrist: Wrist::NONE, ..hand })
     }
 
     /// This hand with another mass [kg].

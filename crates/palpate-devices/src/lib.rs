@@ -49,6 +49,7 @@ mod error;
 mod glove;
 mod hand;
 mod hand_path;
+mod identify;
 mod mailbox;
 mod motion;
 mod oscillator;
@@ -65,6 +66,10 @@ pub use error::DeviceError;
 pub use glove::Glove;
 pub use hand::Hand;
 pub use hand_path::{HandPath, Interpolation};
+pub use identify::{
+    DeviceAxis, EncoderStep, Estimate, Identified, IdentifiedAxis, IdentifyError,
+    IdentifyOptions, IdentifyProgress, identify,
+};
 pub use mailbox::{Mailbox, MailboxDevice};
 pub use motion::Energies;
 pub use palpate_haptics::{

@@ -17,7 +17,7 @@
 use palpate_haptics::NumberError;
 
 use crate::error::DeviceError;
-use crate::oscillator::{Drive, Nodes, Oscillator};
+use crate::oscillator::{Drive, Nodes, Oscillator, Response};
 
 /// The most pieces of motion in one call: at [`FASTEST`], a tenth of a second. A device that is
 /// not read for longer stands still for the rest, which bounds the time of a call.
@@ -163,13 +163,29 @@ impl Body {
     /// Moves `axis` for `duration` [s] under `load`. Returns the energies of this time.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic; at most [`MOST_PIECES`] pieces.
-    pub(crate) fn advance(
+    pub(crate) fn advance(&mut self, axis: &mut Axis, load: Load, duration: f64) -> Energies {
+        let mut energies = Energies::default();
+        self.advance_by_pieces(axis, load, duration, |body, axis, load, piece| {
+            energies.add(&body.energies(axis, load, piece));
+        });
+        energies
+    }
+
+    /// As [`advance`](Self::advance), without the energies.
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic; at most [`MOST_PIECES`] pieces.
+    pub(crate) fn displace(&mut self, axis: &mut Axis, load: Load, duration: f64) {
+        self.advance_by_pieces(axis, load, duration, |_, _, _, _| {});
+    }
+
+    /// Moves `axis`, and calls `before` with each piece of the motion before it.
+    fn advance_by_pieces(
         &mut self,
         axis: &mut Axis,
         mut load: Load,
         duration: f64,
-    ) -> Energies {
-        let mut energies = Energies::default();
+        mut before: impl FnMut(&Self, &Axis, &Load, &Piece),
+    ) {
         let mut left = duration;
         for _ in 0..MOST_PIECES {
             let starts = axis.velocity == 0.0 && self.friction > 0.0;
@@ -187,16 +203,24 @@ impl Body {
             }
             let piece = self.piece(axis, &load, sign);
             let longest = left.min(self.oscillator.longest());
-            let stop = piece.stop(&self.oscillator, longest);
+            self.respond_for(longest);
+            let stop = piece.stop(&self.oscillator, &self.nodes);
             let length = stop.unwrap_or(longest);
-            energies.add(&self.glide(axis, &load, &piece, length));
-            if stop.is_some() {
-                axis.velocity = 0.0;
-            }
+            self.respond_for(length);
+            before(self, axis, &load, &piece);
+            axis.position += self.nodes.end.way(&piece.drive);
+            axis.velocity =
+                if stop.is_some() { 0.0 } else { self.nodes.end.velocity(&piece.drive) };
             load.target += load.target_velocity * length;
             left -= length;
         }
-        energies
+    }
+
+    /// Makes [`nodes`](Self::nodes) those of a time [s].
+    fn respond_for(&mut self, length: f64) {
+        if self.nodes.length != length {
+            self.nodes = Nodes::new(&self.oscillator, length);
+        }
     }
 
     /// How long the device sticks at `position` [s], and the direction in which it breaks away.
@@ -229,11 +253,9 @@ impl Body {
         Piece { drive: Drive { velocity: axis.velocity, push, growth }, sign }
     }
 
-    /// Moves `axis` along a piece without a change of direction.
-    fn glide(&mut self, axis: &mut Axis, load: &Load, piece: &Piece, length: f64) -> Energies {
-        if self.nodes.length != length {
-            self.nodes = Nodes::new(&self.oscillator, length);
-        }
+    /// The energies of a piece without a change of direction, over the time of
+    /// [`nodes`](Self::nodes).
+    fn energies(&self, axis: &Axis, load: &Load, piece: &Piece) -> Energies {
         let drive = &piece.drive;
         let way = self.nodes.end.way(drive);
         let stretch = load.target - axis.position;
@@ -244,8 +266,6 @@ impl Body {
                 + self.grip_damping * (load.target_velocity - velocity);
             [velocity * velocity, grip * velocity]
         });
-        axis.position += way;
-        axis.velocity = self.nodes.end.velocity(drive);
         Energies {
             servo: load.force * way,
             hand: hand + load.push * way,
@@ -263,27 +283,30 @@ struct Piece {
 }
 
 impl Piece {
-    /// When the velocity first changes its sign within `length` [s], if it does.
+    /// When the velocity first changes its sign within the time of `nodes`, if it does [s].
     ///
     /// The acceleration has at most one zero in that time, so the velocity has at most one
     /// extremum: it changes its sign once, seen at the end, or dips and comes back, seen at the
     /// extremum. From rest it cannot dip.
-    fn stop(&self, oscillator: &Oscillator, length: f64) -> Option<f64> {
+    fn stop(&self, oscillator: &Oscillator, nodes: &Nodes) -> Option<f64> {
         if self.sign == 0.0 {
             return None;
         }
+        let length = nodes.length;
         let velocity = |time| self.sign * oscillator.response(time).velocity(&self.drive);
-        if velocity(length) < 0.0 {
+        if self.sign * nodes.end.velocity(&self.drive) < 0.0 {
             return Some(first(length, |time| velocity(time) < 0.0));
         }
-        let acceleration = |time: f64| {
-            let response = oscillator.response(time);
+        let accelerated = |time: f64, response: &Response| {
             let (way, velocity) = (response.way(&self.drive), response.velocity(&self.drive));
             let push = self.drive.push + self.drive.growth * time;
             self.sign * (push - oscillator.decay * velocity - oscillator.spring * way)
         };
-        let may_dip =
-            self.drive.velocity != 0.0 && acceleration(0.0) < 0.0 && acceleration(length) > 0.0;
+        let acceleration = |time: f64| accelerated(time, &oscillator.response(time));
+        let at_first = self.sign * (self.drive.push - oscillator.decay * self.drive.velocity);
+        let may_dip = self.drive.velocity != 0.0
+            && at_first < 0.0
+            && accelerated(length, &nodes.end) > 0.0;
         if !may_dip {
             return None;
         }

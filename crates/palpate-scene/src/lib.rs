@@ -44,6 +44,7 @@ mod attitude;
 mod build;
 mod catalogue;
 mod check;
+mod device_file;
 mod encoding;
 mod error;
 mod guide;
@@ -65,6 +66,7 @@ mod write;
 mod written_material;
 
 pub use build::{AnyScene, BuiltBody, BuiltMotion, BuiltScene, BuiltTool};
+pub use device_file::{device_from_json, device_to_json};
 pub use encoding::{NotUtf8, utf8};
 pub use error::{SceneCause, SceneError, SceneProblem};
 pub use guide::{GuideCurve, GuideLine, GuidePlane, GuideSegment, GuideWell, WrittenGuide};

@@ -158,7 +158,7 @@ impl Scene {
     /// All that is wrong, with paths, lines and columns.
     pub fn from_json(text: &str) -> Result<Self, SceneError> {
         let source = Source::of(text);
-        Document::parse(&source)?.scene(|scene| build::world(scene).map(drop))
+        Document::parse(&source)?.read(|scene| build::world(scene).map(drop))
     }
 
     /// Reads a scene from the bytes of a file, as [`from_json`](Self::from_json).

@@ -5,6 +5,7 @@
 
 use clap::Args;
 
+use super::ProfileChoice;
 use super::numbers::positive;
 
 pub(super) const EXAMPLES: &str = "\
@@ -13,7 +14,8 @@ Examples:
   palpate devices --json
   palpate devices --actuators
   palpate devices --materials --rate 4000
-  palpate devices --stability --material steel --material rubber";
+  palpate devices --profile falcon.json
+  palpate devices --stability --profile omega --material steel --material rubber";
 
 /// The options of `palpate devices`.
 #[derive(Args, Debug)]
@@ -33,6 +35,9 @@ pub(crate) struct DevicesOptions {
     /// A material by name of which the walls are; may be given several times.
     #[arg(long, value_name = "NAME", requires = "stability", default_values = ["steel"])]
     pub(crate) material: Vec<String>,
+    /// One device in place of all: its name, or a JSON file with its profile.
+    #[arg(long, value_name = "NAME|JSON", conflicts_with = "actuators")]
+    pub(crate) profile: Option<ProfileChoice>,
     /// Ticks a second, on which what devices render of materials depends [Hz].
     #[arg(long, requires = "materials", default_value = "1000", allow_negative_numbers = true, value_parser = positive("Hz"))]
     pub(crate) rate: f64,

@@ -3,15 +3,16 @@
 
 //! `palpate feel`.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
 use clap::{Args, Parser, ValueEnum};
-use palpate::devices::{DeviceProfile, PROFILES, profile_named};
+use palpate::devices::PROFILES;
 use palpate::haptics::{Acceptance, Recovery};
 use palpate::scene::unknown_name;
 use palpate::vibration::{ACTUATORS, Actuator, actuator_named};
 
+use super::ProfileChoice;
 use super::numbers::{count, length_or_zero, positive, within, zero_or_more};
 
 /// The most contact points: more than any device has.
@@ -43,8 +44,9 @@ pub(crate) struct FeelOptions {
     #[arg(long, value_name = "CSV")]
     pub(crate) path: Option<PathBuf>,
     /// What the hand holds: recorded (the hand follows its path whatever the force),
-    /// simulated:NAME (a device of `palpate devices` with its limits, in a hand that yields;
-    /// one with rotation, such as sigma7, turns a tool with a shape), or glove (no force
+    /// simulated:NAME (a device of `palpate devices`, or of a JSON file as `palpate identify`
+    /// writes it, with its limits, in a hand that yields; one with rotation, such as sigma7, turns
+    /// a tool with a shape), or glove (no force
     /// feedback). If left out, simulated:omega on the built-in gallery, else recorded.
     #[arg(long)]
     pub(crate) device: Option<DeviceChoice>,
@@ -109,7 +111,7 @@ pub(crate) enum DeviceChoice {
     /// A hand that follows its path whatever the force.
     Recorded,
     /// A device of this profile in a hand that yields.
-    Simulated(Box<DeviceProfile>),
+    Simulated(Box<ProfileChoice>),
     /// Fingers without force feedback.
     Glove,
 }
@@ -125,10 +127,7 @@ impl FromStr for DeviceChoice {
             None if names.contains(&text) => {
                 Err(format!("a device of this name is written simulated:{text}"))
             }
-            Some(("simulated", name)) => match profile_named(name) {
-                Ok(profile) => Ok(Self::Simulated(Box::new(profile))),
-                Err(_) => Err(unknown_name("device", name, &names)),
-            },
+            Some(("simulated", name)) => Ok(Self::Simulated(Box::new(name.parse()?))),
             _ => Err("must be recorded, simulated:NAME or glove".to_owned()),
         }
     }
@@ -137,6 +136,16 @@ impl FromStr for DeviceChoice {
 fn actuator(name: &str) -> Result<Actuator, String> {
     let names = ACTUATORS.each_ref().map(|(name, _)| *name);
     actuator_named(name).map_err(|_| unknown_name("actuator", name, &names))
+}
+
+impl DeviceChoice {
+    /// The file that the device's profile is from.
+    pub(crate) fn file(&self) -> Option<&Path> {
+        match self {
+            Self::Simulated(choice) => choice.file.as_deref(),
+            Self::Recorded | Self::Glove => None,
+        }
+    }
 }
 
 impl FeelOptions {

@@ -11,11 +11,13 @@ mod eval;
 mod feel;
 mod gallery;
 mod gradients;
+mod identify;
 mod jitter;
 mod mass;
 mod mesh;
 mod numbers;
 mod plot;
+mod profile;
 mod render;
 mod shapes;
 
@@ -29,10 +31,12 @@ pub(crate) use eval::EvalOptions;
 pub(crate) use feel::{DeviceChoice, FeelOptions, RecoveryChoice};
 pub(crate) use gallery::{Format, GalleryOptions, Plane};
 pub(crate) use gradients::GradientsOptions;
+pub(crate) use identify::IdentifyOptions;
 pub(crate) use jitter::JitterOptions;
 pub(crate) use mass::MassOptions;
 pub(crate) use mesh::MeshOptions;
 pub(crate) use plot::{Map, PlotMap, PlotOptions};
+pub(crate) use profile::ProfileChoice;
 pub(crate) use render::{RenderOptions, ShadowChoice};
 pub(crate) use shapes::{Dimension, ShapesOptions};
 
@@ -102,6 +106,10 @@ pub(crate) enum Command {
     /// List the devices that can be simulated: limits, sources, assumed numbers.
     #[command(after_help = devices::EXAMPLES)]
     Devices(DevicesOptions),
+    /// Find mass, damping, friction and encoder step of a device by small motions of its own, and
+    /// write its profile; status 1 if a number cannot be told.
+    #[command(after_help = identify::EXAMPLES)]
+    Identify(Box<IdentifyOptions>),
     /// Measure how late a loop wakes on this machine, and advise how to wait.
     #[command(after_help = jitter::EXAMPLES)]
     Jitter(JitterOptions),

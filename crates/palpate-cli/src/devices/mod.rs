@@ -135,33 +135,48 @@ pub(crate) fn run(options: &DevicesOptions) -> Result<Outcome, Failure> {
     if options.actuators {
         return actuators::report(options.json);
     }
+    let listed = listed(options);
     let mut out = output::answer();
     if options.json {
-        let rows = PROFILES.iter().map(|(name, profile)| described(name, profile)).collect();
+        let rows = listed.iter().map(|(name, profile)| described(name, profile)).collect();
         out.json(&Value::Array(rows))?;
         return Ok(Outcome::Yes);
     }
     let along: Vec<_> =
-        PROFILES.iter().map(|(name, profile)| (*name, profile, &*profile.assumed)).collect();
+        listed.iter().map(|(name, profile)| (*name, *profile, &*profile.assumed)).collect();
     write_table(&mut out, &COLUMNS, &along, 9)?;
-    writeln!(
-        out,
-        "devices with rotation, about their axes; those without a torque only sense it"
-    )?;
-    let about = PROFILES.iter().filter_map(|(name, profile)| {
+    let about = listed.iter().filter_map(|(name, profile)| {
         profile.turning.as_ref().map(|turning| (*name, turning, &*turning.assumed))
     });
-    write_table(&mut out, &TURNING, &about.collect::<Vec<_>>(), 10)?;
+    let about: Vec<_> = about.collect();
+    if !about.is_empty() {
+        writeln!(
+            out,
+            "devices with rotation, about their axes; those without a torque only sense it"
+        )?;
+        write_table(&mut out, &TURNING, &about, 10)?;
+    }
     writeln!(out, "~ assumed, not from the source; stiffness and damping are those at 1 kHz")?;
-    for (name, profile) in &PROFILES {
+    for (name, profile) in &listed {
         writeln!(out, "{name}: {}; source: {}", profile.name, profile.source)?;
         if let Some(turning) = &profile.turning {
             writeln!(out, "{name}, about its axes: source: {}", turning.source)?;
         }
     }
-    writeln!(out, "{} devices", PROFILES.len())?;
+    if options.profile.is_some() {
+        return Ok(Outcome::Yes);
+    }
+    writeln!(out, "{} devices", listed.len())?;
     writeln!(out)?;
     actuators::report(false)
+}
+
+/// The devices that are asked for, with their names.
+fn listed(options: &DevicesOptions) -> Vec<(&str, &DeviceProfile)> {
+    match &options.profile {
+        Some(choice) => vec![(&choice.name, &choice.profile)],
+        None => PROFILES.iter().map(|(name, profile)| (*name, profile)).collect(),
+    }
 }
 
 /// A row for each profile, with its name and its assumed numbers; columns are `wide` characters

@@ -5,11 +5,12 @@
 
 use std::io::Write;
 
-use palpate::devices::{DeviceProfile, PROFILES};
+use palpate::devices::DeviceProfile;
 use palpate::field::Shape;
 use palpate::haptics::{Accepted, Bodies, Body, Material, Protection, Surface};
 use serde_json::{Value, json};
 
+use super::listed;
 use crate::arguments::DevicesOptions;
 use crate::numbers::rounded;
 use crate::outcome::{Failure, Outcome};
@@ -17,8 +18,8 @@ use crate::output;
 
 /// Prints a table, of which a page can be made, or JSON.
 pub(super) fn report(options: &DevicesOptions) -> Result<Outcome, Failure> {
-    let rows = PROFILES.iter().filter(|(_, profile)| profile.max_force > 0.0);
-    let rows = rows.map(|(name, profile)| Ok((*name, rendered(profile, options.rate)?)));
+    let rows = listed(options).into_iter().filter(|(_, profile)| profile.max_force > 0.0);
+    let rows = rows.map(|(name, profile)| Ok((name, rendered(profile, options.rate)?)));
     let rows = rows.collect::<Result<Vec<_>, Failure>>()?;
     let names: Vec<_> = Material::preset_names().collect();
     let mut out = output::answer();

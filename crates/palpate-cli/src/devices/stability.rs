@@ -6,12 +6,13 @@
 use std::io::Write;
 
 use indicatif::{ProgressBar, ProgressStyle};
+use palpate::devices::DeviceProfile;
 use palpate::devices::stability::{Plant, Press, Rest};
-use palpate::devices::{DeviceProfile, PROFILES};
 use palpate::haptics::Material;
 use rayon::prelude::*;
 use serde_json::{Value, json};
 
+use super::listed;
 use crate::arguments::DevicesOptions;
 use crate::numbers::rounded;
 use crate::outcome::{Failure, Outcome};
@@ -92,9 +93,9 @@ impl Worst {
 /// Prints a table, of which a page can be made, or JSON.
 pub(super) fn report(options: &DevicesOptions) -> Result<Outcome, Failure> {
     let materials = materials(options)?;
-    let devices: Vec<_> = PROFILES
-        .iter()
-        .filter(|(_, p)| p.max_force > 0.0 && p.max_force < f64::INFINITY)
+    let devices: Vec<_> = listed(options)
+        .into_iter()
+        .filter(|(_, profile)| profile.max_force > 0.0 && profile.max_force < f64::INFINITY)
         .collect();
     let style = ProgressStyle::with_template("{bar:40} {pos} of {len} devices");
     let bar = ProgressBar::new(devices.len() as u64);
@@ -102,7 +103,7 @@ pub(super) fn report(options: &DevicesOptions) -> Result<Outcome, Failure> {
     let mut rows = Vec::new();
     for (name, profile) in bar.wrap_iter(devices.into_iter()) {
         let worst = DELAYS.iter().map(|delay| worst(profile, &materials, *delay));
-        rows.push((*name, worst.collect::<Result<Vec<_>, Failure>>()?));
+        rows.push((name, worst.collect::<Result<Vec<_>, Failure>>()?));
     }
     bar.finish_and_clear();
     let mut out = output::answer();

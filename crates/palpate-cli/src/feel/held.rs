@@ -20,9 +20,9 @@ pub(super) fn map<const D: usize>(
     choice: &DeviceChoice,
 ) -> Result<WorkspaceMap<D>, Failure> {
     match choice {
-        DeviceChoice::Simulated(profile) => {
+        DeviceChoice::Simulated(choice) => {
             let tool = tool.map(|held| &held.tool);
-            scene.workspace_of(profile, tool).map_err(Failure::input)
+            scene.workspace_of(&choice.profile, tool).map_err(Failure::input)
         }
         DeviceChoice::Recorded | DeviceChoice::Glove => Ok(scene.workspace.unwrap_or_default()),
     }
@@ -31,7 +31,7 @@ pub(super) fn map<const D: usize>(
 /// `true` if the workspace map is made to hold the scene, and not given by it.
 pub(super) fn is_fitted<const D: usize>(scene: &BuiltScene<D>, choice: &DeviceChoice) -> bool {
     let is_limited = match choice {
-        DeviceChoice::Simulated(profile) => profile.workspace_radius < f64::INFINITY,
+        DeviceChoice::Simulated(choice) => choice.profile.workspace_radius < f64::INFINITY,
         DeviceChoice::Recorded | DeviceChoice::Glove => false,
     };
     is_limited && scene.workspace.is_none() && scene.bounds().is_some()
@@ -50,13 +50,13 @@ pub(super) fn device<const D: usize>(
     Ok(match choice {
         DeviceChoice::Recorded => Box::new(RecordedDevice::new(paths)?),
         DeviceChoice::Glove => Box::new(Glove::new(paths)?),
-        DeviceChoice::Simulated(profile) => {
+        DeviceChoice::Simulated(choice) => {
             let hand = |path| match turns {
                 Some(turns) => Hand::new(path).with_turns(turns.clone()),
                 None => Hand::new(path),
             };
             let hands = paths.into_iter().map(hand).collect();
-            Box::new(SimulatedDevice::new((**profile).clone(), hands)?)
+            Box::new(SimulatedDevice::new(choice.profile.clone(), hands)?)
         }
     })
 }

@@ -19,12 +19,12 @@ mod vibration;
 use std::io::{self, IsTerminal};
 use std::time::Duration;
 
-use palpate::devices::{HandPath, profile_named};
+use palpate::devices::HandPath;
 use palpate::haptics::{Probe, Progress};
 use palpate::scene::{AnyScene, BuiltScene, BuiltTool, ServoSettings};
 use palpate::servo_loop::{Ending, Pace, Recorder, RunOptions, RunReport, run as run_servo};
 
-use crate::arguments::{DeviceChoice, FeelOptions, RecoveryChoice};
+use crate::arguments::{DeviceChoice, FeelOptions, ProfileChoice, RecoveryChoice};
 use crate::emptiness;
 use crate::input::{self, Named};
 use crate::interrupt::Interrupt;
@@ -191,9 +191,9 @@ fn choice(options: &FeelOptions) -> Result<DeviceChoice, Failure> {
     Ok(match (&options.device, &options.scene) {
         (Some(choice), _) => choice.clone(),
         (None, Some(_)) => DeviceChoice::Recorded,
-        (None, None) => {
-            DeviceChoice::Simulated(Box::new(profile_named(SHOWN).map_err(Failure::input)?))
-        }
+        (None, None) => DeviceChoice::Simulated(Box::new(
+            ProfileChoice::named(SHOWN).map_err(Failure::input)?,
+        )),
     })
 }
 
@@ -220,7 +220,8 @@ fn check_forces(choice: &DeviceChoice, options: &FeelOptions) -> Result<(), Fail
             let problem = format!("{given} {have} no meaning for a glove, which has no forces");
             Err(Failure::input(problem))
         }
-        (DeviceChoice::Simulated(profile), Some(force)) if force > profile.max_force => {
+        (DeviceChoice::Simulated(choice), Some(force)) if force > choice.profile.max_force => {
+            let profile = &choice.profile;
             Err(Failure::input(format!(
                 "--max-force must be at most {} N, the largest force of the {}, got {force} N",
                 profile.max_force, profile.name

@@ -9,7 +9,7 @@ use palpate::vibration::Actuator;
 
 use super::figure::Run;
 use super::vibration::{Played, Vibration};
-use crate::arguments::FeelOptions;
+use crate::arguments::{DeviceChoice, FeelOptions};
 use crate::outcome::Failure;
 use crate::output::{self, Destination, Files};
 use crate::picture::{Dimensions, Drawable, Picture};
@@ -40,8 +40,9 @@ pub(super) struct Ran<'a> {
 impl Outputs {
     /// Checks that all of them can be written.
     pub(super) fn of(options: &FeelOptions) -> Result<Self, Failure> {
-        let inputs = [&options.scene, &options.path];
-        let mut files = Files::reading(inputs.into_iter().filter_map(Option::as_deref));
+        let inputs = [&options.scene, &options.path].into_iter().filter_map(Option::as_deref);
+        let device = options.device.as_ref().and_then(DeviceChoice::file);
+        let mut files = Files::reading(inputs.chain(device));
         Ok(Self {
             trace: options
                 .trace

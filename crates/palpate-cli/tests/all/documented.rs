@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! What `docs/formats.md` says of the output of `feel`, `devices` and `jitter` is what they print.
+//! What `docs/formats.md` says of the output of `feel`, `devices`, `identify` and `jitter` is what they print.
 
 use std::collections::BTreeSet;
 
@@ -108,15 +108,33 @@ fn the_keys_and_columns_of_feel_are_documented() {
 }
 
 #[test]
-fn the_keys_of_devices_and_jitter_are_documented() {
+fn the_keys_of_devices_identify_and_jitter_are_documented() {
     for (heading, commands) in [
-        ("Devices", &[&["devices", "--json"][..], &["devices", "--actuators", "--json"]][..]),
+        (
+            "Devices",
+            &[
+                &["devices", "--json"][..],
+                &["devices", "--actuators", "--json"],
+                &["devices", "--stability", "--profile", "touch", "--json"],
+            ][..],
+        ),
+        ("Identified devices", &[&["identify", "--device", "premium15", "--json"]]),
         ("Lateness", &[&["jitter", "--duration", "0.03", "--json"]]),
     ] {
         let mut printed = Names::new();
         commands.iter().for_each(|command| keys(&json(command), &mut printed));
         assert_same(&documented(heading, true), &printed);
     }
+}
+
+/// One row, since all of them take minutes; `palpate devices --stability` prints the table.
+#[test]
+fn the_table_of_devices_that_differ_from_their_profiles_is_current() {
+    let page =
+        std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/guide/touch.md");
+    let written = std::fs::read_to_string(page).unwrap();
+    let row = text(&palpate(&["devices", "--stability", "--profile", "omni"]));
+    assert!(written.contains(row.lines().last().unwrap()), "{row}");
 }
 
 /// `PALPATE_UPDATE_GUIDE=1` writes the table of materials on devices anew.

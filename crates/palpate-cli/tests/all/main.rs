@@ -12,6 +12,7 @@ mod documented;
 mod error_maps;
 mod feel;
 mod gradients;
+mod identify;
 mod interrupted;
 mod memoir;
 mod messages;

@@ -6,6 +6,7 @@
 use jsonc_parser::ast::{ObjectProp, Value as Tree};
 use jsonc_parser::common::Ranged;
 use jsonc_parser::{CollectOptions, ParseOptions, parse_to_ast};
+use serde::de::DeserializeOwned;
 use serde_json::{Map, Value};
 
 use super::reading::Reading;
@@ -14,7 +15,6 @@ use crate::error::{MOST, SceneError, SceneProblem};
 use crate::names::shortened;
 use crate::problem::{Problem, Step};
 use crate::problems::Problems;
-use crate::scene::Scene;
 
 /// How deep objects and lists may nest: what two of them for each of the 64
 /// levels of a shape need, twice over. Deeper ones could exhaust the stack.
@@ -65,21 +65,21 @@ impl<'a> Document<'a> {
         Err(self.error(Problems::default()))
     }
 
-    /// The scene, which `build` checks.
-    pub(crate) fn scene(
+    /// What the text holds, which `build` checks.
+    pub(crate) fn read<T: DeserializeOwned>(
         &self,
-        build: impl FnOnce(&Scene) -> Result<(), Problems>,
-    ) -> Result<Scene, SceneError> {
+        build: impl FnOnce(&T) -> Result<(), Problems>,
+    ) -> Result<T, SceneError> {
         let mut reading = Reading::new(&self.value);
-        let scene: Option<Scene> = reading.read();
-        let is_built = scene.is_some() && reading.is_buildable();
-        if let (Some(scene), true) = (&scene, is_built) {
-            reading.add_built(build(scene).err().unwrap_or_default());
+        let read: Option<T> = reading.read();
+        let is_built = read.is_some() && reading.is_buildable();
+        if let (Some(read), true) = (&read, is_built) {
+            reading.add_built(build(read).err().unwrap_or_default());
         }
         let problems = reading.into_problems();
         let is_good = self.source.is_good() && self.wrong.is_empty() && !problems.is_failed();
-        match scene.filter(|_| is_good) {
-            Some(scene) => Ok(scene),
+        match read.filter(|_| is_good) {
+            Some(read) => Ok(read),
             None if is_built => Err(self.error(problems)),
             None => Err(self.error(problems).and_maybe_more()),
         }

@@ -1,0 +1,150 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! `palpate identify`: moves a device, says what it is made of, and writes its profile.
+
+mod report;
+
+use std::io::{self, IsTerminal};
+
+use palpate::devices::{
+    DeviceError, DeviceProfile, Hand, Identified, IdentifyError, IdentifyOptions as Motions,
+    IdentifyProgress, SimulatedDevice, identify,
+};
+use palpate::field::Vector;
+use palpate::scene::device_to_json;
+
+use crate::arguments::IdentifyOptions;
+use crate::interrupt::Interrupt;
+use crate::outcome::{Failure, Outcome};
+use crate::output::{self, Destination, Files};
+use report::Report;
+
+/// The mass [kg] and the damping [N·s/m] of a hand that holds the handle.
+const HAND: (f64, f64) = (0.1, 5.0);
+
+pub(crate) fn run(
+    options: &IdentifyOptions,
+    interrupt: &Interrupt,
+) -> Result<Outcome, Failure> {
+    let given = [Some(&options.device), options.plant.as_ref()];
+    let inputs = given.into_iter().flatten().filter_map(|choice| choice.file.as_deref());
+    let mut files = Files::reading(inputs);
+    let out = options.out.as_deref();
+    let out = out.map(|path| files.output_as(path, "a profile", "json")).transpose()?;
+    let profile = &options.device.profile;
+    let plant = plant(options);
+    let mut device = simulated(&plant, options.grip).map_err(Failure::input)?;
+    let motions = Motions::new(options.rate)
+        .with_travel(options.travel)
+        .with_force_part(options.force_part)
+        .with_seed(options.seed);
+    warn(profile, &motions);
+    interrupt.heed();
+    let found = identified(&mut device, motions, interrupt);
+    let found = match found {
+        Ok(found) => found,
+        Err(IdentifyError::Interrupted { axis }) => {
+            output::remark(format_args!("stopped {axis}, with zero force; nothing is written"));
+            return Ok(Outcome::Interrupted);
+        }
+        Err(error) => return Err(Failure::input(error)),
+    };
+    let source = format!(
+        "palpate identify {}, {} Hz, seed {}",
+        env!("CARGO_PKG_VERSION"),
+        options.rate,
+        options.seed
+    );
+    let better = found.profile(profile, &source);
+    let written = out.as_ref().map_or(Ok(()), |out| write(out, &better));
+    let report = Report { options, profile, plant: &plant, found: &found, out: out.as_ref() };
+    // The report is whole even if the file cannot be written.
+    written.and(report.print())?;
+    let is_seen = found.axes.iter().all(palpate::devices::IdentifiedAxis::is_seen);
+    Ok(if is_seen { Outcome::Yes } else { Outcome::No })
+}
+
+/// Says what will happen, before anything does.
+fn warn(profile: &DeviceProfile, motions: &Motions) {
+    let force = (motions.force_part * profile.max_force).min(profile.continuous_force);
+    output::remark(format_args!(
+        "let go of the handle of the {}: it moves by at most {} mm to each side, with at most {:.3} N; \
+         Ctrl-C stops it",
+        profile.name,
+        motions.travel * 1000.0,
+        force
+    ));
+}
+
+/// The device as it is made.
+fn plant(options: &IdentifyOptions) -> DeviceProfile {
+    let profile = &options.device.profile;
+    let made = options.plant.as_ref().map_or(profile, |choice| &choice.profile);
+    let plant = profile
+        .clone()
+        .with_mass(made.mass * options.plant_mass)
+        .with_least_damping(made.least_damping * options.plant_damping)
+        .with_friction(made.friction * options.plant_friction)
+        .with_encoder_step(made.encoder_step * options.plant_encoder_step);
+    let Some(turning) = &profile.turning else { return plant };
+    let made = made.turning.as_ref().unwrap_or(turning);
+    plant.with_turning(
+        turning
+            .clone()
+            .with_inertia(made.inertia * options.plant_mass)
+            .with_least_damping(made.least_damping * options.plant_damping)
+            .with_friction(made.friction * options.plant_friction)
+            .with_encoder_step(made.encoder_step * options.plant_encoder_step),
+    )
+}
+
+fn simulated(
+    plant: &DeviceProfile,
+    grip: Option<f64>,
+) -> Result<SimulatedDevice<3>, DeviceError> {
+    let hand = Hand::free(Vector::ZERO)?;
+    let hand = match grip {
+        Some(stiffness) => hand.with_mass(HAND.0)?.with_spring(stiffness, HAND.1)?,
+        None => hand,
+    };
+    SimulatedDevice::new(plant.clone(), vec![hand])
+}
+
+/// Identifies on virtual time, with a live line.
+fn identified(
+    device: &mut SimulatedDevice<3>,
+    motions: Motions,
+    interrupt: &Interrupt,
+) -> Result<Identified, IdentifyError> {
+    let shows_line = io::stderr().is_terminal();
+    let mut told = None;
+    let mut ticks = 0.0;
+    let mut next_tick = |progress: &IdentifyProgress| {
+        let at = (progress.axis_number, progress.strokes);
+        if told != Some(at) {
+            let is_new = told.is_none_or(|(axis, _)| axis != progress.axis_number);
+            told = Some(at);
+            let IdentifyProgress { axis, axis_number, axes, strokes, .. } = progress;
+            if shows_line {
+                output::live(format_args!(
+                    "{axis} ({axis_number} of {axes}): {strokes} strokes"
+                ));
+            } else if is_new {
+                output::remark(format_args!("{axis} ({axis_number} of {axes})"));
+            }
+        }
+        ticks += 1.0;
+        (!interrupt.is_asked()).then_some(ticks / motions.rate)
+    };
+    let found = identify(device, motions, &mut next_tick);
+    if shows_line {
+        output::remark("");
+    }
+    found
+}
+
+fn write(out: &Destination, profile: &DeviceProfile) -> Result<(), Failure> {
+    let text = device_to_json(profile).map_err(Failure::input)?;
+    out.write(|file| Ok(file.write_all(text.as_bytes())?))
+}

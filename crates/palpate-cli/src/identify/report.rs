@@ -1,0 +1,235 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! What `palpate identify` prints.
+
+use std::io::{self, Write};
+
+use palpate::devices::{
+    DeviceAxis, DeviceProfile, EncoderStep, Estimate, Identified, IdentifiedAxis,
+};
+use serde_json::{Value, json};
+
+use crate::arguments::IdentifyOptions;
+use crate::numbers::{measured, rounded};
+use crate::outcome::Failure;
+use crate::output::{self, Destination};
+
+/// What was found, beside what was assumed and what the simulated device is made of.
+pub(super) struct Report<'a> {
+    pub(super) options: &'a IdentifyOptions,
+    pub(super) profile: &'a DeviceProfile,
+    pub(super) plant: &'a DeviceProfile,
+    pub(super) found: &'a Identified,
+    pub(super) out: Option<&'a Destination>,
+}
+
+/// Mass, damping, friction and encoder step of an axis.
+struct Numbers {
+    mass: f64,
+    damping: f64,
+    friction: f64,
+    encoder_step: f64,
+}
+
+impl Numbers {
+    fn of(profile: &DeviceProfile, axis: DeviceAxis) -> Self {
+        match (axis, &profile.turning) {
+            (DeviceAxis::About(_), Some(turning)) => Self {
+                mass: turning.inertia,
+                damping: turning.least_damping,
+                friction: turning.friction,
+                encoder_step: turning.encoder_step,
+            },
+            _ => Self {
+                mass: profile.mass,
+                damping: profile.least_damping,
+                friction: profile.friction,
+                encoder_step: profile.encoder_step,
+            },
+        }
+    }
+}
+
+/// A number that was found, with what else is known of it.
+struct Row {
+    key: &'static str,
+    name: &'static str,
+    unit: &'static str,
+    found: Estimate,
+    is_seen: bool,
+    profile: f64,
+    made_with: f64,
+}
+
+impl Report<'_> {
+    pub(super) fn print(&self) -> Result<(), Failure> {
+        let mut out = output::answer();
+        if self.options.json {
+            out.json(&self.described())?;
+            return Ok(());
+        }
+        writeln!(
+            out,
+            "{}, simulated, at {} Hz, seed {}",
+            self.profile.name, self.options.rate, self.options.seed
+        )?;
+        for axis in &self.found.axes {
+            self.write_axis(&mut out, axis)?;
+        }
+        if self.found.is_turning_unknown {
+            writeln!(
+                out,
+                "its wrist gives no torque: inertia, damping, friction and step about its axes stay \
+                 those of the profile"
+            )?;
+        }
+        match self.out {
+            Some(path) => writeln!(out, "wrote {}", path.name().display())?,
+            None => writeln!(out, "no profile is written: name a file by --out")?,
+        }
+        Ok(())
+    }
+
+    fn write_axis(&self, out: &mut impl Write, axis: &IdentifiedAxis) -> io::Result<()> {
+        writeln!(
+            out,
+            "{}: {} strokes in {:.1} s, misfit {:.2}",
+            axis.axis, axis.strokes, axis.time, axis.misfit
+        )?;
+        for row in self.rows(axis) {
+            writeln!(out, "  {:<13} {}", row.name, row.said())?;
+        }
+        if let EncoderStep::Unseen(least) = axis.encoder_step {
+            let (least, unit) = (rounded(least), axis.axis.length_unit());
+            writeln!(out, "  its readings show no steps above {least} {unit}")?;
+        }
+        if matches!(axis.encoder_step, EncoderStep::Uneven(_)) {
+            writeln!(out, "  its steps have no common length; the largest counts")?;
+        }
+        if axis.has_weight() {
+            let (force, unit) = (rounded(axis.offset.value), axis.axis.force_unit());
+            writeln!(
+                out,
+                "  a constant force of {force} {unit} pulls: balance the handle's weight"
+            )?;
+        }
+        Ok(())
+    }
+
+    fn rows(&self, axis: &IdentifiedAxis) -> [Row; 4] {
+        let assumed = Numbers::of(self.profile, axis.axis);
+        let made = Numbers::of(self.plant, axis.axis);
+        let is_turning = matches!(axis.axis, DeviceAxis::About(_));
+        let mass = if is_turning { ["inertia"; 2] } else { ["mass"; 2] };
+        let row = |[key, name]: [&'static str; 2],
+                   unit,
+                   found: Estimate,
+                   profile,
+                   made_with| {
+            Row { key, name, unit, found, is_seen: found.is_seen(), profile, made_with }
+        };
+        let at = axis.axis;
+        let step = Estimate { value: axis.encoder_step.size(), error: 0.0 };
+        [
+            row(mass, at.mass_unit(), axis.mass, assumed.mass, made.mass),
+            row(["damping"; 2], at.damping_unit(), axis.damping, assumed.damping, made.damping),
+            row(
+                ["friction"; 2],
+                at.force_unit(),
+                axis.friction,
+                assumed.friction,
+                made.friction,
+            ),
+            row(
+                ["encoder_step", "encoder step"],
+                at.length_unit(),
+                step,
+                assumed.encoder_step,
+                made.encoder_step,
+            ),
+        ]
+    }
+
+    fn described(&self) -> Value {
+        let axes = self.found.axes.iter().map(|axis| {
+            let mut described = json!({
+                "axis": axis.axis.to_string(),
+                "strokes": axis.strokes,
+                "time": axis.time,
+                "misfit": axis.misfit,
+                "offset": {
+                    "value": axis.offset.value,
+                    "error": axis.offset.error,
+                    "unit": axis.axis.force_unit(),
+                },
+                "has_weight": axis.has_weight(),
+                "steps": match axis.encoder_step {
+                    EncoderStep::Even(_) => "even",
+                    EncoderStep::Uneven(_) => "uneven",
+                    EncoderStep::Unseen(_) => "unseen",
+                },
+            });
+            for row in self.rows(axis) {
+                described[row.key] = json!({
+                    "value": row.found.value,
+                    "error": row.found.error,
+                    "unit": row.unit,
+                    "is_seen": row.is_seen,
+                    "profile": row.profile,
+                    "made_with": row.made_with,
+                });
+            }
+            described
+        });
+        json!({
+            "device": self.profile.name,
+            "rate": self.options.rate,
+            "seed": self.options.seed,
+            "axes": axes.collect::<Vec<_>>(),
+            "is_turning_unknown": self.found.is_turning_unknown,
+            "written": self.out.map(|out| out.name().display().to_string()),
+        })
+    }
+}
+
+impl Row {
+    fn said(&self) -> String {
+        let Self { found, unit, profile, made_with, .. } = self;
+        let number = if self.is_seen {
+            if found.error > 0.0 {
+                let [value, error] =
+                    [found.value, found.error].map(|x| measured(x, found.error));
+                format!("{value} ± {error} {unit}")
+            } else {
+                format!("{} {unit}", rounded(found.value))
+            }
+        } else {
+            let (least, most) = (rounded(found.least()), rounded(found.most()));
+            format!("cannot be told: from {least} to {most} {unit}")
+        };
+        let beside = beside(found.value, *profile);
+        let off = beside_truth(found.value, *made_with);
+        format!(
+            "{number}; {beside} the profile's {}; {off} what it was made with",
+            rounded(*profile)
+        )
+    }
+}
+
+/// A number beside the one that was assumed.
+fn beside(found: f64, assumed: f64) -> String {
+    let part = 100.0 * (found / assumed - 1.0);
+    if !part.is_finite() {
+        "beside".to_owned()
+    } else if part.abs() < 1.0 {
+        "as".to_owned()
+    } else {
+        format!("{part:+.0} % of")
+    }
+}
+
+fn beside_truth(found: f64, truth: f64) -> String {
+    let part = 100.0 * (found / truth - 1.0).abs();
+    if part.is_finite() { format!("within {part:.2} % of") } else { "beside".to_owned() }
+}

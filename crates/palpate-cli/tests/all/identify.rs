@@ -1,0 +1,150 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! `palpate identify`, and the profiles that it writes.
+
+use crate::common::{Folder, assert_refused, errors, json, number, palpate, status, text};
+
+/// The options of a device that differs from its profile.
+const OTHER: [&str; 8] = [
+    "--plant-mass",
+    "1.5",
+    "--plant-damping",
+    "0.5",
+    "--plant-friction",
+    "2",
+    "--plant-encoder-step",
+    "2",
+];
+
+#[test]
+fn a_device_that_differs_from_its_profile_is_found_within_a_tenth() {
+    let device = ["identify", "--device", "sigma7", "--json"];
+    let found = json(&[&device[..], &OTHER].concat());
+    let axes = found["axes"].as_array().unwrap();
+    assert_eq!(axes.len(), 6);
+    for (i, axis) in axes.iter().enumerate() {
+        let mass = if i < 3 { "mass" } else { "inertia" };
+        for (key, factor) in
+            [(mass, 1.5), ("damping", 0.5), ("friction", 2.0), ("encoder_step", 2.0)]
+        {
+            let of = |name: &str| number(&axis[key][name]);
+            assert!((of("value") / of("made_with") - 1.0).abs() < 0.1, "{axis}");
+            assert!((of("made_with") / of("profile") - factor).abs() < 1e-12, "{axis}");
+            assert_eq!(axis[key]["is_seen"], true, "{axis}");
+        }
+        assert_eq!((&axis["steps"], &axis["has_weight"]), (&"even".into(), &false.into()));
+    }
+    assert_eq!(found["written"], serde_json::Value::Null);
+}
+
+#[test]
+fn what_is_found_is_a_profile_that_devices_feel_and_identify_read() {
+    let folder = Folder::new();
+    let file = folder.path("found.json");
+    let file = file.to_str().unwrap();
+    let options = ["identify", "--device", "omega", "--out", file];
+    let output = palpate(&[&options[..], &OTHER].concat());
+    assert_eq!(status(&output), 0, "{}", errors(&output));
+    let said = text(&output);
+    assert!(
+        said.starts_with("Force Dimension omega, simulated, at 1000 Hz, seed 0\nalong x: ")
+    );
+    assert!(said.contains("% of the profile's 0.2; within 0.0"), "{said}");
+    assert!(said.ends_with(&format!("wrote {file}\n")), "{said}");
+    let told = "let go of the handle of the Force Dimension omega: it moves by at most 5 mm";
+    assert!(errors(&output).starts_with(told), "{}", errors(&output));
+
+    let rows = json(&["devices", "--profile", file, "--json"]);
+    let row = &rows[0];
+    assert!((number(&row["friction"]["value"]) / 0.2 - 1.0).abs() < 0.02, "{row}");
+    assert_eq!(
+        (&row["friction"]["assumed"], number(&row["max_force"]["value"])),
+        (&false.into(), 12.0)
+    );
+    assert_eq!(row["continuous_force"]["assumed"], true);
+    let source = row["source"].as_str().unwrap();
+    assert!(source.contains("palpate identify ") && source.contains(", 1000 Hz, seed 0"));
+
+    // Its damping is half of the omega's, so less is rendered of a damped wall.
+    let device = format!("simulated:{file}");
+    let felt = |device: &str| {
+        let feel = ["feel", "--fast", "--duration", "0.5", "--json", "--device"];
+        json(&[&feel[..], &[device]].concat())
+    };
+    let [found, usual] = [felt(&device), felt("simulated:omega")];
+    assert_eq!(found["device"], usual["device"]);
+    assert_ne!(found["bodies"], usual["bodies"]);
+
+    let again = json(&["identify", "--device", file, "--json"]);
+    let friction = &again["axes"][0]["friction"];
+    assert!((number(&friction["value"]) / number(&friction["profile"]) - 1.0).abs() < 0.01);
+}
+
+#[test]
+fn a_number_that_cannot_be_told_is_said_and_the_status_is_1() {
+    let output = palpate(&[
+        "identify",
+        "--device",
+        "touch",
+        "--plant-damping",
+        "0.3",
+        "--plant-friction",
+        "3",
+        "--plant-encoder-step",
+        "3",
+    ]);
+    assert_eq!(status(&output), 1, "{}", errors(&output));
+    assert!(
+        text(&output).contains("  damping       cannot be told: from 0.0"),
+        "{}",
+        text(&output)
+    );
+}
+
+#[test]
+fn a_hand_is_noticed_and_wrong_input_is_refused() {
+    let output = palpate(&["identify", "--device", "omega", "--grip", "300"]);
+    assert_eq!((status(&output), text(&output).as_str()), (2, ""));
+    let said = errors(&output);
+    assert!(said.contains("palpate: along x: a spring of 300"), "{said}");
+    let output = palpate(&["identify", "--device", "omega8"]);
+    let said = errors(&output);
+    assert!(said.contains("unknown device `omega8`, did you mean `omega"), "{said}");
+    let folder = Folder::new();
+    let file = folder.path("device.json");
+    let file = file.to_str().unwrap();
+    std::fs::write(file, "{ \"palpate_device\": 1,\n  \"mass\": \"light\" }").unwrap();
+    let output = palpate(&["feel", "--device", &format!("simulated:{file}")]);
+    let said = errors(&output);
+    assert!(said.contains("mass, line 2: mass must be a number, got"), "{said}");
+    assert_eq!(status(&output), 2);
+    for (option, value, rule) in [
+        ("--rate", "20000", "must be from 500 to 10000 Hz, got 20000 Hz"),
+        ("--travel", "0", "must be from 0.0001 to 0.05 m, got 0 m"),
+        ("--plant-mass", "0", "must be positive and finite, got 0"),
+    ] {
+        let said = errors(&palpate(&["identify", "--device", "omega", option, value]));
+        assert!(said.contains(rule), "{said}");
+    }
+    assert_refused(
+        &["identify", "--device", "omega", "--out", "no/such/folder.json"],
+        "no/such/folder.json: there is no folder no/such",
+    );
+    assert_refused(
+        &["identify", "--device", "omega", "--out", "found.txt"],
+        "found.txt: the name of a profile must end in .json",
+    );
+}
+
+#[test]
+fn an_interrupted_run_writes_no_profile() {
+    let folder = Folder::new();
+    let file = folder.path("found.json");
+    let interrupt = palpate_cli::Interrupt::new();
+    interrupt.asked().store(true, std::sync::atomic::Ordering::Relaxed);
+    let out = file.to_str().unwrap();
+    let options = ["palpate", "identify", "--device", "omega", "--out", out];
+    assert_eq!(palpate_cli::run_until(options, &interrupt), 130);
+    assert!(!file.exists());
+}

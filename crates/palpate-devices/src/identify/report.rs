@@ -1,0 +1,269 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! What an identification finds.
+
+use std::fmt;
+
+use palpate_haptics::{DeviceProfile, TurningProfile};
+
+/// An axis of a device.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum DeviceAxis {
+    /// Motions along a coordinate axis: 0 for x.
+    Along(usize),
+    /// Rotations about a coordinate axis: 2 for z.
+    About(usize),
+}
+
+impl DeviceAxis {
+    /// The unit of a force along the axis, or of a torque about it.
+    #[must_use]
+    pub fn force_unit(self) -> &'static str {
+        self.either("N", "N·m")
+    }
+
+    /// The unit of a length along the axis, or of an angle about it.
+    #[must_use]
+    pub fn length_unit(self) -> &'static str {
+        self.either("m", "rad")
+    }
+
+    /// The unit of a mass, or of a moment of inertia.
+    #[must_use]
+    pub fn mass_unit(self) -> &'static str {
+        self.either("kg", "kg·m²")
+    }
+
+    /// The unit of a damping.
+    #[must_use]
+    pub fn damping_unit(self) -> &'static str {
+        self.either("N·s/m", "N·m·s/rad")
+    }
+
+    /// The unit of a stiffness.
+    #[must_use]
+    pub fn stiffness_unit(self) -> &'static str {
+        self.either("N/m", "N·m/rad")
+    }
+
+    fn either(self, along: &'static str, about: &'static str) -> &'static str {
+        match self {
+            Self::Along(_) => along,
+            Self::About(_) => about,
+        }
+    }
+}
+
+impl fmt::Display for DeviceAxis {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (word, Self::Along(i) | Self::About(i)) = (self.either("along", "about"), self);
+        match ["x", "y", "z"].get(*i) {
+            Some(name) => write!(f, "{word} {name}"),
+            None => write!(f, "{word} axis {i}"),
+        }
+    }
+}
+
+/// A number with its error.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Estimate {
+    /// The number.
+    pub value: f64,
+    /// Two standard deviations: the true number is this close 19 times out of 20, if the device
+    /// moves as a mass with damping and friction.
+    pub error: f64,
+}
+
+impl Estimate {
+    /// The largest error of a number that counts as seen, as a part of it.
+    pub const SEEN: f64 = 0.1;
+
+    /// `true` if the error is at most a tenth of the number.
+    ///
+    /// ```
+    /// use palpate_devices::Estimate;
+    ///
+    /// assert!(Estimate { value: 2.5, error: 0.1 }.is_seen());
+    /// assert!(!Estimate { value: 0.01, error: 0.1 }.is_seen());
+    /// ```
+    #[must_use]
+    pub fn is_seen(&self) -> bool {
+        // NaN is not seen.
+        self.error <= Self::SEEN * self.value.abs()
+    }
+
+    /// The least number within the error, zero at least.
+    #[must_use]
+    pub fn least(&self) -> f64 {
+        (self.value - self.error).max(0.0)
+    }
+
+    /// The largest number within the error.
+    #[must_use]
+    pub fn most(&self) -> f64 {
+        self.value + self.error
+    }
+}
+
+/// What the readings of an axis say about its encoder.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum EncoderStep {
+    /// All readings lie in whole steps of this length [m], or angle [rad].
+    Even(f64),
+    /// Readings come in steps without a common length, as where the place of the handle follows
+    /// from angles of joints; the largest seen in slow motion.
+    Uneven(f64),
+    /// No steps above this length are seen: the encoder step is 0.
+    Unseen(f64),
+}
+
+impl EncoderStep {
+    /// The step for a profile [m], or [rad]; zero if none is seen.
+    #[must_use]
+    pub fn size(self) -> f64 {
+        match self {
+            Self::Even(step) | Self::Uneven(step) => step,
+            Self::Unseen(_) => 0.0,
+        }
+    }
+}
+
+/// What was found along an axis, or about it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct IdentifiedAxis {
+    /// The axis.
+    pub axis: DeviceAxis,
+    /// Apparent mass [kg], or moment of inertia [kg·m²].
+    pub mass: Estimate,
+    /// Viscous damping [N·s/m], or [N·m·s/rad].
+    pub damping: Estimate,
+    /// Coulomb friction [N], or [N·m].
+    pub friction: Estimate,
+    /// The encoder's step.
+    pub encoder_step: EncoderStep,
+    /// A constant force on the handle beside the motors' [N], or torque [N·m]: weight that is not
+    /// balanced.
+    pub offset: Estimate,
+    /// The root mean square of the misses of the model, over what encoder steps explain: 1 for a
+    /// mass with damping and friction.
+    pub misfit: f64,
+    /// Strokes that were evaluated.
+    pub strokes: u64,
+    /// The time of all motions of the axis [s].
+    pub time: f64,
+}
+
+/// What was found of a device.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Identified {
+    /// The axes, those of translation first.
+    pub axes: Vec<IdentifiedAxis>,
+    /// `true` if the device senses its orientation but gives no torque, so that nothing is known
+    /// about its rotation.
+    pub is_turning_unknown: bool,
+}
+
+impl IdentifiedAxis {
+    /// `true` if mass, damping and friction are [seen](Estimate::is_seen).
+    #[must_use]
+    pub fn is_seen(&self) -> bool {
+        [self.mass, self.damping, self.friction].iter().all(Estimate::is_seen)
+    }
+
+    /// `true` if the constant force beside the motors' is more than its error, and more than a
+    /// fifth of the friction: the weight of the handle is not balanced.
+    #[must_use]
+    pub fn has_weight(&self) -> bool {
+        let offset = self.offset.value.abs();
+        offset > self.offset.error && offset > WEIGHT * self.friction.value
+    }
+}
+
+/// The constant force that counts as weight, over the friction.
+const WEIGHT: f64 = 0.2;
+
+/// Names of the numbers that are found along axes.
+const ALONG: [&str; 4] = ["mass", "least_damping", "friction", "encoder_step"];
+
+/// Names of the numbers that are found about axes.
+const ABOUT: [&str; 4] = ["inertia", "least_damping", "friction", "encoder_step"];
+
+/// The numbers of the worst axis.
+struct Worst {
+    mass: f64,
+    damping: f64,
+    friction: f64,
+    step: f64,
+}
+
+impl Identified {
+    /// `profile` with the numbers that were found, those of the worst axis: the least mass (a
+    /// light handle moves most for a force), the least damping, the least friction, the largest
+    /// encoder step. A damping or a friction that is not [seen](Estimate::is_seen) is the least
+    /// within its error. `source` says in a few words what found them; the names of the numbers
+    /// leave the list of those that are assumed.
+    ///
+    /// Limits of force, stiffness, damping, speed and workspace stay: motions without a hand do
+    /// not tell them.
+    #[must_use]
+    pub fn profile(&self, profile: &DeviceProfile, source: &str) -> DeviceProfile {
+        let mut found = profile.clone();
+        if let Some(worst) = self.worst(|axis| matches!(axis, DeviceAxis::Along(_))) {
+            found = found
+                .with_mass(worst.mass)
+                .with_least_damping(worst.damping)
+                .with_friction(worst.friction)
+                .with_encoder_step(worst.step)
+                .with_assumed(without(&profile.assumed, &ALONG))
+                .with_source(both(source, &ALONG, &profile.source));
+        }
+        let about = self.worst(|axis| matches!(axis, DeviceAxis::About(_)));
+        if let (Some(worst), Some(turning)) = (about, &profile.turning) {
+            let turning: TurningProfile = turning
+                .clone()
+                .with_inertia(worst.mass)
+                .with_least_damping(worst.damping)
+                .with_friction(worst.friction)
+                .with_encoder_step(worst.step)
+                .with_assumed(without(&turning.assumed, &ABOUT))
+                .with_source(both(source, &ABOUT, &turning.source));
+            found = found.with_turning(turning);
+        }
+        found
+    }
+
+    fn worst(&self, is_meant: impl Fn(DeviceAxis) -> bool) -> Option<Worst> {
+        let axes = || self.axes.iter().filter(|found| is_meant(found.axis));
+        axes().next()?;
+        let least =
+            |of: fn(&IdentifiedAxis) -> f64| axes().map(of).fold(f64::INFINITY, f64::min);
+        let safe =
+            |number: Estimate| if number.is_seen() { number.value } else { number.least() };
+        Some(Worst {
+            mass: rounded(least(|found| found.mass.value)),
+            damping: rounded(
+                axes().map(|found| safe(found.damping)).fold(f64::INFINITY, f64::min),
+            ),
+            friction: rounded(
+                axes().map(|found| safe(found.friction)).fold(f64::INFINITY, f64::min),
+            ),
+            step: rounded(axes().map(|found| found.encoder_step.size()).fold(0.0, f64::max)),
+        })
+    }
+}
+
+/// A number with five digits, of which the errors leave fewer.
+fn rounded(number: f64) -> f64 {
+    format!("{number:.4e}").parse().unwrap_or(number)
+}
+
+fn without(assumed: &[&'static str], found: &[&str]) -> Vec<&'static str> {
+    assumed.iter().copied().filter(|name| !found.contains(name)).collect()
+}
+
+fn both(source: &str, found: &[&str], other: &str) -> String {
+    format!("{}: {source}; all else: {other}", found.join(", "))
+}

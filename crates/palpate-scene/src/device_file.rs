@@ -1,0 +1,332 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! Profiles of devices as files.
+
+use palpate_haptics::{DeviceProfile, TurningProfile};
+use serde::{Deserialize, Serialize};
+
+use crate::check::{at_least, positive};
+use crate::encoding::utf8;
+use crate::error::SceneError;
+use crate::json::{self, Document, Source};
+use crate::names::unknown as unknown_name;
+use crate::problem::Problem;
+use crate::problems::Problems;
+
+/// The version of the format.
+const VERSION: u64 = 1;
+
+/// Names of the numbers of a device, of which a file may say that they are assumed.
+const NUMBERS: [&str; 12] = [
+    "max_force",
+    "continuous_force",
+    "max_force_rate",
+    "max_stiffness",
+    "max_damping",
+    "workspace_radius",
+    "mass",
+    "least_damping",
+    "friction",
+    "encoder_step",
+    "max_speed",
+    "max_acceleration",
+];
+
+/// As [`NUMBERS`], about axes.
+const TURNING_NUMBERS: [&str; 9] = [
+    "max_torque",
+    "continuous_torque",
+    "max_torque_rate",
+    "max_stiffness",
+    "max_damping",
+    "inertia",
+    "least_damping",
+    "friction",
+    "encoder_step",
+];
+
+/// A [`DeviceProfile`] as a file gives it.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, expecting = "an object")]
+struct WrittenDevice {
+    palpate_device: u64,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    description: Option<String>,
+    device: String,
+    max_force: f64,
+    continuous_force: f64,
+    max_force_rate: f64,
+    max_stiffness: f64,
+    max_damping: f64,
+    workspace_radius: f64,
+    mass: f64,
+    least_damping: f64,
+    friction: f64,
+    encoder_step: f64,
+    max_speed: f64,
+    max_acceleration: f64,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    turning: Option<WrittenTurning>,
+    source: String,
+    #[serde(default)]
+    assumed: Vec<String>,
+}
+
+/// A [`TurningProfile`] as a file gives it.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, expecting = "an object")]
+struct WrittenTurning {
+    max_torque: f64,
+    continuous_torque: f64,
+    max_torque_rate: f64,
+    max_stiffness: f64,
+    max_damping: f64,
+    inertia: f64,
+    least_damping: f64,
+    friction: f64,
+    encoder_step: f64,
+    source: String,
+    #[serde(default)]
+    assumed: Vec<String>,
+}
+
+/// Reads the profile of a device from the bytes of a JSON file, whose keys `docs/formats.md`
+/// lists.
+///
+/// # Errors
+///
+/// All that is wrong, with paths, lines and columns: a number that is missing, not finite or not
+/// in its range, a name in `assumed` that is no number of a device, a text that is no JSON.
+///
+/// # Examples
+///
+/// ```
+/// use palpate_devices::profile_named;
+/// use palpate_scene::{device_from_json, device_to_json};
+///
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let omega = profile_named("omega7")?;
+/// let text = device_to_json(&omega)?;
+/// assert_eq!(device_from_json(text.as_bytes())?, omega);
+///
+/// let wrong = text.replace("\"mass\": 0.25", "\"mass\": -0.25");
+/// let error = device_from_json(wrong.as_bytes()).unwrap_err().to_string();
+/// assert_eq!(error, "mass, line 10: mass must be positive, got -0.25 kg");
+/// # Ok(())
+/// # }
+/// ```
+pub fn device_from_json(bytes: &[u8]) -> Result<DeviceProfile, SceneError> {
+    let text = utf8(bytes).map_err(|error| Problem::new(error.to_string()))?;
+    let source = Source::of(text);
+    let written: WrittenDevice = Document::parse(&source)?.read(check)?;
+    Ok(profile(written))
+}
+
+/// The text of a file from which [`device_from_json`] reads the same profile.
+///
+/// # Errors
+///
+/// If a number is not finite or not in its range, as those of a device without limits, which
+/// JSON does not hold.
+pub fn device_to_json(profile: &DeviceProfile) -> Result<String, SceneError> {
+    let written = written(profile);
+    if let Err(problems) = check(&written) {
+        return Err(SceneError::of(
+            problems.into_vec().into_iter().map(|problem| problem.located(None)),
+        ));
+    }
+    // Serialisation of plain data to a value has no way to fail.
+    Ok(json::write(&serde_json::to_value(written).unwrap_or_default()))
+}
+
+fn check(written: &WrittenDevice) -> Result<(), Problems> {
+    let version = if written.palpate_device == VERSION {
+        Ok(())
+    } else {
+        let message = format!("must be {VERSION}, got {}", written.palpate_device);
+        Err(Problem::about(message).under("palpate_device"))
+    };
+    let numbers = Problems::all([
+        version,
+        at_least("max_force", written.max_force, 0.0, "N"),
+        at_least("continuous_force", written.continuous_force, 0.0, "N"),
+        at_least("max_force_rate", written.max_force_rate, 0.0, "N/s"),
+        at_least("max_stiffness", written.max_stiffness, 0.0, "N/m"),
+        at_least("max_damping", written.max_damping, 0.0, "N·s/m"),
+        positive("workspace_radius", written.workspace_radius, "m"),
+        positive("mass", written.mass, "kg"),
+        at_least("least_damping", written.least_damping, 0.0, "N·s/m"),
+        at_least("friction", written.friction, 0.0, "N"),
+        at_least("encoder_step", written.encoder_step, 0.0, "m"),
+        positive("max_speed", written.max_speed, "m/s"),
+        positive("max_acceleration", written.max_acceleration, "m/s²"),
+    ]);
+    let turning = written.turning.as_ref().map_or(Ok(()), check_turning);
+    Problems::all([
+        numbers,
+        check_assumed(&written.assumed, &NUMBERS),
+        turning.map_err(|problems| problems.under("turning")),
+    ])
+}
+
+fn check_turning(turning: &WrittenTurning) -> Result<(), Problems> {
+    let numbers = Problems::all([
+        at_least("max_torque", turning.max_torque, 0.0, "N·m"),
+        at_least("continuous_torque", turning.continuous_torque, 0.0, "N·m"),
+        at_least("max_torque_rate", turning.max_torque_rate, 0.0, "N·m/s"),
+        at_least("max_stiffness", turning.max_stiffness, 0.0, "N·m/rad"),
+        at_least("max_damping", turning.max_damping, 0.0, "N·m·s/rad"),
+        positive("inertia", turning.inertia, "kg·m²"),
+        at_least("least_damping", turning.least_damping, 0.0, "N·m·s/rad"),
+        at_least("friction", turning.friction, 0.0, "N·m"),
+        at_least("encoder_step", turning.encoder_step, 0.0, "rad"),
+    ]);
+    Problems::all([numbers, check_assumed(&turning.assumed, &TURNING_NUMBERS)])
+}
+
+fn check_assumed(assumed: &[String], known: &[&str]) -> Result<(), Problems> {
+    let wrong = assumed.iter().enumerate().map(|(i, name)| {
+        if known.contains(&name.as_str()) {
+            return Ok(());
+        }
+        let message = unknown_name("number of a device", name, known);
+        Err(Problem::new(message).at(i).under("assumed"))
+    });
+    Problems::all(wrong)
+}
+
+/// The names of `assumed` as a profile holds them.
+fn names(assumed: &[String], known: &[&'static str]) -> Vec<&'static str> {
+    let is_assumed = |name: &&&str| assumed.iter().any(|assumed| assumed == **name);
+    known.iter().filter(is_assumed).copied().collect()
+}
+
+fn profile(written: WrittenDevice) -> DeviceProfile {
+    let profile = DeviceProfile::unlimited(written.device)
+        .with_max_force(written.max_force)
+        .with_continuous_force(written.continuous_force)
+        .with_max_force_rate(written.max_force_rate)
+        .with_max_stiffness(written.max_stiffness)
+        .with_max_damping(written.max_damping)
+        .with_workspace_radius(written.workspace_radius)
+        .with_mass(written.mass)
+        .with_least_damping(written.least_damping)
+        .with_friction(written.friction)
+        .with_encoder_step(written.encoder_step)
+        .with_max_speed(written.max_speed)
+        .with_max_acceleration(written.max_acceleration)
+        .with_source(written.source)
+        .with_assumed(names(&written.assumed, &NUMBERS));
+    match written.turning {
+        Some(turning) => profile.with_turning(turning_profile(turning)),
+        None => profile,
+    }
+}
+
+fn turning_profile(written: WrittenTurning) -> TurningProfile {
+    TurningProfile::unlimited()
+        .with_max_torque(written.max_torque)
+        .with_continuous_torque(written.continuous_torque)
+        .with_max_torque_rate(written.max_torque_rate)
+        .with_max_stiffness(written.max_stiffness)
+        .with_max_damping(written.max_damping)
+        .with_inertia(written.inertia)
+        .with_least_damping(written.least_damping)
+        .with_friction(written.friction)
+        .with_encoder_step(written.encoder_step)
+        .with_assumed(names(&written.assumed, &TURNING_NUMBERS))
+        .with_source(written.source)
+}
+
+fn written(profile: &DeviceProfile) -> WrittenDevice {
+    WrittenDevice {
+        palpate_device: VERSION,
+        description: None,
+        device: profile.name.to_string(),
+        max_force: profile.max_force,
+        continuous_force: profile.continuous_force,
+        max_force_rate: profile.max_force_rate,
+        max_stiffness: profile.max_stiffness,
+        max_damping: profile.max_damping,
+        workspace_radius: profile.workspace_radius,
+        mass: profile.mass,
+        least_damping: profile.least_damping,
+        friction: profile.friction,
+        encoder_step: profile.encoder_step,
+        max_speed: profile.max_speed,
+        max_acceleration: profile.max_acceleration,
+        turning: profile.turning.as_ref().map(|turning| WrittenTurning {
+            max_torque: turning.max_torque,
+            continuous_torque: turning.continuous_torque,
+            max_torque_rate: turning.max_torque_rate,
+            max_stiffness: turning.max_stiffness,
+            max_damping: turning.max_damping,
+            inertia: turning.inertia,
+            least_damping: turning.least_damping,
+            friction: turning.friction,
+            encoder_step: turning.encoder_step,
+            source: turning.source.to_string(),
+            assumed: turning.assumed.iter().map(|name| (*name).to_owned()).collect(),
+        }),
+        source: profile.source.to_string(),
+        assumed: profile.assumed.iter().map(|name| (*name).to_owned()).collect(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn text(name: &str) -> String {
+        device_to_json(&palpate_devices::profile_named(name).unwrap()).unwrap()
+    }
+
+    #[test]
+    fn every_profile_is_read_as_it_was_written() {
+        for (name, profile) in &palpate_devices::PROFILES {
+            assert_eq!(&device_from_json(text(name).as_bytes()).unwrap(), profile, "{name}");
+        }
+    }
+
+    #[test]
+    fn all_that_is_wrong_is_told_with_its_place() {
+        let wrong = text("sigma7")
+            .replace("\"palpate_device\": 1", "\"palpate_device\": 2")
+            .replace("\"friction\": 0.15", "\"friction\": -0.15")
+            .replace("\"inertia\": 0.0002", "\"inertia\": 0")
+            .replace("\"mass\",", "\"mas\",");
+        let error = device_from_json(wrong.as_bytes()).unwrap_err().to_string();
+        for said in [
+            "4 problems:",
+            "palpate_device, line 2: palpate_device must be 1, got 2",
+            "friction, line 12: friction must be zero or more, got -0.15 N",
+            "turning.inertia, line 22: inertia must be positive, got 0 kg·m²",
+            "assumed[2], line 40: unknown number of a device `mas`, did you mean `mass`?",
+        ] {
+            assert!(error.contains(said), "{said}\n{error}");
+        }
+    }
+
+    #[test]
+    fn numbers_that_are_missing_or_unknown_are_refused() {
+        let missing = text("touch").replace("  \"max_force\": 3.3,\n", "");
+        let error = device_from_json(missing.as_bytes()).unwrap_err().to_string();
+        assert!(error.contains("missing key `max_force`"), "{error}");
+        let unknown = text("touch").replace("\"mass\": 0.045", "\"weight\": 0.045");
+        let error = device_from_json(unknown.as_bytes()).unwrap_err().to_string();
+        assert!(error.contains("weight"), "{error}");
+        let error = device_from_json(b"{ \"palpate\": 1 }").unwrap_err().to_string();
+        assert!(error.contains("unknown key `palpate`"), "{error}");
+    }
+
+    #[test]
+    fn a_device_without_limits_is_not_written() {
+        let ideal = DeviceProfile::unlimited("ideal");
+        let error = device_to_json(&ideal).unwrap_err().to_string();
+        assert!(
+            error.contains("max_force: max_force must be zero or more, got inf N"),
+            "{error}"
+        );
+    }
+}
