@@ -78,7 +78,7 @@ mod tests {
     #[test]
     fn a_lift_waits_for_rest_and_twice_as_long_the_next_time() {
         let mut lift = Lift::new();
-        let mut ticks = |lift: &mut Lift<_>, x: f64| {
+        let ticks = |lift: &mut Lift<_>, x: f64| {
             let begins = (0..).find(|_| lift.step(Vector([x, 0.0]), 0.125, Some(true)));
             begins.unwrap_or_default()
         };
