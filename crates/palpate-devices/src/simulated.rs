@@ -7,10 +7,15 @@
 
 use crate::error::DeviceError;
 use palpate_field::{Point, Vector};
-use palpate_haptics::{Device, DeviceLost, DeviceProfile, NumberError, PointState, TurnState};
+use palpate_haptics::{
+    Buttons, Device, DeviceLost, DeviceProfile, GripperState, NumberError, PointState, Reading,
+    TurnState,
+};
 use palpate_safety::internal::limited;
+use std::time::Duration;
 
 use crate::hand::Hand;
+use crate::hand_path::HandPath;
 use crate::motion::{Axis, Body, Energies, Load, Parts};
 use crate::turning::Turning;
 
@@ -36,6 +41,9 @@ const SHORTEST: f64 = 1e-9;
 /// A device whose profile has [rotation](DeviceProfile::turning) and that one hand holds also
 /// rotates: with inertia, damping, friction and encoder steps about each axis, and a torque
 /// that is held. The inertia is the same about every axis.
+///
+/// The device has a [watchdog](Device::set_watchdog), which takes the forces away when nothing was
+/// written for its time. Buttons and a gripper follow a script.
 ///
 /// The device starts at rest at the hand's target at the time of the first read. The servo must
 /// keep all limits of the profile other than the largest force.
@@ -73,6 +81,29 @@ pub struct SimulatedDevice<const D: usize> {
     turning: Option<Turning<D>>,
     /// The time of the last read [s].
     time: Option<f64>,
+    handle: Handle,
+    watchdog: Watchdog,
+}
+
+/// Buttons and gripper of a device, as a script.
+#[derive(Clone, Debug, Default)]
+struct Handle {
+    /// The buttons that are down from a time on [s], in order of time.
+    buttons: Vec<(f64, Buttons)>,
+    /// The opening of the gripper over time [m].
+    gripper: Option<HandPath<1>>,
+    /// The held force on the fingers in the gripper [N].
+    gripper_force: f64,
+}
+
+/// Takes the forces away when nothing was written for a time.
+#[derive(Clone, Copy, Debug, Default)]
+struct Watchdog {
+    /// That time [s]; `None` until it is set.
+    time: Option<f64>,
+    /// When the forces that are held were written [s].
+    written: Option<f64>,
+    trips: u64,
 }
 
 #[derive(Clone, Debug)]
@@ -134,7 +165,88 @@ impl<const D: usize> SimulatedDevice<D> {
             })
         });
         let points = points.collect::<Result<_, DeviceError>>()?;
-        Ok(Self { profile, points, turning, time: None })
+        let (handle, watchdog) = (Handle::default(), Watchdog::default());
+        Ok(Self { profile, points, turning, time: None, handle, watchdog })
+    }
+
+    /// This device with buttons that are held down: those of an entry from its time on [s], up to
+    /// the time of the next entry. Before the first no button is down.
+    ///
+    /// # Errors
+    ///
+    /// [`DeviceError::Number`] if a time is NaN or earlier than the one before.
+    pub fn with_buttons(mut self, buttons: Vec<(f64, Buttons)>) -> Result<Self, DeviceError> {
+        let mut last = f64::NEG_INFINITY;
+        for (time, _) in &buttons {
+            // Written so that NaN is refused.
+            if *time >= last {
+                last = *time;
+            } else {
+                let rule = "no earlier than the time before";
+                return Err(NumberError::new("time of buttons", rule, *time, "s").into());
+            }
+        }
+        self.handle.buttons = buttons;
+        Ok(self)
+    }
+
+    /// This device with a gripper that opens as `path` says [m], whatever the force on the fingers.
+    #[must_use]
+    pub fn with_gripper(mut self, path: HandPath<1>) -> Self {
+        self.handle.gripper = Some(path);
+        self
+    }
+
+    /// The held force on the fingers in the gripper [N]: the last one written, clamped to the
+    /// largest of the profile's gripper, zero for a profile without one.
+    #[must_use]
+    pub fn gripper_force(&self) -> f64 {
+        self.handle.gripper_force
+    }
+
+    /// How often the device took its forces away by itself, because nothing was written to it for
+    /// the time of its [watchdog](Device::set_watchdog).
+    #[must_use]
+    pub fn watchdog_trips(&self) -> u64 {
+        self.watchdog.trips
+    }
+
+    /// Moves from the time `last` to `time` [s]; without force from the time at which the watchdog
+    /// takes it away.
+    fn advance(&mut self, last: f64, time: f64) {
+        let Watchdog { time: patience, written, .. } = self.watchdog;
+        let end = patience.zip(written).map(|(patience, written)| written + patience);
+        let Some(end) = end.filter(|end| *end < time) else {
+            self.advance_evenly(last, time);
+            return;
+        };
+        if end - last >= SHORTEST {
+            self.advance_evenly(last, end);
+        }
+        self.let_go();
+        self.watchdog.trips += 1;
+        let last = last.max(end);
+        if time - last >= SHORTEST {
+            self.advance_evenly(last, time);
+        }
+    }
+
+    /// Moves from the time `last` to `time` [s] with the held forces.
+    fn advance_evenly(&mut self, last: f64, time: f64) {
+        self.points.iter_mut().for_each(|point| point.advance(last, time));
+        if let Some(turning) = &mut self.turning {
+            turning.advance(last, time);
+        }
+    }
+
+    /// Takes all forces away.
+    fn let_go(&mut self) {
+        self.points.iter_mut().for_each(|point| point.force = Vector::ZERO);
+        if let Some(turning) = &mut self.turning {
+            turning.write(Vector::ZERO);
+        }
+        self.handle.gripper_force = 0.0;
+        self.watchdog.written = None;
     }
 
     /// Where the hands want to be at first [m].
@@ -242,7 +354,7 @@ impl<const D: usize> SimulatedPoint<D> {
     }
 
     /// Moves from the time `last` to `time` [s].
-    fn advance(&mut self, last: f64, time: f64, encoder_step: f64) {
+    fn advance(&mut self, last: f64, time: f64) {
         let duration = time - last;
         let target = self.wanted(time);
         let target_velocity = (target - self.target) * (1.0 / duration);
@@ -255,6 +367,10 @@ impl<const D: usize> SimulatedPoint<D> {
             self.energies.add(&self.body.advance(axis, load, duration));
         }
         self.target = target;
+    }
+
+    /// Reads the point, `duration` after the last reading [s].
+    fn measure(&mut self, duration: f64, encoder_step: f64) {
         let position = self.encoded(encoder_step);
         let velocity = (position - self.reading.position) * (1.0 / duration);
         self.reading = PointState { position, velocity };
@@ -284,8 +400,9 @@ impl<const D: usize> Device<D> for SimulatedDevice<D> {
     /// nanosecond later than the last, or not finite, repeats the last reading. After a gap of
     /// more than a tenth of a second, a device with a stiff hand may have stood still for a part
     /// of it.
-    fn read(&mut self, time: f64, points: &mut [PointState<D>]) -> Result<(), DeviceLost> {
+    fn read(&mut self, time: f64, points: &mut [PointState<D>]) -> Result<Reading, DeviceLost> {
         let encoder_step = self.profile.encoder_step;
+        let mut is_new = true;
         match self.time {
             None => {
                 for point in &mut self.points {
@@ -297,20 +414,21 @@ impl<const D: usize> Device<D> for SimulatedDevice<D> {
                 self.time = time.is_finite().then_some(time);
             }
             Some(last) if time - last >= SHORTEST && time <= f64::MAX => {
+                self.advance(last, time);
                 for point in &mut self.points {
-                    point.advance(last, time, encoder_step);
+                    point.measure(time - last, encoder_step);
                 }
                 if let Some(turning) = &mut self.turning {
-                    turning.advance(last, time);
+                    turning.measure(time - last);
                 }
                 self.time = Some(time);
             }
-            Some(_) => {}
+            Some(_) => is_new = false,
         }
         for (reading, point) in points.iter_mut().zip(&self.points) {
             *reading = point.reading;
         }
-        Ok(())
+        Ok(if is_new { Reading::Fresh { time } } else { Reading::Stale })
     }
 
     /// Real-time: allocates nothing, takes no lock, cannot panic. A force that is not finite
@@ -319,6 +437,7 @@ impl<const D: usize> Device<D> for SimulatedDevice<D> {
         for (point, force) in self.points.iter_mut().zip(forces) {
             point.force = limited(*force, self.profile.max_force);
         }
+        self.watchdog.written = self.time;
         Ok(())
     }
 
@@ -333,6 +452,44 @@ impl<const D: usize> Device<D> for SimulatedDevice<D> {
         if let Some(turning) = &mut self.turning {
             turning.write(torque);
         }
+        Ok(())
+    }
+
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    fn buttons(&mut self) -> Buttons {
+        let Some(time) = self.time else { return Buttons::NONE };
+        let begun = self.handle.buttons.partition_point(|(start, _)| *start <= time);
+        let held = begun.checked_sub(1).and_then(|last| self.handle.buttons.get(last));
+        held.map_or(Buttons::NONE, |(_, buttons)| *buttons)
+    }
+
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    fn read_gripper(&mut self) -> Result<Option<GripperState>, DeviceLost> {
+        Ok(self.handle.gripper.as_ref().zip(self.time).map(|(path, time)| {
+            let PointState { position: Vector([opening]), velocity: Vector([velocity]) } =
+                path.state_at(time);
+            GripperState { opening, velocity }
+        }))
+    }
+
+    /// Real-time: allocates nothing, takes no lock, cannot panic. A force that is not finite counts
+    /// as zero.
+    fn write_gripper_force(&mut self, force: f64) -> Result<(), DeviceLost> {
+        let most = self.profile.gripper.map_or(0.0, |gripper| gripper.max_force);
+        let Vector([force]) = limited(Vector([force]), most);
+        self.handle.gripper_force = force;
+        Ok(())
+    }
+
+    /// The device keeps every time; it counts by the times of the reads.
+    fn set_watchdog(&mut self, time: Duration) -> Result<Option<Duration>, DeviceLost> {
+        self.watchdog.time = Some(time.as_secs_f64());
+        Ok(Some(time))
+    }
+
+    /// Takes all forces away.
+    fn close(&mut self) -> Result<(), DeviceLost> {
+        self.let_go();
         Ok(())
     }
 }
@@ -422,5 +579,58 @@ mod tests {
         assert!(error(profile.clone().with_max_force(f64::NAN)).contains("NaN"));
         let fast = error(profile.with_least_damping(1e5));
         assert!(fast.contains("must be at most 1e4, got"), "{fast}");
+    }
+
+    #[test]
+    fn a_force_that_is_not_renewed_ends_with_the_watchdog() {
+        // A force of 1 N against a push of 1 N, on 0.1 kg without damping.
+        let profile = DeviceProfile::unlimited("test").with_mass(0.1).with_least_damping(0.0);
+        let hand = Hand::resting(Vector([0.0, 0.0])).unwrap().with_spring(0.0, 0.0).unwrap();
+        let hand = hand.with_mass(0.0).unwrap().with_push(Vector([0.0, -1.0])).unwrap();
+        let profile = profile.with_friction(0.0);
+        let mut device = SimulatedDevice::new(profile, vec![hand]).unwrap();
+        let asked = Duration::from_millis(30);
+        assert_eq!(device.set_watchdog(asked).unwrap(), Some(asked));
+        let mut points = [PointState::at_rest(Vector::ZERO)];
+        device.read(0.0, &mut points).unwrap();
+        device.write(&[Vector([0.0, 1.0])]).unwrap();
+        device.read(0.03, &mut points).unwrap();
+        assert_eq!((points[0].position, device.watchdog_trips()), (Vector::ZERO, 0));
+        device.write(&[Vector([0.0, 1.0])]).unwrap();
+        device.read(0.08, &mut points).unwrap();
+        // Free for 20 of 50 ms: −½ (1 N / 0.1 kg) (20 ms)², a mean of −40 mm/s.
+        assert!((points[0].position[1] + 0.002).abs() < 1e-12, "{points:?}");
+        assert!((points[0].velocity[1] + 0.04).abs() < 1e-12, "{points:?}");
+        assert_eq!((device.watchdog_trips(), device.forces().next()), (1, Some(Vector::ZERO)));
+        device.read(0.2, &mut points).unwrap();
+        assert_eq!(device.watchdog_trips(), 1);
+    }
+
+    #[test]
+    fn buttons_and_gripper_follow_their_script() {
+        let gripper = HandPath::new(
+            vec![0.0, 2.0],
+            vec![Vector([0.0]), Vector([0.02])],
+            crate::hand_path::Interpolation::Linear,
+        );
+        let limits = palpate_haptics::GripperProfile::new(0.025, 8.0);
+        let mut device = resting(0.0).with_gripper(gripper.unwrap());
+        device.profile = device.profile.with_gripper(limits);
+        let (one, two) = (Buttons::NONE.with(1), Buttons::NONE.with(1).with(4));
+        let mut device = device.with_buttons(vec![(0.5, one), (1.0, two)]).unwrap();
+        let mut points = [PointState::at_rest(Vector::ZERO)];
+        for (time, buttons) in [(0.0, Buttons::NONE), (0.5, one), (0.75, one), (1.0, two)] {
+            device.read(time, &mut points).unwrap();
+            assert_eq!(device.buttons(), buttons);
+        }
+        let gripper = device.read_gripper().unwrap();
+        assert_eq!(gripper, Some(GripperState { opening: 0.01, velocity: 0.01 }));
+        for (written, held) in [(5.0, 5.0), (-9.0, -8.0), (f64::NAN, 0.0)] {
+            device.write_gripper_force(written).unwrap();
+            assert_eq!(device.gripper_force(), held);
+        }
+        let error = device.with_buttons(vec![(1.0, one), (0.5, one)]).unwrap_err();
+        let said = "time of buttons must be no earlier than the time before, got 0.5 s";
+        assert_eq!(error.to_string(), said);
     }
 }

@@ -40,7 +40,10 @@ mod wrench;
 
 pub use acceptance::{Acceptance, Accepted, Rule};
 pub use chain::{PortState, SafetyChain, SafetyOptions};
-pub use device::{Device, DeviceLost, DeviceProfile, PointState, TurnState, TurningProfile};
+pub use device::{
+    Buttons, Device, DeviceLost, DeviceProfile, GripperProfile, GripperState, PointState,
+    Reading, TurnState, TurningProfile,
+};
 pub use effect::Effect;
 pub use error::{NumberError, Refused, SafetyError};
 pub use impedance::Impedance;
