@@ -145,6 +145,8 @@ impl Connection {
 
     /// Whether the device is lost, and is to be opened again at `time` [s].
     pub(crate) fn is_due(&self, time: f64) -> bool {
+        // A tick that rounding puts before its time counts.
+        let time = time + 0.5 * self.period;
         matches!(self.state, State::Lost { next, .. } if time >= next)
     }
 

@@ -321,11 +321,8 @@ impl<'a, const D: usize> ServoLoop<'a, D> {
         let start = clock.now();
         self.servo.step(&self.states);
         let cost = clock.now().saturating_sub(start);
-        if self.connection.is_open() {
-            if let Err(lost) = self.write() {
-                self.lose(lost)?;
-            }
-        }
+        let written = if self.connection.is_open() { self.write() } else { Ok(()) };
+        written.or_else(|lost| self.lose(lost))?;
         Ok(nanoseconds(cost))
     }
 
