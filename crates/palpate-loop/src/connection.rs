@@ -138,6 +138,11 @@ impl Connection {
         self.state == State::Open
     }
 
+    /// Whether a device that is lost is opened again.
+    pub(crate) fn reconnects(&self) -> bool {
+        self.reconnection.is_some()
+    }
+
     /// Whether the device was open once, so that it may hold forces.
     pub(crate) fn was_opened(&self) -> bool {
         self.was_opened
@@ -232,9 +237,10 @@ impl Connection {
                 return None;
             }
         };
-        self.gap = elapsed.unwrap_or(self.gap + self.period);
+        let gap = elapsed.unwrap_or(self.gap + self.period);
+        self.gap = if elapsed.is_some() { 0.0 } else { gap };
         self.report.stale_ticks += u64::from(elapsed.is_none());
-        self.report.longest_gap = self.report.longest_gap.max(self.gap);
+        self.report.longest_gap = self.report.longest_gap.max(gap);
         elapsed
     }
 

@@ -244,7 +244,7 @@ impl<'a, const D: usize> ServoLoop<'a, D> {
     ///
     /// As [`Connection::lose`].
     fn lose(&mut self, lost: DeviceLost) -> Result<(), DeviceLost> {
-        if self.connection.is_open() {
+        if self.connection.is_open() && self.connection.reconnects() {
             // What can still be written may reach the hand; that it need not is known.
             drop(self.write_zeros());
         }

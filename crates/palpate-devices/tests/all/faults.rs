@@ -268,7 +268,7 @@ fn repeats_do_not_kick() {
                 Fault { start: AT_REST - 0.5 * PERIOD, duration, kind: FaultKind::Stale };
             let mut held = Held::new(profile, [300.0, 0.5], vec![repeats]);
             let felt = held.run(AT_REST + 0.5);
-            assert_eq!(felt.report.connection.stale_ticks, ticks.into(), "{name}");
+            assert_eq!(felt.report.connection.stale_ticks, u64::from(ticks), "{name}");
             let gap = felt.report.connection.longest_gap;
             assert!((gap - f64::from(ticks + 1) * PERIOD).abs() < 1e-9, "{name}: {gap}");
             let at = (AT_REST * RATE) as usize;
