@@ -250,7 +250,7 @@ mod tests {
                 let found = estimator.update_after(seen, wait / RATE);
                 let n = estimator.window();
                 assert_eq!(n, LONGEST.min(tick as usize));
-                let span = time - times[times.len() - 1 - n];
+                let span = time - times.iter().rev().nth(n).unwrap();
                 let error = (found.0[0] - velocity).abs();
                 assert!(n == 0 || error <= step / span * (1.0 + 1e-9), "{tick}: {error}");
             }
