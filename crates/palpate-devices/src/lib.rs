@@ -57,6 +57,7 @@ mod motion;
 mod oscillator;
 mod profiles;
 mod recorded;
+mod script;
 mod simulated;
 mod steered;
 mod tour;

@@ -17,6 +17,7 @@ use std::time::Duration;
 use crate::hand::Hand;
 use crate::hand_path::HandPath;
 use crate::motion::{Axis, Body, Energies, Load, Parts};
+use crate::script::{Script, Watchdog};
 use crate::turning::Turning;
 
 /// Reads closer in time than this count as one [s]: a shorter difference gives no velocity.
@@ -81,29 +82,10 @@ pub struct SimulatedDevice<const D: usize> {
     turning: Option<Turning<D>>,
     /// The time of the last read [s].
     time: Option<f64>,
-    handle: Handle,
-    watchdog: Watchdog,
-}
-
-/// Buttons and gripper of a device, as a script.
-#[derive(Clone, Debug, Default)]
-struct Handle {
-    /// The buttons that are down from a time on [s], in order of time.
-    buttons: Vec<(f64, Buttons)>,
-    /// The opening of the gripper over time [m].
-    gripper: Option<HandPath<1>>,
+    script: Script,
     /// The held force on the fingers in the gripper [N].
     gripper_force: f64,
-}
-
-/// Takes the forces away when nothing was written for a time.
-#[derive(Clone, Copy, Debug, Default)]
-struct Watchdog {
-    /// That time [s]; `None` until it is set.
-    time: Option<f64>,
-    /// When the forces that are held were written [s].
-    written: Option<f64>,
-    trips: u64,
+    watchdog: Watchdog,
 }
 
 #[derive(Clone, Debug)]
@@ -165,8 +147,8 @@ impl<const D: usize> SimulatedDevice<D> {
             })
         });
         let points = points.collect::<Result<_, DeviceError>>()?;
-        let (handle, watchdog) = (Handle::default(), Watchdog::default());
-        Ok(Self { profile, points, turning, time: None, handle, watchdog })
+        let (script, watchdog) = (Script::default(), Watchdog::default());
+        Ok(Self { profile, points, turning, time: None, script, gripper_force: 0.0, watchdog })
     }
 
     /// This device with buttons that are held down: those of an entry from its time on [s], up to
@@ -176,24 +158,14 @@ impl<const D: usize> SimulatedDevice<D> {
     ///
     /// [`DeviceError::Number`] if a time is NaN or earlier than the one before.
     pub fn with_buttons(mut self, buttons: Vec<(f64, Buttons)>) -> Result<Self, DeviceError> {
-        let mut last = f64::NEG_INFINITY;
-        for (time, _) in &buttons {
-            // Written so that NaN is refused.
-            if *time >= last {
-                last = *time;
-            } else {
-                let rule = "no earlier than the time before";
-                return Err(NumberError::new("time of buttons", rule, *time, "s").into());
-            }
-        }
-        self.handle.buttons = buttons;
+        self.script.set_buttons(buttons)?;
         Ok(self)
     }
 
     /// This device with a gripper that opens as `path` says [m], whatever the force on the fingers.
     #[must_use]
     pub fn with_gripper(mut self, path: HandPath<1>) -> Self {
-        self.handle.gripper = Some(path);
+        self.script.gripper = Some(path);
         self
     }
 
@@ -201,22 +173,20 @@ impl<const D: usize> SimulatedDevice<D> {
     /// largest of the profile's gripper, zero for a profile without one.
     #[must_use]
     pub fn gripper_force(&self) -> f64 {
-        self.handle.gripper_force
+        self.gripper_force
     }
 
     /// How often the device took its forces away by itself, because nothing was written to it for
     /// the time of its [watchdog](Device::set_watchdog).
     #[must_use]
     pub fn watchdog_trips(&self) -> u64 {
-        self.watchdog.trips
+        self.watchdog.trips()
     }
 
     /// Moves from the time `last` to `time` [s]; without force from the time at which the watchdog
     /// takes it away.
     fn advance(&mut self, last: f64, time: f64) {
-        let Watchdog { time: patience, written, .. } = self.watchdog;
-        let end = patience.zip(written).map(|(patience, written)| written + patience);
-        let Some(end) = end.filter(|end| *end < time) else {
+        let Some(end) = self.watchdog.trip(time) else {
             self.advance_evenly(last, time);
             return;
         };
@@ -224,7 +194,6 @@ impl<const D: usize> SimulatedDevice<D> {
             self.advance_evenly(last, end);
         }
         self.let_go();
-        self.watchdog.trips += 1;
         let last = last.max(end);
         if time - last >= SHORTEST {
             self.advance_evenly(last, time);
@@ -245,8 +214,7 @@ impl<const D: usize> SimulatedDevice<D> {
         if let Some(turning) = &mut self.turning {
             turning.write(Vector::ZERO);
         }
-        self.handle.gripper_force = 0.0;
-        self.watchdog.written = None;
+        self.gripper_force = 0.0;
     }
 
     /// Where the hands want to be at first [m].
@@ -437,7 +405,7 @@ impl<const D: usize> Device<D> for SimulatedDevice<D> {
         for (point, force) in self.points.iter_mut().zip(forces) {
             point.force = limited(*force, self.profile.max_force);
         }
-        self.watchdog.written = self.time;
+        self.watchdog.written(self.time);
         Ok(())
     }
 
@@ -457,19 +425,12 @@ impl<const D: usize> Device<D> for SimulatedDevice<D> {
 
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     fn buttons(&mut self) -> Buttons {
-        let Some(time) = self.time else { return Buttons::NONE };
-        let begun = self.handle.buttons.partition_point(|(start, _)| *start <= time);
-        let held = begun.checked_sub(1).and_then(|last| self.handle.buttons.get(last));
-        held.map_or(Buttons::NONE, |(_, buttons)| *buttons)
+        self.time.map_or(Buttons::NONE, |time| self.script.buttons(time))
     }
 
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     fn read_gripper(&mut self) -> Result<Option<GripperState>, DeviceLost> {
-        Ok(self.handle.gripper.as_ref().zip(self.time).map(|(path, time)| {
-            let PointState { position: Vector([opening]), velocity: Vector([velocity]) } =
-                path.state_at(time);
-            GripperState { opening, velocity }
-        }))
+        Ok(self.time.and_then(|time| self.script.gripper(time)))
     }
 
     /// Real-time: allocates nothing, takes no lock, cannot panic. A force that is not finite counts
@@ -477,19 +438,20 @@ impl<const D: usize> Device<D> for SimulatedDevice<D> {
     fn write_gripper_force(&mut self, force: f64) -> Result<(), DeviceLost> {
         let most = self.profile.gripper.map_or(0.0, |gripper| gripper.max_force);
         let Vector([force]) = limited(Vector([force]), most);
-        self.handle.gripper_force = force;
+        self.gripper_force = force;
         Ok(())
     }
 
     /// The device keeps every time; it counts by the times of the reads.
     fn set_watchdog(&mut self, time: Duration) -> Result<Option<Duration>, DeviceLost> {
-        self.watchdog.time = Some(time.as_secs_f64());
+        self.watchdog.set(time);
         Ok(Some(time))
     }
 
     /// Takes all forces away.
     fn close(&mut self) -> Result<(), DeviceLost> {
         self.let_go();
+        self.watchdog.written(None);
         Ok(())
     }
 }
@@ -604,33 +566,5 @@ mod tests {
         assert_eq!((device.watchdog_trips(), device.forces().next()), (1, Some(Vector::ZERO)));
         device.read(0.2, &mut points).unwrap();
         assert_eq!(device.watchdog_trips(), 1);
-    }
-
-    #[test]
-    fn buttons_and_gripper_follow_their_script() {
-        let gripper = HandPath::new(
-            vec![0.0, 2.0],
-            vec![Vector([0.0]), Vector([0.02])],
-            crate::hand_path::Interpolation::Linear,
-        );
-        let limits = palpate_haptics::GripperProfile::new(0.025, 8.0);
-        let mut device = resting(0.0).with_gripper(gripper.unwrap());
-        device.profile = device.profile.with_gripper(limits);
-        let (one, two) = (Buttons::NONE.with(1), Buttons::NONE.with(1).with(4));
-        let mut device = device.with_buttons(vec![(0.5, one), (1.0, two)]).unwrap();
-        let mut points = [PointState::at_rest(Vector::ZERO)];
-        for (time, buttons) in [(0.0, Buttons::NONE), (0.5, one), (0.75, one), (1.0, two)] {
-            device.read(time, &mut points).unwrap();
-            assert_eq!(device.buttons(), buttons);
-        }
-        let gripper = device.read_gripper().unwrap();
-        assert_eq!(gripper, Some(GripperState { opening: 0.01, velocity: 0.01 }));
-        for (written, held) in [(5.0, 5.0), (-9.0, -8.0), (f64::NAN, 0.0)] {
-            device.write_gripper_force(written).unwrap();
-            assert_eq!(device.gripper_force(), held);
-        }
-        let error = device.with_buttons(vec![(1.0, one), (0.5, one)]).unwrap_err();
-        let said = "time of buttons must be no earlier than the time before, got 0.5 s";
-        assert_eq!(error.to_string(), said);
     }
 }

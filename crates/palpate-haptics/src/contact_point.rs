@@ -14,11 +14,11 @@ use crate::guide::Guide;
 use crate::half_spaces::CAPACITY;
 use crate::nearby::Nearby;
 use crate::options::ServoOptions;
-use crate::ports::{Arrival, Port};
+use crate::ports::Port;
 use crate::proxy::{Probe, Proxy};
 use crate::surface::{Press, Ringing};
 use palpate_safety::internal::{limited, shortening};
-use palpate_safety::{PointState, PortState, WorkspaceMap};
+use palpate_safety::{Arrival, PointState, PortState, WorkspaceMap};
 
 /// One contact point after a tick. World coordinates.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -241,7 +241,8 @@ impl<const D: usize> ContactPoint<D> {
         if let Some(port) = &mut self.port {
             let wanted = map.force_to_device(touch.wanted);
             let PointState { position, velocity } = at_device;
-            let (free_force, Arrival { late, elapsed }) = (map.force_to_device(free), *arrival);
+            let free_force = map.force_to_device(free);
+            let Arrival { late, elapsed, .. } = *arrival;
             let state = PortState { position, velocity, free_force, late, elapsed, start };
             let force = port.write(wanted, options.max_force, &state);
             touch.force = map.force_to_world(force);

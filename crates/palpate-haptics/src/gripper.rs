@@ -8,9 +8,8 @@
 use palpate_field::Vector;
 
 use crate::error::HapticsError;
-use crate::ports::Arrival;
 use crate::protection::Protection;
-use palpate_safety::{GripperState, Impedance, PortState, SafetyChain};
+use palpate_safety::{Arrival, GripperState, Impedance, PortState, SafetyChain};
 
 /// A gripper with the force that is wanted of it. Without a device that has one the force is zero.
 #[derive(Clone, Debug, Default)]
@@ -26,12 +25,12 @@ pub(crate) struct GripperPort {
 }
 
 impl GripperPort {
-    /// One tick, in which the states came so, or in which there are none.
+    /// One tick, in which the states came so.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
-    pub(crate) fn tick(&mut self, arrival: Arrival, is_ready: bool) {
+    pub(crate) fn tick(&mut self, arrival: Arrival) {
         let Some(chain) = &mut self.chain else { return };
-        let state = self.state.filter(|_| is_ready);
+        let state = self.state.filter(|_| arrival.is_ready);
         // What is not known is no number, for which the chain gives no force.
         let GripperState { opening, velocity } =
             state.unwrap_or(GripperState::at_rest(f64::NAN));

@@ -10,9 +10,9 @@ use crate::energy::Energy;
 use crate::error::HapticsError;
 use crate::protection::Protection;
 use palpate_safety::{
-    Acceptance, Accepted, DeviceLimits, Impedance, PassivityReport, PerMotion, PointState,
-    PortState, Readings, ReadingsReport, SafetyChain, SafetyOptions, SafetyReport, TurnState,
-    VelocityEstimator, WrenchChain,
+    Acceptance, Accepted, Arrival, DeviceLimits, Impedance, PassivityReport, PerMotion,
+    PointState, PortState, Readings, ReadingsReport, SafetyChain, SafetyOptions, SafetyReport,
+    TurnState, VelocityEstimator, WrenchChain,
 };
 
 impl<const D: usize> Protection<D> {
@@ -71,16 +71,6 @@ impl<const D: usize> Protection<D> {
             .with_recovery(self.recovery)
             .with_rise_rate(self.rise_rate)
     }
-}
-
-/// How the states of a tick came.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Arrival {
-    /// By how much the tick began too late [s].
-    pub(crate) late: f64,
-    /// The time between the last measurement and this one [s]; `None` if nothing was measured
-    /// since.
-    pub(crate) elapsed: Option<f64>,
 }
 
 /// The port between one contact point and the device.

@@ -14,6 +14,7 @@
 #![cfg_attr(test, allow(clippy::float_cmp, reason = "tests compare exact numbers"))]
 
 mod acceptance;
+mod arrivals;
 mod chain;
 mod channel;
 mod continuous;
@@ -39,6 +40,7 @@ mod workspace;
 mod wrench;
 
 pub use acceptance::{Acceptance, Accepted, Rule};
+pub use arrivals::{Arrival, Arrivals};
 pub use chain::{PortState, SafetyChain, SafetyOptions};
 pub use device::{
     Buttons, Device, DeviceLost, DeviceProfile, GripperProfile, GripperState, PointState,

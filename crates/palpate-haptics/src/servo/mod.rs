@@ -9,7 +9,6 @@
 
 mod any;
 mod both;
-mod inputs;
 mod renderer;
 mod unprotected;
 

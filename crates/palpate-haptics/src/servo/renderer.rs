@@ -10,7 +10,6 @@ use std::mem::swap;
 
 use palpate_field::{Point, Pose, Vector};
 
-use super::inputs::Inputs;
 use crate::accepted_bodies::AcceptedBodies;
 use crate::bodies::Bodies;
 use crate::contact_point::{ContactPoint, MOST_EVENTS, Setting, Tick, Touch};
@@ -22,12 +21,12 @@ use crate::gripper::GripperPort;
 use crate::guide::Guide;
 use crate::nearby::Nearby;
 use crate::options::ServoOptions;
-use crate::ports::{Arrival, Port, TurningPort};
+use crate::ports::{Port, TurningPort};
 use crate::proxy::Probe;
 use crate::tool::{Coupling, HeldTool, Tool};
 use palpate_safety::{
-    Buttons, GripperState, NumberError, PointState, Reading, SafetyReport, TurnState,
-    WorkspaceMap,
+    Arrival, Arrivals, Buttons, GripperState, NumberError, PointState, Reading, SafetyReport,
+    TurnState, WorkspaceMap,
 };
 
 /// Fewer bodies than this all count as near: selecting would cost more than it saves.
@@ -47,7 +46,10 @@ pub struct Renderer<const D: usize> {
     contacts: Contacts<D>,
     rendered: Rendered<D>,
     setting: Setting<D>,
-    inputs: Inputs,
+    arrivals: Arrivals,
+    buttons: Buttons,
+    /// The buttons that were down in the tick before.
+    buttons_before: Buttons,
     gripper: GripperPort,
     is_stopped: bool,
     /// Ticks done.
@@ -107,10 +109,12 @@ impl<const D: usize> Renderer<D> {
             setting: Setting {
                 options,
                 map: WorkspaceMap::default(),
-                arrival: Arrival { late: 0.0, elapsed: None },
+                arrival: Arrival { late: 0.0, elapsed: None, is_ready: false },
                 rise_step: 1.0 / (rate * rise_time),
             },
-            inputs: Inputs::new(rate),
+            arrivals: Arrivals::new(rate)?,
+            buttons: Buttons::NONE,
+            buttons_before: Buttons::NONE,
             gripper: GripperPort::default(),
             is_stopped: false,
             tick: 0,
@@ -231,7 +235,7 @@ impl<const D: usize> Renderer<D> {
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     #[must_use]
     pub fn buttons(&self) -> Buttons {
-        self.inputs.buttons
+        self.buttons
     }
 
     /// The gripper in the last tick; `None` for a device without one.
@@ -329,15 +333,15 @@ impl<const D: usize> Renderer<D> {
     }
 
     pub(crate) fn set_late(&mut self, late: f64) {
-        self.inputs.late = late;
+        self.arrivals.set_late(late);
     }
 
     pub(crate) fn set_reading(&mut self, reading: Reading) {
-        self.inputs.reading = Some(reading);
+        self.arrivals.set_reading(reading);
     }
 
     pub(crate) fn set_buttons(&mut self, buttons: Buttons) {
-        self.inputs.buttons = buttons;
+        self.buttons = buttons;
     }
 
     pub(crate) fn set_gripper(&mut self, state: Option<GripperState>) {
@@ -418,17 +422,17 @@ impl<const D: usize> Renderer<D> {
     }
 
     pub(crate) fn step(&mut self, states: &[PointState<D>]) -> &[Touch<D>] {
-        let (arrival, is_ready) = self.inputs.arrive();
+        let arrival = self.arrivals.arrive();
         self.setting.arrival = arrival;
         // A point without a state touches nothing.
-        let states = if is_ready { states } else { &[] };
+        let states = if arrival.is_ready { states } else { &[] };
         if matches!(self.rendered, Rendered::Tool(_)) {
             self.render_tool(states);
         } else {
             self.render_points(states);
             self.accepted.bodies.settle();
         }
-        self.gripper.tick(arrival, is_ready);
+        self.gripper.tick(arrival);
         self.tell_buttons();
         self.tick += 1;
         if self.is_stopped {
@@ -439,16 +443,17 @@ impl<const D: usize> Renderer<D> {
 
     /// Adds an event for each button that was pressed or released.
     fn tell_buttons(&mut self) {
-        let changed = self.inputs.changed_buttons();
+        let before = std::mem::replace(&mut self.buttons_before, self.buttons);
+        let Self { contacts: Contacts { events, .. }, tick, buttons, .. } = self;
+        let changed = buttons.changed(before);
         if changed == Buttons::NONE {
             return;
         }
-        let Self { contacts: Contacts { events, .. }, inputs, tick, .. } = self;
         for button in changed.iter() {
-            let is_down = inputs.buttons.is_down(button);
-            let kind = match is_down {
-                true => EventKind::ButtonDown { button },
-                false => EventKind::ButtonUp { button },
+            let kind = if buttons.is_down(button) {
+                EventKind::ButtonDown { button }
+            } else {
+                EventKind::ButtonUp { button }
             };
             // The capacity set aside at the start holds every event that a tick can produce.
             if events.len() < events.capacity() {

@@ -1,49 +1,87 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! What a loop tells a servo of the next tick, beside the states of the contact points.
+//! How the states of ticks come: late, after a time, or not at all.
 
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-use crate::ports::Arrival;
-use palpate_safety::{Buttons, Reading};
+use crate::device::Reading;
+use crate::error::{NumberError, SafetyError};
 
 /// How far from a period the time between two readings still counts as one, as a part of it: times
 /// are differences of sums, which rounding must not change.
 const EVEN: f64 = 1e-6;
 
-/// What a loop told of the next tick.
+/// How the states of a tick came.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Arrival {
+    /// By how much the tick began too late [s].
+    pub late: f64,
+    /// The time between the last measurement and this one [s]; `None` if nothing was measured
+    /// since.
+    pub elapsed: Option<f64>,
+    /// Whether there are states, new or old.
+    pub is_ready: bool,
+}
+
+/// Times the states of ticks by what a loop tells of the next one.
+///
+/// ```
+/// use palpate_safety::{Arrivals, Reading};
+///
+/// # fn main() -> Result<(), palpate_safety::SafetyError> {
+/// let mut arrivals = Arrivals::new(1000.0)?;
+/// arrivals.set_reading(Reading::Fresh { time: 7.0 });
+/// assert_eq!(arrivals.arrive().elapsed, Some(0.001)); // nothing is known of a time before
+/// arrivals.set_reading(Reading::Fresh { time: 7.25 });
+/// assert_eq!(arrivals.arrive().elapsed, Some(0.25));
+/// arrivals.set_reading(Reading::Stale);
+/// assert_eq!(arrivals.arrive().elapsed, None);
+/// # Ok(())
+/// # }
+/// ```
 #[derive(Clone, Debug)]
-pub(super) struct Inputs {
+pub struct Arrivals {
     /// The duration of a tick [s].
     period: f64,
     /// By how much the next tick starts too late [s].
-    pub(super) late: f64,
+    late: f64,
     /// What was read for the next tick; `None` for states a period after those before.
-    pub(super) reading: Option<Reading>,
-    pub(super) buttons: Buttons,
-    /// The buttons that were down in the tick before.
-    buttons_before: Buttons,
+    reading: Option<Reading>,
     /// When the last states were measured [s].
     measured: Option<f64>,
 }
 
-impl Inputs {
-    pub(super) fn new(rate: f64) -> Self {
-        Self {
-            period: 1.0 / rate,
-            late: 0.0,
-            reading: None,
-            buttons: Buttons::NONE,
-            buttons_before: Buttons::NONE,
-            measured: None,
-        }
+impl Arrivals {
+    /// For ticks at `rate` [Hz].
+    ///
+    /// # Errors
+    ///
+    /// [`SafetyError::Number`] if the rate is not positive and finite.
+    pub fn new(rate: f64) -> Result<Self, SafetyError> {
+        let period = 1.0 / NumberError::check_rate(rate)?;
+        Ok(Self { period, late: 0.0, reading: None, measured: None })
     }
 
-    /// How the states of the tick that begins came, and whether there are any.
+    /// Sets by how much ticks start too late [s] from the next one on.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
-    pub(super) fn arrive(&mut self) -> (Arrival, bool) {
+    pub fn set_late(&mut self, late: f64) {
+        self.late = late;
+    }
+
+    /// Sets what was read for the next tick alone. Without it, its states were measured a period, and
+    /// what the tick is late, after those before.
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    pub fn set_reading(&mut self, reading: Reading) {
+        self.reading = Some(reading);
+    }
+
+    /// How the states of the tick that begins came.
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    pub fn arrive(&mut self) -> Arrival {
         let late = self.late;
         let (elapsed, is_ready) = match self.reading.take() {
             None => (Some(self.period + late.max(0.0)), true),
@@ -54,7 +92,7 @@ impl Inputs {
                 (Some(self.period), false)
             }
         };
-        (Arrival { late, elapsed }, is_ready)
+        Arrival { late, elapsed, is_ready }
     }
 
     /// The time from the last measurement to the one at `time` [s]; `None` if `time` is not later.
@@ -71,14 +109,6 @@ impl Inputs {
         // Written so that NaN is no time.
         (elapsed > 0.0 && elapsed <= f64::MAX).then_some(elapsed)
     }
-
-    /// The buttons that changed since the tick before.
-    ///
-    /// Real-time: allocates nothing, takes no lock, cannot panic.
-    pub(super) fn changed_buttons(&mut self) -> Buttons {
-        let before = std::mem::replace(&mut self.buttons_before, self.buttons);
-        self.buttons.changed(before)
-    }
 }
 
 #[cfg(test)]
@@ -88,11 +118,11 @@ mod tests {
     const FRESH: fn(f64) -> Option<Reading> = |time| Some(Reading::Fresh { time });
 
     fn arrivals(readings: &[Option<Reading>]) -> Vec<(Option<f64>, bool)> {
-        let mut inputs = Inputs::new(1000.0);
+        let mut arrivals = Arrivals::new(1000.0).unwrap();
         let arrive = |reading: &Option<Reading>| {
-            inputs.reading = *reading;
-            let (arrival, is_ready) = inputs.arrive();
-            (arrival.elapsed, is_ready)
+            arrivals.reading = *reading;
+            let arrival = arrivals.arrive();
+            (arrival.elapsed, arrival.is_ready)
         };
         readings.iter().map(arrive).collect()
     }
