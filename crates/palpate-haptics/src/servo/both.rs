@@ -7,8 +7,6 @@
 
 use palpate_field::Pose;
 
-#[cfg(doc)]
-use super::Renderer;
 use super::{Servo, UnprotectedServo};
 use crate::contact_point::Touch;
 use palpate_safety::{Buttons, GripperState, PointState, Reading, TurnState};
@@ -80,7 +78,7 @@ macro_rules! methods_of_both {
             }
 
             /// Sets the force wanted on the fingers in the gripper [N] from the next tick on;
-            /// positive opens the jaws. [`gripper_force`](Renderer::gripper_force) is what to write
+            /// positive opens the jaws. [`gripper_force`](crate::Renderer::gripper_force) is what to write
             /// of it, after the limits of the [gripper's
             /// profile](palpate_safety::GripperProfile): zero for a device without one, and for an
             /// [`UnprotectedServo`](crate::UnprotectedServo).
