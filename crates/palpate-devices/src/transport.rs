@@ -250,12 +250,11 @@ impl<T: Device<D>, const D: usize> SimulatedTransport<T, D> {
     fn begins_loss(&mut self, time: f64) -> Option<u32> {
         let faults = self.faults.iter().zip(&mut self.lost);
         for (fault, is_over) in faults {
-            if let FaultKind::Lost { attempts } = fault.kind {
-                if time >= fault.start && !std::mem::replace(is_over, true) {
-                    return Some(attempts);
-                }
-                // One that is to come is not over.
-                *is_over &= time >= fault.start;
+            if let FaultKind::Lost { attempts } = fault.kind
+                && time >= fault.start
+                && !std::mem::replace(is_over, true)
+            {
+                return Some(attempts);
             }
         }
         None
@@ -426,5 +425,135 @@ impl<T, const D: usize> SimulatedTransport<T, D> {
             0 => Ok(()),
             left => Err(DeviceLost::new(format!("it opens at attempt {left} from now"))),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{HandPath, Interpolation, RecordedDevice};
+
+    /// A device whose x is the time [s] times a metre a second.
+    fn clock() -> RecordedDevice<2> {
+        let ends = vec![Vector([0.0, 0.0]), Vector([1000.0, 0.0])];
+        let path = HandPath::new(vec![0.0, 1000.0], ends, Interpolation::Linear).unwrap();
+        RecordedDevice::new(vec![path]).unwrap()
+    }
+
+    fn with(faults: &[(f64, f64, FaultKind)]) -> SimulatedTransport<RecordedDevice<2>, 2> {
+        let fault = |&(start, duration, kind): &_| Fault { start, duration, kind };
+        SimulatedTransport::new(clock(), faults.iter().map(fault).collect()).unwrap()
+    }
+
+    /// Reads at whole seconds: what came, and where the device was.
+    fn reads(
+        device: &mut SimulatedTransport<RecordedDevice<2>, 2>,
+        count: u32,
+    ) -> Vec<(Reading, f64)> {
+        let mut points = [PointState::at_rest(Vector::ZERO)];
+        let mut read = |tick| {
+            let reading = device.read(f64::from(tick), &mut points).unwrap();
+            (reading, points[0].position[0])
+        };
+        (0..count).map(&mut read).collect()
+    }
+
+    fn fresh(times: &[f64]) -> Vec<(Reading, f64)> {
+        times.iter().map(|time| (Reading::Fresh { time: *time }, *time)).collect()
+    }
+
+    #[test]
+    fn delayed_readings_tell_when_they_were_made() {
+        let mut device = with(&[(3.0, 4.0, FaultKind::Delay { ticks: 2 })]);
+        let came = reads(&mut device, 9);
+        assert_eq!(came[..3], fresh(&[0.0, 1.0, 2.0]));
+        // Those on their way when the delay begins have come already.
+        assert!(came[3..5].iter().all(|(reading, _)| *reading == Reading::Stale));
+        assert_eq!(came[5..], fresh(&[3.0, 4.0, 7.0, 8.0]));
+    }
+
+    #[test]
+    fn what_does_not_come_is_not_to_be_looked_at() {
+        let mut device = with(&[(1.0, 1.0, FaultKind::Stale), (2.0, 1.0, FaultKind::NotReady)]);
+        let came = reads(&mut device, 4);
+        assert_eq!(
+            came.iter().map(|(reading, _)| *reading).collect::<Vec<_>>(),
+            [
+                Reading::Fresh { time: 0.0 },
+                Reading::Stale,
+                Reading::NotReady,
+                Reading::Fresh { time: 3.0 }
+            ]
+        );
+        assert!(came[1].1.is_nan() && came[2].1.is_nan());
+    }
+
+    #[test]
+    fn a_glitch_is_off_by_its_distance() {
+        let mut device = with(&[(1.0, 1.0, FaultKind::Glitch { distance: -0.25 })]);
+        let places: Vec<_> = reads(&mut device, 3).iter().map(|(_, x)| *x).collect();
+        assert_eq!(places, [0.0, 0.75, 2.0]);
+    }
+
+    #[test]
+    fn jitter_moves_measurements_and_their_times_alike() {
+        let jitter = [(0.0, 1000.0, FaultKind::Jitter { most: 0.4 })];
+        let (mut device, mut other) = (with(&jitter).with_seed(1), with(&jitter).with_seed(2));
+        let (came, others) = (reads(&mut device, 900), reads(&mut other, 900));
+        assert_ne!(came, others);
+        assert_eq!(came, reads(&mut with(&jitter).with_seed(1), 900));
+        let (mut sum, mut largest, mut last) = (0.0, 0.0_f64, -1.0);
+        for (tick, (reading, x)) in came.into_iter().enumerate() {
+            let Reading::Fresh { time } = reading else { panic!("{reading:?}") };
+            let off = time - tick as f64;
+            assert!((x - time.max(0.0)).abs() < 1e-9 && time > last && off.abs() <= 0.4);
+            (sum, largest, last) = (sum + off, largest.max(off.abs()), time);
+        }
+        // A mean of 900 even numbers in ±0.4 has a standard deviation of 0.0077.
+        assert!((sum / 900.0).abs() < 4.0 * 0.0077 && largest > 0.39);
+    }
+
+    #[test]
+    fn a_pacing_device_has_a_time_of_its_own() {
+        let mut device = with(&[(0.5, 0.25, FaultKind::Stale)]).pacing_at(4.0).unwrap();
+        assert!(device.paces() && Device::rate(&device) == Some(4.0));
+        let came = reads(&mut device, 5);
+        assert_eq!(came[..2], fresh(&[0.0, 0.25]));
+        assert_eq!((came[2].0, &came[3..]), (Reading::Stale, &fresh(&[0.75, 1.0])[..]));
+        assert!(with(&[]).pacing_at(0.0).is_err() && !with(&[]).paces());
+    }
+
+    #[test]
+    fn a_lost_device_answers_nothing_until_it_is_opened_often_enough() {
+        let mut device = with(&[(1.0, 0.0, FaultKind::Lost { attempts: 2 })]);
+        let mut points = [PointState::at_rest(Vector::ZERO)];
+        device.read(0.5, &mut points).unwrap();
+        device.write(&[Vector([1.0, 0.0])]).unwrap();
+        let error = device.read(1.5, &mut points).unwrap_err();
+        assert_eq!(error.reason, "the plan of faults says so at 1.5 s");
+        assert!(device.write(&[Vector::ZERO]).is_err() && device.close().is_err());
+        assert!(device.open().is_err() && device.enable().is_err());
+        device.open().unwrap();
+        assert_eq!(device.read(2.0, &mut points).unwrap(), Reading::Fresh { time: 2.0 });
+        assert_eq!(points[0].position, Vector([2.0, 0.0]));
+        let Calls { opened, failed, enabled, closed } = device.calls();
+        assert_eq!((opened, failed, enabled, closed), (1, 1, 0, 1));
+    }
+
+    #[test]
+    fn faults_that_cannot_be_are_refused_with_their_numbers() {
+        let refused = |start, duration, kind| {
+            let fault = Fault { start, duration, kind };
+            SimulatedTransport::new(clock(), vec![fault]).unwrap_err().to_string()
+        };
+        let said = "start of a fault must be zero or more and finite, got -1 s";
+        assert_eq!(refused(-1.0, 0.0, FaultKind::Stale), said);
+        let said = "attempts must be at least 1, got 0";
+        assert_eq!(refused(0.0, 0.0, FaultKind::Lost { attempts: 0 }), said);
+        let said = "delay must be at most 10000 ticks, got 10001";
+        assert_eq!(refused(0.0, 1.0, FaultKind::Delay { ticks: 10_001 }), said);
+        assert!(refused(0.0, 1.0, FaultKind::Jitter { most: f64::NAN }).contains("NaN s"));
+        let glitch = FaultKind::Glitch { distance: f64::INFINITY };
+        assert!(refused(0.0, f64::NAN, glitch).starts_with("duration of a fault"));
     }
 }
