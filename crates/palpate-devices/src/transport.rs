@@ -429,6 +429,7 @@ impl<T, const D: usize> SimulatedTransport<T, D> {
 }
 
 #[cfg(test)]
+#[expect(clippy::indexing_slicing, clippy::panic, reason = "tests know their lengths")]
 mod tests {
     use super::*;
     use crate::{HandPath, Interpolation, RecordedDevice};
