@@ -8,7 +8,7 @@
 use crate::error::DeviceError;
 use crate::hand_path::HandPath;
 use palpate_field::Vector;
-use palpate_haptics::{Device, DeviceLost, DeviceProfile, NumberError, PointState};
+use palpate_haptics::{Device, DeviceLost, DeviceProfile, NumberError, PointState, Reading};
 use palpate_safety::internal::limited;
 use palpate_vibration::Actuator;
 
@@ -183,12 +183,12 @@ impl<const D: usize> Device<D> for Glove<D> {
     }
 
     /// Real-time: allocates nothing, takes no lock, cannot panic.
-    fn read(&mut self, time: f64, points: &mut [PointState<D>]) -> Result<(), DeviceLost> {
+    fn read(&mut self, time: f64, points: &mut [PointState<D>]) -> Result<Reading, DeviceLost> {
         for (point, finger) in points.iter_mut().zip(&self.fingers) {
             let PointState { position, velocity } = finger.path.state_at(time);
             *point = PointState { position: position + finger.offset, velocity };
         }
-        Ok(())
+        Ok(Reading::Fresh { time })
     }
 
     /// Real-time: allocates nothing, takes no lock, cannot panic.

@@ -14,6 +14,9 @@
 //! Another thread leads the hand of a [`SteeredDevice`]; a [`MailboxDevice`] takes its positions
 //! from a driver in another thread, and leaves its forces there.
 //!
+//! A [`SimulatedTransport`] lets readings of any device jitter, repeat, stay away or come late by a
+//! plan, loses the device, or sets the pace by it.
+//!
 //! A new device implements [`Device`]; `palpate/examples/custom_device.rs` is one.
 //!
 //! # Examples
@@ -55,11 +58,14 @@ mod motion;
 mod oscillator;
 mod profiles;
 mod recorded;
+mod script;
 mod simulated;
 pub mod stability;
 mod steered;
 mod tour;
+mod transport;
 mod turning;
+mod vibration_recorder;
 mod wrists;
 
 pub use error::DeviceError;
@@ -73,10 +79,13 @@ pub use identify::{
 pub use mailbox::{Mailbox, MailboxDevice};
 pub use motion::Energies;
 pub use palpate_haptics::{
-    Device, DeviceLost, DeviceProfile, PointState, TurnState, TurningProfile,
+    Buttons, Device, DeviceLost, DeviceProfile, GripperProfile, GripperState, PointState,
+    Reading, TurnState, TurningProfile,
 };
 pub use profiles::{PROFILES, UnknownDevice, profile_named};
 pub use recorded::RecordedDevice;
 pub use simulated::SimulatedDevice;
 pub use steered::{SteeredDevice, Steering};
 pub use tour::Tour;
+pub use transport::{Calls, Fault, FaultKind, SimulatedTransport};
+pub use vibration_recorder::VibrationRecorder;

@@ -7,7 +7,7 @@ use crate::error::DeviceError;
 use palpate_field::{Rotation, Vector};
 
 use crate::hand_path::HandPath;
-use palpate_haptics::{Device, DeviceLost, DeviceProfile, PointState, TurnState};
+use palpate_haptics::{Device, DeviceLost, DeviceProfile, PointState, Reading, TurnState};
 
 /// A device whose points follow recorded hand paths.
 ///
@@ -119,7 +119,7 @@ impl<const D: usize> Device<D> for RecordedDevice<D> {
         &self.profile
     }
 
-    fn read(&mut self, time: f64, points: &mut [PointState<D>]) -> Result<(), DeviceLost> {
+    fn read(&mut self, time: f64, points: &mut [PointState<D>]) -> Result<Reading, DeviceLost> {
         for (point, path) in points.iter_mut().zip(&self.paths) {
             *point = path.state_at(time);
         }
@@ -129,7 +129,7 @@ impl<const D: usize> Device<D> for RecordedDevice<D> {
             let angular_velocity = before.turn_to(&after) * (0.5 / INSTANT);
             TurnState { orientation: at(time), angular_velocity }
         });
-        Ok(())
+        Ok(Reading::Fresh { time })
     }
 
     fn write(&mut self, forces: &[Vector<f64, D>]) -> Result<(), DeviceLost> {

@@ -7,11 +7,17 @@
 
 use crate::error::DeviceError;
 use palpate_field::{Point, Vector};
-use palpate_haptics::{Device, DeviceLost, DeviceProfile, NumberError, PointState, TurnState};
+use palpate_haptics::{
+    Buttons, Device, DeviceLost, DeviceProfile, GripperState, NumberError, PointState, Reading,
+    TurnState,
+};
 use palpate_safety::internal::limited;
+use std::time::Duration;
 
 use crate::hand::Hand;
+use crate::hand_path::HandPath;
 use crate::motion::{Axis, Body, Energies, Load, Parts};
+use crate::script::{Script, Watchdog};
 use crate::turning::Turning;
 
 /// Reads closer in time than this count as one [s]: a shorter difference gives no velocity.
@@ -36,6 +42,9 @@ const SHORTEST: f64 = 1e-9;
 /// A device whose profile has [rotation](DeviceProfile::turning) and that one hand holds also
 /// rotates: with inertia, damping, friction and encoder steps about each axis, and a torque
 /// that is held. The inertia is the same about every axis.
+///
+/// The device has a [watchdog](Device::set_watchdog), which takes the forces away when nothing was
+/// written for its time. Buttons and a gripper follow a script.
 ///
 /// The device starts at rest at the hand's target at the time of the first read. The servo must
 /// keep all limits of the profile other than the largest force.
@@ -73,6 +82,10 @@ pub struct SimulatedDevice<const D: usize> {
     turning: Option<Turning<D>>,
     /// The time of the last read [s].
     time: Option<f64>,
+    script: Script,
+    /// The held force on the fingers in the gripper [N].
+    gripper_force: f64,
+    watchdog: Watchdog,
 }
 
 #[derive(Clone, Debug)]
@@ -134,7 +147,74 @@ impl<const D: usize> SimulatedDevice<D> {
             })
         });
         let points = points.collect::<Result<_, DeviceError>>()?;
-        Ok(Self { profile, points, turning, time: None })
+        let (script, watchdog) = (Script::default(), Watchdog::default());
+        Ok(Self { profile, points, turning, time: None, script, gripper_force: 0.0, watchdog })
+    }
+
+    /// This device with buttons that are held down: those of an entry from its time on [s], up to
+    /// the time of the next entry. Before the first no button is down.
+    ///
+    /// # Errors
+    ///
+    /// [`DeviceError::Number`] if a time is NaN or earlier than the one before.
+    pub fn with_buttons(mut self, buttons: Vec<(f64, Buttons)>) -> Result<Self, DeviceError> {
+        self.script.set_buttons(buttons)?;
+        Ok(self)
+    }
+
+    /// This device with a gripper that opens as `path` says [m], whatever the force on the fingers.
+    #[must_use]
+    pub fn with_gripper(mut self, path: HandPath<1>) -> Self {
+        self.script.gripper = Some(path);
+        self
+    }
+
+    /// The held force on the fingers in the gripper [N]: the last one written, clamped to the
+    /// largest of the profile's gripper, zero for a profile without one.
+    #[must_use]
+    pub fn gripper_force(&self) -> f64 {
+        self.gripper_force
+    }
+
+    /// How often the device took its forces away by itself, because nothing was written to it for
+    /// the time of its [watchdog](Device::set_watchdog).
+    #[must_use]
+    pub fn watchdog_trips(&self) -> u64 {
+        self.watchdog.trips()
+    }
+
+    /// Moves from the time `last` to `time` [s]; without force from the time at which the watchdog
+    /// takes it away.
+    fn advance(&mut self, last: f64, time: f64) {
+        let Some(end) = self.watchdog.trip(time) else {
+            self.advance_evenly(last, time);
+            return;
+        };
+        if end - last >= SHORTEST {
+            self.advance_evenly(last, end);
+        }
+        self.let_go();
+        let last = last.max(end);
+        if time - last >= SHORTEST {
+            self.advance_evenly(last, time);
+        }
+    }
+
+    /// Moves from the time `last` to `time` [s] with the held forces.
+    fn advance_evenly(&mut self, last: f64, time: f64) {
+        self.points.iter_mut().for_each(|point| point.advance(last, time));
+        if let Some(turning) = &mut self.turning {
+            turning.advance(last, time);
+        }
+    }
+
+    /// Takes all forces away.
+    fn let_go(&mut self) {
+        self.points.iter_mut().for_each(|point| point.force = Vector::ZERO);
+        if let Some(turning) = &mut self.turning {
+            turning.write(Vector::ZERO);
+        }
+        self.gripper_force = 0.0;
     }
 
     /// Where the hands want to be at first [m].
@@ -242,7 +322,7 @@ impl<const D: usize> SimulatedPoint<D> {
     }
 
     /// Moves from the time `last` to `time` [s].
-    fn advance(&mut self, last: f64, time: f64, encoder_step: f64) {
+    fn advance(&mut self, last: f64, time: f64) {
         let duration = time - last;
         let target = self.wanted(time);
         let target_velocity = (target - self.target) * (1.0 / duration);
@@ -255,6 +335,10 @@ impl<const D: usize> SimulatedPoint<D> {
             self.energies.add(&self.body.advance(axis, load, duration));
         }
         self.target = target;
+    }
+
+    /// Reads the point, `duration` after the last reading [s].
+    fn measure(&mut self, duration: f64, encoder_step: f64) {
         let position = self.encoded(encoder_step);
         let velocity = (position - self.reading.position) * (1.0 / duration);
         self.reading = PointState { position, velocity };
@@ -284,8 +368,9 @@ impl<const D: usize> Device<D> for SimulatedDevice<D> {
     /// nanosecond later than the last, or not finite, repeats the last reading. After a gap of
     /// more than a tenth of a second, a device with a stiff hand may have stood still for a part
     /// of it.
-    fn read(&mut self, time: f64, points: &mut [PointState<D>]) -> Result<(), DeviceLost> {
+    fn read(&mut self, time: f64, points: &mut [PointState<D>]) -> Result<Reading, DeviceLost> {
         let encoder_step = self.profile.encoder_step;
+        let mut is_new = true;
         match self.time {
             None => {
                 for point in &mut self.points {
@@ -297,20 +382,21 @@ impl<const D: usize> Device<D> for SimulatedDevice<D> {
                 self.time = time.is_finite().then_some(time);
             }
             Some(last) if time - last >= SHORTEST && time <= f64::MAX => {
+                self.advance(last, time);
                 for point in &mut self.points {
-                    point.advance(last, time, encoder_step);
+                    point.measure(time - last, encoder_step);
                 }
                 if let Some(turning) = &mut self.turning {
-                    turning.advance(last, time);
+                    turning.measure(time - last);
                 }
                 self.time = Some(time);
             }
-            Some(_) => {}
+            Some(_) => is_new = false,
         }
         for (reading, point) in points.iter_mut().zip(&self.points) {
             *reading = point.reading;
         }
-        Ok(())
+        Ok(if is_new { Reading::Fresh { time } } else { Reading::Stale })
     }
 
     /// Real-time: allocates nothing, takes no lock, cannot panic. A force that is not finite
@@ -319,6 +405,7 @@ impl<const D: usize> Device<D> for SimulatedDevice<D> {
         for (point, force) in self.points.iter_mut().zip(forces) {
             point.force = limited(*force, self.profile.max_force);
         }
+        self.watchdog.written(self.time);
         Ok(())
     }
 
@@ -333,6 +420,38 @@ impl<const D: usize> Device<D> for SimulatedDevice<D> {
         if let Some(turning) = &mut self.turning {
             turning.write(torque);
         }
+        Ok(())
+    }
+
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    fn buttons(&mut self) -> Buttons {
+        self.time.map_or(Buttons::NONE, |time| self.script.buttons(time))
+    }
+
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    fn read_gripper(&mut self) -> Result<Option<GripperState>, DeviceLost> {
+        Ok(self.time.and_then(|time| self.script.gripper(time)))
+    }
+
+    /// Real-time: allocates nothing, takes no lock, cannot panic. A force that is not finite counts
+    /// as zero.
+    fn write_gripper_force(&mut self, force: f64) -> Result<(), DeviceLost> {
+        let most = self.profile.gripper.map_or(0.0, |gripper| gripper.max_force);
+        let Vector([force]) = limited(Vector([force]), most);
+        self.gripper_force = force;
+        Ok(())
+    }
+
+    /// The device keeps every time; it counts by the times of the reads.
+    fn set_watchdog(&mut self, time: Duration) -> Result<Option<Duration>, DeviceLost> {
+        self.watchdog.set(time);
+        Ok(Some(time))
+    }
+
+    /// Takes all forces away.
+    fn close(&mut self) -> Result<(), DeviceLost> {
+        self.let_go();
+        self.watchdog.written(None);
         Ok(())
     }
 }
@@ -422,5 +541,30 @@ mod tests {
         assert!(error(profile.clone().with_max_force(f64::NAN)).contains("NaN"));
         let fast = error(profile.with_least_damping(1e5));
         assert!(fast.contains("must be at most 1e4, got"), "{fast}");
+    }
+
+    #[test]
+    fn a_force_that_is_not_renewed_ends_with_the_watchdog() {
+        // A force of 1 N against a push of 1 N, on 0.1 kg without damping.
+        let profile = DeviceProfile::unlimited("test").with_mass(0.1).with_least_damping(0.0);
+        let hand = Hand::resting(Vector([0.0, 0.0])).unwrap().with_spring(0.0, 0.0).unwrap();
+        let hand = hand.with_mass(0.0).unwrap().with_push(Vector([0.0, -1.0])).unwrap();
+        let profile = profile.with_friction(0.0);
+        let mut device = SimulatedDevice::new(profile, vec![hand]).unwrap();
+        let asked = Duration::from_millis(30);
+        assert_eq!(device.set_watchdog(asked).unwrap(), Some(asked));
+        let mut points = [PointState::at_rest(Vector::ZERO)];
+        device.read(0.0, &mut points).unwrap();
+        device.write(&[Vector([0.0, 1.0])]).unwrap();
+        device.read(0.03, &mut points).unwrap();
+        assert_eq!((points[0].position, device.watchdog_trips()), (Vector::ZERO, 0));
+        device.write(&[Vector([0.0, 1.0])]).unwrap();
+        device.read(0.08, &mut points).unwrap();
+        // Free for 20 of 50 ms: −½ (1 N / 0.1 kg) (20 ms)², a mean of −40 mm/s.
+        assert!((points[0].position[1] + 0.002).abs() < 1e-12, "{points:?}");
+        assert!((points[0].velocity[1] + 0.04).abs() < 1e-12, "{points:?}");
+        assert_eq!((device.watchdog_trips(), device.forces().next()), (1, Some(Vector::ZERO)));
+        device.read(0.2, &mut points).unwrap();
+        assert_eq!(device.watchdog_trips(), 1);
     }
 }

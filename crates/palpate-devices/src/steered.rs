@@ -8,9 +8,10 @@
 use crate::error::DeviceError;
 use palpate_field::{Point, Vector};
 use palpate_haptics::{
-    Device, DeviceLost, DeviceProfile, LatestReader, LatestWriter, NumberError, PointState,
-    TurnState, latest_value,
+    Buttons, Device, DeviceLost, DeviceProfile, GripperState, LatestReader, LatestWriter,
+    NumberError, PointState, Reading, TurnState, latest_value,
 };
+use std::time::Duration;
 
 use crate::simulated::SimulatedDevice;
 
@@ -172,7 +173,7 @@ impl<const D: usize> Device<D> for SteeredDevice<D> {
     }
 
     /// Real-time: allocates nothing, takes no lock, cannot panic.
-    fn read(&mut self, time: f64, points: &mut [PointState<D>]) -> Result<(), DeviceLost> {
+    fn read(&mut self, time: f64, points: &mut [PointState<D>]) -> Result<Reading, DeviceLost> {
         let last = self.time.replace(time).unwrap_or(time);
         if let Some(targets) = self.targets.latest() {
             for (way, target) in self.ways.iter_mut().zip(targets) {
@@ -201,6 +202,26 @@ impl<const D: usize> Device<D> for SteeredDevice<D> {
 
     fn write_torque(&mut self, torque: Vector<f64, 3>) -> Result<(), DeviceLost> {
         self.device.write_torque(torque)
+    }
+
+    fn buttons(&mut self) -> Buttons {
+        self.device.buttons()
+    }
+
+    fn read_gripper(&mut self) -> Result<Option<GripperState>, DeviceLost> {
+        self.device.read_gripper()
+    }
+
+    fn write_gripper_force(&mut self, force: f64) -> Result<(), DeviceLost> {
+        self.device.write_gripper_force(force)
+    }
+
+    fn set_watchdog(&mut self, time: Duration) -> Result<Option<Duration>, DeviceLost> {
+        self.device.set_watchdog(time)
+    }
+
+    fn close(&mut self) -> Result<(), DeviceLost> {
+        self.device.close()
     }
 }
 

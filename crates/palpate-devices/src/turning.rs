@@ -147,6 +147,12 @@ impl<const D: usize> Turning<D> {
         }
         self.orientation = self.orientation.turned(way);
         self.target = target;
+    }
+
+    /// Reads the device, `duration` after the last reading [s].
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    pub(crate) fn measure(&mut self, duration: f64) {
         let orientation = self.encoded();
         let angular_velocity =
             self.reading.orientation.turn_to(&orientation) * (1.0 / duration);

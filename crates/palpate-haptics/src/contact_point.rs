@@ -18,7 +18,7 @@ use crate::ports::Port;
 use crate::proxy::{Probe, Proxy};
 use crate::surface::{Press, Ringing};
 use palpate_safety::internal::{limited, shortening};
-use palpate_safety::{PointState, PortState, WorkspaceMap};
+use palpate_safety::{Arrival, PointState, PortState, WorkspaceMap};
 
 /// One contact point after a tick. World coordinates.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -98,8 +98,8 @@ pub(crate) struct Setting<const D: usize> {
     pub(crate) map: WorkspaceMap<D>,
     /// The increase of [`ContactPoint::rise`] in a tick.
     pub(crate) rise_step: f64,
-    /// By how much this tick began too late [s].
-    pub(crate) late: f64,
+    /// How the states of this tick came.
+    pub(crate) arrival: Arrival,
 }
 
 /// The state of a tick that all contact points share.
@@ -215,7 +215,7 @@ impl<const D: usize> ContactPoint<D> {
         touch: &mut Touch<D>,
     ) -> Vector<f64, D> {
         let at_device =
-            self.port.as_mut().map_or(state, |port| port.state(state, tick.setting.late));
+            self.port.as_mut().map_or(state, |port| port.state(state, tick.setting.arrival));
         let in_world = tick.setting.map.state_to_world(at_device);
         let free = self.feel(tick, &in_world, touch);
         self.give(tick.setting, at_device, touch, free)
@@ -235,14 +235,15 @@ impl<const D: usize> ContactPoint<D> {
         free: FreeForce<D>,
     ) -> Vector<f64, D> {
         let FreeForce { force: free, placed } = free;
-        let Setting { options, map, rise_step, late } = setting;
+        let Setting { options, map, rise_step, arrival } = setting;
         let has_start = placed || self.of_others < f64::INFINITY;
         let start = if has_start { self.start(placed, touch.wanted) } else { 1.0 };
         if let Some(port) = &mut self.port {
             let wanted = map.force_to_device(touch.wanted);
             let PointState { position, velocity } = at_device;
-            let (free_force, late) = (map.force_to_device(free), *late);
-            let state = PortState { position, velocity, free_force, late, start };
+            let free_force = map.force_to_device(free);
+            let Arrival { late, elapsed, .. } = *arrival;
+            let state = PortState { position, velocity, free_force, late, elapsed, start };
             let force = port.write(wanted, options.max_force, &state);
             touch.force = map.force_to_world(force);
             force

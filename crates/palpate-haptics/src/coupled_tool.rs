@@ -11,7 +11,7 @@ use palpate_field::{Point, Pose, Vector};
 use crate::accepted_bodies::AcceptedBodies;
 use crate::bodies::Bodies;
 use crate::contact_point::{ContactPoint, FreeForce, Setting, Touch};
-use crate::ports::TurningPort;
+use crate::ports::{Port, TurningPort};
 use crate::tool::{Coupling, HeldTool, Tool, ToolState};
 use palpate_safety::internal::limited;
 use palpate_safety::{PointState, SpatialVector, TurnState, WrenchChain, WrenchState};
@@ -122,11 +122,11 @@ impl<const D: usize> CoupledTool<D> {
         touch: &mut Touch<D>,
     ) -> Vector<f64, D> {
         let Sides { point, bodies } = sides;
-        let map = &setting.map;
-        let at_device =
-            point.port.as_mut().map_or(state, |port| port.state(state, setting.late));
+        let Setting { map, arrival, .. } = setting;
+        let at_device = point.port.as_mut().map_or(state, |port| port.state(state, *arrival));
+        let elapsed = point.port.as_ref().map_or(arrival.elapsed, Port::elapsed);
         let (turn, angle) = match &mut self.port {
-            Some(port) => port.state(self.turn),
+            Some(port) => port.state(self.turn, elapsed),
             None => (self.turn, Vector::ZERO),
         };
         let PointState { position, velocity } = map.state_to_world(at_device);
@@ -161,7 +161,8 @@ impl<const D: usize> CoupledTool<D> {
                 position: SpatialVector { along: at_device.position, about: angle },
                 velocity: SpatialVector { along: at_device.velocity, about: spin },
                 free_force: map.force_to_device(free),
-                late: point.port.as_ref().map_or(setting.late, |port| port.late(setting.late)),
+                late: point.port.as_ref().map_or(arrival.late, |port| port.late(arrival.late)),
+                elapsed,
             };
             let wanted = SpatialVector { along: force, about: torque };
             let given = chain.step_within(wanted, setting.options.max_force, &state);

@@ -28,6 +28,27 @@ pub enum HapticsError {
         /// Contact points of the device.
         device: usize,
     },
+    /// The device measures more seldom than the servo ticks, or sets a faster pace.
+    #[error(
+        "the device measures {device} times a second, but the servo ticks {servo} times: make the \
+         servo with a rate of {device} Hz"
+    )]
+    Rate {
+        /// Ticks of the servo a second [Hz].
+        servo: f64,
+        /// Measurements of the device a second [Hz].
+        device: f64,
+    },
+    /// The run and the device disagree about who sets the pace.
+    #[error("{}", if *is_device {
+        "the device sets the pace itself: run it with `Pace::Device`"
+    } else {
+        "the device sets no pace: run it with `Pace::RealTime`"
+    })]
+    Pace {
+        /// `true` if the device sets the pace.
+        is_device: bool,
+    },
     /// The list of bodies is empty.
     #[error("there must be at least one body to touch")]
     NoBody,

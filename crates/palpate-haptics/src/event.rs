@@ -9,7 +9,7 @@ use std::fmt;
 
 use palpate_field::{Point, Vector};
 
-/// An event at a contact point.
+/// An event at a contact point, or of a button.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[non_exhaustive]
@@ -47,6 +47,16 @@ pub enum EventKind {
         /// The force that broke the layer [N].
         force: f64,
     },
+    /// A button of the device was pressed. Contact point and body are 0.
+    ButtonDown {
+        /// The index of the button.
+        button: u8,
+    },
+    /// A button of the device was released.
+    ButtonUp {
+        /// The index of the button.
+        button: u8,
+    },
 }
 
 /// The number of events of each kind.
@@ -64,6 +74,10 @@ pub struct EventCounts {
     pub sticks: u64,
     /// A layer of a material gave way.
     pub pops: u64,
+    /// Buttons that were pressed.
+    pub presses: u64,
+    /// Buttons that were released.
+    pub releases: u64,
 }
 
 impl EventCounts {
@@ -77,14 +91,17 @@ impl EventCounts {
             EventKind::Slip => &mut self.slips,
             EventKind::Stick => &mut self.sticks,
             EventKind::Pop { .. } => &mut self.pops,
+            EventKind::ButtonDown { .. } => &mut self.presses,
+            EventKind::ButtonUp { .. } => &mut self.releases,
         } += 1;
     }
 }
 
 impl fmt::Display for EventCounts {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { touches, leaves: _, slips, sticks, pops } = self;
-        write!(f, "{touches} touches, {slips} slips, {sticks} sticks, {pops} pops")
+        let Self { touches, leaves: _, slips, sticks, pops, presses, releases: _ } = self;
+        write!(f, "{touches} touches, {slips} slips, {sticks} sticks, {pops} pops")?;
+        if *presses > 0 { write!(f, ", {presses} presses of buttons") } else { Ok(()) }
     }
 }
 
@@ -120,8 +137,17 @@ mod tests {
 
     #[test]
     fn counts_are_said_in_their_order() {
-        let counts = EventCounts { touches: 5, leaves: 4, slips: 3, sticks: 2, pops: 1 };
+        let counts = EventCounts {
+            touches: 5,
+            leaves: 4,
+            slips: 3,
+            sticks: 2,
+            pops: 1,
+            ..EventCounts::default()
+        };
         assert_eq!(counts.to_string(), "5 touches, 3 slips, 2 sticks, 1 pops");
+        let said = EventCounts { presses: 7, ..counts }.to_string();
+        assert_eq!(said, "5 touches, 3 slips, 2 sticks, 1 pops, 7 presses of buttons");
     }
 
     /// The sum of finite forces may overflow. Found by fuzzing.

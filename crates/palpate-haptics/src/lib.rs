@@ -50,6 +50,7 @@ mod energy;
 mod error;
 mod event;
 mod friction;
+mod gripper;
 mod guide;
 mod half_spaces;
 mod handoff;
@@ -83,10 +84,11 @@ pub use palpate_material::{
     Impact, Layer, Magnet, Material, PopThrough, Texture, TextureKind, UnknownMaterial,
 };
 pub use palpate_safety::{
-    Acceptance, Accepted, ContinuousReport, Device, DeviceLost, DeviceProfile, Effect,
-    Impedance, LimitCycleReport, NumberError, PassivityReport, PointState, PortState,
-    ReadingsReport, Recovery, Rule, SafetyChain, SafetyError, SafetyOptions, SafetyReport,
-    TurnState, TurningProfile, TurningReport, VelocityEstimator, WatchdogReport, WorkspaceMap,
+    Acceptance, Accepted, Buttons, ContinuousReport, Device, DeviceLost, DeviceProfile, Effect,
+    GripperProfile, GripperState, Impedance, LimitCycleReport, NumberError, PassivityReport,
+    PointState, PortState, Reading, ReadingsReport, Recovery, Rule, SafetyChain, SafetyError,
+    SafetyOptions, SafetyReport, TurnState, TurningProfile, TurningReport, VelocityEstimator,
+    WatchdogReport, WorkspaceMap,
 };
 pub use protection::Protection;
 pub use proxy::{DEFAULT_BUDGET, Following, Probe, Proxy};

@@ -6,6 +6,7 @@
 use crate::contact_point::Touch;
 use crate::event::Reaction;
 use crate::tool::HeldTool;
+use palpate_safety::{Buttons, GripperState};
 
 /// The progress of a running servo, as of a recent tick.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -37,6 +38,12 @@ pub struct Snapshot<const D: usize> {
     pub touches: Vec<Touch<D>>,
     /// The tool; `None` if the servo renders contact points.
     pub tool: Option<HeldTool<D>>,
+    /// The buttons of the device that are held down.
+    pub buttons: Buttons,
+    /// The gripper of the device; `None` for a device without one.
+    pub gripper: Option<GripperState>,
+    /// The force on the fingers in the gripper [N].
+    pub gripper_force: f64,
     /// Force and torque on each body.
     pub reactions: Vec<Reaction<D>>,
     /// Events so far for which the queue had no room.

@@ -4,7 +4,7 @@
 //! Rate, probe and force limit of a servo.
 
 use crate::proxy::Probe;
-use palpate_safety::DeviceProfile;
+use palpate_safety::{Device, DeviceProfile};
 
 /// Rate, probe and force limit of a servo.
 ///
@@ -54,6 +54,23 @@ impl ServoOptions {
             max_force: if has_limit { device.max_force } else { default.max_force },
             ..default
         }
+    }
+
+    /// The same options at the rate of a device that measures more seldom, or that sets the pace.
+    ///
+    /// ```
+    /// use palpate_devices::{Device, DeviceProfile, MailboxDevice};
+    /// use palpate_haptics::ServoOptions;
+    ///
+    /// let (slow, _driver) = MailboxDevice::<3>::new(DeviceProfile::unlimited("slow"), 1)?;
+    /// let options = ServoOptions::default().at_rate_of(&slow.with_rate(250.0));
+    /// assert_eq!(options.rate, 250.0);
+    /// # Ok::<(), palpate_devices::DeviceError>(())
+    /// ```
+    #[must_use]
+    pub fn at_rate_of<const D: usize>(self, device: &(impl Device<D> + ?Sized)) -> Self {
+        let is_own = |rate: &f64| *rate < self.rate || device.paces();
+        Self { rate: device.rate().filter(is_own).unwrap_or(self.rate), ..self }
     }
 
     /// The same options with another rate [Hz].

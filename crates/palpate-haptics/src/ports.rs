@@ -3,16 +3,16 @@
 
 //! The ports between contact points, or a tool, and a protected device.
 
-use palpate_field::{Rotation, Vector};
+use palpate_field::Vector;
 
 use crate::accepted_bodies::AcceptedBodies;
 use crate::energy::Energy;
 use crate::error::HapticsError;
 use crate::protection::Protection;
 use palpate_safety::{
-    Acceptance, Accepted, DeviceLimits, Impedance, PassivityReport, PerMotion, PointState,
-    PortState, Readings, ReadingsReport, SafetyChain, SafetyOptions, SafetyReport, TurnState,
-    VelocityEstimator, WrenchChain,
+    Acceptance, Accepted, Arrival, DeviceLimits, Impedance, PassivityReport, PerMotion,
+    PointState, PortState, Readings, ReadingsReport, SafetyChain, SafetyOptions, SafetyReport,
+    TurnState, VelocityEstimator, WrenchChain,
 };
 
 impl<const D: usize> Protection<D> {
@@ -26,8 +26,10 @@ impl<const D: usize> Protection<D> {
         let options = self.safety_options(along.unwrap_or_default());
         Ok(Port {
             chain: SafetyChain::new(&self.profile, rate, options)?,
-            readings: Readings::new(&self.profile, rate)?,
-            held: 0.0,
+            readings: Readings::new(&self.profile)?,
+            last: None,
+            elapsed: None,
+            uncounted: 0.0,
             period: 1.0 / rate,
             estimator: VelocityEstimator::new(rate, self.profile.encoder_step)?,
             has_steps: self.profile.encoder_step > 0.0,
@@ -61,7 +63,7 @@ impl<const D: usize> Protection<D> {
     }
 
     /// The options of a safety chain for an impedance that was already accepted.
-    fn safety_options(&self, impedance: Impedance) -> SafetyOptions {
+    pub(crate) fn safety_options(&self, impedance: Impedance) -> SafetyOptions {
         SafetyOptions::new(impedance)
             .with_scale(self.map.scale())
             .with_acceptance(Acceptance::AsIs)
@@ -76,8 +78,13 @@ impl<const D: usize> Protection<D> {
 pub(crate) struct Port<const D: usize> {
     chain: SafetyChain<D>,
     readings: Readings<D>,
-    /// By how much this tick is late because its reading was held back [s]: a period, or zero.
-    held: f64,
+    /// The state in the tick before.
+    last: Option<PointState<D>>,
+    /// The time between the last reading that counted and that of this tick [s]; `None` if this
+    /// tick has none.
+    elapsed: Option<f64>,
+    /// The time of the readings that did not count since the last one that did [s].
+    uncounted: f64,
     /// The duration of a tick [s].
     period: f64,
     estimator: VelocityEstimator<D>,
@@ -86,23 +93,40 @@ pub(crate) struct Port<const D: usize> {
 }
 
 impl<const D: usize> Port<D> {
-    /// The state of the device in a tick that is `late` [s]: at rest where it was if no hand can have
-    /// made the reading. Its velocity is estimated from positions if the device has encoder
-    /// steps, and is the device's own otherwise.
+    /// The state of the device in a tick: that of the tick before if nothing was measured, or
+    /// nothing that a hand can have made. Its velocity is estimated from positions if the device has
+    /// encoder steps, and is the device's own otherwise.
+    ///
+    /// A state that repeats keeps its velocity: at rest it would look as if the hand had stopped, and
+    /// the force would jump.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
-    pub(crate) fn state(&mut self, state: PointState<D>, late: f64) -> PointState<D> {
-        let counts = self.readings.counts(state.position, late);
-        // A device that cannot be read is as good as late: its force is stale.
-        self.held = if counts { 0.0 } else { self.period };
-        let state = match self.readings.last().filter(|_| !counts) {
-            Some(position) => PointState::at_rest(position),
-            None => state,
+    pub(crate) fn state(&mut self, state: PointState<D>, arrival: Arrival) -> PointState<D> {
+        let counted =
+            arrival.elapsed.filter(|time| self.readings.counts(state.position, *time));
+        let Some(elapsed) = counted else {
+            self.uncounted += arrival.elapsed.unwrap_or(0.0);
+            self.elapsed = None;
+            // What repeats before the first reading is no state.
+            return self.last.unwrap_or(PointState::at_rest(Vector([f64::NAN; D])));
         };
-        if !self.has_steps {
-            return state;
-        }
-        PointState { velocity: self.estimator.update(state.position), ..state }
+        let elapsed = std::mem::take(&mut self.uncounted) + elapsed;
+        self.elapsed = Some(elapsed);
+        let state = if self.has_steps {
+            let velocity = self.estimator.update_after(state.position, elapsed);
+            PointState { velocity, ..state }
+        } else {
+            state
+        };
+        self.last = Some(state);
+        state
+    }
+
+    /// The time since the last reading that counted [s]; `None` if this tick has none that does.
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    pub(crate) fn elapsed(&self) -> Option<f64> {
+        self.elapsed
     }
 
     /// The force to write [N], in device coordinates, for a wanted force of at most `max_force`.
@@ -114,8 +138,8 @@ impl<const D: usize> Port<D> {
         max_force: f64,
         state: &PortState<D>,
     ) -> Vector<f64, D> {
-        let late = self.late(state.late);
-        self.chain.step_within(wanted, max_force, &PortState { late, ..*state })
+        let (late, elapsed) = (self.late(state.late), self.elapsed);
+        self.chain.step_within(wanted, max_force, &PortState { late, elapsed, ..*state })
     }
 
     /// Replaces the accepted impedance.
@@ -148,11 +172,12 @@ impl<const D: usize> Port<D> {
         self.chain.report().with_readings(self.readings.report())
     }
 
-    /// By how much a tick that is `late` [s] is late in all, with its reading.
+    /// By how much a tick that is `late` [s] is late in all: without a reading that counts its force
+    /// is a period older.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     pub(crate) fn late(&self, late: f64) -> f64 {
-        late + self.held
+        late + if self.elapsed.is_some() { 0.0 } else { self.period }
     }
 
     /// What was held back.
@@ -170,26 +195,32 @@ pub(crate) struct TurningPort<const D: usize> {
     estimator: VelocityEstimator<3>,
     /// Whether the orientation has encoder steps.
     has_steps: bool,
-    last: Option<Rotation<D>>,
+    /// The state in the tick before.
+    last: Option<TurnState<D>>,
     /// The sum of all rotation vectors so far [rad].
     angle: Vector<f64, 3>,
 }
 
 impl<const D: usize> TurningPort<D> {
-    /// Orientation and angular velocity of the device, the latter estimated as in
-    /// [`Port::state`], and the sum of all rotation vectors so far [rad].
+    /// Orientation and angular velocity of the device, measured `elapsed` after the last [s], and the
+    /// sum of all rotation vectors so far [rad]. As in [`Port::state`], the angular velocity is
+    /// estimated, and the state of the tick before repeats if nothing was measured.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     pub(crate) fn state(
         &mut self,
         turn: Option<TurnState<D>>,
+        elapsed: Option<f64>,
     ) -> (Option<TurnState<D>>, Vector<f64, 3>) {
-        let Some(mut turn) = turn else { return (None, self.angle) };
-        let last = self.last.replace(turn.orientation).unwrap_or(turn.orientation);
+        let Some((mut turn, elapsed)) = turn.zip(elapsed) else {
+            return (turn.and(self.last), self.angle);
+        };
+        let last = self.last.map_or(turn.orientation, |last| last.orientation);
         self.angle += last.turn_to(&turn.orientation);
         if self.has_steps {
-            turn.angular_velocity = self.estimator.update(self.angle);
+            turn.angular_velocity = self.estimator.update_after(self.angle, elapsed);
         }
+        self.last = Some(turn);
         (Some(turn), self.angle)
     }
 

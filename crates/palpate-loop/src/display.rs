@@ -5,6 +5,7 @@
 
 use std::fmt::{Display, Formatter, Result};
 
+use crate::connection::ConnectionReport;
 use crate::guide_report::GuideReport;
 use crate::lines;
 use crate::pacer::Lateness;
@@ -12,6 +13,7 @@ use crate::report::{Ending, Evaluations, RunReport};
 use crate::statistics::{Bucket, Distribution};
 use crate::texture_report::TextureReport;
 use crate::tool_report::ToolReport;
+use crate::vibration::VibrationReport;
 
 /// What a report says if the device refused the last forces.
 pub(crate) const NOT_RELEASED: &str = "the device did not take the zero forces at the end";
@@ -43,6 +45,42 @@ impl Display for RunReport {
             write!(f, "; {} rows lost", self.rows_dropped)?;
         }
         if self.is_released { Ok(()) } else { write!(f, "; {NOT_RELEASED}") }
+    }
+}
+
+impl Display for ConnectionReport {
+    fn fmt(&self, f: &mut Formatter<'_>) -> Result {
+        match self.watchdog {
+            Some(time) => {
+                write!(f, "lets go by itself after {:.3} ms without a tick", 1e3 * time)?
+            }
+            None => f.write_str("has no watchdog of its own")?,
+        }
+        let Self { stale_ticks, not_ready_ticks, longest_gap, .. } = self;
+        if *stale_ticks > 0 {
+            let gap = 1e3 * longest_gap;
+            write!(f, "; {stale_ticks} ticks without a new state, for {gap:.3} ms at most")?;
+        }
+        if *not_ready_ticks > 0 {
+            write!(f, "; {not_ready_ticks} ticks without any state")?;
+        }
+        let Self { losses, reconnections, lost_time, last_loss, not_closed, .. } = self;
+        if *losses > 0 {
+            write!(f, "; lost {losses} times, found again {reconnections} times, ")?;
+            write!(f, "{lost_time:.3} s without it")?;
+        }
+        if let Some(reason) = last_loss {
+            write!(f, "; at last: {reason}")?;
+        }
+        not_closed.as_ref().map_or(Ok(()), |reason| write!(f, "; not closed: {reason}"))
+    }
+}
+
+impl Display for VibrationReport {
+    fn fmt(&self, f: &mut Formatter<'_>) -> Result {
+        let Self { commands, strongest, lost } = self;
+        write!(f, "{commands} commands, an amplitude of {strongest:.2} at most")?;
+        lost.as_ref().map_or(Ok(()), |reason| write!(f, "; lost: {reason}"))
     }
 }
 
@@ -120,7 +158,7 @@ impl Display for Lateness {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::report::Tally;
+    use crate::report::{Ended, Tally};
     use palpate_haptics::{DeviceProfile, Protection, ServoOptions, UnprotectedServo};
 
     #[test]
@@ -129,14 +167,47 @@ mod tests {
         let servo = UnprotectedServo::new(circle, 1, ServoOptions::default()).unwrap();
         let profile = DeviceProfile::unlimited("none");
         let tally = Tally::new(&servo.protected(&Protection::new(profile)).unwrap());
-        let report = tally.report(Ending::Finished, true, 0, Vec::new());
+        let ended = |ending, is_released| Ended {
+            ending,
+            is_released,
+            rows_dropped: 0,
+            safety: Vec::new(),
+            connection: ConnectionReport::default(),
+            vibration: None,
+        };
+        let report = tally.report(ended(Ending::Finished, true));
         let said = "0 ticks at 1000 Hz, 0.000 s in contact, at most 0.000 N; finished";
         assert_eq!(report.to_string(), said);
         let lost = Ending::DeviceLost { reason: "unplugged".to_owned() };
-        let report = tally.report(lost, false, 0, Vec::new());
+        let report = tally.report(ended(lost, false));
         let said = "; the device was lost: unplugged; the device did not take the zero forces \
                     at the end";
         assert!(report.to_string().ends_with(said), "{report}");
+    }
+
+    #[test]
+    fn a_connection_says_what_went_wrong_and_no_more() {
+        let quiet = ConnectionReport::default();
+        assert_eq!(quiet.to_string(), "has no watchdog of its own");
+        let connection = ConnectionReport {
+            watchdog: Some(0.03),
+            stale_ticks: 14,
+            not_ready_ticks: 3,
+            longest_gap: 0.0025,
+            losses: 2,
+            reconnections: 1,
+            lost_time: 0.75,
+            last_loss: Some("unplugged".to_owned()),
+            not_closed: Some("no answer".to_owned()),
+        };
+        let said = "lets go by itself after 30.000 ms without a tick; 14 ticks without a new state, \
+                    for 2.500 ms at most; 3 ticks without any state; lost 2 times, found again 1 \
+                    times, 0.750 s without it; at last: unplugged; not closed: no answer";
+        assert_eq!(connection.to_string(), said);
+        let lost = Some("pulled out".to_owned());
+        let played = VibrationReport { commands: 11, strongest: 0.625, lost };
+        let said = "11 commands, an amplitude of 0.62 at most; lost: pulled out";
+        assert_eq!(played.to_string(), said);
     }
 
     #[test]

@@ -9,6 +9,11 @@
 //! which has a safety chain. The last that they write are zero forces, after a panic too; the
 //! report says whether the device took them.
 //!
+//! The loop opens its device, sets the watchdog of the device, and closes it. It runs at the pace of
+//! a clock or of the [device](Pace::Device); a lost device ends the run, or is looked for by a
+//! [`Reconnection`] while ticks go on without force. A [`Vibration`] plays the touches on a device
+//! that shakes.
+//!
 //! The loop runs on the machine's clock, a [`WallClock`], or, in tests, on a [`VirtualClock`]. A
 //! [`Recorder`] keeps every tick, [`Records`] hand them to another thread while the servo runs, a
 //! [`TraceWriter`] writes them as CSV, a [`RunReport`] summarises a run, and [`Lateness`] measures
@@ -39,6 +44,7 @@
 #![cfg_attr(test, allow(clippy::float_cmp, reason = "tests compare exact numbers"))]
 
 mod clock;
+mod connection;
 mod display;
 mod guide_report;
 mod lines;
@@ -55,8 +61,10 @@ mod texture_report;
 mod thread;
 mod tool_report;
 mod trace;
+mod vibration;
 
 pub use clock::{Clock, ClockDriver, VirtualClock, WallClock};
+pub use connection::{ConnectionReport, Reconnection};
 pub use guide_report::GuideReport;
 pub use pacer::{Lateness, Pace};
 pub use priority::{Priority, raise_priority};
@@ -70,3 +78,4 @@ pub use texture_report::TextureReport;
 pub use thread::{EndedThread, ServoThread, StartError, ThreadMotion, ThreadOptions};
 pub use tool_report::ToolReport;
 pub use trace::TraceWriter;
+pub use vibration::{Vibration, VibrationReport};

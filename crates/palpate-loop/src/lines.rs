@@ -7,6 +7,7 @@ use std::fmt::{Display, Formatter, Result};
 
 use palpate_haptics::{PassivityReport, SafetyReport, TurningReport};
 
+use crate::connection::ConnectionReport;
 use crate::display::NOT_RELEASED;
 use crate::report::{Ending, RunReport};
 use crate::tool_report::ToolReport;
@@ -58,6 +59,14 @@ pub(crate) fn write(f: &mut Formatter<'_>, report: &RunReport) -> Result {
         line(f, "texture", texture)?;
     }
     write_safety(f, &report.safety)?;
+    // A device that gives no force has nothing to let go.
+    let is_quiet = report.safety.is_empty() && report.connection == ConnectionReport::default();
+    if !is_quiet {
+        line(f, "device", &report.connection)?;
+    }
+    if let Some(vibration) = &report.vibration {
+        line(f, "vibration", vibration)?;
+    }
     if let Some(cost) = &report.cost {
         line(f, "cost a tick", cost)?;
     }

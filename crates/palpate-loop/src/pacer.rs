@@ -5,7 +5,7 @@
 
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-use palpate_haptics::{HapticsError, NumberError};
+use palpate_haptics::{Device, HapticsError, NumberError, Reading};
 use std::time::Duration;
 
 use crate::clock::Clock;
@@ -17,9 +17,33 @@ pub enum Pace {
     /// In real time, at the servo's rate on the clock.
     #[default]
     RealTime,
+    /// At the pace of a device that [sets it](palpate_haptics::Device::paces): each tick begins when the
+    /// device was measured, and is as late as the time since the last measurement exceeds a period.
+    /// The servo's time is that of the measurements.
+    Device,
     /// Without waiting between ticks; the servo's time advances by a period a tick as in real
     /// time.
     AsFastAsPossible,
+}
+
+impl Pace {
+    /// The pace in real time of a device: its own, if it sets one.
+    pub(crate) fn of<const D: usize>(device: &dyn Device<D>) -> Self {
+        if device.paces() { Self::Device } else { Self::RealTime }
+    }
+
+    /// Refuses a device that sets the pace if this is another, and one that does not if it should.
+    pub(crate) fn check<const D: usize>(
+        self,
+        device: &dyn Device<D>,
+    ) -> Result<(), HapticsError> {
+        let is_device = device.paces();
+        if is_device == (self == Self::Device) {
+            Ok(())
+        } else {
+            Err(HapticsError::Pace { is_device })
+        }
+    }
 }
 
 /// The most warm-ups before a deadline: on a clock that stands still, they would never end.
@@ -78,6 +102,66 @@ impl Pacer {
         }
         self.deadline += self.period;
         Late { ns: nanoseconds(late), is_missed }
+    }
+}
+
+impl Pacer {
+    /// Lets the next deadline be a period from now.
+    pub(crate) fn restart(&mut self, clock: &mut dyn Clock) {
+        self.deadline = clock.now() + self.period;
+    }
+}
+
+/// Follows the ticks of a device that sets the pace.
+#[derive(Debug)]
+pub(crate) struct Follower {
+    period: f64,
+    /// When the tick before began, on the loop's clock.
+    last: Option<Duration>,
+    /// The time of the ticks since the last measurement, which had none [s].
+    passed: f64,
+}
+
+/// A tick of a device that sets the pace.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Followed {
+    pub(crate) late: Late,
+    /// The time since the tick before [s].
+    pub(crate) time: f64,
+}
+
+impl Follower {
+    pub(crate) fn new(rate: f64) -> Self {
+        Self { period: 1.0 / rate, last: None, passed: 0.0 }
+    }
+
+    /// A tick that begins now, with a measurement `elapsed` after the last one [s], or without one.
+    /// The time of ticks without any state is that of no measurement.
+    /// It is late by the clock or by the times of the measurements, whichever says more: a clock in
+    /// a test may stand still.
+    pub(crate) fn follow(
+        &mut self,
+        clock: &mut dyn Clock,
+        elapsed: Option<f64>,
+        reading: Reading,
+    ) -> Followed {
+        let now = clock.now();
+        let Some(last) = self.last.replace(now) else {
+            return Followed { late: Late { ns: 0, is_missed: false }, time: 0.0 };
+        };
+        let waited = now.saturating_sub(last).as_secs_f64();
+        let time = match elapsed {
+            Some(elapsed) => (elapsed - std::mem::take(&mut self.passed)).max(0.0),
+            None => {
+                let time = waited.max(self.period);
+                self.passed = if reading.has_state() { self.passed + time } else { 0.0 };
+                time
+            }
+        };
+        let late = (waited.max(time) - self.period).max(0.0);
+        let late = Duration::try_from_secs_f64(late).unwrap_or(Duration::MAX);
+        let is_missed = late.as_secs_f64() > self.period;
+        Followed { late: Late { ns: nanoseconds(late), is_missed }, time }
     }
 }
 

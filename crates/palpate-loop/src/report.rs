@@ -3,12 +3,14 @@
 
 //! The report of a run.
 
+use crate::connection::ConnectionReport;
 use crate::guide_report::{GuideReport, GuideTally};
 use crate::recorder::TickTimes;
 use crate::start_report::{StartInside, StartTally};
 use crate::statistics::{Distribution, Times};
 use crate::texture_report::TextureReport;
 use crate::tool_report::{ToolReport, ToolTally};
+use crate::vibration::VibrationReport;
 use palpate_haptics::{DeviceLost, EventCounts, Progress, SafetyReport, Servo};
 
 /// The report of a run of a servo.
@@ -52,6 +54,8 @@ pub struct RunReport {
     pub safety: Vec<SafetyReport>,
     /// The contact points that were inside a body in the first tick.
     pub starts_inside: Vec<StartInside>,
+    /// The report of the connection to the device.
+    pub connection: ConnectionReport,
     /// The report of each guide of the servo.
     pub guides: Vec<GuideReport>,
     /// The report of height textures; `None` if none was touched.
@@ -60,6 +64,9 @@ pub struct RunReport {
     /// The report of the tool; `None` if the servo renders contact points.
     #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Option::is_none"))]
     pub tool: Option<ToolReport>,
+    /// The report of a device that vibrates; `None` without one.
+    #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Option::is_none"))]
+    pub vibration: Option<VibrationReport>,
 }
 
 impl RunReport {
@@ -137,6 +144,17 @@ pub enum Ending {
         /// The panic's message.
         message: String,
     },
+}
+
+/// How a run ended, and what others than the [`Tally`] saw of it.
+#[derive(Debug)]
+pub(crate) struct Ended {
+    pub(crate) ending: Ending,
+    pub(crate) is_released: bool,
+    pub(crate) rows_dropped: u64,
+    pub(crate) safety: Vec<SafetyReport>,
+    pub(crate) connection: ConnectionReport,
+    pub(crate) vibration: Option<VibrationReport>,
 }
 
 /// Counts during a run, in preallocated memory.
@@ -231,13 +249,8 @@ impl<const D: usize> Tally<D> {
         progress
     }
 
-    pub(crate) fn report(
-        &self,
-        ending: Ending,
-        is_released: bool,
-        rows_dropped: u64,
-        safety: Vec<SafetyReport>,
-    ) -> RunReport {
+    pub(crate) fn report(&self, ended: Ended) -> RunReport {
+        let Ended { ending, is_released, rows_dropped, safety, connection, vibration } = ended;
         let ticks = self.ticks as f64;
         RunReport {
             ending,
@@ -261,6 +274,8 @@ impl<const D: usize> Tally<D> {
             rows_dropped,
             events: self.events,
             safety,
+            connection,
+            vibration,
             starts_inside: self.starts.reports(self.rate),
             guides: self.guides.reports(self.rate),
             texture: Some(self.texture).filter(|texture| texture.ticks > 0),

@@ -11,11 +11,13 @@ use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 
 use crate::clock::{Clock, WallClock};
+use crate::connection::Reconnection;
 use crate::pacer::{Pace, ticks};
 use crate::recorder::{Recorder, TraceRow};
 use crate::records::{Records, queue};
 use crate::report::RunReport;
 use crate::servo_loop::{RowSink, Schedule, ServoLoop};
+use crate::vibration::Vibration;
 
 /// How often the thread of a sink takes rows: seldom enough to cost nothing.
 const TAKEN_EVERY: Duration = Duration::from_millis(5);
@@ -85,10 +87,15 @@ pub struct RunOptions<'a, const D: usize> {
     pub motion: Option<Motion<'a, D>>,
     /// Ends the run before its next tick once the flag is `true`; a signal handler may set it.
     pub interrupt: Option<&'a AtomicBool>,
+    /// How the run goes on when the device is lost; `None` to end it.
+    pub reconnection: Option<Reconnection>,
+    /// Plays the touches on a device that vibrates.
+    pub vibration: Option<Vibration<'a>>,
 }
 
 impl<'a, const D: usize> RunOptions<'a, D> {
-    /// A run of `duration` [s] in real time, without rehearsals, recorder, sink and watch.
+    /// A run of `duration` [s] in real time that ends when the device is lost, without rehearsals,
+    /// recorder, sink, watch and vibration.
     #[must_use]
     pub fn new(duration: f64) -> Self {
         Self {
@@ -100,24 +107,26 @@ impl<'a, const D: usize> RunOptions<'a, D> {
             watch: None,
             motion: None,
             interrupt: None,
+            reconnection: None,
+            vibration: None,
         }
     }
 
     /// The same options with another pace.
     #[must_use]
-    pub const fn with_pace(self, pace: Pace) -> Self {
+    pub fn with_pace(self, pace: Pace) -> Self {
         Self { pace, ..self }
     }
 
     /// The same options with rehearsals or without.
     #[must_use]
-    pub const fn with_rehearsals(self, rehearses: bool) -> Self {
+    pub fn with_rehearsals(self, rehearses: bool) -> Self {
         Self { rehearses, ..self }
     }
 
     /// The same options with a recorder.
     #[must_use]
-    pub const fn with_recorder(self, recorder: &'a mut Recorder<D>) -> Self {
+    pub fn with_recorder(self, recorder: &'a mut Recorder<D>) -> Self {
         Self { recorder: Some(recorder), ..self }
     }
 
@@ -161,7 +170,7 @@ impl<'a, const D: usize> RunOptions<'a, D> {
 
     /// The same options with a closure that a separate thread calls at `interval`.
     #[must_use]
-    pub const fn with_watch(
+    pub fn with_watch(
         self,
         interval: Duration,
         show: &'a mut (dyn FnMut(&Progress) + Send),
@@ -203,8 +212,50 @@ impl<'a, const D: usize> RunOptions<'a, D> {
 
     /// The same options with a flag that ends the run.
     #[must_use]
-    pub const fn with_interrupt(self, flag: &'a AtomicBool) -> Self {
+    pub fn with_interrupt(self, flag: &'a AtomicBool) -> Self {
         Self { interrupt: Some(flag), ..self }
+    }
+
+    /// The same options, going on when the device is lost.
+    ///
+    /// # Examples
+    ///
+    /// A device that can be opened again at the fifth attempt:
+    ///
+    /// ```
+    /// use palpate_devices::{Fault, FaultKind, HandPath, Interpolation, RecordedDevice};
+    /// use palpate_devices::SimulatedTransport;
+    /// use palpate_field::Shape;
+    /// use palpate_haptics::Servo;
+    /// use palpate_loop::{Ending, Pace, Reconnection, RunOptions, run};
+    ///
+    /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+    /// let ends = vec![[0.0, 0.08].into(), [0.0, 0.05].into()];
+    /// let press = HandPath::new(vec![0.0, 1.0], ends, Interpolation::Smooth)?;
+    /// let away = FaultKind::Lost { attempts: 5 };
+    /// let away = Fault { start: 0.3, duration: 0.0, kind: away };
+    /// let device = RecordedDevice::new(vec![press])?;
+    /// let mut device = SimulatedTransport::new(device, vec![away])?;
+    /// let mut servo = Servo::for_device(Shape::circle(0.05)?, &device)?;
+    ///
+    /// let options = RunOptions::new(1.0).with_pace(Pace::AsFastAsPossible);
+    /// let options = options.with_reconnection(Reconnection::every(0.02)?);
+    /// let report = run(&mut servo, &mut device, options)?;
+    /// assert_eq!((report.ending, report.ticks), (Ending::Finished, 1000));
+    /// assert_eq!((report.connection.losses, report.connection.reconnections), (1, 1));
+    /// assert!((report.connection.lost_time - 5.0 * 0.02).abs() < 1e-9);
+    /// # Ok(())
+    /// # }
+    /// ```
+    #[must_use]
+    pub fn with_reconnection(self, reconnection: Reconnection) -> Self {
+        Self { reconnection: Some(reconnection), ..self }
+    }
+
+    /// The same options with touches that are played on a device that vibrates.
+    #[must_use]
+    pub fn with_vibration(self, vibration: Vibration<'a>) -> Self {
+        Self { vibration: Some(vibration), ..self }
     }
 }
 
@@ -278,6 +329,8 @@ impl<const D: usize> std::fmt::Debug for RunOptions<'_, D> {
             .field("watch", &self.watch)
             .field("motion", &self.motion.is_some())
             .field("interrupt", &self.interrupt)
+            .field("reconnection", &self.reconnection)
+            .field("vibration", &self.vibration)
             .finish()
     }
 }
@@ -286,14 +339,17 @@ impl<const D: usize> std::fmt::Debug for RunOptions<'_, D> {
 ///
 /// Tick `k` is at the servo's time `k / rate`. In real time the loop sleeps between ticks; a
 /// tick that starts more than a period late shifts all later ones, so that the loop does not
-/// hurry to catch up. However the run ends, the last forces written are
-/// zero, and [`RunReport::is_released`] says whether the device took them.
+/// hurry to catch up. The loop opens the device before the first tick, sets its watchdog and
+/// switches its motors on. However the run ends, the last forces written are zero, and the device is
+/// closed; [`RunReport::is_released`] says whether it took them.
 ///
 /// # Errors
 ///
 /// [`HapticsError::Number`] if the duration is negative or not finite;
 /// [`HapticsError::ContactPoints`] if servo and device have different numbers of contact
-/// points; [`SafetyError::OtherDevice`](palpate_haptics::SafetyError) if the device has tighter
+/// points; [`HapticsError::Rate`] and [`HapticsError::Pace`] if the device measures more seldom than
+/// the servo ticks, or one of both sets another pace than the options;
+/// [`SafetyError::OtherDevice`](palpate_haptics::SafetyError) if the device has tighter
 /// limits than the one that the servo was made for. Failures during the run are in the report.
 ///
 /// # Examples
@@ -363,12 +419,14 @@ pub fn run_on<const D: usize>(
     let room = HandoffOptions::default().with_events(0).with_bodies(0);
     let (control, mut end) = options.watch.is_some().then(|| handoff(&*servo, room)).unzip();
     servo.check_device(device)?;
+    options.pace.check(device)?;
+    let player = options.vibration.map(|vibration| vibration.start(servo)).transpose()?;
     // Within an option the closure's lifetime would have to be that of the loop.
     let motion = options.motion.map(|motion| -> Motion<'_, D> { motion });
     let (rows, queued) = match (options.sink, options.pace) {
         (None, _) => (None, None),
         (Some(sink), Pace::AsFastAsPossible) => (Some(RowSink::Call(sink)), None),
-        (Some(sink), Pace::RealTime) => {
+        (Some(sink), Pace::RealTime | Pace::Device) => {
             let backlog = BACKLOG * servo.options().rate * device.points() as f64;
             let (writer, reader) = queue(backlog.min(MOST_BACKLOG).ceil() as usize);
             (Some(RowSink::Queue(writer)), Some((reader, sink)))
@@ -379,6 +437,8 @@ pub fn run_on<const D: usize>(
         .sending(rows)
         .moving(motion)
         .interrupted_by(options.interrupt)
+        .reconnecting(options.reconnection)
+        .vibrating(player)
         .handing_off(end.as_mut());
     let run = || servo_loop.run(clock, &schedule);
     Ok(accompanied(control.zip(options.watch), queued, run))

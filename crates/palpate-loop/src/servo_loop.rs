@@ -5,7 +5,7 @@
 
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-use palpate_haptics::{Device, DeviceLost, PointState, Servo, ServoEnd};
+use palpate_haptics::{Buttons, Device, DeviceLost, PointState, Reading, Servo, ServoEnd};
 use std::any::Any;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -14,11 +14,13 @@ use std::time::Duration;
 use palpate_field::Vector;
 
 use crate::clock::Clock;
-use crate::pacer::{Pace, Pacer, nanoseconds};
+use crate::connection::{Connection, Reconnection};
+use crate::pacer::{Follower, Pace, Pacer, nanoseconds};
 use crate::recorder::{Recorder, TickTimes, TraceRow, rows};
 use crate::records::RowQueue;
-use crate::report::{Ending, RunReport, Tally};
+use crate::report::{Ended, Ending, RunReport, Tally};
 use crate::run::Motion;
+use crate::vibration::Player;
 
 /// How long before a tick its rehearsals begin: the first loads the caches, the others train
 /// the branch predictors.
@@ -46,6 +48,12 @@ pub(crate) struct ServoLoop<'a, const D: usize> {
     expected: Vec<PointState<D>>,
     /// Zero forces, written at the end.
     no_forces: Vec<Vector<f64, D>>,
+    connection: Connection,
+    vibration: Option<Player<'a>>,
+    /// Whether the servo limits the force of a gripper.
+    has_gripper: bool,
+    /// The time of the tick since the servo started [s].
+    time: f64,
     /// Whether the device has rotation, and so takes a torque.
     is_turned: bool,
     tally: Tally<D>,
@@ -64,7 +72,8 @@ impl<'a, const D: usize> ServoLoop<'a, D> {
     /// A loop with a device that was [checked](Servo::check_device).
     pub(crate) fn new(servo: &'a mut Servo<D>, device: &'a mut dyn Device<D>) -> Self {
         let points = device.points();
-        let tally = Tally::new(servo);
+        let has_gripper = servo.protection().profile.gripper.is_some();
+        let (tally, servo_rate) = (Tally::new(servo), servo.options().rate);
         Self {
             servo,
             device,
@@ -76,6 +85,10 @@ impl<'a, const D: usize> ServoLoop<'a, D> {
             states: vec![PointState::at_rest(Vector::ZERO); points],
             expected: vec![PointState::at_rest(Vector::ZERO); points],
             no_forces: vec![Vector::ZERO; points],
+            connection: Connection::new(servo_rate, None),
+            vibration: None,
+            has_gripper,
+            time: 0.0,
             is_turned: false,
             tally,
         }
@@ -101,13 +114,23 @@ impl<'a, const D: usize> ServoLoop<'a, D> {
         self
     }
 
+    pub(crate) fn reconnecting(mut self, reconnection: Option<Reconnection>) -> Self {
+        self.connection = Connection::new(self.servo.options().rate, reconnection);
+        self
+    }
+
+    pub(crate) fn vibrating(mut self, vibration: Option<Player<'a>>) -> Self {
+        self.vibration = vibration;
+        self
+    }
+
     pub(crate) fn interrupted_by(mut self, interrupt: Option<&'a AtomicBool>) -> Self {
         self.interrupt = interrupt;
         self
     }
 
-    /// Runs the loop. However it ends, the last that it writes are zero forces and a zero torque;
-    /// the report says whether the device took them.
+    /// Runs the loop. However it ends, the last that it writes are zero forces and a zero torque,
+    /// and it closes the device; the report says whether the device took them.
     pub(crate) fn run(mut self, clock: &mut dyn Clock, schedule: &Schedule) -> RunReport {
         let ticks = AssertUnwindSafe(|| self.ticks(clock, schedule));
         let ending = match catch_unwind(ticks) {
@@ -115,12 +138,7 @@ impl<'a, const D: usize> ServoLoop<'a, D> {
             Ok(Err(lost)) => Ending::DeviceLost { reason: lost.reason },
             Err(panic) => Ending::Panicked { message: message_of(&*panic) },
         };
-        // A panic of the device must not unwind through the servo.
-        let zero_forces = AssertUnwindSafe(|| self.device.write(&self.no_forces));
-        let zero_forces = catch_unwind(zero_forces);
-        let zero_torque = AssertUnwindSafe(|| self.device.write_torque(Vector::ZERO));
-        let zero_torque = catch_unwind(zero_torque);
-        let is_released = matches!((zero_forces, zero_torque), (Ok(Ok(())), Ok(Ok(()))));
+        let is_released = self.release();
         if let Some(end) = &self.end {
             end.finish();
         }
@@ -129,7 +147,30 @@ impl<'a, const D: usize> ServoLoop<'a, D> {
             Some(RowSink::Call(_)) | None => 0,
         };
         let dropped = lost + self.recorder.map_or(0, |recorder| recorder.dropped());
-        self.tally.report(ending, is_released, dropped, self.servo.safety())
+        let ended = Ended {
+            ending,
+            is_released,
+            rows_dropped: dropped,
+            safety: self.servo.safety(),
+            connection: self.connection.report(self.time),
+            vibration: self.vibration.map(Player::finish),
+        };
+        self.tally.report(ended)
+    }
+
+    /// Writes zeros and closes the device. `false` if it did not take the zeros.
+    fn release(&mut self) -> bool {
+        if !self.connection.was_opened() {
+            return true;
+        }
+        let Self { device, no_forces, connection, .. } = self;
+        // A panic of the device must not unwind through the servo, nor keep the other zeros back.
+        let forces = catch_unwind(AssertUnwindSafe(|| device.write(no_forces)));
+        let torque = catch_unwind(AssertUnwindSafe(|| device.write_torque(Vector::ZERO)));
+        let gripper = catch_unwind(AssertUnwindSafe(|| device.write_gripper_force(0.0)));
+        let is_closed = catch_unwind(AssertUnwindSafe(|| connection.close(*device)));
+        let took = [forces, torque, gripper].iter().all(|zeros| matches!(zeros, Ok(Ok(()))));
+        took && is_closed.is_ok()
     }
 
     fn ticks(
@@ -137,20 +178,23 @@ impl<'a, const D: usize> ServoLoop<'a, D> {
         clock: &mut dyn Clock,
         schedule: &Schedule,
     ) -> Result<Ending, DeviceLost> {
+        self.connect()?;
         let rate = self.servo.options().rate;
         let mut pacer = Pacer::new(clock, rate);
+        let mut follower = Follower::new(rate);
         for tick in 0..schedule.ticks {
-            let time_s = tick as f64 / rate;
-            let mut lateness_ns = 0;
-            if schedule.pace == Pace::RealTime {
-                let late = if schedule.rehearses {
+            let is_followed = schedule.pace == Pace::Device && self.connection.is_open();
+            let mut late = None;
+            if schedule.pace == Pace::RealTime || schedule.pace == Pace::Device && !is_followed
+            {
+                late = Some(if schedule.rehearses {
                     pacer.wait_warm(clock, REHEARSAL, || self.rehearse())
                 } else {
                     pacer.wait(clock)
-                };
-                self.tally.late(late.ns, late.is_missed);
-                self.servo.set_late(if late.is_missed { late.ns as f64 * 1e-9 } else { 0.0 });
-                lateness_ns = late.ns;
+                });
+            }
+            if schedule.pace != Pace::Device {
+                self.time = tick as f64 / rate;
             }
             if self.end.as_ref().is_some_and(|end| end.is_to_end()) {
                 break;
@@ -158,10 +202,97 @@ impl<'a, const D: usize> ServoLoop<'a, D> {
             if self.interrupt.is_some_and(|asked| asked.load(Ordering::Relaxed)) {
                 return Ok(Ending::Interrupted);
             }
-            let cost_ns = self.tick(clock, time_s)?;
-            self.account(TickTimes { time_s, cost_ns, lateness_ns });
+            let reading = self.read()?;
+            let elapsed = self.connection.see(reading);
+            if schedule.pace == Pace::Device {
+                let followed = follower.follow(clock, elapsed, reading);
+                self.time += followed.time;
+                if is_followed {
+                    late = Some(followed.late);
+                    pacer.restart(clock);
+                }
+            }
+            if let Some(late) = late {
+                self.tally.late(late.ns, late.is_missed);
+                self.servo.set_late(if late.is_missed { late.ns as f64 * 1e-9 } else { 0.0 });
+            }
+            let cost_ns = self.tick(clock, reading)?;
+            let lateness_ns = late.map_or(0, |late| late.ns);
+            self.account(TickTimes { time_s: self.time, cost_ns, lateness_ns });
         }
         Ok(Ending::Finished)
+    }
+
+    /// Opens the device.
+    ///
+    /// # Errors
+    ///
+    /// As [`Connection::lose`].
+    fn connect(&mut self) -> Result<(), DeviceLost> {
+        let opened = self.connection.open(&mut *self.device, self.time);
+        // Another device may have been plugged in.
+        let fitting = opened.and_then(|()| {
+            let checked = self.servo.check_device(&*self.device);
+            checked.map_err(|error| DeviceLost::new(error.to_string()))
+        });
+        fitting.or_else(|lost| self.lose(lost))
+    }
+
+    /// Takes note that the device was lost.
+    ///
+    /// # Errors
+    ///
+    /// As [`Connection::lose`].
+    fn lose(&mut self, lost: DeviceLost) -> Result<(), DeviceLost> {
+        if self.connection.is_open() && self.connection.reconnects() {
+            // What can still be written may reach the hand; that it need not is known.
+            drop(self.write_zeros());
+        }
+        self.connection.lose(&mut *self.device, lost, self.time)
+    }
+
+    /// Reads the device; one that is lost is not ready.
+    fn read(&mut self) -> Result<Reading, DeviceLost> {
+        if self.connection.is_due(self.time) {
+            self.connect()?;
+        }
+        if self.connection.is_open() {
+            match self.read_open() {
+                Ok(reading) => return Ok(reading),
+                Err(lost) => self.lose(lost)?,
+            }
+        }
+        self.servo.set_buttons(Buttons::NONE);
+        self.servo.set_gripper(None);
+        Ok(Reading::NotReady)
+    }
+
+    fn read_open(&mut self) -> Result<Reading, DeviceLost> {
+        let reading = self.device.read(self.time, &mut self.states)?;
+        let turn = self.device.read_turn()?;
+        self.is_turned |= turn.is_some();
+        self.servo.set_turn(turn);
+        self.servo.set_buttons(self.device.buttons());
+        let gripper = self.device.read_gripper()?;
+        self.servo.set_gripper(gripper);
+        Ok(reading)
+    }
+
+    fn write_zeros(&mut self) -> Result<(), DeviceLost> {
+        self.device.write(&self.no_forces)?;
+        self.device.write_torque(Vector::ZERO)?;
+        self.device.write_gripper_force(0.0)
+    }
+
+    fn write(&mut self) -> Result<(), DeviceLost> {
+        self.device.write(self.servo.forces())?;
+        if self.is_turned {
+            self.device.write_torque(self.servo.torque())?;
+        }
+        if self.has_gripper {
+            self.device.write_gripper_force(self.servo.gripper_force())?;
+        }
+        Ok(())
     }
 
     /// Rehearses the next tick, because the sleep between ticks lets caches and branch
@@ -177,26 +308,21 @@ impl<'a, const D: usize> ServoLoop<'a, D> {
         self.servo.rehearse(&self.expected);
     }
 
-    /// One tick, from reading to writing. Returns the duration of the servo's step [ns],
+    /// One tick after its reading, to its writing. Returns the duration of the servo's step [ns],
     /// without the device's transport.
-    fn tick(&mut self, clock: &mut dyn Clock, time_s: f64) -> Result<u64, DeviceLost> {
+    fn tick(&mut self, clock: &mut dyn Clock, reading: Reading) -> Result<u64, DeviceLost> {
         if let Some(end) = &mut self.end {
             end.receive(self.servo);
         }
         if let Some(motion) = &mut self.motion {
-            motion(time_s, &mut |body, pose| self.servo.set_pose(body, pose));
+            motion(self.time, &mut |body, pose| self.servo.set_pose(body, pose));
         }
-        self.device.read(time_s, &mut self.states)?;
-        let turn = self.device.read_turn()?;
-        self.is_turned |= turn.is_some();
-        self.servo.set_turn(turn);
+        self.servo.set_reading(reading);
         let start = clock.now();
         self.servo.step(&self.states);
         let cost = clock.now().saturating_sub(start);
-        self.device.write(self.servo.forces())?;
-        if self.is_turned {
-            self.device.write_torque(self.servo.torque())?;
-        }
+        let written = if self.connection.is_open() { self.write() } else { Ok(()) };
+        written.or_else(|lost| self.lose(lost))?;
         Ok(nanoseconds(cost))
     }
 
@@ -204,6 +330,9 @@ impl<'a, const D: usize> ServoLoop<'a, D> {
     /// tick, but not change it.
     fn account(&mut self, times: TickTimes) {
         let progress = self.tally.tick(times, self.servo);
+        if let Some(vibration) = &mut self.vibration {
+            vibration.tick(self.servo);
+        }
         if let Some(end) = &mut self.end {
             end.publish(&*self.servo, &progress);
         }

@@ -13,6 +13,7 @@ use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
 use crate::clock::{Clock, WallClock};
+use crate::connection::Reconnection;
 use crate::pacer::{Pace, ticks};
 use crate::priority::{Priority, raise_priority};
 use crate::records::{Records, queue};
@@ -52,10 +53,12 @@ pub struct ThreadOptions {
     pub rows: Option<usize>,
     /// The capacities of the hand-off.
     pub handoff: HandoffOptions,
+    /// How the loop goes on when the device is lost; `None` to end it.
+    pub reconnection: Option<Reconnection>,
 }
 
 impl Default for ThreadOptions {
-    /// No end, raised priority, default hand-off, no rehearsals, no recorder.
+    /// No end but a lost device, raised priority, default hand-off, no rehearsals, no recorder.
     fn default() -> Self {
         Self {
             duration: None,
@@ -63,6 +66,7 @@ impl Default for ThreadOptions {
             rehearses: false,
             rows: None,
             handoff: HandoffOptions::default(),
+            reconnection: None,
         }
     }
 }
@@ -98,6 +102,12 @@ impl ThreadOptions {
     #[must_use]
     pub const fn with_handoff(self, handoff: HandoffOptions) -> Self {
         Self { handoff, ..self }
+    }
+
+    /// The same options, going on when the device is lost.
+    #[must_use]
+    pub const fn with_reconnection(self, reconnection: Reconnection) -> Self {
+        Self { reconnection: Some(reconnection), ..self }
     }
 }
 
@@ -215,7 +225,8 @@ struct Left<const D: usize> {
 }
 
 impl<const D: usize> ServoThread<D> {
-    /// Starts a thread that runs `servo` with `device` in real time.
+    /// Starts a thread that runs `servo` with `device` in real time, at the pace of a device that
+    /// [sets it](Pace::Device).
     ///
     /// # Errors
     ///
@@ -315,7 +326,8 @@ impl<const D: usize> ServoThread<D> {
                 servo.options().rate,
             ),
         };
-        let schedule = Schedule { ticks, pace: Pace::RealTime, rehearses: options.rehearses };
+        let pace = Pace::of(&*device);
+        let schedule = Schedule { ticks, pace, rehearses: options.rehearses };
         let (rows, records) = options.rows.map(queue).unzip();
         let (control, mut end) = handoff(&servo, options.handoff);
         let work = move || {
@@ -326,6 +338,7 @@ impl<const D: usize> ServoThread<D> {
                 .sending(rows.map(RowSink::Queue))
                 .moving(motion.as_deref_mut().map(|motion| -> Motion<'_, D> { motion }))
                 .handing_off(Some(&mut end))
+                .reconnecting(options.reconnection)
                 .run(&mut clock, &schedule);
             Left { servo, device, _end: end, report, priority }
         };

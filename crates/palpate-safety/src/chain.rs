@@ -32,8 +32,11 @@ pub struct PortState<const D: usize> {
     /// A force on the hand that is added to the wanted force but not observed for passivity
     /// [N]: the force of guides and magnets, which is conservative.
     pub free_force: Vector<f64, D>,
-    /// By how much the tick began too late [s]; zero in time.
+    /// By how much the tick began too late [s]; zero in time. A tick without a new reading is as
+    /// good as late.
     pub late: f64,
+    /// The time between the last two positions [s]; `None` for a period and what the tick is late.
+    pub elapsed: Option<f64>,
     /// The part of the force to render in this tick, from which the force
     /// [rises](SafetyOptions::rise_rate) again. Normally 1; 0 after the proxy was placed anew or a
     /// body moved onto it; between 0 and 1 after a body was replaced by a stiffer one.
@@ -46,7 +49,7 @@ impl<const D: usize> PortState<D> {
     pub fn at_rest() -> Self {
         let still = Vector::ZERO;
         let (late, start) = (0.0, 1.0);
-        Self { position: still, velocity: still, free_force: still, late, start }
+        Self { position: still, velocity: still, free_force: still, late, elapsed: None, start }
     }
 }
 
@@ -301,6 +304,14 @@ impl<const D: usize> SafetyChain<D> {
         self.passivity.renew(options);
     }
 
+    /// The duration of a tick [s].
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    #[must_use]
+    pub fn period(&self) -> f64 {
+        self.passivity.options().period
+    }
+
     /// One tick: the force to write [N] for the force `wanted` [N], both in device coordinates.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
@@ -351,14 +362,14 @@ impl<const D: usize> SafetyChain<D> {
         // Stages with a state never see numbers that are not finite; the guard then writes
         // zero.
         let is_sound = finite::is_sound(wanted, state);
-        let PortState { position, velocity, free_force, late, start } = *state;
+        let PortState { position, velocity, free_force, late, elapsed, start } = *state;
         let input = TickInput { is_sound, late, start, cut };
         let risen = self.channel.risen(wanted, free_force, &input);
         let (wanted, free_force) = match risen {
             Some(part) if part < 1.0 => (wanted * part, free_force * part),
             _ => (wanted, free_force),
         };
-        let elapsed = self.passivity.options().period + late.max(0.0);
+        let elapsed = elapsed.unwrap_or(self.period() + late.max(0.0));
         let is_rising = risen.is_some();
         let softness = if is_sound {
             let input = CycleInput::of([wanted, free_force], effort, position, elapsed);

@@ -14,6 +14,7 @@
 #![cfg_attr(test, allow(clippy::float_cmp, reason = "tests compare exact numbers"))]
 
 mod acceptance;
+mod arrivals;
 mod chain;
 mod channel;
 mod continuous;
@@ -41,8 +42,12 @@ mod workspace;
 mod wrench;
 
 pub use acceptance::{Acceptance, Accepted, Rule};
+pub use arrivals::{Arrival, Arrivals};
 pub use chain::{PortState, SafetyChain, SafetyOptions};
-pub use device::{Device, DeviceLost, DeviceProfile, PointState, TurnState, TurningProfile};
+pub use device::{
+    Buttons, Device, DeviceLost, DeviceProfile, GripperProfile, GripperState, PointState,
+    Reading, TurnState, TurningProfile,
+};
 pub use effect::Effect;
 pub use error::{NumberError, Refused, SafetyError};
 pub use impedance::Impedance;

@@ -47,11 +47,11 @@ pub struct ReadingsReport {
 ///
 /// # fn main() -> Result<(), palpate_safety::SafetyError> {
 /// let device = DeviceProfile::unlimited("example").with_max_speed(5.0);
-/// let mut readings = Readings::new(&device, 1000.0)?;
-/// assert!(readings.counts(Vector([0.0, 0.0]), 0.0));
-/// assert!(!readings.counts(Vector([0.05, 0.0]), 0.0)); // 50 m/s
+/// let mut readings = Readings::new(&device)?;
+/// assert!(readings.counts(Vector([0.0, 0.0]), 1e-3));
+/// assert!(!readings.counts(Vector([0.05, 0.0]), 1e-3)); // 50 m/s
 /// assert_eq!(readings.last(), Some(Vector([0.0, 0.0])));
-/// assert!(readings.counts(Vector([0.002, 0.0]), 0.0));
+/// assert!(readings.counts(Vector([0.002, 0.0]), 1e-3));
 /// assert_eq!((readings.report().held, readings.report().farthest), (1, 0.05));
 /// # Ok(())
 /// # }
@@ -61,8 +61,6 @@ pub struct Readings<const D: usize> {
     max_speed: f64,
     max_acceleration: f64,
     slack: f64,
-    /// The duration of a tick [s].
-    period: f64,
     /// The last position that counted.
     last: Option<Counted<D>>,
     report: ReadingsReport,
@@ -79,30 +77,29 @@ struct Counted<const D: usize> {
 }
 
 impl<const D: usize> Readings<D> {
-    /// For the readings of `device` at `rate` [Hz].
+    /// For the readings of `device`.
     ///
     /// # Errors
     ///
-    /// [`SafetyError::Number`] if the largest speed or acceleration is not positive, the encoder
-    /// step negative or not finite, or the rate not positive.
-    pub fn new(device: &DeviceProfile, rate: f64) -> Result<Self, SafetyError> {
+    /// [`SafetyError::Number`] if the largest speed or acceleration is not positive, or the encoder
+    /// step negative or not finite.
+    pub fn new(device: &DeviceProfile) -> Result<Self, SafetyError> {
         let positive = NumberError::check_positive_or_infinite;
         let step = NumberError::check_not_negative("encoder_step", device.encoder_step, "m")?;
         Ok(Self {
             max_speed: positive("max_speed", device.max_speed, "m/s")?,
             max_acceleration: positive("max_acceleration", device.max_acceleration, "m/s²")?,
             slack: STEPS * step,
-            period: 1.0 / NumberError::check_rate(rate)?,
             last: None,
             report: ReadingsReport::default(),
         })
     }
 
-    /// Whether a reading [m] counts, in a tick that is `late` by so much [s]. The first one and
+    /// Whether a reading [m] counts, made `elapsed` after the one before [s]. The first one and
     /// those that are not finite do; after the latter, the next is the first again.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
-    pub fn counts(&mut self, position: Point<D>, late: f64) -> bool {
+    pub fn counts(&mut self, position: Point<D>, elapsed: f64) -> bool {
         if self.max_speed == f64::INFINITY && self.max_acceleration == f64::INFINITY {
             return true;
         }
@@ -115,7 +112,7 @@ impl<const D: usize> Readings<D> {
             self.last = Some(Counted { position, velocity, over, since });
             return true;
         };
-        last.since += self.period + late.max(0.0);
+        last.since += elapsed.max(0.0);
         let time = last.since;
         let way = position - last.position;
         let change = (way - last.velocity * time).norm();
@@ -151,10 +148,12 @@ impl<const D: usize> Readings<D> {
 mod tests {
     use super::*;
 
+    const PERIOD: f64 = 1e-3;
+
     fn readings() -> Readings<2> {
         let device =
             DeviceProfile::unlimited("").with_max_speed(5.0).with_max_acceleration(500.0);
-        Readings::new(&device, 1000.0).unwrap()
+        Readings::new(&device).unwrap()
     }
 
     #[test]
@@ -167,15 +166,16 @@ mod tests {
             let forwards = 249.0 * time * time;
             let back = 249.0 * (1.6e-5 + since * (0.008 - since));
             let x = if since < 0.0 { forwards } else { back };
-            assert!(readings.counts(Vector([x, 0.0]), 0.0), "{tick}");
+            assert!(readings.counts(Vector([x, 0.0]), PERIOD), "{tick}");
         }
     }
 
     #[test]
     fn a_jump_is_held_back_until_a_hand_can_have_made_it() {
         let mut readings = readings();
-        assert!(readings.counts(Vector([0.1, 0.1]), 0.0));
-        let held = (0..100).take_while(|_| !readings.counts(Vector([0.15, 0.1]), 0.0)).count();
+        assert!(readings.counts(Vector([0.1, 0.1]), PERIOD));
+        let held =
+            (0..100).take_while(|_| !readings.counts(Vector([0.15, 0.1]), PERIOD)).count();
         // ½ a t² reaches 50 mm after 14.1 ms, and 5 m/s after 10 ms.
         assert_eq!(held, 14);
         assert_eq!((readings.report().held, readings.last()), (14, Some(Vector([0.15, 0.1]))));
@@ -184,9 +184,9 @@ mod tests {
     #[test]
     fn after_a_gap_the_hand_may_be_farther() {
         let mut readings = readings();
-        assert!(readings.counts(Vector([0.0, 0.0]), 0.0));
-        assert!(readings.counts(Vector([0.05, 0.0]), 0.02));
-        assert!(readings.counts(Vector([f64::NAN, 0.0]), 0.0));
-        assert!(readings.counts(Vector([3.0, 0.0]), 0.0), "found again anywhere");
+        assert!(readings.counts(Vector([0.0, 0.0]), PERIOD));
+        assert!(readings.counts(Vector([0.05, 0.0]), 0.021));
+        assert!(readings.counts(Vector([f64::NAN, 0.0]), PERIOD));
+        assert!(readings.counts(Vector([3.0, 0.0]), PERIOD), "found again anywhere");
     }
 }

@@ -12,7 +12,7 @@ use palpate_field::{Point, Vector};
 
 use crate::error::{NumberError, SafetyError};
 
-/// The longest window, in periods. A longer window would reduce noise at constant speed only.
+/// The longest window, in readings. A longer window would reduce noise at constant speed only.
 const LONGEST: usize = 16;
 
 /// Tolerance on the encoder step, as a part of it: quantised positions may lie exactly one step
@@ -21,17 +21,17 @@ const SLACK: f64 = 1e-6;
 
 /// Velocity over the longest window in which the positions lie on a straight line.
 ///
-/// With positions `x_k` every `T`, an encoder step `Δ` and a window of `n` periods,
+/// With positions `x_k` read at the times `t_k`, an encoder step `Δ` and a window of `n` readings,
 ///
 /// ```text
-/// v = (x_k − x_{k−n}) / (n T)
+/// v = (x_k − x_{k−n}) / (t_k − t_{k−n})
 /// ```
 ///
 /// where `n ≤ 16` is the largest such that, for it and every shorter window, no position in the
 /// window is more than `Δ` from the line through its ends, on any axis. At constant velocity and
 /// with positions wrong by at most `Δ/2` (rounded) or by `0` to `Δ` (cut off), the window is 16
-/// periods and `|v − v_true| ≤ Δ / (16 T)` on each axis: a sixteenth of the error of the plain
-/// difference. At a jump the window is one period, so nothing is delayed.
+/// readings and `|v − v_true| ≤ Δ / (t_k − t_{k−16})` on each axis: at even times a sixteenth of the
+/// error of the plain difference. At a jump the window is one reading, so nothing is delayed.
 ///
 /// Without encoder steps (`Δ = 0`) the estimate is the plain difference.
 ///
@@ -55,6 +55,8 @@ pub struct VelocityEstimator<const D: usize> {
     step: f64,
     /// A ring buffer: from the newest position on, each next one is older.
     positions: [Point<D>; LONGEST],
+    /// For each position the time since the one before it, in periods.
+    waits: [f64; LONGEST],
     newest: usize,
     known: usize,
     window: usize,
@@ -73,13 +75,15 @@ impl<const D: usize> VelocityEstimator<D> {
             step: NumberError::check_not_negative("encoder_step", encoder_step, "m")?
                 * (1.0 + SLACK),
             positions: [Vector::ZERO; LONGEST],
+            waits: [1.0; LONGEST],
             newest: 0,
             known: 0,
             window: 0,
         })
     }
 
-    /// Adds the `position` of the next tick [m] and returns the velocity [m/s].
+    /// Adds the `position` of the next tick [m], a period after the one before, and returns the
+    /// velocity [m/s].
     ///
     /// The velocity is zero at the first position. A position that is not finite clears the
     /// window and gives zero.
@@ -88,21 +92,54 @@ impl<const D: usize> VelocityEstimator<D> {
     /// an axis.
     #[must_use]
     pub fn update(&mut self, position: Point<D>) -> Vector<f64, D> {
-        if !position.is_finite() {
+        self.add(position, 1.0)
+    }
+
+    /// As [`update`](Self::update), with the time `elapsed` since the position before [s]. A time
+    /// that is not positive and finite clears the window too.
+    ///
+    /// Real-time: as [`update`](Self::update).
+    ///
+    /// ```
+    /// use palpate_field::Vector;
+    /// use palpate_safety::VelocityEstimator;
+    ///
+    /// # fn main() -> Result<(), palpate_safety::SafetyError> {
+    /// let mut estimator = VelocityEstimator::new(1000.0, 0.0)?;
+    /// let _ = estimator.update(Vector([0.5, 0.25]));
+    /// // 250 mm in four periods.
+    /// assert_eq!(estimator.update_after(Vector([0.75, 0.25]), 0.004), Vector([62.5, 0.0]));
+    /// # Ok(())
+    /// # }
+    /// ```
+    #[must_use]
+    pub fn update_after(&mut self, position: Point<D>, elapsed: f64) -> Vector<f64, D> {
+        // A rate times its period is not one for every rate.
+        let is_period = elapsed == 1.0 / self.rate;
+        self.add(position, if is_period { 1.0 } else { elapsed * self.rate })
+    }
+
+    /// Adds a position `wait` periods after the one before.
+    #[inline]
+    fn add(&mut self, position: Point<D>, wait: f64) -> Vector<f64, D> {
+        // Written so that a wait of NaN ends here.
+        let is_usable = position.is_finite() && wait > 0.0 && wait <= f64::MAX;
+        if !is_usable {
             self.reset();
             return Vector::ZERO;
         }
         let longest = if self.step > 0.0 { self.known } else { self.known.min(1) };
-        self.window = self.window_to(position, longest);
-        let velocity = match self.way(position, self.window) {
-            Some(way) => way * self.rate,
-            None => Vector::ZERO,
-        };
+        let (window, velocity) = self.fit(position, wait, longest);
+        self.window = window;
         self.newest = (self.newest + LONGEST - 1) % LONGEST;
         if let Some(place) = self.positions.get_mut(self.newest) {
             *place = position;
         }
+        if let Some(place) = self.waits.get_mut(self.newest) {
+            *place = wait;
+        }
         self.known = (self.known + 1).min(LONGEST);
+        let velocity = velocity * self.rate;
         if !velocity.is_finite() {
             self.window = 0;
             return Vector::ZERO;
@@ -110,35 +147,41 @@ impl<const D: usize> VelocityEstimator<D> {
         velocity
     }
 
-    /// The longest window up to `position` in which the positions lie on a line.
+    /// The longest window up to `position`, `wait` periods after the newest, in which the positions
+    /// lie on a line; and the mean displacement a period over that window, zero for a window of
+    /// zero.
     #[inline]
-    fn window_to(&self, position: Point<D>, longest: usize) -> usize {
+    fn fit(&self, position: Point<D>, wait: f64, longest: usize) -> (usize, Vector<f64, D>) {
         // A line from the newest position passes within a step of every position of the window
         // if its displacement per period lies between these bounds.
         let (mut least, mut most) = ([f64::NEG_INFINITY; D], [f64::INFINITY; D]);
+        let (mut fitting, mut age) = (Vector::ZERO, wait);
         for window in 1..=longest {
-            let Some(way) = self.way(position, window) else { return window - 1 };
-            let step = self.step * per_window(window);
+            let place = (self.newest + window - 1) % LONGEST;
+            let (Some(oldest), Some(earlier)) =
+                (self.positions.get(place), self.waits.get(place))
+            else {
+                return (window - 1, fitting);
+            };
+            // Of even times the age is a whole number, without rounding.
+            let per_period = 1.0 / age;
+            let way = (position - *oldest) * per_period;
+            let step = self.step * per_period;
             for ((way, least), most) in way.0.iter().zip(&mut least).zip(&mut most) {
                 // Written so that NaN ends the window.
                 let is_on_line = *least <= *way && *way <= *most;
                 if !is_on_line {
-                    return window - 1;
+                    return (window - 1, fitting);
                 }
                 // Plain comparisons compile to one instruction each; `f64::max` must also treat
                 // NaN.
                 *least = if *least > way - step { *least } else { way - step };
                 *most = if *most < way + step { *most } else { way + step };
             }
+            fitting = way;
+            age += earlier;
         }
-        longest
-    }
-
-    /// The mean displacement per period over `window` periods; `None` for a window of zero.
-    #[inline]
-    fn way(&self, position: Point<D>, window: usize) -> Option<Vector<f64, D>> {
-        let oldest = self.positions.get((self.newest + window.checked_sub(1)?) % LONGEST)?;
-        Some((position - *oldest) * per_window(window))
+        (longest, fitting)
     }
 
     /// Forgets all positions.
@@ -147,17 +190,11 @@ impl<const D: usize> VelocityEstimator<D> {
         self.window = 0;
     }
 
-    /// The number of periods over which the last velocity was taken; 0 without a velocity.
+    /// The number of readings over which the last velocity was taken; 0 without a velocity.
     #[must_use]
     pub fn window(&self) -> usize {
         self.window
     }
-}
-
-/// Converted by way of `u32`, because that conversion is one instruction.
-#[inline]
-fn per_window(window: usize) -> f64 {
-    1.0 / f64::from(window as u32)
 }
 
 #[cfg(test)]
@@ -193,6 +230,51 @@ mod tests {
                     assert!(n == 0 || error <= step * RATE / n as f64 * (1.0 + 1e-9));
                 }
             }
+        }
+    }
+
+    /// With uneven times the bound is that of the window's time.
+    #[test]
+    fn uneven_times_err_by_at_most_a_step_over_the_time_of_the_window() {
+        let step = 2e-5;
+        for velocity in [1e-4, 0.003, 0.0123, 0.3, -0.07] {
+            let mut estimator = VelocityEstimator::new(RATE, step).unwrap();
+            let (mut times, mut time) = (Vec::new(), 0.0);
+            for tick in 0..500_u32 {
+                // From a quarter of a period to four of them, in an order without pattern.
+                let wait =
+                    2.0_f64.powi((tick.wrapping_mul(2_654_435_761) >> 13) as i32 % 5 - 2);
+                time += wait / RATE;
+                times.push(time);
+                let seen = Vector([(velocity * time / step).round() * step, 0.0]);
+                let found = estimator.update_after(seen, wait / RATE);
+                let n = estimator.window();
+                assert_eq!(n, LONGEST.min(tick as usize));
+                let span = time - times.iter().rev().nth(n).unwrap();
+                let error = (found.0[0] - velocity).abs();
+                assert!(n == 0 || error <= step / span * (1.0 + 1e-9), "{tick}: {error}");
+            }
+        }
+    }
+
+    #[test]
+    fn even_times_are_the_same_bits() {
+        let [mut plain, mut timed] =
+            [(); 2].map(|()| VelocityEstimator::new(RATE, 1e-5).unwrap());
+        for tick in 0..2000 {
+            let x = (0.01 * (f64::from(tick) * 0.013).sin() / 1e-5).round() * 1e-5;
+            let position = Vector([x, -0.5 * x]);
+            assert_eq!(plain.update(position), timed.update_after(position, 1.0 / RATE));
+        }
+    }
+
+    #[test]
+    fn a_time_that_is_none_clears_the_window() {
+        for elapsed in [0.0, -1e-3, f64::NAN, f64::INFINITY] {
+            let mut estimator = VelocityEstimator::new(RATE, 1e-5).unwrap();
+            let _ = estimator.update(Vector([0.0, 0.0]));
+            assert_eq!(estimator.update_after(Vector([0.1, 0.0]), elapsed), Vector::ZERO);
+            assert_eq!(estimator.update(Vector([0.2, 0.0])), Vector::ZERO);
         }
     }
 

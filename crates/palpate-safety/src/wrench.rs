@@ -87,8 +87,10 @@ pub struct WrenchState<const D: usize> {
     pub velocity: SpatialVector<D>,
     /// As [`PortState::free_force`](crate::PortState::free_force).
     pub free_force: Vector<f64, D>,
-    /// By how much the tick began too late [s]; zero in time.
+    /// As [`PortState::late`](crate::PortState::late).
     pub late: f64,
+    /// As [`PortState::elapsed`](crate::PortState::elapsed).
+    pub elapsed: Option<f64>,
 }
 
 /// The safety chain of a device with rotation: [`SafetyChain`](crate::SafetyChain) for a force
@@ -264,7 +266,7 @@ impl<const D: usize> WrenchChain<D> {
         cut: f64,
         state: &WrenchState<D>,
     ) -> SpatialVector<D> {
-        let WrenchState { position, velocity, free_force, late } = *state;
+        let WrenchState { position, velocity, free_force, late, elapsed } = *state;
         // Stages with a state never see numbers that are not finite; the guards then write
         // zero.
         let is_sound = [wanted, position, velocity].iter().all(SpatialVector::is_finite)
@@ -279,7 +281,8 @@ impl<const D: usize> WrenchChain<D> {
         let (along, about) = (along.unwrap_or(1.0), about.unwrap_or(1.0));
         let free_force = free_force * along;
         let wanted = SpatialVector { along: wanted.along * along, about: wanted.about * about };
-        let elapsed = self.passivity.options().period + late.max(0.0);
+        let period = self.passivity.options().period;
+        let elapsed = elapsed.unwrap_or(period + late.max(0.0));
         let as_lengths = wanted.turning(1.0 / unit);
         let softness = if is_sound {
             let free = SpatialVector { along: free_force, about: Vector::ZERO };

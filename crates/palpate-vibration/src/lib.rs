@@ -8,7 +8,7 @@
 //!
 //! - *Commands*, for motors: a [`Voice`] lets taps decay; [`one_channel`], [`two_channels`] and
 //!   an [`ActuatorArray`] distribute the [`Tones`]; a [`Publisher`] holds the strongest tone
-//!   until a slow device takes it.
+//!   until a slow device, which [`Vibrates`], takes it.
 //! - *Audio*: a [`Synthesiser`] makes the samples of an actuator, and [`write_wav`] writes those
 //!   of several actuators to a file.
 //!
@@ -32,6 +32,7 @@ mod ringing;
 mod sensation_level;
 mod strength;
 mod threshold;
+mod vibrates;
 mod wav;
 
 pub use actuator::{
@@ -46,4 +47,5 @@ pub use publisher::{Command, Publisher};
 pub use ringing::{Tones, Voice};
 pub use sensation_level::sensation_level;
 pub use threshold::{perceptual_weight, threshold_db};
+pub use vibrates::Vibrates;
 pub use wav::write_wav;

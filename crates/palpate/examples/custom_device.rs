@@ -4,7 +4,7 @@
 //! A device of one's own: a plotter's carriage in the plane, driven by two voltages.
 //! The safety chain keeps every force within the limits that the device states.
 
-use palpate::devices::{DeviceLost, DeviceProfile, PointState};
+use palpate::devices::{DeviceLost, DeviceProfile, PointState, Reading};
 use palpate::prelude::*;
 
 /// A carriage that a motor draws around a circle of 48 mm in two seconds.
@@ -23,14 +23,14 @@ impl Device<2> for Carriage {
         &self.profile
     }
 
-    fn read(&mut self, time: f64, points: &mut [PointState<2>]) -> Result<(), DeviceLost> {
+    fn read(&mut self, time: f64, points: &mut [PointState<2>]) -> Result<Reading, DeviceLost> {
         let (sin, cos) = (std::f64::consts::PI * time).sin_cos();
         let speed = 0.048 * std::f64::consts::PI;
         for point in points {
             point.position = Vector([0.048 * cos, 0.048 * sin]);
             point.velocity = Vector([-speed * sin, speed * cos]);
         }
-        Ok(())
+        Ok(Reading::Fresh { time })
     }
 
     fn write(&mut self, forces: &[Vector<f64, 2>]) -> Result<(), DeviceLost> {

@@ -91,8 +91,7 @@ fn haply() -> Outcome {
         haptics::WorkspaceMap,
     };
     let profile = DeviceProfile::unlimited("my stylus").with_max_force(3.0);
-    let start = PointState::at_rest([0.0, 0.1, 0.0]);
-    let (mut device, mut mailbox) = MailboxDevice::new(profile, &[start])?;
+    let (mut device, mut mailbox) = MailboxDevice::new(profile, 1)?;
     mailbox.set(&[PointState::at_rest([0.0, 0.049, 0.0])])?;
     let _ = WorkspaceMap::new(Pose::translation([0.0, 0.1, 0.0]), 2.0)?;
     let shape = Shape::sphere(0.05)? & Shape::cuboid([0.1, 0.1, 0.1])?;

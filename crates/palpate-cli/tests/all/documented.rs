@@ -12,7 +12,7 @@ type Names = BTreeSet<String>;
 
 /// Keys of failures that no test can bring about, and the reason of a refused priority, which
 /// depends on the machine.
-const OF_FAILURES: [&str; 2] = ["reason", "message"];
+const OF_FAILURES: [&str; 4] = ["reason", "message", "last_loss", "not_closed"];
 
 /// A section of the page, from its heading to the next.
 fn section(heading: &str) -> String {

@@ -64,6 +64,16 @@ pub enum IdentifyError {
         /// The time since the tick before [s].
         late: f64,
     },
+    /// The device tells nothing new.
+    #[error(
+        "{axis}: the device was not measured for {since:.3} s: its readings are stale or not ready"
+    )]
+    NotMeasured {
+        /// The axis that was moved.
+        axis: DeviceAxis,
+        /// The time since the last reading [s].
+        since: f64,
+    },
     /// The handle left the range of the motions.
     #[error(
         "{axis}: the handle is {moved:.3e} {unit} from its start, {limit:.3e} {unit} at most are \

@@ -8,7 +8,7 @@
 use std::collections::VecDeque;
 
 use palpate_field::{Rotation, Vector};
-use palpate_haptics::{Device, DeviceLost, PointState};
+use palpate_haptics::{Device, DeviceLost, PointState, Reading as Measured};
 
 use super::options::{Bounds, IdentifyOptions};
 use super::{DeviceAxis, IdentifyError, IdentifyProgress};
@@ -25,6 +25,9 @@ const LONG_WINDOW: f64 = 0.016;
 /// The longest that a force may be held because a tick is late [s]: the handle moves by some
 /// millimetres meanwhile.
 const LONGEST_HOLD: f64 = 0.02;
+
+/// The longest that a device without a force may not be measured [s].
+const LONGEST_WAIT: f64 = 1.0;
 
 /// A handle that is faster than a stroke accelerates by this factor is stopped.
 const SPEED_RESERVE: f64 = 2.0;
@@ -49,6 +52,8 @@ pub(super) struct Port<'a, const D: usize> {
     pub(super) bounds: Bounds,
     points: Vec<PointState<D>>,
     forces: Vec<Vector<f64, D>>,
+    /// The time of the first tick [s].
+    first_tick: Option<f64>,
     start: Option<PointState<D>>,
     start_turn: Option<Rotation<D>>,
     has_torque: bool,
@@ -75,6 +80,7 @@ impl<'a, const D: usize> Port<'a, D> {
             bounds,
             points: vec![PointState::at_rest(Vector::ZERO); count],
             forces: vec![Vector::ZERO; count],
+            first_tick: None,
             start: None,
             start_turn: None,
             last: Reading { time: f64::NEG_INFINITY, place: 0.0, held: 0.0 },
@@ -107,6 +113,37 @@ impl<'a, const D: usize> Port<'a, D> {
         self.options.rate
     }
 
+    /// Waits for the first tick in which the device was measured again since the time `before` [s],
+    /// while it holds `force`, and gives its time [s].
+    fn wait(&mut self, force: f64, before: f64) -> Result<f64, IdentifyError> {
+        let axis = self.axis();
+        let mut last = before;
+        loop {
+            let time =
+                (self.next_tick)(&self.progress).ok_or(IdentifyError::Interrupted { axis })?;
+            // Written so that NaN is refused.
+            let goes_on = time > last && time < f64::INFINITY;
+            if !goes_on {
+                return Err(IdentifyError::TimeNotIncreasing { axis, before: last, time });
+            }
+            let reading = self.device.read(time, &mut self.points);
+            let reading = reading.map_err(|lost| IdentifyError::Lost { axis, lost })?;
+            if force != 0.0 && time - before > LONGEST_HOLD {
+                return Err(IdentifyError::Late { axis, late: time - before });
+            }
+            if matches!(reading, Measured::Fresh { .. }) {
+                return Ok(time);
+            }
+            // Before the first reading there is no time to count from.
+            let since = before.max(self.first_tick.unwrap_or(time));
+            if time - since > LONGEST_WAIT {
+                return Err(IdentifyError::NotMeasured { axis, since: time - since });
+            }
+            self.first_tick.get_or_insert(time);
+            last = time;
+        }
+    }
+
     /// Holds `force` until the next tick, and reads then. A change that is faster than the
     /// device allows takes several ticks; the reading says what was held.
     ///
@@ -117,19 +154,9 @@ impl<'a, const D: usize> Port<'a, D> {
         let force = self.within_rate(force);
         let lost = |lost| IdentifyError::Lost { axis, lost };
         self.write(force).map_err(lost)?;
-        let time =
-            (self.next_tick)(&self.progress).ok_or(IdentifyError::Interrupted { axis })?;
         let before = self.last.time;
-        // Written so that NaN is refused.
-        let goes_on = time > before && time < f64::INFINITY;
-        if !goes_on {
-            return Err(IdentifyError::TimeNotIncreasing { axis, before, time });
-        }
-        self.device.read(time, &mut self.points).map_err(lost)?;
+        let time = self.wait(force, before)?;
         let turn = if self.has_torque { self.device.read_turn().map_err(lost)? } else { None };
-        if force != 0.0 && time - before > LONGEST_HOLD {
-            return Err(IdentifyError::Late { axis, late: time - before });
-        }
         let point = self.points.first().copied();
         let point = point.filter(|point| point.position.is_finite());
         let turn = turn.map(|turn| turn.orientation);

@@ -8,7 +8,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use palpate_devices::{
     Device, DeviceAxis, DeviceLost, DeviceProfile, EncoderStep, Hand, HandPath, Identified,
     IdentifiedAxis, IdentifyError, IdentifyOptions, Interpolation, PROFILES, PointState,
-    SimulatedDevice, TurnState, profile_named,
+    Reading, SimulatedDevice, TurnState, profile_named,
 };
 use palpate_field::Vector;
 use palpate_testkit::cases;
@@ -108,6 +108,8 @@ struct Watched<const D: usize> {
 enum Fault {
     None,
     Lost,
+    /// Nothing is measured from the 3000th tick.
+    Stale,
     NotANumber,
     Panic,
     /// Readings stay as they are from the beginning.
@@ -136,16 +138,17 @@ impl<const D: usize> Device<D> for Watched<D> {
         self.device.profile()
     }
 
-    fn read(&mut self, time: f64, points: &mut [PointState<D>]) -> Result<(), DeviceLost> {
+    fn read(&mut self, time: f64, points: &mut [PointState<D>]) -> Result<Reading, DeviceLost> {
         self.reads += 1;
         let is_now = self.reads >= 3000;
         let before = points[0];
-        self.device.read(time, points)?;
+        let reading = self.device.read(time, points)?;
         match self.fault {
             Fault::Lost if is_now => {
                 return Err(DeviceLost { reason: "the cable was pulled".into() });
             }
             Fault::NotANumber if is_now => points[0].position.0[0] = f64::NAN,
+            Fault::Stale if is_now => return Ok(Reading::Stale),
             Fault::Panic if is_now => panic!("a driver panics"),
             Fault::Stuck => points[0] = PointState::at_rest(Vector::ZERO),
             Fault::Freezes if is_now => points[0] = before,
@@ -154,7 +157,7 @@ impl<const D: usize> Device<D> for Watched<D> {
         let start = *self.start.get_or_insert(points[0].position);
         let moved = (points[0].position - start).0.into_iter().map(f64::abs);
         self.farthest = moved.fold(self.farthest, f64::max);
-        Ok(())
+        Ok(reading)
     }
 
     fn write(&mut self, forces: &[Vector<f64, D>]) -> Result<(), DeviceLost> {
@@ -358,6 +361,7 @@ fn weight_is_told_and_a_falling_handle_is_refused() {
 fn however_it_ends_the_last_force_is_zero() {
     for (fault, said) in [
         (Fault::Lost, "along x: the device was lost: the cable was pulled"),
+        (Fault::Stale, "along x: the device was not measured for 1.001 s"),
         (Fault::NotANumber, "along x: the reading at 3 s is not a finite number"),
         (Fault::Stuck, "along x: the handle did not move at 3.5999999999999996 N: a hand"),
     ] {
@@ -469,11 +473,11 @@ impl Device<2> for Jointed {
         self.0.profile()
     }
 
-    fn read(&mut self, time: f64, points: &mut [PointState<2>]) -> Result<(), DeviceLost> {
-        self.0.read(time, points)?;
+    fn read(&mut self, time: f64, points: &mut [PointState<2>]) -> Result<Reading, DeviceLost> {
+        let reading = self.0.read(time, points)?;
         let angle = (points[0].position.0[0] / Self::ARM).asin();
         points[0].position.0[0] = Self::ARM * ((angle / Self::STEP).round() * Self::STEP).sin();
-        Ok(())
+        Ok(reading)
     }
 
     fn write(&mut self, forces: &[Vector<f64, 2>]) -> Result<(), DeviceLost> {

@@ -6,6 +6,7 @@
 #![expect(clippy::unwrap_used, reason = "a test that cannot be set up fails")]
 #![expect(clippy::float_cmp, reason = "tests compare exact numbers")]
 
+mod faults;
 mod identify;
 mod integration;
 mod recovery;

@@ -124,6 +124,20 @@ impl<const D: usize> Control<D> {
         Ok(())
     }
 
+    /// Sets the force wanted on the fingers in the gripper [N], which holds until the next one;
+    /// positive opens the jaws. The device's gripper limits it, and without one nothing is written.
+    ///
+    /// # Errors
+    ///
+    /// [`HapticsError::Number`] if the force is not finite.
+    pub fn set_gripper_force(&mut self, force: f64) -> Result<(), HapticsError> {
+        if !force.is_finite() {
+            return Err(NumberError::new("gripper_force", "finite", force, "N").into());
+        }
+        self.edit(|edits| edits.gripper_force = Some(force));
+        Ok(())
+    }
+
     /// Drops replaced bodies that the servo has returned; every edit does so too.
     pub fn collect(&mut self) {
         self.sender.collect(|edits| {
@@ -131,6 +145,7 @@ impl<const D: usize> Control<D> {
             edits.poses.clear();
             edits.max_force = f64::INFINITY;
             edits.max_torque = f64::INFINITY;
+            edits.gripper_force = None;
         });
     }
 

@@ -112,6 +112,9 @@ pub fn handoff<const D: usize>(
         progress: Progress::default(),
         touches: servo.touches().to_vec(),
         tool: servo.held_tool(),
+        buttons: servo.buttons(),
+        gripper: servo.gripper(),
+        gripper_force: servo.gripper_force(),
         reactions: vec![crate::Reaction::NONE; most_bodies],
         events_lost: 0,
     };
@@ -152,12 +155,15 @@ struct Edits<const D: usize> {
     max_force: f64,
     /// The largest torque on a tool's device [N·m].
     max_torque: f64,
+    /// The force wanted of the gripper [N]; `None` to leave it as it is.
+    gripper_force: Option<f64>,
 }
 
 impl<const D: usize> Default for Edits<D> {
     fn default() -> Self {
         let none = f64::INFINITY;
-        Self { bodies: None, poses: Vec::new(), max_force: none, max_torque: none }
+        let (bodies, poses, gripper_force) = (None, Vec::new(), None);
+        Self { bodies, poses, max_force: none, max_torque: none, gripper_force }
     }
 }
 

@@ -60,6 +60,9 @@ impl<const D: usize> ServoEnd<D> {
         }
         servo.limit_force(edits.max_force);
         servo.limit_torque(edits.max_torque);
+        if let Some(force) = edits.gripper_force {
+            servo.set_gripper_force(force);
+        }
         self.receiver.give_back(parcel);
     }
 
@@ -84,6 +87,9 @@ impl<const D: usize> ServoEnd<D> {
             snapshot.progress = *progress;
             snapshot.events_lost = events_lost;
             snapshot.tool = servo.held_tool();
+            snapshot.buttons = servo.buttons();
+            snapshot.gripper = servo.gripper();
+            snapshot.gripper_force = servo.gripper_force();
             refill(&mut snapshot.touches, servo.touches());
             refill(&mut snapshot.reactions, servo.reactions());
         });

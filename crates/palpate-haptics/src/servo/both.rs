@@ -9,7 +9,7 @@ use palpate_field::Pose;
 
 use super::{Servo, UnprotectedServo};
 use crate::contact_point::Touch;
-use palpate_safety::{PointState, TurnState};
+use palpate_safety::{Buttons, GripperState, PointState, Reading, TurnState};
 
 macro_rules! methods_of_both {
     ($servo:ident) => {
@@ -44,6 +44,48 @@ macro_rules! methods_of_both {
             /// Real-time: allocates nothing, takes no lock, cannot panic.
             pub fn set_late(&mut self, late: f64) {
                 self.renderer.set_late(late);
+            }
+
+            /// Sets what the device gave for the next tick alone. Without it the states of a tick
+            /// were measured a period, and what the tick is [late](Self::set_late), after those
+            /// before.
+            ///
+            /// The time between two fresh readings gives velocities, and the energies of the
+            /// passivity observer. In a tick with a stale reading the states of
+            /// [`step`](Self::step) are not looked at: the last ones hold on, and the force with
+            /// them, until the watchdog of the safety chain has had enough. A device that is not
+            /// ready has no state, as if each point were NaN.
+            ///
+            /// Real-time: allocates nothing, takes no lock, cannot panic.
+            pub fn set_reading(&mut self, reading: Reading) {
+                self.renderer.set_reading(reading);
+            }
+
+            /// Sets the buttons that are held down from the next tick on; each change is an
+            /// [event](crate::EventKind::ButtonDown).
+            ///
+            /// Real-time: allocates nothing, takes no lock, cannot panic.
+            pub fn set_buttons(&mut self, buttons: Buttons) {
+                self.renderer.set_buttons(buttons);
+            }
+
+            /// Sets the gripper from the next tick on; `None`, the initial value, is for a device
+            /// without one.
+            ///
+            /// Real-time: allocates nothing, takes no lock, cannot panic.
+            pub fn set_gripper(&mut self, state: Option<GripperState>) {
+                self.renderer.set_gripper(state);
+            }
+
+            /// Sets the force wanted on the fingers in the gripper [N] from the next tick on;
+            /// positive opens the jaws. [`gripper_force`](crate::Renderer::gripper_force) is what to write
+            /// of it, after the limits of the [gripper's
+            /// profile](palpate_safety::GripperProfile): zero for a device without one, and for an
+            /// [`UnprotectedServo`](crate::UnprotectedServo).
+            ///
+            /// Real-time: allocates nothing, takes no lock, cannot panic.
+            pub fn set_gripper_force(&mut self, wanted: f64) {
+                self.renderer.set_gripper_force(wanted);
             }
 
             /// Stops all forces and torques from the next tick on, or releases them: they then

@@ -68,7 +68,8 @@ pub struct Servo<const D: usize> {
 
 impl<const D: usize> Servo<D> {
     /// A servo that renders `bodies` to every contact point of `device`, protected by
-    /// [`Protection::new`], with [`ServoOptions::of_device`]: 1 kHz, a ball of 2 mm, forces up to
+    /// [`Protection::new`], with [`ServoOptions::of_device`]: 1 kHz, or
+    /// the rate of a device that measures more seldom or sets the pace; a ball of 2 mm; forces up to
     /// the device's largest.
     ///
     /// A plain shape becomes one body with the default surface. For other settings, make an
@@ -101,7 +102,7 @@ impl<const D: usize> Servo<D> {
         bodies: impl TryInto<Bodies<D>, Error: Into<HapticsError>>,
         device: &(impl Device<D> + ?Sized),
     ) -> Result<Self, HapticsError> {
-        let options = ServoOptions::of_device(device.profile());
+        let options = ServoOptions::of_device(device.profile()).at_rate_of(device);
         UnprotectedServo::new(bodies, device.points(), options)?.protected_for(device.profile())
     }
 
@@ -117,7 +118,7 @@ impl<const D: usize> Servo<D> {
         tool: Tool<D>,
         device: &(impl Device<D> + ?Sized),
     ) -> Result<Self, HapticsError> {
-        let options = ServoOptions::of_device(device.profile());
+        let options = ServoOptions::of_device(device.profile()).at_rate_of(device);
         UnprotectedServo::with_tool(bodies, tool, options)?.protected_for(device.profile())
     }
 
@@ -208,14 +209,24 @@ impl<const D: usize> Servo<D> {
         if self.renderer.adopt(bodies) { Ok(()) } else { Err(HapticsError::OtherServo) }
     }
 
-    /// Refuses a device with tighter limits than the one that the servo was made for, or with
-    /// another number of contact points. A loop calls this before its first tick.
+    /// Refuses a device with tighter limits than the one that the servo was made for, with another
+    /// number of contact points, or that measures more seldom than the servo ticks. A loop calls this before its first tick.
     ///
     /// # Errors
     ///
-    /// [`SafetyError::OtherDevice`](crate::SafetyError), [`HapticsError::ContactPoints`].
+    /// [`SafetyError::OtherDevice`](crate::SafetyError), [`HapticsError::ContactPoints`],
+    /// [`HapticsError::Rate`].
     pub fn check_device(&self, device: &(impl Device<D> + ?Sized)) -> Result<(), HapticsError> {
         self.protection.profile.check_bears(device.profile())?;
+        if let Some(of_device) = device.rate() {
+            let servo = self.options().rate;
+            // At a faster pace, limits of change in a tick would be more in a second. Written so
+            // that NaN is refused.
+            let fits = servo <= of_device && !(device.paces() && servo < of_device);
+            if !fits {
+                return Err(HapticsError::Rate { servo, device: of_device });
+            }
+        }
         let (servo, device) = (self.touches().len(), device.points());
         if servo == device {
             Ok(())

@@ -16,14 +16,18 @@ use crate::contact_point::{ContactPoint, MOST_EVENTS, Setting, Tick, Touch};
 use crate::coupled_tool::{CoupledTool, Sides};
 use crate::energy::Energy;
 use crate::error::HapticsError;
-use crate::event::{Event, Reaction};
+use crate::event::{Event, EventKind, Reaction};
+use crate::gripper::GripperPort;
 use crate::guide::Guide;
 use crate::nearby::Nearby;
 use crate::options::ServoOptions;
 use crate::ports::{Port, TurningPort};
 use crate::proxy::Probe;
 use crate::tool::{Coupling, HeldTool, Tool};
-use palpate_safety::{NumberError, PointState, SafetyReport, TurnState, WorkspaceMap};
+use palpate_safety::{
+    Arrival, Arrivals, Buttons, GripperState, NumberError, PointState, Reading, SafetyReport,
+    TurnState, WorkspaceMap,
+};
 
 /// Fewer bodies than this all count as near: selecting would cost more than it saves.
 const FEW: usize = 5;
@@ -42,6 +46,11 @@ pub struct Renderer<const D: usize> {
     contacts: Contacts<D>,
     rendered: Rendered<D>,
     setting: Setting<D>,
+    arrivals: Arrivals,
+    buttons: Buttons,
+    /// The buttons that were down in the tick before.
+    buttons_before: Buttons,
+    gripper: GripperPort,
     is_stopped: bool,
     /// Ticks done.
     tick: u64,
@@ -74,7 +83,7 @@ impl<const D: usize> Contacts<D> {
         Self {
             points: vec![ContactPoint::new(probe); points],
             touches: vec![Touch::NONE; points],
-            events: Vec::with_capacity(MOST_EVENTS * points),
+            events: Vec::with_capacity(MOST_EVENTS * points + usize::from(Buttons::MOST)),
             forces: vec![Vector::ZERO; points],
         }
     }
@@ -100,9 +109,13 @@ impl<const D: usize> Renderer<D> {
             setting: Setting {
                 options,
                 map: WorkspaceMap::default(),
-                late: 0.0,
+                arrival: Arrival { late: 0.0, elapsed: None, is_ready: false },
                 rise_step: 1.0 / (rate * rise_time),
             },
+            arrivals: Arrivals::new(rate)?,
+            buttons: Buttons::NONE,
+            buttons_before: Buttons::NONE,
+            gripper: GripperPort::default(),
             is_stopped: false,
             tick: 0,
         })
@@ -217,6 +230,31 @@ impl<const D: usize> Renderer<D> {
         self.bodies().reactions()
     }
 
+    /// The buttons that were held down in the last tick.
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    #[must_use]
+    pub fn buttons(&self) -> Buttons {
+        self.buttons
+    }
+
+    /// The gripper in the last tick; `None` for a device without one.
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    #[must_use]
+    pub fn gripper(&self) -> Option<GripperState> {
+        self.gripper.state
+    }
+
+    /// The force on the fingers in the gripper in the last tick, to be written to the device [N];
+    /// positive opens the jaws.
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    #[must_use]
+    pub fn gripper_force(&self) -> f64 {
+        self.gripper.force
+    }
+
     /// Whether forces and torques are stopped.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
@@ -295,12 +333,35 @@ impl<const D: usize> Renderer<D> {
     }
 
     pub(crate) fn set_late(&mut self, late: f64) {
-        self.setting.late = late;
+        self.arrivals.set_late(late);
+    }
+
+    pub(crate) fn set_reading(&mut self, reading: Reading) {
+        self.arrivals.set_reading(reading);
+    }
+
+    pub(crate) fn set_buttons(&mut self, buttons: Buttons) {
+        self.buttons = buttons;
+    }
+
+    pub(crate) fn set_gripper(&mut self, state: Option<GripperState>) {
+        self.gripper.state = state;
+    }
+
+    pub(crate) fn set_gripper_force(&mut self, wanted: f64) {
+        self.gripper.wanted = wanted;
+    }
+
+    /// Sets the safety chain of the gripper's force.
+    pub(super) fn set_gripper_port(&mut self, port: GripperPort) {
+        self.gripper = port;
+        self.gripper.stop(self.is_stopped);
     }
 
     pub(crate) fn stop(&mut self, is_stopped: bool) {
         self.is_stopped = is_stopped;
         self.ports().for_each(|port| port.stop(is_stopped));
+        self.gripper.stop(is_stopped);
         if let Some(chain) = self.coupled_tool_mut().and_then(CoupledTool::chain) {
             if is_stopped { chain.stop() } else { chain.release() }
         }
@@ -361,17 +422,44 @@ impl<const D: usize> Renderer<D> {
     }
 
     pub(crate) fn step(&mut self, states: &[PointState<D>]) -> &[Touch<D>] {
+        let arrival = self.arrivals.arrive();
+        self.setting.arrival = arrival;
+        // A point without a state touches nothing.
+        let states = if arrival.is_ready { states } else { &[] };
         if matches!(self.rendered, Rendered::Tool(_)) {
             self.render_tool(states);
         } else {
             self.render_points(states);
             self.accepted.bodies.settle();
         }
+        self.gripper.tick(arrival);
+        self.tell_buttons();
         self.tick += 1;
         if self.is_stopped {
             self.withhold();
         }
         &self.contacts.touches
+    }
+
+    /// Adds an event for each button that was pressed or released.
+    fn tell_buttons(&mut self) {
+        let before = std::mem::replace(&mut self.buttons_before, self.buttons);
+        let Self { contacts: Contacts { events, .. }, tick, buttons, .. } = self;
+        let changed = buttons.changed(before);
+        if changed == Buttons::NONE {
+            return;
+        }
+        for button in changed.iter() {
+            let kind = if buttons.is_down(button) {
+                EventKind::ButtonDown { button }
+            } else {
+                EventKind::ButtonUp { button }
+            };
+            // The capacity set aside at the start holds every event that a tick can produce.
+            if events.len() < events.capacity() {
+                events.push(Event { tick: *tick, point: 0, body: 0, kind });
+            }
+        }
     }
 
     /// Sets all forces to zero; after the release, forces rise from zero.

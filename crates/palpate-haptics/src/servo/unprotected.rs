@@ -199,6 +199,7 @@ impl<const D: usize> UnprotectedServo<D> {
         } else {
             renderer.limit_torque(0.0);
         }
+        renderer.set_gripper_port(protection.gripper(rate)?);
         renderer.exchange(&mut bodies);
         let guides = renderer.guides(0).to_vec();
         let mut servo = Servo { renderer, protection, accepted_guides: Vec::new() };

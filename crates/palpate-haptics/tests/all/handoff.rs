@@ -11,7 +11,7 @@ use crate::common::{ball, body, half_space, without_limits};
 use palpate_field::{CustomField, Point, Pose, Promise, Shape, Vector};
 use palpate_haptics::{
     Acceptance, Bodies, Body, Device, DeviceLost, DeviceProfile, EventKind, HandoffOptions,
-    HapticsError, PointState, Probe, Protection, Servo, ServoOptions, Surface,
+    HapticsError, PointState, Probe, Protection, Reading, Servo, ServoOptions, Surface,
     UnprotectedServo, handoff,
 };
 use palpate_loop::{
@@ -56,14 +56,14 @@ impl Device<2> for Hand {
     fn profile(&self) -> &DeviceProfile {
         &self.profile
     }
-    fn read(&mut self, time: f64, points: &mut [PointState<2>]) -> Result<(), DeviceLost> {
+    fn read(&mut self, time: f64, points: &mut [PointState<2>]) -> Result<Reading, DeviceLost> {
         if time >= self.until {
             return Err(DeviceLost { reason: "unplugged".to_owned() });
         }
         for (point, at) in points.iter_mut().zip(&*self.at.lock().unwrap()) {
             *point = PointState::at_rest(*at);
         }
-        Ok(())
+        Ok(Reading::Fresh { time })
     }
     fn write(&mut self, forces: &[Vector<f64, 2>]) -> Result<(), DeviceLost> {
         self.written.lock().unwrap().push(forces.to_vec());

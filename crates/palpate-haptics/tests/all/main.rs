@@ -14,6 +14,7 @@ mod continuity;
 mod corners;
 mod creases;
 mod degenerate;
+mod devices;
 mod effects;
 mod energy;
 mod forces;

@@ -11,7 +11,7 @@ use palpate_field::kernel::HalfSpace;
 use palpate_field::{Point, Shape, Vector};
 use palpate_haptics::{
     Bodies, Body, Device, DeviceLost, DeviceProfile, HandoffOptions, HapticsError, Magnet,
-    Material, PointState, Protection, SafetyError, Servo, ServoOptions, Surface,
+    Material, PointState, Protection, Reading, SafetyError, Servo, ServoOptions, Surface,
     UnprotectedServo, handoff,
 };
 use palpate_loop::{Pace, RunOptions, ServoThread, ThreadOptions, VirtualClock, run};
@@ -71,9 +71,9 @@ impl Device<2> for Fragile {
     fn profile(&self) -> &DeviceProfile {
         &self.profile
     }
-    fn read(&mut self, time: f64, points: &mut [PointState<2>]) -> Result<(), DeviceLost> {
+    fn read(&mut self, time: f64, points: &mut [PointState<2>]) -> Result<Reading, DeviceLost> {
         points[0] = PointState::at_rest(Self::place((time * RATE).round() as u32));
-        Ok(())
+        Ok(Reading::Fresh { time })
     }
     fn write(&mut self, forces: &[Vector<f64, 2>]) -> Result<(), DeviceLost> {
         self.written.lock().unwrap().push(forces[0]);

@@ -9,8 +9,9 @@ use assert_no_alloc::assert_no_alloc;
 use palpate_devices::Tour;
 use palpate_field::{Pose, Rotation, Shape, Vector};
 use palpate_haptics::{
-    Bodies, Body, DeviceProfile, HandoffOptions, Material, PointState, Progress, Protection,
-    ServoOptions, Shell, Surface, Tool, ToolOptions, ToolState, UnprotectedServo, handoff,
+    Bodies, Body, Buttons, DeviceProfile, EventKind, HandoffOptions, Material, PointState,
+    Progress, Protection, Reading, ServoOptions, Shell, Surface, Tool, ToolOptions, ToolState,
+    UnprotectedServo, handoff,
 };
 
 #[test]
@@ -169,10 +170,16 @@ fn a_step_with_everything_at_once_allocates_and_frees_nothing() {
     let mut servo = protected(servo::<3>(20, POINTS, 1.0));
     let mut states = [PointState::at_rest(Vector::ZERO); POINTS];
     let mut next = servo.accept(bodies::<3>(20, 1.0)).unwrap();
-    let (mut contacts, mut events) = (0, 0);
+    let (mut contacts, mut events, mut presses) = (0, 0, 0);
     for tick in 0..3000 {
         assert_no_alloc(|| {
             servo.set_late(if tick % 97 == 0 { 0.002 } else { 0.0 });
+            servo.set_reading(match tick % 31 {
+                7 => Reading::Stale,
+                9 => Reading::NotReady,
+                _ => Reading::Fresh { time: 1e-3 * f64::from(tick) },
+            });
+            servo.set_buttons(Buttons::from_bits(if tick % 5 == 0 { u32::MAX } else { 0 }));
             if tick % 500 == 250 {
                 servo.stop(tick % 1000 == 250);
             }
@@ -183,7 +190,14 @@ fn a_step_with_everything_at_once_allocates_and_frees_nothing() {
             }
         });
         contacts += servo.touches().iter().filter(|touch| touch.contact).count();
-        events += servo.events().len();
+        for event in servo.events() {
+            match event.kind {
+                EventKind::ButtonDown { .. } => presses += 1,
+                EventKind::ButtonUp { .. } => {}
+                _ => events += 1,
+            }
+        }
     }
     assert!(contacts > 1000 && events > 50, "{contacts} contacts, {events} events");
+    assert_eq!(presses, 600 * u32::from(Buttons::MOST));
 }

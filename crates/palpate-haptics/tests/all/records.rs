@@ -10,7 +10,7 @@ use std::time::Duration;
 use crate::common::ball;
 use palpate_devices::{HandPath, Interpolation, RecordedDevice};
 use palpate_field::{Point, Vector};
-use palpate_haptics::{Device, DeviceLost, DeviceProfile, PointState, Servo};
+use palpate_haptics::{Device, DeviceLost, DeviceProfile, PointState, Reading, Servo};
 use palpate_loop::{
     Ending, Pace, Recorder, RunOptions, ServoThread, ThreadOptions, TraceRow, VirtualClock,
     run, run_on,
@@ -85,7 +85,7 @@ impl Device<3> for Unplugged {
     fn profile(&self) -> &DeviceProfile {
         self.0.profile()
     }
-    fn read(&mut self, time: f64, points: &mut [PointState<3>]) -> Result<(), DeviceLost> {
+    fn read(&mut self, time: f64, points: &mut [PointState<3>]) -> Result<Reading, DeviceLost> {
         if time >= 0.25 {
             return Err(DeviceLost { reason: "unplugged".to_owned() });
         }

@@ -14,7 +14,7 @@ use palpate_haptics::{
     Bodies, Body, Device, DeviceLost, DeviceProfile, HapticsError, Material, PointState, Probe,
     Protection, Servo, ServoOptions, Surface, UnprotectedServo,
 };
-use palpate_haptics::{Impact, Layer, PopThrough};
+use palpate_haptics::{Impact, Layer, PopThrough, Reading};
 use palpate_loop::{Clock, Ending, Pace, Recorder, RunOptions, VirtualClock, run, run_on};
 
 /// A clock on which looking costs a microsecond and waiting nothing more.
@@ -299,12 +299,12 @@ impl Device<2> for Watched {
     fn profile(&self) -> &DeviceProfile {
         &self.profile
     }
-    fn read(&mut self, time: f64, points: &mut [PointState<2>]) -> Result<(), DeviceLost> {
+    fn read(&mut self, time: f64, points: &mut [PointState<2>]) -> Result<Reading, DeviceLost> {
         if time >= 2.0 {
             return Err(DeviceLost { reason: "unplugged".to_owned() });
         }
         points[0] = PointState::at_rest(Vector([0.0, 0.5 - time]));
-        Ok(())
+        Ok(Reading::Fresh { time })
     }
     fn write(&mut self, forces: &[Vector<f64, 2>]) -> Result<(), DeviceLost> {
         self.written = forces.first().copied();
@@ -333,7 +333,7 @@ impl Device<2> for Stuck {
     fn profile(&self) -> &DeviceProfile {
         self.0.profile()
     }
-    fn read(&mut self, time: f64, points: &mut [PointState<2>]) -> Result<(), DeviceLost> {
+    fn read(&mut self, time: f64, points: &mut [PointState<2>]) -> Result<Reading, DeviceLost> {
         self.0.read(time, points)
     }
     fn write(&mut self, forces: &[Vector<f64, 2>]) -> Result<(), DeviceLost> {
@@ -388,7 +388,7 @@ impl Device<2> for Leaving<'_> {
     fn profile(&self) -> &DeviceProfile {
         self.device.profile()
     }
-    fn read(&mut self, time: f64, points: &mut [PointState<2>]) -> Result<(), DeviceLost> {
+    fn read(&mut self, time: f64, points: &mut [PointState<2>]) -> Result<Reading, DeviceLost> {
         self.device.read(time, points)
     }
     fn write(&mut self, forces: &[Vector<f64, 2>]) -> Result<(), DeviceLost> {

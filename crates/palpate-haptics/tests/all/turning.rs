@@ -13,8 +13,8 @@ use palpate_devices::{HandPath, Interpolation, RecordedDevice};
 use palpate_field::{Pose, Rotation, Vector};
 use palpate_haptics::{
     Acceptance, Accepted, Bodies, Device, DeviceLost, DeviceProfile, HapticsError, Material,
-    PointState, Protection, Rule, SafetyError, Servo, ServoOptions, Shell, Surface, Tool,
-    ToolOptions, TurnState, TurningProfile, UnprotectedServo, WorkspaceMap,
+    PointState, Protection, Reading, Rule, SafetyError, Servo, ServoOptions, Shell, Surface,
+    Tool, ToolOptions, TurnState, TurningProfile, UnprotectedServo, WorkspaceMap,
 };
 use palpate_loop::{
     Ending, Pace, Recorder, RunOptions, ServoThread, ThreadOptions, VirtualClock, run,
@@ -408,7 +408,7 @@ impl Device<3> for Fragile {
         self.inner.profile()
     }
 
-    fn read(&mut self, time: f64, points: &mut [PointState<3>]) -> Result<(), DeviceLost> {
+    fn read(&mut self, time: f64, points: &mut [PointState<3>]) -> Result<Reading, DeviceLost> {
         self.inner.read(time, points)
     }
 
@@ -476,7 +476,7 @@ impl Device<3> for Shown {
         self.0.profile()
     }
 
-    fn read(&mut self, time: f64, points: &mut [PointState<3>]) -> Result<(), DeviceLost> {
+    fn read(&mut self, time: f64, points: &mut [PointState<3>]) -> Result<Reading, DeviceLost> {
         self.0.read(time, points)
     }
 

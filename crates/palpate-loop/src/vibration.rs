@@ -1,0 +1,196 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! The touches of a running servo as commands to a device that vibrates.
+
+#![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+use palpate_haptics::{HapticsError, Material, Servo, Touch};
+use palpate_vibration::{
+    Command, Cue, Mapping, Publisher, Tap, Tone, Vibrates, Voice, one_channel,
+};
+use std::panic::{AssertUnwindSafe, catch_unwind};
+
+/// How often commands are sent unless asked otherwise [Hz]: what wireless gloves and vests take.
+const COMMAND_RATE: f64 = 50.0;
+
+/// Plays the touches of each contact point on an actuator of a device.
+///
+/// # Examples
+///
+/// A finger that taps on wood is felt as a tap, then as a pressure:
+///
+/// ```
+/// use palpate_devices::{Glove, HandPath, Interpolation, VibrationRecorder};
+/// use palpate_field::Shape;
+/// use palpate_haptics::{Bodies, Body, Material, Servo};
+/// use palpate_loop::{Pace, RunOptions, Vibration, run};
+/// use palpate_vibration::{Mapping, MappingOptions};
+///
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let ends = vec![[0.0, 0.03].into(), [0.0, -0.001].into()];
+/// let mut glove = Glove::new(vec![HandPath::new(vec![0.0, 0.5], ends, Interpolation::Smooth)?])?;
+/// let wood = Material::preset("wood")?;
+/// let table = Body::new(Shape::half_space([0.0, 1.0], 0.0)?, (&wood).try_into()?)?;
+/// let mut servo = Servo::for_device(Bodies::new(vec![table])?, &glove)?;
+///
+/// let mut vest = VibrationRecorder::new(1);
+/// let mapping = Mapping::new(MappingOptions::default())?;
+/// let vibration = Vibration::new(mapping, &mut vest).with_materials(&[wood]);
+/// let options = RunOptions::new(1.0).with_pace(Pace::AsFastAsPossible);
+/// let report = run(&mut servo, &mut glove, options.with_vibration(vibration))?;
+/// assert_eq!(report.vibration.map(|played| played.commands), Some(50));
+/// let amplitudes = vest.played().map(|commands| commands[0].tone.amplitude);
+/// assert!(amplitudes.clone().next() == Some(0.0) && amplitudes.fold(0.0, f64::max) > 0.1);
+/// # Ok(())
+/// # }
+/// ```
+pub struct Vibration<'a> {
+    mapping: Mapping,
+    command_rate: f64,
+    /// For each body the wavelength of its texture [m], and the ringing of a tap.
+    materials: Vec<(Option<f64>, Option<Tap>)>,
+    device: &'a mut (dyn Vibrates + Send),
+}
+
+impl<'a> Vibration<'a> {
+    /// Plays touches by `mapping` on `device`, which has an actuator for each contact point; 50
+    /// times a second, on smooth and mute bodies.
+    #[must_use]
+    pub fn new(mapping: Mapping, device: &'a mut (dyn Vibrates + Send)) -> Self {
+        Self { mapping, command_rate: COMMAND_RATE, materials: Vec::new(), device }
+    }
+
+    /// The same with commands sent so often [Hz], at most as often as the servo ticks.
+    #[must_use]
+    pub fn with_command_rate(self, command_rate: f64) -> Self {
+        Self { command_rate, ..self }
+    }
+
+    /// The same with the textures and taps of bodies of these materials, in the order of bodies.
+    #[must_use]
+    pub fn with_materials(mut self, materials: &[Material]) -> Self {
+        let felt = |material: &Material| {
+            let texture = material.texture.as_ref();
+            (texture.map(|texture| texture.wavelength), material.impact.as_ref().map(Tap::from))
+        };
+        self.materials = materials.iter().map(felt).collect();
+        self
+    }
+
+    /// Begins to play the touches of `servo`.
+    pub(crate) fn start<'b, const D: usize>(
+        self,
+        servo: &Servo<D>,
+    ) -> Result<Player<'b>, HapticsError>
+    where
+        'a: 'b,
+    {
+        let (points, rate) = (servo.touches().len(), servo.options().rate);
+        let channels = self.device.channels();
+        if channels != points {
+            return Err(HapticsError::ContactPoints { servo: points, device: channels });
+        }
+        Ok(Player {
+            voices: vec![Voice::new(&self.mapping, rate)?; points],
+            publisher: Publisher::new(points, rate, self.command_rate)?,
+            tones: vec![Tone::default(); points],
+            touched: vec![false; points],
+            silence: vec![Command::default(); points],
+            // Field by field, which alone shortens the lifetime of the device.
+            vibration: Vibration {
+                mapping: self.mapping,
+                command_rate: self.command_rate,
+                materials: self.materials,
+                device: self.device,
+            },
+            report: VibrationReport::default(),
+        })
+    }
+}
+
+impl std::fmt::Debug for Vibration<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Vibration")
+            .field("mapping", &self.mapping)
+            .field("command_rate", &self.command_rate)
+            .finish_non_exhaustive()
+    }
+}
+
+/// What a run played on a device that vibrates.
+#[derive(Clone, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[non_exhaustive]
+pub struct VibrationReport {
+    /// How often commands were sent.
+    pub commands: u64,
+    /// The strongest amplitude, as a part of the actuators' largest.
+    pub strongest: f64,
+    /// Why the device plays no more; `None` if it does.
+    #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Option::is_none"))]
+    pub lost: Option<String>,
+}
+
+/// Plays the touches of a servo that runs.
+#[derive(Debug)]
+pub(crate) struct Player<'a> {
+    vibration: Vibration<'a>,
+    voices: Vec<Voice>,
+    publisher: Publisher,
+    tones: Vec<Tone>,
+    /// Whether each contact point was in contact in the tick before.
+    touched: Vec<bool>,
+    silence: Vec<Command>,
+    report: VibrationReport,
+}
+
+impl Player<'_> {
+    /// Plays a tick.
+    ///
+    /// Real-time: allocates nothing until the device is lost, takes no lock, cannot panic unless
+    /// the device does.
+    pub(crate) fn tick<const D: usize>(&mut self, servo: &Servo<D>) {
+        let Self { vibration, voices, publisher, tones, touched, report, .. } = self;
+        if report.lost.is_some() {
+            return;
+        }
+        let points = servo.touches().iter().zip(voices).zip(tones.iter_mut()).zip(touched);
+        for (((touch, voice), tone), touched) in points {
+            let was_touched = std::mem::replace(touched, touch.contact);
+            let began = touch.contact && !was_touched;
+            let cue = vibration.cue(touch, began);
+            *tone = one_channel(&voice.step(&vibration.mapping.feel(&cue)));
+        }
+        let Some(commands) = publisher.mix(tones) else { return };
+        report.commands += 1;
+        let amplitudes = commands.iter().map(|command| command.tone.amplitude);
+        report.strongest = amplitudes.fold(report.strongest, f64::max);
+        report.lost = vibration.device.play(commands).err().map(|lost| lost.reason);
+    }
+
+    /// Silences the device, and returns what was played.
+    pub(crate) fn finish(mut self) -> VibrationReport {
+        if self.report.lost.is_none() {
+            let silenced = AssertUnwindSafe(|| self.vibration.device.play(&self.silence));
+            self.report.lost = match catch_unwind(silenced) {
+                Ok(played) => played.err().map(|lost| lost.reason),
+                Err(_) => Some("it panicked".to_owned()),
+            };
+        }
+        self.report
+    }
+}
+
+impl Vibration<'_> {
+    /// The cue of a touch, on the material of its body.
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    fn cue<const D: usize>(&self, touch: &Touch<D>, began: bool) -> Cue {
+        let cue = Cue::of_touch(touch, began);
+        match self.materials.get(touch.body as usize).filter(|_| touch.contact) {
+            Some(&(wavelength, impact)) => Cue { wavelength, impact, ..cue },
+            None => cue,
+        }
+    }
+}
