@@ -23,7 +23,7 @@ const COMMAND_RATE: f64 = 50.0;
 /// ```
 /// use palpate_devices::{Glove, HandPath, Interpolation, VibrationRecorder};
 /// use palpate_field::Shape;
-/// use palpate_haptics::{Bodies, Body, Material, Servo};
+/// use palpate_haptics::{Bodies, Body, Material, Servo, Surface};
 /// use palpate_loop::{Pace, RunOptions, Vibration, run};
 /// use palpate_vibration::{Mapping, MappingOptions};
 ///
@@ -31,7 +31,7 @@ const COMMAND_RATE: f64 = 50.0;
 /// let ends = vec![[0.0, 0.03].into(), [0.0, -0.001].into()];
 /// let mut glove = Glove::new(vec![HandPath::new(vec![0.0, 0.5], ends, Interpolation::Smooth)?])?;
 /// let wood = Material::preset("wood")?;
-/// let table = Body::new(Shape::half_space([0.0, 1.0], 0.0)?, (&wood).try_into()?)?;
+/// let table = Body::new(Shape::half_space([0.0, 1.0], 0.0)?, Surface::new(&wood)?)?;
 /// let mut servo = Servo::for_device(Bodies::new(vec![table])?, &glove)?;
 ///
 /// let mut vest = VibrationRecorder::new(1);

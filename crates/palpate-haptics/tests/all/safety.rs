@@ -263,14 +263,14 @@ fn a_long_rub_does_not_pay_for_an_oscillation() {
         let _ = chain.step(Vector([-1.0, 0.0]), &at([1e-3 * f64::from(tick), 0.0]));
     }
     // Along the way, the same force gives out what its spring, the reserve and the damping of
-    // the device, 0.5 N·s/m at 1 m/s over 1 m, allow.
+    // the device, 0.5 N·s/m and a hundredth at 1 m/s over 1 m, allow.
     let (mut x, mut given) = (9.999, 0.0);
     for _ in 0..1000 {
         let state = PortState { velocity: Vector([-1.0, 0.0]), ..at([x, 0.0]) };
         given += chain.step(Vector([-1.0, 0.0]), &state).0[0] * -1e-3;
         x -= 1e-3;
     }
-    let allowed = 0.5 / 1000.0 + 1e-4 + 0.5;
+    let allowed = 0.5 / 1000.0 + 1e-4 + 0.505;
     assert!(given <= allowed + 1e-9 && given > 0.4, "{given} J, allowed {allowed} J");
     assert!(chain.report().passivity.energy_in > 9.9);
 }
