@@ -22,7 +22,7 @@ const SEVERAL: usize = 8;
 const DECAYED: f64 = 0.7;
 
 /// So many half cycles make a limit cycle if both of its sides grow by [`GROWN`].
-const FEW: usize = 4;
+const FEW: usize = 6;
 
 /// The growth within two half cycles that is no play of chance.
 const GROWN: f64 = 1.2;
@@ -52,6 +52,10 @@ const STEPS: f64 = 3.0;
 /// How much the change of the force between two extremes may differ from that of the spring, as a
 /// part of it: beyond, a body moves, and not the hand alone.
 const FORCED: f64 = 0.3;
+
+/// The way of the device over its way along the force, at most: a hand that travels along a body
+/// meets its relief.
+const ALONG: f64 = 1.25;
 
 /// The part of the stiffness that remains after a limit cycle.
 const SOFTER: f64 = 0.5;
@@ -131,8 +135,10 @@ impl Default for LimitCycleReport {
 }
 
 /// An extreme of the motion along the force.
-#[derive(Clone, Copy, Debug, Default)]
-struct Extreme {
+#[derive(Clone, Copy, Debug)]
+struct Extreme<V> {
+    /// The position of the device [m].
+    position: V,
     /// The place along the force, into the body [m].
     place: f64,
     /// The size of the force there [N].
@@ -144,13 +150,17 @@ struct Extreme {
 /// Finds oscillations of the device against the force, and makes the force softer until they end.
 ///
 /// The motion along the force is parted at its extremes into half cycles: ways of at least 50 µm,
-/// or of 0.15 N in the force if that is less, and of three encoder steps. A half cycle counts if it
-/// takes at most 0.2 s and the force changes as the spring explains, so that it is the hand that
-/// moves and not a body, and if no tick in it is late or of a rise. It is quick within 80 ms, or `2π √(M/K)` up to 160 ms with
-/// the mass `M` of device and hand and the stiffness `K`: the natural half cycle of a bouncing
-/// mass is longer than that of one in contact, `π √(M/K)`. There is a limit cycle if
+/// or of 0.15 N in the force if that is less, and of three encoder steps. A half cycle counts if
 ///
-/// - four quick half cycles grow, both sides by 1.2 a cycle;
+/// - it takes at most 0.2 s, and no tick in it is late or of a rise;
+/// - the device moves along the force, not along the body, whose relief would move it;
+/// - and the force changes as the spring explains, so that no body moves the hand.
+///
+/// It is quick within 80 ms, or `2π √(M/K)` up to 160 ms with the mass `M` of device and hand and
+/// the stiffness `K`: the natural half cycle of a bouncing mass is longer than that of one in
+/// contact, `π √(M/K)`. There is a limit cycle if
+///
+/// - six quick half cycles grow, both sides by 1.2 a cycle;
 /// - or eight quick half cycles shrink to no less than 0.9 together;
 /// - or eight half cycles grow, each cycle a little.
 ///
@@ -169,9 +179,9 @@ pub(crate) struct LimitCycle<V> {
     /// The place along the force, into the body [m].
     place: f64,
     /// The extreme from which the present way came.
-    last: Extreme,
+    last: Extreme<V>,
     /// The farthest place on the present way.
-    farthest: Extreme,
+    farthest: Extreme<V>,
     /// The time since the farthest place [s].
     since: f64,
     /// The last half cycles, the newest first [m].
@@ -189,14 +199,15 @@ pub(crate) struct LimitCycle<V> {
 
 impl<V: InnerProduct> LimitCycle<V> {
     pub(crate) fn new(options: LimitCycleOptions) -> Self {
+        let start = Extreme { position: V::ZERO, place: 0.0, effort: 0.0, time: 0.0 };
         Self {
             options,
             last_position: None,
             direction: V::ZERO,
             heading: 1.0,
             place: 0.0,
-            last: Extreme::default(),
-            farthest: Extreme::default(),
+            last: start,
+            farthest: start,
             since: 0.0,
             ways: [0.0; SEVERAL],
             counted: 0,
@@ -267,7 +278,8 @@ impl<V: InnerProduct> LimitCycle<V> {
         self.place -= way.dot(self.direction);
         self.since += input.elapsed;
         let beyond = self.heading * (self.place - self.farthest.place);
-        let here = Extreme { place: self.place, effort: input.effort, time: self.since };
+        let CycleInput { position, effort, .. } = *input;
+        let here = Extreme { position, place: self.place, effort, time: self.since };
         if beyond > 0.0 {
             self.farthest = Extreme { time: self.farthest.time + self.since, ..here };
             self.since = 0.0;
@@ -296,7 +308,8 @@ impl<V: InnerProduct> LimitCycle<V> {
         let least = if is_always_touching { 1.0 - FORCED } else { 0.0 };
         let is_of_spring = (least * of_spring..=(1.0 + FORCED) * of_spring).contains(&change);
         let is_free = is_guided || is_of_spring;
-        if is_free && is_touching && to.time <= LONGEST {
+        let is_steep = (to.position - from.position).norm() <= ALONG * way;
+        if is_free && is_touching && is_steep && to.time <= LONGEST {
             self.count(way, to.time);
         } else {
             (self.counted, self.quick) = (0, 0);
@@ -324,7 +337,8 @@ impl<V: InnerProduct> LimitCycle<V> {
 
     fn is_limit_cycle(&self) -> bool {
         let [a, b, c, d, e, f, g, h] = self.ways;
-        let explodes = self.quick >= FEW && a >= GROWN * c && b >= GROWN * d;
+        let grows = |x: f64, y: f64, z: f64| x >= GROWN * y && y >= GROWN * z;
+        let explodes = self.quick >= FEW && grows(a, c, e) && grows(b, d, f);
         let longest = self.ways.iter().copied().fold(0.0, f64::max);
         let persists = self.quick >= SEVERAL && a >= DECAYED * longest;
         let [out, back] =

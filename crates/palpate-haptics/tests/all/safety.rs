@@ -166,9 +166,10 @@ fn a_wall_seen_in_steps_gives_out_at_most_a_millijoule_and_holds_the_hand() {
                 let wall = Wall { grip, start, encoder_step, ..TOO_STIFF };
                 let Outcome { least_balance, x, v, .. } = wall.press();
                 assert!(least_balance >= -1e-3, "{least_balance} J: {encoder_step}, {grip}");
-                // A quarter of 2 b / T is left in any case: 4 mm at 1 N, and some steps.
+                // Halved twice to be below 2 b / T, the wall has 750 N/m, of which the controller
+                // leaves a quarter: 5.3 mm at 1 N, and some steps.
                 assert!(
-                    x > -4.1e-3 && v.abs() < 0.02,
+                    x > -5.4e-3 && v.abs() < 0.02,
                     "{x} m, {v} m/s: {encoder_step}, {grip}"
                 );
             }
