@@ -9,7 +9,7 @@ use std::str::FromStr;
 use palpate::devices::{DeviceProfile, PROFILES, profile_named};
 use palpate::scene::{device_from_json, unknown_name};
 
-use crate::output::shown;
+use crate::output::shown_lines;
 
 /// The profile of a device, by a name of `palpate devices` or in a JSON file.
 #[derive(Clone, Debug)]
@@ -39,11 +39,11 @@ impl FromStr for ProfileChoice {
             return Self::named(text);
         }
         // What the file holds must not steer a terminal.
-        let wrong = |error: String| shown(&error).into_owned();
+        let wrong = |error: String| shown_lines(&error).into_owned();
         let bytes = std::fs::read(&path).map_err(|error| wrong(error.to_string()))?;
         let read = device_from_json(&bytes).map_err(|error| {
             let problems: Vec<_> = error.problems().map(ToString::to_string).collect();
-            wrong(problems.join("; "))
+            wrong(problems.join("\n"))
         });
         Ok(Self { name: text.to_owned(), profile: read?, file: Some(path) })
     }

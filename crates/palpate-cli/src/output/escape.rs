@@ -29,7 +29,7 @@ pub(crate) fn shown(text: &str) -> Cow<'_, str> {
 }
 
 /// As [`shown`], but line breaks stay.
-pub(super) fn shown_lines(text: &str) -> Cow<'_, str> {
+pub(crate) fn shown_lines(text: &str) -> Cow<'_, str> {
     replaced(text, is_hidden_in_lines, |c| c.escape_unicode().to_string())
 }
 

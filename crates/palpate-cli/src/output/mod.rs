@@ -20,7 +20,7 @@ use tempfile::NamedTempFile;
 
 use crate::outcome::Failure;
 
-pub(crate) use escape::shown;
+pub(crate) use escape::{shown, shown_lines};
 pub(crate) use files::{Files, ending};
 pub(crate) use terminal::{answer, complain, ended, live, remark, usage};
 

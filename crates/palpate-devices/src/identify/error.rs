@@ -13,7 +13,7 @@ use super::DeviceAxis;
 /// use palpate_devices::{DeviceAxis, IdentifyError};
 ///
 /// let stuck = IdentifyError::Stuck { axis: DeviceAxis::Along(0), force: 0.9 };
-/// assert!(stuck.to_string().starts_with("along x: the handle did not move at 0.9 N"));
+/// assert!(stuck.to_string().starts_with("along x: the handle did not move at 0.9000 N"));
 /// ```
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
@@ -104,7 +104,7 @@ pub enum IdentifyError {
     },
     /// No force that is allowed moves the handle.
     #[error(
-        "{axis}: the handle did not move at {force} {unit}: a hand or a lock holds it, the motors \
+        "{axis}: the handle did not move at {force:.4} {unit}: a hand or a lock holds it, the motors \
          are off, the encoders do not count, or its friction needs a larger part of the force",
         unit = axis.force_unit()
     )]

@@ -363,7 +363,7 @@ fn however_it_ends_the_last_force_is_zero() {
         (Fault::Lost, "along x: the device was lost: the cable was pulled"),
         (Fault::Stale, "along x: the device was not measured for 1.001 s"),
         (Fault::NotANumber, "along x: the reading at 3 s is not a finite number"),
-        (Fault::Stuck, "along x: the handle did not move at 3.5999999999999996 N: a hand"),
+        (Fault::Stuck, "along x: the handle did not move at 3.6000 N: a hand"),
     ] {
         let mut device = Watched::new(free(profile_named("omega").unwrap()), fault);
         let refused = identify(&mut device, IdentifyOptions::new(1000.0)).unwrap_err();
