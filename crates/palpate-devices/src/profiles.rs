@@ -39,20 +39,7 @@ const DRIVERS: Origin = Origin {
 /// For a device that is known from articles, without published numbers.
 const ASSUMED: Origin = Origin {
     source: "none: all of the order of the maker's data sheet",
-    assumed: &[
-        "max_force",
-        "continuous_force",
-        "max_force_rate",
-        "max_stiffness",
-        "max_damping",
-        "workspace_radius",
-        "mass",
-        "least_damping",
-        "friction",
-        "encoder_step",
-        "max_speed",
-        "max_acceleration",
-    ],
+    assumed: DeviceProfile::NUMBERS,
 };
 
 /// Numbers from the drivers.

@@ -89,17 +89,7 @@ pub(crate) const VIRTUOSE_6D: Torques = Torques {
     encoder_step: 2e-4,
     origin: Origin {
         source: "none: all of the order of the maker's data sheet",
-        assumed: &[
-            "max_torque",
-            "continuous_torque",
-            "max_torque_rate",
-            "max_stiffness",
-            "max_damping",
-            "inertia",
-            "least_damping",
-            "friction",
-            "encoder_step",
-        ],
+        assumed: TurningProfile::NUMBERS,
     },
 };
 

@@ -272,12 +272,8 @@ impl<const D: usize> SafetyChain<D> {
             rise_rate: options.rise_rate,
             period: 1.0 / rate,
         };
-        let cycle = LimitCycleOptions {
-            is_on: passivity.is_on,
-            stiffness: passivity.stiffness,
-            mass: passivity.mass,
-            encoder_step: limits.encoder_step.not_negative()?,
-        };
+        let encoder_step = limits.encoder_step.not_negative()?;
+        let cycle = LimitCycleOptions::of(&passivity, encoder_step);
         Ok(Self {
             accepted,
             cycle: LimitCycle::new(cycle),
@@ -371,13 +367,9 @@ impl<const D: usize> SafetyChain<D> {
         };
         let elapsed = elapsed.unwrap_or(self.period() + late.max(0.0));
         let is_rising = risen.is_some();
-        let softness = if is_sound {
-            let input = CycleInput::of([wanted, free_force], effort, position, elapsed);
-            self.cycle.step(&input.disturbed(late > 0.0 || is_rising))
-        } else {
-            self.cycle.lose();
-            1.0
-        };
+        let seen = CycleInput::of([wanted, free_force], effort, position, elapsed);
+        let is_disturbed = late > 0.0 || is_rising;
+        let softness = self.cycle.observed(&seen.disturbed(is_disturbed), is_sound);
         let free_force = if softness < 1.0 { free_force * softness } else { free_force };
         let seen = PortMotion { position, velocity, effort, is_rising, elapsed, softness };
         let observed = self.passivity.observed(wanted, &seen, is_sound);

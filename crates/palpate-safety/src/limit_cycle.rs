@@ -13,7 +13,7 @@
 use std::f64::consts::TAU;
 
 use crate::effect::Effect;
-use crate::passivity::InnerProduct;
+use crate::passivity::{InnerProduct, PassivityOptions};
 
 /// Half cycles whose ways are kept; so many make a limit cycle if they do not decay.
 const SEVERAL: usize = 8;
@@ -79,6 +79,14 @@ pub(crate) struct LimitCycleOptions {
     pub(crate) mass: f64,
     /// The encoder step [m].
     pub(crate) encoder_step: f64,
+}
+
+impl LimitCycleOptions {
+    /// For the device and the wall of the passivity stage, with an encoder step [m].
+    pub(crate) fn of(passivity: &PassivityOptions, encoder_step: f64) -> Self {
+        let PassivityOptions { is_on, stiffness, mass, .. } = *passivity;
+        Self { is_on, stiffness, mass, encoder_step }
+    }
 }
 
 /// What the stage sees in a tick.
@@ -227,18 +235,27 @@ impl<V: InnerProduct> LimitCycle<V> {
         self.lose();
     }
 
-    /// Forgets the motion so far, because a position is not finite.
-    ///
-    /// Real-time: allocates nothing, takes no lock, cannot panic.
-    pub(crate) fn lose(&mut self) {
+    /// Forgets the motion so far.
+    fn lose(&mut self) {
         self.last_position = None;
         (self.counted, self.quick) = (0, 0);
+    }
+
+    /// As [`step`](Self::step); if an input is not finite, the motion so far is forgotten.
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    pub(crate) fn observed(&mut self, input: &CycleInput<V>, is_sound: bool) -> f64 {
+        if is_sound {
+            return self.step(input);
+        }
+        self.lose();
+        1.0
     }
 
     /// One tick: the part of the stiffness to render.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
-    pub(crate) fn step(&mut self, input: &CycleInput<V>) -> f64 {
+    fn step(&mut self, input: &CycleInput<V>) -> f64 {
         if !self.options.is_on {
             return 1.0;
         }

@@ -195,15 +195,8 @@ impl<const D: usize> WrenchChain<D> {
             rise_rate: options.rise_rate,
             period: 1.0 / rate,
         };
-        let cycle = LimitCycleOptions {
-            is_on: passivity.is_on,
-            stiffness,
-            mass,
-            encoder_step: along
-                .encoder_step
-                .not_negative()?
-                .max(about.encoder_step.not_negative()? * unit),
-        };
+        let [step, angle] = [along, about].map(|limits| limits.encoder_step.not_negative());
+        let cycle = LimitCycleOptions::of(&passivity, step?.max(angle? * unit));
         Ok(Self {
             accepted,
             sides,
@@ -284,14 +277,10 @@ impl<const D: usize> WrenchChain<D> {
         let period = self.passivity.options().period;
         let elapsed = elapsed.unwrap_or(period + late.max(0.0));
         let as_lengths = wanted.turning(1.0 / unit);
-        let softness = if is_sound {
-            let free = SpatialVector { along: free_force, about: Vector::ZERO };
-            let input = CycleInput::of([as_lengths, free], effort, position, elapsed);
-            self.cycle.step(&input.disturbed(late > 0.0 || is_rising))
-        } else {
-            self.cycle.lose();
-            1.0
-        };
+        let free = SpatialVector { along: free_force, about: Vector::ZERO };
+        let seen = CycleInput::of([as_lengths, free], effort, position, elapsed);
+        let is_disturbed = late > 0.0 || is_rising;
+        let softness = self.cycle.observed(&seen.disturbed(is_disturbed), is_sound);
         let free_force = if softness < 1.0 { free_force * softness } else { free_force };
         let seen = PortMotion { position, velocity, effort, is_rising, elapsed, softness };
         let allowed = self.passivity.observed(as_lengths, &seen, is_sound);

@@ -17,35 +17,6 @@ use crate::problems::Problems;
 /// The version of the format.
 const VERSION: u64 = 1;
 
-/// Names of the numbers of a device, of which a file may say that they are assumed.
-const NUMBERS: [&str; 12] = [
-    "max_force",
-    "continuous_force",
-    "max_force_rate",
-    "max_stiffness",
-    "max_damping",
-    "workspace_radius",
-    "mass",
-    "least_damping",
-    "friction",
-    "encoder_step",
-    "max_speed",
-    "max_acceleration",
-];
-
-/// As [`NUMBERS`], about axes.
-const TURNING_NUMBERS: [&str; 9] = [
-    "max_torque",
-    "continuous_torque",
-    "max_torque_rate",
-    "max_stiffness",
-    "max_damping",
-    "inertia",
-    "least_damping",
-    "friction",
-    "encoder_step",
-];
-
 /// A [`DeviceProfile`] as a file gives it.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, expecting = "an object")]
@@ -165,7 +136,7 @@ fn check(written: &WrittenDevice) -> Result<(), Problems> {
     let turning = written.turning.as_ref().map_or(Ok(()), check_turning);
     Problems::all([
         numbers,
-        check_assumed(&written.assumed, &NUMBERS),
+        check_assumed(&written.assumed, DeviceProfile::NUMBERS),
         turning.map_err(|problems| problems.under("turning")),
     ])
 }
@@ -182,7 +153,7 @@ fn check_turning(turning: &WrittenTurning) -> Result<(), Problems> {
         at_least("friction", turning.friction, 0.0, "N·m"),
         at_least("encoder_step", turning.encoder_step, 0.0, "rad"),
     ]);
-    Problems::all([numbers, check_assumed(&turning.assumed, &TURNING_NUMBERS)])
+    Problems::all([numbers, check_assumed(&turning.assumed, TurningProfile::NUMBERS)])
 }
 
 fn check_assumed(assumed: &[String], known: &[&str]) -> Result<(), Problems> {
@@ -217,7 +188,7 @@ fn profile(written: WrittenDevice) -> DeviceProfile {
         .with_max_speed(written.max_speed)
         .with_max_acceleration(written.max_acceleration)
         .with_source(written.source)
-        .with_assumed(names(&written.assumed, &NUMBERS));
+        .with_assumed(names(&written.assumed, DeviceProfile::NUMBERS));
     match written.turning {
         Some(turning) => profile.with_turning(turning_profile(turning)),
         None => profile,
@@ -235,7 +206,7 @@ fn turning_profile(written: WrittenTurning) -> TurningProfile {
         .with_least_damping(written.least_damping)
         .with_friction(written.friction)
         .with_encoder_step(written.encoder_step)
-        .with_assumed(names(&written.assumed, &TURNING_NUMBERS))
+        .with_assumed(names(&written.assumed, TurningProfile::NUMBERS))
         .with_source(written.source)
 }
 

@@ -84,6 +84,23 @@ pub struct DeviceProfile {
 }
 
 impl DeviceProfile {
+    /// The names of its numbers, of which [`assumed`](Self::assumed) has those that its source does
+    /// not tell.
+    pub const NUMBERS: &'static [&'static str] = &[
+        "max_force",
+        "continuous_force",
+        "max_force_rate",
+        "max_stiffness",
+        "max_damping",
+        "workspace_radius",
+        "mass",
+        "least_damping",
+        "friction",
+        "encoder_step",
+        "max_speed",
+        "max_acceleration",
+    ];
+
     /// An ideal device: no limits, no mass, no encoder steps, and damping and friction that pass
     /// every rule.
     ///

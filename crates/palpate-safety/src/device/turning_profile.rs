@@ -39,6 +39,20 @@ pub struct TurningProfile {
 }
 
 impl TurningProfile {
+    /// The names of its numbers, of which [`assumed`](Self::assumed) has those that its source does
+    /// not tell.
+    pub const NUMBERS: &'static [&'static str] = &[
+        "max_torque",
+        "continuous_torque",
+        "max_torque_rate",
+        "max_stiffness",
+        "max_damping",
+        "inertia",
+        "least_damping",
+        "friction",
+        "encoder_step",
+    ];
+
     /// A device that gives any torque, without inertia, friction or steps.
     ///
     /// ```
