@@ -131,8 +131,8 @@ impl Rest {
     }
 }
 
-/// A simulated hand that comes down on a wall within half a second, presses it for ten seconds at
-/// 1 kHz with half of the force that the device bears for long, and should come to rest.
+/// A simulated hand that comes down on a wall within half a second, presses it at 1 kHz with half of
+/// the force that the device bears for long, and should be at rest after ten seconds in all.
 ///
 /// # Examples
 ///
@@ -238,8 +238,12 @@ fn held(plant: Plant, force: f64, stiffness: f64) -> Result<Hand<2>, DeviceError
     Hand::new(path).with_spring(plant.grip, plant.hand_damping)?.with_push(Vector([0.0, -push]))
 }
 
-/// The largest way to and fro: from a value to another, and as far back.
+/// The largest way to and fro: from a value to another, and as far back; infinite if a value is no
+/// number.
 fn swing(values: &[f64]) -> f64 {
+    if !values.iter().all(|x| x.is_finite()) {
+        return f64::INFINITY;
+    }
     let mirrored: Vec<_> = values.iter().map(|x| -x).collect();
     summit(values).max(summit(&mirrored))
 }
@@ -269,6 +273,7 @@ mod tests {
         assert_eq!(swing(&[5.0, 1.0, 4.0]), 3.0);
         assert_eq!(swing(&[0.0, 3.0, -1.0]), 3.0);
         assert_eq!(swing(&[]), 0.0);
+        assert_eq!(swing(&[0.0, f64::NAN, 0.0]), f64::INFINITY);
     }
 
     #[test]

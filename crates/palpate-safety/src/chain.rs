@@ -73,8 +73,9 @@ pub struct SafetyOptions {
     pub acceptance: Acceptance,
     /// Whether a material is refused of which the device renders less than all.
     pub is_strict: bool,
-    /// Whether the passivity controller acts; the observer always runs. A force that must do
-    /// work on the hand is incompatible with the controller.
+    /// Whether the passivity controller and the stage of limit cycles act; the observer always
+    /// runs. A force that must do work on the hand is incompatible with the controller. Neither
+    /// acts on a device of infinite damping.
     pub has_passivity_control: bool,
     /// Energy that the controller lets out before the hand has put any in [J].
     pub reserve: f64,
@@ -186,7 +187,7 @@ impl SafetyOptions {
 /// The safety chain of one contact point, from the wanted force to the written force.
 ///
 /// The stages, in this order: stiffness and damping ([`Accepted`], at set-up), the rise of a force
-/// that was zeroed, passivity, slew limit, force limit, continuous limit, guard against numbers
+/// that was zeroed, limit cycles ([`LimitCycleReport`](crate::LimitCycleReport)), passivity, slew limit, force limit, continuous limit, guard against numbers
 /// that are not finite, deadline watchdog and emergency stop. If no stage has to act, the
 /// written force equals the wanted force bit for bit.
 ///
@@ -199,7 +200,8 @@ impl SafetyOptions {
 ///   two exceptions, which fall to zero in one tick: an input that is not finite, and the
 ///   emergency stop.
 /// - With passivity control, the force of a wall up to `2 b / T` is never changed, because the
-///   device's damping dissipates the energy that the wall leaks. A stiffer wall gives out
+///   device's damping dissipates the energy that the wall leaks; but where the device oscillates by
+///   itself against the wall, the wall becomes softer. A stiffer wall gives out
 ///   little more energy than it took in: at most 1 mJ for a wall three times as stiff, on 0.05
 ///   to 0.1 kg with 0.5 N·s/m at 1 kHz, held with 0 to 10 N·s/m and pushed with 1 N for 10 s,
 ///   from up to 50 mm away and in encoder steps of up to 30 µm (the tests of `palpate-haptics`
@@ -296,7 +298,7 @@ impl<const D: usize> SafetyChain<D> {
         self.accepted.renew(accepted);
         let stiffness = accepted.device_stiffness;
         let options = PassivityOptions { stiffness, ..*self.passivity.options() };
-        self.cycle.renew(stiffness, options.mass);
+        self.cycle.renew(LimitCycleOptions { stiffness, ..*self.cycle.options() });
         self.passivity.renew(options);
     }
 
@@ -344,7 +346,9 @@ impl<const D: usize> SafetyChain<D> {
         state: &PortState<D>,
     ) -> Vector<f64, D> {
         let effort = wanted.norm();
-        let (wanted, cut) = cut(wanted, max_force);
+        // What is no number is for the guard, which must see it.
+        let (wanted, cut) =
+            if wanted.is_finite() { cut(wanted, max_force) } else { (wanted, 0.0) };
         self.tick(wanted, [effort, cut], state)
     }
 
@@ -365,7 +369,7 @@ impl<const D: usize> SafetyChain<D> {
             Some(part) if part < 1.0 => (wanted * part, free_force * part),
             _ => (wanted, free_force),
         };
-        let elapsed = elapsed.unwrap_or(self.period() + late.max(0.0));
+        let elapsed = finite::elapsed(elapsed, self.period() + late.max(0.0));
         let is_rising = risen.is_some();
         let seen = CycleInput::of([wanted, free_force], effort, position, elapsed);
         let is_disturbed = late > 0.0 || is_rising;

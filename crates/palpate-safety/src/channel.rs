@@ -145,6 +145,13 @@ impl<const D: usize> Channel<D> {
         (force, if share > 0.0 { force - free * share } else { force })
     }
 
+    /// Rises as fast as before where a radian counts as a length that is so many times `longer`.
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    pub(crate) fn in_units(&mut self, longer: f64) {
+        self.rise.in_units(longer);
+    }
+
     /// Lowers the force limit; never raises it.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.

@@ -28,3 +28,10 @@ pub(crate) fn guarded<const D: usize>(
 ) -> Option<Vector<f64, D>> {
     (!(sound && force.is_finite())).then_some(Vector::ZERO)
 }
+
+/// The time `measured` between two positions [s]; `otherwise`, if it is none or cannot be one.
+///
+/// Real-time: allocates nothing, takes no lock, cannot panic.
+pub(crate) fn elapsed(measured: Option<f64>, otherwise: f64) -> f64 {
+    measured.filter(|time| *time > 0.0 && *time <= f64::MAX).unwrap_or(otherwise)
+}

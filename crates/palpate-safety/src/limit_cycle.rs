@@ -173,7 +173,7 @@ struct Extreme<V> {
 /// - or eight half cycles grow, each cycle a little.
 ///
 /// The stiffness is then halved, at the rate of 0.3 N a tick, and half cycles are counted anew. It
-/// comes back by a factor of e in 20 s in which nothing touches; never in contact, where the
+/// comes back by a factor of e in 20 s in which nothing pushes; never in contact, where the
 /// oscillation would return.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct LimitCycle<V> {
@@ -226,13 +226,17 @@ impl<V: InnerProduct> LimitCycle<V> {
         }
     }
 
-    /// Replaces the stiffness [N/m] and the mass [kg], where an angle may count as another length
-    /// than before.
+    /// Replaces the options, where an angle may count as another length than before.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
-    pub(crate) fn renew(&mut self, stiffness: f64, mass: f64) {
-        self.options = LimitCycleOptions { stiffness, mass, ..self.options };
+    pub(crate) fn renew(&mut self, options: LimitCycleOptions) {
+        self.options = options;
         self.lose();
+    }
+
+    /// The options.
+    pub(crate) fn options(&self) -> &LimitCycleOptions {
+        &self.options
     }
 
     /// Forgets the motion so far.
@@ -271,16 +275,18 @@ impl<V: InnerProduct> LimitCycle<V> {
 
     #[cold]
     fn soften(&mut self, input: &CycleInput<V>) -> f64 {
-        let force = input.force.norm();
-        if force == 0.0 {
+        let (force, effort) = (input.force.norm(), input.effort);
+        if force == 0.0 && effort == 0.0 {
             self.target = (self.target * (1.0 + input.elapsed / RECOVERY)).min(1.0);
             self.part = self.target;
-        } else {
-            let most = STEP / force;
-            self.part += (self.target - self.part).clamp(-most, most);
-            self.report.effect.count_size(force * (1.0 - self.part));
-            self.report.least_part = self.report.least_part.min(self.part);
+            return self.part;
         }
+        // As long as the wall gives more than the force limit, less of it changes nothing.
+        let free = if force < effort { force / effort } else { 1.0 };
+        self.part = (self.part.min(free) - STEP / effort).max(self.target);
+        let left = (self.part * effort).min(force);
+        self.report.effect.count_size(force - left);
+        self.report.least_part = self.report.least_part.min(self.part);
         self.part
     }
 
@@ -424,6 +430,25 @@ mod tests {
         for stiff in [500.0, 2000.0] {
             assert_eq!(found(stiff, |t| 2e-3 + 1e-3 * (TAU * 20.0 * t).sin()), 0);
         }
+    }
+
+    /// Once the step was taken from the force after the limit, and the written force fell faster.
+    #[test]
+    fn a_wall_beyond_the_force_limit_is_halved_smoothly_too() {
+        let mut stage = stage();
+        let limit = 1.5;
+        let mut last = limit;
+        for tick in 0..800 {
+            let depth = 5e-3 + 1e-3 * (TAU * 20.0 * f64::from(tick) * PERIOD).sin();
+            let (effort, position) = (1000.0 * depth, Vector([0.0, -depth]));
+            let force = Vector([0.0, effort.min(limit)]);
+            let part =
+                stage.step(&CycleInput::of([force, Vector::ZERO], effort, position, PERIOD));
+            let left = (part * effort).min(limit);
+            assert!((left - last).abs() <= STEP + 0.13, "{tick}: {left}"); // the wave's 0.13 N
+            last = left;
+        }
+        assert!(stage.report().found > 1 && last < limit);
     }
 
     #[test]

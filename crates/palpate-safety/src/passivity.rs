@@ -247,6 +247,7 @@ impl<V: InnerProduct> Passivity<V> {
             *position = way(*position);
             (*wanted, *written) = (force(*wanted), force(*written));
         }
+        self.lift = Lift::new();
     }
 
     /// The force that may be written in place of `wanted`. If an input is not finite, `wanted`
@@ -376,6 +377,9 @@ impl<V: InnerProduct> Passivity<V> {
     /// it presses with no more than the largest [J].
     fn stored(&self, force: f64, state: &PortMotion<V>) -> f64 {
         let PassivityOptions { stiffness, max_force, .. } = self.options;
+        if stiffness == 0.0 {
+            return 0.0;
+        }
         let pressed = (force * state.softness).min(max_force);
         (force - 0.5 * pressed / state.softness) * pressed / stiffness
     }

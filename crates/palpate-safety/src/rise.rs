@@ -40,6 +40,13 @@ impl Rise {
         Self { step: rise_rate / rate, recovery, limit: 0.0, is_waiting }
     }
 
+    /// Rises by so many times the step.
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    pub(crate) fn in_units(&mut self, longer: f64) {
+        self.step *= longer;
+    }
+
     /// Lowers the limit to `force` [N], from where it rises.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.

@@ -15,6 +15,7 @@ use palpate_field::Vector;
 
 use crate::channel::{Channel, TickInput};
 use crate::error::{NumberError, SafetyError};
+use crate::finite;
 use crate::limit::cut;
 use crate::limit_cycle::{CycleInput, LimitCycle, LimitCycleOptions};
 use crate::limits::DeviceLimits;
@@ -99,7 +100,7 @@ pub struct WrenchState<const D: usize> {
 /// If a radian counts as the length `u = √(κ/K)`, the coupling is equally stiff in translation
 /// and rotation, and stores `½ (|F|² + |τ/u|²) / K`. The passivity stage then sees one
 /// isotropic spring with the smaller damping `min(b, b_θ / u²)`, the smaller mass and the
-/// slower slew limit: where `K ≤ 2b/T` and `κ ≤ 2b_θ/T`, the force is never changed.
+/// slower slew limit: where `K ≤ 2b/T` and `κ ≤ 2b_θ/T`, the controller never changes the force.
 #[derive(Clone, Debug)]
 pub struct WrenchChain<const D: usize> {
     /// What the device renders.
@@ -134,6 +135,7 @@ struct AxisLimits {
     mass: f64,
     /// The slew limit.
     max_rate: f64,
+    encoder_step: f64,
 }
 
 impl AxisLimits {
@@ -142,6 +144,7 @@ impl AxisLimits {
             damping: limits.least_damping.positive()?,
             mass: limits.mass.not_negative()?,
             max_rate: limits.max_force_rate.positive()?,
+            encoder_step: limits.encoder_step.not_negative()?,
         })
     }
 
@@ -153,6 +156,7 @@ impl AxisLimits {
             damping: self.damping.min(about.damping / square),
             mass: self.mass.min(about.mass / square),
             max_rate: self.max_rate.min(about.max_rate / unit),
+            encoder_step: self.encoder_step.max(about.encoder_step * unit),
         }
     }
 }
@@ -182,7 +186,8 @@ impl<const D: usize> WrenchChain<D> {
             PerMotion { along: AxisLimits::new(along)?, about: AxisLimits::new(about)? };
         let unit = unit(&accepted.along, &accepted.about);
         let stiffness = accepted.along.device_stiffness;
-        let AxisLimits { damping, mass, max_rate } = sides.along.with(&sides.about, unit);
+        let AxisLimits { damping, mass, max_rate, encoder_step } =
+            sides.along.with(&sides.about, unit);
         let passivity = PassivityOptions {
             is_on: options.has_passivity_control && damping < f64::INFINITY,
             stiffness,
@@ -195,8 +200,7 @@ impl<const D: usize> WrenchChain<D> {
             rise_rate: options.rise_rate,
             period: 1.0 / rate,
         };
-        let [step, angle] = [along, about].map(|limits| limits.encoder_step.not_negative());
-        let cycle = LimitCycleOptions::of(&passivity, step?.max(angle? * unit));
+        let cycle = LimitCycleOptions::of(&passivity, encoder_step);
         Ok(Self {
             accepted,
             sides,
@@ -220,11 +224,12 @@ impl<const D: usize> WrenchChain<D> {
         self.passivity.in_units(|way| way.turning(longer), |force| force.turning(1.0 / longer));
         self.unit = unit;
         let stiffness = along.device_stiffness;
-        let AxisLimits { damping, mass, max_rate } =
+        let AxisLimits { damping, mass, max_rate, encoder_step } =
             self.sides.along.with(&self.sides.about, unit);
         let options = *self.passivity.options();
         let options = PassivityOptions { stiffness, damping, mass, max_rate, ..options };
-        self.cycle.renew(stiffness, mass);
+        self.cycle.renew(LimitCycleOptions::of(&options, encoder_step));
+        self.torque.in_units(longer);
         self.passivity.renew(options);
     }
 
@@ -236,7 +241,7 @@ impl<const D: usize> WrenchChain<D> {
         wanted: SpatialVector<D>,
         state: &WrenchState<D>,
     ) -> SpatialVector<D> {
-        self.tick(wanted, 0.0, state)
+        self.tick(wanted, [self.effort(wanted), 0.0], state)
     }
 
     /// As [`step`](Self::step), for a wanted force that is first shortened to `max_force` [N],
@@ -249,14 +254,23 @@ impl<const D: usize> WrenchChain<D> {
         max_force: f64,
         state: &WrenchState<D>,
     ) -> SpatialVector<D> {
-        let (along, cut) = cut(wanted.along, max_force);
-        self.tick(SpatialVector { along, ..wanted }, cut, state)
+        let effort = self.effort(wanted);
+        // What is no number is for the guard, which must see it.
+        let is_number = wanted.along.is_finite();
+        let (along, cut) =
+            if is_number { cut(wanted.along, max_force) } else { (wanted.along, 0.0) };
+        self.tick(SpatialVector { along, ..wanted }, [effort, cut], state)
+    }
+
+    /// The size of a wrench, where an angle counts as a length [N].
+    fn effort(&self, wanted: SpatialVector<D>) -> f64 {
+        wanted.turning(1.0 / self.unit).norm()
     }
 
     fn tick(
         &mut self,
         wanted: SpatialVector<D>,
-        cut: f64,
+        [effort, cut]: [f64; 2],
         state: &WrenchState<D>,
     ) -> SpatialVector<D> {
         let WrenchState { position, velocity, free_force, late, elapsed } = *state;
@@ -266,7 +280,6 @@ impl<const D: usize> WrenchChain<D> {
             && free_force.is_finite();
         let unit = self.unit;
         let (position, velocity) = (position.turning(unit), velocity.turning(unit));
-        let effort = wanted.turning(1.0 / unit).norm();
         let input = TickInput { is_sound, late, start: 1.0, cut };
         let along = self.force.risen(wanted.along, free_force, &input);
         let about = self.torque.risen(wanted.about, Vector::ZERO, &input);
@@ -275,7 +288,7 @@ impl<const D: usize> WrenchChain<D> {
         let free_force = free_force * along;
         let wanted = SpatialVector { along: wanted.along * along, about: wanted.about * about };
         let period = self.passivity.options().period;
-        let elapsed = elapsed.unwrap_or(period + late.max(0.0));
+        let elapsed = finite::elapsed(elapsed, period + late.max(0.0));
         let as_lengths = wanted.turning(1.0 / unit);
         let free = SpatialVector { along: free_force, about: Vector::ZERO };
         let seen = CycleInput::of([as_lengths, free], effort, position, elapsed);

@@ -365,6 +365,19 @@ fn every_stage_can_be_made_to_act() {
     assert_eq!((report.guard.ticks, report.watchdog.trips, report.stops), (1, 1, 1));
 }
 
+/// Once the force limit made zero of a force that was no number, and the next one kicked.
+#[test]
+fn what_is_no_number_is_guarded_before_it_is_cut_and_the_force_rises_again() {
+    let options = SafetyOptions::new(Impedance::default()).with_rise_rate(20.0);
+    let mut chain = chain::<2>(&device(), options);
+    let state = at([0.0, 0.0]);
+    let mut step = |y: f64| chain.step_within(Vector([0.0, y]), 8.0, &state).0[1];
+    (0..100).for_each(|_| assert!(step(1.0) <= 1.0));
+    assert_eq!(step(f64::NAN), 0.0);
+    assert!((step(1.0) - 0.02).abs() < 1e-12);
+    assert_eq!(chain.report().guard.ticks, 1);
+}
+
 #[test]
 fn whatever_comes_in_the_force_is_finite_and_within_every_limit() {
     let wild = [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 1e308, -1e308, 1e-308];
@@ -382,6 +395,7 @@ fn whatever_comes_in_the_force_is_finite_and_within_every_limit() {
             state.velocity = vector(u)?;
             state.late = if u.ratio(1, 3)? { 0.01 * unit(u)? } else { 0.0 };
             state.start = if u.ratio(1, 50)? { *u.choose(&wild)? } else { 1.0 };
+            state.elapsed = if u.ratio(1, 3)? { Some(*u.choose(&wild)?) } else { None };
             if u.ratio(1, 10)? {
                 let (axis, value) = (u.int_in_range(0..=2)?, *u.choose(&wild)?);
                 match u.int_in_range(0..=2)? {
@@ -394,7 +408,11 @@ fn whatever_comes_in_the_force_is_finite_and_within_every_limit() {
                 chain.stop();
             }
             let guarded = chain.report().guard.ticks;
-            let force = chain.step(wanted, &state);
+            let force = if u.arbitrary()? {
+                chain.step(wanted, &state)
+            } else {
+                chain.step_within(wanted, device.max_force, &state)
+            };
             let excepted = chain.is_stopped() || chain.report().guard.ticks > guarded;
             assert!(force.is_finite() && force.norm() <= device.max_force * (1.0 + 1e-12));
             let change = (force - last).norm();
