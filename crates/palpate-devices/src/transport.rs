@@ -116,6 +116,8 @@ pub struct SimulatedTransport<T, const D: usize> {
     random: u64,
     /// The duration of a tick, if the device sets the pace [s].
     period: Option<f64>,
+    /// The time of the last tick, without jitter [s].
+    tick: Option<f64>,
     /// The time of the last tick [s].
     time: Option<f64>,
     /// The newest measurements, the last of them last.
@@ -188,6 +190,7 @@ impl<T: Device<D>, const D: usize> SimulatedTransport<T, D> {
             faults,
             random: 0,
             period: None,
+            tick: None,
             time: None,
             measured: vec![none; longest + 1].into(),
             made: 0,
@@ -274,6 +277,23 @@ impl<T: Device<D>, const D: usize> SimulatedTransport<T, D> {
         };
         self.time = Some(at);
         let Some(mut next) = self.measured.pop_front() else { return Ok(()) };
+        let made = self.make(&mut next, last, at);
+        if made.is_ok() {
+            self.made += 1;
+            self.measured.push_back(next);
+        } else {
+            self.measured.push_front(next);
+        }
+        made
+    }
+
+    /// Measures the device at a time `at`, after the one before [s].
+    fn make(
+        &mut self,
+        next: &mut Measured<D>,
+        last: Option<f64>,
+        at: f64,
+    ) -> Result<(), DeviceLost> {
         // A device that nobody read goes on in steps that its integration takes.
         if let Some(last) = last.filter(|last| at - last > 2.0 * LONGEST_STEP) {
             let steps = ((at - last) / LONGEST_STEP).ceil();
@@ -286,8 +306,6 @@ impl<T: Device<D>, const D: usize> SimulatedTransport<T, D> {
         next.turn = self.device.read_turn()?;
         next.buttons = self.device.buttons();
         next.gripper = self.device.read_gripper()?;
-        self.made += 1;
-        self.measured.push_back(next);
         Ok(())
     }
 }
@@ -306,11 +324,12 @@ impl<T: Device<D>, const D: usize> Device<D> for SimulatedTransport<T, D> {
     fn read(&mut self, time: f64, points: &mut [PointState<D>]) -> Result<Reading, DeviceLost> {
         // A reading that is not fresh must not be looked at.
         points.fill(PointState::at_rest(Vector([f64::NAN; D])));
-        let time = match (self.period, self.time) {
+        let time = match (self.period, self.tick) {
             (Some(period), Some(last)) => last + period,
             (Some(_), None) => 0.0,
             (None, _) => time,
         };
+        self.tick = Some(time);
         if let Some(attempts) = self.begins_loss(time) {
             self.attempts = attempts;
         }
@@ -387,6 +406,8 @@ impl<T: Device<D>, const D: usize> Device<D> for SimulatedTransport<T, D> {
     fn open(&mut self) -> Result<(), DeviceLost> {
         self.attempts = self.attempts.saturating_sub(1);
         let opened = self.there().and_then(|()| self.device.open());
+        // What was on its way is lost.
+        self.passed = self.made;
         *if opened.is_ok() { &mut self.calls.opened } else { &mut self.calls.failed } += 1;
         opened
     }
@@ -471,6 +492,33 @@ mod tests {
         // Those on their way when the delay begins have come already.
         assert!(came[3..5].iter().all(|(reading, _)| *reading == Reading::Stale));
         assert_eq!(came[5..], fresh(&[3.0, 4.0, 7.0, 8.0]));
+    }
+
+    /// Once the only measurement was dropped with the error, and all after it were stale.
+    #[test]
+    fn a_device_that_is_found_again_is_fresh_behind_two_transports_too() {
+        let lost = Fault { start: 2.0, duration: 0.0, kind: FaultKind::Lost { attempts: 1 } };
+        let inner = SimulatedTransport::new(clock(), vec![lost]).unwrap();
+        let mut device = SimulatedTransport::new(inner, Vec::new()).unwrap();
+        let mut points = [PointState::at_rest(Vector::ZERO)];
+        let mut is_fresh = |device: &mut SimulatedTransport<_, 2>, time| {
+            device.read(time, &mut points).map(|reading| reading == Reading::Fresh { time })
+        };
+        assert_eq!([0.0, 1.0].map(|t| is_fresh(&mut device, t)), [Ok(true), Ok(true)]);
+        assert!(is_fresh(&mut device, 2.0).is_err());
+        device.open().unwrap();
+        assert_eq!([3.0, 4.0].map(|t| is_fresh(&mut device, t)), [Ok(true), Ok(true)]);
+    }
+
+    /// Once each tick came a period after the last one with its jitter, and drifted.
+    #[test]
+    fn jitter_of_a_device_that_paces_does_not_add_up() {
+        let jitter = Fault { start: 0.0, duration: 1e9, kind: FaultKind::Jitter { most: 0.2 } };
+        let device = SimulatedTransport::new(clock(), vec![jitter]).unwrap();
+        let mut device = device.pacing_at(1.0).unwrap();
+        for (tick, (_, x)) in (0..900).zip(reads(&mut device, 900)) {
+            assert!((x - f64::from(tick)).abs() <= 0.2 + 1e-9, "{tick}: {x}");
+        }
     }
 
     #[test]
