@@ -84,11 +84,11 @@ pub use palpate_material::{
     Impact, Layer, Magnet, Material, PopThrough, Texture, TextureKind, UnknownMaterial,
 };
 pub use palpate_safety::{
-    Acceptance, Accepted, Buttons, ContinuousReport, Device, DeviceLost, DeviceProfile, Effect,
-    GripperProfile, GripperState, Impedance, LimitCycleReport, NumberError, PassivityReport,
-    PointState, PortState, Reading, ReadingsReport, Recovery, Rule, SafetyChain, SafetyError,
-    SafetyOptions, SafetyReport, TurnState, TurningProfile, TurningReport, VelocityEstimator,
-    WatchdogReport, WorkspaceMap,
+    Acceptance, Accepted, Arrivals, Buttons, ContinuousReport, Device, DeviceLost,
+    DeviceProfile, Effect, GripperProfile, GripperState, Impedance, LimitCycleReport,
+    NumberError, PassivityReport, PointState, PortState, Reading, ReadingsReport, Recovery,
+    Rule, SafetyChain, SafetyError, SafetyOptions, SafetyReport, TurnState, TurningProfile,
+    TurningReport, VelocityEstimator, WatchdogReport, WorkspaceMap,
 };
 pub use protection::Protection;
 pub use proxy::{DEFAULT_BUDGET, Following, Probe, Proxy};

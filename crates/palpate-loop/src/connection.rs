@@ -5,7 +5,7 @@
 
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-use palpate_haptics::{Device, DeviceLost, NumberError, Reading};
+use palpate_haptics::{Arrivals, Device, DeviceLost, NumberError, Reading};
 use std::time::Duration;
 
 /// The time after which a device is to take its forces away when nothing is written to it: longer
@@ -121,8 +121,8 @@ pub(crate) struct Connection {
     period: f64,
     /// The time without a measurement [s], in ticks of a period.
     gap: f64,
-    /// When the device was measured last [s].
-    measured: Option<f64>,
+    /// Times the measurements, as the servo does.
+    arrivals: Arrivals,
     report: ConnectionReport,
 }
 
@@ -130,8 +130,8 @@ impl Connection {
     pub(crate) fn new(rate: f64, reconnection: Option<Reconnection>) -> Self {
         let (state, period, gap) = (State::Closed, 1.0 / rate, 0.0);
         let report = ConnectionReport::default();
-        let (is_held, was_opened, measured) = (false, false, None);
-        Self { state, is_held, was_opened, reconnection, period, gap, measured, report }
+        let (is_held, was_opened, arrivals) = (false, false, Arrivals::with_period(period));
+        Self { state, is_held, was_opened, reconnection, period, gap, arrivals, report }
     }
 
     pub(crate) fn is_open(&self) -> bool {
@@ -155,15 +155,17 @@ impl Connection {
         matches!(self.state, State::Lost { next, .. } if time >= next)
     }
 
-    /// Opens a device at `time` [s].
+    /// Opens a device at `time` [s], and enables it if it `fits`.
     pub(crate) fn open<const D: usize>(
         &mut self,
         device: &mut dyn Device<D>,
         time: f64,
+        fits: impl FnOnce(&dyn Device<D>) -> Result<(), DeviceLost>,
     ) -> Result<(), DeviceLost> {
         device.open()?;
         self.is_held = true;
         self.was_opened = true;
+        fits(device)?;
         let least = Duration::from_secs_f64(WATCHDOG_PERIODS * self.period);
         let watchdog = device.set_watchdog(WATCHDOG.max(least));
         let watchdog = watchdog.and_then(|watchdog| device.enable().map(|()| watchdog));
@@ -190,7 +192,6 @@ impl Connection {
             State::Lost { since, .. } => since,
             State::Closed | State::Open => {
                 self.report.losses += 1;
-                self.measured = None;
                 time
             }
         };
@@ -221,22 +222,14 @@ impl Connection {
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     pub(crate) fn see(&mut self, reading: Reading) -> Option<f64> {
-        let elapsed = match reading {
-            Reading::Fresh { time } => {
-                let before = self.measured.replace(time);
-                // Written so that NaN is no time.
-                before
-                    .map_or(Some(self.period), |before| Some(time - before))
-                    .filter(|elapsed| *elapsed > 0.0)
-            }
-            Reading::Stale => None,
-            Reading::NotReady => {
-                self.measured = None;
-                self.report.not_ready_ticks += u64::from(self.is_open());
-                self.gap = 0.0;
-                return None;
-            }
-        };
+        self.arrivals.set_reading(reading);
+        let arrival = self.arrivals.arrive();
+        if !arrival.is_ready {
+            self.report.not_ready_ticks += u64::from(self.is_open());
+            self.gap = 0.0;
+            return None;
+        }
+        let elapsed = arrival.elapsed;
         let gap = elapsed.unwrap_or(self.gap + self.period);
         self.gap = if elapsed.is_some() { 0.0 } else { gap };
         self.report.stale_ticks += u64::from(elapsed.is_none());

@@ -163,13 +163,9 @@ impl<'a, const D: usize> ServoLoop<'a, D> {
         if !self.connection.was_opened() {
             return true;
         }
-        let Self { device, no_forces, connection, .. } = self;
-        // A panic of the device must not unwind through the servo, nor keep the other zeros back.
-        let forces = catch_unwind(AssertUnwindSafe(|| device.write(no_forces)));
-        let torque = catch_unwind(AssertUnwindSafe(|| device.write_torque(Vector::ZERO)));
-        let gripper = catch_unwind(AssertUnwindSafe(|| device.write_gripper_force(0.0)));
+        let took = self.write_zeros().iter().all(|zeros| matches!(zeros, Ok(Ok(()))));
+        let Self { device, connection, .. } = self;
         let is_closed = catch_unwind(AssertUnwindSafe(|| connection.close(*device)));
-        let took = [forces, torque, gripper].iter().all(|zeros| matches!(zeros, Ok(Ok(()))));
         took && is_closed.is_ok()
     }
 
@@ -229,13 +225,13 @@ impl<'a, const D: usize> ServoLoop<'a, D> {
     ///
     /// As [`Connection::lose`].
     fn connect(&mut self) -> Result<(), DeviceLost> {
-        let opened = self.connection.open(&mut *self.device, self.time);
+        let servo = &*self.servo;
         // Another device may have been plugged in.
-        let fitting = opened.and_then(|()| {
-            let checked = self.servo.check_device(&*self.device);
-            checked.map_err(|error| DeviceLost::new(error.to_string()))
-        });
-        fitting.or_else(|lost| self.lose(lost))
+        let fits = |device: &dyn Device<D>| {
+            servo.check_device(device).map_err(|error| DeviceLost::new(error.to_string()))
+        };
+        let opened = self.connection.open(&mut *self.device, self.time, fits);
+        opened.or_else(|lost| self.lose(lost))
     }
 
     /// Takes note that the device was lost.
@@ -278,10 +274,14 @@ impl<'a, const D: usize> ServoLoop<'a, D> {
         Ok(reading)
     }
 
-    fn write_zeros(&mut self) -> Result<(), DeviceLost> {
-        self.device.write(&self.no_forces)?;
-        self.device.write_torque(Vector::ZERO)?;
-        self.device.write_gripper_force(0.0)
+    /// Writes each zero, whether or not the device took the others, and even if it panics.
+    fn write_zeros(&mut self) -> [std::thread::Result<Result<(), DeviceLost>>; 3] {
+        let Self { device, no_forces, .. } = self;
+        [
+            catch_unwind(AssertUnwindSafe(|| device.write(no_forces))),
+            catch_unwind(AssertUnwindSafe(|| device.write_torque(Vector::ZERO))),
+            catch_unwind(AssertUnwindSafe(|| device.write_gripper_force(0.0))),
+        ]
     }
 
     fn write(&mut self) -> Result<(), DeviceLost> {

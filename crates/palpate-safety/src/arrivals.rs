@@ -59,8 +59,13 @@ impl Arrivals {
     ///
     /// [`SafetyError::Number`] if the rate is not positive and finite.
     pub fn new(rate: f64) -> Result<Self, SafetyError> {
-        let period = 1.0 / NumberError::check_rate(rate)?;
-        Ok(Self { period, late: 0.0, reading: None, measured: None })
+        Ok(Self::with_period(1.0 / NumberError::check_rate(rate)?))
+    }
+
+    /// For ticks of a `period` [s] that was checked.
+    #[must_use]
+    pub fn with_period(period: f64) -> Self {
+        Self { period, late: 0.0, reading: None, measured: None }
     }
 
     /// Sets by how much ticks start too late [s] from the next one on.

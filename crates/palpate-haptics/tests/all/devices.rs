@@ -250,6 +250,35 @@ fn another_device_that_bears_less_is_no_reconnection() {
     let reason = report.connection.last_loss.unwrap();
     assert!(reason.contains("max_force of 3 N, but this device has 0.5 N"), "{reason}");
     assert_eq!(report.largest_force, 0.0);
+    assert_eq!((report.connection.losses, report.connection.reconnections), (1, 0));
+}
+
+/// Once each attempt that found another device began the patience anew.
+#[test]
+fn another_device_does_not_renew_the_patience() {
+    let device = pressing(vec![fault(0.2, 0.0, FaultKind::Lost { attempts: 1 })]);
+    let profile = DeviceProfile::unlimited("swapped").with_max_force(3.0);
+    let mut device = Swapped { device, profile };
+    let mut servo = Servo::for_device(wall(), &device).unwrap();
+    let patient = Reconnection::every(0.01).unwrap().with_patience(0.05).unwrap();
+    let report = run(&mut servo, &mut device, fast(1.0).with_reconnection(patient)).unwrap();
+    assert!(matches!(report.ending, Ending::DeviceLost { .. }), "{:?}", report.ending);
+    assert!((report.connection.lost_time - 0.06).abs() < 1e-9, "{:?}", report.connection);
+}
+
+/// Once the time of a loop that follows a device became infinite.
+#[test]
+fn a_measurement_at_no_time_is_a_stale_one() {
+    for jump in [f64::INFINITY, f64::NAN] {
+        let mut device = pressing(Vec::new()).pacing_at(1000.0).unwrap();
+        let mut servo = Servo::for_device(wall(), &device).unwrap();
+        let mut jumping = Jumping { device: &mut device, ticks: 0, jump, is_once: true };
+        let options = RunOptions::new(0.2).with_pace(Pace::Device);
+        let report = run_on(&mut VirtualClock::new(), &mut servo, &mut jumping, options);
+        let report = report.unwrap();
+        assert_eq!(report.connection.stale_ticks, 1);
+        assert!(report.connection.longest_gap < 0.002 + 1e-9, "{:?}", report.connection);
+    }
 }
 
 #[test]
@@ -277,7 +306,7 @@ fn a_measurement_that_comes_late_is_a_late_tick() {
     let mut device = pressing(Vec::new()).pacing_at(1000.0).unwrap();
     let mut servo = Servo::for_device(wall(), &device).unwrap();
     // A clock that stands still for a device whose times jump.
-    let mut jumping = Jumping { device: &mut device, ticks: 0 };
+    let mut jumping = Jumping { device: &mut device, ticks: 0, jump: 0.007, is_once: false };
     let options = RunOptions::new(0.1).with_pace(Pace::Device);
     let report = run_on(&mut VirtualClock::new(), &mut servo, &mut jumping, options).unwrap();
     assert_eq!(report.missed_deadlines, 1);
@@ -286,10 +315,14 @@ fn a_measurement_that_comes_late_is_a_late_tick() {
     assert!((lateness.max_ns as f64 * 1e-9 - 0.007).abs() < 1e-4, "{lateness}");
 }
 
-/// Lets the times of a device jump by 7 ms once.
+/// A device of which the time of a measurement changes after 50 ticks.
 struct Jumping<'a> {
     device: &'a mut SimulatedTransport<RecordedDevice<2>, 2>,
     ticks: u32,
+    /// By so much [s].
+    jump: f64,
+    /// In one tick, or in all from then on.
+    is_once: bool,
 }
 
 impl Device<2> for Jumping<'_> {
@@ -302,7 +335,9 @@ impl Device<2> for Jumping<'_> {
     fn read(&mut self, time: f64, points: &mut [PointState<2>]) -> Result<Reading, DeviceLost> {
         self.ticks += 1;
         Ok(match self.device.read(time, points)? {
-            Reading::Fresh { time } if self.ticks > 50 => Reading::Fresh { time: time + 0.007 },
+            Reading::Fresh { time } if self.ticks == 51 || self.ticks > 51 && !self.is_once => {
+                Reading::Fresh { time: time + self.jump }
+            }
             reading => reading,
         })
     }
