@@ -49,6 +49,7 @@
 #![cfg_attr(test, allow(clippy::float_cmp, reason = "tests compare exact numbers"))]
 
 mod error;
+mod fault;
 mod glove;
 mod hand;
 mod hand_path;
@@ -69,6 +70,7 @@ mod vibration_recorder;
 mod wrists;
 
 pub use error::DeviceError;
+pub use fault::{Fault, FaultKind};
 pub use glove::Glove;
 pub use hand::Hand;
 pub use hand_path::{HandPath, Interpolation};
@@ -87,5 +89,5 @@ pub use recorded::RecordedDevice;
 pub use simulated::SimulatedDevice;
 pub use steered::{SteeredDevice, Steering};
 pub use tour::Tour;
-pub use transport::{Calls, Fault, FaultKind, SimulatedTransport};
+pub use transport::{Calls, SimulatedTransport};
 pub use vibration_recorder::VibrationRecorder;

@@ -6,6 +6,7 @@
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use crate::error::DeviceError;
+use crate::fault::{Fault, FaultKind};
 use palpate_field::Vector;
 use palpate_haptics::{
     Buttons, Device, DeviceLost, DeviceProfile, GripperState, NumberError, PointState, Reading,
@@ -19,51 +20,6 @@ const LONGEST_STEP: f64 = 1e-3;
 
 /// The least time between two measurements [s]: jitter turns no order around.
 const SHORTEST_STEP: f64 = 1e-6;
-
-/// The most ticks by which readings may be delayed.
-const MOST_DELAY: u32 = 10_000;
-
-/// A fault of a [`SimulatedTransport`]. Several may last at a time.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Fault {
-    /// When it begins [s].
-    pub start: f64,
-    /// How long it lasts [s]; a loss lasts until the device is opened again.
-    pub duration: f64,
-    /// What goes wrong.
-    pub kind: FaultKind,
-}
-
-/// What goes wrong between a device and a servo.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[non_exhaustive]
-pub enum FaultKind {
-    /// The device is measured at times that differ from those of the ticks by up to `most` [s], all
-    /// differences alike, but not before the measurement of the tick before. Readings tell the times.
-    Jitter {
-        /// The largest difference [s].
-        most: f64,
-    },
-    /// Nothing new comes.
-    Stale,
-    /// The device has no state.
-    NotReady,
-    /// Readings come so many ticks after they were made, with the time at which they were made.
-    Delay {
-        /// The number of ticks.
-        ticks: u32,
-    },
-    /// Positions are off along the first axis.
-    Glitch {
-        /// By how much [m].
-        distance: f64,
-    },
-    /// The device is lost, until it was tried so often to open it again.
-    Lost {
-        /// The number of the attempt that succeeds, at least 1.
-        attempts: u32,
-    },
-}
 
 /// How often the methods around a run were called.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -156,25 +112,10 @@ impl<T: Device<D>, const D: usize> SimulatedTransport<T, D> {
     /// than 10 000 ticks, or the attempt that ends a loss is the one of number 0.
     pub fn new(device: T, faults: Vec<Fault>) -> Result<Self, DeviceError> {
         let mut longest = 0;
-        for Fault { start, duration, kind } in &faults {
-            NumberError::check_not_negative("start of a fault", *start, "s")?;
-            NumberError::check_not_negative("duration of a fault", *duration, "s")?;
-            match kind {
-                FaultKind::Jitter { most } => {
-                    NumberError::check_not_negative("jitter", *most, "s")?;
-                }
-                FaultKind::Glitch { distance } => {
-                    NumberError::check_not_negative("size of a glitch", distance.abs(), "m")?;
-                }
-                FaultKind::Delay { ticks } if *ticks > MOST_DELAY => {
-                    let (rule, value) = ("at most 10000 ticks", f64::from(*ticks));
-                    return Err(NumberError::new("delay", rule, value, "").into());
-                }
-                FaultKind::Delay { ticks } => longest = longest.max(*ticks as usize),
-                FaultKind::Lost { attempts: 0 } => {
-                    return Err(NumberError::new("attempts", "at least 1", 0.0, "").into());
-                }
-                FaultKind::Stale | FaultKind::NotReady | FaultKind::Lost { .. } => {}
+        for fault in &faults {
+            fault.check()?;
+            if let FaultKind::Delay { ticks } = fault.kind {
+                longest = longest.max(ticks as usize);
             }
         }
         let none = Measured {

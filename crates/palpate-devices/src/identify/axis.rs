@@ -42,7 +42,7 @@ pub(super) fn identify_axis<const D: usize>(
     seed: u64,
 ) -> Result<IdentifiedAxis, IdentifyError> {
     let (axis, bounds, period) = (port.axis(), port.bounds, 1.0 / port.rate());
-    let start = port.last().time;
+    let (start, tilt) = (port.last().time, port.tilt);
     let mut motions = Motions::begin(port, seed)?;
     let mut round = 0;
     loop {
@@ -71,7 +71,7 @@ pub(super) fn identify_axis<const D: usize>(
             encoder_step: step,
             strokes: motions.strokes.len() as u64,
             time: motions.time() - start,
-            ..described(axis, &fit)
+            ..described(axis, &fit, tilt)
         };
         let is_known = [found.mass, found.damping, found.friction]
             .iter()
@@ -110,14 +110,26 @@ fn guess(strokes: &[Stroke], breakaway: Breakaway, bounds: &Bounds) -> Model {
     }
 }
 
-fn described(axis: super::DeviceAxis, fit: &Fit) -> IdentifiedAxis {
+/// The numbers of a fit. Angles are components of a rotation vector, whose rate about one axis is
+/// the angular velocity but for a part of `tilt`²/12, where `tilt` is the angle about the others
+/// (Bullo and Murray 1995): mass and damping count that much less sure, and as much again, since
+/// the angle about the axis itself grows too.
+fn described(axis: super::DeviceAxis, fit: &Fit, tilt: f64) -> IdentifiedAxis {
+    let bias = match axis {
+        super::DeviceAxis::Along(_) => 0.0,
+        super::DeviceAxis::About(_) => tilt * tilt / 6.0,
+    };
     let (model, deviations) = (&fit.model, &fit.deviations);
     let estimate =
         |value: f64, deviation: f64| Estimate { value, error: DEVIATIONS * deviation };
+    let turned = |value: f64, deviation: f64| Estimate {
+        value,
+        error: DEVIATIONS * deviation + bias * value.abs(),
+    };
     IdentifiedAxis {
         axis,
-        mass: estimate(model.mass, model.mass * deviations.mass),
-        damping: estimate(model.damping, deviations.damping),
+        mass: turned(model.mass, model.mass * deviations.mass),
+        damping: turned(model.damping, deviations.damping),
         friction: estimate(model.friction, deviations.friction),
         encoder_step: EncoderStep::Unseen(0.0),
         offset: estimate(model.offset, deviations.offset),

@@ -35,8 +35,11 @@ pub enum IdentifyError {
         /// The message of the transport.
         lost: DeviceLost,
     },
-    /// A reading is NaN or infinite.
-    #[error("{axis}: the reading at {time} s is not a finite number; check the encoders")]
+    /// A reading is NaN or infinite, or has no orientation.
+    #[error(
+        "{axis}: the reading at {time} s is not a finite number, or has no orientation; check the \
+         encoders"
+    )]
     NotFinite {
         /// The axis that was moved.
         axis: DeviceAxis,

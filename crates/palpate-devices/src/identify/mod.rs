@@ -60,6 +60,9 @@ pub struct IdentifyProgress {
 /// rounds of 20 strokes follow until every number is known to 3 %, or 12 rounds are over. Other
 /// contact points than the first get no force.
 ///
+/// The device is opened, asked to take the force away by itself if nothing is written for 30 ms,
+/// enabled, and closed at the end, as a loop does.
+///
 /// The handle stays within [`IdentifyOptions::travel`] and [`angle`](IdentifyOptions::angle) of
 /// its start, and below a speed; forces stay within a part of the largest, and change no
 /// faster than the profile allows. What breaks a limit ends the identification. However it
@@ -115,8 +118,8 @@ pub fn identify<const D: usize>(
     options: IdentifyOptions,
     next_tick: &mut NextTick<'_>,
 ) -> Result<Identified, IdentifyError> {
-    options.check()?;
     let profile = device.profile().clone();
+    options.check(&profile)?;
     check_forces(&profile)?;
     let along = (0..D).map(|i| (DeviceAxis::Along(i), options.along(&profile)));
     let about = options.about(&profile);
@@ -125,6 +128,7 @@ pub fn identify<const D: usize>(
     let axes: Vec<_> = along.chain(turns).collect();
     let mut port = Port::new(device, options, next_tick);
     port.progress.axes = axes.len();
+    port.open()?;
     let mut found = Vec::with_capacity(axes.len());
     for (axis, bounds) in axes {
         port.turn_to(axis, bounds)?;
@@ -143,5 +147,10 @@ fn check_forces(profile: &DeviceProfile) -> Result<(), IdentifyError> {
     NumberError::check_positive("max_force", profile.max_force, "N")?;
     NumberError::check_positive("continuous_force", profile.continuous_force, "N")?;
     NumberError::check_positive("max_force_rate", profile.max_force_rate, "N/s")?;
+    if let Some(turning) = profile.turning.as_ref().filter(|t| t.max_torque != 0.0) {
+        NumberError::check_positive("max_torque", turning.max_torque, "N·m")?;
+        NumberError::check_positive("continuous_torque", turning.continuous_torque, "N·m")?;
+        NumberError::check_positive("max_torque_rate", turning.max_torque_rate, "N·m/s")?;
+    }
     Ok(())
 }

@@ -68,7 +68,7 @@ impl IdentifyOptions {
     /// # Errors
     ///
     /// The number that breaks its rule.
-    pub(super) fn check(&self) -> Result<(), NumberError> {
+    pub(super) fn check(&self, profile: &DeviceProfile) -> Result<(), NumberError> {
         NumberError::check_rate(self.rate)?;
         // A speed is measured over 4 ms, of which a loop must see a few ticks.
         if self.rate < LEAST_RATE {
@@ -76,6 +76,13 @@ impl IdentifyOptions {
             return Err(NumberError::new("rate", rule, self.rate, "Hz"));
         }
         NumberError::check_positive("travel", self.travel, "m")?;
+        // Written so that a radius of NaN is refused.
+        let is_within = self.travel <= profile.workspace_radius;
+        if !is_within {
+            let rule = "at most the radius of the device's workspace";
+            return Err(NumberError::new("travel", rule, self.travel, "m"));
+        }
+        NumberError::check_positive_or_infinite("max_speed", profile.max_speed, "m/s")?;
         NumberError::check_positive("angle", self.angle, "rad")?;
         if self.angle > MOST_ANGLE {
             let rule = "at most 1, where rotation vectors add";
@@ -93,7 +100,7 @@ impl IdentifyOptions {
     pub(super) fn along(&self, profile: &DeviceProfile) -> Bounds {
         Bounds {
             travel: self.travel,
-            speed: SPEED_PER_TRAVEL * self.travel,
+            speed: (SPEED_PER_TRAVEL * self.travel).min(profile.max_speed / SPEED_RESERVE),
             force: (self.force_part * profile.max_force).min(profile.continuous_force),
             force_rate: profile.max_force_rate,
         }
@@ -110,6 +117,9 @@ impl IdentifyOptions {
         })
     }
 }
+
+/// A handle that is faster than a stroke accelerates by this factor is stopped.
+pub(super) const SPEED_RESERVE: f64 = 2.0;
 
 /// The slowest loop [Hz].
 const LEAST_RATE: f64 = 500.0;

@@ -6,11 +6,13 @@
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use std::collections::VecDeque;
+use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
+use std::time::Duration;
 
 use palpate_field::{Rotation, Vector};
 use palpate_haptics::{Device, DeviceLost, PointState, Reading as Measured};
 
-use super::options::{Bounds, IdentifyOptions};
+use super::options::{Bounds, IdentifyOptions, SPEED_RESERVE};
 use super::{DeviceAxis, IdentifyError, IdentifyProgress};
 
 /// Gives the time of the next tick [s], when that has come; `None` to stop.
@@ -29,8 +31,8 @@ const LONGEST_HOLD: f64 = 0.02;
 /// The longest that a device without a force may not be measured [s].
 const LONGEST_WAIT: f64 = 1.0;
 
-/// A handle that is faster than a stroke accelerates by this factor is stopped.
-const SPEED_RESERVE: f64 = 2.0;
+/// How long a device is to hold a force without a new one: longer than [`LONGEST_HOLD`].
+const WATCHDOG: Duration = Duration::from_millis(30);
 
 /// One reading of the axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -56,6 +58,14 @@ pub(super) struct Port<'a, const D: usize> {
     first_tick: Option<f64>,
     start: Option<PointState<D>>,
     start_turn: Option<Rotation<D>>,
+    /// Angles from the start of the identification [rad].
+    turned: Vector<f64, 3>,
+    /// The angle about the other axes at the start of the axis [rad].
+    pub(super) tilt: f64,
+    /// Whether the device is to be closed.
+    is_open: bool,
+    /// The time of the last tick, at most a period [s].
+    shortest: f64,
     has_torque: bool,
     last: Reading,
     /// Readings of the last [`LONG_WINDOW`], the newest first.
@@ -83,9 +93,23 @@ impl<'a, const D: usize> Port<'a, D> {
             first_tick: None,
             start: None,
             start_turn: None,
+            turned: Vector::ZERO,
+            tilt: 0.0,
+            is_open: false,
+            shortest: 1.0 / options.rate,
             last: Reading { time: f64::NEG_INFINITY, place: 0.0, held: 0.0 },
             recent: VecDeque::new(),
         }
+    }
+
+    /// Opens the device, and lets it give forces.
+    pub(super) fn open(&mut self) -> Result<(), IdentifyError> {
+        let axis = self.axis();
+        let lost = |lost| IdentifyError::Lost { axis, lost };
+        self.device.open().map_err(lost)?;
+        self.is_open = true;
+        let _ = self.device.set_watchdog(WATCHDOG).map_err(lost)?;
+        self.device.enable().map_err(lost)
     }
 
     /// Takes up another axis, and reads where it is.
@@ -102,6 +126,13 @@ impl<'a, const D: usize> Port<'a, D> {
         self.recent.clear();
         let reading = self.tick(0.0)?;
         self.recent = vec![reading; window].into();
+        let mut others = self.turned;
+        if let DeviceAxis::About(i) = axis
+            && let Some(own) = others.0.get_mut(i)
+        {
+            *own = 0.0;
+        }
+        self.tilt = others.norm();
         Ok(())
     }
 
@@ -159,17 +190,17 @@ impl<'a, const D: usize> Port<'a, D> {
         let turn = if self.has_torque { self.device.read_turn().map_err(lost)? } else { None };
         let point = self.points.first().copied();
         let point = point.filter(|point| point.position.is_finite());
-        let turn = turn.map(|turn| turn.orientation);
-        let Some(point) = point else { return Err(IdentifyError::NotFinite { axis, time }) };
+        let is_whole = turn.is_some() || !self.has_torque;
+        let Some(point) = point.filter(|_| is_whole) else {
+            return Err(IdentifyError::NotFinite { axis, time });
+        };
         let start = *self.start.get_or_insert(point);
         let moved = point.position - start.position;
-        let turned = match (self.start_turn, turn) {
-            (Some(start), Some(turn)) => start.turn_to(&turn),
-            _ => {
-                self.start_turn = turn;
-                Vector::ZERO
-            }
-        };
+        let turned = turn.map_or(Vector::ZERO, |turn| {
+            let start = self.start_turn.get_or_insert(turn.orientation);
+            start.turn_to(&turn.orientation)
+        });
+        self.turned = turned;
         self.check_range(moved, turned)?;
         let place = match axis {
             DeviceAxis::Along(i) => moved.0.get(i).copied(),
@@ -179,6 +210,9 @@ impl<'a, const D: usize> Port<'a, D> {
         let reading = Reading { time, place: place.unwrap_or_default(), held: force };
         if self.recent.pop_back().is_some() {
             self.recent.push_front(reading);
+        }
+        if before > f64::NEG_INFINITY {
+            self.shortest = (time - before).min(1.0 / self.options.rate);
         }
         self.last = reading;
         let (speed, limit) = (self.speed().abs(), SPEED_RESERVE * self.bounds.speed);
@@ -192,6 +226,8 @@ impl<'a, const D: usize> Port<'a, D> {
     pub(super) fn speed(&self) -> f64 {
         let time = |earlier: &&Reading| self.last.time - earlier.time;
         let earlier = self.recent.iter().find(|earlier| time(earlier) >= SPEED_WINDOW);
+        // Of ticks that come faster than asked, the oldest.
+        let earlier = earlier.or(self.recent.back()).filter(|earlier| time(earlier) > 0.0);
         earlier.map_or(0.0, |earlier| (self.last.place - earlier.place) / time(&earlier))
     }
 
@@ -214,9 +250,12 @@ impl<'a, const D: usize> Port<'a, D> {
     }
 
     fn within_rate(&self, force: f64) -> f64 {
-        let change = self.bounds.force_rate / self.options.rate;
+        let change = self.bounds.force_rate * self.shortest;
         let bound = self.bounds.force;
         let held = self.last.held;
+        if force.is_nan() {
+            return 0.0;
+        }
         // Not `clamp`, which panics where a bound is NaN.
         force.max(held - change).min(held + change).max(-bound).min(bound)
     }
@@ -233,8 +272,17 @@ impl<'a, const D: usize> Port<'a, D> {
         if let Some(first) = self.forces.first_mut() {
             *first = along;
         }
-        self.device.write(&self.forces)?;
-        if self.has_torque { self.device.write_torque(about) } else { Ok(()) }
+        // Each is written even if the device does not take the other, or panics: it may be a zero.
+        let along = catch_unwind(AssertUnwindSafe(|| self.device.write(&self.forces)));
+        let about = if self.has_torque {
+            catch_unwind(AssertUnwindSafe(|| self.device.write_torque(about)))
+        } else {
+            Ok(Ok(()))
+        };
+        match (along, about) {
+            (Ok(along), Ok(about)) => along.and(about),
+            (Err(panic), _) | (_, Err(panic)) => resume_unwind(panic),
+        }
     }
 
     /// Refuses a handle that left its range along or about any axis.
@@ -311,8 +359,12 @@ impl Sums {
 impl<const D: usize> Drop for Port<'_, D> {
     fn drop(&mut self) {
         // Ignored: the error that ends the identification says more, and a device that is lost
-        // takes no zero.
-        let _ = self.release();
+        // takes no zero. A panic within another one would end the process before the device is
+        // closed.
+        drop(catch_unwind(AssertUnwindSafe(|| self.release())));
+        if self.is_open {
+            drop(catch_unwind(AssertUnwindSafe(|| self.device.close())));
+        }
     }
 }
 

@@ -191,20 +191,39 @@ const ALONG: [&str; 4] = ["mass", "least_damping", "friction", "encoder_step"];
 /// Names of the numbers that are found about axes.
 const ABOUT: [&str; 4] = ["inertia", "least_damping", "friction", "encoder_step"];
 
-/// The numbers of the worst axis.
+/// The numbers of the worst axis, in the order of their names.
 struct Worst {
     mass: f64,
     damping: f64,
     friction: f64,
+    /// The largest step that is seen.
     step: f64,
+    /// Whether each is seen on every axis.
+    is_seen: [bool; 4],
+}
+
+impl Worst {
+    /// The encoder step for a profile that states one: where none is seen, the one stated stays,
+    /// since velocities depend on it.
+    fn step_beside(&self, stated: f64) -> f64 {
+        let [.., is_seen] = self.is_seen;
+        if is_seen { self.step } else { self.step.max(stated) }
+    }
+
+    /// Those of the names whose numbers are seen.
+    fn seen<'n>(&self, names: &[&'n str; 4]) -> Vec<&'n str> {
+        let seen = names.iter().zip(self.is_seen).filter(|(_, is_seen)| *is_seen);
+        seen.map(|(name, _)| *name).collect()
+    }
 }
 
 impl Identified {
     /// `profile` with the numbers that were found, those of the worst axis: the least mass (a
     /// light handle moves most for a force), the least damping, the least friction, the largest
-    /// encoder step. A damping or a friction that is not [seen](Estimate::is_seen) is the least
-    /// within its error. `source` says in a few words what found them; the names of the numbers
-    /// leave the list of those that are assumed.
+    /// encoder step. A damping or a friction that is not [seen](Estimate::is_seen) on every axis is
+    /// the least within its error, and counts as assumed; so does the encoder step of `profile`,
+    /// which stays, where no step is seen. `source` says in a few words what found the others, whose
+    /// names leave the list of those that are assumed.
     ///
     /// Limits of force, stiffness, damping, speed and workspace stay: motions without a hand do
     /// not tell them.
@@ -212,24 +231,26 @@ impl Identified {
     pub fn profile(&self, profile: &DeviceProfile, source: &str) -> DeviceProfile {
         let mut found = profile.clone();
         if let Some(worst) = self.worst(|axis| matches!(axis, DeviceAxis::Along(_))) {
+            let seen = worst.seen(&ALONG);
             found = found
                 .with_mass(worst.mass)
                 .with_least_damping(worst.damping)
                 .with_friction(worst.friction)
-                .with_encoder_step(worst.step)
-                .with_assumed(without(&profile.assumed, &ALONG))
-                .with_source(both(source, &ALONG, &profile.source));
+                .with_encoder_step(worst.step_beside(profile.encoder_step))
+                .with_assumed(assumed(&profile.assumed, &ALONG, &seen))
+                .with_source(both(source, &seen, &profile.source));
         }
         let about = self.worst(|axis| matches!(axis, DeviceAxis::About(_)));
         if let (Some(worst), Some(turning)) = (about, &profile.turning) {
+            let seen = worst.seen(&ABOUT);
             let turning: TurningProfile = turning
                 .clone()
                 .with_inertia(worst.mass)
                 .with_least_damping(worst.damping)
                 .with_friction(worst.friction)
-                .with_encoder_step(worst.step)
-                .with_assumed(without(&turning.assumed, &ABOUT))
-                .with_source(both(source, &ABOUT, &turning.source));
+                .with_encoder_step(worst.step_beside(turning.encoder_step))
+                .with_assumed(assumed(&turning.assumed, &ABOUT, &seen))
+                .with_source(both(source, &seen, &turning.source));
             found = found.with_turning(turning);
         }
         found
@@ -251,6 +272,12 @@ impl Identified {
                 axes().map(|found| safe(found.friction)).fold(f64::INFINITY, f64::min),
             ),
             step: rounded(axes().map(|found| found.encoder_step.size()).fold(0.0, f64::max)),
+            is_seen: [
+                axes().all(|found| found.mass.is_seen()),
+                axes().all(|found| found.damping.is_seen()),
+                axes().all(|found| found.friction.is_seen()),
+                axes().all(|found| !matches!(found.encoder_step, EncoderStep::Unseen(_))),
+            ],
         })
     }
 }
@@ -260,10 +287,24 @@ fn rounded(number: f64) -> f64 {
     format!("{number:.4e}").parse().unwrap_or(number)
 }
 
-fn without(assumed: &[&'static str], found: &[&str]) -> Vec<&'static str> {
-    assumed.iter().copied().filter(|name| !found.contains(name)).collect()
+/// The numbers that are assumed after those of these `names` were looked for, and some `seen`: in
+/// the order of before, then those that a source told but the search does not.
+fn assumed(
+    before: &[&'static str],
+    names: &[&'static str],
+    seen: &[&'static str],
+) -> Vec<&'static str> {
+    let left = before.iter().filter(|name| !seen.contains(name));
+    let unseen = names.iter().filter(|name| {
+        // The step of the profile stays as its source tells it.
+        **name != "encoder_step" && !seen.contains(name) && !before.contains(name)
+    });
+    left.chain(unseen).copied().collect()
 }
 
 fn both(source: &str, found: &[&str], other: &str) -> String {
+    if found.is_empty() {
+        return other.to_owned();
+    }
     format!("{}: {source}; all else: {other}", found.join(", "))
 }

@@ -13,6 +13,8 @@ use palpate_devices::{
 use palpate_field::Vector;
 use palpate_testkit::cases;
 
+mod lifecycle;
+
 /// Where the handle is at first: on no encoder step.
 const START: Vector<f64, 2> = Vector([0.0123, -0.0207]);
 
@@ -258,6 +260,25 @@ fn six_axes_of_a_device_in_space_are_found() {
         assert_eq!(check(&profile, axis, "sigma7"), 0);
     }
     assert!(!found.is_turning_unknown);
+    // Rotation vectors do not add: about z, which comes after x and y, the inertia was off by up
+    // to 26 of its errors.
+    for (name, seed) in [("premium30", 1), ("sigma7", 2), ("virtuose6d", 3)] {
+        let profile = profile_named(name).unwrap();
+        let hand = Hand::free(Vector::ZERO).unwrap();
+        let mut device = SimulatedDevice::<3>::new(profile.clone(), vec![hand]).unwrap();
+        let options = IdentifyOptions::new(1000.0).with_seed(seed);
+        for axis in &identify(&mut device, options).unwrap().axes {
+            let [mass, damping, ..] = truth(&profile, axis.axis);
+            for (found, truth) in [(axis.mass, mass), (axis.damping, damping)] {
+                let missed = (found.value - truth).abs();
+                assert!(
+                    missed <= 2.0 * found.error,
+                    "{name} {}: {found:?}, {truth}",
+                    axis.axis
+                );
+            }
+        }
+    }
 }
 
 #[test]
@@ -278,9 +299,9 @@ fn the_profile_holds_the_worst_axis_and_what_was_found_is_not_assumed() {
     assert!(is_same(better.friction, 0.1 * found.axes[1].friction.value));
     assert_eq!(
         *better.assumed,
-        ["continuous_force", "max_force_rate", "max_speed", "max_acceleration"]
+        ["continuous_force", "max_force_rate", "friction", "max_speed", "max_acceleration"]
     );
-    let source = "mass, least_damping, friction, encoder_step: strokes, seed 0; all else: ";
+    let source = "mass, least_damping, encoder_step: strokes, seed 0; all else: ";
     assert!(better.source.starts_with(source), "{}", better.source);
     let turning = better.turning.unwrap();
     assert!(is_same(turning.inertia, found.axes[2].mass.value));
@@ -514,6 +535,11 @@ fn wrong_options_and_devices_without_force_are_refused() {
     let options = IdentifyOptions::new(1000.0);
     for (options, said) in [
         (options.with_travel(0.0), "travel must be positive and finite, got 0 m"),
+        (
+            // A handle was moved by 50 mm in a workspace of 40 mm.
+            options.with_travel(1.0),
+            "travel must be at most the radius of the device's workspace, got 1 m",
+        ),
         (
             options.with_angle(2.0),
             "angle must be at most 1, where rotation vectors add, got 2 rad",
