@@ -166,8 +166,7 @@ impl<const D: usize> Protection<D> {
 
     /// The largest stiffness that the device renders, in the world [N/m].
     pub(crate) fn most_stiffness(&self, rate: f64) -> Result<f64, HapticsError> {
-        let limits = DeviceLimits::along(&self.profile);
-        Ok(Accepted::most_stiffness(&limits, self.acceptance, rate)? / self.map.scale())
+        Ok(self.profile.most_stiffness(self.acceptance, rate)? / self.map.scale())
     }
 
     /// What the device renders of layers.

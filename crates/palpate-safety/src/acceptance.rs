@@ -116,8 +116,9 @@ impl Rule {
 /// The rule `K ≤ 2 b / T` holds with [`Acceptance::Passive`], and for profiles without a largest
 /// stiffness. A profile states its largest stiffness and damping for 1 kHz. Both grow with the
 /// rate, because a wall generates less energy between two samples the shorter the period is:
-/// `K_max(T) = K_max · 1 ms / T`, and `B_max(T)` alike. The rule with `f_c` does not apply without encoder steps or with infinite friction. Some numbers of the
-/// profile may be [`assumed`](Self::assumed).
+/// `K_max(T) = K_max · 1 ms / T`, and `B_max(T)` alike. The rule with `f_c` does not apply without
+/// encoder steps or with infinite friction. Some numbers of the profile may be
+/// [`assumed`](Self::assumed).
 ///
 /// Rotation follows the same rules, with the numbers of the
 /// [`TurningProfile`](crate::TurningProfile), the angular stiffness `κ` [N·m/rad] for `K` and
@@ -266,7 +267,8 @@ impl Accepted {
     }
 
     /// The largest stiffness that a device with these limits renders at `rate` [Hz], at the device
-    /// [N/m]; infinite if nothing limits it, as with [`Acceptance::AsIs`].
+    /// [N/m]; infinite if nothing limits it. With [`Acceptance::AsIs`], which takes more too, that
+    /// of [`Acceptance::Device`].
     ///
     /// # Errors
     ///
@@ -289,9 +291,6 @@ impl Accepted {
         acceptance: Acceptance,
         rate: f64,
     ) -> Result<f64, SafetyError> {
-        if acceptance == Acceptance::AsIs {
-            return Ok(f64::INFINITY);
-        }
         let bounds = stiffness_bounds(limits, acceptance, NumberError::check_rate(rate)?)?;
         Ok(bounds.iter().fold(f64::INFINITY, |least, (bound, _)| least.min(*bound)))
     }
@@ -364,12 +363,11 @@ fn stiffness_bounds(
     acceptance: Acceptance,
     rate: f64,
 ) -> Result<[(f64, Rule); 3], SafetyError> {
-    let sampled = 2.0 * limits.least_damping.positive()? * rate;
     let is_stated = limits.max_stiffness.positive()? < f64::INFINITY;
     // Of a device whose maker says nothing, only physics is known.
     let passive = match acceptance {
-        Acceptance::Device if is_stated => f64::INFINITY,
-        _ => sampled,
+        Acceptance::Device | Acceptance::AsIs if is_stated => f64::INFINITY,
+        _ => 2.0 * limits.least_damping.positive()? * rate,
     };
     let step = limits.encoder_step.not_negative()?;
     let seen =
@@ -385,8 +383,8 @@ fn damping_bounds(
     stiffness: f64,
     rate: f64,
 ) -> Result<[(f64, Rule); 2], SafetyError> {
-    let left = (limits.least_damping.positive()? - 0.5 * stiffness / rate).max(0.0);
-    let stated = limits.max_damping.positive()? * (rate / STATED_RATE);
+    let left = (limits.least_damping.zero_or_more()? - 0.5 * stiffness / rate).max(0.0);
+    let stated = limits.max_damping.zero_or_more()? * (rate / STATED_RATE);
     let [.., of_rest, of_maker] = limits.rules;
     Ok([(left, of_rest), (stated, of_maker)])
 }

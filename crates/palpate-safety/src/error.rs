@@ -9,7 +9,11 @@ use crate::acceptance::{Accepted, Rule};
 
 /// A number that breaks the rule of its parameter.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[error("{parameter} must be {rule}, got {value}{}{unit}", if unit.is_empty() { "" } else { " " })]
+#[error(
+    "{parameter} must be {rule}, got {}{}{unit}",
+    Short(*value),
+    if unit.is_empty() { "" } else { " " }
+)]
 #[non_exhaustive]
 pub struct NumberError {
     /// The parameter's name, as in scene files.
@@ -20,6 +24,20 @@ pub struct NumberError {
     pub value: f64,
     /// The unit of the parameter: "N/m"; empty for a plain number.
     pub unit: &'static str,
+}
+
+/// A number with an exponent if it has many zeros.
+struct Short(f64);
+
+impl fmt::Display for Short {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (number, size) = (self.0, self.0.abs());
+        if size > 0.0 && size < 1e-6 || (1e15..f64::INFINITY).contains(&size) {
+            write!(f, "{number:e}")
+        } else {
+            write!(f, "{number}")
+        }
+    }
 }
 
 impl NumberError {

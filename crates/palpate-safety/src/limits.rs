@@ -32,6 +32,11 @@ impl Limit {
     pub(crate) fn not_negative(&self) -> Result<f64, SafetyError> {
         Ok(NumberError::check_not_negative(self.name, self.value, self.unit)?)
     }
+
+    /// The limit, which may be zero or infinite.
+    pub(crate) fn zero_or_more(&self) -> Result<f64, SafetyError> {
+        Ok(NumberError::check_zero_or_more(self.name, self.value, self.unit)?)
+    }
 }
 
 /// The translational or rotational numbers of a profile, under the names of the translational

@@ -118,12 +118,13 @@ fn check(written: &WrittenDevice) -> Result<(), Problems> {
         let message = format!("must be {VERSION}, got {}", written.palpate_device);
         Err(Problem::about(message).under("palpate_device"))
     };
+    let forces = written.max_force > 0.0;
     let numbers = Problems::all([
         version,
         at_least("max_force", written.max_force, 0.0, "N"),
-        at_least("continuous_force", written.continuous_force, 0.0, "N"),
-        at_least("max_force_rate", written.max_force_rate, 0.0, "N/s"),
-        at_least("max_stiffness", written.max_stiffness, 0.0, "N/m"),
+        limit("continuous_force", written.continuous_force, forces, "N"),
+        limit("max_force_rate", written.max_force_rate, forces, "N/s"),
+        limit("max_stiffness", written.max_stiffness, forces, "N/m"),
         at_least("max_damping", written.max_damping, 0.0, "N·s/m"),
         positive("workspace_radius", written.workspace_radius, "m"),
         positive("mass", written.mass, "kg"),
@@ -133,27 +134,94 @@ fn check(written: &WrittenDevice) -> Result<(), Problems> {
         positive("max_speed", written.max_speed, "m/s"),
         positive("max_acceleration", written.max_acceleration, "m/s²"),
     ]);
+    let needed = [
+        at_most_peak(
+            ["continuous_force", "max_force"],
+            written.continuous_force,
+            written.max_force,
+            "N",
+        ),
+        friction_of_steps(written.encoder_step, written.friction, "N"),
+    ];
+    let needed = Problems::all(needed.into_iter().filter(|_| forces));
+    let texts = Problems::all([
+        one_line("device", &written.device),
+        one_line("source", &written.source),
+    ]);
     let turning = written.turning.as_ref().map_or(Ok(()), check_turning);
     Problems::all([
         numbers,
+        needed,
+        texts,
         check_assumed(&written.assumed, DeviceProfile::NUMBERS),
         turning.map_err(|problems| problems.under("turning")),
     ])
 }
 
 fn check_turning(turning: &WrittenTurning) -> Result<(), Problems> {
+    let torques = turning.max_torque > 0.0;
     let numbers = Problems::all([
         at_least("max_torque", turning.max_torque, 0.0, "N·m"),
-        at_least("continuous_torque", turning.continuous_torque, 0.0, "N·m"),
-        at_least("max_torque_rate", turning.max_torque_rate, 0.0, "N·m/s"),
-        at_least("max_stiffness", turning.max_stiffness, 0.0, "N·m/rad"),
+        limit("continuous_torque", turning.continuous_torque, torques, "N·m"),
+        limit("max_torque_rate", turning.max_torque_rate, torques, "N·m/s"),
+        limit("max_stiffness", turning.max_stiffness, torques, "N·m/rad"),
         at_least("max_damping", turning.max_damping, 0.0, "N·m·s/rad"),
         positive("inertia", turning.inertia, "kg·m²"),
         at_least("least_damping", turning.least_damping, 0.0, "N·m·s/rad"),
         at_least("friction", turning.friction, 0.0, "N·m"),
         at_least("encoder_step", turning.encoder_step, 0.0, "rad"),
     ]);
-    Problems::all([numbers, check_assumed(&turning.assumed, TurningProfile::NUMBERS)])
+    let needed = [
+        at_most_peak(
+            ["continuous_torque", "max_torque"],
+            turning.continuous_torque,
+            turning.max_torque,
+            "N·m",
+        ),
+        friction_of_steps(turning.encoder_step, turning.friction, "N·m"),
+    ];
+    Problems::all([
+        numbers,
+        Problems::all(needed.into_iter().filter(|_| torques)),
+        one_line("source", &turning.source).map_err(Problems::from),
+        check_assumed(&turning.assumed, TurningProfile::NUMBERS),
+    ])
+}
+
+/// A limit of a device's forces, which is positive if there `are` any.
+fn limit(key: &str, value: f64, are: bool, unit: &str) -> Result<(), Problem> {
+    if are { positive(key, value, unit) } else { at_least(key, value, 0.0, unit) }
+}
+
+/// What a device gives without time limit is at most its largest.
+fn at_most_peak(
+    [lasting, peak]: [&str; 2],
+    value: f64,
+    most: f64,
+    unit: &str,
+) -> Result<(), Problem> {
+    if value <= most {
+        return Ok(());
+    }
+    let message = format!("must be at most {peak}, {most} {unit}, got {value} {unit}");
+    Err(Problem::about(message).under(lasting))
+}
+
+/// A wall is passive on a device with encoder steps only up to a stiffness of `2 f_c / Δ`.
+fn friction_of_steps(step: f64, friction: f64, unit: &str) -> Result<(), Problem> {
+    if step > 0.0 && friction == 0.0 {
+        let message = format!("must be positive beside encoder steps, got 0 {unit}");
+        return Err(Problem::about(message).under("friction"));
+    }
+    Ok(())
+}
+
+fn one_line(key: &str, text: &str) -> Result<(), Problem> {
+    if text.contains(char::is_control) {
+        let message = "must be one line without control characters".to_owned();
+        return Err(Problem::about(message).under(key));
+    }
+    Ok(())
 }
 
 fn check_assumed(assumed: &[String], known: &[&str]) -> Result<(), Problems> {
@@ -289,6 +357,29 @@ mod tests {
         assert!(error.contains("weight"), "{error}");
         let error = device_from_json(b"{ \"palpate\": 1 }").unwrap_err().to_string();
         assert!(error.contains("unknown key `palpate`"), "{error}");
+    }
+
+    /// Once they were read, and refused without a place when a servo was made.
+    #[test]
+    fn limits_that_leave_no_force_are_told_with_their_places() {
+        let wrong = text("sigma7")
+            .replace("\"max_force_rate\": 6000", "\"max_force_rate\": 0")
+            .replace("\"continuous_force\": 12", "\"continuous_force\": 13")
+            .replace("\"friction\": 0.15", "\"friction\": 0")
+            .replace("\"Force Dimension sigma.7\"", "\"Force\\nDimension\"");
+        let error = device_from_json(wrong.as_bytes()).unwrap_err().to_string();
+        for said in [
+            "max_force_rate must be positive, got 0 N/s",
+            "continuous_force must be at most max_force, 12 N, got 13 N",
+            "friction must be positive beside encoder steps, got 0 N",
+            "device must be one line without control characters",
+        ] {
+            assert!(error.contains(said), "{said}\n{error}");
+        }
+        // A device that gives no forces needs none of the limits.
+        let senses = text("omega").replace("\"max_force\": 12", "\"max_force\": 0");
+        let senses = senses.replace("\"max_force_rate\": ", "\"max_force_rate\": 0.0e-");
+        assert!(device_from_json(senses.as_bytes()).is_ok(), "{senses}");
     }
 
     #[test]

@@ -33,7 +33,7 @@ pub(crate) struct DevicesOptions {
     #[arg(long, conflicts_with_all = ["materials", "actuators"])]
     pub(crate) stability: bool,
     /// A material by name of which the walls are; may be given several times.
-    #[arg(long, value_name = "NAME", requires = "stability", default_values = ["steel"])]
+    #[arg(long, value_name = "NAME", requires = "stability", conflicts_with_all = ["materials", "actuators"], default_values = ["steel"])]
     pub(crate) material: Vec<String>,
     /// One device in place of all: its name, or a JSON file with its profile.
     #[arg(long, value_name = "NAME|JSON", conflicts_with = "actuators")]

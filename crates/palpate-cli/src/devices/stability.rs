@@ -97,53 +97,72 @@ pub(super) fn report(options: &DevicesOptions) -> Result<Outcome, Failure> {
         .into_iter()
         .filter(|(_, profile)| profile.max_force > 0.0 && profile.max_force < f64::INFINITY)
         .collect();
-    let style = ProgressStyle::with_template("{bar:40} {pos} of {len} devices");
-    let bar = ProgressBar::new(devices.len() as u64);
+    if let (Some(choice), true) = (&options.profile, devices.is_empty()) {
+        let name = &choice.profile.name;
+        return Err(Failure::input(format!("{name} gives no forces, so nothing presses back")));
+    }
+    let rows: Vec<_> = devices
+        .iter()
+        .flat_map(|(name, profile)| materials.iter().map(move |m| (*name, *profile, m)))
+        .collect();
+    let style = ProgressStyle::with_template("{bar:40} {pos} of {len} devices and materials");
+    let bar = ProgressBar::new(rows.len() as u64);
     let bar = bar.with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
-    let mut rows = Vec::new();
-    for (name, profile) in bar.wrap_iter(devices.into_iter()) {
-        let worst = DELAYS.iter().map(|delay| worst(profile, &materials, *delay));
-        rows.push((name, worst.collect::<Result<Vec<_>, Failure>>()?));
+    let mut found = Vec::with_capacity(rows.len());
+    for (count, (device, profile, (material, asked))) in rows.iter().enumerate() {
+        if bar.is_hidden() && rows.len() > 1 {
+            let (count, all) = (count + 1, rows.len());
+            output::remark(format_args!("{device}, {material} ({count} of {all})"));
+        }
+        let worst = DELAYS.iter().map(|delay| worst(profile, asked, *delay));
+        found.push((*device, *material, worst.collect::<Result<Vec<_>, Failure>>()?));
+        bar.inc(1);
     }
     bar.finish_and_clear();
     let mut out = output::answer();
     if options.json {
-        let of = |(name, cells): &(&str, Vec<Worst>)| {
-            let cells =
-                cells.iter().zip(DELAYS).map(|(worst, delay)| worst.described(name, delay));
-            cells.collect::<Vec<_>>()
+        let of = |(device, material, cells): &(&str, &str, Vec<Worst>)| {
+            let described = |(worst, delay): (&Worst, usize)| {
+                let mut row = worst.described(device, delay);
+                row["material"] = (*material).into();
+                row
+            };
+            cells.iter().zip(DELAYS).map(described).collect::<Vec<_>>()
         };
-        out.json(&Value::Array(rows.iter().flat_map(of).collect()))?;
+        out.json(&Value::Array(found.iter().flat_map(of).collect()))?;
         return Ok(Outcome::Yes);
     }
+    writeln!(
+        out,
+        "Each cell: {} presses by devices that differ from their profile. At rest, the position \
+         swings by at most 0.2 mm and the force by at most 0.5 N; a press gives if the wall gave \
+         out more than 1 mJ.",
+        Plant::wrong(0).count()
+    )?;
+    writeln!(out)?;
     writeln!(out, "| | no delay | a tick late | two ticks late |")?;
     writeln!(out, "|---|---|---|---|")?;
-    for (name, cells) in rows {
+    for (device, material, cells) in found {
         let cells: Vec<_> = cells.iter().map(Worst::cell).collect();
-        writeln!(out, "| `{name}` | {} |", cells.join(" | "))?;
+        let of = if materials.len() > 1 { format!(", {material}") } else { String::new() };
+        writeln!(out, "| `{device}`{of} | {} |", cells.join(" | "))?;
     }
     Ok(Outcome::Yes)
 }
 
-/// The materials that were asked for.
-fn materials(options: &DevicesOptions) -> Result<Vec<Material>, Failure> {
-    let asked =
-        options.material.iter().map(|name| Material::preset(name).map_err(Failure::input));
+/// The materials that were asked for, with their names.
+fn materials(options: &DevicesOptions) -> Result<Vec<(&str, Material)>, Failure> {
+    let asked = options.material.iter().map(|name| {
+        let material = Material::preset(name).map_err(Failure::input)?;
+        Ok((name.as_str(), material))
+    });
     asked.collect()
 }
 
 /// The worst of all presses on a device.
-fn worst(
-    profile: &DeviceProfile,
-    materials: &[Material],
-    delay: usize,
-) -> Result<Worst, Failure> {
-    let presses: Vec<_> = materials
-        .iter()
-        .flat_map(|material| Plant::wrong(delay).map(move |plant| (material, plant)))
-        .collect();
-    let rest =
-        |(material, plant): &(&Material, Plant)| Press::new(profile, material)?.on(*plant);
+fn worst(profile: &DeviceProfile, material: &Material, delay: usize) -> Result<Worst, Failure> {
+    let presses: Vec<_> = Plant::wrong(delay).collect();
+    let rest = |plant: &Plant| Press::new(profile, material)?.on(*plant);
     let rests = presses.par_iter().map(rest).collect::<Result<Vec<_>, _>>();
     let rests = rests.map_err(Failure::input)?;
     Ok(rests.iter().fold(Worst::default(), Worst::with))

@@ -199,27 +199,34 @@ fn choice(options: &FeelOptions) -> Result<DeviceChoice, Failure> {
 
 /// Refuses forces that the device does not give.
 fn check_forces(choice: &DeviceChoice, options: &FeelOptions) -> Result<(), Failure> {
-    match (choice, options.max_force) {
-        (DeviceChoice::Glove, _) => {
-            let given = [
-                ("--max-force", options.max_force.is_some()),
-                ("--stiffness", options.stiffness.is_some()),
-                ("--relative-stiffness", options.relative_stiffness.is_some()),
-                ("--damping", options.damping.is_some()),
-                ("--acceptance", options.acceptance.is_some()),
-                ("--recovery", options.recovery != RecoveryChoice::Rise),
-                ("--strict", options.strict),
-            ];
-            let given = given.iter().filter(|(_, is_given)| *is_given);
-            let given: Vec<_> = given.map(|(option, _)| *option).collect();
-            if given.is_empty() {
-                return Ok(());
-            }
-            let have = if given.len() == 1 { "has" } else { "have" };
-            let given = given.join(", ");
-            let problem = format!("{given} {have} no meaning for a glove, which has no forces");
-            Err(Failure::input(problem))
+    let forceless = match choice {
+        DeviceChoice::Glove => Some("a glove"),
+        DeviceChoice::Simulated(choice) if choice.profile.max_force == 0.0 => {
+            Some(&*choice.profile.name)
         }
+        _ => None,
+    };
+    if let Some(name) = forceless {
+        let given = [
+            ("--max-force", options.max_force.is_some()),
+            ("--stiffness", options.stiffness.is_some()),
+            ("--relative-stiffness", options.relative_stiffness.is_some()),
+            ("--damping", options.damping.is_some()),
+            ("--acceptance", options.acceptance.is_some()),
+            ("--recovery", options.recovery != RecoveryChoice::Rise),
+            ("--strict", options.strict),
+        ];
+        let given = given.iter().filter(|(_, is_given)| *is_given);
+        let given: Vec<_> = given.map(|(option, _)| *option).collect();
+        if given.is_empty() {
+            return Ok(());
+        }
+        let have = if given.len() == 1 { "has" } else { "have" };
+        let given = given.join(", ");
+        let problem = format!("{given} {have} no meaning for {name}, which has no forces");
+        return Err(Failure::input(problem));
+    }
+    match (choice, options.max_force) {
         (DeviceChoice::Simulated(choice), Some(force)) if force > choice.profile.max_force => {
             let profile = &choice.profile;
             Err(Failure::input(format!(

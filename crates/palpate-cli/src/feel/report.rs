@@ -8,8 +8,8 @@ use std::io::Write as _;
 use std::path::Path;
 
 use palpate::haptics::{
-    Accepted, Body, DeviceProfile, Material, Progress, Rule, Servo, Surface, Texture,
-    TextureKind,
+    Acceptance, Accepted, Body, DeviceProfile, Material, Progress, Rule, Servo, Surface,
+    Texture, TextureKind,
 };
 use palpate::scene::BuiltScene;
 use palpate::servo_loop::RunReport;
@@ -144,8 +144,10 @@ fn write_report<const D: usize>(out: &mut String, felt: &Felt<'_, D>) -> std::fm
         }
     }
     let asked = felt.scene.bodies.iter().map(|body| &body.material);
-    let stiffness =
-        of_asked(&range(surfaces().map(Surface::stiffness)), &asked_stiffness(asked.clone()));
+    let stiffness = of_asked(
+        &range(surfaces().map(Surface::stiffness)),
+        &asked_stiffness(asked.clone(), device),
+    );
     let damping = of_asked(
         &range(surfaces().map(Surface::damping)),
         &range(asked.map(|material| material.damping)),
@@ -272,10 +274,17 @@ fn write_accepted(
     Ok(())
 }
 
-/// The stiffness that materials ask for [N/m], or the part of the device's if all ask for one.
-fn asked_stiffness<'a>(asked: impl Iterator<Item = &'a Material> + Clone) -> String {
+/// The stiffness that materials ask for [N/m], or the part of the device's if all ask for one, and
+/// the device has a largest.
+fn asked_stiffness<'a>(
+    asked: impl Iterator<Item = &'a Material> + Clone,
+    device: &DeviceProfile,
+) -> String {
     let parts = asked.clone().map(|material| material.relative_stiffness);
-    if parts.clone().all(|part| part.is_some()) {
+    // Whether there is one depends on no rate.
+    let most = device.most_stiffness(Acceptance::Device, 1000.0);
+    let is_limited = most.is_ok_and(f64::is_finite);
+    if is_limited && parts.clone().all(|part| part.is_some()) {
         return format!("{} of what the device renders", range(parts.flatten()));
     }
     range(asked.map(|material| material.stiffness))

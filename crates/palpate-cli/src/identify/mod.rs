@@ -6,6 +6,7 @@
 mod report;
 
 use std::io::{self, IsTerminal};
+use std::time::{Duration, Instant};
 
 use palpate::devices::{
     DeviceError, DeviceProfile, Hand, Identified, IdentifyError, IdentifyOptions as Motions,
@@ -16,9 +17,16 @@ use palpate::scene::device_to_json;
 
 use crate::arguments::IdentifyOptions;
 use crate::interrupt::Interrupt;
+use crate::numbers::rounded;
 use crate::outcome::{Failure, Outcome};
 use crate::output::{self, Destination, Files};
 use report::Report;
+
+/// How often the live line is renewed.
+const LIVE_EVERY: Duration = Duration::from_millis(250);
+
+/// How often a line tells the progress where there is no terminal.
+const REMARK_EVERY: Duration = Duration::from_secs(5);
 
 /// The mass [kg] and the damping [N·s/m] of a hand that holds the handle.
 const HAND: (f64, f64) = (0.1, 5.0);
@@ -39,9 +47,8 @@ pub(crate) fn run(
         .with_travel(options.travel)
         .with_force_part(options.force_part)
         .with_seed(options.seed);
-    warn(profile, &motions);
     interrupt.heed();
-    let found = identified(&mut device, motions, interrupt);
+    let found = identified(&mut device, profile, motions, interrupt);
     let found = match found {
         Ok(found) => found,
         Err(IdentifyError::Interrupted { axis }) => {
@@ -65,15 +72,21 @@ pub(crate) fn run(
     Ok(if is_seen { Outcome::Yes } else { Outcome::No })
 }
 
-/// Says what will happen, before anything does.
+/// Says what will happen, before the first force.
 fn warn(profile: &DeviceProfile, motions: &Motions) {
     let force = (motions.force_part * profile.max_force).min(profile.continuous_force);
+    let turning = profile.turning.as_ref().filter(|turning| turning.max_torque > 0.0);
+    let turns = turning.map_or_else(String::new, |turning| {
+        let torque = (motions.force_part * turning.max_torque).min(turning.continuous_torque);
+        let angle = rounded(motions.angle);
+        format!(", and turns by at most {angle} rad, with at most {} N·m", rounded(torque))
+    });
     output::remark(format_args!(
-        "let go of the handle of the {}: it moves by at most {} mm to each side, with at most {:.3} N; \
-         Ctrl-C stops it",
+        "let go of the handle of the {}: it moves by at most {} mm to each side, with at most {} \
+         N{turns}; Ctrl-C stops it",
         profile.name,
-        motions.travel * 1000.0,
-        force
+        rounded(motions.travel * 1000.0),
+        rounded(force),
     ));
 }
 
@@ -114,25 +127,27 @@ fn simulated(
 /// Identifies on virtual time, with a live line.
 fn identified(
     device: &mut SimulatedDevice<3>,
+    profile: &DeviceProfile,
     motions: Motions,
     interrupt: &Interrupt,
 ) -> Result<Identified, IdentifyError> {
     let shows_line = io::stderr().is_terminal();
-    let mut told = None;
+    let (mut told, mut told_at) = (None, Instant::now());
     let mut ticks = 0.0;
     let mut next_tick = |progress: &IdentifyProgress| {
-        let at = (progress.axis_number, progress.strokes);
-        if told != Some(at) {
-            let is_new = told.is_none_or(|(axis, _)| axis != progress.axis_number);
-            told = Some(at);
-            let IdentifyProgress { axis, axis_number, axes, strokes, .. } = progress;
-            if shows_line {
-                output::live(format_args!(
-                    "{axis} ({axis_number} of {axes}): {strokes} strokes"
-                ));
-            } else if is_new {
-                output::remark(format_args!("{axis} ({axis_number} of {axes})"));
-            }
+        let &IdentifyProgress { axis, axis_number, axes, strokes, .. } = progress;
+        let is_new = told.is_none_or(|(number, _)| number != axis_number);
+        if told.is_none() {
+            warn(profile, &motions);
+        }
+        let every = if shows_line { LIVE_EVERY } else { REMARK_EVERY };
+        let is_changed = shows_line && told != Some((axis_number, strokes));
+        if is_new || is_changed || told_at.elapsed() >= every {
+            (told, told_at) = (Some((axis_number, strokes)), Instant::now());
+            let time = ticks / motions.rate;
+            let line =
+                format!("{axis} ({axis_number} of {axes}): {strokes} strokes, at {time:.1} s");
+            if shows_line { output::live(line) } else { output::remark(line) }
         }
         ticks += 1.0;
         (!interrupt.is_asked()).then_some(ticks / motions.rate)

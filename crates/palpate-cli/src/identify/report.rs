@@ -208,28 +208,33 @@ impl Row {
             let (least, most) = (rounded(found.least()), rounded(found.most()));
             format!("cannot be told: from {least} to {most} {unit}")
         };
-        let beside = beside(found.value, *profile);
-        let off = beside_truth(found.value, *made_with);
         format!(
-            "{number}; {beside} the profile's {}; {off} what it was made with",
-            rounded(*profile)
+            "{number}; {}; {}",
+            beside(found.value, *profile),
+            made(found.value, *made_with)
         )
     }
 }
 
 /// A number beside the one that was assumed.
 fn beside(found: f64, assumed: f64) -> String {
+    let said = rounded(assumed);
     let part = 100.0 * (found / assumed - 1.0);
-    if !part.is_finite() {
-        "beside".to_owned()
-    } else if part.abs() < 1.0 {
-        "as".to_owned()
+    if found == assumed || part.abs() < 1.0 {
+        format!("as the profile's {said}")
+    } else if part.is_finite() {
+        format!("{part:+.0} % of the profile's {said}")
     } else {
-        format!("{part:+.0} % of")
+        format!("beside the profile's {said}")
     }
 }
 
-fn beside_truth(found: f64, truth: f64) -> String {
+/// A number beside the one of the simulated device.
+fn made(found: f64, truth: f64) -> String {
     let part = 100.0 * (found / truth - 1.0).abs();
-    if part.is_finite() { format!("within {part:.2} % of") } else { "beside".to_owned() }
+    if part.is_finite() {
+        format!("within {part:.2} % of what it was made with")
+    } else {
+        format!("it was made with {}", rounded(truth))
+    }
 }

@@ -148,3 +148,43 @@ fn an_interrupted_run_writes_no_profile() {
     assert_eq!(palpate_cli::run_until(options, &interrupt), 130);
     assert!(!file.exists());
 }
+
+#[test]
+fn devices_without_forces_and_options_that_do_not_go_together_are_refused() {
+    let folder = Folder::new();
+    let profile = palpate::devices::profile_named("omega").unwrap().with_max_force(0.0);
+    let profile = palpate::scene::device_to_json(&profile).unwrap();
+    let file = folder.write("senses.json", &profile);
+    let refused = |arguments: &[&str], rule: &str| {
+        let output = palpate(arguments);
+        let said = errors(&output);
+        assert!(status(&output) == 2 && said.contains(rule), "{said}");
+    };
+    refused(
+        &["devices", "--stability", "--profile", &file],
+        "Force Dimension omega gives no forces, so nothing presses back",
+    );
+    // Once it was run without any force, in silence.
+    let device = format!("simulated:{file}");
+    refused(
+        &["feel", "--fast", "--device", &device, "--stiffness", "300", "--strict"],
+        "--stiffness, --strict have no meaning for Force Dimension omega, which has no forces",
+    );
+    refused(&["devices", "--materials", "--material", "rubber"], "cannot be used with");
+}
+
+/// What does not fit is not always a hand's.
+#[test]
+fn messages_name_the_causes_and_numbers_that_are_few_digits_long() {
+    let told = |option: &str, value: &str| {
+        errors(&palpate(&["identify", "--device", "omega", option, value]))
+    };
+    let coarse = told("--plant-encoder-step", "1000");
+    assert!(coarse.contains("the travel is too small for its encoder steps"), "{coarse}");
+    let light = told("--plant-mass", "1e-30");
+    assert!(light.contains("must be at most 1e4, got 1.2499999999999998e31 1/s"), "{light}");
+    let none = text(&palpate(&["identify", "--device", "omega", "--plant-encoder-step", "0"]));
+    assert!(
+        none.contains("encoder step  0 m; -100 % of the profile's 0.00001; it was made with 0")
+    );
+}

@@ -7,6 +7,17 @@ use palpate_haptics::{DeviceLost, NumberError};
 
 use super::DeviceAxis;
 
+/// How far a motion is from the model's.
+fn missed(misfit: f64, limit: f64) -> String {
+    if misfit.is_finite() {
+        format!(
+            "the residual is {misfit:.3} times what encoder steps explain, {limit} at most are allowed"
+        )
+    } else {
+        "no numbers fit it".to_owned()
+    }
+}
+
 /// Why an identification ended without a result. The last force and torque written are zero.
 ///
 /// ```
@@ -80,7 +91,8 @@ pub enum IdentifyError {
     /// The handle left the range of the motions.
     #[error(
         "{axis}: the handle is {moved:.3e} {unit} from its start, {limit:.3e} {unit} at most are \
-         allowed: a hand moves it, or it falls; let go of it, and balance its weight",
+         allowed: a hand moves it, it falls, or the travel is too small for its encoder steps; let go \
+         of it, balance its weight, or allow more travel",
         unit = axis.length_unit()
     )]
     LeftRange {
@@ -94,7 +106,8 @@ pub enum IdentifyError {
     /// The handle moved faster than the motions may.
     #[error(
         "{axis}: the handle moves by {speed:.3} {unit}/s, {limit:.3} {unit}/s at most are allowed: \
-         a hand moves it, or the mass is far below that of other devices",
+         a hand moves it, its mass is far below that of other devices, or the travel is too small \
+         for its encoder steps",
         unit = axis.length_unit()
     )]
     TooFast {
@@ -108,7 +121,8 @@ pub enum IdentifyError {
     /// No force that is allowed moves the handle.
     #[error(
         "{axis}: the handle did not move at {force:.4} {unit}: a hand or a lock holds it, the motors \
-         are off, the encoders do not count, or its friction needs a larger part of the force",
+         are off, the encoders do not count, or its friction or mass needs a larger part of the \
+         force",
         unit = axis.force_unit()
     )]
     Stuck {
@@ -142,8 +156,10 @@ pub enum IdentifyError {
     },
     /// The handle moves otherwise than a mass with damping and friction.
     #[error(
-        "{axis}: the motion misses that of a mass with damping and friction by {misfit:.3} times \
-         what encoder steps explain, {limit} at most: a hand moves the handle, or forces come late"
+        "{axis}: the motion is not that of a mass with damping and friction: {}: a hand moves the \
+         handle, forces come late, or the handle is much lighter or heavier than its travel and \
+         force suit",
+        missed(*misfit, *limit)
     )]
     Misfit {
         /// The axis that was moved.

@@ -191,7 +191,9 @@ impl<const D: usize> Surface<D> {
         let Some(part) = self.relative_stiffness.filter(|_| most < f64::INFINITY) else {
             return self.clone();
         };
-        self.scaled(part * most / self.strata.stiffest(), 1.0)
+        // A little less, so that rounding takes no stiffness above the most.
+        let stiffness = part * most * (1.0 - 4.0 * f64::EPSILON);
+        self.scaled(stiffness / self.strata.stiffest(), 1.0)
     }
 
     /// Stiffness and damping of each layer.

@@ -7,7 +7,9 @@ use std::borrow::Cow;
 
 use super::bears::{at_least, at_most};
 use super::{GripperProfile, TurningProfile};
+use crate::acceptance::{Acceptance, Accepted};
 use crate::error::SafetyError;
+use crate::limits::DeviceLimits;
 
 /// The limits and properties of a device. Numbers are the maker's where they exist, and assumed
 /// where they do not.
@@ -277,6 +279,31 @@ impl DeviceProfile {
 }
 
 impl DeviceProfile {
+    /// The largest stiffness that the device renders at `rate` [Hz], at the device [N/m]; infinite if
+    /// nothing limits it. With [`Acceptance::AsIs`], which takes more too, that of
+    /// [`Acceptance::Device`].
+    ///
+    /// # Errors
+    ///
+    /// As [`Accepted::most_stiffness`].
+    ///
+    /// ```
+    /// use palpate_safety::{Acceptance, DeviceProfile};
+    ///
+    /// # fn main() -> Result<(), palpate_safety::SafetyError> {
+    /// let device = DeviceProfile::unlimited("example").with_max_stiffness(1500.0);
+    /// assert_eq!(device.most_stiffness(Acceptance::Device, 2000.0)?, 3000.0);
+    /// # Ok(())
+    /// # }
+    /// ```
+    pub fn most_stiffness(
+        &self,
+        acceptance: Acceptance,
+        rate: f64,
+    ) -> Result<f64, SafetyError> {
+        Accepted::most_stiffness(&DeviceLimits::along(self), acceptance, rate)
+    }
+
     /// Refuses a `device` with tighter limits than this one: a servo made for this profile
     /// could harm such a device or be unstable on it.
     ///
