@@ -127,6 +127,7 @@ fn write_safety(f: &mut Formatter<'_>, safety: &[SafetyReport]) -> Result {
     };
     let stages = [
         ("limit cycles", ticks(|point| point.limit_cycles.effect.ticks)),
+        ("passivity of guides", ticks(|point| point.free_forces.effect.ticks)),
         ("passivity", ticks(|point| point.passivity.effect.ticks)),
         ("force rate", ticks(|point| point.slew.ticks)),
         ("largest force", ticks(|point| point.force_limit.ticks)),

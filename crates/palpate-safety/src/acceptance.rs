@@ -363,6 +363,7 @@ fn stiffness_bounds(
     acceptance: Acceptance,
     rate: f64,
 ) -> Result<[(f64, Rule); 3], SafetyError> {
+    limits.least_damping.zero_or_more()?;
     let is_stated = limits.max_stiffness.positive()? < f64::INFINITY;
     // Of a device whose maker says nothing, only physics is known.
     let passive = match acceptance {
@@ -515,10 +516,16 @@ mod tests {
     #[test]
     fn a_device_that_renders_nothing_is_an_error() {
         let impedance = Impedance::new(100.0, 0.0).unwrap();
-        for least_damping in [0.0, -1.0, f64::NAN] {
+        for least_damping in [-1.0, f64::NAN] {
             let device = DeviceProfile { least_damping, ..device() };
             assert!(Accepted::new(impedance, 1.0, &device, 1000.0).is_err());
         }
+        // Without any damping, a device whose maker states no stiffness renders none.
+        let undamped = DeviceProfile { least_damping: 0.0, ..device() };
+        assert!(Accepted::new(impedance, 1.0, &undamped, 1000.0).is_ok());
+        let unstated = DeviceProfile { max_stiffness: f64::INFINITY, ..undamped };
+        let error = Accepted::new(impedance, 1.0, &unstated, 1000.0).unwrap_err();
+        assert_eq!(error.to_string(), "least_damping must be positive, got 0 N·s/m");
         let device = DeviceProfile { friction: 0.0, ..device() };
         let error = Accepted::new(impedance, 1.0, &device, 1000.0).unwrap_err();
         assert_eq!(error.to_string(), "friction must be positive, got 0 N");

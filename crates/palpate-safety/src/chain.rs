@@ -12,6 +12,7 @@ use crate::channel::{Channel, TickInput};
 use crate::device::DeviceProfile;
 use crate::error::{NumberError, SafetyError};
 use crate::finite;
+use crate::free_energy::{FreeEnergy, Passed};
 use crate::impedance::Impedance;
 use crate::limit::cut;
 use crate::limit_cycle::{CycleInput, LimitCycle, LimitCycleOptions};
@@ -29,8 +30,8 @@ pub struct PortState<const D: usize> {
     /// The velocity of the device point [m/s], for example from a
     /// [`VelocityEstimator`](crate::VelocityEstimator).
     pub velocity: Vector<f64, D>,
-    /// A force on the hand that is added to the wanted force but not observed for passivity
-    /// [N]: the force of guides and magnets, which is conservative.
+    /// A force on the hand that is added to the wanted force [N]: that of guides and magnets. It has
+    /// a potential, beyond which it gives out no energy.
     pub free_force: Vector<f64, D>,
     /// By how much the tick began too late [s]; zero in time. A tick without a new reading is as
     /// good as late.
@@ -238,6 +239,7 @@ impl SafetyOptions {
 pub struct SafetyChain<const D: usize> {
     accepted: Accepted,
     cycle: LimitCycle<Vector<f64, D>>,
+    free: FreeEnergy<Vector<f64, D>>,
     passivity: Passivity<Vector<f64, D>>,
     channel: Channel<D>,
 }
@@ -261,7 +263,7 @@ impl<const D: usize> SafetyChain<D> {
         let limits = DeviceLimits::along(device);
         let accepted = Accepted::of(impedance, scale, &limits, options.acceptance, rate)?;
         let accepted = if options.is_strict { accepted.unchanged()? } else { accepted };
-        let damping = limits.least_damping.positive()?;
+        let damping = limits.least_damping.zero_or_more()?;
         let passivity = PassivityOptions {
             // A device with infinite damping is passive whatever it renders.
             is_on: options.has_passivity_control && damping < f64::INFINITY,
@@ -279,6 +281,7 @@ impl<const D: usize> SafetyChain<D> {
         Ok(Self {
             accepted,
             cycle: LimitCycle::new(cycle),
+            free: FreeEnergy::new(passivity.reserve),
             passivity: Passivity::new(passivity),
             channel: Channel::new(&limits, &options, 1.0, rate)?,
         })
@@ -375,7 +378,11 @@ impl<const D: usize> SafetyChain<D> {
         let is_disturbed = late > 0.0 || is_rising;
         let softness = self.cycle.observed(&seen.disturbed(is_disturbed), is_sound);
         let free_force = if softness < 1.0 { free_force * softness } else { free_force };
-        let seen = PortMotion { position, velocity, effort, is_rising, elapsed, softness };
+        let options = self.passivity.options();
+        let Passed { force: free_force, spent } =
+            self.free.step([free_force, position], elapsed, options, is_sound);
+        let seen =
+            PortMotion { position, velocity, effort, is_rising, elapsed, softness, spent };
         let observed = self.passivity.observed(wanted, &seen, is_sound);
         let (force, left) = self.channel.step(observed, free_force, &input);
         self.passivity.written(left);
@@ -427,5 +434,6 @@ impl<const D: usize> SafetyChain<D> {
     pub fn report(&self) -> SafetyReport {
         SafetyReport::of(&self.accepted, self.passivity.report(), &self.channel)
             .with_limit_cycles(self.cycle.report())
+            .with_free_forces(self.free.report())
     }
 }

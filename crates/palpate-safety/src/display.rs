@@ -27,6 +27,7 @@ impl Display for SafetyReport {
     fn fmt(&self, f: &mut Formatter<'_>) -> Result {
         let stages = [
             ("limit cycles", self.limit_cycles.effect),
+            ("passivity of guides", self.free_forces.effect),
             ("passivity", self.passivity.effect),
             ("slew limit", self.slew),
             ("force limit", self.force_limit),

@@ -24,6 +24,7 @@ mod effect;
 mod error;
 mod finite;
 mod force_limit;
+mod free_energy;
 mod impedance;
 #[doc(hidden)]
 pub mod internal;
@@ -50,6 +51,7 @@ pub use device::{
 };
 pub use effect::Effect;
 pub use error::{NumberError, Refused, SafetyError};
+pub use free_energy::FreeForceReport;
 pub use impedance::Impedance;
 pub use limit_cycle::LimitCycleReport;
 pub use limits::DeviceLimits;

@@ -20,11 +20,11 @@ use crate::lift::Lift;
 
 /// The factor by which past leaks and losses decay in each tick of contact, when they are
 /// compared: a memory of 100 ticks, which spans several impacts.
-const MEMORY: f64 = 0.99;
+pub(crate) const MEMORY: f64 = 0.99;
 
 /// What damping dissipates counts a hundredth more: a wall of exactly `2 b / T`, which many
 /// profiles allow, leaks as much but for the rounding of its forces and places.
-const SLACK: f64 = 1.01;
+pub(crate) const SLACK: f64 = 1.01;
 
 /// The controller leaves at least this part of the force whose leaks damping covers. With zero,
 /// hands would sink into walls, because position quantisation looks like work done on a resting
@@ -33,11 +33,11 @@ const FLOOR: f64 = 0.25;
 
 /// The most by which the controller changes what it takes from a force in a tick [N], unless the
 /// force would give out more than [`SPARE`] meanwhile. A hand does not feel it as a kick.
-const STEP: f64 = 0.3;
+pub(crate) const STEP: f64 = 0.3;
 
 /// Energy that may be given out beyond the balance and the reserve while the controller takes the
 /// force away smoothly [J].
-const SPARE: f64 = 2.5e-4;
+pub(crate) const SPARE: f64 = 2.5e-4;
 
 /// A force, displacement or velocity with the inner product that gives energy: a vector, or a
 /// [spatial vector](super::SpatialVector) of translation and rotation.
@@ -86,6 +86,8 @@ pub(crate) struct PortMotion<V> {
     /// The part of the stiffness that is rendered; less than 1 after a
     /// [limit cycle](crate::limit_cycle::LimitCycle).
     pub(crate) softness: f64,
+    /// What of the energy that damping dissipates guides and magnets need [J].
+    pub(crate) spent: f64,
 }
 
 impl<V> PortMotion<V> {
@@ -347,7 +349,7 @@ impl<V: InnerProduct> Passivity<V> {
         report.dissipated += (last.wanted.dot(way).max(0.0) - given.max(0.0)).max(0.0);
         self.balance -= given;
         if last.wanted != V::ZERO || wanted != V::ZERO {
-            let loss = SLACK * damping * way.dot(way) / state.elapsed;
+            let loss = SLACK * damping * way.dot(way) / state.elapsed - state.spent;
             let leak = -0.5 * (wanted - last.wanted).dot(way);
             self.leaks = MEMORY * self.leaks + state.softness * leak;
             self.losses = MEMORY * self.losses + loss;
@@ -477,6 +479,7 @@ mod tests {
                 is_rising: false,
                 elapsed: 1e-3,
                 softness: 1.0,
+                spent: 0.0,
             };
             let _ = passivity.limit(Vector([force, 0.0]), &state);
             passivity.written(Vector([force, 0.0]));

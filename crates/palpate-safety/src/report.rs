@@ -6,6 +6,7 @@
 use crate::Accepted;
 use crate::channel::Channel;
 use crate::effect::Effect;
+use crate::free_energy::FreeForceReport;
 use crate::limit_cycle::LimitCycleReport;
 use crate::passivity::PassivityReport;
 use crate::readings::ReadingsReport;
@@ -23,6 +24,8 @@ pub struct SafetyReport {
     pub readings: ReadingsReport,
     /// Limit cycles, after which the stiffness is less.
     pub limit_cycles: LimitCycleReport,
+    /// Passivity of guides and magnets.
+    pub free_forces: FreeForceReport,
     /// Passivity observer and controller.
     pub passivity: PassivityReport,
     /// The slew limit. A tick counts twice if the force had to be limited again after the later
@@ -123,6 +126,11 @@ impl SafetyReport {
         Self { limit_cycles, ..self }
     }
 
+    /// This report with the passivity of guides and magnets.
+    pub(crate) fn with_free_forces(self, free_forces: FreeForceReport) -> Self {
+        Self { free_forces, ..self }
+    }
+
     /// The report of a chain of forces.
     pub(crate) fn of<const D: usize>(
         accepted: &Accepted,
@@ -135,6 +143,7 @@ impl SafetyReport {
             impedance: accepted.clone(),
             readings: ReadingsReport::default(),
             limit_cycles: LimitCycleReport::default(),
+            free_forces: FreeForceReport::default(),
             passivity,
             slew: effects.slew,
             force_limit: effects.force_limit,

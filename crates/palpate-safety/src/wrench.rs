@@ -16,6 +16,7 @@ use palpate_field::Vector;
 use crate::channel::{Channel, TickInput};
 use crate::error::{NumberError, SafetyError};
 use crate::finite;
+use crate::free_energy::{FreeEnergy, Passed};
 use crate::limit::cut;
 use crate::limit_cycle::{CycleInput, LimitCycle, LimitCycleOptions};
 use crate::limits::DeviceLimits;
@@ -110,6 +111,7 @@ pub struct WrenchChain<const D: usize> {
     /// A radian as a length [m].
     unit: f64,
     cycle: LimitCycle<SpatialVector<D>>,
+    free: FreeEnergy<Vector<f64, D>>,
     passivity: Passivity<SpatialVector<D>>,
     force: Channel<D>,
     torque: Channel<3>,
@@ -141,7 +143,7 @@ struct AxisLimits {
 impl AxisLimits {
     fn new(limits: &DeviceLimits) -> Result<Self, SafetyError> {
         Ok(Self {
-            damping: limits.least_damping.positive()?,
+            damping: limits.least_damping.zero_or_more()?,
             mass: limits.mass.not_negative()?,
             max_rate: limits.max_force_rate.positive()?,
             encoder_step: limits.encoder_step.not_negative()?,
@@ -206,6 +208,7 @@ impl<const D: usize> WrenchChain<D> {
             sides,
             unit,
             cycle: LimitCycle::new(cycle),
+            free: FreeEnergy::new(passivity.reserve),
             passivity: Passivity::new(passivity),
             force: Channel::new(along, options, 1.0, rate)?,
             torque: Channel::new(about, options, unit, rate)?,
@@ -287,15 +290,19 @@ impl<const D: usize> WrenchChain<D> {
         let (along, about) = (along.unwrap_or(1.0), about.unwrap_or(1.0));
         let free_force = free_force * along;
         let wanted = SpatialVector { along: wanted.along * along, about: wanted.about * about };
-        let period = self.passivity.options().period;
-        let elapsed = finite::elapsed(elapsed, period + late.max(0.0));
+        let options = *self.passivity.options();
+        let elapsed = finite::elapsed(elapsed, options.period + late.max(0.0));
         let as_lengths = wanted.turning(1.0 / unit);
         let free = SpatialVector { along: free_force, about: Vector::ZERO };
         let seen = CycleInput::of([as_lengths, free], effort, position, elapsed);
         let is_disturbed = late > 0.0 || is_rising;
         let softness = self.cycle.observed(&seen.disturbed(is_disturbed), is_sound);
         let free_force = if softness < 1.0 { free_force * softness } else { free_force };
-        let seen = PortMotion { position, velocity, effort, is_rising, elapsed, softness };
+        let along = PassivityOptions { damping: self.sides.along.damping, ..options };
+        let Passed { force: free_force, spent } =
+            self.free.step([free_force, position.along], elapsed, &along, is_sound);
+        let seen =
+            PortMotion { position, velocity, effort, is_rising, elapsed, softness, spent };
         let allowed = self.passivity.observed(as_lengths, &seen, is_sound);
         // An unchanged wrench keeps its bits.
         let allowed = if allowed == as_lengths { wanted } else { allowed.turning(unit) };
@@ -352,6 +359,7 @@ impl<const D: usize> WrenchChain<D> {
             turning: Some(turning),
             ..SafetyReport::of(along, self.passivity.report(), &self.force)
                 .with_limit_cycles(self.cycle.report())
+                .with_free_forces(self.free.report())
         }
     }
 }

@@ -7,6 +7,7 @@
 #![expect(clippy::float_cmp, reason = "tests compare exact numbers")]
 
 mod faults;
+mod guides;
 mod identify;
 mod integration;
 mod recovery;

@@ -1,0 +1,86 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! Guides that are stiffer than the device's damping bears, through the real servo.
+
+use palpate_devices::{Device, DeviceProfile, Hand, PointState, SimulatedDevice};
+use palpate_field::{Shape, Vector};
+use palpate_haptics::{
+    Acceptance, Guide, GuideOptions, Protection, ServoOptions, UnprotectedServo,
+};
+
+const PERIOD: f64 = 1e-3;
+
+/// What a guide did with a hand in 10 s.
+#[derive(Debug)]
+struct Guided {
+    /// The most energy given out beyond what the guide stored at first and what the device's damping
+    /// dissipates at least, at any time [J].
+    beyond: f64,
+    /// The span of the last second [m].
+    swing: f64,
+    /// The stiffness in the end over that of the guide.
+    left: f64,
+}
+
+/// A guide of so many times the stiffness that is passive, `2 b / T`, taken as it is; a hand of the
+/// damping `grip` [N·s/m] is let go at `start` [m] from it.
+fn guided(profile: &DeviceProfile, times: f64, [grip, start]: [f64; 2]) -> Guided {
+    let stiffness = times * 2.0 * profile.least_damping / PERIOD;
+    let hand = Hand::resting(Vector([start, 0.0])).unwrap();
+    let hand = hand.with_mass(0.0).unwrap().with_spring(0.0, grip).unwrap();
+    let mut device = SimulatedDevice::new(profile.clone(), vec![hand]).unwrap();
+    let far = Shape::half_space([0.0, 1.0], -10.0).unwrap();
+    let protection = Protection::new(profile.clone())
+        .with_acceptance(Acceptance::AsIs)
+        .with_rise_rate(f64::INFINITY);
+    let options = ServoOptions::default().with_max_force(f64::INFINITY);
+    let servo = UnprotectedServo::new(far, 1, options).unwrap();
+    let mut servo = servo.protected(&protection).unwrap();
+    let options = GuideOptions::default()
+        .with_stiffness(stiffness)
+        .with_damping(0.0)
+        .with_max_force(f64::INFINITY);
+    servo.guide(&[Guide::to_point(Vector::ZERO, options).unwrap()]).unwrap();
+    let stored = 0.5 * stiffness * start * start;
+    let mut points = [PointState::at_rest(Vector::ZERO)];
+    let (mut beyond, mut span) = (0.0_f64, [f64::INFINITY, f64::NEG_INFINITY]);
+    let (mut left, mut last, mut dissipated) = (1.0, start, 0.0);
+    for tick in 0..10_000 {
+        device.read(f64::from(tick) * PERIOD, &mut points).unwrap();
+        let x = points[0].position[0];
+        let way = x - last;
+        dissipated += profile.least_damping * way * way / PERIOD;
+        last = x;
+        beyond = beyond.max(device.energy_given() - stored - dissipated);
+        if tick >= 9000 {
+            span = [span[0].min(x), span[1].max(x)];
+        }
+        servo.step(&points);
+        device.write(servo.forces()).unwrap();
+        let wanted = stiffness * x;
+        if wanted != 0.0 {
+            left = servo.forces()[0][0] / -wanted;
+        }
+    }
+    Guided { beyond, swing: span[1] - span[0], left }
+}
+
+#[test]
+fn a_stiff_guide_gives_out_a_millijoule_beyond_its_potential_at_most() {
+    let device = DeviceProfile::unlimited("light")
+        .with_mass(0.05)
+        .with_least_damping(0.5)
+        .with_friction(0.0);
+    for times in [0.9, 2.0, 3.0] {
+        for grip in [0.0, 0.1, 1.0] {
+            for start in [0.0005, 0.004, 0.01] {
+                let found = guided(&device, times, [grip, start]);
+                let case = format!("{times} times, {grip} N·s/m, {start} m: {found:?}");
+                assert!(found.beyond <= 1e-3, "{case}");
+                assert!(found.swing < 1e-6 && found.left > 0.1, "{case}");
+                assert!(times > 1.0 || grip < 1.0 || found.left == 1.0, "{case}");
+            }
+        }
+    }
+}
