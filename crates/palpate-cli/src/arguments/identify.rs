@@ -39,8 +39,8 @@ pub(crate) struct IdentifyOptions {
     /// Its encoder steps, over those of the profile.
     #[arg(long, value_name = "FACTOR", default_value = "1", hide_default_value = true, allow_negative_numbers = true, value_parser = zero_or_more(""))]
     pub(crate) plant_encoder_step: f64,
-    /// A simulated hand that holds the handle by this stiffness [N/m], to see that it is noticed; no
-    /// hand if left out.
+    /// A simulated hand that holds the handle by this stiffness [N/m], to see that it is noticed: from
+    /// a fifth of the friction at the end of the travel; no hand if left out.
     #[arg(long, allow_negative_numbers = true, value_parser = positive("N/m"))]
     pub(crate) grip: Option<f64>,
     /// Ticks a second [Hz].

@@ -107,6 +107,8 @@ impl Report<'_> {
         if matches!(axis.encoder_step, EncoderStep::Uneven(_)) {
             writeln!(out, "  its steps have no common length; the largest counts")?;
         }
+        let (softest, unit) = (rounded(axis.softest_spring), axis.axis.stiffness_unit());
+        writeln!(out, "  a hand that holds it by less than {softest} {unit} is not noticed")?;
         if axis.has_weight() {
             let (force, unit) = (rounded(axis.offset.value), axis.axis.force_unit());
             writeln!(
@@ -158,6 +160,7 @@ impl Report<'_> {
                 "strokes": axis.strokes,
                 "time": axis.time,
                 "misfit": axis.misfit,
+                "softest_spring": axis.softest_spring,
                 "offset": {
                     "value": axis.offset.value,
                     "error": axis.offset.error,

@@ -53,10 +53,12 @@ pub(super) fn identify_axis<const D: usize>(
         let observed: Vec<_> = motions.strokes.iter().map(observe).collect();
         let guess = guess(&motions.strokes, motions.breakaway(), &bounds);
         let sprung = fit(&observed, &guess, true);
+        let mut softest_spring = f64::INFINITY;
         if let Some(sprung) = &sprung {
             let (stiffness, deviation) = (sprung.model.stiffness, sprung.deviations.stiffness);
-            let is_felt = stiffness * bounds.travel > FELT * sprung.model.friction;
-            if is_felt && stiffness > SURE * deviation {
+            softest_spring =
+                (FELT * sprung.model.friction / bounds.travel).max(SURE * deviation);
+            if stiffness > softest_spring {
                 return Err(IdentifyError::Held { axis, stiffness });
             }
         }
@@ -69,6 +71,7 @@ pub(super) fn identify_axis<const D: usize>(
         };
         let found = IdentifiedAxis {
             encoder_step: step,
+            softest_spring,
             strokes: motions.strokes.len() as u64,
             time: motions.time() - start,
             ..described(axis, &fit, tilt)
@@ -133,6 +136,7 @@ fn described(axis: super::DeviceAxis, fit: &Fit, tilt: f64) -> IdentifiedAxis {
         friction: estimate(model.friction, deviations.friction),
         encoder_step: EncoderStep::Unseen(0.0),
         offset: estimate(model.offset, deviations.offset),
+        softest_spring: 0.0,
         misfit: fit.misfit,
         strokes: 0,
         time: 0.0,

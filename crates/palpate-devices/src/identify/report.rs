@@ -146,7 +146,10 @@ pub struct IdentifiedAxis {
     /// A constant force on the handle beside the motors' [N], or torque [N·m]: weight that is not
     /// balanced.
     pub offset: Estimate,
-    /// The root mean square of the misses of the model, over what encoder steps explain: 1 for a
+    /// The softest spring by which a hand may hold the handle and be noticed [N/m], or [N·m/rad]: a
+    /// softer one, or a hand that only drags, adds to mass and damping.
+    pub softest_spring: f64,
+    /// The root mean square of the residuals of the model, over what encoder steps explain: 1 for a
     /// mass with damping and friction.
     pub misfit: f64,
     /// Strokes that were evaluated.
