@@ -85,10 +85,10 @@ pub use palpate_material::{
 };
 pub use palpate_safety::{
     Acceptance, Accepted, Arrivals, Buttons, ContinuousReport, Device, DeviceLost,
-    DeviceProfile, Effect, GripperProfile, GripperState, Impedance, LimitCycleReport,
-    NumberError, PassivityReport, PointState, PortState, Reading, ReadingsReport, Recovery,
-    Rule, SafetyChain, SafetyError, SafetyOptions, SafetyReport, TurnState, TurningProfile,
-    TurningReport, VelocityEstimator, WatchdogReport, WorkspaceMap,
+    DeviceProfile, Effect, FreeForceReport, GripperProfile, GripperState, Impedance,
+    LimitCycleReport, NumberError, PassivityReport, PointState, PortState, Reading,
+    ReadingsReport, Recovery, Rule, SafetyChain, SafetyError, SafetyOptions, SafetyReport,
+    TurnState, TurningProfile, TurningReport, VelocityEstimator, WatchdogReport, WorkspaceMap,
 };
 pub use protection::Protection;
 pub use proxy::{DEFAULT_BUDGET, Following, Probe, Proxy};
