@@ -420,7 +420,7 @@ pub fn run_on<const D: usize>(
     let (control, mut end) = options.watch.is_some().then(|| handoff(&*servo, room)).unzip();
     servo.check_device(device)?;
     options.pace.check(device)?;
-    let player = options.vibration.map(|vibration| vibration.start(servo)).transpose()?;
+    let mut player = options.vibration.map(|vibration| vibration.start(servo)).transpose()?;
     // Within an option the closure's lifetime would have to be that of the loop.
     let motion = options.motion.map(|motion| -> Motion<'_, D> { motion });
     let (rows, queued) = match (options.sink, options.pace) {
@@ -438,7 +438,7 @@ pub fn run_on<const D: usize>(
         .moving(motion)
         .interrupted_by(options.interrupt)
         .reconnecting(options.reconnection)
-        .vibrating(player)
+        .vibrating(player.as_mut())
         .handing_off(end.as_mut());
     let run = || servo_loop.run(clock, &schedule);
     Ok(accompanied(control.zip(options.watch), queued, run))
