@@ -133,7 +133,7 @@ impl<const D: usize> ThreadOptions<D> {
     /// let options = ThreadOptions::default()
     ///     .with_raised_priority(false)
     ///     .with_duration(0.01)
-    ///     .with_motion(|time, set_pose| set_pose(0, Pose::translation([0.0, time].into())));
+    ///     .with_motion(|time, set_pose| set_pose(0, Pose::translation([0.0, time])));
     /// let thread = ServoThread::start_on(VirtualClock::new(), servo, device, options)?;
     /// let report = thread.join().report;
     /// assert!((report.largest_depth - 0.006).abs() < 1e-9); // after 9 ms

@@ -199,3 +199,54 @@ impl Vibration<'_> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use assert_no_alloc::assert_no_alloc;
+    use palpate_field::{Shape, Vector};
+    use palpate_haptics::{
+        DeviceProfile, PointState, Protection, ServoOptions, UnprotectedServo,
+    };
+    use palpate_vibration::MappingOptions;
+
+    use super::*;
+
+    /// A motor that keeps its last amplitude.
+    struct Motor(f64);
+
+    impl Vibrates for Motor {
+        fn channels(&self) -> usize {
+            1
+        }
+        fn play(&mut self, commands: &[Command]) -> Result<(), palpate_haptics::DeviceLost> {
+            self.0 = commands.iter().map(|command| command.tone.amplitude).sum();
+            Ok(())
+        }
+    }
+
+    #[test]
+    fn playing_allocates_and_frees_nothing() {
+        let circle = Shape::circle(0.05).unwrap();
+        let servo = UnprotectedServo::new(circle, 1, ServoOptions::default()).unwrap();
+        let profile = DeviceProfile::unlimited("finger");
+        let mut servo = servo.protected(&Protection::new(profile)).unwrap();
+        let mapping = Mapping::new(MappingOptions::default()).unwrap();
+        let mut motor = Motor(0.0);
+        let wood = Material::preset("wood").unwrap();
+        let vibration = Vibration::new(mapping, &mut motor).with_materials(&[wood]);
+        let mut player = vibration.start(&servo).unwrap();
+        for tick in 0..1000 {
+            // In and out of the circle, ten times.
+            let height = if tick % 100 < 50 { 0.06 } else { 0.045 };
+            let at = [PointState::at_rest(Vector([0.0, height]))];
+            assert_no_alloc(|| {
+                servo.step(&at);
+                player.tick(&servo);
+            });
+        }
+        let report = assert_no_alloc(|| player.finish());
+        assert!(report.commands == 50 && report.strongest > 0.1, "{report:?}");
+        drop(player);
+        assert_eq!(motor.0, 0.0);
+    }
+}
