@@ -347,7 +347,7 @@ impl<const D: usize> std::fmt::Debug for RunOptions<'_, D> {
 ///
 /// [`HapticsError::Number`] if the duration is negative or not finite;
 /// [`HapticsError::ContactPoints`] if servo and device have different numbers of contact
-/// points; [`HapticsError::Rate`] and [`HapticsError::Pace`] if the device measures more seldom than
+/// points, or a device that vibrates has another number of channels; [`HapticsError::Rate`] and [`HapticsError::Pace`] if the device measures more seldom than
 /// the servo ticks, or one of both sets another pace than the options;
 /// [`SafetyError::OtherDevice`](palpate_haptics::SafetyError) if the device has tighter
 /// limits than the one that the servo was made for. Failures during the run are in the report.

@@ -153,6 +153,7 @@ impl<const D: usize> ThreadOptions<D> {
     pub fn with_reconnection(self, reconnection: Reconnection) -> Self {
         Self { reconnection: Some(reconnection), ..self }
     }
+
     /// The same options with touches that are played on a device that vibrates. The thread owns
     /// that device, silences it however it ends, and gives it [back](EndedThread::vibration).
     ///
@@ -333,9 +334,7 @@ impl<const D: usize> ServoThread<D> {
     ///
     /// # Errors
     ///
-    /// [`StartError::Haptics`] as [`run`](crate::run()), also for a device that vibrates and has
-    /// another number of channels than the servo has contact points;
-    /// [`StartError::ThreadNotStarted`].
+    /// [`StartError::Haptics`] as [`run`](crate::run()); [`StartError::ThreadNotStarted`].
     pub fn start(
         servo: Servo<D>,
         device: Box<dyn Device<D> + Send>,
