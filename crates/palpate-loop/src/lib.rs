@@ -12,7 +12,7 @@
 //! The loop opens its device, sets the watchdog of the device, and closes it. It runs at the pace of
 //! a clock or of the [device](Pace::Device); a lost device ends the run, or is looked for by a
 //! [`Reconnection`] while ticks go on without force. A [`Vibration`] plays the touches on a device
-//! that shakes.
+//! that shakes, and silences it at the end.
 //!
 //! The loop runs on the machine's clock, a [`WallClock`], or, in tests, on a [`VirtualClock`]. A
 //! [`Recorder`] keeps every tick, [`Records`] hand them to another thread while the servo runs, a
@@ -79,3 +79,8 @@ pub use thread::{EndedThread, ServoThread, StartError, ThreadMotion, ThreadOptio
 pub use tool_report::ToolReport;
 pub use trace::TraceWriter;
 pub use vibration::{Vibration, VibrationReport};
+
+/// Aborts where a test forbids to allocate.
+#[cfg(test)]
+#[global_allocator]
+static ALLOCATOR: assert_no_alloc::AllocDisabler = assert_no_alloc::AllocDisabler;

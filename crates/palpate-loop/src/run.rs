@@ -347,7 +347,7 @@ impl<const D: usize> std::fmt::Debug for RunOptions<'_, D> {
 ///
 /// [`HapticsError::Number`] if the duration is negative or not finite;
 /// [`HapticsError::ContactPoints`] if servo and device have different numbers of contact
-/// points; [`HapticsError::Rate`] and [`HapticsError::Pace`] if the device measures more seldom than
+/// points, or a device that vibrates has another number of channels; [`HapticsError::Rate`] and [`HapticsError::Pace`] if the device measures more seldom than
 /// the servo ticks, or one of both sets another pace than the options;
 /// [`SafetyError::OtherDevice`](palpate_haptics::SafetyError) if the device has tighter
 /// limits than the one that the servo was made for. Failures during the run are in the report.
@@ -420,7 +420,7 @@ pub fn run_on<const D: usize>(
     let (control, mut end) = options.watch.is_some().then(|| handoff(&*servo, room)).unzip();
     servo.check_device(device)?;
     options.pace.check(device)?;
-    let player = options.vibration.map(|vibration| vibration.start(servo)).transpose()?;
+    let mut player = options.vibration.map(|vibration| vibration.start(servo)).transpose()?;
     // Within an option the closure's lifetime would have to be that of the loop.
     let motion = options.motion.map(|motion| -> Motion<'_, D> { motion });
     let (rows, queued) = match (options.sink, options.pace) {
@@ -438,7 +438,7 @@ pub fn run_on<const D: usize>(
         .moving(motion)
         .interrupted_by(options.interrupt)
         .reconnecting(options.reconnection)
-        .vibrating(player)
+        .vibrating(player.as_mut())
         .handing_off(end.as_mut());
     let run = || servo_loop.run(clock, &schedule);
     Ok(accompanied(control.zip(options.watch), queued, run))

@@ -34,8 +34,8 @@ pub(crate) enum RowSink<'a, const D: usize> {
     Call(&'a mut (dyn FnMut(&TraceRow<D>) + Send)),
 }
 
-/// A servo with its device, recorder and hand-off.
-pub(crate) struct ServoLoop<'a, const D: usize> {
+/// A servo with its device, recorder and hand-off, and a player whose device lives for `'v`.
+pub(crate) struct ServoLoop<'a, 'v, const D: usize> {
     servo: &'a mut Servo<D>,
     device: &'a mut dyn Device<D>,
     recorder: Option<&'a mut Recorder<D>>,
@@ -49,7 +49,7 @@ pub(crate) struct ServoLoop<'a, const D: usize> {
     /// Zero forces, written at the end.
     no_forces: Vec<Vector<f64, D>>,
     connection: Connection,
-    vibration: Option<Player<'a>>,
+    vibration: Option<&'a mut Player<'v>>,
     /// Whether the servo limits the force of a gripper.
     has_gripper: bool,
     /// The time of the tick since the servo started [s].
@@ -68,7 +68,7 @@ pub(crate) struct Schedule {
     pub(crate) rehearses: bool,
 }
 
-impl<'a, const D: usize> ServoLoop<'a, D> {
+impl<'a, 'v, const D: usize> ServoLoop<'a, 'v, D> {
     /// A loop with a device that was [checked](Servo::check_device).
     pub(crate) fn new(servo: &'a mut Servo<D>, device: &'a mut dyn Device<D>) -> Self {
         let points = device.points();
@@ -119,7 +119,7 @@ impl<'a, const D: usize> ServoLoop<'a, D> {
         self
     }
 
-    pub(crate) fn vibrating(mut self, vibration: Option<Player<'a>>) -> Self {
+    pub(crate) fn vibrating(mut self, vibration: Option<&'a mut Player<'v>>) -> Self {
         self.vibration = vibration;
         self
     }
@@ -130,7 +130,8 @@ impl<'a, const D: usize> ServoLoop<'a, D> {
     }
 
     /// Runs the loop. However it ends, the last that it writes are zero forces and a zero torque,
-    /// and it closes the device; the report says whether the device took them.
+    /// it closes the device, and it silences the one that vibrates; the report says whether the
+    /// devices took that.
     pub(crate) fn run(mut self, clock: &mut dyn Clock, schedule: &Schedule) -> RunReport {
         let ticks = AssertUnwindSafe(|| self.ticks(clock, schedule));
         let ending = match catch_unwind(ticks) {
@@ -139,6 +140,7 @@ impl<'a, const D: usize> ServoLoop<'a, D> {
             Err(panic) => Ending::Panicked { message: message_of(&*panic) },
         };
         let is_released = self.release();
+        let vibration = self.vibration.take().map(Player::finish);
         if let Some(end) = &self.end {
             end.finish();
         }
@@ -153,7 +155,7 @@ impl<'a, const D: usize> ServoLoop<'a, D> {
             rows_dropped: dropped,
             safety: self.servo.safety(),
             connection: self.connection.report(self.time),
-            vibration: self.vibration.map(Player::finish),
+            vibration,
         };
         self.tally.report(ended)
     }

@@ -20,14 +20,14 @@ use crate::records::{Records, queue};
 use crate::report::RunReport;
 use crate::run::Motion;
 use crate::servo_loop::{RowSink, Schedule, ServoLoop};
+use crate::vibration::{Player, Vibration};
 
 /// How long a drop waits for the zero forces: a device takes them within a tick. A driven clock
 /// that nobody advances lets it wait in vain.
 const PATIENCE: Duration = Duration::from_secs(1);
 
 /// A closure that moves bodies before each tick in a servo's thread, as [`Motion`] does in a
-/// call. That of a built scene of `palpate-scene` is `move |time, set_pose| scene.motion()(time,
-/// set_pose)`.
+/// call.
 pub type ThreadMotion<const D: usize> =
     Box<dyn FnMut(f64, &mut dyn FnMut(usize, Pose<D>)) + Send>;
 
@@ -36,12 +36,11 @@ pub type ThreadMotion<const D: usize> =
 /// ```
 /// use palpate_loop::ThreadOptions;
 ///
-/// let options = ThreadOptions::default().with_duration(2.0).with_recorder(2000);
+/// let options = ThreadOptions::<3>::default().with_duration(2.0).with_recorder(2000);
 /// assert_eq!((options.duration, options.rows), (Some(2.0), Some(2000)));
 /// ```
-#[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
-pub struct ThreadOptions {
+pub struct ThreadOptions<const D: usize> {
     /// The time for which the servo runs [s]; `None` means until [`ServoThread::end`].
     pub duration: Option<f64>,
     /// Whether the thread requests a raised priority.
@@ -53,12 +52,17 @@ pub struct ThreadOptions {
     pub rows: Option<usize>,
     /// The capacities of the hand-off.
     pub handoff: HandoffOptions,
+    /// Moves bodies before each tick.
+    pub motion: Option<ThreadMotion<D>>,
     /// How the loop goes on when the device is lost; `None` to end it.
     pub reconnection: Option<Reconnection>,
+    /// Plays the touches on a device that vibrates.
+    pub vibration: Option<Vibration<'static>>,
 }
 
-impl Default for ThreadOptions {
-    /// No end but a lost device, raised priority, default hand-off, no rehearsals, no recorder.
+impl<const D: usize> Default for ThreadOptions<D> {
+    /// No end but a lost device, raised priority, default hand-off; no rehearsals, recorder, motion
+    /// and vibration.
     fn default() -> Self {
         Self {
             duration: None,
@@ -66,27 +70,29 @@ impl Default for ThreadOptions {
             rehearses: false,
             rows: None,
             handoff: HandoffOptions::default(),
+            motion: None,
             reconnection: None,
+            vibration: None,
         }
     }
 }
 
-impl ThreadOptions {
+impl<const D: usize> ThreadOptions<D> {
     /// The same options with an end after `duration` [s].
     #[must_use]
-    pub const fn with_duration(self, duration: f64) -> Self {
+    pub fn with_duration(self, duration: f64) -> Self {
         Self { duration: Some(duration), ..self }
     }
 
     /// The same options with a request for a raised priority or without.
     #[must_use]
-    pub const fn with_raised_priority(self, is_raised: bool) -> Self {
+    pub fn with_raised_priority(self, is_raised: bool) -> Self {
         Self { raises_priority: is_raised, ..self }
     }
 
     /// The same options with rehearsals or without.
     #[must_use]
-    pub const fn with_rehearsals(self, rehearses: bool) -> Self {
+    pub fn with_rehearsals(self, rehearses: bool) -> Self {
         Self { rehearses, ..self }
     }
 
@@ -94,20 +100,113 @@ impl ThreadOptions {
     /// [taken](ServoThread::take_records). Rows that find it full are
     /// [counted](RunReport::rows_dropped).
     #[must_use]
-    pub const fn with_recorder(self, rows: usize) -> Self {
+    pub fn with_recorder(self, rows: usize) -> Self {
         Self { rows: Some(rows), ..self }
     }
 
     /// The same options with other capacities of the hand-off.
     #[must_use]
-    pub const fn with_handoff(self, handoff: HandoffOptions) -> Self {
+    pub fn with_handoff(self, handoff: HandoffOptions) -> Self {
         Self { handoff, ..self }
+    }
+
+    /// The same options with a closure that moves bodies before each tick, as [`Motion`] does in a
+    /// call. That of a built scene of `palpate-scene` is `move |time, set_pose|
+    /// scene.motion()(time, set_pose)`.
+    ///
+    /// # Examples
+    ///
+    /// A floor that rises by 1 m/s reaches a hand at rest 3 mm above it:
+    ///
+    /// ```
+    /// use palpate_devices::{HandPath, Interpolation, RecordedDevice};
+    /// use palpate_field::{Pose, Shape, Vector};
+    /// use palpate_haptics::Servo;
+    /// use palpate_loop::{ServoThread, ThreadOptions, VirtualClock};
+    ///
+    /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+    /// let rest = vec![Vector([0.0, 0.005]); 2];
+    /// let hand = HandPath::new(vec![0.0, 0.01], rest, Interpolation::Linear)?;
+    /// let device = Box::new(RecordedDevice::new(vec![hand])?);
+    /// let floor = Shape::half_space([0.0, 1.0], 0.0)?;
+    /// let servo = Servo::for_device(floor, &*device)?; // with a probe of 2 mm
+    /// let options = ThreadOptions::default()
+    ///     .with_raised_priority(false)
+    ///     .with_duration(0.01)
+    ///     .with_motion(|time, set_pose| set_pose(0, Pose::translation([0.0, time])));
+    /// let thread = ServoThread::start_on(VirtualClock::new(), servo, device, options)?;
+    /// let report = thread.join().report;
+    /// assert!((report.largest_depth - 0.006).abs() < 1e-9); // after 9 ms
+    /// # Ok(())
+    /// # }
+    /// ```
+    #[must_use]
+    pub fn with_motion(
+        self,
+        motion: impl FnMut(f64, &mut dyn FnMut(usize, Pose<D>)) + Send + 'static,
+    ) -> Self {
+        Self { motion: Some(Box::new(motion)), ..self }
     }
 
     /// The same options, going on when the device is lost.
     #[must_use]
-    pub const fn with_reconnection(self, reconnection: Reconnection) -> Self {
+    pub fn with_reconnection(self, reconnection: Reconnection) -> Self {
         Self { reconnection: Some(reconnection), ..self }
+    }
+
+    /// The same options with touches that are played on a device that vibrates. The thread owns
+    /// that device, silences it however it ends, and gives it [back](EndedThread::vibration).
+    ///
+    /// # Examples
+    ///
+    /// A finger that presses on a floor for a second:
+    ///
+    /// ```
+    /// use palpate_devices::{Glove, HandPath, Interpolation, VibrationRecorder};
+    /// use palpate_field::Shape;
+    /// use palpate_haptics::Servo;
+    /// use palpate_loop::{ServoThread, ThreadOptions, Vibration, VirtualClock};
+    /// use palpate_vibration::{Mapping, MappingOptions};
+    ///
+    /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+    /// let ends = vec![[0.0, 0.03].into(), [0.0, -0.001].into()];
+    /// let press = HandPath::new(vec![0.0, 0.5], ends, Interpolation::Smooth)?;
+    /// let glove = Box::new(Glove::new(vec![press])?);
+    /// let servo = Servo::for_device(Shape::half_space([0.0, 1.0], 0.0)?, &*glove)?;
+    ///
+    /// let vest = VibrationRecorder::new(1);
+    /// let vibration = Vibration::new(Mapping::new(MappingOptions::default())?, vest);
+    /// let options = ThreadOptions::default()
+    ///     .with_raised_priority(false)
+    ///     .with_duration(1.0)
+    ///     .with_vibration(vibration);
+    /// let thread = ServoThread::start_on(VirtualClock::new(), servo, glove, options)?;
+    /// let ended = thread.join();
+    /// let played = ended.report.vibration.ok_or("touches were played")?;
+    /// assert!(played.commands == 50 && played.strongest > 0.1);
+    /// let vest = ended.vibration.ok_or("the device comes back")?.into_device();
+    /// assert_eq!(vest.channels(), 1);
+    /// # Ok(())
+    /// # }
+    /// ```
+    #[must_use]
+    pub fn with_vibration(self, vibration: Vibration<'static>) -> Self {
+        Self { vibration: Some(vibration), ..self }
+    }
+}
+
+impl<const D: usize> fmt::Debug for ThreadOptions<D> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("ThreadOptions")
+            .field("duration", &self.duration)
+            .field("raises_priority", &self.raises_priority)
+            .field("rehearses", &self.rehearses)
+            .field("rows", &self.rows)
+            .field("handoff", &self.handoff)
+            .field("motion", &self.motion.is_some())
+            .field("reconnection", &self.reconnection)
+            .field("vibration", &self.vibration)
+            .finish()
     }
 }
 
@@ -136,8 +235,8 @@ impl From<NumberError> for StartError {
 ///
 /// The loop is that of [`run`](crate::run()): tick `k` is at `k / rate`, a panic in a tick ends
 /// the loop, and the last forces written are always zero. Dropping a `ServoThread` ends the loop
-/// and waits up to a second for those forces: a process that ends at once would stop the thread
-/// before they are written.
+/// and waits up to a second for those forces, and for the silence of a device that vibrates: a
+/// process that ends at once would stop the thread before they are written.
 ///
 /// # Examples
 ///
@@ -204,6 +303,9 @@ pub struct EndedThread<const D: usize> {
     pub servo: Servo<D>,
     /// The device; zero was written to it.
     pub device: Box<dyn Device<D> + Send>,
+    /// What played the touches, if anything did, with its device, which was silenced; it can play
+    /// those of another run.
+    pub vibration: Option<Vibration<'static>>,
     /// The hand-off, with the last snapshot and the events not taken yet.
     pub control: Control<D>,
     /// The report of the run.
@@ -218,8 +320,10 @@ pub struct EndedThread<const D: usize> {
 struct Left<const D: usize> {
     servo: Servo<D>,
     device: Box<dyn Device<D> + Send>,
-    /// Returned so that its content is not freed in the servo's thread.
+    player: Option<Player<'static>>,
+    /// Returned, as the motion is, so that its content is not freed in the servo's thread.
     _end: ServoEnd<D>,
+    _motion: Option<ThreadMotion<D>>,
     report: RunReport,
     priority: Priority,
 }
@@ -234,23 +338,9 @@ impl<const D: usize> ServoThread<D> {
     pub fn start(
         servo: Servo<D>,
         device: Box<dyn Device<D> + Send>,
-        options: ThreadOptions,
+        options: ThreadOptions<D>,
     ) -> Result<Self, StartError> {
-        Self::start_with(WallClock::suited_to, servo, device, None, options)
-    }
-
-    /// As [`start`](Self::start), with a closure that moves bodies before each tick.
-    ///
-    /// # Errors
-    ///
-    /// As [`start`](Self::start).
-    pub fn start_moving(
-        servo: Servo<D>,
-        device: Box<dyn Device<D> + Send>,
-        motion: ThreadMotion<D>,
-        options: ThreadOptions,
-    ) -> Result<Self, StartError> {
-        Self::start_with(WallClock::suited_to, servo, device, Some(motion), options)
+        Self::start_with(WallClock::suited_to, servo, device, options)
     }
 
     /// As [`start`](Self::start), on the caller's clock.
@@ -262,61 +352,16 @@ impl<const D: usize> ServoThread<D> {
         clock: impl Clock + Send + 'static,
         servo: Servo<D>,
         device: Box<dyn Device<D> + Send>,
-        options: ThreadOptions,
+        options: ThreadOptions<D>,
     ) -> Result<Self, StartError> {
-        Self::start_with(|_| clock, servo, device, None, options)
-    }
-
-    /// As [`start_moving`](Self::start_moving), on the caller's clock.
-    ///
-    /// # Errors
-    ///
-    /// As [`start`](Self::start).
-    ///
-    /// # Examples
-    ///
-    /// A floor that rises by 1 m/s reaches a hand at rest 3 mm above it:
-    ///
-    /// ```
-    /// use palpate_devices::{HandPath, Interpolation, RecordedDevice};
-    /// use palpate_field::{Pose, Shape, Vector};
-    /// use palpate_haptics::Servo;
-    /// use palpate_loop::{ServoThread, ThreadOptions, VirtualClock};
-    ///
-    /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
-    /// let rest = vec![Vector([0.0, 0.005]); 2];
-    /// let hand = HandPath::new(vec![0.0, 0.01], rest, Interpolation::Linear)?;
-    /// let device = Box::new(RecordedDevice::new(vec![hand])?);
-    /// let floor = Shape::half_space([0.0, 1.0], 0.0)?;
-    /// let servo = Servo::for_device(floor, &*device)?; // with a probe of 2 mm
-    /// let rise = |time: f64, set_pose: &mut dyn FnMut(usize, Pose<2>)| {
-    ///     set_pose(0, Pose::translation(Vector([0.0, time])));
-    /// };
-    /// let options = ThreadOptions::default().with_raised_priority(false).with_duration(0.01);
-    /// let clock = VirtualClock::new();
-    /// let thread =
-    ///     ServoThread::start_moving_on(clock, servo, device, Box::new(rise), options)?;
-    /// let report = thread.join().report;
-    /// assert!((report.largest_depth - 0.006).abs() < 1e-9); // after 9 ms
-    /// # Ok(())
-    /// # }
-    /// ```
-    pub fn start_moving_on(
-        clock: impl Clock + Send + 'static,
-        servo: Servo<D>,
-        device: Box<dyn Device<D> + Send>,
-        motion: ThreadMotion<D>,
-        options: ThreadOptions,
-    ) -> Result<Self, StartError> {
-        Self::start_with(|_| clock, servo, device, Some(motion), options)
+        Self::start_with(|_| clock, servo, device, options)
     }
 
     fn start_with<C: Clock>(
         clock: impl FnOnce(&Priority) -> C + Send + 'static,
         mut servo: Servo<D>,
         mut device: Box<dyn Device<D> + Send>,
-        mut motion: Option<ThreadMotion<D>>,
-        options: ThreadOptions,
+        options: ThreadOptions<D>,
     ) -> Result<Self, StartError> {
         servo.check_device(&*device)?;
         let ticks = match options.duration {
@@ -328,19 +373,22 @@ impl<const D: usize> ServoThread<D> {
         };
         let pace = Pace::of(&*device);
         let schedule = Schedule { ticks, pace, rehearses: options.rehearses };
+        let ThreadOptions { raises_priority, mut motion, reconnection, vibration, .. } =
+            options;
+        let mut player = vibration.map(|vibration| vibration.start(&servo)).transpose()?;
         let (rows, records) = options.rows.map(queue).unzip();
         let (control, mut end) = handoff(&servo, options.handoff);
         let work = move || {
-            let priority =
-                if options.raises_priority { raise_priority() } else { Priority::Normal };
+            let priority = if raises_priority { raise_priority() } else { Priority::Normal };
             let mut clock = clock(&priority);
             let report = ServoLoop::new(&mut servo, &mut *device)
                 .sending(rows.map(RowSink::Queue))
                 .moving(motion.as_deref_mut().map(|motion| -> Motion<'_, D> { motion }))
                 .handing_off(Some(&mut end))
-                .reconnecting(options.reconnection)
+                .reconnecting(reconnection)
+                .vibrating(player.as_mut())
                 .run(&mut clock, &schedule);
-            Left { servo, device, _end: end, report, priority }
+            Left { servo, device, player, _end: end, _motion: motion, report, priority }
         };
         let thread =
             std::thread::Builder::new()
@@ -429,8 +477,9 @@ impl<const D: usize> ServoThread<D> {
         let thread = thread.0.take().expect("a thread that was not joined");
         // Panics in the loop are part of the report.
         let left = thread.join().unwrap_or_else(|panic| resume_unwind(panic));
-        let Left { servo, device, report, priority, _end } = left;
-        EndedThread { servo, device, control, report, records, priority }
+        let Left { servo, device, player, report, priority, .. } = left;
+        let vibration = player.map(Player::into_vibration);
+        EndedThread { servo, device, vibration, control, report, records, priority }
     }
 }
 

@@ -14,7 +14,9 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 /// How often commands are sent unless asked otherwise [Hz]: what wireless gloves and vests take.
 const COMMAND_RATE: f64 = 50.0;
 
-/// Plays the touches of each contact point on an actuator of a device.
+/// Plays the touches of each contact point on an actuator of a device, in a
+/// [run](crate::RunOptions::with_vibration) or in a
+/// [thread](crate::ThreadOptions::with_vibration).
 ///
 /// # Examples
 ///
@@ -50,14 +52,16 @@ pub struct Vibration<'a> {
     command_rate: f64,
     /// For each body the wavelength of its texture [m], and the ringing of a tap.
     materials: Vec<(Option<f64>, Option<Tap>)>,
-    device: &'a mut (dyn Vibrates + Send),
+    device: Box<dyn Vibrates + Send + 'a>,
 }
 
 impl<'a> Vibration<'a> {
     /// Plays touches by `mapping` on `device`, which has an actuator for each contact point; 50
-    /// times a second, on smooth and mute bodies.
+    /// times a second, on smooth and mute bodies. The device may be borrowed; a thread needs one
+    /// of its own.
     #[must_use]
-    pub fn new(mapping: Mapping, device: &'a mut (dyn Vibrates + Send)) -> Self {
+    pub fn new(mapping: Mapping, device: impl Vibrates + Send + 'a) -> Self {
+        let device = Box::new(device);
         Self { mapping, command_rate: COMMAND_RATE, materials: Vec::new(), device }
     }
 
@@ -78,14 +82,17 @@ impl<'a> Vibration<'a> {
         self
     }
 
+    /// The device.
+    #[must_use]
+    pub fn into_device(self) -> Box<dyn Vibrates + Send + 'a> {
+        self.device
+    }
+
     /// Begins to play the touches of `servo`.
-    pub(crate) fn start<'b, const D: usize>(
+    pub(crate) fn start<const D: usize>(
         self,
         servo: &Servo<D>,
-    ) -> Result<Player<'b>, HapticsError>
-    where
-        'a: 'b,
-    {
+    ) -> Result<Player<'a>, HapticsError> {
         let (points, rate) = (servo.touches().len(), servo.options().rate);
         let channels = self.device.channels();
         if channels != points {
@@ -97,13 +104,7 @@ impl<'a> Vibration<'a> {
             tones: vec![Tone::default(); points],
             touched: vec![false; points],
             silence: vec![Command::default(); points],
-            // Field by field, which alone shortens the lifetime of the device.
-            vibration: Vibration {
-                mapping: self.mapping,
-                command_rate: self.command_rate,
-                materials: self.materials,
-                device: self.device,
-            },
+            vibration: self,
             report: VibrationReport::default(),
         })
     }
@@ -145,7 +146,7 @@ pub(crate) struct Player<'a> {
     report: VibrationReport,
 }
 
-impl Player<'_> {
+impl<'a> Player<'a> {
     /// Plays a tick.
     ///
     /// Real-time: allocates nothing until the device is lost, takes no lock, cannot panic unless
@@ -170,7 +171,7 @@ impl Player<'_> {
     }
 
     /// Silences the device, and returns what was played.
-    pub(crate) fn finish(mut self) -> VibrationReport {
+    pub(crate) fn finish(&mut self) -> VibrationReport {
         if self.report.lost.is_none() {
             let silenced = AssertUnwindSafe(|| self.vibration.device.play(&self.silence));
             self.report.lost = match catch_unwind(silenced) {
@@ -178,7 +179,11 @@ impl Player<'_> {
                 Err(_) => Some("it panicked".to_owned()),
             };
         }
-        self.report
+        std::mem::take(&mut self.report)
+    }
+
+    pub(crate) fn into_vibration(self) -> Vibration<'a> {
+        self.vibration
     }
 }
 
@@ -192,5 +197,56 @@ impl Vibration<'_> {
             Some(&(wavelength, impact)) => Cue { wavelength, impact, ..cue },
             None => cue,
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use assert_no_alloc::assert_no_alloc;
+    use palpate_field::{Shape, Vector};
+    use palpate_haptics::{
+        DeviceProfile, PointState, Protection, ServoOptions, UnprotectedServo,
+    };
+    use palpate_vibration::MappingOptions;
+
+    use super::*;
+
+    /// A motor that keeps its last amplitude.
+    struct Motor(f64);
+
+    impl Vibrates for Motor {
+        fn channels(&self) -> usize {
+            1
+        }
+        fn play(&mut self, commands: &[Command]) -> Result<(), palpate_haptics::DeviceLost> {
+            self.0 = commands.iter().map(|command| command.tone.amplitude).sum();
+            Ok(())
+        }
+    }
+
+    #[test]
+    fn playing_allocates_and_frees_nothing() {
+        let circle = Shape::circle(0.05).unwrap();
+        let servo = UnprotectedServo::new(circle, 1, ServoOptions::default()).unwrap();
+        let profile = DeviceProfile::unlimited("finger");
+        let mut servo = servo.protected(&Protection::new(profile)).unwrap();
+        let mapping = Mapping::new(MappingOptions::default()).unwrap();
+        let mut motor = Motor(0.0);
+        let wood = Material::preset("wood").unwrap();
+        let vibration = Vibration::new(mapping, &mut motor).with_materials(&[wood]);
+        let mut player = vibration.start(&servo).unwrap();
+        for tick in 0..1000 {
+            // In and out of the circle, ten times.
+            let height = if tick % 100 < 50 { 0.06 } else { 0.045 };
+            let at = [PointState::at_rest(Vector([0.0, height]))];
+            assert_no_alloc(|| {
+                servo.step(&at);
+                player.tick(&servo);
+            });
+        }
+        let report = assert_no_alloc(|| player.finish());
+        assert!(report.commands == 50 && report.strongest > 0.1, "{report:?}");
+        drop(player);
+        assert_eq!(motor.0, 0.0);
     }
 }

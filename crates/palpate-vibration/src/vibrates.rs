@@ -57,3 +57,23 @@ pub trait Vibrates {
     /// [`DeviceLost`] if nothing more can be played.
     fn play(&mut self, commands: &[Command]) -> Result<(), DeviceLost>;
 }
+
+impl<V: Vibrates + ?Sized> Vibrates for &mut V {
+    fn channels(&self) -> usize {
+        (**self).channels()
+    }
+
+    fn play(&mut self, commands: &[Command]) -> Result<(), DeviceLost> {
+        (**self).play(commands)
+    }
+}
+
+impl<V: Vibrates + ?Sized> Vibrates for Box<V> {
+    fn channels(&self) -> usize {
+        (**self).channels()
+    }
+
+    fn play(&mut self, commands: &[Command]) -> Result<(), DeviceLost> {
+        (**self).play(commands)
+    }
+}

@@ -34,12 +34,12 @@ fn main() -> Result<(), Error> {
         TraceWriter::new(file).with_poses(moving, |body, time| scene.pose_at(body, time));
 
     // The servo never waits for the file: rows wait for it, for up to half a second.
-    let options = ThreadOptions::default().with_duration(SECONDS).with_recorder(500);
     let moved = scene.clone();
-    let motion = Box::new(move |time: f64, set_pose: &mut dyn FnMut(usize, Pose<3>)| {
-        moved.motion()(time, set_pose);
-    });
-    let mut thread = ServoThread::start_moving(servo, Box::new(device), motion, options)?;
+    let options = ThreadOptions::default()
+        .with_duration(SECONDS)
+        .with_recorder(500)
+        .with_motion(move |time, set_pose| moved.motion()(time, set_pose));
+    let mut thread = ServoThread::start(servo, Box::new(device), options)?;
     let records = thread.take_records();
     let mut records =
         records.ok_or_else(|| std::io::Error::other("no recorder was requested"))?;

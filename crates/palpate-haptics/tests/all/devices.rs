@@ -9,7 +9,7 @@ use std::time::Duration;
 
 use palpate_devices::{
     Calls, Fault, FaultKind, Hand, HandPath, Interpolation, MailboxDevice, RecordedDevice,
-    SimulatedDevice, SimulatedTransport, VibrationRecorder,
+    SimulatedDevice, SimulatedTransport,
 };
 use palpate_field::{Shape, Vector};
 use palpate_haptics::{
@@ -17,10 +17,9 @@ use palpate_haptics::{
     HapticsError, PointState, Reading, Servo, UnprotectedServo,
 };
 use palpate_loop::{
-    Ending, Pace, Reconnection, RunOptions, ServoThread, ThreadOptions, Vibration,
-    VirtualClock, run, run_on,
+    Ending, Pace, Reconnection, RunOptions, ServoThread, ThreadOptions, VirtualClock, run,
+    run_on,
 };
-use palpate_vibration::{Command, Mapping, MappingOptions, Vibrates};
 
 /// A device that keeps the names of the calls, and fails or panics in one of them.
 #[derive(Debug)]
@@ -492,49 +491,6 @@ fn a_driver_that_is_not_ready_is_waited_for_and_its_repeats_are_counted() {
     assert_eq!(connection.watchdog, Some(0.02));
     assert_eq!(report.safety[0].watchdog.trips, 0);
     assert!(!mailbox.is_enabled() && mailbox.ticks() == 41);
-}
-
-/// A motor that is pulled out after some commands.
-struct Pulled(u32);
-
-impl Vibrates for Pulled {
-    fn channels(&self) -> usize {
-        1
-    }
-    fn play(&mut self, _: &[Command]) -> Result<(), DeviceLost> {
-        self.0 = self.0.checked_sub(1).ok_or_else(|| DeviceLost::new("pulled out"))?;
-        Ok(())
-    }
-}
-
-#[test]
-fn touches_are_played_and_a_device_that_shakes_no_more_ends_nothing() {
-    let mapping = || Mapping::new(MappingOptions::default()).unwrap();
-    let mut glove = VibrationRecorder::new(1);
-    let mut device = pressing(Vec::new());
-    let mut servo = Servo::for_device(wall(), &device).unwrap();
-    let vibration = Vibration::new(mapping(), &mut glove).with_command_rate(100.0);
-    let report = run(&mut servo, &mut device, fast(1.0).with_vibration(vibration)).unwrap();
-    let played = report.vibration.unwrap();
-    assert_eq!((played.commands, played.lost), (100, None));
-    let amplitudes: Vec<_> =
-        glove.played().map(|commands| commands[0].tone.amplitude).collect();
-    // The probe touches after 0.31 s; the last is the silence after the run.
-    assert!(amplitudes[..30].iter().all(|a| *a == 0.0) && amplitudes[40] > 0.0);
-    assert_eq!((amplitudes.len(), amplitudes[100]), (101, 0.0));
-    assert_eq!(amplitudes.iter().copied().fold(0.0, f64::max), played.strongest);
-
-    let mut pulled = Pulled(10);
-    let vibration = Vibration::new(mapping(), &mut pulled);
-    let report = run(&mut servo, &mut device, fast(1.0).with_vibration(vibration)).unwrap();
-    assert_eq!(report.ending, Ending::Finished);
-    let played = report.vibration.unwrap();
-    assert_eq!((played.commands, played.lost.as_deref()), (11, Some("pulled out")));
-
-    let mut two = VibrationRecorder::new(2);
-    let vibration = Vibration::new(mapping(), &mut two);
-    let error = run(&mut servo, &mut device, fast(1.0).with_vibration(vibration)).unwrap_err();
-    assert_eq!(error, HapticsError::ContactPoints { servo: 1, device: 2 });
 }
 
 #[test]

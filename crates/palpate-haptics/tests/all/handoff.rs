@@ -90,7 +90,7 @@ fn floor(height: f64) -> Bodies<2> {
 fn start(
     servo: Servo<2>,
     hand: &Hand,
-    options: ThreadOptions,
+    options: ThreadOptions<2>,
 ) -> (ServoThread<2>, ClockDriver) {
     let (clock, mut driver) = VirtualClock::driven();
     let thread = ServoThread::start_on(clock, servo, Box::new(hand.clone()), options).unwrap();
@@ -99,7 +99,7 @@ fn start(
     (thread, driver)
 }
 
-fn plain() -> ThreadOptions {
+fn plain() -> ThreadOptions<2> {
     ThreadOptions::default().with_raised_priority(false)
 }
 

@@ -39,6 +39,7 @@ mod tool_servo;
 mod tools;
 mod tours;
 mod turning;
+mod vibration;
 mod walls;
 
 /// Aborts where a test forbids to allocate.
