@@ -47,6 +47,7 @@ fn chai3d() -> Outcome {
     device.read(0.0, &mut states)?;
     servo.step(&states);
     device.write(servo.forces())?;
+    let _ = servo.buttons();
     assert_eq!(servo.touches()[0].device, servo.touches()[0].proxy);
     assert_eq!(servo.touches()[0].wanted, Vector::ZERO);
     let report = servo.run(&mut device, Seconds(0.01))?;
@@ -58,7 +59,7 @@ fn chai3d() -> Outcome {
 fn openhaptics() -> Outcome {
     use palpate::{
         haptics::{Guide, GuideOptions, WorkspaceMap},
-        servo_loop::{ServoThread, ThreadOptions},
+        servo_loop::{Reconnection, ServoThread, ThreadOptions},
     };
     let mut device = device()?;
     let profile = device.profile().clone();
@@ -78,6 +79,9 @@ fn openhaptics() -> Outcome {
     let _ = GuideOptions::default().with_snap_distance(0.01);
     let _ = Guide::to_point([0.0; 3], GuideOptions::default())?;
     assert!(servo.events().is_empty());
+    let _ = servo.buttons();
+    let _: ThreadOptions<3> =
+        ThreadOptions::default().with_reconnection(Reconnection::every(0.5)?);
     let mut thread = ServoThread::start(servo, Box::new(device), ThreadOptions::default())?;
     let _ = thread.control().latest();
     thread.end().report.unless_failed()?;
