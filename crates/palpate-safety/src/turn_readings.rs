@@ -120,8 +120,7 @@ impl<const D: usize> TurnReadings<D> {
             self.held.add(way.norm());
             return false;
         }
-        let farthest = self.reach.way_in(time);
-        let is_ambiguous = farthest >= PI && farthest < f64::INFINITY;
+        let is_ambiguous = (PI..f64::INFINITY).contains(&self.reach.way_in(time));
         *last = if is_ambiguous {
             unknown
         } else {

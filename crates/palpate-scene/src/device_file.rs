@@ -342,14 +342,16 @@ mod tests {
             .replace("\"palpate_device\": 1", "\"palpate_device\": 2")
             .replace("\"friction\": 0.15", "\"friction\": -0.15")
             .replace("\"inertia\": 0.0002", "\"inertia\": 0")
+            .replace("\"max_acceleration\": 10000", "\"max_acceleration\": 0")
             .replace("\"mass\",", "\"mas\",");
         let error = device_from_json(wrong.as_bytes()).unwrap_err().to_string();
         for said in [
-            "4 problems:",
+            "5 problems:",
             "palpate_device, line 2: palpate_device must be 1, got 2",
             "friction, line 12: friction must be zero or more, got -0.15 N",
             "turning.inertia, line 22: inertia must be positive, got 0 kg·m²",
-            "assumed[2], line 40: unknown number of a device `mas`, did you mean `mass`?",
+            "turning.max_acceleration, line 27: max_acceleration must be positive, got 0 rad/s²",
+            "assumed[2], line 44: unknown number of a device `mas`, did you mean `mass`?",
         ] {
             assert!(error.contains(said), "{said}\n{error}");
         }
