@@ -10,7 +10,8 @@
 //! largest stiffness `K` passive (Colgate and Schenkel 1997); friction and encoder step satisfy
 //! `K ≤ 2 f_c / Δ` (Abbott and Okamura 2005); the full force rises within 2 ms; a
 //! hand moves by at most 5 m/s and 500 m/s². The rotational
-//! numbers follow the same rules, for the worst axis; each profile names its sources.
+//! numbers follow the same rules, for the worst axis, with at most 50 rad/s and 10 000 rad/s² of a
+//! hand; each profile names its sources.
 
 use palpate_haptics::{DeviceProfile, TurningProfile};
 
@@ -432,6 +433,11 @@ mod tests {
             let always = [turning.inertia, turning.least_damping, turning.friction];
             assert!(always.iter().all(|x| *x > 0.0 && x.is_finite()), "{name}");
             assert!(turning.encoder_step > 0.0 && !turning.source.is_empty(), "{name}");
+            assert!(turning.max_speed.is_finite() && turning.max_speed > 0.0, "{name}");
+            // The device alone cannot turn its handle so that readings are held back.
+            assert!(turning.max_acceleration.is_finite(), "{name}");
+            let by_torque = turning.max_torque / turning.inertia;
+            assert!(turning.max_acceleration > 2.0 * by_torque, "{name}");
             let of_torque = [
                 turning.max_torque,
                 turning.continuous_torque,

@@ -34,6 +34,8 @@ const BUT_LARGEST: &[&str] = &[
     "least_damping",
     "friction",
     "encoder_step",
+    "max_speed",
+    "max_acceleration",
 ];
 
 /// The gimbal of the Phantom Premium 1.5 6DOF and 3.0 6DOF.
@@ -61,7 +63,14 @@ pub(crate) const OMEGA: Torques = Torques {
     encoder_step: 1.57e-3,
     origin: Origin {
         source: "drivers of CHAI3D 3.3.0 (Conti et al., 2024): senses turns and gives no torque",
-        assumed: &["inertia", "least_damping", "friction", "encoder_step"],
+        assumed: &[
+            "inertia",
+            "least_damping",
+            "friction",
+            "encoder_step",
+            "max_speed",
+            "max_acceleration",
+        ],
     },
 };
 
@@ -93,6 +102,16 @@ pub(crate) const VIRTUOSE_6D: Torques = Torques {
     },
 };
 
+/// More than the fastest rotation of an arm in the tennis serves of world-class players, 2420°/s or
+/// 42 rad/s at the shoulder and 1950°/s at the wrist (means of Fleisig, Nicholls, Elliott and
+/// Escamilla 2003) [rad/s].
+const MAX_SPEED: f64 = 50.0;
+
+/// More than the 8000 rad/s² by which the strongest supination, 16 N·m (O'Sullivan and Gallwey 2002),
+/// turns a hand and a forearm of the order of 0.002 kg·m² about their length, and more than twice
+/// that by which the largest torques turn the apparent inertias [rad/s²].
+const MAX_ACCELERATION: f64 = 1e4;
+
 /// The profile of a wrist.
 pub(crate) const fn turning(torques: &Torques) -> TurningProfile {
     // K T / 2 at 1 kHz.
@@ -108,4 +127,6 @@ pub(crate) const fn turning(torques: &Torques) -> TurningProfile {
         .with_least_damping(least_damping)
         .with_friction(torques.friction)
         .with_encoder_step(torques.encoder_step)
+        .with_max_speed(MAX_SPEED)
+        .with_max_acceleration(MAX_ACCELERATION)
 }

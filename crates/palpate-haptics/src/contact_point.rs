@@ -214,8 +214,10 @@ impl<const D: usize> ContactPoint<D> {
         state: PointState<D>,
         touch: &mut Touch<D>,
     ) -> Vector<f64, D> {
-        let at_device =
-            self.port.as_mut().map_or(state, |port| port.state(state, tick.setting.arrival));
+        let at_device = self
+            .port
+            .as_mut()
+            .map_or(state, |port| port.state(state, tick.setting.arrival, true));
         let in_world = tick.setting.map.state_to_world(at_device);
         let free = self.feel(tick, &in_world, touch);
         self.give(tick.setting, at_device, touch, free)

@@ -123,7 +123,14 @@ impl<const D: usize> CoupledTool<D> {
     ) -> Vector<f64, D> {
         let Sides { point, bodies } = sides;
         let Setting { map, arrival, .. } = setting;
-        let at_device = point.port.as_mut().map_or(state, |port| port.state(state, *arrival));
+        let is_turn_sound = self
+            .port
+            .as_mut()
+            .is_none_or(|port| port.counts(self.turn, state.position, arrival.elapsed));
+        let at_device = point
+            .port
+            .as_mut()
+            .map_or(state, |port| port.state(state, *arrival, is_turn_sound));
         let elapsed = point.port.as_ref().map_or(arrival.elapsed, Port::elapsed);
         let (turn, angle) = match &mut self.port {
             Some(port) => port.state(self.turn, elapsed),

@@ -88,7 +88,8 @@ pub use palpate_safety::{
     DeviceProfile, Effect, FreeForceReport, GripperProfile, GripperState, Impedance,
     LimitCycleReport, NumberError, PassivityReport, PointState, PortState, Reading,
     ReadingsReport, Recovery, Rule, SafetyChain, SafetyError, SafetyOptions, SafetyReport,
-    TurnState, TurningProfile, TurningReport, VelocityEstimator, WatchdogReport, WorkspaceMap,
+    TurnReadings, TurnState, TurningProfile, TurningReport, VelocityEstimator, WatchdogReport,
+    WorkspaceMap,
 };
 pub use protection::Protection;
 pub use proxy::{DEFAULT_BUDGET, Following, Probe, Proxy};

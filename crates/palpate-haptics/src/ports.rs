@@ -3,7 +3,7 @@
 
 //! The ports between contact points, or a tool, and a protected device.
 
-use palpate_field::Vector;
+use palpate_field::{Point, Vector};
 
 use crate::accepted_bodies::AcceptedBodies;
 use crate::energy::Energy;
@@ -12,7 +12,7 @@ use crate::protection::Protection;
 use palpate_safety::{
     Acceptance, Accepted, Arrival, DeviceLimits, Impedance, PassivityReport, PerMotion,
     PointState, PortState, Readings, ReadingsReport, SafetyChain, SafetyOptions, SafetyReport,
-    TurnState, VelocityEstimator, WrenchChain,
+    TurnReadings, TurnState, VelocityEstimator, WrenchChain,
 };
 
 impl<const D: usize> Protection<D> {
@@ -55,6 +55,7 @@ impl<const D: usize> Protection<D> {
         };
         Ok(Some(TurningPort {
             chain,
+            readings: TurnReadings::new(turning)?,
             estimator: VelocityEstimator::new(rate, turning.encoder_step)?,
             has_steps: turning.encoder_step > 0.0,
             last: None,
@@ -94,16 +95,23 @@ pub(crate) struct Port<const D: usize> {
 
 impl<const D: usize> Port<D> {
     /// The state of the device in a tick: that of the tick before if nothing was measured, or
-    /// nothing that a hand can have made. Its velocity is estimated from positions if the device has
-    /// encoder steps, and is the device's own otherwise.
+    /// nothing that a hand can have made; `is_turn_sound` says so of the orientation that was read
+    /// beside it. Its velocity is estimated from positions if the device has encoder steps, and is
+    /// the device's own otherwise.
     ///
     /// A state that repeats keeps its velocity: at rest it would look as if the hand had stopped, and
     /// the force would jump.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
-    pub(crate) fn state(&mut self, state: PointState<D>, arrival: Arrival) -> PointState<D> {
-        let counted =
-            arrival.elapsed.filter(|time| self.readings.counts(state.position, *time));
+    pub(crate) fn state(
+        &mut self,
+        state: PointState<D>,
+        arrival: Arrival,
+        is_turn_sound: bool,
+    ) -> PointState<D> {
+        let counted = arrival
+            .elapsed
+            .filter(|time| self.readings.counts(state.position, *time) && is_turn_sound);
         let Some(elapsed) = counted else {
             self.uncounted += arrival.elapsed.unwrap_or(0.0);
             self.elapsed = None;
@@ -168,8 +176,9 @@ impl<const D: usize> Port<D> {
         energy(&self.chain.passivity())
     }
 
+    /// What the safety chain did, without the readings.
     pub(crate) fn report(&self) -> SafetyReport {
-        self.chain.report().with_readings(self.readings.report())
+        self.chain.report()
     }
 
     /// By how much a tick that is `late` [s] is late in all: without a reading that counts its force
@@ -180,7 +189,7 @@ impl<const D: usize> Port<D> {
         late + if self.elapsed.is_some() { 0.0 } else { self.period }
     }
 
-    /// What was held back.
+    /// What was held back of positions.
     pub(crate) fn readings(&self) -> ReadingsReport {
         self.readings.report()
     }
@@ -192,6 +201,7 @@ pub(crate) struct TurningPort<const D: usize> {
     /// The safety chain of force and torque, which replaces the chain of the [`Port`]; `None`
     /// for a device that gives no torque.
     pub(crate) chain: Option<WrenchChain<D>>,
+    readings: TurnReadings<D>,
     estimator: VelocityEstimator<3>,
     /// Whether the orientation has encoder steps.
     has_steps: bool,
@@ -202,6 +212,35 @@ pub(crate) struct TurningPort<const D: usize> {
 }
 
 impl<const D: usize> TurningPort<D> {
+    /// Whether what was read of the orientation, beside a position, counts. A position that is no
+    /// number is that of a device which was lost: its orientation may be any once it is found.
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    pub(crate) fn counts(
+        &mut self,
+        turn: Option<TurnState<D>>,
+        position: Point<D>,
+        elapsed: Option<f64>,
+    ) -> bool {
+        if !position.is_finite() {
+            self.readings.forget();
+            return true;
+        }
+        match (turn, elapsed) {
+            (Some(turn), Some(elapsed)) => self.readings.counts(turn.orientation, elapsed),
+            (None, Some(elapsed)) => {
+                self.readings.miss(elapsed);
+                true
+            }
+            (_, None) => true,
+        }
+    }
+
+    /// The report of positions with what was held back of orientations.
+    pub(crate) fn with_turns(&self, readings: ReadingsReport) -> ReadingsReport {
+        readings.with_turns(&self.readings)
+    }
+
     /// Orientation and angular velocity of the device, measured `elapsed` after the last [s], and the
     /// sum of all rotation vectors so far [rad]. As in [`Port::state`], the angular velocity is
     /// estimated, and the state of the tick before repeats if nothing was measured.

@@ -9,8 +9,9 @@ use palpate_field::{Point, Vector};
 
 use crate::device::DeviceProfile;
 use crate::error::{NumberError, SafetyError};
+use crate::turn_readings::TurnReadings;
 
-/// A reading may be off by so many encoder steps: half a step each in the present position, in the
+/// A reading may be off by so many encoder steps: half a step each in the present reading, in the
 /// last one and in both of the last velocity, doubled.
 const STEPS: f64 = 4.0;
 
@@ -19,14 +20,80 @@ const STEPS: f64 = 4.0;
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[non_exhaustive]
 pub struct ReadingsReport {
-    /// Ticks whose reading was held back.
+    /// Ticks whose position was held back.
     pub held: u64,
     /// The farthest of them from the last position that counted [m].
     pub farthest: f64,
+    /// Ticks whose orientation was held back.
+    pub turns_held: u64,
+    /// The farthest of them from the last orientation that counted [rad].
+    pub farthest_turn: f64,
+}
+
+impl ReadingsReport {
+    /// This report of positions with the orientations that were held back.
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    #[must_use]
+    pub fn with_turns<const D: usize>(self, turns: &TurnReadings<D>) -> Self {
+        let Held { ticks, farthest } = turns.held();
+        Self { turns_held: ticks, farthest_turn: farthest, ..self }
+    }
+}
+
+/// What was held back of positions [m] or of orientations [rad].
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Held {
+    pub(crate) ticks: u64,
+    pub(crate) farthest: f64,
+}
+
+impl Held {
+    /// Counts a reading that is `way` from the last one that counted.
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    pub(crate) fn add(&mut self, way: f64) {
+        self.ticks += 1;
+        self.farthest = self.farthest.max(way);
+    }
+}
+
+/// How far a hand can move, along axes [m] or about them [rad].
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Reach {
+    max_speed: f64,
+    max_acceleration: f64,
+    slack: f64,
+}
+
+impl Reach {
+    /// Of a largest speed and a largest acceleration that are positive, read in encoder steps.
+    pub(crate) fn new(max_speed: f64, max_acceleration: f64, encoder_step: f64) -> Self {
+        Self { max_speed, max_acceleration, slack: STEPS * encoder_step }
+    }
+
+    /// Whether every reading is within reach.
+    pub(crate) fn is_unlimited(&self) -> bool {
+        self.max_speed == f64::INFINITY && self.max_acceleration == f64::INFINITY
+    }
+
+    /// The farthest way in a time [s], without encoder steps.
+    pub(crate) fn way_in(&self, time: f64) -> f64 {
+        self.max_speed * time
+    }
+
+    /// Whether a hand can have moved by `way` in `time`, and by `change` beside the way at its last
+    /// velocity, which is that of the middle of the time `over` before.
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    pub(crate) fn has(&self, way: f64, change: f64, [time, over]: [f64; 2]) -> bool {
+        let most = 0.5 * self.max_acceleration * time * (time + over) + self.slack;
+        way <= self.way_in(time) + self.slack && change <= most
+    }
 }
 
 /// Holds back the readings of a position that a hand cannot have made: glitches of encoders and
-/// transports.
+/// transports. [`TurnReadings`] does the same for orientations.
 ///
 /// With the last position `x₀` that counted, its velocity `v₀`, measured over the time `t₀` before
 /// it, and the time `t` since, a reading `x` counts if
@@ -39,7 +106,8 @@ pub struct ReadingsReport {
 /// acceleration](DeviceProfile::max_acceleration) `a` and four encoder steps `δ`. The second bound
 /// is that of an acceleration of at most `a`, since `v₀` is the velocity `t₀/2` before `x₀`. Both
 /// bounds grow, so that after a time any reading counts: a device that was moved while it was not
-/// read is found again.
+/// read is found again. Nothing is known of the velocity of the first reading, so that the second
+/// keeps the first bound alone.
 ///
 /// ```
 /// use palpate_field::Vector;
@@ -58,19 +126,17 @@ pub struct ReadingsReport {
 /// ```
 #[derive(Clone, Debug)]
 pub struct Readings<const D: usize> {
-    max_speed: f64,
-    max_acceleration: f64,
-    slack: f64,
+    reach: Reach,
     /// The last position that counted.
     last: Option<Counted<D>>,
-    report: ReadingsReport,
+    held: Held,
 }
 
 #[derive(Clone, Copy, Debug)]
 struct Counted<const D: usize> {
     position: Point<D>,
     velocity: Vector<f64, D>,
-    /// The time over which the velocity was measured [s].
+    /// The time over which the velocity was measured [s]; infinite if it is not known.
     over: f64,
     /// The time since then [s].
     since: f64,
@@ -86,13 +152,10 @@ impl<const D: usize> Readings<D> {
     pub fn new(device: &DeviceProfile) -> Result<Self, SafetyError> {
         let positive = NumberError::check_positive_or_infinite;
         let step = NumberError::check_not_negative("encoder_step", device.encoder_step, "m")?;
-        Ok(Self {
-            max_speed: positive("max_speed", device.max_speed, "m/s")?,
-            max_acceleration: positive("max_acceleration", device.max_acceleration, "m/s²")?,
-            slack: STEPS * step,
-            last: None,
-            report: ReadingsReport::default(),
-        })
+        let speed = positive("max_speed", device.max_speed, "m/s")?;
+        let acceleration = positive("max_acceleration", device.max_acceleration, "m/s²")?;
+        let reach = Reach::new(speed, acceleration, step);
+        Ok(Self { reach, last: None, held: Held::default() })
     }
 
     /// Whether a reading [m] counts, made `elapsed` after the one before [s]. The first one and
@@ -100,7 +163,7 @@ impl<const D: usize> Readings<D> {
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     pub fn counts(&mut self, position: Point<D>, elapsed: f64) -> bool {
-        if self.max_speed == f64::INFINITY && self.max_acceleration == f64::INFINITY {
+        if self.reach.is_unlimited() {
             return true;
         }
         if !position.is_finite() {
@@ -108,7 +171,7 @@ impl<const D: usize> Readings<D> {
             return true;
         }
         let Some(last) = &mut self.last else {
-            let (velocity, over, since) = (Vector::ZERO, 0.0, 0.0);
+            let (velocity, over, since) = (Vector::ZERO, f64::INFINITY, 0.0);
             self.last = Some(Counted { position, velocity, over, since });
             return true;
         };
@@ -116,14 +179,12 @@ impl<const D: usize> Readings<D> {
         let time = last.since;
         let way = position - last.position;
         let change = (way - last.velocity * time).norm();
-        let most = 0.5 * self.max_acceleration * time * (time + last.over) + self.slack;
-        if way.norm() <= self.max_speed * time + self.slack && change <= most {
+        if self.reach.has(way.norm(), change, [time, last.over]) {
             let velocity = way * (1.0 / time);
             *last = Counted { position, velocity, over: time, since: 0.0 };
             return true;
         }
-        self.report.held += 1;
-        self.report.farthest = self.report.farthest.max(way.norm());
+        self.held.add(way.norm());
         false
     }
 
@@ -135,12 +196,13 @@ impl<const D: usize> Readings<D> {
         self.last.map(|last| last.position)
     }
 
-    /// What was held back so far.
+    /// What was held back so far, of positions alone.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     #[must_use]
     pub fn report(&self) -> ReadingsReport {
-        self.report
+        let Held { ticks: held, farthest } = self.held;
+        ReadingsReport { held, farthest, ..ReadingsReport::default() }
     }
 }
 
@@ -173,12 +235,24 @@ mod tests {
     #[test]
     fn a_jump_is_held_back_until_a_hand_can_have_made_it() {
         let mut readings = readings();
-        assert!(readings.counts(Vector([0.1, 0.1]), PERIOD));
+        for _ in 0..2 {
+            assert!(readings.counts(Vector([0.1, 0.1]), PERIOD));
+        }
         let held =
             (0..100).take_while(|_| !readings.counts(Vector([0.15, 0.1]), PERIOD)).count();
-        // ½ a t² reaches 50 mm after 14.1 ms, and 5 m/s after 10 ms.
-        assert_eq!(held, 14);
-        assert_eq!((readings.report().held, readings.last()), (14, Some(Vector([0.15, 0.1]))));
+        // ½ a t (t + 1 ms) reaches 50 mm after 13.7 ms, and 5 m/s after 10 ms.
+        assert_eq!(held, 13);
+        assert_eq!((readings.report().held, readings.last()), (13, Some(Vector([0.15, 0.1]))));
+    }
+
+    /// Once it was held back until it could have come from rest.
+    #[test]
+    fn a_hand_that_moves_when_it_is_read_first_counts() {
+        let mut readings = readings();
+        for tick in 0..10 {
+            let x = 4.9e-3 * f64::from(tick);
+            assert!(readings.counts(Vector([x, -0.1]), PERIOD), "{tick}");
+        }
     }
 
     #[test]

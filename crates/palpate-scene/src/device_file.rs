@@ -57,6 +57,8 @@ struct WrittenTurning {
     least_damping: f64,
     friction: f64,
     encoder_step: f64,
+    max_speed: f64,
+    max_acceleration: f64,
     source: String,
     #[serde(default)]
     assumed: Vec<String>,
@@ -170,6 +172,8 @@ fn check_turning(turning: &WrittenTurning) -> Result<(), Problems> {
         at_least("least_damping", turning.least_damping, 0.0, "N·m·s/rad"),
         at_least("friction", turning.friction, 0.0, "N·m"),
         at_least("encoder_step", turning.encoder_step, 0.0, "rad"),
+        positive("max_speed", turning.max_speed, "rad/s"),
+        positive("max_acceleration", turning.max_acceleration, "rad/s²"),
     ]);
     let needed = [
         at_most_peak(
@@ -274,6 +278,8 @@ fn turning_profile(written: WrittenTurning) -> TurningProfile {
         .with_least_damping(written.least_damping)
         .with_friction(written.friction)
         .with_encoder_step(written.encoder_step)
+        .with_max_speed(written.max_speed)
+        .with_max_acceleration(written.max_acceleration)
         .with_assumed(names(&written.assumed, TurningProfile::NUMBERS))
         .with_source(written.source)
 }
@@ -305,6 +311,8 @@ fn written(profile: &DeviceProfile) -> WrittenDevice {
             least_damping: turning.least_damping,
             friction: turning.friction,
             encoder_step: turning.encoder_step,
+            max_speed: turning.max_speed,
+            max_acceleration: turning.max_acceleration,
             source: turning.source.to_string(),
             assumed: turning.assumed.iter().map(|name| (*name).to_owned()).collect(),
         }),
@@ -334,14 +342,16 @@ mod tests {
             .replace("\"palpate_device\": 1", "\"palpate_device\": 2")
             .replace("\"friction\": 0.15", "\"friction\": -0.15")
             .replace("\"inertia\": 0.0002", "\"inertia\": 0")
+            .replace("\"max_acceleration\": 10000", "\"max_acceleration\": 0")
             .replace("\"mass\",", "\"mas\",");
         let error = device_from_json(wrong.as_bytes()).unwrap_err().to_string();
         for said in [
-            "4 problems:",
+            "5 problems:",
             "palpate_device, line 2: palpate_device must be 1, got 2",
             "friction, line 12: friction must be zero or more, got -0.15 N",
             "turning.inertia, line 22: inertia must be positive, got 0 kg·m²",
-            "assumed[2], line 40: unknown number of a device `mas`, did you mean `mass`?",
+            "turning.max_acceleration, line 27: max_acceleration must be positive, got 0 rad/s²",
+            "assumed[2], line 44: unknown number of a device `mas`, did you mean `mass`?",
         ] {
             assert!(error.contains(said), "{said}\n{error}");
         }

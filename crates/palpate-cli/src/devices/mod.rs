@@ -78,7 +78,7 @@ const COLUMNS: [Column<DeviceProfile>; 12] = [
     },
 ];
 
-const TURNING: [Column<TurningProfile>; 9] = [
+const TURNING: [Column<TurningProfile>; 11] = [
     Column {
         key: "max_torque",
         unit: "N·m",
@@ -122,6 +122,13 @@ const TURNING: [Column<TurningProfile>; 9] = [
         unit: "rad",
         head: ["encoder", "step"],
         of: |p| p.encoder_step,
+    },
+    Column { key: "max_speed", unit: "rad/s", head: ["", "speed"], of: |p| p.max_speed },
+    Column {
+        key: "max_acceleration",
+        unit: "rad/s²",
+        head: ["accel-", "eration"],
+        of: |p| p.max_acceleration,
     },
 ];
 

@@ -83,6 +83,10 @@ impl IdentifyOptions {
             return Err(NumberError::new("travel", rule, self.travel, "m"));
         }
         NumberError::check_positive_or_infinite("max_speed", profile.max_speed, "m/s")?;
+        if let Some(turning) = &profile.turning {
+            let speed = turning.max_speed;
+            NumberError::check_positive_or_infinite("angular_max_speed", speed, "rad/s")?;
+        }
         NumberError::check_positive("angle", self.angle, "rad")?;
         if self.angle > MOST_ANGLE {
             let rule = "at most 1, where rotation vectors add";
@@ -111,7 +115,7 @@ impl IdentifyOptions {
         let turning = profile.turning.as_ref().filter(|turning| turning.max_torque > 0.0)?;
         Some(Bounds {
             travel: self.angle,
-            speed: SPEED_PER_TRAVEL * self.angle,
+            speed: (SPEED_PER_TRAVEL * self.angle).min(turning.max_speed / SPEED_RESERVE),
             force: (self.force_part * turning.max_torque).min(turning.continuous_torque),
             force_rate: turning.max_torque_rate,
         })

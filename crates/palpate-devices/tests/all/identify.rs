@@ -306,7 +306,10 @@ fn the_profile_holds_the_worst_axis_and_what_was_found_is_not_assumed() {
     let turning = better.turning.unwrap();
     assert!(is_same(turning.inertia, found.axes[2].mass.value));
     assert_eq!(turning.encoder_step, 2.27e-4);
-    assert_eq!(*turning.assumed, ["continuous_torque", "max_torque_rate"]);
+    assert_eq!(
+        *turning.assumed,
+        ["continuous_torque", "max_torque_rate", "max_speed", "max_acceleration"]
+    );
     assert_eq!((better.max_force, better.max_stiffness), (12.0, 4000.0));
 }
 

@@ -26,7 +26,7 @@ use crate::proxy::Probe;
 use crate::tool::{Coupling, HeldTool, Tool};
 use palpate_safety::{
     Arrival, Arrivals, Buttons, GripperState, NumberError, PointState, Reading, SafetyReport,
-    TurnState, WorkspaceMap,
+    TurnState, WorkspaceMap, WrenchChain,
 };
 
 /// Fewer bodies than this all count as near: selecting would cost more than it saves.
@@ -267,18 +267,15 @@ impl<const D: usize> Renderer<D> {
     /// [`UnprotectedServo`](crate::UnprotectedServo).
     #[must_use]
     pub fn safety(&self) -> Vec<SafetyReport> {
-        let port = self.coupled_tool().and_then(|coupled| coupled.port.as_ref());
-        if let Some(chain) = port.and_then(|port| port.chain.as_ref()) {
-            let port = self.contacts.points.first().and_then(|point| point.port.as_ref());
-            let readings = port.map(Port::readings).unwrap_or_default();
-            return vec![chain.report().with_readings(readings)];
-        }
-        self.contacts
-            .points
-            .iter()
-            .filter_map(|point| point.port.as_ref())
-            .map(Port::report)
-            .collect()
+        let turning = self.coupled_tool().and_then(|coupled| coupled.port.as_ref());
+        let chain = turning.and_then(|turning| turning.chain.as_ref());
+        let ports = self.contacts.points.iter().filter_map(|point| point.port.as_ref());
+        let report = |port: &Port<D>| {
+            let readings = port.readings();
+            let readings = turning.map_or(readings, |turning| turning.with_turns(readings));
+            chain.map_or_else(|| port.report(), WrenchChain::report).with_readings(readings)
+        };
+        ports.map(report).collect()
     }
 
     /// The energy at a contact point since the start; zero for an

@@ -38,6 +38,7 @@ mod tool_materials;
 mod tool_servo;
 mod tools;
 mod tours;
+mod turn_readings;
 mod turning;
 mod vibration;
 mod walls;

@@ -32,6 +32,11 @@ pub struct TurningProfile {
     pub friction: f64,
     /// Resolution of the encoders [rad].
     pub encoder_step: f64,
+    /// The largest angular speed of a hand that holds the device [rad/s]: what would be faster is a
+    /// fault.
+    pub max_speed: f64,
+    /// The largest angular acceleration of a hand that holds the device [rad/s²].
+    pub max_acceleration: f64,
     /// The source of the numbers.
     pub source: Cow<'static, str>,
     /// Names of the fields whose numbers are assumed and not from the source.
@@ -51,6 +56,8 @@ impl TurningProfile {
         "least_damping",
         "friction",
         "encoder_step",
+        "max_speed",
+        "max_acceleration",
     ];
 
     /// A device that gives any torque, without inertia, friction or steps.
@@ -81,6 +88,8 @@ impl TurningProfile {
             least_damping: f64::INFINITY,
             friction: f64::INFINITY,
             encoder_step: 0.0,
+            max_speed: f64::INFINITY,
+            max_acceleration: f64::INFINITY,
             source: Cow::Borrowed(source),
             assumed: Cow::Borrowed(assumed),
         }
@@ -146,6 +155,20 @@ impl TurningProfile {
     #[must_use]
     pub const fn with_encoder_step(mut self, encoder_step: f64) -> Self {
         self.encoder_step = encoder_step;
+        self
+    }
+
+    /// The same profile with another largest angular speed of the hand [rad/s].
+    #[must_use]
+    pub const fn with_max_speed(mut self, max_speed: f64) -> Self {
+        self.max_speed = max_speed;
+        self
+    }
+
+    /// The same profile with another largest angular acceleration of the hand [rad/s²].
+    #[must_use]
+    pub const fn with_max_acceleration(mut self, max_acceleration: f64) -> Self {
+        self.max_acceleration = max_acceleration;
         self
     }
 

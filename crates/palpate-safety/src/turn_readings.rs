@@ -1,0 +1,242 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! Orientations that a hand cannot have made.
+
+#![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+use std::f64::consts::PI;
+
+use palpate_field::{Rotation, Vector};
+
+use crate::device::TurningProfile;
+use crate::error::{NumberError, SafetyError};
+use crate::readings::{Held, Reach};
+
+/// Holds back the readings of an orientation that a hand cannot have made, as
+/// [`Readings`](crate::Readings) does those of a position.
+///
+/// With the last orientation `R₀` that counted, its angular velocity `ω₀`, measured as a rotation
+/// vector over the time `t₀` before it, and the time `t` since, a reading `R` counts if
+///
+/// ```text
+/// ∠(R, R₀) ≤ v t + δ   and   ∠(R, exp(ω₀ t) R₀) ≤ ½ a t (t + 2 t₀) + δ
+/// ```
+///
+/// with the angle `∠` of the rotation between two orientations, the [largest angular
+/// speed](TurningProfile::max_speed) `v` and [acceleration](TurningProfile::max_acceleration) `a` of
+/// the hand, and four encoder steps `δ`. No rotation within `v` and `a` is held back:
+///
+/// - The orientations `R(s)` and `exp(ω₀ s) R₀` part at most as fast as their angular velocities
+///   differ, because the angle does not change if both are turned alike; likewise `R(s)` and `R₀`,
+///   which gives the first bound.
+/// - With the angular velocity `ω₁` at the middle of `t₀`, the same holds of `exp(ω₁ t₀)`, which is
+///   within `∫ a |s| ds = a t₀²/4` of `exp(ω₀ t₀)`. Up to half a turn, rotation vectors differ by at
+///   most π/2 times the angle between the rotations, `θ/2` over `sin(θ/2)`, so that
+///   `|ω₁ − ω₀| ≤ π a t₀ / 8`.
+/// - So `|ω(s) − ω₀| ≤ a (s + t₀/2) + π a t₀ / 8 ≤ a (s + t₀)`, whose integral over `t` is the second
+///   bound.
+///
+/// Where a hand may have made half a turn or more within `t₀`, its angular velocity is not known, and
+/// the next reading keeps the first bound alone; so does the second of all. Without a largest speed,
+/// a device is taken to turn by less than half a turn between two readings.
+///
+/// ```
+/// use palpate_field::{Rotation, Vector};
+/// use palpate_safety::{ReadingsReport, TurnReadings, TurningProfile};
+///
+/// # fn main() -> Result<(), palpate_safety::SafetyError> {
+/// let device = TurningProfile::unlimited().with_max_speed(50.0);
+/// let mut readings = TurnReadings::<3>::new(&device)?;
+/// let about_x = |angle: f64| Rotation::identity().turned(Vector([angle, 0.0, 0.0]));
+/// assert!(readings.counts(about_x(0.25), 1e-3));
+/// assert!(!readings.counts(about_x(0.375), 1e-3)); // 125 rad/s
+/// assert!(readings.counts(about_x(0.26), 1e-3));
+/// let report = ReadingsReport::default().with_turns(&readings);
+/// assert_eq!((report.held, report.turns_held), (0, 1));
+/// assert!((report.farthest_turn - 0.125).abs() < 1e-15);
+/// # Ok(())
+/// # }
+/// ```
+#[derive(Clone, Debug)]
+pub struct TurnReadings<const D: usize> {
+    reach: Reach,
+    /// The last orientation that counted.
+    last: Option<Counted<D>>,
+    held: Held,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Counted<const D: usize> {
+    orientation: Rotation<D>,
+    angular_velocity: Vector<f64, 3>,
+    /// The time over which the angular velocity was measured [s]; infinite if it is not known.
+    over: f64,
+    /// The time since then [s].
+    since: f64,
+}
+
+impl<const D: usize> TurnReadings<D> {
+    /// For the readings of a device with this rotation.
+    ///
+    /// # Errors
+    ///
+    /// [`SafetyError::Number`] if the largest angular speed or acceleration is not positive, or the
+    /// encoder step negative or not finite.
+    pub fn new(device: &TurningProfile) -> Result<Self, SafetyError> {
+        let positive = NumberError::check_positive_or_infinite;
+        let step = device.encoder_step;
+        let step = NumberError::check_not_negative("angular_encoder_step", step, "rad")?;
+        let speed = positive("angular_max_speed", device.max_speed, "rad/s")?;
+        let acceleration = device.max_acceleration;
+        let acceleration = positive("angular_max_acceleration", acceleration, "rad/s²")?;
+        let reach = Reach::new(speed, acceleration, step);
+        Ok(Self { reach, last: None, held: Held::default() })
+    }
+
+    /// Whether a reading counts, made `elapsed` after the one before [s]. The first one does.
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    pub fn counts(&mut self, orientation: Rotation<D>, elapsed: f64) -> bool {
+        if self.reach.is_unlimited() {
+            return true;
+        }
+        let unknown = Counted {
+            orientation,
+            angular_velocity: Vector::ZERO,
+            over: f64::INFINITY,
+            since: 0.0,
+        };
+        let Some(last) = &mut self.last else {
+            self.last = Some(unknown);
+            return true;
+        };
+        last.since += elapsed.max(0.0);
+        let time = last.since;
+        let way = last.orientation.turn_to(&orientation);
+        let kept_on = last.orientation.turned(last.angular_velocity * time);
+        let change = kept_on.turn_to(&orientation).norm();
+        if !self.reach.has(way.norm(), change, [time, 2.0 * last.over]) {
+            self.held.add(way.norm());
+            return false;
+        }
+        let is_ambiguous = (PI..f64::INFINITY).contains(&self.reach.way_in(time));
+        *last = if is_ambiguous {
+            unknown
+        } else {
+            Counted { angular_velocity: way * (1.0 / time), over: time, ..unknown }
+        };
+        true
+    }
+
+    /// Nothing was read for `elapsed` [s].
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    pub fn miss(&mut self, elapsed: f64) {
+        if let Some(last) = &mut self.last {
+            last.since += elapsed.max(0.0);
+        }
+    }
+
+    /// Forgets what was read: the next reading is the first again.
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    pub fn forget(&mut self) {
+        self.last = None;
+    }
+
+    /// The last orientation that counted; `None` before the first.
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    #[must_use]
+    pub fn last(&self) -> Option<Rotation<D>> {
+        self.last.map(|last| last.orientation)
+    }
+
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    pub(crate) fn held(&self) -> Held {
+        self.held
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const PERIOD: f64 = 1e-3;
+
+    fn readings() -> TurnReadings<3> {
+        let device =
+            TurningProfile::unlimited().with_max_speed(50.0).with_max_acceleration(1e4);
+        TurnReadings::new(&device).unwrap()
+    }
+
+    fn about_y(angle: f64) -> Rotation<3> {
+        Rotation::identity().turned(Vector([0.0, angle, 0.0]))
+    }
+
+    #[test]
+    fn a_quarter_turn_is_held_back_until_a_hand_can_have_made_it() {
+        let mut readings = readings();
+        for _ in 0..2 {
+            assert!(readings.counts(about_y(0.3), PERIOD));
+        }
+        let turned = about_y(0.3 + 0.5 * PI);
+        let held = (0..100).take_while(|_| !readings.counts(turned, PERIOD)).count();
+        // ½ a t (t + 2 ms) reaches it after 16.8 ms, and 50 rad/s after 31.4 ms.
+        assert_eq!((held, readings.last()), (31, Some(turned)));
+        assert_eq!(readings.held().ticks, 31);
+        assert!((readings.held().farthest - 0.5 * PI).abs() < 1e-15);
+    }
+
+    #[test]
+    fn the_acceleration_alone_holds_back_what_the_speed_allows() {
+        let mut readings = readings();
+        for _ in 0..2 {
+            assert!(readings.counts(about_y(0.0), PERIOD));
+        }
+        // ½ a t (t + 2 ms) is 15 mrad after a tick, and 40 mrad after two.
+        assert!(!readings.counts(about_y(0.0151), PERIOD));
+        assert!(readings.counts(about_y(0.0399), PERIOD));
+    }
+
+    #[test]
+    fn what_was_missed_or_forgotten_may_be_anywhere() {
+        let mut readings = readings();
+        for _ in 0..2 {
+            assert!(readings.counts(about_y(0.0), PERIOD));
+        }
+        readings.miss(0.062);
+        assert!(readings.counts(about_y(3.1), PERIOD));
+        readings.forget();
+        assert_eq!(readings.last(), None);
+        assert!(readings.counts(about_y(-2.0), PERIOD));
+        assert_eq!(readings.held().ticks, 0);
+    }
+
+    /// The shorter way round is not that of the hand, so its velocity is not known.
+    #[test]
+    fn a_hand_that_made_more_than_half_a_turn_unseen_is_not_held_back() {
+        let mut readings = readings();
+        let mut time = 0.0;
+        for elapsed in [0.001, 0.001, 0.075, 0.001, 0.001, 0.08, 0.001] {
+            time += elapsed;
+            assert!(readings.counts(about_y(49.0 * time), elapsed), "{time}");
+        }
+    }
+
+    #[test]
+    fn limits_that_are_no_limits_are_refused() {
+        let base = TurningProfile::unlimited;
+        let refused =
+            |device: &TurningProfile| TurnReadings::<2>::new(device).unwrap_err().to_string();
+        assert_eq!(
+            refused(&base().with_max_speed(0.0)),
+            "angular_max_speed must be positive, got 0 rad/s"
+        );
+        assert_eq!(
+            refused(&base().with_max_acceleration(f64::NAN)),
+            "angular_max_acceleration must be positive, got NaN rad/s²"
+        );
+    }
+}
