@@ -126,6 +126,7 @@ fn write_safety(f: &mut Formatter<'_>, safety: &[SafetyReport]) -> Result {
         safety.iter().filter_map(|point| point.turning.as_ref()).map(of).sum()
     };
     let stages = [
+        ("held readings", ticks(|point| point.readings.held + point.readings.turns_held)),
         ("limit cycles", ticks(|point| point.limit_cycles.effect.ticks)),
         ("passivity of guides", ticks(|point| point.free_forces.effect.ticks)),
         ("passivity", ticks(|point| point.passivity.effect.ticks)),
