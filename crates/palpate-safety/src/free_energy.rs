@@ -89,7 +89,8 @@ impl<V: InnerProduct> FreeEnergy<V> {
         options: &PassivityOptions,
         is_sound: bool,
     ) -> Passed<V> {
-        if !is_sound {
+        // A device of infinite damping is passive whatever it renders.
+        if !is_sound || options.damping == f64::INFINITY {
             self.last = None;
             return Passed { force, spent: 0.0 };
         }
@@ -205,6 +206,19 @@ mod tests {
             let first = 0.5 * stiffness * 1e-6;
             assert!(energy < first + 1e-3, "{stiffness} N/m: {energy} J of {first} J");
         }
+    }
+
+    /// Once the losses were no number, and guides faded away.
+    #[test]
+    fn a_device_of_infinite_damping_is_passive() {
+        let options = options(f64::INFINITY);
+        let mut free = FreeEnergy::new(options.reserve);
+        for x in [0.0, 0.0, 0.01, -0.02] {
+            let force = Vector([-1e4 * x - 1.0, 0.0]);
+            let passed = free.step([force, Vector([x, 0.0])], 1e-3, &options, true);
+            assert_eq!((passed.force, passed.spent), (force, 0.0));
+        }
+        assert_eq!(free.report(), FreeForceReport::default());
     }
 
     #[test]
