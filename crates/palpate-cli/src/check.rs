@@ -13,7 +13,7 @@ use crate::arguments::CheckOptions;
 use crate::emptiness::is_empty;
 use crate::input::{bytes, other_than_scene, promise_in_words};
 use crate::outcome::{Failure, Outcome};
-use crate::output::{self, shown};
+use crate::output::{self, counted, shown};
 
 pub(crate) fn run(options: &CheckOptions) -> Result<Outcome, Failure> {
     let bytes = bytes(&options.scene)?;
@@ -46,7 +46,11 @@ pub(crate) fn run(options: &CheckOptions) -> Result<Outcome, Failure> {
                 let answer = json!({ "ok": true, "dimension": dimension, "bodies": bodies });
                 out.json(&answer)?;
             } else {
-                writeln!(out, "{name}: good, {dimension}D, {} bodies", bodies.len())?;
+                writeln!(
+                    out,
+                    "{name}: good, {dimension}D, {}",
+                    counted(bodies.len(), "body", "bodies")
+                )?;
                 for body in &bodies {
                     let text = |key: &str| body[key].as_str().unwrap_or_default().to_owned();
                     let empty = match body["empty"].as_bool() {

@@ -43,8 +43,8 @@ fn report<const D: usize>(
         let (shape, density) = (body.shape.clone(), options.density);
         let mass = interrupt.unless_asked(move || shape.mass(density, limits));
         let Some(mass) = mass else {
-            let all = scene.bodies.len();
-            output::remark(format_args!("interrupted after {done} of {all} bodies"));
+            let all = output::counted(scene.bodies.len(), "body", "bodies");
+            output::remark(format_args!("interrupted after {done} of {all}"));
             outcome = Outcome::Interrupted;
             break;
         };

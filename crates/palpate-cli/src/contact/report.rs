@@ -10,7 +10,7 @@ use serde_json::{Value, json};
 
 use super::question::{Pair, Question};
 use crate::outcome::Failure;
-use crate::output::{self, shown};
+use crate::output::{self, counted, shown};
 
 /// The pairs of a scene, to be reported.
 pub(super) struct Report<'a, const D: usize> {
@@ -52,8 +52,9 @@ impl<const D: usize> Report<'_, D> {
         let [touching, open] = [Verdict::Touching, Verdict::Undecided].map(count);
         writeln!(
             out,
-            "{} bodies: {touching} pairs touch (gap up to {} mm), {} are apart, {open} undecided",
-            self.names.len(),
+            "{}: {} (gap up to {} mm), {} apart, {open} undecided",
+            counted(self.names.len(), "body", "bodies"),
+            counted(touching, "pair touches", "pairs touch"),
             millimetres(self.question.settings.manifold.margin),
             self.count - touching - open,
         )?;

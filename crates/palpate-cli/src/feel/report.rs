@@ -17,7 +17,7 @@ use serde_json::Value;
 
 use crate::numbers::rounded;
 use crate::outcome::Failure;
-use crate::output::{self, shown};
+use crate::output::{self, counted, shown};
 
 use super::inside;
 use super::vibration::Played;
@@ -135,12 +135,12 @@ fn write_report<const D: usize>(out: &mut String, felt: &Felt<'_, D>) -> std::fm
     let surfaces = || servo.bodies().bodies().iter().map(Body::surface);
     match &report.tool {
         Some(tool) => {
-            let plural = if tool.points == 1 { "" } else { "s" };
-            writeln!(out, "{name}, felt with a tool of {} point{plural}", tool.points)?;
+            let points = counted(tool.points, "point", "points");
+            writeln!(out, "{name}, felt with a tool of {points}")?;
         }
         None => {
-            let plural = if report.points == 1 { "" } else { "s" };
-            writeln!(out, "{name}, felt with {} contact point{plural}", report.points)?;
+            let points = counted(report.points, "contact point", "contact points");
+            writeln!(out, "{name}, felt with {points}")?;
         }
     }
     let asked = felt.scene.bodies.iter().map(|body| &body.material);
@@ -198,8 +198,8 @@ fn write_report<const D: usize>(out: &mut String, felt: &Felt<'_, D>) -> std::fm
             write_accepted(out, turning, |_| "coupling about axes".to_owned())?;
         }
         _ => {
-            let all = accepted.len();
-            write_accepted(out, accepted, |count| format!("{count} of {all} bodies"))?;
+            let all = counted(accepted.len(), "body", "bodies");
+            write_accepted(out, accepted, |count| format!("{count} of {all}"))?;
         }
     }
     inside::write(out, felt)?;

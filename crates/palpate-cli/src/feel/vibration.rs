@@ -16,7 +16,7 @@ use palpate::vibration::{
 use serde_json::{Value, json};
 
 use crate::outcome::Failure;
-use crate::output::{Destination, shown};
+use crate::output::{Destination, counted, shown};
 
 /// The sample rate [Hz]; the skin feels nothing above 1 kHz.
 const SAMPLE_RATE: u32 = 8000;
@@ -169,8 +169,8 @@ impl Played {
             }
             None => "of any frequency".to_owned(),
         };
-        let plural = if self.levels.len() == 1 { "" } else { "s" };
-        writeln!(out, "  vibration      {} actuator{plural}: {what}", self.levels.len())?;
+        let actuators = counted(self.levels.len(), "actuator", "actuators");
+        writeln!(out, "  vibration      {actuators}: {what}")?;
         let loudest = self.levels.iter().flatten().copied().reduce(f64::max);
         match loudest {
             Some(level) if level > 0.0 => writeln!(

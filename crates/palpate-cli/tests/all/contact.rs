@@ -122,7 +122,7 @@ fn two_bodies_without_bounds_are_undecided_and_said_to_be() {
     assert_eq!(
         text(&said),
         "floor – wall: undecided, neither has bounds\n\
-         2 bodies: 0 pairs touch (gap up to 2.0000 mm), 0 are apart, 1 undecided\n"
+         2 bodies: 0 pairs touch (gap up to 2.0000 mm), 0 apart, 1 undecided\n"
     );
 }
 
@@ -211,9 +211,7 @@ fn the_pairs_of_a_body_are_asked_about_alone() {
     }
     let said = text(&palpate(&["contact", &scene, "--body", "middle", "--body", "floor"]));
     assert!(
-        said.ends_with(
-            "4 bodies: 2 pairs touch (gap up to 2.0000 mm), 3 are apart, 0 undecided\n"
-        ),
+        said.ends_with("4 bodies: 2 pairs touch (gap up to 2.0000 mm), 3 apart, 0 undecided\n"),
         "{said}"
     );
     let unknown = palpate(&["contact", &scene, "--body", "midle"]);

@@ -283,7 +283,7 @@ fn the_stiffness_that_a_device_renders_is_told_beside_the_one_asked_for() {
     let svg = std::fs::read_to_string(&plot).unwrap();
     let has = |svg: &str, word: &str| words(svg).iter().any(|found| found.contains(word));
     assert!(has(&svg, "433 N/m, asked 500 N/m"), "{:?}", words(&svg));
-    let why = "                 1 of 1 bodies softer than asked, 0.866 of the stiffness: K ≤ the \
+    let why = "                 1 of 1 body softer than asked, 0.866 of the stiffness: K ≤ the \
                device's largest stiffness at this rate\n";
     assert!(said.contains(why) && said.contains("\n  at the hand    stiffness "), "{said}");
     // At ten times the rate the device renders all.

@@ -276,7 +276,7 @@ fn nothing_touches_an_empty_body() {
     folder.write("hollow.json", HOLLOW);
     let said = text(&folder.run(&["contact", "hollow.json", "--body", "none"]));
     let expected = "none – skin: apart, none has no point\nnone – ball: apart, none has no point\n\
-                    3 bodies: 0 pairs touch (gap up to 0.0800 mm), 2 are apart, 0 undecided\n";
+                    3 bodies: 0 pairs touch (gap up to 0.0800 mm), 2 apart, 0 undecided\n";
     assert_eq!(said, expected);
     let answer = folder.run(&["contact", "hollow.json", "--body", "none", "--json"]);
     let answer: Value = serde_json::from_slice(&answer.stdout).unwrap();
