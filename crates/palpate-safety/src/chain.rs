@@ -30,8 +30,10 @@ pub struct PortState<const D: usize> {
     /// The velocity of the device point [m/s], for example from a
     /// [`VelocityEstimator`](crate::VelocityEstimator).
     pub velocity: Vector<f64, D>,
-    /// A force on the hand that is added to the wanted force [N]: that of guides and magnets. It has
-    /// a potential, beyond which it gives out no energy.
+    /// A force on the hand that is added to the wanted force [N]: that of guides and magnets. It may
+    /// give out its potential. Beyond that and what the device's damping dissipates, it gives out
+    /// the [reserve](SafetyOptions::reserve), a quarter of a millijoule while it is taken away
+    /// smoothly, and what one tick adds.
     pub free_force: Vector<f64, D>,
     /// By how much the tick began too late [s]; zero in time. A tick without a new reading is as
     /// good as late.
@@ -74,11 +76,12 @@ pub struct SafetyOptions {
     pub acceptance: Acceptance,
     /// Whether a material is refused of which the device renders less than all.
     pub is_strict: bool,
-    /// Whether the passivity controller and the stage of limit cycles act; the observer always
-    /// runs. A force that must do work on the hand is incompatible with the controller. Neither
+    /// Whether the passivity controllers, of walls and of [free
+    /// forces](PortState::free_force), and the stage of limit cycles act; the observers always
+    /// run. A wanted force that must do work on the hand is incompatible with the controller. None
     /// acts on a device of infinite damping.
     pub has_passivity_control: bool,
-    /// Energy that the controller lets out before the hand has put any in [J].
+    /// Energy that each controller lets out before the hand has put any in [J].
     pub reserve: f64,
     /// The time constant with which the motors cool [s]. Makers do not state it.
     pub cooling_time: f64,
@@ -188,9 +191,10 @@ impl SafetyOptions {
 /// The safety chain of one contact point, from the wanted force to the written force.
 ///
 /// The stages, in this order: stiffness and damping ([`Accepted`], at set-up), the rise of a force
-/// that was zeroed, limit cycles ([`LimitCycleReport`](crate::LimitCycleReport)), passivity, slew limit, force limit, continuous limit, guard against numbers
-/// that are not finite, deadline watchdog and emergency stop. If no stage has to act, the
-/// written force equals the wanted force bit for bit.
+/// that was zeroed, limit cycles ([`LimitCycleReport`](crate::LimitCycleReport)), passivity of
+/// guides and magnets ([`FreeForceReport`](crate::FreeForceReport)), passivity of walls, slew limit,
+/// force limit, continuous limit, guard against numbers that are not finite, deadline watchdog and
+/// emergency stop. If no stage has to act, the written force equals the wanted force bit for bit.
 ///
 /// # What is promised
 ///
@@ -251,8 +255,8 @@ impl<const D: usize> SafetyChain<D> {
     ///
     /// As [`Accepted::new`], or [`SafetyError::MaterialRefused`] of a
     /// [strict](SafetyOptions::is_strict) chain.
-    /// [`SafetyError::Number`] if a limit of the device is not positive, its mass is negative,
-    /// or an energy or a time of the options is negative or not finite.
+    /// [`SafetyError::Number`] if a limit of the device is not positive, its mass or least damping
+    /// is negative, or an energy or a time of the options is negative or not finite.
     pub fn new(
         device: &DeviceProfile,
         rate: f64,
@@ -281,7 +285,7 @@ impl<const D: usize> SafetyChain<D> {
         Ok(Self {
             accepted,
             cycle: LimitCycle::new(cycle),
-            free: FreeEnergy::new(passivity.reserve),
+            free: FreeEnergy::new(passivity.reserve, passivity.max_force),
             passivity: Passivity::new(passivity),
             channel: Channel::new(&limits, &options, 1.0, rate)?,
         })

@@ -9,14 +9,22 @@
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use crate::effect::Effect;
+use crate::lift::Lift;
 use crate::passivity::{InnerProduct, MEMORY, PassivityOptions, SLACK, SPARE, STEP};
 
-/// The part of what damping covers that passes, so that oscillations decay.
+/// The part of what damping covers that passes.
 const COVERED: f64 = 0.8;
 
-/// The time in which the force comes back by a factor of e [s]: a force that comes back faster
-/// gives out as much as it was kept from.
-const RECOVERY: f64 = 20.0;
+/// The part of what damping dissipates that counts while less than the whole force passes. It is
+/// more than [`COVERED`], so that the balance is paid, and less than 1, so that swings decay.
+const CREDITED: f64 = 0.9;
+
+/// The shortest time in which the force of a moving hand comes back [s].
+const RECOVERY: f64 = 1.0;
+
+/// The part of the height over the lowest place that is left after a tick: guides with damping take
+/// energy that is no height.
+const HEIGHT_LEFT: f64 = 0.9999;
 
 /// What sampling generates with forces that have a potential, and what was done about it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -38,22 +46,32 @@ pub struct FreeForceReport {
 /// ΔF · Δx`, is what sampling generates. The device's damping `b` dissipates at least `b |Δx|² / T`.
 /// The balance of both starts at the reserve, which is its most.
 ///
-/// **Controller.** When the balance is used up, [less](COVERED) of the force passes than damping
-/// covers, which is the losses over the leaks of the last [`MEMORY`]. The part falls by [`STEP`] a
-/// tick, and at once when [`SPARE`] more was given out. It comes back [slowly](RECOVERY) while the balance is positive, and at once where there is
-/// no force.
+/// **Controller.** While the balance is used up, [less](COVERED) of the force passes than damping
+/// covers, which is the losses over the leaks since then. The part falls by [`STEP`] a tick, and at
+/// once when [`SPARE`] more was given out.
+///
+/// **Recovery.** A part `p` of a potential `U` that rises by `Δp` adds `Δp U` to the energy of the
+/// hand, and a swing that is lifted again and again grows. So the part rises while the balance pays
+/// for it, `U` above the lowest place of late, and in a [second](RECOVERY) at best. A hand at rest
+/// pays nothing: the force rises as that of a wall does ([`Lift`]). Where there is no force, the
+/// part is whole at once.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct FreeEnergy<V> {
     /// Position and force of the last tick; `None` after one that was not finite.
     last: Option<(V, V)>,
+    /// The largest force that the device gives [N].
+    max_force: f64,
     /// The part of the force that passes.
     part: f64,
     /// What damping dissipates minus what sampling generates, at most the reserve [J].
     balance: f64,
-    /// What sampling would generate with the whole force, and what damping dissipates; both decay
-    /// by [`MEMORY`] [J].
+    /// What sampling would generate with the whole force, and what damping dissipates, while the
+    /// balance is used up; both decay by [`MEMORY`] [J].
     leaks: f64,
     losses: f64,
+    /// The potential above its least value of late [J].
+    height: f64,
+    lift: Lift<V>,
     report: FreeForceReport,
 }
 
@@ -67,13 +85,17 @@ pub(crate) struct Passed<V> {
 }
 
 impl<V: InnerProduct> FreeEnergy<V> {
-    pub(crate) fn new(reserve: f64) -> Self {
+    /// A stage that may give out `reserve` [J], for a device that gives at most `max_force` [N].
+    pub(crate) fn new(reserve: f64, max_force: f64) -> Self {
         Self {
             last: None,
+            max_force,
             part: 1.0,
             balance: reserve,
             leaks: 0.0,
             losses: 0.0,
+            height: 0.0,
+            lift: Lift::new(),
             report: FreeForceReport::default(),
         }
     }
@@ -94,48 +116,79 @@ impl<V: InnerProduct> FreeEnergy<V> {
             self.last = None;
             return Passed { force, spent: 0.0 };
         }
-        let before = self.last.replace((position, force));
-        if force == V::ZERO && before.is_none_or(|(_, force)| force == V::ZERO) {
+        let size = force.norm();
+        let felt = if size > self.max_force { force * (self.max_force / size) } else { force };
+        let before = self.last.replace((position, felt));
+        if force == V::ZERO && before.is_none_or(|(_, held)| held == V::ZERO) {
             // What comes next is another motion; the balance is paid first.
-            (self.part, self.leaks, self.losses) = (1.0, 0.0, 0.0);
+            (self.part, self.leaks, self.losses, self.height) = (1.0, 0.0, 0.0, 0.0);
+            self.lift = Lift::new();
             return Passed { force, spent: 0.0 };
         }
         let spent = before.map_or(0.0, |(place, held)| {
             let way = position - place;
             let loss = SLACK * options.damping * way.dot(way) / elapsed;
-            self.observe(-0.5 * (force - held).dot(way), loss, options.reserve)
+            let climbed = -0.5 * (felt + held).dot(way);
+            // Written so that NaN is no height.
+            self.height = (HEIGHT_LEFT * self.height + climbed).max(0.0);
+            self.observe(-0.5 * (felt - held).dot(way), loss, options.reserve)
         });
         if options.is_on {
-            self.control(force.norm(), elapsed);
+            let was_lifted = self.lift.is_on();
+            let is_lifted = self.lift.step(position, elapsed, Some(self.part < 1.0));
+            if is_lifted && !was_lifted {
+                self.balance = options.reserve;
+            }
+            self.control(felt.norm(), elapsed, is_lifted.then_some(options.rise_rate));
         }
-        let passes = (self.part < 1.0).then(|| force * self.part);
+        let passes = (self.part < 1.0).then(|| felt * self.part);
         Passed { force: self.report.effect.count(force, passes), spent }
     }
 
     /// Updates the balance, and returns what of `loss` the forces need [J].
     fn observe(&mut self, leak: f64, loss: f64, reserve: f64) -> f64 {
-        self.leaks = MEMORY * self.leaks + leak;
-        self.losses = MEMORY * self.losses + loss;
-        let leak = self.part * leak;
-        self.balance = (self.balance + loss - leak).min(reserve);
-        if !(self.balance.is_finite() && self.leaks.is_finite() && self.losses.is_finite()) {
+        let credit = if self.part < 1.0 { CREDITED * loss } else { loss };
+        let full = self.balance + credit - self.part * leak;
+        if !full.is_finite() {
             // Numbers overflowed: assume that damping covers nothing.
-            (self.balance, self.leaks, self.losses) = (0.0, 1.0, 0.0);
+            (self.balance, self.leaks, self.losses) = (-SPARE, 1.0, 0.0);
+            return loss;
         }
-        let beyond = self.balance - reserve;
-        self.report.least_balance = self.report.least_balance.min(beyond);
-        leak.min(loss).max(0.0)
+        self.balance = full.min(reserve);
+        self.report.least_balance = self.report.least_balance.min(self.balance - reserve);
+        if self.balance > 0.0 {
+            (self.leaks, self.losses) = (0.0, 0.0);
+        } else {
+            self.leaks = MEMORY * self.leaks + leak.max(0.0);
+            self.losses = MEMORY * self.losses + loss;
+        }
+        loss - (full - reserve).clamp(0.0, loss)
     }
 
-    /// Lets less of a force of size `force` [N] pass if the balance is used up, or more again.
-    fn control(&mut self, force: f64, elapsed: f64) {
-        let is_used_up = self.balance <= 0.0 && self.leaks > self.losses;
-        if is_used_up && force > 0.0 {
-            let covered = (COVERED * self.losses / self.leaks).clamp(0.0, self.part);
+    /// Lets less of a force of size `force` [N] pass if the balance is used up, or more again; by
+    /// `lifted` [N/s], if the force comes back to a hand at rest.
+    fn control(&mut self, force: f64, elapsed: f64, lifted: Option<f64>) {
+        if self.balance > 0.0
+            && let Some(rate) = lifted
+        {
+            self.part = (self.part + rate * elapsed / force).min(1.0);
+        } else if self.balance > 0.0 {
+            let paid = 0.5 * self.balance / self.height;
+            let rise = (elapsed / RECOVERY).min(paid).min(1.0 - self.part);
+            // Written so that NaN rises nothing.
+            if rise > 0.0 {
+                self.part += rise;
+                self.balance -= rise * self.height;
+            }
+        } else if self.leaks > 0.0 && force > 0.0 {
+            let covered = (COVERED * self.losses / self.leaks).min(self.part);
+            let is_smooth = self.balance > -SPARE;
             let smooth = self.part - STEP / force;
-            self.part = if self.balance > -SPARE { smooth.max(covered) } else { covered };
-        } else if self.part < 1.0 && self.balance > 0.0 {
-            self.part = (self.part * (1.0 + elapsed / RECOVERY)).min(1.0);
+            let part = if is_smooth { smooth.max(covered) } else { covered };
+            if part < self.part {
+                self.lift.end();
+            }
+            self.part = part;
         }
     }
 
@@ -163,56 +216,95 @@ mod tests {
         }
     }
 
-    /// A mass with damping in a spring that is held over ticks of 1 ms, for 20 s: the largest sum
-    /// of kinetic and potential energy in the last second [J], and the report.
-    fn swings(stiffness: f64, damping: f64) -> (f64, FreeForceReport) {
+    /// A mass with damping in a spring of a largest force [N] that is held over ticks of 1 ms, let
+    /// go at `start` [m], for 60 s: the largest sum of kinetic and potential energy at any time, and
+    /// that in the end [J]; and the report.
+    fn swings([stiffness, damping, max_force, start]: [f64; 4]) -> ([f64; 2], FreeForceReport) {
         let (mass, period) = (0.1, 1e-3);
         let options = options(damping);
-        let mut free = FreeEnergy::new(options.reserve);
-        let (mut x, mut v, mut most) = (1e-3, 0.0, 0.0_f64);
-        for tick in 0..20_000 {
+        let mut free = FreeEnergy::new(options.reserve, max_force);
+        let (mut x, mut v, mut most, mut energy) = (start, 0.0, 0.0_f64, 0.0);
+        for _ in 0..60_000 {
             let at = Vector([x, 0.0]);
             let Passed { force, .. } = free.step([at * -stiffness, at], period, &options, true);
-            let force = force[0];
+            let force = force[0].clamp(-max_force, max_force);
             // m v' = F − b v, exactly.
             let (rate, steady) = (damping / mass, force / damping);
             let decay = (-rate * period).exp();
             x += steady * period + (v - steady) * (1.0 - decay) / rate;
             v = steady + (v - steady) * decay;
-            if tick >= 19_000 {
-                most = most.max(0.5 * (mass * v * v + free.part * stiffness * x * x));
-            }
+            energy = 0.5 * mass * v * v + free.part * stored(stiffness, max_force, x);
+            most = most.max(energy);
         }
-        (most, free.report())
+        ([most, energy], free.report())
+    }
+
+    /// The potential of a spring of a largest force [J].
+    fn stored(stiffness: f64, max_force: f64, x: f64) -> f64 {
+        let elastic = x.abs().min(max_force / stiffness);
+        0.5 * stiffness * elastic * elastic
+            + if elastic < x.abs() { max_force * (x.abs() - elastic) } else { 0.0 }
     }
 
     /// `K = 2 b / T`, Colgate and Schenkel (1997).
     #[test]
     fn springs_up_to_twice_the_damping_over_the_period_pass() {
         for damping in [0.2, 1.0, 3.0] {
-            let (energy, report) = swings(2.0 * damping / 1e-3, damping);
+            let stiffness = 2.0 * damping / 1e-3;
+            let ([most, _], report) = swings([stiffness, damping, f64::INFINITY, 1e-3]);
             assert_eq!((report.effect.ticks, report.least_balance), (0, 0.0), "{damping}");
-            assert!(energy <= 0.5 * 2.0 * damping / 1e-3 * 1e-6, "{damping}: {energy} J");
+            assert!(most <= 0.5 * stiffness * 1e-6, "{damping}: {most} J");
         }
     }
 
-    /// Without the stage such a spring grows without bound.
+    /// Without the stage such a spring grows without bound. Once a part that came back by the clock
+    /// alone lifted the spring of 1000 N/m to a joule in a minute, and the losses of a long pull paid
+    /// for the leaks of the swing after it.
     #[test]
-    fn a_stiffer_spring_gives_out_little_beyond_its_potential() {
-        for (stiffness, damping) in [(2000.0, 0.2), (4000.0, 0.5), (1000.0, 0.02)] {
-            let (energy, report) = swings(stiffness, damping);
-            assert!(report.effect.ticks > 0 && report.least_balance > -1e-3, "{report:?}");
-            // At first it has ½ K (1 mm)².
-            let first = 0.5 * stiffness * 1e-6;
-            assert!(energy < first + 1e-3, "{stiffness} N/m: {energy} J of {first} J");
+    fn a_stiffer_spring_gives_out_its_reserve_beyond_its_potential() {
+        for case @ [stiffness, _, max_force, start] in [
+            [2000.0, 0.2, f64::INFINITY, 1e-3],
+            [4000.0, 0.5, f64::INFINITY, 1e-3],
+            [1000.0, 0.02, f64::INFINITY, 1e-3],
+            [1000.0, 0.2, f64::INFINITY, 4e-3],
+            [3000.0, 0.2, 1.0, 5e-2],
+            [1e6, 0.5, 3.0, 1e-2],
+        ] {
+            let ([most, last], report) = swings(case);
+            let first = stored(stiffness, max_force, start);
+            assert!(report.effect.ticks > 0, "{case:?}: {report:?}");
+            // The reserve, what is given out while the part falls smoothly, and one tick's leak, `½
+            // |ΔF| |Δx|`, at the speed of the first energy.
+            let way = (2.0 * first / 0.1).sqrt() * 1e-3;
+            let beyond = 1e-4 + SPARE + 0.5 * (stiffness * way).min(2.0 * max_force) * way;
+            assert!(report.least_balance >= -beyond, "{case:?}: {report:?}");
+            assert!(most <= first + beyond, "{case:?}: {most} J of {first} J");
+            assert!(last < 0.5 * first, "{case:?}: {last} J of {first} J");
         }
+    }
+
+    /// A part that the controller took stays taken while nothing moves, as nothing is paid.
+    #[test]
+    fn a_hand_at_rest_feels_the_whole_force_again() {
+        let options = options(0.0);
+        let mut free = FreeEnergy::new(options.reserve, f64::INFINITY);
+        let mut at = |x: f64| {
+            let input = [Vector([-1000.0 * x, 0.0]), Vector([x, 0.0])];
+            free.step(input, 1e-3, &options, true).force[0]
+        };
+        let shaken: Vec<_> =
+            (0..200).map(|tick| at(if tick % 2 == 0 { 2e-3 } else { 1e-3 })).collect();
+        assert_eq!(shaken.last(), Some(&0.0));
+        let rested: Vec<_> = (0..1000).map(|_| at(2e-3)).collect();
+        assert!(rested.windows(2).all(|pair| pair[0] - pair[1] <= 0.02 + 1e-12), "{rested:?}");
+        assert_eq!(rested.last(), Some(&-2.0));
     }
 
     /// Once the losses were no number, and guides faded away.
     #[test]
     fn a_device_of_infinite_damping_is_passive() {
         let options = options(f64::INFINITY);
-        let mut free = FreeEnergy::new(options.reserve);
+        let mut free = FreeEnergy::new(options.reserve, f64::INFINITY);
         for x in [0.0, 0.0, 0.01, -0.02] {
             let force = Vector([-1e4 * x - 1.0, 0.0]);
             let passed = free.step([force, Vector([x, 0.0])], 1e-3, &options, true);
@@ -224,7 +316,7 @@ mod tests {
     #[test]
     fn a_pull_that_begins_is_no_leak_and_a_force_that_is_gone_comes_back_whole() {
         let options = options(0.0);
-        let mut free = FreeEnergy::new(options.reserve);
+        let mut free = FreeEnergy::new(options.reserve, f64::INFINITY);
         let mut at = |x: f64, force: f64| {
             let input = [Vector([force, 0.0]), Vector([x, 0.0])];
             free.step(input, 1e-3, &options, true).force[0]
@@ -233,10 +325,11 @@ mod tests {
         assert!((0..100).all(|k| at(1e-4 * f64::from(k), 2.0) == 2.0));
         // A force that turns against every motion of a device without damping.
         let jolts: Vec<_> =
-            (0..200).map(|k| at(1e-3 * f64::from(k % 2), f64::from(k % 2) * -2.0)).collect();
-        let steps = jolts.iter().step_by(2).zip(jolts.iter().step_by(2).skip(1));
-        assert!(steps.clone().all(|(a, b)| (a - b).abs() <= 2.0 * 0.3 + 1e-12), "{jolts:?}");
-        assert!(jolts.last().is_some_and(|force| *force == 0.0), "{jolts:?}");
+            (0..200).map(|k| at(2e-5 * f64::from(k % 2), f64::from(k % 2) * -2.0)).collect();
+        let pushes: Vec<_> = jolts.iter().skip(1).step_by(2).collect();
+        assert_eq!((pushes[0], pushes.last()), (&-2.0, Some(&&-0.0)), "{jolts:?}");
+        // By the controller's steps, until more than the spare is given out.
+        assert!(pushes.windows(2).all(|pair| pair[0] <= pair[1]), "{jolts:?}");
         assert_eq!((at(0.0, 0.0), at(0.0, 0.0), at(0.0, 2.0)), (0.0, 0.0, 2.0));
     }
 }

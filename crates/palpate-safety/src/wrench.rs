@@ -208,7 +208,7 @@ impl<const D: usize> WrenchChain<D> {
             sides,
             unit,
             cycle: LimitCycle::new(cycle),
-            free: FreeEnergy::new(passivity.reserve),
+            free: FreeEnergy::new(passivity.reserve, along.max_force.positive()?),
             passivity: Passivity::new(passivity),
             force: Channel::new(along, options, 1.0, rate)?,
             torque: Channel::new(about, options, unit, rate)?,
@@ -298,9 +298,8 @@ impl<const D: usize> WrenchChain<D> {
         let is_disturbed = late > 0.0 || is_rising;
         let softness = self.cycle.observed(&seen.disturbed(is_disturbed), is_sound);
         let free_force = if softness < 1.0 { free_force * softness } else { free_force };
-        let along = PassivityOptions { damping: self.sides.along.damping, ..options };
         let Passed { force: free_force, spent } =
-            self.free.step([free_force, position.along], elapsed, &along, is_sound);
+            self.free.step([free_force, position.along], elapsed, &options, is_sound);
         let seen =
             PortMotion { position, velocity, effort, is_rising, elapsed, softness, spent };
         let allowed = self.passivity.observed(as_lengths, &seen, is_sound);
