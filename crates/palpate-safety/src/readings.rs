@@ -11,9 +11,9 @@ use crate::device::DeviceProfile;
 use crate::error::{NumberError, SafetyError};
 use crate::turn_readings::TurnReadings;
 
-/// A reading may be off by so many encoder steps: half a step each in the present reading, in the
-/// last one and in both of the last velocity, doubled.
-const STEPS: f64 = 4.0;
+/// The way between two readings may be off by so many encoder steps: half a step an axis in each,
+/// `√3` in space together; and rotation vectors differ by up to `π/2` times as much.
+const STEPS: f64 = 3.0;
 
 /// Readings that were held back.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -64,12 +64,16 @@ pub(crate) struct Reach {
     max_speed: f64,
     max_acceleration: f64,
     slack: f64,
+    /// How long before the last reading its velocity held, over half the time of its measurement.
+    lag: f64,
 }
 
 impl Reach {
-    /// Of a largest speed and a largest acceleration that are positive, read in encoder steps.
-    pub(crate) fn new(max_speed: f64, max_acceleration: f64, encoder_step: f64) -> Self {
-        Self { max_speed, max_acceleration, slack: STEPS * encoder_step }
+    /// Of a largest speed and a largest acceleration that are positive, read in encoder steps; the
+    /// velocity of a reading is that of `lag` times half its time of measurement before.
+    pub(crate) fn new(limits: [f64; 2], encoder_step: f64, lag: f64) -> Self {
+        let [max_speed, max_acceleration] = limits;
+        Self { max_speed, max_acceleration, slack: STEPS * encoder_step, lag }
     }
 
     /// Whether every reading is within reach.
@@ -83,12 +87,14 @@ impl Reach {
     }
 
     /// Whether a hand can have moved by `way` in `time`, and by `change` beside the way at its last
-    /// velocity, which is that of the middle of the time `over` before.
+    /// velocity, which was measured over the time `over`.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     pub(crate) fn has(&self, way: f64, change: f64, [time, over]: [f64; 2]) -> bool {
-        let most = 0.5 * self.max_acceleration * time * (time + over) + self.slack;
-        way <= self.way_in(time) + self.slack && change <= most
+        let most = 0.5 * self.max_acceleration * time * (time + self.lag * over);
+        // What the last velocity is off by grows with the time.
+        let slack = self.slack * (1.0 + time / over);
+        way <= self.way_in(time) + self.slack && change <= most + slack
     }
 }
 
@@ -99,11 +105,11 @@ impl Reach {
 /// it, and the time `t` since, a reading `x` counts if
 ///
 /// ```text
-/// |x − x₀| ≤ v t + δ   and   |x − x₀ − v₀ t| ≤ ½ a t (t + t₀) + δ
+/// |x − x₀| ≤ v t + δ   and   |x − x₀ − v₀ t| ≤ ½ a t (t + t₀) + δ (1 + t/t₀)
 /// ```
 ///
 /// with the device's [largest speed](DeviceProfile::max_speed) `v`, its [largest
-/// acceleration](DeviceProfile::max_acceleration) `a` and four encoder steps `δ`. The second bound
+/// acceleration](DeviceProfile::max_acceleration) `a` and three encoder steps `δ`. The second bound
 /// is that of an acceleration of at most `a`, since `v₀` is the velocity `t₀/2` before `x₀`. Both
 /// bounds grow, so that after a time any reading counts: a device that was moved while it was not
 /// read is found again. Nothing is known of the velocity of the first reading, so that the second
@@ -142,6 +148,13 @@ struct Counted<const D: usize> {
     since: f64,
 }
 
+impl<const D: usize> Counted<D> {
+    /// A position of unknown velocity.
+    fn unknown(position: Point<D>) -> Self {
+        Self { position, velocity: Vector::ZERO, over: f64::INFINITY, since: 0.0 }
+    }
+}
+
 impl<const D: usize> Readings<D> {
     /// For the readings of `device`.
     ///
@@ -154,7 +167,7 @@ impl<const D: usize> Readings<D> {
         let step = NumberError::check_not_negative("encoder_step", device.encoder_step, "m")?;
         let speed = positive("max_speed", device.max_speed, "m/s")?;
         let acceleration = positive("max_acceleration", device.max_acceleration, "m/s²")?;
-        let reach = Reach::new(speed, acceleration, step);
+        let reach = Reach::new([speed, acceleration], step, 1.0);
         Ok(Self { reach, last: None, held: Held::default() })
     }
 
@@ -171,8 +184,7 @@ impl<const D: usize> Readings<D> {
             return true;
         }
         let Some(last) = &mut self.last else {
-            let (velocity, over, since) = (Vector::ZERO, f64::INFINITY, 0.0);
-            self.last = Some(Counted { position, velocity, over, since });
+            self.last = Some(Counted::unknown(position));
             return true;
         };
         last.since += elapsed.max(0.0);
@@ -180,8 +192,12 @@ impl<const D: usize> Readings<D> {
         let way = position - last.position;
         let change = (way - last.velocity * time).norm();
         if self.reach.has(way.norm(), change, [time, last.over]) {
-            let velocity = way * (1.0 / time);
-            *last = Counted { position, velocity, over: time, since: 0.0 };
+            // Two readings at one time say nothing of the velocity.
+            if time > 0.0 {
+                let velocity = way * (1.0 / time);
+                let known = Counted { velocity, over: time, ..Counted::unknown(position) };
+                *last = if velocity.is_finite() { known } else { Counted::unknown(position) };
+            }
             return true;
         }
         self.held.add(way.norm());
@@ -262,5 +278,36 @@ mod tests {
         assert!(readings.counts(Vector([0.05, 0.0]), 0.021));
         assert!(readings.counts(Vector([f64::NAN, 0.0]), PERIOD));
         assert!(readings.counts(Vector([3.0, 0.0]), PERIOD), "found again anywhere");
+    }
+
+    /// A velocity from a short time is off by more than one from a long time. Once a reading after a
+    /// tick that came at once was held back, and those after it for up to 0.3 s.
+    #[test]
+    fn readings_in_steps_count_in_ticks_that_are_uneven() {
+        let step = 5e-5;
+        let device = DeviceProfile::unlimited("")
+            .with_max_speed(5.0)
+            .with_max_acceleration(100.0)
+            .with_encoder_step(step);
+        let mut readings = Readings::new(&device).unwrap();
+        let mut time = 0.0_f64;
+        for tick in 0..10_000 {
+            let elapsed = [1e-3, 2e-5, 2e-3, 1e-5, 0.0, 9e-4, 1e-6][tick % 7];
+            time += elapsed;
+            let there = Vector([0.05 * (9.0 * time).sin(), 0.05 * (9.0 * time).cos()]);
+            let read = Vector(there.0.map(|x| (x / step).round() * step));
+            assert!(readings.counts(read, elapsed), "{tick}");
+        }
+    }
+
+    /// Once two readings at one time made the velocity no number, and nothing counted again.
+    #[test]
+    fn readings_at_one_time_leave_the_velocity_as_it_was() {
+        let mut readings = readings();
+        for elapsed in [PERIOD, PERIOD, 0.0, -1.0, f64::MIN_POSITIVE, PERIOD, 0.0, PERIOD] {
+            assert!(readings.counts(Vector([0.1, 0.1]), elapsed), "{elapsed}");
+        }
+        assert!(!readings.counts(Vector([0.15, 0.1]), 0.0));
+        assert!(readings.counts(Vector([0.1, 0.1]), PERIOD));
     }
 }

@@ -20,12 +20,12 @@ use crate::readings::{Held, Reach};
 /// vector over the time `t₀` before it, and the time `t` since, a reading `R` counts if
 ///
 /// ```text
-/// ∠(R, R₀) ≤ v t + δ   and   ∠(R, exp(ω₀ t) R₀) ≤ ½ a t (t + 2 t₀) + δ
+/// ∠(R, R₀) ≤ v t + δ   and   ∠(R, exp(ω₀ t) R₀) ≤ ½ a t (t + 2 t₀) + δ (1 + t/t₀)
 /// ```
 ///
 /// with the angle `∠` of the rotation between two orientations, the [largest angular
 /// speed](TurningProfile::max_speed) `v` and [acceleration](TurningProfile::max_acceleration) `a` of
-/// the hand, and four encoder steps `δ`. No rotation within `v` and `a` is held back:
+/// the hand, and three encoder steps `δ`. No rotation within `v` and `a` is held back:
 ///
 /// - The orientations `R(s)` and `exp(ω₀ s) R₀` part at most as fast as their angular velocities
 ///   differ, because the angle does not change if both are turned alike; likewise `R(s)` and `R₀`,
@@ -90,7 +90,7 @@ impl<const D: usize> TurnReadings<D> {
         let speed = positive("angular_max_speed", device.max_speed, "rad/s")?;
         let acceleration = device.max_acceleration;
         let acceleration = positive("angular_max_acceleration", acceleration, "rad/s²")?;
-        let reach = Reach::new(speed, acceleration, step);
+        let reach = Reach::new([speed, acceleration], step, 2.0);
         Ok(Self { reach, last: None, held: Held::default() })
     }
 
@@ -116,16 +116,18 @@ impl<const D: usize> TurnReadings<D> {
         let way = last.orientation.turn_to(&orientation);
         let kept_on = last.orientation.turned(last.angular_velocity * time);
         let change = kept_on.turn_to(&orientation).norm();
-        if !self.reach.has(way.norm(), change, [time, 2.0 * last.over]) {
+        if !self.reach.has(way.norm(), change, [time, last.over]) {
             self.held.add(way.norm());
             return false;
         }
-        let is_ambiguous = (PI..f64::INFINITY).contains(&self.reach.way_in(time));
-        *last = if is_ambiguous {
-            unknown
-        } else {
-            Counted { angular_velocity: way * (1.0 / time), over: time, ..unknown }
-        };
+        // Two readings at one time say nothing of the angular velocity.
+        if time > 0.0 {
+            let is_ambiguous = (PI..f64::INFINITY).contains(&self.reach.way_in(time));
+            let angular_velocity = way * (1.0 / time);
+            let known = Counted { angular_velocity, over: time, ..unknown };
+            let is_known = !is_ambiguous && angular_velocity.is_finite();
+            *last = if is_known { known } else { unknown };
+        }
         true
     }
 
@@ -214,15 +216,37 @@ mod tests {
         assert_eq!(readings.held().ticks, 0);
     }
 
-    /// The shorter way round is not that of the hand, so its velocity is not known.
+    /// The shorter way round is not that of the hand, so its velocity is not known: 190 rad/s over
+    /// 20 ms would look like 124 rad/s back.
     #[test]
     fn a_hand_that_made_more_than_half_a_turn_unseen_is_not_held_back() {
-        let mut readings = readings();
-        let mut time = 0.0;
-        for elapsed in [0.001, 0.001, 0.075, 0.001, 0.001, 0.08, 0.001] {
+        let device =
+            TurningProfile::unlimited().with_max_speed(200.0).with_max_acceleration(1e4);
+        let mut readings = TurnReadings::<3>::new(&device).unwrap();
+        let mut time = 0.0_f64;
+        for elapsed in [0.001, 0.001, 0.02, 0.001, 0.001, 0.02, 0.001] {
             time += elapsed;
-            assert!(readings.counts(about_y(49.0 * time), elapsed), "{time}");
+            assert!(readings.counts(about_y(190.0 * time), elapsed), "{time}");
         }
+    }
+
+    /// As positions do.
+    #[test]
+    fn orientations_count_in_steps_and_in_ticks_that_are_uneven() {
+        let step = 1e-3;
+        let device = TurningProfile::unlimited()
+            .with_max_speed(50.0)
+            .with_max_acceleration(300.0)
+            .with_encoder_step(step);
+        let mut readings = TurnReadings::<3>::new(&device).unwrap();
+        let mut time = 0.0_f64;
+        for tick in 0..10_000 {
+            let elapsed = [1e-3, 2e-5, 2e-3, 1e-5, 0.0, f64::MIN_POSITIVE, 9e-4][tick % 7];
+            time += elapsed;
+            let angle = (2.0 * (9.0 * time).sin() / step).round() * step;
+            assert!(readings.counts(about_y(angle), elapsed), "{tick}");
+        }
+        assert!(!readings.counts(about_y(2.5), 0.0));
     }
 
     #[test]
