@@ -213,7 +213,10 @@ impl<T: Device<D>, const D: usize> SimulatedTransport<T, D> {
         let jitter = if jitter > 0.0 { jitter * self.draw() } else { 0.0 };
         let last = self.time;
         let at = match last {
-            Some(last) if jitter != 0.0 => (time + jitter).max(last + SHORTEST_STEP),
+            // The last one may have come late by its jitter.
+            Some(last) if jitter != 0.0 || time < last => {
+                (time + jitter).max(last + SHORTEST_STEP)
+            }
             _ => time,
         };
         self.time = Some(at);
@@ -459,6 +462,18 @@ mod tests {
         let mut device = device.pacing_at(1.0).unwrap();
         for (tick, (_, x)) in (0..900).zip(reads(&mut device, 900)) {
             assert!((x - f64::from(tick)).abs() <= 0.2 + 1e-9, "{tick}: {x}");
+        }
+    }
+
+    /// Once the reading after a late one was made before it.
+    #[test]
+    fn measurements_after_jitter_keep_their_order() {
+        let jitter = [(10.0, 80.0, FaultKind::Jitter { most: 5.0 })];
+        for seed in 0..20 {
+            let mut device = with(&jitter).with_seed(seed);
+            let came = reads(&mut device, 110);
+            assert!(came.windows(2).all(|pair| pair[0].1 < pair[1].1), "{seed}");
+            assert_eq!(came[100..], fresh(&(100..110).map(f64::from).collect::<Vec<_>>()));
         }
     }
 

@@ -65,9 +65,11 @@ pub(crate) fn run(
     );
     let better = found.profile(profile, &source);
     let written = out.as_ref().map_or(Ok(()), |out| write(out, &better));
-    let report = Report { options, profile, plant: &plant, found: &found, out: out.as_ref() };
-    // The report is whole even if the file cannot be written.
-    written.and(report.print())?;
+    let out = out.as_ref().filter(|_| written.is_ok());
+    let report = Report { options, profile, plant: &plant, found: &found, out };
+    let printed = report.print();
+    // The numbers are told even if the file cannot be written.
+    written.and(printed)?;
     let is_seen = found.axes.iter().all(palpate::devices::IdentifiedAxis::is_seen);
     Ok(if is_seen { Outcome::Yes } else { Outcome::No })
 }

@@ -86,7 +86,10 @@ impl Report<'_> {
         }
         match self.out {
             Some(path) => writeln!(out, "wrote {}", path.name().display())?,
-            None => writeln!(out, "no profile is written: name a file by --out")?,
+            None if self.options.out.is_none() => {
+                writeln!(out, "no profile is written: name a file by --out")?;
+            }
+            None => {}
         }
         Ok(())
     }
@@ -107,8 +110,16 @@ impl Report<'_> {
         if matches!(axis.encoder_step, EncoderStep::Uneven(_)) {
             writeln!(out, "  its steps have no common length; the largest counts")?;
         }
-        let (softest, unit) = (rounded(axis.softest_spring), axis.axis.stiffness_unit());
-        writeln!(out, "  a hand that holds it by less than {softest} {unit} is not noticed")?;
+        match axis.softest_spring {
+            Some(softest) => {
+                let (softest, unit) = (rounded(softest), axis.axis.stiffness_unit());
+                writeln!(
+                    out,
+                    "  a hand that holds it by less than {softest} {unit} is not noticed"
+                )?;
+            }
+            None => writeln!(out, "  a hand that holds it would not be noticed")?,
+        }
         if axis.has_weight() {
             let (force, unit) = (rounded(axis.offset.value), axis.axis.force_unit());
             writeln!(

@@ -53,12 +53,13 @@ pub(super) fn identify_axis<const D: usize>(
         let observed: Vec<_> = motions.strokes.iter().map(observe).collect();
         let guess = guess(&motions.strokes, motions.breakaway(), &bounds);
         let sprung = fit(&observed, &guess, true);
-        let mut softest_spring = f64::INFINITY;
-        if let Some(sprung) = &sprung {
-            let (stiffness, deviation) = (sprung.model.stiffness, sprung.deviations.stiffness);
-            softest_spring =
-                (FELT * sprung.model.friction / bounds.travel).max(SURE * deviation);
-            if stiffness > softest_spring {
+        let softest_spring = sprung.as_ref().map(|sprung| {
+            let felt = FELT * sprung.model.friction / bounds.travel;
+            felt.max(SURE * sprung.deviations.stiffness)
+        });
+        if let (Some(sprung), Some(softest)) = (&sprung, softest_spring) {
+            let stiffness = sprung.model.stiffness;
+            if stiffness > softest {
                 return Err(IdentifyError::Held { axis, stiffness });
             }
         }
@@ -136,7 +137,7 @@ fn described(axis: super::DeviceAxis, fit: &Fit, tilt: f64) -> IdentifiedAxis {
         friction: estimate(model.friction, deviations.friction),
         encoder_step: EncoderStep::Unseen(0.0),
         offset: estimate(model.offset, deviations.offset),
-        softest_spring: 0.0,
+        softest_spring: None,
         misfit: fit.misfit,
         strokes: 0,
         time: 0.0,

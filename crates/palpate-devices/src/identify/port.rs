@@ -358,13 +358,14 @@ impl Sums {
 
 impl<const D: usize> Drop for Port<'_, D> {
     fn drop(&mut self) {
+        if !self.is_open {
+            return;
+        }
         // Ignored: the error that ends the identification says more, and a device that is lost
         // takes no zero. A panic within another one would end the process before the device is
         // closed.
         drop(catch_unwind(AssertUnwindSafe(|| self.release())));
-        if self.is_open {
-            drop(catch_unwind(AssertUnwindSafe(|| self.device.close())));
-        }
+        drop(catch_unwind(AssertUnwindSafe(|| self.device.close())));
     }
 }
 

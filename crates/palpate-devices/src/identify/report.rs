@@ -147,8 +147,9 @@ pub struct IdentifiedAxis {
     /// balanced.
     pub offset: Estimate,
     /// The softest spring by which a hand may hold the handle and be noticed [N/m], or [N·m/rad]: a
-    /// softer one, or a hand that only drags, adds to mass and damping.
-    pub softest_spring: f64,
+    /// softer one, or a hand that only drags, adds to mass and damping. `None` if the motions tell
+    /// nothing of a spring.
+    pub softest_spring: Option<f64>,
     /// The root mean square of the residuals of the model, over what encoder steps explain: 1 for a
     /// mass with damping and friction.
     pub misfit: f64,
@@ -198,7 +199,8 @@ const ABOUT: [&str; 4] = ["inertia", "least_damping", "friction", "encoder_step"
 struct Worst {
     mass: f64,
     damping: f64,
-    friction: f64,
+    /// The least and the most within the errors.
+    friction: [f64; 2],
     /// The largest step that is seen.
     step: f64,
     /// Whether each is seen on every axis.
@@ -213,6 +215,16 @@ impl Worst {
         if is_seen { self.step } else { self.step.max(stated) }
     }
 
+    /// The friction for a profile that states one.
+    fn friction_beside(&self, stated: f64) -> f64 {
+        let [least, most] = self.friction;
+        match least {
+            0.0 if stated > 0.0 => most.min(stated),
+            0.0 => most,
+            _ => least,
+        }
+    }
+
     /// Those of the names whose numbers are seen.
     fn seen<'n>(&self, names: &[&'n str; 4]) -> Vec<&'n str> {
         let seen = names.iter().zip(self.is_seen).filter(|(_, is_seen)| *is_seen);
@@ -222,11 +234,15 @@ impl Worst {
 
 impl Identified {
     /// `profile` with the numbers that were found, those of the worst axis: the least mass (a
-    /// light handle moves most for a force), the least damping, the least friction, the largest
-    /// encoder step. A damping or a friction that is not [seen](Estimate::is_seen) on every axis is
-    /// the least within its error, and counts as assumed; so does the encoder step of `profile`,
-    /// which stays, where no step is seen. `source` says in a few words what found the others, whose
-    /// names leave the list of those that are assumed.
+    /// light handle moves most for a force), the largest encoder step, and the least damping and
+    /// friction within their [errors](Estimate::least), because walls rely on them. `source` says in
+    /// a few words what found them, and their names leave the list of those that are assumed.
+    ///
+    /// - A mass, damping or friction that is not [seen](Estimate::is_seen) on every axis counts as
+    ///   assumed.
+    /// - A friction that may be zero is that of `profile`, or the most within its error if that is
+    ///   less or `profile` says zero: a device of no friction renders nothing in encoder steps.
+    /// - The encoder step of `profile` stays, as its source tells it, where no larger one is seen.
     ///
     /// Limits of force, stiffness, damping, speed and workspace stay: motions without a hand do
     /// not tell them.
@@ -238,7 +254,7 @@ impl Identified {
             found = found
                 .with_mass(worst.mass)
                 .with_least_damping(worst.damping)
-                .with_friction(worst.friction)
+                .with_friction(worst.friction_beside(profile.friction))
                 .with_encoder_step(worst.step_beside(profile.encoder_step))
                 .with_assumed(assumed(&profile.assumed, &ALONG, &seen))
                 .with_source(both(source, &seen, &profile.source));
@@ -250,7 +266,7 @@ impl Identified {
                 .clone()
                 .with_inertia(worst.mass)
                 .with_least_damping(worst.damping)
-                .with_friction(worst.friction)
+                .with_friction(worst.friction_beside(turning.friction))
                 .with_encoder_step(worst.step_beside(turning.encoder_step))
                 .with_assumed(assumed(&turning.assumed, &ABOUT, &seen))
                 .with_source(both(source, &seen, &turning.source));
@@ -262,18 +278,16 @@ impl Identified {
     fn worst(&self, is_meant: impl Fn(DeviceAxis) -> bool) -> Option<Worst> {
         let axes = || self.axes.iter().filter(|found| is_meant(found.axis));
         axes().next()?;
-        let least =
-            |of: fn(&IdentifiedAxis) -> f64| axes().map(of).fold(f64::INFINITY, f64::min);
-        let safe =
-            |number: Estimate| if number.is_seen() { number.value } else { number.least() };
+        let least = |of: fn(&IdentifiedAxis) -> f64| {
+            rounded(axes().map(of).fold(f64::INFINITY, f64::min))
+        };
         Some(Worst {
-            mass: rounded(least(|found| found.mass.value)),
-            damping: rounded(
-                axes().map(|found| safe(found.damping)).fold(f64::INFINITY, f64::min),
-            ),
-            friction: rounded(
-                axes().map(|found| safe(found.friction)).fold(f64::INFINITY, f64::min),
-            ),
+            mass: least(|found| found.mass.value),
+            damping: least(|found| found.damping.least()),
+            friction: [
+                least(|found| found.friction.least()),
+                least(|found| found.friction.most()),
+            ],
             step: rounded(axes().map(|found| found.encoder_step.size()).fold(0.0, f64::max)),
             is_seen: [
                 axes().all(|found| found.mass.is_seen()),

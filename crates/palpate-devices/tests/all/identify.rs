@@ -6,9 +6,9 @@
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use palpate_devices::{
-    Device, DeviceAxis, DeviceLost, DeviceProfile, EncoderStep, Hand, HandPath, Identified,
-    IdentifiedAxis, IdentifyError, IdentifyOptions, Interpolation, PROFILES, PointState,
-    Reading, SimulatedDevice, TurnState, profile_named,
+    Device, DeviceAxis, DeviceLost, DeviceProfile, EncoderStep, Estimate, Hand, HandPath,
+    Identified, IdentifiedAxis, IdentifyError, IdentifyOptions, Interpolation, PROFILES,
+    PointState, Reading, SimulatedDevice, TurnState, profile_named,
 };
 use palpate_field::Vector;
 use palpate_testkit::cases;
@@ -294,7 +294,7 @@ fn the_profile_holds_the_worst_axis_and_what_was_found_is_not_assumed() {
     // To five digits.
     let is_same = |number: f64, found: f64| (number / found - 1.0).abs() <= 5e-5;
     assert!(is_same(better.mass, found.axes[1].mass.value));
-    assert!(is_same(better.least_damping, found.axes[0].damping.value));
+    assert!(is_same(better.least_damping, found.axes[0].damping.least()));
     assert_eq!(better.encoder_step, 2e-5);
     assert!(is_same(better.friction, 0.1 * found.axes[1].friction.value));
     assert_eq!(
@@ -311,6 +311,25 @@ fn the_profile_holds_the_worst_axis_and_what_was_found_is_not_assumed() {
         ["continuous_torque", "max_torque_rate", "max_speed", "max_acceleration"]
     );
     assert_eq!((better.max_force, better.max_stiffness), (12.0, 4000.0));
+}
+
+/// Once zero was written, which a device of encoder steps may not have.
+#[test]
+fn a_friction_that_may_be_zero_stays_that_of_the_profile() {
+    let profile = profile_named("omega").unwrap();
+    let mut found = identify(&mut free(profile.clone()), IdentifyOptions::new(1000.0)).unwrap();
+    found.axes[1].friction = Estimate { value: 0.2, error: 0.3 };
+    let friction = |stated: f64| {
+        let better = found.profile(&profile.clone().with_friction(stated), "strokes");
+        assert!(better.assumed.contains(&"friction"), "{better:?}");
+        better.friction
+    };
+    // Of both axes, the most is that of the first, which is sure.
+    let most = found.axes[0].friction.most();
+    assert_eq!(friction(0.01), 0.01);
+    for stated in [0.0, 1.0] {
+        assert!((friction(stated) / most - 1.0).abs() <= 5e-5, "{stated}");
+    }
 }
 
 #[test]
