@@ -119,8 +119,7 @@ impl<const D: usize> Protection<D> {
         rate: f64,
     ) -> Result<(Bodies<D>, Coupling, Vec<Accepted>), HapticsError> {
         self.accept_magnets(&mut bodies, rate)?;
-        let most = self.most_stiffness(rate)?;
-        bodies.bodies_mut().iter_mut().for_each(|body| body.stiffen(most));
+        self.stiffen(&mut bodies, rate)?;
         let in_series = layers(&bodies)?.into_iter().map(|layer| coupling.on(layer));
         let in_series: Vec<_> = in_series.collect::<Result<_, _>>()?;
         let along = self.accepted(&in_series, rate)?;

@@ -3,7 +3,7 @@
 
 //! Protection of a servo: the workspace map, and what the device can render.
 
-use crate::bodies::Bodies;
+use crate::bodies::{Bodies, Body};
 use crate::error::HapticsError;
 use crate::guide::Guide;
 use palpate_safety::{
@@ -114,9 +114,8 @@ impl<const D: usize> Protection<D> {
     ) -> Result<(Bodies<D>, Vec<Accepted>), HapticsError> {
         let mut all = Vec::with_capacity(bodies.bodies().len());
         self.accept_magnets(&mut bodies, rate)?;
-        let most = self.most_stiffness(rate)?;
+        self.stiffen(&mut bodies, rate)?;
         for body in bodies.bodies_mut() {
-            body.stiffen(most);
             let layers: Vec<_> = body.surface().impedances().collect::<Result<_, _>>()?;
             let accepted = self.accepted(&layers, rate)?;
             body.scale_surface(accepted.stiffness_factor, accepted.damping_factor);
@@ -164,9 +163,19 @@ impl<const D: usize> Protection<D> {
         Ok(())
     }
 
-    /// The largest stiffness that the device renders, in the world [N/m].
-    pub(crate) fn most_stiffness(&self, rate: f64) -> Result<f64, HapticsError> {
-        Ok(self.profile.most_stiffness(self.acceptance, rate)? / self.map.scale())
+    /// Gives surfaces of a relative stiffness that which they have on the device.
+    pub(crate) fn stiffen(
+        &self,
+        bodies: &mut Bodies<D>,
+        rate: f64,
+    ) -> Result<(), HapticsError> {
+        // Where nothing is relative, the device need not have a largest stiffness.
+        let is_relative = |body: &Body<D>| body.surface().is_relative();
+        if bodies.bodies().iter().any(is_relative) {
+            let most = self.profile.most_stiffness(self.acceptance, rate)? / self.map.scale();
+            bodies.bodies_mut().iter_mut().for_each(|body| body.stiffen(most));
+        }
+        Ok(())
     }
 
     /// What the device renders of layers.

@@ -357,6 +357,13 @@ impl Share {
     }
 }
 
+/// What a damping must be by `K ≤ 2 b / T`.
+const OF_PASSIVITY: &str =
+    "positive where no largest stiffness is stated or all must be passive";
+
+/// What a friction must be by `K ≤ 2 f_c / Δ`.
+const OF_STEPS: &str = "positive beside encoder steps";
+
 /// The largest stiffness at the device that each rule allows; infinite where a rule does not apply.
 fn stiffness_bounds(
     limits: &DeviceLimits,
@@ -368,11 +375,14 @@ fn stiffness_bounds(
     // Of a device whose maker says nothing, only physics is known.
     let passive = match acceptance {
         Acceptance::Device | Acceptance::AsIs if is_stated => f64::INFINITY,
-        _ => 2.0 * limits.least_damping.positive()? * rate,
+        _ => 2.0 * limits.least_damping.positive_for(OF_PASSIVITY)? * rate,
     };
     let step = limits.encoder_step.not_negative()?;
-    let seen =
-        if step > 0.0 { 2.0 * limits.friction.positive()? / step } else { f64::INFINITY };
+    let seen = if step > 0.0 {
+        2.0 * limits.friction.positive_for(OF_STEPS)? / step
+    } else {
+        f64::INFINITY
+    };
     let stated = limits.max_stiffness.positive()? * (rate / STATED_RATE);
     let [of_passivity, of_steps, of_maker, ..] = limits.rules;
     Ok([(passive, of_passivity), (seen, of_steps), (stated, of_maker)])
@@ -514,7 +524,7 @@ mod tests {
     }
 
     #[test]
-    fn a_device_that_renders_nothing_is_an_error() {
+    fn a_device_that_renders_nothing_is_an_error_that_says_why() {
         let impedance = Impedance::new(100.0, 0.0).unwrap();
         for least_damping in [-1.0, f64::NAN] {
             let device = DeviceProfile { least_damping, ..device() };
@@ -525,10 +535,17 @@ mod tests {
         assert!(Accepted::new(impedance, 1.0, &undamped, 1000.0).is_ok());
         let unstated = DeviceProfile { max_stiffness: f64::INFINITY, ..undamped };
         let error = Accepted::new(impedance, 1.0, &unstated, 1000.0).unwrap_err();
-        assert_eq!(error.to_string(), "least_damping must be positive, got 0 N·s/m");
+        assert_eq!(
+            error.to_string(),
+            "least_damping must be positive where no largest stiffness is stated or all must be \
+             passive, got 0 N·s/m"
+        );
         let device = DeviceProfile { friction: 0.0, ..device() };
         let error = Accepted::new(impedance, 1.0, &device, 1000.0).unwrap_err();
-        assert_eq!(error.to_string(), "friction must be positive, got 0 N");
+        assert_eq!(
+            error.to_string(),
+            "friction must be positive beside encoder steps, got 0 N"
+        );
         assert!(Accepted::new(impedance, 0.0, &device, 1000.0).is_err());
         assert!(Accepted::new(impedance, 1.0, &device, f64::NAN).is_err());
     }

@@ -28,6 +28,14 @@ impl Limit {
         Ok(NumberError::check_positive_or_infinite(self.name, self.value, self.unit)?)
     }
 
+    /// The limit, which must be positive for a reason: `rule` says both.
+    pub(crate) fn positive_for(&self, rule: &'static str) -> Result<f64, SafetyError> {
+        if self.value > 0.0 {
+            return Ok(self.value);
+        }
+        Err(NumberError::new(self.name, rule, self.value, self.unit).into())
+    }
+
     /// The limit, which must be zero or more and finite.
     pub(crate) fn not_negative(&self) -> Result<f64, SafetyError> {
         Ok(NumberError::check_not_negative(self.name, self.value, self.unit)?)

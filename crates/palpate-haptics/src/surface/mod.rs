@@ -185,6 +185,11 @@ impl<const D: usize> Surface<D> {
         self.strata.damping()
     }
 
+    /// Whether the stiffness is a part of what the device renders.
+    pub(crate) fn is_relative(&self) -> bool {
+        self.relative_stiffness.is_some()
+    }
+
     /// This surface on a device that renders at most a stiffness of `most` [N/m]: if the material
     /// asks for a part of that, the stiffest layer has it, and the others are in proportion.
     pub(crate) fn on_device(&self, most: f64) -> Self {

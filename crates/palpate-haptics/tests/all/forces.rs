@@ -7,8 +7,8 @@
 use crate::common::{ball, body, cuboid, half_space};
 use palpate_field::{Point, Pose, Shape, Vector};
 use palpate_haptics::{
-    DeviceProfile, HapticsError, Layer, Material, PointState, Probe, Protection, ServoOptions,
-    Surface, Touch, UnprotectedServo, WorkspaceMap,
+    Acceptance, DeviceProfile, HapticsError, Layer, Material, PointState, Probe, Protection,
+    ServoOptions, Surface, Touch, UnprotectedServo, WorkspaceMap,
 };
 
 const STIFFNESS: f64 = 1000.0;
@@ -317,5 +317,23 @@ fn a_relative_stiffness_is_a_part_of_what_the_device_renders() {
         let expected =
             format!("relative_stiffness must be more than 0 and at most 1, got {part}");
         assert_eq!(said, expected);
+    }
+}
+
+/// Once the largest stiffness was asked of every device, also where nothing depended on it.
+#[test]
+fn a_device_without_damping_takes_a_material_as_it_is() {
+    let device = DeviceProfile::unlimited("bare").with_least_damping(0.0);
+    let accepted = |relative_stiffness, acceptance| {
+        let material = Material { relative_stiffness, ..Material::default() };
+        let bodies = body(&ball::<3>(0.05), Surface::new(&material).unwrap());
+        let servo = UnprotectedServo::new(bodies, 1, ServoOptions::default()).unwrap();
+        let protection = Protection::new(device.clone()).with_acceptance(acceptance);
+        servo.protected(&protection).map(|servo| servo.accepted()[0].stiffness_factor)
+    };
+    assert_eq!(accepted(None, Acceptance::AsIs).unwrap(), 1.0);
+    for (part, acceptance) in [(Some(0.5), Acceptance::AsIs), (None, Acceptance::Device)] {
+        let said = accepted(part, acceptance).unwrap_err().to_string();
+        assert!(said.starts_with("least_damping must be positive where no"), "{said}");
     }
 }
