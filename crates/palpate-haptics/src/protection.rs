@@ -7,7 +7,8 @@ use crate::bodies::{Bodies, Body};
 use crate::error::HapticsError;
 use crate::guide::Guide;
 use palpate_safety::{
-    Acceptance, Accepted, DeviceLimits, DeviceProfile, Impedance, Recovery, WorkspaceMap,
+    Acceptance, Accepted, DeviceLimits, DeviceProfile, Impedance, Recovery, SafetyError,
+    WorkspaceMap,
 };
 
 /// How a servo protects a device and the hand that holds it.
@@ -115,9 +116,10 @@ impl<const D: usize> Protection<D> {
         let mut all = Vec::with_capacity(bodies.bodies().len());
         self.accept_magnets(&mut bodies, rate)?;
         self.stiffen(&mut bodies, rate)?;
-        for body in bodies.bodies_mut() {
+        for (number, body) in bodies.bodies_mut().iter_mut().enumerate() {
             let layers: Vec<_> = body.surface().impedances().collect::<Result<_, _>>()?;
-            let accepted = self.accepted(&layers, rate)?;
+            let accepted =
+                self.accepted(&layers, rate).map_err(|error| about(error, number))?;
             body.scale_surface(accepted.stiffness_factor, accepted.damping_factor);
             all.push(accepted);
         }
@@ -154,10 +156,11 @@ impl<const D: usize> Protection<D> {
         bodies: &mut Bodies<D>,
         rate: f64,
     ) -> Result<(), HapticsError> {
-        for body in bodies.bodies_mut() {
+        for (number, body) in bodies.bodies_mut().iter_mut().enumerate() {
             let Some(magnet) = &body.surface().magnet else { continue };
             let impedance = Impedance::new(magnet.stiffness(), 0.0)?;
-            let accepted = self.accepted(&[impedance], rate)?;
+            let accepted = self.accepted(&[impedance], rate);
+            let accepted = accepted.map_err(|error| about(error, number))?;
             body.scale_magnet(accepted.stiffness_factor);
         }
         Ok(())
@@ -189,4 +192,12 @@ impl<const D: usize> Protection<D> {
         let accepted = Accepted::of_layers(layers, scale, &limits, self.acceptance, rate)?;
         Ok(if self.is_strict { accepted.unchanged()? } else { accepted })
     }
+}
+
+/// The error with the number of the body that it is about.
+fn about(mut error: HapticsError, body: usize) -> HapticsError {
+    if let HapticsError::Safety(SafetyError::MaterialRefused(refused)) = &mut error {
+        refused.body = Some(body);
+    }
+    error
 }

@@ -97,6 +97,15 @@ pub struct ConnectionReport {
     pub not_closed: Option<String>,
 }
 
+impl ConnectionReport {
+    /// Whether something went wrong.
+    pub(crate) fn is_troubled(&self) -> bool {
+        let quiet =
+            Self { watchdog: self.watchdog, longest_gap: self.longest_gap, ..Self::default() };
+        *self != quiet
+    }
+}
+
 /// Whether a loop has its device.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum State {

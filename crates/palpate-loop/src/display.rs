@@ -44,6 +44,9 @@ impl Display for RunReport {
         if self.rows_dropped > 0 {
             write!(f, "; {} rows lost", self.rows_dropped)?;
         }
+        if self.connection.is_troubled() {
+            write!(f, "; the device {}", self.connection)?;
+        }
         if self.is_released { Ok(()) } else { write!(f, "; {NOT_RELEASED}") }
     }
 }

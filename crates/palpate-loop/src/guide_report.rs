@@ -44,13 +44,16 @@ pub(crate) struct GuideTally<const D: usize> {
 
 impl<const D: usize> GuideTally<D> {
     pub(crate) fn new(servo: &Servo<D>) -> Self {
-        let (points, guides) = (servo.touches().len(), servo.guides(0).len());
+        // A device that gives no force is not guided.
+        let is_felt = servo.protection().profile.max_force > 0.0;
+        let all = if is_felt { servo.guides(0) } else { &[] };
+        let (points, guides) = (servo.touches().len(), all.len());
         let report = |guide: &Guide<D>| GuideReport {
             kind: guide.kind_name(),
             ..GuideReport::default()
         };
         Self {
-            reports: servo.guides(0).iter().map(report).collect(),
+            reports: all.iter().map(report).collect(),
             ticks: vec![0; guides],
             places: vec![None; points],
             forces: vec![Vector::ZERO; points * guides],

@@ -56,7 +56,7 @@ pub struct RunReport {
     pub starts_inside: Vec<StartInside>,
     /// The report of the connection to the device.
     pub connection: ConnectionReport,
-    /// The report of each guide of the servo.
+    /// The report of each guide of the servo; none if the device gives no force.
     pub guides: Vec<GuideReport>,
     /// The report of height textures; `None` if none was touched.
     #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Option::is_none"))]

@@ -394,7 +394,10 @@ fn damping_bounds(
     stiffness: f64,
     rate: f64,
 ) -> Result<[(f64, Rule); 2], SafetyError> {
-    let left = (limits.least_damping.zero_or_more()? - 0.5 * stiffness / rate).max(0.0);
+    let least = limits.least_damping.zero_or_more()?;
+    let taken = 0.5 * stiffness / rate;
+    // What rounding leaves of a stiffness that takes all is none.
+    let left = if taken < least * (1.0 - 4.0 * f64::EPSILON) { least - taken } else { 0.0 };
     let stated = limits.max_damping.zero_or_more()? * (rate / STATED_RATE);
     let [.., of_rest, of_maker] = limits.rules;
     Ok([(left, of_rest), (stated, of_maker)])

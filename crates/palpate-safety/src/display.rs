@@ -26,22 +26,23 @@ impl Display for Accepted {
 impl Display for SafetyReport {
     fn fmt(&self, f: &mut Formatter<'_>) -> Result {
         let stages = [
-            ("limit cycles", self.limit_cycles.effect),
-            ("passivity of guides", self.free_forces.effect),
-            ("passivity", self.passivity.effect),
-            ("slew limit", self.slew),
-            ("force limit", self.force_limit),
-            ("continuous limit", self.continuous.effect),
-            ("guard", self.guard),
-            ("ramp", self.ramp),
-            ("watchdog", self.watchdog.effect),
-            ("emergency stop", self.emergency_stop),
+            ("readings held back", self.readings.held + self.readings.turns_held),
+            ("limit cycles", self.limit_cycles.effect.ticks),
+            ("passivity of guides", self.free_forces.effect.ticks),
+            ("passivity", self.passivity.effect.ticks),
+            ("slew limit", self.slew.ticks),
+            ("force limit", self.force_limit.ticks),
+            ("continuous limit", self.continuous.effect.ticks),
+            ("guard", self.guard.ticks),
+            ("ramp", self.ramp.ticks),
+            ("watchdog", self.watchdog.effect.ticks),
+            ("emergency stop", self.emergency_stop.ticks),
         ];
         write!(f, "{} ticks, changed by: ", self.ticks)?;
-        let mut acted = stages.iter().filter(|(_, effect)| effect.ticks > 0);
-        let Some((first, effect)) = acted.next() else { return f.write_str("no stage") };
-        write!(f, "{first} {}", effect.ticks)?;
-        acted.try_for_each(|(stage, effect)| write!(f, ", {stage} {}", effect.ticks))
+        let mut acted = stages.iter().filter(|(_, ticks)| *ticks > 0);
+        let Some((first, ticks)) = acted.next() else { return f.write_str("no stage") };
+        write!(f, "{first} {ticks}")?;
+        acted.try_for_each(|(stage, ticks)| write!(f, ", {stage} {ticks}"))
     }
 }
 

@@ -29,6 +29,11 @@ pub struct NumberError {
 /// A number with an exponent if it has many zeros.
 struct Short(f64);
 
+/// A number with five digits.
+fn rounded(number: f64) -> Short {
+    Short(format!("{number:.4e}").parse().unwrap_or(number))
+}
+
 impl fmt::Display for Short {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let (number, size) = (self.0, self.0.abs());
@@ -167,6 +172,9 @@ pub struct Refused {
     pub rendered: [f64; 2],
     /// The rule that leaves no more.
     pub rule: Rule,
+    /// The body whose material or magnet it is, by its place among the bodies; `None` for the
+    /// coupling of a tool, a guide, or a material alone.
+    pub body: Option<usize>,
 }
 
 impl Refused {
@@ -175,6 +183,7 @@ impl Refused {
             asked: [accepted.requested_stiffness, accepted.requested_damping],
             rendered: [accepted.device_stiffness, accepted.device_damping],
             rule,
+            body: None,
         }
     }
 }
@@ -186,7 +195,11 @@ impl fmt::Display for Refused {
         } else {
             ("", ["N/m", "N·s/m"])
         };
-        let ([asked, asked_damping], [stiffness, damping]) = (self.asked, self.rendered);
+        let [asked, asked_damping] = self.asked.map(rounded);
+        let [stiffness, damping] = self.rendered.map(rounded);
+        if let Some(body) = self.body {
+            write!(f, "body {body}: ")?;
+        }
         write!(
             f,
             "the device renders {angular}stiffness and damping of {stiffness} {of_stiffness} and \

@@ -4,7 +4,7 @@
 //! The tool of a scene, as a file gives it.
 
 use palpate_field::LARGEST_LENGTH;
-use palpate_haptics::{Acceptance, ToolOptions};
+use palpate_haptics::{Acceptance, Probe, ToolOptions};
 use palpate_vibration::{ACTUATORS, Actuator, actuator_named};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -41,10 +41,11 @@ pub struct WrittenTool {
     /// A note for readers of the file.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub description: Option<String>,
-    /// The radius of each contact point [m]; 0 if left out.
-    #[serde(skip_serializing_if = "crate::check::is_default")]
+    /// The radius of each contact point [m]; if left out, 0 with `points` or a `shape`, else that of
+    /// a hand without a tool, 2 mm.
+    #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 0.0))]
-    pub radius: f64,
+    pub radius: Option<f64>,
     /// The contact points in the tool's own coordinates [m]; one at its origin
     /// if left out.
     #[serde(skip_serializing_if = "Vec::is_empty")]
@@ -157,13 +158,13 @@ impl WrittenTool {
         });
         let is_both = self.shape.is_some() && !self.points.is_empty();
         let both = Problem::new("a tool has either contact points or a shape").under("points");
-        let radius = self.radius;
+        let radius = self.radius.unwrap_or(0.0);
         let far =
             Problem::new(format!("must be at most {LARGEST_LENGTH:e} m, got {radius:e} m"));
         let far = far.under("radius");
         let numbers = [
-            at_least("radius", self.radius, 0.0, "m"),
-            if self.radius > LARGEST_LENGTH { Err(far) } else { Ok(()) },
+            at_least("radius", radius, 0.0, "m"),
+            if radius > LARGEST_LENGTH { Err(far) } else { Ok(()) },
             if is_both { Err(both) } else { Ok(()) },
             positive_if("max_force", self.max_force, "N"),
             self.actuator().map(drop).map_err(|problem| problem.under("actuator")),
@@ -197,6 +198,13 @@ impl WrittenTool {
         let known = ACTUATORS.each_ref().map(|(known, _)| *known);
         let unknown = |_| Problem::new(unknown_name("actuator", name, &known));
         actuator_named(name).map(Some).map_err(unknown)
+    }
+
+    /// The radius of each contact point [m].
+    pub(crate) fn probe_radius(&self) -> f64 {
+        let is_bare = self.shape.is_none() && self.points.is_empty();
+        let left_out = if is_bare { Probe::default().radius() } else { 0.0 };
+        self.radius.unwrap_or(left_out)
     }
 
     /// The options of a tool with a shape; missing keys have the values of

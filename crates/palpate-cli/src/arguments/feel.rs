@@ -127,6 +127,9 @@ impl FromStr for DeviceChoice {
             None if names.contains(&text) => {
                 Err(format!("a device of this name is written simulated:{text}"))
             }
+            _ if text.to_ascii_lowercase().ends_with(".json") && !text.contains(':') => {
+                Err(format!("a device with the profile of a file is written simulated:{text}"))
+            }
             Some(("simulated", name)) => Ok(Self::Simulated(Box::new(name.parse()?))),
             _ => Err("must be recorded, simulated:NAME or glove".to_owned()),
         }
@@ -168,6 +171,7 @@ pub(crate) enum AcceptanceChoice {
     /// As stiff as the device renders well at this rate, and as damped as that leaves room for.
     Device,
     /// As they are.
+    #[value(alias = "as_is")]
     AsIs,
 }
 

@@ -49,7 +49,7 @@ pub(super) fn within(
     unit: &'static str,
 ) -> impl Fn(&str) -> Result<f64, String> + Clone + Send + Sync + 'static {
     move |text| {
-        let rule = format!("from {} to {} {unit}", plain(least), plain(most));
+        let rule = format!("from {} to {}{}{unit}", plain(least), plain(most), space(unit));
         ruled(text, &rule, unit, |x| (least..=most).contains(&x))
     }
 }
@@ -86,8 +86,12 @@ fn ruled(
     if is_kept(number) {
         return Ok(number);
     }
-    let space = if unit.is_empty() { "" } else { " " };
-    Err(format!("must be {rule}, got {}{space}{unit}", plain(number)))
+    Err(format!("must be {rule}, got {}{}{unit}", plain(number), space(unit)))
+}
+
+/// What stands between a number and its unit.
+fn space(unit: &str) -> &'static str {
+    if unit.is_empty() { "" } else { " " }
 }
 
 #[cfg(test)]

@@ -20,7 +20,7 @@ use std::io::{self, IsTerminal};
 use std::time::Duration;
 
 use palpate::devices::HandPath;
-use palpate::haptics::{Probe, Progress};
+use palpate::haptics::{HapticsError, Probe, Progress, SafetyError};
 use palpate::scene::{AnyScene, BuiltScene, BuiltTool, ServoSettings};
 use palpate::servo_loop::{Ending, Pace, Recorder, RunOptions, RunReport, run as run_servo};
 
@@ -29,7 +29,7 @@ use crate::emptiness;
 use crate::input::{self, Named};
 use crate::interrupt::Interrupt;
 use crate::outcome::{Failure, Outcome};
-use crate::output;
+use crate::output::{self, shown};
 use crate::picture::{Dimensions, Drawable};
 use outputs::{Outputs, Ran};
 
@@ -85,7 +85,8 @@ where
         .with_strictness(options.strict)
         .with_recovery(options.recovery.into());
     settings.acceptance = options.acceptance.map(Into::into);
-    let mut servo = scene.servo_with(device.as_ref(), settings).map_err(Failure::input)?;
+    let servo = scene.servo_with(device.as_ref(), settings);
+    let mut servo = servo.map_err(|error| refused(error, scene))?;
     let accepted = servo.accepted().to_vec();
 
     let keeps_rows = outputs.keep_ticks();
@@ -236,6 +237,18 @@ fn check_forces(choice: &DeviceChoice, options: &FeelOptions) -> Result<(), Fail
         }
         _ => Ok(()),
     }
+}
+
+/// Why there is no servo, with the name of the body that is to blame.
+fn refused<const D: usize>(error: HapticsError, scene: &BuiltScene<D>) -> Failure {
+    if let HapticsError::Safety(SafetyError::MaterialRefused(refused)) = &error
+        && let Some(body) = refused.body.and_then(|body| scene.bodies.get(body))
+    {
+        let mut alone = refused.clone();
+        alone.body = None;
+        return Failure::input(format!("body \"{}\": {alone}", shown(&body.name)));
+    }
+    Failure::input(error)
 }
 
 /// The scene, with materials, tool and contact points replaced by those of the command line.

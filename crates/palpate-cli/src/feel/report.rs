@@ -163,15 +163,26 @@ fn write_report<const D: usize>(out: &mut String, felt: &Felt<'_, D>) -> std::fm
         write!(out, "  vibration alone, as the device gives no force; ")?;
     }
     match &report.tool {
-        Some(tool) => writeln!(
-            out,
-            "through a coupling of {} N/m, {} N·s/m",
-            rounded(tool.stiffness),
-            rounded(tool.damping),
-        )?,
+        Some(tool) => {
+            let is_softest = surfaces().all(|surface| surface.stiffness() > tool.stiffness);
+            let softest = if is_softest { ", softer than all of it" } else { "" };
+            writeln!(
+                out,
+                "through a coupling of {} N/m, {} N·s/m{softest}",
+                rounded(tool.stiffness),
+                rounded(tool.damping),
+            )?;
+        }
         None => writeln!(out, "probe of {} mm", 1e3 * options.probe.radius())?,
     }
     writeln!(out, "  device         {}", device.name)?;
+    if !has_forces && !felt.scene.guides.is_empty() {
+        let guides = counted(felt.scene.guides.len(), "guide", "guides");
+        writeln!(
+            out,
+            "  guides         {guides} without effect, as the device gives no force"
+        )?;
+    }
     if let Some(scale) = felt.workspace_scale {
         let scale = rounded(scale);
         writeln!(out, "  workspace      {scale} m of the scene for each metre of the device")?;
@@ -202,6 +213,7 @@ fn write_report<const D: usize>(out: &mut String, felt: &Felt<'_, D>) -> std::fm
             write_accepted(out, accepted, |count| format!("{count} of {all}"))?;
         }
     }
+    write_beyond(out, along, device, report.rate)?;
     inside::write(out, felt)?;
     if let Some(nearest) = felt.nearest {
         let nearest = rounded(nearest);
@@ -272,6 +284,26 @@ fn write_accepted(
         writeln!(out, "                 the device's least damping b is assumed")?;
     }
     Ok(())
+}
+
+/// How much stiffer than the device renders the stiffest is, if it is taken as it is.
+fn write_beyond(
+    out: &mut String,
+    accepted: &[Accepted],
+    device: &DeviceProfile,
+    rate: f64,
+) -> std::fmt::Result {
+    let Ok(most) = device.most_stiffness(Acceptance::Device, rate) else { return Ok(()) };
+    let stiffest = accepted.iter().map(|a| a.device_stiffness).fold(0.0, f64::max);
+    // What rounding adds to the most is no more.
+    if stiffest <= most * (1.0 + 1e-12) {
+        return Ok(());
+    }
+    let [stiffest, most] = [stiffest, most].map(rounded);
+    writeln!(
+        out,
+        "                 {stiffest} N/m is taken as it is; the device renders {most} N/m well"
+    )
 }
 
 /// The stiffness that materials ask for [N/m], or the part of the device's if all ask for one, and

@@ -245,7 +245,7 @@ where
     let shape = shape.map_err(|problems| problems.under("shape"));
     let (shape, ()) = Problems::both(shape, tool.check(D))?;
     Ok(Some(BuiltTool {
-        radius: tool.radius,
+        radius: tool.probe_radius(),
         points: tool.points.iter().map(|point| vector(point)).collect::<Result<_, _>>()?,
         shape,
         options: tool.options(),

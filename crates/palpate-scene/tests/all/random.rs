@@ -245,7 +245,7 @@ impl Generator {
         let points = if shape.is_some() { 0 } else { u.int_in_range(0..=3)? };
         let mut tool = WrittenTool::default();
         tool.description = text(u)?;
-        tool.radius = length(u)?;
+        tool.radius = Some(length(u)?);
         tool.points = (0..points).map(|_| numbers(u, d)).collect::<Result<_>>()?;
         tool.shape = shape;
         tool.coupling = maybe(u, coupling)?;
