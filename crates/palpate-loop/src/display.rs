@@ -181,6 +181,12 @@ mod tests {
         let report = tally.report(ended(Ending::Finished, true));
         let said = "0 ticks at 1000 Hz, 0.000 s in contact, at most 0.000 N; finished";
         assert_eq!(report.to_string(), said);
+        let stale = ConnectionReport { stale_ticks: 3, ..ConnectionReport::default() };
+        let report =
+            RunReport { connection: stale, ..tally.report(ended(Ending::Finished, true)) };
+        let troubled = "; the device has no watchdog of its own; 3 ticks without a new state, for \
+                        0.000 ms at most";
+        assert_eq!(report.to_string(), format!("{said}{troubled}"));
         let lost = Ending::DeviceLost { reason: "unplugged".to_owned() };
         let report = tally.report(ended(lost, false));
         let said = "; the device was lost: unplugged; the device did not take the zero forces \

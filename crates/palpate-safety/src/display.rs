@@ -93,7 +93,11 @@ mod tests {
         step(0.5);
         step(2.0);
         let said = "2 ticks, changed by: force limit 1";
-        assert_eq!(chain.report().to_string(), said);
+        let mut report = chain.report();
+        assert_eq!(report.to_string(), said);
+        (report.readings.held, report.readings.turns_held) = (2, 3);
+        let said = "2 ticks, changed by: readings held back 5, force limit 1";
+        assert_eq!(report.to_string(), said);
         Ok(())
     }
 

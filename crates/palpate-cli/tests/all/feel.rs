@@ -367,3 +367,38 @@ fn a_texture_that_is_too_narrow_for_the_probe_is_told() {
     assert!(narrow.contains(line), "{narrow}");
     assert!(!said(0.0001).contains("  texture  "));
 }
+
+/// The report and the errors said what was asked for, and not of what.
+#[test]
+fn what_a_device_makes_of_bodies_is_told() {
+    let folder = Folder::new();
+    let scene = folder.write("ball.json", BALL);
+    let feel = |rest: &[&str]| {
+        palpate(&[&["feel", &scene, "--fast", "--duration", "0.1"], rest].concat())
+    };
+    let omega = ["--device", "simulated:omega"];
+    let strict = errors(&feel(&[&omega[..], &["--stiffness", "9000", "--strict"]].concat()));
+    assert!(strict.starts_with("palpate: body \"ball\": the device renders "), "{strict}");
+    let as_is = ["--acceptance", "as_is", "--stiffness", "9000"];
+    let said = text(&feel(&[&omega[..], &as_is].concat()));
+    let beyond = " N/m is taken as it is; the device renders 5000 N/m well\n";
+    assert!(said.contains(beyond), "{said}");
+    assert!(!text(&feel(&omega)).contains("taken as it is"));
+    let file = errors(&feel(&["--device", "arm.json"]));
+    let hint = "a device with the profile of a file is written simulated:arm.json";
+    assert!(file.contains(hint), "{file}");
+    let wrong = errors(&feel(&["--relative-stiffness", "2"]));
+    assert!(wrong.contains("must be from 0.000001 to 1, got 2"), "{wrong}");
+    // A tool that says nothing of points and shape keeps the probe.
+    let with = |key: &str| {
+        let end = BALL.trim_end().strip_suffix('}').unwrap();
+        folder.write("with.json", &format!("{end}, {key} }}"))
+    };
+    let tool = with(r#""tool": { "acceptance": "passive" }"#);
+    assert!(text(&palpate(&["feel", &tool, "--fast"])).contains("probe of 2 mm"));
+    let guided = with(r#""guides": [{ "point": [0, 0, 0] }]"#);
+    let glove = ["feel", &guided, "--fast", "--duration", "0.1", "--device", "glove"];
+    let said = text(&palpate(&glove));
+    let without = "  guides         1 guide without effect, as the device gives no force\n";
+    assert!(said.contains(without) && !said.contains("guide 0"), "{said}");
+}
