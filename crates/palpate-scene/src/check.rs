@@ -30,7 +30,8 @@ pub(crate) fn positive_if(key: &str, value: Option<f64>, unit: &str) -> Result<(
 
 fn refused(key: &str, rule: &str, value: f64, unit: &str) -> Result<(), Problem> {
     let space = if unit.is_empty() { "" } else { " " };
-    Err(Problem::about(format!("must be {rule}, got {value}{space}{unit}")).under(key))
+    let finite = if value.is_infinite() { " and finite" } else { "" };
+    Err(Problem::about(format!("must be {rule}{finite}, got {value}{space}{unit}")).under(key))
 }
 
 /// Checks that `value`, if it is given, is a part of a whole: more than 0 and at most 1.

@@ -3,7 +3,7 @@
 
 //! Profiles of devices as files.
 
-use palpate_haptics::{DeviceProfile, TurningProfile};
+use palpate_haptics::{Buttons, DeviceProfile, GripperProfile, TurningProfile};
 use serde::{Deserialize, Serialize};
 
 use crate::check::{at_least, positive};
@@ -39,9 +39,22 @@ struct WrittenDevice {
     max_acceleration: f64,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     turning: Option<WrittenTurning>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    gripper: Option<WrittenGripper>,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    buttons: Vec<String>,
     source: String,
     #[serde(default)]
     assumed: Vec<String>,
+}
+
+/// A [`GripperProfile`] as a file gives it.
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, expecting = "an object")]
+struct WrittenGripper {
+    max_opening: f64,
+    max_force: f64,
+    max_force_rate: f64,
 }
 
 /// A [`TurningProfile`] as a file gives it.
@@ -151,13 +164,47 @@ fn check(written: &WrittenDevice) -> Result<(), Problems> {
         one_line("source", &written.source),
     ]);
     let turning = written.turning.as_ref().map_or(Ok(()), check_turning);
+    let gripper = written.gripper.as_ref().map_or(Ok(()), check_gripper);
     Problems::all([
         numbers,
         needed,
         texts,
         check_assumed(&written.assumed, DeviceProfile::NUMBERS),
         turning.map_err(|problems| problems.under("turning")),
+        gripper.map_err(|problems| problems.under("gripper")),
+        check_buttons(&written.buttons),
     ])
+}
+
+fn check_gripper(gripper: &WrittenGripper) -> Result<(), Problems> {
+    let forces = gripper.max_force > 0.0;
+    Problems::all([
+        positive("max_opening", gripper.max_opening, "m"),
+        at_least("max_force", gripper.max_force, 0.0, "N"),
+        limit("max_force_rate", gripper.max_force_rate, forces, "N/s"),
+    ])
+}
+
+/// The names of buttons, whose places are their indices.
+fn check_buttons(names: &[String]) -> Result<(), Problems> {
+    let most = usize::from(Buttons::MOST);
+    if names.len() > most {
+        let message = format!("must be at most {most} names, got {}", names.len());
+        return Err(Problem::about(message).under("buttons").into());
+    }
+    let wrong = names.iter().enumerate().map(|(i, name)| {
+        let wrong = if name.is_empty() {
+            Some("must have a name".to_owned())
+        } else if name.contains(char::is_control) {
+            Some("must be one line without control characters".to_owned())
+        } else if names.iter().take(i).any(|before| before == name) {
+            Some(format!("two buttons are named \"{name}\""))
+        } else {
+            None
+        };
+        wrong.map_or(Ok(()), |wrong| Err(Problem::new(wrong).at(i).under("buttons")))
+    });
+    Problems::all(wrong)
 }
 
 fn check_turning(turning: &WrittenTurning) -> Result<(), Problems> {
@@ -260,9 +307,17 @@ fn profile(written: WrittenDevice) -> DeviceProfile {
         .with_max_speed(written.max_speed)
         .with_max_acceleration(written.max_acceleration)
         .with_source(written.source)
-        .with_assumed(names(&written.assumed, DeviceProfile::NUMBERS));
-    match written.turning {
+        .with_assumed(names(&written.assumed, DeviceProfile::NUMBERS))
+        .with_buttons(written.buttons);
+    let profile = match written.turning {
         Some(turning) => profile.with_turning(turning_profile(turning)),
+        None => profile,
+    };
+    match written.gripper {
+        Some(WrittenGripper { max_opening, max_force, max_force_rate }) => {
+            let gripper = GripperProfile::new(max_opening, max_force);
+            profile.with_gripper(gripper.with_max_force_rate(max_force_rate))
+        }
         None => profile,
     }
 }
@@ -316,6 +371,12 @@ fn written(profile: &DeviceProfile) -> WrittenDevice {
             source: turning.source.to_string(),
             assumed: turning.assumed.iter().map(|name| (*name).to_owned()).collect(),
         }),
+        gripper: profile.gripper.map(|gripper| WrittenGripper {
+            max_opening: gripper.max_opening,
+            max_force: gripper.max_force,
+            max_force_rate: gripper.max_force_rate,
+        }),
+        buttons: profile.buttons.iter().map(ToString::to_string).collect(),
         source: profile.source.to_string(),
         assumed: profile.assumed.iter().map(|name| (*name).to_owned()).collect(),
     }
@@ -334,6 +395,30 @@ mod tests {
         for (name, profile) in &palpate_devices::PROFILES {
             assert_eq!(&device_from_json(text(name).as_bytes()).unwrap(), profile, "{name}");
         }
+    }
+
+    /// Once they were left out.
+    #[test]
+    fn grippers_and_buttons_are_kept() {
+        let gripper = GripperProfile::new(0.025, 8.0).with_max_force_rate(2000.0);
+        let omega = palpate_devices::profile_named("omega7").unwrap();
+        let device = omega.with_gripper(gripper).with_buttons(["front", "rear"]);
+        let text = device_to_json(&device).unwrap();
+        assert_eq!(device_from_json(text.as_bytes()).unwrap(), device);
+        let wrong = text
+            .replace("\"max_opening\": 0.025", "\"max_opening\": 0")
+            .replace("\"rear\"", "\"front\", \"\"");
+        let error = device_from_json(wrong.as_bytes()).unwrap_err().to_string();
+        for said in [
+            "max_opening must be positive, got 0 m",
+            "two buttons are named \"front\"",
+            "buttons[2], line ",
+        ] {
+            assert!(error.contains(said), "{said}\n{error}");
+        }
+        let many = device.with_buttons((0..=Buttons::MOST).map(|i| i.to_string()));
+        let error = device_to_json(&many).unwrap_err().to_string();
+        assert!(error.contains("buttons must be at most "), "{error}");
     }
 
     #[test]
@@ -397,7 +482,7 @@ mod tests {
         let ideal = DeviceProfile::unlimited("ideal");
         let error = device_to_json(&ideal).unwrap_err().to_string();
         assert!(
-            error.contains("max_force: max_force must be zero or more, got inf N"),
+            error.contains("max_force: max_force must be zero or more and finite, got inf N"),
             "{error}"
         );
     }

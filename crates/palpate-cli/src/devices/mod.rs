@@ -9,7 +9,7 @@ mod stability;
 
 use std::io::Write;
 
-use palpate::devices::{DeviceProfile, PROFILES, TurningProfile};
+use palpate::devices::{DeviceProfile, GripperProfile, PROFILES, TurningProfile};
 use serde_json::{Map, Value, json};
 
 use crate::arguments::DevicesOptions;
@@ -132,6 +132,17 @@ const TURNING: [Column<TurningProfile>; 11] = [
     },
 ];
 
+const GRIPPER: [Column<GripperProfile>; 3] = [
+    Column { key: "max_opening", unit: "m", head: ["", "opening"], of: |p| p.max_opening },
+    Column { key: "max_force", unit: "N", head: ["largest", "force"], of: |p| p.max_force },
+    Column {
+        key: "max_force_rate",
+        unit: "N/s",
+        head: ["force", "rate"],
+        of: |p| p.max_force_rate,
+    },
+];
+
 pub(crate) fn run(options: &DevicesOptions) -> Result<Outcome, Failure> {
     if options.materials {
         return rendered::report(options);
@@ -163,11 +174,22 @@ pub(crate) fn run(options: &DevicesOptions) -> Result<Outcome, Failure> {
         )?;
         write_table(&mut out, &TURNING, &about, 10)?;
     }
+    let grippers = listed.iter().filter_map(|(name, profile)| {
+        profile.gripper.as_ref().map(|gripper| (*name, gripper, &[] as &[_]))
+    });
+    let grippers: Vec<_> = grippers.collect();
+    if !grippers.is_empty() {
+        writeln!(out, "devices with grippers, between the fingers")?;
+        write_table(&mut out, &GRIPPER, &grippers, 10)?;
+    }
     writeln!(out, "~ assumed, not from the source; stiffness and damping are those at 1 kHz")?;
     for (name, profile) in &listed {
         writeln!(out, "{name}: {}; source: {}", profile.name, profile.source)?;
         if let Some(turning) = &profile.turning {
             writeln!(out, "{name}, about its axes: source: {}", turning.source)?;
+        }
+        if !profile.buttons.is_empty() {
+            writeln!(out, "{name}, buttons: {}", profile.buttons.join(", "))?;
         }
     }
     if options.profile.is_some() {
@@ -226,6 +248,13 @@ fn described(name: &str, profile: &DeviceProfile) -> Value {
         let mut about: Map<_, _> = numbers(&TURNING, turning, &turning.assumed).collect();
         about.insert("source".to_owned(), turning.source.as_ref().into());
         row.insert("turning".to_owned(), about.into());
+    }
+    if let Some(gripper) = &profile.gripper {
+        let numbers: Map<_, _> = numbers(&GRIPPER, gripper, &[]).collect();
+        row.insert("gripper".to_owned(), numbers.into());
+    }
+    if !profile.buttons.is_empty() {
+        row.insert("buttons".to_owned(), json!(profile.buttons));
     }
     Value::Object(row)
 }

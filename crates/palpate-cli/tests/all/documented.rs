@@ -109,11 +109,19 @@ fn the_keys_and_columns_of_feel_are_documented() {
 
 #[test]
 fn the_keys_of_devices_identify_and_jitter_are_documented() {
+    let folder = Folder::new();
+    let profile = palpate::devices::profile_named("omega7").unwrap();
+    let gripper = palpate::devices::GripperProfile::new(0.025, 8.0).with_max_force_rate(2000.0);
+    let profile = profile.with_gripper(gripper).with_buttons(["front"]);
+    let profile = palpate::scene::device_to_json(&profile).unwrap();
+    let profile = folder.write("omega.json", &profile);
     for (heading, commands) in [
         (
             "Devices",
             &[
                 &["devices", "--json"][..],
+                &["devices", "--profile", &profile, "--json"],
+                &["devices", "--materials", "--profile", "touch", "--json"],
                 &["devices", "--actuators", "--json"],
                 &["devices", "--stability", "--profile", "touch", "--json"],
             ][..],

@@ -188,3 +188,22 @@ fn messages_name_the_causes_and_numbers_that_are_few_digits_long() {
         none.contains("encoder step  0 m; -100 % of the profile's 0.00001; it was made with 0")
     );
 }
+
+/// Once a gripper and buttons were not written, and files could not have them.
+#[test]
+fn the_gripper_and_the_buttons_of_a_file_are_listed() {
+    let folder = Folder::new();
+    let gripper = palpate::devices::GripperProfile::new(0.025, 8.0);
+    let profile = palpate::devices::profile_named("omega7").unwrap();
+    let profile = profile.with_gripper(gripper.with_max_force_rate(2000.0));
+    let profile = profile.with_buttons(["front", "rear"]);
+    let file = palpate::scene::device_to_json(&profile).unwrap();
+    let file = folder.write("omega.json", &file);
+    let listed = text(&palpate(&["devices", "--profile", &file]));
+    assert!(listed.contains(&format!("{file}, buttons: front, rear\n")), "{listed}");
+    let words: Vec<_> = listed.split_whitespace().collect();
+    assert!(words.windows(3).any(|row| row == ["0.025", "8", "2000"]), "{listed}");
+    let rows = json(&["devices", "--profile", &file, "--json"]);
+    assert_eq!(rows[0]["gripper"]["max_force"]["unit"], "N");
+    assert_eq!(rows[0]["buttons"][1], "rear");
+}

@@ -380,7 +380,7 @@ fn gripping() -> SimulatedDevice<2> {
         .with_friction(0.0)
         .with_max_force(3.0)
         .with_gripper(GripperProfile::new(0.03, 5.0).with_max_force_rate(1000.0))
-        .with_buttons(vec!["front", "rear"]);
+        .with_buttons(["front", "rear"]);
     let jaws = vec![Vector([0.0]), Vector([0.02])];
     let jaws = HandPath::new(vec![0.0, 1.0], jaws, Interpolation::Linear).unwrap();
     let device =

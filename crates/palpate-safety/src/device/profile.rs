@@ -78,7 +78,7 @@ pub struct DeviceProfile {
     /// The names of the buttons, in the order of their indices; none if the device has no button
     /// or its names are not known.
     #[cfg_attr(feature = "serde", serde(skip_serializing_if = "<[_]>::is_empty"))]
-    pub buttons: Cow<'static, [&'static str]>,
+    pub buttons: Cow<'static, [Cow<'static, str>]>,
     /// The source of the numbers.
     pub source: Cow<'static, str>,
     /// Names of the fields whose numbers are assumed and not from the source.
@@ -261,8 +261,11 @@ impl DeviceProfile {
 
     /// The same profile with buttons of these names.
     #[must_use]
-    pub fn with_buttons(self, buttons: impl Into<Cow<'static, [&'static str]>>) -> Self {
-        Self { buttons: buttons.into(), ..self }
+    pub fn with_buttons<N>(self, buttons: impl IntoIterator<Item = N>) -> Self
+    where
+        N: Into<Cow<'static, str>>,
+    {
+        Self { buttons: buttons.into_iter().map(Into::into).collect(), ..self }
     }
 
     /// The same profile with another source of the numbers.
