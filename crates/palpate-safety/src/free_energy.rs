@@ -198,6 +198,7 @@ impl<V: InnerProduct> FreeEnergy<V> {
 }
 
 #[cfg(test)]
+#[expect(clippy::indexing_slicing, reason = "tests know their lengths")]
 mod tests {
     use super::*;
     use palpate_field::Vector;

@@ -223,6 +223,7 @@ impl<const D: usize> Readings<D> {
 }
 
 #[cfg(test)]
+#[expect(clippy::indexing_slicing, reason = "an index is within its list")]
 mod tests {
     use super::*;
 

@@ -162,6 +162,7 @@ impl<const D: usize> TurnReadings<D> {
 }
 
 #[cfg(test)]
+#[expect(clippy::indexing_slicing, reason = "an index is within its list")]
 mod tests {
     use super::*;
 

@@ -10,7 +10,9 @@ use palpate::scene::BuiltScene;
 
 use super::tool::Held;
 use crate::arguments::DeviceChoice;
+use crate::numbers::rounded;
 use crate::outcome::Failure;
+use crate::output;
 
 /// The workspace map: that of the scene; else, for a simulated device, one whose workspace
 /// holds `bounds`, of the scene or of the places of a tool.
@@ -35,6 +37,28 @@ pub(super) fn is_fitted<const D: usize>(scene: &BuiltScene<D>, choice: &DeviceCh
         DeviceChoice::Recorded | DeviceChoice::Glove => false,
     };
     is_limited && scene.workspace.is_none() && scene.bounds().is_some()
+}
+
+/// Says how far paths leave the workspace of a simulated device.
+pub(super) fn warn_of_workspace<const D: usize>(
+    choice: &DeviceChoice,
+    paths: &[HandPath<D>],
+    map: &WorkspaceMap<D>,
+) {
+    let DeviceChoice::Simulated(choice) = choice else { return };
+    let profile = &choice.profile;
+    let places = paths.iter().flat_map(HandPath::positions);
+    let farthest = places.map(|point| map.point_to_device(*point).norm()).fold(0.0, f64::max);
+    let beyond = farthest - profile.workspace_radius;
+    // What rounding adds to a workspace that is fitted is nothing.
+    if beyond > 1e-9 * profile.workspace_radius {
+        let beyond = rounded(1e3 * beyond);
+        output::remark(format_args!(
+            "the path leaves the workspace of the {} by up to {beyond} mm at the device, where a hand \
+             cannot follow it; `workspace` of the scene's `tool` has a scale",
+            profile.name,
+        ));
+    }
 }
 
 /// The device, with a hand for each path in world coordinates. `turns` is the rotation of the

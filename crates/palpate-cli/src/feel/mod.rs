@@ -78,6 +78,9 @@ where
         _ => None,
     };
     let map = held::map(scene, tool.as_ref(), &choice)?;
+    if options.path.is_some() {
+        held::warn_of_workspace(&choice, &paths, &map);
+    }
     let device = held::device(&choice, &paths, turns.as_ref(), &map);
     let mut device = device.map_err(Failure::input)?;
     let mut settings = ServoSettings::default()

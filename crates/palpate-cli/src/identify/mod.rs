@@ -76,10 +76,9 @@ pub(crate) fn run(
 
 /// Says what will happen, before the first force.
 fn warn(profile: &DeviceProfile, motions: &Motions) {
-    let force = (motions.force_part * profile.max_force).min(profile.continuous_force);
     let turning = profile.turning.as_ref().filter(|turning| turning.max_torque > 0.0);
     let turns = turning.map_or_else(String::new, |turning| {
-        let torque = (motions.force_part * turning.max_torque).min(turning.continuous_torque);
+        let torque = motions.largest_torque(turning);
         let angle = rounded(motions.angle);
         format!(", and turns by at most {angle} rad, with at most {} N·m", rounded(torque))
     });
@@ -88,7 +87,7 @@ fn warn(profile: &DeviceProfile, motions: &Motions) {
          N{turns}; Ctrl-C stops it",
         profile.name,
         rounded(motions.travel * 1000.0),
-        rounded(force),
+        rounded(motions.largest_force(profile)),
     ));
 }
 

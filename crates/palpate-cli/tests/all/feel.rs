@@ -396,6 +396,12 @@ fn what_a_device_makes_of_bodies_is_told() {
     };
     let tool = with(r#""tool": { "acceptance": "passive" }"#);
     assert!(text(&palpate(&["feel", &tool, "--fast"])).contains("probe of 2 mm"));
+    // A path beyond the workspace, which is fitted around the scene.
+    let hand = folder.write("far.csv", "time_s,x_m,y_m,z_m\n0,0,0.6,0\n0.1,0,9,0\n");
+    let far = feel(&[&omega[..], &["--path", &hand]].concat());
+    let told = "the path leaves the workspace of the Force Dimension omega by up to ";
+    assert!(errors(&far).contains(told), "{}", errors(&far));
+    assert!(!errors(&feel(&omega)).contains(told));
     let guided = with(r#""guides": [{ "point": [0, 0, 0] }]"#);
     let glove = ["feel", &guided, "--fast", "--duration", "0.1", "--device", "glove"];
     let said = text(&palpate(&glove));

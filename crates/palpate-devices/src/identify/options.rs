@@ -3,7 +3,7 @@
 
 //! How a device is moved to identify it.
 
-use palpate_haptics::{DeviceProfile, NumberError};
+use palpate_haptics::{DeviceProfile, NumberError, TurningProfile};
 
 /// How far, how fast and how strongly a device is moved to [identify](super::identify) it.
 ///
@@ -100,12 +100,24 @@ impl IdentifyOptions {
         Ok(())
     }
 
+    /// The largest force on the handle of a device [N].
+    #[must_use]
+    pub fn largest_force(&self, profile: &DeviceProfile) -> f64 {
+        (self.force_part * profile.max_force).min(profile.continuous_force)
+    }
+
+    /// The largest torque on the handle [N·m].
+    #[must_use]
+    pub fn largest_torque(&self, turning: &TurningProfile) -> f64 {
+        (self.force_part * turning.max_torque).min(turning.continuous_torque)
+    }
+
     /// The bounds of motions along an axis.
     pub(super) fn along(&self, profile: &DeviceProfile) -> Bounds {
         Bounds {
             travel: self.travel,
             speed: (SPEED_PER_TRAVEL * self.travel).min(profile.max_speed / SPEED_RESERVE),
-            force: (self.force_part * profile.max_force).min(profile.continuous_force),
+            force: self.largest_force(profile),
             force_rate: profile.max_force_rate,
         }
     }
@@ -116,7 +128,7 @@ impl IdentifyOptions {
         Some(Bounds {
             travel: self.angle,
             speed: (SPEED_PER_TRAVEL * self.angle).min(turning.max_speed / SPEED_RESERVE),
-            force: (self.force_part * turning.max_torque).min(turning.continuous_torque),
+            force: self.largest_torque(turning),
             force_rate: turning.max_torque_rate,
         })
     }
