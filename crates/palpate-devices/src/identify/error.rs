@@ -46,12 +46,27 @@ pub enum IdentifyError {
         /// The message of the transport.
         lost: DeviceLost,
     },
-    /// A reading is NaN or infinite, or has no orientation.
+    /// The handle would leave the workspace.
     #[error(
-        "{axis}: the reading at {time} s is not a finite number, or has no orientation; check the \
-         encoders"
+        "travel must be at most the radius of the device's workspace, {radius} m, got {travel} m"
     )]
+    TravelBeyondWorkspace {
+        /// The travel that was asked for [m].
+        travel: f64,
+        /// The radius of the workspace [m].
+        radius: f64,
+    },
+    /// A reading is NaN or infinite.
+    #[error("{axis}: the reading at {time} s is not a finite number; check the encoders")]
     NotFinite {
+        /// The axis that was moved.
+        axis: DeviceAxis,
+        /// The time of the reading [s].
+        time: f64,
+    },
+    /// A device that gives torques did not say where it points.
+    #[error("{axis}: the reading at {time} s has no orientation, and the device gives torques")]
+    NoOrientation {
         /// The axis that was moved.
         axis: DeviceAxis,
         /// The time of the reading [s].

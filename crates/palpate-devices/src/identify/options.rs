@@ -3,6 +3,7 @@
 
 //! How a device is moved to identify it.
 
+use super::IdentifyError;
 use palpate_haptics::{DeviceProfile, NumberError, TurningProfile};
 
 /// How far, how fast and how strongly a device is moved to [identify](super::identify) it.
@@ -67,20 +68,20 @@ impl IdentifyOptions {
 
     /// # Errors
     ///
-    /// The number that breaks its rule.
-    pub(super) fn check(&self, profile: &DeviceProfile) -> Result<(), NumberError> {
+    /// The number that breaks its rule, or a travel that leaves the workspace.
+    pub(super) fn check(&self, profile: &DeviceProfile) -> Result<(), IdentifyError> {
         NumberError::check_rate(self.rate)?;
         // A speed is measured over 4 ms, of which a loop must see a few ticks.
         if self.rate < LEAST_RATE {
             let rule = "at least 500, so that strokes of some milliseconds are seen";
-            return Err(NumberError::new("rate", rule, self.rate, "Hz"));
+            return Err(NumberError::new("rate", rule, self.rate, "Hz").into());
         }
         NumberError::check_positive("travel", self.travel, "m")?;
         // Written so that a radius of NaN is refused.
         let is_within = self.travel <= profile.workspace_radius;
         if !is_within {
-            let rule = "at most the radius of the device's workspace";
-            return Err(NumberError::new("travel", rule, self.travel, "m"));
+            let (travel, radius) = (self.travel, profile.workspace_radius);
+            return Err(IdentifyError::TravelBeyondWorkspace { travel, radius });
         }
         NumberError::check_positive_or_infinite("max_speed", profile.max_speed, "m/s")?;
         if let Some(turning) = &profile.turning {
@@ -90,12 +91,12 @@ impl IdentifyOptions {
         NumberError::check_positive("angle", self.angle, "rad")?;
         if self.angle > MOST_ANGLE {
             let rule = "at most 1, where rotation vectors add";
-            return Err(NumberError::new("angle", rule, self.angle, "rad"));
+            return Err(NumberError::new("angle", rule, self.angle, "rad").into());
         }
         let is_part = self.force_part > 0.0 && self.force_part <= 1.0;
         if !is_part {
             let rule = "more than 0 and at most 1";
-            return Err(NumberError::new("force_part", rule, self.force_part, ""));
+            return Err(NumberError::new("force_part", rule, self.force_part, "").into());
         }
         Ok(())
     }

@@ -190,10 +190,10 @@ impl<'a, const D: usize> Port<'a, D> {
         let turn = if self.has_torque { self.device.read_turn().map_err(lost)? } else { None };
         let point = self.points.first().copied();
         let point = point.filter(|point| point.position.is_finite());
-        let is_whole = turn.is_some() || !self.has_torque;
-        let Some(point) = point.filter(|_| is_whole) else {
-            return Err(IdentifyError::NotFinite { axis, time });
-        };
+        let Some(point) = point else { return Err(IdentifyError::NotFinite { axis, time }) };
+        if turn.is_none() && self.has_torque {
+            return Err(IdentifyError::NoOrientation { axis, time });
+        }
         let start = *self.start.get_or_insert(point);
         let moved = point.position - start.position;
         let turned = turn.map_or(Vector::ZERO, |turn| {

@@ -560,7 +560,7 @@ fn wrong_options_and_devices_without_force_are_refused() {
         (
             // A handle was moved by 50 mm in a workspace of 40 mm.
             options.with_travel(1.0),
-            "travel must be at most the radius of the device's workspace, got 1 m",
+            "travel must be at most the radius of the device's workspace, 0.075 m, got 1 m",
         ),
         (
             options.with_angle(2.0),

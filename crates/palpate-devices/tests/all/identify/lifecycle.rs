@@ -18,7 +18,10 @@ struct Counted {
     device: SimulatedDevice<2>,
     profile: DeviceProfile,
     calls: Vec<&'static str>,
+    opens: bool,
     takes_forces: bool,
+    senses_turns: bool,
+    writes: u64,
     torques: u64,
 }
 
@@ -33,7 +36,7 @@ impl Device<2> for Counted {
 
     fn open(&mut self) -> Result<(), DeviceLost> {
         self.calls.push("open");
-        Ok(())
+        if self.opens { Ok(()) } else { Err(DeviceLost::new("it is not plugged in")) }
     }
 
     fn set_watchdog(&mut self, after: Duration) -> Result<Option<Duration>, DeviceLost> {
@@ -57,10 +60,11 @@ impl Device<2> for Counted {
     }
 
     fn read_turn(&mut self) -> Result<Option<TurnState<2>>, DeviceLost> {
-        self.device.read_turn()
+        if self.senses_turns { self.device.read_turn() } else { Ok(None) }
     }
 
     fn write(&mut self, forces: &[Vector<f64, 2>]) -> Result<(), DeviceLost> {
+        self.writes += 1;
         if !self.takes_forces {
             return Err(DeviceLost::new("the motors are off"));
         }
@@ -76,7 +80,16 @@ impl Device<2> for Counted {
 fn counted(takes_forces: bool) -> Counted {
     let profile = profile_named("sigma7").unwrap();
     let device = free(profile.clone());
-    Counted { device, profile, calls: Vec::new(), takes_forces, torques: 0 }
+    Counted {
+        device,
+        profile,
+        calls: Vec::new(),
+        opens: true,
+        takes_forces,
+        senses_turns: true,
+        writes: 0,
+        torques: 0,
+    }
 }
 
 #[test]
@@ -99,4 +112,22 @@ fn a_torque_without_a_limit_is_refused_before_the_device_is_opened() {
     let refused = identify(&mut device, IdentifyOptions::new(1000.0)).unwrap_err();
     assert_eq!(refused.to_string(), "max_torque must be positive and finite, got inf N·m");
     assert_eq!((device.calls.len(), device.torques), (0, 0));
+}
+
+/// Once zero forces were written to it.
+#[test]
+fn a_device_that_does_not_open_is_left_alone() {
+    let mut device = Counted { opens: false, ..counted(true) };
+    let lost = identify(&mut device, IdentifyOptions::new(1000.0)).unwrap_err();
+    assert!(lost.to_string().contains("it is not plugged in"), "{lost}");
+    assert_eq!((device.calls, device.writes, device.torques), (vec!["open"], 0, 0));
+}
+
+#[test]
+fn a_device_of_torques_has_to_say_where_it_points() {
+    let mut device = Counted { senses_turns: false, ..counted(true) };
+    let blind = identify(&mut device, IdentifyOptions::new(1000.0)).unwrap_err();
+    let said =
+        "along x: the reading at 0.001 s has no orientation, and the device gives torques";
+    assert_eq!(blind.to_string(), said);
 }
