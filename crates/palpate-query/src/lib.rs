@@ -47,6 +47,7 @@
 //! Features, both on by default: `parallel` shares batches and worlds among threads; `world`
 //! adds [`World`].
 
+mod advance;
 mod any_point;
 mod ball;
 mod certified;
@@ -72,6 +73,7 @@ mod pool;
 mod query;
 mod ray;
 mod sampler;
+mod sweep;
 mod track;
 #[cfg(feature = "world")]
 mod world;
@@ -98,6 +100,7 @@ pub use point::{AtPoint, evaluate_point};
 pub use query::{ElementMemory, Query, Tolerance};
 pub use ray::{Ray, RayHit, cast_ray};
 pub use sampler::free_radius;
+pub use sweep::cast_ball;
 pub use track::Track;
 #[cfg(feature = "world")]
 pub use world::{BodyId, Neighbours, Verdict, World, WorldSettings};

@@ -2,29 +2,13 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
 //! The first surface along a ray; none is skipped.
-//!
-//! Conservative advancement: a value f proves a ball of radius f/L empty, and the ray advances
-//! by that radius (Hart 1996). Along a near surface such steps are small and many. There the
-//! search samples points lifted off the ray along the gradient: the balls about them that are
-//! proven empty are larger, and the ray leaves them later.
 
-use palpate_field::{Point, SHORT, Shape, Vector};
+use palpate_field::{Point, Shape, Vector};
 
+use crate::advance::{Advance, Gap, Way};
 use crate::certified::{Certified, Limits, Stop};
 use crate::error::QueryError;
-use crate::sampler::{Sampler, Samples, normal, unit};
-
-/// Heights of lifted points, as shares of the height that gave the longest step before.
-const HEIGHTS: [f64; SHORT - 1] = [8.0, 3.0, 1.5, 0.7, 0.3, 0.1, 0.03];
-
-/// The first height, as a share of the ray.
-const FIRST_HEIGHT: f64 = 0.25;
-
-/// A plain step at least this share of the ray long is taken without lifting.
-const LONG: f64 = 0.05;
-
-/// So is a step after which the value falls to this share or less.
-const NEARING: f64 = 0.4;
+use crate::sampler::{Sampler, Samples, normal};
 
 /// A part of a straight line: from `origin` in a `direction` of length one.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -65,6 +49,12 @@ impl<const D: usize> Ray<D> {
     #[must_use]
     pub fn length(&self) -> f64 {
         self.length
+    }
+
+    /// The direction, of length one.
+    #[must_use]
+    pub fn direction(&self) -> Vector<f64, D> {
+        self.direction
     }
 
     /// The point at a distance from the origin [m].
@@ -120,122 +110,21 @@ pub fn cast_ray<const D: usize>(
 ) -> Result<Certified<Option<RayHit<D>>>, QueryError> {
     limits.check()?;
     let mut samples = Samples::new();
-    let mut advance = Advance {
-        sampler: Sampler::new(shape, &mut samples, ray.origin.norm(), 0.0),
-        ray,
-        height: FIRST_HEIGHT * ray.length,
-        witness: None,
-    };
-    Ok(advance.run(limits))
+    let sampler = Sampler::new(shape, &mut samples, ray.origin.norm(), 0.0);
+    let mut advance = Advance::new(sampler, ray, 0.0);
+    let way = advance.run(limits, |_, _| Gap::UNKNOWN);
+    Ok(hit(&mut advance, way))
 }
 
-/// A ray cast, and how far it has advanced.
-struct Advance<'a, const D: usize> {
-    sampler: Sampler<'a, D>,
-    ray: &'a Ray<D>,
-    height: f64,
-    /// The earliest place where the field was found to be at most the tolerance.
-    witness: Option<f64>,
-}
-
-impl<const D: usize> Advance<'_, D> {
-    fn run(&mut self, limits: &Limits) -> Certified<Option<RayHit<D>>> {
-        let (length, gap) = (self.ray.length, limits.tolerance);
-        let (mut free, mut previous, mut is_short) = (0.0, f64::INFINITY, false);
-        loop {
-            let p = self.ray.at(free);
-            let (value, gradient) = self.sampler.slope(p);
-            if value <= gap {
-                return self.hit(free, free, Stop::Converged);
-            }
-            if self.sampler.evaluations >= limits.budget {
-                let upper = self.witness.unwrap_or(f64::INFINITY);
-                return self.hit(free, upper, Stop::BudgetSpent);
-            }
-            let step = self.sampler.free_radius(p, value);
-            let pays = step >= LONG * length || value < NEARING * previous;
-            let mut ahead = free + step.max(0.0);
-            if is_short || !pays {
-                is_short = true;
-                ahead = ahead.max(self.lifted(free, value, unit(gradient), limits));
-            }
-            previous = value;
-            if let Some(witness) = self.witness
-                && witness - ahead <= limits.tolerance
-            {
-                return self.hit(ahead.min(witness), witness, Stop::Converged);
-            }
-            if ahead >= length {
-                let (lower, upper) = (length, length);
-                let evaluations = self.sampler.evaluations;
-                return Certified {
-                    best: None,
-                    lower,
-                    upper,
-                    stop: Stop::SignKnown,
-                    evaluations,
-                };
-            }
-            is_short &= ahead - free < LONG * length;
-            if ahead <= free {
-                // The surface is within rounding.
-                let upper = self.witness.unwrap_or(f64::INFINITY);
-                return self.hit(free, upper, Stop::RoundingReached);
-            }
-            free = ahead;
-        }
-    }
-
-    /// How far the ray is proven free by points lifted off it at `free`; also looks for a
-    /// witness where the tangent plane says that the surface is.
-    fn lifted(
-        &mut self,
-        free: f64,
-        value: f64,
-        direction: Vector<f64, D>,
-        limits: &Limits,
-    ) -> f64 {
-        let p = self.ray.at(free);
-        let heights = HEIGHTS.map(|share| share * self.height);
-        let mut points = [p; SHORT];
-        for (point, height) in points.iter_mut().zip(heights) {
-            *point += direction * height;
-        }
-        let towards = -direction.dot(self.ray.direction);
-        let latest = self.witness.unwrap_or(self.ray.length);
-        let there = free + value / towards.max(1e-3) + 0.5 * limits.tolerance;
-        let there = if there < latest { there } else { 0.5 * (free + latest) };
-        points[SHORT - 1] = self.ray.at(there);
-        let values = self.sampler.values(&points);
-        if values[SHORT - 1] <= limits.tolerance {
-            self.witness = Some(there);
-        }
-        let mut ahead = free;
-        // If no lifted point gives a longer step, all were far too high.
-        self.height *= HEIGHTS[HEIGHTS.len() - 1];
-        for ((point, value), height) in points.iter().zip(values).zip(heights) {
-            let radius = self.sampler.free_radius(*point, value);
-            // |o + t·d − point| < radius, from the origin p at t = 0.
-            let offset = p - *point;
-            let half = offset.dot(self.ray.direction);
-            let rest = offset.dot(offset) - radius * radius;
-            if radius > 0.0 && rest < 0.0 {
-                let exit = free + ((half * half - rest).sqrt() - half) * (1.0 - 1e-12);
-                if exit > ahead {
-                    (ahead, self.height) = (exit, height);
-                }
-            }
-        }
-        self.height = self.height.min(self.ray.length);
-        ahead
-    }
-
-    fn hit(&mut self, lower: f64, upper: f64, stop: Stop) -> Certified<Option<RayHit<D>>> {
-        let best = upper.is_finite().then(|| {
-            let point = self.ray.at(upper);
-            let (_, gradient) = self.sampler.slope(point);
-            RayHit { point, normal: normal(gradient) }
-        });
-        Certified { best, lower, upper, stop, evaluations: self.sampler.evaluations }
-    }
+/// The answer of a ray that has advanced.
+fn hit<const D: usize>(
+    advance: &mut Advance<'_, D>,
+    Way { lower, upper, stop }: Way,
+) -> Certified<Option<RayHit<D>>> {
+    let best = (stop != Stop::SignKnown && upper.is_finite()).then(|| {
+        let point = advance.ray.at(upper);
+        let (_, gradient) = advance.sampler.slope(point);
+        RayHit { point, normal: normal(gradient) }
+    });
+    Certified { best, lower, upper, stop, evaluations: advance.sampler.evaluations }
 }

@@ -3,7 +3,9 @@
 
 //! A field as searches see it: values with their rounding.
 
-use palpate_field::{Block, BoundingBall, Column, Gradients, Point, SHORT, Shape, Vector};
+use palpate_field::{
+    Block, BoundingBall, Column, Gradients, Point, Quality, SHORT, Shape, Vector,
+};
 
 /// Roundings of a distance between points, and of the points themselves, which move by
 /// one each time that an element is halved; relative to the largest coordinate.
@@ -88,6 +90,11 @@ impl<'a, const D: usize> Sampler<'a, D> {
     /// `true` if the field is a convex function.
     pub(crate) fn is_convex(&self) -> bool {
         self.shape.promise().convex
+    }
+
+    /// `true` if positive values are distances.
+    pub(crate) fn is_exact_outside(&self) -> bool {
+        self.shape.promise().outside == Quality::Exact
     }
 
     /// The value at a point.

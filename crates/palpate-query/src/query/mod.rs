@@ -24,6 +24,7 @@ use crate::pair::{
 use crate::placed::Placed;
 use crate::pool::Pool;
 use crate::ray::{Ray, RayHit, cast_ray};
+use crate::sweep::cast_ball;
 use batch::{Asked, Batch};
 use scratch::Scratch;
 
@@ -230,6 +231,22 @@ impl<const D: usize> Query<D> {
         ray: &Ray<D>,
     ) -> Result<Certified<Option<RayHit<D>>>, QueryError> {
         cast_ray(shape, ray, &self.limits([size(shape), Some(ray.length())]))
+    }
+
+    /// The first touch of a ball of a `radius` [m] whose centre moves along a ray; see
+    /// [`cast_ball`].
+    ///
+    /// # Errors
+    ///
+    /// If the radius or the tolerance is negative, NaN or too large.
+    pub fn cast_ball(
+        &mut self,
+        shape: &Shape<D>,
+        ray: &Ray<D>,
+        radius: f64,
+    ) -> Result<Certified<Option<Contact<D>>>, QueryError> {
+        let limits = self.limits([size(shape), Some(ray.length().max(2.0 * radius))]);
+        cast_ball(shape, ray, radius, &limits, self.scratch.ball())
     }
 
     /// The least value of a field on a segment or a triangle; see [`minimum`].

@@ -5,6 +5,7 @@
 
 use assert_no_alloc::AllocDisabler;
 
+mod ball_sweeps;
 mod balls;
 mod degenerate;
 mod elements;
