@@ -136,6 +136,37 @@ impl<const D: usize> Screw<D> {
         let rotation = Rotation::identity().turned(self.axis * phi);
         self.from * Pose::new(rotation, translation)
     }
+
+    /// The velocity of a point of the body over the whole motion as a unit of time, both in the
+    /// body's coordinates [m]: it stays the same, and so does its size in the world.
+    ///
+    /// With the numbers of the derivation and `Θ = θ + 2πk`, it is `v∥ + Θ/2 (cot(θ/2) v⊥ − n × v⊥) +
+    /// Θ n × p`: the derivative at the beginning, where the origin moves by the first two terms.
+    ///
+    /// ```
+    /// use palpate_field::{Pose, Rotation, Screw, Vector};
+    ///
+    /// # fn main() -> Result<(), palpate_field::ShapeError> {
+    /// let half_turn = Rotation::from_angle(std::f64::consts::PI)?;
+    /// let screw = Screw::new(Pose::identity(), Pose::new(half_turn, Vector([2.0, 0.0])), 0)?;
+    /// // The centre of rotation stays, and the origin goes half a circle of one metre round it.
+    /// assert!(screw.velocity(Vector([1.0, 0.0])).norm() < 1e-15);
+    /// assert!((screw.velocity(Vector([0.0, 0.0])).norm() - std::f64::consts::PI).abs() < 1e-15);
+    /// # Ok(())
+    /// # }
+    /// ```
+    #[must_use]
+    pub fn velocity(&self, p: Point<D>) -> Vector<f64, D> {
+        let half = 0.5 * self.short_angle;
+        let across = if self.short_angle < NO_ROTATION {
+            self.across
+        } else {
+            let tangent = libm::tan(half);
+            (self.across * (1.0 / tangent) - self.axis.cross(self.across)) * (0.5 * self.angle)
+        };
+        let turning = self.axis.cross(in_space(p)) * self.angle;
+        from_space(self.along + across + turning)
+    }
 }
 
 fn in_space<const D: usize>(v: Vector<f64, D>) -> Vector<f64, 3> {

@@ -76,3 +76,28 @@ fn whole_turns_of_a_translation_in_the_plane_are_refused() {
     assert_eq!(error.to_string(), "turns must be 0 for a translation in the plane, got 1");
     assert!(Screw::new(to, to, 1).is_ok());
 }
+
+/// The derivative of a point's place in the world, turned into the body.
+#[test]
+fn velocities_are_the_derivatives_of_places() {
+    cases(300, |u| {
+        let mut draw = || u.int_in_range(-1000..=1000).map(|x| f64::from(x) * 2e-3);
+        let from = pose([draw()?, draw()?, draw()?], [draw()?, draw()?, draw()?]);
+        let by = pose([draw()?, draw()?, 0.7 * draw()?], [draw()?, draw()?, draw()?]);
+        let p = Vector([draw()?, draw()?, draw()?]);
+        let turns = u.int_in_range(-2..=2)?;
+        let screw = Screw::new(from, from * by, turns).unwrap();
+        for share in [0.25, 0.5, 0.75] {
+            let at = |share: f64| screw.pose(share).transform_point(p);
+            let step = 1e-5;
+            let moved = (at(share + step) - at(share - step)) * (0.5 / step);
+            let seen = screw.pose(share).inverse().transform_vector(moved);
+            let off = (seen - screw.velocity(p)).norm();
+            assert!(off < 1e-6, "{off:e} at {share} of {screw:?}");
+        }
+        Ok(())
+    });
+    // A translation.
+    let screw = Screw::new(Pose::identity(), pose([0.0; 3], [1.0, 2.0, 3.0]), 0).unwrap();
+    assert_eq!(screw.velocity(Vector([5.0, 6.0, 7.0])), Vector([1.0, 2.0, 3.0]));
+}
