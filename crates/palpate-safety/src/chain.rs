@@ -390,6 +390,7 @@ impl<const D: usize> SafetyChain<D> {
         let observed = self.passivity.observed(wanted, &seen, is_sound);
         let (force, left) = self.channel.step(observed, free_force, &input);
         self.passivity.written(left);
+        self.free.written(force - left);
         force
     }
 
@@ -403,6 +404,7 @@ impl<const D: usize> SafetyChain<D> {
         // `min` ignores NaN.
         let max_force = options.max_force.min(max_force).max(0.0);
         self.passivity.renew(PassivityOptions { max_force, ..options });
+        self.free.lower_limit(max_force);
     }
 
     /// Begins an emergency stop: the force is zero until [`release`](Self::release).

@@ -42,6 +42,8 @@ pub(crate) struct Channel<const D: usize> {
     rise: Rise,
     watchdog: Watchdog,
     is_stopped: bool,
+    /// Whether bodies gave a part of the last force.
+    has_bodies: bool,
     /// A second slew limit at the end, because the stages after the first also change the
     /// force.
     closing: SlewLimit<D>,
@@ -76,6 +78,7 @@ impl<const D: usize> Channel<D> {
             rise: Rise::new(rise_rate * unit, options.recovery, rate),
             watchdog: Watchdog::new(late_time, fall_time, rate),
             is_stopped: false,
+            has_bodies: false,
             closing: slew,
             effects: Effects::default(),
         })
@@ -137,12 +140,16 @@ impl<const D: usize> Channel<D> {
         if self.is_stopped || !is_sound || self.watchdog.factor() < 1.0 {
             self.rise.restart(force.norm());
         }
-        if force == all && share == 1.0 {
-            return (force, observed);
-        }
-        // What the slew limit holds beyond that share comes from the bodies: it counts as observed.
-        // Written so that NaN is no share.
-        (force, if share > 0.0 { force - free * share } else { force })
+        // What the slew limit holds beyond that share comes from the bodies, as long as they gave
+        // some of it: it counts as observed. Written so that NaN is no share.
+        let left = match share > 0.0 {
+            _ if force == all && share == 1.0 => observed,
+            _ if observed == Vector::ZERO && !self.has_bodies => Vector::ZERO,
+            true => force - free * share,
+            false => force,
+        };
+        self.has_bodies = left != Vector::ZERO;
+        (force, left)
     }
 
     /// Rises as fast as before where a radian counts as a length that is so many times `longer`.

@@ -61,11 +61,6 @@ impl<V: InnerProduct> Lift<V> {
         self.is_on
     }
 
-    /// `true` while the force is to be lifted.
-    pub(crate) fn is_on(&self) -> bool {
-        self.is_on
-    }
-
     /// Ends the lift, because the controller acts.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.

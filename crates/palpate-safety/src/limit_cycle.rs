@@ -69,6 +69,9 @@ const STEP: f64 = 0.3;
 /// The time away from all bodies in which the stiffness comes back by a factor of e [s].
 const RECOVERY: f64 = 20.0;
 
+/// A hand rests in a guide if it did not turn back for so long [s].
+const RESTED: f64 = 0.5;
+
 /// Options of the stage.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct LimitCycleOptions {
@@ -99,6 +102,8 @@ pub(crate) struct CycleInput<V> {
     pub(crate) effort: f64,
     /// Whether guides give a part of the force: their stiffness is not known here.
     pub(crate) is_guided: bool,
+    /// Whether they give all of it.
+    pub(crate) is_free_of_bodies: bool,
     /// The time since the tick before [s].
     pub(crate) elapsed: f64,
     /// Whether the tick is late or the force rises after it was zeroed: an oscillation then has
@@ -113,7 +118,16 @@ impl<V: InnerProduct> CycleInput<V> {
         let is_guided = guides != V::ZERO;
         let force = if is_guided { bodies + guides } else { bodies };
         let effort = if is_guided { force.norm() } else { effort };
-        Self { position, force, effort, is_guided, elapsed, is_disturbed: false }
+        let is_free_of_bodies = bodies == V::ZERO;
+        Self {
+            position,
+            force,
+            effort,
+            is_guided,
+            is_free_of_bodies,
+            elapsed,
+            is_disturbed: false,
+        }
     }
 
     /// This input in a tick that is disturbed or not.
@@ -173,8 +187,8 @@ struct Extreme<V> {
 /// - or eight half cycles grow, each cycle a little.
 ///
 /// The stiffness is then halved, at the rate of 0.3 N a tick, and half cycles are counted anew. It
-/// comes back by a factor of e in 20 s in which nothing pushes; never in contact, where the
-/// oscillation would return.
+/// comes back by a factor of e in 20 s in which nothing pushes, or in which a hand rests in a guide;
+/// never in contact with a body, where the oscillation would return.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct LimitCycle<V> {
     options: LimitCycleOptions,
@@ -276,7 +290,9 @@ impl<V: InnerProduct> LimitCycle<V> {
     #[cold]
     fn soften(&mut self, input: &CycleInput<V>) -> f64 {
         let (force, effort) = (input.force.norm(), input.effort);
-        if force == 0.0 && effort == 0.0 {
+        // A guide need not end anywhere, so that its stiffness comes back to a hand that rests in it.
+        let is_resting = input.is_free_of_bodies && self.since >= RESTED;
+        if force == 0.0 && effort == 0.0 || is_resting {
             self.target = (self.target * (1.0 + input.elapsed / RECOVERY)).min(1.0);
             self.part = self.target;
             return self.part;

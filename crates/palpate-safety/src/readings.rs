@@ -91,10 +91,14 @@ impl Reach {
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     pub(crate) fn has(&self, way: f64, change: f64, [time, over]: [f64; 2]) -> bool {
+        let is_fast = self.max_speed < f64::INFINITY && way > self.way_in(time) + self.slack;
+        // Infinite numbers are no limits, at a time of zero too.
+        if is_fast || over == f64::INFINITY || self.max_acceleration == f64::INFINITY {
+            return !is_fast;
+        }
         let most = 0.5 * self.max_acceleration * time * (time + self.lag * over);
         // What the last velocity is off by grows with the time.
-        let slack = self.slack * (1.0 + time / over);
-        way <= self.way_in(time) + self.slack && change <= most + slack
+        change <= most + self.slack * (1.0 + time / over)
     }
 }
 
@@ -298,6 +302,25 @@ mod tests {
             let there = Vector([0.05 * (9.0 * time).sin(), 0.05 * (9.0 * time).cos()]);
             let read = Vector(there.0.map(|x| (x / step).round() * step));
             assert!(readings.counts(read, elapsed), "{tick}");
+        }
+    }
+
+    /// Once zero times infinity held back what was where it was.
+    #[test]
+    fn the_second_reading_may_come_at_the_time_of_the_first() {
+        for (speed, acceleration) in
+            [(5.0, f64::INFINITY), (f64::INFINITY, 500.0), (5.0, 500.0)]
+        {
+            let device = DeviceProfile::unlimited("")
+                .with_max_speed(speed)
+                .with_max_acceleration(acceleration);
+            let mut readings = Readings::new(&device).unwrap();
+            for elapsed in [0.0, 0.0, PERIOD, 0.0] {
+                assert!(
+                    readings.counts(Vector([0.1, 0.1]), elapsed),
+                    "{speed}, {acceleration}"
+                );
+            }
         }
     }
 

@@ -308,6 +308,7 @@ impl<const D: usize> WrenchChain<D> {
         let (along, force_left) = self.force.step(allowed.along, free_force, &input);
         let input = TickInput { cut: 0.0, ..input };
         let (about, torque_left) = self.torque.step(allowed.about, Vector::ZERO, &input);
+        self.free.written(along - force_left);
         let left = SpatialVector { along: force_left, about: torque_left };
         self.passivity.written(left.turning(1.0 / unit));
         self.largest_torque = self.largest_torque.max(about.norm());
@@ -319,6 +320,7 @@ impl<const D: usize> WrenchChain<D> {
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     pub fn limit_force(&mut self, max_force: f64) {
         self.force.lower_limit(max_force);
+        self.free.lower_limit(max_force);
     }
 
     /// Lowers the torque limit [N·m].
