@@ -149,6 +149,20 @@ fn check(written: &WrittenDevice) -> Result<(), Problems> {
         positive("max_speed", written.max_speed, "m/s"),
         positive("max_acceleration", written.max_acceleration, "m/s²"),
     ]);
+    let sizes = check_sizes(&[
+        ("max_force", written.max_force),
+        ("continuous_force", written.continuous_force),
+        ("max_force_rate", written.max_force_rate),
+        ("max_stiffness", written.max_stiffness),
+        ("max_damping", written.max_damping),
+        ("workspace_radius", written.workspace_radius),
+        ("mass", written.mass),
+        ("least_damping", written.least_damping),
+        ("friction", written.friction),
+        ("encoder_step", written.encoder_step),
+        ("max_speed", written.max_speed),
+        ("max_acceleration", written.max_acceleration),
+    ]);
     let needed = [
         at_most_peak(
             ["continuous_force", "max_force"],
@@ -167,6 +181,7 @@ fn check(written: &WrittenDevice) -> Result<(), Problems> {
     let gripper = written.gripper.as_ref().map_or(Ok(()), check_gripper);
     Problems::all([
         numbers,
+        sizes,
         needed,
         texts,
         check_assumed(&written.assumed, DeviceProfile::NUMBERS),
@@ -222,6 +237,19 @@ fn check_turning(turning: &WrittenTurning) -> Result<(), Problems> {
         positive("max_speed", turning.max_speed, "rad/s"),
         positive("max_acceleration", turning.max_acceleration, "rad/s²"),
     ]);
+    let sizes = check_sizes(&[
+        ("max_torque", turning.max_torque),
+        ("continuous_torque", turning.continuous_torque),
+        ("max_torque_rate", turning.max_torque_rate),
+        ("max_stiffness", turning.max_stiffness),
+        ("max_damping", turning.max_damping),
+        ("inertia", turning.inertia),
+        ("least_damping", turning.least_damping),
+        ("friction", turning.friction),
+        ("encoder_step", turning.encoder_step),
+        ("max_speed", turning.max_speed),
+        ("max_acceleration", turning.max_acceleration),
+    ]);
     let needed = [
         at_most_peak(
             ["continuous_torque", "max_torque"],
@@ -233,6 +261,7 @@ fn check_turning(turning: &WrittenTurning) -> Result<(), Problems> {
     ];
     Problems::all([
         numbers,
+        sizes,
         Problems::all(needed.into_iter().filter(|_| torques)),
         one_line("source", &turning.source).map_err(Problems::from),
         check_assumed(&turning.assumed, TurningProfile::NUMBERS),
@@ -256,6 +285,24 @@ fn at_most_peak(
     }
     let message = format!("must be at most {peak}, {most} {unit}, got {value} {unit}");
     Err(Problem::about(message).under(lasting))
+}
+
+/// No number of a device is as far from one as this, in any unit of a profile.
+const LARGEST: f64 = 1e9;
+
+/// All numbers, by their keys, that are not zero but smaller or larger than any device's.
+fn check_sizes(numbers: &[(&str, f64)]) -> Result<(), Problems> {
+    let wrong = numbers.iter().map(|(key, value)| {
+        let is_of_a_device = *value == 0.0 || (1.0 / LARGEST..=LARGEST).contains(&value.abs());
+        // What is no number was told.
+        if is_of_a_device || !value.is_finite() {
+            return Ok(());
+        }
+        let message =
+            format!("must be from {:e} to {LARGEST:e} in size, got {value:e}", 1.0 / LARGEST);
+        Err(Problem::about(message).under(key))
+    });
+    Problems::all(wrong)
 }
 
 /// A wall is passive on a device with encoder steps only up to a stiffness of `2 f_c / Δ`.
@@ -475,6 +522,22 @@ mod tests {
         let senses = text("omega").replace("\"max_force\": 12", "\"max_force\": 0");
         let senses = senses.replace("\"max_force_rate\": ", "\"max_force_rate\": 0.0e-");
         assert!(device_from_json(senses.as_bytes()).is_ok(), "{senses}");
+    }
+
+    /// Once a metre of the device was 3e299 m of the scene.
+    #[test]
+    fn numbers_of_no_device_are_told() {
+        let wrong = text("omega")
+            .replace("\"workspace_radius\": 0.08", "\"workspace_radius\": 1e-300")
+            .replace("\"workspace_radius\": 0.075", "\"workspace_radius\": 1e-300")
+            .replace("\"max_stiffness\": 5000", "\"max_stiffness\": 1e308");
+        let error = device_from_json(wrong.as_bytes()).unwrap_err().to_string();
+        for said in [
+            "workspace_radius must be from 1e-9 to 1e9 in size, got 1e-300",
+            "max_stiffness must be from 1e-9 to 1e9 in size, got 1e308",
+        ] {
+            assert!(error.contains(said), "{said}\n{error}");
+        }
     }
 
     #[test]

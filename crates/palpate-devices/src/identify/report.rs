@@ -215,13 +215,13 @@ impl Worst {
         if is_seen { self.step } else { self.step.max(stated) }
     }
 
-    /// The friction for a profile that states one.
+    /// The friction for a profile that states one: one that is not seen is not known to be less.
     fn friction_beside(&self, stated: f64) -> f64 {
-        let [least, most] = self.friction;
-        match least {
-            0.0 if stated > 0.0 => most.min(stated),
-            0.0 => most,
-            _ => least,
+        let ([least, most], [.., is_seen, _]) = (self.friction, self.is_seen);
+        match () {
+            () if is_seen => least,
+            () if stated > 0.0 => most.min(stated),
+            () => most,
         }
     }
 
@@ -240,7 +240,7 @@ impl Identified {
     ///
     /// - A mass, damping or friction that is not [seen](Estimate::is_seen) on every axis counts as
     ///   assumed.
-    /// - A friction that may be zero is that of `profile`, or the most within its error if that is
+    /// - A friction that is not seen is that of `profile`, or the most within its error if that is
     ///   less or `profile` says zero: a device of no friction renders nothing in encoder steps.
     /// - The encoder step of `profile` stays, as its source tells it, where no larger one is seen.
     ///
@@ -319,9 +319,38 @@ fn assumed(
     left.chain(unseen).copied().collect()
 }
 
+/// What stands before the source of the numbers that nothing before names.
+const ALL_ELSE: &str = "all else: ";
+
+/// The source of the numbers that were `found`, and that of the others, which may have parts of its
+/// own: names that are found anew leave them.
 fn both(source: &str, found: &[&str], other: &str) -> String {
     if found.is_empty() {
         return other.to_owned();
     }
-    format!("{}: {source}; all else: {other}", found.join(", "))
+    let (parts, rest) = other.rsplit_once(ALL_ELSE).unwrap_or(("", other));
+    let parts = parts.split("; ").filter_map(|part| {
+        let (names, source) = part.split_once(": ")?;
+        let names: Vec<_> = names.split(", ").filter(|name| !found.contains(name)).collect();
+        (!names.is_empty()).then(|| format!("{}: {source}; ", names.join(", ")))
+    });
+    let parts: String = parts.collect();
+    format!("{}: {source}; {parts}{ALL_ELSE}{rest}", found.join(", "))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::both;
+
+    /// Each identification once wrote its source before that of the one before.
+    #[test]
+    fn what_is_found_anew_leaves_the_source_of_before() {
+        let first = both("strokes", &["mass", "friction"], "a data sheet");
+        assert_eq!(first, "mass, friction: strokes; all else: a data sheet");
+        let second = both("others", &["mass"], &first);
+        assert_eq!(second, "mass: others; friction: strokes; all else: a data sheet");
+        let third = both("a third", &["friction", "mass"], &second);
+        assert_eq!(third, "friction, mass: a third; all else: a data sheet");
+        assert_eq!(both("nothing", &[], &third), third);
+    }
 }
