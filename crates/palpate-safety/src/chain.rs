@@ -33,7 +33,8 @@ pub struct PortState<const D: usize> {
     /// A force on the hand that is added to the wanted force [N]: that of guides and magnets. It may
     /// give out its potential. Beyond that and what the device's damping dissipates, it gives out
     /// the [reserve](SafetyOptions::reserve), a quarter of a millijoule while it is taken away
-    /// smoothly, and what one tick adds.
+    /// smoothly, and what one tick adds; and to a hand at rest a millijoule, and 0.1 mW after that,
+    /// while it comes back ([counted](crate::FreeForceReport::credited)).
     pub free_force: Vector<f64, D>,
     /// By how much the tick began too late [s]; zero in time. A tick without a new reading is as
     /// good as late.

@@ -92,8 +92,8 @@ fn a_stiff_guide_gives_out_its_reserve_beyond_its_potential_at_most() {
                     let told = format!("{case:?}: {found:?}");
                     // The reserve.
                     assert!(found.beyond <= 1e-4, "{told}");
-                    // The least that limit cycles leave.
-                    assert!(found.swing < 1e-4 && found.left >= 1.0 / 32.0, "{told}");
+                    // The stage of limit cycles leaves 1/32, and this one a part of that.
+                    assert!(found.swing < 1e-4 && found.left >= 0.01, "{told}");
                     assert!(times > 1.0 || grip < 1.0 || found.left == 1.0, "{told}");
                 }
             }
