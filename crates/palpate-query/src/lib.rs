@@ -37,6 +37,8 @@
 //!   segment or a triangle; [`contacts`] finds all places where the element touches.
 //! - [`mesh_hits`] and [`mesh_contacts`] ask a field over all elements of a mesh.
 //!
+//! - [`sweep`] finds when two bodies that move touch first, [`cast_ball`] where a ball does that
+//!   moves along a line.
 //! - [`rates`] says how a separation changes with both poses; [`proof`] lists the boxes that the
 //!   search for a separation ruled out.
 //!

@@ -24,7 +24,7 @@ use crate::pair::{
 use crate::placed::Placed;
 use crate::pool::Pool;
 use crate::ray::{Ray, RayHit, cast_ray};
-use crate::sweep::cast_ball;
+use crate::sweep::{FirstTouch, Moving, SweepSettings, cast_ball, sweep};
 use batch::{Asked, Batch};
 use scratch::Scratch;
 
@@ -247,6 +247,25 @@ impl<const D: usize> Query<D> {
     ) -> Result<Certified<Option<Contact<D>>>, QueryError> {
         let limits = self.limits([size(shape), Some(ray.length().max(2.0 * radius))]);
         cast_ball(shape, ray, radius, &limits, self.scratch.ball())
+    }
+
+    /// When two bodies that move touch first, of motions over the time from 0 to 1, with the
+    /// tolerance as the gap and [`SweepSettings::of_size`] for the rest; see [`sweep`].
+    ///
+    /// # Errors
+    ///
+    /// If neither body is bounded, a body without bounds turns, or a pose or the tolerance is NaN or
+    /// out of range.
+    pub fn cast_shape<'a>(
+        &mut self,
+        a: impl Into<Moving<'a, D>>,
+        b: impl Into<Moving<'a, D>>,
+    ) -> Result<FirstTouch<D>, QueryError> {
+        let (a, b) = (a.into(), b.into());
+        let sizes = sizes(&a.at(0.0), &b.at(0.0));
+        let settings = SweepSettings::of_size(smallest(sizes));
+        let gap = self.limits(sizes).tolerance;
+        sweep(a, b, &settings.with_gap(gap), self.scratch.pair())
     }
 
     /// The least value of a field on a segment or a triangle; see [`minimum`].

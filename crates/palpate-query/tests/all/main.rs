@@ -19,6 +19,7 @@ mod rays;
 mod recall;
 mod separating_translations;
 mod serde;
+mod sweeps;
 mod tracks;
 mod worlds;
 

@@ -1,0 +1,202 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! Bodies that move: never late, and early by the tolerance at most.
+#![expect(clippy::unwrap_used, reason = "these are tests")]
+
+use std::f64::consts::PI;
+
+use palpate_field::field::{DifferentiateBlock, EvaluateBlock, Field};
+use palpate_field::{Pose, Rotation, SHORT, Screw, Shape, Vector};
+use palpate_query::{
+    FirstTouch, Limits, Moving, PairWorkspace, Placed, QueryError, Start, Stop, SweepSettings,
+    separation, sweep,
+};
+use palpate_testkit::arbitrary::{self as draw, Turn};
+use palpate_testkit::cases;
+use palpate_testkit::kernels::Space;
+use palpate_testkit::tree::Solid;
+
+/// Times at which a way is looked at.
+const TIMES: u32 = 40;
+
+fn at<const D: usize>(place: [f64; D]) -> Pose<D> {
+    Pose::translation(place)
+}
+
+/// A shape that moves between two poses.
+fn moves<'a, const D: usize>(shape: &'a Shape<D>, from: Pose<D>, to: Pose<D>) -> Moving<'a, D> {
+    Moving::new(shape, Screw::new(from, to, 0).unwrap())
+}
+
+fn first<const D: usize>(a: Moving<'_, D>, b: Moving<'_, D>) -> FirstTouch<D> {
+    let settings = SweepSettings::of_size(1.0).with_time_tolerance(1e-7);
+    sweep(a, b, &settings, &mut PairWorkspace::new()).unwrap()
+}
+
+/// The bounds hold this time, and are together.
+fn is_at<const D: usize>(found: &FirstTouch<D>, time: f64) {
+    let near = (found.upper - time).abs() <= 2e-6 && found.lower <= time + 1e-12;
+    assert!(near && found.upper - found.lower <= 1e-5, "{found:?}, {time}");
+    assert_eq!((found.touches(), found.stop), (Some(true), Stop::Converged));
+}
+
+#[test]
+fn balls_and_boxes_touch_when_equations_say() {
+    let ball = Shape::<3>::ball(0.5).unwrap();
+    let block = Shape::<3>::cuboid([1.0, 1.0, 1.0]).unwrap();
+    let floor = Shape::<3>::half_space([0.0, 1.0, 0.0], 0.0).unwrap();
+    // A ball falls on a floor from 3 m to −1 m: at (3 − 0.5) / 4.
+    let falling = moves(&ball, at([0.0, 3.0, 0.0]), at([0.3, -1.0, 0.2]));
+    is_at(&first((&floor).into(), falling), 0.625);
+    // Two balls towards each other, 3 m apart, 2 m and 1 m: at (3 − 1) / 3.
+    let right = moves(&ball, at([0.0, 0.0, 0.0]), at([2.0, 0.0, 0.0]));
+    let left = moves(&ball, at([3.0, 0.0, 0.0]), at([2.0, 0.0, 0.0]));
+    is_at(&first(right, left), 2.0 / 3.0);
+    // Both turn about themselves as well: at (3 − 1) / 2.4.
+    let turned = |x: f64, angle: f64| {
+        Pose::new(Rotation::identity().turned([0.0, angle, 0.0]), Vector([x, 0.0, 0.0]))
+    };
+    let stays = moves(&ball, turned(0.0, 0.0), turned(0.0, 1.0));
+    let comes = [0.0, 2.0].map(|angle| turned(3.0 - 1.2 * angle, angle));
+    let comes = Screw::new(comes[0], comes[1], 0).unwrap();
+    // A ball that turns as it goes has its centre on an arc.
+    let time = (0..1_000_000).map(|i| f64::from(i) * 1e-6);
+    let mut time = time.filter(|t| comes.pose(*t).translation.norm() <= 1.0);
+    is_at(&first(stays, Moving::new(&ball, comes)), time.next().unwrap());
+    // An edge of a box that swings about z by a right angle meets a floor under its centre.
+    let under = Shape::<3>::half_space([0.0, 1.0, 0.0], -0.6).unwrap();
+    let swung = Pose::new(Rotation::identity().turned([0.0, 0.0, 0.5 * PI]), Vector::ZERO);
+    // The corner is √½ m from the centre; it is at −0.6 m when sin(45° + φ) = 0.6 / √½.
+    let phi = (0.6 / 0.5_f64.sqrt()).asin() - 0.25 * PI;
+    is_at(&first((&under).into(), moves(&block, at([0.0; 3]), swung)), phi / (0.5 * PI));
+}
+
+#[test]
+fn what_touches_at_the_start_says_how_it_moves_on() {
+    let block = Shape::<2>::cuboid([1.0, 1.0]).unwrap();
+    let start = |to: [f64; 2]| {
+        let found = first((&block).into(), moves(&block, at([0.0, 1.0]), at(to)));
+        assert_eq!((found.lower, found.upper), (0.0, 0.0));
+        found.start
+    };
+    assert_eq!(start([0.0, 0.5]), Some(Start::Approaching));
+    assert_eq!(start([0.0, 1.5]), Some(Start::Receding));
+    assert_eq!(start([0.5, 1.0]), Some(Start::Sliding));
+}
+
+#[test]
+fn motions_that_end_at_a_touch_and_bodies_at_rest() {
+    let block = Shape::<2>::cuboid([1.0, 1.0]).unwrap();
+    let touch = first((&block).into(), moves(&block, at([0.0, 3.0]), at([0.0, 1.0])));
+    assert!(touch.lower <= 1.0 && touch.upper <= 1.0 && touch.upper > 0.999_999, "{touch:?}");
+    assert_eq!(touch.touches(), Some(true));
+    let apart = first((&block).into(), moves(&block, at([0.0, 3.0]), at([0.0, 1.01])));
+    assert_eq!((apart.touches(), apart.upper), (Some(false), 1.0));
+    let still = first((&block).into(), Placed::new(&block, at([0.0, 1.5])).into());
+    assert_eq!((still.touches(), still.contact), (Some(false), None));
+}
+
+/// Plates of 0.1 mm, which a cube crosses at 10 m in one step from any direction.
+#[test]
+fn a_thin_plate_is_not_missed() {
+    let plate = Shape::<3>::cuboid([1.0, 1e-4, 1.0]).unwrap();
+    let cube = Shape::<3>::cuboid([0.1, 0.1, 0.1]).unwrap();
+    let settings = SweepSettings::of_size(0.1);
+    let mut workspace = PairWorkspace::new();
+    cases::check(200, |u| {
+        let way: Vector<f64, 3> = draw::direction(u)?;
+        let turn: Vector<f64, 3> = draw::direction(u)?;
+        let (from, to) = (way * -5.0, way * 5.0);
+        let to = Pose::new(Rotation::identity().turned(turn * 3.0), to);
+        // Turned about its own centre, which goes straight.
+        let Ok(screw) = Screw::new(Pose::translation(from), to, 0) else { return Ok(Ok(())) };
+        let middle = screw.pose(0.5).translation.norm();
+        let found =
+            sweep(&plate, Moving::new(&cube, screw), &settings, &mut workspace).unwrap();
+        // A screw goes round; what passes the middle crosses the plate.
+        let is_right = middle > 0.05 || found.touches() == Some(true) && found.upper <= 0.5;
+        Ok(if is_right { Ok(()) } else { Err(format!("{found:?} of {screw:?}")) })
+    });
+}
+
+fn on_trees<const D: usize>(count: u64)
+where
+    Space: Solid<D> + Turn<D>,
+    dyn Field<D>: EvaluateBlock<f64, D, SHORT> + DifferentiateBlock<f64, D, SHORT>,
+{
+    let (mut early, mut touched) = (0, 0);
+    let mut workspace = PairWorkspace::new();
+    cases::on_trees(count, 3, |u, _, shape| {
+        if shape.promise().bounds.is_none() {
+            return Ok(Ok(()));
+        }
+        let size = draw::size(shape);
+        let mut pose = || -> Result<Pose<D>, _> {
+            let mut pose: Pose<D> = draw::pose(u)?;
+            pose.translation = pose.translation * size;
+            Ok(pose)
+        };
+        let (Ok(first), Ok(second)) =
+            (Screw::new(pose()?, pose()?, 0), Screw::new(pose()?, pose()?, 0))
+        else {
+            return Ok(Ok(()));
+        };
+        let (a, b) = (Moving::new(shape, first), Moving::new(shape, second));
+        let settings = SweepSettings::of_size(size).with_gap(1e-4 * size).with_budget(300_000);
+        let found = sweep(a, b, &settings, &mut workspace).unwrap();
+        let wrong =
+            |what: String| Ok(Err(format!("{what}: {found:?} of {first:?}, {second:?}")));
+        let limits = Limits::new(1e-5 * size);
+        for i in 0..TIMES {
+            let time = found.lower * f64::from(i) / f64::from(TIMES);
+            let apart = separation(a.at(time), b.at(time), &limits, &mut workspace).unwrap();
+            if found.lower > 0.0 && apart.upper <= 0.0 {
+                return wrong(format!("a separation of {} m at {time}", apart.upper));
+            }
+        }
+        if found.touches() == Some(true) {
+            touched += 1;
+            let apart =
+                separation(a.at(found.upper), b.at(found.upper), &limits, &mut workspace)
+                    .unwrap();
+            if apart.lower > settings.gap {
+                return wrong(format!("a separation of {} m where they touch", apart.lower));
+            }
+        }
+        early += u64::from(found.stop.is_early());
+        Ok(Ok(()))
+    });
+    assert!(early * 4 <= count, "{early} of {count} pairs spent their budget");
+    assert!(touched * 10 > count, "{touched} of {count} pairs touched");
+}
+
+#[test]
+fn random_screws_of_random_trees_are_never_late_in_space() {
+    on_trees::<3>(30);
+}
+
+#[test]
+fn random_screws_of_random_trees_are_never_late_in_the_plane() {
+    on_trees::<2>(100);
+}
+
+#[test]
+fn bodies_without_bounds_and_settings_that_are_none_are_refused() {
+    let floor = Shape::<3>::half_space([0.0, 1.0, 0.0], 0.0).unwrap();
+    let ball = Shape::<3>::ball(0.5).unwrap();
+    let turned = Pose::new(Rotation::identity().turned([0.1, 0.0, 0.0]), Vector::ZERO);
+    let mut workspace = PairWorkspace::new();
+    let mut refused = |a: Moving<'_, 3>, settings: SweepSettings| {
+        sweep(a, &ball, &settings, &mut workspace).unwrap_err()
+    };
+    let settings = SweepSettings::of_size(1.0);
+    let swings = moves(&floor, at([0.0, -5.0, 0.0]), turned);
+    assert_eq!(refused(swings, settings), QueryError::TurnsUnbounded { index: 0 });
+    for wrong in [0.0, -1.0, f64::NAN] {
+        let error = refused((&floor).into(), settings.with_gap(wrong));
+        assert!(matches!(error, QueryError::Setting { what: "gap", .. }), "{error}");
+        let error = refused((&floor).into(), settings.with_time_tolerance(wrong));
+        assert!(matches!(error, QueryError::Setting { what: "time_tolerance", .. }), "{error}");
+    }
+}
