@@ -34,6 +34,7 @@ mod plot;
 mod render;
 mod schema;
 mod shapes;
+mod sweep;
 mod table;
 mod threads;
 mod times;
@@ -100,6 +101,7 @@ fn obey(command: &Command, interrupt: &Interrupt) -> Result<Outcome, Failure> {
         Command::Feel(options) => feel::run(options, interrupt),
         Command::Eval(options) => eval::run(options, interrupt),
         Command::Contact(options) => contact::run(options, interrupt),
+        Command::Sweep(options) => sweep::run(options, interrupt),
         Command::Descend(options) => descend::run(options),
         Command::Gradients(options) => gradients::run(options),
         Command::Plot(options) => plot::run(options, interrupt),

@@ -137,6 +137,40 @@ impl<const D: usize> Screw<D> {
         self.from * Pose::new(rotation, translation)
     }
 
+    /// The part of the motion between two shares, of which the first may be the later; beyond 0 and 1
+    /// the body rests.
+    ///
+    /// ```
+    /// use palpate_field::{Pose, Screw};
+    ///
+    /// # fn main() -> Result<(), palpate_field::ShapeError> {
+    /// let [from, to] = [0.0, 2.0].map(|x| Pose::<2>::translation([x, 0.0]));
+    /// let back = Screw::new(from, to, 0)?.part(1.0, 0.5)?;
+    /// assert_eq!([0.0, 0.5, 1.0].map(|share| back.pose(share).translation[0]), [2.0, 1.5, 1.0]);
+    /// # Ok(())
+    /// # }
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// If the part turns by half a turn or more, or a share is NaN: its ends would not say about which
+    /// axis.
+    pub fn part(&self, first: f64, last: f64) -> Result<Self, ShapeError> {
+        let [first, last] = [first, last].map(|share| share.clamp(0.0, 1.0));
+        let angle = (self.angle * (last - first)).abs();
+        // Written so that NaN is refused.
+        if angle < PI {
+            Self::new(self.pose(first), self.pose(last), 0)
+        } else {
+            Err(ShapeError::number(
+                "angle of a part",
+                "less than half a turn",
+                angle,
+                Unit::Radian,
+            ))
+        }
+    }
+
     /// The velocity of a point of the body over the whole motion as a unit of time, both in the
     /// body's coordinates [m]: it stays the same, and so does its size in the world.
     ///

@@ -20,6 +20,7 @@ mod plot;
 mod profile;
 mod render;
 mod shapes;
+mod sweep;
 
 use clap::{Parser, Subcommand};
 
@@ -39,6 +40,7 @@ pub(crate) use plot::{Map, PlotMap, PlotOptions};
 pub(crate) use profile::ProfileChoice;
 pub(crate) use render::{RenderOptions, ShadowChoice};
 pub(crate) use shapes::{Dimension, ShapesOptions};
+pub(crate) use sweep::SweepOptions;
 
 const EXAMPLES: &str = "\
 Examples:
@@ -72,6 +74,9 @@ pub(crate) enum Command {
     /// Find where the bodies of a scene touch, with a proof; status 1 if none do.
     #[command(after_help = contact::EXAMPLES)]
     Contact(ContactOptions),
+    /// Find when bodies that move touch first, with a proof; status 1 if none do.
+    #[command(after_help = sweep::EXAMPLES)]
+    Sweep(SweepOptions),
     /// Compare a local search over a triangle or a segment, or between two bodies, with the
     /// proven minimum.
     #[command(after_help = descend::EXAMPLES)]

@@ -115,6 +115,7 @@ fn the_keys_of_devices_identify_and_jitter_are_documented() {
     let profile = profile.with_gripper(gripper).with_buttons(["front"]);
     let profile = palpate::scene::device_to_json(&profile).unwrap();
     let profile = folder.write("omega.json", &profile);
+    let fall = folder.write("fall.json", crate::sweep::FALL);
     for (heading, commands) in [
         (
             "Devices",
@@ -126,6 +127,7 @@ fn the_keys_of_devices_identify_and_jitter_are_documented() {
                 &["devices", "--stability", "--profile", "touch", "--json"],
             ][..],
         ),
+        ("First touches", &[&["sweep", &fall, "--json"]]),
         ("Identified devices", &[&["identify", "--device", "premium15", "--json"]]),
         ("Lateness", &[&["jitter", "--duration", "0.03", "--json"]]),
     ] {

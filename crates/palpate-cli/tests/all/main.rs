@@ -22,5 +22,6 @@ mod pictures;
 mod program;
 mod render;
 mod shapes;
+mod sweep;
 mod tables;
 mod touch;

@@ -3,6 +3,8 @@
 
 //! Screws from pose to pose.
 
+use std::f64::consts::PI;
+
 use palpate_field::{Pose, Rotation, Screw, Vector};
 use palpate_testkit::cases::each as cases;
 
@@ -100,4 +102,30 @@ fn velocities_are_the_derivatives_of_places() {
     // A translation.
     let screw = Screw::new(Pose::identity(), pose([0.0; 3], [1.0, 2.0, 3.0]), 0).unwrap();
     assert_eq!(screw.velocity(Vector([5.0, 6.0, 7.0])), Vector([1.0, 2.0, 3.0]));
+}
+
+#[test]
+fn a_part_of_a_motion_goes_the_same_way() {
+    cases(500, |u| {
+        let mut draw = || u.int_in_range(-1000..=1000).map(|x| f64::from(x) * 2e-3);
+        let from = pose([draw()?, draw()?, draw()?], [draw()?, draw()?, draw()?]);
+        let by = pose([draw()?, draw()?, 0.7 * draw()?], [draw()?, draw()?, draw()?]);
+        let [first, last] = [0.5 + 0.25 * draw()?, 0.5 + 0.25 * draw()?];
+        let turns = u.int_in_range(-3..=3)?;
+        let screw = Screw::new(from, from * by, turns).unwrap();
+        let angle = (screw.angle() * (last - first)).abs();
+        let part = screw.part(first, last);
+        if angle >= PI {
+            assert!(part.is_err(), "{angle}");
+            return Ok(());
+        }
+        for i in 0..=8 {
+            let share = f64::from(i) / 8.0;
+            let here = part.as_ref().unwrap().pose(share);
+            let off = difference(&here, &screw.pose(first + (last - first) * share));
+            // Near half a turn the axis of the part is less exact.
+            assert!(off * (PI - angle) < 1e-9, "{off:e} of {screw:?} from {first} to {last}");
+        }
+        Ok(())
+    });
 }

@@ -13,6 +13,20 @@ use crate::problem::Problem;
 use crate::problems::Problems;
 use crate::scene::Scene;
 
+/// The largest angle between two times of a motion [rad]: less than half a turn.
+const LARGEST_PART: f64 = 3.0;
+
+/// Times are as exact as this part of a period.
+const ROUNDING: f64 = 1e-12;
+
+/// How far a number of half periods is within a `period` of them; one that is a rounding before the
+/// next whole half period is that.
+fn within_period(passed: f64, period: f64) -> f64 {
+    let rounded = passed.round();
+    let is_whole = (passed - rounded).abs() <= ROUNDING * passed.abs().max(1.0);
+    (if is_whole { rounded } else { passed }).rem_euclid(period)
+}
+
 /// A motion of a body of a built scene.
 #[derive(Clone, Copy, Debug)]
 #[non_exhaustive]
@@ -88,6 +102,81 @@ impl<const D: usize> BuiltScene<D> {
         // Of motions that begin together, the last of the file holds.
         let last = begun.max_by(|a, b| a.0.total_cmp(&b.0));
         last.map_or(self.bodies[body].world_from_body, |(_, pose)| pose)
+    }
+
+    /// Times [s] from 0 to `until` between which every body either rests or goes on along one screw,
+    /// by less than half a turn: both ends, and where motions begin, end, turn back or start anew.
+    ///
+    /// ```
+    /// use palpate_scene::{AnyScene, Scene};
+    ///
+    /// # fn main() -> Result<(), palpate_scene::SceneError> {
+    /// let scene = Scene::from_json(
+    ///     r#"{ "palpate": 1, "dimension": 2,
+    ///          "bodies": [ { "name": "peg", "shape": { "ball": { "radius": 0.01 } } } ],
+    ///          "motions": [ { "body": "peg", "to": { "translation": [0, -0.1] }, "start": 1,
+    ///                         "duration": 0.5, "repeat": "back_and_forth" } ] }"#,
+    /// )?;
+    /// let AnyScene::Planar(scene) = scene.build()? else { unreachable!("dimension is 2") };
+    /// assert_eq!(scene.times_of_motion(2.25), [0.0, 1.0, 1.5, 2.0, 2.25]);
+    /// let back = scene.way(0, 1.5, 1.75).unwrap().ok_or("it moves").unwrap();
+    /// assert_eq!(back.pose(1.0).translation[1], -0.05);
+    /// # Ok(())
+    /// # }
+    /// ```
+    #[must_use]
+    pub fn times_of_motion(&self, until: f64) -> Vec<f64> {
+        let mut times = vec![0.0, until];
+        for motion in &self.motions {
+            // Parts of less than half a turn.
+            let parts = (motion.screw.angle().abs() / LARGEST_PART).ceil().max(1.0);
+            let step = motion.duration / parts;
+            let most = match motion.repeat {
+                Repeat::Once => parts,
+                Repeat::Loop | Repeat::BackAndForth => f64::INFINITY,
+            };
+            let mut count = 0.0;
+            while count <= most && motion.start + count * step < until {
+                times.push(motion.start + count * step);
+                count += 1.0;
+            }
+        }
+        times.sort_by(f64::total_cmp);
+        times.dedup();
+        times
+    }
+
+    /// The way of a body between two times [s] of [`times_of_motion`](Self::times_of_motion), by its
+    /// number; `None` if it rests.
+    ///
+    /// # Errors
+    ///
+    /// If it does not go on along one screw by less than half a turn, as between other times.
+    ///
+    /// # Panics
+    ///
+    /// If there is no such body.
+    pub fn way(&self, body: usize, from: f64, to: f64) -> Result<Option<Screw<D>>, ShapeError> {
+        let moved = self.motions.iter().filter(|motion| motion.body == body);
+        let begun = moved.filter(|motion| motion.start <= from);
+        let last = begun.max_by(|a, b| a.start.total_cmp(&b.start));
+        let Some(motion) = last else { return Ok(None) };
+        let (passed, way) =
+            ((from - motion.start) / motion.duration, (to - from) / motion.duration);
+        let [first, last] = match motion.repeat {
+            Repeat::Once if passed >= 1.0 => return Ok(None),
+            Repeat::Once => [passed, passed + way],
+            // A time that is a rounding before the next period is of the next one.
+            Repeat::Loop => {
+                let share = within_period(passed, 1.0);
+                [share, share + way]
+            }
+            Repeat::BackAndForth => match within_period(passed, 2.0) {
+                share if share < 1.0 => [share, share + way],
+                share => [2.0 - share, 2.0 - share - way],
+            },
+        };
+        motion.screw.part(first, last).map(Some)
     }
 
     /// The numbers of the bodies that have motions, each once.

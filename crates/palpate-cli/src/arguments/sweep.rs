@@ -1,0 +1,47 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! `palpate sweep`.
+
+use std::path::PathBuf;
+
+use clap::Args;
+
+use super::numbers::{count, length, positive};
+
+pub(super) const EXAMPLES: &str = "\
+Examples:
+  palpate sweep scenes/bayonet.json
+  palpate sweep scenes/bayonet.json --until 1 --gap 1e-7 --json
+  palpate sweep scenes/bayonet.json --body key
+
+Before the earlier time the bodies are apart, which is proven, rounding included; at the later
+one their separation is at most the gap.";
+
+/// The options of `palpate sweep`.
+#[derive(Args, Debug)]
+pub(crate) struct SweepOptions {
+    /// The scene file, whose bodies move by its `motions`.
+    pub(crate) scene: PathBuf,
+    /// Only pairs with this body; may be given more than once.
+    #[arg(long, value_name = "NAME")]
+    pub(crate) body: Vec<String>,
+    /// The end of the time that is looked at [s]; the end of all motions if left out, of those that
+    /// repeat after one time, there and back.
+    #[arg(long, allow_negative_numbers = true, value_parser = positive("s"))]
+    pub(crate) until: Option<f64>,
+    /// The largest separation at which bodies touch [m]; a millionth of the smallest body if left
+    /// out.
+    #[arg(long, allow_negative_numbers = true, value_parser = length)]
+    pub(crate) gap: Option<f64>,
+    /// How far apart the bounds of a time may be [s]; 1e-4 of the time that is looked at if left out.
+    #[arg(long, allow_negative_numbers = true, value_parser = positive("s"))]
+    pub(crate) tolerance: Option<f64>,
+    /// The budget: the most evaluations of fields for each pair and each part of a motion; 5000000 if
+    /// left out.
+    #[arg(long, allow_negative_numbers = true, value_parser = count(1, u32::MAX))]
+    pub(crate) budget: Option<u32>,
+    /// Print JSON.
+    #[arg(long)]
+    pub(crate) json: bool,
+}

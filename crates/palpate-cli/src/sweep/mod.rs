@@ -1,0 +1,160 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! `palpate sweep`: when bodies that move by the motions of a scene touch first.
+
+mod report;
+
+use palpate::query::{FirstTouch, Moving, PairWorkspace, Placed, Stop, SweepSettings, sweep};
+use palpate::scene::{AnyScene, BuiltScene, Repeat};
+
+use crate::arguments::SweepOptions;
+use crate::input;
+use crate::interrupt::Interrupt;
+use crate::outcome::{Failure, Outcome};
+use crate::output;
+
+/// The gap over the size of the smallest body.
+const GAP: f64 = 1e-6;
+
+/// The tolerance of times over the time that is looked at.
+const TOLERANCE: f64 = 1e-4;
+
+/// The most times between which bodies go on along one screw.
+const MOST_TIMES: f64 = 1e5;
+
+/// Two bodies of which one moves at least, and when they touch first [s].
+struct Pair<const D: usize> {
+    bodies: [usize; 2],
+    found: FirstTouch<D>,
+}
+
+/// What is asked of each pair.
+struct Question {
+    until: f64,
+    /// [s].
+    tolerance: f64,
+    settings: SweepSettings,
+}
+
+/// Finds when pairs touch first; the answer is no if none do.
+pub(crate) fn run(options: &SweepOptions, interrupt: &Interrupt) -> Result<Outcome, Failure> {
+    let named = input::scene(Some(&options.scene))?;
+    match &named.scene {
+        AnyScene::Planar(scene) => answer(options, scene, interrupt),
+        AnyScene::Spatial(scene) => answer(options, scene, interrupt),
+    }
+}
+
+fn answer<const D: usize>(
+    options: &SweepOptions,
+    scene: &BuiltScene<D>,
+    interrupt: &Interrupt,
+) -> Result<Outcome, Failure> {
+    let names: Vec<&str> = scene.bodies.iter().map(|body| body.name.as_str()).collect();
+    let asked = input::bodies(&options.body, &names)?;
+    let question = asked_of(options, scene)?;
+    let times = scene.times_of_motion(question.until);
+    let moving: Vec<usize> = scene.moving().collect();
+    let mut pairs = Vec::new();
+    interrupt.heed();
+    for a in 0..names.len() {
+        for b in a + 1..names.len() {
+            let is_asked = asked.is_empty() || asked.contains(&a) || asked.contains(&b);
+            if !is_asked || !(moving.contains(&a) || moving.contains(&b)) {
+                continue;
+            }
+            if interrupt.is_asked() {
+                break;
+            }
+            let found = first_touch(scene, [a, b], &times, &question)?;
+            pairs.push(Pair { bodies: [a, b], found });
+        }
+    }
+    pairs.sort_by(|a, b| a.found.upper.total_cmp(&b.found.upper));
+    let report = report::Report { question: &question, names: &names, pairs: &pairs };
+    if options.json {
+        report.print_json()?;
+    } else {
+        report.print()?;
+    }
+    if interrupt.is_asked() {
+        output::remark("interrupted: some pairs are not listed");
+        return Ok(Outcome::Interrupted);
+    }
+    let touch = pairs.iter().any(|pair| pair.found.touches() == Some(true));
+    Ok(if touch { Outcome::Yes } else { Outcome::No })
+}
+
+fn asked_of<const D: usize>(
+    options: &SweepOptions,
+    scene: &BuiltScene<D>,
+) -> Result<Question, Failure> {
+    let ends = scene.motions.iter().map(|motion| {
+        let ways = if motion.repeat == Repeat::BackAndForth { 2.0 } else { 1.0 };
+        motion.start + ways * motion.duration
+    });
+    let Some(end) = ends.reduce(f64::max) else {
+        return Err(Failure::input(
+            "sweep is about bodies that move, and the scene has no `motions`; palpate contact tells \
+             where bodies at rest touch",
+        ));
+    };
+    let until = options.until.unwrap_or(end);
+    let shortest =
+        scene.motions.iter().map(|motion| motion.duration).fold(f64::INFINITY, f64::min);
+    if until / shortest > MOST_TIMES {
+        return Err(Failure::input(format!(
+            "--until must be at most {MOST_TIMES:e} times the shortest motion, {shortest} s, got \
+             {until} s"
+        )));
+    }
+    let size = |body: &palpate::scene::BuiltBody<D>| {
+        body.shape
+            .promise()
+            .bounds
+            .map_or(f64::INFINITY, |bounds| 2.0 * bounds.aabb.half_extents().norm())
+    };
+    let smallest = scene.bodies.iter().map(size).fold(f64::INFINITY, f64::min);
+    let gap =
+        options.gap.unwrap_or(if smallest < f64::INFINITY { GAP * smallest } else { GAP });
+    let tolerance = options.tolerance.unwrap_or(TOLERANCE * until);
+    let settings = SweepSettings::of_size(1.0)
+        .with_gap(gap)
+        .with_budget(options.budget.unwrap_or(SweepSettings::BUDGET));
+    Ok(Question { until, tolerance, settings })
+}
+
+/// When two bodies touch first [s].
+fn first_touch<const D: usize>(
+    scene: &BuiltScene<D>,
+    bodies: [usize; 2],
+    times: &[f64],
+    question: &Question,
+) -> Result<FirstTouch<D>, Failure> {
+    let mut workspace = PairWorkspace::new();
+    let mut evaluations = 0_u32;
+    let mut last = None;
+    for part in times.windows(2) {
+        let &[from, to] = part else { continue };
+        let moving = |body: usize| {
+            let shape = &scene.bodies[body].shape_in_body;
+            let way = scene.way(body, from, to).map_err(Failure::input)?;
+            let rest = || Placed::new(shape, scene.pose_at(body, from)).into();
+            Ok::<_, Failure>(way.map_or_else(rest, |way| Moving::new(shape, way)))
+        };
+        let [a, b] = [moving(bodies[0])?, moving(bodies[1])?];
+        let length = to - from;
+        let settings = question.settings.with_time_tolerance(question.tolerance / length);
+        let mut found = sweep(a, b, &settings, &mut workspace).map_err(Failure::input)?;
+        evaluations = evaluations.saturating_add(found.evaluations);
+        found.evaluations = evaluations;
+        found.lower = from + length * found.lower;
+        found.upper = from + length * found.upper;
+        if found.stop != Stop::SignKnown {
+            return Ok(found);
+        }
+        last = Some(found);
+    }
+    last.ok_or_else(|| Failure::input("there is no time to look at"))
+}

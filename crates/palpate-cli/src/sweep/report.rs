@@ -1,0 +1,138 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! The report of `palpate sweep`, as text and as JSON.
+
+use std::io::Write;
+
+use palpate::query::{Contact, Start, Stop};
+use serde_json::{Value, json};
+
+use super::{Pair, Question};
+use crate::numbers::rounded;
+use crate::outcome::Failure;
+use crate::output::{self, counted, shown};
+
+/// The pairs of a scene, the first touch first.
+pub(super) struct Report<'a, const D: usize> {
+    pub(super) question: &'a Question,
+    /// The names of the bodies.
+    pub(super) names: &'a [&'a str],
+    pub(super) pairs: &'a [Pair<D>],
+}
+
+impl<const D: usize> Report<'_, D> {
+    pub(super) fn print(&self) -> Result<(), Failure> {
+        let mut out = output::answer();
+        for pair in self.pairs {
+            writeln!(out, "{}", self.in_words(pair))?;
+        }
+        let count =
+            |touches| self.pairs.iter().filter(|pair| pair.found.touches() == touches).count();
+        writeln!(
+            out,
+            "{} until {} s: {} (separation up to {} m), {} apart, {} undecided",
+            counted(self.names.len(), "body", "bodies"),
+            rounded(self.question.until),
+            counted(count(Some(true)), "pair touches", "pairs touch"),
+            rounded(self.question.settings.gap),
+            count(Some(false)),
+            count(None),
+        )?;
+        Ok(())
+    }
+
+    fn in_words(&self, pair: &Pair<D>) -> String {
+        let [a, b] = pair.bodies.map(|body| shown(self.names[body]));
+        let found = &pair.found;
+        let cost = counted(found.evaluations, "evaluation", "evaluations");
+        let what = match (found.touches(), found.start) {
+            (Some(false), _) => "apart all the time, proven".to_owned(),
+            (Some(true), Some(start)) if found.upper == 0.0 => {
+                format!("touching at the start, {}", in_a_word(start))
+            }
+            (Some(true), _) => format!(
+                "touching at {:.9} s; before {:.9} s apart, proven",
+                found.upper, found.lower
+            ),
+            (None, _) => format!(
+                "undecided; before {:.9} s apart, proven; {}",
+                found.lower,
+                self.why(found.stop)
+            ),
+        };
+        let mut words = format!("{a} – {b}: {what} ({cost})");
+        if let Some(contact) = &found.contact {
+            words += &format!(
+                "\n    gap {} mm  at ({})  normal ({})",
+                rounded(1e3 * contact.gap),
+                joined(&contact.point_a.0),
+                joined(&contact.normal.0)
+            );
+        }
+        words
+    }
+
+    fn why(&self, stop: Stop) -> String {
+        match stop {
+            Stop::BudgetSpent => format!(
+                "the budget of {} evaluations is spent; raise --budget or --gap",
+                self.question.settings.budget
+            ),
+            _ => "no closer bounds of their separation are found; raise --gap".to_owned(),
+        }
+    }
+
+    /// Writes infinite times as null.
+    pub(super) fn print_json(&self) -> Result<(), Failure> {
+        let pairs: Vec<_> = self.pairs.iter().map(|pair| self.described(pair)).collect();
+        output::answer().json(&json!({
+            "until_s": self.question.until,
+            "gap_m": self.question.settings.gap,
+            "tolerance_s": self.question.tolerance,
+            "budget": self.question.settings.budget,
+            "bodies": self.names,
+            "pairs": pairs,
+        }))?;
+        Ok(())
+    }
+
+    fn described(&self, pair: &Pair<D>) -> Value {
+        let found = &pair.found;
+        json!({
+            "bodies": pair.bodies.map(|body| self.names[body]),
+            "verdict": match found.touches() {
+                Some(true) => "touching",
+                Some(false) => "apart",
+                None => "undecided",
+            },
+            "lower_s": found.lower,
+            "upper_s": found.upper,
+            "start": found.start.map(in_a_word),
+            "contact": found.contact.as_ref().map(described),
+            "stop": found.stop.to_string(),
+            "evaluations": found.evaluations,
+        })
+    }
+}
+
+fn described<const D: usize>(contact: &Contact<D>) -> Value {
+    json!({
+        "gap_m": contact.gap,
+        "point_a_m": contact.point_a.0.to_vec(),
+        "point_b_m": contact.point_b.0.to_vec(),
+        "normal": contact.normal.0.to_vec(),
+    })
+}
+
+fn in_a_word(start: Start) -> &'static str {
+    match start {
+        Start::Approaching => "approaching",
+        Start::Receding => "receding",
+        Start::Sliding => "sliding",
+    }
+}
+
+fn joined(numbers: &[f64]) -> String {
+    numbers.iter().map(|x| format!("{x:.6}")).collect::<Vec<_>>().join(", ")
+}

@@ -1,0 +1,93 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! `palpate sweep`: when the bodies of a scene touch first.
+
+use crate::common::{Folder, assert_refused, json, palpate, status, text};
+
+/// A ball of 10 mm falls from 0.5 m by 1 m in a second, onto a floor, past a wall; and a stone lies.
+pub(crate) const FALL: &str = r#"{ "palpate": 1, "dimension": 3, "bodies": [
+    { "name": "floor", "shape": { "half_space": { "normal": [0, 1, 0], "offset": 0 } } },
+    { "name": "ball", "shape": { "ball": { "radius": 0.01 } },
+      "pose": { "translation": [0, 0.5, 0] } },
+    { "name": "wall", "shape": { "box": { "size": [0.1, 3, 1] } },
+      "pose": { "translation": [0.1, 0, 0] } } ],
+  "motions": [ { "body": "ball", "to": { "translation": [0, -0.5, 0] } } ] }"#;
+
+#[test]
+fn a_ball_that_falls_touches_the_floor_and_passes_the_wall() {
+    let folder = Folder::new();
+    let scene = folder.write("fall.json", FALL);
+    let found = palpate(&["sweep", &scene]);
+    assert_eq!(status(&found), 0);
+    let said = text(&found);
+    // At (0.5 − 0.01) m of 1 m/s.
+    assert!(said.starts_with("floor – ball: touching at 0.489999"), "{said}");
+    assert!(said.contains("ball – wall: apart all the time, proven ("), "{said}");
+    assert!(said.contains("\n3 bodies until 1 s: 1 pair touches (separation up to "), "{said}");
+    let found = json(&["sweep", &scene, "--tolerance", "1e-7", "--json"]);
+    let pair = &found["pairs"][0];
+    let [lower, upper] = ["lower_s", "upper_s"].map(|key| pair[key].as_f64().unwrap());
+    assert!(lower <= 0.49 && upper - lower <= 1e-7 && (upper - 0.49).abs() <= 2e-7, "{pair}");
+    assert_eq!((&pair["verdict"], &pair["start"]), (&"touching".into(), &().into()));
+    assert!((pair["contact"]["normal"][1].as_f64().unwrap() - 1.0).abs() < 1e-9);
+    // The same pair alone, and a time at which nothing touches yet.
+    let wall = palpate(&["sweep", &scene, "--body", "wall"]);
+    assert_eq!(status(&wall), 1);
+    let early = palpate(&["sweep", &scene, "--until", "0.48"]);
+    assert_eq!(status(&early), 1);
+    assert!(text(&early).contains("0 pairs touch"), "{}", text(&early));
+}
+
+/// A pendulum of three whole turns meets a stop on its first, and one that repeats does so again.
+#[test]
+fn motions_of_many_turns_and_those_that_repeat_are_looked_at_part_by_part() {
+    let folder = Folder::new();
+    let scene = |repeat: &str, stop: f64| {
+        format!(
+            r#"{{ "palpate": 1, "dimension": 2, "bodies": [
+              {{ "name": "stop", "shape": {{ "rectangle": {{ "size": [0.1, 0.1] }} }},
+                 "pose": {{ "translation": [0, {stop}] }} }},
+              {{ "name": "bar", "shape": {{ "rectangle": {{ "size": [1, 0.02] }} }} }} ],
+              "motions": [ {{ "body": "bar", "to": {{ "rotate_degrees": 0 }}, "turns": 3,
+                              "duration": 3, "repeat": "{repeat}" }} ] }}"#
+        )
+    };
+    let near = folder.write("near.json", &scene("once", 0.45));
+    let found = json(&["sweep", &near, "--json"]);
+    // The bar's end reaches the stop's lower right corner, at (0.05, 0.4).
+    let upper = found["pairs"][0]["upper_s"].as_f64().unwrap();
+    let corner = 0.4_f64.atan2(0.05) - (0.01 / 0.05_f64.hypot(0.4)).asin();
+    let truth = corner / std::f64::consts::TAU;
+    assert!((upper - truth).abs() < 1e-3, "{upper} s, {truth} s");
+    let far = folder.write("far.json", &scene("loop", 0.6));
+    let found = palpate(&["sweep", &far, "--until", "7.5"]);
+    assert_eq!(status(&found), 1);
+    assert!(text(&found).starts_with("stop – bar: apart all the time"), "{}", text(&found));
+}
+
+#[test]
+fn what_cannot_be_swept_is_refused() {
+    let folder = Folder::new();
+    let end = FALL.find(",\n  \"motions\"").unwrap();
+    let still = folder.write("still.json", &format!("{} }}", &FALL[..end]));
+    assert_refused(
+        &["sweep", &still],
+        "sweep is about bodies that move, and the scene has no `motions`; palpate contact tells where \
+         bodies at rest touch",
+    );
+    let scene = folder.write("fall.json", FALL);
+    assert_refused(
+        &["sweep", &scene, "--until", "1e9"],
+        "--until must be at most 1e5 times the shortest motion, 1 s, got 1000000000 s",
+    );
+    let turns = FALL.replace("\"body\": \"ball\"", "\"body\": \"floor\"").replace(
+        "\"translation\": [0, -0.5, 0]",
+        "\"rotate_degrees\": { \"axis\": [1, 0, 0], \"angle\": 20 }",
+    );
+    let turns = folder.write("turns.json", &turns);
+    assert_refused(
+        &["sweep", &turns],
+        "body 0 has no bounds, so that it may move in a sweep, but not turn",
+    );
+}
