@@ -8,6 +8,7 @@ mod manifolds;
 mod meshes;
 mod pairs;
 mod peers;
+mod sweeps;
 mod triangles;
 mod worlds;
 
@@ -31,6 +32,7 @@ const PARTS: &[(&str, Part)] = &[
     ("meshes", meshes::measure),
     ("local", local::measure),
     ("pairs", pairs::measure),
+    ("sweeps", sweeps::measure),
     ("peers", peers::measure),
     ("manifolds", manifolds::measure),
     ("worlds", worlds::measure),

@@ -1,0 +1,138 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! Balls and bodies that move: when they touch first.
+
+use std::error::Error;
+use std::hint::black_box;
+
+use palpate::field::{Pose, Screw, Shape, Vector};
+use palpate::query::{
+    BallWorkspace, Limits, Moving, PairWorkspace, Placed, Ray, SweepSettings, cast_ball, sweep,
+};
+
+use super::pairs::placed;
+use super::{Space, TimedRows, Turn, fastest};
+use crate::random::Random;
+use crate::scenes::{self, Work};
+
+/// Paths of each kind.
+const COUNT: usize = 400;
+
+/// The length of a path, and the radius of the ball on it [m].
+const LENGTH: f64 = 1.0;
+const RADIUS: f64 = 0.05;
+
+/// Bounds are together, and bodies touch, at this [m].
+const TOLERANCE: f64 = 1e-6;
+
+/// The clearances in the middle of paths that graze [m].
+const GRAZING: [f64; 4] = [1e-3, 1e-5, -1e-5, -1e-3];
+
+/// Pairs that move.
+const PAIRS: usize = 40;
+
+/// Adds the rows of balls, and of S3 against itself.
+pub(super) fn measure(rows: &mut TimedRows) -> Result<(), Box<dyn Error>> {
+    let spatial = scenes::spatial()?;
+    for work in &spatial {
+        let Work { name, shape, .. } = work;
+        cast(&format!("sweep.ball.{name}.random"), shape, &random_paths(shape)?, rows)?;
+        cast(&format!("sweep.ball.{name}.grazing"), shape, &grazing_paths(shape)?, rows)?;
+    }
+    let found = spatial.iter().find(|work| work.name == "S3");
+    let Work { shape, .. } = found.ok_or("no S3")?;
+    pairs("sweep.pair.S3_S3", shape, rows)
+}
+
+fn cast(
+    key: &str,
+    shape: &Shape<3>,
+    paths: &[Ray<3>],
+    rows: &mut TimedRows,
+) -> Result<(), Box<dyn Error>> {
+    let limits = Limits::new(TOLERANCE);
+    let mut workspace = BallWorkspace::new();
+    let mut times = Vec::new();
+    let (mut evaluations, mut undecided) = (0, 0);
+    for path in paths {
+        let answer = cast_ball(shape, path, RADIUS, &limits, &mut workspace)?;
+        evaluations += answer.evaluations;
+        undecided += u32::from(answer.stop.is_early());
+        times.push(fastest(|| {
+            let _ =
+                black_box(cast_ball(shape, black_box(path), RADIUS, &limits, &mut workspace));
+        }));
+    }
+    rows.add_times(key, times);
+    rows.insert(format!("{key}.evaluations"), f64::from(evaluations) / paths.len() as f64);
+    rows.insert(format!("{key}.undecided"), f64::from(undecided));
+    Ok(())
+}
+
+/// Paths from anywhere to anywhere, which begin free.
+fn random_paths(shape: &Shape<3>) -> Result<Vec<Ray<3>>, Box<dyn Error>> {
+    let mut random = Random::new(11);
+    let mut paths = Vec::with_capacity(COUNT);
+    while paths.len() < COUNT {
+        let start = Vector(random.point([0.0; 3], 1.0));
+        let way = Vector(random.point([0.0; 3], 1.0));
+        if shape.distance(start) > RADIUS {
+            paths.push(Ray::new(start, way, LENGTH)?);
+        }
+    }
+    Ok(paths)
+}
+
+/// Paths along the surface, with a clearance in their middle.
+fn grazing_paths(shape: &Shape<3>) -> Result<Vec<Ray<3>>, Box<dyn Error>> {
+    let mut random = Random::new(12);
+    let mut paths = Vec::with_capacity(COUNT);
+    while paths.len() < COUNT {
+        let clearance = GRAZING[paths.len() % GRAZING.len()];
+        let start = Vector(random.point([0.0; 3], 1.0));
+        let (distance, gradient) = shape.distance_gradient(start);
+        let height = RADIUS + clearance;
+        let middle =
+            start - gradient * ((distance - height) / gradient.dot(gradient).max(1e-9));
+        let (distance, gradient) = shape.distance_gradient(middle);
+        let side = Vector(random.point([0.0; 3], 1.0));
+        let along = side.cross(gradient);
+        if (distance - height).abs() > 1e-9 || along.norm() < 1e-3 {
+            continue;
+        }
+        let from = middle - along * (0.5 * LENGTH / along.norm());
+        if shape.distance(from) > RADIUS {
+            paths.push(Ray::new(from, along, LENGTH)?);
+        }
+    }
+    Ok(paths)
+}
+
+/// Bodies 50 mm apart, of which one moves by 0.3 m and turns by a radian, any way.
+fn pairs(key: &str, shape: &Shape<3>, rows: &mut TimedRows) -> Result<(), Box<dyn Error>> {
+    let mut random = Random::new(13);
+    let settings = SweepSettings::of_size(1.0).with_gap(1e-4).with_time_tolerance(1e-3);
+    let mut workspace = PairWorkspace::new();
+    let mut times = Vec::new();
+    let (mut evaluations, mut undecided) = (0, 0);
+    let placed = placed([shape, shape], 0.05)?;
+    for [a, b] in placed.iter().take(PAIRS) {
+        let from = b.world_from_body;
+        let way = Vector(random.point([0.0; 3], 1.0));
+        let turn = <Space as Turn<3>>::by(&mut random, 1.0)?;
+        let to = from * Pose::new(turn, way * (0.3 / way.norm()));
+        let Placed { shape, .. } = *b;
+        let moving = Moving::new(shape, Screw::new(from, to, 0)?);
+        let answer = sweep(*a, moving, &settings, &mut workspace)?;
+        evaluations += answer.evaluations;
+        undecided += u32::from(answer.touches().is_none());
+        times.push(fastest(|| {
+            let _ = black_box(sweep(*a, black_box(moving), &settings, &mut workspace));
+        }));
+    }
+    rows.insert(format!("{key}.evaluations"), f64::from(evaluations) / times.len() as f64);
+    rows.insert(format!("{key}.undecided"), f64::from(undecided));
+    rows.add_times(key, times);
+    Ok(())
+}
