@@ -76,10 +76,12 @@ pub struct Estimate {
 }
 
 impl Estimate {
-    /// The largest error of a number that counts as seen, as a part of it.
-    pub const SEEN: f64 = 0.1;
+    /// The largest error of a number that counts as seen, as a part of it: three standard deviations
+    /// of such a number are a tenth of it.
+    pub const SEEN: f64 = 1.0 / 15.0;
 
-    /// `true` if the error is at most a tenth of the number.
+    /// `true` if the error is at most a fifteenth of the number, which then is within a tenth of the
+    /// true one but for one in 370.
     ///
     /// ```
     /// use palpate_devices::Estimate;
