@@ -142,11 +142,14 @@ impl<const D: usize> Channel<D> {
         }
         // What the slew limit holds beyond that share comes from the bodies, as long as they gave
         // some of it: it counts as observed. Written so that NaN is no share.
-        let left = match share > 0.0 {
-            _ if force == all && share == 1.0 => observed,
-            _ if observed == Vector::ZERO && !self.has_bodies => Vector::ZERO,
-            true => force - free * share,
-            false => force,
+        let left = if force == all && share == 1.0 {
+            observed
+        } else if observed == Vector::ZERO && !self.has_bodies {
+            Vector::ZERO
+        } else if share > 0.0 {
+            force - free * share
+        } else {
+            force
         };
         self.has_bodies = left != Vector::ZERO;
         (force, left)

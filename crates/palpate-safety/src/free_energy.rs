@@ -162,11 +162,15 @@ impl<V: InnerProduct> FreeEnergy<V> {
                 size if size > 0.0 => options.rise_rate * elapsed / size,
                 _ => f64::INFINITY,
             };
-            let full = match () {
-                () if !options.is_on => full,
-                () if is_lifted && leak <= 0.0 => self.lifted(full, quickest),
-                () if full < 0.0 => self.cut(full, felt.norm()),
-                () => full - self.risen(elapsed / RECOVERY, 0.5 * full),
+            let full = if !options.is_on {
+                full
+            } else if is_lifted && leak <= 0.0 {
+                self.lifted(full, quickest)
+            } else if full < 0.0 {
+                self.cut(full, felt.norm());
+                full
+            } else {
+                full - self.risen(elapsed / RECOVERY, 0.5 * full)
             };
             self.balance = full.min(options.reserve);
             let beyond = self.balance - options.reserve;
@@ -217,8 +221,8 @@ impl<V: InnerProduct> FreeEnergy<V> {
         full
     }
 
-    /// Lets less of a force of size `force` [N] pass, as the balance is used up; returns the balance.
-    fn cut(&mut self, full: f64, force: f64) -> f64 {
+    /// Lets less of a force of size `force` [N] pass, as the balance, `full` [J], is used up.
+    fn cut(&mut self, full: f64, force: f64) {
         if self.leaks > 0.0 && force > 0.0 {
             let covered = (COVERED * self.losses / self.leaks).min(self.part);
             let smooth = self.part - STEP / force;
@@ -228,7 +232,6 @@ impl<V: InnerProduct> FreeEnergy<V> {
             }
             self.part = part;
         }
-        full
     }
 
     /// Lets more of the force of a hand at rest pass, by `rise` at most, for the allowance, which
