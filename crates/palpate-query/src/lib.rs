@@ -102,7 +102,10 @@ pub use point::{AtPoint, evaluate_point};
 pub use query::{ElementMemory, Query, Tolerance};
 pub use ray::{Ray, RayHit, cast_ray};
 pub use sampler::free_radius;
-pub use sweep::{FirstTouch, Moving, Start, SweepSettings, cast_ball, sweep};
+pub use sweep::{
+    ElementSweep, FirstTouch, Motion, Moving, Start, SweepSettings, cast_ball, sweep,
+    sweep_element,
+};
 pub use track::Track;
 #[cfg(feature = "world")]
 pub use world::{BodyId, Neighbours, Verdict, World, WorldSettings};

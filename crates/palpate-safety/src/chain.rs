@@ -8,7 +8,7 @@
 use palpate_field::{Point, Vector};
 
 use crate::acceptance::{Acceptance, Accepted};
-use crate::channel::{Channel, TickInput};
+use crate::channel::{Channel, Given, TickInput};
 use crate::device::DeviceProfile;
 use crate::error::{NumberError, SafetyError};
 use crate::finite;
@@ -33,8 +33,10 @@ pub struct PortState<const D: usize> {
     /// A force on the hand that is added to the wanted force [N]: that of guides and magnets. It may
     /// give out its potential. Beyond that and what the device's damping dissipates, it gives out
     /// the [reserve](SafetyOptions::reserve), a quarter of a millijoule while it is taken away
-    /// smoothly, and what one tick adds; and to a hand at rest a millijoule, and 0.1 mW after that,
-    /// while it comes back ([counted](crate::FreeForceReport::credited)).
+    /// smoothly, and what one tick adds; and what is [counted](crate::FreeForceReport::credited) when
+    /// it comes back to a hand at rest, or rises again. A delay of the transport is not known here.
+    /// Read in encoder steps, motions seem to dissipate more than they do: guides up to `2 b / T` and
+    /// `2 f_c / Δ` give out no more for it.
     pub free_force: Vector<f64, D>,
     /// By how much the tick began too late [s]; zero in time. A tick without a new reading is as
     /// good as late.
@@ -373,25 +375,24 @@ impl<const D: usize> SafetyChain<D> {
         let PortState { position, velocity, free_force, late, elapsed, start } = *state;
         let input = TickInput { is_sound, late, start, cut };
         let risen = self.channel.risen(wanted, free_force, &input);
-        let (wanted, free_force) = match risen {
-            Some(part) if part < 1.0 => (wanted * part, free_force * part),
-            _ => (wanted, free_force),
-        };
+        let rise = risen.unwrap_or(1.0);
+        let (wanted, rising) =
+            if rise < 1.0 { (wanted * rise, free_force * rise) } else { (wanted, free_force) };
         let elapsed = finite::elapsed(elapsed, self.period() + late.max(0.0));
         let is_rising = risen.is_some();
-        let seen = CycleInput::of([wanted, free_force], effort, position, elapsed);
+        let seen = CycleInput::of([wanted, rising], effort, position, elapsed);
         let is_disturbed = late > 0.0 || is_rising;
         let softness = self.cycle.observed(&seen.disturbed(is_disturbed), is_sound);
-        let free_force = if softness < 1.0 { free_force * softness } else { free_force };
         let options = self.passivity.options();
+        let scale = rise * softness;
         let Passed { force: free_force, spent } =
-            self.free.step([free_force, position], elapsed, options, is_sound);
+            self.free.step([free_force, position], scale, elapsed, options, is_sound);
         let seen =
             PortMotion { position, velocity, effort, is_rising, elapsed, softness, spent };
         let observed = self.passivity.observed(wanted, &seen, is_sound);
-        let (force, left) = self.channel.step(observed, free_force, &input);
-        self.passivity.written(left);
-        self.free.written(force - left);
+        let Given { force, of_bodies, share } = self.channel.step(observed, free_force, &input);
+        self.passivity.written(of_bodies);
+        self.free.written(force - of_bodies, share);
         force
     }
 

@@ -31,9 +31,23 @@ pub(crate) struct TickInput {
     pub(crate) cut: f64,
 }
 
+/// A force that differs by this share from what the limits leave is held by the slew limit.
+const HELD: f64 = 1e-9;
+
+/// What a [`Channel`] gives in a tick.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Given<const D: usize> {
+    /// The force to write.
+    pub(crate) force: Vector<f64, D>,
+    /// The part of it that the bodies give; guides and magnets give the rest.
+    pub(crate) of_bodies: Vector<f64, D>,
+    /// The share that the limits of its size, watchdog and stop left, from 0 to 1.
+    pub(crate) share: f64,
+}
+
 /// The stages from the observed force or torque to the written one: slew limit, force limit,
-/// continuous limit, guard against numbers that are not finite, watchdog and emergency stop; and
-/// the rise after them, which acts before the force is observed.
+/// continuous limit, guard against numbers that are not finite, watchdog and emergency stop. It also
+/// holds the rise of a force that was zeroed, which acts before the passivity stage.
 #[derive(Clone, Debug)]
 pub(crate) struct Channel<const D: usize> {
     slew: SlewLimit<D>,
@@ -42,7 +56,7 @@ pub(crate) struct Channel<const D: usize> {
     rise: Rise,
     watchdog: Watchdog,
     is_stopped: bool,
-    /// Whether bodies gave a part of the last force.
+    /// Whether the last force is of bodies in part.
     has_bodies: bool,
     /// A second slew limit at the end, because the stages after the first also change the
     /// force.
@@ -111,8 +125,7 @@ impl<const D: usize> Channel<D> {
         Some(part)
     }
 
-    /// Returns the force to write for `observed`, which passed the passivity stage, plus
-    /// `free`; and the part of `observed` in it.
+    /// The force to write for `observed`, which passed the passivity stage, plus `free`.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     pub(crate) fn step(
@@ -120,7 +133,7 @@ impl<const D: usize> Channel<D> {
         observed: Vector<f64, D>,
         free: Vector<f64, D>,
         input: &TickInput,
-    ) -> (Vector<f64, D>, Vector<f64, D>) {
+    ) -> Given<D> {
         self.effects.ticks += 1;
         let is_sound = input.is_sound;
         let all = with_free(observed, free);
@@ -142,17 +155,18 @@ impl<const D: usize> Channel<D> {
         }
         // What the slew limit holds beyond that share comes from the bodies, as long as they gave
         // some of it: it counts as observed. Written so that NaN is no share.
-        let left = if force == all && share == 1.0 {
+        let share = if share > 0.0 { share } else { 0.0 };
+        let held = force - all * share;
+        let is_held = held.norm() > HELD * force.norm();
+        self.has_bodies = observed != Vector::ZERO || self.has_bodies && is_held;
+        let of_bodies = if force == all {
             observed
-        } else if observed == Vector::ZERO && !self.has_bodies {
-            Vector::ZERO
-        } else if share > 0.0 {
+        } else if self.has_bodies {
             force - free * share
         } else {
-            force
+            Vector::ZERO
         };
-        self.has_bodies = left != Vector::ZERO;
-        (force, left)
+        Given { force, of_bodies, share }
     }
 
     /// Rises as fast as before where a radian counts as a length that is so many times `longer`.

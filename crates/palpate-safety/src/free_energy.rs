@@ -22,15 +22,16 @@ const CREDITED: f64 = 0.9;
 /// The shortest time in which the force of a moving hand comes back [s].
 const RECOVERY: f64 = 1.0;
 
-/// The part of the height over the lowest place that is left after a tick in which the whole force
-/// passes: guides with damping take energy that is no height. Where less passes, a slow swing may
-/// last longer than the memory.
-const HEIGHT_LEFT: f64 = 0.9999;
+/// The time in which the height over the lowest place is forgotten while the whole force passes:
+/// guides with damping take energy that is no height [s]. Where less passes, a slow swing may last
+/// longer than that.
+const FORGOTTEN: f64 = 10.0;
 
-/// What a hand at rest is given at most when the force comes back to it [J], and how fast it may be
-/// given anew [W].
-const ALLOWANCE: f64 = 1e-3;
-const ALLOWANCE_RATE: f64 = 1e-4;
+/// The most that the balance owes [J]. What a stall gave out at once is not for walls to pay.
+const MOST_OWED: f64 = 1e-3;
+
+/// No hand climbs higher in a potential [J].
+const HIGHEST: f64 = 1e3;
 
 /// What sampling generates with forces that have a potential, and what was done about it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -40,11 +41,12 @@ pub struct FreeForceReport {
     /// Ticks in which the force was made less, and the largest change.
     #[cfg_attr(feature = "serde", serde(flatten))]
     pub effect: Effect,
-    /// The least value of what damping dissipates minus what sampling and limits of the force
-    /// generate, and what the return of the force adds [J]; if negative, its size is the energy that
-    /// the forces gave out beyond their potential.
+    /// The least energy balance, which begins at zero [J]: what the device's damping dissipates minus
+    /// what sampling and the slew limit generate, and minus what the returning force adds, without
+    /// what is [credited](Self::credited).
     pub least_balance: f64,
-    /// Energy that was given to hands at rest when the force came back to them [J].
+    /// Energy that is given on purpose [J]: when the force comes back to a hand at rest, or rises
+    /// after it was zeroed or made softer; and what the balance would owe beyond a millijoule.
     pub credited: f64,
 }
 
@@ -52,9 +54,10 @@ pub struct FreeForceReport {
 ///
 /// **Observer.** A force that is held over a tick gives out `F_k · Δx`, as it was written. Meanwhile
 /// the potential `U` of the wanted force rises by `−½ (F_k + F_{k+1}) · Δx`, exactly for springs
-/// (trapezoidal rule), and that of a part `p` of it by `p` times as much. The sum of both is what
-/// sampling, and a slew limit, generate: `−½ p ΔF · Δx` where the force was written as wanted. The
-/// device's damping `b` dissipates at least `b |Δx|² / T`. The balance of both starts at the
+/// (trapezoidal rule), and that of a part `p` of it by `p` times as much; what the limits of the size
+/// of the force leave of it is such a part, too. The sum of both is what sampling, and a slew limit,
+/// generate: `−½ p ΔF · Δx` where the force was written as wanted. The device's damping `b`
+/// dissipates at least `b |Δx|² / T`. The balance of both starts at the
 /// reserve, which is its most.
 ///
 /// **Controller.** While the balance is used up, [less](COVERED) of the force passes than damping
@@ -63,9 +66,9 @@ pub struct FreeForceReport {
 ///
 /// **Recovery.** A part that rises by `Δp` adds `Δp U` to the energy of the hand, and a swing that is
 /// lifted again and again grows, also one that leaves the reach of the force each time. So the part
-/// rises only while the balance pays for it, `U` above the lowest place of late, and in a
-/// [second](RECOVERY) at best. A hand at rest pays nothing: the force rises as that of a wall does
-/// ([`Lift`]), for a [millijoule](ALLOWANCE) at most, which is counted.
+/// rises only where the force acts, while the balance pays for it, `U` above the lowest place of
+/// late, and in a [second](RECOVERY) at best. A hand at rest pays nothing: the force rises as that of
+/// a wall does ([`Lift`]), and so it does after it was zeroed; both are counted.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct FreeEnergy<V> {
     /// The last tick; `None` after one that was not finite.
@@ -83,18 +86,20 @@ pub(crate) struct FreeEnergy<V> {
     /// The potential above its least value of late [J].
     height: f64,
     lift: Lift<V>,
-    /// What a hand at rest may be given [J].
-    allowance: f64,
     report: FreeForceReport,
 }
 
 #[derive(Clone, Copy, Debug)]
 struct Last<V> {
     position: V,
-    /// The wanted force, as large as the device gives it [N].
+    /// The whole force, as large as the device gives it [N].
     felt: V,
+    /// The scale of the wanted force.
+    scale: f64,
     /// The force that was written [N].
     written: V,
+    /// The part of the force that the limits of its size left.
+    share: f64,
 }
 
 /// A tick of a [`FreeEnergy`].
@@ -118,77 +123,84 @@ impl<V: InnerProduct> FreeEnergy<V> {
             losses: 0.0,
             height: 0.0,
             lift: Lift::new(),
-            allowance: ALLOWANCE,
             report: FreeForceReport::default(),
         }
     }
 
-    /// One tick of `elapsed` [s], with the options of the stage for walls. If an input is not
-    /// finite, the force is returned unchanged and the motion so far is forgotten.
+    /// One tick of `elapsed` [s], with the options of the stage for walls, of which `scale` times the
+    /// force is wanted: less than the whole while it rises after it was zeroed, or is made softer. If
+    /// an input is not finite, the wanted force is returned and the motion so far is forgotten.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     pub(crate) fn step(
         &mut self,
         [force, position]: [V; 2],
+        scale: f64,
         elapsed: f64,
         options: &PassivityOptions,
         is_sound: bool,
     ) -> Passed<V> {
+        let wanted = if scale < 1.0 { force * scale } else { force };
         // A device of infinite damping is passive whatever it renders.
         if !is_sound || options.damping == f64::INFINITY {
             self.last = None;
-            return Passed { force, spent: 0.0 };
+            return Passed { force: wanted, spent: 0.0 };
         }
         let size = force.norm();
         let felt = if size > self.max_force { force * (self.max_force / size) } else { force };
-        let before = self.last.replace(Last { position, felt, written: felt });
+        let written = if scale < 1.0 { felt * scale } else { felt };
+        let before = self.last.replace(Last { position, felt, scale, written, share: 1.0 });
         let is_idle = |last: Last<V>| last.felt == V::ZERO && last.written == V::ZERO;
-        if force == V::ZERO && self.part == 1.0 && before.is_none_or(is_idle) {
+        if force == V::ZERO && before.is_none_or(is_idle) {
+            self.lift.step(position, elapsed, None);
             return Passed { force, spent: 0.0 };
         }
-        self.allowance = (self.allowance + ALLOWANCE_RATE * elapsed).min(ALLOWANCE);
         let spent = before.map_or(0.0, |last| {
             let way = position - last.position;
             let loss = SLACK * options.damping * way.dot(way) / elapsed;
+            // Of a motion whose square overflows nothing is known.
+            let loss = if loss.is_finite() { loss } else { 0.0 };
             let climbed = -0.5 * (felt + last.felt).dot(way);
+            let forgotten = if self.part < 1.0 { 0.0 } else { (elapsed / FORGOTTEN).min(1.0) };
             // Written so that NaN is no height.
-            let left = if self.part < 1.0 { self.height } else { HEIGHT_LEFT * self.height };
-            self.height = (left + climbed).max(0.0);
-            let is_lifted =
-                self.lift.step(position, elapsed, Some(self.part < 1.0)) && options.is_on;
-            let leak = last.written.dot(way) + self.part * climbed;
-            let full = self.observe(leak, loss);
-            let quickest = match felt.norm() {
-                size if size > 0.0 => options.rise_rate * elapsed / size,
-                _ => f64::INFINITY,
-            };
-            let full = if !options.is_on {
-                full
-            } else if is_lifted && leak <= 0.0 {
-                self.lifted(full, quickest)
-            } else if full < 0.0 {
-                self.cut(full, felt.norm());
-                full
-            } else {
-                full - self.risen(elapsed / RECOVERY, 0.5 * full)
-            };
+            self.height = (self.height * (1.0 - forgotten) + climbed).max(0.0).min(HIGHEST);
+            self.report.credited += self.part * (scale - last.scale).max(0.0) * self.height;
+            let is_taken = (self.part < 1.0).then_some(true);
+            let is_lifted = self.lift.step(position, elapsed, is_taken) && options.is_on;
+            let leak = last.written.dot(way) + self.part * last.scale * last.share * climbed;
+            let mut full = self.observe(leak, loss);
+            if options.is_on {
+                if is_lifted && leak <= 0.0 {
+                    full = self.lifted(full, options.rise_rate * elapsed / felt.norm());
+                } else if full < 0.0 {
+                    self.cut(full, felt.norm());
+                } else {
+                    full -= self.risen(elapsed / RECOVERY, 0.5 * full);
+                }
+            }
             self.balance = full.min(options.reserve);
             let beyond = self.balance - options.reserve;
             self.report.least_balance = self.report.least_balance.min(beyond);
+            let owed = (-MOST_OWED - self.balance).max(0.0);
+            self.report.credited += owed;
+            self.balance += owed;
             loss - (full - options.reserve).clamp(0.0, loss)
         });
-        let passes = (self.part < 1.0).then(|| felt * self.part);
-        let passed = self.report.effect.count(force, passes);
-        self.written(if self.part < 1.0 { passed } else { felt });
-        Passed { force: passed, spent }
+        if self.part < 1.0 {
+            let passed = self.report.effect.count(written, Some(written * self.part));
+            self.written(passed, 1.0);
+            return Passed { force: passed, spent };
+        }
+        // What the device cannot give is left to the limit of the force.
+        Passed { force: wanted, spent }
     }
 
-    /// Records the force that was written.
+    /// Records the force that was written, and the share that the limits of its size left.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
-    pub(crate) fn written(&mut self, force: V) {
+    pub(crate) fn written(&mut self, force: V, share: f64) {
         if let Some(last) = &mut self.last {
-            last.written = force;
+            (last.written, last.share) = (force, share);
         }
     }
 
@@ -234,14 +246,11 @@ impl<V: InnerProduct> FreeEnergy<V> {
         }
     }
 
-    /// Lets more of the force of a hand at rest pass, by `rise` at most, for the allowance, which
-    /// pays what the balance owes first; returns the balance.
+    /// Lets more of the force of a hand at rest pass, by `rise` at most, and forgives what the balance
+    /// owes; returns the balance.
     fn lifted(&mut self, full: f64, rise: f64) -> f64 {
-        let owed = (-full).clamp(0.0, self.allowance);
-        let left = self.allowance - owed;
-        let cost = if full + owed >= 0.0 { self.risen(rise, left) } else { 0.0 };
-        self.allowance = left - cost;
-        self.report.credited += owed + cost;
+        let owed = (-full).max(0.0);
+        self.report.credited += owed + self.risen(rise, f64::INFINITY);
         full + owed
     }
 
@@ -294,7 +303,8 @@ mod tests {
         let (mut x, mut v, mut most, mut energy) = (start, 0.0, 0.0_f64, 0.0);
         for _ in 0..60_000 {
             let at = Vector([x, 0.0]);
-            let Passed { force, .. } = free.step([at * -stiffness, at], period, &options, true);
+            let Passed { force, .. } =
+                free.step([at * -stiffness, at], 1.0, period, &options, true);
             let force = force[0].clamp(-max_force, max_force);
             // m v' = F − b v, exactly.
             let (rate, steady) = (damping / mass, force / damping);
@@ -358,7 +368,7 @@ mod tests {
         let mut free = FreeEnergy::new(options.reserve, f64::INFINITY);
         let mut at = |x: f64| {
             let input = [Vector([-1000.0 * x, 0.0]), Vector([x, 0.0])];
-            free.step(input, 1e-3, &options, true).force[0]
+            free.step(input, 1.0, 1e-3, &options, true).force[0]
         };
         let shaken: Vec<_> =
             (0..200).map(|tick| at(if tick % 2 == 0 { 2e-3 } else { 1e-3 })).collect();
@@ -378,7 +388,7 @@ mod tests {
         let mut free = FreeEnergy::new(options.reserve, f64::INFINITY);
         for x in [0.0, 0.0, 0.01, -0.02] {
             let force = Vector([-1e4 * x - 1.0, 0.0]);
-            let passed = free.step([force, Vector([x, 0.0])], 1e-3, &options, true);
+            let passed = free.step([force, Vector([x, 0.0])], 1.0, 1e-3, &options, true);
             assert_eq!((passed.force, passed.spent), (force, 0.0));
         }
         assert_eq!(free.report(), FreeForceReport::default());
@@ -390,7 +400,7 @@ mod tests {
         let mut free = FreeEnergy::new(options.reserve, f64::INFINITY);
         let mut at = |x: f64, force: f64| {
             let input = [Vector([force, 0.0]), Vector([x, 0.0])];
-            free.step(input, 1e-3, &options, true).force[0]
+            free.step(input, 1.0, 1e-3, &options, true).force[0]
         };
         // Pulled in by a steady 2 N: the potential falls by what is given out.
         assert!((0..100).all(|k| at(1e-4 * f64::from(k), 2.0) == 2.0));
@@ -419,7 +429,7 @@ mod tests {
                 // 20 kN/m in the middle, and nothing beyond the reach.
                 let full = if x.abs() < reach { (-2e4 * x).clamp(-pull, pull) } else { 0.0 };
                 let input = [Vector([full, 0.0]), at];
-                let force = free.step(input, period, &options, true).force[0];
+                let force = free.step(input, 1.0, period, &options, true).force[0];
                 for _ in 0..10 {
                     let pushed = force - spring * x - damping * v;
                     v += pushed / mass * 0.1 * period;
@@ -427,9 +437,11 @@ mod tests {
                 }
                 most = most.max(0.5 * (mass * v * v + spring * x * x));
             }
-            // The well's potential once, the reserve and the spare, what hands at rest are given, and
-            // what one tick adds at an edge of 3 N at 1 m/s.
-            let bound = first + pull * reach + 1e-4 + SPARE + ALLOWANCE + 3e-3;
+            // The well's potential once, the reserve and the spare, what is credited, and what one
+            // tick adds at an edge of 3 N at 1 m/s.
+            let credited = free.report().credited;
+            assert!(credited < 2e-3, "{damping}, {reach}: {credited} J");
+            let bound = first + pull * reach + 1e-4 + SPARE + credited + 3e-3;
             assert!(most <= bound, "{damping}, {reach}: {most} J of {bound} J");
         }
     }
@@ -443,9 +455,9 @@ mod tests {
         let (mut x, mut v, mut written) = (0.01, 0.0, 0.0_f64);
         for _ in 0..60_000 {
             let at = Vector([x, 0.0]);
-            let wanted = free.step([at * -stiffness, at], period, &options, true).force[0];
+            let wanted = free.step([at * -stiffness, at], 1.0, period, &options, true).force[0];
             written += (wanted - written).clamp(-0.2, 0.2);
-            free.written(Vector([written, 0.0]));
+            free.written(Vector([written, 0.0]), 1.0);
             let (rate, steady) = (damping / mass, written / damping);
             let decay = (-rate * period).exp();
             x += steady * period + (v - steady) * (1.0 - decay) / rate;
@@ -463,7 +475,7 @@ mod tests {
         for tick in 0..5000 {
             let x = 1e-3 * (0.05 * f64::from(tick)).sin();
             let input = [Vector([-2000.0 * x, 0.0]), Vector([x, 0.0])];
-            let passed = free.step(input, 1e-3, &options, true);
+            let passed = free.step(input, 1.0, 1e-3, &options, true);
             assert_eq!(passed.force, input[0], "{tick}");
         }
     }

@@ -66,11 +66,25 @@ const LEAST: f64 = 1.0 / 32.0;
 /// The most by which a force changes in a tick because its wall becomes softer [N].
 const STEP: f64 = 0.3;
 
+/// If an oscillation goes on in a wall of this part of the stiffness, by at least [`STAYED`] of the
+/// way and at most 1/[`STAYED`] times as slowly, a hand drives it.
+const HARDLY: f64 = 0.125;
+const STAYED: f64 = 0.75;
+
+/// Ways up to so many times those of a hand's oscillation are then its own, for [`OWN`] at first
+/// and twice as long each time, up to [`LONGEST_OWN`] [s].
+const OF_HAND: f64 = 1.5;
+const OWN: f64 = 10.0;
+const LONGEST_OWN: f64 = 160.0;
+
+/// How fast the force of a wall comes back to a hand that trembles [N/s].
+const RETURN: f64 = 20.0;
+
 /// The time away from all bodies in which the stiffness comes back by a factor of e [s].
 const RECOVERY: f64 = 20.0;
 
-/// A hand rests in a guide if it did not turn back for so long [s].
-const RESTED: f64 = 0.5;
+/// A hand is calm in a guide if no quick half cycle ended for so long [s].
+const CALM: f64 = 1.0;
 
 /// Options of the stage.
 #[derive(Clone, Copy, Debug)]
@@ -187,8 +201,13 @@ struct Extreme<V> {
 /// - or eight half cycles grow, each cycle a little.
 ///
 /// The stiffness is then halved, at the rate of 0.3 N a tick, and half cycles are counted anew. It
-/// comes back by a factor of e in 20 s in which nothing pushes, or in which a hand rests in a guide;
-/// never in contact with a body, where the oscillation would return.
+/// comes back by a factor of e in 20 s in which nothing pushes, or in which a hand in a guide makes
+/// no quick half cycles; not in contact with a body, where the oscillation would return.
+///
+/// The tremor of a hand, 6 to 12 times a second, looks like a limit cycle. But an oscillation of the
+/// device gets slower in a softer wall, or ends; one that goes on as before in an eighth of the
+/// stiffness is the hand's. Then the stiffness comes back, and ways of its size do not count for a
+/// while.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct LimitCycle<V> {
     options: LimitCycleOptions,
@@ -206,12 +225,21 @@ pub(crate) struct LimitCycle<V> {
     farthest: Extreme<V>,
     /// The time since the farthest place [s].
     since: f64,
-    /// The last half cycles, the newest first [m].
+    /// The ways and the times of the last half cycles, the newest first [m, s].
     ways: [f64; SEVERAL],
+    times: [f64; SEVERAL],
     /// How many of them count.
     counted: usize,
     /// How many of them are quick.
     quick: usize,
+    /// The mean way and time of the half cycles for which the stiffness was halved first [m, s].
+    first: [f64; 2],
+    /// Ways that are the hand's [m], for how long they are [s], and for how long the next time.
+    of_hand: f64,
+    own: f64,
+    next_own: f64,
+    /// The time since a quick half cycle [s].
+    calm: f64,
     /// The part of the stiffness to come.
     target: f64,
     /// The part of the stiffness in this tick.
@@ -232,8 +260,14 @@ impl<V: InnerProduct> LimitCycle<V> {
             farthest: start,
             since: 0.0,
             ways: [0.0; SEVERAL],
+            times: [0.0; SEVERAL],
             counted: 0,
             quick: 0,
+            first: [0.0; 2],
+            of_hand: 0.0,
+            own: 0.0,
+            next_own: OWN,
+            calm: 0.0,
             target: 1.0,
             part: 1.0,
             report: LimitCycleReport::default(),
@@ -290,11 +324,14 @@ impl<V: InnerProduct> LimitCycle<V> {
     #[cold]
     fn soften(&mut self, input: &CycleInput<V>) -> f64 {
         let (force, effort) = (input.force.norm(), input.effort);
-        // A guide need not end anywhere, so that its stiffness comes back to a hand that rests in it.
-        let is_resting = input.is_free_of_bodies && self.since >= RESTED;
-        if force == 0.0 && effort == 0.0 || is_resting {
+        // A guide need not end anywhere, so that its stiffness comes back while a hand is in it.
+        let is_calm = input.is_free_of_bodies && self.calm >= CALM;
+        if force == 0.0 && effort == 0.0 || is_calm {
             self.target = (self.target * (1.0 + input.elapsed / RECOVERY)).min(1.0);
-            self.part = self.target;
+        }
+        if self.part <= self.target {
+            let rise = if effort > 0.0 { RETURN * input.elapsed / effort } else { 1.0 };
+            self.part = (self.part + rise).min(self.target);
             return self.part;
         }
         // As long as the wall gives more than the force limit, less of it changes nothing.
@@ -316,6 +353,8 @@ impl<V: InnerProduct> LimitCycle<V> {
         self.last_position = Some(input.position);
         self.place -= way.dot(self.direction);
         self.since += input.elapsed;
+        self.calm += input.elapsed;
+        self.own -= input.elapsed;
         let beyond = self.heading * (self.place - self.farthest.place);
         let CycleInput { position, effort, .. } = *input;
         let here = Extreme { position, place: self.place, effort, time: self.since };
@@ -359,18 +398,47 @@ impl<V: InnerProduct> LimitCycle<V> {
 
     /// Counts a half cycle of a way [m] that took a time [s].
     fn count(&mut self, way: f64, time: f64) {
-        let [a, b, c, d, e, f, g, _] = self.ways;
-        self.ways = [way, a, b, c, d, e, f, g];
+        if self.own > 0.0 && way <= self.of_hand {
+            (self.counted, self.quick) = (0, 0);
+            return;
+        }
+        self.ways.rotate_right(1);
+        self.times.rotate_right(1);
+        let [newest, ..] = &mut self.ways;
+        *newest = way;
+        let [newest, ..] = &mut self.times;
+        *newest = time;
         self.counted = (self.counted + 1).min(SEVERAL);
         let LimitCycleOptions { stiffness, mass, .. } = self.options;
         let natural = TAU * ((mass + HAND) / stiffness).sqrt();
         let is_quick = time <= natural.clamp(QUICK, LONGEST_QUICK);
         self.quick = if is_quick { (self.quick + 1).min(SEVERAL) } else { 0 };
+        if is_quick {
+            self.calm = 0.0;
+        }
         if self.is_limit_cycle() {
+            self.found();
+        }
+    }
+
+    /// Halves the stiffness, or gives it back to a hand that drives the oscillation.
+    fn found(&mut self) {
+        let mean = |of: &[f64; SEVERAL]| of.iter().sum::<f64>() / SEVERAL as f64;
+        let now = [mean(&self.ways), mean(&self.times)];
+        // What follows is the motion in another wall.
+        (self.counted, self.quick) = (0, 0);
+        if self.target == 1.0 {
+            self.first = now;
+        }
+        let ([way, time], [first_way, first_time]) = (now, self.first);
+        if self.target <= HARDLY && way >= STAYED * first_way && STAYED * time <= first_time {
+            let longest = self.ways.iter().copied().fold(0.0, f64::max);
+            (self.of_hand, self.own) = (OF_HAND * longest, self.next_own);
+            self.next_own = (2.0 * self.next_own).min(LONGEST_OWN);
+            self.target = 1.0;
+        } else {
             self.target = (self.target * SOFTER).max(LEAST);
             self.report.found += 1;
-            // What follows is the motion in a softer wall, whose ways are longer.
-            (self.counted, self.quick) = (0, 0);
         }
     }
 
@@ -439,6 +507,37 @@ mod tests {
         assert_eq!(found(1000.0, |t| 2e-3 + 2e-5 * (TAU * 10.0 * t).sin()), 0);
         // A mass that bounces higher each time.
         assert!(found(1000.0, |t| 1e-3 * (0.5 * t).exp() * (TAU * 4.0 * t).sin()) > 0);
+    }
+
+    /// Once walls and guides fell to a thirty-second of their stiffness and stayed there.
+    #[test]
+    fn a_trembling_hand_gets_its_wall_back() {
+        for (frequency, way) in [(7.0, 1e-4), (10.0, 2e-4), (12.0, 1e-3)] {
+            let mut stage = stage();
+            let mut last = 0.0_f64;
+            let mut soft = 0;
+            for tick in 0..60_000 {
+                let depth = 5e-3 + way * (TAU * frequency * f64::from(tick) * PERIOD).sin();
+                let force = Vector([0.0, 1000.0 * depth]);
+                let position = Vector([0.0, -depth]);
+                let part = stage.step(&CycleInput::of(
+                    [force, Vector::ZERO],
+                    force.norm(),
+                    position,
+                    PERIOD,
+                ));
+                let felt = part * force.norm();
+                assert!(tick == 0 || (felt - last).abs() <= STEP + 0.1, "{tick}: {felt} N");
+                last = felt;
+                soft += i32::from(part < 0.9);
+            }
+            // Twice in 60 s, for ten and for twenty seconds of which it is whole.
+            assert!(soft < 20_000, "{frequency} Hz: {soft} ms");
+            // A device that oscillates farther is found meanwhile.
+            let before = stage.report().found;
+            moved(&mut stage, 1000.0, |t| 1e-2 + 3.0 * way * (TAU * 20.0 * t).sin());
+            assert!(stage.report().found > before, "{frequency} Hz");
+        }
     }
 
     #[test]

@@ -9,7 +9,9 @@
 ///
 /// A force that is held for too long is stale. The time by which ticks are late adds up, and each
 /// tick in time takes a period from the sum. When the sum reaches a limit, the force falls to
-/// zero; when it is back at zero, the force may rise again.
+/// zero; when it is back at zero, the force may rise again. Until then a tick in time takes two
+/// periods: a device of half the rate of the loop, each second tick of which has no new reading,
+/// must get its force back.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Watchdog {
     /// The sum at which it trips [s].
@@ -39,7 +41,8 @@ impl Watchdog {
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     pub(crate) fn step(&mut self, late: f64) -> bool {
         // Written so that NaN counts as late.
-        let change = if late <= 0.0 { -self.period } else { late };
+        let taken = if self.is_tripped { 2.0 * self.period } else { self.period };
+        let change = if late <= 0.0 { -taken } else { late };
         let sum = self.late + change;
         self.late = if sum < self.limit { sum.max(0.0) } else { self.limit };
         let was_tripped = self.is_tripped;
@@ -75,9 +78,9 @@ mod tests {
     }
 
     #[test]
-    fn it_trips_after_late_time_and_recovers_after_as_much_in_time() {
-        let mut dog = Watchdog::new(2.0, 2.0, 1.0);
-        let late = [1.0, 0.0, 1.5, 0.5, 0.0, 1.5, 0.0, 0.0, 0.0];
+    fn it_trips_after_late_time_and_recovers_after_half_as_much_in_time() {
+        let mut dog = Watchdog::new(4.0, 2.0, 1.0);
+        let late = [1.0, 0.0, 3.5, 0.5, 0.0, 1.5, 0.0, 0.0, 0.0];
         assert_eq!(factors(&mut dog, &late), [1.0, 1.0, 1.0, 0.5, 0.0, 0.0, 0.0, 1.0, 1.0]);
         assert_eq!(dog.trips(), 1);
     }
@@ -87,7 +90,17 @@ mod tests {
     fn a_stall_counts_by_its_time() {
         let mut dog = Watchdog::new(0.005, 0.0, 1000.0);
         assert!(dog.step(0.03));
-        assert_eq!(factors(&mut dog, &[0.0; 6]), [0.0, 0.0, 0.0, 0.0, 1.0, 1.0]);
+        assert_eq!(factors(&mut dog, &[0.0; 4]), [0.0, 0.0, 1.0, 1.0]);
         assert!(dog.step(f64::NAN));
+    }
+
+    /// Once its sum never came back to zero, and the force stayed away for good.
+    #[test]
+    fn a_device_of_half_the_rate_gets_its_force_back() {
+        let mut dog = Watchdog::new(0.005, 0.0, 1000.0);
+        assert!(dog.step(0.03));
+        assert_eq!(factors(&mut dog, &[0.001, 0.0].repeat(5)).last(), Some(&1.0));
+        assert_eq!(factors(&mut dog, &[0.001, 0.0].repeat(1000)).last(), Some(&1.0));
+        assert_eq!(dog.trips(), 1);
     }
 }

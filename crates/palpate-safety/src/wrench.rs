@@ -13,7 +13,7 @@ use std::ops::{Add, Mul, Sub};
 
 use palpate_field::Vector;
 
-use crate::channel::{Channel, TickInput};
+use crate::channel::{Channel, Given, TickInput};
 use crate::error::{NumberError, SafetyError};
 use crate::finite;
 use crate::free_energy::{FreeEnergy, Passed};
@@ -287,28 +287,32 @@ impl<const D: usize> WrenchChain<D> {
         let along = self.force.risen(wanted.along, free_force, &input);
         let about = self.torque.risen(wanted.about, Vector::ZERO, &input);
         let is_rising = along.is_some() || about.is_some();
-        let (along, about) = (along.unwrap_or(1.0), about.unwrap_or(1.0));
-        let free_force = free_force * along;
-        let wanted = SpatialVector { along: wanted.along * along, about: wanted.about * about };
+        let (rise, about) = (along.unwrap_or(1.0), about.unwrap_or(1.0));
+        let wanted = SpatialVector { along: wanted.along * rise, about: wanted.about * about };
         let options = *self.passivity.options();
         let elapsed = finite::elapsed(elapsed, options.period + late.max(0.0));
         let as_lengths = wanted.turning(1.0 / unit);
-        let free = SpatialVector { along: free_force, about: Vector::ZERO };
+        let free = SpatialVector { along: free_force * rise, about: Vector::ZERO };
         let seen = CycleInput::of([as_lengths, free], effort, position, elapsed);
         let is_disturbed = late > 0.0 || is_rising;
         let softness = self.cycle.observed(&seen.disturbed(is_disturbed), is_sound);
-        let free_force = if softness < 1.0 { free_force * softness } else { free_force };
+        let of_guides = PassivityOptions { damping: self.sides.along.damping, ..options };
+        let scale = rise * softness;
         let Passed { force: free_force, spent } =
-            self.free.step([free_force, position.along], elapsed, &options, is_sound);
+            self.free.step([free_force, position.along], scale, elapsed, &of_guides, is_sound);
+        // The walls' damping may be less: the same part of it is spent.
+        let spent = if spent > 0.0 { spent * options.damping / of_guides.damping } else { 0.0 };
         let seen =
             PortMotion { position, velocity, effort, is_rising, elapsed, softness, spent };
         let allowed = self.passivity.observed(as_lengths, &seen, is_sound);
         // An unchanged wrench keeps its bits.
         let allowed = if allowed == as_lengths { wanted } else { allowed.turning(unit) };
-        let (along, force_left) = self.force.step(allowed.along, free_force, &input);
+        let Given { force: along, of_bodies: force_left, share } =
+            self.force.step(allowed.along, free_force, &input);
         let input = TickInput { cut: 0.0, ..input };
-        let (about, torque_left) = self.torque.step(allowed.about, Vector::ZERO, &input);
-        self.free.written(along - force_left);
+        let Given { force: about, of_bodies: torque_left, .. } =
+            self.torque.step(allowed.about, Vector::ZERO, &input);
+        self.free.written(along - force_left, share);
         let left = SpatialVector { along: force_left, about: torque_left };
         self.passivity.written(left.turning(1.0 / unit));
         self.largest_torque = self.largest_torque.max(about.norm());

@@ -203,6 +203,8 @@ struct Worst {
     damping: f64,
     /// The least and the most within the errors.
     friction: [f64; 2],
+    /// Whether the least is at least half of the value on every axis.
+    is_friction_known: bool,
     /// The largest step that is seen.
     step: f64,
     /// Whether each is seen on every axis.
@@ -217,20 +219,25 @@ impl Worst {
         if is_seen { self.step } else { self.step.max(stated) }
     }
 
-    /// The friction for a profile that states one: one that is not seen is not known to be less.
+    /// The friction for a profile that states one, which stays as far as the errors allow where
+    /// they are more than half of what was found.
     fn friction_beside(&self, stated: f64) -> f64 {
-        let ([least, most], [.., is_seen, _]) = (self.friction, self.is_seen);
+        let [least, most] = self.friction;
         match () {
-            () if is_seen => least,
-            () if stated > 0.0 => most.min(stated),
+            () if self.is_friction_known => least,
+            () if stated > 0.0 => stated.clamp(least, most),
             () => most,
         }
     }
 
-    /// Those of the names whose numbers are seen.
-    fn seen<'n>(&self, names: &[&'n str; 4]) -> Vec<&'n str> {
-        let seen = names.iter().zip(self.is_seen).filter(|(_, is_seen)| *is_seen);
-        seen.map(|(name, _)| *name).collect()
+    /// Those of the names whose numbers are found here, for a profile that states an encoder step.
+    fn seen<'n>(&self, names: &[&'n str; 4], stated: f64) -> Vec<&'n str> {
+        let [.., is_step_seen] = self.is_seen;
+        let is_found = |(i, _): &(usize, &&str)| {
+            self.is_seen.get(*i) == Some(&true)
+                || *i == 3 && !is_step_seen && self.step > stated
+        };
+        names.iter().enumerate().filter(is_found).map(|(_, name)| *name).collect()
     }
 }
 
@@ -242,9 +249,11 @@ impl Identified {
     ///
     /// - A mass, damping or friction that is not [seen](Estimate::is_seen) on every axis counts as
     ///   assumed.
-    /// - A friction that is not seen is that of `profile`, or the most within its error if that is
-    ///   less or `profile` says zero: a device of no friction renders nothing in encoder steps.
-    /// - The encoder step of `profile` stays, as its source tells it, where no larger one is seen.
+    /// - Where the error of a friction is more than half of it, that of `profile` stays, as far as the
+    ///   error allows; the most that it allows if `profile` says zero, because a device of no friction
+    ///   renders nothing in encoder steps.
+    /// - The encoder step is the largest that is seen; where an axis shows none, that of `profile`
+    ///   stays, as its source tells it, unless another axis shows a larger one.
     ///
     /// Limits of force, stiffness, damping, speed and workspace stay: motions without a hand do
     /// not tell them.
@@ -252,7 +261,7 @@ impl Identified {
     pub fn profile(&self, profile: &DeviceProfile, source: &str) -> DeviceProfile {
         let mut found = profile.clone();
         if let Some(worst) = self.worst(|axis| matches!(axis, DeviceAxis::Along(_))) {
-            let seen = worst.seen(&ALONG);
+            let seen = worst.seen(&ALONG, profile.encoder_step);
             found = found
                 .with_mass(worst.mass)
                 .with_least_damping(worst.damping)
@@ -263,7 +272,7 @@ impl Identified {
         }
         let about = self.worst(|axis| matches!(axis, DeviceAxis::About(_)));
         if let (Some(worst), Some(turning)) = (about, &profile.turning) {
-            let seen = worst.seen(&ABOUT);
+            let seen = worst.seen(&ABOUT, turning.encoder_step);
             let turning: TurningProfile = turning
                 .clone()
                 .with_inertia(worst.mass)
@@ -290,6 +299,8 @@ impl Identified {
                 least(|found| found.friction.least()),
                 least(|found| found.friction.most()),
             ],
+            is_friction_known: axes()
+                .all(|found| found.friction.least() >= 0.5 * found.friction.value),
             step: rounded(axes().map(|found| found.encoder_step.size()).fold(0.0, f64::max)),
             is_seen: [
                 axes().all(|found| found.mass.is_seen()),
@@ -315,7 +326,7 @@ fn assumed(
 ) -> Vec<&'static str> {
     let left = before.iter().filter(|name| !seen.contains(name));
     let unseen = names.iter().filter(|name| {
-        // The step of the profile stays as its source tells it.
+        // A step that is not found stays as its source tells it.
         **name != "encoder_step" && !seen.contains(name) && !before.contains(name)
     });
     left.chain(unseen).copied().collect()

@@ -18,6 +18,7 @@ mod devices;
 mod effects;
 mod energy;
 mod forces;
+mod free_forces;
 mod friction;
 mod golden;
 mod guides;

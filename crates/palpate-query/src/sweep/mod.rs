@@ -4,9 +4,18 @@
 //! When moving bodies touch first.
 
 mod ball;
+mod element;
+mod first_touch;
+mod motion;
 mod moving;
 mod pair;
+mod path;
+mod settings;
 
 pub use ball::cast_ball;
+pub use element::{ElementSweep, sweep_element};
+pub use first_touch::{FirstTouch, Start};
+pub use motion::Motion;
 pub use moving::Moving;
-pub use pair::{FirstTouch, Start, SweepSettings, sweep};
+pub use pair::sweep;
+pub use settings::SweepSettings;

@@ -3,13 +3,14 @@
 
 //! Shapes that move.
 
-use palpate_field::{Point, Screw, Shape, Vector};
+use palpate_field::{Point, Shape, Vector};
 
+use super::motion::Motion;
 use crate::error::QueryError;
-use crate::placed::{Placed, check_pose};
+use crate::placed::Placed;
 
 /// Roundings of a velocity and of a pose, relative to the numbers in them.
-const ROUNDINGS: f64 = 64.0 * f64::EPSILON;
+pub(super) const ROUNDINGS: f64 = 64.0 * f64::EPSILON;
 
 /// A shape on its way from pose to pose, over the time from 0 to 1. A shape at rest converts to one
 /// that stays.
@@ -30,52 +31,33 @@ const ROUNDINGS: f64 = 64.0 * f64::EPSILON;
 pub struct Moving<'a, const D: usize> {
     /// The shape.
     pub shape: &'a Shape<D>,
-    /// From the shape's coordinates to the world's, over the time; `None` at rest.
-    motion: Option<Screw<D>>,
-    rest: Placed<'a, D>,
+    /// From the shape's coordinates to the world's, over the time.
+    pub(super) motion: Motion<D>,
 }
 
 impl<'a, const D: usize> Moving<'a, D> {
-    /// `shape` on the way of a screw.
+    /// `shape` on its way.
     #[must_use]
-    pub fn new(shape: &'a Shape<D>, motion: Screw<D>) -> Self {
-        let rest = Placed::new(shape, *motion.from());
-        let moves = motion.from() != motion.to() || motion.angle() != 0.0;
-        Self { shape, motion: moves.then_some(motion), rest }
+    pub fn new(shape: &'a Shape<D>, motion: impl Into<Motion<D>>) -> Self {
+        Self { shape, motion: motion.into() }
     }
 
     /// The shape at a time, from 0 to 1.
     #[must_use]
     pub fn at(&self, time: f64) -> Placed<'a, D> {
-        match &self.motion {
-            Some(motion) => Placed::new(self.shape, motion.pose(time)),
-            None => self.rest,
-        }
+        Placed::new(self.shape, self.motion.pose(time))
     }
 
     /// The velocity of a point of the world that the body carries at a time [m].
     pub(super) fn velocity(&self, time: f64, p: Point<D>) -> Vector<f64, D> {
-        let Some(motion) = &self.motion else { return Vector::ZERO };
-        let pose = motion.pose(time);
-        pose.transform_vector(motion.velocity(pose.inverse().transform_point(p)))
-    }
-
-    /// The velocity of all points, if the body turns nowhere.
-    fn translation(&self) -> Option<Vector<f64, D>> {
-        match &self.motion {
-            None => Some(Vector::ZERO),
-            Some(motion) if motion.angle() == 0.0 => {
-                Some(motion.to().translation - motion.from().translation)
-            }
-            Some(_) => None,
-        }
+        let pose = self.motion.pose(time);
+        pose.transform_vector(self.motion.velocity(pose.inverse().transform_point(p)))
     }
 
     /// The largest speed of any point of the body [m]: that of a corner of its box, as velocities
     /// are affine in the point. Infinite for a body without bounds that turns.
     fn speed(&self) -> f64 {
-        let Some(motion) = &self.motion else { return 0.0 };
-        if let Some(velocity) = self.translation() {
+        if let Some(velocity) = self.motion.translation() {
             return velocity.norm();
         }
         let Some(bounds) = self.shape.promise().bounds else { return f64::INFINITY };
@@ -84,12 +66,12 @@ impl<'a, const D: usize> Moving<'a, D> {
                 if corner >> k & 1 == 0 { bounds.aabb.min[k] } else { bounds.aabb.max[k] }
             }))
         });
-        corners.map(|corner| motion.velocity(corner).norm()).fold(0.0, f64::max)
+        corners.map(|corner| self.motion.velocity(corner).norm()).fold(0.0, f64::max)
     }
 
     /// The largest speed at which two bodies may near each other, rounding included [m].
     pub(super) fn closing_speed(&self, other: &Self) -> f64 {
-        let speed = match (self.translation(), other.translation()) {
+        let speed = match (self.motion.translation(), other.motion.translation()) {
             (Some(a), Some(b)) => (a - b).norm(),
             _ => self.speed() + other.speed(),
         };
@@ -99,14 +81,11 @@ impl<'a, const D: usize> Moving<'a, D> {
     /// The rounding of places on the way [m].
     pub(super) fn rounding(&self) -> f64 {
         let reach = self.shape.promise().bounds.map_or(0.0, |b| b.radius_about_origin());
-        let way = self.motion.map_or(0.0, |motion| motion.velocity(Vector::ZERO).norm());
-        ROUNDINGS * (reach + way + self.rest.world_from_body.translation.norm())
+        ROUNDINGS * (reach + self.motion.reach())
     }
 
     pub(super) fn check(&self, index: usize) -> Result<(), QueryError> {
-        for time in [0.0, 1.0] {
-            check_pose(index, &self.at(time).world_from_body)?;
-        }
+        self.motion.check(index)?;
         if self.speed() < f64::INFINITY {
             Ok(())
         } else {
@@ -117,7 +96,7 @@ impl<'a, const D: usize> Moving<'a, D> {
 
 impl<'a, const D: usize> From<Placed<'a, D>> for Moving<'a, D> {
     fn from(rest: Placed<'a, D>) -> Self {
-        Self { shape: rest.shape, motion: None, rest }
+        Self::new(rest.shape, rest.world_from_body)
     }
 }
 

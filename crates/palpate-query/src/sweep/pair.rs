@@ -3,125 +3,15 @@
 
 //! The first touch of two bodies that move.
 
+use super::first_touch::{FirstTouch, Start};
 use super::moving::Moving;
+use super::settings::{FREE, SweepSettings};
 use crate::certified::{Limits, Stop};
-use crate::contact::Contact;
 use crate::error::QueryError;
 use crate::pair::{PairWorkspace, separation};
 
 /// A separation is searched to this share of the last one, and of the gap in the end.
 const SHARE: f64 = 0.25;
-
-/// Bodies that are apart by more than this share of the gap are free: a separation that is known to
-/// a quarter of the gap is one of a touch, or leaves a step that is free.
-const FREE: f64 = 0.5;
-
-/// A relative velocity slides if less than this share of it is along the normal.
-const SLIDES: f64 = 1e-3;
-
-/// How exactly a first touch is asked for.
-///
-/// ```
-/// use palpate_query::SweepSettings;
-///
-/// let settings = SweepSettings::of_size(0.2).with_time_tolerance(1e-6);
-/// assert_eq!((settings.gap, settings.time_tolerance), (2e-7, 1e-6));
-/// ```
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[non_exhaustive]
-pub struct SweepSettings {
-    /// Bodies whose separation is at most this touch [m].
-    pub gap: f64,
-    /// How far apart the bounds of the time may be, of a motion over the time from 0 to 1.
-    pub time_tolerance: f64,
-    /// How often fields are evaluated at most; the last search may exceed it.
-    pub budget: u32,
-}
-
-impl SweepSettings {
-    /// The budget unless another is given.
-    pub const BUDGET: u32 = 5_000_000;
-
-    /// For bodies of a size [m]: a gap of a millionth of it, times to 1e-4 of the motion.
-    #[must_use]
-    pub const fn of_size(size: f64) -> Self {
-        Self { gap: 1e-6 * size, time_tolerance: 1e-4, budget: Self::BUDGET }
-    }
-
-    /// The same settings with another gap [m].
-    #[must_use]
-    pub const fn with_gap(self, gap: f64) -> Self {
-        Self { gap, ..self }
-    }
-
-    /// The same settings with another tolerance of times.
-    #[must_use]
-    pub const fn with_time_tolerance(self, time_tolerance: f64) -> Self {
-        Self { time_tolerance, ..self }
-    }
-
-    /// The same settings with another budget.
-    #[must_use]
-    pub const fn with_budget(self, budget: u32) -> Self {
-        Self { budget, ..self }
-    }
-
-    fn check(&self) -> Result<(), QueryError> {
-        for (what, value) in [("gap", self.gap), ("time_tolerance", self.time_tolerance)] {
-            let limit = palpate_field::LARGEST_LENGTH;
-            // Written so that NaN is refused.
-            if !(value > 0.0 && value <= limit) {
-                return Err(QueryError::Setting { what, value });
-            }
-        }
-        Ok(())
-    }
-}
-
-/// How bodies that touch at the start move on.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub enum Start {
-    /// Into each other.
-    Approaching,
-    /// Away from each other.
-    Receding,
-    /// Along each other.
-    Sliding,
-}
-
-/// When two bodies touch first, of a motion over the time from 0 to 1.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[non_exhaustive]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct FirstTouch<const D: usize> {
-    /// Before this time the bodies are apart, by more than half of the gap: proven, rounding
-    /// included.
-    pub lower: f64,
-    /// At this time their separation is at most the gap; infinite if no such time was found, and 1
-    /// if they are proven to be apart all the time.
-    pub upper: f64,
-    /// The contact at `upper`; `None` if there is none, or no surface was found there.
-    pub contact: Option<Contact<D>>,
-    /// How the bodies move on, if they touch at the start.
-    pub start: Option<Start>,
-    /// Why the search stopped: [`Stop::Converged`] at a touch, [`Stop::SignKnown`] if there is none.
-    pub stop: Stop,
-    /// How often fields were evaluated; a gradient counts twice.
-    pub evaluations: u32,
-}
-
-impl<const D: usize> FirstTouch<D> {
-    /// `true` if the bodies touch, `false` if they are proven to be apart all the time; `None` if
-    /// neither is known.
-    #[must_use]
-    pub fn touches(&self) -> Option<bool> {
-        match self.stop {
-            Stop::SignKnown => Some(false),
-            _ => self.upper.is_finite().then_some(true),
-        }
-    }
-}
 
 /// When two bodies that move touch first: the first time at which their [`separation`] is at most
 /// `settings.gap`.
@@ -245,14 +135,7 @@ impl<const D: usize> PairSweep<'_, '_, D> {
             touch.start = normal.map(|normal| {
                 let point = found.best.point;
                 let relative = self.b.velocity(0.0, point) - self.a.velocity(0.0, point);
-                let (along, speed) = (relative.dot(normal), relative.norm());
-                if along.abs() <= SLIDES * speed {
-                    Start::Sliding
-                } else if along < 0.0 {
-                    Start::Approaching
-                } else {
-                    Start::Receding
-                }
+                Start::of(relative, normal)
             });
         }
         touch

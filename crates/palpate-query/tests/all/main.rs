@@ -8,6 +8,7 @@ use assert_no_alloc::AllocDisabler;
 mod ball_sweeps;
 mod balls;
 mod degenerate;
+mod element_sweeps;
 mod elements;
 mod manifolds;
 mod mesh_memory;

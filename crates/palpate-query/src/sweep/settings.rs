@@ -1,0 +1,69 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! How exactly a first touch is asked for.
+
+use crate::error::QueryError;
+
+/// Bodies that are apart by more than this share of the gap are free: a separation that is known to
+/// a quarter of the gap is one of a touch, or leaves a step that is free.
+pub(super) const FREE: f64 = 0.5;
+
+/// How exactly a first touch is asked for.
+///
+/// ```
+/// use palpate_query::SweepSettings;
+///
+/// let settings = SweepSettings::of_size(0.2).with_time_tolerance(1e-6);
+/// assert_eq!((settings.gap, settings.time_tolerance), (2e-7, 1e-6));
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct SweepSettings {
+    /// Bodies whose separation is at most this touch [m].
+    pub gap: f64,
+    /// How far apart the bounds of the time may be, of a motion over the time from 0 to 1.
+    pub time_tolerance: f64,
+    /// How often fields are evaluated at most; the last search may exceed it.
+    pub budget: u32,
+}
+
+impl SweepSettings {
+    /// The budget unless another is given.
+    pub const BUDGET: u32 = 5_000_000;
+
+    /// For bodies of a size [m]: a gap of a millionth of it, times to 1e-4 of the motion.
+    #[must_use]
+    pub const fn of_size(size: f64) -> Self {
+        Self { gap: 1e-6 * size, time_tolerance: 1e-4, budget: Self::BUDGET }
+    }
+
+    /// The same settings with another gap [m].
+    #[must_use]
+    pub const fn with_gap(self, gap: f64) -> Self {
+        Self { gap, ..self }
+    }
+
+    /// The same settings with another tolerance of times.
+    #[must_use]
+    pub const fn with_time_tolerance(self, time_tolerance: f64) -> Self {
+        Self { time_tolerance, ..self }
+    }
+
+    /// The same settings with another budget.
+    #[must_use]
+    pub const fn with_budget(self, budget: u32) -> Self {
+        Self { budget, ..self }
+    }
+
+    pub(super) fn check(&self) -> Result<(), QueryError> {
+        for (what, value) in [("gap", self.gap), ("time_tolerance", self.time_tolerance)] {
+            let limit = palpate_field::LARGEST_LENGTH;
+            // Written so that NaN is refused.
+            if !(value > 0.0 && value <= limit) {
+                return Err(QueryError::Setting { what, value });
+            }
+        }
+        Ok(())
+    }
+}
