@@ -213,7 +213,7 @@ impl<T: Device<D>, const D: usize> SimulatedTransport<T, D> {
         let jitter = if jitter > 0.0 { jitter * self.draw() } else { 0.0 };
         let last = self.time;
         let at = match last {
-            // The last one may have come late by its jitter.
+            // Jitter may have put the last one later than this tick.
             Some(last) if jitter != 0.0 || time < last => {
                 (time + jitter).max(last + SHORTEST_STEP)
             }

@@ -81,8 +81,8 @@ pub struct SafetyOptions {
     pub is_strict: bool,
     /// Whether the passivity controllers, of walls and of [free
     /// forces](PortState::free_force), and the stage of limit cycles act; the observers always
-    /// run. A wanted force that must do work on the hand is incompatible with the controller. None
-    /// acts on a device of infinite damping.
+    /// run. A wanted force that must do work on the hand is incompatible with the controller. On a
+    /// device of infinite damping, neither the controllers nor that stage act.
     pub has_passivity_control: bool,
     /// Energy that each controller lets out before the hand has put any in [J].
     pub reserve: f64,
@@ -95,7 +95,8 @@ pub struct SafetyOptions {
     /// its coupling, `√(κ/K)` metres a radian.
     pub rise_rate: f64,
     /// The time by which ticks are late together when the force falls to zero [s]. Each tick in
-    /// time takes a period from that sum; when it is zero, the force rises again.
+    /// time takes a period from that sum, and two once the force falls; when the sum is zero, the
+    /// force rises again.
     pub late_time: f64,
     /// The time over which late ticks lower the force to zero [s].
     pub fall_time: f64,
@@ -204,9 +205,9 @@ impl SafetyOptions {
 /// For any input, in any tick:
 ///
 /// - The force is finite and no larger than [`DeviceProfile::max_force`].
-/// - The force changes by no more than [`DeviceProfile::max_force_rate`] a second. There are
-///   two exceptions, which fall to zero in one tick: an input that is not finite, and the
-///   emergency stop.
+/// - In a tick, the force changes by no more than [`DeviceProfile::max_force_rate`] allows in a
+///   period, also where ticks come sooner. There are two exceptions, which fall to zero in one tick:
+///   an input that is not finite, and the emergency stop.
 /// - With passivity control, the force of a wall up to `2 b / T` is never changed, because the
 ///   device's damping dissipates the energy that the wall leaks; but where the device oscillates by
 ///   itself against the wall, the wall becomes softer. A stiffer wall gives out

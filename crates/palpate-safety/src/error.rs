@@ -195,8 +195,12 @@ impl fmt::Display for Refused {
         } else {
             ("", ["N/m", "N·s/m"])
         };
-        let [asked, asked_damping] = self.asked.map(rounded);
-        let [stiffness, damping] = self.rendered.map(rounded);
+        // Numbers that differ read differently.
+        let [[stiffness, asked], [damping, asked_damping]] = [0, 1].map(|k| {
+            let pair = [self.rendered[k], self.asked[k]];
+            let short = pair.map(rounded);
+            if short[0].0 == short[1].0 { pair.map(Short) } else { short }
+        });
         if let Some(body) = self.body {
             write!(f, "body {body}: ")?;
         }

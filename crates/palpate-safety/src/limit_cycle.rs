@@ -80,7 +80,7 @@ const LONGEST_OWN: f64 = 160.0;
 /// How fast the force of a wall comes back to a hand that trembles [N/s].
 const RETURN: f64 = 20.0;
 
-/// The time away from all bodies in which the stiffness comes back by a factor of e [s].
+/// The time in which the stiffness comes back by a factor of e [s].
 const RECOVERY: f64 = 20.0;
 
 /// A hand is calm in a guide if no quick half cycle ended for so long [s].
@@ -197,7 +197,7 @@ struct Extreme<V> {
 /// contact, `π √(M/K)`. There is a limit cycle if
 ///
 /// - six quick half cycles grow, both sides by 1.2 a cycle;
-/// - or eight quick half cycles shrink to no less than 0.9 together;
+/// - or the last of eight quick half cycles is at least 0.7 of the longest;
 /// - or eight half cycles grow, each cycle a little.
 ///
 /// The stiffness is then halved, at the rate of 0.3 N a tick, and half cycles are counted anew. It

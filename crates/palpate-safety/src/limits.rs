@@ -28,7 +28,7 @@ impl Limit {
         Ok(NumberError::check_positive_or_infinite(self.name, self.value, self.unit)?)
     }
 
-    /// The limit, which must be positive for a reason: `rule` says both.
+    /// The limit, which must be positive; `rule` is the text of the error, which says also why.
     pub(crate) fn positive_for(&self, rule: &'static str) -> Result<f64, SafetyError> {
         if self.value > 0.0 {
             return Ok(self.value);

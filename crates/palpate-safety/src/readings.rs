@@ -64,13 +64,13 @@ pub(crate) struct Reach {
     max_speed: f64,
     max_acceleration: f64,
     slack: f64,
-    /// How long before the last reading its velocity held, over half the time of its measurement.
+    /// The mean velocity over a time `t₀` is that of `lag · t₀/2` before its end.
     lag: f64,
 }
 
 impl Reach {
-    /// Of a largest speed and a largest acceleration that are positive, read in encoder steps; the
-    /// velocity of a reading is that of `lag` times half its time of measurement before.
+    /// Of a largest speed and a largest acceleration that are positive, read in encoder steps; `lag`
+    /// as in [`Reach`].
     pub(crate) fn new(limits: [f64; 2], encoder_step: f64, lag: f64) -> Self {
         let [max_speed, max_acceleration] = limits;
         Self { max_speed, max_acceleration, slack: STEPS * encoder_step, lag }
@@ -197,6 +197,7 @@ impl<const D: usize> Readings<D> {
         let change = (way - last.velocity * time).norm();
         if self.reach.has(way.norm(), change, [time, last.over]) {
             // Two readings at one time say nothing of the velocity.
+            last.position = position;
             if time > 0.0 {
                 let velocity = way * (1.0 / time);
                 let known = Counted { velocity, over: time, ..Counted::unknown(position) };
@@ -208,7 +209,8 @@ impl<const D: usize> Readings<D> {
         false
     }
 
-    /// The last position that counted [m]; `None` before the first.
+    /// The last position that counted [m]; `None` before the first, and for a device without a largest
+    /// speed and acceleration.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     #[must_use]
@@ -333,5 +335,18 @@ mod tests {
         }
         assert!(!readings.counts(Vector([0.15, 0.1]), 0.0));
         assert!(readings.counts(Vector([0.1, 0.1]), PERIOD));
+    }
+
+    /// Once the later of two readings at one time was forgotten, its way made a velocity, and a hand at
+    /// rest was held back.
+    #[test]
+    fn of_two_readings_at_one_time_the_later_is_the_last() {
+        let device = DeviceProfile::unlimited("").with_max_acceleration(500.0);
+        let mut readings = Readings::new(&device).unwrap();
+        assert!(readings.counts(Vector([0.0, 0.0]), PERIOD));
+        let there = Vector([0.1, 0.0]);
+        assert!(readings.counts(there, 0.0));
+        assert_eq!(readings.last(), Some(there));
+        assert!((0..400).all(|_| readings.counts(there, PERIOD)));
     }
 }

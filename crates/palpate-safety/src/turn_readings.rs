@@ -120,6 +120,7 @@ impl<const D: usize> TurnReadings<D> {
             self.held.add(way.norm());
             return false;
         }
+        last.orientation = orientation;
         // Two readings at one time say nothing of the angular velocity.
         if time > 0.0 {
             let is_ambiguous = (PI..f64::INFINITY).contains(&self.reach.way_in(time));

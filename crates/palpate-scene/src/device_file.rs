@@ -193,11 +193,17 @@ fn check(written: &WrittenDevice) -> Result<(), Problems> {
 
 fn check_gripper(gripper: &WrittenGripper) -> Result<(), Problems> {
     let forces = gripper.max_force > 0.0;
-    Problems::all([
+    let numbers = Problems::all([
         positive("max_opening", gripper.max_opening, "m"),
         at_least("max_force", gripper.max_force, 0.0, "N"),
         limit("max_force_rate", gripper.max_force_rate, forces, "N/s"),
-    ])
+    ]);
+    let sizes = check_sizes(&[
+        ("max_opening", gripper.max_opening),
+        ("max_force", gripper.max_force),
+        ("max_force_rate", gripper.max_force_rate),
+    ]);
+    Problems::all([numbers, sizes])
 }
 
 /// The names of buttons, whose places are their indices.

@@ -165,7 +165,7 @@ fn write_report<const D: usize>(out: &mut String, felt: &Felt<'_, D>) -> std::fm
     match &report.tool {
         Some(tool) => {
             let is_softest = surfaces().all(|surface| surface.stiffness() > tool.stiffness);
-            let softest = if is_softest { ", softer than all of it" } else { "" };
+            let softest = if is_softest { ", softer than every body" } else { "" };
             writeln!(
                 out,
                 "through a coupling of {} N/m, {} N·s/m{softest}",

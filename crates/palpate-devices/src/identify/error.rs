@@ -18,7 +18,7 @@ fn missed(misfit: f64, limit: f64) -> String {
     }
 }
 
-/// Why an identification ended without a result. The last force and torque written are zero.
+/// Why an identification ended without a result. The last force and torque written, if any, are zero.
 ///
 /// ```
 /// use palpate_devices::{DeviceAxis, IdentifyError};
@@ -37,6 +37,12 @@ pub enum IdentifyError {
     NoForce {
         /// The device's name.
         name: String,
+    },
+    /// The device does not open.
+    #[error("{lost}; nothing was written to the device")]
+    NotOpened {
+        /// The message of the transport.
+        lost: DeviceLost,
     },
     /// The device no longer answers.
     #[error("{axis}: {lost}; the motors were set to zero as far as the device still takes it")]

@@ -66,7 +66,7 @@ pub struct IdentifyProgress {
 /// The handle stays within [`IdentifyOptions::travel`] and [`angle`](IdentifyOptions::angle) of
 /// its start, and below a speed; forces stay within a part of the largest, and change no
 /// faster than the profile allows. What breaks a limit ends the identification. However it
-/// ends, zero forces are written last, after a panic of the device too.
+/// ends, zero forces are written last to a device that opened, after a panic of it too.
 ///
 /// `next_tick` returns the time of each tick [s], when that has come, on any clock: a simulated
 /// device needs no waiting. It returns `None` to stop. Ticks need not be even, as their times are

@@ -45,7 +45,7 @@ pub(super) struct Reading {
     pub(super) held: f64,
 }
 
-/// A device of which one axis is pushed. Zero forces are written when it is dropped.
+/// A device of which one axis is pushed. Once it is open, zero forces are written when it is dropped.
 pub(super) struct Port<'a, const D: usize> {
     device: &'a mut dyn Device<D>,
     next_tick: &'a mut NextTick<'a>,
@@ -106,7 +106,7 @@ impl<'a, const D: usize> Port<'a, D> {
     pub(super) fn open(&mut self) -> Result<(), IdentifyError> {
         let axis = self.axis();
         let lost = |lost| IdentifyError::Lost { axis, lost };
-        self.device.open().map_err(lost)?;
+        self.device.open().map_err(|lost| IdentifyError::NotOpened { lost })?;
         self.is_open = true;
         let _ = self.device.set_watchdog(WATCHDOG).map_err(lost)?;
         self.device.enable().map_err(lost)

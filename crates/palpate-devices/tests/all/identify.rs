@@ -317,7 +317,7 @@ fn the_profile_holds_the_worst_axis_and_what_was_found_is_not_assumed() {
 
 /// Once zero was written, which a device of encoder steps may not have.
 #[test]
-fn a_friction_that_may_be_zero_stays_that_of_the_profile() {
+fn a_friction_that_may_be_zero_stays_that_of_the_profile_within_its_error() {
     let profile = profile_named("omega").unwrap();
     let mut found = identify(&mut free(profile.clone()), IdentifyOptions::new(1000.0)).unwrap();
     found.axes[1].friction = Estimate { value: 0.2, error: 0.3 };
@@ -331,6 +331,12 @@ fn a_friction_that_may_be_zero_stays_that_of_the_profile() {
     assert_eq!(friction(0.01), 0.01);
     for stated in [0.0, 1.0] {
         assert!((friction(stated) / most - 1.0).abs() <= 5e-5, "{stated}");
+    }
+    // A friction that is known to a half is the least of it, however it compares with the profile's.
+    found.axes[1].friction = Estimate { value: 0.05, error: 0.01 };
+    for stated in [0.0, 0.01, 1.0] {
+        let better = found.profile(&profile.clone().with_friction(stated), "strokes");
+        assert!((better.friction / 0.04 - 1.0).abs() <= 5e-5, "{stated}");
     }
 }
 
