@@ -58,6 +58,8 @@ pub(crate) const COLLIDE: &[Bar] = &[
     ("sweep.ball.S3.random.p50.over_S3", 130.0),
     ("sweep.ball.S3.grazing.p50.over_S3", 400.0),
     ("sweep.ball.S3.grazing.p95.over_S3", 3500.0),
+    ("sweep.triangle.S3.0.05.p50.over_S3", 1700.0),
+    ("sweep.triangle.S3.0.3.p50.over_S3", 4500.0),
     ("sweep.pair.S3_S3.p50.over_S3", 80_000.0),
     ("manifold.boxes.p50.over_S3", 22_000.0),
     ("manifold.peg.p50.over_S3", 86_000.0),

@@ -1,17 +1,19 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! Balls and bodies that move: when they touch first.
+//! Balls, triangles and bodies that move: when they touch first.
 
 use std::error::Error;
 use std::hint::black_box;
 
 use palpate::field::{Pose, Screw, Shape, Vector};
 use palpate::query::{
-    BallWorkspace, Limits, Moving, PairWorkspace, Placed, Ray, SweepSettings, cast_ball, sweep,
+    BallWorkspace, Element, ElementSweep, Limits, Motion, Moving, PairWorkspace, Placed, Ray,
+    SweepSettings, cast_ball, sweep, sweep_element,
 };
 
 use super::pairs::placed;
+use super::triangles::SIZES;
 use super::{Space, TimedRows, Turn, fastest};
 use crate::random::Random;
 use crate::scenes::{self, Work};
@@ -29,6 +31,9 @@ const TOLERANCE: f64 = 1e-6;
 /// The clearances in the middle of paths that graze [m].
 const GRAZING: [f64; 4] = [1e-3, 1e-5, -1e-5, -1e-3];
 
+/// Triangles that move, of each size.
+const TRIANGLES: usize = 200;
+
 /// Pairs that move.
 const PAIRS: usize = 40;
 
@@ -39,6 +44,9 @@ pub(super) fn measure(rows: &mut TimedRows) -> Result<(), Box<dyn Error>> {
         let Work { name, shape, .. } = work;
         cast(&format!("sweep.ball.{name}.random"), shape, &random_paths(shape)?, rows)?;
         cast(&format!("sweep.ball.{name}.grazing"), shape, &grazing_paths(shape)?, rows)?;
+        for size in SIZES {
+            triangles(&format!("sweep.triangle.{name}.{size}"), shape, size, rows)?;
+        }
     }
     let found = spatial.iter().find(|work| work.name == "S3");
     let Work { shape, .. } = found.ok_or("no S3")?;
@@ -107,6 +115,45 @@ fn grazing_paths(shape: &Shape<3>) -> Result<Vec<Ray<3>>, Box<dyn Error>> {
         }
     }
     Ok(paths)
+}
+
+/// Triangles that begin free, move by a metre and turn by up to 1.5 rad, any way.
+fn triangles(
+    key: &str,
+    shape: &Shape<3>,
+    size: f64,
+    rows: &mut TimedRows,
+) -> Result<(), Box<dyn Error>> {
+    let mut random = Random::new(14);
+    let settings = SweepSettings::of_size(1.0).with_gap(1e-4).with_time_tolerance(1e-3);
+    let mut workspace = ElementSweep::new();
+    let mut times = Vec::new();
+    let (mut evaluations, mut undecided) = (0, 0);
+    while times.len() < TRIANGLES {
+        let corners = [(); 3].map(|()| Vector(random.point([0.0; 3], size)));
+        let element = Element::new(corners)?;
+        let from = Pose::translation(Vector(random.point([0.0; 3], 1.0)));
+        let way = Vector(random.point([0.0; 3], 1.0));
+        let turn = <Space as Turn<3>>::by(&mut random, 1.5)?;
+        let to = from * Pose::new(turn, way * (LENGTH / way.norm()));
+        let there = from.transform_point(element.at(&[1.0 / 3.0; 3]));
+        if shape.distance(there) <= size {
+            continue;
+        }
+        let motion = Motion::from(Screw::new(from, to, 0)?);
+        let answer = sweep_element(shape, &element, motion, &settings, &mut workspace)?;
+        evaluations += answer.evaluations;
+        undecided += u32::from(answer.stop.is_early());
+        times.push(fastest(|| {
+            let motion = black_box(motion);
+            let _ =
+                black_box(sweep_element(shape, &element, motion, &settings, &mut workspace));
+        }));
+    }
+    rows.insert(format!("{key}.evaluations"), f64::from(evaluations) / times.len() as f64);
+    rows.insert(format!("{key}.undecided"), f64::from(undecided));
+    rows.add_times(key, times);
+    Ok(())
 }
 
 /// Bodies 50 mm apart, of which one moves by 0.3 m and turns by a radian, any way.
