@@ -104,7 +104,7 @@ pub use ray::{Ray, RayHit, cast_ray};
 pub use sampler::free_radius;
 pub use sweep::{
     ElementSweep, FirstTouch, Motion, Moving, Start, SweepSettings, cast_ball, sweep,
-    sweep_element,
+    sweep_element, sweep_mesh,
 };
 pub use track::Track;
 #[cfg(feature = "world")]

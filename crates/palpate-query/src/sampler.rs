@@ -48,6 +48,12 @@ impl<const D: usize> Steepness<D> {
         }
     }
 
+    /// `true` if the steepness holds within `far` of `p` [m].
+    #[inline]
+    pub(crate) fn holds_within(&self, p: Point<D>, far: f64) -> bool {
+        self.region.is_none_or(|region| (p - region.centre).norm() + far <= region.radius)
+    }
+
     /// The largest change of values within `far` of `p`, rounding included [m].
     #[inline]
     pub(crate) fn change(&self, p: impl FnOnce() -> Point<D>, far: f64) -> f64 {

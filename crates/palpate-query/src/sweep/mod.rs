@@ -5,16 +5,21 @@
 
 mod ball;
 mod element;
+mod elements;
 mod first_touch;
+mod mesh;
 mod motion;
 mod moving;
 mod pair;
+mod part;
 mod path;
 mod settings;
 
 pub use ball::cast_ball;
-pub use element::{ElementSweep, sweep_element};
+pub use element::sweep_element;
+pub use elements::ElementSweep;
 pub use first_touch::{FirstTouch, Start};
+pub use mesh::sweep_mesh;
 pub use motion::Motion;
 pub use moving::Moving;
 pub use pair::sweep;

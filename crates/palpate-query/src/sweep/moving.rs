@@ -3,7 +3,7 @@
 
 //! Shapes that move.
 
-use palpate_field::{Point, Shape, Vector};
+use palpate_field::{Aabb, Point, Shape, Vector};
 
 use super::motion::Motion;
 use crate::error::QueryError;
@@ -61,12 +61,9 @@ impl<'a, const D: usize> Moving<'a, D> {
             return velocity.norm();
         }
         let Some(bounds) = self.shape.promise().bounds else { return f64::INFINITY };
-        let corners = (0..1_usize << D).map(|corner| {
-            Vector(std::array::from_fn(|k| {
-                if corner >> k & 1 == 0 { bounds.aabb.min[k] } else { bounds.aabb.max[k] }
-            }))
-        });
-        corners.map(|corner| self.motion.velocity(corner).norm()).fold(0.0, f64::max)
+        corners(&bounds.aabb)
+            .map(|corner| self.motion.velocity(corner).norm())
+            .fold(0.0, f64::max)
     }
 
     /// The largest speed at which two bodies may near each other, rounding included [m].
@@ -92,6 +89,14 @@ impl<'a, const D: usize> Moving<'a, D> {
             Err(QueryError::TurnsUnbounded { index })
         }
     }
+}
+
+/// The corners of a box.
+pub(super) fn corners<const D: usize>(aabb: &Aabb<D>) -> impl Iterator<Item = Point<D>> {
+    let Aabb { min, max } = *aabb;
+    (0..1_usize << D).map(move |corner| {
+        Vector(std::array::from_fn(|k| if corner >> k & 1 == 0 { min[k] } else { max[k] }))
+    })
 }
 
 impl<'a, const D: usize> From<Placed<'a, D>> for Moving<'a, D> {

@@ -7,6 +7,8 @@ use palpate_field::{Point, Pose, Vector};
 
 use super::motion::Motion;
 use super::moving::ROUNDINGS;
+use super::settings::SweepSettings;
+use crate::error::QueryError;
 
 /// The way of a body through the coordinates of a field, both of which may move.
 #[derive(Clone, Copy, Debug)]
@@ -36,6 +38,22 @@ pub(super) struct WayBounds {
 }
 
 impl<const D: usize> Path<D> {
+    /// The way of a body with this motion, as a field with that motion sees it.
+    ///
+    /// # Errors
+    ///
+    /// If a pose is NaN or out of range, or a setting is not positive.
+    pub(super) fn new(
+        field: Motion<D>,
+        body: Motion<D>,
+        settings: &SweepSettings,
+    ) -> Result<Self, QueryError> {
+        settings.check()?;
+        field.check(0)?;
+        body.check(1)?;
+        Ok(Self { field, body })
+    }
+
     #[inline]
     pub(super) fn at(&self, time: f64) -> Place<D> {
         let world_from_body = self.body.pose(time);

@@ -1,0 +1,466 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! The first touch of segments and triangles that move, alone or in a mesh, and a field.
+//!
+//! Best-first branch and bound over parts of the elements, where the bound of a part is the time
+//! until which it is free. A value f at any point p, on the part or off it, proves a ball of radius
+//! f/L about p empty; the part is free until its first vertex leaves the ball, as the distance from
+//! p is convex. So each part advances through time on its own: those near the surface in small
+//! steps or in smaller parts, those that are passed by in one. From points lifted off the part along
+//! the gradient, the ball is nearly a half-space, and the step is nearly that of the tangent plane.
+//!
+//! Where the balls are too small for a part, as those of fields that are steeper than one, a model
+//! bounds the field over the part and a span of time: the parameters are two along the part, and
+//! time.
+//!
+//! A mesh begins as the root of its tree of balls, and comes apart into nodes and elements where
+//! that gains time.
+
+use palpate_field::scalar::Model;
+use palpate_field::{BLOCK, Block, Column, Point, SHORT, Shape, Vector};
+use palpate_mesh::Mesh;
+use palpate_mesh::internal::FAN;
+
+use super::first_touch::{FirstTouch, Start};
+use super::moving::Moving;
+use super::part::{Of, Part, Stay, Way};
+use super::path::{Path, WayBounds};
+use super::settings::{FREE, SweepSettings};
+use crate::certified::Stop;
+use crate::contact::Contact;
+use crate::element::parts_of_one;
+use crate::engine::{self, Frontier, Problem};
+use crate::sampler::{Sampler, Samples, normal};
+
+/// Heights over the centre where a part has so many samples, as shares of its height.
+const SHARES: [f64; SHORT] = [1.0, 0.35, 3.0, 0.1, 8.0, 0.03, 20.0, 0.01];
+
+/// A height shrinks to this where no sample over the centre helps, and grows by this where the
+/// first does.
+const LOWER: f64 = 0.3;
+const HIGHER: f64 = 1.5;
+
+/// The highest samples, in radii of the body and besides its way.
+const HIGHEST: f64 = 16.0;
+
+/// The shortest span of a model.
+const SHORTEST: f64 = 1e-6;
+
+/// The largest number of halvings: such parts are as small as roundings of the whole.
+const MOST_LEVELS: u32 = 48;
+
+/// The largest number of waiting parts.
+const ROOM: usize = 8192;
+
+/// Parts of a round at most.
+const ROUND: usize = 2 * FAN;
+
+/// Memory of sweeps of elements and meshes, kept from one to the next: it is allocated once.
+#[derive(Debug)]
+pub struct ElementSweep<const N: usize, const D: usize> {
+    frontier: Frontier<Vec<Part<N, D>>>,
+    samples: Samples<D>,
+    cells: Block<Model, D, BLOCK>,
+    models: Column<Model, BLOCK>,
+}
+
+impl<const N: usize, const D: usize> ElementSweep<N, D> {
+    /// Room for sweeps of elements of `N` points in `D` dimensions.
+    #[must_use]
+    pub fn new() -> Self {
+        Self {
+            frontier: Frontier {
+                queue: Vec::with_capacity(ROOM),
+                pending: Vec::new(),
+                round: Vec::with_capacity(ROUND),
+            },
+            samples: Samples::new(),
+            cells: Block::zero(),
+            models: Column::zero(),
+        }
+    }
+
+    /// The first touch of what moves, and a field.
+    pub(super) fn run(
+        &mut self,
+        field: Moving<'_, D>,
+        whole: &Whole<'_, N, D>,
+        path: Path<D>,
+        settings: &SweepSettings,
+    ) -> FirstTouch<D> {
+        let Self { frontier, samples, cells, models } = self;
+        let way = path.bounds(whole.corners);
+        let highest = way.speed + HIGHEST * whole.part.height;
+        let reach = way.far + highest;
+        let mut search = ElementSearch {
+            sampler: Sampler::new(field.shape, samples, reach, FREE * settings.gap),
+            field: field.shape,
+            mesh: whole.mesh,
+            cells,
+            models,
+            path,
+            way,
+            settings,
+            highest,
+            upper: f64::INFINITY,
+            best: None,
+            dropped: f64::INFINITY,
+        };
+        frontier.queue.clear();
+        frontier.queue.push(whole.part);
+        let end = engine::search(&mut search, frontier);
+        let lower = frontier.lower(search.dropped);
+        search.answer(field, lower, end.stop())
+    }
+}
+
+impl<const N: usize, const D: usize> Default for ElementSweep<N, D> {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+/// What moves, in its own coordinates.
+pub(super) struct Whole<'a, const N: usize, const D: usize> {
+    pub(super) part: Part<N, D>,
+    pub(super) mesh: Option<&'a Mesh<N, D>>,
+    /// Points whose convex hull holds it [m].
+    pub(super) corners: &'a [Point<D>],
+}
+
+/// A point that touches, and what it is on.
+#[derive(Clone, Copy, Debug)]
+struct Touching<const D: usize> {
+    point: Point<D>,
+    of: Of,
+}
+
+/// The search for the first touch, as a problem of the engine.
+struct ElementSearch<'s, 'a, const N: usize, const D: usize> {
+    sampler: Sampler<'a, D>,
+    field: &'a Shape<D>,
+    mesh: Option<&'s Mesh<N, D>>,
+    cells: &'s mut Block<Model, D, BLOCK>,
+    models: &'s mut Column<Model, BLOCK>,
+    path: Path<D>,
+    way: WayBounds,
+    settings: &'s SweepSettings,
+    /// Of the highest sample [m].
+    highest: f64,
+    /// The first time known of a touch, and what touches then.
+    upper: f64,
+    best: Option<Touching<D>>,
+    /// The least bound of closed parts.
+    dropped: f64,
+}
+
+impl<const N: usize, const D: usize> ElementSearch<'_, '_, N, D> {
+    fn answer(&mut self, field: Moving<'_, D>, lower: f64, stop: Stop) -> FirstTouch<D> {
+        let evaluations = self.sampler.evaluations;
+        if stop == Stop::SignKnown {
+            let (lower, upper) = (1.0, 1.0);
+            return FirstTouch { lower, upper, contact: None, start: None, stop, evaluations };
+        }
+        let upper = self.upper;
+        let lower = lower.min(upper).min(1.0);
+        let mut touch =
+            FirstTouch { lower, upper, contact: None, start: None, stop, evaluations };
+        if let Some(Touching { point: p, of }) = self.best {
+            let place = self.path.at(upper);
+            let q = place.point(p);
+            let (_, gradient) = self.sampler.slope(q);
+            touch.evaluations = self.sampler.evaluations;
+            let surface = field.shape.surface_point(q);
+            if let (Some(surface), Some(normal)) = (surface, normal(gradient)) {
+                let world = self.path.field.pose(upper);
+                let contact = Contact::new(surface, q, normal).placed(&world);
+                let id = if let Of::Element(name) = of { u64::from(name) } else { 0 };
+                touch.contact = Some(contact.with_id(id));
+                let relative = self.path.velocity(&place, p, q);
+                touch.start = (upper == 0.0).then(|| Start::of(relative, normal));
+            }
+        }
+        touch
+    }
+
+    /// Notes a point of a part that touches at a time.
+    fn found(&mut self, time: f64, point: Point<D>, of: Of) {
+        if time < self.upper {
+            (self.upper, self.best) = (time, Some(Touching { point, of }));
+        }
+    }
+
+    /// Advances the parts of a round.
+    fn advance(&mut self, parts: &mut [Part<N, D>]) {
+        let count = parts.len();
+        let mut place = self.path.at(parts[0].free);
+        let ways: [Way<N, D>; SHORT] = std::array::from_fn(|i| {
+            let part = &parts[i.min(count - 1)];
+            if part.free != place.time {
+                place = self.path.at(part.free);
+            }
+            part.way(&self.path, &place)
+        });
+        let centres = ways.map(|way| way.centre);
+        let (values, directions) = self.sampler.slopes(&centres);
+        let mut stays = [Stay::default(); SHORT];
+        for i in 0..count {
+            let part = &parts[i];
+            if part.is_of_element() && values[i] <= (1.0 - FREE) * self.settings.gap {
+                self.found(part.free, part.element.at(&part.form.weights), part.of);
+            }
+            stays[i] = self.stays(&ways[i], centres[i], values[i]);
+        }
+        self.lift(parts, &ways, &directions, &mut stays);
+        self.look(parts, &ways, &values, &directions);
+        self.model(parts, &ways, &mut stays);
+        for (part, stay) in parts.iter_mut().zip(&stays) {
+            part.free += stay.part;
+            part.is_whole = stay.pays();
+        }
+    }
+
+    /// Lengthens steps that are short for the size of their parts by models of the field over the
+    /// parts and spans of time.
+    fn model(
+        &mut self,
+        parts: &[Part<N, D>],
+        ways: &[Way<N, D>; SHORT],
+        stays: &mut [Stay; SHORT],
+    ) {
+        let latest = self.upper.min(1.0);
+        let (mut open, mut spans, mut count) = ([0; SHORT], [0.0; SHORT], 0);
+        for (i, part) in parts.iter().enumerate() {
+            let span = stays[i].centre.max(SHORTEST).min(latest - part.free);
+            let way = &ways[i];
+            let far = way.places.iter().map(|q| (*q - way.centre).norm()).fold(0.0, f64::max)
+                + self.way.speed * span;
+            let holds = self.sampler.steepness.holds_within(way.centre, far);
+            if part.is_of_element() && !stays[i].pays() && stays[i].part < span && holds {
+                (open[count], spans[count]) = (i, span);
+                count += 1;
+            }
+        }
+        if count == 0 {
+            return;
+        }
+        let acceleration = self.way.acceleration;
+        self.cells.fill(count, |lane| {
+            let (way, span) = (&ways[open[lane]], spans[lane]);
+            let apex = parts[open[lane]].form.apex;
+            let half = 0.5 * span;
+            let ([c, e], [v, de]) = (frame(&way.places, apex), frame(&way.velocities, apex));
+            let bend = 0.5 * acceleration * span * span;
+            Vector(std::array::from_fn(|k| {
+                let [u, w] = [0, 1].map(|i| e[i][k] + de[i][k] * half);
+                let cross = half * (de[0][k].abs() + de[1][k].abs()) + bend;
+                let (value, along) = (c[0][k] + v[0][k] * half, v[0][k] * half);
+                Model { value, gradient: [u, w, along], lower: cross, upper: cross }
+            }))
+        });
+        self.sampler.evaluations += count as u32;
+        self.field.block_distances(self.cells, count, self.models);
+        let steepness = &self.sampler.steepness;
+        let level = FREE * self.settings.gap
+            + steepness.slack
+            + self.way.rounding * steepness.lipschitz;
+        for (lane, &i) in open[..count].iter().enumerate() {
+            let Model { value, gradient: [u, v, t], lower, .. } = self.models.get(lane);
+            let (base, middle) = (value - lower - level, value - level);
+            let corners = if N == 2 {
+                [base + u, base - u, base + u]
+            } else {
+                [base + v, base - v + u, base - v - u]
+            };
+            let positive = |values: &[f64]| {
+                values.iter().fold(1.0_f64, |share, value| share.min(positive_share(*value, t)))
+            };
+            let [part, centre] =
+                [positive(&corners), positive(&[middle])].map(|share| share * spans[lane]);
+            stays[i].or(Stay { part, centre: centre.min(spans[lane]) });
+        }
+    }
+
+    /// How long a part stays where a value at `p` proves the field positive.
+    #[inline]
+    fn stays(&self, way: &Way<N, D>, p: Point<D>, value: f64) -> Stay {
+        let radius = self.sampler.free_radius(p, value - self.way.rounding);
+        way.stays(p, radius, self.way.acceleration)
+    }
+
+    /// Lengthens the steps by points lifted over the centres.
+    fn lift(
+        &mut self,
+        parts: &mut [Part<N, D>],
+        ways: &[Way<N, D>; SHORT],
+        directions: &[Vector<f64, D>; SHORT],
+        stays: &mut [Stay; SHORT],
+    ) {
+        let count = parts.len();
+        let mut best = [0.0; SHORT];
+        let rounds = if count > SHORT / 2 { 2 } else { 1 };
+        let of_each = SHORT / count;
+        for round in 0..rounds {
+            let share = |lane: usize| SHARES[lane % of_each + round];
+            let points: [Point<D>; SHORT] = std::array::from_fn(|lane| {
+                let i = (lane / of_each).min(count - 1);
+                ways[i].centre + directions[i] * (share(lane) * parts[i].height)
+            });
+            let values = self.sampler.values(&points);
+            for lane in 0..of_each * count {
+                let i = lane / of_each;
+                let stay = self.stays(&ways[i], points[lane], values[lane]);
+                if stay.part > stays[i].part {
+                    best[i] = share(lane);
+                }
+                stays[i].or(stay);
+            }
+        }
+        for (part, best) in parts.iter_mut().zip(best) {
+            let factor = match best {
+                0.0 => LOWER,
+                1.0 => HIGHER,
+                share => share,
+            };
+            part.height = (part.height * factor).min(self.highest);
+        }
+    }
+
+    /// Looks for touches where the tangent planes say that they are: of the centres, and of the
+    /// vertices that are lowest.
+    fn look(
+        &mut self,
+        parts: &[Part<N, D>],
+        ways: &[Way<N, D>; SHORT],
+        values: &[f64; SHORT],
+        directions: &[Vector<f64, D>; SHORT],
+    ) {
+        let gap = (1.0 - FREE) * self.settings.gap;
+        for of_centre in [false, true] {
+            let latest = self.upper.min(1.0);
+            let mut points = [ways[0].centre; SHORT];
+            let (mut times, mut lowest) = ([f64::INFINITY; SHORT], [0; SHORT]);
+            for (i, part) in parts.iter().enumerate() {
+                let (way, direction) = (&ways[i], directions[i]);
+                let after = |q: Point<D>, v: Vector<f64, D>| {
+                    let clear = values[i] - gap + direction.dot(q - way.centre);
+                    let nears = -direction.dot(v);
+                    match () {
+                        () if clear <= 0.0 => 0.0,
+                        () if nears > 0.0 => clear / nears + 0.5 * self.settings.time_tolerance,
+                        () => f64::INFINITY,
+                    }
+                };
+                let (mut when, mut at) = (after(way.centre, way.mean), (way.centre, way.mean));
+                if !of_centre {
+                    when = f64::INFINITY;
+                    for k in 0..N {
+                        let soon = after(way.places[k], way.velocities[k]);
+                        if soon < when {
+                            (when, at) = (soon, (way.places[k], way.velocities[k]));
+                            lowest[i] = k;
+                        }
+                    }
+                }
+                if part.is_of_element() && part.free + when < latest {
+                    times[i] = part.free + when;
+                    points[i] = at.0 + at.1 * when;
+                }
+            }
+            if times.iter().all(|time| *time == f64::INFINITY) {
+                continue;
+            }
+            let found = self.sampler.values(&points);
+            for (i, part) in parts.iter().enumerate() {
+                let since = times[i] - part.free;
+                let bend = 0.5 * self.way.acceleration * since * since;
+                if found[i] + bend * self.sampler.steepness.lipschitz <= gap {
+                    let vertex = part.element.vertices[lowest[i]];
+                    let centre = part.element.at(&part.form.weights);
+                    self.found(times[i], if of_centre { centre } else { vertex }, part.of);
+                }
+            }
+        }
+    }
+}
+
+/// Up to which share of a span `value + t w` is positive, for w from −1 to 1.
+fn positive_share(value: f64, t: f64) -> f64 {
+    let (first, last) = (value - t, value + t);
+    // Written so that NaN is not positive.
+    if !(first > 0.0) {
+        0.0
+    } else if last > 0.0 {
+        1.0
+    } else {
+        first / (first - last) * (1.0 - 1e-12)
+    }
+}
+
+/// The centre of a parallelogram that holds a triangle, and its half sides: half the longest edge,
+/// and half of the way from its middle to the apex. Of a segment, the second is zero.
+fn frame<const N: usize, const D: usize>(
+    vertices: &[Vector<f64, D>; N],
+    apex: usize,
+) -> [[Vector<f64, D>; 2]; 2] {
+    let v = |k: usize| vertices[(apex + k) % N];
+    let (middle, half) = ((v(N - 2) + v(N - 1)) * 0.5, (v(N - 2) - v(N - 1)) * 0.5);
+    if N == 2 {
+        return [[middle, Vector::ZERO], [half, Vector::ZERO]];
+    }
+    let up = (v(0) - middle) * 0.5;
+    [[middle + up, Vector::ZERO], [half, up]]
+}
+
+impl<const N: usize, const D: usize> Problem for ElementSearch<'_, '_, N, D> {
+    type Queue = Vec<Part<N, D>>;
+
+    fn round_and_parts(&self) -> (usize, usize) {
+        if self.mesh.is_some() { (ROUND, FAN) } else { (SHORT, parts_of_one::<N>()) }
+    }
+
+    fn decided(&self, lower: f64) -> Option<Stop> {
+        if lower >= self.upper - self.settings.time_tolerance {
+            Some(Stop::Converged)
+        } else {
+            (lower >= 1.0).then_some(Stop::SignKnown)
+        }
+    }
+
+    fn has_room(&self, frontier: &Frontier<Self::Queue>) -> bool {
+        frontier.queue.len() + ROUND <= ROOM
+    }
+
+    fn is_spent(&self) -> bool {
+        self.sampler.evaluations >= self.settings.budget
+    }
+
+    fn can_split(&self, queue: &Self::Queue) -> bool {
+        !queue.is_empty()
+    }
+
+    fn split(&mut self, part: &Part<N, D>, round: &mut Vec<Part<N, D>>) {
+        if part.is_whole {
+            round.push(*part);
+        } else {
+            part.divide(self.mesh, round);
+        }
+    }
+
+    fn bound(&mut self, frontier: &mut Frontier<Self::Queue>) {
+        frontier.round.chunks_mut(SHORT).for_each(|parts| self.advance(parts));
+    }
+
+    fn is_open(&self, part: &Part<N, D>) -> bool {
+        part.free < self.upper.min(1.0) && part.level < MOST_LEVELS
+    }
+
+    fn close(&mut self, part: &Part<N, D>, _queue: &mut Self::Queue) {
+        self.dropped = self.dropped.min(part.free);
+    }
+
+    fn closed(&self) -> f64 {
+        self.dropped
+    }
+}
