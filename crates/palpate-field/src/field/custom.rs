@@ -9,7 +9,7 @@ use super::{DifferentiateBlock, EvaluateBlock, EvaluatePoint, Field, Moved};
 use crate::machine::{Block, Column, Gradients, Lane};
 use crate::pose::Pose;
 use crate::promise::Promise;
-use crate::scalar::{Dual, Float, Model, Recorded};
+use crate::scalar::{AffineModel, Dual, Float, Recorded};
 use crate::vector::{Point, Vector};
 
 /// A field of a user, evaluated point by point in double precision.
@@ -114,17 +114,22 @@ impl<T: Float + Lane, F: CustomField<D>, const D: usize, const W: usize> Evaluat
     }
 }
 
-impl<F: CustomField<D>, const D: usize, const W: usize> EvaluateBlock<Model, D, W>
-    for Custom<F>
+impl<F: CustomField<D>, const N: usize, const D: usize, const W: usize>
+    EvaluateBlock<AffineModel<N>, D, W> for Custom<F>
 {
-    fn distances(&self, p: &Block<Model, D, W>, count: usize, out: &mut Column<Model, W>) {
+    fn distances(
+        &self,
+        p: &Block<AffineModel<N>, D, W>,
+        count: usize,
+        out: &mut Column<AffineModel<N>, W>,
+    ) {
         let promise = self.0.promise();
         out.fill(count, |i| {
             let cell = p.get(i).0;
             let centre = Vector(cell.map(|x| x.value));
-            let rounding = promise.rounding.within(centre.norm() + Model::radius(&cell));
+            let rounding = promise.rounding.within(centre.norm() + AffineModel::radius(&cell));
             let value = self.0.distance(centre);
-            Model::lipschitz(value, promise.lipschitz, &cell, rounding)
+            AffineModel::lipschitz(value, promise.lipschitz, &cell, rounding)
         });
     }
 }

@@ -12,7 +12,7 @@ use crate::machine::{
 };
 use crate::pose::{Placement, Pose};
 use crate::promise::Promise;
-use crate::scalar::{Float, Model, Recorded, TurnedBoxes};
+use crate::scalar::{Float, Model, Recorded, SpaceTimeModel, TurnedBoxes};
 use crate::vector::Vector;
 
 /// A kernel as a field.
@@ -51,6 +51,7 @@ evaluate! {
     f64, distance;
     f32, distance;
     Model, model;
+    SpaceTimeModel, model;
 }
 
 struct Values<'a, K>(&'a K);

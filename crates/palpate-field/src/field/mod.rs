@@ -24,7 +24,7 @@ use crate::error::ShapeError;
 use crate::machine::{BLOCK, Block, Column, Gradients, Lane, SHORT};
 use crate::pose::Pose;
 use crate::promise::Promise;
-use crate::scalar::{Float, Model, Recorded};
+use crate::scalar::{Float, Model, Recorded, SpaceTimeModel};
 use crate::vector::Vector;
 
 pub use crate::pose::Placement;
@@ -110,6 +110,7 @@ pub trait Field<const D: usize>:
     + EvaluateBlock<f64, D, SHORT>
     + EvaluateBlock<f32, D, BLOCK>
     + EvaluateBlock<Model, D, BLOCK>
+    + EvaluateBlock<SpaceTimeModel, D, BLOCK>
     + DifferentiateBlock<f64, D, BLOCK>
     + DifferentiateBlock<f64, D, SHORT>
     + DifferentiateBlock<f32, D, BLOCK>

@@ -30,7 +30,7 @@ pub use dual::Dual;
 pub use expression::{Expression, Operation, Step};
 pub use float::Float;
 pub(crate) use model::TurnedBoxes;
-pub use model::{AffineModel, Model};
+pub use model::{AffineModel, Model, SpaceTimeModel};
 pub use recorded::Recorded;
 
 use crate::vector::{array, unrolled};

@@ -72,6 +72,9 @@ pub struct AffineModel<const N: usize> {
 /// A model over a box in space or in the plane.
 pub type Model = AffineModel<3>;
 
+/// A model over a box in space and time.
+pub type SpaceTimeModel = AffineModel<4>;
+
 impl<const N: usize> Default for AffineModel<N> {
     #[inline(always)]
     fn default() -> Self {
