@@ -8,8 +8,8 @@ use std::hint::black_box;
 
 use palpate::field::{Pose, Screw, Shape, Vector};
 use palpate::query::{
-    BallWorkspace, Element, ElementSweep, Limits, Motion, Moving, PairWorkspace, Placed, Ray,
-    SweepSettings, cast_ball, sweep, sweep_element,
+    BallWorkspace, Element, ElementSweep, Limits, Motion, Moving, Placed, Ray, SweepSettings,
+    SweepWorkspace, cast_ball, sweep, sweep_element,
 };
 
 use super::pairs::placed;
@@ -160,7 +160,7 @@ fn triangles(
 fn pairs(key: &str, shape: &Shape<3>, rows: &mut TimedRows) -> Result<(), Box<dyn Error>> {
     let mut random = Random::new(13);
     let settings = SweepSettings::of_size(1.0).with_gap(1e-4).with_time_tolerance(1e-3);
-    let mut workspace = PairWorkspace::new();
+    let mut workspace = SweepWorkspace::new();
     let mut times = Vec::new();
     let (mut evaluations, mut undecided) = (0, 0);
     let placed = placed([shape, shape], 0.05)?;

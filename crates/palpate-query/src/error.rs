@@ -50,12 +50,6 @@ pub enum QueryError {
     /// Two unbounded bodies.
     #[error("one of two bodies must be bounded, and both have no bounds")]
     Unbounded,
-    /// A body without bounds that turns: no speed bounds its points.
-    #[error("body {index} has no bounds, so that it may move in a sweep, but not turn")]
-    TurnsUnbounded {
-        /// Which of the two bodies, from 0.
-        index: usize,
-    },
     /// Not as many places for answers as poses.
     #[error("{poses} poses need as many places for answers, got {places}")]
     Places {

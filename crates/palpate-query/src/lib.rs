@@ -103,8 +103,8 @@ pub use query::{ElementMemory, Query, Tolerance};
 pub use ray::{Ray, RayHit, cast_ray};
 pub use sampler::free_radius;
 pub use sweep::{
-    ElementSweep, FirstTouch, Motion, Moving, Start, SweepSettings, cast_ball, sweep,
-    sweep_element, sweep_mesh,
+    ElementSweep, FirstTouch, Motion, Moving, Start, SweepSettings, SweepWorkspace, cast_ball,
+    sweep, sweep_element, sweep_mesh,
 };
 pub use track::Track;
 #[cfg(feature = "world")]

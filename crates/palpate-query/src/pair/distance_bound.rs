@@ -64,6 +64,11 @@ impl<'a, const D: usize> DistanceBound<'a, D> {
         }
     }
 
+    /// `1/L`.
+    pub(crate) fn scale(&self) -> f64 {
+        self.scale
+    }
+
     /// The shape's box, in its own coordinates.
     pub(crate) fn own_box(&self) -> Option<Aabb<D>> {
         self.aabb

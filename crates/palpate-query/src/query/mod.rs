@@ -265,7 +265,7 @@ impl<const D: usize> Query<D> {
         let sizes = sizes(&a.at(0.0), &b.at(0.0));
         let settings = SweepSettings::of_size(smallest(sizes));
         let gap = self.limits(sizes).tolerance;
-        sweep(a, b, &settings.with_gap(gap), self.scratch.pair())
+        sweep(a, b, &settings.with_gap(gap), self.scratch.sweep())
     }
 
     /// The least value of a field on a segment or a triangle; see [`minimum`].

@@ -7,11 +7,13 @@ use super::Query;
 use crate::ball::BallWorkspace;
 use crate::mesh::MeshWorkspace;
 use crate::pair::PairWorkspace;
+use crate::sweep::SweepWorkspace;
 
 /// The workspaces of a query.
 #[derive(Debug)]
 pub(super) struct Scratch<const D: usize> {
     pair: Option<Box<PairWorkspace<D>>>,
+    sweep: Option<Box<SweepWorkspace<D>>>,
     ball: Option<Box<BallWorkspace<D>>>,
     segments: Option<Box<MeshWorkspace<2, D>>>,
     triangles: Option<Box<MeshWorkspace<3, D>>>,
@@ -19,11 +21,15 @@ pub(super) struct Scratch<const D: usize> {
 
 impl<const D: usize> Scratch<D> {
     pub(super) fn new() -> Self {
-        Self { pair: None, ball: None, segments: None, triangles: None }
+        Self { pair: None, sweep: None, ball: None, segments: None, triangles: None }
     }
 
     pub(super) fn pair(&mut self) -> &mut PairWorkspace<D> {
         self.pair.get_or_insert_default()
+    }
+
+    pub(super) fn sweep(&mut self) -> &mut SweepWorkspace<D> {
+        self.sweep.get_or_insert_default()
     }
 
     pub(super) fn ball(&mut self) -> &mut BallWorkspace<D> {

@@ -24,9 +24,10 @@ use palpate_mesh::internal::FAN;
 
 use super::first_touch::{FirstTouch, Start};
 use super::moving::Moving;
-use super::part::{Of, Part, Stay, Way};
-use super::path::{Path, WayBounds};
+use super::part::{Of, Part, Way};
+use super::path::{Path, Places, WayBounds};
 use super::settings::{FREE, SweepSettings};
+use super::stay::{Stay, later};
 use crate::certified::Stop;
 use crate::contact::Contact;
 use crate::element::parts_of_one;
@@ -61,6 +62,7 @@ const ROUND: usize = 2 * FAN;
 pub struct ElementSweep<const N: usize, const D: usize> {
     frontier: Frontier<Vec<Part<N, D>>>,
     samples: Samples<D>,
+    places: Places<D>,
     cells: Block<Model, D, BLOCK>,
     models: Column<Model, BLOCK>,
 }
@@ -76,6 +78,7 @@ impl<const N: usize, const D: usize> ElementSweep<N, D> {
                 round: Vec::with_capacity(ROUND),
             },
             samples: Samples::new(),
+            places: Places::new(),
             cells: Block::zero(),
             models: Column::zero(),
         }
@@ -89,7 +92,8 @@ impl<const N: usize, const D: usize> ElementSweep<N, D> {
         path: Path<D>,
         settings: &SweepSettings,
     ) -> FirstTouch<D> {
-        let Self { frontier, samples, cells, models } = self;
+        let Self { frontier, samples, places, cells, models } = self;
+        places.clear();
         let way = path.bounds(whole.corners);
         let highest = way.speed + HIGHEST * whole.part.height;
         let reach = way.far + highest;
@@ -97,6 +101,7 @@ impl<const N: usize, const D: usize> ElementSweep<N, D> {
             sampler: Sampler::new(field.shape, samples, reach, FREE * settings.gap),
             field: field.shape,
             mesh: whole.mesh,
+            places,
             cells,
             models,
             path,
@@ -141,6 +146,7 @@ struct ElementSearch<'s, 'a, const N: usize, const D: usize> {
     sampler: Sampler<'a, D>,
     field: &'a Shape<D>,
     mesh: Option<&'s Mesh<N, D>>,
+    places: &'s mut Places<D>,
     cells: &'s mut Block<Model, D, BLOCK>,
     models: &'s mut Column<Model, BLOCK>,
     path: Path<D>,
@@ -161,6 +167,13 @@ impl<const N: usize, const D: usize> ElementSearch<'_, '_, N, D> {
         if stop == Stop::SignKnown {
             let (lower, upper) = (1.0, 1.0);
             return FirstTouch { lower, upper, contact: None, start: None, stop, evaluations };
+        }
+        if let (0.0, Some(Touching { point, .. })) = (lower, self.best) {
+            // A touch soon after the start may be one at the start.
+            let value = self.sampler.value(self.path.at(0.0).point(point));
+            if value <= (1.0 - FREE) * self.settings.gap {
+                self.upper = 0.0;
+            }
         }
         let upper = self.upper;
         let lower = lower.min(upper).min(1.0);
@@ -194,13 +207,9 @@ impl<const N: usize, const D: usize> ElementSearch<'_, '_, N, D> {
     /// Advances the parts of a round.
     fn advance(&mut self, parts: &mut [Part<N, D>]) {
         let count = parts.len();
-        let mut place = self.path.at(parts[0].free);
         let ways: [Way<N, D>; SHORT] = std::array::from_fn(|i| {
             let part = &parts[i.min(count - 1)];
-            if part.free != place.time {
-                place = self.path.at(part.free);
-            }
-            part.way(&self.path, &place)
+            part.way(&self.path, self.places.at(&self.path, part.free))
         });
         let centres = ways.map(|way| way.centre);
         let (values, directions) = self.sampler.slopes(&centres);
@@ -216,7 +225,7 @@ impl<const N: usize, const D: usize> ElementSearch<'_, '_, N, D> {
         self.look(parts, &ways, &values, &directions);
         self.model(parts, &ways, &mut stays);
         for (part, stay) in parts.iter_mut().zip(&stays) {
-            part.free += stay.part;
+            part.free = later(part.free, stay.part);
             part.is_whole = stay.pays();
         }
     }
@@ -421,7 +430,7 @@ impl<const N: usize, const D: usize> Problem for ElementSearch<'_, '_, N, D> {
     }
 
     fn decided(&self, lower: f64) -> Option<Stop> {
-        if lower >= self.upper - self.settings.time_tolerance {
+        if self.upper < f64::INFINITY && lower >= self.upper - self.settings.time_tolerance {
             Some(Stop::Converged)
         } else {
             (lower >= 1.0).then_some(Stop::SignKnown)

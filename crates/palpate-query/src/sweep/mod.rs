@@ -4,6 +4,7 @@
 //! When moving bodies touch first.
 
 mod ball;
+mod boxes;
 mod element;
 mod elements;
 mod first_touch;
@@ -14,6 +15,7 @@ mod pair;
 mod part;
 mod path;
 mod settings;
+mod stay;
 
 pub use ball::cast_ball;
 pub use element::sweep_element;
@@ -22,5 +24,5 @@ pub use first_touch::{FirstTouch, Start};
 pub use mesh::sweep_mesh;
 pub use motion::Motion;
 pub use moving::Moving;
-pub use pair::sweep;
+pub use pair::{SweepWorkspace, sweep};
 pub use settings::SweepSettings;

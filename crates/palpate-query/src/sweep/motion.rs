@@ -66,11 +66,6 @@ impl<const D: usize> Motion<D> {
     pub(super) fn check(&self, index: usize) -> Result<(), QueryError> {
         [0.0, 1.0].into_iter().try_for_each(|time| check_pose(index, &self.pose(time)))
     }
-
-    /// The velocity of all points in the world, if the body turns nowhere [m].
-    pub(super) fn translation(&self) -> Option<Vector<f64, D>> {
-        (self.angle() == 0.0).then(|| self.first.transform_vector(self.velocity))
-    }
 }
 
 impl<const D: usize> From<Screw<D>> for Motion<D> {

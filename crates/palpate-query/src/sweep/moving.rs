@@ -6,11 +6,7 @@
 use palpate_field::{Aabb, Point, Shape, Vector};
 
 use super::motion::Motion;
-use crate::error::QueryError;
 use crate::placed::Placed;
-
-/// Roundings of a velocity and of a pose, relative to the numbers in them.
-pub(super) const ROUNDINGS: f64 = 64.0 * f64::EPSILON;
 
 /// A shape on its way from pose to pose, over the time from 0 to 1. A shape at rest converts to one
 /// that stays.
@@ -52,42 +48,6 @@ impl<'a, const D: usize> Moving<'a, D> {
     pub(super) fn velocity(&self, time: f64, p: Point<D>) -> Vector<f64, D> {
         let pose = self.motion.pose(time);
         pose.transform_vector(self.motion.velocity(pose.inverse().transform_point(p)))
-    }
-
-    /// The largest speed of any point of the body [m]: that of a corner of its box, as velocities
-    /// are affine in the point. Infinite for a body without bounds that turns.
-    fn speed(&self) -> f64 {
-        if let Some(velocity) = self.motion.translation() {
-            return velocity.norm();
-        }
-        let Some(bounds) = self.shape.promise().bounds else { return f64::INFINITY };
-        corners(&bounds.aabb)
-            .map(|corner| self.motion.velocity(corner).norm())
-            .fold(0.0, f64::max)
-    }
-
-    /// The largest speed at which two bodies may near each other, rounding included [m].
-    pub(super) fn closing_speed(&self, other: &Self) -> f64 {
-        let speed = match (self.motion.translation(), other.motion.translation()) {
-            (Some(a), Some(b)) => (a - b).norm(),
-            _ => self.speed() + other.speed(),
-        };
-        speed * (1.0 + ROUNDINGS)
-    }
-
-    /// The rounding of places on the way [m].
-    pub(super) fn rounding(&self) -> f64 {
-        let reach = self.shape.promise().bounds.map_or(0.0, |b| b.radius_about_origin());
-        ROUNDINGS * (reach + self.motion.reach())
-    }
-
-    pub(super) fn check(&self, index: usize) -> Result<(), QueryError> {
-        self.motion.check(index)?;
-        if self.speed() < f64::INFINITY {
-            Ok(())
-        } else {
-            Err(QueryError::TurnsUnbounded { index })
-        }
     }
 }
 

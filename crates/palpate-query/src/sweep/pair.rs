@@ -3,27 +3,32 @@
 
 //! The first touch of two bodies that move.
 
+use palpate_field::Pose;
+
+use super::boxes::{BoxFrontier, BoxMemory, BoxSweep, frontier};
 use super::first_touch::{FirstTouch, Start};
-use super::moving::Moving;
+use super::moving::{Moving, corners};
+use super::path::Path;
 use super::settings::{FREE, SweepSettings};
 use crate::certified::{Limits, Stop};
+use crate::engine;
 use crate::error::QueryError;
+use crate::pair::distance_bound::DistanceBound;
 use crate::pair::{PairWorkspace, separation};
 
-/// A separation is searched to this share of the last one, and of the gap in the end.
+/// The separation at a touch is searched to this share of the gap.
 const SHARE: f64 = 0.25;
 
 /// When two bodies that move touch first: the first time at which their [`separation`] is at most
 /// `settings.gap`.
 ///
-/// Conservative advancement (Mirtich 1996): bodies whose separation is s and whose points near each
-/// other by at most v are apart for the time s/v. So no motion is too fast and no body too thin.
-/// What passes at a small distance takes many steps; a budget that is spent says until when the
-/// bodies are proven apart.
+/// Each box of space advances through time on its own, by models of both fields over it and over a
+/// span of time. So no motion is too fast and no body too thin. What passes at a small distance takes
+/// many boxes; a budget that is spent says until when the bodies are proven apart.
 ///
 /// ```
 /// use palpate_field::{Pose, Screw, Shape};
-/// use palpate_query::{Moving, PairWorkspace, SweepSettings, sweep};
+/// use palpate_query::{Moving, SweepSettings, SweepWorkspace, sweep};
 ///
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
 /// // 10 m in one step, at a plate of 0.1 mm.
@@ -32,7 +37,7 @@ const SHARE: f64 = 0.25;
 /// let [from, to] = [5.0, -5.0].map(|y| Pose::translation([0.0, y, 0.0]));
 /// let falling = Moving::new(&cube, Screw::new(from, to, 0)?);
 /// let settings = SweepSettings::of_size(0.1);
-/// let touch = sweep(&plate, falling, &settings, &mut PairWorkspace::new())?;
+/// let touch = sweep(&plate, falling, &settings, &mut SweepWorkspace::new())?;
 /// assert_eq!(touch.touches(), Some(true));
 /// let truth = 0.494_995; // 4.949 95 m of 10 m
 /// assert!(touch.lower <= truth && touch.upper >= truth - 1e-8 && touch.upper <= truth + 1e-4);
@@ -47,97 +52,107 @@ pub fn sweep<'a, const D: usize>(
     a: impl Into<Moving<'a, D>>,
     b: impl Into<Moving<'a, D>>,
     settings: &SweepSettings,
-    workspace: &mut PairWorkspace<D>,
+    workspace: &mut SweepWorkspace<D>,
 ) -> Result<FirstTouch<D>, QueryError> {
+    let bodies = [a.into(), b.into()];
+    let SweepWorkspace { frontier, memory, pair } = workspace;
+    // The first is that whose coordinates are searched: the smaller one.
+    let size = |body: &Moving<'_, D>| {
+        body.shape.promise().bounds.map_or(f64::INFINITY, |b| b.radius_about_origin())
+    };
+    let is_swapped = size(&bodies[1]) < size(&bodies[0]);
+    let [a, b] = bodies;
+    let [still, moving] = if is_swapped { [b, a] } else { [a, b] };
+    let bounds = still.shape.promise().bounds.ok_or(QueryError::Unbounded)?;
     settings.check()?;
-    let (a, b) = (a.into(), b.into());
-    a.check(0)?;
-    b.check(1)?;
-    let speed = a.closing_speed(&b);
-    let rounding = a.rounding() + b.rounding();
-    let mut search = PairSweep { a, b, settings, workspace, evaluations: 0 };
-    let (mut free, mut last) = (0.0, f64::INFINITY);
-    loop {
-        let apart = search.separation(free, last)?;
-        if apart.upper <= settings.gap {
-            return Ok(search.touch(free, free));
+    bodies.iter().enumerate().try_for_each(|(i, body)| body.motion.check(i))?;
+    let path = Path { field: moving.motion, body: still.motion };
+    let touch = 0.5 * settings.gap;
+    let root = bounds.aabb.grown(touch);
+    let way = path.bounds(&corners(&root).collect::<Vec<_>>());
+    let bounds = [still, moving].map(|body| DistanceBound::new(body.shape, Pose::identity()));
+    let slack = bounds[0].slack(root.radius_about_origin()).max(bounds[1].slack(way.far))
+        + way.rounding;
+    memory.begin(&root, frontier);
+    let mut search = BoxSweep {
+        bodies: [still, moving],
+        bounds,
+        path,
+        way,
+        level: FREE * touch + slack,
+        touch,
+        slack,
+        size: root.half_extents().norm(),
+        time_tolerance: settings.time_tolerance,
+        budget: settings.budget,
+        memory,
+        evaluations: 0,
+        upper: f64::INFINITY,
+        dropped: f64::INFINITY,
+    };
+    let end = engine::search(&mut search, frontier);
+    let (upper, evaluations) = (search.upper, search.evaluations);
+    let lower = frontier.lower(search.dropped).min(upper).min(1.0);
+    let stop = end.stop();
+    let upper = if stop == Stop::SignKnown { 1.0 } else { upper };
+    let mut found = FirstTouch { lower, upper, contact: None, start: None, stop, evaluations };
+    if stop != Stop::SignKnown && upper.is_finite() {
+        touch_at(bodies, settings, pair, &mut found)?;
+    }
+    Ok(found)
+}
+
+/// Adds the contact at the time of a touch.
+fn touch_at<const D: usize>(
+    bodies: [Moving<'_, D>; 2],
+    settings: &SweepSettings,
+    workspace: &mut PairWorkspace<D>,
+    found: &mut FirstTouch<D>,
+) -> Result<(), QueryError> {
+    let limits = Limits::new(SHARE * settings.gap);
+    let mut near = |time: f64| -> Result<_, QueryError> {
+        let [a, b] = bodies.map(|body| body.at(time));
+        let near = separation(a, b, &limits, workspace)?;
+        found.evaluations += near.evaluations;
+        Ok(([a, b], near))
+    };
+    let mut time = found.upper;
+    let ([mut a, mut b], mut best) = near(time)?;
+    if found.lower == 0.0 {
+        // A touch soon after the start may be one at the start.
+        let ([first_a, first_b], first) = near(0.0)?;
+        if first.upper <= settings.gap {
+            (time, a, b, best) = (0.0, first_a, first_b, first);
         }
-        if free >= 1.0 {
-            return Ok(search.free());
-        }
-        let clear = apart.lower - rounding - FREE * settings.gap;
-        let ahead = free + (clear / speed).max(0.0);
-        // A touch within the tolerance ends the search.
-        let soon = (free + settings.time_tolerance).min(1.0);
-        if ahead < soon && search.separation(soon, clear)?.upper <= settings.gap {
-            return Ok(search.touch(ahead, soon));
-        }
-        let is_stuck = ahead <= free;
-        if search.evaluations >= settings.budget || is_stuck {
-            let stop = if is_stuck { Stop::RoundingReached } else { Stop::BudgetSpent };
-            return Ok(search.answer(free, f64::INFINITY, stop));
-        }
-        (free, last) = (ahead.min(1.0), clear);
+    }
+    found.upper = time;
+    found.contact = best.best.contact(a, b);
+    let normal = best.best.normal.filter(|_| time == 0.0);
+    found.start = normal.map(|normal| {
+        let [of_a, of_b] = bodies.map(|body| body.velocity(0.0, best.best.point));
+        Start::of(of_b - of_a, normal)
+    });
+    Ok(())
+}
+
+/// Memory of sweeps of bodies, kept from one to the next.
+#[derive(Debug)]
+pub struct SweepWorkspace<const D: usize> {
+    frontier: BoxFrontier<D>,
+    memory: BoxMemory<D>,
+    pair: PairWorkspace<D>,
+}
+
+impl<const D: usize> SweepWorkspace<D> {
+    /// Room for sweeps in `D` dimensions.
+    #[must_use]
+    pub fn new() -> Self {
+        Self { frontier: frontier(), memory: BoxMemory::new(), pair: PairWorkspace::new() }
     }
 }
 
-/// Two bodies on their ways.
-struct PairSweep<'s, 'a, const D: usize> {
-    a: Moving<'a, D>,
-    b: Moving<'a, D>,
-    settings: &'s SweepSettings,
-    workspace: &'s mut PairWorkspace<D>,
-    evaluations: u32,
-}
-
-/// Bounds of a separation [m].
-struct Apart {
-    lower: f64,
-    upper: f64,
-}
-
-impl<const D: usize> PairSweep<'_, '_, D> {
-    /// The separation at a time, as exactly as it matters after one of `last` [m].
-    fn separation(&mut self, time: f64, last: f64) -> Result<Apart, QueryError> {
-        let gap = self.settings.gap;
-        let mut tolerance = SHARE * if last.is_finite() { gap.max(last) } else { gap };
-        loop {
-            let limits = Limits::new(tolerance);
-            let found = separation(self.a.at(time), self.b.at(time), &limits, self.workspace)?;
-            self.evaluations = self.evaluations.saturating_add(found.evaluations);
-            let is_decided = found.upper <= gap || found.lower > gap;
-            if is_decided || tolerance <= SHARE * gap || found.stop.is_early() {
-                return Ok(Apart { lower: found.lower, upper: found.upper });
-            }
-            tolerance = SHARE * gap;
-        }
-    }
-
-    fn free(&self) -> FirstTouch<D> {
-        self.answer(1.0, 1.0, Stop::SignKnown)
-    }
-
-    fn answer(&self, lower: f64, upper: f64, stop: Stop) -> FirstTouch<D> {
-        let Self { evaluations, .. } = *self;
-        FirstTouch { lower, upper, contact: None, start: None, stop, evaluations }
-    }
-
-    /// The touch at `upper`.
-    fn touch(&mut self, lower: f64, upper: f64) -> FirstTouch<D> {
-        let (a, b) = (self.a.at(upper), self.b.at(upper));
-        let limits = Limits::new(SHARE * self.settings.gap);
-        let mut touch = self.answer(lower, upper, Stop::Converged);
-        // The same question was answered before.
-        if let Ok(found) = separation(a, b, &limits, self.workspace) {
-            touch.evaluations += found.evaluations;
-            touch.contact = found.best.contact(a, b);
-            let normal = found.best.normal.filter(|_| upper == 0.0);
-            touch.start = normal.map(|normal| {
-                let point = found.best.point;
-                let relative = self.b.velocity(0.0, point) - self.a.velocity(0.0, point);
-                Start::of(relative, normal)
-            });
-        }
-        touch
+impl<const D: usize> Default for SweepWorkspace<D> {
+    fn default() -> Self {
+        Self::new()
     }
 }

@@ -8,14 +8,9 @@ use palpate_mesh::Mesh;
 use palpate_mesh::internal::FAN;
 
 use super::path::{Path, Place};
+use super::stay::{Stay, bend, exit};
 use crate::element::{Element, parts_of_one};
 use crate::engine::Bounded;
-
-/// A part goes on undivided if its step is at least this share of its centre's alone.
-const PAYS: f64 = 0.3;
-
-/// Of the way that is left to a ball's edge, the share that bends of the way may take.
-const BEND: f64 = 0.25;
 
 /// What a part is a part of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -178,50 +173,13 @@ impl<const N: usize, const D: usize> Way<N, D> {
         if !(spare > 0.0) {
             return Stay { part: 0.0, centre };
         }
-        // What a bend takes of the ball's radius ends the step, too.
-        let bend = if acceleration > 0.0 { BEND * spare } else { 0.0 };
-        let most = if bend > 0.0 { (2.0 * bend / acceleration).sqrt() } else { f64::INFINITY };
+        let (bend, most) = bend(spare, acceleration);
         let mut part = most;
         for (place, velocity) in self.places.iter().zip(&self.velocities) {
             let exit = exit(*place - p, *velocity, radius - bend);
             part = if exit < part { exit } else { part };
         }
         Stay { part: part * (1.0 - 1e-12), centre: centre.min(most) }
-    }
-}
-
-/// When a point leaves a ball of a `radius`, `apart` from its centre at first; zero if it is not in
-/// it.
-#[inline]
-fn exit<const D: usize>(apart: Vector<f64, D>, velocity: Vector<f64, D>, radius: f64) -> f64 {
-    // |o + s v| < radius from s = 0 on.
-    let (half, squared) = (apart.dot(velocity), velocity.dot(velocity));
-    let rest = radius * radius - apart.dot(apart);
-    // Written so that NaN is no time.
-    if !(radius > 0.0 && rest > 0.0) {
-        return 0.0;
-    }
-    let root = (half * half + squared * rest).sqrt();
-    // Of both forms of the root that which does not cancel; a point at rest stays.
-    if half > 0.0 { rest / (root + half) } else { (root - half) / squared }
-}
-
-/// How long a part is free, and how long its centre alone is: smaller parts may gain the difference.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Stay {
-    pub(super) part: f64,
-    pub(super) centre: f64,
-}
-
-impl Stay {
-    /// Whether smaller parts would gain little.
-    pub(super) fn pays(&self) -> bool {
-        self.part > 0.0 && self.part >= PAYS * self.centre
-    }
-
-    /// The longer of both.
-    pub(super) fn or(&mut self, other: Self) {
-        *self = Self { part: self.part.max(other.part), centre: self.centre.max(other.centre) };
     }
 }
 

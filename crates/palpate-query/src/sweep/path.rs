@@ -6,9 +6,11 @@
 use palpate_field::{Point, Pose, Vector};
 
 use super::motion::Motion;
-use super::moving::ROUNDINGS;
 use super::settings::SweepSettings;
 use crate::error::QueryError;
+
+/// Roundings of a velocity and of a pose, relative to the numbers in them.
+const ROUNDINGS: f64 = 64.0 * f64::EPSILON;
 
 /// The way of a body through the coordinates of a field, both of which may move.
 #[derive(Clone, Copy, Debug)]
@@ -20,7 +22,7 @@ pub(super) struct Path<const D: usize> {
 /// A body at a time, in the coordinates of a field.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Place<const D: usize> {
-    pub(super) time: f64,
+    time: f64,
     field_from_body: Pose<D>,
 }
 
@@ -104,5 +106,37 @@ impl<const D: usize> Place<D> {
     #[inline]
     pub(super) fn point(&self, p: Point<D>) -> Point<D> {
         self.field_from_body.transform_point(p)
+    }
+}
+
+/// Places that are kept: a power of two.
+const PLACES: usize = 64;
+
+/// Places of the last times, by time: parts of a search often have the same.
+#[derive(Clone, Debug)]
+pub(super) struct Places<const D: usize>([Option<Place<D>>; PLACES]);
+
+impl<const D: usize> Places<D> {
+    pub(super) fn new() -> Self {
+        Self([None; PLACES])
+    }
+
+    /// Forgets all, for another path.
+    pub(super) fn clear(&mut self) {
+        *self = Self::new();
+    }
+
+    /// The place at a time.
+    #[inline]
+    pub(super) fn at(&mut self, path: &Path<D>, time: f64) -> &Place<D> {
+        // The upper bits of the product depend on all bits of the time (Knuth 1998, 6.4).
+        let hash = time.to_bits().wrapping_mul(0x9e37_79b9_7f4a_7c15)
+            >> (64 - PLACES.trailing_zeros());
+        let slot = &mut self.0[hash as usize];
+        match slot {
+            Some(place) if place.time == time => {}
+            _ => *slot = Some(path.at(time)),
+        }
+        slot.get_or_insert_with(|| path.at(time))
     }
 }

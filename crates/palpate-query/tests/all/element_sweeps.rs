@@ -5,7 +5,7 @@
 #![expect(clippy::unwrap_used, reason = "these are tests")]
 
 use palpate_field::field::{DifferentiateBlock, EvaluateBlock, Field};
-use palpate_field::{Pose, SHORT, Screw, Shape, Vector};
+use palpate_field::{Pose, SHORT, Screw, Vector};
 use palpate_query::{
     Element, ElementSweep, ElementWorkspace, Limits, Moving, Stop, SweepSettings, minimum,
     sweep_element,
