@@ -193,6 +193,20 @@ impl<'a, const D: usize> DistanceBound<'a, D> {
         known - radius
     }
 
+    /// The radius of a ball about a point in the shape's coordinates, where `g` is `value`, in which
+    /// `g` is more than `level`; negative if there is none.
+    #[inline]
+    pub(crate) fn empty(&self, local: Point<D>, value: f64, level: f64) -> f64 {
+        let empty = value - level;
+        match &self.region {
+            None => empty,
+            Some(region) => {
+                let known = empty.min(region.radius - (local - region.centre).norm());
+                known.max(self.outside_box(local).0 - level)
+            }
+        }
+    }
+
     /// A model of `f/L` from one of `f`.
     #[inline]
     pub(crate) fn scaled(&self, model: Model) -> Model {

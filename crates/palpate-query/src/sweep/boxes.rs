@@ -21,13 +21,12 @@ use crate::certified::Stop;
 use crate::engine::{Bounded, Frontier, Heap, Problem, Queue, Rebound};
 use crate::goal::Goal;
 use crate::pair::body_pair::BodyPair;
-use crate::pair::cell::BoxCell;
+use crate::pair::cell::{BoxCell, least};
 use crate::pair::descent::descend;
 use crate::pair::distance_bound::DistanceBound;
 
-/// The shortest span of a model; the next span after a step that was as long as its span, and after
-/// another, in steps.
-const SHORTEST: f64 = 1e-7;
+/// The next span of a model after a step that was as long as its span, in spans, and after another,
+/// in steps.
 const LONGER: f64 = 3.0;
 const ANOTHER: f64 = 1.5;
 
@@ -36,6 +35,10 @@ const NEAR: f64 = 2.0;
 
 /// Where in the tolerance after the time of a box.
 const SOON: f64 = 0.75;
+
+/// A round takes boxes up to this share of the time that is left after the first: where bodies
+/// overlap later, boxes come apart for nothing.
+const HORIZON: f64 = 0.2;
 
 /// Boxes below this radius are not divided, as a share of the first.
 const SMALLEST: f64 = 1e-12;
@@ -121,7 +124,7 @@ impl<const D: usize> BoxMemory<D> {
         BoxCell::unknown(root).grid(&mut self.halves);
         let cells = self.halves.iter().map(|cell| SpaceCell {
             cell: cell.with_lower(0.0),
-            span: 1.0,
+            span: 0.0,
             is_whole: true,
             is_asked: false,
         });
@@ -150,6 +153,8 @@ pub(super) struct BoxSweep<'s, 'a, const D: usize> {
     pub(super) budget: u32,
     pub(super) memory: &'s mut BoxMemory<D>,
     pub(super) evaluations: u32,
+    /// Boxes from this time on wait for another round.
+    pub(super) horizon: Option<f64>,
     /// The first time known of a touch.
     pub(super) upper: f64,
     /// The least bound of closed boxes.
@@ -211,11 +216,9 @@ impl<const D: usize> BoxSweep<'_, '_, D> {
         self.evaluations += round.len() as u32;
         for (f, seen) in values.as_slice().iter().zip(seen) {
             let value = second.value(seen.centre, *f);
-            // What is known of all points as far away as that.
-            let known = second.floor(seen.centre, value, value) + value;
             seen.value = value;
             seen.stay = Stay::in_ball(
-                known - self.level,
+                second.empty(seen.centre, value, self.level),
                 seen.radius,
                 seen.velocity.norm(),
                 self.way.acceleration,
@@ -233,7 +236,10 @@ impl<const D: usize> BoxSweep<'_, '_, D> {
         open.clear();
         for (i, space) in round.iter_mut().enumerate() {
             let (SpaceCell { cell, span, .. }, seen) = (space, &seen[i]);
-            *span = span.max(2.0 * seen.stay.part).max(SHORTEST).min(latest - cell.lower);
+            // A model over a way much longer than the box is as poor as one over a larger box.
+            let of_size = seen.radius / seen.velocity.norm();
+            let shortest = of_size.max(2.0 * seen.stay.part);
+            *span = span.max(shortest).min(latest - cell.lower);
             let far = seen.radius + self.way.speed * *span;
             let is_short = !seen.stay.pays() && seen.stay.part < latest - cell.lower;
             let is_known =
@@ -296,19 +302,27 @@ impl<const D: usize> BoxSweep<'_, '_, D> {
             let SpaceTimeModel { value, gradient: [x, y, z, _], lower, upper } = b;
             cell.learn(&[a, Model { value, gradient: [x, y, z], lower, upper }]);
             // Where the first field alone is high enough, the box is free for all times.
-            cell.contract(&[a, a, a], self.level);
+            if least::<D>(&a) > self.level {
+                seen.stay.part = f64::INFINITY;
+            } else {
+                cell.contract(&[a, a, a], self.level);
+            }
         }
     }
 
     /// Looks for a touch soon after the time of the first box, if one may be near.
     fn look(&mut self, round: &[SpaceCell<D>], seen: &[Seen<D>; BLOCK]) {
+        let is_near = |&i: &usize| {
+            let near = NEAR * self.time_tolerance * seen[i].velocity.norm();
+            seen[i].value - seen[i].radius <= self.touch + near
+        };
         let first = (0..round.len())
+            .filter(is_near)
             .min_by(|&i, &k| round[i].cell.lower.total_cmp(&round[k].cell.lower));
         let Some(i) = first else { return };
-        let (cell, seen) = (&round[i].cell, &seen[i]);
-        let near = NEAR * self.time_tolerance * seen.velocity.norm();
+        let cell = &round[i].cell;
         let time = (cell.lower + SOON * self.time_tolerance).min(1.0);
-        if seen.value - seen.radius > self.touch + near || time >= self.upper {
+        if time >= self.upper {
             return;
         }
         let [first, second] = self.bodies.map(|body| body.at(time));
@@ -366,10 +380,12 @@ impl<const D: usize> Problem for BoxSweep<'_, '_, D> {
     }
 
     fn can_split(&self, queue: &Self::Queue) -> bool {
-        queue.least() < self.latest()
+        queue.least() < self.horizon.unwrap_or(self.latest())
     }
 
     fn split(&mut self, space: &SpaceCell<D>, round: &mut Vec<SpaceCell<D>>) {
+        let (first, latest) = (space.cell.lower, self.latest());
+        self.horizon.get_or_insert(first + HORIZON * (latest - first));
         if space.is_whole {
             round.push(*space);
             return;
@@ -383,6 +399,7 @@ impl<const D: usize> Problem for BoxSweep<'_, '_, D> {
 
     fn bound(&mut self, frontier: &mut Frontier<Self::Queue>) {
         let round = &mut frontier.round;
+        self.horizon = None;
         self.ask_first(round);
         let nothing = Seen {
             centre: Vector::ZERO,

@@ -87,6 +87,7 @@ pub fn sweep<'a, const D: usize>(
         budget: settings.budget,
         memory,
         evaluations: 0,
+        horizon: None,
         upper: f64::INFINITY,
         dropped: f64::INFINITY,
     };
