@@ -143,9 +143,8 @@ impl Held {
         let mut is_rising = false;
         for pair in rows.windows(2) {
             let [before, after] = [0, 1].map(|i| pair[i].force.norm());
-            let full = self.full(&pair[1]);
-            is_rising |= before < 0.999 * self.full(&pair[0]) && before <= after;
-            is_rising &= after < 0.999 * full;
+            is_rising |= before == 0.0;
+            is_rising &= after < 0.999 * self.full(&pair[1]);
             if is_rising && pair[0].time_s >= begin && after - before > gentle {
                 return Some(format!("{before} N, then {after} N at {} s", pair[1].time_s));
             }
