@@ -29,7 +29,7 @@ fn a_rule_names_the_numbers_that_it_uses_and_that_are_assumed() {
     assert_eq!(ends(&[], &stiff), [steps]);
     assert_eq!(ends(&["friction"], &stiff), [format!("{steps}; friction is assumed")]);
     let both = format!("{steps}; friction and encoder_step are assumed");
-    assert_eq!(ends(&["encoder_step", "friction", "mass"], &stiff), [both.clone()]);
+    assert_eq!(ends(&["encoder_step", "friction", "mass"], &stiff), [both.as_str()]);
     let damped = ["--stiffness", "800", "--damping", "9"];
     let left = "B ≤ b − K T / 2; least_damping is assumed".to_owned();
     assert_eq!(ends(&["friction", "encoder_step", "least_damping"], &damped), [both, left]);
