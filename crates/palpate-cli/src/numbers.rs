@@ -42,7 +42,7 @@ fn without_zeros(text: &str) -> &str {
 }
 
 /// A number with the digits that an error leaves: the last stands below the error's first, and
-/// there are seven at most.
+/// there are seven at most. Small ones have an exponent where [`rounded`] ones have it.
 pub(crate) fn measured(number: f64, error: f64) -> String {
     const MOST: i32 = 6;
     let place = |x: f64| x.abs().log10().floor() as i32;
@@ -56,7 +56,7 @@ pub(crate) fn measured(number: f64, error: f64) -> String {
         return "0".to_owned();
     }
     match usize::try_from(digits - first) {
-        Ok(decimals) if (-3..6).contains(&first) => format!("{number:.decimals$}"),
+        Ok(decimals) if first < 6 && number.abs() >= SMALL => format!("{number:.decimals$}"),
         _ => format!("{number:.*e}", digits as usize),
     }
 }
@@ -84,7 +84,9 @@ mod tests {
     #[test]
     fn no_digit_stands_far_below_the_error() {
         for (number, error, text) in [
-            (4.185_366e-6, 4.1e-9, "4.1854e-6"),
+            (4.185_366e-6, 4.1e-9, "0.0000041854"),
+            (3.4e-5, 1.2e-6, "0.000034"),
+            (4.185_366e-7, 4.1e-10, "4.1854e-7"),
             (0.5, 1e-5, "0.500000"),
             (5994.08, 5.9, "5994.1"),
             (5994.08, 590.0, "5.99e3"),

@@ -73,7 +73,7 @@ impl Display for ConnectionReport {
             write!(f, "{lost_time:.3} s without it")?;
         }
         if let Some(reason) = last_loss {
-            write!(f, "; at last: {reason}")?;
+            write!(f, "; the last loss: {reason}")?;
         }
         not_closed.as_ref().map_or(Ok(()), |reason| write!(f, "; not closed: {reason}"))
     }
@@ -211,7 +211,7 @@ mod tests {
         };
         let said = "lets go by itself after 30.000 ms without a tick; 14 ticks without a new state, \
                     for 2.500 ms at most; 3 ticks without any state; lost 2 times, found again 1 \
-                    times, 0.750 s without it; at last: unplugged; not closed: no answer";
+                    times, 0.750 s without it; the last loss: unplugged; not closed: no answer";
         assert_eq!(connection.to_string(), said);
         let lost = Some("pulled out".to_owned());
         let played = VibrationReport { commands: 11, strongest: 0.625, lost };

@@ -90,8 +90,31 @@ impl Rule {
 }
 
 impl Rule {
+    /// The numbers of the profile that the rule uses, by the names of
+    /// [`DeviceProfile::NUMBERS`]; of a rule about rotation, by those of
+    /// [`TurningProfile::NUMBERS`](crate::TurningProfile::NUMBERS).
+    ///
+    /// ```
+    /// use palpate_safety::Rule;
+    ///
+    /// assert_eq!(Rule::Quantisation.numbers(), ["friction", "encoder_step"]);
+    /// ```
+    #[must_use]
+    pub fn numbers(self) -> &'static [&'static str] {
+        match self {
+            Self::Passivity
+            | Self::DampingLeft
+            | Self::AngularPassivity
+            | Self::AngularDampingLeft => &["least_damping"],
+            Self::Quantisation | Self::AngularQuantisation => &["friction", "encoder_step"],
+            Self::MaxStiffness | Self::MaxAngularStiffness => &["max_stiffness"],
+            Self::MaxDamping | Self::MaxAngularDamping => &["max_damping"],
+        }
+    }
+
     /// Whether the rule is about rotation.
-    pub(crate) fn is_angular(self) -> bool {
+    #[must_use]
+    pub fn is_angular(self) -> bool {
         matches!(
             self,
             Self::AngularPassivity

@@ -209,8 +209,9 @@ impl SafetyOptions {
 ///   period, also where ticks come sooner. There are two exceptions, which fall to zero in one tick:
 ///   an input that is not finite, and the emergency stop.
 /// - With passivity control, the force of a wall up to `2 b / T` is never changed, because the
-///   device's damping dissipates the energy that the wall leaks; but where the device oscillates by
-///   itself against the wall, the wall becomes softer. A stiffer wall gives out
+///   device's damping dissipates the energy that the wall leaks, as the encoders show it, which
+///   coarse steps overestimate; but where the device oscillates by itself against the wall, the
+///   wall becomes softer. A stiffer wall gives out
 ///   little more energy than it took in: at most 1 mJ for a wall three times as stiff, on 0.05
 ///   to 0.1 kg with 0.5 N·s/m at 1 kHz, held with 0 to 10 N·s/m and pushed with 1 N for 10 s,
 ///   from up to 50 mm away and in encoder steps of up to 30 µm (the tests of `palpate-haptics`

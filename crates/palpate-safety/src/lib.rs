@@ -9,7 +9,7 @@
 //! a [`VelocityEstimator`] how fast the hand moves, and a [`SafetyChain`] gives the force to
 //! write in each tick: no larger, changing no faster and lasting no longer than the device bears;
 //! and, but for a reserve and the potential of guides, the chain gives out no more energy than it took
-//! in. A [`WrenchChain`] does the same for
+//! in and the device's damping dissipates, as the encoders show it. A [`WrenchChain`] does the same for
 //! force and torque together.
 //!
 //! This crate knows nothing of shapes, so that it can be reviewed alone.

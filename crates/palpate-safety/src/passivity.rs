@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
 //! The passivity observer and controller: a rendering gives the hand no more energy than it
-//! took.
+//! took and the device's damping dissipates, as the encoders show it.
 //!
 //! B. Hannaford, J.-H. Ryu, "Time-domain passivity control of haptic interfaces" (2002): an
 //! observer of energy, and a controller that acts when the energy balance is used up. J.-P.
@@ -113,7 +113,8 @@ pub struct PassivityReport {
     /// Energy that the written forces gave to the hand [J].
     pub energy_out: f64,
     /// The least value of taken minus given energy at any time [J]; if negative, its size is
-    /// the net energy given out.
+    /// the net energy given out, which may be what the device's damping dissipates, as the encoders
+    /// show it.
     pub least_balance: f64,
     /// Energy that the wanted forces would have given out, but the written forces did not [J].
     pub dissipated: f64,
@@ -128,7 +129,8 @@ pub struct PassivityReport {
 ///
 /// **Observer.** A force is held over a tick, so the energy that it takes from the hand is
 /// exactly `−F_k · (x_{k+1} − x_k)`, whatever the motion between. The device's damping `b`
-/// dissipates at least `b |x_{k+1} − x_k|² / T` of it (Cauchy and Schwarz).
+/// dissipates at least `b |x_{k+1} − x_k|² / T` of it (Cauchy and Schwarz). The positions are those
+/// that the encoders show: coarse steps overestimate the dissipation.
 ///
 /// **Credit.** A sampled spring gives out `K |Δx|² / 2` a tick more than it stored. Up to `K = 2
 /// b / T` the device is sure to dissipate as much, so the rendering is passive. Each tick then

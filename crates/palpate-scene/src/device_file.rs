@@ -17,6 +17,17 @@ use crate::problems::Problems;
 /// The version of the format.
 const VERSION: u64 = 1;
 
+/// A number that no device has: it stands in for one that is missing, and nothing is said of others
+/// beside it.
+pub(crate) const UNKNOWN: f64 = -1.0;
+
+/// The keys of the numbers that a file has to have, in any of its objects.
+pub(crate) fn numbers() -> impl Iterator<Item = &'static str> {
+    let gripper = ["max_opening", "max_force", "max_force_rate"];
+    let all = DeviceProfile::NUMBERS.iter().chain(TurningProfile::NUMBERS).copied();
+    all.chain(gripper)
+}
+
 /// A [`DeviceProfile`] as a file gives it.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, expecting = "an object")]
@@ -163,16 +174,15 @@ fn check(written: &WrittenDevice) -> Result<(), Problems> {
         ("max_speed", written.max_speed),
         ("max_acceleration", written.max_acceleration),
     ]);
-    let needed = [
+    let needed = Problems::all([
         at_most_peak(
             ["continuous_force", "max_force"],
             written.continuous_force,
             written.max_force,
             "N",
         ),
-        friction_of_steps(written.encoder_step, written.friction, "N"),
-    ];
-    let needed = Problems::all(needed.into_iter().filter(|_| forces));
+        friction_of_steps(forces, written.encoder_step, written.friction, "N"),
+    ]);
     let texts = Problems::all([
         one_line("device", &written.device),
         one_line("source", &written.source),
@@ -256,19 +266,19 @@ fn check_turning(turning: &WrittenTurning) -> Result<(), Problems> {
         ("max_speed", turning.max_speed),
         ("max_acceleration", turning.max_acceleration),
     ]);
-    let needed = [
+    let needed = Problems::all([
         at_most_peak(
             ["continuous_torque", "max_torque"],
             turning.continuous_torque,
             turning.max_torque,
             "N·m",
         ),
-        friction_of_steps(turning.encoder_step, turning.friction, "N·m"),
-    ];
+        friction_of_steps(torques, turning.encoder_step, turning.friction, "N·m"),
+    ]);
     Problems::all([
         numbers,
         sizes,
-        Problems::all(needed.into_iter().filter(|_| torques)),
+        needed,
         one_line("source", &turning.source).map_err(Problems::from),
         check_assumed(&turning.assumed, TurningProfile::NUMBERS),
     ])
@@ -279,14 +289,15 @@ fn limit(key: &str, value: f64, are: bool, unit: &str) -> Result<(), Problem> {
     if are { positive(key, value, unit) } else { at_least(key, value, 0.0, unit) }
 }
 
-/// What a device gives without time limit is at most its largest.
+/// What a device gives without time limit is at most its largest, if that is a number.
 fn at_most_peak(
     [lasting, peak]: [&str; 2],
     value: f64,
     most: f64,
     unit: &str,
 ) -> Result<(), Problem> {
-    if value <= most {
+    // A largest that is wrong is told alone; so is a value that is NaN.
+    if !(most >= 0.0 && value > most) {
         return Ok(());
     }
     let message = format!("must be at most {peak}, {most} {unit}, got {value} {unit}");
@@ -311,9 +322,15 @@ fn check_sizes(numbers: &[(&str, f64)]) -> Result<(), Problems> {
     Problems::all(wrong)
 }
 
-/// A wall is passive on a device with encoder steps only up to a stiffness of `2 f_c / Δ`.
-fn friction_of_steps(step: f64, friction: f64, unit: &str) -> Result<(), Problem> {
-    if step > 0.0 && friction == 0.0 {
+/// A wall is passive on a device with encoder steps only up to a stiffness of `2 f_c / Δ`; a device
+/// without forces renders none.
+fn friction_of_steps(
+    forces: bool,
+    step: f64,
+    friction: f64,
+    unit: &str,
+) -> Result<(), Problem> {
+    if forces && step > 0.0 && friction == 0.0 {
         let message = format!("must be positive beside encoder steps, got 0 {unit}");
         return Err(Problem::about(message).under("friction"));
     }
@@ -330,10 +347,13 @@ fn one_line(key: &str, text: &str) -> Result<(), Problem> {
 
 fn check_assumed(assumed: &[String], known: &[&str]) -> Result<(), Problems> {
     let wrong = assumed.iter().enumerate().map(|(i, name)| {
-        if known.contains(&name.as_str()) {
+        let message = if !known.contains(&name.as_str()) {
+            unknown_name("number of a device", name, known)
+        } else if assumed.iter().take(i).any(|before| before == name) {
+            format!("`{name}` is listed twice")
+        } else {
             return Ok(());
-        }
-        let message = unknown_name("number of a device", name, known);
+        };
         Err(Problem::new(message).at(i).under("assumed"))
     });
     Problems::all(wrong)
@@ -432,127 +452,5 @@ fn written(profile: &DeviceProfile) -> WrittenDevice {
         buttons: profile.buttons.iter().map(ToString::to_string).collect(),
         source: profile.source.to_string(),
         assumed: profile.assumed.iter().map(|name| (*name).to_owned()).collect(),
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn text(name: &str) -> String {
-        device_to_json(&palpate_devices::profile_named(name).unwrap()).unwrap()
-    }
-
-    #[test]
-    fn every_profile_is_read_as_it_was_written() {
-        for (name, profile) in &palpate_devices::PROFILES {
-            assert_eq!(&device_from_json(text(name).as_bytes()).unwrap(), profile, "{name}");
-        }
-    }
-
-    /// Once they were left out.
-    #[test]
-    fn grippers_and_buttons_are_kept() {
-        let gripper = GripperProfile::new(0.025, 8.0).with_max_force_rate(2000.0);
-        let omega = palpate_devices::profile_named("omega7").unwrap();
-        let device = omega.with_gripper(gripper).with_buttons(["front", "rear"]);
-        let text = device_to_json(&device).unwrap();
-        assert_eq!(device_from_json(text.as_bytes()).unwrap(), device);
-        let wrong = text
-            .replace("\"max_opening\": 0.025", "\"max_opening\": 0")
-            .replace("\"rear\"", "\"front\", \"\"");
-        let error = device_from_json(wrong.as_bytes()).unwrap_err().to_string();
-        for said in [
-            "max_opening must be positive, got 0 m",
-            "two buttons are named \"front\"",
-            "buttons[2], line ",
-        ] {
-            assert!(error.contains(said), "{said}\n{error}");
-        }
-        let many = device.with_buttons((0..=Buttons::MOST).map(|i| i.to_string()));
-        let error = device_to_json(&many).unwrap_err().to_string();
-        assert!(error.contains("buttons must be at most "), "{error}");
-    }
-
-    #[test]
-    fn all_that_is_wrong_is_told_with_its_place() {
-        let wrong = text("sigma7")
-            .replace("\"palpate_device\": 1", "\"palpate_device\": 2")
-            .replace("\"friction\": 0.15", "\"friction\": -0.15")
-            .replace("\"inertia\": 0.0002", "\"inertia\": 0")
-            .replace("\"max_acceleration\": 10000", "\"max_acceleration\": 0")
-            .replace("\"mass\",", "\"mas\",");
-        let error = device_from_json(wrong.as_bytes()).unwrap_err().to_string();
-        for said in [
-            "5 problems:",
-            "palpate_device, line 2: palpate_device must be 1, got 2",
-            "friction, line 12: friction must be zero or more, got -0.15 N",
-            "turning.inertia, line 22: inertia must be positive, got 0 kg·m²",
-            "turning.max_acceleration, line 27: max_acceleration must be positive, got 0 rad/s²",
-            "assumed[2], line 44: unknown number of a device `mas`, did you mean `mass`?",
-        ] {
-            assert!(error.contains(said), "{said}\n{error}");
-        }
-    }
-
-    #[test]
-    fn numbers_that_are_missing_or_unknown_are_refused() {
-        let missing = text("touch").replace("  \"max_force\": 3.3,\n", "");
-        let error = device_from_json(missing.as_bytes()).unwrap_err().to_string();
-        assert!(error.contains("missing key `max_force`"), "{error}");
-        let unknown = text("touch").replace("\"mass\": 0.045", "\"weight\": 0.045");
-        let error = device_from_json(unknown.as_bytes()).unwrap_err().to_string();
-        assert!(error.contains("weight"), "{error}");
-        let error = device_from_json(b"{ \"palpate\": 1 }").unwrap_err().to_string();
-        assert!(error.contains("unknown key `palpate`"), "{error}");
-    }
-
-    /// Once they were read, and refused without a place when a servo was made.
-    #[test]
-    fn limits_that_leave_no_force_are_told_with_their_places() {
-        let wrong = text("sigma7")
-            .replace("\"max_force_rate\": 6000", "\"max_force_rate\": 0")
-            .replace("\"continuous_force\": 12", "\"continuous_force\": 13")
-            .replace("\"friction\": 0.15", "\"friction\": 0")
-            .replace("\"Force Dimension sigma.7\"", "\"Force\\nDimension\"");
-        let error = device_from_json(wrong.as_bytes()).unwrap_err().to_string();
-        for said in [
-            "max_force_rate must be positive, got 0 N/s",
-            "continuous_force must be at most max_force, 12 N, got 13 N",
-            "friction must be positive beside encoder steps, got 0 N",
-            "device must be one line without control characters",
-        ] {
-            assert!(error.contains(said), "{said}\n{error}");
-        }
-        // A device that gives no forces needs none of the limits.
-        let senses = text("omega").replace("\"max_force\": 12", "\"max_force\": 0");
-        let senses = senses.replace("\"max_force_rate\": ", "\"max_force_rate\": 0.0e-");
-        assert!(device_from_json(senses.as_bytes()).is_ok(), "{senses}");
-    }
-
-    /// Once a metre of the device was 3e299 m of the scene.
-    #[test]
-    fn numbers_of_no_device_are_told() {
-        let wrong = text("omega")
-            .replace("\"workspace_radius\": 0.08", "\"workspace_radius\": 1e-300")
-            .replace("\"workspace_radius\": 0.075", "\"workspace_radius\": 1e-300")
-            .replace("\"max_stiffness\": 5000", "\"max_stiffness\": 1e308");
-        let error = device_from_json(wrong.as_bytes()).unwrap_err().to_string();
-        for said in [
-            "workspace_radius must be from 1e-9 to 1e9 in size, got 1e-300",
-            "max_stiffness must be from 1e-9 to 1e9 in size, got 1e308",
-        ] {
-            assert!(error.contains(said), "{said}\n{error}");
-        }
-    }
-
-    #[test]
-    fn a_device_without_limits_is_not_written() {
-        let ideal = DeviceProfile::unlimited("ideal");
-        let error = device_to_json(&ideal).unwrap_err().to_string();
-        assert!(
-            error.contains("max_force: max_force must be zero or more and finite, got inf N"),
-            "{error}"
-        );
     }
 }

@@ -145,6 +145,7 @@ where
         report: &outcome,
         servo: &servo,
         device: device.profile(),
+        device_file: choice.file(),
         accepted: &accepted,
         nearest: is_missed(&outcome).then(|| paths::nearest(scene, &paths)),
         workspace_scale: held::is_fitted(scene, &choice).then(|| map.scale()),

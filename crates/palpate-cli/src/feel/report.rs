@@ -51,6 +51,8 @@ pub(super) struct Felt<'a, const D: usize> {
     pub(super) report: &'a RunReport,
     pub(super) servo: &'a Servo<D>,
     pub(super) device: &'a DeviceProfile,
+    /// The file that the device's profile is from.
+    pub(super) device_file: Option<&'a Path>,
     pub(super) accepted: &'a [Accepted],
     /// How near the path of a hand that felt nothing came to a body [m].
     pub(super) nearest: Option<f64>,
@@ -77,6 +79,9 @@ impl<const D: usize> Felt<'_, D> {
     fn json(&self) -> Result<Value, serde_json::Error> {
         let mut json = serde_json::to_value(self.report)?;
         json["device"] = self.device.name.as_ref().into();
+        if let Some(file) = self.device_file {
+            json["device_file"] = file.display().to_string().into();
+        }
         for (start, told) in
             self.report.starts_inside.iter().zip(json_items(&mut json, "starts_inside"))
         {
@@ -145,7 +150,7 @@ fn write_report<const D: usize>(out: &mut String, felt: &Felt<'_, D>) -> std::fm
     }
     let asked = felt.scene.bodies.iter().map(|body| &body.material);
     let stiffness = of_asked(
-        &range(surfaces().map(Surface::stiffness)),
+        &range(surfaces().map(Surface::stiffness).map(unfelt_as_zero)),
         &asked_stiffness(asked.clone(), device),
     );
     let damping = of_asked(
@@ -175,7 +180,11 @@ fn write_report<const D: usize>(out: &mut String, felt: &Felt<'_, D>) -> std::fm
         }
         None => writeln!(out, "probe of {} mm", 1e3 * options.probe.radius())?,
     }
-    writeln!(out, "  device         {}", device.name)?;
+    write!(out, "  device         {}", device.name)?;
+    if let Some(file) = felt.device_file {
+        write!(out, ", by {}", shown(&file.display().to_string()))?;
+    }
+    writeln!(out)?;
     if !has_forces && !felt.scene.guides.is_empty() {
         let guides = counted(felt.scene.guides.len(), "guide", "guides");
         writeln!(
@@ -198,7 +207,7 @@ fn write_report<const D: usize>(out: &mut String, felt: &Felt<'_, D>) -> std::fm
         writeln!(
             out,
             "  at the hand    stiffness {} N/m, damping {} N·s/m",
-            range(along.iter().map(|a| a.device_stiffness)),
+            range(along.iter().map(|a| a.device_stiffness).map(unfelt_as_zero)),
             range(along.iter().map(|a| a.device_damping)),
         )?;
     }
@@ -274,16 +283,27 @@ fn write_accepted(
         let (count, factor) = (less.count(), rounded(factor));
         let (whose, condition) = (whose(count), rule.condition());
         let least = if count > 1 { ", at least" } else { "," };
+        // All are of one device.
+        let assumed = accepted.first().map_or_else(String::new, |a| assumed(rule, &a.assumed));
         writeln!(
             out,
-            "                 {whose} {how} than asked{least} {factor} of the {what}: {condition}"
+            "                 {whose} {how} than asked{least} {factor} of the {what}: \
+             {condition}{assumed}"
         )?;
     }
-    let relies = |a: &Accepted| a.stiffness_rule.or(a.damping_rule).is_some();
-    if accepted.iter().any(|a| relies(a) && a.assumed.contains(&"least_damping")) {
-        writeln!(out, "                 the device's least damping b is assumed")?;
-    }
     Ok(())
+}
+
+/// Which numbers that a rule uses are `assumed`.
+fn assumed(rule: Rule, assumed: &[&str]) -> String {
+    let angular = if rule.is_angular() { "angular " } else { "" };
+    let used = rule.numbers().iter().filter(|name| assumed.contains(name));
+    let used: Vec<_> = used.map(|name| format!("{angular}{name}")).collect();
+    match used.len() {
+        0 => String::new(),
+        1 => format!("; {} is assumed", used.concat()),
+        _ => format!("; {} are assumed", used.join(" and ")),
+    }
 }
 
 /// How much stiffer than the device renders the stiffest is, if it is taken as it is.
@@ -325,6 +345,11 @@ fn asked_stiffness<'a>(
 /// What is rendered, and what was asked for if that is another.
 fn of_asked(rendered: &str, asked: &str) -> String {
     if rendered == asked { rendered.to_owned() } else { format!("{rendered} (asked {asked})") }
+}
+
+/// The stiffness [N/m], or zero for one below a millionth, which stands in for no spring at all.
+fn unfelt_as_zero(stiffness: f64) -> f64 {
+    if stiffness < 1e-6 { 0.0 } else { stiffness }
 }
 
 /// The numbers of all bodies: one number if they are equal, else their range.

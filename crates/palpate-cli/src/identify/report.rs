@@ -97,11 +97,22 @@ impl Report<'_> {
     fn write_axis(&self, out: &mut impl Write, axis: &IdentifiedAxis) -> io::Result<()> {
         writeln!(
             out,
-            "{}: {} strokes in {:.1} s, misfit {:.2}",
-            axis.axis, axis.strokes, axis.time, axis.misfit
+            "{}: {} strokes in {:.1} s, misfit {:.2} (good: {} at most)",
+            axis.axis,
+            axis.strokes,
+            axis.time,
+            axis.misfit,
+            IdentifiedAxis::GOOD_MISFIT
         )?;
+        if !axis.is_fitted() {
+            writeln!(
+                out,
+                "  it moves otherwise than a mass with damping and friction, as where a hand holds it \
+                 softly: let go of it, and try again"
+            )?;
+        }
         for row in self.rows(axis) {
-            writeln!(out, "  {:<13} {}", row.name, row.said())?;
+            writeln!(out, "  {:<13} {}", row.name, row.said(axis))?;
         }
         if let EncoderStep::Unseen(least) = axis.encoder_step {
             let (least, unit) = (rounded(least), axis.axis.length_unit());
@@ -144,7 +155,7 @@ impl Report<'_> {
         };
         let at = axis.axis;
         let step = Estimate { value: axis.encoder_step.size(), error: 0.0 };
-        [
+        let mut rows = [
             row(mass, at.mass_unit(), axis.mass, assumed.mass, made.mass),
             row(["damping"; 2], at.damping_unit(), axis.damping, assumed.damping, made.damping),
             row(
@@ -161,7 +172,11 @@ impl Report<'_> {
                 assumed.encoder_step,
                 made.encoder_step,
             ),
-        ]
+        ];
+        // The step is read and not fitted.
+        let [fitted @ .., _] = &mut rows;
+        fitted.iter_mut().for_each(|row| row.is_seen &= axis.is_fitted());
+        rows
     }
 
     fn described(&self) -> Value {
@@ -208,7 +223,7 @@ impl Report<'_> {
 }
 
 impl Row {
-    fn said(&self) -> String {
+    fn said(&self, axis: &IdentifiedAxis) -> String {
         let Self { found, unit, profile, made_with, .. } = self;
         let number = if self.is_seen {
             if found.error > 0.0 {
@@ -218,6 +233,8 @@ impl Row {
             } else {
                 format!("{} {unit}", rounded(found.value))
             }
+        } else if !axis.is_fitted() {
+            format!("cannot be told: {} {unit} is nearest", rounded(found.value))
         } else {
             let (least, most) = (rounded(found.least()), rounded(found.most()));
             format!("cannot be told: from {least} to {most} {unit}")

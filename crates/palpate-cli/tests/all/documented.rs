@@ -82,12 +82,15 @@ fn runs() -> (Names, Names) {
         .write("flat.json", &flat.replace(", 0] }", "] }").replace(", 0.1, 0]", ", 0.1]"));
     let rows = "time_s,x_m,y_m,z_m\n0,0,0.049,0\n0.1,0,0.06,0\n";
     let hand = folder.write("hand.csv", rows);
+    let omega = palpate::devices::profile_named("omega").unwrap();
+    let omega = folder.write("omega.json", &palpate::scene::device_to_json(&omega).unwrap());
+    let omega = format!("simulated:{omega}");
     let [trace, wav] = ["trace.csv", "touch.wav"].map(|name| folder.name(name));
     let (mut printed, mut columns) = (Names::new(), Names::new());
     let stylus = ["scenes/stylus_in_cup.json", "--fast", "--duration", "0.1"];
     for run in [
         &[&stylus[..], &["--device", "simulated:sigma7"]].concat()[..],
-        &[&scene, "--path", &hand, "--device", "simulated:omega"],
+        &[&scene, "--path", &hand, "--device", &omega],
         &[&flat, "--fast", "--duration", "0.1"],
         &["scenes/materials.json", "--fast", "--duration", "2", "--wav", &wav],
     ] {

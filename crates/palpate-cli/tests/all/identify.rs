@@ -74,6 +74,14 @@ fn what_is_found_is_a_profile_that_devices_feel_and_identify_read() {
     };
     let [found, usual] = [felt(&device), felt("simulated:omega")];
     assert_eq!(found["device"], usual["device"]);
+    // Once nothing told a profile of a file from the one of that name in the list.
+    assert_eq!((&found["device_file"], usual.get("device_file")), (&file.into(), None));
+    let device = ["feel", "--fast", "--duration", "0.1", "--device", &device];
+    let said = text(&palpate(&device));
+    assert!(
+        said.contains(&format!("  device         Force Dimension omega, by {file}\n")),
+        "{said}"
+    );
     assert_ne!(found["bodies"], usual["bodies"]);
 
     let again = json(&["identify", "--device", file, "--json"]);
@@ -153,6 +161,7 @@ fn an_interrupted_run_writes_no_profile() {
 fn devices_without_forces_and_options_that_do_not_go_together_are_refused() {
     let folder = Folder::new();
     let profile = palpate::devices::profile_named("omega").unwrap().with_max_force(0.0);
+    let profile = profile.with_continuous_force(0.0);
     let profile = palpate::scene::device_to_json(&profile).unwrap();
     let file = folder.write("senses.json", &profile);
     let refused = |arguments: &[&str], rule: &str| {
@@ -171,6 +180,22 @@ fn devices_without_forces_and_options_that_do_not_go_together_are_refused() {
         "--stiffness, --strict have no meaning for Force Dimension omega, which has no forces",
     );
     refused(&["devices", "--materials", "--material", "rubber"], "cannot be used with");
+}
+
+/// Once the status was 0, with a damping three times too large and an error of 0.2 %.
+#[test]
+fn a_hand_too_soft_to_be_noticed_is_told_by_the_misfit() {
+    let output = palpate(&["identify", "--device", "omega", "--grip", "3.9"]);
+    let said = text(&output);
+    assert_eq!(status(&output), 1, "{said}");
+    for words in [
+        "misfit 1.76 (good: 1.4 at most)\n",
+        "  it moves otherwise than a mass with damping and friction, as where a hand holds it softly",
+        "  damping       cannot be told: 7.537 N·s/m is nearest; ",
+        "  encoder step  0.00001 m; as the profile's 0.00001; ",
+    ] {
+        assert!(said.contains(words), "{words}\n{said}");
+    }
 }
 
 /// What does not fit is not always a hand's.

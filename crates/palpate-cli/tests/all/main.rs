@@ -21,6 +21,7 @@ mod outputs;
 mod pictures;
 mod program;
 mod render;
+mod rules;
 mod shapes;
 mod sweep;
 mod tables;

@@ -52,7 +52,7 @@ pub(super) fn identify_axis<const D: usize>(
         let observe = |stroke| Observed::of(stroke, step, bounds.travel, period);
         let observed: Vec<_> = motions.strokes.iter().map(observe).collect();
         let guess = guess(&motions.strokes, motions.breakaway(), &bounds);
-        let sprung = fit(&observed, &guess, true);
+        let sprung = fit(&observed, [&guess; 2], true);
         let softest_spring = sprung.as_ref().map(|sprung| {
             let felt = FELT * sprung.model.friction / bounds.travel;
             felt.max(SURE * sprung.deviations.stiffness)
@@ -64,7 +64,8 @@ pub(super) fn identify_axis<const D: usize>(
             }
         }
         let near = sprung.map_or(guess, |fit| Model { stiffness: 0.0, ..fit.model });
-        let plain = fit(&observed, &near, false);
+        // A fit may end at a friction or a damping of zero, which is no size for the steps of the next.
+        let plain = fit(&observed, [&guess, &near], false);
         let (limit, none) = (MOST_MISFIT, f64::INFINITY);
         let misfit = plain.as_ref().map_or(none, |fit| fit.misfit);
         let Some(fit) = plain.filter(|fit| fit.misfit <= MOST_MISFIT) else {

@@ -63,7 +63,7 @@ pub enum IdentifyError {
         radius: f64,
     },
     /// A reading is NaN or infinite.
-    #[error("{axis}: the reading at {time} s is not a finite number; check the encoders")]
+    #[error("{axis}: the reading at {time:.3} s is not a finite number; check the encoders")]
     NotFinite {
         /// The axis that was moved.
         axis: DeviceAxis,
@@ -71,7 +71,9 @@ pub enum IdentifyError {
         time: f64,
     },
     /// A device that gives torques did not say where it points.
-    #[error("{axis}: the reading at {time} s has no orientation, and the device gives torques")]
+    #[error(
+        "{axis}: the reading at {time:.3} s has no orientation, and the device gives torques"
+    )]
     NoOrientation {
         /// The axis that was moved.
         axis: DeviceAxis,
@@ -154,7 +156,7 @@ pub enum IdentifyError {
     },
     /// The handle does not come to rest.
     #[error(
-        "{axis}: without a force the handle still moved after {time} s: a hand moves it, it falls, \
+        "{axis}: without a force the handle still moved after {time:.3} s: a hand moves it, it falls, \
          or it has no friction that could stop it"
     )]
     NeverRests {

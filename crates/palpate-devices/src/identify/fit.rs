@@ -9,6 +9,7 @@
 //! reading is differentiated, so encoder steps add noise and no bias of the regressors.
 
 use super::observed::{Model, Observed, PARAMETERS};
+use super::report::IdentifiedAxis;
 
 /// Parameters whose least value is zero.
 const NOT_NEGATIVE: [bool; PARAMETERS] = [false, true, true, false, true];
@@ -40,10 +41,15 @@ struct Linear {
     slopes: [Vec<f64>; PARAMETERS],
 }
 
-/// Fits a model to strokes, from starts about `guess`, the best first, until one fits.
-pub(super) fn fit(observed: &[Observed], guess: &Model, has_spring: bool) -> Option<Fit> {
+/// Fits a model to strokes, from starts about `guess`, the best first, until one fits. `usual` has
+/// the sizes of the numbers, none of which is zero.
+pub(super) fn fit(
+    observed: &[Observed],
+    [usual, guess]: [&Model; 2],
+    has_spring: bool,
+) -> Option<Fit> {
     let free = [true, true, true, true, has_spring];
-    let scales = scales(guess);
+    let scales = scales(usual);
     let mut starts: Vec<(f64, Model)> = starts(guess, has_spring)
         .filter_map(|model| Some((squares(&misses(observed, &model)?), model)))
         .collect();
@@ -52,7 +58,7 @@ pub(super) fn fit(observed: &[Observed], guess: &Model, has_spring: bool) -> Opt
     for (_, start) in starts.iter().take(MOST_STARTS) {
         let found = descend(observed, start, free, scales);
         best = [best, found].into_iter().flatten().min_by(|a, b| a.sum.total_cmp(&b.sum));
-        if best.is_some_and(|best| best.misfit < FITS) {
+        if best.is_some_and(|best| best.misfit <= IdentifiedAxis::GOOD_MISFIT) {
             break;
         }
     }
@@ -61,9 +67,6 @@ pub(super) fn fit(observed: &[Observed], guess: &Model, has_spring: bool) -> Opt
 
 /// Starts that are tried at most.
 const MOST_STARTS: usize = 5;
-
-/// The misfit of a fit after which no other start is tried.
-const FITS: f64 = 1.5;
 
 /// Starts with other masses, and with springs.
 fn starts(guess: &Model, has_spring: bool) -> impl Iterator<Item = Model> {
@@ -79,8 +82,8 @@ fn starts(guess: &Model, has_spring: bool) -> impl Iterator<Item = Model> {
 }
 
 /// Changes of the parameters that are felt: steps of derivatives are small parts of them.
-fn scales(guess: &Model) -> [f64; PARAMETERS] {
-    [1.0, guess.damping, guess.friction, guess.friction, guess.stiffness]
+fn scales(usual: &Model) -> [f64; PARAMETERS] {
+    [1.0, usual.damping, usual.friction, usual.friction, usual.stiffness]
 }
 
 /// The part of a scale by which a derivative is taken.

@@ -152,8 +152,8 @@ pub struct IdentifiedAxis {
     /// softer one, or a hand that only drags, adds to mass and damping. `None` if the motions tell
     /// nothing of a spring.
     pub softest_spring: Option<f64>,
-    /// The root mean square of the residuals of the model, over what encoder steps explain: 1 for a
-    /// mass with damping and friction.
+    /// The root mean square of the residuals of the model, over what encoder steps explain: about 1
+    /// for a mass with damping and friction, at most [`GOOD_MISFIT`](Self::GOOD_MISFIT).
     pub misfit: f64,
     /// Strokes that were evaluated.
     pub strokes: u64,
@@ -173,10 +173,25 @@ pub struct Identified {
 }
 
 impl IdentifiedAxis {
-    /// `true` if mass, damping and friction are [seen](Estimate::is_seen).
+    /// The largest [misfit](Self::misfit) of a device that moves as a mass with damping and friction:
+    /// those that are simulated reach 1.1 without a hand, and up to 3 with one whose spring is just not
+    /// noticed. One of less than half of that spring stays below it, and so may any on a device of
+    /// much friction.
+    pub const GOOD_MISFIT: f64 = 1.4;
+
+    /// `true` if the misfit is [good](Self::GOOD_MISFIT). If not, the errors of the numbers say
+    /// nothing: a hand that holds the handle softly adds to mass and damping.
+    #[must_use]
+    pub fn is_fitted(&self) -> bool {
+        self.misfit <= Self::GOOD_MISFIT
+    }
+
+    /// `true` if the misfit is good, and mass, damping and friction are
+    /// [seen](Estimate::is_seen).
     #[must_use]
     pub fn is_seen(&self) -> bool {
-        [self.mass, self.damping, self.friction].iter().all(Estimate::is_seen)
+        self.is_fitted()
+            && [self.mass, self.damping, self.friction].iter().all(Estimate::is_seen)
     }
 
     /// `true` if the constant force beside the motors' is more than its error, and more than a
@@ -199,6 +214,8 @@ const ABOUT: [&str; 4] = ["inertia", "least_damping", "friction", "encoder_step"
 
 /// The numbers of the worst axis, in the order of their names.
 struct Worst {
+    /// Whether every axis moves as a mass with damping and friction.
+    is_fitted: bool,
     mass: f64,
     damping: f64,
     /// The least and the most within the errors.
@@ -219,11 +236,18 @@ impl Worst {
         if is_seen { self.step } else { self.step.max(stated) }
     }
 
+    /// The mass or the damping that was `found` for a profile that states one: the less of both where
+    /// a hand may have added to what was found.
+    fn beside(&self, found: f64, stated: f64) -> f64 {
+        if self.is_fitted { found } else { found.min(stated) }
+    }
+
     /// The friction for a profile that states one, which stays as far as the errors allow where
     /// they are more than half of what was found.
     fn friction_beside(&self, stated: f64) -> f64 {
         let [least, most] = self.friction;
         match () {
+            () if !self.is_fitted && stated > 0.0 => stated.min(most),
             () if self.is_friction_known => least,
             () if stated > 0.0 => stated.clamp(least, most),
             () => most,
@@ -248,7 +272,8 @@ impl Identified {
     /// a few words what found them, and their names leave the list of those that are assumed.
     ///
     /// - A mass, damping or friction that is not [seen](Estimate::is_seen) on every axis counts as
-    ///   assumed.
+    ///   assumed, and so do all three if an axis is not [fitted](IdentifiedAxis::is_fitted): each is
+    ///   then the less of the one found and that of `profile`.
     /// - Where the error of a friction is more than half of it, that of `profile` stays, as far as the
     ///   error allows; the most that it allows if `profile` says zero, because a device of no friction
     ///   renders nothing in encoder steps.
@@ -263,8 +288,8 @@ impl Identified {
         if let Some(worst) = self.worst(|axis| matches!(axis, DeviceAxis::Along(_))) {
             let seen = worst.seen(&ALONG, profile.encoder_step);
             found = found
-                .with_mass(worst.mass)
-                .with_least_damping(worst.damping)
+                .with_mass(worst.beside(worst.mass, profile.mass))
+                .with_least_damping(worst.beside(worst.damping, profile.least_damping))
                 .with_friction(worst.friction_beside(profile.friction))
                 .with_encoder_step(worst.step_beside(profile.encoder_step))
                 .with_assumed(assumed(&profile.assumed, &ALONG, &seen))
@@ -275,8 +300,8 @@ impl Identified {
             let seen = worst.seen(&ABOUT, turning.encoder_step);
             let turning: TurningProfile = turning
                 .clone()
-                .with_inertia(worst.mass)
-                .with_least_damping(worst.damping)
+                .with_inertia(worst.beside(worst.mass, turning.inertia))
+                .with_least_damping(worst.beside(worst.damping, turning.least_damping))
                 .with_friction(worst.friction_beside(turning.friction))
                 .with_encoder_step(worst.step_beside(turning.encoder_step))
                 .with_assumed(assumed(&turning.assumed, &ABOUT, &seen))
@@ -292,7 +317,12 @@ impl Identified {
         let least = |of: fn(&IdentifiedAxis) -> f64| {
             rounded(axes().map(of).fold(f64::INFINITY, f64::min))
         };
+        let is_fitted = axes().all(IdentifiedAxis::is_fitted);
+        let are_seen = |of: fn(&IdentifiedAxis) -> Estimate| {
+            is_fitted && axes().all(|axis| of(axis).is_seen())
+        };
         Some(Worst {
+            is_fitted,
             mass: least(|found| found.mass.value),
             damping: least(|found| found.damping.least()),
             friction: [
@@ -303,9 +333,9 @@ impl Identified {
                 .all(|found| found.friction.least() >= 0.5 * found.friction.value),
             step: rounded(axes().map(|found| found.encoder_step.size()).fold(0.0, f64::max)),
             is_seen: [
-                axes().all(|found| found.mass.is_seen()),
-                axes().all(|found| found.damping.is_seen()),
-                axes().all(|found| found.friction.is_seen()),
+                are_seen(|found| found.mass),
+                are_seen(|found| found.damping),
+                are_seen(|found| found.friction),
                 axes().all(|found| !matches!(found.encoder_step, EncoderStep::Unseen(_))),
             ],
         })

@@ -14,6 +14,7 @@ use palpate_field::Vector;
 use palpate_testkit::cases;
 
 mod lifecycle;
+mod unfit;
 
 /// Where the handle is at first: on no encoder step.
 const START: Vector<f64, 2> = Vector([0.0123, -0.0207]);
@@ -413,7 +414,7 @@ fn however_it_ends_the_last_force_is_zero() {
     for (fault, said) in [
         (Fault::Lost, "along x: the device was lost: the cable was pulled"),
         (Fault::Stale, "along x: the device was not measured for 1.001 s"),
-        (Fault::NotANumber, "along x: the reading at 3 s is not a finite number"),
+        (Fault::NotANumber, "along x: the reading at 3.000 s is not a finite number"),
         (Fault::Stuck, "along x: the handle did not move at 3.6000 N: a hand"),
     ] {
         let mut device = Watched::new(free(profile_named("omega").unwrap()), fault);

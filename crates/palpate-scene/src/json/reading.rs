@@ -13,6 +13,7 @@ use serde::de::DeserializeOwned;
 use serde_json::{Map, Value, json};
 
 use super::deserialize::Node;
+use crate::device_file;
 use crate::names::nearest;
 use crate::problem::{Problem, Step};
 use crate::problems::Problems;
@@ -25,15 +26,20 @@ pub(crate) fn read<T: DeserializeOwned>(value: &Value) -> Result<T, Problems> {
 }
 
 /// What stands in for keys that are missing or wrong, so that the rest can be read.
-static STAND_INS: LazyLock<[(&str, Value); 6]> = LazyLock::new(|| {
-    [
+static STAND_INS: LazyLock<Vec<(&str, Value)>> = LazyLock::new(|| {
+    let others = [
         ("palpate", json!(1)),
         ("bodies", json!([])),
         ("name", json!("")),
         ("shape", json!({ "ball": { "radius": 1 } })),
         ("body", json!("")),
         ("to", json!({})),
-    ]
+        ("palpate_device", json!(1)),
+        ("device", json!("")),
+        ("source", json!("")),
+    ];
+    let numbers = device_file::numbers().map(|name| (name, json!(device_file::UNKNOWN)));
+    others.into_iter().chain(numbers).collect()
 });
 
 /// What stands in for a dimension that is missing or wrong.

@@ -5,6 +5,7 @@
 #![expect(clippy::unwrap_used, reason = "a test that cannot be set up fails")]
 
 mod common;
+mod device_files;
 mod errors;
 mod errors_in_bodies;
 mod from_code;
