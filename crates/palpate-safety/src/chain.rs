@@ -388,7 +388,7 @@ impl<const D: usize> SafetyChain<D> {
         let options = self.passivity.options();
         let scale = rise * softness;
         let Passed { force: free_force, spent } =
-            self.free.step([free_force, position], scale, elapsed, options, is_sound);
+            self.free.step([free_force, position], [scale, elapsed], options, is_sound);
         let seen =
             PortMotion { position, velocity, effort, is_rising, elapsed, softness, spent };
         let observed = self.passivity.observed(wanted, &seen, is_sound);

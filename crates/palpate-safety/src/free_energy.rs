@@ -135,8 +135,7 @@ impl<V: InnerProduct> FreeEnergy<V> {
     pub(crate) fn step(
         &mut self,
         [force, position]: [V; 2],
-        scale: f64,
-        elapsed: f64,
+        [scale, elapsed]: [f64; 2],
         options: &PassivityOptions,
         is_sound: bool,
     ) -> Passed<V> {
@@ -163,7 +162,8 @@ impl<V: InnerProduct> FreeEnergy<V> {
             let climbed = -0.5 * (felt + last.felt).dot(way);
             let forgotten = if self.part < 1.0 { 0.0 } else { (elapsed / FORGOTTEN).min(1.0) };
             // Written so that NaN is no height.
-            self.height = (self.height * (1.0 - forgotten) + climbed).max(0.0).min(HIGHEST);
+            let height = (self.height * (1.0 - forgotten) + climbed).max(0.0);
+            self.height = if height < HIGHEST { height } else { HIGHEST };
             self.report.credited += self.part * (scale - last.scale).max(0.0) * self.height;
             let is_taken = (self.part < 1.0).then_some(true);
             let is_lifted = self.lift.step(position, elapsed, is_taken) && options.is_on;
@@ -304,7 +304,7 @@ mod tests {
         for _ in 0..60_000 {
             let at = Vector([x, 0.0]);
             let Passed { force, .. } =
-                free.step([at * -stiffness, at], 1.0, period, &options, true);
+                free.step([at * -stiffness, at], [1.0, period], &options, true);
             let force = force[0].clamp(-max_force, max_force);
             // m v' = F − b v, exactly.
             let (rate, steady) = (damping / mass, force / damping);
@@ -368,7 +368,7 @@ mod tests {
         let mut free = FreeEnergy::new(options.reserve, f64::INFINITY);
         let mut at = |x: f64| {
             let input = [Vector([-1000.0 * x, 0.0]), Vector([x, 0.0])];
-            free.step(input, 1.0, 1e-3, &options, true).force[0]
+            free.step(input, [1.0, 1e-3], &options, true).force[0]
         };
         let shaken: Vec<_> =
             (0..200).map(|tick| at(if tick % 2 == 0 { 2e-3 } else { 1e-3 })).collect();
@@ -388,7 +388,7 @@ mod tests {
         let mut free = FreeEnergy::new(options.reserve, f64::INFINITY);
         for x in [0.0, 0.0, 0.01, -0.02] {
             let force = Vector([-1e4 * x - 1.0, 0.0]);
-            let passed = free.step([force, Vector([x, 0.0])], 1.0, 1e-3, &options, true);
+            let passed = free.step([force, Vector([x, 0.0])], [1.0, 1e-3], &options, true);
             assert_eq!((passed.force, passed.spent), (force, 0.0));
         }
         assert_eq!(free.report(), FreeForceReport::default());
@@ -400,7 +400,7 @@ mod tests {
         let mut free = FreeEnergy::new(options.reserve, f64::INFINITY);
         let mut at = |x: f64, force: f64| {
             let input = [Vector([force, 0.0]), Vector([x, 0.0])];
-            free.step(input, 1.0, 1e-3, &options, true).force[0]
+            free.step(input, [1.0, 1e-3], &options, true).force[0]
         };
         // Pulled in by a steady 2 N: the potential falls by what is given out.
         assert!((0..100).all(|k| at(1e-4 * f64::from(k), 2.0) == 2.0));
@@ -429,7 +429,7 @@ mod tests {
                 // 20 kN/m in the middle, and nothing beyond the reach.
                 let full = if x.abs() < reach { (-2e4 * x).clamp(-pull, pull) } else { 0.0 };
                 let input = [Vector([full, 0.0]), at];
-                let force = free.step(input, 1.0, period, &options, true).force[0];
+                let force = free.step(input, [1.0, period], &options, true).force[0];
                 for _ in 0..10 {
                     let pushed = force - spring * x - damping * v;
                     v += pushed / mass * 0.1 * period;
@@ -455,7 +455,8 @@ mod tests {
         let (mut x, mut v, mut written) = (0.01, 0.0, 0.0_f64);
         for _ in 0..60_000 {
             let at = Vector([x, 0.0]);
-            let wanted = free.step([at * -stiffness, at], 1.0, period, &options, true).force[0];
+            let wanted =
+                free.step([at * -stiffness, at], [1.0, period], &options, true).force[0];
             written += (wanted - written).clamp(-0.2, 0.2);
             free.written(Vector([written, 0.0]), 1.0);
             let (rate, steady) = (damping / mass, written / damping);
@@ -475,7 +476,7 @@ mod tests {
         for tick in 0..5000 {
             let x = 1e-3 * (0.05 * f64::from(tick)).sin();
             let input = [Vector([-2000.0 * x, 0.0]), Vector([x, 0.0])];
-            let passed = free.step(input, 1.0, 1e-3, &options, true);
+            let passed = free.step(input, [1.0, 1e-3], &options, true);
             assert_eq!(passed.force, input[0], "{tick}");
         }
     }

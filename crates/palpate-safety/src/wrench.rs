@@ -298,8 +298,12 @@ impl<const D: usize> WrenchChain<D> {
         let softness = self.cycle.observed(&seen.disturbed(is_disturbed), is_sound);
         let of_guides = PassivityOptions { damping: self.sides.along.damping, ..options };
         let scale = rise * softness;
-        let Passed { force: free_force, spent } =
-            self.free.step([free_force, position.along], scale, elapsed, &of_guides, is_sound);
+        let Passed { force: free_force, spent } = self.free.step(
+            [free_force, position.along],
+            [scale, elapsed],
+            &of_guides,
+            is_sound,
+        );
         // The walls' damping may be less: the same part of it is spent.
         let spent = if spent > 0.0 { spent * options.damping / of_guides.damping } else { 0.0 };
         let seen =

@@ -397,13 +397,11 @@ impl<const N: usize, const D: usize> ElementSearch<'_, '_, N, D> {
 /// Up to which share of a span `value + t w` is positive, for w from −1 to 1.
 fn positive_share(value: f64, t: f64) -> f64 {
     let (first, last) = (value - t, value + t);
-    // Written so that NaN is not positive.
-    if !(first > 0.0) {
-        0.0
-    } else if last > 0.0 {
-        1.0
-    } else {
-        first / (first - last) * (1.0 - 1e-12)
+    // NaN is not positive.
+    match () {
+        () if first > 0.0 && last > 0.0 => 1.0,
+        () if first > 0.0 => first / (first - last) * (1.0 - 1e-12),
+        () => 0.0,
     }
 }
 

@@ -169,17 +169,15 @@ impl<const N: usize, const D: usize> Way<N, D> {
         }
         let centre = exit(self.centre - p, self.mean, radius + self.radius);
         let spare = radius - far.sqrt();
-        // Written so that NaN is no time.
-        if !(spare > 0.0) {
-            return Stay { part: 0.0, centre };
-        }
         let (bend, most) = bend(spare, acceleration);
-        let mut part = most;
+        // NaN is no time.
+        let mut part = if spare > 0.0 { most } else { 0.0 };
         for (place, velocity) in self.places.iter().zip(&self.velocities) {
             let exit = exit(*place - p, *velocity, radius - bend);
             part = if exit < part { exit } else { part };
         }
-        Stay { part: part * (1.0 - 1e-12), centre: centre.min(most) }
+        let centre = if spare > 0.0 { centre.min(most) } else { centre };
+        Stay { part: part * (1.0 - 1e-12), centre }
     }
 }
 

@@ -41,17 +41,17 @@ impl Stay {
     /// proven `empty` [m].
     #[inline]
     pub(super) fn in_ball(empty: f64, radius: f64, speed: f64, acceleration: f64) -> Self {
-        // Written so that NaN is no time.
-        if !(empty > 0.0) {
-            return Self::default();
-        }
         let spare = empty - radius;
-        if !(spare > 0.0) {
-            return Self { part: 0.0, centre: empty / speed };
-        }
         let (bend, most) = bend(spare, acceleration);
-        let part = ((spare - bend) / speed).min(most) * (1.0 - 1e-12);
-        Self { part, centre: (empty / speed).min(most) }
+        // NaN is no time.
+        match () {
+            () if spare > 0.0 => Self {
+                part: ((spare - bend) / speed).min(most) * (1.0 - 1e-12),
+                centre: (empty / speed).min(most),
+            },
+            () if empty > 0.0 => Self { part: 0.0, centre: empty / speed },
+            () => Self::default(),
+        }
     }
 
     /// Of a box and a span of time, over which two fields have these models: until the best of
@@ -161,13 +161,14 @@ pub(super) fn exit<const D: usize>(
     // |o + s v| < radius from s = 0 on.
     let (half, squared) = (apart.dot(velocity), velocity.dot(velocity));
     let rest = radius * radius - apart.dot(apart);
-    // Written so that NaN is no time.
-    if !(radius > 0.0 && rest > 0.0) {
-        return 0.0;
-    }
+    let is_in_it = radius > 0.0 && rest > 0.0;
     let root = (half * half + squared * rest).sqrt();
-    // Of both forms of the root that which does not cancel; a point at rest stays.
-    if half > 0.0 { rest / (root + half) } else { (root - half) / squared }
+    // Of both forms of the root that which does not cancel; a point at rest stays. NaN is no time.
+    match () {
+        () if is_in_it && half > 0.0 => rest / (root + half),
+        () if is_in_it => (root - half) / squared,
+        () => 0.0,
+    }
 }
 
 /// A time after a step, rounded down to one that other parts are likely to have: their places are
@@ -177,12 +178,9 @@ pub(super) fn later(time: f64, step: f64) -> f64 {
     /// Of the step, so much is given up at most.
     const COARSE: f64 = 8.0;
     let coarse = step / COARSE;
-    // What is free to the end needs no place any more.
-    if !(coarse > 0.0 && time + step < 1.0) {
-        return time + step;
-    }
     // The power of two below.
     let grid = f64::from_bits(coarse.to_bits() & (0x7ff << 52));
     let rounded = ((time + step) / grid).floor() * grid;
-    if rounded > time { rounded } else { time + step }
+    // What is free to the end needs no place any more.
+    if rounded > time && time + step < 1.0 { rounded } else { time + step }
 }

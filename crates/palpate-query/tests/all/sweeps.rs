@@ -178,10 +178,6 @@ where
             }
         }
         ran += 1;
-        println!(
-            "EV {} {:?} {} {} {tree:?}",
-            found.evaluations, found.stop, found.lower, found.upper
-        );
         early += u64::from(found.stop.is_early());
         Ok(Ok(()))
     });
