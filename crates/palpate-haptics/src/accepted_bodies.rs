@@ -9,9 +9,11 @@ use std::sync::Arc;
 
 use crate::bodies::Bodies;
 use crate::error::HapticsError;
-use crate::protection::Protection;
+use crate::protection::{Protection, Refusals};
 use crate::tool::Coupling;
-use palpate_safety::{Acceptance, Accepted, DeviceLimits, Impedance, TurningProfile};
+use palpate_safety::{
+    Acceptance, Accepted, DeviceLimits, Impedance, Requester, TurningProfile,
+};
 
 /// Bodies, and the virtual coupling of a tool, with stiffness and damping that a device can
 /// render.
@@ -118,11 +120,14 @@ impl<const D: usize> Protection<D> {
         mut coupling: Coupling,
         rate: f64,
     ) -> Result<(Bodies<D>, Coupling, Vec<Accepted>), HapticsError> {
-        self.accept_magnets(&mut bodies, rate)?;
+        let mut refusals = self.refusals();
+        self.accept_magnets(&mut bodies, rate, &mut refusals)?;
         self.stiffen(&mut bodies, rate)?;
-        let in_series = layers(&bodies)?.into_iter().map(|layer| coupling.on(layer));
-        let in_series: Vec<_> = in_series.collect::<Result<_, _>>()?;
-        let along = self.accepted(&in_series, rate)?;
+        if self.is_strict {
+            self.refuse_tool(&bodies, &coupling, rate, &mut refusals)?;
+            refusals.end()?;
+        }
+        let along = self.accepted(&in_series(&coupling, &layers(&bodies)?)?, rate)?;
         let (stiffness, damping) = (along.stiffness_factor, along.damping_factor);
         bodies.bodies_mut().iter_mut().for_each(|body| body.scale_surface(stiffness, damping));
         coupling = coupling.softened(stiffness, damping);
@@ -132,6 +137,30 @@ impl<const D: usize> Protection<D> {
             accepted.push(turning?);
         }
         Ok((bodies, coupling, accepted))
+    }
+
+    /// Refuses the coupling on each body, and about axes, of which the device renders less than all.
+    fn refuse_tool(
+        &self,
+        bodies: &Bodies<D>,
+        coupling: &Coupling,
+        rate: f64,
+        refusals: &mut Refusals,
+    ) -> Result<(), HapticsError> {
+        for (number, body) in bodies.bodies().iter().enumerate() {
+            let own: Vec<_> = body.surface().impedances().collect::<Result<_, _>>()?;
+            let stiffest = own.iter().map(Impedance::stiffness).fold(0.0, f64::max);
+            let is_softer = coupling.stiffness < stiffest;
+            let requester =
+                if is_softer { Requester::Coupling(number) } else { Requester::Body(number) };
+            refusals.look(&self.accepted(&in_series(coupling, &own)?, rate)?, requester);
+        }
+        if let Some(turning) = self.torques() {
+            let (part, damping) = coupling.borne(&layers(bodies)?);
+            let asked = coupling.turning_on(part, damping)?;
+            refusals.look(&self.turned(asked, turning, rate)?, Requester::AngularCoupling);
+        }
+        Ok(())
     }
 
     /// The rotational properties of a device that gives a torque.
@@ -149,19 +178,12 @@ impl<const D: usize> Protection<D> {
         turning: &TurningProfile,
         rate: f64,
     ) -> Result<Accepted, HapticsError> {
-        let (mut part, mut damping) = (0.0_f64, 0.0_f64);
-        for layer in layers {
-            part = part.max((layer.stiffness() / coupling.stiffness).min(1.0));
-            damping = damping.max(layer.damping());
-        }
-        let limits = DeviceLimits::about(turning);
-        // A torque at the device is this multiple of the torque in the world.
-        let scale = 1.0 / self.map.scale();
-        let of = |impedance| Accepted::of(impedance, scale, &limits, self.acceptance, rate);
+        let (part, damping) = coupling.borne(layers);
         if self.is_strict {
-            return Ok(of(coupling.turning_on(part, damping)?)?.unchanged()?);
+            // Strict protection has refused a coupling of which less than all is rendered.
+            return self.turned(coupling.turning_on(part, damping)?, turning, rate);
         }
-        let accepted = of(coupling.turning_on(part, 0.0)?)?;
+        let accepted = self.turned(coupling.turning_on(part, 0.0)?, turning, rate)?;
         let (stiffness, own_damping) = (accepted.stiffness_factor, accepted.damping_factor);
         *coupling = coupling.softened_about_axes(stiffness, own_damping);
         if self.acceptance != Acceptance::AsIs {
@@ -169,14 +191,35 @@ impl<const D: usize> Protection<D> {
             let left = (turning.least_damping - taken)
                 .min(turning.max_damping - accepted.device_damping)
                 .max(0.0);
-            let needed = scale * coupling.damping_on_arms(damping);
+            let needed = accepted.scale * coupling.damping_on_arms(damping);
             coupling.arms = if needed > left { (left / needed).sqrt() } else { 1.0 };
         }
         Ok(accepted)
+    }
+
+    /// What the device renders of a stiffness and a damping about axes.
+    fn turned(
+        &self,
+        asked: Impedance,
+        turning: &TurningProfile,
+        rate: f64,
+    ) -> Result<Accepted, HapticsError> {
+        let limits = DeviceLimits::about(turning);
+        // A torque at the device is this multiple of the torque in the world.
+        let scale = 1.0 / self.map.scale();
+        Ok(Accepted::of(asked, scale, &limits, self.acceptance, rate)?)
     }
 }
 
 /// Stiffness and damping of every layer of every body.
 fn layers<const D: usize>(bodies: &Bodies<D>) -> Result<Vec<Impedance>, HapticsError> {
     bodies.bodies().iter().flat_map(|body| body.surface().impedances()).collect()
+}
+
+/// The layers as the hand feels them through the coupling.
+fn in_series(
+    coupling: &Coupling,
+    layers: &[Impedance],
+) -> Result<Vec<Impedance>, HapticsError> {
+    layers.iter().map(|layer| coupling.on(*layer)).collect()
 }

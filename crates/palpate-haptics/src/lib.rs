@@ -87,9 +87,9 @@ pub use palpate_safety::{
     Acceptance, Accepted, Arrivals, Buttons, ContinuousReport, Device, DeviceLost,
     DeviceProfile, Effect, FreeForceReport, GripperProfile, GripperState, Impedance,
     LimitCycleReport, NumberError, PassivityReport, PointState, PortState, Reading,
-    ReadingsReport, Recovery, Rule, SafetyChain, SafetyError, SafetyOptions, SafetyReport,
-    TurnReadings, TurnState, TurningProfile, TurningReport, VelocityEstimator, WatchdogReport,
-    WorkspaceMap,
+    ReadingsReport, Recovery, Refused, Requester, Rule, SafetyChain, SafetyError,
+    SafetyOptions, SafetyReport, TurnReadings, TurnState, TurningProfile, TurningReport,
+    VelocityEstimator, WatchdogReport, WorkspaceMap,
 };
 pub use protection::Protection;
 pub use proxy::{DEFAULT_BUDGET, Following, Probe, Proxy};

@@ -38,6 +38,8 @@ pub struct Snapshot<const D: usize> {
     pub touches: Vec<Touch<D>>,
     /// The tool; `None` if the servo renders contact points.
     pub tool: Option<HeldTool<D>>,
+    /// `true` while an emergency stop holds: all written forces are zero.
+    pub is_stopped: bool,
     /// The buttons of the device that are held down.
     pub buttons: Buttons,
     /// The gripper of the device; `None` for a device without one.

@@ -7,8 +7,8 @@ use crate::bodies::{Bodies, Body};
 use crate::error::HapticsError;
 use crate::guide::Guide;
 use palpate_safety::{
-    Acceptance, Accepted, DeviceLimits, DeviceProfile, Impedance, Recovery, SafetyError,
-    WorkspaceMap,
+    Acceptance, Accepted, DeviceLimits, DeviceProfile, Impedance, Recovery, Refused, Requester,
+    SafetyError, WorkspaceMap,
 };
 
 /// How a servo protects a device and the hand that holds it.
@@ -37,7 +37,7 @@ pub struct Protection<const D: usize> {
     pub map: WorkspaceMap<D>,
     /// What the device renders of the bodies.
     pub acceptance: Acceptance,
-    /// Whether bodies are refused of which the device renders less than all.
+    /// Whether bodies, a tool and guides are refused of which the device renders less than all.
     pub is_strict: bool,
     /// Whether the passivity controller acts; the passivity observer always runs.
     pub has_passivity_control: bool,
@@ -76,7 +76,8 @@ impl<const D: usize> Protection<D> {
         Self { acceptance, ..self }
     }
 
-    /// The same protection, refusing bodies of which the device renders less than all, or not.
+    /// The same protection, refusing bodies, a tool and guides of which the device renders less than
+    /// all, or not.
     #[must_use]
     pub fn with_strictness(self, is_strict: bool) -> Self {
         Self { is_strict, ..self }
@@ -107,22 +108,24 @@ impl<const D: usize> Protection<D> {
     /// # Errors
     ///
     /// As [`Accepted::new`]; [`SafetyError::MaterialRefused`](palpate_safety::SafetyError) of strict
-    /// protection.
+    /// protection, with everything that is refused.
     pub fn accept(
         &self,
         mut bodies: Bodies<D>,
         rate: f64,
     ) -> Result<(Bodies<D>, Vec<Accepted>), HapticsError> {
         let mut all = Vec::with_capacity(bodies.bodies().len());
-        self.accept_magnets(&mut bodies, rate)?;
+        let mut refusals = self.refusals();
+        self.accept_magnets(&mut bodies, rate, &mut refusals)?;
         self.stiffen(&mut bodies, rate)?;
         for (number, body) in bodies.bodies_mut().iter_mut().enumerate() {
             let layers: Vec<_> = body.surface().impedances().collect::<Result<_, _>>()?;
-            let accepted =
-                self.accepted(&layers, rate).map_err(|error| about(error, number))?;
+            let accepted = self.accepted(&layers, rate)?;
+            refusals.look(&accepted, Requester::Body(number));
             body.scale_surface(accepted.stiffness_factor, accepted.damping_factor);
             all.push(accepted);
         }
+        refusals.end()?;
         Ok((bodies, all))
     }
 
@@ -141,12 +144,15 @@ impl<const D: usize> Protection<D> {
             return Ok((guides.to_vec(), Vec::new()));
         }
         let mut all = (Vec::with_capacity(guides.len()), Vec::with_capacity(guides.len()));
-        for guide in guides {
+        let mut refusals = self.refusals();
+        for (number, guide) in guides.iter().enumerate() {
             let accepted = self.accepted(&[guide.impedance()?], rate)?;
+            refusals.look(&accepted, Requester::Guide(number));
             let (stiffness, damping) = (accepted.stiffness_factor, accepted.damping_factor);
             all.0.push(guide.clone().softened(stiffness, damping));
             all.1.push(accepted);
         }
+        refusals.end()?;
         Ok(all)
     }
 
@@ -155,12 +161,13 @@ impl<const D: usize> Protection<D> {
         &self,
         bodies: &mut Bodies<D>,
         rate: f64,
+        refusals: &mut Refusals,
     ) -> Result<(), HapticsError> {
         for (number, body) in bodies.bodies_mut().iter_mut().enumerate() {
             let Some(magnet) = &body.surface().magnet else { continue };
             let impedance = Impedance::new(magnet.stiffness(), 0.0)?;
-            let accepted = self.accepted(&[impedance], rate);
-            let accepted = accepted.map_err(|error| about(error, number))?;
+            let accepted = self.accepted(&[impedance], rate)?;
+            refusals.look(&accepted, Requester::Magnet(number));
             body.scale_magnet(accepted.stiffness_factor);
         }
         Ok(())
@@ -189,15 +196,32 @@ impl<const D: usize> Protection<D> {
     ) -> Result<Accepted, HapticsError> {
         let scale = self.map.scale();
         let limits = DeviceLimits::along(&self.profile);
-        let accepted = Accepted::of_layers(layers, scale, &limits, self.acceptance, rate)?;
-        Ok(if self.is_strict { accepted.unchanged()? } else { accepted })
+        Ok(Accepted::of_layers(layers, scale, &limits, self.acceptance, rate)?)
+    }
+
+    /// Where strict protection collects what it refuses.
+    pub(crate) fn refusals(&self) -> Refusals {
+        Refusals { is_strict: self.is_strict, all: Vec::new() }
     }
 }
 
-/// The error with the number of the body that it is about.
-fn about(mut error: HapticsError, body: usize) -> HapticsError {
-    if let HapticsError::Safety(SafetyError::MaterialRefused(refused)) = &mut error {
-        refused.body = Some(body);
+/// What strict protection refuses; nothing if it is not strict.
+#[derive(Debug)]
+pub(crate) struct Refusals {
+    is_strict: bool,
+    all: Vec<Refused>,
+}
+
+impl Refusals {
+    /// Refuses what the device renders less of than `requester` asks for.
+    pub(crate) fn look(&mut self, accepted: &Accepted, requester: Requester) {
+        if self.is_strict {
+            self.all.extend(accepted.refusal(requester));
+        }
     }
-    error
+
+    /// An error with all refusals, if there are any.
+    pub(crate) fn end(self) -> Result<(), SafetyError> {
+        if self.all.is_empty() { Ok(()) } else { Err(SafetyError::MaterialRefused(self.all)) }
+    }
 }

@@ -151,5 +151,10 @@ fn write_safety(f: &mut Formatter<'_>, safety: &[SafetyReport]) -> Result {
         line(f, "", format_args!("the device {said}; {least:.3} of the stiffness at least"))?;
     }
     let trips = ticks(|point| point.watchdog.trips);
-    line(f, "", format_args!("{trips} watchdog trips"))
+    // A stop is one of all contact points.
+    match safety.iter().map(|point| point.stops).max().unwrap_or_default() {
+        0 => line(f, "", format_args!("{trips} watchdog trips")),
+        1 => line(f, "", format_args!("{trips} watchdog trips, 1 emergency stop")),
+        stops => line(f, "", format_args!("{trips} watchdog trips, {stops} emergency stops")),
+    }
 }

@@ -15,9 +15,10 @@
 use std::sync::Arc;
 
 use crate::device::DeviceProfile;
-use crate::error::{NumberError, Refused, SafetyError};
+use crate::error::{NumberError, SafetyError};
 use crate::impedance::Impedance;
 use crate::limits::DeviceLimits;
+use crate::refused::{Refused, Requester};
 
 /// The rate for which profiles state the largest stiffness and damping [Hz].
 const STATED_RATE: f64 = 1000.0;
@@ -174,6 +175,9 @@ pub struct Accepted {
     /// The stiffness and damping to render, in the world; angular for a rotational entry.
     #[cfg_attr(feature = "serde", serde(skip))]
     pub impedance: Impedance,
+    /// At the device, a stiffness or a damping is so many times that in the world.
+    #[cfg_attr(feature = "serde", serde(skip))]
+    pub scale: f64,
     /// The stiffness that was asked for, at the device [N/m]; [N·m/rad] for a rotational entry.
     pub requested_stiffness: f64,
     /// The damping that was asked for, at the device [N·s/m]; [N·m·s/rad] for a rotational entry.
@@ -277,6 +281,7 @@ impl Accepted {
         )?;
         Ok(Self {
             impedance,
+            scale,
             requested_stiffness: scale * stiffest.stiffness(),
             requested_damping: scale * stiffest.damping(),
             device_stiffness: scale * impedance.stiffness(),
@@ -339,10 +344,18 @@ impl Accepted {
     /// # }
     /// ```
     pub fn unchanged(self) -> Result<Self, SafetyError> {
-        match self.stiffness_rule.or(self.damping_rule) {
+        match self.refusal(Requester::Material) {
             None => Ok(self),
-            Some(rule) => Err(Refused::new(&self, rule).into()),
+            Some(refused) => Err(SafetyError::MaterialRefused(vec![refused])),
         }
+    }
+
+    /// What is to be said to a `requester` that wants all or nothing; `None` if the device renders
+    /// all that was asked for.
+    #[must_use]
+    pub fn refusal(&self, requester: Requester) -> Option<Refused> {
+        let rule = self.stiffness_rule.or(self.damping_rule)?;
+        Some(Refused::new(self, rule, requester))
     }
 
     /// Copies `other`, except the names of assumed numbers: both belong to the same device.
@@ -350,6 +363,7 @@ impl Accepted {
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     pub fn renew(&mut self, other: &Self) {
         self.impedance = other.impedance;
+        self.scale = other.scale;
         self.requested_stiffness = other.requested_stiffness;
         self.requested_damping = other.requested_damping;
         self.device_stiffness = other.device_stiffness;

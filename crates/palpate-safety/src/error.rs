@@ -1,11 +1,11 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! What can be wrong with a number, a material for a device, or a device.
+//! What can be wrong with a number, or with a device.
 
 use std::fmt;
 
-use crate::acceptance::{Accepted, Rule};
+use crate::refused::{Refused, listed};
 
 /// A number that breaks the rule of its parameter.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -27,12 +27,8 @@ pub struct NumberError {
 }
 
 /// A number with an exponent if it has many zeros.
-struct Short(f64);
-
-/// A number with five digits.
-fn rounded(number: f64) -> Short {
-    Short(format!("{number:.4e}").parse().unwrap_or(number))
-}
+#[derive(Clone, Copy, PartialEq)]
+pub(crate) struct Short(pub(crate) f64);
 
 impl fmt::Display for Short {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -161,61 +157,6 @@ impl NumberError {
     }
 }
 
-/// What a device renders instead of what is asked of it.
-#[derive(Clone, Debug, PartialEq)]
-#[non_exhaustive]
-pub struct Refused {
-    /// The stiffness and the damping that are asked for, at the device [N/m, N·s/m]; angular about
-    /// axes [N·m/rad, N·m·s/rad].
-    pub asked: [f64; 2],
-    /// The stiffness and the damping that the device renders.
-    pub rendered: [f64; 2],
-    /// The rule that leaves no more.
-    pub rule: Rule,
-    /// The body whose material or magnet it is, by its place among the bodies; `None` for the
-    /// coupling of a tool, a guide, or a material alone.
-    pub body: Option<usize>,
-}
-
-impl Refused {
-    pub(crate) fn new(accepted: &Accepted, rule: Rule) -> Self {
-        Self {
-            asked: [accepted.requested_stiffness, accepted.requested_damping],
-            rendered: [accepted.device_stiffness, accepted.device_damping],
-            rule,
-            body: None,
-        }
-    }
-}
-
-impl fmt::Display for Refused {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let (angular, [of_stiffness, of_damping]) = if self.rule.is_angular() {
-            ("angular ", ["N·m/rad", "N·m·s/rad"])
-        } else {
-            ("", ["N/m", "N·s/m"])
-        };
-        // Numbers that differ read differently.
-        let [[stiffness, asked], [damping, asked_damping]] = [0, 1].map(|k| {
-            let pair = [self.rendered[k], self.asked[k]];
-            let short = pair.map(rounded);
-            if short[0].0 == short[1].0 { pair.map(Short) } else { short }
-        });
-        if let Some(body) = self.body {
-            write!(f, "body {body}: ")?;
-        }
-        write!(
-            f,
-            "the device renders {angular}stiffness and damping of {stiffness} {of_stiffness} and \
-             {damping} {of_damping}, not the {asked} {of_stiffness} and {asked_damping} {of_damping} \
-             that are asked for: {}",
-            self.rule.condition()
-        )
-    }
-}
-
-impl std::error::Error for Refused {}
-
 /// Why a device cannot be protected as asked. Every variant carries the offending numbers.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
@@ -224,8 +165,8 @@ pub enum SafetyError {
     #[error(transparent)]
     Number(#[from] NumberError),
     /// A device renders less than is asked of it, and is not to.
-    #[error(transparent)]
-    MaterialRefused(#[from] Refused),
+    #[error("{}", listed(.0))]
+    MaterialRefused(Vec<Refused>),
     /// A device bears less than the one that the servo was made for.
     #[error(
         "the servo was made for a device with a {limit} of {servo} {unit}, but this device has \

@@ -36,6 +36,7 @@ mod limit_cycle;
 mod limits;
 mod passivity;
 mod readings;
+mod refused;
 mod report;
 mod rise;
 mod slew;
@@ -53,13 +54,14 @@ pub use device::{
     Reading, TurnState, TurningProfile,
 };
 pub use effect::Effect;
-pub use error::{NumberError, Refused, SafetyError};
+pub use error::{NumberError, SafetyError};
 pub use free_energy::FreeForceReport;
 pub use impedance::Impedance;
 pub use limit_cycle::LimitCycleReport;
 pub use limits::DeviceLimits;
 pub use passivity::PassivityReport;
 pub use readings::{Readings, ReadingsReport};
+pub use refused::{Refused, Requester};
 pub use report::{ContinuousReport, SafetyReport, TurningReport, WatchdogReport};
 pub use rise::Recovery;
 pub use turn_readings::TurnReadings;

@@ -6,7 +6,7 @@
 use palpate_field::{Aabb, Rotation, Vector};
 use palpate_haptics::{
     Acceptance, Bodies, Body, Device, DeviceProfile, HapticsError, Probe, Protection, Recovery,
-    Servo, ServoOptions, Shell, Surface, Tool, UnprotectedServo, WorkspaceMap,
+    SafetyError, Servo, ServoOptions, Shell, Surface, Tool, UnprotectedServo, WorkspaceMap,
 };
 use palpate_query::{QueryError, World, WorldSettings};
 
@@ -293,7 +293,9 @@ impl<const D: usize> BuiltScene<D> {
             .with_acceptance(acceptance)
             .with_recovery(settings.recovery)
             .with_strictness(settings.is_strict);
-        let mut servo = servo.protected(&protection)?;
+        let guided = || protection.accept_guides(&self.guides, settings.rate).err();
+        let servo = servo.protected(&protection);
+        let mut servo = servo.map_err(|error| all_refused(error, guided()))?;
         servo.guide(&self.guides)?;
         Ok(servo)
     }
@@ -311,5 +313,18 @@ impl<const D: usize> BuiltScene<D> {
             options.max_force = tool.options.max_force.unwrap_or(options.max_force);
         }
         Ok(options)
+    }
+}
+
+/// The error with what is refused of guides too, if bodies were refused.
+fn all_refused(error: HapticsError, guides: Option<HapticsError>) -> HapticsError {
+    use HapticsError::Safety;
+    use SafetyError::MaterialRefused;
+    match (error, guides) {
+        (Safety(MaterialRefused(mut all)), Some(Safety(MaterialRefused(guides)))) => {
+            all.extend(guides);
+            Safety(MaterialRefused(all))
+        }
+        (error, _) => error,
     }
 }

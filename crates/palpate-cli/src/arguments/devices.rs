@@ -39,7 +39,7 @@ pub(crate) struct DevicesOptions {
     #[arg(long, value_name = "NAME|JSON", conflicts_with = "actuators")]
     pub(crate) profile: Option<ProfileChoice>,
     /// Ticks a second, on which what devices render of materials depends [Hz].
-    #[arg(long, requires = "materials", conflicts_with = "stability", default_value = "1000", allow_negative_numbers = true, value_parser = positive("Hz"))]
+    #[arg(long, requires = "materials", conflicts_with_all = ["stability", "actuators"], default_value = "1000", allow_negative_numbers = true, value_parser = positive("Hz"))]
     pub(crate) rate: f64,
     /// Print JSON.
     #[arg(long)]

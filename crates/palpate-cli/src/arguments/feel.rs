@@ -54,23 +54,25 @@ pub(crate) struct FeelOptions {
     /// tool, 10 on the built-in gallery, or else 1. Not for a tool with a shape.
     #[arg(long, alias = "contacts", allow_negative_numbers = true, value_parser = count(1, MOST_CONTACTS))]
     pub(crate) points: Option<usize>,
-    /// What the device renders of materials; what the scene says, or else device, if left out.
+    /// What a simulated device renders of materials; what the scene says, or else device, if left
+    /// out.
     #[arg(long, value_enum)]
     pub(crate) acceptance: Option<AcceptanceChoice>,
     /// How a force comes back after it was zeroed, by late ticks or at the start: rise, by 20 N/s, or
     /// once-out, when no body pushes the hand any more.
     #[arg(long, value_enum, default_value_t = RecoveryChoice::Rise, hide_default_value = true)]
     pub(crate) recovery: RecoveryChoice,
-    /// Refuse bodies of which the device renders less than all. A glove, which has no forces, takes
-    /// neither this nor the options of stiffness, damping, acceptance and force.
+    /// Refuse bodies, a tool and guides of which a simulated device renders less than all. A glove,
+    /// which has no forces, takes neither this nor the options of stiffness, damping, acceptance,
+    /// recovery and force.
     #[arg(long)]
     pub(crate) strict: bool,
     /// Stiffness of the surface [N/m]; that of each body if left out.
     #[arg(long, allow_negative_numbers = true, value_parser = zero_or_more("N/m"))]
     pub(crate) stiffness: Option<f64>,
-    /// Stiffness of the surface as a part of what the device renders, up to 1; for a device
-    /// without limits, --stiffness or that of each body counts.
-    #[arg(long, value_name = "PART", allow_negative_numbers = true, value_parser = within(1e-6, 1.0, ""))]
+    /// Stiffness of the surface as a part of what a simulated device renders, up to 1; for a device
+    /// without limits, that of each body counts.
+    #[arg(long, value_name = "PART", conflicts_with = "stiffness", allow_negative_numbers = true, value_parser = within(1e-6, 1.0, ""))]
     pub(crate) relative_stiffness: Option<f64>,
     /// Damping of the surface [N·s/m]; that of each body if left out.
     #[arg(long, allow_negative_numbers = true, value_parser = zero_or_more("N·s/m"))]

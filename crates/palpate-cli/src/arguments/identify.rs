@@ -7,7 +7,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::numbers::{positive, within, zero_or_more};
+use super::numbers::{count, positive, within, zero_or_more};
 use super::profile::ProfileChoice;
 
 pub(super) const EXAMPLES: &str = "\
@@ -43,17 +43,18 @@ pub(crate) struct IdentifyOptions {
     /// a fifth of the friction at the end of the travel; no hand if left out.
     #[arg(long, allow_negative_numbers = true, value_parser = positive("N/m"))]
     pub(crate) grip: Option<f64>,
-    /// Ticks a second [Hz].
+    /// Ticks a second, from 500 to 10000 [Hz].
     #[arg(long, allow_negative_numbers = true, default_value = "1000", value_parser = within(500.0, 10_000.0, "Hz"))]
     pub(crate) rate: f64,
-    /// The farthest that the handle moves from its start [m].
+    /// The farthest that the handle moves from its start, from 0.0001 to 0.05 [m]. The handle is
+    /// stopped at 200 times this in a second, 1 m/s for 0.005 m, so encoder steps set a least travel.
     #[arg(long, allow_negative_numbers = true, default_value = "0.005", value_parser = within(1e-4, 0.05, "m"))]
     pub(crate) travel: f64,
-    /// The largest part of the largest force that pushes.
+    /// The largest part of the largest force that pushes, from 0.01 to 1.
     #[arg(long, value_name = "PART", allow_negative_numbers = true, default_value = "0.3", value_parser = within(0.01, 1.0, ""))]
     pub(crate) force_part: f64,
-    /// Shifts the lengths of the strokes.
-    #[arg(long, default_value = "0")]
+    /// Shifts the lengths of the strokes: a whole number from 0 to 18446744073709551615.
+    #[arg(long, allow_negative_numbers = true, default_value = "0", value_parser = count(0, u64::MAX))]
     pub(crate) seed: u64,
     /// Write the profile with what was found to this file, whose name ends in .json.
     #[arg(long, value_name = "JSON")]

@@ -16,7 +16,7 @@ pub(crate) struct JitterOptions {
     /// Ticks a second, at most 10 kHz [Hz].
     #[arg(long, allow_negative_numbers = true, default_value = "1000", value_parser = positive("Hz"))]
     pub(crate) rate: f64,
-    /// How long to measure in all, shared by the ways to wait [s].
+    /// How long to measure in all, shared by the ways to wait [s]: each has at least a tick.
     #[arg(long, allow_negative_numbers = true, default_value = "5", value_parser = positive("s"))]
     pub(crate) duration: f64,
     /// Print JSON.

@@ -208,6 +208,18 @@ fn listed(options: &DevicesOptions) -> Vec<(&str, &DeviceProfile)> {
     }
 }
 
+/// The devices that are asked for and give forces.
+fn with_forces(
+    options: &DevicesOptions,
+) -> Result<impl Iterator<Item = (&str, &DeviceProfile)>, Failure> {
+    if let Some(choice) = options.profile.as_ref().filter(|c| c.profile.max_force == 0.0) {
+        let name = &choice.profile.name;
+        return Err(Failure::input(format!("{name} gives no forces, so nothing presses back")));
+    }
+    let gives_forces = |(_, profile): &(&str, &DeviceProfile)| profile.max_force > 0.0;
+    Ok(listed(options).into_iter().filter(gives_forces))
+}
+
 /// A row for each profile, with its name and its assumed numbers; columns are `wide` characters
 /// wide.
 fn write_table<P>(

@@ -10,7 +10,7 @@ use palpate::field::Shape;
 use palpate::haptics::{Accepted, Bodies, Body, Material, Protection, Surface};
 use serde_json::{Value, json};
 
-use super::listed;
+use super::with_forces;
 use crate::arguments::DevicesOptions;
 use crate::numbers::rounded;
 use crate::outcome::{Failure, Outcome};
@@ -18,7 +18,7 @@ use crate::output;
 
 /// Prints a table, of which a page can be made, or JSON.
 pub(super) fn report(options: &DevicesOptions) -> Result<Outcome, Failure> {
-    let rows = listed(options).into_iter().filter(|(_, profile)| profile.max_force > 0.0);
+    let rows = with_forces(options)?;
     let rows = rows.map(|(name, profile)| Ok((name, rendered(profile, options.rate)?)));
     let rows = rows.collect::<Result<Vec<_>, Failure>>()?;
     let names: Vec<_> = Material::preset_names().collect();

@@ -12,7 +12,7 @@ use palpate::haptics::Material;
 use rayon::prelude::*;
 use serde_json::{Value, json};
 
-use super::listed;
+use super::with_forces;
 use crate::arguments::DevicesOptions;
 use crate::numbers::rounded;
 use crate::outcome::{Failure, Outcome};
@@ -93,17 +93,8 @@ impl Worst {
 /// Prints a table, of which a page can be made, or JSON.
 pub(super) fn report(options: &DevicesOptions) -> Result<Outcome, Failure> {
     let materials = materials(options)?;
-    let devices: Vec<_> = listed(options)
-        .into_iter()
-        .filter(|(_, profile)| profile.max_force > 0.0 && profile.max_force < f64::INFINITY)
-        .collect();
-    if let (Some(choice), true) = (&options.profile, devices.is_empty()) {
-        let name = &choice.profile.name;
-        return Err(Failure::input(format!("{name} gives no forces, so nothing presses back")));
-    }
-    let rows: Vec<_> = devices
-        .iter()
-        .flat_map(|(name, profile)| materials.iter().map(move |m| (*name, *profile, m)))
+    let rows: Vec<_> = with_forces(options)?
+        .flat_map(|(name, profile)| materials.iter().map(move |m| (name, profile, m)))
         .collect();
     let style = ProgressStyle::with_template("{bar:40} {pos} of {len} devices and materials");
     let bar = ProgressBar::new(rows.len() as u64);

@@ -5,14 +5,15 @@
 
 use palpate::devices::HandPath;
 use palpate::devices::{Device, DeviceError, Glove, Hand, RecordedDevice, SimulatedDevice};
+use palpate::field::Vector;
 use palpate::haptics::WorkspaceMap;
 use palpate::scene::BuiltScene;
+use serde_json::{Value, json};
 
 use super::tool::Held;
 use crate::arguments::DeviceChoice;
 use crate::numbers::rounded;
 use crate::outcome::Failure;
-use crate::output;
 
 /// The workspace map: that of the scene; else, for a simulated device, one whose workspace
 /// holds `bounds`, of the scene or of the places of a tool.
@@ -39,26 +40,73 @@ pub(super) fn is_fitted<const D: usize>(scene: &BuiltScene<D>, choice: &DeviceCh
     is_limited && scene.workspace.is_none() && scene.bounds().is_some()
 }
 
-/// Says how far paths leave the workspace of a simulated device.
-pub(super) fn warn_of_workspace<const D: usize>(
-    choice: &DeviceChoice,
-    paths: &[HandPath<D>],
-    map: &WorkspaceMap<D>,
-) {
-    let DeviceChoice::Simulated(choice) = choice else { return };
-    let profile = &choice.profile;
-    let places = paths.iter().flat_map(HandPath::positions);
-    let farthest = places.map(|point| map.point_to_device(*point).norm()).fold(0.0, f64::max);
-    let beyond = farthest - profile.workspace_radius;
-    // What rounding adds to a workspace that is fitted is nothing.
-    if beyond > 1e-9 * profile.workspace_radius {
-        let beyond = rounded(1e3 * beyond);
-        output::remark(format_args!(
-            "the path leaves the workspace of the {} by up to {beyond} mm at the device, where a hand \
-             cannot follow it; `workspace` of the scene's `tool` has a scale",
-            profile.name,
-        ));
+/// How far paths leave the workspace of a simulated device.
+pub(super) struct Beyond {
+    device: String,
+    /// The largest distance from the workspace, at the device [m].
+    distance: f64,
+    /// World metres for each metre of the device.
+    scale: f64,
+    /// The least scale with which all paths are in the workspace, rounded up.
+    sufficient_scale: f64,
+    /// Where the centre of the workspace is in the world [m].
+    center: Vec<f64>,
+}
+
+impl Beyond {
+    pub(super) fn of<const D: usize>(
+        choice: &DeviceChoice,
+        paths: &[HandPath<D>],
+        map: &WorkspaceMap<D>,
+    ) -> Option<Self> {
+        let DeviceChoice::Simulated(choice) = choice else { return None };
+        let profile = &choice.profile;
+        let (scale, radius) = (map.scale(), profile.workspace_radius);
+        let places = paths.iter().flat_map(HandPath::positions);
+        let farthest =
+            places.map(|point| map.point_to_device(*point).norm()).fold(0.0, f64::max);
+        let distance = farthest - radius;
+        // What rounding adds to a workspace that is fitted is nothing.
+        (distance > 1e-9 * radius).then(|| Self {
+            device: profile.name.to_string(),
+            distance,
+            scale,
+            sufficient_scale: rounded_up(scale * farthest / radius),
+            center: map.point_to_world(Vector::ZERO).0.to_vec(),
+        })
     }
+
+    /// What is said before the run.
+    pub(super) fn warning(&self) -> String {
+        let Self { device, distance, scale, sufficient_scale, center } = self;
+        let center: Vec<_> = center.iter().map(|x| rounded(*x)).collect();
+        format!(
+            "the path leaves the workspace of the {device} by up to {} mm at the device, where a hand \
+             cannot follow it: the workspace has a scale of {} m of the scene for each metre of the \
+             device; around the same centre, [{}] m, a scale of {} would suffice: see `workspace` of \
+             the scene's `tool`",
+            rounded(1e3 * distance),
+            rounded(*scale),
+            center.join(", "),
+            rounded(*sufficient_scale),
+        )
+    }
+
+    pub(super) fn json(&self) -> Value {
+        let Self { distance, scale, sufficient_scale, center, .. } = self;
+        json!({
+            "distance": distance,
+            "scale": scale,
+            "sufficient_scale": sufficient_scale,
+            "center": center,
+        })
+    }
+}
+
+/// A positive number with four significant digits that is no less.
+fn rounded_up(number: f64) -> f64 {
+    let unit = 10.0_f64.powi(number.log10().floor() as i32 - 3);
+    (number / unit).ceil() * unit
 }
 
 /// The device, with a hand for each path in world coordinates. `turns` is the rotation of the

@@ -3,6 +3,7 @@
 
 //! `palpate feel`: runs a servo with a device in a hand, and reports.
 
+mod asked;
 mod figure;
 mod held;
 mod inside;
@@ -78,8 +79,9 @@ where
         _ => None,
     };
     let map = held::map(scene, tool.as_ref(), &choice)?;
-    if options.path.is_some() {
-        held::warn_of_workspace(&choice, &paths, &map);
+    let beyond = options.path.as_ref().and_then(|_| held::Beyond::of(&choice, &paths, &map));
+    if let Some(beyond) = beyond.as_ref().filter(|_| !options.json) {
+        output::remark(beyond.warning());
     }
     let device = held::device(&choice, &paths, turns.as_ref(), &map);
     let mut device = device.map_err(Failure::input)?;
@@ -130,7 +132,7 @@ where
     let ran = Ran {
         rate: options.rate,
         title: &report::title(name, &outcome),
-        has_forces: device.profile().max_force > 0.0,
+        device: device.profile(),
         rendered: servo
             .bodies()
             .bodies()
@@ -147,8 +149,12 @@ where
         device: device.profile(),
         device_file: choice.file(),
         accepted: &accepted,
-        nearest: is_missed(&outcome).then(|| paths::nearest(scene, &paths)),
+        missed: is_missed(&outcome).then(|| match options.path {
+            Some(_) => report::Missed::OnPath(paths::nearest(scene, &paths)),
+            None => report::Missed::OnTour,
+        }),
         workspace_scale: held::is_fitted(scene, &choice).then(|| map.scale()),
+        beyond,
         played: played.as_ref(),
     };
     // The report is whole even if a file cannot be written, and a reader that closed the pipe
@@ -202,23 +208,29 @@ fn choice(options: &FeelOptions) -> Result<DeviceChoice, Failure> {
     })
 }
 
-/// Refuses forces that the device does not give.
+/// Refuses options that have no effect with the device, and forces that it does not give.
 fn check_forces(choice: &DeviceChoice, options: &FeelOptions) -> Result<(), Failure> {
-    let forceless = match choice {
-        DeviceChoice::Glove => Some("a glove"),
+    let whose = match choice {
+        DeviceChoice::Recorded => Some(
+            "a recorded hand, whose device renders everything; choose one by --device \
+             simulated:NAME"
+                .to_owned(),
+        ),
+        DeviceChoice::Glove => Some("a glove, which has no forces".to_owned()),
         DeviceChoice::Simulated(choice) if choice.profile.max_force == 0.0 => {
-            Some(&*choice.profile.name)
+            Some(format!("{}, which has no forces", choice.profile.name))
         }
-        _ => None,
+        DeviceChoice::Simulated(_) => None,
     };
-    if let Some(name) = forceless {
+    if let Some(whose) = whose {
+        let is_forceless = !matches!(choice, DeviceChoice::Recorded);
         let given = [
-            ("--max-force", options.max_force.is_some()),
-            ("--stiffness", options.stiffness.is_some()),
+            ("--max-force", is_forceless && options.max_force.is_some()),
+            ("--stiffness", is_forceless && options.stiffness.is_some()),
             ("--relative-stiffness", options.relative_stiffness.is_some()),
-            ("--damping", options.damping.is_some()),
+            ("--damping", is_forceless && options.damping.is_some()),
             ("--acceptance", options.acceptance.is_some()),
-            ("--recovery", options.recovery != RecoveryChoice::Rise),
+            ("--recovery", is_forceless && options.recovery != RecoveryChoice::Rise),
             ("--strict", options.strict),
         ];
         let given = given.iter().filter(|(_, is_given)| *is_given);
@@ -228,8 +240,7 @@ fn check_forces(choice: &DeviceChoice, options: &FeelOptions) -> Result<(), Fail
         }
         let have = if given.len() == 1 { "has" } else { "have" };
         let given = given.join(", ");
-        let problem = format!("{given} {have} no meaning for {name}, which has no forces");
-        return Err(Failure::input(problem));
+        return Err(Failure::input(format!("{given} {have} no meaning for {whose}")));
     }
     match (choice, options.max_force) {
         (DeviceChoice::Simulated(choice), Some(force)) if force > choice.profile.max_force => {
@@ -243,16 +254,17 @@ fn check_forces(choice: &DeviceChoice, options: &FeelOptions) -> Result<(), Fail
     }
 }
 
-/// Why there is no servo, with the name of the body that is to blame.
+/// Why there is no servo, with the names of the bodies that are to blame.
 fn refused<const D: usize>(error: HapticsError, scene: &BuiltScene<D>) -> Failure {
-    if let HapticsError::Safety(SafetyError::MaterialRefused(refused)) = &error
-        && let Some(body) = refused.body.and_then(|body| scene.bodies.get(body))
-    {
-        let mut alone = refused.clone();
-        alone.body = None;
-        return Failure::input(format!("body \"{}\": {alone}", shown(&body.name)));
-    }
-    Failure::input(error)
+    let HapticsError::Safety(SafetyError::MaterialRefused(refused)) = &error else {
+        return Failure::input(error);
+    };
+    let name = |body: usize| {
+        let body = scene.bodies.get(body);
+        body.map_or_else(String::new, |body| format!("\"{}\"", shown(&body.name)))
+    };
+    let told: Vec<_> = refused.iter().map(|refused| refused.told(name)).collect();
+    Failure::input(told.join("\n  "))
 }
 
 /// The scene, with materials, tool and contact points replaced by those of the command line.

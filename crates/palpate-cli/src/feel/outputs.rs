@@ -3,6 +3,7 @@
 
 //! The files that a run leaves: trace, vibration, picture.
 
+use palpate::haptics::DeviceProfile;
 use palpate::scene::BuiltScene;
 use palpate::servo_loop::{Recorder, Sink, TraceRow, TraceWriter};
 use palpate::vibration::Actuator;
@@ -31,10 +32,15 @@ pub(super) struct Ran<'a> {
     /// Ticks a second [Hz].
     pub(super) rate: f64,
     pub(super) title: &'a str,
-    /// `false` for a device without force feedback.
-    pub(super) has_forces: bool,
+    pub(super) device: &'a DeviceProfile,
     /// The stiffness of each body as the device renders it [N/m].
     pub(super) rendered: Vec<f64>,
+}
+
+impl Ran<'_> {
+    fn has_forces(&self) -> bool {
+        self.device.max_force > 0.0
+    }
 }
 
 impl Outputs {
@@ -111,7 +117,7 @@ impl Outputs {
     where
         Dimensions: Drawable<D>,
     {
-        let vibrates = self.wav.is_some() || self.plot.is_some() && !ran.has_forces;
+        let vibrates = self.wav.is_some() || self.plot.is_some() && !ran.has_forces();
         let of_tool = || scene.tool.as_ref().and_then(|tool| tool.actuator.clone());
         let actuator = self.actuator.clone().or_else(of_tool);
         let vibration = vibrates.then(|| Vibration::of(scene, recorder, ran.rate, actuator));
@@ -129,12 +135,13 @@ impl Outputs {
             Err(failure) => (None, Err(failure)),
         };
         let trace = self.trace.iter().map(Destination::name).zip([traced]);
-        let shown_vibration = vibration.as_ref().filter(|_| !ran.has_forces);
+        let shown_vibration = vibration.as_ref().filter(|_| !ran.has_forces());
         let run = Run {
             scene,
             recorder,
             title: ran.title,
             rendered: &ran.rendered,
+            device: ran.device,
             vibration: shown_vibration,
         };
         let plot = self.plot.iter().map(|to| (to.path(), run.draw(to)));

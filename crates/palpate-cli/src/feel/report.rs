@@ -8,8 +8,8 @@ use std::io::Write as _;
 use std::path::Path;
 
 use palpate::haptics::{
-    Acceptance, Accepted, Body, DeviceProfile, Material, Progress, Rule, Servo, Surface,
-    Texture, TextureKind,
+    Acceptance, Accepted, Body, DeviceProfile, Progress, Rule, Servo, Surface, Texture,
+    TextureKind,
 };
 use palpate::scene::BuiltScene;
 use palpate::servo_loop::RunReport;
@@ -19,6 +19,8 @@ use crate::numbers::rounded;
 use crate::outcome::Failure;
 use crate::output::{self, counted, shown};
 
+use super::asked::{self, range};
+use super::held::Beyond;
 use super::inside;
 use super::vibration::Played;
 
@@ -44,6 +46,14 @@ pub(crate) fn title(name: &str, report: &RunReport) -> String {
     format!("{}, felt with {points}", crate::plot::title(Path::new(name)))
 }
 
+/// A hand that felt nothing.
+pub(super) enum Missed {
+    /// Its path in a file came so near to a body [m].
+    OnPath(f64),
+    /// The built-in hand did not get where its tour goes.
+    OnTour,
+}
+
 /// A run that has ended.
 pub(super) struct Felt<'a, const D: usize> {
     pub(super) name: &'a str,
@@ -54,10 +64,12 @@ pub(super) struct Felt<'a, const D: usize> {
     /// The file that the device's profile is from.
     pub(super) device_file: Option<&'a Path>,
     pub(super) accepted: &'a [Accepted],
-    /// How near the path of a hand that felt nothing came to a body [m].
-    pub(super) nearest: Option<f64>,
+    /// Why nothing was felt, if nothing was.
+    pub(super) missed: Option<Missed>,
     /// World metres for each metre of the device, if the program chose them.
     pub(super) workspace_scale: Option<f64>,
+    /// How far a path leaves the workspace of the device, if it does.
+    pub(super) beyond: Option<Beyond>,
     /// What actuators played, if that was written to a file.
     pub(super) played: Option<&'a Played>,
 }
@@ -89,6 +101,17 @@ impl<const D: usize> Felt<'_, D> {
         }
         if let Some(scale) = self.workspace_scale {
             json["workspace_scale"] = scale.into();
+        }
+        if let Some(beyond) = &self.beyond {
+            json["beyond_workspace"] = beyond.json();
+        }
+        let guides = self.servo.accepted_guides();
+        for (accepted, told) in guides.iter().zip(json_items(&mut json, "guides")) {
+            if let (Value::Object(told), Value::Object(accepted)) =
+                (told, serde_json::to_value(accepted)?)
+            {
+                told.extend(accepted);
+            }
         }
         if let Some(played) = self.played {
             json["vibration"] = played.json();
@@ -148,14 +171,14 @@ fn write_report<const D: usize>(out: &mut String, felt: &Felt<'_, D>) -> std::fm
             writeln!(out, "{name}, felt with {points}")?;
         }
     }
-    let asked = felt.scene.bodies.iter().map(|body| &body.material);
+    let materials = felt.scene.bodies.iter().map(|body| &body.material);
     let stiffness = of_asked(
         &range(surfaces().map(Surface::stiffness).map(unfelt_as_zero)),
-        &asked_stiffness(asked.clone(), device),
+        &asked::stiffness(materials.clone(), device),
     );
     let damping = of_asked(
         &range(surfaces().map(Surface::damping)),
-        &range(asked.map(|material| material.damping)),
+        &range(materials.map(|material| material.damping)),
     );
     let has_forces = device.max_force > 0.0;
     if has_forces {
@@ -222,15 +245,28 @@ fn write_report<const D: usize>(out: &mut String, felt: &Felt<'_, D>) -> std::fm
             write_accepted(out, accepted, |count| format!("{count} of {all}"))?;
         }
     }
+    let guides = servo.accepted_guides();
     write_beyond(out, along, device, report.rate)?;
+    write_guides(out, guides)?;
     inside::write(out, felt)?;
-    if let Some(nearest) = felt.nearest {
-        let nearest = rounded(nearest);
-        writeln!(
-            out,
-            "  nothing felt   the hand came no nearer to a body than {nearest} m; is its path in metres, \
-             and in the coordinates of the scene?"
-        )?;
+    match felt.missed {
+        None => {}
+        Some(Missed::OnPath(nearest)) => {
+            let nearest = rounded(nearest);
+            writeln!(
+                out,
+                "  nothing felt   the hand came no nearer to a body than {nearest} m; is its path in \
+                 metres, and in the coordinates of the scene?"
+            )?;
+        }
+        Some(Missed::OnTour) => {
+            let duration = rounded(report.duration);
+            writeln!(
+                out,
+                "  nothing felt   the built-in hand reached no body in {duration} s with this device; \
+                 raise --duration, or choose another --device"
+            )?;
+        }
     }
     write_textures(out, felt)?;
     if let Some(played) = felt.played {
@@ -306,6 +342,22 @@ fn assumed(rule: Rule, assumed: &[&str]) -> String {
     }
 }
 
+/// What is rendered of guides, and why that is less than what is asked for.
+fn write_guides(out: &mut String, accepted: &[Accepted]) -> std::fmt::Result {
+    if accepted.is_empty() {
+        return Ok(());
+    }
+    let in_world = |of: fn(&Accepted) -> f64| range(accepted.iter().map(|a| of(a) / a.scale));
+    writeln!(
+        out,
+        "  guides         stiffness {} N/m, damping {} N·s/m",
+        of_asked(&in_world(|a| a.device_stiffness), &in_world(|a| a.requested_stiffness)),
+        of_asked(&in_world(|a| a.device_damping), &in_world(|a| a.requested_damping)),
+    )?;
+    let all = counted(accepted.len(), "guide", "guides");
+    write_accepted(out, accepted, |count| format!("{count} of {all}"))
+}
+
 /// How much stiffer than the device renders the stiffest is, if it is taken as it is.
 fn write_beyond(
     out: &mut String,
@@ -326,22 +378,6 @@ fn write_beyond(
     )
 }
 
-/// The stiffness that materials ask for [N/m], or the part of the device's if all ask for one, and
-/// the device has a largest.
-fn asked_stiffness<'a>(
-    asked: impl Iterator<Item = &'a Material> + Clone,
-    device: &DeviceProfile,
-) -> String {
-    let parts = asked.clone().map(|material| material.relative_stiffness);
-    // Whether there is one depends on no rate.
-    let most = device.most_stiffness(Acceptance::Device, 1000.0);
-    let is_limited = most.is_ok_and(f64::is_finite);
-    if is_limited && parts.clone().all(|part| part.is_some()) {
-        return format!("{} of what the device renders", range(parts.flatten()));
-    }
-    range(asked.map(|material| material.stiffness))
-}
-
 /// What is rendered, and what was asked for if that is another.
 fn of_asked(rendered: &str, asked: &str) -> String {
     if rendered == asked { rendered.to_owned() } else { format!("{rendered} (asked {asked})") }
@@ -350,15 +386,4 @@ fn of_asked(rendered: &str, asked: &str) -> String {
 /// The stiffness [N/m], or zero for one below a millionth, which stands in for no spring at all.
 fn unfelt_as_zero(stiffness: f64) -> f64 {
     if stiffness < 1e-6 { 0.0 } else { stiffness }
-}
-
-/// The numbers of all bodies: one number if they are equal, else their range.
-fn range(numbers: impl Iterator<Item = f64> + Clone) -> String {
-    let least = numbers.clone().fold(f64::INFINITY, f64::min);
-    let largest = numbers.fold(f64::NEG_INFINITY, f64::max);
-    if least < largest {
-        format!("{} to {}", rounded(least), rounded(largest))
-    } else {
-        rounded(least)
-    }
 }

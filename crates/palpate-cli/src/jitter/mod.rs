@@ -14,6 +14,7 @@ use palpate::servo_loop::{Lateness, Priority, WallClock, raise_priority};
 use serde_json::{Value, json};
 
 use crate::arguments::JitterOptions;
+use crate::numbers::plain;
 use crate::outcome::{Failure, Outcome};
 use crate::output;
 
@@ -85,7 +86,16 @@ pub(crate) fn run(options: &JitterOptions) -> Result<Outcome, Failure> {
     let priority = in_thread(raise_priority);
     let priorities: &[bool] =
         if priority == Priority::Raised { &[false, true] } else { &[false] };
-    let share = duration / (priorities.len() * Waiting::ALL.len()) as f64;
+    let loops = (priorities.len() * Waiting::ALL.len()) as f64;
+    let share = duration / loops;
+    // A loop of half a period or more has a tick.
+    if (share * rate).round() < 1.0 {
+        let [duration, rate, least] = [duration, rate, 0.5 * loops / rate].map(plain);
+        return Err(Failure::input(format!(
+            "--duration {duration} s is shared by {loops} loops, which have no tick at {rate} Hz; \
+             the least duration is {least} s"
+        )));
+    }
     let mut measured = Vec::new();
     for is_raised in priorities {
         for waiting in Waiting::ALL {

@@ -5,7 +5,7 @@
 
 mod report;
 
-use palpate::query::{FirstTouch, Moving, PairWorkspace, Placed, Stop, SweepSettings, sweep};
+use palpate::query::{FirstTouch, Moving, Placed, Stop, SweepSettings, SweepWorkspace, sweep};
 use palpate::scene::{AnyScene, BuiltScene, Repeat};
 
 use crate::arguments::SweepOptions;
@@ -132,7 +132,7 @@ fn first_touch<const D: usize>(
     times: &[f64],
     question: &Question,
 ) -> Result<FirstTouch<D>, Failure> {
-    let mut workspace = PairWorkspace::new();
+    let mut workspace = SweepWorkspace::new();
     let mut evaluations = 0_u32;
     let mut last = None;
     for part in times.windows(2) {

@@ -67,7 +67,7 @@ fn assert_same(documented: &Names, printed: &Names) {
     assert!(surplus.is_empty(), "documented, but not printed: {surplus:?}");
 }
 
-/// A ball that rises, two guides, a hand that begins inside.
+/// A ball that rises, a guide, a hand that begins inside and leaves the workspace.
 const RISING: &str = r#"{ "palpate": 1, "dimension": 3,
   "bodies": [ { "name": "ball", "shape": { "ball": { "radius": 0.05 } } } ],
   "guides": [ { "point": [0, 0.1, 0] } ],
@@ -80,7 +80,7 @@ fn runs() -> (Names, Names) {
     let flat = RISING.replace("\"dimension\": 3", "\"dimension\": 2");
     let flat = folder
         .write("flat.json", &flat.replace(", 0] }", "] }").replace(", 0.1, 0]", ", 0.1]"));
-    let rows = "time_s,x_m,y_m,z_m\n0,0,0.049,0\n0.1,0,0.06,0\n";
+    let rows = "time_s,x_m,y_m,z_m\n0,0,0.049,0\n0.1,0,0.06,0\n0.2,0,0.3,0\n";
     let hand = folder.write("hand.csv", rows);
     let omega = palpate::devices::profile_named("omega").unwrap();
     let omega = folder.write("omega.json", &palpate::scene::device_to_json(&omega).unwrap());

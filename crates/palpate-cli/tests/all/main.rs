@@ -4,6 +4,7 @@
 //! The program as its users run it. One test program, so that it is linked once.
 #![expect(clippy::unwrap_used, reason = "a test that cannot be set up fails")]
 
+mod asked;
 mod balls;
 mod common;
 mod contact;

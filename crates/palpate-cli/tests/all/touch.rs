@@ -293,7 +293,7 @@ fn a_device_is_simulated_with_its_limits() {
     let strict = palpate(&[&arguments[..], &["--fast", "--strict"]].concat());
     assert_eq!(status(&strict), 2);
     assert!(
-        errors(&strict).contains("asked for: K ≤ the device's largest stiffness at this rate"),
+        errors(&strict).contains(": K ≤ the device's largest stiffness at this rate"),
         "{}",
         errors(&strict)
     );

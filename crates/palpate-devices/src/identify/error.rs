@@ -130,7 +130,7 @@ pub enum IdentifyError {
     #[error(
         "{axis}: the handle moves by {speed:.3} {unit}/s, {limit:.3} {unit}/s at most are allowed: \
          a hand moves it, its mass is far below that of other devices, or the travel is too small \
-         for its encoder steps",
+         for its encoder steps: allow more travel, with which the limit grows",
         unit = axis.length_unit()
     )]
     TooFast {

@@ -112,6 +112,7 @@ pub fn handoff<const D: usize>(
         progress: Progress::default(),
         touches: servo.touches().to_vec(),
         tool: servo.held_tool(),
+        is_stopped: servo.is_stopped(),
         buttons: servo.buttons(),
         gripper: servo.gripper(),
         gripper_force: servo.gripper_force(),

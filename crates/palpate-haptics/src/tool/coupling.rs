@@ -63,6 +63,15 @@ impl Coupling {
         Ok(Impedance::new(stiffness, self.damping + body.damping())?)
     }
 
+    /// The largest part of the coupling that a layer bears, and the largest damping of a layer
+    /// [N·s/m].
+    pub(crate) fn borne(&self, layers: &[Impedance]) -> (f64, f64) {
+        layers.iter().fold((0.0, 0.0), |(part, damping): (f64, f64), layer| {
+            let borne = (layer.stiffness() / self.stiffness).min(1.0);
+            (part.max(borne), damping.max(layer.damping()))
+        })
+    }
+
     /// The angular stiffness and damping that the hand feels, if bodies bear `part` of the
     /// coupling and have a `damping` [N·s/m] on the longest lever arm.
     pub(crate) fn turning_on(

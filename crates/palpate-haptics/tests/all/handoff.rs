@@ -288,16 +288,22 @@ fn an_emergency_stop_takes_all_forces_until_it_is_released() {
     driver.advance(TICK);
     assert!(hand.last_forces()[0][1] > 3.9);
     let switch = thread.control().stop_switch();
+    assert!(!thread.control().latest().unwrap().is_stopped);
     std::thread::scope(|scope| scope.spawn(|| switch.stop()).join().unwrap());
     driver.advance(TICK);
     assert_eq!(hand.last_forces(), [Vector::ZERO; 2]);
+    assert!(thread.control().latest().unwrap().is_stopped);
     driver.advance(TICK);
     assert_eq!(hand.last_forces(), [Vector::ZERO; 2]);
     switch.release();
     driver.advance(TICK);
     assert!(hand.last_forces()[0][1] > 3.9);
+    assert!(!thread.control().latest().unwrap().is_stopped);
     drop(driver);
-    drop(thread.end());
+    let report = thread.end().report;
+    // Both contact points were stopped, once.
+    let said = format!("{report:#}");
+    assert!(said.contains("  0 watchdog trips, 1 emergency stop\n"), "{said}");
     assert_eq!(hand.last_forces(), [Vector::ZERO; 2]);
 }
 

@@ -13,7 +13,7 @@ use palpate_devices::{HandPath, Interpolation, RecordedDevice};
 use palpate_field::{Pose, Rotation, Vector};
 use palpate_haptics::{
     Acceptance, Bodies, DeviceProfile, EventKind, Guide, GuideOptions, HapticsError, Material,
-    PointState, Protection, SafetyError, Servo, ServoOptions, Shell, Surface, Tool,
+    PointState, Protection, Requester, SafetyError, Servo, ServoOptions, Shell, Surface, Tool,
     ToolOptions, ToolState, UnprotectedServo, WorkspaceMap,
 };
 use palpate_loop::{Pace, Recorder, RunOptions, ServoThread, ThreadOptions, VirtualClock, run};
@@ -131,7 +131,8 @@ fn a_coupling_is_made_as_soft_as_the_device_needs() {
     let HapticsError::Safety(SafetyError::MaterialRefused(refused)) = refused else {
         panic!("{refused}");
     };
-    assert_eq!(refused.asked[1], 0.3);
+    assert_eq!(refused[0].asked[1], 0.3);
+    assert_eq!(refused[0].requester, Requester::Body(0));
 }
 
 #[test]

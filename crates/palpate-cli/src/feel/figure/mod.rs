@@ -11,11 +11,12 @@ mod points;
 mod tools;
 
 use palpate::field::{Aabb, Vector};
-use palpate::haptics::Material;
+use palpate::haptics::{DeviceProfile, Material};
 use palpate::plot::{Figure, Isolines};
 use palpate::scene::{BuiltBody, BuiltScene};
 use palpate::servo_loop::Recorder;
 
+use super::asked;
 use super::moved;
 use super::slices::{FeltSlice, felt_slices};
 use super::vibration::Vibration;
@@ -32,6 +33,7 @@ pub(super) struct Run<'a, const D: usize> {
     pub(super) title: &'a str,
     /// The stiffness of each body as the device renders it [N/m].
     pub(super) rendered: &'a [f64],
+    pub(super) device: &'a DeviceProfile,
     /// What actuators play, for a device without force feedback.
     pub(super) vibration: Option<&'a Vibration>,
 }
@@ -90,7 +92,8 @@ where
         let view = view.map_err(Failure::input)?;
         let note = |body: usize| {
             let (asked, rendered) = (self.scene.bodies.get(body), self.rendered.get(body));
-            asked.zip(rendered).map_or(String::new(), |(body, felt)| material(body, *felt))
+            let of = |(body, felt): (_, &f64)| material(body, *felt, self.device);
+            asked.zip(rendered).map_or(String::new(), of)
         };
         let scene = picture::noted(self.scene, &slice.plane, &view, note);
         let isolines = scene.map_err(Failure::input)?.in_ink().with_title(&slice.heading);
@@ -119,11 +122,19 @@ where
 }
 
 /// A body's material in a word, the name of a preset, or else the stiffness; and the stiffness
-/// that the device renders [N/m], if it is another than the material's.
-fn material<const D: usize>(body: &BuiltBody<D>, rendered: f64) -> String {
+/// that the device renders [N/m], if it is another than the material's or a part of the device's.
+fn material<const D: usize>(
+    body: &BuiltBody<D>,
+    rendered: f64,
+    device: &DeviceProfile,
+) -> String {
     let is_it = |name: &&str| Material::preset(name).is_ok_and(|known| known == body.material);
     let preset = Material::preset_names().find(is_it);
     let name = preset.filter(|name| **name != body.name);
+    if let Some(part) = asked::part(&body.material, device) {
+        let (rendered, part) = (rounded(rendered), rounded(part));
+        return format!("{rendered} N/m, asked {part} of the device's");
+    }
     let asked = body.material.stiffness;
     let is_softer = rendered < asked * (1.0 - 1e-9);
     match (name, is_softer) {

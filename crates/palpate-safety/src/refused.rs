@@ -1,0 +1,177 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! What is asked of a device that renders less.
+
+use std::fmt;
+
+use crate::acceptance::{Accepted, Rule};
+use crate::error::Short;
+
+/// What asks a device for a stiffness and a damping. Numbers are places among the bodies, or among
+/// the guides.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Requester {
+    /// A material alone.
+    #[default]
+    Material,
+    /// The material of a body; with a tool, of one that is as soft as the coupling or softer.
+    Body(usize),
+    /// The magnet of a body.
+    Magnet(usize),
+    /// The coupling of a tool, on a body that is stiffer.
+    Coupling(usize),
+    /// The coupling of a tool about axes.
+    AngularCoupling,
+    /// A guide.
+    Guide(usize),
+}
+
+/// What a device renders instead of what is asked of it.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Refused {
+    /// The stiffness and the damping that are asked for, in the world [N/m, N·s/m]; angular about
+    /// axes [N·m/rad, N·m·s/rad].
+    pub asked: [f64; 2],
+    /// The stiffness and the damping that the device renders, in the world.
+    pub rendered: [f64; 2],
+    /// At the device, a stiffness or a damping is so many times that in the world.
+    pub scale: f64,
+    /// The rule that leaves no more.
+    pub rule: Rule,
+    /// What asks for it.
+    pub requester: Requester,
+}
+
+impl Refused {
+    pub(crate) fn new(accepted: &Accepted, rule: Rule, requester: Requester) -> Self {
+        let scale = accepted.scale;
+        let in_world = |at_device: [f64; 2]| at_device.map(|number| number / scale);
+        Self {
+            asked: in_world([accepted.requested_stiffness, accepted.requested_damping]),
+            rendered: in_world([accepted.device_stiffness, accepted.device_damping]),
+            scale,
+            rule,
+            requester,
+        }
+    }
+
+    /// The refusal as a sentence, with the names that `name` gives to bodies.
+    ///
+    /// ```
+    /// use palpate_safety::{Accepted, DeviceProfile, Impedance, Requester};
+    ///
+    /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+    /// let device = DeviceProfile::unlimited("example").with_max_stiffness(1000.0);
+    /// // Lengths in the world are twice those at the device.
+    /// let accepted = Accepted::new(Impedance::new(2000.0, 0.0)?, 2.0, &device, 1000.0)?;
+    /// let refused = accepted.refusal(Requester::Body(0)).ok_or("it is softer")?;
+    /// assert_eq!(
+    ///     refused.told(|_| "\"table\"".to_owned()),
+    ///     "body \"table\": the device renders stiffness and damping of 500 N/m and 0 N·s/m, not \
+    ///      the 2000 N/m and 0 N·s/m that are asked for (at the device, where both are 2 times as \
+    ///      large, 1000 and 0, not 4000 and 0): K ≤ the device's largest stiffness at this rate"
+    /// );
+    /// # Ok(())
+    /// # }
+    /// ```
+    #[must_use]
+    pub fn told(&self, name: impl Fn(usize) -> String) -> String {
+        let requester = match self.requester {
+            Requester::Material => String::new(),
+            Requester::Body(body) => format!("body {}: ", name(body)),
+            Requester::Magnet(body) => format!("magnet of body {}: ", name(body)),
+            Requester::Coupling(body) => {
+                format!("coupling of the tool, which is softer than body {}: ", name(body))
+            }
+            Requester::AngularCoupling => "coupling of the tool about axes: ".to_owned(),
+            Requester::Guide(guide) => format!("guide {guide}: "),
+        };
+        let (angular, [of_stiffness, of_damping]) = if self.rule.is_angular() {
+            ("angular ", ["N·m/rad", "N·m·s/rad"])
+        } else {
+            ("", ["N/m", "N·s/m"])
+        };
+        let numbers = |scale: f64| {
+            [0, 1].map(|k| distinct([scale * self.rendered[k], scale * self.asked[k]]))
+        };
+        let [[stiffness, asked], [damping, asked_damping]] = numbers(1.0);
+        let at_device = if self.scale == 1.0 {
+            String::new()
+        } else {
+            let [[stiffness, asked], [damping, asked_damping]] = numbers(self.scale);
+            format!(
+                " (at the device, where both are {} times as large, {stiffness} and {damping}, not \
+                 {asked} and {asked_damping})",
+                digits(self.scale, 4),
+            )
+        };
+        format!(
+            "{requester}the device renders {angular}stiffness and damping of {stiffness} \
+             {of_stiffness} and {damping} {of_damping}, not the {asked} {of_stiffness} and \
+             {asked_damping} {of_damping} that are asked for{at_device}: {}",
+            self.rule.condition()
+        )
+    }
+}
+
+impl fmt::Display for Refused {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.told(|body| body.to_string()))
+    }
+}
+
+/// All refusals in a sentence.
+pub(crate) fn listed(refused: &[Refused]) -> String {
+    let refused: Vec<_> = refused.iter().map(Refused::to_string).collect();
+    refused.join("; ")
+}
+
+/// A number with so many significant digits.
+fn digits(number: f64, count: usize) -> Short {
+    Short(format!("{number:.*e}", count - 1).parse().unwrap_or(number))
+}
+
+/// Two numbers with four digits, or with as many as tell them apart. Those that rounding made
+/// different are equal.
+fn distinct(pair: [f64; 2]) -> [Short; 2] {
+    let counts = [4, 6, 8, 10].into_iter();
+    let rounded = |count| pair.map(|number| digits(number, count));
+    let apart = counts.map(rounded).find(|[one, other]| one != other);
+    apart.unwrap_or_else(|| rounded(4))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{DeviceProfile, Impedance};
+
+    /// Once 199.99999999999983 N/m and 967.6131805918325 N/m were told.
+    #[test]
+    fn numbers_are_rounded_and_differ_where_they_are_different() {
+        let told = |pair| distinct(pair).map(|number| number.to_string());
+        assert_eq!(told([199.999_999_999_999_83, 200.0]), ["200", "200"]);
+        assert_eq!(told([967.613_180_591_832_5; 2]), ["967.6", "967.6"]);
+        assert_eq!(told([199.99, 200.0]), ["199.99", "200"]);
+        assert_eq!(told([0.0, 1.0]), ["0", "1"]);
+    }
+
+    #[test]
+    fn every_refusal_says_what_asks() {
+        let device = DeviceProfile::unlimited("example").with_max_stiffness(100.0);
+        let of = |requester| {
+            let asked = Impedance::new(200.0, 0.0).unwrap();
+            let accepted = Accepted::new(asked, 1.0, &device, 1000.0).unwrap();
+            accepted.refusal(requester).unwrap()
+        };
+        let both = listed(&[of(Requester::Magnet(2)), of(Requester::Guide(1))]);
+        assert!(both.starts_with("magnet of body 2: the device renders "), "{both}");
+        assert!(both.contains("; guide 1: the device renders "), "{both}");
+        let coupling = of(Requester::Coupling(0)).to_string();
+        assert!(coupling.starts_with("coupling of the tool, which is softer than body 0: "));
+        let about = of(Requester::AngularCoupling).to_string();
+        assert!(about.starts_with("coupling of the tool about axes: "));
+    }
+}
