@@ -108,4 +108,4 @@ pub use sweep::{
 };
 pub use track::Track;
 #[cfg(feature = "world")]
-pub use world::{BodyId, Neighbours, Verdict, World, WorldSettings};
+pub use world::{BodyId, Impact, Neighbours, Verdict, World, WorldSettings};

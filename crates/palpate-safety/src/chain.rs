@@ -310,7 +310,8 @@ impl<const D: usize> SafetyChain<D> {
         self.accepted.renew(accepted);
         let stiffness = accepted.device_stiffness;
         let options = PassivityOptions { stiffness, ..*self.passivity.options() };
-        self.cycle.renew(LimitCycleOptions { stiffness, ..*self.cycle.options() });
+        let encoder_step = self.cycle.options().encoder_step;
+        self.cycle.renew(LimitCycleOptions::of(&options, encoder_step));
         self.passivity.renew(options);
     }
 

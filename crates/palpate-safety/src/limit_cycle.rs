@@ -57,6 +57,11 @@ const FORCED: f64 = 0.3;
 /// meets its relief.
 const ALONG: f64 = 1.25;
 
+/// A wall that is stable with this part of the device's damping, and with a delay of so many ticks,
+/// makes no limit cycle.
+const WEAK: f64 = 0.1;
+const DELAY: f64 = 2.0;
+
 /// The part of the stiffness that remains after a limit cycle.
 const SOFTER: f64 = 0.5;
 
@@ -96,13 +101,17 @@ pub(crate) struct LimitCycleOptions {
     pub(crate) mass: f64,
     /// The encoder step [m].
     pub(crate) encoder_step: f64,
+    /// Whether the wall is so soft that it cannot oscillate.
+    pub(crate) is_soft: bool,
 }
 
 impl LimitCycleOptions {
     /// For the device and the wall of the passivity stage, with an encoder step [m].
     pub(crate) fn of(passivity: &PassivityOptions, encoder_step: f64) -> Self {
-        let PassivityOptions { is_on, stiffness, mass, .. } = *passivity;
-        Self { is_on, stiffness, mass, encoder_step }
+        let PassivityOptions { is_on, stiffness, mass, damping, period, .. } = *passivity;
+        // b > K (T/2 + the delay): the delay and the part of b for which the stage is made.
+        let is_soft = WEAK * damping > stiffness * period * (0.5 + DELAY);
+        Self { is_on, stiffness, mass, encoder_step, is_soft }
     }
 }
 
@@ -190,7 +199,8 @@ struct Extreme<V> {
 ///
 /// - it takes at most 0.2 s, and no tick in it is late or of a rise;
 /// - the device moves along the force, not along the body, whose relief would move it;
-/// - and the force changes as the spring explains, so that no body moves the hand.
+/// - and the force changes as the spring explains, so that no body moves the hand, and the wall is
+///   not so soft that a tenth of the device's damping is enough for it, through a delay of two ticks.
 ///
 /// It is quick within 80 ms, or `2π √(M/K)` up to 160 ms with the mass `M` of device and hand and
 /// the stiffness `K`: the natural half cycle of a bouncing mass is longer than that of one in
@@ -385,7 +395,7 @@ impl<V: InnerProduct> LimitCycle<V> {
         let is_always_touching = to.effort > 0.0 && from.effort > 0.0;
         let least = if is_always_touching { 1.0 - FORCED } else { 0.0 };
         let is_of_spring = (least * of_spring..=(1.0 + FORCED) * of_spring).contains(&change);
-        let is_free = is_guided || is_of_spring;
+        let is_free = is_guided || is_of_spring && !self.options.is_soft;
         let is_steep = (to.position - from.position).norm() <= ALONG * way;
         if is_free && is_touching && is_steep && to.time <= LONGEST {
             self.count(way, to.time);
@@ -474,6 +484,7 @@ mod tests {
             stiffness: 1000.0,
             mass: 0.1,
             encoder_step: 0.0,
+            is_soft: false,
         })
     }
 

@@ -13,20 +13,17 @@ pub(crate) use boxes::TurnedBoxes;
 use super::{Blend, Scalar};
 use crate::vector::{array, unrolled};
 
-/// Half the spacing of the numbers just above one: the largest relative error
-/// of one rounded operation.
+/// Half the spacing of numbers just above one: the largest relative error of an operation.
 const UNIT: f64 = f64::EPSILON / 2.0;
 
 /// Room for the roundings inside one bound: a sum of up to six positive terms
 /// and its product are off by at most eight units.
 const INFLATE: f64 = 1.0 + 8.0 * UNIT;
 
-/// What sums begin with: `−0 + x` is `x` whatever its sign, so that no addition is left of
-/// it.
+/// What sums begin with: `−0 + x` is `x` whatever its sign, and no addition is left of it.
 const NONE: f64 = -0.0;
 
-/// What stands for "no bound": large beyond every length, small enough that
-/// products with it stay finite.
+/// Stands for "no bound": larger than every length, and its products stay finite.
 const UNBOUNDED: f64 = 1e60;
 
 /// An affine function with remainders, which encloses a formula over a cell.

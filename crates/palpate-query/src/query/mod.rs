@@ -8,6 +8,7 @@ mod scratch;
 mod tolerance;
 
 use palpate_field::{Aabb, Point, Pose, Shape};
+use palpate_mesh::Mesh;
 
 use crate::ball::{contact_ball, touches_ball};
 use crate::certified::{Certified, Limits};
@@ -24,7 +25,9 @@ use crate::pair::{
 use crate::placed::Placed;
 use crate::pool::Pool;
 use crate::ray::{Ray, RayHit, cast_ray};
-use crate::sweep::{FirstTouch, Moving, SweepSettings, cast_ball, sweep};
+use crate::sweep::{
+    FirstTouch, Motion, Moving, SweepSettings, cast_ball, sweep, sweep_element, sweep_mesh,
+};
 use batch::{Asked, Batch};
 use scratch::Scratch;
 
@@ -254,8 +257,7 @@ impl<const D: usize> Query<D> {
     ///
     /// # Errors
     ///
-    /// If neither body is bounded, a body without bounds turns, or a pose or the tolerance is NaN or
-    /// out of range.
+    /// If neither body is bounded, or a pose or the tolerance is NaN or out of range.
     pub fn cast_shape<'a>(
         &mut self,
         a: impl Into<Moving<'a, D>>,
@@ -266,6 +268,50 @@ impl<const D: usize> Query<D> {
         let settings = SweepSettings::of_size(smallest(sizes));
         let gap = self.limits(sizes).tolerance;
         sweep(a, b, &settings.with_gap(gap), self.scratch.sweep())
+    }
+
+    /// When a segment or a triangle that moves touches a field first, with settings as in
+    /// [`cast_shape`](Self::cast_shape); see [`sweep_element`].
+    ///
+    /// # Errors
+    ///
+    /// If a pose or the tolerance is NaN or out of range.
+    pub fn cast_element<'a, const N: usize>(
+        &mut self,
+        field: impl Into<Moving<'a, D>>,
+        element: &Element<N, D>,
+        motion: impl Into<Motion<D>>,
+    ) -> Result<FirstTouch<D>, QueryError>
+    where
+        Self: ElementMemory<N, D>,
+    {
+        let field = field.into();
+        let sizes = [size(field.shape), extent(element)];
+        let settings = SweepSettings::of_size(smallest(sizes));
+        let settings = settings.with_gap(self.limits(sizes).tolerance);
+        sweep_element(field, element, motion, &settings, self.moving_elements())
+    }
+
+    /// When a mesh that moves touches a field first, with settings as in
+    /// [`cast_shape`](Self::cast_shape); see [`sweep_mesh`].
+    ///
+    /// # Errors
+    ///
+    /// If a pose or the tolerance is NaN or out of range.
+    pub fn cast_mesh<'a, const N: usize>(
+        &mut self,
+        field: impl Into<Moving<'a, D>>,
+        mesh: &Mesh<N, D>,
+        motion: impl Into<Motion<D>>,
+    ) -> Result<FirstTouch<D>, QueryError>
+    where
+        Self: ElementMemory<N, D>,
+    {
+        let field = field.into();
+        let sizes = [size(field.shape), Some(diagonal(&mesh.bounds()))];
+        let settings = SweepSettings::of_size(smallest(sizes));
+        let settings = settings.with_gap(self.limits(sizes).tolerance);
+        sweep_mesh(field, mesh, motion, &settings, self.moving_elements())
     }
 
     /// The least value of a field on a segment or a triangle; see [`minimum`].

@@ -59,6 +59,18 @@ pub struct FirstTouch<const D: usize> {
 }
 
 impl<const D: usize> FirstTouch<D> {
+    /// Nothing is known.
+    pub(crate) fn unknown() -> Self {
+        Self {
+            lower: 0.0,
+            upper: f64::INFINITY,
+            contact: None,
+            start: None,
+            stop: Stop::BudgetSpent,
+            evaluations: 0,
+        }
+    }
+
     /// `true` if the bodies touch, `false` if they are proven to be apart all the time; `None` if
     /// neither is known.
     #[must_use]

@@ -24,5 +24,6 @@ pub use first_touch::{FirstTouch, Start};
 pub use mesh::sweep_mesh;
 pub use motion::Motion;
 pub use moving::Moving;
+pub(crate) use moving::corners;
 pub use pair::{SweepWorkspace, sweep};
 pub use settings::SweepSettings;

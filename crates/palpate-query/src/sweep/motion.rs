@@ -63,7 +63,7 @@ impl<const D: usize> Motion<D> {
     }
 
     /// Refuses poses that are not finite or too far away, of the body with this index.
-    pub(super) fn check(&self, index: usize) -> Result<(), QueryError> {
+    pub(crate) fn check(&self, index: usize) -> Result<(), QueryError> {
         [0.0, 1.0].into_iter().try_for_each(|time| check_pose(index, &self.pose(time)))
     }
 }

@@ -52,7 +52,7 @@ impl<'a, const D: usize> Moving<'a, D> {
 }
 
 /// The corners of a box.
-pub(super) fn corners<const D: usize>(aabb: &Aabb<D>) -> impl Iterator<Item = Point<D>> {
+pub(crate) fn corners<const D: usize>(aabb: &Aabb<D>) -> impl Iterator<Item = Point<D>> {
     let Aabb { min, max } = *aabb;
     (0..1_usize << D).map(move |corner| {
         Vector(std::array::from_fn(|k| if corner >> k & 1 == 0 { min[k] } else { max[k] }))

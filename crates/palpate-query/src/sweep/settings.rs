@@ -56,7 +56,7 @@ impl SweepSettings {
         Self { budget, ..self }
     }
 
-    pub(super) fn check(&self) -> Result<(), QueryError> {
+    pub(crate) fn check(&self) -> Result<(), QueryError> {
         for (what, value) in [("gap", self.gap), ("time_tolerance", self.time_tolerance)] {
             let limit = palpate_field::LARGEST_LENGTH;
             // Written so that NaN is refused.

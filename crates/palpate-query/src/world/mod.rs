@@ -7,6 +7,7 @@
 //! searched again only when one of its bodies has moved, from what its track has proven.
 //! Pairs are independent, so that the number of threads changes no bit of the answer.
 
+mod impact;
 mod near;
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -24,6 +25,8 @@ use crate::placed::check_pose;
 use crate::pool::Pool;
 use crate::track::Track;
 use near::pairs_near;
+
+pub use impact::Impact;
 
 /// Roundings of a placed box, relative to its largest coordinate.
 const ROUNDINGS: f64 = 16.0;
@@ -390,8 +393,7 @@ impl<const D: usize> World<D> {
         }
         for [one, other] in pairs_near(&self.bodies) {
             let (Some(a), Some(b)) = (&self.bodies[one], &self.bodies[other]) else { continue };
-            let is_asked = a.groups & b.mask != 0 && b.groups & a.mask != 0;
-            if !is_asked || self.ignored.contains(&[one, other]) {
+            if !self.is_asked([one, other], [a, b]) {
                 continue;
             }
             let pair = self.pairs.entry([one, other]).or_insert_with(|| Pair {
@@ -408,6 +410,12 @@ impl<const D: usize> World<D> {
         let is_still = |i: usize| bodies[i].as_ref().is_some_and(|body| !body.has_moved);
         self.pairs
             .retain(|[one, other], pair| pair.is_near || is_still(*one) && is_still(*other));
+    }
+
+    /// Whether two bodies are to be asked about.
+    fn is_asked(&self, pair: [usize; 2], [a, b]: [&Body<D>; 2]) -> bool {
+        let are_in_groups = a.groups & b.mask != 0 && b.groups & a.mask != 0;
+        are_in_groups && !self.ignored.contains(&pair)
     }
 
     fn body(&mut self, body: BodyId) -> Result<&mut Body<D>, QueryError> {

@@ -12,6 +12,7 @@ mod element_sweeps;
 mod elements;
 mod manifolds;
 mod mesh_memory;
+mod mesh_sweeps;
 mod meshes;
 mod pair_laws;
 mod pairs;
