@@ -37,8 +37,9 @@
 //!   segment or a triangle; [`contacts`] finds all places where the element touches.
 //! - [`mesh_hits`] and [`mesh_contacts`] ask a field over all elements of a mesh.
 //!
-//! - [`sweep`] finds when two bodies that move touch first, [`cast_ball`] where a ball does that
-//!   moves along a line.
+//! - [`sweep`] finds when two bodies that move touch first, [`sweep_element`] and [`sweep_mesh`]
+//!   when a segment, a triangle or a mesh does that moves, [`World::first_impact`] when bodies of a
+//!   world do, and [`cast_ball`] where a ball does that moves along a line.
 //! - [`rates`] says how a separation changes with both poses; [`proof`] lists the boxes that the
 //!   search for a separation ruled out.
 //!
