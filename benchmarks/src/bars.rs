@@ -60,6 +60,8 @@ pub(crate) const COLLIDE: &[Bar] = &[
     ("sweep.ball.S3.grazing.p95.over_S3", 3500.0),
     ("sweep.triangle.S3.0.05.p50.over_S3", 1700.0),
     ("sweep.triangle.S3.0.3.p50.over_S3", 4500.0),
+    ("sweep.mesh_888.S3.p50.over_S3", 35_000.0),
+    ("parry.sweep.ball_torus.ours_over_parry", 0.002),
     ("sweep.pair.S3_S3.p50.over_S3", 80_000.0),
     ("manifold.boxes.p50.over_S3", 22_000.0),
     ("manifold.peg.p50.over_S3", 86_000.0),

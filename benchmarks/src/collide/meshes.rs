@@ -19,7 +19,7 @@ use crate::scenes;
 const POSES: usize = 40;
 
 /// The radius of spheres and circles [m].
-const RADIUS: f64 = 0.3;
+pub(super) const RADIUS: f64 = 0.3;
 
 /// How deep they dip into the field [m].
 const OVERLAP: [f64; 2] = [0.005, 0.025];
@@ -109,7 +109,7 @@ fn planar_turn(random: &mut Random) -> Result<Rotation<2>, Box<dyn Error>> {
 }
 
 /// A sphere of meridians and parallels.
-fn sphere(meridians: u32, rings: u32) -> Result<TriangleMesh, Box<dyn Error>> {
+pub(super) fn sphere(meridians: u32, rings: u32) -> Result<TriangleMesh, Box<dyn Error>> {
     let mut vertices = vec![Vector([0.0, RADIUS, 0.0]), Vector([0.0, -RADIUS, 0.0])];
     for ring in 1..rings {
         let (height, width) = (f64::from(ring) / f64::from(rings) * PI).sin_cos();

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! Balls, triangles and bodies that move: when they touch first.
+//! Balls, triangles, meshes and bodies that move: when they touch first.
 
 use std::error::Error;
 use std::hint::black_box;
@@ -9,12 +9,12 @@ use std::hint::black_box;
 use palpate::field::{Pose, Screw, Shape, Vector};
 use palpate::query::{
     BallWorkspace, Element, ElementSweep, Limits, Motion, Moving, Placed, Ray, SweepSettings,
-    SweepWorkspace, cast_ball, sweep, sweep_element,
+    SweepWorkspace, cast_ball, sweep, sweep_element, sweep_mesh,
 };
 
 use super::pairs::placed;
 use super::triangles::SIZES;
-use super::{Space, TimedRows, Turn, fastest};
+use super::{Space, TimedRows, Turn, fastest, meshes, peers};
 use crate::random::Random;
 use crate::scenes::{self, Work};
 
@@ -50,6 +50,8 @@ pub(super) fn measure(rows: &mut TimedRows) -> Result<(), Box<dyn Error>> {
     }
     let found = spatial.iter().find(|work| work.name == "S3");
     let Work { shape, .. } = found.ok_or("no S3")?;
+    mesh("sweep.mesh_888.S3", shape, rows)?;
+    peers::measure_casts(rows)?;
     pairs("sweep.pair.S3_S3", shape, rows)
 }
 
@@ -148,6 +150,37 @@ fn triangles(
             let motion = black_box(motion);
             let _ =
                 black_box(sweep_element(shape, &element, motion, &settings, &mut workspace));
+        }));
+    }
+    rows.insert(format!("{key}.evaluations"), f64::from(evaluations) / times.len() as f64);
+    rows.insert(format!("{key}.undecided"), f64::from(undecided));
+    rows.add_times(key, times);
+    Ok(())
+}
+
+/// A sphere of 888 triangles that begins free, moves by a metre and turns by up to 1.5 rad, any way.
+fn mesh(key: &str, shape: &Shape<3>, rows: &mut TimedRows) -> Result<(), Box<dyn Error>> {
+    let mut random = Random::new(16);
+    let settings = SweepSettings::of_size(1.0).with_gap(1e-4).with_time_tolerance(1e-3);
+    let sphere = meshes::sphere(37, 13)?;
+    let mut workspace = ElementSweep::new();
+    let mut times = Vec::new();
+    let (mut evaluations, mut undecided) = (0, 0);
+    while times.len() < PAIRS {
+        let from = Pose::translation(Vector(random.point([0.0; 3], 1.2)));
+        let way = Vector(random.point([0.0; 3], 1.0));
+        let turn = <Space as Turn<3>>::by(&mut random, 1.5)?;
+        let to = from * Pose::new(turn, way * (LENGTH / way.norm()));
+        if shape.distance(from.translation) <= meshes::RADIUS {
+            continue;
+        }
+        let motion = Motion::from(Screw::new(from, to, 0)?);
+        let answer = sweep_mesh(shape, &sphere, motion, &settings, &mut workspace)?;
+        evaluations += answer.evaluations;
+        undecided += u32::from(answer.stop.is_early());
+        times.push(fastest(|| {
+            let motion = black_box(motion);
+            let _ = black_box(sweep_mesh(shape, &sphere, motion, &settings, &mut workspace));
         }));
     }
     rows.insert(format!("{key}.evaluations"), f64::from(evaluations) / times.len() as f64);
