@@ -60,6 +60,7 @@ pub struct FirstTouch<const D: usize> {
 
 impl<const D: usize> FirstTouch<D> {
     /// Nothing is known.
+    #[cfg(feature = "world")]
     pub(crate) fn unknown() -> Self {
         Self {
             lower: 0.0,

@@ -24,6 +24,7 @@ pub use first_touch::{FirstTouch, Start};
 pub use mesh::sweep_mesh;
 pub use motion::Motion;
 pub use moving::Moving;
+#[cfg(feature = "world")]
 pub(crate) use moving::corners;
 pub use pair::{SweepWorkspace, sweep};
 pub use settings::SweepSettings;
