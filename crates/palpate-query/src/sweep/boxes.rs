@@ -36,6 +36,9 @@ const NEAR: f64 = 2.0;
 /// Where in the tolerance after the time of a box.
 const SOON: f64 = 0.75;
 
+/// How often the time between the bounds is halved in the end.
+pub(super) const HALVES: u32 = 8;
+
 /// A round takes boxes up to this share of the time that is left after the first: where bodies
 /// overlap later, boxes come apart for nothing.
 const HORIZON: f64 = 0.2;
@@ -155,8 +158,9 @@ pub(super) struct BoxSweep<'s, 'a, const D: usize> {
     pub(super) evaluations: u32,
     /// Boxes from this time on wait for another round.
     pub(super) horizon: Option<f64>,
-    /// The first time known of a touch.
+    /// The first time known of a touch, and where it is.
     pub(super) upper: f64,
+    pub(super) place: Point<D>,
     /// The least bound of closed boxes.
     pub(super) dropped: f64,
 }
@@ -325,13 +329,32 @@ impl<const D: usize> BoxSweep<'_, '_, D> {
         if time >= self.upper {
             return;
         }
+        self.touches(time, cell.centre);
+    }
+
+    /// Looks for a touch at a time, from a point on; `true` if there is one.
+    fn touches(&mut self, time: f64, start: Point<D>) -> bool {
         let [first, second] = self.bodies.map(|body| body.at(time));
-        let Ok(mut pair) = BodyPair::new(first, second) else { return };
+        // Poses were checked.
+        let Ok(mut pair) = BodyPair::new(first, second) else { return false };
         let goal = Goal::least(0.1 * self.touch);
-        let (value, _) = descend(&mut pair, cell.centre, None, goal, self.slack);
+        let (value, p) = descend(&mut pair, start, None, goal, self.slack);
         self.evaluations += pair.evaluations;
-        if value + self.slack <= self.touch {
-            self.upper = time;
+        let is_touch = value + self.slack <= self.touch;
+        if is_touch {
+            (self.upper, self.place) = (time, p);
+        }
+        is_touch
+    }
+
+    /// Looks for an earlier touch after `lower`, by halves: within the tolerance, bodies may be deep
+    /// in each other already.
+    pub(super) fn refine(&mut self, mut lower: f64) {
+        for _ in 0..HALVES {
+            let middle = 0.5 * (lower + self.upper);
+            if !self.touches(middle, self.place) {
+                lower = middle;
+            }
         }
     }
 }

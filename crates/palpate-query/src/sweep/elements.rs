@@ -22,6 +22,7 @@ use palpate_field::{BLOCK, Block, Column, Point, SHORT, Shape, Vector};
 use palpate_mesh::Mesh;
 use palpate_mesh::internal::FAN;
 
+use super::boxes::HALVES;
 use super::first_touch::{FirstTouch, Start};
 use super::moving::Moving;
 use super::part::{Of, Part, Way};
@@ -175,8 +176,9 @@ impl<const N: usize, const D: usize> ElementSearch<'_, '_, N, D> {
                 self.upper = 0.0;
             }
         }
+        let lower = lower.min(self.upper).min(1.0);
+        self.refine(lower);
         let upper = self.upper;
-        let lower = lower.min(upper).min(1.0);
         let mut touch =
             FirstTouch { lower, upper, contact: None, start: None, stop, evaluations };
         if let Some(Touching { point: p, of }) = self.best {
@@ -195,6 +197,21 @@ impl<const N: usize, const D: usize> ElementSearch<'_, '_, N, D> {
             }
         }
         touch
+    }
+
+    /// Looks for an earlier touch of the same point after `lower`, by halves: within the tolerance,
+    /// it may be deep in the field already.
+    fn refine(&mut self, mut lower: f64) {
+        let Some(Touching { point, .. }) = self.best else { return };
+        for _ in 0..HALVES {
+            let middle = 0.5 * (lower + self.upper);
+            let value = self.sampler.value(self.path.at(middle).point(point));
+            if value <= (1.0 - FREE) * self.settings.gap {
+                self.upper = middle;
+            } else {
+                lower = middle;
+            }
+        }
     }
 
     /// Notes a point of a part that touches at a time.

@@ -3,7 +3,7 @@
 
 //! The first touch of two bodies that move.
 
-use palpate_field::Pose;
+use palpate_field::{Pose, Vector};
 
 use super::boxes::{BoxFrontier, BoxMemory, BoxSweep, frontier};
 use super::first_touch::{FirstTouch, Start};
@@ -89,11 +89,15 @@ pub fn sweep<'a, const D: usize>(
         evaluations: 0,
         horizon: None,
         upper: f64::INFINITY,
+        place: Vector::ZERO,
         dropped: f64::INFINITY,
     };
     let end = engine::search(&mut search, frontier);
+    let lower = frontier.lower(search.dropped).min(search.upper).min(1.0);
+    if search.upper < f64::INFINITY {
+        search.refine(lower);
+    }
     let (upper, evaluations) = (search.upper, search.evaluations);
-    let lower = frontier.lower(search.dropped).min(upper).min(1.0);
     let stop = end.stop();
     let upper = if stop == Stop::SignKnown { 1.0 } else { upper };
     let mut found = FirstTouch { lower, upper, contact: None, start: None, stop, evaluations };
