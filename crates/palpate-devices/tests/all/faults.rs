@@ -250,6 +250,10 @@ fn the_servo_keeps_its_promises_through_faults() {
             return fail(too_fast);
         }
         let (force, full) = felt.rows.last().map(|r| (r.force.norm(), held.full(r))).unwrap();
+        // Where a stiff wall oscillates through jitter, it is softer: the hand is deeper, and feels
+        // the force of a hand at rest all the same.
+        let part = felt.report.safety.iter().map(|point| point.limit_cycles.least_part);
+        let full = part.fold(full, |full, part| full.min(full * part));
         // Friction of the device may hold the hand on its way out.
         if force < 0.9 * full || force < 0.9 * held.at_rest - profile.friction {
             return fail(format!("not back: {force} of {full} N, {} N at rest", held.at_rest));
