@@ -6,6 +6,7 @@
 
 use std::f64::consts::PI;
 
+#[expect(unreachable_pub, reason = "shared with the fuzz target")]
 #[path = "../../../../fuzz/sweep_answers.rs"]
 mod sweep_answers;
 
