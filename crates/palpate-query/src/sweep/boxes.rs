@@ -16,6 +16,7 @@ use palpate_field::{Aabb, BLOCK, Block, Column, Point, Vector};
 
 use super::moving::Moving;
 use super::path::{Path, Places, WayBounds};
+use super::settings::HALVES;
 use super::stay::{Stay, later};
 use crate::certified::Stop;
 use crate::engine::{Bounded, Frontier, Heap, Problem, Queue, Rebound};
@@ -35,9 +36,6 @@ const NEAR: f64 = 2.0;
 
 /// Where in the tolerance after the time of a box.
 const SOON: f64 = 0.75;
-
-/// How often the time between the bounds is halved in the end.
-pub(super) const HALVES: u32 = 8;
 
 /// A round takes boxes up to this share of the time that is left after the first: where bodies
 /// overlap later, boxes come apart for nothing.

@@ -22,12 +22,11 @@ use palpate_field::{BLOCK, Block, Column, Point, SHORT, Shape, Vector};
 use palpate_mesh::Mesh;
 use palpate_mesh::internal::FAN;
 
-use super::boxes::HALVES;
 use super::first_touch::{FirstTouch, Start};
 use super::moving::Moving;
 use super::part::{Of, Part, Way};
 use super::path::{Path, Places, WayBounds};
-use super::settings::{FREE, SweepSettings};
+use super::settings::{FREE, HALVES, SweepSettings};
 use super::stay::{Stay, later};
 use crate::certified::Stop;
 use crate::contact::Contact;

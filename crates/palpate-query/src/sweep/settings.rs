@@ -9,6 +9,9 @@ use crate::error::QueryError;
 /// a quarter of the gap is one of a touch, or leaves a step that is free.
 pub(super) const FREE: f64 = 0.5;
 
+/// How often the time between the bounds is halved in the end, to find an earlier touch.
+pub(super) const HALVES: u32 = 8;
+
 /// How exactly a first touch is asked for.
 ///
 /// ```
