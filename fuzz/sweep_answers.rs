@@ -4,7 +4,7 @@
 //! What must hold for what is said of two bodies that move, whatever they are.
 
 use arbitrary::{Result, Unstructured};
-use palpate_field::{Pose, Screw, Vector};
+use palpate_field::Vector;
 use palpate_query::{
     Limits, Moving, PairWorkspace, Placed, Stop, SweepSettings, SweepWorkspace, separation,
     sweep,
@@ -29,17 +29,7 @@ where
 {
     let Some([a, b]) = draw::two::<D>(u, depth)? else { return Ok(Ok(None)) };
     let size = draw::size(&a).max(draw::size(&b));
-    let mut screw = |turns: i32| -> Result<_> {
-        let mut pose = || -> Result<Pose<D>> {
-            let mut pose: Pose<D> = draw::pose(u)?;
-            pose.translation = pose.translation * size;
-            Ok(pose)
-        };
-        let (from, to) = (pose()?, pose()?);
-        // In the plane, whole turns may have no centre.
-        Ok(Screw::new(from, to, turns).or_else(|_| Screw::new(from, to, 0)))
-    };
-    let (Ok(of_a), Ok(of_b)) = (screw(0)?, screw(2)?) else { return Ok(Ok(None)) };
+    let (of_a, of_b) = (draw::screw(u, size, 0)?, draw::screw(u, size, 2)?);
     let moving = [Moving::new(&a, of_a), Moving::new(&b, of_b)];
     let settings = SweepSettings::of_size(size).with_gap(1e-4 * size).with_budget(100_000);
     let Ok(found) = sweep(moving[0], moving[1], &settings, workspace) else {

@@ -38,7 +38,8 @@ pub struct Snapshot<const D: usize> {
     pub touches: Vec<Touch<D>>,
     /// The tool; `None` if the servo renders contact points.
     pub tool: Option<HeldTool<D>>,
-    /// `true` while an emergency stop holds: all written forces are zero.
+    /// `true` while all written forces are held at zero: by an emergency stop, or because the bodies
+    /// that were sent last were accepted for another servo.
     pub is_stopped: bool,
     /// The buttons of the device that are held down.
     pub buttons: Buttons,

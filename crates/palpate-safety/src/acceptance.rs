@@ -175,7 +175,7 @@ pub struct Accepted {
     /// The stiffness and damping to render, in the world; angular for a rotational entry.
     #[cfg_attr(feature = "serde", serde(skip))]
     pub impedance: Impedance,
-    /// At the device, a stiffness or a damping is so many times that in the world.
+    /// Stiffness at the device over stiffness in the world, and damping likewise.
     #[cfg_attr(feature = "serde", serde(skip))]
     pub scale: f64,
     /// The stiffness that was asked for, at the device [N/m]; [N·m/rad] for a rotational entry.
@@ -323,6 +323,14 @@ impl Accepted {
         Ok(bounds.iter().fold(f64::INFINITY, |least, (bound, _)| least.min(*bound)))
     }
 
+    /// The stiffness and the damping that were asked for, in the world [N/m, N·s/m]; angular for a
+    /// rotational entry.
+    #[must_use]
+    pub fn requested(&self) -> [f64; 2] {
+        [self.requested_stiffness, self.requested_damping]
+            .map(|at_device| at_device / self.scale)
+    }
+
     /// This, unless the device renders less than was asked for.
     ///
     /// # Errors
@@ -337,8 +345,8 @@ impl Accepted {
     /// let accepted = Accepted::new(Impedance::new(2000.0, 0.0)?, 1.0, &device, 1000.0)?;
     /// assert_eq!(
     ///     accepted.unchanged().unwrap_err().to_string(),
-    ///     "the device renders stiffness and damping of 1000 N/m and 0 N·s/m, not the 2000 N/m and \
-    ///      0 N·s/m that are asked for: K ≤ the device's largest stiffness at this rate"
+    ///     "the device renders stiffness 1000 N/m (asked 2000) and damping 0 N·s/m (asked 0): K ≤ the \
+    ///      device's largest stiffness at this rate"
     /// );
     /// # Ok(())
     /// # }

@@ -31,7 +31,7 @@ pub(crate) struct TickInput {
     pub(crate) cut: f64,
 }
 
-/// A force that differs by this share from what the limits leave is held by the slew limit.
+/// The slew limit acts if the force differs by more than this share from what the other limits leave.
 const HELD: f64 = 1e-9;
 
 /// What a [`Channel`] gives in a tick.

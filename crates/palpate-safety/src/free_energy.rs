@@ -3,8 +3,8 @@
 
 //! The passivity of forces that have a potential: guides, wells and magnets.
 //!
-//! They may pull a hand in, which gives out energy that the hand did not put in, so their energy
-//! is not balanced as that of walls is. What sampling adds to it is.
+//! They may pull a hand in, which gives out energy that the hand did not put in. So this stage does
+//! not balance their energy, as that of walls is balanced, but the energy that sampling adds to it.
 
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
@@ -27,7 +27,8 @@ const RECOVERY: f64 = 1.0;
 /// longer than that.
 const FORGOTTEN: f64 = 10.0;
 
-/// The most that the balance owes [J]. What a stall gave out at once is not for walls to pay.
+/// The most that the balance owes [J]. What a stall gave out at once beyond it is credited, so that walls
+/// need not pay for it.
 const MOST_OWED: f64 = 1e-3;
 
 /// No hand climbs higher in a potential [J].
@@ -57,17 +58,17 @@ pub struct FreeForceReport {
 /// (trapezoidal rule), and that of a part `p` of it by `p` times as much; what the limits of the size
 /// of the force leave of it is such a part, too. The sum of both is what sampling, and a slew limit,
 /// generate: `−½ p ΔF · Δx` where the force was written as wanted. The device's damping `b`
-/// dissipates at least `b |Δx|² / T`. The balance of both starts at the
-/// reserve, which is its most.
+/// dissipates at least `b |Δx|² / T`. The balance is what damping dissipates minus what sampling
+/// generates; it starts at the reserve and never exceeds it.
 ///
-/// **Controller.** While the balance is used up, [less](COVERED) of the force passes than damping
-/// covers, which is the losses over the leaks since then. The part falls by [`STEP`] a tick, and at
-/// once when [`SPARE`] more was given out.
+/// **Controller.** While the balance is used up, the part that passes is at most [`COVERED`] times the
+/// losses over the leaks, both summed since the balance ran out. The part falls by [`STEP`] a tick, and
+/// at once when [`SPARE`] more was given out.
 ///
 /// **Recovery.** A part that rises by `Δp` adds `Δp U` to the energy of the hand, and a swing that is
 /// lifted again and again grows, also one that leaves the reach of the force each time. So the part
-/// rises only where the force acts, while the balance pays for it, `U` above the lowest place of
-/// late, and in a [second](RECOVERY) at best. A hand at rest pays nothing: the force rises as that of
+/// rises only where the force acts, while the balance pays for `Δp U`, with `U` above its lowest value
+/// of late, and in no less than a [second](RECOVERY). A hand at rest pays nothing: the force rises as that of
 /// a wall does ([`Lift`]), and so it does after it was zeroed; both are counted.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct FreeEnergy<V> {
@@ -225,7 +226,7 @@ impl<V: InnerProduct> FreeEnergy<V> {
         if full >= 0.0 {
             (self.leaks, self.losses) = (0.0, 0.0);
         } else {
-            // A leak of no force says nothing of the whole force.
+            // A tick without a leak tells nothing about the leak of the whole force.
             let whole = if leak > 0.0 { leak / self.part } else { 0.0 };
             self.leaks = MEMORY * self.leaks + whole;
             self.losses = MEMORY * self.losses + loss;

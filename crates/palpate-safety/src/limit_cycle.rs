@@ -15,16 +15,17 @@ use std::f64::consts::TAU;
 use crate::effect::Effect;
 use crate::passivity::{InnerProduct, PassivityOptions};
 
-/// Half cycles whose ways are kept; so many make a limit cycle if they do not decay.
-const SEVERAL: usize = 8;
+/// Half cycles that are kept; so many make a limit cycle if they do not decay. The way of a half cycle is
+/// the distance between its two extremes, along the force.
+const KEPT: usize = 8;
 
-/// An oscillation decays if its way shrinks to this part of the longest of [`SEVERAL`] half cycles.
+/// An oscillation decays if its way shrinks to this part of the longest that is kept.
 const DECAYED: f64 = 0.7;
 
 /// So many half cycles make a limit cycle if both of its sides grow by [`GROWN`].
-const FEW: usize = 6;
+const GROWING: usize = 6;
 
-/// The growth within two half cycles that is no play of chance.
+/// The least growth within two half cycles that counts.
 const GROWN: f64 = 1.2;
 
 /// Half cycles up to this duration count as quick on every device [s]: few hands go to and fro six
@@ -43,7 +44,7 @@ const HAND: f64 = 0.1;
 /// How far a position goes to and fro at least in an oscillation that a hand feels [m].
 const FELT_WAY: f64 = 5e-5;
 
-/// How far a force does [N].
+/// How far a force goes to and fro at least in it [N].
 const FELT_FORCE: f64 = 0.15;
 
 /// Readings of a device at rest may go to and fro by so many encoder steps.
@@ -63,7 +64,7 @@ const WEAK: f64 = 0.1;
 const DELAY: f64 = 2.0;
 
 /// The part of the stiffness that remains after a limit cycle.
-const SOFTER: f64 = 0.5;
+const HALVED: f64 = 0.5;
 
 /// The least part of the stiffness that remains.
 const LEAST: f64 = 1.0 / 32.0;
@@ -71,16 +72,16 @@ const LEAST: f64 = 1.0 / 32.0;
 /// The most by which a force changes in a tick because its wall becomes softer [N].
 const STEP: f64 = 0.3;
 
-/// If an oscillation goes on in a wall of this part of the stiffness, by at least [`STAYED`] of the
-/// way and at most 1/[`STAYED`] times as slowly, a hand drives it.
-const HARDLY: f64 = 0.125;
-const STAYED: f64 = 0.75;
+/// A hand drives an oscillation that, at this part of the stiffness, keeps at least [`UNCHANGED`] of its
+/// way and takes at most 1/[`UNCHANGED`] of its time.
+const HAND_TEST_PART: f64 = 0.125;
+const UNCHANGED: f64 = 0.75;
 
-/// Ways up to so many times those of a hand's oscillation are then its own, for [`OWN`] at first
-/// and twice as long each time, up to [`LONGEST_OWN`] [s].
-const OF_HAND: f64 = 1.5;
-const OWN: f64 = 10.0;
-const LONGEST_OWN: f64 = 160.0;
+/// Half cycles up to so many times the hand's way are then ignored, for [`HAND_TIME`] at first and twice as
+/// long each time, up to [`LONGEST_HAND_TIME`] [s].
+const HAND_MARGIN: f64 = 1.5;
+const HAND_TIME: f64 = 10.0;
+const LONGEST_HAND_TIME: f64 = 160.0;
 
 /// How fast the force of a wall comes back to a hand that trembles [N/s].
 const RETURN: f64 = 20.0;
@@ -197,7 +198,7 @@ struct Extreme<V> {
 /// The motion along the force is parted at its extremes into half cycles: ways of at least 50 µm,
 /// or of 0.15 N in the force if that is less, and of three encoder steps. A half cycle counts if
 ///
-/// - it takes at most 0.2 s, and no tick in it is late or of a rise;
+/// - it takes at most 0.2 s;
 /// - the device moves along the force, not along the body, whose relief would move it;
 /// - and the force changes as the spring explains, so that no body moves the hand, and the wall is
 ///   not so soft that a tenth of the device's damping is enough for it, through a delay of two ticks.
@@ -212,12 +213,13 @@ struct Extreme<V> {
 ///
 /// The stiffness is then halved, at the rate of 0.3 N a tick, and half cycles are counted anew. It
 /// comes back by a factor of e in 20 s in which nothing pushes, or in which a hand in a guide makes
-/// no quick half cycles; not in contact with a body, where the oscillation would return.
+/// no quick half cycles; not in contact with a body, where the oscillation would return. A tick that is
+/// late, or in which the force rises after it was zeroed, starts the count anew.
 ///
 /// The tremor of a hand, 6 to 12 times a second, looks like a limit cycle. But an oscillation of the
 /// device gets slower in a softer wall, or ends; one that goes on as before in an eighth of the
-/// stiffness is the hand's. Then the stiffness comes back, and ways of its size do not count for a
-/// while.
+/// stiffness is the hand's. Then the stiffness comes back, and half cycles of that size are ignored for
+/// a while.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct LimitCycle<V> {
     options: LimitCycleOptions,
@@ -236,18 +238,19 @@ pub(crate) struct LimitCycle<V> {
     /// The time since the farthest place [s].
     since: f64,
     /// The ways and the times of the last half cycles, the newest first [m, s].
-    ways: [f64; SEVERAL],
-    times: [f64; SEVERAL],
+    ways: [f64; KEPT],
+    times: [f64; KEPT],
     /// How many of them count.
     counted: usize,
     /// How many of them are quick.
     quick: usize,
     /// The mean way and time of the half cycles for which the stiffness was halved first [m, s].
-    first: [f64; 2],
-    /// Ways that are the hand's [m], for how long they are [s], and for how long the next time.
-    of_hand: f64,
-    own: f64,
-    next_own: f64,
+    before_softening: [f64; 2],
+    /// The largest way that is ignored as the hand's [m], for how long still [s], and for how long the next
+    /// time [s].
+    hand_way: f64,
+    hand_time: f64,
+    next_hand_time: f64,
     /// The time since a quick half cycle [s].
     calm: f64,
     /// The part of the stiffness to come.
@@ -269,14 +272,14 @@ impl<V: InnerProduct> LimitCycle<V> {
             last: start,
             farthest: start,
             since: 0.0,
-            ways: [0.0; SEVERAL],
-            times: [0.0; SEVERAL],
+            ways: [0.0; KEPT],
+            times: [0.0; KEPT],
             counted: 0,
             quick: 0,
-            first: [0.0; 2],
-            of_hand: 0.0,
-            own: 0.0,
-            next_own: OWN,
+            before_softening: [0.0; 2],
+            hand_way: 0.0,
+            hand_time: 0.0,
+            next_hand_time: HAND_TIME,
             calm: 0.0,
             target: 1.0,
             part: 1.0,
@@ -364,7 +367,7 @@ impl<V: InnerProduct> LimitCycle<V> {
         self.place -= way.dot(self.direction);
         self.since += input.elapsed;
         self.calm += input.elapsed;
-        self.own -= input.elapsed;
+        self.hand_time -= input.elapsed;
         let beyond = self.heading * (self.place - self.farthest.place);
         let CycleInput { position, effort, .. } = *input;
         let here = Extreme { position, place: self.place, effort, time: self.since };
@@ -408,7 +411,7 @@ impl<V: InnerProduct> LimitCycle<V> {
 
     /// Counts a half cycle of a way [m] that took a time [s].
     fn count(&mut self, way: f64, time: f64) {
-        if self.own > 0.0 && way <= self.of_hand {
+        if self.hand_time > 0.0 && way <= self.hand_way {
             (self.counted, self.quick) = (0, 0);
             return;
         }
@@ -418,11 +421,11 @@ impl<V: InnerProduct> LimitCycle<V> {
         *newest = way;
         let [newest, ..] = &mut self.times;
         *newest = time;
-        self.counted = (self.counted + 1).min(SEVERAL);
+        self.counted = (self.counted + 1).min(KEPT);
         let LimitCycleOptions { stiffness, mass, .. } = self.options;
         let natural = TAU * ((mass + HAND) / stiffness).sqrt();
         let is_quick = time <= natural.clamp(QUICK, LONGEST_QUICK);
-        self.quick = if is_quick { (self.quick + 1).min(SEVERAL) } else { 0 };
+        self.quick = if is_quick { (self.quick + 1).min(KEPT) } else { 0 };
         if is_quick {
             self.calm = 0.0;
         }
@@ -433,21 +436,24 @@ impl<V: InnerProduct> LimitCycle<V> {
 
     /// Halves the stiffness, or gives it back to a hand that drives the oscillation.
     fn found(&mut self) {
-        let mean = |of: &[f64; SEVERAL]| of.iter().sum::<f64>() / SEVERAL as f64;
+        let mean = |of: &[f64; KEPT]| of.iter().sum::<f64>() / KEPT as f64;
         let now = [mean(&self.ways), mean(&self.times)];
         // What follows is the motion in another wall.
         (self.counted, self.quick) = (0, 0);
         if self.target == 1.0 {
-            self.first = now;
+            self.before_softening = now;
         }
-        let ([way, time], [first_way, first_time]) = (now, self.first);
-        if self.target <= HARDLY && way >= STAYED * first_way && STAYED * time <= first_time {
+        let ([way, time], [first_way, first_time]) = (now, self.before_softening);
+        if self.target <= HAND_TEST_PART
+            && way >= UNCHANGED * first_way
+            && UNCHANGED * time <= first_time
+        {
             let longest = self.ways.iter().copied().fold(0.0, f64::max);
-            (self.of_hand, self.own) = (OF_HAND * longest, self.next_own);
-            self.next_own = (2.0 * self.next_own).min(LONGEST_OWN);
+            (self.hand_way, self.hand_time) = (HAND_MARGIN * longest, self.next_hand_time);
+            self.next_hand_time = (2.0 * self.next_hand_time).min(LONGEST_HAND_TIME);
             self.target = 1.0;
         } else {
-            self.target = (self.target * SOFTER).max(LEAST);
+            self.target = (self.target * HALVED).max(LEAST);
             self.report.found += 1;
         }
     }
@@ -455,12 +461,12 @@ impl<V: InnerProduct> LimitCycle<V> {
     fn is_limit_cycle(&self) -> bool {
         let [a, b, c, d, e, f, g, h] = self.ways;
         let grows = |x: f64, y: f64, z: f64| x >= GROWN * y && y >= GROWN * z;
-        let explodes = self.quick >= FEW && grows(a, c, e) && grows(b, d, f);
+        let explodes = self.quick >= GROWING && grows(a, c, e) && grows(b, d, f);
         let longest = self.ways.iter().copied().fold(0.0, f64::max);
-        let persists = self.quick >= SEVERAL && a >= DECAYED * longest;
+        let persists = self.quick >= KEPT && a >= DECAYED * longest;
         let [out, back] =
             [[a, c, e, g], [b, d, f, h]].map(|ways| ways.is_sorted_by(|x, y| x > y));
-        explodes || persists || self.counted >= SEVERAL && out && back
+        explodes || persists || self.counted >= KEPT && out && back
     }
 
     pub(crate) fn report(&self) -> LimitCycleReport {

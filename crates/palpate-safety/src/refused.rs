@@ -37,7 +37,7 @@ pub struct Refused {
     pub asked: [f64; 2],
     /// The stiffness and the damping that the device renders, in the world.
     pub rendered: [f64; 2],
-    /// At the device, a stiffness or a damping is so many times that in the world.
+    /// Stiffness at the device over stiffness in the world, and damping likewise.
     pub scale: f64,
     /// The rule that leaves no more.
     pub rule: Rule,
@@ -47,12 +47,10 @@ pub struct Refused {
 
 impl Refused {
     pub(crate) fn new(accepted: &Accepted, rule: Rule, requester: Requester) -> Self {
-        let scale = accepted.scale;
-        let in_world = |at_device: [f64; 2]| at_device.map(|number| number / scale);
         Self {
-            asked: in_world([accepted.requested_stiffness, accepted.requested_damping]),
-            rendered: in_world([accepted.device_stiffness, accepted.device_damping]),
-            scale,
+            asked: accepted.requested(),
+            rendered: [accepted.impedance.stiffness(), accepted.impedance.damping()],
+            scale: accepted.scale,
             rule,
             requester,
         }
@@ -70,9 +68,9 @@ impl Refused {
     /// let refused = accepted.refusal(Requester::Body(0)).ok_or("it is softer")?;
     /// assert_eq!(
     ///     refused.told(|_| "\"table\"".to_owned()),
-    ///     "body \"table\": the device renders stiffness and damping of 500 N/m and 0 N·s/m, not \
-    ///      the 2000 N/m and 0 N·s/m that are asked for (at the device, where both are 2 times as \
-    ///      large, 1000 and 0, not 4000 and 0): K ≤ the device's largest stiffness at this rate"
+    ///     "body \"table\": the device renders stiffness 500 N/m (asked 2000) and damping 0 N·s/m (asked \
+    ///      0), which at the device, 2 times as large, are 1000 (asked 4000) and 0 (asked 0): K ≤ the \
+    ///      device's largest stiffness at this rate"
     /// );
     /// # Ok(())
     /// # }
@@ -103,15 +101,14 @@ impl Refused {
         } else {
             let [[stiffness, asked], [damping, asked_damping]] = numbers(self.scale);
             format!(
-                " (at the device, where both are {} times as large, {stiffness} and {damping}, not \
-                 {asked} and {asked_damping})",
+                ", which at the device, {} times as large, are {stiffness} (asked {asked}) and \
+                 {damping} (asked {asked_damping})",
                 digits(self.scale, 4),
             )
         };
         format!(
-            "{requester}the device renders {angular}stiffness and damping of {stiffness} \
-             {of_stiffness} and {damping} {of_damping}, not the {asked} {of_stiffness} and \
-             {asked_damping} {of_damping} that are asked for{at_device}: {}",
+            "{requester}the device renders {angular}stiffness {stiffness} {of_stiffness} (asked \
+             {asked}) and damping {damping} {of_damping} (asked {asked_damping}){at_device}: {}",
             self.rule.condition()
         )
     }

@@ -8,10 +8,10 @@
 /// Lowers the force to zero while ticks are late.
 ///
 /// A force that is held for too long is stale. The time by which ticks are late adds up, and each
-/// tick in time takes a period from the sum. When the sum reaches a limit, the force falls to
-/// zero; when it is back at zero, the force may rise again. Until then a tick in time takes two
-/// periods: a device of half the rate of the loop, each second tick of which has no new reading,
-/// must get its force back.
+/// tick in time takes a period from the sum. When the sum reaches a limit, the watchdog trips: the
+/// force falls to zero, in ticks in time too, until the sum is zero. Meanwhile a tick in time takes
+/// two periods from the sum: with a device of half the loop's rate every second tick has no new
+/// reading, and its force must come back too.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Watchdog {
     /// The sum at which it trips [s].
@@ -53,8 +53,8 @@ impl Watchdog {
         trips
     }
 
-    /// The factor on the force in this tick: it falls while ticks are late. After them it is one
-    /// at once, because the force [rises](crate::rise::Rise) from where it fell to.
+    /// The factor on the force in this tick: it falls while the watchdog is tripped. Afterwards it is
+    /// one at once, because the force [rises](crate::rise::Rise) from where it fell to.
     pub(crate) fn factor(&self) -> f64 {
         self.factor
     }

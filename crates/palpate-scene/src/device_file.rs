@@ -17,8 +17,8 @@ use crate::problems::Problems;
 /// The version of the format.
 const VERSION: u64 = 1;
 
-/// A number that no device has: it stands in for one that is missing, and nothing is said of others
-/// beside it.
+/// Stands in for a number that is missing, so that the rest of the file can be checked. No device has
+/// it, and problems with it are not told, as the missing key is.
 pub(crate) const UNKNOWN: f64 = -1.0;
 
 /// The keys of the numbers that a file has to have, in any of its objects.
@@ -144,36 +144,24 @@ fn check(written: &WrittenDevice) -> Result<(), Problems> {
         let message = format!("must be {VERSION}, got {}", written.palpate_device);
         Err(Problem::about(message).under("palpate_device"))
     };
-    let forces = written.max_force > 0.0;
-    let numbers = Problems::all([
-        version,
-        at_least("max_force", written.max_force, 0.0, "N"),
-        limit("continuous_force", written.continuous_force, forces, "N"),
-        limit("max_force_rate", written.max_force_rate, forces, "N/s"),
-        limit("max_stiffness", written.max_stiffness, forces, "N/m"),
-        at_least("max_damping", written.max_damping, 0.0, "N·s/m"),
-        positive("workspace_radius", written.workspace_radius, "m"),
-        positive("mass", written.mass, "kg"),
-        at_least("least_damping", written.least_damping, 0.0, "N·s/m"),
-        at_least("friction", written.friction, 0.0, "N"),
-        at_least("encoder_step", written.encoder_step, 0.0, "m"),
-        positive("max_speed", written.max_speed, "m/s"),
-        positive("max_acceleration", written.max_acceleration, "m/s²"),
-    ]);
-    let sizes = check_sizes(&[
-        ("max_force", written.max_force),
-        ("continuous_force", written.continuous_force),
-        ("max_force_rate", written.max_force_rate),
-        ("max_stiffness", written.max_stiffness),
-        ("max_damping", written.max_damping),
-        ("workspace_radius", written.workspace_radius),
-        ("mass", written.mass),
-        ("least_damping", written.least_damping),
-        ("friction", written.friction),
-        ("encoder_step", written.encoder_step),
-        ("max_speed", written.max_speed),
-        ("max_acceleration", written.max_acceleration),
-    ]);
+    let forces = written.max_force != 0.0;
+    let numbers = check_numbers(
+        forces,
+        &[
+            ("max_force", written.max_force, NotNegative, "N"),
+            ("continuous_force", written.continuous_force, OfForces, "N"),
+            ("max_force_rate", written.max_force_rate, OfForces, "N/s"),
+            ("max_stiffness", written.max_stiffness, OfForces, "N/m"),
+            ("max_damping", written.max_damping, NotNegative, "N·s/m"),
+            ("workspace_radius", written.workspace_radius, Positive, "m"),
+            ("mass", written.mass, Positive, "kg"),
+            ("least_damping", written.least_damping, NotNegative, "N·s/m"),
+            ("friction", written.friction, NotNegative, "N"),
+            ("encoder_step", written.encoder_step, NotNegative, "m"),
+            ("max_speed", written.max_speed, Positive, "m/s"),
+            ("max_acceleration", written.max_acceleration, Positive, "m/s²"),
+        ],
+    );
     let needed = Problems::all([
         at_most_peak(
             ["continuous_force", "max_force"],
@@ -190,8 +178,8 @@ fn check(written: &WrittenDevice) -> Result<(), Problems> {
     let turning = written.turning.as_ref().map_or(Ok(()), check_turning);
     let gripper = written.gripper.as_ref().map_or(Ok(()), check_gripper);
     Problems::all([
+        version.map_err(Problems::from),
         numbers,
-        sizes,
         needed,
         texts,
         check_assumed(&written.assumed, DeviceProfile::NUMBERS),
@@ -202,18 +190,14 @@ fn check(written: &WrittenDevice) -> Result<(), Problems> {
 }
 
 fn check_gripper(gripper: &WrittenGripper) -> Result<(), Problems> {
-    let forces = gripper.max_force > 0.0;
-    let numbers = Problems::all([
-        positive("max_opening", gripper.max_opening, "m"),
-        at_least("max_force", gripper.max_force, 0.0, "N"),
-        limit("max_force_rate", gripper.max_force_rate, forces, "N/s"),
-    ]);
-    let sizes = check_sizes(&[
-        ("max_opening", gripper.max_opening),
-        ("max_force", gripper.max_force),
-        ("max_force_rate", gripper.max_force_rate),
-    ]);
-    Problems::all([numbers, sizes])
+    check_numbers(
+        gripper.max_force != 0.0,
+        &[
+            ("max_opening", gripper.max_opening, Positive, "m"),
+            ("max_force", gripper.max_force, NotNegative, "N"),
+            ("max_force_rate", gripper.max_force_rate, OfForces, "N/s"),
+        ],
+    )
 }
 
 /// The names of buttons, whose places are their indices.
@@ -239,33 +223,23 @@ fn check_buttons(names: &[String]) -> Result<(), Problems> {
 }
 
 fn check_turning(turning: &WrittenTurning) -> Result<(), Problems> {
-    let torques = turning.max_torque > 0.0;
-    let numbers = Problems::all([
-        at_least("max_torque", turning.max_torque, 0.0, "N·m"),
-        limit("continuous_torque", turning.continuous_torque, torques, "N·m"),
-        limit("max_torque_rate", turning.max_torque_rate, torques, "N·m/s"),
-        limit("max_stiffness", turning.max_stiffness, torques, "N·m/rad"),
-        at_least("max_damping", turning.max_damping, 0.0, "N·m·s/rad"),
-        positive("inertia", turning.inertia, "kg·m²"),
-        at_least("least_damping", turning.least_damping, 0.0, "N·m·s/rad"),
-        at_least("friction", turning.friction, 0.0, "N·m"),
-        at_least("encoder_step", turning.encoder_step, 0.0, "rad"),
-        positive("max_speed", turning.max_speed, "rad/s"),
-        positive("max_acceleration", turning.max_acceleration, "rad/s²"),
-    ]);
-    let sizes = check_sizes(&[
-        ("max_torque", turning.max_torque),
-        ("continuous_torque", turning.continuous_torque),
-        ("max_torque_rate", turning.max_torque_rate),
-        ("max_stiffness", turning.max_stiffness),
-        ("max_damping", turning.max_damping),
-        ("inertia", turning.inertia),
-        ("least_damping", turning.least_damping),
-        ("friction", turning.friction),
-        ("encoder_step", turning.encoder_step),
-        ("max_speed", turning.max_speed),
-        ("max_acceleration", turning.max_acceleration),
-    ]);
+    let torques = turning.max_torque != 0.0;
+    let numbers = check_numbers(
+        torques,
+        &[
+            ("max_torque", turning.max_torque, NotNegative, "N·m"),
+            ("continuous_torque", turning.continuous_torque, OfForces, "N·m"),
+            ("max_torque_rate", turning.max_torque_rate, OfForces, "N·m/s"),
+            ("max_stiffness", turning.max_stiffness, OfForces, "N·m/rad"),
+            ("max_damping", turning.max_damping, NotNegative, "N·m·s/rad"),
+            ("inertia", turning.inertia, Positive, "kg·m²"),
+            ("least_damping", turning.least_damping, NotNegative, "N·m·s/rad"),
+            ("friction", turning.friction, NotNegative, "N·m"),
+            ("encoder_step", turning.encoder_step, NotNegative, "rad"),
+            ("max_speed", turning.max_speed, Positive, "rad/s"),
+            ("max_acceleration", turning.max_acceleration, Positive, "rad/s²"),
+        ],
+    );
     let needed = Problems::all([
         at_most_peak(
             ["continuous_torque", "max_torque"],
@@ -277,16 +251,10 @@ fn check_turning(turning: &WrittenTurning) -> Result<(), Problems> {
     ]);
     Problems::all([
         numbers,
-        sizes,
         needed,
         one_line("source", &turning.source).map_err(Problems::from),
         check_assumed(&turning.assumed, TurningProfile::NUMBERS),
     ])
-}
-
-/// A limit of a device's forces, which is positive if there `are` any.
-fn limit(key: &str, value: f64, are: bool, unit: &str) -> Result<(), Problem> {
-    if are { positive(key, value, unit) } else { at_least(key, value, 0.0, unit) }
 }
 
 /// What a device gives without time limit is at most its largest, if that is a number.
@@ -307,19 +275,37 @@ fn at_most_peak(
 /// No number of a device is as far from one as this, in any unit of a profile.
 const LARGEST: f64 = 1e9;
 
-/// All numbers, by their keys, that are not zero but smaller or larger than any device's.
-fn check_sizes(numbers: &[(&str, f64)]) -> Result<(), Problems> {
-    let wrong = numbers.iter().map(|(key, value)| {
-        let is_of_a_device = *value == 0.0 || (1.0 / LARGEST..=LARGEST).contains(&value.abs());
-        // What is no number was told.
-        if is_of_a_device || !value.is_finite() {
-            return Ok(());
+/// What holds for a number of a device.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Range {
+    Positive,
+    NotNegative,
+    /// Positive for a device that gives forces, and not negative for one that does not.
+    OfForces,
+}
+use Range::{NotNegative, OfForces, Positive};
+
+/// Checks numbers, each with its key, its range and its unit, of a device that gives `forces` or not.
+fn check_numbers(forces: bool, numbers: &[(&str, f64, Range, &str)]) -> Result<(), Problems> {
+    let checked = numbers.iter().map(|&(key, value, range, unit)| {
+        if range == Positive || range == OfForces && forces {
+            positive(key, value, unit)?;
+        } else {
+            at_least(key, value, 0.0, unit)?;
         }
-        let message =
-            format!("must be from {:e} to {LARGEST:e} in size, got {value:e}", 1.0 / LARGEST);
-        Err(Problem::about(message).under(key))
+        check_size(key, value)
     });
-    Problems::all(wrong)
+    Problems::all(checked)
+}
+
+/// A number is zero, or neither smaller nor larger than any device's.
+fn check_size(key: &str, value: f64) -> Result<(), Problem> {
+    let least = 1.0 / LARGEST;
+    if value == 0.0 || (least..=LARGEST).contains(&value) {
+        return Ok(());
+    }
+    let message = format!("must be from {least:e} to {LARGEST:e} in size, got {value:e}");
+    Err(Problem::about(message).under(key))
 }
 
 /// A wall is passive on a device with encoder steps only up to a stiffness of `2 f_c / Δ`; a device

@@ -9,7 +9,7 @@
 use arbitrary::{Result, Unstructured};
 use palpate_field::kernel::{Argument, Parameter, ParameterKind};
 use palpate_field::operator::{Copies, Profile};
-use palpate_field::{Point, Pose, Rotation, Shape, Vector};
+use palpate_field::{Point, Pose, Rotation, Screw, Shape, Vector};
 
 use crate::kernels::{Dimension, IntoShape, Space};
 use crate::tree::{Boolean, Solid, Sweep, Tree};
@@ -214,6 +214,22 @@ where
     Space: Turn<D>,
 {
     Ok(Pose::new(<Space as Turn<D>>::rotation(u)?, vector(u)?))
+}
+
+/// A motion between two poses whose translations are those of [`pose`] times `far`, with whole turns
+/// where there is such a screw.
+pub fn screw<const D: usize>(u: &mut Unstructured<'_>, far: f64, turns: i32) -> Result<Screw<D>>
+where
+    Space: Turn<D>,
+{
+    let mut end = || -> Result<Pose<D>> {
+        let Pose { rotation, translation } = pose(u)?;
+        Ok(Pose::new(rotation, translation * far))
+    };
+    let (from, to) = (end()?, end()?);
+    // In the plane, whole turns may have no centre.
+    let screw = Screw::new(from, to, turns).or_else(|_| Screw::new(from, to, 0));
+    screw.map_err(|_| arbitrary::Error::IncorrectFormat)
 }
 
 fn factor(u: &mut Unstructured<'_>) -> Result<f64> {

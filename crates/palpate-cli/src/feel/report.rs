@@ -347,18 +347,15 @@ fn write_guides(out: &mut String, accepted: &[Accepted]) -> std::fmt::Result {
     if accepted.is_empty() {
         return Ok(());
     }
-    let in_world = |of: fn(&Accepted) -> f64| range(accepted.iter().map(|a| of(a) / a.scale));
-    writeln!(
-        out,
-        "  guides         stiffness {} N/m, damping {} N·s/m",
-        of_asked(&in_world(|a| a.device_stiffness), &in_world(|a| a.requested_stiffness)),
-        of_asked(&in_world(|a| a.device_damping), &in_world(|a| a.requested_damping)),
-    )?;
+    let of = |number: fn(&Accepted) -> f64| range(accepted.iter().map(number));
+    let stiffness = of_asked(&of(|a| a.impedance.stiffness()), &of(|a| a.requested()[0]));
+    let damping = of_asked(&of(|a| a.impedance.damping()), &of(|a| a.requested()[1]));
+    writeln!(out, "  guides         stiffness {stiffness} N/m, damping {damping} N·s/m")?;
     let all = counted(accepted.len(), "guide", "guides");
     write_accepted(out, accepted, |count| format!("{count} of {all}"))
 }
 
-/// How much stiffer than the device renders the stiffest is, if it is taken as it is.
+/// How stiff the stiffest is, if that is more than the device renders stably.
 fn write_beyond(
     out: &mut String,
     accepted: &[Accepted],
@@ -374,7 +371,7 @@ fn write_beyond(
     let [stiffest, most] = [stiffest, most].map(rounded);
     writeln!(
         out,
-        "                 {stiffest} N/m is taken as it is; the device renders {most} N/m well"
+        "                 {stiffest} N/m is rendered as asked (as-is); the device renders at most {most} N/m stably"
     )
 }
 

@@ -20,8 +20,8 @@ const GAP: f64 = 1e-6;
 /// The tolerance of times over the time that is looked at.
 const TOLERANCE: f64 = 1e-4;
 
-/// The most times between which bodies go on along one screw.
-const MOST_TIMES: f64 = 1e5;
+/// The most parts of motions that are looked at.
+const MOST_PARTS: f64 = 1e5;
 
 /// Two bodies of which one moves at least, and when they touch first [s].
 struct Pair<const D: usize> {
@@ -101,12 +101,11 @@ fn asked_of<const D: usize>(
         ));
     };
     let until = options.until.unwrap_or(end);
-    let shortest =
-        scene.motions.iter().map(|motion| motion.duration).fold(f64::INFINITY, f64::min);
-    if until / shortest > MOST_TIMES {
+    let parts: f64 = scene.motions.iter().map(|motion| motion.parts_until(until)).sum();
+    if parts > MOST_PARTS {
         return Err(Failure::input(format!(
-            "--until must be at most {MOST_TIMES:e} times the shortest motion, {shortest} s, got \
-             {until} s"
+            "until {until} s the motions have {parts:e} parts (repetitions, and turns of less than a \
+             half), of which {MOST_PARTS:e} are looked at; lower --until"
         )));
     }
     let size = |body: &palpate::scene::BuiltBody<D>| {

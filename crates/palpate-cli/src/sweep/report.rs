@@ -79,6 +79,7 @@ impl<const D: usize> Report<'_, D> {
                 "the budget of {} evaluations is spent; raise --budget or --gap",
                 self.question.settings.budget
             ),
+            Stop::MemoryFull => "the memory for waiting boxes is full; raise --gap".to_owned(),
             _ => "no closer bounds of their separation are found; raise --gap".to_owned(),
         }
     }
@@ -130,6 +131,7 @@ fn in_a_word(start: Start) -> &'static str {
         Start::Approaching => "approaching",
         Start::Receding => "receding",
         Start::Sliding => "sliding",
+        Start::Resting => "resting",
     }
 }
 

@@ -378,7 +378,8 @@ fn what_a_device_makes_of_bodies_is_told() {
     assert!(strict.starts_with("palpate: body \"ball\": the device renders "), "{strict}");
     let as_is = ["--acceptance", "as_is", "--stiffness", "9000"];
     let said = text(&feel(&[&omega[..], &as_is].concat()));
-    let beyond = " N/m is taken as it is; the device renders 5000 N/m well\n";
+    let beyond =
+        " N/m is rendered as asked (as-is); the device renders at most 5000 N/m stably\n";
     assert!(said.contains(beyond), "{said}");
     assert!(!text(&feel(&omega)).contains("taken as it is"));
     let file = errors(&feel(&["--device", "arm.json"]));

@@ -79,8 +79,13 @@ fn what_cannot_be_swept_is_refused() {
     let scene = folder.write("fall.json", FALL);
     assert_refused(
         &["sweep", &scene, "--until", "1e9"],
-        "--until must be at most 1e5 times the shortest motion, 1 s, got 1000000000 s",
+        "until 1000000000 s the motions have 1e9 parts (repetitions, and turns of less than a half), of \
+         which 1e5 are looked at; lower --until",
     );
+    // Once each of the half turns took memory.
+    let spins =
+        folder.write("spins.json", &FALL.replace("} } ] }", "}, \"turns\": 2000000000 } ] }"));
+    assert_refused(&["sweep", &spins], "until 1 s the motions have 4.18879");
     let turns = FALL.replace("\"body\": \"ball\"", "\"body\": \"floor\"").replace(
         "\"translation\": [0, -0.5, 0]",
         "\"rotate_degrees\": { \"axis\": [1, 0, 0], \"angle\": 20 }",

@@ -173,10 +173,10 @@ pub struct Identified {
 }
 
 impl IdentifiedAxis {
-    /// The largest [misfit](Self::misfit) of a device that moves as a mass with damping and friction:
-    /// those that are simulated reach 1.1 without a hand, and up to 3 with one whose spring is just not
-    /// noticed. One of less than half of that spring stays below it, and so may any on a device of
-    /// much friction.
+    /// The largest [misfit](Self::misfit) that counts as good. Simulated devices that nobody holds reach
+    /// 1.1. A hand whose spring is just too soft to be noticed gives up to 3; a hand with less than half
+    /// of that spring stays below 1.4, and on a device of much friction any hand that is not noticed
+    /// may.
     pub const GOOD_MISFIT: f64 = 1.4;
 
     /// `true` if the misfit is [good](Self::GOOD_MISFIT). If not, the errors of the numbers say
@@ -272,8 +272,9 @@ impl Identified {
     /// a few words what found them, and their names leave the list of those that are assumed.
     ///
     /// - A mass, damping or friction that is not [seen](Estimate::is_seen) on every axis counts as
-    ///   assumed, and so do all three if an axis is not [fitted](IdentifiedAxis::is_fitted): each is
-    ///   then the less of the one found and that of `profile`.
+    ///   assumed, and so do all three if an axis is not [fitted](IdentifiedAxis::is_fitted): mass and
+    ///   damping are then the less of the one found and that of `profile`, and the friction is that of
+    ///   `profile`, but no more than the error of the one found allows.
     /// - Where the error of a friction is more than half of it, that of `profile` stays, as far as the
     ///   error allows; the most that it allows if `profile` says zero, because a device of no friction
     ///   renders nothing in encoder steps.

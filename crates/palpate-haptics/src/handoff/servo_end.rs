@@ -31,9 +31,9 @@ impl<const D: usize> ServoEnd<D> {
     /// Applies the edits of the other end to `servo`, a [`Servo`](crate::Servo) or an
     /// [`UnprotectedServo`](crate::UnprotectedServo); call it before each tick.
     ///
-    /// Bodies that were accepted for another servo are not taken, nor their poses. The servo stops;
-    /// call [`stop`](crate::StopSwitch::stop), then [`release`](crate::StopSwitch::release), to
-    /// let it go on. An unprotected servo takes the bodies of any.
+    /// Bodies that were accepted for another servo are not taken, nor their poses. The servo stops as
+    /// by [`stop`](crate::StopSwitch::stop), until [`release`](crate::StopSwitch::release). An
+    /// unprotected servo takes the bodies of any.
     ///
     /// Real-time: allocates nothing, frees nothing, takes no lock, cannot panic.
     pub fn receive(&mut self, servo: &mut impl AnyServo<D>) {
@@ -48,6 +48,8 @@ impl<const D: usize> ServoEnd<D> {
         if let Some(bodies) = &mut edits.bodies {
             self.is_foreign = !servo.adopt(bodies);
             if self.is_foreign {
+                self.flags.stop.set(true);
+                self.is_stopped = true;
                 servo.stop(true);
             }
         }

@@ -210,7 +210,8 @@ impl<const D: usize> Servo<D> {
     }
 
     /// Refuses a device with tighter limits than the one that the servo was made for, with another
-    /// number of contact points, or that measures more seldom than the servo ticks. A loop calls this before its first tick.
+    /// number of contact points, that measures more seldom than the servo ticks, or that sets the pace
+    /// and measures more often. A loop calls this before its first tick.
     ///
     /// # Errors
     ///
@@ -220,8 +221,8 @@ impl<const D: usize> Servo<D> {
         self.protection.profile.check_bears(device.profile())?;
         if let Some(of_device) = device.rate() {
             let servo = self.options().rate;
-            // At a faster pace, limits of change in a tick would be more in a second. Written so
-            // that NaN is refused.
+            // A device that paces gives its rate to the servo, whose limits of change in a tick would
+            // be more in a second at a faster one. Written so that NaN is refused.
             let fits = servo <= of_device && !(device.paces() && servo < of_device);
             if !fits {
                 return Err(HapticsError::Rate { servo, device: of_device });

@@ -200,6 +200,10 @@ fn bodies_that_were_accepted_for_another_servo_are_refused() {
     end.receive(&mut servo);
     assert!(servo.is_stopped());
     assert_eq!(servo.accepted(), accepted);
+    // Once only a stop that lasted over a tick and a release let the servo go on.
+    control.stop_switch().release();
+    end.receive(&mut servo);
+    assert!(!servo.is_stopped());
 }
 
 #[test]

@@ -16,7 +16,7 @@ use palpate_field::{Aabb, BLOCK, Block, Column, Point, Vector};
 
 use super::moving::Moving;
 use super::path::{Path, Places, WayBounds};
-use super::settings::HALVES;
+use super::settings::{HALVES, SweepSettings};
 use super::stay::{Stay, later};
 use crate::certified::Stop;
 use crate::engine::{Bounded, Frontier, Heap, Problem, Queue, Rebound};
@@ -26,25 +26,26 @@ use crate::pair::cell::{BoxCell, least};
 use crate::pair::descent::descend;
 use crate::pair::distance_bound::DistanceBound;
 
-/// The next span of a model after a step that was as long as its span, in spans, and after another,
-/// in steps.
+/// After a step as long as its model's span, the next span is so many times as long.
 const LONGER: f64 = 3.0;
-const ANOTHER: f64 = 1.5;
 
-/// A touch is looked for while a box may be as near to one as this, in tolerances of the time.
+/// After a shorter step, the next span is so many times the step.
+const AFTER_SHORT: f64 = 1.5;
+
+/// A touch is looked for if it may be closer than the body moves in so many tolerances of the time.
 const NEAR: f64 = 2.0;
 
-/// Where in the tolerance after the time of a box.
+/// How far into the tolerance after the time of a box it is looked for.
 const SOON: f64 = 0.75;
 
 /// A round takes boxes up to this share of the time that is left after the first: where bodies
 /// overlap later, boxes come apart for nothing.
 const HORIZON: f64 = 0.2;
 
-/// Boxes below this radius are not divided, as a share of the first.
+/// Boxes below this radius are not divided, as a share of the whole box's.
 const SMALLEST: f64 = 1e-12;
 
-/// Models bound boxes below this radius, as a share of the first.
+/// Models bound boxes below this radius, as a share of the whole box's.
 const SMALL: f64 = 0.25;
 
 /// A box, and the time until which it is free.
@@ -150,8 +151,7 @@ pub(super) struct BoxSweep<'s, 'a, const D: usize> {
     pub(super) slack: f64,
     /// The radius of the first box [m].
     pub(super) size: f64,
-    pub(super) time_tolerance: f64,
-    pub(super) budget: u32,
+    pub(super) settings: &'s SweepSettings,
     pub(super) memory: &'s mut BoxMemory<D>,
     pub(super) evaluations: u32,
     /// Boxes from this time on wait for another round.
@@ -300,7 +300,7 @@ impl<const D: usize> BoxSweep<'_, '_, D> {
             let seen = &mut seen[i];
             seen.stay.or(stay);
             let is_through = stay.part >= *span;
-            *span = if is_through { LONGER * *span } else { ANOTHER * stay.part };
+            *span = if is_through { LONGER * *span } else { AFTER_SHORT * stay.part };
             let SpaceTimeModel { value, gradient: [x, y, z, _], lower, upper } = b;
             cell.learn(&[a, Model { value, gradient: [x, y, z], lower, upper }]);
             // Where the first field alone is high enough, the box is free for all times.
@@ -315,7 +315,7 @@ impl<const D: usize> BoxSweep<'_, '_, D> {
     /// Looks for a touch soon after the time of the first box, if one may be near.
     fn look(&mut self, round: &[SpaceCell<D>], seen: &[Seen<D>; BLOCK]) {
         let is_near = |&i: &usize| {
-            let near = NEAR * self.time_tolerance * seen[i].velocity.norm();
+            let near = NEAR * self.settings.time_tolerance * seen[i].velocity.norm();
             seen[i].value - seen[i].radius <= self.touch + near
         };
         let first = (0..round.len())
@@ -323,7 +323,7 @@ impl<const D: usize> BoxSweep<'_, '_, D> {
             .min_by(|&i, &k| round[i].cell.lower.total_cmp(&round[k].cell.lower));
         let Some(i) = first else { return };
         let cell = &round[i].cell;
-        let time = (cell.lower + SOON * self.time_tolerance).min(1.0);
+        let time = (cell.lower + SOON * self.settings.time_tolerance).min(1.0);
         if time >= self.upper {
             return;
         }
@@ -349,6 +349,9 @@ impl<const D: usize> BoxSweep<'_, '_, D> {
     /// in each other already.
     pub(super) fn refine(&mut self, mut lower: f64) {
         for _ in 0..HALVES {
+            if lower >= self.upper {
+                return;
+            }
             let middle = 0.5 * (lower + self.upper);
             if !self.touches(middle, self.place) {
                 lower = middle;
@@ -385,11 +388,7 @@ impl<const D: usize> Problem for BoxSweep<'_, '_, D> {
     }
 
     fn decided(&self, lower: f64) -> Option<Stop> {
-        if self.upper < f64::INFINITY && lower >= self.upper - self.time_tolerance {
-            Some(Stop::Converged)
-        } else {
-            (lower >= 1.0).then_some(Stop::SignKnown)
-        }
+        self.settings.decided(lower, self.upper)
     }
 
     fn has_room(&self, frontier: &Frontier<Self::Queue>) -> bool {
@@ -397,7 +396,7 @@ impl<const D: usize> Problem for BoxSweep<'_, '_, D> {
     }
 
     fn is_spent(&self) -> bool {
-        self.evaluations >= self.budget
+        self.evaluations >= self.settings.budget
     }
 
     fn can_split(&self, queue: &Self::Queue) -> bool {

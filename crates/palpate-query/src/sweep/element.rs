@@ -8,7 +8,6 @@ use super::first_touch::FirstTouch;
 use super::motion::Motion;
 use super::moving::Moving;
 use super::part::Part;
-use super::path::Path;
 use super::settings::SweepSettings;
 use crate::element::Element;
 use crate::error::QueryError;
@@ -47,9 +46,7 @@ pub fn sweep_element<'a, const N: usize, const D: usize>(
     settings: &SweepSettings,
     workspace: &mut ElementSweep<N, D>,
 ) -> Result<FirstTouch<D>, QueryError> {
-    let field = field.into();
-    let path = Path::new(field.motion, motion.into(), settings)?;
     let part = Part::whole(element, 0, 0.0);
     let whole = Whole { part, mesh: None, corners: &element.vertices };
-    Ok(workspace.run(field, &whole, path, settings))
+    workspace.run(field.into(), &whole, motion.into(), settings)
 }

@@ -23,6 +23,7 @@ use palpate_mesh::Mesh;
 use palpate_mesh::internal::FAN;
 
 use super::first_touch::{FirstTouch, Start};
+use super::motion::Motion;
 use super::moving::Moving;
 use super::part::{Of, Part, Way};
 use super::path::{Path, Places, WayBounds};
@@ -32,9 +33,11 @@ use crate::certified::Stop;
 use crate::contact::Contact;
 use crate::element::parts_of_one;
 use crate::engine::{self, Frontier, Problem};
+use crate::error::QueryError;
 use crate::sampler::{Sampler, Samples, normal};
 
-/// Heights over the centre where a part has so many samples, as shares of its height.
+/// Heights of the lifted samples, as shares of the part's height: the first ones, where a part has few
+/// samples.
 const SHARES: [f64; SHORT] = [1.0, 0.35, 3.0, 0.1, 8.0, 0.03, 20.0, 0.01];
 
 /// A height shrinks to this where no sample over the centre helps, and grows by this where the
@@ -47,6 +50,9 @@ const HIGHEST: f64 = 16.0;
 
 /// The shortest span of a model.
 const SHORTEST: f64 = 1e-6;
+
+/// How far into the tolerance after a time a touch is looked for.
+const SOON: f64 = 0.5;
 
 /// The largest number of halvings: such parts are as small as roundings of the whole.
 const MOST_LEVELS: u32 = 48;
@@ -85,13 +91,21 @@ impl<const N: usize, const D: usize> ElementSweep<N, D> {
     }
 
     /// The first touch of what moves, and a field.
+    ///
+    /// # Errors
+    ///
+    /// If a pose is NaN or out of range, or a setting is not positive.
     pub(super) fn run(
         &mut self,
         field: Moving<'_, D>,
         whole: &Whole<'_, N, D>,
-        path: Path<D>,
+        motion: Motion<D>,
         settings: &SweepSettings,
-    ) -> FirstTouch<D> {
+    ) -> Result<FirstTouch<D>, QueryError> {
+        settings.check()?;
+        field.motion.check(0)?;
+        motion.check(1)?;
+        let path = Path { field: field.motion, body: motion };
         let Self { frontier, samples, places, cells, models } = self;
         places.clear();
         let way = path.bounds(whole.corners);
@@ -116,7 +130,7 @@ impl<const N: usize, const D: usize> ElementSweep<N, D> {
         frontier.queue.push(whole.part);
         let end = engine::search(&mut search, frontier);
         let lower = frontier.lower(search.dropped);
-        search.answer(field, lower, end.stop())
+        Ok(search.answer(field, lower, end.stop()))
     }
 }
 
@@ -138,7 +152,8 @@ pub(super) struct Whole<'a, const N: usize, const D: usize> {
 #[derive(Clone, Copy, Debug)]
 struct Touching<const D: usize> {
     point: Point<D>,
-    of: Of,
+    /// The index of the element.
+    element: u32,
 }
 
 /// The search for the first touch, as a problem of the engine.
@@ -171,7 +186,7 @@ impl<const N: usize, const D: usize> ElementSearch<'_, '_, N, D> {
         if let (0.0, Some(Touching { point, .. })) = (lower, self.best) {
             // A touch soon after the start may be one at the start.
             let value = self.sampler.value(self.path.at(0.0).point(point));
-            if value <= (1.0 - FREE) * self.settings.gap {
+            if value <= self.settings.touch_level() {
                 self.upper = 0.0;
             }
         }
@@ -180,7 +195,7 @@ impl<const N: usize, const D: usize> ElementSearch<'_, '_, N, D> {
         let upper = self.upper;
         let mut touch =
             FirstTouch { lower, upper, contact: None, start: None, stop, evaluations };
-        if let Some(Touching { point: p, of }) = self.best {
+        if let Some(Touching { point: p, element }) = self.best {
             let place = self.path.at(upper);
             let q = place.point(p);
             let (_, gradient) = self.sampler.slope(q);
@@ -189,8 +204,7 @@ impl<const N: usize, const D: usize> ElementSearch<'_, '_, N, D> {
             if let (Some(surface), Some(normal)) = (surface, normal(gradient)) {
                 let world = self.path.field.pose(upper);
                 let contact = Contact::new(surface, q, normal).placed(&world);
-                let id = if let Of::Element(name) = of { u64::from(name) } else { 0 };
-                touch.contact = Some(contact.with_id(id));
+                touch.contact = Some(contact.with_id(u64::from(element)));
                 let relative = self.path.velocity(&place, p, q);
                 touch.start = (upper == 0.0).then(|| Start::of(relative, normal));
             }
@@ -203,9 +217,12 @@ impl<const N: usize, const D: usize> ElementSearch<'_, '_, N, D> {
     fn refine(&mut self, mut lower: f64) {
         let Some(Touching { point, .. }) = self.best else { return };
         for _ in 0..HALVES {
+            if lower >= self.upper {
+                return;
+            }
             let middle = 0.5 * (lower + self.upper);
             let value = self.sampler.value(self.path.at(middle).point(point));
-            if value <= (1.0 - FREE) * self.settings.gap {
+            if value <= self.settings.touch_level() {
                 self.upper = middle;
             } else {
                 lower = middle;
@@ -213,10 +230,12 @@ impl<const N: usize, const D: usize> ElementSearch<'_, '_, N, D> {
         }
     }
 
-    /// Notes a point of a part that touches at a time.
+    /// Notes a point of an element that touches at a time.
     fn found(&mut self, time: f64, point: Point<D>, of: Of) {
-        if time < self.upper {
-            (self.upper, self.best) = (time, Some(Touching { point, of }));
+        if let Of::Element(element) = of
+            && time < self.upper
+        {
+            (self.upper, self.best) = (time, Some(Touching { point, element }));
         }
     }
 
@@ -232,7 +251,7 @@ impl<const N: usize, const D: usize> ElementSearch<'_, '_, N, D> {
         let mut stays = [Stay::default(); SHORT];
         for i in 0..count {
             let part = &parts[i];
-            if part.is_of_element() && values[i] <= (1.0 - FREE) * self.settings.gap {
+            if values[i] <= self.settings.touch_level() {
                 self.found(part.free, part.element.at(&part.form.weights), part.of);
             }
             stays[i] = self.stays(&ways[i], centres[i], values[i]);
@@ -361,7 +380,7 @@ impl<const N: usize, const D: usize> ElementSearch<'_, '_, N, D> {
         values: &[f64; SHORT],
         directions: &[Vector<f64, D>; SHORT],
     ) {
-        let gap = (1.0 - FREE) * self.settings.gap;
+        let level = self.settings.touch_level();
         for of_centre in [false, true] {
             let latest = self.upper.min(1.0);
             let mut points = [ways[0].centre; SHORT];
@@ -369,11 +388,13 @@ impl<const N: usize, const D: usize> ElementSearch<'_, '_, N, D> {
             for (i, part) in parts.iter().enumerate() {
                 let (way, direction) = (&ways[i], directions[i]);
                 let after = |q: Point<D>, v: Vector<f64, D>| {
-                    let clear = values[i] - gap + direction.dot(q - way.centre);
+                    let clear = values[i] - level + direction.dot(q - way.centre);
                     let nears = -direction.dot(v);
                     match () {
                         () if clear <= 0.0 => 0.0,
-                        () if nears > 0.0 => clear / nears + 0.5 * self.settings.time_tolerance,
+                        () if nears > 0.0 => {
+                            clear / nears + SOON * self.settings.time_tolerance
+                        }
                         () => f64::INFINITY,
                     }
                 };
@@ -400,7 +421,7 @@ impl<const N: usize, const D: usize> ElementSearch<'_, '_, N, D> {
             for (i, part) in parts.iter().enumerate() {
                 let since = times[i] - part.free;
                 let bend = 0.5 * self.way.acceleration * since * since;
-                if found[i] + bend * self.sampler.steepness.lipschitz <= gap {
+                if found[i] + bend * self.sampler.steepness.lipschitz <= level {
                     let vertex = part.element.vertices[lowest[i]];
                     let centre = part.element.at(&part.form.weights);
                     self.found(times[i], if of_centre { centre } else { vertex }, part.of);
@@ -444,11 +465,7 @@ impl<const N: usize, const D: usize> Problem for ElementSearch<'_, '_, N, D> {
     }
 
     fn decided(&self, lower: f64) -> Option<Stop> {
-        if self.upper < f64::INFINITY && lower >= self.upper - self.settings.time_tolerance {
-            Some(Stop::Converged)
-        } else {
-            (lower >= 1.0).then_some(Stop::SignKnown)
-        }
+        self.settings.decided(lower, self.upper)
     }
 
     fn has_room(&self, frontier: &Frontier<Self::Queue>) -> bool {

@@ -21,18 +21,19 @@ pub enum Start {
     Receding,
     /// Along each other.
     Sliding,
+    /// Not at all.
+    Resting,
 }
 
 impl Start {
     /// By the velocity of body `b` as body `a` sees it, and the unit normal from `a` to `b`.
     pub(super) fn of<const D: usize>(relative: Vector<f64, D>, normal: Vector<f64, D>) -> Self {
         let (along, speed) = (relative.dot(normal), relative.norm());
-        if along.abs() <= SLIDES * speed {
-            Self::Sliding
-        } else if along < 0.0 {
-            Self::Approaching
-        } else {
-            Self::Receding
+        match () {
+            () if speed == 0.0 => Self::Resting,
+            () if along.abs() <= SLIDES * speed => Self::Sliding,
+            () if along < 0.0 => Self::Approaching,
+            () => Self::Receding,
         }
     }
 }
@@ -42,11 +43,11 @@ impl Start {
 #[non_exhaustive]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct FirstTouch<const D: usize> {
-    /// Before this time the bodies are apart, by more than half of the gap: proven, rounding
-    /// included.
+    /// Before this time the bodies are proven apart, rounding included: two bodies by more than half
+    /// of the gap; and of an element or a mesh, the field is more than half of the gap at every point.
     pub lower: f64,
-    /// At this time their separation is at most the gap; infinite if no such time was found, and 1
-    /// if they are proven to be apart all the time.
+    /// At this time their separation is at most the gap, or the field at a point of the element or
+    /// the mesh; infinite if no such time was found, and 1 if they are proven to be apart all the time.
     pub upper: f64,
     /// The contact at `upper`; `None` if there is none, or no surface was found there.
     pub contact: Option<Contact<D>>,

@@ -10,7 +10,6 @@ use super::first_touch::FirstTouch;
 use super::motion::Motion;
 use super::moving::{Moving, corners};
 use super::part::Part;
-use super::path::Path;
 use super::settings::SweepSettings;
 use crate::error::QueryError;
 
@@ -51,9 +50,7 @@ pub fn sweep_mesh<'a, const N: usize, const D: usize>(
     settings: &SweepSettings,
     workspace: &mut ElementSweep<N, D>,
 ) -> Result<FirstTouch<D>, QueryError> {
-    let field = field.into();
-    let path = Path::new(field.motion, motion.into(), settings)?;
     let corners: Vec<_> = corners(&mesh.bounds()).collect();
     let whole = Whole { part: Part::root(mesh), mesh: Some(mesh), corners: &corners };
-    Ok(workspace.run(field, &whole, path, settings))
+    workspace.run(field.into(), &whole, motion.into(), settings)
 }

@@ -40,8 +40,8 @@ impl<const D: usize> Motion<D> {
         self.screw.map_or(self.first, |screw| screw.pose(time))
     }
 
-    /// The velocity of a point of the body, both in the body's coordinates, over the whole motion as
-    /// a unit of time [m]: as [`Screw::velocity`].
+    /// The velocity of a point of the body, both in the body's coordinates, where the whole motion
+    /// takes the unit of time, so that it is in [m]: as [`Screw::velocity`].
     #[must_use]
     #[inline]
     pub fn velocity(&self, p: Point<D>) -> Vector<f64, D> {
@@ -57,7 +57,7 @@ impl<const D: usize> Motion<D> {
         self.screw.map_or(0.0, |screw| screw.angle().abs())
     }
 
-    /// How far from the world's origin the body's origin is at most, and its way [m].
+    /// A bound of the distance of the body's origin from the world's during the motion [m].
     pub(super) fn reach(&self) -> f64 {
         self.first.translation.norm() + self.velocity.norm()
     }

@@ -24,7 +24,7 @@ const SHARE: f64 = 0.25;
 ///
 /// Each box of space advances through time on its own, by models of both fields over it and over a
 /// span of time. So no motion is too fast and no body too thin. What passes at a small distance takes
-/// many boxes; a budget that is spent says until when the bodies are proven apart.
+/// many boxes; if the budget is spent, `lower` says until when the bodies are proven apart.
 ///
 /// ```
 /// use palpate_field::{Pose, Screw, Shape};
@@ -67,6 +67,7 @@ pub fn sweep<'a, const D: usize>(
     settings.check()?;
     bodies.iter().enumerate().try_for_each(|(i, body)| body.motion.check(i))?;
     let path = Path { field: moving.motion, body: still.motion };
+    // Where both fields are at most half of the gap, the separation is at most the gap.
     let touch = 0.5 * settings.gap;
     let root = bounds.aabb.grown(touch);
     let way = path.bounds(&corners(&root).collect::<Vec<_>>());
@@ -83,8 +84,7 @@ pub fn sweep<'a, const D: usize>(
         touch,
         slack,
         size: root.half_extents().norm(),
-        time_tolerance: settings.time_tolerance,
-        budget: settings.budget,
+        settings,
         memory,
         evaluations: 0,
         horizon: None,
@@ -123,7 +123,7 @@ fn touch_at<const D: usize>(
     };
     let mut time = found.upper;
     let ([mut a, mut b], mut best) = near(time)?;
-    if found.lower == 0.0 {
+    if found.lower == 0.0 && time > 0.0 {
         // A touch soon after the start may be one at the start.
         let ([first_a, first_b], first) = near(0.0)?;
         if first.upper <= settings.gap {

@@ -6,8 +6,6 @@
 use palpate_field::{Point, Pose, Vector};
 
 use super::motion::Motion;
-use super::settings::SweepSettings;
-use crate::error::QueryError;
 
 /// Roundings of a velocity and of a pose, relative to the numbers in them.
 const ROUNDINGS: f64 = 64.0 * f64::EPSILON;
@@ -40,22 +38,6 @@ pub(super) struct WayBounds {
 }
 
 impl<const D: usize> Path<D> {
-    /// The way of a body with this motion, as a field with that motion sees it.
-    ///
-    /// # Errors
-    ///
-    /// If a pose is NaN or out of range, or a setting is not positive.
-    pub(super) fn new(
-        field: Motion<D>,
-        body: Motion<D>,
-        settings: &SweepSettings,
-    ) -> Result<Self, QueryError> {
-        settings.check()?;
-        field.check(0)?;
-        body.check(1)?;
-        Ok(Self { field, body })
-    }
-
     #[inline]
     pub(super) fn at(&self, time: f64) -> Place<D> {
         let world_from_body = self.body.pose(time);
@@ -133,9 +115,8 @@ impl<const D: usize> Places<D> {
         let hash = time.to_bits().wrapping_mul(0x9e37_79b9_7f4a_7c15)
             >> (64 - PLACES.trailing_zeros());
         let slot = &mut self.0[hash as usize];
-        match slot {
-            Some(place) if place.time == time => {}
-            _ => *slot = Some(path.at(time)),
+        if slot.is_some_and(|place| place.time != time) {
+            *slot = None;
         }
         slot.get_or_insert_with(|| path.at(time))
     }

@@ -3,10 +3,11 @@
 
 //! How exactly a first touch is asked for.
 
+use crate::certified::Stop;
 use crate::error::QueryError;
 
-/// Bodies that are apart by more than this share of the gap are free: a separation that is known to
-/// a quarter of the gap is one of a touch, or leaves a step that is free.
+/// Bodies that are apart by more than this share of the gap are free. It is less than one: a separation
+/// that is known to a quarter of the gap proves a touch, or a step without one.
 pub(super) const FREE: f64 = 0.5;
 
 /// How often the time between the bounds is halved in the end, to find an earlier touch.
@@ -27,7 +28,8 @@ pub struct SweepSettings {
     pub gap: f64,
     /// How far apart the bounds of the time may be, of a motion over the time from 0 to 1.
     pub time_tolerance: f64,
-    /// How often fields are evaluated at most; the last search may exceed it.
+    /// How often fields are evaluated at most, until the time is found. The contact of two bodies costs
+    /// up to two searches for a separation more, and a round may exceed it.
     pub budget: u32,
 }
 
@@ -57,6 +59,19 @@ impl SweepSettings {
     #[must_use]
     pub const fn with_budget(self, budget: u32) -> Self {
         Self { budget, ..self }
+    }
+
+    /// A field that is at most this at a point of an element touches it [m].
+    pub(super) fn touch_level(&self) -> f64 {
+        (1.0 - FREE) * self.gap
+    }
+
+    /// Why a search ends that knows these bounds of the time; `None` if it goes on.
+    pub(super) fn decided(&self, lower: f64, upper: f64) -> Option<Stop> {
+        if upper < f64::INFINITY && lower >= upper - self.time_tolerance {
+            return Some(Stop::Converged);
+        }
+        (lower >= 1.0).then_some(Stop::SignKnown)
     }
 
     pub(crate) fn check(&self) -> Result<(), QueryError> {

@@ -163,8 +163,10 @@ pub(super) fn exit<const D: usize>(
     let rest = radius * radius - apart.dot(apart);
     let is_in_it = radius > 0.0 && rest > 0.0;
     let root = (half * half + squared * rest).sqrt();
-    // Of both forms of the root that which does not cancel; a point at rest stays. NaN is no time.
+    // Of both forms of the root the one that does not cancel. A point at rest never leaves. NaN is no
+    // time.
     match () {
+        () if is_in_it && squared == 0.0 => f64::INFINITY,
         () if is_in_it && half > 0.0 => rest / (root + half),
         () if is_in_it => (root - half) / squared,
         () => 0.0,

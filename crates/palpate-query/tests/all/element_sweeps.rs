@@ -5,7 +5,7 @@
 #![expect(clippy::unwrap_used, reason = "these are tests")]
 
 use palpate_field::field::{DifferentiateBlock, EvaluateBlock, Field};
-use palpate_field::{Pose, SHORT, Screw, Vector};
+use palpate_field::{Pose, SHORT, Shape, Vector};
 use palpate_query::{
     Element, ElementSweep, ElementWorkspace, Limits, Moving, Stop, SweepSettings, minimum,
     sweep_element,
@@ -28,17 +28,8 @@ where
     let (mut workspace, mut still) = (ElementSweep::new(), ElementWorkspace::new());
     cases::on_trees(count, 4, |u, _, shape| {
         let size = draw::size(shape);
-        let mut way = |far: f64| -> Result<_, _> {
-            let mut pose = || -> Result<Pose<D>, _> {
-                let mut pose: Pose<D> = draw::pose(u)?;
-                pose.translation = pose.translation * far;
-                Ok(pose)
-            };
-            let (from, to) = (pose()?, pose()?);
-            Ok(Screw::new(from, to, 0).unwrap())
-        };
-        let screw = way(size)?;
-        let field = if is_carried { Some(way(0.3 * size)?) } else { None };
+        let screw = draw::screw(u, size, 0)?;
+        let field = if is_carried { Some(draw::screw(u, 0.3 * size, 0)?) } else { None };
         let wide = size * [0.01, 0.1, 0.5][u.choose_index(3)?];
         let mut vertices = [Vector::ZERO; N];
         for vertex in &mut vertices {
@@ -103,4 +94,19 @@ fn triangles_in_space_are_never_late() {
 fn segments_are_never_late() {
     on_trees::<2, 2>(200, false);
     on_trees::<2, 3>(200, true);
+}
+
+/// In a field steeper than one, an element that rests spent the whole budget: a point at rest left the
+/// balls at no time.
+#[test]
+fn what_rests_beside_a_steep_field_is_free_at_once() {
+    let twisted = Shape::<3>::cuboid([1.0, 1.0, 1.0]).unwrap().twisted(4.0).unwrap();
+    assert!(twisted.promise().lipschitz > 2.0, "{:?}", twisted.promise());
+    let corners = [[0.85, 0.0, 0.2], [0.85, 0.3, 0.1], [0.85, -0.3, -0.2]].map(Vector);
+    let element = Element::new(corners).unwrap();
+    let mut workspace = ElementSweep::new();
+    let settings = SweepSettings::of_size(1.0);
+    let rest = Pose::identity();
+    let found = sweep_element(&twisted, &element, rest, &settings, &mut workspace).unwrap();
+    assert_eq!((found.touches(), found.evaluations < 10_000), (Some(false), true), "{found:?}");
 }

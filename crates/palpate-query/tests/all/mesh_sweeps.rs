@@ -52,17 +52,8 @@ fn as_its_first_element<const N: usize, const D: usize>(
     let (mut touched, mut ran) = (0, 0);
     cases::on_trees(count, 3, |u, _, shape| {
         let size = draw::size(shape);
-        let mut way = |far: f64| -> Result<_, _> {
-            let mut pose = || -> Result<Pose<D>, _> {
-                let mut pose: Pose<D> = draw::pose(u)?;
-                pose.translation = pose.translation * far;
-                Ok(pose)
-            };
-            let (from, to) = (pose()?, pose()?);
-            Ok(Screw::new(from, to, 0).unwrap())
-        };
-        let screw = way(size + 1.0)?;
-        let field = if is_carried { Some(way(0.3 * size)?) } else { None };
+        let screw = draw::screw(u, size + 1.0, 0)?;
+        let field = if is_carried { Some(draw::screw(u, 0.3 * size, 0)?) } else { None };
         let moving = field.map_or(Moving::from(shape), |screw| Moving::new(shape, screw));
         let settings = SweepSettings::of_size(size).with_gap(1e-4 * size);
         let all = sweep_mesh(moving, mesh, screw, &settings, &mut workspace).unwrap();

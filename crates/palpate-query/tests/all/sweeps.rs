@@ -97,6 +97,9 @@ fn what_touches_at_the_start_says_how_it_moves_on() {
     assert_eq!(start([0.0, 0.5]), Some(Start::Approaching));
     assert_eq!(start([0.0, 1.5]), Some(Start::Receding));
     assert_eq!(start([0.5, 1.0]), Some(Start::Sliding));
+    // Once what rests on another slid.
+    let rests = first((&block).into(), Placed::new(&block, at([0.0, 1.0])).into());
+    assert_eq!((rests.upper, rests.start), (0.0, Some(Start::Resting)));
 }
 
 #[test]

@@ -58,6 +58,21 @@ impl<const D: usize> BuiltMotion<D> {
         }))
     }
 
+    /// How long its parts take, each of which turns by less than half a turn [s], and how many there
+    /// are: infinitely many if it repeats.
+    fn parts(&self) -> (f64, f64) {
+        let parts = (self.screw.angle().abs() / LARGEST_PART).ceil().max(1.0);
+        let is_once = self.repeat == Repeat::Once;
+        (self.duration / parts, if is_once { parts } else { f64::INFINITY })
+    }
+
+    /// How many parts of less than half a turn it has until a time [s].
+    #[must_use]
+    pub fn parts_until(&self, until: f64) -> f64 {
+        let (step, most) = self.parts();
+        ((until - self.start).max(0.0) / step).ceil().min(most)
+    }
+
     /// When the body comes to rest [s]; `None` if it never does.
     #[must_use]
     pub fn end(&self) -> Option<f64> {
@@ -105,7 +120,8 @@ impl<const D: usize> BuiltScene<D> {
     }
 
     /// Times [s] from 0 to `until` between which every body either rests or goes on along one screw,
-    /// by less than half a turn: both ends, and where motions begin, end, turn back or start anew.
+    /// by less than half a turn: both ends, and where motions begin, end, turn back or start anew. There
+    /// are as many as [`parts_until`](BuiltMotion::parts_until) says.
     ///
     /// ```
     /// use palpate_scene::{AnyScene, Scene};
@@ -128,13 +144,7 @@ impl<const D: usize> BuiltScene<D> {
     pub fn times_of_motion(&self, until: f64) -> Vec<f64> {
         let mut times = vec![0.0, until];
         for motion in &self.motions {
-            // Parts of less than half a turn.
-            let parts = (motion.screw.angle().abs() / LARGEST_PART).ceil().max(1.0);
-            let step = motion.duration / parts;
-            let most = match motion.repeat {
-                Repeat::Once => parts,
-                Repeat::Loop | Repeat::BackAndForth => f64::INFINITY,
-            };
+            let (step, most) = motion.parts();
             let mut count = 0.0;
             while count <= most && motion.start + count * step < until {
                 times.push(motion.start + count * step);
