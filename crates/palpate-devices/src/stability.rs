@@ -14,8 +14,8 @@ use std::collections::VecDeque;
 
 use palpate_field::{Shape, Vector};
 use palpate_haptics::{
-    Bodies, Body, Device, DeviceProfile, Material, PointState, Probe, Protection, Servo,
-    ServoOptions, Surface, UnprotectedServo,
+    Bodies, Body, Device, DeviceProfile, Material, PointState, Probe, Protection, Reading,
+    Servo, ServoOptions, Surface, UnprotectedServo,
 };
 
 use crate::error::DeviceError;
@@ -63,14 +63,26 @@ pub struct Plant {
     pub hand_damping: f64,
     /// The stiffness of its grip [N/m]; zero for a hand that only pushes.
     pub grip: f64,
+    /// The mean speed at which a hand with a grip strokes the wall [m/s].
+    pub stroke: f64,
+    /// One of so many readings is missing; zero if none is.
+    pub missing: u32,
 }
 
 impl Plant {
     /// A device as its profile, without a delay, which a hand with a damping of 1 N·s/m pushes.
     #[must_use]
     pub fn as_profile() -> Self {
-        let (damping, friction, encoder_step) = (1.0, 1.0, 1.0);
-        Self { damping, friction, encoder_step, delay: 0, hand_damping: 1.0, grip: 0.0 }
+        Self {
+            damping: 1.0,
+            friction: 1.0,
+            encoder_step: 1.0,
+            delay: 0,
+            hand_damping: 1.0,
+            grip: 0.0,
+            stroke: 0.0,
+            missing: 0,
+        }
     }
 
     /// Devices with all of a tenth, one and three times the damping and the friction of their
@@ -91,6 +103,7 @@ impl Plant {
                     delay,
                     hand_damping,
                     grip,
+                    ..Self::as_profile()
                 })
             })
         })
@@ -203,8 +216,15 @@ impl Press {
         let mut on_their_way = VecDeque::from(vec![[Vector::ZERO]; plant.delay]);
         let (mut places, mut forces) = (Vec::new(), Vec::new());
         for tick in 0..TICKS {
+            let time = f64::from(tick) / RATE;
             // A simulated device is never lost.
-            let _ = device.read(f64::from(tick) / RATE, &mut points);
+            let _ = device.read(time, &mut points);
+            let is_missing = plant.missing > 0 && tick % plant.missing == plant.missing - 1;
+            servo.set_reading(if is_missing {
+                Reading::Stale
+            } else {
+                Reading::Fresh { time }
+            });
             let force = servo.step(&points).first().map_or(Vector::ZERO, |touch| touch.force);
             on_their_way.push_back([force]);
             if let Some(arrived) = on_their_way.pop_front() {
@@ -233,8 +253,18 @@ fn held(plant: Plant, force: f64, stiffness: f64) -> Result<Hand<2>, DeviceError
     let is_gripping = plant.grip > 0.0;
     let depth = if is_gripping { force / stiffness + force / plant.grip } else { 0.0 };
     let push = if is_gripping { 0.0 } else { force };
-    let way = vec![Vector([0.0, HEIGHT]), Vector([0.0, -depth])];
-    let path = HandPath::new(vec![0.0, APPROACH], way, Interpolation::Smooth)?;
+    let is_stroking = plant.stroke > 0.0 && is_gripping;
+    let at = |time: f64, height: f64| Vector([plant.stroke * time, height]);
+    let mut times = vec![0.0, APPROACH];
+    let mut way = vec![at(0.0, HEIGHT), at(APPROACH, -depth)];
+    if is_stroking {
+        let end = f64::from(TICKS) / RATE;
+        times.push(end);
+        way.push(at(end, -depth));
+    }
+    let interpolation =
+        if is_stroking { Interpolation::Monotone } else { Interpolation::Smooth };
+    let path = HandPath::new(times, way, interpolation)?;
     Hand::new(path).with_spring(plant.grip, plant.hand_damping)?.with_push(Vector([0.0, -push]))
 }
 

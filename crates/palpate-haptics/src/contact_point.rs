@@ -86,6 +86,8 @@ pub(crate) struct ContactPoint<const D: usize> {
     ringing: Ringing,
     /// The bodies that touch the proxy.
     crease: Crease<D>,
+    /// The force of their springs over the depth, in the last contact [N/m]; infinite before the first.
+    pub(crate) stiffness: f64,
     pub(crate) guides: Vec<Guide<D>>,
     /// The port to the device; `None` without protection.
     pub(crate) port: Option<Port<D>>,
@@ -174,8 +176,8 @@ impl<const D: usize> ContactPoint<D> {
     pub(crate) fn new(probe: Probe) -> Self {
         let (proxy, guides) = (Proxy::new(probe), Vec::new());
         let (rise, of_others, ringing) = (1.0, f64::INFINITY, Ringing::SILENT);
-        let crease = Crease::NONE;
-        Self { proxy, rise, of_others, ringing, crease, guides, port: None }
+        let (crease, stiffness) = (Crease::NONE, f64::INFINITY);
+        Self { proxy, rise, of_others, ringing, crease, stiffness, guides, port: None }
     }
 
     /// A copy that rehearses a tick. It has no guides, because copying guides would allocate.
@@ -183,8 +185,8 @@ impl<const D: usize> ContactPoint<D> {
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     pub(crate) fn double(&self) -> Self {
         let (proxy, port) = (self.proxy.clone(), self.port.clone());
-        let Self { rise, of_others, ringing, crease, .. } = *self;
-        Self { proxy, rise, of_others, ringing, crease, guides: Vec::new(), port }
+        let Self { rise, of_others, ringing, crease, stiffness, .. } = *self;
+        Self { proxy, rise, of_others, ringing, crease, stiffness, guides: Vec::new(), port }
     }
 
     /// Forgets the bodies, which are replaced before the next tick; `wanted` is their last
@@ -245,7 +247,9 @@ impl<const D: usize> ContactPoint<D> {
             let PointState { position, velocity } = at_device;
             let free_force = map.force_to_device(free);
             let Arrival { late, elapsed, .. } = *arrival;
-            let state = PortState { position, velocity, free_force, late, elapsed, start };
+            let stiffness = self.stiffness * map.scale();
+            let state =
+                PortState { position, velocity, free_force, late, elapsed, start, stiffness };
             let force = port.write(wanted, options.max_force, &state);
             touch.force = map.force_to_world(force);
             force
@@ -374,6 +378,8 @@ impl<const D: usize> ContactPoint<D> {
         let stretch = touch.proxy - touch.device;
         self.proxy.hold(stretch - touch.normal * stretch.dot(touch.normal));
         let force = self.pressed(touch, body, stretch, Pressing { rate, has_dampers: true });
+        let level = self.proxy.level(touch.body);
+        self.stiffness = body.surface().strata.secant(level, stretch.norm());
         self.pop(tick, touch.body, stretch.norm());
         force + self.ring(touch, force)
     }
@@ -435,6 +441,7 @@ impl<const D: usize> ContactPoint<D> {
         }
         self.tell_changes(tick, touch, before, &crease);
         let fit = shortening(plain.norm(), shared.most());
+        self.stiffness = fit * plain.norm() / depth;
         let along = stretch.normalized().unwrap_or(Vector::ZERO);
         let dampers = shared.dampers(touch.velocity, along);
         for wall in crease.pushing_mut() {

@@ -161,6 +161,8 @@ impl<const D: usize> CoupledTool<D> {
             evaluations: felt.evaluations,
         };
         let torque = turn.map_or(Vector::ZERO, |_| map.torque_to_device(felt.torque));
+        point.stiffness = self.tool.secant();
+        let stiffness = point.stiffness * map.scale();
         let force = if let Some(chain) = self.chain() {
             let force = map.force_to_device(touch.wanted);
             let spin = turn.map_or(Vector::ZERO, |turn| turn.angular_velocity);
@@ -170,6 +172,7 @@ impl<const D: usize> CoupledTool<D> {
                 free_force: map.force_to_device(free),
                 late: point.port.as_ref().map_or(arrival.late, |port| port.late(arrival.late)),
                 elapsed,
+                stiffness,
             };
             let wanted = SpatialVector { along: force, about: torque };
             let given = chain.step_within(wanted, setting.options.max_force, &state);

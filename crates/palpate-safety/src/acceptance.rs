@@ -323,8 +323,7 @@ impl Accepted {
         Ok(bounds.iter().fold(f64::INFINITY, |least, (bound, _)| least.min(*bound)))
     }
 
-    /// The stiffness and the damping that were asked for, in the world [N/m, N·s/m]; angular for a
-    /// rotational entry.
+    /// The stiffness and the damping that were asked for, in the world [N/m, N·s/m], or about axes.
     #[must_use]
     pub fn requested(&self) -> [f64; 2] {
         [self.requested_stiffness, self.requested_damping]

@@ -47,6 +47,9 @@ pub struct PortState<const D: usize> {
     /// [rises](SafetyOptions::rise_rate) again. Normally 1; 0 after the proxy was placed anew or a
     /// body moved onto it; between 0 and 1 after a body was replaced by a stiffer one.
     pub start: f64,
+    /// The stiffness behind the wanted force [N/m]: force over depth. That of the accepted impedance
+    /// counts if this is more, or infinite.
+    pub stiffness: f64,
 }
 
 impl<const D: usize> PortState<D> {
@@ -54,8 +57,15 @@ impl<const D: usize> PortState<D> {
     #[must_use]
     pub fn at_rest() -> Self {
         let still = Vector::ZERO;
-        let (late, start) = (0.0, 1.0);
-        Self { position: still, velocity: still, free_force: still, late, elapsed: None, start }
+        Self {
+            position: still,
+            velocity: still,
+            free_force: still,
+            late: 0.0,
+            elapsed: None,
+            start: 1.0,
+            stiffness: f64::INFINITY,
+        }
     }
 }
 
@@ -375,23 +385,33 @@ impl<const D: usize> SafetyChain<D> {
         // Stages with a state never see numbers that are not finite; the guard then writes
         // zero.
         let is_sound = finite::is_sound(wanted, state);
-        let PortState { position, velocity, free_force, late, elapsed, start } = *state;
+        let PortState { position, velocity, free_force, late, elapsed, start, stiffness } =
+            *state;
         let input = TickInput { is_sound, late, start, cut };
         let risen = self.channel.risen(wanted, free_force, &input);
         let rise = risen.unwrap_or(1.0);
         let (wanted, rising) =
             if rise < 1.0 { (wanted * rise, free_force * rise) } else { (wanted, free_force) };
         let elapsed = finite::elapsed(elapsed, self.period() + late.max(0.0));
-        let is_rising = risen.is_some();
-        let seen = CycleInput::of([wanted, rising], effort, position, elapsed);
-        let is_disturbed = late > 0.0 || is_rising;
-        let softness = self.cycle.observed(&seen.disturbed(is_disturbed), is_sound);
         let options = self.passivity.options();
+        let stiffness = options.stiffness_of(stiffness);
+        let seen = CycleInput::of([wanted, rising], effort, position, stiffness);
+        let is_disturbed = self.channel.is_late() || risen.is_some();
+        let softness = self.cycle.observed(&seen.disturbed(is_disturbed), is_sound);
+        let is_rising = risen.is_some() || self.cycle.is_returning();
         let scale = rise * softness;
         let Passed { force: free_force, spent } =
             self.free.step([free_force, position], [scale, elapsed], options, is_sound);
-        let seen =
-            PortMotion { position, velocity, effort, is_rising, elapsed, softness, spent };
+        let seen = PortMotion {
+            position,
+            velocity,
+            effort,
+            is_rising,
+            elapsed,
+            softness,
+            spent,
+            stiffness,
+        };
         let observed = self.passivity.observed(wanted, &seen, is_sound);
         let Given { force, of_bodies, share } = self.channel.step(observed, free_force, &input);
         self.passivity.written(of_bodies);

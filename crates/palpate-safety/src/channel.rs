@@ -205,6 +205,11 @@ impl<const D: usize> Channel<D> {
         self.is_stopped
     }
 
+    /// Whether late ticks lower the force.
+    pub(crate) fn is_late(&self) -> bool {
+        self.watchdog.factor() < 1.0
+    }
+
     pub(crate) fn continuous_report(&self) -> ContinuousReport {
         ContinuousReport {
             effect: self.effects.continuous,

@@ -54,9 +54,12 @@ const STEPS: f64 = 3.0;
 /// part of it: beyond, a body moves, and not the hand alone.
 const FORCED: f64 = 0.3;
 
-/// The way of the device over its way along the force, at most: a hand that travels along a body
-/// meets its relief.
+/// The way of the device over its way along the force, at most, unless the force keeps its
+/// direction: a hand that travels along a body meets its relief.
 const ALONG: f64 = 1.25;
+
+/// The cosine of the largest angle by which a force turns that keeps its direction.
+const FLAT: f64 = 0.995;
 
 /// A wall that is stable with this part of the device's damping, and with a delay of so many ticks,
 /// makes no limit cycle.
@@ -66,16 +69,26 @@ const DELAY: f64 = 2.0;
 /// The part of the stiffness that remains after a limit cycle.
 const HALVED: f64 = 0.5;
 
-/// The least part of the stiffness that remains.
+/// How often the stiffness is halved at most, and the least part of it that remains.
+const HALVINGS: usize = 5;
 const LEAST: f64 = 1.0 / 32.0;
 
 /// The most by which a force changes in a tick because its wall becomes softer [N].
 const STEP: f64 = 0.3;
 
-/// A hand drives an oscillation that, at this part of the stiffness, keeps at least [`UNCHANGED`] of its
-/// way and takes at most 1/[`UNCHANGED`] of its time.
-const HAND_TEST_PART: f64 = 0.125;
-const UNCHANGED: f64 = 0.75;
+/// A hand drives an oscillation that keeps its frequency while the stiffness is halved so many times.
+const UNMOVED_HALVINGS: usize = 2;
+
+/// It is told after so many halvings at the earliest.
+const TOLD_HALVINGS: usize = 3;
+
+/// A damping of half of the weakest hand that the stage is made for [N·s/m].
+const HAND_DAMPING: f64 = 0.5;
+
+/// A frequency is kept if the shorter of two times is at least this part of the longer, and the way of
+/// the softer wall is at least [`KEPT_WAY`] of the other.
+const KEPT_TIME: f64 = 0.75;
+const KEPT_WAY: f64 = 0.5;
 
 /// Half cycles up to so many times the hand's way are then ignored, for [`HAND_TIME`] at first and twice as
 /// long each time, up to [`LONGEST_HAND_TIME`] [s].
@@ -100,19 +113,26 @@ pub(crate) struct LimitCycleOptions {
     pub(crate) stiffness: f64,
     /// The mass of the device [kg].
     pub(crate) mass: f64,
+    /// Its least damping [N·s/m].
+    pub(crate) damping: f64,
     /// The encoder step [m].
     pub(crate) encoder_step: f64,
-    /// Whether the wall is so soft that it cannot oscillate.
-    pub(crate) is_soft: bool,
+    /// The duration of a tick [s].
+    pub(crate) period: f64,
 }
 
 impl LimitCycleOptions {
     /// For the device and the wall of the passivity stage, with an encoder step [m].
     pub(crate) fn of(passivity: &PassivityOptions, encoder_step: f64) -> Self {
         let PassivityOptions { is_on, stiffness, mass, damping, period, .. } = *passivity;
-        // b > K (T/2 + the delay): the delay and the part of b for which the stage is made.
-        let is_soft = WEAK * damping > stiffness * period * (0.5 + DELAY);
-        Self { is_on, stiffness, mass, encoder_step, is_soft }
+        Self { is_on, stiffness, mass, damping, encoder_step, period }
+    }
+
+    /// Whether a wall is so soft that it cannot oscillate in a hand of this damping [N·s/m]: `b > K
+    /// (T/2 + the delay)`, with the delay and the part of the device's damping for which the stage is
+    /// made.
+    fn is_soft(&self, stiffness: f64, of_hand: f64) -> bool {
+        WEAK * self.damping + of_hand > stiffness * self.period * (0.5 + DELAY)
     }
 }
 
@@ -128,17 +148,22 @@ pub(crate) struct CycleInput<V> {
     pub(crate) is_guided: bool,
     /// Whether they give all of it.
     pub(crate) is_free_of_bodies: bool,
-    /// The time since the tick before [s].
-    pub(crate) elapsed: f64,
-    /// Whether the tick is late or the force rises after it was zeroed: an oscillation then has
+    /// The stiffness of the bodies that are touched, at the device [N/m].
+    pub(crate) stiffness: f64,
+    /// Whether the force was zeroed, by late ticks, or rises after it was: an oscillation then has
     /// causes that pass.
     pub(crate) is_disturbed: bool,
 }
 
 impl<V: InnerProduct> CycleInput<V> {
-    /// The input of a force by bodies that was of size `effort` before the force limit [N], and a
-    /// force by guides.
-    pub(crate) fn of([bodies, guides]: [V; 2], effort: f64, position: V, elapsed: f64) -> Self {
+    /// The input of a force by bodies of this `stiffness` [N/m], which was of size `effort` before the
+    /// force limit [N], and a force by guides.
+    pub(crate) fn of(
+        [bodies, guides]: [V; 2],
+        effort: f64,
+        position: V,
+        stiffness: f64,
+    ) -> Self {
         let is_guided = guides != V::ZERO;
         let force = if is_guided { bodies + guides } else { bodies };
         let effort = if is_guided { force.norm() } else { effort };
@@ -149,7 +174,7 @@ impl<V: InnerProduct> CycleInput<V> {
             effort,
             is_guided,
             is_free_of_bodies,
-            elapsed,
+            stiffness,
             is_disturbed: false,
         }
     }
@@ -199,7 +224,8 @@ struct Extreme<V> {
 /// or of 0.15 N in the force if that is less, and of three encoder steps. A half cycle counts if
 ///
 /// - it takes at most 0.2 s;
-/// - the device moves along the force, not along the body, whose relief would move it;
+/// - the device moves along the force, or the force keeps its direction: otherwise the relief of the
+///   body would move it;
 /// - and the force changes as the spring explains, so that no body moves the hand, and the wall is
 ///   not so soft that a tenth of the device's damping is enough for it, through a delay of two ticks.
 ///
@@ -213,13 +239,16 @@ struct Extreme<V> {
 ///
 /// The stiffness is then halved, at the rate of 0.3 N a tick, and half cycles are counted anew. It
 /// comes back by a factor of e in 20 s in which nothing pushes, or in which a hand in a guide makes
-/// no quick half cycles; not in contact with a body, where the oscillation would return. A tick that is
-/// late, or in which the force rises after it was zeroed, starts the count anew.
+/// no quick half cycles; not in contact with a body, where the oscillation would return. Late ticks that
+/// zero the force, and its rise, start the count anew.
 ///
 /// The tremor of a hand, 6 to 12 times a second, looks like a limit cycle. But an oscillation of the
-/// device gets slower in a softer wall, or ends; one that goes on as before in an eighth of the
-/// stiffness is the hand's. Then the stiffness comes back, and half cycles of that size are ignored for
-/// a while.
+/// device gets slower in a softer wall, or ends. One that keeps its frequency in a quarter of the
+/// stiffness without a bounce, or goes on in a wall too soft to oscillate, is the hand's. Then the stiffness comes back,
+/// and half cycles of that size are ignored for a while.
+///
+/// It is blind to oscillations that turn the force and not its size, such as circles about a point,
+/// and to those across the force, such as from wall to wall of a groove.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct LimitCycle<V> {
     options: LimitCycleOptions,
@@ -244,8 +273,15 @@ pub(crate) struct LimitCycle<V> {
     counted: usize,
     /// How many of them are quick.
     quick: usize,
-    /// The mean way and time of the half cycles for which the stiffness was halved first [m, s].
-    before_softening: [f64; 2],
+    /// How many of the last ones left the body at neither end.
+    pressed: usize,
+    /// The mean way and time of the half cycles for which the stiffness was halved, after each number
+    /// of halvings before [m, s]; zero where none is known, or where they left the body.
+    seen: [[f64; 2]; HALVINGS + 1],
+    /// The direction of the force at the start of the present way, and the cosine of the largest angle
+    /// to it since.
+    start: V,
+    bent: f64,
     /// The largest way that is ignored as the hand's [m], for how long still [s], and for how long the next
     /// time [s].
     hand_way: f64,
@@ -276,7 +312,10 @@ impl<V: InnerProduct> LimitCycle<V> {
             times: [0.0; KEPT],
             counted: 0,
             quick: 0,
-            before_softening: [0.0; 2],
+            pressed: 0,
+            seen: [[0.0; 2]; HALVINGS + 1],
+            start: V::ZERO,
+            bent: 1.0,
             hand_way: 0.0,
             hand_time: 0.0,
             next_hand_time: HAND_TIME,
@@ -340,10 +379,10 @@ impl<V: InnerProduct> LimitCycle<V> {
         // A guide need not end anywhere, so that its stiffness comes back while a hand is in it.
         let is_calm = input.is_free_of_bodies && self.calm >= CALM;
         if force == 0.0 && effort == 0.0 || is_calm {
-            self.target = (self.target * (1.0 + input.elapsed / RECOVERY)).min(1.0);
+            self.target = (self.target * (1.0 + self.options.period / RECOVERY)).min(1.0);
         }
         if self.part <= self.target {
-            let rise = if effort > 0.0 { RETURN * input.elapsed / effort } else { 1.0 };
+            let rise = if effort > 0.0 { RETURN * self.options.period / effort } else { 1.0 };
             self.part = (self.part + rise).min(self.target);
             return self.part;
         }
@@ -361,47 +400,55 @@ impl<V: InnerProduct> LimitCycle<V> {
         let size = input.force.norm();
         if size > 0.0 {
             self.direction = input.force * (1.0 / size);
+            self.bent = self.bent.min(self.direction.dot(self.start));
         }
         let way = self.last_position.map_or(V::ZERO, |last| input.position - last);
         self.last_position = Some(input.position);
         self.place -= way.dot(self.direction);
-        self.since += input.elapsed;
-        self.calm += input.elapsed;
-        self.hand_time -= input.elapsed;
+        // Ticks are even on average, readings need not be.
+        let period = self.options.period;
+        self.since += period;
+        self.calm += period;
+        self.hand_time -= period;
         let beyond = self.heading * (self.place - self.farthest.place);
         let CycleInput { position, effort, .. } = *input;
         let here = Extreme { position, place: self.place, effort, time: self.since };
         if beyond > 0.0 {
             self.farthest = Extreme { time: self.farthest.time + self.since, ..here };
             self.since = 0.0;
-        } else if -beyond >= self.least_way() {
-            self.turn(input.is_guided);
+        } else if -beyond >= self.least_way(input.stiffness) {
+            self.turn(input);
+            (self.start, self.bent) = (self.direction, 1.0);
             self.farthest = here;
             self.since = 0.0;
         }
     }
 
     /// The least way that counts as an oscillation [m].
-    fn least_way(&self) -> f64 {
-        let LimitCycleOptions { stiffness, encoder_step, .. } = self.options;
-        FELT_WAY.min(FELT_FORCE / stiffness).max(STEPS * encoder_step)
+    fn least_way(&self, stiffness: f64) -> f64 {
+        FELT_WAY.min(FELT_FORCE / stiffness).max(STEPS * self.options.encoder_step)
     }
 
     /// Ends a half cycle at the farthest place.
-    fn turn(&mut self, is_guided: bool) {
+    fn turn(&mut self, input: &CycleInput<V>) {
         let (from, to) = (self.last, self.farthest);
         let way = (to.place - from.place).abs();
-        let of_spring = self.options.stiffness * way;
-        let change = (to.effort - from.effort).abs();
+        let stiffness = input.stiffness;
+        let of_spring = stiffness * way;
+        // A spring presses more where it is deeper.
+        let change = (to.effort - from.effort) * self.heading;
         let is_touching = to.effort > 0.0 || from.effort > 0.0;
         // Outside of the body, the hand moves without a force.
         let is_always_touching = to.effort > 0.0 && from.effort > 0.0;
         let least = if is_always_touching { 1.0 - FORCED } else { 0.0 };
         let is_of_spring = (least * of_spring..=(1.0 + FORCED) * of_spring).contains(&change);
-        let is_free = is_guided || is_of_spring && !self.options.is_soft;
-        let is_steep = (to.position - from.position).norm() <= ALONG * way;
-        if is_free && is_touching && is_steep && to.time <= LONGEST {
-            self.count(way, to.time);
+        let is_free = input.is_guided || is_of_spring && !self.options.is_soft(stiffness, 0.0);
+        let is_straight = (to.position - from.position).norm() <= ALONG * way;
+        let is_along = is_straight || self.bent >= FLAT;
+        if is_free && is_touching && is_along && to.time <= LONGEST {
+            let stiffness = if input.is_guided { self.options.stiffness } else { stiffness };
+            self.pressed = if is_always_touching { self.pressed + 1 } else { 0 };
+            self.count(way, to.time, stiffness);
         } else {
             (self.counted, self.quick) = (0, 0);
         }
@@ -409,8 +456,8 @@ impl<V: InnerProduct> LimitCycle<V> {
         self.heading = -self.heading;
     }
 
-    /// Counts a half cycle of a way [m] that took a time [s].
-    fn count(&mut self, way: f64, time: f64) {
+    /// Counts a half cycle of a way [m] that took a time [s], in a wall of a stiffness [N/m].
+    fn count(&mut self, way: f64, time: f64, stiffness: f64) {
         if self.hand_time > 0.0 && way <= self.hand_way {
             (self.counted, self.quick) = (0, 0);
             return;
@@ -422,32 +469,24 @@ impl<V: InnerProduct> LimitCycle<V> {
         let [newest, ..] = &mut self.times;
         *newest = time;
         self.counted = (self.counted + 1).min(KEPT);
-        let LimitCycleOptions { stiffness, mass, .. } = self.options;
-        let natural = TAU * ((mass + HAND) / stiffness).sqrt();
+        let natural = TAU * ((self.options.mass + HAND) / stiffness).sqrt();
         let is_quick = time <= natural.clamp(QUICK, LONGEST_QUICK);
         self.quick = if is_quick { (self.quick + 1).min(KEPT) } else { 0 };
         if is_quick {
             self.calm = 0.0;
         }
         if self.is_limit_cycle() {
-            self.found();
+            self.found(stiffness);
         }
     }
 
-    /// Halves the stiffness, or gives it back to a hand that drives the oscillation.
-    fn found(&mut self) {
+    /// Halves a stiffness, or gives it back to a hand that drives the oscillation.
+    fn found(&mut self, stiffness: f64) {
         let mean = |of: &[f64; KEPT]| of.iter().sum::<f64>() / KEPT as f64;
         let now = [mean(&self.ways), mean(&self.times)];
         // What follows is the motion in another wall.
         (self.counted, self.quick) = (0, 0);
-        if self.target == 1.0 {
-            self.before_softening = now;
-        }
-        let ([way, time], [first_way, first_time]) = (now, self.before_softening);
-        if self.target <= HAND_TEST_PART
-            && way >= UNCHANGED * first_way
-            && UNCHANGED * time <= first_time
-        {
+        if self.is_of_hand(now, stiffness) {
             let longest = self.ways.iter().copied().fold(0.0, f64::max);
             (self.hand_way, self.hand_time) = (HAND_MARGIN * longest, self.next_hand_time);
             self.next_hand_time = (2.0 * self.next_hand_time).min(LONGEST_HAND_TIME);
@@ -456,6 +495,34 @@ impl<V: InnerProduct> LimitCycle<V> {
             self.target = (self.target * HALVED).max(LEAST);
             self.report.found += 1;
         }
+    }
+
+    /// Whether a hand drives half cycles of this mean way and time [m, s] in a wall that had this
+    /// stiffness before it was halved [N/m].
+    fn is_of_hand(&mut self, now: [f64; 2], stiffness: f64) -> bool {
+        let halvings = (-self.target.log2()).round() as usize;
+        let (stiffer, softer) = self.seen.split_at_mut(halvings.min(HALVINGS));
+        softer.fill([0.0; 2]);
+        // How often a mass bounces on a wall is hardly a matter of its stiffness.
+        let is_pressed = self.pressed >= GROWING;
+        if let [here, ..] = softer
+            && is_pressed
+        {
+            *here = now;
+        }
+        let is_kept = |[way, time]: &[f64; 2]| {
+            let [now_way, now_time] = now;
+            let is_way_kept = *way > 0.0 && now_way >= KEPT_WAY * way;
+            is_way_kept && time.min(now_time) >= KEPT_TIME * time.max(now_time)
+        };
+        let is_unmoved = stiffer.iter().rev().skip(UNMOVED_HALVINGS - 1).any(is_kept);
+        let is_soft = self.options.is_soft(stiffness * self.target, HAND_DAMPING);
+        halvings >= TOLD_HALVINGS && (is_soft || is_pressed && is_unmoved)
+    }
+
+    /// Whether the stiffness comes back in this tick, by what a hand was told from the wall.
+    pub(crate) fn is_returning(&self) -> bool {
+        self.target == 1.0 && self.part < 1.0
     }
 
     fn is_limit_cycle(&self) -> bool {

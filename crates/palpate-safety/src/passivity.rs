@@ -88,6 +88,8 @@ pub(crate) struct PortMotion<V> {
     pub(crate) softness: f64,
     /// What of the energy that damping dissipates guides and magnets need [J].
     pub(crate) spent: f64,
+    /// The stiffness of the bodies that are touched, at the device [N/m].
+    pub(crate) stiffness: f64,
 }
 
 impl<V> PortMotion<V> {
@@ -147,7 +149,7 @@ pub struct PassivityReport {
 /// from the acceleration of the device's mass by this force and the one before. If the slew limit
 /// would prevent a fast removal of the force, the energy given out during the removal counts too.
 /// The controller always leaves [`FLOOR`] of the force whose leaks damping covers. The balance is
-/// capped at the energy `U` that a spring of the material's stiffness has stored at this depth
+/// capped at the energy `U` that a spring of the touched bodies' stiffness has stored at this depth
 /// under the force limit `M`, so that a long rub against friction does not pay for an oscillation:
 /// with the force `F` before the limit, `U = F² / 2K` up to `M` and `(F − M/2) M / K` beyond. A
 /// source of constant force that must give back more than that cannot use this stage.
@@ -182,7 +184,7 @@ pub(crate) struct Passivity<V> {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PassivityOptions {
     pub(crate) is_on: bool,
-    /// The stiffness at the device [N/m].
+    /// The largest stiffness of a body, at the device [N/m].
     pub(crate) stiffness: f64,
     /// The largest force [N].
     pub(crate) max_force: f64,
@@ -201,6 +203,13 @@ pub(crate) struct PassivityOptions {
 }
 
 impl PassivityOptions {
+    /// The stiffness of the bodies that are touched, of which `told` is known [N/m]: at most the
+    /// largest.
+    pub(crate) fn stiffness_of(&self, told: f64) -> f64 {
+        // `min` ignores NaN.
+        self.stiffness.min(told).max(0.0)
+    }
+
     /// The displacement of the device's mass in a tick per force [m/N]; zero if the mass is not
     /// known.
     fn compliance(&self) -> f64 {
@@ -377,10 +386,10 @@ impl<V: InnerProduct> Passivity<V> {
         }
     }
 
-    /// The energy that the wall stores where a spring of the material's stiffness gives a force, if
-    /// it presses with no more than the largest [J].
+    /// The energy that the wall stores where a spring of the stiffness of the touched bodies gives a
+    /// force, if it presses with no more than the largest [J].
     fn stored(&self, force: f64, state: &PortMotion<V>) -> f64 {
-        let PassivityOptions { stiffness, max_force, .. } = self.options;
+        let (stiffness, max_force) = (state.stiffness, self.options.max_force);
         if stiffness == 0.0 {
             return 0.0;
         }
@@ -482,6 +491,7 @@ mod tests {
                 elapsed: 1e-3,
                 softness: 1.0,
                 spent: 0.0,
+                stiffness: 100.0,
             };
             let _ = passivity.limit(Vector([force, 0.0]), &state);
             passivity.written(Vector([force, 0.0]));

@@ -93,6 +93,8 @@ pub struct WrenchState<const D: usize> {
     pub late: f64,
     /// As [`PortState::elapsed`](crate::PortState::elapsed).
     pub elapsed: Option<f64>,
+    /// As [`PortState::stiffness`](crate::PortState::stiffness), with an angle as a length.
+    pub stiffness: f64,
 }
 
 /// The safety chain of a device with rotation: [`SafetyChain`](crate::SafetyChain) for a force
@@ -276,7 +278,7 @@ impl<const D: usize> WrenchChain<D> {
         [effort, cut]: [f64; 2],
         state: &WrenchState<D>,
     ) -> SpatialVector<D> {
-        let WrenchState { position, velocity, free_force, late, elapsed } = *state;
+        let WrenchState { position, velocity, free_force, late, elapsed, stiffness } = *state;
         // Stages with a state never see numbers that are not finite; the guards then write
         // zero.
         let is_sound = [wanted, position, velocity].iter().all(SpatialVector::is_finite)
@@ -286,16 +288,18 @@ impl<const D: usize> WrenchChain<D> {
         let input = TickInput { is_sound, late, start: 1.0, cut };
         let along = self.force.risen(wanted.along, free_force, &input);
         let about = self.torque.risen(wanted.about, Vector::ZERO, &input);
-        let is_rising = along.is_some() || about.is_some();
+        let has_risen = along.is_none() && about.is_none();
         let (rise, about) = (along.unwrap_or(1.0), about.unwrap_or(1.0));
         let wanted = SpatialVector { along: wanted.along * rise, about: wanted.about * about };
         let options = *self.passivity.options();
         let elapsed = finite::elapsed(elapsed, options.period + late.max(0.0));
         let as_lengths = wanted.turning(1.0 / unit);
         let free = SpatialVector { along: free_force * rise, about: Vector::ZERO };
-        let seen = CycleInput::of([as_lengths, free], effort, position, elapsed);
-        let is_disturbed = late > 0.0 || is_rising;
+        let stiffness = options.stiffness_of(stiffness);
+        let seen = CycleInput::of([as_lengths, free], effort, position, stiffness);
+        let is_disturbed = self.force.is_late() || !has_risen;
         let softness = self.cycle.observed(&seen.disturbed(is_disturbed), is_sound);
+        let is_rising = !has_risen || self.cycle.is_returning();
         let of_guides = PassivityOptions { damping: self.sides.along.damping, ..options };
         let scale = rise * softness;
         let Passed { force: free_force, spent } = self.free.step(
@@ -306,8 +310,16 @@ impl<const D: usize> WrenchChain<D> {
         );
         // The walls' damping may be less: the same part of it is spent.
         let spent = if spent > 0.0 { spent * options.damping / of_guides.damping } else { 0.0 };
-        let seen =
-            PortMotion { position, velocity, effort, is_rising, elapsed, softness, spent };
+        let seen = PortMotion {
+            position,
+            velocity,
+            effort,
+            is_rising,
+            elapsed,
+            softness,
+            spent,
+            stiffness,
+        };
         let allowed = self.passivity.observed(as_lengths, &seen, is_sound);
         // An unchanged wrench keeps its bits.
         let allowed = if allowed == as_lengths { wanted } else { allowed.turning(unit) };

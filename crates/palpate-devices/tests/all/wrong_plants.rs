@@ -55,3 +55,31 @@ fn walls_rest_where_forces_come_late() {
         }
     }
 }
+
+/// A reading that was missing now and then, or a hand that stroked the wall, hid a limit cycle: of 3 to
+/// 9 mm on the omega, for good.
+#[test]
+fn walls_rest_where_readings_are_missing_and_under_hands_that_stroke_them() {
+    // As stiff as the device renders, without a damper or friction.
+    let hard = Material {
+        stiffness: 1e5,
+        damping: 0.0,
+        static_friction: 0.0,
+        dynamic_friction: 0.0,
+        ..Material::default()
+    };
+    for (_, name, profile) in with_forces() {
+        for (missing, stroke) in [(50, 0.0), (100, 0.0), (150, 0.0), (0, 0.03), (0, 0.1)] {
+            for (delay, hand_damping, grip) in
+                [(1, 1.0, 100.0), (2, 1.0, 100.0), (2, 3.0, 500.0)]
+            {
+                let mut plant = Plant::as_profile();
+                (plant.delay, plant.missing, plant.stroke) = (delay, missing, stroke);
+                (plant.hand_damping, plant.grip) = (hand_damping, grip);
+                (plant.damping, plant.friction) = (0.3, 0.3);
+                let rest = Press::new(profile, &hard).unwrap().on(plant).unwrap();
+                assert!(rest.is_at_rest(), "{name}, {plant:?}: {rest:?}");
+            }
+        }
+    }
+}

@@ -180,6 +180,16 @@ impl Strata {
         self.integral(level, f64::INFINITY, depth)
     }
 
+    /// The force of the springs over the depth, `depth` [m] below the top of layer `level` [N/m].
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    pub(crate) fn secant(&self, level: usize, depth: f64) -> f64 {
+        let top = self.top(level).unwrap_or(&self.outermost);
+        let is_in_top =
+            self.deeper.get(level).is_none_or(|layer| depth <= layer.depth - top.depth);
+        if is_in_top { top.stiffness } else { self.force(level, depth) / depth }
+    }
+
     /// The force of the springs `depth` [m] below the surface, with every stiffness limited to
     /// `most` [N/m].
     ///
@@ -222,6 +232,8 @@ mod tests {
         for (depth, force) in [(0.0, 0.0), (0.25, 1.0), (0.5, 5.0), (1.5, 7.0)] {
             assert_eq!(strata.force(0, depth), force);
         }
+        assert_eq!([0.1, 0.5, 1.0].map(|depth| strata.secant(0, depth)), [4.0, 10.0, 6.0]);
+        assert_eq!([0.1, 0.5].map(|depth| strata.secant(1, depth)), [16.0, 9.0]);
         // From the top of the second layer on.
         for (depth, force) in [(0.0, 0.0), (0.25, 4.0), (0.5, 4.5)] {
             assert_eq!(strata.force(1, depth), force);

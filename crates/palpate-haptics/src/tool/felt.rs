@@ -237,6 +237,11 @@ impl<const D: usize> Tool<D> {
         }
     }
 
+    /// The stiffness of coupling and bodies in the last contact: force over depth [N/m].
+    pub(crate) fn secant(&self) -> f64 {
+        self.coupling.stiffness * self.part
+    }
+
     /// Applies the opposite of the hand's force and torque to the bodies: to each the push of
     /// its contacts, and its share of what dampers and limits change.
     pub(super) fn react(&self, nearby: &Nearby<'_, D>, reactions: &mut [Reaction<D>]) {

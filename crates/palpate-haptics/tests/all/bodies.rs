@@ -7,8 +7,8 @@
 use crate::common::{ball, body, cases, cuboid, half_space, unit, vector};
 use palpate_field::{Pose, Rotation, Shape, Vector};
 use palpate_haptics::{
-    Bodies, Body, EventKind, Material, PointState, Probe, ServoOptions, Surface, Touch,
-    UnprotectedServo,
+    Bodies, Body, DeviceProfile, EventKind, Material, PointState, Probe, Protection,
+    ServoOptions, Surface, Touch, UnprotectedServo,
 };
 
 fn options(radius: f64) -> ServoOptions {
@@ -243,4 +243,38 @@ fn touches_and_leaves_come_in_pairs() {
     touch(&mut servo, Vector([0.0, 0.5, 0.0]));
     leaves += servo.events().len() as u32;
     assert!(touches > 5 && touches == leaves, "{touches} touches, {leaves} leaves");
+}
+
+/// The safety chain took every body for one of the stiffest material, and stepped by 2.8 N a tick where
+/// nothing was to be done: a hand that pressed foam gave back more than steel would have stored.
+#[test]
+fn a_stiff_body_elsewhere_changes_nothing() {
+    let profile = DeviceProfile::unlimited("example")
+        .with_least_damping(2.5)
+        .with_mass(0.25)
+        .with_max_stiffness(5000.0);
+    let forces = |stiffnesses: &[f64]| {
+        let bodies = stiffnesses.iter().enumerate().map(|(number, stiffness)| {
+            let at = Vector([number as f64, 0.0, 0.0]);
+            let ball = Shape::ball(0.05).unwrap().translated(at).unwrap();
+            Body::new(ball, Surface::smooth(*stiffness, 0.0).unwrap()).unwrap()
+        });
+        let bodies = Bodies::new(bodies.collect()).unwrap();
+        let servo = UnprotectedServo::new(bodies, 1, options(0.0)).unwrap();
+        let mut servo = servo.protected(&Protection::new(profile.clone())).unwrap();
+        let mut forces = Vec::new();
+        for tick in 0..4000 {
+            let time = 1e-3 * f64::from(tick);
+            let height = 0.055 - 0.01 * (6.0 * std::f64::consts::PI * time).sin();
+            servo.step(&[PointState::at_rest(Vector([0.0, height, 0.0]))]);
+            forces.push(servo.touches()[0].force.0);
+        }
+        assert_eq!(servo.safety()[0].passivity.effect.ticks, 0, "{stiffnesses:?}");
+        forces
+    };
+    let alone = forces(&[1000.0]);
+    assert!(alone.iter().any(|force| force[1] > 4.0));
+    for (force, expected) in forces(&[1000.0, 5000.0]).into_iter().zip(alone) {
+        assert!((Vector(force) - Vector(expected)).norm() < 1e-4, "{force:?}, {expected:?}");
+    }
 }

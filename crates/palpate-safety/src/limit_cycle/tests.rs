@@ -17,7 +17,8 @@ fn stage() -> LimitCycle<Vector<f64, 2>> {
         stiffness: 1000.0,
         mass: 0.1,
         encoder_step: 0.0,
-        is_soft: false,
+        damping: 0.5,
+        period: PERIOD,
     })
 }
 
@@ -27,7 +28,7 @@ fn moved(stage: &mut LimitCycle<Vector<f64, 2>>, stiff: f64, depth: impl Fn(f64)
         let depth = depth(f64::from(tick) * PERIOD);
         let force = Vector([0.0, stiff * depth.max(0.0)]);
         let position = Vector([0.0, -depth]);
-        let input = CycleInput::of([force, Vector::ZERO], force.norm(), position, PERIOD);
+        let input = CycleInput::of([force, Vector::ZERO], force.norm(), position, 1000.0);
         let _ = stage.step(&input);
     }
 }
@@ -68,7 +69,7 @@ fn a_trembling_hand_gets_its_wall_back() {
                 [force, Vector::ZERO],
                 force.norm(),
                 position,
-                PERIOD,
+                1000.0,
             ));
             let felt = part * force.norm();
             assert!(tick == 0 || (felt - last).abs() <= STEP + 0.1, "{tick}: {felt} N");
@@ -101,7 +102,7 @@ fn a_wall_beyond_the_force_limit_is_halved_smoothly_too() {
         let depth = 5e-3 + 1e-3 * (TAU * 20.0 * f64::from(tick) * PERIOD).sin();
         let (effort, position) = (1000.0 * depth, Vector([0.0, -depth]));
         let force = Vector([0.0, effort.min(limit)]);
-        let part = stage.step(&CycleInput::of([force, Vector::ZERO], effort, position, PERIOD));
+        let part = stage.step(&CycleInput::of([force, Vector::ZERO], effort, position, 1000.0));
         let left = (part * effort).min(limit);
         assert!((left - last).abs() <= STEP + 0.13, "{tick}: {left}"); // the wave's 0.13 N
         last = left;
@@ -119,7 +120,7 @@ fn a_wall_is_halved_smoothly_and_comes_back_when_nothing_touches() {
         let force = Vector([0.0, 1000.0 * depth]);
         let position = Vector([0.0, -depth]);
         let part =
-            stage.step(&CycleInput::of([force, Vector::ZERO], force.norm(), position, PERIOD));
+            stage.step(&CycleInput::of([force, Vector::ZERO], force.norm(), position, 1000.0));
         assert!((part - last).abs() * force.norm() <= STEP * (1.0 + 1e-9));
         last = part;
         least = least.min(part);
@@ -130,4 +131,17 @@ fn a_wall_is_halved_smoothly_and_comes_back_when_nothing_touches() {
     assert!((stage.part - 0.5 * 0.1_f64.exp()).abs() < 1e-5, "{}", stage.part);
     (0..6).for_each(|_| moved(&mut stage, 0.0, |_| -0.01));
     assert_eq!(stage.part, 1.0);
+}
+
+/// A hand that taps eight times a second on a wall that cannot oscillate in it had a thirty-second of
+/// the stiffness for as long as it tapped.
+#[test]
+fn a_tapping_hand_gets_its_wall_back() {
+    let mut stage = stage();
+    let mut soft = 0;
+    for _ in 0..30 {
+        moved(&mut stage, 1000.0, |t| 3e-3 * (TAU * 8.0 * t).sin());
+        soft += i32::from(stage.part < 0.9);
+    }
+    assert!(soft < 10, "{soft} of 30 times");
 }
