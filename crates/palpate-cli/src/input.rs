@@ -26,16 +26,24 @@ pub(crate) struct Named {
 
 /// Reads and builds the scene in `path`, or the built-in gallery.
 pub(crate) fn scene(path: Option<&Path>) -> Result<Named, Failure> {
+    moving(path, None)
+}
+
+/// As [`scene`], with the motions of a file in place of its own.
+pub(crate) fn moving(path: Option<&Path>, motions: Option<&Path>) -> Result<Named, Failure> {
     let (name, bytes) = match path {
         None => ("the built-in gallery".to_owned(), GALLERY.as_bytes().to_owned()),
-        Some(path) => (path.display().to_string(), bytes(path)?),
+        Some(path) => (path.display().to_string(), self::bytes(path)?),
     };
-    match Scene::from_bytes(&bytes).and_then(|scene| scene.build()) {
-        Ok(scene) => Ok(Named { name, scene }),
-        Err(error) => {
-            Err(Failure::input(format!("{name}: {}", no_scene(path, &bytes, &error))))
-        }
+    let no_scene =
+        |error| Failure::input(format!("{name}: {}", no_scene(path, &bytes, &error)));
+    let mut scene = Scene::from_bytes(&bytes).map_err(no_scene)?;
+    if let Some(path) = motions {
+        let moved = scene.with_motions_of(&self::bytes(path)?);
+        scene = moved.map_err(|error| Failure::file(path, error))?;
     }
+    let scene = scene.build().map_err(no_scene)?;
+    Ok(Named { name, scene })
 }
 
 /// Why a file is no scene: what it is instead, or what is wrong with it.

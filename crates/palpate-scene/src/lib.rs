@@ -52,6 +52,7 @@ mod json;
 mod keys;
 mod material;
 mod motion;
+mod motions_file;
 mod names;
 mod pose;
 mod problem;

@@ -14,6 +14,7 @@ Examples:
   palpate sweep scenes/bayonet.json
   palpate sweep scenes/bayonet.json --until 1 --gap 1e-7 --json
   palpate sweep scenes/bayonet.json --body key
+  palpate sweep scenes/cup.json --motion drop.json
 
 Before the earlier time the bodies are apart, which is proven, rounding included; at the later
 one their separation is at most the gap.";
@@ -23,6 +24,9 @@ one their separation is at most the gap.";
 pub(crate) struct SweepOptions {
     /// The scene file, whose bodies move by its `motions`.
     pub(crate) scene: PathBuf,
+    /// A file of motions in place of the scene's own.
+    #[arg(long, value_name = "FILE")]
+    pub(crate) motion: Option<PathBuf>,
     /// Only pairs with this body; may be given more than once.
     #[arg(long, value_name = "NAME")]
     pub(crate) body: Vec<String>,

@@ -39,7 +39,7 @@ struct Question {
 
 /// Finds when pairs touch first; the answer is no if none do.
 pub(crate) fn run(options: &SweepOptions, interrupt: &Interrupt) -> Result<Outcome, Failure> {
-    let named = input::scene(Some(&options.scene))?;
+    let named = input::moving(Some(&options.scene), options.motion.as_deref())?;
     match &named.scene {
         AnyScene::Planar(scene) => answer(options, scene, interrupt),
         AnyScene::Spatial(scene) => answer(options, scene, interrupt),
@@ -96,8 +96,8 @@ fn asked_of<const D: usize>(
     });
     let Some(end) = ends.reduce(f64::max) else {
         return Err(Failure::input(
-            "sweep is about bodies that move, and the scene has no `motions`; palpate contact tells \
-             where bodies at rest touch",
+            "sweep is about bodies that move, and there are no `motions`: give some to the scene, or \
+             a file of them by --motion; palpate contact tells where bodies at rest touch",
         ));
     };
     let until = options.until.unwrap_or(end);

@@ -73,9 +73,21 @@ fn what_cannot_be_swept_is_refused() {
     let still = folder.write("still.json", &format!("{} }}", &FALL[..end]));
     assert_refused(
         &["sweep", &still],
-        "sweep is about bodies that move, and the scene has no `motions`; palpate contact tells where \
-         bodies at rest touch",
+        "sweep is about bodies that move, and there are no `motions`: give some to the scene, or a file \
+         of them by --motion; palpate contact tells where bodies at rest touch",
     );
+    let rises = r#"{ "palpate_motions": 1, "motions": [ { "body": "wall", "duration": 2,
+        "to": { "translation": [-0.1, 0, 0] } } ] }"#;
+    let file = folder.write("rises.json", rises);
+    let found = json(&["sweep", &still, "--motion", &file, "--json"]);
+    // 0.04 m of 0.2 m in 2 s, and the floor from the first.
+    let pair =
+        found["pairs"].as_array().unwrap().iter().find(|pair| pair["bodies"][0] == "ball");
+    let upper = pair.unwrap()["upper_s"].as_f64().unwrap();
+    assert!((upper - 0.4).abs() < 1e-3, "{upper}");
+    let wrong = folder.write("wrong.json", &rises.replace("wall", "well"));
+    let told = errors(&palpate(&["sweep", &still, "--motion", &wrong]));
+    assert!(told.contains("wrong.json: motions[0].body, line 1: unknown body"), "{told}");
     let scene = folder.write("fall.json", FALL);
     assert_eq!(status(&palpate(&["sweep", &scene, "--until", "1e9"])), 0);
     // Once only periods counted, and each of so many half turns took memory.

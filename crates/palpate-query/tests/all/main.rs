@@ -19,6 +19,7 @@ mod pairs;
 mod queries;
 mod rays;
 mod recall;
+mod recall_motions;
 mod separating_translations;
 mod serde;
 mod sweeps;

@@ -26,11 +26,11 @@ const BUILT: &str = "overlap of the built motion";
 
 /// What was asked of rows, and what is wrong with the answers.
 #[derive(Default)]
-struct Report {
-    rows: usize,
-    wrong: Vec<String>,
-    signs_spent: Vec<String>,
-    separations_spent: Vec<String>,
+pub(crate) struct Report {
+    pub(crate) rows: usize,
+    pub(crate) wrong: Vec<String>,
+    pub(crate) signs_spent: Vec<String>,
+    pub(crate) separations_spent: Vec<String>,
 }
 
 impl Report {
@@ -43,7 +43,7 @@ impl Report {
 }
 
 /// What `ask` reports of each row, on all cores.
-fn on_rows<const D: usize>(
+pub(crate) fn on_rows<const D: usize>(
     pairs: &[Pair<D>],
     rows: &[Row<D>],
     ask: impl Fn(&Pair<D>, &Row<D>, &mut PairWorkspace<D>) -> Result<Report, ShapeError> + Sync,

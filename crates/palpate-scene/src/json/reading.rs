@@ -35,6 +35,8 @@ static STAND_INS: LazyLock<Vec<(&str, Value)>> = LazyLock::new(|| {
         ("body", json!("")),
         ("to", json!({})),
         ("palpate_device", json!(1)),
+        ("palpate_motions", json!(1)),
+        ("motions", json!([])),
         ("device", json!("")),
         ("source", json!("")),
     ];
