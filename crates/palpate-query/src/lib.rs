@@ -104,8 +104,8 @@ pub use query::{ElementMemory, Query, Tolerance};
 pub use ray::{Ray, RayHit, cast_ray};
 pub use sampler::free_radius;
 pub use sweep::{
-    ElementSweep, FirstTouch, Motion, Moving, Start, SweepSettings, SweepWorkspace, cast_ball,
-    sweep, sweep_element, sweep_mesh,
+    ElementSweep, FirstTouch, FreeBox, Motion, Moving, Start, SweepProof, SweepSettings,
+    SweepWorkspace, cast_ball, sweep, sweep_element, sweep_mesh, sweep_proof,
 };
 pub use track::Track;
 #[cfg(feature = "world")]

@@ -14,6 +14,7 @@ Examples:
   palpate sweep scenes/bayonet.json
   palpate sweep scenes/bayonet.json --until 1 --gap 1e-7 --json
   palpate sweep scenes/bayonet.json --body key
+  palpate sweep scenes/bayonet.json --plot touch.png
   palpate sweep scenes/cup.json --motion drop.json
 
 Before the earlier time the bodies are apart, which is proven, rounding included; at the later
@@ -45,6 +46,13 @@ pub(crate) struct SweepOptions {
     /// left out.
     #[arg(long, allow_negative_numbers = true, value_parser = count(1, u32::MAX))]
     pub(crate) budget: Option<u32>,
+    /// Draw the first touch, how the bodies got there, and the boxes that were ruled out: .svg or .png.
+    #[arg(long, value_name = "PICTURE")]
+    pub(crate) plot: Option<PathBuf>,
+    /// The plane of the picture in space: xy, xz, yz, or three points as origin:right:up, each x,y,z;
+    /// along two axes through the touch; if left out, along the normal and the motion there.
+    #[arg(long, requires = "plot", allow_hyphen_values = true)]
+    pub(crate) plane: Option<String>,
     /// Print JSON.
     #[arg(long)]
     pub(crate) json: bool,

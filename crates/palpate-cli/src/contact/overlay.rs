@@ -3,7 +3,7 @@
 
 //! Contacts and their proof, drawn over isolines.
 
-use palpate::field::{Aabb, Vector};
+use palpate::field::Vector;
 use palpate::plot::{Arrow, Arrows, Color, Dash, Isolines, Markers, Polyline, Slice};
 use palpate::query::{Contact, Proof, Verdict};
 use palpate::scene::BuiltScene;
@@ -13,7 +13,7 @@ use super::question::{Asked, Pair, Question};
 use crate::arguments::ContactQuestion;
 use crate::interrupt::Interrupt;
 use crate::outcome::Failure;
-use crate::picture::in_space;
+use crate::picture::{cut, in_space};
 
 /// The contacts of a scene, to be drawn.
 pub(crate) struct Touched<const D: usize> {
@@ -103,22 +103,5 @@ fn cuts<const D: usize>(
     proof: &Proof<D>,
     plane: &Slice,
 ) -> impl Iterator<Item = Vec<[f64; 2]>> {
-    let world = proof.world_from_boxes;
-    proof.boxes.iter().filter_map(move |part| {
-        let Aabb { min, max } = part.aabb;
-        let corner = |code: usize| {
-            let mut p = min;
-            for k in (0..D).filter(|k| code >> k & 1 == 1) {
-                p[k] = max[k];
-            }
-            in_space(world.transform_point(p))
-        };
-        let mut outline = if D == 2 {
-            [0, 1, 3, 2].map(|code| plane.project(corner(code))).to_vec()
-        } else {
-            plane.cut(std::array::from_fn(corner))
-        };
-        outline.push(*outline.first()?);
-        Some(outline)
-    })
+    proof.boxes.iter().filter_map(|part| cut(&part.aabb, &proof.world_from_boxes, plane))
 }

@@ -10,7 +10,7 @@ mod truth;
 
 use std::path::Path;
 
-use palpate::field::{Aabb, Rotation, Shape, Vector};
+use palpate::field::{Aabb, Pose, Rotation, Shape, Vector};
 use palpate::plot::{Figure, Isolines, PlotError, Sampling, Slice, View};
 use palpate::scene::{AnyScene, BuiltScene};
 
@@ -124,6 +124,28 @@ impl Drawable<3> for Dimensions {
             AnyScene::Planar(_) => None,
         }
     }
+}
+
+/// The closed line in which a plane cuts a box that is placed in the world; `None` if it does not.
+pub(crate) fn cut<const D: usize>(
+    aabb: &Aabb<D>,
+    world_from_box: &Pose<D>,
+    plane: &Slice,
+) -> Option<Vec<[f64; 2]>> {
+    let corner = |code: usize| {
+        let mut p = aabb.min;
+        for k in (0..D).filter(|k| code >> k & 1 == 1) {
+            p[k] = aabb.max[k];
+        }
+        in_space(world_from_box.transform_point(p))
+    };
+    let mut outline = if D == 2 {
+        [0, 1, 3, 2].map(|code| plane.project(corner(code))).to_vec()
+    } else {
+        plane.cut(std::array::from_fn(corner))
+    };
+    outline.push(*outline.first()?);
+    Some(outline)
 }
 
 /// A point of the plane or of space, as a point of space.

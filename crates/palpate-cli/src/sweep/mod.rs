@@ -3,6 +3,7 @@
 
 //! `palpate sweep`: when bodies that move by the motions of a scene touch first.
 
+mod figure;
 mod report;
 
 use palpate::query::{FirstTouch, Moving, Placed, Stop, SweepSettings, SweepWorkspace, sweep};
@@ -12,7 +13,8 @@ use crate::arguments::SweepOptions;
 use crate::input;
 use crate::interrupt::Interrupt;
 use crate::outcome::{Failure, Outcome};
-use crate::output;
+use crate::output::{self, Files};
+use crate::picture::{self, Dimensions, Drawable, Picture};
 
 /// The gap over the size of the smallest body.
 const GAP: f64 = 1e-6;
@@ -27,6 +29,8 @@ const MOST_PARTS: f64 = 1e5;
 struct Pair<const D: usize> {
     bodies: [usize; 2],
     found: FirstTouch<D>,
+    /// The times between which it was searched last [s].
+    part: [f64; 2],
 }
 
 /// What is asked of each pair.
@@ -39,18 +43,29 @@ struct Question {
 
 /// Finds when pairs touch first; the answer is no if none do.
 pub(crate) fn run(options: &SweepOptions, interrupt: &Interrupt) -> Result<Outcome, Failure> {
+    let inputs = [Some(options.scene.as_path()), options.motion.as_deref()];
+    let mut files = Files::reading(inputs.into_iter().flatten());
+    let picture = options.plot.as_deref().map(|path| Picture::new(&mut files, path));
+    let picture = picture.transpose()?;
     let named = input::moving(Some(&options.scene), options.motion.as_deref())?;
     match &named.scene {
-        AnyScene::Planar(scene) => answer(options, scene, interrupt),
-        AnyScene::Spatial(scene) => answer(options, scene, interrupt),
+        AnyScene::Planar(_) if options.plane.is_some() => Err(Failure::input(
+            "--plane is for scenes in space; this scene is in the plane, and drawn whole",
+        )),
+        AnyScene::Planar(scene) => answer(options, scene, picture.as_ref(), interrupt),
+        AnyScene::Spatial(scene) => answer(options, scene, picture.as_ref(), interrupt),
     }
 }
 
 fn answer<const D: usize>(
     options: &SweepOptions,
     scene: &BuiltScene<D>,
+    picture: Option<&Picture>,
     interrupt: &Interrupt,
-) -> Result<Outcome, Failure> {
+) -> Result<Outcome, Failure>
+where
+    Dimensions: Drawable<D>,
+{
     let names: Vec<&str> = scene.bodies.iter().map(|body| body.name.as_str()).collect();
     let asked = input::bodies(&options.body, &names)?;
     let question = asked_of(options, scene)?;
@@ -67,8 +82,7 @@ fn answer<const D: usize>(
             if interrupt.is_asked() {
                 break;
             }
-            let found = first_touch(scene, [a, b], &times, &question)?;
-            pairs.push(Pair { bodies: [a, b], found });
+            pairs.push(first_touch(scene, [a, b], &times, &question)?);
         }
     }
     pairs.sort_by(|a, b| a.found.upper.total_cmp(&b.found.upper));
@@ -77,6 +91,10 @@ fn answer<const D: usize>(
         report.print_json()?;
     } else {
         report.print()?;
+    }
+    if let (Some(picture), Some(pair)) = (picture, pairs.first()) {
+        let figure = figure::of(options, &question, scene, pair)?;
+        picture.save(&figure, picture::WIDTH)?;
     }
     if interrupt.is_asked() {
         output::remark("interrupted: some pairs are not listed");
@@ -124,36 +142,52 @@ fn asked_of<const D: usize>(
     Ok(Question { until, tolerance, settings })
 }
 
+impl Question {
+    /// The settings of a search between two times [s].
+    fn settings_over(&self, [from, to]: [f64; 2]) -> SweepSettings {
+        self.settings.with_time_tolerance(self.tolerance / (to - from))
+    }
+}
+
+/// Two bodies on their way between two times [s], over the time from 0 to 1.
+fn moving<const D: usize>(
+    scene: &BuiltScene<D>,
+    bodies: [usize; 2],
+    [from, to]: [f64; 2],
+) -> Result<[Moving<'_, D>; 2], Failure> {
+    let moving = |body: usize| {
+        let shape = &scene.bodies[body].shape_in_body;
+        let way = scene.way(body, from, to).map_err(Failure::input)?;
+        let rest = || Placed::new(shape, scene.pose_at(body, from)).into();
+        Ok::<_, Failure>(way.map_or_else(rest, |way| Moving::new(shape, way)))
+    };
+    Ok([moving(bodies[0])?, moving(bodies[1])?])
+}
+
 /// When two bodies touch first [s].
 fn first_touch<const D: usize>(
     scene: &BuiltScene<D>,
     bodies: [usize; 2],
     times: &[f64],
     question: &Question,
-) -> Result<FirstTouch<D>, Failure> {
+) -> Result<Pair<D>, Failure> {
     let mut workspace = SweepWorkspace::new();
     let mut evaluations = 0_u32;
     let mut last = None;
     for part in times.windows(2) {
         let &[from, to] = part else { continue };
-        let moving = |body: usize| {
-            let shape = &scene.bodies[body].shape_in_body;
-            let way = scene.way(body, from, to).map_err(Failure::input)?;
-            let rest = || Placed::new(shape, scene.pose_at(body, from)).into();
-            Ok::<_, Failure>(way.map_or_else(rest, |way| Moving::new(shape, way)))
-        };
-        let [a, b] = [moving(bodies[0])?, moving(bodies[1])?];
-        let length = to - from;
-        let settings = question.settings.with_time_tolerance(question.tolerance / length);
+        let [a, b] = moving(scene, bodies, [from, to])?;
+        let (length, settings) = (to - from, question.settings_over([from, to]));
         let mut found = sweep(a, b, &settings, &mut workspace).map_err(Failure::input)?;
         evaluations = evaluations.saturating_add(found.evaluations);
         found.evaluations = evaluations;
         found.lower = from + length * found.lower;
         found.upper = from + length * found.upper;
+        let pair = Pair { bodies, found, part: [from, to] };
         if found.stop != Stop::SignKnown {
-            return Ok(found);
+            return Ok(pair);
         }
-        last = Some(found);
+        last = Some(pair);
     }
     last.ok_or_else(|| Failure::input("there is no time to look at"))
 }

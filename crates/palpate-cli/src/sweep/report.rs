@@ -42,7 +42,7 @@ impl<const D: usize> Report<'_, D> {
         Ok(())
     }
 
-    fn in_words(&self, pair: &Pair<D>) -> String {
+    pub(super) fn in_words(&self, pair: &Pair<D>) -> String {
         let [a, b] = pair.bodies.map(|body| shown(self.names[body]));
         let found = &pair.found;
         let cost = counted(found.evaluations, "evaluation", "evaluations");

@@ -67,6 +67,32 @@ fn motions_of_many_turns_and_those_that_repeat_are_looked_at_part_by_part() {
 }
 
 #[test]
+fn a_picture_shows_the_touch_the_way_and_the_boxes() {
+    let folder = Folder::new();
+    let scene = folder.write("fall.json", FALL);
+    let picture = folder.path("touch.svg").display().to_string();
+    let drawn = palpate(&["sweep", &scene, "--plot", &picture]);
+    assert_eq!(status(&drawn), 0, "{}", errors(&drawn));
+    let svg = std::fs::read_to_string(&picture).unwrap();
+    for word in [
+        "first touch",
+        "ball before",
+        "way of the point of ball",
+        "no touch there",
+        "separation",
+    ] {
+        assert!(svg.contains(word), "{word}");
+    }
+    // Apart all the time: neither a touch nor a way to it.
+    let apart = ["sweep", &scene, "--body", "wall", "--plane", "xz", "--plot", &picture];
+    assert_eq!(status(&palpate(&apart)), 1);
+    let svg = std::fs::read_to_string(&picture).unwrap();
+    assert!(svg.contains("apart all the time") && !svg.contains("first touch"));
+    let over = palpate(&["sweep", &scene, "--plot", &scene]);
+    assert_eq!(status(&over), 2, "{}", errors(&over));
+}
+
+#[test]
 fn what_cannot_be_swept_is_refused() {
     let folder = Folder::new();
     let end = FALL.find(",\n  \"motions\"").unwrap();

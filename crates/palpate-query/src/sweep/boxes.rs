@@ -16,6 +16,7 @@ use palpate_field::{Aabb, BLOCK, Block, Column, Point, Vector};
 
 use super::moving::Moving;
 use super::path::{Path, Places, WayBounds};
+use super::proof::FreeBox;
 use super::settings::{HALVES, SweepSettings};
 use super::stay::{Stay, later};
 use crate::certified::Stop;
@@ -59,6 +60,15 @@ pub(super) struct SpaceCell<const D: usize> {
     is_whole: bool,
     /// Whether the first field was asked for it.
     is_asked: bool,
+}
+
+impl<const D: usize> SpaceCell<D> {
+    /// The box, and until when it is free.
+    pub(super) fn free(&self) -> FreeBox<D> {
+        let BoxCell { centre, half, lower, .. } = self.cell;
+        let aabb = Aabb { min: centre - half, max: centre + half };
+        FreeBox { aabb, until: lower.min(1.0) }
+    }
 }
 
 impl<const D: usize> Bounded for SpaceCell<D> {
@@ -161,6 +171,8 @@ pub(super) struct BoxSweep<'s, 'a, const D: usize> {
     pub(super) place: Point<D>,
     /// The least bound of closed boxes.
     pub(super) dropped: f64,
+    /// The boxes that nothing more is asked about, if they are to be kept.
+    pub(super) ruled_out: Option<&'s mut Vec<FreeBox<D>>>,
 }
 
 /// What the second field says of a box at its time.
@@ -199,6 +211,10 @@ impl<const D: usize> BoxSweep<'_, '_, D> {
             if first.floor(cell.centre, value, cell.radius()) > self.level {
                 cell.lower = f64::INFINITY;
             }
+        }
+        if let Some(boxes) = &mut self.ruled_out {
+            let free = round.iter().filter(|space| space.cell.lower == f64::INFINITY);
+            boxes.extend(free.map(SpaceCell::free));
         }
         round.retain(|space| space.cell.lower < f64::INFINITY);
     }
@@ -444,6 +460,9 @@ impl<const D: usize> Problem for BoxSweep<'_, '_, D> {
 
     fn close(&mut self, space: &SpaceCell<D>, _queue: &mut Self::Queue) {
         self.dropped = self.dropped.min(space.cell.lower);
+        if let Some(boxes) = &mut self.ruled_out {
+            boxes.push(space.free());
+        }
     }
 
     fn closed(&self) -> f64 {

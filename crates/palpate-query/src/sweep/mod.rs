@@ -14,6 +14,7 @@ mod moving;
 mod pair;
 mod part;
 mod path;
+mod proof;
 mod settings;
 mod stay;
 
@@ -27,4 +28,5 @@ pub use moving::Moving;
 #[cfg(feature = "world")]
 pub(crate) use moving::corners;
 pub use pair::{SweepWorkspace, sweep};
+pub use proof::{FreeBox, SweepProof, sweep_proof};
 pub use settings::SweepSettings;

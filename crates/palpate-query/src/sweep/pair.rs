@@ -5,10 +5,11 @@
 
 use palpate_field::{Pose, Vector};
 
-use super::boxes::{BoxFrontier, BoxMemory, BoxSweep, frontier};
+use super::boxes::{BoxFrontier, BoxMemory, BoxSweep, SpaceCell, frontier};
 use super::first_touch::{FirstTouch, Start};
 use super::moving::{Moving, corners};
 use super::path::Path;
+use super::proof::FreeBox;
 use super::settings::{FREE, SweepSettings};
 use crate::certified::{Limits, Stop};
 use crate::engine;
@@ -54,7 +55,16 @@ pub fn sweep<'a, const D: usize>(
     settings: &SweepSettings,
     workspace: &mut SweepWorkspace<D>,
 ) -> Result<FirstTouch<D>, QueryError> {
-    let bodies = [a.into(), b.into()];
+    Ok(swept([a.into(), b.into()], settings, workspace, None)?.0)
+}
+
+/// The first touch, and the body in whose coordinates the boxes are, which are added to `boxes`.
+pub(super) fn swept<const D: usize>(
+    bodies: [Moving<'_, D>; 2],
+    settings: &SweepSettings,
+    workspace: &mut SweepWorkspace<D>,
+    boxes: Option<&mut Vec<FreeBox<D>>>,
+) -> Result<(FirstTouch<D>, usize), QueryError> {
     let SweepWorkspace { frontier, memory, pair } = workspace;
     // The first is that whose coordinates are searched: the smaller one.
     let size = |body: &Moving<'_, D>| {
@@ -91,6 +101,7 @@ pub fn sweep<'a, const D: usize>(
         upper: f64::INFINITY,
         place: Vector::ZERO,
         dropped: f64::INFINITY,
+        ruled_out: boxes,
     };
     let end = engine::search(&mut search, frontier);
     let lower = frontier.lower(search.dropped).min(search.upper).min(1.0);
@@ -98,13 +109,17 @@ pub fn sweep<'a, const D: usize>(
         search.refine(lower);
     }
     let (upper, evaluations) = (search.upper, search.evaluations);
+    if let Some(boxes) = search.ruled_out {
+        boxes.extend(frontier.queue.cells().map(|space: SpaceCell<D>| space.free()));
+        boxes.extend(frontier.pending.iter().map(|space| space.free()));
+    }
     let stop = end.stop();
     let upper = if stop == Stop::SignKnown { 1.0 } else { upper };
     let mut found = FirstTouch { lower, upper, contact: None, start: None, stop, evaluations };
     if stop != Stop::SignKnown && upper.is_finite() {
         touch_at(bodies, settings, pair, &mut found)?;
     }
-    Ok(found)
+    Ok((found, usize::from(is_swapped)))
 }
 
 /// Adds the contact at the time of a touch.

@@ -63,7 +63,7 @@ where
     };
     let is_late = row.truth.upper < 0.0 && found.lower > 0.5;
     let mut is_early = false;
-    if found.touches() == Some(true) && row.seed / 100 % MOTIONS_A_PROOF == 0 {
+    if found.touches() == Some(true) && (row.seed / 100).is_multiple_of(MOTIONS_A_PROOF) {
         let there = moving.at(found.upper).world_from_body;
         let poses = [(a, Pose::identity()), (b, there)];
         let proven = separation(poses, CELLS, |known| known.lower > GAP || known.upper <= GAP);

@@ -221,9 +221,13 @@ impl<'t> Reading<'t> {
             || (is_name_of_body(problem) && !self.has_all_names())
     }
 
-    /// `true` if every body was read with its own name.
+    /// `true` if every body was read with its own name, or the file has none: a file of motions.
     fn has_all_names(&self) -> bool {
-        let Some(Value::Array(bodies)) = self.root.get("bodies") else { return false };
+        let bodies = Step::Key("bodies".into());
+        let Some(Value::Array(bodies)) = self.root.get("bodies") else {
+            return self.root.get("bodies").is_none()
+                && !self.taken.stands_in(self.root, &bodies);
+        };
         let name = Step::Key("name".into());
         bodies.iter().all(|body| !self.taken.is_out(body) && !self.taken.stands_in(body, &name))
     }

@@ -1,0 +1,247 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! The first touch of two bodies, drawn: where it is, how the bodies came there, and the boxes of
+//! space that were ruled out until then.
+
+use palpate::field::{Aabb, Point, Vector};
+use palpate::plot::{
+    Arrow, Arrows, Chart, Dash, Figure, Isolines, Markers, PlotError, Polyline, Quantity,
+    Sampling, Series, Slice, View,
+};
+use palpate::query::{Limits, PairWorkspace, Placed, SweepProof, SweepWorkspace, sweep_proof};
+use palpate::scene::BuiltScene;
+
+use super::report::Report;
+use super::{Pair, Question, moving};
+use crate::arguments::SweepOptions;
+use crate::outcome::Failure;
+use crate::picture::{self, Dimensions, Drawable, cut, in_space};
+use crate::plane;
+use crate::plot::title;
+
+/// Earlier times at which the bodies are drawn.
+const EARLIER: u32 = 5;
+
+/// Times at which the way of a point is drawn, and separations are searched.
+const TIMES: u32 = 60;
+
+/// How exactly separations are searched, as a share of what is shown.
+const EXACT: f64 = 1e-3;
+
+/// The first touch of a pair of a scene.
+struct Drawn<'a, const D: usize> {
+    scene: &'a BuiltScene<D>,
+    pair: &'a Pair<D>,
+    /// When the bodies touch; the end of the time that is looked at if they are apart [s].
+    time: f64,
+    /// The bodies then.
+    then: BuiltScene<D>,
+    proof: SweepProof<D>,
+    /// What is shown of the scene.
+    bounds: Aabb<D>,
+}
+
+/// The figure of a pair.
+pub(super) fn of<const D: usize>(
+    options: &SweepOptions,
+    question: &Question,
+    scene: &BuiltScene<D>,
+    pair: &Pair<D>,
+) -> Result<Figure, Failure>
+where
+    Dimensions: Drawable<D>,
+{
+    let drawn = Drawn::new(question, scene, pair)?;
+    let plane = drawn.plane(options.plane.as_deref())?;
+    let names: Vec<&str> = scene.bodies.iter().map(|body| body.name.as_str()).collect();
+    let report = Report { question, names: &names, pairs: std::slice::from_ref(pair) };
+    let mut caption = report.in_words(pair);
+    if D == 3 {
+        caption = format!("{}; {caption}", plane::in_words(&plane));
+    }
+    let isolines = drawn.isolines(&plane).map_err(Failure::input)?;
+    let chart = drawn.separations(question)?;
+    let figure = Figure::new(title(&options.scene)).with_caption(caption);
+    Ok(figure.with_isolines(isolines).with_chart(chart))
+}
+
+impl<'a, const D: usize> Drawn<'a, D>
+where
+    Dimensions: Drawable<D>,
+{
+    fn new(
+        question: &Question,
+        scene: &'a BuiltScene<D>,
+        pair: &'a Pair<D>,
+    ) -> Result<Self, Failure> {
+        let [a, b] = moving(scene, pair.bodies, pair.part)?;
+        let settings = question.settings_over(pair.part);
+        let proof = sweep_proof(a, b, &settings, &mut SweepWorkspace::new());
+        let proof = proof.map_err(Failure::input)?;
+        let [_, end] = pair.part;
+        let time = if pair.found.upper < f64::INFINITY { pair.found.upper } else { end };
+        let then = scene.at(time).map_err(Failure::input)?;
+        let mut drawn =
+            Self { scene, pair, time, then, proof, bounds: Aabb::centred(Vector::ZERO) };
+        drawn.bounds = drawn.shown()?;
+        Ok(drawn)
+    }
+
+    /// A time before that of the touch [s], the `i`-th of `count`.
+    fn before(&self, i: u32, count: u32) -> f64 {
+        self.time * f64::from(i) / f64::from(count)
+    }
+
+    /// The bodies of the pair that have motions.
+    fn movers(&self) -> impl Iterator<Item = usize> {
+        let moving: Vec<usize> = self.scene.moving().collect();
+        self.pair.bodies.into_iter().filter(move |body| moving.contains(body))
+    }
+
+    /// What holds both bodies until the touch; of a body without bounds, nothing.
+    fn shown(&self) -> Result<Aabb<D>, Failure> {
+        let mut shown: Option<Aabb<D>> = None;
+        for body in self.pair.bodies {
+            let Some(bounds) = self.scene.bodies[body].shape_in_body.promise().bounds else {
+                continue;
+            };
+            for i in 0..=EARLIER {
+                let aabb =
+                    bounds.aabb.placed(&self.scene.pose_at(body, self.before(i, EARLIER)));
+                shown = Some(shown.map_or(aabb, |shown| shown.union(&aabb)));
+            }
+        }
+        shown.ok_or_else(|| Failure::input("--plot needs a body with bounds in the pair"))
+    }
+
+    /// Where the bodies touch; the middle of what is shown if they do not.
+    fn middle(&self) -> Point<D> {
+        self.pair.found.contact.map_or(self.bounds.centre(), |contact| contact.point_a)
+    }
+
+    /// The plane of an option; or along the normal of the touch and the motion there.
+    fn plane(&self, asked: Option<&str>) -> Result<Slice, Failure> {
+        if D < 3 {
+            return Ok(Slice::planar());
+        }
+        let middle = in_space(self.middle());
+        if let Some(asked) = asked {
+            return plane::named("--plane", asked, None, Vector(middle));
+        }
+        let along = self.pair.found.contact.and_then(|contact| {
+            let way = self.movers().find_map(|body| {
+                let before = self.time - 1e-3 * self.time;
+                let way = self.carried(body, self.time) - self.carried(body, before);
+                way.normalized()
+            })?;
+            // Across the motion, the normal; along it, any axis.
+            let across = contact.normal - way * contact.normal.dot(way);
+            let axes =
+                (0..D).map(Vector::unit).map(|axis: Vector<f64, D>| axis - way * axis.dot(way));
+            let up = [across].into_iter().chain(axes).find(|up| up.norm() > 1e-2)?;
+            Slice::free(middle, in_space(way), in_space(up)).ok()
+        });
+        along.map_or_else(|| Slice::xy(middle[2]).map_err(Failure::input), Ok)
+    }
+
+    /// Where the point of a body that touches is at a time [s].
+    fn carried(&self, body: usize, time: f64) -> Point<D> {
+        let in_body = self.scene.pose_at(body, self.time).inverse();
+        self.scene.pose_at(body, time).transform_point(in_body.transform_point(self.middle()))
+    }
+
+    fn isolines(&self, plane: &Slice) -> Result<Isolines, PlotError> {
+        let view = Dimensions::view(plane, &self.bounds, picture::MARGIN)?;
+        let mut isolines = picture::scene(&self.then, plane, &view)?;
+        isolines = self.with_boxes(isolines, plane)?;
+        for body in self.movers() {
+            isolines = self.with_way(isolines, plane, &view, body)?;
+        }
+        let Some(contact) = &self.pair.found.contact else { return Ok(isolines) };
+        let at = plane.project(in_space(contact.point_a));
+        let vector = plane.project_vector(in_space(contact.normal));
+        Ok(isolines
+            .with_arrows(Arrows::directions("normal", [Arrow { tail: at, vector }])?)
+            .with_markers(Markers::new("first touch", [at])?))
+    }
+
+    /// With the boxes that were ruled out: for all of the time, and until the touch.
+    fn with_boxes(&self, isolines: Isolines, plane: &Slice) -> Result<Isolines, PlotError> {
+        let cuts = |is_for_ever: bool| {
+            let boxes = self.proof.boxes.iter();
+            let boxes = boxes.filter(move |part| (part.until >= 1.0) == is_for_ever);
+            boxes.filter_map(|part| cut(&part.aabb, &self.proof.world_from_boxes, plane))
+        };
+        let mut isolines = isolines;
+        let kinds = [
+            ("no touch there at any time", Dash::Solid),
+            ("no touch there before", Dash::Dotted),
+        ];
+        for ((name, dash), is_for_ever) in kinds.into_iter().zip([true, false]) {
+            if cuts(is_for_ever).next().is_some() {
+                let boxes = Polyline::of_pieces(name, cuts(is_for_ever))?.faint();
+                isolines = isolines.with_polyline(boxes.with_dash(dash));
+            }
+        }
+        Ok(isolines)
+    }
+
+    /// With a body at earlier times, and the way of the point that touches.
+    fn with_way(
+        &self,
+        isolines: Isolines,
+        plane: &Slice,
+        view: &View,
+        body: usize,
+    ) -> Result<Isolines, PlotError> {
+        let BuiltScene { bodies, .. } = self.scene;
+        let mut lines = Vec::new();
+        for i in 0..EARLIER {
+            let pose = self.scene.pose_at(body, self.before(i, EARLIER));
+            let Ok(shape) = bodies[body].shape_in_body.clone().placed(&pose) else { continue };
+            let outline = picture::outline(&shape, plane, view, Sampling::default())?;
+            lines.extend(outline.lines().iter().cloned());
+        }
+        let name = &bodies[body].name;
+        let earlier = Polyline::of_pieces(format!("{name} before"), lines)?;
+        let isolines = isolines.with_polyline(earlier.with_dash(Dash::Dashed));
+        if self.pair.found.contact.is_none() {
+            return Ok(isolines);
+        }
+        let carried = |i| plane.project(in_space(self.carried(body, self.before(i, TIMES))));
+        let way =
+            Polyline::new(format!("way of the point of {name}"), (0..=TIMES).map(carried))?;
+        Ok(isolines.with_polyline(way))
+    }
+
+    /// The separation over the time that is looked at.
+    fn separations(&self, question: &Question) -> Result<Chart, Failure> {
+        let limits = Limits::new(EXACT * 2.0 * self.bounds.half_extents().norm());
+        let mut workspace = PairWorkspace::new();
+        let mut points = Vec::new();
+        for i in 0..=TIMES {
+            let time = question.until * f64::from(i) / f64::from(TIMES);
+            let [a, b] = self.pair.bodies.map(|body| {
+                Placed::new(
+                    &self.scene.bodies[body].shape_in_body,
+                    self.scene.pose_at(body, time),
+                )
+            });
+            let apart = palpate::query::separation(a, b, &limits, &mut workspace);
+            points.push([time, apart.map_err(Failure::input)?.upper]);
+        }
+        let series = |name: &str, points: Vec<[f64; 2]>| Series::new(name, points);
+        let least = points.iter().map(|point| point[1]).fold(f64::INFINITY, f64::min);
+        let most = points.iter().map(|point| point[1]).fold(f64::NEG_INFINITY, f64::max);
+        let mut chart =
+            Chart::new(Quantity::new("time", "s"), Quantity::new("separation", "m"));
+        chart = chart.with_series(series("separation", points).map_err(Failure::input)?);
+        if self.pair.found.upper < f64::INFINITY && self.pair.found.contact.is_some() {
+            let touch = vec![[self.time, least], [self.time, most]];
+            let touch = series("first touch", touch).map_err(Failure::input)?;
+            chart = chart.with_series(touch.with_dash(Dash::Dashed));
+        }
+        Ok(chart)
+    }
+}
