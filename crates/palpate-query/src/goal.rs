@@ -39,6 +39,17 @@ impl Goal {
         Self { tolerance, apart: 0.0, finest: tolerance, is_sign: true }
     }
 
+    /// The same question, with bounds that are so much closer, as a share.
+    pub(crate) fn finer(self, share: f64) -> Self {
+        let beyond = 4.0 * (1.0 - share) * self.tolerance;
+        Self {
+            tolerance: share * self.tolerance,
+            finest: share * self.finest,
+            apart: self.apart + beyond,
+            ..self
+        }
+    }
+
     /// `true` if a minimum of at most zero ends the search.
     pub(crate) fn is_sign(self) -> bool {
         self.is_sign

@@ -21,8 +21,6 @@ pub(crate) struct Heap<C> {
     /// Places in `cells` that are free.
     free: Vec<u32>,
     room: usize,
-    /// Subtracted from every bound in the heap [m].
-    drift: f64,
 }
 
 /// A cell's lower bound, in the upper half, and its place. All bits are inverted, so that the
@@ -63,25 +61,13 @@ impl<C: Rebound> Heap<C> {
             cells: Vec::with_capacity(now),
             free: Vec::with_capacity(now),
             room,
-            drift: 0.0,
         }
-    }
-
-    /// Lowers the bounds of all cells.
-    pub(crate) fn lower_all(&mut self, by: f64) {
-        self.drift += by;
-    }
-
-    /// By how much all bounds were lowered since the heap was cleared.
-    pub(crate) fn drift(&self) -> f64 {
-        self.drift
     }
 
     pub(crate) fn clear(&mut self) {
         self.heap.clear();
         self.cells.clear();
         self.free.clear();
-        self.drift = 0.0;
     }
 
     pub(crate) fn len(&self) -> usize {
@@ -95,8 +81,7 @@ impl<C: Rebound> Heap<C> {
 
     /// All cells, in no order.
     pub(crate) fn cells(&self) -> impl Iterator<Item = C> {
-        let cell =
-            |key: &Key| self.cells[key.place() as usize].with_lower(key.lower() - self.drift);
+        let cell = |key: &Key| self.cells[key.place() as usize].with_lower(key.lower());
         self.heap.iter().map(cell)
     }
 }
@@ -106,14 +91,14 @@ impl<C: Rebound> Queue for Heap<C> {
 
     #[inline]
     fn least(&self) -> f64 {
-        self.heap.peek().map_or(f64::INFINITY, |key| key.lower() - self.drift)
+        self.heap.peek().map_or(f64::INFINITY, |key| key.lower())
     }
 
     #[inline]
     fn take_least(&mut self, then: impl FnOnce(&C)) -> bool {
         let Some(key) = self.heap.pop() else { return false };
         self.free.push(key.place());
-        then(&self.cells[key.place() as usize].with_lower(key.lower() - self.drift));
+        then(&self.cells[key.place() as usize].with_lower(key.lower()));
         true
     }
 
@@ -129,7 +114,7 @@ impl<C: Rebound> Queue for Heap<C> {
                 self.cells.len() as u32 - 1
             }
         };
-        self.heap.push(Key::new(cell.lower() + self.drift, place));
+        self.heap.push(Key::new(cell.lower(), place));
     }
 }
 

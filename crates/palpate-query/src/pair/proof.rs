@@ -55,7 +55,7 @@ pub fn proof<'a, const D: usize>(
     let pair = BodyPair::new(a.into(), b.into())?;
     let mut search = PairSearch::new(pair, Goal::least(0.5 * limits.tolerance), limits)?;
     search.keeps_all = true;
-    let (answer, _) = search.run_within(0.0, workspace);
+    let (answer, _) = search.run_from(None, workspace);
     let Frontier { queue, pending, .. } = &mut workspace.frontier;
     let known = pending.drain(..).chain(queue.cells());
     let boxes = known.map(|cell| ProofBox {

@@ -3,6 +3,8 @@
 
 //! Best-first search over boxes for the least of `max(g_a, g_b)`.
 
+use std::cell::Cell;
+
 use palpate_field::scalar::Model;
 use palpate_field::{Aabb, BLOCK, Point, Vector};
 
@@ -94,10 +96,20 @@ pub(crate) struct PairSearch<'a, const D: usize> {
     pub(crate) dropped: f64,
     /// The rounding of values [m].
     pub(crate) slack: f64,
-    /// Whether closed boxes are kept with the others, for a track or a proof.
+    /// Whether closed boxes are kept with the others, for a proof.
     pub(crate) keeps_all: bool,
-    /// How far above the threshold models still improve bounds [m].
-    pub(crate) reserve: f64,
+    /// What is enough, if the goal is finer.
+    enough: Option<Enough>,
+}
+
+/// A goal that is enough, and how many evaluations more a finer one is worth.
+#[derive(Clone, Debug)]
+struct Enough {
+    goal: Goal,
+    /// Of the evaluations up to it, the share that may follow.
+    share: f64,
+    /// The evaluations up to it, once it is reached.
+    reached_at: Cell<Option<u32>>,
 }
 
 impl<'a, const D: usize> PairSearch<'a, D> {
@@ -117,7 +129,7 @@ impl<'a, const D: usize> PairSearch<'a, D> {
             dropped: f64::INFINITY,
             slack: 0.0,
             keeps_all: false,
-            reserve: 0.0,
+            enough: None,
         })
     }
 
@@ -125,7 +137,7 @@ impl<'a, const D: usize> PairSearch<'a, D> {
     pub(crate) fn run(&mut self, workspace: &mut PairWorkspace<D>) -> Certified<Nearest<D>> {
         match self.told_by_boxes() {
             Some(answer) => answer,
-            None => self.run_within(0.0, workspace).0,
+            None => self.run_from(None, workspace).0,
         }
     }
 
@@ -139,6 +151,20 @@ impl<'a, const D: usize> PairSearch<'a, D> {
         (lower > self.goal.apart).then(|| self.answer(Stop::SignKnown, lower))
     }
 
+    /// Begins with a point.
+    pub(crate) fn start_at(&mut self, p: Point<D>) {
+        let [(a, _), (b, _)] = self.pair.slopes(p);
+        (self.upper, self.best) = (larger(a, b), p);
+    }
+
+    /// Goes on beyond the goal, to the share `finer` of its tolerance, for as long as the share `more` of
+    /// the evaluations that it takes.
+    pub(crate) fn go_on(&mut self, finer: f64, more: f64) {
+        let goal = self.goal;
+        self.enough = Some(Enough { goal, share: more, reached_at: Cell::new(None) });
+        self.goal = goal.finer(finer);
+    }
+
     /// Improves the best point, from `start`, with `first` as in [`descend`].
     pub(crate) fn descend(&mut self, start: Point<D>, first: Option<f64>) {
         let (value, p) = descend(&mut self.pair, start, first, self.goal, self.slack);
@@ -147,17 +173,23 @@ impl<'a, const D: usize> PairSearch<'a, D> {
         }
     }
 
-    /// Searches all places that matter and `margin` around them; also returns the box that it
-    /// searched.
-    pub(crate) fn run_within(
+    /// Searches all places that matter; `start` may be a value and the point that has it. Also returns
+    /// the box that it searched.
+    pub(crate) fn run_from(
         &mut self,
-        margin: f64,
+        start: Option<(f64, Point<D>)>,
         workspace: &mut PairWorkspace<D>,
     ) -> (Certified<Nearest<D>>, Aabb<D>) {
         let both = self.pair.root(0.0);
         self.slack = self.pair.slack(both.radius_about_origin());
+        self.upper = f64::INFINITY;
         self.descend(both.centre(), None);
-        let root = self.root(margin);
+        if let Some((value, p)) = start
+            && value < self.upper
+        {
+            (self.upper, self.best) = (value, p);
+        }
+        let root = self.root();
         self.slack = self.pair.slack(root.radius_about_origin());
         workspace.frontier.queue.clear();
         if self.goal.is_hit(self.upper + self.slack) {
@@ -167,20 +199,8 @@ impl<'a, const D: usize> PairSearch<'a, D> {
         (self.refine(&root, workspace), root)
     }
 
-    /// Continues with the boxes of the workspace, parts of `root`: those whose bounds no
-    /// longer suffice become pending.
-    pub(crate) fn resume(&mut self, root: &Aabb<D>, workspace: &mut PairWorkspace<D>) {
-        let Frontier { queue, pending, .. } = &mut workspace.frontier;
-        pending.clear();
-        self.slack = self.pair.slack(root.radius_about_origin());
-        let threshold = self.threshold();
-        while queue.least() < threshold {
-            queue.take_least(|cell| pending.push(*cell));
-        }
-    }
-
     /// Searches the pending boxes, parts of `root`, until enough is known.
-    pub(crate) fn refine(
+    fn refine(
         &mut self,
         root: &Aabb<D>,
         workspace: &mut PairWorkspace<D>,
@@ -191,7 +211,10 @@ impl<'a, const D: usize> PairSearch<'a, D> {
             &mut PairRounds { search: self, open, memory, known, largest },
             frontier,
         );
-        self.answer(end.stop(), frontier.lower(self.dropped))
+        let (stop, lower) = (end.stop(), frontier.lower(self.dropped));
+        let enough = self.enough.as_ref().map(|enough| enough.goal);
+        let enough = enough.and_then(|goal| goal.reached(lower, self.upper + self.slack));
+        self.answer(enough.unwrap_or(stop), lower)
     }
 
     pub(crate) fn answer(&mut self, stop: Stop, lower: f64) -> Certified<Nearest<D>> {
@@ -211,12 +234,12 @@ impl<'a, const D: usize> PairSearch<'a, D> {
     }
 
     /// A box that holds all points where both `g` are at most the best so far and the largest
-    /// value asked for, and `margin` around them.
-    pub(crate) fn root(&mut self, margin: f64) -> Aabb<D> {
+    /// value asked for.
+    pub(crate) fn root(&mut self) -> Aabb<D> {
         let slack = self.pair.slack(self.best.norm() + self.upper.abs());
         let least = self.goal.most(self.upper);
         self.dropped = least + slack;
-        let grown = (least + 2.0 * slack) * (1.0 + 1e-12) + margin;
+        let grown = (least + 2.0 * slack) * (1.0 + 1e-12);
         self.pair.tightened(&self.pair.root(grown), grown)
     }
 
@@ -257,7 +280,15 @@ impl<const D: usize> Problem for PairRounds<'_, '_, D> {
     #[inline]
     fn decided(&self, lower: f64) -> Option<Stop> {
         let search = &self.search;
-        search.goal.reached(lower.min(search.dropped), search.upper + search.slack)
+        let (lower, upper) = (lower.min(search.dropped), search.upper + search.slack);
+        search.goal.reached(lower, upper).or_else(|| {
+            let enough = search.enough.as_ref()?;
+            let stop = enough.goal.reached(lower, upper)?;
+            let reached_at = enough.reached_at.get().unwrap_or(search.pair.evaluations);
+            enough.reached_at.set(Some(reached_at));
+            let more = enough.share * f64::from(reached_at);
+            (f64::from(search.pair.evaluations - reached_at) >= more).then_some(stop)
+        })
     }
 
     #[inline]
@@ -377,9 +408,8 @@ impl<const D: usize> PairRounds<'_, '_, D> {
         let Self { search, open, memory, known: Known { radii, models, .. }, largest } = self;
         let Frontier { queue, pending, round } = frontier;
         let threshold = search.threshold();
-        let wanted = threshold + search.reserve;
         open.clear();
-        let is_open = |&i: &usize| round[i].lower < wanted && radii[i] <= *largest;
+        let is_open = |&i: &usize| round[i].lower < threshold && radii[i] <= *largest;
         open.extend((0..round.len()).filter(is_open));
         search.pair.keep_known(round, open, memory);
         if !search.keeps_all && queue.least() < threshold {
@@ -395,7 +425,7 @@ impl<const D: usize> PairRounds<'_, '_, D> {
             lane += 1;
             // Boxes are off by a rounding where they meet.
             round[i].lower = larger(round[i].lower, least::<D>(&model) - search.slack);
-            let is_open = round[i].lower < wanted;
+            let is_open = round[i].lower < threshold;
             if is_open {
                 models[kept] = model;
                 kept += 1;
@@ -405,7 +435,7 @@ impl<const D: usize> PairRounds<'_, '_, D> {
         search.pair.models(1, round, open, memory);
         for (lane, &i) in open.iter().enumerate() {
             let (a, b) = (models[lane], search.pair.model(1, memory, lane));
-            let (lower, share) = least_of_larger::<D>(&a, &b, wanted + search.slack);
+            let (lower, share) = least_of_larger::<D>(&a, &b, threshold + search.slack);
             let part = &mut round[i];
             part.lower = larger(part.lower, lower - search.slack);
             if part.lower < threshold {

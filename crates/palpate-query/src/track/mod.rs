@@ -6,36 +6,40 @@
 mod manifold;
 mod names;
 
-use palpate_field::{Aabb, BLOCK, Point, Pose, Shape, Vector};
+use palpate_field::{Aabb, Point, Pose, Shape, Vector};
 
-use crate::certified::{Certified, Limits};
-use crate::engine::{Frontier, Heap, Queue};
+use crate::certified::{Certified, Limits, Stop};
 use crate::error::QueryError;
 use crate::goal::Goal;
 use crate::pair::Nearest;
 use crate::pair::body_pair::BodyPair;
-use crate::pair::cell::BoxCell;
 use crate::pair::distance_bound::DistanceBound;
-use crate::pair::search::{PairSearch, PairWorkspace, ROOM};
+use crate::pair::search::{PairSearch, PairWorkspace};
 use crate::placed::Placed;
 use names::Names;
 
-/// Margin around the searched box, as a share of its size: the search begins anew for a body
-/// that moves farther.
-const MARGIN: f64 = 0.05;
+/// A search for several steps asks for bounds that are this share of the tolerance apart.
+const FINER: f64 = 1.0 / 8.0;
 
-/// The search begins anew once the kept boxes are this many times as many as at first.
-const GROWTH: usize = 2;
+/// A pair that moves by more than this share of the tolerance in a step is searched for that step
+/// alone.
+const FAR: f64 = 1.5;
 
-/// Models improve the bounds that this many motions like the last would undo.
-const RESERVE: f64 = 6.0;
+/// A proof to the tolerance may last where a pair moves by no more than this share of it.
+const LITTLE: f64 = 0.05;
 
-/// A pair of shapes that moves: each search starts from what the last one proved.
+/// After a proof that did not last for a step, so many searches are for their steps alone, and twice as
+/// many each time.
+const ALONE: u32 = 8;
+
+/// A pair of shapes that moves: each step starts from what the last search proved.
 ///
-/// The track keeps the boxes that cover all places that matter, each with a lower bound. A
-/// motion that moves no point of a box by more than δ lowers no bound by more than δ, since
-/// distances are nowhere steeper than one. After a small motion most bounds still suffice; a
-/// pose that jumps costs a search from the start.
+/// A motion that moves no point of a body by more than δ lowers no separation by more than δ: in
+/// coordinates that go half of the way, each of both distances changes by at most δ/2. So a proof
+/// lasts while the bodies stay near the poses of its search, and a step costs a few evaluations for
+/// the upper bound. Where bodies move little, a search goes on beyond the tolerance, so that its
+/// proof lasts for more steps; where they move far, each step is searched for itself, as by
+/// [`separation`](crate::separation). No step of a long run costs more than that on average.
 ///
 /// ```
 /// use palpate_field::{Pose, Shape, Vector, kernel::Ball};
@@ -57,27 +61,35 @@ const RESERVE: f64 = 6.0;
 #[derive(Clone, Debug)]
 pub struct Track<const D: usize> {
     shapes: [Shape<D>; 2],
-    cover: Option<Cover<D>>,
+    known: Option<Known<D>>,
+    /// How many of the next searches are for their steps alone, and how many after the next proof that
+    /// does not last.
+    alone: u32,
+    next_alone: u32,
     names: Names<D>,
 }
 
-/// Boxes in the frame of the first shape that hold all places where the separation may be
-/// found, with their bounds at the last pose.
-#[derive(Clone, Debug)]
-struct Cover<const D: usize> {
-    cells: Heap<BoxCell<D>>,
-    root: Aabb<D>,
+/// What the last search proved, and where the bodies were.
+#[derive(Clone, Copy, Debug)]
+struct Known<const D: usize> {
+    /// A lower bound of the larger of both values at every point [m].
+    lower: f64,
+    /// The second body in the first one's coordinates, at that search.
+    proven_at: Pose<D>,
+    /// The same in the last step, and the best point then, in the first body's coordinates.
+    last: Pose<D>,
     best: Point<D>,
-    second_from_frame: Pose<D>,
-    /// How many boxes the first search needed.
-    first: usize,
+    /// Whether the search was for several steps, and whether it was for one at least.
+    is_lasting: bool,
+    has_lasted: bool,
 }
 
 impl<const D: usize> Track<D> {
     /// A track of these shapes that knows nothing yet.
     #[must_use]
     pub fn new(a: Shape<D>, b: Shape<D>) -> Self {
-        Self { shapes: [a, b], cover: None, names: Names::new() }
+        let (alone, next_alone) = (0, ALONE);
+        Self { shapes: [a, b], known: None, alone, next_alone, names: Names::new() }
     }
 
     /// The shapes.
@@ -88,7 +100,7 @@ impl<const D: usize> Track<D> {
 
     /// Forgets all bounds: the next search begins anew.
     pub fn forget(&mut self) {
-        self.cover = None;
+        self.known = None;
     }
 
     /// The separation of both shapes at these poses, `world_from_body`, as
@@ -117,83 +129,84 @@ impl<const D: usize> Track<D> {
     ) -> Result<(Certified<Nearest<D>>, Point<D>), QueryError> {
         let [a, b] = &self.shapes;
         let pair = BodyPair::new(Placed::new(a, poses[0]), Placed::new(b, poses[1]))?;
+        let now = pair.second_from_frame;
         let mut search = PairSearch::new(pair, goal, limits)?;
         if let Some(answer) = search.told_by_boxes() {
             return Ok((answer, search.best));
         }
-        search.keeps_all = true;
-        let mut cover = self.cover.take();
-        let is_known = cover.as_mut().is_some_and(|cover| cover.resume(&mut search, workspace));
-        let answer = match &cover {
-            Some(cover) if is_known => search.refine(&cover.root, workspace),
-            _ => {
-                let size = pair.root(0.0).half_extents().norm();
-                let (answer, root) = search.run_within(MARGIN * size, workspace);
-                let first = workspace.frontier.queue.len() + workspace.frontier.pending.len();
-                let (best, second_from_frame) = (search.best, pair.second_from_frame);
-                let cells = cover.take().map_or_else(|| Heap::new(ROOM, first), |c| c.cells);
-                cover = Some(Cover { cells, root, best, second_from_frame, first });
-                answer
+        // A region where a steepness holds moves with its body.
+        let is_known = search.pair.bodies.iter().all(DistanceBound::is_known_everywhere);
+        let known = self.known.take().filter(|_| is_known);
+        let (mut start, mut is_lasting) = (None, false);
+        if let Some(known) = &known {
+            let moved = displacement(&known.last, &now, &search.pair.root(0.0));
+            let is_near = moved <= FAR * goal.tolerance;
+            if is_near && (known.is_lasting || moved <= LITTLE * goal.tolerance) {
+                let (stop, lower) = known.told(&mut search);
+                if let Some(stop) = stop {
+                    let best = search.best;
+                    self.known = Some(Known { last: now, best, has_lasted: true, ..*known });
+                    return Ok((search.answer(stop, lower), best));
+                }
+                start = Some((search.upper, search.best));
             }
-        };
-        if let Some(cover) = &mut cover {
-            (cover.best, cover.second_from_frame) = (search.best, pair.second_from_frame);
-            let Frontier { queue, pending, .. } = &mut workspace.frontier;
-            pending.drain(..).for_each(|cell| queue.push(&cell));
-            std::mem::swap(&mut cover.cells, queue);
+            if known.is_lasting && !known.has_lasted {
+                (self.alone, self.next_alone) = (self.next_alone, 2 * self.next_alone);
+            } else if known.is_lasting {
+                self.next_alone = ALONE;
+            }
+            is_lasting = is_near && self.alone == 0;
+            self.alone = self.alone.saturating_sub(1);
+            if is_lasting {
+                // The proof of a search to the tolerance would not last.
+                search.go_on(FINER, (0.5 * goal.tolerance / moved).min(1.0));
+            }
         }
-        self.cover = cover;
+        let (answer, _) = search.run_from(start, workspace);
+        let lower = 0.5 * answer.lower;
+        let (best, has_lasted) = (search.best, false);
+        let known = Known { lower, proven_at: now, last: now, best, is_lasting, has_lasted };
+        self.known = (answer.lower > f64::NEG_INFINITY).then_some(known);
         Ok((answer, search.best))
     }
 }
 
-impl<const D: usize> Cover<D> {
-    /// Moves the boxes into `workspace` with the bounds that hold at the new pose; `false` if
-    /// the bodies moved too far.
-    fn resume(
-        &mut self,
-        search: &mut PairSearch<'_, D>,
-        workspace: &mut PairWorkspace<D>,
-    ) -> bool {
-        // A region where a steepness holds moves with its body.
-        let is_known = search.pair.bodies.iter().all(DistanceBound::is_known_everywhere);
-        if !is_known || self.cells.len() > GROWTH * self.first + BLOCK {
-            return false;
+impl<const D: usize> Known<D> {
+    /// Why nothing has to be searched, if so, and the lower bound that is left.
+    fn told(&self, search: &mut PairSearch<'_, D>) -> (Option<Stop>, f64) {
+        search.start_at(self.best);
+        let root = search.root();
+        let reach = root.radius_about_origin().max(self.best.norm());
+        search.slack = search.pair.slack(reach);
+        let moved = displacement(&self.proven_at, &search.pair.second_from_frame, &root);
+        // The bound already holds with the rounding of its own search.
+        let lower = self.lower - 0.5 * moved - search.slack;
+        let reached = |search: &PairSearch<'_, D>| {
+            search.goal.reached(lower, search.upper + search.slack)
+        };
+        let mut stop = reached(search);
+        if stop.is_none() {
+            // The best point has moved as little as the bodies have.
+            search.descend(self.best, Some(moved.max(search.goal.tolerance)));
+            stop = reached(search);
         }
-        // Each step's slack covers the rounding of bounds only while the drift is no longer than
-        // the coordinates.
-        if self.cells.drift() > self.root.radius_about_origin() {
-            return false;
-        }
-        // The best point has moved as little as the bodies have.
-        search.descend(self.best, Some(search.goal.tolerance));
-        let root = search.root(0.0);
-        if !(self.root.contains(root.min) && self.root.contains(root.max)) {
-            return false;
-        }
-        let slack = search.pair.slack(self.root.radius_about_origin());
-        let moved = self.displacement(&search.pair.second_from_frame) + slack;
-        self.cells.lower_all(moved);
-        search.reserve = RESERVE * moved;
-        std::mem::swap(&mut self.cells, &mut workspace.frontier.queue);
-        search.resume(&self.root, workspace);
-        true
+        (stop, lower)
     }
+}
 
-    /// An upper bound of how far points of the root moved in the second shape [m].
-    fn displacement(&self, now: &Pose<D>) -> f64 {
-        let before = &self.second_from_frame;
-        let (centre, radius) = (self.root.centre(), self.root.half_extents().norm());
-        let turned = before
-            .rotation
-            .matrix()
-            .iter()
-            .zip(now.rotation.matrix())
-            .map(|(before, now)| (Vector(*now) - Vector(*before)).norm().powi(2));
-        let moved = now.transform_point(centre) - before.transform_point(centre);
-        // A difference of two rotations stretches two directions alike, and in space no third. The
-        // stretch is the square root of half the sum of the squared entries.
-        let stretch = (0.5 * turned.sum::<f64>()).sqrt();
-        (moved.norm() + stretch * radius) * (1.0 + 1e-12)
-    }
+/// An upper bound of how far points of a box move in a body's coordinates, from one pose of the
+/// box's frame there to another [m].
+fn displacement<const D: usize>(before: &Pose<D>, now: &Pose<D>, root: &Aabb<D>) -> f64 {
+    let (centre, radius) = (root.centre(), root.half_extents().norm());
+    let turned = before
+        .rotation
+        .matrix()
+        .iter()
+        .zip(now.rotation.matrix())
+        .map(|(before, now)| (Vector(*now) - Vector(*before)).norm().powi(2));
+    let moved = now.transform_point(centre) - before.transform_point(centre);
+    // A difference of two rotations stretches two directions alike, and in space no third. The
+    // stretch is the square root of half the sum of the squared entries.
+    let stretch = (0.5 * turned.sum::<f64>()).sqrt();
+    (moved.norm() + stretch * radius) * (1.0 + 1e-12)
 }

@@ -61,7 +61,7 @@ fn agree<const D: usize>(pairs: &[Pair<D>], motion: impl Fn(f64) -> Pose<D>) {
             cold_asked += cold.evaluations;
         }
         assert!(
-            2 * warm_asked < cold_asked,
+            5 * warm_asked < 3 * cold_asked,
             "{name}: {warm_asked} of {cold_asked} evaluations"
         );
     }

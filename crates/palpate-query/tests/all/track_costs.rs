@@ -1,0 +1,158 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! What it costs to follow a pair, beside a search anew for each step: never more, and hardly
+//! anything in small motions.
+//!
+//! Evaluations are counted, which are the same on every machine.
+#![expect(clippy::unwrap_used, reason = "these are tests")]
+
+use palpate_field::operator::Profile;
+use palpate_field::{Pose, Rotation, Shape, ShapeError, Vector};
+use palpate_query::{Limits, PairWorkspace, Placed, Track, separation};
+
+/// Bodies are about as large [m].
+const SIZE: f64 = 0.02;
+
+/// Steps of a pair, which goes to and fro in as many.
+const STEPS: u32 = 60;
+const FRO: u32 = 10;
+
+/// How far a body moves in a step [m].
+const MOTIONS: [f64; 5] = [0.0, 1e-6, 1e-5, 1e-4, 1e-3];
+
+/// The gaps of pairs [m]: apart, touching, deep.
+const GAPS: [f64; 3] = [5e-3, 0.0, -1e-3];
+
+/// A pair whose second body is above the first, and the height at which both touch [m].
+struct Pair<const D: usize> {
+    name: &'static str,
+    bodies: [Shape<D>; 2],
+    height: f64,
+}
+
+fn in_space() -> Result<Vec<Pair<3>>, ShapeError> {
+    let cube = Shape::<3>::cuboid([SIZE; 3])?;
+    let table = Shape::<3>::cuboid([0.4, 0.02, 0.4])?;
+    let ball = Shape::<3>::ball(0.5 * SIZE)?;
+    let torus = Shape::<3>::torus(0.015, 0.004)?;
+    let ring = Shape::<3>::torus(0.02, 0.002)?;
+    let cup = Shape::<3>::cylinder(0.02, 0.04)?
+        - Shape::<3>::cylinder(0.017, 0.04)?.translated([0.0, 0.003, 0.0])?;
+    let upright = |shape: &Shape<3>| -> Result<Shape<3>, ShapeError> {
+        let quarter = Rotation::from_axis_angle([1.0, 0.0, 0.0], 0.5 * std::f64::consts::PI)?;
+        shape.clone().placed(&Pose::new(quarter, Vector::ZERO))
+    };
+    let blend = Shape::smooth_union(
+        [cube.clone(), ball.clone().translated([0.01, 0.0, 0.0])?],
+        Profile::Cubic,
+        0.002,
+    )?;
+    let pair = |name, a: &Shape<3>, b: &Shape<3>, height| Pair {
+        name,
+        bodies: [a.clone(), b.clone()],
+        height,
+    };
+    Ok(vec![
+        pair("table, cube", &table, &cube, 0.02),
+        pair("table, torus", &table, &torus, 0.014),
+        pair("table, cup", &table, &cup, 0.03),
+        pair("cup, cube", &cup, &cube, -0.007),
+        pair("cup, cup", &cup, &cup, 0.04),
+        pair("cup, ball", &cup, &ball, -0.007),
+        pair("cube, cube", &cube, &cube, 0.02),
+        pair("torus, torus", &torus, &torus, 0.008),
+        pair("torus, ring on edge", &torus, &upright(&ring)?, 0.026),
+        pair("blend, torus", &blend, &torus, 0.014),
+        pair("ball, ball", &ball, &ball, 0.02),
+    ])
+}
+
+fn in_the_plane() -> Result<Vec<Pair<2>>, ShapeError> {
+    let floor = Shape::<2>::cuboid([0.4, 0.02])?;
+    let square = Shape::<2>::cuboid([SIZE; 2])?;
+    let disc = Shape::<2>::ball(0.5 * SIZE)?;
+    let notched = floor.clone() - disc.clone().translated([0.0, 0.01])?;
+    Ok(vec![
+        Pair { name: "floor, square", bodies: [floor.clone(), square.clone()], height: 0.02 },
+        Pair { name: "floor, disc", bodies: [floor, disc.clone()], height: 0.02 },
+        Pair { name: "notch, disc", bodies: [notched, disc], height: 0.01 },
+    ])
+}
+
+/// Evaluations of all steps: followed, and anew.
+fn costs<const D: usize>(
+    pair: &Pair<D>,
+    gap: f64,
+    limits: &Limits,
+    pose: impl Fn(f64) -> Pose<D>,
+) -> [u32; 2] {
+    let [a, b] = &pair.bodies;
+    let mut track = Track::new(a.clone(), b.clone());
+    let mut workspace = PairWorkspace::new();
+    let mut costs = [0; 2];
+    for step in 0..STEPS {
+        let phase = step % (2 * FRO);
+        let way = f64::from(if phase < FRO { phase } else { 2 * FRO - phase });
+        let mut there = pose(way);
+        there.translation[1] += pair.height + gap;
+        let warm = track.separation([Pose::identity(), there], limits, &mut workspace).unwrap();
+        let cold = separation(a, Placed::new(b, there), limits, &mut workspace).unwrap();
+        assert!(warm.lower <= cold.upper && cold.lower <= warm.upper, "{}", pair.name);
+        let is_spent = cold.stop.is_early();
+        assert!(
+            is_spent || warm.upper - warm.lower <= limits.tolerance,
+            "{}: {warm:?}",
+            pair.name
+        );
+        costs[0] += warm.evaluations;
+        costs[1] += cold.evaluations;
+    }
+    costs
+}
+
+/// Rows that are too dear.
+fn table<const D: usize>(pairs: &[Pair<D>], pose: impl Fn(f64, f64) -> Pose<D>) -> Vec<String> {
+    let mut wrong = Vec::new();
+    for pair in pairs {
+        for gap in GAPS {
+            for tolerance in [1e-3 * SIZE, 1e-5 * SIZE] {
+                for motion in MOTIONS {
+                    for turn in [0.0, motion / SIZE] {
+                        let limits = Limits::new(tolerance);
+                        let pose = |way: f64| pose(motion * way, turn * way);
+                        let [warm, cold] = costs(pair, gap, &limits, pose);
+                        let share = f64::from(warm) / f64::from(cold);
+                        let is_little = motion <= 1e-4 * SIZE && tolerance >= 1e-3 * SIZE;
+                        let most = if is_little { 1.0 / 3.0 } else { 1.0 };
+                        let row = format!(
+                            "{:22} gap {gap:7} m, tolerance {tolerance:e} m, {motion:e} m and {turn:e} rad a \
+                             step: {} / {} = {share:.3}",
+                            pair.name,
+                            warm / STEPS,
+                            cold / STEPS
+                        );
+                        println!("{row}");
+                        if share > most {
+                            wrong.push(row);
+                        }
+                    }
+                }
+            }
+        }
+    }
+    wrong
+}
+
+#[test]
+fn following_a_pair_costs_at_most_what_a_search_anew_costs() -> Result<(), ShapeError> {
+    let mut wrong = table(&in_space()?, |way, turn| {
+        let rotation = Rotation::from_axis_angle([0.6, 0.8, 0.0], turn).unwrap();
+        Pose::new(rotation, Vector([0.8 * way, 0.36 * way, 0.48 * way]))
+    });
+    wrong.extend(table(&in_the_plane()?, |way, turn| {
+        Pose::new(Rotation::from_angle(turn).unwrap(), Vector([0.8 * way, 0.6 * way]))
+    }));
+    assert!(wrong.is_empty(), "{} rows are too dear:\n{}", wrong.len(), wrong.join("\n"));
+    Ok(())
+}
