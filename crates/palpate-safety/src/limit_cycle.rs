@@ -244,8 +244,8 @@ struct Extreme<V> {
 ///
 /// The tremor of a hand, 6 to 12 times a second, looks like a limit cycle. But an oscillation of the
 /// device gets slower in a softer wall, or ends. One that keeps its frequency in a quarter of the
-/// stiffness without a bounce, or goes on in a wall too soft to oscillate, is the hand's. Then the stiffness comes back,
-/// and half cycles of that size are ignored for a while.
+/// stiffness without a bounce, or goes on in a wall too soft to oscillate, is the hand's. Then the
+/// stiffness comes back, and half cycles of that size are ignored for a while.
 ///
 /// It is blind to oscillations that turn the force and not its size, such as circles about a point,
 /// and to those across the force, such as from wall to wall of a groove.

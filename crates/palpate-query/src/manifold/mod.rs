@@ -279,10 +279,12 @@ impl<const D: usize> Touch<D> {
         Self { point, normal: normal.unwrap_or_else(arbitrary), gap: 2.0 * a.max(b) }
     }
 
-    /// The contact in world coordinates. Points of the surfaces count only within `near` and
-    /// 45° of the normal: in the middle of a body the gradient may lead to any side.
+    /// The contact in world coordinates, no less deep than the values say. Points of the surfaces count
+    /// only within `near` and 45° of the normal: in the middle of a body the gradient may lead to any
+    /// side.
     fn contact(&self, pair: &BodyPair<'_, D>, near: f64) -> Contact<D> {
         let near = near.max(2.0 * self.gap.abs());
+        let estimated = |side: f64| self.point + self.normal * (side * 0.5 * self.gap);
         let on = |body: usize, side: f64| {
             let found = pair.surface_point(body, self.point);
             let found = found.filter(|p| {
@@ -290,10 +292,15 @@ impl<const D: usize> Touch<D> {
                 let along = away.dot(self.normal);
                 away.norm() <= near && 2.0 * along * along >= away.dot(away)
             });
-            found.unwrap_or(self.point + self.normal * (side * 0.5 * self.gap))
+            found.unwrap_or(estimated(side))
         };
-        let pose = &pair.world_from_frame;
-        Contact::new(on(0, -1.0), on(1, 1.0), self.normal).placed(pose)
+        let mut contact = Contact::new(on(0, -1.0), on(1, 1.0), self.normal);
+        // Of an edge in a corner, the nearest points of the surfaces are not along the normal: a solver
+        // that closes their distance along it would leave the bodies in each other.
+        if self.gap < 0.0 && contact.gap > self.gap {
+            contact = Contact::new(estimated(-1.0), estimated(1.0), self.normal);
+        }
+        contact.placed(&pair.world_from_frame)
     }
 }
 
