@@ -54,8 +54,8 @@ pub enum Stop {
     SignKnown,
     /// The budget of evaluations ended first: a larger one may help.
     BudgetSpent,
-    /// The room of the workspace ended first: a larger budget does not help, a larger tolerance
-    /// may.
+    /// The room of the workspace ended first: a larger budget does not help, a larger tolerance or
+    /// more [room](crate::PairWorkspace::with_room) may.
     MemoryFull,
     /// Rounding allows no closer bounds.
     RoundingReached,

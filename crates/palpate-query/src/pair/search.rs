@@ -33,7 +33,7 @@ const NOTHING: Model = Model { value: 0.0, gradient: [0.0; 3], lower: 0.0, upper
 const LINE: usize = 8;
 
 /// The largest number of waiting boxes.
-pub(crate) const ROOM: usize = 1 << 16;
+const ROOM: usize = 1 << 16;
 
 /// Radii, values and models of the boxes of a round.
 #[derive(Debug)]
@@ -57,13 +57,37 @@ pub struct PairWorkspace<const D: usize> {
 }
 
 impl<const D: usize> PairWorkspace<D> {
-    /// Room for searches in `D` dimensions.
+    /// Room for searches in `D` dimensions, of 65 536 waiting boxes.
     #[must_use]
     pub fn new() -> Self {
+        Self::with_room(ROOM)
+    }
+
+    /// Room for so many waiting boxes: a search that ends with
+    /// [`Stop::MemoryFull`](crate::Stop::MemoryFull) may need more. It is allocated at once, about 150
+    /// bytes for each.
+    ///
+    /// ```
+    /// use palpate_field::{Pose, Shape};
+    /// use palpate_query::{Limits, PairWorkspace, Placed, Stop, separation};
+    ///
+    /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+    /// // Two tori that lie on each other, along a whole circle.
+    /// let torus = Shape::<3>::torus(0.35, 0.15)?;
+    /// let above = Placed::new(&torus, Pose::translation([0.0, 0.3, 0.0]));
+    /// let limits = Limits::new(1e-5);
+    /// let ask = |room| separation(&torus, above, &limits, &mut PairWorkspace::with_room(room));
+    /// assert_eq!(ask(256)?.stop, Stop::MemoryFull);
+    /// assert_eq!(ask(65_536)?.stop, Stop::Converged);
+    /// # Ok(())
+    /// # }
+    /// ```
+    #[must_use]
+    pub fn with_room(room: usize) -> Self {
         Self {
             frontier: Frontier {
-                queue: Heap::new(ROOM, ROOM),
-                pending: Vec::with_capacity(ROOM),
+                queue: Heap::new(room, room),
+                pending: Vec::with_capacity(room),
                 round: Vec::with_capacity(BLOCK),
             },
             open: Vec::with_capacity(BLOCK),
