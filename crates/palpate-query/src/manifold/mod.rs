@@ -38,6 +38,9 @@ use region::Region;
 const COPIES: f64 = 1.5;
 const LIKE: f64 = 0.8;
 
+/// Contacts whose gaps differ by less than this share of the precision are as deep.
+const SAME_DEPTH: f64 = 1e-3;
+
 /// Precisions are shares of the margin, but of no less than this share of the spacing: with
 /// a margin of zero no point would be precise enough.
 const SHALLOW: f64 = 1e-3;
@@ -164,59 +167,148 @@ pub(crate) struct SeparatedPair<'a, const D: usize> {
 
 /// The manifold of a pair.
 pub(crate) fn spanning<const D: usize>(
-    SeparatedPair { mut pair, best, separation }: SeparatedPair<'_, D>,
+    mut separated: SeparatedPair<'_, D>,
     settings: &ManifoldSettings,
     budget: u32,
     workspace: &mut PairWorkspace<D>,
 ) -> Manifold<D> {
-    let mut found = Manifold {
-        contacts: Vec::new(),
-        groups: Vec::new(),
-        separation,
-        dropped: 0,
-        is_whole: true,
-        region_stop: Stop::Converged,
-    };
-    if separation.lower > settings.margin {
-        return found;
+    if separated.separation.lower > settings.margin {
+        return Manifold::apart(separated.separation);
     }
-    let first = Touch::at(&mut pair, best);
-    let Region { candidates, mut middles, stop } =
-        region::find(&mut pair, settings, budget, workspace, first);
-    (found.is_whole, found.region_stop) = (!stop.is_early(), stop);
-    let mut patches = Patches { pair, settings, candidates: &candidates };
-    let mut touches = patches.contacts();
-    patches.fill(&mut middles, &mut touches);
-    drop_copies(&mut touches, settings.spacing);
-    if let Some(deepest) = touches.first().map(|member| member.touch) {
-        found.deepen(&deepest, &patches.pair);
+    let spanned = Spanned::find(&mut separated, settings, budget, workspace);
+    spanned.manifold(&separated, settings)
+}
+
+/// Points that span the region in which two bodies touch, in the pair's frame, the deepest first.
+#[derive(Clone, Debug)]
+pub(crate) struct Spanned<const D: usize> {
+    members: Vec<Member<D>>,
+    /// Why the search of the region ended.
+    stop: Stop,
+}
+
+impl<const D: usize> Spanned<D> {
+    pub(crate) fn find(
+        separated: &mut SeparatedPair<'_, D>,
+        settings: &ManifoldSettings,
+        budget: u32,
+        workspace: &mut PairWorkspace<D>,
+    ) -> Self {
+        let SeparatedPair { pair, best, .. } = separated;
+        let first = Touch::at(pair, *best);
+        let Region { candidates, mut middles, stop } =
+            region::find(pair, settings, budget, workspace, first);
+        let mut patches = Patches { pair: *pair, settings, candidates: &candidates };
+        let mut members = patches.contacts();
+        patches.fill(&mut middles, &mut members);
+        *pair = patches.pair;
+        drop_copies(&mut members, settings.spacing);
+        Self { members, stop }
     }
-    let contacts = touches.iter().map(|member| member.touch.contact(&pair, settings.spacing));
-    let mut spanning: Vec<_> = touches.iter().copied().zip(contacts).collect();
-    // Where a field is a bound, surfaces may be farther apart than its values.
-    let mut is_deepest = true;
-    spanning.retain(|(_, contact)| {
-        std::mem::take(&mut is_deepest) || contact.gap <= settings.margin
-    });
-    found.dropped = spanning.len().saturating_sub(settings.most.max(1));
-    keep_spread(&mut spanning, settings.most.max(1));
-    spanning.sort_by(|(one, _), (other, _)| {
-        one.group.cmp(&other.group).then(one.touch.gap.total_cmp(&other.touch.gap))
-    });
-    for (i, (member, contact)) in spanning.iter().enumerate() {
-        if i == 0 || spanning[i - 1].0.group != member.group {
-            found.groups.push(0);
+
+    /// These points on bodies that have moved a little: put back on the surface between them, with the
+    /// best point of the search.
+    pub(crate) fn moved(
+        &self,
+        separated: &mut SeparatedPair<'_, D>,
+        settings: &ManifoldSettings,
+    ) -> Self {
+        let SeparatedPair { pair, best, .. } = separated;
+        let renewed = |member: &Member<D>| {
+            let p = member.touch.point;
+            let [(a, slope_a), (b, slope_b)] = pair.slopes(p);
+            let between = slope_a - slope_b;
+            let squared = between.dot(between);
+            let step = if squared > 0.0 { between * ((a - b) / squared) } else { Vector::ZERO };
+            // A step that is long is none towards the surface near the point.
+            let is_near = step.norm() <= settings.spacing;
+            let touch = Touch::at(pair, if is_near { p - step } else { p });
+            Member { touch, ..*member }
+        };
+        let mut members: Vec<_> = self.members.iter().map(renewed).collect();
+        let deepest = Touch::at(pair, *best);
+        let near = members
+            .iter_mut()
+            .find(|member| is_copy(&member.touch, &deepest, settings.spacing));
+        match near {
+            Some(member) => {
+                let is_deeper = SAME_DEPTH * settings.precision_length();
+                if deepest.gap < member.touch.gap - is_deeper {
+                    member.touch = deepest;
+                }
+            }
+            None => {
+                let group = members.iter().map(|member| member.group + 1).max().unwrap_or(0);
+                members.push(Member { touch: deepest, group });
+            }
         }
-        if let Some(count) = found.groups.last_mut() {
-            *count += 1;
-        }
-        found.contacts.push(contact.with_id(i as u64));
+        members.sort_by(|one, other| one.touch.gap.total_cmp(&other.touch.gap));
+        Self { members, stop: self.stop }
     }
-    found.separation.evaluations += patches.pair.evaluations;
-    found
+
+    /// The manifold of those points whose gap is within the margin.
+    pub(crate) fn manifold(
+        &self,
+        separated: &SeparatedPair<'_, D>,
+        settings: &ManifoldSettings,
+    ) -> Manifold<D> {
+        let (pair, is_whole) = (&separated.pair, !self.stop.is_early());
+        let mut found = Manifold {
+            is_whole,
+            region_stop: self.stop,
+            ..Manifold::apart(separated.separation)
+        };
+        found.separation.evaluations += pair.evaluations;
+        if let Some(deepest) = self.members.first() {
+            found.deepen(&deepest.touch, pair);
+        }
+        let contact = |member: &Member<D>| member.touch.contact(pair, settings.spacing);
+        let spanning = self.members.iter().map(|member| (*member, contact(member)));
+        found.keep(spanning.collect(), settings);
+        found
+    }
 }
 
 impl<const D: usize> Manifold<D> {
+    /// Of bodies that are farther apart than the margin.
+    pub(crate) fn apart(separation: Certified<Nearest<D>>) -> Self {
+        Self {
+            contacts: Vec::new(),
+            groups: Vec::new(),
+            separation,
+            dropped: 0,
+            is_whole: true,
+            region_stop: Stop::Converged,
+        }
+    }
+
+    /// Keeps the contacts within the margin, the deepest first.
+    fn keep(
+        &mut self,
+        mut spanning: Vec<(Member<D>, Contact<D>)>,
+        settings: &ManifoldSettings,
+    ) {
+        // Where a field is a bound, surfaces may be farther apart than its values.
+        let mut is_deepest = true;
+        spanning.retain(|(_, contact)| {
+            std::mem::take(&mut is_deepest) || contact.gap <= settings.margin
+        });
+        self.dropped = spanning.len().saturating_sub(settings.most.max(1));
+        keep_spread(&mut spanning, settings.most.max(1));
+        spanning.sort_by(|(one, _), (other, _)| {
+            one.group.cmp(&other.group).then(one.touch.gap.total_cmp(&other.touch.gap))
+        });
+        for (i, (member, contact)) in spanning.iter().enumerate() {
+            if i == 0 || spanning[i - 1].0.group != member.group {
+                self.groups.push(0);
+            }
+            if let Some(count) = self.groups.last_mut() {
+                *count += 1;
+            }
+            self.contacts.push(contact.with_id(i as u64));
+        }
+    }
+
     /// Takes a contact as the best point if it is deeper.
     fn deepen(&mut self, deepest: &Touch<D>, pair: &BodyPair<'_, D>) {
         let slack = pair.slack(deepest.point.norm() + deepest.gap.abs());
@@ -304,6 +396,11 @@ impl<const D: usize> Touch<D> {
     }
 }
 
+/// Whether two contacts are next to each other, with like normals.
+fn is_copy<const D: usize>(one: &Touch<D>, other: &Touch<D>, spacing: f64) -> bool {
+    distance(one.point, other.point) < COPIES * spacing && one.normal.dot(other.normal) > LIKE
+}
+
 /// Sorts contacts from the deepest, and drops those next to a deeper one with a like
 /// normal.
 fn drop_copies<const D: usize>(touches: &mut Vec<Member<D>>, spacing: f64) {
@@ -311,11 +408,7 @@ fn drop_copies<const D: usize>(touches: &mut Vec<Member<D>>, spacing: f64) {
     let mut kept = 0;
     for i in 0..touches.len() {
         let touch = touches[i].touch;
-        let is_copy = touches[..kept].iter().any(|other| {
-            distance(other.touch.point, touch.point) < COPIES * spacing
-                && other.touch.normal.dot(touch.normal) > LIKE
-        });
-        if !is_copy {
+        if !touches[..kept].iter().any(|other| is_copy(&other.touch, &touch, spacing)) {
             touches.swap(kept, i);
             kept += 1;
         }

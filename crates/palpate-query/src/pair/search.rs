@@ -33,7 +33,7 @@ const NOTHING: Model = Model { value: 0.0, gradient: [0.0; 3], lower: 0.0, upper
 const LINE: usize = 8;
 
 /// The largest number of waiting boxes.
-const ROOM: usize = 1 << 16;
+pub(crate) const ROOM: usize = 1 << 16;
 
 /// Radii, values and models of the boxes of a round.
 #[derive(Debug)]

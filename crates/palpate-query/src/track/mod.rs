@@ -16,6 +16,7 @@ use crate::pair::body_pair::BodyPair;
 use crate::pair::distance_bound::DistanceBound;
 use crate::pair::search::{PairSearch, PairWorkspace};
 use crate::placed::Placed;
+use manifold::Kept;
 use names::Names;
 
 /// A search for several steps asks for bounds that are this share of the tolerance apart.
@@ -66,6 +67,7 @@ pub struct Track<const D: usize> {
     /// does not last.
     alone: u32,
     next_alone: u32,
+    kept: Option<Kept<D>>,
     names: Names<D>,
 }
 
@@ -89,7 +91,7 @@ impl<const D: usize> Track<D> {
     #[must_use]
     pub fn new(a: Shape<D>, b: Shape<D>) -> Self {
         let (alone, next_alone) = (0, ALONE);
-        Self { shapes: [a, b], known: None, alone, next_alone, names: Names::new() }
+        Self { shapes: [a, b], known: None, alone, next_alone, kept: None, names: Names::new() }
     }
 
     /// The shapes.
@@ -100,7 +102,7 @@ impl<const D: usize> Track<D> {
 
     /// Forgets all bounds: the next search begins anew.
     pub fn forget(&mut self) {
-        self.known = None;
+        (self.known, self.kept) = (None, None);
     }
 
     /// The separation of both shapes at these poses, `world_from_body`, as

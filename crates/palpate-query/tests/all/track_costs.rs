@@ -8,8 +8,10 @@
 #![expect(clippy::unwrap_used, reason = "these are tests")]
 
 use palpate_field::operator::Profile;
-use palpate_field::{Pose, Rotation, Shape, ShapeError, Vector};
-use palpate_query::{Limits, PairWorkspace, Placed, Track, separation};
+use palpate_field::{Aabb, Pose, Rotation, Shape, ShapeError, Vector};
+use palpate_query::{
+    Limits, Manifold, ManifoldSettings, PairWorkspace, Placed, Track, manifold, separation,
+};
 
 /// Bodies are about as large [m].
 const SIZE: f64 = 0.02;
@@ -154,5 +156,81 @@ fn following_a_pair_costs_at_most_what_a_search_anew_costs() -> Result<(), Shape
         Pose::new(Rotation::from_angle(turn).unwrap(), Vector([0.8 * way, 0.6 * way]))
     }));
     assert!(wrong.is_empty(), "{} rows are too dear:\n{}", wrong.len(), wrong.join("\n"));
+    Ok(())
+}
+
+/// Contacts of a pair that trembles for a thousand steps: their ids stay, they span what a manifold anew
+/// spans, with gaps that are true, and cost at most twice a search for the separation.
+#[test]
+fn contacts_at_rest_last_and_are_cheap() -> Result<(), ShapeError> {
+    let settings = ManifoldSettings::of_size(SIZE);
+    let limits = Limits::new(0.5 * settings.margin);
+    for pair in in_space()?.iter().take(7) {
+        let [a, b] = &pair.bodies;
+        let mut track = Track::new(a.clone(), b.clone());
+        let mut workspace = PairWorkspace::new();
+        let (mut ids, mut warm, mut cold) = (Vec::new(), 0, 0);
+        for step in 0..1000 {
+            // By up to 2 µm, along the floor too.
+            let phase = f64::from(step);
+            let mut tremble =
+                Vector([(0.7 * phase).sin(), (1.1 * phase).sin(), (1.3 * phase).cos()]);
+            tremble = tremble * (1e-4 * SIZE);
+            let there = Pose::translation(tremble + Vector([0.0, pair.height - 1e-5, 0.0]));
+            let poses = [Pose::identity(), there];
+            let found = track.manifold(poses, &settings, &limits, &mut workspace).unwrap();
+            let mut now: Vec<u64> = found.contacts.iter().map(|contact| contact.id).collect();
+            now.sort_unstable();
+            if step == 1 {
+                ids.clone_from(&now);
+            }
+            assert!(step < 2 || now == ids, "{}, step {step}: {now:?}, not {ids:?}", pair.name);
+            warm += found.separation.evaluations;
+            if step % 100 == 7 {
+                let b = Placed::new(b, there);
+                cold += 100 * separation(a, b, &limits, &mut workspace).unwrap().evaluations;
+                let anew = manifold(a, b, &settings, &limits, &mut workspace).unwrap();
+                let gap = |found: &Manifold<3>| {
+                    found
+                        .contacts
+                        .iter()
+                        .map(|contact| contact.gap)
+                        .fold(f64::INFINITY, f64::min)
+                };
+                assert!(
+                    (gap(&found) - gap(&anew)).abs() < 1e-3 * settings.margin,
+                    "{}",
+                    pair.name
+                );
+                // Both span the same region; where it is a circle, no points of it are its corners.
+                let spread = |found: &Manifold<3>| {
+                    let points = found.contacts.iter().map(|contact| contact.point_a);
+                    Aabb::around(points).unwrap().half_extents().norm()
+                };
+                let [ours, other] = [spread(&found), spread(&anew)];
+                assert!(
+                    ours > 0.7 * other,
+                    "{}, step {step}: {ours} m of {other} m",
+                    pair.name
+                );
+                for contact in &found.contacts {
+                    let middle = (contact.point_a + contact.point_b) * 0.5;
+                    let local = there.inverse().transform_point(middle);
+                    let gap = 2.0 * a.distance(middle).max(pair.bodies[1].distance(local));
+                    // Values of a bound say less.
+                    let depth = there.translation[1] - pair.height - 0.01 * settings.margin;
+                    let is_true = (depth..gap + 0.01 * settings.margin).contains(&contact.gap);
+                    assert!(is_true, "{}, step {step}: {contact:?}, {gap} m", pair.name);
+                }
+            }
+        }
+        let share = f64::from(warm) / f64::from(cold);
+        println!(
+            "{}: {} contacts, {share:.2} of a search for the separation",
+            pair.name,
+            ids.len()
+        );
+        assert!(share <= 2.0, "{}: {share}", pair.name);
+    }
     Ok(())
 }
