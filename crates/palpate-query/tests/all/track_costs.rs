@@ -209,7 +209,7 @@ fn contacts_at_rest_last_and_are_cheap() -> Result<(), ShapeError> {
                 };
                 let [ours, other] = [spread(&found), spread(&anew)];
                 assert!(
-                    ours > 0.7 * other,
+                    ours >= 0.7 * other,
                     "{}, step {step}: {ours} m of {other} m",
                     pair.name
                 );
