@@ -3,6 +3,7 @@
 
 //! Searches that prove where things touch.
 
+mod heaps;
 mod local;
 mod manifolds;
 mod meshes;
@@ -36,6 +37,7 @@ const PARTS: &[(&str, Part)] = &[
     ("peers", peers::measure),
     ("manifolds", manifolds::measure),
     ("worlds", worlds::measure),
+    ("heaps", heaps::measure),
 ];
 
 /// The names of the parts.
@@ -92,6 +94,7 @@ impl TimedRows {
             rows.insert(format!("{key}.p95_ns"), times[times.len() * 95 / 100]);
         }
         peers::compare(&mut rows);
+        heaps::compare(&mut rows);
         worlds::name_medians(&mut rows);
         rows
     }
