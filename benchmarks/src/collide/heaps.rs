@@ -31,7 +31,7 @@ const ANGLE: f64 = 5e-4;
 const STEPS: usize = 30;
 const WARM: usize = 5;
 
-/// Corners around a cup: 2000 triangles or so.
+/// Corners around a cup: 1600 triangles.
 const AROUND: u32 = 200;
 
 /// A body, ours and parry's.
