@@ -181,8 +181,9 @@ impl<const D: usize> Known<D> {
         let reach = root.radius_about_origin().max(self.best.norm());
         search.slack = search.pair.slack(reach);
         let moved = displacement(&self.proven_at, &search.pair.second_from_frame, &root);
-        // The bound already holds with the rounding of its own search.
-        let lower = self.lower - 0.5 * moved - search.slack;
+        // The bound already holds with the rounding of its own search. Outside of the box, which may
+        // have moved farther, values are above those that matter.
+        let lower = (self.lower - 0.5 * moved - search.slack).min(search.dropped);
         let reached = |search: &PairSearch<'_, D>| {
             search.goal.reached(lower, search.upper + search.slack)
         };
