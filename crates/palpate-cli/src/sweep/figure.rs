@@ -135,12 +135,20 @@ where
                 let way = self.carried(body, self.time) - self.carried(body, before);
                 way.normalized()
             })?;
-            // Across the motion, the normal; along it, any axis.
+            // Across the motion, the normal; of a touch along it, any axis.
             let across = contact.normal - way * contact.normal.dot(way);
             let axes =
                 (0..D).map(Vector::unit).map(|axis: Vector<f64, D>| axis - way * axis.dot(way));
-            let up = [across].into_iter().chain(axes).find(|up| up.norm() > 1e-2)?;
-            Slice::free(middle, in_space(way), in_space(up)).ok()
+            let mut up = [across].into_iter().chain(axes).filter(|up| up.norm() > 1e-2);
+            let up = up.next()?.normalized()?;
+            // The y axis is up, unless it is across the plane.
+            let upright = way * way[1] + up * up[1];
+            let (right, up) = if upright.norm() > 0.1 {
+                (way * up[1] - up * way[1], upright)
+            } else {
+                (way, up)
+            };
+            Slice::free(middle, in_space(right), in_space(up)).ok()
         });
         along.map_or_else(|| Slice::xy(middle[2]).map_err(Failure::input), Ok)
     }
