@@ -5,6 +5,14 @@
 
 use crate::problem::Problem;
 
+/// The version of a format, of which one is read.
+pub(crate) fn version(key: &str, got: u64, read: u64) -> Result<(), Problem> {
+    if got == read {
+        return Ok(());
+    }
+    Err(Problem::about(format!("must be {read}, got {got}")).under(key))
+}
+
 /// Checks that `value` is finite and at least `least`.
 pub(crate) fn at_least(key: &str, value: f64, least: f64, unit: &str) -> Result<(), Problem> {
     // Written so that NaN fails.

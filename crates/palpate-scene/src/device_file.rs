@@ -6,7 +6,7 @@
 use palpate_haptics::{Buttons, DeviceProfile, GripperProfile, TurningProfile};
 use serde::{Deserialize, Serialize};
 
-use crate::check::{at_least, positive};
+use crate::check::{at_least, positive, version};
 use crate::encoding::utf8;
 use crate::error::SceneError;
 use crate::json::{self, Document, Source};
@@ -138,12 +138,7 @@ pub fn device_to_json(profile: &DeviceProfile) -> Result<String, SceneError> {
 }
 
 fn check(written: &WrittenDevice) -> Result<(), Problems> {
-    let version = if written.palpate_device == VERSION {
-        Ok(())
-    } else {
-        let message = format!("must be {VERSION}, got {}", written.palpate_device);
-        Err(Problem::about(message).under("palpate_device"))
-    };
+    let version = version("palpate_device", written.palpate_device, VERSION);
     let forces = written.max_force != 0.0;
     let numbers = check_numbers(
         forces,

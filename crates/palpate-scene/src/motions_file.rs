@@ -6,6 +6,7 @@
 use serde::Deserialize;
 
 use crate::build;
+use crate::check::version;
 use crate::encoding::utf8;
 use crate::error::SceneError;
 use crate::json::{Document, Source};
@@ -65,12 +66,7 @@ impl Scene {
             scene
         };
         let check = |written: &WrittenMotions| {
-            let version = if written.palpate_motions == VERSION {
-                Ok(())
-            } else {
-                let message = format!("must be {VERSION}, got {}", written.palpate_motions);
-                Err(Problem::about(message).under("palpate_motions"))
-            };
+            let version = version("palpate_motions", written.palpate_motions, VERSION);
             let built = build::world(&with(written)).map(drop);
             Problems::all([version.map_err(Problems::from), built])
         };

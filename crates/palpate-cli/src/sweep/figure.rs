@@ -13,7 +13,7 @@ use palpate::query::{Limits, PairWorkspace, Placed, SweepProof, SweepWorkspace, 
 use palpate::scene::BuiltScene;
 
 use super::report::Report;
-use super::{Pair, Question, moving};
+use super::{Pair, Question, ways};
 use crate::arguments::SweepOptions;
 use crate::outcome::Failure;
 use crate::picture::{self, Dimensions, Drawable, cut, in_space};
@@ -75,7 +75,7 @@ where
         scene: &'a BuiltScene<D>,
         pair: &'a Pair<D>,
     ) -> Result<Self, Failure> {
-        let [a, b] = moving(scene, pair.bodies, pair.part)?;
+        let [a, b] = ways(scene, pair.bodies, pair.part)?;
         let settings = question.settings_over(pair.part);
         let proof = sweep_proof(a, b, &settings, &mut SweepWorkspace::new());
         let proof = proof.map_err(Failure::input)?;
@@ -239,15 +239,14 @@ where
             let apart = palpate::query::separation(a, b, &limits, &mut workspace);
             points.push([time, apart.map_err(Failure::input)?.upper]);
         }
-        let series = |name: &str, points: Vec<[f64; 2]>| Series::new(name, points);
         let least = points.iter().map(|point| point[1]).fold(f64::INFINITY, f64::min);
         let most = points.iter().map(|point| point[1]).fold(f64::NEG_INFINITY, f64::max);
         let mut chart =
             Chart::new(Quantity::new("time", "s"), Quantity::new("separation", "m"));
-        chart = chart.with_series(series("separation", points).map_err(Failure::input)?);
+        chart = chart.with_series(Series::new("separation", points).map_err(Failure::input)?);
         if self.pair.found.upper < f64::INFINITY && self.pair.found.contact.is_some() {
-            let touch = vec![[self.time, least], [self.time, most]];
-            let touch = series("first touch", touch).map_err(Failure::input)?;
+            let touch = [[self.time, least], [self.time, most]];
+            let touch = Series::new("first touch", touch).map_err(Failure::input)?;
             chart = chart.with_series(touch.with_dash(Dash::Dashed));
         }
         Ok(chart)

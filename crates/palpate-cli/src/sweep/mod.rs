@@ -92,7 +92,8 @@ where
     } else {
         report.print()?;
     }
-    if let (Some(picture), Some(pair)) = (picture, pairs.first()) {
+    // A picture of some pairs would be taken for one of all pairs.
+    if let (Some(picture), Some(pair), false) = (picture, pairs.first(), interrupt.is_asked()) {
         let figure = figure::of(options, &question, scene, pair)?;
         picture.save(&figure, picture::WIDTH)?;
     }
@@ -150,7 +151,7 @@ impl Question {
 }
 
 /// Two bodies on their way between two times [s], over the time from 0 to 1.
-fn moving<const D: usize>(
+fn ways<const D: usize>(
     scene: &BuiltScene<D>,
     bodies: [usize; 2],
     [from, to]: [f64; 2],
@@ -176,7 +177,7 @@ fn first_touch<const D: usize>(
     let mut last = None;
     for part in times.windows(2) {
         let &[from, to] = part else { continue };
-        let [a, b] = moving(scene, bodies, [from, to])?;
+        let [a, b] = ways(scene, bodies, [from, to])?;
         let (length, settings) = (to - from, question.settings_over([from, to]));
         let mut found = sweep(a, b, &settings, &mut workspace).map_err(Failure::input)?;
         evaluations = evaluations.saturating_add(found.evaluations);
