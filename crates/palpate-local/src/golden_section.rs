@@ -8,11 +8,8 @@
 use palpate_field::{Point, Shape, Vector};
 use palpate_query::Element;
 
+use crate::section::least_on_unit;
 use crate::{Descent, Weights, least_vertex, support};
-
-/// 1/φ: what is left of a bracket after a section, so that one of its two points is
-/// used again.
-const LEFT: f64 = 0.618_033_988_749_894_9;
 
 /// From the lowest vertex, goes to the least value that golden sections find on the line
 /// to the vertex that lies farthest against the gradient, and so on from there. On a
@@ -146,25 +143,8 @@ impl GoldenSection {
         from: Point<D>,
         along: Vector<f64, D>,
     ) -> (Point<D>, f64) {
-        let at = |share: f64| shape.distance(from + along * share);
-        let (mut low, mut high) = (0.0, 1.0);
-        let (mut left, mut right) = (1.0 - LEFT, LEFT);
-        let (mut at_left, mut at_right) = (at(left), at(right));
-        for _ in 1..self.sections {
-            if at_left <= at_right {
-                high = right;
-                (right, at_right) = (left, at_left);
-                left = high - LEFT * (high - low);
-                at_left = at(left);
-            } else {
-                low = left;
-                (left, at_left) = (right, at_right);
-                right = low + LEFT * (high - low);
-                at_right = at(right);
-            }
-        }
         let (share, value) =
-            if at_left <= at_right { (left, at_left) } else { (right, at_right) };
+            least_on_unit(self.sections, |share| shape.distance(from + along * share));
         (from + along * share, value)
     }
 }

@@ -15,11 +15,16 @@
 //! | [`ProjectedGradient`] | field and element | memoir 3.2; Macklin et al. 2020 |
 //! | [`FrankWolfe`] | field and element | Macklin et al. 2020 |
 //! | [`GoldenSection`] | field and element | Macklin et al. 2020 (edges); Pelletier-Guénette et al. 2025 (triangles; the spatial part of their space-time search) |
+//! | [`MacklinDescent`] | field and element | Macklin et al. 2020, as `PhysX` 5 ships it |
 //! | [`AlternatingProjection`] | two fields | memoir 3.3, after Liu et al. 2024 |
 //! | [`MinimaxProximal`] | two fields | the bundle method with two planes |
+//! | [`SumDescent`], [`halton_starts`] | two fields | `MuJoCo` |
+//! | [`SpaceTimeGoldenSection`] | field and element or mesh, in motion | Pelletier-Guénette et al. 2025 |
+//! | [`SampledSweep`] | mesh and field, or two fields, in motion | any of the above, at equal steps of time |
 //!
 //! Constants are those of the documents, or of the programs that use their methods. What
-//! is wrong in the documents is mended, but in [`NaiveDescent`]: steps are not constant along a
+//! is wrong in the documents is mended, but in [`NaiveDescent`], [`MacklinDescent`] and
+//! [`SumDescent`], which are as published: steps are not constant along a
 //! unit gradient, the best point is returned and not the last one, and it is the projected
 //! step that says when to stop.
 //!
@@ -54,11 +59,16 @@ mod alternating_projection;
 mod frank_wolfe;
 mod golden_section;
 mod gradient;
+mod halton;
+mod macklin;
 mod minimax_proximal;
 mod naive;
 mod nearest;
 mod oscillation;
 mod projected_gradient;
+mod section;
+mod sum_descent;
+mod sweep;
 mod weights;
 
 use std::fmt;
@@ -73,17 +83,21 @@ pub use gradient::{
     FoundDirection, GradientMethod, GradientSampler, adaptive_offset, angle_between,
     central_differences, closest_vector, dichotomy,
 };
+pub use halton::halton_starts;
+pub use macklin::MacklinDescent;
 pub use minimax_proximal::MinimaxProximal;
 pub use naive::NaiveDescent;
 pub use named::UnknownMethod;
 pub use projected_gradient::ProjectedGradient;
+pub use sum_descent::SumDescent;
+pub use sweep::{LocalSweep, LocalTouch, SampledSweep, SpaceTimeGoldenSection};
 pub use weights::{Weights, WeightsError};
 
 /// What a local search found, and how it came there.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Descent<const D: usize> {
-    /// The best point on the way [m].
+    /// The best point on the way, or the last where the method returns that [m].
     pub best: Point<D>,
     /// The value there: nothing says that it is the least [m].
     pub value: f64,
@@ -145,13 +159,16 @@ pub enum ElementMethod {
     FrankWolfe,
     /// [`GoldenSection`].
     GoldenSection,
+    /// [`MacklinDescent`].
+    Macklin,
 }
 
 named!(ElementMethod:
     Naive = "naive",
     ProjectedGradient = "projected_gradient",
     FrankWolfe = "frank_wolfe",
-    GoldenSection = "golden_section"
+    GoldenSection = "golden_section",
+    Macklin = "macklin"
 );
 
 impl ElementMethod {
@@ -167,6 +184,7 @@ impl ElementMethod {
             Self::ProjectedGradient => ProjectedGradient::default().descend(shape, element),
             Self::FrankWolfe => FrankWolfe::default().descend(shape, element),
             Self::GoldenSection => GoldenSection::default().descend(shape, element),
+            Self::Macklin => MacklinDescent::default().descend(shape, element),
         }
     }
 
@@ -185,6 +203,7 @@ impl ElementMethod {
             }
             Self::FrankWolfe => FrankWolfe::default().descend_from(shape, element, start),
             Self::GoldenSection => GoldenSection::default().descend_from(shape, element, start),
+            Self::Macklin => MacklinDescent::default().descend_from(shape, element, start),
         }
     }
 }
@@ -192,18 +211,22 @@ impl ElementMethod {
 /// A local search for a point in two bodies, or between them.
 ///
 /// What is made small is `max(g_a, g_b)` with `g` as in
-/// [`separation`](palpate_query::separation), which is twice its least value.
+/// [`separation`](palpate_query::separation), which is twice its least value; [`SumDescent`] makes a sum
+/// of both small, of which its value is half.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PairMethod {
     /// [`AlternatingProjection`].
     AlternatingProjection,
     /// [`MinimaxProximal`].
     MinimaxProximal,
+    /// [`SumDescent`].
+    SumDescent,
 }
 
 named!(PairMethod:
     AlternatingProjection = "alternating_projection",
-    MinimaxProximal = "minimax_proximal"
+    MinimaxProximal = "minimax_proximal",
+    SumDescent = "sum_descent"
 );
 
 impl PairMethod {
@@ -226,6 +249,7 @@ impl PairMethod {
                 AlternatingProjection::default().descend(a, b, start, tolerance)
             }
             Self::MinimaxProximal => MinimaxProximal::default().descend(a, b, start, tolerance),
+            Self::SumDescent => SumDescent::default().descend(a, b, start, tolerance),
         }
     }
 }
@@ -270,7 +294,7 @@ mod tests {
         let error = "newton".parse::<PairMethod>().unwrap_err();
         assert_eq!(
             error.to_string(),
-            "there is no method \"newton\"; there are alternating_projection, minimax_proximal"
+            "there is no method \"newton\"; there are alternating_projection, minimax_proximal, sum_descent"
         );
     }
 }

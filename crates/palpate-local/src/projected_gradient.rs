@@ -152,7 +152,7 @@ impl ProjectedGradient {
 }
 
 /// The lowest of the vertices and the centroid, as weights.
-fn start<const N: usize, const D: usize>(
+pub(crate) fn start<const N: usize, const D: usize>(
     shape: &Shape<D>,
     element: &Element<N, D>,
 ) -> ([f64; N], Descent<D>) {
@@ -172,7 +172,7 @@ fn start<const N: usize, const D: usize>(
 
 /// The nearest weights of which none is negative and the sum is one: all less the same,
 /// and those that would be negative zero.
-fn onto_simplex<const N: usize>(weights: [f64; N]) -> [f64; N] {
+pub(crate) fn onto_simplex<const N: usize>(weights: [f64; N]) -> [f64; N] {
     let mut sorted = weights;
     sorted.sort_by(|a, b| b.total_cmp(a));
     let (mut sum, mut less) = (0.0, 0.0);

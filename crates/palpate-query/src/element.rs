@@ -134,8 +134,10 @@ impl<const N: usize, const D: usize> Element<N, D> {
     /// The parts of half the size that make up the element, all similar to it: two of a
     /// segment, four of a triangle. Unused places hold the last. Of a triangle with two
     /// equal last vertices, the first two are all of it.
+    #[doc(hidden)]
+    #[must_use]
     #[inline]
-    pub(crate) fn halves(&self) -> [Self; 4] {
+    pub fn halves(&self) -> [Self; 4] {
         let v = &self.vertices;
         let middle = |i: usize, k: usize| (v[i] + v[k]) * 0.5;
         let part = |points: [Point<D>; 3]| {
@@ -160,6 +162,7 @@ impl<const N: usize, const D: usize> Element<N, D> {
 }
 
 /// How many [halves](Element::halves) an element has.
-pub(crate) const fn parts_of_one<const N: usize>() -> usize {
+#[must_use]
+pub const fn parts_of_one<const N: usize>() -> usize {
     if N == 2 { 2 } else { 4 }
 }

@@ -3,4 +3,5 @@
 
 //! What other crates of palpate use. It is no part of the interface and may change at any time.
 
+pub use crate::element::parts_of_one;
 pub use crate::pair::minimax_step;

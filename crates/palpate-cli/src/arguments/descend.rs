@@ -7,7 +7,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::numbers::length_or_zero;
+use super::numbers::{count, length_or_zero};
 
 pub(super) const EXAMPLES: &str = "\
 Examples:
@@ -16,9 +16,10 @@ Examples:
     --method naive --alpha 0.1 --mu 0.1 --start 0.2,0.2,0.6 --plot descent.png
   palpate descend scenes/s3.json --segment -1,0,0 1,0.2,0.1 --method golden_section --json
   palpate descend scenes/memoir_two_bodies.json --start -0.2,0.5 --start 0.15,0.4
+  palpate descend scenes/memoir_two_bodies.json --method sum_descent --halton 40
 
 Without --triangle and --segment the search is for a point inside the first two bodies of the
-scene, from each --start. A local search finds an upper bound of the least value and proves
+scene, from each --start or from --halton starts. A local search finds an upper bound of the least value and proves
 nothing; the answer says by how much it missed the proven minimum, where it ended, what both
 searches cost, and whether the circles around the element exclude it.";
 
@@ -44,9 +45,13 @@ pub(crate) struct DescendOptions {
     /// a point [m]; may be given more than once.
     #[arg(long, value_name = "NUMBERS", allow_hyphen_values = true)]
     pub(crate) start: Vec<String>,
-    /// The search: projected_gradient, frank_wolfe, golden_section or naive (the memoir's, as
-    /// printed) over an element, alternating_projection or minimax_proximal between bodies; the
-    /// first of these if left out.
+    /// Between bodies: this many starts of Halton's sequence, evenly over the common part of both
+    /// boxes; MuJoCo has 40.
+    #[arg(long, conflicts_with = "start", allow_negative_numbers = true, value_parser = count(1, 100_000_u32))]
+    pub(crate) halton: Option<u32>,
+    /// The search: projected_gradient, frank_wolfe, golden_section, macklin (as PhysX ships it) or
+    /// naive (the memoir's, as printed) over an element; alternating_projection, minimax_proximal or
+    /// sum_descent (MuJoCo's) between bodies; the first of these if left out.
     #[arg(long)]
     pub(crate) method: Option<String>,
     /// The factor α of the steps of --method naive, α·max(f, µ); 0.1 if left out.

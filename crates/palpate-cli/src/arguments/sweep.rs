@@ -16,6 +16,8 @@ Examples:
   palpate sweep scenes/bayonet.json --body key
   palpate sweep scenes/bayonet.json --plot touch.png
   palpate sweep scenes/cup.json --motion drop.json
+  palpate sweep scenes/bayonet.json --method golden_section
+  palpate sweep scenes/bayonet.json --method sum_descent --samples 30
 
 Before the earlier time the bodies are apart, which is proven, rounding included; at the later
 one their separation is at most the gap.";
@@ -46,6 +48,20 @@ pub(crate) struct SweepOptions {
     /// left out.
     #[arg(long, allow_negative_numbers = true, value_parser = count(1, u32::MAX))]
     pub(crate) budget: Option<u32>,
+    /// A local search of the literature beside the proven answer: golden_section over space and time, of
+    /// the surface of the smaller body as triangles or segments; or at equal steps of time, naive,
+    /// projected_gradient, frank_wolfe or macklin of that surface, or alternating_projection,
+    /// minimax_proximal or sum_descent between both fields.
+    #[arg(long)]
+    pub(crate) method: Option<String>,
+    /// How many steps of time of each part of a motion --method looks at, but for golden_section; 60 if
+    /// left out.
+    #[arg(long, requires = "method", allow_negative_numbers = true, value_parser = count(1, 1_000_000_u32))]
+    pub(crate) samples: Option<u32>,
+    /// How many cells the longest side of a body's box has in the grid from which --method takes its
+    /// surface; 64 if left out.
+    #[arg(long, requires = "method", allow_negative_numbers = true, value_parser = count(4, 512_u32))]
+    pub(crate) cells: Option<u32>,
     /// Draw the first touch, how the bodies got there, and the boxes that were ruled out: .svg or .png.
     #[arg(long, value_name = "PICTURE")]
     pub(crate) plot: Option<PathBuf>,

@@ -48,8 +48,14 @@ fn descend<const D: usize>(
 where
     Dimensions: Drawable<D>,
 {
-    if options.start.is_empty() && options.triangle.is_empty() && options.segment.is_empty() {
+    let elements = [&options.triangle, &options.segment];
+    let has_start = !options.start.is_empty() || options.halton.is_some();
+    if !has_start && elements.iter().all(|points| points.is_empty()) {
         Err(nothing_asked(scene, &options.scene))
+    } else if options.halton.is_some() && elements.iter().any(|points| !points.is_empty()) {
+        Err(Failure::input(
+            "--halton is for starts between two bodies: leave out --triangle and --segment",
+        ))
     } else if !options.triangle.is_empty() {
         element::descend::<3, D>(options, scene, picture, &options.triangle)
     } else if !options.segment.is_empty() {
@@ -69,7 +75,7 @@ fn nothing_asked<const D: usize>(scene: &BuiltScene<D>, path: &Path) -> Failure 
     let path = path.display();
     Failure::input(format!(
         "descend needs --segment with 2 points, --triangle with 3, or, between two bodies, --start \
-         with 1; for example: palpate descend {path} --segment {from} {to}"
+         with 1 or --halton with their number; for example: palpate descend {path} --segment {from} {to}"
     ))
 }
 

@@ -7,7 +7,7 @@ use std::io::Write;
 use std::path::Path;
 
 use palpate::field::{Aabb, Point};
-use palpate::local::{Descent, ElementMethod, PairMethod};
+use palpate::local::{Descent, ElementMethod, PairMethod, halton_starts};
 use palpate::plot::{Figure, Markers, PlotError, Polyline, Slice};
 use palpate::query::{Certified, Nearest, PairWorkspace, separation};
 use palpate::scene::BuiltScene;
@@ -51,9 +51,19 @@ where
     let needs = "searches over an element: give --triangle or --segment";
     let first = PairMethod::AlternatingProjection;
     let method = method::<_, ElementMethod>(options, first, needs)?;
+    let starts = match options.halton {
+        Some(count) => halton_starts(&a.shape, &b.shape, count),
+        None => {
+            options.start.iter().map(|start| input::point(start)).collect::<Result<_, _>>()?
+        }
+    };
+    if starts.is_empty() {
+        return Err(Failure::input(
+            "--halton starts in the common part of both bodies' boxes, and there is none",
+        ));
+    }
     let mut found = Vec::new();
-    for start in &options.start {
-        let start = input::point(start)?;
+    for start in starts {
         let descent = method.descend(&a.shape, &b.shape, start, limits.tolerance);
         found.push(descent.map_err(Failure::input)?);
     }
@@ -92,12 +102,16 @@ impl<const D: usize> Answer<'_, D> {
         for found in found {
             let start = found.path.first().map_or_else(String::new, |p| joined(&p.0));
             let kind = if found.value <= 0.0 { "a point in both" } else { "no point in both" };
+            let meaning = match method {
+                PairMethod::SumDescent => "half of A + B + |max(A, B)| of the values A and B",
+                _ => "the larger of both fields",
+            };
             writeln!(out, "from         {start} m: {kind}")?;
             writeln!(out, "  best point {} m", joined(&found.best.0))?;
             writeln!(
                 out,
-                "  value      {} m, the larger of both fields; where both are exact, the separation \
-                 is at most twice that, {} m",
+                "  value      {} m, {meaning}; where both are exact, the separation is at most twice \
+                 that, {} m",
                 found.value,
                 2.0 * found.value
             )?;

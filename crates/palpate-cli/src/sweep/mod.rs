@@ -4,8 +4,11 @@
 //! `palpate sweep`: when bodies that move by the motions of a scene touch first.
 
 mod figure;
+mod local;
 mod report;
+mod surface;
 
+use palpate::local::LocalSweep;
 use palpate::query::{FirstTouch, Moving, Placed, Stop, SweepSettings, SweepWorkspace, sweep};
 use palpate::scene::{AnyScene, BuiltScene, Repeat};
 
@@ -15,6 +18,7 @@ use crate::interrupt::Interrupt;
 use crate::outcome::{Failure, Outcome};
 use crate::output::{self, Files};
 use crate::picture::{self, Dimensions, Drawable, Picture};
+use local::{LocalSearch, Surfaced};
 
 /// The gap over the size of the smallest body.
 const GAP: f64 = 1e-6;
@@ -29,6 +33,8 @@ const MOST_PARTS: f64 = 1e5;
 struct Pair<const D: usize> {
     bodies: [usize; 2],
     found: FirstTouch<D>,
+    /// What a local search found, if one was asked for [s].
+    local: Option<LocalSweep<D>>,
     /// The times between which it was searched last [s].
     part: [f64; 2],
 }
@@ -39,6 +45,7 @@ struct Question {
     /// [s].
     tolerance: f64,
     settings: SweepSettings,
+    local: Option<LocalSearch>,
 }
 
 /// Finds when pairs touch first; the answer is no if none do.
@@ -64,7 +71,7 @@ fn answer<const D: usize>(
     interrupt: &Interrupt,
 ) -> Result<Outcome, Failure>
 where
-    Dimensions: Drawable<D>,
+    Dimensions: Drawable<D> + Surfaced<D>,
 {
     let names: Vec<&str> = scene.bodies.iter().map(|body| body.name.as_str()).collect();
     let asked = input::bodies(&options.body, &names)?;
@@ -140,7 +147,8 @@ fn asked_of<const D: usize>(
     let settings = SweepSettings::of_size(1.0)
         .with_gap(gap)
         .with_budget(options.budget.unwrap_or(SweepSettings::BUDGET));
-    Ok(Question { until, tolerance, settings })
+    let local = LocalSearch::of(options, gap)?;
+    Ok(Question { until, tolerance, settings, local })
 }
 
 impl Question {
@@ -165,13 +173,47 @@ fn ways<const D: usize>(
     Ok([moving(bodies[0])?, moving(bodies[1])?])
 }
 
+/// What a local search finds of two bodies [s].
+fn local_touch<const D: usize>(
+    scene: &BuiltScene<D>,
+    bodies: [usize; 2],
+    times: &[f64],
+    search: &LocalSearch,
+) -> Result<Option<LocalSweep<D>>, Failure>
+where
+    Dimensions: Surfaced<D>,
+{
+    let mut all: Option<LocalSweep<D>> = None;
+    for part in times.windows(2) {
+        let &[from, to] = part else { continue };
+        let mut found = search.first_touch(ways(scene, bodies, [from, to])?)?;
+        if let Some(touch) = &mut found.touch {
+            touch.time = from + (to - from) * touch.time;
+        }
+        if let Some(earlier) = all {
+            found.evaluations = found.evaluations.saturating_add(earlier.evaluations);
+            found.searched = found.searched.saturating_add(earlier.searched);
+        }
+        all = Some(found);
+        if found.touch.is_some() {
+            break;
+        }
+    }
+    Ok(all)
+}
+
 /// When two bodies touch first [s].
 fn first_touch<const D: usize>(
     scene: &BuiltScene<D>,
     bodies: [usize; 2],
     times: &[f64],
     question: &Question,
-) -> Result<Pair<D>, Failure> {
+) -> Result<Pair<D>, Failure>
+where
+    Dimensions: Surfaced<D>,
+{
+    let local = question.local.map(|search| local_touch(scene, bodies, times, &search));
+    let local = local.transpose()?.flatten();
     let mut workspace = SweepWorkspace::new();
     let mut evaluations = 0_u32;
     let mut last = None;
@@ -184,7 +226,7 @@ fn first_touch<const D: usize>(
         found.evaluations = evaluations;
         found.lower = from + length * found.lower;
         found.upper = from + length * found.upper;
-        let pair = Pair { bodies, found, part: [from, to] };
+        let pair = Pair { bodies, found, local, part: [from, to] };
         if found.stop != Stop::SignKnown {
             return Ok(pair);
         }

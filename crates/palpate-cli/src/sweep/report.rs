@@ -5,7 +5,7 @@
 
 use std::io::Write;
 
-use palpate::query::{Contact, Start, Stop};
+use palpate::query::{Contact, FirstTouch, Start, Stop};
 use serde_json::{Value, json};
 
 use super::{Pair, Question};
@@ -70,6 +70,17 @@ impl<const D: usize> Report<'_, D> {
                 joined(&contact.normal.0)
             );
         }
+        if let (Some(local), Some(search)) = (&pair.local, &self.question.local) {
+            let cost = counted(local.evaluations, "evaluation", "evaluations");
+            let what = match &local.touch {
+                Some(touch) => {
+                    format!("a touch at {:.9} s, {}", touch.time, against(touch.time, found))
+                }
+                None if found.touches() == Some(true) => "no touch: missed".to_owned(),
+                None => "no touch, which proves nothing".to_owned(),
+            };
+            words += &format!("\n    {} finds {what} ({cost})", search.name());
+        }
         words
     }
 
@@ -113,7 +124,29 @@ impl<const D: usize> Report<'_, D> {
             "contact": found.contact.as_ref().map(described),
             "stop": found.stop.to_string(),
             "evaluations": found.evaluations,
+            "local": pair.local.as_ref().zip(self.question.local.as_ref()).map(|(local, search)| {
+                json!({
+                    "method": search.name(),
+                    "time_s": local.touch.map(|touch| touch.time),
+                    "point_m": local.touch.map(|touch| touch.point.0.to_vec()),
+                    "value_m": local.touch.map(|touch| touch.value),
+                    "searched": local.searched,
+                    "evaluations": local.evaluations,
+                })
+            }),
         })
+    }
+}
+
+/// How a time that a local search found stands to the proven ones.
+fn against<const D: usize>(time: f64, found: &FirstTouch<D>) -> String {
+    let (late, early) = (time - found.upper, found.lower - time);
+    match () {
+        () if late > 0.0 && late.is_finite() => format!("late by {late:.3e} s"),
+        () if early > 0.0 => {
+            format!("early by {early:.3e} s, since its elements lie off the surface")
+        }
+        () => "within the proven bounds".to_owned(),
     }
 }
 

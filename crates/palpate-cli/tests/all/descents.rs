@@ -159,7 +159,7 @@ fn the_smallest_circle_excludes_a_sliver_that_the_circumscribed_one_does_not() {
 
 #[test]
 fn every_search_over_an_element_starts_where_it_is_told() {
-    for method in ["naive", "projected_gradient", "frank_wolfe", "golden_section"] {
+    for method in ["naive", "projected_gradient", "frank_wolfe", "golden_section", "macklin"] {
         let start = ["--start", "0.5,0.25,0.25", "--method", method, "--json"];
         let answer = json(&[&STAR[..], &DEEP, &start].concat());
         let first = [0, 1].map(|i| number(&answer["path_m"][0][i]));
@@ -212,7 +212,7 @@ fn what_does_not_fit_is_refused_in_a_sentence() {
         ),
         (
             &["--method", "newton"],
-            "--method: there is no method \"newton\"; there are naive, projected_gradient, frank_wolfe, golden_section",
+            "--method: there is no method \"newton\"; there are naive, projected_gradient, frank_wolfe, golden_section, macklin",
         ),
         (
             &["--method", "minimax_proximal"],
@@ -241,6 +241,23 @@ fn what_does_not_fit_is_refused_in_a_sentence() {
         &[&segment[..], &["--method", "naive", "--gradient", "dichotomy"]].concat(),
         "--gradient dichotomy turns in the plane, and this scene is in 3D: take differences, closest_vector or exact",
     );
+    assert_refused(
+        &[&segment[..], &["--halton", "4"]].concat(),
+        "--halton is for starts between two bodies: leave out --triangle and --segment",
+    );
     let output = palpate(&["descend", "scenes/s3.json", "--method", "naive"]);
     assert_eq!(status(&output), 2, "{}", errors(&output));
+}
+
+#[test]
+fn starts_of_halton_find_the_overlap() {
+    let scene = "scenes/memoir_two_bodies.json";
+    let found =
+        json(&["descend", scene, "--method", "sum_descent", "--halton", "40", "--json"]);
+    let descents = found["descents"].as_array().unwrap();
+    assert_eq!(descents.len(), 40);
+    let inside = descents.iter().filter(|descent| descent["value_m"].as_f64().unwrap() <= 0.0);
+    let right = |descent: &Value| descent["best_point_m"][0].as_f64().unwrap() > 0.0;
+    let inside: Vec<_> = inside.collect();
+    assert!(inside.len() > 10 && inside.iter().all(|descent| right(descent)), "{found}");
 }

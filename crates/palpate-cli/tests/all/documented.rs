@@ -130,7 +130,7 @@ fn the_keys_of_devices_identify_and_jitter_are_documented() {
                 &["devices", "--stability", "--profile", "touch", "--json"],
             ][..],
         ),
-        ("First touches", &[&["sweep", &fall, "--json"]]),
+        ("First touches", &[&["sweep", &fall, "--method", "sum_descent", "--json"]]),
         ("Identified devices", &[&["identify", "--device", "premium15", "--json"]]),
         ("Lateness", &[&["jitter", "--duration", "0.03", "--json"]]),
     ] {

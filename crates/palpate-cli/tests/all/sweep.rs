@@ -135,3 +135,53 @@ fn what_cannot_be_swept_is_refused() {
     assert_eq!(status(&found), 0);
     assert!(text(&found).contains("floor – ball: apart all the time"), "{}", text(&found));
 }
+
+#[test]
+fn local_searches_stand_beside_the_proven_answer() {
+    let folder = Folder::new();
+    let scene = folder.write("fall.json", FALL);
+    for method in ["golden_section", "naive", "macklin", "minimax_proximal", "sum_descent"] {
+        let asked = ["sweep", &scene, "--method", method, "--json"];
+        let found = json(&asked);
+        let local = &found["pairs"][0]["local"];
+        assert_eq!(local["method"], method);
+        // A floor has no surface for triangles, the ball has; steps are a sixtieth of a second.
+        let time = local["time_s"].as_f64().unwrap();
+        assert!((0.4899..0.51).contains(&time), "{method}: {time}");
+        assert!(found["pairs"][1]["local"]["time_s"].is_null(), "{method}: {found}");
+    }
+    let said = text(&palpate(&["sweep", &scene, "--method", "golden_section"]));
+    assert!(said.contains("\n    golden_section finds a touch at 0.49000"), "{said}");
+    assert!(said.contains("no touch, which proves nothing"), "{said}");
+    // A plate that is thinner than a step is long is passed.
+    let thin = FALL.replace(
+        "\"half_space\": { \"normal\": [0, 1, 0], \"offset\": 0 }",
+        "\"box\": { \"size\": [1, 0.001, 1] }",
+    );
+    let thin = folder.write("thin.json", &thin);
+    let said = text(&palpate(&["sweep", &thin, "--method", "sum_descent", "--samples", "7"]));
+    assert!(said.contains("sum_descent finds no touch: missed"), "{said}");
+}
+
+#[test]
+fn methods_and_their_options_are_checked() {
+    let folder = Folder::new();
+    let scene = folder.write("fall.json", FALL);
+    for (arguments, said) in [
+        (&["--method", "newton"][..], "there is no method \"newton\"; there are naive, "),
+        (&["--samples", "9"], "--method"),
+        (
+            &["--method", "golden_section", "--samples", "9"],
+            "--samples is not for --method golden_section",
+        ),
+        (
+            &["--method", "sum_descent", "--cells", "9"],
+            "--cells is not for --method sum_descent",
+        ),
+    ] {
+        let asked: Vec<&str> = ["sweep", &scene].iter().chain(arguments).copied().collect();
+        let refused = palpate(&asked);
+        assert_eq!(status(&refused), 2, "{arguments:?}");
+        assert!(errors(&refused).contains(said), "{}", errors(&refused));
+    }
+}

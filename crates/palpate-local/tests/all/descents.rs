@@ -10,8 +10,8 @@ use palpate_local::{
     Descent, ElementMethod, FrankWolfe, GoldenSection, NaiveDescent, PairMethod,
 };
 use palpate_query::{
-    Certified, Element, ElementWorkspace, Limits, PairWorkspace, QueryError, minimum, overlap,
-    separation,
+    Certified, DistanceBound, Element, ElementWorkspace, Limits, PairWorkspace, QueryError,
+    minimum, overlap, separation,
 };
 use palpate_testkit::arbitrary::{self as draw, Turn};
 use palpate_testkit::cases;
@@ -20,19 +20,22 @@ use palpate_testkit::tree::{Solid, Tree};
 
 type Outcome = Result<(), Box<dyn std::error::Error>>;
 
-/// What is wrong with a descent that is worth `value(p)` at `p`.
+/// What is wrong with a descent that is worth `value(p)` at `p`, and returns the best point on its way
+/// or, as published, the last.
 fn wrong<const D: usize>(
     descent: &Descent<D>,
     value: impl Fn(Point<D>) -> f64,
-    lower: f64,
-    rounding: f64,
+    [lower, rounding]: [f64; 2],
+    returns_last: bool,
 ) -> Option<String> {
-    let least = descent.path.iter().map(|p| value(*p)).fold(f64::INFINITY, f64::min);
+    let values = descent.path.iter().map(|p| value(*p));
+    let least =
+        values.fold(f64::INFINITY, |least, v| if returns_last { v } else { v.min(least) });
     if descent.value < lower - rounding {
         return Some(format!("{} is below {lower}", descent.value));
     }
     if (least - descent.value).abs() > rounding || !descent.path.contains(&descent.best) {
-        return Some(format!("{least} is the least on the way, not {}", descent.value));
+        return Some(format!("{least} is the answer, not {}", descent.value));
     }
     None
 }
@@ -61,7 +64,8 @@ where
         for method in ElementMethod::ALL {
             let descent = method.descend(shape, &element);
             let value = |p| shape.distance(p);
-            if let Some(complaint) = wrong(&descent, value, certified.lower, rounding) {
+            let last = *method == ElementMethod::Macklin;
+            if let Some(complaint) = wrong(&descent, value, [certified.lower, rounding], last) {
                 return Ok(Err(format!("{method}: {complaint}, {element:?}")));
             }
             // A gradient in space takes six values, a dichotomy twelve; and the first value.
@@ -118,7 +122,16 @@ where
             let rounding = a.promise().rounding.within(reach)
                 + b.promise().rounding.within(reach)
                 + 1e-14 * reach;
-            if 2.0 * (descent.value + rounding) < certified.lower {
+            // Half of a sum is no bound of the larger field; what it says must be there.
+            let least = if *method == PairMethod::SumDescent {
+                let [a, b] = DistanceBound::of_both(&a, &b)
+                    .unwrap()
+                    .map(|body| body.distance_gradient(descent.best).0);
+                a + b + a.max(b).abs()
+            } else {
+                certified.lower
+            };
+            if 2.0 * (descent.value + rounding) < least {
                 return Ok(Err(format!("{method}: {descent:?} is below {certified:?}")));
             }
             if descent.steps > 64 {
@@ -165,6 +178,11 @@ fn the_minimum_of_a_convex_field_is_found() -> Outcome {
                 }
                 ElementMethod::ProjectedGradient => 0.002 * longest,
                 ElementMethod::Naive => after_constant_steps(&found, &least, longest),
+                // Steps that shrink whatever they find have no bound; they have a price.
+                ElementMethod::Macklin => {
+                    assert!(found.evaluations <= 107, "{found:?}");
+                    f64::INFINITY
+                }
             };
             let excess = found.value - least.lower;
             assert!(excess <= bound, "{method} is {excess} above, {triangle:?}: {found:?}");

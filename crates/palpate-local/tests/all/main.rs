@@ -6,4 +6,6 @@
 
 mod descents;
 mod gradients;
+mod methods;
 mod naive;
+mod sweeps;

@@ -53,7 +53,8 @@ impl<const D: usize> Motion<D> {
     }
 
     /// How far the body turns [rad].
-    pub(super) fn angle(&self) -> f64 {
+    #[must_use]
+    pub fn angle(&self) -> f64 {
         self.screw.map_or(0.0, |screw| screw.angle().abs())
     }
 
@@ -63,7 +64,12 @@ impl<const D: usize> Motion<D> {
     }
 
     /// Refuses poses that are not finite or too far away, of the body with this index.
-    pub(crate) fn check(&self, index: usize) -> Result<(), QueryError> {
+    ///
+    /// # Errors
+    ///
+    /// If the first or the last pose is such a pose.
+    #[doc(hidden)]
+    pub fn check(&self, index: usize) -> Result<(), QueryError> {
         [0.0, 1.0].into_iter().try_for_each(|time| check_pose(index, &self.pose(time)))
     }
 }

@@ -28,7 +28,7 @@ pub struct Moving<'a, const D: usize> {
     /// The shape.
     pub shape: &'a Shape<D>,
     /// From the shape's coordinates to the world's, over the time.
-    pub(super) motion: Motion<D>,
+    pub motion: Motion<D>,
 }
 
 impl<'a, const D: usize> Moving<'a, D> {
