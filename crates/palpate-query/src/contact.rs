@@ -7,6 +7,38 @@ use std::fmt;
 
 use palpate_field::{Point, Pose, Vector};
 
+/// What the normal of a [`Contact`] was taken from.
+///
+/// A body that overlaps another by more than it is thick has no gradient that says on which side it came
+/// in: its own way out is through its thickness. Its normal is then taken from elsewhere.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub enum NormalSource {
+    /// The gradients of both fields at the contact.
+    #[default]
+    Gradients,
+    /// The gradient of the body that is thick there; the other is thin. The gap is that of its deepest
+    /// point there.
+    ThickerBody,
+    /// The normal with which the contact began, when the bodies did not overlap by more than the margin:
+    /// a [`Track`](crate::Track) or a [`World`](crate::World) has followed them from there.
+    History,
+    /// No field gives a direction there: the line between the bodies' centres, or the y axis.
+    Assumed,
+}
+
+impl fmt::Display for NormalSource {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Gradients => "gradients",
+            Self::ThickerBody => "thicker body",
+            Self::History => "history",
+            Self::Assumed => "assumed",
+        })
+    }
+}
+
 /// One place where two bodies touch, or nearly do, in world coordinates.
 ///
 /// Every question of this crate that finds contacts answers with this type. Which body is
@@ -38,6 +70,8 @@ pub struct Contact<const D: usize> {
     /// the centres of the bodies; where that has no direction, and for elements, it is the y
     /// axis.
     pub normal: Vector<f64, D>,
+    /// What the normal was taken from.
+    pub normal_from: NormalSource,
     /// The distance from `point_a` to `point_b` along the normal,
     /// `(point_b − point_a)·normal` [m]; negative where the bodies overlap.
     pub gap: f64,
@@ -56,7 +90,13 @@ impl<const D: usize> Contact<D> {
     #[inline]
     pub fn new(point_a: Point<D>, point_b: Point<D>, normal: Vector<f64, D>) -> Self {
         let gap = (point_b - point_a).dot(normal);
-        Self { point_a, point_b, normal, gap, id: 0 }
+        Self { point_a, point_b, normal, normal_from: NormalSource::Gradients, gap, id: 0 }
+    }
+
+    /// The same contact, whose normal was taken from elsewhere.
+    #[must_use]
+    pub(crate) fn with_normal_from(self, normal_from: NormalSource) -> Self {
+        Self { normal_from, ..self }
     }
 
     /// The same contact with another `id`.

@@ -10,7 +10,7 @@
 use palpate_field::{LARGEST_LENGTH, Point, SHORT, Shape, Vector};
 
 use crate::certified::{Certified, Limits, Stop};
-use crate::contact::Contact;
+use crate::contact::{Contact, NormalSource};
 use crate::element::Element;
 use crate::element_search::{ElementCell, ElementSearch, ElementWorkspace, Terms};
 use crate::engine::{self, Frontier};
@@ -281,11 +281,14 @@ pub(crate) fn at<const D: usize>(shape: &Shape<D>, p: Point<D>) -> Contact<D> {
     let apart = (p - surface) * sign;
     let length = apart.norm();
     let normal = if length > DIRECTION * p.norm() {
-        apart * (1.0 / length)
+        Some(apart * (1.0 / length))
     } else {
         // On the surface, or where the field has no direction.
         let there = direction(shape.distance_gradient(surface).1);
-        there.or(direction(gradient)).unwrap_or_else(arbitrary)
+        there.or(direction(gradient))
     };
-    Contact::new(surface, p, normal)
+    match normal {
+        Some(normal) => Contact::new(surface, p, normal),
+        None => Contact::new(surface, p, arbitrary()).with_normal_from(NormalSource::Assumed),
+    }
 }

@@ -84,7 +84,7 @@ mod world;
 pub use any_point::any_point;
 pub use ball::{BallWorkspace, contact_ball, touches_ball};
 pub use certified::{Certified, Limits, Stop};
-pub use contact::Contact;
+pub use contact::{Contact, NormalSource};
 pub use contacts::{ElementContacts, contacts};
 pub use element::Element;
 pub use element_search::{ElementWorkspace, minimum, touches};

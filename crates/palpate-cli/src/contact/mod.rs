@@ -20,6 +20,7 @@ use crate::views;
 use question::{Asked, Question};
 
 pub(crate) use overlay::Touched;
+pub(crate) use report::as_json;
 
 /// Pictures show every pair of scenes of at most so many bodies, and only near pairs of others.
 const FEW: usize = 12;

@@ -5,7 +5,7 @@
 
 use std::io::Write;
 
-use palpate::query::{Contact, Stop, Verdict};
+use palpate::query::{Contact, NormalSource, Stop, Verdict};
 use serde_json::{Value, json};
 
 use super::question::{Pair, Question};
@@ -159,13 +159,9 @@ impl<const D: usize> Report<'_, D> {
             .contacts
             .iter()
             .map(|contact| {
-                json!({
-                    "id": contact.id,
-                    "gap_m": contact.gap,
-                    "point_a_m": contact.point_a.0.to_vec(),
-                    "point_b_m": contact.point_b.0.to_vec(),
-                    "normal": contact.normal.0.to_vec(),
-                })
+                let mut said = as_json(contact);
+                said["id"] = json!(contact.id);
+                said
             })
             .collect();
         let mut said = json!({
@@ -189,10 +185,25 @@ impl<const D: usize> Report<'_, D> {
     }
 }
 
+/// A contact as JSON, but for its id.
+pub(crate) fn as_json<const D: usize>(contact: &Contact<D>) -> Value {
+    json!({
+        "gap_m": contact.gap,
+        "point_a_m": contact.point_a.0.to_vec(),
+        "point_b_m": contact.point_b.0.to_vec(),
+        "normal": contact.normal.0.to_vec(),
+        "normal_from": contact.normal_from.to_string(),
+    })
+}
+
 /// A contact, on a line that follows another.
 fn contact_in_words<const D: usize>(contact: &Contact<D>) -> String {
+    let from = match contact.normal_from {
+        NormalSource::Gradients => String::new(),
+        source => format!("  from {source}"),
+    };
     format!(
-        "\n  {:>3}  gap {} mm  at ({})  normal ({})",
+        "\n  {:>3}  gap {} mm  at ({})  normal ({}){from}",
         contact.id,
         millimetres(contact.gap),
         joined(contact.point_a.0, 6),

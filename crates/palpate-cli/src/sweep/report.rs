@@ -5,10 +5,11 @@
 
 use std::io::Write;
 
-use palpate::query::{Contact, FirstTouch, Start, Stop};
+use palpate::query::{FirstTouch, Start, Stop};
 use serde_json::{Value, json};
 
 use super::{Pair, Question};
+use crate::contact::as_json;
 use crate::numbers::rounded;
 use crate::outcome::Failure;
 use crate::output::{self, counted, shown};
@@ -121,7 +122,7 @@ impl<const D: usize> Report<'_, D> {
             "lower_s": found.lower,
             "upper_s": found.upper,
             "start": found.start.map(in_a_word),
-            "contact": found.contact.as_ref().map(described),
+            "contact": found.contact.as_ref().map(as_json),
             "stop": found.stop.to_string(),
             "evaluations": found.evaluations,
             "local": pair.local.as_ref().zip(self.question.local.as_ref()).map(|(local, search)| {
@@ -148,15 +149,6 @@ fn against<const D: usize>(time: f64, found: &FirstTouch<D>) -> String {
         }
         () => "within the proven bounds".to_owned(),
     }
-}
-
-fn described<const D: usize>(contact: &Contact<D>) -> Value {
-    json!({
-        "gap_m": contact.gap,
-        "point_a_m": contact.point_a.0.to_vec(),
-        "point_b_m": contact.point_b.0.to_vec(),
-        "normal": contact.normal.0.to_vec(),
-    })
 }
 
 fn in_a_word(start: Start) -> &'static str {

@@ -14,6 +14,7 @@
 //! otherwise, `patch` and `fill` choose the contacts; the separation and its bounds come from
 //! `pair/search.rs`.
 
+mod deep;
 mod fill;
 pub(crate) mod grid;
 mod patch;
@@ -22,7 +23,7 @@ mod region;
 use palpate_field::{LARGEST_LENGTH, Point, Vector};
 
 use crate::certified::{Certified, Limits, Stop};
-use crate::contact::Contact;
+use crate::contact::{Contact, NormalSource};
 use crate::error::QueryError;
 use crate::goal::Goal;
 use crate::pair::body_pair::BodyPair;
@@ -30,6 +31,7 @@ use crate::pair::search::PairSearch;
 use crate::pair::{Nearest, PairWorkspace};
 use crate::placed::Placed;
 use crate::sampler::{arbitrary, normal};
+pub(crate) use deep::followed;
 use grid::distance;
 use patch::Patches;
 use region::Region;
@@ -252,18 +254,29 @@ impl<const D: usize> Spanned<D> {
         separated: &SeparatedPair<'_, D>,
         settings: &ManifoldSettings,
     ) -> Manifold<D> {
-        let (pair, is_whole) = (&separated.pair, !self.stop.is_early());
+        let (mut pair, is_whole) = (separated.pair, !self.stop.is_early());
         let mut found = Manifold {
             is_whole,
             region_stop: self.stop,
             ..Manifold::apart(separated.separation)
         };
-        found.separation.evaluations += pair.evaluations;
         if let Some(deepest) = self.members.first() {
-            found.deepen(&deepest.touch, pair);
+            found.deepen(&deepest.touch, &pair);
         }
-        let contact = |member: &Member<D>| member.touch.contact(pair, settings.spacing);
-        let spanning = self.members.iter().map(|member| (*member, contact(member)));
+        let mut members = self.members.clone();
+        let mut are_pushed = false;
+        for member in &mut members {
+            if let Some(touch) = deep::pushed(&mut pair, &member.touch, settings) {
+                (member.touch, are_pushed) = (touch, true);
+            }
+        }
+        if are_pushed {
+            // Several lead to one deepest point.
+            drop_copies(&mut members, settings.spacing);
+        }
+        found.separation.evaluations += pair.evaluations;
+        let contact = |member: &Member<D>| member.touch.contact(&pair, settings.spacing);
+        let spanning = members.iter().map(|member| (*member, contact(member)));
         found.keep(spanning.collect(), settings);
         found
     }
@@ -349,10 +362,11 @@ impl ManifoldSettings {
 
 /// A point between two bodies, in the pair's frame.
 #[derive(Clone, Copy, Debug)]
-struct Touch<const D: usize> {
+pub(crate) struct Touch<const D: usize> {
     point: Point<D>,
     normal: Vector<f64, D>,
     gap: f64,
+    source: NormalSource,
 }
 
 /// A contact and its patch.
@@ -367,16 +381,28 @@ impl<const D: usize> Touch<D> {
     /// centres does, if they differ.
     fn at(pair: &mut BodyPair<'_, D>, point: Point<D>) -> Self {
         let [(a, slope_a), (b, slope_b)] = pair.slopes(point);
-        let normal = normal(slope_a - slope_b).or_else(|| pair.between_centres().normalized());
-        Self { point, normal: normal.unwrap_or_else(arbitrary), gap: 2.0 * a.max(b) }
+        let (normal, source) = match normal(slope_a - slope_b) {
+            Some(normal) => (normal, NormalSource::Gradients),
+            None => {
+                let between = pair.between_centres().normalized();
+                (between.unwrap_or_else(arbitrary), NormalSource::Assumed)
+            }
+        };
+        Self { point, normal, gap: 2.0 * a.max(b), source }
     }
 
     /// The contact in world coordinates, no less deep than the values say. Points of the surfaces count
     /// only within `near` and 45° of the normal: in the middle of a body the gradient may lead to any
     /// side.
-    fn contact(&self, pair: &BodyPair<'_, D>, near: f64) -> Contact<D> {
+    pub(crate) fn contact(&self, pair: &BodyPair<'_, D>, near: f64) -> Contact<D> {
         let near = near.max(2.0 * self.gap.abs());
         let estimated = |side: f64| self.point + self.normal * (side * 0.5 * self.gap);
+        let placed = |contact: Contact<D>| {
+            contact.with_normal_from(self.source).placed(&pair.world_from_frame)
+        };
+        if matches!(self.source, NormalSource::ThickerBody | NormalSource::History) {
+            return placed(Contact::new(estimated(-1.0), estimated(1.0), self.normal));
+        }
         let on = |body: usize, side: f64| {
             let found = pair.surface_point(body, self.point);
             let found = found.filter(|p| {
@@ -392,7 +418,7 @@ impl<const D: usize> Touch<D> {
         if self.gap < 0.0 && contact.gap > self.gap {
             contact = Contact::new(estimated(-1.0), estimated(1.0), self.normal);
         }
-        contact.placed(&pair.world_from_frame)
+        placed(contact)
     }
 }
 

@@ -9,6 +9,7 @@ use palpate_field::{BLOCK, Point, Vector};
 use super::fill::Middle;
 use super::{ManifoldSettings, Touch};
 use crate::certified::Stop;
+use crate::contact::NormalSource;
 use crate::engine::{self, End, Frontier, Heap, Problem};
 use crate::pair::PairWorkspace;
 use crate::pair::body_pair::{BodyPair, Memory};
@@ -276,5 +277,6 @@ pub(super) fn towards<const D: usize>(
     if gap > settings.margin {
         return Towards::Nothing;
     }
-    Towards::There(Touch { point: p, normal: between * (1.0 / squared.sqrt()), gap })
+    let normal = between * (1.0 / squared.sqrt());
+    Towards::There(Touch { point: p, normal, gap, source: NormalSource::Gradients })
 }

@@ -57,6 +57,8 @@ impl<const D: usize> Track<D> {
             Kept::spanning(&mut self.kept, separated, (settings, limits.budget), workspace)
         };
         self.names.name(&mut found.contacts, poses, settings.spacing);
+        found.separation.evaluations +=
+            self.history.follow(&mut found.contacts, pair, poses, settings);
         Ok(found)
     }
 }

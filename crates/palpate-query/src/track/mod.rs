@@ -3,6 +3,7 @@
 
 //! Two bodies that move: what was proven of them is kept from step to step.
 
+mod history;
 mod manifold;
 mod names;
 
@@ -16,6 +17,7 @@ use crate::pair::body_pair::BodyPair;
 use crate::pair::distance_bound::DistanceBound;
 use crate::pair::search::{PairSearch, PairWorkspace};
 use crate::placed::Placed;
+use history::History;
 use manifold::Kept;
 use names::Names;
 
@@ -69,6 +71,7 @@ pub struct Track<const D: usize> {
     next_alone: u32,
     kept: Option<Kept<D>>,
     names: Names<D>,
+    history: History<D>,
 }
 
 /// What the last search proved, and where the bodies were.
@@ -91,7 +94,8 @@ impl<const D: usize> Track<D> {
     #[must_use]
     pub fn new(a: Shape<D>, b: Shape<D>) -> Self {
         let (alone, next_alone) = (0, ALONE);
-        Self { shapes: [a, b], known: None, alone, next_alone, kept: None, names: Names::new() }
+        let (known, kept, history) = (None, None, History::default());
+        Self { shapes: [a, b], known, alone, next_alone, kept, names: Names::new(), history }
     }
 
     /// The shapes.
@@ -102,7 +106,7 @@ impl<const D: usize> Track<D> {
 
     /// Forgets all bounds: the next search begins anew.
     pub fn forget(&mut self) {
-        (self.known, self.kept) = (None, None);
+        (self.known, self.kept, self.history) = (None, None, History::default());
     }
 
     /// The separation of both shapes at these poses, `world_from_body`, as

@@ -23,6 +23,7 @@ mod recall_motions;
 mod separating_translations;
 mod serde;
 mod sweeps;
+mod thin;
 mod track_costs;
 mod tracks;
 mod worlds;

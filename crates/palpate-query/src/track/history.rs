@@ -1,0 +1,90 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! On which side contacts came in.
+
+use palpate_field::{Point, Pose, Vector};
+
+use crate::contact::Contact;
+use crate::manifold::{ManifoldSettings, followed};
+use crate::pair::body_pair::BodyPair;
+
+/// The cosine of how far the normal of a contact may be from that of its history, 45°.
+const LIKE: f64 = 0.7;
+
+/// Contacts that have been followed since the bodies overlapped by no more than the margin.
+#[derive(Clone, Debug)]
+pub(super) struct History<const D: usize> {
+    known: Vec<Known<D>>,
+}
+
+/// A contact of the last step, its points and normal in the coordinates of the first body and of the
+/// second.
+#[derive(Clone, Copy, Debug)]
+struct Known<const D: usize> {
+    points: [Point<D>; 2],
+    normals: [Vector<f64, D>; 2],
+}
+
+impl<const D: usize> Default for History<D> {
+    fn default() -> Self {
+        Self { known: Vec::new() }
+    }
+}
+
+impl<const D: usize> History<D> {
+    /// Gives deep contacts whose normals are not those with which they came in the normals and gaps of
+    /// their history, and returns how often fields were evaluated. What was deep when it was seen first
+    /// has no history until it comes out.
+    pub(super) fn follow(
+        &mut self,
+        contacts: &mut [Contact<D>],
+        pair: BodyPair<'_, D>,
+        poses: [Pose<D>; 2],
+        settings: &ManifoldSettings,
+    ) -> u32 {
+        let mut pair = pair;
+        pair.evaluations = 0;
+        let from_world = poses.map(|pose| pose.inverse());
+        let mut known = Vec::with_capacity(contacts.len());
+        for contact in contacts {
+            if contact.gap < -settings.margin {
+                let Some(last) = self.nearest(contact, poses) else { continue };
+                let normals = [0, 1].map(|i| poses[i].transform_vector(last.normals[i]));
+                if normals.iter().all(|normal| normal.dot(contact.normal) < LIKE) {
+                    let points = [0, 1].map(|i| poses[i].transform_point(last.points[i]));
+                    // The frame of the pair is the first body.
+                    let frame = &from_world[0];
+                    let found = followed(
+                        &mut pair,
+                        points.map(|p| frame.transform_point(p)),
+                        normals.map(|normal| frame.transform_vector(normal)),
+                        settings,
+                    );
+                    let Some(touch) = found else { continue };
+                    let followed = touch.contact(&pair, settings.spacing);
+                    *contact = followed.with_id(contact.id);
+                }
+            }
+            known.push(Known {
+                points: [
+                    from_world[0].transform_point(contact.point_a),
+                    from_world[1].transform_point(contact.point_b),
+                ],
+                normals: from_world
+                    .map(|from_world| from_world.transform_vector(contact.normal)),
+            });
+        }
+        self.known = known;
+        pair.evaluations
+    }
+
+    /// The contact of the last step that is nearest on either body.
+    fn nearest(&self, contact: &Contact<D>, poses: [Pose<D>; 2]) -> Option<Known<D>> {
+        let apart = |known: &Known<D>| {
+            let [a, b] = [0, 1].map(|i| poses[i].transform_point(known.points[i]));
+            (a - contact.point_a).norm().min((b - contact.point_b).norm())
+        };
+        self.known.iter().copied().min_by(|one, other| apart(one).total_cmp(&apart(other)))
+    }
+}
