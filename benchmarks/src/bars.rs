@@ -88,6 +88,25 @@ pub(crate) const HAPTICS: &[Bar] = &[
     ("tick.tool_1000_points_S3.p99.over_S3", 26_000.0),
 ];
 
+/// Those beside MuJoCo: no overlap of ours is missed.
+pub(crate) const MUJOCO: &[Bar] = &[
+    ("torus_torus.0.1mm.missed.ours", 0.0),
+    ("torus_torus.1mm.missed.ours", 0.0),
+    ("torus_torus.5mm.missed.ours", 0.0),
+    ("torus_bowl.0.1mm.missed.ours", 0.0),
+    ("torus_bowl.1mm.missed.ours", 0.0),
+    ("torus_bowl.5mm.missed.ours", 0.0),
+    ("torus_gear.0.1mm.missed.ours", 0.0),
+    ("torus_gear.1mm.missed.ours", 0.0),
+    ("torus_gear.5mm.missed.ours", 0.0),
+    ("gear_gear.0.1mm.missed.ours", 0.0),
+    ("gear_gear.1mm.missed.ours", 0.0),
+    ("gear_gear.5mm.missed.ours", 0.0),
+    ("large_torus_torus.0.1mm.missed.ours", 0.0),
+    ("large_torus_torus.1mm.missed.ours", 0.0),
+    ("large_torus_torus.5mm.missed.ours", 0.0),
+];
+
 /// Rows in the plane, and those in space that they take at most as long as in the same run.
 const IN_THE_PLANE: &[(&str, &str)] = &[
     ("segment.hit.P1.ns", "triangle.hit.S1.ns"),
@@ -125,6 +144,11 @@ pub(crate) fn print(rows: &Rows, bars: &[Bar], is_part: bool, as_json: bool) {
         println!("{key:<60} {number:>12.4}");
     }
     println!();
+    print_standing(rows, bars, is_part);
+}
+
+/// Prints how rows stand against their bars.
+pub(crate) fn print_standing(rows: &Rows, bars: &[Bar], is_part: bool) {
     let bars = bars.iter().filter(|(key, _)| !is_part || rows.contains_key(*key));
     let of_rows = bars.map(|(key, bar)| (*key, rows.get(*key).copied(), *bar));
     let in_the_plane = IN_THE_PLANE.iter().filter(|(key, _)| rows.contains_key(*key));
@@ -154,6 +178,13 @@ mod tests {
             [".over_S3", "_over_fidget_jit", "_over_parry", "_over_f32", ".over_child"];
         for (key, _) in [FIELDS, COLLIDE, HAPTICS].concat() {
             assert!(ratios.iter().any(|ratio| key.ends_with(ratio)), "{key}");
+        }
+    }
+
+    #[test]
+    fn beside_mujoco_nothing_may_be_missed() {
+        for (key, bar) in MUJOCO {
+            assert!(key.ends_with(".missed.ours") && *bar == 0.0, "{key}");
         }
     }
 }

@@ -11,6 +11,7 @@ mod collide;
 mod compare;
 mod fields;
 mod haptics;
+mod mujoco;
 mod peers;
 mod random;
 mod reference;
@@ -87,6 +88,14 @@ enum Suite {
         #[arg(long)]
         json: bool,
     },
+    /// Overlaps of known depth, beside MuJoCo; needs Python and its package index once.
+    Mujoco {
+        #[command(flatten)]
+        options: mujoco::Options,
+        /// Print one JSON object of keys and numbers.
+        #[arg(long)]
+        json: bool,
+    },
 }
 
 #[derive(Clone, Copy, Debug, Args)]
@@ -120,6 +129,16 @@ fn measure(suite: Suite) -> Result<ExitCode, Box<dyn Error>> {
         }
         Suite::Haptics { json, runs: Runs { runs } } => {
             (haptics::measure(runs)?, bars::HAPTICS, false, json)
+        }
+        Suite::Mujoco { options, json } => {
+            let rows = mujoco::measure(&options, json)?;
+            if json {
+                bars::print(&rows.unwrap_or_default(), bars::MUJOCO, false, json);
+            } else if let Some(rows) = rows {
+                // The table has the rows.
+                bars::print_standing(&rows, bars::MUJOCO, false);
+            }
+            return Ok(ExitCode::SUCCESS);
         }
         Suite::Compare(comparison) => return comparison.run(),
     };

@@ -1,0 +1,100 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! MuJoCo's plugins of signed distance fields, and the same bodies as our shapes.
+
+use std::error::Error;
+use std::f64::consts::FRAC_PI_2;
+
+use palpate::field::kernel::{Ball, CutHollowSphere, Polygon, Torus};
+use palpate::field::{Rotation, Shape, Vector};
+
+use super::exchange::Plugin;
+use super::gear::Gear;
+
+/// How far the edges of our gear are from the plugin's outline [m]: a hundredth of the smallest
+/// depth would change no digit that is printed.
+const OUTLINE: f64 = 2e-7;
+
+/// A body for both.
+#[derive(Clone, Debug)]
+pub(super) struct Body {
+    /// As keys name it.
+    pub(super) name: &'static str,
+    pub(super) plugin: Plugin,
+    pub(super) shape: Shape<3>,
+}
+
+/// Two bodies.
+#[derive(Clone, Debug)]
+pub(super) struct Pair {
+    pub(super) name: &'static str,
+    /// Their places in the list of bodies.
+    pub(super) bodies: [usize; 2],
+}
+
+/// The bodies and the pairs of the suite.
+pub(super) fn all() -> Result<(Vec<Body>, Vec<Pair>), Box<dyn Error>> {
+    let gear = Gear { diameter: 0.1, teeth: 25 };
+    let bodies = vec![
+        torus("torus", 0.035, 0.015)?,
+        bowl(0.05, -0.01, 0.012)?,
+        gear_of(gear, 0.02)?,
+        torus("large_torus", 0.35, 0.15)?,
+    ];
+    let pair = |name, bodies| Pair { name, bodies };
+    let pairs = vec![
+        pair("torus_torus", [0, 0]),
+        pair("torus_bowl", [0, 1]),
+        pair("torus_gear", [0, 2]),
+        pair("gear_gear", [2, 2]),
+        pair("large_torus_torus", [3, 3]),
+    ];
+    Ok((bodies, pairs))
+}
+
+/// `mujoco.sdf.torus`, about the z axis.
+fn torus(name: &'static str, major: f64, minor: f64) -> Result<Body, Box<dyn Error>> {
+    let attributes = vec![("radius1", major), ("radius2", minor)];
+    Ok(Body {
+        name,
+        plugin: Plugin { plugin: "mujoco.sdf.torus", attributes },
+        shape: upright(Shape::from_kernel(Torus::new(major, minor)?))?,
+    })
+}
+
+/// `mujoco.sdf.bowl`, about the z axis, whose attribute is half the thickness.
+fn bowl(radius: f64, height: f64, thickness: f64) -> Result<Body, Box<dyn Error>> {
+    let attributes =
+        vec![("height", height), ("radius", radius), ("thickness", 0.5 * thickness)];
+    Ok(Body {
+        name: "bowl",
+        plugin: Plugin { plugin: "mujoco.sdf.bowl", attributes },
+        shape: upright(Shape::from_kernel(CutHollowSphere::new(radius, height, thickness)?))?,
+    })
+}
+
+/// `mujoco.sdf.gear`, along the z axis.
+fn gear_of(gear: Gear, thickness: f64) -> Result<Body, Box<dyn Error>> {
+    let attributes = vec![
+        ("alpha", 0.0),
+        ("diameter", gear.diameter),
+        ("teeth", f64::from(gear.teeth)),
+        ("thickness", thickness),
+        ("innerdiameter", 2.0 * gear.bore()),
+    ];
+    // Profiles are drawn in x and z, which `upright` turns to x and −y.
+    let outline = gear.outline(OUTLINE).into_iter().map(|[x, y]| Vector([x, -y])).collect();
+    let outline = Shape::from_kernel(Polygon::new(vec![outline])?);
+    let bore = Shape::from_kernel(Ball::new(gear.bore())?);
+    Ok(Body {
+        name: "gear",
+        plugin: Plugin { plugin: "mujoco.sdf.gear", attributes },
+        shape: upright(Shape::difference(outline, [bore])?.extruded(thickness)?)?,
+    })
+}
+
+/// A shape about the y axis, about the z axis.
+fn upright(shape: Shape<3>) -> Result<Shape<3>, Box<dyn Error>> {
+    Ok(shape.rotated(Rotation::from_axis_angle(Vector([1.0, 0.0, 0.0]), FRAC_PI_2)?)?)
+}
