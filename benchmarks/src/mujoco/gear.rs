@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! The gear of MuJoCo's plugin `mujoco.sdf.gear`, as a polygon.
+//! The gear of MuJoCo's plugin `mujoco.sdf.gear`, as a polygon about half a tooth that is folded
+//! into all of them.
 //!
 //! An involute gear of pitch diameter D with N teeth, without backlash:
 //!
@@ -18,6 +19,9 @@
 
 use std::f64::consts::PI;
 
+use palpate::field::kernel::{Ball, Polygon};
+use palpate::field::{Rotation, Shape, ShapeError, Vector};
+
 /// Radii at which a flank is sampled before it is simplified.
 const SAMPLES: u32 = 4000;
 
@@ -29,16 +33,21 @@ const HALVINGS: u32 = 54;
 pub(super) struct Gear {
     /// The pitch diameter [m].
     pub(super) diameter: f64,
-    pub(super) teeth: u32,
+    /// The number of teeth is 2 to this power, so that folds make them of one.
+    pub(super) folds: u32,
 }
 
 impl Gear {
+    pub(super) fn teeth(&self) -> f64 {
+        f64::from(self.folds).exp2()
+    }
+
     fn module(&self) -> f64 {
-        self.diameter / f64::from(self.teeth)
+        self.diameter / self.teeth()
     }
 
     fn pressure_angle(&self) -> f64 {
-        let teeth = f64::from(self.teeth);
+        let teeth = self.teeth();
         3.096e-5 * teeth * teeth - 6.557e-3 * teeth + 0.551
     }
 
@@ -61,7 +70,7 @@ impl Gear {
 
     /// Half the angle between two teeth [rad].
     fn half_step(&self) -> f64 {
-        PI / f64::from(self.teeth)
+        PI / self.teeth()
     }
 
     /// Half the angle that a tooth takes on the base circle [rad].
@@ -85,18 +94,39 @@ impl Gear {
         smooth_minimum(radius - self.root(), tooth, base - self.root())
     }
 
-    /// The outline, counter-clockwise, whose edges are within `tolerance` [m] of the gear's.
-    pub(super) fn outline(&self, tolerance: f64) -> Vec<[f64; 2]> {
+    /// The profile with its bore, the middle of a tooth at the angle −w: mirrored in x, for
+    /// profiles are drawn in x and z. Its edges are within `tolerance` [m] of the gear's.
+    ///
+    /// Exact: the point of a gear's outline that is nearest to a point is in the same half of a
+    /// tooth, or its mirror image would be nearer.
+    pub(super) fn profile(&self, tolerance: f64) -> Result<Shape<2>, ShapeError> {
+        let corners = self.about_half_a_tooth(tolerance).into_iter().map(|[r, a]| polar(r, a));
+        let mut profile =
+            Shape::from_kernel(Polygon::new(vec![corners.map(Vector).collect()])?);
+        // What is right between the angles 0 and `known` becomes right up to twice as much.
+        let mut known = self.half_step();
+        for _ in 0..self.folds {
+            let turn = PI - known;
+            profile = profile.rotated(Rotation::from_angle(turn)?)?.mirrored(1)?;
+            profile = profile.rotated(Rotation::from_angle(-turn)?)?;
+            known *= 2.0;
+        }
+        let profile =
+            profile.mirrored(1)?.rotated(Rotation::from_angle(-self.half_width())?)?;
+        Shape::difference(profile, [Shape::from_kernel(Ball::new(self.bore())?)])
+    }
+
+    /// A closed line of radii and angles from the middle of a tooth: that of the gear around the
+    /// half between the angles 0 and `half_step`. What closes it is farther from the points of
+    /// this half than what is in it, but for those within the bore.
+    fn about_half_a_tooth(&self, tolerance: f64) -> Vec<[f64; 2]> {
         let flank = simplified(&self.flank(tolerance), tolerance);
-        let middle = self.half_width();
-        let one = flank.iter().map(|[radius, angle]| [*radius, -angle]);
-        // The middle of the tip and the middle of the gap are in one flank alone.
-        let other = flank.iter().rev().filter(|[_, angle]| *angle > 0.0);
-        let other = other.filter(|[_, angle]| *angle < self.half_step());
-        let tooth: Vec<_> = one.chain(other.copied()).collect();
-        let step = 2.0 * self.half_step();
-        let teeth = (0..self.teeth).map(|i| middle + step * f64::from(i));
-        teeth.flat_map(|at| tooth.iter().map(move |[r, angle]| polar(*r, at + angle))).collect()
+        let half = self.half_step();
+        let before = flank.iter().map(|[radius, angle]| [*radius, -angle]);
+        let within = flank.iter().rev().skip(1).copied();
+        let after = flank.iter().skip(1).map(|[radius, angle]| [*radius, 2.0 * half - angle]);
+        let ends = [[self.root(), 3.0 * half], [0.0, 0.0], [self.root(), -2.0 * half]];
+        before.chain(within).chain(after).chain(ends).collect()
     }
 
     /// Half a tooth from the middle of a gap to the middle of the tip: radii and angles.
@@ -179,40 +209,72 @@ mod tests {
     use super::*;
     use std::f64::consts::TAU;
 
-    const GEAR: Gear = Gear { diameter: 0.1, teeth: 25 };
+    use crate::random::Random;
 
-    /// The angle of a point from the middle of the nearest tooth.
-    fn from_tooth([x, y]: [f64; 2]) -> f64 {
-        let step = TAU / f64::from(GEAR.teeth);
-        let angle = (y.atan2(x) - GEAR.half_width()).rem_euclid(step);
-        angle.min(step - angle)
+    const GEAR: Gear = Gear { diameter: 0.1, folds: 4 };
+
+    const TOLERANCE: f64 = 1e-6;
+
+    /// The field of the formulas at a point of the plane in which profiles are drawn.
+    fn by_formula([x, z]: [f64; 2]) -> f64 {
+        let step = TAU / GEAR.teeth();
+        let from_middle = (-z).atan2(x) - GEAR.half_width();
+        let angle = from_middle - step * (from_middle / step).round();
+        let radius = x.hypot(z);
+        GEAR.field(radius, angle).max(GEAR.bore() - radius)
     }
 
     #[test]
-    fn corners_of_the_outline_are_on_the_gear() {
-        let outline = GEAR.outline(1e-6);
-        for p in &outline {
-            let field = GEAR.field(p[0].hypot(p[1]), from_tooth(*p));
-            // Radians on the walls below the base circle count a twentieth of a metre here.
-            assert!(field.abs() < 1e-9, "{p:?}: {field}");
+    fn the_profile_has_the_signs_of_the_formulas() -> Result<(), ShapeError> {
+        let profile = GEAR.profile(TOLERANCE)?;
+        let mut random = Random::new(3);
+        for _ in 0..20_000 {
+            let p = random.point([0.0; 2], 0.06);
+            let distance = profile.distance(Vector(p));
+            let field = by_formula(p);
+            let agree = (distance < 0.0) == (field < 0.0);
+            assert!(agree || distance.abs() < 2.0 * TOLERANCE, "{p:?}: {distance}, {field}");
         }
+        Ok(())
     }
 
+    /// Steps of 10 µm along all of a fine outline are an oracle of the distance, to 5 µm and what
+    /// that adds.
     #[test]
-    fn edges_are_within_the_tolerance() {
-        let outline = GEAR.outline(1e-6);
-        for (a, b) in outline.iter().zip(outline.iter().cycle().skip(1)) {
-            let middle = [0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])];
-            let (radius, angle) = (middle[0].hypot(middle[1]), from_tooth(middle));
-            // Twice the tolerance to either side the sign is that of the field.
-            let length = (b[0] - a[0]).hypot(b[1] - a[1]);
-            let out = [(b[1] - a[1]) / length, (a[0] - b[0]) / length];
-            for side in [-2e-6, 2e-6] {
-                let p = [middle[0] + side * out[0], middle[1] + side * out[1]];
-                let field = GEAR.field(p[0].hypot(p[1]), from_tooth(p));
-                assert!(field * side > 0.0, "at {radius}, {angle}: {field} {side} off");
+    fn the_profile_is_exact() -> Result<(), ShapeError> {
+        let flank = GEAR.flank(1e-9);
+        let mut outline = Vec::new();
+        for i in 0..16 {
+            let middle = -GEAR.half_width() + TAU / 16.0 * f64::from(i);
+            for pair in flank.windows(2) {
+                for side in [-1.0, 1.0] {
+                    let [a, b] =
+                        [pair[0], pair[1]].map(|[r, angle]| polar(r, middle + side * angle));
+                    let pieces = ((b[0] - a[0]).hypot(b[1] - a[1]) / 1e-5).ceil().max(1.0);
+                    let at = |j: u32| {
+                        let part = f64::from(j) / pieces;
+                        [0, 1].map(|k| a[k] + (b[k] - a[k]) * part)
+                    };
+                    outline.extend((0..pieces as u32).map(at));
+                }
             }
         }
+        let profile = GEAR.profile(TOLERANCE)?;
+        let mut random = Random::new(5);
+        for _ in 0..100 {
+            let p = random.point([0.0; 2], 0.06);
+            let to = |q: &[f64; 2]| (q[0] - p[0]).hypot(q[1] - p[1]);
+            let nearest = outline.iter().map(to).fold(f64::INFINITY, f64::min);
+            let radius = p[0].hypot(p[1]);
+            let expected = match by_formula(p) < 0.0 {
+                true => -nearest.min(radius - GEAR.bore()),
+                false if radius < GEAR.bore() => GEAR.bore() - radius,
+                false => nearest,
+            };
+            let distance = profile.distance(Vector(p));
+            assert!((distance - expected).abs() < 7e-6, "{p:?}: {distance}, {expected}");
+        }
+        Ok(())
     }
 
     #[test]
@@ -223,7 +285,7 @@ mod tests {
 
     #[test]
     fn a_finer_outline_has_more_corners() {
-        let counts = [1e-5, 1e-6].map(|tolerance| GEAR.outline(tolerance).len());
-        assert!(counts[0] < counts[1] && counts[1] < 5000, "{counts:?}");
+        let counts = [1e-5, 1e-6].map(|tolerance| GEAR.about_half_a_tooth(tolerance).len());
+        assert!(counts[0] < counts[1] && counts[1] < 500, "{counts:?}");
     }
 }

@@ -83,35 +83,38 @@ fn place(
 
 /// How far apart two bodies overlap by a depth, between concentric and `far`; `None` if they do
 /// not overlap by as much in the middle.
+///
+/// The interval is divided where its ends' separations say, but near its middle, and the
+/// separation is asked for only as precisely as the interval is long.
 fn bisect(
     mut ask: impl FnMut(f64, f64) -> Result<Certified<Nearest<3>>, QueryError>,
     mut far: f64,
     depth: f64,
 ) -> Result<Option<f64>, QueryError> {
+    let finest = PLACED * depth;
+    // How much more than `-depth` the separation is.
+    let mut excess = |apart: f64, tolerance: f64| {
+        let answer = ask(apart, tolerance.max(finest))?;
+        Ok(0.5 * (answer.lower + answer.upper) + depth)
+    };
     let mut near = 0.0;
-    if ask(near, PLACED * depth)?.upper > -depth {
+    let (mut below, mut above) = (excess(near, 0.1 * depth)?, excess(far, far)?);
+    if below > 0.0 {
         return Ok(None);
     }
     // The separation changes by no more than the place.
-    while far - near > PLACED * depth {
-        let middle = 0.5 * (near + far);
-        // Coarse while that is enough.
-        let mut tolerance = 0.1 * (far - near);
-        loop {
-            tolerance = tolerance.max(PLACED * depth);
-            let answer = ask(middle, tolerance)?;
-            if answer.lower > -depth {
-                far = middle;
-            } else if answer.upper < -depth {
-                near = middle;
-            } else if tolerance > PLACED * depth {
-                tolerance *= 0.1;
-                continue;
-            } else {
-                return Ok(Some(middle));
-            }
-            break;
+    while far - near > finest {
+        let share = (-below / (above - below)).clamp(0.1, 0.9);
+        let middle = near + (far - near) * share;
+        let tolerance = 0.02 * (far - near);
+        let mut here = excess(middle, tolerance)?;
+        if here.abs() < tolerance {
+            here = excess(middle, finest)?;
         }
+        if here.abs() < 0.5 * finest {
+            return Ok(Some(middle));
+        }
+        if here > 0.0 { (far, above) = (middle, here) } else { (near, below) = (middle, here) }
     }
     Ok(Some(near))
 }
