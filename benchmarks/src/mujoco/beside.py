@@ -56,11 +56,7 @@ class Plugin(ctypes.Structure):
         ],
         (
             "sdf_staticdistance",
-            ctypes.CFUNCTYPE(
-                ctypes.c_double,
-                ctypes.POINTER(ctypes.c_double),
-                ctypes.POINTER(ctypes.c_double),
-            ),
+            ctypes.CFUNCTYPE(ctypes.c_double, ctypes.c_void_p, ctypes.c_void_p),
         ),
     ]
 
@@ -86,12 +82,13 @@ def field(body):
         sys.exit(f"MuJoCo has no plugin {body['plugin']}")
     distance = plugin.contents.sdf_staticdistance
     numbers = [number for _, number in body["attributes"]]
-    attributes = (ctypes.c_double * len(numbers))(*numbers)
+    attributes = np.array(numbers, dtype=np.float64)
 
     def values(points):
         points = np.ascontiguousarray(points, dtype=np.float64)
-        pointer = ctypes.POINTER(ctypes.c_double)
-        return np.array([distance(p.ctypes.data_as(pointer), attributes) for p in points])
+        first, stride = points.ctypes.data, points.strides[0]
+        at = attributes.ctypes.data
+        return np.array([distance(first + i * stride, at) for i in range(len(points))])
 
     return values
 

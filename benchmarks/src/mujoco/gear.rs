@@ -113,7 +113,10 @@ impl Gear {
         }
         let profile =
             profile.mirrored(1)?.rotated(Rotation::from_angle(-self.half_width())?)?;
-        Shape::difference(profile, [Shape::from_kernel(Ball::new(self.bore())?)])
+        // The box of the folds is large; that of the tip circle is not, and no value changes.
+        let [tip, bore] =
+            [self.tip(), self.bore()].map(|r| Ball::new(r).map(Shape::from_kernel));
+        Shape::difference(Shape::intersection([tip?, profile])?, [bore?])
     }
 
     /// A closed line of radii and angles from the middle of a tooth: that of the gear around the

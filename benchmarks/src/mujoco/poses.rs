@@ -20,6 +20,10 @@ pub(super) const KNOWN: f64 = 0.01;
 /// How close to a depth bodies are put, as a share of it, and how far apart the bounds may be.
 const PLACED: f64 = 0.002;
 
+/// The tolerance of a separation that halves an interval, as a share of the interval: larger ones
+/// are asked for twice more often, smaller ones take longer.
+const COARSE: f64 = 0.02;
+
 /// Evaluations for one separation.
 const BUDGET: u32 = 5_000_000;
 
@@ -92,13 +96,20 @@ fn bisect(
     depth: f64,
 ) -> Result<Option<f64>, QueryError> {
     let finest = PLACED * depth;
-    // How much more than `-depth` the separation is.
-    let mut excess = |apart: f64, tolerance: f64| {
-        let answer = ask(apart, tolerance.max(finest))?;
-        Ok(0.5 * (answer.lower + answer.upper) + depth)
+    // How much more than `-depth` the separation is: coarse, unless that may have another sign.
+    let mut excess = |apart: f64, coarse: f64| -> Result<f64, QueryError> {
+        let mut excess = 0.0;
+        for tolerance in [coarse.max(finest), finest] {
+            let answer = ask(apart, tolerance)?;
+            excess = 0.5 * (answer.lower + answer.upper) + depth;
+            if excess.abs() > tolerance {
+                break;
+            }
+        }
+        Ok(excess)
     };
     let mut near = 0.0;
-    let (mut below, mut above) = (excess(near, 0.1 * depth)?, excess(far, far)?);
+    let (mut below, mut above) = (excess(near, COARSE * far)?, excess(far, COARSE * far)?);
     if below > 0.0 {
         return Ok(None);
     }
@@ -106,11 +117,7 @@ fn bisect(
     while far - near > finest {
         let share = (-below / (above - below)).clamp(0.1, 0.9);
         let middle = near + (far - near) * share;
-        let tolerance = 0.02 * (far - near);
-        let mut here = excess(middle, tolerance)?;
-        if here.abs() < tolerance {
-            here = excess(middle, finest)?;
-        }
+        let here = excess(middle, COARSE * (far - near))?;
         if here.abs() < 0.5 * finest {
             return Ok(Some(middle));
         }

@@ -107,10 +107,10 @@ pub(super) fn print(cases: &[Case]) {
 
 /// Says of a plugin whether its field is that of our body, and how steep it is.
 pub(super) fn describe(plugin: &str, size: f64, compared: &Comparison) -> String {
-    let [least, half, most] = compared.steepness;
+    let [least, half, most] = compared.steepness.map(|steepness| digits(steepness, ""));
     format!(
-        "{plugin} of {:.0} mm: {} of the signs differ from ours; its field rises by {least:.2} to \
-         {most:.2} a metre, {half:.2} in the median, where a distance rises by 1",
+        "{plugin} of {:.0} mm: {} of its signs differ from ours; its gradient is {least} to {most} \
+         long, {half} in the median, that of a distance 1",
         size * 1e3,
         percent(compared.disagree)
     )
@@ -130,12 +130,10 @@ fn digits(number: f64, unit: &str) -> String {
     if number.is_nan() {
         return "–".into();
     }
-    let places = match number.abs() {
-        x if x >= 10.0 || x == 0.0 => 0,
-        x if x >= 1.0 => 1,
-        x if x >= 0.1 => 2,
-        _ => 3,
-    };
+    // The decimal place of the first digit, after it is rounded.
+    let rounded = format!("{number:.1e}");
+    let place = rounded.split_once('e').and_then(|(_, place)| place.parse().ok()).unwrap_or(0);
+    let places = usize::try_from(1 - place).unwrap_or(0);
     format!("{number:.places$}{unit}")
 }
 
@@ -188,8 +186,8 @@ mod tests {
 
     #[test]
     fn numbers_have_two_digits() {
-        let shown = [0.5, 0.021, 0.0012, 0.00012, 0.0, f64::NAN].map(percent);
-        assert_eq!(shown, ["50 %", "2.1 %", "0.12 %", "0.012 %", "0 %", "–"]);
+        let shown = [0.5, 0.021, 0.000_999, 0.00012, 0.0, f64::NAN].map(percent);
+        assert_eq!(shown, ["50 %", "2.1 %", "0.10 %", "0.012 %", "0.0 %", "–"]);
         assert_eq!(micros(107_730.0), "108");
     }
 }
