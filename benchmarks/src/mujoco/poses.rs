@@ -18,14 +18,14 @@ use crate::random::Random;
 pub(super) const KNOWN: f64 = 0.01;
 
 /// How close to a depth bodies are put, as a share of it, and how far apart the bounds may be.
-const PLACED: f64 = 0.002;
+const PLACED: f64 = 0.005;
 
 /// The tolerance of a separation that halves an interval, as a share of the interval: larger ones
 /// are asked for twice more often, smaller ones take longer.
 const COARSE: f64 = 0.02;
 
-/// Evaluations for one separation.
-const BUDGET: u32 = 5_000_000;
+/// Evaluations for one separation. A pose whose depth takes more to know is replaced.
+const BUDGET: u32 = 500_000;
 
 /// Turns and ways that are tried for a pose, some of which lead through a hole.
 const TRIES: u32 = 100;
@@ -39,6 +39,8 @@ pub(super) struct Known {
     pub(super) witness: Point<3>,
     /// The middle of the bounds of the depth [m].
     pub(super) depth: f64,
+    /// Poses before this one whose depth did not get known within the budget.
+    pub(super) replaced: u32,
 }
 
 /// So many poses of a depth [m], the same in every run.
@@ -65,6 +67,7 @@ fn place(
     let [Some(reach_a), Some(reach_b)] = reach else {
         return Err("a body is unbounded".into());
     };
+    let mut replaced = 0;
     for _ in 0..TRIES {
         let turn = Space::any(random)?;
         let way: Vector<f64, 3> = Vector(random.point([0.0; 3], 1.0));
@@ -79,8 +82,9 @@ fn place(
         let answer = separation(a, Placed::new(b, at(apart)), &limits, &mut workspace)?;
         if answer.lower >= -depth * (1.0 + KNOWN) && answer.upper <= -depth * (1.0 - KNOWN) {
             let depth = -0.5 * (answer.lower + answer.upper);
-            return Ok(Known { pose: at(apart), witness: answer.best.point, depth });
+            return Ok(Known { pose: at(apart), witness: answer.best.point, depth, replaced });
         }
+        replaced += 1;
     }
     Err(format!("no pose of depth {depth} m in {TRIES} tries").into())
 }

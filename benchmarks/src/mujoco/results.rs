@@ -16,6 +16,8 @@ pub(super) struct Case {
     /// The pair and the depth, as keys begin.
     pub(super) key: String,
     pub(super) poses: usize,
+    /// Poses that were replaced since their depth did not get known.
+    pub(super) replaced: u32,
     /// Poses whose overlap MuJoCo's own fields confirm at the witness.
     pub(super) confirmed: usize,
     pub(super) theirs: Summary,
@@ -56,6 +58,7 @@ impl Case {
         Self {
             key,
             poses: known.len(),
+            replaced: known.iter().map(|known| known.replaced).sum(),
             confirmed,
             theirs: Summary::new(missed, errors, &theirs.times),
             ours: Summary::new(ours.missed, ours.errors, &ours.separation_times),
@@ -69,6 +72,7 @@ impl Case {
             rows.insert(format!("{}.{stat}", self.key), number);
         };
         add("poses", self.poses as f64);
+        add("replaced", f64::from(self.replaced));
         add("confirmed", self.confirmed as f64);
         add("overlap.ours.p50_ns", self.overlap_ns);
         for (program, summary) in [("mujoco", &self.theirs), ("ours", &self.ours)] {
@@ -82,17 +86,27 @@ impl Case {
 
 /// Prints all cases as a table.
 pub(super) fn print(cases: &[Case]) {
-    println!(
-        "| pair and depth | poses | confirmed | MuJoCo: missed | error: median, worst | µs | ours: missed | error: median, worst | overlap µs | depth µs |"
-    );
-    println!("|---|---|---|---|---|---|---|---|---|---|");
-    for Case { key, poses, confirmed, theirs, ours, overlap_ns } in cases {
+    let columns = [
+        "pair and depth",
+        "poses",
+        "replaced",
+        "confirmed",
+        "MuJoCo: missed",
+        "error: median, worst",
+        "µs",
+        "ours: missed",
+        "error: median, worst",
+        "overlap µs",
+        "depth µs",
+    ];
+    println!("| {} |\n|{}", columns.join(" | "), "---|".repeat(columns.len()));
+    for Case { key, poses, replaced, confirmed, theirs, ours, overlap_ns } in cases {
         let errors = |summary: &Summary| {
-            let [half, worst] = summary.errors.map(|error| percent(error));
+            let [half, worst] = summary.errors.map(percent);
             format!("{half}, {worst}")
         };
         println!(
-            "| `{key}` | {poses} | {confirmed} | {} | {} | {} | {} | {} | {} | {} |",
+            "| `{key}` | {poses} | {replaced} | {confirmed} | {} | {} | {} | {} | {} | {} | {} |",
             theirs.missed,
             errors(theirs),
             micros(theirs.ns),
@@ -143,7 +157,7 @@ mod tests {
     use palpate::field::{Pose, Vector};
 
     fn known(depth: f64) -> Known {
-        Known { pose: Pose::identity(), witness: Vector([0.0; 3]), depth }
+        Known { pose: Pose::identity(), witness: Vector([0.0; 3]), depth, replaced: 1 }
     }
 
     fn case() -> Case {
@@ -164,7 +178,7 @@ mod tests {
     #[test]
     fn a_pose_without_a_contact_is_missed() {
         let case = case();
-        assert_eq!((case.poses, case.confirmed), (3, 2));
+        assert_eq!((case.poses, case.replaced, case.confirmed), (3, 3, 2));
         assert_eq!((case.theirs.missed, case.ours.missed), (1, 0));
         assert_eq!(case.theirs.ns, 3000.0);
     }
