@@ -131,12 +131,12 @@ fn measure(suite: Suite) -> Result<ExitCode, Box<dyn Error>> {
             (haptics::measure(runs)?, bars::HAPTICS, false, json)
         }
         Suite::Mujoco { options, json } => {
-            let rows = mujoco::measure(&options, json)?;
+            let (rows, is_part) = (mujoco::measure(&options, json)?, options.is_part());
             if json {
-                bars::print(&rows.unwrap_or_default(), bars::MUJOCO, false, json);
+                bars::print(&rows.unwrap_or_default(), bars::MUJOCO, is_part, json);
             } else if let Some(rows) = rows {
                 // The table has the rows.
-                bars::print_standing(&rows, bars::MUJOCO, false);
+                bars::print_standing(&rows, bars::MUJOCO, is_part);
             }
             return Ok(ExitCode::SUCCESS);
         }

@@ -25,32 +25,23 @@ pub(super) struct Body {
     pub(super) shape: Shape<3>,
 }
 
-/// Two bodies.
-#[derive(Clone, Debug)]
-pub(super) struct Pair {
-    pub(super) name: &'static str,
-    /// Their places in the list of bodies.
-    pub(super) bodies: [usize; 2],
-}
+/// The pairs by their names, as places in the list of bodies.
+pub(super) const PAIRS: [(&str, [usize; 2]); 5] = [
+    ("torus_torus", [0, 0]),
+    ("torus_bowl", [0, 1]),
+    ("torus_gear", [0, 2]),
+    ("gear_gear", [2, 2]),
+    ("large_torus_torus", [3, 3]),
+];
 
-/// The bodies and the pairs of the suite.
-pub(super) fn all() -> Result<(Vec<Body>, Vec<Pair>), Box<dyn Error>> {
-    let gear = Gear { diameter: 0.1, folds: 4 };
-    let bodies = vec![
+/// The bodies of the suite.
+pub(super) fn all() -> Result<[Body; 4], Box<dyn Error>> {
+    Ok([
         torus("torus", 0.035, 0.015)?,
         bowl(0.05, -0.01, 0.012)?,
-        gear_of(gear, 0.02)?,
+        gear_of(Gear { diameter: 0.1, folds: 4 }, 0.02)?,
         torus("large_torus", 0.35, 0.15)?,
-    ];
-    let pair = |name, bodies| Pair { name, bodies };
-    let pairs = vec![
-        pair("torus_torus", [0, 0]),
-        pair("torus_bowl", [0, 1]),
-        pair("torus_gear", [0, 2]),
-        pair("gear_gear", [2, 2]),
-        pair("large_torus_torus", [3, 3]),
-    ];
-    Ok((bodies, pairs))
+    ])
 }
 
 /// `mujoco.sdf.torus`, about the z axis.

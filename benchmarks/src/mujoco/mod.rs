@@ -25,7 +25,7 @@ use std::process::Command;
 use clap::Args;
 
 use crate::fields::Rows;
-use bodies::{Body, Pair};
+use bodies::Body;
 use exchange::{Answer, Asked, Question, Sampled};
 use ours::Ours;
 use poses::Known;
@@ -40,6 +40,16 @@ pub(crate) struct Options {
     /// Poses of each pair at each depth.
     #[arg(long, default_value_t = 1000, value_parser = clap::value_parser!(u32).range(1..))]
     poses: u32,
+    /// One pair alone.
+    #[arg(long, value_parser = clap::builder::PossibleValuesParser::new(bodies::PAIRS.map(|p| p.0)))]
+    only: Option<String>,
+}
+
+impl Options {
+    /// `true` if some pairs are left out.
+    pub(crate) fn is_part(&self) -> bool {
+        self.only.is_some()
+    }
 }
 
 /// A pair at a depth, and what we say of it.
@@ -65,17 +75,19 @@ pub(crate) fn measure(
             return Ok(None);
         }
     };
-    let (bodies, pairs) = bodies::all()?;
+    let bodies = bodies::all()?;
     let mut measured = Vec::new();
     let mut question = Question { bodies: sampled(&bodies), pairs: Vec::new() };
-    for pair in &pairs {
+    let is_asked = |name: &str| options.only.as_deref().is_none_or(|only| only == name);
+    for (name, pair) in bodies::PAIRS.into_iter().filter(|(name, _)| is_asked(name)) {
+        let pair = pair.map(|body| &bodies[body]);
         for (depth, at) in DEPTHS {
-            let key = format!("{}.{at}", pair.name);
+            let key = format!("{name}.{at}");
             eprintln!("measuring {key} …");
-            let shapes = pair.bodies.map(|body| &bodies[body].shape);
+            let shapes = pair.map(|body| &body.shape);
             let known = poses::placed(shapes, depth, options.poses as usize)?;
             let ours = ours::ask(shapes, &known)?;
-            question.pairs.push(asked(pair, &bodies, &known));
+            question.pairs.push(asked(pair, &known));
             measured.push(Measured { key, known, ours });
         }
     }
@@ -94,14 +106,14 @@ fn sampled(bodies: &[Body]) -> Vec<Sampled> {
 }
 
 /// A pair as MuJoCo is asked about it.
-fn asked(pair: &Pair, bodies: &[Body], known: &[Known]) -> Asked {
+fn asked(pair: [&Body; 2], known: &[Known]) -> Asked {
     let pose = |known: &Known| {
         let [x, y, z] = known.pose.translation.0;
         let [i, j, k, real] = known.pose.rotation.quaternion();
         [x, y, z, real, i, j, k]
     };
     Asked {
-        bodies: pair.bodies.map(|body| bodies[body].plugin.clone()),
+        bodies: pair.map(|body| body.plugin.clone()),
         poses: known.iter().map(pose).collect(),
         witnesses: known.iter().map(|known| known.witness.0).collect(),
     }

@@ -17,7 +17,8 @@ use crate::random::Random;
 /// How well a depth is known, as a share of it: the bounds of the separation are within it.
 pub(super) const KNOWN: f64 = 0.01;
 
-/// How close to a depth bodies are put, as a share of it, and how far apart the bounds may be.
+/// How close to a depth bodies are put, as a share of it, and how far apart the bounds may be:
+/// with the half of the latter, less than [`KNOWN`].
 const PLACED: f64 = 0.005;
 
 /// The tolerance of a separation that halves an interval, as a share of the interval: larger ones
@@ -77,20 +78,31 @@ fn place(
             let limits = Limits::new(tolerance).with_budget(BUDGET);
             separation(a, Placed::new(b, at(apart)), &limits, &mut workspace)
         };
-        let Some(apart) = bisect(ask, reach_a + reach_b, depth)? else { continue };
-        let limits = Limits::new(PLACED * depth).with_budget(BUDGET);
-        let answer = separation(a, Placed::new(b, at(apart)), &limits, &mut workspace)?;
-        if answer.lower >= -depth * (1.0 + KNOWN) && answer.upper <= -depth * (1.0 - KNOWN) {
-            let depth = -0.5 * (answer.lower + answer.upper);
-            return Ok(Known { pose: at(apart), witness: answer.best.point, depth, replaced });
+        match bisect(ask, reach_a + reach_b, depth)? {
+            Some((apart, answer)) if is_known(&answer, depth) => {
+                let (witness, depth) = (answer.best.point, -middle(&answer));
+                return Ok(Known { pose: at(apart), witness, depth, replaced });
+            }
+            Some(_) => replaced += 1,
+            // The way leads through a hole.
+            None => {}
         }
-        replaced += 1;
     }
     Err(format!("no pose of depth {depth} m in {TRIES} tries").into())
 }
 
-/// How far apart two bodies overlap by a depth, between concentric and `far`; `None` if they do
-/// not overlap by as much in the middle.
+/// `true` if the bounds of a separation are within [`KNOWN`] of a depth.
+fn is_known(answer: &Certified<Nearest<3>>, depth: f64) -> bool {
+    answer.lower >= -depth * (1.0 + KNOWN) && answer.upper <= -depth * (1.0 - KNOWN)
+}
+
+/// The middle of the bounds [m].
+fn middle(answer: &Certified<Nearest<3>>) -> f64 {
+    0.5 * (answer.lower + answer.upper)
+}
+
+/// How far apart two bodies overlap by a depth, between concentric and `far`, and the separation
+/// there; `None` if they do not overlap by as much in the middle.
 ///
 /// The interval is divided where its ends' separations say, but near its middle, and the
 /// separation is asked for only as precisely as the interval is long.
@@ -98,36 +110,31 @@ fn bisect(
     mut ask: impl FnMut(f64, f64) -> Result<Certified<Nearest<3>>, QueryError>,
     mut far: f64,
     depth: f64,
-) -> Result<Option<f64>, QueryError> {
+) -> Result<Option<(f64, Certified<Nearest<3>>)>, QueryError> {
     let finest = PLACED * depth;
-    // How much more than `-depth` the separation is: coarse, unless that may have another sign.
-    let mut excess = |apart: f64, coarse: f64| -> Result<f64, QueryError> {
-        let mut excess = 0.0;
-        for tolerance in [coarse.max(finest), finest] {
-            let answer = ask(apart, tolerance)?;
-            excess = 0.5 * (answer.lower + answer.upper) + depth;
-            if excess.abs() > tolerance {
-                break;
-            }
-        }
-        Ok(excess)
+    // Coarse, unless how much more than `-depth` the separation is may have another sign.
+    let mut separation = |apart: f64, coarse: f64| {
+        let answer = ask(apart, coarse.max(finest))?;
+        let is_decided = (middle(&answer) + depth).abs() > coarse;
+        if is_decided || coarse <= finest { Ok(answer) } else { ask(apart, finest) }
     };
     let mut near = 0.0;
-    let (mut below, mut above) = (excess(near, COARSE * far)?, excess(far, COARSE * far)?);
+    let mut below = middle(&separation(near, COARSE * far)?) + depth;
+    let mut above = middle(&separation(far, COARSE * far)?) + depth;
     if below > 0.0 {
         return Ok(None);
     }
-    // The separation changes by no more than the place.
-    while far - near > finest {
+    loop {
         let share = (-below / (above - below)).clamp(0.1, 0.9);
-        let middle = near + (far - near) * share;
-        let here = excess(middle, COARSE * (far - near))?;
-        if here.abs() < 0.5 * finest {
-            return Ok(Some(middle));
+        let apart = near + (far - near) * share;
+        let answer = separation(apart, COARSE * (far - near))?;
+        let here = middle(&answer) + depth;
+        // The separation changes by no more than the place.
+        if here.abs() < finest || far - near < finest {
+            return Ok(Some((apart, answer)));
         }
-        if here > 0.0 { (far, above) = (middle, here) } else { (near, below) = (middle, here) }
+        if here > 0.0 { (far, above) = (apart, here) } else { (near, below) = (apart, here) }
     }
-    Ok(Some(near))
 }
 
 #[cfg(test)]
