@@ -30,7 +30,8 @@ impl fmt::Display for Missing {
             Self::Packages { folder, said } => write!(
                 f,
                 "nothing is measured beside MuJoCo: pip did not install {} into {} ({said}); \
-                 see that pip reaches a package index, or install them there by hand",
+                 see that python3 is 3.11 or later and that pip reaches a package index, or \
+                 install them there by hand",
                 pinned().join(" and "),
                 folder.display()
             ),

@@ -20,6 +20,8 @@ pub(super) struct Case {
     pub(super) replaced: u32,
     /// Poses whose overlap MuJoCo's own fields confirm at the witness.
     pub(super) confirmed: usize,
+    /// What MuJoCo's own fields say of the depth at the witness: errors as of a summary.
+    pub(super) at_witness: [f64; 2],
     pub(super) theirs: Summary,
     pub(super) ours: Summary,
     /// What it takes us to prove the overlap alone, median [ns].
@@ -38,9 +40,14 @@ pub(super) struct Summary {
 
 impl Summary {
     fn new(missed: usize, errors: Vec<f64>, times: &[f64]) -> Self {
-        let worst = errors.iter().copied().fold(f64::NAN, f64::max);
-        Self { missed, errors: [median(errors), worst], ns: median(times.to_vec()) }
+        Self { missed, errors: middle_and_worst(errors), ns: median(times.to_vec()) }
     }
+}
+
+/// The median and the largest of errors; not numbers if there are none.
+fn middle_and_worst(errors: Vec<f64>) -> [f64; 2] {
+    let worst = errors.iter().copied().fold(f64::NAN, f64::max);
+    [median(errors), worst]
 }
 
 impl Case {
@@ -60,6 +67,7 @@ impl Case {
             poses: known.len(),
             replaced: known.iter().map(|known| known.replaced).sum(),
             confirmed,
+            at_witness: middle_and_worst(at_witness),
             theirs: Summary::new(missed, errors, &theirs.times),
             ours: Summary::new(ours.missed, ours.errors, &ours.separation_times),
             overlap_ns: median(ours.overlap_times),
@@ -74,6 +82,8 @@ impl Case {
         add("poses", self.poses as f64);
         add("replaced", f64::from(self.replaced));
         add("confirmed", self.confirmed as f64);
+        add("error.mujoco_at_witness.p50", self.at_witness[0]);
+        add("error.mujoco_at_witness.max", self.at_witness[1]);
         add("overlap.ours.p50_ns", self.overlap_ns);
         for (program, summary) in [("mujoco", &self.theirs), ("ours", &self.ours)] {
             add(&format!("missed.{program}"), summary.missed as f64);
@@ -100,7 +110,7 @@ pub(super) fn print(cases: &[Case]) {
         "depth µs",
     ];
     println!("| {} |\n|{}", columns.join(" | "), "---|".repeat(columns.len()));
-    for Case { key, poses, replaced, confirmed, theirs, ours, overlap_ns } in cases {
+    for Case { key, poses, replaced, confirmed, theirs, ours, overlap_ns, .. } in cases {
         let errors = |summary: &Summary| {
             let [half, worst] = summary.errors.map(percent);
             format!("{half}, {worst}")
@@ -187,6 +197,12 @@ mod tests {
     fn a_contact_has_half_the_depth() {
         let [half, worst] = case().theirs.errors;
         assert!((worst - 0.2).abs() < 1e-12 && half > 0.0999, "{half} {worst}");
+    }
+
+    #[test]
+    fn values_at_the_witness_are_judged_too() {
+        let [half, worst] = case().at_witness;
+        assert!(half.abs() < 1e-12 && (worst - 1.002).abs() < 1e-12, "{half} {worst}");
     }
 
     #[test]
