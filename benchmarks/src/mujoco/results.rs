@@ -54,12 +54,12 @@ impl Case {
     pub(super) fn new(key: String, known: &[Known], theirs: &Found, ours: Ours) -> Self {
         // At a point, the larger value of two distances is half the separation of the bodies if
         // the point is the best; it is what MuJoCo puts into `contact.dist`.
+        let error = |known: &Known, distance: f64| (-2.0 * distance / known.depth - 1.0).abs();
         let found = known.iter().zip(&theirs.distances);
-        let errors: Vec<_> = found
-            .filter_map(|(known, distance)| {
-                Some((-2.0 * (*distance)? / known.depth - 1.0).abs())
-            })
-            .collect();
+        let errors: Vec<_> =
+            found.filter_map(|(known, distance)| Some(error(known, (*distance)?))).collect();
+        let at_witness = known.iter().zip(&theirs.at_witnesses);
+        let at_witness = at_witness.map(|(known, value)| error(known, *value)).collect();
         let missed = known.len() - errors.len();
         let confirmed = theirs.at_witnesses.iter().filter(|value| **value < 0.0).count();
         Self {
