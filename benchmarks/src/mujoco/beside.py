@@ -134,7 +134,6 @@ def collide(model, data, pose):
     data.qpos[7:] = pose
     mujoco.mj_kinematics(model, data)
     mujoco.mj_comPos(model, data)
-    mujoco.mj_camlight(model, data)
     best = float("inf")
     for _ in range(REPEATS):
         start = time.perf_counter_ns()
