@@ -212,7 +212,7 @@ impl ElementMethod {
 ///
 /// What is made small is `max(g_a, g_b)` with `g` as in
 /// [`separation`](palpate_query::separation), which is twice its least value; [`SumDescent`] makes a sum
-/// of both small, of which its value is half.
+/// of both small.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PairMethod {
     /// [`AlternatingProjection`].

@@ -102,15 +102,11 @@ impl<const D: usize> Answer<'_, D> {
         for found in found {
             let start = found.path.first().map_or_else(String::new, |p| joined(&p.0));
             let kind = if found.value <= 0.0 { "a point in both" } else { "no point in both" };
-            let meaning = match method {
-                PairMethod::SumDescent => "half of A + B + |max(A, B)| of the values A and B",
-                _ => "the larger of both fields",
-            };
             writeln!(out, "from         {start} m: {kind}")?;
             writeln!(out, "  best point {} m", joined(&found.best.0))?;
             writeln!(
                 out,
-                "  value      {} m, {meaning}; where both are exact, the separation is at most twice \
+                "  value      {} m, the larger of both fields; where both are exact, the separation is at most twice \
                  that, {} m",
                 found.value,
                 2.0 * found.value

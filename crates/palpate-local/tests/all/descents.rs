@@ -10,8 +10,8 @@ use palpate_local::{
     Descent, ElementMethod, FrankWolfe, GoldenSection, NaiveDescent, PairMethod,
 };
 use palpate_query::{
-    Certified, DistanceBound, Element, ElementWorkspace, Limits, PairWorkspace, QueryError,
-    minimum, overlap, separation,
+    Certified, Element, ElementWorkspace, Limits, PairWorkspace, QueryError, minimum, overlap,
+    separation,
 };
 use palpate_testkit::arbitrary::{self as draw, Turn};
 use palpate_testkit::cases;
@@ -122,16 +122,7 @@ where
             let rounding = a.promise().rounding.within(reach)
                 + b.promise().rounding.within(reach)
                 + 1e-14 * reach;
-            // Half of a sum is no bound of the larger field; what it says must be there.
-            let least = if *method == PairMethod::SumDescent {
-                let [a, b] = DistanceBound::of_both(&a, &b)
-                    .unwrap()
-                    .map(|body| body.distance_gradient(descent.best).0);
-                a + b + a.max(b).abs()
-            } else {
-                certified.lower
-            };
-            if 2.0 * (descent.value + rounding) < least {
+            if 2.0 * (descent.value + rounding) < certified.lower {
                 return Ok(Err(format!("{method}: {descent:?} is below {certified:?}")));
             }
             if descent.steps > 64 {

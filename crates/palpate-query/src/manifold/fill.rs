@@ -9,8 +9,12 @@ use palpate_field::{Point, Vector};
 
 use super::grid::distance;
 use super::patch::Patches;
-use super::{COPIES, LIKE, Member};
+use super::{COPIES, LIKE, ManifoldSettings, Member, Touch};
+use crate::contact::NormalSource;
 use crate::pair::cell::BoxCell;
+
+/// How far apart points are laid, in spacings: less than neighbours may be.
+const APART: f64 = 1.9;
 
 /// A flat box in the middle of a region, of which no candidate was made.
 #[derive(Clone, Copy, Debug)]
@@ -18,6 +22,8 @@ pub(super) struct Middle<const D: usize> {
     point: Point<D>,
     normal: Vector<f64, D>,
     radius: f64,
+    values: [f64; 2],
+    slopes: [Vector<f64, D>; 2],
 }
 
 impl<const D: usize> Middle<D> {
@@ -31,7 +37,47 @@ impl<const D: usize> Middle<D> {
         }
         let normal = (slopes[0] - slopes[1]).normalized()?;
         let is_facing = slopes[0].dot(slopes[1]) < 0.0;
-        is_facing.then(|| Self { point: cell.centre, normal, radius: cell.radius() })
+        let (point, radius, values) = (cell.centre, cell.radius(), [a.value, b.value]);
+        is_facing.then_some(Self { point, normal, radius, values, slopes })
+    }
+
+    /// Appends points of the surface between the bodies in the box, where its flat models have it: near
+    /// its sides, and so far apart that each has neighbours.
+    pub(super) fn lay(
+        &self,
+        cell: &BoxCell<D>,
+        settings: &ManifoldSettings,
+        candidates: &mut Vec<Touch<D>>,
+    ) {
+        let [a, b] = self.slopes;
+        let between = a - b;
+        let across =
+            (0..D).fold(0, |k, i| if between[i].abs() > between[k].abs() { i } else { k });
+        // Of the axis across, the surface tells the place.
+        let counts: [usize; D] = std::array::from_fn(|k| {
+            let steps = 2.0 * cell.half[k] / (APART * settings.spacing);
+            if k == across { 1 } else { steps.ceil().max(1.0) as usize }
+        });
+        for index in 0..counts.iter().product() {
+            let (mut offset, mut rest, mut is_outer) = (Vector::ZERO, index, false);
+            for k in (0..D).filter(|k| *k != across) {
+                let step = rest % counts[k];
+                let share = (step as f64 + 0.5) / counts[k] as f64;
+                offset[k] = (2.0 * share - 1.0) * cell.half[k];
+                is_outer |= step == 0 || step + 1 == counts[k];
+                rest /= counts[k];
+            }
+            if !is_outer {
+                continue;
+            }
+            let apart = self.values[0] - self.values[1] + between.dot(offset);
+            offset[across] = -apart / between[across];
+            let gap = 2.0 * (self.values[0] + a.dot(offset));
+            if offset[across].abs() <= cell.half[across] && gap <= settings.margin {
+                let (point, source) = (self.point + offset, NormalSource::Gradients);
+                candidates.push(Touch { point, normal: self.normal, gap, source });
+            }
+        }
     }
 
     fn is_like(&self, contact: &Member<D>) -> bool {

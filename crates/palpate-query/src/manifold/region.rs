@@ -27,6 +27,10 @@ const ON: f64 = 1e-3;
 /// function are flat.
 const FLAT: f64 = 0.05;
 
+/// Boxes that are longer than twice as many spacings are halved, even where they are flat: points are
+/// laid in them, one for each few spacings.
+const WIDE: f64 = 4.0;
+
 /// The region in which two bodies touch, in candidates and flat boxes.
 #[derive(Debug)]
 pub(super) struct Region<const D: usize> {
@@ -59,6 +63,7 @@ pub(super) fn find<const D: usize>(
         open,
         memory,
         small: vec![],
+        candidates: vec![first],
         middles: vec![],
     };
     let stop = match engine::search(&mut search, frontier) {
@@ -66,8 +71,7 @@ pub(super) fn find<const D: usize>(
         End::Exhausted => Stop::Converged,
         end => end.stop(),
     };
-    let RegionSearch { pair, small, middles, memory, .. } = search;
-    let mut candidates = vec![first];
+    let RegionSearch { pair, small, mut candidates, middles, memory, .. } = search;
     for cells in small.chunks(BLOCK) {
         settle(pair, cells, settings, memory, &mut candidates);
     }
@@ -85,6 +89,7 @@ struct RegionSearch<'s, 'a, const D: usize> {
     memory: &'s mut Memory<D>,
     /// Boxes no larger than the spacing that the surface may cross.
     small: Vec<BoxCell<D>>,
+    candidates: Vec<Touch<D>>,
     middles: Vec<Middle<D>>,
 }
 
@@ -146,17 +151,20 @@ impl<const D: usize> Problem for RegionSearch<'_, '_, D> {
         }
         for (lane, &i) in self.open.iter().enumerate() {
             let models = [0, 1].map(|body| self.pair.model(body, self.memory, lane));
-            let found = look::<D>(&models, self.settings, self.slack);
+            let mut found = look::<D>(&models, self.settings, self.slack);
+            if longest(&round[i]) > WIDE * self.settings.spacing && found == Look::Middle {
+                found = Look::Open;
+            }
             is_open[i] = found == Look::Open;
-            if found == Look::Middle {
-                self.middles.extend(Middle::of(&round[i], &models));
+            if let (Look::Middle, Some(middle)) = (found, Middle::of(&round[i], &models)) {
+                middle.lay(&round[i], self.settings, &mut self.candidates);
+                self.middles.push(middle);
             }
         }
         let mut lanes = is_open.iter();
         round.retain(|_| lanes.next() == Some(&true));
         for part in round.drain(..) {
-            let longest = (0..D).fold(0.0_f64, |longest, k| longest.max(part.half[k]));
-            if longest <= 0.5 * self.settings.spacing {
+            if longest(&part) <= 0.5 * self.settings.spacing {
                 self.small.push(part);
             } else {
                 self.split(&part, pending);
@@ -175,6 +183,11 @@ impl<const D: usize> Problem for RegionSearch<'_, '_, D> {
     }
 }
 
+/// Half of the longest side of a box [m].
+fn longest<const D: usize>(part: &BoxCell<D>) -> f64 {
+    (0..D).fold(0.0_f64, |longest, k| longest.max(part.half[k]))
+}
+
 /// What models prove of the surface between the bodies in a box.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Look {
@@ -187,17 +200,17 @@ enum Look {
 }
 
 fn look<const D: usize>([a, b]: &[Model; 2], settings: &ManifoldSettings, slack: f64) -> Look {
-    let (mut across, mut along) = (0.0, [0.0; 2]);
+    let (mut across, mut along) = (0.0, 0.0);
     for (a, b) in a.gradient.iter().zip(b.gradient) {
         across += (a - b).abs();
-        along = [along[0] + a.abs(), along[1] + b.abs()];
+        along += (a + b).abs();
     }
     let half_margin = 0.5 * settings.margin;
     let between = across + (a.lower + b.upper).max(a.upper + b.lower);
     let is_flat =
         a.lower.max(a.upper) + b.lower.max(b.upper) <= FLAT * settings.precision_length();
-    let is_inside = a.value + along[0] + a.upper < half_margin
-        && b.value + along[1] + b.upper < half_margin;
+    // On the surface between, both values are their mean, which varies less than either.
+    let is_inside = 0.5 * (a.value + b.value + along + a.upper + b.upper) < half_margin;
     if (a.value - b.value).abs() > between + 2.0 * slack
         || least_of_larger::<D>(a, b, f64::INFINITY).0 > half_margin + slack
     {
