@@ -117,6 +117,10 @@ impl Scalar for Expression {
         self.map(|tree| tree.cos())
     }
 
+    fn turn(x: Self, y: Self) -> Self {
+        Self::of(y.tree().atan2(x.tree())).scale(1.0 / std::f64::consts::TAU)
+    }
+
     fn norm<const N: usize>(x: [Self; N]) -> Self {
         let squares = x.map(Scalar::squared);
         squares[1..].iter().fold(squares[0], |sum, square| sum + *square).sqrt()

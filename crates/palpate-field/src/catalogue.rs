@@ -239,7 +239,7 @@ static PLANAR: [Entry<2>; 45] = [
     Entry::of::<PowerCuboid<2>>(),
 ];
 
-static SPATIAL: [Entry<3>; 41] = [
+static SPATIAL: [Entry<3>; 42] = [
     Entry::of::<Ball>(),
     Entry::of::<Cuboid<3>>(),
     Entry::of::<RoundedCuboid<3>>(),
@@ -281,6 +281,7 @@ static SPATIAL: [Entry<3>; 41] = [
     Entry::of::<PowerBall>(),
     Entry::of::<PowerCuboid<3>>(),
     Entry::of::<PowerTorus>(),
+    Entry::of::<ScrewThread>(),
 ];
 
 impl Entry<2> {

@@ -112,11 +112,21 @@ fn argument<const D: usize>(
         ParameterKind::Count if what.name.ends_with("exponent") => {
             Argument::Count(*u.choose(&[2, 4, 6, 8])?)
         }
+        ParameterKind::Count if what.name == "starts" => {
+            Argument::Count(u.int_in_range(1..=3)?)
+        }
         ParameterKind::Count => Argument::Count(match u.int_in_range(0..=3_u8)? {
             0 => u.int_in_range(3..=256)?,
             // Polygons and stars have at least three.
             _ => u.int_in_range(if what.name == "steps" { 1 } else { 3 }..=12)?,
         }),
+        // Crests, roots and depths of threads are parts of their pitch and radius.
+        ParameterKind::Vector if what.name == "profile" => {
+            let part = |u: &mut Unstructured<'_>| -> Result<f64> {
+                Ok(if u.ratio(1_u8, 5_u8)? { 0.0 } else { 0.3 * length(u)? })
+            };
+            Argument::Vector((0..D).map(|_| part(u)).collect::<Result<_>>()?)
+        }
         ParameterKind::Vector | ParameterKind::Direction => {
             // Sizes and radii must be positive; all else may have any sign.
             let positive = what.name == "size" || what.name == "radii";

@@ -173,6 +173,20 @@ impl Scalar for Double {
         self.sine_cosine().1
     }
 
+    /// From the plain angle, whose error is the sine of what is left.
+    fn turn(x: Self, y: Self) -> Self {
+        let radius = Self::norm([x, y]);
+        if radius.high == 0.0 {
+            return Self::default();
+        }
+        let plain = Self::constant(y.high.atan2(x.high));
+        let (sine, cosine) = plain.sine_cosine();
+        let rest = (y * cosine - x * sine) / radius;
+        // 2π to 106 bits.
+        let whole = Self { high: std::f64::consts::TAU, low: 2.449_293_598_294_706_4e-16 };
+        (plain + rest) / whole
+    }
+
     fn norm<const N: usize>(x: [Self; N]) -> Self {
         x.into_iter().fold(Self::default(), |sum, x| sum + x * x).sqrt()
     }

@@ -85,7 +85,7 @@ dimension! { 3:
     kernel::CuboidFrame, kernel::CappedTorus, kernel::Link, kernel::InfiniteCone, kernel::CylinderBetween, kernel::CappedConeBetween, kernel::SolidAngle, kernel::CutBall, kernel::CutHollowSphere, kernel::DeathStar, kernel::RoundCone, kernel::RoundConeBetween, kernel::VesicaSegment, kernel::RhombusPrism, kernel::Sheet<3>, kernel::Sheet<4>,
     kernel::CubeApproximation, kernel::CylinderApproximation,
     kernel::ConeApproximation, kernel::PyramidApproximation,
-    kernel::PowerBall, kernel::PowerCuboid<3>, kernel::PowerTorus,
+    kernel::PowerBall, kernel::PowerCuboid<3>, kernel::PowerTorus, kernel::ScrewThread,
 }
 
 /// A [`Visit`] that makes a shape of a kernel.

@@ -179,6 +179,19 @@ impl<T: Float, const D: usize> Scalar for Dual<T, D> {
         self.chain(self.value.cos(), -self.value.sin())
     }
 
+    /// At the origin, where the angle has no derivative, the gradient is zero.
+    #[inline(always)]
+    fn turn(x: Self, y: Self) -> Self {
+        let inverse = inverse_or_zero(T::norm([x.value, y.value]));
+        let per_turn = inverse.scale(1.0 / std::f64::consts::TAU);
+        let by_x = -(y.value * inverse) * per_turn;
+        let by_y = x.value * inverse * per_turn;
+        Self {
+            value: T::turn(x.value, y.value),
+            gradient: array!(k < D => by_x * x.gradient[k] + by_y * y.gradient[k]),
+        }
+    }
+
     #[inline(always)]
     fn norm<const N: usize>(x: [Self; N]) -> Self {
         let zero = T::constant(0.0);

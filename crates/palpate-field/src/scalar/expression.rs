@@ -44,6 +44,8 @@ pub enum Operation {
     Sin,
     /// The cosine of an angle [rad]: [`Scalar::cos`].
     Cos,
+    /// The angle of the point `(a, b)` as a part of a turn: [`Scalar::turn`].
+    Turn,
     /// The Euclidean norm: [`Scalar::norm`].
     Norm,
     /// The signed distance to an orthant: [`Scalar::orthant`].
@@ -156,6 +158,7 @@ impl Operation {
             Self::SelectLess => f64::select_less(x[0], x[1], x[2], x[3]),
             Self::Sin => Scalar::sin(x[0]),
             Self::Cos => Scalar::cos(x[0]),
+            Self::Turn => Scalar::turn(x[0], x[1]),
             Self::Norm => match *x {
                 [a] => f64::norm([a]),
                 [a, b] => f64::norm([a, b]),
@@ -275,6 +278,7 @@ fn text(step: &Step, texts: &[String]) -> String {
         Operation::SelectLess => call("select_less"),
         Operation::Sin => call("sin"),
         Operation::Cos => call("cos"),
+        Operation::Turn => call("turn"),
         Operation::Norm => call("norm"),
         Operation::Orthant => call("orthant"),
         Operation::SmoothMin { profile, unit } => {

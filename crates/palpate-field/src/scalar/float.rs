@@ -103,6 +103,11 @@ macro_rules! float {
             }
 
             #[inline(always)]
+            fn turn(x: Self, y: Self) -> Self {
+                trigonometry::turn(x, y)
+            }
+
+            #[inline(always)]
             fn norm<const N: usize>(x: [Self; N]) -> Self {
                 let mut sum = x[0] * x[0];
                 unrolled!(i < N => if i > 0 {

@@ -109,6 +109,22 @@ pub trait Scalar:
     /// The cosine of an angle in radians; as [`sin`](Self::sin).
     fn cos(self) -> Self;
 
+    /// The angle from +x to the point `(x, y)`, as a part of a turn in [−½, ½]; zero at the
+    /// origin. Multiples of an eighth of a turn come out exact.
+    ///
+    /// Absolute error at most half an ulp of one.
+    ///
+    /// A [`Model`] does not jump where its cell crosses the cut at ±½: there it may be off by
+    /// a whole turn. So what is made of a turn must be the same a turn on.
+    ///
+    /// ```
+    /// use palpate_field::scalar::Scalar;
+    ///
+    /// assert_eq!(f64::turn(0.0, 2.0), 0.25);
+    /// assert_eq!(f64::turn(-3.0, -3.0), -0.375);
+    /// ```
+    fn turn(x: Self, y: Self) -> Self;
+
     /// The Euclidean norm `√Σxᵢ²`.
     fn norm<const N: usize>(x: [Self; N]) -> Self;
 

@@ -5,6 +5,8 @@
 
 mod boxes;
 mod norms;
+mod smooth;
+mod turns;
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
@@ -528,6 +530,11 @@ impl<const N: usize> Scalar for AffineModel<N> {
     }
 
     #[inline(always)]
+    fn turn(x: Self, y: Self) -> Self {
+        turns::turn(x, y)
+    }
+
+    #[inline(always)]
     fn norm<const M: usize>(x: [Self; M]) -> Self {
         norms::norm(x)
     }
@@ -560,40 +567,8 @@ impl<const N: usize> Scalar for AffineModel<N> {
         Self { lower: self.lower + by, upper: self.upper + by, ..self }
     }
 
-    /// Concave in `(a, b)`: above, the tangent plane is a bound; below, the
-    /// second derivative of the fill over the range of `a − b`, or all of the fill.
     #[inline(always)]
     fn smooth_min<B: Blend>(self, other: Self, unit: f64) -> Self {
-        let apart = f64::abs(self.value - other.value);
-        let t = apart / unit;
-        let larger = B::weight(t);
-        let weight = choose(other.value < self.value, larger, 1.0 - larger);
-        let rest = 1.0 - weight;
-        let spread = (self.slope_between(&other)
-            + (self.lower + other.upper).max_of(self.upper + other.lower))
-            * INFLATE;
-        let nearest = ((apart - spread) / unit * (1.0 - 4.0 * UNIT)).max_of(0.0);
-        let below = 0.5 * B::curvature(nearest) / unit * spread * spread * INFLATE;
-        let lower = weight * self.lower + rest * other.lower + below;
-        // At least the smaller of both less the whole fill: else nested unions with
-        // cells larger than their reach would square the remainder again and again.
-        let coarse = (apart
-            + self.slope_between(&other)
-            + unit * B::fill(0.0)
-            + self.lower.max_of(other.lower))
-            * INFLATE;
-        Self {
-            value: <f64 as Scalar>::smooth_min::<B>(self.value, other.value, unit),
-            gradient: array!(k < N => {
-                weight * self.gradient[k] + rest * other.gradient[k]
-            }),
-            lower: Scalar::min(lower, coarse),
-            upper: weight * self.upper + rest * other.upper,
-        }
-        // The operands and the fill, whose argument is rounded, may cancel in the value.
-        .rounded_with(
-            8.0,
-            spread + f64::abs(self.value) + f64::abs(other.value) + 2.0 * larger * unit,
-        )
+        smooth::minimum::<B, N>(self, other, unit)
     }
 }

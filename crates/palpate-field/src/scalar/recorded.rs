@@ -115,6 +115,10 @@ impl Scalar for Recorded {
         Self::new(Operation::Cos, [self])
     }
 
+    fn turn(x: Self, y: Self) -> Self {
+        Self::new(Operation::Turn, [x, y])
+    }
+
     fn norm<const N: usize>(x: [Self; N]) -> Self {
         Self::new(Operation::Norm, x)
     }

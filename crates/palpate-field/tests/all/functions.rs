@@ -42,6 +42,41 @@ fn multiples_of_a_quarter_turn_come_out_exact() {
     assert_eq!(Scalar::cos(1.0_f32), 1.0_f32.cos());
 }
 
+/// Points on circles of several sizes, in no order.
+fn around() -> impl Iterator<Item = [f64; 2]> {
+    (0..200_000).map(|i| {
+        let angle = f64::from(i) * 0.618_033_988_749_895;
+        let size = 10.0_f64.powi(i % 7 - 3);
+        [size * angle.cos(), size * angle.sin()]
+    })
+}
+
+#[test]
+fn turns_agree_with_the_libm_crate() {
+    let (mut worst, mut worst_single) = (0.0_f64, 0.0_f64);
+    for [x, y] in around() {
+        let expected = libm::atan2(y, x) / std::f64::consts::TAU;
+        worst = worst.max((Scalar::turn(x, y) - expected).abs());
+        let (x, y) = (x as f32, y as f32);
+        let expected = libm::atan2(f64::from(y), f64::from(x)) / std::f64::consts::TAU;
+        worst_single = worst_single.max((f64::from(Scalar::turn(x, y)) - expected).abs());
+    }
+    assert!(worst <= 0.5 * f64::EPSILON, "worst error {worst:e}");
+    assert!(worst_single <= 0.5 * f64::from(f32::EPSILON), "worst error {worst_single:e}");
+}
+
+#[test]
+fn eighths_of_a_turn_come_out_exact() {
+    let corners = [[1.0, 0.0], [1.0, 1.0], [0.0, 1.0], [-1.0, 1.0], [-1.0, 0.0], [-1.0, -1.0]];
+    for (eighths, [x, y]) in [0, 1, 2, 3, 4, -3].into_iter().zip(corners) {
+        let expected = f64::from(eighths) / 8.0;
+        assert_eq!(Scalar::turn(0.3 * x, 0.3 * y), expected);
+        assert_eq!(Scalar::turn(7.0 * x as f32, 7.0 * y as f32), expected as f32);
+    }
+    assert_eq!(Scalar::turn(0.0, 0.0), 0.0);
+    assert_eq!(Scalar::turn(-0.0_f32, 0.0), 0.0);
+}
+
 #[test]
 fn cube_roots_are_right_to_an_ulp() {
     for i in 0..=100_000_i32 {

@@ -268,6 +268,29 @@ fn sin_and_cos() {
     encloses(angle, |[x]| x.cos(), |[x]| Some(x.cos()));
 }
 
+/// On the side without a cut, and where a cell away from the origin crosses it.
+#[test]
+fn turn() {
+    let right = |u: &mut Unstructured<'_>| {
+        let [x, y] = two(u)?;
+        Ok([Model { value: x.value.abs() + x.deviation(), ..x }, y])
+    };
+    encloses(right, |[x, y]| Model::turn(x, y), |[x, y]| Some(Double::turn(x, y)));
+    let left = |u: &mut Unstructured<'_>| {
+        let [x, y] = two(u)?;
+        let away = x.value.abs() + 2.0 * (x.deviation() + y.deviation()) + 1e-9;
+        Ok([Model { value: -away, ..x }, Model { value: y.value.abs(), ..y }])
+    };
+    encloses(
+        left,
+        |[x, y]| Model::turn(x, y),
+        |[x, y]| {
+            let turn = Double::turn(x, y);
+            Some(if turn.to_f64() < 0.0 { turn + Double::constant(1.0) } else { turn })
+        },
+    );
+}
+
 /// Continuous across the choice, as all formulas are.
 #[test]
 fn select_less_that_is_continuous() {

@@ -30,6 +30,7 @@ struct Example {
     positions: Vec<(String, [f64; 3])>,
     vectors: Vec<(&'static str, [f64; 3])>,
     numbers: Vec<(&'static str, f64)>,
+    counts: Vec<(&'static str, u32)>,
     is_spatial: bool,
 }
 
@@ -63,6 +64,12 @@ impl Example {
             numbers: named()
                 .filter_map(|(name, argument)| match argument {
                     Argument::Number(number) => Some((name, *number)),
+                    _ => None,
+                })
+                .collect(),
+            counts: named()
+                .filter_map(|(name, argument)| match argument {
+                    Argument::Count(count) => Some((name, *count)),
                     _ => None,
                 })
                 .collect(),
@@ -191,6 +198,11 @@ impl Example {
         found.unwrap_or_else(|| panic!("{} has no {name}", self.name)).1
     }
 
+    fn count(&self, name: &str) -> f64 {
+        let found = self.counts.iter().find(|(known, _)| *known == name);
+        f64::from(found.unwrap_or_else(|| panic!("{} has no {name}", self.name)).1)
+    }
+
     fn vector(&self, name: &str) -> [f64; 3] {
         let found = self.vectors.iter().find(|(known, _)| *known == name);
         found.unwrap_or_else(|| panic!("{} has no {name}", self.name)).1
@@ -230,6 +242,20 @@ fn holds(example: &Example, phrase: &str) -> Option<bool> {
             let turns = e.is_turned(third) || e.is_turned(std::f64::consts::PI);
             // An arc of a ring has an axis, too.
             e.is_mirrored(0) && (turns || e.is_mirrored(1))
+        }
+        "a helix about the y axis" => {
+            // Away from its ends.
+            let rise = 0.2 / std::f64::consts::TAU * e.number("pitch") * e.count("starts");
+            let (sin, cos) = 0.2_f64.sin_cos();
+            e.is_same(|[x, y, z]| {
+                let far = y.abs() > 0.3;
+                let on = [cos * x + sin * z, y + rise, cos * z - sin * x];
+                if far { [x, y, z] } else { on }
+            })
+        }
+        "a crest at +x" => {
+            let radius = e.number("radius");
+            e.passes([radius, 0.0, 0.0]) && e.at([radius - BESIDE, BESIDE, 0.0]) < 0.0
         }
         "about the y axis" => e.is_turned(0.7),
         "its length along y" => e.axes().iter().all(|i| *i == 1 || e.max()[*i] < e.max()[1]),

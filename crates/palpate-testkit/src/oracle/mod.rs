@@ -15,6 +15,7 @@ mod power;
 mod revolved;
 mod slab;
 mod spatial;
+mod thread;
 mod tube;
 
 use palpate_field::Point;

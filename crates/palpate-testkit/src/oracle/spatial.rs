@@ -10,7 +10,9 @@ use palpate_field::{Point, Vector};
 
 use super::planar::{FAR, corners, edges, even_odd, from_segment, in_rounded_box};
 use super::power::{on_ball, speed};
-use super::{Definition, Outside, Patch, number, points, power, revolved, slab, tube, vector};
+use super::{
+    Definition, Outside, Patch, number, points, power, revolved, slab, thread, tube, vector,
+};
 
 /// A solid of revolution from the corners of its profile in (ρ, y).
 fn turned(
@@ -286,6 +288,7 @@ pub(super) fn definition(name: &str, a: &[Argument]) -> Option<Definition<3>> {
         "cylinder_approximation" => bound(cylinder(n(0), 0.5 * n(1))),
         "cone_approximation" => bound(capped_cone(n(0), 0.0, n(1))),
         "pyramid_approximation" => bound(pyramid(n(0), n(1))),
+        "screw_thread" => bound(thread::definition(a)),
         "cuboid_frame" => frame(vector::<3>(a, 0) * 0.5, n(1)),
         _ => {
             return revolved::definition(name, a)

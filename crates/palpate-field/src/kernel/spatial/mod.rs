@@ -16,6 +16,7 @@ mod prism;
 mod pyramid;
 mod rhombus;
 mod round_cone;
+mod screw_thread;
 mod sheet;
 mod torus;
 
@@ -34,5 +35,6 @@ pub use prism::{HexagonalPrism, TriangularPrism};
 pub use pyramid::Pyramid;
 pub use rhombus::RhombusPrism;
 pub use round_cone::{RoundCone, RoundConeBetween};
+pub use screw_thread::ScrewThread;
 pub use sheet::Sheet;
 pub use torus::{CappedTorus, Link, Torus};
