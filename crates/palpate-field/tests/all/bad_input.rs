@@ -12,8 +12,8 @@ use palpate_field::kernel::{
     IsoscelesTrapezoid, Link, Moon, OrientedRectangle, OrientedVesica, Parameter,
     ParameterKind, Pie, Polygon, PowerBall, PowerCuboid, PowerTorus, RegularPolygon,
     RegularStar, RhombusPrism, Ring, RingSector, RoundCone, RoundConeBetween, RoundedCuboid,
-    RoundedCylinder, RoundedRectangle, RoundedX, Sheet, Simplex, SolidAngle, Stairs, Torus,
-    Tunnel, UnevenCapsule, Vesica, VesicaSegment,
+    RoundedCylinder, RoundedRectangle, RoundedX, ScrewThread, Sheet, Simplex, SolidAngle,
+    Stairs, Torus, Tunnel, UnevenCapsule, Vesica, VesicaSegment,
 };
 use palpate_field::operator::Profile;
 use palpate_field::scalar::Model;
@@ -182,6 +182,28 @@ fn messages_of_other_norms_name_the_exponents_that_there_are() {
         message(PowerTorus::new(0.5, 0.25, 2, 10)),
     ];
     insta::assert_snapshot!("other_norms", messages.join("\n"));
+}
+
+#[test]
+fn messages_of_threads_name_the_number_and_its_unit() {
+    let profile = Vector([0.1, 0.2, 0.3]);
+    let thread = |pitch, starts, profile| ScrewThread::new(1.0, 2.0, pitch, starts, profile);
+    let messages = [
+        message(ScrewThread::new(NAN, 2.0, 0.5, 1, profile)),
+        message(ScrewThread::new(1.0, -2.0, 0.5, 1, profile)),
+        message(thread(0.0, 1, profile)),
+        message(thread(-1e-20, 1, profile)),
+        message(thread(NAN, 1, profile)),
+        message(thread(0.5, 0, profile)),
+        message(thread(0.5, 1001, profile)),
+        message(thread(0.25, 1, profile)),
+        message(thread(-0.25, 1, profile)),
+        message(thread(0.5, 1, Vector([-0.1, 0.2, 0.3]))),
+        message(thread(0.5, 1, Vector([0.1, NAN, 0.3]))),
+        message(thread(0.5, 1, Vector([0.1, 0.2, 0.0]))),
+        message(thread(0.5, 1, Vector([0.1, 0.2, 1.0]))),
+    ];
+    insta::assert_snapshot!("threads", messages.join("\n"));
 }
 
 #[test]

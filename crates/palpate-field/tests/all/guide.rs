@@ -59,6 +59,11 @@ fn the_guide_names_primitives_of_space_that_there_are() {
 }
 
 #[test]
+fn the_guide_names_the_threads_that_there_are() {
+    check("\n## Threads\n", 1, "bound", Entry::<3>::ALL);
+}
+
+#[test]
 fn the_guide_names_primitives_of_other_norms_that_there_are() {
     check("\n## Change of metric\n", 3, "bound", Entry::<3>::ALL);
 }

@@ -34,3 +34,4 @@ mod singular;
 mod slices;
 mod space_time;
 mod special_cases;
+mod threads;

@@ -69,6 +69,11 @@ impl<'a, const D: usize> DistanceBound<'a, D> {
         self.scale
     }
 
+    /// From the frame of the search to the shape's.
+    pub(crate) fn body_from_frame(&self) -> Pose<D> {
+        self.body_from_frame.unwrap_or(Pose::identity())
+    }
+
     /// The shape's box, in its own coordinates.
     pub(crate) fn own_box(&self) -> Option<Aabb<D>> {
         self.aabb

@@ -13,6 +13,7 @@
 
 pub(crate) mod body_pair;
 pub(crate) mod cell;
+mod common_surface;
 pub(crate) mod descent;
 pub(crate) mod distance_bound;
 mod nearest;

@@ -11,6 +11,7 @@ use palpate_field::{Aabb, BLOCK, Point, Vector};
 use super::Nearest;
 use super::body_pair::{BodyPair, Memory};
 use super::cell::{BoxCell, least, least_of_larger, mean};
+use super::common_surface::CommonSurface;
 use super::descent::descend;
 use crate::certified::{Certified, Limits, Stop};
 use crate::engine::{self, Frontier, Heap, Problem, Queue};
@@ -25,6 +26,9 @@ const SMALL: f64 = 0.25;
 /// Boxes are cut at the threshold plus this share of the tolerance: cut at the threshold
 /// itself, bounds would end a rounding farther apart than the tolerance.
 const SPARE: f64 = 1.0 / 64.0;
+
+/// A search that takes so many evaluations looks for a surface that both bodies have in common.
+const LONG: u32 = 4096;
 
 /// The model in a lane before the first is written.
 const NOTHING: Model = Model { value: 0.0, gradient: [0.0; 3], lower: 0.0, upper: 0.0 };
@@ -232,7 +236,15 @@ impl<'a, const D: usize> PairSearch<'a, D> {
         let PairWorkspace { frontier, open, memory, known } = workspace;
         let largest = SMALL * root.half_extents().norm();
         let end = engine::search(
-            &mut PairRounds { search: self, open, memory, known, largest },
+            &mut PairRounds {
+                search: self,
+                open,
+                memory,
+                known,
+                largest,
+                root: *root,
+                common: None,
+            },
             frontier,
         );
         let (stop, lower) = (end.stop(), frontier.lower(self.dropped));
@@ -291,6 +303,10 @@ struct PairRounds<'s, 'a, const D: usize> {
     known: &'s mut Known,
     /// Boxes are bounded by models up to this radius [m].
     largest: f64,
+    /// The box that is searched.
+    root: Aabb<D>,
+    /// What the bodies have in common, once that was looked for.
+    common: Option<Option<CommonSurface<'a, D>>>,
 }
 
 impl<const D: usize> Problem for PairRounds<'_, '_, D> {
@@ -346,6 +362,9 @@ impl<const D: usize> Problem for PairRounds<'_, '_, D> {
     /// Bounds boxes by the values of the first body, those left by the second's, and small
     /// ones by models; descends from the best box where that may help.
     fn bound(&mut self, frontier: &mut Frontier<Self::Queue>) {
+        if self.search.pair.evaluations > LONG {
+            self.bound_by_common_surface(frontier);
+        }
         self.bound_by_first(frontier);
         let least = self.bound_by_second(&mut frontier.round);
         let Self { search, .. } = self;
@@ -384,6 +403,32 @@ struct LeastBox<const D: usize> {
 }
 
 impl<const D: usize> PairRounds<'_, '_, D> {
+    /// Closes the boxes in which only a surface that both bodies have in common is near.
+    fn bound_by_common_surface(&mut self, frontier: &mut Frontier<Heap<BoxCell<D>>>) {
+        let Self { search, known: Known { radii, .. }, root, common, .. } = self;
+        let common = common.get_or_insert_with(|| CommonSurface::of(&search.pair, root));
+        let threshold = search.threshold();
+        let Some(common) = common.as_ref().filter(|c| c.level - search.slack >= threshold)
+        else {
+            return;
+        };
+        let Frontier { queue, round, .. } = frontier;
+        search.pair.evaluations += (common.evaluations() * round.len()) as u32;
+        let mut kept = 0;
+        for i in 0..round.len() {
+            let (mut part, radius) = (round[i], radii[i]);
+            let floor = common.floor(part.centre, radius) - search.slack;
+            part.lower = larger(part.lower, floor);
+            if part.lower < threshold {
+                (round[kept], radii[kept]) = (part, radius);
+                kept += 1;
+            } else {
+                search.drop_cell(&part, queue);
+            }
+        }
+        round.truncate(kept);
+    }
+
     /// Closes the boxes that the first body alone rules out: the second body is not evaluated
     /// there.
     fn bound_by_first(&mut self, frontier: &mut Frontier<Heap<BoxCell<D>>>) {
@@ -429,7 +474,8 @@ impl<const D: usize> PairRounds<'_, '_, D> {
     /// Bounds by models those boxes that are small and not yet closed, again by the first
     /// body alone before the second is evaluated.
     fn bound_by_models(&mut self, frontier: &mut Frontier<Heap<BoxCell<D>>>) {
-        let Self { search, open, memory, known: Known { radii, models, .. }, largest } = self;
+        let Self { search, open, memory, known: Known { radii, models, .. }, largest, .. } =
+            self;
         let Frontier { queue, pending, round } = frontier;
         let threshold = search.threshold();
         open.clear();

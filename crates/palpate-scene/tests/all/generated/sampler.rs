@@ -151,6 +151,11 @@ pub(crate) const SPACE: &[Sample] = &[
         "power_torus",
         r#"{ "ring_radius": 0.035, "radius": 0.015, "ring_exponent": 2, "tube_exponent": 8 }"#,
     ),
+    (
+        "screw_thread",
+        r#"{ "radius": 0.035, "height": 0.09, "pitch": -0.02, "starts": 2,
+             "profile": [0.004, 0.006, 0.007] }"#,
+    ),
 ];
 
 /// Those that have no end.

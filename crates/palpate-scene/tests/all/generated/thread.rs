@@ -7,13 +7,6 @@
 //! crests cut to an eighth of the pitch P and its roots to a quarter. So crests and
 //! roots are 5/8·H apart, where H = √3/2·P, and a flank falls by √3 for each unit
 //! along the axis.
-//!
-//! A section across the axis has the same profile, stretched around the circle: a
-//! helix climbs by P in a turn, so at the angle φ [rad] the radius is that of the
-//! profile at P·φ/2π along the axis. Twisted by a turn for each P, that section is the
-//! thread.
-
-use std::f64::consts::TAU;
 
 /// An M6 bolt, five times as large.
 const ENLARGED: f64 = 5.0;
@@ -33,36 +26,24 @@ pub(crate) const CLEARANCE: f64 = 0.0001;
 /// The height of the middle of the thread [m].
 pub(crate) const MIDDLE: f64 = 0.045;
 
-/// Points of the section, such that each corner of the profile (sixteenths of a turn)
-/// is one of them.
-const POINTS: usize = 96;
-
-/// The distance from the axis at `turn`, a part of a turn from the middle of a crest.
-fn radius(turn: f64) -> f64 {
-    let along = PITCH * turn.min(1.0 - turn);
+/// Of a crest and of a root along the axis, and the depth between them [m].
+fn profile() -> [f64; 3] {
     let depth = 5.0 / 8.0 * 3.0_f64.sqrt() / 2.0 * PITCH;
-    // From the end of the crest at P/16 to the root at 3/8·P.
-    let fall = (along - PITCH / 16.0) * 3.0_f64.sqrt();
-    RADIUS - fall.clamp(0.0, depth)
+    [PITCH / 8.0, PITCH / 4.0, super::short(depth)]
 }
 
 /// The scene's text.
 pub(crate) fn scene() -> String {
-    let section: Vec<_> = (0..POINTS)
-        .map(|i| {
-            let turn = i as f64 / POINTS as f64;
-            let (sine, cosine) = (TAU * turn).sin_cos();
-            [radius(turn) * cosine, radius(turn) * sine]
-        })
-        .collect();
+    let [crest, root, depth] = profile();
     format!(
         r#"{{ "palpate": 1, "dimension": 3,
         "description": "A nut on a bolt: M6 with its metric thread, five times as large. The bolt stands on its head; the nut turns with 0.1 mm to spare.",
         "shapes": {{
-          "section": {{ "polygon": {{ "rings": [{section}] }} }},
           "thread": {{
-            "description": "The profile climbs by a pitch of {pitch} m in a turn.",
-            "twist_degrees": {twist}, "of": {{ "extrude": 0.06, "of": "section" }} }} }},
+            "description": "ISO 68-1: crests of an eighth of the pitch, roots of a quarter, flanks at 60 degrees.",
+            "screw_thread": {{
+              "radius": {RADIUS}, "height": 0.06, "pitch": {PITCH}, "starts": 1,
+              "profile": [{crest}, {root}, {depth}] }} }} }},
         "bodies": [
           {{ "name": "bolt", "shape": {{ "union": [
             {{ "translate": [0, 0.01, 0],
@@ -79,8 +60,5 @@ pub(crate) fn scene() -> String {
         "views": [{{ "name": "thread", "description": "The thread's profile, along the axis.",
           "plane": "xy", "center": [0.015, 0.0475], "width": 0.04, "height": 0.03,
           "spacing": 0.001 }}] }}"#,
-        section = super::ring(&section),
-        pitch = PITCH,
-        twist = super::short(360.0 / PITCH),
     )
 }
