@@ -263,7 +263,8 @@ fn bad(parameter: &Parameter, dimension: usize) -> Vec<Argument> {
         ParameterKind::Count => {
             let mut list = vec![0, 1_000_000, u32::MAX];
             // A polygon needs three sides, a star three branches.
-            if !matches!(parameter.name, "steps" | "ring_exponent" | "tube_exponent") {
+            let least_is_less = ["steps", "ring_exponent", "tube_exponent", "starts"];
+            if !least_is_less.contains(&parameter.name) {
                 list.push(2);
             }
             list.into_iter().map(Argument::Count).collect()

@@ -20,7 +20,7 @@
 //!
 //! So a box in which the other shapes are higher than this level holds nothing below it.
 
-use palpate_field::{Aabb, Node, Point, Pose, Shape};
+use palpate_field::{Aabb, Node, Point, Pose, Shape, Vector};
 
 use super::body_pair::BodyPair;
 use super::distance_bound::DistanceBound;
@@ -29,10 +29,13 @@ use crate::larger::larger;
 /// No more parts of a body are compared with those of the other.
 const MOST_PARTS: usize = 64;
 
+/// With more other shapes, a box is bounded as fast by the bodies themselves.
+const MOST_OTHERS: usize = 16;
+
 /// Roundings of places and levels, relative to the largest coordinate.
 const ROUNDINGS: f64 = 32.0 * f64::EPSILON;
 
-/// A signed and shifted shape of a body's tree.
+/// A signed and shifted shape of a body's tree, times the body's scale.
 #[derive(Clone, Copy, Debug)]
 struct Term<'a, const D: usize> {
     shape: &'a Shape<D>,
@@ -40,96 +43,109 @@ struct Term<'a, const D: usize> {
     shape_from_frame: Pose<D>,
     is_negative: bool,
     shift: f64,
+    scale: f64,
 }
 
 impl<'a, const D: usize> Term<'a, D> {
-    fn with(self, shape: &'a Shape<D>) -> Self {
-        Self { shape, ..self }
+    fn of_body(body: &DistanceBound<'a, D>) -> Self {
+        Self {
+            shape: body.shape,
+            shape_from_frame: body.body_from_frame(),
+            is_negative: false,
+            shift: 0.0,
+            scale: body.scale(),
+        }
     }
 
-    fn negative(self) -> Self {
-        Self { is_negative: !self.is_negative, ..self }
+    /// `true` if it is the smallest of its children; otherwise it is at least any of them.
+    fn is_smallest(&self) -> bool {
+        match self.shape.node() {
+            Node::Union(_) => !self.is_negative,
+            Node::Intersection(_) | Node::Difference(_) => self.is_negative,
+            _ => false,
+        }
+    }
+
+    /// The term of the child `i` of its shape.
+    fn child(&self, i: usize) -> Option<Self> {
+        match self.shape.node() {
+            Node::Union(of) | Node::Intersection(of) => {
+                Some(Self { shape: of.get(i)?, ..*self })
+            }
+            Node::Difference(of) => {
+                let is_negative = self.is_negative != (i > 0);
+                Some(Self { shape: of.get(i)?, is_negative, ..*self })
+            }
+            // A shape whose value may be less than the distance to its box grows with its box.
+            Node::Offset { distance, of }
+                if i == 0
+                    && (!self.is_negative || *distance <= 0.0 || of.promise().above_bounds) =>
+            {
+                let moved = if self.is_negative { *distance } else { -*distance };
+                Some(Self { shape: of, shift: self.shift + moved, ..*self })
+            }
+            Node::Placed { pose, of } if i == 0 => {
+                let shape_from_frame = pose.inverse() * self.shape_from_frame;
+                Some(Self { shape: of, shape_from_frame, ..*self })
+            }
+            _ => None,
+        }
     }
 
     fn value(&self, p: Point<D>) -> f64 {
         let f = self.shape.distance(self.shape_from_frame.transform_point(p));
-        self.shift + if self.is_negative { -f } else { f }
+        self.scale * (self.shift + if self.is_negative { -f } else { f })
+    }
+
+    fn steepness(&self) -> f64 {
+        self.shape.promise().lipschitz.max(1.0)
     }
 }
 
-/// A lower bound of a body's field: the smallest of all terms, the first of which is looked
-/// for in the other body.
-#[derive(Clone, Debug)]
+/// A term of a body's tree, and where it is there.
+#[derive(Clone, Copy, Debug)]
 struct Part<'a, const D: usize> {
     term: Term<'a, D>,
-    others: Vec<Term<'a, D>>,
+    /// The place of the part above it, and which child of that it is.
+    above: Option<[usize; 2]>,
 }
 
-impl<'a, const D: usize> Part<'a, D> {
-    /// The part with one term in place of its own, and perhaps more others.
-    fn replaced(&self, term: Term<'a, D>, more: impl IntoIterator<Item = Term<'a, D>>) -> Self {
-        Self { term, others: self.others.iter().copied().chain(more).collect() }
-    }
+/// The first terms of a body's tree, each after that above it.
+struct Parts<'a, const D: usize> {
+    parts: [Part<'a, D>; MOST_PARTS],
+    count: usize,
+}
 
-    /// The parts that follow from the operator of its term.
-    fn below(&self) -> Vec<Self> {
-        let term = self.term;
-        match term.shape.node() {
-            Node::Union(of) if term.is_negative => self.any(of.iter().map(|s| term.with(s))),
-            Node::Union(of) => self.all(of.iter().map(|s| term.with(s)).collect()),
-            Node::Intersection(of) if term.is_negative => {
-                self.all(of.iter().map(|s| term.with(s)).collect())
+impl<'a, const D: usize> Parts<'a, D> {
+    fn of(body: &DistanceBound<'a, D>) -> Self {
+        let root = Part { term: Term::of_body(body), above: None };
+        let mut all = Self { parts: [root; MOST_PARTS], count: 1 };
+        let mut next = 0;
+        while next < all.count {
+            let term = all.parts[next].term;
+            let children = (0..MOST_PARTS - all.count).map_while(|i| Some((i, term.child(i)?)));
+            for (i, term) in children {
+                all.parts[all.count] = Part { term, above: Some([next, i]) };
+                all.count += 1;
             }
-            Node::Intersection(of) => self.any(of.iter().map(|s| term.with(s))),
-            Node::Difference(of) => {
-                let signed = |(i, shape): (usize, &'a Shape<D>)| {
-                    let term = term.with(shape);
-                    if i == 0 { term } else { term.negative() }
-                };
-                let of = of.iter().enumerate().map(signed);
-                if term.is_negative { self.all(of.collect()) } else { self.any(of) }
-            }
-            // A shape that is no bound of the distance to its box grows with its box.
-            Node::Offset { distance, of }
-                if !term.is_negative || *distance <= 0.0 || of.promise().above_bounds =>
-            {
-                let moved = if term.is_negative { *distance } else { -*distance };
-                let shift = term.shift + moved;
-                vec![self.replaced(Term { shift, ..term.with(of) }, [])]
-            }
-            Node::Placed { pose, of } => {
-                let shape_from_frame = pose.inverse() * term.shape_from_frame;
-                vec![self.replaced(Term { shape_from_frame, ..term.with(of) }, [])]
-            }
-            _ => Vec::new(),
+            next += 1;
         }
+        all
     }
 
-    /// Parts of a maximum: at least any of its terms.
-    fn any(&self, of: impl Iterator<Item = Term<'a, D>>) -> Vec<Self> {
-        of.map(|term| self.replaced(term, [])).collect()
+    fn iter(&self) -> impl Iterator<Item = &Part<'a, D>> {
+        self.parts[..self.count].iter()
     }
 
-    /// Parts of a minimum: the smallest of its terms.
-    fn all(&self, of: Vec<Term<'a, D>>) -> Vec<Self> {
-        let without = |i| of.iter().enumerate().filter(move |(j, _)| *j != i).map(|(_, t)| *t);
-        (0..of.len()).map(|i| self.replaced(of[i], without(i))).collect()
+    /// The other terms: the body's field is at least the smallest of them and of the part's.
+    fn others(&self, part: &Part<'a, D>) -> impl Iterator<Item = Term<'a, D>> {
+        let up = std::iter::successors(part.above, |[place, _]| self.parts[*place].above);
+        let smallest = up.filter(|[place, _]| self.parts[*place].term.is_smallest());
+        smallest.flat_map(move |[place, child]| {
+            let all = (0..).map_while(move |i| Some((i, self.parts[place].term.child(i)?)));
+            all.filter(move |(i, _)| *i != child).map(|(_, term)| term)
+        })
     }
-}
-
-/// The first parts of a body, from its root on.
-fn parts<'a, const D: usize>(body: &DistanceBound<'a, D>) -> Vec<Part<'a, D>> {
-    let shape_from_frame = body.body_from_frame();
-    let root = Term { shape: body.shape, shape_from_frame, is_negative: false, shift: 0.0 };
-    let mut found = vec![Part { term: root, others: Vec::new() }];
-    let mut next = 0;
-    while next < found.len() && found.len() < MOST_PARTS {
-        let below = found[next].below();
-        found.extend(below);
-        next += 1;
-    }
-    found.truncate(MOST_PARTS);
-    found
 }
 
 /// A surface that two bodies have in common, with a gap.
@@ -137,8 +153,7 @@ fn parts<'a, const D: usize>(body: &DistanceBound<'a, D>) -> Vec<Part<'a, D>> {
 pub(crate) struct CommonSurface<'a, const D: usize> {
     /// What the larger `g` is at least where the others are no lower [m].
     pub(crate) level: f64,
-    /// Of the bodies, with their scales.
-    others: Vec<(Term<'a, D>, f64)>,
+    others: [Option<Term<'a, D>>; MOST_OTHERS],
 }
 
 impl<'a, const D: usize> CommonSurface<'a, D> {
@@ -148,63 +163,70 @@ impl<'a, const D: usize> CommonSurface<'a, D> {
         if !bodies.iter().all(DistanceBound::is_known_everywhere) {
             return None;
         }
-        let [first, second] = [parts(&bodies[0]), parts(&bodies[1])];
-        let scales = [0, 1].map(|body| bodies[body].scale());
+        let [first, second] = [Parts::of(&bodies[0]), Parts::of(&bodies[1])];
         let mut best: Option<Self> = None;
-        for a in &first {
-            for b in second.iter().filter(|b| a.term.is_negative != b.term.is_negative) {
+        for a in first.iter() {
+            let opposite = |b: &&Part<'a, D>| a.term.is_negative != b.term.is_negative;
+            for b in second.iter().filter(opposite) {
                 let least = best.as_ref().map_or(0.0, |best| best.level);
                 // Shapes are compared only if that may matter.
-                let most = level(a.term.shift + b.term.shift, scales);
-                if most > least && a.term.shape == b.term.shape {
-                    let level = level(gap(&a.term, &b.term, aabb), scales);
-                    if level > least {
-                        let of = |part: &Part<'a, D>, scale| {
-                            part.others.iter().map(move |term| (*term, scale)).collect()
-                        };
-                        let mut others: Vec<_> = of(a, scales[0]);
-                        others.extend::<Vec<_>>(of(b, scales[1]));
-                        best = Some(Self { level, others });
-                    }
+                if a.term.shift + b.term.shift <= least || a.term.shape != b.term.shape {
+                    continue;
+                }
+                let level = level(&a.term, &b.term, aabb);
+                if level > least {
+                    let others = first.others(a).chain(second.others(b));
+                    best = with_others(level, others).or(best);
                 }
             }
         }
         best
     }
 
+    fn others(&self) -> impl Iterator<Item = &Term<'a, D>> {
+        self.others.iter().flatten()
+    }
+
     /// How many fields a floor evaluates.
     pub(crate) fn evaluations(&self) -> usize {
-        self.others.len()
+        self.others().count()
     }
 
     /// What the larger `g` is at least within `radius` of a point of the frame [m].
     pub(crate) fn floor(&self, p: Point<D>, radius: f64) -> f64 {
-        let others = self.others.iter().map(|(term, scale)| {
-            let steepness = term.shape.promise().lipschitz.max(1.0);
-            scale * (term.value(p) - steepness * radius)
+        let others = self.others().map(|term| {
+            // No steeper than the body, whose scale it has.
+            term.value(p) - radius * larger(term.scale * term.steepness(), 1.0)
         });
         // Written so that NaN proves nothing.
         others.fold(self.level, |floor, other| if other > floor { floor } else { other })
     }
 }
 
-/// The level of two bodies whose terms add up to `gap`.
-fn level(gap: f64, [a, b]: [f64; 2]) -> f64 {
-    gap * a * b / (a + b)
+/// A surface with a level and all `others`, if there is room for them.
+fn with_others<'a, const D: usize>(
+    level: f64,
+    others: impl Iterator<Item = Term<'a, D>>,
+) -> Option<CommonSurface<'a, D>> {
+    let mut all = CommonSurface { level, others: [None; MOST_OTHERS] };
+    for (i, term) in others.enumerate() {
+        *all.others.get_mut(i)? = Some(term);
+    }
+    Some(all)
 }
 
-/// What two terms of the same shape and different signs add up to at least, in a box.
-fn gap<const D: usize>(a: &Term<'_, D>, b: &Term<'_, D>, aabb: &Aabb<D>) -> f64 {
+/// The level of two terms of the same shape and different signs, in a box.
+fn level<const D: usize>(a: &Term<'_, D>, b: &Term<'_, D>, aabb: &Aabb<D>) -> f64 {
     let mut apart = 0.0_f64;
     for corner in 0..1_u32 << D {
         let side = |k: usize| if corner >> k & 1 == 0 { aabb.min[k] } else { aabb.max[k] };
-        let p = palpate_field::Vector(std::array::from_fn(side));
+        let p: Point<D> = Vector(std::array::from_fn(side));
         let [at_a, at_b] = [a, b].map(|term| term.shape_from_frame.transform_point(p));
+        // The distance between the two places is convex, so it is largest at a corner.
         apart = larger((at_a - at_b).norm(), apart);
         apart = larger(ROUNDINGS * (p.norm() + at_a.norm() + at_b.norm()), apart);
     }
-    let steepness = a.shape.promise().lipschitz.max(1.0);
-    let shift = a.shift + b.shift;
     let rounding = ROUNDINGS * (a.shift.abs() + b.shift.abs());
-    shift - rounding - steepness * apart
+    let gap = a.shift + b.shift - rounding - a.steepness() * apart;
+    gap * a.scale * b.scale / (a.scale + b.scale)
 }

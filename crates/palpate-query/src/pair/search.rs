@@ -27,7 +27,8 @@ const SMALL: f64 = 0.25;
 /// itself, bounds would end a rounding farther apart than the tolerance.
 const SPARE: f64 = 1.0 / 64.0;
 
-/// A search that takes so many evaluations looks for a surface that both bodies have in common.
+/// A search that takes so many evaluations looks for a surface that both bodies have in common:
+/// most end before, and looking takes as long as some tens of evaluations.
 const LONG: u32 = 4096;
 
 /// The model in a lane before the first is written.

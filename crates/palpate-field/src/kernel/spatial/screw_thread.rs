@@ -125,7 +125,9 @@ impl ScrewThread {
         not_negative("profile[1]", root, Unit::Metre)?;
         positive("profile[2]", depth, Unit::Metre)?;
         if crest + root > spacing {
-            let rule = format!("with the root's {root} m at most the pitch, {spacing} m");
+            let left = spacing - root;
+            let rule =
+                format!("at most {left} m, the pitch {spacing} m less the root {root} m");
             return Err(ShapeError::number("profile[0]", rule, crest, Unit::Metre));
         }
         if depth >= radius {
@@ -294,7 +296,7 @@ primitive! {
         let middle = 0.5 * pitch.abs();
         vec![
             Mark::from_origin("radius", at(-radius, 0.0)),
-            Mark::height(kernel.height(), radius, radius),
+            Mark::height(kernel.height(), root_radius, root_radius),
             Mark::length_between("pitch", at(radius, 0.0), at(radius, -pitch.abs())).right(),
             Mark::length_between("profile", at(radius, -0.5 * crest), at(radius, 0.5 * crest)).of(0),
             Mark::length_between(
