@@ -125,9 +125,7 @@ impl ScrewThread {
         not_negative("profile[1]", root, Unit::Metre)?;
         positive("profile[2]", depth, Unit::Metre)?;
         if crest + root > spacing {
-            let left = spacing - root;
-            let rule =
-                format!("at most {left} m, the pitch {spacing} m less the root {root} m");
+            let rule = format!("at most the pitch {spacing} m less the root's {root} m");
             return Err(ShapeError::number("profile[0]", rule, crest, Unit::Metre));
         }
         if depth >= radius {
