@@ -189,16 +189,16 @@ impl ScrewThread {
     /// The distance from the `wedge`, of a point within the cylinder of the roots that at the
     /// roots' radius.
     #[inline(always)]
-    fn from_wedge<S: Scalar>(&self, from_axis: S, y: S, wedge: S) -> S {
+    fn beside_wedge<S: Scalar>(&self, from_axis: S, y: S, wedge: S) -> S {
         let share = from_axis.scale(1.0 / self.root_radius).min(S::constant(1.0));
         let below = (S::constant(self.root_radius) - from_axis).max(S::constant(0.0));
         let ridge = (wedge * share - below.scale(self.core_slope)).scale(self.scale);
-        self.from_ridge(from_axis, y, ridge)
+        self.beside_ridge(from_axis, y, ridge)
     }
 
     /// The distance, from that to a ridge without ends.
     #[inline(always)]
-    fn from_ridge<S: Scalar>(&self, from_axis: S, y: S, ridge: S) -> S {
+    fn beside_ridge<S: Scalar>(&self, from_axis: S, y: S, ridge: S) -> S {
         let over_root = from_axis - S::constant(self.root_radius);
         let over_crest = from_axis - S::constant(self.radius);
         let around = ridge.min(over_root).max(over_crest);
@@ -234,7 +234,7 @@ impl Kernel<3> for ScrewThread {
         let from_axis = from_axis(p);
         let at = from_axis.max(S::constant(self.root_radius));
         let wedge = self.wedge(at, self.along(p).abs());
-        self.from_wedge(from_axis, p.0[1], wedge)
+        self.beside_wedge(from_axis, p.0[1], wedge)
     }
 
     /// By the formula or, over cells of half a pitch or where that is wider, by the Lipschitz
@@ -254,10 +254,10 @@ impl Kernel<3> for ScrewThread {
         let from_axis = from_axis(cell);
         let fine = if from_axis.minimum() >= self.root_radius {
             let ridge = self.wedge_model(from_axis, from_crest).scale(self.scale);
-            self.from_ridge(from_axis, y, ridge)
+            self.beside_ridge(from_axis, y, ridge)
         } else {
             let at = from_axis.max(AffineModel::constant(self.root_radius));
-            self.from_wedge(from_axis, y, self.wedge_model(at, from_crest))
+            self.beside_wedge(from_axis, y, self.wedge_model(at, from_crest))
         };
         let reach = self.size() + AffineModel::radius(&cell.0);
         let centre = Vector(cell.0.map(|x| x.value)).norm();
