@@ -191,10 +191,22 @@ fn what_is_apart_is_proven_for_any_budget() {
 
 #[test]
 fn full_memory_is_told_apart_from_a_spent_budget() {
-    let options = ["contact", "scenes/nut_on_bolt.json", "--budget", "20000000"];
-    let said = text(&palpate(&options));
+    let folder = Folder::new();
+    // A ball in a socket, everywhere equally near.
+    let scene = folder.write(
+        "socket.json",
+        r#"{ "palpate": 1, "dimension": 3, "bodies": [
+          { "name": "ball", "shape": { "ball": { "radius": 0.05 } } },
+          { "name": "socket", "shape": { "difference": [
+             { "cuboid": { "size": [0.2, 0.2, 0.2] } }, { "ball": { "radius": 0.0501 } } ] } } ] }"#,
+    );
+    let ask = |budget| {
+        let options = ["contact", &scene, "--tolerance", "1e-7", "--budget", budget];
+        text(&palpate(&options))
+    };
+    let said = ask("20000000");
     assert!(said.contains("(memory full; "), "{said}");
-    let small = text(&palpate(&["contact", "scenes/nut_on_bolt.json", "--budget", "1000"]));
+    let small = ask("1000");
     assert!(small.contains("(budget spent; "), "{small}");
     assert!(small.contains("raise --budget"), "{small}");
 }
