@@ -15,6 +15,7 @@ mod nearby;
 mod placed;
 mod remap;
 mod union;
+mod union_cells;
 mod warp;
 
 use std::fmt::Debug;

@@ -11,13 +11,13 @@ use crate::bounds::{Aabb, BoundingBall};
 use crate::machine::{BLOCK, Block, Column, Job, run};
 use crate::promise::Quality;
 use crate::scalar::Scalar;
-use crate::vector::Vector;
+use crate::vector::{Vector, unrolled};
 
 /// With fewer members, evaluating all is faster than searching.
 const WORTH_CHOOSING: usize = 6;
 
 /// Members in a line: a cache line of gaps.
-const LINE: usize = 16;
+pub(super) const LINE: usize = 16;
 
 /// The tree of balls that is searched.
 #[derive(Debug)]
@@ -67,6 +67,76 @@ impl<const D: usize> Job<Vector<f32, D>, f32, f32> for ToBalls<D> {
     #[inline(always)]
     fn lane(&self, centre: Vector<f32, D>, radius: f32) -> f32 {
         (centre - self.0).norm() - radius
+    }
+}
+
+/// A cell, and the lower plane of a model over it, with which balls are compared.
+pub(super) struct Floor<const D: usize, const N: usize> {
+    /// The centre of the cell [m].
+    pub(super) centre: Vector<f32, D>,
+    /// From there to the cell's side along each parameter [m].
+    pub(super) sides: [Vector<f32, D>; N],
+    /// The model's value [m].
+    pub(super) value: f32,
+    /// Its gradient [m].
+    pub(super) gradient: [f32; N],
+    /// How far the lower plane is below the value [m].
+    pub(super) lower: f32,
+    /// What roundings may take away [m].
+    pub(super) slack: f32,
+}
+
+/// How far a ball stays clear of a [`Floor`]: at the centre its signed distance is larger than the
+/// value by so much at least, and over the whole cell it is so far above the lower plane.
+///
+/// Above, the signed distance is replaced by its tangent plane, which is a lower bound.
+struct Clearance<'a, const D: usize, const N: usize>(&'a Floor<D, N>);
+
+impl<const D: usize, const N: usize> Job<Vector<f32, D>, f32, f32> for Clearance<'_, D, N> {
+    #[inline(always)]
+    fn lane(&self, centre: Vector<f32, D>, radius: f32) -> f32 {
+        let floor = self.0;
+        let away = floor.centre - centre;
+        let distance = away.norm();
+        // In the centre of a ball any direction is one of a plane below.
+        let inverse = 1.0 / Scalar::max(distance, f32::MIN_POSITIVE);
+        let mut tilt = 0.0;
+        unrolled!(k < N => {
+            let mut slope = 0.0;
+            unrolled!(i < D => slope += away.0[i] * floor.sides[k].0[i]);
+            tilt += f32::abs(floor.gradient[k] - slope * inverse);
+        });
+        (distance - radius) - floor.value - Scalar::max(tilt - floor.lower, 0.0)
+    }
+}
+
+impl<const D: usize, const W: usize> Balls<D, W> {
+    #[inline(always)]
+    fn clearances<const N: usize>(&self, floor: &Floor<D, N>) -> Column<f32, W> {
+        let mut clearances = Column::scratch();
+        run(&Clearance(floor), &self.centres, &self.radii, W, &mut clearances);
+        clearances
+    }
+
+    /// The balls that are not clear of a floor, one bit each.
+    pub(super) fn in_the_way_of<const N: usize>(&self, floor: &Floor<D, N>) -> u64 {
+        let clearances = self.clearances(floor);
+        let (lines, _) = clearances.as_slice().as_chunks::<LINE>();
+        let mut bits = 0;
+        for (k, line) in lines.iter().enumerate() {
+            // A number that is none is not clear.
+            bits |= u64::from(above(line, floor.slack) ^ first_bits(LINE)) << (k * LINE);
+        }
+        bits & (u64::MAX >> (u64::BITS as usize - self.count))
+    }
+
+    /// The ball that is least clear of a floor, and by how much; `except` one.
+    fn foremost<const N: usize>(&self, floor: &Floor<D, N>, except: usize) -> (usize, f32) {
+        let mut clearances = self.clearances(floor);
+        if except < W {
+            clearances.set(except, f32::INFINITY);
+        }
+        nearest(&clearances)
     }
 }
 
@@ -144,6 +214,29 @@ impl<const D: usize> Nearby<D> {
             around: around.collect(),
             lines: lines.iter().map(|line| Balls::new(line.iter().map(ball_of))).collect(),
         })
+    }
+
+    /// The member whose ball is least clear of a floor, `except` one; `None` if that is clear, or
+    /// if it is not found: of many members, only one line is looked through.
+    pub(super) fn foremost<const N: usize>(
+        &self,
+        floor: &Floor<D, N>,
+        except: usize,
+    ) -> Option<usize> {
+        let (member, clearance) = match self {
+            Self::Flat(balls) => balls.foremost(floor, except),
+            Self::Lines { around, lines } => {
+                let of_all = around.iter().enumerate().map(|(block, around)| {
+                    let (line, clearance) = around.foremost(floor, usize::MAX);
+                    (block * BLOCK + line, clearance)
+                });
+                let (line, _) = of_all.min_by(|a, b| a.1.total_cmp(&b.1))?;
+                let first = line * LINE;
+                let (i, clearance) = lines[line].foremost(floor, except.wrapping_sub(first));
+                (first + i, clearance)
+            }
+        };
+        (clearance <= floor.slack).then_some(member)
     }
 
     /// Calls `near` with the number of every member whose ball is at most as far from
@@ -263,6 +356,16 @@ fn at_most(line: &[f32; LINE], limit: f32) -> u32 {
     let mut bits = 0;
     for (i, gap) in line.iter().enumerate() {
         bits |= u32::from(*gap <= limit) << i;
+    }
+    bits
+}
+
+/// The numbers of a line that are more than `limit`, one bit each.
+#[inline(always)]
+fn above(line: &[f32; LINE], limit: f32) -> u32 {
+    let mut bits = 0;
+    for (i, number) in line.iter().enumerate() {
+        bits |= u32::from(*number > limit) << i;
     }
     bits
 }

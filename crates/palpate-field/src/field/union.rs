@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
 //! The sharp union of any number of members, with members out of reach skipped.
+//! `union_cells` has its models.
 //!
 //! A member is skipped only where its value is sure to be larger than the
 //! smallest, rounding included, so skipping changes no bit of the result.
@@ -23,14 +24,14 @@ use crate::vector::Vector;
 
 /// Beyond this distance from the origin [m], squares of lengths near the limits of single
 /// precision: every member is asked, as at a place that is no number.
-const FAR: f64 = 1e15;
+pub(super) const FAR: f64 = 1e15;
 
 /// The union of at least one member.
 #[derive(Debug)]
 pub(crate) struct Union<const D: usize> {
-    members: Vec<SharedField<D>>,
+    pub(super) members: Vec<SharedField<D>>,
     /// `None` where evaluating all members is faster than searching.
-    nearby: Option<Nearby<D>>,
+    pub(super) nearby: Option<Nearby<D>>,
     slack: Slack,
     promise: Promise<D>,
     depth: usize,
@@ -71,6 +72,13 @@ impl<const D: usize> Union<D> {
         Ok(Arc::new(Self { members, nearby, slack, promise, depth }))
     }
 
+    /// How far rounding may bring a value below the distance to its ball, so far from the
+    /// origin [m].
+    #[inline(always)]
+    pub(super) fn slack(&self, from_origin: f64) -> f64 {
+        self.slack.constant + self.slack.per_metre * from_origin
+    }
+
     /// The number of members that a block is likely to evaluate.
     fn expected(&self) -> usize {
         if self.nearby.is_none() { self.members.len() } else { 1 }
@@ -91,7 +99,7 @@ impl<const D: usize> Union<D> {
     ) {
         let from_origin = query.centre.norm() + query.radius;
         if from_origin < FAR {
-            let slack = self.slack.constant + self.slack.per_metre * from_origin + query.radius;
+            let slack = self.slack(from_origin) + query.radius;
             nearby.for_each(Vector::of(&query.centre.0), slack, value, near);
         } else {
             self.each_of_all(near);
@@ -108,7 +116,7 @@ impl<const D: usize> Union<D> {
 
     /// The smallest value at a point, and which member has it.
     #[inline(always)]
-    fn winner<T: Float>(&self, x: T, y: T, z: T) -> (T, usize)
+    pub(super) fn winner<T: Float>(&self, x: T, y: T, z: T) -> (T, usize)
     where
         dyn Field<D>: EvaluatePoint<T, D>,
     {
@@ -143,15 +151,15 @@ impl<const D: usize> Union<D> {
         best.unwrap_or((T::constant(f64::INFINITY), 0))
     }
 
-    /// The members that matter in a block.
-    fn near_block<S: Lane, const W: usize>(
+    /// Calls `near` with the numbers of the members that matter in a block.
+    pub(super) fn near_block<S: Lane, const W: usize>(
         &self,
         p: &Block<S, D, W>,
         count: usize,
-        mut near: impl FnMut(&SharedField<D>),
+        mut near: impl FnMut(usize),
     ) {
         let Some(nearby) = &self.nearby else {
-            self.members.iter().for_each(near);
+            (0..self.members.len()).for_each(near);
             return;
         };
         let query = p.ball_around(count);
@@ -171,7 +179,7 @@ impl<const D: usize> Union<D> {
                 }
             },
             |i| {
-                near(&self.members[i]);
+                near(i);
                 f64::INFINITY
             },
         );
@@ -193,13 +201,13 @@ where
     }
 }
 
-impl<S: Lane, const D: usize, const W: usize> EvaluateBlock<S, D, W> for Union<D>
+impl<T: Float + Lane, const D: usize, const W: usize> EvaluateBlock<T, D, W> for Union<D>
 where
-    dyn Field<D>: EvaluateBlock<S, D, W>,
+    dyn Field<D>: EvaluateBlock<T, D, W>,
 {
-    fn distances(&self, p: &Block<S, D, W>, count: usize, out: &mut Column<S, W>) {
+    fn distances(&self, p: &Block<T, D, W>, count: usize, out: &mut Column<T, W>) {
         let mut fold = ValueFold::new(&Minimum, self.expected(), out);
-        self.near_block(p, count, |member| fold.push(member, p, count));
+        self.near_block(p, count, |i| fold.push(&self.members[i], p, count));
         fold.finish();
     }
 }
@@ -215,7 +223,7 @@ where
         out: &mut Gradients<T, D, W>,
     ) {
         let mut fold = GradientFold::new(&Minimum, self.expected(), out);
-        self.near_block(p, count, |member| fold.push(member, p, count));
+        self.near_block(p, count, |i| fold.push(&self.members[i], p, count));
         fold.finish();
     }
 }

@@ -119,6 +119,16 @@ impl<S: Lane, const W: usize> Column<S, W> {
         self.lanes.write(i, number);
     }
 
+    /// Joins what is in the given lanes with the numbers of the first lanes of another column, in
+    /// their order.
+    #[inline(always)]
+    pub(crate) fn join(&mut self, lanes: &[u8], with: &Self, join: impl Fn(S, S) -> S) {
+        for (k, lane) in lanes.iter().enumerate() {
+            let lane = usize::from(*lane);
+            self.set(lane, join(self.get(lane), with.get(k)));
+        }
+    }
+
     /// Writes the first `count` lanes, and what completes their line with the
     /// last of them.
     pub(crate) fn fill(&mut self, count: usize, mut number: impl FnMut(usize) -> S) {
@@ -253,6 +263,20 @@ impl<S: Lane, const D: usize, const W: usize> Block<S, D, W> {
         self.boxes = if are_boxes { Boxes::Straight } else { Boxes::No };
         for column in &mut self.columns {
             column.written = lanes;
+        }
+    }
+
+    /// Puts the points in the given lanes of another block into the first ones, as
+    /// [`fill`](Self::fill) does; at least one.
+    pub(crate) fn gather(&mut self, from: &Self, lanes: &[u8]) {
+        let filled = filled::<Column<S, W>>(lanes.len());
+        for i in 0..filled {
+            let point = from.get(usize::from(lanes[i.min(lanes.len() - 1)]));
+            unrolled!(k < D => self.columns[k].lanes.write(i, point.0[k]));
+        }
+        self.boxes = from.boxes;
+        for column in &mut self.columns {
+            column.written = filled;
         }
     }
 

@@ -35,3 +35,4 @@ mod slices;
 mod space_time;
 mod special_cases;
 mod threads;
+mod unions;

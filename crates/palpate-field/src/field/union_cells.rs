@@ -1,0 +1,232 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! Models of a union: each cell asks only the members that may be the smallest in it.
+//!
+//! A block whose cells are close together asks the members near all of them, as a block of
+//! points does. Cells far apart, or large ones, ask each for itself.
+//!
+//! # Which members a cell asks
+//!
+//! First the member that is smallest at the cell's centre: of its model, the union's keeps
+//! value, slope and upper remainder, whatever the others are. Another member only lowers the
+//! lower plane, and only if it is somewhere below. It is sure not to be if the signed distance
+//! to its ball is not: that is convex, so its tangent plane at the centre is a lower bound. Such
+//! a member is skipped, so that the model encloses the union all the same, and is not wider than
+//! if it had been asked.
+//!
+//! In a large cell many members are below the lower plane of the first. The one that is
+//! farthest below is asked next, for once it has lowered the plane, most others are above.
+
+use super::combine::{Minimum, ValueFold};
+use super::nearby::{Balls, Floor, LINE, Nearby};
+use super::union::{FAR, Union};
+use super::{EvaluateBlock, Field};
+use crate::machine::{BLOCK, Block, Column};
+use crate::scalar::{AffineModel, Scalar};
+use crate::vector::{Vector, array};
+
+/// So many members at most are asked by all cells of a block: to find out which cell needs which
+/// would take longer.
+const FEW: usize = 16;
+
+/// Roundings in single precision of the clearance of a ball, relative to the largest number
+/// in it.
+const ROUNDINGS: f64 = 64.0;
+
+/// What the union's slack is multiplied with for the clearance: more operations than those of
+/// the distance to a ball.
+const SLACKS: f64 = 4.0;
+
+impl<const N: usize, const D: usize, const W: usize> EvaluateBlock<AffineModel<N>, D, W>
+    for Union<D>
+where
+    dyn Field<D>: EvaluateBlock<AffineModel<N>, D, W>,
+{
+    fn distances(
+        &self,
+        p: &Block<AffineModel<N>, D, W>,
+        count: usize,
+        out: &mut Column<AffineModel<N>, W>,
+    ) {
+        let (mut near, mut many) = ([0; FEW], 0);
+        self.near_block(p, count, |i| {
+            if let Some(place) = near.get_mut(many) {
+                *place = i;
+            }
+            many += 1;
+        });
+        match &self.nearby {
+            Some(nearby) if many > FEW => {
+                let first = [[0; 2]; W];
+                Cells { union: self, nearby, p, count, out, first }.bound();
+            }
+            _ => {
+                let mut fold = ValueFold::new(&Minimum, many, out);
+                for i in &near[..many] {
+                    fold.push(&self.members[*i], p, count);
+                }
+                fold.finish();
+            }
+        }
+    }
+}
+
+/// Cells that ask each for itself.
+struct Cells<'a, const N: usize, const D: usize, const W: usize> {
+    union: &'a Union<D>,
+    nearby: &'a Nearby<D>,
+    p: &'a Block<AffineModel<N>, D, W>,
+    count: usize,
+    out: &'a mut Column<AffineModel<N>, W>,
+    /// The members that each cell asks first; twice the same if it is one.
+    first: [[usize; 2]; W],
+}
+
+/// The places of the bits that are set.
+fn ones(mut bits: u64) -> impl Iterator<Item = usize> {
+    std::iter::from_fn(move || {
+        let next = (bits != 0).then(|| bits.trailing_zeros() as usize)?;
+        bits &= bits - 1;
+        Some(next)
+    })
+}
+
+impl<const N: usize, const D: usize, const W: usize> Cells<'_, N, D, W>
+where
+    dyn Field<D>: EvaluateBlock<AffineModel<N>, D, W>,
+{
+    fn bound(mut self) {
+        const { assert!(W <= BLOCK, "a bit for each cell") };
+        for i in 0..self.count {
+            let (x, y, z) = self.centre(i).coordinates();
+            self.first[i] = [self.union.winner::<f64>(x, y, z).1; 2];
+        }
+        self.out.fill(self.count, |_| AffineModel::constant(0.0));
+        self.ask_first(self.all(), 0, |_, model| model);
+        let mut lanes = 0;
+        for i in 0..self.count {
+            if let Some(member) = self.nearby.foremost(&self.floor(i), self.first[i][0]) {
+                self.first[i][1] = member;
+                lanes |= 1 << i;
+            }
+        }
+        self.ask_first(lanes, 1, Scalar::min);
+        self.ask_others();
+    }
+
+    /// All cells, one bit each.
+    fn all(&self) -> u64 {
+        u64::MAX >> (u64::BITS as usize - self.count)
+    }
+
+    #[inline(always)]
+    fn centre(&self, i: usize) -> Vector<f64, D> {
+        let cell = self.p.get(i);
+        Vector(array!(k < D => cell.0[k].value))
+    }
+
+    /// What balls are compared with in cell `i`.
+    fn floor(&self, i: usize) -> Floor<D, N> {
+        let (cell, model) = (self.p.get(i), self.out.get(i));
+        let from_origin = self.centre(i).norm() + AffineModel::radius(&cell.0);
+        let largest = from_origin + model.value.abs() + model.deviation();
+        // By as much a point may be off the affine image of its parameters.
+        let off = cell.0.iter().fold(0.0, |sum, x| sum + Scalar::max(x.lower, x.upper));
+        let slack = SLACKS * self.union.slack(from_origin)
+            + ROUNDINGS * f64::from(f32::EPSILON) * largest
+            + off;
+        // Of a place that is far or no number, nothing is known.
+        let slack = if from_origin < FAR { slack } else { f64::INFINITY };
+        Floor {
+            centre: Vector::of(&self.centre(i).0),
+            sides: std::array::from_fn(|k| {
+                Vector(array!(j < D => cell.0[j].gradient[k] as f32))
+            }),
+            value: model.value as f32,
+            gradient: model.gradient.map(|side| side as f32),
+            lower: model.lower as f32,
+            slack: slack as f32,
+        }
+    }
+
+    /// Asks the first members of the cells `left`, or the second.
+    fn ask_first(
+        &mut self,
+        mut left: u64,
+        which: usize,
+        join: fn(AffineModel<N>, AffineModel<N>) -> AffineModel<N>,
+    ) {
+        while left != 0 {
+            let member = self.first[left.trailing_zeros() as usize][which];
+            let alike = ones(left).filter(|i| self.first[*i][which] == member);
+            let lanes = alike.fold(0, |lanes, i| lanes | 1 << i);
+            left &= !lanes;
+            self.ask(member, lanes, join);
+        }
+    }
+
+    /// Asks all members that are in the way.
+    fn ask_others(&mut self) {
+        match self.nearby {
+            Nearby::Flat(balls) => self.ask_those_of(balls, self.all(), 0),
+            Nearby::Lines { around, lines } => {
+                let blocks = around.iter().zip(lines.chunks(BLOCK)).enumerate();
+                for (block, (around, lines)) in blocks {
+                    let cells = self.needing(around, self.all());
+                    for (i, line) in lines.iter().enumerate().filter(|(i, _)| cells[*i] != 0) {
+                        self.ask_those_of(line, cells[i], (block * BLOCK + i) * LINE);
+                    }
+                }
+            }
+        }
+    }
+
+    /// Of the `cells`, those that each ball is in the way of.
+    fn needing<const B: usize>(&self, balls: &Balls<D, B>, cells: u64) -> [u64; B] {
+        let mut of_ball = [0; B];
+        for i in ones(cells) {
+            for ball in ones(balls.in_the_way_of(&self.floor(i))) {
+                of_ball[ball] |= 1 << i;
+            }
+        }
+        of_ball
+    }
+
+    /// Asks the members from number `first` on, whose `balls` are in the way.
+    fn ask_those_of<const B: usize>(&mut self, balls: &Balls<D, B>, cells: u64, first: usize) {
+        for (i, cells) in self.needing(balls, cells).into_iter().enumerate() {
+            let member = first + i;
+            let unasked = ones(cells).filter(|cell| !self.first[*cell].contains(&member));
+            let cells = unasked.fold(0, |cells, cell| cells | 1 << cell);
+            if cells != 0 {
+                self.ask(member, cells, Scalar::min);
+            }
+        }
+    }
+
+    /// Joins the model of a member with those of some cells.
+    #[inline(never)]
+    fn ask(
+        &mut self,
+        member: usize,
+        cells: u64,
+        join: fn(AffineModel<N>, AffineModel<N>) -> AffineModel<N>,
+    ) {
+        let member = &self.union.members[member];
+        let (mut lanes, mut count) = ([0_u8; BLOCK], 0);
+        for cell in ones(cells) {
+            lanes[count] = cell as u8;
+            count += 1;
+        }
+        let mut models = Column::scratch();
+        if count == self.count {
+            member.distances(self.p, count, &mut models);
+        } else {
+            let mut cells = Block::scratch();
+            cells.gather(self.p, &lanes[..count]);
+            member.distances(&cells, count, &mut models);
+        }
+        self.out.join(&lanes[..count], &models, join);
+    }
+}
