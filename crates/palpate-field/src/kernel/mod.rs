@@ -233,19 +233,6 @@ pub(crate) fn tangent_model<K: Kernel<D>, const D: usize, const N: usize>(
     AffineModel::tangent(distance, normal.0, distance_at, &cell.0, rounding)
 }
 
-/// Bounds an exact kernel that is not convex over a cell by its value at the centre;
-/// `operations` and `size` as for [`tangent_model`].
-#[inline(always)]
-pub(crate) fn lipschitz_model<K: Kernel<D>, const D: usize, const N: usize>(
-    kernel: &K,
-    cell: Vector<AffineModel<N>, D>,
-    operations: f64,
-    size: f64,
-) -> AffineModel<N> {
-    let centre = Vector(array!(i < D => cell.0[i].value));
-    by_steepness(kernel.distance(centre), &cell, operations, size)
-}
-
 /// A cell's bound by its `value` at the centre and the Lipschitz constant.
 #[inline(always)]
 fn by_steepness<const D: usize, const N: usize>(
@@ -259,10 +246,27 @@ fn by_steepness<const D: usize, const N: usize>(
     AffineModel::lipschitz(value, 1.0, &cell.0, operations * f64::EPSILON * far)
 }
 
+/// A model with a slope says more than a constant that is as wide, and more than one that is
+/// narrower by less than this share: near the surface, bounds get better with the square of a
+/// cell's size only where models have a slope. A larger share leaves wider models.
+const SLIGHTLY: f64 = 0.125;
+
+/// `true` if a `model` says more than the `constant` by the steepness, which may be narrower: over
+/// cells that are large or hold parts of the medial axis, a choice between distant values has
+/// wide remainders.
+#[inline(always)]
+pub(crate) fn says_more<const N: usize>(
+    model: &AffineModel<N>,
+    constant: &AffineModel<N>,
+) -> bool {
+    let width = |model: &AffineModel<N>| model.maximum() - model.minimum();
+    let remainders = |model: &AffineModel<N>| model.lower + model.upper;
+    let is_nearly_a_plane = remainders(model) <= SLIGHTLY * remainders(constant);
+    is_nearly_a_plane || width(model) <= width(constant)
+}
+
 /// Bounds an exact kernel that is not convex over a cell by its formula or, where that bound is
-/// wider, as [`lipschitz_model`] does: over cells that are large or hold parts of the medial
-/// axis, a choice between distant values has wide remainders. `operations` and `size` as for
-/// [`tangent_model`].
+/// wider, by its value at the centre; `operations` and `size` as for [`tangent_model`].
 #[inline(always)]
 pub(crate) fn formula_model<K: Kernel<D>, const D: usize, const N: usize>(
     kernel: &K,
@@ -271,7 +275,6 @@ pub(crate) fn formula_model<K: Kernel<D>, const D: usize, const N: usize>(
     size: f64,
 ) -> AffineModel<N> {
     let formula = kernel.distance(cell);
-    let by_steepness = by_steepness(formula.value, &cell, operations, size);
-    let width = |model: &AffineModel<N>| model.maximum() - model.minimum();
-    if width(&formula) <= width(&by_steepness) { formula } else { by_steepness }
+    let constant = by_steepness(formula.value, &cell, operations, size);
+    if says_more(&formula, &constant) { formula } else { constant }
 }

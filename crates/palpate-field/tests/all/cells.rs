@@ -133,6 +133,60 @@ fn models_of_spatial_primitives_say_as_much_as_their_steepness() {
     models_say_as_much_as_the_steepness::<3>();
 }
 
+/// Half the side of small cells, as a share of the shape.
+const SMALL: f64 = 1e-4;
+
+/// Of small cells next to the surface, so many have models whose remainders are small beside the
+/// cell. The others are at edges and corners, where the surface has no plane, and where points
+/// are often drawn.
+const SMOOTH: f64 = 0.5;
+
+/// Remainders that are small, as a share of half the side of a cell.
+const SECOND_ORDER: f64 = 0.05;
+
+/// Remainders of small cells next to the surface are of second order.
+fn models_follow_the_surface<const D: usize>()
+where
+    Space: Dimension<D>,
+{
+    let mut complaints = Vec::new();
+    for entry in <Space as Dimension<D>>::CATALOGUE {
+        let shape = entry.example().unwrap();
+        let half = SMALL * draw::size(&shape);
+        let (mut asked, mut close) = (0, 0);
+        cases::check(200, |u| {
+            let mut p = draw::point(u, &shape)?;
+            for _ in 0..4 {
+                let (f, g) = shape.distance_gradient(p);
+                p -= g * f;
+            }
+            let p = p + draw::direction(u)? * (draw::within(u, 0.0, 20.0)? * half);
+            let mut block = Block::<Model, D, BLOCK>::zero();
+            let mut models = Column::<Model, BLOCK>::zero();
+            block.fill_boxes(1, None, |_| (p, Vector::constant(half)));
+            shape.block_distances(&block, 1, &mut models);
+            let model = models.get(0);
+            asked += 1;
+            close += u32::from(model.lower + model.upper <= SECOND_ORDER * half);
+            Ok(Ok(()))
+        });
+        if f64::from(close) < SMOOTH * f64::from(asked) {
+            complaints.push(format!("{close} of {asked} cells of {}", entry.name));
+        }
+    }
+    assert!(complaints.is_empty(), "{complaints:#?}");
+}
+
+#[test]
+fn models_of_planar_primitives_follow_the_surface() {
+    models_follow_the_surface::<2>();
+}
+
+#[test]
+fn models_of_spatial_primitives_follow_the_surface() {
+    models_follow_the_surface::<3>();
+}
+
 /// The model of a shape over a box.
 fn model_over(shape: &Shape<2>, centre: [f64; 2], half: f64) -> Model {
     let mut block = Block::<Model, 2, BLOCK>::zero();

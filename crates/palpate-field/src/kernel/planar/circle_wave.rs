@@ -7,7 +7,7 @@ use std::f64::consts::{FRAC_PI_2, PI};
 
 use crate::error::{ShapeError, Unit, not_negative, positive};
 use crate::kernel::mark::{at, sets};
-use crate::kernel::{Kernel, primitive};
+use crate::kernel::{Kernel, primitive, says_more};
 use crate::promise::{Promise, Quality};
 use crate::scalar::{AffineModel, Scalar};
 use crate::vector::Vector;
@@ -129,7 +129,7 @@ impl Kernel<2> for CircleWave {
         let centre = Vector([cell.0[0].value, cell.0[1].value]);
         let rounding = OPERATIONS * f64::EPSILON * (far + centre.norm());
         let rough = AffineModel::lipschitz(formula.value, 1.0, &cell.0, rounding);
-        if rough.deviation() < formula.deviation() { rough } else { formula }
+        if says_more(&formula, &rough) { formula } else { rough }
     }
 
     fn promise(&self) -> Promise<2> {

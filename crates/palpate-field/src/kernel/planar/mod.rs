@@ -4,6 +4,7 @@
 //! Kernels of the plane.
 
 mod arc;
+mod bent;
 mod circle_wave;
 mod cool_s;
 mod cross;
@@ -25,6 +26,7 @@ mod regular;
 mod ring;
 mod rounded_cross;
 mod sector;
+mod sides;
 mod stairs;
 mod tunnel;
 mod vesica;

@@ -5,11 +5,13 @@
 
 use std::f64::consts::{FRAC_1_SQRT_2, SQRT_2};
 
+use super::bent::{Bent, Disc, Pieces};
 use super::parabola_foot::Quadratic;
+use super::sides::{model_by_sides, or_constant};
 use crate::bounds::{Aabb, BoundingBall, Bounds};
 use crate::error::{ShapeError, Unit, not_negative, positive};
 use crate::kernel::mark::{Mark, at, diagonal};
-use crate::kernel::{Kernel, lipschitz_model, primitive, tangent_model};
+use crate::kernel::{Kernel, primitive, tangent_model};
 use crate::promise::{Promise, Quality};
 use crate::scalar::{AffineModel, Float, Scalar};
 use crate::vector::{Vector, array};
@@ -19,6 +21,13 @@ const CIRCLE_OPERATIONS: f64 = 5.0;
 
 /// The same for a cross.
 const CROSS_OPERATIONS: f64 = 5.0;
+
+/// How far points of an arc, and with them a model of a cross, may be off, in roundings of the
+/// largest number.
+const ARC_OFF: f64 = 32.0;
+
+/// Of a cell on an arc, the piece of the arc has to go past it, by this share of its radius.
+const PAST: f64 = 1.25;
 
 /// A point folded by the axes and the diagonals, in the frame of the diagonal: its offset
 /// beside the diagonal, and its place along it from the centre.
@@ -196,6 +205,18 @@ impl BobblyCross {
         Ok(Self { width, tip, dip, rounding, curve })
     }
 
+    /// The four arcs, each between two tips.
+    fn arcs(&self) -> [Bent; 4] {
+        // The ends' tangents meet as far inwards of the vertex as the chord is outwards.
+        let inner = 0.5 * self.tip - SQRT_2 * self.dip;
+        let (tip, zero) = (self.tip, 0.0);
+        let tips = [[tip, zero], [zero, tip], [-tip, zero], [zero, -tip]].map(Vector);
+        std::array::from_fn(|i| {
+            let (from, to) = (tips[i], tips[(i + 1) % 4]);
+            Bent::new(from, (from + to) * (inner / tip), to)
+        })
+    }
+
     #[inline(always)]
     fn solve<S: Scalar>(&self, p: Vector<S, 2>) -> (S, [S; 2]) {
         let one = S::constant(1.0);
@@ -225,9 +246,30 @@ impl Kernel<2> for BobblyCross {
         (distance, unfolded(p, gradient))
     }
 
-    #[inline(always)]
+    /// By the pieces of the arcs that are nearest in the cell, each as a straight edge: the
+    /// zero of a cubic is no better known than the coefficients, which in a cell move.
     fn model<const N: usize>(&self, cell: Vector<AffineModel<N>, 2>) -> AffineModel<N> {
-        lipschitz_model(self, cell, CROSS_OPERATIONS, self.tip + self.rounding)
+        let centre = Vector(cell.0.map(|x| x.value));
+        let radius = AffineModel::radius(&cell.0);
+        let far = f64::EPSILON * (self.tip + self.rounding + centre.norm() + radius);
+        let value = self.distance(centre);
+        let constant = AffineModel::lipschitz(value, 1.0, &cell.0, CROSS_OPERATIONS * far);
+        let error = ARC_OFF * far;
+        let (radius, to_arcs) = (radius + error, value + self.rounding);
+        // On an arc, the value does not say which side of it is inside.
+        if to_arcs.abs() <= error {
+            return constant;
+        }
+        let arcs = self.arcs();
+        let disc = Disc { centre, radius: PAST * radius, distance: to_arcs.abs() };
+        let mut pieces = Pieces::default();
+        let mut each = arcs.iter().enumerate();
+        let found = each.try_for_each(|(i, arc)| arc.add_near(&disc, i, &mut pieces));
+        let model = found.and_then(|()| {
+            let to_arcs = model_by_sides(cell, to_arcs, radius, pieces.sides(&arcs))?;
+            Some(to_arcs - AffineModel::constant(self.rounding))
+        });
+        or_constant(model, constant, error)
     }
 
     fn promise(&self) -> Promise<2> {

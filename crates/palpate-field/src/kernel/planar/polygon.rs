@@ -6,6 +6,7 @@
 use std::sync::Arc;
 
 use super::line::Edge;
+use super::sides::{self, model_by_sides, or_constant};
 use crate::bounds::{Aabb, Bounds};
 use crate::error::{ShapeError, Unit, finite};
 use crate::kernel::mark::Mark;
@@ -20,9 +21,6 @@ const MOST_EDGES: usize = 100_000;
 /// Closer to an edge than this many roundings of the polygon's size, the even-odd rule and the
 /// side of the edge may disagree.
 const ON_EDGE: f64 = 64.0;
-
-/// The most edges that a model is made of; more are bounded by a constant.
-const MOST_NEAR: usize = 8;
 
 /// Sides in a group, whose box rules all of them out at once.
 const GROUP: usize = 8;
@@ -131,49 +129,17 @@ impl Polygon {
         Ok(Self { rings: rings.into(), sides: sides.into(), groups, bounds })
     }
 
-    /// The model of the few edges that may be nearest in a cell of this radius, `value` being the
-    /// distance at its centre; `None` if they are many, or meet in the cell.
-    ///
-    /// An edge that is 2r farther from the centre than the nearest is nearest nowhere. The sign
-    /// is the same in all of a cell that no edge meets. A cell that meets one edge, beside its
-    /// ends, has the distance to its line, with opposite signs on its sides.
-    fn affine<const N: usize>(
-        &self,
-        cell: Vector<AffineModel<N>, 2>,
-        value: f64,
-        radius: f64,
-    ) -> Option<AffineModel<N>> {
-        let centre = Vector(cell.0.map(|x| x.value));
-        let reach = value.abs() + 2.0 * radius;
-        let is_near = |side: &&Side| {
-            let [across, past] = side.edge.offsets(centre);
+    /// The edges nearer to a point than `reach` [m], and perhaps some more.
+    fn near(&self, p: Point<2>, reach: f64) -> impl Iterator<Item = sides::Side> {
+        let is_near = move |side: &&Side| {
+            let [across, past] = side.edge.offsets(p);
             across.abs() <= reach && past <= reach
         };
         let is_near_group =
-            |(group, _): &(&Aabb<2>, _)| distance_to_box(group, centre) <= reach;
+            move |(group, _): &(&Aabb<2>, _)| distance_to_box(group, p) <= reach;
         let groups = self.groups.iter().zip(self.sides.chunks(GROUP)).filter(is_near_group);
         let near = groups.flat_map(|(_, group)| group).filter(is_near);
-        let mut near = near.map(|side| &side.edge);
-        if value.abs() > radius {
-            let zero = AffineModel::constant(0.0);
-            let mut least: Option<AffineModel<N>> = None;
-            for (count, edge) in near.enumerate() {
-                if count == MOST_NEAR {
-                    return None;
-                }
-                let [across, past] = edge.offsets(cell);
-                let past_an_end = AffineModel::norm([across, past]);
-                let distance = AffineModel::select_less(zero, past, past_an_end, across.abs());
-                least = Some(least.map_or(distance, |least| least.min(distance)));
-            }
-            return least.map(|distance| if value < 0.0 { -distance } else { distance });
-        }
-        let (edge, others) = (near.next()?, near.next());
-        let [across, past] = edge.offsets(cell);
-        if others.is_some() || past.maximum() > 0.0 {
-            return None;
-        }
-        Some(if (value < 0.0) == (across.value < 0.0) { across } else { -across })
+        near.map(|side| sides::Side { edge: side.edge, off: 0.0 })
     }
 
     /// The distance, without groups of sides that are farther than others by more than an
@@ -267,15 +233,9 @@ impl Kernel<2> for Polygon {
         if value.abs() <= error {
             return constant;
         }
-        let Some(affine) = self.affine(cell, value, radius + error) else { return constant };
-        let (lower, upper) = (affine.lower + error, affine.upper + error);
-        let width = |model: &AffineModel<N>| model.maximum() - model.minimum();
-        // Both round up: of two that are as wide, the one with a slope says more.
-        if width(&affine) <= width(&constant) {
-            AffineModel { lower, upper, ..affine }
-        } else {
-            constant
-        }
+        let radius = radius + error;
+        let near = self.near(centre, value.abs() + 2.0 * radius);
+        or_constant(model_by_sides(cell, value, radius, near), constant, error)
     }
 
     fn promise(&self) -> Promise<2> {

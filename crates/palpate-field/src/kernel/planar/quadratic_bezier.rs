@@ -3,11 +3,13 @@
 
 //! The quadratic Bézier curve.
 
+use super::bent::{Bent, Disc, Pieces};
 use super::parabola_foot::Quadratic;
+use super::sides::{model_by_sides, or_constant};
 use crate::bounds::{Aabb, Bounds};
 use crate::error::{ShapeError, Unit, finite, not_negative};
 use crate::kernel::mark::{Mark, across};
-use crate::kernel::{Kernel, lipschitz_model, primitive};
+use crate::kernel::{Kernel, primitive};
 use crate::promise::{Promise, Quality};
 use crate::scalar::{AffineModel, Float, Scalar};
 use crate::vector::{Point, Vector, array};
@@ -27,6 +29,10 @@ const STRAIGHT: f64 = 8.0;
 
 /// The largest number of rounded operations of the distance.
 const OPERATIONS: f64 = 6.0;
+
+/// How far points of the curve, and with them a model by pieces, may be off, in roundings of the
+/// largest number.
+const PIECE_OFF: f64 = 32.0;
 
 /// All points within `radius` of a quadratic Bézier curve, that from `from` to `to`
 /// with one control point between.
@@ -276,10 +282,31 @@ impl Kernel<2> for QuadraticBezier {
         (length - T::constant(self.radius), Vector(gradient))
     }
 
-    #[inline(always)]
+    /// By the pieces of the curve that are nearest in the cell, each as a straight edge: the
+    /// zeros of a cubic are no better known than the coefficients, which in a cell move. Next
+    /// to the curve, where the distance has a crease, by the Lipschitz constant.
     fn model<const N: usize>(&self, cell: Vector<AffineModel<N>, 2>) -> AffineModel<N> {
         let size = self.promise.rounding.constant / self.promise.rounding.per_metre;
-        lipschitz_model(self, cell, OPERATIONS, size)
+        let centre = Vector(cell.0.map(|x| x.value));
+        let radius = AffineModel::radius(&cell.0);
+        let far = f64::EPSILON * (size + centre.norm() + radius);
+        let value = self.distance(centre);
+        let constant = AffineModel::lipschitz(value, 1.0, &cell.0, OPERATIONS * far);
+        let error = PIECE_OFF * far;
+        let (radius, distance) = (radius + error, value + self.radius);
+        if distance <= radius {
+            return constant;
+        }
+        let curve =
+            Bent { from: Vector(self.from), step: Vector(self.step), bend: Vector(self.bend) };
+        let mut pieces = Pieces::default();
+        let found = curve.add_near(&Disc { centre, radius, distance }, 0, &mut pieces);
+        let model = found.and_then(|()| {
+            let near = pieces.sides(std::slice::from_ref(&curve));
+            let to_curve = model_by_sides(cell, distance, radius, near)?;
+            Some(to_curve - AffineModel::constant(self.radius))
+        });
+        or_constant(model, constant, error)
     }
 
     fn promise(&self) -> Promise<2> {

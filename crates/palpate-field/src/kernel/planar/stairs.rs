@@ -3,13 +3,15 @@
 
 //! Stairs.
 
+use super::line::Edge;
+use super::sides::{Side, model_by_sides, or_constant};
 use crate::bounds::Bounds;
 use crate::error::{ShapeError, Unit, positive};
 use crate::kernel::mark::{Mark, at};
-use crate::kernel::{Kernel, lipschitz_model, primitive};
+use crate::kernel::{Kernel, primitive};
 use crate::promise::Promise;
 use crate::scalar::{AffineModel, Scalar};
-use crate::vector::Vector;
+use crate::vector::{Point, Vector};
 
 /// The most steps.
 const MOST_STEPS: u32 = 256;
@@ -19,6 +21,10 @@ const HALVINGS: usize = 8;
 
 /// The largest number of rounded operations of the distance.
 const OPERATIONS: f64 = 6.0;
+
+/// How far the ends of an edge, and with it a model by edges, may be off, in roundings of the
+/// largest number: a few for each coordinate, and those of the distance.
+const OFF: f64 = 16.0;
 
 /// A solid staircase that rises to the right, centred at the origin. Exact.
 ///
@@ -101,6 +107,33 @@ impl Stairs {
         self.half_extents[0].hypot(self.half_extents[1])
     }
 
+    /// The edges nearer to a point than `reach` [m], and perhaps some more.
+    fn near(&self, p: Point<2>, reach: f64) -> impl Iterator<Item = Side> {
+        let [w, h] = self.step;
+        let [x, y] = self.half_extents;
+        let place = move |column: u32, row: u32| {
+            Vector([f64::from(column) * w - x, f64::from(row) * h - y])
+        };
+        // Of the steps whose boxes reach so far, along either axis; one more on each side, for
+        // the roundings. A number below zero becomes zero.
+        let [[first, last], rows] = [[p[0] + x, w], [p[1] + y, h]]
+            .map(|[q, step]| [(q - reach) / step - 2.0, (q + reach) / step + 2.0]);
+        let first = first.max(rows[0]) as u32;
+        let end = (last.min(rows[1]) as u32).min(self.steps);
+        let steps = (first..end).flat_map(move |k| {
+            let [low, corner, high] = [place(k, k), place(k, k + 1), place(k + 1, k + 1)];
+            [Edge::new(low, corner), Edge::new(corner, high)]
+        });
+        let foot = Vector([x, -y]);
+        let ends = [Edge::new(foot, Vector([x, y])), Edge::new(Vector([-x, -y]), foot)];
+        let is_near = move |edge: &Edge| {
+            let [across, past] = edge.offsets(p);
+            across.abs() <= reach && past <= reach
+        };
+        let near = steps.chain(ends).filter(is_near);
+        near.map(|edge| Side { edge, off: 0.0 })
+    }
+
     /// How many steps are before the strip that holds `q`, which is measured from
     /// the lower left corner.
     #[inline(always)]
@@ -156,10 +189,21 @@ impl Kernel<2> for Stairs {
         S::select_less(sides, zero, -nearest, nearest)
     }
 
-    /// By the Lipschitz constant: a cell may hold many steps, and the formula sees one.
-    #[inline(always)]
+    /// By the edges near the cell: the formula chooses a strip, of which a cell may hold many.
     fn model<const N: usize>(&self, cell: Vector<AffineModel<N>, 2>) -> AffineModel<N> {
-        lipschitz_model(self, cell, OPERATIONS, self.size())
+        let centre = Vector(cell.0.map(|x| x.value));
+        let radius = AffineModel::radius(&cell.0);
+        let far = f64::EPSILON * (self.size() + centre.norm() + radius);
+        let value = self.distance(centre);
+        let constant = AffineModel::lipschitz(value, 1.0, &cell.0, OPERATIONS * far);
+        let error = OFF * far;
+        // On an edge, the value does not say which side of it is inside.
+        if value.abs() <= error {
+            return constant;
+        }
+        let radius = radius + error;
+        let near = self.near(centre, value.abs() + 2.0 * radius);
+        or_constant(model_by_sides(cell, value, radius, near), constant, error)
     }
 
     fn promise(&self) -> Promise<2> {
