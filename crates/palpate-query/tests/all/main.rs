@@ -15,6 +15,7 @@ mod manifolds;
 mod mesh_memory;
 mod mesh_sweeps;
 mod meshes;
+mod notches;
 mod pair_laws;
 mod pairs;
 mod queries;
