@@ -29,6 +29,8 @@ pub(crate) const FIELDS: &[Bar] = &[
     ("S4.distance_gradient.1024.f64_over_f32", 2.6),
     ("S4.build.scene.over_S3", 6700.0),
     ("S3.model.64.over_S3", 11.0),
+    ("S4.model.surface.over_S3_model", 5.0),
+    ("thousand.model.surface.over_S3_model", 40.0),
     ("thousand.distance.point.over_S3", 82.0),
     ("thousand.distance.clustered.over_S3", 3.4),
     ("S2_twisted.distance.1024.over_child", 6.1),
@@ -174,8 +176,14 @@ mod tests {
     /// A bar in nanoseconds would say something about a machine.
     #[test]
     fn every_bar_is_a_ratio() {
-        let ratios =
-            [".over_S3", "_over_fidget_jit", "_over_parry", "_over_f32", ".over_child"];
+        let ratios = [
+            ".over_S3",
+            "_over_fidget_jit",
+            "_over_parry",
+            "_over_f32",
+            ".over_child",
+            ".over_S3_model",
+        ];
         for (key, _) in [FIELDS, COLLIDE, HAPTICS].concat() {
             assert!(ratios.iter().any(|ratio| key.ends_with(ratio)), "{key}");
         }

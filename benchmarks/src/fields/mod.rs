@@ -40,6 +40,8 @@ pub(crate) fn measure() -> Result<Rows, Box<dyn Error>> {
     measure_work(&wrench, &reference, &mut rows)?;
     eprintln!("measuring a thousand …");
     operators::thousand(&reference, &mut rows)?;
+    eprintln!("measuring cells at surfaces …");
+    operators::at_surfaces(&reference, &mut rows)?;
     measure_build(&reference, &mut rows)?;
     derive_ratios(&mut rows);
     rows.insert(reference::KEY.into(), reference.time());

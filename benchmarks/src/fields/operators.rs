@@ -7,7 +7,7 @@ use std::error::Error;
 
 use palpate::field::kernel::Ball;
 use palpate::field::operator::Copies;
-use palpate::field::{BLOCK, Shape, ShapeError};
+use palpate::field::{BLOCK, Column, Shape, ShapeError};
 
 use super::Rows;
 use super::ours::{Ours, blocks};
@@ -29,6 +29,39 @@ pub(super) fn thousand(reference: &Reference, rows: &mut Rows) -> Result<(), Box
     let mut subjects = Vec::new();
     points.ours(work.name, &work.shape, &mut subjects);
     rounds::measure(&mut subjects, reference).iter().for_each(|row| row.insert(rows));
+    Ok(())
+}
+
+/// Adds the rows of cells next to the surface of unions, and how they compare with those of S3.
+pub(super) fn at_surfaces(
+    reference: &Reference,
+    rows: &mut Rows,
+) -> Result<(), Box<dyn Error>> {
+    let mut works = vec![scenes::s3()?];
+    works.extend(scenes::spatial()?.into_iter().filter(|work| work.name == "S4"));
+    works.push(scenes::thousand()?);
+    let cells: Vec<_> = works
+        .iter()
+        .map(|work| Points::<3>::new(work.half).cells_at_surface(&work.shape, work.half))
+        .collect();
+    let mut subjects: Vec<Subject<'_>> = Vec::new();
+    for (work, cells) in works.iter().zip(&cells) {
+        let key = format!("{}.model.surface", work.name);
+        subjects.push(Subject::new(key, SINGLE, move || {
+            let mut out = Column::zero();
+            for block in cells {
+                work.shape.block_distances(block, BLOCK, &mut out);
+            }
+            out.get(0).value
+        }));
+    }
+    let times = rounds::measure(&mut subjects, reference);
+    for time in &times {
+        time.insert(rows);
+    }
+    for time in &times[1..] {
+        rows.insert(format!("{}.over_S3_model", time.key), time.ns / times[0].ns);
+    }
     Ok(())
 }
 

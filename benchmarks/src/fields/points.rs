@@ -4,7 +4,7 @@
 //! The points at which fields are asked, in every shape they are asked in.
 
 use palpate::field::scalar::{Float, Model};
-use palpate::field::{BLOCK, Block, Lane, Vector};
+use palpate::field::{BLOCK, Block, Lane, Shape, Vector};
 
 use crate::random::Random;
 
@@ -22,6 +22,12 @@ const CLUSTER_RADIUS: f64 = 0.02;
 
 /// Half the side of the cells that models bound [m].
 const CELL: f64 = 0.05;
+
+/// The smallest cells next to a surface, as a share of the largest.
+const SMALLEST: f64 = 1e-3;
+
+/// Steps to the surface.
+const STEPS: usize = 4;
 
 /// Scattered and clustered points in `D` dimensions.
 pub(crate) struct Points<const D: usize> {
@@ -70,6 +76,34 @@ impl<const D: usize> Points<D> {
                 block
             })
             .collect()
+    }
+
+    /// Blocks of cells as a search has them: about points of the surface, off it by at most
+    /// half their side, from cells as large as the body down to [`SMALLEST`], those of a block
+    /// all of one size.
+    pub(crate) fn cells_at_surface(
+        &self,
+        shape: &Shape<D>,
+        half: f64,
+    ) -> Vec<Block<Model, D, BLOCK>> {
+        let blocks = SINGLE / BLOCK;
+        let mut random = Random::new(11);
+        let mut block_of = |(i, points): (usize, &[Vector<f32, D>])| {
+            let side = half * SMALLEST.powf(i as f64 / (blocks - 1) as f64);
+            let mut block = Block::zero();
+            for (i, p) in points.iter().enumerate() {
+                let mut p = Vector(p.0.map(f64::from));
+                for _ in 0..STEPS {
+                    let (distance, gradient) = shape.distance_gradient(p);
+                    p -= gradient * distance;
+                }
+                let off = random.point(p.0, side);
+                block.set(i, Vector(Model::cell(off, [side; D])));
+            }
+            block
+        };
+        let chunks = self.scattered[..SINGLE].chunks(BLOCK).enumerate();
+        chunks.map(|chunk| block_of(chunk)).collect()
     }
 
     /// One array a coordinate, those past `D` zero.
