@@ -114,6 +114,8 @@ impl<T: Float + Lane, F: CustomField<D>, const D: usize, const W: usize> Evaluat
     }
 }
 
+/// Cells are bounded by the steepness: of a field that answers at points alone, nothing else is
+/// known between them. A [`Kernel`](crate::kernel::Kernel) of one's own has models.
 impl<F: CustomField<D>, const N: usize, const D: usize, const W: usize>
     EvaluateBlock<AffineModel<N>, D, W> for Custom<F>
 {

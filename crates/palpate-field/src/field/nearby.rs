@@ -86,6 +86,16 @@ pub(super) struct Floor<const D: usize, const N: usize> {
     pub(super) slack: f32,
 }
 
+/// What is foremost in the way of a [`Floor`].
+pub(super) enum Foremost {
+    /// This member.
+    Member(usize),
+    /// Nothing.
+    AllClear,
+    /// A member that was not found, or none.
+    Unknown,
+}
+
 /// How far a ball stays clear of a [`Floor`]: at the centre its signed distance is larger than the
 /// value by so much at least, and over the whole cell it is so far above the lower plane.
 ///
@@ -120,12 +130,17 @@ impl<const D: usize, const W: usize> Balls<D, W> {
 
     /// The balls that are not clear of a floor, one bit each.
     pub(super) fn in_the_way_of<const N: usize>(&self, floor: &Floor<D, N>) -> u64 {
-        let clearances = self.clearances(floor);
+        self.not_above(&self.clearances(floor), floor.slack)
+    }
+
+    /// The balls whose clearance is not above a limit, one bit each.
+    #[inline(always)]
+    fn not_above(&self, clearances: &Column<f32, W>, limit: f32) -> u64 {
         let (lines, _) = clearances.as_slice().as_chunks::<LINE>();
         let mut bits = 0;
         for (k, line) in lines.iter().enumerate() {
-            // A number that is none is not clear.
-            bits |= u64::from(above(line, floor.slack) ^ first_bits(LINE)) << (k * LINE);
+            // A number that is none is not above.
+            bits |= u64::from(above(line, limit) ^ first_bits(LINE)) << (k * LINE);
         }
         bits & (u64::MAX >> (u64::BITS as usize - self.count))
     }
@@ -216,27 +231,42 @@ impl<const D: usize> Nearby<D> {
         })
     }
 
-    /// The member whose ball is least clear of a floor, `except` one; `None` if that is clear, or
-    /// if it is not found: of many members, only one line is looked through.
+    /// The member whose ball is least clear of a floor, `except` one that is in the way.
+    ///
+    /// Of many members only one line is looked through: if they are clear, others may not be.
     pub(super) fn foremost<const N: usize>(
         &self,
         floor: &Floor<D, N>,
         except: usize,
-    ) -> Option<usize> {
-        let (member, clearance) = match self {
-            Self::Flat(balls) => balls.foremost(floor, except),
+    ) -> Foremost {
+        let (member, clearance, is_only_line) = match self {
+            Self::Flat(balls) => {
+                let (member, clearance) = balls.foremost(floor, except);
+                (member, clearance, true)
+            }
             Self::Lines { around, lines } => {
-                let of_all = around.iter().enumerate().map(|(block, around)| {
-                    let (line, clearance) = around.foremost(floor, usize::MAX);
-                    (block * BLOCK + line, clearance)
-                });
-                let (line, _) = of_all.min_by(|a, b| a.1.total_cmp(&b.1))?;
+                let (mut line, mut least, mut in_the_way) = (0, f32::INFINITY, 0);
+                for (block, around) in around.iter().enumerate() {
+                    let clearances = around.clearances(floor);
+                    let (i, clearance) = nearest(&clearances);
+                    if clearance < least {
+                        (line, least) = (block * BLOCK + i, clearance);
+                    }
+                    in_the_way += around.not_above(&clearances, floor.slack).count_ones();
+                }
                 let first = line * LINE;
                 let (i, clearance) = lines[line].foremost(floor, except.wrapping_sub(first));
-                (first + i, clearance)
+                // The line of the exception is in the way.
+                (first + i, clearance, in_the_way == 1 && except / LINE == line)
             }
         };
-        (clearance <= floor.slack).then_some(member)
+        if clearance <= floor.slack {
+            Foremost::Member(member)
+        } else if is_only_line && clearance > floor.slack {
+            Foremost::AllClear
+        } else {
+            Foremost::Unknown
+        }
     }
 
     /// Calls `near` with the number of every member whose ball is at most as far from

@@ -19,7 +19,7 @@
 //! farthest below is asked next, for once it has lowered the plane, most others are above.
 
 use super::combine::{Minimum, ValueFold};
-use super::nearby::{Balls, Floor, LINE, Nearby};
+use super::nearby::{Balls, Floor, Foremost, LINE, Nearby};
 use super::union::{FAR, Union};
 use super::{EvaluateBlock, Field};
 use crate::machine::{BLOCK, Block, Column};
@@ -61,14 +61,28 @@ where
                 let first = [[0; 2]; W];
                 Cells { union: self, nearby, p, count, out, first }.bound();
             }
-            _ => {
-                let mut fold = ValueFold::new(&Minimum, many, out);
-                for i in &near[..many] {
-                    fold.push(&self.members[*i], p, count);
-                }
-                fold.finish();
-            }
+            _ => self.ask_all(&near[..many], p, count, out),
         }
+    }
+}
+
+impl<const D: usize> Union<D> {
+    /// All cells ask the same members. Not inlined: others need not its memory.
+    #[inline(never)]
+    fn ask_all<const N: usize, const W: usize>(
+        &self,
+        members: &[usize],
+        p: &Block<AffineModel<N>, D, W>,
+        count: usize,
+        out: &mut Column<AffineModel<N>, W>,
+    ) where
+        dyn Field<D>: EvaluateBlock<AffineModel<N>, D, W>,
+    {
+        let mut fold = ValueFold::new(&Minimum, members.len(), out);
+        for i in members {
+            fold.push(&self.members[*i], p, count);
+        }
+        fold.finish();
     }
 }
 
@@ -104,15 +118,21 @@ where
         }
         self.out.fill(self.count, |_| AffineModel::constant(0.0));
         self.ask_first(self.all(), 0, |_, model| model);
-        let mut lanes = 0;
+        // The cells that are not done.
+        let mut left = self.all();
+        let mut found = 0;
         for i in 0..self.count {
-            if let Some(member) = self.nearby.foremost(&self.floor(i), self.first[i][0]) {
-                self.first[i][1] = member;
-                lanes |= 1 << i;
+            match self.nearby.foremost(&self.floor(i), self.first[i][0]) {
+                Foremost::Member(member) => {
+                    self.first[i][1] = member;
+                    found |= 1 << i;
+                }
+                Foremost::AllClear => left &= !(1 << i),
+                Foremost::Unknown => {}
             }
         }
-        self.ask_first(lanes, 1, Scalar::min);
-        self.ask_others();
+        self.ask_first(found, 1, Scalar::min);
+        self.ask_others(left);
     }
 
     /// All cells, one bit each.
@@ -166,14 +186,14 @@ where
         }
     }
 
-    /// Asks all members that are in the way.
-    fn ask_others(&mut self) {
+    /// Asks all members that are in the way of the cells `left`.
+    fn ask_others(&mut self, left: u64) {
         match self.nearby {
-            Nearby::Flat(balls) => self.ask_those_of(balls, self.all(), 0),
+            Nearby::Flat(balls) => self.ask_those_of(balls, left, 0),
             Nearby::Lines { around, lines } => {
                 let blocks = around.iter().zip(lines.chunks(BLOCK)).enumerate();
                 for (block, (around, lines)) in blocks {
-                    let cells = self.needing(around, self.all());
+                    let cells = self.needing(around, left);
                     for (i, line) in lines.iter().enumerate().filter(|(i, _)| cells[*i] != 0) {
                         self.ask_those_of(line, cells[i], (block * BLOCK + i) * LINE);
                     }
