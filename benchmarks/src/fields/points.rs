@@ -78,9 +78,9 @@ impl<const D: usize> Points<D> {
             .collect()
     }
 
-    /// Blocks of cells as a search has them: about points of the surface, off it by at most
-    /// half their side, from cells as large as the body down to [`SMALLEST`], those of a block
-    /// all of one size.
+    /// Blocks of cells as a search has them: boxes about points of the surface, each halved along
+    /// all its sides; from cells as large as the body down to [`SMALLEST`], those of a block all
+    /// of one size.
     pub(crate) fn cells_at_surface(
         &self,
         shape: &Shape<D>,
@@ -90,15 +90,24 @@ impl<const D: usize> Points<D> {
         let mut random = Random::new(11);
         let mut block_of = |(i, points): (usize, &[Vector<f32, D>])| {
             let side = half * SMALLEST.powf(i as f64 / (blocks - 1) as f64);
-            let mut block = Block::zero();
-            for (i, p) in points.iter().enumerate() {
+            let mut boxes = points.iter().map(|p| {
                 let mut p = Vector(p.0.map(f64::from));
                 for _ in 0..STEPS {
                     let (distance, gradient) = shape.distance_gradient(p);
                     p -= gradient * distance;
                 }
-                let off = random.point(p.0, side);
-                block.set(i, Vector(Model::cell(off, [side; D])));
+                random.point(p.0, side)
+            });
+            let mut block = Block::zero();
+            let mut centre = [0.0; D];
+            for i in 0..BLOCK {
+                let part = i % (1 << D);
+                if part == 0 {
+                    centre = boxes.next().unwrap_or(centre);
+                }
+                let side_of = |k: usize| if part >> k & 1 == 0 { -side } else { side };
+                let part = std::array::from_fn(|k| centre[k] + side_of(k));
+                block.set(i, Vector(Model::cell(part, [side; D])));
             }
             block
         };
