@@ -88,7 +88,7 @@ impl<const D: usize> Points<D> {
     ) -> Vec<Block<Model, D, BLOCK>> {
         let blocks = SINGLE / BLOCK;
         let mut random = Random::new(11);
-        let mut block_of = |(i, points): (usize, &[Vector<f32, D>])| {
+        let block_of = |(i, points): (usize, &[Vector<f32, D>])| {
             let side = half * SMALLEST.powf(i as f64 / (blocks - 1) as f64);
             let mut boxes = points.iter().map(|p| {
                 let mut p = Vector(p.0.map(f64::from));
@@ -112,7 +112,7 @@ impl<const D: usize> Points<D> {
             block
         };
         let chunks = self.scattered[..SINGLE].chunks(BLOCK).enumerate();
-        chunks.map(|chunk| block_of(chunk)).collect()
+        chunks.map(block_of).collect()
     }
 
     /// One array a coordinate, those past `D` zero.

@@ -151,7 +151,7 @@ where
 {
     let mut complaints = Vec::new();
     for entry in <Space as Dimension<D>>::CATALOGUE {
-        let shape = entry.example().unwrap();
+        let shape = entry.example().unwrap_or_else(|error| panic!("{}: {error}", entry.name));
         let half = SMALL * draw::size(&shape);
         let (mut asked, mut close) = (0, 0);
         cases::check(200, |u| {

@@ -123,7 +123,7 @@ where
             shapes.iter().map(|member| models(member, None, &cells)).collect();
         for (i, model) in of_union.iter().enumerate() {
             let all: Vec<Model> = of_members.iter().map(|models| models[i]).collect();
-            let by_hand = all.iter().copied().reduce(Scalar::min).unwrap();
+            let Some(by_hand) = all.iter().copied().reduce(Scalar::min) else { continue };
             let largest = draw::size(union) + cells[i].centre.norm() + by_hand.deviation();
             let slack = ROUNDINGS * f64::EPSILON * largest;
             let is_alike = (model.value - by_hand.value).abs() <= slack;
