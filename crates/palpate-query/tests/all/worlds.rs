@@ -326,3 +326,36 @@ fn poses_are_moved_all_or_none() -> Test {
     assert!(world.step().is_empty());
     Ok(())
 }
+
+/// Bodies in a heap that tremble: a step of a world costs no more than one that knows nothing, and
+/// little where they hardly move.
+#[test]
+fn a_step_costs_at_most_what_it_costs_anew() -> Test {
+    for (motion, most) in [(0.0, 0.3), (1e-6, 0.3), (1e-5, 0.3), (1e-4, 1.0), (1e-2, 1.0)] {
+        let (mut world, ids, bodies) = made(24, in_space)?;
+        let [mut followed, mut anew] = [0, 0];
+        let cost = |world: &mut World<3>| -> u32 {
+            let found = world.step();
+            let manifolds = found.iter().filter_map(|pair| pair.manifold.as_ref());
+            manifolds.map(|manifold| manifold.separation.evaluations).sum()
+        };
+        for step in 0..20_usize {
+            let mut fresh = World::new(WorldSettings::of_size(1.0))?;
+            for (i, (id, (shape, pose))) in ids.iter().zip(&bodies).enumerate() {
+                // To and fro, each body on a way of its own.
+                let way = Vector(place(i + 7)) - Vector::constant(0.5);
+                let moved = way * (motion * (step % 4) as f64);
+                let pose = Pose::new(pose.rotation, pose.translation + moved);
+                world.set_poses(&[(*id, pose)])?;
+                fresh.add(shape.clone(), pose)?;
+            }
+            let (one, other) = (cost(&mut world), cost(&mut fresh));
+            if step > 0 {
+                (followed, anew) = (followed + one, anew + other);
+            }
+        }
+        let share = f64::from(followed) / f64::from(anew);
+        assert!(share <= most, "a motion of {motion} m costs {share} of a search anew");
+    }
+    Ok(())
+}
