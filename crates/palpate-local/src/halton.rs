@@ -10,8 +10,8 @@ use palpate_query::Placed;
 const BASES: [u32; 3] = [2, 3, 5];
 
 /// The first `count` points of Halton's sequence, in the common part of both bodies' boxes in world
-/// coordinates [m]: they fill it evenly, however many there are. None where the boxes do not meet or
-/// neither body has one.
+/// coordinates [m], or in the box of the one body that has one: they fill it evenly, however many there
+/// are. None where the boxes do not meet or neither body has one.
 ///
 /// ```
 /// use palpate_field::{Pose, Shape, Vector};

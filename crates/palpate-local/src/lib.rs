@@ -22,11 +22,10 @@
 //! | [`SpaceTimeGoldenSection`] | field and element or mesh, in motion | Pelletier-Guénette et al. 2025 |
 //! | [`SampledSweep`] | mesh and field, or two fields, in motion | any of the above, at equal steps of time |
 //!
-//! Constants are those of the documents, or of the programs that use their methods. What
-//! is wrong in the documents is mended, but in [`NaiveDescent`], [`MacklinDescent`] and
-//! [`SumDescent`], which are as published: steps are not constant along a
-//! unit gradient, the best point is returned and not the last one, and it is the projected
-//! step that says when to stop.
+//! Constants are those of the documents, or of the programs that use their methods. [`NaiveDescent`],
+//! [`MacklinDescent`] and [`SumDescent`] are as published. Of the others, what is wrong in the documents
+//! is mended: steps are not constant along a unit gradient, the best point is returned and not the last
+//! one, and it is the projected step that says when to stop.
 //!
 //! [`GradientSampler`] finds directions of gradients in the ways of the memoir's section 2.3,
 //! for comparison with [`Shape::distance_gradient`].

@@ -11,8 +11,8 @@ use crate::projected_gradient::{onto_simplex, start};
 use crate::section::golden_bracket;
 use crate::{Descent, Weights, central_differences};
 
-/// What stands for the direction of a gradient that vanishes.
-const WAY: [f64; 3] = [0.5718, 0.7055, 0.4186];
+/// What stands for the direction of a gradient that vanishes, in `PhysX`.
+const FALLBACK: [f64; 3] = [0.5718, 0.7055, 0.4186];
 
 /// The recipe as it ships. Over a triangle: a projected gradient descent on barycentric coordinates from
 /// the lowest of the corners and the centroid, of 16 steps, whose length falls by 0.8 each time and of
@@ -154,7 +154,9 @@ impl MacklinDescent {
             let gradient = central_differences(|p| shape.distance(p), p, offset);
             descent.evaluations += 2 * D as u32;
             let direction = gradient.unwrap_or_else(|| {
-                Vector(std::array::from_fn(|k| WAY[k])).normalized().unwrap_or(Vector::ZERO)
+                Vector(std::array::from_fn(|k| FALLBACK[k]))
+                    .normalized()
+                    .unwrap_or(Vector::ZERO)
             });
             let mut next = weights;
             for (weight, vertex) in next.iter_mut().zip(element.vertices()) {

@@ -3,10 +3,13 @@
 
 //! `MuJoCo`'s descent for two fields, of `engine_collision_sdf.c`.
 
-use palpate_field::Point;
+use palpate_field::{Point, Vector};
 use palpate_query::{DistanceBound, Placed, QueryError};
 
 use crate::{Descent, check_start};
+
+/// Both values at a point, with their gradients.
+type Slopes<const D: usize> = [(f64, Vector<f64, D>); 2];
 
 /// The share of the promised descent that a step must keep (Armijo 1966).
 const KEPT: f64 = 0.1;
@@ -15,8 +18,9 @@ const KEPT: f64 = 0.1;
 /// are halved until they lead down by a tenth of what the gradient promises.
 ///
 /// Where the bodies overlap, the sum is `min(A, B)`: how deep the surface of one body lies in the other,
-/// whose least value is at the rim of the overlap and not where both are deepest. The answer, as
-/// published, is the larger of both values at the last point, which need not be the lowest on the way.
+/// whose least value is on the surface of the overlap and not where both are deepest. So a last
+/// step leads down the larger of both values. The answer, as published, is that value at the last point,
+/// which need not be the lowest on the way.
 ///
 /// Factors of a gradient, whose length is up to 3, begin at 1 m and end at 0.1 mm: whatever the size of the
 /// bodies, the first steps that are tried are metres long, and places are known to a tenth of a millimetre.
@@ -61,6 +65,16 @@ impl Default for SumDescent {
     }
 }
 
+impl<const D: usize> Descent<D> {
+    /// Goes on to a point, which is the answer so far.
+    fn take(&mut self, p: Point<D>, value: f64, evaluations: u32) {
+        self.path.push(p);
+        (self.best, self.value) = (p, value);
+        self.evaluations += evaluations;
+        self.steps += 1;
+    }
+}
+
 impl SumDescent {
     /// How many starts `MuJoCo` tries, its `sdf_initpoints`.
     pub const STARTS: u32 = 40;
@@ -92,31 +106,44 @@ impl SumDescent {
         let mut p = start;
         let mut here = slopes(p);
         let mut descent = Descent::from_start(start, larger(here), 4);
+        // Halved until it leads down; at last it may lead up.
+        let step = |p: Point<D>,
+                    gradient: Vector<f64, D>,
+                    promised: &dyn Fn(Slopes<D>, f64) -> bool| {
+            let (mut factor, mut evaluations) = (self.largest, 0);
+            loop {
+                let next = p - gradient * factor;
+                let there = slopes(next);
+                evaluations += 4;
+                if promised(there, factor) || factor <= self.smallest {
+                    return (next, there, factor, evaluations);
+                }
+                factor *= 0.5;
+            }
+        };
         while descent.steps < self.steps {
             let [(a, slope_a), (b, slope_b)] = here;
             let (greater, its_slope) = if a > b { (a, slope_a) } else { (b, slope_b) };
             let gradient = slope_a + slope_b + its_slope * greater.signum();
             let squared = gradient.dot(gradient);
-            let mut factor = self.largest;
-            let (next, there) = loop {
-                let next = p - gradient * factor;
-                let there = slopes(next);
-                descent.evaluations += 4;
-                let leads_down = sum(there) - sum(here) <= -KEPT * factor * squared;
-                if leads_down || factor <= self.smallest {
-                    break (next, there);
-                }
-                factor *= 0.5;
-            };
-            descent.steps += 1;
-            let is_up = sum(there) >= sum(here);
+            let before = sum(here);
+            let leads_down =
+                |there, factor: f64| sum(there) - before <= -KEPT * factor * squared;
+            let (next, there, factor, evaluations) = step(p, gradient, &leads_down);
             (p, here) = (next, there);
-            descent.path.push(p);
-            (descent.best, descent.value) = (p, larger(here));
-            if is_up || factor * squared.sqrt() <= tolerance {
+            descent.take(p, larger(here), evaluations);
+            if sum(here) >= before || factor * squared.sqrt() <= tolerance {
                 break;
             }
         }
+        let before = larger(here);
+        let [(a, slope_a), (b, slope_b)] = here;
+        let gradient = if a > b { slope_a } else { slope_b };
+        let squared = gradient.dot(gradient);
+        let leads_down =
+            |there, factor: f64| larger(there) - before <= -KEPT * factor * squared;
+        let (next, there, _, evaluations) = step(p, gradient, &leads_down);
+        descent.take(next, larger(there), evaluations);
         Ok(descent)
     }
 }

@@ -21,8 +21,9 @@ pub enum NormalSource {
     /// The gradient of the body that is thick there; the other is thin. The gap is that of its deepest
     /// point there.
     ThickerBody,
-    /// The normal with which the contact began, when the bodies did not overlap by more than the margin:
-    /// a [`Track`](crate::Track) or a [`World`](crate::World) has followed them from there.
+    /// The normal of the contact in earlier steps, which began when the bodies did not overlap by more
+    /// than the margin: a [`Track`](crate::Track) or a [`World`](crate::World) has followed them from
+    /// there.
     History,
     /// No field gives a direction there: the line between the bodies' centres, or the y axis.
     Assumed,

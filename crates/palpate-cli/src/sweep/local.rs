@@ -37,7 +37,7 @@ enum Method {
 }
 
 impl LocalSearch {
-    /// `None` if no method is asked for.
+    /// `None` if no method is asked for. A touch is half of the gap near, which no proof calls apart.
     pub(super) fn of(options: &SweepOptions, gap: f64) -> Result<Option<Self>, Failure> {
         let Some(name) = options.method.as_deref() else { return Ok(None) };
         let method = match name.parse() {
@@ -53,7 +53,7 @@ impl LocalSearch {
                 return Err(Failure::input(format!("{option} is not for --method {name}")));
             }
         }
-        let sampled = SampledSweep::new(options.samples.unwrap_or(SAMPLES), gap);
+        let sampled = SampledSweep::new(options.samples.unwrap_or(SAMPLES), 0.5 * gap);
         Ok(Some(Self { method, cells: options.cells.unwrap_or(CELLS), sampled }))
     }
 

@@ -52,10 +52,16 @@ impl<const D: usize> Report<'_, D> {
             (Some(true), Some(start)) if found.upper == 0.0 => {
                 format!("touching at the start, {}", in_a_word(start))
             }
-            (Some(true), _) => format!(
-                "touching at {:.9} s; before {:.9} s apart, proven",
-                found.upper, found.lower
-            ),
+            (Some(true), _) => {
+                let early =
+                    if found.stop.is_early() { self.why(found.stop) } else { String::new() };
+                let rest =
+                    if early.is_empty() { early } else { format!("; not when first: {early}") };
+                format!(
+                    "touching at {:.9} s; before {:.9} s apart, proven{rest}",
+                    found.upper, found.lower
+                )
+            }
             (None, _) => format!(
                 "undecided; before {:.9} s apart, proven; {}",
                 found.lower,
@@ -145,7 +151,7 @@ fn against<const D: usize>(time: f64, found: &FirstTouch<D>) -> String {
     match () {
         () if late > 0.0 && late.is_finite() => format!("late by {late:.3e} s"),
         () if early > 0.0 => {
-            format!("early by {early:.3e} s, since its elements lie off the surface")
+            format!("early by {early:.3e} s: the elements of its surface lie off the body")
         }
         () => "within the proven bounds".to_owned(),
     }

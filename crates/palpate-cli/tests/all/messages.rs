@@ -559,7 +559,7 @@ fn what_a_command_needs_is_said_with_an_example_of_the_scene() {
         ),
         (
             &["descend", "ball.json"],
-            "descend needs --segment with 2 points, --triangle with 3, or, between two bodies, --start with 1; for example: palpate descend ball.json --segment -0.5,0,0 0.5,0,0",
+            "descend needs --segment with 2 points, --triangle with 3, or, between two bodies, --start with 1 or --halton with their number; for example: palpate descend ball.json --segment -0.5,0,0 0.5,0,0",
         ),
     ] {
         assert_eq!(refused(&folder, arguments), format!("palpate: {expected}\n"));

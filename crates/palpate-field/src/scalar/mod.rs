@@ -109,7 +109,7 @@ pub trait Scalar:
     /// The cosine of an angle in radians; as [`sin`](Self::sin).
     fn cos(self) -> Self;
 
-    /// The angle from +x to the point `(x, y)`, as a part of a turn in [−½, ½]; zero at the
+    /// `atan2(y, x)/2π`: the angle from +x to the point `(x, y)`, as a part of a turn in [−½, ½]; zero at the
     /// origin. Multiples of an eighth of a turn come out exact.
     ///
     /// Absolute error at most half an ulp of one.

@@ -39,7 +39,8 @@ const UNBOUNDED: f64 = 1e60;
 /// ```
 ///
 /// Both remainders include the rounding of every operation, so the enclosure
-/// holds for the formula in real arithmetic. For convex formulas (balls,
+/// holds for the formula in real arithmetic; but for what is made of a
+/// [`turn`](Scalar::turn) across its cut, and is not the same a turn on. For convex formulas (balls,
 /// cuboids, cylinders, their intersections and rigid motions) `lower` is
 /// rounding alone: the tangent plane at the centre is a bound from below.
 ///

@@ -65,11 +65,14 @@ impl Row {
 
     /// Times `search` and counts what it asked.
     fn run<T>(&mut self, search: impl FnOnce() -> (T, u32)) -> T {
-        let start = Instant::now();
-        let (found, evaluations) = search();
-        self.nanoseconds += start.elapsed().as_nanos();
-        self.evaluations += u64::from(evaluations);
+        let (found, cost) = timed(search);
+        self.pay(cost);
         found
+    }
+
+    fn pay(&mut self, (evaluations, nanoseconds): Cost) {
+        self.evaluations += u64::from(evaluations);
+        self.nanoseconds += nanoseconds;
     }
 
     /// One question was answered with this error, or missed.
@@ -91,6 +94,16 @@ impl Row {
         let evaluations = self.evaluations / self.asked as u64;
         format!("| {} | {share:.1} % | {median} | {worst} | {evaluations} |", self.name)
     }
+}
+
+/// Evaluations, and the time [ns].
+type Cost = (u32, u128);
+
+/// What a search finds, and what it costs.
+fn timed<T>(search: impl FnOnce() -> (T, u32)) -> (T, Cost) {
+    let start = Instant::now();
+    let (found, evaluations) = search();
+    (found, (evaluations, start.elapsed().as_nanos()))
 }
 
 /// Two digits, and zero for what rounding may make.
@@ -221,7 +234,7 @@ fn times() -> Result<Table, Box<dyn Error>> {
     let mut whole = Row::new("`golden_section`");
     let mut rows: Vec<Row> = ElementMethod::ALL
         .iter()
-        .map(|m| Row::new(format!("`{m}`, {SAMPLES} steps")))
+        .map(|m| Row::new(format!("`{m}`, {SAMPLES} samples")))
         .collect();
     let settings = SweepSettings::of_size(1.0);
     let mut workspace = ElementSweep::new();
@@ -231,14 +244,16 @@ fn times() -> Result<Table, Box<dyn Error>> {
         });
         for (size, draws) in cases {
             let (element, screw) = moving_triangle(&draws, size)?;
-            let proven = ours.run(|| {
+            let (proven, cost) = timed(|| {
                 let found = sweep_element(body, &element, screw, &settings, &mut workspace);
                 let evaluations = found.as_ref().map_or(0, |found| found.evaluations);
                 (found, evaluations)
-            })?;
+            });
+            let proven = proven?;
             if proven.touches() == Some(false) {
                 continue;
             }
+            ours.pay(cost);
             let width = proven.upper - proven.lower;
             ours.answered((width <= settings.time_tolerance).then_some(width));
             let answered = |row: &mut Row, search: &dyn Fn() -> Option<LocalSweep<3>>| {
@@ -275,21 +290,23 @@ fn times() -> Result<Table, Box<dyn Error>> {
 fn flights() -> Result<Table, Box<dyn Error>> {
     let mut ours = Row::new("`sweep` (palpate)");
     let mut rows: Vec<Row> =
-        PairMethod::ALL.iter().map(|m| Row::new(format!("`{m}`, {SAMPLES} steps"))).collect();
+        PairMethod::ALL.iter().map(|m| Row::new(format!("`{m}`, {SAMPLES} samples"))).collect();
     let settings = SweepSettings::of_size(1.0).with_gap(1e-5);
     let mut workspace = SweepWorkspace::new();
     for (k, [a, b]) in couples(&bodies()?).into_iter().enumerate() {
         for case in 0..FLIGHTS {
             let screw = Draws::of(30 + k as u64, case).take(past)?;
             let moving = Moving::new(b, screw);
-            let proven = ours.run(|| {
+            let (proven, cost) = timed(|| {
                 let found = sweep(a, moving, &settings, &mut workspace);
                 let evaluations = found.as_ref().map_or(0, |found| found.evaluations);
                 (found, evaluations)
-            })?;
+            });
+            let proven = proven?;
             if proven.touches() == Some(false) {
                 continue;
             }
+            ours.pay(cost);
             let width = proven.upper - proven.lower;
             ours.answered((width <= settings.time_tolerance).then_some(width));
             let sampled = SampledSweep::new(SAMPLES, settings.gap);

@@ -25,7 +25,7 @@ pub struct LocalTouch<const D: usize> {
     pub point: Point<D>,
     /// The field there, at most the gap that was asked for [m]; between two bodies, the larger of both.
     pub value: f64,
-    /// The index of the mesh's element; zero where there is one element only, or none.
+    /// The index of the mesh's element; zero of one element alone, and between two bodies.
     pub element: usize,
 }
 
@@ -37,7 +37,7 @@ pub struct LocalSweep<const D: usize> {
     pub touch: Option<LocalTouch<D>>,
     /// How often fields were asked; a gradient counts twice.
     pub evaluations: u32,
-    /// Elements that the broad phase left to the search.
+    /// Elements that the broad phase left to the search; between two bodies, starts of searches.
     pub searched: u32,
 }
 

@@ -38,7 +38,7 @@ use crate::{ElementMethod, PairMethod, SumDescent, halton_starts};
 pub struct SampledSweep {
     /// How many steps the motion has; the begin is asked too.
     pub samples: u32,
-    /// The largest separation of a touch [m].
+    /// The largest value of a touch on a mesh, and the largest separation of one between bodies [m].
     pub gap: f64,
     /// Starts of the search between two bodies at each step; 40.
     pub starts: u32,
@@ -58,7 +58,8 @@ impl SampledSweep {
     }
 
     /// The first step at which `method` finds a place on a mesh at which the field is at most the gap.
-    /// Elements whose smallest ball is free of the surface are passed over, as `PhysX` does.
+    /// Elements at the centre of whose smallest ball the field is more than its steepness times the radius
+    /// are passed over, as `PhysX` does.
     ///
     /// # Errors
     ///
@@ -72,6 +73,7 @@ impl SampledSweep {
     ) -> Result<LocalSweep<D>, QueryError> {
         let course = Course::new(field.into(), motion.into())?;
         let shape = course.field.shape;
+        let steepness = shape.promise().lipschitz.max(1.0);
         self.first(|time, found| {
             let (world_from_body, world_from_element) =
                 (course.field.motion.pose(time), course.motion.pose(time));
@@ -82,7 +84,7 @@ impl SampledSweep {
                 let element = Element::new(corners)?;
                 let ball = element.smallest_ball();
                 found.evaluations += 1;
-                if shape.distance(ball.centre) > ball.radius + self.gap {
+                if shape.distance(ball.centre) > steepness * ball.radius + self.gap {
                     continue;
                 }
                 found.searched += 1;

@@ -127,8 +127,8 @@ impl SpaceTimeGoldenSection {
         Ok(search.found())
     }
 
-    /// The touch of each part of each element of a mesh, in the order of the elements: where it touches
-    /// first, of all its own motion.
+    /// The first touch of each part of each element of a mesh over the whole motion, in the order of the
+    /// elements.
     ///
     /// # Errors
     ///

@@ -128,6 +128,7 @@ fn samples_pass_a_thin_plate_that_the_proof_finds() -> Outcome {
     // The upright faces meet the plate for 5 of 60 steps, but the lowest value on them must be found.
     let settings = SweepSettings::of_size(1.0);
     let proven = sweep_mesh(&plate, &cube, falls, &settings, &mut ElementSweep::new())?;
+    assert_eq!(proven.touches(), Some(true));
     for method in ElementMethod::ALL {
         let found = sampled.of_mesh(&plate, &cube, falls, *method)?;
         assert!(

@@ -13,11 +13,14 @@ use super::{ManifoldSettings, Touch};
 use crate::contact::NormalSource;
 use crate::pair::body_pair::BodyPair;
 
-/// Over a way against its gradient, a body that is thick gets deeper by more than this share of it.
+/// A body is thick if, over a way against its gradient, its value falls by more than this share of it.
 const THICK: f64 = 0.5;
 
 /// Steps to the deepest point at most.
 const STEPS: usize = 32;
+
+/// A step leads down if it does by this share of the last step's length.
+const DOWN: f64 = 0.5;
 
 /// What a step is multiplied by after one that leads down and stays in the guest, and after another.
 const GROW: f64 = 1.5;
@@ -76,7 +79,7 @@ pub(super) fn in_host<const D: usize>(
                 there = pair.slopes(next);
             }
         }
-        let is_deeper = there[host].0 < slopes[host].0 - SHRINK * precise;
+        let is_deeper = there[host].0 < slopes[host].0 - DOWN * precise;
         if is_deeper && there[guest].0 <= precise {
             (here, slopes) = (next, there);
             step *= GROW;
@@ -120,8 +123,8 @@ pub(crate) fn followed<const D: usize>(
     for host in 0..2 {
         let guest = points[1 - host];
         let side = if host == 0 { 1.0 } else { -1.0 };
-        let outwards = pair.slopes(guest)[host].1.normalized()? * side;
-        if outwards.dot(normals[host]) > super::LIKE
+        let Some(outwards) = pair.slopes(guest)[host].1.normalized() else { continue };
+        if (outwards * side).dot(normals[host]) > super::LIKE
             && let Some(found) = in_host(pair, host, guest, settings)
             && found.normal.dot(normals[host]) > super::LIKE
         {

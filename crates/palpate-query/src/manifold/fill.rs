@@ -13,7 +13,7 @@ use super::{COPIES, LIKE, ManifoldSettings, Member, Touch};
 use crate::contact::NormalSource;
 use crate::pair::cell::BoxCell;
 
-/// How far apart points are laid, in spacings: less than neighbours may be.
+/// How far apart points are laid, in spacings: less than `NEIGHBOURS` of patches.
 const APART: f64 = 1.9;
 
 /// A flat box in the middle of a region, of which no candidate was made.

@@ -99,8 +99,8 @@ pub struct Manifold<const D: usize> {
     pub contacts: Vec<Contact<D>>,
     /// The number of contacts in each group. A group is one patch with like normals.
     pub groups: Vec<usize>,
-    /// The separation and where it is found: at the deepest contact, unless the separation
-    /// exceeds the margin.
+    /// The separation and where it is found: at the deepest contact, unless the separation exceeds the
+    /// margin, or the normal of that contact was taken from a thicker body or from history.
     pub separation: Certified<Nearest<D>>,
     /// How many contacts were left out beyond [`ManifoldSettings::most`].
     pub dropped: usize,

@@ -27,8 +27,8 @@ const ON: f64 = 1e-3;
 /// function are flat.
 const FLAT: f64 = 0.05;
 
-/// Boxes that are longer than twice as many spacings are halved, even where they are flat: points are
-/// laid in them, one for each few spacings.
+/// Flat boxes with half a side above this many spacings are halved: points are laid in the others, one
+/// for each few spacings.
 const WIDE: f64 = 4.0;
 
 /// The region in which two bodies touch, in candidates and flat boxes.
@@ -152,7 +152,7 @@ impl<const D: usize> Problem for RegionSearch<'_, '_, D> {
         for (lane, &i) in self.open.iter().enumerate() {
             let models = [0, 1].map(|body| self.pair.model(body, self.memory, lane));
             let mut found = look::<D>(&models, self.settings, self.slack);
-            if longest(&round[i]) > WIDE * self.settings.spacing && found == Look::Middle {
+            if longest_half(&round[i]) > WIDE * self.settings.spacing && found == Look::Middle {
                 found = Look::Open;
             }
             is_open[i] = found == Look::Open;
@@ -164,7 +164,7 @@ impl<const D: usize> Problem for RegionSearch<'_, '_, D> {
         let mut lanes = is_open.iter();
         round.retain(|_| lanes.next() == Some(&true));
         for part in round.drain(..) {
-            if longest(&part) <= 0.5 * self.settings.spacing {
+            if longest_half(&part) <= 0.5 * self.settings.spacing {
                 self.small.push(part);
             } else {
                 self.split(&part, pending);
@@ -184,7 +184,7 @@ impl<const D: usize> Problem for RegionSearch<'_, '_, D> {
 }
 
 /// Half of the longest side of a box [m].
-fn longest<const D: usize>(part: &BoxCell<D>) -> f64 {
+fn longest_half<const D: usize>(part: &BoxCell<D>) -> f64 {
     (0..D).fold(0.0_f64, |longest, k| longest.max(part.half[k]))
 }
 

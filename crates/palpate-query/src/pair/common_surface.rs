@@ -198,8 +198,14 @@ impl<'a, const D: usize> CommonSurface<'a, D> {
             // No steeper than the body, whose scale it has.
             term.value(p) - radius * larger(term.scale * term.steepness(), 1.0)
         });
-        // Written so that NaN proves nothing.
-        others.fold(self.level, |floor, other| if other > floor { floor } else { other })
+        // NaN proves nothing, wherever it stands.
+        others.fold(self.level, |floor, other| {
+            if other.is_nan() {
+                f64::NEG_INFINITY
+            } else {
+                if other > floor { floor } else { other }
+            }
+        })
     }
 }
 
@@ -217,15 +223,17 @@ fn with_others<'a, const D: usize>(
 
 /// The level of two terms of the same shape and different signs, in a box.
 fn level<const D: usize>(a: &Term<'_, D>, b: &Term<'_, D>, aabb: &Aabb<D>) -> f64 {
-    let mut apart = 0.0_f64;
+    let (mut apart, mut farthest) = (0.0_f64, 0.0_f64);
     for corner in 0..1_u32 << D {
         let side = |k: usize| if corner >> k & 1 == 0 { aabb.min[k] } else { aabb.max[k] };
         let p: Point<D> = Vector(std::array::from_fn(side));
         let [at_a, at_b] = [a, b].map(|term| term.shape_from_frame.transform_point(p));
         // The distance between the two places is convex, so it is largest at a corner.
         apart = larger((at_a - at_b).norm(), apart);
-        apart = larger(ROUNDINGS * (p.norm() + at_a.norm() + at_b.norm()), apart);
+        farthest = larger(p.norm() + at_a.norm() + at_b.norm(), farthest);
     }
+    // Roundings of nested motions and offsets that cancel are in the slack of the search.
+    apart += ROUNDINGS * farthest;
     let rounding = ROUNDINGS * (a.shift.abs() + b.shift.abs());
     let gap = a.shift + b.shift - rounding - a.steepness() * apart;
     gap * a.scale * b.scale / (a.scale + b.scale)

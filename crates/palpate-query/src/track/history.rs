@@ -9,8 +9,14 @@ use crate::contact::Contact;
 use crate::manifold::{ManifoldSettings, followed};
 use crate::pair::body_pair::BodyPair;
 
-/// The cosine of how far the normal of a contact may be from that of its history, 45°.
-const LIKE: f64 = 0.7;
+/// The cosine of how far the normal of a contact may be from that of the step before, 45°.
+const SAME_SIDE: f64 = 0.7;
+
+/// A contact that is less deep than this share of what its history says came out of another side.
+const SHALLOW: f64 = 0.5;
+
+/// A contact is that of the step before that is nearest, up to this many spacings and twice its depth.
+const NEAR: f64 = 2.0;
 
 /// Contacts that have been followed since the bodies overlapped by no more than the margin.
 #[derive(Clone, Debug)]
@@ -49,10 +55,15 @@ impl<const D: usize> History<D> {
         let mut known = Vec::with_capacity(contacts.len());
         for contact in contacts {
             if contact.gap < -settings.margin {
-                let Some(last) = self.nearest(contact, poses) else { continue };
+                let far = NEAR * (settings.spacing + contact.gap.abs());
+                let Some(last) = self.nearest(contact, poses, far) else { continue };
                 let normals = [0, 1].map(|i| poses[i].transform_vector(last.normals[i]));
-                if normals.iter().all(|normal| normal.dot(contact.normal) < LIKE) {
-                    let points = [0, 1].map(|i| poses[i].transform_point(last.points[i]));
+                let points = [0, 1].map(|i| poses[i].transform_point(last.points[i]));
+                // How deep the points are that touched, by how they have moved past each other.
+                let carried = (points[1] - points[0]).dot(normals[0]);
+                let is_other_side =
+                    normals.iter().all(|normal| normal.dot(contact.normal) < SAME_SIDE);
+                if is_other_side || contact.gap > SHALLOW * carried {
                     // The frame of the pair is the first body.
                     let frame = &from_world[0];
                     let found = followed(
@@ -79,12 +90,14 @@ impl<const D: usize> History<D> {
         pair.evaluations
     }
 
-    /// The contact of the last step that is nearest on either body.
-    fn nearest(&self, contact: &Contact<D>, poses: [Pose<D>; 2]) -> Option<Known<D>> {
+    /// The contact of the last step that is nearest on either body, within `far` [m].
+    fn nearest(&self, contact: &Contact<D>, poses: [Pose<D>; 2], far: f64) -> Option<Known<D>> {
         let apart = |known: &Known<D>| {
             let [a, b] = [0, 1].map(|i| poses[i].transform_point(known.points[i]));
             (a - contact.point_a).norm().min((b - contact.point_b).norm())
         };
-        self.known.iter().copied().min_by(|one, other| apart(one).total_cmp(&apart(other)))
+        let nearest =
+            self.known.iter().copied().min_by(|one, other| apart(one).total_cmp(&apart(other)));
+        nearest.filter(|known| apart(known) <= far)
     }
 }
