@@ -107,6 +107,12 @@ pub(crate) const MUJOCO: &[Bar] = &[
     ("large_torus_torus.0.1mm.missed.ours", 0.0),
     ("large_torus_torus.1mm.missed.ours", 0.0),
     ("large_torus_torus.5mm.missed.ours", 0.0),
+    ("large_torus_bolt.0.1mm.missed.ours", 0.0),
+    ("large_torus_bolt.1mm.missed.ours", 0.0),
+    ("large_torus_bolt.5mm.missed.ours", 0.0),
+    ("bolt_nut.0.1mm.missed.ours", 0.0),
+    ("bolt_nut.1mm.missed.ours", 0.0),
+    ("bolt_nut.5mm.missed.ours", 0.0),
 ];
 
 /// Rows in the plane, and those in space that they take at most as long as in the same run.

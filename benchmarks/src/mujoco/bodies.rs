@@ -10,11 +10,15 @@ use palpate::field::kernel::{CutHollowSphere, Torus};
 use palpate::field::{Rotation, Shape, Vector};
 
 use super::exchange::Plugin;
+use super::fastener;
 use super::gear::Gear;
 
 /// How far the edges of our gear are from the plugin's outline [m]: half a hundredth of the
 /// smallest depth, which is known to a hundredth. More edges take longer.
 const OUTLINE: f64 = 5e-7;
+
+/// The radius of the roots of bolt and nut, as in MuJoCo's example [m].
+const THREAD: f64 = 0.26;
 
 /// A body for both.
 #[derive(Clone, Debug)]
@@ -26,21 +30,25 @@ pub(super) struct Body {
 }
 
 /// The pairs by their names, as places in the list of bodies.
-pub(super) const PAIRS: [(&str, [usize; 2]); 5] = [
+pub(super) const PAIRS: [(&str, [usize; 2]); 7] = [
     ("torus_torus", [0, 0]),
     ("torus_bowl", [0, 1]),
     ("torus_gear", [0, 2]),
     ("gear_gear", [2, 2]),
     ("large_torus_torus", [3, 3]),
+    ("large_torus_bolt", [3, 4]),
+    ("bolt_nut", [4, 5]),
 ];
 
 /// The bodies of the suite.
-pub(super) fn all() -> Result<[Body; 4], Box<dyn Error>> {
+pub(super) fn all() -> Result<[Body; 6], Box<dyn Error>> {
     Ok([
         torus("torus", 0.035, 0.015)?,
         bowl(0.05, -0.01, 0.012)?,
         gear_of(Gear { diameter: 0.1, folds: 4 }, 0.02)?,
         torus("large_torus", 0.35, 0.15)?,
+        threaded("bolt", "mujoco.sdf.bolt", fastener::bolt(THREAD)?)?,
+        threaded("nut", "mujoco.sdf.nut", fastener::nut(THREAD)?)?,
     ])
 }
 
@@ -79,6 +87,16 @@ fn gear_of(gear: Gear, thickness: f64) -> Result<Body, Box<dyn Error>> {
         plugin: Plugin { plugin: "mujoco.sdf.gear", attributes },
         shape: upright(gear.profile(OUTLINE)?.extruded(thickness)?)?,
     })
+}
+
+/// A plugin with a thread of radius [`THREAD`], along the z axis.
+fn threaded(
+    name: &'static str,
+    plugin: &'static str,
+    shape: Shape<3>,
+) -> Result<Body, Box<dyn Error>> {
+    let attributes = vec![("radius", THREAD)];
+    Ok(Body { name, plugin: Plugin { plugin, attributes }, shape: upright(shape)? })
 }
 
 /// A shape about the y axis, about the z axis.

@@ -11,6 +11,7 @@
 mod bodies;
 mod environment;
 mod exchange;
+mod fastener;
 mod gear;
 mod ours;
 mod poses;
