@@ -56,11 +56,11 @@ pub(crate) struct SweepOptions {
     pub(crate) method: Option<String>,
     /// How many steps of time of each part of a motion --method looks at, but for golden_section; 60 if
     /// left out.
-    #[arg(long, requires = "method", allow_negative_numbers = true, value_parser = count(1, 1_000_000_u32))]
+    #[arg(long, requires = "method", allow_negative_numbers = true, value_parser = count(1, 10_000_u32))]
     pub(crate) samples: Option<u32>,
     /// How many cells the longest side of a body's box has in the grid from which --method takes its
     /// surface; 64 if left out.
-    #[arg(long, requires = "method", allow_negative_numbers = true, value_parser = count(4, 512_u32))]
+    #[arg(long, requires = "method", allow_negative_numbers = true, value_parser = count(4, 256_u32))]
     pub(crate) cells: Option<u32>,
     /// Draw the first touch, how the bodies got there, and the boxes that were ruled out: .svg or .png.
     #[arg(long, value_name = "PICTURE")]

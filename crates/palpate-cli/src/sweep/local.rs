@@ -7,7 +7,7 @@ use palpate::field::Shape;
 use palpate::local::{
     ElementMethod, LocalSweep, PairMethod, SampledSweep, SpaceTimeGoldenSection,
 };
-use palpate::mesh::Mesh;
+use palpate::mesh::{Mesh, Outline, TriangleMesh};
 use palpate::query::{Motion, Moving};
 
 use super::surface;
@@ -66,22 +66,45 @@ impl LocalSearch {
         }
     }
 
+    /// What of two bodies is needed: the surface of the smaller one that has one, and its index. `None`
+    /// if neither has.
+    pub(super) fn prepared<const D: usize>(&self, shapes: [&Shape<D>; 2]) -> Option<Prepared<D>>
+    where
+        Dimensions: Surfaced<D>,
+    {
+        if matches!(self.method, Method::Pair(_)) {
+            return Some(Prepared::Fields);
+        }
+        let size = |shape: &Shape<D>| {
+            shape.promise().bounds.map_or(f64::INFINITY, |b| b.aabb.half_extents().norm())
+        };
+        let first = usize::from(size(shapes[0]) >= size(shapes[1]));
+        let surface = |body: usize| {
+            let surface = Dimensions::surface(shapes[body], self.cells)?;
+            Some(Prepared::Surface { body, surface })
+        };
+        surface(first).or_else(|| surface(1 - first))
+    }
+
     /// The first touch that it finds, of a motion over the time from 0 to 1.
     pub(super) fn first_touch<const D: usize>(
         &self,
-        [a, b]: [Moving<'_, D>; 2],
+        bodies: [Moving<'_, D>; 2],
+        prepared: &Prepared<D>,
     ) -> Result<LocalSweep<D>, Failure>
     where
         Dimensions: Surfaced<D>,
     {
-        if let Method::Pair(method) = self.method {
-            return self.sampled.of_pair(a, b, method).map_err(Failure::input);
+        let [a, b] = bodies;
+        match (self.method, prepared) {
+            (Method::Pair(method), _) => {
+                self.sampled.of_pair(a, b, method).map_err(Failure::input)
+            }
+            (_, Prepared::Surface { body, surface }) => {
+                Dimensions::touch(self, bodies[1 - body], surface, bodies[*body].motion)
+            }
+            (_, Prepared::Fields) => Err(Failure::input("--method needs a surface")),
         }
-        let size = |body: &Moving<'_, D>| {
-            body.shape.promise().bounds.map_or(f64::INFINITY, |b| b.aabb.half_extents().norm())
-        };
-        let [field, solid] = if size(&a) < size(&b) { [b, a] } else { [a, b] };
-        Dimensions::touch(self, field, solid.shape, solid.motion)
     }
 
     fn of_mesh<const N: usize, const D: usize>(
@@ -101,36 +124,62 @@ impl LocalSearch {
     }
 }
 
+/// What a local search needs of two bodies.
+pub(super) enum Prepared<const D: usize>
+where
+    Dimensions: Surfaced<D>,
+{
+    Fields,
+    Surface { body: usize, surface: <Dimensions as Surfaced<D>>::Surface },
+}
+
 /// Dimensions in which shapes have surfaces of elements.
 pub(super) trait Surfaced<const D: usize> {
-    /// The first touch of the surface of a shape that moves, and a field.
+    type Surface;
+
+    /// The surface of a shape; `None` of one without bounds, or without a surface that the grid shows.
+    fn surface(solid: &Shape<D>, cells: u32) -> Option<Self::Surface>;
+
+    /// The first touch of a surface that moves, and a field.
     fn touch(
         search: &LocalSearch,
         field: Moving<'_, D>,
-        solid: &Shape<D>,
+        surface: &Self::Surface,
         motion: Motion<D>,
     ) -> Result<LocalSweep<D>, Failure>;
 }
 
 impl Surfaced<2> for Dimensions {
+    type Surface = Outline;
+
+    fn surface(solid: &Shape<2>, cells: u32) -> Option<Outline> {
+        surface::outline(solid, cells)
+    }
+
     fn touch(
         search: &LocalSearch,
         field: Moving<'_, 2>,
-        solid: &Shape<2>,
+        surface: &Outline,
         motion: Motion<2>,
     ) -> Result<LocalSweep<2>, Failure> {
-        search.of_mesh(field, &surface::outline(solid, search.cells)?, motion)
+        search.of_mesh(field, surface, motion)
     }
 }
 
 impl Surfaced<3> for Dimensions {
+    type Surface = TriangleMesh;
+
+    fn surface(solid: &Shape<3>, cells: u32) -> Option<TriangleMesh> {
+        surface::triangles(solid, cells)
+    }
+
     fn touch(
         search: &LocalSearch,
         field: Moving<'_, 3>,
-        solid: &Shape<3>,
+        surface: &TriangleMesh,
         motion: Motion<3>,
     ) -> Result<LocalSweep<3>, Failure> {
-        search.of_mesh(field, &surface::triangles(solid, search.cells)?, motion)
+        search.of_mesh(field, surface, motion)
     }
 }
 

@@ -16,7 +16,7 @@ use crate::arguments::SweepOptions;
 use crate::input;
 use crate::interrupt::Interrupt;
 use crate::outcome::{Failure, Outcome};
-use crate::output::{self, Files};
+use crate::output::{self, Files, shown};
 use crate::picture::{self, Dimensions, Drawable, Picture};
 use local::{LocalSearch, Surfaced};
 
@@ -89,7 +89,7 @@ where
             if interrupt.is_asked() {
                 break;
             }
-            pairs.push(first_touch(scene, [a, b], &times, &question)?);
+            pairs.push(first_touch(scene, [a, b], &times, &question, interrupt)?);
         }
     }
     pairs.sort_by(|a, b| a.found.upper.total_cmp(&b.found.upper));
@@ -179,14 +179,28 @@ fn local_touch<const D: usize>(
     bodies: [usize; 2],
     times: &[f64],
     search: &LocalSearch,
+    interrupt: &Interrupt,
 ) -> Result<Option<LocalSweep<D>>, Failure>
 where
     Dimensions: Surfaced<D>,
 {
+    let of = bodies.map(|body| &scene.bodies[body]);
+    let Some(prepared) = search.prepared(of.map(|body| &body.shape_in_body)) else {
+        let [a, b] = of.map(|body| shown(&body.name));
+        output::remark(format!(
+            "--method {} needs the surface of {a} or {b}, and the grid shows none of either: raise \
+             --cells, or take a method between fields, as sum_descent",
+            search.name()
+        ));
+        return Ok(None);
+    };
     let mut all: Option<LocalSweep<D>> = None;
     for part in times.windows(2) {
         let &[from, to] = part else { continue };
-        let mut found = search.first_touch(ways(scene, bodies, [from, to])?)?;
+        if interrupt.is_asked() {
+            break;
+        }
+        let mut found = search.first_touch(ways(scene, bodies, [from, to])?, &prepared)?;
         if let Some(touch) = &mut found.touch {
             touch.time = from + (to - from) * touch.time;
         }
@@ -208,11 +222,13 @@ fn first_touch<const D: usize>(
     bodies: [usize; 2],
     times: &[f64],
     question: &Question,
+    interrupt: &Interrupt,
 ) -> Result<Pair<D>, Failure>
 where
     Dimensions: Surfaced<D>,
 {
-    let local = question.local.map(|search| local_touch(scene, bodies, times, &search));
+    let local =
+        question.local.map(|search| local_touch(scene, bodies, times, &search, interrupt));
     let local = local.transpose()?.flatten();
     let mut workspace = SweepWorkspace::new();
     let mut evaluations = 0_u32;

@@ -9,8 +9,6 @@ use fast_surface_nets::{SurfaceNetsBuffer, surface_nets};
 use palpate::field::{Point, Shape, Vector};
 use palpate::mesh::{Mesh, Outline, TriangleMesh};
 
-use crate::outcome::Failure;
-
 /// Cells between the shape's box and the edge of the grid.
 const AROUND: f64 = 2.0;
 
@@ -47,17 +45,9 @@ impl<const D: usize> Grid<D> {
     }
 }
 
-/// Why a surface cannot be had.
-fn none() -> Failure {
-    Failure::input(
-        "--method needs the surface of one of two bodies, and neither has bounds and a surface within \
-         them that the grid shows; raise --cells, or use a method between both fields: sum_descent",
-    )
-}
-
 /// The outline of a planar shape, by marching squares.
-pub(super) fn outline(shape: &Shape<2>, cells: u32) -> Result<Outline, Failure> {
-    let grid = Grid::around(shape, cells).ok_or_else(none)?;
+pub(super) fn outline(shape: &Shape<2>, cells: u32) -> Option<Outline> {
+    let grid = Grid::around(shape, cells)?;
     let [columns, rows] = grid.counts.map(|count| count as usize);
     let places = (0..rows).flat_map(|y| (0..columns).map(move |x| [x as f64, y as f64]));
     // Negated: lines are around what is at least the level.
@@ -75,12 +65,13 @@ pub(super) fn outline(shape: &Shape<2>, cells: u32) -> Result<Outline, Failure> 
         vertices.extend(at);
         elements.extend((0..count).map(|k| [first + k, first + (k + 1) % count]));
     }
-    mesh(vertices, elements)
+    // Without elements there is no surface.
+    Mesh::new(vertices, elements).ok()
 }
 
 /// The surface of a solid, by surface nets.
-pub(super) fn triangles(shape: &Shape<3>, cells: u32) -> Result<TriangleMesh, Failure> {
-    let grid = Grid::around(shape, cells).ok_or_else(none)?;
+pub(super) fn triangles(shape: &Shape<3>, cells: u32) -> Option<TriangleMesh> {
+    let grid = Grid::around(shape, cells)?;
     let places = RuntimeShape::<u32, 3>::new(grid.counts);
     let values: Vec<f32> = (0..places.size())
         .map(|k| shape.distance(grid.place(places.delinearize(k).map(f64::from))))
@@ -92,14 +83,7 @@ pub(super) fn triangles(shape: &Shape<3>, cells: u32) -> Result<TriangleMesh, Fa
     let vertices = surface.positions.iter().map(at).collect();
     let faces =
         surface.indices.chunks_exact(3).map(|face| [face[0], face[1], face[2]]).collect();
-    mesh(vertices, faces)
-}
-
-fn mesh<const N: usize, const D: usize>(
-    vertices: Vec<Point<D>>,
-    elements: Vec<[u32; N]>,
-) -> Result<Mesh<N, D>, Failure> {
-    Mesh::new(vertices, elements).map_err(|_| none())
+    Mesh::new(vertices, faces).ok()
 }
 
 #[cfg(test)]

@@ -46,6 +46,10 @@ impl<const D: usize> LocalSweep<D> {
         Self { touch: None, evaluations: 0, searched: 0 }
     }
 
+    fn asked(&mut self, evaluations: u32) {
+        self.evaluations = self.evaluations.saturating_add(evaluations);
+    }
+
     /// Keeps the touch if it is earlier.
     fn keep(&mut self, touch: LocalTouch<D>) {
         if self.touch.is_none_or(|known| touch.time < known.time) {

@@ -83,13 +83,13 @@ impl SampledSweep {
                     mesh.corners(index).map(|corner| body_from_element.transform_point(corner));
                 let element = Element::new(corners)?;
                 let ball = element.smallest_ball();
-                found.evaluations += 1;
+                found.asked(1);
                 if shape.distance(ball.centre) > steepness * ball.radius + self.gap {
                     continue;
                 }
                 found.searched += 1;
                 let descent = method.descend(shape, &element);
-                found.evaluations += descent.evaluations;
+                found.asked(descent.evaluations);
                 let point = world_from_body.transform_point(descent.best);
                 let value = descent.value;
                 found.keep_lower(LocalTouch { time, point, value, element: index }, self.gap);
@@ -116,7 +116,7 @@ impl SampledSweep {
             for start in halton_starts(a, b, self.starts) {
                 let descent = method.descend(a, b, start, 0.1 * self.gap)?;
                 found.searched += 1;
-                found.evaluations += descent.evaluations;
+                found.asked(descent.evaluations);
                 let (point, value) = (descent.best, descent.value);
                 found.keep_lower(LocalTouch { time, point, value, element: 0 }, 0.5 * self.gap);
             }

@@ -200,7 +200,7 @@ impl<const D: usize> Search<'_, D> {
     /// Searches the parts of an element that are not longer than is asked for, from a time on.
     fn parts<const N: usize>(&mut self, part: &Element<N, D>, from: f64) {
         let (near, asked) = approach(&self.course, part, [from, self.end()], self.gap);
-        self.found.evaluations += asked;
+        self.found.asked(asked);
         let Some(near) = near else { return };
         if part.longest_edge() > self.method.longest {
             part.halves()
@@ -248,7 +248,7 @@ impl<const D: usize> Search<'_, D> {
             let inward = (slope.value - 0.5 * gap) / -slope.rate;
             if slope.value > gap && slope.rate < 0.0 && time + inward <= end {
                 let there = course.slope(p, time + inward);
-                self.found.evaluations += 2;
+                self.found.asked(2);
                 if there.value <= gap {
                     (time, slope) = (time + inward, there);
                 }
@@ -257,7 +257,7 @@ impl<const D: usize> Search<'_, D> {
             let towards = part.vertices()[vertex] - p;
             let (share, value) =
                 least_on_unit(sections, |share| course.value(p + towards * share, time));
-            self.found.evaluations += 4 + 2 * (sections + 1);
+            self.found.asked(4 + 2 * (sections + 1));
             if value < slope.value {
                 p += towards * share;
             }
@@ -276,7 +276,7 @@ impl<const D: usize> Search<'_, D> {
 
     /// The corner that approaches the surface fastest.
     fn first<const N: usize>(&mut self, part: &Element<N, D>, time: f64) -> Point<D> {
-        self.found.evaluations += 2 * N as u32;
+        self.found.asked(2 * N as u32);
         let mut first = (part.vertices()[0], f64::INFINITY);
         for vertex in part.vertices() {
             let rate = self.course.slope(*vertex, time).rate;

@@ -162,6 +162,8 @@ pub(super) struct BoxSweep<'s, 'a, const D: usize> {
     /// The radius of the first box [m].
     pub(super) size: f64,
     pub(super) settings: &'s SweepSettings,
+    /// How often fields are evaluated until the search is interrupted.
+    pub(super) budget: u32,
     pub(super) memory: &'s mut BoxMemory<D>,
     pub(super) evaluations: u32,
     /// Boxes from this time on wait for another round.
@@ -412,7 +414,7 @@ impl<const D: usize> Problem for BoxSweep<'_, '_, D> {
     }
 
     fn is_spent(&self) -> bool {
-        self.evaluations >= self.settings.budget
+        self.evaluations >= self.budget
     }
 
     fn can_split(&self, queue: &Self::Queue) -> bool {

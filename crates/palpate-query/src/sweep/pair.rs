@@ -17,6 +17,9 @@ use crate::error::QueryError;
 use crate::pair::distance_bound::DistanceBound;
 use crate::pair::{PairWorkspace, separation};
 
+/// After so many evaluations without a time, a touch at the start is asked for.
+const SOON: u32 = 1 << 14;
+
 /// The separation at a touch is searched to this share of the gap.
 const SHARE: f64 = 0.25;
 
@@ -95,6 +98,7 @@ pub(super) fn swept<const D: usize>(
         slack,
         size: root.half_extents().norm(),
         settings,
+        budget: settings.budget.min(SOON),
         memory,
         evaluations: 0,
         horizon: None,
@@ -103,7 +107,19 @@ pub(super) fn swept<const D: usize>(
         dropped: f64::INFINITY,
         ruled_out: boxes,
     };
-    let end = engine::search(&mut search, frontier);
+    let mut end = engine::search(&mut search, frontier);
+    if end.stop().is_early() && search.upper == f64::INFINITY {
+        let apart_until = frontier.lower(search.dropped);
+        if apart_until <= 0.0
+            && touches_at(0.0, bodies, settings, pair, &mut search.evaluations)?
+        {
+            // Places at which bodies lie on each other are as small as the gap, and many.
+            search.upper = 0.0;
+        } else {
+            search.budget = settings.budget;
+            end = engine::search(&mut search, frontier);
+        }
+    }
     let lower = frontier.lower(search.dropped).min(search.upper).min(1.0);
     if search.upper < f64::INFINITY {
         search.refine(lower);
@@ -113,13 +129,27 @@ pub(super) fn swept<const D: usize>(
         boxes.extend(frontier.queue.cells().map(|space: SpaceCell<D>| space.free()));
         boxes.extend(frontier.pending.iter().map(|space| space.free()));
     }
-    let stop = end.stop();
+    let stop = if upper == 0.0 { Stop::Converged } else { end.stop() };
     let upper = if stop == Stop::SignKnown { 1.0 } else { upper };
     let mut found = FirstTouch { lower, upper, contact: None, start: None, stop, evaluations };
     if stop != Stop::SignKnown && upper.is_finite() {
         touch_at(bodies, settings, pair, &mut found)?;
     }
     Ok((found, usize::from(is_swapped)))
+}
+
+/// Whether the separation at a time is found to be at most the gap.
+fn touches_at<const D: usize>(
+    time: f64,
+    bodies: [Moving<'_, D>; 2],
+    settings: &SweepSettings,
+    workspace: &mut PairWorkspace<D>,
+    evaluations: &mut u32,
+) -> Result<bool, QueryError> {
+    let [a, b] = bodies.map(|body| body.at(time));
+    let near = separation(a, b, &Limits::new(SHARE * settings.gap), workspace)?;
+    *evaluations = evaluations.saturating_add(near.evaluations);
+    Ok(near.upper <= settings.gap)
 }
 
 /// Adds the contact at the time of a touch.

@@ -5,7 +5,7 @@
 
 use palpate_field::{Point, Pose, Vector};
 
-use crate::contact::Contact;
+use crate::contact::{Contact, NormalSource};
 use crate::manifold::{ManifoldSettings, followed};
 use crate::pair::body_pair::BodyPair;
 
@@ -55,7 +55,11 @@ impl<const D: usize> History<D> {
         let mut known = Vec::with_capacity(contacts.len());
         for contact in contacts {
             if contact.gap < -settings.margin {
-                let far = NEAR * (settings.spacing + contact.gap.abs());
+                // Where no field gives a direction, its place says as little.
+                let far = match contact.normal_from {
+                    NormalSource::Assumed => f64::INFINITY,
+                    _ => NEAR * (settings.spacing + contact.gap.abs()),
+                };
                 let Some(last) = self.nearest(contact, poses, far) else { continue };
                 let normals = [0, 1].map(|i| poses[i].transform_vector(last.normals[i]));
                 let points = [0, 1].map(|i| poses[i].transform_point(last.points[i]));

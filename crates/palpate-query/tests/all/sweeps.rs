@@ -10,6 +10,7 @@ use std::f64::consts::PI;
 #[path = "../../../../fuzz/sweep_answers.rs"]
 mod sweep_answers;
 
+use palpate_field::kernel::HalfSpace;
 use palpate_field::{Pose, Rotation, Screw, Shape, Vector};
 use palpate_query::{
     FirstTouch, Moving, PairWorkspace, Placed, QueryError, Start, Stop, SweepSettings,
@@ -181,5 +182,27 @@ fn bodies_without_bounds_and_settings_that_are_none_are_refused() {
         assert!(matches!(error, QueryError::Setting { what: "gap", .. }), "{error}");
         let error = refused((&floor).into(), settings.with_time_tolerance(wrong));
         assert!(matches!(error, QueryError::Setting { what: "time_tolerance", .. }), "{error}");
+    }
+}
+
+/// Bodies that lie on each other, or overlap a little, and part: the places at which they touch are as
+/// small as the gap, and no search by boxes finds them all.
+#[test]
+fn bodies_that_rest_on_each_other_and_part_touch_at_the_start() {
+    let floor = Shape::from_kernel(HalfSpace::new(Vector([0.0, 1.0, 0.0]), 0.0).unwrap());
+    let bodies = [Shape::<3>::ball(0.5).unwrap(), Shape::<3>::cuboid([1.0, 1.0, 1.0]).unwrap()];
+    let settings = SweepSettings::of_size(1.0);
+    for body in &bodies {
+        for overlap in [0.0, 1e-6, 1e-5, 1e-4, 1e-2] {
+            let [from, to] = [0.5 - overlap, 4.0].map(|y| Pose::translation([0.0, y, 0.0]));
+            let rises = Moving::new(body, Screw::new(from, to, 0).unwrap());
+            let touch = sweep(&floor, rises, &settings, &mut SweepWorkspace::new()).unwrap();
+            assert_eq!(
+                (touch.upper, touch.start),
+                (0.0, Some(Start::Receding)),
+                "{overlap}: {touch:?}"
+            );
+            assert!(touch.evaluations < 100_000, "{touch:?}");
+        }
     }
 }
