@@ -15,7 +15,8 @@ const SAME_SIDE: f64 = 0.7;
 /// A contact that is less deep than this share of what its history says came out of another side.
 const SHALLOW: f64 = 0.5;
 
-/// A contact is that of the step before that is nearest, up to this many spacings and twice its depth.
+/// A contact takes the side of the one of the step before that is nearest, up to this many spacings and
+/// times its depth.
 const NEAR: f64 = 2.0;
 
 /// Contacts that have been followed since the bodies overlapped by no more than the margin.
@@ -55,12 +56,7 @@ impl<const D: usize> History<D> {
         let mut known = Vec::with_capacity(contacts.len());
         for contact in contacts {
             if contact.gap < -settings.margin {
-                // Where no field gives a direction, its place says as little.
-                let far = match contact.normal_from {
-                    NormalSource::Assumed => f64::INFINITY,
-                    _ => NEAR * (settings.spacing + contact.gap.abs()),
-                };
-                let Some(last) = self.nearest(contact, poses, far) else { continue };
+                let Some((last, apart)) = self.nearest(contact, poses) else { continue };
                 let normals = [0, 1].map(|i| poses[i].transform_vector(last.normals[i]));
                 let points = [0, 1].map(|i| poses[i].transform_point(last.points[i]));
                 // How deep the points are that touched, by how they have moved past each other.
@@ -68,6 +64,11 @@ impl<const D: usize> History<D> {
                 let is_other_side =
                     normals.iter().all(|normal| normal.dot(contact.normal) < SAME_SIDE);
                 if is_other_side || contact.gap > SHALLOW * carried {
+                    let far = NEAR * (settings.spacing - contact.gap.min(carried));
+                    // Where no field gives a direction, the place says as little.
+                    if apart > far && contact.normal_from != NormalSource::Assumed {
+                        continue;
+                    }
                     // The frame of the pair is the first body.
                     let frame = &from_world[0];
                     let found = followed(
@@ -94,14 +95,13 @@ impl<const D: usize> History<D> {
         pair.evaluations
     }
 
-    /// The contact of the last step that is nearest on either body, within `far` [m].
-    fn nearest(&self, contact: &Contact<D>, poses: [Pose<D>; 2], far: f64) -> Option<Known<D>> {
+    /// The contact of the last step that is nearest on either body, and how far it is [m].
+    fn nearest(&self, contact: &Contact<D>, poses: [Pose<D>; 2]) -> Option<(Known<D>, f64)> {
         let apart = |known: &Known<D>| {
             let [a, b] = [0, 1].map(|i| poses[i].transform_point(known.points[i]));
             (a - contact.point_a).norm().min((b - contact.point_b).norm())
         };
-        let nearest =
-            self.known.iter().copied().min_by(|one, other| apart(one).total_cmp(&apart(other)));
-        nearest.filter(|known| apart(known) <= far)
+        let all = self.known.iter().map(|known| (*known, apart(known)));
+        all.min_by(|one, other| one.1.total_cmp(&other.1))
     }
 }

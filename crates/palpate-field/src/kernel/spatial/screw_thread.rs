@@ -67,8 +67,8 @@ const SCALE_ROOM: f64 = 1.0 - 16.0 * f64::EPSILON;
 /// let screw = ScrewThread::new(1.0, 4.0, 0.4, 2, Vector([0.1, 0.2, 0.2]))?;
 /// let screw = Shape::from_kernel(screw);
 /// assert_eq!(screw.distance(Vector([1.5, 0.0, 0.0])), 0.5); // over a crest
-/// assert_eq!(screw.distance(Vector([0.0, 0.0, -1.25])), 0.25); // a quarter turn on: a crest
-/// assert_eq!(screw.distance(Vector([0.0, 0.2, -0.85])), 0.05); // over a root
+/// assert_eq!(screw.distance(Vector([-1.25, 0.0, 0.0])), 0.25); // half a turn on: the other's crest
+/// assert!((screw.distance(Vector([0.85, 0.2, 0.0])) - 0.05).abs() < 1e-15); // over a root
 /// assert_eq!(screw.distance(Vector([0.0, 7.0, 0.0])), 5.0); // over an end
 /// # Ok(())
 /// # }
