@@ -19,6 +19,8 @@ const LARGER: &[(&str, usize)] = &[
     ("palpate-cli", 15_000),
     // Proxy, creases, tools and their servo share one tick; guides alone could leave it.
     ("palpate-haptics", 13_500),
+    // All searches share one engine, one pair of bodies and their cells.
+    ("palpate-query", 14_000),
 ];
 
 /// Checks the size of every crate.

@@ -111,7 +111,7 @@ pub fn convex_models_are_tight<const D: usize>(
 }
 
 /// The model of a cell is as good as the bound by the steepness of the field, but for
-/// roundings and [`WIDER`]: it is no wider than twice the steepness times the cell's half diagonal. For a
+/// roundings and `WIDER`: it is no wider than twice the steepness times the cell's half diagonal. For a
 /// convex field, whose model keeps the slope of its plane, the lower bound is as good as that.
 ///
 /// # Errors
