@@ -53,14 +53,14 @@ impl<const D: usize> Report<'_, D> {
                 format!("touching at the start, {}", in_a_word(start))
             }
             (Some(true), _) => {
-                let early =
-                    if found.stop.is_early() { self.why(found.stop) } else { String::new() };
-                let rest =
-                    if early.is_empty() { early } else { format!("; not when first: {early}") };
-                format!(
-                    "touching at {:.9} s; before {:.9} s apart, proven{rest}",
-                    found.upper, found.lower
-                )
+                let (upper, lower) = (found.upper, found.lower);
+                let proven =
+                    format!("touching at {upper:.9} s; before {lower:.9} s apart, proven");
+                if found.stop.is_early() {
+                    format!("{proven}; not when first: {}", self.why(found.stop))
+                } else {
+                    proven
+                }
             }
             (None, _) => format!(
                 "undecided; before {:.9} s apart, proven; {}",

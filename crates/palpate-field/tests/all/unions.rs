@@ -7,7 +7,7 @@
 use arbitrary::{Result, Unstructured};
 use palpate_field::kernel::{Ball, Cuboid};
 use palpate_field::scalar::{Model, Scalar};
-use palpate_field::{BLOCK, Block, Column, Rotation, Shape, Vector};
+use palpate_field::{BLOCK, Shape, Vector};
 use palpate_testkit::arbitrary::{self as draw, Turn};
 use palpate_testkit::cases;
 use palpate_testkit::kernels::Space;
@@ -16,18 +16,6 @@ use palpate_testkit::tree::Solid;
 
 /// Roundings by which the orders of two folds may differ, relative to the largest number.
 const ROUNDINGS: f64 = 64.0;
-
-fn models<const D: usize>(
-    shape: &Shape<D>,
-    turn: Option<&Rotation<D>>,
-    cells: &[Cell<D>],
-) -> Vec<Model> {
-    let mut block = Block::<Model, D, BLOCK>::zero();
-    let mut models = Column::<Model, BLOCK>::zero();
-    block.fill_boxes(cells.len(), turn, |i| (cells[i].centre, cells[i].half));
-    shape.block_distances(&block, cells.len(), &mut models);
-    (0..cells.len()).map(|i| models.get(i)).collect()
-}
 
 /// Some members, small beside the space that they are in.
 fn members<const D: usize>(u: &mut Unstructured<'_>, count: usize) -> Result<Vec<Shape<D>>>
@@ -118,9 +106,9 @@ where
 {
     on_unions::<D>(60, 64, |u, shapes, union| {
         let cells = cells(u, union)?;
-        let of_union = models(union, None, &cells);
+        let of_union = laws::models(union, None, &cells);
         let of_members: Vec<_> =
-            shapes.iter().map(|member| models(member, None, &cells)).collect();
+            shapes.iter().map(|member| laws::models(member, None, &cells)).collect();
         for (i, model) in of_union.iter().enumerate() {
             let all: Vec<Model> = of_members.iter().map(|models| models[i]).collect();
             let Some(by_hand) = all.iter().copied().reduce(Scalar::min) else { continue };
@@ -168,8 +156,8 @@ fn a_cell_far_from_others_has_the_model_of_its_member() {
     let cells: Vec<Cell<3>> = (0..48)
         .map(|i| Cell { centre: place(i) + Vector([0.02, 0.3, 0.1]), half: Vector([0.01; 3]) })
         .collect();
-    let of_union = models(&union, None, &cells);
+    let of_union = laws::models(&union, None, &cells);
     for (i, shape) in shapes.iter().enumerate() {
-        assert_eq!(of_union[i], models(shape, None, &cells)[i], "member {i}");
+        assert_eq!(of_union[i], laws::models(shape, None, &cells)[i], "member {i}");
     }
 }

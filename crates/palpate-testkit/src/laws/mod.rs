@@ -16,7 +16,7 @@ pub use bits::bits_agree;
 pub use dual::GradientIsTheDual;
 pub use gradient::{gradient_is_bounded, gradient_is_the_slope};
 pub use model::{
-    Cell, convex_models_are_tight, model_encloses, model_says_as_much_as_the_steepness,
+    Cell, convex_models_are_tight, model_encloses, model_says_as_much_as_the_steepness, models,
 };
 pub use motion::{motion_keeps_distances, scale_scales_distances};
 pub use promise::{

@@ -142,7 +142,9 @@ pub fn model_says_as_much_as_the_steepness<const D: usize>(
     Ok(())
 }
 
-fn models<const D: usize>(
+/// The models of a shape over cells of at most a block, turned by `turn`.
+#[must_use]
+pub fn models<const D: usize>(
     shape: &Shape<D>,
     turn: Option<&Rotation<D>>,
     cells: &[Cell<D>],
