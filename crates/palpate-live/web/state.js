@@ -1,0 +1,112 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+// @ts-check
+
+/**
+ * What the page knows, in one place, and who wants to know when it changes.
+ *
+ * @typedef {import('./wire.js').Frame} Frame
+ * @typedef {import('./wire.js').Message} Message
+ * @typedef {'connection' | 'welcome' | 'scene' | 'way' | 'frame' | 'selection' | 'view' |
+ *   'events' | 'notice' | 'theme' | 'playback'} Topic
+ * @typedef {'space' | 'slice' | 'plane' | 'compare'} ViewMode
+ */
+
+/** Frames that are kept to look back: a minute. */
+export const KEPT_FRAMES = 3600;
+
+export const state = {
+  /** @type {'connecting' | 'live' | 'lost' | 'closed'} */
+  connection: 'connecting',
+  /** Why the connection was lost. */
+  why: '',
+  /** @type {Message | null} the answer to `hello` */
+  welcome: null,
+  /** @type {Message | null} the newest `scene` */
+  scene: null,
+  /** @type {Message | null} how the scene is drawn; of the newest `scene` or `way` */
+  way: null,
+  /** @type {Frame | null} the newest frame, or that looked back to */
+  frame: null,
+  /** @type {Frame[]} the last frames, oldest first */
+  history: [],
+  /** Where in the history the page looks; null while it follows. @type {number | null} */
+  lookingAt: null,
+  /** The JSON pointer of the selected part of the scene. @type {string | null} */
+  selection: null,
+  view: {
+    /** @type {ViewMode} */
+    mode: 'space',
+    /** @type {'inside' | 'distance' | 'gradient' | 'promise'} */
+    map: 'distance',
+    positiveInside: false,
+    asInMemoir: false,
+    sineFactor: 1,
+    channels: { red: true, green: true, blue: true },
+    isolines: true,
+    /** Between isolines [m]; null for a spacing that suits the view. @type {number | null} */
+    spacing: null,
+    shown: {
+      contacts: true, normals: true, proof: false, forces: true, bounds: false, names: true,
+      spring: true,
+    },
+    /** The two bodies that are compared. */
+    compared: [0, 1],
+  },
+};
+
+/** @type {Map<Topic, Set<() => void>>} */
+const listeners = new Map();
+
+/** Calls `listener` after each change; gives a function that ends that.
+ * @param {Topic[]} topics @param {() => void} listener */
+export function listen(topics, listener) {
+  for (const topic of topics) {
+    if (!listeners.has(topic)) listeners.set(topic, new Set());
+    listeners.get(topic)?.add(listener);
+  }
+  return () => topics.forEach((topic) => listeners.get(topic)?.delete(listener));
+}
+
+/** Tells that a topic changed. @param {Topic} topic */
+export function changed(topic) {
+  listeners.get(topic)?.forEach((listener) => listener());
+}
+
+/** Takes a frame into the history; shows it unless the page looks back. @param {Frame} frame */
+export function takeFrame(frame) {
+  const { history } = state;
+  const last = history[history.length - 1];
+  // Another servo began.
+  if (last && frame.tick < last.tick) history.length = 0;
+  if (frame.tick !== last?.tick) history.push(frame);
+  if (history.length > KEPT_FRAMES) {
+    history.shift();
+    if (state.lookingAt !== null) state.lookingAt = Math.max(0, state.lookingAt - 1);
+  }
+  if (state.lookingAt === null) {
+    state.frame = frame;
+    changed('frame');
+  }
+}
+
+/** Looks at a frame of the history, or follows the newest. @param {number | null} index */
+export function lookAt(index) {
+  const { history } = state;
+  state.lookingAt = index === null ? null : Math.max(0, Math.min(index, history.length - 1));
+  state.frame = history[state.lookingAt ?? history.length - 1] ?? null;
+  changed('playback');
+  changed('frame');
+}
+
+/** Changes the view. @param {Partial<typeof state.view>} change */
+export function setView(change) {
+  Object.assign(state.view, change);
+  changed('view');
+}
+
+/** Selects a part of the scene by its JSON pointer. @param {string | null} pointer */
+export function select(pointer) {
+  state.selection = pointer;
+  changed('selection');
+}
