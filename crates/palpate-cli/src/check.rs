@@ -11,7 +11,7 @@ use serde_json::{Value, json};
 
 use crate::arguments::CheckOptions;
 use crate::emptiness::is_empty;
-use crate::input::{bytes, other_than_scene, promise_in_words};
+use crate::input::{bytes, other_than_scene};
 use crate::outcome::{Failure, Outcome};
 use crate::output::{self, counted, shown};
 
@@ -81,7 +81,7 @@ fn described<const D: usize>(bodies: &[palpate::scene::BuiltBody<D>]) -> Vec<Val
         .map(|body| {
             json!({
                 "name": body.name,
-                "promise": promise_in_words(body.shape.promise()),
+                "promise": body.shape.promise().in_words(),
                 "lipschitz": body.shape.promise().lipschitz,
                 "bounds": bounds(&body.shape),
                 "depth": body.shape.depth(),

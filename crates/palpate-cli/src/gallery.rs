@@ -15,7 +15,6 @@ use rayon::prelude::*;
 use serde_json::json;
 
 use crate::arguments::{GalleryOptions, Map, Plane};
-use crate::input::promise_in_words;
 use crate::interrupt::Interrupt;
 use crate::outcome::{Failure, Outcome};
 use crate::output::{self, Files, shown};
@@ -177,7 +176,7 @@ impl Work<'_> {
             let whole = isolines([Sampling::default(), compared])?;
             let Some(whole) = whole else { return Ok(None) };
             let figure = Figure::new(specimen.name.replace('_', " "))
-                .with_caption(promise_in_words(specimen.shape.promise()))
+                .with_caption(specimen.shape.promise().in_words())
                 .with_isolines(whole);
             let picture = self.picture(&each.join(specimen.name.replace(' ', "_")))?;
             written = Some(self.save(&figure, &picture, vec![specimen.name.clone()])?);

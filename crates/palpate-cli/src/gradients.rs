@@ -16,7 +16,7 @@ use serde_json::{Value, json};
 
 use crate::arguments::GradientsOptions;
 use crate::error_map::{Gradient, bar, sampler};
-use crate::input::{self, joined, longest_edge, promise_in_words};
+use crate::input::{self, joined, longest_edge};
 use crate::outcome::{Failure, Outcome};
 use crate::output::{self, Files};
 use crate::picture::{self, Dimensions, Drawable, Picture, in_space};
@@ -244,7 +244,7 @@ where
         let caption = format!(
             "{}. Offset {:.3e} m, that of the adaptive dichotomy larger with the value; values in {} \
              precision.",
-            promise_in_words(scene.whole.promise()),
+            scene.whole.promise().in_words(),
             self.sampler.offset(),
             self.precision(),
         );

@@ -5,7 +5,7 @@
 
 use std::path::Path;
 
-use palpate::field::{Aabb, LARGEST_LENGTH, Promise, Quality, Vector};
+use palpate::field::{Aabb, LARGEST_LENGTH, Vector};
 use palpate::local::GradientMethod;
 use palpate::scene::{AnyScene, BuiltScene, Scene, SceneError, unknown_name};
 
@@ -168,21 +168,4 @@ pub(crate) fn bounds<const D: usize>(scene: &BuiltScene<D>) -> Result<Aabb<D>, F
 /// The longest edge of a box [m].
 pub(crate) fn longest_edge<const D: usize>(bounds: &Aabb<D>) -> f64 {
     2.0 * bounds.half_extents().0.into_iter().fold(0.0, f64::max)
-}
-
-/// A promise in a few words: "exact outside, bound inside".
-pub(crate) fn promise_in_words<const D: usize>(promise: &Promise<D>) -> String {
-    let outside = quality_in_words(promise.outside);
-    if !promise.has_interior {
-        return format!("{outside} outside, no inside");
-    }
-    format!("{outside} outside, {} inside", quality_in_words(promise.inside))
-}
-
-pub(crate) fn quality_in_words(quality: Quality) -> &'static str {
-    match quality {
-        Quality::Exact => "exact",
-        Quality::Bound => "bound",
-        Quality::Lipschitz => "Lipschitz",
-    }
 }

@@ -15,7 +15,7 @@ use crate::arguments::{PlotMap, PlotOptions};
 use crate::contact::Touched;
 use crate::emptiness;
 use crate::error_map::{self, Compared};
-use crate::input::{self, promise_in_words};
+use crate::input;
 use crate::interrupt::Interrupt;
 use crate::outcome::{Failure, Outcome};
 use crate::output::{self, Files, shown};
@@ -215,7 +215,7 @@ where
         let place = (D == 3).then(|| plane::in_words(plane));
         let time =
             (!self.scene.motions.is_empty()).then(|| format!("at {} s", self.options.time));
-        let promise = promise_in_words(self.scene.whole.promise());
+        let promise = self.scene.whole.promise().in_words();
         let said = [place, time, Some(promise), self.compared.in_words()];
         said.into_iter().flatten().collect::<Vec<_>>().join("; ")
     }

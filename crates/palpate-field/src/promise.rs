@@ -36,6 +36,16 @@ impl fmt::Display for Quality {
 }
 
 impl Quality {
+    /// "exact", "bound" or "Lipschitz".
+    #[must_use]
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Exact => "exact",
+            Self::Bound => "bound",
+            Self::Lipschitz => "Lipschitz",
+        }
+    }
+
     /// `Exact` if both are, else `Bound`, or the weaker if one is weaker still.
     #[must_use]
     #[inline]
@@ -192,6 +202,27 @@ impl<const D: usize> fmt::Display for Promise<D> {
 }
 
 impl<const D: usize> Promise<D> {
+    /// The qualities in a few words: "exact outside, bound inside".
+    ///
+    /// ```
+    /// use palpate_field::Shape;
+    ///
+    /// # fn main() -> Result<(), palpate_field::ShapeError> {
+    /// let wheel = Shape::circle(0.5)? | Shape::rectangle([2.0, 0.5])?;
+    /// assert_eq!(wheel.promise().in_words(), "exact outside, bound inside");
+    /// assert_eq!(Shape::segment([0.0, 0.0], [1.0, 0.0], 0.0)?.promise().in_words(), "exact outside, no inside");
+    /// # Ok(())
+    /// # }
+    /// ```
+    #[must_use]
+    pub fn in_words(&self) -> String {
+        let outside = self.outside.word();
+        if !self.has_interior {
+            return format!("{outside} outside, no inside");
+        }
+        format!("{outside} outside, {} inside", self.inside.word())
+    }
+
     /// The promise of a closed formula that is exact on both sides.
     ///
     /// `operations` counts the rounded operations of the formula on numbers up

@@ -5,10 +5,15 @@
 
 use std::borrow::Cow;
 
+use palpate_field::Unit;
 use palpate_field::catalogue::{ALIASES, Alias, Entry};
 use palpate_field::kernel::{Parameter, ParameterKind};
+use serde_json::{Value, json};
 
+use crate::error::SceneError;
+use crate::problem::Problem;
 use crate::scene::Dimension;
+use crate::shape::WrittenShape;
 
 /// A primitive in one dimension.
 #[derive(Clone, Copy, Debug)]
@@ -61,4 +66,48 @@ pub(crate) fn file_key(parameter: &Parameter) -> Cow<'static, str> {
         ParameterKind::Angle => format!("{}_degrees", parameter.name).into(),
         _ => parameter.name.into(),
     }
+}
+
+/// A primitive with its parameters, promise and example, as `palpate shapes --json` prints it.
+///
+/// # Errors
+///
+/// If the example cannot be written, which the tests of the catalogue exclude.
+///
+/// ```
+/// use palpate_field::catalogue::Entry;
+/// use palpate_scene::described_primitive;
+///
+/// # fn main() -> Result<(), palpate_scene::SceneError> {
+/// let first = described_primitive(&Entry::<3>::ALL[0])?;
+/// assert!(first["parameters"][0]["key"].is_string());
+/// # Ok(())
+/// # }
+/// ```
+pub fn described_primitive<const D: usize>(entry: &Entry<D>) -> Result<Value, SceneError> {
+    let example = entry.example().map_err(|error| Problem::new(error.to_string()))?;
+    let promise = example.promise();
+    Ok(json!({
+        "name": entry.name,
+        "dimension": D,
+        "about": entry.about,
+        "origin": entry.origin,
+        "parameters": entry.parameters.iter().map(described).collect::<Vec<_>>(),
+        "promise": promise.in_words(),
+        "outside": promise.outside.word(),
+        "inside": promise.inside.word(),
+        "lipschitz": promise.lipschitz,
+        "convex": promise.convex,
+        "bounded": promise.bounds.is_some(),
+        "example": WrittenShape::of(&example)?,
+    }))
+}
+
+/// A parameter as scene files write it: angles in degrees, with a key that ends in `_degrees`.
+fn described(parameter: &Parameter) -> Value {
+    let unit = match parameter.kind.unit() {
+        Unit::Radian => "degrees",
+        unit => unit.symbol(),
+    };
+    json!({ "key": file_key(parameter), "unit": unit, "about": parameter.about })
 }

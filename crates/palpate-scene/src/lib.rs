@@ -67,6 +67,7 @@ mod write;
 mod written_material;
 
 pub use build::{AnyScene, BuiltBody, BuiltMotion, BuiltScene, BuiltTool};
+pub use catalogue::described_primitive;
 pub use device_file::{device_from_json, device_to_json};
 pub use encoding::{NotUtf8, utf8};
 pub use error::{SceneCause, SceneError, SceneProblem};

@@ -15,7 +15,6 @@ use palpate::query::Element;
 use super::circles::Circle;
 use super::element::{Answer, name_of};
 use super::written;
-use crate::input::promise_in_words;
 use crate::picture::{self, Dimensions, Drawable, in_space};
 use crate::plot::title;
 
@@ -68,7 +67,7 @@ fn caption<const N: usize, const D: usize>(shape: &Shape<D>, answer: &Answer<N, 
     let [value, lower, upper] = [found.value, certified.lower, certified.upper].map(written);
     let mut caption = format!(
         "{}. Found: {value}; proven: {lower} to {upper}. Ended {}.",
-        promise_in_words(shape.promise()),
+        shape.promise().in_words(),
         answer.ending.in_words(written),
     );
     for circle in answer.circles.all() {

@@ -13,7 +13,7 @@ use palpate::query::{
 use palpate::scene::BuiltScene;
 use serde_json::{Value, json};
 
-use crate::input::{AXES, joined, longest_edge, quality_in_words};
+use crate::input::{AXES, joined, longest_edge};
 use crate::outcome::Failure;
 
 /// How far apart the bounds of a gap may be, as a share of the scene's longest edge.
@@ -118,7 +118,7 @@ impl<const D: usize> Ball<D> {
             "evaluations": self.found.evaluations,
             "memoir_test": self.test(),
             "memoir_test_is_right": self.is_test_right(),
-            "quality": quality_in_words(self.quality),
+            "quality": self.quality.word(),
         })
     }
 

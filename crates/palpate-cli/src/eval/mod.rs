@@ -13,7 +13,7 @@ use palpate::query::{self, BallWorkspace};
 use palpate::scene::{AnyScene, BuiltScene};
 
 use crate::arguments::EvalOptions;
-use crate::input::{self, promise_in_words};
+use crate::input;
 use crate::interrupt::Interrupt;
 use crate::outcome::{Failure, Outcome};
 use crate::output::{self, Destination, Files};
@@ -59,7 +59,7 @@ fn evaluate<const D: usize>(
     let answer = query::evaluate_point(&scene.whole, point).map_err(Failure::input)?;
     let ball = balls.map(|balls| balls.ask(&answer, &mut BallWorkspace::new())).transpose()?;
     let mut out = output::answer();
-    let promise = promise_in_words(scene.whole.promise());
+    let promise = scene.whole.promise().in_words();
     if options.json {
         let mut object = answer::to_json(&answer);
         object["promise"] = promise.into();

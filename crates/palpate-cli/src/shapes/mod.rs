@@ -10,13 +10,10 @@ mod planes;
 use std::io::Write;
 
 use palpate::field::catalogue::Entry;
-use palpate::field::kernel::{Parameter, ParameterKind};
-use palpate::field::{Promise, Unit};
-use palpate::scene::WrittenShape;
-use serde_json::{Value, json};
+use palpate::scene::described_primitive;
+use serde_json::Value;
 
 use crate::arguments::{Dimension, ShapesOptions};
-use crate::input::{promise_in_words, quality_in_words};
 use crate::outcome::{Failure, Outcome};
 use crate::output;
 
@@ -48,44 +45,11 @@ pub(crate) fn run(options: &ShapesOptions) -> Result<Outcome, Failure> {
 }
 
 fn list<const D: usize>(entries: &[Entry<D>]) -> Result<Vec<Value>, Failure> {
+    let described = |entry| described_primitive(entry).map_err(Failure::input);
     entries.iter().map(described).collect()
 }
 
-fn described<const D: usize>(entry: &Entry<D>) -> Result<Value, Failure> {
-    let example = entry.example().map_err(Failure::input)?;
-    let promise: &Promise<D> = example.promise();
-    Ok(json!({
-        "name": entry.name,
-        "dimension": D,
-        "about": entry.about,
-        "origin": entry.origin,
-        "parameters": entry.parameters.iter().map(parameter).collect::<Vec<_>>(),
-        "promise": promise_in_words(promise),
-        "outside": quality_in_words(promise.outside),
-        "inside": quality_in_words(promise.inside),
-        "lipschitz": promise.lipschitz,
-        "convex": promise.convex,
-        "bounded": promise.bounds.is_some(),
-        "example": WrittenShape::of(&example).map_err(Failure::input)?,
-    }))
-}
-
-/// A parameter as scene files write it: angles in degrees, with a key that ends in `_degrees`.
-fn parameter(parameter: &Parameter) -> Value {
-    let is_angle = parameter.kind == ParameterKind::Angle;
-    let key = if is_angle {
-        format!("{}_degrees", parameter.name)
-    } else {
-        parameter.name.to_owned()
-    };
-    let unit = match parameter.kind.unit() {
-        Unit::Radian => "degrees",
-        unit => unit.symbol(),
-    };
-    json!({ "key": key, "unit": unit, "about": parameter.about })
-}
-
-/// Prints what [`described`] says.
+/// Prints a [`described_primitive`].
 fn say(out: &mut impl Write, row: &Value) -> Result<(), Failure> {
     let text = |key: &str| row[key].as_str().unwrap_or_default().to_owned();
     writeln!(out, "{} ({}D): {}", text("name"), row["dimension"], text("about"))?;

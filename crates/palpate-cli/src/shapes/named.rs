@@ -7,7 +7,7 @@ use std::io::Write;
 
 use palpate::field::catalogue::{ALIASES, Alias, Entry};
 use palpate::plot::Figure;
-use palpate::scene::{WrittenShape, unknown_name};
+use palpate::scene::{WrittenShape, described_primitive, unknown_name};
 use serde_json::{Value, json};
 
 use super::drawing;
@@ -86,8 +86,8 @@ impl Named {
 
     fn described(&self) -> Result<Vec<Value>, Failure> {
         let mut rows = Vec::new();
-        rows.extend(self.planar.map(super::described).transpose()?);
-        rows.extend(self.spatial.map(super::described).transpose()?);
+        rows.extend(self.planar.map(described_primitive).transpose().map_err(Failure::input)?);
+        rows.extend(self.spatial.map(described_primitive).transpose().map_err(Failure::input)?);
         Ok(rows)
     }
 

@@ -7,8 +7,8 @@ use std::fmt::Debug;
 use std::sync::Arc;
 
 use super::{
-    DifferentiateBlock, EvaluateBlock, EvaluatePoint, Field, Moved, SharedField, depth_over,
-    placed,
+    DifferentiateBlock, EvaluateBlock, EvaluatePoint, Field, Moved, RecordFormula, SharedField,
+    depth_over, placed,
 };
 use crate::error::ShapeError;
 use crate::machine::{Block, Column, Gradients, Job, Lane, run};
@@ -263,6 +263,20 @@ pub(super) fn placed_children<const D: usize>(
     children.iter().map(|child| placed(child, pose).ok()).collect()
 }
 
+impl<T: Float, O: Combine, const D: usize> RecordFormula<T, D> for Combined<O, D>
+where
+    dyn Field<D>: RecordFormula<T, D>,
+{
+    fn record(&self, p: Vector<Recorded<T>, D>) -> Option<Recorded<T>> {
+        let (first, others) = self.children.split_first()?;
+        let mut distance = first.record(p)?;
+        for child in others {
+            distance = self.operation.combine(distance, child.record(p)?);
+        }
+        Some(distance)
+    }
+}
+
 impl<O: Combine + Clone, const D: usize> Field<D> for Combined<O, D> {
     fn promise(&self) -> &Promise<D> {
         &self.promise
@@ -274,15 +288,6 @@ impl<O: Combine + Clone, const D: usize> Field<D> for Combined<O, D> {
 
     fn unplaced(&self) -> usize {
         self.children.iter().map(|child| child.unplaced()).sum()
-    }
-
-    fn record(&self, p: Vector<Recorded, D>) -> Option<Recorded> {
-        let (first, others) = self.children.split_first()?;
-        let mut distance = first.record(p)?;
-        for child in others {
-            distance = self.operation.combine(distance, child.record(p)?);
-        }
-        Some(distance)
     }
 
     fn placed(self: Arc<Self>, pose: &Pose<D>) -> Moved<D> {

@@ -5,7 +5,7 @@
 
 use std::sync::Arc;
 
-use super::{DifferentiateBlock, EvaluateBlock, EvaluatePoint, Field, Moved};
+use super::{DifferentiateBlock, EvaluateBlock, EvaluatePoint, Field, Moved, RecordFormula};
 use crate::machine::{Block, Column, Gradients, Lane};
 use crate::pose::Pose;
 use crate::promise::Promise;
@@ -153,6 +153,12 @@ impl<T: Float + Lane, F: CustomField<D>, const D: usize, const W: usize>
     }
 }
 
+impl<T: Float, F: CustomField<D>, const D: usize> RecordFormula<T, D> for Custom<F> {
+    fn record(&self, _p: Vector<Recorded<T>, D>) -> Option<Recorded<T>> {
+        None
+    }
+}
+
 impl<F: CustomField<D>, const D: usize> Field<D> for Custom<F> {
     fn promise(&self) -> &Promise<D> {
         self.0.promise()
@@ -160,10 +166,6 @@ impl<F: CustomField<D>, const D: usize> Field<D> for Custom<F> {
 
     fn depth(&self) -> usize {
         1
-    }
-
-    fn record(&self, _p: Vector<Recorded, D>) -> Option<Recorded> {
-        None
     }
 
     fn placed(self: Arc<Self>, _pose: &Pose<D>) -> Moved<D> {

@@ -5,7 +5,7 @@
 
 use std::sync::Arc;
 
-use super::{DifferentiateBlock, EvaluateBlock, EvaluatePoint, Field, Moved};
+use super::{DifferentiateBlock, EvaluateBlock, EvaluatePoint, Field, Moved, RecordFormula};
 use crate::kernel::Kernel;
 use crate::machine::{
     Block, Boxes, Column, Gradients, Job, Lane, PointJob, SHORT, run, run_point,
@@ -198,6 +198,13 @@ impl<T: Float + Lane, K: Kernel<D>, const D: usize, const W: usize> Differentiat
     }
 }
 
+impl<T: Float, K: Kernel<D>, const D: usize> RecordFormula<T, D> for Leaf<K, D> {
+    fn record(&self, p: Vector<Recorded<T>, D>) -> Option<Recorded<T>> {
+        let p = self.placement.as_ref().map_or(p, |placement| placement.to_body(p));
+        Some(self.kernel.distance(p))
+    }
+}
+
 impl<K: Kernel<D>, const D: usize> Field<D> for Leaf<K, D> {
     fn promise(&self) -> &Promise<D> {
         &self.promise
@@ -209,11 +216,6 @@ impl<K: Kernel<D>, const D: usize> Field<D> for Leaf<K, D> {
 
     fn unplaced(&self) -> usize {
         usize::from(self.placement.is_none())
-    }
-
-    fn record(&self, p: Vector<Recorded, D>) -> Option<Recorded> {
-        let p = self.placement.as_ref().map_or(p, |placement| placement.to_body(p));
-        Some(self.kernel.distance(p))
     }
 
     fn placed(self: Arc<Self>, pose: &Pose<D>) -> Moved<D> {

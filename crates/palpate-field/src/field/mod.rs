@@ -96,6 +96,12 @@ pub trait DifferentiateBlock<T: Float + Lane, const D: usize, const W: usize> {
     );
 }
 
+/// Gives the formula, for numbers of the precision of `T`.
+pub trait RecordFormula<T: Float, const D: usize> {
+    /// The formula of the field at `p`; `None` where a [`CustomField`] is part of it.
+    fn record(&self, p: Vector<Recorded<T>, D>) -> Option<Recorded<T>>;
+}
+
 /// A field after a motion that went into it, or the same field, if it takes none.
 pub type Moved<const D: usize> = Result<SharedField<D>, SharedField<D>>;
 
@@ -115,6 +121,8 @@ pub trait Field<const D: usize>:
     + DifferentiateBlock<f64, D, BLOCK>
     + DifferentiateBlock<f64, D, SHORT>
     + DifferentiateBlock<f32, D, BLOCK>
+    + RecordFormula<f64, D>
+    + RecordFormula<f32, D>
     + Debug
     + Send
     + Sync
@@ -125,9 +133,6 @@ pub trait Field<const D: usize>:
     /// How many operators are nested in the field, with the leaf; at most
     /// [`MAX_DEPTH`].
     fn depth(&self) -> usize;
-
-    /// The formula of the field at `p`; `None` where a [`CustomField`] is part of it.
-    fn record(&self, p: Vector<Recorded, D>) -> Option<Recorded>;
 
     /// The field moved by `pose`, if the motion can go into it at no cost.
     ///

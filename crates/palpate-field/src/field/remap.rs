@@ -7,7 +7,8 @@ use std::fmt::Debug;
 use std::sync::Arc;
 
 use super::{
-    DifferentiateBlock, EvaluateBlock, EvaluatePoint, Field, Moved, SharedField, depth_over,
+    DifferentiateBlock, EvaluateBlock, EvaluatePoint, Field, Moved, RecordFormula, SharedField,
+    depth_over,
 };
 use crate::error::ShapeError;
 use crate::machine::{Block, Column, Gradients, Job, Lane, run};
@@ -126,6 +127,15 @@ where
     }
 }
 
+impl<T: Float, M: Remap<D>, const D: usize> RecordFormula<T, D> for Remapped<M, D>
+where
+    dyn Field<D>: RecordFormula<T, D>,
+{
+    fn record(&self, p: Vector<Recorded<T>, D>) -> Option<Recorded<T>> {
+        Some(self.map.value(p, self.child.record(p)?))
+    }
+}
+
 impl<M: Remap<D>, const D: usize> Field<D> for Remapped<M, D> {
     fn promise(&self) -> &Promise<D> {
         &self.promise
@@ -133,10 +143,6 @@ impl<M: Remap<D>, const D: usize> Field<D> for Remapped<M, D> {
 
     fn depth(&self) -> usize {
         self.depth
-    }
-
-    fn record(&self, p: Vector<Recorded, D>) -> Option<Recorded> {
-        Some(self.map.value(p, self.child.record(p)?))
     }
 
     fn placed(self: Arc<Self>, _pose: &Pose<D>) -> Moved<D> {

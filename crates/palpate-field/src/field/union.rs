@@ -12,7 +12,8 @@ use std::sync::Arc;
 use super::combine::{Combine, GradientFold, Minimum, ValueFold, placed_children};
 use super::nearby::Nearby;
 use super::{
-    DifferentiateBlock, EvaluateBlock, EvaluatePoint, Field, Moved, SharedField, depth_over,
+    DifferentiateBlock, EvaluateBlock, EvaluatePoint, Field, Moved, RecordFormula, SharedField,
+    depth_over,
 };
 use crate::bounds::BoundingBall;
 use crate::error::ShapeError;
@@ -228,6 +229,18 @@ where
     }
 }
 
+impl<T: Float, const D: usize> RecordFormula<T, D> for Union<D>
+where
+    dyn Field<D>: RecordFormula<T, D>,
+{
+    fn record(&self, p: Vector<Recorded<T>, D>) -> Option<Recorded<T>> {
+        let (first, others) = self.members.split_first()?;
+        others.iter().try_fold(first.record(p)?, |least, member| {
+            Some(Minimum.combine(least, member.record(p)?))
+        })
+    }
+}
+
 impl<const D: usize> Field<D> for Union<D> {
     fn promise(&self) -> &Promise<D> {
         &self.promise
@@ -239,13 +252,6 @@ impl<const D: usize> Field<D> for Union<D> {
 
     fn unplaced(&self) -> usize {
         self.members.iter().map(|member| member.unplaced()).sum()
-    }
-
-    fn record(&self, p: Vector<Recorded, D>) -> Option<Recorded> {
-        let (first, others) = self.members.split_first()?;
-        others.iter().try_fold(first.record(p)?, |least, member| {
-            Some(Minimum.combine(least, member.record(p)?))
-        })
     }
 
     fn placed(self: Arc<Self>, pose: &Pose<D>) -> Moved<D> {

@@ -4,7 +4,8 @@
 //! Fields that evaluate their child at another point: transforms, mirrors, extrusion.
 
 use super::{
-    DifferentiateBlock, EvaluateBlock, EvaluatePoint, Field, Moved, SharedField, depth_over,
+    DifferentiateBlock, EvaluateBlock, EvaluatePoint, Field, Moved, RecordFormula, SharedField,
+    depth_over,
 };
 use crate::error::ShapeError;
 use crate::machine::{Block, Column, Gradients, Job, Lane, run};
@@ -180,6 +181,16 @@ where
     }
 }
 
+impl<T: Float, M: Warp<D, E>, const D: usize, const E: usize> RecordFormula<T, D>
+    for Warped<M, D, E>
+where
+    dyn Field<E>: RecordFormula<T, E>,
+{
+    fn record(&self, p: Vector<Recorded<T>, D>) -> Option<Recorded<T>> {
+        Some(self.map.value(p, self.child.record(self.map.point(p))?))
+    }
+}
+
 impl<M: Warp<D, E>, const D: usize, const E: usize> Field<D> for Warped<M, D, E> {
     fn promise(&self) -> &Promise<D> {
         &self.promise
@@ -191,10 +202,6 @@ impl<M: Warp<D, E>, const D: usize, const E: usize> Field<D> for Warped<M, D, E>
 
     fn unplaced(&self) -> usize {
         usize::from(!M::IS_MOTION)
-    }
-
-    fn record(&self, p: Vector<Recorded, D>) -> Option<Recorded> {
-        Some(self.map.value(p, self.child.record(self.map.point(p))?))
     }
 
     fn placed(self: Arc<Self>, pose: &Pose<D>) -> Moved<D> {

@@ -178,6 +178,14 @@ impl Operation {
         }
     }
 
+    /// Whether it holds numbers of a shape.
+    fn has_numbers(self) -> bool {
+        matches!(
+            self,
+            Self::Constant(_) | Self::SmoothMin { .. } | Self::NearestMultiple { .. }
+        )
+    }
+
     /// What tells operations of one kind apart: a negative zero is not a zero.
     fn parameters(self) -> (&'static str, [u64; 3]) {
         match self {
@@ -214,11 +222,23 @@ type Key = (Discriminant<Operation>, (&'static str, [u64; 3]), Vec<usize>);
 pub(super) struct Graph {
     steps: Vec<Step>,
     known: HashMap<Key, usize>,
+    /// Whether equal constants are steps of their own.
+    has_slots: bool,
 }
 
 impl Graph {
+    /// A graph in which each constant is a step of its own, and each operation with numbers of
+    /// its own too.
+    pub(super) fn with_slots() -> Self {
+        Self { has_slots: true, ..Self::default() }
+    }
+
     /// The number of the step that does this, a new one if there is none.
     pub(super) fn place(&mut self, operation: Operation, arguments: Vec<usize>) -> usize {
+        if self.has_slots && operation.has_numbers() {
+            self.steps.push(Step { operation, arguments });
+            return self.steps.len() - 1;
+        }
         let key = (discriminant(&operation), operation.parameters(), arguments.clone());
         match self.known.entry(key) {
             Entry::Occupied(known) => *known.get(),

@@ -4,10 +4,11 @@
 //! A number that records its own formula.
 
 use std::cell::RefCell;
+use std::marker::PhantomData;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 use super::expression::{Graph, Operation};
-use super::{Blend, Expression, Scalar};
+use super::{Blend, Expression, Float, Scalar};
 use crate::vector::Vector;
 
 thread_local! {
@@ -17,14 +18,19 @@ thread_local! {
 
 /// A number of which only its formula is known: operations on it are recorded.
 ///
-/// It has a meaning within the call of [`Expression::record`] that made it alone.
+/// It has a meaning within the call of [`Expression::record`] that made it alone. Thresholds
+/// of rounding in the formula are those of `T`, in which it will be evaluated.
 #[derive(Clone, Copy, Debug)]
-pub struct Recorded(usize);
+pub struct Recorded<T = f64> {
+    step: usize,
+    precision: PhantomData<T>,
+}
 
-impl Recorded {
+impl<T> Recorded<T> {
     fn new<const N: usize>(operation: Operation, arguments: [Self; N]) -> Self {
-        let arguments = arguments.iter().map(|x| x.0).collect();
-        GRAPH.with_borrow_mut(|graph| Self(graph.place(operation, arguments)))
+        let arguments = arguments.iter().map(|x| x.step).collect();
+        let step = GRAPH.with_borrow_mut(|graph| graph.place(operation, arguments));
+        Self { step, precision: PhantomData }
     }
 }
 
@@ -41,18 +47,33 @@ impl Expression {
     pub fn record<const D: usize>(
         formula: impl FnOnce(Vector<Recorded, D>) -> Option<Recorded>,
     ) -> Option<Self> {
+        Self::record_with(Graph::default(), formula)
+    }
+
+    /// As [`record`](Self::record), for single precision, and with each constant as a step of its
+    /// own.
+    pub(crate) fn record_with_slots<const D: usize>(
+        formula: impl FnOnce(Vector<Recorded<f32>, D>) -> Option<Recorded<f32>>,
+    ) -> Option<Self> {
+        Self::record_with(Graph::with_slots(), formula)
+    }
+
+    fn record_with<T: Float, const D: usize>(
+        graph: Graph,
+        formula: impl FnOnce(Vector<Recorded<T>, D>) -> Option<Recorded<T>>,
+    ) -> Option<Self> {
         // A formula may record another: the graph around it waits.
-        let around = GRAPH.take();
+        let around = GRAPH.replace(graph);
         let coordinate = |axis| Recorded::new(Operation::Coordinate(axis), []);
         let result = formula(Vector(std::array::from_fn(coordinate)));
         let graph = GRAPH.replace(around);
-        Some(graph.finish(result?.0))
+        Some(graph.finish(result?.step))
     }
 }
 
 macro_rules! arithmetic {
     ($($operator:ident $method:ident),*) => {
-        $(impl $operator for Recorded {
+        $(impl<T> $operator for Recorded<T> {
             type Output = Self;
 
             fn $method(self, other: Self) -> Self {
@@ -64,7 +85,7 @@ macro_rules! arithmetic {
 
 arithmetic!(Add add, Sub sub, Mul mul, Div div);
 
-impl Neg for Recorded {
+impl<T> Neg for Recorded<T> {
     type Output = Self;
 
     fn neg(self) -> Self {
@@ -72,8 +93,8 @@ impl Neg for Recorded {
     }
 }
 
-impl Scalar for Recorded {
-    const EPSILON: f64 = f64::EPSILON;
+impl<T: Float> Scalar for Recorded<T> {
+    const EPSILON: f64 = T::EPSILON;
 
     fn constant(value: f64) -> Self {
         Self::new(Operation::Constant(value), [])

@@ -181,6 +181,28 @@ impl<const D: usize> Shape<D> {
         Expression::record(|p| self.field.record(p))
     }
 
+    /// The formula for a shader: as [`formula`](Self::formula), with thresholds of rounding of single
+    /// precision, and with each number of the shape as a step of its own.
+    ///
+    /// So the formulas of shapes that differ in a size or a place alone differ in numbers alone: a
+    /// shader whose numbers are uniforms need not be compiled again. Equal numbers can be merged
+    /// by whoever writes the shader.
+    ///
+    /// ```
+    /// use palpate_field::Shape;
+    ///
+    /// # fn main() -> Result<(), palpate_field::ShapeError> {
+    /// let formula = |width: f64| Shape::rectangle([width, 0.5]).map(|shape| shape.shader_formula());
+    /// let (square, other) = (formula(0.5)?.unwrap(), formula(0.25)?.unwrap());
+    /// assert_eq!(square.steps().len(), other.steps().len());
+    /// # Ok(())
+    /// # }
+    /// ```
+    #[must_use]
+    pub fn shader_formula(&self) -> Option<Expression> {
+        Expression::record_with_slots(|p| self.field.record(p))
+    }
+
     /// How many operators are nested in the shape, with the leaf; at most
     /// [`MAX_DEPTH`].
     #[must_use]

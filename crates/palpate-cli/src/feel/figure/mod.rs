@@ -20,7 +20,7 @@ use super::asked;
 use super::moved;
 use super::slices::{FeltSlice, felt_slices};
 use super::vibration::Vibration;
-use crate::input::{self, promise_in_words};
+use crate::input;
 use crate::numbers::rounded;
 use crate::outcome::Failure;
 use crate::picture::{self, Dimensions, Drawable, Picture};
@@ -107,7 +107,7 @@ where
     }
 
     fn caption(&self, slices: &[FeltSlice], has_tool: bool) -> String {
-        let mut caption = promise_in_words(self.scene.whole.promise());
+        let mut caption = self.scene.whole.promise().in_words();
         if let Some(slice) = slices.iter().find(|slice| slice.near.is_finite()) {
             let near = (1e3 * slice.near * 1e6).round() / 1e6;
             caption.push_str(&format!(
