@@ -8,7 +8,7 @@
  * @typedef {import('./wire.js').Frame} Frame
  * @typedef {import('./wire.js').Message} Message
  * @typedef {'connection' | 'welcome' | 'scene' | 'way' | 'frame' | 'selection' | 'view' |
- *   'events' | 'notice' | 'theme' | 'playback'} Topic
+ *   'events' | 'notice' | 'theme' | 'playback' | 'touch' | 'clients' | 'problems'} Topic
  * @typedef {'space' | 'slice' | 'plane' | 'compare'} ViewMode
  */
 
@@ -32,6 +32,23 @@ export const state = {
   history: [],
   /** Where in the history the page looks; null while it follows. @type {number | null} */
   lookingAt: null,
+  /** What the servo did, oldest first, the last 200. @type {Message[]} */
+  events: [],
+  /** Pages that are open on this program. */
+  clients: 1,
+  /** What was wrong with the last refused edit, by JSON pointer. @type {Map<string, string>} */
+  problems: new Map(),
+  touch: {
+    /** What leads the hand. @type {'pointer' | 'gamepad' | 'keys'} */
+    input: 'pointer',
+    /** The contact point that leads; null for the middle of all. @type {number | null} */
+    point: null,
+    tour: true,
+    rumble: true,
+    vibration: true,
+    sound: false,
+    volume: 0.4,
+  },
   /** The JSON pointer of the selected part of the scene. @type {string | null} */
   selection: null,
   view: {
@@ -103,6 +120,12 @@ export function lookAt(index) {
 export function setView(change) {
   Object.assign(state.view, change);
   changed('view');
+}
+
+/** Changes how the scene is touched. @param {Partial<typeof state.touch>} change */
+export function setTouch(change) {
+  Object.assign(state.touch, change);
+  changed('touch');
 }
 
 /** Selects a part of the scene by its JSON pointer. @param {string | null} pointer */

@@ -193,7 +193,7 @@ export class Wire {
     }
   }
 
-  /** @param {{ id: number }} message */
+  /** @param {Message | Grid | Picture} message */
   answer(message) {
     const asker = this.waiting.get(message.id);
     this.waiting.delete(message.id);

@@ -1,0 +1,113 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+// @ts-check
+
+/**
+ * The keys of the page, in one table, which the help shows too.
+ *
+ * `where` says when a key counts: `anywhere`; `outside`, unless a text or number is typed, a
+ * slider or list has the focus; `free`, when no control at all has it.
+ *
+ * @typedef {'anywhere' | 'outside' | 'free'} Where
+ * @typedef {{ keys: string[], shown: string, text: string, where: Where, does: string,
+ *   control?: boolean }} Key
+ */
+
+import { axesSeen, letGo, push } from './steer.js';
+import { state } from '../state.js';
+
+/** @type {Key[]} */
+export const KEYS = [
+  { keys: ['Escape'], shown: 'Esc', text: 'stop all forces, wherever the focus is', where: 'anywhere', does: 'stop' },
+  { keys: ['p', 'P'], shown: 'P', text: 'hold the time, or go on', where: 'outside', does: 'hold' },
+  { keys: [' '], shown: 'Space', text: 'the same, when no control has the focus', where: 'free', does: 'hold' },
+  { keys: ['s', 'S'], shown: 'S', text: 'slow motion, 0.25×', where: 'outside', does: 'slow' },
+  { keys: ['.'], shown: '.', text: 'one step while held', where: 'outside', does: 'step' },
+  { keys: [','], shown: ',', text: 'back through what was', where: 'outside', does: 'back' },
+  { keys: ['Home'], shown: 'Home', text: 'follow the present again', where: 'outside', does: 'follow' },
+  { keys: ['1'], shown: '1', text: '3D view', where: 'outside', does: 'space' },
+  { keys: ['2'], shown: '2', text: 'slice', where: 'outside', does: 'slice' },
+  { keys: ['3'], shown: '3', text: 'plane', where: 'outside', does: 'plane' },
+  { keys: ['4'], shown: '4', text: 'compare two bodies', where: 'outside', does: 'compare' },
+  { keys: ['f', 'F'], shown: 'F', text: 'show the whole scene', where: 'outside', does: 'fit' },
+  { keys: ['z', 'Z'], shown: 'Ctrl Z', text: 'undo', where: 'outside', does: 'undo', control: true },
+  { keys: ['y', 'Y'], shown: 'Ctrl Y', text: 'redo', where: 'outside', does: 'redo', control: true },
+  { keys: ['s', 'S'], shown: 'Ctrl S', text: 'save the scene', where: 'anywhere', does: 'save', control: true },
+  { keys: ['?', 'F1'], shown: '? or F1', text: 'this help', where: 'outside', does: 'help' },
+];
+
+/** Keys that move the hand while they are held: to the right, up, away. @type {Record<string, number[]>} */
+const MOVES = {
+  ArrowLeft: [-1, 0, 0], ArrowRight: [1, 0, 0], ArrowDown: [0, -1, 0], ArrowUp: [0, 1, 0],
+  PageDown: [0, 0, 1], PageUp: [0, 0, -1],
+};
+
+/** What the table does not hold, for the help. */
+export const MOVE_HELP = [
+  { shown: '← → ↑ ↓', text: 'move the hand; while looking back ← and → go from frame to frame' },
+  { shown: 'Page ↑ Page ↓', text: 'move the hand nearer and away, in depth' },
+  { shown: 'Shift', text: 'with these: a quarter of the speed' },
+];
+
+const TYPED = 'input:not([type=checkbox]):not([type=button]), textarea, select, [contenteditable]';
+const WITH_ARROWS = `${TYPED}, [role=tree], [role=tablist], [role=treeitem], [data-own-keys]`;
+const CONTROL = `${TYPED}, input, button, a, summary, [role=treeitem], [role=tab]`;
+
+/** @param {EventTarget | null} target @param {Where} where */
+function counts(target, where) {
+  if (where === 'anywhere' || !(target instanceof Element)) return true;
+  return !target.closest(where === 'free' ? CONTROL : TYPED);
+}
+
+/** Listens for keys. @param {Record<string, () => void>} actions one for each `does` */
+export function listenKeys(actions) {
+  /** @type {Set<string>} */
+  const held = new Set();
+  let isSlow = false;
+  let isRunning = false;
+
+  const run = () => {
+    if (held.size === 0 || state.lookingAt !== null) {
+      isRunning = false;
+      letGo();
+      return;
+    }
+    const speeds = [0, 1, 2].map((axis) =>
+      (isSlow ? 0.25 : 1) * [...held].reduce((sum, key) => sum + MOVES[key][axis], 0));
+    push(speeds, axesSeen());
+    requestAnimationFrame(run);
+  };
+
+  // In the capturing phase, so that nothing can keep Escape to itself.
+  addEventListener('keydown', (event) => {
+    isSlow = event.shiftKey;
+    const isControl = event.ctrlKey || event.metaKey;
+    const isRedo = isControl && event.shiftKey && event.key.toLowerCase() === 'z';
+    const key = KEYS.find((one) =>
+      one.keys.includes(event.key) && Boolean(one.control) === isControl && counts(event.target, one.where));
+    if (key && !event.altKey) {
+      if (key.does !== 'stop') event.preventDefault();
+      actions[isRedo ? 'redo' : key.does]?.();
+      return;
+    }
+    if (!(event.key in MOVES) || isControl || event.altKey) return;
+    if (event.target instanceof Element && event.target.closest(WITH_ARROWS)) return;
+    event.preventDefault();
+    if (state.lookingAt !== null) {
+      if (event.key === 'ArrowLeft') actions.back?.();
+      if (event.key === 'ArrowRight') actions.forth?.();
+      return;
+    }
+    if (state.touch.input !== 'keys') actions.useKeys?.();
+    held.add(event.key);
+    if (!isRunning) {
+      isRunning = true;
+      requestAnimationFrame(run);
+    }
+  }, { capture: true });
+  addEventListener('keyup', (event) => {
+    isSlow = event.shiftKey;
+    held.delete(event.key);
+  }, { capture: true });
+  addEventListener('blur', () => held.clear());
+}

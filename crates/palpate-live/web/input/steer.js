@@ -1,0 +1,65 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+// @ts-check
+
+/**
+ * The hand as keys and gamepads lead it: a target that moves at a speed.
+ *
+ * @typedef {{ right: number[], up: number[], away: number[] }} Axes unit vectors in space
+ */
+
+import { extent } from '../panels/numbers.js';
+import { page } from '../panels/page.js';
+import { state } from '../state.js';
+import { createHand } from './hand.js';
+
+/** The time that the hand takes across the scene at full speed [s]. */
+const CROSSING = 3;
+/** The longest time between two frames that counts [s]: after a pause the hand does not jump. */
+const LONGEST = 0.05;
+
+/** @type {ReturnType<typeof createHand> | null} */
+let hand = null;
+/** @type {[number, number, number] | null} */
+let target = null;
+let last = 0;
+
+/** Where the hand is [m]: the point that leads, or the middle of all.
+ * @returns {[number, number, number] | null} */
+function handPlace() {
+  const points = state.frame?.points ?? [];
+  const { point } = state.touch;
+  const own = point === null ? points : points.slice(point, point + 1);
+  if (own.length === 0) return null;
+  const mean = (/** @type {number} */ axis) =>
+    own.reduce((sum, { device }) => sum + device[axis], 0) / own.length;
+  return [mean(0), mean(1), mean(2)];
+}
+
+/** Moves the hand on for a frame. `speeds` are from −1 to 1: to the right, up, and away.
+ * @param {number[]} speeds @param {Axes} axes */
+export function push(speeds, axes) {
+  const now = performance.now();
+  const seconds = Math.min((now - last) / 1000, LONGEST);
+  last = now;
+  target ??= handPlace();
+  if (!target || !state.scene || !page.wire) return;
+  hand ??= createHand(page.wire);
+  const reach = (extent(state.scene.bounds) / CROSSING) * seconds;
+  const ways = [axes.right, axes.up, axes.away];
+  for (const axis of [0, 1, 2]) {
+    target[axis] += reach * ways.reduce((sum, way, index) => sum + way[axis] * speeds[index], 0);
+  }
+  hand.lead([...target]);
+}
+
+/** Lets go of the hand. */
+export function letGo() {
+  target = null;
+  hand?.release();
+}
+
+/** The axes of the picture: of the stage if it tells them, else those of the world. @returns {Axes} */
+export function axesSeen() {
+  return page.stage?.axes?.() ?? { right: [1, 0, 0], up: [0, 1, 0], away: [0, 0, -1] };
+}

@@ -1,0 +1,169 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+// @ts-check
+
+/** Puts the page together: the token, the socket, the panels, the picture, and the keys. */
+
+import { startGamepad } from './input/gamepad.js';
+import { listenKeys } from './input/keys.js';
+import * as actions from './panels/actions.js';
+import { Checks } from './panels/checks.js';
+import { takeScene } from './panels/edits.js';
+import { Status, takeEvents } from './panels/events.js';
+import { Header, startTheme } from './panels/header.js';
+import { Help } from './panels/help.js';
+import { followLink, takeAddress } from './panels/link.js';
+import { page, tell } from './panels/page.js';
+import { Time } from './panels/play.js';
+import { startProfile } from './panels/profile.js';
+import { Selected } from './panels/selected.js';
+import { Tabs } from './panels/tabs.js';
+import { Toasts, Words } from './panels/toasts.js';
+import { Touch } from './panels/touch.js';
+import { Tree } from './panels/tree.js';
+import { ViewBar } from './panels/view.js';
+import { createStage } from './scene/stage.js';
+import { changed, listen, lookAt, setTouch, setView, state, takeFrame } from './state.js';
+import { html, render } from './vendor/htm-preact.js';
+import { VERSION, Wire } from './wire.js';
+
+/** @param {string} id @returns {HTMLElement} */
+function place(id) {
+  return /** @type {HTMLElement} */ (document.getElementById(id));
+}
+
+/** @param {import('./wire.js').Message} message */
+function takeMessage(message) {
+  if (message.do === 'welcome') takeWelcome(message);
+  if (message.do === 'scene') takeScene(message);
+  if (message.do === 'way' && message.revision === state.scene?.revision) {
+    state.way = message.way;
+    changed('way');
+  }
+  if (message.do === 'events') takeEvents(message.events);
+  if (message.do === 'clients') {
+    state.clients = message.count;
+    changed('clients');
+  }
+  if (message.do === 'notice') {
+    tell(message.message, 'bad');
+    changed('notice');
+  }
+  // The answer to a question without a number: what failed was nobody's in particular.
+  if (message.do === 'refused') tell(message.message, 'bad');
+}
+
+/** @param {import('./wire.js').Message} message */
+function takeWelcome(message) {
+  if (message.version !== VERSION) {
+    tell(`The program speaks version ${message.version} of the protocol, this page ${VERSION}: reload the page.`, 'bad');
+  }
+  state.welcome = message;
+  changed('welcome');
+}
+
+/** What follows from a new scene: a title, and a view that suits it. */
+function suitView() {
+  const { scene, view } = state;
+  if (!scene) return;
+  document.title = `${scene.name} · palpate`;
+  const isPlane = scene.dimension === 2;
+  if (isPlane && (view.mode === 'space' || view.mode === 'slice')) setView({ mode: 'plane' });
+  const last = scene.bodies.length - 1;
+  if (view.compared.some((body) => body > last)) {
+    setView({ compared: view.compared.map((body) => Math.max(0, Math.min(body, last))) });
+  }
+  if (scene.restarted) tell(`The servo began again${scene.why ? `: ${scene.why}` : ''}. Forces rise from zero.`);
+  if (scene.by === 'file') tell('The file was changed elsewhere; the page shows it as it is now.');
+}
+
+/** @param {string} token */
+function connect(token) {
+  page.token = token;
+  page.wire = new Wire(token, {
+    frame: (frame) => {
+      const start = performance.now();
+      takeFrame(frame);
+      performance.measure('take a frame', { start, end: performance.now() });
+    },
+    message: takeMessage,
+    connection: (connection, why) => {
+      state.connection = connection;
+      state.why = why ?? '';
+      changed('connection');
+      if (connection === 'live' && document.hidden) page.wire?.send({ do: 'hidden', is: true });
+    },
+  });
+  page.stage = createStage(place('stage'), page.wire);
+}
+
+function toggleHelp() {
+  const overlay = place('overlay');
+  const close = () => render(null, overlay);
+  if (overlay.childElementCount > 0) close();
+  else render(html`<${Help} close=${close} />`, overlay);
+}
+
+/** Takes a file that is dropped anywhere. */
+function takeDrops() {
+  addEventListener('dragover', (event) => {
+    event.preventDefault();
+    document.body.classList.add('dropping');
+  });
+  addEventListener('dragleave', (event) => {
+    if (event.relatedTarget === null) document.body.classList.remove('dropping');
+  });
+  addEventListener('drop', (event) => {
+    event.preventDefault();
+    document.body.classList.remove('dropping');
+    const [file] = event.dataTransfer?.files ?? [];
+    if (file) void actions.openFile(file);
+  });
+}
+
+const { token, given } = takeAddress();
+startTheme();
+startProfile();
+render(html`<${Header} help=${toggleHelp} />`, place('header'));
+render(html`<${Tabs} main=${place('main')} />`, place('tabs'));
+render(html`<${Tree} />`, place('shapes'));
+render(html`<${Touch} />`, place('touch'));
+render(html`<${ViewBar} />`, place('view'));
+render(html`<${Selected} />`, place('selected'));
+render(html`<${Checks} />`, place('checks'));
+render(html`<${Time} />`, place('time'));
+render(html`<${Status} />`, place('status'));
+render(html`<${Toasts} />`, place('toasts'));
+render(html`<${Words} start=${connect} />`, place('words'));
+listen(['scene'], suitView);
+takeDrops();
+startGamepad();
+listenKeys({
+  stop: actions.stop,
+  hold: actions.hold,
+  slow: actions.slow,
+  step: actions.step,
+  back: () => actions.lookBy(-1),
+  forth: () => actions.lookBy(1),
+  follow: () => lookAt(null),
+  space: () => actions.setMode('space'),
+  slice: () => actions.setMode('slice'),
+  plane: () => actions.setMode('plane'),
+  compare: () => actions.setMode('compare'),
+  fit: () => page.stage?.fit(),
+  undo: actions.undo,
+  redo: actions.redo,
+  save: () => void actions.save(),
+  help: toggleHelp,
+  useKeys: () => setTouch({ input: 'keys' }),
+});
+document.addEventListener('visibilitychange', () =>
+  page.wire?.send({ do: 'hidden', is: document.hidden }));
+
+if (token === '') {
+  state.connection = 'closed';
+  changed('connection');
+} else {
+  connect(token);
+}
+if (given.size > 0) void followLink(given);

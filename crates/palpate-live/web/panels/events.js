@@ -1,0 +1,78 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+// @ts-check
+
+/**
+ * What the servo did, in words, and what its safety chain does.
+ *
+ * @typedef {import('../wire.js').Message} Message
+ */
+
+import { html } from '../vendor/htm-preact.js';
+import { changed, state } from '../state.js';
+import { short } from './numbers.js';
+import { useTopics } from './page.js';
+
+/** Events that are kept. */
+const KEPT = 200;
+/** How long the safety line tells of an action [ms]. */
+const FRESH = 3000;
+
+const ACTIONS = /limit|slew|passiv|ramp|stop|watchdog|guard|heat|continuous|cycle|safety|held/i;
+
+let number = 0;
+/** @type {{ at: number, text: string } | null} */
+let lastAction = null;
+
+/** Takes events that the program sent. @param {Message[]} events */
+export function takeEvents(events) {
+  for (const event of events) {
+    number += 1;
+    const kind = String(event.kind ?? event.event ?? event.do ?? 'event');
+    state.events.push({ ...event, kind, number });
+    if (ACTIONS.test(kind)) lastAction = { at: performance.now(), text: inWords({ ...event, kind }) };
+  }
+  state.events.splice(0, Math.max(0, state.events.length - KEPT));
+  changed('events');
+}
+
+/** @param {Message} event */
+function inWords(event) {
+  if (typeof event.message === 'string') return event.message;
+  if (typeof event.text === 'string') return event.text;
+  const body = event.body === undefined ? '' : state.scene?.bodies?.[event.body]?.name ?? event.body;
+  const force = typeof event.force === 'number' ? `${short(event.force)} N` : '';
+  return [event.kind.replace(/_/g, ' '), body, force].filter(Boolean).join(' · ');
+}
+
+export function Events() {
+  useTopics(['events'], 100);
+  const shown = state.events.slice(-80).reverse();
+  return html`<ol class="events" tabindex="0" aria-label="Events, newest first">
+    ${shown.length === 0 && html`<li class="quiet">nothing happened yet</li>`}
+    ${shown.map((event) => html`<li key=${event.number} class=${ACTIONS.test(event.kind) ? 'action' : ''}>
+      <span class="when">${typeof event.time === 'number' ? `${event.time.toFixed(3)} s` : ''}</span>
+      ${inWords(event)}${event.point ? ` · point ${event.point + 1}` : ''}</li>`)}
+  </ol>`;
+}
+
+/** The line at the foot: what the safety chain does, in words. */
+export function Status() {
+  useTopics(['frame', 'scene', 'events', 'connection'], 200);
+  const { scene, connection } = state;
+  const newest = state.history[state.history.length - 1];
+  const limit = scene?.device?.max_force;
+  const isFresh = lastAction && performance.now() - lastAction.at < FRESH;
+  const safety = connection !== 'live' ? 'not connected' : newest?.stopped ? 'stopped, all forces are zero'
+    : isFresh ? lastAction?.text : newest?.acted ? 'the chain changed a force' : 'ok';
+  const isCalm = safety === 'ok';
+  return html`
+    <span class=${isCalm ? 'safety' : 'safety acting'}>safety: <b>${safety}</b></span>
+    ${limit !== undefined && html`<span>force limit ${short(limit)} N</span>`}
+    ${newest && html`<span>kept back ${short(1000 * newest.kept)} mJ</span>`}
+    ${newest && newest.lost > 0 && html`<span>${newest.lost} events lost</span>`}
+    <span class="gap"></span>
+    ${scene && html`<span>${scene.ops ?? '–'} operations</span>`}
+    ${scene && html`<span>revision ${scene.revision}</span>`}
+    ${scene?.restarted && html`<span title=${scene.why}>the servo began again</span>`}`;
+}

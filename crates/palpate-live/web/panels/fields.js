@@ -1,0 +1,207 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+// @ts-check
+
+/**
+ * Fields: a number with slider and drag, a choice, a text, a switch.
+ *
+ * @typedef {object} NumberGiven
+ * @property {string} label
+ * @property {number} value
+ * @property {(value: number, moving: boolean) => void} change
+ * @property {string} [unit]
+ * @property {number} [min]
+ * @property {number} [max]
+ * @property {boolean} [above] whether `min` itself is not allowed
+ * @property {boolean} [whole]
+ * @property {number} [scale] a typical value: gives the slider its range, the drag its speed
+ * @property {boolean} [slider]
+ * @property {string} [help]
+ * @property {string | null} [problem]
+ */
+
+import { html, useEffect, useRef, useState } from '../vendor/htm-preact.js';
+import { parsed, short, typed } from './numbers.js';
+
+/** Pixels of a drag across the typical value. */
+const DRAG_PIXELS = 150;
+/** How far a pointer moves before a press becomes a drag [px]. */
+const DRAG_START = 4;
+
+let nextId = 0;
+
+/** A number for the ids of a field. */
+export function useId() {
+  return useState(() => {
+    nextId += 1;
+    return nextId;
+  })[0];
+}
+
+/** The range of a slider: what the schema allows, else around the value. @param {NumberGiven} given */
+function rangeOf({ value, min, max, scale = 0, whole }) {
+  const reach = 2 * Math.max(Math.abs(value), scale / 2) || 1;
+  return {
+    low: min ?? -reach,
+    high: max ?? (whole ? Math.max(Math.ceil(reach), (min ?? 0) + 10) : reach),
+  };
+}
+
+/** @param {number} value @param {NumberGiven} given */
+function allowed(value, { min = -Infinity, max = Infinity, above, whole }) {
+  const lowest = above && Number.isFinite(min) ? min + 1e-9 * Math.max(1, Math.abs(min)) : min;
+  const kept = Math.min(Math.max(value, lowest), max);
+  return whole ? Math.round(kept) : Number(kept.toPrecision(6));
+}
+
+/** A number that is typed, dragged sideways, stepped by arrow keys, or slid.
+ * @param {NumberGiven} given */
+export function NumberField(given) {
+  const { label, value, change, unit = '', help, problem, slider = true } = given;
+  const id = useId();
+  const [draft, setDraft] = useState(/** @type {number | null} */ (null));
+  const [text, setText] = useState(/** @type {string | null} */ (null));
+  const range = useRef(rangeOf(given));
+  // A new value may be outside the range of before; while it moves the range rests.
+  useEffect(() => {
+    if (draft === null) range.current = rangeOf(given);
+  }, [value, given.min, given.max]);
+  useEffect(() => setDraft(null), [value]);
+  const shown = draft ?? value;
+  const { low, high } = range.current;
+
+  const go = (/** @type {number} */ next, /** @type {boolean} */ moving) => {
+    const kept = allowed(next, given);
+    setDraft(kept);
+    change(kept, moving);
+  };
+  const finish = () => {
+    const next = text === null ? null : parsed(text);
+    setText(null);
+    // What is typed goes to the program as it is, which says what is wrong with it.
+    if (next !== null && next !== value) {
+      setDraft(next);
+      change(next, false);
+    }
+  };
+  const key = (/** @type {KeyboardEvent} */ event) => {
+    if (event.key === 'Enter') finish();
+    const turn = { ArrowUp: 1, ArrowDown: -1 }[event.key];
+    if (turn === undefined) return;
+    event.preventDefault();
+    const size = given.whole ? 1 : step(Math.abs(shown) || (high - low) / 20);
+    setText(null);
+    go(shown + turn * size * (event.shiftKey ? 10 : 1), false);
+  };
+  const press = (/** @type {PointerEvent} */ event) => {
+    const field = /** @type {HTMLInputElement} */ (event.currentTarget);
+    if (document.activeElement === field || event.button !== 0) return;
+    const perPixel = Math.max(Math.abs(shown), (high - low) / 20) / DRAG_PIXELS;
+    let isDrag = false;
+    let last = shown;
+    const move = (/** @type {PointerEvent} */ now) => {
+      const way = now.clientX - event.clientX;
+      if (!isDrag && Math.abs(way) < DRAG_START) return;
+      isDrag = true;
+      last = shown + way * perPixel * (now.shiftKey ? 0.1 : 1);
+      go(last, true);
+    };
+    const end = () => {
+      field.removeEventListener('pointermove', move);
+      field.removeEventListener('pointerup', end);
+      field.removeEventListener('pointercancel', end);
+      if (isDrag) {
+        field.blur();
+        go(last, false);
+      }
+    };
+    field.setPointerCapture(event.pointerId);
+    field.addEventListener('pointermove', move);
+    field.addEventListener('pointerup', end);
+    field.addEventListener('pointercancel', end);
+  };
+  const sliderValue = (/** @type {Event} */ event) =>
+    Number(/** @type {HTMLInputElement} */ (event.currentTarget).value);
+
+  return html`<div class=${problem ? 'field wrong' : 'field'}>
+    <label for=${`f${id}`} title=${help}>${label}${unit && html` <span class="unit">[${unit}]</span>`}</label>
+    <input id=${`f${id}`} class="number" type="text" inputmode="decimal" autocomplete="off"
+      value=${text ?? short(shown, 6)} title=${`${help ?? label}: drag sideways, or type`}
+      aria-invalid=${problem ? 'true' : undefined} aria-describedby=${problem ? `p${id}` : undefined}
+      onFocus=${(/** @type {any} */ event) => { setText(typed(shown)); event.currentTarget.select(); }}
+      onInput=${(/** @type {any} */ event) => setText(event.currentTarget.value)}
+      onBlur=${finish} onKeyDown=${key} onPointerDown=${press} />
+    ${slider && html`<input type="range" class="slider" min=${low} max=${high}
+      step=${given.whole ? 1 : step((high - low) / 500)} value=${shown} aria-label=${label}
+      aria-valuetext=${`${short(shown)} ${unit}`}
+      onInput=${(/** @type {Event} */ event) => go(sliderValue(event), true)}
+      onChange=${(/** @type {Event} */ event) => go(sliderValue(event), false)} />`}
+    ${problem && html`<p class="problem" id=${`p${id}`}>${problem}</p>`}
+  </div>`;
+}
+
+/** A round step near a tenth of a size: 1, 2 or 5 times a power of ten. @param {number} size */
+function step(size) {
+  const power = 10 ** Math.floor(Math.log10(size / 10));
+  const rest = size / 10 / power;
+  return Number(((rest >= 5 ? 5 : rest >= 2 ? 2 : 1) * power).toPrecision(1));
+}
+
+/** Numbers side by side, one for each axis.
+ * @param {{ label: string, value: number[], change: (value: number[], moving: boolean) => void,
+ *   unit?: string, names?: string[], help?: string, problem?: string | null, scale?: number,
+ *   min?: number, above?: boolean }} given */
+export function VectorField({ label, value, change, names = ['x', 'y', 'z', 'w'], ...rest }) {
+  const { unit, help, problem, ...limits } = rest;
+  return html`<fieldset class=${problem ? 'vector wrong' : 'vector'} title=${help}>
+    <legend>${label}${unit && html` <span class="unit">[${unit}]</span>`}</legend>
+    ${value.map((number, axis) => html`<${NumberField} key=${axis} label=${names[axis] ?? String(axis)}
+      value=${number} slider=${false} ...${limits}
+      change=${(/** @type {number} */ next, /** @type {boolean} */ moving) =>
+        change(value.map((old, at) => (at === axis ? next : old)), moving)} />`)}
+    ${problem && html`<p class="problem">${problem}</p>`}
+  </fieldset>`;
+}
+
+/** @param {{ label: string, value: string, choices: (string | [string, string])[],
+ *   change: (value: string) => void, help?: string, problem?: string | null }} given */
+export function ChoiceField({ label, value, choices, change, help, problem }) {
+  const id = useId();
+  return html`<div class=${problem ? 'field wrong' : 'field'}>
+    <label for=${`f${id}`} title=${help}>${label}</label>
+    <select id=${`f${id}`} value=${value} title=${help}
+      onChange=${(/** @type {any} */ event) => change(event.currentTarget.value)}>
+      ${choices.map((choice) => {
+        const [key, name] = Array.isArray(choice) ? choice : [choice, choice.replace(/_/g, ' ')];
+        return html`<option key=${key} value=${key} selected=${key === value}>${name}</option>`;
+      })}
+    </select>
+    ${problem && html`<p class="problem">${problem}</p>`}
+  </div>`;
+}
+
+/** A text that is told when it is finished.
+ * @param {{ label: string, value: string, change: (value: string) => void, long?: boolean,
+ *   help?: string, problem?: string | null }} given */
+export function TextField({ label, value, change, long, help, problem }) {
+  const id = useId();
+  const end = (/** @type {any} */ event) => {
+    if (event.currentTarget.value !== value) change(event.currentTarget.value);
+  };
+  const Tag = long ? 'textarea' : 'input';
+  return html`<div class=${problem ? 'field text wrong' : 'field text'}>
+    <label for=${`f${id}`} title=${help}>${label}</label>
+    <${Tag} id=${`f${id}`} rows=${long ? 3 : undefined} value=${value} onChange=${end} />
+    ${problem && html`<p class="problem">${problem}</p>`}
+  </div>`;
+}
+
+/** @param {{ label: string, value: boolean, change: (value: boolean) => void, help?: string,
+ *   disabled?: boolean }} given */
+export function Switch({ label, value, change, help, disabled }) {
+  return html`<label class="switch" title=${help}>
+    <input type="checkbox" checked=${value} disabled=${disabled}
+      onChange=${(/** @type {any} */ event) => change(event.currentTarget.checked)} />
+    <span>${label}</span>
+  </label>`;
+}

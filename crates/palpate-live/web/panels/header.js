@@ -1,0 +1,141 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+// @ts-check
+
+/** The line at the top: the scene, the device, the connection, and the stop button. */
+
+import { html, useEffect, useRef, useState } from '../vendor/htm-preact.js';
+import { changed, state } from '../state.js';
+import * as actions from './actions.js';
+import { copyLink } from './link.js';
+import { page, tellError, useTopics } from './page.js';
+
+const THEME = 'palpate-theme';
+
+/** The theme in use. */
+export function isDark() {
+  const chosen = document.documentElement.dataset.theme;
+  return chosen ? chosen === 'dark' : matchMedia('(prefers-color-scheme: dark)').matches;
+}
+
+/** Takes the theme that was chosen before, and follows the system's. */
+export function startTheme() {
+  const chosen = localStorage.getItem(THEME);
+  if (chosen) document.documentElement.dataset.theme = chosen;
+  matchMedia('(prefers-color-scheme: dark)').addEventListener('change', () => changed('theme'));
+}
+
+function toggleTheme() {
+  const theme = isDark() ? 'light' : 'dark';
+  document.documentElement.dataset.theme = theme;
+  localStorage.setItem(THEME, theme);
+  changed('theme');
+}
+
+/** @param {{ help: () => void }} given */
+export function Header({ help }) {
+  useTopics(['connection', 'scene', 'theme', 'welcome']);
+  const { scene, welcome } = state;
+  return html`
+    <h1 class="brand"><img src="favicon.svg" alt="" width="20" height="20" />palpate</h1>
+    <${Menu} />
+    <span class="device" title="The device that the hand holds, and how often its force is computed">
+      ${scene?.device ? deviceInWords(scene.device) : ''}${welcome?.rate ? ` · ${rateInWords(welcome.rate)}` : ''}
+    </span>
+    <${Connection} />
+    <span class="gap"></span>
+    <button class="plain" onClick=${toggleTheme} aria-label=${isDark() ? 'Light theme' : 'Dark theme'}
+      title=${isDark() ? 'Light theme' : 'Dark theme'}>
+      <svg viewBox="0 0 16 16" width="16" height="16" aria-hidden="true"><circle cx="8" cy="8" r="6.5" fill="none"
+        stroke="currentColor" stroke-width="1.5" /><path d="M8 1.5a6.5 6.5 0 0 1 0 13z" fill="currentColor" /></svg>
+    </button>
+    <button class="plain" onClick=${help} aria-label="Help" title="Help: ? or F1">?</button>
+    <${StopButton} />`;
+}
+
+/** @param {any} device */
+function deviceInWords(device) {
+  const points = device.points > 1 ? `, ${device.points} points` : '';
+  return `${device.name}${points}${device.assumed?.length ? ', in part assumed' : ''}`;
+}
+
+/** @param {number} rate */
+function rateInWords(rate) {
+  return rate >= 1000 ? `${rate / 1000} kHz` : `${rate} Hz`;
+}
+
+function Connection() {
+  const words = { connecting: 'connecting', live: 'live', lost: 'lost', closed: 'not connected' };
+  return html`<span class=${`connection ${state.connection}`} role="status">
+    <span class="dot" aria-hidden="true"></span>${words[state.connection]}</span>`;
+}
+
+/** Stops; once stopped it gives the forces back. */
+function StopButton() {
+  useTopics(['frame', 'connection'], 50);
+  const isStopped = state.history[state.history.length - 1]?.stopped ?? false;
+  if (isStopped && state.connection === 'live') {
+    return html`<button id="stop" class="stop stopped" onClick=${actions.release}>forces are zero — release</button>`;
+  }
+  return html`<button id="stop" class="stop" onClick=${actions.stop} title="All forces to zero: Esc">
+    <span class="square" aria-hidden="true"></span>STOP</button>`;
+}
+
+/** The scene's name, and what can be done with its file. */
+function Menu() {
+  useTopics(['scene', 'notice']);
+  const [isOpen, setIsOpen] = useState(false);
+  const box = useRef(/** @type {HTMLElement | null} */ (null));
+  const file = useRef(/** @type {HTMLInputElement | null} */ (null));
+  const { scene, welcome } = state;
+  useEffect(() => {
+    if (!isOpen) return undefined;
+    const close = (/** @type {Event} */ event) => {
+      const isWithin = event.target instanceof Element && box.current?.contains(event.target);
+      if (!isWithin || (event instanceof KeyboardEvent && event.key === 'Escape')) setIsOpen(false);
+    };
+    addEventListener('pointerdown', close);
+    addEventListener('keydown', close);
+    return () => {
+      removeEventListener('pointerdown', close);
+      removeEventListener('keydown', close);
+    };
+  }, [isOpen]);
+  const item = (/** @type {string} */ name, /** @type {() => unknown} */ run, disabled = false, key = '') => html`
+    <li><button disabled=${disabled} onClick=${async () => {
+      try {
+        await run();
+      } catch (error) {
+        tellError(error);
+      }
+      setIsOpen(page.shownLink !== '');
+    }}>${name}${key && html` <kbd>${key}</kbd>`}</button></li>`;
+  const gallery = welcome?.gallery ?? [];
+  return html`<div class="menu" ref=${box}>
+    <button class="scene-name" aria-expanded=${String(isOpen)} onClick=${() => setIsOpen(!isOpen)}
+      title=${scene?.file ?? 'This scene has no file'}>
+      ${scene?.name ?? 'no scene'}${scene && !scene.is_saved ? html`<span class="unsaved" title="not saved"> •</span>` : ''}
+      <span class="caret open" aria-hidden="true"></span>
+    </button>
+    <input type="file" hidden accept=".json,application/json" ref=${file} aria-label="Scene file"
+      onChange=${(/** @type {any} */ event) => {
+        const [chosen] = event.currentTarget.files;
+        event.currentTarget.value = '';
+        if (chosen) void actions.openFile(chosen);
+      }} />
+    ${isOpen && html`<ul class="menu-list">
+      ${item('Open a file…', () => file.current?.click())}
+      ${item('Save', () => actions.save(), scene?.file === null, 'Ctrl S')}
+      ${item('Download the scene', actions.downloadScene, !scene)}
+      ${item('Download the picture', actions.downloadPicture, !scene)}
+      ${item('Copy a link to this view', copyLink, !scene)}
+      ${item('Undo', actions.undo, !scene?.can_undo, 'Ctrl Z')}
+      ${item('Redo', actions.redo, !scene?.can_redo, 'Ctrl Y')}
+      ${page.shownLink && html`<li class="link"><label>Link <input readonly value=${page.shownLink}
+        onFocus=${(/** @type {any} */ event) => event.currentTarget.select()} /></label></li>`}
+      ${gallery.length > 0 && html`<li class="menu-title">Gallery</li>`}
+      ${gallery.map((/** @type {any} */ one) => item(one.title ?? one.name, () =>
+        actions.openText(one.name, one.text)))}
+    </ul>`}
+  </div>`;
+}

@@ -1,0 +1,41 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+// @ts-check
+
+/** The help over the page, with the table of keys. */
+
+import { html, useEffect, useRef } from '../vendor/htm-preact.js';
+import { KEYS, MOVE_HELP } from '../input/keys.js';
+
+/** @type {[string, string][]} */
+const TEXTS = [
+  ['Touch', 'Press on the picture: the hand follows the pointer, and a spring draws the device after it. The surface pushes back, so pointer and device part. A second finger or the wheel moves in depth.'],
+  ['Stop', 'Esc, or the red button: all forces are zero within two ticks. The same button gives them back, rising from zero.'],
+  ['Change', 'Select a part in the tree. Drag a number sideways, type it, or move its slider; what the program refuses stands below the field. Each drag is one step to undo.'],
+  ['Look back', 'The page keeps a minute. Move the slider of the play bar, or press on a chart; “follow” returns to now. The servo goes on meanwhile.'],
+  ['Colours', 'Distances are negative inside, zero on the surface, positive outside. “exact” promises the distance itself, “bound” never more than it, “Lipschitz” never more than so many times it.'],
+  ['Charts', 'Drag over a chart to see less time, press twice to see all. One cursor is in all four.'],
+];
+
+/** @param {{ close: () => void }} given */
+export function Help({ close }) {
+  const dialog = useRef(/** @type {HTMLDialogElement | null} */ (null));
+  useEffect(() => {
+    dialog.current?.showModal();
+  }, []);
+  return html`<dialog class="help" ref=${dialog} aria-labelledby="help-title" onClose=${close}
+    onClick=${(/** @type {any} */ event) => event.target === dialog.current && dialog.current?.close()}>
+    <div class="help-body">
+      <div class="panel-head"><h2 id="help-title">Help</h2>
+        <button onClick=${() => dialog.current?.close()}>close</button></div>
+      <div class="help-columns">
+        <table><caption>Keys</caption><tbody>
+          ${[...KEYS, ...MOVE_HELP].map(({ shown, text }) => html`<tr key=${shown}>
+            <th scope="row"><kbd>${shown}</kbd></th><td>${text}</td></tr>`)}
+          <tr><th scope="row"><kbd>stick</kbd></th><td>of a gamepad: moves the hand; triggers: depth; B: let go</td></tr>
+        </tbody></table>
+        <dl>${TEXTS.map(([title, text]) => html`<dt key=${title}>${title}</dt><dd>${text}</dd>`)}</dl>
+      </div>
+    </div>
+  </dialog>`;
+}

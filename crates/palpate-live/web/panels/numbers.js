@@ -1,0 +1,57 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+// @ts-check
+
+/** Numbers as the page writes them. */
+
+/** A number with three digits, as `%.3g` writes it, and a true minus sign.
+ * @param {number | null | undefined} value @param {number} [digits] */
+export function short(value, digits = 3) {
+  if (value === null || value === undefined || Number.isNaN(value)) return '–';
+  if (!Number.isFinite(value)) return value > 0 ? '∞' : '−∞';
+  return String(Number(value.toPrecision(digits))).replace('-', '−');
+}
+
+/** A number for a field that is typed into. @param {number} value */
+export function typed(value) {
+  return String(Number(value.toPrecision(9)));
+}
+
+/** The number in a text, or null. @param {string} text */
+export function parsed(text) {
+  const plain = text.trim().replace(/[−–]/g, '-').replace(',', '.');
+  const value = Number(plain);
+  return plain === '' || !Number.isFinite(value) ? null : value;
+}
+
+/** A count with thin gaps. @param {number} value */
+export function count(value) {
+  return Math.round(value).toString().replace(/\B(?=(\d{3})+$)/g, '\u202f');
+}
+
+/** A time in the unit that suits it. @param {number | null | undefined} seconds */
+export function time(seconds) {
+  if (seconds === null || seconds === undefined || !Number.isFinite(seconds)) return '–';
+  const size = Math.abs(seconds);
+  if (size < 1e-3) return `${short(seconds * 1e6)} µs`;
+  if (size < 1) return `${short(seconds * 1e3)} ms`;
+  return `${short(seconds)} s`;
+}
+
+/** The size of the scene [m]: the diagonal of its bounds; 1 if it has none.
+ * @param {any} bounds */
+export function extent(bounds) {
+  const corners = cornersOf(bounds);
+  if (!corners) return 1;
+  const size = Math.hypot(...corners.max.map((max, axis) => max - corners.min[axis]));
+  return Number.isFinite(size) && size > 0 ? size : 1;
+}
+
+/** The corners of bounds, as the program writes them.
+ * @param {any} bounds @returns {{ min: number[], max: number[] } | null} */
+export function cornersOf(bounds) {
+  if (!bounds) return null;
+  const min = bounds.min ?? bounds.min_m ?? bounds[0];
+  const max = bounds.max ?? bounds.max_m ?? bounds[1];
+  return Array.isArray(min) && Array.isArray(max) ? { min, max } : null;
+}

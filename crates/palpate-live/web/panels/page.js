@@ -1,0 +1,108 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+// @ts-check
+
+/**
+ * What all panels use: the wire, the stage, messages to a person, and drawing anew when
+ * something changes.
+ *
+ * @typedef {import('../wire.js').Wire} Wire
+ * @typedef {import('../wire.js').Message} Message
+ * @typedef {import('../state.js').Topic} Topic
+ * @typedef {{ fit(): void, setCamera(name: string): void, exportPng(): Promise<Blob>,
+ *   focus(): void, axes?(): { right: number[], up: number[], away: number[] } }} Stage
+ * @typedef {{ id: number, kind: 'word' | 'bad', text: string, stays: boolean,
+ *   action?: { name: string, run: () => void } }} Toast
+ */
+
+import { useEffect, useReducer } from '../vendor/htm-preact.js';
+import { listen } from '../state.js';
+
+/** How long a message stays [ms]. */
+const TOAST_TIME = 6000;
+
+/** @type {{ wire: Wire | null, stage: Stage | null, token: string, shownLink: string }} */
+export const page = { wire: null, stage: null, token: '', shownLink: '' };
+
+/** @type {Toast[]} */
+export let toasts = [];
+/** @type {Set<() => void>} */
+const toastListeners = new Set();
+let nextToast = 1;
+
+/** @param {Toast[]} next */
+function setToasts(next) {
+  toasts = next;
+  toastListeners.forEach((listener) => listener());
+}
+
+/** Calls `listener` when messages change. @param {() => void} listener */
+export function listenToasts(listener) {
+  toastListeners.add(listener);
+  return () => void toastListeners.delete(listener);
+}
+
+/** @param {number} id */
+export function dismiss(id) {
+  setToasts(toasts.filter((toast) => toast.id !== id));
+}
+
+/** Tells a person something; the same text is not told twice at once.
+ * @param {string} text @param {'word' | 'bad'} [kind]
+ * @param {{ name: string, run: () => void }} [action] with an action the message stays */
+export function tell(text, kind = 'word', action) {
+  if (toasts.some((toast) => toast.text === text)) return;
+  const id = nextToast;
+  nextToast += 1;
+  setToasts([...toasts.slice(-3), { id, kind, text, action, stays: action !== undefined }]);
+  if (!action) setTimeout(() => dismiss(id), kind === 'bad' ? 2 * TOAST_TIME : TOAST_TIME);
+}
+
+/** Tells why something failed. @param {unknown} error */
+export function tellError(error) {
+  tell(error instanceof Error ? error.message : String(error), 'bad');
+}
+
+/** Asks the program; tells a refusal, and then gives null.
+ * @param {Message} message @returns {Promise<Message | null>} */
+export async function ask(message) {
+  if (!page.wire) return null;
+  try {
+    return await page.wire.ask(message);
+  } catch (error) {
+    tellError(error);
+    return null;
+  }
+}
+
+/** Draws a component anew after changes of the topics, at most every `interval` [ms].
+ * @param {Topic[]} topics @param {number} [interval] */
+export function useTopics(topics, interval = 0) {
+  const [, redraw] = useReducer((/** @type {number} */ count) => count + 1, 0);
+  useEffect(() => {
+    let timer = 0;
+    const stop = listen(topics, () => {
+      if (interval === 0) {
+        redraw(undefined);
+      } else if (timer === 0) {
+        timer = setTimeout(() => {
+          timer = 0;
+          redraw(undefined);
+        }, interval);
+      }
+    });
+    return () => {
+      stop();
+      clearTimeout(timer);
+    };
+  }, []);
+}
+
+/** Gives a file to the person. @param {Blob} blob @param {string} name */
+export function download(blob, name) {
+  const link = document.createElement('a');
+  link.href = URL.createObjectURL(blob);
+  link.download = name;
+  link.click();
+  setTimeout(() => URL.revokeObjectURL(link.href), 1000);
+}

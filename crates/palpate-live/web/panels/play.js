@@ -1,0 +1,103 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+// @ts-check
+
+/** The play bar, the charts' tabs, and the counters. */
+
+import { html, useEffect, useRef, useState } from '../vendor/htm-preact.js';
+import { lookAt, state } from '../state.js';
+import * as actions from './actions.js';
+import { Charts } from './charts.js';
+import { Events } from './events.js';
+import { count, short } from './numbers.js';
+import { useTopics } from './page.js';
+import { Profile } from './profile.js';
+
+/** Between two updates [ms]. */
+const INTERVAL = 100;
+
+export function Time() {
+  const [tab, setTab] = useState('charts');
+  const tabs = [['charts', 'Charts'], ['events', 'Events'], ['profile', 'Profile']];
+  return html`
+    <${PlayBar} />
+    <div class="time-tabs" role="group" aria-label="Below the play bar">
+      ${tabs.map(([key, name]) => html`<button key=${key} class="small" aria-pressed=${String(tab === key)}
+        onClick=${() => setTab(key)}>${name}</button>`)}
+      <${Counters} />
+    </div>
+    <div class="time-body">
+      ${tab === 'charts' ? html`<${Charts} />` : tab === 'events' ? html`<${Events} />` : html`<${Profile} />`}
+    </div>`;
+}
+
+function PlayBar() {
+  useTopics(['frame', 'playback', 'scene'], INTERVAL);
+  const { history, lookingAt, frame } = state;
+  const newest = history[history.length - 1];
+  const last = Math.max(history.length - 1, 0);
+  const at = lookingAt ?? last;
+  const isFollowing = lookingAt === null;
+  const isHeld = newest?.held ?? false;
+  const ago = newest && frame ? frame.time - newest.time : 0;
+  const words = !isFollowing ? `looking back ${short(-ago)} s`
+    : newest?.stopped ? 'stopped: forces are zero' : isHeld ? 'time is held' : 'following';
+  return html`<div class="play">
+    <button class="small" onClick=${() => actions.lookBy(-1)} aria-label="One frame back" title="One frame back: ,"
+      disabled=${history.length === 0}>◂</button>
+    <button class="small" onClick=${actions.hold} title="Hold the servo's time, or go on: P" aria-pressed=${String(isHeld)}>
+      ${isHeld ? 'go on' : 'hold'}</button>
+    <button class="small" onClick=${actions.step} title="One step of the servo: ." disabled=${!isHeld}>step</button>
+    <button class="small" onClick=${() => lookAt(null)} title="Follow the present: Home" aria-pressed=${String(isFollowing)}>
+      follow</button>
+    <span class=${isFollowing ? 'play-words' : 'play-words replay'}>${words}</span>
+    <input type="range" class="slider scrub" min="0" max=${last} value=${at} aria-label="Look back"
+      aria-valuetext=${isFollowing ? 'now' : `${short(-ago)} s ago`} disabled=${last === 0}
+      onInput=${(/** @type {any} */ event) => lookAt(Number(event.currentTarget.value))} />
+    <span class="unit time-shown">${frame ? `${frame.time.toFixed(2)} s` : '–'}</span>
+    <select class="small" aria-label="Speed of time" title="Slow motion: S; refused on a device"
+      value=${String(actions.clock.speed)}
+      onChange=${(/** @type {any} */ event) => void actions.setSpeed(Number(event.currentTarget.value))}>
+      ${[1, 0.25, 0.1].map((speed) => html`<option key=${speed} value=${String(speed)}
+        selected=${speed === actions.clock.speed}>${speed}×</option>`)}
+    </select>
+    <button class=${newest?.recording ? 'small recording' : 'small'} aria-pressed=${String(newest?.recording ?? false)}
+      onClick=${actions.record} title="Keep every tick">${newest?.recording ? 'recording' : 'record'}</button>
+    <button class="small" onClick=${actions.downloadTrace} title="What was recorded, as CSV">CSV</button>
+    <button class="small" onClick=${actions.downloadPicture} title="The picture as PNG">PNG</button>
+  </div>`;
+}
+
+/** Frames and ticks a second, evaluations and pages. */
+function Counters() {
+  useTopics(['clients']);
+  const [shown, setShown] = useState({ drawn: 0, ticks: 0 });
+  const seen = useRef({ frames: 0, tick: 0, at: 0 });
+  useEffect(() => {
+    let isOver = false;
+    const each = () => {
+      seen.current.frames += 1;
+      if (!isOver) requestAnimationFrame(each);
+    };
+    requestAnimationFrame(each);
+    const timer = setInterval(() => {
+      const now = performance.now();
+      const seconds = (now - seen.current.at) / 1000;
+      const tick = state.history[state.history.length - 1]?.tick ?? 0;
+      const ticks = seen.current.at === 0 ? 0 : Math.max(0, (tick - seen.current.tick) / seconds);
+      setShown({ drawn: seen.current.frames / seconds, ticks });
+      seen.current = { frames: 0, tick, at: now };
+    }, 1000);
+    return () => {
+      isOver = true;
+      clearInterval(timer);
+    };
+  }, []);
+  const { frame } = state;
+  return html`<span class="counters">
+    <span>${Math.round(shown.drawn)} frames/s</span>
+    <span>${count(shown.ticks)} ticks/s</span>
+    <span>${count(frame?.evaluations ?? 0)} evaluations a tick</span>
+    <span>${state.clients} ${state.clients === 1 ? 'page' : 'pages'}</span>
+  </span>`;
+}

@@ -1,0 +1,138 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+// @ts-check
+
+/** The selected part with all its numbers. */
+
+import { html } from '../vendor/htm-preact.js';
+import { select, state } from '../state.js';
+import { hasName, rename } from './changes.js';
+import { edit, problemAt } from './edits.js';
+import { ChoiceField, TextField } from './fields.js';
+import { Form, named } from './form.js';
+import { listOf, makerOf, partAt, partsOfScene } from './nodes.js';
+import { cornersOf, short } from './numbers.js';
+import { useTopics } from './page.js';
+import { parts, schemaAt, schemaOf, valueAt, within, withoutUnit } from './schema.js';
+
+export function Selected() {
+  useTopics(['scene', 'selection', 'problems']);
+  const tree = partsOfScene();
+  const part = state.selection === null ? null : partAt(tree, state.selection);
+  const value = part ? valueAt(part.pointer) : undefined;
+  if (!part || value === undefined || part.kind === 'group') return html`<${Nothing} part=${part} />`;
+  const name = part.pointer.startsWith('/shapes/') ? parts(part.pointer)[1] : value.name;
+  return html`
+    <div class="panel-head"><h2 title=${part.pointer}>${part.kind === 'other' ? heading(part.pointer) : part.label}</h2></div>
+    <div class="scroll" tabindex="0" role="region" aria-label="Fields">
+      ${problemAt(part.pointer) && html`<p class="problem">${problemAt(part.pointer)}</p>`}
+      ${hasName(part.pointer) && html`<${TextField} label="name" value=${name}
+        problem=${problemAt(within(part.pointer, 'name'))}
+        change=${(/** @type {string} */ to) => rename(part.pointer, to)} />`}
+      ${part.kind === 'body' ? html`<${Body} pointer=${part.pointer} body=${value} />`
+        : part.kind === 'shape' ? html`<${Shape} key=${part.pointer} pointer=${part.pointer} />`
+          : html`<${Form} key=${part.pointer} pointer=${part.pointer} value=${value}
+              node=${schemaAt(part.pointer)} skip=${['name', 'shape']} />`}
+    </div>`;
+}
+
+/** @param {string} pointer */
+function heading(pointer) {
+  const [list, index] = parts(pointer);
+  return index === undefined ? named(list) : `${named(list).replace(/s$/, '')} ${Number(index) + 1}`;
+}
+
+/** What is shown while nothing is selected: the scene itself.
+ * @param {{ part: import('./nodes.js').Part | null }} given */
+function Nothing({ part }) {
+  const { scene } = state;
+  if (!scene) return html`<div class="panel-head"><h2>Selected</h2></div>`;
+  const bounds = cornersOf(scene.bounds);
+  const size = bounds?.max.map((max, axis) => short(max - bounds.min[axis])).join(' × ');
+  return html`
+    <div class="panel-head"><h2>${part?.label ?? 'Scene'}</h2></div>
+    <div class="scroll" tabindex="0" role="region" aria-label="Fields">
+      <${TextField} label="description" long value=${scene.scene.description ?? ''}
+        change=${(/** @type {string} */ to) => edit([to === '' ? { at: '/description' } : { at: '/description', to }])} />
+      <dl class="facts">
+        <dt>dimension</dt><dd>${scene.dimension}</dd>
+        <dt>size</dt><dd>${size ? `${size} m` : 'endless'}</dd>
+        <dt>bodies</dt><dd>${scene.bodies.length}</dd>
+        <dt>operations</dt><dd>${scene.ops ?? '–'}</dd>
+        <dt>Lipschitz</dt><dd>${short(scene.lipschitz)}</dd>
+        <dt>drawn by</dt><dd>${drawnBy()}</dd>
+      </dl>
+      <p class="quiet">Select a part in the tree, or in the picture, to see and change its numbers.</p>
+    </div>`;
+}
+
+function drawnBy() {
+  const { way } = state;
+  if (way?.kind === 'formula') return 'the formula, exactly';
+  if (way?.kind === 'samples') return `samples: ${way.why}`;
+  if (way?.kind === 'drawn') return `the program: ${way.why}`;
+  return '–';
+}
+
+/** @param {{ pointer: string, body: any }} given */
+function Body({ pointer, body }) {
+  const index = Number(parts(pointer)[1]);
+  const known = state.scene?.bodies?.[index];
+  const node = schemaAt(pointer);
+  const presets = state.welcome?.materials;
+  const names = (Array.isArray(presets) ? presets : Object.keys(presets ?? {}))
+    .map((/** @type {any} */ one) => (typeof one === 'string' ? one : one.name));
+  const material = typeof body.material === 'string' ? body.material : body.material ? 'own' : 'default';
+  const take = (/** @type {string} */ to) => {
+    const at = within(pointer, 'material');
+    if (to === 'default') edit([{ at }]);
+    else edit([{ at, to: to === 'own' ? { stiffness: 500, damping: 1 } : to }]);
+  };
+  return html`
+    <p class="promise">promise: <b>${known?.promise ?? '–'}</b></p>
+    <button class="small" onClick=${() => select(within(pointer, 'shape'))}>its shape</button>
+    <${ChoiceField} label="material" value=${material} change=${take}
+      choices=${[['default', 'default'], ...names.map((name) => [name, name.replace(/_/g, ' ')]), ['own', 'own numbers']]}
+      problem=${typeof body.material === 'object' ? null : problemAt(within(pointer, 'material'))} />
+    <${Form} key=${pointer} pointer=${pointer} value=${body} node=${node}
+      skip=${['name', 'shape', ...(typeof body.material === 'object' ? [] : ['material'])]} />`;
+}
+
+/** A shape: its moves and turns, and then the primitive or operator below them.
+ * @param {{ pointer: string }} given */
+function Shape({ pointer }) {
+  const value = valueAt(pointer);
+  if (typeof value === 'string') {
+    const names = Object.keys(state.scene?.scene.shapes ?? {});
+    return html`<${ChoiceField} label="shape" value=${value} choices=${names.map((name) => [name, name])}
+        problem=${problemAt(pointer)} change=${(/** @type {string} */ to) => edit([{ at: pointer, to }])} />
+      <button class="small" onClick=${() => select(within('/shapes', value))}>show it</button>`;
+  }
+  const maker = makerOf(value) ?? '';
+  const node = schemaAt(pointer);
+  const isPrimitive = listOf(value) === null && value.of === undefined && maker !== 'shape';
+  const about = state.welcome?.catalogue?.find((/** @type {any} */ entry) => entry.name === maker);
+  const place = within(pointer, maker);
+  const isPlace = ['translate', 'rotate_degrees', 'rotation'].includes(maker);
+  const ownKeys = isPrimitive ? ['description'] : Object.keys(value).filter((key) => key !== 'of' && key !== listOf(value));
+  const shownNode = { ...node, properties: Object.fromEntries(
+    ['description', ...ownKeys, ...(maker.startsWith('smooth') ? ['profile'] : []), ...extraPlaces(value)]
+      .map((key) => [key, node.properties?.[key]]).filter(([, inner]) => inner)),
+    required: [maker, ...(isPlace ? [] : ownKeys.filter((key) => !['profile', 'description'].includes(key)))] };
+  const skip = ['of', ...(listOf(value) ? [listOf(value)] : []), ...(isPrimitive ? [maker] : [])];
+  return html`<div class="shape">
+    <p class="quiet">${withoutUnit(node.properties?.[maker]?.description)}</p>
+    ${isPrimitive && html`<${Form} pointer=${place} value=${value[maker]} node=${schemaOf(node, value, maker)}
+      addable=${false} />`}
+    <${Form} pointer=${pointer} value=${value} node=${shownNode} skip=${skip} />
+    ${about && html`<p class="promise" title=${about.origin}>promise: <b>${about.promise}</b>; origin: ${about.origin}</p>`}
+    ${isPlace && html`<h3>${makerOf(value.of) ? named(makerOf(value.of) ?? '') : value.of}</h3>
+      <${Shape} pointer=${within(pointer, 'of')} />`}
+  </div>`;
+}
+
+/** Moves and turns may share an object. @param {any} value */
+function extraPlaces(value) {
+  if (value.translate !== undefined && value.rotation === undefined) return ['rotate_degrees'];
+  return value.rotate_degrees !== undefined || value.rotation !== undefined ? ['translate'] : [];
+}

@@ -1,0 +1,57 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+// @ts-check
+
+/** Messages that come and go, and what the page says while it cannot work. */
+
+import { html, useEffect, useReducer, useState } from '../vendor/htm-preact.js';
+import { state } from '../state.js';
+import { tokenIn } from './link.js';
+import { dismiss, listenToasts, toasts, useTopics } from './page.js';
+
+export function Toasts() {
+  const [, redraw] = useReducer((/** @type {number} */ count) => count + 1, 0);
+  useEffect(() => listenToasts(() => redraw(undefined)), []);
+  return html`${toasts.map(({ id, kind, text, action }) => html`<div key=${id} class=${`toast ${kind}`}>
+    <span>${text}</span>
+    ${action && html`<button class="small" onClick=${() => {
+      dismiss(id);
+      action.run();
+    }}>${action.name}</button>`}
+    <button class="small" aria-label="Close the message" onClick=${() => dismiss(id)}>×</button>
+  </div>`)}`;
+}
+
+/** The state of the page in words, over the picture, while there is one to tell.
+ * @param {{ start: (token: string) => void }} given */
+export function Words({ start }) {
+  useTopics(['connection', 'scene', 'playback']);
+  const { connection, scene } = state;
+  if (connection === 'closed') return html`<${NoToken} start=${start} />`;
+  if (connection === 'lost') {
+    return html`<div class="words bad"><b>The program has ended${state.why ? `: ${state.why}` : ''}.</b>
+      Start it again, and this page comes back. No force is given meanwhile.</div>`;
+  }
+  if (connection === 'connecting') return html`<div class="words">Connecting to the program…</div>`;
+  if (scene && (scene.bodies ?? []).length === 0) {
+    return html`<div class="words">The scene is empty: add a body with “add…”, or open a file.</div>`;
+  }
+  return null;
+}
+
+/** @param {{ start: (token: string) => void }} given */
+function NoToken({ start }) {
+  const [text, setText] = useState('');
+  return html`<form class="words" onSubmit=${(/** @type {Event} */ event) => {
+    event.preventDefault();
+    const token = tokenIn(text);
+    if (token) start(token);
+  }}>
+    <b>This page needs the token of the program.</b>
+    <p>A program that moves a hand obeys only who knows its token. <code>palpate live</code> prints an address
+      such as <code>${location.origin}/#…</code> where it was started: open that one, or paste it here.</p>
+    <label>Address or token <input value=${text} autocomplete="off" spellcheck=${false}
+      onInput=${(/** @type {any} */ event) => setText(event.currentTarget.value)} /></label>
+    <button>Connect</button>
+  </form>`;
+}

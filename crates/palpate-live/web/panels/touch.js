@@ -1,0 +1,70 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+// @ts-check
+
+/** How the scene is touched, and what is felt. */
+
+import { html } from '../vendor/htm-preact.js';
+import { setSound, setVolume } from '../input/audio.js';
+import { firstPad } from '../input/gamepad.js';
+import { setTouch, state } from '../state.js';
+import { ChoiceField, Switch } from './fields.js';
+import { short } from './numbers.js';
+import { page, useTopics } from './page.js';
+
+/** Between two updates of the numbers [ms]: faster ones cannot be read. */
+const INTERVAL = 100;
+
+export function Touch() {
+  useTopics(['touch', 'scene']);
+  const { touch } = state;
+  const points = state.scene?.device?.points ?? 1;
+  return html`
+    <div class="panel-head"><h2>Touch</h2><${Tour} /></div>
+    <div class="scroll" tabindex="0" role="region" aria-label="Touch settings">
+    <${Readout} />
+    <${ChoiceField} label="led by" value=${touch.input}
+      choices=${[['pointer', 'mouse, touch, pen'], ['gamepad', padName()], ['keys', 'arrow keys']]}
+      change=${(/** @type {typeof touch.input} */ input) => setTouch({ input })} />
+    ${points > 1 && html`<${ChoiceField} label="point" value=${String(touch.point ?? 'all')}
+      choices=${[['all', 'the middle of all'], ...Array.from({ length: points }, (_, at) => [String(at), `point ${at + 1}`])]}
+      change=${(/** @type {string} */ to) => setTouch({ point: to === 'all' ? null : Number(to) })} />`}
+    <div class="switches">
+      <${Switch} label="rumble" help="The gamepad shakes with the force" value=${touch.rumble}
+        change=${(/** @type {boolean} */ rumble) => setTouch({ rumble })} />
+      <${Switch} label="vibration" help="The telephone or tablet shakes at events"
+        value=${touch.vibration && 'vibrate' in navigator} disabled=${!('vibrate' in navigator)}
+        change=${(/** @type {boolean} */ vibration) => setTouch({ vibration })} />
+      <button class="small" aria-pressed=${String(touch.sound)} onClick=${() => setSound(!touch.sound)}>
+        sound ${touch.sound ? 'on' : 'off'}</button>
+      ${touch.sound && html`<input type="range" class="slider" min="0" max="1" step="0.05" value=${touch.volume}
+        aria-label="Volume" onInput=${(/** @type {any} */ event) => setVolume(Number(event.currentTarget.value))} />`}
+    </div>
+    </div>`;
+}
+
+function padName() {
+  const pad = firstPad();
+  return pad ? `gamepad: ${pad.id.replace(/\s*\(.*/, '')}` : 'gamepad (press a button on it)';
+}
+
+function Tour() {
+  useTopics(['frame'], INTERVAL);
+  const isOn = state.frame?.touring ?? false;
+  return html`<${Switch} label="tour" value=${isOn} help="A hand that nobody leads goes along the bodies"
+    change=${(/** @type {boolean} */ on) => page.wire?.send({ do: 'tour', on })} />`;
+}
+
+/** Force, depth and body in large numbers. */
+function Readout() {
+  useTopics(['frame', 'scene'], INTERVAL);
+  const { frame, scene } = state;
+  const touched = frame?.points.filter((point) => point.contact) ?? [];
+  const names = [...new Set(touched.map((point) => scene?.bodies?.[point.body]?.name ?? `body ${point.body}`))];
+  const isSlipping = touched.some((point) => point.slipping);
+  return html`<div class="readout">
+    <div><span class="large">${short(frame?.force ?? 0, 3)}</span> N <span class="quiet">force</span></div>
+    <div><span class="large">${short(1000 * (frame?.depth ?? 0), 3)}</span> mm <span class="quiet">depth</span></div>
+    <div class="touched">${names.length > 0 ? `${names.join(', ')}${isSlipping ? ', slipping' : ''}` : 'touches nothing'}</div>
+  </div>`;
+}

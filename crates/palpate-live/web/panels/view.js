@@ -1,0 +1,126 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+// @ts-check
+
+/** What the picture shows, above it. */
+
+import { html } from '../vendor/htm-preact.js';
+import { setView, state } from '../state.js';
+import { setMode } from './actions.js';
+import { NumberField, Switch } from './fields.js';
+import { extent } from './numbers.js';
+import { page, useTopics } from './page.js';
+
+/** @type {[typeof state.view.mode, string, string][]} */
+const MODES = [
+  ['space', '3D', 'The scene in space: 1'],
+  ['slice', 'Slice', 'The scene in space with a plane through it: 2'],
+  ['plane', 'Plane', 'The map of the plane alone: 3'],
+  ['compare', 'Compare', 'Two bodies side by side, and their difference: 4'],
+];
+
+/** @type {[string, string][]} */
+const MAPS = [
+  ['inside', 'inside, outside'], ['distance', 'distance'], ['gradient', 'gradient'], ['promise', 'promise'],
+];
+
+/** @type {[keyof typeof state.view.shown, string][]} */
+const SHOWN = [
+  ['contacts', 'contacts'], ['normals', 'normals'], ['forces', 'forces'], ['spring', 'spring to the hand'],
+  ['proof', 'boxes of the proof'], ['bounds', 'bounds'], ['names', 'names'],
+];
+
+/** @param {string} mode */
+function isPossible(mode) {
+  return state.scene?.dimension !== 2 || mode === 'plane' || mode === 'compare';
+}
+
+export function ViewBar() {
+  useTopics(['view', 'scene']);
+  const { view, scene } = state;
+  const views = scene?.scene?.views ?? [];
+  const bodies = scene?.bodies ?? [];
+  const tabKeys = (/** @type {KeyboardEvent} */ event) => {
+    const way = { ArrowRight: 1, ArrowLeft: -1 }[event.key];
+    if (way === undefined) return;
+    event.preventDefault();
+    const open = MODES.filter(([mode]) => isPossible(mode));
+    const next = open[(open.findIndex(([mode]) => mode === view.mode) + way + open.length) % open.length];
+    setMode(next[0]);
+    document.getElementById(`mode-${next[0]}`)?.focus();
+  };
+  return html`
+    <div class="modes" role="tablist" aria-label="View" onKeyDown=${tabKeys}>
+      ${MODES.map(([mode, name, help]) => html`<button key=${mode} id=${`mode-${mode}`} role="tab" title=${help}
+        aria-selected=${String(view.mode === mode)} aria-controls="stage" tabindex=${view.mode === mode ? 0 : -1}
+        disabled=${!isPossible(mode)} onClick=${() => setMode(mode)}>${name}</button>`)}
+    </div>
+    ${view.mode === 'compare' && [0, 1].map((side) => html`<select key=${side} class="small"
+      aria-label=${`Body ${'AB'[side]}`} value=${view.compared[side]}
+      onChange=${(/** @type {any} */ event) => setView({
+        compared: view.compared.map((old, at) => (at === side ? Number(event.currentTarget.value) : old)) })}>
+      ${bodies.map((/** @type {any} */ body, /** @type {number} */ index) => html`<option key=${index} value=${index}
+        selected=${view.compared[side] === index}>${'AB'[side]}: ${body.name}</option>`)}
+    </select>`)}
+    <select class="small" aria-label="Map" value=${view.map} title="What the colours of the field mean"
+      onChange=${(/** @type {any} */ event) => setView({ map: event.currentTarget.value })}>
+      ${MAPS.map(([key, name]) => html`<option key=${key} value=${key} selected=${key === view.map}>${name}</option>`)}
+    </select>
+    <${Display} />
+    <span class="gap"></span>
+    ${views.length > 0 && html`<select class="small" aria-label="Views of the scene" value=""
+      onChange=${(/** @type {any} */ event) => {
+        const chosen = views[Number(event.currentTarget.value)];
+        event.currentTarget.value = '';
+        if (chosen?.spacing) setView({ spacing: chosen.spacing });
+        if (chosen) page.stage?.setCamera(chosen.name);
+      }}>
+      <option value="">views…</option>
+      ${views.map((/** @type {any} */ one, /** @type {number} */ index) =>
+        html`<option key=${one.name} value=${index}>${one.name}</option>`)}
+    </select>`}
+    ${scene?.dimension === 3 && html`<span class="cameras" role="group" aria-label="Look along an axis">
+      ${['x', 'y', 'z'].map((axis) => html`<button key=${axis} class="small"
+        title=${`Look along ${axis}`} aria-label=${`Look along ${axis}`}
+        onClick=${() => page.stage?.setCamera(axis)}>${axis}</button>`)}
+    </span>`}
+    <button class="small" title="Show the whole scene: F" onClick=${() => page.stage?.fit()}>whole</button>`;
+}
+
+/** The switches of the picture, behind a button. */
+function Display() {
+  const { view } = state;
+  return html`<details class="popover">
+    <summary class="small">display</summary>
+    <div class="sheet" role="group" aria-label="Display">
+      <fieldset><legend>Lines</legend>
+        <${Switch} label="isolines" value=${view.isolines} change=${(/** @type {boolean} */ isolines) => setView({ isolines })} />
+        <${Switch} label="spacing that suits the view" value=${view.spacing === null}
+          change=${(/** @type {boolean} */ own) => setView({ spacing: own ? null : spacing() })} />
+        ${view.spacing !== null && html`<${NumberField} label="spacing" unit="m" value=${view.spacing} min=${0} above
+          scale=${spacing()} change=${(/** @type {number} */ to) => to > 0 && setView({ spacing: to })} />`}
+        <${Switch} label="positive inside" value=${view.positiveInside}
+          help="Shows distances with the other sign; the program's own stay negative inside"
+          change=${(/** @type {boolean} */ positiveInside) => setView({ positiveInside })} />
+      </fieldset>
+      <fieldset><legend>As in the memoir</legend>
+        <${Switch} label="its colours" value=${view.asInMemoir}
+          change=${(/** @type {boolean} */ asInMemoir) => setView({ asInMemoir })} />
+        <${NumberField} label="sine factor" value=${view.sineFactor} min=${0} max=${10}
+          change=${(/** @type {number} */ sineFactor) => setView({ sineFactor })} />
+        ${/** @type {const} */ (['red', 'green', 'blue']).map((channel) => html`<${Switch} key=${channel}
+          label=${channel} value=${view.channels[channel]}
+          change=${(/** @type {boolean} */ is) => setView({ channels: { ...view.channels, [channel]: is } })} />`)}
+      </fieldset>
+      <fieldset><legend>Shown</legend>
+        ${SHOWN.map(([key, name]) => html`<${Switch} key=${key} label=${name} value=${view.shown[key]}
+          change=${(/** @type {boolean} */ is) => setView({ shown: { ...view.shown, [key]: is } })} />`)}
+      </fieldset>
+    </div>
+  </details>`;
+}
+
+/** A first spacing of isolines [m]. */
+function spacing() {
+  return Number((extent(state.scene?.bounds) / 40).toPrecision(1));
+}
