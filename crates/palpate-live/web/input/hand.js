@@ -1,0 +1,58 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+// @ts-check
+
+/**
+ * The hand that the page leads: the newest target, sent no more often than the program takes it.
+ *
+ * @typedef {import('../wire.js').Wire} Wire
+ * @typedef {import('../scene/vectors.js').Vector} Vector
+ */
+
+import { state } from '../state.js';
+
+/** The least time between two targets [ms]. The program takes 120 messages a second, and probes,
+ * slices and edits want their share. */
+const PAUSE = 1000 / 80;
+
+/** @param {Wire} wire */
+export function createHand(wire) {
+  /** @type {Vector | null} */
+  let target = null;
+  let sentAt = -Infinity;
+  let timer = 0;
+  /** Where the hand was led last. @type {Vector} */
+  let last = [0, 0, 0];
+  let isHeld = false;
+
+  function send(held = true) {
+    timer = 0;
+    if (held && !target) return;
+    last = target ?? last;
+    target = null;
+    sentAt = performance.now();
+    const { point } = state.touch;
+    const dimension = state.scene?.dimension ?? 3;
+    const place = { target: last.slice(0, dimension), ...(point === null ? {} : { point }) };
+    wire.send({ do: 'hand', ...place, held });
+  }
+
+  return {
+    /** Leads the hand to a point. @param {Vector} point */
+    lead(point) {
+      isHeld = true;
+      target = point;
+      const wait = sentAt + PAUSE - performance.now();
+      if (wait <= 0) send();
+      else if (timer === 0) timer = window.setTimeout(() => send(), wait);
+    },
+
+    /** Lets go of the hand, where it was led last. */
+    release() {
+      if (!isHeld) return;
+      isHeld = false;
+      clearTimeout(timer);
+      send(false);
+    },
+  };
+}

@@ -1,0 +1,147 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+// @ts-check
+
+/**
+ * The toys as they are drawn: elements with their verdicts, paths of local searches, circles,
+ * witnesses of two bodies, and an element that moves.
+ *
+ * @typedef {import('../scene/ink.js').Context} Context
+ * @typedef {import('../scene/ink.js').Inks} Inks
+ * @typedef {import('../scene/camera.js').Lens} Lens
+ */
+
+import { arrow, dot, label, polyline, ring } from '../scene/ink.js';
+import { length } from '../scene/units.js';
+import { inSpace } from '../scene/vectors.js';
+import { middleOf } from './handles.js';
+import { toys } from './toys.js';
+
+const HIT = '#b3261e';
+const FREE = '#007355';
+const OPEN = '#7a6a00';
+const PATH = '#e02020';
+const PROOF = 'rgba(18, 60, 122, 0.5)';
+
+/** The colour and word of a proven bound of the least distance.
+ * @param {{ lower?: number, upper?: number } | null | undefined} certified */
+export function verdictOf(certified) {
+  if (!certified) return { color: OPEN, word: '' };
+  if ((certified.upper ?? Infinity) <= 0) return { color: HIT, word: 'hit' };
+  if ((certified.lower ?? -Infinity) > 0) return { color: FREE, word: 'no hit' };
+  return { color: OPEN, word: 'not decided' };
+}
+
+/** @param {Context} context @param {Lens} lens @param {Inks} inks */
+function paintElement(context, lens, inks) {
+  const project = (/** @type {number[]} */ point) => lens.project(inSpace(point));
+  const { certified, local, enclosing } = toys.results.element ?? {};
+  const { color, word } = verdictOf(certified);
+  for (const cell of certified?.cells ?? []) {
+    polyline(context, cell.map(project), PROOF, 1, 'transparent', true);
+  }
+  if (enclosing?.centre) {
+    const radius = enclosing.radius / lens.pixel([0, 0, 0]);
+    const place = project(enclosing.centre);
+    ring(context, place, radius, enclosing.excludes ? FREE : inks.muted, 1, inks.halo);
+    if (place) {
+      label(context, `circle ${enclosing.excludes ? 'excludes' : 'does not exclude'}`, place.x,
+        place.y - radius - 10, inks);
+    }
+  }
+  outline(context, lens, toys.corners, color, inks);
+  const path = (local?.path ?? []).map(project);
+  const shown = toys.at === null ? path : path.slice(0, toys.at + 1);
+  polyline(context, shown, PATH, 1, 'transparent');
+  for (const place of shown) dot(context, place, 2.5, PATH, 'transparent');
+  dot(context, shown[shown.length - 1] ?? null, 5, PATH, inks.halo);
+  if (certified?.point) dot(context, project(certified.point), 5, color, inks.halo);
+  const low = Math.max(...toys.corners.map((corner) => project(corner)?.y ?? 0));
+  const middle = project(middleOf());
+  if (word && middle) {
+    const bounds = `${length(certified.lower)} to ${length(certified.upper)}`;
+    label(context, `${word}: ${bounds}`, middle.x, low + 18, inks, 'center', color);
+  }
+}
+
+/** @param {Context} context @param {Lens} lens @param {number[][]} corners
+ * @param {string} color @param {Inks} inks @param {boolean} [isGhost] without handles */
+function outline(context, lens, corners, color, inks, isGhost = false) {
+  const places = corners.map((corner) => lens.project(inSpace(corner)));
+  polyline(context, places, color, isGhost ? 1.5 : 2.5, inks.halo, corners.length > 2);
+  if (isGhost) return;
+  for (const place of places) dot(context, place, 7, '#ffffff', color);
+  if (corners.length > 1) dot(context, lens.project(inSpace(middleOf())), 5, '#ffffff', color);
+}
+
+/** @param {Context} context @param {Lens} lens @param {Inks} inks */
+function paintBall(context, lens, inks) {
+  const { centre, radius } = toys.ball;
+  const answer = toys.results.ball;
+  const touches = answer?.touches;
+  const color = touches === true ? HIT : touches === false ? FREE : OPEN;
+  const place = lens.project(inSpace(centre));
+  const reach = radius / lens.pixel([0, 0, 0]);
+  ring(context, place, reach, color, 2.5, inks.halo);
+  dot(context, place, 6, '#ffffff', color);
+  if (!place) return;
+  dot(context, { x: place.x + reach * Math.SQRT1_2, y: place.y - reach * Math.SQRT1_2 }, 6,
+    '#ffffff', color);
+  const word = touches === true ? 'touches' : touches === false ? 'free' : 'not decided';
+  const value = answer?.value === undefined ? '' : `, f ${length(answer.value)}`;
+  if (answer) label(context, word + value, place.x, place.y + reach + 14, inks, 'center', color);
+}
+
+/** @param {Context} context @param {Lens} lens @param {Inks} inks */
+function paintPair(context, lens, inks) {
+  const project = (/** @type {number[]} */ point) => lens.project(inSpace(point));
+  const { certified, local } = toys.results.pair ?? {};
+  for (const { path, point } of local ?? []) {
+    const places = (path ?? []).map(project);
+    polyline(context, places, PATH, 1, 'transparent');
+    for (const place of places) dot(context, place, 2.5, PATH, 'transparent');
+    if (point) dot(context, project(point), 5, PATH, inks.halo);
+  }
+  for (const start of toys.pair.starts) dot(context, project(start), 6, '#ffffff', PATH);
+  const { color, word } = verdictOf(certified);
+  const [a, b] = (certified?.points ?? []).map(project);
+  if (a && b) {
+    polyline(context, [a, b], color, 2, inks.halo);
+    dot(context, a, 5, color, inks.halo);
+    dot(context, b, 5, color, inks.halo);
+    const bounds = `${length(certified.lower)} to ${length(certified.upper)}`;
+    label(context, `${word}: ${bounds}`, (a.x + b.x) / 2, Math.min(a.y, b.y) - 14, inks, 'center', color);
+  }
+}
+
+/** @param {Context} context @param {Lens} lens @param {Inks} inks */
+function paintSweep(context, lens, inks) {
+  const answer = toys.results.sweep;
+  const { by, corners } = toys;
+  const moved = (/** @type {number} */ t) => corners.map(([x, y]) => [x + t * by[0], y + t * by[1]]);
+  const from = middleOf();
+  const places = [from, [from[0] + by[0], from[1] + by[1]]].map((p) => lens.project(inSpace(p)));
+  if (!toys.shown.element) outline(context, lens, corners, inks.ink, inks);
+  outline(context, lens, moved(1), inks.muted, inks, true);
+  arrow(context, places[0], places[1], inks.ink, 2, inks.halo);
+  dot(context, places[1], 6, '#ffffff', inks.ink);
+  if (!answer || !places[1]) return;
+  const time = typeof answer.at === 'number' ? answer.at : answer.upper ?? answer.lower;
+  const touches = answer.touches === true;
+  if (touches && Number.isFinite(time)) {
+    outline(context, lens, moved(time), HIT, inks, true);
+    if (Array.isArray(answer.at)) dot(context, lens.project(inSpace(answer.at)), 5, HIT, inks.halo);
+  }
+  const word = touches ? `touches at ${Number(time).toFixed(3)} s`
+    : answer.touches === false ? 'passes' : 'not decided';
+  label(context, word, places[1].x, places[1].y + 18, inks, 'center', touches ? HIT : FREE);
+}
+
+/** @param {Context} context @param {Lens} lens @param {Inks} inks */
+export function paintToys(context, lens, inks) {
+  const { shown, corners } = toys;
+  if (shown.sweep && corners.length > 0) paintSweep(context, lens, inks);
+  if (shown.element && corners.length > 0) paintElement(context, lens, inks);
+  if (shown.ball) paintBall(context, lens, inks);
+  if (shown.pair) paintPair(context, lens, inks);
+}

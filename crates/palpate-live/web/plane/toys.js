@@ -1,0 +1,128 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+// @ts-check
+
+/**
+ * The toys of the memoir, in the plane: an element that is dragged, a circle, a second field and
+ * an element that moves. Each is asked about again when it, the method or the scene changed: one
+ * question at a time, the newest wins.
+ *
+ * @typedef {import('../wire.js').Wire} Wire
+ * @typedef {'element' | 'ball' | 'pair' | 'sweep'} Toy
+ */
+
+import { newest } from '../scene/newest.js';
+import { listen, state } from '../state.js';
+
+/** Local methods for an element, by the names that the program knows. */
+export const METHODS = {
+  naive: 'naive descent',
+  projected_gradient: 'projected gradient',
+  frank_wolfe: 'Frank–Wolfe',
+  golden_section: 'golden section',
+  macklin: 'Macklin',
+};
+
+export const toys = {
+  /** Which toys are out. @type {Record<Toy, boolean>} */
+  shown: { element: false, ball: false, pair: false, sweep: false },
+  /** One to three corners [m]: a point, a segment or a triangle. @type {number[][]} */
+  corners: [],
+  ball: { centre: [0, 0], radius: 0.1 },
+  /** The two bodies whose separation is searched for, and where local descents start. */
+  pair: { a: 0, b: 1, starts: /** @type {number[][]} */ ([]) },
+  /** How the element moves in a second [m]. */
+  by: [0, 0],
+  /** The local method, one of `METHODS`. */
+  method: 'projected_gradient',
+  /** α, the length of a step over the element's size; null leaves it to the program.
+   * @type {number | null} */
+  step: null,
+  /** µ, the part of the last step that is kept. @type {number | null} */
+  momentum: null,
+  iterations: 64,
+  /** Where the local search starts in the element: weights of its corners.
+   * @type {number[] | null} */
+  start: null,
+  /** The step of the path that is looked at; null for the last. @type {number | null} */
+  at: null,
+  /** The newest answers. @type {Record<Toy, any>} */
+  results: { element: null, ball: null, pair: null, sweep: null },
+  /** Why there is no answer. @type {Record<Toy, string>} */
+  refused: { element: '', ball: '', pair: '', sweep: '' },
+};
+
+/** @type {Set<() => void>} */
+const listeners = new Set();
+/** @type {Wire | null} */
+let wire = null;
+
+/** Calls `listener` after each change of a toy or of an answer. @param {() => void} listener */
+export function listenToys(listener) {
+  listeners.add(listener);
+  return () => listeners.delete(listener);
+}
+
+const tell = () => listeners.forEach((listener) => listener());
+
+/** Changes toys, and asks again. @param {Partial<typeof toys>} change */
+export function setToys(change) {
+  Object.assign(toys, change);
+  // Where the path is looked at changes no answer.
+  const isQuestion = Object.keys(change).some((key) => key !== 'at');
+  if (isQuestion) askAll();
+  tell();
+}
+
+/** Lays toys that have no place yet into the scene. @param {number[]} centre
+ * @param {number} size of the scene [m] */
+export function layToys(centre, size) {
+  if (toys.corners.length > 0) return;
+  const [x, y] = centre;
+  const at = (/** @type {number} */ across, /** @type {number} */ above) =>
+    [x + across * size, y + above * size];
+  setToys({
+    corners: [at(-0.42, -0.3), at(-0.2, -0.34), at(-0.3, -0.12)],
+    ball: { centre: at(0.36, -0.3), radius: 0.08 * size },
+    by: [0.4 * size, 0.2 * size],
+  });
+}
+
+/** @param {Toy} toy @returns {Record<string, any>} */
+function question(toy) {
+  const { corners, ball, pair, by, method, step, momentum, iterations, start } = toys;
+  if (toy === 'ball') return ball;
+  if (toy === 'pair') return pair;
+  if (toy === 'sweep') return { corners, by };
+  const chosen = Object.entries({ step, momentum, start }).filter(([, value]) => value !== null);
+  return { corners, method, iterations, ...Object.fromEntries(chosen) };
+}
+
+/** Asks about a toy. @param {Toy} toy */
+async function ask(toy) {
+  if (!wire || state.connection !== 'live') return;
+  try {
+    toys.results[toy] = await wire.ask({ do: toy, ...question(toy) });
+    toys.refused[toy] = '';
+  } catch (error) {
+    toys.results[toy] = null;
+    toys.refused[toy] = error instanceof Error ? error.message : String(error);
+  }
+  tell();
+}
+
+/** @type {Record<Toy, (toy: Toy) => void>} */
+const asks = { element: newest(ask), ball: newest(ask), pair: newest(ask), sweep: newest(ask) };
+
+function askAll() {
+  for (const toy of /** @type {Toy[]} */ (Object.keys(toys.shown))) {
+    const isReady = toy === 'pair' ? (state.scene?.bodies?.length ?? 0) > 1 : toys.corners.length > 0;
+    if (toys.shown[toy] && isReady && state.scene?.dimension === 2) asks[toy](toy);
+  }
+}
+
+/** Asks over this connection from now on, and again with each scene. @param {Wire} connection */
+export function connectToys(connection) {
+  wire = connection;
+  listen(['scene'], askAll);
+}

@@ -1,0 +1,29 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+// @ts-check
+
+/**
+ * Contacts of the bodies, asked for when the scene or what is shown of them changes.
+ *
+ * @typedef {import('../wire.js').Wire} Wire
+ */
+
+import { state } from '../state.js';
+
+let asked = '';
+
+/** @param {Wire} wire @param {(answer: any) => void} take */
+export async function askContacts(wire, take) {
+  const { contacts, proof } = state.view.shown;
+  const isWanted = (contacts || proof) && (state.scene?.bodies?.length ?? 0) > 1;
+  const key = isWanted ? `${state.scene?.revision} ${proof}` : '';
+  if (key === asked || state.connection !== 'live') return;
+  asked = key;
+  try {
+    const answer = isWanted ? await wire.ask({ do: 'contacts', proof }) : null;
+    // A newer question was asked meanwhile.
+    if (key === asked) take(answer);
+  } catch {
+    if (key === asked) asked = '';
+  }
+}

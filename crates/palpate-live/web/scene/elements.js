@@ -1,0 +1,131 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+// @ts-check
+
+/**
+ * The canvases and texts of the stage.
+ *
+ * @typedef {import('./ink.js').Inks} Inks
+ */
+
+const LABEL = 'The scene. Drag a point or the surface to lead the hand; drag beside them to turn '
+  + 'the view; use the wheel to zoom.';
+
+/** Lays an element over the whole container. @param {HTMLElement} element */
+function lay(element) {
+  Object.assign(element.style, {
+    position: 'absolute', inset: '0', width: '100%', height: '100%', display: 'block',
+  });
+}
+
+/** The colour behind an element. @param {HTMLElement} element @returns {string} */
+function behind(element) {
+  for (let each = /** @type {HTMLElement | null} */ (element); each; each = each.parentElement) {
+    const color = getComputedStyle(each).backgroundColor;
+    if (!/^(transparent|rgba\(.*, 0\))$/.test(color)) return color;
+  }
+  return '#ffffff';
+}
+
+export class Elements {
+  /** @param {HTMLElement} container */
+  constructor(container) {
+    this.container = container;
+    this.scene = document.createElement('canvas');
+    this.picture = document.createElement('canvas');
+    this.overlay = document.createElement('canvas');
+    this.way = document.createElement('p');
+    this.readout = document.createElement('p');
+    for (const canvas of [this.scene, this.picture, this.overlay]) lay(canvas);
+    this.scene.setAttribute('aria-hidden', 'true');
+    this.picture.setAttribute('aria-hidden', 'true');
+    this.overlay.tabIndex = 0;
+    this.overlay.setAttribute('role', 'application');
+    this.overlay.setAttribute('aria-label', LABEL);
+    for (const text of [this.way, this.readout]) {
+      Object.assign(text.style, {
+        position: 'absolute', left: '8px', margin: '0', padding: '2px 6px', pointerEvents: 'none',
+        font: '12px/1.45 Inter, system-ui, sans-serif', whiteSpace: 'pre', borderRadius: '4px',
+        maxWidth: 'calc(100% - 130px)', overflow: 'hidden', textOverflow: 'ellipsis',
+      });
+    }
+    this.way.style.bottom = '6px';
+    this.readout.style.bottom = '30px';
+    this.readout.style.fontVariantNumeric = 'tabular-nums';
+    if (getComputedStyle(container).position === 'static') container.style.position = 'relative';
+    container.append(this.scene, this.picture, this.overlay, this.way, this.readout);
+    this.context = /** @type {CanvasRenderingContext2D} */ (this.overlay.getContext('2d'));
+    this.width = 1;
+    this.height = 1;
+    this.ratio = 1;
+    this.useCard(true);
+  }
+
+  get rect() {
+    return { x: 0, y: 0, width: this.width, height: this.height };
+  }
+
+  resize() {
+    this.width = Math.max(1, this.container.clientWidth);
+    this.height = Math.max(1, this.container.clientHeight);
+    this.ratio = Math.min(devicePixelRatio || 1, 2);
+    this.overlay.width = Math.round(this.width * this.ratio);
+    this.overlay.height = Math.round(this.height * this.ratio);
+  }
+
+  /** Shows what the card draws, or what the program drew. @param {boolean} isUsed */
+  useCard(isUsed) {
+    this.scene.style.visibility = isUsed ? 'visible' : 'hidden';
+    this.picture.style.visibility = isUsed ? 'hidden' : 'visible';
+  }
+
+  /** The colours of the theme. @returns {Inks & { paper: string }} */
+  inks() {
+    const paper = behind(this.container);
+    return { ink: getComputedStyle(this.container).color, halo: paper, muted: '#8a909a', paper };
+  }
+
+  /** @param {HTMLElement} element @param {string} text */
+  write(element, text) {
+    if (element.textContent !== text) element.textContent = text;
+    element.hidden = text === '';
+    const { ink, paper } = this.inks();
+    Object.assign(element.style, { color: ink, background: paper });
+  }
+
+  /** Tells how the scene is drawn. @param {string} words @param {string} why */
+  note(words, why) {
+    this.write(this.way, why ? `${words}: ${why}` : words);
+  }
+
+  /** Tells what the probe found. @param {string} words */
+  read(words) {
+    this.write(this.readout, words);
+  }
+
+  /** All layers as one picture. @param {boolean} isDrawn whether the program drew the scene
+   * @returns {Promise<Blob>} */
+  export(isDrawn) {
+    const { width, height } = this.overlay;
+    const canvas = document.createElement('canvas');
+    canvas.width = width;
+    canvas.height = height;
+    const context = /** @type {CanvasRenderingContext2D} */ (canvas.getContext('2d'));
+    const { ink, paper } = this.inks();
+    context.fillStyle = paper;
+    context.fillRect(0, 0, width, height);
+    context.drawImage(isDrawn ? this.picture : this.scene, 0, 0, width, height);
+    context.drawImage(this.overlay, 0, 0, width, height);
+    const ratio = width / this.width;
+    context.scale(ratio, ratio);
+    context.font = '12px Inter, system-ui, sans-serif';
+    context.lineWidth = 3;
+    context.strokeStyle = paper;
+    context.fillStyle = ink;
+    context.strokeText(this.way.textContent ?? '', 14, this.height - 14);
+    context.fillText(this.way.textContent ?? '', 14, this.height - 14);
+    return new Promise((resolve, reject) => {
+      canvas.toBlob((blob) => (blob ? resolve(blob) : reject(new Error('no picture'))), 'image/png');
+    });
+  }
+}

@@ -1,0 +1,103 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+// @ts-check
+
+/**
+ * A field as the card needs it: texts, textures and uniforms.
+ *
+ * @typedef {import('../wire.js').Grid} Grid
+ * @typedef {import('./program.js').Value} Value
+ * @typedef {import('./setting.js').Setting} Setting
+ */
+
+import { flat, space } from './glsl.js';
+import { rgb } from './setting.js';
+
+/** The colours of the bodies, and their promises in the last channel: outside + 4·inside.
+ * @param {Setting} setting */
+function paletteOf(setting) {
+  const bodies = setting.bodies.length > 0 ? setting.bodies : [{ color: '', promise: '' }];
+  return new Uint8Array(bodies.flatMap(({ color, promise }) => {
+    const codes = promise.split(',').map((part) =>
+      Math.max(0, ['exact', 'bound', 'Lipschitz'].findIndex((word) => part.includes(word))));
+    const inside = codes[1] ?? codes[0];
+    return [...rgb(color).map((part) => Math.round(255 * part)), codes[0] + 4 * inside];
+  }));
+}
+
+export class Field {
+  /** @param {string} text that defines the function `field` @param {Setting} setting
+   * @param {Grid[]} grids samples that the text reads @param {Record<string, Value>} values its
+   *   uniforms @param {boolean} isUrgent whether it is wanted in the middle of a drag */
+  constructor(text, setting, grids, values, isUrgent) {
+    const { dimension } = setting;
+    /** @type {Record<'space' | 'flat', string>} */
+    this.texts = { space: dimension === 3 ? space(text) : '', flat: flat(text, dimension) };
+    this.isUrgent = isUrgent;
+    this.grids = grids;
+    this.palette = paletteOf(setting);
+    this.values = { zero: 0, palette: 0, grid0: 1, grid1: 2, grid2: 3, ...values };
+    /** @type {WebGLTexture[]} */
+    this.textures = [];
+    this.epoch = -1;
+  }
+
+  /** Binds its textures, and gives its uniforms.
+   * @param {WebGL2RenderingContext} gl @param {number} epoch of the context: textures are lost
+   *   with it */
+  bind(gl, epoch) {
+    if (this.epoch !== epoch) {
+      this.epoch = epoch;
+      this.textures = [this.upload(gl, null), ...this.grids.map((grid) => this.upload(gl, grid))];
+    }
+    this.textures.forEach((texture, index) => {
+      gl.activeTexture(gl.TEXTURE0 + index);
+      gl.bindTexture(kindOf(gl, this.grids[index - 1]), texture);
+    });
+    return this.values;
+  }
+
+  /** Makes the texture of a grid, or of the palette. @param {WebGL2RenderingContext} gl
+   * @param {Grid | null} grid */
+  upload(gl, grid) {
+    const texture = gl.createTexture();
+    const kind = kindOf(gl, grid);
+    gl.activeTexture(gl.TEXTURE0);
+    gl.bindTexture(kind, texture);
+    gl.pixelStorei(gl.UNPACK_ALIGNMENT, 1);
+    const filter = grid ? gl.LINEAR : gl.NEAREST;
+    gl.texParameteri(kind, gl.TEXTURE_MIN_FILTER, filter);
+    gl.texParameteri(kind, gl.TEXTURE_MAG_FILTER, filter);
+    for (const wrap of [gl.TEXTURE_WRAP_S, gl.TEXTURE_WRAP_T, gl.TEXTURE_WRAP_R]) {
+      if (wrap !== gl.TEXTURE_WRAP_R || kind === gl.TEXTURE_3D) {
+        gl.texParameteri(kind, wrap, gl.CLAMP_TO_EDGE);
+      }
+    }
+    if (!grid) {
+      const count = this.palette.length / 4;
+      gl.texImage2D(kind, 0, gl.RGBA8, count, 1, 0, gl.RGBA, gl.UNSIGNED_BYTE, this.palette);
+      return texture;
+    }
+    const [width, height, depth] = grid.counts;
+    const format = grid.half ? gl.R16F : gl.R32F;
+    const type = grid.half ? gl.HALF_FLOAT : gl.FLOAT;
+    if (kind === gl.TEXTURE_3D) {
+      gl.texImage3D(kind, 0, format, width, height, depth, 0, gl.RED, type, grid.values);
+    } else {
+      gl.texImage2D(kind, 0, format, width, height, 0, gl.RED, type, grid.values);
+    }
+    return texture;
+  }
+
+  /** Gives its textures back. @param {WebGL2RenderingContext} gl */
+  free(gl) {
+    for (const texture of this.textures) gl.deleteTexture(texture);
+    this.textures = [];
+    this.epoch = -1;
+  }
+}
+
+/** @param {WebGL2RenderingContext} gl @param {Grid | null | undefined} grid */
+function kindOf(gl, grid) {
+  return grid?.dimension === 3 ? gl.TEXTURE_3D : gl.TEXTURE_2D;
+}

@@ -1,0 +1,357 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+// @ts-check
+
+/**
+ * The scene layer: panels drawn by programs into a target that is kept, and shown from there.
+ *
+ * While the picture changes it is drawn with fewer pixels, as many as the card can draw in a
+ * frame. Once it stands still it is refined tile by tile, with a fence after each batch, so that
+ * neither the page nor the rest of the machine waits for it.
+ *
+ * @typedef {import('./camera.js').Rect} Rect
+ * @typedef {import('./program.js').Value} Value
+ * @typedef {import('./program.js').Program} Program
+ * @typedef {{ kind: 'space' | 'flat', rect: Rect, values: Record<string, Value> }} Panel
+ * @typedef {import('./fields.js').Field} Field
+ */
+
+import { Programs } from './program.js';
+import { clamp } from './vectors.js';
+
+/** Parts of the full resolution, along each side. */
+const SCALES = [1, 1 / 2, 1 / 4, 1 / 8];
+/** The time in which a moving picture must be drawn [ms]. */
+const FRAME = 20;
+/** What a fence costs by itself [ms]. */
+const FENCE = 3;
+/** How long nothing may change before the picture is refined [ms]. */
+const STILL = 120;
+/** The edge of a tile in pixels of the target. */
+const TILE = 128;
+const MOST_TILES = 64;
+/** Where in a pixel its samples are, one a pass. */
+const OFFSETS = [[0, 0], [0.25, -0.5], [-0.5, -0.25], [0.25, 0.375]];
+/** If the first pass took longer than this, edges stay as they are [ms]. */
+const SLOW_PASS = 1500;
+
+/** Bottom to top, as the card counts. @param {Rect} rect @param {number} height */
+const flipped = (rect, height) => ({ ...rect, y: height - rect.y - rect.height });
+
+export class Layer {
+  /** @param {HTMLCanvasElement} canvas
+   * @param {(what: 'restored' | 'gone' | 'waiting' | 'error', why?: string) => void} tell */
+  constructor(canvas, tell) {
+    this.canvas = canvas;
+    this.tell = tell;
+    this.gl = canvas.getContext('webgl2', { antialias: false, depth: false, alpha: true });
+    this.losses = 0;
+    /** Pixels of the target a CSS pixel. */
+    this.ratio = 1;
+    /** @type {Panel[]} */
+    this.panels = [];
+    /** The field that is drawn, and one whose programs are not ready. @type {Field | null} */
+    this.field = null;
+    /** @type {Field | null} */
+    this.next = null;
+    /** The time of a full picture [ms]. @type {number | null} */
+    this.cost = null;
+    this.scale = SCALES[2];
+    this.isChanged = false;
+    /** Whether the picture has all its pixels. */
+    this.isDone = false;
+    this.changedAt = 0;
+    this.drawnAt = 0;
+    /** @type {WebGLSync | null} */
+    this.fence = null;
+    this.isMoving = false;
+    this.waits = 0;
+    this.batch = 2;
+    /** Tiles to draw, pass after pass. */
+    this.tile = 0;
+    this.tiles = 0;
+    this.passBegan = 0;
+    this.lastTime = 0;
+    canvas.addEventListener('webglcontextlost', (event) => {
+      event.preventDefault();
+      this.losses += 1;
+      this.fence = null;
+      if (this.losses > 1) {
+        this.gl = null;
+        tell('gone');
+      }
+    });
+    canvas.addEventListener('webglcontextrestored', () => {
+      if (!this.gl) return;
+      this.prepare();
+      tell('restored');
+    });
+    if (this.gl) this.prepare();
+  }
+
+  prepare() {
+    const gl = /** @type {WebGL2RenderingContext} */ (this.gl);
+    gl.getExtension('EXT_color_buffer_float');
+    gl.getExtension('OES_texture_float_linear');
+    this.programs = new Programs(gl);
+    /** Programs that have drawn once: many drivers compile only then. */
+    this.warm = new WeakSet();
+    /** @type {{ program: Program, fence: WebGLSync } | null} */
+    this.warming = null;
+    this.targets = [0, 1].map(() => ({
+      frame: gl.createFramebuffer(), pixels: gl.createRenderbuffer(),
+    }));
+    this.field = null;
+    this.cost = null;
+    this.resize();
+  }
+
+  /** Takes the size of the canvas on the page. */
+  resize() {
+    const { gl, canvas } = this;
+    if (!gl || !this.targets) return;
+    // A card that gave up once gets half of the work.
+    const budget = this.losses > 0 ? Math.SQRT1_2 : 1;
+    this.ratio = Math.min(devicePixelRatio || 1, 2) * budget;
+    const width = Math.max(1, Math.round(canvas.clientWidth * this.ratio));
+    const height = Math.max(1, Math.round(canvas.clientHeight * this.ratio));
+    canvas.width = width;
+    canvas.height = height;
+    for (const { frame, pixels } of this.targets) {
+      gl.bindFramebuffer(gl.FRAMEBUFFER, frame);
+      gl.bindRenderbuffer(gl.RENDERBUFFER, pixels);
+      gl.renderbufferStorage(gl.RENDERBUFFER, gl.RGBA8, width, height);
+      gl.framebufferRenderbuffer(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0, gl.RENDERBUFFER, pixels);
+    }
+    this.change();
+  }
+
+  change() {
+    this.isChanged = true;
+    this.isDone = false;
+    this.changedAt = performance.now();
+  }
+
+  /** Shows other panels, or another field. @param {Panel[]} panels @param {Field} field */
+  show(panels, field) {
+    this.panels = panels;
+    this.next = field === this.field ? null : field;
+    this.change();
+  }
+
+  /** The programs of a field, if all of them can draw at once. @param {Field} field */
+  programsOf(field) {
+    const kinds = new Set(this.panels.map(({ kind }) => kind));
+    const programs = [...kinds].map((kind) => this.programs?.get(field.texts[kind]));
+    return programs.every((program) => program && this.isWarm(program, field));
+  }
+
+  /** @param {Program} program @param {Field} field */
+  isWarm(program, field) {
+    const gl = /** @type {WebGL2RenderingContext} */ (this.gl);
+    if (!program.isReady()) {
+      if (program.error) {
+        this.next = null;
+        this.tell('error', program.error);
+      }
+      return false;
+    }
+    if (this.warm?.has(program)) return true;
+    if (this.warming?.program !== program) {
+      this.draw({ ...this.panels[0], values: { ...this.panels[0].values, steps: 1 } }, 1, field,
+        program, { x: 0, y: 0, width: 1, height: 1 });
+      const fence = gl.fenceSync(gl.SYNC_GPU_COMMANDS_COMPLETE, 0);
+      if (fence) this.warming = { program, fence };
+      gl.flush();
+      return false;
+    }
+    if (!this.isSignalled(this.warming.fence)) return false;
+    this.warm?.add(program);
+    this.warming = null;
+    return true;
+  }
+
+  /** @param {WebGLSync} fence */
+  isSignalled(fence) {
+    const gl = /** @type {WebGL2RenderingContext} */ (this.gl);
+    return gl.getSyncParameter(fence, gl.SYNC_STATUS) === gl.SIGNALED;
+  }
+
+  /** Does a frame's work. Whether there is more to do.
+   * @param {boolean} isPressed whether a pointer is down: then only what is urgent is compiled */
+  step(isPressed) {
+    const { gl } = this;
+    if (!gl || gl.isContextLost()) return false;
+    if (this.fence && !this.isFinished()) return true;
+    if (this.next && this.panels.length > 0 && (this.next.isUrgent || !isPressed || !this.field)) {
+      if (this.programsOf(this.next)) {
+        this.field?.free(gl);
+        this.field = this.next;
+        this.next = null;
+        this.cost = null;
+        this.change();
+      }
+    }
+    const { field } = this;
+    if (!field || this.panels.length === 0) return this.next !== null;
+    if (!this.programsOf(field)) return true;
+    const now = performance.now();
+    if (this.isChanged) {
+      this.isChanged = false;
+      this.drawMoving(field);
+      return true;
+    }
+    if (now - this.changedAt < STILL) return true;
+    this.isDone = !this.refine(field, now);
+    return !this.isDone || this.next !== null;
+  }
+
+  /** Whether the card has done what was asked last; learns from how long that took. */
+  isFinished() {
+    const gl = /** @type {WebGL2RenderingContext} */ (this.gl);
+    const fence = /** @type {WebGLSync} */ (this.fence);
+    if (!this.isSignalled(fence)) {
+      this.waits += 1;
+      return false;
+    }
+    gl.deleteSync(fence);
+    this.fence = null;
+    if (!this.isMoving) {
+      this.batch = clamp(this.waits === 0 ? 2 * this.batch : this.batch >> 1, 1, MOST_TILES);
+    }
+    return true;
+  }
+
+  setFence() {
+    const gl = /** @type {WebGL2RenderingContext} */ (this.gl);
+    this.fence = gl.fenceSync(gl.SYNC_GPU_COMMANDS_COMPLETE, 0);
+    this.drawnAt = performance.now();
+    this.waits = 0;
+    gl.flush();
+  }
+
+  /** @param {Field} field */
+  drawMoving(field) {
+    const gl = /** @type {WebGL2RenderingContext} */ (this.gl);
+    const { width, height } = this.canvas;
+    const { scale } = this;
+    const [full, low] = this.targets ?? [];
+    const target = scale === 1 ? full : low;
+    gl.bindFramebuffer(gl.FRAMEBUFFER, target.frame);
+    gl.disable(gl.SCISSOR_TEST);
+    gl.clear(gl.COLOR_BUFFER_BIT);
+    const all = { x: 0, y: 0, width, height };
+    for (const panel of this.panels) this.draw(panel, scale, field, null, all);
+    if (scale !== 1) {
+      gl.disable(gl.SCISSOR_TEST);
+      gl.bindFramebuffer(gl.READ_FRAMEBUFFER, low.frame);
+      gl.bindFramebuffer(gl.DRAW_FRAMEBUFFER, full.frame);
+      gl.blitFramebuffer(0, 0, Math.round(width * scale), Math.round(height * scale), 0, 0, width,
+        height, gl.COLOR_BUFFER_BIT, gl.LINEAR);
+    }
+    this.present();
+    this.isMoving = true;
+    this.setFence();
+    // A frame is too coarse a clock for what takes less than one.
+    this.watch(scale, this.fence, this.drawnAt);
+    this.tile = 0;
+    this.tiles = scale === 1 ? this.tilesAPass() : 0;
+  }
+
+  /** Times a moving picture. @param {number} scale @param {WebGLSync | null} fence
+   * @param {number} began */
+  watch(scale, fence, began) {
+    setTimeout(() => {
+      if (!fence || fence !== this.fence || !this.gl || this.gl.isContextLost()) return;
+      if (!this.isSignalled(fence)) {
+        this.watch(scale, fence, began);
+        return;
+      }
+      this.lastTime = performance.now() - began;
+      const cost = Math.max(this.lastTime - FENCE, 0.2) / scale ** 2;
+      this.cost = this.cost === null ? cost : 0.5 * (this.cost + cost);
+      const holds = (/** @type {number} */ part) =>
+        (this.cost ?? 0) * part ** 2 + FENCE <= (part > scale ? 0.75 : 1) * FRAME;
+      this.scale = SCALES.find(holds) ?? SCALES[SCALES.length - 1];
+    }, 1);
+  }
+
+  tilesAPass() {
+    return Math.ceil(this.canvas.width / TILE) * Math.ceil(this.canvas.height / TILE);
+  }
+
+  /** Draws the next tiles of a picture that stands still. Whether there are more.
+   * @param {Field} field @param {number} now */
+  refine(field, now) {
+    const gl = /** @type {WebGL2RenderingContext} */ (this.gl);
+    const pass = this.tilesAPass();
+    // The moving picture was the first pass if it had all pixels.
+    const at = this.tile + this.tiles;
+    if (this.tile === 0) this.passBegan = now;
+    const isSlow = this.tiles === 0 && at >= pass && now - this.passBegan > SLOW_PASS;
+    if (at >= OFFSETS.length * pass || isSlow) return false;
+    const columns = Math.ceil(this.canvas.width / TILE);
+    gl.bindFramebuffer(gl.FRAMEBUFFER, this.targets?.[0].frame ?? null);
+    gl.enable(gl.SCISSOR_TEST);
+    const end = Math.min(at + this.batch, (Math.floor(at / pass) + 1) * pass);
+    for (let index = at; index < end; index += 1) {
+      const number = Math.floor(index / pass);
+      const place = index % pass;
+      // Top down, as the card counts from below.
+      const row = pass / columns - 1 - Math.floor(place / columns);
+      const tile = { x: (place % columns) * TILE, y: row * TILE, width: TILE, height: TILE };
+      gl.scissor(tile.x, tile.y, TILE, TILE);
+      if (number === 0) gl.clear(gl.COLOR_BUFFER_BIT);
+      else gl.enable(gl.BLEND);
+      gl.blendColor(0, 0, 0, 1 / (number + 1));
+      gl.blendFunc(gl.CONSTANT_ALPHA, gl.ONE_MINUS_CONSTANT_ALPHA);
+      for (const panel of this.panels) {
+        this.draw(panel, 1, field, null, tile, OFFSETS[number]);
+      }
+      gl.disable(gl.BLEND);
+    }
+    gl.disable(gl.SCISSOR_TEST);
+    this.tile += end - at;
+    this.present();
+    this.isMoving = false;
+    this.setFence();
+    return true;
+  }
+
+  /** Draws a part of a panel. @param {Panel} panel @param {number} scale @param {Field} field
+   * @param {Program | null} only @param {Rect} within what may be drawn, in pixels of the target
+   * @param {number[]} [offset] of the samples, in pixels */
+  draw(panel, scale, field, only, within, offset = [0, 0]) {
+    const gl = /** @type {WebGL2RenderingContext} */ (this.gl);
+    const program = only ?? this.programs?.get(field.texts[panel.kind]);
+    const part = this.ratio * scale;
+    const { x, y, width, height } = flipped(panel.rect, this.canvas.clientHeight);
+    const [left, bottom, wide, high] = [x, y, width, height].map((v) => Math.round(v * part));
+    const [low, above] = [Math.max(left, within.x), Math.max(bottom, within.y)];
+    const right = Math.min(left + wide, within.x + within.width);
+    const top = Math.min(bottom + high, within.y + within.height);
+    if (!program || right <= low || top <= above) return;
+    gl.viewport(0, 0, this.canvas.width, this.canvas.height);
+    gl.enable(gl.SCISSOR_TEST);
+    gl.scissor(low, above, right - low, top - above);
+    program.use();
+    program.set({
+      ...panel.values,
+      ...field.bind(gl, this.losses),
+      viewport: [wide, high],
+      lowerLeft: [left + offset[0], bottom + offset[1]],
+      cone: Number(panel.values.cone ?? 0) / high,
+    });
+    gl.drawArrays(gl.TRIANGLES, 0, 3);
+  }
+
+  /** Shows the target on the page. */
+  present() {
+    const gl = /** @type {WebGL2RenderingContext} */ (this.gl);
+    const { width, height } = this.canvas;
+    gl.disable(gl.SCISSOR_TEST);
+    gl.bindFramebuffer(gl.READ_FRAMEBUFFER, this.targets?.[0].frame ?? null);
+    gl.bindFramebuffer(gl.DRAW_FRAMEBUFFER, null);
+    gl.blitFramebuffer(0, 0, width, height, 0, 0, width, height, gl.COLOR_BUFFER_BIT, gl.NEAREST);
+  }
+}

@@ -1,0 +1,162 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+// @ts-check
+
+/**
+ * What lies over the scene: points, forces, contacts, names and boxes.
+ *
+ * @typedef {import('./ink.js').Context} Context
+ * @typedef {import('./ink.js').Inks} Inks
+ * @typedef {import('./panels.js').View} View
+ * @typedef {import('./setting.js').Setting} Setting
+ * @typedef {import('./setting.js').Box} Box
+ * @typedef {import('./vectors.js').Vector} Vector
+ * @typedef {import('../wire.js').Point} Point
+ */
+
+import { state } from '../state.js';
+import { arrow, dot, label, numbered, polyline, ring, spring } from './ink.js';
+import { boxOf, centreOf, cornersOf } from './setting.js';
+import { along, dot as product, inSpace, mean, norm } from './vectors.js';
+
+/** The length of the arrow of the largest force in pixels. */
+const LONGEST = 130;
+/** The largest force if the device does not tell it [N]. */
+const MOST_FORCE = 10;
+/** More bodies than this have no names in the picture. */
+const MOST_NAMES = 40;
+const FORCE = '#d1480a';
+const NORMAL = '#007355';
+const CONTACT = '#9e2f78';
+const EDGES = [[0, 1], [1, 2], [2, 3], [3, 0], [4, 5], [5, 6], [6, 7], [7, 4],
+  [0, 4], [1, 5], [2, 6], [3, 7]];
+
+/** The middle of the device points, or null without any. @returns {Vector | null} */
+export function handOf() {
+  const points = state.frame?.points ?? [];
+  return points.length > 0 ? mean(points.map(({ device }) => device)) : null;
+}
+
+/** @param {Context} context @param {View} view @param {Box} box @param {string} color
+ * @param {string} halo */
+function paintBox(context, { lens }, box, color, halo) {
+  const places = cornersOf(box).map(lens.project);
+  for (const [from, to] of EDGES) {
+    if (to < places.length) polyline(context, [places[from], places[to]], color, 1, halo);
+  }
+}
+
+/** Boxes and names of the bodies. @param {Context} context @param {View} view
+ * @param {Setting} setting @param {Inks} inks @returns {import('./labels.js').Taken[]} where
+ *   the names are */
+export function paintBodies(context, view, setting, inks) {
+  const { shown } = state.view;
+  /** @type {import('./labels.js').Taken[]} */
+  const taken = [];
+  setting.bodies.forEach(({ name, box, color }) => {
+    if (!box) return;
+    if (shown.bounds) paintBox(context, view, box, color, inks.halo);
+    const place = view.lens.project(centreOf(box));
+    if (!shown.names || !place || setting.bodies.length > MOST_NAMES) return;
+    label(context, name, place.x, place.y, inks);
+    taken.push({ x: place.x, y: place.y, wide: context.measureText(name).width, high: 16 });
+  });
+  return taken;
+}
+
+/** Contacts of bodies, and boxes that were ruled out. @param {Context} context
+ * @param {View} view @param {any} answer @param {Inks} inks */
+export function paintContacts(context, view, answer, inks) {
+  const { project, pixel } = view.lens;
+  const { shown } = state.view;
+  for (const pair of answer?.pairs ?? []) {
+    for (const bounds of shown.proof ? pair.boxes ?? [] : []) {
+      const box = boxOf(bounds);
+      if (box) paintBox(context, view, box, 'rgba(158,47,120,0.55)', 'transparent');
+    }
+    for (const contact of shown.contacts ? pair.contacts ?? [] : []) {
+      const [a, b] = [contact.point_a, contact.point_b].map((point) => inSpace(point ?? contact.point_a));
+      polyline(context, [project(a), project(b)], CONTACT, 2, inks.halo);
+      dot(context, project(a), 4, CONTACT, inks.halo);
+      if (contact.normal && shown.normals) {
+        const tip = along(a, inSpace(contact.normal), 34 * pixel(a));
+        arrow(context, project(a), project(tip), CONTACT, 1.5, inks.halo);
+      }
+    }
+  }
+}
+
+/** One contact point: where the device is, the proxy on the surface, force and normal.
+ * @param {Context} context @param {View} view @param {Point} point @param {string} color
+ * @param {Inks} inks */
+function paintPoint(context, { lens }, point, color, inks) {
+  const { shown } = state.view;
+  const [device, proxy] = [lens.project(point.device), lens.project(point.proxy)];
+  // A contact on the far side of a body lies behind it.
+  const isHidden = point.contact && product(point.normal, lens.towards(point.proxy)) < -0.05;
+  context.globalAlpha = isHidden ? 0.35 : 1;
+  if (point.contact) {
+    polyline(context, [device, proxy], color, 1.5, inks.halo);
+    ring(context, device, 5, color, 1.5, inks.halo);
+    if (shown.normals) {
+      const tip = along(point.proxy, point.normal, 38 * lens.pixel(point.proxy));
+      arrow(context, proxy, lens.project(tip), NORMAL, 1.5, inks.halo);
+    }
+    dot(context, proxy, 6, color, inks.halo);
+    if (point.slipping) ring(context, proxy, 10, color, 1, inks.halo);
+  } else {
+    dot(context, device, 5, color, inks.halo);
+  }
+  if (shown.forces && norm(point.force) > 0.01) {
+    const most = Number(state.scene?.device?.max_force) || MOST_FORCE;
+    const reach = Math.min(1.2, norm(point.force) / most) * LONGEST * lens.pixel(point.proxy);
+    const tip = along(point.proxy, point.force, reach / norm(point.force));
+    arrow(context, proxy, lens.project(tip), FORCE, 3, inks.halo);
+  }
+  context.globalAlpha = 1;
+}
+
+/** The hand with its points, and the spring by which the page leads it.
+ * @param {Context} context @param {View} view @param {Vector | null} target @param {Inks} inks */
+export function paintHand(context, view, target, inks) {
+  const { frame } = state;
+  const points = frame?.points ?? [];
+  const hand = handOf();
+  if (!hand) return;
+  const { project } = view.lens;
+  const middle = project(hand);
+  if (points.length > 1) {
+    for (const { device } of points) {
+      polyline(context, [middle, project(device)], inks.muted, 1, 'transparent');
+    }
+    if (middle) ring(context, middle, 8, inks.ink, 1.5, inks.halo);
+  }
+  points.forEach((point, number) => {
+    paintPoint(context, view, point, numbered(number), inks);
+  });
+  if (target && state.view.shown.spring) {
+    const goal = project(target);
+    spring(context, middle, goal, inks.ink, inks.halo);
+    ring(context, goal, 7, inks.ink, 1.5, inks.halo);
+    dot(context, goal, 2, inks.ink, inks.halo);
+  }
+  const force = frame?.force ?? 0;
+  const place = project(points[0].proxy);
+  if (state.view.shown.forces && force > 0.01 && place) {
+    label(context, `${force.toFixed(2)} N`, place.x + 14, place.y + 16, inks, 'left');
+  }
+}
+
+/** What the probe found. @param {Context} context @param {View} view
+ * @param {{ at: Vector, nearest: Vector | null, safe: number } | null} probe @param {Inks} inks */
+export function paintProbe(context, { lens }, probe, inks) {
+  if (!probe) return;
+  const at = lens.project(probe.at);
+  if (probe.nearest) {
+    const nearest = lens.project(probe.nearest);
+    polyline(context, [at, nearest], NORMAL, 1.5, inks.halo);
+    dot(context, nearest, 3.5, NORMAL, inks.halo);
+  }
+  if (at && probe.safe > 0) ring(context, at, probe.safe / lens.pixel(probe.at), NORMAL, 1, 'transparent');
+  dot(context, at, 2.5, inks.ink, inks.halo);
+}

@@ -1,0 +1,126 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+// @ts-check
+
+/**
+ * What is drawn where: a panel for the program and a lens for all else.
+ *
+ * @typedef {import('./camera.js').Lens} Lens
+ * @typedef {import('./camera.js').Rect} Rect
+ * @typedef {import('./layer.js').Panel} Panel
+ * @typedef {import('./setting.js').Setting} Setting
+ * @typedef {import('./vectors.js').Vector} Vector
+ * @typedef {{ panel: Panel, lens: Lens, title: string, only: number, shift: Vector,
+ *   spacing: number, isFlat: boolean, hasPlane: boolean, isWhole: boolean }} View a part of the
+ *   stage: of the body `only` moved by −`shift`, or of the whole scene; `hasPlane` if there is a
+ *   map of a plane in it
+ */
+
+import { state } from '../state.js';
+import { FIELD_OF_VIEW } from './camera.js';
+import { MAPS } from './glsl.js';
+import { shifts } from './setting.js';
+import { slice } from './slice.js';
+import { roundUp } from './units.js';
+import { scale, subtract } from './vectors.js';
+
+/** Isolines over the height of a picture. */
+const LINES = 16;
+/** Most evaluations a pixel. */
+const STEPS = 220;
+/** The step of differences over the size of the scene: values are off by 2e-7 of it. */
+const LEAST_STEP = 2e-4;
+/** Between panels in pixels. */
+const GAP = 4;
+
+/** Three rectangles beside each other, or above each other. @param {Rect} all @returns {Rect[]} */
+function thirds({ x, y, width, height }) {
+  return [0, 1, 2].map((index) => {
+    if (width > height) {
+      const part = (width - 2 * GAP) / 3;
+      return { x: x + index * (part + GAP), y, width: part, height };
+    }
+    const part = (height - 2 * GAP) / 3;
+    return { x, y: y + index * (part + GAP), width, height: part };
+  });
+}
+
+/** Whether the picture is a map of a plane. @param {Setting} setting */
+export function isFlat(setting) {
+  return setting.dimension === 2 || state.view.mode === 'plane';
+}
+
+/** The parts of the stage. @param {Setting} setting
+ * @param {{ orbit: import('./camera.js').Orbit, flat: import('./camera.js').Flat }} cameras
+ * @param {Rect} all @returns {View[]} */
+export function viewsOf(setting, cameras, all) {
+  const { view } = state;
+  const isComparing = view.mode === 'compare' && setting.bodies.length > 1;
+  if (!isComparing) return [viewOf(setting, cameras, all, '', [-1, -1], MAPS[view.map])];
+  const [a, b] = view.compared;
+  const [nameA, nameB] = [a, b].map((body) => setting.bodies[body]?.name ?? `body ${body}`);
+  const [left, right, last] = thirds(all);
+  return [
+    viewOf(setting, cameras, left, nameA, [a, b], MAPS[view.map]),
+    viewOf(setting, cameras, right, nameB, [b, a], MAPS[view.map]),
+    viewOf(setting, cameras, last, `${nameA} − ${nameB}`, [a, b], MAPS.difference),
+  ];
+}
+
+/** @param {Setting} setting @param {{ orbit: import('./camera.js').Orbit,
+ *   flat: import('./camera.js').Flat }} cameras @param {Rect} rect @param {string} title
+ * @param {number[]} bodies the body that is shown, −1 for all, and that it differs from
+ * @param {number} map @returns {View} */
+function viewOf(setting, cameras, rect, title, [only, other], map) {
+  const { view } = state;
+  const flat = isFlat(setting);
+  const camera = flat ? cameras.flat : cameras.orbit;
+  const lens = camera.lens(rect);
+  const isWhole = only < 0;
+  const [shift, otherShift] = isWhole ? [[0, 0, 0], [0, 0, 0]] : shifts(setting, [only, other]);
+  const spacing = view.spacing ?? roundUp(camera.height / LINES);
+  const shown = {
+    map, spacing, only, other, shift, otherShift,
+    range: map === MAPS.difference ? 0.06 * setting.size : 0.35 * setting.size,
+    sineFactor: view.sineFactor,
+    isolines: view.isolines,
+    asInMemoir: view.asInMemoir,
+    positiveInside: view.positiveInside,
+    channels: [view.channels.red, view.channels.green, view.channels.blue].map(Number),
+    leastStep: LEAST_STEP * setting.size,
+  };
+  const hasPlane = flat || view.mode === 'slice' || view.mode === 'compare';
+  const common = { lens, title, only, shift, spacing, isFlat: flat, hasPlane, isWhole };
+  if (flat) {
+    const { frame: { origin, right, up }, centre, height } = cameras.flat;
+    const needsGradient = map === MAPS.gradient || map === MAPS.promise;
+    const values = {
+      ...shown, origin, across: right, above: up, centre,
+      span: [(height * rect.width) / rect.height, height],
+      first: needsGradient ? 0 : 4,
+      last: map === MAPS.difference ? 6 : 5,
+    };
+    return { ...common, panel: { kind: 'flat', rect, values } };
+  }
+  const { eye, right, up, forward } = lens.basis;
+  const tangent = Math.tan(FIELD_OF_VIEW / 2);
+  const box = (isWhole ? null : setting.bodies[only]?.box) ?? setting.box;
+  const room = [1, 1, 1].map(() => 0.004 * setting.size);
+  const values = {
+    ...shown, eye, forward,
+    across: scale(right, (tangent * rect.width) / rect.height),
+    above: scale(up, tangent),
+    low: subtract(subtract(box.low, shift), room),
+    high: subtract(subtract(box.high, shift), scale(room, -1)),
+    cone: tangent,
+    rate: 1 / Math.max(Number(state.scene?.lipschitz ?? 1), 0.25),
+    steps: STEPS,
+    picking: false,
+    sliced: hasPlane,
+    sliceOrigin: slice.frame.origin,
+    sliceAcross: slice.frame.right,
+    sliceAbove: slice.frame.up,
+    sliceReach: slice.reach,
+  };
+  return { ...common, panel: { kind: 'space', rect, values } };
+}

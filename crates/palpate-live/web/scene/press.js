@@ -1,0 +1,90 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+// @ts-check
+
+/**
+ * What a press on the stage takes hold of: a toy, a handle of the slice, the hand, the surface,
+ * or, beside them all, the camera.
+ *
+ * @typedef {import('../input/pointer.js').Place} Place
+ * @typedef {import('../input/pointer.js').Press} Press
+ * @typedef {import('../input/pointer.js').Drag} Drag
+ * @typedef {import('./panels.js').View} View
+ * @typedef {import('./vectors.js').Vector} Vector
+ * @typedef {object} Stage
+ * @property {{ orbit: import('./camera.js').Orbit, flat: import('./camera.js').Flat }} cameras
+ * @property {ReturnType<typeof import('../input/hand.js').createHand>} hand
+ * @property {(place: Place) => View | undefined} view
+ * @property {(view: View, place: Place) => Promise<{ point: Vector } | null>} pick
+ * @property {() => void} changed
+ * @property {(target: Vector | null) => void} show
+ */
+
+import { addStart, toyDrag } from '../plane/handles.js';
+import { toys } from '../plane/toys.js';
+import { state } from '../state.js';
+import { handDrag, laterDrag, orbitDrag, panDrag, sliceDrag } from './drags.js';
+import { handOf } from './overlay.js';
+import { handles } from './slice.js';
+
+/** How near a press must be in pixels, of a mouse or pen and of a finger. */
+const REACH = { mouse: 16, touch: 28 };
+/** A press that moves less than this is a click, in pixels. */
+const CLICK = 5;
+
+/** A drag that begins once the pointer has moved; before, a click.
+ * @param {Place} place @param {() => Drag} begin @param {() => void} click @returns {Drag} */
+function clickOrDrag(place, begin, click) {
+  /** @type {Drag | null} */
+  let drag = null;
+  return {
+    move(next, across, down) {
+      if (!drag && Math.hypot(next.x - place.x, next.y - place.y) > CLICK) drag = begin();
+      drag?.move(next, across, down);
+    },
+    end() {
+      if (drag) drag.end?.();
+      else click();
+    },
+  };
+}
+
+/** @param {Stage} stage @returns {(place: Place, press: Press) => Drag | null} */
+export function createPress({ cameras, hand, view, pick, changed, show }) {
+  return (place, { button, shift, isTouch }) => {
+    const pressed = view(place);
+    if (!pressed) return null;
+    const { lens, isFlat, isWhole } = pressed;
+    const live = () => view(place) ?? pressed;
+    const camera = isFlat ? cameras.flat : cameras.orbit;
+    if (button === 1 || shift || (button === 2 && isFlat)) return panDrag(camera, lens.rect, changed);
+    if (button === 2) return orbitDrag(cameras.orbit, changed);
+    const reach = isTouch ? REACH.touch : REACH.mouse;
+    const near = (/** @type {Vector} */ point, /** @type {number} */ within) => {
+      const seen = lens.project(point);
+      return seen !== null && Math.hypot(seen.x - place.x, seen.y - place.y) < within;
+    };
+    if (isFlat && isWhole && state.scene?.dimension === 2) {
+      const toy = toyDrag(() => live().lens, place, reach);
+      if (toy) return toy;
+    }
+    if (state.view.mode === 'slice' && !isFlat) {
+      const found = handles().find(({ point }) => near(point, reach));
+      if (found) return sliceDrag(found.handle, () => live().lens);
+    }
+    const middle = handOf();
+    const away = () => (isFlat ? panDrag(camera, lens.rect, changed) : orbitDrag(cameras.orbit, changed));
+    if (!middle || !isWhole) return away();
+    const holds = near(middle, reach)
+      || (state.frame?.points ?? []).some(({ device }) => near(device, reach));
+    const lead = (/** @type {Vector} */ through, /** @type {boolean} */ pushes) =>
+      handDrag(live, place, through, pushes, hand, show);
+    if (holds) return lead(middle, false);
+    if (isFlat) {
+      const there = lens.at(place.x, place.y, middle);
+      if (!toys.shown.pair) return lead(there, false);
+      return clickOrDrag(place, () => lead(there, false), () => addStart(there.slice(0, 2)));
+    }
+    return laterDrag(pick(pressed, place).then((hit) => (hit ? lead(hit.point, true) : away())));
+  };
+}

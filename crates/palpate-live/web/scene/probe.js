@@ -1,0 +1,88 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+// @ts-check
+
+/**
+ * The probe that follows the pointer: what the field says at a place, from the program, which
+ * knows it in full precision.
+ *
+ * @typedef {import('../wire.js').Wire} Wire
+ * @typedef {import('./panels.js').View} View
+ * @typedef {import('./vectors.js').Vector} Vector
+ * @typedef {{ at: Vector, value: number, gradient: Vector, nearest: Vector | null, safe: number,
+ *   promise: string, body: number, view: number }} Probed
+ */
+
+import { state } from '../state.js';
+import { newest } from './newest.js';
+import { length } from './units.js';
+import { add, inSpace, norm, subtract } from './vectors.js';
+
+/** The least time between two questions [ms]. */
+const PAUSE = 50;
+
+export class Probe {
+  /** @param {Wire} wire @param {() => void} changed */
+  constructor(wire, changed) {
+    this.wire = wire;
+    this.changed = changed;
+    /** @type {Probed | null} */
+    this.probed = null;
+    this.place = 0;
+    this.ask = newest(this.fetch.bind(this));
+  }
+
+  /** Asks about the place that `find` finds, in the view of this number.
+   * @param {() => Promise<Vector | null>} find @param {View} view @param {number} number */
+  follow(find, view, number) {
+    this.place += 1;
+    this.ask({ find, view, number, place: this.place });
+  }
+
+  leave() {
+    this.place += 1;
+    this.probed = null;
+    this.changed();
+  }
+
+  /** @param {{ find: () => Promise<Vector | null>, view: View, number: number, place: number }} asked */
+  async fetch({ find, view, number, place }) {
+    const at = await find();
+    if (at) {
+      const dimension = state.scene?.dimension ?? 3;
+      const body = view.isWhole ? {} : { body: view.only };
+      const point = add(at, view.shift).slice(0, dimension);
+      const answer = await this.wire.ask({ do: 'probe', at: point, ...body });
+      if (place !== this.place && !this.probed) return;
+      this.probed = {
+        at,
+        value: answer.value,
+        gradient: inSpace(answer.gradient ?? [0, 0, 0]),
+        nearest: answer.nearest ? subtract(inSpace(answer.nearest), view.shift) : null,
+        safe: answer.safe ?? 0,
+        promise: answer.promise ?? '',
+        body: answer.body ?? -1,
+        view: number,
+      };
+    } else if (place === this.place) {
+      this.probed = null;
+    }
+    this.changed();
+    await new Promise((resolve) => { setTimeout(resolve, PAUSE); });
+  }
+
+  /** What was found, in words. */
+  get words() {
+    if (!this.probed) return '';
+    const { at, value, gradient, safe, promise, body } = this.probed;
+    const dimension = state.scene?.dimension ?? 3;
+    const sign = state.view.positiveInside ? -1 : 1;
+    const name = state.scene?.bodies?.[body]?.name;
+    const direction = gradient.slice(0, dimension).map((part) => (sign * part).toFixed(2)).join(', ');
+    return [
+      `at (${at.slice(0, dimension).map(length).join(', ')})${name ? ` of ${name}` : ''}`,
+      `f ${length(sign * value)}   ∇f (${direction})   |∇f| ${norm(gradient).toFixed(2)}`,
+      `safe ball ${length(safe)}${promise ? `   ${promise}` : ''}`,
+    ].join('\n').replaceAll('-', '−');
+  }
+}

@@ -1,0 +1,124 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+// @ts-check
+
+/**
+ * Where the values of the scene come from: its formula, samples of it, or, where there is
+ * neither, pictures and slices that the program makes.
+ *
+ * @typedef {import('../wire.js').Wire} Wire
+ * @typedef {import('../wire.js').Grid} Grid
+ * @typedef {import('./setting.js').Setting} Setting
+ */
+
+import { state } from '../state.js';
+import { Field } from './fields.js';
+import { samples } from './glsl.js';
+import { newest } from './newest.js';
+import { length } from './units.js';
+import { inSpace } from './vectors.js';
+
+/** Samples along the longest side: of a scene that stands, and of one that is being changed. */
+const CELLS = { plane: [1024, 256], space: [128, 64] };
+/** How long after a change the scene counts as being changed [ms]. */
+const SETTLE = 300;
+
+export class Source {
+  /** @param {Wire} wire @param {(field: Field) => void} take takes a field that can be drawn */
+  constructor(wire, take) {
+    this.wire = wire;
+    this.take = take;
+    /** Whether the page can draw by itself. */
+    this.hasCard = true;
+    /** @type {'formula' | 'samples' | 'drawn'} */
+    this.kind = 'drawn';
+    /** Between samples [m]. */
+    this.spacing = 0;
+    /** @type {Setting | null} */
+    this.setting = null;
+    this.settling = 0;
+    this.changedAt = 0;
+    this.text = '';
+    /** Why the formula could not be used. */
+    this.failure = '';
+    this.ask = newest(() => this.fetch());
+  }
+
+  /** The way that the scene is drawn, in words. */
+  get words() {
+    if (this.kind === 'formula') return 'formula, exact';
+    if (this.kind === 'drawn') return 'drawn by the program';
+    return this.spacing > 0 ? `drawn from samples ${length(this.spacing)} apart` : 'waiting for samples';
+  }
+
+  get why() {
+    if (!this.hasCard) return 'this browser draws no WebGL 2';
+    return this.failure || String(state.way?.why ?? '');
+  }
+
+  /** Takes the newest scene and way. @param {Setting} setting */
+  update(setting) {
+    const { way } = state;
+    this.setting = setting;
+    if (way?.glsl !== this.text) this.failure = '';
+    this.text = way?.glsl ?? '';
+    const kind = way?.kind ?? 'drawn';
+    this.kind = kind === 'formula' && this.failure ? 'samples' : kind;
+    if (!this.hasCard) this.kind = 'drawn';
+    if (this.kind === 'formula') {
+      /** @type {number[]} */
+      const u = way?.uniforms ?? [];
+      // The text has uniforms while a control is dragged.
+      this.take(new Field(this.text, setting, [], { u }, u.length > 0));
+    }
+    if (this.kind === 'samples') this.renew();
+  }
+
+  /** Asks for samples: coarse ones while the scene is being changed. */
+  renew() {
+    const now = performance.now();
+    const isChanging = now - this.changedAt < SETTLE;
+    this.changedAt = now;
+    clearTimeout(this.settling);
+    this.ask(undefined);
+    if (isChanging) this.settling = window.setTimeout(() => this.ask(undefined), SETTLE);
+  }
+
+  /** The card refused the formula: samples do as well. @param {string} why */
+  fail(why) {
+    const line = why.split('\n').find((each) => each.startsWith('ERROR')) ?? why;
+    this.failure = `the browser did not take the formula: ${line}`;
+    if (this.setting) this.update(this.setting);
+  }
+
+  /** Fetches samples of the newest scene. */
+  async fetch() {
+    const { setting } = this;
+    if (!setting) return;
+    const isCoarse = performance.now() - this.changedAt < SETTLE && this.spacing > 0;
+    const [fine, coarse] = setting.dimension === 2 ? CELLS.plane : CELLS.space;
+    const cells = isCoarse ? coarse : fine;
+    const bodies = state.view.mode === 'compare' ? state.view.compared : [];
+    /** @type {Grid[]} */
+    const grids = [await this.wire.ask({ do: 'samples', cells })];
+    for (const body of bodies) grids.push(await this.wire.ask({ do: 'samples', cells, body }));
+    this.takeSamples(grids, bodies, setting);
+  }
+
+  /** @param {Grid[]} grids of the scene, and of two bodies if they are compared
+   * @param {number[]} bodies @param {Setting} setting */
+  takeSamples(grids, bodies, setting) {
+    const { counts, first, last } = grids[0];
+    this.spacing = Math.max(...counts.slice(0, setting.dimension).map((count, axis) =>
+      (last[axis] - first[axis]) / Math.max(count - 1, 1)));
+    const three = [0, 1, 2].map((index) => grids[index] ?? grids[0]);
+    const values = {
+      gridLow: three.map((grid) => inSpace(grid.first)),
+      gridHigh: three.map((grid) => inSpace(grid.last)),
+      firstBody: bodies[0] ?? 0,
+      // Units 1 to 3 hold the grids.
+      ...(bodies.length === 0 ? { grid1: 1, grid2: 1 } : {}),
+    };
+    this.take(new Field(samples(setting.dimension), setting, grids, values, true));
+  }
+}

@@ -1,0 +1,256 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+// @ts-check
+
+/**
+ * The stage: the scene, drawn when the camera, the field or the view changes, and the overlay
+ * above it, drawn with each frame of the servo.
+ *
+ * @typedef {import('../wire.js').Wire} Wire
+ * @typedef {import('./panels.js').View} View
+ * @typedef {import('./vectors.js').Vector} Vector
+ * @typedef {import('../input/pointer.js').Place} Place
+ */
+
+import { createHand } from '../input/hand.js';
+import { createPointer } from '../input/pointer.js';
+import { connectToys, layToys, listenToys } from '../plane/toys.js';
+import { listen, state } from '../state.js';
+import { Flat, Orbit } from './camera.js';
+import { askContacts } from './contacts.js';
+import { Elements } from './elements.js';
+import { Labels } from './labels.js';
+import { Layer } from './layer.js';
+import { paintAll } from './paint.js';
+import { isFlat, viewsOf } from './panels.js';
+import { createPick } from './pick.js';
+import { Pictures } from './pictures.js';
+import { createPress } from './press.js';
+import { Probe } from './probe.js';
+import { comparison, setting } from './setting.js';
+import { listenSlice, meet, slice } from './slice.js';
+import { Source } from './source.js';
+import { Views } from './views.js';
+
+/** Builds the stage into a container.
+ * @param {HTMLElement} container @param {Wire} wire */
+export function createStage(container, wire) {
+  const elements = new Elements(container);
+  const cameras = { orbit: new Orbit(), flat: new Flat() };
+  const named = new Views(cameras.orbit, cameras.flat);
+  /** @type {View[]} */
+  let views = [];
+  let isSceneChanged = true;
+  let isOverlayChanged = true;
+  let isPressed = false;
+  let requested = 0;
+  let lastScene = '';
+  /** Where the pointer leads the hand. @type {Vector | null} */
+  let target = null;
+  /** @type {any} */
+  let contacts = null;
+
+  const layer = new Layer(elements.scene, (what, why) => {
+    if (what === 'gone') withoutCard();
+    if (what === 'error') source.fail(why ?? '');
+    if (what !== 'error') source.update(setting());
+    sceneChanged();
+  });
+  /** @type {import('./fields.js').Field | null} */
+  let field = null;
+  const source = new Source(wire, (made) => {
+    field = made;
+    sceneChanged();
+  });
+  const pictures = new Pictures(wire, elements.picture, overlayChanged);
+  const labels = new Labels(wire, overlayChanged);
+  const probe = new Probe(wire, overlayChanged);
+  const pick = createPick(layer);
+  const hand = createHand(wire);
+  if (!layer.gl) withoutCard();
+
+  function request() {
+    if (requested === 0) requested = requestAnimationFrame(frame);
+  }
+
+  function sceneChanged() {
+    isSceneChanged = true;
+    overlayChanged();
+  }
+
+  function overlayChanged() {
+    isOverlayChanged = true;
+    request();
+  }
+
+  function withoutCard() {
+    source.hasCard = false;
+    elements.useCard(false);
+    pictures.resize();
+  }
+
+  /** The scene as it is shown: bodies that are compared lie where they are drawn. */
+  function current() {
+    const whole = setting();
+    const isComparing = state.view.mode === 'compare' && whole.bodies.length > 1;
+    return isComparing ? comparison(whole, state.view.compared) : whole;
+  }
+
+  function frame() {
+    requested = 0;
+    if (isSceneChanged) {
+      isSceneChanged = false;
+      cameras.flat.frame = slice.frame;
+      views = viewsOf(setting(), cameras, elements.rect);
+      if (source.hasCard && field) layer.show(views.map(({ panel }) => panel), field);
+      const isDrawn = source.kind === 'drawn' && state.connection === 'live';
+      elements.useCard(source.kind !== 'drawn');
+      if (isDrawn) pictures.ask({ views, flat: cameras.flat, setting: setting() });
+      if (views.some(({ hasPlane }) => hasPlane)) labels.renew(views, cameras.flat);
+    }
+    if (source.kind !== 'drawn' && layer.step(isPressed)) request();
+    if (isOverlayChanged) {
+      isOverlayChanged = false;
+      elements.note(source.words, source.why);
+      elements.read(probe.words);
+      const shown = { target, contacts, labels, probe: probe.probed };
+      paintAll(elements.context, views, shown, elements.inks(), elements.ratio);
+    }
+  }
+
+  /** Takes the shape of the panels. */
+  function measure() {
+    const [{ lens: { rect } }] = viewsOf(setting(), cameras, elements.rect);
+    named.aspect = rect.width / rect.height;
+  }
+
+  /** Looks at another scene as a whole; one that was edited stays where it is. */
+  function takeScene() {
+    const { mode, compared } = state.view;
+    const comparing = mode === 'compare' ? compared.join() : '';
+    const key = `${state.scene?.name} ${state.scene?.dimension} ${comparing}`;
+    const shown = current();
+    cameras.orbit.size = shown.size;
+    cameras.flat.size = shown.size;
+    if (key !== lastScene && state.scene) {
+      lastScene = key;
+      measure();
+      if (shown.dimension === 2) layToys(shown.centre, shown.size);
+      named.reset(shown);
+    }
+  }
+
+  /** The number of the view at a place. @param {Place} place */
+  function viewAt(place) {
+    return views.findIndex(({ lens: { rect } }) => place.x >= rect.x && place.y >= rect.y
+      && place.x < rect.x + rect.width && place.y < rect.y + rect.height);
+  }
+
+  /** The point of the scene that is seen at a place. @param {View} view @param {Place} place */
+  async function seenAt(view, { x, y }) {
+    if (view.isFlat) return view.lens.at(x, y, cameras.flat.frame.origin);
+    const cut = view.hasPlane ? meet(view.lens, x, y) : null;
+    if (cut) return cut;
+    if (source.kind === 'drawn') return view.lens.at(x, y, cameras.orbit.target);
+    return (await pick(view.panel, x, y))?.point ?? null;
+  }
+
+  function fit() {
+    elements.resize();
+    layer.resize();
+    pictures.resize();
+    sceneChanged();
+  }
+
+  createPointer(elements.overlay, {
+    press: createPress({
+      cameras,
+      hand,
+      view: (place) => views[viewAt(place)] ?? views[0],
+      pick: (view, { x, y }) => pick(view.panel, x, y),
+      changed: sceneChanged,
+      show(point) {
+        target = point;
+        overlayChanged();
+      },
+    }),
+    hover(place) {
+      const number = place ? viewAt(place) : -1;
+      const view = views[number];
+      if (!place || !view || isPressed || state.connection !== 'live') probe.leave();
+      else probe.follow(() => seenAt(view, place), view, number);
+    },
+    zoom({ x, y }, factor) {
+      const view = views[viewAt({ x, y })] ?? views[0];
+      const camera = view?.isFlat ? cameras.flat : cameras.orbit;
+      if (view) camera.zoom(factor, x, y, view.lens.rect);
+      sceneChanged();
+    },
+    pan(place, across, down) {
+      const view = views[viewAt(place)] ?? views[0];
+      const camera = view?.isFlat ? cameras.flat : cameras.orbit;
+      if (view) camera.pan(across, down, view.lens.rect);
+      sceneChanged();
+    },
+  });
+
+  listen(['scene'], () => {
+    takeScene();
+    source.update(setting());
+    askContacts(wire, (answer) => {
+      contacts = answer;
+      overlayChanged();
+    });
+    sceneChanged();
+  });
+  listen(['way'], () => {
+    source.update(setting());
+    sceneChanged();
+  });
+  listen(['view'], () => {
+    takeScene();
+    if (source.kind === 'samples' && state.view.mode === 'compare') source.renew();
+    askContacts(wire, (answer) => {
+      contacts = answer;
+      overlayChanged();
+    });
+    sceneChanged();
+  });
+  listen(['theme', 'connection'], sceneChanged);
+  listen(['frame', 'playback'], overlayChanged);
+  listenSlice(sceneChanged);
+  listenToys(overlayChanged);
+  connectToys(wire);
+  // Programs are compiled between drags, wherever on the page they are.
+  for (const type of ['pointerdown', 'pointerup', 'pointercancel']) {
+    window.addEventListener(type, (event) => {
+      isPressed = event.type === 'pointerdown';
+      request();
+    }, { capture: true });
+  }
+  new ResizeObserver(fit).observe(container);
+  takeScene();
+  source.update(setting());
+  fit();
+
+  return {
+    fit,
+    /** @param {string} name `reset`, `x`, `y`, `z`, `in`, `out` or a view of the scene */
+    setCamera(name) {
+      measure();
+      named.show(name, current());
+      sceneChanged();
+    },
+    /** The picture with all that lies over it. @returns {Promise<Blob>} */
+    exportPng() {
+      if (source.kind !== 'drawn' && layer.gl) layer.present();
+      return elements.export(source.kind === 'drawn');
+    },
+    focus: () => elements.overlay.focus({ preventScroll: true }),
+    /** How fast the scene is drawn: the time of a moving picture [ms], the part of the pixels
+     * that it has along each side, and whether it is complete. */
+    stats: () => ({ time: layer.lastTime, scale: layer.scale, isStill: layer.isDone }),
+    /** Whether the picture is a map of a plane. */
+    isFlat: () => isFlat(setting()),
+  };
+}

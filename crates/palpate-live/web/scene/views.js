@@ -1,0 +1,139 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+// @ts-check
+
+/**
+ * Names of views: of the scene, along the axes, and steps of the zoom.
+ *
+ * @typedef {import('./camera.js').Orbit} Orbit
+ * @typedef {import('./camera.js').Flat} Flat
+ * @typedef {import('./camera.js').Frame} Frame
+ * @typedef {import('./setting.js').Setting} Setting
+ */
+
+import { state } from '../state.js';
+import { setSlice, slice } from './slice.js';
+import { cross, dot, inSpace, subtract } from './vectors.js';
+
+/** A step of the zoom. */
+const STEP = 0.8;
+/** Room around the scene, over its size. */
+const ROOM = 1.12;
+
+/** Planes by two axes. @type {Record<string, { right: number[], up: number[] }>} */
+const PLANES = {
+  xy: { right: [1, 0, 0], up: [0, 1, 0] },
+  xz: { right: [1, 0, 0], up: [0, 0, -1] },
+  yz: { right: [0, 0, -1], up: [0, 1, 0] },
+};
+/** The plane that is seen along an axis. @type {Record<string, string>} */
+const ALONG = { x: 'yz', y: 'xz', z: 'xy' };
+
+export class Views {
+  /** @param {Orbit} orbit @param {Flat} flat */
+  constructor(orbit, flat) {
+    this.orbit = orbit;
+    this.flat = flat;
+    this.aspect = 1.5;
+  }
+
+  /** @param {string} name of a view, or `reset`, `x`, `y`, `z`, `in`, `out`
+   * @param {Setting} setting */
+  show(name, setting) {
+    const { orbit, flat } = this;
+    if (name === 'in' || name === 'out') {
+      const factor = name === 'in' ? STEP : 1 / STEP;
+      orbit.height *= factor;
+      flat.height *= factor;
+      return;
+    }
+    const view = state.scene?.scene?.views?.find((/** @type {any} */ each) => each.name === name);
+    if (view) this.showView(view, setting);
+    else if (ALONG[name]) this.lookAlong(ALONG[name], setting);
+    else this.reset(setting);
+  }
+
+  /** @param {Setting} setting */
+  reset(setting) {
+    const { orbit, flat } = this;
+    orbit.size = setting.size;
+    flat.size = setting.size;
+    orbit.yaw = 0.6;
+    orbit.pitch = 0.42;
+    orbit.target = setting.centre;
+    orbit.height = (setting.size * ROOM) / Math.min(1, this.aspect);
+    this.lay(PLANES.xy, setting);
+    this.fit(setting);
+  }
+
+  /** Lays the plane through the middle of the scene. @param {{ right: number[], up: number[] }} axes
+   * @param {Setting} setting */
+  lay(axes, setting) {
+    const origin = setting.dimension === 2 ? [0, 0, 0] : setting.centre;
+    setSlice({ frame: { ...axes, origin }, reach: 0.46 * setting.size });
+  }
+
+  /** Fits the scene's box into the map of the plane. @param {Setting} setting */
+  fit(setting) {
+    const { flat } = this;
+    const { frame } = slice;
+    flat.frame = frame;
+    const { box: { low, high } } = setting;
+    const edges = subtract(high, low);
+    const [width, height] = [frame.right, frame.up].map((axis) =>
+      Math.abs(axis[0] * edges[0]) + Math.abs(axis[1] * edges[1]) + Math.abs(axis[2] * edges[2]));
+    const from = subtract(setting.centre, frame.origin);
+    flat.centre = [dot(from, frame.right), dot(from, frame.up)];
+    flat.height = Math.max(height, width / this.aspect) * 1.2;
+  }
+
+  /** @param {string} plane @param {Setting} setting */
+  lookAlong(plane, setting) {
+    this.lay(PLANES[plane], setting);
+    this.face();
+    this.orbit.target = setting.centre;
+    this.orbit.height = (setting.size * ROOM) / Math.min(1, this.aspect);
+    this.fit(setting);
+  }
+
+  /** Turns the camera towards the plane. */
+  face() {
+    const normal = cross(slice.frame.right, slice.frame.up);
+    this.orbit.pitch = Math.asin(Math.max(-1, Math.min(1, normal[1])));
+    const isLevel = Math.hypot(normal[0], normal[2]) > 1e-6;
+    this.orbit.yaw = isLevel ? Math.atan2(normal[0], normal[2]) : 0;
+  }
+
+  /** A view of the scene file. @param {any} view @param {Setting} setting */
+  showView(view, setting) {
+    const isFree = typeof view.plane === 'object';
+    const axes = isFree ? { right: view.plane.right, up: view.plane.up } : PLANES[view.plane ?? 'xy'];
+    const normal = cross(axes.right, axes.up);
+    const origin = isFree
+      ? inSpace(view.plane.origin)
+      : normal.map((part) => Math.abs(part) * (view.at ?? 0));
+    setSlice({ frame: { ...axes, origin }, reach: 0.46 * setting.size });
+    this.fit(setting);
+    // Centres are along the axes of the plane's name, also where the picture looks against one.
+    if (view.center) {
+      const point = isFree ? null : centreIn(view.plane ?? 'xy', view.center);
+      this.flat.centre = point
+        ? [dot(subtract(point, origin), axes.right), dot(subtract(point, origin), axes.up)]
+        : view.center;
+    }
+    if (view.width || view.height) {
+      this.flat.height = Math.max(view.height ?? 0, (view.width ?? 0) / this.aspect);
+    }
+    const { frame } = slice;
+    this.face();
+    this.orbit.target = [0, 1, 2].map((axis) => frame.origin[axis]
+      + this.flat.centre[0] * frame.right[axis] + this.flat.centre[1] * frame.up[axis]);
+    this.orbit.height = this.flat.height;
+  }
+}
+
+/** @param {string} plane @param {number[]} centre */
+function centreIn(plane, [first, second]) {
+  if (plane === 'xz') return [first, 0, second];
+  return plane === 'yz' ? [0, first, second] : [first, second, 0];
+}
