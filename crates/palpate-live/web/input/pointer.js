@@ -64,14 +64,13 @@ export function createPointer(element, handlers) {
     pressed.set(event.pointerId, place);
     if (pressed.size === 1) {
       leader = event.pointerId;
+      handlers.hover(null);
       const { button, shiftKey: shift, pointerType } = event;
       drag = handlers.press(place, { button, shift, isTouch: pointerType === 'touch' });
     } else if (!drag?.deepen) {
       // The second finger begins a pinch.
       end();
     }
-    event.preventDefault();
-    element.focus({ preventScroll: true });
   });
 
   element.addEventListener('pointermove', (event) => {

@@ -74,10 +74,9 @@ export function setToys(change) {
   tell();
 }
 
-/** Lays toys that have no place yet into the scene. @param {number[]} centre
+/** Lays the toys into another scene. @param {number[]} centre
  * @param {number} size of the scene [m] */
 export function layToys(centre, size) {
-  if (toys.corners.length > 0) return;
   const [x, y] = centre;
   const at = (/** @type {number} */ across, /** @type {number} */ above) =>
     [x + across * size, y + above * size];
@@ -85,6 +84,7 @@ export function layToys(centre, size) {
     corners: [at(-0.42, -0.3), at(-0.2, -0.34), at(-0.3, -0.12)],
     ball: { centre: at(0.36, -0.3), radius: 0.08 * size },
     by: [0.4 * size, 0.2 * size],
+    pair: { a: 0, b: 1, starts: [] },
   });
 }
 

@@ -49,16 +49,23 @@ export class Elements {
         maxWidth: 'calc(100% - 130px)', overflow: 'hidden', textOverflow: 'ellipsis',
       });
     }
+    this.readout.hidden = true;
     this.way.style.bottom = '6px';
     this.readout.style.bottom = '30px';
     this.readout.style.fontVariantNumeric = 'tabular-nums';
     if (getComputedStyle(container).position === 'static') container.style.position = 'relative';
     container.append(this.scene, this.picture, this.overlay, this.way, this.readout);
-    this.context = /** @type {CanvasRenderingContext2D} */ (this.overlay.getContext('2d'));
+    // Painted by the processor: it has few strokes, and where the browser emulates a graphics
+    // card, that is much cheaper.
+    this.context = /** @type {CanvasRenderingContext2D} */ (
+      this.overlay.getContext('2d', { willReadFrequently: true }));
     this.width = 1;
     this.height = 1;
     this.ratio = 1;
+    /** The colours of the theme. @type {Inks} */
+    this.inks = { ink: '#000000', halo: '#ffffff', muted: '#8a909a' };
     this.useCard(true);
+    this.dress();
   }
 
   get rect() {
@@ -79,18 +86,21 @@ export class Elements {
     this.picture.style.visibility = isUsed ? 'hidden' : 'visible';
   }
 
-  /** The colours of the theme. @returns {Inks & { paper: string }} */
-  inks() {
+  /** Takes the colours of the theme. */
+  dress() {
     const paper = behind(this.container);
-    return { ink: getComputedStyle(this.container).color, halo: paper, muted: '#8a909a', paper };
+    const ink = getComputedStyle(this.container).color;
+    this.inks = { ink, halo: paper, muted: '#8a909a' };
+    for (const text of [this.way, this.readout]) {
+      Object.assign(text.style, { color: ink, background: paper });
+    }
   }
 
   /** @param {HTMLElement} element @param {string} text */
   write(element, text) {
-    if (element.textContent !== text) element.textContent = text;
+    if (element.textContent === text) return;
+    element.textContent = text;
     element.hidden = text === '';
-    const { ink, paper } = this.inks();
-    Object.assign(element.style, { color: ink, background: paper });
   }
 
   /** Tells how the scene is drawn. @param {string} words @param {string} why */
@@ -111,7 +121,7 @@ export class Elements {
     canvas.width = width;
     canvas.height = height;
     const context = /** @type {CanvasRenderingContext2D} */ (canvas.getContext('2d'));
-    const { ink, paper } = this.inks();
+    const { ink, halo: paper } = this.inks;
     context.fillStyle = paper;
     context.fillRect(0, 0, width, height);
     context.drawImage(isDrawn ? this.picture : this.scene, 0, 0, width, height);

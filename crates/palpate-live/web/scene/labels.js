@@ -122,8 +122,7 @@ export class Labels {
     /** @type {Label[][]} */
     const labels = [];
     for (const view of views) {
-      const isWanted = view.hasPlane && state.view.isolines && view.panel.values.map !== 4;
-      labels.push(isWanted
+      labels.push(view.hasLines
         ? crossings(await askSlice(this.wire, view, flat, CELLS, CELLS), view.spacing) : []);
     }
     this.labels = labels;

@@ -17,7 +17,6 @@
  */
 
 import { Programs } from './program.js';
-import { clamp } from './vectors.js';
 
 /** Parts of the full resolution, along each side. */
 const SCALES = [1, 1 / 2, 1 / 4, 1 / 8];
@@ -30,6 +29,8 @@ const STILL = 120;
 /** The edge of a tile in pixels of the target. */
 const TILE = 128;
 const MOST_TILES = 64;
+/** Batches of tiles grow as long as they are drawn in this time [ms], about two frames. */
+const QUICK = 36;
 /** Where in a pixel its samples are, one a pass. */
 const OFFSETS = [[0, 0], [0.25, -0.5], [-0.5, -0.25], [0.25, 0.375]];
 /** If the first pass took longer than this, edges stay as they are [ms]. */
@@ -65,7 +66,6 @@ export class Layer {
     /** @type {WebGLSync | null} */
     this.fence = null;
     this.isMoving = false;
-    this.waits = 0;
     this.batch = 2;
     /** Tiles to draw, pass after pass. */
     this.tile = 0;
@@ -96,8 +96,8 @@ export class Layer {
     this.programs = new Programs(gl);
     /** Programs that have drawn once: many drivers compile only then. */
     this.warm = new WeakSet();
-    /** @type {{ program: Program, fence: WebGLSync } | null} */
-    this.warming = null;
+    /** @type {WeakMap<Program, WebGLSync>} */
+    this.warming = new WeakMap();
     this.targets = [0, 1].map(() => ({
       frame: gl.createFramebuffer(), pixels: gl.createRenderbuffer(),
     }));
@@ -139,11 +139,18 @@ export class Layer {
     this.change();
   }
 
-  /** The programs of a field, if all of them can draw at once. @param {Field} field */
-  programsOf(field) {
+  /** Whether the programs of a field can draw; makes them if not. @param {Field} field
+   * @param {boolean} makes whether to make them */
+  canDraw(field, makes) {
     const kinds = new Set(this.panels.map(({ kind }) => kind));
-    const programs = [...kinds].map((kind) => this.programs?.get(field.texts[kind]));
-    return programs.every((program) => program && this.isWarm(program, field));
+    // A field in the plane has no program for space.
+    if ([...kinds].some((kind) => field.texts[kind] === '')) return false;
+    return [...kinds].every((kind) => {
+      const text = field.texts[kind];
+      if (!makes && !this.programs?.has(text)) return false;
+      const program = this.programs?.get(text);
+      return program && (makes ? this.isWarm(program, field) : this.warm?.has(program));
+    });
   }
 
   /** @param {Program} program @param {Field} field */
@@ -157,17 +164,17 @@ export class Layer {
       return false;
     }
     if (this.warm?.has(program)) return true;
-    if (this.warming?.program !== program) {
+    const begun = this.warming?.get(program);
+    if (!begun) {
       this.draw({ ...this.panels[0], values: { ...this.panels[0].values, steps: 1 } }, 1, field,
         program, { x: 0, y: 0, width: 1, height: 1 });
       const fence = gl.fenceSync(gl.SYNC_GPU_COMMANDS_COMPLETE, 0);
-      if (fence) this.warming = { program, fence };
+      if (fence) this.warming?.set(program, fence);
       gl.flush();
       return false;
     }
-    if (!this.isSignalled(this.warming.fence)) return false;
+    if (!this.isSignalled(begun)) return false;
     this.warm?.add(program);
-    this.warming = null;
     return true;
   }
 
@@ -184,7 +191,7 @@ export class Layer {
     if (!gl || gl.isContextLost()) return false;
     if (this.fence && !this.isFinished()) return true;
     if (this.next && this.panels.length > 0 && (this.next.isUrgent || !isPressed || !this.field)) {
-      if (this.programsOf(this.next)) {
+      if (this.canDraw(this.next, true)) {
         this.field?.free(gl);
         this.field = this.next;
         this.next = null;
@@ -194,7 +201,8 @@ export class Layer {
     }
     const { field } = this;
     if (!field || this.panels.length === 0) return this.next !== null;
-    if (!this.programsOf(field)) return true;
+    // A field that is about to be replaced goes on with the programs that it has.
+    if (!this.canDraw(field, this.next === null)) return true;
     const now = performance.now();
     if (this.isChanged) {
       this.isChanged = false;
@@ -211,13 +219,16 @@ export class Layer {
     const gl = /** @type {WebGL2RenderingContext} */ (this.gl);
     const fence = /** @type {WebGLSync} */ (this.fence);
     if (!this.isSignalled(fence)) {
-      this.waits += 1;
       return false;
     }
     gl.deleteSync(fence);
     this.fence = null;
-    if (!this.isMoving) {
-      this.batch = clamp(this.waits === 0 ? 2 * this.batch : this.batch >> 1, 1, MOST_TILES);
+    const time = performance.now() - this.drawnAt;
+    if (this.isMoving) {
+      this.learn(time);
+    } else {
+      if (time < QUICK) this.batch = Math.min(2 * this.batch, MOST_TILES);
+      if (time > 2 * QUICK) this.batch = Math.max(this.batch >> 1, 1);
     }
     return true;
   }
@@ -226,7 +237,6 @@ export class Layer {
     const gl = /** @type {WebGL2RenderingContext} */ (this.gl);
     this.fence = gl.fenceSync(gl.SYNC_GPU_COMMANDS_COMPLETE, 0);
     this.drawnAt = performance.now();
-    this.waits = 0;
     gl.flush();
   }
 
@@ -252,28 +262,30 @@ export class Layer {
     this.present();
     this.isMoving = true;
     this.setFence();
-    // A frame is too coarse a clock for what takes less than one.
-    this.watch(scale, this.fence, this.drawnAt);
+    this.watch(this.fence);
     this.tile = 0;
     this.tiles = scale === 1 ? this.tilesAPass() : 0;
   }
 
-  /** Times a moving picture. @param {number} scale @param {WebGLSync | null} fence
-   * @param {number} began */
-  watch(scale, fence, began) {
+  /** Asks more often than once a frame whether the card is done: a frame is too coarse a clock
+   * for what takes less than one. @param {WebGLSync | null} fence */
+  watch(fence) {
     setTimeout(() => {
-      if (!fence || fence !== this.fence || !this.gl || this.gl.isContextLost()) return;
-      if (!this.isSignalled(fence)) {
-        this.watch(scale, fence, began);
-        return;
-      }
-      this.lastTime = performance.now() - began;
-      const cost = Math.max(this.lastTime - FENCE, 0.2) / scale ** 2;
-      this.cost = this.cost === null ? cost : 0.5 * (this.cost + cost);
-      const holds = (/** @type {number} */ part) =>
-        (this.cost ?? 0) * part ** 2 + FENCE <= (part > scale ? 0.75 : 1) * FRAME;
-      this.scale = SCALES.find(holds) ?? SCALES[SCALES.length - 1];
+      const isLost = !this.gl || this.gl.isContextLost();
+      if (fence && fence === this.fence && !isLost && !this.isFinished()) this.watch(fence);
     }, 1);
+  }
+
+  /** Chooses the resolution of moving pictures by the time that one took [ms].
+   * @param {number} time */
+  learn(time) {
+    this.lastTime = time;
+    const cost = Math.max(time - FENCE, 0.2) / this.scale ** 2;
+    this.cost = this.cost === null ? cost : 0.5 * (this.cost + cost);
+    // A finer picture is tried only where it is sure to hold.
+    const holds = (/** @type {number} */ part) =>
+      (this.cost ?? 0) * part ** 2 + FENCE <= (part > this.scale ? 0.75 : 1) * FRAME;
+    this.scale = SCALES.find(holds) ?? SCALES[SCALES.length - 1];
   }
 
   tilesAPass() {

@@ -61,9 +61,9 @@ export function paintAxes(context, { lens, isFlat }, inks) {
 
 /** The colours of the map, above on the right. @param {Context} context @param {View} view
  * @param {Inks} inks */
-export function paintLegend(context, { lens: { rect }, hasPlane, spacing, panel }, inks) {
+export function paintLegend(context, { lens: { rect }, hasPlane, hasLines, spacing, panel }, inks) {
   if (!hasPlane) return;
-  const { map, asInMemoir, isolines } = state.view;
+  const { map, asInMemoir } = state.view;
   const right = rect.x + rect.width - MARGIN;
   let y = rect.y + MARGIN + 6;
   /** @param {string} color @param {string} text */
@@ -94,7 +94,7 @@ export function paintLegend(context, { lens: { rect }, hasPlane, spacing, panel 
     paintWheel(context, right - 30, y + 26);
     y += 68;
   }
-  if (isolines && spacing > 0) label(context, `lines every ${level(spacing, spacing)}`, right, y, inks, 'right');
+  if (hasLines) label(context, `lines every ${level(spacing, spacing)}`, right, y, inks, 'right');
 }
 
 /** The wheel of directions. @param {Context} context @param {number} x @param {number} y */

@@ -45,7 +45,7 @@ export function paintAll(context, views, shown, theme, ratio) {
     const isCut = view.hasPlane && !isFlat;
     if (isCut) paintOutline(context, view, corners(), inks);
     const names = isWhole ? paintBodies(context, view, current, inks) : [];
-    if (view.hasPlane) shown.labels.paint(context, view, number, ON_MAP, [...names, ...texts(rect)]);
+    if (view.hasLines) shown.labels.paint(context, view, number, ON_MAP, [...names, ...texts(rect)]);
     if (isWhole) {
       paintContacts(context, view, shown.contacts, inks);
       if (isFlat && current.dimension === 2) paintToys(context, view.lens, inks);

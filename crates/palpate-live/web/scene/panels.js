@@ -11,9 +11,9 @@
  * @typedef {import('./setting.js').Setting} Setting
  * @typedef {import('./vectors.js').Vector} Vector
  * @typedef {{ panel: Panel, lens: Lens, title: string, only: number, shift: Vector,
- *   spacing: number, isFlat: boolean, hasPlane: boolean, isWhole: boolean }} View a part of the
+ *   spacing: number, isFlat: boolean, hasPlane: boolean, hasLines: boolean, isWhole: boolean }} View a part of the
  *   stage: of the body `only` moved by −`shift`, or of the whole scene; `hasPlane` if there is a
- *   map of a plane in it
+ *   map of a plane in it, `hasLines` if that has isolines
  */
 
 import { state } from '../state.js';
@@ -90,7 +90,9 @@ function viewOf(setting, cameras, rect, title, [only, other], map) {
     leastStep: LEAST_STEP * setting.size,
   };
   const hasPlane = flat || view.mode === 'slice' || view.mode === 'compare';
-  const common = { lens, title, only, shift, spacing, isFlat: flat, hasPlane, isWhole };
+  const hasLines = hasPlane && view.isolines && map !== MAPS.difference
+    && !(map === MAPS.distance && view.asInMemoir);
+  const common = { lens, title, only, shift, spacing, isFlat: flat, hasPlane, hasLines, isWhole };
   if (flat) {
     const { frame: { origin, right, up }, centre, height } = cameras.flat;
     const needsGradient = map === MAPS.gradient || map === MAPS.promise;

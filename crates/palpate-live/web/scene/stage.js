@@ -114,7 +114,7 @@ export function createStage(container, wire) {
       elements.note(source.words, source.why);
       elements.read(probe.words);
       const shown = { target, contacts, labels, probe: probe.probed };
-      paintAll(elements.context, views, shown, elements.inks(), elements.ratio);
+      paintAll(elements.context, views, shown, elements.inks, elements.ratio);
     }
   }
 
@@ -157,6 +157,7 @@ export function createStage(container, wire) {
 
   function fit() {
     elements.resize();
+    elements.dress();
     layer.resize();
     pictures.resize();
     sceneChanged();
@@ -195,6 +196,7 @@ export function createStage(container, wire) {
   });
 
   listen(['scene'], () => {
+    probe.leave();
     takeScene();
     source.update(setting());
     askContacts(wire, (answer) => {
@@ -208,6 +210,7 @@ export function createStage(container, wire) {
     sceneChanged();
   });
   listen(['view'], () => {
+    probe.leave();
     takeScene();
     if (source.kind === 'samples' && state.view.mode === 'compare') source.renew();
     askContacts(wire, (answer) => {
@@ -216,7 +219,13 @@ export function createStage(container, wire) {
     });
     sceneChanged();
   });
-  listen(['theme', 'connection'], sceneChanged);
+  listen(['connection'], sceneChanged);
+  const dress = () => {
+    elements.dress();
+    overlayChanged();
+  };
+  listen(['theme'], dress);
+  matchMedia('(prefers-color-scheme: dark)').addEventListener('change', dress);
   listen(['frame', 'playback'], overlayChanged);
   listenSlice(sceneChanged);
   listenToys(overlayChanged);
@@ -250,6 +259,12 @@ export function createStage(container, wire) {
     /** How fast the scene is drawn: the time of a moving picture [ms], the part of the pixels
      * that it has along each side, and whether it is complete. */
     stats: () => ({ time: layer.lastTime, scale: layer.scale, isStill: layer.isDone }),
+    /** Unit vectors in space to the right, up and away from the viewer. */
+    axes() {
+      measure();
+      const { right, up, forward } = views[0].lens.basis;
+      return { right, up, away: forward };
+    },
     /** Whether the picture is a map of a plane. */
     isFlat: () => isFlat(setting()),
   };

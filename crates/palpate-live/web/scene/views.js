@@ -19,6 +19,8 @@ import { cross, dot, inSpace, subtract } from './vectors.js';
 const STEP = 0.8;
 /** Room around the scene, over its size. */
 const ROOM = 1.12;
+/** How far a plane is drawn from its origin, over the size of the scene. */
+const REACH = 0.5;
 
 /** Planes by two axes. @type {Record<string, { right: number[], up: number[] }>} */
 const PLANES = {
@@ -70,7 +72,7 @@ export class Views {
    * @param {Setting} setting */
   lay(axes, setting) {
     const origin = setting.dimension === 2 ? [0, 0, 0] : setting.centre;
-    setSlice({ frame: { ...axes, origin }, reach: 0.46 * setting.size });
+    setSlice({ frame: { ...axes, origin }, reach: REACH * setting.size });
   }
 
   /** Fits the scene's box into the map of the plane. @param {Setting} setting */
@@ -112,7 +114,7 @@ export class Views {
     const origin = isFree
       ? inSpace(view.plane.origin)
       : normal.map((part) => Math.abs(part) * (view.at ?? 0));
-    setSlice({ frame: { ...axes, origin }, reach: 0.46 * setting.size });
+    setSlice({ frame: { ...axes, origin }, reach: REACH * setting.size });
     this.fit(setting);
     // Centres are along the axes of the plane's name, also where the picture looks against one.
     if (view.center) {
