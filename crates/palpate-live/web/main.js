@@ -14,6 +14,7 @@ import { Header, startTheme } from './panels/header.js';
 import { Help } from './panels/help.js';
 import { followLink, takeAddress } from './panels/link.js';
 import { page, tell } from './panels/page.js';
+import { valueAt } from './panels/schema.js';
 import { Time } from './panels/play.js';
 import { startProfile } from './panels/profile.js';
 import { Selected } from './panels/selected.js';
@@ -23,7 +24,7 @@ import { Touch } from './panels/touch.js';
 import { Tree } from './panels/tree.js';
 import { ViewBar } from './panels/view.js';
 import { createStage } from './scene/stage.js';
-import { changed, listen, lookAt, setTouch, setView, state, takeFrame } from './state.js';
+import { changed, listen, lookAt, select, setTouch, setView, state, takeFrame } from './state.js';
 import { html, render } from './vendor/htm-preact.js';
 import { VERSION, Wire } from './wire.js';
 
@@ -62,13 +63,19 @@ function takeWelcome(message) {
   changed('welcome');
 }
 
+/** The revision that the page was made to suit last. */
+let suited = 0;
+
 /** What follows from a new scene: a title, and a view that suits it. */
 function suitView() {
   const { scene, view } = state;
-  if (!scene) return;
+  // A scene that was saved comes again as it was.
+  if (!scene || scene.revision === suited) return;
+  suited = scene.revision;
   document.title = `${scene.name} · palpate`;
   const isPlane = scene.dimension === 2;
   if (isPlane && (view.mode === 'space' || view.mode === 'slice')) setView({ mode: 'plane' });
+  if (state.selection !== null && (scene.by === 'open' || valueAt(state.selection) === undefined)) select(null);
   const last = scene.bodies.length - 1;
   if (view.compared.some((body) => body > last)) {
     setView({ compared: view.compared.map((body) => Math.max(0, Math.min(body, last))) });
@@ -84,7 +91,7 @@ function connect(token) {
     frame: (frame) => {
       const start = performance.now();
       takeFrame(frame);
-      performance.measure('take a frame', { start, end: performance.now() });
+      performance.measure('take a frame', { start });
     },
     message: takeMessage,
     connection: (connection, why) => {
@@ -150,7 +157,7 @@ listenKeys({
   slice: () => actions.setMode('slice'),
   plane: () => actions.setMode('plane'),
   compare: () => actions.setMode('compare'),
-  fit: () => page.stage?.fit(),
+  fit: () => page.stage?.setCamera('reset'),
   undo: actions.undo,
   redo: actions.redo,
   save: () => void actions.save(),

@@ -175,7 +175,12 @@ export class Wire {
     const data = new DataView(buffer);
     const kind = data.getUint8(0);
     if (data.getUint8(1) !== VERSION) return;
-    if (kind === 1) this.handlers.frame(decodeFrame(data));
+    if (kind === 1) {
+      const start = performance.now();
+      const frame = decodeFrame(data);
+      performance.measure('decode', { start });
+      this.handlers.frame(frame);
+    }
     if (kind === 2) this.answer(decodeGrid(data));
     if (kind === 3) this.answer(decodePicture(data));
   }

@@ -59,7 +59,7 @@ export function letGo() {
   hand?.release();
 }
 
-/** The axes of the picture: of the stage if it tells them, else those of the world. @returns {Axes} */
+/** The axes of the picture. @returns {Axes} */
 export function axesSeen() {
-  return page.stage?.axes?.() ?? { right: [1, 0, 0], up: [0, 1, 0], away: [0, 0, -1] };
+  return page.stage?.axes() ?? { right: [1, 0, 0], up: [0, 1, 0], away: [0, 0, -1] };
 }

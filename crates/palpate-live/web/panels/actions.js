@@ -82,7 +82,7 @@ export async function setSpeed(speed) {
 
 /** Holds the servo's time, or lets it go on. */
 export function hold() {
-  void setSpeed(state.frame?.held ? clock.speed : 0);
+  void setSpeed(state.history[state.history.length - 1]?.held ? clock.speed : 0);
 }
 
 export function slow() {
@@ -101,7 +101,7 @@ export function lookBy(frames) {
 }
 
 export function record() {
-  void ask({ do: 'record', on: !state.frame?.recording });
+  page.wire?.send({ do: 'record', on: !state.history[state.history.length - 1]?.recording });
 }
 
 /** Gives what was recorded as a CSV file. */

@@ -43,16 +43,21 @@ export function primitives() {
   return (state.welcome?.catalogue ?? []).filter((/** @type {any} */ entry) => entry.dimension === dimension);
 }
 
-/** The example of a primitive, its lengths such that it suits the scene. @param {string} name */
+/** The example of a primitive, such that it suits the scene. @param {string} name */
 function example(name) {
-  const entry = primitives().find((primitive) => primitive.name === name);
+  return exampleOf(primitives().find((primitive) => primitive.name === name), length(0.15));
+}
+
+/** The example of an entry of the catalogue, scaled to a largest length [m].
+ * @param {any} entry @param {number} size */
+export function exampleOf(entry, size) {
   const [key, values] = /** @type {[string, any]} */ (Object.entries(entry?.example ?? { ball: { radius: 1 } })[0]);
   const lengths = new Set((entry?.parameters ?? []).filter((/** @type {any} */ one) => one.unit === 'm')
     .map((/** @type {any} */ one) => one.key));
   const numbers = (/** @type {any} */ value) => [value].flat(9).map(Math.abs);
   const largest = Math.max(...Object.keys(values).filter((one) => lengths.has(one))
     .flatMap((one) => numbers(values[one])));
-  const factor = Number.isFinite(largest) && largest > 0 ? length(0.15) / largest : 1;
+  const factor = Number.isFinite(largest) && largest > 0 ? size / largest : 1;
   /** @param {any} value @returns {any} */
   const scaled = (value) => Array.isArray(value)
     ? value.map(scaled) : Number((value * factor).toPrecision(4));

@@ -84,7 +84,7 @@ export function Charts() {
       plots.forEach((plot, index) => plot.setData([times, ...CHARTS[index].lines.map((line) => frames.map(line.of))],
         state.lookingAt === null));
       showCursor(plots[0]);
-      performance.measure('charts', { start, end: performance.now() });
+      performance.measure('charts', { start });
     };
     const timer = setInterval(() => state.lookingAt === null && draw(), INTERVAL);
     const sizes = new ResizeObserver(() => plots.forEach((plot, index) =>

@@ -50,7 +50,7 @@ export function Checks() {
   const isPlane = state.scene?.dimension === 2;
   return html`
     <div class="panel-head"><h2>Checks</h2></div>
-    <div class="scroll" tabindex="0" role="region" aria-label="Checks">
+    <div class="scroll" tabindex="0" role="region" aria-label="Numbers of the checks">
       ${!isPlane && html`<p class="quiet">Triangle, circle and their proofs are for scenes in the plane, such as
         memoir_star.json.</p>`}
       ${isPlane && TOYS.map(([toy, name, help]) => html`<div key=${toy} class="check">

@@ -11,7 +11,7 @@
 
 import { Refused } from '../wire.js';
 import { changed, listen, state } from '../state.js';
-import { page, tellError } from './page.js';
+import { page, tell } from './page.js';
 
 /** How long a scene may take to follow the answer to its edit [ms]. */
 const SCENE_WAIT = 1000;
@@ -50,8 +50,10 @@ async function sendOne(changes, moving) {
     setProblems([]);
   } catch (error) {
     const problems = error instanceof Refused ? error.problems : [];
-    setProblems(problems.length > 0 ? problems : [{ at: changes[0].at, message: String(error) }]);
-    if (!moving) tellError(error);
+    const text = error instanceof Error ? error.message : String(error);
+    setProblems(problems.length > 0 ? problems : [{ at: changes[0].at, message: text }]);
+    const [first] = problems;
+    if (!moving) tell(first ? `${first.path}: ${first.message}` : text, 'bad');
   }
 }
 

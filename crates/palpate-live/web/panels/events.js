@@ -26,11 +26,11 @@ let lastAction = null;
 
 /** Takes events that the program sent. @param {Message[]} events */
 export function takeEvents(events) {
+  const rate = state.welcome?.rate ?? 1000;
   for (const event of events) {
     number += 1;
-    const kind = String(event.kind ?? event.event ?? event.do ?? 'event');
-    state.events.push({ ...event, kind, number });
-    if (ACTIONS.test(kind)) lastAction = { at: performance.now(), text: inWords({ ...event, kind }) };
+    state.events.push({ ...event, time: event.tick / rate, number });
+    if (ACTIONS.test(event.kind)) lastAction = { at: performance.now(), text: inWords(event) };
   }
   state.events.splice(0, Math.max(0, state.events.length - KEPT));
   changed('events');
@@ -38,11 +38,9 @@ export function takeEvents(events) {
 
 /** @param {Message} event */
 function inWords(event) {
-  if (typeof event.message === 'string') return event.message;
-  if (typeof event.text === 'string') return event.text;
   const body = event.body === undefined ? '' : state.scene?.bodies?.[event.body]?.name ?? event.body;
-  const force = typeof event.force === 'number' ? `${short(event.force)} N` : '';
-  return [event.kind.replace(/_/g, ' '), body, force].filter(Boolean).join(' · ');
+  const speed = typeof event.speed === 'number' ? `at ${short(1000 * event.speed)} mm/s` : '';
+  return [event.kind.replace(/_/g, ' '), body, speed].filter(Boolean).join(' · ');
 }
 
 export function Events() {
@@ -51,9 +49,14 @@ export function Events() {
   return html`<ol class="events" tabindex="0" aria-label="Events, newest first">
     ${shown.length === 0 && html`<li class="quiet">nothing happened yet</li>`}
     ${shown.map((event) => html`<li key=${event.number} class=${ACTIONS.test(event.kind) ? 'action' : ''}>
-      <span class="when">${typeof event.time === 'number' ? `${event.time.toFixed(3)} s` : ''}</span>
+      <span class="when">${event.time.toFixed(3)} s</span>
       ${inWords(event)}${event.point ? ` · point ${event.point + 1}` : ''}</li>`)}
   </ol>`;
+}
+
+/** How long the scene's formula is. */
+export function operations() {
+  return state.scene?.ops ?? state.way?.operations ?? '–';
 }
 
 /** The line at the foot: what the safety chain does, in words. */
@@ -72,7 +75,7 @@ export function Status() {
     ${newest && html`<span>kept back ${short(1000 * newest.kept)} mJ</span>`}
     ${newest && newest.lost > 0 && html`<span>${newest.lost} events lost</span>`}
     <span class="gap"></span>
-    ${scene && html`<span>${scene.ops ?? '–'} operations</span>`}
+    ${scene && html`<span>${operations()} operations</span>`}
     ${scene && html`<span>revision ${scene.revision}</span>`}
     ${scene?.restarted && html`<span title=${scene.why}>the servo began again</span>`}`;
 }

@@ -7,6 +7,7 @@
 import { html, useEffect, useRef, useState } from '../vendor/htm-preact.js';
 import { changed, state } from '../state.js';
 import * as actions from './actions.js';
+import { GALLERY } from './gallery.js';
 import { copyLink } from './link.js';
 import { page, tellError, useTopics } from './page.js';
 
@@ -110,7 +111,6 @@ function Menu() {
       }
       setIsOpen(page.shownLink !== '');
     }}>${name}${key && html` <kbd>${key}</kbd>`}</button></li>`;
-  const gallery = welcome?.gallery ?? [];
   return html`<div class="menu" ref=${box}>
     <button class="scene-name" aria-expanded=${String(isOpen)} onClick=${() => setIsOpen(!isOpen)}
       title=${scene?.file ?? 'This scene has no file'}>
@@ -133,9 +133,9 @@ function Menu() {
       ${item('Redo', actions.redo, !scene?.can_redo, 'Ctrl Y')}
       ${page.shownLink && html`<li class="link"><label>Link <input readonly value=${page.shownLink}
         onFocus=${(/** @type {any} */ event) => event.currentTarget.select()} /></label></li>`}
-      ${gallery.length > 0 && html`<li class="menu-title">Gallery</li>`}
-      ${gallery.map((/** @type {any} */ one) => item(one.title ?? one.name, () =>
-        actions.openText(one.name, one.text)))}
+      <li class="menu-title">Gallery</li>
+      ${GALLERY.map(([name, make]) => item(name, () =>
+        actions.openText(name, JSON.stringify(make(), null, 2)), !welcome))}
     </ul>`}
   </div>`;
 }

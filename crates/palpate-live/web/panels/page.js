@@ -9,13 +9,12 @@
  * @typedef {import('../wire.js').Wire} Wire
  * @typedef {import('../wire.js').Message} Message
  * @typedef {import('../state.js').Topic} Topic
- * @typedef {{ fit(): void, setCamera(name: string): void, exportPng(): Promise<Blob>,
- *   focus(): void, axes?(): { right: number[], up: number[], away: number[] } }} Stage
+ * @typedef {ReturnType<typeof import('../scene/stage.js').createStage>} Stage
  * @typedef {{ id: number, kind: 'word' | 'bad', text: string, stays: boolean,
  *   action?: { name: string, run: () => void } }} Toast
  */
 
-import { useEffect, useReducer } from '../vendor/htm-preact.js';
+import { useLayoutEffect, useReducer } from '../vendor/htm-preact.js';
 import { listen } from '../state.js';
 
 /** How long a message stays [ms]. */
@@ -79,7 +78,8 @@ export async function ask(message) {
  * @param {Topic[]} topics @param {number} [interval] */
 export function useTopics(topics, interval = 0) {
   const [, redraw] = useReducer((/** @type {number} */ count) => count + 1, 0);
-  useEffect(() => {
+  // A layout effect listens at once: what changes before the next picture is seen too.
+  useLayoutEffect(() => {
     let timer = 0;
     const stop = listen(topics, () => {
       if (interval === 0) {

@@ -10,7 +10,7 @@
 import { html } from '../vendor/htm-preact.js';
 import { state } from '../state.js';
 import { time } from './numbers.js';
-import { useTopics } from './page.js';
+import { page, useTopics } from './page.js';
 
 /** Entries that are averaged, and how long one counts [ms]. */
 const KEPT = 60;
@@ -48,7 +48,14 @@ function pageWork() {
     const times = entries.map(({ duration }) => duration / 1000);
     const mean = times.reduce((sum, one) => sum + one, 0) / (times.length || 1);
     return { name, mean, largest: Math.max(0, ...times), count: times.length };
-  }).filter(({ count }) => count > 0).sort((a, b) => b.mean - a.mean);
+  }).filter(({ count }) => count > 0).concat(picture()).sort((a, b) => b.mean - a.mean);
+}
+
+/** The time of the picture, which the stage knows: the graphics card works beside the page. */
+function picture() {
+  const { time: taken, scale } = page.stage?.stats() ?? { time: 0, scale: 1 };
+  const name = `picture at ${Math.round(100 * scale)} %`;
+  return taken > 0 ? [{ name, mean: taken / 1000, largest: taken / 1000, count: 1 }] : [];
 }
 
 function programWork() {
@@ -75,7 +82,7 @@ export function Profile() {
 /** @param {{ title: string, rows: ReturnType<typeof pageWork>, whole: number }} given */
 function Bars({ title, rows, whole }) {
   const part = (/** @type {number} */ seconds) => `${Math.min(100, (100 * seconds) / whole)}%`;
-  return html`<div class="bars"><h3>${title}</h3>
+  return html`<div class="bars"><b>${title}</b>
     ${rows.length === 0 && html`<p class="quiet">nothing measured</p>`}
     ${rows.map(({ name, mean, largest }) => html`<div class="bar" key=${name}
       title=${`${name}: mean ${time(mean)}, largest ${time(largest)}`}>

@@ -9,6 +9,7 @@ import { select, state } from '../state.js';
 import { hasName, rename } from './changes.js';
 import { edit, problemAt } from './edits.js';
 import { ChoiceField, TextField } from './fields.js';
+import { operations } from './events.js';
 import { Form, named } from './form.js';
 import { listOf, makerOf, partAt, partsOfScene } from './nodes.js';
 import { cornersOf, short } from './numbers.js';
@@ -25,7 +26,7 @@ export function Selected() {
   return html`
     <div class="panel-head"><h2 title=${part.pointer}>${part.kind === 'other' ? heading(part.pointer) : part.label}</h2></div>
     <div class="scroll" tabindex="0" role="region" aria-label="Fields">
-      ${problemAt(part.pointer) && html`<p class="problem">${problemAt(part.pointer)}</p>`}
+      ${state.problems.has(part.pointer) && html`<p class="problem">${state.problems.get(part.pointer)}</p>`}
       ${hasName(part.pointer) && html`<${TextField} label="name" value=${name}
         problem=${problemAt(within(part.pointer, 'name'))}
         change=${(/** @type {string} */ to) => rename(part.pointer, to)} />`}
@@ -58,7 +59,7 @@ function Nothing({ part }) {
         <dt>dimension</dt><dd>${scene.dimension}</dd>
         <dt>size</dt><dd>${size ? `${size} m` : 'endless'}</dd>
         <dt>bodies</dt><dd>${scene.bodies.length}</dd>
-        <dt>operations</dt><dd>${scene.ops ?? '–'}</dd>
+        <dt>operations</dt><dd>${operations()}</dd>
         <dt>Lipschitz</dt><dd>${short(scene.lipschitz)}</dd>
         <dt>drawn by</dt><dd>${drawnBy()}</dd>
       </dl>

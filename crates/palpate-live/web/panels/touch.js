@@ -9,7 +9,6 @@ import { setSound, setVolume } from '../input/audio.js';
 import { firstPad } from '../input/gamepad.js';
 import { setTouch, state } from '../state.js';
 import { ChoiceField, Switch } from './fields.js';
-import { short } from './numbers.js';
 import { page, useTopics } from './page.js';
 
 /** Between two updates of the numbers [ms]: faster ones cannot be read. */
@@ -45,7 +44,7 @@ export function Touch() {
 
 function padName() {
   const pad = firstPad();
-  return pad ? `gamepad: ${pad.id.replace(/\s*\(.*/, '')}` : 'gamepad (press a button on it)';
+  return pad ? `gamepad: ${pad.id.replace(/\s*\(.*/, '')}` : 'gamepad: none yet';
 }
 
 function Tour() {
@@ -63,8 +62,8 @@ function Readout() {
   const names = [...new Set(touched.map((point) => scene?.bodies?.[point.body]?.name ?? `body ${point.body}`))];
   const isSlipping = touched.some((point) => point.slipping);
   return html`<div class="readout">
-    <div><span class="large">${short(frame?.force ?? 0, 3)}</span> N <span class="quiet">force</span></div>
-    <div><span class="large">${short(1000 * (frame?.depth ?? 0), 3)}</span> mm <span class="quiet">depth</span></div>
+    <div><span class="large">${(frame?.force ?? 0).toFixed(2)}</span> N <span class="quiet">force</span></div>
+    <div><span class="large">${(1000 * (frame?.depth ?? 0)).toFixed(2)}</span> mm <span class="quiet">depth</span></div>
     <div class="touched">${names.length > 0 ? `${names.join(', ')}${isSlipping ? ', slipping' : ''}` : 'touches nothing'}</div>
   </div>`;
 }

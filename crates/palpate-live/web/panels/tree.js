@@ -48,7 +48,7 @@ export function Tree() {
   useEffect(() => {
     list.current?.querySelector('[aria-selected=true]')?.scrollIntoView({ block: 'nearest' });
   }, [selected?.pointer]);
-  if (!state.scene) return html`<p class="quiet">No scene yet.</p>`;
+  if (!state.scene) return html`<div class="panel-head"><h2>Shapes</h2></div>`;
 
   const rows = rowsOf(tree, open);
   const at = rows.findIndex(({ part }) => part.pointer === selected?.pointer);
@@ -112,6 +112,8 @@ export function Tree() {
         </li>`;
       })}
     </ul>
+    ${rows.some(({ count }) => count > MOST_ROWS) && html`<p class="quiet">Of a group the first ${MOST_ROWS} are listed;
+      press on the picture to select others.</p>`}
     ${selected && html`<${Buttons} part=${selected} />`}`;
 }
 

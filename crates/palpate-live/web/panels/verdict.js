@@ -8,7 +8,7 @@ import { html } from '../vendor/htm-preact.js';
 import { count, short, time } from './numbers.js';
 
 /** What has no place in a table of numbers. */
-const DRAWN = ['id', 'do', 'path', 'cells', 'boxes'];
+const DRAWN = ['id', 'do', 'path', 'points', 'boxes'];
 
 const LENGTHS = /_m$|^(value|minimum|lower|upper|gap|separation|distance|depth|radius|bounds|bracket|tolerance|error)$/;
 
@@ -44,36 +44,47 @@ function Table({ title, answer }) {
   </tbody></table>`;
 }
 
-/** A number, or the upper end of bounds. @param {any} answer @param {string} end */
-function boundOf(answer, end) {
-  const direct = answer?.[end] ?? answer?.distance?.[end] ?? answer?.minimum?.[end] ?? answer?.separation?.[end];
-  return typeof direct === 'number' ? direct : null;
-}
-
-/** How far the local method is from what is proven [m]; null if that is not known.
- * @param {any} certified @param {any} local */
-function missBy(certified, local) {
-  const upper = boundOf(certified, 'upper');
-  const value = local?.value ?? local?.minimum ?? local?.distance;
-  return upper === null || typeof value !== 'number' ? null : value - upper;
+/** What the answers say about each other, in sentences. @param {string} toy @param {any} result
+ * @returns {{ text: string, isRight: boolean }[]} */
+function sentences(toy, result) {
+  const { certified, local, enclosing } = result;
+  const said = [];
+  const upper = certified?.upper;
+  const values = [local].flat().map((one) => one?.value).filter((value) => typeof value === 'number');
+  if (typeof upper === 'number' && values.length > 0) {
+    const miss = Math.min(...values) - upper;
+    // Both are rounded, and the proof ends within its own bounds.
+    const isRight = miss <= upper - certified.lower + 1e-9 + 1e-3 * Math.abs(upper);
+    const best = values.length > 1 ? 'the best of the local searches' : 'the local method';
+    said.push({ isRight, text: isRight ? `${best} found the proven minimum`
+      : `${best} misses the proven minimum by ${short(miss)} m` });
+  }
+  if (enclosing && typeof upper === 'number') {
+    const isRight = !enclosing.excludes || certified.lower > 0;
+    said.push({ isRight, text: !enclosing.excludes ? 'the enclosing circle cannot exclude a touch'
+      : `the enclosing circle excludes a touch${isRight ? ', rightly' : ', wrongly'}` });
+  }
+  if (toy === 'ball') {
+    const isRight = result.memoir === result.touches;
+    said.push({ isRight, text: `${result.touches ? 'it touches' : 'it does not touch'}; the memoir’s test says ${
+      isRight ? 'the same' : 'otherwise'}` });
+  }
+  return said;
 }
 
 /** @param {{ toy: string, result: any }} given */
 export function Verdict({ toy, result }) {
   if (!result) return null;
   const { certified, local, enclosing, ...rest } = result;
-  const miss = missBy(certified, local);
-  const tolerance = Math.abs(boundOf(certified, 'upper') ?? 0) * 1e-3 + 1e-9;
-  const isMissed = miss !== null && miss > tolerance;
-  const locals = Array.isArray(local) ? local : local ? [local] : [];
-  return html`<div class=${miss === null ? 'verdict' : isMissed ? 'verdict wrong' : 'verdict right'} role="status"
-    aria-label=${`Verdict of ${toy}`}>
-    ${miss !== null && html`<b>${isMissed ? `the local method misses the least distance by ${short(miss)} m`
-      : 'the local method found the proven minimum'}</b>`}
+  const said = sentences(toy, result);
+  const locals = [local ?? []].flat();
+  const state = said.length === 0 ? '' : said.every(({ isRight }) => isRight) ? 'right' : 'wrong';
+  return html`<div class=${`verdict ${state}`} role="status" aria-label=${`Verdict of ${toy}`}>
+    ${said.map(({ text }) => html`<b key=${text}>${text}</b>`)}
     <${Table} title="proven" answer=${certified} />
     ${locals.map((one, index) => html`<${Table} key=${index} answer=${one}
-      title=${locals.length > 1 ? `local, start ${index + 1}` : 'local method'} />`)}
+      title=${locals.length > 1 ? `local, start ${index + 1}` : 'local'} />`)}
     <${Table} title="enclosing circle" answer=${enclosing} />
-    <${Table} title=${certified ? 'both' : 'proven'} answer=${rest} />
+    <${Table} title="answer" answer=${rest} />
   </div>`;
 }

@@ -4,7 +4,7 @@
 
 /** What the picture shows, above it. */
 
-import { html } from '../vendor/htm-preact.js';
+import { html, useEffect, useRef } from '../vendor/htm-preact.js';
 import { setView, state } from '../state.js';
 import { setMode } from './actions.js';
 import { NumberField, Switch } from './fields.js';
@@ -84,13 +84,29 @@ export function ViewBar() {
         title=${`Look along ${axis}`} aria-label=${`Look along ${axis}`}
         onClick=${() => page.stage?.setCamera(axis)}>${axis}</button>`)}
     </span>`}
-    <button class="small" title="Show the whole scene: F" onClick=${() => page.stage?.fit()}>whole</button>`;
+    <span class="cameras" role="group" aria-label="Zoom">
+      ${[['out', '−', 'Zoom out'], ['in', '+', 'Zoom in']].map(([name, sign, help]) => html`<button key=${name}
+        class="small" aria-label=${help} title=${help} onClick=${() => page.stage?.setCamera(name)}>${sign}</button>`)}
+    </span>
+    <button class="small" title="Show the whole scene: F" onClick=${() => page.stage?.setCamera('reset')}>whole</button>`;
 }
 
 /** The switches of the picture, behind a button. */
 function Display() {
   const { view } = state;
-  return html`<details class="popover">
+  const box = useRef(/** @type {HTMLDetailsElement | null} */ (null));
+  useEffect(() => {
+    const close = (/** @type {Event} */ event) => {
+      if (box.current && event.target instanceof Element && !box.current.contains(event.target)) box.current.open = false;
+    };
+    addEventListener('pointerdown', close);
+    addEventListener('focusin', close);
+    return () => {
+      removeEventListener('pointerdown', close);
+      removeEventListener('focusin', close);
+    };
+  }, []);
+  return html`<details class="popover" ref=${box}>
     <summary class="small">display</summary>
     <div class="sheet" role="group" aria-label="Display">
       <fieldset><legend>Lines</legend>
