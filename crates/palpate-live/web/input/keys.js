@@ -5,10 +5,11 @@
 /**
  * The keys of the page, in one table, which the help shows too.
  *
- * `where` says when a key counts: `anywhere`; `outside`, unless a text or number is typed, a
- * slider or list has the focus; `free`, when no control at all has it.
+ * `where` says when a key counts: `anywhere`; `untyped`, unless a text is typed; `outside`, nor a
+ * list chosen from; `moveless`, nor has a control the focus that arrows move; `free`, when no
+ * control at all has it.
  *
- * @typedef {'anywhere' | 'outside' | 'free'} Where
+ * @typedef {'anywhere' | 'untyped' | 'outside' | 'moveless' | 'free'} Where
  * @typedef {{ keys: string[], shown: string, text: string, where: Where, does: string,
  *   control?: boolean }} Key
  */
@@ -24,14 +25,14 @@ export const KEYS = [
   { keys: ['s', 'S'], shown: 'S', text: 'slow motion, 0.25×', where: 'outside', does: 'slow' },
   { keys: ['.'], shown: '.', text: 'one step while held', where: 'outside', does: 'step' },
   { keys: [','], shown: ',', text: 'back through what was', where: 'outside', does: 'back' },
-  { keys: ['Home'], shown: 'Home', text: 'follow the present again', where: 'outside', does: 'follow' },
+  { keys: ['Home'], shown: 'Home', text: 'follow the present again', where: 'moveless', does: 'follow' },
   { keys: ['1'], shown: '1', text: '3D view', where: 'outside', does: 'space' },
   { keys: ['2'], shown: '2', text: 'slice', where: 'outside', does: 'slice' },
   { keys: ['3'], shown: '3', text: 'plane', where: 'outside', does: 'plane' },
   { keys: ['4'], shown: '4', text: 'compare two bodies', where: 'outside', does: 'compare' },
   { keys: ['f', 'F'], shown: 'F', text: 'show the whole scene', where: 'outside', does: 'fit' },
-  { keys: ['z', 'Z'], shown: 'Ctrl Z', text: 'undo', where: 'outside', does: 'undo', control: true },
-  { keys: ['y', 'Y'], shown: 'Ctrl Y', text: 'redo', where: 'outside', does: 'redo', control: true },
+  { keys: ['z', 'Z'], shown: 'Ctrl Z', text: 'undo', where: 'untyped', does: 'undo', control: true },
+  { keys: ['y', 'Y'], shown: 'Ctrl Y', text: 'redo', where: 'untyped', does: 'redo', control: true },
   { keys: ['s', 'S'], shown: 'Ctrl S', text: 'save the scene', where: 'anywhere', does: 'save', control: true },
   { keys: ['?', 'F1'], shown: '? or F1', text: 'this help', where: 'outside', does: 'help' },
 ];
@@ -49,14 +50,21 @@ export const MOVE_HELP = [
   { shown: 'Shift', text: 'with these: a quarter of the speed' },
 ];
 
-const TYPED = 'input:not([type=checkbox]):not([type=button]), textarea, select, [contenteditable]';
-const WITH_ARROWS = `${TYPED}, [role=tree], [role=tablist], [role=treeitem], [data-own-keys]`;
-const CONTROL = `${TYPED}, input, button, a, summary, [role=treeitem], [role=tab]`;
+const TYPED = 'input:not([type=checkbox], [type=range], [type=file]), textarea';
+const CHOSEN = `${TYPED}, select`;
+const WITH_ARROWS = `${CHOSEN}, input[type=range], [role=tree], [role=tablist]`;
+/** In what a key of each kind does not count. @type {Record<Where, string>} */
+const ELSEWHERE = {
+  anywhere: ':not(*)',
+  untyped: TYPED,
+  outside: CHOSEN,
+  moveless: WITH_ARROWS,
+  free: `${WITH_ARROWS}, input, button, a, summary`,
+};
 
 /** @param {EventTarget | null} target @param {Where} where */
 function counts(target, where) {
-  if (where === 'anywhere' || !(target instanceof Element)) return true;
-  return !target.closest(where === 'free' ? CONTROL : TYPED);
+  return !(target instanceof Element && target.closest(ELSEWHERE[where]));
 }
 
 /** Listens for keys. @param {Record<string, () => void>} actions one for each `does` */
@@ -91,7 +99,7 @@ export function listenKeys(actions) {
       return;
     }
     if (!(event.key in MOVES) || isControl || event.altKey) return;
-    if (event.target instanceof Element && event.target.closest(WITH_ARROWS)) return;
+    if (!counts(event.target, 'moveless')) return;
     event.preventDefault();
     if (state.lookingAt !== null) {
       if (event.key === 'ArrowLeft') actions.back?.();

@@ -15,6 +15,8 @@ import { useTopics } from './page.js';
 
 /** Events that are kept. */
 const KEPT = 200;
+/** Frames of which the safety line tells: a second. */
+const RECENT = 60;
 /** How long the safety line tells of an action [ms]. */
 const FRESH = 3000;
 
@@ -67,7 +69,7 @@ export function Status() {
   const limit = scene?.device?.max_force;
   const isFresh = lastAction && performance.now() - lastAction.at < FRESH;
   const safety = connection !== 'live' ? 'not connected' : newest?.stopped ? 'stopped, all forces are zero'
-    : isFresh ? lastAction?.text : newest?.acted ? 'the chain changed a force' : 'ok';
+    : isFresh ? lastAction?.text : state.history.slice(-RECENT).some(({ acted }) => acted) ? 'the chain changes forces' : 'ok';
   const isCalm = safety === 'ok';
   return html`
     <span class=${isCalm ? 'safety' : 'safety acting'}>safety: <b>${safety}</b></span>

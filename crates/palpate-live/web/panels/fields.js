@@ -25,6 +25,8 @@ import { parsed, short, typed } from './numbers.js';
 
 /** Pixels of a drag across the typical value. */
 const DRAG_PIXELS = 150;
+/** Steps of a slider from end to end. */
+const SLIDER_STEPS = 500;
 /** How far a pointer moves before a press becomes a drag [px]. */
 const DRAG_START = 4;
 
@@ -39,17 +41,18 @@ export function useId() {
 }
 
 /** The range of a slider: what the schema allows, else around the value. @param {NumberGiven} given */
-function rangeOf({ value, min, max, scale = 0, whole }) {
+function rangeOf({ value, min, max, scale = 0, whole, above }) {
   const reach = 2 * Math.max(Math.abs(value), scale / 2) || 1;
-  return {
-    low: min ?? -reach,
-    high: max ?? (whole ? Math.max(Math.ceil(reach), (min ?? 0) + 10) : reach),
-  };
+  const high = max ?? (whole ? Math.max(Math.ceil(reach), (min ?? 0) + 10) : reach);
+  const low = min ?? -reach;
+  return { low: above ? low + (high - low) / SLIDER_STEPS : low, high };
 }
 
-/** @param {number} value @param {NumberGiven} given */
-function allowed(value, { min = -Infinity, max = Infinity, above, whole }) {
-  const lowest = above && Number.isFinite(min) ? min + 1e-9 * Math.max(1, Math.abs(min)) : min;
+/** The allowed value next to one that was dragged or slid.
+ * @param {number} value @param {NumberGiven} given */
+function allowed(value, given) {
+  const { min = -Infinity, max = Infinity, above, whole } = given;
+  const lowest = above ? rangeOf(given).low : min;
   const kept = Math.min(Math.max(value, lowest), max);
   return whole ? Math.round(kept) : Number(kept.toPrecision(6));
 }
@@ -66,12 +69,18 @@ export function NumberField(given) {
   useEffect(() => {
     if (draft === null) range.current = rangeOf(given);
   }, [value, given.min, given.max]);
-  useEffect(() => setDraft(null), [value]);
+  const isMoving = useRef(false);
+  // What the program has takes the draft's place, but not under a hand that still moves it, nor
+  // before what was wrong with it was read.
+  useEffect(() => {
+    if (!isMoving.current && !problem) setDraft(null);
+  }, [value, problem]);
   const shown = draft ?? value;
   const { low, high } = range.current;
 
   const go = (/** @type {number} */ next, /** @type {boolean} */ moving) => {
     const kept = allowed(next, given);
+    isMoving.current = moving;
     setDraft(kept);
     change(kept, moving);
   };
@@ -86,6 +95,7 @@ export function NumberField(given) {
   };
   const key = (/** @type {KeyboardEvent} */ event) => {
     if (event.key === 'Enter') finish();
+    if (event.key === 'Escape') setText(null);
     const turn = { ArrowUp: 1, ArrowDown: -1 }[event.key];
     if (turn === undefined) return;
     event.preventDefault();
@@ -132,7 +142,7 @@ export function NumberField(given) {
       onInput=${(/** @type {any} */ event) => setText(event.currentTarget.value)}
       onBlur=${finish} onKeyDown=${key} onPointerDown=${press} />
     ${slider && html`<input type="range" class="slider" min=${low} max=${high}
-      step=${given.whole ? 1 : step((high - low) / 500)} value=${shown} aria-label=${label}
+      step=${given.whole ? 1 : step((high - low) / SLIDER_STEPS)} value=${shown} aria-label=${label}
       aria-valuetext=${`${short(shown)} ${unit}`}
       onInput=${(/** @type {Event} */ event) => go(sliderValue(event), true)}
       onChange=${(/** @type {Event} */ event) => go(sliderValue(event), false)} />`}

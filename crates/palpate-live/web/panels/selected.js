@@ -21,7 +21,7 @@ export function Selected() {
   const tree = partsOfScene();
   const part = state.selection === null ? null : partAt(tree, state.selection);
   const value = part ? valueAt(part.pointer) : undefined;
-  if (!part || value === undefined || part.kind === 'group') return html`<${Nothing} part=${part} />`;
+  if (!part || value === undefined || part.kind === 'group') return html`<${WholeScene} />`;
   const name = part.pointer.startsWith('/shapes/') ? parts(part.pointer)[1] : value.name;
   return html`
     <div class="panel-head"><h2 title=${part.pointer}>${part.kind === 'other' ? heading(part.pointer) : part.label}</h2></div>
@@ -43,15 +43,14 @@ function heading(pointer) {
   return index === undefined ? named(list) : `${named(list).replace(/s$/, '')} ${Number(index) + 1}`;
 }
 
-/** What is shown while nothing is selected: the scene itself.
- * @param {{ part: import('./nodes.js').Part | null }} given */
-function Nothing({ part }) {
+/** What is shown while no part with numbers is selected. */
+function WholeScene() {
   const { scene } = state;
   if (!scene) return html`<div class="panel-head"><h2>Selected</h2></div>`;
   const bounds = cornersOf(scene.bounds);
   const size = bounds?.max.map((max, axis) => short(max - bounds.min[axis])).join(' × ');
   return html`
-    <div class="panel-head"><h2>${part?.label ?? 'Scene'}</h2></div>
+    <div class="panel-head"><h2>Scene</h2></div>
     <div class="scroll" tabindex="0" role="region" aria-label="Fields">
       <${TextField} label="description" long value=${scene.scene.description ?? ''}
         change=${(/** @type {string} */ to) => edit([to === '' ? { at: '/description' } : { at: '/description', to }])} />

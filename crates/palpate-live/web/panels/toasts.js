@@ -30,7 +30,7 @@ export function Words({ start }) {
   if (connection === 'closed') return html`<${NoToken} start=${start} />`;
   if (connection === 'lost') {
     return html`<div class="words bad"><b>The program has ended${state.why ? `: ${state.why}` : ''}.</b>
-      Start it again, and this page comes back. No force is given meanwhile.</div>`;
+      Start it again, and this page comes back. If it still runs, STOP tries to reach it all the same.</div>`;
   }
   if (connection === 'connecting') return html`<div class="words">Connecting to the program…</div>`;
   if (scene && (scene.bodies ?? []).length === 0) {

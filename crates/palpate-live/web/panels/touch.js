@@ -56,8 +56,10 @@ function Tour() {
 
 /** Force, depth and body in large numbers. */
 function Readout() {
-  useTopics(['frame', 'scene'], INTERVAL);
-  const { frame, scene } = state;
+  useTopics(['frame', 'scene', 'connection'], INTERVAL);
+  const { scene } = state;
+  // What was felt last is no longer felt.
+  const frame = state.connection === 'live' ? state.frame : null;
   const touched = frame?.points.filter((point) => point.contact) ?? [];
   const names = [...new Set(touched.map((point) => scene?.bodies?.[point.body]?.name ?? `body ${point.body}`))];
   const isSlipping = touched.some((point) => point.slipping);
