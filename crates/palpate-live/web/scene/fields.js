@@ -31,8 +31,10 @@ export class Field {
    *   uniforms @param {boolean} isUrgent whether it is wanted in the middle of a drag */
   constructor(text, setting, grids, values, isUrgent) {
     const { dimension } = setting;
-    /** @type {Record<'space' | 'flat', string>} */
-    this.texts = { space: dimension === 3 ? space(text) : '', flat: flat(text, dimension) };
+    this.dimension = dimension;
+    this.text = text;
+    /** Texts of programs that were made. @type {Map<string, string>} */
+    this.programs = new Map();
     this.isUrgent = isUrgent;
     this.grids = grids;
     this.palette = paletteOf(setting);
@@ -40,6 +42,20 @@ export class Field {
     /** @type {WebGLTexture[]} */
     this.textures = [];
     this.epoch = -1;
+  }
+
+  /** The text of the program for a panel; empty where there is none.
+   * @param {import('./layer.js').Panel} panel */
+  program({ kind, map }) {
+    const key = kind === 'space' ? kind : `${kind} ${map}`;
+    let program = this.programs.get(key);
+    if (program === undefined) {
+      const { text, dimension } = this;
+      program = kind === 'flat' ? flat(text, dimension, map)
+        : dimension === 3 ? space(text, kind === 'slice', map) : '';
+      this.programs.set(key, program);
+    }
+    return program;
   }
 
   /** Binds its textures, and gives its uniforms.

@@ -51,10 +51,22 @@ vec2 field(vec${dimension} place, int only) {
   return vec2(value, float(only));
 }`;
 
-/** Values of a place in the plane, as a colour. */
-const MAP = `
+/** The colours of bodies, and the corners of a tetrahedron: the sum of the values at them, times
+ * them, is four times the gradient. */
+const COMMON = `
 uniform sampler2D palette;
-uniform int map;
+vec4 body(int number) {
+  return texelFetch(palette, ivec2(max(number, 0) % textureSize(palette, 0).x, 0), 0);
+}
+
+vec3 corner(int k) {
+  return vec3((k & 2) == 0 ? 1 : -1, (k & 1) == 0 ? 1 : -1, k == 0 || k == 3 ? 1 : -1);
+}
+`;
+
+/** Values of a place in the plane, as a colour. Emulated graphics cards do all branches, so each
+ * map has its own program. */
+const MAP = `
 uniform float spacing, range, sineFactor;
 uniform bool isolines, asInMemoir, positiveInside;
 uniform vec3 channels;
@@ -77,10 +89,6 @@ vec3 direction(vec2 g) {
   g /= beyond;
   vec3 c = vec3(0.69, 0, 0) + g.x * vec3(0.12, -0.0579555, 0) + g.y * vec3(0, 0.0155291, 0.12);
   return fromOklab(c / beyond);
-}
-
-vec4 body(int number) {
-  return texelFetch(palette, ivec2(max(number, 0) % textureSize(palette, 0).x, 0), 0);
 }
 
 // How much a line covers of a pixel at this many pixels from its middle.
@@ -138,14 +146,10 @@ vec3 mapped(float value, float other, vec2 g, float slope, float pixel, int numb
   colour = mix(colour, INK, white ? 0.7 * line(abs(value) / pixel, 4.5) : 0.0);
   return mix(colour, white ? vec3(1) : INK, zeroLine);
 }
-
-vec3 corner(int k) {
-  return vec3((k & 2) == 0 ? 1 : -1, (k & 1) == 0 ? 1 : -1, k == 0 || k == 3 ? 1 : -1);
-}
 `;
 
-/** A map of a plane. @param {string} field @param {number} dimension */
-export const flat = (field, dimension) => `${HEAD}${field}${MAP}
+/** A map of a plane. @param {string} field @param {number} dimension @param {number} map */
+export const flat = (field, dimension, map) => `${HEAD}${field}${COMMON}const int map = ${map};${MAP}
 uniform vec2 viewport, lowerLeft, centre, span;
 uniform vec3 origin, across, above, shift, otherShift;
 uniform int first, last, only, other;
@@ -174,18 +178,64 @@ void main() {
   result = vec4(mapped(here.x, value, g, length(gradient), change, int(here.y)), 1);
 }`;
 
-/** A march through space, with a plane in it if \`sliced\`. With \`picking\`, the place that a
- * pixel shows, and the number of its body; -2 where it shows nothing.
- * @param {string} field */
-export const space = (field) => `${HEAD}${field}${MAP}
+/** The plane of a slice: what is between it and the viewer is cut away. */
+const CUT = `
+  vec3 normal = cross(sliceAcross, sliceAbove);
+  float facing = dot(ray, normal);
+  float cut = dot(sliceOrigin - eye, normal) / facing;
+  vec3 place = eye + cut * ray;
+  vec3 from = place - sliceOrigin;
+  t = max(t, cut);
+  if (!(cut > 0.0)) end = -1.0;
+  bool isCut = cut > 0.0 && !picking
+    && max(abs(dot(from, sliceAcross)), abs(dot(from, sliceAbove))) < sliceReach;
+  if (isCut) {
+    k = 8;
+    h = max(cone * cut, leastStep);
+  }
+  float planeStep = h;`;
+
+/** A value about the plane. Where the plane is in a body, nothing is seen behind it. */
+const TAKE = ` else {
+      planeSum += isCorner ? f.x * e : vec3(0);
+      planeValue = k == 12 ? f : planeValue;
+      otherValue = k == 13 ? f.x : otherValue;
+      k++;
+      if (k > (map == 4 ? 13 : 12)) {
+        if (planeValue.x < 0.0 || t > end) break;
+        k = -1;
+        base = eye + t * ray;
+      }
+    }`;
+
+/** The map of the plane, over what is behind it. */
+const COVER = `
+  vec3 gradient = planeSum / (4.0 * planeStep);
+  vec2 g = vec2(dot(gradient, sliceAcross), dot(gradient, sliceAbove));
+  // The size of a pixel, seen askew.
+  float pixel = 2.0 * cone * cut / mix(abs(facing), 1.0, 0.4);
+  vec3 colour = mapped(planeValue.x, otherValue, g, length(gradient),
+    max(length(g), 0.2) * pixel, int(planeValue.y));
+  float covers = isCut ? (planeValue.x < 0.0 ? 1.0 : 0.72) : 0.0;
+  result = vec4(mix(result.rgb, colour, covers), covers + result.a * (1.0 - covers));`;
+
+const SLICE = `
+uniform vec3 sliceOrigin, sliceAcross, sliceAbove;
+uniform float sliceReach;`;
+
+/** A march through space. With `picking`, the place that a pixel shows, and the number of its
+ * body; −2 where it shows nothing. The loop holds little but the field: emulated graphics cards
+ * do all that stands in a loop each time round, so colours come after it.
+ * @param {string} field @param {boolean} isSliced whether a plane cuts the scene
+ * @param {number} map of the plane */
+export const space = (field, isSliced, map) => `${HEAD}${field}${COMMON}${isSliced ? `const int map = ${map};${MAP}${SLICE}` : ''}
 uniform vec2 viewport, lowerLeft;
 uniform vec3 eye, forward, across, above, low, high, shift, otherShift;
 uniform float cone, rate, leastStep;
 uniform int steps, only, other;
-uniform bool picking, sliced;
-uniform vec3 sliceOrigin, sliceAcross, sliceAbove;
-uniform float sliceReach;
-const int MARCH = 0, SURFACE = 1, SLICE = 2;
+uniform bool picking;
+// How far from the surface the field tells how open a place is, in steps of differences.
+const float SHADE = 24.0;
 
 void main() {
   vec2 at = (gl_FragCoord.xy - lowerLeft) / viewport * 2.0 - 1.0;
@@ -194,87 +244,56 @@ void main() {
   vec3 nearer = min(one, two), farther = max(one, two);
   float t = max(max(nearer.x, nearer.y), max(nearer.z, 0.0));
   float end = min(farther.x, min(farther.y, farther.z));
-  int phase = MARCH, k = 0, last = 4;
-  vec3 p, normal = cross(sliceAcross, sliceAbove);
-  float facing = 1.0, h = leastStep;
-  if (sliced) {
-    // What is between the viewer and the plane is cut away.
-    facing = dot(ray, normal);
-    float cut = dot(sliceOrigin - eye, normal) / facing;
-    p = eye + cut * ray;
-    vec2 place = vec2(dot(p - sliceOrigin, sliceAcross), dot(p - sliceOrigin, sliceAbove));
-    t = max(t, cut);
-    if (!(cut > 0.0)) end = -1.0;
-    else if (max(abs(place.x), abs(place.y)) < sliceReach && !picking) {
-      phase = SLICE;
-      h = max(cone * cut, leastStep);
-      last = map == 4 ? 6 : 5;
-    }
-  }
-  if (phase == MARCH && t > end) {
+  // What comes next: −1 a step of the march; 0 to 3 a corner about the surface, 4 a place before
+  // it; 8 to 11 a corner about the plane, 12 the plane, 13 another field there.
+  int k = -1;
+  float h = leastStep;
+  vec3 sum = vec3(0), planeSum = vec3(0);
+  vec2 planeValue = vec2(0);
+  float number = 0.0, open = 1.0, otherValue = 0.0;${isSliced ? CUT : ''}
+  if (k < 0 && t > end) {
     result = vec4(0, 0, 0, picking ? -2 : 0);
     return;
   }
-  vec3 sum = vec3(0);
-  vec2 here = vec2(0);
-  vec4 front = vec4(0), back = vec4(0);
-  float open = 1.0;
+  vec3 base = ${isSliced ? 'k < 0 ? eye + t * ray : place' : 'eye + t * ray'};
   for (int i = zero; i < steps; i++) {
-    bool isOther = phase == SLICE && k == 5;
-    vec3 q = phase == MARCH ? eye + t * ray
-      : phase == SURFACE && k == 4 ? p + 24.0 * h * normalize(sum)
-      : p + (k < 4 ? h * corner(k) : vec3(0));
-    vec2 f = field(q + (isOther ? otherShift : shift), isOther ? other : only);
-    if (phase == MARCH) {
+    vec3 e = corner(k & 3);
+    bool isCorner = k >= 0 && (k & 4) == 0;
+    vec3 q = base + (isCorner ? h * e : vec3(0)) + (k == 13 ? otherShift : shift);
+    vec2 f = field(q, k == 13 ? other : only);
+    if (k < 0) {
       if (f.x < cone * t) {
-        p = q;
-        here = f;
-        phase = SURFACE;
-        // The step reaches over pixels, so that edges are not frayed, and the shadow in corners
+        number = f.y;
+        k = 0;
+        // The step reaches over a pixel, so that edges are not frayed, and the shade in corners
         // is as wide on the screen everywhere.
         h = max(cone * t, leastStep);
-        k = 0;
-        last = 5;
-        sum = vec3(0);
         if (picking) break;
       } else {
         t += f.x * rate;
+        base = eye + t * ray;
         if (t > end) break;
       }
-      continue;
-    }
-    if (k < 4) sum += f.x * corner(k);
-    if (phase == SURFACE && k == 4) open = clamp(f.x / (24.0 * h), 0.0, 1.0);
-    if (phase == SLICE && k == 4) here = f;
-    k++;
-    if (k < last) continue;
-    if (phase == SURFACE) {
-      vec3 n = normalize(sum);
-      float key = max(dot(n, normalize(0.5 * above / length(above) + 0.35 * across / length(across)
-        - forward)), 0.0);
-      float sky = 0.5 + 0.5 * n.y;
-      float rim = pow(1.0 - max(dot(n, -ray), 0.0), 3.0);
-      vec3 tint = body(int(here.y)).rgb;
-      vec3 lit = tint * (0.30 + 0.16 * sky + 0.58 * key) * mix(0.62, 1.0, open);
-      lit += 0.10 * pow(key, 24.0) + 0.10 * rim * sky;
-      back = vec4(lit, 1);
+    } else if (k < 4) {
+      sum += f.x * e;
+      k++;
+      if (k == 4) base += SHADE * h * normalize(sum);
+    } else if (k == 4) {
+      open = clamp(f.x / (SHADE * h), 0.0, 1.0);
       break;
-    }
-    vec3 gradient = sum / (4.0 * h);
-    vec2 g = vec2(dot(gradient, sliceAcross), dot(gradient, sliceAbove));
-    // Half a pixel, seen askew.
-    float pixel = 2.0 * cone * dot(p - eye, ray) / mix(abs(facing), 1.0, 0.4);
-    vec3 colour = mapped(here.x, f.x, g, length(gradient), max(length(g), 0.2) * pixel,
-      int(here.y));
-    bool inner = here.x < 0.0;
-    front = vec4(colour, inner ? 1.0 : 0.72);
-    if (inner || t > end) break;
-    phase = MARCH;
+    }${isSliced ? TAKE : ''}
   }
+  bool isHit = k >= 0 && k < 8;
   if (picking) {
-    result = phase == SURFACE ? vec4(p, here.y) : vec4(0, 0, 0, -2);
+    result = isHit ? vec4(eye + t * ray, number) : vec4(0, 0, 0, -2);
     return;
   }
-  result = vec4(front.rgb * front.a + back.rgb * (1.0 - front.a),
-    front.a + back.a * (1.0 - front.a));
+  vec3 n = normalize(sum);
+  float key = max(dot(n, normalize(0.5 * normalize(above) + 0.35 * normalize(across) - forward)), 0.0);
+  float sky = 0.5 + 0.5 * n.y;
+  float rim = 1.0 - max(dot(n, -ray), 0.0);
+  vec3 lit = body(int(number)).rgb * (0.30 + 0.16 * sky + 0.58 * key) * mix(0.62, 1.0, open);
+  float shine = key * key * key;
+  lit += 0.10 * shine * shine * shine + 0.10 * rim * rim * rim * sky;
+  result = isHit ? vec4(lit, 1) : vec4(0);${isSliced ? COVER : ''}
 }`;

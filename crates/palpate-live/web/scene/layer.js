@@ -12,7 +12,9 @@
  * @typedef {import('./camera.js').Rect} Rect
  * @typedef {import('./program.js').Value} Value
  * @typedef {import('./program.js').Program} Program
- * @typedef {{ kind: 'space' | 'flat', rect: Rect, values: Record<string, Value> }} Panel
+ * @typedef {'space' | 'slice' | 'flat'} Kind of a program: space, with or without a plane that
+ *   cuts it, and the map of a plane
+ * @typedef {{ kind: Kind, map: number, rect: Rect, values: Record<string, Value> }} Panel
  * @typedef {import('./fields.js').Field} Field
  */
 
@@ -142,19 +144,18 @@ export class Layer {
   /** Whether the programs of a field can draw; makes them if not. @param {Field} field
    * @param {boolean} makes whether to make them */
   canDraw(field, makes) {
-    const kinds = new Set(this.panels.map(({ kind }) => kind));
+    const texts = this.panels.map((panel) => field.program(panel));
     // A field in the plane has no program for space.
-    if ([...kinds].some((kind) => field.texts[kind] === '')) return false;
-    return [...kinds].every((kind) => {
-      const text = field.texts[kind];
+    if (texts.includes('')) return false;
+    return texts.every((text, index) => {
       if (!makes && !this.programs?.has(text)) return false;
       const program = this.programs?.get(text);
-      return program && (makes ? this.isWarm(program, field) : this.warm?.has(program));
+      return program && (makes ? this.isWarm(program, field, this.panels[index]) : this.warm?.has(program));
     });
   }
 
-  /** @param {Program} program @param {Field} field */
-  isWarm(program, field) {
+  /** @param {Program} program @param {Field} field @param {Panel} panel */
+  isWarm(program, field, panel) {
     const gl = /** @type {WebGL2RenderingContext} */ (this.gl);
     if (!program.isReady()) {
       if (program.error) {
@@ -166,8 +167,8 @@ export class Layer {
     if (this.warm?.has(program)) return true;
     const begun = this.warming?.get(program);
     if (!begun) {
-      this.draw({ ...this.panels[0], values: { ...this.panels[0].values, steps: 1 } }, 1, field,
-        program, { x: 0, y: 0, width: 1, height: 1 });
+      const within = { x: 0, y: 0, width: this.canvas.width, height: this.canvas.height };
+      this.draw({ ...panel, values: { ...panel.values, steps: 1 } }, 1 / 64, field, program, within);
       const fence = gl.fenceSync(gl.SYNC_GPU_COMMANDS_COMPLETE, 0);
       if (fence) this.warming?.set(program, fence);
       gl.flush();
@@ -335,7 +336,7 @@ export class Layer {
    * @param {number[]} [offset] of the samples, in pixels */
   draw(panel, scale, field, only, within, offset = [0, 0]) {
     const gl = /** @type {WebGL2RenderingContext} */ (this.gl);
-    const program = only ?? this.programs?.get(field.texts[panel.kind]);
+    const program = only ?? this.programs?.get(field.program(panel));
     const part = this.ratio * scale;
     const { x, y, width, height } = flipped(panel.rect, this.canvas.clientHeight);
     const [left, bottom, wide, high] = [x, y, width, height].map((v) => Math.round(v * part));

@@ -11,6 +11,7 @@
  */
 
 import { state } from '../state.js';
+import { MAPS } from './glsl.js';
 import { arrow, label, stroke } from './ink.js';
 import { level, roundUp } from './units.js';
 import { along } from './vectors.js';
@@ -76,7 +77,7 @@ export function paintLegend(context, { lens: { rect }, hasPlane, hasLines, spaci
     label(context, text, right - 20, y, inks, 'right');
     y += 18;
   };
-  if (panel.values.map === 4) {
+  if (panel.map === MAPS.difference) {
     entry('#2166ac', 'the first is less');
     entry('#b2182b', 'the first is more');
     return;

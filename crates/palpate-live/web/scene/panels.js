@@ -80,7 +80,7 @@ function viewOf(setting, cameras, rect, title, [only, other], map) {
   const [shift, otherShift] = isWhole ? [[0, 0, 0], [0, 0, 0]] : shifts(setting, [only, other]);
   const spacing = view.spacing ?? roundUp(camera.height / LINES);
   const shown = {
-    map, spacing, only, other, shift, otherShift,
+    spacing, only, other, shift, otherShift,
     range: map === MAPS.difference ? 0.06 * setting.size : 0.35 * setting.size,
     sineFactor: view.sineFactor,
     isolines: view.isolines,
@@ -102,7 +102,7 @@ function viewOf(setting, cameras, rect, title, [only, other], map) {
       first: needsGradient ? 0 : 4,
       last: map === MAPS.difference ? 6 : 5,
     };
-    return { ...common, panel: { kind: 'flat', rect, values } };
+    return { ...common, panel: { kind: 'flat', map, rect, values } };
   }
   const { eye, right, up, forward } = lens.basis;
   const tangent = Math.tan(FIELD_OF_VIEW / 2);
@@ -118,11 +118,10 @@ function viewOf(setting, cameras, rect, title, [only, other], map) {
     rate: 1 / Math.max(Number(state.scene?.lipschitz ?? 1), 0.25),
     steps: STEPS,
     picking: false,
-    sliced: hasPlane,
     sliceOrigin: slice.frame.origin,
     sliceAcross: slice.frame.right,
     sliceAbove: slice.frame.up,
     sliceReach: slice.reach,
   };
-  return { ...common, panel: { kind: 'space', rect, values } };
+  return { ...common, panel: { kind: hasPlane ? 'slice' : 'space', map, rect, values } };
 }

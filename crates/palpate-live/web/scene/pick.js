@@ -39,8 +39,8 @@ export function createPick(layer) {
 
   return async (panel, x, y) => {
     const { gl, field, programs } = layer;
-    if (!gl || !field || !programs || gl.isContextLost() || panel.kind !== 'space') return null;
-    const program = programs.get(field.texts.space);
+    if (!gl || !field || !programs || gl.isContextLost() || panel.kind === 'flat') return null;
+    const program = programs.get(field.program(panel));
     const pixel = program.isReady() ? makeTarget(gl) : null;
     if (!pixel) return null;
     gl.bindFramebuffer(gl.FRAMEBUFFER, pixel.frame);

@@ -12,6 +12,7 @@
  */
 
 import { FIELD_OF_VIEW } from './camera.js';
+import { MAPS } from './glsl.js';
 import { askSlice } from './labels.js';
 import { newest } from './newest.js';
 import { rgb } from './setting.js';
@@ -27,15 +28,15 @@ const mix = (a, b, t) => a.map((part, i) => part + clamp(t, 0, 1) * (b[i] - part
 
 /** The colour of a value, from 0 to 1: the maps of the programs, without their lines.
  * @param {number} value @param {number[]} slope the gradient in the plane
- * @param {Record<string, any>} shown @param {number[]} tint of the body */
-function colourOf(value, slope, { map, spacing, range }, tint) {
+ * @param {Record<string, any>} shown @param {number} map @param {number[]} tint of the body */
+function colourOf(value, slope, { spacing, range }, map, tint) {
   const far = 1 - Math.exp((-1.6 * Math.abs(value)) / range);
-  if (map === 0) return value < 0 ? mix(tint, [1, 1, 1], 0.25) : [0.965, 0.965, 0.955];
-  if (map === 2) {
+  if (map === MAPS.inside) return value < 0 ? mix(tint, [1, 1, 1], 0.25) : [0.965, 0.965, 0.955];
+  if (map === MAPS.gradient) {
     const [x, y] = slope.map((part) => part / Math.max(1, Math.hypot(...slope)));
     return [0.6 - 0.05 * x + 0.25 * y, 0.6 + 0.2 * x + 0.05 * y, 0.6 + 0.1 * x - 0.35 * y];
   }
-  if (map === 3) {
+  if (map === MAPS.promise) {
     const length = Math.hypot(...slope);
     return length > 1.02
       ? mix([0.72, 0.88, 0.76], [0.78, 0.16, 0.1], 2 * (length - 1.02))
@@ -105,7 +106,7 @@ export class Pictures {
         const right = column + 1 < columns ? at + 1 : at;
         const above = row + 1 < rows ? at + columns : at;
         const slope = [right, above].map((next) => (values[next] - values[at]) / between);
-        const colour = colourOf(values[at], slope, view.panel.values, tint);
+        const colour = colourOf(values[at], slope, view.panel.values, view.panel.map, tint);
         // Rows of a slice go up, those of a picture down.
         image.data.set([...colour.map((c) => 255 * c), 255], 4 * ((rows - 1 - row) * columns + column));
       }

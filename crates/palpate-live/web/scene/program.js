@@ -12,7 +12,7 @@
 import { VERTEX } from './glsl.js';
 
 /** Programs that are kept. */
-const KEPT = 12;
+const KEPT = 16;
 
 /** A program that is linked, or is about to be. */
 export class Program {
