@@ -10,7 +10,7 @@ import { KEYS, MOVE_HELP } from '../input/keys.js';
 /** @type {[string, string][]} */
 const TEXTS = [
   ['Touch', 'Press on the hand or on a surface: the hand follows the pointer, and a spring draws the device after it. The surface pushes back, so pointer and device part. While you press, the wheel or a second finger moves in depth.'],
-  ['Picture', 'Drag beside the scene to turn it, with Shift or the right button to move it; the wheel or two fingers zoom. Drag the handles of the slice, of the triangle and of the circle.'],
+  ['Picture', 'Drag beside the scene, or anywhere with the right button, to turn it; with Shift or the middle button to move it; the wheel or two fingers zoom. Drag the handles of the slice, of the triangle and of the circle.'],
   ['Stop', 'Esc, or the red button: all forces are zero within two ticks. The same button gives them back, rising from zero.'],
   ['Change', 'Select a part in the tree. Drag a number sideways, type it, or move its slider; what the program refuses stands below the field. Each drag is one step to undo.'],
   ['Look back', 'The page keeps a minute. Move the slider of the play bar, or press on a chart; “follow” returns to now. The servo goes on meanwhile.'],

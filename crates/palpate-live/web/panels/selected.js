@@ -62,7 +62,7 @@ function WholeScene() {
         <dt>Lipschitz</dt><dd>${short(scene.lipschitz)}</dd>
         <dt>drawn by</dt><dd>${drawnBy()}</dd>
       </dl>
-      <p class="quiet">Select a part in the tree, or in the picture, to see and change its numbers.</p>
+      <p class="quiet">Select a part in the tree to see and change its numbers.</p>
     </div>`;
 }
 

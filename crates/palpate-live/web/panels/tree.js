@@ -16,17 +16,18 @@ import { SEVERAL, listOf, partAt, partsOfScene } from './nodes.js';
 import { useTopics } from './page.js';
 import { valueAt } from './schema.js';
 
-/** Members of a group that are drawn; a thousand rows would be slow. */
+/** Members of a group that are listed at first; a thousand rows are slow. */
 const MOST_ROWS = 200;
 
 /** Rows in the order in which they are seen.
- * @param {Part[]} tree @param {Set<string>} open @param {number} level
+ * @param {Part[]} tree @param {Set<string>} open @param {number} most members of a group
+ * @param {number} level
  * @returns {{ part: Part, level: number, isOpen: boolean, count: number, place: number }[]} */
-function rowsOf(tree, open, level = 1) {
-  return tree.slice(0, MOST_ROWS).flatMap((part, index) => {
+function rowsOf(tree, open, most, level = 1) {
+  return tree.slice(0, most).flatMap((part, index) => {
     const isOpen = open.has(part.pointer) && part.children.length > 0;
     const row = { part, level, isOpen, count: tree.length, place: index + 1 };
-    return [row, ...(isOpen ? rowsOf(part.children, open, level + 1) : [])];
+    return [row, ...(isOpen ? rowsOf(part.children, open, most, level + 1) : [])];
   });
 }
 
@@ -39,6 +40,7 @@ function holders(pointer) {
 export function Tree() {
   useTopics(['scene', 'selection']);
   const [open, setOpen] = useState(() => new Set(['/bodies', '/bodies/0', '/bodies/0/shape']));
+  const [most, setMost] = useState(MOST_ROWS);
   const list = useRef(/** @type {HTMLElement | null} */ (null));
   const tree = partsOfScene();
   const selected = state.selection === null ? null : partAt(tree, state.selection);
@@ -50,7 +52,7 @@ export function Tree() {
   }, [selected?.pointer]);
   if (!state.scene) return html`<div class="panel-head"><h2>Shapes</h2></div>`;
 
-  const rows = rowsOf(tree, open);
+  const rows = rowsOf(tree, open, most);
   const at = rows.findIndex(({ part }) => part.pointer === selected?.pointer);
   const focusAt = (/** @type {number} */ index) => {
     const row = rows[Math.max(0, Math.min(index, rows.length - 1))];
@@ -112,8 +114,8 @@ export function Tree() {
         </li>`;
       })}
     </ul>
-    ${rows.some(({ count }) => count > MOST_ROWS) && html`<p class="quiet">Of a group the first ${MOST_ROWS} are listed;
-      press on the picture to select others.</p>`}
+    ${rows.some(({ count }) => count > most) && html`<p class="quiet">The first ${most} of a group are listed.
+      <button class="small" onClick=${() => setMost(Infinity)}>list all</button></p>`}
     ${selected && html`<${Buttons} part=${selected} />`}`;
 }
 
