@@ -8,7 +8,7 @@ use serde_json::Value;
 use crate::command::Failure;
 
 /// The crates from the lowest layer to the highest.
-const LAYERS: [&str; 17] = [
+const LAYERS: [&str; 18] = [
     "palpate-field",
     "palpate-mesh",
     "palpate-query",
@@ -23,6 +23,7 @@ const LAYERS: [&str; 17] = [
     "palpate-plot",
     "palpate-render",
     "palpate",
+    "palpate-live",
     "palpate-cli",
     "palpate-bench",
     "xtask",

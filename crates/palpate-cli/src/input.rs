@@ -7,7 +7,7 @@ use std::path::Path;
 
 use palpate::field::{Aabb, LARGEST_LENGTH, Vector};
 use palpate::local::GradientMethod;
-use palpate::scene::{AnyScene, BuiltScene, Scene, SceneError, unknown_name};
+use palpate::scene::{AnyScene, BuiltScene, Scene, SceneError, unknown_name, utf8};
 
 use crate::kind::Kind;
 use crate::outcome::Failure;
@@ -27,6 +27,17 @@ pub(crate) struct Named {
 /// Reads and builds the scene in `path`, or the built-in gallery.
 pub(crate) fn scene(path: Option<&Path>) -> Result<Named, Failure> {
     moving(path, None)
+}
+
+/// The name and the text of the scene in `path`, or of the built-in gallery, which is not checked
+/// here.
+pub(crate) fn scene_text(path: Option<&Path>) -> Result<(String, String), Failure> {
+    let Some(path) = path else {
+        return Ok(("the built-in gallery".to_owned(), GALLERY.to_owned()));
+    };
+    let bytes = self::bytes(path)?;
+    let text = utf8(&bytes).map_err(|error| Failure::file(path, error))?;
+    Ok((path.display().to_string(), text.to_owned()))
 }
 
 /// As [`scene`], with the motions of a file in place of its own.

@@ -23,6 +23,7 @@ mod input;
 mod interrupt;
 mod jitter;
 mod kind;
+mod live;
 mod mass;
 mod mesh;
 mod numbers;
@@ -114,6 +115,7 @@ fn obey(command: &Command, interrupt: &Interrupt) -> Result<Outcome, Failure> {
         Command::Shapes(options) => shapes::run(options),
         Command::Devices(options) => devices::run(options),
         Command::Identify(options) => identify::run(options, interrupt),
+        Command::Live(options) => live::run(options, interrupt),
         Command::Jitter(options) => jitter::run(options),
     }
 }

@@ -12,8 +12,8 @@ use palpate::haptics::{Acceptance, Recovery};
 use palpate::scene::unknown_name;
 use palpate::vibration::{ACTUATORS, Actuator, actuator_named};
 
-use super::ProfileChoice;
 use super::numbers::{count, length_or_zero, positive, within, zero_or_more};
+use super::{PageOptions, ProfileChoice};
 
 /// The most contact points: more than any device has.
 const MOST_CONTACTS: usize = 1000;
@@ -85,6 +85,12 @@ pub(crate) struct FeelOptions {
     /// or else 2 mm, if left out.
     #[arg(long, allow_negative_numbers = true, value_parser = length_or_zero)]
     pub(crate) radius: Option<f64>,
+    /// Serve no page. Without a scene, `feel` serves one that shows the built-in gallery, and stays as
+    /// long as it is open; `palpate live` shows other scenes.
+    #[arg(long)]
+    pub(crate) no_live: bool,
+    #[command(flatten)]
+    pub(crate) page: PageOptions,
     /// Run the ticks without waiting for the clock.
     #[arg(long)]
     pub(crate) fast: bool,

@@ -13,6 +13,7 @@ mod gallery;
 mod gradients;
 mod identify;
 mod jitter;
+mod live;
 mod mass;
 mod mesh;
 mod numbers;
@@ -34,6 +35,7 @@ pub(crate) use gallery::{Format, GalleryOptions, Plane};
 pub(crate) use gradients::GradientsOptions;
 pub(crate) use identify::IdentifyOptions;
 pub(crate) use jitter::JitterOptions;
+pub(crate) use live::{LiveOptions, PageOptions};
 pub(crate) use mass::MassOptions;
 pub(crate) use mesh::MeshOptions;
 pub(crate) use plot::{Map, PlotMap, PlotOptions};
@@ -45,6 +47,7 @@ pub(crate) use sweep::SweepOptions;
 const EXAMPLES: &str = "\
 Examples:
   palpate                                  feel the built-in gallery for 10 s
+  palpate live scenes/cup.json             see, touch and edit a scene in a browser
   palpate feel scenes/cup.json --plot cup.png
   palpate eval scenes/s3.json --at 0.1,0.5,-0.2
   palpate eval scenes/s3.json --points points.csv > distances.csv
@@ -115,6 +118,9 @@ pub(crate) enum Command {
     /// write its profile; status 1 if a number cannot be told.
     #[command(after_help = identify::EXAMPLES)]
     Identify(Box<IdentifyOptions>),
+    /// Serve a page on which a scene is seen, touched, edited and measured, until Ctrl-C.
+    #[command(after_help = live::EXAMPLES)]
+    Live(LiveOptions),
     /// Measure how late a loop wakes on this machine, and advise how to wait.
     #[command(after_help = jitter::EXAMPLES)]
     Jitter(JitterOptions),

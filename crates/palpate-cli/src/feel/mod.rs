@@ -29,6 +29,7 @@ use crate::arguments::{DeviceChoice, FeelOptions, ProfileChoice, RecoveryChoice}
 use crate::emptiness;
 use crate::input::{self, Named};
 use crate::interrupt::Interrupt;
+use crate::live;
 use crate::outcome::{Failure, Outcome};
 use crate::output::{self, shown};
 use crate::picture::{Dimensions, Drawable};
@@ -101,6 +102,8 @@ where
     let mut show = |progress: &Progress| output::live(report::live_line(progress));
     let mut motion = scene.motion();
     interrupt.heed();
+    let live = shows_page(options).then(|| live::beside(&options.page, options.rate));
+    let live = live.transpose()?.flatten();
     if !options.fast {
         output::remark(format_args!(
             "feeling {name} for {duration} s; Ctrl-C ends that, with the report"
@@ -160,6 +163,9 @@ where
     // The report is whole even if a file cannot be written, and a reader that closed the pipe
     // hides no file that is missing.
     written.and(felt.print(options.json))?;
+    if let Some(live) = &live {
+        live::until_closed(live, interrupt);
+    }
     Ok(match outcome.ending {
         _ if !outcome.is_released => Outcome::No,
         Ending::Finished => Outcome::Yes,
@@ -189,6 +195,11 @@ fn hands<const D: usize>(
         Some(tool) => Ok(vec![tool.path(duration)?]),
         None => paths::on_tour(scene, options, duration),
     }
+}
+
+/// Whether a page shows what is felt: the built-in gallery, in real time, to a person.
+fn shows_page(options: &FeelOptions) -> bool {
+    options.scene.is_none() && !options.no_live && !options.fast && !options.json
 }
 
 /// Whether a run felt nothing, no guide or magnet either.

@@ -24,8 +24,8 @@ import { slice } from './slice.js';
 import { roundUp } from './units.js';
 import { scale, subtract } from './vectors.js';
 
-/** Isolines over the height of a picture. */
-const LINES = 16;
+/** Isolines over the height of a picture at most. */
+const LINES = 24;
 /** Most evaluations a pixel. */
 const STEPS = 220;
 /** The step of differences over the size of the scene: values are off by 2e-7 of it. */

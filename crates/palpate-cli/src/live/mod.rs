@@ -1,0 +1,124 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! `palpate live`: serves a page on which a scene is seen, touched, edited and measured.
+
+mod place;
+
+use std::thread;
+use std::time::{Duration, Instant};
+
+use palpate_live::Live;
+
+use crate::arguments::{LiveOptions, PageOptions};
+use crate::input;
+use crate::interrupt::Interrupt;
+use crate::outcome::{Failure, Outcome};
+use crate::output::{self, shown};
+use place::Place;
+
+/// How often the program looks whether it is to end.
+const LOOK: Duration = Duration::from_millis(50);
+
+/// How long a page may be gone, as while it is loaded again.
+const AWAY: Duration = Duration::from_secs(3);
+
+/// The contact points of the hand on the built-in gallery: two hands.
+const FINGERS: usize = 10;
+
+pub(crate) fn run(options: &LiveOptions, interrupt: &Interrupt) -> Result<Outcome, Failure> {
+    let (name, text) = input::scene_text(options.scene.as_deref())?;
+    let points = options.points.unwrap_or(if options.scene.is_none() { FINGERS } else { 1 });
+    let mut served =
+        palpate_live::LiveOptions::default().with_points(points).with_rate(options.rate);
+    if let Some(device) = &options.device {
+        served = served.with_device(device.profile.clone());
+    }
+    let live =
+        Page { name, file: options.scene.clone(), text }.served(&options.page, served)?;
+    output::remark(format_args!("live at {}", live.url()));
+    output::remark("open this address in a browser; Ctrl-C ends the program");
+    interrupt.heed();
+    while !interrupt.is_asked() {
+        thread::sleep(LOOK);
+    }
+    Ok(Outcome::Yes)
+}
+
+/// What a page shows first.
+struct Page {
+    name: String,
+    file: Option<std::path::PathBuf>,
+    text: String,
+}
+
+impl Page {
+    fn served(
+        self,
+        asked: &PageOptions,
+        options: palpate_live::LiveOptions,
+    ) -> Result<Live, Failure> {
+        let place = Place::of(asked)?;
+        if let Some(address) = asked.bind.filter(|address| !address.is_loopback()) {
+            output::remark(format_args!(
+                "warning: {address} is reached from other machines, and nothing is encrypted: who can read \
+                 the network can read the token, and move the hand. Better forward a port: \
+                 ssh -L 8000:127.0.0.1:8000 NAME"
+            ));
+        }
+        let options = place
+            .token
+            .iter()
+            .fold(options, |options, token| options.with_token(token.as_str()));
+        let options = asked
+            .bind
+            .into_iter()
+            .fold(options, |options, address| options.with_address(address));
+        let start = |port| {
+            let options = options.clone().with_port(port);
+            Live::start(self.name.as_str(), self.file.clone(), &self.text, options)
+        };
+        let live = match (asked.port, place.port) {
+            (Some(port), _) => start(port),
+            // The port of the last run, at which a page may still wait, unless it is taken.
+            (None, Some(port)) => start(port).or_else(|_| start(0)),
+            (None, None) => start(0),
+        };
+        let live = live.map_err(|error| Failure::input(shown(&error.to_string())))?;
+        place.remember(&live)?;
+        Ok(live)
+    }
+}
+
+/// The page of the built-in gallery, beside a run that feels it; `None` where it cannot be served,
+/// which is said and ends no run.
+pub(crate) fn beside(asked: &PageOptions, rate: f64) -> Result<Option<Live>, Failure> {
+    let (name, text) = input::scene_text(None)?;
+    let options = palpate_live::LiveOptions::default().with_points(FINGERS).with_rate(rate);
+    match (Page { name, file: None, text }).served(asked, options) {
+        Ok(live) => {
+            output::remark(format_args!("live at {}", live.url()));
+            Ok(Some(live))
+        }
+        Err(failure) if *asked == PageOptions::default() => {
+            output::remark(format_args!("without a page: {failure}"));
+            Ok(None)
+        }
+        Err(failure) => Err(failure),
+    }
+}
+
+/// Waits until all pages are closed, or the program is asked to end.
+pub(crate) fn until_closed(live: &Live, interrupt: &Interrupt) {
+    if live.pages() > 0 {
+        output::remark("a page is open: the program stays until it is closed, or Ctrl-C");
+    }
+    let mut seen = Instant::now();
+    let was_opened = live.was_opened();
+    while was_opened && !interrupt.is_asked() && seen.elapsed() < AWAY {
+        if live.pages() > 0 {
+            seen = Instant::now();
+        }
+        thread::sleep(LOOK);
+    }
+}

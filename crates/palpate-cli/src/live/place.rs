@@ -1,0 +1,90 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! The port and the token of a page: those of the last run, so that a page that is open comes back.
+
+use std::fs::OpenOptions;
+use std::io::{ErrorKind, Write};
+use std::path::{Path, PathBuf};
+
+use palpate_live::Live;
+
+use crate::arguments::PageOptions;
+use crate::outcome::Failure;
+
+/// Where a page is to be served.
+#[derive(Debug)]
+pub(super) struct Place {
+    pub(super) port: Option<u16>,
+    pub(super) token: Option<String>,
+    /// Where port and token are written.
+    memory: Memory,
+}
+
+#[derive(Debug)]
+enum Memory {
+    /// A file of the command line: the token alone.
+    Token(PathBuf),
+    /// The user's own: port and token.
+    Last(PathBuf),
+    /// None: a new token for each run.
+    None,
+}
+
+impl Place {
+    pub(super) fn of(asked: &PageOptions) -> Result<Self, Failure> {
+        if let Some(file) = &asked.token_file {
+            let token = match std::fs::read_to_string(file) {
+                Ok(text) => Some(text.trim().to_owned()),
+                Err(error) if error.kind() == ErrorKind::NotFound => None,
+                Err(error) => return Err(Failure::file(file, error)),
+            };
+            return Ok(Self { port: None, token, memory: Memory::Token(file.clone()) });
+        }
+        let Some(folder) = dirs::runtime_dir().or_else(dirs::cache_dir) else {
+            return Ok(Self { port: None, token: None, memory: Memory::None });
+        };
+        let file = folder.join("palpate").join("page");
+        // A file that is not as it was written is written anew.
+        let text = std::fs::read_to_string(&file).unwrap_or_default();
+        let (port, token) = text.trim().split_once(' ').unzip();
+        let port = port.and_then(|port| port.parse().ok());
+        let is_token =
+            |token: &&str| token.len() == 32 && token.bytes().all(|b| b.is_ascii_hexdigit());
+        let token = token.filter(is_token).map(str::to_owned);
+        Ok(Self { port, token, memory: Memory::Last(file) })
+    }
+
+    /// Keeps where the page is, for the next run.
+    pub(super) fn remember(&self, live: &Live) -> Result<(), Failure> {
+        match &self.memory {
+            Memory::Token(file) if self.token.is_none() => {
+                let written = write(file, live.token());
+                written.map_err(|error| Failure::file(file, error))
+            }
+            Memory::Last(file) => {
+                let folder = file.parent().map_or(Ok(()), std::fs::create_dir_all);
+                let text = format!("{} {}", live.address().port(), live.token());
+                // Without it, an open page does not find the next run, and no more.
+                let _ = folder.and_then(|()| write(file, &text));
+                Ok(())
+            }
+            Memory::Token(_) | Memory::None => Ok(()),
+        }
+    }
+}
+
+/// Writes a file that only its owner can read.
+fn write(file: &Path, text: &str) -> std::io::Result<()> {
+    let mut options = OpenOptions::new();
+    options.write(true).create(true).truncate(true);
+    #[cfg(unix)]
+    std::os::unix::fs::OpenOptionsExt::mode(&mut options, 0o600);
+    let mut opened = options.open(file)?;
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::PermissionsExt;
+        opened.set_permissions(std::fs::Permissions::from_mode(0o600))?;
+    }
+    writeln!(opened, "{text}")
+}

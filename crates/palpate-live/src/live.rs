@@ -1,0 +1,221 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! A server in a thread.
+
+use std::fmt;
+use std::net::{IpAddr, Ipv4Addr, SocketAddr};
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::thread::JoinHandle;
+
+use palpate::devices::profile_named;
+use palpate::haptics::DeviceProfile;
+use tokio::net::TcpListener;
+use tokio::sync::oneshot;
+
+use crate::server;
+use crate::stage::{Program, Refusal, Stage};
+
+/// The device of the page unless another is chosen.
+const DEVICE: &str = "omega";
+
+/// How a page is served.
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub struct LiveOptions {
+    /// The address to listen at. What is not of this machine alone is reached by others, without
+    /// encryption.
+    pub address: IpAddr,
+    /// The port; 0 for any that is free.
+    pub port: u16,
+    /// 32 hexadecimal digits that a page must know; random ones if `None`.
+    pub token: Option<String>,
+    /// The device that is simulated; the omega if `None`.
+    pub device: Option<DeviceProfile>,
+    /// Ticks a second [Hz].
+    pub rate: f64,
+    /// The contact points of the hand, where the scene's tool does not say how many.
+    pub points: usize,
+}
+
+impl Default for LiveOptions {
+    /// This machine alone, any port, a random token; an omega at 1 kHz, one contact point.
+    fn default() -> Self {
+        Self {
+            address: IpAddr::V4(Ipv4Addr::LOCALHOST),
+            port: 0,
+            token: None,
+            device: None,
+            rate: 1000.0,
+            points: 1,
+        }
+    }
+}
+
+impl LiveOptions {
+    /// With another port.
+    #[must_use]
+    pub fn with_port(self, port: u16) -> Self {
+        Self { port, ..self }
+    }
+
+    /// With another address.
+    #[must_use]
+    pub fn with_address(self, address: IpAddr) -> Self {
+        Self { address, ..self }
+    }
+
+    /// With this token.
+    #[must_use]
+    pub fn with_token(self, token: impl Into<String>) -> Self {
+        Self { token: Some(token.into()), ..self }
+    }
+
+    /// With another simulated device.
+    #[must_use]
+    pub fn with_device(self, device: DeviceProfile) -> Self {
+        Self { device: Some(device), ..self }
+    }
+
+    /// With another rate [Hz].
+    #[must_use]
+    pub fn with_rate(self, rate: f64) -> Self {
+        Self { rate, ..self }
+    }
+
+    /// With so many contact points.
+    #[must_use]
+    pub fn with_points(self, points: usize) -> Self {
+        Self { points, ..self }
+    }
+}
+
+/// Why a page is not served.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum LiveError {
+    /// The scene has an error.
+    #[error("{0}")]
+    Scene(String),
+    /// The address cannot be listened at.
+    #[error("cannot listen at {address}: {error}")]
+    Address {
+        /// The address.
+        address: SocketAddr,
+        /// What the operating system says.
+        error: std::io::Error,
+    },
+    /// The token is none.
+    #[error("a token is 32 hexadecimal digits, got {0} characters")]
+    Token(usize),
+    /// The operating system gives no thread or no random numbers.
+    #[error("the page cannot be served: {0}")]
+    System(String),
+}
+
+/// A page that is served, until this is dropped: then forces are zero and sockets closed.
+pub struct Live {
+    address: SocketAddr,
+    token: String,
+    stage: Arc<Stage>,
+    end: Option<oneshot::Sender<()>>,
+    thread: Option<JoinHandle<()>>,
+}
+
+impl Live {
+    /// Serves a scene with this name, of `file` if it came from one, which is then watched and can
+    /// be saved.
+    ///
+    /// # Errors
+    ///
+    /// If the scene has an error, or the address cannot be listened at.
+    pub fn start(
+        name: impl Into<String>,
+        file: Option<PathBuf>,
+        scene: &str,
+        options: LiveOptions,
+    ) -> Result<Self, LiveError> {
+        let LiveOptions { address, port, token, device, rate, points } = options;
+        let system = |error: &dyn fmt::Display| LiveError::System(error.to_string());
+        let token = match token {
+            None => server::new_token().map_err(|error| system(&error))?,
+            Some(token) if server::is_token(&token) => token,
+            Some(token) => return Err(LiveError::Token(token.chars().count())),
+        };
+        let profile = device.map_or_else(|| profile_named(DEVICE), Ok);
+        let profile = profile.map_err(|error| system(&error))?;
+        let program =
+            Program { name: name.into(), file, text: scene.to_owned(), profile, rate, points };
+        let stage =
+            Stage::new(program).map_err(|Refusal { message, .. }| LiveError::Scene(message))?;
+        let stage = Arc::new(stage);
+        let address = SocketAddr::new(address, port);
+        let failed = |error| LiveError::Address { address, error };
+        let listener = std::net::TcpListener::bind(address).map_err(failed)?;
+        listener.set_nonblocking(true).map_err(failed)?;
+        let address = listener.local_addr().map_err(failed)?;
+        let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build();
+        let runtime = runtime.map_err(|error| system(&error))?;
+        let (end, ended) = oneshot::channel();
+        let (served, given) = (Arc::clone(&stage), token.clone());
+        let work = move || {
+            runtime.block_on(async move {
+                // Made in the runtime, whose thread it belongs to.
+                let Ok(listener) = TcpListener::from_std(listener) else { return };
+                // It ends when it is told to.
+                let _ = server::serve(listener, address, given, served, ended).await;
+            });
+        };
+        let thread = std::thread::Builder::new().name("palpate live".to_owned()).spawn(work);
+        let thread = Some(thread.map_err(|error| system(&error))?);
+        Ok(Self { address, token, stage, end: Some(end), thread })
+    }
+
+    /// The address to open, with the token.
+    #[must_use]
+    pub fn url(&self) -> String {
+        format!("http://{}/#{}", self.address, self.token)
+    }
+
+    /// The address that is listened at.
+    #[must_use]
+    pub fn address(&self) -> SocketAddr {
+        self.address
+    }
+
+    /// The token that a page must know.
+    #[must_use]
+    pub fn token(&self) -> &str {
+        &self.token
+    }
+
+    /// The number of pages that are open.
+    #[must_use]
+    pub fn pages(&self) -> usize {
+        self.stage.pages.count()
+    }
+
+    /// Whether a page ever was open.
+    #[must_use]
+    pub fn was_opened(&self) -> bool {
+        self.stage.pages.ever() > 0
+    }
+}
+
+impl Drop for Live {
+    fn drop(&mut self) {
+        drop(self.end.take());
+        if let Some(thread) = self.thread.take() {
+            // A panic in it was printed when it happened.
+            let _ = thread.join();
+        }
+    }
+}
+
+impl fmt::Debug for Live {
+    /// Without the token, which may be logged.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Live").field("address", &self.address).finish_non_exhaustive()
+    }
+}

@@ -1,0 +1,177 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! Who may speak with the server.
+//!
+//! A page of another site can make a browser send requests to this machine, so every request is
+//! checked: `Host` against names that lead elsewhere, `Origin` against other sites, a token
+//! against other users of the machine.
+
+use std::net::SocketAddr;
+
+use axum::http::header::{HOST, ORIGIN};
+use axum::http::{HeaderMap, HeaderName, StatusCode};
+
+/// The headers of all answers: the page runs its own scripts alone, and nothing embeds it.
+pub(super) const HEADERS: [(&str, &str); 7] = [
+    (
+        "content-security-policy",
+        "default-src 'none'; script-src 'self'; style-src 'self'; font-src 'self'; \
+         img-src 'self' blob: data:; connect-src 'self'; base-uri 'none'; form-action 'none'; \
+         frame-ancestors 'none'",
+    ),
+    ("x-content-type-options", "nosniff"),
+    ("cross-origin-opener-policy", "same-origin"),
+    ("cross-origin-resource-policy", "same-origin"),
+    ("referrer-policy", "no-referrer"),
+    ("cache-control", "no-store"),
+    ("x-frame-options", "DENY"),
+];
+
+/// The bits of a token, in bytes.
+const TOKEN_BYTES: usize = 16;
+
+/// What requests are checked against.
+#[derive(Clone, Debug)]
+pub(super) struct Guard {
+    /// `host:port` by which the server may be called.
+    hosts: Vec<String>,
+    token: String,
+}
+
+/// A new token: 128 random bits in hexadecimal digits.
+///
+/// # Errors
+///
+/// If the operating system gives no random numbers.
+pub(crate) fn new_token() -> Result<String, getrandom::Error> {
+    let mut bytes = [0; TOKEN_BYTES];
+    getrandom::fill(&mut bytes)?;
+    Ok(bytes.iter().map(|byte| format!("{byte:02x}")).collect())
+}
+
+/// Whether a text can be a token.
+pub(crate) fn is_token(text: &str) -> bool {
+    text.len() == 2 * TOKEN_BYTES && text.bytes().all(|byte| byte.is_ascii_hexdigit())
+}
+
+impl Guard {
+    /// For a server at `address`, which may be called by the names of this machine, and by that
+    /// address.
+    pub(super) fn new(address: SocketAddr, token: String) -> Self {
+        let port = address.port();
+        let mut hosts = vec![
+            format!("127.0.0.1:{port}"),
+            format!("localhost:{port}"),
+            format!("[::1]:{port}"),
+        ];
+        if !address.ip().is_loopback() {
+            hosts.push(address.to_string());
+        }
+        Self { hosts, token }
+    }
+
+    /// Refuses a request that was sent to another name: a name of an attacker may lead here.
+    pub(super) fn check_host(&self, headers: &HeaderMap) -> Result<(), StatusCode> {
+        let is_known = |host: &str| self.hosts.iter().any(|known| known == host);
+        match only(headers, HOST) {
+            Some(host) if is_known(host) => Ok(()),
+            _ => Err(StatusCode::MISDIRECTED_REQUEST),
+        }
+    }
+
+    /// Refuses a request of a page that this server did not send.
+    pub(super) fn check_origin(&self, headers: &HeaderMap) -> Result<(), StatusCode> {
+        let host = only(headers, ORIGIN).and_then(|origin| origin.strip_prefix("http://"));
+        match host {
+            Some(host) if self.hosts.iter().any(|known| known == host) => Ok(()),
+            _ => Err(StatusCode::FORBIDDEN),
+        }
+    }
+
+    /// Refuses a request without the token.
+    pub(super) fn check_token(&self, given: Option<&str>) -> Result<(), StatusCode> {
+        match given {
+            Some(given) if are_equal(given.as_bytes(), self.token.as_bytes()) => Ok(()),
+            _ => Err(StatusCode::UNAUTHORIZED),
+        }
+    }
+}
+
+/// The value of a header that is there once.
+fn only(headers: &HeaderMap, name: HeaderName) -> Option<&str> {
+    let mut values = headers.get_all(name).iter();
+    let value = values.next()?.to_str().ok()?;
+    values.next().is_none().then_some(value)
+}
+
+/// Compares in a time that does not tell where texts differ.
+fn are_equal(a: &[u8], b: &[u8]) -> bool {
+    a.len() == b.len() && a.iter().zip(b).fold(0, |differ, (a, b)| differ | (a ^ b)) == 0
+}
+
+#[cfg(test)]
+mod tests {
+    #![expect(clippy::unwrap_used, reason = "tests")]
+
+    use super::*;
+
+    fn guard(address: &str) -> Guard {
+        Guard::new(address.parse().unwrap(), "ab".repeat(TOKEN_BYTES))
+    }
+
+    fn headers(pairs: &[(HeaderName, &str)]) -> HeaderMap {
+        pairs.iter().map(|(name, value)| (name.clone(), value.parse().unwrap())).collect()
+    }
+
+    #[test]
+    fn only_names_of_this_machine_are_hosts() {
+        let guard = guard("127.0.0.1:4000");
+        for good in ["127.0.0.1:4000", "localhost:4000", "[::1]:4000"] {
+            assert_eq!(guard.check_host(&headers(&[(HOST, good)])), Ok(()), "{good}");
+        }
+        for bad in [
+            "127.0.0.1",
+            "127.0.0.1:4001",
+            "localhost:4000.evil.example",
+            "evil.example:4000",
+            "localhost.evil.example:4000",
+            "10.0.0.1:4000",
+            "",
+            "LOCALHOST:4000x",
+        ] {
+            assert!(guard.check_host(&headers(&[(HOST, bad)])).is_err(), "{bad}");
+        }
+        assert!(guard.check_host(&HeaderMap::new()).is_err());
+        let mut two = headers(&[(HOST, "localhost:4000")]);
+        two.append(HOST, "localhost:4000".parse().unwrap());
+        assert!(guard.check_host(&two).is_err());
+    }
+
+    #[test]
+    fn only_pages_of_this_server_are_origins() {
+        let guard = guard("192.168.1.2:80");
+        let origin = |text: &str| guard.check_origin(&headers(&[(ORIGIN, text)]));
+        assert_eq!(origin("http://192.168.1.2:80"), Ok(()));
+        assert_eq!(origin("http://localhost:80"), Ok(()));
+        for bad in
+            ["null", "https://localhost:80", "http://localhost", "http://evil.example:80"]
+        {
+            assert_eq!(origin(bad), Err(StatusCode::FORBIDDEN), "{bad}");
+        }
+        assert_eq!(guard.check_origin(&HeaderMap::new()), Err(StatusCode::FORBIDDEN));
+    }
+
+    #[test]
+    fn a_token_is_whole_or_nothing() {
+        let guard = guard("127.0.0.1:1");
+        assert_eq!(guard.check_token(Some(&"ab".repeat(16))), Ok(()));
+        for bad in
+            [None, Some(""), Some("ab"), Some(&*"ab".repeat(17)), Some(&*"aa".repeat(16))]
+        {
+            assert_eq!(guard.check_token(bad), Err(StatusCode::UNAUTHORIZED), "{bad:?}");
+        }
+        let [one, other] = [new_token().unwrap(), new_token().unwrap()];
+        assert!(is_token(&one) && one != other && !is_token("xy"));
+    }
+}

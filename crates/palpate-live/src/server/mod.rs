@@ -1,0 +1,130 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! The server: routes, and the thread that it runs in.
+
+mod assets;
+mod guard;
+mod limits;
+mod socket;
+
+use std::net::SocketAddr;
+use std::sync::Arc;
+
+use axum::Router;
+use axum::extract::ws::WebSocketUpgrade;
+use axum::extract::{DefaultBodyLimit, Path, Query, Request, State};
+use axum::http::{HeaderMap, HeaderName, HeaderValue, StatusCode, header};
+use axum::middleware::{Next, from_fn_with_state};
+use axum::response::{IntoResponse, Response};
+use axum::routing::{get, post};
+use serde::Deserialize;
+use tokio::net::TcpListener;
+use tokio::sync::oneshot;
+
+use crate::stage::Stage;
+use guard::{Guard, HEADERS};
+pub(crate) use guard::{is_token, new_token};
+use limits::{LARGEST_MESSAGE, MOST_WAITING};
+
+/// What all requests share.
+#[derive(Clone, Debug)]
+struct Shared {
+    stage: Arc<Stage>,
+    guard: Arc<Guard>,
+}
+
+/// The token of a request.
+#[derive(Debug, Deserialize)]
+struct Token {
+    token: Option<String>,
+}
+
+/// Serves until `end` is dropped or sent.
+pub(crate) async fn serve(
+    listener: TcpListener,
+    address: SocketAddr,
+    token: String,
+    stage: Arc<Stage>,
+    end: oneshot::Receiver<()>,
+) -> std::io::Result<()> {
+    let shared = Shared { stage, guard: Arc::new(Guard::new(address, token)) };
+    let router = Router::new()
+        .route("/", get(|| async { assets::answer("index.html") }))
+        .route("/{*path}", get(|Path(path): Path<String>| async move { assets::answer(&path) }))
+        .route("/socket", get(socket))
+        .route("/stop", post(stop))
+        .route("/scene.json", get(scene))
+        .route("/trace.csv", get(trace))
+        .layer(DefaultBodyLimit::max(1024))
+        .layer(from_fn_with_state(shared.clone(), guarded))
+        .with_state(shared);
+    let serving = axum::serve(listener, router).into_future();
+    tokio::select! {
+        served = serving => served,
+        _ = end => Ok(()),
+    }
+}
+
+/// Checks the host of every request, and sets the headers of every answer.
+async fn guarded(State(shared): State<Shared>, request: Request, next: Next) -> Response {
+    let mut response = match shared.guard.check_host(request.headers()) {
+        Ok(()) => next.run(request).await,
+        Err(status) => status.into_response(),
+    };
+    for (name, value) in HEADERS {
+        let name = HeaderName::from_static(name);
+        response.headers_mut().insert(name, HeaderValue::from_static(value));
+    }
+    response
+}
+
+async fn socket(
+    State(shared): State<Shared>,
+    Query(query): Query<Token>,
+    headers: HeaderMap,
+    upgrade: WebSocketUpgrade,
+) -> Result<Response, StatusCode> {
+    shared.guard.check_origin(&headers)?;
+    shared.guard.check_token(query.token.as_deref())?;
+    let upgrade = upgrade
+        .max_message_size(LARGEST_MESSAGE)
+        .max_frame_size(LARGEST_MESSAGE)
+        .max_write_buffer_size(MOST_WAITING.max(LARGEST_ANSWER))
+        .write_buffer_size(0);
+    Ok(upgrade.on_upgrade(|socket| socket::speak(socket, shared.stage)))
+}
+
+/// The largest answer: a grid of samples [bytes].
+const LARGEST_ANSWER: usize = 20 << 20;
+
+async fn stop(
+    State(shared): State<Shared>,
+    Query(query): Query<Token>,
+    headers: HeaderMap,
+) -> Result<StatusCode, StatusCode> {
+    shared.guard.check_origin(&headers)?;
+    shared.guard.check_token(query.token.as_deref())?;
+    shared.stage.stop.set(true);
+    Ok(StatusCode::NO_CONTENT)
+}
+
+async fn scene(
+    State(shared): State<Shared>,
+    Query(query): Query<Token>,
+) -> Result<Response, StatusCode> {
+    shared.guard.check_token(query.token.as_deref())?;
+    let text = shared.stage.text();
+    Ok(([(header::CONTENT_TYPE, "application/json")], text).into_response())
+}
+
+async fn trace(
+    State(shared): State<Shared>,
+    Query(query): Query<Token>,
+) -> Result<Response, StatusCode> {
+    shared.guard.check_token(query.token.as_deref())?;
+    let stage = Arc::clone(&shared.stage);
+    let rows = tokio::task::spawn_blocking(move || stage.trace().map(|trace| trace())).await;
+    let rows = rows.ok().flatten().ok_or(StatusCode::SERVICE_UNAVAILABLE)?;
+    Ok(([(header::CONTENT_TYPE, "text/csv")], rows).into_response())
+}

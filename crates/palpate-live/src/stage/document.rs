@@ -1,0 +1,358 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! The scene as it is edited: its data, the steps back, the file it came from.
+
+use std::path::{Path, PathBuf};
+
+use palpate::scene::{AnyScene, Scene, SceneError, SceneProblem};
+use serde_json::{Value, json};
+
+use crate::wire::Change;
+
+/// The most steps back.
+const MOST_STEPS: usize = 500;
+
+/// A scene that is edited.
+#[derive(Clone, Debug)]
+pub(super) struct Document {
+    pub(super) name: String,
+    pub(super) file: Option<PathBuf>,
+    now: Version,
+    back: Vec<Version>,
+    forth: Vec<Version>,
+    /// Whether the last edit was a step of a drag that may go on.
+    is_moving: bool,
+    /// The text that the file has, as far as is known.
+    saved: String,
+}
+
+/// A scene with its text.
+#[derive(Clone, Debug)]
+struct Version {
+    scene: Scene,
+    text: String,
+}
+
+impl Version {
+    fn read(text: &str) -> Result<Self, SceneError> {
+        Ok(Self { scene: Scene::from_json(text)?, text: text.to_owned() })
+    }
+}
+
+/// Why an edit is refused.
+#[derive(Debug)]
+pub(crate) struct Refusal {
+    pub(crate) message: String,
+    pub(crate) problems: Vec<Value>,
+}
+
+impl From<String> for Refusal {
+    fn from(message: String) -> Self {
+        Self { message, problems: Vec::new() }
+    }
+}
+
+impl From<SceneError> for Refusal {
+    fn from(error: SceneError) -> Self {
+        let problems = error.problems().map(described).collect();
+        Self { message: error.to_string(), problems }
+    }
+}
+
+fn described(problem: &SceneProblem) -> Value {
+    json!({
+        "at": pointer(&problem.path),
+        "path": problem.path,
+        "line": problem.line,
+        "message": problem.problem,
+    })
+}
+
+/// The JSON pointer of a path such as `bodies[0].shape."a.b"`.
+fn pointer(path: &str) -> String {
+    let mut pointer = String::new();
+    let mut rest = path;
+    while !rest.is_empty() {
+        let (step, after) = if let Some(index) = rest.strip_prefix('[') {
+            index.split_once(']').unwrap_or((index, ""))
+        } else if let Some(quoted) = rest.strip_prefix('"') {
+            quoted.split_once('"').unwrap_or((quoted, ""))
+        } else {
+            rest.split_at(rest.find(['.', '[']).unwrap_or(rest.len()))
+        };
+        pointer.push('/');
+        pointer.push_str(&step.replace('~', "~0").replace('/', "~1"));
+        rest = after.strip_prefix('.').unwrap_or(after);
+    }
+    pointer
+}
+
+impl Document {
+    /// The scene of a text.
+    pub(super) fn open(
+        name: String,
+        file: Option<PathBuf>,
+        text: &str,
+    ) -> Result<Self, Refusal> {
+        let now = Version::read(text)?;
+        let saved = now.text.clone();
+        let (back, forth) = (Vec::new(), Vec::new());
+        Ok(Self { name, file, now, back, forth, is_moving: false, saved })
+    }
+
+    pub(super) fn scene(&self) -> &Scene {
+        &self.now.scene
+    }
+
+    pub(super) fn text(&self) -> &str {
+        &self.now.text
+    }
+
+    pub(super) fn can_undo(&self) -> bool {
+        !self.back.is_empty()
+    }
+
+    pub(super) fn can_redo(&self) -> bool {
+        !self.forth.is_empty()
+    }
+
+    pub(super) fn is_saved(&self) -> bool {
+        self.now.text == self.saved
+    }
+
+    /// The built scene.
+    pub(super) fn built(&self) -> Result<AnyScene, Refusal> {
+        Ok(self.now.scene.build()?)
+    }
+
+    /// Makes changes, all or none. `is_moving` while a control is dragged: the edits of a drag are
+    /// one step back.
+    pub(super) fn edit(&mut self, changes: &[Change], is_moving: bool) -> Result<(), Refusal> {
+        let mut data = serde_json::to_value(&self.now.scene)
+            .map_err(|error| Refusal::from(error.to_string()))?;
+        for change in changes {
+            apply(&mut data, change)?;
+        }
+        // Through the text, so that a problem has a line in the file as it would be saved.
+        let scene: Result<Scene, _> = serde_json::from_value(data.clone());
+        let text = match scene {
+            Ok(scene) => scene.to_json(),
+            Err(_) => serde_json::to_string_pretty(&data).unwrap_or_default(),
+        };
+        let version = Version::read(&text)?;
+        let is_same_drag = self.is_moving && !self.back.is_empty();
+        if is_same_drag {
+            self.now = version;
+        } else {
+            self.push(version);
+        }
+        self.is_moving = is_moving;
+        Ok(())
+    }
+
+    fn push(&mut self, version: Version) {
+        self.back.push(std::mem::replace(&mut self.now, version));
+        if self.back.len() > MOST_STEPS {
+            self.back.remove(0);
+        }
+        self.forth.clear();
+    }
+
+    /// Goes a step back; `false` if there is none.
+    pub(super) fn undo(&mut self) -> bool {
+        self.is_moving = false;
+        let Some(before) = self.back.pop() else { return false };
+        self.forth.push(std::mem::replace(&mut self.now, before));
+        true
+    }
+
+    /// Goes a step forth again; `false` if there is none.
+    pub(super) fn redo(&mut self) -> bool {
+        self.is_moving = false;
+        let Some(after) = self.forth.pop() else { return false };
+        self.back.push(std::mem::replace(&mut self.now, after));
+        true
+    }
+
+    /// Writes the scene to its file, unless the file has another text than was read or saved.
+    pub(super) fn save(&mut self, is_forced: bool) -> Result<(), Refusal> {
+        let Some(file) = self.file.clone() else {
+            return Err("this scene came from no file: download it instead".to_owned().into());
+        };
+        let shown = file.display();
+        let failed = |error: std::io::Error| Refusal::from(format!("{shown}: {error}"));
+        match std::fs::read_to_string(&file) {
+            Ok(text) if text != self.saved && !is_forced => {
+                return Err(format!(
+                    "{shown} was changed elsewhere meanwhile: open it again, or save over it"
+                )
+                .into());
+            }
+            Err(error) if error.kind() != std::io::ErrorKind::NotFound => {
+                return Err(failed(error));
+            }
+            _ => {}
+        }
+        replace(&file, &self.now.text).map_err(failed)?;
+        self.saved.clone_from(&self.now.text);
+        Ok(())
+    }
+
+    /// Takes the text that its file has now, as a step that can be undone; `None` if it is known.
+    pub(super) fn take_file(&mut self, text: &str) -> Option<Result<(), Refusal>> {
+        if text == self.saved {
+            return None;
+        }
+        self.saved = text.to_owned();
+        if text == self.now.text {
+            return None;
+        }
+        self.is_moving = false;
+        Some(Version::read(text).map(|version| self.push(version)).map_err(Refusal::from))
+    }
+}
+
+impl Document {
+    /// Takes note of the text of the file that another version of this document has read: a text
+    /// with an error is told once.
+    pub(super) fn knows_file_of(&mut self, other: &Self) {
+        self.saved.clone_from(&other.saved);
+    }
+}
+
+/// Writes a file beside and renames it, so that there is a whole file at all times.
+fn replace(file: &Path, text: &str) -> std::io::Result<()> {
+    // A link stays one: what it leads to is replaced.
+    let file = std::fs::canonicalize(file).unwrap_or_else(|_| file.to_owned());
+    let folder = file.parent().filter(|folder| !folder.as_os_str().is_empty());
+    let mut beside = tempfile::NamedTempFile::new_in(folder.unwrap_or(Path::new(".")))?;
+    std::io::Write::write_all(&mut beside, text.as_bytes())?;
+    if let Ok(metadata) = std::fs::metadata(&file) {
+        std::fs::set_permissions(beside.path(), metadata.permissions())?;
+    }
+    beside.persist(&file)?;
+    Ok(())
+}
+
+/// Makes one change.
+fn apply(data: &mut Value, change: &Change) -> Result<(), Refusal> {
+    let nowhere = || Refusal::from(format!("the scene has nothing at {:?}", change.at));
+    let Some((parent, key)) = change.at.rsplit_once('/') else {
+        return Err(format!("{:?} is no JSON pointer to a part of the scene", change.at).into());
+    };
+    let key = key.replace("~1", "/").replace("~0", "~");
+    match (data.pointer_mut(parent), &change.to) {
+        (Some(Value::Object(fields)), Some(to)) => {
+            fields.insert(key, to.clone());
+        }
+        // Keys stay in their order.
+        (Some(Value::Object(fields)), None) => {
+            fields.shift_remove(&key).ok_or_else(nowhere)?;
+        }
+        (Some(Value::Array(elements)), Some(to)) if key == "-" => elements.push(to.clone()),
+        (Some(Value::Array(elements)), to) => {
+            let index: usize = key.parse().map_err(|_| nowhere())?;
+            let element = elements.get_mut(index).ok_or_else(nowhere)?;
+            match to {
+                Some(to) => *element = to.clone(),
+                None => drop(elements.remove(index)),
+            }
+        }
+        _ => return Err(nowhere()),
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    #![expect(clippy::unwrap_used, reason = "tests")]
+
+    use super::*;
+
+    const SCENE: &str = r#"{ "palpate": 1, "dimension": 2,
+        "bodies": [ { "name": "coin", "shape": { "circle": { "radius": 0.5 } } } ] }"#;
+    const RADIUS: &str = "/bodies/0/shape/circle/radius";
+
+    fn coin() -> Document {
+        Document::open("coin".into(), None, SCENE).unwrap()
+    }
+
+    fn to(at: &str, to: Value) -> [Change; 1] {
+        [Change { at: at.into(), to: Some(to) }]
+    }
+
+    fn radius(document: &Document) -> f64 {
+        let data = serde_json::to_value(document.scene()).unwrap();
+        data.pointer(RADIUS).and_then(Value::as_f64).unwrap()
+    }
+
+    #[test]
+    fn a_drag_is_one_step_back() {
+        let mut document = coin();
+        for (size, is_moving) in [(0.6, true), (0.7, true), (0.8, false), (0.9, false)] {
+            document.edit(&to(RADIUS, size.into()), is_moving).unwrap();
+        }
+        assert_eq!(radius(&document), 0.9);
+        assert!(document.undo() && document.can_redo());
+        assert_eq!(radius(&document), 0.8);
+        assert!(document.undo() && !document.can_undo());
+        assert_eq!(radius(&document), 0.5);
+        assert!(document.redo() && document.redo() && !document.redo());
+        assert_eq!(radius(&document), 0.9);
+    }
+
+    #[test]
+    fn a_wrong_edit_changes_nothing_and_says_where() {
+        let mut document = coin();
+        let refusal = document.edit(&to(RADIUS, (-1.0).into()), false).unwrap_err();
+        assert!(refusal.message.contains("radius must be positive, got -1 m"), "{refusal:?}");
+        assert_eq!(refusal.problems[0]["at"], RADIUS);
+        assert!(refusal.problems[0]["line"].as_u64() > Some(1));
+        let refusal = document.edit(&to("/bodies/7/name", "x".into()), false).unwrap_err();
+        assert_eq!(refusal.message, "the scene has nothing at \"/bodies/7/name\"");
+        assert!(document.edit(&to("bodies", "x".into()), false).is_err());
+        assert!(!document.can_undo() && radius(&document) == 0.5);
+    }
+
+    #[test]
+    fn parts_are_added_and_removed() {
+        let mut document = coin();
+        let body = json!({ "name": "b", "shape": { "circle": { "radius": 1 } } });
+        document.edit(&to("/bodies/-", body), false).unwrap();
+        assert_eq!(document.scene().bodies.len(), 2);
+        let remove = [Change { at: "/bodies/0".into(), to: None }];
+        document.edit(&remove, false).unwrap();
+        assert_eq!(document.scene().bodies[0].name, "b");
+    }
+
+    #[test]
+    fn a_file_that_was_changed_elsewhere_is_not_overwritten() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("coin.json");
+        std::fs::write(&file, SCENE).unwrap();
+        let mut document = Document::open("coin".into(), Some(file.clone()), SCENE).unwrap();
+        document.edit(&to(RADIUS, 0.75.into()), false).unwrap();
+        assert!(!document.is_saved());
+        document.save(false).unwrap();
+        assert!(document.is_saved());
+        assert_eq!(std::fs::read_to_string(&file).unwrap(), document.text());
+
+        std::fs::write(&file, SCENE).unwrap();
+        document.edit(&to(RADIUS, 1.0.into()), false).unwrap();
+        let refusal = document.save(false).unwrap_err();
+        assert!(refusal.message.contains("was changed elsewhere"), "{refusal:?}");
+        assert!(matches!(document.take_file(SCENE), Some(Ok(()))));
+        assert_eq!((radius(&document), document.take_file(SCENE).is_none()), (0.5, true));
+        assert!(document.undo() && radius(&document) == 1.0);
+        document.save(true).unwrap();
+        assert!(coin().save(true).is_err(), "no file");
+    }
+
+    #[test]
+    fn paths_become_pointers() {
+        assert_eq!(pointer("bodies[0].shape.ball.radius"), "/bodies/0/shape/ball/radius");
+        assert_eq!(pointer("shapes.\"a/b\"[2]"), "/shapes/a~1b/2");
+        assert_eq!(pointer(""), "");
+    }
+}

@@ -1,0 +1,231 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! The thread that edits and builds the scene.
+
+use std::sync::Arc;
+use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, sync_channel};
+use std::time::Duration;
+
+use palpate::field::catalogue::Entry;
+use palpate::haptics::Material;
+use palpate::scene::{Scene, described_primitive, schema};
+use serde_json::{Value, json};
+
+use super::described::{self, Drawing};
+use super::document::{Document, Refusal};
+use super::pages::{PageId, Pages};
+use super::performance::{Order, Showing};
+use super::room::Terms;
+use super::{Shown, Text};
+use crate::wire::{Ask, Change, Question, VERSION};
+
+/// How often the file of the scene is looked at.
+const LOOK: Duration = Duration::from_millis(500);
+
+/// The state of the thread.
+#[derive(Debug)]
+pub(super) struct Editor {
+    document: Document,
+    drawing: Drawing,
+    /// 0 until a page is there.
+    revision: u32,
+    /// The scene as the pages were told it last.
+    message: Value,
+    /// What the servo renders: its scene decides whether the next one needs another servo.
+    rendered: Option<Scene>,
+    points: usize,
+    terms: Terms,
+    orders: SyncSender<Order>,
+    pages: Arc<Pages>,
+    shown: Arc<Shown>,
+    text: Arc<Text>,
+}
+
+impl Editor {
+    pub(super) fn new(
+        document: Document,
+        terms: Terms,
+        orders: SyncSender<Order>,
+        pages: Arc<Pages>,
+        (shown, text): (Arc<Shown>, Arc<Text>),
+    ) -> Self {
+        Self {
+            document,
+            drawing: Drawing::default(),
+            revision: 0,
+            message: Value::Null,
+            rendered: None,
+            points: 0,
+            terms,
+            orders,
+            pages,
+            shown,
+            text,
+        }
+    }
+
+    pub(super) fn run(mut self, questions: &Receiver<(PageId, Question)>) {
+        loop {
+            match questions.recv_timeout(LOOK) {
+                Ok((page, Question { id, ask })) => match self.obey(page, ask) {
+                    Ok(()) => self.pages.answer(page, id, json!({ "do": "done" })),
+                    Err(Refusal { message, problems }) => {
+                        self.pages.refuse(page, id, &message, &problems);
+                    }
+                },
+                Err(RecvTimeoutError::Timeout) => self.look_at_file(),
+                Err(RecvTimeoutError::Disconnected) => return,
+            }
+        }
+    }
+
+    fn obey(&mut self, page: PageId, ask: Ask) -> Result<(), Refusal> {
+        match ask {
+            Ask::Hello { version } => self.welcome(page, version),
+            Ask::Edit { base, changes, moving } => self.edit(base, &changes, moving),
+            Ask::Undo {} => {
+                if !self.document.undo() {
+                    return Err("there is nothing to undo".to_owned().into());
+                }
+                self.show("undo", false)
+            }
+            Ask::Redo {} => {
+                if !self.document.redo() {
+                    return Err("there is nothing to do again".to_owned().into());
+                }
+                self.show("redo", false)
+            }
+            Ask::Open { name, text } => {
+                let opened = Document::open(name, None, &text)?;
+                let before = std::mem::replace(&mut self.document, opened);
+                self.show("open", false).inspect_err(|_| self.document = before)
+            }
+            Ask::Save { force } => {
+                self.document.save(force)?;
+                self.message["is_saved"] = true.into();
+                self.pages.broadcast(&self.message);
+                Ok(())
+            }
+            _ => Ok(()),
+        }
+    }
+
+    fn welcome(&mut self, page: PageId, version: u32) -> Result<(), Refusal> {
+        if version != VERSION {
+            return Err(format!(
+                "this program speaks version {VERSION} and the page {version}: load the page again"
+            )
+            .into());
+        }
+        if self.revision == 0 {
+            self.show("open", false)?;
+        }
+        self.pages.send(
+            page,
+            &json!({
+                "do": "welcome",
+                "version": VERSION,
+                "revision": self.revision,
+                "rate": self.terms.rate,
+                "catalogue": catalogue()?,
+                "materials": Material::preset_names().collect::<Vec<_>>(),
+                "schema": schema(),
+            }),
+        );
+        self.pages.send(page, &self.message);
+        Ok(())
+    }
+
+    fn edit(&mut self, base: u32, changes: &[Change], is_moving: bool) -> Result<(), Refusal> {
+        if base != self.revision {
+            return Err(format!(
+                "the scene was edited elsewhere: it has revision {}, the edit is for {base}",
+                self.revision
+            )
+            .into());
+        }
+        let before = self.document.clone();
+        self.document.edit(changes, is_moving)?;
+        self.show("edit", is_moving).inspect_err(|_| self.document = before)
+    }
+
+    /// Takes the text of the file, if that was changed elsewhere.
+    fn look_at_file(&mut self) {
+        let Some(file) = self.document.file.clone().filter(|_| self.revision > 0) else {
+            return;
+        };
+        // A file that is being replaced may not be there for a moment.
+        let Ok(text) = std::fs::read_to_string(&file) else { return };
+        let before = self.document.clone();
+        let taken = match self.document.take_file(&text) {
+            None => return,
+            Some(taken) => taken.and_then(|()| self.show("file", false)),
+        };
+        if let Err(Refusal { message, .. }) = taken {
+            let saved = self.document.clone();
+            self.document = before;
+            self.document.knows_file_of(&saved);
+            let message =
+                format!("{} was changed, and has an error: {message}", file.display());
+            self.pages.broadcast(&json!({ "do": "notice", "message": message }));
+        }
+    }
+
+    /// Renders the scene, and tells the pages.
+    fn show(&mut self, by: &str, is_moving: bool) -> Result<(), Refusal> {
+        let scene = Arc::new(self.document.built()?);
+        let is_alike =
+            self.rendered.as_ref().is_some_and(|old| is_alike(old, self.document.scene()));
+        let revision = self.revision + 1;
+        let (reply, showing) = sync_channel(1);
+        let order = Order::Show { scene: Arc::clone(&scene), revision, is_alike, reply };
+        let gone = |_| Refusal::from("the program ends".to_owned());
+        self.orders.send(order).map_err(|_| gone(()))?;
+        let was_rendered = self.rendered.is_some();
+        let why = match showing.recv().map_err(|_| gone(()))? {
+            Showing::Replaced => None,
+            Showing::Began { points } => {
+                self.points = points;
+                was_rendered.then_some(
+                    "the tool, the guides, the motions or the dimension changed: the servo ended with zero \
+                     forces and began again",
+                )
+            }
+            Showing::Refused(why) => return Err(why.into()),
+        };
+        self.rendered = Some(self.document.scene().clone());
+        self.revision = revision;
+        self.shown.set(Arc::clone(&scene), revision);
+        self.text.set(self.document.text());
+        let mut message = described::described(&self.document, &scene);
+        message["by"] = by.into();
+        message["revision"] = revision.into();
+        message["way"] = self.drawing.of(&scene, is_moving);
+        message["restarted"] = why.is_some().into();
+        message["why"] = json!(why);
+        let profile = &self.terms.profile;
+        message["device"] = json!({
+            "name": profile.name, "points": self.points, "max_force": profile.max_force,
+            "rate": self.terms.rate,
+        });
+        self.pages.broadcast(&message);
+        self.message = message;
+        Ok(())
+    }
+}
+
+/// Whether a running servo can go on with another scene: all but its bodies is the same.
+fn is_alike(a: &Scene, b: &Scene) -> bool {
+    a.dimension() == b.dimension()
+        && a.tool == b.tool
+        && a.guides == b.guides
+        && a.motions == b.motions
+        && (a.motions.is_empty() || a.bodies.len() == b.bodies.len())
+}
+
+fn catalogue() -> Result<Vec<Value>, Refusal> {
+    let planar = Entry::<2>::ALL.iter().map(described_primitive);
+    let all = planar.chain(Entry::<3>::ALL.iter().map(described_primitive));
+    Ok(all.collect::<Result<_, _>>()?)
+}

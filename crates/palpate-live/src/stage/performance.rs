@@ -1,0 +1,281 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! The thread that leads the hand, and tells the pages what the servo does.
+
+use std::sync::Arc;
+use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender};
+use std::time::{Duration, Instant};
+
+use axum::body::Bytes;
+use palpate::haptics::Event;
+use palpate::scene::{AnyScene, BuiltScene};
+use palpate::servo_loop::{TraceRow, TraceWriter};
+use serde_json::json;
+use tokio::sync::watch;
+
+use super::Stop;
+use super::pages::{PageId, Pages};
+use super::room::{Room, Terms};
+use crate::wire::Frame;
+
+/// How often the hand is led on.
+const STEP: Duration = Duration::from_millis(8);
+
+/// The steps from one frame to the next: 60 frames a second.
+const STEPS_A_FRAME: u32 = 2;
+
+/// The most rows that are recorded: 20 s of ten points at 1 kHz.
+const MOST_ROWS: usize = 200_000;
+
+/// The most events that are told at once.
+const MOST_EVENTS: usize = 100;
+
+/// What the thread is asked to do.
+#[derive(Debug)]
+pub(crate) enum Order {
+    Lead {
+        page: PageId,
+        id: Option<u32>,
+        target: Vec<f64>,
+        point: Option<usize>,
+        held: bool,
+    },
+    Tour(bool),
+    Clock {
+        page: PageId,
+        id: Option<u32>,
+        speed: Option<f64>,
+        step: Option<u32>,
+    },
+    Record(bool),
+    /// What was recorded, as a file.
+    Trace(SyncSender<Trace>),
+    /// Renders another scene; with only its bodies changed if `is_alike`.
+    Show {
+        scene: Arc<AnyScene>,
+        revision: u32,
+        is_alike: bool,
+        reply: SyncSender<Showing>,
+    },
+    End,
+}
+
+/// How a scene came to be rendered.
+#[derive(Debug)]
+pub(crate) enum Showing {
+    /// The servo goes on with other bodies.
+    Replaced,
+    /// A servo ended, if there was one, and this one began.
+    Began { points: usize },
+    /// The scene cannot be rendered; the one before is still.
+    Refused(String),
+}
+
+/// Rows as text, made where there is time for it.
+pub(crate) type Trace = Box<dyn FnOnce() -> Vec<u8> + Send>;
+
+/// A room of either dimension, with what is recorded in it.
+#[derive(Debug)]
+enum AnyRoom {
+    Planar(Room<2>, Vec<TraceRow<2>>),
+    Spatial(Room<3>, Vec<TraceRow<3>>),
+}
+
+/// Runs an expression for the room of either dimension.
+macro_rules! in_room {
+    ($any:expr, $room:ident, $rows:ident => $work:expr) => {
+        match $any {
+            AnyRoom::Planar($room, $rows) => $work,
+            AnyRoom::Spatial($room, $rows) => $work,
+        }
+    };
+}
+
+/// The state of the thread.
+#[derive(Debug)]
+pub(super) struct Performance {
+    terms: Terms,
+    stop: Arc<Stop>,
+    pages: Arc<Pages>,
+    frames: watch::Sender<Bytes>,
+    room: Option<AnyRoom>,
+    revision: u32,
+    is_recording: bool,
+}
+
+impl Performance {
+    pub(super) fn new(
+        terms: Terms,
+        stop: Arc<Stop>,
+        pages: Arc<Pages>,
+        frames: watch::Sender<Bytes>,
+    ) -> Self {
+        Self { terms, stop, pages, frames, room: None, revision: 0, is_recording: false }
+    }
+
+    pub(super) fn run(mut self, orders: &Receiver<Order>) {
+        let mut next = Instant::now() + STEP;
+        let mut steps = 0_u32;
+        loop {
+            let wait = next.saturating_duration_since(Instant::now());
+            match orders.recv_timeout(wait) {
+                Ok(Order::End) | Err(RecvTimeoutError::Disconnected) => return,
+                Ok(order) => self.obey(order),
+                Err(RecvTimeoutError::Timeout) => {}
+            }
+            let now = Instant::now();
+            if now >= next {
+                // What was missed is not made up for.
+                next = now + STEP;
+                steps = steps.wrapping_add(1);
+                self.go_on(steps.is_multiple_of(STEPS_A_FRAME));
+            }
+        }
+    }
+
+    fn obey(&mut self, order: Order) {
+        match order {
+            Order::Lead { page, id, target, point, held } => {
+                let Some(room) = &mut self.room else { return };
+                match in_room!(room, room, _rows => room.lead(&target, point, held)) {
+                    Ok(()) => self.pages.answer(page, id, json!({ "do": "done" })),
+                    Err(why) => self.pages.refuse(page, id, &why, &[]),
+                }
+            }
+            Order::Tour(is_touring) => {
+                if let Some(room) = &mut self.room {
+                    in_room!(room, room, _rows => room.tours(is_touring));
+                }
+            }
+            Order::Clock { page, id, speed, step } => {
+                let Some(room) = &self.room else { return };
+                let clock = in_room!(room, room, _rows => room.speed());
+                let set = speed.map_or(Ok(()), |speed| clock.set(speed));
+                clock.step(u64::from(step.unwrap_or_default()));
+                match set {
+                    Ok(()) => self.pages.answer(page, id, json!({ "do": "done" })),
+                    Err(why) => self.pages.refuse(page, id, &why.to_string(), &[]),
+                }
+            }
+            Order::Record(is_recording) => {
+                if let Some(room) = &mut self.room
+                    && is_recording
+                    && !self.is_recording
+                {
+                    in_room!(room, _room, rows => rows.clear());
+                }
+                self.is_recording = is_recording;
+            }
+            Order::Trace(reply) => {
+                let trace = match &self.room {
+                    Some(room) => in_room!(room, _room, rows => trace(rows.clone())),
+                    None => Box::new(Vec::new),
+                };
+                // Who asked may have gone.
+                let _ = reply.send(trace);
+            }
+            Order::Show { scene, revision, is_alike, reply } => {
+                let showing = self.show(&scene, is_alike);
+                if !matches!(showing, Showing::Refused(_)) {
+                    self.revision = revision;
+                }
+                let _ = reply.send(showing);
+            }
+            Order::End => {}
+        }
+    }
+
+    fn show(&mut self, scene: &AnyScene, is_alike: bool) -> Showing {
+        let replaced = match (&mut self.room, scene) {
+            (Some(AnyRoom::Planar(room, _)), AnyScene::Planar(scene)) if is_alike => {
+                room.replace(Arc::new(scene.clone()))
+            }
+            (Some(AnyRoom::Spatial(room, _)), AnyScene::Spatial(scene)) if is_alike => {
+                room.replace(Arc::new(scene.clone()))
+            }
+            _ => Err(String::new()),
+        };
+        if replaced.is_ok() {
+            return Showing::Replaced;
+        }
+        let began = match scene {
+            AnyScene::Planar(scene) => {
+                let before = match &self.room {
+                    Some(AnyRoom::Planar(room, _)) => Some(room),
+                    _ => None,
+                };
+                self.begun(scene, before).map(|room| AnyRoom::Planar(room, Vec::new()))
+            }
+            AnyScene::Spatial(scene) => {
+                let before = match &self.room {
+                    Some(AnyRoom::Spatial(room, _)) => Some(room),
+                    _ => None,
+                };
+                self.begun(scene, before).map(|room| AnyRoom::Spatial(room, Vec::new()))
+            }
+        };
+        match began {
+            Ok(mut room) => {
+                self.stop.take(in_room!(&mut room, room, _rows => room.stop_switch()));
+                let points = in_room!(&room, room, _rows => room.points());
+                self.room = Some(room);
+                Showing::Began { points }
+            }
+            Err(why) => Showing::Refused(why),
+        }
+    }
+
+    fn begun<const D: usize>(
+        &self,
+        scene: &BuiltScene<D>,
+        before: Option<&Room<D>>,
+    ) -> Result<Room<D>, String> {
+        Room::begin(Arc::new(scene.clone()), &self.terms, before)
+    }
+
+    fn go_on(&mut self, is_frame: bool) {
+        let is_recording = self.is_recording;
+        let Some(room) = &mut self.room else { return };
+        if in_room!(room, room, _rows => room.has_ended()) {
+            let message = "the servo has ended with zero forces; the next edit begins another";
+            self.pages.broadcast(&json!({ "do": "notice", "message": message }));
+            self.room = None;
+            return;
+        }
+        let (mut events, mut frame): (Vec<Event>, Option<Frame>) = (Vec::new(), None);
+        let is_full = in_room!(room, room, rows => {
+            room.go_on(|row| if is_recording && rows.len() < MOST_ROWS {
+                rows.push(*row);
+            });
+            if is_frame {
+                events.extend(std::iter::from_fn(|| room.next_event()).take(MOST_EVENTS));
+                frame = room.frame();
+            }
+            rows.len() >= MOST_ROWS
+        });
+        if is_recording && is_full {
+            self.is_recording = false;
+            let message = format!("the recording is full: {MOST_ROWS} rows");
+            self.pages.broadcast(&json!({ "do": "notice", "message": message }));
+        }
+        if !events.is_empty() {
+            self.pages.broadcast(&json!({ "do": "events", "events": events }));
+        }
+        if let Some(mut frame) = frame {
+            (frame.revision, frame.is_recording) = (self.revision, self.is_recording);
+            // Nobody may look.
+            let _ = self.frames.send(frame.bytes());
+        }
+    }
+}
+
+/// The rows of a recording as CSV.
+fn trace<const D: usize>(rows: Vec<TraceRow<D>>) -> Trace {
+    Box::new(move || {
+        let mut out = TraceWriter::new(Vec::new());
+        // Writing to memory has no way to fail.
+        let written = rows.iter().try_for_each(|row| out.write(row));
+        written.and_then(|()| out.finish()).unwrap_or_default()
+    })
+}

@@ -1,0 +1,255 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! One scene with the servo that renders it, and the hand that feels it.
+
+use std::sync::Arc;
+
+use palpate::devices::{Hand, SimulatedDevice, SteeredDevice, Steering};
+use palpate::field::{Point, Vector};
+use palpate::haptics::{DeviceProfile, Event, HapticsError, StopSwitch, WorkspaceMap};
+
+use palpate::scene::{BuiltScene, BuiltTool, ServoSettings};
+use palpate::servo_loop::{
+    ClockSpeed, Priority, Records, ScaledClock, ServoThread, ThreadOptions, TraceRow,
+};
+
+use super::hand::Lead;
+use crate::wire::{Frame, FramePoint};
+
+/// The fastest that a hand follows the page, at the device [m/s].
+const FASTEST: f64 = 1.0;
+
+/// How long rows wait to be taken [s].
+const KEPT: f64 = 1.0;
+
+/// A scene that is felt.
+#[derive(Debug)]
+pub(super) struct Room<const D: usize> {
+    scene: Arc<BuiltScene<D>>,
+    /// Dropped before the thread, so that a clock that is held lets it end.
+    speed: ClockSpeed,
+    thread: ServoThread<D>,
+    records: Records<D>,
+    steering: Steering<D>,
+    map: WorkspaceMap<D>,
+    lead: Lead<D>,
+    /// The largest values since the last frame.
+    peaks: Peaks,
+    is_touring: bool,
+}
+
+/// The largest values since the last frame.
+#[derive(Debug, Default)]
+struct Peaks {
+    depth: f64,
+    cost_ns: u64,
+    lateness_ns: u64,
+    evaluations: u32,
+    /// Of each contact point [N].
+    forces: Vec<f64>,
+    /// Of each contact point: taken, given and kept so far [J].
+    energies: Vec<[f64; 3]>,
+    /// Whether the safety chain changed a force.
+    has_acted: bool,
+}
+
+/// What a room is made for.
+#[derive(Clone, Debug)]
+pub(super) struct Terms {
+    pub(super) profile: DeviceProfile,
+    pub(super) rate: f64,
+    /// The contact points of a hand that a scene's tool does not give.
+    pub(super) points: usize,
+}
+
+impl<const D: usize> Room<D> {
+    /// Begins to feel a scene, by the hand of a room that was there before if there is one.
+    pub(super) fn begin(
+        scene: Arc<BuiltScene<D>>,
+        terms: &Terms,
+        before: Option<&Self>,
+    ) -> Result<Self, String> {
+        let said = |error: HapticsError| error.to_string();
+        let tool = scene.tool.as_ref().map_or(Ok(None), BuiltTool::in_hand).map_err(said)?;
+        let map = scene.workspace_of(&terms.profile, tool.as_ref()).map_err(said)?;
+        let mut lead = Lead::new(&scene, terms.points).map_err(|error| error.to_string())?;
+        if let Some(before) = before {
+            lead.take_over(&before.lead);
+        }
+        let (device, mut steering) =
+            device(&lead, &map, terms).map_err(|error| error.to_string())?;
+        let settings = ServoSettings::default().with_rate(terms.rate);
+        let servo = scene.servo_with(&device, settings).map_err(said)?;
+        let (clock, speed) = ScaledClock::new(&Priority::Normal);
+        let rows = (KEPT * terms.rate) as usize * lead.targets().len();
+        let mut options = ThreadOptions::default().with_recorder(rows).with_rehearsals(true);
+        if !scene.motions.is_empty() {
+            let moving = Arc::clone(&scene);
+            options =
+                options.with_motion(move |time, set_pose| moving.motion()(time, set_pose));
+        }
+        let thread = ServoThread::start_on(clock, servo, Box::new(device), options);
+        let mut thread = thread.map_err(|error| error.to_string())?;
+        let records = thread.take_records().ok_or("the servo keeps no rows")?;
+        steer(&mut steering, &lead, &map);
+        let (peaks, is_touring) = (Peaks::default(), false);
+        Ok(Self { scene, speed, thread, records, steering, map, lead, peaks, is_touring })
+    }
+
+    pub(super) fn stop_switch(&mut self) -> StopSwitch {
+        self.thread.control().stop_switch()
+    }
+
+    pub(super) fn speed(&self) -> &ClockSpeed {
+        &self.speed
+    }
+
+    pub(super) fn has_ended(&self) -> bool {
+        self.thread.has_ended()
+    }
+
+    pub(super) fn points(&self) -> usize {
+        self.lead.targets().len()
+    }
+
+    /// Hands the bodies of another scene to the servo, which goes on.
+    pub(super) fn replace(&mut self, scene: Arc<BuiltScene<D>>) -> Result<(), String> {
+        let bodies = scene.bodies().map_err(|error| error.to_string())?;
+        let replaced = self.thread.control().replace_bodies(bodies);
+        replaced.map_err(|error| error.to_string())?;
+        self.scene = scene;
+        Ok(())
+    }
+
+    /// Leads the hand, or one of its contact points, to a place in the world [m].
+    pub(super) fn lead(
+        &mut self,
+        target: &[f64],
+        point: Option<usize>,
+        is_held: bool,
+    ) -> Result<(), String> {
+        self.lead.lead(point_of(target)?, point, is_held)
+    }
+
+    pub(super) fn tours(&mut self, is_touring: bool) {
+        self.lead.tours(is_touring);
+    }
+
+    /// Leads the hand on, and takes the rows of the ticks since; `row` gets each.
+    pub(super) fn go_on(&mut self, mut row: impl FnMut(&TraceRow<D>)) {
+        let latest = self.thread.control().latest();
+        let time = latest.map_or(0.0, |snapshot| snapshot.progress.time);
+        self.is_touring = self.lead.go_on(time);
+        steer(&mut self.steering, &self.lead, &self.map);
+        for new in self.records.take() {
+            self.peaks.take(&new);
+            row(&new);
+        }
+    }
+
+    pub(super) fn next_event(&mut self) -> Option<Event> {
+        self.thread.control().next_event()
+    }
+
+    /// The state after the last tick, with the largest values since the last frame; `None` before
+    /// the first tick.
+    pub(super) fn frame(&mut self) -> Option<Frame> {
+        let lost = self.records.lost();
+        let is_held = self.speed.get() == 0.0;
+        let is_touring = self.is_touring;
+        let snapshot = self.thread.control().latest()?;
+        let peaks = std::mem::take(&mut self.peaks);
+        let point = |(number, touch): (usize, &palpate::haptics::Touch<D>)| FramePoint {
+            vectors: [touch.device, touch.proxy, touch.force, touch.wanted, touch.normal]
+                .map(in_space),
+            depth: touch.depth(),
+            largest_force: peaks.forces.get(number).copied().unwrap_or_default(),
+            body: touch.body,
+            is_in_contact: touch.contact,
+            is_slipping: touch.is_slipping,
+        };
+        let energy = peaks.energies.iter().fold([0.0; 3], |all: [f64; 3], of_point| {
+            std::array::from_fn(|kind| all[kind] + of_point[kind])
+        });
+        let frame = Frame {
+            dimension: D as u8,
+            is_stopped: snapshot.is_stopped,
+            is_held,
+            has_acted: peaks.has_acted,
+            is_touring,
+            ticks: snapshot.progress.ticks,
+            time: snapshot.progress.time,
+            force: peaks.forces.iter().copied().fold(snapshot.progress.force, f64::max),
+            depth: peaks.depth,
+            cost: 1e-9 * peaks.cost_ns as f64,
+            lateness: 1e-9 * peaks.lateness_ns as f64,
+            energy,
+            evaluations: peaks.evaluations,
+            lost: snapshot.events_lost + lost,
+            points: snapshot.touches.iter().enumerate().map(point).collect(),
+            ..Frame::default()
+        };
+        // Energies are sums since the start: they stay where no tick came.
+        self.peaks.energies = peaks.energies;
+        Some(frame)
+    }
+}
+
+impl Peaks {
+    fn take<const D: usize>(&mut self, row: &TraceRow<D>) {
+        let point = row.point as usize;
+        if self.forces.len() <= point {
+            self.forces.resize(point + 1, 0.0);
+        }
+        if self.energies.len() <= point {
+            self.energies.resize(point + 1, [0.0; 3]);
+        }
+        self.forces[point] = self.forces[point].max(row.force.norm());
+        let kept_before = self.energies[point][2];
+        self.energies[point] = [row.energy.taken, row.energy.given, row.energy.kept];
+        self.has_acted |= row.energy.kept > kept_before;
+        if row.contact {
+            self.depth = self.depth.max((row.proxy - row.device).norm());
+        }
+        self.cost_ns = self.cost_ns.max(row.cost_ns);
+        self.lateness_ns = self.lateness_ns.max(row.lateness_ns);
+        self.evaluations = self.evaluations.max(row.evaluations);
+    }
+}
+
+type Steered<const D: usize> = (SteeredDevice<D>, Steering<D>);
+
+/// The device, with a hand for each contact point.
+fn device<const D: usize>(
+    lead: &Lead<D>,
+    map: &WorkspaceMap<D>,
+    terms: &Terms,
+) -> Result<Steered<D>, palpate::devices::DeviceError> {
+    let hand = |place: &Point<D>| Hand::resting(map.point_to_device(*place));
+    let hands = lead.targets().iter().map(hand).collect::<Result<_, _>>()?;
+    SteeredDevice::new(SimulatedDevice::new(terms.profile.clone(), hands)?, FASTEST)
+}
+
+fn steer<const D: usize>(steering: &mut Steering<D>, lead: &Lead<D>, map: &WorkspaceMap<D>) {
+    let targets: Vec<_> =
+        lead.targets().iter().map(|target| map.point_to_device(*target)).collect();
+    // There is a target for each hand, and all are finite.
+    let _ = steering.steer(&targets);
+}
+
+/// A point of the page.
+pub(super) fn point_of<const D: usize>(numbers: &[f64]) -> Result<Point<D>, String> {
+    let wrong = || format!("a point of this scene is {D} numbers, got {}", numbers.len());
+    let point: [f64; D] = numbers.try_into().map_err(|_| wrong())?;
+    // Written so that NaN is refused.
+    match point.iter().find(|x| !(x.abs() <= palpate::field::LARGEST_LENGTH)) {
+        None => Ok(Vector(point)),
+        Some(x) => Err(format!("a coordinate must be finite, got {x} m")),
+    }
+}
+
+/// A vector in space: in the plane, the third coordinate is zero.
+pub(super) fn in_space<const D: usize>(vector: Vector<f64, D>) -> [f64; 3] {
+    std::array::from_fn(|axis| vector.0.get(axis).copied().unwrap_or_default())
+}
