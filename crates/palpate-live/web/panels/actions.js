@@ -5,7 +5,7 @@
 /** What buttons and keys ask for. */
 
 import { changed, lookAt, setView, state } from '../state.js';
-import { takeScene } from './edits.js';
+import { goBack, takeScene } from './edits.js';
 import { ask, download, page, tell, tellError } from './page.js';
 
 /** The speed of the servo's time, also while it is held. */
@@ -22,15 +22,8 @@ export function release() {
   page.wire?.send({ do: 'release' });
 }
 
-/** Asks for something that another scene answers. @param {import('../wire.js').Message} message */
-async function askScene(message) {
-  const answer = await ask(message);
-  if (answer?.do === 'scene') takeScene(answer);
-  return answer;
-}
-
-export const undo = () => askScene({ do: 'undo' });
-export const redo = () => askScene({ do: 'redo' });
+export const undo = () => goBack('undo');
+export const redo = () => goBack('redo');
 
 /** @param {boolean} [force] also over a file that was changed elsewhere */
 export async function save(force = false) {
@@ -56,7 +49,8 @@ export async function openFile(file) {
 
 /** @param {string} name @param {string} text */
 export async function openText(name, text) {
-  const answer = await askScene({ do: 'open', name, text });
+  const answer = await ask({ do: 'open', name, text });
+  if (answer?.do === 'scene') takeScene(answer);
   if (answer) tell(`${name} is open.`);
 }
 

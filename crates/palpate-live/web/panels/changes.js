@@ -57,10 +57,10 @@ export function exampleOf(entry, size) {
   const numbers = (/** @type {any} */ value) => [value].flat(9).map(Math.abs);
   const largest = Math.max(...Object.keys(values).filter((one) => lengths.has(one))
     .flatMap((one) => numbers(values[one])));
-  const factor = Number.isFinite(largest) && largest > 0 ? size / largest : 1;
+  const factor = Number.isFinite(largest) && largest > 0 ? Number((size / largest).toPrecision(2)) : 1;
   /** @param {any} value @returns {any} */
   const scaled = (value) => Array.isArray(value)
-    ? value.map(scaled) : Number((value * factor).toPrecision(4));
+    ? value.map(scaled) : Number((value * factor).toPrecision(12));
   return { [key]: Object.fromEntries(Object.entries(values).map(([one, value]) =>
     [one, lengths.has(one) ? scaled(value) : value])) };
 }

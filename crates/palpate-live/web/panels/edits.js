@@ -4,9 +4,11 @@
 
 /**
  * Edits of the scene on their way to the program: one at a time, and while a control is dragged
- * the newest value alone.
+ * the newest value alone. Undo and redo wait for their turn too: an edit is of the scene that
+ * they leave.
  *
  * @typedef {{ at: string, to?: any }} Change
+ * @typedef {{ do: 'edit', changes: Change[], moving: boolean } | { do: 'undo' | 'redo' }} Order
  */
 
 import { Refused } from '../wire.js';
@@ -16,44 +18,55 @@ import { page, tell } from './page.js';
 /** How long a scene may take to follow the answer to its edit [ms]. */
 const SCENE_WAIT = 1000;
 
-/** @type {{ changes: Change[], moving: boolean }[]} */
-let queue = [];
+/** @type {Order[]} */
+const queue = [];
 let isBusy = false;
 
-/** @param {Change[]} changes */
-const places = (changes) => changes.map(({ at }) => at).join(' ');
+/** @param {Order} order */
+const places = (order) => (order.do === 'edit' ? order.changes.map(({ at }) => at).join(' ') : '');
 
 /** Asks for changes of the scene. @param {Change[]} changes @param {boolean} [moving] */
 export function edit(changes, moving = false) {
+  const order = /** @type {Order} */ ({ do: 'edit', changes, moving });
   const last = queue[queue.length - 1];
-  if (last?.moving && places(last.changes) === places(changes)) queue.pop();
-  queue.push({ changes, moving });
+  if (last?.do === 'edit' && last.moving && places(last) === places(order)) queue.pop();
+  enqueue(order);
+}
+
+/** Takes the last step back, or takes it again. @param {'undo' | 'redo'} way */
+export function goBack(way) {
+  enqueue({ do: way });
+}
+
+/** @param {Order} order */
+function enqueue(order) {
+  queue.push(order);
   if (!isBusy) void sendAll();
 }
 
 async function sendAll() {
   isBusy = true;
-  while (queue.length > 0) {
-    const next = /** @type {{ changes: Change[], moving: boolean }} */ (queue.shift());
-    await sendOne(next.changes, next.moving);
-  }
+  for (let order = queue.shift(); order; order = queue.shift()) await sendOne(order);
   isBusy = false;
 }
 
-/** @param {Change[]} changes @param {boolean} moving */
-async function sendOne(changes, moving) {
+/** @param {Order} order */
+async function sendOne(order) {
   const base = state.scene?.revision;
   try {
-    const answer = await page.wire?.ask({ do: 'edit', base, changes, moving });
+    const answer = await page.wire?.ask(order.do === 'edit' ? { ...order, base } : order);
     if (answer?.do === 'scene') takeScene(answer);
     else if (state.scene?.revision === base) await sceneOrTimeout();
     setProblems([]);
   } catch (error) {
     const problems = error instanceof Refused ? error.problems : [];
     const text = error instanceof Error ? error.message : String(error);
-    setProblems(problems.length > 0 ? problems : [{ at: changes[0].at, message: text }]);
     const [first] = problems;
-    if (!moving) tell(first ? `${first.path}: ${first.message}` : text, 'bad');
+    if (order.do === 'edit') {
+      setProblems(first ? problems : [{ at: order.changes[0].at, message: text }]);
+      if (order.moving) return;
+    }
+    tell(first ? `${first.path}: ${first.message}` : text, 'bad');
   }
 }
 

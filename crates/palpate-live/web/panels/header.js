@@ -103,13 +103,9 @@ function Menu() {
     };
   }, [isOpen]);
   const item = (/** @type {string} */ name, /** @type {() => unknown} */ run, disabled = false, key = '') => html`
-    <li><button disabled=${disabled} onClick=${async () => {
-      try {
-        await run();
-      } catch (error) {
-        tellError(error);
-      }
-      setIsOpen(page.shownLink !== '');
+    <li><button disabled=${disabled} onClick=${() => {
+      setIsOpen(false);
+      void Promise.resolve(run()).catch(tellError);
     }}>${name}${key && html` <kbd>${key}</kbd>`}</button></li>`;
   return html`<div class="menu" ref=${box}>
     <button class="scene-name" aria-expanded=${String(isOpen)} onClick=${() => setIsOpen(!isOpen)}

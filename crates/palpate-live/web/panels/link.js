@@ -90,6 +90,6 @@ export async function copyLink() {
     tell('The link is copied. It holds the view and the scene, not the token.');
   } else {
     page.shownLink = link;
-    tell('The browser copies only from secure pages: the link is in the menu.');
+    tell('The browser copies only from secure pages: open the menu to take the link from there.');
   }
 }
