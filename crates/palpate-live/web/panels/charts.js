@@ -44,7 +44,7 @@ function options(width, height, chart) {
     font: '10px Inter', size: 16, gap: 2,
   });
   return {
-    width, height, padding: [4, 6, 0, 0], legend: { show: false },
+    width, height, padding: [8, 6, 0, 0], legend: { show: false },
     cursor: { sync: { key: 'palpate' }, y: false, points: { size: 5 }, drag: { x: true, y: false } },
     scales: { x: { time: false } },
     series: [{}, ...chart.lines.map((line) => ({ label: line.name, stroke: color(line.color), width: 1.25 }))],
