@@ -16,7 +16,7 @@ let asked = '';
 export async function askContacts(wire, take) {
   const { contacts, proof } = state.view.shown;
   const isWanted = (contacts || proof) && (state.scene?.bodies?.length ?? 0) > 1;
-  const key = isWanted ? `${state.scene?.revision} ${proof}` : '';
+  const key = isWanted ? `${state.scene?.name} ${state.scene?.revision} ${proof}` : '';
   if (key === asked || state.connection !== 'live') return;
   asked = key;
   try {

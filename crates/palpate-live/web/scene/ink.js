@@ -92,7 +92,7 @@ export function spring(context, from, to, color, halo) {
   const [dx, dy] = [to.x - from.x, to.y - from.y];
   const length = Math.hypot(dx, dy);
   if (length < 3) return;
-  const turns = 8;
+  const turns = Math.min(8, Math.max(2, Math.round(length / 9)));
   const wide = Math.max(2, 7 - length / 40);
   const [nx, ny] = [(-dy / length) * wide, (dx / length) * wide];
   stroke(context, () => {

@@ -51,6 +51,9 @@ export class Layer {
     this.losses = 0;
     /** Pixels of the target a CSS pixel. */
     this.ratio = 1;
+    /** The size of the whole picture in pixels. */
+    this.width = 1;
+    this.height = 1;
     /** @type {Panel[]} */
     this.panels = [];
     /** The field that is drawn, and one whose programs are not ready. @type {Field | null} */
@@ -60,6 +63,8 @@ export class Layer {
     /** The time of a full picture [ms]. @type {number | null} */
     this.cost = null;
     this.scale = SCALES[2];
+    /** The scale of the picture that is shown. */
+    this.shownScale = 1;
     this.isChanged = false;
     /** Whether the picture has all its pixels. */
     this.isDone = false;
@@ -95,6 +100,9 @@ export class Layer {
     const gl = /** @type {WebGL2RenderingContext} */ (this.gl);
     gl.getExtension('EXT_color_buffer_float');
     gl.getExtension('OES_texture_float_linear');
+    this.timer = gl.getExtension('EXT_disjoint_timer_query_webgl2');
+    /** Times the moving picture. @type {WebGLQuery | null} */
+    this.query = null;
     this.programs = new Programs(gl);
     /** Programs that have drawn once: many drivers compile only then. */
     this.warm = new WeakSet();
@@ -117,8 +125,8 @@ export class Layer {
     this.ratio = Math.min(devicePixelRatio || 1, 2) * budget;
     const width = Math.max(1, Math.round(canvas.clientWidth * this.ratio));
     const height = Math.max(1, Math.round(canvas.clientHeight * this.ratio));
-    canvas.width = width;
-    canvas.height = height;
+    this.width = width;
+    this.height = height;
     for (const { frame, pixels } of this.targets) {
       gl.bindFramebuffer(gl.FRAMEBUFFER, frame);
       gl.bindRenderbuffer(gl.RENDERBUFFER, pixels);
@@ -167,7 +175,7 @@ export class Layer {
     if (this.warm?.has(program)) return true;
     const begun = this.warming?.get(program);
     if (!begun) {
-      const within = { x: 0, y: 0, width: this.canvas.width, height: this.canvas.height };
+      const within = { x: 0, y: 0, width: this.width, height: this.height };
       this.draw({ ...panel, values: { ...panel.values, steps: 1 } }, 1 / 64, field, program, within);
       const fence = gl.fenceSync(gl.SYNC_GPU_COMMANDS_COMPLETE, 0);
       if (fence) this.warming?.set(program, fence);
@@ -226,12 +234,26 @@ export class Layer {
     this.fence = null;
     const time = performance.now() - this.drawnAt;
     if (this.isMoving) {
-      this.learn(time);
+      this.learn(this.timeOfCard() ?? Math.max(time - FENCE, 0.2));
     } else {
       if (time < QUICK) this.batch = Math.min(2 * this.batch, MOST_TILES);
       if (time > 2 * QUICK) this.batch = Math.max(this.batch >> 1, 1);
     }
     return true;
+  }
+
+  /** What the card took for the moving picture itself [ms], without waiting behind the rest of
+   * the page; null where it does not tell. */
+  timeOfCard() {
+    const gl = /** @type {WebGL2RenderingContext} */ (this.gl);
+    const { query, timer } = this;
+    this.query = null;
+    if (!query || !timer) return null;
+    const isTold = gl.getQueryParameter(query, gl.QUERY_RESULT_AVAILABLE)
+      && !gl.getParameter(timer.GPU_DISJOINT_EXT);
+    const time = isTold ? gl.getQueryParameter(query, gl.QUERY_RESULT) / 1e6 : null;
+    gl.deleteQuery(query);
+    return time;
   }
 
   setFence() {
@@ -244,22 +266,18 @@ export class Layer {
   /** @param {Field} field */
   drawMoving(field) {
     const gl = /** @type {WebGL2RenderingContext} */ (this.gl);
-    const { width, height } = this.canvas;
-    const { scale } = this;
-    const [full, low] = this.targets ?? [];
-    const target = scale === 1 ? full : low;
-    gl.bindFramebuffer(gl.FRAMEBUFFER, target.frame);
+    const { width, height, scale } = this;
+    gl.bindFramebuffer(gl.FRAMEBUFFER, this.targetOf(scale));
     gl.disable(gl.SCISSOR_TEST);
+    if (this.timer) {
+      this.query = gl.createQuery();
+      gl.beginQuery(this.timer.TIME_ELAPSED_EXT, /** @type {WebGLQuery} */ (this.query));
+    }
     gl.clear(gl.COLOR_BUFFER_BIT);
     const all = { x: 0, y: 0, width, height };
     for (const panel of this.panels) this.draw(panel, scale, field, null, all);
-    if (scale !== 1) {
-      gl.disable(gl.SCISSOR_TEST);
-      gl.bindFramebuffer(gl.READ_FRAMEBUFFER, low.frame);
-      gl.bindFramebuffer(gl.DRAW_FRAMEBUFFER, full.frame);
-      gl.blitFramebuffer(0, 0, Math.round(width * scale), Math.round(height * scale), 0, 0, width,
-        height, gl.COLOR_BUFFER_BIT, gl.LINEAR);
-    }
+    if (this.timer) gl.endQuery(this.timer.TIME_ELAPSED_EXT);
+    this.shownScale = scale;
     this.present();
     this.isMoving = true;
     this.setFence();
@@ -281,16 +299,16 @@ export class Layer {
    * @param {number} time */
   learn(time) {
     this.lastTime = time;
-    const cost = Math.max(time - FENCE, 0.2) / this.scale ** 2;
+    const cost = time / this.scale ** 2;
     this.cost = this.cost === null ? cost : 0.5 * (this.cost + cost);
     // A finer picture is tried only where it is sure to hold.
     const holds = (/** @type {number} */ part) =>
-      (this.cost ?? 0) * part ** 2 + FENCE <= (part > this.scale ? 0.75 : 1) * FRAME;
+      (this.cost ?? 0) * part ** 2 <= (part > this.scale ? 0.75 : 1) * FRAME;
     this.scale = SCALES.find(holds) ?? SCALES[SCALES.length - 1];
   }
 
   tilesAPass() {
-    return Math.ceil(this.canvas.width / TILE) * Math.ceil(this.canvas.height / TILE);
+    return Math.ceil(this.width / TILE) * Math.ceil(this.height / TILE);
   }
 
   /** Draws the next tiles of a picture that stands still. Whether there are more.
@@ -303,8 +321,9 @@ export class Layer {
     if (this.tile === 0) this.passBegan = now;
     const isSlow = this.tiles === 0 && at >= pass && now - this.passBegan > SLOW_PASS;
     if (at >= OFFSETS.length * pass || isSlow) return false;
-    const columns = Math.ceil(this.canvas.width / TILE);
-    gl.bindFramebuffer(gl.FRAMEBUFFER, this.targets?.[0].frame ?? null);
+    const columns = Math.ceil(this.width / TILE);
+    if (this.shownScale !== 1) this.enlarge();
+    gl.bindFramebuffer(gl.FRAMEBUFFER, this.targetOf(1));
     gl.enable(gl.SCISSOR_TEST);
     const end = Math.min(at + this.batch, (Math.floor(at / pass) + 1) * pass);
     for (let index = at; index < end; index += 1) {
@@ -344,7 +363,7 @@ export class Layer {
     const right = Math.min(left + wide, within.x + within.width);
     const top = Math.min(bottom + high, within.y + within.height);
     if (!program || right <= low || top <= above) return;
-    gl.viewport(0, 0, this.canvas.width, this.canvas.height);
+    gl.viewport(0, 0, this.width, this.height);
     gl.enable(gl.SCISSOR_TEST);
     gl.scissor(low, above, right - low, top - above);
     program.use();
@@ -358,12 +377,34 @@ export class Layer {
     gl.drawArrays(gl.TRIANGLES, 0, 3);
   }
 
-  /** Shows the target on the page. */
+  /** Moving pictures have a target of their own: tiles are laid over the last one.
+   * @param {number} scale */
+  targetOf(scale) {
+    return this.targets?.[scale === 1 ? 0 : 1].frame ?? null;
+  }
+
+  /** Enlarges the last moving picture, for tiles to replace. */
+  enlarge() {
+    const gl = /** @type {WebGL2RenderingContext} */ (this.gl);
+    const { width, height } = this;
+    const [wide, high] = [width, height].map((side) => Math.round(side * this.shownScale));
+    gl.disable(gl.SCISSOR_TEST);
+    gl.bindFramebuffer(gl.READ_FRAMEBUFFER, this.targetOf(this.shownScale));
+    gl.bindFramebuffer(gl.DRAW_FRAMEBUFFER, this.targetOf(1));
+    gl.blitFramebuffer(0, 0, wide, high, 0, 0, width, height, gl.COLOR_BUFFER_BIT, gl.LINEAR);
+    this.shownScale = 1;
+  }
+
+  /** Shows the picture on the page, which enlarges one with fewer pixels: that is cheaper than
+   * to enlarge it here. */
   present() {
     const gl = /** @type {WebGL2RenderingContext} */ (this.gl);
-    const { width, height } = this.canvas;
+    const { canvas } = this;
+    const [width, height] = [this.width, this.height].map((side) =>
+      Math.max(1, Math.round(side * this.shownScale)));
+    if (canvas.width !== width || canvas.height !== height) Object.assign(canvas, { width, height });
     gl.disable(gl.SCISSOR_TEST);
-    gl.bindFramebuffer(gl.READ_FRAMEBUFFER, this.targets?.[0].frame ?? null);
+    gl.bindFramebuffer(gl.READ_FRAMEBUFFER, this.targetOf(this.shownScale));
     gl.bindFramebuffer(gl.DRAW_FRAMEBUFFER, null);
     gl.blitFramebuffer(0, 0, width, height, 0, 0, width, height, gl.COLOR_BUFFER_BIT, gl.NEAREST);
   }

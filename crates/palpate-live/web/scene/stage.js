@@ -124,7 +124,8 @@ export function createStage(container, wire) {
     named.aspect = rect.width / rect.height;
   }
 
-  /** Looks at another scene as a whole; one that was edited stays where it is. */
+  /** Looks at another scene as a whole; one that was edited stays where it is. Whether it was
+   * another. */
   function takeScene() {
     const { mode, compared } = state.view;
     const comparing = mode === 'compare' ? compared.join() : '';
@@ -132,12 +133,12 @@ export function createStage(container, wire) {
     const shown = current();
     cameras.orbit.size = shown.size;
     cameras.flat.size = shown.size;
-    if (key !== lastScene && state.scene) {
-      lastScene = key;
-      measure();
-      if (shown.dimension === 2) layToys(shown.centre, shown.size);
-      named.reset(shown);
-    }
+    if (key === lastScene || !state.scene) return false;
+    lastScene = key;
+    measure();
+    if (shown.dimension === 2) layToys(shown.centre, shown.size);
+    named.reset(shown);
+    return true;
   }
 
   /** The number of the view at a place. @param {Place} place */
@@ -211,8 +212,8 @@ export function createStage(container, wire) {
   });
   listen(['view'], () => {
     probe.leave();
-    takeScene();
-    if (source.kind === 'samples' && state.view.mode === 'compare') source.renew();
+    const isOther = takeScene();
+    if (isOther && source.kind === 'samples') source.renew();
     askContacts(wire, (answer) => {
       contacts = answer;
       overlayChanged();
