@@ -406,6 +406,8 @@ export class Layer {
     gl.disable(gl.SCISSOR_TEST);
     gl.bindFramebuffer(gl.READ_FRAMEBUFFER, this.targetOf(this.shownScale));
     gl.bindFramebuffer(gl.DRAW_FRAMEBUFFER, null);
+    // Without this, Chromium clears the canvas after the copy when it is exported.
+    gl.clear(gl.COLOR_BUFFER_BIT);
     gl.blitFramebuffer(0, 0, width, height, 0, 0, width, height, gl.COLOR_BUFFER_BIT, gl.NEAREST);
   }
 }
