@@ -69,6 +69,9 @@ struct Face<const D: usize> {
     duals: Vec<[f64; D]>,
     /// From the first corner to each corner of the simplex that is not the face's.
     others: Vec<[f64; D]>,
+    /// The error of a barycentric coordinate of a point near the face, in units in the last place
+    /// of one.
+    coordinate_ulp: f64,
 }
 
 impl<const D: usize> Face<D> {
@@ -81,7 +84,7 @@ impl<const D: usize> Face<D> {
         let origin = corners[0];
         let edges: Vec<_> = corners[1..].iter().map(|c| *c - origin).collect();
         // Each dual is its edge less its projection on all other edges, scaled.
-        let duals = (0..edges.len())
+        let duals: Vec<_> = (0..edges.len())
             .map(|i| {
                 let mut basis: Vec<Vector<f64, D>> = Vec::new();
                 for (_, edge) in edges.iter().enumerate().filter(|(j, _)| *j != i) {
@@ -92,9 +95,12 @@ impl<const D: usize> Face<D> {
                 (across * (1.0 / across.dot(edges[i]))).0
             })
             .collect();
+        let longest = points.iter().fold(0.0_f64, |m, p| m.max((*p - origin).norm()));
+        let steepest = duals.iter().fold(0.0_f64, |m, dual| m.max(Vector(*dual).norm()));
         let edges = edges.iter().map(|e| e.0).collect();
         let others = others.iter().map(|c| (*c - origin).0).collect();
-        Self { origin: origin.0, edges, duals, others }
+        let coordinate_ulp = 4.0 * longest * steepest;
+        Self { origin: origin.0, edges, duals, others, coordinate_ulp }
     }
 
     /// The offset of `p` from the face's span, and the least barycentric coordinate of the
@@ -112,6 +118,14 @@ impl<const D: usize> Face<D> {
             rest = Vector(array!(k < D => rest.0[k] - share.scale(edge[k])));
         }
         (rest, least.min(first))
+    }
+
+    /// What the least barycentric coordinate is on the border of the face, less its rounding: else
+    /// neither of two faces that meet might hold a point above their common border, and a third
+    /// face, with another gradient, would be taken for the nearest.
+    #[inline(always)]
+    fn border<S: Scalar>(&self) -> S {
+        S::constant(-self.coordinate_ulp * S::EPSILON)
     }
 
     /// Not negative if all other corners lie behind the face, seen from a point at the offset
@@ -190,18 +204,19 @@ impl<const D: usize> Kernel<D> for Simplex<D> {
             let height = p.dot_constant(&facet.normal) - S::constant(facet.offset);
             inside = inside.max(height);
             let (_, least) = facet.face.rest(p);
-            let here = S::select_less(least, zero, none, height.abs());
+            let border = facet.face.border::<S>();
+            let here = S::select_less(least, border, none, height.abs());
             least_of_all = least_of_all.min(here);
             nearest = nearest.min(S::select_less(height, zero, none, here));
         }
         for face in self.faces.iter() {
             let (rest, least) = face.rest(p);
-            let here = S::select_less(least, zero, none, rest.norm());
+            let here = S::select_less(least, face.border(), none, rest.norm());
             least_of_all = least_of_all.min(here);
             let is_nearest = face.before_others(rest);
             nearest = nearest.min(S::select_less(is_nearest, zero, none, here));
         }
-        // Where two faces meet, rounding may let neither be the nearest.
+        // Where a face and a corner of it meet, rounding may let neither be the nearest.
         let outside = S::select_less(nearest, none, nearest, least_of_all);
         let outside = face_if_on_it(outside, inside, self.size);
         S::select_less(inside, zero, inside, outside)

@@ -460,3 +460,25 @@ fn a_shape_that_is_known_in_a_region_alone_is_not_weighed() -> Outcome {
     assert!(error.to_string().contains("known everywhere"), "{error}");
     Ok(())
 }
+
+/// Above a corner of a tetrahedron, two facets' rounding let neither hold the point, and the
+/// gradient was that of the corner: 8e-10 off, so that the field rose above its tangent plane by
+/// less than a model allows for. The nearest point is in the facet of the first three corners.
+#[test]
+fn a_point_above_an_edge_has_the_gradient_of_a_facet_that_holds_it() -> Outcome {
+    let corners = [
+        [-0.2984058461152017, 1.0828424964565784, 0.4373288727365434],
+        [0.0, -1.2348850204143673, 0.3337545753456652],
+        [0.0, -1.3341569686308503, -0.0368246678262949],
+        [1.067808031802997, 1.1809792772401124, 0.25],
+    ];
+    let [a, b, c, _] = corners.map(Vector);
+    let tetrahedron = Shape::tetrahedron(corners.map(Vector).to_vec())?;
+    let p = Vector([-0.00027094884556426007, -1.3341922757772948, -0.036815209635199686]);
+    let (_, gradient) = tetrahedron.distance_gradient(p);
+    for edge in [b - a, c - b] {
+        let along = gradient.dot(edge);
+        assert!(along.abs() < 1e-14, "{along:e}");
+    }
+    Ok(())
+}
