@@ -120,7 +120,7 @@ impl Talk<'_> {
             Message::Text(text) => text,
             // The answer to a close goes out with the next read, which ends the conversation.
             Message::Close(_) | Message::Ping(_) | Message::Pong(_) => return Ok(()),
-            
+
             Message::Binary(_) => return self.not_read(None, "a message is JSON text"),
         };
         let question = Question::read(&text);

@@ -9,13 +9,14 @@ use std::time::Duration;
 
 use palpate::field::catalogue::Entry;
 use palpate::haptics::Material;
-use palpate::scene::{Scene, described_primitive, schema};
+use palpate::scene::{AnyScene, Scene, described_primitive, schema};
 use serde_json::{Value, json};
 
 use super::described::{self, Drawing};
 use super::document::{Document, Refusal};
+use super::hand::tour;
 use super::pages::{PageId, Pages};
-use super::performance::{Order, Showing};
+use super::performance::{AnyPath, Order, Showing};
 use super::room::Terms;
 use super::{Shown, Text};
 use crate::wire::{Ask, Change, Question, VERSION};
@@ -118,21 +119,20 @@ impl Editor {
             )
             .into());
         }
-        if self.revision == 0 {
-            self.show("open", false)?;
-        }
         self.pages.send(
             page,
             &json!({
                 "do": "welcome",
                 "version": VERSION,
-                "revision": self.revision,
                 "rate": self.terms.rate,
                 "catalogue": catalogue()?,
                 "materials": Material::preset_names().collect::<Vec<_>>(),
                 "schema": schema(),
             }),
         );
+        if self.revision == 0 {
+            return self.show("open", false);
+        }
         self.pages.send(page, &self.message);
         Ok(())
     }
@@ -211,7 +211,33 @@ impl Editor {
         });
         self.pages.broadcast(&message);
         self.message = message;
+        if !is_alike {
+            self.send_tour(&scene);
+        }
         Ok(())
+    }
+
+    /// Finds the tour of the scene, for which the servo does not wait.
+    fn send_tour(&self, scene: &AnyScene) {
+        let path = match scene {
+            AnyScene::Planar(scene) => {
+                tour(scene, self.points).map(|path| path.map(AnyPath::Planar))
+            }
+            AnyScene::Spatial(scene) => {
+                tour(scene, self.points).map(|path| path.map(AnyPath::Spatial))
+            }
+        };
+        match path {
+            Some(Ok(path)) => {
+                // A hand without a tour rests.
+                let _ = self.orders.send(Order::Path { path, revision: self.revision });
+            }
+            Some(Err(error)) => {
+                let message = format!("the hand has no tour of this scene: {error}");
+                self.pages.broadcast(&json!({ "do": "notice", "message": message }));
+            }
+            None => {}
+        }
     }
 }
 

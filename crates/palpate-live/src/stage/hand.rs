@@ -41,8 +41,9 @@ pub(super) struct Lead<const D: usize> {
 }
 
 impl<const D: usize> Lead<D> {
-    /// For a scene whose hand has `count` contact points, unless its tool says how many.
-    pub(super) fn new(scene: &BuiltScene<D>, count: usize) -> Result<Self, DeviceError> {
+    /// For a scene whose hand has `count` contact points, unless its tool says how many. It rests
+    /// above the scene until it gets a tour.
+    pub(super) fn new(scene: &BuiltScene<D>, count: usize) -> Self {
         let mut arms: Vec<_> = scene.contact_points().collect();
         let has_shape = scene.tool.as_ref().is_some_and(|tool| tool.shape.is_some());
         let is_tool = !arms.is_empty() || has_shape;
@@ -52,18 +53,14 @@ impl<const D: usize> Lead<D> {
         } else if has_shape {
             arms = vec![Vector::ZERO];
         }
-        let tour = bounds.map(|bounds| tour(scene, bounds, arms.len())).transpose()?;
-        let mut lead = Self {
-            targets: arms.clone(),
-            arms,
-            is_tool,
-            is_touring: tour.is_some(),
-            tour,
-            led: None,
-            is_held: false,
-        };
-        lead.go_on_tour(0.0);
-        Ok(lead)
+        let rest = bounds.map_or(Vector::ZERO, |bounds| above(&bounds));
+        let targets = arms.iter().map(|arm| rest + *arm).collect();
+        Self { targets, arms, is_tool, is_touring: true, tour: None, led: None, is_held: false }
+    }
+
+    /// Takes the tour of its scene.
+    pub(super) fn take_tour(&mut self, tour: HandPath<D>) {
+        self.tour = Some(tour);
     }
 
     pub(super) fn targets(&self) -> &[Point<D>] {
@@ -138,15 +135,25 @@ fn around<const D: usize>(count: usize, radius: f64) -> Vec<Vector<f64, D>> {
     if count < 2 { vec![Vector::ZERO] } else { (0..count).map(place).collect() }
 }
 
-fn tour<const D: usize>(
+/// A place over a box, as high over it as the circle of contact points is wide.
+fn above<const D: usize>(bounds: &Aabb<D>) -> Point<D> {
+    let mut place = bounds.centre();
+    place[1] = bounds.max[1] + 2.0 * SPREAD * longest_edge(bounds);
+    place
+}
+
+/// The tour of a scene, for a hand of `count` contact points; `None` if the scene has no bounds.
+/// It takes a part of a second.
+pub(super) fn tour<const D: usize>(
     scene: &BuiltScene<D>,
-    bounds: Aabb<D>,
     count: usize,
-) -> Result<HandPath<D>, DeviceError> {
+) -> Option<Result<HandPath<D>, DeviceError>> {
+    let bounds = scene.bounds()?;
     let radius = scene.tool.as_ref().map_or(Probe::default().radius(), |tool| tool.radius);
     let shapes: Vec<_> = scene.bodies.iter().map(|body| body.shape.clone()).collect();
     let duration = TOUR + LAG * count as f64;
-    Tour::new(bounds, duration)?.with_probe_radius(radius)?.over_each(&scene.whole, &shapes)
+    let tour = Tour::new(bounds, duration).and_then(|tour| tour.with_probe_radius(radius));
+    Some(tour.and_then(|tour| tour.over_each(&scene.whole, &shapes)))
 }
 
 /// The longest edge of a box [m].

@@ -8,6 +8,7 @@ use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender};
 use std::time::{Duration, Instant};
 
 use axum::body::Bytes;
+use palpate::devices::HandPath;
 use palpate::haptics::Event;
 use palpate::scene::{AnyScene, BuiltScene};
 use palpate::servo_loop::{TraceRow, TraceWriter};
@@ -42,6 +43,11 @@ pub(crate) enum Order {
         held: bool,
     },
     Tour(bool),
+    /// The way of the hand over the scene of a revision.
+    Path {
+        path: AnyPath,
+        revision: u32,
+    },
     Clock {
         page: PageId,
         id: Option<u32>,
@@ -70,6 +76,13 @@ pub(crate) enum Showing {
     Began { points: usize },
     /// The scene cannot be rendered; the one before is still.
     Refused(String),
+}
+
+/// A hand path of either dimension.
+#[derive(Debug)]
+pub(crate) enum AnyPath {
+    Planar(HandPath<2>),
+    Spatial(HandPath<3>),
 }
 
 /// Rows as text, made where there is time for it.
@@ -148,6 +161,14 @@ impl Performance {
                     in_room!(room, room, _rows => room.tours(is_touring));
                 }
             }
+            Order::Path { path, revision } => match (&mut self.room, path) {
+                _ if revision != self.revision => {}
+                (Some(AnyRoom::Planar(room, _)), AnyPath::Planar(path)) => room.take_tour(path),
+                (Some(AnyRoom::Spatial(room, _)), AnyPath::Spatial(path)) => {
+                    room.take_tour(path)
+                }
+                _ => {}
+            },
             Order::Clock { page, id, speed, step } => {
                 let Some(room) = &self.room else { return };
                 let clock = in_room!(room, room, _rows => room.speed());

@@ -5,7 +5,7 @@
 
 use std::sync::Arc;
 
-use palpate::devices::{Hand, SimulatedDevice, SteeredDevice, Steering};
+use palpate::devices::{Hand, HandPath, SimulatedDevice, SteeredDevice, Steering};
 use palpate::field::{Point, Vector};
 use palpate::haptics::{DeviceProfile, Event, HapticsError, StopSwitch, WorkspaceMap};
 
@@ -73,7 +73,7 @@ impl<const D: usize> Room<D> {
         let said = |error: HapticsError| error.to_string();
         let tool = scene.tool.as_ref().map_or(Ok(None), BuiltTool::in_hand).map_err(said)?;
         let map = scene.workspace_of(&terms.profile, tool.as_ref()).map_err(said)?;
-        let mut lead = Lead::new(&scene, terms.points).map_err(|error| error.to_string())?;
+        let mut lead = Lead::new(&scene, terms.points);
         if let Some(before) = before {
             lead.take_over(&before.lead);
         }
@@ -130,6 +130,10 @@ impl<const D: usize> Room<D> {
         is_held: bool,
     ) -> Result<(), String> {
         self.lead.lead(point_of(target)?, point, is_held)
+    }
+
+    pub(super) fn take_tour(&mut self, tour: HandPath<D>) {
+        self.lead.take_tour(tour);
     }
 
     pub(super) fn tours(&mut self, is_touring: bool) {
