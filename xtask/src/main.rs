@@ -10,6 +10,7 @@ mod command;
 mod layers;
 mod licences;
 mod links;
+mod page;
 mod sizes;
 mod sources;
 mod tree;
@@ -19,7 +20,7 @@ use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
 
-use command::{Failure, cargo};
+use command::{Failure, cargo, cargo_with};
 
 /// The project's own chores.
 #[derive(Debug, Parser)]
@@ -62,9 +63,11 @@ fn main() -> ExitCode {
     }
 }
 
-/// All tests. Rust is the only language so far, and nothing but cargo is needed.
+/// All tests, those of the live page in a browser among them.
 fn test() -> Result<(), Failure> {
-    cargo(&["test", "--workspace", "--locked"])
+    let tools = page::prepare()?;
+    let environment = [(page::VARIABLE, &*tools.to_string_lossy())];
+    cargo_with(&["test", "--workspace", "--locked"], &environment)
 }
 
 /// The truths that recall tests replay. The program is an example of the testkit, so that

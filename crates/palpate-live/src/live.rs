@@ -6,16 +6,17 @@
 use std::fmt;
 use std::net::{IpAddr, Ipv4Addr, SocketAddr};
 use std::path::PathBuf;
-use std::sync::Arc;
+use std::sync::{Arc, Mutex};
 use std::thread::JoinHandle;
 
 use palpate::devices::profile_named;
 use palpate::haptics::DeviceProfile;
+use palpate::servo_loop::VirtualClock;
 use tokio::net::TcpListener;
 use tokio::sync::oneshot;
 
 use crate::server;
-use crate::stage::{Program, Refusal, Stage};
+use crate::stage::{GivenClock, Program, Refusal, Stage};
 
 /// The device of the page unless another is chosen.
 const DEVICE: &str = "omega";
@@ -37,6 +38,8 @@ pub struct LiveOptions {
     pub rate: f64,
     /// The contact points of the hand, where the scene's tool does not say how many.
     pub points: usize,
+    /// The clock of the first servo, for tests; the machine's if there is none.
+    clock: GivenClock,
 }
 
 impl Default for LiveOptions {
@@ -49,6 +52,7 @@ impl Default for LiveOptions {
             device: None,
             rate: 1000.0,
             points: 1,
+            clock: GivenClock::default(),
         }
     }
 }
@@ -82,6 +86,13 @@ impl LiveOptions {
     #[must_use]
     pub fn with_rate(self, rate: f64) -> Self {
         Self { rate, ..self }
+    }
+
+    /// With a virtual clock for the servo that the first page begins: for tests, which must know
+    /// its ticks.
+    #[must_use]
+    pub fn with_clock(self, clock: VirtualClock) -> Self {
+        Self { clock: Arc::new(Mutex::new(Some(clock))), ..self }
     }
 
     /// With so many contact points.
@@ -136,7 +147,7 @@ impl Live {
         scene: &str,
         options: LiveOptions,
     ) -> Result<Self, LiveError> {
-        let LiveOptions { address, port, token, device, rate, points } = options;
+        let LiveOptions { address, port, token, device, rate, points, clock } = options;
         let system = |error: &dyn fmt::Display| LiveError::System(error.to_string());
         let token = match token {
             None => server::new_token().map_err(|error| system(&error))?,
@@ -145,8 +156,8 @@ impl Live {
         };
         let profile = device.map_or_else(|| profile_named(DEVICE), Ok);
         let profile = profile.map_err(|error| system(&error))?;
-        let program =
-            Program { name: name.into(), file, text: scene.to_owned(), profile, rate, points };
+        let (name, text) = (name.into(), scene.to_owned());
+        let program = Program { name, file, text, profile, rate, points, clock };
         let stage =
             Stage::new(program).map_err(|Refusal { message, .. }| LiveError::Scene(message))?;
         let stage = Arc::new(stage);

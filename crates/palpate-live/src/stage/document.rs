@@ -266,8 +266,6 @@ fn apply(data: &mut Value, change: &Change) -> Result<(), Refusal> {
 
 #[cfg(test)]
 mod tests {
-    #![expect(clippy::unwrap_used, reason = "tests")]
-
     use super::*;
 
     const SCENE: &str = r#"{ "palpate": 1, "dimension": 2,

@@ -3,6 +3,7 @@
 
 //! Where the contact points of the hand are led.
 
+use std::collections::VecDeque;
 use std::f64::consts::TAU;
 use std::time::{Duration, Instant};
 
@@ -20,6 +21,9 @@ const TOUR: f64 = 20.0;
 /// How far each contact point follows behind the one before on a tour [s].
 const LAG: f64 = 0.5;
 
+/// How fast contact points go to the begin of a tour, in sizes of the scene a second.
+const SPEED: f64 = 0.3;
+
 /// The radius of the circle on which contact points lie around a hand that is led, as a share of
 /// the scene.
 const SPREAD: f64 = 0.04;
@@ -33,6 +37,13 @@ pub(super) struct Lead<const D: usize> {
     is_tool: bool,
     tour: Option<HandPath<D>>,
     is_touring: bool,
+    /// The time on the tour [s].
+    tour_time: f64,
+    /// The way onto the tour; `None` while the hand is led otherwise.
+    approach: Option<Approach<D>>,
+    /// The time of the servo [s].
+    time: f64,
+    bounds: Option<Aabb<D>>,
     /// Where each contact point is led [m].
     targets: Vec<Point<D>>,
     /// When the page last led the hand; `None` if it never did.
@@ -55,7 +66,19 @@ impl<const D: usize> Lead<D> {
         }
         let rest = bounds.map_or(Vector::ZERO, |bounds| above(&bounds));
         let targets = arms.iter().map(|arm| rest + *arm).collect();
-        Self { targets, arms, is_tool, is_touring: true, tour: None, led: None, is_held: false }
+        Self {
+            arms,
+            is_tool,
+            tour: None,
+            is_touring: true,
+            tour_time: 0.0,
+            approach: None,
+            time: 0.0,
+            bounds,
+            targets,
+            led: None,
+            is_held: false,
+        }
     }
 
     /// Takes the tour of its scene.
@@ -88,6 +111,7 @@ impl<const D: usize> Lead<D> {
         is_held: bool,
     ) -> Result<(), String> {
         (self.led, self.is_held) = (Some(Instant::now()), is_held);
+        self.approach = None;
         match point {
             None => {
                 self.targets
@@ -106,20 +130,72 @@ impl<const D: usize> Lead<D> {
 
     /// Goes on to the time of the servo [s]; whether that is along a tour.
     pub(super) fn go_on(&mut self, time: f64) -> bool {
+        let passed = (time - self.time).max(0.0);
+        self.time = time;
         let is_led = self.is_held || self.led.is_some_and(|at| at.elapsed() < REST);
-        !is_led && self.is_touring && self.go_on_tour(time)
-    }
-
-    fn go_on_tour(&mut self, time: f64) -> bool {
-        let Some(tour) = &self.tour else { return false };
-        let longest = tour.start() + tour.duration();
-        for (point, (target, arm)) in self.targets.iter_mut().zip(&self.arms).enumerate() {
-            let (behind, beside) =
-                if self.is_tool { (0.0, *arm) } else { (LAG * point as f64, Vector::ZERO) };
-            let time = tour.start() + (time - behind).rem_euclid(longest - tour.start());
-            *target = tour.state_at(time).position + beside;
+        let (Some(tour), Some(bounds), false) = (&self.tour, &self.bounds, is_led) else {
+            return false;
+        };
+        if !self.is_touring {
+            return false;
+        }
+        let goals = self.on_tour(tour, self.tour_time);
+        let targets = &self.targets;
+        let approach =
+            self.approach.get_or_insert_with(|| Approach::new(targets, &goals, bounds));
+        if approach.go_on(&mut self.targets, passed * longest_edge(bounds) * SPEED) {
+            self.tour_time += passed;
+            self.targets = goals;
         }
         true
+    }
+
+    /// Where the contact points are at a time of a tour [s].
+    fn on_tour(&self, tour: &HandPath<D>, time: f64) -> Vec<Point<D>> {
+        let longest = tour.duration();
+        let place = |(point, arm): (usize, &Vector<f64, D>)| {
+            let (behind, beside) =
+                if self.is_tool { (0.0, *arm) } else { (LAG * point as f64, Vector::ZERO) };
+            let time = tour.start() + (time - behind).rem_euclid(longest);
+            tour.state_at(time).position + beside
+        };
+        self.arms.iter().enumerate().map(place).collect()
+    }
+}
+
+/// A way from anywhere to a place on a tour: up over the scene, across, and down, so that no body
+/// is in between where the places can be reached from above.
+#[derive(Debug)]
+struct Approach<const D: usize>(Vec<VecDeque<Point<D>>>);
+
+impl<const D: usize> Approach<D> {
+    fn new(from: &[Point<D>], to: &[Point<D>], bounds: &Aabb<D>) -> Self {
+        let height = above(bounds)[1];
+        let over = |place: &Point<D>| {
+            let mut over = *place;
+            over[1] = over[1].max(height);
+            over
+        };
+        let ways = from.iter().zip(to).map(|(from, to)| [over(from), over(to), *to].into());
+        Self(ways.collect())
+    }
+
+    /// Goes on by at most so far [m]; whether all are there.
+    fn go_on(&mut self, places: &mut [Point<D>], far: f64) -> bool {
+        for (way, place) in self.0.iter_mut().zip(places) {
+            let mut left = far;
+            while let Some(next) = way.front() {
+                let step = *next - *place;
+                let length = step.norm();
+                if length > left {
+                    *place += step * (left / length);
+                    break;
+                }
+                (*place, left) = (*next, left - length);
+                way.pop_front();
+            }
+        }
+        self.0.iter().all(VecDeque::is_empty)
     }
 }
 
@@ -159,4 +235,29 @@ pub(super) fn tour<const D: usize>(
 /// The longest edge of a box [m].
 pub(super) fn longest_edge<const D: usize>(bounds: &Aabb<D>) -> f64 {
     2.0 * bounds.half_extents().0.into_iter().fold(0.0, f64::max)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_hand_goes_onto_its_tour_from_above() {
+        let bounds = Aabb { min: Vector([-1.0, -1.0]), max: Vector([1.0, 1.0]) };
+        let mut places = [Vector([-3.0, 0.0])];
+        let goal = Vector([0.0, 1.0]);
+        let mut approach = Approach::new(&places, &[goal], &bounds);
+        let mut lowest_between = f64::INFINITY;
+        let mut steps = 0;
+        while !approach.go_on(&mut places, 0.01) {
+            if places[0][0].abs() < 2.9 && places[0][0] < -0.01 {
+                lowest_between = lowest_between.min(places[0][1]);
+            }
+            steps += 1;
+        }
+        assert_eq!(places[0], goal);
+        assert!(lowest_between > 1.1, "{lowest_between}");
+        // Up by 1.16, across by 3, down by 0.16.
+        assert!((431..=434).contains(&steps), "{steps}");
+    }
 }

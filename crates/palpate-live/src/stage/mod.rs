@@ -32,6 +32,7 @@ use document::Document;
 pub(crate) use document::Refusal;
 pub(crate) use pages::{Out, PageId, Pages};
 use performance::Order;
+pub(crate) use room::GivenClock;
 use room::Terms;
 
 /// Edits and questions that may wait: more are refused.
@@ -49,6 +50,7 @@ pub(crate) struct Program {
     pub(crate) profile: DeviceProfile,
     pub(crate) rate: f64,
     pub(crate) points: usize,
+    pub(crate) clock: GivenClock,
 }
 
 /// The world of all pages.
@@ -127,11 +129,11 @@ impl Stage {
     ///
     /// If the scene has an error.
     pub(crate) fn new(program: Program) -> Result<Self, Refusal> {
-        let Program { name, file, text, profile, rate, points } = program;
+        let Program { name, file, text, profile, rate, points, clock } = program;
         let document = Document::open(name, file, &text)?;
         let shared_text = Arc::<Text>::default();
         shared_text.set(&text);
-        let terms = Terms { profile, rate, points };
+        let terms = Terms { profile, rate, points, clock };
         let (stop, pages, shown) =
             (Arc::<Stop>::default(), Arc::<Pages>::default(), Arc::<Shown>::default());
         let (orders, ordered) = sync_channel(ORDERS);

@@ -3,15 +3,16 @@
 
 //! One scene with the servo that renders it, and the hand that feels it.
 
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, PoisonError};
 
 use palpate::devices::{Hand, HandPath, SimulatedDevice, SteeredDevice, Steering};
-use palpate::field::{Point, Vector};
+use palpate::field::{LARGEST_LENGTH, Point, Vector};
 use palpate::haptics::{DeviceProfile, Event, HapticsError, StopSwitch, WorkspaceMap};
 
 use palpate::scene::{BuiltScene, BuiltTool, ServoSettings};
 use palpate::servo_loop::{
     ClockSpeed, Priority, Records, ScaledClock, ServoThread, ThreadOptions, TraceRow,
+    VirtualClock,
 };
 
 use super::hand::Lead;
@@ -54,6 +55,9 @@ struct Peaks {
     has_acted: bool,
 }
 
+/// A clock that is taken once.
+pub(crate) type GivenClock = Arc<Mutex<Option<VirtualClock>>>;
+
 /// What a room is made for.
 #[derive(Clone, Debug)]
 pub(super) struct Terms {
@@ -61,6 +65,8 @@ pub(super) struct Terms {
     pub(super) rate: f64,
     /// The contact points of a hand that a scene's tool does not give.
     pub(super) points: usize,
+    /// The clock of the first servo; the machine's if `None`, or if it is taken.
+    pub(super) clock: GivenClock,
 }
 
 impl<const D: usize> Room<D> {
@@ -89,7 +95,12 @@ impl<const D: usize> Room<D> {
             options =
                 options.with_motion(move |time, set_pose| moving.motion()(time, set_pose));
         }
-        let thread = ServoThread::start_on(clock, servo, Box::new(device), options);
+        let given = terms.clock.lock().unwrap_or_else(PoisonError::into_inner).take();
+        let device = Box::new(device);
+        let thread = match given {
+            Some(given) => ServoThread::start_on(given, servo, device, options),
+            None => ServoThread::start_on(clock, servo, device, options),
+        };
         let mut thread = thread.map_err(|error| error.to_string())?;
         let records = thread.take_records().ok_or("the servo keeps no rows")?;
         steer(&mut steering, &lead, &map);
@@ -246,10 +257,10 @@ fn steer<const D: usize>(steering: &mut Steering<D>, lead: &Lead<D>, map: &Works
 pub(super) fn point_of<const D: usize>(numbers: &[f64]) -> Result<Point<D>, String> {
     let wrong = || format!("a point of this scene is {D} numbers, got {}", numbers.len());
     let point: [f64; D] = numbers.try_into().map_err(|_| wrong())?;
-    // Written so that NaN is refused.
-    match point.iter().find(|x| !(x.abs() <= palpate::field::LARGEST_LENGTH)) {
+    let is_usable = |x: &f64| x.abs() <= LARGEST_LENGTH;
+    match point.iter().find(|x| !is_usable(x)) {
         None => Ok(Vector(point)),
-        Some(x) => Err(format!("a coordinate must be finite, got {x} m")),
+        Some(x) => Err(format!("a coordinate is at most {LARGEST_LENGTH:e} m, got {x} m")),
     }
 }
 

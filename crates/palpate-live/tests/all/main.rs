@@ -1,0 +1,11 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! The server as a program on the same machine sees it.
+
+#![expect(clippy::unwrap_used, reason = "tests")]
+
+mod guard;
+mod load;
+mod speech;
+mod talk;

@@ -1,0 +1,118 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! What the server answers.
+
+use palpate_live::{Live, LiveOptions};
+use serde_json::{Value, json};
+
+use crate::talk::{BALL, Page, served};
+
+const STAR: &str = include_str!("../../../../scenes/memoir_star.json");
+
+fn number(value: &Value) -> f64 {
+    value.as_f64().unwrap()
+}
+
+#[test]
+fn hello_is_answered_by_what_there_is() {
+    let live = served(LiveOptions::default().with_points(3));
+    let mut page = Page::silent(&live);
+    page.say(&json!({ "do": "hello", "version": 1, "id": 0 }));
+    let welcome = page.text(|message| message["do"] == "welcome");
+    assert!(welcome["catalogue"].as_array().unwrap().len() > 80);
+    assert!(welcome["schema"].is_object() && welcome["materials"].is_array());
+    let scene = page.text(|message| message["do"] == "scene");
+    assert_eq!(scene["bodies"][0]["name"], "ball");
+    assert_eq!(scene["bodies"][0]["promise"], "exact outside, exact inside");
+    assert_eq!(scene["device"]["points"], 3);
+    assert_eq!(scene["way"]["kind"], "formula");
+    assert!(scene["way"]["glsl"].as_str().unwrap().contains("vec2 field(vec3 p, int only)"));
+    let frame = page.binary(1);
+    assert_eq!((frame.len(), frame[2]), (64 + 3 * 72, 3));
+
+    let mut old = Page::silent(&live);
+    old.say(&json!({ "do": "hello", "version": 0, "id": 0 }));
+    assert!(old.answer(0)["message"].as_str().unwrap().contains("version"));
+}
+
+#[test]
+fn questions_have_proven_answers() {
+    let live = Live::start("star", None, STAR, LiveOptions::default()).unwrap();
+    let mut page = Page::open(&live);
+    let probed = page.ask(json!({ "do": "probe", "at": [3, 1] }));
+    assert!(number(&probed["value"]) > 0.0 && number(&probed["safe"]) > 0.0);
+    let triangle = json!([[1.35, 1.1], [1.8, 0.45], [1.0, 0.99]]);
+    let found = page.ask(json!({
+        "do": "element", "corners": triangle, "method": "naive", "iterations": 8,
+    }));
+    let certified = &found["certified"];
+    assert!(number(&certified["lower"]) <= number(&certified["upper"]), "{found}");
+    assert_eq!(found["local"]["path"].as_array().unwrap().len(), 9);
+    assert!(found["enclosing"]["excludes"].is_boolean());
+    let swept = page.ask(json!({ "do": "sweep", "corners": triangle, "by": [0.0, -0.5] }));
+    assert!(swept["lower"].is_number(), "{swept}");
+    let ball = page.ask(json!({ "do": "ball", "centre": [3, 3], "radius": 0.1 }));
+    assert_eq!(ball["touches"], false);
+    let wrong = page.ask(json!({ "do": "element", "corners": triangle, "method": "guess" }));
+    assert_eq!(wrong["do"], "refused");
+    let wrong = page.ask(json!({ "do": "probe", "at": [1, 2, 3] }));
+    assert_eq!(wrong["message"], "a point of this scene is 2 numbers, got 3");
+}
+
+#[test]
+fn grids_and_pictures_come_as_bytes() {
+    let live = served(LiveOptions::default());
+    let mut page = Page::open(&live);
+    page.say(&json!({ "do": "samples", "cells": 16, "id": 5 }));
+    let grid = page.binary(2);
+    assert_eq!(grid[..8], [2, 1, 3, 2, 5, 0, 0, 0]);
+    let count = |at: usize| u32::from_le_bytes(grid[at..at + 4].try_into().unwrap()) as usize;
+    assert_eq!(grid.len(), 48 + 2 * count(12) * count(16) * count(20));
+    page.say(&json!({
+        "do": "slice", "id": 6, "origin": [0, 0, 0], "right": [1, 0, 0], "up": [0, 1, 0],
+        "width": 0.2, "height": 0.2, "columns": 3, "rows": 3,
+    }));
+    let slice = page.binary(2);
+    let middle = f32::from_le_bytes(slice[48 + 16..48 + 20].try_into().unwrap());
+    assert!((middle + 0.05).abs() < 1e-6, "the middle of the ball: {middle}");
+    page.say(&json!({
+        "do": "picture", "id": 7, "eye": [0.3, 0.2, 0.3], "target": [0, 0, 0],
+        "field_of_view": 0.5, "width": 64, "height": 48,
+    }));
+    let picture = page.binary(3);
+    assert_eq!(picture[16..20], *b"\x89PNG");
+}
+
+#[test]
+fn edits_reach_the_servo_and_wrong_ones_do_not() {
+    let live = served(LiveOptions::default());
+    let mut page = Page::open(&live);
+    let radius = "/bodies/0/shape/ball/radius";
+    let edit = |base: u64, to: f64| json!({ "do": "edit", "base": base, "changes": [{ "at": radius, "to": to }], "moving": true });
+    page.say(&edit(1, 0.06));
+    let scene = page.text(|message| message["do"] == "scene" && message["revision"] == 2);
+    assert_eq!((&scene["restarted"], &scene["by"]), (&json!(false), &json!("edit")));
+    assert_eq!(scene["way"]["uniforms"].as_array().unwrap().len(), 1);
+    let refused = page.ask(edit(2, -1.0));
+    assert_eq!(refused["problems"][0]["at"], radius);
+    let refused = page.ask(edit(1, 0.05));
+    assert!(refused["message"].as_str().unwrap().contains("edited elsewhere"));
+    let probed = page.ask(json!({ "do": "probe", "at": [0, 0.1, 0] }));
+    assert!((number(&probed["value"]) - 0.04).abs() < 1e-12);
+
+    // Another tool needs another servo.
+    let tool = json!({ "do": "edit", "base": 2, "changes": [
+        { "at": "/tool", "to": { "radius": 0.004, "points": [[0, 0, 0], [0.01, 0, 0]] } } ] });
+    page.say(&tool);
+    let scene = page.text(|message| message["do"] == "scene" && message["revision"] == 3);
+    assert_eq!((&scene["restarted"], &scene["device"]["points"]), (&json!(true), &json!(2)));
+    page.say(&json!({ "do": "open", "name": "star", "text": STAR }));
+    let scene = page.text(|message| message["do"] == "scene" && message["revision"] == 4);
+    assert_eq!(scene["dimension"], 2);
+    assert_eq!(page.ask(json!({ "do": "open", "name": "x", "text": "{" }))["do"], "refused");
+    assert_eq!(page.ask(json!({ "do": "save" }))["do"], "refused");
+    assert!(
+        Live::start("x", None, &BALL.replace("0.05", "-1"), LiveOptions::default()).is_err()
+    );
+}

@@ -1,0 +1,111 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! A page without a browser.
+
+use std::io::{Read, Write};
+use std::net::{SocketAddr, TcpStream};
+use std::time::Duration;
+
+use palpate_live::{Live, LiveOptions};
+use serde_json::{Value, json};
+use tungstenite::client::IntoClientRequest;
+use tungstenite::{Message, WebSocket};
+
+/// A ball under a hand that rests.
+pub(crate) const BALL: &str = r#"{ "palpate": 1, "dimension": 3,
+    "bodies": [ { "name": "ball", "shape": { "ball": { "radius": 0.05 } },
+                  "material": { "stiffness": 300, "damping": 0 } } ] }"#;
+
+/// How long an answer may take on a machine that does something else.
+const PATIENCE: Duration = Duration::from_secs(60);
+
+pub(crate) fn served(options: LiveOptions) -> Live {
+    Live::start("ball", None, BALL, options).unwrap()
+}
+
+/// A page.
+pub(crate) struct Page(WebSocket<TcpStream>);
+
+impl Page {
+    /// A page that has said hello.
+    pub(crate) fn open(live: &Live) -> Self {
+        let mut page = Self::silent(live);
+        page.say(&json!({ "do": "hello", "version": 1, "id": 0 }));
+        page.answer(0);
+        page
+    }
+
+    /// A page that has said nothing yet.
+    pub(crate) fn silent(live: &Live) -> Self {
+        let address = live.address();
+        let url = format!("ws://{address}/socket?token={}", live.token());
+        let mut request = url.into_client_request().unwrap();
+        let origin = format!("http://{address}").parse().unwrap();
+        request.headers_mut().insert("origin", origin);
+        let stream = TcpStream::connect(address).unwrap();
+        stream.set_read_timeout(Some(PATIENCE)).unwrap();
+        let (socket, _) = tungstenite::client(request, stream).unwrap();
+        Self(socket)
+    }
+
+    pub(crate) fn say(&mut self, message: &Value) {
+        self.0.send(Message::Text(message.to_string().into())).unwrap();
+    }
+
+    /// Sends whatever; `false` if the server has closed.
+    pub(crate) fn try_send(&mut self, message: Message) -> bool {
+        self.0.send(message).is_ok()
+    }
+
+    /// The next message; `None` if the server has closed.
+    pub(crate) fn next(&mut self) -> Option<Message> {
+        self.0.read().ok()
+    }
+
+    /// The next text that `is_wanted` takes.
+    pub(crate) fn text(&mut self, is_wanted: impl Fn(&Value) -> bool) -> Value {
+        loop {
+            if let Message::Text(text) = self.next().expect("the server has closed") {
+                let message = serde_json::from_str(&text).unwrap();
+                if is_wanted(&message) {
+                    return message;
+                }
+            }
+        }
+    }
+
+    /// The answer with a number.
+    pub(crate) fn answer(&mut self, id: u32) -> Value {
+        self.text(|message| message["id"] == id)
+    }
+
+    /// Asks with the number 1, and waits for the answer.
+    pub(crate) fn ask(&mut self, message: Value) -> Value {
+        let mut message = message;
+        message["id"] = 1.into();
+        self.say(&message);
+        self.answer(1)
+    }
+
+    /// The next binary message of a kind.
+    pub(crate) fn binary(&mut self, kind: u8) -> Vec<u8> {
+        loop {
+            match self.next().expect("the server has closed") {
+                Message::Binary(bytes) if bytes[0] == kind => return bytes.to_vec(),
+                _ => {}
+            }
+        }
+    }
+}
+
+/// Sends a request as it is; gives the answer as it comes.
+pub(crate) fn raw(address: SocketAddr, request: &str) -> String {
+    let mut stream = TcpStream::connect(address).unwrap();
+    stream.set_read_timeout(Some(PATIENCE)).unwrap();
+    stream.write_all(request.as_bytes()).unwrap();
+    let mut answer = Vec::new();
+    // A server that closes the connection early has answered.
+    let _ = stream.read_to_end(&mut answer);
+    String::from_utf8_lossy(&answer).into_owned()
+}

@@ -1,0 +1,389 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+/**
+ * The live page in a browser, served by the program. Arguments: the program, the folder of the
+ * scenes, and the folder for pictures.
+ */
+
+import { execFileSync } from 'node:child_process';
+import { copyFileSync, mkdirSync, readFileSync, writeFileSync } from 'node:fs';
+import { join } from 'node:path';
+import { browser, check, near, run, scratch, start, toolPath, until } from './harness.mjs';
+
+const [program, scenes, pictures] = process.argv.slice(2);
+mkdirSync(pictures, { recursive: true });
+const axe = readFileSync(toolPath('axe-core/axe.min.js'), 'utf8');
+
+/** A scene with one ball, which is as stiff as the device renders it. */
+const BALL = JSON.stringify({
+  palpate: 1,
+  dimension: 3,
+  bodies: [{
+    name: 'ball',
+    shape: { ball: { radius: 0.05 } },
+    material: { stiffness: 300, damping: 0, static_friction: 0, dynamic_friction: 0 },
+  }],
+}, null, 2);
+
+/** Runs before the page's modules: a pad, what shakes, and a count of programs and sounds. */
+const mocks = () => {
+  const count = (window.seen = { fx: [], links: 0, sounds: 0 });
+  const buttons = Array.from({ length: 17 }, () => ({ pressed: false, touched: false, value: 0 }));
+  window.pad = {
+    id: 'mock (STANDARD GAMEPAD)', index: 0, connected: true, mapping: 'standard', timestamp: 0,
+    axes: [0, 0, 0, 0], buttons,
+    vibrationActuator: { playEffect: (...effect) => (count.fx.push(effect), Promise.resolve('complete')), reset: async () => 'complete' },
+  };
+  Object.defineProperty(Navigator.prototype, 'getGamepads', { value: () => [window.padOn ? window.pad : null, null, null, null] });
+  Object.defineProperty(Navigator.prototype, 'vibrate', { value: (pattern) => (count.fx.push(['vibrate', pattern]), true) });
+  const link = WebGL2RenderingContext.prototype.linkProgram;
+  WebGL2RenderingContext.prototype.linkProgram = function (made) {
+    count.links += 1;
+    return link.call(this, made);
+  };
+  const Sound = window.AudioContext;
+  window.AudioContext = class extends Sound {
+    constructor(...given) {
+      super(...given);
+      count.sounds += 1;
+      window.sound = this;
+    }
+  };
+};
+
+/** @type {import('playwright-core').Browser} */
+let chrome;
+
+/** Opens a page of a program; gives it with what it complained about. */
+async function opened(url, options = {}, before = () => {}) {
+  const context = await chrome.newContext({ viewport: { width: 1280, height: 720 }, acceptDownloads: true, ...options });
+  await context.addInitScript(mocks);
+  await context.addInitScript(before);
+  const page = await context.newPage();
+  const complaints = [];
+  page.on('console', (m) => ['error', 'warning'].includes(m.type()) && complaints.push(m.text()));
+  page.on('pageerror', (error) => complaints.push(String(error.stack)));
+  await page.goto(url);
+  await live(page);
+  return { page, context, complaints };
+}
+
+/** What a module of the page holds. */
+const state = (page, path) => page.evaluate(async (path) => {
+  const { state } = await import('/state.js');
+  return path.split('.').reduce((at, key) => at?.[key], state);
+}, path);
+
+const live = (page) => until('a scene and a frame', async () => (await state(page, 'connection')) === 'live' && (await state(page, 'frame.tick')) > 0);
+
+/** Runs work with a program that serves a scene. */
+async function serving(words, work) {
+  const folder = scratch();
+  const served = await start(program, ['live', ...words], folder);
+  try {
+    await work(served, folder);
+  } finally {
+    await served.kill();
+  }
+}
+
+/** Writes a scene into a folder of its own. */
+function written(text, name = 'scene.json') {
+  const file = join(scratch(), name);
+  writeFileSync(file, text);
+  return file;
+}
+
+/** Asks the program by the socket of the page. */
+const ask = (page, message) => page.evaluate(async (message) => {
+  const token = sessionStorage.getItem('palpate token') ?? Object.values(sessionStorage)[0];
+  const socket = new WebSocket(`ws://${location.host}/socket?token=${token}`);
+  await new Promise((resolve) => (socket.onopen = resolve));
+  const answer = new Promise((resolve) => (socket.onmessage = ({ data }) => {
+    if (typeof data !== 'string') return;
+    const said = JSON.parse(data);
+    if (said.id === 1) resolve(said);
+  }));
+  socket.send(JSON.stringify({ ...message, id: 1 }));
+  const said = await answer;
+  socket.close();
+  return said;
+}, message);
+
+async function violations(page) {
+  await page.evaluate(axe);
+  const found = await page.evaluate(() => window.axe.run());
+  return found.violations.map((one) => `${one.id}: ${one.nodes.map((node) => node.target).join(' ')}`);
+}
+
+const cases = [
+  ['the gallery loads without a complaint, in both themes and sizes, and can be used by all', () => serving([], async ({ url }) => {
+    for (const [width, height] of [[1280, 720], [820, 1180]]) {
+      for (const colorScheme of ['light', 'dark']) {
+        const { page, context, complaints } = await opened(url, { viewport: { width, height }, colorScheme });
+        check(!page.url().includes('#'), 'the token stays in the address');
+        await page.waitForTimeout(1500);
+        const wrong = await violations(page);
+        check(wrong.length === 0, `axe: ${wrong.join('; ')}`);
+        await page.screenshot({ path: join(pictures, `gallery-${width}-${colorScheme}.png`) });
+        check(complaints.length === 0, complaints.join('\n'));
+        await context.close();
+      }
+    }
+  })],
+
+  ['a drag into a ball is pushed back by its stiffness', () => serving([written(BALL)], async ({ url }) => {
+    const { page, context, complaints } = await opened(url);
+    const stage = await page.locator('#stage').boundingBox();
+    const [x, y] = [stage.x + stage.width / 2, stage.y + stage.height / 2];
+    await until('the picture', () => page.evaluate(() => window.seen.links > 0));
+    await page.waitForTimeout(500);
+    await page.mouse.move(x, y);
+    await page.mouse.down();
+    await page.mouse.move(x + 3, y + 3, { steps: 10 });
+    const point = await until('a contact at rest', async () => {
+      const before = await state(page, 'frame.points.0');
+      await page.waitForTimeout(150);
+      const now = await state(page, 'frame.points.0');
+      const still = Math.hypot(...now.force.map((f, axis) => f - before.force[axis])) < 0.02;
+      return now.contact && now.depth > 1e-3 && still && now;
+    });
+    const force = Math.hypot(...point.force);
+    near(force, 300 * point.depth, 0.05 * 300 * point.depth, `force at a depth of ${point.depth} m`);
+    await page.screenshot({ path: join(pictures, 'touch.png') });
+    await page.mouse.up();
+    check(complaints.length === 0, complaints.join('\n'));
+    await context.close();
+  })],
+
+  ['a slider moves the field by uniforms, without a new program', () => serving([written(BALL)], async ({ url }) => {
+    const { page, context } = await opened(url);
+    await page.locator('.tree-row', { hasText: 'ball' }).last().click();
+    const slider = page.locator('#selected input[type=range]').first();
+    const box = await slider.boundingBox();
+    const [left, middle] = [box.x + 0.3 * box.width, box.y + box.height / 2];
+    await page.mouse.move(left, middle);
+    await page.mouse.down();
+    await page.mouse.move(left + 5, middle, { steps: 3 });
+    await until('numbers as uniforms', async () => (await state(page, 'way.uniforms.length')) > 0);
+    await page.waitForTimeout(300);
+    const text = await state(page, 'way.glsl');
+    const links = await page.evaluate(() => window.seen.links);
+    const radius = await state(page, 'scene.scene.bodies.0.shape.ball.radius');
+    await page.mouse.move(left + 60, middle, { steps: 12 });
+    await until('another radius', async () => (await state(page, 'scene.scene.bodies.0.shape.ball.radius')) !== radius);
+    check((await state(page, 'way.glsl')) === text, 'the text of the shader changed');
+    check((await page.evaluate(() => window.seen.links)) === links, 'a program was compiled');
+    await page.mouse.up();
+    await until('literals again', async () => (await state(page, 'way.uniforms.length')) === 0);
+    await context.close();
+  })],
+
+  ["the memoir's triangle has the core's verdict along a way", () => {
+    const file = join(scenes, 'memoir_star.json');
+    return serving([file], async ({ url }) => {
+      const { page, context } = await opened(url);
+      await page.evaluate(async () => {
+        const { setToys } = await import('/plane/toys.js');
+        setToys({ shown: { element: true, ball: false, pair: false, sweep: false } });
+      });
+      for (let step = 0; step <= 4; step += 1) {
+        const corners = [[1.0 + 0.1 * step, 1.1], [1.4 + 0.1 * step, 0.5], [0.8 + 0.1 * step, 0.9]];
+        const found = await page.evaluate(async (corners) => {
+          const { setToys, toys } = await import('/plane/toys.js');
+          toys.results.element = null;
+          setToys({ corners, method: 'naive' });
+          while (!toys.results.element) await new Promise((resolve) => setTimeout(resolve, 10));
+          return toys.results.element;
+        }, corners);
+        const words = ['descend', file, '--json', '--method', 'naive', '--triangle', ...corners.map((corner) => corner.join(','))];
+        const core = JSON.parse(execFileSync(program, words, { encoding: 'utf8' }));
+        const { lower_m: lower, upper_m: upper } = core.certified;
+        check(found.certified.lower <= upper && lower <= found.certified.upper,
+          `proven ${found.certified.lower} to ${found.certified.upper}, by the core ${lower} to ${upper}`);
+      }
+      await page.waitForTimeout(500);
+      await page.screenshot({ path: join(pictures, 'memoir.png') });
+      await context.close();
+    });
+  }],
+
+  ['an edit is undone, saved and read again to the same bytes', () => {
+    const file = written('');
+    copyFileSync(join(scenes, 'cup.json'), file);
+    const begin = readFileSync(file, 'utf8');
+    return serving([file], async ({ url }) => {
+      const { page, context } = await opened(url);
+      const revision = await state(page, 'scene.revision');
+      const edited = await ask(page, { do: 'edit', base: revision, changes: [{ at: '/bodies/0/name', to: 'mug' }] });
+      check(edited.do === 'done', JSON.stringify(edited));
+      await until('the new name', async () => (await state(page, 'scene.scene.bodies.0.name')) === 'mug');
+      await page.keyboard.press('Control+z');
+      await until('the old name', async () => (await state(page, 'scene.scene.bodies.0.name')) !== 'mug');
+      await page.keyboard.press('Control+y');
+      await until('the new name again', async () => (await state(page, 'scene.scene.bodies.0.name')) === 'mug');
+      await page.keyboard.press('Control+s');
+      await until('a saved scene', () => state(page, 'scene.is_saved'));
+      const saved = readFileSync(file, 'utf8');
+      check(saved !== begin && saved === (await state(page, 'scene.text')), 'the file has another text');
+      await page.reload();
+      await live(page);
+      check((await state(page, 'scene.text')) === saved, 'the page reads another text');
+      writeFileSync(file, begin);
+      await until('the file changed elsewhere', async () => (await state(page, 'scene.text')) === begin);
+      await context.close();
+    });
+  }],
+
+  ['a stop acts within two ticks, from Esc anywhere', () => serving([written(BALL)], async ({ url }) => {
+    const { page, context } = await opened(url);
+    await ask(page, { do: 'tour', on: false });
+    await page.evaluate(async () => { (await import('/state.js')).changed('view'); });
+    await ask(page, { do: 'hand', target: [0, 0.045, 0], held: true });
+    await until('a force', async () => (await state(page, 'frame.force')) > 0.5);
+    await ask(page, { do: 'clock', speed: 0 });
+    await until('a clock that is held', () => state(page, 'frame.held'));
+    await page.waitForTimeout(100);
+    const tick = await state(page, 'frame.tick');
+    await page.locator('.scene-name').focus();
+    await page.keyboard.press('Escape');
+    await ask(page, { do: 'clock', step: 2 });
+    const frame = await until('two ticks', async () => {
+      const frame = await state(page, 'frame');
+      return frame.tick >= tick + 2 && frame;
+    });
+    check(frame.tick === tick + 2 && frame.stopped, `tick ${frame.tick} after ${tick}, stopped: ${frame.stopped}`);
+    check(frame.points.every(({ force }) => Math.hypot(...force) === 0), 'a force is left');
+    await page.locator('#stop').click();
+    await ask(page, { do: 'clock', speed: 1 });
+    await until('forces again', async () => !(await state(page, 'frame.stopped')) && (await state(page, 'frame.force')) > 0.5);
+    await context.close();
+  })],
+
+  ['the page comes back when the program was killed and started again', async () => {
+    const folder = scratch();
+    const file = written(BALL);
+    const first = await start(program, ['live', file], folder);
+    const { page, context } = await opened(first.url);
+    await first.kill();
+    await until('words that the program ended', async () => (await state(page, 'connection')) === 'lost');
+    await page.waitForTimeout(200);
+    await page.screenshot({ path: join(pictures, 'lost.png') });
+    const second = await start(program, ['live', file], folder);
+    check(second.url === first.url, `another address: ${second.url}, before ${first.url}`);
+    await until('the page', async () => (await state(page, 'connection')) === 'live');
+    await context.close();
+    check((await second.kill('SIGINT')) === 0, 'Ctrl-C is a good end');
+  }],
+
+  ['a lost context is restored, and without WebGL the program draws', () => serving([written(BALL)], async ({ url }) => {
+    const { page, context } = await opened(url);
+    await until('the picture', () => page.evaluate(() => window.seen.links > 0));
+    const links = await page.evaluate(() => window.seen.links);
+    await page.evaluate(() => {
+      const gl = document.querySelector('#stage canvas').getContext('webgl2');
+      const card = gl.getExtension('WEBGL_lose_context');
+      card.loseContext();
+      setTimeout(() => card.restoreContext(), 100);
+    });
+    await until('another program', () => page.evaluate((links) => window.seen.links > links, links));
+    await context.close();
+    const without = await opened(url, {}, () => {
+      const get = HTMLCanvasElement.prototype.getContext;
+      HTMLCanvasElement.prototype.getContext = function (kind, ...more) {
+        return kind.startsWith('webgl') ? null : get.call(this, kind, ...more);
+      };
+    });
+    await until('a picture of the program', () => without.page.evaluate(() => [...document.querySelectorAll('#stage img')].some((img) => img.naturalWidth > 100)));
+    await without.page.screenshot({ path: join(pictures, 'drawn.png') });
+    await without.context.close();
+  })],
+
+  ['two tabs see the same scene, and a hidden one gets one frame a second', () => serving([written(BALL)], async ({ url }) => {
+    const [one, two] = [await opened(url), await opened(url)];
+    const revision = await state(one.page, 'scene.revision');
+    await ask(one.page, { do: 'edit', base: revision, changes: [{ at: '/bodies/0/name', to: 'bead' }] });
+    for (const { page } of [one, two]) {
+      await until('the name', async () => (await state(page, 'scene.scene.bodies.0.name')) === 'bead');
+    }
+    const stale = await ask(two.page, { do: 'edit', base: revision, changes: [{ at: '/bodies/0/name', to: 'x' }] });
+    check(stale.do === 'refused' && stale.message.includes('edited elsewhere'), JSON.stringify(stale));
+    const frames = async (page) => {
+      const before = await page.evaluate(async () => (await import('/state.js')).state.history.length);
+      await page.waitForTimeout(1500);
+      return (await page.evaluate(async () => (await import('/state.js')).state.history.length)) - before;
+    };
+    await two.page.evaluate(() => {
+      Object.defineProperty(document, 'hidden', { value: true });
+      Object.defineProperty(document, 'visibilityState', { value: 'hidden' });
+      document.dispatchEvent(new Event('visibilitychange'));
+    });
+    await two.page.waitForTimeout(300);
+    const hidden = await frames(two.page);
+    check(hidden <= 3, `a hidden page got ${hidden} frames in 1.5 s`);
+    await one.context.close();
+    await two.context.close();
+  })],
+
+  ['the keyboard suffices: the tree, a number, the hand, help', () => serving([written(BALL)], async ({ url }) => {
+    const { page, context } = await opened(url);
+    await page.evaluate(() => document.querySelector('[role=tree] [tabindex="0"], [role=treeitem][tabindex="0"]').focus());
+    for (const key of ['ArrowDown', 'ArrowRight', 'ArrowDown']) await page.keyboard.press(key);
+    await until('a selected part', async () => (await state(page, 'selection')) !== null);
+    const before = await state(page, 'frame.points.0.device');
+    await page.evaluate(() => document.activeElement.blur());
+    await page.keyboard.down('ArrowRight');
+    await until('a hand that moves', async () => {
+      const now = await state(page, 'frame.points.0.device');
+      return Math.hypot(...now.map((x, axis) => x - before[axis])) > 1e-3;
+    });
+    await page.keyboard.up('ArrowRight');
+    await page.keyboard.press('?');
+    await page.locator('dialog').waitFor();
+    await page.screenshot({ path: join(pictures, 'help.png') });
+    await page.keyboard.press('Escape');
+    await until('a stop', () => state(page, 'frame.stopped'));
+    await context.close();
+  })],
+
+  ['finger and pen lead the hand', () => serving([written(BALL)], async ({ url }) => {
+    const { page, context } = await opened(url, { hasTouch: true });
+    await until('the picture', () => page.evaluate(() => window.seen.links > 0));
+    await page.waitForTimeout(500);
+    const box = await page.locator('#stage').boundingBox();
+    const [x, y] = [box.x + box.width / 2, box.y + box.height / 2];
+    const cdp = await context.newCDPSession(page);
+    await cdp.send('Input.dispatchTouchEvent', { type: 'touchStart', touchPoints: [{ x, y, id: 0 }] });
+    await cdp.send('Input.dispatchTouchEvent', { type: 'touchMove', touchPoints: [{ x: x + 4, y, id: 0 }] });
+    await until('a contact by a finger', async () => (await state(page, 'frame.force')) > 0.1);
+    await cdp.send('Input.dispatchTouchEvent', { type: 'touchEnd', touchPoints: [] });
+    for (const [type, at] of [['pointerdown', x], ['pointermove', x + 5]]) {
+      await page.evaluate(({ type, at, y }) => document.elementFromPoint(at, y).dispatchEvent(new PointerEvent(type, {
+        pointerType: 'pen', pointerId: 7, clientX: at, clientY: y, buttons: 1, button: type === 'pointerdown' ? 0 : -1,
+        bubbles: true, cancelable: true, isPrimary: true, pressure: 0.5,
+      })), { type, at, y });
+    }
+    await until('a contact by a pen', async () => (await state(page, 'frame.force')) > 0.1);
+    await context.close();
+  })],
+
+  ['a pad leads the hand and rumbles, and sound begins at its button alone', () => serving([written(BALL)], async ({ url }) => {
+    const { page, context } = await opened(url);
+    check((await page.evaluate(() => window.seen.sounds)) === 0, 'sound before it was asked for');
+    await page.getByText('sound off').click();
+    await until('sound', () => page.evaluate(() => window.seen.sounds === 1 && window.sound.state === 'running'));
+    await page.locator('#touch select').first().selectOption('gamepad');
+    const before = await state(page, 'frame.points.0.device');
+    await page.evaluate(() => { window.padOn = true; window.pad.axes[1] = 0.9; });
+    await until('a hand that moves', async () => {
+      const now = await state(page, 'frame.points.0.device');
+      return Math.hypot(...now.map((x, axis) => x - before[axis])) > 1e-3;
+    });
+    await until('rumble', () => page.evaluate(() => window.seen.fx.some(([kind]) => kind === 'dual-rumble')), 20000);
+    await context.close();
+  })],
+];
+
+chrome = await browser();
+await run(cases);
