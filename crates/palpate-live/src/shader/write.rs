@@ -129,7 +129,7 @@ mod tests {
         let larger = ball.clone().offset(0.25).unwrap();
         let shader = Formulas::of([&ball, &larger]).unwrap().shader(&BTreeSet::new());
         assert_eq!(shader.glsl.matches("norm(p.x, p.y, p.z)").count(), 1);
-        assert_eq!(shader.glsl.matches(';').count(), LIBRARY.matches(';').count() + 10);
+        assert_eq!(shader.glsl.matches(';').count(), LIBRARY.matches(';').count() + 9);
         assert!(shader.uniforms.is_empty());
     }
 

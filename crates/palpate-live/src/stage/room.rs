@@ -140,7 +140,9 @@ impl<const D: usize> Room<D> {
         point: Option<usize>,
         is_held: bool,
     ) -> Result<(), String> {
-        self.lead.lead(point_of(target)?, point, is_held)
+        self.lead.lead(point_of(target)?, point, is_held)?;
+        steer(&mut self.steering, &self.lead, &self.map);
+        Ok(())
     }
 
     pub(super) fn take_tour(&mut self, tour: HandPath<D>) {

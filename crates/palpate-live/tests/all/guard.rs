@@ -19,16 +19,9 @@ fn status(live: &Live, method: &str, path: &str, headers: &str) -> u16 {
 }
 
 fn status_at(live: &Live, method: &str, path: &str, headers: &str) -> u16 {
-    let is_socket = headers.contains("websocket");
-    let close = if is_socket { "" } else { "Connection: close\r\n" };
-    let request =
-        format!("{method} {path} HTTP/1.1\r\n{headers}{close}Content-Length: 0\r\n\r\n");
-    if is_socket && headers.contains("Origin") {
-        // A socket that opens stays open: only its first line is read.
-        return first_line(live, &request);
-    }
-    let answer = raw(live.address(), &request);
-    answer.split(' ').nth(1).and_then(|status| status.parse().ok()).unwrap_or(0)
+    // A socket that opens stays open: only the first line is read.
+    let request = format!("{method} {path} HTTP/1.1\r\n{headers}Content-Length: 0\r\n\r\n");
+    first_line(live, &request)
 }
 
 fn first_line(live: &Live, request: &str) -> u16 {

@@ -99,6 +99,18 @@ impl Page {
     }
 }
 
+impl Page {
+    /// Waits for a frame after so many ticks: all rows until then are taken.
+    pub(crate) fn wait_for_tick(&mut self, tick: u64) {
+        loop {
+            let frame = self.binary(1);
+            if u64::from_le_bytes(frame[8..16].try_into().unwrap()) >= tick {
+                return;
+            }
+        }
+    }
+}
+
 /// Sends a request as it is; gives the answer as it comes.
 pub(crate) fn raw(address: SocketAddr, request: &str) -> String {
     let mut stream = TcpStream::connect(address).unwrap();

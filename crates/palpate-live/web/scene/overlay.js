@@ -16,7 +16,7 @@
 
 import { state } from '../state.js';
 import { arrow, dot, label, numbered, polyline, ring, spring } from './ink.js';
-import { boxOf, centreOf, cornersOf } from './setting.js';
+import { centreOf, cornersOf } from './setting.js';
 import { along, dot as product, inSpace, mean, norm } from './vectors.js';
 
 /** The length of the arrow of the largest force in pixels. */
@@ -64,15 +64,25 @@ export function paintBodies(context, view, setting, inks) {
   return taken;
 }
 
+/** The edges of a box that may be turned: corners whose numbers differ in one bit share one.
+ * @param {Context} context @param {View} view @param {number[][]} corners @param {string} color */
+function paintCorners(context, { lens }, corners, color) {
+  const seen = corners.map((corner) => lens.project(inSpace(corner)));
+  for (let bit = 1; bit < corners.length; bit *= 2) {
+    seen.forEach((from, number) => {
+      if ((number & bit) === 0) polyline(context, [from, seen[number | bit]], color, 1, 'transparent');
+    });
+  }
+}
+
 /** Contacts of bodies, and boxes that were ruled out. @param {Context} context
  * @param {View} view @param {any} answer @param {Inks} inks */
 export function paintContacts(context, view, answer, inks) {
   const { project, pixel } = view.lens;
   const { shown } = state.view;
   for (const pair of answer?.pairs ?? []) {
-    for (const bounds of shown.proof ? pair.boxes ?? [] : []) {
-      const box = boxOf(bounds);
-      if (box) paintBox(context, view, box, 'rgba(158,47,120,0.55)', 'transparent');
+    for (const corners of shown.proof ? pair.boxes ?? [] : []) {
+      paintCorners(context, view, corners, 'rgba(158,47,120,0.55)');
     }
     for (const contact of shown.contacts ? pair.contacts ?? [] : []) {
       const [a, b] = [contact.point_a, contact.point_b].map((point) => inSpace(point ?? contact.point_a));
