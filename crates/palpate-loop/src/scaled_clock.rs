@@ -149,7 +149,8 @@ impl ClockSpeed {
         f64::from_bits(self.shared.speed.load(Ordering::Relaxed))
     }
 
-    /// Lets so many waits of a held clock end: a servo waits once for each tick.
+    /// Lets so many waits of a held clock end: a servo that does not rehearse waits once for each
+    /// tick.
     pub fn step(&self, ticks: u64) {
         self.shared.steps.fetch_add(ticks, Ordering::Relaxed);
     }

@@ -175,11 +175,11 @@ impl Stage {
             Ask::Hand { target, point, held } => {
                 is_full(self.orders.try_send(Order::Lead { page, id, target, point, held }))
             }
-            Ask::Tour { on } => is_full(self.orders.try_send(Order::Tour(on))),
+            Ask::Tour { on } => self.order(page, id, Order::Tour(on)),
             Ask::Clock { speed, step } => {
                 is_full(self.orders.try_send(Order::Clock { page, id, speed, step }))
             }
-            Ask::Record { on } => is_full(self.orders.try_send(Order::Record(on))),
+            Ask::Record { on } => self.order(page, id, Order::Record(on)),
             Ask::Hello { .. }
             | Ask::Edit { .. }
             | Ask::Undo {}
@@ -192,6 +192,15 @@ impl Stage {
             let why = "the program is busy with what was asked before: ask again";
             self.pages.refuse(page, id, why, &[]);
         }
+    }
+
+    /// Gives an order that cannot be refused; whether there is no room for it.
+    fn order(&self, page: PageId, id: Option<u32>, order: Order) -> bool {
+        let is_full = is_full(self.orders.try_send(order));
+        if !is_full {
+            self.pages.answer(page, id, serde_json::json!({ "do": "done" }));
+        }
+        is_full
     }
 
     /// The text of the scene as a file.

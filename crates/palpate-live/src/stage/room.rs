@@ -89,7 +89,7 @@ impl<const D: usize> Room<D> {
         let servo = scene.servo_with(&device, settings).map_err(said)?;
         let (clock, speed) = ScaledClock::new(&Priority::Normal);
         let rows = (KEPT * terms.rate) as usize * lead.targets().len();
-        let mut options = ThreadOptions::default().with_recorder(rows).with_rehearsals(true);
+        let mut options = ThreadOptions::default().with_recorder(rows);
         if !scene.motions.is_empty() {
             let moving = Arc::clone(&scene);
             options =

@@ -86,8 +86,9 @@ export async function run(cases) {
   let failed = 0;
   for (const [name, work] of cases.filter(([name]) => !only || name.includes(only))) {
     const begin = Date.now();
+    const late = new Promise((_, reject) => setTimeout(() => reject(new Error('took more than a minute')), 60000).unref());
     try {
-      await work();
+      await Promise.race([work(), late]);
       console.log(`ok      ${name} (${((Date.now() - begin) / 1000).toFixed(1)} s)`);
     } catch (error) {
       failed += 1;

@@ -81,7 +81,7 @@ export class Pictures {
       do: 'picture',
       eye,
       target: [0, 1, 2].map((axis) => eye[axis] + forward[axis]),
-      field_of_view: (FIELD_OF_VIEW * 180) / Math.PI,
+      field_of_view: FIELD_OF_VIEW,
       width: Math.round(rect.width * part),
       height: Math.round(rect.height * part),
     });
