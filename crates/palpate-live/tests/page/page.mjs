@@ -85,7 +85,8 @@ const state = (page, path) => page.evaluate(async (path) => {
   return path.split('.').reduce((at, key) => at?.[key], state);
 }, path);
 
-const live = (page) => until('a scene and a frame', async () => (await state(page, 'connection')) === 'live' && (await state(page, 'frame.tick')) > 0);
+const live = (page) => until('a scene and a frame', async () => (await state(page, 'connection')) === 'live'
+  && (await state(page, 'scene.revision')) > 0 && (await state(page, 'frame.tick')) > 0);
 
 /** Runs work with a program that serves a scene. */
 async function serving(words, work) {
