@@ -18,6 +18,9 @@ const LOOK: Duration = Duration::from_millis(1);
 /// The longest sleep of a clock: a change of speed is seen that soon.
 const LONGEST_SLEEP: Duration = Duration::from_millis(5);
 
+/// The least speed of a clock that is not held.
+const SLOWEST: f64 = 0.001;
+
 /// The clock of the machine at a speed that a [`ClockSpeed`] sets: for servos with simulated
 /// devices, to look closely at what they do.
 ///
@@ -133,10 +136,10 @@ impl ClockSpeed {
     ///
     /// # Errors
     ///
-    /// If the speed is not from 0 to 1.
+    /// If the speed is neither 0 nor from 0.001 to 1.
     pub fn set(&self, speed: f64) -> Result<(), NumberError> {
-        if !(0.0..=1.0).contains(&speed) {
-            return Err(NumberError::new("the speed", "from 0 to 1", speed, ""));
+        if speed != 0.0 && !(SLOWEST..=1.0).contains(&speed) {
+            return Err(NumberError::new("the speed", "0, or from 0.001 to 1", speed, ""));
         }
         self.shared.steps.store(0, Ordering::Relaxed);
         self.shared.speed.store(speed.to_bits(), Ordering::Relaxed);
@@ -196,10 +199,10 @@ mod tests {
     #[test]
     fn a_speed_is_from_zero_to_one() {
         let (_clock, speed) = ScaledClock::new(&Priority::Normal);
-        for wrong in [-0.5, 1.5, f64::NAN] {
+        for wrong in [-0.5, 1.5, 1e-300, f64::NAN] {
             assert!(speed.set(wrong).is_err(), "{wrong}");
         }
         let error = speed.set(2.0).unwrap_err().to_string();
-        assert_eq!(error, "the speed must be from 0 to 1, got 2");
+        assert_eq!(error, "the speed must be 0, or from 0.001 to 1, got 2");
     }
 }

@@ -56,6 +56,8 @@ pub struct ThreadOptions<const D: usize> {
     pub motion: Option<ThreadMotion<D>>,
     /// How the loop goes on when the device is lost; `None` to end it.
     pub reconnection: Option<Reconnection>,
+    /// Whether all forces are held at zero until they are released.
+    pub is_stopped: bool,
     /// Plays the touches on a device that vibrates.
     pub vibration: Option<Vibration<'static>>,
 }
@@ -72,6 +74,7 @@ impl<const D: usize> Default for ThreadOptions<D> {
             handoff: HandoffOptions::default(),
             motion: None,
             reconnection: None,
+            is_stopped: false,
             vibration: None,
         }
     }
@@ -154,6 +157,13 @@ impl<const D: usize> ThreadOptions<D> {
         Self { reconnection: Some(reconnection), ..self }
     }
 
+    /// The same options with an emergency stop from the first tick on, or without; a
+    /// [`StopSwitch`](palpate_haptics::StopSwitch) releases it.
+    #[must_use]
+    pub fn with_stop(self, is_stopped: bool) -> Self {
+        Self { is_stopped, ..self }
+    }
+
     /// The same options with touches that are played on a device that vibrates. The thread owns
     /// that device, silences it however it ends, and gives it [back](EndedThread::vibration).
     ///
@@ -205,6 +215,7 @@ impl<const D: usize> fmt::Debug for ThreadOptions<D> {
             .field("handoff", &self.handoff)
             .field("motion", &self.motion.is_some())
             .field("reconnection", &self.reconnection)
+            .field("is_stopped", &self.is_stopped)
             .field("vibration", &self.vibration)
             .finish()
     }
@@ -378,6 +389,9 @@ impl<const D: usize> ServoThread<D> {
         let mut player = vibration.map(|vibration| vibration.start(&servo)).transpose()?;
         let (rows, records) = options.rows.map(queue).unzip();
         let (control, mut end) = handoff(&servo, options.handoff);
+        if options.is_stopped {
+            control.stop_switch().stop();
+        }
         let work = move || {
             let priority = if raises_priority { raise_priority() } else { Priority::Normal };
             let mut clock = clock(&priority);

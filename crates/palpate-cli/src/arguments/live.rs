@@ -9,7 +9,7 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::ProfileChoice;
-use super::numbers::{count, positive};
+use super::numbers::{count, within};
 
 /// The most contact points: two hands.
 const MOST_POINTS: usize = 10;
@@ -40,7 +40,7 @@ pub(crate) struct LiveOptions {
     #[arg(long, allow_negative_numbers = true, value_parser = count(1, MOST_POINTS))]
     pub(crate) points: Option<usize>,
     /// Ticks a second [Hz].
-    #[arg(long, allow_negative_numbers = true, default_value = "1000", value_parser = positive("Hz"))]
+    #[arg(long, allow_negative_numbers = true, default_value = "1000", value_parser = within(1.0, 100_000.0, " Hz"))]
     pub(crate) rate: f64,
 }
 

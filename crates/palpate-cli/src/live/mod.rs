@@ -5,6 +5,7 @@
 
 mod place;
 
+use std::path::{Path, PathBuf};
 use std::thread;
 use std::time::{Duration, Instant};
 
@@ -34,6 +35,9 @@ pub(crate) fn run(options: &LiveOptions, interrupt: &Interrupt) -> Result<Outcom
     if let Some(device) = &options.device {
         served = served.with_device(device.profile.clone());
     }
+    // Where the file is, the page does not tell.
+    let short = options.scene.as_deref().and_then(Path::file_name);
+    let name = short.map_or(name, |short| short.to_string_lossy().into_owned());
     let live =
         Page { name, file: options.scene.clone(), text }.served(&options.page, served)?;
     output::remark(format_args!("live at {}", live.url()));
@@ -48,7 +52,7 @@ pub(crate) fn run(options: &LiveOptions, interrupt: &Interrupt) -> Result<Outcom
 /// What a page shows first.
 struct Page {
     name: String,
-    file: Option<std::path::PathBuf>,
+    file: Option<PathBuf>,
     text: String,
 }
 

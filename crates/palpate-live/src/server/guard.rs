@@ -7,7 +7,7 @@
 //! checked: `Host` against names that lead elsewhere, `Origin` against other sites, a token
 //! against other users of the machine.
 
-use std::net::SocketAddr;
+use std::net::{IpAddr, SocketAddr};
 
 use axum::http::header::{HOST, ORIGIN};
 use axum::http::{HeaderMap, HeaderName, StatusCode};
@@ -34,8 +34,7 @@ const TOKEN_BYTES: usize = 16;
 /// What requests are checked against.
 #[derive(Clone, Debug)]
 pub(super) struct Guard {
-    /// `host:port` by which the server may be called.
-    hosts: Vec<String>,
+    address: SocketAddr,
     token: String,
 }
 
@@ -56,26 +55,35 @@ pub(crate) fn is_token(text: &str) -> bool {
 }
 
 impl Guard {
-    /// For a server at `address`, which may be called by the names of this machine, and by that
-    /// address.
+    /// For a server at `address`.
     pub(super) fn new(address: SocketAddr, token: String) -> Self {
-        let port = address.port();
-        let mut hosts = vec![
-            format!("127.0.0.1:{port}"),
-            format!("localhost:{port}"),
-            format!("[::1]:{port}"),
-        ];
-        if !address.ip().is_loopback() {
-            hosts.push(address.to_string());
-        }
-        Self { hosts, token }
+        Self { address, token }
+    }
+
+    /// Whether a host is this server: `localhost`, or an address of this machine, or, if other
+    /// machines may call, any address. A name leads wherever its owner wants; an address does
+    /// not.
+    fn is_here(&self, host: &str) -> bool {
+        let is_port = |port: &str| port.parse() == Ok(self.address.port());
+        let (name, port) = match host.rsplit_once(':') {
+            Some((name, port)) if !port.ends_with(']') => (name, port),
+            // Browsers leave out the port that is usual.
+            _ => (host, "80"),
+        };
+        let bare = name.strip_prefix('[').and_then(|name| name.strip_suffix(']'));
+        let ip: Option<IpAddr> = bare.unwrap_or(name).parse().ok();
+        let is_local = name == "localhost"
+            || ip.is_some_and(|ip| {
+                ip.to_canonical().is_loopback()
+                    || !self.address.ip().to_canonical().is_loopback()
+            });
+        is_local && is_port(port)
     }
 
     /// Refuses a request that was sent to another name: a name of an attacker may lead here.
     pub(super) fn check_host(&self, headers: &HeaderMap) -> Result<(), StatusCode> {
-        let is_known = |host: &str| self.hosts.iter().any(|known| known == host);
         match only(headers, HOST) {
-            Some(host) if is_known(host) => Ok(()),
+            Some(host) if self.is_here(host) => Ok(()),
             _ => Err(StatusCode::MISDIRECTED_REQUEST),
         }
     }
@@ -84,7 +92,7 @@ impl Guard {
     pub(super) fn check_origin(&self, headers: &HeaderMap) -> Result<(), StatusCode> {
         let host = only(headers, ORIGIN).and_then(|origin| origin.strip_prefix("http://"));
         match host {
-            Some(host) if self.hosts.iter().any(|known| known == host) => Ok(()),
+            Some(host) if self.is_here(host) => Ok(()),
             _ => Err(StatusCode::FORBIDDEN),
         }
     }
@@ -125,7 +133,7 @@ mod tests {
     #[test]
     fn only_names_of_this_machine_are_hosts() {
         let guard = guard("127.0.0.1:4000");
-        for good in ["127.0.0.1:4000", "localhost:4000", "[::1]:4000"] {
+        for good in ["127.0.0.1:4000", "localhost:4000", "[::1]:4000", "[::ffff:7f00:1]:4000"] {
             assert_eq!(guard.check_host(&headers(&[(HOST, good)])), Ok(()), "{good}");
         }
         for bad in [
@@ -149,11 +157,13 @@ mod tests {
     #[test]
     fn only_pages_of_this_server_are_origins() {
         let guard = guard("192.168.1.2:80");
+        assert_eq!(guard.check_host(&headers(&[(HOST, "192.168.1.2")])), Ok(()));
+        assert!(guard.check_host(&headers(&[(HOST, "evil.example")])).is_err());
         let origin = |text: &str| guard.check_origin(&headers(&[(ORIGIN, text)]));
         assert_eq!(origin("http://192.168.1.2:80"), Ok(()));
         assert_eq!(origin("http://localhost:80"), Ok(()));
         for bad in
-            ["null", "https://localhost:80", "http://localhost", "http://evil.example:80"]
+            ["null", "https://localhost:80", "http://localhost:81", "http://evil.example:80"]
         {
             assert_eq!(origin(bad), Err(StatusCode::FORBIDDEN), "{bad}");
         }

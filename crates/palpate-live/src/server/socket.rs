@@ -36,7 +36,7 @@ pub(super) async fn speak(mut socket: WebSocket, stage: Arc<Stage>) {
     let bucket = Bucket::full(Instant::now());
     let mut talk = Talk { page, stage: &stage, bucket, unreadable: 0, frames: frames(FRAME) };
     let end = talk.go_on(&mut socket, waiting).await;
-    stage.pages.remove(page);
+    stage.gone(page);
     tell_count(&stage);
     if let Some(frame) = end {
         let _ = close(&mut socket, frame).await;
@@ -130,8 +130,9 @@ impl Talk<'_> {
             return Err(Some(refusal("the page sent more than 120 messages a second")));
         }
         match question {
-            Ok(Question { ask: Ask::Hidden { is }, .. }) => {
+            Ok(Question { ask: Ask::Hidden { is }, id }) => {
                 self.frames = frames(if is { HIDDEN_FRAME } else { FRAME });
+                self.stage.pages.answer(self.page, id, json!({ "do": "done" }));
                 Ok(())
             }
             Ok(question) => {

@@ -4,11 +4,18 @@
 //! The scene as it is edited: its data, the steps back, the file it came from.
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use palpate::scene::{AnyScene, Scene, SceneError, SceneProblem};
 use serde_json::{Value, json};
 
 use crate::wire::Change;
+
+/// The largest scene [bytes]: what the pages are told of it is a few times as large.
+const LARGEST: usize = 4 << 20;
+
+/// The deepest that a part of a scene may be nested: more than any scene is.
+const DEEPEST: usize = 200;
 
 /// The most steps back.
 const MOST_STEPS: usize = 500;
@@ -18,13 +25,16 @@ const MOST_STEPS: usize = 500;
 pub(super) struct Document {
     pub(super) name: String,
     pub(super) file: Option<PathBuf>,
-    now: Version,
-    back: Vec<Version>,
-    forth: Vec<Version>,
+    now: Arc<Version>,
+    back: Vec<Arc<Version>>,
+    forth: Vec<Arc<Version>>,
     /// Whether the last edit was a step of a drag that may go on.
     is_moving: bool,
-    /// The text that the file has, as far as is known.
-    saved: String,
+    /// The text of the file that this scene came from or was saved as: another one in the file is
+    /// somebody else's.
+    saved: Arc<str>,
+    /// The text that the file had when it was last looked at.
+    seen: Arc<str>,
 }
 
 /// A scene with its text.
@@ -35,8 +45,12 @@ struct Version {
 }
 
 impl Version {
-    fn read(text: &str) -> Result<Self, SceneError> {
-        Ok(Self { scene: Scene::from_json(text)?, text: text.to_owned() })
+    fn read(text: &str) -> Result<Arc<Self>, Refusal> {
+        if text.len() > LARGEST {
+            let size = text.len();
+            return Err(format!("a scene has at most {LARGEST} bytes here, got {size}").into());
+        }
+        Ok(Arc::new(Self { scene: Scene::from_json(text)?, text: text.to_owned() }))
     }
 }
 
@@ -96,9 +110,10 @@ impl Document {
         text: &str,
     ) -> Result<Self, Refusal> {
         let now = Version::read(text)?;
-        let saved = now.text.clone();
+        let saved: Arc<str> = now.text.as_str().into();
         let (back, forth) = (Vec::new(), Vec::new());
-        Ok(Self { name, file, now, back, forth, is_moving: false, saved })
+        let seen = Arc::clone(&saved);
+        Ok(Self { name, file, now, back, forth, is_moving: false, saved, seen })
     }
 
     pub(super) fn scene(&self) -> &Scene {
@@ -118,7 +133,7 @@ impl Document {
     }
 
     pub(super) fn is_saved(&self) -> bool {
-        self.now.text == self.saved
+        self.now.text == *self.saved
     }
 
     /// The built scene.
@@ -151,7 +166,7 @@ impl Document {
         Ok(())
     }
 
-    fn push(&mut self, version: Version) {
+    fn push(&mut self, version: Arc<Version>) {
         self.back.push(std::mem::replace(&mut self.now, version));
         if self.back.len() > MOST_STEPS {
             self.back.remove(0);
@@ -182,8 +197,8 @@ impl Document {
         };
         let shown = file.display();
         let failed = |error: std::io::Error| Refusal::from(format!("{shown}: {error}"));
-        match std::fs::read_to_string(&file) {
-            Ok(text) if text != self.saved && !is_forced => {
+        match read_file(&file) {
+            Ok(text) if text != *self.saved && !is_forced => {
                 return Err(format!(
                     "{shown} was changed elsewhere meanwhile: open it again, or save over it"
                 )
@@ -195,29 +210,34 @@ impl Document {
             _ => {}
         }
         replace(&file, &self.now.text).map_err(failed)?;
-        self.saved.clone_from(&self.now.text);
+        self.saved = self.now.text.as_str().into();
+        self.seen = Arc::clone(&self.saved);
         Ok(())
     }
 
     /// Takes the text that its file has now, as a step that can be undone; `None` if it is known.
     pub(super) fn take_file(&mut self, text: &str) -> Option<Result<(), Refusal>> {
-        if text == self.saved {
+        if text == &*self.seen {
             return None;
         }
-        self.saved = text.to_owned();
+        self.seen = text.into();
         if text == self.now.text {
+            self.saved = text.into();
             return None;
         }
         self.is_moving = false;
-        Some(Version::read(text).map(|version| self.push(version)).map_err(Refusal::from))
+        Some(Version::read(text).map(|version| {
+            self.saved = text.into();
+            self.push(version);
+        }))
     }
 }
 
 impl Document {
-    /// Takes note of the text of the file that another version of this document has read: a text
-    /// with an error is told once.
-    pub(super) fn knows_file_of(&mut self, other: &Self) {
-        self.saved.clone_from(&other.saved);
+    /// Takes note that the file was looked at: a text with an error is told once. It is still
+    /// somebody else's, which is not saved over.
+    pub(super) fn has_seen_file_of(&mut self, other: &Self) {
+        self.seen = Arc::clone(&other.seen);
     }
 }
 
@@ -235,8 +255,42 @@ fn replace(file: &Path, text: &str) -> std::io::Result<()> {
     Ok(())
 }
 
+/// The text of a file that can be a scene's.
+///
+/// # Errors
+///
+/// If it cannot be read, is no regular file, or is too large.
+pub(super) fn read_file(file: &Path) -> std::io::Result<String> {
+    let metadata = std::fs::metadata(file)?;
+    if !metadata.is_file() || metadata.len() > LARGEST as u64 {
+        let why = format!("is no file of at most {LARGEST} bytes");
+        return Err(std::io::Error::new(std::io::ErrorKind::InvalidInput, why));
+    }
+    std::fs::read_to_string(file)
+}
+
+/// How deep a value is nested.
+fn depth(value: &Value) -> usize {
+    let mut deepest = 0;
+    let mut left = vec![(value, 1)];
+    while let Some((value, depth)) = left.pop() {
+        deepest = deepest.max(depth);
+        match value {
+            Value::Array(all) => left.extend(all.iter().map(|one| (one, depth + 1))),
+            Value::Object(all) => left.extend(all.values().map(|one| (one, depth + 1))),
+            _ => {}
+        }
+    }
+    deepest
+}
+
 /// Makes one change.
 fn apply(data: &mut Value, change: &Change) -> Result<(), Refusal> {
+    // What is nested too deep would overflow the stack of who reads it.
+    let deepest = change.at.matches('/').count() + change.to.as_ref().map_or(0, depth);
+    if deepest > DEEPEST {
+        return Err(format!("a scene is nested at most {DEEPEST} deep, got {deepest}").into());
+    }
     let nowhere = || Refusal::from(format!("the scene has nothing at {:?}", change.at));
     let Some((parent, key)) = change.at.rsplit_once('/') else {
         return Err(format!("{:?} is no JSON pointer to a part of the scene", change.at).into());
@@ -314,6 +368,22 @@ mod tests {
     }
 
     #[test]
+    fn what_is_nested_too_deep_is_refused() {
+        let mut document = coin();
+        let mut nested = json!(0);
+        for _ in 0..120 {
+            nested = json!([nested]);
+        }
+        let change = |level: usize| Change {
+            at: format!("/description{}", "/0".repeat(120 * level)),
+            to: Some(nested.clone()),
+        };
+        let changes: Vec<_> = (0..40).map(change).collect();
+        let refusal = document.edit(&changes, false).unwrap_err();
+        assert!(refusal.message.contains("200 deep"), "{refusal:?}");
+    }
+
+    #[test]
     fn parts_are_added_and_removed() {
         let mut document = coin();
         let body = json!({ "name": "b", "shape": { "circle": { "radius": 1 } } });
@@ -336,6 +406,9 @@ mod tests {
         assert!(document.is_saved());
         assert_eq!(std::fs::read_to_string(&file).unwrap(), document.text());
 
+        std::fs::write(&file, "half of a").unwrap();
+        assert!(matches!(document.take_file("half of a"), Some(Err(_))));
+        assert!(document.save(false).is_err(), "what cannot be read is somebody's too");
         std::fs::write(&file, SCENE).unwrap();
         document.edit(&to(RADIUS, 1.0.into()), false).unwrap();
         let refusal = document.save(false).unwrap_err();

@@ -13,7 +13,7 @@ use palpate::scene::{AnyScene, Scene, described_primitive, schema};
 use serde_json::{Value, json};
 
 use super::described::{self, Drawing};
-use super::document::{Document, Refusal};
+use super::document::{Document, Refusal, read_file};
 use super::hand::tour;
 use super::pages::{PageId, Pages};
 use super::performance::{AnyPath, Order, Showing};
@@ -156,7 +156,7 @@ impl Editor {
             return;
         };
         // A file that is being replaced may not be there for a moment.
-        let Ok(text) = std::fs::read_to_string(&file) else { return };
+        let Ok(text) = read_file(&file) else { return };
         let before = self.document.clone();
         let taken = match self.document.take_file(&text) {
             None => return,
@@ -165,7 +165,7 @@ impl Editor {
         if let Err(Refusal { message, .. }) = taken {
             let saved = self.document.clone();
             self.document = before;
-            self.document.knows_file_of(&saved);
+            self.document.has_seen_file_of(&saved);
             let message =
                 format!("{} was changed, and has an error: {message}", file.display());
             self.pages.broadcast(&json!({ "do": "notice", "message": message }));
@@ -212,32 +212,41 @@ impl Editor {
         self.pages.broadcast(&message);
         self.message = message;
         if !is_alike {
-            self.send_tour(&scene);
+            self.find_tour(scene);
         }
         Ok(())
     }
 
-    /// Finds the tour of the scene, for which the servo does not wait.
-    fn send_tour(&self, scene: &AnyScene) {
-        let path = match scene {
-            AnyScene::Planar(scene) => {
-                tour(scene, self.points).map(|path| path.map(AnyPath::Planar))
-            }
-            AnyScene::Spatial(scene) => {
-                tour(scene, self.points).map(|path| path.map(AnyPath::Spatial))
-            }
-        };
-        match path {
-            Some(Ok(path)) => {
-                // A hand without a tour rests.
-                let _ = self.orders.send(Order::Path { path, revision: self.revision });
-            }
-            Some(Err(error)) => {
-                let message = format!("the hand has no tour of this scene: {error}");
-                self.pages.broadcast(&json!({ "do": "notice", "message": message }));
-            }
-            None => {}
+    /// Finds the tour of the scene in a thread of its own: of a steep scene it takes minutes.
+    fn find_tour(&self, scene: Arc<AnyScene>) {
+        let (points, revision) = (self.points, self.revision);
+        let (orders, pages) = (self.orders.clone(), Arc::clone(&self.pages));
+        std::thread::spawn(move || send_tour(&scene, points, revision, &orders, &pages));
+    }
+}
+
+/// Finds a tour, and sends it to the hand.
+fn send_tour(
+    scene: &AnyScene,
+    points: usize,
+    revision: u32,
+    orders: &SyncSender<Order>,
+    pages: &Pages,
+) {
+    let path = match scene {
+        AnyScene::Planar(scene) => tour(scene, points).map(|path| path.map(AnyPath::Planar)),
+        AnyScene::Spatial(scene) => tour(scene, points).map(|path| path.map(AnyPath::Spatial)),
+    };
+    match path {
+        Some(Ok(path)) => {
+            // A hand without a tour rests.
+            let _ = orders.send(Order::Path { path, revision });
         }
+        Some(Err(error)) => {
+            let message = format!("the hand has no tour of this scene: {error}");
+            pages.broadcast(&json!({ "do": "notice", "message": message }));
+        }
+        None => {}
     }
 }
 

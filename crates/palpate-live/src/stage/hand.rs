@@ -24,6 +24,9 @@ const LAG: f64 = 0.5;
 /// How fast contact points go to the begin of a tour, in sizes of the scene a second.
 const SPEED: f64 = 0.3;
 
+/// The same of a hand that a page begins to lead.
+const HASTE: f64 = 4.0;
+
 /// The radius of the circle on which contact points lie around a hand that is led, as a share of
 /// the scene.
 const SPREAD: f64 = 0.04;
@@ -41,6 +44,8 @@ pub(super) struct Lead<const D: usize> {
     tour_time: f64,
     /// The way onto the tour; `None` while the hand is led otherwise.
     approach: Option<Approach<D>>,
+    /// Where a hand is led that is on its way there [m].
+    goal: Point<D>,
     /// The time of the servo [s].
     time: f64,
     bounds: Option<Aabb<D>>,
@@ -73,6 +78,7 @@ impl<const D: usize> Lead<D> {
             is_touring: true,
             tour_time: 0.0,
             approach: None,
+            goal: Vector::ZERO,
             time: 0.0,
             bounds,
             targets,
@@ -103,15 +109,36 @@ impl<const D: usize> Lead<D> {
         }
     }
 
-    /// Leads the hand, or one of its contact points.
+    /// Lets go of the hand, which rests at `places`: where bodies hold it back, there.
+    pub(super) fn let_go(&mut self, places: &[Point<D>]) {
+        (self.led, self.is_held) = (Some(Instant::now()), false);
+        self.approach = None;
+        if places.len() == self.targets.len() {
+            self.targets.copy_from_slice(places);
+        }
+    }
+
+    /// Leads the hand, or one of its contact points. A hand that was not held comes to the target
+    /// from a place `from` which it can be seen, and which it reaches over the scene.
     pub(super) fn lead(
         &mut self,
         target: Point<D>,
         point: Option<usize>,
-        is_held: bool,
+        from: Option<Point<D>>,
     ) -> Result<(), String> {
-        (self.led, self.is_held) = (Some(Instant::now()), is_held);
-        self.approach = None;
+        let begins = !self.is_held;
+        (self.led, self.is_held) = (Some(Instant::now()), true);
+        if begins {
+            self.approach = None;
+            if let (Some(from), Some(bounds), None) = (from, &self.bounds, point) {
+                let goals: Vec<_> = self.arms.iter().map(|arm| from + *arm).collect();
+                self.approach = Some(Approach::new(&self.targets, &goals, bounds));
+            }
+        }
+        self.goal = target;
+        if self.approach.is_some() {
+            return Ok(());
+        }
         match point {
             None => {
                 self.targets
@@ -132,6 +159,17 @@ impl<const D: usize> Lead<D> {
     pub(super) fn go_on(&mut self, time: f64) -> bool {
         let passed = (time - self.time).max(0.0);
         self.time = time;
+        if let (true, Some(approach), Some(bounds)) =
+            (self.is_held, &mut self.approach, &self.bounds)
+        {
+            let far = passed * longest_edge(bounds) * HASTE;
+            if approach.go_on(&mut self.targets, far) {
+                let goal = self.goal;
+                self.targets.iter_mut().zip(&self.arms).for_each(|(to, arm)| *to = goal + *arm);
+                self.approach = None;
+            }
+            return false;
+        }
         let is_led = self.is_held || self.led.is_some_and(|at| at.elapsed() < REST);
         let (Some(tour), Some(bounds), false) = (&self.tour, &self.bounds, is_led) else {
             return false;
@@ -147,17 +185,21 @@ impl<const D: usize> Lead<D> {
             self.tour_time += passed;
             self.targets = goals;
         }
+        let behind = if self.is_tool { 0.0 } else { LAG * self.arms.len() as f64 };
+        if self.tour_time > tour.duration() + behind {
+            // Over the scene to the begin of the tour, not through it.
+            (self.tour_time, self.approach) = (0.0, None);
+        }
         true
     }
 
     /// Where the contact points are at a time of a tour [s].
     fn on_tour(&self, tour: &HandPath<D>, time: f64) -> Vec<Point<D>> {
-        let longest = tour.duration();
         let place = |(point, arm): (usize, &Vector<f64, D>)| {
             let (behind, beside) =
                 if self.is_tool { (0.0, *arm) } else { (LAG * point as f64, Vector::ZERO) };
-            let time = tour.start() + (time - behind).rem_euclid(longest);
-            tour.state_at(time).position + beside
+            // Before the tour begins and after it ends, a point rests there.
+            tour.state_at(tour.start() + (time - behind).max(0.0)).position + beside
         };
         self.arms.iter().enumerate().map(place).collect()
     }

@@ -63,7 +63,7 @@ pub(crate) struct Stage {
     pub(crate) frames: watch::Receiver<Bytes>,
     pub(crate) pages: Arc<Pages>,
     text: Arc<Text>,
-    threads: Vec<JoinHandle<()>>,
+    performance: Option<JoinHandle<()>>,
 }
 
 /// The text of the scene as a file.
@@ -96,6 +96,11 @@ impl Stop {
         if let Some(switch) = &state.0 {
             if is_stopped { switch.stop() } else { switch.release() }
         }
+    }
+
+    /// Whether forces are held at zero.
+    fn is_stopped(&self) -> bool {
+        self.state().1
     }
 
     /// Goes on with another servo, which is stopped if the last one was.
@@ -154,13 +159,13 @@ impl Stage {
             (Arc::clone(&shown), Arc::clone(&shared_text)),
         );
         let asked = Arc::clone(&pages);
-        let threads = vec![
-            std::thread::spawn(move || performance.run(&ordered)),
-            std::thread::spawn(move || editor.run(&edited)),
-            std::thread::spawn(move || inquiry::run(&inquired, &asked, &shown)),
-        ];
+        let performance = std::thread::spawn(move || performance.run(&ordered));
+        // These end when nobody can ask them any more; nothing waits for what they still do.
+        std::thread::spawn(move || editor.run(&edited));
+        std::thread::spawn(move || inquiry::run(&inquired, &asked, &shown));
+        let performance = Some(performance);
         let text = shared_text;
-        Ok(Self { orders, edits, inquiries, stop, frames, pages, text, threads })
+        Ok(Self { orders, edits, inquiries, stop, frames, pages, text, performance })
     }
 
     /// Takes a message of a page.
@@ -169,11 +174,18 @@ impl Stage {
         let is_full = match question.ask {
             Ask::Stop {} | Ask::Release {} => {
                 self.stop.set(matches!(question.ask, Ask::Stop {}));
+                // Without room for it, the clock is not held: orders are obeyed.
+                let _ = self.orders.try_send(Order::Stopped);
                 self.pages.answer(page, id, serde_json::json!({ "do": "done" }));
                 return;
             }
-            Ask::Hand { target, point, held } => {
-                is_full(self.orders.try_send(Order::Lead { page, id, target, point, held }))
+            Ask::Hand { target: Some(target), point, from, held: true } => {
+                is_full(self.orders.try_send(Order::Lead { page, id, target, point, from }))
+            }
+            Ask::Hand { held: false, .. } => self.order(page, id, Order::LetGo),
+            Ask::Hand { target: None, .. } => {
+                self.pages.refuse(page, id, "a hand that is held has a target", &[]);
+                return;
             }
             Ask::Tour { on } => self.order(page, id, Order::Tour(on)),
             Ask::Clock { speed, step } => {
@@ -203,6 +215,12 @@ impl Stage {
         is_full
     }
 
+    /// A page is closed.
+    pub(crate) fn gone(&self, page: PageId) {
+        self.pages.remove(page);
+        let _ = self.orders.try_send(Order::Gone(page));
+    }
+
     /// The text of the scene as a file.
     pub(crate) fn text(&self) -> String {
         self.text.get()
@@ -221,17 +239,13 @@ fn is_full<T>(sent: Result<(), TrySendError<T>>) -> bool {
 }
 
 impl Drop for Stage {
-    /// Ends the servo with zero forces, and the threads.
+    /// Ends the servo with zero forces.
     fn drop(&mut self) {
         // A full queue is emptied within a frame.
         let _ = self.orders.send(Order::End);
-        let (closed, _) = sync_channel(0);
-        self.edits = closed;
-        let (closed, _) = sync_channel(0);
-        self.inquiries = closed;
-        for thread in self.threads.drain(..) {
+        if let Some(performance) = self.performance.take() {
             // A panic in it was printed when it happened.
-            let _ = thread.join();
+            let _ = performance.join();
         }
     }
 }

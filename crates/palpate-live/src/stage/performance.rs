@@ -29,6 +29,9 @@ const STEPS_A_FRAME: u32 = 2;
 /// The most rows that are recorded: 20 s of ten points at 1 kHz.
 const MOST_ROWS: usize = 200_000;
 
+/// The answer before the first scene, and after a servo has ended.
+const NO_SERVO: &str = "there is no servo yet: say hello, or edit the scene";
+
 /// The most events that are told at once.
 const MOST_EVENTS: usize = 100;
 
@@ -40,8 +43,13 @@ pub(crate) enum Order {
         id: Option<u32>,
         target: Vec<f64>,
         point: Option<usize>,
-        held: bool,
+        from: Option<Vec<f64>>,
     },
+    LetGo,
+    /// A page is closed, which may have led the hand.
+    Gone(PageId),
+    /// All forces were set to zero: a servo whose clock is held takes note by a tick.
+    Stopped,
     Tour(bool),
     /// The way of the hand over the scene of a revision.
     Path {
@@ -115,6 +123,8 @@ pub(super) struct Performance {
     room: Option<AnyRoom>,
     revision: u32,
     is_recording: bool,
+    /// The page that leads the hand.
+    leader: Option<PageId>,
 }
 
 impl Performance {
@@ -124,7 +134,16 @@ impl Performance {
         pages: Arc<Pages>,
         frames: watch::Sender<Bytes>,
     ) -> Self {
-        Self { terms, stop, pages, frames, room: None, revision: 0, is_recording: false }
+        Self {
+            terms,
+            stop,
+            pages,
+            frames,
+            room: None,
+            revision: 0,
+            is_recording: false,
+            leader: None,
+        }
     }
 
     pub(super) fn run(mut self, orders: &Receiver<Order>) {
@@ -149,11 +168,29 @@ impl Performance {
 
     fn obey(&mut self, order: Order) {
         match order {
-            Order::Lead { page, id, target, point, held } => {
-                let Some(room) = &mut self.room else { return };
-                match in_room!(room, room, _rows => room.lead(&target, point, held)) {
+            Order::Lead { page, id, target, point, from } => {
+                let Some(room) = &mut self.room else {
+                    return self.pages.refuse(page, id, NO_SERVO, &[]);
+                };
+                self.leader = Some(page);
+                let from = from.as_deref();
+                match in_room!(room, room, _rows => room.lead(&target, point, from)) {
                     Ok(()) => self.pages.answer(page, id, json!({ "do": "done" })),
                     Err(why) => self.pages.refuse(page, id, &why, &[]),
+                }
+            }
+            Order::LetGo => self.let_go(),
+            Order::Gone(page) => {
+                if self.leader == Some(page) {
+                    self.let_go();
+                }
+            }
+            Order::Stopped => {
+                if let Some(room) = &self.room {
+                    let clock = in_room!(room, room, _rows => room.speed());
+                    if clock.get() == 0.0 {
+                        clock.step(1);
+                    }
                 }
             }
             Order::Tour(is_touring) => {
@@ -170,12 +207,15 @@ impl Performance {
                 _ => {}
             },
             Order::Clock { page, id, speed, step } => {
-                let Some(room) = &self.room else { return };
+                let Some(room) = &self.room else {
+                    return self.pages.refuse(page, id, NO_SERVO, &[]);
+                };
                 let clock = in_room!(room, room, _rows => room.speed());
-                let set = speed.map_or(Ok(()), |speed| clock.set(speed));
-                clock.step(u64::from(step.unwrap_or_default()));
-                match set {
-                    Ok(()) => self.pages.answer(page, id, json!({ "do": "done" })),
+                match speed.map_or(Ok(()), |speed| clock.set(speed)) {
+                    Ok(()) => {
+                        clock.step(u64::from(step.unwrap_or_default()));
+                        self.pages.answer(page, id, json!({ "do": "done" }));
+                    }
                     Err(why) => self.pages.refuse(page, id, &why.to_string(), &[]),
                 }
             }
@@ -204,6 +244,13 @@ impl Performance {
                 let _ = reply.send(showing);
             }
             Order::End => {}
+        }
+    }
+
+    fn let_go(&mut self) {
+        self.leader = None;
+        if let Some(room) = &mut self.room {
+            in_room!(room, room, _rows => room.let_go());
         }
     }
 
@@ -252,7 +299,7 @@ impl Performance {
         scene: &BuiltScene<D>,
         before: Option<&Room<D>>,
     ) -> Result<Room<D>, String> {
-        Room::begin(Arc::new(scene.clone()), &self.terms, before)
+        Room::begin(Arc::new(scene.clone()), &self.terms, before, self.stop.is_stopped())
     }
 
     fn go_on(&mut self, is_frame: bool) {

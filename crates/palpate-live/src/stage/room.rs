@@ -21,6 +21,9 @@ use crate::wire::{Frame, FramePoint};
 /// The fastest that a hand follows the page, at the device [m/s].
 const FASTEST: f64 = 1.0;
 
+/// The most contact points of a hand.
+const MOST_POINTS: usize = 100;
+
 /// How long rows wait to be taken [s].
 const KEPT: f64 = 1.0;
 
@@ -75,11 +78,18 @@ impl<const D: usize> Room<D> {
         scene: Arc<BuiltScene<D>>,
         terms: &Terms,
         before: Option<&Self>,
+        is_stopped: bool,
     ) -> Result<Self, String> {
         let said = |error: HapticsError| error.to_string();
         let tool = scene.tool.as_ref().map_or(Ok(None), BuiltTool::in_hand).map_err(said)?;
         let map = scene.workspace_of(&terms.profile, tool.as_ref()).map_err(said)?;
         let mut lead = Lead::new(&scene, terms.points);
+        let points = lead.targets().len();
+        if points > MOST_POINTS {
+            return Err(format!(
+                "the hand of a page has at most {MOST_POINTS} contact points, the tool has {points}"
+            ));
+        }
         if let Some(before) = before {
             lead.take_over(&before.lead);
         }
@@ -88,8 +98,11 @@ impl<const D: usize> Room<D> {
         let settings = ServoSettings::default().with_rate(terms.rate);
         let servo = scene.servo_with(&device, settings).map_err(said)?;
         let (clock, speed) = ScaledClock::new(&Priority::Normal);
+        // A clock that is held or slow stays so.
+        let kept = before.map_or(1.0, |before| before.speed.get());
+        speed.set(kept).map_err(|error| error.to_string())?;
         let rows = (KEPT * terms.rate) as usize * lead.targets().len();
-        let mut options = ThreadOptions::default().with_recorder(rows);
+        let mut options = ThreadOptions::default().with_stop(is_stopped).with_recorder(rows);
         if !scene.motions.is_empty() {
             let moving = Arc::clone(&scene);
             options =
@@ -138,11 +151,22 @@ impl<const D: usize> Room<D> {
         &mut self,
         target: &[f64],
         point: Option<usize>,
-        is_held: bool,
+        from: Option<&[f64]>,
     ) -> Result<(), String> {
-        self.lead.lead(point_of(target)?, point, is_held)?;
+        let from = from.map(point_of).transpose()?;
+        self.lead.lead(point_of(target)?, point, from)?;
         steer(&mut self.steering, &self.lead, &self.map);
         Ok(())
+    }
+
+    /// Lets go of the hand, where bodies hold it back.
+    pub(super) fn let_go(&mut self) {
+        let proxies: Vec<_> = match self.thread.control().latest() {
+            Some(snapshot) => snapshot.touches.iter().map(|touch| touch.proxy).collect(),
+            None => Vec::new(),
+        };
+        self.lead.let_go(&proxies);
+        steer(&mut self.steering, &self.lead, &self.map);
     }
 
     pub(super) fn take_tour(&mut self, tour: HandPath<D>) {
@@ -198,7 +222,7 @@ impl<const D: usize> Room<D> {
             ticks: snapshot.progress.ticks,
             time: snapshot.progress.time,
             force: peaks.forces.iter().copied().fold(snapshot.progress.force, f64::max),
-            depth: peaks.depth,
+            depth: peaks.depth.max(snapshot.progress.depth),
             cost: 1e-9 * peaks.cost_ns as f64,
             lateness: 1e-9 * peaks.lateness_ns as f64,
             energy,

@@ -47,9 +47,10 @@ pub(crate) enum Ask {
         version: u32,
     },
     Hand {
-        target: Vec<f64>,
+        target: Option<Vec<f64>>,
         held: bool,
         point: Option<usize>,
+        from: Option<Vec<f64>>,
     },
     Tour {
         on: bool,

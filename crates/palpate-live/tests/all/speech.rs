@@ -116,3 +116,24 @@ fn edits_reach_the_servo_and_wrong_ones_do_not() {
         Live::start("x", None, &BALL.replace("0.05", "-1"), LiveOptions::default()).is_err()
     );
 }
+
+#[test]
+fn a_stop_does_not_wait_for_an_edit() {
+    let live = served(LiveOptions::default());
+    let mut page = Page::open(&live);
+    let thousand = include_str!("../../../../scenes/thousand.json");
+    page.say(&json!({ "do": "open", "name": "thousand", "text": thousand, "id": 1 }));
+    page.say(&json!({ "do": "stop", "id": 2 }));
+    let first = page.text(|message| message["id"] == 1 || message["id"] == 2);
+    assert_eq!(first, json!({ "do": "done", "id": 2 }));
+    assert_eq!(page.answer(1)["do"], "done");
+    // The servo of the new scene is stopped too.
+    let frame = loop {
+        let frame = page.binary(1);
+        if frame[4] == 2 && frame[8..16] != [0; 8] {
+            break frame;
+        }
+    };
+    assert_eq!(frame[3] & 1, 1, "stopped");
+    assert_eq!(page.ask(json!({ "do": "release" }))["do"], "done");
+}

@@ -134,7 +134,7 @@ const cases = [
       for (const colorScheme of ['light', 'dark']) {
         const { page, context, complaints } = await opened(url, { viewport: { width, height }, colorScheme });
         check(!page.url().includes('#'), 'the token stays in the address');
-        await page.waitForTimeout(1500);
+        await page.waitForTimeout(3000);
         const wrong = await violations(page);
         check(wrong.length === 0, `axe: ${wrong.join('; ')}`);
         await page.screenshot({ path: join(pictures, `gallery-${width}-${colorScheme}.png`) });
@@ -162,6 +162,9 @@ const cases = [
     });
     const force = Math.hypot(...point.force);
     near(force, 300 * point.depth, 0.05 * 300 * point.depth, `force at a depth of ${point.depth} m`);
+    // Across the ball, where the spring and the force are seen from the side.
+    await page.mouse.move(x + 90, y - 30, { steps: 30 });
+    await page.waitForTimeout(1500);
     await page.screenshot({ path: join(pictures, 'touch.png') });
     await page.mouse.up();
     check(complaints.length === 0, complaints.join('\n'));
@@ -217,7 +220,9 @@ const cases = [
         check(found.certified.lower <= upper && lower <= found.certified.upper,
           `proven ${found.certified.lower} to ${found.certified.upper}, by the core ${lower} to ${upper}`);
       }
-      await page.waitForTimeout(500);
+      await page.locator('.tab-checks').click();
+      await page.evaluate(async () => (await import('/plane/toys.js')).setToys({ corners: [[1.2, 0.85], [1.5, 0.4], [1.22, 0.62]] }));
+      await page.waitForTimeout(2000);
       await page.screenshot({ path: join(pictures, 'memoir.png') });
       await context.close();
     });

@@ -24,6 +24,8 @@ export function createHand(wire) {
   /** Where the hand was led last. @type {Vector} */
   let last = [0, 0, 0];
   let isHeld = false;
+  /** From where a hand comes that is not held yet. @type {Vector | null} */
+  let from = null;
 
   function send(held = true) {
     timer = 0;
@@ -34,12 +36,15 @@ export function createHand(wire) {
     const { point } = state.touch;
     const dimension = state.scene?.dimension ?? 3;
     const place = { target: last.slice(0, dimension), ...(point === null ? {} : { point }) };
-    wire.send({ do: 'hand', ...place, held });
+    wire.send({ do: 'hand', ...place, ...(from ? { from: from.slice(0, dimension) } : {}), held });
+    from = null;
   }
 
   return {
-    /** Leads the hand to a point. @param {Vector} point */
-    lead(point) {
+    /** Leads the hand to a point; a hand that is not held comes from `begin`, if that is given.
+     * @param {Vector} point @param {Vector | null} [begin] */
+    lead(point, begin = null) {
+      if (!isHeld) from = begin;
       isHeld = true;
       target = point;
       const wait = sentAt + PAUSE - performance.now();

@@ -69,6 +69,12 @@ function sentences(toy, result) {
     said.push({ isRight, text: `${result.touches ? 'it touches' : 'it does not touch'}; the memoir’s test says ${
       isRight ? 'the same' : 'otherwise'}` });
   }
+  if (toy === 'sweep') {
+    const { touches, lower, upper } = result;
+    const [free, met] = [lower, upper].map((at) => `${short(at ?? 0, 5)} s`);
+    said.push({ isRight: touches !== null, text: touches === null ? `undecided; proven free before ${free}`
+      : touches ? `it touches first between ${free} and ${met}` : 'it touches nothing on its way' });
+  }
   return said;
 }
 
@@ -76,6 +82,8 @@ function sentences(toy, result) {
 export function Verdict({ toy, result }) {
   if (!result) return null;
   const { certified, local, enclosing, ...rest } = result;
+  // Bounds of a time, which the sentence tells.
+  if (toy === 'sweep') ['lower', 'upper', 'touches'].forEach((key) => delete rest[key]);
   const said = sentences(toy, result);
   const locals = [local ?? []].flat();
   const state = said.length === 0 ? '' : said.every(({ isRight }) => isRight) ? 'right' : 'wrong';

@@ -50,7 +50,7 @@ export const sliceDrag = (handle, lens) => ({
  * @param {() => View} view @param {Place} place where the pointer was pressed
  * @param {Vector} through @param {boolean} pushes whether the drag pushes away from the viewer,
  *   as on a surface
- * @param {{ lead: (target: Vector) => void, release: () => void }} hand
+ * @param {{ lead: (target: Vector, begin?: Vector | null) => void, release: () => void }} hand
  * @param {(target: Vector | null) => void} show @returns {Drag} */
 export function handDrag(view, place, through, pushes, hand, show) {
   let here = place;
@@ -66,7 +66,10 @@ export function handDrag(view, place, through, pushes, hand, show) {
       ? PUSH * Math.hypot(here.x - place.x, here.y - place.y) : 0;
     const inwards = isFlat ? [0, 0, 0] : scale(lens.towards(plain), -1);
     const target = along(plain, inwards, (pressed + DEPTH * depth) * pixel);
-    hand.lead(target);
+    // A hand elsewhere comes along the line of sight, on which nothing is in between.
+    const { eye } = lens.basis;
+    const begin = pushes && !isFlat ? [0, 1, 2].map((axis) => (eye[axis] + plain[axis]) / 2) : null;
+    hand.lead(target, begin);
     show(target);
   };
   lead();

@@ -18,7 +18,7 @@ import { cross, dot, inSpace, subtract } from './vectors.js';
 /** A step of the zoom. */
 const STEP = 0.8;
 /** Room around the scene, over its size. */
-const ROOM = 1.12;
+const ROOM = 1.25;
 /** How far a plane is drawn from its origin, over the size of the scene. */
 const REACH = 0.5;
 
@@ -62,8 +62,7 @@ export class Views {
     flat.size = setting.size;
     orbit.yaw = 0.6;
     orbit.pitch = 0.42;
-    orbit.target = setting.centre;
-    orbit.height = (setting.size * ROOM) / Math.min(1, this.aspect);
+    this.fitOrbit(setting);
     this.lay(PLANES.xy, setting);
     this.fit(setting);
   }
@@ -80,10 +79,7 @@ export class Views {
     const { flat } = this;
     const { frame } = slice;
     flat.frame = frame;
-    const { box: { low, high } } = setting;
-    const edges = subtract(high, low);
-    const [width, height] = [frame.right, frame.up].map((axis) =>
-      Math.abs(axis[0] * edges[0]) + Math.abs(axis[1] * edges[1]) + Math.abs(axis[2] * edges[2]));
+    const [width, height] = extents(setting, [frame.right, frame.up]);
     const from = subtract(setting.centre, frame.origin);
     flat.centre = [dot(from, frame.right), dot(from, frame.up)];
     flat.height = Math.max(height, width / this.aspect) * 1.2;
@@ -93,9 +89,17 @@ export class Views {
   lookAlong(plane, setting) {
     this.lay(PLANES[plane], setting);
     this.face();
-    this.orbit.target = setting.centre;
-    this.orbit.height = (setting.size * ROOM) / Math.min(1, this.aspect);
+    this.fitOrbit(setting);
     this.fit(setting);
+  }
+
+  /** Fits the scene's box into the picture of space. @param {Setting} setting */
+  fitOrbit(setting) {
+    const { orbit } = this;
+    const { right, up } = orbit.basis();
+    const [width, height] = extents(setting, [right, up]);
+    orbit.target = setting.centre;
+    orbit.height = Math.max(height, width / this.aspect) * ROOM;
   }
 
   /** Turns the camera towards the plane. */
@@ -132,6 +136,13 @@ export class Views {
       + this.flat.centre[0] * frame.right[axis] + this.flat.centre[1] * frame.up[axis]);
     this.orbit.height = this.flat.height;
   }
+}
+
+/** How far the scene's box reaches along directions [m].
+ * @param {Setting} setting @param {number[][]} axes */
+function extents({ box: { low, high } }, axes) {
+  const edges = subtract(high, low);
+  return axes.map((axis) => Math.abs(axis[0] * edges[0]) + Math.abs(axis[1] * edges[1]) + Math.abs(axis[2] * edges[2]));
 }
 
 /** @param {string} plane @param {number[]} centre */

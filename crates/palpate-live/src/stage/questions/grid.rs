@@ -11,6 +11,9 @@ use crate::stage::hand::longest_edge;
 use crate::stage::room::{in_space, point_of};
 use crate::wire::{Ask, Grid, GridPlace};
 
+/// The most values along a side of a slice.
+const MOST_ALONG: usize = 512;
+
 /// The most values of a grid: 16 MB as single floats.
 const MOST_VALUES: usize = 1 << 22;
 
@@ -28,6 +31,9 @@ pub(super) fn slice<const D: usize>(scene: &BuiltScene<D>, ask: &Ask) -> Result<
         None => Err("a slice in space has the directions `right` and `up`".to_owned()),
     };
     let (origin, right, up) = (point_of::<D>(origin)?, axis(right, 0)?, axis(up, 1)?);
+    if columns.max(rows) > &MOST_ALONG {
+        return Err(format!("a slice has at most {MOST_ALONG} values along a side"));
+    }
     let counts = checked([*columns, *rows, 1])?;
     if !(*width > 0.0 && *height > 0.0 && width.is_finite() && height.is_finite()) {
         return Err(format!("a slice has a width and a height, got {width} m and {height} m"));
