@@ -106,20 +106,19 @@ function written(text, name = 'scene.json') {
   return file;
 }
 
-/** Asks the program by the socket of the page. */
+/** Asks the program by a second socket, which stays open: the hand is let go by a page that goes. */
 const ask = (page, message) => page.evaluate(async (message) => {
-  const token = sessionStorage.getItem('palpate token') ?? Object.values(sessionStorage)[0];
-  const socket = new WebSocket(`ws://${location.host}/socket?token=${token}`);
-  await new Promise((resolve) => (socket.onopen = resolve));
-  const answer = new Promise((resolve) => (socket.onmessage = ({ data }) => {
-    if (typeof data !== 'string') return;
-    const said = JSON.parse(data);
-    if (said.id === 1) resolve(said);
+  if (!window.second) {
+    const token = Object.values(sessionStorage)[0];
+    window.second = new WebSocket(`ws://${location.host}/socket?token=${token}`);
+    await new Promise((resolve) => (window.second.onopen = resolve));
+  }
+  const id = (window.asked = (window.asked ?? 0) + 1);
+  const answer = new Promise((resolve) => window.second.addEventListener('message', ({ data }) => {
+    if (typeof data === 'string' && JSON.parse(data).id === id) resolve(JSON.parse(data));
   }));
-  socket.send(JSON.stringify({ ...message, id: 1 }));
-  const said = await answer;
-  socket.close();
-  return said;
+  window.second.send(JSON.stringify({ ...message, id }));
+  return answer;
 }, message);
 
 async function violations(page) {
@@ -267,12 +266,11 @@ const cases = [
     const tick = await state(page, 'frame.tick');
     await page.locator('.scene-name').focus();
     await page.keyboard.press('Escape');
-    await ask(page, { do: 'clock', step: 2 });
-    const frame = await until('two ticks', async () => {
+    const frame = await until('a stop', async () => {
       const frame = await state(page, 'frame');
-      return frame.tick >= tick + 2 && frame;
+      return frame.stopped && frame;
     });
-    check(frame.tick === tick + 2 && frame.stopped, `tick ${frame.tick} after ${tick}, stopped: ${frame.stopped}`);
+    check(frame.tick <= tick + 2, `stopped at tick ${frame.tick}, asked for at ${tick}`);
     check(frame.points.every(({ force }) => Math.hypot(...force) === 0), 'a force is left');
     await page.locator('#stop').click();
     await ask(page, { do: 'clock', speed: 1 });
