@@ -12,6 +12,7 @@
  */
 
 import { state } from '../state.js';
+import { cornersOf } from './setting.js';
 import { setSlice, slice } from './slice.js';
 import { cross, dot, inSpace, subtract } from './vectors.js';
 
@@ -19,6 +20,8 @@ import { cross, dot, inSpace, subtract } from './vectors.js';
 const STEP = 0.8;
 /** Room around the scene, over its size. */
 const ROOM = 1.25;
+/** The picture over the scene's box in it. */
+const MARGIN = 1.08;
 /** How far a plane is drawn from its origin, over the size of the scene. */
 const REACH = 0.5;
 
@@ -100,6 +103,15 @@ export class Views {
     const [width, height] = extents(setting, [right, up]);
     orbit.target = setting.centre;
     orbit.height = Math.max(height, width / this.aspect) * ROOM;
+    // What is nearer is larger: the corners tell by how much, and move as the camera does.
+    const rect = { x: -this.aspect / 2, y: -0.5, width: this.aspect, height: 1 };
+    for (let round = 0; round < 4; round += 1) {
+      const lens = orbit.lens(rect);
+      const seen = cornersOf(setting.box).map((corner) => lens.project(corner));
+      const most = Math.max(...seen.map((at) => (at
+        ? Math.max(Math.abs(at.x) / (this.aspect / 2), Math.abs(at.y) / 0.5) : 2)));
+      orbit.height *= most * MARGIN;
+    }
   }
 
   /** Turns the camera towards the plane. */
