@@ -33,7 +33,8 @@ pub type Slot = usize;
 /// use palpate_live::shader::Formulas;
 ///
 /// # fn main() -> Result<(), palpate::field::ShapeError> {
-/// let formulas = |radius: f64| Shape::ball(radius).map(|ball| Formulas::of([&ball]).unwrap());
+/// let formulas =
+///     |radius: f64| Shape::sphere(radius).map(|ball| Formulas::of([&ball]).unwrap());
 /// let (small, large) = (formulas(0.25)?, formulas(0.5)?);
 /// let moving = small.slots_that_differ(&large).unwrap();
 /// let shader = large.shader(&moving);
