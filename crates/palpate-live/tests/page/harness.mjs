@@ -59,7 +59,7 @@ export async function start(program, words, folder) {
 
 /** Waits until `look` gives something true, and gives that. Fails after `patience` [ms].
  * @template T @param {string} what @param {() => Promise<T> | T} look */
-export async function until(what, look, patience = 15000) {
+export async function until(what, look, patience = 30000) {
   const end = Date.now() + patience;
   for (;;) {
     const found = await look();
@@ -86,7 +86,7 @@ export async function run(cases) {
   let failed = 0;
   for (const [name, work] of cases.filter(([name]) => !only || name.includes(only))) {
     const begin = Date.now();
-    const late = new Promise((_, reject) => setTimeout(() => reject(new Error('took more than a minute')), 60000).unref());
+    const late = new Promise((_, reject) => setTimeout(() => reject(new Error('took more than two minutes')), 120000).unref());
     try {
       await Promise.race([work(), late]);
       console.log(`ok      ${name} (${((Date.now() - begin) / 1000).toFixed(1)} s)`);
