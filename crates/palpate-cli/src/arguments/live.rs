@@ -40,7 +40,7 @@ pub(crate) struct LiveOptions {
     #[arg(long, allow_negative_numbers = true, value_parser = count(1, MOST_POINTS))]
     pub(crate) points: Option<usize>,
     /// Ticks a second [Hz].
-    #[arg(long, allow_negative_numbers = true, default_value = "1000", value_parser = within(1.0, 100_000.0, " Hz"))]
+    #[arg(long, allow_negative_numbers = true, default_value = "1000", value_parser = within(1.0, 100_000.0, "Hz"))]
     pub(crate) rate: f64,
 }
 

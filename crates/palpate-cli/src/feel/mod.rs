@@ -25,7 +25,7 @@ use palpate::haptics::{HapticsError, Probe, Progress, SafetyError};
 use palpate::scene::{AnyScene, BuiltScene, BuiltTool, ServoSettings};
 use palpate::servo_loop::{Ending, Pace, Recorder, RunOptions, RunReport, run as run_servo};
 
-use crate::arguments::{DeviceChoice, FeelOptions, ProfileChoice, RecoveryChoice};
+use crate::arguments::{DeviceChoice, FeelOptions, PageOptions, ProfileChoice, RecoveryChoice};
 use crate::emptiness;
 use crate::input::{self, Named};
 use crate::interrupt::Interrupt;
@@ -67,6 +67,7 @@ where
     let name = named.name.as_str();
     let choice = choice(options)?;
     check_forces(&choice, options)?;
+    check_page(options)?;
     let scene = &asked(scene, options).at(0.0).map_err(Failure::input)?;
     let tool = tool::of_scene(scene, options)?;
     let paths = hands(scene, options, tool.as_ref(), outputs)?;
@@ -200,6 +201,17 @@ fn hands<const D: usize>(
 /// Whether a page shows what is felt: the built-in gallery, in real time, to a person.
 fn shows_page(options: &FeelOptions) -> bool {
     options.scene.is_none() && !options.no_live && !options.fast && !options.json
+}
+
+/// Refuses options of the page where none is served.
+fn check_page(options: &FeelOptions) -> Result<(), Failure> {
+    if shows_page(options) || options.page == PageOptions::default() {
+        return Ok(());
+    }
+    Err(Failure::input(
+        "--port, --bind and --token-file are for the page that `palpate feel` serves without a scene, \
+         and without --no-live, --fast and --json; `palpate live SCENE` shows a scene",
+    ))
 }
 
 /// Whether a run felt nothing, no guide or magnet either.

@@ -28,6 +28,8 @@ const AWAY: Duration = Duration::from_secs(3);
 const FINGERS: usize = 10;
 
 pub(crate) fn run(options: &LiveOptions, interrupt: &Interrupt) -> Result<Outcome, Failure> {
+    // A scene with an error is told of as by every command.
+    input::scene(options.scene.as_deref())?;
     let (name, text) = input::scene_text(options.scene.as_deref())?;
     let points = options.points.unwrap_or(if options.scene.is_none() { FINGERS } else { 1 });
     let mut served =

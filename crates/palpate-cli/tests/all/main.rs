@@ -15,6 +15,7 @@ mod feel;
 mod gradients;
 mod identify;
 mod interrupted;
+mod live;
 mod memoir;
 mod messages;
 mod motions;

@@ -11,8 +11,8 @@ pub(super) const MOST_PAGES: usize = 64;
 /// The largest message of a page [bytes].
 pub(super) const LARGEST_MESSAGE: usize = 1 << 20;
 
-/// What may wait to be written to a socket [bytes].
-pub(super) const MOST_WAITING: usize = 256 << 10;
+/// The largest answer, a grid of samples: so much may wait to be written to a socket [bytes].
+pub(super) const LARGEST_ANSWER: usize = 20 << 20;
 
 /// The most messages that cannot be read.
 pub(super) const MOST_UNREADABLE: u32 = 10;

@@ -25,7 +25,7 @@ use tokio::sync::oneshot;
 use crate::stage::Stage;
 use guard::{Guard, HEADERS};
 pub(crate) use guard::{is_token, new_token};
-use limits::{LARGEST_MESSAGE, MOST_WAITING};
+use limits::{LARGEST_ANSWER, LARGEST_MESSAGE};
 
 /// What all requests share.
 #[derive(Clone, Debug)]
@@ -90,13 +90,10 @@ async fn socket(
     let upgrade = upgrade
         .max_message_size(LARGEST_MESSAGE)
         .max_frame_size(LARGEST_MESSAGE)
-        .max_write_buffer_size(MOST_WAITING.max(LARGEST_ANSWER))
+        .max_write_buffer_size(LARGEST_ANSWER)
         .write_buffer_size(0);
     Ok(upgrade.on_upgrade(|socket| socket::speak(socket, shared.stage)))
 }
-
-/// The largest answer: a grid of samples [bytes].
-const LARGEST_ANSWER: usize = 20 << 20;
 
 async fn stop(
     State(shared): State<Shared>,
