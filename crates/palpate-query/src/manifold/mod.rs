@@ -11,12 +11,13 @@
 //! all of it.
 //!
 //! `region` finds the candidates with their normals, `Touch` the normal of a point that is found
-//! otherwise, `patch` and `fill` choose the contacts; the separation and its bounds come from
+//! otherwise, `patch` and `fill` choose the contacts, `moved` carries them with bodies; the separation and its bounds come from
 //! `pair/search.rs`.
 
 mod deep;
 mod fill;
 pub(crate) mod grid;
+mod moved;
 mod patch;
 mod region;
 
@@ -206,46 +207,6 @@ impl<const D: usize> Spanned<D> {
         *pair = patches.pair;
         drop_copies(&mut members, settings.spacing);
         Self { members, stop }
-    }
-
-    /// These points on bodies that have moved a little: put back on the surface between them, with the
-    /// best point of the search.
-    pub(crate) fn moved(
-        &self,
-        separated: &mut SeparatedPair<'_, D>,
-        settings: &ManifoldSettings,
-    ) -> Self {
-        let SeparatedPair { pair, best, .. } = separated;
-        let renewed = |member: &Member<D>| {
-            let p = member.touch.point;
-            let [(a, slope_a), (b, slope_b)] = pair.slopes(p);
-            let between = slope_a - slope_b;
-            let squared = between.dot(between);
-            let step = if squared > 0.0 { between * ((a - b) / squared) } else { Vector::ZERO };
-            // A step that is long is none towards the surface near the point.
-            let is_near = step.norm() <= settings.spacing;
-            let touch = Touch::at(pair, if is_near { p - step } else { p });
-            Member { touch, ..*member }
-        };
-        let mut members: Vec<_> = self.members.iter().map(renewed).collect();
-        let deepest = Touch::at(pair, *best);
-        let near = members
-            .iter_mut()
-            .find(|member| is_copy(&member.touch, &deepest, settings.spacing));
-        match near {
-            Some(member) => {
-                let is_deeper = SAME_DEPTH * settings.precision_length();
-                if deepest.gap < member.touch.gap - is_deeper {
-                    member.touch = deepest;
-                }
-            }
-            None => {
-                let group = members.iter().map(|member| member.group + 1).max().unwrap_or(0);
-                members.push(Member { touch: deepest, group });
-            }
-        }
-        members.sort_by(|one, other| one.touch.gap.total_cmp(&other.touch.gap));
-        Self { members, stop: self.stop }
     }
 
     /// The manifold of those points whose gap is within the margin.

@@ -17,11 +17,18 @@ use crate::placed::Placed;
 /// region was searched.
 const NEAR: f64 = 0.25;
 
+/// Of bodies that move on slowly, the region is searched up to a gap that is larger by this share of the
+/// margin, and its contacts are kept while the bodies stay within as much of those poses.
+const WIDER: f64 = 1.0;
+
 /// Contacts of an earlier step, in the first body's coordinates.
 #[derive(Clone, Debug)]
 pub(super) struct Kept<const D: usize> {
-    /// The second body in these coordinates.
-    at: Pose<D>,
+    /// The second body in these coordinates when the region was searched, and in the last step.
+    found_at: Pose<D>,
+    last: Pose<D>,
+    /// How far the bodies may move from there [m].
+    reach: f64,
     settings: ManifoldSettings,
     spanned: Spanned<D>,
 }
@@ -33,7 +40,10 @@ impl<const D: usize> Track<D> {
     ///
     /// While the bodies stay within a quarter of the margin of the poses at which the region of contact
     /// was searched, its points are put back on the surfaces, and only the separation is searched. Parts
-    /// of the region that are new meanwhile have a gap of more than three quarters of the margin.
+    /// of the region that are new meanwhile have a gap of more than three quarters of the margin. Of
+    /// bodies that move on by no more than the margin in a step, the region is searched up to twice the
+    /// margin, and lasts while they stay within the margin of those poses: no part within the margin is
+    /// new meanwhile.
     ///
     /// # Errors
     ///
@@ -72,18 +82,25 @@ impl<const D: usize> Kept<D> {
         workspace: &mut PairWorkspace<D>,
     ) -> Manifold<D> {
         let now = separated.pair.second_from_frame;
-        let root = separated.pair.root(settings.margin);
-        let lasts = |kept: &&Self| {
-            kept.settings == *settings
-                && displacement(&kept.at, &now, &root) <= NEAR * settings.margin
-        };
-        if let Some(kept) = last.as_ref().filter(lasts) {
-            let spanned = kept.spanned.moved(&mut separated, settings);
-            return spanned.manifold(&separated, settings);
+        let kept = last.take().filter(|kept| kept.settings == *settings);
+        let wider = settings.with_margin((1.0 + WIDER) * settings.margin);
+        let root = separated.pair.root(wider.margin);
+        let mut is_slow = false;
+        if let Some(mut kept) = kept {
+            if displacement(&kept.found_at, &now, &root) <= kept.reach {
+                let spanned = kept.spanned.moved(&mut separated, &kept.found_at, settings);
+                kept.last = now;
+                *last = Some(kept);
+                return spanned.manifold(&separated, settings);
+            }
+            is_slow = displacement(&kept.last, &now, &root) <= WIDER * settings.margin;
         }
-        let spanned = Spanned::find(&mut separated, settings, budget, workspace);
-        let found = spanned.manifold(&separated, settings);
-        *last = Some(Self { at: now, settings: *settings, spanned });
+        let (searched, share) = if is_slow { (&wider, WIDER) } else { (settings, NEAR) };
+        let spanned = Spanned::find(&mut separated, searched, budget, workspace);
+        let within = spanned.clone().within(&mut separated, settings);
+        let found = within.manifold(&separated, settings);
+        let reach = share * settings.margin;
+        *last = Some(Self { found_at: now, last: now, reach, settings: *settings, spanned });
         found
     }
 }
