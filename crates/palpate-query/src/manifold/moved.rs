@@ -8,6 +8,10 @@ use palpate_field::{Point, Pose, Vector};
 use super::{ManifoldSettings, Member, SAME_DEPTH, SeparatedPair, Spanned, Touch, is_copy};
 use crate::pair::body_pair::BodyPair;
 
+/// A point is drawn to where the gap is this share of the margin, in so many steps at most.
+const WITHIN: f64 = 0.9;
+const DRAWN: usize = 4;
+
 impl<const D: usize> Spanned<D> {
     /// These points, found when the second body was at `found_at` in the pair's frame, on the surface
     /// between the bodies as they are now, with the best point of the search.
@@ -52,8 +56,7 @@ impl<const D: usize> Spanned<D> {
     }
 
     /// The same region where the gap is within the margin of `settings`, which may be less than that of
-    /// the search: a point beyond the margin is drawn towards the next one of its group, to where the gap
-    /// is the margin.
+    /// the search: points beyond the margin are drawn to where the gap is the margin.
     pub(crate) fn within(
         mut self,
         separated: &mut SeparatedPair<'_, D>,
@@ -62,16 +65,15 @@ impl<const D: usize> Spanned<D> {
         let is_within = |member: &Member<D>| member.touch.gap <= settings.margin;
         let count = self.members.partition_point(is_within);
         for i in count..self.members.len() {
-            let beyond = self.members[i];
-            let apart = |member: &Member<D>| (member.touch.point - beyond.touch.point).norm();
-            let group = self.members[..count].iter().filter(|it| it.group == beyond.group);
-            let next = group.min_by(|one, other| apart(one).total_cmp(&apart(other)));
-            let Some(next) = next.map(|member| member.touch) else { continue };
-            let share = (settings.margin - next.gap) / (beyond.touch.gap - next.gap);
-            let between = next.point + (beyond.touch.point - next.point) * share;
-            let touch = put_back(&mut separated.pair, between, settings);
-            let is_new = |other: &Member<D>| !is_copy(&other.touch, &touch, settings.spacing);
-            if touch.gap <= settings.margin && self.members.iter().all(is_new) {
+            let Some(touch) =
+                drawn_within(&mut separated.pair, self.members[i].touch.point, settings)
+            else {
+                continue;
+            };
+            let is_new = |other: &Member<D>| {
+                !is_within(other) || !is_copy(&other.touch, &touch, settings.spacing)
+            };
+            if self.members.iter().all(is_new) {
                 self.members[i].touch = touch;
             }
         }
@@ -93,4 +95,30 @@ fn put_back<const D: usize>(
     // A step that is long is none towards the surface near the point.
     let is_near = step.norm() <= settings.spacing;
     Touch::at(pair, if is_near { p - step } else { p })
+}
+
+/// A touch whose gap is within the margin, by steps of Newton's method along the surface between the
+/// bodies from a point of it whose gap is larger.
+fn drawn_within<const D: usize>(
+    pair: &mut BodyPair<'_, D>,
+    p: Point<D>,
+    settings: &ManifoldSettings,
+) -> Option<Touch<D>> {
+    let mut here = p;
+    for _ in 0..DRAWN {
+        let [(a, slope_a), (b, slope_b)] = pair.slopes(here);
+        // On the surface between, the gap is the sum of both values.
+        let (across, sum) = (slope_a - slope_b, slope_a + slope_b);
+        let along = sum - across * (sum.dot(across) / across.dot(across));
+        let next = here - along * ((a + b - WITHIN * settings.margin) / along.dot(along));
+        if !next.is_finite() {
+            return None;
+        }
+        let touch = put_back(pair, next, settings);
+        if touch.gap <= settings.margin {
+            return Some(touch);
+        }
+        here = touch.point;
+    }
+    None
 }

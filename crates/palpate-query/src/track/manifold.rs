@@ -19,7 +19,7 @@ const NEAR: f64 = 0.25;
 
 /// Of bodies that move on slowly, the region is searched up to a gap that is larger by this share of the
 /// margin, and its contacts are kept while the bodies stay within as much of those poses.
-const WIDER: f64 = 1.0;
+const WIDER: f64 = 1.5;
 
 /// Contacts of an earlier step, in the first body's coordinates.
 #[derive(Clone, Debug)]
@@ -41,8 +41,8 @@ impl<const D: usize> Track<D> {
     /// While the bodies stay within a quarter of the margin of the poses at which the region of contact
     /// was searched, its points are put back on the surfaces, and only the separation is searched. Parts
     /// of the region that are new meanwhile have a gap of more than three quarters of the margin. Of
-    /// bodies that move on by no more than the margin in a step, the region is searched up to twice the
-    /// margin, and lasts while they stay within the margin of those poses: no part within the margin is
+    /// bodies that move on by no more than 1.5 margins in a step, the region is searched up to 2.5
+    /// margins, and lasts while they stay within 1.5 of those poses: no part within the margin is
     /// new meanwhile.
     ///
     /// # Errors
