@@ -88,7 +88,7 @@ pub use palpate_safety::{
     DeviceProfile, Effect, FreeForceReport, GripperProfile, GripperState, Impedance,
     LimitCycleReport, NumberError, PassivityReport, PointState, PortState, Reading,
     ReadingsReport, Recovery, Refused, Requester, Rule, SafetyChain, SafetyError,
-    SafetyOptions, SafetyReport, TurnReadings, TurnState, TurningProfile, TurningReport,
+    SafetyOptions, SafetyReport, StageTicks, TurnReadings, TurnState, TurningProfile, TurningReport,
     VelocityEstimator, WatchdogReport, WorkspaceMap,
 };
 pub use protection::Protection;

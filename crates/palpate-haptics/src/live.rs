@@ -6,7 +6,7 @@
 use crate::contact_point::Touch;
 use crate::event::Reaction;
 use crate::tool::HeldTool;
-use palpate_safety::{Buttons, GripperState};
+use palpate_safety::{Buttons, GripperState, StageTicks};
 
 /// The progress of a running servo, as of a recent tick.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -41,6 +41,8 @@ pub struct Snapshot<const D: usize> {
     /// `true` while all written forces are held at zero: by an emergency stop, or because the bodies
     /// that were sent last were accepted for another servo.
     pub is_stopped: bool,
+    /// In how many ticks each stage of the safety chains has acted since the start.
+    pub safety: StageTicks,
     /// The buttons of the device that are held down.
     pub buttons: Buttons,
     /// The gripper of the device; `None` for a device without one.

@@ -11,7 +11,7 @@ use crate::error::HapticsError;
 use crate::protection::Protection;
 use palpate_safety::{
     Acceptance, Accepted, Arrival, DeviceLimits, Impedance, PassivityReport, PerMotion,
-    PointState, PortState, Readings, ReadingsReport, SafetyChain, SafetyOptions, SafetyReport,
+    PointState, PortState, Readings, ReadingsReport, SafetyChain, SafetyOptions, SafetyReport, StageTicks,
     TurnReadings, TurnState, VelocityEstimator, WrenchChain,
 };
 
@@ -174,6 +174,13 @@ impl<const D: usize> Port<D> {
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     pub(crate) fn energy(&self) -> Energy {
         energy(&self.chain.passivity())
+    }
+
+    /// In how many ticks each stage of the safety chain has acted, without the readings.
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    pub(crate) fn stage_ticks(&self) -> StageTicks {
+        self.chain.stage_ticks()
     }
 
     /// What the safety chain did, without the readings.

@@ -5,7 +5,7 @@
 
 use std::fmt::{Display, Formatter, Result};
 
-use palpate_haptics::{PassivityReport, SafetyReport, TurningReport};
+use palpate_haptics::{PassivityReport, SafetyReport, StageTicks};
 
 use crate::connection::ConnectionReport;
 use crate::display::NOT_RELEASED;
@@ -122,26 +122,8 @@ fn write_safety(f: &mut Formatter<'_>, safety: &[SafetyReport]) -> Result {
     );
     line(f, "energy", said)?;
     let ticks = |of: fn(&SafetyReport) -> u64| safety.iter().map(of).sum::<u64>();
-    let turns = |of: fn(&TurningReport) -> u64| -> u64 {
-        safety.iter().filter_map(|point| point.turning.as_ref()).map(of).sum()
-    };
-    let stages = [
-        ("held readings", ticks(|point| point.readings.held + point.readings.turns_held)),
-        ("limit cycles", ticks(|point| point.limit_cycles.effect.ticks)),
-        ("passivity of guides", ticks(|point| point.free_forces.effect.ticks)),
-        ("passivity", ticks(|point| point.passivity.effect.ticks)),
-        ("force rate", ticks(|point| point.slew.ticks)),
-        ("largest force", ticks(|point| point.force_limit.ticks)),
-        ("lasting force", ticks(|point| point.continuous.effect.ticks)),
-        ("not a number", ticks(|point| point.guard.ticks)),
-        ("rise from zero", ticks(|point| point.ramp.ticks)),
-        ("watchdog", ticks(|point| point.watchdog.effect.ticks)),
-        ("emergency stop", ticks(|point| point.emergency_stop.ticks)),
-        ("torque rate", turns(|turning| turning.slew.ticks)),
-        ("largest torque", turns(|turning| turning.torque_limit.ticks)),
-        ("lasting torque", turns(|turning| turning.continuous.effect.ticks)),
-    ];
-    let acted = stages.iter().filter(|(_, ticks)| *ticks > 0);
+    let stages: StageTicks = safety.iter().map(StageTicks::from).sum();
+    let acted = stages.named().filter(|(_, ticks)| *ticks > 0);
     let acted: Vec<_> = acted.map(|(stage, ticks)| format!("{stage} {ticks}")).collect();
     let acted = if acted.is_empty() { "nothing to do".to_owned() } else { acted.join(", ") };
     line(f, "safety, ticks", acted)?;

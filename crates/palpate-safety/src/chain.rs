@@ -20,6 +20,7 @@ use crate::limits::DeviceLimits;
 use crate::passivity::{Passivity, PassivityOptions, PassivityReport, PortMotion};
 use crate::report::SafetyReport;
 use crate::rise::Recovery;
+use crate::stage_ticks::StageTicks;
 
 /// The input of a contact point's safety chain in a tick, beside the wanted force. In device
 /// coordinates ([`WorkspaceMap`](crate::WorkspaceMap)), because the limits are the device's.
@@ -458,6 +459,19 @@ impl<const D: usize> SafetyChain<D> {
     #[must_use]
     pub fn passivity(&self) -> PassivityReport {
         self.passivity.report()
+    }
+
+    /// In how many ticks each stage has acted, as in [`report`](Self::report).
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    #[must_use]
+    pub fn stage_ticks(&self) -> StageTicks {
+        let first = [
+            self.cycle.report().effect,
+            self.free.report().effect,
+            self.passivity.report().effect,
+        ];
+        StageTicks::of(first.map(|effect| effect.ticks), &self.channel.effects, None)
     }
 
     /// The report of every stage so far.

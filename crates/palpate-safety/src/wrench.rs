@@ -21,7 +21,7 @@ use crate::limit::cut;
 use crate::limit_cycle::{CycleInput, LimitCycle, LimitCycleOptions};
 use crate::limits::DeviceLimits;
 use crate::passivity::{InnerProduct, Passivity, PassivityOptions, PortMotion};
-use crate::{Accepted, PassivityReport, SafetyOptions, SafetyReport, TurningReport};
+use crate::{Accepted, PassivityReport, SafetyOptions, SafetyReport, StageTicks, TurningReport};
 
 /// A translational and a rotational vector: force [N] and torque [N·m], position [m] and angle
 /// [rad], or their velocities.
@@ -369,6 +369,20 @@ impl<const D: usize> WrenchChain<D> {
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     pub fn passivity(&self) -> PassivityReport {
         self.passivity.report()
+    }
+
+    /// In how many ticks each stage has acted, as in [`report`](Self::report).
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    #[must_use]
+    pub fn stage_ticks(&self) -> StageTicks {
+        let first = [
+            self.cycle.report().effect,
+            self.free.report().effect,
+            self.passivity.report().effect,
+        ];
+        let torque = Some(&self.torque.effects);
+        StageTicks::of(first.map(|effect| effect.ticks), &self.force.effects, torque)
     }
 
     /// What every stage did so far, in translation and rotation.

@@ -113,6 +113,7 @@ pub fn handoff<const D: usize>(
         touches: servo.touches().to_vec(),
         tool: servo.held_tool(),
         is_stopped: servo.is_stopped(),
+        safety: servo.stage_ticks(),
         buttons: servo.buttons(),
         gripper: servo.gripper(),
         gripper_force: servo.gripper_force(),

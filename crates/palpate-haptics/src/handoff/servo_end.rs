@@ -90,6 +90,7 @@ impl<const D: usize> ServoEnd<D> {
             snapshot.events_lost = events_lost;
             snapshot.tool = servo.held_tool();
             snapshot.is_stopped = servo.is_stopped();
+            snapshot.safety = servo.stage_ticks();
             snapshot.buttons = servo.buttons();
             snapshot.gripper = servo.gripper();
             snapshot.gripper_force = servo.gripper_force();
