@@ -97,6 +97,15 @@ export function problemAt(pointer) {
   return null;
 }
 
+/** Forgets what was wrong at a JSON pointer, or within it: a person gave it up. @param {string} pointer */
+export function forgetProblem(pointer) {
+  if (problemAt(pointer) === null) return;
+  for (const at of [...state.problems.keys()]) {
+    if (at === pointer || at.startsWith(`${pointer}/`)) state.problems.delete(at);
+  }
+  changed('problems');
+}
+
 /** Takes a scene that the program sent. @param {import('../wire.js').Message} scene */
 export function takeScene(scene) {
   state.scene = scene;

@@ -16,12 +16,16 @@
  * @property {boolean} [whole]
  * @property {number} [scale] a typical value: gives the slider its range, the drag its speed
  * @property {boolean} [slider]
+ * @property {boolean} [isNamed] whether the unit stands beside the label
  * @property {string} [help]
  * @property {string | null} [problem]
+ * @property {() => void} [forget] what was refused is given up
+ * @property {boolean} [own] whether the page alone keeps the number, so that no program checks it
  */
 
 import { html, useEffect, useRef, useState } from '../vendor/htm-preact.js';
-import { parsed, short, typed } from './numbers.js';
+import { short, typed } from './numbers.js';
+import { read } from './units.js';
 
 /** Pixels of a drag across the typical value. */
 const DRAG_PIXELS = 150;
@@ -57,13 +61,25 @@ function allowed(value, given) {
   return whole ? Math.round(kept) : Number(kept.toPrecision(6));
 }
 
+/** What is wrong with a number that the page alone keeps, or null.
+ * @param {number} value @param {NumberGiven} given */
+function outside(value, { min = -Infinity, max = Infinity, above, whole, unit = '' }) {
+  const inUnit = (/** @type {number} */ limit) => `${short(limit)}${unit && ` ${unit}`}`;
+  if (whole && !Number.isInteger(value)) return 'It must be a whole number.';
+  if (value < min || (above && value === min)) return `It must be ${above ? 'greater than' : 'at least'} ${inUnit(min)}.`;
+  return value > max ? `It must be at most ${inUnit(max)}.` : null;
+}
+
 /** A number that is typed, dragged sideways, stepped by arrow keys, or slid.
  * @param {NumberGiven} given */
 export function NumberField(given) {
-  const { label, value, change, unit = '', help, problem, slider = true } = given;
+  const { label, value, change, unit = '', help, slider = true, isNamed = true } = given;
   const id = useId();
   const [draft, setDraft] = useState(/** @type {number | null} */ (null));
   const [text, setText] = useState(/** @type {string | null} */ (null));
+  // What is wrong with the text: it stays as it was typed until it is right or given up.
+  const [wrong, setWrong] = useState(/** @type {string | null} */ (null));
+  const problem = wrong ?? given.problem;
   const range = useRef(rangeOf(given));
   // A new value may be outside the range of before; while it moves the range rests.
   useEffect(() => {
@@ -73,34 +89,52 @@ export function NumberField(given) {
   // What the program has takes the draft's place, but not under a hand that still moves it, nor
   // before what was wrong with it was read.
   useEffect(() => {
-    if (!isMoving.current && !problem) setDraft(null);
-  }, [value, problem]);
+    if (!isMoving.current && !given.problem) setDraft(null);
+  }, [value, given.problem]);
   const shown = draft ?? value;
   const { low, high } = range.current;
 
+  const setTyped = (/** @type {string | null} */ next) => {
+    setText(next);
+    setWrong(null);
+  };
   const go = (/** @type {number} */ next, /** @type {boolean} */ moving) => {
     const kept = allowed(next, given);
     isMoving.current = moving;
+    setTyped(null);
     setDraft(kept);
     change(kept, moving);
   };
+  const giveUp = () => {
+    setTyped(null);
+    setDraft(null);
+    given.forget?.();
+  };
   const finish = () => {
-    const next = text === null ? null : parsed(text);
-    setText(null);
-    // What is typed goes to the program as it is, which says what is wrong with it.
-    if (next !== null && next !== value) {
-      setDraft(next);
-      change(next, false);
+    if (text === null || text === typed(shown)) {
+      setTyped(null);
+      return;
     }
+    const found = read(text, unit);
+    const why = 'problem' in found ? found.problem : given.own ? outside(found.value, given) : null;
+    setWrong(why);
+    if (why !== null || !('value' in found)) return;
+    setText(null);
+    if (found.value === value) {
+      giveUp();
+      return;
+    }
+    // What is typed goes to the program as it is, which says what is wrong with it.
+    setDraft(found.value);
+    change(found.value, false);
   };
   const key = (/** @type {KeyboardEvent} */ event) => {
     if (event.key === 'Enter') finish();
-    if (event.key === 'Escape') setText(null);
+    if (event.key === 'Escape') giveUp();
     const turn = { ArrowUp: 1, ArrowDown: -1 }[event.key];
     if (turn === undefined) return;
     event.preventDefault();
     const size = given.whole ? 1 : step(Math.abs(shown) || (high - low) / 20);
-    setText(null);
     go(shown + turn * size * (event.shiftKey ? 10 : 1), false);
   };
   const press = (/** @type {PointerEvent} */ event) => {
@@ -134,19 +168,19 @@ export function NumberField(given) {
     Number(/** @type {HTMLInputElement} */ (event.currentTarget).value);
 
   return html`<div class=${problem ? 'field wrong' : 'field'}>
-    <label for=${`f${id}`} title=${help}>${label}${unit && html` <span class="unit">[${unit}]</span>`}</label>
+    <label for=${`f${id}`} title=${help}>${label}${unit && isNamed && html` <span class="unit">[${unit}]</span>`}</label>
     <input id=${`f${id}`} class="number" type="text" inputmode="decimal" autocomplete="off"
-      value=${text ?? short(shown, 6)} title=${`${help ?? label}: drag sideways, or type`}
+      value=${text ?? short(shown, 6)} title=${`${help ?? label}: drag sideways, or type${unit && ', also with another unit'}`}
       aria-invalid=${problem ? 'true' : undefined} aria-describedby=${problem ? `p${id}` : undefined}
-      onFocus=${(/** @type {any} */ event) => { setText(typed(shown)); event.currentTarget.select(); }}
-      onInput=${(/** @type {any} */ event) => setText(event.currentTarget.value)}
+      onFocus=${(/** @type {any} */ event) => { setText(text ?? typed(shown)); event.currentTarget.select(); }}
+      onInput=${(/** @type {any} */ event) => setTyped(event.currentTarget.value)}
       onBlur=${finish} onKeyDown=${key} onPointerDown=${press} />
     ${slider && html`<input type="range" class="slider" min=${low} max=${high}
       step=${given.whole ? 1 : step((high - low) / SLIDER_STEPS)} value=${shown} aria-label=${label}
       aria-valuetext=${`${short(shown)} ${unit}`}
       onInput=${(/** @type {Event} */ event) => go(sliderValue(event), true)}
       onChange=${(/** @type {Event} */ event) => go(sliderValue(event), false)} />`}
-    ${problem && html`<p class="problem" id=${`p${id}`}>${problem}</p>`}
+    ${problem && html`<p class="problem" id=${`p${id}`} role=${wrong ? 'alert' : undefined}>${problem}</p>`}
   </div>`;
 }
 
@@ -160,13 +194,13 @@ function step(size) {
 /** Numbers side by side, one for each axis.
  * @param {{ label: string, value: number[], change: (value: number[], moving: boolean) => void,
  *   unit?: string, names?: string[], help?: string, problem?: string | null, scale?: number,
- *   min?: number, above?: boolean }} given */
+ *   min?: number, above?: boolean, forget?: () => void, own?: boolean }} given */
 export function VectorField({ label, value, change, names = ['x', 'y', 'z', 'w'], ...rest }) {
   const { unit, help, problem, ...limits } = rest;
   return html`<fieldset class=${problem ? 'vector wrong' : 'vector'} title=${help}>
     <legend>${label}${unit && html` <span class="unit">[${unit}]</span>`}</legend>
     ${value.map((number, axis) => html`<${NumberField} key=${axis} label=${names[axis] ?? String(axis)}
-      value=${number} slider=${false} ...${limits}
+      value=${number} slider=${false} unit=${unit} isNamed=${false} ...${limits}
       change=${(/** @type {number} */ next, /** @type {boolean} */ moving) =>
         change(value.map((old, at) => (at === axis ? next : old)), moving)} />`)}
     ${problem && html`<p class="problem">${problem}</p>`}

@@ -11,7 +11,7 @@
 
 import { html } from '../vendor/htm-preact.js';
 import { state } from '../state.js';
-import { edit, problemAt } from './edits.js';
+import { edit, forgetProblem, problemAt } from './edits.js';
 import { ChoiceField, NumberField, TextField, VectorField } from './fields.js';
 import { extent } from './numbers.js';
 import { followed, schemaOf, unitIn, within, withoutUnit } from './schema.js';
@@ -43,8 +43,10 @@ function scaleOf(unit, key) {
 
 /** @param {string} key @param {Schema} node */
 function unitOf(key, node) {
+  if (/^(bend|twist)_degrees$/.test(key)) return '°/m';
+  if (key === 'bend' || key === 'twist') return 'rad/m';
   if (key.endsWith('_degrees') || (key === 'angle' && node.description?.includes('°'))) return '°';
-  if (key === 'angle' || key === 'bend' || key === 'twist') return 'rad';
+  if (key === 'angle') return 'rad';
   return unitIn(node.description);
 }
 
@@ -66,7 +68,7 @@ export function Field({ pointer, name, value, node }) {
   const unit = unitOf(name, node);
   const shared = {
     label: named(name), unit, help: withoutUnit(node.description), problem: problemAt(pointer),
-    scale: scaleOf(unit, name),
+    scale: scaleOf(unit, name), forget: () => forgetProblem(pointer),
   };
   const put = (/** @type {any} */ to, moving = false) => edit([{ at: pointer, to }], moving);
   const choices = choicesOf(value, node);

@@ -17,13 +17,6 @@ export function typed(value) {
   return String(Number(value.toPrecision(9)));
 }
 
-/** The number in a text, or null. @param {string} text */
-export function parsed(text) {
-  const plain = text.trim().replace(/[−–]/g, '-').replace(',', '.');
-  const value = Number(plain);
-  return plain === '' || !Number.isFinite(value) ? null : value;
-}
-
 /** A count with thin gaps. @param {number} value */
 export function count(value) {
   return Math.round(value).toString().replace(/\B(?=(\d{3})+$)/g, '\u202f');

@@ -113,8 +113,8 @@ function Display() {
         <${Switch} label="isolines" value=${view.isolines} change=${(/** @type {boolean} */ isolines) => setView({ isolines })} />
         <${Switch} label="spacing that suits the view" value=${view.spacing === null}
           change=${(/** @type {boolean} */ own) => setView({ spacing: own ? null : spacing() })} />
-        ${view.spacing !== null && html`<${NumberField} label="spacing" unit="m" value=${view.spacing} min=${0} above
-          scale=${spacing()} change=${(/** @type {number} */ to) => to > 0 && setView({ spacing: to })} />`}
+        ${view.spacing !== null && html`<${NumberField} label="spacing" unit="m" value=${view.spacing} min=${0} above own
+          scale=${spacing()} change=${(/** @type {number} */ to) => setView({ spacing: to })} />`}
         <${Switch} label="positive inside" value=${view.positiveInside}
           help="Shows distances with the other sign; the program's own stay negative inside"
           change=${(/** @type {boolean} */ positiveInside) => setView({ positiveInside })} />
@@ -122,7 +122,7 @@ function Display() {
       <fieldset><legend>As in the memoir</legend>
         <${Switch} label="its colours" value=${view.asInMemoir}
           change=${(/** @type {boolean} */ asInMemoir) => setView({ asInMemoir })} />
-        <${NumberField} label="sine factor" value=${view.sineFactor} min=${0} max=${10}
+        <${NumberField} label="sine factor" value=${view.sineFactor} min=${0} max=${10} own
           change=${(/** @type {number} */ sineFactor) => setView({ sineFactor })} />
         ${/** @type {const} */ (['red', 'green', 'blue']).map((channel) => html`<${Switch} key=${channel}
           label=${channel} value=${view.channels[channel]}
