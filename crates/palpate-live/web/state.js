@@ -8,12 +8,15 @@
  * @typedef {import('./wire.js').Frame} Frame
  * @typedef {import('./wire.js').Message} Message
  * @typedef {'connection' | 'welcome' | 'scene' | 'way' | 'frame' | 'selection' | 'view' |
- *   'events' | 'notice' | 'theme' | 'playback' | 'touch' | 'clients' | 'problems'} Topic
+ *   'events' | 'safety' | 'notice' | 'theme' | 'playback' | 'touch' | 'clients' | 'problems'} Topic
  * @typedef {'space' | 'slice' | 'plane' | 'compare'} ViewMode
  */
 
 /** Frames that are kept to look back: a minute. */
 export const KEPT_FRAMES = 3600;
+
+/** A proxy that is slower rests [m/s]. */
+const RESTING = 1e-3;
 
 export const state = {
   /** @type {'connecting' | 'live' | 'lost' | 'closed'} */
@@ -34,6 +37,10 @@ export const state = {
   lookingAt: null,
   /** What the servo did, oldest first, the last 200. @type {Message[]} */
   events: [],
+  /** The stages of the safety chain in their order: in how many ticks each has acted, and when
+   * that was seen to grow last, on the clock of `performance.now()`.
+   * @type {{ name: string, ticks: number, acted: number }[]} */
+  safety: [],
   /** Pages that are open on this program. */
   clients: 1,
   /** What was wrong with the last refused edit, by JSON pointer. @type {Map<string, string>} */
@@ -90,12 +97,24 @@ export function changed(topic) {
   listeners.get(topic)?.forEach((listener) => listener());
 }
 
+/** Friction that holds a proxy has it slip until the force is well below its limit: only where the
+ * proxy moves too is it felt. @param {Frame} frame @param {Frame | undefined} last */
+function takeSlips(frame, last) {
+  const seconds = last ? frame.time - last.time : 0;
+  frame.points.forEach((point, index) => {
+    const before = last?.points[index]?.proxy ?? point.proxy;
+    const way = Math.hypot(...point.proxy.map((place, axis) => place - before[axis]));
+    point.slipping &&= point.contact && seconds > 0 && way > RESTING * seconds;
+  });
+}
+
 /** Takes a frame into the history; shows it unless the page looks back. @param {Frame} frame */
 export function takeFrame(frame) {
   const { history } = state;
   const last = history[history.length - 1];
   // Another servo began.
   if (last && frame.tick < last.tick) history.length = 0;
+  takeSlips(frame, last);
   if (frame.tick !== last?.tick) history.push(frame);
   if (history.length > KEPT_FRAMES) {
     history.shift();

@@ -10,7 +10,7 @@
  *   normal: number[], depth: number, largestForce: number, body: number, contact: boolean,
  *   slipping: boolean }} Point
  * @typedef {{ dimension: number, stopped: boolean, held: boolean, acted: boolean,
- *   recording: boolean, touring: boolean, revision: number, tick: number, time: number,
+ *   recording: boolean, touring: boolean, replaying: boolean, revision: number, tick: number, time: number,
  *   force: number, depth: number, cost: number, lateness: number, taken: number,
  *   given: number, kept: number, evaluations: number, lost: number, points: Point[] }} Frame
  * @typedef {{ dimension: number, id: number, revision: number, counts: number[],
@@ -60,6 +60,7 @@ export function decodeFrame(data) {
     acted: (flags & 4) !== 0,
     recording: (flags & 8) !== 0,
     touring: (flags & 16) !== 0,
+    replaying: (flags & 32) !== 0,
     revision: data.getUint32(4, true),
     tick: Number(data.getBigUint64(8, true)),
     time: data.getFloat64(16, true),
@@ -132,7 +133,9 @@ export class Wire {
     this.handlers = handlers;
     /** @type {WebSocket | null} */
     this.socket = null;
-    /** @type {Map<number, { resolve: (answer: any) => void, reject: (error: Error) => void }>} */
+    /** Questions without an answer yet; `since` is on the clock of `performance.now()`.
+     * @type {Map<number, { resolve: (answer: any) => void, reject: (error: Error) => void,
+     *   what: string, since: number }>} */
     this.waiting = new Map();
     this.nextId = 1;
     this.wait = SHORTEST_WAIT;
@@ -210,6 +213,19 @@ export class Wire {
     if (this.socket?.readyState === WebSocket.OPEN) this.socket.send(JSON.stringify(message));
   }
 
+  /** The questions without an answer for longer than a time [ms], oldest first.
+   * @param {number} longest */
+  slow(longest) {
+    const before = performance.now() - longest;
+    return [...this.waiting].filter(([, { since }]) => since < before)
+      .map(([id, { what, since }]) => ({ id, what, since }));
+  }
+
+  /** Ends a question, which is then refused. @param {number} id */
+  cancel(id) {
+    this.send({ do: 'cancel', question: id });
+  }
+
   /** Asks, and gives the answer. @param {Message} message @returns {Promise<any>} */
   ask(message) {
     if (this.socket?.readyState !== WebSocket.OPEN) {
@@ -218,7 +234,7 @@ export class Wire {
     const id = this.nextId;
     this.nextId += 1;
     return new Promise((resolve, reject) => {
-      this.waiting.set(id, { resolve, reject });
+      this.waiting.set(id, { resolve, reject, what: message.do, since: performance.now() });
       this.send({ ...message, id });
     });
   }

@@ -10,23 +10,26 @@
 
 import { html, useEffect, useRef } from '../vendor/htm-preact.js';
 import { listen, lookAt, state } from '../state.js';
+import { short } from './numbers.js';
+import { useTopics } from './page.js';
 
 /** Frames that are drawn: ten seconds. */
 const FRAMES = 600;
 /** Between two drawings [ms]. */
 const INTERVAL = 100;
 
-/** @type {{ title: string, unit: string, lines: { name: string, color: string,
+/** The charts; `least` is the least height of one, so that what is zero throughout is not drawn large.
+ * @type {{ title: string, unit: string, least: number, lines: { name: string, color: string,
  *   of: (frame: Frame) => number }[] }[]} */
 const CHARTS = [
-  { title: 'force', unit: 'N', lines: [{ name: 'force', color: '--line-1', of: (frame) => frame.force }] },
-  { title: 'depth', unit: 'mm', lines: [{ name: 'depth', color: '--line-2', of: (frame) => 1000 * frame.depth }] },
-  { title: 'energy', unit: 'mJ', lines: [
+  { title: 'force', unit: 'N', least: 0.1, lines: [{ name: 'force', color: '--line-1', of: (frame) => frame.force }] },
+  { title: 'depth', unit: 'mm', least: 0.1, lines: [{ name: 'depth', color: '--line-2', of: (frame) => 1000 * frame.depth }] },
+  { title: 'energy', unit: 'mJ', least: 0.1, lines: [
     { name: 'taken', color: '--line-1', of: (frame) => 1000 * frame.taken },
     { name: 'given', color: '--line-2', of: (frame) => 1000 * frame.given },
     { name: 'kept', color: '--line-3', of: (frame) => 1000 * frame.kept },
   ] },
-  { title: 'tick', unit: 'µs', lines: [
+  { title: 'tick', unit: 'µs', least: 10, lines: [
     { name: 'cost', color: '--line-1', of: (frame) => 1e6 * frame.cost },
     { name: 'lateness', color: '--line-3', of: (frame) => 1e6 * frame.lateness },
   ] },
@@ -46,16 +49,51 @@ function options(width, height, chart) {
   return {
     width, height, padding: [8, 6, 0, 0], legend: { show: false },
     cursor: { sync: { key: 'palpate' }, y: false, points: { size: 5 }, drag: { x: true, y: false } },
-    scales: { x: { time: false } },
+    scales: { x: { time: false }, y: { range: (/** @type {any} */ _, /** @type {number | null} */ low,
+      /** @type {number | null} */ high) => rangeOf(low ?? 0, high ?? 0, chart.least) } },
+    hooks: { draw: [paintMoment] },
     series: [{}, ...chart.lines.map((line) => ({ label: line.name, stroke: color(line.color), width: 1.25 }))],
-    axes: [{ ...axis(), space: 60 }, { ...axis(), size: 38, space: 22 }],
+    axes: [{ ...axis(), space: 60 }, { ...axis(), size: 38, space: 22,
+      values: (/** @type {any} */ _, /** @type {number[]} */ places) => places.map((place) => short(place, 4)) }],
   };
 }
 
-/** The frames that are drawn, and the number of the first in the history. */
+/** The range of an axis that holds these values and zero. @param {number} low @param {number} high
+ * @param {number} least */
+function rangeOf(low, high, least) {
+  const top = high <= 0 && low < 0 ? 0 : Math.max(high, low + least, least);
+  return [low < 0 ? Math.min(1.08 * low, top - least) : 0, 1.08 * top];
+}
+
+/** The tick with which what is drawn begins while the page looks back. */
+let firstTick = 0;
+
+/** The frames that are drawn, and the number of the first in the history: the newest, or while the
+ * page looks back those of before, as long as the frame looked at is one of them. */
 function drawn() {
-  const start = Math.max(0, state.history.length - FRAMES);
-  return { start, frames: state.history.slice(start) };
+  const { history, lookingAt } = state;
+  const newest = Math.max(0, history.length - FRAMES);
+  let start = newest;
+  if (lookingAt !== null) {
+    start = Math.max(0, history.findIndex(({ tick }) => tick >= firstTick));
+    if (lookingAt < start || lookingAt >= start + FRAMES) start = lookingAt - FRAMES / 2;
+    start = Math.max(0, Math.min(start, newest));
+  }
+  firstTick = history[start]?.tick ?? 0;
+  return { start, frames: history.slice(start, start + FRAMES) };
+}
+
+/** Draws a line at the time that the page looks back to. @param {any} plot */
+function paintMoment(plot) {
+  const { lookingAt, frame } = state;
+  if (lookingAt === null || !frame) return;
+  const { ctx: context, bbox } = plot;
+  const at = Math.round(plot.valToPos(frame.time, 'x', true));
+  if (at < bbox.left || at > bbox.left + bbox.width) return;
+  context.save();
+  context.fillStyle = color('--warn');
+  context.fillRect(at - devicePixelRatio, bbox.top, 2 * devicePixelRatio, bbox.height);
+  context.restore();
 }
 
 export function Charts() {
@@ -79,11 +117,15 @@ export function Charts() {
       // Data that cannot be seen are not drawn.
       if (document.hidden || !box.current?.offsetParent) return;
       const start = performance.now();
+      const before = firstTick;
       const { frames } = drawn();
+      // What a person has zoomed in on stays while the page looks back at it.
+      const isSame = state.lookingAt !== null && before === firstTick;
       const times = frames.map((frame) => frame.time);
-      plots.forEach((plot, index) => plot.setData([times, ...CHARTS[index].lines.map((line) => frames.map(line.of))],
-        state.lookingAt === null));
-      showCursor(plots[0]);
+      plots.forEach((plot, index) => {
+        plot.setData([times, ...CHARTS[index].lines.map((line) => frames.map(line.of))], !isSame);
+        if (isSame) plot.redraw(false);
+      });
       performance.measure('charts', { start });
     };
     const timer = setInterval(() => state.lookingAt === null && draw(), INTERVAL);
@@ -103,17 +145,18 @@ export function Charts() {
   }, []);
   return html`<div class="charts" ref=${box}>
     ${CHARTS.map(({ title, unit, lines }) => html`<figure key=${title} class="chart">
-      <figcaption>${title} <span class="unit">[${unit}]</span>
-        ${lines.length > 1 && lines.map(({ name, color: key }) => html`<span key=${name} class="key"
-          style=${{ '--key': `var(${key})` }}>${name}</span>`)}</figcaption>
+      <${Caption} ...${{ title, unit, lines }} />
       <div class="plot" role="img" aria-label=${`${title} in ${unit} over the last ten seconds`}></div>
     </figure>`)}
   </div>`;
 }
 
-/** Puts the cursor where the page looks back to. @param {any} plot */
-function showCursor(plot) {
-  const { lookingAt, frame } = state;
-  if (lookingAt === null || !frame || !plot) return;
-  plot.setCursor({ left: plot.valToPos(frame.time, 'x'), top: 0 });
+/** A chart's name, and its values now or at the time that is looked at.
+ * @param {{ title: string, unit: string, lines: typeof CHARTS[number]['lines'] }} given */
+function Caption({ title, unit, lines }) {
+  useTopics(['frame'], INTERVAL);
+  const { frame } = state;
+  return html`<figcaption>${title} <span class="unit">[${unit}]</span>
+    ${lines.map(({ name, color: key, of }) => html`<span key=${name} class="key" style=${{ '--key': `var(${key})` }}>
+      ${lines.length > 1 && name} ${frame ? short(of(frame)) : '–'}</span>`)}</figcaption>`;
 }
