@@ -8,6 +8,7 @@ import { startGamepad } from './input/gamepad.js';
 import { listenKeys } from './input/keys.js';
 import * as actions from './panels/actions.js';
 import { Checks } from './panels/checks.js';
+import { closeDialog, isDialogOpen, openDialog } from './panels/dialog.js';
 import { takeScene } from './panels/edits.js';
 import { Status, takeEvents } from './panels/events.js';
 import { Header, startTheme } from './panels/header.js';
@@ -17,7 +18,11 @@ import { page, tell } from './panels/page.js';
 import { valueAt } from './panels/schema.js';
 import { Time } from './panels/play.js';
 import { startProfile } from './panels/profile.js';
+import { watchRecording } from './panels/recording.js';
+import { takeSafety } from './panels/safety.js';
+import { baseName, save, saveAs } from './panels/saving.js';
 import { Selected } from './panels/selected.js';
+import { stop } from './panels/stop.js';
 import { Tabs } from './panels/tabs.js';
 import { Toasts, Words } from './panels/toasts.js';
 import { Touch } from './panels/touch.js';
@@ -42,6 +47,7 @@ function takeMessage(message) {
     changed('way');
   }
   if (message.do === 'events') takeEvents(message.events);
+  if (message.do === 'safety') takeSafety(message.stages);
   if (message.do === 'clients') {
     state.clients = message.count;
     changed('clients');
@@ -72,7 +78,7 @@ function suitView() {
   // A scene that was saved comes again as it was.
   if (!scene || scene.revision === suited) return;
   suited = scene.revision;
-  document.title = `${scene.name} · palpate`;
+  document.title = `${baseName(scene.file ?? scene.name)} · palpate`;
   const isPlane = scene.dimension === 2;
   if (isPlane && (view.mode === 'space' || view.mode === 'slice')) setView({ mode: 'plane' });
   if (state.selection !== null && (scene.by === 'open' || valueAt(state.selection) === undefined)) select(null);
@@ -91,6 +97,7 @@ function connect(token) {
     frame: (frame) => {
       const start = performance.now();
       takeFrame(frame);
+      watchRecording(frame);
       performance.measure('take a frame', { start });
     },
     message: takeMessage,
@@ -105,10 +112,8 @@ function connect(token) {
 }
 
 function toggleHelp() {
-  const overlay = place('overlay');
-  const close = () => render(null, overlay);
-  if (overlay.childElementCount > 0) close();
-  else render(html`<${Help} close=${close} />`, overlay);
+  if (isDialogOpen()) closeDialog();
+  else openDialog(Help);
 }
 
 /** Takes a file that is dropped anywhere. */
@@ -146,7 +151,7 @@ listen(['scene'], suitView);
 takeDrops();
 startGamepad();
 listenKeys({
-  stop: actions.stop,
+  stop,
   hold: actions.hold,
   slow: actions.slow,
   step: actions.step,
@@ -160,7 +165,8 @@ listenKeys({
   fit: () => page.stage?.setCamera('reset'),
   undo: actions.undo,
   redo: actions.redo,
-  save: () => void actions.save(),
+  save: () => void save(),
+  saveAs,
   help: toggleHelp,
   useKeys: () => setTouch({ input: 'keys' }),
 });

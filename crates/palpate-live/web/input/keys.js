@@ -33,7 +33,7 @@ export const KEYS = [
   { keys: ['f', 'F'], shown: 'F', text: 'show the whole scene', where: 'outside', does: 'fit' },
   { keys: ['z', 'Z'], shown: 'Ctrl Z', text: 'undo', where: 'untyped', does: 'undo', control: true },
   { keys: ['y', 'Y'], shown: 'Ctrl Y', text: 'redo', where: 'untyped', does: 'redo', control: true },
-  { keys: ['s', 'S'], shown: 'Ctrl S', text: 'save the scene', where: 'anywhere', does: 'save', control: true },
+  { keys: ['s', 'S'], shown: 'Ctrl S', text: 'save the scene; with Shift as another file', where: 'anywhere', does: 'save', control: true },
   { keys: ['?', 'F1'], shown: '? or F1', text: 'this help', where: 'outside', does: 'help' },
 ];
 
@@ -90,12 +90,13 @@ export function listenKeys(actions) {
   addEventListener('keydown', (event) => {
     isSlow = event.shiftKey;
     const isControl = event.ctrlKey || event.metaKey;
+    const isSaveAs = isControl && event.shiftKey && event.key.toLowerCase() === 's';
     const isRedo = isControl && event.shiftKey && event.key.toLowerCase() === 'z';
     const key = KEYS.find((one) =>
       one.keys.includes(event.key) && Boolean(one.control) === isControl && counts(event.target, one.where));
     if (key && !event.altKey) {
       if (key.does !== 'stop') event.preventDefault();
-      actions[isRedo ? 'redo' : key.does]?.();
+      actions[isRedo ? 'redo' : isSaveAs ? 'saveAs' : key.does]?.();
       return;
     }
     if (!(event.key in MOVES) || isControl || event.altKey) return;

@@ -6,42 +6,24 @@
 
 import { changed, lookAt, setView, state } from '../state.js';
 import { goBack, takeScene } from './edits.js';
-import { ask, download, page, tell, tellError } from './page.js';
+import { ask, download, fileName, page, tell, tellError } from './page.js';
+import { openTrace } from './recording.js';
+import { baseName } from './saving.js';
 
 /** The speed of the servo's time, also while it is held. */
 export const clock = { speed: 1 };
 
-/** Stops all forces; over HTTP if there is no socket. */
-export function stop() {
-  if (state.connection === 'live') page.wire?.send({ do: 'stop' });
-  else navigator.sendBeacon(`stop?token=${encodeURIComponent(page.token)}`);
-}
-
-/** Gives forces again, rising from zero. */
-export function release() {
-  page.wire?.send({ do: 'release' });
-}
+/** What is said where two bodies are needed and the scene has fewer. */
+export const TWO_NEEDED = 'This needs two bodies, and the scene has fewer: add one with “add…” in Shapes.';
 
 export const undo = () => goBack('undo');
 export const redo = () => goBack('redo');
 
-/** @param {boolean} [force] also over a file that was changed elsewhere */
-export async function save(force = false) {
-  try {
-    const answer = await page.wire?.ask(force ? { do: 'save', force } : { do: 'save' });
-    if (answer?.do === 'scene') takeScene(answer);
-    tell('The scene is saved.');
-  } catch (error) {
-    const text = error instanceof Error ? error.message : String(error);
-    if (force || state.scene?.file === null) tell(text, 'bad');
-    else tell(text, 'bad', { name: 'Save all the same', run: () => void save(true) });
-  }
-}
-
-/** Opens a file as the scene. @param {File} file */
+/** Opens a file: a trace to replay it, any other as the scene. @param {File} file */
 export async function openFile(file) {
   try {
-    await openText(file.name, await file.text());
+    if (/\.csv$/i.test(file.name)) await openTrace(file);
+    else await openText(file.name, await file.text());
   } catch (error) {
     tellError(error);
   }
@@ -51,7 +33,7 @@ export async function openFile(file) {
 export async function openText(name, text) {
   const answer = await ask({ do: 'open', name, text });
   if (answer?.do === 'scene') takeScene(answer);
-  if (answer) tell(`${name} is open.`);
+  if (answer) tell(`${baseName(name)} is open.`);
 }
 
 /** Gives the scene as a file. */
@@ -60,11 +42,6 @@ export function downloadScene() {
   if (!scene) return;
   const text = scene.text ?? JSON.stringify(scene.scene, null, 2);
   download(new Blob([text], { type: 'application/json' }), fileName('.json'));
-}
-
-/** @param {string} ending */
-export function fileName(ending) {
-  return `${(state.scene?.name ?? 'scene').replace(/\.json$/, '').replace(/[^\w.-]+/g, '_')}${ending}`;
 }
 
 /** @param {number} speed */
@@ -92,21 +69,6 @@ export function lookBy(frames) {
   const last = state.history.length - 1;
   const next = (state.lookingAt ?? last) + frames;
   if (last >= 0) lookAt(next >= last && frames > 0 ? null : next);
-}
-
-export function record() {
-  page.wire?.send({ do: 'record', on: !state.history[state.history.length - 1]?.recording });
-}
-
-/** Gives what was recorded as a CSV file. */
-export async function downloadTrace() {
-  try {
-    const answer = await fetch(`trace.csv?token=${encodeURIComponent(page.token)}`);
-    if (!answer.ok) throw new Error('There is no recording yet: press record first.');
-    download(await answer.blob(), fileName('.trace.csv'));
-  } catch (error) {
-    tellError(error);
-  }
 }
 
 /** Gives the picture as it is seen. */

@@ -5,6 +5,7 @@
 /** What the tree's buttons do: each function asks for one edit, and selects what it made. */
 
 import { select, state } from '../state.js';
+import { aboutShape, besideBodies, besideOperands, moved } from './beside.js';
 import { edit } from './edits.js';
 import { ONE, SEVERAL, listOf, makerOf } from './nodes.js';
 import { extent } from './numbers.js';
@@ -43,9 +44,10 @@ export function primitives() {
   return (state.welcome?.catalogue ?? []).filter((/** @type {any} */ entry) => entry.dimension === dimension);
 }
 
-/** The example of a primitive, such that it suits the scene. @param {string} name */
-function example(name) {
-  return exampleOf(primitives().find((primitive) => primitive.name === name), length(0.15));
+/** The example of a primitive, such that it suits the scene or a size.
+ * @param {string} name @param {number} [size] its largest length [m] */
+function example(name, size = length(0.15)) {
+  return exampleOf(primitives().find((primitive) => primitive.name === name), size);
 }
 
 /** The example of an entry of the catalogue, scaled to a largest length [m].
@@ -75,20 +77,25 @@ function freshName(base, isTaken) {
 /** @param {string} name */
 const isBody = (name) => state.scene?.scene.bodies.some((/** @type {any} */ body) => body.name === name);
 
-/** Adds a primitive to the operator at a pointer, or as a body if there is none.
+/** Adds a primitive to the operator at a pointer, or as a body if there is none, beside what is there.
  * @param {string | null} pointer @param {string} primitive */
 export function add(pointer, primitive) {
-  const shape = example(primitive);
   const list = pointer === null ? null : listOf(valueAt(pointer));
   if (pointer !== null && list) {
+    const operands = valueAt(pointer)[list];
     const at = within(pointer, list);
-    edit([{ at: within(at, '-'), to: shape }]);
-    select(within(at, valueAt(at).length));
+    const shape = example(primitive, Number((0.8 * aboutShape(operands[0]).reach).toPrecision(2)));
+    edit([{ at: within(at, '-'), to: moved(shape, besideOperands(operands)) }]);
+    select(within(at, operands.length));
     return;
   }
   const name = freshName(primitive.replace(/_/g, ' '), isBody);
   const count = state.scene?.scene.bodies.length;
-  edit([{ at: '/bodies/-', to: { name, shape } }]);
+  const entry = primitives().find((one) => one.name === primitive);
+  const shape = example(primitive);
+  const place = besideBodies(aboutShape(shape).reach, entry?.bounded ?? true);
+  const pose = place.some((part) => part !== 0) ? { pose: { translation: place } } : {};
+  edit([{ at: '/bodies/-', to: { name, shape, ...pose } }]);
   select(`/bodies/${count}`);
 }
 
@@ -138,17 +145,24 @@ function firstParameters() {
 export function wrappers() {
   const first = firstParameters();
   const one = ONE.filter((key) => key in first && (key !== 'twist_degrees' || state.scene?.dimension === 3));
-  return [...Object.keys(SEVERAL).filter((key) => key !== 'displace' && key !== 'morph'), ...one];
+  return [...Object.keys(SEVERAL).filter((key) => key !== 'displace'), ...one];
 }
 
-/** Puts an operator around the shape at a pointer. @param {string} pointer @param {string} operator */
+/** Puts an operator around the shape at a pointer; one on several shapes gets a second, a ball on
+ * the edge of the first. @param {string} pointer @param {string} operator */
 export function wrap(pointer, operator) {
   const shape = valueAt(pointer);
   const to = operator in SEVERAL
-    ? { ...parametersFor(operator, null), [operator]: [shape] }
+    ? { ...parametersFor(operator, null), [operator]: [shape, secondOf(shape)] }
     : { [operator]: firstParameters()[operator], of: shape };
   edit([{ at: pointer, to }]);
   select(pointer);
+}
+
+/** @param {any} shape */
+function secondOf(shape) {
+  const size = Number((0.7 * aboutShape(shape).reach).toPrecision(2));
+  return moved(example('ball', size), besideOperands([shape]));
 }
 
 /** Puts what an operator holds, of several the first, in the operator's place. @param {string} pointer */
@@ -180,9 +194,23 @@ export function canRemove(pointer) {
   return pointer === '/tool' || /^\/shapes\/[^/]+$/.test(pointer);
 }
 
-/** @param {string} pointer */
+/** The operator that would be left with one shape if a part were removed, or null.
+ * @param {string} pointer */
+export function operatorLeftAlone(pointer) {
+  const place = placeOf(pointer);
+  const operator = place && holder(place.at);
+  return operator && place.list.length === 2 && listOf(valueAt(operator)) === parts(place.at).pop() ? operator : null;
+}
+
+/** Removes a part; an operator that is left with one shape makes place for it. @param {string} pointer */
 export function remove(pointer) {
   const place = placeOf(pointer);
+  const operator = operatorLeftAlone(pointer);
+  if (place && operator) {
+    edit([{ at: operator, to: place.list[1 - place.index] }]);
+    select(operator);
+    return;
+  }
   const isLast = place?.list.length === 1 || (holder(pointer) === '/shapes' && Object.keys(valueAt('/shapes')).length === 1);
   edit([{ at: isLast ? holder(pointer) : pointer }]);
   select(null);

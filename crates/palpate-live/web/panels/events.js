@@ -10,21 +10,16 @@
 
 import { html } from '../vendor/htm-preact.js';
 import { changed, state } from '../state.js';
-import { short } from './numbers.js';
+import { count, short } from './numbers.js';
 import { useTopics } from './page.js';
+import { actingStages } from './safety.js';
 
 /** Events that are kept. */
 const KEPT = 200;
 /** Frames of which the safety line tells: a second. */
 const RECENT = 60;
-/** How long the safety line tells of an action [ms]. */
-const FRESH = 3000;
-
-const ACTIONS = /limit|slew|passiv|ramp|stop|watchdog|guard|heat|continuous|cycle|safety|held/i;
 
 let number = 0;
-/** @type {{ at: number, text: string } | null} */
-let lastAction = null;
 
 /** Takes events that the program sent. @param {Message[]} events */
 export function takeEvents(events) {
@@ -32,7 +27,6 @@ export function takeEvents(events) {
   for (const event of events) {
     number += 1;
     state.events.push({ ...event, time: event.tick / rate, number });
-    if (ACTIONS.test(event.kind)) lastAction = { at: performance.now(), text: inWords(event) };
   }
   state.events.splice(0, Math.max(0, state.events.length - KEPT));
   changed('events');
@@ -50,34 +44,36 @@ export function Events() {
   const shown = state.events.slice(-80).reverse();
   return html`<ol class="events" tabindex="0" aria-label="Events, newest first">
     ${shown.length === 0 && html`<li class="quiet">nothing happened yet</li>`}
-    ${shown.map((event) => html`<li key=${event.number} class=${ACTIONS.test(event.kind) ? 'action' : ''}>
+    ${shown.map((event) => html`<li key=${event.number}>
       <span class="when">${event.time.toFixed(3)} s</span>
       ${inWords(event)}${event.point ? ` · point ${event.point + 1}` : ''}</li>`)}
   </ol>`;
 }
 
-/** How long the scene's formula is. */
+/** How long the scene's formula is, in words. */
 export function operations() {
-  return state.scene?.ops ?? state.way?.operations ?? '–';
+  const { way } = state;
+  if (way?.kind === 'samples') return 'drawn from samples';
+  return way?.operations === undefined ? '' : `${count(way.operations)} operations`;
 }
 
 /** The line at the foot: what the safety chain does, in words. */
 export function Status() {
-  useTopics(['frame', 'scene', 'events', 'connection'], 200);
+  useTopics(['frame', 'scene', 'safety', 'connection'], 200);
   const { scene, connection } = state;
   const newest = state.history[state.history.length - 1];
   const limit = scene?.device?.max_force;
-  const isFresh = lastAction && performance.now() - lastAction.at < FRESH;
+  const hasActed = state.history.slice(-RECENT).some(({ acted }) => acted);
   const safety = connection !== 'live' ? 'not connected' : newest?.stopped ? 'stopped, all forces are zero'
-    : isFresh ? lastAction?.text : state.history.slice(-RECENT).some(({ acted }) => acted) ? 'the chain changes forces' : 'ok';
+    : actingStages() || (hasActed ? 'a stage changes the force' : 'ok');
   const isCalm = safety === 'ok';
   return html`
-    <span class=${isCalm ? 'safety' : 'safety acting'}>safety: <b>${safety}</b></span>
+    <span class=${isCalm ? 'safety' : 'safety acting'} title="What stands between the wanted force and the hand: the tab Safety explains each stage">safety: <b>${safety}</b></span>
     ${limit !== undefined && html`<span>force limit ${short(limit)} N</span>`}
-    ${newest && html`<span>kept back ${short(1000 * newest.kept)} mJ</span>`}
+    ${newest && html`<span title="Energy that the safety chain kept from the hand, since the servo began">kept back ${short(1000 * newest.kept)} mJ</span>`}
     ${newest && newest.lost > 0 && html`<span>${newest.lost} events lost</span>`}
     <span class="gap"></span>
-    ${scene && html`<span>${operations()} operations</span>`}
+    ${scene && html`<span>${operations()}</span>`}
     ${scene && html`<span>revision ${scene.revision}</span>`}
     ${scene?.restarted && html`<span title=${scene.why}>the servo began again</span>`}`;
 }

@@ -10,6 +10,8 @@ import * as actions from './actions.js';
 import { GALLERY } from './gallery.js';
 import { copyLink } from './link.js';
 import { page, tellError, useTopics } from './page.js';
+import { baseName, save, saveAs } from './saving.js';
+import { StopButton } from './stop.js';
 
 const THEME = 'palpate-theme';
 
@@ -51,7 +53,7 @@ export function Header({ help }) {
         stroke="currentColor" stroke-width="1.5" /><path d="M8 1.5a6.5 6.5 0 0 1 0 13z" fill="currentColor" /></svg>
     </button>
     <button class="plain" onClick=${help} aria-label="Help" title="Help: ? or F1">?</button>
-    <${StopButton} />`;
+    <${StopButton} id="stop" />`;
 }
 
 /** @param {any} device */
@@ -69,17 +71,6 @@ function Connection() {
   const words = { connecting: 'connecting', live: 'live', lost: 'lost', closed: 'not connected' };
   return html`<span class=${`connection ${state.connection}`} role="status">
     <span class="dot" aria-hidden="true"></span>${words[state.connection]}</span>`;
-}
-
-/** Stops; once stopped it gives the forces back. */
-function StopButton() {
-  useTopics(['frame', 'connection'], 50);
-  const isStopped = state.history[state.history.length - 1]?.stopped ?? false;
-  if (isStopped && state.connection === 'live') {
-    return html`<button id="stop" class="stop stopped" onClick=${actions.release}>forces are zero — release</button>`;
-  }
-  return html`<button id="stop" class="stop" onClick=${actions.stop} title="All forces to zero: Esc">
-    <span class="square" aria-hidden="true"></span>STOP</button>`;
 }
 
 /** The scene's name, and what can be done with its file. */
@@ -109,19 +100,20 @@ function Menu() {
     }}>${name}${key && html` <kbd>${key}</kbd>`}</button></li>`;
   return html`<div class="menu" ref=${box}>
     <button class="scene-name" aria-expanded=${String(isOpen)} onClick=${() => setIsOpen(!isOpen)}
-      title=${scene?.file ?? 'This scene has no file'}>
-      ${scene?.name ?? 'no scene'}${scene && !scene.is_saved ? html`<span class="unsaved" title="not saved"> •</span>` : ''}
+      title=${scene?.file ?? 'This scene has no file: Save as… gives it one'}>
+      ${scene ? baseName(scene.file ?? scene.name) : 'no scene'}${scene?.file === null && html` <span class="quiet">no file</span>`}${scene && !scene.is_saved ? html`<span class="unsaved" title="not saved"> •</span>` : ''}
       <span class="caret open" aria-hidden="true"></span>
     </button>
-    <input type="file" hidden accept=".json,application/json" ref=${file} aria-label="Scene file"
+    <input type="file" hidden accept=".json,.csv,application/json,text/csv" ref=${file} aria-label="Scene or trace"
       onChange=${(/** @type {any} */ event) => {
         const [chosen] = event.currentTarget.files;
         event.currentTarget.value = '';
         if (chosen) void actions.openFile(chosen);
       }} />
     ${isOpen && html`<ul class="menu-list">
-      ${item('Open a file…', () => file.current?.click())}
-      ${item('Save', () => actions.save(), scene?.file === null, 'Ctrl S')}
+      ${item('Open a scene or a trace…', () => file.current?.click())}
+      ${item('Save', () => save(), !scene, 'Ctrl S')}
+      ${item('Save as…', saveAs, !scene, 'Ctrl Shift S')}
       ${item('Download the scene', actions.downloadScene, !scene)}
       ${item('Download the picture', actions.downloadPicture, !scene)}
       ${item('Copy a link to this view', copyLink, !scene)}

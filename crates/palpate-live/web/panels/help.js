@@ -4,39 +4,33 @@
 
 /** The help over the page, with the table of keys. */
 
-import { html, useEffect, useRef } from '../vendor/htm-preact.js';
+import { html } from '../vendor/htm-preact.js';
 import { KEYS, MOVE_HELP } from '../input/keys.js';
+import { Dialog } from './dialog.js';
 
 /** @type {[string, string][]} */
 const TEXTS = [
   ['Touch', 'Press on the hand or on a surface: the hand follows the pointer, and a spring draws the device after it. The surface pushes back, so pointer and device part. While you press, the wheel or a second finger moves in depth.'],
   ['Picture', 'Drag beside the scene, or anywhere with the right button, to turn it; with Shift or the middle button to move it; the wheel or two fingers zoom. Drag the handles of the slice, of the triangle and of the circle.'],
   ['Stop', 'Esc, or the red button: all forces are zero within two ticks. The same button gives them back, rising from zero.'],
-  ['Change', 'Select a part in the tree. Drag a number sideways, type it, or move its slider; what the program refuses stands below the field. Each drag is one step to undo.'],
+  ['Change', 'Select a part in the tree. Drag a number sideways, type it, also with a unit such as 35 mm, or move its slider; what is wrong stands below the field, and Esc takes it back. Each drag is one step to undo.'],
   ['Look back', 'The page keeps a minute. Move the slider of the play bar, or press on a chart; “follow” returns to now. The servo goes on meanwhile.'],
+  ['Record', '“record” keeps every tick, “replay” leads the hand along it, “CSV” gives it as a file, “open trace” or dropping a .csv takes one.'],
+  ['Marks', 'Circle: the device; dot: the proxy, which stays on the surface; orange arrow: the force on the hand; green arrow: the normal there. Pink dots and arrows: contacts of bodies with each other, and their normals. “display” turns each on and off.'],
+  ['Safety', 'Between the wanted force and the hand, stages limit how large it is, how fast it changes, how long it lasts and how much energy it gives. The line at the foot says which acts; the tab Safety explains them.'],
   ['Colours', 'Distances are negative inside, zero on the surface, positive outside. “exact” promises the distance itself, “bound” never more than it, “Lipschitz” never more than so many times it.'],
   ['Charts', 'Drag over a chart to see less time, press twice to see all. One cursor is in all four.'],
 ];
 
-/** @param {{ close: () => void }} given */
-export function Help({ close }) {
-  const dialog = useRef(/** @type {HTMLDialogElement | null} */ (null));
-  useEffect(() => {
-    dialog.current?.showModal();
-  }, []);
-  return html`<dialog class="help" ref=${dialog} aria-labelledby="help-title" onClose=${close}
-    onClick=${(/** @type {any} */ event) => event.target === dialog.current && dialog.current?.close()}>
-    <div class="help-body">
-      <div class="panel-head"><h2 id="help-title">Help</h2>
-        <button onClick=${() => dialog.current?.close()}>close</button></div>
-      <div class="help-columns">
-        <table><caption>Keys</caption><tbody>
-          ${[...KEYS, ...MOVE_HELP].map(({ shown, text }) => html`<tr key=${shown}>
-            <th scope="row"><kbd>${shown}</kbd></th><td>${text}</td></tr>`)}
-          <tr><th scope="row"><kbd>stick</kbd></th><td>of a gamepad: moves the hand; triggers: depth; B: let go</td></tr>
-        </tbody></table>
-        <dl>${TEXTS.map(([title, text]) => html`<dt key=${title}>${title}</dt><dd>${text}</dd>`)}</dl>
-      </div>
+export function Help() {
+  return html`<${Dialog} title="Help">
+    <div class="help-columns">
+      <table><caption>Keys</caption><tbody>
+        ${[...KEYS, ...MOVE_HELP].map(({ shown, text }) => html`<tr key=${shown}>
+          <th scope="row"><kbd>${shown}</kbd></th><td>${text}</td></tr>`)}
+        <tr><th scope="row"><kbd>stick</kbd></th><td>of a gamepad: moves the hand; triggers: depth; B: let go</td></tr>
+      </tbody></table>
+      <dl>${TEXTS.map(([title, text]) => html`<dt key=${title}>${title}</dt><dd>${text}</dd>`)}</dl>
     </div>
-  </dialog>`;
+  <//>`;
 }

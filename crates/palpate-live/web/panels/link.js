@@ -69,7 +69,7 @@ export async function followLink(given) {
     const text = await unpacked(scene);
     const name = given.get('name') ?? 'scene';
     tell(`The link holds the scene ${name}. It would replace the one that is open.`, 'word',
-      { name: 'Open it', run: () => void openText(name, text) });
+      [{ name: 'Open it', run: () => void openText(name, text) }]);
   } catch {
     tell('The link cannot be read: a part of it may be missing.', 'bad');
   }

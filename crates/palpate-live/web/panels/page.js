@@ -10,12 +10,12 @@
  * @typedef {import('../wire.js').Message} Message
  * @typedef {import('../state.js').Topic} Topic
  * @typedef {ReturnType<typeof import('../scene/stage.js').createStage>} Stage
- * @typedef {{ id: number, kind: 'word' | 'bad', text: string, stays: boolean,
- *   action?: { name: string, run: () => void } }} Toast
+ * @typedef {{ name: string, run: () => void }} Action
+ * @typedef {{ id: number, kind: 'word' | 'bad', text: string, actions: Action[] }} Toast
  */
 
 import { useLayoutEffect, useReducer } from '../vendor/htm-preact.js';
-import { listen } from '../state.js';
+import { listen, state } from '../state.js';
 
 /** How long a message stays [ms]. */
 const TOAST_TIME = 6000;
@@ -48,13 +48,13 @@ export function dismiss(id) {
 
 /** Tells a person something; the same text is not told twice at once.
  * @param {string} text @param {'word' | 'bad'} [kind]
- * @param {{ name: string, run: () => void }} [action] with an action the message stays */
-export function tell(text, kind = 'word', action) {
+ * @param {Action[]} [actions] with an action the message stays */
+export function tell(text, kind = 'word', actions = []) {
   if (toasts.some((toast) => toast.text === text)) return;
   const id = nextToast;
   nextToast += 1;
-  setToasts([...toasts.slice(-3), { id, kind, text, action, stays: action !== undefined }]);
-  if (!action) setTimeout(() => dismiss(id), kind === 'bad' ? 2 * TOAST_TIME : TOAST_TIME);
+  setToasts([...toasts.slice(-3), { id, kind, text, actions }]);
+  if (actions.length === 0) setTimeout(() => dismiss(id), kind === 'bad' ? 2 * TOAST_TIME : TOAST_TIME);
 }
 
 /** Tells why something failed. @param {unknown} error */
@@ -96,6 +96,12 @@ export function useTopics(topics, interval = 0) {
       clearTimeout(timer);
     };
   }, []);
+}
+
+/** A name for a file of this scene. @param {string} ending */
+export function fileName(ending) {
+  const name = (state.scene?.name ?? 'scene').replace(/^.*[\\/]/, '');
+  return `${name.replace(/\.json$/, '').replace(/[^\w.-]+/g, '_')}${ending}`;
 }
 
 /** Gives a file to the person. @param {Blob} blob @param {string} name */

@@ -12,22 +12,32 @@ import { Events } from './events.js';
 import { count, short } from './numbers.js';
 import { useTopics } from './page.js';
 import { Profile } from './profile.js';
+import { downloadTrace, record, recorded, replay } from './recording.js';
+import { Safety } from './safety.js';
 
 /** Between two updates [ms]. */
 const INTERVAL = 100;
 
+/** @type {Record<string, [string, () => any]>} */
+const TABS = {
+  charts: ['Charts', Charts],
+  events: ['Events', Events],
+  safety: ['Safety', Safety],
+  profile: ['Profile', Profile],
+};
+
 export function Time() {
   const [tab, setTab] = useState('charts');
-  const tabs = [['charts', 'Charts'], ['events', 'Events'], ['profile', 'Profile']];
+  const Body = TABS[tab][1];
   return html`
     <${PlayBar} />
     <div class="time-tabs" role="group" aria-label="Below the play bar">
-      ${tabs.map(([key, name]) => html`<button key=${key} class="small" aria-pressed=${String(tab === key)}
+      ${Object.entries(TABS).map(([key, [name]]) => html`<button key=${key} class="small" aria-pressed=${String(tab === key)}
         onClick=${() => setTab(key)}>${name}</button>`)}
       <${Counters} />
     </div>
     <div class="time-body">
-      ${tab === 'charts' ? html`<${Charts} />` : tab === 'events' ? html`<${Events} />` : html`<${Profile} />`}
+      <${Body} key=${tab} />
     </div>`;
 }
 
@@ -41,16 +51,19 @@ function PlayBar() {
   const isHeld = newest?.held ?? false;
   const ago = newest && frame ? frame.time - newest.time : 0;
   const words = !isFollowing ? `looking back ${short(-ago)} s`
-    : newest?.stopped ? 'stopped: forces are zero' : isHeld ? 'time is held' : 'following';
+    : newest?.stopped ? 'stopped: forces are zero' : isHeld ? 'time is held'
+    : newest?.replaying ? 'replaying' : 'following';
   return html`<div class="play">
     <button class="small" onClick=${() => actions.lookBy(-1)} aria-label="One frame back" title="One frame back: ,"
       disabled=${history.length === 0}>◂</button>
+    <button class="small" onClick=${() => actions.lookBy(1)} aria-label="One frame forth" title="One frame forth: → while looking back"
+      disabled=${isFollowing}>▸</button>
     <button class="small" onClick=${actions.hold} title="Hold the servo's time, or go on: P" aria-pressed=${String(isHeld)}>
       ${isHeld ? 'go on' : 'hold'}</button>
     <button class="small" onClick=${actions.step} title="One step of the servo: ." disabled=${!isHeld}>step</button>
     <button class="small" onClick=${() => lookAt(null)} title="Follow the present: Home" aria-pressed=${String(isFollowing)}>
       follow</button>
-    <span class=${isFollowing ? 'play-words' : 'play-words replay'}>${words}</span>
+    <span class=${isFollowing && !newest?.replaying ? 'play-words' : 'play-words replay'}>${words}</span>
     <input type="range" class="slider scrub" min="0" max=${last} value=${at} aria-label="Look back"
       aria-valuetext=${isFollowing ? 'now' : `${short(-ago)} s ago`} disabled=${last === 0}
       onInput=${(/** @type {any} */ event) => lookAt(Number(event.currentTarget.value))} />
@@ -62,10 +75,28 @@ function PlayBar() {
         selected=${speed === actions.clock.speed}>${speed}×</option>`)}
     </select>
     <button class=${newest?.recording ? 'small recording' : 'small'} aria-pressed=${String(newest?.recording ?? false)}
-      onClick=${actions.record} title="Keep every tick">${newest?.recording ? 'recording' : 'record'}</button>
-    <button class="small" onClick=${actions.downloadTrace} title="What was recorded, as CSV">CSV</button>
-    <button class="small" onClick=${actions.downloadPicture} title="The picture as PNG">PNG</button>
+      onClick=${record} title="Keep every tick, at most 200 000 rows">
+      ${newest?.recording ? `recording ${recorded()}` : 'record'}</button>
+    <button class="small" aria-pressed=${String(newest?.replaying ?? false)} disabled=${newest?.recording ?? false}
+      onClick=${() => replay(!newest?.replaying)} title="Lead the hand along what was recorded last">
+      ${newest?.replaying ? 'end replay' : 'replay'}</button>
+    <${TraceButton} />
+    <button class="small" onClick=${downloadTrace} title=${`What was recorded${recorded() && `, ${recorded()}`}, as CSV`}>CSV</button>
+    <button class="small png" onClick=${actions.downloadPicture} title="The picture as PNG">PNG</button>
   </div>`;
+}
+
+/** Opens a trace to replay it. */
+function TraceButton() {
+  const file = useRef(/** @type {HTMLInputElement | null} */ (null));
+  return html`<button class="small" onClick=${() => file.current?.click()}
+      title="Open a trace, a CSV file, and replay it; it can be dropped on the page too">open trace…</button>
+    <input type="file" hidden accept=".csv,text/csv" ref=${file} aria-label="Trace file"
+      onChange=${(/** @type {any} */ event) => {
+        const [chosen] = event.currentTarget.files;
+        event.currentTarget.value = '';
+        if (chosen) void actions.openFile(chosen);
+      }} />`;
 }
 
 /** Frames and ticks a second, evaluations and pages. */

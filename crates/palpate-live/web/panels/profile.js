@@ -9,7 +9,7 @@
 
 import { html } from '../vendor/htm-preact.js';
 import { state } from '../state.js';
-import { time } from './numbers.js';
+import { short, time } from './numbers.js';
 import { page, useTopics } from './page.js';
 
 /** Entries that are averaged, and how long one counts [ms]. */
@@ -71,11 +71,31 @@ function programWork() {
 }
 
 export function Profile() {
-  useTopics(['frame'], 500);
+  useTopics(['frame', 'scene'], 500);
+  const period = 1 / (state.welcome?.rate ?? 1000);
+  const rows = programWork();
   return html`<div class="profile" tabindex="0" role="region" aria-label="Profile">
     <${Bars} title="This page, a frame has 16 700 µs" rows=${pageWork()} whole=${1 / 60} />
-    <${Bars} title=${`The program, a tick has ${time(1 / (state.welcome?.rate ?? 1000))}`} rows=${programWork()}
-      whole=${1 / (state.welcome?.rate ?? 1000)} />
+    <div>
+      <${Bars} title=${`The program, a tick has ${time(period)}; the longest took ${short((100 * rows[0].largest) / period)} % of it`}
+        rows=${rows} whole=${period} />
+      <${Flame} />
+    </div>
+  </div>`;
+}
+
+/** What the program did to build the newest revision: the whole above its parts, each as wide as
+ * the time that it took. */
+function Flame() {
+  const parts = /** @type {{ name: string, ns: number }[]} */ (state.scene?.spent ?? []);
+  const whole = parts.reduce((sum, { ns }) => sum + ns, 0);
+  if (whole === 0) return null;
+  return html`<div class="flame">
+    <b>Revision ${state.scene?.revision}, in the program</b>
+    <div class="flame-row"><span class="flame-bar whole">the whole edit ${time(whole / 1e9)}</span></div>
+    <ul class="flame-row">${parts.map(({ name, ns }) => html`<li key=${name} class="flame-bar" style=${{ flexGrow: ns / whole }}
+      title=${`${name}: ${time(ns / 1e9)}`}>${name} ${time(ns / 1e9)}</li>`)}</ul>
+    <p class="quiet">${parts.map(({ name, ns }) => `${name} ${time(ns / 1e9)}`).join(' · ')}</p>
   </div>`;
 }
 

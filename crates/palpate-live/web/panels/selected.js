@@ -48,7 +48,7 @@ function WholeScene() {
   const { scene } = state;
   if (!scene) return html`<div class="panel-head"><h2>Selected</h2></div>`;
   const bounds = cornersOf(scene.bounds);
-  const size = bounds?.max.map((max, axis) => short(max - bounds.min[axis])).join(' × ');
+  const size = bounds?.max.slice(0, scene.dimension).map((max, axis) => short(max - bounds.min[axis])).join(' × ');
   return html`
     <div class="panel-head"><h2>Scene</h2></div>
     <div class="scroll" tabindex="0" role="region" aria-label="Fields">
@@ -58,7 +58,7 @@ function WholeScene() {
         <dt>dimension</dt><dd>${scene.dimension}</dd>
         <dt>size</dt><dd>${size ? `${size} m` : 'endless'}</dd>
         <dt>bodies</dt><dd>${scene.bodies.length}</dd>
-        <dt>operations</dt><dd>${operations()}</dd>
+        ${operations() && html`<dt>formula</dt><dd>${operations()}</dd>`}
         <dt>Lipschitz</dt><dd>${short(scene.lipschitz)}</dd>
         <dt>drawn by</dt><dd>${drawnBy()}</dd>
       </dl>

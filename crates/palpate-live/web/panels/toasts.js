@@ -6,18 +6,20 @@
 
 import { html, useEffect, useReducer, useState } from '../vendor/htm-preact.js';
 import { state } from '../state.js';
+import { TWO_NEEDED } from './actions.js';
 import { tokenIn } from './link.js';
 import { dismiss, listenToasts, toasts, useTopics } from './page.js';
+import { Waiting } from './waiting.js';
 
 export function Toasts() {
   const [, redraw] = useReducer((/** @type {number} */ count) => count + 1, 0);
   useEffect(() => listenToasts(() => redraw(undefined)), []);
-  return html`${toasts.map(({ id, kind, text, action }) => html`<div key=${id} class=${`toast ${kind}`}>
+  return html`<${Waiting} />${toasts.map(({ id, kind, text, actions }) => html`<div key=${id} class=${`toast ${kind}`}>
     <span>${text}</span>
-    ${action && html`<button class="small" onClick=${() => {
+    ${actions.map(({ name, run }) => html`<button key=${name} class="small" onClick=${() => {
       dismiss(id);
-      action.run();
-    }}>${action.name}</button>`}
+      run();
+    }}>${name}</button>`)}
     <button class="small" aria-label="Close the message" onClick=${() => dismiss(id)}>×</button>
   </div>`)}`;
 }
@@ -25,7 +27,7 @@ export function Toasts() {
 /** The state of the page in words, over the picture, while there is one to tell.
  * @param {{ start: (token: string) => void }} given */
 export function Words({ start }) {
-  useTopics(['connection', 'scene', 'playback']);
+  useTopics(['connection', 'scene', 'playback', 'view']);
   const { connection, scene } = state;
   if (connection === 'closed') return html`<${NoToken} start=${start} />`;
   if (connection === 'lost') {
@@ -36,6 +38,7 @@ export function Words({ start }) {
   if (scene && (scene.bodies ?? []).length === 0) {
     return html`<div class="words">The scene is empty: add a body with “add…”, or open a file.</div>`;
   }
+  if (scene && state.view.mode === 'compare' && scene.bodies.length < 2) return html`<div class="words">${TWO_NEEDED}</div>`;
   return null;
 }
 

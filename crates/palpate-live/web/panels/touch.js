@@ -13,6 +13,8 @@ import { page, useTopics } from './page.js';
 
 /** Between two updates of the numbers [ms]: faster ones cannot be read. */
 const INTERVAL = 100;
+/** Bodies that are named; the others are counted. */
+const NAMED = 2;
 
 export function Touch() {
   useTopics(['touch', 'scene']);
@@ -62,10 +64,12 @@ function Readout() {
   const frame = state.connection === 'live' ? state.frame : null;
   const touched = frame?.points.filter((point) => point.contact) ?? [];
   const names = [...new Set(touched.map((point) => scene?.bodies?.[point.body]?.name ?? `body ${point.body}`))];
+  const others = names.length > NAMED ? ` and ${names.length - NAMED} more` : '';
   const isSlipping = touched.some((point) => point.slipping);
-  return html`<div class="readout">
-    <div><span class="large">${(frame?.force ?? 0).toFixed(2)}</span> N <span class="quiet">force</span></div>
-    <div><span class="large">${(1000 * (frame?.depth ?? 0)).toFixed(2)}</span> mm <span class="quiet">depth</span></div>
-    <div class="touched">${names.length > 0 ? `${names.join(', ')}${isSlipping ? ', slipping' : ''}` : 'touches nothing'}</div>
-  </div>`;
+  return html`<dl class="readout">
+    <div><dt>force</dt><dd><span class="large">${(frame?.force ?? 0).toFixed(2)}</span> N</dd></div>
+    <div><dt>depth</dt><dd><span class="large">${(1000 * (frame?.depth ?? 0)).toFixed(2)}</span> mm</dd></div>
+    <div class="touched" title=${names.join(', ')}><dt>touches</dt>
+      <dd>${names.length > 0 ? `${names.slice(0, NAMED).join(', ')}${others}${isSlipping ? ', slipping' : ''}` : 'nothing'}</dd></div>
+  </dl>`;
 }

@@ -171,6 +171,8 @@ function Buttons({ part }) {
       disabled=${place.index === 0} onClick=${() => changes.move(pointer, -1)}>↑</button>`}
     ${place && html`<button class="small" aria-label="Move down" title="Move down"
       disabled=${place.index === place.list.length - 1} onClick=${() => changes.move(pointer, 1)}>↓</button>`}
-    ${changes.canRemove(pointer) && html`<button class="small" onClick=${() => changes.remove(pointer)}>remove</button>`}
+    ${changes.canRemove(pointer) ? html`<button class="small" onClick=${() => changes.remove(pointer)}
+        title=${changes.operatorLeftAlone(pointer) ? 'The operator goes too: the other shape takes its place' : 'Del'}>remove</button>`
+      : part.kind === 'body' && html`<button class="small" disabled title="A scene keeps one body">remove</button>`}
   </div>`;
 }

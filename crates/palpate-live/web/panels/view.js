@@ -24,10 +24,15 @@ const MAPS = [
   ['inside', 'inside, outside'], ['distance', 'distance'], ['gradient', 'gradient'], ['promise', 'promise'],
 ];
 
-/** @type {[keyof typeof state.view.shown, string][]} */
+/** @type {[keyof typeof state.view.shown, string, string][]} */
 const SHOWN = [
-  ['contacts', 'contacts'], ['normals', 'normals'], ['forces', 'forces'], ['spring', 'spring to the hand'],
-  ['proof', 'boxes of the proof'], ['bounds', 'bounds'], ['names', 'names'],
+  ['contacts', 'contacts', 'Pink dots: where bodies touch or come nearest'],
+  ['normals', 'normals', 'Green arrows: which way the touched surface faces; pink ones the same at contacts of bodies'],
+  ['forces', 'forces', 'Orange arrows: the force on the hand'],
+  ['spring', 'spring to the hand', 'Between the hand and the pointer that draws it'],
+  ['proof', 'boxes of the proof', 'Regions in which the proof has ruled a contact out'],
+  ['bounds', 'bounds', 'The box around each body'],
+  ['names', 'names', 'The name of each body'],
 ];
 
 /** @param {string} mode */
@@ -129,7 +134,7 @@ function Display() {
           change=${(/** @type {boolean} */ is) => setView({ channels: { ...view.channels, [channel]: is } })} />`)}
       </fieldset>
       <fieldset><legend>Shown</legend>
-        ${SHOWN.map(([key, name]) => html`<${Switch} key=${key} label=${name} value=${view.shown[key]}
+        ${SHOWN.map(([key, name, help]) => html`<${Switch} key=${key} label=${name} help=${help} value=${view.shown[key]}
           change=${(/** @type {boolean} */ is) => setView({ shown: { ...view.shown, [key]: is } })} />`)}
       </fieldset>
     </div>

@@ -1,0 +1,70 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+// @ts-check
+
+/** Where new parts go, so that they can be seen: beside what is there. */
+
+import { state } from '../state.js';
+import { ONE, listOf, makerOf } from './nodes.js';
+import { cornersOf, extent } from './numbers.js';
+
+/** Keys that are lengths from end to end; other lengths are radii. */
+const WHOLE = /size|height|length|width|thickness/;
+/** Named shapes are followed so deep. */
+const DEEPEST = 20;
+
+/** @param {number} value */
+const rounded = (value) => Number(value.toPrecision(3));
+
+/** About where a shape is in its own coordinates, and how far it reaches from there [m].
+ * @param {any} shape @returns {{ centre: number[], reach: number }} */
+export function aboutShape(shape, depth = 0) {
+  const dimension = state.scene?.dimension ?? 3;
+  const none = { centre: Array(dimension).fill(0), reach: 0.15 * extent(state.scene?.bounds) };
+  if (depth > DEEPEST) return none;
+  if (typeof shape === 'string' || typeof shape?.shape === 'string') {
+    return aboutShape(state.scene?.scene.shapes?.[shape.shape ?? shape] ?? {}, depth + 1);
+  }
+  const list = listOf(shape);
+  if (list) return aboutShape(shape[list][0], depth + 1);
+  if (shape?.of !== undefined) {
+    const { centre, reach } = aboutShape(shape.of, depth + 1);
+    const factor = typeof shape.scale === 'number' ? shape.scale : 1;
+    const by = Array.isArray(shape.translate) ? shape.translate : [];
+    return { centre: none.centre.map((_, axis) => factor * (centre[axis] ?? 0) + (by[axis] ?? 0)), reach: factor * reach };
+  }
+  const maker = makerOf(shape);
+  if (!maker || ONE.includes(maker)) return none;
+  const entry = state.welcome?.catalogue?.find((/** @type {any} */ one) => one.name === maker && one.dimension === dimension);
+  const lengths = (entry?.parameters ?? []).filter((/** @type {any} */ one) => one.unit === 'm')
+    .flatMap((/** @type {any} */ { key }) => [shape[maker]?.[key]].flat(9)
+      .filter((value) => typeof value === 'number').map((value) => Math.abs(value) * (WHOLE.test(key) ? 0.5 : 1)));
+  const reach = Math.max(0, ...lengths);
+  return reach > 0 ? { centre: none.centre, reach } : none;
+}
+
+/** A shape that is moved. @param {any} shape @param {number[]} by [m] */
+export function moved(shape, by) {
+  return { translate: by.map(rounded), of: shape };
+}
+
+/** Where the next operand goes: on the edge of the first, each time on another side.
+ * @param {any[]} operands */
+export function besideOperands(operands) {
+  const { centre, reach } = aboutShape(operands[0]);
+  const turn = operands.length - 1;
+  const axis = Math.floor(turn / 2) % centre.length;
+  return centre.map((place, index) => (index === axis ? place + (turn % 2 === 0 ? reach : -reach) : place));
+}
+
+/** Where a body of this size goes: to the right of the scene; without end, below it.
+ * @param {number} size from the middle to the edge [m] @param {boolean} isBounded */
+export function besideBodies(size, isBounded) {
+  const dimension = state.scene?.dimension ?? 3;
+  const corners = cornersOf(state.scene?.bounds);
+  if (!corners || !state.scene?.scene.bodies.length) return Array(dimension).fill(0);
+  const middle = corners.max.map((max, axis) => (max + corners.min[axis]) / 2);
+  if (isBounded) middle[0] = corners.max[0] + 1.3 * size;
+  else middle[1] = corners.min[1] - size - 0.25 * extent(state.scene?.bounds);
+  return middle.slice(0, dimension).map(rounded);
+}

@@ -1,0 +1,77 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+// @ts-check
+
+/** Recording every tick, replaying it, and traces as files. */
+
+import { changed } from '../state.js';
+import { count } from './numbers.js';
+import { ask, download, fileName, page, tell, tellError } from './page.js';
+
+/** The frames between which is recorded; of the recording that goes on, the last so far.
+ * @type {{ first: import('../wire.js').Frame, last: import('../wire.js').Frame } | null} */
+let span = null;
+let isRecording = false;
+let isReplaying = false;
+
+/** What was recorded, or is: "12.3 s, 12 300 rows". */
+export function recorded() {
+  if (!span) return '';
+  const { first, last } = span;
+  // A row for each point in each tick.
+  const rows = (last.tick - first.tick) * last.points.length;
+  return `${(last.time - first.time).toFixed(1)} s, ${count(rows)} rows`;
+}
+
+/** Takes note of what frames say of recording and replaying. @param {import('../wire.js').Frame} frame */
+export function watchRecording(frame) {
+  if (frame.recording && (!isRecording || !span || frame.tick < span.last.tick)) span = { first: frame, last: frame };
+  if (frame.recording && span) span.last = frame;
+  if (isRecording && !frame.recording) {
+    tell(`Recorded ${recorded()}.`, 'word', [
+      { name: 'Replay', run: () => void replay(true) }, { name: 'Export CSV', run: () => void downloadTrace() },
+    ]);
+  }
+  if (isReplaying && !frame.replaying) tell('The replay is over.');
+  if (isReplaying !== frame.replaying) changed('playback');
+  isRecording = frame.recording;
+  isReplaying = frame.replaying;
+}
+
+/** Begins to record, or ends it. */
+export function record() {
+  page.wire?.send({ do: 'record', on: !isRecording });
+}
+
+/** Leads the hand along what was recorded, or no longer. @param {boolean} on */
+export async function replay(on) {
+  await ask({ do: 'replay', on });
+}
+
+const address = () => `trace.csv?token=${encodeURIComponent(page.token)}`;
+
+/** Gives what was recorded as a CSV file. */
+export async function downloadTrace() {
+  try {
+    const answer = await fetch(address());
+    if (!answer.ok) throw new Error(await reason(answer, 'There is no recording yet: press record first.'));
+    download(await answer.blob(), fileName('.trace.csv'));
+  } catch (error) {
+    tellError(error);
+  }
+}
+
+/** Gives a trace to the program, and replays it. @param {File} file */
+export async function openTrace(file) {
+  const answer = await fetch(address(), { method: 'POST', body: file, headers: { 'Content-Type': 'text/csv' } });
+  if (!answer.ok) throw new Error(`${file.name}: ${await reason(answer, 'the program does not take it')}`);
+  tell(`${file.name} is replayed.`);
+  await replay(true);
+}
+
+/** Why the program did not do it. @param {Response} answer @param {string} otherwise */
+async function reason(answer, otherwise) {
+  if (answer.status === 503) return 'The program is busy with another trace: try again.';
+  if (answer.status === 413) return 'it is larger than 64 MiB';
+  return (await answer.text()).trim() || otherwise;
+}

@@ -1,0 +1,74 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+// @ts-check
+
+/**
+ * The stages between the force that is wanted and the hand: what each does, and which act.
+ *
+ * @typedef {{ name: string, ticks: number }} Stage
+ */
+
+import { changed, state } from '../state.js';
+import { html } from '../vendor/htm-preact.js';
+import { count, short } from './numbers.js';
+import { useTopics } from './page.js';
+
+/** How long a stage that acted is told of in the foot line, and marked in the list [ms]. */
+const NOW = 1500;
+const RECENT = 5000;
+
+/** For the foot line, and what the stage does. @type {Record<string, [string, string]>} */
+const WORDS = {
+  'held readings': ['reading held', 'A reading that no hand can have made is not believed: the one before is held.'],
+  'limit cycles': ['oscillation softened', 'A wall that begins to oscillate by itself is made softer.'],
+  'passivity of guides': ['guides held back', 'Guides and magnets add no energy that comes from sampling them in ticks.'],
+  passivity: ['energy held back', 'The force gives the hand no more energy than it took and the device’s damping dissipates.'],
+  'force rate': ['force rate limited', 'The force changes by no more in a tick than the device follows.'],
+  'largest force': ['force limited', 'The force is shortened to the largest that is allowed; its direction stays.'],
+  'lasting force': ['lasting force lowered', 'A large force that lasts is lowered before the motors grow hot.'],
+  'not a number': ['force zero: not a number', 'A force or a reading that is no finite number makes the force zero.'],
+  'rise from zero': ['force rises from zero', 'A force that was zero at the start or after a stop comes back slowly.'],
+  watchdog: ['force lowered: late ticks', 'While ticks are late the force falls to zero, since an old force is a wrong one.'],
+  'emergency stop': ['stopped', 'STOP, Esc or the device’s own switch makes all forces zero.'],
+  'torque rate': ['torque rate limited', 'The torque changes by no more in a tick than the device follows.'],
+  'largest torque': ['torque limited', 'The torque is shortened to the largest that is allowed.'],
+  'lasting torque': ['lasting torque lowered', 'A large torque that lasts is lowered before the motors grow hot.'],
+};
+
+/** Takes what the program tells of its stages. @param {Stage[]} stages */
+export function takeSafety(stages) {
+  const now = performance.now();
+  const before = new Map(state.safety.map((stage) => [stage.name, stage]));
+  state.safety = stages.map(({ name, ticks }) => {
+    const last = before.get(name);
+    const acted = last && ticks > last.ticks ? now : last && ticks === last.ticks ? last.acted : -Infinity;
+    return { name, ticks, acted };
+  });
+  changed('safety');
+}
+
+/** The stages that act now, for the foot line; empty if none does. */
+export function actingStages() {
+  const now = performance.now();
+  return state.safety.filter(({ acted }) => now - acted < NOW)
+    .map(({ name }) => WORDS[name]?.[0] ?? `${name} acts`).join(', ');
+}
+
+export function Safety() {
+  useTopics(['safety', 'frame', 'scene'], 500);
+  const now = performance.now();
+  const rate = state.welcome?.rate ?? 1000;
+  const limit = state.scene?.device?.max_force;
+  const kept = state.history[state.history.length - 1]?.kept ?? 0;
+  return html`<div class="safety-stages" tabindex="0" role="region" aria-label="Safety">
+    <p>Each force passes these stages, from the first to the last, before it reaches the hand.
+      ${limit !== undefined && html` The largest force is ${short(limit)} N.`} So far ${short(1000 * kept)} mJ were kept back.</p>
+    ${state.safety.length === 0 && html`<p class="quiet">No stage has changed a force since this page came.</p>`}
+    <ol>${state.safety.map(({ name, ticks, acted }) => {
+      const isRecent = now - acted < RECENT;
+      return html`<li key=${name} class=${isRecent ? 'acting' : ''}>
+        <b>${name}</b> <span class="quiet">${WORDS[name]?.[1] ?? ''}</span> <span class="stage-ticks">· ${isRecent ? 'acts: ' : ''}${ticks === 0 ? 'never' : `${count(ticks)} ${ticks === 1 ? 'tick' : 'ticks'}, ${short(ticks / rate)} s`}</span>
+      </li>`;
+    })}</ol>
+  </div>`;
+}
