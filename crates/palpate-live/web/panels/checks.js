@@ -9,9 +9,10 @@
  * @typedef {import('../plane/toys.js').Toy} Toy
  */
 
-import { METHODS, listenToys, setToys, toys } from '../plane/toys.js';
+import { METHODS, PAIR_METHODS, listenToys, setToys, toys } from '../plane/toys.js';
 import { state } from '../state.js';
 import { html, useEffect, useReducer } from '../vendor/htm-preact.js';
+import { TWO_NEEDED } from './actions.js';
 import { ChoiceField, NumberField, Switch, VectorField } from './fields.js';
 import { extent } from './numbers.js';
 import { useTopics } from './page.js';
@@ -36,7 +37,8 @@ function useToys() {
       for (const [toy] of TOYS) {
         const { certified, local, ns } = toys.results[toy] ?? {};
         if (ns ?? certified?.ns) tookTime(`${toy}, proven`, ns ?? certified.ns);
-        if (local?.ns) tookTime(`${toy}, local`, local.ns);
+        const spent = [local ?? []].flat().reduce((sum, one) => sum + (one.ns ?? 0), 0);
+        if (spent > 0) tookTime(`${toy}, local`, spent);
       }
       redraw(undefined);
     });
@@ -69,7 +71,7 @@ function Parameters({ toy }) {
     const { centre, radius } = toys.ball;
     return html`<${VectorField} label="centre" unit="m" value=${centre} scale=${scale()}
         change=${(/** @type {number[]} */ to) => setToys({ ball: { centre: to, radius } })} />
-      <${NumberField} label="radius" unit="m" value=${radius} min=${0} above scale=${scale()}
+      <${NumberField} label="radius" unit="m" value=${radius} min=${0} above own scale=${scale()}
         change=${(/** @type {number} */ to) => setToys({ ball: { centre, radius: to } })} />`;
   }
   if (toy === 'sweep') {
@@ -103,12 +105,14 @@ function Corners() {
 function Pair() {
   const { pair } = toys;
   const names = (state.scene?.bodies ?? []).map((/** @type {any} */ body, /** @type {number} */ index) => [String(index), body.name]);
-  if (names.length < 2) return html`<p class="quiet">This scene has one body.</p>`;
+  if (names.length < 2) return html`<p class="quiet">${TWO_NEEDED}</p>`;
   return html`
     ${/** @type {const} */ (['a', 'b']).map((side) => html`<${ChoiceField} key=${side} label=${`body ${side.toUpperCase()}`}
       value=${String(pair[side])} choices=${names}
       change=${(/** @type {string} */ to) => setToys({ pair: { ...pair, [side]: Number(to) } })} />`)}
-    <p class="quiet">Press on the picture to add a start: ${pair.starts.length} so far.</p>
+    <${ChoiceField} label="local method" value=${pair.method} choices=${Object.entries(PAIR_METHODS)}
+      change=${(/** @type {string} */ method) => setToys({ pair: { ...pair, method } })} />
+    <p class="quiet">Click on the picture to add a start, drag one to move it: ${pair.starts.length} so far.</p>
     ${pair.starts.length > 0 && html`<button class="small"
       onClick=${() => setToys({ pair: { ...pair, starts: [] } })}>take the starts away</button>`}`;
 }
@@ -119,23 +123,25 @@ function Method() {
     /** @type {number} */ first, /** @type {Record<string, any>} */ limits, /** @type {string} */ help) => html`
     <${Switch} label=${`${label} by the program`} value=${value === null}
       change=${(/** @type {boolean} */ own) => setToys({ [key]: own ? null : first })} />
-    ${value !== null && html`<${NumberField} label=${label} help=${help} value=${value} ...${limits}
+    ${value !== null && html`<${NumberField} label=${label} help=${help} value=${value} own ...${limits}
       change=${(/** @type {number} */ to) => setToys({ [key]: to })} />`}`;
   const path = toys.results.element?.local?.path;
   return html`
     <${ChoiceField} label="local method" value=${method} choices=${Object.entries(METHODS)}
       change=${(/** @type {string} */ to) => setToys({ method: to })} />
     ${method === 'naive' && html`
-      ${free('step', 'step α', step, 0.1, { min: 0, max: 1, above: true }, 'The memoir’s α, its learning rate')}
-      ${free('momentum', 'step µ', momentum, scale() / 10, { min: 0, scale: scale(), unit: 'm' }, 'The memoir’s µ: the longest step at first')}
-      <${NumberField} label="iterations" value=${iterations} min=${1} max=${1000} whole
+      ${free('step', 'step size α', step, 0.1, { min: 0, max: 1, above: true }, 'The memoir’s α: a step is α times the distance long')}
+      ${free('momentum', 'least distance µ', momentum, scale() / 10, { min: 0, scale: scale(), unit: 'm' }, 'The memoir’s µ: nearer than µ a step is α µ long, so that steps do not vanish at the surface')}
+      <p class="quiet">Each step goes down the slope by the step size α times the distance, but at least by α times µ: where
+        that is longer than the way to the minimum, the path goes to and fro across it.</p>
+      <${NumberField} label="iterations" value=${iterations} min=${1} max=${1000} whole own
         change=${(/** @type {number} */ to) => setToys({ iterations: to })} />`}
     ${corners.length > 1 && html`
       <${Switch} label="start in the middle" value=${start === null}
         change=${(/** @type {boolean} */ is) => setToys({ start: is ? null : corners.map(() => 1 / corners.length) })} />
       ${start !== null && html`<${VectorField} label="weights of the start" value=${start}
-        names=${['A', 'B', 'C']} min=${0} change=${(/** @type {number[]} */ to) => setToys({ start: to })} />`}`}
-    ${Array.isArray(path) && path.length > 1 && html`<${NumberField} label="step of the path" whole min=${0}
+        names=${['A', 'B', 'C']} min=${0} own change=${(/** @type {number[]} */ to) => setToys({ start: to })} />`}`}
+    ${Array.isArray(path) && path.length > 1 && html`<${NumberField} label="step of the path" whole own min=${0}
       max=${path.length - 1} value=${at ?? path.length - 1}
       change=${(/** @type {number} */ to) => setToys({ at: to === path.length - 1 ? null : to })} />`}`;
 }

@@ -9,6 +9,7 @@ import { lookAt, state } from '../state.js';
 import * as actions from './actions.js';
 import { Charts } from './charts.js';
 import { Events } from './events.js';
+import { FallingBall } from './fall.js';
 import { count, short } from './numbers.js';
 import { useTopics } from './page.js';
 import { Profile } from './profile.js';
@@ -24,6 +25,7 @@ const TABS = {
   events: ['Events', Events],
   safety: ['Safety', Safety],
   profile: ['Profile', Profile],
+  ball: ['Falling ball', FallingBall],
 };
 
 export function Time() {

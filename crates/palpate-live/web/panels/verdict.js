@@ -4,6 +4,7 @@
 
 /** An answer of the program in words: what is proven beside what a local method says. */
 
+import { isFound } from '../plane/drawn.js';
 import { html } from '../vendor/htm-preact.js';
 import { count, short, time } from './numbers.js';
 
@@ -52,12 +53,13 @@ function sentences(toy, result) {
   const upper = certified?.upper;
   const values = [local].flat().map((one) => one?.value).filter((value) => typeof value === 'number');
   if (typeof upper === 'number' && values.length > 0) {
+    const found = values.filter((value) => isFound(value, certified)).length;
     const miss = Math.min(...values) - upper;
-    // Both are rounded, and the proof ends within its own bounds.
-    const isRight = miss <= upper - certified.lower + 1e-9 + 1e-3 * Math.abs(upper);
-    const best = values.length > 1 ? 'the best of the local searches' : 'the local method';
-    said.push({ isRight, text: isRight ? `${best} found the proven minimum`
-      : `${best} misses the proven minimum by ${short(miss)} m` });
+    const isRight = found > 0;
+    const who = toy === 'pair' ? `${found} of ${values.length} ${values.length === 1 ? 'start' : 'starts'}` : 'the local method';
+    said.push({ isRight, text: isRight || toy === 'pair' ? `${who} found the proven minimum`
+      : `${who} misses the proven minimum by ${short(miss)} m` });
+    if (!isRight && toy === 'pair') said.push({ isRight, text: `the best misses it by ${short(miss)} m` });
   }
   if (enclosing && typeof upper === 'number') {
     const isRight = !enclosing.excludes || certified.lower > 0;
@@ -78,6 +80,13 @@ function sentences(toy, result) {
   return said;
 }
 
+/** @param {any} local @param {number} index @param {any} certified */
+function startTitle({ value }, index, certified) {
+  const miss = certified && typeof value === 'number' && !isFound(value, certified)
+    ? `: misses by ${short(value - certified.upper)} m` : ': found the minimum';
+  return `start ${index + 1}${certified ? miss : ''}`;
+}
+
 /** @param {{ toy: string, result: any }} given */
 export function Verdict({ toy, result }) {
   if (!result) return null;
@@ -91,7 +100,7 @@ export function Verdict({ toy, result }) {
     ${said.map(({ text }) => html`<b key=${text}>${text}</b>`)}
     <${Table} title="proven" answer=${certified} />
     ${locals.map((one, index) => html`<${Table} key=${index} answer=${one}
-      title=${locals.length > 1 ? `local, start ${index + 1}` : 'local'} />`)}
+      title=${toy === 'pair' ? startTitle(one, index, certified) : 'local'} />`)}
     <${Table} title="enclosing circle" answer=${enclosing} />
     <${Table} title="answer" answer=${rest} />
   </div>`;

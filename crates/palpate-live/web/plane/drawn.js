@@ -9,19 +9,20 @@
  * @typedef {import('../scene/ink.js').Context} Context
  * @typedef {import('../scene/ink.js').Inks} Inks
  * @typedef {import('../scene/camera.js').Lens} Lens
+ * @typedef {import('../scene/texts.js').Texts} Texts
  */
 
-import { arrow, dot, label, polyline, ring } from '../scene/ink.js';
+import { arrow, dot, polyline, ring } from '../scene/ink.js';
+import { COLORS, mark } from '../scene/marks.js';
+import { RANK } from '../scene/overlay.js';
 import { length } from '../scene/units.js';
 import { inSpace } from '../scene/vectors.js';
 import { middleOf } from './handles.js';
 import { toys } from './toys.js';
 
-const HIT = '#b3261e';
-const FREE = '#007355';
+const { hit: HIT, normal: FREE, path: PATH, cell: PROOF } = COLORS;
 const OPEN = '#7a6a00';
-const PATH = '#e02020';
-const PROOF = 'rgba(18, 60, 122, 0.5)';
+const VERDICT = RANK.verdict;
 
 /** The colour and word of a proven bound of the least distance.
  * @param {{ lower?: number, upper?: number } | null | undefined} certified */
@@ -32,26 +33,35 @@ export function verdictOf(certified) {
   return { color: OPEN, word: 'not decided' };
 }
 
-/** @param {Context} context @param {Lens} lens @param {Inks} inks */
-function paintElement(context, lens, inks) {
+/** Whether a local search found what is proven: both are rounded, and the proof ends within its
+ * own bounds. @param {number} value @param {{ lower: number, upper: number }} certified */
+export const isFound = (value, { lower, upper }) =>
+  value - upper <= upper - lower + 1e-9 + 1e-3 * Math.abs(upper);
+
+/** @param {Context} context @param {Lens} lens @param {Texts} texts @param {Inks} inks */
+function paintElement(context, lens, texts, inks) {
   const project = (/** @type {number[]} */ point) => lens.project(inSpace(point));
   const { certified, local, enclosing } = toys.results.element ?? {};
   const { color, word } = verdictOf(certified);
+  mark('element');
   for (const cell of certified?.cells ?? []) {
+    mark('cell');
     polyline(context, cell.map(project), PROOF, 1, 'transparent', true);
   }
   if (enclosing?.centre) {
     const radius = enclosing.radius / lens.pixel([0, 0, 0]);
     const place = project(enclosing.centre);
+    mark('enclosing');
     ring(context, place, radius, enclosing.excludes ? FREE : inks.muted, 1, inks.halo);
     if (place) {
-      label(context, `circle ${enclosing.excludes ? 'excludes' : 'does not exclude'}`, place.x,
-        place.y - radius - 10, inks);
+      texts.add(`circle ${enclosing.excludes ? 'excludes' : 'does not exclude'}`, place.x,
+        place.y - radius - 10, { rank: VERDICT });
     }
   }
   outline(context, lens, toys.corners, color, inks);
   const path = (local?.path ?? []).map(project);
   const shown = toys.at === null ? path : path.slice(0, toys.at + 1);
+  if (shown.length > 0) mark('path');
   polyline(context, shown, PATH, 1, 'transparent');
   for (const place of shown) dot(context, place, 2.5, PATH, 'transparent');
   dot(context, shown[shown.length - 1] ?? null, 5, PATH, inks.halo);
@@ -60,7 +70,7 @@ function paintElement(context, lens, inks) {
   const middle = project(middleOf());
   if (word && middle) {
     const bounds = `${length(certified.lower)} to ${length(certified.upper)}`;
-    label(context, `${word}: ${bounds}`, middle.x, low + 18, inks, 'center', color);
+    texts.add(`${word}: ${bounds}`, middle.x, low + 18, { rank: VERDICT, color });
   }
 }
 
@@ -74,8 +84,9 @@ function outline(context, lens, corners, color, inks, isGhost = false) {
   if (corners.length > 1) dot(context, lens.project(inSpace(middleOf())), 5, '#ffffff', color);
 }
 
-/** @param {Context} context @param {Lens} lens @param {Inks} inks */
-function paintBall(context, lens, inks) {
+/** @param {Context} context @param {Lens} lens @param {Texts} texts @param {Inks} inks */
+function paintBall(context, lens, texts, inks) {
+  mark('circle');
   const { centre, radius } = toys.ball;
   const answer = toys.results.ball;
   const touches = answer?.touches;
@@ -89,33 +100,47 @@ function paintBall(context, lens, inks) {
     '#ffffff', color);
   const word = touches === true ? 'touches' : touches === false ? 'free' : 'not decided';
   const value = answer?.value === undefined ? '' : `, f ${length(answer.value)}`;
-  if (answer) label(context, word + value, place.x, place.y + reach + 14, inks, 'center', color);
+  if (answer) texts.add(word + value, place.x, place.y + reach + 14, { rank: VERDICT, color });
 }
 
-/** @param {Context} context @param {Lens} lens @param {Inks} inks */
-function paintPair(context, lens, inks) {
+/** @param {Context} context @param {Lens} lens @param {Texts} texts @param {Inks} inks */
+function paintPair(context, lens, texts, inks) {
   const project = (/** @type {number[]} */ point) => lens.project(inSpace(point));
   const { certified, local } = toys.results.pair ?? {};
-  for (const { path, point } of local ?? []) {
+  const colors = toys.pair.starts.map((_, number) => {
+    const value = local?.[number]?.value;
+    if (!certified || typeof value !== 'number') return OPEN;
+    const found = isFound(value, certified);
+    mark(found ? 'found' : 'missed');
+    return found ? FREE : PATH;
+  });
+  (local ?? []).forEach((/** @type {any} */ { path, point }, /** @type {number} */ number) => {
     const places = (path ?? []).map(project);
-    polyline(context, places, PATH, 1, 'transparent');
-    for (const place of places) dot(context, place, 2.5, PATH, 'transparent');
-    if (point) dot(context, project(point), 5, PATH, inks.halo);
-  }
-  for (const start of toys.pair.starts) dot(context, project(start), 6, '#ffffff', PATH);
+    if (places.length > 1) mark('path');
+    polyline(context, places, colors[number] ?? PATH, 1.5, inks.halo);
+    for (const place of places) dot(context, place, 2.5, colors[number] ?? PATH, 'transparent');
+    if (point) dot(context, project(point), 6, colors[number] ?? PATH, inks.halo);
+  });
+  toys.pair.starts.forEach((start, number) => {
+    const place = project(start);
+    dot(context, place, 6, '#ffffff', colors[number]);
+    if (place) texts.add(String(number + 1), place.x + 14, place.y, { rank: VERDICT + 0.5, color: colors[number] });
+  });
   const { color, word } = verdictOf(certified);
   const [a, b] = (certified?.points ?? []).map(project);
   if (a && b) {
+    mark('witness');
     polyline(context, [a, b], color, 2, inks.halo);
     dot(context, a, 5, color, inks.halo);
     dot(context, b, 5, color, inks.halo);
     const bounds = `${length(certified.lower)} to ${length(certified.upper)}`;
-    label(context, `${word}: ${bounds}`, (a.x + b.x) / 2, Math.min(a.y, b.y) - 14, inks, 'center', color);
+    texts.add(`${word}: ${bounds}`, (a.x + b.x) / 2, Math.min(a.y, b.y) - 14, { rank: VERDICT, color });
   }
 }
 
-/** @param {Context} context @param {Lens} lens @param {Inks} inks */
-function paintSweep(context, lens, inks) {
+/** @param {Context} context @param {Lens} lens @param {Texts} texts @param {Inks} inks */
+function paintSweep(context, lens, texts, inks) {
+  mark('motion');
   const answer = toys.results.sweep;
   const { by, corners } = toys;
   const moved = (/** @type {number} */ t) => corners.map(([x, y]) => [x + t * by[0], y + t * by[1]]);
@@ -134,14 +159,14 @@ function paintSweep(context, lens, inks) {
   }
   const word = touches ? `touches at ${Number(time).toFixed(3)} s`
     : answer.touches === false ? 'passes' : 'not decided';
-  label(context, word, places[1].x, places[1].y + 18, inks, 'center', touches ? HIT : FREE);
+  texts.add(word, places[1].x, places[1].y + 18, { rank: VERDICT, color: touches ? HIT : FREE });
 }
 
-/** @param {Context} context @param {Lens} lens @param {Inks} inks */
-export function paintToys(context, lens, inks) {
+/** @param {Context} context @param {Lens} lens @param {Texts} texts @param {Inks} inks */
+export function paintToys(context, lens, texts, inks) {
   const { shown, corners } = toys;
-  if (shown.sweep && corners.length > 0) paintSweep(context, lens, inks);
-  if (shown.element && corners.length > 0) paintElement(context, lens, inks);
-  if (shown.ball) paintBall(context, lens, inks);
-  if (shown.pair) paintPair(context, lens, inks);
+  if (shown.sweep && corners.length > 0) paintSweep(context, lens, texts, inks);
+  if (shown.element && corners.length > 0) paintElement(context, lens, texts, inks);
+  if (shown.ball) paintBall(context, lens, texts, inks);
+  if (shown.pair) paintPair(context, lens, texts, inks);
 }

@@ -23,6 +23,13 @@ export const METHODS = {
   macklin: 'Macklin',
 };
 
+/** Local methods for a pair of bodies. */
+export const PAIR_METHODS = {
+  alternating_projection: 'projection in turns',
+  minimax_proximal: 'proximal minimax',
+  sum_descent: 'descent of the sum',
+};
+
 export const toys = {
   /** Which toys are out. @type {Record<Toy, boolean>} */
   shown: { element: false, ball: false, pair: false, sweep: false },
@@ -30,7 +37,7 @@ export const toys = {
   corners: [],
   ball: { centre: [0, 0], radius: 0.1 },
   /** The two bodies whose separation is searched for, and where local descents start. */
-  pair: { a: 0, b: 1, starts: /** @type {number[][]} */ ([]) },
+  pair: { a: 0, b: 1, starts: /** @type {number[][]} */ ([]), method: 'minimax_proximal' },
   /** How the element moves in a second [m]. */
   by: [0, 0],
   /** The local method, one of `METHODS`. */
@@ -84,7 +91,7 @@ export function layToys(centre, size) {
     corners: [at(-0.42, -0.3), at(-0.2, -0.34), at(-0.3, -0.12)],
     ball: { centre: at(0.36, -0.3), radius: 0.08 * size },
     by: [0.4 * size, 0.2 * size],
-    pair: { a: 0, b: 1, starts: [] },
+    pair: { ...toys.pair, a: 0, b: 1, starts: [] },
   });
 }
 

@@ -89,8 +89,8 @@ export function handDrag(view, place, through, pushes, hand, show) {
   };
 }
 
-/** A drag that is known only later: what moved meanwhile is made up for. It changes no depth
- * until then. @param {Promise<Drag | null>} promise @returns {Drag} */
+/** A drag that is known only later: what moved meanwhile is made up for. Depth is changed from
+ * then on. @param {Promise<Drag | null>} promise @returns {Drag} */
 export function laterDrag(promise) {
   /** @type {Drag | null} */
   let drag = null;

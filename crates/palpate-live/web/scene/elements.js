@@ -50,6 +50,8 @@ export class Elements {
       });
     }
     this.readout.hidden = true;
+    /** Where the texts are. @type {import('./texts.js').Taken[]} */
+    this.notes = [];
     this.way.style.bottom = '6px';
     this.readout.style.bottom = '30px';
     this.readout.style.fontVariantNumeric = 'tabular-nums';
@@ -78,6 +80,7 @@ export class Elements {
     this.ratio = Math.min(devicePixelRatio || 1, 2);
     this.overlay.width = Math.round(this.width * this.ratio);
     this.overlay.height = Math.round(this.height * this.ratio);
+    this.measureNotes();
   }
 
   /** Shows what the card draws, or what the program drew. @param {boolean} isUsed */
@@ -101,6 +104,14 @@ export class Elements {
     if (element.textContent === text) return;
     element.textContent = text;
     element.hidden = text === '';
+    this.measureNotes();
+  }
+
+  measureNotes() {
+    this.notes = [this.way, this.readout].filter((each) => !each.hidden).map((each) => {
+      const { offsetLeft: left, offsetTop: top, offsetWidth: wide, offsetHeight: high } = each;
+      return { x: left + wide / 2, y: top + high / 2, wide, high };
+    });
   }
 
   /** Tells how the scene is drawn. @param {string} words @param {string} why */

@@ -38,7 +38,7 @@ export class Field {
     this.isUrgent = isUrgent;
     this.grids = grids;
     this.palette = paletteOf(setting);
-    this.values = { zero: 0, palette: 0, grid0: 1, grid1: 2, grid2: 3, ...values };
+    this.values = { zero: 0, palette: 0, grid0: 1, grid1: 2, grid2: 3, owners0: 4, owners1: 5, ...values };
     /** @type {WebGLTexture[]} */
     this.textures = [];
     this.epoch = -1;
@@ -95,12 +95,15 @@ export class Field {
       return texture;
     }
     const [width, height, depth] = grid.counts;
-    const format = grid.half ? gl.R16F : gl.R32F;
+    const isPacked = grid.values.length > width * height * depth;
+    const [half, single] = isPacked ? [gl.RGBA16F, gl.RGBA32F] : [gl.R16F, gl.R32F];
+    const inner = grid.half ? half : single;
+    const format = isPacked ? gl.RGBA : gl.RED;
     const type = grid.half ? gl.HALF_FLOAT : gl.FLOAT;
     if (kind === gl.TEXTURE_3D) {
-      gl.texImage3D(kind, 0, format, width, height, depth, 0, gl.RED, type, grid.values);
+      gl.texImage3D(kind, 0, inner, width, height, depth, 0, format, type, grid.values);
     } else {
-      gl.texImage2D(kind, 0, format, width, height, 0, gl.RED, type, grid.values);
+      gl.texImage2D(kind, 0, inner, width, height, 0, format, type, grid.values);
     }
     return texture;
   }

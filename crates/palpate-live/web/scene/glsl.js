@@ -31,8 +31,10 @@ out vec4 result;
 const argument = (/** @type {number} */ dimension) => (dimension === 2 ? '.xy' : '');
 
 /** Samples of the whole scene and of two bodies, as a formula. Beyond the grid a value is that of
- * the nearest place in it and the way there. */
-export const samples = (/** @type {number} */ dimension) => `
+ * the nearest place in it and the way there.
+ * @param {number} dimension @param {number} owners bodies whose samples tell, four in a texture,
+ *   which of them a place belongs to */
+export const samples = (dimension, owners) => `
 uniform sampler${dimension}D grid0, grid1, grid2;
 uniform vec3 gridLow[3], gridHigh[3];
 uniform int firstBody;
@@ -49,12 +51,40 @@ vec2 field(vec${dimension} place, int only) {
     : only == firstBody ? sampled(grid1, p, gridLow[1], gridHigh[1])
     : sampled(grid2, p, gridLow[2], gridHigh[2]);
   return vec2(value, float(only));
+}${owners > 0 ? ownersOf(dimension, owners) : ''}`;
+
+/** The nearest body, where the samples of the scene do not tell it.
+ * @param {number} dimension @param {number} count */
+const ownersOf = (dimension, count) => `
+uniform sampler${dimension}D owners0, owners1;
+uniform vec3 ownersLow, ownersHigh;
+float owner(vec3 p, float number) {
+  if (number >= 0.0) return number;
+  vec3 part = (clamp(p, ownersLow, ownersHigh) - ownersLow) / max(ownersHigh - ownersLow, vec3(1e-30));
+  vec${dimension} count = vec${dimension}(textureSize(owners0, 0));
+  vec${dimension} at = (part${argument(dimension)} * (count - 1.0) + 0.5) / count;
+  vec4 values[2] = vec4[2](textureLod(owners0, at, 0.0), ${count > 4 ? 'textureLod(owners1, at, 0.0)' : 'vec4(0)'});
+  float least = values[0].x;
+  number = 0.0;
+  for (int i = 1; i < ${count}; i++) {
+    float value = values[i / 4][i % 4];
+    number = value < least ? float(i) : number;
+    least = min(least, value);
+  }
+  return number;
 }`;
+
+/** A formula knows the body of a place. @param {string} field */
+const owned = (field) => (field.includes('float owner(') ? field
+  : `${field}\nfloat owner(vec3 p, float number) { return number; }`);
 
 /** The colours of bodies, and the corners of a tetrahedron: the sum of the values at them, times
  * them, is four times the gradient. */
 const COMMON = `
 uniform sampler2D palette;
+// The number of the selected body and one; 0 without one.
+uniform int selected;
+const vec3 CHOSEN = vec3(0.98, 0.72, 0.1);
 vec4 body(int number) {
   return texelFetch(palette, ivec2(max(number, 0) % textureSize(palette, 0).x, 0), 0);
 }
@@ -101,7 +131,8 @@ float line(float pixels, float width) {
 vec3 mapped(float value, float other, vec2 g, float slope, float pixel, int number) {
   vec3 tint = body(number).rgb;
   float inner = step(value, 0.0);
-  float zeroLine = line(abs(value) / pixel, 2.0);
+  bool isChosen = number + 1 == selected;
+  float zeroLine = line(abs(value) / pixel, isChosen ? 3.0 : 2.0);
   if (map == 4) {
     float change = (value - other) / range;
     vec3 c = mix(vec3(0.97), change < 0.0 ? vec3(0.13, 0.40, 0.67) : vec3(0.70, 0.09, 0.17),
@@ -144,12 +175,12 @@ vec3 mapped(float value, float other, vec2 g, float slope, float pixel, int numb
   }
   bool white = map == 1;
   colour = mix(colour, INK, white ? 0.7 * line(abs(value) / pixel, 4.5) : 0.0);
-  return mix(colour, white ? vec3(1) : INK, zeroLine);
+  return mix(colour, isChosen ? CHOSEN : white ? vec3(1) : INK, zeroLine);
 }
 `;
 
 /** A map of a plane. @param {string} field @param {number} dimension @param {number} map */
-export const flat = (field, dimension, map) => `${HEAD}${field}${COMMON}const int map = ${map};${MAP}
+export const flat = (field, dimension, map) => `${HEAD}${owned(field)}${COMMON}const int map = ${map};${MAP}
 uniform vec2 viewport, lowerLeft, centre, span;
 uniform vec3 origin, across, above, shift, otherShift;
 uniform int first, last, only, other;
@@ -175,7 +206,8 @@ void main() {
   // Without a gradient, the neighbouring pixels tell how fast the value changes.
   float change = max(first == 0 ? pixel * length(g) : length(vec2(dFdx(here.x), dFdy(here.x))),
     0.2 * pixel);
-  result = vec4(mapped(here.x, value, g, length(gradient), change, int(here.y)), 1);
+  result = vec4(mapped(here.x, value, g, length(gradient), change,
+    int(owner(p + shift, here.y))), 1);
 }`;
 
 /** The plane of a slice: what is between it and the viewer is cut away. */
@@ -215,7 +247,7 @@ const COVER = `
   // The size of a pixel, seen askew.
   float pixel = 2.0 * cone * cut / mix(abs(facing), 1.0, 0.4);
   vec3 colour = mapped(planeValue.x, otherValue, g, length(gradient),
-    max(length(g), 0.2) * pixel, int(planeValue.y));
+    max(length(g), 0.2) * pixel, int(owner(place + shift, planeValue.y)));
   float covers = isCut ? (planeValue.x < 0.0 ? 1.0 : 0.72) : 0.0;
   result = vec4(mix(result.rgb, colour, covers), covers + result.a * (1.0 - covers));`;
 
@@ -228,7 +260,7 @@ uniform float sliceReach;`;
  * do all that stands in a loop each time round, so colours come after it.
  * @param {string} field @param {boolean} isSliced whether a plane cuts the scene
  * @param {number} map of the plane */
-export const space = (field, isSliced, map) => `${HEAD}${field}${COMMON}${isSliced ? `const int map = ${map};${MAP}${SLICE}` : ''}
+export const space = (field, isSliced, map) => `${HEAD}${owned(field)}${COMMON}${isSliced ? `const int map = ${map};${MAP}${SLICE}` : ''}
 uniform vec2 viewport, lowerLeft;
 uniform vec3 eye, forward, across, above, low, high, shift, otherShift;
 uniform float cone, rate, leastStep;
@@ -284,6 +316,7 @@ void main() {
     }${isSliced ? TAKE : ''}
   }
   bool isHit = k >= 0 && k < 8;
+  number = owner(eye + t * ray + shift, number);
   if (picking) {
     result = isHit ? vec4(eye + t * ray, number) : vec4(0, 0, 0, -2);
     return;
@@ -295,5 +328,7 @@ void main() {
   vec3 lit = body(int(number)).rgb * (0.30 + 0.16 * sky + 0.58 * key) * mix(0.62, 1.0, open);
   float shine = key * key * key;
   lit += 0.10 * shine * shine * shine + 0.10 * rim * rim * rim * sky;
+  // The selected body is tinted, and its edge glows.
+  lit = int(number) + 1 == selected ? mix(lit, CHOSEN, 0.22 + 0.6 * rim * rim) : lit;
   result = isHit ? vec4(lit, 1) : vec4(0);${isSliced ? COVER : ''}
 }`;

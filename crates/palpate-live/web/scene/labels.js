@@ -11,14 +11,13 @@
  * @typedef {import('./vectors.js').Vector} Vector
  * @typedef {import('./camera.js').Frame} Frame
  * @typedef {{ point: Vector, text: string, rank: number }} Label
- * @typedef {{ x: number, y: number, wide: number, high: number }} Taken a place with a text: its
- *   middle and its size in pixels
  */
 
 import { state } from '../state.js';
-import { FONT, label } from './ink.js';
+import { label } from './ink.js';
 import { newest } from './newest.js';
 import { slice } from './slice.js';
+import { HIGH, widthOf } from './texts.js';
 import { add, along } from './vectors.js';
 import { level } from './units.js';
 
@@ -27,8 +26,6 @@ const CELLS = 64;
 const SCANS = [0.5, 0.25, 0.75, 0.375, 0.625, 0.12, 0.88];
 /** Labels of the same level keep this far apart in pixels. */
 const APART = 190;
-/** The height of a label in pixels. */
-const HIGH = 16;
 
 /** The number that a half float stands for. @param {number} half */
 export function fromHalf(half) {
@@ -129,28 +126,23 @@ export class Labels {
     this.changed();
   }
 
-  /** @param {import('./ink.js').Context} context @param {View} view @param {number} index
-   * @param {import('./ink.js').Inks} inks @param {Taken[]} taken where other texts are */
-  paint(context, view, index, inks, taken) {
+  /** Paints the numbers into what other texts left free. @param {View} view
+   * @param {number} index @param {import('./texts.js').Texts} texts
+   * @param {import('./ink.js').Inks} inks */
+  paint(view, index, texts, inks) {
     /** @type {{ x: number, y: number, text: string }[]} */
     const placed = [];
-    const free = [...taken];
-    context.font = FONT;
-    const { rect } = view.lens;
     for (const { point, text } of this.labels[index] ?? []) {
       const place = view.lens.project(point);
       if (!place || placed.length > 60) continue;
-      const wide = context.measureText(text).width;
-      const [x, y] = [place.x - rect.x, place.y - rect.y];
-      const isInside = x > wide && y > 16 && x < rect.width - wide && y < rect.height - 16;
+      const { x, y } = place;
+      const wide = widthOf(texts.context, text);
       const isNew = placed.every((other) =>
         other.text !== text || Math.hypot(other.x - x, other.y - y) > APART);
-      const isFree = free.every((other) => Math.abs(other.x - place.x) > (other.wide + wide) / 2 + 6
-        || Math.abs(other.y - place.y) > (other.high + HIGH) / 2);
-      if (!isInside || !isNew || !isFree) continue;
+      if (!isNew || !texts.isFree(x, y, wide)) continue;
       placed.push({ x, y, text });
-      free.push({ x: place.x, y: place.y, wide, high: HIGH });
-      label(context, text, place.x, place.y, inks);
+      texts.taken.push({ x, y, wide, high: HIGH });
+      label(texts.context, text, x, y, inks);
     }
   }
 }

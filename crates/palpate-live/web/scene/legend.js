@@ -21,7 +21,7 @@ const AXES = [
   { name: 'y', color: '#1a7d3c', axis: [0, 1, 0] },
   { name: 'z', color: '#2563b0', axis: [0, 0, 1] },
 ];
-const MARGIN = 14;
+export const MARGIN = 14;
 
 /** A bar of a round length, below on the right. @param {Context} context @param {View} view
  * @param {import('./vectors.js').Vector} at where its scale holds @param {Inks} inks */
@@ -61,9 +61,9 @@ export function paintAxes(context, { lens, isFlat }, inks) {
 }
 
 /** The colours of the map, above on the right. @param {Context} context @param {View} view
- * @param {Inks} inks */
+ * @param {Inks} inks @returns {number} where it ends below */
 export function paintLegend(context, { lens: { rect }, hasPlane, hasLines, spacing, panel }, inks) {
-  if (!hasPlane) return;
+  if (!hasPlane) return rect.y + MARGIN;
   const { map, asInMemoir } = state.view;
   const right = rect.x + rect.width - MARGIN;
   let y = rect.y + MARGIN + 6;
@@ -80,7 +80,7 @@ export function paintLegend(context, { lens: { rect }, hasPlane, hasLines, spaci
   if (panel.map === MAPS.difference) {
     entry('#2166ac', 'the first is less');
     entry('#b2182b', 'the first is more');
-    return;
+    return y;
   }
   if (map === 'distance') {
     entry(asInMemoir ? '#5999e6' : '#79a9d5', 'inside');
@@ -95,7 +95,9 @@ export function paintLegend(context, { lens: { rect }, hasPlane, hasLines, spaci
     paintWheel(context, right - 30, y + 26);
     y += 68;
   }
-  if (hasLines) label(context, `lines every ${level(spacing, spacing)}`, right, y, inks, 'right');
+  if (!hasLines) return y;
+  label(context, `lines every ${level(spacing, spacing)}`, right, y, inks, 'right');
+  return y + 14;
 }
 
 /** The wheel of directions. @param {Context} context @param {number} x @param {number} y */

@@ -12,10 +12,12 @@
  * @typedef {import('./setting.js').Box} Box
  * @typedef {import('./vectors.js').Vector} Vector
  * @typedef {import('../wire.js').Point} Point
+ * @typedef {import('./texts.js').Texts} Texts
  */
 
 import { state } from '../state.js';
-import { arrow, dot, label, numbered, polyline, ring, spring } from './ink.js';
+import { arrow, dot, numbered, polyline, ring, spring } from './ink.js';
+import { COLORS, mark } from './marks.js';
 import { centreOf, cornersOf } from './setting.js';
 import { along, dot as product, inSpace, mean, norm } from './vectors.js';
 
@@ -23,11 +25,11 @@ import { along, dot as product, inSpace, mean, norm } from './vectors.js';
 const LONGEST = 130;
 /** The largest force if the device does not tell it [N]. */
 const MOST_FORCE = 10;
-/** More bodies than this have no names in the picture. */
-const MOST_NAMES = 40;
-const FORCE = '#d1480a';
-const NORMAL = '#007355';
-const CONTACT = '#9e2f78';
+const { force: FORCE, normal: NORMAL, contact: CONTACT } = COLORS;
+/** The order in which texts take their places. */
+export const RANK = { hovered: 0, selected: 1, verdict: 2, force: 3, touched: 4, name: 10, small: 20 };
+/** A body that is seen smaller than this has its name last, in pixels. */
+const SMALL = 24;
 const EDGES = [[0, 1], [1, 2], [2, 3], [3, 0], [4, 5], [5, 6], [6, 7], [7, 4],
   [0, 4], [1, 5], [2, 6], [3, 7]];
 
@@ -46,22 +48,44 @@ function paintBox(context, { lens }, box, color, halo) {
   }
 }
 
-/** Boxes and names of the bodies. @param {Context} context @param {View} view
- * @param {Setting} setting @param {Inks} inks @returns {import('./labels.js').Taken[]} where
- *   the names are */
-export function paintBodies(context, view, setting, inks) {
+/** The number of the body that is selected, or that a selected part is in; −1 without one. */
+export function selectedBody() {
+  const number = /^\/bodies\/(\d+)(\/|$)/.exec(state.selection ?? '')?.[1];
+  return number === undefined ? -1 : Number(number);
+}
+
+/** How far the corners of a box are apart, as it is seen, in pixels.
+ * @param {View} view @param {Box} box */
+function seenSize({ lens }, { low, high }) {
+  const middle = centreOf({ low, high });
+  return Math.hypot(high[0] - low[0], high[1] - low[1], high[2] - low[2]) / lens.pixel(middle);
+}
+
+/** Boxes, balls and names of the bodies. @param {Context} context @param {View} view
+ * @param {Setting} setting @param {Texts} texts @param {Inks} inks
+ * @param {{ outlined: number, hovered: number }} which a body that has its box in any case, and one
+ *   whose name is elsewhere; −1 for none */
+export function paintBodies(context, view, setting, texts, inks, { outlined, hovered }) {
   const { shown } = state.view;
-  /** @type {import('./labels.js').Taken[]} */
-  const taken = [];
-  setting.bodies.forEach(({ name, box, color }) => {
+  const selected = selectedBody();
+  const touched = new Set((state.frame?.points ?? []).filter(({ contact }) => contact).map(({ body }) => body));
+  setting.bodies.forEach(({ name, box, color }, body) => {
     if (!box) return;
-    if (shown.bounds) paintBox(context, view, box, color, inks.halo);
+    const size = seenSize(view, box);
     const place = view.lens.project(centreOf(box));
-    if (!shown.names || !place || setting.bodies.length > MOST_NAMES) return;
-    label(context, name, place.x, place.y, inks);
-    taken.push({ x: place.x, y: place.y, wide: context.measureText(name).width, high: 16 });
+    if (shown.bounds) {
+      mark('bounds');
+      paintBox(context, view, box, color, inks.halo);
+      ring(context, place, size / 2, color, 1, 'transparent');
+    }
+    if (body === selected) mark('selected');
+    if (body === outlined) paintBox(context, view, box, COLORS.selected, inks.halo);
+    if (!shown.names || !place || body === hovered) return;
+    const rank = body === selected ? RANK.selected : touched.has(body) ? RANK.touched
+      : size > SMALL ? RANK.name : RANK.small;
+    // Of bodies alike, the larger is the first.
+    texts.add(body === selected ? `▸ ${name}` : name, place.x, place.y, { rank: rank + 1 / (2 + size) });
   });
-  return taken;
 }
 
 /** The edges of a box that may be turned: corners whose numbers differ in one bit share one.
@@ -82,13 +106,16 @@ export function paintContacts(context, view, answer, inks) {
   const { shown } = state.view;
   for (const pair of answer?.pairs ?? []) {
     for (const corners of shown.proof ? pair.boxes ?? [] : []) {
-      paintCorners(context, view, corners, 'rgba(158,47,120,0.55)');
+      mark('proof');
+      paintCorners(context, view, corners, COLORS.proof);
     }
     for (const contact of shown.contacts ? pair.contacts ?? [] : []) {
       const [a, b] = [contact.point_a, contact.point_b].map((point) => inSpace(point ?? contact.point_a));
+      mark('contact');
       polyline(context, [project(a), project(b)], CONTACT, 2, inks.halo);
       dot(context, project(a), 4, CONTACT, inks.halo);
       if (contact.normal && shown.normals) {
+        mark('contactNormal');
         const tip = along(a, inSpace(contact.normal), 34 * pixel(a));
         arrow(context, project(a), project(tip), CONTACT, 1.5, inks.halo);
       }
@@ -105,10 +132,13 @@ function paintPoint(context, { lens }, point, color, inks) {
   // A contact on the far side of a body lies behind it.
   const isHidden = point.contact && product(point.normal, lens.towards(point.proxy)) < -0.05;
   context.globalAlpha = isHidden ? 0.35 : 1;
+  mark('device');
   if (point.contact) {
+    mark('proxy');
     polyline(context, [device, proxy], color, 1.5, inks.halo);
     ring(context, device, 5, color, 1.5, inks.halo);
     if (shown.normals) {
+      mark('normal');
       const tip = along(point.proxy, point.normal, 38 * lens.pixel(point.proxy));
       arrow(context, proxy, lens.project(tip), NORMAL, 1.5, inks.halo);
     }
@@ -118,6 +148,7 @@ function paintPoint(context, { lens }, point, color, inks) {
     dot(context, device, 5, color, inks.halo);
   }
   if (shown.forces && norm(point.force) > 0.01) {
+    mark('force');
     const most = Number(state.scene?.device?.max_force) || MOST_FORCE;
     const reach = Math.min(1.2, norm(point.force) / most) * LONGEST * lens.pixel(point.proxy);
     const tip = along(point.proxy, point.force, reach / norm(point.force));
@@ -127,8 +158,9 @@ function paintPoint(context, { lens }, point, color, inks) {
 }
 
 /** The hand with its points, and the spring by which the page leads it.
- * @param {Context} context @param {View} view @param {Vector | null} target @param {Inks} inks */
-export function paintHand(context, view, target, inks) {
+ * @param {Context} context @param {View} view @param {Vector | null} target @param {Texts} texts
+ * @param {Inks} inks */
+export function paintHand(context, view, target, texts, inks) {
   const { frame } = state;
   const points = frame?.points ?? [];
   const hand = handOf();
@@ -145,6 +177,7 @@ export function paintHand(context, view, target, inks) {
     paintPoint(context, view, point, numbered(number), inks);
   });
   if (target && state.view.shown.spring) {
+    mark('spring');
     const goal = project(target);
     spring(context, middle, goal, inks.ink, inks.halo);
     ring(context, goal, 7, inks.ink, 1.5, inks.halo);
@@ -153,14 +186,17 @@ export function paintHand(context, view, target, inks) {
   const force = frame?.force ?? 0;
   const place = project(points[0].proxy);
   if (state.view.shown.forces && force > 0.01 && place) {
-    label(context, `${force.toFixed(2)} N`, place.x + 14, place.y + 16, inks, 'left');
+    texts.add(`${force.toFixed(2)} N`, place.x + 32, place.y + 16, { rank: RANK.force });
   }
 }
 
-/** What the probe found. @param {Context} context @param {View} view
- * @param {{ at: Vector, nearest: Vector | null, safe: number } | null} probe @param {Inks} inks */
-export function paintProbe(context, { lens }, probe, inks) {
+/** What the probe found, and the name of the body that it is on. @param {Context} context
+ * @param {View} view @param {import('./probe.js').Probed | null} probe @param {Texts} texts
+ * @param {Inks} inks */
+export function paintProbe(context, view, probe, texts, inks) {
   if (!probe) return;
+  const { lens } = view;
+  mark('probe');
   const at = lens.project(probe.at);
   if (probe.nearest) {
     const nearest = lens.project(probe.nearest);
@@ -169,4 +205,12 @@ export function paintProbe(context, { lens }, probe, inks) {
   }
   if (at && probe.safe > 0) ring(context, at, probe.safe / lens.pixel(probe.at), NORMAL, 1, 'transparent');
   dot(context, at, 2.5, inks.ink, inks.halo);
+  const name = state.scene?.bodies?.[hoveredBody(view, probe)]?.name;
+  if (name && at) texts.add(name, at.x, at.y - 20, { rank: RANK.hovered });
+}
+
+/** The number of the body that the probe is on; −1 where it is beside all. @param {View} view
+ * @param {import('./probe.js').Probed | null} probe */
+export function hoveredBody({ lens }, probe) {
+  return probe && probe.value < 2 * lens.pixel(probe.at) ? probe.body : -1;
 }

@@ -8,25 +8,34 @@
  * @typedef {import('./panels.js').View} View
  * @typedef {import('./vectors.js').Vector} Vector
  * @typedef {{ target: Vector | null, contacts: any, labels: import('./labels.js').Labels,
- *   probe: import('./probe.js').Probed | null }} Shown
+ *   probe: import('./probe.js').Probed | null, notes: import('./texts.js').Taken[],
+ *   isDrawn: boolean }} Shown `notes` are texts that lie over the picture, `isDrawn` tells whether
+ *   the program drew it
  */
 
 import { paintToys } from '../plane/drawn.js';
+import { paintFall } from '../plane/falling.js';
 import { state } from '../state.js';
-import { paintAxes, paintHandles, paintLegend, paintOutline, paintScale, paintTitle } from './legend.js';
-import { paintBodies, paintContacts, paintHand, paintProbe } from './overlay.js';
+import {
+  MARGIN, paintAxes, paintHandles, paintLegend, paintOutline, paintScale, paintTitle,
+} from './legend.js';
+import { clearMarks, paintMarks } from './marks.js';
+import { hoveredBody, paintBodies, paintContacts, paintHand, paintProbe, selectedBody } from './overlay.js';
 import { setting } from './setting.js';
 import { corners, handles, slice } from './slice.js';
+import { Texts } from './texts.js';
 
 /** On maps, whose colours are light in both themes. */
 const ON_MAP = { ink: '#171a1f', halo: 'rgba(255, 255, 255, 0.82)', muted: '#595f69' };
+/** Below the legend of marks: the title and the scale. */
+const BELOW = 60;
 
-/** Where the legend, the title and the scale of a panel are.
- * @param {import('./camera.js').Rect} rect @returns {import('./labels.js').Taken[]} */
-const texts = ({ x, y, width, height }) => [
-  { x: x + width - 75, y: y + 50, wide: 150, high: 110 },
-  { x: x + width / 2, y: y + height - 25, wide: width, high: 50 },
+/** Where the title, the scale and the axes of a panel are.
+ * @param {import('./camera.js').Rect} rect @param {View} view @returns {import('./texts.js').Taken[]} */
+const fixed = ({ x, y, width, height }, { title }) => [
+  { x: x + width - 60, y: y + height - 18, wide: 120, high: 36 },
   { x: x + 40, y: y + 40, wide: 80, high: 80 },
+  ...(title ? [{ x: x + width / 2, y: y + height - MARGIN - 24, wide: 200, high: 20 }] : []),
 ];
 
 /** @param {CanvasRenderingContext2D} context @param {View[]} views @param {Shown} shown
@@ -42,21 +51,32 @@ export function paintAll(context, views, shown, theme, ratio) {
     context.beginPath();
     context.rect(rect.x, rect.y, rect.width, rect.height);
     context.clip();
+    clearMarks();
     const isCut = view.hasPlane && !isFlat;
     if (isCut) paintOutline(context, view, corners(), inks);
-    const names = isWhole ? paintBodies(context, view, current, inks) : [];
-    if (view.hasLines) shown.labels.paint(context, view, number, ON_MAP, [...names, ...texts(rect)]);
+    const texts = new Texts(context, rect, inks, [...shown.notes, ...fixed(rect, view)]);
     if (isWhole) {
+      paintBodies(context, view, current, texts, inks, {
+        outlined: shown.isDrawn ? selectedBody() : -1,
+        hovered: hoveredBody(view, shown.probe),
+      });
       paintContacts(context, view, shown.contacts, inks);
-      if (isFlat && current.dimension === 2) paintToys(context, view.lens, inks);
-      paintHand(context, view, shown.target, inks);
+      if (isFlat && current.dimension === 2) paintToys(context, view.lens, texts, inks);
+      paintFall(context, view.lens, inks);
+      paintHand(context, view, shown.target, texts, inks);
     }
     if (isCut && state.view.mode === 'slice') paintHandles(context, view, handles(), slice.frame.origin, inks);
-    if (shown.probe?.view === number) paintProbe(context, view, shown.probe, inks);
+    if (shown.probe?.view === number) paintProbe(context, view, shown.probe, texts, inks);
     if (number === 0) paintAxes(context, view, inks);
-    paintLegend(context, view, inks);
+    const right = rect.x + rect.width - MARGIN;
+    const end = paintLegend(context, view, inks);
+    texts.taken.push({ x: right - 65, y: (rect.y + end) / 2, wide: 130, high: end - rect.y });
+    const marks = paintMarks(context, right, end + 4, rect.y + rect.height - BELOW, inks);
+    if (marks) texts.taken.push(marks);
     paintScale(context, view, slice.frame.origin, inks);
     paintTitle(context, view, inks);
+    texts.paint();
+    if (view.hasLines) shown.labels.paint(view, number, texts, ON_MAP);
     context.restore();
   });
 }

@@ -19,6 +19,7 @@
 import { state } from '../state.js';
 import { FIELD_OF_VIEW } from './camera.js';
 import { MAPS } from './glsl.js';
+import { selectedBody } from './overlay.js';
 import { shifts } from './setting.js';
 import { slice } from './slice.js';
 import { roundUp } from './units.js';
@@ -81,6 +82,7 @@ function viewOf(setting, cameras, rect, title, [only, other], map) {
   const spacing = view.spacing ?? roundUp(camera.height / LINES);
   const shown = {
     spacing, only, other, shift, otherShift,
+    selected: selectedBody() + 1,
     range: map === MAPS.difference ? 0.06 * setting.size : 0.35 * setting.size,
     sineFactor: view.sineFactor,
     isolines: view.isolines,

@@ -16,12 +16,13 @@
  * @property {ReturnType<typeof import('../input/hand.js').createHand>} hand
  * @property {(place: Place) => View | undefined} view
  * @property {(view: View, place: Place) => Promise<{ point: Vector } | null>} pick
+ * @property {(view: View, place: Place) => void} click
  * @property {() => void} changed
  * @property {(target: Vector | null) => void} show
  */
 
-import { addStart, toyDrag } from '../plane/handles.js';
-import { toys } from '../plane/toys.js';
+import { fallDrag } from '../plane/falling.js';
+import { toyDrag } from '../plane/handles.js';
 import { state } from '../state.js';
 import { handDrag, laterDrag, orbitDrag, panDrag, sliceDrag } from './drags.js';
 import { handOf } from './overlay.js';
@@ -31,26 +32,42 @@ import { handles } from './slice.js';
 const REACH = { mouse: 16, touch: 28 };
 /** A press that moves less than this is a click, in pixels. */
 const CLICK = 5;
+/** A press on a body that lasts longer than this touches it [ms]. */
+const HOLD = 220;
 
-/** A drag that begins once the pointer has moved; before, a click.
- * @param {Place} place @param {() => Drag} begin @param {() => void} click @returns {Drag} */
-function clickOrDrag(place, begin, click) {
+/** A drag that begins once the pointer has moved, or, if `holds`, rested pressed for a while;
+ * before, a click. @param {Place} place @param {() => Drag | null} begin @param {() => void} click
+ * @param {boolean} holds @returns {Drag} */
+function clickOrDrag(place, begin, click, holds) {
   /** @type {Drag | null} */
   let drag = null;
-  return {
+  let isBegun = false;
+  /** @type {Drag} */
+  const either = {
     move(next, across, down) {
-      if (!drag && Math.hypot(next.x - place.x, next.y - place.y) > CLICK) drag = begin();
+      if (!isBegun && Math.hypot(next.x - place.x, next.y - place.y) > CLICK) start();
       drag?.move(next, across, down);
     },
     end() {
-      if (drag) drag.end?.();
+      clearTimeout(timer);
+      if (isBegun) drag?.end?.();
       else click();
     },
+    get deepen() {
+      return drag?.deepen?.bind(drag);
+    },
   };
+  const start = () => {
+    isBegun = true;
+    clearTimeout(timer);
+    drag = begin();
+  };
+  const timer = holds ? setTimeout(start, HOLD) : undefined;
+  return either;
 }
 
 /** @param {Stage} stage @returns {(place: Place, press: Press) => Drag | null} */
-export function createPress({ cameras, hand, view, pick, changed, show }) {
+export function createPress({ cameras, hand, view, pick, click, changed, show }) {
   return (place, { button, shift, isTouch }) => {
     const pressed = view(place);
     if (!pressed) return null;
@@ -68,13 +85,16 @@ export function createPress({ cameras, hand, view, pick, changed, show }) {
       const toy = toyDrag(() => live().lens, place, reach);
       if (toy) return toy;
     }
+    const ball = isWhole ? fallDrag(() => live().lens, place, reach) : null;
+    if (ball) return ball;
     if (state.view.mode === 'slice' && !isFlat) {
       const found = handles().find(({ point }) => near(point, reach));
       if (found) return sliceDrag(found.handle, () => live().lens);
     }
     const middle = handOf();
     const away = () => (isFlat ? panDrag(camera, lens.rect, changed) : orbitDrag(cameras.orbit, changed));
-    if (!middle || !isWhole) return away();
+    const clicks = () => click(live(), place);
+    if (!middle || !isWhole) return clickOrDrag(place, away, clicks, false);
     const holds = near(middle, reach)
       || (state.frame?.points ?? []).some(({ device }) => near(device, reach));
     const lead = (/** @type {Vector} */ through, /** @type {boolean} */ pushes) =>
@@ -82,9 +102,10 @@ export function createPress({ cameras, hand, view, pick, changed, show }) {
     if (holds) return lead(middle, false);
     if (isFlat) {
       const there = lens.at(place.x, place.y, middle);
-      if (!toys.shown.pair) return lead(there, false);
-      return clickOrDrag(place, () => lead(there, false), () => addStart(there.slice(0, 2)));
+      return clickOrDrag(place, () => lead(there, false), clicks, true);
     }
-    return laterDrag(pick(pressed, place).then((hit) => (hit ? lead(hit.point, true) : away())));
+    const hit = pick(pressed, place);
+    return clickOrDrag(place, () => laterDrag(hit.then((found) => (found ? lead(found.point, true) : away()))),
+      clicks, true);
   };
 }

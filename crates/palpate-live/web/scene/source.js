@@ -20,8 +20,24 @@ import { inSpace } from './vectors.js';
 
 /** Samples along the longest side: of a scene that stands, and of one that is being changed. */
 const CELLS = { plane: [1024, 256], space: [128, 64] };
-/** How long after a change the scene counts as being changed [ms]. */
+/** How long nothing changes before fine samples are asked for [ms]. */
 const SETTLE = 300;
+
+/** Samples along the longest side that tell bodies apart, and the most bodies that have some. */
+const OWNERS = { plane: 256, space: 64, most: 8 };
+
+/** Samples of up to four bodies as one grid of four values a place. Those of bodies that are
+ * missing are far away. @param {Grid[]} grids @returns {Grid} */
+function packed(grids) {
+  const [{ values, half }] = grids;
+  const all = half ? new Uint16Array(4 * values.length) : new Float32Array(4 * values.length);
+  // The largest half float.
+  all.fill(half ? 0x7bff : 1e30);
+  grids.forEach((grid, channel) => grid.values.forEach((value, at) => {
+    all[4 * at + channel] = value;
+  }));
+  return { ...grids[0], values: all };
+}
 
 export class Source {
   /** @param {Wire} wire @param {(field: Field) => void} take takes a field that can be drawn */
@@ -37,10 +53,15 @@ export class Source {
     /** @type {Setting | null} */
     this.setting = null;
     this.settling = 0;
-    this.changedAt = 0;
+    /** Whether coarse samples do. */
+    this.isCoarse = true;
     this.text = '';
+    /** The name of the scene. */
+    this.name = '';
     /** Why the formula could not be used. */
     this.failure = '';
+    /** What tells the bodies apart, and of how many. @type {{ grids: Grid[], count: number }} */
+    this.owners = { grids: [], count: 0 };
     this.ask = newest(() => this.fetch());
   }
 
@@ -61,6 +82,8 @@ export class Source {
     const { way } = state;
     this.setting = setting;
     if (way?.glsl !== this.text) this.failure = '';
+    if (state.scene?.name !== this.name) this.spacing = 0;
+    this.name = state.scene?.name;
     this.text = way?.glsl ?? '';
     const kind = way?.kind ?? 'drawn';
     this.kind = kind === 'formula' && this.failure ? 'samples' : kind;
@@ -72,16 +95,18 @@ export class Source {
       this.take(new Field(this.text, setting, [], { u }, u.length > 0));
     }
     if (this.kind === 'samples') this.renew();
+    else clearTimeout(this.settling);
   }
 
-  /** Asks for samples: coarse ones while the scene is being changed. */
+  /** Asks for coarse samples at once, and for fine ones when the scene has settled. */
   renew() {
-    const now = performance.now();
-    const isChanging = now - this.changedAt < SETTLE;
-    this.changedAt = now;
     clearTimeout(this.settling);
+    this.isCoarse = true;
     this.ask(undefined);
-    if (isChanging) this.settling = window.setTimeout(() => this.ask(undefined), SETTLE);
+    this.settling = window.setTimeout(() => {
+      this.isCoarse = false;
+      this.ask(undefined);
+    }, SETTLE);
   }
 
   /** The card refused the formula: samples do as well. @param {string} why */
@@ -95,13 +120,26 @@ export class Source {
   async fetch() {
     const { setting } = this;
     if (!setting) return;
-    const isCoarse = performance.now() - this.changedAt < SETTLE && this.spacing > 0;
+    const { isCoarse } = this;
     const [fine, coarse] = setting.dimension === 2 ? CELLS.plane : CELLS.space;
     const cells = isCoarse ? coarse : fine;
     const bodies = state.view.mode === 'compare' ? state.view.compared : [];
     /** @type {Grid[]} */
     const grids = [await this.wire.ask({ do: 'samples', cells })];
     for (const body of bodies) grids.push(await this.wire.ask({ do: 'samples', cells, body }));
+    const count = setting.bodies.length;
+    const isTelling = bodies.length === 0 && count > 1 && count <= OWNERS.most;
+    // While the scene is being changed, bodies are told apart by what they were before.
+    if (!isTelling || this.owners.count !== count) this.owners = { grids: [], count: 0 };
+    this.takeSamples(grids, bodies, setting);
+    if (!isTelling || isCoarse) return;
+    /** @type {Grid[]} */
+    const each = [];
+    for (let body = 0; body < count; body += 1) {
+      const cells = setting.dimension === 2 ? OWNERS.plane : OWNERS.space;
+      each.push(await this.wire.ask({ do: 'samples', cells, body }));
+    }
+    this.owners = { grids: [each.slice(0, 4), each.slice(4)].filter(({ length: some }) => some > 0).map(packed), count };
     this.takeSamples(grids, bodies, setting);
   }
 
@@ -111,14 +149,17 @@ export class Source {
     const { counts, first, last } = grids[0];
     this.spacing = Math.max(...counts.slice(0, setting.dimension).map((count, axis) =>
       (last[axis] - first[axis]) / Math.max(count - 1, 1)));
+    const { grids: owners, count } = this.owners;
     const three = [0, 1, 2].map((index) => grids[index] ?? grids[0]);
     const values = {
       gridLow: three.map((grid) => inSpace(grid.first)),
       gridHigh: three.map((grid) => inSpace(grid.last)),
       firstBody: bodies[0] ?? 0,
       // Units 1 to 3 hold the grids.
-      ...(bodies.length === 0 ? { grid1: 1, grid2: 1 } : {}),
+      ...(bodies.length === 0 ? { grid1: 1, grid2: 1, owners0: 2, owners1: owners.length > 1 ? 3 : 2 } : {}),
+      ...(owners.length > 0 ? { ownersLow: inSpace(owners[0].first), ownersHigh: inSpace(owners[0].last) } : {}),
     };
-    this.take(new Field(samples(setting.dimension), setting, grids, values, true));
+    const text = samples(setting.dimension, count);
+    this.take(new Field(text, setting, [...grids, ...owners], values, true));
   }
 }

@@ -14,9 +14,11 @@
 
 import { createHand } from '../input/hand.js';
 import { createPointer } from '../input/pointer.js';
+import { connectFall, fall, layFall, listenFall, placeAbove, stepFall } from '../plane/fall.js';
 import { connectToys, layToys, listenToys } from '../plane/toys.js';
 import { listen, state } from '../state.js';
 import { Flat, Orbit } from './camera.js';
+import { createClick } from './click.js';
 import { askContacts } from './contacts.js';
 import { Elements } from './elements.js';
 import { Labels } from './labels.js';
@@ -30,7 +32,13 @@ import { Probe } from './probe.js';
 import { comparison, setting } from './setting.js';
 import { listenSlice, meet, slice } from './slice.js';
 import { Source } from './source.js';
+import { along, inSpace } from './vectors.js';
 import { Views } from './views.js';
+
+/** Room around a ball that begins to fall in pixels, and how the camera steps back for it. */
+const ROOM = 30;
+const STEP_BACK = 1.08;
+const STEPS_BACK = 24;
 
 /** Builds the stage into a container.
  * @param {HTMLElement} container @param {Wire} wire */
@@ -98,6 +106,7 @@ export function createStage(container, wire) {
 
   function frame() {
     requested = 0;
+    stepFall(performance.now());
     if (isSceneChanged) {
       isSceneChanged = false;
       cameras.flat.frame = slice.frame;
@@ -113,7 +122,10 @@ export function createStage(container, wire) {
       isOverlayChanged = false;
       elements.note(source.words, source.why);
       elements.read(probe.words);
-      const shown = { target, contacts, labels, probe: probe.probed };
+      const shown = {
+        target, contacts, labels, probe: probe.probed, notes: elements.notes,
+        isDrawn: source.kind === 'drawn',
+      };
       paintAll(elements.context, views, shown, elements.inks, elements.ratio);
     }
   }
@@ -137,6 +149,7 @@ export function createStage(container, wire) {
     lastScene = key;
     measure();
     if (shown.dimension === 2) layToys(shown.centre, shown.size);
+    layFall(setting());
     named.reset(shown);
     return true;
   }
@@ -156,6 +169,9 @@ export function createStage(container, wire) {
     return (await pick(view.panel, x, y))?.point ?? null;
   }
 
+  /** @param {View} view @param {Place} place */
+  const pickAt = (view, { x, y }) => pick(view.panel, x, y);
+
   function fit() {
     elements.resize();
     elements.dress();
@@ -169,7 +185,8 @@ export function createStage(container, wire) {
       cameras,
       hand,
       view: (place) => views[viewAt(place)] ?? views[0],
-      pick: (view, { x, y }) => pick(view.panel, x, y),
+      pick: pickAt,
+      click: createClick(wire, pickAt, seenAt),
       changed: sceneChanged,
       show(point) {
         target = point;
@@ -228,9 +245,12 @@ export function createStage(container, wire) {
   listen(['theme'], dress);
   matchMedia('(prefers-color-scheme: dark)').addEventListener('change', dress);
   listen(['frame', 'playback'], overlayChanged);
+  listen(['selection'], sceneChanged);
   listenSlice(sceneChanged);
   listenToys(overlayChanged);
   connectToys(wire);
+  listenFall(overlayChanged);
+  connectFall(wire);
   // Programs are compiled between drags, wherever on the page they are.
   for (const type of ['pointerdown', 'pointerup', 'pointercancel']) {
     window.addEventListener(type, (event) => {
@@ -265,6 +285,27 @@ export function createStage(container, wire) {
       measure();
       const { right, up, forward } = views[0].lens.basis;
       return { right, up, away: forward };
+    },
+    /** Lays the ball above what is in the middle of the picture. */
+    placeBall() {
+      const { orbit, flat } = cameras;
+      const { origin, right, up } = flat.frame;
+      const middle = isFlat(setting())
+        ? along(along(origin, right, flat.centre[0]), up, flat.centre[1]) : orbit.target;
+      placeAbove(middle, setting());
+      this.showBall();
+    },
+    /** Steps back until the beginning of the fall is seen. */
+    showBall() {
+      const { rect } = viewsOf(setting(), cameras, elements.rect)[0].lens;
+      const camera = isFlat(setting()) ? cameras.flat : cameras.orbit;
+      const isSeen = () => {
+        const place = camera.lens(rect).project(inSpace(fall.centre));
+        return place && Math.min(place.x - rect.x, rect.x + rect.width - place.x, place.y - rect.y,
+          rect.y + rect.height - place.y) > ROOM;
+      };
+      for (let step = 0; step < STEPS_BACK && !isSeen(); step += 1) camera.height *= STEP_BACK;
+      sceneChanged();
     },
     /** Whether the picture is a map of a plane. */
     isFlat: () => isFlat(setting()),
