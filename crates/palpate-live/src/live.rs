@@ -175,7 +175,7 @@ impl Live {
                 // Made in the runtime, whose thread it belongs to.
                 let Ok(listener) = TcpListener::from_std(listener) else { return };
                 // It ends when it is told to.
-                let _ = server::serve(listener, address, given, served, ended).await;
+                server::serve(listener, address, given, served, ended).await;
             });
         };
         let thread = std::thread::Builder::new().name("palpate live".to_owned()).spawn(work);

@@ -8,6 +8,16 @@ use std::time::{Duration, Instant};
 /// The most pages at once.
 pub(super) const MOST_PAGES: usize = 64;
 
+/// The most connections at once, before they become sockets of pages.
+pub(super) const MOST_CONNECTIONS: usize = 256;
+
+/// How long the server waits where the operating system gives it no more sockets.
+pub(super) const RECOVERY: Duration = Duration::from_millis(50);
+
+/// The largest trace to be replayed [bytes], and how long it may take to come.
+pub(super) const LARGEST_TRACE: usize = 64 << 20;
+pub(super) const TRACE_PATIENCE: Duration = Duration::from_secs(60);
+
 /// The largest message of a page [bytes].
 pub(super) const LARGEST_MESSAGE: usize = 1 << 20;
 
@@ -17,7 +27,7 @@ pub(super) const LARGEST_ANSWER: usize = 20 << 20;
 /// The most messages that cannot be read.
 pub(super) const MOST_UNREADABLE: u32 = 10;
 
-/// How long a page may take no message.
+/// How long a page may take no message, and a connection may send no request.
 pub(super) const PATIENCE: Duration = Duration::from_secs(5);
 
 /// Messages a second, and how many may come at once.

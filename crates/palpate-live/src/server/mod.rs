@@ -4,6 +4,7 @@
 //! The server: routes, and the thread that it runs in.
 
 mod assets;
+mod connections;
 mod guard;
 mod limits;
 mod socket;
@@ -12,26 +13,30 @@ use std::net::SocketAddr;
 use std::sync::Arc;
 
 use axum::Router;
+use axum::body::{Body, to_bytes};
 use axum::extract::ws::WebSocketUpgrade;
-use axum::extract::{DefaultBodyLimit, Path, Query, Request, State};
+use axum::extract::{Path, Query, Request, State};
 use axum::http::{HeaderMap, HeaderName, HeaderValue, StatusCode, header};
 use axum::middleware::{Next, from_fn_with_state};
 use axum::response::{IntoResponse, Response};
 use axum::routing::{get, post};
 use serde::Deserialize;
 use tokio::net::TcpListener;
-use tokio::sync::oneshot;
+use tokio::sync::{Semaphore, oneshot};
+use tokio::time::timeout;
 
 use crate::stage::Stage;
 use guard::{Guard, HEADERS};
 pub(crate) use guard::{is_token, new_token};
-use limits::{LARGEST_ANSWER, LARGEST_MESSAGE};
+use limits::{LARGEST_ANSWER, LARGEST_MESSAGE, LARGEST_TRACE, TRACE_PATIENCE};
 
 /// What all requests share.
 #[derive(Clone, Debug)]
 struct Shared {
     stage: Arc<Stage>,
     guard: Arc<Guard>,
+    /// The one place of a trace.
+    trace: Arc<Semaphore>,
 }
 
 /// The token of a request.
@@ -47,22 +52,22 @@ pub(crate) async fn serve(
     token: String,
     stage: Arc<Stage>,
     end: oneshot::Receiver<()>,
-) -> std::io::Result<()> {
-    let shared = Shared { stage, guard: Arc::new(Guard::new(address, token)) };
+) {
+    let (guard, trace_place) =
+        (Arc::new(Guard::new(address, token)), Arc::new(Semaphore::new(1)));
+    let shared = Shared { stage, guard, trace: trace_place };
     let router = Router::new()
         .route("/", get(|| async { assets::answer("index.html") }))
         .route("/{*path}", get(|Path(path): Path<String>| async move { assets::answer(&path) }))
         .route("/socket", get(socket))
         .route("/stop", post(stop))
         .route("/scene.json", get(scene))
-        .route("/trace.csv", get(trace))
-        .layer(DefaultBodyLimit::max(1024))
+        .route("/trace.csv", get(trace).post(take_trace))
         .layer(from_fn_with_state(shared.clone(), guarded))
         .with_state(shared);
-    let serving = axum::serve(listener, router).into_future();
     tokio::select! {
-        served = serving => served,
-        _ = end => Ok(()),
+        never = connections::serve(listener, router) => match never {},
+        _ = end => {}
     }
 }
 
@@ -120,8 +125,41 @@ async fn trace(
     Query(query): Query<Token>,
 ) -> Result<Response, StatusCode> {
     shared.guard.check_token(query.token.as_deref())?;
+    // A trace is large: one is made at a time.
+    let place = Arc::clone(&shared.trace).try_acquire_owned();
+    let place = place.map_err(|_| StatusCode::SERVICE_UNAVAILABLE)?;
     let stage = Arc::clone(&shared.stage);
-    let rows = tokio::task::spawn_blocking(move || stage.trace().map(|trace| trace())).await;
+    let rows = tokio::task::spawn_blocking(move || {
+        let rows = stage.trace().map(|trace| trace());
+        drop(place);
+        rows
+    });
+    let rows = rows.await;
     let rows = rows.ok().flatten().ok_or(StatusCode::SERVICE_UNAVAILABLE)?;
     Ok(([(header::CONTENT_TYPE, "text/csv")], rows).into_response())
+}
+
+async fn take_trace(
+    State(shared): State<Shared>,
+    Query(query): Query<Token>,
+    headers: HeaderMap,
+    body: Body,
+) -> Result<Response, StatusCode> {
+    shared.guard.check_origin(&headers)?;
+    shared.guard.check_token(query.token.as_deref())?;
+    let place = Arc::clone(&shared.trace).try_acquire_owned();
+    let place = place.map_err(|_| StatusCode::SERVICE_UNAVAILABLE)?;
+    let bytes = timeout(TRACE_PATIENCE, to_bytes(body, LARGEST_TRACE)).await;
+    let bytes = bytes.map_err(|_| StatusCode::REQUEST_TIMEOUT)?;
+    let bytes = bytes.map_err(|_| StatusCode::PAYLOAD_TOO_LARGE)?;
+    let stage = Arc::clone(&shared.stage);
+    let taken = tokio::task::spawn_blocking(move || {
+        let taken = stage.take_trace(&bytes);
+        drop(place);
+        taken
+    });
+    Ok(match taken.await.map_err(|_| StatusCode::INTERNAL_SERVER_ERROR)? {
+        Ok(()) => StatusCode::NO_CONTENT.into_response(),
+        Err(why) => (StatusCode::UNPROCESSABLE_ENTITY, why).into_response(),
+    })
 }

@@ -193,7 +193,7 @@ impl Document {
     /// Writes the scene to its file, unless the file has another text than was read or saved.
     pub(super) fn save(&mut self, is_forced: bool) -> Result<(), Refusal> {
         let Some(file) = self.file.clone() else {
-            return Err("this scene came from no file: download it instead".to_owned().into());
+            return Err("this scene came from no file: save it as one".to_owned().into());
         };
         let shown = file.display();
         let failed = |error: std::io::Error| Refusal::from(format!("{shown}: {error}"));
@@ -212,6 +212,37 @@ impl Document {
         replace(&file, &self.now.text).map_err(failed)?;
         self.saved = self.now.text.as_str().into();
         self.seen = Arc::clone(&self.saved);
+        Ok(())
+    }
+
+    /// Writes the scene to another file, beside its own or in the folder where the program was
+    /// started, which becomes its file.
+    pub(super) fn save_as(&mut self, name: &str, is_forced: bool) -> Result<(), Refusal> {
+        let is_plain = |c: char| !c.is_control() && !r#"/\:*?"<>|"#.contains(c);
+        let stem = name.strip_suffix(".json").unwrap_or_default();
+        if stem.is_empty()
+            || name.starts_with('.')
+            || name.len() > 200
+            || !name.chars().all(is_plain)
+        {
+            return Err(format!(
+                "a scene is saved as a file in the same folder whose name ends in .json, got {name:?}"
+            )
+            .into());
+        }
+        let file =
+            self.file.as_deref().map_or_else(|| name.into(), |file| file.with_file_name(name));
+        let shown = file.display();
+        if file.symlink_metadata().is_ok() && !is_forced {
+            return Err(format!(
+                "there is a file {shown} already: save over it, or choose another name"
+            )
+            .into());
+        }
+        replace(&file, &self.now.text).map_err(|error| format!("{shown}: {error}"))?;
+        self.saved = self.now.text.as_str().into();
+        self.seen = Arc::clone(&self.saved);
+        (self.name, self.file) = (name.to_owned(), Some(file));
         Ok(())
     }
 
@@ -245,14 +276,45 @@ impl Document {
 fn replace(file: &Path, text: &str) -> std::io::Result<()> {
     // A link stays one: what it leads to is replaced.
     let file = std::fs::canonicalize(file).unwrap_or_else(|_| file.to_owned());
+    let before = std::fs::metadata(&file).ok();
+    if before.as_ref().is_some_and(|before| before.permissions().readonly()) {
+        let why = "is read-only: save as another file, or make it writable";
+        return Err(std::io::Error::new(std::io::ErrorKind::PermissionDenied, why));
+    }
     let folder = file.parent().filter(|folder| !folder.as_os_str().is_empty());
-    let mut beside = tempfile::NamedTempFile::new_in(folder.unwrap_or(Path::new(".")))?;
+    let folder = folder.unwrap_or(Path::new("."));
+    let mut beside = new_file().tempfile_in(folder)?;
     std::io::Write::write_all(&mut beside, text.as_bytes())?;
-    if let Ok(metadata) = std::fs::metadata(&file) {
-        std::fs::set_permissions(beside.path(), metadata.permissions())?;
+    match &before {
+        // Other names of the file stay names of it.
+        Some(before) if has_other_names(before) => {
+            std::fs::write(&file, text)?;
+            return beside.close();
+        }
+        Some(before) => std::fs::set_permissions(beside.path(), before.permissions())?,
+        None => {}
     }
     beside.persist(&file)?;
     Ok(())
+}
+
+/// A file that is readable and writable for whom new files are.
+fn new_file() -> tempfile::Builder<'static, 'static> {
+    let mut builder = tempfile::Builder::new();
+    #[cfg(unix)]
+    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
+    builder
+}
+
+/// Whether a file has hard links, of which a file that is renamed to it would be none.
+fn has_other_names(metadata: &std::fs::Metadata) -> bool {
+    #[cfg(unix)]
+    return std::os::unix::fs::MetadataExt::nlink(metadata) > 1;
+    #[cfg(not(unix))]
+    {
+        let _ = metadata;
+        false
+    }
 }
 
 /// The text of a file that can be a scene's.
@@ -418,6 +480,55 @@ mod tests {
         assert!(document.undo() && radius(&document) == 1.0);
         document.save(true).unwrap();
         assert!(coin().save(true).is_err(), "no file");
+    }
+
+    #[test]
+    fn a_scene_is_saved_as_another_file() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("coin.json");
+        let mut document = Document::open("coin".into(), Some(file.clone()), SCENE).unwrap();
+        for name in
+            ["", ".json", ".hidden.json", "../up.json", "a/b.json", "coin.txt", "c:d.json"]
+        {
+            assert!(document.save_as(name, true).is_err(), "{name:?}");
+        }
+        document.save_as("other.json", false).unwrap();
+        let other = folder.path().join("other.json");
+        assert_eq!(std::fs::read_to_string(&other).unwrap(), SCENE);
+        assert_eq!(
+            (document.file.as_ref(), document.name.as_str()),
+            (Some(&other), "other.json")
+        );
+        assert!(document.save_as("other.json", false).is_err());
+        assert!(!file.exists() && document.save_as("coin.json", false).is_ok());
+    }
+
+    /// A file that is saved keeps its hard links; one that is read-only is not replaced; one that was
+    /// deleted meanwhile can be read by whom other new files can.
+    #[cfg(unix)]
+    #[test]
+    fn saving_respects_links_and_permissions() {
+        use std::os::unix::fs::{MetadataExt, PermissionsExt};
+        let folder = tempfile::tempdir().unwrap();
+        let [file, link, fresh] =
+            ["coin.json", "link.json", "fresh"].map(|name| folder.path().join(name));
+        std::fs::write(&file, SCENE).unwrap();
+        std::fs::hard_link(&file, &link).unwrap();
+        let mut document = Document::open("coin".into(), Some(file.clone()), SCENE).unwrap();
+        document.edit(&to(RADIUS, 0.75.into()), false).unwrap();
+        document.save(false).unwrap();
+        assert_eq!(std::fs::read_to_string(&link).unwrap(), document.text());
+        std::fs::remove_file(&link).unwrap();
+        std::fs::set_permissions(&file, PermissionsExt::from_mode(0o444)).unwrap();
+        document.edit(&to(RADIUS, 0.25.into()), false).unwrap();
+        let refusal = document.save(false).unwrap_err();
+        assert!(refusal.message.contains("is read-only"), "{refusal:?}");
+        std::fs::remove_file(&file).unwrap();
+        document.save(false).unwrap();
+        std::fs::write(&fresh, "").unwrap();
+        let mode = |path| std::fs::metadata(path).unwrap().mode();
+        assert_eq!(mode(&file), mode(&fresh));
+        assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 2);
     }
 
     #[test]

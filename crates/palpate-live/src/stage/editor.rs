@@ -5,7 +5,7 @@
 
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, sync_channel};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use palpate::field::catalogue::Entry;
 use palpate::haptics::Material;
@@ -41,6 +41,31 @@ pub(super) struct Editor {
     pages: Arc<Pages>,
     shown: Arc<Shown>,
     text: Arc<Text>,
+    spent: Spent,
+}
+
+/// What parts of an edit took.
+#[derive(Debug, Default)]
+struct Spent {
+    since: Option<Instant>,
+    parts: Vec<Value>,
+}
+
+impl Spent {
+    fn begin(&mut self) {
+        self.since = Some(Instant::now());
+    }
+
+    /// Ends a part; the next one begins.
+    fn end(&mut self, name: &str) {
+        let ns =
+            self.since.replace(Instant::now()).map_or(0, |since| since.elapsed().as_nanos());
+        self.parts.push(json!({ "name": name, "ns": ns as u64 }));
+    }
+
+    fn take(&mut self) -> Value {
+        std::mem::take(&mut self.parts).into()
+    }
 }
 
 impl Editor {
@@ -63,6 +88,7 @@ impl Editor {
             pages,
             shown,
             text,
+            spent: Spent::default(),
         }
     }
 
@@ -102,9 +128,14 @@ impl Editor {
                 let before = std::mem::replace(&mut self.document, opened);
                 self.show("open", false).inspect_err(|_| self.document = before)
             }
-            Ask::Save { force } => {
-                self.document.save(force)?;
+            Ask::Save { force, name } => {
+                match name {
+                    None => self.document.save(force)?,
+                    Some(name) => self.document.save_as(&name, force)?,
+                }
                 self.message["is_saved"] = true.into();
+                self.message["name"] = self.document.name.as_str().into();
+                self.message["file"] = json!(self.document.file);
                 self.pages.broadcast(&self.message);
                 Ok(())
             }
@@ -146,7 +177,9 @@ impl Editor {
             .into());
         }
         let before = self.document.clone();
+        self.spent.begin();
         self.document.edit(changes, is_moving)?;
+        self.spent.end("read");
         self.show("edit", is_moving).inspect_err(|_| self.document = before)
     }
 
@@ -174,7 +207,9 @@ impl Editor {
 
     /// Renders the scene, and tells the pages.
     fn show(&mut self, by: &str, is_moving: bool) -> Result<(), Refusal> {
+        self.spent.begin();
         let scene = Arc::new(self.document.built()?);
+        self.spent.end("build");
         let is_alike =
             self.rendered.as_ref().is_some_and(|old| is_alike(old, self.document.scene()));
         let revision = self.revision + 1;
@@ -183,7 +218,9 @@ impl Editor {
         let gone = |_| Refusal::from("the program ends".to_owned());
         self.orders.send(order).map_err(|_| gone(()))?;
         let was_rendered = self.rendered.is_some();
-        let why = match showing.recv().map_err(|_| gone(()))? {
+        let shown = showing.recv().map_err(|_| gone(()))?;
+        self.spent.end("hand over");
+        let why = match shown {
             Showing::Replaced => None,
             Showing::Began { points } => {
                 self.points = points;
@@ -201,7 +238,10 @@ impl Editor {
         let mut message = described::described(&self.document, &scene);
         message["by"] = by.into();
         message["revision"] = revision.into();
+        self.spent.end("describe");
         message["way"] = self.drawing.of(&scene, is_moving);
+        self.spent.end("formula");
+        message["spent"] = self.spent.take();
         message["restarted"] = why.is_some().into();
         message["why"] = json!(why);
         let profile = &self.terms.profile;

@@ -31,7 +31,17 @@ const HASTE: f64 = 4.0;
 /// the scene.
 const SPREAD: f64 = 0.04;
 
-/// Leads the contact points of a hand: along a tour, or where the page says.
+/// What leads a hand.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) enum Leader {
+    /// A page, or nobody: the hand rests.
+    #[default]
+    Page,
+    Tour,
+    Replay,
+}
+
+/// Leads the contact points of a hand: along a tour or a recording, or where the page says.
 #[derive(Debug)]
 pub(super) struct Lead<const D: usize> {
     /// The contact points beside the hand [m].
@@ -42,7 +52,9 @@ pub(super) struct Lead<const D: usize> {
     is_touring: bool,
     /// The time on the tour [s].
     tour_time: f64,
-    /// The way onto the tour; `None` while the hand is led otherwise.
+    /// A path of each contact point, and the time on it [s].
+    replay: Option<(Vec<HandPath<D>>, f64)>,
+    /// The way onto the tour or the paths; `None` while the hand is led otherwise.
     approach: Option<Approach<D>>,
     /// Where a hand is led that is on its way there [m].
     goal: Point<D>,
@@ -77,6 +89,7 @@ impl<const D: usize> Lead<D> {
             tour: None,
             is_touring: true,
             tour_time: 0.0,
+            replay: None,
             approach: None,
             goal: Vector::ZERO,
             time: 0.0,
@@ -98,6 +111,24 @@ impl<const D: usize> Lead<D> {
 
     pub(super) fn tours(&mut self, is_touring: bool) {
         self.is_touring = is_touring;
+    }
+
+    /// Follows a path of each contact point, from its begin; or no longer.
+    pub(super) fn replay(&mut self, paths: Option<Vec<HandPath<D>>>) -> Result<(), String> {
+        if let Some(paths) = &paths
+            && paths.len() != self.arms.len()
+        {
+            let (recorded, points) = (paths.len(), self.arms.len());
+            return Err(format!(
+                "the hand has {points} contact points, what was recorded has {recorded}"
+            ));
+        }
+        if paths.is_none() {
+            self.led = Some(Instant::now());
+        }
+        (self.replay, self.approach) = (paths.map(|paths| (paths, 0.0)), None);
+        self.is_held = false;
+        Ok(())
     }
 
     /// Takes over where another hand was led, as far as there are as many contact points.
@@ -128,6 +159,7 @@ impl<const D: usize> Lead<D> {
     ) -> Result<(), String> {
         let begins = !self.is_held;
         (self.led, self.is_held) = (Some(Instant::now()), true);
+        self.replay = None;
         if begins {
             self.approach = None;
             if let (Some(from), Some(bounds), None) = (from, &self.bounds, point) {
@@ -155,8 +187,8 @@ impl<const D: usize> Lead<D> {
         Ok(())
     }
 
-    /// Goes on to the time of the servo [s]; whether that is along a tour.
-    pub(super) fn go_on(&mut self, time: f64) -> bool {
+    /// Goes on to the time of the servo [s]; what leads the hand there.
+    pub(super) fn go_on(&mut self, time: f64) -> Leader {
         let passed = (time - self.time).max(0.0);
         self.time = time;
         if let (true, Some(approach), Some(bounds)) =
@@ -168,14 +200,17 @@ impl<const D: usize> Lead<D> {
                 self.targets.iter_mut().zip(&self.arms).for_each(|(to, arm)| *to = goal + *arm);
                 self.approach = None;
             }
-            return false;
+            return Leader::Page;
+        }
+        if self.replay.is_some() {
+            return self.go_on_replaying(passed);
         }
         let is_led = self.is_held || self.led.is_some_and(|at| at.elapsed() < REST);
         let (Some(tour), Some(bounds), false) = (&self.tour, &self.bounds, is_led) else {
-            return false;
+            return Leader::Page;
         };
         if !self.is_touring {
-            return false;
+            return Leader::Page;
         }
         let goals = self.on_tour(tour, self.tour_time);
         let targets = &self.targets;
@@ -190,7 +225,27 @@ impl<const D: usize> Lead<D> {
             // Over the scene to the begin of the tour, not through it.
             (self.tour_time, self.approach) = (0.0, None);
         }
-        true
+        Leader::Tour
+    }
+
+    /// Goes on along the paths of a recording, which the hand comes to over the scene.
+    fn go_on_replaying(&mut self, passed: f64) -> Leader {
+        let (Some((paths, at)), Some(bounds)) = (&mut self.replay, &self.bounds) else {
+            return Leader::Page;
+        };
+        let place = |path: &HandPath<D>| path.state_at(path.start() + *at).position;
+        let goals: Vec<_> = paths.iter().map(place).collect();
+        let targets = &self.targets;
+        let approach =
+            self.approach.get_or_insert_with(|| Approach::new(targets, &goals, bounds));
+        if approach.go_on(&mut self.targets, passed * longest_edge(bounds) * SPEED) {
+            *at += passed;
+            self.targets = goals;
+        }
+        if paths.iter().all(|path| *at > path.duration()) {
+            (self.replay, self.approach, self.led) = (None, None, Some(Instant::now()));
+        }
+        Leader::Replay
     }
 
     /// Where the contact points are at a time of a tour [s].

@@ -1,9 +1,11 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! The thread that answers questions about the scene.
+//! The threads that answer questions about the scene: one question of a page at a time, so that the
+//! long questions of a page keep no other page waiting.
 
-use std::sync::mpsc::Receiver;
+use std::collections::VecDeque;
+use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 
 use palpate::field::Vector;
 use palpate::render::{Camera, Color, Lens, Settings, Shadows, Subject, render};
@@ -11,39 +13,157 @@ use palpate::scene::{AnyScene, BuiltScene};
 
 use super::Shown;
 use super::pages::{Out, PageId, Pages};
-use super::questions::{Answer, answer};
+use super::questions::{Answer, CANCELLED, Cancel, answer};
 use super::room::point_of;
 use crate::wire::{Ask, Question, picture};
+
+/// The threads, beside those of the servo, of the hand and of the editor.
+const THREADS: usize = 2;
+
+/// The questions of a page that may wait: more are refused.
+const WAITING: usize = 32;
 
 /// The most pixels along a side of a picture.
 const LARGEST: u32 = 2048;
 
-pub(super) fn run(questions: &Receiver<(PageId, Question)>, pages: &Pages, shown: &Shown) {
-    while let Ok((page, Question { id, ask })) = questions.recv() {
-        let Some((scene, revision)) = shown.get() else {
-            pages.refuse(page, id, "there is no scene yet: say hello first", &[]);
-            continue;
-        };
-        let answered = match (&*scene, &ask) {
-            (AnyScene::Spatial(scene), Ask::Picture { .. }) => drawn(scene, &ask),
-            (AnyScene::Planar(_), Ask::Picture { .. }) => {
-                Err("a scene in the plane is drawn from samples".to_owned())
-            }
-            (AnyScene::Planar(scene), ask) => answer(scene, ask).unwrap_or_else(unknown),
-            (AnyScene::Spatial(scene), ask) => answer(scene, ask).unwrap_or_else(unknown),
-        };
-        match answered {
-            Ok(Answer::Text(text)) => pages.answer(page, id, text),
-            Ok(Answer::Grid(grid)) => {
-                let bytes = grid.bytes(id.unwrap_or_default(), revision);
-                pages.send(page, Out::Binary(bytes));
-            }
-            Ok(Answer::Picture(png)) => {
-                let bytes = picture(id.unwrap_or_default(), revision, &png);
-                pages.send(page, Out::Binary(bytes));
-            }
-            Err(why) => pages.refuse(page, id, &why, &[]),
+/// The questions that wait for an answer.
+#[derive(Debug, Default)]
+pub(super) struct Inquiries {
+    state: Mutex<State>,
+    changed: Condvar,
+}
+
+#[derive(Debug, Default)]
+struct State {
+    waiting: VecDeque<(PageId, Question)>,
+    working: Vec<Work>,
+    has_ended: bool,
+}
+
+/// A question that is worked on.
+#[derive(Debug)]
+struct Work {
+    page: PageId,
+    id: Option<u32>,
+    cancel: Cancel,
+}
+
+impl Inquiries {
+    // The state is valid even if a thread panicked while it held the lock.
+    fn state(&self) -> MutexGuard<'_, State> {
+        self.state.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Begins to answer.
+    pub(super) fn start(self: &Arc<Self>, pages: &Arc<Pages>, shown: &Arc<Shown>) {
+        for _ in 0..THREADS {
+            let (inquiries, pages, shown) =
+                (Arc::clone(self), Arc::clone(pages), Arc::clone(shown));
+            // It ends with the stage; nothing waits for what it still does.
+            std::thread::spawn(move || inquiries.run(&pages, &shown));
         }
+    }
+
+    /// Takes a question; whether there is no room for it.
+    pub(super) fn take(&self, page: PageId, question: Question) -> bool {
+        let mut state = self.state();
+        let is_full =
+            state.waiting.iter().filter(|(other, _)| *other == page).count() >= WAITING;
+        if !is_full {
+            state.waiting.push_back((page, question));
+            self.changed.notify_one();
+        }
+        is_full
+    }
+
+    /// Ends a question, whether it waits or is worked on; whether there is one of this number.
+    pub(super) fn cancel(&self, page: PageId, id: u32, pages: &Pages) -> bool {
+        let mut state = self.state();
+        let is_it =
+            |(other, question): &(PageId, Question)| *other == page && question.id == Some(id);
+        if let Some(place) = state.waiting.iter().position(is_it) {
+            state.waiting.remove(place);
+            pages.refuse(page, Some(id), CANCELLED, &[]);
+            return true;
+        }
+        let work = state.working.iter().find(|work| work.page == page && work.id == Some(id));
+        work.map(|work| work.cancel.set()).is_some()
+    }
+
+    /// Forgets the questions of a page that is closed.
+    pub(super) fn gone(&self, page: PageId) {
+        let mut state = self.state();
+        state.waiting.retain(|(other, _)| *other != page);
+        state
+            .working
+            .iter()
+            .filter(|work| work.page == page)
+            .for_each(|work| work.cancel.set());
+    }
+
+    /// Ends the threads.
+    pub(super) fn end(&self) {
+        let mut state = self.state();
+        state.has_ended = true;
+        state.working.iter().for_each(|work| work.cancel.set());
+        self.changed.notify_all();
+    }
+
+    fn run(&self, pages: &Pages, shown: &Shown) {
+        while let Some((page, question, cancel)) = self.next() {
+            let id = question.id;
+            match shown.get() {
+                Some((scene, revision)) => match answered(&scene, &question.ask, &cancel) {
+                    Ok(Answer::Text(text)) => pages.answer(page, id, text),
+                    Ok(Answer::Grid(grid)) => {
+                        let bytes = grid.bytes(id.unwrap_or_default(), revision);
+                        pages.send(page, Out::Binary(bytes));
+                    }
+                    Ok(Answer::Picture(png)) => {
+                        let bytes = picture(id.unwrap_or_default(), revision, &png);
+                        pages.send(page, Out::Binary(bytes));
+                    }
+                    Err(why) => pages.refuse(page, id, &why, &[]),
+                },
+                None => pages.refuse(page, id, "there is no scene yet: say hello first", &[]),
+            }
+            let mut state = self.state();
+            state.working.retain(|work| !work.cancel.is(&cancel));
+            // A question of the same page may wait.
+            self.changed.notify_all();
+        }
+    }
+
+    /// Waits for the first question of a page of which none is worked on; `None` at the end.
+    fn next(&self) -> Option<(PageId, Question, Cancel)> {
+        let mut state = self.state();
+        loop {
+            if state.has_ended {
+                return None;
+            }
+            let State { waiting, working, .. } = &mut *state;
+            let is_free =
+                |(page, _): &(PageId, Question)| working.iter().all(|work| work.page != *page);
+            if let Some(place) = waiting.iter().position(is_free)
+                && let Some((page, question)) = waiting.remove(place)
+            {
+                let (id, cancel) = (question.id, Cancel::default());
+                working.push(Work { page, id, cancel: cancel.clone() });
+                return Some((page, question, cancel));
+            }
+            state = self.changed.wait(state).unwrap_or_else(PoisonError::into_inner);
+        }
+    }
+}
+
+fn answered(scene: &AnyScene, ask: &Ask, cancel: &Cancel) -> Result<Answer, String> {
+    match (scene, ask) {
+        (AnyScene::Spatial(scene), Ask::Picture { .. }) => drawn(scene, ask, cancel),
+        (AnyScene::Planar(_), Ask::Picture { .. }) => {
+            Err("a scene in the plane is drawn from samples".to_owned())
+        }
+        (AnyScene::Planar(scene), ask) => answer(scene, ask, cancel).unwrap_or_else(unknown),
+        (AnyScene::Spatial(scene), ask) => answer(scene, ask, cancel).unwrap_or_else(unknown),
     }
 }
 
@@ -52,7 +172,7 @@ fn unknown() -> Result<Answer, String> {
 }
 
 /// The scene as `palpate render` draws it, without shadows.
-fn drawn(scene: &BuiltScene<3>, ask: &Ask) -> Result<Answer, String> {
+fn drawn(scene: &BuiltScene<3>, ask: &Ask, cancel: &Cancel) -> Result<Answer, String> {
     let Ask::Picture { eye, target, field_of_view, width, height } = ask else {
         return unknown();
     };
@@ -72,8 +192,8 @@ fn drawn(scene: &BuiltScene<3>, ask: &Ask) -> Result<Answer, String> {
     let camera = Camera::looking(eye, target, Lens::Perspective(*field_of_view));
     let camera = camera.map_err(said)?;
     let settings = Settings::new(*width, *height).with_samples(2).with_shadows(Shadows::None);
-    let drawn = render(&subject, &camera, &settings, &|_| true).map_err(said)?;
-    let drawn = drawn.ok_or("the picture was not finished")?;
+    let drawn = render(&subject, &camera, &settings, &|_| !cancel.is_set()).map_err(said)?;
+    let drawn = drawn.ok_or(CANCELLED)?;
     let mut png = Vec::new();
     drawn.image.write_png(&mut png).map_err(said)?;
     Ok(Answer::Picture(png))

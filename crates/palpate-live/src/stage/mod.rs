@@ -3,8 +3,8 @@
 
 //! One world: the scene as it is edited, the servo that renders it, and who asks about it.
 //!
-//! Three threads work beside the servo, so that none waits for another's work: one leads the hand
-//! and makes frames, one edits and builds scenes, one answers questions. They and the servo share
+//! Threads work beside the servo, so that none waits for another's work: one leads the hand and
+//! makes frames, one edits and builds scenes, some answer questions. They and the servo share
 //! lock-free buffers alone. A stop goes to the servo from the thread that reads it.
 
 mod described;
@@ -27,15 +27,16 @@ use palpate::haptics::{DeviceProfile, StopSwitch};
 use palpate::scene::AnyScene;
 use tokio::sync::watch;
 
-use crate::wire::{Ask, Question};
+use crate::wire::{Ask, Question, trace};
 use document::Document;
 pub(crate) use document::Refusal;
+use inquiry::Inquiries;
 pub(crate) use pages::{Out, PageId, Pages};
-use performance::Order;
+use performance::{AnyPaths, Order};
 pub(crate) use room::GivenClock;
 use room::Terms;
 
-/// Edits and questions that may wait: more are refused.
+/// Edits that may wait: more are refused.
 const WAITING: usize = 64;
 
 /// Orders to the hand that may wait: a hundredth of a second of many pages.
@@ -58,11 +59,12 @@ pub(crate) struct Program {
 pub(crate) struct Stage {
     orders: SyncSender<Order>,
     edits: SyncSender<(PageId, Question)>,
-    inquiries: SyncSender<(PageId, Question)>,
+    inquiries: Arc<Inquiries>,
     pub(crate) stop: Arc<Stop>,
     pub(crate) frames: watch::Receiver<Bytes>,
     pub(crate) pages: Arc<Pages>,
     text: Arc<Text>,
+    shown: Arc<Shown>,
     performance: Option<JoinHandle<()>>,
 }
 
@@ -143,7 +145,7 @@ impl Stage {
             (Arc::<Stop>::default(), Arc::<Pages>::default(), Arc::<Shown>::default());
         let (orders, ordered) = sync_channel(ORDERS);
         let (edits, edited) = sync_channel(WAITING);
-        let (inquiries, inquired) = sync_channel(WAITING);
+        let inquiries = Arc::<Inquiries>::default();
         let (frame_sender, frames) = watch::channel(Bytes::new());
         let performance = performance::Performance::new(
             terms.clone(),
@@ -158,14 +160,13 @@ impl Stage {
             Arc::clone(&pages),
             (Arc::clone(&shown), Arc::clone(&shared_text)),
         );
-        let asked = Arc::clone(&pages);
         let performance = std::thread::spawn(move || performance.run(&ordered));
         // These end when nobody can ask them any more; nothing waits for what they still do.
         std::thread::spawn(move || editor.run(&edited));
-        std::thread::spawn(move || inquiry::run(&inquired, &asked, &shown));
+        inquiries.start(&pages, &shown);
         let performance = Some(performance);
         let text = shared_text;
-        Ok(Self { orders, edits, inquiries, stop, frames, pages, text, performance })
+        Ok(Self { orders, edits, inquiries, stop, frames, pages, text, shown, performance })
     }
 
     /// Takes a message of a page.
@@ -192,13 +193,23 @@ impl Stage {
                 is_full(self.orders.try_send(Order::Clock { page, id, speed, step }))
             }
             Ask::Record { on } => self.order(page, id, Order::Record(on)),
+            Ask::Replay { on } => is_full(self.orders.try_send(Order::Replay { page, id, on })),
             Ask::Hello { .. }
             | Ask::Edit { .. }
             | Ask::Undo {}
             | Ask::Redo {}
             | Ask::Open { .. }
             | Ask::Save { .. } => is_full(self.edits.try_send((page, question))),
-            _ => is_full(self.inquiries.try_send((page, question))),
+            Ask::Cancel { question } => {
+                if self.inquiries.cancel(page, question, &self.pages) {
+                    self.pages.answer(page, id, serde_json::json!({ "do": "done" }));
+                } else {
+                    let why = format!("no question of number {question} is worked on");
+                    self.pages.refuse(page, id, &why, &[]);
+                }
+                false
+            }
+            _ => self.inquiries.take(page, question),
         };
         if is_full {
             let why = "the program is busy with what was asked before: ask again";
@@ -218,12 +229,29 @@ impl Stage {
     /// A page is closed.
     pub(crate) fn gone(&self, page: PageId) {
         self.pages.remove(page);
+        self.inquiries.gone(page);
         let _ = self.orders.try_send(Order::Gone(page));
     }
 
     /// The text of the scene as a file.
     pub(crate) fn text(&self) -> String {
         self.text.get()
+    }
+
+    /// Takes a trace to be replayed in the scene that is shown.
+    ///
+    /// # Errors
+    ///
+    /// What is wrong with it, in words.
+    pub(crate) fn take_trace(&self, bytes: &[u8]) -> Result<(), String> {
+        let (scene, _) =
+            self.shown.get().ok_or("there is no scene yet: open the page first")?;
+        let paths = match &*scene {
+            AnyScene::Planar(_) => AnyPaths::Planar(trace::read_paths(bytes)?),
+            AnyScene::Spatial(_) => AnyPaths::Spatial(trace::read_paths(bytes)?),
+        };
+        let sent = self.orders.try_send(Order::Paths(paths));
+        sent.map_err(|_| "the program is busy: send the trace again".to_owned())
     }
 
     /// What was recorded last.
@@ -241,6 +269,7 @@ fn is_full<T>(sent: Result<(), TrySendError<T>>) -> bool {
 impl Drop for Stage {
     /// Ends the servo with zero forces.
     fn drop(&mut self) {
+        self.inquiries.end();
         // A full queue is emptied within a frame.
         let _ = self.orders.send(Order::End);
         if let Some(performance) = self.performance.take() {

@@ -9,16 +9,16 @@ use std::time::{Duration, Instant};
 
 use axum::body::Bytes;
 use palpate::devices::HandPath;
-use palpate::haptics::Event;
+use palpate::haptics::{Event, StageTicks};
 use palpate::scene::{AnyScene, BuiltScene};
-use palpate::servo_loop::{TraceRow, TraceWriter};
-use serde_json::json;
+use palpate::servo_loop::TraceRow;
+use serde_json::{Value, json};
 use tokio::sync::watch;
 
 use super::Stop;
 use super::pages::{PageId, Pages};
 use super::room::{Room, Terms};
-use crate::wire::Frame;
+use crate::wire::{Frame, trace};
 
 /// How often the hand is led on.
 const STEP: Duration = Duration::from_millis(8);
@@ -31,6 +31,11 @@ const MOST_ROWS: usize = 200_000;
 
 /// The answer before the first scene, and after a servo has ended.
 const NO_SERVO: &str = "there is no servo yet: say hello, or edit the scene";
+
+/// Frames from one message on the safety chain to the next: a quarter of a second at least, and 2 s
+/// where nothing is new, for pages that came meanwhile.
+const SAFETY_FRAMES: u32 = 15;
+const AGAIN_FRAMES: u32 = 120;
 
 /// The most events that are told at once.
 const MOST_EVENTS: usize = 100;
@@ -63,6 +68,14 @@ pub(crate) enum Order {
         step: Option<u32>,
     },
     Record(bool),
+    /// Follows what was recorded or taken last.
+    Replay {
+        page: PageId,
+        id: Option<u32>,
+        on: bool,
+    },
+    /// Takes paths to be replayed.
+    Paths(AnyPaths),
     /// What was recorded, as a file.
     Trace(SyncSender<Trace>),
     /// Renders another scene; with only its bodies changed if `is_alike`.
@@ -91,6 +104,13 @@ pub(crate) enum Showing {
 pub(crate) enum AnyPath {
     Planar(HandPath<2>),
     Spatial(HandPath<3>),
+}
+
+/// A path of each contact point, of either dimension.
+#[derive(Debug)]
+pub(crate) enum AnyPaths {
+    Planar(Vec<HandPath<2>>),
+    Spatial(Vec<HandPath<3>>),
 }
 
 /// Rows as text, made where there is time for it.
@@ -123,6 +143,10 @@ pub(super) struct Performance {
     room: Option<AnyRoom>,
     revision: u32,
     is_recording: bool,
+    /// Paths to be replayed instead of what was recorded.
+    paths: Option<AnyPaths>,
+    /// What the pages were told last of the safety chain, and how many frames ago.
+    safety: (StageTicks, u32),
     /// The page that leads the hand.
     leader: Option<PageId>,
 }
@@ -142,6 +166,8 @@ impl Performance {
             room: None,
             revision: 0,
             is_recording: false,
+            paths: None,
+            safety: (StageTicks::default(), 0),
             leader: None,
         }
     }
@@ -225,12 +251,21 @@ impl Performance {
                     && !self.is_recording
                 {
                     in_room!(room, _room, rows => rows.clear());
+                    self.paths = None;
                 }
                 self.is_recording = is_recording;
             }
+            Order::Replay { page, id, on } => match self.replay(on) {
+                Ok(()) => self.pages.answer(page, id, json!({ "do": "done" })),
+                Err(why) => self.pages.refuse(page, id, &why, &[]),
+            },
+            Order::Paths(paths) => self.paths = Some(paths),
             Order::Trace(reply) => {
                 let trace = match &self.room {
-                    Some(room) => in_room!(room, _room, rows => trace(rows.clone())),
+                    Some(room) => in_room!(room, _room, rows => {
+                        let rows = rows.clone();
+                        Box::new(move || trace::written(&rows)) as Trace
+                    }),
                     None => Box::new(Vec::new),
                 };
                 // Who asked may have gone.
@@ -244,6 +279,29 @@ impl Performance {
                 let _ = reply.send(showing);
             }
             Order::End => {}
+        }
+    }
+
+    /// Leads the hand along what was taken or recorded last; or no longer.
+    fn replay(&mut self, is_on: bool) -> Result<(), String> {
+        let Some(room) = &mut self.room else { return Err(NO_SERVO.to_owned()) };
+        self.is_recording = false;
+        if !is_on {
+            return in_room!(room, room, _rows => room.replay(None));
+        }
+        self.leader = None;
+        match (room, &self.paths) {
+            (AnyRoom::Planar(room, _), Some(AnyPaths::Planar(paths))) => {
+                room.replay(Some(paths.clone()))
+            }
+            (AnyRoom::Spatial(room, _), Some(AnyPaths::Spatial(paths))) => {
+                room.replay(Some(paths.clone()))
+            }
+            (_, Some(_)) => Err("the trace is of a scene of another dimension".to_owned()),
+            (room, None) => in_room!(room, room, rows => {
+                let paths = trace::paths(rows)?;
+                room.replay(Some(paths))
+            }),
         }
     }
 
@@ -312,6 +370,7 @@ impl Performance {
             return;
         }
         let (mut events, mut frame): (Vec<Event>, Option<Frame>) = (Vec::new(), None);
+        let mut safety = self.safety.0;
         let is_full = in_room!(room, room, rows => {
             room.go_on(|row| if is_recording && rows.len() < MOST_ROWS {
                 rows.push(*row);
@@ -319,6 +378,7 @@ impl Performance {
             if is_frame {
                 events.extend(std::iter::from_fn(|| room.next_event()).take(MOST_EVENTS));
                 frame = room.frame();
+                safety = room.safety();
             }
             rows.len() >= MOST_ROWS
         });
@@ -330,20 +390,28 @@ impl Performance {
         if !events.is_empty() {
             self.pages.broadcast(&json!({ "do": "events", "events": events }));
         }
+        self.tell_safety(safety, is_frame);
         if let Some(mut frame) = frame {
             (frame.revision, frame.is_recording) = (self.revision, self.is_recording);
             // Nobody may look.
             let _ = self.frames.send(frame.bytes());
         }
     }
+
+    /// Tells the pages what the safety chain did, if that is new and not told too often.
+    fn tell_safety(&mut self, now: StageTicks, is_frame: bool) {
+        let (told, frames) = &mut self.safety;
+        *frames = frames.saturating_add(u32::from(is_frame));
+        if *frames < SAFETY_FRAMES || *told == now && *frames < AGAIN_FRAMES {
+            return;
+        }
+        self.safety = (now, 0);
+        self.pages.broadcast(&safety_message(&now));
+    }
 }
 
-/// The rows of a recording as CSV.
-fn trace<const D: usize>(rows: Vec<TraceRow<D>>) -> Trace {
-    Box::new(move || {
-        let mut out = TraceWriter::new(Vec::new());
-        // Writing to memory has no way to fail.
-        let written = rows.iter().try_for_each(|row| out.write(row));
-        written.and_then(|()| out.finish()).unwrap_or_default()
-    })
+/// What the safety chain did.
+fn safety_message(ticks: &StageTicks) -> Value {
+    let stage = |(name, ticks)| json!({ "name": name, "ticks": ticks });
+    json!({ "do": "safety", "stages": ticks.named().map(stage).collect::<Vec<_>>() })
 }

@@ -7,7 +7,9 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use palpate::devices::{Hand, HandPath, SimulatedDevice, SteeredDevice, Steering};
 use palpate::field::{LARGEST_LENGTH, Point, Vector};
-use palpate::haptics::{DeviceProfile, Event, HapticsError, StopSwitch, WorkspaceMap};
+use palpate::haptics::{
+    DeviceProfile, Event, HapticsError, StageTicks, StopSwitch, WorkspaceMap,
+};
 
 use palpate::scene::{BuiltScene, BuiltTool, ServoSettings};
 use palpate::servo_loop::{
@@ -15,7 +17,7 @@ use palpate::servo_loop::{
     VirtualClock,
 };
 
-use super::hand::Lead;
+use super::hand::{Lead, Leader};
 use crate::wire::{Frame, FramePoint};
 
 /// The fastest that a hand follows the page, at the device [m/s].
@@ -40,7 +42,7 @@ pub(super) struct Room<const D: usize> {
     lead: Lead<D>,
     /// The largest values since the last frame.
     peaks: Peaks,
-    is_touring: bool,
+    leader: Leader,
 }
 
 /// The largest values since the last frame.
@@ -117,8 +119,8 @@ impl<const D: usize> Room<D> {
         let mut thread = thread.map_err(|error| error.to_string())?;
         let records = thread.take_records().ok_or("the servo keeps no rows")?;
         steer(&mut steering, &lead, &map);
-        let (peaks, is_touring) = (Peaks::default(), false);
-        Ok(Self { scene, speed, thread, records, steering, map, lead, peaks, is_touring })
+        let (peaks, leader) = (Peaks::default(), Leader::default());
+        Ok(Self { scene, speed, thread, records, steering, map, lead, peaks, leader })
     }
 
     pub(super) fn stop_switch(&mut self) -> StopSwitch {
@@ -169,6 +171,16 @@ impl<const D: usize> Room<D> {
         steer(&mut self.steering, &self.lead, &self.map);
     }
 
+    /// Leads the hand along a path of each contact point; or no longer.
+    pub(super) fn replay(&mut self, paths: Option<Vec<HandPath<D>>>) -> Result<(), String> {
+        self.lead.replay(paths)
+    }
+
+    /// In how many ticks each stage of the safety chain has acted.
+    pub(super) fn safety(&mut self) -> StageTicks {
+        self.thread.control().latest().map_or(StageTicks::default(), |latest| latest.safety)
+    }
+
     pub(super) fn take_tour(&mut self, tour: HandPath<D>) {
         self.lead.take_tour(tour);
     }
@@ -181,7 +193,7 @@ impl<const D: usize> Room<D> {
     pub(super) fn go_on(&mut self, mut row: impl FnMut(&TraceRow<D>)) {
         let latest = self.thread.control().latest();
         let time = latest.map_or(0.0, |snapshot| snapshot.progress.time);
-        self.is_touring = self.lead.go_on(time);
+        self.leader = self.lead.go_on(time);
         steer(&mut self.steering, &self.lead, &self.map);
         for new in self.records.take() {
             self.peaks.take(&new);
@@ -198,7 +210,7 @@ impl<const D: usize> Room<D> {
     pub(super) fn frame(&mut self) -> Option<Frame> {
         let lost = self.records.lost();
         let is_held = self.speed.get() == 0.0;
-        let is_touring = self.is_touring;
+        let leader = self.leader;
         let snapshot = self.thread.control().latest()?;
         let peaks = std::mem::take(&mut self.peaks);
         let point = |(number, touch): (usize, &palpate::haptics::Touch<D>)| FramePoint {
@@ -218,7 +230,8 @@ impl<const D: usize> Room<D> {
             is_stopped: snapshot.is_stopped,
             is_held,
             has_acted: peaks.has_acted,
-            is_touring,
+            is_touring: leader == Leader::Tour,
+            is_replaying: leader == Leader::Replay,
             ticks: snapshot.progress.ticks,
             time: snapshot.progress.time,
             force: peaks.forces.iter().copied().fold(snapshot.progress.force, f64::max),

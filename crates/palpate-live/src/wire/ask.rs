@@ -70,6 +70,8 @@ pub(crate) enum Ask {
     Save {
         #[serde(default)]
         force: bool,
+        #[serde(rename = "as")]
+        name: Option<String>,
     },
     Stop {},
     Release {},
@@ -78,6 +80,9 @@ pub(crate) enum Ask {
         step: Option<u32>,
     },
     Record {
+        on: bool,
+    },
+    Replay {
         on: bool,
     },
     Probe {
@@ -131,6 +136,15 @@ pub(crate) enum Ask {
     Sweep {
         corners: Vec<Vec<f64>>,
         by: Vec<f64>,
+    },
+    Fall {
+        centre: Vec<f64>,
+        radius: f64,
+        gravity: Option<f64>,
+        restitution: Option<f64>,
+    },
+    Cancel {
+        question: u32,
     },
     Hidden {
         is: bool,

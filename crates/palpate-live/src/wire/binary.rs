@@ -20,6 +20,7 @@ pub(crate) struct Frame {
     pub(crate) has_acted: bool,
     pub(crate) is_recording: bool,
     pub(crate) is_touring: bool,
+    pub(crate) is_replaying: bool,
     pub(crate) revision: u32,
     pub(crate) ticks: u64,
     pub(crate) time: f64,
@@ -49,8 +50,14 @@ pub(crate) struct FramePoint {
 impl Frame {
     pub(crate) fn bytes(&self) -> Bytes {
         let mut out = Vec::with_capacity(64 + 72 * self.points.len());
-        let flags =
-            [self.is_stopped, self.is_held, self.has_acted, self.is_recording, self.is_touring];
+        let flags = [
+            self.is_stopped,
+            self.is_held,
+            self.has_acted,
+            self.is_recording,
+            self.is_touring,
+            self.is_replaying,
+        ];
         out.extend([1, BYTE_VERSION, self.dimension, bits(&flags)]);
         out.extend(self.revision.to_le_bytes());
         out.extend(self.ticks.to_le_bytes());

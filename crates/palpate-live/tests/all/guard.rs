@@ -152,3 +152,13 @@ fn no_more_pages_open_than_there_is_room_for() {
     assert_eq!(bye["why"], "64 pages are open already");
     drop(pages);
 }
+
+#[test]
+fn a_connection_that_says_nothing_is_closed() {
+    let live = served(LiveOptions::default());
+    let address = live.address();
+    let started = format!("GET / HTTP/1.1\r\nHost: {address}\r\n");
+    // Without a whole head the server closes, with nothing or with a refusal.
+    let answers: Vec<_> = ["", &started].map(|start| raw(address, start)).into();
+    assert!(answers.iter().all(|answer| !answer.contains("200 OK")), "{answers:?}");
+}

@@ -6,7 +6,7 @@
 use palpate_live::{Live, LiveOptions};
 use serde_json::{Value, json};
 
-use crate::talk::{BALL, Page, served};
+use crate::talk::{BALL, Page, raw, served};
 
 const STAR: &str = include_str!("../../../../scenes/memoir_star.json");
 
@@ -136,4 +136,85 @@ fn a_stop_does_not_wait_for_an_edit() {
     };
     assert_eq!(frame[3] & 1, 1, "stopped");
     assert_eq!(page.ask(json!({ "do": "release" }))["do"], "done");
+}
+
+#[test]
+fn what_was_recorded_is_replayed_and_so_is_a_file() {
+    let live = served(LiveOptions::default());
+    let mut page = Page::open(&live);
+    assert_eq!(page.ask(json!({ "do": "replay", "on": true }))["do"], "refused", "no rows yet");
+    page.ask(json!({ "do": "record", "on": true }));
+    page.ask(json!({ "do": "hand", "held": true, "target": [0.0, 0.045, 0.0] }));
+    page.wait_for_tick(400);
+    page.ask(json!({ "do": "record", "on": false }));
+    page.ask(json!({ "do": "hand", "held": false }));
+    let is_replaying = |frame: &[u8]| frame[3] & 32 != 0;
+    assert_eq!(page.ask(json!({ "do": "replay", "on": true }))["do"], "done");
+    while !is_replaying(&page.binary(1)) {}
+    assert_eq!(page.ask(json!({ "do": "replay", "on": false }))["do"], "done");
+    while is_replaying(&page.binary(1)) {}
+
+    let answer = request_trace(&live, "GET", "");
+    let (_, trace) = answer.split_once("\r\n\r\n").unwrap();
+    assert!(trace.starts_with("time_s,point,device_x_m,"), "{trace:.100}");
+    assert!(request_trace(&live, "POST", trace).starts_with("HTTP/1.1 204"));
+    assert_eq!(page.ask(json!({ "do": "replay", "on": true }))["do"], "done");
+    while !is_replaying(&page.binary(1)) {}
+    // Who takes the hand ends it.
+    page.ask(json!({ "do": "hand", "held": true, "target": [0.0, 0.1, 0.0] }));
+    while is_replaying(&page.binary(1)) {}
+
+    let wrong = request_trace(&live, "POST", "time_s,x_m\n0,1\n");
+    assert!(wrong.starts_with("HTTP/1.1 422") && wrong.contains("no column y_m"), "{wrong}");
+}
+
+/// A request about the trace with this body; the answer as it comes.
+fn request_trace(live: &Live, method: &str, body: &str) -> String {
+    let (address, token, length) = (live.address(), live.token(), body.len());
+    let head = format!(
+        "{method} /trace.csv?token={token} HTTP/1.1\r\nHost: {address}\r\nOrigin: http://{address}\r\n\
+         Connection: close\r\nContent-Length: {length}\r\n\r\n"
+    );
+    raw(address, &(head + body))
+}
+
+#[test]
+fn a_long_question_is_cancelled_and_keeps_no_other_page_waiting() {
+    let thousand = include_str!("../../../../scenes/thousand.json");
+    let live = Live::start("thousand", None, thousand, LiveOptions::default()).unwrap();
+    let (mut one, mut other) = (Page::open(&live), Page::open(&live));
+    let picture = |id: u32| {
+        json!({
+            "do": "picture", "id": id, "eye": [2, 1, 2], "target": [0, 0, 0], "field_of_view": 0.6,
+            "width": 2048, "height": 2048,
+        })
+    };
+    one.say(&picture(5));
+    one.say(&picture(6));
+    assert_eq!(other.ask(json!({ "do": "probe", "at": [0, 0, 1] }))["do"], "probed");
+    assert_eq!(one.ask(json!({ "do": "cancel", "question": 6 }))["do"], "done");
+    one.say(&json!({ "do": "cancel", "question": 5, "id": 7 }));
+    assert_eq!(one.answer(5)["message"], "cancelled");
+    let none = one.ask(json!({ "do": "cancel", "question": 99 }));
+    assert_eq!(none["message"], "no question of number 99 is worked on");
+}
+
+#[test]
+fn a_page_is_told_of_the_safety_chain_of_a_fall_and_of_what_building_took() {
+    let live = served(LiveOptions::default());
+    let mut page = Page::silent(&live);
+    page.say(&json!({ "do": "hello", "version": 1 }));
+    let scene = page.text(|message| message["do"] == "scene");
+    let parts: Vec<_> =
+        scene["spent"].as_array().unwrap().iter().map(|part| &part["name"]).collect();
+    assert_eq!(parts, ["build", "hand over", "describe", "formula"]);
+    page.ask(json!({ "do": "hand", "held": true, "target": [0.0, 0.02, 0.0] }));
+    let acted = |message: &Value| {
+        let stages = message["stages"].as_array().unwrap();
+        stages.iter().any(|stage| stage["name"] == "force rate" && stage["ticks"] != 0)
+    };
+    page.text(|message| message["do"] == "safety" && acted(message));
+    let fell = page.ask(json!({ "do": "fall", "centre": [0.001, 0.1, 0], "radius": 0.005 }));
+    assert_eq!((&fell["do"], &fell["end"]), (&json!("fall"), &json!("leaves")));
+    assert!(!fell["bounces"].as_array().unwrap().is_empty());
 }

@@ -6,7 +6,7 @@
 use palpate::field::{Point, Shape, Vector};
 use palpate::scene::BuiltScene;
 
-use super::shape;
+use super::{Cancel, shape};
 use crate::stage::hand::longest_edge;
 use crate::stage::room::{in_space, point_of};
 use crate::wire::{Ask, Grid, GridPlace};
@@ -18,7 +18,11 @@ const MOST_ALONG: usize = 512;
 const MOST_VALUES: usize = 1 << 22;
 
 /// Values on a plane.
-pub(super) fn slice<const D: usize>(scene: &BuiltScene<D>, ask: &Ask) -> Result<Grid, String> {
+pub(super) fn slice<const D: usize>(
+    scene: &BuiltScene<D>,
+    ask: &Ask,
+    cancel: &Cancel,
+) -> Result<Grid, String> {
     let Ask::Slice { origin, right, up, width, height, columns, rows, body } = ask else {
         return Err("not about a slice".to_owned());
     };
@@ -40,8 +44,8 @@ pub(super) fn slice<const D: usize>(scene: &BuiltScene<D>, ask: &Ask) -> Result<
     }
     let (first, last) = ([-0.5 * width, -0.5 * height, 0.0], [0.5 * width, 0.5 * height, 0.0]);
     let place = GridPlace { dimension: 2, counts, first, last };
-    let values =
-        filled(shape, place, |[across, along, _]| origin + right * across + up * along);
+    let at = |[across, along, _]: [f64; 3]| origin + right * across + up * along;
+    let values = filled(shape, place, at, cancel)?;
     Ok(Grid { place, values, is_half: false })
 }
 
@@ -50,6 +54,7 @@ pub(super) fn samples<const D: usize>(
     scene: &BuiltScene<D>,
     cells: usize,
     body: Option<usize>,
+    cancel: &Cancel,
 ) -> Result<Grid, String> {
     let shape = shape(scene, body)?;
     let bounds = scene.bounds().ok_or("a scene without bounds cannot be sampled")?;
@@ -68,7 +73,8 @@ pub(super) fn samples<const D: usize>(
     };
     let counts = checked(std::array::from_fn(count))?;
     let place = GridPlace { dimension: D as u8, counts, first, last };
-    let values = filled(shape, place, |at| Vector(std::array::from_fn(|axis| at[axis])));
+    let at = |at: [f64; 3]| Vector(std::array::from_fn(|axis| at[axis]));
+    let values = filled(shape, place, at, cancel)?;
     Ok(Grid { place, values, is_half: true })
 }
 
@@ -85,7 +91,8 @@ fn filled<const D: usize>(
     shape: &Shape<D>,
     grid: GridPlace,
     place: impl Fn([f64; 3]) -> Point<D>,
-) -> Vec<f32> {
+    cancel: &Cancel,
+) -> Result<Vec<f32>, String> {
     let GridPlace { counts, first, last, .. } = grid;
     let at = |axis: usize, number: usize| {
         let share = number as f64 / (counts[axis].max(2) - 1) as f64;
@@ -96,11 +103,12 @@ fn filled<const D: usize>(
     let mut values = Vec::with_capacity(counts.iter().product());
     for z in 0..counts[2] {
         for y in 0..counts[1] {
+            cancel.check()?;
             points.clear();
             points.extend((0..counts[0]).map(|x| place([at(0, x), at(1, y), at(2, z)])));
             shape.distances(&points, &mut row);
             values.extend(row.iter().map(|distance| *distance as f32));
         }
     }
-    values
+    Ok(values)
 }

@@ -4,9 +4,12 @@
 //! What the page asks about a scene: answers with bounds, evaluations and times.
 
 mod element;
+mod fall;
 mod grid;
 mod pair;
 
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
 use palpate::field::{Aabb, Pose, Shape, Vector};
@@ -23,8 +26,40 @@ use crate::wire::{Ask, Grid};
 /// How near bounds are brought to each other, as a share of the scene.
 const TOLERANCE: f64 = 1e-6;
 
+/// How a ball falls unless the page says otherwise [m/s²], and how much of its speed is left after a
+/// bounce.
+const GRAVITY: f64 = 9.81;
+const RESTITUTION: f64 = 0.5;
+
 /// The most boxes of a proof that are told.
 const MOST_BOXES: usize = 4000;
+
+/// Why a question that was cancelled is refused.
+pub(super) const CANCELLED: &str = "cancelled";
+
+/// Tells who answers a question that nobody wants the answer any more.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Cancel(Arc<AtomicBool>);
+
+impl Cancel {
+    pub(super) fn set(&self) {
+        self.0.store(true, Ordering::Relaxed);
+    }
+
+    pub(super) fn is_set(&self) -> bool {
+        self.0.load(Ordering::Relaxed)
+    }
+
+    /// Whether both are of one question.
+    pub(super) fn is(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.0, &other.0)
+    }
+
+    /// An error once it is set.
+    fn check(&self) -> Result<(), String> {
+        if self.is_set() { Err(CANCELLED.to_owned()) } else { Ok(()) }
+    }
+}
 
 /// An answer for the page.
 #[derive(Debug)]
@@ -38,6 +73,7 @@ pub(super) enum Answer {
 pub(super) fn answer<const D: usize>(
     scene: &BuiltScene<D>,
     ask: &Ask,
+    cancel: &Cancel,
 ) -> Option<Result<Answer, String>> {
     Some(match ask {
         Ask::Probe { at, body } => probe(scene, at, *body).map(Answer::Text),
@@ -59,8 +95,15 @@ pub(super) fn answer<const D: usize>(
             count => Err(format!("an element that moves has 2 or 3 corners, got {count}")),
         }
         .map(Answer::Text),
-        Ask::Slice { .. } => grid::slice(scene, ask).map(Answer::Grid),
-        Ask::Samples { cells, body } => grid::samples(scene, *cells, *body).map(Answer::Grid),
+        Ask::Fall { centre, radius, gravity, restitution } => {
+            let numbers =
+                [*radius, gravity.unwrap_or(GRAVITY), restitution.unwrap_or(RESTITUTION)];
+            fall::fall(scene, centre, numbers, cancel).map(Answer::Text)
+        }
+        Ask::Slice { .. } => grid::slice(scene, ask, cancel).map(Answer::Grid),
+        Ask::Samples { cells, body } => {
+            grid::samples(scene, *cells, *body, cancel).map(Answer::Grid)
+        }
         _ => return None,
     })
 }

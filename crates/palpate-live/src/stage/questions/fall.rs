@@ -1,0 +1,248 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! A ball that falls onto the scene and bounces: straight flights in short steps, each proven free up
+//! to the first touch.
+
+use std::time::Instant;
+
+use palpate::field::{Aabb, Point, Shape, Vector};
+use palpate::query::{BallWorkspace, Limits, Ray, Stop, cast_ball};
+use palpate::scene::BuiltScene;
+use serde_json::{Value, json};
+
+use super::{Cancel, TOLERANCE, nanoseconds, size};
+use crate::stage::room::point_of;
+
+/// Steps in the time in which the ball would fall by the size of the scene, and of a way at most.
+const STEPS_A_FALL: f64 = 200.0;
+const MOST_STEPS: usize = 6000;
+
+/// Touches in a step at most: a ball in a corner goes to and fro.
+const MOST_TOUCHES: usize = 8;
+
+/// Evaluations of a way at most.
+const BUDGET: u32 = 20_000_000;
+
+/// A ball that touches is put off the surface by this share of its radius.
+const SKIN: f64 = 1e-4;
+
+/// A touch that is slower than the fall of so many steps is no bounce.
+const SLOW: f64 = 4.0;
+
+/// What is left of the speed after a step in which the ball slides.
+const SLIDES_ON: f64 = 0.99;
+
+/// The ball rests after so many steps of touch that are slower than this share of the speed of a
+/// fall by the size of the scene.
+const REST_STEPS: usize = 60;
+const REST_SPEED: f64 = 0.005;
+
+/// The ball as it falls.
+struct Fall<'a, const D: usize> {
+    shape: &'a Shape<D>,
+    bounds: Option<Aabb<D>>,
+    /// The size of the scene [m].
+    size: f64,
+    radius: f64,
+    gravity: f64,
+    restitution: f64,
+    /// A step of time [s].
+    step: f64,
+    workspace: BallWorkspace<D>,
+    centre: Point<D>,
+    velocity: Vector<f64, D>,
+    evaluations: u32,
+    bounces: Vec<Value>,
+}
+
+/// The way of a ball.
+pub(super) fn fall<const D: usize>(
+    scene: &BuiltScene<D>,
+    centre: &[f64],
+    [radius, gravity, restitution]: [f64; 3],
+    cancel: &Cancel,
+) -> Result<Value, String> {
+    let begin = Instant::now();
+    let centre = point_of::<D>(centre)?;
+    let is_positive = |x: f64| x > 0.0 && x <= palpate::field::LARGEST_LENGTH;
+    if !is_positive(radius) || !is_positive(gravity) {
+        return Err(format!(
+            "radius and gravity must be positive, got {radius} m and {gravity} m/s²"
+        ));
+    }
+    if !(0.0..=1.0).contains(&restitution) {
+        return Err(format!("restitution is a share from 0 to 1, got {restitution}"));
+    }
+    let size = size(scene).max(radius);
+    let mut fall = Fall {
+        shape: &scene.whole,
+        bounds: scene.bounds(),
+        size,
+        radius,
+        gravity,
+        restitution,
+        step: (2.0 * size / gravity).sqrt() / STEPS_A_FALL,
+        workspace: BallWorkspace::new(),
+        centre,
+        velocity: Vector::ZERO,
+        evaluations: 0,
+        bounces: Vec::new(),
+    };
+    let (path, end) = fall.run(cancel)?;
+    Ok(json!({
+        "do": "fall", "step": fall.step, "path": path, "bounces": fall.bounces, "end": end,
+        "evaluations": fall.evaluations, "ns": nanoseconds(begin),
+    }))
+}
+
+impl<const D: usize> Fall<'_, D> {
+    /// The centres, and how the way ends.
+    fn run(&mut self, cancel: &Cancel) -> Result<(Vec<Vec<f64>>, &'static str), String> {
+        let mut path = vec![self.centre.0.to_vec()];
+        if self.shape.distance(self.centre) <= self.radius {
+            let mut down = Vector::ZERO;
+            down[1] = -1.0;
+            if self.touch(down, self.size)?.is_some_and(|(free, _)| free <= 0.0) {
+                return Ok((path, "inside"));
+            }
+        }
+        let fall_speed = (2.0 * self.size * self.gravity).sqrt();
+        let mut slow = 0;
+        for step in 0..MOST_STEPS {
+            cancel.check()?;
+            self.velocity[1] -= self.gravity * self.step;
+            let touches = self.go_on(step as f64 * self.step)?;
+            path.push(self.centre.0.to_vec());
+            slow = if touches && self.velocity.norm() < REST_SPEED * fall_speed {
+                slow + 1
+            } else {
+                0
+            };
+            if slow == REST_STEPS {
+                return Ok((path, "rests"));
+            }
+            if self.has_left() {
+                return Ok((path, "leaves"));
+            }
+            if self.evaluations >= BUDGET {
+                return Ok((path, "budget"));
+            }
+        }
+        Ok((path, "time"))
+    }
+
+    /// Goes on by a step that begins at `time` [s]; whether the ball touched.
+    fn go_on(&mut self, time: f64) -> Result<bool, String> {
+        let mut left = self.step;
+        let mut touches = false;
+        for _ in 0..MOST_TOUCHES {
+            let speed = self.velocity.norm();
+            let far = speed * left;
+            let Some(way) = self.velocity.normalized().filter(|_| far > 0.0) else { break };
+            let Some((free, normal)) = self.touch(way, far)? else {
+                self.centre += way * far;
+                break;
+            };
+            touches = true;
+            self.centre += way * free + normal * (SKIN * self.radius);
+            left -= free / speed;
+            let closing = -self.velocity.dot(normal);
+            if closing > SLOW * self.gravity * self.step {
+                self.velocity += normal * ((1.0 + self.restitution) * closing);
+                self.bounces.push(json!({
+                    "time": time + self.step - left, "centre": self.centre.0.to_vec(),
+                    "normal": normal.0.to_vec(), "speed": closing,
+                }));
+            } else {
+                self.velocity += normal * closing.max(0.0);
+            }
+        }
+        if touches {
+            self.velocity = self.velocity * SLIDES_ON;
+        }
+        Ok(touches)
+    }
+
+    /// How far the ball is proven free along a way of `far` [m], and the normal where it touches;
+    /// `None` if it touches nothing.
+    fn touch(
+        &mut self,
+        way: Vector<f64, D>,
+        far: f64,
+    ) -> Result<Option<(f64, Vector<f64, D>)>, String> {
+        let said = |error: palpate::query::QueryError| error.to_string();
+        let ray = Ray::new(self.centre, way, far).map_err(said)?;
+        let limits = Limits::new(TOLERANCE * self.size);
+        let found = cast_ball(self.shape, &ray, self.radius, &limits, &mut self.workspace)
+            .map_err(said)?;
+        self.evaluations = self.evaluations.saturating_add(found.evaluations);
+        if found.stop == Stop::SignKnown && found.best.is_none() {
+            return Ok(None);
+        }
+        // Where no gradient tells the side, the ball goes back along its way.
+        let normal = found.best.map_or(-way, |contact| contact.normal);
+        Ok(Some((found.lower.clamp(0.0, far), normal)))
+    }
+
+    /// Whether the ball is out of the scene's bounds, grown by their size.
+    fn has_left(&self) -> bool {
+        let far = self.size + self.radius;
+        self.bounds.is_none_or(|bounds| {
+            (0..D).any(|axis| {
+                let x = self.centre[axis];
+                x < bounds.min[axis] - far || x > bounds.max[axis] + far
+            })
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use palpate::scene::{AnyScene, Scene};
+
+    use super::*;
+
+    fn floor() -> BuiltScene<2> {
+        let text = r#"{ "palpate": 1, "dimension": 2, "bodies": [ { "name": "floor",
+            "shape": { "rectangle": { "size": [2, 0.2] } } } ] }"#;
+        match Scene::from_json(text).unwrap().build().unwrap() {
+            AnyScene::Planar(scene) => scene,
+            AnyScene::Spatial(_) => panic!("in the plane"),
+        }
+    }
+
+    #[test]
+    fn a_ball_falls_bounces_and_rests_on_a_floor() {
+        let fell = fall(&floor(), &[0.0, 0.7], [0.1, 9.81, 0.5], &Cancel::default()).unwrap();
+        assert_eq!(fell["end"], "rests");
+        let bounces = fell["bounces"].as_array().unwrap();
+        let number = |value: &Value| value.as_f64().unwrap();
+        // By 0.5 m: √(2 h / g), and √(2 g h).
+        let step = number(&fell["step"]);
+        assert!((number(&bounces[0]["time"]) - (1.0 / 9.81_f64).sqrt()).abs() < 2.0 * step);
+        assert!((number(&bounces[0]["speed"]) - 9.81_f64.sqrt()).abs() < 9.81 * 2.0 * step);
+        assert_eq!(bounces[0]["normal"], json!([0.0, 1.0]));
+        let path = fell["path"].as_array().unwrap();
+        for place in path {
+            assert!(number(&place[1]) >= 0.2 - 1e-9, "{place}");
+        }
+        let lowest = number(&path.last().unwrap()[1]);
+        assert!((0.2..0.201).contains(&lowest), "{lowest}");
+        // Half of the speed each time: a quarter of the height.
+        let heights = path.iter().skip((number(&bounces[0]["time"]) / step) as usize + 2);
+        let highest = heights.map(|place| number(&place[1]) - 0.2).fold(0.0, f64::max);
+        assert!((highest - 0.125).abs() < 0.01, "{highest}");
+    }
+
+    #[test]
+    fn a_ball_beside_the_floor_leaves_and_one_in_it_stays() {
+        let ask = |at: [f64; 2]| fall(&floor(), &at, [0.1, 9.81, 0.5], &Cancel::default());
+        assert_eq!(ask([1.5, 0.5]).unwrap()["end"], "leaves");
+        assert_eq!(ask([0.0, 0.0]).unwrap()["end"], "inside");
+        assert!(fall(&floor(), &[0.0, 1.0], [0.1, 9.81, 1.5], &Cancel::default()).is_err());
+        let cancel = Cancel::default();
+        cancel.set();
+        assert!(fall(&floor(), &[0.0, 1.0], [0.1, 9.81, 0.5], &cancel).is_err());
+    }
+}

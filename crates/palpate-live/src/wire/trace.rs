@@ -1,0 +1,145 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! Recordings, as files.
+
+use palpate::devices::{HandPath, Interpolation};
+use palpate::field::{Point, Vector};
+use palpate::servo_loop::{TraceRow, TraceWriter};
+
+/// The time from one place of a path to the next at least [s]: that of a hand that is led.
+const STEP: f64 = 0.008;
+
+/// The most contact points of a file.
+const MOST_POINTS: usize = 100;
+
+/// The axes as columns name them.
+const AXES: [&str; 3] = ["x", "y", "z"];
+
+/// Times [s] and places [m] of a contact point.
+type Places<const D: usize> = (Vec<f64>, Vec<Point<D>>);
+
+/// Rows as a file.
+pub(crate) fn written<const D: usize>(rows: &[TraceRow<D>]) -> Vec<u8> {
+    let mut out = TraceWriter::new(Vec::new());
+    // Writing to memory has no way to fail.
+    let written = rows.iter().try_for_each(|row| out.write(row));
+    written.and_then(|()| out.finish()).unwrap_or_default()
+}
+
+/// The paths of the device points of rows.
+pub(crate) fn paths<const D: usize>(rows: &[TraceRow<D>]) -> Result<Vec<HandPath<D>>, String> {
+    let mut all = Vec::new();
+    for row in rows {
+        add(&mut all, row.point as usize, row.time_s, row.device)?;
+    }
+    finished(all)
+}
+
+/// The paths of the device points of a file: `time_s`, `point` if there are several, and
+/// `device_x_m` … or, as in the paths of `palpate feel`, `x_m` ….
+pub(crate) fn read_paths<const D: usize>(bytes: &[u8]) -> Result<Vec<HandPath<D>>, String> {
+    let mut reader = csv::Reader::from_reader(bytes);
+    let said = |error: csv::Error| error.to_string();
+    let names = reader.headers().map_err(said)?.clone();
+    let column = |name: &str| names.iter().position(|other| other == name);
+    let needed = |name: &str| {
+        column(name)
+            .ok_or_else(|| format!("there is no column {name}: a trace in {D}D has one"))
+    };
+    let prefix = if column("device_x_m").is_some() { "device_" } else { "" };
+    let mut places = Vec::new();
+    for axis in &AXES[..D] {
+        places.push(needed(&format!("{prefix}{axis}_m"))?);
+    }
+    if D == 2 && column(&format!("{prefix}z_m")).is_some() {
+        return Err("the trace is of a scene in space, this one is in the plane".to_owned());
+    }
+    let (time, point) = (needed("time_s")?, column("point"));
+    let mut all = Vec::new();
+    for row in reader.records() {
+        let row = row.map_err(said)?;
+        let line = row.position().map_or(0, csv::Position::line);
+        let number = |column: usize| {
+            let text = row.get(column).unwrap_or_default();
+            let number = text.trim().parse::<f64>().ok().filter(|number| number.is_finite());
+            let name = names.get(column).unwrap_or_default();
+            number.ok_or_else(|| format!("line {line}: {name} must be a number, got {text:?}"))
+        };
+        let mut place = Vector::ZERO;
+        for (axis, column) in places.iter().enumerate() {
+            place[axis] = number(*column)?;
+        }
+        let point = point.map_or(Ok(0.0), number)?;
+        let at_line = |why: String| format!("line {line}: {why}");
+        add(&mut all, point as usize, number(time)?, place).map_err(at_line)?;
+    }
+    finished(all)
+}
+
+/// Adds a place of a contact point, unless it comes too soon after the last one.
+fn add<const D: usize>(
+    all: &mut Vec<Places<D>>,
+    point: usize,
+    time: f64,
+    place: Point<D>,
+) -> Result<(), String> {
+    if point >= MOST_POINTS {
+        return Err(format!("a hand has at most {MOST_POINTS} contact points, got {point}"));
+    }
+    if all.len() <= point {
+        all.resize_with(point + 1, Places::default);
+    }
+    let (times, places) = &mut all[point];
+    if times.last().is_none_or(|last| time - last >= STEP) {
+        times.push(time);
+        places.push(place);
+    }
+    Ok(())
+}
+
+fn finished<const D: usize>(all: Vec<Places<D>>) -> Result<Vec<HandPath<D>>, String> {
+    if all.is_empty() {
+        return Err("nothing was recorded: there are no rows".to_owned());
+    }
+    let path = |(point, (times, places)): (usize, Places<D>)| {
+        HandPath::new(times, places, Interpolation::Monotone)
+            .map_err(|error| format!("contact point {point}: {error}"))
+    };
+    all.into_iter().enumerate().map(path).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn paths_are_read_from_traces_and_from_paths() {
+        let trace = "time_s,point,device_x_m,device_y_m,proxy_x_m\n\
+                     0.001,0,0.5,0.25,9\n0.002,0,7,7,9\n0.011,0,0.75,0.25,9\n";
+        let paths = read_paths::<2>(trace.as_bytes()).unwrap();
+        assert_eq!(paths.len(), 1);
+        assert!((paths[0].duration() - 0.01).abs() < 1e-15);
+        assert_eq!(paths[0].state_at(0.011).position, Vector([0.75, 0.25]));
+        let path = "time_s,x_m,y_m,z_m\n0,1,2,3\n1,1,2,4\n";
+        let found = read_paths::<3>(path.as_bytes()).unwrap();
+        assert_eq!(found[0].state_at(1.0).position, Vector([1.0, 2.0, 4.0]));
+    }
+
+    #[test]
+    fn what_is_no_trace_is_told_with_its_line() {
+        let why = |text: &str| read_paths::<2>(text.as_bytes()).unwrap_err();
+        assert_eq!(why("a,b\n1,2\n"), "there is no column x_m: a trace in 2D has one");
+        assert_eq!(
+            why("time_s,x_m,y_m\n0,0,0\n1,east,0\n"),
+            "line 3: x_m must be a number, got \"east\""
+        );
+        assert_eq!(why("time_s,x_m,y_m\n"), "nothing was recorded: there are no rows");
+        assert_eq!(
+            why("time_s,x_m,y_m,z_m\n0,0,0,0\n"),
+            "the trace is of a scene in space, this one is in the plane"
+        );
+        assert!(why("time_s,point,x_m,y_m\n0,1e9,0,0\n").starts_with("line 2: a hand has"));
+        assert!(why("time_s,x_m,y_m\n0,0\n").contains("line: 2"));
+    }
+}
