@@ -14,8 +14,9 @@ import { state } from '../state.js';
 import { html, useEffect, useReducer } from '../vendor/htm-preact.js';
 import { TWO_NEEDED } from './actions.js';
 import { ChoiceField, NumberField, Switch, VectorField } from './fields.js';
-import { extent } from './numbers.js';
+import { cornersOf, extent } from './numbers.js';
 import { useTopics } from './page.js';
+import { Point } from './point.js';
 import { tookTime } from './profile.js';
 import { Verdict } from './verdict.js';
 
@@ -53,6 +54,7 @@ export function Checks() {
   return html`
     <div class="panel-head"><h2>Checks</h2></div>
     <div class="scroll" tabindex="0" role="region" aria-label="Numbers of the checks">
+      <${Point} />
       ${!isPlane && html`<p class="quiet">Triangle, circle and their proofs are for scenes in the plane, such as
         memoir_star.json.</p>`}
       ${isPlane && TOYS.map(([toy, name, help]) => html`<div key=${toy} class="check">
@@ -87,6 +89,12 @@ function scale() {
   return extent(state.scene?.bounds) / 2;
 }
 
+/** The middle of the scene [m]. */
+function middle() {
+  const corners = cornersOf(state.scene?.bounds);
+  return [0, 1].map((axis) => (corners ? (corners.min[axis] + corners.max[axis]) / 2 : 0));
+}
+
 function Corners() {
   const { corners } = toys;
   const take = (/** @type {string} */ count) => {
@@ -105,6 +113,7 @@ function Corners() {
 function Pair() {
   const { pair } = toys;
   const names = (state.scene?.bodies ?? []).map((/** @type {any} */ body, /** @type {number} */ index) => [String(index), body.name]);
+  const put = (/** @type {number[][]} */ starts) => setToys({ pair: { ...pair, starts } });
   if (names.length < 2) return html`<p class="quiet">${TWO_NEEDED}</p>`;
   return html`
     ${/** @type {const} */ (['a', 'b']).map((side) => html`<${ChoiceField} key=${side} label=${`body ${side.toUpperCase()}`}
@@ -112,9 +121,16 @@ function Pair() {
       change=${(/** @type {string} */ to) => setToys({ pair: { ...pair, [side]: Number(to) } })} />`)}
     <${ChoiceField} label="local method" value=${pair.method} choices=${Object.entries(PAIR_METHODS)}
       change=${(/** @type {string} */ method) => setToys({ pair: { ...pair, method } })} />
-    <p class="quiet">Click on the picture to add a start, drag one to move it: ${pair.starts.length} so far.</p>
+    <p class="quiet">Click on the picture to add a start, drag one to move it, or use the numbers.</p>
+    ${pair.starts.map((start, index) => html`<div class="element" key=${index}>
+      <${VectorField} label=${`start ${index + 1}`} unit="m" value=${start} scale=${scale()}
+        change=${(/** @type {number[]} */ to) => put(pair.starts.map((old, at) => (at === index ? to : old)))} />
+      <button class="small" title="Take out" aria-label=${`Take out start ${index + 1}`}
+        onClick=${() => put(pair.starts.filter((_, at) => at !== index))}>×</button>
+    </div>`)}
+    <button class="small" onClick=${() => put([...pair.starts, middle()])}>add a start</button>
     ${pair.starts.length > 0 && html`<button class="small"
-      onClick=${() => setToys({ pair: { ...pair, starts: [] } })}>take the starts away</button>`}`;
+      onClick=${() => put([])}>take the starts away</button>`}`;
 }
 
 function Method() {

@@ -10,8 +10,8 @@ import * as actions from './actions.js';
 import { Charts } from './charts.js';
 import { Events } from './events.js';
 import { FallingBall } from './fall.js';
-import { count, short } from './numbers.js';
-import { useTopics } from './page.js';
+import { count, short, time } from './numbers.js';
+import { page, useTopics } from './page.js';
 import { Profile } from './profile.js';
 import { downloadTrace, record, recorded, replay } from './recording.js';
 import { Safety } from './safety.js';
@@ -127,9 +127,13 @@ function Counters() {
     };
   }, []);
   const { frame } = state;
+  const recent = state.history.slice(-60);
+  const cost = recent.reduce((sum, one) => sum + one.cost, 0) / (recent.length || 1);
   return html`<span class="counters">
-    <span>${Math.round(shown.drawn)} frames/s</span>
-    <span>${count(shown.ticks)} ticks/s</span>
+    <span title="How often the page draws, and how long a picture takes">${Math.round(shown.drawn)} frames/s
+      of ${time((page.stage?.stats().time ?? 0) / 1000)}</span>
+    <span title="How often the servo computes a force, and how long its longest tick takes, on average over a second">${count(shown.ticks)} ticks/s
+      of ${time(cost)}</span>
     <span>${count(frame?.evaluations ?? 0)} evaluations a tick</span>
     <span>${state.clients} ${state.clients === 1 ? 'page' : 'pages'}</span>
   </span>`;

@@ -7,6 +7,7 @@
 import { html, useEffect, useRef } from '../vendor/htm-preact.js';
 import { setView, state } from '../state.js';
 import { setMode } from './actions.js';
+import { Cut } from './cut.js';
 import { NumberField, Switch } from './fields.js';
 import { extent } from './numbers.js';
 import { page, useTopics } from './page.js';
@@ -60,7 +61,7 @@ export function ViewBar() {
         aria-selected=${String(view.mode === mode)} aria-controls="stage" tabindex=${view.mode === mode ? 0 : -1}
         disabled=${!isPossible(mode)} onClick=${() => setMode(mode)}>${name}</button>`)}
     </div>
-    ${view.mode === 'compare' && [0, 1].map((side) => html`<select key=${side} class="small"
+    ${view.mode === 'compare' && bodies.length > 1 && [0, 1].map((side) => html`<select key=${side} class="small"
       aria-label=${`Body ${'AB'[side]}`} value=${view.compared[side]}
       onChange=${(/** @type {any} */ event) => setView({
         compared: view.compared.map((old, at) => (at === side ? Number(event.currentTarget.value) : old)) })}>
@@ -104,9 +105,16 @@ function Display() {
     const close = (/** @type {Event} */ event) => {
       if (box.current && event.target instanceof Element && !box.current.contains(event.target)) box.current.open = false;
     };
+    const escape = (/** @type {KeyboardEvent} */ event) => {
+      if (event.key !== 'Escape' || !box.current?.open) return;
+      if (box.current.contains(document.activeElement)) box.current.querySelector('summary')?.focus();
+      box.current.open = false;
+    };
     addEventListener('pointerdown', close);
     addEventListener('focusin', close);
+    addEventListener('keydown', escape);
     return () => {
+      removeEventListener('keydown', escape);
       removeEventListener('pointerdown', close);
       removeEventListener('focusin', close);
     };
@@ -114,6 +122,7 @@ function Display() {
   return html`<details class="popover" ref=${box}>
     <summary class="small">display</summary>
     <div class="sheet" role="group" aria-label="Display">
+      ${view.mode === 'slice' && html`<${Cut} />`}
       <fieldset><legend>Lines</legend>
         <${Switch} label="isolines" value=${view.isolines} change=${(/** @type {boolean} */ isolines) => setView({ isolines })} />
         <${Switch} label="spacing that suits the view" value=${view.spacing === null}

@@ -1,0 +1,52 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+// @ts-check
+
+/** The field at a point that is typed: what the probe under the pointer tells, without a pointer. */
+
+import { state } from '../state.js';
+import { html, useEffect, useState } from '../vendor/htm-preact.js';
+import { Switch, VectorField } from './fields.js';
+import { cornersOf, extent, short } from './numbers.js';
+import { page, useTopics } from './page.js';
+
+/** @param {number[]} vector */
+const inWords = (vector) => `(${vector.slice(0, state.scene?.dimension).map((part) => short(part, 4)).join(', ')})`;
+
+export function Point() {
+  useTopics(['scene']);
+  const [isOut, setIsOut] = useState(false);
+  return html`<div class="check">
+    <${Switch} label="Point" help="The field at a point" value=${isOut} change=${setIsOut} />
+    ${isOut && html`<${Asked} key=${state.scene?.dimension} />`}
+  </div>`;
+}
+
+function Asked() {
+  const { scene } = state;
+  const corners = cornersOf(scene?.bounds);
+  const [at, setAt] = useState(() => Array.from({ length: scene?.dimension ?? 3 }, (_, axis) => corners?.max[axis] ?? 0));
+  const [answer, setAnswer] = useState(/** @type {any} */ (null));
+  const [refused, setRefused] = useState('');
+  useEffect(() => {
+    let isOld = false;
+    page.wire?.ask({ do: 'probe', at }).then((found) => {
+      if (isOld) return;
+      setAnswer(found);
+      setRefused('');
+    }, (error) => !isOld && setRefused(String(error.message)));
+    return () => {
+      isOld = true;
+    };
+  }, [at.join(' '), scene?.revision]);
+  const rows = answer ? [
+    ['distance', `${short(answer.value, 5)} m`], ['gradient', inWords(answer.gradient)],
+    ['nearest surface', answer.nearest ? `${inWords(answer.nearest)} m` : '–'], ['no surface within', `${short(answer.safe, 4)} m`],
+    ['body', scene?.bodies?.[answer.body]?.name ?? '–'], ['promise', answer.promise],
+  ] : [];
+  return html`<${VectorField} label="point" unit="m" own value=${at} scale=${extent(scene?.bounds)} change=${setAt} />
+    ${refused && html`<p class="problem">${refused}</p>`}
+    <div class="verdict" role="status" aria-label="The field at the point"><table><tbody>
+      ${rows.map(([key, text]) => html`<tr key=${key}><th scope="row">${key}</th><td>${text}</td></tr>`)}
+    </tbody></table></div>`;
+}
