@@ -4,7 +4,7 @@
 
 /** An answer of the program in words: what is proven beside what a local method says. */
 
-import { isFound } from '../plane/drawn.js';
+import { SEPARATION, isFound } from '../plane/drawn.js';
 import { html } from '../vendor/htm-preact.js';
 import { count, short, time } from './numbers.js';
 
@@ -51,7 +51,8 @@ function sentences(toy, result) {
   const { certified, local, enclosing } = result;
   const said = [];
   const upper = certified?.upper;
-  const values = [local].flat().map((one) => one?.value).filter((value) => typeof value === 'number');
+  const factor = toy === 'pair' ? SEPARATION : 1;
+  const values = [local].flat().filter((one) => typeof one?.value === 'number').map((one) => factor * one.value);
   if (typeof upper === 'number' && values.length > 0) {
     const found = values.filter((value) => isFound(value, certified)).length;
     const miss = Math.min(...values) - upper;
@@ -80,11 +81,12 @@ function sentences(toy, result) {
   return said;
 }
 
-/** @param {any} local @param {number} index @param {any} certified */
+/** What became of a start. @param {any} local @param {number} index @param {any} certified */
 function startTitle({ value }, index, certified) {
-  const miss = certified && typeof value === 'number' && !isFound(value, certified)
-    ? `: misses by ${short(value - certified.upper)} m` : ': found the minimum';
-  return `start ${index + 1}${certified ? miss : ''}`;
+  const name = `start ${index + 1}`;
+  if (!certified || typeof value !== 'number') return name;
+  const gap = SEPARATION * value;
+  return isFound(gap, certified) ? `${name} found the minimum` : `${name} misses it by ${short(gap - certified.upper)} m`;
 }
 
 /** @param {{ toy: string, result: any }} given */

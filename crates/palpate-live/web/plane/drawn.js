@@ -33,6 +33,10 @@ export function verdictOf(certified) {
   return { color: OPEN, word: 'not decided' };
 }
 
+/** Between two bodies a local search makes the larger of both distances small; the separation is
+ * twice the least. */
+export const SEPARATION = 2;
+
 /** Whether a local search found what is proven: both are rounded, and the proof ends within its
  * own bounds. @param {number} value @param {{ lower: number, upper: number }} certified */
 export const isFound = (value, { lower, upper }) =>
@@ -110,7 +114,7 @@ function paintPair(context, lens, texts, inks) {
   const colors = toys.pair.starts.map((_, number) => {
     const value = local?.[number]?.value;
     if (!certified || typeof value !== 'number') return OPEN;
-    const found = isFound(value, certified);
+    const found = isFound(SEPARATION * value, certified);
     mark(found ? 'found' : 'missed');
     return found ? FREE : PATH;
   });

@@ -30,6 +30,8 @@ const { force: FORCE, normal: NORMAL, contact: CONTACT } = COLORS;
 export const RANK = { hovered: 0, selected: 1, verdict: 2, force: 3, touched: 4, name: 10, small: 20 };
 /** A body that is seen smaller than this has its name last, in pixels. */
 const SMALL = 24;
+/** The part of an edge that a bracket around the selected body covers. */
+const BRACKET = 0.18;
 const EDGES = [[0, 1], [1, 2], [2, 3], [3, 0], [4, 5], [5, 6], [6, 7], [7, 4],
   [0, 4], [1, 5], [2, 6], [3, 7]];
 
@@ -45,6 +47,20 @@ function paintBox(context, { lens }, box, color, halo) {
   const places = cornersOf(box).map(lens.project);
   for (const [from, to] of EDGES) {
     if (to < places.length) polyline(context, [places[from], places[to]], color, 1, halo);
+  }
+}
+
+/** The corners of the box of the selected body. @param {Context} context @param {View} view
+ * @param {Box} box @param {string} halo */
+function paintBrackets(context, { lens }, box, halo) {
+  const corners = cornersOf(box);
+  for (const [from, to] of EDGES) {
+    if (to >= corners.length) continue;
+    const way = [0, 1, 2].map((axis) => corners[to][axis] - corners[from][axis]);
+    for (const [end, part] of /** @type {[number, number][]} */ ([[from, BRACKET], [to, -BRACKET]])) {
+      const places = [corners[end], along(corners[end], way, part)].map(lens.project);
+      polyline(context, places, COLORS.selected, 1.5, halo);
+    }
   }
 }
 
@@ -79,7 +95,7 @@ export function paintBodies(context, view, setting, texts, inks, { outlined, hov
       ring(context, place, size / 2, color, 1, 'transparent');
     }
     if (body === selected) mark('selected');
-    if (body === outlined) paintBox(context, view, box, COLORS.selected, inks.halo);
+    if (body === outlined) paintBrackets(context, view, box, inks.halo);
     if (!shown.names || !place || body === hovered) return;
     const rank = body === selected ? RANK.selected : touched.has(body) ? RANK.touched
       : size > SMALL ? RANK.name : RANK.small;

@@ -57,7 +57,7 @@ export function paintAll(context, views, shown, theme, ratio) {
     const texts = new Texts(context, rect, inks, [...shown.notes, ...fixed(rect, view)]);
     if (isWhole) {
       paintBodies(context, view, current, texts, inks, {
-        outlined: shown.isDrawn ? selectedBody() : -1,
+        outlined: shown.isDrawn || !isFlat ? selectedBody() : -1,
         hovered: hoveredBody(view, shown.probe),
       });
       paintContacts(context, view, shown.contacts, inks);

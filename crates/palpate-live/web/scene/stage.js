@@ -151,7 +151,21 @@ export function createStage(container, wire) {
     if (shown.dimension === 2) layToys(shown.centre, shown.size);
     layFall(setting());
     named.reset(shown);
+    if (fall.isShown) showBall();
     return true;
+  }
+
+  /** Steps back until the beginning of the fall is seen. */
+  function showBall() {
+    const { rect } = viewsOf(setting(), cameras, elements.rect)[0].lens;
+    const camera = isFlat(setting()) ? cameras.flat : cameras.orbit;
+    const isSeen = () => {
+      const place = camera.lens(rect).project(inSpace(fall.centre));
+      return place && Math.min(place.x - rect.x, rect.x + rect.width - place.x, place.y - rect.y,
+        rect.y + rect.height - place.y) > ROOM;
+    };
+    for (let step = 0; step < STEPS_BACK && !isSeen(); step += 1) camera.height *= STEP_BACK;
+    sceneChanged();
   }
 
   /** The number of the view at a place. @param {Place} place */
@@ -293,20 +307,9 @@ export function createStage(container, wire) {
       const middle = isFlat(setting())
         ? along(along(origin, right, flat.centre[0]), up, flat.centre[1]) : orbit.target;
       placeAbove(middle, setting());
-      this.showBall();
+      showBall();
     },
-    /** Steps back until the beginning of the fall is seen. */
-    showBall() {
-      const { rect } = viewsOf(setting(), cameras, elements.rect)[0].lens;
-      const camera = isFlat(setting()) ? cameras.flat : cameras.orbit;
-      const isSeen = () => {
-        const place = camera.lens(rect).project(inSpace(fall.centre));
-        return place && Math.min(place.x - rect.x, rect.x + rect.width - place.x, place.y - rect.y,
-          rect.y + rect.height - place.y) > ROOM;
-      };
-      for (let step = 0; step < STEPS_BACK && !isSeen(); step += 1) camera.height *= STEP_BACK;
-      sceneChanged();
-    },
+    showBall,
     /** Whether the picture is a map of a plane. */
     isFlat: () => isFlat(setting()),
   };
