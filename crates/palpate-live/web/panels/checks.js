@@ -62,7 +62,8 @@ export function Checks() {
           change=${(/** @type {boolean} */ is) => setToys({ shown: { ...toys.shown, [toy]: is } })} />
         ${toys.shown[toy] && html`<${Parameters} toy=${toy} />
           ${toys.refused[toy] && html`<p class="problem">${toys.refused[toy]}</p>`}
-          <${Verdict} toy=${toy} result=${toys.results[toy]} />`}
+          <${Verdict} toy=${toy} result=${toys.results[toy]} />
+          ${toy === 'pair' && html`<${Starts} />`}`}
       </div>`)}
     </div>`;
 }
@@ -92,7 +93,7 @@ function scale() {
 /** The middle of the scene [m]. */
 function middle() {
   const corners = cornersOf(state.scene?.bounds);
-  return [0, 1].map((axis) => (corners ? (corners.min[axis] + corners.max[axis]) / 2 : 0));
+  return [0, 1].map((axis) => (corners ? Number(((corners.min[axis] + corners.max[axis]) / 2).toFixed(6)) : 0));
 }
 
 function Corners() {
@@ -113,7 +114,6 @@ function Corners() {
 function Pair() {
   const { pair } = toys;
   const names = (state.scene?.bodies ?? []).map((/** @type {any} */ body, /** @type {number} */ index) => [String(index), body.name]);
-  const put = (/** @type {number[][]} */ starts) => setToys({ pair: { ...pair, starts } });
   if (names.length < 2) return html`<p class="quiet">${TWO_NEEDED}</p>`;
   return html`
     ${/** @type {const} */ (['a', 'b']).map((side) => html`<${ChoiceField} key=${side} label=${`body ${side.toUpperCase()}`}
@@ -121,7 +121,15 @@ function Pair() {
       change=${(/** @type {string} */ to) => setToys({ pair: { ...pair, [side]: Number(to) } })} />`)}
     <${ChoiceField} label="local method" value=${pair.method} choices=${Object.entries(PAIR_METHODS)}
       change=${(/** @type {string} */ method) => setToys({ pair: { ...pair, method } })} />
-    <p class="quiet">Click on the picture to add a start, drag one to move it, or use the numbers.</p>
+    <p class="quiet">Click on the picture to add a start, drag one to move it, or use the numbers.</p>`;
+}
+
+/** Starts of the search between two bodies, as numbers. */
+function Starts() {
+  const { pair } = toys;
+  const put = (/** @type {number[][]} */ starts) => setToys({ pair: { ...pair, starts } });
+  if ((state.scene?.bodies ?? []).length < 2) return null;
+  return html`
     ${pair.starts.map((start, index) => html`<div class="element" key=${index}>
       <${VectorField} label=${`start ${index + 1}`} unit="m" value=${start} scale=${scale()}
         change=${(/** @type {number[]} */ to) => put(pair.starts.map((old, at) => (at === index ? to : old)))} />

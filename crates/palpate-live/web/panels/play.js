@@ -53,8 +53,8 @@ function PlayBar() {
   const isHeld = newest?.held ?? false;
   const ago = newest && frame ? frame.time - newest.time : 0;
   const words = !isFollowing ? `looking back ${short(-ago)} s`
-    : newest?.stopped ? 'stopped: forces are zero' : isHeld ? 'time is held'
-    : newest?.replaying ? 'replaying' : 'following';
+    : newest?.stopped ? (newest.replaying ? 'replaying without forces' : 'stopped: forces are zero')
+    : isHeld ? 'time is held' : newest?.replaying ? 'replaying' : 'following';
   return html`<div class="play">
     <button class="small" onClick=${() => actions.lookBy(-1)} aria-label="One frame back" title="One frame back: ,"
       disabled=${history.length === 0}>◂</button>

@@ -44,8 +44,8 @@ export function record() {
 }
 
 /** Leads the hand along what was recorded, or no longer. @param {boolean} on */
-export async function replay(on) {
-  await ask({ do: 'replay', on });
+export function replay(on) {
+  return ask({ do: 'replay', on });
 }
 
 const address = () => `trace.csv?token=${encodeURIComponent(page.token)}`;
@@ -65,8 +65,7 @@ export async function downloadTrace() {
 export async function openTrace(file) {
   const answer = await fetch(address(), { method: 'POST', body: file, headers: { 'Content-Type': 'text/csv' } });
   if (!answer.ok) throw new Error(`${file.name}: ${await reason(answer, 'the program does not take it')}`);
-  tell(`${file.name} is replayed.`);
-  await replay(true);
+  if (await replay(true)) tell(`${file.name} is replayed.`);
 }
 
 /** Why the program did not do it. @param {Response} answer @param {string} otherwise */

@@ -16,7 +16,7 @@ const INTERVAL = 250;
 const WORK = {
   element: 'searches for the least distance', ball: 'decides whether the circle touches', pair: 'proves the separation of two bodies',
   contacts: 'searches for all contacts', sweep: 'searches for the first touch', fall: 'lets the ball fall', samples: 'samples the field',
-  slice: 'samples a slice', picture: 'draws the picture', edit: 'builds the scene', open: 'opens the scene', undo: 'builds the scene',
+  slice: 'samples a slice', probe: 'looks at the field', replay: 'begins a replay', clock: 'sets the clock', picture: 'draws the picture', edit: 'builds the scene', open: 'opens the scene', undo: 'builds the scene',
   redo: 'builds the scene', save: 'saves the scene',
 };
 /** What changes the scene is not ended halfway. */
