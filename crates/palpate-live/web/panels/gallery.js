@@ -49,6 +49,48 @@ const drilled = {
   }],
 };
 
+/** The cone and the cube of the article. */
+const cone = {
+  palpate: 1,
+  dimension: 3,
+  description: 'A cone and a cube: select their union and switch it to intersection or difference.',
+  bodies: [{
+    name: 'cone and cube',
+    shape: { union: [{ cone: { radius: 0.035, height: 0.09 } }, { cuboid: { size: [0.05, 0.05, 0.05] } }] },
+    material: 'wood',
+  }],
+};
+
+/** Two cones with the same surface. */
+const pairOfCones = {
+  palpate: 1,
+  dimension: 3,
+  description: 'A cone with exact distances and one with approximate ones: compare their isolines.',
+  bodies: [
+    { name: 'cone, exact', shape: { cone: { radius: 0.04, height: 0.09 } }, pose: { translation: [-0.06, 0, 0] } },
+    { name: 'cone, approximate', shape: { cone_approximation: { radius: 0.04, height: 0.09 } },
+      pose: { translation: [0.06, 0, 0] } },
+  ],
+};
+
+/** The window of the memoir's program: its pixels are millimetres. */
+const views = [{ name: 'window', center: [0.96, 0.54], width: 1.92, height: 1.08, spacing: 0.02 }];
+
+/** What the memoir's program shows first. */
+const memoir = {
+  palpate: 1,
+  dimension: 2,
+  description: 'What the memoir’s program shows first: a star in smooth union with a circle.',
+  bodies: [{
+    name: 'star and circle',
+    shape: { width: 0.00025, profile: 'quadratic', smooth_union: [
+      { translate: [1, 0.53], of: { regular_star: { branches: 12, outer_radius: 0.3, inner_radius: 0.21213203435596423 } } },
+      { translate: [0.75, 0.68], of: { ball: { radius: 0.2 } } },
+    ] },
+  }],
+  views,
+};
+
 /** The two shapes of the memoir's program, with its window. */
 const star = {
   palpate: 1,
@@ -59,12 +101,15 @@ const star = {
       pose: { translation: [1.2, 0.53] } },
     { name: 'circle', shape: { ball: { radius: 0.2 } }, pose: { translation: [0.6, 0.6] } },
   ],
-  views: [{ name: 'window', center: [0.96, 0.54], width: 1.92, height: 1.08, spacing: 0.02 }],
+  views,
 };
 
 /** The gallery: names, and what makes each scene. @type {[string, () => object][]} */
 export const GALLERY = [
   ['drilled box', () => drilled],
+  ['cone and cube', () => cone],
+  ['exact and approximate', () => pairOfCones],
+  ['the memoir’s star', () => memoir],
   ['star and circle', () => star],
   ['primitives of space', () => everyPrimitive(3)],
   ['primitives of the plane', () => everyPrimitive(2)],

@@ -4,6 +4,8 @@
 
 /** What the picture shows, above it. */
 
+import { legend } from '../scene/marks.js';
+import { differences } from '../scene/panels.js';
 import { html, useEffect, useRef } from '../vendor/htm-preact.js';
 import { setView, state } from '../state.js';
 import { setMode } from './actions.js';
@@ -32,7 +34,7 @@ const SHOWN = [
   ['forces', 'forces', 'Orange arrows: the force on the hand'],
   ['spring', 'spring to the hand', 'Between the hand and the pointer that draws it'],
   ['proof', 'boxes of the proof', 'Regions in which the proof has ruled a contact out'],
-  ['bounds', 'bounds', 'The box around each body'],
+  ['bounds', 'bounds', 'The box around each body, and the ball around that'],
   ['names', 'names', 'The name of each body'],
 ];
 
@@ -133,6 +135,13 @@ function Display() {
           help="Shows distances with the other sign; the program's own stay negative inside"
           change=${(/** @type {boolean} */ positiveInside) => setView({ positiveInside })} />
       </fieldset>
+      ${view.map === 'gradient' && html`<fieldset><legend>Gradient</legend>
+        <${Switch} label="exact to the card's precision" value=${differences.over === null}
+          change=${(/** @type {boolean} */ is) => setDifferences(is ? null : spacing())} />
+        ${differences.over !== null && html`<${NumberField} label="offset o" unit="m" value=${differences.over} min=${0} above
+          scale=${spacing()} own change=${setDifferences}
+          help="The gradient is taken from differences over this length; a large one shows the memoir's artefacts" />`}
+      </fieldset>`}
       <fieldset><legend>As in the memoir</legend>
         <${Switch} label="its colours" value=${view.asInMemoir}
           change=${(/** @type {boolean} */ asInMemoir) => setView({ asInMemoir })} />
@@ -145,9 +154,20 @@ function Display() {
       <fieldset><legend>Shown</legend>
         ${SHOWN.map(([key, name, help]) => html`<${Switch} key=${key} label=${name} help=${help} value=${view.shown[key]}
           change=${(/** @type {boolean} */ is) => setView({ shown: { ...view.shown, [key]: is } })} />`)}
+        <${Switch} label="legend" help="What the marks over the picture mean" value=${legend.isShown}
+          change=${(/** @type {boolean} */ is) => {
+            legend.isShown = is;
+            setView({});
+          }} />
       </fieldset>
     </div>
   </details>`;
+}
+
+/** @param {number | null} over the length of differences [m] */
+function setDifferences(over) {
+  differences.over = over;
+  setView({});
 }
 
 /** A first spacing of isolines [m]. */

@@ -13,7 +13,8 @@
  *   normal: number[], speed: number }[], end: string, evaluations: number, ns: number }} Fall
  */
 
-import { newest } from '../scene/newest.js';
+import { asking, newest } from '../scene/newest.js';
+import { rounded } from '../scene/vectors.js';
 import { listen, state } from '../state.js';
 
 /** How long a whole fall is to take on the page, and how short or long it may [s]. */
@@ -46,8 +47,8 @@ export const fall = {
 
 /** @type {Set<() => void>} */
 const listeners = new Set();
-/** @type {Wire | null} */
-let wire = null;
+/** @type {ReturnType<typeof asking> | null} */
+let questions = null;
 let settling = 0;
 /** When the moment that is shown was shown [ms]. */
 let shownAt = 0;
@@ -122,10 +123,10 @@ function renew() {
 }
 
 const ask = newest(async () => {
-  if (!wire || state.connection !== 'live') return;
+  if (!questions || state.connection !== 'live') return;
   const { centre, radius, gravity, restitution } = fall;
   try {
-    fall.answer = await wire.ask({ do: 'fall', centre, radius, gravity, restitution });
+    fall.answer = await questions.ask({ do: 'fall', centre, radius, gravity, restitution });
     fall.refused = '';
   } catch (error) {
     fall.answer = null;
@@ -144,7 +145,7 @@ const ask = newest(async () => {
  * @param {number[]} point @param {Setting} setting */
 export function placeAbove(point, { box, size, dimension }) {
   const centre = [point[0], box.high[1] + ABOVE * size, point[2] ?? 0];
-  setFall({ centre: centre.slice(0, dimension) });
+  setFall({ centre: rounded(centre, size / 1000).slice(0, dimension) });
 }
 
 /** Lays the ball into another scene. @param {Setting} setting */
@@ -156,6 +157,9 @@ export function layFall(setting) {
 
 /** Asks over this connection from now on, and again with each scene. @param {Wire} connection */
 export function connectFall(connection) {
-  wire = connection;
-  listen(['scene'], renew);
+  questions = asking(connection);
+  listen(['scene'], () => {
+    questions?.giveUp();
+    renew();
+  });
 }

@@ -14,7 +14,7 @@
 
 import { arrow, dot, polyline, ring } from '../scene/ink.js';
 import { COLORS, mark } from '../scene/marks.js';
-import { along, inSpace } from '../scene/vectors.js';
+import { along, inSpace, rounded } from '../scene/vectors.js';
 import { fall, lasts, moment, placeAt, setFall } from './fall.js';
 
 const { ball: BALL, normal: GREEN } = COLORS;
@@ -86,7 +86,7 @@ export function fallDrag(lens, place, reach) {
   if (Math.hypot(offX, offY) > Math.max(reach, fall.radius / lens().pixel(begin))) return null;
   return {
     move({ x, y }) {
-      const to = lens().at(x + offX, y + offY, begin);
+      const to = rounded(lens().at(x + offX, y + offY, begin), lens().pixel(begin));
       setFall({ centre: to.slice(0, fall.centre.length) });
     },
   };

@@ -10,7 +10,7 @@
  * @typedef {import('../input/pointer.js').Place} Place
  */
 
-import { inSpace } from '../scene/vectors.js';
+import { inSpace, rounded } from '../scene/vectors.js';
 import { setToys, toys } from './toys.js';
 
 /** The middle of the element. */
@@ -92,14 +92,15 @@ export function toyDrag(lens, place, reach) {
   let last = nearest.point;
   return {
     move({ x, y }) {
-      const to = lens().at(x + offX, y + offY, [0, 0, 0]).slice(0, 2);
+      const to = rounded(lens().at(x + offX, y + offY, [0, 0, 0]), lens().pixel([0, 0, 0])).slice(0, 2);
       nearest.drag(to, last);
       last = to;
     },
   };
 }
 
-/** Adds a start of the search between two bodies. @param {number[]} point */
-export function addStart(point) {
-  setToys({ pair: { ...toys.pair, starts: [...toys.pair.starts, point] } });
+/** Adds a start of the search between two bodies, where nothing but its place matters.
+ * @param {number[]} point @param {number} pixel the size of a pixel [m] */
+export function addStart(point, pixel) {
+  setToys({ pair: { ...toys.pair, starts: [...toys.pair.starts, rounded(point, pixel)] } });
 }

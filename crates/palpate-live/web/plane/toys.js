@@ -11,7 +11,7 @@
  * @typedef {'element' | 'ball' | 'pair' | 'sweep'} Toy
  */
 
-import { newest } from '../scene/newest.js';
+import { asking, newest } from '../scene/newest.js';
 import { listen, state } from '../state.js';
 
 /** Local methods for an element, by the names that the program knows. */
@@ -61,8 +61,8 @@ export const toys = {
 
 /** @type {Set<() => void>} */
 const listeners = new Set();
-/** @type {Wire | null} */
-let wire = null;
+/** Over the connection, of each toy. @type {Record<string, ReturnType<typeof asking>>} */
+const questions = {};
 
 /** Calls `listener` after each change of a toy or of an answer. @param {() => void} listener */
 export function listenToys(listener) {
@@ -107,9 +107,9 @@ function question(toy) {
 
 /** Asks about a toy. @param {Toy} toy */
 async function ask(toy) {
-  if (!wire || state.connection !== 'live') return;
+  if (!questions[toy] || state.connection !== 'live') return;
   try {
-    toys.results[toy] = await wire.ask({ do: toy, ...question(toy) });
+    toys.results[toy] = await questions[toy].ask({ do: toy, ...question(toy) });
     toys.refused[toy] = '';
   } catch (error) {
     toys.results[toy] = null;
@@ -130,6 +130,10 @@ function askAll() {
 
 /** Asks over this connection from now on, and again with each scene. @param {Wire} connection */
 export function connectToys(connection) {
-  wire = connection;
-  listen(['scene'], askAll);
+  for (const toy of Object.keys(toys.shown)) questions[toy] = asking(connection);
+  listen(['scene'], () => {
+    // What is asked about the scene of before counts no longer.
+    for (const { giveUp } of Object.values(questions)) giveUp();
+    askAll();
+  });
 }

@@ -17,7 +17,7 @@ import { addStart } from '../plane/handles.js';
 import { toys } from '../plane/toys.js';
 import { select, state } from '../state.js';
 import { setting } from './setting.js';
-import { add } from './vectors.js';
+import { add, rounded } from './vectors.js';
 
 /** @param {Wire} wire
  * @param {(view: View, place: Place) => Promise<Hit | null>} pick
@@ -36,7 +36,8 @@ export function createClick(wire, pick, seenAt) {
   return async (view, place) => {
     const current = setting();
     if (current.dimension === 2 && view.isWhole && toys.shown.pair) {
-      addStart(view.lens.at(place.x, place.y, [0, 0, 0]).slice(0, 2));
+      const { lens } = view;
+      addStart(lens.at(place.x, place.y, [0, 0, 0]).slice(0, 2), lens.pixel([0, 0, 0]));
       return;
     }
     const hit = view.isFlat ? null : await pick(view, place);
@@ -52,6 +53,6 @@ export function createClick(wire, pick, seenAt) {
     const near = hit ? 0.02 * current.size : 2 * view.lens.pixel(point);
     const body = hit && hit.body >= 0 ? hit.body : await bodyAt(view, point, near);
     if (body >= 0) select(`/bodies/${body}`);
-    else if (places) setFall({ centre: point.slice(0, 2) });
+    else if (places) setFall({ centre: rounded(point, view.lens.pixel(point)).slice(0, 2) });
   };
 }

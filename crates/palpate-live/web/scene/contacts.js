@@ -9,8 +9,11 @@
  */
 
 import { state } from '../state.js';
+import { asking } from './newest.js';
 
 let asked = '';
+/** @type {ReturnType<typeof asking> | null} */
+let questions = null;
 
 /** @param {Wire} wire @param {(answer: any) => void} take */
 export async function askContacts(wire, take) {
@@ -19,8 +22,10 @@ export async function askContacts(wire, take) {
   const key = isWanted ? `${state.scene?.name} ${state.scene?.revision} ${proof}` : '';
   if (key === asked || state.connection !== 'live') return;
   asked = key;
+  questions ??= asking(wire);
+  questions.giveUp();
   try {
-    const answer = isWanted ? await wire.ask({ do: 'contacts', proof }) : null;
+    const answer = isWanted ? await questions.ask({ do: 'contacts', proof }) : null;
     // A newer question was asked meanwhile.
     if (key === asked) take(answer);
   } catch {

@@ -2,7 +2,12 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 // @ts-check
 
-/** Questions of which only the newest counts. */
+/**
+ * Questions of which only the newest counts.
+ *
+ * @typedef {import('../wire.js').Wire} Wire
+ * @typedef {import('../wire.js').Message} Message
+ */
 
 /** Makes work that is done one at a time: what is asked for meanwhile waits, and only the newest
  * of it is done. Work that fails is left: whoever asked it asks again when something changes.
@@ -26,5 +31,27 @@ export function newest(work) {
     const next = waiting;
     waiting = null;
     if (next) run(next.input);
+  };
+}
+
+/** Questions one at a time, of which the one that is asked can be given up: the program then works
+ * on it no longer, and refuses it. @param {Wire} wire */
+export function asking(wire) {
+  /** @type {number | null} */
+  let current = null;
+  return {
+    /** @param {Message} message @returns {Promise<any>} */
+    async ask(message) {
+      const id = wire.nextId;
+      current = id;
+      try {
+        return await wire.ask(message);
+      } finally {
+        if (current === id) current = null;
+      }
+    },
+    giveUp() {
+      if (current !== null) wire.cancel(current);
+    },
   };
 }

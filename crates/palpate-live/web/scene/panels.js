@@ -31,6 +31,9 @@ const LINES = 24;
 const STEPS = 220;
 /** The step of differences over the size of the scene: values are off by 2e-7 of it. */
 const LEAST_STEP = 2e-4;
+/** The length over which the gradient of a map is taken from differences [m]; null for the least
+ * that the card's precision allows. @type {{ over: number | null }} */
+export const differences = { over: null };
 /** Between panels in pixels. */
 const GAP = 4;
 
@@ -99,7 +102,7 @@ function viewOf(setting, cameras, rect, title, [only, other], map) {
     const { frame: { origin, right, up }, centre, height } = cameras.flat;
     const needsGradient = map === MAPS.gradient || map === MAPS.promise;
     const values = {
-      ...shown, origin, across: right, above: up, centre,
+      ...shown, leastStep: differences.over ?? shown.leastStep, origin, across: right, above: up, centre,
       span: [(height * rect.width) / rect.height, height],
       first: needsGradient ? 0 : 4,
       last: map === MAPS.difference ? 6 : 5,

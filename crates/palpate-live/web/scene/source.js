@@ -14,7 +14,7 @@
 import { state } from '../state.js';
 import { Field } from './fields.js';
 import { samples } from './glsl.js';
-import { newest } from './newest.js';
+import { asking, newest } from './newest.js';
 import { length } from './units.js';
 import { inSpace } from './vectors.js';
 
@@ -42,7 +42,7 @@ function packed(grids) {
 export class Source {
   /** @param {Wire} wire @param {(field: Field) => void} take takes a field that can be drawn */
   constructor(wire, take) {
-    this.wire = wire;
+    this.questions = asking(wire);
     this.take = take;
     /** Whether the page can draw by itself. */
     this.hasCard = true;
@@ -101,6 +101,8 @@ export class Source {
   /** Asks for coarse samples at once, and for fine ones when the scene has settled. */
   renew() {
     clearTimeout(this.settling);
+    // Fine samples of what the scene was may take long, and nobody waits for them any more.
+    if (!this.isCoarse) this.questions.giveUp();
     this.isCoarse = true;
     this.ask(undefined);
     this.settling = window.setTimeout(() => {
@@ -125,8 +127,8 @@ export class Source {
     const cells = isCoarse ? coarse : fine;
     const bodies = state.view.mode === 'compare' ? state.view.compared : [];
     /** @type {Grid[]} */
-    const grids = [await this.wire.ask({ do: 'samples', cells })];
-    for (const body of bodies) grids.push(await this.wire.ask({ do: 'samples', cells, body }));
+    const grids = [await this.questions.ask({ do: 'samples', cells })];
+    for (const body of bodies) grids.push(await this.questions.ask({ do: 'samples', cells, body }));
     const count = setting.bodies.length;
     const isTelling = bodies.length === 0 && count > 1 && count <= OWNERS.most;
     // While the scene is being changed, bodies are told apart by what they were before.
@@ -137,7 +139,7 @@ export class Source {
     const each = [];
     for (let body = 0; body < count; body += 1) {
       const cells = setting.dimension === 2 ? OWNERS.plane : OWNERS.space;
-      each.push(await this.wire.ask({ do: 'samples', cells, body }));
+      each.push(await this.questions.ask({ do: 'samples', cells, body }));
     }
     this.owners = { grids: [each.slice(0, 4), each.slice(4)].filter(({ length: some }) => some > 0).map(packed), count };
     this.takeSamples(grids, bodies, setting);

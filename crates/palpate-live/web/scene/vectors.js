@@ -53,5 +53,12 @@ export function turn(a, axis, angle) {
 /** A point with three coordinates. @param {number[]} point @returns {Vector} */
 export const inSpace = (point) => [point[0], point[1], point[2] ?? 0];
 
+/** A point to the decimal place that is just below a pixel: what a pointer means, and no more.
+ * @param {number[]} point @param {number} pixel its size [m] */
+export function rounded(point, pixel) {
+  const decimals = Math.min(Math.max(Math.ceil(-Math.log10(pixel)), 0), 12);
+  return point.map((part) => Number(part.toFixed(decimals)) + 0);
+}
+
 /** @param {number} value @param {number} low @param {number} high */
 export const clamp = (value, low, high) => Math.min(Math.max(value, low), high);
