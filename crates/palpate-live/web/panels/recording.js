@@ -8,6 +8,9 @@ import { changed } from '../state.js';
 import { count } from './numbers.js';
 import { ask, download, fileName, page, tell, tellError } from './page.js';
 
+/** The names of the columns and a row are shorter [bytes]. */
+const LONGEST_LINES = 4096;
+
 /** The frames between which is recorded; of the recording that goes on, the last so far.
  * @type {{ first: import('../wire.js').Frame, last: import('../wire.js').Frame } | null} */
 let span = null;
@@ -54,8 +57,12 @@ const address = () => `trace.csv?token=${encodeURIComponent(page.token)}`;
 export async function downloadTrace() {
   try {
     const answer = await fetch(address());
-    if (!answer.ok) throw new Error(await reason(answer, 'There is no recording yet: press record first.'));
-    download(await answer.blob(), fileName('.trace.csv'));
+    if (!answer.ok) throw new Error(await reason(answer, 'the program gives no trace'));
+    const trace = await answer.blob();
+    // A trace begins with the names of its columns.
+    const [, row] = (await trace.slice(0, LONGEST_LINES).text()).split('\n');
+    if (row) download(trace, fileName('.trace.csv'));
+    else tell('There is no recording yet: press record first.', 'bad');
   } catch (error) {
     tellError(error);
   }
