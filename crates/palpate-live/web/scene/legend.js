@@ -13,6 +13,7 @@
 import { state } from '../state.js';
 import { MAPS } from './glsl.js';
 import { arrow, label, stroke } from './ink.js';
+import { mark } from './marks.js';
 import { level, roundUp } from './units.js';
 import { along } from './vectors.js';
 
@@ -93,7 +94,12 @@ export function paintLegend(context, { lens: { rect }, hasPlane, hasLines, spaci
     entry('#c7291a', 'slope above 1');
   } else if (map === 'gradient' && !asInMemoir) {
     paintWheel(context, right - 30, y + 26);
+    label(context, 'where ∇f points', right - 62, y + 26, inks, 'right');
     y += 68;
+  } else if (map === 'gradient') {
+    entry('#e04040', 'red: ∇f to the right');
+    entry('#40c040', 'green: ∇f up');
+    entry('#4060e0', 'blue: cosine of f');
   }
   if (!hasLines) return y;
   label(context, `lines every ${level(spacing, spacing)}`, right, y, inks, 'right');
@@ -141,6 +147,7 @@ export function paintHandles(context, { lens }, handles, origin, inks) {
   for (const { handle, point } of handles) {
     const place = lens.project(point);
     if (!place) continue;
+    mark(handle === 'move' ? 'moves' : 'turns');
     if (handle === 'move') {
       const far = along(origin, [0, 1, 2].map((i) => point[i] - origin[i]), 1.6);
       arrow(context, lens.project(origin), lens.project(far), '#007355', 2.5, inks.halo);

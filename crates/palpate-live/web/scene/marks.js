@@ -47,7 +47,12 @@ const MARKS = {
   contact: ['contact of bodies', (context, x, y, inks) => dot(context, { x, y }, 4, COLORS.contact, inks.halo)],
   contactNormal: ['its normal', pointer(COLORS.contact, 1.5)],
   proof: ['box that is ruled out', square(COLORS.proof)],
-  bounds: ['bounds of a body', square('#83888f')],
+  bounds: ['box and ball around a body', (context, x, y, inks) => {
+    square(inks.muted)(context, x, y, inks);
+    ring(context, { x, y }, 6, inks.muted, 1, 'transparent');
+  }],
+  moves: ['moves the plane', (context, x, y) => dot(context, { x, y }, 5, COLORS.normal, '#ffffff')],
+  turns: ['turns the plane', (context, x, y) => dot(context, { x, y }, 5, '#743aa6', '#ffffff')],
   selected: ['selected body', square(COLORS.selected)],
   probe: ['nearest surface, safe ball', (context, x, y, inks) => {
     ring(context, { x, y }, 5, COLORS.normal, 1, 'transparent');

@@ -85,14 +85,14 @@ export function paintBodies(context, view, setting, texts, inks, { outlined, hov
   const { shown } = state.view;
   const selected = selectedBody();
   const touched = new Set((state.frame?.points ?? []).filter(({ contact }) => contact).map(({ body }) => body));
-  setting.bodies.forEach(({ name, box, color }, body) => {
+  setting.bodies.forEach(({ name, box }, body) => {
     if (!box) return;
     const size = seenSize(view, box);
     const place = view.lens.project(centreOf(box));
     if (shown.bounds) {
       mark('bounds');
-      paintBox(context, view, box, color, inks.halo);
-      ring(context, place, size / 2, color, 1, 'transparent');
+      paintBox(context, view, box, inks.muted, 'transparent');
+      ring(context, place, size / 2, inks.muted, 1, 'transparent');
     }
     if (body === selected) mark('selected');
     if (body === outlined) paintBrackets(context, view, box, inks.halo);
