@@ -139,7 +139,7 @@ const ask = newest(async () => {
   }
   tell();
   await new Promise((resolve) => { setTimeout(resolve, PAUSE); });
-});
+}, () => questions?.giveUp());
 
 /** Places the ball above a point of a scene, higher than all of it.
  * @param {number[]} point @param {Setting} setting */

@@ -40,8 +40,9 @@ function paintBall(context, place, radius, inks) {
   context.stroke();
 }
 
-/** @param {Context} context @param {Lens} lens @param {Inks} inks */
-export function paintFall(context, lens, inks) {
+/** @param {Context} context @param {Lens} lens @param {Inks} inks
+ * @param {boolean} isHidden whether the ball is behind a body */
+export function paintFall(context, lens, inks, isHidden) {
   if (!fall.isShown || fall.centre.length === 0) return;
   const { answer, radius } = fall;
   const begin = inSpace(fall.centre);
@@ -66,9 +67,10 @@ export function paintFall(context, lens, inks) {
       arrow(context, lens.project(touched), lens.project(tip), GREEN, 1.5, inks.halo);
       dot(context, lens.project(touched), 3, GREEN, inks.halo);
     }
-    context.globalAlpha = 1;
     const place = placeAt(now);
+    context.globalAlpha = isHidden ? 0.4 : 1;
     if (place) paintBall(context, lens.project(inSpace(place)), wide(place), inks);
+    context.globalAlpha = 1;
   }
   ring(context, lens.project(begin), wide(begin), BALL, 2, inks.halo);
   dot(context, lens.project(begin), 5, '#ffffff', BALL);

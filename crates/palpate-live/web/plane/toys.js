@@ -119,7 +119,12 @@ async function ask(toy) {
 }
 
 /** @type {Record<Toy, (toy: Toy) => void>} */
-const asks = { element: newest(ask), ball: newest(ask), pair: newest(ask), sweep: newest(ask) };
+const asks = {
+  element: newest(ask, () => questions.element.giveUp()),
+  ball: newest(ask, () => questions.ball.giveUp()),
+  pair: newest(ask, () => questions.pair.giveUp()),
+  sweep: newest(ask, () => questions.sweep.giveUp()),
+};
 
 function askAll() {
   for (const toy of /** @type {Toy[]} */ (Object.keys(toys.shown))) {

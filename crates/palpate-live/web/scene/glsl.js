@@ -329,6 +329,6 @@ void main() {
   float shine = key * key * key;
   lit += 0.10 * shine * shine * shine + 0.10 * rim * rim * rim * sky;
   // The selected body is tinted, and its edge glows.
-  lit = int(number) + 1 == selected ? mix(lit, CHOSEN, 0.22 + 0.6 * rim * rim) : lit;
+  lit = int(number) + 1 == selected ? mix(lit, CHOSEN, 0.1 + 0.5 * rim * rim) : lit;
   result = isHit ? vec4(lit, 1) : vec4(0);${isSliced ? COVER : ''}
 }`;

@@ -15,7 +15,7 @@
 
 import { state } from '../state.js';
 import { label } from './ink.js';
-import { newest } from './newest.js';
+import { asking, newest } from './newest.js';
 import { slice } from './slice.js';
 import { HIGH, widthOf } from './texts.js';
 import { add, along } from './vectors.js';
@@ -49,15 +49,15 @@ export function windowOf(view, flat) {
 }
 
 /** The values of the scene in a window of a plane.
- * @param {Wire} wire @param {View} view @param {import('./camera.js').Flat} flat
+ * @param {ReturnType<typeof asking>} questions @param {View} view @param {import('./camera.js').Flat} flat
  * @param {number} columns @param {number} rows */
-export async function askSlice(wire, view, flat, columns, rows) {
+export async function askSlice(questions, view, flat, columns, rows) {
   const { frame, width, height } = windowOf(view, flat);
   const isPlane = state.scene?.dimension === 2;
   const origin = add(frame.origin, view.shift).slice(0, isPlane ? 2 : 3);
   const axes = isPlane ? {} : { right: frame.right, up: frame.up };
   const body = view.isWhole ? {} : { body: view.only };
-  const grid = await wire.ask({ do: 'slice', origin, ...axes, width, height, columns, rows, ...body });
+  const grid = await questions.ask({ do: 'slice', origin, ...axes, width, height, columns, rows, ...body });
   const values = grid.half ? Float32Array.from(grid.values, fromHalf) : grid.values;
   /** @param {number} column @param {number} row */
   const place = (column, row) => {
@@ -99,12 +99,12 @@ function crossings({ values, place, columns, rows }, spacing) {
 export class Labels {
   /** @param {Wire} wire @param {() => void} changed */
   constructor(wire, changed) {
-    this.wire = wire;
+    this.questions = asking(wire);
     this.changed = changed;
     /** Of each view. @type {Label[][]} */
     this.labels = [];
     this.timer = 0;
-    this.ask = newest(this.search.bind(this));
+    this.ask = newest(this.search.bind(this), this.questions.giveUp);
   }
 
   /** Asks again, once the picture stands still. @param {View[]} views
@@ -120,7 +120,7 @@ export class Labels {
     const labels = [];
     for (const view of views) {
       labels.push(view.hasLines
-        ? crossings(await askSlice(this.wire, view, flat, CELLS, CELLS), view.spacing) : []);
+        ? crossings(await askSlice(this.questions, view, flat, CELLS, CELLS), view.spacing) : []);
     }
     this.labels = labels;
     this.changed();

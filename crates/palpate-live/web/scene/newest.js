@@ -9,24 +9,34 @@
  * @typedef {import('../wire.js').Message} Message
  */
 
+/** How long the newest waits for what is worked on before it [ms]. */
+const PATIENCE = 1000;
+
 /** Makes work that is done one at a time: what is asked for meanwhile waits, and only the newest
  * of it is done. Work that fails is left: whoever asked it asks again when something changes.
- * @template T @param {(input: T) => Promise<void>} work @returns {(input: T) => void} */
-export function newest(work) {
+ * @template T @param {(input: T) => Promise<void>} work
+ * @param {() => void} [giveUp] ends work for which something newer has waited too long
+ * @returns {(input: T) => void} */
+export function newest(work, giveUp = () => {}) {
   let isBusy = false;
+  let begun = 0;
+  let timer = 0;
   /** @type {{ input: T } | null} */
   let waiting = null;
   return async function run(input) {
     if (isBusy) {
+      if (!waiting) timer = window.setTimeout(giveUp, begun + PATIENCE - performance.now());
       waiting = { input };
       return;
     }
     isBusy = true;
+    begun = performance.now();
     try {
       await work(input);
     } catch {
       // See above.
     }
+    clearTimeout(timer);
     isBusy = false;
     const next = waiting;
     waiting = null;

@@ -9,8 +9,8 @@
  * @typedef {import('./vectors.js').Vector} Vector
  * @typedef {{ target: Vector | null, contacts: any, labels: import('./labels.js').Labels,
  *   probe: import('./probe.js').Probed | null, notes: import('./texts.js').Taken[],
- *   isDrawn: boolean }} Shown `notes` are texts that lie over the picture, `isDrawn` tells whether
- *   the program drew it
+ *   isDrawn: boolean, isBallHidden: boolean }} Shown `notes` are texts that lie over the picture,
+ *   `isDrawn` tells whether the program drew it
  */
 
 import { paintToys } from '../plane/drawn.js';
@@ -62,7 +62,7 @@ export function paintAll(context, views, shown, theme, ratio) {
       });
       paintContacts(context, view, shown.contacts, inks);
       if (isFlat && current.dimension === 2) paintToys(context, view.lens, texts, inks);
-      paintFall(context, view.lens, inks);
+      paintFall(context, view.lens, inks, shown.isBallHidden);
       paintHand(context, view, shown.target, texts, inks);
     }
     if (isCut && state.view.mode === 'slice') paintHandles(context, view, handles(), slice.frame.origin, inks);

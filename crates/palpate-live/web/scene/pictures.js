@@ -14,7 +14,7 @@
 import { FIELD_OF_VIEW } from './camera.js';
 import { MAPS } from './glsl.js';
 import { askSlice } from './labels.js';
-import { newest } from './newest.js';
+import { asking, newest } from './newest.js';
 import { rgb } from './setting.js';
 import { clamp, dot } from './vectors.js';
 
@@ -52,10 +52,10 @@ function colourOf(value, slope, { spacing, range }, map, tint) {
 export class Pictures {
   /** @param {Wire} wire @param {HTMLCanvasElement} canvas @param {() => void} changed */
   constructor(wire, canvas, changed) {
-    this.wire = wire;
+    this.questions = asking(wire);
     this.canvas = canvas;
     this.changed = changed;
-    this.ask = newest(this.fetch.bind(this));
+    this.ask = newest(this.fetch.bind(this), this.questions.giveUp);
   }
 
   /** Takes the size of the canvas on the page. */
@@ -77,7 +77,7 @@ export class Pictures {
   async picture({ lens: { rect, basis } }) {
     const { eye, forward } = basis;
     const part = Math.min(1, Math.sqrt(MOST_PIXELS / (rect.width * rect.height)));
-    const { png } = await this.wire.ask({
+    const { png } = await this.questions.ask({
       do: 'picture',
       eye,
       target: [0, 1, 2].map((axis) => eye[axis] + forward[axis]),
@@ -95,7 +95,7 @@ export class Pictures {
     const { rect } = view.lens;
     const part = CELLS / Math.max(rect.width, rect.height);
     const [columns, rows] = [rect.width, rect.height].map((side) => Math.max(2, Math.round(side * part)));
-    const { values, place } = await askSlice(this.wire, view, flat, columns, rows);
+    const { values, place } = await askSlice(this.questions, view, flat, columns, rows);
     const step = [place(0, 0), place(1, 0)].map((point) => dot(point, flat.frame.right));
     const between = Math.abs(step[1] - step[0]) || 1;
     const tint = rgb(setting.bodies[Math.max(view.only, 0)]?.color);

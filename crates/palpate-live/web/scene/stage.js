@@ -15,6 +15,7 @@
 import { createHand } from '../input/hand.js';
 import { createPointer } from '../input/pointer.js';
 import { connectFall, fall, layFall, listenFall, placeAbove, stepFall } from '../plane/fall.js';
+import { createVeil } from '../plane/veil.js';
 import { connectToys, layToys, listenToys } from '../plane/toys.js';
 import { listen, state } from '../state.js';
 import { Flat, Orbit } from './camera.js';
@@ -125,7 +126,9 @@ export function createStage(container, wire) {
       const shown = {
         target, contacts, labels, probe: probe.probed, notes: elements.notes,
         isDrawn: source.kind === 'drawn',
+        isBallHidden: veil.isHiding,
       };
+      veil.look(views[0]);
       paintAll(elements.context, views, shown, elements.inks, elements.ratio);
     }
   }
@@ -185,6 +188,8 @@ export function createStage(container, wire) {
 
   /** @param {View} view @param {Place} place */
   const pickAt = (view, { x, y }) => pick(view.panel, x, y);
+
+  const veil = createVeil(pickAt, overlayChanged);
 
   function fit() {
     elements.resize();

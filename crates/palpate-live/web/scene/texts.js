@@ -24,7 +24,7 @@ const ROOM = { across: 5, above: 1 };
 /** How far from its place a text has a line to it, in pixels. */
 const LINED = 22;
 /** Texts that are tried at most. */
-const MOST = 240;
+const MOST = 160;
 
 /** Where a text is tried: steps of its own size, to its place and around it. */
 const TRIES = [[0, 0], [0, -1.1], [0, 1.1], [0.6, -1.1], [-0.6, -1.1], [0.6, 1.1], [-0.6, 1.1], [0.75, 0],
