@@ -85,6 +85,11 @@ uniform sampler2D palette;
 // The number of the selected body and one; 0 without one.
 uniform int selected;
 const vec3 CHOSEN = vec3(0.98, 0.72, 0.1);
+
+bool isSelected(int number) {
+  return selected > 0 && number + 1 == selected;
+}
+
 vec4 body(int number) {
   return texelFetch(palette, ivec2(max(number, 0) % textureSize(palette, 0).x, 0), 0);
 }
@@ -131,7 +136,7 @@ float line(float pixels, float width) {
 vec3 mapped(float value, float other, vec2 g, float slope, float pixel, int number) {
   vec3 tint = body(number).rgb;
   float inner = step(value, 0.0);
-  bool isChosen = number + 1 == selected;
+  bool isChosen = isSelected(number);
   float zeroLine = line(abs(value) / pixel, isChosen ? 3.0 : 2.0);
   if (map == 4) {
     float change = (value - other) / range;
@@ -329,6 +334,6 @@ void main() {
   float shine = key * key * key;
   lit += 0.10 * shine * shine * shine + 0.10 * rim * rim * rim * sky;
   // The selected body is tinted, and its edge glows.
-  lit = int(number) + 1 == selected ? mix(lit, CHOSEN, 0.1 + 0.5 * rim * rim) : lit;
+  lit = isSelected(int(number)) ? mix(lit, CHOSEN, 0.1 + 0.5 * rim * rim) : lit;
   result = isHit ? vec4(lit, 1) : vec4(0);${isSliced ? COVER : ''}
 }`;
