@@ -82,8 +82,11 @@ export class Source {
     const { way } = state;
     this.setting = setting;
     if (way?.glsl !== this.text) this.failure = '';
-    if (state.scene?.name !== this.name) this.spacing = 0;
-    this.name = state.scene?.name;
+    if (state.scene?.name !== this.name) {
+      this.name = state.scene?.name;
+      this.spacing = 0;
+      this.owners = { grids: [], count: 0 };
+    }
     this.text = way?.glsl ?? '';
     const kind = way?.kind ?? 'drawn';
     this.kind = kind === 'formula' && this.failure ? 'samples' : kind;
