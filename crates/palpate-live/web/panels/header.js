@@ -101,7 +101,7 @@ function Menu() {
   return html`<div class="menu" ref=${box}>
     <button class="scene-name" aria-expanded=${String(isOpen)} onClick=${() => setIsOpen(!isOpen)}
       title=${scene?.file ?? 'This scene has no file: Save as… gives it one'}>
-      ${scene ? baseName(scene.file ?? scene.name) : 'no scene'}${scene?.file === null && html` <span class="quiet">no file</span>`}${scene && !scene.is_saved ? html`<span class="unsaved" title="not saved"> •</span>` : ''}
+      <span class="cut">${scene ? baseName(scene.file ?? scene.name) : 'no scene'}</span>${scene?.file === null && html` <span class="quiet">no file</span>`}${scene && !scene.is_saved ? html`<span class="unsaved" title="not saved"> •</span>` : ''}
       <span class="caret open" aria-hidden="true"></span>
     </button>
     <input type="file" hidden accept=".json,.csv,application/json,text/csv" ref=${file} aria-label="Scene or trace"

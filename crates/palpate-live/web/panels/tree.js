@@ -50,6 +50,13 @@ export function Tree() {
   useEffect(() => {
     list.current?.querySelector('[aria-selected=true]')?.scrollIntoView({ block: 'nearest' });
   }, [selected?.pointer]);
+  // A row that is removed takes the focus with it.
+  const isLosingFocus = useRef(false);
+  useEffect(() => {
+    if (!isLosingFocus.current || document.activeElement !== document.body) return;
+    isLosingFocus.current = false;
+    /** @type {HTMLElement | null} */ (list.current?.querySelector('[tabindex="0"]'))?.focus();
+  });
   if (!state.scene) return html`<div class="panel-head"><h2>Shapes</h2></div>`;
 
   const rows = rowsOf(tree, open, most);
@@ -80,7 +87,11 @@ export function Tree() {
       ArrowLeft: () => (isOpen ? setIsOpen(part.pointer, false) : parent >= 0 && focusAt(parent)),
       Home: () => focusAt(0),
       End: () => focusAt(rows.length - 1),
-      Delete: () => changes.canRemove(part.pointer) && changes.remove(part.pointer),
+      Delete: () => {
+        if (!changes.canRemove(part.pointer)) return;
+        isLosingFocus.current = true;
+        changes.remove(part.pointer);
+      },
     };
     if (event.key === 'Enter' || event.key === ' ') select(part.pointer);
     else if (does[event.key]) does[event.key]();
