@@ -38,7 +38,8 @@ const square = (color) => (context, x, y) => {
 
 /** @type {Record<string, [string, Icon]>} */
 const MARKS = {
-  device: ['device point', (context, x, y, inks) => ring(context, { x, y }, 4, '#1b5fb0', 1.5, inks.halo)],
+  free: ['device point, free', (context, x, y, inks) => dot(context, { x, y }, 4, '#1b5fb0', inks.halo)],
+  device: ['device point in a body', (context, x, y, inks) => ring(context, { x, y }, 4, '#1b5fb0', 1.5, inks.halo)],
   proxy: ['proxy on the surface', (context, x, y, inks) => dot(context, { x, y }, 5, '#1b5fb0', inks.halo)],
   spring: ['spring to the pointer', (context, x, y, inks) =>
     spring(context, { x: x - 9, y }, { x: x + 9, y }, inks.ink, inks.halo)],

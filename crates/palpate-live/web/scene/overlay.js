@@ -148,7 +148,7 @@ function paintPoint(context, { lens }, point, color, inks) {
   // A contact on the far side of a body lies behind it.
   const isHidden = point.contact && product(point.normal, lens.towards(point.proxy)) < -0.05;
   context.globalAlpha = isHidden ? 0.35 : 1;
-  mark('device');
+  mark(point.contact ? 'device' : 'free');
   if (point.contact) {
     mark('proxy');
     polyline(context, [device, proxy], color, 1.5, inks.halo);

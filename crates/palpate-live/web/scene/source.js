@@ -62,7 +62,7 @@ export class Source {
     this.failure = '';
     /** What tells the bodies apart, and of how many. @type {{ grids: Grid[], count: number }} */
     this.owners = { grids: [], count: 0 };
-    this.ask = newest(() => this.fetch(), this.questions.giveUp);
+    this.ask = newest(() => this.fetch());
   }
 
   /** The way that the scene is drawn, in words. */

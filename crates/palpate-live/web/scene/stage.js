@@ -113,7 +113,8 @@ export function createStage(container, wire) {
       cameras.flat.frame = slice.frame;
       views = viewsOf(setting(), cameras, elements.rect);
       if (source.hasCard && field) layer.show(views.map(({ panel }) => panel), field);
-      const isDrawn = source.kind === 'drawn' && state.connection === 'live';
+      // Before the first scene nobody knows how it is to be drawn.
+      const isDrawn = source.kind === 'drawn' && state.connection === 'live' && state.scene !== null;
       elements.useCard(source.kind !== 'drawn');
       if (isDrawn) pictures.ask({ views, flat: cameras.flat, setting: setting() });
       if (views.some(({ hasPlane }) => hasPlane)) labels.renew(views, cameras.flat);
