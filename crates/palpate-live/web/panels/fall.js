@@ -20,7 +20,7 @@ const INTERVAL = 80;
 const ENDS = {
   rests: 'comes to rest',
   leaves: 'leaves the scene',
-  time: 'still moves after 10 s of falling',
+  time: 'still moves, and longer ways are not computed',
   inside: 'begins inside a body, so it does not fall',
   budget: 'is left on its way: the proof used up its evaluations',
 };

@@ -20,6 +20,8 @@ import { fall, lasts, moment, placeAt, setFall } from './fall.js';
 const { ball: BALL, normal: GREEN } = COLORS;
 /** Balls that are left behind on the way. */
 const GHOSTS = 24;
+/** Points of the path that are painted at most. */
+const MOST_POINTS = 1500;
 /** The length of a normal in pixels. */
 const NORMAL = 30;
 
@@ -50,7 +52,9 @@ export function paintFall(context, lens, inks, isHidden) {
   mark('ball');
   if (answer) {
     mark('fall');
-    polyline(context, answer.path.map((point) => lens.project(inSpace(point))), BALL, 1.5, inks.halo);
+    const every = Math.ceil(answer.path.length / MOST_POINTS);
+    const path = answer.path.filter((_, index) => index % every === 0);
+    polyline(context, path.map((point) => lens.project(inSpace(point))), BALL, 1.5, inks.halo);
     const now = moment();
     context.globalAlpha = 0.35;
     for (let ghost = 1; ghost < GHOSTS; ghost += 1) {
