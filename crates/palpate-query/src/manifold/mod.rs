@@ -186,6 +186,9 @@ pub(crate) fn spanning<const D: usize>(
 #[derive(Clone, Debug)]
 pub(crate) struct Spanned<const D: usize> {
     members: Vec<Member<D>>,
+    /// Points that span parts of the region where the gap exceeds the margin, of a search that went
+    /// farther.
+    beyond: Vec<Member<D>>,
     /// Why the search of the region ended.
     stop: Stop,
 }
@@ -206,7 +209,50 @@ impl<const D: usize> Spanned<D> {
         patches.fill(&mut middles, &mut members);
         *pair = patches.pair;
         drop_copies(&mut members, settings.spacing);
-        Self { members, stop }
+        Self { members, beyond: Vec::new(), stop }
+    }
+
+    /// The same, with what spans the parts of the region up to a gap of `farther` margins, which bodies
+    /// that move on come to.
+    pub(crate) fn find_farther(
+        separated: &mut SeparatedPair<'_, D>,
+        settings: &ManifoldSettings,
+        farther: f64,
+        budget: u32,
+        workspace: &mut PairWorkspace<D>,
+    ) -> Self {
+        let found = Self::find(separated, settings, budget, workspace);
+        let wider = settings.with_margin(farther * settings.margin);
+        let SeparatedPair { pair, best, .. } = separated;
+        let first = Touch::at(pair, *best);
+        let Region { mut candidates, mut middles, stop } =
+            region::find(pair, &wider, budget, workspace, first);
+        candidates.retain(|touch| touch.gap > settings.margin);
+        let mut patches = Patches { pair: *pair, settings: &wider, candidates: &candidates };
+        let groups = found.members.iter().map(|member| member.group + 1).max().unwrap_or(0);
+        let count = found.members.len();
+        let mut all = found.members;
+        all.extend(
+            patches
+                .contacts()
+                .into_iter()
+                .map(|member| Member { group: groups + member.group, ..member }),
+        );
+        patches.fill(&mut middles, &mut all);
+        *pair = patches.pair;
+        let mut beyond = all.split_off(count);
+        drop_copies(&mut beyond, settings.spacing);
+        let is_new = |member: &Member<D>| {
+            all.iter().all(|other| !is_copy(&other.touch, &member.touch, settings.spacing))
+        };
+        beyond.retain(is_new);
+        let stop = if found.stop.is_early() { found.stop } else { stop };
+        Self { members: all, beyond, stop }
+    }
+
+    /// Whether the search ended before it had seen the whole region.
+    pub(crate) fn is_cut_off(&self) -> bool {
+        self.stop.is_early()
     }
 
     /// The manifold of those points whose gap is within the margin.
@@ -215,7 +261,7 @@ impl<const D: usize> Spanned<D> {
         separated: &SeparatedPair<'_, D>,
         settings: &ManifoldSettings,
     ) -> Manifold<D> {
-        let (mut pair, is_whole) = (separated.pair, !self.stop.is_early());
+        let (mut pair, is_whole) = (separated.pair, !self.is_cut_off());
         let mut found = Manifold {
             is_whole,
             region_stop: self.stop,

@@ -5,120 +5,170 @@
 
 use palpate_field::{Point, Pose, Vector};
 
-use super::{ManifoldSettings, Member, SAME_DEPTH, SeparatedPair, Spanned, Touch, is_copy};
+use super::grid::distance;
+use super::patch::settled;
+use super::{
+    LIKE, ManifoldSettings, Member, SAME_DEPTH, SeparatedPair, Spanned, Touch, is_copy,
+};
 use crate::pair::body_pair::BodyPair;
 
 /// A point is drawn to where the gap is this share of the margin, in so many steps at most.
 const WITHIN: f64 = 0.9;
 const DRAWN: usize = 4;
 
+/// Where the bodies face each other no longer at a point of a rim, they may so many spacings farther
+/// inwards.
+const INWARDS: [f64; 5] = [1.0 / 16.0, 1.0 / 8.0, 1.0 / 4.0, 1.0 / 2.0, 1.0];
+
 impl<const D: usize> Spanned<D> {
     /// These points, found when the second body was at `found_at` in the pair's frame, on the surface
-    /// between the bodies as they are now, with the best point of the search.
+    /// between the bodies as they are now, with the best point of the search. `None` where the bodies do
+    /// not face each other any more at a point as they did: what spans the region now must be found anew.
     pub(crate) fn moved(
         &self,
         separated: &mut SeparatedPair<'_, D>,
         found_at: &Pose<D>,
         settings: &ManifoldSettings,
-    ) -> Self {
+    ) -> Option<Self> {
         let SeparatedPair { pair, best, .. } = separated;
         let second_to_frame = pair.second_from_frame.inverse();
-        let renewed = |member: &Member<D>| {
-            let there = member.touch.point;
-            let touch = put_back(pair, there, settings);
-            if touch.gap <= settings.margin {
-                return Member { touch, ..*member };
-            }
-            // A corner of the second body, which has slid over the first one.
-            let with_second = second_to_frame.transform_point(found_at.transform_point(there));
-            let other = put_back(pair, with_second, settings);
-            Member { touch: if other.gap < touch.gap { other } else { touch }, ..*member }
+        let with_second =
+            |p: Point<D>| second_to_frame.transform_point(found_at.transform_point(p));
+        let mut carry = |member: &Member<D>| {
+            let Touch { point, normal, .. } = member.touch;
+            let touch = carried(pair, [point, with_second(point)], normal, settings)?;
+            Some(Member { touch, ..*member })
         };
-        let mut members: Vec<_> = self.members.iter().map(renewed).collect();
+        let mut members: Vec<_> = self.members.iter().map(&mut carry).collect::<Option<_>>()?;
+        let beyond: Vec<_> = self.beyond.iter().filter_map(&mut carry).collect();
+        for member in &mut members {
+            if member.touch.gap > settings.margin
+                && let Some(touch) = drawn_within(pair, &member.touch, settings)
+            {
+                member.touch = touch;
+            }
+        }
+        members.extend(beyond);
+        members.retain(|member| member.touch.gap <= settings.margin);
         let deepest = Touch::at(pair, *best);
-        let near = members
-            .iter_mut()
-            .find(|member| is_copy(&member.touch, &deepest, settings.spacing));
-        match near {
-            Some(member) => {
-                let is_deeper = SAME_DEPTH * settings.precision_length();
-                if deepest.gap < member.touch.gap - is_deeper {
-                    member.touch = deepest;
-                }
-            }
-            None => {
-                let group = members.iter().map(|member| member.group + 1).max().unwrap_or(0);
-                members.push(Member { touch: deepest, group });
-            }
-        }
+        add_deepest(&mut members, deepest, settings);
         members.sort_by(|one, other| one.touch.gap.total_cmp(&other.touch.gap));
-        Self { members, stop: self.stop }.within(separated, settings)
-    }
-
-    /// The same region where the gap is within the margin of `settings`, which may be less than that of
-    /// the search: points beyond the margin are drawn to where the gap is the margin.
-    pub(crate) fn within(
-        mut self,
-        separated: &mut SeparatedPair<'_, D>,
-        settings: &ManifoldSettings,
-    ) -> Self {
-        let is_within = |member: &Member<D>| member.touch.gap <= settings.margin;
-        let count = self.members.partition_point(is_within);
-        for i in count..self.members.len() {
-            let Some(touch) =
-                drawn_within(&mut separated.pair, self.members[i].touch.point, settings)
-            else {
-                continue;
-            };
-            let is_new = |other: &Member<D>| {
-                !is_within(other) || !is_copy(&other.touch, &touch, settings.spacing)
-            };
-            if self.members.iter().all(is_new) {
-                self.members[i].touch = touch;
-            }
-        }
-        self.members[count..].sort_by(|one, other| one.touch.gap.total_cmp(&other.touch.gap));
-        self
+        drop_nearer(&mut members, settings.spacing);
+        Some(Self { members, beyond: Vec::new(), stop: self.stop })
     }
 }
 
-/// The touch on the surface between the bodies, one step of Newton's method from a point near it.
-fn put_back<const D: usize>(
+/// The deepest touch with a normal like `normal` next to the places to which the bodies carried a point;
+/// or farther inwards, where the bodies face each other likewise at none of them.
+fn carried<const D: usize>(
+    pair: &mut BodyPair<'_, D>,
+    places: [Point<D>; 2],
+    normal: Vector<f64, D>,
+    settings: &ManifoldSettings,
+) -> Option<Touch<D>> {
+    let found = places.map(|place| like(pair, place, normal, settings));
+    let deeper = found.into_iter().flatten().min_by(|one, other| one.gap.total_cmp(&other.gap));
+    deeper.or_else(|| {
+        places.into_iter().find_map(|place| {
+            let inwards = inwards(pair, place, normal)?;
+            let mut ways =
+                INWARDS.into_iter().map(|share| inwards * (share * settings.spacing));
+            ways.find_map(|way| like(pair, place + way, normal, settings))
+        })
+    })
+}
+
+/// The way inwards from a point at the rim of a region where the gradient of a body leads out of a side of
+/// it: along the region, against that gradient.
+fn inwards<const D: usize>(
     pair: &mut BodyPair<'_, D>,
     p: Point<D>,
+    normal: Vector<f64, D>,
+) -> Option<Vector<f64, D>> {
+    let [(_, slope_a), (_, slope_b)] = pair.slopes(p);
+    let sum = slope_a + slope_b;
+    (normal * sum.dot(normal) - sum).normalized()
+}
+
+/// The touch next to a point, if it has a normal like `normal`.
+fn like<const D: usize>(
+    pair: &mut BodyPair<'_, D>,
+    p: Point<D>,
+    normal: Vector<f64, D>,
     settings: &ManifoldSettings,
-) -> Touch<D> {
-    let [(a, slope_a), (b, slope_b)] = pair.slopes(p);
-    let between = slope_a - slope_b;
-    let squared = between.dot(between);
-    let step = if squared > 0.0 { between * ((a - b) / squared) } else { Vector::ZERO };
-    // A step that is long is none towards the surface near the point.
-    let is_near = step.norm() <= settings.spacing;
-    Touch::at(pair, if is_near { p - step } else { p })
+) -> Option<Touch<D>> {
+    settled(pair, p, settings.spacing, settings).filter(|touch| touch.normal.dot(normal) > LIKE)
 }
 
 /// A touch whose gap is within the margin, by steps of Newton's method along the surface between the
-/// bodies from a point of it whose gap is larger.
+/// bodies from a touch whose gap is larger.
 fn drawn_within<const D: usize>(
     pair: &mut BodyPair<'_, D>,
-    p: Point<D>,
+    from: &Touch<D>,
     settings: &ManifoldSettings,
 ) -> Option<Touch<D>> {
-    let mut here = p;
+    let mut here = from.point;
     for _ in 0..DRAWN {
         let [(a, slope_a), (b, slope_b)] = pair.slopes(here);
         // On the surface between, the gap is the sum of both values.
         let (across, sum) = (slope_a - slope_b, slope_a + slope_b);
         let along = sum - across * (sum.dot(across) / across.dot(across));
         let next = here - along * ((a + b - WITHIN * settings.margin) / along.dot(along));
-        if !next.is_finite() {
-            return None;
-        }
-        let touch = put_back(pair, next, settings);
+        let touch = like(pair, next, from.normal, settings)?;
         if touch.gap <= settings.margin {
             return Some(touch);
         }
         here = touch.point;
     }
     None
+}
+
+/// Adds the certified deepest touch, unless one of the members is as deep.
+fn add_deepest<const D: usize>(
+    members: &mut Vec<Member<D>>,
+    deepest: Touch<D>,
+    settings: &ManifoldSettings,
+) {
+    let is_as_deep =
+        |touch: &Touch<D>| touch.gap - deepest.gap <= SAME_DEPTH * settings.precision_length();
+    if let Some(member) = members.iter_mut().find(|member| is_as_deep(&member.touch)) {
+        // No less deep than what is certified.
+        member.touch.gap = member.touch.gap.min(deepest.gap);
+        return;
+    }
+    let is_like = |member: &&mut Member<D>| member.touch.normal.dot(deepest.normal) > LIKE;
+    let apart = |member: &Member<D>| distance(member.touch.point, deepest.point);
+    let nearest = members
+        .iter_mut()
+        .filter(is_like)
+        .min_by(|one, other| apart(one).total_cmp(&apart(other)));
+    match nearest {
+        Some(member) if is_copy(&member.touch, &deepest, settings.spacing) => {
+            member.touch = deepest;
+        }
+        Some(member) => {
+            let group = member.group;
+            members.push(Member { touch: deepest, group });
+        }
+        None => {
+            let group = members.iter().map(|member| member.group + 1).max().unwrap_or(0);
+            members.push(Member { touch: deepest, group });
+        }
+    }
+}
+
+/// Drops members, sorted from the deepest, that have come nearer than the spacing to a deeper one with a
+/// like normal.
+fn drop_nearer<const D: usize>(members: &mut Vec<Member<D>>, spacing: f64) {
+    let mut kept: Vec<Member<D>> = Vec::with_capacity(members.len());
+    for member in members.drain(..) {
+        let is_near = |other: &Member<D>| {
+            distance(other.touch.point, member.touch.point) < spacing
+                && other.touch.normal.dot(member.touch.normal) > LIKE
+        };
+        if !kept.iter().any(is_near) {
+            kept.push(member);
+        }
+    }
+    *members = kept;
 }

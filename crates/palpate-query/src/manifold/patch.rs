@@ -175,17 +175,29 @@ impl<const D: usize> Patches<'_, '_, D> {
     /// The point of the surface between next to `p`, if it is within `far` and the
     /// bodies touch there.
     pub(super) fn settle(&mut self, p: Point<D>, far: f64) -> Option<Touch<D>> {
-        let mut here = p;
-        for _ in 0..4 {
-            let slopes = self.pair.slopes(here);
-            match towards(here, slopes, self.settings) {
-                Towards::There(touch) => return Some(touch),
-                Towards::Next(next) if distance(next, p) <= far => here = next,
-                _ => return None,
-            }
-        }
-        None
+        let found = settled(&mut self.pair, p, far, self.settings);
+        found.filter(|touch| touch.gap <= self.settings.margin)
     }
+}
+
+/// The point of the surface between two bodies next to `p`, if it is within `far` and the bodies face
+/// each other there.
+pub(super) fn settled<const D: usize>(
+    pair: &mut BodyPair<'_, D>,
+    p: Point<D>,
+    far: f64,
+    settings: &ManifoldSettings,
+) -> Option<Touch<D>> {
+    let mut here = p;
+    for _ in 0..4 {
+        let slopes = pair.slopes(here);
+        match towards(here, slopes, settings) {
+            Towards::There(touch) => return Some(touch),
+            Towards::Next(next) if distance(next, p) <= far => here = next,
+            _ => return None,
+        }
+    }
+    None
 }
 
 /// A vector square to both, in space; in the plane there is none.

@@ -245,6 +245,7 @@ fn settle<const D: usize>(
             let cell = &cells[from[i]];
             match towards(points[i], [slopes[0][i], slopes[1][i]], settings) {
                 Towards::Nothing => {}
+                Towards::There(touch) if touch.gap > settings.margin => {}
                 Towards::There(touch) => candidates.push(touch),
                 Towards::Next(next) => {
                     if step + 1 < STEPS && (next - cell.centre).norm() <= 1.5 * cell.radius() {
@@ -263,11 +264,11 @@ fn settle<const D: usize>(
 
 /// Where the surface between the bodies is, as seen from a point with its slopes.
 pub(super) enum Towards<const D: usize> {
-    /// It is here, and within the margin.
+    /// It is here.
     There(Touch<D>),
     /// It may be here.
     Next(Point<D>),
-    /// The bodies do not face each other, or are farther apart.
+    /// The bodies do not face each other.
     Nothing,
 }
 
@@ -286,10 +287,6 @@ pub(super) fn towards<const D: usize>(
     if apart.abs() > ON * settings.precision_length() {
         return Towards::Next(p - between * (apart / squared));
     }
-    let gap = 2.0 * a.max(b);
-    if gap > settings.margin {
-        return Towards::Nothing;
-    }
-    let normal = between * (1.0 / squared.sqrt());
+    let (gap, normal) = (2.0 * a.max(b), between * (1.0 / squared.sqrt()));
     Towards::There(Touch { point: p, normal, gap, source: NormalSource::Gradients })
 }

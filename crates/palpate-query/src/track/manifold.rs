@@ -18,8 +18,12 @@ use crate::placed::Placed;
 const NEAR: f64 = 0.25;
 
 /// Of bodies that move on slowly, the region is searched up to a gap that is larger by this share of the
-/// margin, and its contacts are kept while the bodies stay within as much of those poses.
+/// margin, too, and its contacts are kept while the bodies stay within as much of those poses.
 const WIDER: f64 = 1.5;
+
+/// After a search that went farther and did not last for a step, so many go no farther, and twice as many
+/// each time.
+const ALONE: u32 = 2;
 
 /// Contacts of an earlier step, in the first body's coordinates.
 #[derive(Clone, Debug)]
@@ -30,7 +34,14 @@ pub(super) struct Kept<const D: usize> {
     /// How far the bodies may move from there [m].
     reach: f64,
     settings: ManifoldSettings,
+    budget: u32,
     spanned: Spanned<D>,
+    /// Whether these contacts were used for another step.
+    has_lasted: bool,
+    /// How many of the next searches go no farther, and how many after the next one that does and does
+    /// not last.
+    alone: u32,
+    next_alone: u32,
 }
 
 impl<const D: usize> Track<D> {
@@ -82,25 +93,54 @@ impl<const D: usize> Kept<D> {
         workspace: &mut PairWorkspace<D>,
     ) -> Manifold<D> {
         let now = separated.pair.second_from_frame;
-        let kept = last.take().filter(|kept| kept.settings == *settings);
-        let wider = settings.with_margin((1.0 + WIDER) * settings.margin);
-        let root = separated.pair.root(wider.margin);
-        let mut is_slow = false;
+        let is_of_these = |kept: &Self| {
+            kept.settings == *settings && !(kept.spanned.is_cut_off() && kept.budget < budget)
+        };
+        let kept = last.take().filter(is_of_these);
+        let farther = 1.0 + WIDER;
+        let root = separated.pair.root(farther * settings.margin);
+        let (mut is_slow, mut alone, mut next_alone) = (false, 0, ALONE);
         if let Some(mut kept) = kept {
-            if displacement(&kept.found_at, &now, &root) <= kept.reach {
-                let spanned = kept.spanned.moved(&mut separated, &kept.found_at, settings);
-                kept.last = now;
+            if displacement(&kept.found_at, &now, &root) <= kept.reach
+                && let Some(spanned) =
+                    kept.spanned.moved(&mut separated, &kept.found_at, settings)
+            {
+                (kept.last, kept.has_lasted) = (now, true);
                 *last = Some(kept);
                 return spanned.manifold(&separated, settings);
             }
-            is_slow = displacement(&kept.last, &now, &root) <= WIDER * settings.margin;
+            (alone, next_alone) = (kept.alone.saturating_sub(1), kept.next_alone);
+            let went_farther = kept.reach > NEAR * settings.margin;
+            if went_farther && !kept.has_lasted {
+                (alone, next_alone) = (next_alone, next_alone.saturating_mul(2));
+            } else if went_farther {
+                next_alone = ALONE;
+            }
+            is_slow =
+                alone == 0 && displacement(&kept.last, &now, &root) <= WIDER * settings.margin;
         }
-        let (searched, share) = if is_slow { (&wider, WIDER) } else { (settings, NEAR) };
-        let spanned = Spanned::find(&mut separated, searched, budget, workspace);
-        let within = spanned.clone().within(&mut separated, settings);
-        let found = within.manifold(&separated, settings);
+        let (spanned, share) = if is_slow {
+            let spanned =
+                Spanned::find_farther(&mut separated, settings, farther, budget, workspace);
+            (spanned, WIDER)
+        } else {
+            (Spanned::find(&mut separated, settings, budget, workspace), NEAR)
+        };
+        let found = spanned.manifold(&separated, settings);
         let reach = share * settings.margin;
-        *last = Some(Self { found_at: now, last: now, reach, settings: *settings, spanned });
+        let settings = *settings;
+        let (found_at, has_lasted) = (now, false);
+        *last = Some(Self {
+            found_at,
+            last: now,
+            reach,
+            settings,
+            budget,
+            spanned,
+            has_lasted,
+            alone,
+            next_alone,
+        });
         found
     }
 }
