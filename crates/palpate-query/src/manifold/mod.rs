@@ -68,7 +68,7 @@ pub struct ManifoldSettings {
 impl ManifoldSettings {
     /// For bodies of about `size` [m]: a margin of 0.2 %, a spacing of 4 %, 32 contacts.
     #[must_use]
-    pub fn of_size(size: f64) -> Self {
+    pub const fn of_size(size: f64) -> Self {
         Self { margin: 0.002 * size, spacing: 0.04 * size, most: 32 }
     }
 

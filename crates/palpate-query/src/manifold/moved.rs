@@ -18,7 +18,7 @@ const DRAWN: usize = 4;
 
 /// Where the bodies face each other no longer at a point of a rim, they may so many spacings farther
 /// inwards.
-const INWARDS: [f64; 5] = [1.0 / 16.0, 1.0 / 8.0, 1.0 / 4.0, 1.0 / 2.0, 1.0];
+const INWARDS: [f64; 3] = [1.0 / 16.0, 1.0 / 4.0, 1.0];
 
 impl<const D: usize> Spanned<D> {
     /// These points, found when the second body was at `found_at` in the pair's frame, on the surface

@@ -21,9 +21,10 @@ const NEAR: f64 = 0.25;
 /// margin, too, and its contacts are kept while the bodies stay within as much of those poses.
 const WIDER: f64 = 1.5;
 
-/// After a search that went farther and did not last for a step, so many go no farther, and twice as many
-/// each time.
-const ALONE: u32 = 2;
+/// A search that goes farther costs two: it is worth that if it lasts for so many more steps. After one
+/// that does not, so many go no farther, and twice as many each time.
+const WORTH: u32 = 2;
+const ALONE: u32 = 4;
 
 /// Contacts of an earlier step, in the first body's coordinates.
 #[derive(Clone, Debug)]
@@ -36,10 +37,10 @@ pub(super) struct Kept<const D: usize> {
     settings: ManifoldSettings,
     budget: u32,
     spanned: Spanned<D>,
-    /// Whether these contacts were used for another step.
-    has_lasted: bool,
-    /// How many of the next searches go no farther, and how many after the next one that does and does
-    /// not last.
+    /// For how many more steps these contacts were used.
+    lasted: u32,
+    /// How many of the next searches go no farther, and how many after the next one that does and is
+    /// not worth it.
     alone: u32,
     next_alone: u32,
 }
@@ -105,13 +106,13 @@ impl<const D: usize> Kept<D> {
                 && let Some(spanned) =
                     kept.spanned.moved(&mut separated, &kept.found_at, settings)
             {
-                (kept.last, kept.has_lasted) = (now, true);
+                (kept.last, kept.lasted) = (now, kept.lasted.saturating_add(1));
                 *last = Some(kept);
                 return spanned.manifold(&separated, settings);
             }
             (alone, next_alone) = (kept.alone.saturating_sub(1), kept.next_alone);
             let went_farther = kept.reach > NEAR * settings.margin;
-            if went_farther && !kept.has_lasted {
+            if went_farther && kept.lasted < WORTH {
                 (alone, next_alone) = (next_alone, next_alone.saturating_mul(2));
             } else if went_farther {
                 next_alone = ALONE;
@@ -129,7 +130,7 @@ impl<const D: usize> Kept<D> {
         let found = spanned.manifold(&separated, settings);
         let reach = share * settings.margin;
         let settings = *settings;
-        let (found_at, has_lasted) = (now, false);
+        let (found_at, lasted) = (now, 0);
         *last = Some(Self {
             found_at,
             last: now,
@@ -137,7 +138,7 @@ impl<const D: usize> Kept<D> {
             settings,
             budget,
             spanned,
-            has_lasted,
+            lasted,
             alone,
             next_alone,
         });

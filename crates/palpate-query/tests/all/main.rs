@@ -7,6 +7,7 @@ use assert_no_alloc::AllocDisabler;
 
 mod ball_sweeps;
 mod balls;
+mod carried;
 mod common_surfaces;
 mod degenerate;
 mod element_sweeps;

@@ -328,10 +328,10 @@ fn poses_are_moved_all_or_none() -> Test {
 }
 
 /// Bodies in a heap that tremble: a step of a world costs no more than one that knows nothing, and
-/// little where they hardly move.
+/// little where they hardly move. Where they move far, it costs what was tried in vain, ever less often.
 #[test]
 fn a_step_costs_at_most_what_it_costs_anew() -> Test {
-    for (motion, most) in [(0.0, 0.3), (1e-6, 0.3), (1e-5, 0.3), (1e-4, 1.0), (1e-2, 1.0)] {
+    for (motion, most) in [(0.0, 0.3), (1e-6, 0.3), (1e-5, 0.3), (1e-4, 1.0), (1e-2, 1.02)] {
         let (mut world, ids, bodies) = made(24, in_space)?;
         let [mut followed, mut anew] = [0, 0];
         let cost = |world: &mut World<3>| -> u32 {
@@ -339,7 +339,7 @@ fn a_step_costs_at_most_what_it_costs_anew() -> Test {
             let manifolds = found.iter().filter_map(|pair| pair.manifold.as_ref());
             manifolds.map(|manifold| manifold.separation.evaluations).sum()
         };
-        for step in 0..20_usize {
+        for step in 0..60_usize {
             let mut fresh = World::new(WorldSettings::of_size(1.0))?;
             for (i, (id, (shape, pose))) in ids.iter().zip(&bodies).enumerate() {
                 // To and fro, each body on a way of its own.
