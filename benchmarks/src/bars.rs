@@ -70,7 +70,7 @@ pub(crate) const COLLIDE: &[Bar] = &[
     ("manifold.bar_torus.p50.over_S3", 4500.0),
     ("parry.ball_torus.manifold.ours_over_parry", 0.0025),
     ("world.1000_bodies.step.over_S3", 2_800_000.0),
-    ("parry.heap_of_cubes.ours_over_parry", 25.0),
+    ("parry.heap_of_cubes.ours_over_parry", 38.0),
     ("parry.heap_of_cups.ours_over_parry", 0.2),
 ];
 

@@ -51,11 +51,11 @@ impl<const D: usize> Track<D> {
     /// last step, on either body, keeps its `id`.
     ///
     /// While the bodies stay within a quarter of the margin of the poses at which the region of contact
-    /// was searched, its points are put back on the surfaces, and only the separation is searched. Parts
-    /// of the region that are new meanwhile have a gap of more than three quarters of the margin. Of
-    /// bodies that move on by no more than 1.5 margins in a step, the region is searched up to 2.5
-    /// margins, and lasts while they stay within 1.5 of those poses: no part within the margin is
-    /// new meanwhile.
+    /// was searched, its points are carried with them and put back on the surfaces, and only the
+    /// separation is searched. Parts of the region that are new meanwhile have a gap of more than three
+    /// quarters of the margin. Of bodies that move on by no more than 1.5 margins in a step, parts up to a
+    /// gap of 2.5 margins are searched too, and all last while the bodies stay within 1.5 margins of those
+    /// poses. Where the bodies face each other no longer at a point as they did, all is found anew.
     ///
     /// # Errors
     ///
