@@ -88,8 +88,8 @@ pub use palpate_safety::{
     DeviceProfile, Effect, FreeForceReport, GripperProfile, GripperState, Impedance,
     LimitCycleReport, NumberError, PassivityReport, PointState, PortState, Reading,
     ReadingsReport, Recovery, Refused, Requester, Rule, SafetyChain, SafetyError,
-    SafetyOptions, SafetyReport, StageTicks, TurnReadings, TurnState, TurningProfile, TurningReport,
-    VelocityEstimator, WatchdogReport, WorkspaceMap,
+    SafetyOptions, SafetyReport, StageTicks, TurnReadings, TurnState, TurningProfile,
+    TurningReport, VelocityEstimator, WatchdogReport, WorkspaceMap,
 };
 pub use protection::Protection;
 pub use proxy::{DEFAULT_BUDGET, Following, Probe, Proxy};

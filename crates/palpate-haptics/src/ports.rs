@@ -11,8 +11,8 @@ use crate::error::HapticsError;
 use crate::protection::Protection;
 use palpate_safety::{
     Acceptance, Accepted, Arrival, DeviceLimits, Impedance, PassivityReport, PerMotion,
-    PointState, PortState, Readings, ReadingsReport, SafetyChain, SafetyOptions, SafetyReport, StageTicks,
-    TurnReadings, TurnState, VelocityEstimator, WrenchChain,
+    PointState, PortState, Readings, ReadingsReport, SafetyChain, SafetyOptions, SafetyReport,
+    StageTicks, TurnReadings, TurnState, VelocityEstimator, WrenchChain,
 };
 
 impl<const D: usize> Protection<D> {

@@ -4,7 +4,7 @@
 //! A server in a thread.
 
 use std::fmt;
-use std::net::{IpAddr, Ipv4Addr, SocketAddr};
+use std::net::{IpAddr, Ipv4Addr, Ipv6Addr, SocketAddr, UdpSocket};
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex};
 use std::thread::JoinHandle;
@@ -183,10 +183,15 @@ impl Live {
         Ok(Self { address, token, stage, end: Some(end), thread })
     }
 
-    /// The address to open, with the token.
+    /// The address to open, with the token. Of a page that listens at all addresses of this machine, it
+    /// is that by which others reach it, if there is one.
     #[must_use]
     pub fn url(&self) -> String {
-        format!("http://{}/#{}", self.address, self.token)
+        let mut address = self.address;
+        if address.ip().is_unspecified() {
+            address.set_ip(outward(address.ip()));
+        }
+        format!("http://{address}/#{}", self.token)
     }
 
     /// The address that is listened at.
@@ -212,6 +217,24 @@ impl Live {
     pub fn was_opened(&self) -> bool {
         self.stage.pages.ever() > 0
     }
+}
+
+/// The address from which this machine would send to others; the loopback address if it has no way to
+/// them. Nothing is sent.
+fn outward(any: IpAddr) -> IpAddr {
+    let (elsewhere, loopback): (IpAddr, IpAddr) = match any {
+        // Addresses for documentation, which nobody has.
+        IpAddr::V4(_) => (Ipv4Addr::new(192, 0, 2, 1).into(), Ipv4Addr::LOCALHOST.into()),
+        IpAddr::V6(_) => {
+            let documentation = Ipv6Addr::new(0x2001, 0xdb8, 0, 0, 0, 0, 0, 1);
+            (documentation.into(), Ipv6Addr::LOCALHOST.into())
+        }
+    };
+    let asked = UdpSocket::bind((any, 0)).and_then(|socket| {
+        socket.connect((elsewhere, 9))?;
+        socket.local_addr()
+    });
+    asked.map_or(loopback, |address| address.ip())
 }
 
 impl Drop for Live {

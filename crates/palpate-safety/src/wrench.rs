@@ -21,7 +21,9 @@ use crate::limit::cut;
 use crate::limit_cycle::{CycleInput, LimitCycle, LimitCycleOptions};
 use crate::limits::DeviceLimits;
 use crate::passivity::{InnerProduct, Passivity, PassivityOptions, PortMotion};
-use crate::{Accepted, PassivityReport, SafetyOptions, SafetyReport, StageTicks, TurningReport};
+use crate::{
+    Accepted, PassivityReport, SafetyOptions, SafetyReport, StageTicks, TurningReport,
+};
 
 /// A translational and a rotational vector: force [N] and torque [N·m], position [m] and angle
 /// [rad], or their velocities.

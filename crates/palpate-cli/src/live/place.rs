@@ -11,6 +11,7 @@ use palpate_live::Live;
 
 use crate::arguments::PageOptions;
 use crate::outcome::Failure;
+use crate::output;
 
 /// Where a page is to be served.
 #[derive(Debug)]
@@ -34,6 +35,7 @@ enum Memory {
 impl Place {
     pub(super) fn of(asked: &PageOptions) -> Result<Self, Failure> {
         if let Some(file) = &asked.token_file {
+            warn_of_readers(file);
             let token = match std::fs::read_to_string(file) {
                 Ok(text) => Some(text.trim().to_owned()),
                 Err(error) if error.kind() == ErrorKind::NotFound => None,
@@ -72,6 +74,21 @@ impl Place {
             Memory::Token(_) | Memory::None => Ok(()),
         }
     }
+}
+
+/// Warns of a file with a token that others can read.
+fn warn_of_readers(file: &Path) {
+    #[cfg(unix)]
+    if let Ok(metadata) = std::fs::metadata(file)
+        && std::os::unix::fs::MetadataExt::mode(&metadata) & 0o077 != 0
+    {
+        let file = file.display();
+        output::remark(format_args!(
+            "warning: others on this machine can read {file}, and with it move the hand: chmod 600 {file}"
+        ));
+    }
+    #[cfg(not(unix))]
+    let _ = file;
 }
 
 /// Writes a file that only its owner can read.

@@ -25,8 +25,8 @@ use crate::ports::{Port, TurningPort};
 use crate::proxy::Probe;
 use crate::tool::{Coupling, HeldTool, Tool};
 use palpate_safety::{
-    Arrival, Arrivals, Buttons, GripperState, NumberError, PointState, Reading, ReadingsReport, SafetyReport, StageTicks,
-    TurnState, WorkspaceMap, WrenchChain,
+    Arrival, Arrivals, Buttons, GripperState, NumberError, PointState, Reading, ReadingsReport,
+    SafetyReport, StageTicks, TurnState, WorkspaceMap, WrenchChain,
 };
 
 /// Fewer bodies than this all count as near: selecting would cost more than it saves.

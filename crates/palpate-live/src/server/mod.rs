@@ -24,6 +24,7 @@ use serde::Deserialize;
 use tokio::net::TcpListener;
 use tokio::sync::{Semaphore, oneshot};
 use tokio::time::timeout;
+use tower_http::compression::CompressionLayer;
 
 use crate::stage::Stage;
 use guard::{Guard, HEADERS};
@@ -59,6 +60,7 @@ pub(crate) async fn serve(
     let router = Router::new()
         .route("/", get(|| async { assets::answer("index.html") }))
         .route("/{*path}", get(|Path(path): Path<String>| async move { assets::answer(&path) }))
+        .layer(CompressionLayer::new())
         .route("/socket", get(socket))
         .route("/stop", post(stop))
         .route("/scene.json", get(scene))

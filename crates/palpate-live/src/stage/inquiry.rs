@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! The threads that answer questions about the scene: one question of a page at a time, so that the
-//! long questions of a page keep no other page waiting.
+//! The threads that answer questions about the scene: of a page one long question at a time, and one
+//! short one, so that long questions keep neither the pointer of their page waiting nor other pages.
 
 use std::collections::VecDeque;
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
@@ -18,7 +18,7 @@ use super::room::point_of;
 use crate::wire::{Ask, Question, picture};
 
 /// The threads, beside those of the servo, of the hand and of the editor.
-const THREADS: usize = 2;
+const THREADS: usize = 3;
 
 /// The questions of a page that may wait: more are refused.
 const WAITING: usize = 32;
@@ -45,6 +45,7 @@ struct State {
 struct Work {
     page: PageId,
     id: Option<u32>,
+    is_short: bool,
     cancel: Cancel,
 }
 
@@ -134,7 +135,7 @@ impl Inquiries {
         }
     }
 
-    /// Waits for the first question of a page of which none is worked on; `None` at the end.
+    /// Waits for the first question of a page of which none of its kind is worked on; `None` at the end.
     fn next(&self) -> Option<(PageId, Question, Cancel)> {
         let mut state = self.state();
         loop {
@@ -142,18 +143,26 @@ impl Inquiries {
                 return None;
             }
             let State { waiting, working, .. } = &mut *state;
-            let is_free =
-                |(page, _): &(PageId, Question)| working.iter().all(|work| work.page != *page);
+            let is_free = |(page, question): &(PageId, Question)| {
+                let is_short = is_short(&question.ask);
+                working.iter().all(|work| work.page != *page || work.is_short != is_short)
+            };
             if let Some(place) = waiting.iter().position(is_free)
                 && let Some((page, question)) = waiting.remove(place)
             {
                 let (id, cancel) = (question.id, Cancel::default());
-                working.push(Work { page, id, cancel: cancel.clone() });
+                let is_short = is_short(&question.ask);
+                working.push(Work { page, id, is_short, cancel: cancel.clone() });
                 return Some((page, question, cancel));
             }
             state = self.changed.wait(state).unwrap_or_else(PoisonError::into_inner);
         }
     }
+}
+
+/// Whether the answer to a question takes no time that a person notices.
+fn is_short(ask: &Ask) -> bool {
+    matches!(ask, Ask::Probe { .. } | Ask::Ball { .. })
 }
 
 fn answered(scene: &AnyScene, ask: &Ask, cancel: &Cancel) -> Result<Answer, String> {

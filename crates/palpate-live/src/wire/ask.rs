@@ -113,8 +113,9 @@ pub(crate) enum Ask {
     Element {
         corners: Vec<Vec<f64>>,
         method: Option<String>,
-        step: Option<f64>,
-        momentum: Option<f64>,
+        alpha: Option<f64>,
+        mu: Option<f64>,
+        gradient: Option<String>,
         iterations: Option<u32>,
         start: Option<Vec<f64>>,
     },

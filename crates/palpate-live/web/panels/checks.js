@@ -9,7 +9,7 @@
  * @typedef {import('../plane/toys.js').Toy} Toy
  */
 
-import { METHODS, PAIR_METHODS, listenToys, setToys, toys } from '../plane/toys.js';
+import { GRADIENTS, METHODS, PAIR_METHODS, listenToys, setToys, toys } from '../plane/toys.js';
 import { state } from '../state.js';
 import { html, useEffect, useReducer } from '../vendor/htm-preact.js';
 import { TWO_NEEDED } from './actions.js';
@@ -142,7 +142,7 @@ function Starts() {
 }
 
 function Method() {
-  const { corners, method, step, momentum, iterations, start, at } = toys;
+  const { corners, method, alpha, mu, gradient, iterations, start, at } = toys;
   const free = (/** @type {string} */ key, /** @type {string} */ label, /** @type {number | null} */ value,
     /** @type {number} */ first, /** @type {Record<string, any>} */ limits, /** @type {string} */ help) => html`
     <${Switch} label=${`${label} by the program`} value=${value === null}
@@ -154,10 +154,12 @@ function Method() {
     <${ChoiceField} label="local method" value=${method} choices=${Object.entries(METHODS)}
       change=${(/** @type {string} */ to) => setToys({ method: to })} />
     ${method === 'naive' && html`
-      ${free('step', 'step size α', step, 0.1, { min: 0, max: 1, above: true }, 'The memoir’s α: a step is α times the distance long')}
-      ${free('momentum', 'least distance µ', momentum, scale() / 10, { min: 0, scale: scale(), unit: 'm' }, 'The memoir’s µ: nearer than µ a step is α µ long, so that steps do not vanish at the surface')}
+      ${free('alpha', 'step size α', alpha, 0.1, { min: 0, max: 1, above: true }, 'The memoir’s α: a step is α times the distance long')}
+      ${free('mu', 'least distance µ', mu, scale() / 10, { min: 0, scale: scale(), unit: 'm' }, 'The memoir’s µ: nearer than µ a step is α µ long, so that steps do not vanish at the surface')}
       <p class="quiet">Each step goes down the slope by the step size α times the distance, but at least by α times µ: where
         that is longer than the way to the minimum, the path goes to and fro across it.</p>
+      <${ChoiceField} label="gradient" value=${gradient} choices=${Object.entries(GRADIENTS)}
+        change=${(/** @type {string} */ to) => setToys({ gradient: to })} />
       <${NumberField} label="iterations" value=${iterations} min=${1} max=${1000} whole own
         change=${(/** @type {number} */ to) => setToys({ iterations: to })} />`}
     ${corners.length > 1 && html`

@@ -23,6 +23,15 @@ export const METHODS = {
   macklin: 'Macklin',
 };
 
+/** How the naive descent finds gradients: as the memoir has it, first. */
+export const GRADIENTS = {
+  dichotomy: 'dichotomy',
+  adaptive_dichotomy: 'dichotomy, adaptive',
+  differences: 'differences',
+  closest_vector: 'closest vector',
+  exact: 'of the formula',
+};
+
 /** Local methods for a pair of bodies. */
 export const PAIR_METHODS = {
   alternating_projection: 'projection in turns',
@@ -44,9 +53,12 @@ export const toys = {
   method: 'projected_gradient',
   /** α, the length of a step over the element's size; null leaves it to the program.
    * @type {number | null} */
-  step: null,
-  /** µ, the part of the last step that is kept. @type {number | null} */
-  momentum: null,
+  alpha: null,
+  /** µ, nearer than which steps get no shorter [m]; null leaves it to the program.
+   * @type {number | null} */
+  mu: null,
+  /** How the naive descent finds gradients, one of `GRADIENTS`. */
+  gradient: 'dichotomy',
   iterations: 64,
   /** Where the local search starts in the element: weights of its corners.
    * @type {number[] | null} */
@@ -97,12 +109,13 @@ export function layToys(centre, size) {
 
 /** @param {Toy} toy @returns {Record<string, any>} */
 function question(toy) {
-  const { corners, ball, pair, by, method, step, momentum, iterations, start } = toys;
+  const { corners, ball, pair, by, method, alpha, mu, gradient, iterations, start } = toys;
   if (toy === 'ball') return ball;
   if (toy === 'pair') return pair;
   if (toy === 'sweep') return { corners, by };
-  const chosen = Object.entries({ step, momentum, start }).filter(([, value]) => value !== null);
-  return { corners, method, iterations, ...Object.fromEntries(chosen) };
+  const chosen = Object.entries({ alpha, mu, start }).filter(([, value]) => value !== null);
+  const found = method === 'naive' ? { gradient } : {};
+  return { corners, method, iterations, ...found, ...Object.fromEntries(chosen) };
 }
 
 /** Asks about a toy. @param {Toy} toy */

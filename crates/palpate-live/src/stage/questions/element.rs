@@ -6,7 +6,7 @@
 use std::time::Instant;
 
 use palpate::field::{Pose, Screw, Vector};
-use palpate::local::{ElementMethod, NaiveDescent, Weights};
+use palpate::local::{ElementMethod, GradientMethod, NaiveDescent, Weights};
 use palpate::query::{
     Element, ElementSweep, ElementWorkspace, SweepSettings, evaluate_point, minimum,
     sweep_element,
@@ -47,7 +47,7 @@ pub(super) fn over<const N: usize, const D: usize>(
     scene: &BuiltScene<D>,
     ask: &Ask,
 ) -> Result<Value, String> {
-    let Ask::Element { corners, method, step, momentum, iterations, start } = ask else {
+    let Ask::Element { corners, method, start, .. } = ask else {
         return Err("not about an element".to_owned());
     };
     let element = element_of::<N, D>(corners)?;
@@ -63,7 +63,7 @@ pub(super) fn over<const N: usize, const D: usize>(
     let method = method.as_deref().unwrap_or(ElementMethod::Naive.name());
     let method: ElementMethod = method.parse().map_err(|error| format!("{error}"))?;
     let start = start.as_deref().map(weights::<N>).transpose()?;
-    let naive = naive(*step, *momentum, *iterations)?;
+    let naive = naive::<D>(ask)?;
     let begin = Instant::now();
     let local = match (method, &start) {
         (ElementMethod::Naive, None) => naive.descend(&scene.whole, &element),
@@ -117,26 +117,30 @@ fn weights<const N: usize>(numbers: &[f64]) -> Result<Weights<N>, String> {
 }
 
 /// The memoir's descent with the constants of the page.
-fn naive(
-    step: Option<f64>,
-    momentum: Option<f64>,
-    iterations: Option<u32>,
-) -> Result<NaiveDescent, String> {
+fn naive<const D: usize>(ask: &Ask) -> Result<NaiveDescent, String> {
     let mut naive = NaiveDescent::default();
-    if let Some(step) = step {
+    let Ask::Element { alpha, mu, gradient, iterations, .. } = ask else { return Ok(naive) };
+    if let Some(alpha) = *alpha {
         // Written so that NaN is refused.
-        if !(step > 0.0 && step.is_finite()) {
-            return Err(format!("the step α must be positive and finite, got {step}"));
+        if !(alpha > 0.0 && alpha.is_finite()) {
+            return Err(format!("α must be positive and finite, got {alpha}"));
         }
-        naive = naive.with_alpha(step);
+        naive = naive.with_alpha(alpha);
     }
-    if let Some(momentum) = momentum {
-        if !(0.0..=palpate::field::LARGEST_LENGTH).contains(&momentum) {
-            return Err(format!("µ must be zero or more and finite, got {momentum} m"));
+    if let Some(mu) = *mu {
+        if !(0.0..=palpate::field::LARGEST_LENGTH).contains(&mu) {
+            return Err(format!("µ must be zero or more and finite, got {mu} m"));
         }
-        naive = naive.with_mu(momentum);
+        naive = naive.with_mu(mu);
     }
-    match iterations {
+    if let Some(gradient) = gradient {
+        let gradient: GradientMethod = gradient.parse().map_err(|error| format!("{error}"))?;
+        if D == 3 && gradient.is_planar() {
+            return Err(format!("{} finds gradients in the plane alone", gradient.name()));
+        }
+        naive = naive.with_gradient(gradient);
+    }
+    match *iterations {
         Some(steps) if steps > MOST_STEPS => {
             Err(format!("there may be at most {MOST_STEPS} iterations, got {steps}"))
         }
