@@ -11,6 +11,7 @@ mod collide;
 mod compare;
 mod fields;
 mod haptics;
+mod live;
 mod mujoco;
 mod peers;
 mod random;
@@ -88,6 +89,12 @@ enum Suite {
         #[arg(long)]
         json: bool,
     },
+    /// How late the servo of the live page is, quiet and under clients that misuse it.
+    Live {
+        /// Print one JSON object of keys and numbers.
+        #[arg(long)]
+        json: bool,
+    },
     /// Overlaps of known depth, beside MuJoCo; needs Python and its package index once.
     Mujoco {
         #[command(flatten)]
@@ -130,6 +137,7 @@ fn measure(suite: Suite) -> Result<ExitCode, Box<dyn Error>> {
         Suite::Haptics { json, runs: Runs { runs } } => {
             (haptics::measure(runs)?, bars::HAPTICS, false, json)
         }
+        Suite::Live { json } => (live::measure()?, bars::LIVE, false, json),
         Suite::Mujoco { options, json } => {
             let (rows, is_part) = (mujoco::measure(&options, json)?, options.is_part());
             if json {

@@ -22,6 +22,9 @@
 //! # }
 //! ```
 
+#[cfg(any(test, feature = "fuzzing"))]
+#[doc(hidden)]
+pub mod fuzzing;
 mod live;
 mod server;
 pub mod shader;

@@ -160,6 +160,15 @@ impl Inquiries {
     }
 }
 
+/// The answer to a question, without the servo, if it is one in text.
+#[cfg(any(test, feature = "fuzzing"))]
+pub(crate) fn answer_alone(scene: &AnyScene, ask: &Ask) -> Option<String> {
+    match answered(scene, ask, &Cancel::default()) {
+        Ok(Answer::Text(text)) => Some(text.to_string()),
+        _ => None,
+    }
+}
+
 /// Whether the answer to a question takes no time that a person notices.
 fn is_short(ask: &Ask) -> bool {
     matches!(ask, Ask::Probe { .. } | Ask::Ball { .. })

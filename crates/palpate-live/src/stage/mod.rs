@@ -31,6 +31,8 @@ use crate::wire::{Ask, Question, trace};
 use document::Document;
 pub(crate) use document::Refusal;
 use inquiry::Inquiries;
+#[cfg(any(test, feature = "fuzzing"))]
+pub(crate) use inquiry::answer_alone;
 pub(crate) use pages::{Out, PageId, Pages};
 use performance::{AnyPaths, Order};
 pub(crate) use room::GivenClock;
