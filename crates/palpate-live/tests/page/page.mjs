@@ -8,7 +8,7 @@
 
 import { execFileSync } from 'node:child_process';
 import { copyFileSync, mkdirSync, readFileSync, writeFileSync } from 'node:fs';
-import { join } from 'node:path';
+import { dirname, join } from 'node:path';
 import { browser, check, near, run, scratch, start, toolPath, until } from './harness.mjs';
 
 const [program, scenes, pictures] = process.argv.slice(2);
@@ -254,6 +254,48 @@ const cases = [
     });
   }],
 
+  ['what was recorded is replayed, and a scene is saved as another file', () => {
+    const file = written(BALL);
+    return serving([file], async ({ url }) => {
+      const { page, context } = await opened(url);
+      await page.getByRole('button', { name: 'record', exact: true }).click();
+      await until('a recording', () => state(page, 'frame.recording'));
+      await ask(page, { do: 'hand', target: [0, 0.045, 0], held: true });
+      await until('a force', async () => (await state(page, 'frame.force')) > 0.5);
+      await page.getByRole('button', { name: /^recording/ }).click();
+      await until('no recording', async () => !(await state(page, 'frame.recording')));
+      await page.getByRole('button', { name: 'replay', exact: true }).click();
+      await until('a replay', () => state(page, 'frame.replaying'));
+      await page.getByRole('button', { name: 'end replay' }).click();
+      await until('its end', async () => !(await state(page, 'frame.replaying')));
+      await page.keyboard.press('Control+Shift+s');
+      await page.locator('#save-name').fill('other');
+      await page.keyboard.press('Enter');
+      await until('the other file', async () => (await state(page, 'scene.name')) === 'other.json');
+      check(readFileSync(join(dirname(file), 'other.json'), 'utf8') === readFileSync(file, 'utf8'), 'the other file has another text');
+      await context.close();
+    });
+  }],
+
+  ['a ball falls onto the memoir’s star and into none of it', () => serving([join(scenes, 'memoir_star.json')], async ({ url }) => {
+    const { page, context } = await opened(url);
+    await page.getByRole('button', { name: 'Falling ball' }).click();
+    await page.getByRole('switch', { name: 'falling ball' }).or(page.getByLabel('falling ball', { exact: true })).first().click();
+    const outcome = page.getByRole('status', { name: 'Outcome of the fall' });
+    await until('an outcome', async () => /After .* the ball/.test(await outcome.textContent({ timeout: 10000 })));
+    const fell = await page.evaluate(async () => {
+      const { fall } = await import('/plane/fall.js');
+      return { path: fall.answer.path, radius: fall.radius };
+    });
+    check(fell.path.length > 50, `a path of ${fell.path.length} places`);
+    for (const at of fell.path.filter((_, step) => step % 40 === 0)) {
+      // The star's values are bounds: whether a ball touches is searched for.
+      const { touches } = await ask(page, { do: 'ball', centre: at, radius: 0.99 * fell.radius });
+      check(touches === false, `the ball at ${at}, ${fell.radius} m, is in the star: ${touches}`);
+    }
+    await context.close();
+  })],
+
   ['a stop acts within two ticks, from Esc anywhere', () => serving([written(BALL)], async ({ url }) => {
     const { page, context } = await opened(url);
     await ask(page, { do: 'tour', on: false });
@@ -395,6 +437,10 @@ const cases = [
     check((await page.evaluate(() => window.seen.sounds)) === 0, 'sound before it was asked for');
     await page.getByText('sound off').click();
     await until('sound', () => page.evaluate(() => window.seen.sounds === 1 && window.sound.state === 'running'));
+    // From a place over the ball, the stick leads into it.
+    await ask(page, { do: 'tour', on: false });
+    await ask(page, { do: 'hand', target: [0, 0.07, 0], held: true });
+    await until('a hand over the ball', async () => Math.abs((await state(page, 'frame.points.0.device'))[1] - 0.07) < 1e-3);
     await page.locator('#touch select').first().selectOption('gamepad');
     const before = await state(page, 'frame.points.0.device');
     await page.evaluate(() => { window.padOn = true; window.pad.axes[1] = 0.9; });
