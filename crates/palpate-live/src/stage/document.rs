@@ -174,6 +174,11 @@ impl Document {
         self.forth.clear();
     }
 
+    /// Ends a drag: the next edit is a step of its own.
+    pub(super) fn end_drag(&mut self) {
+        self.is_moving = false;
+    }
+
     /// Goes a step back; `false` if there is none.
     pub(super) fn undo(&mut self) -> bool {
         self.is_moving = false;
@@ -209,7 +214,7 @@ impl Document {
             }
             _ => {}
         }
-        replace(&file, &self.now.text).map_err(failed)?;
+        replace(&file, &self.now.text, false).map_err(failed)?;
         self.saved = self.now.text.as_str().into();
         self.seen = Arc::clone(&self.saved);
         Ok(())
@@ -239,7 +244,8 @@ impl Document {
             )
             .into());
         }
-        replace(&file, &self.now.text).map_err(|error| format!("{shown}: {error}"))?;
+        let written = replace(&file, &self.now.text, !is_forced);
+        written.map_err(|error| format!("{shown}: {error}"))?;
         self.saved = self.now.text.as_str().into();
         self.seen = Arc::clone(&self.saved);
         (self.name, self.file) = (name.to_owned(), Some(file));
@@ -272,8 +278,9 @@ impl Document {
     }
 }
 
-/// Writes a file beside and renames it, so that there is a whole file at all times.
-fn replace(file: &Path, text: &str) -> std::io::Result<()> {
+/// Writes a file beside and renames it, so that there is a whole file at all times; if it `is_new`, over
+/// none that came meanwhile.
+fn replace(file: &Path, text: &str, is_new: bool) -> std::io::Result<()> {
     // A link stays one: what it leads to is replaced.
     let file = std::fs::canonicalize(file).unwrap_or_else(|_| file.to_owned());
     let before = std::fs::metadata(&file).ok();
@@ -294,7 +301,11 @@ fn replace(file: &Path, text: &str) -> std::io::Result<()> {
         Some(before) => std::fs::set_permissions(beside.path(), before.permissions())?,
         None => {}
     }
-    beside.persist(&file)?;
+    if is_new {
+        beside.persist_noclobber(&file)?
+    } else {
+        beside.persist(&file)?
+    };
     Ok(())
 }
 

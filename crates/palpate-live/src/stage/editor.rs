@@ -42,6 +42,8 @@ pub(super) struct Editor {
     shown: Arc<Shown>,
     text: Arc<Text>,
     spent: Spent,
+    /// The page that edited last.
+    editing: Option<PageId>,
 }
 
 /// What parts of an edit took.
@@ -89,6 +91,7 @@ impl Editor {
             shown,
             text,
             spent: Spent::default(),
+            editing: None,
         }
     }
 
@@ -110,7 +113,12 @@ impl Editor {
     fn obey(&mut self, page: PageId, ask: Ask) -> Result<(), Refusal> {
         match ask {
             Ask::Hello { version } => self.welcome(page, version),
-            Ask::Edit { base, changes, moving } => self.edit(base, &changes, moving),
+            Ask::Edit { base, changes, moving } => {
+                if self.editing.replace(page) != Some(page) {
+                    self.document.end_drag();
+                }
+                self.edit(base, &changes, moving)
+            }
             Ask::Undo {} => {
                 if !self.document.undo() {
                     return Err("there is nothing to undo".to_owned().into());

@@ -105,8 +105,17 @@ impl<const D: usize> Lead<D> {
         self.tour = Some(tour);
     }
 
+    pub(super) fn is_held(&self) -> bool {
+        self.is_held
+    }
+
     pub(super) fn targets(&self) -> &[Point<D>] {
         &self.targets
+    }
+
+    /// Takes note of the bounds of a scene with other bodies.
+    pub(super) fn take_bounds(&mut self, bounds: Option<Aabb<D>>) {
+        self.bounds = bounds;
     }
 
     pub(super) fn tours(&mut self, is_touring: bool) {
@@ -122,6 +131,11 @@ impl<const D: usize> Lead<D> {
             return Err(format!(
                 "the hand has {points} contact points, what was recorded has {recorded}"
             ));
+        }
+        if paths.is_some() && self.bounds.is_none() {
+            return Err(
+                "a scene without bounds has no way over it to what was recorded".to_owned()
+            );
         }
         if paths.is_none() {
             self.led = Some(Instant::now());
@@ -149,16 +163,20 @@ impl<const D: usize> Lead<D> {
         }
     }
 
-    /// Leads the hand, or one of its contact points. A hand that was not held comes to the target
-    /// from a place `from` which it can be seen, and which it reaches over the scene.
+    /// Leads the hand, or one of its contact points; its tour ends. A hand that was not held comes to the
+    /// target from a place `from` which it can be seen, and which it reaches over the scene.
     pub(super) fn lead(
         &mut self,
         target: Point<D>,
         point: Option<usize>,
         from: Option<Point<D>>,
     ) -> Result<(), String> {
+        let points = self.targets.len();
+        if let Some(point) = point.filter(|point| *point >= points) {
+            return Err(format!("there are {points} contact points, got number {point}"));
+        }
         let begins = !self.is_held;
-        (self.led, self.is_held) = (Some(Instant::now()), true);
+        (self.led, self.is_held, self.is_touring) = (Some(Instant::now()), true, false);
         self.replay = None;
         if begins {
             self.approach = None;
@@ -178,11 +196,7 @@ impl<const D: usize> Lead<D> {
                     .zip(&self.arms)
                     .for_each(|(to, arm)| *to = target + *arm);
             }
-            Some(point) => {
-                let points = self.targets.len();
-                let wrong = || format!("there are {points} contact points, got number {point}");
-                *self.targets.get_mut(point).ok_or_else(wrong)? = target;
-            }
+            Some(point) => self.targets[point] = target,
         }
         Ok(())
     }

@@ -143,9 +143,14 @@ impl Inquiries {
                 return None;
             }
             let State { waiting, working, .. } = &mut *state;
+            let long = working.iter().filter(|work| !work.is_short).count();
             let is_free = |(page, question): &(PageId, Question)| {
                 let is_short = is_short(&question.ask);
-                working.iter().all(|work| work.page != *page || work.is_short != is_short)
+                // One thread is left to short questions.
+                (is_short || long + 1 < THREADS)
+                    && working
+                        .iter()
+                        .all(|work| work.page != *page || work.is_short != is_short)
             };
             if let Some(place) = waiting.iter().position(is_free)
                 && let Some((page, question)) = waiting.remove(place)

@@ -198,12 +198,12 @@ impl Performance {
                 let Some(room) = &mut self.room else {
                     return self.pages.refuse(page, id, NO_SERVO, &[]);
                 };
-                self.leader = Some(page);
                 let from = from.as_deref();
                 match in_room!(room, room, _rows => room.lead(&target, point, from)) {
-                    Ok(()) => self.pages.answer(page, id, json!({ "do": "done" })),
-                    Err(why) => self.pages.refuse(page, id, &why, &[]),
+                    Ok(()) => self.leader = Some(page),
+                    Err(why) => return self.pages.refuse(page, id, &why, &[]),
                 }
+                self.pages.answer(page, id, json!({ "do": "done" }));
             }
             Order::LetGo => self.let_go(),
             Order::Gone(page) => {
@@ -253,6 +253,10 @@ impl Performance {
                     in_room!(room, _room, rows => rows.clear());
                     self.paths = None;
                 }
+                if self.is_recording && !is_recording {
+                    // What was recorded last is newer than a trace that came meanwhile.
+                    self.paths = None;
+                }
                 self.is_recording = is_recording;
             }
             Order::Replay { page, id, on } => match self.replay(on) {
@@ -285,11 +289,10 @@ impl Performance {
     /// Leads the hand along what was taken or recorded last; or no longer.
     fn replay(&mut self, is_on: bool) -> Result<(), String> {
         let Some(room) = &mut self.room else { return Err(NO_SERVO.to_owned()) };
-        self.is_recording = false;
         if !is_on {
             return in_room!(room, room, _rows => room.replay(None));
         }
-        self.leader = None;
+        (self.leader, self.is_recording) = (None, false);
         match (room, &self.paths) {
             (AnyRoom::Planar(room, _), Some(AnyPaths::Planar(paths))) => {
                 room.replay(Some(paths.clone()))

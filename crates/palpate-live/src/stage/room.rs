@@ -8,7 +8,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use palpate::devices::{Hand, HandPath, SimulatedDevice, SteeredDevice, Steering};
 use palpate::field::{LARGEST_LENGTH, Point, Vector};
 use palpate::haptics::{
-    DeviceProfile, Event, HapticsError, StageTicks, StopSwitch, WorkspaceMap,
+    DeviceProfile, Event, HapticsError, Recovery, StageTicks, StopSwitch, WorkspaceMap,
 };
 
 use palpate::scene::{BuiltScene, BuiltTool, ServoSettings};
@@ -97,7 +97,9 @@ impl<const D: usize> Room<D> {
         }
         let (device, mut steering) =
             device(&lead, &map, terms).map_err(|error| error.to_string())?;
-        let settings = ServoSettings::default().with_rate(terms.rate);
+        // A hand that goes into a body while forces are zero would be thrown out by them.
+        let settings =
+            ServoSettings::default().with_rate(terms.rate).with_recovery(Recovery::OnceOut);
         let servo = scene.servo_with(&device, settings).map_err(said)?;
         let (clock, speed) = ScaledClock::new(&Priority::Normal);
         // A clock that is held or slow stays so.
@@ -144,6 +146,7 @@ impl<const D: usize> Room<D> {
         let bodies = scene.bodies().map_err(|error| error.to_string())?;
         let replaced = self.thread.control().replace_bodies(bodies);
         replaced.map_err(|error| error.to_string())?;
+        self.lead.take_bounds(scene.bounds());
         self.scene = scene;
         Ok(())
     }
@@ -193,7 +196,11 @@ impl<const D: usize> Room<D> {
     pub(super) fn go_on(&mut self, mut row: impl FnMut(&TraceRow<D>)) {
         let latest = self.thread.control().latest();
         let time = latest.map_or(0.0, |snapshot| snapshot.progress.time);
-        self.leader = self.lead.go_on(time);
+        let before = std::mem::replace(&mut self.leader, self.lead.go_on(time));
+        if before == Leader::Replay && self.leader == Leader::Page && !self.lead.is_held() {
+            // What was recorded may end in a body.
+            self.let_go();
+        }
         steer(&mut self.steering, &self.lead, &self.map);
         for new in self.records.take() {
             self.peaks.take(&new);

@@ -64,13 +64,17 @@ pub(crate) fn read_paths<const D: usize>(bytes: &[u8]) -> Result<Vec<HandPath<D>
             let text = row.get(column).unwrap_or_default();
             let number = text.trim().parse::<f64>().ok().filter(|number| number.is_finite());
             let name = names.get(column).unwrap_or_default();
-            number.ok_or_else(|| format!("line {line}: {name} must be a number, got {text:?}"))
+            let shown: String = text.chars().take(40).collect();
+            number.ok_or_else(|| format!("line {line}: {name} must be a number, got {shown:?}"))
         };
         let mut place = Vector::ZERO;
         for (axis, column) in places.iter().enumerate() {
             place[axis] = number(*column)?;
         }
         let point = point.map_or(Ok(0.0), number)?;
+        if point < 0.0 || point.fract() != 0.0 {
+            return Err(format!("line {line}: point must be 0, 1, 2 …, got {point}"));
+        }
         let at_line = |why: String| format!("line {line}: {why}");
         add(&mut all, point as usize, number(time)?, place).map_err(at_line)?;
     }
@@ -91,6 +95,9 @@ fn add<const D: usize>(
         all.resize_with(point + 1, Places::default);
     }
     let (times, places) = &mut all[point];
+    if let Some(last) = times.last().filter(|last| time < **last) {
+        return Err(format!("time_s must not go back, got {time} s after {last} s"));
+    }
     if times.last().is_none_or(|last| time - last >= STEP) {
         times.push(time);
         places.push(place);
@@ -141,5 +148,11 @@ mod tests {
         );
         assert!(why("time_s,point,x_m,y_m\n0,1e9,0,0\n").starts_with("line 2: a hand has"));
         assert!(why("time_s,x_m,y_m\n0,0\n").contains("line: 2"));
+        assert_eq!(
+            why("time_s,x_m,y_m\n1,0,0\n0.5,0,0\n"),
+            "line 3: time_s must not go back, got 0.5 s after 1 s"
+        );
+        assert!(why("time_s,point,x_m,y_m\n0,-1,0,0\n").contains("point must be 0, 1, 2"));
+        assert!(why(&format!("time_s,x_m,y_m\n0,0,{}\n", "x".repeat(9999))).len() < 120);
     }
 }

@@ -96,6 +96,13 @@ function middle() {
   return [0, 1].map((axis) => (corners ? Number(((corners.min[axis] + corners.max[axis]) / 2).toFixed(6)) : 0));
 }
 
+/** The longest edge of an element [m]: the program's µ is a tenth of it. @param {number[][]} corners */
+function longestEdge(corners) {
+  const edges = corners.flatMap((one, index) => corners.slice(index + 1)
+    .map((other) => Math.hypot(...one.map((x, axis) => x - other[axis]))));
+  return Math.max(0, ...edges);
+}
+
 function Corners() {
   const { corners } = toys;
   const take = (/** @type {string} */ count) => {
@@ -155,7 +162,7 @@ function Method() {
       change=${(/** @type {string} */ to) => setToys({ method: to })} />
     ${method === 'naive' && html`
       ${free('alpha', 'step size α', alpha, 0.1, { min: 0, max: 1, above: true }, 'The memoir’s α: a step is α times the distance long')}
-      ${free('mu', 'least distance µ', mu, scale() / 10, { min: 0, scale: scale(), unit: 'm' }, 'The memoir’s µ: nearer than µ a step is α µ long, so that steps do not vanish at the surface')}
+      ${free('mu', 'least distance µ', mu, longestEdge(corners) / 10, { min: 0, scale: scale(), unit: 'm' }, 'The memoir’s µ: nearer than µ a step is α µ long, so that steps do not vanish at the surface')}
       <p class="quiet">Each step goes down the slope by the step size α times the distance, but at least by α times µ: where
         that is longer than the way to the minimum, the path goes to and fro across it.</p>
       <${ChoiceField} label="gradient" value=${gradient} choices=${Object.entries(GRADIENTS)}

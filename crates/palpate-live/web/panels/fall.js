@@ -60,7 +60,8 @@ function outcome() {
   if (end === 'inside') return `The ball ${words}.`;
   const fastest = Math.max(...bounces.map(({ speed }) => speed));
   const speed = bounces.length > 0 ? `, at most ${short(fastest)} m/s` : '';
-  return `After ${time(lasts())} the ball ${words}: ${times}${speed}.`;
+  const first = bounces.length > 0 ? `, the first after ${time(bounces[0].time)}` : '';
+  return `After ${time(lasts())} the ball ${words}: ${times}${first}${speed}.`;
 }
 
 export function FallingBall() {

@@ -4,7 +4,7 @@
 
 /** An answer of the program in words: what is proven beside what a local method says. */
 
-import { SEPARATION, isFound } from '../plane/drawn.js';
+import { SEPARATION, isFound, isFoundOfPair } from '../plane/drawn.js';
 import { html } from '../vendor/htm-preact.js';
 import { count, short, time } from './numbers.js';
 
@@ -51,16 +51,16 @@ function sentences(toy, result) {
   const { certified, local, enclosing } = result;
   const said = [];
   const upper = certified?.upper;
-  const factor = toy === 'pair' ? SEPARATION : 1;
-  const values = [local].flat().filter((one) => typeof one?.value === 'number').map((one) => factor * one.value);
-  if (typeof upper === 'number' && values.length > 0) {
-    const found = values.filter((value) => isFound(value, certified)).length;
-    const miss = Math.min(...values) - upper;
+  const all = [local].flat().filter((one) => typeof one?.value === 'number');
+  if (typeof upper === 'number' && all.length > 0 && toy === 'pair') {
+    const found = all.filter((one) => isFoundOfPair(one, certified)).length;
     const isRight = found > 0;
-    const who = toy === 'pair' ? `${found} of ${values.length} ${values.length === 1 ? 'start' : 'starts'}` : 'the local method';
-    said.push({ isRight, text: isRight || toy === 'pair' ? `${who} found the proven minimum`
-      : `${who} misses the proven minimum by ${short(miss)} m` });
-    if (!isRight && toy === 'pair') said.push({ isRight, text: `the best misses it by ${short(miss)} m` });
+    const what = isOfOverlap(all[0], certified) ? 'a point in both bodies' : 'the proven minimum';
+    said.push({ isRight, text: `${found} of ${all.length} ${all.length === 1 ? 'start' : 'starts'} found ${what}` });
+  } else if (typeof upper === 'number' && all.length > 0) {
+    const isRight = isFound(all[0].value, certified);
+    said.push({ isRight, text: isRight ? 'the local method found the proven minimum'
+      : `the local method misses the proven minimum by ${short(all[0].value - upper)} m` });
   }
   if (enclosing && typeof upper === 'number') {
     const isRight = !enclosing.excludes || certified.lower > 0;
@@ -81,12 +81,18 @@ function sentences(toy, result) {
   return said;
 }
 
+/** Whether a search asks only for a point in both bodies, and nothing of depth.
+ * @param {any} local @param {any} certified */
+const isOfOverlap = ({ method }, certified) => method === 'alternating_projection' && certified.upper <= 0;
+
 /** What became of a start. @param {any} local @param {number} index @param {any} certified */
-function startTitle({ value }, index, certified) {
+function startTitle(local, index, certified) {
   const name = `start ${index + 1}`;
-  if (!certified || typeof value !== 'number') return name;
-  const gap = SEPARATION * value;
-  return isFound(gap, certified) ? `${name} found the minimum` : `${name} misses it by ${short(gap - certified.upper)} m`;
+  if (!certified || typeof local.value !== 'number') return name;
+  const isFoundHere = isFoundOfPair(local, certified);
+  if (isOfOverlap(local, certified)) return `${name} found ${isFoundHere ? 'a point' : 'no point'} in both bodies`;
+  const gap = SEPARATION * local.value;
+  return isFoundHere ? `${name} found the minimum` : `${name} misses it by ${short(gap - certified.upper)} m`;
 }
 
 /** @param {{ toy: string, result: any }} given */

@@ -42,6 +42,12 @@ export const SEPARATION = 2;
 export const isFound = (value, { lower, upper }) =>
   value - upper <= upper - lower + 1e-9 + 1e-3 * Math.abs(upper);
 
+/** Whether a local search between two bodies found what it looks for: a point in both, by projections in
+ * turns, where the bodies overlap; else the separation.
+ * @param {{ method: string, value: number }} local @param {{ lower: number, upper: number }} certified */
+export const isFoundOfPair = ({ method, value }, certified) =>
+  (method === 'alternating_projection' && certified.upper <= 0 ? value <= 0 : isFound(SEPARATION * value, certified));
+
 /** @param {Context} context @param {Lens} lens @param {Texts} texts @param {Inks} inks */
 function paintElement(context, lens, texts, inks) {
   const project = (/** @type {number[]} */ point) => lens.project(inSpace(point));
@@ -112,9 +118,9 @@ function paintPair(context, lens, texts, inks) {
   const project = (/** @type {number[]} */ point) => lens.project(inSpace(point));
   const { certified, local } = toys.results.pair ?? {};
   const colors = toys.pair.starts.map((_, number) => {
-    const value = local?.[number]?.value;
-    if (!certified || typeof value !== 'number') return OPEN;
-    const found = isFound(SEPARATION * value, certified);
+    const one = local?.[number];
+    if (!certified || typeof one?.value !== 'number') return OPEN;
+    const found = isFoundOfPair(one, certified);
     mark(found ? 'found' : 'missed');
     return found ? FREE : PATH;
   });

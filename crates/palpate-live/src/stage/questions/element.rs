@@ -8,8 +8,8 @@ use std::time::Instant;
 use palpate::field::{Pose, Screw, Vector};
 use palpate::local::{ElementMethod, GradientMethod, NaiveDescent, Weights};
 use palpate::query::{
-    Element, ElementSweep, ElementWorkspace, SweepSettings, evaluate_point, minimum,
-    sweep_element,
+    BallWorkspace, Element, ElementSweep, ElementWorkspace, Ray, Stop, SweepSettings,
+    cast_ball, evaluate_point, minimum, sweep_element,
 };
 use palpate::scene::BuiltScene;
 use serde_json::{Value, json};
@@ -168,6 +168,34 @@ pub(super) fn swept<const N: usize, const D: usize>(
         "upper": found.upper.is_finite().then_some(found.upper),
         "contact": found.contact.map(|contact| contact.point_a.0.to_vec()),
         "start": found.start.map(|start| format!("{start:?}").to_lowercase()),
+        "stop": found.stop.to_string(), "evaluations": found.evaluations, "ns": nanoseconds(begin),
+    }))
+}
+
+/// The same of a point: a ball without radius.
+pub(super) fn swept_point<const D: usize>(
+    scene: &BuiltScene<D>,
+    at: &[f64],
+    by: &[f64],
+) -> Result<Value, String> {
+    let said = |error: palpate::query::QueryError| error.to_string();
+    let (point, by) = (point_of::<D>(at)?, point_of::<D>(by)?);
+    let far = by.norm();
+    let way = by.normalized().ok_or("the motion has no length")?;
+    let begin = Instant::now();
+    let ray = Ray::new(point, way, far).map_err(said)?;
+    let limits = limits(scene).with_budget(BUDGET);
+    let found = cast_ball(&scene.whole, &ray, 0.0, &limits, &mut BallWorkspace::new());
+    let found = found.map_err(said)?;
+    let touches = match (found.best, found.stop) {
+        (Some(_), _) => Some(true),
+        (None, Stop::SignKnown) => Some(false),
+        (None, _) => None,
+    };
+    let upper = (found.best.is_some() && found.upper.is_finite()).then(|| found.upper / far);
+    Ok(json!({
+        "do": "sweep", "touches": touches, "lower": (found.lower / far).min(1.0), "upper": upper,
+        "contact": found.best.map(|contact| contact.point_a.0.to_vec()), "start": null,
         "stop": found.stop.to_string(), "evaluations": found.evaluations, "ns": nanoseconds(begin),
     }))
 }

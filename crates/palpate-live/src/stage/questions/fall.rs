@@ -4,7 +4,8 @@
 //! A ball that falls onto the scene and bounces: straight flights in short steps, each proven free up
 //! to the first touch.
 
-use std::time::Instant;
+use std::ops::RangeInclusive;
+use std::time::{Duration, Instant};
 
 use palpate::field::{Aabb, Point, Shape, Vector};
 use palpate::query::{BallWorkspace, Limits, Ray, Stop, cast_ball};
@@ -22,7 +23,13 @@ const MOST_STEPS: usize = 6000;
 const MOST_TOUCHES: usize = 8;
 
 /// Evaluations of a way at most.
-const BUDGET: u32 = 20_000_000;
+const BUDGET: u32 = 5_000_000;
+
+/// How long a way is searched for at most.
+const PATIENCE: Duration = Duration::from_secs(3);
+
+/// The gravities that are taken [m/s²].
+const GRAVITIES: RangeInclusive<f64> = 1e-6..=1e6;
 
 /// A ball that touches is put off the surface by this share of its radius.
 const SKIN: f64 = 1e-4;
@@ -65,11 +72,12 @@ pub(super) fn fall<const D: usize>(
 ) -> Result<Value, String> {
     let begin = Instant::now();
     let centre = point_of::<D>(centre)?;
-    let is_positive = |x: f64| x > 0.0 && x <= palpate::field::LARGEST_LENGTH;
-    if !is_positive(radius) || !is_positive(gravity) {
-        return Err(format!(
-            "radius and gravity must be positive, got {radius} m and {gravity} m/s²"
-        ));
+    // Written so that NaN is refused.
+    if !(radius > 0.0 && radius <= palpate::field::LARGEST_LENGTH) {
+        return Err(format!("the radius must be positive, got {radius:e} m"));
+    }
+    if !GRAVITIES.contains(&gravity) {
+        return Err(format!("gravity must be from 1e-6 to 1e6 m/s², got {gravity:e} m/s²"));
     }
     if !(0.0..=1.0).contains(&restitution) {
         return Err(format!("restitution is a share from 0 to 1, got {restitution}"));
@@ -89,7 +97,7 @@ pub(super) fn fall<const D: usize>(
         evaluations: 0,
         bounces: Vec::new(),
     };
-    let (path, end) = fall.run(cancel)?;
+    let (path, end) = fall.run(begin, cancel)?;
     Ok(json!({
         "do": "fall", "step": fall.step, "path": path, "bounces": fall.bounces, "end": end,
         "evaluations": fall.evaluations, "ns": nanoseconds(begin),
@@ -98,7 +106,11 @@ pub(super) fn fall<const D: usize>(
 
 impl<const D: usize> Fall<'_, D> {
     /// The centres, and how the way ends.
-    fn run(&mut self, cancel: &Cancel) -> Result<(Vec<Vec<f64>>, &'static str), String> {
+    fn run(
+        &mut self,
+        begin: Instant,
+        cancel: &Cancel,
+    ) -> Result<(Vec<Vec<f64>>, &'static str), String> {
         let mut path = vec![self.centre.0.to_vec()];
         if self.shape.distance(self.centre) <= self.radius {
             let mut down = Vector::ZERO;
@@ -111,7 +123,6 @@ impl<const D: usize> Fall<'_, D> {
         let mut slow = 0;
         for step in 0..MOST_STEPS {
             cancel.check()?;
-            self.velocity[1] -= self.gravity * self.step;
             let touches = self.go_on(step as f64 * self.step)?;
             path.push(self.centre.0.to_vec());
             slow = if touches && self.velocity.norm() < REST_SPEED * fall_speed {
@@ -125,7 +136,7 @@ impl<const D: usize> Fall<'_, D> {
             if self.has_left() {
                 return Ok((path, "leaves"));
             }
-            if self.evaluations >= BUDGET {
+            if self.evaluations >= BUDGET || begin.elapsed() > PATIENCE {
                 return Ok((path, "budget"));
             }
         }
@@ -135,33 +146,51 @@ impl<const D: usize> Fall<'_, D> {
     /// Goes on by a step that begins at `time` [s]; whether the ball touched.
     fn go_on(&mut self, time: f64) -> Result<bool, String> {
         let mut left = self.step;
-        let mut touches = false;
+        let (mut touches, mut slides) = (false, false);
         for _ in 0..MOST_TOUCHES {
-            let speed = self.velocity.norm();
-            let far = speed * left;
-            let Some(way) = self.velocity.normalized().filter(|_| far > 0.0) else { break };
+            // The chord of the flight, which is a parabola.
+            let mut chord = self.velocity * left;
+            chord[1] -= 0.5 * self.gravity * left * left;
+            let far = chord.norm();
+            let Some(way) = chord.normalized().filter(|_| far > 0.0) else { break };
             let Some((free, normal)) = self.touch(way, far)? else {
-                self.centre += way * far;
+                self.centre += chord;
+                self.velocity[1] -= self.gravity * left;
                 break;
             };
             touches = true;
+            left -= self.fly(way[1] * free, left * free / far);
             self.centre += way * free + normal * (SKIN * self.radius);
-            left -= free / speed;
             let closing = -self.velocity.dot(normal);
             if closing > SLOW * self.gravity * self.step {
                 self.velocity += normal * ((1.0 + self.restitution) * closing);
+                // What the ball was put off the surface costs it as much.
+                if self.velocity[1] > 0.0 {
+                    self.fly(normal[1] * SKIN * self.radius, 0.0);
+                }
                 self.bounces.push(json!({
                     "time": time + self.step - left, "centre": self.centre.0.to_vec(),
                     "normal": normal.0.to_vec(), "speed": closing,
                 }));
             } else {
+                slides = true;
                 self.velocity += normal * closing.max(0.0);
             }
         }
-        if touches {
+        if slides {
             self.velocity = self.velocity * SLIDES_ON;
         }
         Ok(touches)
+    }
+
+    /// Takes the speed of a flight that rises by `rise` [m], which keeps the energy, and gives the time that
+    /// it takes, which is near `about` [s].
+    fn fly(&mut self, rise: f64, about: f64) -> f64 {
+        let before = self.velocity[1];
+        let squared = (before * before - 2.0 * self.gravity * rise).max(0.0);
+        let is_up = before > self.gravity * about;
+        self.velocity[1] = if is_up { squared.sqrt() } else { -squared.sqrt() };
+        ((before - self.velocity[1]) / self.gravity).clamp(0.0, 2.0 * about)
     }
 
     /// How far the ball is proven free along a way of `far` [m], and the normal where it touches;
@@ -185,13 +214,13 @@ impl<const D: usize> Fall<'_, D> {
         Ok(Some((found.lower.clamp(0.0, far), normal)))
     }
 
-    /// Whether the ball is out of the scene's bounds, grown by their size.
+    /// Whether the ball is below the scene's bounds or beside them, grown by their size.
     fn has_left(&self) -> bool {
         let far = self.size + self.radius;
-        self.bounds.is_none_or(|bounds| {
+        self.bounds.is_some_and(|bounds| {
             (0..D).any(|axis| {
                 let x = self.centre[axis];
-                x < bounds.min[axis] - far || x > bounds.max[axis] + far
+                x < bounds.min[axis] - far || axis != 1 && x > bounds.max[axis] + far
             })
         })
     }
@@ -233,6 +262,37 @@ mod tests {
         let heights = path.iter().skip((number(&bounces[0]["time"]) / step) as usize + 2);
         let highest = heights.map(|place| number(&place[1]) - 0.2).fold(0.0, f64::max);
         assert!((highest - 0.125).abs() < 0.01, "{highest}");
+    }
+
+    #[test]
+    fn a_ball_that_loses_nothing_comes_up_again_and_again() {
+        for (height, gravity) in [(0.1, 9.81), (0.5, 9.81), (0.5, 1.62)] {
+            let at = [0.0, 0.2 + height];
+            let fell = fall(&floor(), &at, [0.1, gravity, 1.0], &Cancel::default()).unwrap();
+            let number = |value: &Value| value.as_f64().unwrap();
+            let bounces = fell["bounces"].as_array().unwrap();
+            let (speed, time) =
+                ((2.0 * gravity * height).sqrt(), (2.0 * height / gravity).sqrt());
+            for (number_of, bounce) in bounces.iter().enumerate() {
+                let error = number(&bounce["speed"]) / speed - 1.0;
+                assert!(error.abs() < 2e-3, "{error}");
+                let due = (1.0 + 2.0 * number_of as f64) * time;
+                assert!(
+                    (number(&bounce["time"]) / due - 1.0).abs() < 5e-3,
+                    "{bounce}, {due} s"
+                );
+            }
+            let steps = fell["path"].as_array().unwrap().len() - 1;
+            let whole = number(&fell["step"]) * steps as f64;
+            let expected = ((whole / time + 1.0) / 2.0).floor();
+            assert!((bounces.len() as f64 - expected).abs() <= 1.0, "{expected}");
+        }
+    }
+
+    #[test]
+    fn a_ball_far_above_comes_down() {
+        let fell = fall(&floor(), &[0.0, 9.0], [0.1, 9.81, 0.0], &Cancel::default()).unwrap();
+        assert_eq!(fell["end"], "rests");
     }
 
     #[test]

@@ -90,9 +90,10 @@ pub(super) fn answer<const D: usize>(
         }
         Ask::Contacts { proof } => contacts(scene, *proof).map(Answer::Text),
         Ask::Sweep { corners, by } => match corners.len() {
+            1 => element::swept_point(scene, &corners[0], by),
             2 => element::swept::<2, D>(scene, corners, by),
             3 => element::swept::<3, D>(scene, corners, by),
-            count => Err(format!("an element that moves has 2 or 3 corners, got {count}")),
+            count => Err(format!("an element that moves has 1 to 3 corners, got {count}")),
         }
         .map(Answer::Text),
         Ask::Fall { centre, radius, gravity, restitution } => {
