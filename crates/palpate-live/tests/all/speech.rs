@@ -220,3 +220,39 @@ fn a_page_is_told_of_the_safety_chain_of_a_fall_and_of_what_building_took() {
     assert_eq!((&fell["do"], &fell["end"]), (&json!("fall"), &json!("leaves")));
     assert!(!fell["bounces"].as_array().unwrap().is_empty());
 }
+
+/// A refused order once ended a replay, and let go of the hand that another page held.
+#[test]
+fn a_refused_hand_changes_nothing() {
+    let live = served(LiveOptions::default());
+    let (mut one, mut other) = (Page::open(&live), Page::open(&live));
+    one.ask(json!({ "do": "hand", "held": true, "target": [0.0, 0.045, 0.0] }));
+    let presses = |frame: &[u8]| f32::from_le_bytes(frame[24..28].try_into().unwrap()) > 0.5;
+    while !presses(&one.binary(1)) {}
+    for wrong in [json!({ "target": [1] }), json!({ "target": [0, 1, 0], "point": 7 })] {
+        let mut ask = wrong;
+        (ask["do"], ask["held"]) = ("hand".into(), true.into());
+        assert_eq!(other.ask(ask)["do"], "refused");
+    }
+    drop(other);
+    one.text(|message| message["do"] == "clients" && message["count"] == 1);
+    (0..30).for_each(|_| assert!(presses(&one.binary(1))));
+}
+
+/// A drag of a page and the edit of another once were one step back.
+#[test]
+fn edits_of_two_pages_are_two_steps_back() {
+    let live = served(LiveOptions::default());
+    let (mut one, mut other) = (Page::open(&live), Page::open(&live));
+    let edit = |base: u32, at: &str, to: Value, moving: bool| {
+        json!({
+            "do": "edit", "base": base, "changes": [{ "at": at, "to": to }], "moving": moving,
+        })
+    };
+    one.ask(edit(1, "/bodies/0/shape/ball/radius", json!(0.06), true));
+    other.ask(edit(2, "/bodies/0/name", json!("marble"), false));
+    other.ask(json!({ "do": "undo" }));
+    let scene = one.text(|message| message["do"] == "scene" && message["revision"] == 4);
+    assert_eq!(scene["bodies"][0]["name"], "ball");
+    assert_eq!(scene["scene"]["bodies"][0]["shape"]["ball"]["radius"], 0.06);
+}
