@@ -35,7 +35,6 @@ enum Memory {
 impl Place {
     pub(super) fn of(asked: &PageOptions) -> Result<Self, Failure> {
         if let Some(file) = &asked.token_file {
-            warn_of_readers(file);
             let token = match std::fs::read_to_string(file) {
                 Ok(text) => Some(text.trim().to_owned()),
                 Err(error) if error.kind() == ErrorKind::NotFound => None,
@@ -71,7 +70,11 @@ impl Place {
                 let _ = folder.and_then(|()| write(file, &text));
                 Ok(())
             }
-            Memory::Token(_) | Memory::None => Ok(()),
+            Memory::Token(file) => {
+                warn_of_readers(file);
+                Ok(())
+            }
+            Memory::None => Ok(()),
         }
     }
 }
