@@ -316,7 +316,13 @@ const cases = [
     check(frame.points.every(({ force }) => Math.hypot(...force) === 0), 'a force is left');
     await page.locator('#stop').click();
     await ask(page, { do: 'clock', speed: 1 });
-    await until('forces again', async () => !(await state(page, 'frame.stopped')) && (await state(page, 'frame.force')) > 0.5);
+    await until('a release', async () => !(await state(page, 'frame.stopped')));
+    check((await state(page, 'frame.force')) < 0.1, 'a force throws the hand out of the ball');
+    for (const height of [0.08, 0.045]) {
+      await ask(page, { do: 'hand', target: [0, height, 0], held: true });
+      await until('a hand that is there', async () => Math.abs((await state(page, 'frame.points.0.device'))[1] - height) < 5e-3);
+    }
+    await until('forces again, once the hand was out', async () => (await state(page, 'frame.force')) > 0.5);
     await context.close();
   })],
 
