@@ -471,7 +471,7 @@ impl<const D: usize> SafetyChain<D> {
             self.free.report().effect,
             self.passivity.report().effect,
         ];
-        StageTicks::of(first.map(|effect| effect.ticks), &self.channel.effects, None)
+        StageTicks::of(first, &self.channel.effects, None)
     }
 
     /// The report of every stage so far.

@@ -7,6 +7,7 @@
 
 use std::iter::Sum;
 
+use crate::effect::Effect;
 use crate::readings::ReadingsReport;
 use crate::report::{Effects, SafetyReport};
 
@@ -50,16 +51,16 @@ impl StageTicks {
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     pub(crate) fn of(
-        [cycles, guides, passivity]: [u64; 3],
+        [cycles, guides, passivity]: [Effect; 3],
         force: &Effects,
         torque: Option<&Effects>,
     ) -> Self {
         let turning = |of: fn(&Effects) -> u64| torque.map_or(0, of);
         Self([
             0,
-            cycles,
-            guides,
-            passivity,
+            cycles.ticks,
+            guides.ticks,
+            passivity.ticks,
             force.slew.ticks,
             force.force_limit.ticks,
             force.continuous.ticks,
@@ -104,8 +105,7 @@ impl From<&SafetyReport> for StageTicks {
         });
         let first =
             [report.limit_cycles.effect, report.free_forces.effect, report.passivity.effect];
-        Self::of(first.map(|effect| effect.ticks), &force, torque.as_ref())
-            .with_readings(&report.readings)
+        Self::of(first, &force, torque.as_ref()).with_readings(&report.readings)
     }
 }
 

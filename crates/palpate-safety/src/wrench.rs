@@ -384,7 +384,7 @@ impl<const D: usize> WrenchChain<D> {
             self.passivity.report().effect,
         ];
         let torque = Some(&self.torque.effects);
-        StageTicks::of(first.map(|effect| effect.ticks), &self.force.effects, torque)
+        StageTicks::of(first, &self.force.effects, torque)
     }
 
     /// What every stage did so far, in translation and rotation.

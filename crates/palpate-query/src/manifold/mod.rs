@@ -11,8 +11,8 @@
 //! all of it.
 //!
 //! `region` finds the candidates with their normals, `Touch` the normal of a point that is found
-//! otherwise, `patch` and `fill` choose the contacts, `moved` carries them with bodies; the separation and its bounds come from
-//! `pair/search.rs`.
+//! otherwise, `patch` and `fill` choose the contacts, `moved` carries them with the bodies; the
+//! separation and its bounds come from `pair/search.rs`.
 
 mod deep;
 mod fill;

@@ -8,7 +8,8 @@ use palpate_field::{Point, Pose, Vector};
 use super::grid::distance;
 use super::patch::settled;
 use super::{
-    LIKE, ManifoldSettings, Member, SAME_DEPTH, SeparatedPair, Spanned, Touch, is_copy,
+    COPIES, LIKE, ManifoldSettings, Member, SAME_DEPTH, SeparatedPair, Spanned, Touch,
+    drop_copies, is_copy,
 };
 use crate::pair::body_pair::BodyPair;
 
@@ -52,8 +53,8 @@ impl<const D: usize> Spanned<D> {
         members.retain(|member| member.touch.gap <= settings.margin);
         let deepest = Touch::at(pair, *best);
         add_deepest(&mut members, deepest, settings);
-        members.sort_by(|one, other| one.touch.gap.total_cmp(&other.touch.gap));
-        drop_nearer(&mut members, settings.spacing);
+        // Those that have come nearer to each other than the spacing.
+        drop_copies(&mut members, settings.spacing / COPIES);
         Some(Self { members, beyond: Vec::new(), stop: self.stop })
     }
 }
@@ -146,29 +147,11 @@ fn add_deepest<const D: usize>(
         Some(member) if is_copy(&member.touch, &deepest, settings.spacing) => {
             member.touch = deepest;
         }
-        Some(member) => {
-            let group = member.group;
-            members.push(Member { touch: deepest, group });
-        }
-        None => {
-            let group = members.iter().map(|member| member.group + 1).max().unwrap_or(0);
+        nearest => {
+            let group = nearest.map(|member| member.group);
+            let new = || members.iter().map(|member| member.group + 1).max().unwrap_or(0);
+            let group = group.unwrap_or_else(new);
             members.push(Member { touch: deepest, group });
         }
     }
-}
-
-/// Drops members, sorted from the deepest, that have come nearer than the spacing to a deeper one with a
-/// like normal.
-fn drop_nearer<const D: usize>(members: &mut Vec<Member<D>>, spacing: f64) {
-    let mut kept: Vec<Member<D>> = Vec::with_capacity(members.len());
-    for member in members.drain(..) {
-        let is_near = |other: &Member<D>| {
-            distance(other.touch.point, member.touch.point) < spacing
-                && other.touch.normal.dot(member.touch.normal) > LIKE
-        };
-        if !kept.iter().any(is_near) {
-            kept.push(member);
-        }
-    }
-    *members = kept;
 }
