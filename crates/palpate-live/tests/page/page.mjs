@@ -428,12 +428,15 @@ const cases = [
     await cdp.send('Input.dispatchTouchEvent', { type: 'touchMove', touchPoints: [{ x: x + 4, y, id: 0 }] });
     await until('a contact by a finger', async () => (await state(page, 'frame.force')) > 0.1);
     await cdp.send('Input.dispatchTouchEvent', { type: 'touchEnd', touchPoints: [] });
-    for (const [type, at] of [['pointerdown', x], ['pointermove', x + 5]]) {
-      await page.evaluate(({ type, at, y }) => document.elementFromPoint(at, y).dispatchEvent(new PointerEvent(type, {
-        pointerType: 'pen', pointerId: 7, clientX: at, clientY: y, buttons: 1, button: type === 'pointerdown' ? 0 : -1,
-        bubbles: true, cancelable: true, isPrimary: true, pressure: 0.5,
-      })), { type, at, y });
+    // The force of the finger is gone before the pen comes, elsewhere on the ball.
+    await until('a hand that is let go', async () => (await state(page, 'frame.force')) < 0.05);
+    await page.evaluate(() => window.addEventListener('pointerdown', ({ pointerType }) => (window.pressedBy = pointerType)));
+    for (const [type, across] of [['mousePressed', -40], ['mouseMoved', -46]]) {
+      await cdp.send('Input.dispatchMouseEvent', {
+        type, x: x + across, y: y + 30, button: 'left', buttons: 1, clickCount: 1, pointerType: 'pen', force: 0.5,
+      });
     }
+    check((await page.evaluate(() => window.pressedBy)) === 'pen', 'the page was pressed by no pen');
     await until('a contact by a pen', async () => (await state(page, 'frame.force')) > 0.1);
     await context.close();
   })],
