@@ -102,6 +102,8 @@ pub(crate) struct Setting<const D: usize> {
     pub(crate) rise_step: f64,
     /// How the states of this tick came.
     pub(crate) arrival: Arrival,
+    /// Whether the hand is lifted off the bodies.
+    pub(crate) is_lifted: bool,
 }
 
 /// The state of a tick that all contact points share.
@@ -239,7 +241,7 @@ impl<const D: usize> ContactPoint<D> {
         free: FreeForce<D>,
     ) -> Vector<f64, D> {
         let FreeForce { force: free, placed } = free;
-        let Setting { options, map, rise_step, arrival } = setting;
+        let Setting { options, map, rise_step, arrival, .. } = setting;
         let has_start = placed || self.of_others < f64::INFINITY;
         let start = if has_start { self.start(placed, touch.wanted) } else { 1.0 };
         if let Some(port) = &mut self.port {
@@ -269,6 +271,9 @@ impl<const D: usize> ContactPoint<D> {
         touch: &mut Touch<D>,
     ) -> FreeForce<D> {
         let device = state.position;
+        if tick.setting.is_lifted {
+            return self.hover(tick, state, touch);
+        }
         // The proxy stays where it is if the device point is not finite.
         let following = self.proxy.follow(tick.nearby, device);
         let before = Before::of(touch);
@@ -299,6 +304,33 @@ impl<const D: usize> ContactPoint<D> {
         }
         free += self.pull(tick, touch);
         FreeForce { force: free, placed: following.placed }
+    }
+
+    /// A tick of a hand that is lifted: the proxy is at the device, and nothing is touched.
+    #[cold]
+    #[inline(never)]
+    fn hover(
+        &mut self,
+        tick: &mut Tick<'_, D>,
+        state: &PointState<D>,
+        touch: &mut Touch<D>,
+    ) -> FreeForce<D> {
+        let before = Before::of(touch);
+        self.fall_silent(tick, before);
+        self.proxy.lift();
+        let is_known = state.is_finite();
+        *touch = Touch {
+            device: state.position,
+            velocity: if is_known { state.velocity } else { Vector::ZERO },
+            proxy: if is_known { state.position } else { touch.proxy },
+            wanted: Vector::ZERO,
+            force: Vector::ZERO,
+            contact: false,
+            is_slipping: false,
+            evaluations: 0,
+            ..*touch
+        };
+        FreeForce { force: Vector::ZERO, placed: false }
     }
 
     /// The part of the force at which the rise begins: zero after a placement; after bodies

@@ -122,7 +122,7 @@ impl<const D: usize> CoupledTool<D> {
         touch: &mut Touch<D>,
     ) -> Vector<f64, D> {
         let Sides { point, bodies } = sides;
-        let Setting { map, arrival, .. } = setting;
+        let Setting { map, arrival, is_lifted, .. } = setting;
         let is_turn_sound = self
             .port
             .as_mut()
@@ -145,9 +145,16 @@ impl<const D: usize> CoupledTool<D> {
             None => (map.rotation(), Vector::ZERO),
         };
         let pose = Pose::new(rotation, position);
-        self.tool.step(bodies, &ToolState { pose, velocity, angular_velocity });
+        let state = ToolState { pose, velocity, angular_velocity };
+        let mut free = Vector::ZERO;
+        if *is_lifted {
+            bodies.settle();
+            self.tool.hover(&state);
+        } else {
+            free = point.guided(position, velocity);
+            self.tool.step(bodies, &state);
+        }
         let felt = self.tool.touch();
-        let free = point.guided(position, velocity);
         *touch = Touch {
             device: position,
             velocity: self.tool.hand_velocity,

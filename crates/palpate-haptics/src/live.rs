@@ -41,6 +41,8 @@ pub struct Snapshot<const D: usize> {
     /// `true` while all written forces are held at zero: by an emergency stop, or because the bodies
     /// that were sent last were accepted for another servo.
     pub is_stopped: bool,
+    /// Whether the hand is [lifted](crate::Servo::lift) off the bodies.
+    pub is_lifted: bool,
     /// In how many ticks each stage of the safety chains has acted since the start.
     pub safety: StageTicks,
     /// The buttons of the device that are held down.

@@ -230,6 +230,15 @@ impl<const D: usize> Proxy<D> {
         self.shared_friction = None;
     }
 
+    /// Lifts the proxy off the bodies: the next tick places it anew, as the first one did.
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    pub fn lift(&mut self) {
+        self.forget_bodies();
+        (self.at, self.contact, self.hold) = (None, false, Hold::None);
+        self.held = Vector::ZERO;
+    }
+
     /// Punctures the layer of a body that constrains the proxy; `false` if no more bodies can
     /// be recorded.
     ///

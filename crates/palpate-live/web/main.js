@@ -18,8 +18,8 @@ import { page, tell } from './panels/page.js';
 import { valueAt } from './panels/schema.js';
 import { Time } from './panels/play.js';
 import { startProfile } from './panels/profile.js';
-import { watchRecording } from './panels/recording.js';
-import { takeSafety } from './panels/safety.js';
+import { takeRecording, watchRecording } from './panels/recording.js';
+import { takeSafety, watchSafety } from './panels/safety.js';
 import { baseName, save, saveAs } from './panels/saving.js';
 import { Selected } from './panels/selected.js';
 import { stop } from './panels/stop.js';
@@ -48,6 +48,7 @@ function takeMessage(message) {
   }
   if (message.do === 'events') takeEvents(message.events);
   if (message.do === 'safety') takeSafety(message.stages);
+  if (message.do === 'recording') takeRecording(/** @type {any} */ (message));
   if (message.do === 'clients') {
     state.clients = message.count;
     changed('clients');
@@ -69,18 +70,20 @@ function takeWelcome(message) {
   changed('welcome');
 }
 
-/** The revision that the page was made to suit last. */
-let suited = 0;
+/** The scene that the page was made to suit last. */
+let suited = { revision: 0, dimension: 0 };
 
 /** What follows from a new scene: a title, and a view that suits it. */
 function suitView() {
   const { scene, view } = state;
   // A scene that was saved comes again as it was.
-  if (!scene || scene.revision === suited) return;
-  suited = scene.revision;
+  if (!scene || scene.revision === suited.revision) return;
+  const { dimension: before } = suited;
+  suited = scene;
   document.title = `${baseName(scene.file ?? scene.name)} · palpate`;
   const isPlane = scene.dimension === 2;
   if (isPlane && (view.mode === 'space' || view.mode === 'slice')) setView({ mode: 'plane' });
+  if (!isPlane && before === 2 && view.mode === 'plane') setView({ mode: 'space' });
   if (state.selection !== null && (scene.by === 'open' || valueAt(state.selection) === undefined)) select(null);
   const last = scene.bodies.length - 1;
   if (view.compared.some((body) => body > last)) {
@@ -98,6 +101,7 @@ function connect(token) {
       const start = performance.now();
       takeFrame(frame);
       watchRecording(frame);
+      watchSafety(frame);
       performance.measure('take a frame', { start });
     },
     message: takeMessage,

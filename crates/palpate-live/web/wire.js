@@ -10,8 +10,8 @@
  *   normal: number[], depth: number, largestForce: number, body: number, contact: boolean,
  *   slipping: boolean }} Point
  * @typedef {{ dimension: number, stopped: boolean, held: boolean, acted: boolean,
- *   recording: boolean, touring: boolean, replaying: boolean, revision: number, tick: number, time: number,
- *   force: number, depth: number, cost: number, lateness: number, taken: number,
+ *   recording: boolean, touring: boolean, replaying: boolean, lifted: boolean, revision: number,
+ *   tick: number, time: number, force: number, depth: number, cost: number, lateness: number, taken: number,
  *   given: number, kept: number, evaluations: number, lost: number, points: Point[] }} Frame
  * @typedef {{ dimension: number, id: number, revision: number, counts: number[],
  *   first: number[], last: number[], half: boolean, values: Uint16Array | Float32Array }} Grid
@@ -61,6 +61,7 @@ export function decodeFrame(data) {
     recording: (flags & 8) !== 0,
     touring: (flags & 16) !== 0,
     replaying: (flags & 32) !== 0,
+    lifted: (flags & 64) !== 0,
     revision: data.getUint32(4, true),
     tick: Number(data.getBigUint64(8, true)),
     time: data.getFloat64(16, true),

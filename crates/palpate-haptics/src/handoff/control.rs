@@ -14,6 +14,7 @@ use crate::accepted_bodies::AcceptedBodies;
 use crate::bodies::{Bodies, is_usable};
 use crate::error::HapticsError;
 use crate::event::Event;
+use crate::guide::Guide;
 use crate::live::Snapshot;
 use crate::protection::Protection;
 use crate::tool::Coupling;
@@ -32,6 +33,8 @@ pub struct Control<const D: usize> {
     /// The number of bodies in the newest scene.
     pub(super) bodies: usize,
     pub(super) most_bodies: usize,
+    /// The number of contact points.
+    pub(super) points: usize,
     /// The protection of a [`Servo`](crate::Servo) and its rate [Hz]; `None` for an
     /// [`UnprotectedServo`](crate::UnprotectedServo).
     pub(super) protection: Option<(Arc<Protection<D>>, f64)>,
@@ -138,6 +141,32 @@ impl<const D: usize> Control<D> {
         Ok(())
     }
 
+    /// Lifts the hand off the bodies, or sets it down; see [`Servo::lift`](crate::Servo::lift).
+    pub fn lift(&mut self, is_lifted: bool) {
+        self.edit(|edits| edits.is_lifted = Some(is_lifted));
+    }
+
+    /// Replaces the guides of every contact point from the next tick on. For a
+    /// [`Servo`](crate::Servo), they are as soft as its device requires; the result is returned as in
+    /// [`Servo::accepted_guides`](crate::Servo::accepted_guides). For an
+    /// [`UnprotectedServo`](crate::UnprotectedServo) they stay unchanged and the list is empty.
+    ///
+    /// # Errors
+    ///
+    /// As [`Protection::accept_guides`].
+    pub fn replace_guides(
+        &mut self,
+        guides: &[Guide<D>],
+    ) -> Result<Vec<Accepted>, HapticsError> {
+        let (guides, accepted) = match &self.protection {
+            Some((protection, rate)) => protection.accept_guides(guides, *rate)?,
+            None => (guides.to_vec(), Vec::new()),
+        };
+        let points = self.points;
+        self.edit(|edits| edits.guides = Some(vec![guides; points]));
+        Ok(accepted)
+    }
+
     /// Drops replaced bodies that the servo has returned; every edit does so too.
     pub fn collect(&mut self) {
         self.sender.collect(|edits| {
@@ -146,6 +175,8 @@ impl<const D: usize> Control<D> {
             edits.max_force = f64::INFINITY;
             edits.max_torque = f64::INFINITY;
             edits.gripper_force = None;
+            edits.is_lifted = None;
+            edits.guides = None;
         });
     }
 

@@ -21,6 +21,7 @@ pub use servo_end::ServoEnd;
 use exchange::{Medium, Native, edit_channel, latest};
 
 use crate::accepted_bodies::AcceptedBodies;
+use crate::guide::Guide;
 use crate::live::{Progress, Snapshot};
 use crate::servo::{AnyServo, Key};
 
@@ -113,6 +114,7 @@ pub fn handoff<const D: usize>(
         touches: servo.touches().to_vec(),
         tool: servo.held_tool(),
         is_stopped: servo.is_stopped(),
+        is_lifted: servo.is_lifted(),
         safety: servo.stage_ticks(),
         buttons: servo.buttons(),
         gripper: servo.gripper(),
@@ -131,6 +133,7 @@ pub fn handoff<const D: usize>(
         flags: flags.clone(),
         bodies,
         most_bodies,
+        points: servo.touches().len(),
         protection: protection.map(|protection| (protection, rate)),
         requested_coupling: servo.requested_coupling(),
     };
@@ -159,13 +162,25 @@ struct Edits<const D: usize> {
     max_torque: f64,
     /// The force wanted of the gripper [N]; `None` to leave it as it is.
     gripper_force: Option<f64>,
+    /// Whether the hand is lifted off the bodies; `None` to leave it as it is.
+    is_lifted: Option<bool>,
+    /// The new guides of each contact point; after the tick that applies them, the old ones, for the
+    /// sender to drop.
+    guides: Option<Vec<Vec<Guide<D>>>>,
 }
 
 impl<const D: usize> Default for Edits<D> {
     fn default() -> Self {
         let none = f64::INFINITY;
-        let (bodies, poses, gripper_force) = (None, Vec::new(), None);
-        Self { bodies, poses, max_force: none, max_torque: none, gripper_force }
+        Self {
+            bodies: None,
+            poses: Vec::new(),
+            max_force: none,
+            max_torque: none,
+            gripper_force: None,
+            is_lifted: None,
+            guides: None,
+        }
     }
 }
 

@@ -65,6 +65,12 @@ impl<const D: usize> ServoEnd<D> {
         if let Some(force) = edits.gripper_force {
             servo.set_gripper_force(force);
         }
+        if let Some(is_lifted) = edits.is_lifted {
+            servo.lift(is_lifted);
+        }
+        if let Some(guides) = &mut edits.guides {
+            servo.exchange_guides(guides);
+        }
         self.receiver.give_back(parcel);
     }
 
@@ -90,6 +96,7 @@ impl<const D: usize> ServoEnd<D> {
             snapshot.events_lost = events_lost;
             snapshot.tool = servo.held_tool();
             snapshot.is_stopped = servo.is_stopped();
+            snapshot.is_lifted = servo.is_lifted();
             snapshot.safety = servo.stage_ticks();
             snapshot.buttons = servo.buttons();
             snapshot.gripper = servo.gripper();

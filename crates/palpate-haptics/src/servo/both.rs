@@ -96,6 +96,16 @@ macro_rules! methods_of_both {
                 self.renderer.stop(is_stopped);
             }
 
+            /// Lifts the hand off the bodies from the next tick on, as a clutch does, or sets it down.
+            /// A hand that is lifted feels neither bodies nor guides: proxy and tool are where the
+            /// device is, through bodies too. Where it is set down they are placed anew, as in the
+            /// first tick; in a body, the force rises from zero.
+            ///
+            /// Real-time: allocates nothing, takes no lock, cannot panic.
+            pub fn lift(&mut self, is_lifted: bool) {
+                self.renderer.lift(is_lifted);
+            }
+
             /// Moves a body before the next tick; see [`Bodies::set_pose`](crate::Bodies::set_pose).
             ///
             /// Real-time: allocates nothing, takes no lock, cannot panic.

@@ -5,6 +5,8 @@
 
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
+mod guides;
+mod lift;
 mod safety;
 
 use std::hint::black_box;
@@ -20,7 +22,6 @@ use crate::energy::Energy;
 use crate::error::HapticsError;
 use crate::event::{Event, EventKind, Reaction};
 use crate::gripper::GripperPort;
-use crate::guide::Guide;
 use crate::nearby::Nearby;
 use crate::options::ServoOptions;
 use crate::ports::{Port, TurningPort};
@@ -113,6 +114,7 @@ impl<const D: usize> Renderer<D> {
                 map: WorkspaceMap::default(),
                 arrival: Arrival { late: 0.0, elapsed: None, is_ready: false },
                 rise_step: 1.0 / (rate * rise_time),
+                is_lifted: false,
             },
             arrivals: Arrivals::new(rate)?,
             buttons: Buttons::NONE,
@@ -206,26 +208,6 @@ impl<const D: usize> Renderer<D> {
         &self.contacts.events
     }
 
-    /// The guides of a contact point, as the last tick left them; none for a point that is not
-    /// there.
-    ///
-    /// Real-time: allocates nothing, takes no lock, cannot panic.
-    ///
-    /// ```
-    /// use palpate_field::{Shape, Vector};
-    /// use palpate_haptics::{Guide, GuideOptions, PointState, UnprotectedServo};
-    /// let mut servo = UnprotectedServo::new(Shape::circle(0.05)?, 1, Default::default())?;
-    /// servo.guide(&[Guide::to_point([0.0, 0.1], GuideOptions::default())?]);
-    /// servo.step(&[PointState::at_rest(Vector([0.0, 0.103]))]);
-    /// assert!(servo.guides(0)[0].is_engaged());
-    /// assert!((servo.guides(0)[0].last_force() - Vector([0.0, -0.9])).norm() < 1e-12);
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
-    #[must_use]
-    pub fn guides(&self, point: u32) -> &[Guide<D>] {
-        self.contacts.points.get(point as usize).map_or(&[], |point| &point.guides)
-    }
-
     /// Force and torque on each body in the last tick.
     #[must_use]
     pub fn reactions(&self) -> &[Reaction<D>] {
@@ -306,13 +288,6 @@ impl<const D: usize> Renderer<D> {
     pub(crate) fn set_turn(&mut self, turn: Option<TurnState<D>>) {
         if let Some(coupled) = self.coupled_tool_mut() {
             coupled.turn = turn;
-        }
-    }
-
-    /// Sets the guides of every contact point.
-    pub(super) fn guide(&mut self, guides: &[Guide<D>]) {
-        for point in &mut self.contacts.points {
-            point.guides = guides.to_vec();
         }
     }
 

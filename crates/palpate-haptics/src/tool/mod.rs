@@ -257,6 +257,25 @@ impl<const D: usize> Tool<D> {
         self.has_new_bodies = true;
     }
 
+    /// A tick of a tool that is lifted off the bodies: it is at the device, and touches nothing. The
+    /// next [`step`](Self::step) places it anew, as the first one did.
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    pub fn hover(&mut self, device: &ToolState<D>) {
+        self.events.clear();
+        self.lose_bodies();
+        let was = Before::of(&self.touch);
+        self.touch.lose();
+        self.pose = None;
+        self.hand_velocity = Vector::ZERO;
+        if device.is_usable() {
+            (self.touch.device, self.touch.pose) = (device.pose, device.pose);
+            self.hand_velocity = device.velocity;
+        }
+        self.tell_changes(was, 0.0);
+        self.tick += 1;
+    }
+
     /// Discards all evaluations of the bodies.
     fn lose_bodies(&mut self) {
         self.scan.forget();

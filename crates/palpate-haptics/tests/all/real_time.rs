@@ -9,7 +9,7 @@ use assert_no_alloc::assert_no_alloc;
 use palpate_devices::Tour;
 use palpate_field::{Pose, Rotation, Shape, Vector};
 use palpate_haptics::{
-    Bodies, Body, Buttons, DeviceProfile, EventKind, HandoffOptions, Material, PointState,
+    Bodies, Body, Buttons, DeviceProfile, EventKind, Guide, GuideOptions, HandoffOptions, Material, PointState,
     Progress, Protection, Reading, ServoOptions, Shell, Surface, Tool, ToolOptions, ToolState,
     UnprotectedServo, handoff,
 };
@@ -64,6 +64,11 @@ fn a_tick_with_its_hand_off_allocates_and_frees_nothing() {
         if tick % 2 == 0 {
             let pose = Pose::translation(Vector([0.0, 1e-5 * tick as f64, 0.0]));
             control.set_poses(&[(0, pose)]).unwrap();
+        }
+        if tick % 5 == 0 {
+            control.lift(tick % 10 == 0);
+            let plane = Guide::to_point(Vector([0.0, 0.1, 0.0]), GuideOptions::default());
+            control.replace_guides(&vec![plane.unwrap(); tick % 4]).unwrap();
         }
         let height = if tick % 10 < 5 { 0.06 } else { 0.035 };
         let states = [PointState::at_rest(Vector([0.0, height, 0.0])); 2];

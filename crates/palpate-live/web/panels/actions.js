@@ -9,6 +9,7 @@ import { goBack, takeScene } from './edits.js';
 import { ask, download, fileName, page, tell, tellError } from './page.js';
 import { openTrace } from './recording.js';
 import { baseName } from './saving.js';
+import { replaceScene } from './unsaved.js';
 
 /** The speed of the servo's time, also while it is held. */
 export const clock = { speed: 1 };
@@ -29,11 +30,13 @@ export async function openFile(file) {
   }
 }
 
-/** @param {string} name @param {string} text */
-export async function openText(name, text) {
-  const answer = await ask({ do: 'open', name, text });
-  if (answer?.do === 'scene') takeScene(answer);
-  if (answer) tell(`${baseName(name)} is open.`);
+/** Opens another scene. @param {string} name @param {string} text */
+export function openText(name, text) {
+  return replaceScene(baseName(name), async () => {
+    const answer = await ask({ do: 'open', name, text });
+    if (answer?.do === 'scene') takeScene(answer);
+    if (answer) tell(`${baseName(name)} is open.`);
+  });
 }
 
 /** Gives the scene as a file. */

@@ -4,6 +4,8 @@
 
 /** Where new parts go, so that they can be seen: beside what is there. */
 
+import { SCENE, frameIn, placed } from '../scene/frames.js';
+import { inSpace, mean } from '../scene/vectors.js';
 import { state } from '../state.js';
 import { ONE, listOf, makerOf } from './nodes.js';
 import { cornersOf, extent } from './numbers.js';
@@ -29,9 +31,8 @@ export function aboutShape(shape, depth = 0) {
   if (list) return aboutShape(shape[list][0], depth + 1);
   if (shape?.of !== undefined) {
     const { centre, reach } = aboutShape(shape.of, depth + 1);
-    const factor = typeof shape.scale === 'number' ? shape.scale : 1;
-    const by = Array.isArray(shape.translate) ? shape.translate : [];
-    return { centre: none.centre.map((_, axis) => factor * (centre[axis] ?? 0) + (by[axis] ?? 0)), reach: factor * reach };
+    const frame = frameIn(SCENE, shape) ?? SCENE;
+    return { centre: placed(frame, inSpace(centre)).slice(0, dimension), reach: frame.scale * reach };
   }
   const maker = makerOf(shape);
   if (!maker || ONE.includes(maker)) return none;
@@ -40,7 +41,17 @@ export function aboutShape(shape, depth = 0) {
     .flatMap((/** @type {any} */ { key }) => [shape[maker]?.[key]].flat(9)
       .filter((value) => typeof value === 'number').map((value) => Math.abs(value) * (WHOLE.test(key) ? 0.5 : 1)));
   const reach = Math.max(0, ...lengths);
-  return reach > 0 ? { centre: none.centre, reach } : none;
+  const points = entry?.origin.startsWith('given by its points') ? pointsIn(Object.values(shape[maker]), dimension) : [];
+  const centre = points.length > 0 ? mean(points.map(inSpace)).slice(0, dimension) : none.centre;
+  return reach > 0 ? { centre, reach } : none;
+}
+
+/** The points in the numbers of a primitive. @param {any} value @param {number} dimension
+ * @returns {number[][]} */
+function pointsIn(value, dimension) {
+  if (!Array.isArray(value)) return [];
+  const isPoint = value.length === dimension && typeof value[0] === 'number';
+  return isPoint ? [value] : value.flatMap((inner) => pointsIn(inner, dimension));
 }
 
 /** A shape that is moved. @param {any} shape @param {number[]} by [m] */

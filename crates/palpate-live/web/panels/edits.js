@@ -21,6 +21,8 @@ const SCENE_WAIT = 1000;
 /** @type {Order[]} */
 const queue = [];
 let isBusy = false;
+/** Ends when no edit is on its way. */
+let working = Promise.resolve();
 
 /** @param {Order} order */
 const places = (order) => (order.do === 'edit' ? order.changes.map(({ at }) => at).join(' ') : '');
@@ -41,8 +43,11 @@ export function goBack(way) {
 /** @param {Order} order */
 function enqueue(order) {
   queue.push(order);
-  if (!isBusy) void sendAll();
+  if (!isBusy) working = sendAll();
 }
+
+/** Waits until no edit is on its way. */
+export const settled = () => working;
 
 async function sendAll() {
   isBusy = true;

@@ -12,12 +12,10 @@ import { html } from '../vendor/htm-preact.js';
 import { changed, state } from '../state.js';
 import { count, short } from './numbers.js';
 import { useTopics } from './page.js';
-import { actingStages } from './safety.js';
+import { actingStages, useClock } from './safety.js';
 
 /** Events that are kept. */
 const KEPT = 200;
-/** Frames of which the safety line tells: a second. */
-const RECENT = 60;
 
 let number = 0;
 
@@ -60,12 +58,12 @@ export function operations() {
 /** The line at the foot: what the safety chain does, in words. */
 export function Status() {
   useTopics(['frame', 'scene', 'safety', 'connection'], 200);
+  useClock();
   const { scene, connection } = state;
   const newest = state.history[state.history.length - 1];
   const limit = scene?.device?.max_force;
-  const hasActed = state.history.slice(-RECENT).some(({ acted }) => acted);
   const safety = connection !== 'live' ? 'not connected' : newest?.stopped ? 'stopped, all forces are zero'
-    : actingStages() || (hasActed ? 'a stage changes the force' : 'ok');
+    : actingStages() || 'ok';
   const isCalm = safety === 'ok';
   return html`
     <span class=${isCalm ? 'safety' : 'safety acting'} title="What stands between the wanted force and the hand: the tab Safety explains each stage">safety: <b>${safety}</b></span>

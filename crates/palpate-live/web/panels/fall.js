@@ -64,13 +64,24 @@ function outcome() {
   return `After ${time(lasts())} the ball ${words}: ${times}${first}${speed}.`;
 }
 
+/** Each bounce with its time and its speed. @param {{ bounces: import('../plane/fall.js').Fall['bounces'] }} given */
+function Bounces({ bounces }) {
+  if (bounces.length === 0) return null;
+  return html`<div class="bounces" tabindex="0" role="region" aria-label="Bounces"><table>
+    <thead><tr><th scope="col">bounce</th><th scope="col">time <span class="unit">[s]</span></th>
+      <th scope="col">speed <span class="unit">[m/s]</span></th></tr></thead>
+    <tbody>${bounces.map((bounce, index) => html`<tr key=${index}><th scope="row">${index + 1}</th>
+      <td>${bounce.time.toFixed(4)}</td><td>${short(bounce.speed)}</td></tr>`)}</tbody>
+  </table></div>`;
+}
+
 export function FallingBall() {
   useTopics(['scene']);
   useFall();
   const scale = extent(state.scene?.bounds);
   const { isShown, centre, radius, restitution, gravity, answer, refused, isPlacedByClick } = fall;
   const last = lasts();
-  return html`<div class="profile" role="region" aria-label="Falling ball" tabindex="0">
+  return html`<div class="profile fall" role="region" aria-label="Falling ball" tabindex="0">
     <div class="form">
       <div class="switches">
         <${Switch} label="falling ball" value=${isShown} help="A ball that falls onto the scene; each touch is proven to be the first"
@@ -111,6 +122,7 @@ export function FallingBall() {
             <tr><th scope="row">computed in</th><td>${time(answer.ns / 1e9)}</td></tr>
           </tbody></table>
         </div>`}
-    </div>`}
+    </div>
+    ${answer && html`<${Bounces} bounces=${answer.bounces} />`}`}
   </div>`;
 }

@@ -42,6 +42,7 @@ export function Header({ help }) {
   return html`
     <h1 class="brand"><img src="favicon.svg" alt="" width="20" height="20" />palpate</h1>
     <${Menu} />
+    <${Steps} />
     <span class="device" title="The device that the hand holds, and how often its force is computed">
       ${scene?.device ? deviceInWords(scene.device) : ''}${welcome?.rate ? ` · ${rateInWords(welcome.rate)}` : ''}
     </span>
@@ -73,6 +74,21 @@ function Connection() {
     <span class="dot" aria-hidden="true"></span>${words[state.connection]}</span>`;
 }
 
+/** One edit back, and forth again. */
+function Steps() {
+  const { scene } = state;
+  const step = (/** @type {string} */ name, /** @type {string} */ help, /** @type {string} */ key,
+    /** @type {boolean} */ isPossible, /** @type {() => void} */ run, /** @type {string} */ flip) => html`
+    <button class="step" onClick=${run} disabled=${!isPossible} title=${`${help}: Ctrl ${key}`}
+      aria-label=${`${help}, Ctrl ${key}`} aria-keyshortcuts=${`Control+${key}`}>
+      <svg viewBox="0 0 16 16" width="14" height="14" aria-hidden="true"><path transform=${flip} fill="none" stroke="currentColor"
+        stroke-width="1.6" d="M6 2.5 2.5 6 6 9.5M2.5 6h7.5a3.5 3.5 0 0 1 0 7H6" /></svg> <span>${name}</span></button>`;
+  return html`<span class="steps" role="group" aria-label="Steps of editing">
+    ${step('undo', 'Undo the last edit', 'Z', scene?.can_undo ?? false, actions.undo, '')}
+    ${step('redo', 'Make the edit again', 'Y', scene?.can_redo ?? false, actions.redo, 'matrix(-1 0 0 1 16 0)')}
+  </span>`;
+}
+
 /** The scene's name, and what can be done with its file. */
 function Menu() {
   useTopics(['scene', 'notice']);
@@ -101,7 +117,7 @@ function Menu() {
   return html`<div class="menu" ref=${box}>
     <button class="scene-name" aria-expanded=${String(isOpen)} onClick=${() => setIsOpen(!isOpen)}
       title=${scene?.file ?? 'This scene has no file: Save as… gives it one'}>
-      <span class="cut">${scene ? baseName(scene.file ?? scene.name) : 'no scene'}</span>${scene?.file === null && html` <span class="quiet">no file</span>`}${scene && !scene.is_saved ? html`<span class="unsaved" title="not saved"> •</span>` : ''}
+      <span class="cut">${scene ? baseName(scene.file ?? scene.name) : 'no scene'}</span>${scene?.file === null && html` <span class="quiet">no file</span>`}${scene && !scene.is_saved ? html`<span class="unsaved" title="Not saved: the program keeps the edits until it ends, also without a page"> •</span>` : ''}
       <span class="caret open" aria-hidden="true"></span>
     </button>
     <input type="file" hidden accept=".json,.csv,application/json,text/csv" ref=${file} aria-label="Scene or trace"
@@ -117,8 +133,6 @@ function Menu() {
       ${item('Download the scene', actions.downloadScene, !scene)}
       ${item('Download the picture', actions.downloadPicture, !scene)}
       ${item('Copy a link to this view', copyLink, !scene)}
-      ${item('Undo', actions.undo, !scene?.can_undo, 'Ctrl Z')}
-      ${item('Redo', actions.redo, !scene?.can_redo, 'Ctrl Y')}
       ${page.shownLink && html`<li class="link"><label>Link <input readonly value=${page.shownLink}
         onFocus=${(/** @type {any} */ event) => event.currentTarget.select()} /></label></li>`}
       <li class="menu-title">Gallery</li>

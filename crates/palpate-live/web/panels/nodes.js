@@ -60,7 +60,7 @@ export function listOf(shape) {
 }
 
 /** Whether an object only moves and turns what is under `of`. @param {any} shape */
-function isPlacement(shape) {
+export function isPlacement(shape) {
   return shape?.of !== undefined && PLACES.includes(makerOf(shape) ?? '');
 }
 

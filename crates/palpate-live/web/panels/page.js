@@ -57,9 +57,12 @@ export function tell(text, kind = 'word', actions = []) {
   if (actions.length === 0) setTimeout(() => dismiss(id), kind === 'bad' ? 2 * TOAST_TIME : TOAST_TIME);
 }
 
+/** Why something failed, in words. @param {unknown} error */
+export const reasonOf = (error) => (error instanceof Error ? error.message : String(error));
+
 /** Tells why something failed. @param {unknown} error */
 export function tellError(error) {
-  tell(error instanceof Error ? error.message : String(error), 'bad');
+  tell(reasonOf(error), 'bad');
 }
 
 /** Asks the program; tells a refusal, and then gives null.

@@ -11,29 +11,36 @@ import { ask, download, fileName, page, tell, tellError } from './page.js';
 /** The names of the columns and a row are shorter [bytes]. */
 const LONGEST_LINES = 4096;
 
-/** The frames between which is recorded; of the recording that goes on, the last so far.
- * @type {{ first: import('../wire.js').Frame, last: import('../wire.js').Frame } | null} */
-let span = null;
+/** What the program told of the newest recording. @type {{ rows: number, most: number } | null} */
+let told = null;
+/** Whether the end of a recording is to be told. */
+let isEndAwaited = false;
 let isRecording = false;
 let isReplaying = false;
 
-/** What was recorded, or is: "12.3 s, 12 300 rows". */
+/** How much was recorded, or is so far: "12 300 of at most 200 000 rows"; empty while nobody knows. */
 export function recorded() {
-  if (!span) return '';
-  const { first, last } = span;
-  // A row for each point in each tick.
-  const rows = (last.tick - first.tick) * last.points.length;
-  return `${(last.time - first.time).toFixed(1)} s, ${count(rows)} rows`;
+  return told ? `${count(told.rows)} of at most ${count(told.most)} rows` : '';
+}
+
+/** Takes what the program tells of its recording.
+ * @param {{ on: boolean, rows: number, most: number }} message */
+export function takeRecording({ on, rows, most }) {
+  told = { rows, most };
+  if (isEndAwaited && !on) {
+    tell(`Recorded ${count(rows)} rows${rows >= most ? ', the most that are kept' : ''}.`, 'word', [
+      { name: 'Replay', run: () => void replay(true) }, { name: 'Export CSV', run: () => void downloadTrace() },
+    ]);
+  }
+  isEndAwaited = on;
+  changed('playback');
 }
 
 /** Takes note of what frames say of recording and replaying. @param {import('../wire.js').Frame} frame */
 export function watchRecording(frame) {
-  if (frame.recording && (!isRecording || !span || frame.tick < span.last.tick)) span = { first: frame, last: frame };
-  if (frame.recording && span) span.last = frame;
-  if (isRecording && !frame.recording) {
-    tell(`Recorded ${recorded()}.`, 'word', [
-      { name: 'Replay', run: () => void replay(true) }, { name: 'Export CSV', run: () => void downloadTrace() },
-    ]);
+  if (frame.recording && !isRecording) {
+    told = null;
+    isEndAwaited = true;
   }
   if (isReplaying && !frame.replaying) tell('The replay is over.');
   if (isReplaying !== frame.replaying) changed('playback');

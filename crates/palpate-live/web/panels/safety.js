@@ -9,13 +9,17 @@
  */
 
 import { changed, state } from '../state.js';
-import { html } from '../vendor/htm-preact.js';
+import { html, useEffect, useReducer } from '../vendor/htm-preact.js';
 import { count, short } from './numbers.js';
 import { useTopics } from './page.js';
 
 /** How long a stage that acted is told of in the foot line, and marked in the list [ms]. */
 const NOW = 1500;
-const RECENT = 5000;
+/** Between two looks at the clock [ms]: a stage no longer acts without a message that says so. */
+const LOOK = 500;
+
+/** When a frame last told that some stage acts, on the clock of `performance.now()`. */
+let actedAt = -Infinity;
 
 /** For the foot line, and what the stage does. @type {Record<string, [string, string]>} */
 const WORDS = {
@@ -47,16 +51,32 @@ export function takeSafety(stages) {
   changed('safety');
 }
 
-/** The stages that act now, for the foot line; empty if none does. */
+/** Takes note of what frames say of the stages. @param {import('../wire.js').Frame} frame */
+export function watchSafety(frame) {
+  if (frame.acted) actedAt = performance.now();
+}
+
+/** @param {number} time on the clock of `performance.now()` */
+const isNow = (time) => performance.now() - time < NOW;
+
+/** What the stages do now, for the foot line; empty if none acts. */
 export function actingStages() {
-  const now = performance.now();
-  return state.safety.filter(({ acted }) => now - acted < NOW)
-    .map(({ name }) => WORDS[name]?.[0] ?? `${name} acts`).join(', ');
+  const names = state.safety.filter(({ acted }) => isNow(acted)).map(({ name }) => WORDS[name]?.[0] ?? `${name} acts`);
+  return names.join(', ') || (isNow(actedAt) ? 'a stage changes the force' : '');
+}
+
+/** Draws a component anew at each look at the clock. */
+export function useClock() {
+  const [, redraw] = useReducer((/** @type {number} */ looks) => looks + 1, 0);
+  useEffect(() => {
+    const timer = setInterval(() => redraw(undefined), LOOK);
+    return () => clearInterval(timer);
+  }, []);
 }
 
 export function Safety() {
-  useTopics(['safety', 'frame', 'scene'], 500);
-  const now = performance.now();
+  useTopics(['safety', 'scene'], LOOK);
+  useClock();
   const rate = state.welcome?.rate ?? 1000;
   const limit = state.scene?.device?.max_force;
   const kept = state.history[state.history.length - 1]?.kept ?? 0;
@@ -65,9 +85,9 @@ export function Safety() {
       ${limit !== undefined && html` The largest force is ${short(limit)} N.`} So far ${short(1000 * kept)} mJ were kept back.</p>
     ${state.safety.length === 0 && html`<p class="quiet">No stage has changed a force since this page came.</p>`}
     <ol>${state.safety.map(({ name, ticks, acted }) => {
-      const isRecent = now - acted < RECENT;
-      return html`<li key=${name} class=${isRecent ? 'acting' : ''}>
-        <b>${name}</b> <span class="quiet">${WORDS[name]?.[1] ?? ''}</span> <span class="stage-ticks">· ${isRecent ? 'acts: ' : ''}${ticks === 0 ? 'never' : `${count(ticks)} ${ticks === 1 ? 'tick' : 'ticks'}, ${short(ticks / rate)} s`}</span>
+      const isActing = isNow(acted);
+      return html`<li key=${name} class=${isActing ? 'acting' : ''}>
+        <b>${name}</b> <span class="quiet">${WORDS[name]?.[1] ?? ''}</span> <span class="stage-ticks">· ${isActing ? 'acts: ' : ''}${ticks === 0 ? 'never' : `${count(ticks)} ${ticks === 1 ? 'tick' : 'ticks'}, ${short(ticks / rate)} s`}</span>
       </li>`;
     })}</ol>
   </div>`;

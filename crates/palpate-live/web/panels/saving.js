@@ -8,15 +8,15 @@ import { state } from '../state.js';
 import { html, useState } from '../vendor/htm-preact.js';
 import { Dialog, closeDialog, openDialog } from './dialog.js';
 import { takeScene } from './edits.js';
-import { fileName, page, tell } from './page.js';
+import { fileName, page, reasonOf, tell } from './page.js';
 
 /** The last part of a path. @param {string | null | undefined} path */
 export function baseName(path) {
   return (path ?? '').replace(/^.*[\\/]/, '');
 }
 
-/** @param {import('../wire.js').Message} more */
-async function ask(more) {
+/** Writes the scene to a file. @param {{ as?: string, force?: boolean }} [more] */
+export async function write(more = {}) {
   const answer = await page.wire?.ask({ do: 'save', ...more });
   if (answer?.do === 'scene') takeScene(answer);
 }
@@ -31,31 +31,33 @@ export async function save(force = false) {
     return;
   }
   try {
-    await ask(force ? { force } : {});
+    await write({ force });
     tell(`${baseName(scene.file)} is saved.`);
   } catch (error) {
-    const text = error instanceof Error ? error.message : String(error);
     const other = { name: 'Save as…', run: saveAs };
-    tell(text, 'bad', force ? [other] : [{ name: 'Save all the same', run: () => void save(true) }, other]);
+    tell(reasonOf(error), 'bad', force ? [other] : [{ name: 'Save all the same', run: () => void save(true) }, other]);
   }
 }
 
-/** Asks for the name of another file. */
-export function saveAs() {
-  if (state.scene) openDialog(SaveAs);
+/** Asks for the name of another file. @param {() => void} [then] what follows once it is written */
+export function saveAs(then) {
+  if (state.scene) openDialog(() => html`<${SaveAs} then=${then} />`);
 }
 
-function SaveAs() {
+/** @param {{ then?: () => void }} given */
+function SaveAs({ then }) {
   const [name, setName] = useState(state.scene?.file ? fileName('-2.json') : fileName('.json'));
   const [refused, setRefused] = useState('');
+  const given = name.trim();
+  const as = given === '' || given.endsWith('.json') ? given : `${given}.json`;
   const send = async (/** @type {boolean} */ force) => {
-    const as = /\.json$/i.test(name.trim()) ? name.trim() : `${name.trim()}.json`;
     try {
-      await ask(force ? { as, force } : { as });
+      await write({ as, force });
       closeDialog();
       tell(`The scene is saved as ${as}.`);
+      then?.();
     } catch (error) {
-      setRefused(error instanceof Error ? error.message : String(error));
+      setRefused(reasonOf(error));
     }
   };
   return html`<${Dialog} title="Save as">
@@ -72,6 +74,7 @@ function SaveAs() {
         }} />
       <p class="quiet" id="save-where">${state.scene?.file ? `In the folder of ${state.scene.file}.`
         : 'In the folder where the program was started.'} It becomes the file of the scene.</p>
+      <p role="status">${as !== given && html`A scene file ends in .json: the name will be <b>${as}</b>.`}</p>
       ${refused && html`<p class="problem" role="alert">${refused}</p>`}
       <div class="buttons">
         <button>Save</button>

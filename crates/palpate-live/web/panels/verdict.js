@@ -5,6 +5,7 @@
 /** An answer of the program in words: what is proven beside what a local method says. */
 
 import { SEPARATION, isFound, isFoundOfPair } from '../plane/drawn.js';
+import { METHODS, PAIR_METHODS, toys } from '../plane/toys.js';
 import { html } from '../vendor/htm-preact.js';
 import { count, short, time } from './numbers.js';
 
@@ -13,10 +14,14 @@ const DRAWN = ['id', 'do', 'path', 'points', 'boxes'];
 
 const LENGTHS = /_m$|^(value|minimum|lower|upper|gap|separation|distance|depth|radius|bounds|bracket|tolerance|error)$/;
 
+/** The names of methods. @type {Record<string, string>} */
+const NAMES = { ...METHODS, ...PAIR_METHODS };
+
 /** @param {string} key @param {any} value @returns {string | null} */
 function written(key, value) {
   if (value === null) return '–';
   if (typeof value === 'boolean') return value ? 'yes' : 'no';
+  if (key === 'method') return NAMES[value] ?? value;
   if (typeof value === 'string') return value.replace(/_/g, ' ');
   if (typeof value === 'number') {
     if (key === 'ns' || key.endsWith('_ns')) return time(value / 1e9);
@@ -43,6 +48,14 @@ function Table({ title, answer }) {
   return html`<table><caption>${title}</caption><tbody>
     ${rows.map(([key, text]) => html`<tr key=${key}><th scope="row">${key}</th><td>${text}</td></tr>`)}
   </tbody></table>`;
+}
+
+/** A local search with how it ended. Only of the memoir's descent does the page know how many
+ * iterations it had. @param {any} local */
+function withEnd(local) {
+  if (local.method !== 'naive' || typeof local.steps !== 'number') return local;
+  const isUsedUp = local.steps >= toys.iterations;
+  return { ended: isUsedUp ? 'iterations used up' : 'before its iterations were used up: no step was left', ...local };
 }
 
 /** What the answers say about each other, in sentences. @param {string} toy @param {any} result
@@ -107,7 +120,7 @@ export function Verdict({ toy, result }) {
   return html`<div class=${`verdict ${state}`} role="status" aria-label=${`Verdict of ${toy}`}>
     ${said.map(({ text }) => html`<b key=${text}>${text}</b>`)}
     <${Table} title="proven" answer=${certified} />
-    ${locals.map((one, index) => html`<${Table} key=${index} answer=${one}
+    ${locals.map((one, index) => html`<${Table} key=${index} answer=${withEnd(one)}
       title=${toy === 'pair' ? startTitle(one, index, certified) : 'local'} />`)}
     <${Table} title="enclosing circle" answer=${enclosing} />
     <${Table} title="answer" answer=${rest} />

@@ -16,14 +16,14 @@ import { listen, state } from '../state.js';
 
 /** Local methods for an element, by the names that the program knows. */
 export const METHODS = {
-  naive: 'naive descent',
+  naive: 'memoir’s descent',
   projected_gradient: 'projected gradient',
   frank_wolfe: 'Frank–Wolfe',
   golden_section: 'golden section',
   macklin: 'Macklin',
 };
 
-/** How the naive descent finds gradients: as the memoir has it, first. */
+/** How the memoir's descent finds gradients: as the memoir has it, first. */
 export const GRADIENTS = {
   dichotomy: 'dichotomy',
   adaptive_dichotomy: 'dichotomy, adaptive',
@@ -57,7 +57,7 @@ export const toys = {
   /** µ, nearer than which steps get no shorter [m]; null leaves it to the program.
    * @type {number | null} */
   mu: null,
-  /** How the naive descent finds gradients, one of `GRADIENTS`. */
+  /** How the memoir's descent finds gradients, one of `GRADIENTS`. */
   gradient: 'dichotomy',
   iterations: 64,
   /** Where the local search starts in the element: weights of its corners.

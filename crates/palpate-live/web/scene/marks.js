@@ -21,6 +21,9 @@ export const COLORS = {
   proof: 'rgba(158, 47, 120, 0.7)', cell: 'rgba(18, 60, 122, 0.7)',
 };
 
+/** How opaque a hand is that is lifted. */
+export const LIFTED = 0.55;
+
 /** A line across. @param {string} color @param {number} width @returns {Icon} */
 const line = (color, width) => (context, x, y) =>
   polyline(context, [{ x: x - 9, y }, { x: x + 9, y }], color, width, 'transparent');
@@ -39,6 +42,11 @@ const square = (color) => (context, x, y) => {
 /** @type {Record<string, [string, Icon]>} */
 const MARKS = {
   free: ['device point, free', (context, x, y, inks) => dot(context, { x, y }, 4, '#1b5fb0', inks.halo)],
+  lifted: ['lifted hand, which feels nothing', (context, x, y, inks) => {
+    context.globalAlpha = LIFTED;
+    ring(context, { x, y }, 5, '#1b5fb0', 1.5, inks.halo);
+    context.globalAlpha = 1;
+  }],
   device: ['device point in a body', (context, x, y, inks) => ring(context, { x, y }, 4, '#1b5fb0', 1.5, inks.halo)],
   proxy: ['proxy on the surface', (context, x, y, inks) => dot(context, { x, y }, 5, '#1b5fb0', inks.halo)],
   spring: ['spring to the pointer', (context, x, y, inks) =>

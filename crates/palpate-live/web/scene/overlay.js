@@ -17,7 +17,7 @@
 
 import { state } from '../state.js';
 import { arrow, dot, numbered, polyline, ring, spring } from './ink.js';
-import { COLORS, mark } from './marks.js';
+import { COLORS, LIFTED, mark } from './marks.js';
 import { centreOf, cornersOf } from './setting.js';
 import { along, dot as product, inSpace, mean, norm } from './vectors.js';
 
@@ -144,6 +144,13 @@ export function paintContacts(context, view, answer, inks) {
  * @param {Inks} inks */
 function paintPoint(context, { lens }, point, color, inks) {
   const { shown } = state.view;
+  if (state.frame?.lifted) {
+    mark('lifted');
+    context.globalAlpha = LIFTED;
+    ring(context, lens.project(point.device), 6, color, 1.5, inks.halo);
+    context.globalAlpha = 1;
+    return;
+  }
   const [device, proxy] = [lens.project(point.device), lens.project(point.proxy)];
   // A contact on the far side of a body lies behind it.
   const isHidden = point.contact && product(point.normal, lens.towards(point.proxy)) < -0.05;

@@ -54,6 +54,15 @@ export function setting() {
   return { dimension, box, isBounded: known !== null, centre: centreOf(box), size, bodies };
 }
 
+/** The setting whose box holds another box too. @param {Setting} current @param {Box | null} other
+ * @returns {Setting} */
+export function holding(current, other) {
+  if (!other) return current;
+  const low = current.box.low.map((part, axis) => Math.min(part, other.low[axis]));
+  const high = current.box.high.map((part, axis) => Math.max(part, other.high[axis]));
+  return { ...current, box: { low, high }, centre: centreOf({ low, high }) };
+}
+
 /** Red, green and blue from 0 to 1 of `#rrggbb`, of numbers from 0 to 255 or of parts of one.
  * @param {any} color @returns {number[]} */
 export function rgb(color) {

@@ -14,6 +14,7 @@
 
 import { createHand } from '../input/hand.js';
 import { createPointer } from '../input/pointer.js';
+import { boundsOfToys } from '../plane/bounds.js';
 import { connectFall, fall, layFall, listenFall, placeAbove, stepFall } from '../plane/fall.js';
 import { createVeil } from '../plane/veil.js';
 import { connectToys, layToys, listenToys } from '../plane/toys.js';
@@ -30,7 +31,7 @@ import { createPick } from './pick.js';
 import { Pictures } from './pictures.js';
 import { createPress } from './press.js';
 import { Probe } from './probe.js';
-import { comparison, setting } from './setting.js';
+import { comparison, holding, setting } from './setting.js';
 import { listenSlice, meet, slice } from './slice.js';
 import { Source } from './source.js';
 import { along, inSpace } from './vectors.js';
@@ -288,7 +289,8 @@ export function createStage(container, wire) {
     /** @param {string} name `reset`, `x`, `y`, `z`, `in`, `out` or a view of the scene */
     setCamera(name) {
       measure();
-      named.show(name, current());
+      const shown = current();
+      named.show(name, shown, state.view.mode === 'compare' ? shown : holding(shown, boundsOfToys(shown.dimension)));
       sceneChanged();
     },
     /** The picture with all that lies over it. @returns {Promise<Blob>} */

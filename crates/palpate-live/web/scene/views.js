@@ -43,8 +43,8 @@ export class Views {
   }
 
   /** @param {string} name of a view, or `reset`, `x`, `y`, `z`, `in`, `out`
-   * @param {Setting} setting */
-  show(name, setting) {
+   * @param {Setting} setting @param {Setting} all with what else there is to see */
+  show(name, setting, all) {
     const { orbit, flat } = this;
     if (name === 'in' || name === 'out') {
       const factor = name === 'in' ? STEP : 1 / STEP;
@@ -55,19 +55,19 @@ export class Views {
     const view = state.scene?.scene?.views?.find((/** @type {any} */ each) => each.name === name);
     if (view) this.showView(view, setting);
     else if (ALONG[name]) this.lookAlong(ALONG[name], setting);
-    else this.reset(setting);
+    else this.reset(setting, all);
   }
 
-  /** @param {Setting} setting */
-  reset(setting) {
+  /** @param {Setting} setting @param {Setting} [all] with what else there is to see */
+  reset(setting, all = setting) {
     const { orbit, flat } = this;
     orbit.size = setting.size;
     flat.size = setting.size;
     orbit.yaw = 0.6;
     orbit.pitch = 0.42;
-    this.fitOrbit(setting);
+    this.fitOrbit(all);
     this.lay(PLANES.xy, setting);
-    this.fit(setting);
+    this.fit(all);
   }
 
   /** Lays the plane through the middle of the scene. @param {{ right: number[], up: number[] }} axes

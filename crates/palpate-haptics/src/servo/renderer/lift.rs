@@ -1,0 +1,20 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! A hand that is lifted off the bodies.
+
+use super::Renderer;
+
+impl<const D: usize> Renderer<D> {
+    /// Whether the hand is [lifted](crate::Servo::lift) off the bodies.
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    #[must_use]
+    pub fn is_lifted(&self) -> bool {
+        self.setting.is_lifted
+    }
+
+    pub(crate) fn lift(&mut self, is_lifted: bool) {
+        self.setting.is_lifted = is_lifted;
+    }
+}

@@ -1,0 +1,165 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! A hand that is lifted off the bodies, and set down elsewhere; guides that are replaced.
+#![expect(clippy::unwrap_used, reason = "these are tests")]
+
+use crate::common::tools::smooth;
+use crate::common::{body, cuboid, without_limits};
+use palpate_field::{Point, Vector};
+use palpate_haptics::{
+    Acceptance, Bodies, DeviceProfile, EventKind, Guide, GuideOptions, HandoffOptions,
+    PointState, Progress, Protection, Recovery, Servo, ServoOptions, Shell, Surface, Tool,
+    ToolOptions, UnprotectedServo, handoff,
+};
+
+/// A slab of ±1 cm around y = 0.
+fn slab() -> Bodies<3> {
+    body(&cuboid([1.0, 0.02, 1.0]), Surface::new(&smooth()).unwrap())
+}
+
+fn options() -> ServoOptions {
+    ServoOptions::default().with_max_force(f64::INFINITY)
+}
+
+fn with_points() -> UnprotectedServo<3> {
+    UnprotectedServo::new(slab(), 2, options()).unwrap()
+}
+
+fn with_tool() -> UnprotectedServo<3> {
+    let ends = [Vector([-0.04, 0.0, 0.0]), Vector([0.04, 0.0, 0.0])];
+    let tool = Tool::new(Shell::capsule(ends, 0.01, 41).unwrap(), ToolOptions::default());
+    UnprotectedServo::with_tool(slab(), tool.unwrap(), options()).unwrap()
+}
+
+fn at(y: f64) -> [PointState<3>; 2] {
+    [PointState::at_rest(Vector([0.0, y, 0.0])), PointState::at_rest(Vector([0.2, y, 0.0]))]
+}
+
+/// The heights of a way from one place to another.
+fn way(from: f64, to: f64) -> impl Iterator<Item = f64> {
+    (1..=50).map(move |step| from + (to - from) * f64::from(step) / 50.0)
+}
+
+#[test]
+fn a_lifted_hand_goes_through_a_wall_and_feels_nothing() {
+    for mut servo in [with_points(), with_tool()].map(without_limits) {
+        let points = servo.touches().len();
+        for y in way(0.05, 0.0) {
+            servo.step(&at(y)[..points]);
+        }
+        assert!(servo.forces().iter().all(|force| force[1] > 1.0));
+        servo.lift(true);
+        for (tick, y) in way(0.0, -0.05).enumerate() {
+            servo.step(&at(y)[..points]);
+            let leaves = servo.events().iter().filter(|event| event.kind == EventKind::Leave);
+            let expected = if tick == 0 { points } else { 0 };
+            assert_eq!((leaves.count(), servo.events().len()), (expected, expected));
+            for (touch, force) in servo.touches().iter().zip(servo.forces()) {
+                assert_eq!((touch.proxy, touch.contact), (touch.device, false));
+                assert_eq!(*force, Vector::ZERO);
+            }
+        }
+        servo.lift(false);
+        for y in way(-0.05, -0.03) {
+            servo.step(&at(y)[..points]);
+            for touch in servo.touches() {
+                assert_eq!((touch.proxy, touch.force), (touch.device, Vector::ZERO));
+            }
+        }
+        // From below it is held back as from above.
+        for y in way(-0.03, 0.005) {
+            servo.step(&at(y)[..points]);
+        }
+        assert!(servo.forces().iter().all(|force| force[1] < -1.0));
+    }
+}
+
+#[test]
+fn a_hand_that_is_set_down_in_a_body_is_pushed_out_gently_or_not_at_all() {
+    let largest = |recovery| {
+        let device = DeviceProfile::unlimited("gentle").with_max_force(12.0);
+        let protection = Protection::new(device).with_recovery(recovery).with_rise_rate(10.0);
+        let mut servo = with_points().protected(&protection).unwrap();
+        servo.lift(true);
+        servo.step(&at(0.005));
+        servo.lift(false);
+        let forces = (0..100).map(|_| {
+            servo.step(&at(0.005));
+            servo.forces()[0].norm()
+        });
+        forces.fold((0.0_f64, 0.0_f64), |(last, most), force| {
+            // 10 N a second.
+            assert!(force <= last + 0.010_001, "{force} N after {last} N");
+            (force, most.max(force))
+        })
+    };
+    let (_, most) = largest(Recovery::Rise);
+    assert!((most - 1.0).abs() < 0.02, "{most} N");
+    assert_eq!(largest(Recovery::OnceOut), (0.0, 0.0));
+}
+
+#[test]
+fn a_lifted_hand_is_not_guided() {
+    let guide = Guide::to_point(Vector([0.0, 0.1, 0.0]), GuideOptions::default()).unwrap();
+    for mut servo in [with_points(), with_tool()] {
+        servo.guide(std::slice::from_ref(&guide));
+        let points = servo.touches().len();
+        for is_lifted in [false, true, false] {
+            servo.lift(is_lifted);
+            let force = servo.step(&at(0.08)[..points])[0].force;
+            assert_eq!(force == Vector::ZERO, is_lifted, "{force:?}");
+        }
+    }
+}
+
+#[test]
+fn a_state_that_is_none_leaves_a_lifted_proxy_where_it_was() {
+    for mut servo in [with_points(), with_tool()] {
+        servo.lift(true);
+        servo.step(&at(0.0));
+        let proxy: Point<3> = servo.touches()[0].proxy;
+        let nowhere = PointState::at_rest(Vector([f64::NAN; 3]));
+        let touch = servo.step(&[nowhere; 2])[0];
+        assert_eq!((touch.proxy, touch.force), (proxy, Vector::ZERO));
+    }
+}
+
+#[test]
+fn lift_and_guides_are_handed_off() {
+    let device = DeviceProfile::unlimited("gentle").with_least_damping(0.064);
+    let protection = Protection::new(device).with_acceptance(Acceptance::Passive);
+    let mut servo: Servo<3> = with_points().protected(&protection).unwrap();
+    let guide = Guide::to_point(
+        Vector([0.0, 0.1, 0.0]),
+        GuideOptions::default().with_stiffness(1000.0).with_damping(0.0),
+    );
+    let guides = [guide.unwrap()];
+    let (mut control, mut end) = handoff(&servo, HandoffOptions::default());
+    control.lift(true);
+    let accepted = control.replace_guides(&guides).unwrap();
+    end.receive(&mut servo);
+    servo.step(&at(0.09));
+    end.publish(&servo, &Progress::default());
+    assert!(control.latest().unwrap().is_lifted);
+    control.lift(false);
+    end.receive(&mut servo);
+    for _ in 0..1000 {
+        servo.step(&at(0.09));
+    }
+    // As the servo's own guides: 2 b / T is 128 N/m, over 1 cm.
+    let force = servo.forces()[0];
+    assert!((force - Vector([0.0, 1.28, 0.0])).norm() < 1e-9, "{force:?}");
+    assert_eq!(servo.guides(1).len(), 1);
+    let softened = servo.guides(0)[0].options().stiffness;
+    servo.guide(&guides).unwrap();
+    assert_eq!(servo.guides(0)[0].options().stiffness, softened);
+    assert_eq!(servo.accepted_guides(), accepted);
+    // Several changes before a tick: the last one holds.
+    control.replace_guides(&guides).unwrap();
+    control.replace_guides(&[]).unwrap();
+    end.receive(&mut servo);
+    assert!(servo.guides(0).is_empty());
+    end.publish(&servo, &Progress::default());
+    assert!(!control.latest().unwrap().is_lifted);
+}
