@@ -6,11 +6,13 @@
 
 import { startGamepad } from './input/gamepad.js';
 import { listenKeys } from './input/keys.js';
+import { nextKind } from './input/placing.js';
 import * as actions from './panels/actions.js';
 import { Checks } from './panels/checks.js';
 import { closeDialog, isDialogOpen, openDialog } from './panels/dialog.js';
 import { takeScene } from './panels/edits.js';
 import { Status, takeEvents } from './panels/events.js';
+import { watchFar } from './panels/far.js';
 import { Header, startTheme } from './panels/header.js';
 import { Help } from './panels/help.js';
 import { followLink, takeAddress } from './panels/link.js';
@@ -27,7 +29,7 @@ import { Tabs } from './panels/tabs.js';
 import { Toasts, Words } from './panels/toasts.js';
 import { Touch } from './panels/touch.js';
 import { Tree } from './panels/tree.js';
-import { ViewBar } from './panels/view.js';
+import { LegendButton, ViewBar } from './panels/view.js';
 import { createStage } from './scene/stage.js';
 import { changed, listen, lookAt, select, setTouch, setView, state, takeFrame } from './state.js';
 import { html, render } from './vendor/htm-preact.js';
@@ -70,7 +72,7 @@ function takeWelcome(message) {
   changed('welcome');
 }
 
-/** The scene that the page was made to suit last. */
+/** The scene that the page was made to suit last. @type {import('./wire.js').Message} */
 let suited = { revision: 0, dimension: 0 };
 
 /** What follows from a new scene: a title, and a view that suits it. */
@@ -89,6 +91,7 @@ function suitView() {
   if (view.compared.some((body) => body > last)) {
     setView({ compared: view.compared.map((body) => Math.max(0, Math.min(body, last))) });
   }
+  if ((state.touch.point ?? 0) >= scene.device.points) setTouch({ point: null });
   if (scene.restarted) tell(`The servo began again${scene.why ? `: ${scene.why}` : ''}. Forces rise from zero.`);
   if (scene.by === 'file') tell('The file was changed elsewhere; the page shows it as it is now.');
 }
@@ -145,6 +148,7 @@ render(html`<${Tabs} main=${place('main')} />`, place('tabs'));
 render(html`<${Tree} />`, place('shapes'));
 render(html`<${Touch} />`, place('touch'));
 render(html`<${ViewBar} />`, place('view'));
+render(html`<${LegendButton} />`, place('legend'));
 render(html`<${Selected} />`, place('selected'));
 render(html`<${Checks} />`, place('checks'));
 render(html`<${Time} />`, place('time'));
@@ -152,6 +156,7 @@ render(html`<${Status} />`, place('status'));
 render(html`<${Toasts} />`, place('toasts'));
 render(html`<${Words} start=${connect} />`, place('words'));
 listen(['scene'], suitView);
+listen(['scene'], watchFar);
 takeDrops();
 startGamepad();
 listenKeys({
@@ -167,6 +172,7 @@ listenKeys({
   plane: () => actions.setMode('plane'),
   compare: () => actions.setMode('compare'),
   fit: () => page.stage?.setCamera('reset'),
+  place: nextKind,
   undo: actions.undo,
   redo: actions.redo,
   save: () => void save(),

@@ -72,7 +72,7 @@ export const state = {
     spacing: null,
     shown: {
       contacts: true, normals: true, proof: false, forces: true, bounds: false, names: true,
-      spring: true,
+      spring: true, handles: true,
     },
     /** The two bodies that are compared. */
     compared: [0, 1],

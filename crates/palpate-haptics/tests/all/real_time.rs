@@ -9,9 +9,9 @@ use assert_no_alloc::assert_no_alloc;
 use palpate_devices::Tour;
 use palpate_field::{Pose, Rotation, Shape, Vector};
 use palpate_haptics::{
-    Bodies, Body, Buttons, DeviceProfile, EventKind, Guide, GuideOptions, HandoffOptions, Material, PointState,
-    Progress, Protection, Reading, ServoOptions, Shell, Surface, Tool, ToolOptions, ToolState,
-    UnprotectedServo, handoff,
+    Bodies, Body, Buttons, DeviceProfile, EventKind, Guide, GuideOptions, HandoffOptions,
+    Material, PointState, Progress, Protection, Reading, ServoOptions, Shell, Surface, Tool,
+    ToolOptions, ToolState, UnprotectedServo, handoff,
 };
 
 #[test]

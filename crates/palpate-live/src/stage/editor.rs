@@ -16,7 +16,7 @@ use super::described::{self, Drawing};
 use super::document::{Document, Refusal, read_file};
 use super::hand::tour;
 use super::pages::{PageId, Pages};
-use super::performance::{AnyPath, Order, Showing};
+use super::performance::{AnyPath, Changed, Order, Showing};
 use super::room::Terms;
 use super::{Shown, Text};
 use crate::wire::{Ask, Change, Question, VERSION};
@@ -218,11 +218,11 @@ impl Editor {
         self.spent.begin();
         let scene = Arc::new(self.document.built()?);
         self.spent.end("build");
-        let is_alike =
-            self.rendered.as_ref().is_some_and(|old| is_alike(old, self.document.scene()));
+        let new = self.document.scene();
+        let change = self.rendered.as_ref().map_or(Changed::Servo, |old| change(old, new));
         let revision = self.revision + 1;
         let (reply, showing) = sync_channel(1);
-        let order = Order::Show { scene: Arc::clone(&scene), revision, is_alike, reply };
+        let order = Order::Show { scene: Arc::clone(&scene), revision, change, reply };
         let gone = |_| Refusal::from("the program ends".to_owned());
         self.orders.send(order).map_err(|_| gone(()))?;
         let was_rendered = self.rendered.is_some();
@@ -233,8 +233,8 @@ impl Editor {
             Showing::Began { points } => {
                 self.points = points;
                 was_rendered.then_some(
-                    "the tool, the guides, the motions or the dimension changed: the servo ended with zero \
-                     forces and began again",
+                    "the tool, the motions or the dimension changed: the servo ended with zero forces and began \
+                     again",
                 )
             }
             Showing::Refused(why) => return Err(why.into()),
@@ -259,7 +259,7 @@ impl Editor {
         });
         self.pages.broadcast(&message);
         self.message = message;
-        if !is_alike {
+        if change == Changed::Servo {
             self.find_tour(scene);
         }
         Ok(())
@@ -298,13 +298,17 @@ fn send_tour(
     }
 }
 
-/// Whether a running servo can go on with another scene: all but its bodies is the same.
-fn is_alike(a: &Scene, b: &Scene) -> bool {
-    a.dimension() == b.dimension()
-        && a.tool == b.tool
-        && a.guides == b.guides
-        && a.motions == b.motions
-        && (a.motions.is_empty() || a.bodies.len() == b.bodies.len())
+/// What changed from one scene to another.
+fn change(old: &Scene, new: &Scene) -> Changed {
+    let is_for_one_servo = old.dimension() == new.dimension()
+        && old.tool == new.tool
+        && old.motions == new.motions
+        && (old.motions.is_empty() || old.bodies.len() == new.bodies.len());
+    match is_for_one_servo {
+        false => Changed::Servo,
+        true if old.guides == new.guides => Changed::Bodies,
+        true => Changed::Guides,
+    }
 }
 
 fn catalogue() -> Result<Vec<Value>, Refusal> {

@@ -15,6 +15,7 @@ mod inquiry;
 mod pages;
 mod performance;
 mod questions;
+mod recording;
 mod room;
 
 use std::path::PathBuf;
@@ -34,7 +35,8 @@ use inquiry::Inquiries;
 #[cfg(any(test, feature = "fuzzing"))]
 pub(crate) use inquiry::answer_alone;
 pub(crate) use pages::{Out, PageId, Pages};
-use performance::{AnyPaths, Order};
+use performance::Order;
+use recording::{AnyPaths, Trace};
 pub(crate) use room::GivenClock;
 use room::Terms;
 
@@ -257,7 +259,7 @@ impl Stage {
     }
 
     /// What was recorded last.
-    pub(crate) fn trace(&self) -> Option<performance::Trace> {
+    pub(crate) fn trace(&self) -> Option<Trace> {
         let (reply, answer) = sync_channel(1);
         self.orders.try_send(Order::Trace(reply)).ok()?;
         answer.recv().ok()

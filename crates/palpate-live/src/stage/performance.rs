@@ -11,23 +11,20 @@ use axum::body::Bytes;
 use palpate::devices::HandPath;
 use palpate::haptics::{Event, StageTicks};
 use palpate::scene::{AnyScene, BuiltScene};
-use palpate::servo_loop::TraceRow;
 use serde_json::{Value, json};
 use tokio::sync::watch;
 
 use super::Stop;
 use super::pages::{PageId, Pages};
-use super::room::{Room, Terms};
-use crate::wire::{Frame, trace};
+use super::recording::{AnyPaths, MOST_ROWS, Recording, Trace};
+use super::room::{AnyRoom, Room, Terms, of_either};
+use crate::wire::Frame;
 
 /// How often the hand is led on.
 const STEP: Duration = Duration::from_millis(8);
 
 /// The steps from one frame to the next: 60 frames a second.
 const STEPS_A_FRAME: u32 = 2;
-
-/// The most rows that are recorded: 20 s of ten points at 1 kHz.
-const MOST_ROWS: usize = 200_000;
 
 /// The answer before the first scene, and after a servo has ended.
 const NO_SERVO: &str = "there is no servo yet: say hello, or edit the scene";
@@ -78,14 +75,25 @@ pub(crate) enum Order {
     Paths(AnyPaths),
     /// What was recorded, as a file.
     Trace(SyncSender<Trace>),
-    /// Renders another scene; with only its bodies changed if `is_alike`.
+    /// Renders another scene.
     Show {
         scene: Arc<AnyScene>,
         revision: u32,
-        is_alike: bool,
+        change: Changed,
         reply: SyncSender<Showing>,
     },
     End,
+}
+
+/// What of a scene changed at most.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Changed {
+    /// Its bodies, which are handed to the servo.
+    Bodies,
+    /// Its guides too, which are handed likewise.
+    Guides,
+    /// What a servo is made for.
+    Servo,
 }
 
 /// How a scene came to be rendered.
@@ -106,33 +114,6 @@ pub(crate) enum AnyPath {
     Spatial(HandPath<3>),
 }
 
-/// A path of each contact point, of either dimension.
-#[derive(Debug)]
-pub(crate) enum AnyPaths {
-    Planar(Vec<HandPath<2>>),
-    Spatial(Vec<HandPath<3>>),
-}
-
-/// Rows as text, made where there is time for it.
-pub(crate) type Trace = Box<dyn FnOnce() -> Vec<u8> + Send>;
-
-/// A room of either dimension, with what is recorded in it.
-#[derive(Debug)]
-enum AnyRoom {
-    Planar(Room<2>, Vec<TraceRow<2>>),
-    Spatial(Room<3>, Vec<TraceRow<3>>),
-}
-
-/// Runs an expression for the room of either dimension.
-macro_rules! in_room {
-    ($any:expr, $room:ident, $rows:ident => $work:expr) => {
-        match $any {
-            AnyRoom::Planar($room, $rows) => $work,
-            AnyRoom::Spatial($room, $rows) => $work,
-        }
-    };
-}
-
 /// The state of the thread.
 #[derive(Debug)]
 pub(super) struct Performance {
@@ -142,9 +123,9 @@ pub(super) struct Performance {
     frames: watch::Sender<Bytes>,
     room: Option<AnyRoom>,
     revision: u32,
-    is_recording: bool,
-    /// Paths to be replayed instead of what was recorded.
-    paths: Option<AnyPaths>,
+    recording: Recording,
+    /// Ticks that a clock that is held still has to go.
+    ticks: u64,
     /// What the pages were told last of the safety chain, and how many frames ago.
     safety: (StageTicks, u32),
     /// The page that leads the hand.
@@ -165,8 +146,8 @@ impl Performance {
             frames,
             room: None,
             revision: 0,
-            is_recording: false,
-            paths: None,
+            recording: Recording::default(),
+            ticks: 0,
             safety: (StageTicks::default(), 0),
             leader: None,
         }
@@ -199,7 +180,7 @@ impl Performance {
                     return self.pages.refuse(page, id, NO_SERVO, &[]);
                 };
                 let from = from.as_deref();
-                match in_room!(room, room, _rows => room.lead(&target, point, from)) {
+                match of_either!(AnyRoom, room, room => room.lead(&target, point, from)) {
                     Ok(()) => self.leader = Some(page),
                     Err(why) => return self.pages.refuse(page, id, &why, &[]),
                 }
@@ -213,7 +194,7 @@ impl Performance {
             }
             Order::Stopped => {
                 if let Some(room) = &self.room {
-                    let clock = in_room!(room, room, _rows => room.speed());
+                    let clock = of_either!(AnyRoom, room, room => room.speed());
                     if clock.get() == 0.0 {
                         clock.step(1);
                     }
@@ -221,62 +202,44 @@ impl Performance {
             }
             Order::Tour(is_touring) => {
                 if let Some(room) = &mut self.room {
-                    in_room!(room, room, _rows => room.tours(is_touring));
+                    of_either!(AnyRoom, room, room => room.tours(is_touring));
                 }
             }
             Order::Path { path, revision } => match (&mut self.room, path) {
                 _ if revision != self.revision => {}
-                (Some(AnyRoom::Planar(room, _)), AnyPath::Planar(path)) => room.take_tour(path),
-                (Some(AnyRoom::Spatial(room, _)), AnyPath::Spatial(path)) => {
-                    room.take_tour(path)
-                }
+                (Some(AnyRoom::Planar(room)), AnyPath::Planar(path)) => room.take_tour(path),
+                (Some(AnyRoom::Spatial(room)), AnyPath::Spatial(path)) => room.take_tour(path),
                 _ => {}
             },
             Order::Clock { page, id, speed, step } => {
                 let Some(room) = &self.room else {
                     return self.pages.refuse(page, id, NO_SERVO, &[]);
                 };
-                let clock = in_room!(room, room, _rows => room.speed());
+                let clock = of_either!(AnyRoom, room, room => room.speed());
                 match speed.map_or(Ok(()), |speed| clock.set(speed)) {
                     Ok(()) => {
-                        clock.step(u64::from(step.unwrap_or_default()));
+                        self.ticks = u64::from(step.unwrap_or_default());
                         self.pages.answer(page, id, json!({ "do": "done" }));
                     }
                     Err(why) => self.pages.refuse(page, id, &why.to_string(), &[]),
                 }
             }
-            Order::Record(is_recording) => {
-                if let Some(room) = &mut self.room
-                    && is_recording
-                    && !self.is_recording
-                {
-                    in_room!(room, _room, rows => rows.clear());
-                    self.paths = None;
+            Order::Record(is_on) => {
+                if let Some(room) = &self.room {
+                    self.recording.switch(is_on, room);
                 }
-                if self.is_recording && !is_recording {
-                    // What was recorded last is newer than a trace that came meanwhile.
-                    self.paths = None;
-                }
-                self.is_recording = is_recording;
             }
             Order::Replay { page, id, on } => match self.replay(on) {
                 Ok(()) => self.pages.answer(page, id, json!({ "do": "done" })),
                 Err(why) => self.pages.refuse(page, id, &why, &[]),
             },
-            Order::Paths(paths) => self.paths = Some(paths),
+            Order::Paths(paths) => self.recording.take(paths),
             Order::Trace(reply) => {
-                let trace = match &self.room {
-                    Some(room) => in_room!(room, _room, rows => {
-                        let rows = rows.clone();
-                        Box::new(move || trace::written(&rows)) as Trace
-                    }),
-                    None => Box::new(Vec::new),
-                };
                 // Who asked may have gone.
-                let _ = reply.send(trace);
+                let _ = reply.send(self.recording.trace());
             }
-            Order::Show { scene, revision, is_alike, reply } => {
-                let showing = self.show(&scene, is_alike);
+            Order::Show { scene, revision, change, reply } => {
+                let showing = self.show(&scene, change);
                 if !matches!(showing, Showing::Refused(_)) {
                     self.revision = revision;
                 }
@@ -290,65 +253,55 @@ impl Performance {
     fn replay(&mut self, is_on: bool) -> Result<(), String> {
         let Some(room) = &mut self.room else { return Err(NO_SERVO.to_owned()) };
         if !is_on {
-            return in_room!(room, room, _rows => room.replay(None));
+            return of_either!(AnyRoom, room, room => room.replay(None));
         }
-        (self.leader, self.is_recording) = (None, false);
-        match (room, &self.paths) {
-            (AnyRoom::Planar(room, _), Some(AnyPaths::Planar(paths))) => {
-                room.replay(Some(paths.clone()))
-            }
-            (AnyRoom::Spatial(room, _), Some(AnyPaths::Spatial(paths))) => {
-                room.replay(Some(paths.clone()))
-            }
-            (_, Some(_)) => Err("the trace is of a scene of another dimension".to_owned()),
-            (room, None) => in_room!(room, room, rows => {
-                let paths = trace::paths(rows)?;
-                room.replay(Some(paths))
-            }),
-        }
+        self.recording.replay(room)?;
+        self.leader = None;
+        Ok(())
     }
 
     fn let_go(&mut self) {
         self.leader = None;
         if let Some(room) = &mut self.room {
-            in_room!(room, room, _rows => room.let_go());
+            of_either!(AnyRoom, room, room => room.let_go());
         }
     }
 
-    fn show(&mut self, scene: &AnyScene, is_alike: bool) -> Showing {
+    fn show(&mut self, scene: &AnyScene, change: Changed) -> Showing {
+        let has_new_guides = change == Changed::Guides;
         let replaced = match (&mut self.room, scene) {
-            (Some(AnyRoom::Planar(room, _)), AnyScene::Planar(scene)) if is_alike => {
-                room.replace(Arc::new(scene.clone()))
+            _ if change == Changed::Servo => Err(String::new()),
+            (Some(AnyRoom::Planar(room)), AnyScene::Planar(scene)) => {
+                room.replace(Arc::new(scene.clone()), has_new_guides)
             }
-            (Some(AnyRoom::Spatial(room, _)), AnyScene::Spatial(scene)) if is_alike => {
-                room.replace(Arc::new(scene.clone()))
+            (Some(AnyRoom::Spatial(room)), AnyScene::Spatial(scene)) => {
+                room.replace(Arc::new(scene.clone()), has_new_guides)
             }
             _ => Err(String::new()),
         };
         if replaced.is_ok() {
             return Showing::Replaced;
         }
-        let began = match scene {
-            AnyScene::Planar(scene) => {
-                let before = match &self.room {
-                    Some(AnyRoom::Planar(room, _)) => Some(room),
-                    _ => None,
-                };
-                self.begun(scene, before).map(|room| AnyRoom::Planar(room, Vec::new()))
+        let began = match (scene, &self.room) {
+            (AnyScene::Planar(scene), Some(AnyRoom::Planar(before))) => {
+                self.begun(scene, Some(before)).map(AnyRoom::Planar)
             }
-            AnyScene::Spatial(scene) => {
-                let before = match &self.room {
-                    Some(AnyRoom::Spatial(room, _)) => Some(room),
-                    _ => None,
-                };
-                self.begun(scene, before).map(|room| AnyRoom::Spatial(room, Vec::new()))
+            (AnyScene::Planar(scene), _) => self.begun(scene, None).map(AnyRoom::Planar),
+            (AnyScene::Spatial(scene), Some(AnyRoom::Spatial(before))) => {
+                self.begun(scene, Some(before)).map(AnyRoom::Spatial)
             }
+            (AnyScene::Spatial(scene), _) => self.begun(scene, None).map(AnyRoom::Spatial),
         };
         match began {
             Ok(mut room) => {
-                self.stop.take(in_room!(&mut room, room, _rows => room.stop_switch()));
-                let points = in_room!(&room, room, _rows => room.points());
+                self.stop.take(of_either!(AnyRoom, &mut room, room => room.stop_switch()));
+                let points = of_either!(AnyRoom, &room, room => room.points());
                 self.room = Some(room);
+                if let Some(rows) = self.recording.end() {
+                    self.notice(&format!(
+                        "another servo began: the recording ended with {rows} rows"
+                    ));
+                }
                 Showing::Began { points }
             }
             Err(why) => Showing::Refused(why),
@@ -363,39 +316,44 @@ impl Performance {
         Room::begin(Arc::new(scene.clone()), &self.terms, before, self.stop.is_stopped())
     }
 
+    /// Tells all pages what a person should read.
+    fn notice(&self, message: &str) {
+        self.pages.broadcast(&json!({ "do": "notice", "message": message }));
+    }
+
     fn go_on(&mut self, is_frame: bool) {
-        let is_recording = self.is_recording;
         let Some(room) = &mut self.room else { return };
-        if in_room!(room, room, _rows => room.has_ended()) {
-            let message = "the servo has ended with zero forces; the next edit begins another";
-            self.pages.broadcast(&json!({ "do": "notice", "message": message }));
+        if of_either!(AnyRoom, room, room => room.has_ended()) {
             self.room = None;
+            self.notice("the servo has ended with zero forces; the next edit begins another");
             return;
         }
+        // By steps as long as those of time that passes: the hand is led on between them.
+        let ticks = self.ticks.min((self.terms.rate * STEP.as_secs_f64()).ceil() as u64);
+        self.ticks -= ticks;
         let (mut events, mut frame): (Vec<Event>, Option<Frame>) = (Vec::new(), None);
         let mut safety = self.safety.0;
-        let is_full = in_room!(room, room, rows => {
-            room.go_on(|row| if is_recording && rows.len() < MOST_ROWS {
-                rows.push(*row);
-            });
+        let is_full = self.recording.go_on(room);
+        of_either!(AnyRoom, room, room => {
+            room.speed().step(ticks);
             if is_frame {
                 events.extend(std::iter::from_fn(|| room.next_event()).take(MOST_EVENTS));
                 frame = room.frame();
                 safety = room.safety();
             }
-            rows.len() >= MOST_ROWS
         });
-        if is_recording && is_full {
-            self.is_recording = false;
-            let message = format!("the recording is full: {MOST_ROWS} rows");
-            self.pages.broadcast(&json!({ "do": "notice", "message": message }));
+        if is_full {
+            self.notice(&format!("the recording is full: {MOST_ROWS} rows"));
+        }
+        if let Some(message) = self.recording.message(is_frame) {
+            self.pages.broadcast(&message);
         }
         if !events.is_empty() {
             self.pages.broadcast(&json!({ "do": "events", "events": events }));
         }
         self.tell_safety(safety, is_frame);
         if let Some(mut frame) = frame {
-            (frame.revision, frame.is_recording) = (self.revision, self.is_recording);
+            (frame.revision, frame.is_recording) = (self.revision, self.recording.is_on());
             // Nobody may look.
             let _ = self.frames.send(frame.bytes());
         }

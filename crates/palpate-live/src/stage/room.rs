@@ -43,7 +43,27 @@ pub(super) struct Room<const D: usize> {
     /// The largest values since the last frame.
     peaks: Peaks,
     leader: Leader,
+    /// Whether the servo was told that the hand is lifted.
+    is_lifted: bool,
 }
+
+/// A scene of either dimension that is felt.
+#[derive(Debug)]
+pub(super) enum AnyRoom {
+    Planar(Room<2>),
+    Spatial(Room<3>),
+}
+
+/// Runs an expression for what has either dimension.
+macro_rules! of_either {
+    ($kind:ident, $any:expr, $one:ident => $work:expr) => {
+        match $any {
+            $kind::Planar($one) => $work,
+            $kind::Spatial($one) => $work,
+        }
+    };
+}
+pub(super) use of_either;
 
 /// The largest values since the last frame.
 #[derive(Debug, Default)]
@@ -95,7 +115,7 @@ impl<const D: usize> Room<D> {
         if let Some(before) = before {
             lead.take_over(&before.lead);
         }
-        let (device, mut steering) =
+        let (device, steering) =
             device(&lead, &map, terms).map_err(|error| error.to_string())?;
         // A hand that goes into a body while forces are zero would be thrown out by them.
         let settings =
@@ -120,9 +140,33 @@ impl<const D: usize> Room<D> {
         };
         let mut thread = thread.map_err(|error| error.to_string())?;
         let records = thread.take_records().ok_or("the servo keeps no rows")?;
-        steer(&mut steering, &lead, &map);
-        let (peaks, leader) = (Peaks::default(), Leader::default());
-        Ok(Self { scene, speed, thread, records, steering, map, lead, peaks, leader })
+        let (peaks, leader, is_lifted) = (Peaks::default(), Leader::default(), false);
+        let mut room = Self {
+            scene,
+            speed,
+            thread,
+            records,
+            steering,
+            map,
+            lead,
+            peaks,
+            leader,
+            is_lifted,
+        };
+        room.steer();
+        Ok(room)
+    }
+
+    /// Hands the places to which the hand is led to the device, and whether it is lifted to the servo.
+    fn steer(&mut self) {
+        let is_lifted = self.lead.is_lifted();
+        if std::mem::replace(&mut self.is_lifted, is_lifted) != is_lifted {
+            self.thread.control().lift(is_lifted);
+        }
+        let place = |target: &Point<D>| self.map.point_to_device(*target);
+        let targets: Vec<_> = self.lead.targets().iter().map(place).collect();
+        // There is a target for each hand, and all are finite.
+        let _ = self.steering.steer(&targets);
     }
 
     pub(super) fn stop_switch(&mut self) -> StopSwitch {
@@ -141,12 +185,20 @@ impl<const D: usize> Room<D> {
         self.lead.targets().len()
     }
 
-    /// Hands the bodies of another scene to the servo, which goes on.
-    pub(super) fn replace(&mut self, scene: Arc<BuiltScene<D>>) -> Result<(), String> {
-        let bodies = scene.bodies().map_err(|error| error.to_string())?;
-        let replaced = self.thread.control().replace_bodies(bodies);
-        replaced.map_err(|error| error.to_string())?;
-        self.lead.take_bounds(scene.bounds());
+    /// Hands the bodies of another scene to the servo, which goes on; and its guides, if they are new:
+    /// guides that stay keep their hold of the hand.
+    pub(super) fn replace(
+        &mut self,
+        scene: Arc<BuiltScene<D>>,
+        has_new_guides: bool,
+    ) -> Result<(), String> {
+        let said = |error: HapticsError| error.to_string();
+        let control = self.thread.control();
+        control.replace_bodies(scene.bodies().map_err(said)?).map_err(said)?;
+        if has_new_guides {
+            control.replace_guides(&scene.guides).map_err(said)?;
+        }
+        self.lead.take_scene(&scene);
         self.scene = scene;
         Ok(())
     }
@@ -160,7 +212,7 @@ impl<const D: usize> Room<D> {
     ) -> Result<(), String> {
         let from = from.map(point_of).transpose()?;
         self.lead.lead(point_of(target)?, point, from)?;
-        steer(&mut self.steering, &self.lead, &self.map);
+        self.steer();
         Ok(())
     }
 
@@ -171,7 +223,7 @@ impl<const D: usize> Room<D> {
             None => Vec::new(),
         };
         self.lead.let_go(&proxies);
-        steer(&mut self.steering, &self.lead, &self.map);
+        self.steer();
     }
 
     /// Leads the hand along a path of each contact point; or no longer.
@@ -194,14 +246,19 @@ impl<const D: usize> Room<D> {
 
     /// Leads the hand on, and takes the rows of the ticks since; `row` gets each.
     pub(super) fn go_on(&mut self, mut row: impl FnMut(&TraceRow<D>)) {
-        let latest = self.thread.control().latest();
-        let time = latest.map_or(0.0, |snapshot| snapshot.progress.time);
-        let before = std::mem::replace(&mut self.leader, self.lead.go_on(time));
+        let (time, devices) = match self.thread.control().latest() {
+            Some(snapshot) => {
+                let devices = snapshot.touches.iter().map(|touch| touch.device);
+                (snapshot.progress.time, devices.collect())
+            }
+            None => (0.0, Vec::new()),
+        };
+        let before = std::mem::replace(&mut self.leader, self.lead.go_on(time, &devices));
         if before == Leader::Replay && self.leader == Leader::Page && !self.lead.is_held() {
             // What was recorded may end in a body.
             self.let_go();
         }
-        steer(&mut self.steering, &self.lead, &self.map);
+        self.steer();
         for new in self.records.take() {
             self.peaks.take(&new);
             row(&new);
@@ -235,6 +292,7 @@ impl<const D: usize> Room<D> {
         let frame = Frame {
             dimension: D as u8,
             is_stopped: snapshot.is_stopped,
+            is_lifted: snapshot.is_lifted,
             is_held,
             has_acted: peaks.has_acted,
             is_touring: leader == Leader::Tour,
@@ -290,13 +348,6 @@ fn device<const D: usize>(
     let hand = |place: &Point<D>| Hand::resting(map.point_to_device(*place));
     let hands = lead.targets().iter().map(hand).collect::<Result<_, _>>()?;
     SteeredDevice::new(SimulatedDevice::new(terms.profile.clone(), hands)?, FASTEST)
-}
-
-fn steer<const D: usize>(steering: &mut Steering<D>, lead: &Lead<D>, map: &WorkspaceMap<D>) {
-    let targets: Vec<_> =
-        lead.targets().iter().map(|target| map.point_to_device(*target)).collect();
-    // There is a target for each hand, and all are finite.
-    let _ = steering.steer(&targets);
 }
 
 /// A point of the page.

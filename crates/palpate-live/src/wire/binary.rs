@@ -21,6 +21,7 @@ pub(crate) struct Frame {
     pub(crate) is_recording: bool,
     pub(crate) is_touring: bool,
     pub(crate) is_replaying: bool,
+    pub(crate) is_lifted: bool,
     pub(crate) revision: u32,
     pub(crate) ticks: u64,
     pub(crate) time: f64,
@@ -57,6 +58,7 @@ impl Frame {
             self.is_recording,
             self.is_touring,
             self.is_replaying,
+            self.is_lifted,
         ];
         out.extend([1, BYTE_VERSION, self.dimension, bits(&flags)]);
         out.extend(self.revision.to_le_bytes());

@@ -16,6 +16,9 @@ const MOST_POINTS: usize = 100;
 /// The axes as columns name them.
 const AXES: [&str; 3] = ["x", "y", "z"];
 
+/// The answer to a replay before a recording.
+pub(crate) const NOTHING: &str = "nothing was recorded: there are no rows";
+
 /// Times [s] and places [m] of a contact point.
 type Places<const D: usize> = (Vec<f64>, Vec<Point<D>>);
 
@@ -107,7 +110,7 @@ fn add<const D: usize>(
 
 fn finished<const D: usize>(all: Vec<Places<D>>) -> Result<Vec<HandPath<D>>, String> {
     if all.is_empty() {
-        return Err("nothing was recorded: there are no rows".to_owned());
+        return Err(NOTHING.to_owned());
     }
     let path = |(point, (times, places)): (usize, Places<D>)| {
         HandPath::new(times, places, Interpolation::Monotone)

@@ -6,6 +6,7 @@
 #![expect(clippy::unwrap_used, reason = "tests")]
 
 mod guard;
+mod hand;
 mod load;
 mod speech;
 mod talk;

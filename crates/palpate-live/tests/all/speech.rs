@@ -6,7 +6,7 @@
 use palpate_live::{Live, LiveOptions};
 use serde_json::{Value, json};
 
-use crate::talk::{BALL, Page, raw, served};
+use crate::talk::{BALL, Page, request_trace, served};
 
 const STAR: &str = include_str!("../../../../scenes/memoir_star.json");
 
@@ -166,16 +166,6 @@ fn what_was_recorded_is_replayed_and_so_is_a_file() {
 
     let wrong = request_trace(&live, "POST", "time_s,x_m\n0,1\n");
     assert!(wrong.starts_with("HTTP/1.1 422") && wrong.contains("no column y_m"), "{wrong}");
-}
-
-/// A request about the trace with this body; the answer as it comes.
-fn request_trace(live: &Live, method: &str, body: &str) -> String {
-    let (address, token, length) = (live.address(), live.token(), body.len());
-    let head = format!(
-        "{method} /trace.csv?token={token} HTTP/1.1\r\nHost: {address}\r\nOrigin: http://{address}\r\n\
-         Connection: close\r\nContent-Length: {length}\r\n\r\n"
-    );
-    raw(address, &(head + body))
 }
 
 #[test]

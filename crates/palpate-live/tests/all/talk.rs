@@ -121,3 +121,13 @@ pub(crate) fn raw(address: SocketAddr, request: &str) -> String {
     let _ = stream.read_to_end(&mut answer);
     String::from_utf8_lossy(&answer).into_owned()
 }
+
+/// A request about the trace with this body; the answer as it comes.
+pub(crate) fn request_trace(live: &Live, method: &str, body: &str) -> String {
+    let (address, token, length) = (live.address(), live.token(), body.len());
+    let head = format!(
+        "{method} /trace.csv?token={token} HTTP/1.1\r\nHost: {address}\r\nOrigin: http://{address}\r\n\
+         Connection: close\r\nContent-Length: {length}\r\n\r\n"
+    );
+    raw(address, &(head + body))
+}

@@ -26,6 +26,9 @@ const BALL = JSON.stringify({
   }],
 }, null, 2);
 
+/** The same in the plane. */
+const DISC = BALL.replace('"dimension": 3', '"dimension": 2');
+
 /** Runs before the page's modules: a pad, what shakes, and a count of programs and sounds. */
 const mocks = () => {
   const count = (window.seen = { fx: [], links: 0, sounds: 0 });
@@ -192,6 +195,63 @@ const cases = [
     await until('literals again', async () => (await state(page, 'way.uniforms.length')) === 0);
     await context.close();
   })],
+
+  ['handles in the view move, turn and scale the selected body, each in one step to undo', async () => {
+    for (const [scene, corner] of [[DISC, [-0.09, 0]], [BALL, [-0.09, 0, 0]]]) {
+      await serving([written(scene)], async ({ url }) => {
+        const { page, context } = await opened(url);
+        const isPlane = corner.length === 2;
+        // The hand does not come between the mouse and a handle.
+        await ask(page, { do: 'tour', on: false });
+        await ask(page, { do: 'hand', target: corner, held: true });
+        await until('a hand beside the ball', async () => Math.abs((await state(page, 'frame.points.0.device'))[0] - corner[0]) < 1e-3);
+        await page.evaluate(async () => (await import('/state.js')).select('/bodies/0'));
+        const stage = await page.locator('#stage').boundingBox();
+        const [x, y] = [stage.x + stage.width / 2, stage.y + stage.height / 2];
+        const begin = JSON.stringify(await state(page, 'scene.scene.bodies.0'));
+        const drag = async (across, down, by, found) => {
+          await page.mouse.move(x + across, y + down);
+          await page.mouse.down();
+          await page.mouse.move(x + across + by[0], y + down + by[1], { steps: 8 });
+          await until('an edit', async () => JSON.stringify(await state(page, 'scene.scene.bodies.0')) !== begin);
+          await page.mouse.up();
+          await until('literals again', async () => (await state(page, 'way.uniforms.length')) === 0);
+          found(await state(page, 'scene.scene.bodies.0'));
+          await page.keyboard.press('Control+z');
+          await until('the ball of before', async () => JSON.stringify(await state(page, 'scene.scene.bodies.0')) === begin);
+          check(!(await state(page, 'scene.can_undo')), 'a drag left more than one step to undo');
+        };
+        // In the plane a pixel is a part of the picture's height of 0.12 m; in space the arrow along x is seen
+        // to the right and downwards.
+        await drag(isPlane ? 60 : 49, isPlane ? 0 : 14, [40, 10], ({ pose: { translation: [along, ...others] } }) => {
+          if (isPlane) near(along, (40 * 0.12) / stage.height, 2e-4, 'how far the arrow was dragged');
+          check(along > 0.005 && others.every((part) => part === 0), `moved to ${[along, ...others]}`);
+        });
+        if (isPlane) {
+          await drag(65, -65, [-65, -27], ({ pose }) => near(pose.rotate_degrees, 45, 2, 'the turn of a ring by an eighth'));
+        } else {
+          await drag(0, -55, [0, -30], ({ pose: { translation } }) => check(translation[1] > 0.005 && translation[0] === 0, `moved to ${translation}`));
+        }
+        await drag(-96, -96, [-48, -48], ({ shape }) => near(shape.scale, 1.5, 0.02, 'a factor'));
+        // By keys: a step along x for each press.
+        await page.locator('#stage canvas').last().focus();
+        await page.keyboard.press('m');
+        await page.keyboard.press('ArrowRight');
+        await until('a step', async () => (await state(page, 'scene.scene.bodies.0.pose.translation.0')) > 0);
+        await until('literals after the step', async () => (await state(page, 'way.uniforms.length')) === 0);
+        await page.getByText('display', { exact: true }).click();
+        await page.getByLabel('handles').click();
+        const revision = await state(page, 'scene.revision');
+        await page.mouse.move(x - 96, y - 96);
+        await page.mouse.down();
+        await page.mouse.move(x - 140, y - 140, { steps: 8 });
+        await page.mouse.up();
+        await page.waitForTimeout(200);
+        check((await state(page, 'scene.revision')) === revision, 'a handle that is switched off was dragged');
+        await context.close();
+      });
+    }
+  }],
 
   ["the memoir's triangle has the core's verdict along a way", () => {
     const file = join(scenes, 'memoir_star.json');

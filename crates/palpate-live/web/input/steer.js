@@ -10,6 +10,7 @@
 
 import { extent } from '../panels/numbers.js';
 import { page } from '../panels/page.js';
+import { ledPlace } from '../scene/overlay.js';
 import { state } from '../state.js';
 import { createHand } from './hand.js';
 
@@ -20,21 +21,9 @@ const LONGEST = 0.05;
 
 /** @type {ReturnType<typeof createHand> | null} */
 let hand = null;
-/** @type {[number, number, number] | null} */
+/** @type {number[] | null} */
 let target = null;
 let last = 0;
-
-/** Where the hand is [m]: the point that leads, or the middle of all.
- * @returns {[number, number, number] | null} */
-function handPlace() {
-  const points = state.frame?.points ?? [];
-  const { point } = state.touch;
-  const own = point === null ? points : points.slice(point, point + 1);
-  if (own.length === 0) return null;
-  const mean = (/** @type {number} */ axis) =>
-    own.reduce((sum, { device }) => sum + device[axis], 0) / own.length;
-  return [mean(0), mean(1), mean(2)];
-}
 
 /** Moves the hand on for a frame. `speeds` are from −1 to 1: to the right, up, and away.
  * @param {number[]} speeds @param {Axes} axes */
@@ -42,7 +31,7 @@ export function push(speeds, axes) {
   const now = performance.now();
   const seconds = Math.min((now - last) / 1000, LONGEST);
   last = now;
-  target ??= handPlace();
+  target ??= ledPlace()?.slice() ?? null;
   if (!target || !state.scene || !page.wire) return;
   hand ??= createHand(page.wire);
   const reach = (extent(state.scene.bounds) / CROSSING) * seconds;

@@ -191,7 +191,7 @@ export function placeOf(pointer) {
 export function canRemove(pointer) {
   const place = placeOf(pointer);
   if (place) return place.list.length > 1 || ['/guides', '/motions', '/views'].includes(place.at);
-  return pointer === '/tool' || /^\/shapes\/[^/]+$/.test(pointer);
+  return (pointer === '/tool' && valueAt(pointer) !== undefined) || /^\/shapes\/[^/]+$/.test(pointer);
 }
 
 /** The operator that would be left with one shape if a part were removed, or null.

@@ -10,7 +10,7 @@
 
 import { html } from '../vendor/htm-preact.js';
 import { changed, state } from '../state.js';
-import { count, short } from './numbers.js';
+import { count, servoTime, short } from './numbers.js';
 import { useTopics } from './page.js';
 import { actingStages, useClock } from './safety.js';
 
@@ -43,7 +43,7 @@ export function Events() {
   return html`<ol class="events" tabindex="0" aria-label="Events, newest first">
     ${shown.length === 0 && html`<li class="quiet">nothing happened yet</li>`}
     ${shown.map((event) => html`<li key=${event.number}>
-      <span class="when">${event.time.toFixed(3)} s</span>
+      <span class="when">${servoTime(event.time, state.welcome?.rate)}</span>
       ${inWords(event)}${event.point ? ` · point ${event.point + 1}` : ''}</li>`)}
   </ol>`;
 }

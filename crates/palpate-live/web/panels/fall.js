@@ -10,7 +10,7 @@ import {
 import { state } from '../state.js';
 import { html, useEffect, useReducer } from '../vendor/htm-preact.js';
 import { NumberField, Switch, VectorField } from './fields.js';
-import { count, extent, short, time } from './numbers.js';
+import { count, extent, servoTime, short, time } from './numbers.js';
 import { page, useTopics } from './page.js';
 
 /** Between two updates [ms]. */
@@ -71,7 +71,7 @@ function Bounces({ bounces }) {
     <thead><tr><th scope="col">bounce</th><th scope="col">time <span class="unit">[s]</span></th>
       <th scope="col">speed <span class="unit">[m/s]</span></th></tr></thead>
     <tbody>${bounces.map((bounce, index) => html`<tr key=${index}><th scope="row">${index + 1}</th>
-      <td>${bounce.time.toFixed(4)}</td><td>${short(bounce.speed)}</td></tr>`)}</tbody>
+      <td>${bounce.time.toFixed(6)}</td><td>${short(bounce.speed)}</td></tr>`)}</tbody>
   </table></div>`;
 }
 
@@ -105,14 +105,14 @@ export function FallingBall() {
         <${NumberField} label="gravity" unit="m/s²" value=${gravity} min=${0} above scale=${9.81}
           change=${(/** @type {number} */ to) => setFall({ gravity: to })} />`}
     </div>
-    ${isShown && html`<div class="form" style=${{ alignContent: 'start' }}>
+    ${isShown && html`<div class="form">
       ${refused && html`<p class="problem">${refused}</p>`}
       ${answer && html`<div class="switches">
           <button class="small" onClick=${playFall} disabled=${last === 0}>play again</button>
           <input type="range" class="slider scrub" min="0" max=${last} step=${answer.step} value=${moment()}
-            disabled=${last === 0} aria-label="Moment of the fall" aria-valuetext=${time(moment())}
+            disabled=${last === 0} aria-label="Moment of the fall" aria-valuetext=${servoTime(moment())}
             onInput=${(/** @type {any} */ event) => showMoment(Number(event.currentTarget.value))} />
-          <span class="unit time-shown">${time(moment())}</span>
+          <span class="unit time-shown">${servoTime(moment())}</span>
           <span class="quiet">${pace()}</span>
         </div>
         <div class=${`verdict ${answer.end === 'budget' ? 'wrong' : 'right'}`} role="status" aria-label="Outcome of the fall">

@@ -77,15 +77,16 @@ function Connection() {
 /** One edit back, and forth again. */
 function Steps() {
   const { scene } = state;
-  const step = (/** @type {string} */ name, /** @type {string} */ help, /** @type {string} */ key,
-    /** @type {boolean} */ isPossible, /** @type {() => void} */ run, /** @type {string} */ flip) => html`
-    <button class="step" onClick=${run} disabled=${!isPossible} title=${`${help}: Ctrl ${key}`}
-      aria-label=${`${help}, Ctrl ${key}`} aria-keyshortcuts=${`Control+${key}`}>
-      <svg viewBox="0 0 16 16" width="14" height="14" aria-hidden="true"><path transform=${flip} fill="none" stroke="currentColor"
-        stroke-width="1.6" d="M6 2.5 2.5 6 6 9.5M2.5 6h7.5a3.5 3.5 0 0 1 0 7H6" /></svg> <span>${name}</span></button>`;
+  const steps = [
+    { name: 'undo', help: 'Undo the last edit', key: 'Z', isPossible: scene?.can_undo, run: actions.undo, turn: '' },
+    { name: 'redo', help: 'Make the edit again', key: 'Y', isPossible: scene?.can_redo, run: actions.redo,
+      turn: 'matrix(-1 0 0 1 16 0)' },
+  ];
   return html`<span class="steps" role="group" aria-label="Steps of editing">
-    ${step('undo', 'Undo the last edit', 'Z', scene?.can_undo ?? false, actions.undo, '')}
-    ${step('redo', 'Make the edit again', 'Y', scene?.can_redo ?? false, actions.redo, 'matrix(-1 0 0 1 16 0)')}
+    ${steps.map(({ name, help, key, isPossible, run, turn }) => html`<button key=${name} class="step" onClick=${run}
+      disabled=${!isPossible} title=${`${help}: Ctrl ${key}`} aria-label=${name} aria-keyshortcuts=${`Control+${key}`}>
+      <svg viewBox="0 0 16 16" width="14" height="14" aria-hidden="true"><path transform=${turn} fill="none" stroke="currentColor"
+        stroke-width="1.6" d="M6 2.5 2.5 6 6 9.5M2.5 6h7.5a3.5 3.5 0 0 1 0 7H6" /></svg> <span>${name}</span></button>`)}
   </span>`;
 }
 

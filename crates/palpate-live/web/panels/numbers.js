@@ -31,6 +31,12 @@ export function time(seconds) {
   return `${short(seconds)} s`;
 }
 
+/** A time of the servo [s], so fine that one tick is told from the next.
+ * @param {number} seconds @param {number} [rate] ticks a second [Hz] */
+export function servoTime(seconds, rate = 1000) {
+  return `${seconds.toFixed(Math.max(0, Math.ceil(Math.log10(rate))))} s`;
+}
+
 /** The size of the scene [m]: the diagonal of its bounds; 1 if it has none.
  * @param {any} bounds */
 export function extent(bounds) {

@@ -10,7 +10,7 @@ import * as actions from './actions.js';
 import { Charts } from './charts.js';
 import { Events } from './events.js';
 import { FallingBall } from './fall.js';
-import { count, short, time } from './numbers.js';
+import { count, servoTime, time } from './numbers.js';
 import { page, useTopics } from './page.js';
 import { Profile } from './profile.js';
 import { downloadTrace, record, recorded, replay } from './recording.js';
@@ -18,6 +18,10 @@ import { Safety } from './safety.js';
 
 /** Between two updates [ms]. */
 const INTERVAL = 100;
+/** Between two counts [ms], and how many make a rate, at least and at most: frames come in steps of
+ * 17 ms, and late where the page is busy. */
+const COUNTING = 1000;
+const COUNTS = { least: 3, most: 6 };
 
 /** @type {Record<string, [string, () => any]>} */
 const TABS = {
@@ -51,8 +55,9 @@ function PlayBar() {
   const at = lookingAt ?? last;
   const isFollowing = lookingAt === null;
   const isHeld = newest?.held ?? false;
-  const ago = newest && frame ? frame.time - newest.time : 0;
-  const words = !isFollowing ? `looking back ${short(-ago)} s`
+  const rate = state.welcome?.rate;
+  const ago = servoTime(newest && frame ? newest.time - frame.time : 0, rate);
+  const words = !isFollowing ? `looking back ${ago}`
     : newest?.stopped ? (newest.replaying ? 'replaying without forces' : 'stopped: forces are zero')
     : isHeld ? 'time is held' : newest?.replaying ? 'replaying' : 'following';
   return html`<div class="play">
@@ -67,9 +72,9 @@ function PlayBar() {
       follow</button>
     <span class=${isFollowing && !newest?.replaying ? 'play-words' : 'play-words replay'}>${words}</span>
     <input type="range" class="slider scrub" min="0" max=${last} value=${at} aria-label="Look back"
-      aria-valuetext=${isFollowing ? 'now' : `${short(-ago)} s ago`} disabled=${last === 0}
+      aria-valuetext=${isFollowing ? 'now' : `${ago} ago`} disabled=${last === 0}
       onInput=${(/** @type {any} */ event) => lookAt(Number(event.currentTarget.value))} />
-    <span class="unit time-shown">${frame ? `${frame.time.toFixed(2)} s` : '–'}</span>
+    <span class="unit time-shown">${frame ? servoTime(frame.time, rate) : '–'}</span>
     <select class="small" aria-label="Speed of time" title="Slow motion: S; refused on a device"
       value=${String(actions.clock.speed)}
       onChange=${(/** @type {any} */ event) => void actions.setSpeed(Number(event.currentTarget.value))}>
@@ -105,22 +110,26 @@ function TraceButton() {
 function Counters() {
   useTopics(['clients']);
   const [shown, setShown] = useState({ drawn: 0, ticks: 0 });
-  const seen = useRef({ frames: 0, tick: 0, at: 0 });
   useEffect(() => {
     let isOver = false;
+    let frames = 0;
     const each = () => {
-      seen.current.frames += 1;
+      frames += 1;
       if (!isOver) requestAnimationFrame(each);
     };
     requestAnimationFrame(each);
+    /** @type {{ frames: number, tick: number, at: number }[]} */
+    let counts = [];
     const timer = setInterval(() => {
-      const now = performance.now();
-      const seconds = (now - seen.current.at) / 1000;
-      const tick = state.history[state.history.length - 1]?.tick ?? 0;
-      const ticks = seen.current.at === 0 ? 0 : Math.max(0, (tick - seen.current.tick) / seconds);
-      setShown({ drawn: seen.current.frames / seconds, ticks });
-      seen.current = { frames: 0, tick, at: now };
-    }, 1000);
+      const now = { frames, tick: state.history[state.history.length - 1]?.tick ?? 0, at: performance.now() };
+      // Another servo began.
+      if (now.tick < counts[counts.length - 1]?.tick) counts = [];
+      counts = [...counts, now].slice(-COUNTS.most);
+      if (counts.length < COUNTS.least) return;
+      const [first] = counts;
+      const seconds = (now.at - first.at) / 1000;
+      setShown({ drawn: (frames - first.frames) / seconds, ticks: (now.tick - first.tick) / seconds });
+    }, COUNTING);
     return () => {
       isOver = true;
       clearInterval(timer);

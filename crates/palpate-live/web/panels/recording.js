@@ -11,37 +11,30 @@ import { ask, download, fileName, page, tell, tellError } from './page.js';
 /** The names of the columns and a row are shorter [bytes]. */
 const LONGEST_LINES = 4096;
 
-/** What the program told of the newest recording. @type {{ rows: number, most: number } | null} */
+/** What the program told of the newest recording. @type {{ on: boolean, rows: number, most: number } | null} */
 let told = null;
-/** Whether the end of a recording is to be told. */
-let isEndAwaited = false;
 let isRecording = false;
 let isReplaying = false;
 
 /** How much was recorded, or is so far: "12 300 of at most 200 000 rows"; empty while nobody knows. */
 export function recorded() {
-  return told ? `${count(told.rows)} of at most ${count(told.most)} rows` : '';
+  return told?.rows ? `${count(told.rows)} of at most ${count(told.most)} rows` : '';
 }
 
 /** Takes what the program tells of its recording.
  * @param {{ on: boolean, rows: number, most: number }} message */
 export function takeRecording({ on, rows, most }) {
-  told = { rows, most };
-  if (isEndAwaited && !on) {
-    tell(`Recorded ${count(rows)} rows${rows >= most ? ', the most that are kept' : ''}.`, 'word', [
+  if (told?.on && !on) {
+    tell(`Recorded ${count(rows)} rows.`, 'word', [
       { name: 'Replay', run: () => void replay(true) }, { name: 'Export CSV', run: () => void downloadTrace() },
     ]);
   }
-  isEndAwaited = on;
+  told = { on, rows, most };
   changed('playback');
 }
 
 /** Takes note of what frames say of recording and replaying. @param {import('../wire.js').Frame} frame */
 export function watchRecording(frame) {
-  if (frame.recording && !isRecording) {
-    told = null;
-    isEndAwaited = true;
-  }
   if (isReplaying && !frame.replaying) tell('The replay is over.');
   if (isReplaying !== frame.replaying) changed('playback');
   isRecording = frame.recording;

@@ -21,6 +21,7 @@ export function Selected() {
   const tree = partsOfScene();
   const part = state.selection === null ? null : partAt(tree, state.selection);
   const value = part ? valueAt(part.pointer) : undefined;
+  if (part?.pointer === '/tool' && value === undefined) return html`<${NoTool} />`;
   if (!part || value === undefined || part.kind === 'group') return html`<${WholeScene} />`;
   const name = part.pointer.startsWith('/shapes/') ? parts(part.pointer)[1] : value.name;
   return html`
@@ -41,6 +42,15 @@ export function Selected() {
 function heading(pointer) {
   const [list, index] = parts(pointer);
   return index === undefined ? named(list) : `${named(list).replace(/s$/, '')} ${Number(index) + 1}`;
+}
+
+/** What touches a scene that has no tool. */
+function NoTool() {
+  return html`<div class="panel-head"><h2>tool</h2></div>
+    <div class="scroll" tabindex="0" role="region" aria-label="Fields">
+      <p class="quiet">The scene has no tool of its own: a ball with a radius of 2 mm touches it. “add” below the tree gives it
+        one, with a radius, contact points or a shape.</p>
+    </div>`;
 }
 
 /** What is shown while no part with numbers is selected. */

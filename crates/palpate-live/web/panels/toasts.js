@@ -6,7 +6,7 @@
 
 import { html, useEffect, useReducer, useState } from '../vendor/htm-preact.js';
 import { state } from '../state.js';
-import { TWO_NEEDED } from './actions.js';
+import { TWO_NEEDED, downloadScene } from './actions.js';
 import { tokenIn } from './link.js';
 import { dismiss, listenToasts, toasts, useTopics } from './page.js';
 import { Waiting } from './waiting.js';
@@ -32,7 +32,9 @@ export function Words({ start }) {
   if (connection === 'closed') return html`<${NoToken} start=${start} />`;
   if (connection === 'lost') {
     return html`<div class="words bad"><b>The program has ended${state.why ? `: ${state.why}` : ''}.</b>
-      Start it again, and this page comes back. If it still runs, STOP tries to reach it all the same.</div>`;
+      Start it again, and this page comes back. If it still runs, STOP tries to reach it all the same.
+      ${scene && !scene.is_saved && html`<p>The scene has edits that are not saved: this page still has them.</p>
+        <button class="small" onClick=${downloadScene}>Download the scene</button>`}</div>`;
   }
   if (connection === 'connecting') return html`<div class="words">Connecting to the program…</div>`;
   if (scene && (scene.bodies ?? []).length === 0) {

@@ -68,8 +68,8 @@ function Readout() {
   const lifted = frame?.lifted ? ' while the hand is lifted to another place' : '';
   const isSlipping = touched.some((point) => point.slipping);
   return html`<dl class="readout">
-    <div><dt>force</dt><dd><span class="large">${(frame?.force ?? 0).toFixed(2)}</span> N</dd></div>
-    <div><dt>depth</dt><dd><span class="large">${(1000 * (frame?.depth ?? 0)).toFixed(2)}</span> mm</dd></div>
+    <div title="The largest of all contact points"><dt>force</dt><dd><span class="large">${(frame?.force ?? 0).toFixed(2)}</span> N</dd></div>
+    <div title="The largest of all contact points"><dt>depth</dt><dd><span class="large">${(1000 * (frame?.depth ?? 0)).toFixed(2)}</span> mm</dd></div>
     <div class="touched" title=${lifted ? 'It passes through bodies, and feels them again where it is set down' : names.join(', ')}><dt>touches</dt>
       <dd>${names.length > 0 ? `${names.slice(0, NAMED).join(', ')}${others}${isSlipping ? ', slipping' : ''}` : `nothing${lifted}`}</dd></div>
   </dl>`;

@@ -148,7 +148,8 @@ function AddMenu({ selected }) {
     </optgroup>
     <optgroup label="Other parts">
       ${['named shape', 'tool', 'guide', 'motion', 'view'].map((name) =>
-        html`<option key=${name} value=${`other:${name}`}>${name}</option>`)}
+        html`<option key=${name} value=${`other:${name}`} disabled=${name === 'tool' && valueAt('/tool') !== undefined}>
+          ${name}</option>`)}
     </optgroup>
   </select>`;
 }
@@ -182,6 +183,8 @@ function Buttons({ part }) {
       disabled=${place.index === 0} onClick=${() => changes.move(pointer, -1)}>↑</button>`}
     ${place && html`<button class="small" aria-label="Move down" title="Move down"
       disabled=${place.index === place.list.length - 1} onClick=${() => changes.move(pointer, 1)}>↓</button>`}
+    ${pointer === '/tool' && valueAt(pointer) === undefined && html`<button class="small"
+      onClick=${() => changes.addOther('tool')}>add</button>`}
     ${changes.canRemove(pointer) ? html`<button class="small" onClick=${() => changes.remove(pointer)}
         title=${changes.operatorLeftAlone(pointer) ? 'The operator goes too: the other shape takes its place' : 'Del'}>remove</button>`
       : part.kind === 'body' && html`<button class="small" disabled title="A scene keeps one body">remove</button>`}

@@ -4,7 +4,7 @@
 
 /** What the picture shows, above it. */
 
-import { legend } from '../scene/marks.js';
+import { isLegendOpen, openLegend } from '../scene/marks.js';
 import { differences } from '../scene/panels.js';
 import { html, useEffect, useRef } from '../vendor/htm-preact.js';
 import { setView, state } from '../state.js';
@@ -36,6 +36,7 @@ const SHOWN = [
   ['proof', 'boxes of the proof', 'Regions in which the proof has ruled a contact out'],
   ['bounds', 'bounds', 'The box around each body, and the ball around that'],
   ['names', 'names', 'The name of each body'],
+  ['handles', 'handles', 'Of the selected body or shape: arrows and their middle move it, rings turn it, the square scales it'],
 ];
 
 /** @param {string} mode */
@@ -99,6 +100,17 @@ export function ViewBar() {
     <button class="small" title="Show the whole scene: F" onClick=${() => page.stage?.setCamera('reset')}>whole</button>`;
 }
 
+/** Folds the legend in the corner of the picture. */
+export function LegendButton() {
+  useTopics(['view']);
+  const isOpen = isLegendOpen();
+  return html`<button class="small" aria-expanded=${String(isOpen)} title="What the colours and the marks of the picture mean"
+    onClick=${() => {
+      openLegend(!isOpen);
+      setView({});
+    }}>legend <span class=${isOpen ? 'caret open' : 'caret'} aria-hidden="true"></span></button>`;
+}
+
 /** The switches of the picture, behind a button. */
 function Display() {
   const { view } = state;
@@ -154,11 +166,6 @@ function Display() {
       <fieldset><legend>Shown</legend>
         ${SHOWN.map(([key, name, help]) => html`<${Switch} key=${key} label=${name} help=${help} value=${view.shown[key]}
           change=${(/** @type {boolean} */ is) => setView({ shown: { ...view.shown, [key]: is } })} />`)}
-        <${Switch} label="legend" help="What the marks over the picture mean" value=${legend.isShown}
-          change=${(/** @type {boolean} */ is) => {
-            legend.isShown = is;
-            setView({});
-          }} />
       </fieldset>
     </div>
   </details>`;

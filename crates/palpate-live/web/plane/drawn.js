@@ -12,6 +12,7 @@
  * @typedef {import('../scene/texts.js').Texts} Texts
  */
 
+import { short } from '../panels/numbers.js';
 import { arrow, dot, polyline, ring } from '../scene/ink.js';
 import { COLORS, mark } from '../scene/marks.js';
 import { RANK } from '../scene/overlay.js';
@@ -167,7 +168,7 @@ function paintSweep(context, lens, texts, inks) {
     outline(context, lens, moved(time), HIT, inks, true);
     if (Array.isArray(answer.at)) dot(context, lens.project(inSpace(answer.at)), 5, HIT, inks.halo);
   }
-  const word = touches ? `touches at ${Number(time).toFixed(3)} s`
+  const word = touches ? `touches at ${short(time, 5)} s`
     : answer.touches === false ? 'passes' : 'not decided';
   texts.add(word, places[1].x, places[1].y + 18, { rank: VERDICT, color: touches ? HIT : FREE });
 }

@@ -8,8 +8,8 @@
  * @typedef {import('./ink.js').Inks} Inks
  */
 
-const LABEL = 'The scene. Drag a point or the surface to lead the hand; drag beside them to turn '
-  + 'the view; use the wheel to zoom.';
+const LABEL = 'The scene. Drag a point or the surface to lead the hand; drag the handles of the selected part to '
+  + 'place it, or press M for the arrow keys to do so; drag beside them to turn the view; use the wheel to zoom.';
 
 /** Lays an element over the whole container. @param {HTMLElement} element */
 function lay(element) {
@@ -36,6 +36,8 @@ export class Elements {
     this.overlay = document.createElement('canvas');
     this.way = document.createElement('p');
     this.readout = document.createElement('p');
+    /** The button above the legend. */
+    this.legend = /** @type {HTMLElement} */ (container.querySelector('#legend'));
     for (const canvas of [this.scene, this.picture, this.overlay]) lay(canvas);
     this.scene.setAttribute('aria-hidden', 'true');
     this.picture.setAttribute('aria-hidden', 'true');
@@ -108,10 +110,15 @@ export class Elements {
   }
 
   measureNotes() {
-    this.notes = [this.way, this.readout].filter((each) => !each.hidden).map((each) => {
+    this.notes = [this.way, this.readout, this.legend].filter((each) => !each.hidden).map((each) => {
       const { offsetLeft: left, offsetTop: top, offsetWidth: wide, offsetHeight: high } = each;
       return { x: left + wide / 2, y: top + high / 2, wide, high };
     });
+  }
+
+  /** Where the legend begins. */
+  get legendTop() {
+    return this.legend.offsetTop + this.legend.offsetHeight;
   }
 
   /** Tells how the scene is drawn. @param {string} words @param {string} why */

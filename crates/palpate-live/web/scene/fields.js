@@ -38,7 +38,7 @@ export class Field {
     this.isUrgent = isUrgent;
     this.grids = grids;
     this.palette = paletteOf(setting);
-    this.values = { zero: 0, palette: 0, grid0: 1, grid1: 2, grid2: 3, owners0: 4, owners1: 5, ...values };
+    this.values = { zero: 0, palette: 0, grid0: 1, grid1: 2, grid2: 3, ...values };
     /** @type {WebGLTexture[]} */
     this.textures = [];
     this.epoch = -1;
@@ -81,7 +81,9 @@ export class Field {
     gl.activeTexture(gl.TEXTURE0);
     gl.bindTexture(kind, texture);
     gl.pixelStorei(gl.UNPACK_ALIGNMENT, 1);
-    const filter = grid ? gl.LINEAR : gl.NEAREST;
+    // Pairs of a number and a value are read one by one.
+    const isPaired = grid !== null && grid.values.length > grid.counts.reduce((all, count) => all * count);
+    const filter = grid && !isPaired ? gl.LINEAR : gl.NEAREST;
     gl.texParameteri(kind, gl.TEXTURE_MIN_FILTER, filter);
     gl.texParameteri(kind, gl.TEXTURE_MAG_FILTER, filter);
     for (const wrap of [gl.TEXTURE_WRAP_S, gl.TEXTURE_WRAP_T, gl.TEXTURE_WRAP_R]) {
@@ -95,10 +97,9 @@ export class Field {
       return texture;
     }
     const [width, height, depth] = grid.counts;
-    const isPacked = grid.values.length > width * height * depth;
-    const [half, single] = isPacked ? [gl.RGBA16F, gl.RGBA32F] : [gl.R16F, gl.R32F];
+    const [half, single] = isPaired ? [gl.RG16F, gl.RG32F] : [gl.R16F, gl.R32F];
     const inner = grid.half ? half : single;
-    const format = isPacked ? gl.RGBA : gl.RED;
+    const format = isPaired ? gl.RG : gl.RED;
     const type = grid.half ? gl.HALF_FLOAT : gl.FLOAT;
     if (kind === gl.TEXTURE_3D) {
       gl.texImage3D(kind, 0, inner, width, height, depth, 0, format, type, grid.values);

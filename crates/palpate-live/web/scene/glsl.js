@@ -32,9 +32,9 @@ const argument = (/** @type {number} */ dimension) => (dimension === 2 ? '.xy' :
 
 /** Samples of the whole scene and of two bodies, as a formula. Beyond the grid a value is that of
  * the nearest place in it and the way there.
- * @param {number} dimension @param {number} owners bodies whose samples tell, four in a texture,
- *   which of them a place belongs to */
-export const samples = (dimension, owners) => `
+ * @param {number} dimension @param {boolean} isTelling whether other samples tell which body a place
+ *   belongs to */
+export const samples = (dimension, isTelling) => `
 uniform sampler${dimension}D grid0, grid1, grid2;
 uniform vec3 gridLow[3], gridHigh[3];
 uniform int firstBody;
@@ -51,25 +51,37 @@ vec2 field(vec${dimension} place, int only) {
     : only == firstBody ? sampled(grid1, p, gridLow[1], gridHigh[1])
     : sampled(grid2, p, gridLow[2], gridHigh[2]);
   return vec2(value, float(only));
-}${owners > 0 ? ownersOf(dimension, owners) : ''}`;
+}${isTelling ? ownerOf(dimension) : ''}`;
 
-/** The nearest body, where the samples of the scene do not tell it.
- * @param {number} dimension @param {number} count */
-const ownersOf = (dimension, count) => `
-uniform sampler${dimension}D owners0, owners1;
+/** The nearest body, where the samples of the scene do not tell it. Each place of a grid has its nearest body,
+ * and by how much that is nearer than the next: between two bodies, the sum of these is the difference of
+ * their distances, and its zero their border.
+ * @param {number} dimension */
+const ownerOf = (dimension) => `
+uniform sampler${dimension}D owners;
 uniform vec3 ownersLow, ownersHigh;
 float owner(vec3 p, float number) {
   if (number >= 0.0) return number;
   vec3 part = (clamp(p, ownersLow, ownersHigh) - ownersLow) / max(ownersHigh - ownersLow, vec3(1e-30));
-  vec${dimension} count = vec${dimension}(textureSize(owners0, 0));
-  vec${dimension} at = (part${argument(dimension)} * (count - 1.0) + 0.5) / count;
-  vec4 values[2] = vec4[2](textureLod(owners0, at, 0.0), ${count > 4 ? 'textureLod(owners1, at, 0.0)' : 'vec4(0)'});
-  float least = values[0].x;
-  number = 0.0;
-  for (int i = 1; i < ${count}; i++) {
-    float value = values[i / 4][i % 4];
-    number = value < least ? float(i) : number;
-    least = min(least, value);
+  ivec${dimension} last = textureSize(owners, 0) - 1;
+  vec${dimension} at = part${argument(dimension)} * vec${dimension}(last);
+  ivec${dimension} low = ivec${dimension}(at);
+  const int corners = ${2 ** dimension};
+  vec2 found[corners];
+  for (int i = 0; i < corners; i++) {
+    ivec${dimension} way = ivec3(i, i >> 1, i >> 2)${argument(dimension)} & 1;
+    found[i] = texelFetch(owners, min(low + way, last), 0).xy;
+    for (int axis = 0; axis < ${dimension}; axis++) {
+      float beyond = at[axis] - float(low[axis]);
+      found[i].y *= way[axis] == 1 ? beyond : 1.0 - beyond;
+    }
+  }
+  float most = -1.0;
+  for (int i = 0; i < corners; i++) {
+    float sum = 0.0;
+    for (int j = 0; j < corners; j++) sum += found[j].x == found[i].x ? found[j].y : 0.0;
+    number = sum > most ? found[i].x : number;
+    most = max(most, sum);
   }
   return number;
 }`;

@@ -13,11 +13,12 @@
 import { state } from '../state.js';
 import { MAPS } from './glsl.js';
 import { arrow, label, stroke } from './ink.js';
-import { mark } from './marks.js';
+import { isLegendOpen, mark } from './marks.js';
 import { level, roundUp } from './units.js';
 import { along } from './vectors.js';
 
-const AXES = [
+/** The axes of the scene, with their colours. */
+export const AXES = [
   { name: 'x', color: '#c0392b', axis: [1, 0, 0] },
   { name: 'y', color: '#1a7d3c', axis: [0, 1, 0] },
   { name: 'z', color: '#2563b0', axis: [0, 0, 1] },
@@ -62,12 +63,12 @@ export function paintAxes(context, { lens, isFlat }, inks) {
 }
 
 /** The colours of the map, above on the right. @param {Context} context @param {View} view
- * @param {Inks} inks @returns {number} where it ends below */
-export function paintLegend(context, { lens: { rect }, hasPlane, hasLines, spacing, panel }, inks) {
-  if (!hasPlane) return rect.y + MARGIN;
+ * @param {number} top where it begins @param {Inks} inks @returns {number} where it ends below */
+export function paintLegend(context, { lens: { rect }, hasPlane, hasLines, spacing, panel }, top, inks) {
+  if (!hasPlane || !isLegendOpen()) return top;
   const { map, asInMemoir } = state.view;
   const right = rect.x + rect.width - MARGIN;
-  let y = rect.y + MARGIN + 6;
+  let y = top + 6;
   /** @param {string} color @param {string} text */
   const entry = (color, text) => {
     context.fillStyle = color;

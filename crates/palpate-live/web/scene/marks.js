@@ -60,6 +60,10 @@ const MARKS = {
     square(inks.muted)(context, x, y, inks);
     ring(context, { x, y }, 6, inks.muted, 1, 'transparent');
   }],
+  handles: ['moves, turns, scales the selection', (context, x, y, inks) => {
+    arrow(context, { x: x - 3, y }, { x: x + 9, y }, '#c0392b', 2, inks.halo);
+    dot(context, { x: x - 5, y }, 4, inks.halo, inks.ink);
+  }],
   moves: ['moves the plane', (context, x, y) => dot(context, { x, y }, 5, COLORS.normal, '#ffffff')],
   turns: ['turns the plane', (context, x, y) => dot(context, { x, y }, 5, '#743aa6', '#ffffff')],
   selected: ['selected body', square(COLORS.selected)],
@@ -91,8 +95,32 @@ const MARKS = {
   bounce: ['bounce, with its normal', pointer(COLORS.normal, 1.5)],
 };
 
-/** Whether the legend is shown. */
-export const legend = { isShown: true };
+const KEY = 'palpate-legend';
+/** The legend covers too much of smaller pictures, in pixels. */
+const ROOM = { width: 220, height: 280 };
+
+const legend = {
+  /** What a person chose, also the last time. */
+  chosen: localStorage.getItem(KEY),
+  hasRoom: true,
+};
+
+/** Whether the legend is unfolded. */
+export const isLegendOpen = () => (legend.chosen === null ? legend.hasRoom : legend.chosen === 'open');
+
+/** Folds the legend or unfolds it, from now on. @param {boolean} isOpen */
+export function openLegend(isOpen) {
+  legend.chosen = isOpen ? 'open' : 'folded';
+  localStorage.setItem(KEY, legend.chosen);
+}
+
+/** Takes the size of the pictures; gives whether that folds the legend or unfolds it.
+ * @param {{ width: number, height: number }} picture */
+export function fitLegend({ width, height }) {
+  const before = isLegendOpen();
+  legend.hasRoom = width >= ROOM.width && height >= ROOM.height;
+  return isLegendOpen() !== before;
+}
 
 /** @type {Set<string>} */
 const seen = new Set();
@@ -112,7 +140,7 @@ const ROW = 16;
 export function paintMarks(context, right, top, bottom, inks) {
   const entries = Object.keys(MARKS).filter((name) => seen.has(name))
     .slice(0, Math.max(0, Math.floor((bottom - top) / ROW))).map((name) => MARKS[name]);
-  if (!legend.isShown || entries.length === 0) return null;
+  if (!isLegendOpen() || entries.length === 0) return null;
   context.font = FONT;
   const wide = 30 + Math.max(...entries.map(([text]) => context.measureText(text).width));
   const high = ROW * entries.length;

@@ -27,7 +27,7 @@ const LONGEST = 130;
 const MOST_FORCE = 10;
 const { force: FORCE, normal: NORMAL, contact: CONTACT } = COLORS;
 /** The order in which texts take their places. */
-export const RANK = { hovered: 0, selected: 1, verdict: 2, force: 3, touched: 4, name: 10, small: 20 };
+export const RANK = { hovered: 0, selected: 1, verdict: 2, force: 3, touched: 4, name: 10, point: 15, small: 20 };
 /** A body that is seen smaller than this has its name last, in pixels. */
 const SMALL = 24;
 /** The part of an edge that a bracket around the selected body covers. */
@@ -36,9 +36,14 @@ const EDGES = [[0, 1], [1, 2], [2, 3], [3, 0], [4, 5], [5, 6], [6, 7], [7, 4],
   [0, 4], [1, 5], [2, 6], [3, 7]];
 
 /** The middle of the device points, or null without any. @returns {Vector | null} */
-export function handOf() {
+function handOf() {
   const points = state.frame?.points ?? [];
   return points.length > 0 ? mean(points.map(({ device }) => device)) : null;
+}
+
+/** Where the hand is led from: the point that leads, or the middle of all. @returns {Vector | null} */
+export function ledPlace() {
+  return state.frame?.points[state.touch.point ?? -1]?.device ?? handOf();
 }
 
 /** @param {Context} context @param {View} view @param {Box} box @param {string} color
@@ -196,18 +201,26 @@ export function paintHand(context, view, target, texts, inks) {
     }
     if (middle) ring(context, middle, 8, inks.ink, 1.5, inks.halo);
   }
+  const led = ledPlace() ?? hand;
   points.forEach((point, number) => {
     paintPoint(context, view, point, numbered(number), inks);
+    const place = project(point.device);
+    const leads = number === state.touch.point;
+    if (leads) ring(context, place, 10, inks.ink, 1.5, inks.halo);
+    if (points.length > 1 && place && (leads || state.view.shown.names)) {
+      texts.add(String(number + 1), place.x + 12, place.y - 10, { rank: leads ? RANK.selected : RANK.point, isFixed: true });
+    }
   });
   if (target && state.view.shown.spring) {
     mark('spring');
     const goal = project(target);
-    spring(context, middle, goal, inks.ink, inks.halo);
+    spring(context, project(led), goal, inks.ink, inks.halo);
     ring(context, goal, 7, inks.ink, 1.5, inks.halo);
     dot(context, goal, 2, inks.ink, inks.halo);
   }
   const force = frame?.force ?? 0;
-  const place = project(points[0].proxy);
+  const strongest = points.reduce((most, point) => (norm(point.force) > norm(most.force) ? point : most));
+  const place = project(strongest.proxy);
   if (state.view.shown.forces && force > 0.01 && place) {
     texts.add(`${force.toFixed(2)} N`, place.x + 32, place.y + 16, { rank: RANK.force });
   }

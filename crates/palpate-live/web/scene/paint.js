@@ -9,13 +9,15 @@
  * @typedef {import('./vectors.js').Vector} Vector
  * @typedef {{ target: Vector | null, contacts: any, labels: import('./labels.js').Labels,
  *   probe: import('./probe.js').Probed | null, notes: import('./texts.js').Taken[],
- *   isDrawn: boolean, isBallHidden: boolean }} Shown `notes` are texts that lie over the picture,
+ *   legendTop: number, isDrawn: boolean, isBallHidden: boolean }} Shown `notes` are texts that lie over the picture,
+ *   the legend begins at `legendTop`,
  *   `isDrawn` tells whether the program drew it
  */
 
 import { paintToys } from '../plane/drawn.js';
 import { paintFall } from '../plane/falling.js';
 import { state } from '../state.js';
+import { paintGrips } from './grips.js';
 import {
   MARGIN, paintAxes, paintHandles, paintLegend, paintOutline, paintScale, paintTitle,
 } from './legend.js';
@@ -63,14 +65,16 @@ export function paintAll(context, views, shown, theme, ratio) {
       paintContacts(context, view, shown.contacts, inks);
       if (isFlat && current.dimension === 2) paintToys(context, view.lens, texts, inks);
       paintFall(context, view.lens, inks, shown.isBallHidden);
+      paintGrips(context, view.lens, isFlat, texts, inks);
       paintHand(context, view, shown.target, texts, inks);
     }
     if (isCut && state.view.mode === 'slice') paintHandles(context, view, handles(), slice.frame.origin, inks);
     if (shown.probe?.view === number) paintProbe(context, view, shown.probe, texts, inks);
     if (number === 0) paintAxes(context, view, inks);
     const right = rect.x + rect.width - MARGIN;
-    const end = paintLegend(context, view, inks);
-    texts.taken.push({ x: right - 65, y: (rect.y + end) / 2, wide: 130, high: end - rect.y });
+    const top = Math.max(rect.y + MARGIN, shown.legendTop + 4);
+    const end = paintLegend(context, view, top, inks);
+    texts.taken.push({ x: right - 65, y: (top + end) / 2, wide: 130, high: end - top });
     const marks = paintMarks(context, right, end + 4, rect.y + rect.height - BELOW, inks);
     if (marks) texts.taken.push(marks);
     paintScale(context, view, slice.frame.origin, inks);

@@ -3,8 +3,8 @@
 // @ts-check
 
 /**
- * What a press on the stage takes hold of: a toy, a handle of the slice, the hand, the surface,
- * or, beside them all, the camera.
+ * What a press on the stage takes hold of: a toy, a handle of the slice or of the selected part, the
+ * hand, the surface, or, beside them all, the camera.
  *
  * @typedef {import('../input/pointer.js').Place} Place
  * @typedef {import('../input/pointer.js').Press} Press
@@ -25,11 +25,12 @@ import { fallDrag } from '../plane/falling.js';
 import { toyDrag } from '../plane/handles.js';
 import { state } from '../state.js';
 import { handDrag, laterDrag, orbitDrag, panDrag, sliceDrag } from './drags.js';
-import { handOf } from './overlay.js';
+import { gripAt } from './grips.js';
+import { ledPlace } from './overlay.js';
 import { handles } from './slice.js';
 
 /** How near a press must be in pixels, of a mouse or pen and of a finger. */
-const REACH = { mouse: 16, touch: 28 };
+export const REACH = { mouse: 16, touch: 28 };
 /** A press that moves less than this is a click, in pixels. */
 const CLICK = 5;
 /** A press on a body that lasts longer than this touches it [ms]. */
@@ -77,9 +78,9 @@ export function createPress({ cameras, hand, view, pick, click, changed, show })
     if (button === 1 || shift || (button === 2 && isFlat)) return panDrag(camera, lens.rect, changed);
     if (button === 2) return orbitDrag(cameras.orbit, changed);
     const reach = isTouch ? REACH.touch : REACH.mouse;
-    const near = (/** @type {Vector} */ point, /** @type {number} */ within) => {
+    const apart = (/** @type {Vector} */ point) => {
       const seen = lens.project(point);
-      return seen !== null && Math.hypot(seen.x - place.x, seen.y - place.y) < within;
+      return seen ? Math.hypot(seen.x - place.x, seen.y - place.y) : Infinity;
     };
     if (isFlat && isWhole && state.scene?.dimension === 2) {
       const toy = toyDrag(() => live().lens, place, reach);
@@ -88,20 +89,22 @@ export function createPress({ cameras, hand, view, pick, click, changed, show })
     const ball = isWhole ? fallDrag(() => live().lens, place, reach) : null;
     if (ball) return ball;
     if (state.view.mode === 'slice' && !isFlat) {
-      const found = handles().find(({ point }) => near(point, reach));
+      const found = handles().find(({ point }) => apart(point) < reach);
       if (found) return sliceDrag(found.handle, () => live().lens);
     }
-    const middle = handOf();
+    const led = ledPlace();
+    const toHand = led ? Math.min(apart(led), ...(state.frame?.points ?? []).map(({ device }) => apart(device))) : Infinity;
+    const grip = isWhole ? gripAt(() => live().lens, isFlat, place, reach) : null;
     const away = () => (isFlat ? panDrag(camera, lens.rect, changed) : orbitDrag(cameras.orbit, changed));
     const clicks = () => click(live(), place);
-    if (!middle || !isWhole) return clickOrDrag(place, away, clicks, false);
-    const holds = near(middle, reach)
-      || (state.frame?.points ?? []).some(({ device }) => near(device, reach));
+    // The hand is held where it is nearer than a handle.
+    if (grip && grip.apart < toHand) return clickOrDrag(place, grip.begin, clicks, false);
+    if (!led || !isWhole) return clickOrDrag(place, away, clicks, false);
     const lead = (/** @type {Vector} */ through, /** @type {boolean} */ pushes) =>
       handDrag(live, place, through, pushes, hand, show);
-    if (holds) return lead(middle, false);
+    if (toHand < reach) return lead(led, false);
     if (isFlat) {
-      const there = lens.at(place.x, place.y, middle);
+      const there = lens.at(place.x, place.y, led);
       return clickOrDrag(place, () => lead(there, false), clicks, true);
     }
     const hit = pick(pressed, place);

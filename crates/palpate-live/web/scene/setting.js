@@ -54,13 +54,20 @@ export function setting() {
   return { dimension, box, isBounded: known !== null, centre: centreOf(box), size, bodies };
 }
 
+/** The box around boxes. @param {Box[]} boxes @returns {Box} */
+function around(boxes) {
+  const axes = [0, 1, 2];
+  const low = axes.map((axis) => Math.min(...boxes.map((box) => box.low[axis])));
+  const high = axes.map((axis) => Math.max(...boxes.map((box) => box.high[axis])));
+  return { low, high };
+}
+
 /** The setting whose box holds another box too. @param {Setting} current @param {Box | null} other
  * @returns {Setting} */
 export function holding(current, other) {
   if (!other) return current;
-  const low = current.box.low.map((part, axis) => Math.min(part, other.low[axis]));
-  const high = current.box.high.map((part, axis) => Math.max(part, other.high[axis]));
-  return { ...current, box: { low, high }, centre: centreOf({ low, high }) };
+  const box = around([current.box, other]);
+  return { ...current, box, centre: centreOf(box) };
 }
 
 /** Red, green and blue from 0 to 1 of `#rrggbb`, of numbers from 0 to 255 or of parts of one.
@@ -92,9 +99,6 @@ export function comparison(current, bodies) {
     const { low, high } = current.bodies[body]?.box ?? current.box;
     return { low: subtract(low, places[index]), high: subtract(high, places[index]) };
   });
-  const axes = [0, 1, 2];
-  const low = axes.map((axis) => Math.min(...boxes.map((box) => box.low[axis])));
-  const high = axes.map((axis) => Math.max(...boxes.map((box) => box.high[axis])));
-  const box = { low, high };
-  return { ...current, box, centre: centreOf(box), size: norm(subtract(high, low)) || ENDLESS };
+  const box = around(boxes);
+  return { ...current, box, centre: centreOf(box), size: norm(subtract(box.high, box.low)) || ENDLESS };
 }

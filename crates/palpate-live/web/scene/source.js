@@ -14,6 +14,7 @@
 import { state } from '../state.js';
 import { Field } from './fields.js';
 import { samples } from './glsl.js';
+import { Nearest } from './nearest.js';
 import { asking, newest } from './newest.js';
 import { length } from './units.js';
 import { inSpace } from './vectors.js';
@@ -24,20 +25,7 @@ const CELLS = { plane: [1024, 256], space: [128, 64] };
 const SETTLE = 300;
 
 /** Samples along the longest side that tell bodies apart, and the most bodies that have some. */
-const OWNERS = { plane: 256, space: 64, most: 8 };
-
-/** Samples of up to four bodies as one grid of four values a place. Those of bodies that are
- * missing are far away. @param {Grid[]} grids @returns {Grid} */
-function packed(grids) {
-  const [{ values, half }] = grids;
-  const all = half ? new Uint16Array(4 * values.length) : new Float32Array(4 * values.length);
-  // The largest half float.
-  all.fill(half ? 0x7bff : 1e30);
-  grids.forEach((grid, channel) => grid.values.forEach((value, at) => {
-    all[4 * at + channel] = value;
-  }));
-  return { ...grids[0], values: all };
-}
+const OWNERS = { plane: 256, space: 64, most: 128 };
 
 export class Source {
   /** @param {Wire} wire @param {(field: Field) => void} take takes a field that can be drawn */
@@ -60,8 +48,8 @@ export class Source {
     this.name = '';
     /** Why the formula could not be used. */
     this.failure = '';
-    /** What tells the bodies apart, and of how many. @type {{ grids: Grid[], count: number }} */
-    this.owners = { grids: [], count: 0 };
+    /** What tells the bodies apart. @type {Nearest | null} */
+    this.owners = null;
     this.ask = newest(() => this.fetch());
   }
 
@@ -85,7 +73,7 @@ export class Source {
     if (state.scene?.name !== this.name) {
       this.name = state.scene?.name;
       this.spacing = 0;
-      this.owners = { grids: [], count: 0 };
+      this.owners = null;
     }
     this.text = way?.glsl ?? '';
     const kind = way?.kind ?? 'drawn';
@@ -135,16 +123,18 @@ export class Source {
     const count = setting.bodies.length;
     const isTelling = bodies.length === 0 && count > 1 && count <= OWNERS.most;
     // While the scene is being changed, bodies are told apart by what they were before.
-    if (!isTelling || this.owners.count !== count) this.owners = { grids: [], count: 0 };
+    if (!isTelling || this.owners?.count !== count) this.owners = null;
     this.takeSamples(grids, bodies, setting);
     if (!isTelling || isCoarse) return;
-    /** @type {Grid[]} */
-    const each = [];
+    /** @type {Nearest | null} */
+    let owners = null;
     for (let body = 0; body < count; body += 1) {
-      const cells = setting.dimension === 2 ? OWNERS.plane : OWNERS.space;
-      each.push(await this.questions.ask({ do: 'samples', cells, body }));
+      const places = setting.dimension === 2 ? OWNERS.plane : OWNERS.space;
+      const grid = await this.questions.ask({ do: 'samples', cells: places, body });
+      owners ??= new Nearest(grid);
+      owners.take(grid);
     }
-    this.owners = { grids: [each.slice(0, 4), each.slice(4)].filter(({ length: some }) => some > 0).map(packed), count };
+    this.owners = owners;
     this.takeSamples(grids, bodies, setting);
   }
 
@@ -154,17 +144,17 @@ export class Source {
     const { counts, first, last } = grids[0];
     this.spacing = Math.max(...counts.slice(0, setting.dimension).map((count, axis) =>
       (last[axis] - first[axis]) / Math.max(count - 1, 1)));
-    const { grids: owners, count } = this.owners;
+    const owners = this.owners?.grid;
     const three = [0, 1, 2].map((index) => grids[index] ?? grids[0]);
     const values = {
       gridLow: three.map((grid) => inSpace(grid.first)),
       gridHigh: three.map((grid) => inSpace(grid.last)),
       firstBody: bodies[0] ?? 0,
       // Units 1 to 3 hold the grids.
-      ...(bodies.length === 0 ? { grid1: 1, grid2: 1, owners0: 2, owners1: owners.length > 1 ? 3 : 2 } : {}),
-      ...(owners.length > 0 ? { ownersLow: inSpace(owners[0].first), ownersHigh: inSpace(owners[0].last) } : {}),
+      ...(bodies.length === 0 ? { grid1: 1, grid2: 1 } : {}),
+      ...(owners && { owners: 2, ownersLow: inSpace(owners.first), ownersHigh: inSpace(owners.last) }),
     };
-    const text = samples(setting.dimension, count);
-    this.take(new Field(text, setting, [...grids, ...owners], values, true));
+    const text = samples(setting.dimension, owners !== undefined);
+    this.take(new Field(text, setting, owners ? [...grids, owners] : grids, values, true));
   }
 }

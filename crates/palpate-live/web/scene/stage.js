@@ -18,18 +18,20 @@ import { boundsOfToys } from '../plane/bounds.js';
 import { connectFall, fall, layFall, listenFall, placeAbove, stepFall } from '../plane/fall.js';
 import { createVeil } from '../plane/veil.js';
 import { connectToys, layToys, listenToys } from '../plane/toys.js';
-import { listen, state } from '../state.js';
+import { changed, listen, state } from '../state.js';
 import { Flat, Orbit } from './camera.js';
 import { createClick } from './click.js';
 import { askContacts } from './contacts.js';
 import { Elements } from './elements.js';
+import { gripAt } from './grips.js';
 import { Labels } from './labels.js';
 import { Layer } from './layer.js';
+import { fitLegend } from './marks.js';
 import { paintAll } from './paint.js';
 import { isFlat, viewsOf } from './panels.js';
 import { createPick } from './pick.js';
 import { Pictures } from './pictures.js';
-import { createPress } from './press.js';
+import { REACH, createPress } from './press.js';
 import { Probe } from './probe.js';
 import { comparison, holding, setting } from './setting.js';
 import { listenSlice, meet, slice } from './slice.js';
@@ -113,6 +115,7 @@ export function createStage(container, wire) {
       isSceneChanged = false;
       cameras.flat.frame = slice.frame;
       views = viewsOf(setting(), cameras, elements.rect);
+      if (fitLegend(views[0].lens.rect)) changed('view');
       if (source.hasCard && field) layer.show(views.map(({ panel }) => panel), field);
       // Before the first scene nobody knows how it is to be drawn.
       const isDrawn = source.kind === 'drawn' && state.connection === 'live' && state.scene !== null;
@@ -129,6 +132,7 @@ export function createStage(container, wire) {
         target, contacts, labels, probe: probe.probed, notes: elements.notes,
         isDrawn: source.kind === 'drawn',
         isBallHidden: veil.isHiding,
+        legendTop: elements.legendTop,
       };
       veil.look(views[0]);
       paintAll(elements.context, views, shown, elements.inks, elements.ratio);
@@ -217,6 +221,8 @@ export function createStage(container, wire) {
     hover(place) {
       const number = place ? viewAt(place) : -1;
       const view = views[number];
+      const grip = place && view?.isWhole ? gripAt(() => view.lens, view.isFlat, place, REACH.mouse) : null;
+      elements.overlay.style.cursor = grip ? 'grab' : '';
       if (!place || !view || isPressed || state.connection !== 'live') probe.leave();
       else probe.follow(() => seenAt(view, place), view, number);
     },
