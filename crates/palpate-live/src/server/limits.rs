@@ -14,6 +14,9 @@ pub(super) const MOST_CONNECTIONS: usize = 256;
 /// How long the server waits where the operating system gives it no more sockets.
 pub(super) const RECOVERY: Duration = Duration::from_millis(50);
 
+/// The most traces that come or go at once: each is up to 64 MiB of memory.
+pub(super) const MOST_TRACES: usize = 4;
+
 /// The largest trace to be replayed [bytes], and how long it may take to come.
 pub(super) const LARGEST_TRACE: usize = 64 << 20;
 pub(super) const TRACE_PATIENCE: Duration = Duration::from_secs(60);

@@ -8,6 +8,7 @@ mod connections;
 mod guard;
 mod limits;
 mod socket;
+mod whole;
 
 use std::net::SocketAddr;
 use std::sync::Arc;
@@ -29,15 +30,16 @@ use tower_http::compression::CompressionLayer;
 use crate::stage::Stage;
 use guard::{Guard, HEADERS};
 pub(crate) use guard::{is_token, new_token};
-use limits::{LARGEST_ANSWER, LARGEST_MESSAGE, LARGEST_TRACE, TRACE_PATIENCE};
+use limits::{LARGEST_ANSWER, LARGEST_MESSAGE, LARGEST_TRACE, MOST_TRACES, TRACE_PATIENCE};
+use whole::Whole;
 
 /// What all requests share.
 #[derive(Clone, Debug)]
 struct Shared {
     stage: Arc<Stage>,
     guard: Arc<Guard>,
-    /// The one place of a trace.
-    trace: Arc<Semaphore>,
+    /// The places of traces, which are large.
+    traces: Arc<Semaphore>,
 }
 
 /// The token of a request.
@@ -54,9 +56,8 @@ pub(crate) async fn serve(
     stage: Arc<Stage>,
     end: oneshot::Receiver<()>,
 ) {
-    let (guard, trace_place) =
-        (Arc::new(Guard::new(address, token)), Arc::new(Semaphore::new(1)));
-    let shared = Shared { stage, guard, trace: trace_place };
+    let guard = Arc::new(Guard::new(address, token));
+    let shared = Shared { stage, guard, traces: Arc::new(Semaphore::new(MOST_TRACES)) };
     let router = Router::new()
         .route("/", get(|| async { assets::answer("index.html") }))
         .route("/{*path}", get(|Path(path): Path<String>| async move { assets::answer(&path) }))
@@ -127,18 +128,13 @@ async fn trace(
     Query(query): Query<Token>,
 ) -> Result<Response, StatusCode> {
     shared.guard.check_token(query.token.as_deref())?;
-    // A trace is large: one is made at a time.
-    let place = Arc::clone(&shared.trace).try_acquire_owned();
+    let place = Arc::clone(&shared.traces).try_acquire_owned();
     let place = place.map_err(|_| StatusCode::SERVICE_UNAVAILABLE)?;
     let stage = Arc::clone(&shared.stage);
-    let rows = tokio::task::spawn_blocking(move || {
-        let rows = stage.trace().map(|trace| trace());
-        drop(place);
-        rows
-    });
-    let rows = rows.await;
-    let rows = rows.ok().flatten().ok_or(StatusCode::SERVICE_UNAVAILABLE)?;
-    Ok(([(header::CONTENT_TYPE, "text/csv")], rows).into_response())
+    let rows = tokio::task::spawn_blocking(move || stage.trace().map(|trace| trace()));
+    let rows = rows.await.ok().flatten().ok_or(StatusCode::SERVICE_UNAVAILABLE)?;
+    let body = Body::new(Whole::new(rows.into(), place));
+    Ok(([(header::CONTENT_TYPE, "text/csv")], body).into_response())
 }
 
 async fn take_trace(
@@ -149,7 +145,7 @@ async fn take_trace(
 ) -> Result<Response, StatusCode> {
     shared.guard.check_origin(&headers)?;
     shared.guard.check_token(query.token.as_deref())?;
-    let place = Arc::clone(&shared.trace).try_acquire_owned();
+    let place = Arc::clone(&shared.traces).try_acquire_owned();
     let place = place.map_err(|_| StatusCode::SERVICE_UNAVAILABLE)?;
     let bytes = timeout(TRACE_PATIENCE, to_bytes(body, LARGEST_TRACE)).await;
     let bytes = bytes.map_err(|_| StatusCode::REQUEST_TIMEOUT)?;

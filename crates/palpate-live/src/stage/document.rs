@@ -3,16 +3,15 @@
 
 //! The scene as it is edited: its data, the steps back, the file it came from.
 
-use std::path::{Path, PathBuf};
+use std::io::ErrorKind;
+use std::path::PathBuf;
 use std::sync::Arc;
 
 use palpate::scene::{AnyScene, Scene, SceneError, SceneProblem};
 use serde_json::{Value, json};
 
+use super::file::{LARGEST, read_file, replace};
 use crate::wire::Change;
-
-/// The largest scene [bytes]: what the pages are told of it is a few times as large.
-const LARGEST: usize = 4 << 20;
 
 /// The deepest that a part of a scene may be nested: more than any scene is.
 const DEEPEST: usize = 200;
@@ -209,10 +208,11 @@ impl Document {
                 )
                 .into());
             }
-            Err(error) if error.kind() != std::io::ErrorKind::NotFound => {
-                return Err(failed(error));
-            }
-            _ => {}
+            Ok(_) => {}
+            Err(error) if error.kind() == ErrorKind::NotFound => {}
+            // Text that is none is somebody else's too.
+            Err(error) if error.kind() == ErrorKind::InvalidData && is_forced => {}
+            Err(error) => return Err(failed(error)),
         }
         replace(&file, &self.now.text, false).map_err(failed)?;
         self.saved = self.now.text.as_str().into();
@@ -276,70 +276,6 @@ impl Document {
     pub(super) fn has_seen_file_of(&mut self, other: &Self) {
         self.seen = Arc::clone(&other.seen);
     }
-}
-
-/// Writes a file beside and renames it, so that there is a whole file at all times; if it `is_new`, over
-/// none that came meanwhile.
-fn replace(file: &Path, text: &str, is_new: bool) -> std::io::Result<()> {
-    // A link stays one: what it leads to is replaced.
-    let file = std::fs::canonicalize(file).unwrap_or_else(|_| file.to_owned());
-    let before = std::fs::metadata(&file).ok();
-    if before.as_ref().is_some_and(|before| before.permissions().readonly()) {
-        let why = "is read-only: save as another file, or make it writable";
-        return Err(std::io::Error::new(std::io::ErrorKind::PermissionDenied, why));
-    }
-    let folder = file.parent().filter(|folder| !folder.as_os_str().is_empty());
-    let folder = folder.unwrap_or(Path::new("."));
-    let mut beside = new_file().tempfile_in(folder)?;
-    std::io::Write::write_all(&mut beside, text.as_bytes())?;
-    match &before {
-        // Other names of the file stay names of it.
-        Some(before) if has_other_names(before) => {
-            std::fs::write(&file, text)?;
-            return beside.close();
-        }
-        Some(before) => std::fs::set_permissions(beside.path(), before.permissions())?,
-        None => {}
-    }
-    if is_new {
-        beside.persist_noclobber(&file)?
-    } else {
-        beside.persist(&file)?
-    };
-    Ok(())
-}
-
-/// A file that is readable and writable for whom new files are.
-fn new_file() -> tempfile::Builder<'static, 'static> {
-    let mut builder = tempfile::Builder::new();
-    #[cfg(unix)]
-    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-    builder
-}
-
-/// Whether a file has hard links, of which a file that is renamed to it would be none.
-fn has_other_names(metadata: &std::fs::Metadata) -> bool {
-    #[cfg(unix)]
-    return std::os::unix::fs::MetadataExt::nlink(metadata) > 1;
-    #[cfg(not(unix))]
-    {
-        let _ = metadata;
-        false
-    }
-}
-
-/// The text of a file that can be a scene's.
-///
-/// # Errors
-///
-/// If it cannot be read, is no regular file, or is too large.
-pub(super) fn read_file(file: &Path) -> std::io::Result<String> {
-    let metadata = std::fs::metadata(file)?;
-    if !metadata.is_file() || metadata.len() > LARGEST as u64 {
-        let why = format!("is no file of at most {LARGEST} bytes");
-        return Err(std::io::Error::new(std::io::ErrorKind::InvalidInput, why));
-    }
-    std::fs::read_to_string(file)
 }
 
 /// How deep a value is nested.

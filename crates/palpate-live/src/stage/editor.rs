@@ -13,7 +13,8 @@ use palpate::scene::{AnyScene, Scene, described_primitive, schema};
 use serde_json::{Value, json};
 
 use super::described::{self, Drawing};
-use super::document::{Document, Refusal, read_file};
+use super::document::{Document, Refusal};
+use super::file::read_file;
 use super::hand::tour;
 use super::pages::{PageId, Pages};
 use super::performance::{AnyPath, Changed, Order, Showing};

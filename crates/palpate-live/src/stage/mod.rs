@@ -10,6 +10,7 @@
 mod described;
 mod document;
 mod editor;
+mod file;
 mod hand;
 mod inquiry;
 mod pages;

@@ -3,6 +3,9 @@
 
 //! Attacks by pages of other sites, by other users, and by programs that misuse the socket.
 
+use std::io::{BufRead, BufReader, ErrorKind, Read, Write};
+use std::net::TcpStream;
+
 use palpate_live::{Live, LiveOptions};
 use serde_json::json;
 use tungstenite::{Bytes, Message};
@@ -25,8 +28,7 @@ fn status_at(live: &Live, method: &str, path: &str, headers: &str) -> u16 {
 }
 
 fn first_line(live: &Live, request: &str) -> u16 {
-    use std::io::{BufRead, BufReader, Write};
-    let mut stream = std::net::TcpStream::connect(live.address()).unwrap();
+    let mut stream = TcpStream::connect(live.address()).unwrap();
     stream.write_all(request.as_bytes()).unwrap();
     let mut line = String::new();
     BufReader::new(stream).read_line(&mut line).unwrap();
@@ -161,4 +163,20 @@ fn a_connection_that_says_nothing_is_closed() {
     // Without a whole head the server closes, with nothing or with a refusal.
     let answers: Vec<_> = ["", &started].map(|start| raw(address, start)).into();
     assert!(answers.iter().all(|answer| !answer.contains("200 OK")), "{answers:?}");
+}
+
+/// 256 strangers who said nothing once kept everybody out, an emergency stop too, until they were closed.
+#[test]
+fn strangers_who_say_nothing_keep_nobody_out() {
+    let live = served(LiveOptions::default());
+    let strangers: Vec<_> =
+        (0..300).map(|_| TcpStream::connect(live.address()).unwrap()).collect();
+    let stop = format!("/stop?token={}", live.token());
+    let origin = format!("Origin: http://{}\r\n", live.address());
+    assert_eq!(status(&live, "POST", &stop, &origin), 204);
+    // It did not wait for the last of them.
+    let mut last = &strangers[299];
+    last.set_nonblocking(true).unwrap();
+    let error = last.read(&mut [0]).unwrap_err();
+    assert_eq!(error.kind(), ErrorKind::WouldBlock);
 }

@@ -19,6 +19,8 @@ import { along, scale } from './vectors.js';
 const TURN = 0.0075;
 /** How far a press on the surface pushes inwards for each pixel of the drag, in pixels. */
 const PUSH = 0.5;
+/** The part of the line of sight at whose end a hand is set down, before the place that is pressed. */
+const NEAR = 0.1;
 /** A step of depth in pixels of the place. */
 const DEPTH = 10;
 
@@ -66,9 +68,9 @@ export function handDrag(view, place, through, pushes, hand, show) {
       ? PUSH * Math.hypot(here.x - place.x, here.y - place.y) : 0;
     const inwards = isFlat ? [0, 0, 0] : scale(lens.towards(plain), -1);
     const target = along(plain, inwards, (pressed + DEPTH * depth) * pixel);
-    // A hand elsewhere comes along the line of sight, on which nothing is in between.
+    // A hand elsewhere is set down on the line of sight, on which nothing is in between.
     const { eye } = lens.basis;
-    const begin = pushes && !isFlat ? [0, 1, 2].map((axis) => (eye[axis] + plain[axis]) / 2) : null;
+    const begin = pushes && !isFlat ? [0, 1, 2].map((axis) => plain[axis] + NEAR * (eye[axis] - plain[axis])) : null;
     hand.lead(target, begin);
     show(target);
   };
