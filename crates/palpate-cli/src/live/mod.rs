@@ -64,7 +64,7 @@ impl Page {
         asked: &PageOptions,
         options: palpate_live::LiveOptions,
     ) -> Result<Live, Failure> {
-        let place = Place::of(asked)?;
+        let place = Place::of(asked, self.file.as_deref())?;
         if let Some(address) = asked.bind.filter(|address| !address.is_loopback()) {
             output::remark(format_args!(
                 "warning: {address} is reached from other machines, and nothing is encrypted: who can read \

@@ -4,6 +4,7 @@
 //! The port and the token of a page: those of the last run, so that a page that is open comes back.
 
 use std::fs::OpenOptions;
+use std::hash::{DefaultHasher, Hash, Hasher};
 use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
@@ -33,7 +34,8 @@ enum Memory {
 }
 
 impl Place {
-    pub(super) fn of(asked: &PageOptions) -> Result<Self, Failure> {
+    /// Each scene has a place of its own: programs that are started again do not swap theirs.
+    pub(super) fn of(asked: &PageOptions, scene: Option<&Path>) -> Result<Self, Failure> {
         if let Some(file) = &asked.token_file {
             let token = match std::fs::read_to_string(file) {
                 Ok(text) => Some(text.trim().to_owned()),
@@ -45,7 +47,8 @@ impl Place {
         let Some(folder) = dirs::runtime_dir().or_else(dirs::cache_dir) else {
             return Ok(Self { port: None, token: None, memory: Memory::None });
         };
-        let file = folder.join("palpate").join("page");
+        let name = scene.map_or_else(|| "page".to_owned(), name_for);
+        let file = folder.join("palpate").join(name);
         // A file that is not as it was written is written anew.
         let text = std::fs::read_to_string(&file).unwrap_or_default();
         let (port, token) = text.trim().split_once(' ').unzip();
@@ -63,6 +66,10 @@ impl Place {
                 let written = write(file, live.token());
                 written.map_err(|error| Failure::file(file, error))
             }
+            // Another program is at the port of the last run.
+            Memory::Last(_) if self.port.is_some_and(|port| port != live.address().port()) => {
+                Ok(())
+            }
             Memory::Last(file) => {
                 let folder = file.parent().map_or(Ok(()), std::fs::create_dir_all);
                 let text = format!("{} {}", live.address().port(), live.token());
@@ -77,6 +84,13 @@ impl Place {
             Memory::None => Ok(()),
         }
     }
+}
+
+/// The name of the file for a scene, of its path.
+fn name_for(scene: &Path) -> String {
+    let mut hasher = DefaultHasher::new();
+    scene.canonicalize().unwrap_or_else(|_| scene.to_owned()).hash(&mut hasher);
+    format!("page-{:016x}", hasher.finish())
 }
 
 /// Warns of a file with a token that others can read.

@@ -39,11 +39,22 @@ async function measuring() {
   const { Program } = await import('/scene/program.js');
   const { state } = await import('/state.js');
   const { page } = await import('/panels/page.js');
-  const { step } = Layer.prototype;
+  const { step, drawMoving, learn } = Layer.prototype;
   let layer;
   Layer.prototype.step = function (...given) {
     layer = this;
     return step.apply(this, given);
+  };
+  // The field of the moving picture that the card draws, and what waits for one of another field.
+  let drawn = null;
+  let waiting = () => {};
+  Layer.prototype.drawMoving = function (field) {
+    drawn = field;
+    return drawMoving.call(this, field);
+  };
+  Layer.prototype.learn = function (time) {
+    waiting();
+    return learn.call(this, time);
   };
   const frame = () => new Promise((resolve) => requestAnimationFrame(resolve));
   const until = async (look) => {
@@ -118,9 +129,11 @@ async function measuring() {
         const begun = performance.now();
         slider.value = String(begin * (1 - 0.01 * at));
         slider.dispatchEvent(new Event('input', { bubbles: true }));
-        await until(() => layer.field !== field && !layer.isChanged && layer.fence === null);
+        await new Promise((resolve) => {
+          waiting = () => drawn !== field && resolve();
+        });
         times.push(performance.now() - begun);
-        await frame();
+        await new Promise((resolve) => setTimeout(resolve, 100));
       }
       slider.dispatchEvent(new Event('change', { bubbles: true }));
       return times;
