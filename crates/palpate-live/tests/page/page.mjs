@@ -240,7 +240,7 @@ const cases = [
         await until('a step', async () => (await state(page, 'scene.scene.bodies.0.pose.translation.0')) > 0);
         await until('literals after the step', async () => (await state(page, 'way.uniforms.length')) === 0);
         await page.getByText('display', { exact: true }).click();
-        await page.getByLabel('handles').click();
+        await page.getByLabel('handles', { exact: true }).click();
         const revision = await state(page, 'scene.revision');
         await page.mouse.move(x - 96, y - 96);
         await page.mouse.down();
