@@ -25,7 +25,7 @@ pub(super) async fn serve(listener: TcpListener, router: Router) -> Infallible {
     connections.timer(TokioTimer::new()).header_read_timeout(PATIENCE);
     loop {
         let Ok((stream, _)) = listener.accept().await else {
-            // Without files for more sockets, others have to end first.
+            // No file descriptors are left: the oldest connection is closed.
             if let Some(oldest) = open.pop_front() {
                 oldest.abort();
             }
@@ -41,7 +41,7 @@ pub(super) async fn serve(listener: TcpListener, router: Router) -> Infallible {
         let service = TowerToHyperService::new(router.clone());
         let connection =
             connections.serve_connection(TokioIo::new(stream), service).with_upgrades();
-        // It ends when it becomes the socket of a page. What fails is that of one client.
+        // It ends when the connection becomes a WebSocket. An error concerns its client alone.
         let task = tokio::spawn(async { drop(connection.await) });
         open.push_back(task.abort_handle());
     }

@@ -79,7 +79,7 @@ pub(super) fn described(document: &Document, scene: &AnyScene) -> Value {
     };
     message["do"] = "scene".into();
     message["name"] = document.name.as_str().into();
-    message["file"] = json!(document.file.as_ref().map(|file| file.display().to_string()));
+    message["file"] = json!(document.shown_file());
     message["is_saved"] = document.is_saved().into();
     message["can_undo"] = document.can_undo().into();
     message["can_redo"] = document.can_redo().into();

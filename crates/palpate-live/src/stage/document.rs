@@ -16,8 +16,9 @@ use crate::wire::Change;
 /// The deepest that a part of a scene may be nested: more than any scene is.
 const DEEPEST: usize = 200;
 
-/// The most steps back.
+/// The most steps back, and the most that their texts are in all [bytes].
 const MOST_STEPS: usize = 500;
+const MOST_BYTES: usize = 64 << 20;
 
 /// A scene that is edited.
 #[derive(Clone, Debug)]
@@ -131,6 +132,11 @@ impl Document {
         !self.forth.is_empty()
     }
 
+    /// The path of its file, as text.
+    pub(super) fn shown_file(&self) -> Option<String> {
+        self.file.as_ref().map(|file| file.display().to_string())
+    }
+
     pub(super) fn is_saved(&self) -> bool {
         self.now.text == *self.saved
     }
@@ -167,7 +173,10 @@ impl Document {
 
     fn push(&mut self, version: Arc<Version>) {
         self.back.push(std::mem::replace(&mut self.now, version));
-        if self.back.len() > MOST_STEPS {
+        let size = |back: &[Arc<Version>]| -> usize {
+            back.iter().map(|version| version.text.len()).sum()
+        };
+        while self.back.len() > MOST_STEPS || size(&self.back) > MOST_BYTES {
             self.back.remove(0);
         }
         self.forth.clear();
@@ -210,7 +219,7 @@ impl Document {
             }
             Ok(_) => {}
             Err(error) if error.kind() == ErrorKind::NotFound => {}
-            // Text that is none is somebody else's too.
+            // A file that is not UTF-8 is replaced only if that is forced.
             Err(error) if error.kind() == ErrorKind::InvalidData && is_forced => {}
             Err(error) => return Err(failed(error)),
         }
@@ -268,12 +277,10 @@ impl Document {
             self.push(version);
         }))
     }
-}
 
-impl Document {
     /// Takes note that the file was looked at: a text with an error is told once. It is still
     /// somebody else's, which is not saved over.
-    pub(super) fn has_seen_file_of(&mut self, other: &Self) {
+    pub(super) fn take_note_of_file(&mut self, other: &Self) {
         self.seen = Arc::clone(&other.seen);
     }
 }

@@ -25,6 +25,9 @@ use crate::wire::{Ask, Change, Question, VERSION};
 /// How often the file of the scene is looked at.
 const LOOK: Duration = Duration::from_millis(500);
 
+/// The most tours that are searched at once: of a steep scene one takes minutes.
+const MOST_SEARCHES: usize = 3;
+
 /// The state of the thread.
 #[derive(Debug)]
 pub(super) struct Editor {
@@ -45,6 +48,10 @@ pub(super) struct Editor {
     spent: Spent,
     /// The page that edited last.
     editing: Option<PageId>,
+    /// The scene of a revision whose tour is to be found.
+    to_tour: Option<(Arc<AnyScene>, u32)>,
+    /// Held by each thread that searches a tour.
+    searches: Arc<()>,
 }
 
 /// What parts of an edit took.
@@ -93,6 +100,8 @@ impl Editor {
             text,
             spent: Spent::default(),
             editing: None,
+            to_tour: None,
+            searches: Arc::default(),
         }
     }
 
@@ -105,13 +114,17 @@ impl Editor {
                         self.pages.refuse(page, id, &message, &problems);
                     }
                 },
-                Err(RecvTimeoutError::Timeout) => self.look_at_file(),
+                Err(RecvTimeoutError::Timeout) => {
+                    self.look_at_file();
+                    self.find_tour();
+                }
                 Err(RecvTimeoutError::Disconnected) => return,
             }
         }
     }
 
     fn obey(&mut self, page: PageId, ask: Ask) -> Result<(), Refusal> {
+        self.spent = Spent::default();
         match ask {
             Ask::Hello { version } => self.welcome(page, version),
             Ask::Edit { base, changes, moving } => {
@@ -142,10 +155,7 @@ impl Editor {
                     None => self.document.save(force)?,
                     Some(name) => self.document.save_as(&name, force)?,
                 }
-                self.message["is_saved"] = true.into();
-                self.message["name"] = self.document.name.as_str().into();
-                self.message["file"] = json!(self.document.file);
-                self.pages.broadcast(&self.message);
+                self.tell_saved();
                 Ok(())
             }
             _ => Ok(()),
@@ -192,6 +202,14 @@ impl Editor {
         self.show("edit", is_moving).inspect_err(|_| self.document = before)
     }
 
+    /// Tells the pages the file of the scene, and whether the scene is saved there.
+    fn tell_saved(&mut self) {
+        self.message["is_saved"] = self.document.is_saved().into();
+        self.message["name"] = self.document.name.as_str().into();
+        self.message["file"] = json!(self.document.shown_file());
+        self.pages.broadcast(&self.message);
+    }
+
     /// Takes the text of the file, if that was changed elsewhere.
     fn look_at_file(&mut self) {
         let Some(file) = self.document.file.clone().filter(|_| self.revision > 0) else {
@@ -201,13 +219,17 @@ impl Editor {
         let Ok(text) = read_file(&file) else { return };
         let before = self.document.clone();
         let taken = match self.document.take_file(&text) {
-            None => return,
+            None => {
+                if self.document.is_saved() != before.is_saved() {
+                    self.tell_saved();
+                }
+                return;
+            }
             Some(taken) => taken.and_then(|()| self.show("file", false)),
         };
         if let Err(Refusal { message, .. }) = taken {
-            let saved = self.document.clone();
-            self.document = before;
-            self.document.has_seen_file_of(&saved);
+            let looked = std::mem::replace(&mut self.document, before);
+            self.document.take_note_of_file(&looked);
             let message =
                 format!("{} was changed, and has an error: {message}", file.display());
             self.pages.broadcast(&json!({ "do": "notice", "message": message }));
@@ -220,7 +242,10 @@ impl Editor {
         let scene = Arc::new(self.document.built()?);
         self.spent.end("build");
         let new = self.document.scene();
-        let change = self.rendered.as_ref().map_or(Changed::Servo, |old| change(old, new));
+        let change = match &self.rendered {
+            Some(old) if by != "open" => changed(old, new),
+            _ => Changed::Scene,
+        };
         let revision = self.revision + 1;
         let (reply, showing) = sync_channel(1);
         let order = Order::Show { scene: Arc::clone(&scene), revision, change, reply };
@@ -229,14 +254,18 @@ impl Editor {
         let was_rendered = self.rendered.is_some();
         let shown = showing.recv().map_err(|_| gone(()))?;
         self.spent.end("hand over");
-        let why = match shown {
-            Showing::Replaced => None,
+        let (why, has_begun) = match shown {
+            Showing::Replaced => (None, false),
             Showing::Began { points } => {
                 self.points = points;
-                was_rendered.then_some(
-                    "the tool, the motions or the dimension changed: the servo ended with zero forces and began \
-                     again",
-                )
+                let why = match change {
+                    Changed::Scene => "another scene was opened",
+                    Changed::Servo => "the tool, the motions or the dimension changed",
+                    Changed::Bodies | Changed::Guides => "the last one had ended",
+                };
+                let why =
+                    format!("another servo began, with forces that rise from zero: {why}");
+                (was_rendered.then_some(why), true)
             }
             Showing::Refused(why) => return Err(why.into()),
         };
@@ -260,17 +289,25 @@ impl Editor {
         });
         self.pages.broadcast(&message);
         self.message = message;
-        if change == Changed::Servo {
-            self.find_tour(scene);
+        if has_begun {
+            self.to_tour = Some((scene, revision));
+            self.find_tour();
         }
         Ok(())
     }
 
-    /// Finds the tour of the scene in a thread of its own: of a steep scene it takes minutes.
-    fn find_tour(&self, scene: Arc<AnyScene>) {
-        let (points, revision) = (self.points, self.revision);
+    /// Finds the tour of the scene in a thread of its own, unless too many are searching.
+    fn find_tour(&mut self) {
+        if Arc::strong_count(&self.searches) > MOST_SEARCHES {
+            return;
+        }
+        let Some((scene, revision)) = self.to_tour.take() else { return };
+        let (points, searches) = (self.points, Arc::clone(&self.searches));
         let (orders, pages) = (self.orders.clone(), Arc::clone(&self.pages));
-        std::thread::spawn(move || send_tour(&scene, points, revision, &orders, &pages));
+        std::thread::spawn(move || {
+            send_tour(&scene, points, revision, &orders, &pages);
+            drop(searches);
+        });
     }
 }
 
@@ -300,7 +337,7 @@ fn send_tour(
 }
 
 /// What changed from one scene to another.
-fn change(old: &Scene, new: &Scene) -> Changed {
+fn changed(old: &Scene, new: &Scene) -> Changed {
     let is_for_one_servo = old.dimension() == new.dimension()
         && old.tool == new.tool
         && old.motions == new.motions

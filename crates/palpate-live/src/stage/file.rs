@@ -26,8 +26,9 @@ pub(super) fn replace(file: &Path, text: &str, is_new: bool) -> Result<()> {
     let folder = folder.unwrap_or(Path::new("."));
     let mut beside = new_file().tempfile_in(folder)?;
     beside.write_all(text.as_bytes())?;
+    beside.as_file().sync_all()?;
     match &before {
-        // Other names of the file stay names of it.
+        // A rename would cut the file off from its other hard links.
         Some(before) if has_other_names(before) => {
             std::fs::write(&file, text)?;
             return beside.close();

@@ -15,7 +15,7 @@ use palpate::scene::BuiltScene;
 /// How long a hand that nobody leads rests before it goes on its tour.
 const REST: Duration = Duration::from_secs(2);
 
-/// How long a tour of a scene takes [s].
+/// How long each contact point takes for a tour of a scene [s].
 const TOUR: f64 = 20.0;
 
 /// How far each contact point follows behind the one before on a tour [s].
@@ -74,13 +74,13 @@ pub(super) struct Lead<const D: usize> {
     replay: Option<(Vec<HandPath<D>>, Option<f64>)>,
     /// The hand is brought to another place.
     lift: Option<Lift<D>>,
-    /// Where a hand is led that is on its way there [m].
-    goal: Point<D>,
+    /// Where a hand is led once it is set down [m].
+    goal: Option<Point<D>>,
     /// The time of the servo [s].
     time: f64,
     /// Where each contact point is led [m].
     targets: Vec<Point<D>>,
-    /// When the page last led the hand; `None` if it never did.
+    /// When the hand was led or let go last; `None` if it never was.
     led: Option<Instant>,
     is_held: bool,
 }
@@ -123,7 +123,7 @@ impl<const D: usize> Lead<D> {
             tour_time: None,
             replay: None,
             lift: None,
-            goal: Vector::ZERO,
+            goal: None,
             time: 0.0,
             targets,
             led: None,
@@ -154,11 +154,16 @@ impl<const D: usize> Lead<D> {
         (self.scene, self.size) = (Arc::clone(scene), size(scene));
     }
 
-    pub(super) fn tours(&mut self, is_touring: bool) {
+    pub(super) fn is_touring(&self) -> bool {
+        self.is_touring
+    }
+
+    /// Sets whether a hand that nobody leads goes on its tour.
+    pub(super) fn set_touring(&mut self, is_touring: bool) {
         self.is_touring = is_touring;
     }
 
-    /// Follows a path of each contact point, from its begin; or no longer.
+    /// Starts to follow a path of each contact point, or ends it.
     pub(super) fn replay(&mut self, paths: Option<Vec<HandPath<D>>>) -> Result<(), String> {
         if let Some(paths) = &paths
             && paths.len() != self.arms.len()
@@ -171,16 +176,16 @@ impl<const D: usize> Lead<D> {
         if paths.is_none() {
             self.led = Some(Instant::now());
         }
-        (self.replay, self.lift) = (paths.map(|paths| (paths, None)), None);
+        self.replay = paths.map(|paths| (paths, None));
         (self.is_held, self.tour_time) = (false, None);
         Ok(())
     }
 
-    /// Takes over where another hand was led, as far as there are as many contact points.
+    /// Takes over where another hand of the scene was led, if it has as many contact points.
     pub(super) fn take_over(&mut self, other: &Self) {
-        (self.is_held, self.led) = (other.is_held, other.led);
-        self.is_touring &= other.is_touring;
+        self.led = other.led;
         if self.targets.len() == other.targets.len() {
+            self.is_held = other.is_held;
             self.targets.clone_from(&other.targets);
             self.goal = other.goal;
             // The time of another servo begins anew.
@@ -198,8 +203,9 @@ impl<const D: usize> Lead<D> {
         }
     }
 
-    /// Leads the hand, or one of its contact points; its tour ends. A hand that was not held is set
-    /// down at a place `from` which it can go there; without one, beside the target if that is far.
+    /// Leads the hand, or one of its contact points; its tour ends. A hand that was not held is lifted
+    /// and set down at `from`, and goes to the target from there; without `from`, it is set down beside
+    /// the target, if that is far.
     pub(super) fn lead(
         &mut self,
         target: Point<D>,
@@ -213,23 +219,21 @@ impl<const D: usize> Lead<D> {
         let begins = !self.is_held;
         (self.led, self.is_held, self.is_touring) = (Some(Instant::now()), true, false);
         (self.replay, self.tour_time) = (None, None);
-        self.goal = target;
-        let Some(point) = point else {
-            let goals = self.beside(target);
-            let is_far = self
-                .targets
-                .iter()
-                .zip(&goals)
-                .any(|(place, goal)| (*place - *goal).norm() > NEAR * self.size);
-            if begins && (from.is_some() || is_far) {
-                let places = from.map_or(goals, |from| self.beside(from));
-                self.bring(&places);
-            } else if self.lift.is_none() {
-                self.targets = goals;
-            }
+        // One contact point alone is never lifted.
+        self.goal = point.is_none().then_some(target);
+        if let Some(point) = point {
+            self.targets[point] = target;
             return Ok(());
-        };
-        self.targets[point] = target;
+        }
+        let goals = self.beside(target);
+        let mut ways = self.targets.iter().zip(&goals);
+        let is_far = ways.any(|(place, goal)| (*place - *goal).norm() > NEAR * self.size);
+        if begins && (from.is_some() || is_far) {
+            let places = from.map_or(goals, |from| self.beside(from));
+            self.bring(&places);
+        } else if self.lift.is_none() {
+            self.targets = goals;
+        }
         Ok(())
     }
 
@@ -270,8 +274,11 @@ impl<const D: usize> Lead<D> {
         let leader = self.leader();
         if self.lift.is_some() {
             self.go_on_lifted(passed, devices);
-            if self.lift.is_none() && self.is_held {
-                self.targets = self.beside(self.goal);
+            if self.lift.is_none()
+                && self.is_held
+                && let Some(goal) = self.goal
+            {
+                self.targets = self.beside(goal);
             }
             return leader;
         }
@@ -310,6 +317,7 @@ impl<const D: usize> Lead<D> {
         let [least, longest] = LIFTED;
         if since > longest {
             lift.set_down = Some(self.time);
+            return;
         }
         if passed == 0.0 || since < least {
             return;
@@ -400,7 +408,7 @@ fn radius<const D: usize>(scene: &BuiltScene<D>) -> f64 {
 }
 
 /// The tour of a scene, for a hand of `count` contact points; `None` if the scene has no bounds.
-/// It takes a part of a second.
+/// It takes a part of a second, of a steep scene minutes.
 pub(super) fn tour<const D: usize>(
     scene: &BuiltScene<D>,
     count: usize,

@@ -113,6 +113,7 @@ impl Inquiries {
     fn run(&self, pages: &Pages, shown: &Shown) {
         while let Some((page, question, cancel)) = self.next() {
             let id = question.id;
+            let _done = Done { inquiries: self, cancel: &cancel };
             match shown.get() {
                 Some((scene, revision)) => match answered(&scene, &question.ask, &cancel) {
                     Ok(Answer::Text(text)) => pages.answer(page, id, text),
@@ -128,14 +129,11 @@ impl Inquiries {
                 },
                 None => pages.refuse(page, id, "there is no scene yet: say hello first", &[]),
             }
-            let mut state = self.state();
-            state.working.retain(|work| !work.cancel.is(&cancel));
-            // A question of the same page may wait.
-            self.changed.notify_all();
         }
     }
 
-    /// Waits for the first question of a page of which none of its kind is worked on; `None` at the end.
+    /// Waits for a question whose page has no other of its kind, short or long, in work; `None` at the
+    /// end.
     fn next(&self) -> Option<(PageId, Question, Cancel)> {
         let mut state = self.state();
         loop {
@@ -162,6 +160,20 @@ impl Inquiries {
             }
             state = self.changed.wait(state).unwrap_or_else(PoisonError::into_inner);
         }
+    }
+}
+
+/// Takes a question off those that are worked on, when it is answered, and if answering it panics too.
+struct Done<'a> {
+    inquiries: &'a Inquiries,
+    cancel: &'a Cancel,
+}
+
+impl Drop for Done<'_> {
+    fn drop(&mut self) {
+        self.inquiries.state().working.retain(|work| !work.cancel.is(self.cancel));
+        // A question of the same page may wait.
+        self.inquiries.changed.notify_all();
     }
 }
 

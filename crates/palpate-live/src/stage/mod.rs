@@ -114,7 +114,9 @@ impl Stop {
     fn take(&self, switch: StopSwitch) {
         let mut state = self.state();
         if state.1 {
-            switch.stop();
+            switch.stop()
+        } else {
+            switch.release()
         }
         state.0 = Some(switch);
     }
@@ -180,8 +182,6 @@ impl Stage {
         let is_full = match question.ask {
             Ask::Stop {} | Ask::Release {} => {
                 self.stop.set(matches!(question.ask, Ask::Stop {}));
-                // Without room for it, the clock is not held: orders are obeyed.
-                let _ = self.orders.try_send(Order::Stopped);
                 self.pages.answer(page, id, serde_json::json!({ "do": "done" }));
                 return;
             }
@@ -235,7 +235,6 @@ impl Stage {
     pub(crate) fn gone(&self, page: PageId) {
         self.pages.remove(page);
         self.inquiries.gone(page);
-        let _ = self.orders.try_send(Order::Gone(page));
     }
 
     /// The text of the scene as a file.
@@ -268,7 +267,7 @@ impl Stage {
 }
 
 fn is_full<T>(sent: Result<(), TrySendError<T>>) -> bool {
-    matches!(sent, Err(TrySendError::Full(_)))
+    sent.is_err()
 }
 
 impl Drop for Stage {

@@ -65,6 +65,10 @@ impl Pages {
         self.open().pages.remove(&page);
     }
 
+    pub(crate) fn is_open(&self, page: PageId) -> bool {
+        self.open().pages.contains_key(&page)
+    }
+
     pub(crate) fn count(&self) -> usize {
         self.open().pages.len()
     }

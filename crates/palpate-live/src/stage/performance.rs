@@ -27,7 +27,7 @@ const STEP: Duration = Duration::from_millis(8);
 const STEPS_A_FRAME: u32 = 2;
 
 /// The answer before the first scene, and after a servo has ended.
-const NO_SERVO: &str = "there is no servo yet: say hello, or edit the scene";
+const NO_SERVO: &str = "no servo runs: the next edit of the scene begins one";
 
 /// Frames from one message on the safety chain to the next: a quarter of a second at least, and 2 s
 /// where nothing is new, for pages that came meanwhile.
@@ -48,12 +48,8 @@ pub(crate) enum Order {
         from: Option<Vec<f64>>,
     },
     LetGo,
-    /// A page is closed, which may have led the hand.
-    Gone(PageId),
-    /// All forces were set to zero: a servo whose clock is held takes note by a tick.
-    Stopped,
     Tour(bool),
-    /// The way of the hand over the scene of a revision.
+    /// The tour of the scene of a revision.
     Path {
         path: AnyPath,
         revision: u32,
@@ -86,7 +82,7 @@ pub(crate) enum Order {
 }
 
 /// What of a scene changed at most.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd)]
 pub(crate) enum Changed {
     /// Its bodies, which are handed to the servo.
     Bodies,
@@ -94,6 +90,8 @@ pub(crate) enum Changed {
     Guides,
     /// What a servo is made for.
     Servo,
+    /// Everything: another scene was opened.
+    Scene,
 }
 
 /// How a scene came to be rendered.
@@ -123,6 +121,10 @@ pub(super) struct Performance {
     frames: watch::Sender<Bytes>,
     room: Option<AnyRoom>,
     revision: u32,
+    /// The revision with which the servo began.
+    began: u32,
+    /// Whether forces were stopped in the last step.
+    was_stopped: bool,
     recording: Recording,
     /// Ticks that a clock that is held still has to go.
     ticks: u64,
@@ -146,6 +148,8 @@ impl Performance {
             frames,
             room: None,
             revision: 0,
+            began: 0,
+            was_stopped: false,
             recording: Recording::default(),
             ticks: 0,
             safety: (StageTicks::default(), 0),
@@ -187,26 +191,13 @@ impl Performance {
                 self.pages.answer(page, id, json!({ "do": "done" }));
             }
             Order::LetGo => self.let_go(),
-            Order::Gone(page) => {
-                if self.leader == Some(page) {
-                    self.let_go();
-                }
-            }
-            Order::Stopped => {
-                if let Some(room) = &self.room {
-                    let clock = of_either!(AnyRoom, room, room => room.speed());
-                    if clock.get() == 0.0 {
-                        clock.step(1);
-                    }
-                }
-            }
             Order::Tour(is_touring) => {
                 if let Some(room) = &mut self.room {
-                    of_either!(AnyRoom, room, room => room.tours(is_touring));
+                    of_either!(AnyRoom, room, room => room.set_touring(is_touring));
                 }
             }
             Order::Path { path, revision } => match (&mut self.room, path) {
-                _ if revision != self.revision => {}
+                _ if revision < self.began => {}
                 (Some(AnyRoom::Planar(room)), AnyPath::Planar(path)) => room.take_tour(path),
                 (Some(AnyRoom::Spatial(room)), AnyPath::Spatial(path)) => room.take_tour(path),
                 _ => {}
@@ -240,8 +231,10 @@ impl Performance {
             }
             Order::Show { scene, revision, change, reply } => {
                 let showing = self.show(&scene, change);
-                if !matches!(showing, Showing::Refused(_)) {
-                    self.revision = revision;
+                match showing {
+                    Showing::Replaced => self.revision = revision,
+                    Showing::Began { .. } => (self.revision, self.began) = (revision, revision),
+                    Showing::Refused(_) => {}
                 }
                 let _ = reply.send(showing);
             }
@@ -269,8 +262,9 @@ impl Performance {
 
     fn show(&mut self, scene: &AnyScene, change: Changed) -> Showing {
         let has_new_guides = change == Changed::Guides;
+        // A servo that cannot take the bodies ends, and another begins.
         let replaced = match (&mut self.room, scene) {
-            _ if change == Changed::Servo => Err(String::new()),
+            _ if change >= Changed::Servo => Err(String::new()),
             (Some(AnyRoom::Planar(room)), AnyScene::Planar(scene)) => {
                 room.replace(Arc::new(scene.clone()), has_new_guides)
             }
@@ -284,11 +278,11 @@ impl Performance {
         }
         let began = match (scene, &self.room) {
             (AnyScene::Planar(scene), Some(AnyRoom::Planar(before))) => {
-                self.begun(scene, Some(before)).map(AnyRoom::Planar)
+                self.begun(scene, Some((before, change))).map(AnyRoom::Planar)
             }
             (AnyScene::Planar(scene), _) => self.begun(scene, None).map(AnyRoom::Planar),
             (AnyScene::Spatial(scene), Some(AnyRoom::Spatial(before))) => {
-                self.begun(scene, Some(before)).map(AnyRoom::Spatial)
+                self.begun(scene, Some((before, change))).map(AnyRoom::Spatial)
             }
             (AnyScene::Spatial(scene), _) => self.begun(scene, None).map(AnyRoom::Spatial),
         };
@@ -311,7 +305,7 @@ impl Performance {
     fn begun<const D: usize>(
         &self,
         scene: &BuiltScene<D>,
-        before: Option<&Room<D>>,
+        before: Option<(&Room<D>, Changed)>,
     ) -> Result<Room<D>, String> {
         Room::begin(Arc::new(scene.clone()), &self.terms, before, self.stop.is_stopped())
     }
@@ -322,13 +316,25 @@ impl Performance {
     }
 
     fn go_on(&mut self, is_frame: bool) {
-        let Some(room) = &mut self.room else { return };
-        if of_either!(AnyRoom, room, room => room.has_ended()) {
-            self.room = None;
-            self.notice("the servo has ended with zero forces; the next edit begins another");
+        if self.leader.is_some_and(|page| !self.pages.is_open(page)) {
+            self.let_go();
+        }
+        let Some(room) = self.room.take() else { return };
+        if of_either!(AnyRoom, &room, room => room.has_ended()) {
+            let why = of_either!(AnyRoom, room, room => room.ending());
+            self.recording.end();
+            self.notice(&format!("the servo has ended: {why}; the next edit begins another"));
             return;
         }
-        // By steps as long as those of time that passes: the hand is led on between them.
+        let room = self.room.insert(room);
+        let is_stopped = self.stop.is_stopped();
+        let is_news = std::mem::replace(&mut self.was_stopped, is_stopped) != is_stopped;
+        let speed = of_either!(AnyRoom, &*room, room => room.speed());
+        if is_news && speed.get() == 0.0 {
+            // A servo whose clock is held takes note by a tick.
+            speed.step(1);
+        }
+        // At most the ticks of a step are released, so that the hand is led as often as in real time.
         let ticks = self.ticks.min((self.terms.rate * STEP.as_secs_f64()).ceil() as u64);
         self.ticks -= ticks;
         let (mut events, mut frame): (Vec<Event>, Option<Frame>) = (Vec::new(), None);

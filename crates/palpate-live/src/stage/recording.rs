@@ -60,8 +60,7 @@ impl Recording {
         self.is_on
     }
 
-    /// Records what is felt in a room, or no longer. What is recorded last is newer than a file that
-    /// was taken meanwhile.
+    /// Starts or ends the recording. Both discard paths that were taken from a file before.
     pub(super) fn switch(&mut self, is_on: bool, room: &AnyRoom) {
         if is_on && !self.is_on {
             self.rows = match room {

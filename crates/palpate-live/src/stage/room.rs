@@ -13,11 +13,12 @@ use palpate::haptics::{
 
 use palpate::scene::{BuiltScene, BuiltTool, ServoSettings};
 use palpate::servo_loop::{
-    ClockSpeed, Priority, Records, ScaledClock, ServoThread, ThreadOptions, TraceRow,
+    ClockSpeed, Ending, Priority, Records, ScaledClock, ServoThread, ThreadOptions, TraceRow,
     VirtualClock,
 };
 
 use super::hand::{Lead, Leader};
+use super::performance::Changed;
 use crate::wire::{Frame, FramePoint};
 
 /// The fastest that a hand follows the page, at the device [m/s].
@@ -45,6 +46,8 @@ pub(super) struct Room<const D: usize> {
     leader: Leader,
     /// Whether the servo was told that the hand is lifted.
     is_lifted: bool,
+    /// What the safety chain had done by the last frame.
+    safety: StageTicks,
 }
 
 /// A scene of either dimension that is felt.
@@ -76,8 +79,6 @@ struct Peaks {
     forces: Vec<f64>,
     /// Of each contact point: taken, given and kept so far [J].
     energies: Vec<[f64; 3]>,
-    /// Whether the safety chain changed a force.
-    has_acted: bool,
 }
 
 /// A clock that is taken once.
@@ -95,11 +96,12 @@ pub(super) struct Terms {
 }
 
 impl<const D: usize> Room<D> {
-    /// Begins to feel a scene, by the hand of a room that was there before if there is one.
+    /// Begins to feel a scene. After a room that was there before its clock stays as it is, and whether
+    /// there are tours; its hand stays where it is, unless another scene was opened.
     pub(super) fn begin(
         scene: Arc<BuiltScene<D>>,
         terms: &Terms,
-        before: Option<&Self>,
+        before: Option<(&Self, Changed)>,
         is_stopped: bool,
     ) -> Result<Self, String> {
         let said = |error: HapticsError| error.to_string();
@@ -109,11 +111,14 @@ impl<const D: usize> Room<D> {
         let points = lead.targets().len();
         if points > MOST_POINTS {
             return Err(format!(
-                "the hand of a page has at most {MOST_POINTS} contact points, the tool has {points}"
+                "the hand of a page has at most {MOST_POINTS} contact points, got {points}"
             ));
         }
-        if let Some(before) = before {
-            lead.take_over(&before.lead);
+        if let Some((before, changed)) = before {
+            lead.set_touring(before.lead.is_touring());
+            if changed != Changed::Scene {
+                lead.take_over(&before.lead);
+            }
         }
         let (device, steering) =
             device(&lead, &map, terms).map_err(|error| error.to_string())?;
@@ -123,7 +128,7 @@ impl<const D: usize> Room<D> {
         let servo = scene.servo_with(&device, settings).map_err(said)?;
         let (clock, speed) = ScaledClock::new(&Priority::Normal);
         // A clock that is held or slow stays so.
-        let kept = before.map_or(1.0, |before| before.speed.get());
+        let kept = before.map_or(1.0, |(before, _)| before.speed.get());
         speed.set(kept).map_err(|error| error.to_string())?;
         let rows = (KEPT * terms.rate) as usize * lead.targets().len();
         let mut options = ThreadOptions::default().with_stop(is_stopped).with_recorder(rows);
@@ -141,6 +146,7 @@ impl<const D: usize> Room<D> {
         let mut thread = thread.map_err(|error| error.to_string())?;
         let records = thread.take_records().ok_or("the servo keeps no rows")?;
         let (peaks, leader, is_lifted) = (Peaks::default(), Leader::default(), false);
+        let safety = StageTicks::default();
         let mut room = Self {
             scene,
             speed,
@@ -152,6 +158,7 @@ impl<const D: usize> Room<D> {
             peaks,
             leader,
             is_lifted,
+            safety,
         };
         room.steer();
         Ok(room)
@@ -226,7 +233,7 @@ impl<const D: usize> Room<D> {
         self.steer();
     }
 
-    /// Leads the hand along a path of each contact point; or no longer.
+    /// Starts to lead the hand along a path of each contact point, or ends it.
     pub(super) fn replay(&mut self, paths: Option<Vec<HandPath<D>>>) -> Result<(), String> {
         self.lead.replay(paths)
     }
@@ -240,8 +247,17 @@ impl<const D: usize> Room<D> {
         self.lead.take_tour(tour);
     }
 
-    pub(super) fn tours(&mut self, is_touring: bool) {
-        self.lead.tours(is_touring);
+    pub(super) fn set_touring(&mut self, is_touring: bool) {
+        self.lead.set_touring(is_touring);
+    }
+
+    /// Waits until the servo has ended, and tells why, in words.
+    pub(super) fn ending(self) -> String {
+        match self.thread.join().report.ending {
+            Ending::DeviceLost { reason } => reason,
+            Ending::Panicked { message } => message,
+            _ => "its time was over".to_owned(),
+        }
     }
 
     /// Leads the hand on, and takes the rows of the ticks since; `row` gets each.
@@ -277,6 +293,7 @@ impl<const D: usize> Room<D> {
         let leader = self.leader;
         let snapshot = self.thread.control().latest()?;
         let peaks = std::mem::take(&mut self.peaks);
+        let safety = std::mem::replace(&mut self.safety, snapshot.safety);
         let point = |(number, touch): (usize, &palpate::haptics::Touch<D>)| FramePoint {
             vectors: [touch.device, touch.proxy, touch.force, touch.wanted, touch.normal]
                 .map(in_space),
@@ -294,7 +311,7 @@ impl<const D: usize> Room<D> {
             is_stopped: snapshot.is_stopped,
             is_lifted: snapshot.is_lifted,
             is_held,
-            has_acted: peaks.has_acted,
+            has_acted: safety != snapshot.safety,
             is_touring: leader == Leader::Tour,
             is_replaying: leader == Leader::Replay,
             ticks: snapshot.progress.ticks,
@@ -325,9 +342,7 @@ impl Peaks {
             self.energies.resize(point + 1, [0.0; 3]);
         }
         self.forces[point] = self.forces[point].max(row.force.norm());
-        let kept_before = self.energies[point][2];
         self.energies[point] = [row.energy.taken, row.energy.given, row.energy.kept];
-        self.has_acted |= row.energy.kept > kept_before;
         if row.contact {
             self.depth = self.depth.max((row.proxy - row.device).norm());
         }

@@ -7,7 +7,7 @@ use palpate::devices::{HandPath, Interpolation};
 use palpate::field::{Point, Vector};
 use palpate::servo_loop::{TraceRow, TraceWriter};
 
-/// The time from one place of a path to the next at least [s]: that of a hand that is led.
+/// The least time between two samples of a path [s]: the step of the thread that leads the hand.
 const STEP: f64 = 0.008;
 
 /// The most contact points of a file.
@@ -16,8 +16,8 @@ const MOST_POINTS: usize = 100;
 /// The axes as columns name them.
 const AXES: [&str; 3] = ["x", "y", "z"];
 
-/// The answer to a replay before a recording.
-pub(crate) const NOTHING: &str = "nothing was recorded: there are no rows";
+/// The answer to a replay of nothing.
+pub(crate) const NOTHING: &str = "there are no rows to replay";
 
 /// Times [s] and places [m] of a contact point.
 type Places<const D: usize> = (Vec<f64>, Vec<Point<D>>);
@@ -92,7 +92,9 @@ fn add<const D: usize>(
     place: Point<D>,
 ) -> Result<(), String> {
     if point >= MOST_POINTS {
-        return Err(format!("a hand has at most {MOST_POINTS} contact points, got {point}"));
+        return Err(format!(
+            "a hand has at most {MOST_POINTS} contact points, got the number {point}"
+        ));
     }
     if all.len() <= point {
         all.resize_with(point + 1, Places::default);
@@ -144,7 +146,7 @@ mod tests {
             why("time_s,x_m,y_m\n0,0,0\n1,east,0\n"),
             "line 3: x_m must be a number, got \"east\""
         );
-        assert_eq!(why("time_s,x_m,y_m\n"), "nothing was recorded: there are no rows");
+        assert_eq!(why("time_s,x_m,y_m\n"), "there are no rows to replay");
         assert_eq!(
             why("time_s,x_m,y_m,z_m\n0,0,0,0\n"),
             "the trace is of a scene in space, this one is in the plane"

@@ -24,8 +24,14 @@ pub(crate) fn served(options: LiveOptions) -> Live {
     Live::start("ball", None, BALL, options).unwrap()
 }
 
+/// The most messages that a test waits for: 5 minutes of frames.
+const MOST: u32 = 18_000;
+
 /// A page.
-pub(crate) struct Page(WebSocket<TcpStream>);
+pub(crate) struct Page {
+    socket: WebSocket<TcpStream>,
+    messages: u32,
+}
 
 impl Page {
     /// A page that has said hello.
@@ -46,21 +52,23 @@ impl Page {
         let stream = TcpStream::connect(address).unwrap();
         stream.set_read_timeout(Some(PATIENCE)).unwrap();
         let (socket, _) = tungstenite::client(request, stream).unwrap();
-        Self(socket)
+        Self { socket, messages: 0 }
     }
 
     pub(crate) fn say(&mut self, message: &Value) {
-        self.0.send(Message::Text(message.to_string().into())).unwrap();
+        self.socket.send(Message::Text(message.to_string().into())).unwrap();
     }
 
     /// Sends whatever; `false` if the server has closed.
     pub(crate) fn try_send(&mut self, message: Message) -> bool {
-        self.0.send(message).is_ok()
+        self.socket.send(message).is_ok()
     }
 
     /// The next message; `None` if the server has closed.
     pub(crate) fn next(&mut self) -> Option<Message> {
-        self.0.read().ok()
+        self.messages += 1;
+        assert!(self.messages < MOST, "what is waited for does not come");
+        self.socket.read().ok()
     }
 
     /// The next text that `is_wanted` takes.

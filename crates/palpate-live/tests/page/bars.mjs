@@ -133,7 +133,7 @@ async function measuring() {
           waiting = () => drawn !== field && resolve();
         });
         times.push(performance.now() - begun);
-        await new Promise((resolve) => setTimeout(resolve, 100));
+        await new Promise((resolve) => setTimeout(resolve, 30));
       }
       slider.dispatchEvent(new Event('change', { bubbles: true }));
       return times;

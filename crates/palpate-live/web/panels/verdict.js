@@ -4,7 +4,7 @@
 
 /** An answer of the program in words: what is proven beside what a local method says. */
 
-import { SEPARATION, isFound, isFoundOfPair } from '../plane/drawn.js';
+import { SEPARATION, isFound, isFoundOfPair, touchOf } from '../plane/drawn.js';
 import { METHODS, PAIR_METHODS, toys } from '../plane/toys.js';
 import { html } from '../vendor/htm-preact.js';
 import { count, short, time } from './numbers.js';
@@ -12,38 +12,32 @@ import { count, short, time } from './numbers.js';
 /** What has no place in a table of numbers. */
 const DRAWN = ['id', 'do', 'path', 'points', 'boxes'];
 
-const LENGTHS = /_m$|^(value|minimum|lower|upper|gap|separation|distance|depth|radius|bounds|bracket|tolerance|error)$/;
+const LENGTHS = ['value', 'lower', 'upper', 'radius'];
+const POINTS = ['point', 'centre', 'contact', 'start'];
 
 /** The names of methods. @type {Record<string, string>} */
 const NAMES = { ...METHODS, ...PAIR_METHODS };
 
-/** @param {string} key @param {any} value @returns {string | null} */
+/** @param {string} key @param {any} value @returns {string} */
 function written(key, value) {
   if (value === null) return '–';
   if (typeof value === 'boolean') return value ? 'yes' : 'no';
   if (key === 'method') return NAMES[value] ?? value;
   if (typeof value === 'string') return value.replace(/_/g, ' ');
   if (typeof value === 'number') {
-    if (key === 'ns' || key.endsWith('_ns')) return time(value / 1e9);
-    if (key.endsWith('_s') || key === 'time') return time(value);
-    if (LENGTHS.test(key)) return `${short(value, 5)} m`;
+    if (key === 'ns') return time(value / 1e9);
+    if (LENGTHS.includes(key)) return `${short(value, 5)} m`;
     return Number.isInteger(value) ? count(value) : short(value, 4);
   }
-  if (Array.isArray(value) && value.length > 0 && value.length < 4 && value.every((one) => typeof one === 'number')) {
-    const isRange = LENGTHS.test(key);
-    const inner = value.map((one) => short(one, 5)).join(isRange ? ' to ' : ', ');
-    return isRange || key.includes('point') || key === 'at' ? `${inner} m` : inner;
-  }
-  if (value && typeof value.lower === 'number') return `${short(value.lower, 5)} to ${short(value.upper, 5)} m`;
-  return null;
+  const numbers = value.map((/** @type {number} */ one) => short(one, 5)).join(', ');
+  return POINTS.includes(key) ? `${numbers} m` : numbers;
 }
 
 /** @param {{ title: string, answer: any }} given */
 function Table({ title, answer }) {
   if (typeof answer !== 'object' || !answer) return null;
   const rows = Object.entries(answer).filter(([key]) => !DRAWN.includes(key))
-    .map(([key, value]) => [key.replace(/_m$|_ns$/, '').replace(/^ns$/, 'time').replace(/_/g, ' '), written(key, value)])
-    .filter(([, text]) => text !== null);
+    .map(([key, value]) => [key === 'ns' ? 'time' : key, written(key, value)]);
   if (rows.length === 0) return null;
   return html`<table><caption>${title}</caption><tbody>
     ${rows.map(([key, text]) => html`<tr key=${key}><th scope="row">${key}</th><td>${text}</td></tr>`)}
@@ -81,15 +75,16 @@ function sentences(toy, result) {
       : `the enclosing circle excludes a touch${isRight ? ', rightly' : ', wrongly'}` });
   }
   if (toy === 'ball') {
-    const isRight = result.memoir === result.touches;
-    said.push({ isRight, text: `${result.touches ? 'it touches' : 'it does not touch'}; the memoir’s test says ${
-      isRight ? 'the same' : 'otherwise'}` });
+    const { touches, memoir } = result;
+    const isRight = memoir === touches;
+    said.push({ isRight, text: `${touchOf(touches).word}; the memoir’s test says ${
+      isRight ? 'the same' : touches === null ? touchOf(memoir).word : 'otherwise'}` });
   }
   if (toy === 'sweep') {
     const { touches, lower, upper } = result;
-    const [free, met] = [lower, upper].map((at) => `${short(at ?? 0, 5)} s`);
-    said.push({ isRight: touches !== null, text: touches === null ? `undecided; proven free before ${free}`
-      : touches ? `it touches first between ${free} and ${met}` : 'it touches nothing on its way' });
+    const [free, met] = [lower, upper].map((at) => `${short(at, 5)} s`);
+    said.push({ isRight: touches !== null, text: touchOf(touches).word + (touches === null ? `; proven free before ${free}`
+      : touches ? ` first between ${free} and ${met}` : ' on its way') });
   }
   return said;
 }

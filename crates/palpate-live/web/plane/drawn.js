@@ -18,12 +18,13 @@ import { COLORS, mark } from '../scene/marks.js';
 import { RANK } from '../scene/overlay.js';
 import { length } from '../scene/units.js';
 import { inSpace } from '../scene/vectors.js';
-import { middleOf } from './handles.js';
+import { middleOfElement } from './handles.js';
 import { toys } from './toys.js';
 
-const { hit: HIT, normal: FREE, path: PATH, cell: PROOF } = COLORS;
+const { hit: HIT, normal: FREE, path: PATH } = COLORS;
 const OPEN = '#7a6a00';
 const VERDICT = RANK.verdict;
+const NOT_DECIDED = { color: OPEN, word: 'not decided' };
 
 /** The colour and word of a proven bound of the least distance.
  * @param {{ lower?: number, upper?: number } | null | undefined} certified */
@@ -31,17 +32,27 @@ export function verdictOf(certified) {
   if (!certified) return { color: OPEN, word: '' };
   if ((certified.upper ?? Infinity) <= 0) return { color: HIT, word: 'hit' };
   if ((certified.lower ?? -Infinity) > 0) return { color: FREE, word: 'no hit' };
-  return { color: OPEN, word: 'not decided' };
+  return NOT_DECIDED;
+}
+
+/** The colour and words of an answer whether something touches: null if that is not decided.
+ * @param {boolean | null} touches */
+export function touchOf(touches) {
+  if (touches === null) return NOT_DECIDED;
+  return touches ? { color: HIT, word: 'it touches' } : { color: FREE, word: 'it touches nothing' };
 }
 
 /** Between two bodies a local search makes the larger of both distances small; the separation is
  * twice the least. */
 export const SEPARATION = 2;
 
+/** What rounding may put between a local search and a proof: a length [m], and a share of it. */
+const ROUNDING = { length: 1e-9, share: 1e-3 };
+
 /** Whether a local search found what is proven: both are rounded, and the proof ends within its
  * own bounds. @param {number} value @param {{ lower: number, upper: number }} certified */
 export const isFound = (value, { lower, upper }) =>
-  value - upper <= upper - lower + 1e-9 + 1e-3 * Math.abs(upper);
+  value - upper <= upper - lower + ROUNDING.length + ROUNDING.share * Math.abs(upper);
 
 /** Whether a local search between two bodies found what it looks for: a point in both, by projections in
  * turns, where the bodies overlap; else the separation.
@@ -55,10 +66,6 @@ function paintElement(context, lens, texts, inks) {
   const { certified, local, enclosing } = toys.results.element ?? {};
   const { color, word } = verdictOf(certified);
   mark('element');
-  for (const cell of certified?.cells ?? []) {
-    mark('cell');
-    polyline(context, cell.map(project), PROOF, 1, 'transparent', true);
-  }
   if (enclosing?.centre) {
     const radius = enclosing.radius / lens.pixel([0, 0, 0]);
     const place = project(enclosing.centre);
@@ -78,7 +85,7 @@ function paintElement(context, lens, texts, inks) {
   dot(context, shown[shown.length - 1] ?? null, 5, PATH, inks.halo);
   if (certified?.point) dot(context, project(certified.point), 5, color, inks.halo);
   const low = Math.max(...toys.corners.map((corner) => project(corner)?.y ?? 0));
-  const middle = project(middleOf());
+  const middle = project(middleOfElement());
   if (word && middle) {
     const bounds = `${length(certified.lower)} to ${length(certified.upper)}`;
     texts.add(`${word}: ${bounds}`, middle.x, low + 18, { rank: VERDICT, color });
@@ -92,7 +99,7 @@ function outline(context, lens, corners, color, inks, isGhost = false) {
   polyline(context, places, color, isGhost ? 1.5 : 2.5, inks.halo, corners.length > 2);
   if (isGhost) return;
   for (const place of places) dot(context, place, 7, '#ffffff', color);
-  if (corners.length > 1) dot(context, lens.project(inSpace(middleOf())), 5, '#ffffff', color);
+  if (corners.length > 1) dot(context, lens.project(inSpace(middleOfElement())), 5, '#ffffff', color);
 }
 
 /** @param {Context} context @param {Lens} lens @param {Texts} texts @param {Inks} inks */
@@ -100,8 +107,7 @@ function paintBall(context, lens, texts, inks) {
   mark('circle');
   const { centre, radius } = toys.ball;
   const answer = toys.results.ball;
-  const touches = answer?.touches;
-  const color = touches === true ? HIT : touches === false ? FREE : OPEN;
+  const { color, word } = touchOf(answer?.touches ?? null);
   const place = lens.project(inSpace(centre));
   const reach = radius / lens.pixel([0, 0, 0]);
   ring(context, place, reach, color, 2.5, inks.halo);
@@ -109,9 +115,8 @@ function paintBall(context, lens, texts, inks) {
   if (!place) return;
   dot(context, { x: place.x + reach * Math.SQRT1_2, y: place.y - reach * Math.SQRT1_2 }, 6,
     '#ffffff', color);
-  const word = touches === true ? 'touches' : touches === false ? 'free' : 'not decided';
-  const value = answer?.value === undefined ? '' : `, f ${length(answer.value)}`;
-  if (answer) texts.add(word + value, place.x, place.y + reach + 14, { rank: VERDICT, color });
+  const below = place.y + reach + 14;
+  if (answer) texts.add(`${word}, f ${length(answer.value)}`, place.x, below, { rank: VERDICT, color });
 }
 
 /** @param {Context} context @param {Lens} lens @param {Texts} texts @param {Inks} inks */
@@ -155,22 +160,22 @@ function paintSweep(context, lens, texts, inks) {
   const answer = toys.results.sweep;
   const { by, corners } = toys;
   const moved = (/** @type {number} */ t) => corners.map(([x, y]) => [x + t * by[0], y + t * by[1]]);
-  const from = middleOf();
+  const from = middleOfElement();
   const places = [from, [from[0] + by[0], from[1] + by[1]]].map((p) => lens.project(inSpace(p)));
   if (!toys.shown.element) outline(context, lens, corners, inks.ink, inks);
   outline(context, lens, moved(1), inks.muted, inks, true);
   arrow(context, places[0], places[1], inks.ink, 2, inks.halo);
   dot(context, places[1], 6, '#ffffff', inks.ink);
   if (!answer || !places[1]) return;
-  const time = typeof answer.at === 'number' ? answer.at : answer.upper ?? answer.lower;
-  const touches = answer.touches === true;
-  if (touches && Number.isFinite(time)) {
-    outline(context, lens, moved(time), HIT, inks, true);
-    if (Array.isArray(answer.at)) dot(context, lens.project(inSpace(answer.at)), 5, HIT, inks.halo);
+  const { touches, upper, contact } = answer;
+  const { color, word } = touchOf(touches);
+  if (touches) outline(context, lens, moved(upper), color, inks, true);
+  if (contact) {
+    mark('touch');
+    dot(context, lens.project(inSpace(contact)), 5, color, inks.halo);
   }
-  const word = touches ? `touches at ${short(time, 5)} s`
-    : answer.touches === false ? 'passes' : 'not decided';
-  texts.add(word, places[1].x, places[1].y + 18, { rank: VERDICT, color: touches ? HIT : FREE });
+  const text = touches ? `${word} at ${short(upper, 5)} s` : word;
+  texts.add(text, places[1].x, places[1].y + 18, { rank: VERDICT, color });
 }
 
 /** @param {Context} context @param {Lens} lens @param {Texts} texts @param {Inks} inks */

@@ -14,7 +14,7 @@ import { inSpace, rounded } from '../scene/vectors.js';
 import { setToys, toys } from './toys.js';
 
 /** The middle of the element. */
-export function middleOf() {
+export function middleOfElement() {
   const { corners } = toys;
   return [0, 1].map((axis) => corners.reduce((sum, corner) => sum + corner[axis], 0) / corners.length);
 }
@@ -32,18 +32,18 @@ function handles() {
     }));
   }
   if (shown.sweep && corners.length > 0) {
-    const from = middleOf();
+    const from = middleOfElement();
     list.push({
       point: [from[0] + toys.by[0], from[1] + toys.by[1]],
       drag: (/** @type {number[]} */ to) => {
-        const middle = middleOf();
+        const middle = middleOfElement();
         setToys({ by: [to[0] - middle[0], to[1] - middle[1]] });
       },
     });
   }
   if (hasElement && corners.length > 1) {
     list.push({
-      point: middleOf(),
+      point: middleOfElement(),
       drag: (/** @type {number[]} */ to, /** @type {number[]} */ last) =>
         setToys({ corners: toys.corners.map(([x, y]) => [x + to[0] - last[0], y + to[1] - last[1]]) }),
     });
@@ -74,8 +74,7 @@ function handles() {
   return list;
 }
 
-/** The drag of the handle near a place, or null where there is none; where a second field is
- * out, a press beside all handles adds a start.
+/** The drag of the handle near a place, or null where there is none.
  * @param {() => Lens} lens @param {Place} place @param {number} reach in pixels
  * @returns {Drag | null} */
 export function toyDrag(lens, place, reach) {

@@ -18,7 +18,7 @@ import { FONT, arrow, dot, label, polyline, ring, spring } from './ink.js';
 export const COLORS = {
   force: '#d1480a', normal: '#007355', contact: '#9e2f78', path: '#e02020', hit: '#b3261e',
   ball: '#c9730a', selected: '#e0a000',
-  proof: 'rgba(158, 47, 120, 0.7)', cell: 'rgba(18, 60, 122, 0.7)',
+  proof: 'rgba(158, 47, 120, 0.7)',
 };
 
 /** How opaque a hand is that is lifted. */
@@ -76,7 +76,6 @@ const MARKS = {
     dot(context, { x: x - 7, y }, 3, '#ffffff', inks.muted);
     dot(context, { x: x + 7, y }, 3, '#ffffff', inks.muted);
   }],
-  cell: ['cell of the proof', square(COLORS.cell)],
   enclosing: ['enclosing circle', (context, x, y, inks) => ring(context, { x, y }, 5, inks.muted, 1, inks.halo)],
   path: ['path of a descent', (context, x, y) => {
     line(COLORS.path, 1)(context, x, y, { ink: '', halo: '', muted: '' });
@@ -90,6 +89,7 @@ const MARKS = {
   }],
   circle: ['circle that is asked about', (context, x, y, inks) => ring(context, { x, y }, 5, inks.muted, 2.5, inks.halo)],
   motion: ['motion in 1 s', (context, x, y, inks) => pointer(inks.ink, 2)(context, x, y, inks)],
+  touch: ['where it touches first', (context, x, y, inks) => dot(context, { x, y }, 5, COLORS.hit, inks.halo)],
   ball: ['falling ball', (context, x, y, inks) => dot(context, { x, y }, 5, COLORS.ball, inks.halo)],
   fall: ['its path', line(COLORS.ball, 1.5)],
   bounce: ['bounce, with its normal', pointer(COLORS.normal, 1.5)],

@@ -5,7 +5,7 @@
 
 use std::time::Instant;
 
-use palpate::field::{Pose, Screw, Vector};
+use palpate::field::{LARGEST_LENGTH, Pose, Screw, Vector};
 use palpate::local::{ElementMethod, GradientMethod, NaiveDescent, Weights};
 use palpate::query::{
     BallWorkspace, Element, ElementSweep, ElementWorkspace, Ray, Stop, SweepSettings,
@@ -128,8 +128,8 @@ fn naive<const D: usize>(ask: &Ask) -> Result<NaiveDescent, String> {
         naive = naive.with_alpha(alpha);
     }
     if let Some(mu) = *mu {
-        if !(0.0..=palpate::field::LARGEST_LENGTH).contains(&mu) {
-            return Err(format!("µ must be zero or more and finite, got {mu} m"));
+        if !(0.0..=LARGEST_LENGTH).contains(&mu) {
+            return Err(format!("µ must be from 0 to {LARGEST_LENGTH:e} m, got {mu} m"));
         }
         naive = naive.with_mu(mu);
     }

@@ -7,7 +7,7 @@
 use std::ops::RangeInclusive;
 use std::time::{Duration, Instant};
 
-use palpate::field::{Aabb, Point, Shape, Vector};
+use palpate::field::{Aabb, LARGEST_LENGTH, Point, Shape, Vector};
 use palpate::query::{BallWorkspace, Limits, Ray, Stop, cast_ball};
 use palpate::scene::BuiltScene;
 use serde_json::{Value, json};
@@ -73,8 +73,10 @@ pub(super) fn fall<const D: usize>(
     let begin = Instant::now();
     let centre = point_of::<D>(centre)?;
     // Written so that NaN is refused.
-    if !(radius > 0.0 && radius <= palpate::field::LARGEST_LENGTH) {
-        return Err(format!("the radius must be positive, got {radius:e} m"));
+    if !(radius > 0.0 && radius <= LARGEST_LENGTH) {
+        return Err(format!(
+            "the radius must be more than 0 and at most {LARGEST_LENGTH:e} m, got {radius:e} m"
+        ));
     }
     if !GRAVITIES.contains(&gravity) {
         return Err(format!("gravity must be from 1e-6 to 1e6 m/s², got {gravity:e} m/s²"));

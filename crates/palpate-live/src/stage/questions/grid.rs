@@ -11,6 +11,9 @@ use crate::stage::hand::longest_edge;
 use crate::stage::room::{in_space, point_of};
 use crate::wire::{Ask, Grid, GridPlace};
 
+/// By how much samples reach over the bounds of the scene on each side, as a share of its longest edge.
+const MARGIN: f64 = 0.05;
+
 /// The most values along a side of a slice.
 const MOST_ALONG: usize = 512;
 
@@ -59,11 +62,11 @@ pub(super) fn samples<const D: usize>(
     let shape = shape(scene, body)?;
     let bounds = scene.bounds().ok_or("a scene without bounds cannot be sampled")?;
     let longest = longest_edge(&bounds);
-    let grown = 0.05 * longest;
+    let grown = MARGIN * longest;
     if !(2..=2048).contains(&cells) {
         return Err(format!("samples lie in 2 to 2048 cells, got {cells}"));
     }
-    let step = longest * 1.1 / cells as f64;
+    let step = (longest + 2.0 * grown) / cells as f64;
     let (min, max) = (in_space(bounds.min), in_space(bounds.max));
     let grow = |axis: usize, side: f64| if axis < D { side * grown } else { 0.0 };
     let first: [f64; 3] = std::array::from_fn(|axis| min[axis] + grow(axis, -1.0));
@@ -82,7 +85,7 @@ fn checked(counts: [usize; 3]) -> Result<[usize; 3], String> {
     let product = counts.iter().try_fold(1_usize, |all, count| all.checked_mul(*count));
     match product {
         Some(1..=MOST_VALUES) => Ok(counts),
-        _ => Err(format!("a grid has at most {MOST_VALUES} values, got {counts:?}")),
+        _ => Err(format!("a grid has 1 to {MOST_VALUES} values, got {counts:?}")),
     }
 }
 

@@ -13,6 +13,9 @@ use serde_json::{Value, json};
 use super::{limits, named, nanoseconds, placed};
 use crate::stage::room::point_of;
 
+/// The most starts of local descents.
+const MOST_STARTS: usize = 1000;
+
 /// The separation of two bodies, proven, and by local searches from some starts.
 pub(super) fn between<const D: usize>(
     scene: &BuiltScene<D>,
@@ -47,6 +50,10 @@ pub(super) fn between<const D: usize>(
             "ns": nanoseconds(begin),
         }))
     };
+    if starts.len() > MOST_STARTS {
+        let count = starts.len();
+        return Err(format!("a pair has at most {MOST_STARTS} starts, got {count}"));
+    }
     let local = starts.iter().map(descent).collect::<Result<Vec<_>, String>>()?;
     Ok(json!({ "do": "pair", "certified": certified, "local": local }))
 }
