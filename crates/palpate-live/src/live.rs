@@ -16,7 +16,7 @@ use tokio::net::TcpListener;
 use tokio::sync::oneshot;
 
 use crate::server;
-use crate::stage::{GivenClock, Program, Refusal, Stage};
+use crate::stage::{GivenClock, MOST_POINTS, Program, Refusal, Stage};
 
 /// The device of the page unless another is chosen.
 const DEVICE: &str = "omega";
@@ -25,8 +25,7 @@ const DEVICE: &str = "omega";
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct LiveOptions {
-    /// The address to listen at. What is not of this machine alone is reached by others, without
-    /// encryption.
+    /// The address to listen at. Other machines reach any but a loopback address, without encryption.
     pub address: IpAddr,
     /// The port; 0 for any that is free.
     pub port: u16,
@@ -109,6 +108,12 @@ pub enum LiveError {
     /// The scene has an error.
     #[error("{0}")]
     Scene(String),
+    /// There are more contact points than a page's hand has.
+    #[error("the hand of a page has at most {MOST_POINTS} contact points, got {0}")]
+    Points(usize),
+    /// The rate is not positive and finite [Hz].
+    #[error("the rate must be positive and finite, got {0} Hz")]
+    Rate(f64),
     /// The address cannot be listened at.
     #[error("cannot listen at {address}: {error}")]
     Address {
@@ -117,7 +122,7 @@ pub enum LiveError {
         /// What the operating system says.
         error: std::io::Error,
     },
-    /// The token is none.
+    /// The token is not 32 hexadecimal digits.
     #[error("a token is 32 hexadecimal digits, got {0} characters")]
     Token(usize),
     /// The operating system gives no thread or no random numbers.
@@ -140,7 +145,7 @@ impl Live {
     ///
     /// # Errors
     ///
-    /// If the scene has an error, or the address cannot be listened at.
+    /// If the scene has an error, an option is out of its range, or the address cannot be listened at.
     pub fn start(
         name: impl Into<String>,
         file: Option<PathBuf>,
@@ -148,6 +153,13 @@ impl Live {
         options: LiveOptions,
     ) -> Result<Self, LiveError> {
         let LiveOptions { address, port, token, device, rate, points, clock } = options;
+        if points > MOST_POINTS {
+            return Err(LiveError::Points(points));
+        }
+        // Written so that NaN is refused.
+        if !(rate > 0.0 && rate.is_finite()) {
+            return Err(LiveError::Rate(rate));
+        }
         let system = |error: &dyn fmt::Display| LiveError::System(error.to_string());
         let token = match token {
             None => server::new_token().map_err(|error| system(&error))?,

@@ -24,7 +24,7 @@ import { takeRecording, watchRecording } from './panels/recording.js';
 import { takeSafety, watchSafety } from './panels/safety.js';
 import { baseName, save, saveAs } from './panels/saving.js';
 import { Selected } from './panels/selected.js';
-import { stop } from './panels/stop.js';
+import { FORCES_COME_BACK, stop } from './panels/stop.js';
 import { Tabs } from './panels/tabs.js';
 import { Toasts, Words } from './panels/toasts.js';
 import { Touch } from './panels/touch.js';
@@ -33,7 +33,7 @@ import { LegendButton, ViewBar } from './panels/view.js';
 import { createStage } from './scene/stage.js';
 import { changed, listen, lookAt, select, setTouch, setView, state, takeFrame } from './state.js';
 import { html, render } from './vendor/htm-preact.js';
-import { VERSION, Wire } from './wire.js';
+import { Wire } from './wire.js';
 
 /** @param {string} id @returns {HTMLElement} */
 function place(id) {
@@ -42,12 +42,11 @@ function place(id) {
 
 /** @param {import('./wire.js').Message} message */
 function takeMessage(message) {
-  if (message.do === 'welcome') takeWelcome(message);
-  if (message.do === 'scene') takeScene(message);
-  if (message.do === 'way' && message.revision === state.scene?.revision) {
-    state.way = message.way;
-    changed('way');
+  if (message.do === 'welcome') {
+    state.welcome = message;
+    changed('welcome');
   }
+  if (message.do === 'scene') takeScene(message);
   if (message.do === 'events') takeEvents(message.events);
   if (message.do === 'safety') takeSafety(message.stages);
   if (message.do === 'recording') takeRecording(/** @type {any} */ (message));
@@ -55,34 +54,22 @@ function takeMessage(message) {
     state.clients = message.count;
     changed('clients');
   }
-  if (message.do === 'notice') {
-    tell(message.message, 'bad');
-    changed('notice');
-  }
   // The answer to a question without a number: what failed was nobody's in particular.
-  if (message.do === 'refused') tell(message.message, 'bad');
-}
-
-/** @param {import('./wire.js').Message} message */
-function takeWelcome(message) {
-  if (message.version !== VERSION) {
-    tell(`The program speaks version ${message.version} of the protocol, this page ${VERSION}: reload the page.`, 'bad');
-  }
-  state.welcome = message;
-  changed('welcome');
+  if (message.do === 'notice' || message.do === 'refused') tell(message.message, 'bad');
 }
 
 /** The scene that the page was made to suit last. @type {import('./wire.js').Message} */
-let suited = { revision: 0, dimension: 0 };
+let suited = { revision: 0, dimension: 0, text: '' };
 
 /** What follows from a new scene: a title, and a view that suits it. */
 function suitView() {
   const { scene, view } = state;
+  if (!scene) return;
+  document.title = `${baseName(scene.file ?? scene.name)} · palpate`;
   // A scene that was saved comes again as it was.
-  if (!scene || scene.revision === suited.revision) return;
+  if (scene.revision === suited.revision && scene.text === suited.text) return;
   const { dimension: before } = suited;
   suited = scene;
-  document.title = `${baseName(scene.file ?? scene.name)} · palpate`;
   const isPlane = scene.dimension === 2;
   if (isPlane && (view.mode === 'space' || view.mode === 'slice')) setView({ mode: 'plane' });
   if (!isPlane && before === 2 && view.mode === 'plane') setView({ mode: 'space' });
@@ -92,7 +79,7 @@ function suitView() {
     setView({ compared: view.compared.map((body) => Math.max(0, Math.min(body, last))) });
   }
   if ((state.touch.point ?? 0) >= scene.device.points) setTouch({ point: null });
-  if (scene.restarted) tell(`The servo began again${scene.why ? `: ${scene.why}` : ''}. Forces rise from zero.`);
+  if (scene.restarted) tell(`The servo began again: ${scene.why}. ${FORCES_COME_BACK}`);
   if (scene.by === 'file') tell('The file was changed elsewhere; the page shows it as it is now.');
 }
 

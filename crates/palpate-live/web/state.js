@@ -7,8 +7,8 @@
  *
  * @typedef {import('./wire.js').Frame} Frame
  * @typedef {import('./wire.js').Message} Message
- * @typedef {'connection' | 'welcome' | 'scene' | 'way' | 'frame' | 'selection' | 'view' |
- *   'events' | 'safety' | 'notice' | 'theme' | 'playback' | 'touch' | 'clients' | 'problems'} Topic
+ * @typedef {'connection' | 'welcome' | 'scene' | 'frame' | 'newest' | 'selection' | 'view' |
+ *   'events' | 'safety' | 'theme' | 'playback' | 'touch' | 'clients' | 'problems'} Topic
  * @typedef {'space' | 'slice' | 'plane' | 'compare'} ViewMode
  */
 
@@ -27,11 +27,15 @@ export const state = {
   welcome: null,
   /** @type {Message | null} the newest `scene` */
   scene: null,
-  /** @type {Message | null} how the scene is drawn; of the newest `scene` or `way` */
+  /** How many scenes were opened: that of an edit, or one that was saved, is still the same. */
+  opened: 0,
+  /** @type {Message | null} how the newest scene is drawn */
   way: null,
   /** @type {Frame | null} the newest frame, or that looked back to */
   frame: null,
-  /** @type {Frame[]} the last frames, oldest first */
+  /** What the servo does now. @type {Frame | null} */
+  newest: null,
+  /** @type {Frame[]} the last frames, one a tick, oldest first */
   history: [],
   /** Where in the history the page looks; null while it follows. @type {number | null} */
   lookingAt: null,
@@ -112,14 +116,18 @@ function takeSlips(frame, last) {
 export function takeFrame(frame) {
   const { history } = state;
   const last = history[history.length - 1];
-  // Another servo began.
-  if (last && frame.tick < last.tick) history.length = 0;
+  const isOfOther = last !== undefined && frame.tick < last.tick;
+  if (isOfOther) history.length = 0;
   takeSlips(frame, last);
   if (frame.tick !== last?.tick) history.push(frame);
   if (history.length > KEPT_FRAMES) {
     history.shift();
     if (state.lookingAt !== null) state.lookingAt = Math.max(0, state.lookingAt - 1);
   }
+  state.newest = frame;
+  changed('newest');
+  // Of a servo that has ended nothing is kept.
+  if (isOfOther && state.lookingAt !== null) lookAt(null);
   if (state.lookingAt === null) {
     state.frame = frame;
     changed('frame');
@@ -130,7 +138,7 @@ export function takeFrame(frame) {
 export function lookAt(index) {
   const { history } = state;
   state.lookingAt = index === null ? null : Math.max(0, Math.min(index, history.length - 1));
-  state.frame = history[state.lookingAt ?? history.length - 1] ?? null;
+  state.frame = state.lookingAt === null ? state.newest : history[state.lookingAt];
   changed('playback');
   changed('frame');
 }

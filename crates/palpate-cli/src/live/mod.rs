@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 use std::thread;
 use std::time::{Duration, Instant};
 
-use palpate_live::Live;
+use palpate_live::{Live, LiveError};
 
 use crate::arguments::{LiveOptions, PageOptions};
 use crate::input;
@@ -28,7 +28,7 @@ const AWAY: Duration = Duration::from_secs(3);
 const FINGERS: usize = 10;
 
 pub(crate) fn run(options: &LiveOptions, interrupt: &Interrupt) -> Result<Outcome, Failure> {
-    // A scene with an error is told of as by every command.
+    // An error of the scene is reported as by every command, before anything is served.
     input::scene(options.scene.as_deref())?;
     let (name, text) = input::scene_text(options.scene.as_deref())?;
     let points = options.points.unwrap_or(if options.scene.is_none() { FINGERS } else { 1 });
@@ -37,7 +37,6 @@ pub(crate) fn run(options: &LiveOptions, interrupt: &Interrupt) -> Result<Outcom
     if let Some(device) = &options.device {
         served = served.with_device(device.profile.clone());
     }
-    // Where the file is, the page does not tell.
     let short = options.scene.as_deref().and_then(Path::file_name);
     let name = short.map_or(name, |short| short.to_string_lossy().into_owned());
     let live =
@@ -72,14 +71,13 @@ impl Page {
                  ssh -L 8000:127.0.0.1:8000 NAME"
             ));
         }
-        let options = place
-            .token
-            .iter()
-            .fold(options, |options, token| options.with_token(token.as_str()));
-        let options = asked
-            .bind
-            .into_iter()
-            .fold(options, |options, address| options.with_address(address));
+        let mut options = options;
+        if let Some(token) = &place.token {
+            options = options.with_token(token.as_str());
+        }
+        if let Some(address) = asked.bind {
+            options = options.with_address(address);
+        }
         let start = |port| {
             let options = options.clone().with_port(port);
             Live::start(self.name.as_str(), self.file.clone(), &self.text, options)
@@ -87,7 +85,10 @@ impl Page {
         let live = match (asked.port, place.port) {
             (Some(port), _) => start(port),
             // The port of the last run, at which a page may still wait, unless it is taken.
-            (None, Some(port)) => start(port).or_else(|_| start(0)),
+            (None, Some(port)) => match start(port) {
+                Err(LiveError::Address { .. }) => start(0),
+                live => live,
+            },
             (None, None) => start(0),
         };
         let live = live.map_err(|error| Failure::input(shown(&error.to_string())))?;

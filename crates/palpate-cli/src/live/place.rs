@@ -34,7 +34,8 @@ enum Memory {
 }
 
 impl Place {
-    /// Each scene has a place of its own: programs that are started again do not swap theirs.
+    /// Each scene has its own file of port and token, so that programs which are started in another
+    /// order keep theirs.
     pub(super) fn of(asked: &PageOptions, scene: Option<&Path>) -> Result<Self, Failure> {
         if let Some(file) = &asked.token_file {
             let token = match std::fs::read_to_string(file) {
@@ -49,7 +50,7 @@ impl Place {
         };
         let name = scene.map_or_else(|| "page".to_owned(), name_for);
         let file = folder.join("palpate").join(name);
-        // A file that is not as it was written is written anew.
+        // A damaged file counts as missing.
         let text = std::fs::read_to_string(&file).unwrap_or_default();
         let (port, token) = text.trim().split_once(' ').unzip();
         let port = port.and_then(|port| port.parse().ok());
@@ -66,7 +67,7 @@ impl Place {
                 let written = write(file, live.token());
                 written.map_err(|error| Failure::file(file, error))
             }
-            // Another program is at the port of the last run.
+            // The port of the last run stays that of the program which has it, or of a run without --port.
             Memory::Last(_) if self.port.is_some_and(|port| port != live.address().port()) => {
                 Ok(())
             }

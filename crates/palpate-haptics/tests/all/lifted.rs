@@ -114,7 +114,7 @@ fn a_lifted_hand_is_not_guided() {
 }
 
 #[test]
-fn a_state_that_is_none_leaves_a_lifted_proxy_where_it_was() {
+fn a_state_that_is_not_finite_leaves_a_lifted_proxy_where_it_was() {
     for mut servo in [with_points(), with_tool()] {
         servo.lift(true);
         servo.step(&at(0.0));
@@ -147,7 +147,7 @@ fn lift_and_guides_are_handed_off() {
     for _ in 0..1000 {
         servo.step(&at(0.09));
     }
-    // As the servo's own guides: 2 b / T is 128 N/m, over 1 cm.
+    // As the servo's own guides: 2 b / T = 128 N/m limits the stiffness; over 1 cm that is 1.28 N.
     let force = servo.forces()[0];
     assert!((force - Vector([0.0, 1.28, 0.0])).norm() < 1e-9, "{force:?}");
     assert_eq!(servo.guides(1).len(), 1);

@@ -60,7 +60,7 @@ impl Guard {
         Self { address, token }
     }
 
-    /// Whether a host is this server: `localhost`, or an address of this machine, or, if other
+    /// Whether a host is this server: `localhost`, or a loopback address, or, if other
     /// machines may call, any address. A name leads wherever its owner wants; an address does
     /// not.
     fn is_here(&self, host: &str) -> bool {

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! The server: routes, and the thread that it runs in.
+//! The server: its routes.
 
 mod assets;
 mod connections;

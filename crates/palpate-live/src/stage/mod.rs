@@ -38,8 +38,8 @@ pub(crate) use inquiry::answer_alone;
 pub(crate) use pages::{Out, PageId, Pages};
 use performance::Order;
 use recording::{AnyPaths, Trace};
-pub(crate) use room::GivenClock;
 use room::Terms;
+pub(crate) use room::{GivenClock, MOST_POINTS};
 
 /// Edits that may wait: more are refused.
 const WAITING: usize = 64;

@@ -23,7 +23,7 @@ use crate::wire::Frame;
 /// How often the hand is led on.
 const STEP: Duration = Duration::from_millis(8);
 
-/// The steps from one frame to the next: 60 frames a second.
+/// The steps from one frame to the next: 62 frames a second.
 const STEPS_A_FRAME: u32 = 2;
 
 /// The answer before the first scene, and after a servo has ended.

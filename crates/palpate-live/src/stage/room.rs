@@ -25,7 +25,7 @@ use crate::wire::{Frame, FramePoint};
 const FASTEST: f64 = 1.0;
 
 /// The most contact points of a hand.
-const MOST_POINTS: usize = 100;
+pub(crate) const MOST_POINTS: usize = 100;
 
 /// How long rows wait to be taken [s].
 const KEPT: f64 = 1.0;

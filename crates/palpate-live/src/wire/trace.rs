@@ -7,11 +7,10 @@ use palpate::devices::{HandPath, Interpolation};
 use palpate::field::{Point, Vector};
 use palpate::servo_loop::{TraceRow, TraceWriter};
 
+use crate::stage::MOST_POINTS;
+
 /// The least time between two samples of a path [s]: the step of the thread that leads the hand.
 const STEP: f64 = 0.008;
-
-/// The most contact points of a file.
-const MOST_POINTS: usize = 100;
 
 /// The axes as columns name them.
 const AXES: [&str; 3] = ["x", "y", "z"];

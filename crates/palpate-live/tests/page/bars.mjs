@@ -87,11 +87,11 @@ async function measuring() {
     /** The times and scales of pictures while `window.isTurning`. */
     async moving() {
       const seen = [];
-      while (window.isTurning) {
+      do {
         await frame();
         const { time, scale } = page.stage.stats();
         if (seen.at(-1)?.time !== time) seen.push({ time, scale });
-      }
+      } while (window.isTurning);
       return seen;
     },
     /** The largest gap between two animation frames until the picture is complete, and how long that takes [ms]. */
@@ -185,8 +185,9 @@ async function measure(page, scene, part, [whole, moved]) {
       await page.waitForTimeout(16);
     }
     await page.evaluate(() => (window.isTurning = false));
-    // The first pictures find the resolution.
-    const seen = (await moving).slice(5);
+    // The first half of the pictures finds the resolution.
+    const turned = await moving;
+    const seen = turned.slice(turned.length >> 1);
     const refining = page.evaluate(() => window.bars.refining());
     await page.mouse.up({ button: 'right' });
     const { gap, time } = await refining;

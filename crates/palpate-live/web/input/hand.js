@@ -9,13 +9,25 @@
  * @typedef {import('../scene/vectors.js').Vector} Vector
  */
 
+import { mean } from '../scene/vectors.js';
 import { state } from '../state.js';
 
 /** The least time between two targets [ms]. The program takes 120 messages a second, and probes,
  * slices and edits want their share. */
 const PAUSE = 1000 / 80;
 
-/** @param {Wire} wire */
+/** The middle of the device points, or null without any. @returns {Vector | null} */
+export function handOf() {
+  const points = state.frame?.points ?? [];
+  return points.length > 0 ? mean(points.map(({ device }) => device)) : null;
+}
+
+/** Where the hand is led from: the point that leads, or the middle of all. @returns {Vector | null} */
+export function ledPlace() {
+  return state.frame?.points[state.touch.point ?? -1]?.device ?? handOf();
+}
+
+/** The hand, of which a page has one: pointer, keys and gamepads lead it. @param {Wire} wire */
 export function createHand(wire) {
   /** @type {Vector | null} */
   let target = null;

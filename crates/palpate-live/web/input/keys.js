@@ -5,9 +5,9 @@
 /**
  * The keys of the page, in one table, which the help shows too.
  *
- * `where` says when a key counts: `anywhere`; `untyped`, unless a text is typed; `outside`, nor a
- * list chosen from; `moveless`, nor has a control the focus that arrows move; `free`, when no
- * control at all has it.
+ * `where` says when a key counts: `anywhere`; `untyped`: not while a text field has the focus;
+ * `outside`: nor a `<select>`; `moveless`: nor a slider, tree or tab list; `free`: only while no
+ * control has the focus.
  *
  * @typedef {'anywhere' | 'untyped' | 'outside' | 'moveless' | 'free'} Where
  * @typedef {{ keys: string[], shown: string, text: string, where: Where, does: string,
@@ -15,6 +15,7 @@
  */
 
 import { endKeys, takeKey } from './placing.js';
+import { deepen, isLeading } from './pointer.js';
 import { axesSeen, letGo, push } from './steer.js';
 import { state } from '../state.js';
 
@@ -69,6 +70,9 @@ function counts(target, where) {
   return !(target instanceof Element && target.closest(ELSEWHERE[where]));
 }
 
+/** A speed while Shift is down, over that without. */
+const SLOW = 0.25;
+
 /** Listens for keys. @param {Record<string, () => void>} actions one for each `does` */
 export function listenKeys(actions) {
   /** @type {Set<string>} */
@@ -83,7 +87,7 @@ export function listenKeys(actions) {
       return;
     }
     const speeds = [0, 1, 2].map((axis) =>
-      (isSlow ? 0.25 : 1) * [...held].reduce((sum, key) => sum + MOVES[key][axis], 0));
+      (isSlow ? SLOW : 1) * [...held].reduce((sum, key) => sum + MOVES[key][axis], 0));
     push(speeds, axesSeen());
     requestAnimationFrame(run);
   };
@@ -107,6 +111,12 @@ export function listenKeys(actions) {
     if (state.lookingAt !== null) {
       if (event.key === 'ArrowLeft') actions.back?.();
       if (event.key === 'ArrowRight') actions.forth?.();
+      return;
+    }
+    // A hand that the pointer leads is moved by keys in depth alone.
+    if (isLeading()) {
+      const [, , away] = MOVES[event.key];
+      deepen(away * (isSlow ? SLOW : 1));
       return;
     }
     if (takeKey(MOVES[event.key], event)) return;

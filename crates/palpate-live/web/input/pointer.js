@@ -30,13 +30,21 @@ const WHEEL = 0.0015;
 /** Pixels of a wheel, or of a second finger, for a step of depth. */
 const STEP = 60;
 
+/** The drag that goes on. @type {Drag | null} */
+let drag = null;
+
+/** Whether the pointer leads the hand, whose depth keys may change too. */
+export const isLeading = () => drag?.deepen !== undefined;
+
+/** Moves the hand that the pointer leads away from the viewer, or with negative steps towards the
+ * viewer. @param {number} steps */
+export const deepen = (steps) => drag?.deepen?.(steps);
+
 /** @param {HTMLElement} element @param {Handlers} handlers */
 export function createPointer(element, handlers) {
   element.style.touchAction = 'none';
   /** @type {Map<number, Place>} */
   const pressed = new Map();
-  /** @type {Drag | null} */
-  let drag = null;
   let leader = -1;
 
   /** @param {MouseEvent} event @returns {Place} */
@@ -108,14 +116,6 @@ export function createPointer(element, handlers) {
     if (drag?.deepen) drag.deepen(-pixels / STEP);
     else handlers.zoom(placeOf(event), Math.exp(pixels * WHEEL));
   }, { passive: false });
-  // While the hand is dragged, the keys that change its depth belong to the drag.
-  window.addEventListener('keydown', (event) => {
-    const steps = event.key === 'PageUp' ? 1 : event.key === 'PageDown' ? -1 : 0;
-    if (steps === 0 || !drag?.deepen) return;
-    drag.deepen(steps);
-    event.preventDefault();
-    event.stopPropagation();
-  }, { capture: true });
   window.addEventListener('blur', end);
   listen(['connection'], () => {
     if (state.connection !== 'live') end();

@@ -10,18 +10,16 @@
 
 import { extent } from '../panels/numbers.js';
 import { page } from '../panels/page.js';
-import { ledPlace } from '../scene/overlay.js';
 import { state } from '../state.js';
-import { createHand } from './hand.js';
+import { ledPlace } from './hand.js';
+import { isLeading } from './pointer.js';
 
 /** The time that the hand takes across the scene at full speed [s]. */
 const CROSSING = 3;
 /** The longest time between two frames that counts [s]: after a pause the hand does not jump. */
 const LONGEST = 0.05;
 
-/** @type {ReturnType<typeof createHand> | null} */
-let hand = null;
-/** @type {number[] | null} */
+/** Where keys or a gamepad lead the hand; null while they do not. @type {number[] | null} */
 let target = null;
 let last = 0;
 
@@ -31,21 +29,20 @@ export function push(speeds, axes) {
   const now = performance.now();
   const seconds = Math.min((now - last) / 1000, LONGEST);
   last = now;
-  target ??= ledPlace()?.slice() ?? null;
-  if (!target || !state.scene || !page.wire) return;
-  hand ??= createHand(page.wire);
+  target = isLeading() ? null : target ?? ledPlace()?.slice() ?? null;
+  if (!target || !state.scene) return;
   const reach = (extent(state.scene.bounds) / CROSSING) * seconds;
   const ways = [axes.right, axes.up, axes.away];
   for (const axis of [0, 1, 2]) {
     target[axis] += reach * ways.reduce((sum, way, index) => sum + way[axis] * speeds[index], 0);
   }
-  hand.lead([...target]);
+  page.stage?.hand.lead([...target]);
 }
 
-/** Lets go of the hand. */
+/** Lets go of the hand, unless the pointer has taken it. */
 export function letGo() {
+  if (target) page.stage?.hand.release();
   target = null;
-  hand?.release();
 }
 
 /** The axes of the picture. @returns {Axes} */

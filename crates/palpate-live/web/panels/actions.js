@@ -5,7 +5,7 @@
 /** What buttons and keys ask for. */
 
 import { changed, lookAt, setView, state } from '../state.js';
-import { goBack, takeScene } from './edits.js';
+import { goBack } from './edits.js';
 import { ask, download, fileName, page, tell, tellError } from './page.js';
 import { openTrace } from './recording.js';
 import { baseName } from './saving.js';
@@ -33,9 +33,7 @@ export async function openFile(file) {
 /** Opens another scene. @param {string} name @param {string} text */
 export function openText(name, text) {
   return replaceScene(baseName(name), async () => {
-    const answer = await ask({ do: 'open', name, text });
-    if (answer?.do === 'scene') takeScene(answer);
-    if (answer) tell(`${baseName(name)} is open.`);
+    if (await ask({ do: 'open', name, text })) tell(`${baseName(name)} is open.`);
   });
 }
 
@@ -56,7 +54,7 @@ export async function setSpeed(speed) {
 
 /** Holds the servo's time, or lets it go on. */
 export function hold() {
-  void setSpeed(state.history[state.history.length - 1]?.held ? clock.speed : 0);
+  void setSpeed(state.newest?.held ? clock.speed : 0);
 }
 
 export function slow() {

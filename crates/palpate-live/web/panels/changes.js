@@ -276,8 +276,3 @@ export function rename(pointer, name) {
 export function hasName(pointer) {
   return /^\/(bodies|views|shapes)\/[^/]+$/.test(pointer);
 }
-
-/** The name of a primitive or operator at a pointer. @param {string} pointer */
-export function makerAt(pointer) {
-  return makerOf(valueAt(pointer));
-}

@@ -12,11 +12,8 @@
  */
 
 import { Refused } from '../wire.js';
-import { changed, listen, state } from '../state.js';
-import { page, tell } from './page.js';
-
-/** How long a scene may take to follow the answer to its edit [ms]. */
-const SCENE_WAIT = 1000;
+import { changed, state } from '../state.js';
+import { page, reasonOf, tell } from './page.js';
 
 /** @type {Order[]} */
 const queue = [];
@@ -59,13 +56,12 @@ async function sendAll() {
 async function sendOne(order) {
   const base = state.scene?.revision;
   try {
-    const answer = await page.wire?.ask(order.do === 'edit' ? { ...order, base } : order);
-    if (answer?.do === 'scene') takeScene(answer);
-    else if (state.scene?.revision === base) await sceneOrTimeout();
+    // The scene comes before the answer.
+    await page.wire?.ask(order.do === 'edit' ? { ...order, base } : order);
     setProblems([]);
   } catch (error) {
     const problems = error instanceof Refused ? error.problems : [];
-    const text = error instanceof Error ? error.message : String(error);
+    const text = reasonOf(error);
     const [first] = problems;
     if (order.do === 'edit') {
       setProblems(first ? problems : [{ at: order.changes[0].at, message: text }]);
@@ -73,18 +69,6 @@ async function sendOne(order) {
     }
     tell(first ? `${first.path}: ${first.message}` : text, 'bad');
   }
-}
-
-function sceneOrTimeout() {
-  return new Promise((resolve) => {
-    const end = () => {
-      stop();
-      clearTimeout(timer);
-      resolve(undefined);
-    };
-    const timer = setTimeout(end, SCENE_WAIT);
-    const stop = listen(['scene'], end);
-  });
 }
 
 /** @param {{ at: string, message: string }[]} problems */
@@ -113,8 +97,11 @@ export function forgetProblem(pointer) {
 
 /** Takes a scene that the program sent. @param {import('../wire.js').Message} scene */
 export function takeScene(scene) {
+  const before = state.scene;
+  // The scene that was opened last comes again when it is saved, and when the connection is back.
+  const isOther = scene.by === 'open' && scene.text !== before?.text;
+  if (isOther || scene.dimension !== before?.dimension) state.opened += 1;
   state.scene = scene;
   state.way = scene.way;
   changed('scene');
-  changed('way');
 }

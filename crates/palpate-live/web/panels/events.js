@@ -40,11 +40,12 @@ function inWords(event) {
 export function Events() {
   useTopics(['events'], 100);
   const shown = state.events.slice(-80).reverse();
+  const points = state.scene?.device?.points ?? 1;
   return html`<ol class="events" tabindex="0" aria-label="Events, newest first">
     ${shown.length === 0 && html`<li class="quiet">nothing happened yet</li>`}
     ${shown.map((event) => html`<li key=${event.number}>
       <span class="when">${servoTime(event.time, state.welcome?.rate)}</span>
-      ${inWords(event)}${event.point ? ` · point ${event.point + 1}` : ''}</li>`)}
+      ${inWords(event)}${points > 1 ? ` · point ${event.point + 1}` : ''}</li>`)}
   </ol>`;
 }
 
@@ -57,10 +58,9 @@ export function operations() {
 
 /** The line at the foot: what the safety chain does, in words. */
 export function Status() {
-  useTopics(['frame', 'scene', 'safety', 'connection'], 200);
+  useTopics(['newest', 'scene', 'safety', 'connection'], 200);
   useClock();
-  const { scene, connection } = state;
-  const newest = state.history[state.history.length - 1];
+  const { scene, connection, newest } = state;
   const limit = scene?.device?.max_force;
   const safety = connection !== 'live' ? 'not connected' : newest?.stopped ? 'stopped, all forces are zero'
     : actingStages() || 'ok';

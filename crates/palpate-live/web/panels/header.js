@@ -60,7 +60,7 @@ export function Header({ help }) {
 /** @param {any} device */
 function deviceInWords(device) {
   const points = device.points > 1 ? `, ${device.points} points` : '';
-  return `${device.name}${points}${device.assumed?.length ? ', in part assumed' : ''}`;
+  return `${device.name}${points}`;
 }
 
 /** @param {number} rate */
@@ -92,7 +92,7 @@ function Steps() {
 
 /** The scene's name, and what can be done with its file. */
 function Menu() {
-  useTopics(['scene', 'notice']);
+  useTopics(['scene']);
   const [isOpen, setIsOpen] = useState(false);
   const box = useRef(/** @type {HTMLElement | null} */ (null));
   const file = useRef(/** @type {HTMLInputElement | null} */ (null));

@@ -48,9 +48,8 @@ export function Time() {
 }
 
 function PlayBar() {
-  useTopics(['frame', 'playback', 'scene'], INTERVAL);
-  const { history, lookingAt, frame } = state;
-  const newest = history[history.length - 1];
+  useTopics(['newest', 'playback', 'scene'], INTERVAL);
+  const { history, lookingAt, frame, newest } = state;
   const last = Math.max(history.length - 1, 0);
   const at = lookingAt ?? last;
   const isFollowing = lookingAt === null;
@@ -75,7 +74,7 @@ function PlayBar() {
       aria-valuetext=${isFollowing ? 'now' : `${ago} ago`} disabled=${last === 0}
       onInput=${(/** @type {any} */ event) => lookAt(Number(event.currentTarget.value))} />
     <span class="unit time-shown">${frame ? servoTime(frame.time, rate) : '–'}</span>
-    <select class="small" aria-label="Speed of time" title="Slow motion: S; refused on a device"
+    <select class="small" aria-label="Speed of time" title="Slow motion: S"
       value=${String(actions.clock.speed)}
       onChange=${(/** @type {any} */ event) => void actions.setSpeed(Number(event.currentTarget.value))}>
       ${[1, 0.25, 0.1].map((speed) => html`<option key=${speed} value=${String(speed)}
@@ -121,7 +120,7 @@ function Counters() {
     /** @type {{ frames: number, tick: number, at: number }[]} */
     let counts = [];
     const timer = setInterval(() => {
-      const now = { frames, tick: state.history[state.history.length - 1]?.tick ?? 0, at: performance.now() };
+      const now = { frames, tick: state.newest?.tick ?? 0, at: performance.now() };
       // Another servo began.
       if (now.tick < counts[counts.length - 1]?.tick) counts = [];
       counts = [...counts, now].slice(-COUNTS.most);

@@ -79,7 +79,7 @@ export function Safety() {
   useClock();
   const rate = state.welcome?.rate ?? 1000;
   const limit = state.scene?.device?.max_force;
-  const kept = state.history[state.history.length - 1]?.kept ?? 0;
+  const kept = state.newest?.kept ?? 0;
   return html`<div class="safety-stages" tabindex="0" role="region" aria-label="Safety">
     <p>Each force passes these stages, from the first to the last, before it reaches the hand.
       ${limit !== undefined && html` The largest force is ${short(limit)} N.`} So far ${short(1000 * kept)} mJ were kept back.</p>

@@ -7,7 +7,6 @@
 import { state } from '../state.js';
 import { html, useState } from '../vendor/htm-preact.js';
 import { Dialog, closeDialog, openDialog } from './dialog.js';
-import { takeScene } from './edits.js';
 import { fileName, page, reasonOf, tell } from './page.js';
 
 /** The last part of a path. @param {string | null | undefined} path */
@@ -17,8 +16,7 @@ export function baseName(path) {
 
 /** Writes the scene to a file. @param {{ as?: string, force?: boolean }} [more] */
 export async function write(more = {}) {
-  const answer = await page.wire?.ask({ do: 'save', ...more });
-  if (answer?.do === 'scene') takeScene(answer);
+  await page.wire?.ask({ do: 'save', ...more });
 }
 
 /** Saves to the scene's file; a scene without one asks for a name.

@@ -80,7 +80,6 @@ function drawnBy() {
   const { way } = state;
   if (way?.kind === 'formula') return 'the formula, exactly';
   if (way?.kind === 'samples') return `samples: ${way.why}`;
-  if (way?.kind === 'drawn') return `the program: ${way.why}`;
   return '–';
 }
 

@@ -14,15 +14,18 @@ export function stop() {
   else navigator.sendBeacon(`stop?token=${encodeURIComponent(page.token)}`);
 }
 
-/** Gives forces again, rising from zero. */
+/** How forces come back after a stop, and of a servo that has begun. */
+export const FORCES_COME_BACK = 'Forces come back once the hand is out of the bodies, rising from zero.';
+
+/** Gives forces again. */
 function release() {
   page.wire?.send({ do: 'release' });
 }
 
 /** Stops; once stopped it gives the forces back. @param {{ id?: string }} given */
 export function StopButton({ id }) {
-  useTopics(['frame', 'connection'], 50);
-  const isStopped = state.history[state.history.length - 1]?.stopped ?? false;
+  useTopics(['newest', 'connection'], 50);
+  const isStopped = state.newest?.stopped ?? false;
   if (isStopped && state.connection === 'live') {
     return html`<button type="button" id=${id} class="stop stopped" onClick=${release}>forces are zero — release</button>`;
   }

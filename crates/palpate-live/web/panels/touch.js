@@ -50,8 +50,8 @@ function padName() {
 }
 
 function Tour() {
-  useTopics(['frame'], INTERVAL);
-  const isOn = state.frame?.touring ?? false;
+  useTopics(['newest'], INTERVAL);
+  const isOn = state.newest?.touring ?? false;
   return html`<${Switch} label="tour" value=${isOn} help="A hand that nobody leads goes along the bodies"
     change=${(/** @type {boolean} */ on) => page.wire?.send({ do: 'tour', on })} />`;
 }

@@ -19,7 +19,7 @@ let questions = null;
 export async function askContacts(wire, take) {
   const { contacts, proof } = state.view.shown;
   const isWanted = (contacts || proof) && (state.scene?.bodies?.length ?? 0) > 1;
-  const key = isWanted ? `${state.scene?.name} ${state.scene?.revision} ${proof}` : '';
+  const key = isWanted ? `${state.opened} ${state.scene?.revision} ${proof}` : '';
   if (key === asked || state.connection !== 'live') return;
   asked = key;
   questions ??= asking(wire);

@@ -15,11 +15,12 @@
  * @typedef {import('./texts.js').Texts} Texts
  */
 
+import { handOf, ledPlace } from '../input/hand.js';
 import { state } from '../state.js';
 import { arrow, dot, numbered, polyline, ring, spring } from './ink.js';
 import { COLORS, LIFTED, mark } from './marks.js';
 import { centreOf, cornersOf } from './setting.js';
-import { along, dot as product, inSpace, mean, norm } from './vectors.js';
+import { along, dot as product, inSpace, norm } from './vectors.js';
 
 /** The length of the arrow of the largest force in pixels. */
 const LONGEST = 130;
@@ -34,17 +35,6 @@ const SMALL = 24;
 const BRACKET = 0.18;
 const EDGES = [[0, 1], [1, 2], [2, 3], [3, 0], [4, 5], [5, 6], [6, 7], [7, 4],
   [0, 4], [1, 5], [2, 6], [3, 7]];
-
-/** The middle of the device points, or null without any. @returns {Vector | null} */
-function handOf() {
-  const points = state.frame?.points ?? [];
-  return points.length > 0 ? mean(points.map(({ device }) => device)) : null;
-}
-
-/** Where the hand is led from: the point that leads, or the middle of all. @returns {Vector | null} */
-export function ledPlace() {
-  return state.frame?.points[state.touch.point ?? -1]?.device ?? handOf();
-}
 
 /** @param {Context} context @param {View} view @param {Box} box @param {string} color
  * @param {string} halo */

@@ -21,12 +21,12 @@
  * @property {(target: Vector | null) => void} show
  */
 
+import { ledPlace } from '../input/hand.js';
 import { fallDrag } from '../plane/falling.js';
 import { toyDrag } from '../plane/handles.js';
 import { state } from '../state.js';
 import { handDrag, laterDrag, orbitDrag, panDrag, sliceDrag } from './drags.js';
 import { gripAt } from './grips.js';
-import { ledPlace } from './overlay.js';
 import { handles } from './slice.js';
 
 /** How near a press must be in pixels, of a mouse or pen and of a finger. */

@@ -44,8 +44,8 @@ export class Source {
     /** Whether coarse samples do. */
     this.isCoarse = true;
     this.text = '';
-    /** The name of the scene. */
-    this.name = '';
+    /** Which scene it is, as `state.opened` counts. */
+    this.opened = 0;
     /** Why the formula could not be used. */
     this.failure = '';
     /** What tells the bodies apart. @type {Nearest | null} */
@@ -70,8 +70,8 @@ export class Source {
     const { way } = state;
     this.setting = setting;
     if (way?.glsl !== this.text) this.failure = '';
-    if (state.scene?.name !== this.name) {
-      this.name = state.scene?.name;
+    if (state.opened !== this.opened) {
+      this.opened = state.opened;
       this.spacing = 0;
       this.owners = null;
     }

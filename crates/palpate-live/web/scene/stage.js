@@ -56,7 +56,8 @@ export function createStage(container, wire) {
   let isOverlayChanged = true;
   let isPressed = false;
   let requested = 0;
-  let lastScene = '';
+  /** What the camera was laid for last. */
+  let laidFor = '';
   /** Where the pointer leads the hand. @type {Vector | null} */
   let target = null;
   /** @type {any} */
@@ -150,12 +151,12 @@ export function createStage(container, wire) {
   function takeScene() {
     const { mode, compared } = state.view;
     const comparing = mode === 'compare' ? compared.join() : '';
-    const key = `${state.scene?.name} ${state.scene?.dimension} ${comparing}`;
+    const key = `${state.opened} ${comparing}`;
     const shown = current();
     cameras.orbit.size = shown.size;
     cameras.flat.size = shown.size;
-    if (key === lastScene || !state.scene) return false;
-    lastScene = key;
+    if (key === laidFor || !state.scene) return false;
+    laidFor = key;
     measure();
     if (shown.dimension === 2) layToys(shown.centre, shown.size);
     layFall(setting());
@@ -250,10 +251,6 @@ export function createStage(container, wire) {
     });
     sceneChanged();
   });
-  listen(['way'], () => {
-    source.update(setting());
-    sceneChanged();
-  });
   listen(['view'], () => {
     probe.leave();
     const isOther = takeScene();
@@ -291,6 +288,7 @@ export function createStage(container, wire) {
   fit();
 
   return {
+    hand,
     fit,
     /** @param {string} name `reset`, `x`, `y`, `z`, `in`, `out` or a view of the scene */
     setCamera(name) {
@@ -304,7 +302,6 @@ export function createStage(container, wire) {
       if (source.kind !== 'drawn' && layer.gl) layer.present();
       return elements.export(source.kind === 'drawn');
     },
-    focus: () => elements.overlay.focus({ preventScroll: true }),
     /** How fast the scene is drawn: the time of a moving picture [ms], the part of the pixels
      * that it has along each side, and whether it is complete. */
     stats: () => ({ time: layer.lastTime, scale: layer.scale, isStill: layer.isDone }),
@@ -324,7 +321,5 @@ export function createStage(container, wire) {
       showBall();
     },
     showBall,
-    /** Whether the picture is a map of a plane. */
-    isFlat: () => isFlat(setting()),
   };
 }

@@ -14,6 +14,9 @@ impl<const D: usize> Renderer<D> {
         self.setting.is_lifted
     }
 
+    /// Lifts the hand off the bodies, or sets it down.
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
     pub(crate) fn lift(&mut self, is_lifted: bool) {
         self.setting.is_lifted = is_lifted;
     }
