@@ -8,8 +8,8 @@ use std::sync::OnceLock;
 use palpate::scene::{AnyScene, Scene};
 use serde_json::Value;
 
-use crate::stage::answer_alone;
-use crate::wire::{Ask, Question, trace};
+use crate::stage::{answer_alone, trace};
+use crate::wire::{Ask, Question};
 
 /// The longest side of a grid and of a picture that is asked for here: larger ones only take longer.
 const LARGEST: usize = 64;

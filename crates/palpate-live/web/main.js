@@ -79,13 +79,18 @@ function suitView() {
     setView({ compared: view.compared.map((body) => Math.max(0, Math.min(body, last))) });
   }
   if ((state.touch.point ?? 0) >= scene.device.points) setTouch({ point: null });
-  if (scene.restarted) tell(`The servo began again: ${scene.why}. ${FORCES_COME_BACK}`);
+  if (scene.restarted) tell(`${scene.why[0].toUpperCase()}${scene.why.slice(1)}. ${FORCES_COME_BACK}`);
   if (scene.by === 'file') tell('The file was changed elsewhere; the page shows it as it is now.');
 }
 
-/** @param {string} token */
+/** Connects with a token; again, if the program refused the one before. @param {string} token */
 function connect(token) {
   page.token = token;
+  if (page.wire) {
+    page.wire.token = token;
+    page.wire.open();
+    return;
+  }
   page.wire = new Wire(token, {
     frame: (frame) => {
       const start = performance.now();
@@ -167,6 +172,8 @@ listenKeys({
   help: toggleHelp,
   useKeys: () => setTouch({ input: 'keys' }),
 });
+// An address that is opened in this tab differs by its fragment alone.
+addEventListener('hashchange', () => location.reload());
 document.addEventListener('visibilitychange', () =>
   page.wire?.send({ do: 'hidden', is: document.hidden }));
 

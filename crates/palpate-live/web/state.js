@@ -74,6 +74,9 @@ export const state = {
     isolines: true,
     /** Between isolines [m]; null for a spacing that suits the view. @type {number | null} */
     spacing: null,
+    /** The length over which the gradient is taken from differences [m]; null for the least that the
+     * card's precision allows. @type {number | null} */
+    offset: null,
     shown: {
       contacts: true, normals: true, proof: false, forces: true, bounds: false, names: true,
       spring: true, handles: true,

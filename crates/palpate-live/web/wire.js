@@ -138,7 +138,7 @@ export class Wire {
      * @type {Map<number, { resolve: (answer: any) => void, reject: (error: Error) => void,
      *   what: string, since: number }>} */
     this.waiting = new Map();
-    this.nextId = 1;
+    this.lastId = 0;
     this.wait = SHORTEST_WAIT;
     this.open();
   }
@@ -146,12 +146,13 @@ export class Wire {
   open() {
     this.handlers.connection('connecting');
     const scheme = location.protocol === 'https:' ? 'wss' : 'ws';
-    const socket = new WebSocket(`${scheme}://${location.host}/socket?token=${this.token}`);
+    const socket = new WebSocket(`${scheme}://${location.host}/socket?token=${encodeURIComponent(this.token)}`);
     socket.binaryType = 'arraybuffer';
     this.socket = socket;
     let why = '';
+    let isOpened = false;
     socket.onopen = () => {
-      this.wait = SHORTEST_WAIT;
+      isOpened = true;
       this.send({ do: 'hello', version: VERSION });
     };
     socket.onmessage = ({ data }) => {
@@ -161,17 +162,36 @@ export class Wire {
       }
       const message = JSON.parse(data);
       if (message.do === 'bye') why = message.why;
-      if (message.do === 'welcome') this.handlers.connection('live');
+      if (message.do === 'welcome') {
+        // A program that closes what it opened is not asked again at once.
+        this.wait = SHORTEST_WAIT;
+        this.handlers.connection('live');
+      }
       this.takeText(message);
     };
-    socket.onclose = () => {
+    socket.onclose = async () => {
       this.socket = null;
       for (const { reject } of this.waiting.values()) reject(new Error('the connection was lost'));
       this.waiting.clear();
+      if (!isOpened && await this.isTokenWrong()) {
+        this.handlers.connection('closed', 'The program does not know this token.');
+        return;
+      }
       this.handlers.connection('lost', why);
       setTimeout(() => this.open(), this.wait);
       this.wait = Math.min(2 * this.wait, LONGEST_WAIT);
     };
+  }
+
+  /** Whether the program is there and refuses the token: a socket does not tell. */
+  async isTokenWrong() {
+    try {
+      const signal = AbortSignal.timeout(LONGEST_WAIT);
+      const answer = await fetch(`scene.json?token=${encodeURIComponent(this.token)}`, { method: 'HEAD', signal });
+      return answer.status === 401;
+    } catch {
+      return false;
+    }
   }
 
   /** @param {ArrayBuffer} buffer */
@@ -227,13 +247,17 @@ export class Wire {
     this.send({ do: 'cancel', question: id });
   }
 
+  /** A number for a question. */
+  newId() {
+    this.lastId += 1;
+    return this.lastId;
+  }
+
   /** Asks, and gives the answer. @param {Message} message @returns {Promise<any>} */
-  ask(message) {
+  ask(message, id = this.newId()) {
     if (this.socket?.readyState !== WebSocket.OPEN) {
       return Promise.reject(new Error('the program is not connected'));
     }
-    const id = this.nextId;
-    this.nextId += 1;
     return new Promise((resolve, reject) => {
       this.waiting.set(id, { resolve, reject, what: message.do, since: performance.now() });
       this.send({ ...message, id });

@@ -11,7 +11,7 @@ use palpate::scene::{AnyScene, BuiltScene};
 use serde_json::{Value, json};
 
 use super::document::Document;
-use super::room::in_space;
+use super::points::in_space;
 use crate::shader::{Formulas, MOST_OPERATIONS, Slot};
 
 /// Fields that are steeper are drawn from samples: rays would take too many steps.

@@ -17,7 +17,7 @@ use super::document::{Document, Refusal};
 use super::file::read_file;
 use super::hand::tour;
 use super::pages::{PageId, Pages};
-use super::performance::{AnyPath, Changed, Order, Showing};
+use super::performance::{AnyTour, Changed, Order, Showing};
 use super::room::Terms;
 use super::{Shown, Text};
 use crate::wire::{Ask, Change, Question, VERSION};
@@ -320,13 +320,13 @@ fn send_tour(
     pages: &Pages,
 ) {
     let path = match scene {
-        AnyScene::Planar(scene) => tour(scene, points).map(|path| path.map(AnyPath::Planar)),
-        AnyScene::Spatial(scene) => tour(scene, points).map(|path| path.map(AnyPath::Spatial)),
+        AnyScene::Planar(scene) => tour(scene, points).map(|path| path.map(AnyTour::Planar)),
+        AnyScene::Spatial(scene) => tour(scene, points).map(|path| path.map(AnyTour::Spatial)),
     };
     match path {
         Some(Ok(path)) => {
             // A hand without a tour rests.
-            let _ = orders.send(Order::Path { path, revision });
+            let _ = orders.send(Order::TakeTour { path, revision });
         }
         Some(Err(error)) => {
             let message = format!("the hand has no tour of this scene: {error}");

@@ -13,8 +13,8 @@ use palpate::scene::{AnyScene, BuiltScene};
 
 use super::Shown;
 use super::pages::{Out, PageId, Pages};
+use super::points::point_of;
 use super::questions::{Answer, CANCELLED, Cancel, answer};
-use super::room::point_of;
 use crate::wire::{Ask, Question, picture};
 
 /// The threads, beside those of the servo, of the hand and of the editor.

@@ -15,9 +15,11 @@ mod hand;
 mod inquiry;
 mod pages;
 mod performance;
+mod points;
 mod questions;
 mod recording;
 mod room;
+pub(crate) mod trace;
 
 use std::path::PathBuf;
 use std::sync::mpsc::{SyncSender, TrySendError, sync_channel};
@@ -29,7 +31,7 @@ use palpate::haptics::{DeviceProfile, StopSwitch};
 use palpate::scene::AnyScene;
 use tokio::sync::watch;
 
-use crate::wire::{Ask, Question, trace};
+use crate::wire::{Ask, Question};
 use document::Document;
 pub(crate) use document::Refusal;
 use inquiry::Inquiries;
@@ -254,7 +256,7 @@ impl Stage {
             AnyScene::Planar(_) => AnyPaths::Planar(trace::read_paths(bytes)?),
             AnyScene::Spatial(_) => AnyPaths::Spatial(trace::read_paths(bytes)?),
         };
-        let sent = self.orders.try_send(Order::Paths(paths));
+        let sent = self.orders.try_send(Order::TakePaths(paths));
         sent.map_err(|_| "the program is busy: send the trace again".to_owned())
     }
 

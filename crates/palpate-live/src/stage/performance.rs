@@ -50,8 +50,8 @@ pub(crate) enum Order {
     LetGo,
     Tour(bool),
     /// The tour of the scene of a revision.
-    Path {
-        path: AnyPath,
+    TakeTour {
+        path: AnyTour,
         revision: u32,
     },
     Clock {
@@ -68,7 +68,7 @@ pub(crate) enum Order {
         on: bool,
     },
     /// Takes paths to be replayed.
-    Paths(AnyPaths),
+    TakePaths(AnyPaths),
     /// What was recorded, as a file.
     Trace(SyncSender<Trace>),
     /// Renders another scene.
@@ -107,7 +107,7 @@ pub(crate) enum Showing {
 
 /// A hand path of either dimension.
 #[derive(Debug)]
-pub(crate) enum AnyPath {
+pub(crate) enum AnyTour {
     Planar(HandPath<2>),
     Spatial(HandPath<3>),
 }
@@ -196,10 +196,10 @@ impl Performance {
                     of_either!(AnyRoom, room, room => room.set_touring(is_touring));
                 }
             }
-            Order::Path { path, revision } => match (&mut self.room, path) {
+            Order::TakeTour { path, revision } => match (&mut self.room, path) {
                 _ if revision < self.began => {}
-                (Some(AnyRoom::Planar(room)), AnyPath::Planar(path)) => room.take_tour(path),
-                (Some(AnyRoom::Spatial(room)), AnyPath::Spatial(path)) => room.take_tour(path),
+                (Some(AnyRoom::Planar(room)), AnyTour::Planar(path)) => room.take_tour(path),
+                (Some(AnyRoom::Spatial(room)), AnyTour::Spatial(path)) => room.take_tour(path),
                 _ => {}
             },
             Order::Clock { page, id, speed, step } => {
@@ -224,7 +224,7 @@ impl Performance {
                 Ok(()) => self.pages.answer(page, id, json!({ "do": "done" })),
                 Err(why) => self.pages.refuse(page, id, &why, &[]),
             },
-            Order::Paths(paths) => self.recording.take(paths),
+            Order::TakePaths(paths) => self.recording.take(paths),
             Order::Trace(reply) => {
                 // Who asked may have gone.
                 let _ = reply.send(self.recording.trace());

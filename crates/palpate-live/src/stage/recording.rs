@@ -8,7 +8,7 @@ use palpate::servo_loop::TraceRow;
 use serde_json::{Value, json};
 
 use super::room::{AnyRoom, of_either};
-use crate::wire::trace;
+use super::trace;
 
 /// The most rows that are recorded: 20 s of ten points at 1 kHz.
 pub(super) const MOST_ROWS: usize = 200_000;

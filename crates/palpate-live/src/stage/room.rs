@@ -6,7 +6,7 @@
 use std::sync::{Arc, Mutex, PoisonError};
 
 use palpate::devices::{Hand, HandPath, SimulatedDevice, SteeredDevice, Steering};
-use palpate::field::{LARGEST_LENGTH, Point, Vector};
+use palpate::field::Point;
 use palpate::haptics::{
     DeviceProfile, Event, HapticsError, Recovery, StageTicks, StopSwitch, WorkspaceMap,
 };
@@ -19,6 +19,7 @@ use palpate::servo_loop::{
 
 use super::hand::{Lead, Leader};
 use super::performance::Changed;
+use super::points::{in_space, point_of};
 use crate::wire::{Frame, FramePoint};
 
 /// The fastest that a hand follows the page, at the device [m/s].
@@ -363,20 +364,4 @@ fn device<const D: usize>(
     let hand = |place: &Point<D>| Hand::resting(map.point_to_device(*place));
     let hands = lead.targets().iter().map(hand).collect::<Result<_, _>>()?;
     SteeredDevice::new(SimulatedDevice::new(terms.profile.clone(), hands)?, FASTEST)
-}
-
-/// A point of the page.
-pub(super) fn point_of<const D: usize>(numbers: &[f64]) -> Result<Point<D>, String> {
-    let wrong = || format!("a point of this scene is {D} numbers, got {}", numbers.len());
-    let point: [f64; D] = numbers.try_into().map_err(|_| wrong())?;
-    let is_usable = |x: &f64| x.abs() <= LARGEST_LENGTH;
-    match point.iter().find(|x| !is_usable(x)) {
-        None => Ok(Vector(point)),
-        Some(x) => Err(format!("a coordinate is at most {LARGEST_LENGTH:e} m, got {x} m")),
-    }
-}
-
-/// A vector in space: in the plane, the third coordinate is zero.
-pub(super) fn in_space<const D: usize>(vector: Vector<f64, D>) -> [f64; 3] {
-    std::array::from_fn(|axis| vector.0.get(axis).copied().unwrap_or_default())
 }

@@ -5,7 +5,6 @@
 
 mod ask;
 mod binary;
-pub(crate) mod trace;
 
 pub(crate) use ask::{Ask, Change, Question};
 pub(crate) use binary::{Frame, FramePoint, Grid, GridPlace, picture};

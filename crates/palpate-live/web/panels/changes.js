@@ -7,7 +7,7 @@
 import { select, state } from '../state.js';
 import { aboutShape, besideBodies, besideOperands, moved } from './beside.js';
 import { edit } from './edits.js';
-import { ONE, SEVERAL, listOf, makerOf } from './nodes.js';
+import { ONE, SEVERAL, listOf } from './nodes.js';
 import { extent } from './numbers.js';
 import { holder, parts, valueAt, within } from './schema.js';
 

@@ -7,13 +7,14 @@
 import { html } from '../vendor/htm-preact.js';
 import { KEYS, MOVE_HELP } from '../input/keys.js';
 import { Dialog } from './dialog.js';
+import { FORCES_COME_BACK } from './stop.js';
 
 /** @type {[string, string][]} */
 const TEXTS = [
   ['Touch', 'Press on the hand or on a surface: the hand follows the pointer, and a spring draws the device after it. The surface pushes back, so pointer and device part. While you press, the wheel or a second finger moves in depth.'],
   ['Picture', 'Drag beside the scene, or anywhere with the right button, to turn it; with Shift or the middle button to move it; the wheel or two fingers zoom. Drag the handles of the slice, of the triangle and of the circle.'],
   ['Place', 'Select a body or a shape, in the tree or by a click: arrows move it along the axes that its numbers count along, the dot in the middle moves it parallel to the screen, rings turn it, the square scales it, each about its middle, which of an operator is that of its first part. A body changes its pose; a shape its “translate” and turn, which it gets if it has none; both are scaled by a “scale” inside. A drag is one step to undo. Parts of a bend, twist, extrusion, revolution or unequal scale have no handles; a named shape has them where it is used first. “display” turns them off.'],
-  ['Stop', 'Esc, or the red button: all forces are zero within two ticks. The same button gives them back, rising from zero.'],
+  ['Stop', `Esc, or the red button: all forces are zero within two ticks. The same button releases them. ${FORCES_COME_BACK}`],
   ['Change', 'Select a part in the tree. Drag a number sideways, type it, also with a unit such as 35 mm, or move its slider; what is wrong stands below the field, and Esc takes it back. Each drag is one step to undo. The program keeps edits that are not saved until it ends, also when the page is closed; before it opens another scene, the page asks.'],
   ['Look back', 'The page keeps a minute. Move the slider of the play bar, or press on a chart; “follow” returns to now. The servo goes on meanwhile.'],
   ['Record', '“record” keeps every tick, “replay” leads the hand along it, “CSV” gives it as a file, “open trace” or dropping a .csv takes one.'],

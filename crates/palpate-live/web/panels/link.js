@@ -10,6 +10,7 @@
 import { setView, state } from '../state.js';
 import { openText } from './actions.js';
 import { page, tell } from './page.js';
+import { MAPS, MODES, MOST_SINE } from './view.js';
 
 const KEY = 'palpate-token';
 
@@ -75,11 +76,33 @@ export async function followLink(given) {
   }
 }
 
-/** Keys of the view of the type that they have here. @param {any} view */
-function known(view) {
-  return Object.fromEntries(Object.entries(state.view)
-    .filter(([key, own]) => view?.[key] !== undefined && (own === null || typeof view[key] === typeof own))
-    .map(([key]) => [key, view[key]]));
+/** A length, or null for one that the page chooses. @param {any} value */
+const isLength = (value) => value === null || (value > 0 && value < Infinity);
+
+/** What a part of the view must be besides of the type that it has here.
+ * @type {Record<string, (value: any) => boolean>} */
+const ALLOWED = {
+  mode: (value) => MODES.some(([mode]) => mode === value),
+  map: (value) => MAPS.some(([map]) => map === value),
+  sineFactor: (value) => value >= 0 && value <= MOST_SINE,
+  spacing: isLength,
+  offset: isLength,
+  compared: (value) => value.every((/** @type {number} */ body) => Number.isInteger(body) && body >= 0),
+};
+
+/** What is given in place of what the page has; what it does not have, or has with another type, is
+ * passed over. @param {any} own @param {any} given @returns {any} */
+function fitting(own, given) {
+  if (own === null) return typeof given === 'number' ? given : null;
+  if (typeof own !== 'object') return typeof given === typeof own ? given : own;
+  const parts = Object.entries(own).map(([key, part]) => [key, fitting(part, given?.[key])]);
+  return Array.isArray(own) ? parts.map(([, part]) => part) : Object.fromEntries(parts);
+}
+
+/** The view that a link gives, as far as the page knows it. @param {any} given */
+function known(given) {
+  const view = fitting(state.view, given);
+  return Object.fromEntries(Object.entries(view).filter(([key, value]) => ALLOWED[key]?.(value) ?? true));
 }
 
 /** Copies a link, or shows it in a field where the browser does not let a page copy. */

@@ -7,7 +7,7 @@
  *
  * @typedef {object} Part
  * @property {string} pointer a JSON pointer into the scene
- * @property {string} inner that of the shape below moves and turns; else `pointer`
+ * @property {string} inner the pointer of the shape below `translate` and `rotate`; `pointer` if there is none
  * @property {string} label
  * @property {string} detail
  * @property {'group' | 'body' | 'shape' | 'other'} kind

@@ -8,7 +8,7 @@ import { changed } from '../state.js';
 import { count } from './numbers.js';
 import { ask, download, fileName, page, tell, tellError } from './page.js';
 
-/** The names of the columns and a row are shorter [bytes]. */
+/** More bytes than the header and one row have. */
 const LONGEST_LINES = 4096;
 
 /** What the program told of the newest recording. @type {{ on: boolean, rows: number, most: number } | null} */
@@ -46,7 +46,7 @@ export function record() {
   page.wire?.send({ do: 'record', on: !isRecording });
 }
 
-/** Leads the hand along what was recorded, or no longer. @param {boolean} on */
+/** Leads the hand along what was recorded, or ends it. @param {boolean} on */
 export function replay(on) {
   return ask({ do: 'replay', on });
 }
@@ -77,7 +77,7 @@ export async function openTrace(file) {
 
 /** Why the program did not do it. @param {Response} answer @param {string} otherwise */
 async function reason(answer, otherwise) {
-  if (answer.status === 503) return 'The program is busy with another trace: try again.';
+  if (answer.status === 503) return 'The program is busy: try again.';
   if (answer.status === 413) return 'it is larger than 64 MiB';
   return (await answer.text()).trim() || otherwise;
 }

@@ -31,8 +31,10 @@ export function Words({ start }) {
   const { connection, scene } = state;
   if (connection === 'closed') return html`<${NoToken} start=${start} />`;
   if (connection === 'lost') {
-    return html`<div class="words bad"><b>The program has ended${state.why ? `: ${state.why}` : ''}.</b>
-      Start it again, and this page comes back. If it still runs, STOP tries to reach it all the same.
+    return html`<div class="words bad">
+      ${state.why ? html`<b>The program has closed the connection: ${state.why}.</b> The page tries again.`
+        : html`<b>The program has ended.</b> Start it again, and this page comes back.`}
+      If it still runs, STOP tries to reach it all the same.
       ${scene && !scene.is_saved && html`<p>The scene has edits that are not saved: this page still has them.</p>
         <button class="small" onClick=${downloadScene}>Download the scene</button>`}</div>`;
   }
@@ -52,7 +54,7 @@ function NoToken({ start }) {
     const token = tokenIn(text);
     if (token) start(token);
   }}>
-    <b>This page needs the token of the program.</b>
+    <b>${state.why || 'This page needs the token of the program.'}</b>
     <p>A program that moves a hand obeys only who knows its token. <code>palpate live</code> prints an address
       such as <code>${location.origin}/#…</code> where it was started: open that one, or paste it here.</p>
     <label>Address or token <input value=${text} autocomplete="off" spellcheck=${false}

@@ -5,9 +5,8 @@
 /** What the picture shows, above it. */
 
 import { isLegendOpen, openLegend } from '../scene/marks.js';
-import { differences } from '../scene/panels.js';
 import { html, useEffect, useRef } from '../vendor/htm-preact.js';
-import { setView, state } from '../state.js';
+import { changed, setView, state } from '../state.js';
 import { setMode } from './actions.js';
 import { Cut } from './cut.js';
 import { NumberField, Switch } from './fields.js';
@@ -15,7 +14,7 @@ import { extent } from './numbers.js';
 import { page, useTopics } from './page.js';
 
 /** @type {[typeof state.view.mode, string, string][]} */
-const MODES = [
+export const MODES = [
   ['space', '3D', 'The scene in space: 1'],
   ['slice', 'Slice', 'The scene in space with a plane through it: 2'],
   ['plane', 'Plane', 'The map of the plane alone: 3'],
@@ -23,7 +22,7 @@ const MODES = [
 ];
 
 /** @type {[string, string][]} */
-const MAPS = [
+export const MAPS = [
   ['inside', 'inside, outside'], ['distance', 'distance'], ['gradient', 'gradient'], ['promise', 'promise'],
 ];
 
@@ -38,6 +37,9 @@ const SHOWN = [
   ['names', 'names', 'The name of each body'],
   ['handles', 'handles', 'Of the selected body or shape: arrows and their middle move it, rings turn it, the square scales it'],
 ];
+
+/** The largest sine factor. */
+export const MOST_SINE = 10;
 
 /** @param {string} mode */
 function isPossible(mode) {
@@ -107,7 +109,7 @@ export function LegendButton() {
   return html`<button class="small" aria-expanded=${String(isOpen)} title="What the colours and the marks of the picture mean"
     onClick=${() => {
       openLegend(!isOpen);
-      setView({});
+      changed('view');
     }}>legend <span class=${isOpen ? 'caret open' : 'caret'} aria-hidden="true"></span></button>`;
 }
 
@@ -148,16 +150,16 @@ function Display() {
           change=${(/** @type {boolean} */ positiveInside) => setView({ positiveInside })} />
       </fieldset>
       ${view.map === 'gradient' && html`<fieldset><legend>Gradient</legend>
-        <${Switch} label="exact to the card's precision" value=${differences.over === null}
-          change=${(/** @type {boolean} */ is) => setDifferences(is ? null : spacing())} />
-        ${differences.over !== null && html`<${NumberField} label="offset o" unit="m" value=${differences.over} min=${0} above
-          scale=${spacing()} own change=${setDifferences}
+        <${Switch} label="exact to the card's precision" value=${view.offset === null}
+          change=${(/** @type {boolean} */ is) => setView({ offset: is ? null : spacing() })} />
+        ${view.offset !== null && html`<${NumberField} label="offset o" unit="m" value=${view.offset} min=${0} above
+          scale=${spacing()} own change=${(/** @type {number} */ offset) => setView({ offset })}
           help="The gradient is taken from differences over this length; a large one shows the memoir's artefacts" />`}
       </fieldset>`}
       <fieldset><legend>As in the memoir</legend>
         <${Switch} label="its colours" value=${view.asInMemoir}
           change=${(/** @type {boolean} */ asInMemoir) => setView({ asInMemoir })} />
-        <${NumberField} label="sine factor" value=${view.sineFactor} min=${0} max=${10} own
+        <${NumberField} label="sine factor" value=${view.sineFactor} min=${0} max=${MOST_SINE} own
           change=${(/** @type {number} */ sineFactor) => setView({ sineFactor })} />
         ${/** @type {const} */ (['red', 'green', 'blue']).map((channel) => html`<${Switch} key=${channel}
           label=${channel} value=${view.channels[channel]}
@@ -169,12 +171,6 @@ function Display() {
       </fieldset>
     </div>
   </details>`;
-}
-
-/** @param {number | null} over the length of differences [m] */
-function setDifferences(over) {
-  differences.over = over;
-  setView({});
 }
 
 /** A first spacing of isolines [m]. */

@@ -19,8 +19,8 @@ const WORK = {
   slice: 'samples a slice', probe: 'looks at the field', replay: 'begins a replay', clock: 'sets the clock', picture: 'draws the picture', edit: 'builds the scene', open: 'opens the scene', undo: 'builds the scene',
   redo: 'builds the scene', save: 'saves the scene',
 };
-/** What changes the scene is not ended halfway. */
-const WHOLE = ['edit', 'open', 'undo', 'redo', 'save'];
+/** Orders, which are not ended halfway. */
+const WHOLE = ['edit', 'open', 'undo', 'redo', 'save', 'replay', 'clock'];
 
 export function Waiting() {
   const [slow, setSlow] = useState(/** @type {{ id: number, what: string, since: number }[]} */ ([]));

@@ -19,7 +19,7 @@ import { along, scale } from './vectors.js';
 const TURN = 0.0075;
 /** How far a press on the surface pushes inwards for each pixel of the drag, in pixels. */
 const PUSH = 0.5;
-/** The part of the line of sight at whose end a hand is set down, before the place that is pressed. */
+/** The hand is set down on the line of sight, this share of the way from the pressed point to the eye. */
 const NEAR = 0.1;
 /** A step of depth in pixels of the place. */
 const DEPTH = 10;

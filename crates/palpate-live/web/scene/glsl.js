@@ -10,6 +10,8 @@
  * know: compilers write every call out, and a scene's formula may have thousands of operations.
  */
 
+import { MAP_COLORS, MAP_NUMBERS, OKLAB, WHEEL } from './colors.js';
+
 /** The maps of a plane, by the number that the programs know. */
 export const MAPS = { inside: 0, distance: 1, gradient: 2, promise: 3, difference: 4 };
 
@@ -26,6 +28,15 @@ precision highp sampler3D;
 uniform int zero;
 out vec4 result;
 `;
+
+/** @param {number[]} parts */
+const vec3 = (parts) => `vec3(${parts.join(', ')})`;
+
+/** A matrix of rows; the programs take columns. @param {number[][]} rows */
+const mat3 = (rows) => `mat3(${[0, 1, 2].flatMap((column) => rows.map((row) => row[column])).join(', ')})`;
+
+/** @param {number} number */
+const float = (number) => (Number.isInteger(number) ? `${number}.0` : `${number}`);
 
 /** A point in as many dimensions as the field has. */
 const argument = (/** @type {number} */ dimension) => (dimension === 2 ? '.xy' : '');
@@ -96,7 +107,7 @@ const COMMON = `
 uniform sampler2D palette;
 // The number of the selected body and one; 0 without one.
 uniform int selected;
-const vec3 CHOSEN = vec3(0.98, 0.72, 0.1);
+const vec3 CHOSEN = ${vec3(MAP_COLORS.chosen)};
 
 bool isSelected(int number) {
   return selected > 0 && number + 1 == selected;
@@ -117,25 +128,19 @@ const MAP = `
 uniform float spacing, range, sineFactor;
 uniform bool isolines, asInMemoir, positiveInside;
 uniform vec3 channels;
-const vec3 INK = vec3(0.09, 0.10, 0.12);
+const vec3 INK = ${vec3(MAP_COLORS.ink)};
 
 vec3 fromOklab(vec3 c) {
-  vec3 lms = vec3(c.x + 0.3963377774 * c.y + 0.2158037573 * c.z,
-    c.x - 0.1055613458 * c.y - 0.0638541728 * c.z, c.x - 0.0894841775 * c.y - 1.291485548 * c.z);
-  lms = lms * lms * lms;
-  vec3 linear = clamp(vec3(4.0767416621 * lms.x - 3.3077115913 * lms.y + 0.2309699292 * lms.z,
-    -1.2684380046 * lms.x + 2.6097574011 * lms.y - 0.3413193965 * lms.z,
-    -0.0041960863 * lms.x - 0.7034186147 * lms.y + 1.707614701 * lms.z), 0.0, 1.0);
+  vec3 roots = ${mat3(OKLAB.roots)} * c;
+  vec3 linear = clamp(${mat3(OKLAB.linear)} * (roots * roots * roots), 0.0, 1.0);
   return mix(1.055 * pow(linear, vec3(1.0 / 2.4)) - 0.055, 12.92 * linear,
     vec3(lessThanEqual(linear, vec3(0.0031308))));
 }
 
-// The wheel of directions of palpate-plot: lightness to the right, yellow up.
 vec3 direction(vec2 g) {
   float beyond = max(length(g), 1.0);
   g /= beyond;
-  vec3 c = vec3(0.69, 0, 0) + g.x * vec3(0.12, -0.0579555, 0) + g.y * vec3(0, 0.0155291, 0.12);
-  return fromOklab(c / beyond);
+  return fromOklab((${vec3(WHEEL.middle)} + g.x * ${vec3(WHEEL.right)} + g.y * ${vec3(WHEEL.up)}) / beyond);
 }
 
 // How much a line covers of a pixel at this many pixels from its middle.
@@ -144,7 +149,7 @@ float line(float pixels, float width) {
 }
 
 // 'pixel' is the change of the value over a pixel, 'slope' the length of the gradient, 'g' its
-// part in the plane.
+// part in the plane. Without a card, pictures.js does the same.
 vec3 mapped(float value, float other, vec2 g, float slope, float pixel, int number) {
   vec3 tint = body(number).rgb;
   float inner = step(value, 0.0);
@@ -152,43 +157,43 @@ vec3 mapped(float value, float other, vec2 g, float slope, float pixel, int numb
   float zeroLine = line(abs(value) / pixel, isChosen ? 3.0 : 2.0);
   if (map == 4) {
     float change = (value - other) / range;
-    vec3 c = mix(vec3(0.97), change < 0.0 ? vec3(0.13, 0.40, 0.67) : vec3(0.70, 0.09, 0.17),
-      1.0 - exp(-4.0 * abs(change)));
+    vec3 c = mix(${vec3(MAP_COLORS.equal)}, change < 0.0 ? ${vec3(MAP_COLORS.less)} : ${vec3(MAP_COLORS.more)},
+      1.0 - exp(-${float(MAP_NUMBERS.contrast)} * abs(change)));
     return mix(c, INK, 0.8 * zeroLine);
   }
+  float wave = cos(${float(MAP_NUMBERS.waves)} * sineFactor * value / range);
   vec3 colour;
   if (map == 0) {
-    colour = mix(vec3(0.965, 0.965, 0.955), mix(tint, vec3(1), 0.25), inner);
+    colour = mix(${vec3(MAP_COLORS.outside)}, mix(tint, vec3(1), ${MAP_NUMBERS.pale}), inner);
   } else if (map == 1 && asInMemoir) {
-    colour = mix(vec3(0.9, 0.6, 0.3), vec3(0.35, 0.6, 0.9), inner);
-    colour *= 0.75 + 0.25 * cos(60.0 * sineFactor * value / range);
+    colour = mix(${vec3(MAP_COLORS.memoirOutside)}, ${vec3(MAP_COLORS.memoirInside)}, inner);
+    colour *= 1.0 - ${MAP_NUMBERS.wave} * (1.0 - wave);
     return mix(colour, vec3(1), zeroLine);
   } else if (map == 1) {
-    float far = 1.0 - exp(-1.6 * abs(value) / range);
-    colour = value < 0.0 ? mix(vec3(0.706, 0.827, 0.925), vec3(0.29, 0.52, 0.75), far)
-      : mix(vec3(0.976, 0.80, 0.58), vec3(1.0, 0.976, 0.94), far);
-    colour *= mod(floor(value / spacing), 2.0) < 0.5 ? 1.0 : 0.965;
+    float far = 1.0 - exp(-${MAP_NUMBERS.fade} * abs(value) / range);
+    colour = value < 0.0 ? mix(${vec3(MAP_COLORS.insideNear)}, ${vec3(MAP_COLORS.insideFar)}, far)
+      : mix(${vec3(MAP_COLORS.outsideNear)}, ${vec3(MAP_COLORS.outsideFar)}, far);
+    colour *= mod(floor(value / spacing), 2.0) < 0.5 ? 1.0 : ${MAP_NUMBERS.band};
   } else if (map == 2) {
     g = positiveInside ? -g : g;
-    colour = asInMemoir
-      ? channels * vec3(0.5 + 0.5 * g, 0.5 + 0.5 * cos(60.0 * sineFactor * value / range))
-      : direction(g);
+    colour = asInMemoir ? channels * vec3(0.5 + 0.5 * g, 0.5 + 0.5 * wave) : direction(g);
   } else {
     // Outside and inside have promises of their own: exact, bound or Lipschitz.
     int codes = int(body(number).a * 255.0 + 0.5);
     int promise = value < 0.0 ? codes / 4 : codes % 4;
-    colour = promise == 0 ? vec3(0.72, 0.88, 0.76) : promise == 1 ? vec3(0.74, 0.83, 0.95)
-      : vec3(0.97, 0.86, 0.66);
-    colour = mix(colour, vec3(0.30, 0.30, 0.62), clamp(1.0 - slope, 0.0, 1.0));
-    colour = mix(colour, vec3(0.78, 0.16, 0.10), clamp(2.0 * (slope - 1.02), 0.0, 1.0));
+    colour = promise == 0 ? ${vec3(MAP_COLORS.exact)} : promise == 1 ? ${vec3(MAP_COLORS.bound)}
+      : ${vec3(MAP_COLORS.lipschitz)};
+    colour = mix(colour, ${vec3(MAP_COLORS.flat)}, clamp(1.0 - slope, 0.0, 1.0));
+    colour = mix(colour, ${vec3(MAP_COLORS.steep)}, clamp(2.0 * (slope - ${MAP_NUMBERS.steepest}), 0.0, 1.0));
   }
   if (isolines && spacing > 0.0) {
     float nearest = round(value / spacing);
     float covered = line(abs(value - nearest * spacing) / pixel, 1.0);
     float fade = clamp(spacing / pixel / 5.0 - 0.4, 0.0, 1.0);
     float strong = mod(abs(nearest), 5.0) < 0.5 ? 0.6 : 0.34;
-    vec3 ink = value < 0.0 ? vec3(0.05, 0.17, 0.30) : vec3(0.37, 0.21, 0.02);
-    colour = mix(colour, map == 2 ? vec3(0.1) : ink, nearest == 0.0 ? 0.0 : covered * fade * strong);
+    vec3 ink = map == 2 ? ${vec3(MAP_COLORS.gradientLine)}
+      : value < 0.0 ? ${vec3(MAP_COLORS.insideLine)} : ${vec3(MAP_COLORS.outsideLine)};
+    colour = mix(colour, ink, nearest == 0.0 ? 0.0 : covered * fade * strong);
   }
   bool white = map == 1;
   colour = mix(colour, INK, white ? 0.7 * line(abs(value) / pixel, 4.5) : 0.0);

@@ -183,6 +183,8 @@ export class Layer {
       return false;
     }
     if (!this.isSignalled(begun)) return false;
+    gl.deleteSync(begun);
+    this.warming?.delete(program);
     this.warm?.add(program);
     return true;
   }

@@ -52,10 +52,10 @@ export function asking(wire) {
   return {
     /** @param {Message} message @returns {Promise<any>} */
     async ask(message) {
-      const id = wire.nextId;
+      const id = wire.newId();
       current = id;
       try {
-        return await wire.ask(message);
+        return await wire.ask(message, id);
       } finally {
         if (current === id) current = null;
       }

@@ -31,9 +31,10 @@ const LINES = 24;
 const STEPS = 220;
 /** The step of differences over the size of the scene: values are off by 2e-7 of it. */
 const LEAST_STEP = 2e-4;
-/** The length over which the gradient of a map is taken from differences [m]; null for the least
- * that the card's precision allows. @type {{ over: number | null }} */
-export const differences = { over: null };
+/** What changes the colour most, over the size of the scene: a distance, and a difference of two. */
+const RANGE = { distance: 0.35, difference: 0.06 };
+/** Room around a body in which rays march, over the size of the scene. */
+const ROOM = 0.004;
 /** Between panels in pixels. */
 const GAP = 4;
 
@@ -86,7 +87,7 @@ function viewOf(setting, cameras, rect, title, [only, other], map) {
   const shown = {
     spacing, only, other, shift, otherShift,
     selected: selectedBody() + 1,
-    range: map === MAPS.difference ? 0.06 * setting.size : 0.35 * setting.size,
+    range: (map === MAPS.difference ? RANGE.difference : RANGE.distance) * setting.size,
     sineFactor: view.sineFactor,
     isolines: view.isolines,
     asInMemoir: view.asInMemoir,
@@ -102,7 +103,7 @@ function viewOf(setting, cameras, rect, title, [only, other], map) {
     const { frame: { origin, right, up }, centre, height } = cameras.flat;
     const needsGradient = map === MAPS.gradient || map === MAPS.promise;
     const values = {
-      ...shown, leastStep: differences.over ?? shown.leastStep, origin, across: right, above: up, centre,
+      ...shown, leastStep: view.offset ?? shown.leastStep, origin, across: right, above: up, centre,
       span: [(height * rect.width) / rect.height, height],
       first: needsGradient ? 0 : 4,
       last: map === MAPS.difference ? 6 : 5,
@@ -112,7 +113,7 @@ function viewOf(setting, cameras, rect, title, [only, other], map) {
   const { eye, right, up, forward } = lens.basis;
   const tangent = Math.tan(FIELD_OF_VIEW / 2);
   const box = (isWhole ? null : setting.bodies[only]?.box) ?? setting.box;
-  const room = [1, 1, 1].map(() => 0.004 * setting.size);
+  const room = [1, 1, 1].map(() => ROOM * setting.size);
   const values = {
     ...shown, eye, forward,
     across: scale(right, (tangent * rect.width) / rect.height),

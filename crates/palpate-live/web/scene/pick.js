@@ -19,12 +19,13 @@ const POLL = 3;
  * @param {Layer} layer
  * @returns {(panel: Panel, x: number, y: number) => Promise<{ point: Vector, body: number } | null>} */
 export function createPick(layer) {
-  /** @type {{ gl: WebGL2RenderingContext, frame: WebGLFramebuffer, losses: number } | null} */
-  let target = null;
+  /** The pixel, null where the card has none of floats, and the losses of its context.
+   * @type {{ frame: WebGLFramebuffer | null, losses: number }} */
+  let target = { frame: null, losses: -1 };
 
   /** @param {WebGL2RenderingContext} gl */
-  function makeTarget(gl) {
-    if (target?.losses === layer.losses) return target;
+  function targetOf(gl) {
+    if (target.losses === layer.losses) return target.frame;
     const texture = gl.createTexture();
     gl.activeTexture(gl.TEXTURE7);
     gl.bindTexture(gl.TEXTURE_2D, texture);
@@ -33,17 +34,17 @@ export function createPick(layer) {
     gl.bindFramebuffer(gl.FRAMEBUFFER, frame);
     gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0, gl.TEXTURE_2D, texture, 0);
     const isComplete = gl.checkFramebufferStatus(gl.FRAMEBUFFER) === gl.FRAMEBUFFER_COMPLETE;
-    target = isComplete ? { gl, frame, losses: layer.losses } : null;
-    return target;
+    target = { frame: isComplete ? frame : null, losses: layer.losses };
+    return target.frame;
   }
 
   return async (panel, x, y) => {
     const { gl, field, programs } = layer;
     if (!gl || !field || !programs || gl.isContextLost() || panel.kind === 'flat') return null;
     const program = programs.get(field.program(panel));
-    const pixel = program.isReady() ? makeTarget(gl) : null;
-    if (!pixel) return null;
-    gl.bindFramebuffer(gl.FRAMEBUFFER, pixel.frame);
+    const frame = program.isReady() ? targetOf(gl) : null;
+    if (!frame) return null;
+    gl.bindFramebuffer(gl.FRAMEBUFFER, frame);
     gl.viewport(0, 0, 1, 1);
     gl.disable(gl.SCISSOR_TEST);
     program.use();

@@ -14,8 +14,8 @@ use palpate::query::{
 use palpate::scene::BuiltScene;
 use serde_json::{Value, json};
 
-use super::{limits, nanoseconds, size};
-use crate::stage::room::point_of;
+use super::{limits, nanoseconds};
+use crate::stage::points::{point_of, size};
 use crate::wire::Ask;
 
 /// The most steps of a local search, whose path is told.

@@ -12,8 +12,8 @@ use palpate::query::{BallWorkspace, Limits, Ray, Stop, cast_ball};
 use palpate::scene::BuiltScene;
 use serde_json::{Value, json};
 
-use super::{Cancel, TOLERANCE, nanoseconds, size};
-use crate::stage::room::point_of;
+use super::{Cancel, TOLERANCE, nanoseconds};
+use crate::stage::points::{point_of, size};
 
 /// Steps in the time in which the ball would fall by the size of the scene, and of a way at most.
 const STEPS_A_FALL: f64 = 200.0;

@@ -7,8 +7,7 @@ use palpate::field::{Point, Shape, Vector};
 use palpate::scene::BuiltScene;
 
 use super::{Cancel, shape};
-use crate::stage::hand::longest_edge;
-use crate::stage::room::{in_space, point_of};
+use crate::stage::points::{in_space, longest_edge, point_of};
 use crate::wire::{Ask, Grid, GridPlace};
 
 /// By how much samples reach over the bounds of the scene on each side, as a share of its longest edge.

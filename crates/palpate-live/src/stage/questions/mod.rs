@@ -19,8 +19,7 @@ use palpate::query::{
 use palpate::scene::{BuiltBody, BuiltScene};
 use serde_json::{Value, json};
 
-use super::hand::longest_edge;
-use super::room::point_of;
+use super::points::{point_of, size};
 use crate::wire::{Ask, Grid};
 
 /// How near bounds are brought to each other, as a share of the scene.
@@ -123,11 +122,6 @@ fn named<const D: usize>(
 ) -> Result<&BuiltBody<D>, String> {
     let count = scene.bodies.len();
     scene.bodies.get(number).ok_or_else(|| format!("there are {count} bodies, got {number}"))
-}
-
-/// A length of the scene [m].
-fn size<const D: usize>(scene: &BuiltScene<D>) -> f64 {
-    scene.bounds().as_ref().map_or(1.0, longest_edge).max(f64::MIN_POSITIVE)
 }
 
 fn limits<const D: usize>(scene: &BuiltScene<D>) -> Limits {

@@ -11,7 +11,7 @@ use palpate::scene::BuiltScene;
 use serde_json::{Value, json};
 
 use super::{limits, named, nanoseconds, placed};
-use crate::stage::room::point_of;
+use crate::stage::points::point_of;
 
 /// The most starts of local descents.
 const MOST_STARTS: usize = 1000;

@@ -7,7 +7,7 @@ use palpate::devices::{HandPath, Interpolation};
 use palpate::field::{Point, Vector};
 use palpate::servo_loop::{TraceRow, TraceWriter};
 
-use crate::stage::MOST_POINTS;
+use super::MOST_POINTS;
 
 /// The least time between two samples of a path [s]: the step of the thread that leads the hand.
 const STEP: f64 = 0.008;

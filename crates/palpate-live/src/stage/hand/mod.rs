@@ -3,23 +3,24 @@
 
 //! Where the contact points of the hand are led.
 
+mod lift;
+mod tour;
+
 use std::f64::consts::TAU;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use palpate::devices::{DeviceError, HandPath, Tour};
+use palpate::devices::HandPath;
 use palpate::field::{Aabb, Point, Vector};
-use palpate::haptics::Probe;
 use palpate::scene::BuiltScene;
+
+use super::points::size;
+use lift::{Lift, Step};
+pub(super) use tour::tour;
+use tour::{LAG, radius};
 
 /// How long a hand that nobody leads rests before it goes on its tour.
 const REST: Duration = Duration::from_secs(2);
-
-/// How long each contact point takes for a tour of a scene [s].
-const TOUR: f64 = 20.0;
-
-/// How far each contact point follows behind the one before on a tour [s].
-const LAG: f64 = 0.5;
 
 /// The radius of the circle on which contact points lie around a hand that is led, as a share of
 /// the scene.
@@ -28,20 +29,8 @@ const SPREAD: f64 = 0.04;
 /// A hand that is led farther than this share of the scene is lifted on the way.
 const NEAR: f64 = 0.08;
 
-/// The least and the longest time that a hand is lifted [s]: a device follows within.
-const LIFTED: [f64; 2] = [0.05, 2.0];
-
-/// How far a device may be from where it is set down, as a share of the scene.
-const THERE: f64 = 2e-3;
-
 /// How much farther out than touching a hand is set down beside a body, as a share of the scene.
 const CLEARANCE: f64 = 5e-3;
-
-/// How long a hand that was set down stays there [s]: until the servo knows of it.
-const SET_DOWN: f64 = 0.02;
-
-/// A device is at rest if it moves by at most this share of the scene in a second.
-const AT_REST: f64 = 0.05;
 
 /// The most steps out of a body.
 const STEPS_OUT: usize = 16;
@@ -83,19 +72,6 @@ pub(super) struct Lead<const D: usize> {
     /// When the hand was led or let go last; `None` if it never was.
     led: Option<Instant>,
     is_held: bool,
-}
-
-/// A hand that is lifted off the bodies, brought to another place and set down there.
-#[derive(Debug, Clone)]
-struct Lift<const D: usize> {
-    /// Where it is brought [m].
-    places: Vec<Point<D>>,
-    /// When it was lifted [s].
-    since: f64,
-    /// Where the device points were last [m].
-    devices: Vec<Point<D>>,
-    /// When it was set down [s].
-    set_down: Option<f64>,
 }
 
 impl<const D: usize> Lead<D> {
@@ -142,7 +118,7 @@ impl<const D: usize> Lead<D> {
 
     /// Whether the hand is lifted off the bodies.
     pub(super) fn is_lifted(&self) -> bool {
-        self.lift.as_ref().is_some_and(|lift| lift.set_down.is_none())
+        self.lift.as_ref().is_some_and(Lift::is_lifted)
     }
 
     pub(super) fn targets(&self) -> &[Point<D>] {
@@ -189,8 +165,7 @@ impl<const D: usize> Lead<D> {
             self.targets.clone_from(&other.targets);
             self.goal = other.goal;
             // The time of another servo begins anew.
-            self.lift =
-                other.lift.clone().map(|lift| Lift { since: 0.0, set_down: None, ..lift });
+            self.lift = other.lift.as_ref().map(|lift| Lift::to(lift.places().to_vec(), 0.0));
         }
     }
 
@@ -246,8 +221,7 @@ impl<const D: usize> Lead<D> {
     fn bring(&mut self, places: &[Point<D>]) {
         let places: Vec<_> = places.iter().map(|place| self.free_beside(*place)).collect();
         self.targets.clone_from(&places);
-        let (since, devices) = (self.time, Vec::new());
-        self.lift = Some(Lift { places, since, devices, set_down: None });
+        self.lift = Some(Lift::to(places, self.time));
     }
 
     /// A place without bodies, as near as steps along the gradient find one.
@@ -299,34 +273,15 @@ impl<const D: usize> Lead<D> {
         }
     }
 
-    /// Sets the hand down once the device has followed it. A device that friction keeps short of the
-    /// place is led farther.
+    /// Leads the device to where the hand is set down.
     fn go_on_lifted(&mut self, passed: f64, devices: &[Point<D>]) {
         let Some(lift) = &mut self.lift else { return };
-        if let Some(at) = lift.set_down {
-            if self.time - at >= SET_DOWN {
-                self.lift = None;
+        match lift.go_on(self.time, passed, devices, self.size) {
+            Step::OnTheWay => {}
+            Step::Short(short) => {
+                self.targets.iter_mut().zip(short).for_each(|(target, short)| *target += short);
             }
-            return;
-        }
-        let is_within = |a: &[Point<D>], b: &[Point<D>], most: f64| {
-            a.len() == b.len() && a.iter().zip(b).all(|(a, b)| (*a - *b).norm() <= most)
-        };
-        let last = std::mem::replace(&mut lift.devices, devices.to_vec());
-        let since = self.time - lift.since;
-        let [least, longest] = LIFTED;
-        if since > longest {
-            lift.set_down = Some(self.time);
-            return;
-        }
-        if passed == 0.0 || since < least {
-            return;
-        }
-        if is_within(devices, &lift.places, THERE * self.size) {
-            lift.set_down = Some(self.time);
-        } else if is_within(devices, &last, AT_REST * self.size * passed) {
-            let short = lift.places.iter().zip(devices).map(|(place, device)| *place - *device);
-            self.targets.iter_mut().zip(short).for_each(|(target, short)| *target += short);
+            Step::Over => self.lift = None,
         }
     }
 
@@ -395,33 +350,4 @@ fn above<const D: usize>(bounds: &Aabb<D>, size: f64) -> Point<D> {
     let mut place = bounds.centre();
     place[1] = bounds.max[1] + 2.0 * SPREAD * size;
     place
-}
-
-/// The longest edge of a scene's bounds [m]; 1 m for a scene without.
-fn size<const D: usize>(scene: &BuiltScene<D>) -> f64 {
-    scene.bounds().as_ref().map_or(1.0, longest_edge)
-}
-
-/// The radius of the balls by which a scene is touched [m].
-fn radius<const D: usize>(scene: &BuiltScene<D>) -> f64 {
-    scene.tool.as_ref().map_or(Probe::default().radius(), |tool| tool.radius)
-}
-
-/// The tour of a scene, for a hand of `count` contact points; `None` if the scene has no bounds.
-/// It takes a part of a second, of a steep scene minutes.
-pub(super) fn tour<const D: usize>(
-    scene: &BuiltScene<D>,
-    count: usize,
-) -> Option<Result<HandPath<D>, DeviceError>> {
-    let bounds = scene.bounds()?;
-    let shapes: Vec<_> = scene.bodies.iter().map(|body| body.shape.clone()).collect();
-    let duration = TOUR + LAG * count as f64;
-    let tour =
-        Tour::new(bounds, duration).and_then(|tour| tour.with_probe_radius(radius(scene)));
-    Some(tour.and_then(|tour| tour.over_each(&scene.whole, &shapes)))
-}
-
-/// The longest edge of a box [m].
-pub(super) fn longest_edge<const D: usize>(bounds: &Aabb<D>) -> f64 {
-    2.0 * bounds.half_extents().0.into_iter().fold(0.0, f64::max)
 }

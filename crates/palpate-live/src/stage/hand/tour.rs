@@ -1,0 +1,33 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! The tour of a scene.
+
+use palpate::devices::{DeviceError, HandPath, Tour};
+use palpate::haptics::Probe;
+use palpate::scene::BuiltScene;
+
+/// How long each contact point takes for a tour of a scene [s].
+const TOUR: f64 = 20.0;
+
+/// How far each contact point follows behind the one before on a tour [s].
+pub(super) const LAG: f64 = 0.5;
+
+/// The tour of a scene, for a hand of `count` contact points; `None` if the scene has no bounds.
+/// It takes a part of a second, of a steep scene minutes.
+pub(in crate::stage) fn tour<const D: usize>(
+    scene: &BuiltScene<D>,
+    count: usize,
+) -> Option<Result<HandPath<D>, DeviceError>> {
+    let bounds = scene.bounds()?;
+    let shapes: Vec<_> = scene.bodies.iter().map(|body| body.shape.clone()).collect();
+    let duration = TOUR + LAG * count as f64;
+    let tour =
+        Tour::new(bounds, duration).and_then(|tour| tour.with_probe_radius(radius(scene)));
+    Some(tour.and_then(|tour| tour.over_each(&scene.whole, &shapes)))
+}
+
+/// The radius of the balls by which a scene is touched [m].
+pub(super) fn radius<const D: usize>(scene: &BuiltScene<D>) -> f64 {
+    scene.tool.as_ref().map_or(Probe::default().radius(), |tool| tool.radius)
+}
