@@ -45,6 +45,8 @@ export const state = {
    * that was seen to grow last, on the clock of `performance.now()`.
    * @type {{ name: string, ticks: number, acted: number }[]} */
   safety: [],
+  /** Whether the page draws by itself: else the program draws space, and the page maps of planes. */
+  hasCard: true,
   /** Pages that are open on this program. */
   clients: 1,
   /** What was wrong with the last refused edit, by JSON pointer. @type {Map<string, string>} */

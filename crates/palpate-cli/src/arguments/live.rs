@@ -11,8 +11,8 @@ use clap::Args;
 use super::ProfileChoice;
 use super::numbers::{count, within};
 
-/// The most contact points: two hands.
-const MOST_POINTS: usize = 10;
+/// The most contact points of a hand.
+const MOST_POINTS: usize = 100;
 
 pub(super) const EXAMPLES: &str = "\
 Examples:

@@ -10,13 +10,21 @@
 import { listen, setTouch, state } from '../state.js';
 import { level } from './gamepad.js';
 
-/** The tone of the least and the greatest force [Hz]. */
-const LOW = 70;
-const HIGH = 190;
+/** The tone of the least and the greatest force, and up to where its filter is open [Hz]. */
+const TONE = { least: 70, greatest: 190 };
+const OPEN = { least: 120, greatest: 1520 };
+/** The middle of the rustle [Hz]. */
+const RUSTLE = 900;
+/** How loud tone and rustle are at the greatest force. */
+const LOUD = { tone: 0.5, rustle: 0.25 };
 /** How fast tone and loudness follow [s]. */
 const FOLLOW = 0.03;
-/** The length of a tap [s]. */
-const TAP = 0.06;
+/** A tap: its length [s], the tone that it falls from and to [Hz], how loud it is at the least and the
+ * greatest force, and when it is over. */
+const TAP = { length: 0.06, from: 320, to: 110, least: 0.3, greatest: 0.8, silent: 0.001 };
+
+/** @param {{ least: number, greatest: number }} range @param {number} part from 0 to 1 */
+const within = ({ least, greatest }, part) => least + (greatest - least) * part;
 
 /** @type {{ context: AudioContext, out: GainNode, tone: OscillatorNode, filter: BiquadFilterNode,
  *   force: GainNode, rustle: GainNode } | null} */
@@ -53,7 +61,7 @@ function build() {
   rustle.gain.value = 0;
   const band = context.createBiquadFilter();
   band.type = 'bandpass';
-  band.frequency.value = 900;
+  band.frequency.value = RUSTLE;
   source.connect(band).connect(rustle).connect(out);
   source.start();
   return { context, out, tone, filter, force, rustle };
@@ -64,25 +72,26 @@ function follow() {
   const now = sound.context.currentTime;
   const strength = state.frame?.stopped || state.lookingAt !== null ? 0 : Math.sqrt(level());
   const isSlipping = state.frame?.points.some((point) => point.slipping) ?? false;
-  sound.tone.frequency.setTargetAtTime(LOW + (HIGH - LOW) * strength, now, FOLLOW);
-  sound.filter.frequency.setTargetAtTime(120 + 1400 * strength, now, FOLLOW);
-  sound.force.gain.setTargetAtTime(0.5 * strength, now, FOLLOW);
-  sound.rustle.gain.setTargetAtTime(isSlipping ? 0.25 * strength : 0, now, FOLLOW);
+  sound.tone.frequency.setTargetAtTime(within(TONE, strength), now, FOLLOW);
+  sound.filter.frequency.setTargetAtTime(within(OPEN, strength), now, FOLLOW);
+  sound.force.gain.setTargetAtTime(LOUD.tone * strength, now, FOLLOW);
+  sound.rustle.gain.setTargetAtTime(isSlipping ? LOUD.rustle * strength : 0, now, FOLLOW);
 }
 
 function tap() {
   if (!sound || !state.touch.sound) return;
   const { context, out } = sound;
   const now = context.currentTime;
+  const end = now + TAP.length;
   const body = context.createOscillator();
   const fade = context.createGain();
-  body.frequency.setValueAtTime(320, now);
-  body.frequency.exponentialRampToValueAtTime(110, now + TAP);
-  fade.gain.setValueAtTime(0.3 + 0.5 * level(), now);
-  fade.gain.exponentialRampToValueAtTime(0.001, now + TAP);
+  body.frequency.setValueAtTime(TAP.from, now);
+  body.frequency.exponentialRampToValueAtTime(TAP.to, end);
+  fade.gain.setValueAtTime(within(TAP, level()), now);
+  fade.gain.exponentialRampToValueAtTime(TAP.silent, end);
   body.connect(fade).connect(out);
   body.start(now);
-  body.stop(now + TAP);
+  body.stop(end);
 }
 
 /** Turns sound on or off. To be called where a person presses a button, and nowhere else: browsers

@@ -14,10 +14,9 @@ import { edit, settled } from '../panels/edits.js';
 import { extent } from '../panels/numbers.js';
 import { dismiss, tell, toasts } from '../panels/page.js';
 import { keyed } from '../scene/grips.js';
-import { AXES } from '../scene/legend.js';
 import { movedPart, scaledPart, selectedPart, turnedPart } from '../scene/placement.js';
 import { roundUp } from '../scene/units.js';
-import { dot, scale } from '../scene/vectors.js';
+import { AXES, dot, scale } from '../scene/vectors.js';
 import { state } from '../state.js';
 import { axesSeen } from './steer.js';
 
@@ -75,10 +74,10 @@ function stepOf(part, way, fine) {
     // To the right about the axis that is seen upwards, upwards about that to the left.
     const about = state.scene?.dimension === 2 ? { axis: 2, sign: -sign }
       : axisOf(part, [-way[1], way[0], -way[2]]);
-    return about ? turnedPart(part, AXES[about.axis].axis, about.sign * STEP.turn * fine, step / 100) : [];
+    return about ? turnedPart(part, AXES[about.axis], about.sign * STEP.turn * fine, step / 100) : [];
   }
   const along = axisOf(part, way);
-  return along ? movedPart(part, scale(AXES[along.axis].axis, (along.sign * step) / part.frame.scale), step / 10) : [];
+  return along ? movedPart(part, scale(AXES[along.axis], (along.sign * step) / part.frame.scale), step / 10) : [];
 }
 
 /** The steps of before. */

@@ -5,24 +5,31 @@
 /** Where new parts go, so that they can be seen: beside what is there. */
 
 import { SCENE, frameIn, placed } from '../scene/frames.js';
+import { boxOf, centreOf } from '../scene/setting.js';
 import { inSpace, mean } from '../scene/vectors.js';
 import { state } from '../state.js';
 import { ONE, listOf, makerOf } from './nodes.js';
-import { cornersOf, extent } from './numbers.js';
+import { extent } from './numbers.js';
 
 /** Keys that are lengths from end to end; other lengths are radii. */
 const WHOLE = /size|height|length|width|thickness/;
 /** Named shapes are followed so deep. */
 const DEEPEST = 20;
 
-/** @param {number} value */
-const rounded = (value) => Number(value.toPrecision(3));
+/** How far a shape reaches of which nothing is known, over the size of the scene. */
+const UNKNOWN = 0.15;
+/** From the scene to a body beside it, over the body's size, and to an endless one below it, over the
+ * scene's. */
+const APART = { beside: 1.3, below: 0.25 };
+
+/** @param {number[]} place */
+const inThreeDigits = (place) => place.map((part) => Number(part.toPrecision(3)));
 
 /** About where a shape is in its own coordinates, and how far it reaches from there [m].
  * @param {any} shape @returns {{ centre: number[], reach: number }} */
 export function aboutShape(shape, depth = 0) {
   const dimension = state.scene?.dimension ?? 3;
-  const none = { centre: Array(dimension).fill(0), reach: 0.15 * extent(state.scene?.bounds) };
+  const none = { centre: Array(dimension).fill(0), reach: UNKNOWN * extent(state.scene?.bounds) };
   if (depth > DEEPEST) return none;
   if (typeof shape === 'string' || typeof shape?.shape === 'string') {
     return aboutShape(state.scene?.scene.shapes?.[shape.shape ?? shape] ?? {}, depth + 1);
@@ -56,7 +63,7 @@ function pointsIn(value, dimension) {
 
 /** A shape that is moved. @param {any} shape @param {number[]} by [m] */
 export function moved(shape, by) {
-  return { translate: by.map(rounded), of: shape };
+  return { translate: inThreeDigits(by), of: shape };
 }
 
 /** Where the next operand goes: on the edge of the first, each time on another side.
@@ -72,10 +79,10 @@ export function besideOperands(operands) {
  * @param {number} size from the middle to the edge [m] @param {boolean} isBounded */
 export function besideBodies(size, isBounded) {
   const dimension = state.scene?.dimension ?? 3;
-  const corners = cornersOf(state.scene?.bounds);
-  if (!corners || !state.scene?.scene.bodies.length) return Array(dimension).fill(0);
-  const middle = corners.max.map((max, axis) => (max + corners.min[axis]) / 2);
-  if (isBounded) middle[0] = corners.max[0] + 1.3 * size;
-  else middle[1] = corners.min[1] - size - 0.25 * extent(state.scene?.bounds);
-  return middle.slice(0, dimension).map(rounded);
+  const box = boxOf(state.scene?.bounds);
+  if (!box || !state.scene?.scene.bodies.length) return Array(dimension).fill(0);
+  const place = centreOf(box);
+  if (isBounded) place[0] = box.high[0] + APART.beside * size;
+  else place[1] = box.low[1] - size - APART.below * extent(state.scene.bounds);
+  return inThreeDigits(place.slice(0, dimension));
 }

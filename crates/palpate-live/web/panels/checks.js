@@ -10,11 +10,13 @@
  */
 
 import { GRADIENTS, METHODS, PAIR_METHODS, listenToys, setToys, toys } from '../plane/toys.js';
+import { boxOf, centreOf } from '../scene/setting.js';
+import { toDecimals } from '../scene/vectors.js';
 import { state } from '../state.js';
 import { html, useEffect, useReducer } from '../vendor/htm-preact.js';
 import { TWO_NEEDED } from './actions.js';
 import { ChoiceField, NumberField, Switch, VectorField } from './fields.js';
-import { cornersOf, extent } from './numbers.js';
+import { extent } from './numbers.js';
 import { useTopics } from './page.js';
 import { Point } from './point.js';
 import { tookTime } from './profile.js';
@@ -92,8 +94,8 @@ function scale() {
 
 /** The middle of the scene [m]. */
 function middle() {
-  const corners = cornersOf(state.scene?.bounds);
-  return [0, 1].map((axis) => (corners ? Number(((corners.min[axis] + corners.max[axis]) / 2).toFixed(6)) : 0));
+  const box = boxOf(state.scene?.bounds);
+  return box ? centreOf(box).slice(0, 2).map((part) => toDecimals(part, 6)) : [0, 0];
 }
 
 /** The longest edge of an element [m]: the program's µ is a tenth of it. @param {number[][]} corners */

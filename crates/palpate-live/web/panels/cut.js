@@ -4,19 +4,15 @@
 
 /** The plane that cuts the scene, as numbers and buttons: what its handles do for a pointer. */
 
-import { listenSlice, moveSlice, normalOf, setSlice, slice, turnSlice } from '../scene/slice.js';
+import { PLANES, listenSlice, moveSlice, normalOf, setSlice, slice, turnSlice } from '../scene/slice.js';
+import { dot } from '../scene/vectors.js';
 import { state } from '../state.js';
 import { html, useEffect, useReducer } from '../vendor/htm-preact.js';
 import { ChoiceField, NumberField } from './fields.js';
 import { extent } from './numbers.js';
 
-/** Axes of the plane by its name. @type {Record<string, [number[], number[]]>} */
-const PLANES = { xy: [[1, 0, 0], [0, 1, 0]], xz: [[1, 0, 0], [0, 0, -1]], yz: [[0, 0, -1], [0, 1, 0]] };
 /** How far a button turns it [°]. */
 const TURN = 5;
-
-/** @param {number[]} a @param {number[]} b */
-const dot = (a, b) => a.reduce((sum, part, axis) => sum + part * b[axis], 0);
 
 export function Cut() {
   const [, redraw] = useReducer((/** @type {number} */ count) => count + 1, 0);
@@ -26,12 +22,10 @@ export function Cut() {
   }, []);
   const normal = normalOf();
   const place = dot(slice.frame.origin, normal);
-  const name = Object.keys(PLANES).find((key) => Math.abs(PLANES[key].reduce((sum, axis) =>
-    sum + dot(normal, axis) ** 2, 0)) < 1e-6) ?? 'free';
+  const isAlong = (/** @type {string} */ key) => Math.hypot(dot(normal, PLANES[key].right), dot(normal, PLANES[key].up)) < 1e-3;
+  const name = Object.keys(PLANES).find(isAlong) ?? 'free';
   const lay = (/** @type {string} */ to) => {
-    if (!(to in PLANES)) return;
-    const [right, up] = PLANES[to];
-    setSlice({ frame: { ...slice.frame, right: /** @type {any} */ (right), up: /** @type {any} */ (up) } });
+    if (to in PLANES) setSlice({ frame: { ...slice.frame, ...PLANES[to] } });
   };
   return html`<fieldset><legend>Slice</legend>
     <${ChoiceField} label="lies along" value=${name} choices=${[...Object.keys(PLANES), 'free']} change=${lay} />

@@ -4,6 +4,9 @@
 
 /** Numbers as the page writes them. */
 
+import { boxOf } from '../scene/setting.js';
+import { norm, subtract } from '../scene/vectors.js';
+
 /** A number with three digits, as `%.3g` writes it, and a true minus sign.
  * @param {number | null | undefined} value @param {number} [digits] */
 export function short(value, digits = 3) {
@@ -40,17 +43,6 @@ export function servoTime(seconds, rate = 1000) {
 /** The size of the scene [m]: the diagonal of its bounds; 1 if it has none.
  * @param {any} bounds */
 export function extent(bounds) {
-  const corners = cornersOf(bounds);
-  if (!corners) return 1;
-  const size = Math.hypot(...corners.max.map((max, axis) => max - corners.min[axis]));
-  return Number.isFinite(size) && size > 0 ? size : 1;
-}
-
-/** The corners of bounds, as the program writes them.
- * @param {any} bounds @returns {{ min: number[], max: number[] } | null} */
-export function cornersOf(bounds) {
-  if (!bounds) return null;
-  const min = bounds.min ?? bounds.min_m ?? bounds[0];
-  const max = bounds.max ?? bounds.max_m ?? bounds[1];
-  return Array.isArray(min) && Array.isArray(max) ? { min, max } : null;
+  const box = boxOf(bounds);
+  return (box && norm(subtract(box.high, box.low))) || 1;
 }

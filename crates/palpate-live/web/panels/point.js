@@ -4,11 +4,12 @@
 
 /** The field at a point that is typed: what the probe under the pointer tells, without a pointer. */
 
+import { boxOf } from '../scene/setting.js';
 import { state } from '../state.js';
 import { html, useEffect, useState } from '../vendor/htm-preact.js';
 import { Switch, VectorField } from './fields.js';
-import { cornersOf, extent, short } from './numbers.js';
-import { page, useTopics } from './page.js';
+import { extent, short } from './numbers.js';
+import { page, reasonOf, useTopics } from './page.js';
 
 /** @param {number[]} vector */
 const inWords = (vector) => `(${vector.slice(0, state.scene?.dimension).map((part) => short(part, 4)).join(', ')})`;
@@ -24,8 +25,8 @@ export function Point() {
 
 function Asked() {
   const { scene } = state;
-  const corners = cornersOf(scene?.bounds);
-  const [at, setAt] = useState(() => Array.from({ length: scene?.dimension ?? 3 }, (_, axis) => corners?.max[axis] ?? 0));
+  const box = boxOf(scene?.bounds);
+  const [at, setAt] = useState(() => Array.from({ length: scene?.dimension ?? 3 }, (_, axis) => box?.high[axis] ?? 0));
   const [answer, setAnswer] = useState(/** @type {any} */ (null));
   const [refused, setRefused] = useState('');
   useEffect(() => {
@@ -34,7 +35,7 @@ function Asked() {
       if (isOld) return;
       setAnswer(found);
       setRefused('');
-    }, (error) => !isOld && setRefused(String(error.message)));
+    }, (error) => !isOld && setRefused(reasonOf(error)));
     return () => {
       isOld = true;
     };

@@ -5,6 +5,8 @@
 /** The selected part with all its numbers. */
 
 import { html } from '../vendor/htm-preact.js';
+import { boxOf } from '../scene/setting.js';
+import { subtract } from '../scene/vectors.js';
 import { select, state } from '../state.js';
 import { hasName, rename } from './changes.js';
 import { edit, problemAt } from './edits.js';
@@ -12,7 +14,7 @@ import { ChoiceField, TextField } from './fields.js';
 import { operations } from './events.js';
 import { Form, named } from './form.js';
 import { listOf, makerOf, partAt, partsOfScene } from './nodes.js';
-import { cornersOf, short } from './numbers.js';
+import { short } from './numbers.js';
 import { useTopics } from './page.js';
 import { parts, schemaAt, schemaOf, valueAt, within, withoutUnit } from './schema.js';
 
@@ -57,8 +59,8 @@ function NoTool() {
 function WholeScene() {
   const { scene } = state;
   if (!scene) return html`<div class="panel-head"><h2>Selected</h2></div>`;
-  const bounds = cornersOf(scene.bounds);
-  const size = bounds?.max.slice(0, scene.dimension).map((max, axis) => short(max - bounds.min[axis])).join(' × ');
+  const box = boxOf(scene.bounds);
+  const size = box && subtract(box.high, box.low).slice(0, scene.dimension).map((part) => short(part)).join(' × ');
   return html`
     <div class="panel-head"><h2>Scene</h2></div>
     <div class="scroll" tabindex="0" role="region" aria-label="Fields">

@@ -6,7 +6,7 @@
 
 import { html, useEffect, useState } from '../vendor/htm-preact.js';
 
-/** The width from which all panels have room; style.css has it too. */
+/** The width from which all panels have room; style.css and panels.css have it too. */
 const WIDE = matchMedia('(min-width: 960px)');
 
 /** @param {{ main: HTMLElement }} given */

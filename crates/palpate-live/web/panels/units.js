@@ -32,7 +32,7 @@ function simple(name) {
 }
 
 /** A unit such as `kN/m` or `N·s/m`; null if it is none. @param {string} text @returns {Unit | null} */
-function unitOf(text) {
+function parsed(text) {
   const [above, ...below] = text.replace(/μ/g, 'µ').split('/');
   /** @type {Unit} */
   const unit = { factor: 1, powers: {} };
@@ -66,7 +66,7 @@ export function read(text, unit) {
   if (/^[\d.,]/.test(named)) return { problem: `“${text.trim()}” is more than one number: one decimal sign, no gaps.` };
   if (!Number.isFinite(value)) return { problem: `“${text.trim()}” is too large.` };
   if (named === '' || named === unit) return { value };
-  const [from, to] = [unitOf(named), unitOf(unit)];
+  const [from, to] = [parsed(named), parsed(unit)];
   if (!from) return { problem: `“${named}” is not a unit that this page knows${unit ? `: this field is in ${unit}` : ''}.` };
   if (!to || kind(from) !== kind(to)) {
     return { problem: `“${named}” does not fit: this field ${unit ? `is in ${unit}` : 'has no unit'}.` };

@@ -13,6 +13,7 @@
  *   normal: number[], speed: number }[], end: string, evaluations: number, ns: number }} Fall
  */
 
+import { reasonOf } from '../panels/page.js';
 import { asking, newest } from '../scene/newest.js';
 import { rounded } from '../scene/vectors.js';
 import { listen, state } from '../state.js';
@@ -130,7 +131,7 @@ const ask = newest(async () => {
     fall.refused = '';
   } catch (error) {
     fall.answer = null;
-    fall.refused = error instanceof Error ? error.message : String(error);
+    fall.refused = reasonOf(error);
   }
   // Who asked for less movement plays a fall by the button.
   if (!matchMedia('(prefers-reduced-motion: reduce)').matches) {

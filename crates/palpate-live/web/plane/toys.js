@@ -11,6 +11,7 @@
  * @typedef {'element' | 'ball' | 'pair' | 'sweep'} Toy
  */
 
+import { reasonOf } from '../panels/page.js';
 import { asking, newest } from '../scene/newest.js';
 import { listen, state } from '../state.js';
 
@@ -126,7 +127,7 @@ async function ask(toy) {
     toys.refused[toy] = '';
   } catch (error) {
     toys.results[toy] = null;
-    toys.refused[toy] = error instanceof Error ? error.message : String(error);
+    toys.refused[toy] = reasonOf(error);
   }
   tell();
 }

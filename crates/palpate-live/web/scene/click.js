@@ -19,6 +19,10 @@ import { select, state } from '../state.js';
 import { setting } from './setting.js';
 import { add, rounded } from './vectors.js';
 
+/** How near a surface counts as touched where the card does not know the body: over the size of the
+ * scene on what it drew, and else in pixels. */
+const NEAR = { drawn: 0.02, pixels: 2 };
+
 /** @param {Wire} wire
  * @param {(view: View, place: Place) => Promise<Hit | null>} pick
  * @param {(view: View, place: Place) => Promise<Vector | null>} seenAt
@@ -50,7 +54,7 @@ export function createClick(wire, pick, seenAt) {
     if (!point) return;
     // Of what is drawn from samples, the card may not know the body, nor where its surface is
     // to less than their distance.
-    const near = hit ? 0.02 * current.size : 2 * view.lens.pixel(point);
+    const near = hit ? NEAR.drawn * current.size : NEAR.pixels * view.lens.pixel(point);
     const body = hit && hit.body >= 0 ? hit.body : await bodyAt(view, point, near);
     if (body >= 0) select(`/bodies/${body}`);
     else if (places) setFall({ centre: rounded(point, view.lens.pixel(point)).slice(0, 2) });

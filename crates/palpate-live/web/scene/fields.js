@@ -10,19 +10,15 @@
  * @typedef {import('./setting.js').Setting} Setting
  */
 
+import { MAP_COLORS } from './colors.js';
 import { flat, space } from './glsl.js';
-import { rgb } from './setting.js';
 
 /** The colours of the bodies, and their promises in the last channel: outside + 4·inside.
  * @param {Setting} setting */
-function paletteOf(setting) {
-  const bodies = setting.bodies.length > 0 ? setting.bodies : [{ color: '', promise: '' }];
-  return new Uint8Array(bodies.flatMap(({ color, promise }) => {
-    const codes = promise.split(',').map((part) =>
-      Math.max(0, ['exact', 'bound', 'Lipschitz'].findIndex((word) => part.includes(word))));
-    const inside = codes[1] ?? codes[0];
-    return [...rgb(color).map((part) => Math.round(255 * part)), codes[0] + 4 * inside];
-  }));
+function paletteOf({ bodies }) {
+  const all = bodies.length > 0 ? bodies : [{ color: MAP_COLORS.outside, promises: [0, 0] }];
+  return new Uint8Array(all.flatMap(({ color, promises: [outside, inside] }) =>
+    [...color.map((part) => Math.round(255 * part)), outside + 4 * inside]));
 }
 
 export class Field {

@@ -10,11 +10,9 @@
  * @typedef {{ axis: number[], angle: number }} Turn by degrees about an axis
  */
 
-import { add, along, cross, dot, inSpace, norm, scale, turn, unit } from './vectors.js';
+import { AXES, add, along, cross, dot, inSpace, norm, scale, toDecimals, turn, unit } from './vectors.js';
 
 const DEGREE = Math.PI / 180;
-/** @type {Vector[]} */
-const AXES = [[1, 0, 0], [0, 1, 0], [0, 0, 1]];
 /** The frame of the scene itself. @type {Frame} */
 export const SCENE = { origin: [0, 0, 0], axes: AXES, scale: 1 };
 /** Operators below which a frame is bent, or has another dimension. */
@@ -72,9 +70,6 @@ function product(a, b) {
   return [...vector, a[3] * b[3] - dot(a, b)];
 }
 
-/** @param {number} value @param {number} decimals */
-const rounded = (value, decimals) => Number(value.toFixed(decimals)) + 0;
-
 /** A quaternion as an axis and an angle of at most half a turn; the axis points along the axis of
  * the scene that it is nearest to. @param {number[]} quaternion @param {number[]} fallback the axis
  * of no turn @returns {Turn} */
@@ -86,22 +81,22 @@ function turnOf(quaternion, fallback) {
   const sign = Math.sign(longest);
   let angle = (2 * Math.atan2(sine, quaternion[3])) / DEGREE;
   if (angle > 180) angle -= 360;
-  return { axis: way.map((part) => rounded(sign * part, 5)), angle: rounded(sign * angle, 1) };
+  return { axis: way.map((part) => toDecimals(sign * part, 5)), angle: toDecimals(sign * angle, 1) };
 }
 
 /** The turn of a pose or a shape after it was turned further, in the form that it has.
  * @param {any} holder @param {Vector} axis @param {number} degrees @param {number} dimension */
 export function turnedBy({ rotate_degrees: turned, rotation }, axis, degrees, dimension) {
   if (isQuaternion(rotation)) {
-    return { rotation: product(quaternion(axis, degrees), rotation).map((part) => rounded(part, 9)) };
+    return { rotation: product(quaternion(axis, degrees), rotation).map((part) => toDecimals(part, 9)) };
   }
   if (rotation) {
     const columns = axesOf({ rotation }).map((column) => turn(column, axis, degrees * DEGREE));
     const rows = Array.from({ length: dimension }, (_, row) =>
-      columns.slice(0, dimension).map((column) => rounded(column[row], 9)));
+      columns.slice(0, dimension).map((column) => toDecimals(column[row], 9)));
     return { rotation: rows };
   }
-  if (dimension === 2) return { rotate_degrees: rounded((turned ?? 0) + degrees, 1) };
+  if (dimension === 2) return { rotate_degrees: toDecimals((turned ?? 0) + degrees, 1) };
   const before = quaternion(turned?.axis ?? axis, turned?.angle ?? 0);
   return { rotate_degrees: turnOf(product(quaternion(axis, degrees), before), turned?.axis ?? axis) };
 }

@@ -21,12 +21,11 @@ import { edit } from '../panels/edits.js';
 import { state } from '../state.js';
 import { placed, within } from './frames.js';
 import { arrow, dot, polyline } from './ink.js';
-import { AXES } from './legend.js';
-import { mark } from './marks.js';
+import { AXIS_COLORS, mark } from './marks.js';
 import { RANK } from './overlay.js';
 import { movedPart, scaledPart, selectedPart, turnedPart } from './placement.js';
 import { length } from './units.js';
-import { add, along, cross, dot as product, scale, subtract, unit } from './vectors.js';
+import { AXES, add, along, cross, dot as product, scale, subtract, unit } from './vectors.js';
 
 /** How far arrows, rings and the square reach from the middle, in pixels: fingers tell them apart. */
 const ARROW = 60;
@@ -162,7 +161,7 @@ function gripDrag(part, { kind, axis }, lens, place) {
       angle += Math.atan2(Math.sin(next - before), Math.cos(next - before));
       before = next;
       const degrees = Number(((angle * 180) / Math.PI).toFixed(1));
-      return { changes: turnedPart(part, AXES[axis].axis, degrees, pixel / 10), text: `${degrees}°` };
+      return { changes: turnedPart(part, AXES[axis], degrees, pixel / 10), text: `${degrees}°` };
     }
     if (kind === 'scale') {
       const factor = Number(Math.max(apart(now, to, centre) / reach, 0.01).toPrecision(3));
@@ -170,10 +169,10 @@ function gripDrag(part, { kind, axis }, lens, place) {
     }
     const by = kind === 'free'
       ? within(frame, subtract(now.at(to.x, to.y, centre), now.at(begin.x, begin.y, centre)))
-      : scale(AXES[axis].axis, (alongAxis(now, to, centre, frame.axes[axis])
+      : scale(AXES[axis], (alongAxis(now, to, centre, frame.axes[axis])
         - alongAxis(now, begin, centre, frame.axes[axis])) / frame.scale);
     const way = kind === 'free' ? Math.hypot(...by) : by[axis];
-    const text = `${kind === 'free' ? '' : `${AXES[axis].name} `}${way > 0 ? '+' : ''}${length(way)}`;
+    const text = `${kind === 'free' ? '' : `${'xyz'[axis]} `}${way > 0 ? '+' : ''}${length(way)}`;
     return { changes: movedPart(part, by, pixel), text };
   };
   return {
@@ -202,7 +201,7 @@ export function paintGrips(context, lens, isFlat, texts, inks) {
   for (const { kind, axis, knob, ring } of grips) {
     const place = lens.project(knob);
     if (!place) continue;
-    const color = AXES[axis]?.color ?? inks.ink;
+    const color = AXIS_COLORS[axis] ?? inks.ink;
     const isStrong = active ? active.kind === kind && active.axis === axis : keyed.kind === kind;
     const radius = isStrong ? KNOB + 2 : KNOB;
     if (kind === 'move') {

@@ -26,16 +26,10 @@ const CELLS = 64;
 const SCANS = [0.5, 0.25, 0.75, 0.375, 0.625, 0.12, 0.88];
 /** Labels of the same level keep this far apart in pixels. */
 const APART = 190;
-
-/** The number that a half float stands for. @param {number} half */
-export function fromHalf(half) {
-  const sign = half & 0x8000 ? -1 : 1;
-  const exponent = (half >> 10) & 31;
-  const part = (half & 1023) / 1024;
-  if (exponent === 0) return sign * part * 2 ** -14;
-  if (exponent === 31) return part ? NaN : sign * Infinity;
-  return sign * (1 + part) * 2 ** (exponent - 15);
-}
+/** How long the picture stands still before labels are searched [ms]. */
+const STILL = 180;
+/** Labels of a view at most. */
+const MOST = 60;
 
 /** The window of the plane that a view shows.
  * @param {View} view @param {import('./camera.js').Flat} flat
@@ -58,14 +52,13 @@ export async function askSlice(questions, view, flat, columns, rows) {
   const axes = isPlane ? {} : { right: frame.right, up: frame.up };
   const body = view.isWhole ? {} : { body: view.only };
   const grid = await questions.ask({ do: 'slice', origin, ...axes, width, height, columns, rows, ...body });
-  const values = grid.half ? Float32Array.from(grid.values, fromHalf) : grid.values;
   /** @param {number} column @param {number} row */
   const place = (column, row) => {
     const across = grid.first[0] + (column * (grid.last[0] - grid.first[0])) / (columns - 1);
     const above = grid.first[1] + (row * (grid.last[1] - grid.first[1])) / (rows - 1);
     return along(along(frame.origin, frame.right, across), frame.up, above);
   };
-  return { values, place, columns, rows };
+  return { values: /** @type {Float32Array} */ (grid.values), place, columns, rows };
 }
 
 /** Where lines cross the rows and columns of a grid.
@@ -111,7 +104,7 @@ export class Labels {
    * @param {import('./camera.js').Flat} flat */
   renew(views, flat) {
     clearTimeout(this.timer);
-    this.timer = window.setTimeout(() => this.ask({ views, flat }), 180);
+    this.timer = window.setTimeout(() => this.ask({ views, flat }), STILL);
   }
 
   /** @param {{ views: View[], flat: import('./camera.js').Flat }} asked */
@@ -134,7 +127,7 @@ export class Labels {
     const placed = [];
     for (const { point, text } of this.labels[index] ?? []) {
       const place = view.lens.project(point);
-      if (!place || placed.length > 60) continue;
+      if (!place || placed.length >= MOST) continue;
       const { x, y } = place;
       const wide = widthOf(texts.context, text);
       const isNew = placed.every((other) =>

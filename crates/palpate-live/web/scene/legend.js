@@ -11,18 +11,13 @@
  */
 
 import { state } from '../state.js';
+import { MAP_COLORS, css, direction } from './colors.js';
 import { MAPS } from './glsl.js';
 import { arrow, label, stroke } from './ink.js';
-import { isLegendOpen, mark } from './marks.js';
+import { AXIS_COLORS, COLORS, isLegendOpen, mark } from './marks.js';
 import { level, roundUp } from './units.js';
-import { along } from './vectors.js';
+import { AXES, along, dot } from './vectors.js';
 
-/** The axes of the scene, with their colours. */
-export const AXES = [
-  { name: 'x', color: '#c0392b', axis: [1, 0, 0] },
-  { name: 'y', color: '#1a7d3c', axis: [0, 1, 0] },
-  { name: 'z', color: '#2563b0', axis: [0, 0, 1] },
-];
 export const MARGIN = 14;
 
 /** A bar of a round length, below on the right. @param {Context} context @param {View} view
@@ -49,9 +44,9 @@ export function paintAxes(context, { lens, isFlat }, inks) {
   const { rect, basis } = lens;
   const middle = { x: rect.x + 40, y: rect.y + 44 };
   const { right, up, forward } = basis;
-  const ends = AXES.map(({ name, color, axis }) => {
-    const [x, y, depth] = [right, up, forward].map((b) =>
-      axis[0] * b[0] + axis[1] * b[1] + axis[2] * b[2]);
+  const ends = AXES.map((axis, number) => {
+    const [x, y, depth] = [right, up, forward].map((way) => dot(axis, way));
+    const [name, color] = ['xyz'[number], AXIS_COLORS[number]];
     return { name, color, depth, x: middle.x + 24 * x, y: middle.y - 24 * y, flat: Math.hypot(x, y) };
   }).sort((a, b) => b.depth - a.depth);
   for (const { name, color, x, y, flat } of ends) {
@@ -64,14 +59,17 @@ export function paintAxes(context, { lens, isFlat }, inks) {
 
 /** The colours of the map, above on the right. @param {Context} context @param {View} view
  * @param {number} top where it begins @param {Inks} inks @returns {number} where it ends below */
-export function paintLegend(context, { lens: { rect }, hasPlane, hasLines, spacing, panel }, top, inks) {
-  if (!hasPlane || !isLegendOpen()) return top;
+export function paintLegend(context, { lens: { rect }, hasLines, spacing, panel }, top, inks) {
+  if (!isLegendOpen()) return top;
   const { map, asInMemoir } = state.view;
   const right = rect.x + rect.width - MARGIN;
   let y = top + 6;
-  /** @param {string} color @param {string} text */
-  const entry = (color, text) => {
-    context.fillStyle = color;
+  /** @param {string} text @param {import('./colors.js').Color} from @param {import('./colors.js').Color} [to] */
+  const entry = (text, from, to = from) => {
+    const fill = context.createLinearGradient(right - 14, 0, right, 0);
+    fill.addColorStop(0, css(from));
+    fill.addColorStop(1, css(to));
+    context.fillStyle = fill;
     context.strokeStyle = inks.muted;
     context.lineWidth = 1;
     context.fillRect(right - 14, y - 6, 14, 12);
@@ -80,27 +78,30 @@ export function paintLegend(context, { lens: { rect }, hasPlane, hasLines, spaci
     y += 18;
   };
   if (panel.map === MAPS.difference) {
-    entry('#2166ac', 'the first is less');
-    entry('#b2182b', 'the first is more');
+    entry('the first is less', MAP_COLORS.less);
+    entry('the first is more', MAP_COLORS.more);
     return y;
   }
-  if (map === 'distance') {
-    entry(asInMemoir ? '#5999e6' : '#79a9d5', 'inside');
-    entry(asInMemoir ? '#e6994d' : '#f9d2a2', 'outside');
+  if (map === 'distance' && asInMemoir) {
+    entry('inside', MAP_COLORS.memoirInside);
+    entry('outside', MAP_COLORS.memoirOutside);
+  } else if (map === 'distance') {
+    entry('inside', MAP_COLORS.insideNear, MAP_COLORS.insideFar);
+    entry('outside', MAP_COLORS.outsideNear, MAP_COLORS.outsideFar);
   } else if (map === 'promise') {
-    entry('#b8e0c2', 'exact');
-    entry('#bdd4f2', 'bound');
-    entry('#f7dba8', 'Lipschitz');
-    entry('#4d4d9e', 'slope below 1');
-    entry('#c7291a', 'slope above 1');
+    entry('exact', MAP_COLORS.exact);
+    entry('bound', MAP_COLORS.bound);
+    entry('Lipschitz', MAP_COLORS.lipschitz);
+    entry('slope below 1', MAP_COLORS.flat);
+    entry('slope above 1', MAP_COLORS.steep);
   } else if (map === 'gradient' && !asInMemoir) {
     paintWheel(context, right - 30, y + 26);
     label(context, 'where ∇f points', right - 62, y + 26, inks, 'right');
     y += 68;
   } else if (map === 'gradient') {
-    entry('#e04040', 'red: ∇f to the right');
-    entry('#40c040', 'green: ∇f up');
-    entry('#4060e0', 'blue: cosine of f');
+    entry('red: ∇f to the right', [1, 0, 0]);
+    entry('green: ∇f up', [0, 1, 0]);
+    entry('blue: cosine of f', [0, 0, 1]);
   }
   if (!hasLines) return y;
   label(context, `lines every ${level(spacing, spacing)}`, right, y, inks, 'right');
@@ -112,9 +113,7 @@ function paintWheel(context, x, y) {
   const parts = 48;
   for (let i = 0; i < parts; i += 1) {
     const angle = (2 * Math.PI * (i + 0.5)) / parts;
-    const [across, above] = [Math.cos(angle), Math.sin(angle)];
-    const a = -0.0579555 * across + 0.0155291 * above;
-    context.fillStyle = `oklab(${0.69 + 0.12 * across} ${a} ${0.12 * above})`;
+    context.fillStyle = css(direction([Math.cos(angle), Math.sin(angle)]));
     context.beginPath();
     context.moveTo(x, y);
     context.arc(x, y, 26, -angle - Math.PI / parts, -angle + Math.PI / parts);
@@ -151,11 +150,11 @@ export function paintHandles(context, { lens }, handles, origin, inks) {
     mark(handle === 'move' ? 'moves' : 'turns');
     if (handle === 'move') {
       const far = along(origin, [0, 1, 2].map((i) => point[i] - origin[i]), 1.6);
-      arrow(context, lens.project(origin), lens.project(far), '#007355', 2.5, inks.halo);
+      arrow(context, lens.project(origin), lens.project(far), COLORS.moves, 2.5, inks.halo);
     }
     context.beginPath();
     context.arc(place.x, place.y, 7, 0, 2 * Math.PI);
-    context.fillStyle = handle === 'move' ? '#007355' : '#743aa6';
+    context.fillStyle = handle === 'move' ? COLORS.moves : COLORS.turns;
     context.fill();
     context.strokeStyle = '#ffffff';
     context.lineWidth = 2;

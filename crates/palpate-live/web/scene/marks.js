@@ -17,9 +17,12 @@ import { FONT, arrow, dot, label, polyline, ring, spring } from './ink.js';
 /** The colours of marks. */
 export const COLORS = {
   force: '#d1480a', normal: '#007355', contact: '#9e2f78', path: '#e02020', hit: '#b3261e',
-  ball: '#c9730a', selected: '#e0a000',
+  ball: '#c9730a', selected: '#e0a000', moves: '#007355', turns: '#743aa6',
   proof: 'rgba(158, 47, 120, 0.7)',
 };
+
+/** The colours of the axes of the scene. */
+export const AXIS_COLORS = ['#c0392b', '#1a7d3c', '#2563b0'];
 
 /** How opaque a hand is that is lifted. */
 export const LIFTED = 0.55;
@@ -61,11 +64,11 @@ const MARKS = {
     ring(context, { x, y }, 6, inks.muted, 1, 'transparent');
   }],
   handles: ['moves, turns, scales the selection', (context, x, y, inks) => {
-    arrow(context, { x: x - 3, y }, { x: x + 9, y }, '#c0392b', 2, inks.halo);
+    arrow(context, { x: x - 3, y }, { x: x + 9, y }, AXIS_COLORS[0], 2, inks.halo);
     dot(context, { x: x - 5, y }, 4, inks.halo, inks.ink);
   }],
-  moves: ['moves the plane', (context, x, y) => dot(context, { x, y }, 5, COLORS.normal, '#ffffff')],
-  turns: ['turns the plane', (context, x, y) => dot(context, { x, y }, 5, '#743aa6', '#ffffff')],
+  moves: ['moves the plane', (context, x, y) => dot(context, { x, y }, 5, COLORS.moves, '#ffffff')],
+  turns: ['turns the plane', (context, x, y) => dot(context, { x, y }, 5, COLORS.turns, '#ffffff')],
   selected: ['selected body', square(COLORS.selected)],
   probe: ['nearest surface, safe ball', (context, x, y, inks) => {
     ring(context, { x, y }, 5, COLORS.normal, 1, 'transparent');

@@ -8,7 +8,15 @@
  * @typedef {import('../wire.js').Grid} Grid
  */
 
-import { fromHalf } from './labels.js';
+/** The number that a half float stands for. @param {number} half */
+function fromHalf(half) {
+  const sign = half & 0x8000 ? -1 : 1;
+  const exponent = (half >> 10) & 31;
+  const part = (half & 1023) / 1024;
+  if (exponent === 0) return sign * part * 2 ** -14;
+  if (exponent === 31) return part ? NaN : sign * Infinity;
+  return sign * (1 + part) * 2 ** (exponent - 15);
+}
 
 /** The numbers that half floats stand for: to find each anew is slow. @type {Float32Array | null} */
 let halves = null;

@@ -23,6 +23,7 @@ import {
 } from './legend.js';
 import { clearMarks, paintMarks } from './marks.js';
 import { hoveredBody, paintBodies, paintContacts, paintHand, paintProbe, selectedBody } from './overlay.js';
+import { hasMap } from './panels.js';
 import { setting } from './setting.js';
 import { corners, handles, slice } from './slice.js';
 import { Texts } from './texts.js';
@@ -73,14 +74,14 @@ export function paintAll(context, views, shown, theme, ratio) {
     if (number === 0) paintAxes(context, view, inks);
     const right = rect.x + rect.width - MARGIN;
     const top = Math.max(rect.y + MARGIN, shown.legendTop + 4);
-    const end = paintLegend(context, view, top, inks);
+    const end = hasMap(view) ? paintLegend(context, view, top, inks) : top;
     texts.taken.push({ x: right - 65, y: (top + end) / 2, wide: 130, high: end - top });
     const marks = paintMarks(context, right, end + 4, rect.y + rect.height - BELOW, inks);
     if (marks) texts.taken.push(marks);
     paintScale(context, view, slice.frame.origin, inks);
     paintTitle(context, view, inks);
     texts.paint();
-    if (view.hasLines) shown.labels.paint(view, number, texts, ON_MAP);
+    if (hasMap(view) && view.hasLines) shown.labels.paint(view, number, texts, ON_MAP);
     context.restore();
   });
 }

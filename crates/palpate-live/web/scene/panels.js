@@ -10,10 +10,11 @@
  * @typedef {import('./layer.js').Panel} Panel
  * @typedef {import('./setting.js').Setting} Setting
  * @typedef {import('./vectors.js').Vector} Vector
- * @typedef {{ panel: Panel, lens: Lens, title: string, only: number, shift: Vector,
- *   spacing: number, isFlat: boolean, hasPlane: boolean, hasLines: boolean, isWhole: boolean }} View a part of the
- *   stage: of the body `only` moved by −`shift`, or of the whole scene; `hasPlane` if there is a
- *   map of a plane in it, `hasLines` if that has isolines
+ * @typedef {{ only: number, shift: Vector }} Moved the body `only` moved by −`shift`
+ * @typedef {Moved & { panel: Panel, lens: Lens, title: string, other: Moved, spacing: number, isFlat: boolean,
+ *   hasPlane: boolean, hasLines: boolean, isWhole: boolean }} View a part of the stage: of a body, which
+ *   is compared with another, or of the whole scene; `hasPlane` if there is a plane in it, `hasLines`
+ *   if the map of the plane has isolines
  */
 
 import { state } from '../state.js';
@@ -31,9 +32,10 @@ const LINES = 24;
 const STEPS = 220;
 /** The step of differences over the size of the scene: values are off by 2e-7 of it. */
 const LEAST_STEP = 2e-4;
-/** What changes the colour most, over the size of the scene: a distance, and a difference of two. */
+/** The distance, and the difference of two, over which a map changes its colour, over the size of the
+ * scene. */
 const RANGE = { distance: 0.35, difference: 0.06 };
-/** Room around a body in which rays march, over the size of the scene. */
+/** Room around the box in which rays march, over the size of the scene. */
 const ROOM = 0.004;
 /** Between panels in pixels. */
 const GAP = 4;
@@ -50,10 +52,15 @@ function thirds({ x, y, width, height }) {
   });
 }
 
-/** Whether the picture is a map of a plane. @param {Setting} setting */
+/** Whether the picture is a map of a plane; the program draws no bodies that are compared.
+ * @param {Setting} setting */
 export function isFlat(setting) {
-  return setting.dimension === 2 || state.view.mode === 'plane';
+  const { mode } = state.view;
+  return setting.dimension === 2 || mode === 'plane' || (mode === 'compare' && !state.hasCard);
 }
+
+/** Whether the map of a plane is to be seen: the program draws none in space. @param {View} view */
+export const hasMap = ({ hasPlane, isFlat: isPlane }) => hasPlane && (isPlane || state.hasCard);
 
 /** The parts of the stage. @param {Setting} setting
  * @param {{ orbit: import('./camera.js').Orbit, flat: import('./camera.js').Flat }} cameras
@@ -98,7 +105,8 @@ function viewOf(setting, cameras, rect, title, [only, other], map) {
   const hasPlane = flat || view.mode === 'slice' || view.mode === 'compare';
   const hasLines = hasPlane && view.isolines && map !== MAPS.difference
     && !(map === MAPS.distance && view.asInMemoir);
-  const common = { lens, title, only, shift, spacing, isFlat: flat, hasPlane, hasLines, isWhole };
+  const compared = { only: other, shift: otherShift };
+  const common = { lens, title, only, shift, other: compared, spacing, isFlat: flat, hasPlane, hasLines, isWhole };
   if (flat) {
     const { frame: { origin, right, up }, centre, height } = cameras.flat;
     const needsGradient = map === MAPS.gradient || map === MAPS.promise;

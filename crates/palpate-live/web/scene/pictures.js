@@ -7,46 +7,78 @@
  * of planes coloured here from slices. One question at a time, the newest wins.
  *
  * @typedef {import('../wire.js').Wire} Wire
+ * @typedef {import('./colors.js').Color} Color
  * @typedef {import('./panels.js').View} View
  * @typedef {import('./setting.js').Setting} Setting
+ * @typedef {Pick<import('./setting.js').Body, 'color' | 'promises'>} Body
  */
 
 import { FIELD_OF_VIEW } from './camera.js';
+import { MAP_COLORS, MAP_NUMBERS, PROMISES, direction, mix } from './colors.js';
 import { MAPS } from './glsl.js';
 import { askSlice } from './labels.js';
 import { asking, newest } from './newest.js';
-import { rgb } from './setting.js';
-import { clamp, dot } from './vectors.js';
+import { along, clamp, cross, norm, subtract } from './vectors.js';
 
 /** Values along the longer side of a map. */
 const CELLS = 320;
 /** Pixels of a picture at most. */
 const MOST_PIXELS = 640 * 400;
 
-/** Two colours mixed. @param {number[]} a @param {number[]} b @param {number} t */
-const mix = (a, b, t) => a.map((part, i) => part + clamp(t, 0, 1) * (b[i] - part));
+/** How much a line covers of a pixel at so many pixels from its middle.
+ * @param {number} pixels @param {number} width */
+const line = (pixels, width) => clamp(0.5 * width + 0.5 - pixels, 0, 1);
 
-/** The colour of a value, from 0 to 1: the maps of the programs, without their lines.
- * @param {number} value @param {number[]} slope the gradient in the plane
- * @param {Record<string, any>} shown @param {number} map @param {number[]} tint of the body */
-function colourOf(value, slope, { spacing, range }, map, tint) {
-  const far = 1 - Math.exp((-1.6 * Math.abs(value)) / range);
-  if (map === MAPS.inside) return value < 0 ? mix(tint, [1, 1, 1], 0.25) : [0.965, 0.965, 0.955];
+/** The colour of a value: what `mapped` does in the programs, where a card draws.
+ * @param {number} map @param {Record<string, any>} shown the numbers of the panel
+ * @param {{ value: number, other: number, slope: number[], pixel: number, body: Body }} at `other` is the
+ *   value of the other body, `slope` the gradient across, above and towards the viewer, `pixel` the
+ *   change of the value over a pixel @returns {Color} */
+function colorOf(map, shown, { value, other, slope, pixel, body }) {
+  const { spacing, range, sineFactor, asInMemoir, positiveInside, isolines, channels } = shown;
+  const { ink, white, flat, steep, equal, less, more } = MAP_COLORS;
+  const isInside = value < 0;
+  const zeroLine = line(Math.abs(value) / pixel, 2);
+  if (map === MAPS.difference) {
+    const change = (value - other) / range;
+    const color = mix(equal, change < 0 ? less : more, 1 - Math.exp(-MAP_NUMBERS.contrast * Math.abs(change)));
+    return mix(color, ink, 0.8 * zeroLine);
+  }
+  const wave = Math.cos((MAP_NUMBERS.waves * sineFactor * value) / range);
+  let color = MAP_COLORS.outside;
+  if (map === MAPS.inside && isInside) color = mix(body.color, white, MAP_NUMBERS.pale);
+  if (map === MAPS.distance && asInMemoir) {
+    const shade = 1 - MAP_NUMBERS.wave * (1 - wave);
+    const side = isInside ? MAP_COLORS.memoirInside : MAP_COLORS.memoirOutside;
+    return mix(side.map((part) => shade * part), white, zeroLine);
+  }
+  if (map === MAPS.distance) {
+    const far = 1 - Math.exp((-MAP_NUMBERS.fade * Math.abs(value)) / range);
+    const band = Math.abs(Math.floor(value / spacing)) % 2 === 0 ? 1 : MAP_NUMBERS.band;
+    color = isInside ? mix(MAP_COLORS.insideNear, MAP_COLORS.insideFar, far)
+      : mix(MAP_COLORS.outsideNear, MAP_COLORS.outsideFar, far);
+    color = color.map((part) => band * part);
+  }
   if (map === MAPS.gradient) {
-    const [x, y] = slope.map((part) => part / Math.max(1, Math.hypot(...slope)));
-    return [0.6 - 0.05 * x + 0.25 * y, 0.6 + 0.2 * x + 0.05 * y, 0.6 + 0.1 * x - 0.35 * y];
+    const gradient = slope.slice(0, 2).map((part) => (positiveInside ? -part : part));
+    color = asInMemoir ? [...gradient, wave].map((part, index) => channels[index] * (0.5 + 0.5 * part)) : direction(gradient);
   }
   if (map === MAPS.promise) {
-    const length = Math.hypot(...slope);
-    return length > 1.02
-      ? mix([0.72, 0.88, 0.76], [0.78, 0.16, 0.1], 2 * (length - 1.02))
-      : mix([0.3, 0.3, 0.62], [0.72, 0.88, 0.76], length);
+    const length = norm(slope);
+    color = mix(PROMISES[body.promises[isInside ? 1 : 0]], flat, 1 - length);
+    color = mix(color, steep, 2 * (length - MAP_NUMBERS.steepest));
   }
-  const band = Math.abs(Math.floor(value / spacing)) % 2 === 0 ? 1 : 0.95;
-  const colour = value < 0
-    ? mix([0.706, 0.827, 0.925], [0.29, 0.52, 0.75], far)
-    : mix([0.976, 0.8, 0.58], [1, 0.976, 0.94], far);
-  return colour.map((part) => part * band);
+  const nearest = Math.round(value / spacing);
+  if (isolines && nearest !== 0) {
+    const covered = line(Math.abs(value - nearest * spacing) / pixel, 1);
+    const fade = clamp(spacing / pixel / 5 - 0.4, 0, 1);
+    const strong = nearest % 5 === 0 ? 0.6 : 0.34;
+    const lines = map === MAPS.gradient ? MAP_COLORS.gradientLine
+      : isInside ? MAP_COLORS.insideLine : MAP_COLORS.outsideLine;
+    color = mix(color, lines, covered * fade * strong);
+  }
+  if (map !== MAPS.distance) return mix(color, ink, zeroLine);
+  return mix(mix(color, ink, 0.7 * line(Math.abs(value) / pixel, 4.5)), white, zeroLine);
 }
 
 export class Pictures {
@@ -66,9 +98,14 @@ export class Pictures {
 
   /** @param {{ views: View[], flat: import('./camera.js').Flat, setting: Setting }} asked */
   async fetch({ views, flat, setting }) {
-    for (const view of views) {
-      if (view.isFlat) await this.map(view, flat, setting);
-      else await this.picture(view);
+    /** @type {[ImageBitmap, View][]} */
+    const made = [];
+    for (const view of views) made.push([await (view.isFlat ? this.map(view, flat, setting) : this.picture(view)), view]);
+    const context = this.canvas.getContext('2d');
+    context?.clearRect(0, 0, this.canvas.width, this.canvas.height);
+    for (const [image, { lens: { rect } }] of made) {
+      context?.drawImage(image, rect.x, rect.y, rect.width, rect.height);
+      image.close();
     }
     this.changed();
   }
@@ -85,34 +122,42 @@ export class Pictures {
       width: Math.round(rect.width * part),
       height: Math.round(rect.height * part),
     });
-    const image = await createImageBitmap(png);
-    this.canvas.getContext('2d')?.drawImage(image, rect.x, rect.y, rect.width, rect.height);
-    image.close();
+    return createImageBitmap(png);
   }
 
   /** @param {View} view @param {import('./camera.js').Flat} flat @param {Setting} setting */
   async map(view, flat, setting) {
-    const { rect } = view.lens;
+    const { lens: { rect }, panel } = view;
     const part = CELLS / Math.max(rect.width, rect.height);
     const [columns, rows] = [rect.width, rect.height].map((side) => Math.max(2, Math.round(side * part)));
-    const { values, place } = await askSlice(this.questions, view, flat, columns, rows);
-    const step = [place(0, 0), place(1, 0)].map((point) => dot(point, flat.frame.right));
-    const between = Math.abs(step[1] - step[0]) || 1;
-    const tint = rgb(setting.bodies[Math.max(view.only, 0)]?.color);
+    const ask = (/** @type {Partial<View>} */ other) =>
+      askSlice(this.questions, { ...view, ...other }, flat, columns, rows);
+    const { values, place } = await ask({});
+    const between = norm(subtract(place(1, 0), place(0, 0)));
+    const others = panel.map === MAPS.difference ? (await ask(view.other)).values : values;
+    // In space the length of the gradient needs values before the plane.
+    const isLengthSeen = panel.map === MAPS.promise && setting.dimension === 3;
+    const forth = along(view.shift, cross(flat.frame.right, flat.frame.up), between);
+    const before = isLengthSeen ? (await ask({ shift: forth })).values : values;
+    const body = setting.bodies[view.only] ?? { color: setting.bodies[0]?.color ?? MAP_COLORS.outside, promises: setting.promises };
+    /** The slope along a row or a column. @param {number} at @param {number} step from one value to the
+     * next @param {number} number @param {number} count */
+    const slopeAlong = (at, step, number, count) => {
+      const [back, on] = [Math.min(number, 1), Math.min(count - 1 - number, 1)];
+      return (values[at + on * step] - values[at - back * step]) / ((back + on) * between);
+    };
     const image = new ImageData(columns, rows);
     for (let row = 0; row < rows; row += 1) {
       for (let column = 0; column < columns; column += 1) {
         const at = row * columns + column;
-        const right = column + 1 < columns ? at + 1 : at;
-        const above = row + 1 < rows ? at + columns : at;
-        const slope = [right, above].map((next) => (values[next] - values[at]) / between);
-        const colour = colourOf(values[at], slope, view.panel.values, view.panel.map, tint);
+        const slope = [slopeAlong(at, 1, column, columns), slopeAlong(at, columns, row, rows),
+          (before[at] - values[at]) / between];
+        const pixel = between * Math.max(Math.hypot(slope[0], slope[1]), 0.2);
+        const color = colorOf(panel.map, panel.values, { value: values[at], other: others[at], slope, pixel, body });
         // Rows of a slice go up, those of a picture down.
-        image.data.set([...colour.map((c) => 255 * c), 255], 4 * ((rows - 1 - row) * columns + column));
+        image.data.set([...color.map((c) => 255 * c), 255], 4 * ((rows - 1 - row) * columns + column));
       }
     }
-    const bitmap = await createImageBitmap(image);
-    this.canvas.getContext('2d')?.drawImage(bitmap, rect.x, rect.y, rect.width, rect.height);
-    bitmap.close();
+    return createImageBitmap(image);
   }
 }

@@ -7,9 +7,12 @@
  *
  * @typedef {import('./vectors.js').Vector} Vector
  * @typedef {{ low: Vector, high: Vector }} Box
- * @typedef {{ name: string, color: string, promise: string, box: Box | null }} Body
+ * @typedef {import('./colors.js').Color} Color
+ * @typedef {[number, number]} Promises what is promised outside and inside: 0 exact, 1 bound,
+ *   2 Lipschitz
+ * @typedef {{ name: string, color: Color, promises: Promises, box: Box | null }} Body
  * @typedef {{ dimension: number, box: Box, isBounded: boolean, centre: Vector, size: number,
- *   bodies: Body[] }} Setting
+ *   promises: Promises, bodies: Body[] }} Setting `promises` are of all bodies together
  */
 
 import { inSpace, middle, norm, scale, subtract } from './vectors.js';
@@ -17,13 +20,18 @@ import { state } from '../state.js';
 
 /** Half of the edge of the box of a scene that has no bounds [m]. */
 const ENDLESS = 1;
+/** Sizes of shapes that are alike differ by less than this share of them. */
+const ALIKE = 0.02;
 
-/** A box as the program sends it. @param {any} bounds @returns {Box | null} */
-export function boxOf(bounds) {
-  const [low, high] = Array.isArray(bounds) ? bounds : [bounds?.min, bounds?.max];
-  if (!Array.isArray(low) || !Array.isArray(high)) return null;
-  const box = { low: inSpace(low), high: inSpace(high) };
-  return [...box.low, ...box.high].every(Number.isFinite) ? box : null;
+/** A box as the program sends it: its least and its greatest corner.
+ * @param {number[][] | null | undefined} bounds @returns {Box | null} */
+export const boxOf = (bounds) => (bounds ? { low: inSpace(bounds[0]), high: inSpace(bounds[1]) } : null);
+
+/** @param {string} words such as “exact outside, bound inside” @returns {Promises} */
+function promisesOf(words) {
+  const [outside, inside] = words.split(',').map((part) =>
+    Math.max(0, ['exact', 'bound', 'Lipschitz'].findIndex((word) => part.includes(word))));
+  return [outside, inside];
 }
 
 /** @param {Box} box */
@@ -45,13 +53,14 @@ export function setting() {
   const depth = dimension === 2 ? 0 : ENDLESS;
   const box = known ?? { low: [-ENDLESS, -ENDLESS, -depth], high: [ENDLESS, ENDLESS, depth] };
   const bodies = (message?.bodies ?? []).map((/** @type {any} */ body) => ({
-    name: String(body.name ?? ''),
-    color: String(body.color ?? '#8a93a0'),
-    promise: String(body.promise ?? ''),
+    name: body.name,
+    color: scale(body.color, 1 / 255),
+    promises: promisesOf(body.promise),
     box: boxOf(body.bounds),
   }));
   const size = norm(subtract(box.high, box.low)) || ENDLESS;
-  return { dimension, box, isBounded: known !== null, centre: centreOf(box), size, bodies };
+  const promises = promisesOf(message?.promise ?? 'exact outside, exact inside');
+  return { dimension, box, isBounded: known !== null, centre: centreOf(box), size, promises, bodies };
 }
 
 /** The box around boxes. @param {Box[]} boxes @returns {Box} */
@@ -70,16 +79,6 @@ export function holding(current, other) {
   return { ...current, box, centre: centreOf(box) };
 }
 
-/** Red, green and blue from 0 to 1 of `#rrggbb`, of numbers from 0 to 255 or of parts of one.
- * @param {any} color @returns {number[]} */
-export function rgb(color) {
-  const digits = /^#?([0-9a-f]{6})$/i.exec(color)?.[1];
-  if (digits) return [0, 2, 4].map((at) => parseInt(digits.slice(at, at + 2), 16) / 255);
-  const numbers = String(color).match(/[\d.]+/g)?.slice(0, 3).map(Number);
-  if (numbers?.length !== 3) return [0.54, 0.58, 0.63];
-  return Math.max(...numbers) > 1 ? scale(numbers, 1 / 255) : numbers;
-}
-
 /** The places of two bodies that are compared: added to a point of the picture. Equal shapes
  * that stand side by side are laid onto each other; others stay where they are.
  * @param {Setting} current @param {number[]} compared @returns {Vector[]} */
@@ -87,7 +86,7 @@ export function shifts(current, compared) {
   const [a, b] = compared.map((body) => current.bodies[body]?.box ?? null);
   if (!a || !b) return [[0, 0, 0], [0, 0, 0]];
   const difference = subtract(subtract(a.high, a.low), subtract(b.high, b.low));
-  const isAlike = norm(difference) < 0.02 * norm(subtract(a.high, a.low));
+  const isAlike = norm(difference) < ALIKE * norm(subtract(a.high, a.low));
   return isAlike ? [centreOf(a), centreOf(b)] : [[0, 0, 0], [0, 0, 0]];
 }
 

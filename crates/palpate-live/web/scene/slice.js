@@ -19,6 +19,13 @@ const MOVES_AT = 0.16;
 /** The angle by which a turn is tried [rad], to see which way its handle moves. */
 const LIFT = 0.05;
 
+/** Planes along two axes, by their names. @type {Record<string, { right: Vector, up: Vector }>} */
+export const PLANES = {
+  xy: { right: [1, 0, 0], up: [0, 1, 0] },
+  xz: { right: [1, 0, 0], up: [0, 0, -1] },
+  yz: { right: [0, 0, -1], up: [0, 1, 0] },
+};
+
 export const slice = {
   /** @type {Frame} */
   frame: { origin: [0, 0, 0], right: [1, 0, 0], up: [0, 1, 0] },

@@ -32,8 +32,6 @@ export class Source {
   constructor(wire, take) {
     this.questions = asking(wire);
     this.take = take;
-    /** Whether the page can draw by itself. */
-    this.hasCard = true;
     /** @type {'formula' | 'samples' | 'drawn'} */
     this.kind = 'drawn';
     /** Between samples [m]. */
@@ -61,7 +59,7 @@ export class Source {
   }
 
   get why() {
-    if (!this.hasCard) return 'this browser draws no WebGL 2';
+    if (!state.hasCard) return 'this browser draws no WebGL 2';
     return this.failure || String(state.way?.why ?? '');
   }
 
@@ -78,7 +76,7 @@ export class Source {
     this.text = way?.glsl ?? '';
     const kind = way?.kind ?? 'drawn';
     this.kind = kind === 'formula' && this.failure ? 'samples' : kind;
-    if (!this.hasCard) this.kind = 'drawn';
+    if (!state.hasCard) this.kind = 'drawn';
     if (this.kind === 'formula') {
       /** @type {number[]} */
       const u = way?.uniforms ?? [];

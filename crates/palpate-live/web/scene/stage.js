@@ -28,7 +28,7 @@ import { Labels } from './labels.js';
 import { Layer } from './layer.js';
 import { fitLegend } from './marks.js';
 import { paintAll } from './paint.js';
-import { isFlat, viewsOf } from './panels.js';
+import { hasMap, isFlat, viewsOf } from './panels.js';
 import { createPick } from './pick.js';
 import { Pictures } from './pictures.js';
 import { REACH, createPress } from './press.js';
@@ -97,7 +97,7 @@ export function createStage(container, wire) {
   }
 
   function withoutCard() {
-    source.hasCard = false;
+    state.hasCard = false;
     elements.useCard(false);
     pictures.resize();
   }
@@ -117,12 +117,12 @@ export function createStage(container, wire) {
       cameras.flat.frame = slice.frame;
       views = viewsOf(setting(), cameras, elements.rect);
       if (fitLegend(views[0].lens.rect)) changed('view');
-      if (source.hasCard && field) layer.show(views.map(({ panel }) => panel), field);
+      if (state.hasCard && field) layer.show(views.map(({ panel }) => panel), field);
       // Before the first scene nobody knows how it is to be drawn.
       const isDrawn = source.kind === 'drawn' && state.connection === 'live' && state.scene !== null;
       elements.useCard(source.kind !== 'drawn');
       if (isDrawn) pictures.ask({ views, flat: cameras.flat, setting: setting() });
-      if (views.some(({ hasPlane }) => hasPlane)) labels.renew(views, cameras.flat);
+      if (views.some(hasMap)) labels.renew(views, cameras.flat);
     }
     if (source.kind !== 'drawn' && layer.step(isPressed)) request();
     if (isOverlayChanged) {

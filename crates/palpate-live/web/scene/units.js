@@ -12,7 +12,7 @@ const UNITS = [
 ];
 
 /** The unit that suits a length [m]. @param {number} metres */
-function unitOf(metres) {
+function unitFor(metres) {
   const size = Math.abs(metres);
   return UNITS.find((unit) => size >= 0.0999 * unit.metres && unit.name !== 'km')
     ?? UNITS[UNITS.length - 1];
@@ -22,7 +22,7 @@ function unitOf(metres) {
 export function length(metres) {
   if (!Number.isFinite(metres)) return '–';
   if (metres === 0) return '0 m';
-  const unit = unitOf(metres);
+  const unit = unitFor(metres);
   const value = metres / unit.metres;
   const decimals = Math.max(0, Math.min(3, 2 - Math.floor(Math.log10(Math.abs(value)))));
   return `${value.toFixed(decimals).replace('-', '−')} ${unit.name}`;
@@ -31,7 +31,7 @@ export function length(metres) {
 /** A multiple of `spacing` [m] with as many digits as the spacing needs, in the spacing's unit.
  * @param {number} metres @param {number} spacing */
 export function level(metres, spacing) {
-  const unit = unitOf(spacing * 10);
+  const unit = unitFor(spacing * 10);
   const decimals = Math.max(0, -Math.floor(Math.log10((spacing / unit.metres) * 1.000001)));
   const text = (metres / unit.metres).toFixed(decimals).replace('-', '−');
   return `${text} ${unit.name}`;

@@ -8,6 +8,9 @@
  * @typedef {number[]} Vector
  */
 
+/** The axes of the scene. @type {Vector[]} */
+export const AXES = [[1, 0, 0], [0, 1, 0], [0, 0, 1]];
+
 /** @param {Vector} a @param {Vector} b @returns {Vector} */
 export const add = (a, b) => [a[0] + b[0], a[1] + b[1], a[2] + b[2]];
 
@@ -53,11 +56,14 @@ export function turn(a, axis, angle) {
 /** A point with three coordinates. @param {number[]} point @returns {Vector} */
 export const inSpace = (point) => [point[0], point[1], point[2] ?? 0];
 
+/** A number to so many decimal places; zero has no sign. @param {number} value @param {number} decimals */
+export const toDecimals = (value, decimals) => Number(value.toFixed(decimals)) + 0;
+
 /** A point to the decimal place that is just below a pixel: what a pointer means, and no more.
  * @param {number[]} point @param {number} pixel its size [m] */
 export function rounded(point, pixel) {
   const decimals = Math.min(Math.max(Math.ceil(-Math.log10(pixel)), 0), 12);
-  return point.map((part) => Number(part.toFixed(decimals)) + 0);
+  return point.map((part) => toDecimals(part, decimals));
 }
 
 /** @param {number} value @param {number} low @param {number} high */

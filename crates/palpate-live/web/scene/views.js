@@ -13,7 +13,7 @@
 
 import { state } from '../state.js';
 import { cornersOf } from './setting.js';
-import { setSlice, slice } from './slice.js';
+import { PLANES, setSlice, slice } from './slice.js';
 import { cross, dot, inSpace, subtract } from './vectors.js';
 
 /** A step of the zoom. */
@@ -25,12 +25,6 @@ const MARGIN = 1.08;
 /** How far a plane is drawn from its origin, over the size of the scene. */
 const REACH = 0.5;
 
-/** Planes by two axes. @type {Record<string, { right: number[], up: number[] }>} */
-const PLANES = {
-  xy: { right: [1, 0, 0], up: [0, 1, 0] },
-  xz: { right: [1, 0, 0], up: [0, 0, -1] },
-  yz: { right: [0, 0, -1], up: [0, 1, 0] },
-};
 /** The plane that is seen along an axis. @type {Record<string, string>} */
 const ALONG = { x: 'yz', y: 'xz', z: 'xy' };
 
