@@ -264,7 +264,7 @@ impl Editor {
                     Changed::Bodies | Changed::Guides => "the last one had ended",
                 };
                 let why =
-                    format!("another servo began, with forces that rise from zero: {why}");
+                    format!("another servo began: {why}");
                 (was_rendered.then_some(why), true)
             }
             Showing::Refused(why) => return Err(why.into()),

@@ -314,6 +314,30 @@ const cases = [
     });
   }],
 
+  ['the page asks before another scene takes the place of edits that are not saved', () => serving([written(BALL)], async ({ url }) => {
+    const { page, context } = await opened(url);
+    const body = () => state(page, 'scene.scene.bodies.0.name');
+    const dialog = page.getByRole('dialog', { name: 'The scene is not saved' });
+    const choose = async (scene) => {
+      await page.locator('.scene-name').click();
+      await page.getByRole('button', { name: scene, exact: true }).click();
+    };
+    const revision = await state(page, 'scene.revision');
+    await ask(page, { do: 'edit', base: revision, changes: [{ at: '/bodies/0/name', to: 'bead' }] });
+    await until('an edit', async () => (await body()) === 'bead');
+    await choose('cone and cube');
+    await dialog.getByRole('button', { name: 'Cancel' }).click();
+    await dialog.waitFor({ state: 'detached' });
+    await page.waitForTimeout(200);
+    check((await body()) === 'bead' && !(await state(page, 'scene.is_saved')), 'the edit is lost');
+    await choose('cone and cube');
+    await dialog.getByRole('button', { name: 'Discard the edits' }).click();
+    await until('the other scene', async () => (await body()) === 'cone and cube');
+    await choose('drilled box');
+    await until('a third scene, without a question', async () => (await body()) === 'drilled box');
+    await context.close();
+  })],
+
   ['what was recorded is replayed, and a scene is saved as another file', () => {
     const file = written(BALL);
     return serving([file], async ({ url }) => {

@@ -41,7 +41,7 @@ export function push(speeds, axes) {
 
 /** Lets go of the hand, unless the pointer has taken it. */
 export function letGo() {
-  if (target) page.stage?.hand.release();
+  if (target && !isLeading()) page.stage?.hand.release();
   target = null;
 }
 

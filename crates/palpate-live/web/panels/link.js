@@ -79,7 +79,7 @@ export async function followLink(given) {
 /** A length, or null for one that the page chooses. @param {any} value */
 const isLength = (value) => value === null || (value > 0 && value < Infinity);
 
-/** What a part of the view must be besides of the type that it has here.
+/** What a part of the view must be, besides being of the type that it has here.
  * @type {Record<string, (value: any) => boolean>} */
 const ALLOWED = {
   mode: (value) => MODES.some(([mode]) => mode === value),

@@ -31,10 +31,11 @@ export function Words({ start }) {
   const { connection, scene } = state;
   if (connection === 'closed') return html`<${NoToken} start=${start} />`;
   if (connection === 'lost') {
-    return html`<div class="words bad">
-      ${state.why ? html`<b>The program has closed the connection: ${state.why}.</b> The page tries again.`
-        : html`<b>The program has ended.</b> Start it again, and this page comes back.`}
-      If it still runs, STOP tries to reach it all the same.
+    return html`<div class="words bad">${state.why
+      ? html`<b>The program has closed the connection: ${state.why}.</b>
+        The page tries again. STOP reaches the program all the same.`
+      : html`<b>The program has ended.</b>
+        Start it again, and this page comes back. If it still runs, STOP tries to reach it all the same.`}
       ${scene && !scene.is_saved && html`<p>The scene has edits that are not saved: this page still has them.</p>
         <button class="small" onClick=${downloadScene}>Download the scene</button>`}</div>`;
   }

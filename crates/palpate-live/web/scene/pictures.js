@@ -139,7 +139,9 @@ export class Pictures {
     const isLengthSeen = panel.map === MAPS.promise && setting.dimension === 3;
     const forth = along(view.shift, cross(flat.frame.right, flat.frame.up), between);
     const before = isLengthSeen ? (await ask({ shift: forth })).values : values;
-    const body = setting.bodies[view.only] ?? { color: setting.bodies[0]?.color ?? MAP_COLORS.outside, promises: setting.promises };
+    // A slice of the whole scene does not tell its bodies apart.
+    const whole = { color: setting.bodies[0]?.color ?? MAP_COLORS.outside, promises: setting.promises };
+    const body = setting.bodies[view.only] ?? whole;
     /** The slope along a row or a column. @param {number} at @param {number} step from one value to the
      * next @param {number} number @param {number} count */
     const slopeAlong = (at, step, number, count) => {
