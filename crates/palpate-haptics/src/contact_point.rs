@@ -318,6 +318,7 @@ impl<const D: usize> ContactPoint<D> {
         let before = Before::of(touch);
         self.fall_silent(tick, before);
         self.proxy.lift();
+        self.guides.iter_mut().for_each(Guide::let_go);
         let is_known = state.is_finite();
         *touch = Touch {
             device: state.position,

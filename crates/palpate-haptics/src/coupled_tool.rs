@@ -11,6 +11,7 @@ use palpate_field::{Point, Pose, Vector};
 use crate::accepted_bodies::AcceptedBodies;
 use crate::bodies::Bodies;
 use crate::contact_point::{ContactPoint, FreeForce, Setting, Touch};
+use crate::guide::Guide;
 use crate::ports::{Port, TurningPort};
 use crate::tool::{Coupling, HeldTool, Tool, ToolState};
 use palpate_safety::internal::limited;
@@ -150,6 +151,7 @@ impl<const D: usize> CoupledTool<D> {
         if *is_lifted {
             bodies.settle();
             self.tool.hover(&state);
+            point.guides.iter_mut().for_each(Guide::let_go);
         } else {
             free = point.guided(position, velocity);
             self.tool.step(bodies, &state);

@@ -351,6 +351,13 @@ impl<const D: usize> Guide<D> {
         self.engaged
     }
 
+    /// Lets go of the hand, as if it had never held it.
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    pub(crate) fn let_go(&mut self) {
+        (self.engaged, self.last) = (false, Vector::ZERO);
+    }
+
     /// The force on a hand at `position` [m] that moves at `velocity` [m/s], in world
     /// coordinates [N]: finite, and at most the largest force. A number that is not finite
     /// releases the hand, and the force is zero.

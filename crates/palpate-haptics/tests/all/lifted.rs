@@ -109,6 +109,7 @@ fn a_lifted_hand_is_not_guided() {
             servo.lift(is_lifted);
             let force = servo.step(&at(0.08)[..points])[0].force;
             assert_eq!(force == Vector::ZERO, is_lifted, "{force:?}");
+            assert_eq!(servo.guides(0)[0].is_engaged(), !is_lifted);
         }
     }
 }

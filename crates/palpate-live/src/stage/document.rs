@@ -16,9 +16,10 @@ use crate::wire::Change;
 /// The deepest that a part of a scene may be nested: more than any scene is.
 const DEEPEST: usize = 200;
 
-/// The most steps back, and the most that their texts are in all [bytes].
+/// The most steps back, and the most that their texts are in all [bytes]: their scenes in memory are
+/// about twenty times as large.
 const MOST_STEPS: usize = 500;
-const MOST_BYTES: usize = 64 << 20;
+const MOST_BYTES: usize = 16 << 20;
 
 /// A scene that is edited.
 #[derive(Clone, Debug)]

@@ -263,8 +263,7 @@ impl Editor {
                     Changed::Servo => "the tool, the motions or the dimension changed",
                     Changed::Bodies | Changed::Guides => "the last one had ended",
                 };
-                let why =
-                    format!("another servo began: {why}");
+                let why = format!("another servo began: {why}");
                 (was_rendered.then_some(why), true)
             }
             Showing::Refused(why) => return Err(why.into()),

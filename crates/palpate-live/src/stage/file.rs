@@ -18,6 +18,9 @@ pub(super) fn replace(file: &Path, text: &str, is_new: bool) -> Result<()> {
     // A link stays one: what it leads to is replaced.
     let file = std::fs::canonicalize(file).unwrap_or_else(|_| end_of_links(file));
     let before = std::fs::metadata(&file).ok();
+    if before.as_ref().is_some_and(|before| !before.is_file()) {
+        return Err(Error::new(ErrorKind::InvalidInput, "is no file: save as another one"));
+    }
     if before.as_ref().is_some_and(|before| before.permissions().readonly()) {
         let why = "is read-only: save as another file, or make it writable";
         return Err(Error::new(ErrorKind::PermissionDenied, why));
@@ -104,6 +107,8 @@ mod tests {
         assert!(link.is_symlink() && other.is_symlink());
         assert_eq!(read_file(&end).unwrap(), "text");
         assert_eq!(read_file(&link).unwrap(), "text");
+        // What is no file is never replaced: once a link to a device was followed.
+        assert!(replace(folder.path(), "text", false).is_err());
         // A link to itself leads nowhere, and is left as it is.
         std::fs::remove_file(&end).unwrap();
         std::os::unix::fs::symlink(&end, &end).unwrap();

@@ -14,6 +14,9 @@ use tokio::sync::mpsc;
 /// Messages that may wait for a page: a page that takes fewer is closed.
 pub(crate) const WAITING: usize = 256;
 
+/// Grids and pictures, of up to 16 MiB each, that may wait for a page.
+const LARGE_WAITING: usize = 8;
+
 /// A message for a page.
 #[derive(Clone, Debug)]
 pub(crate) enum Out {
@@ -82,7 +85,10 @@ impl Pages {
     pub(crate) fn send(&self, page: PageId, message: impl Into<Out>) {
         let mut open = self.open();
         let Some(sender) = open.pages.get(&page) else { return };
-        if sender.try_send(message.into()).is_err() {
+        let message = message.into();
+        let waiting = sender.max_capacity() - sender.capacity();
+        let is_too_large = matches!(message, Out::Binary(_)) && waiting >= LARGE_WAITING;
+        if is_too_large || sender.try_send(message).is_err() {
             open.pages.remove(&page);
         }
     }

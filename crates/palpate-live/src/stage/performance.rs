@@ -276,13 +276,15 @@ impl Performance {
         if replaced.is_ok() {
             return Showing::Replaced;
         }
-        let began = match (scene, &self.room) {
+        // Another scene has its own places.
+        let before = self.room.as_ref().filter(|_| change != Changed::Scene);
+        let began = match (scene, before) {
             (AnyScene::Planar(scene), Some(AnyRoom::Planar(before))) => {
-                self.begun(scene, Some((before, change))).map(AnyRoom::Planar)
+                self.begun(scene, Some(before)).map(AnyRoom::Planar)
             }
             (AnyScene::Planar(scene), _) => self.begun(scene, None).map(AnyRoom::Planar),
             (AnyScene::Spatial(scene), Some(AnyRoom::Spatial(before))) => {
-                self.begun(scene, Some((before, change))).map(AnyRoom::Spatial)
+                self.begun(scene, Some(before)).map(AnyRoom::Spatial)
             }
             (AnyScene::Spatial(scene), _) => self.begun(scene, None).map(AnyRoom::Spatial),
         };
@@ -305,9 +307,11 @@ impl Performance {
     fn begun<const D: usize>(
         &self,
         scene: &BuiltScene<D>,
-        before: Option<(&Room<D>, Changed)>,
+        before: Option<&Room<D>>,
     ) -> Result<Room<D>, String> {
-        Room::begin(Arc::new(scene.clone()), &self.terms, before, self.stop.is_stopped())
+        let kept =
+            self.room.as_ref().map(|room| of_either!(AnyRoom, room, room => room.kept()));
+        Room::begin(Arc::new(scene.clone()), &self.terms, before, kept, self.stop.is_stopped())
     }
 
     /// Tells all pages what a person should read.

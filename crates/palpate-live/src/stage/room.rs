@@ -18,7 +18,6 @@ use palpate::servo_loop::{
 };
 
 use super::hand::{Lead, Leader};
-use super::performance::Changed;
 use super::points::{in_space, point_of};
 use crate::wire::{Frame, FramePoint};
 
@@ -82,6 +81,13 @@ struct Peaks {
     energies: Vec<[f64; 3]>,
 }
 
+/// What is kept when another scene is opened.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Kept {
+    speed: f64,
+    is_touring: bool,
+}
+
 /// A clock that is taken once.
 pub(crate) type GivenClock = Arc<Mutex<Option<VirtualClock>>>;
 
@@ -97,40 +103,42 @@ pub(super) struct Terms {
 }
 
 impl<const D: usize> Room<D> {
-    /// Begins to feel a scene. After a room that was there before its clock stays as it is, and whether
-    /// there are tours; its hand stays where it is, unless another scene was opened.
+    /// Begins to feel a scene, with what is kept of the room before; by its hand, if the room of the same
+    /// scene is there.
     pub(super) fn begin(
         scene: Arc<BuiltScene<D>>,
         terms: &Terms,
-        before: Option<(&Self, Changed)>,
+        before: Option<&Self>,
+        kept: Option<Kept>,
         is_stopped: bool,
     ) -> Result<Self, String> {
         let said = |error: HapticsError| error.to_string();
         let tool = scene.tool.as_ref().map_or(Ok(None), BuiltTool::in_hand).map_err(said)?;
         let map = scene.workspace_of(&terms.profile, tool.as_ref()).map_err(said)?;
-        let mut lead = Lead::new(&scene, terms.points);
+        let mut lead = Lead::new(&scene, terms.points, map.scale());
         let points = lead.targets().len();
         if points > MOST_POINTS {
             return Err(format!(
                 "the hand of a page has at most {MOST_POINTS} contact points, got {points}"
             ));
         }
-        if let Some((before, changed)) = before {
-            lead.set_touring(before.lead.is_touring());
-            if changed != Changed::Scene {
-                lead.take_over(&before.lead);
-            }
+        if let Some(kept) = kept {
+            lead.set_touring(kept.is_touring);
+        }
+        if let Some(before) = before {
+            lead.take_over(&before.lead);
         }
         let (device, steering) =
             device(&lead, &map, terms).map_err(|error| error.to_string())?;
-        // A hand that goes into a body while forces are zero would be thrown out by them.
-        let settings =
-            ServoSettings::default().with_rate(terms.rate).with_recovery(Recovery::OnceOut);
+        // A hand that goes into a body while forces are zero would be thrown out by them. A body that
+        // moves onto a hand has to push it out.
+        let recovery =
+            if scene.motions.is_empty() { Recovery::OnceOut } else { Recovery::Rise };
+        let settings = ServoSettings::default().with_rate(terms.rate).with_recovery(recovery);
         let servo = scene.servo_with(&device, settings).map_err(said)?;
         let (clock, speed) = ScaledClock::new(&Priority::Normal);
         // A clock that is held or slow stays so.
-        let kept = before.map_or(1.0, |(before, _)| before.speed.get());
-        speed.set(kept).map_err(|error| error.to_string())?;
+        speed.set(kept.map_or(1.0, |kept| kept.speed)).map_err(|error| error.to_string())?;
         let rows = (KEPT * terms.rate) as usize * lead.targets().len();
         let mut options = ThreadOptions::default().with_stop(is_stopped).with_recorder(rows);
         if !scene.motions.is_empty() {
@@ -248,8 +256,17 @@ impl<const D: usize> Room<D> {
         self.lead.take_tour(tour);
     }
 
+    pub(super) fn kept(&self) -> Kept {
+        Kept { speed: self.speed.get(), is_touring: self.lead.is_touring() }
+    }
+
+    /// Sets whether a hand that nobody leads goes on its tour. Where it leaves a tour, it rests where
+    /// bodies hold it back.
     pub(super) fn set_touring(&mut self, is_touring: bool) {
         self.lead.set_touring(is_touring);
+        if self.leader == Leader::Tour && !is_touring {
+            self.let_go();
+        }
     }
 
     /// Waits until the servo has ended, and tells why, in words.

@@ -45,7 +45,11 @@ fn moment(page: &mut Page) -> Moment {
 }
 
 fn ring() -> (Live, Page) {
-    let live = Live::start("ring", None, RING, LiveOptions::default()).unwrap();
+    opened(RING)
+}
+
+fn opened(scene: &str) -> (Live, Page) {
+    let live = Live::start("scene", None, scene, LiveOptions::default()).unwrap();
     let mut page = Page::open(&live);
     page.ask(json!({ "do": "tour", "on": false }));
     (live, page)
@@ -98,6 +102,36 @@ fn a_hand_that_is_led_into_a_body_is_set_down_before_it() {
         let now = moment(&mut page);
         assert!(!now.is_lifted && now.proxy[0].hypot(now.proxy[1]) > 0.109, "{now:?}");
     }
+}
+
+/// In the middle of a smooth union the gradient vanishes: the hand once was set down far away.
+#[test]
+fn a_hand_that_is_led_to_the_middle_of_a_body_stays_near() {
+    let disk = |x: f64| json!({ "translate": [x, 0], "of": { "circle": { "radius": 0.05 } } });
+    let shape = json!({ "smooth_union": [disk(-0.03), disk(0.03)], "width": 0.02 });
+    let scene =
+        json!({ "palpate": 1, "dimension": 2, "bodies": [{ "name": "two", "shape": shape }] });
+    let (_live, mut page) = opened(&scene.to_string());
+    press(&mut page, json!([1e-7, 1e-4]));
+    while !moment(&mut page).is_lifted {}
+    page.ask(json!({ "do": "hand", "held": false }));
+    while moment(&mut page).is_lifted {}
+    let now = moment(&mut page);
+    assert!(now.device[0].hypot(now.device[1]) < 0.2, "{now:?}");
+}
+
+/// A body that moved onto the hand once pushed it with no force, as forces waited for it to be out.
+#[test]
+fn a_body_that_moves_onto_the_hand_is_felt() {
+    let scene = json!({
+        "palpate": 1, "dimension": 2,
+        "bodies": [{ "name": "disk", "shape": { "circle": { "radius": 0.05 } } }],
+        "motions": [{ "body": "disk", "from": { "translation": [-0.1, 0] },
+                      "to": { "translation": [0.02, 0] }, "duration": 2, "repeat": "back_and_forth" }],
+    });
+    let (_live, mut page) = opened(&scene.to_string());
+    press(&mut page, json!([0.06, 0.001]));
+    while moment(&mut page).force < 0.2 {}
 }
 
 /// A released click once left the hand wherever it was on its way.

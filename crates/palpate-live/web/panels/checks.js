@@ -176,7 +176,7 @@ function Method() {
         change=${(/** @type {boolean} */ is) => setToys({ start: is ? null : corners.map(() => 1 / corners.length) })} />
       ${start !== null && html`<${VectorField} label="weights of the start" value=${start}
         names=${['A', 'B', 'C']} min=${0} own change=${(/** @type {number[]} */ to) => setToys({ start: to })} />`}`}
-    ${Array.isArray(path) && path.length > 1 && html`<${NumberField} label="step of the path" whole own min=${0}
-      max=${path.length - 1} value=${at ?? path.length - 1}
+    ${Array.isArray(path) && path.length > 1 && html`<${NumberField} key=${path.length} label="step of the path"
+      whole own min=${0} max=${path.length - 1} value=${Math.min(at ?? Infinity, path.length - 1)}
       change=${(/** @type {number} */ to) => setToys({ at: to === path.length - 1 ? null : to })} />`}`;
 }

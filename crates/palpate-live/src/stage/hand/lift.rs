@@ -5,17 +5,17 @@
 
 use palpate::field::{Point, Vector};
 
-/// The least and the longest time that a hand is lifted [s]: a device follows within.
-const LIFTED: [f64; 2] = [0.05, 2.0];
+/// The least and the longest time that a hand is lifted [s].
+const LIFTED: [f64; 2] = [0.05, 10.0];
 
 /// How far a device may be from where it is set down, as a share of the scene.
 const THERE: f64 = 2e-3;
 
+/// A device is at rest below this speed, in its own coordinates [m/s].
+const AT_REST: f64 = 5e-3;
+
 /// How long a hand that was set down stays there [s]: until the servo knows of it.
 const SET_DOWN: f64 = 0.02;
-
-/// A device is at rest if it moves by at most this share of the scene in a second.
-const AT_REST: f64 = 0.05;
 
 /// A hand that is lifted, until the servo knows that it was set down.
 #[derive(Debug)]
@@ -36,6 +36,8 @@ pub(super) enum Step<const D: usize> {
     OnTheWay,
     /// Friction keeps the device short of the place by so much [m]: it is led farther.
     Short(Vec<Vector<f64, D>>),
+    /// It is set down, and rests here: where it was brought, or if it took too long where it is [m].
+    SetDown(Vec<Point<D>>),
     Over,
 }
 
@@ -53,14 +55,21 @@ impl<const D: usize> Lift<D> {
         self.set_down.is_none()
     }
 
+    /// Brings one contact point elsewhere.
+    pub(super) fn redirect(&mut self, point: usize, place: Point<D>) {
+        if let Some(old) = self.places.get_mut(point) {
+            *old = place;
+        }
+    }
+
     /// Sets the hand down once the device is where it is brought. `passed` since the step before [s],
-    /// in a scene of this size [m].
+    /// in a scene of this size [m], of `scale` metres for a metre of the device.
     pub(super) fn go_on(
         &mut self,
         time: f64,
         passed: f64,
         devices: &[Point<D>],
-        size: f64,
+        [size, scale]: [f64; 2],
     ) -> Step<D> {
         if let Some(at) = self.set_down {
             return if time - at >= SET_DOWN { Step::Over } else { Step::OnTheWay };
@@ -70,16 +79,21 @@ impl<const D: usize> Lift<D> {
         };
         let last = std::mem::replace(&mut self.devices, devices.to_vec());
         let (since, [least, longest]) = (time - self.since, LIFTED);
-        let is_there = is_within(devices, &self.places, THERE * size);
-        if since > longest || since >= least && is_there {
+        if since < least {
+            return Step::OnTheWay;
+        }
+        if is_within(devices, &self.places, THERE * size) {
             self.set_down = Some(time);
-            return Step::OnTheWay;
+            return Step::SetDown(self.places.clone());
         }
-        let is_at_rest = passed > 0.0 && is_within(devices, &last, AT_REST * size * passed);
-        if since < least || !is_at_rest {
-            return Step::OnTheWay;
+        if since > longest {
+            self.set_down = Some(time);
+            return Step::SetDown(devices.to_vec());
         }
-        let ends = self.places.iter().zip(devices);
-        Step::Short(ends.map(|(place, device)| *place - *device).collect())
+        if passed > 0.0 && is_within(devices, &last, AT_REST * scale * passed) {
+            let ends = self.places.iter().zip(devices);
+            return Step::Short(ends.map(|(place, device)| *place - *device).collect());
+        }
+        Step::OnTheWay
     }
 }

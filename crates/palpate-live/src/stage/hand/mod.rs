@@ -32,6 +32,9 @@ const NEAR: f64 = 0.08;
 /// How much farther out than touching a hand is set down beside a body, as a share of the scene.
 const CLEARANCE: f64 = 5e-3;
 
+/// The farthest that a tour goes on in a step [s]: a hand that is led late does not cut its corners.
+const LONGEST_STEP: f64 = 0.02;
+
 /// The most steps out of a body.
 const STEPS_OUT: usize = 16;
 
@@ -51,6 +54,8 @@ pub(super) struct Lead<const D: usize> {
     scene: Arc<BuiltScene<D>>,
     /// The longest edge of the scene's bounds [m]; 1 m for a scene without.
     size: f64,
+    /// Metres of the scene for a metre of the device.
+    scale: f64,
     /// The contact points beside the hand [m].
     arms: Vec<Vector<f64, D>>,
     /// Whether the arms are those of the scene's tool, which go side by side on a tour.
@@ -77,7 +82,7 @@ pub(super) struct Lead<const D: usize> {
 impl<const D: usize> Lead<D> {
     /// For a scene whose hand has `count` contact points, unless its tool says how many. It rests
     /// above the scene until it gets a tour.
-    pub(super) fn new(scene: &Arc<BuiltScene<D>>, count: usize) -> Self {
+    pub(super) fn new(scene: &Arc<BuiltScene<D>>, count: usize, scale: f64) -> Self {
         let mut arms: Vec<_> = scene.contact_points().collect();
         let has_shape = scene.tool.as_ref().is_some_and(|tool| tool.shape.is_some());
         let is_tool = !arms.is_empty() || has_shape;
@@ -92,6 +97,7 @@ impl<const D: usize> Lead<D> {
         Self {
             scene: Arc::clone(scene),
             size,
+            scale,
             arms,
             is_tool,
             tour: None,
@@ -198,6 +204,9 @@ impl<const D: usize> Lead<D> {
         self.goal = point.is_none().then_some(target);
         if let Some(point) = point {
             self.targets[point] = target;
+            if let Some(lift) = &mut self.lift {
+                lift.redirect(point, target);
+            }
             return Ok(());
         }
         let goals = self.beside(target);
@@ -224,20 +233,33 @@ impl<const D: usize> Lead<D> {
         self.lift = Some(Lift::to(places, self.time));
     }
 
-    /// A place without bodies, as near as steps along the gradient find one.
+    /// A place without bodies: as near as steps along the gradient find one, or else over the scene.
     fn free_beside(&self, place: Point<D>) -> Point<D> {
         let clearance = radius(&self.scene) + CLEARANCE * self.size;
         let mut free = place;
         for _ in 0..STEPS_OUT {
             let (distance, gradient) = self.scene.whole.distance_gradient(free);
-            let squared = gradient.dot(gradient);
+            if distance >= clearance {
+                return free;
+            }
+            // At least as long as in a field of slope 1/2: in the middle of a body the gradient
+            // may vanish.
+            let squared = gradient.dot(gradient).max(0.5 * gradient.norm());
+            free += gradient * ((clearance - distance) / squared);
             // Written so that NaN ends it.
-            if !(distance < clearance && squared > 0.0) {
+            let is_near = (free - place).norm() <= self.size;
+            if !is_near {
                 break;
             }
-            free += gradient * ((clearance - distance) / squared);
         }
-        if free.is_finite() { free } else { place }
+        match self.scene.bounds() {
+            Some(bounds) => {
+                let mut over = place;
+                over[1] = over[1].max(bounds.max[1] + clearance);
+                over
+            }
+            None => place,
+        }
     }
 
     /// Goes on to the time of the servo [s], whose device points are at `devices`; what leads the hand
@@ -276,11 +298,12 @@ impl<const D: usize> Lead<D> {
     /// Leads the device to where the hand is set down.
     fn go_on_lifted(&mut self, passed: f64, devices: &[Point<D>]) {
         let Some(lift) = &mut self.lift else { return };
-        match lift.go_on(self.time, passed, devices, self.size) {
+        match lift.go_on(self.time, passed, devices, [self.size, self.scale]) {
             Step::OnTheWay => {}
             Step::Short(short) => {
                 self.targets.iter_mut().zip(short).for_each(|(target, short)| *target += short);
             }
+            Step::SetDown(places) => self.targets = places,
             Step::Over => self.lift = None,
         }
     }
@@ -292,7 +315,7 @@ impl<const D: usize> Lead<D> {
         match self.tour_time {
             Some(at) if at <= end => {
                 self.targets = self.on_tour(tour, at);
-                self.tour_time = Some(at + passed);
+                self.tour_time = Some(at + passed.min(LONGEST_STEP));
             }
             _ => {
                 let begin = self.on_tour(tour, 0.0);

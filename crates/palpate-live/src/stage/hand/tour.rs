@@ -22,12 +22,19 @@ pub(in crate::stage) fn tour<const D: usize>(
     let bounds = scene.bounds()?;
     let shapes: Vec<_> = scene.bodies.iter().map(|body| body.shape.clone()).collect();
     let duration = TOUR + LAG * count as f64;
-    let tour =
-        Tour::new(bounds, duration).and_then(|tour| tour.with_probe_radius(radius(scene)));
+    let ball = scene.tool.as_ref().map_or(Probe::default().radius(), |tool| tool.radius);
+    let tour = Tour::new(bounds, duration).and_then(|tour| tour.with_probe_radius(ball));
     Some(tour.and_then(|tour| tour.over_each(&scene.whole, &shapes)))
 }
 
-/// The radius of the balls by which a scene is touched [m].
+/// The radius of what touches a scene [m]: of the balls at its contact points, or of a ball around the
+/// origin of the tool that holds its shape.
 pub(super) fn radius<const D: usize>(scene: &BuiltScene<D>) -> f64 {
-    scene.tool.as_ref().map_or(Probe::default().radius(), |tool| tool.radius)
+    let Some(tool) = &scene.tool else { return Probe::default().radius() };
+    let bounds = tool.shape.as_ref().and_then(|shape| shape.promise().bounds);
+    let farthest = |aabb: palpate::field::Aabb<D>| {
+        let corner = |axis: usize| aabb.min[axis].abs().max(aabb.max[axis].abs());
+        (0..D).map(corner).fold(0.0, f64::hypot)
+    };
+    tool.radius + bounds.map_or(0.0, |bounds| farthest(bounds.aabb))
 }
