@@ -33,6 +33,8 @@ const TILE = 128;
 const MOST_TILES = 64;
 /** Batches of tiles grow as long as they are drawn in this time [ms], about two frames. */
 const QUICK = 36;
+/** From one showing of a picture that is refined to the next [ms]: it costs as much as many tiles. */
+const SHOWING = 200;
 /** Where in a pixel its samples are, one a pass. */
 const OFFSETS = [[0, 0], [0.25, -0.5], [-0.5, -0.25], [0.25, 0.375]];
 /** If the first pass took longer than this, edges stay as they are [ms]. */
@@ -77,6 +79,10 @@ export class Layer {
     /** Tiles to draw, pass after pass. */
     this.tile = 0;
     this.tiles = 0;
+    /** Whether tiles were drawn that are not shown yet. */
+    this.isStale = false;
+    /** When the picture was shown last [ms]. */
+    this.shownAt = 0;
     this.passBegan = 0;
     this.lastTime = 0;
     canvas.addEventListener('webglcontextlost', (event) => {
@@ -322,7 +328,10 @@ export class Layer {
     const at = this.tile + this.tiles;
     if (this.tile === 0) this.passBegan = now;
     const isSlow = this.tiles === 0 && at >= pass && now - this.passBegan > SLOW_PASS;
-    if (at >= OFFSETS.length * pass || isSlow) return false;
+    if (at >= OFFSETS.length * pass || isSlow) {
+      if (this.isStale) this.present();
+      return false;
+    }
     const columns = Math.ceil(this.width / TILE);
     if (this.shownScale !== 1) this.enlarge();
     gl.bindFramebuffer(gl.FRAMEBUFFER, this.targetOf(1));
@@ -346,9 +355,11 @@ export class Layer {
     }
     gl.disable(gl.SCISSOR_TEST);
     this.tile += end - at;
-    this.present();
+    this.isStale = true;
+    if (now - this.shownAt > SHOWING) this.present();
     this.isMoving = false;
     this.setFence();
+    this.watch(this.fence);
     return true;
   }
 
@@ -411,5 +422,7 @@ export class Layer {
     // Without this, Chromium clears the canvas after the copy when it is exported.
     gl.clear(gl.COLOR_BUFFER_BIT);
     gl.blitFramebuffer(0, 0, width, height, 0, 0, width, height, gl.COLOR_BUFFER_BIT, gl.NEAREST);
+    this.isStale = false;
+    this.shownAt = performance.now();
   }
 }
