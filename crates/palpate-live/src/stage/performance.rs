@@ -260,20 +260,24 @@ impl Performance {
         }
     }
 
-    fn show(&mut self, scene: &AnyScene, change: Changed) -> Showing {
+    /// Hands a scene to the servo that runs; whether it goes on with it.
+    fn replace(&mut self, scene: &AnyScene, change: Changed) -> bool {
         let has_new_guides = change == Changed::Guides;
-        // A servo that cannot take the bodies ends, and another begins.
-        let replaced = match (&mut self.room, scene) {
-            _ if change >= Changed::Servo => Err(String::new()),
+        match (&mut self.room, scene) {
+            _ if change >= Changed::Servo => false,
             (Some(AnyRoom::Planar(room)), AnyScene::Planar(scene)) => {
-                room.replace(Arc::new(scene.clone()), has_new_guides)
+                room.replace(Arc::new(scene.clone()), has_new_guides).is_ok()
             }
             (Some(AnyRoom::Spatial(room)), AnyScene::Spatial(scene)) => {
-                room.replace(Arc::new(scene.clone()), has_new_guides)
+                room.replace(Arc::new(scene.clone()), has_new_guides).is_ok()
             }
-            _ => Err(String::new()),
-        };
-        if replaced.is_ok() {
+            _ => false,
+        }
+    }
+
+    fn show(&mut self, scene: &AnyScene, change: Changed) -> Showing {
+        // A servo that cannot take the scene ends, and another begins.
+        if self.replace(scene, change) {
             return Showing::Replaced;
         }
         // Another scene has its own places.
