@@ -15,7 +15,7 @@
 
 import { reasonOf } from '../panels/page.js';
 import { asking, newest } from '../scene/newest.js';
-import { rounded } from '../scene/vectors.js';
+import { inSpace, rounded } from '../scene/vectors.js';
 import { listen, state } from '../state.js';
 
 /** How long a whole fall is to take on the page, and how short or long it may [s]. */
@@ -84,6 +84,13 @@ export function placeAt(time) {
   const at = Math.min(Math.max(time / step, 0), path.length - 1);
   const [from, to] = [path[Math.floor(at)], path[Math.ceil(at)]];
   return from.map((part, axis) => part + (at % 1) * (to[axis] - part));
+}
+
+/** The ball at the moment that is shown, for whether bodies hide it.
+ * @returns {import('../scene/veil.js').Mark[]} */
+export function markOfBall() {
+  const place = fall.isShown ? placeAt(moment()) : null;
+  return place ? [{ key: 'ball', point: inSpace(place), radius: fall.radius }] : [];
 }
 
 /** Plays the fall from its beginning. */

@@ -26,6 +26,8 @@ export const AXIS_COLORS = ['#c0392b', '#1a7d3c', '#2563b0'];
 
 /** How opaque a hand is that is lifted. */
 export const LIFTED = 0.55;
+/** How opaque marks are that lie behind a body, and the dashes of their lines in pixels. */
+const HIDDEN = { opacity: 0.5, dashes: [1, 6] };
 
 /** A line across. @param {string} color @param {number} width @returns {Icon} */
 const line = (color, width) => (context, x, y) =>
@@ -42,6 +44,15 @@ const square = (color) => (context, x, y) => {
   context.strokeRect(x - 7, y - 5, 14, 10);
 };
 
+/** @param {Context} context @param {() => void} paint */
+function behind(context, paint) {
+  context.globalAlpha = HIDDEN.opacity;
+  context.setLineDash(HIDDEN.dashes);
+  paint();
+  context.setLineDash([]);
+  context.globalAlpha = 1;
+}
+
 /** @type {Record<string, [string, Icon]>} */
 const MARKS = {
   free: ['device point, free', (context, x, y, inks) => dot(context, { x, y }, 4, '#1b5fb0', inks.halo)],
@@ -50,6 +61,9 @@ const MARKS = {
     ring(context, { x, y }, 5, '#1b5fb0', 1.5, inks.halo);
     context.globalAlpha = 1;
   }],
+  hidden: ['dotted: behind a body', (context, x, y, inks) =>
+    behind(context, () => ring(context, { x, y }, 5, '#1b5fb0', 1.5, inks.halo))],
+  off: ['hollow: off the plane', (context, x, y, inks) => ring(context, { x, y }, 5, '#1b5fb0', 1.5, inks.halo)],
   device: ['device point in a body', (context, x, y, inks) => ring(context, { x, y }, 4, '#1b5fb0', 1.5, inks.halo)],
   proxy: ['proxy on the surface', (context, x, y, inks) => dot(context, { x, y }, 5, '#1b5fb0', inks.halo)],
   spring: ['spring to the pointer', (context, x, y, inks) =>
@@ -130,6 +144,17 @@ const seen = new Set();
 
 /** Names a mark that is painted. @param {keyof typeof MARKS} name */
 export const mark = (name) => void seen.add(name);
+
+/** Paints a mark, dotted if it lies behind a body. @param {Context} context @param {boolean} isHidden
+ * @param {() => void} paint */
+export function veiled(context, isHidden, paint) {
+  if (!isHidden) {
+    paint();
+    return;
+  }
+  mark('hidden');
+  behind(context, paint);
+}
 
 /** Begins a picture. */
 export const clearMarks = () => seen.clear();

@@ -18,9 +18,11 @@
 import { handOf, ledPlace } from '../input/hand.js';
 import { state } from '../state.js';
 import { arrow, dot, numbered, polyline, ring, spring } from './ink.js';
-import { COLORS, LIFTED, mark } from './marks.js';
+import { COLORS, LIFTED, mark, veiled } from './marks.js';
 import { centreOf, cornersOf } from './setting.js';
-import { along, dot as product, inSpace, norm } from './vectors.js';
+import { slice } from './slice.js';
+import { level, roundUp } from './units.js';
+import { along, dot as product, inSpace, norm, subtract } from './vectors.js';
 
 /** The length of the arrow of the largest force in pixels. */
 const LONGEST = 130;
@@ -31,6 +33,8 @@ const { force: FORCE, normal: NORMAL, contact: CONTACT } = COLORS;
 export const RANK = { hovered: 0, selected: 1, verdict: 2, force: 3, touched: 4, name: 10, point: 15, small: 20 };
 /** A body that is seen smaller than this has its name last, in pixels. */
 const SMALL = 24;
+/** How far off the plane a hand is for words to say so, in pixels. */
+const WORTH_TELLING = 2;
 /** The part of an edge that a bracket around the selected body covers. */
 const BRACKET = 0.18;
 const EDGES = [[0, 1], [1, 2], [2, 3], [3, 0], [4, 5], [5, 6], [6, 7], [7, 4],
@@ -110,49 +114,77 @@ function paintCorners(context, { lens }, corners, color) {
   }
 }
 
+/** The keys of the hand's middle and contact points, and of contacts of bodies, for what bodies hide. */
+export const MIDDLE = 'middle';
+export const keyOfPoint = (/** @type {number} */ number) => `point ${number}`;
+const keyOfContact = (/** @type {number} */ number) => `contact ${number}`;
+
+/** The contacts of bodies, each with the points on both. @param {any} answer */
+const contactsOf = (answer) => (answer?.pairs ?? []).flatMap((/** @type {any} */ pair) => pair.contacts ?? [])
+  .map((/** @type {any} */ { point_a: a, point_b: b, normal }) => ({ a: inSpace(a), b: inSpace(b ?? a), normal }));
+
+/** What bodies may hide. Of a contact point in a body, the proxy tells whether it is seen.
+ * @param {any} answer the contacts of bodies @returns {import('./veil.js').Mark[]} */
+export function marksOf(answer) {
+  const points = state.frame?.points ?? [];
+  const middle = points.length > 1 ? [{ key: MIDDLE, point: handOf() ?? [0, 0, 0], radius: 0 }] : [];
+  const hand = points.map(({ contact, device, proxy }, number) =>
+    ({ key: keyOfPoint(number), point: contact ? proxy : device, radius: 0 }));
+  const contacts = contactsOf(answer).map((/** @type {any} */ { a, b }, /** @type {number} */ number) =>
+    ({ key: keyOfContact(number), point: a, radius: norm(subtract(a, b)) }));
+  return [...middle, ...hand, ...(state.view.shown.contacts ? contacts : [])];
+}
+
 /** Contacts of bodies, and boxes that were ruled out. @param {Context} context
- * @param {View} view @param {any} answer @param {Inks} inks */
-export function paintContacts(context, view, answer, inks) {
+ * @param {View} view @param {any} answer @param {Inks} inks @param {(key: string) => boolean} hides */
+export function paintContacts(context, view, answer, inks, hides) {
   const { project, pixel } = view.lens;
   const { shown } = state.view;
-  for (const pair of answer?.pairs ?? []) {
-    for (const corners of shown.proof ? pair.boxes ?? [] : []) {
-      mark('proof');
-      paintCorners(context, view, corners, COLORS.proof);
-    }
-    for (const contact of shown.contacts ? pair.contacts ?? [] : []) {
-      const [a, b] = [contact.point_a, contact.point_b].map((point) => inSpace(point ?? contact.point_a));
+  for (const corners of shown.proof ? (answer?.pairs ?? []).flatMap((/** @type {any} */ pair) => pair.boxes ?? []) : []) {
+    mark('proof');
+    paintCorners(context, view, corners, COLORS.proof);
+  }
+  if (!shown.contacts) return;
+  contactsOf(answer).forEach((/** @type {any} */ { a, b, normal }, /** @type {number} */ number) => {
+    veiled(context, hides(keyOfContact(number)), () => {
       mark('contact');
       polyline(context, [project(a), project(b)], CONTACT, 2, inks.halo);
       dot(context, project(a), 4, CONTACT, inks.halo);
-      if (contact.normal && shown.normals) {
+      if (normal && shown.normals) {
         mark('contactNormal');
-        const tip = along(a, inSpace(contact.normal), 34 * pixel(a));
+        const tip = along(a, inSpace(normal), 34 * pixel(a));
         arrow(context, project(a), project(tip), CONTACT, 1.5, inks.halo);
       }
-    }
-  }
+    });
+  });
 }
+
+/** How far a point lies behind the plane of space that is drawn alone; 0 where there is none [m].
+ * @param {View} view @param {Vector} point */
+const behindPlane = ({ lens, isFlat }, point) => (isFlat && state.scene?.dimension === 3
+  ? product(subtract(point, slice.frame.origin), lens.basis.forward) : 0);
 
 /** One contact point: where the device is, the proxy on the surface, force and normal.
  * @param {Context} context @param {View} view @param {Point} point @param {string} color
  * @param {Inks} inks */
-function paintPoint(context, { lens }, point, color, inks) {
+function paintPoint(context, view, point, color, inks) {
+  const { lens } = view;
   const { shown } = state.view;
   if (state.frame?.lifted) {
     mark('lifted');
-    context.globalAlpha = LIFTED;
+    context.save();
+    context.globalAlpha *= LIFTED;
     ring(context, lens.project(point.device), 6, color, 1.5, inks.halo);
-    context.globalAlpha = 1;
+    context.restore();
     return;
   }
   const [device, proxy] = [lens.project(point.device), lens.project(point.proxy)];
-  // A contact on the far side of a body lies behind it.
-  const isHidden = point.contact && product(point.normal, lens.towards(point.proxy)) < -0.05;
-  context.globalAlpha = isHidden ? 0.35 : 1;
-  mark(point.contact ? 'device' : 'free');
+  const felt = point.contact ? { place: proxy, radius: 6, at: point.proxy } : { place: device, radius: 5, at: point.device };
+  const isOff = Math.abs(behindPlane(view, felt.at)) > felt.radius * lens.pixel(felt.at);
+  if (isOff) mark('off');
+  if (!isOff || point.contact) mark(point.contact ? 'device' : 'free');
   if (point.contact) {
-    mark('proxy');
+    if (!isOff) mark('proxy');
     polyline(context, [device, proxy], color, 1.5, inks.halo);
     ring(context, device, 5, color, 1.5, inks.halo);
     if (shown.normals) {
@@ -160,11 +192,10 @@ function paintPoint(context, { lens }, point, color, inks) {
       const tip = along(point.proxy, point.normal, 38 * lens.pixel(point.proxy));
       arrow(context, proxy, lens.project(tip), NORMAL, 1.5, inks.halo);
     }
-    dot(context, proxy, 6, color, inks.halo);
     if (point.slipping) ring(context, proxy, 10, color, 1, inks.halo);
-  } else {
-    dot(context, device, 5, color, inks.halo);
   }
+  if (isOff) ring(context, felt.place, felt.radius, color, 1.5, inks.halo);
+  else dot(context, felt.place, felt.radius, color, inks.halo);
   if (shown.forces && norm(point.force) > 0.01) {
     mark('force');
     const most = Number(state.scene?.device?.max_force) || MOST_FORCE;
@@ -172,13 +203,12 @@ function paintPoint(context, { lens }, point, color, inks) {
     const tip = along(point.proxy, point.force, reach / norm(point.force));
     arrow(context, proxy, lens.project(tip), FORCE, 3, inks.halo);
   }
-  context.globalAlpha = 1;
 }
 
 /** The hand with its points, and the spring by which the page leads it.
  * @param {Context} context @param {View} view @param {Vector | null} target @param {Texts} texts
- * @param {Inks} inks */
-export function paintHand(context, view, target, texts, inks) {
+ * @param {Inks} inks @param {(key: string) => boolean} hides */
+export function paintHand(context, view, target, texts, inks, hides) {
   const { frame } = state;
   const points = frame?.points ?? [];
   const hand = handOf();
@@ -189,14 +219,18 @@ export function paintHand(context, view, target, texts, inks) {
     for (const { device } of points) {
       polyline(context, [middle, project(device)], inks.muted, 1, 'transparent');
     }
-    if (middle) ring(context, middle, 8, inks.ink, 1.5, inks.halo);
+    veiled(context, hides(MIDDLE), () => ring(context, middle, 8, inks.ink, 1.5, inks.halo));
   }
   const led = ledPlace() ?? hand;
   points.forEach((point, number) => {
-    paintPoint(context, view, point, numbered(number), inks);
     const place = project(point.device);
     const leads = number === state.touch.point;
-    if (leads) ring(context, place, 10, inks.ink, 1.5, inks.halo);
+    // A contact on the far side of a body lies behind it.
+    const isFar = point.contact && product(point.normal, view.lens.towards(point.proxy)) < -0.05;
+    veiled(context, isFar || hides(keyOfPoint(number)), () => {
+      paintPoint(context, view, point, numbered(number), inks);
+      if (leads) ring(context, place, 10, inks.ink, 1.5, inks.halo);
+    });
     if (points.length > 1 && place && (leads || state.view.shown.names)) {
       texts.add(String(number + 1), place.x + 12, place.y - 10, { rank: leads ? RANK.selected : RANK.point, isFixed: true });
     }
@@ -207,6 +241,13 @@ export function paintHand(context, view, target, texts, inks) {
     spring(context, project(led), goal, inks.ink, inks.halo);
     ring(context, goal, 7, inks.ink, 1.5, inks.halo);
     dot(context, goal, 2, inks.ink, inks.halo);
+  }
+  const behind = behindPlane(view, led);
+  const pixel = view.lens.pixel(led);
+  const at = project(led);
+  if (at && Math.abs(behind) > WORTH_TELLING * pixel) {
+    const far = level(Math.abs(behind), roundUp(WORTH_TELLING * pixel));
+    texts.add(`${far} ${behind > 0 ? 'behind' : 'in front of'} the plane`, at.x, at.y - 20, { rank: RANK.force });
   }
   const force = frame?.force ?? 0;
   const strongest = points.reduce((most, point) => (norm(point.force) > norm(most.force) ? point : most));

@@ -9,9 +9,9 @@
  * @typedef {import('./vectors.js').Vector} Vector
  * @typedef {{ target: Vector | null, contacts: any, labels: import('./labels.js').Labels,
  *   probe: import('./probe.js').Probed | null, notes: import('./texts.js').Taken[],
- *   legendTop: number, isDrawn: boolean, isBallHidden: boolean }} Shown `notes` are texts that lie over the picture,
+ *   legendTop: number, isDrawn: boolean, hides: (key: string) => boolean }} Shown `notes` are texts that lie over the picture,
  *   the legend begins at `legendTop`,
- *   `isDrawn` tells whether the program drew it
+ *   `isDrawn` tells whether the program drew it, `hides` whether a mark lies behind a body
  */
 
 import { paintToys } from '../plane/drawn.js';
@@ -63,11 +63,11 @@ export function paintAll(context, views, shown, theme, ratio) {
         outlined: shown.isDrawn || !isFlat ? selectedBody() : -1,
         hovered: hoveredBody(view, shown.probe),
       });
-      paintContacts(context, view, shown.contacts, inks);
+      paintContacts(context, view, shown.contacts, inks, shown.hides);
       if (isFlat && current.dimension === 2) paintToys(context, view.lens, texts, inks);
-      paintFall(context, view.lens, inks, shown.isBallHidden);
+      paintFall(context, view.lens, inks, shown.hides('ball'));
       paintGrips(context, view.lens, isFlat, texts, inks);
-      paintHand(context, view, shown.target, texts, inks);
+      paintHand(context, view, shown.target, texts, inks, shown.hides);
     }
     if (isCut && state.view.mode === 'slice') paintHandles(context, view, handles(), slice.frame.origin, inks);
     if (shown.probe?.view === number) paintProbe(context, view, shown.probe, texts, inks);

@@ -16,6 +16,7 @@
  * @property {ReturnType<typeof import('../input/hand.js').createHand>} hand
  * @property {(place: Place) => View | undefined} view
  * @property {(view: View, place: Place) => Promise<{ point: Vector } | null>} pick
+ * @property {(key: string) => boolean} hides whether a mark lies behind a body
  * @property {(view: View, place: Place) => void} click
  * @property {() => void} changed
  * @property {(target: Vector | null) => void} show
@@ -27,6 +28,7 @@ import { toyDrag } from '../plane/handles.js';
 import { state } from '../state.js';
 import { handDrag, laterDrag, orbitDrag, panDrag, sliceDrag } from './drags.js';
 import { gripAt } from './grips.js';
+import { MIDDLE, keyOfPoint } from './overlay.js';
 import { handles } from './slice.js';
 
 /** How near a press must be in pixels, of a mouse or pen and of a finger. */
@@ -68,7 +70,7 @@ function clickOrDrag(place, begin, click, holds) {
 }
 
 /** @param {Stage} stage @returns {(place: Place, press: Press) => Drag | null} */
-export function createPress({ cameras, hand, view, pick, click, changed, show }) {
+export function createPress({ cameras, hand, view, pick, hides, click, changed, show }) {
   return (place, { button, shift, isTouch }) => {
     const pressed = view(place);
     if (!pressed) return null;
@@ -93,7 +95,11 @@ export function createPress({ cameras, hand, view, pick, click, changed, show })
       if (found) return sliceDrag(found.handle, () => live().lens);
     }
     const led = ledPlace();
-    const toHand = led ? Math.min(apart(led), ...(state.frame?.points ?? []).map(({ device }) => apart(device))) : Infinity;
+    const holds = (state.frame?.points ?? []).map(({ device }, number) =>
+      ({ apart: apart(device), isHidden: hides(keyOfPoint(number)) }));
+    if (led && holds.length > 1 && state.touch.point === null) holds.push({ apart: apart(led), isHidden: hides(MIDDLE) });
+    const nearest = (/** @type {typeof holds} */ some) => Math.min(...some.map((hold) => hold.apart));
+    const toHand = nearest(holds.filter(({ isHidden }) => !isHidden));
     const grip = isWhole ? gripAt(() => live().lens, isFlat, place, reach) : null;
     const away = () => (isFlat ? panDrag(camera, lens.rect, changed) : orbitDrag(cameras.orbit, changed));
     const clicks = () => click(live(), place);
@@ -107,8 +113,10 @@ export function createPress({ cameras, hand, view, pick, click, changed, show })
       const there = lens.at(place.x, place.y, led);
       return clickOrDrag(place, () => lead(there, false), clicks, true);
     }
+    // A body in front of the hand is touched; beside the body, the hand is held that is behind it.
+    const beside = () => (nearest(holds) < reach ? lead(led, false) : away());
     const hit = pick(pressed, place);
-    return clickOrDrag(place, () => laterDrag(hit.then((found) => (found ? lead(found.point, true) : away()))),
+    return clickOrDrag(place, () => laterDrag(hit.then((found) => (found ? lead(found.point, true) : beside()))),
       clicks, true);
   };
 }

@@ -18,7 +18,7 @@ import { newest } from './newest.js';
 import { length } from './units.js';
 import { add, inSpace, norm, subtract } from './vectors.js';
 
-/** The least time between two questions [ms]. */
+/** The least time between two questions [ms]; where the core follows the line of sight too, twice that. */
 const PAUSE = 50;
 
 export class Probe {
@@ -68,7 +68,7 @@ export class Probe {
       this.probed = null;
     }
     this.changed();
-    await new Promise((resolve) => { setTimeout(resolve, PAUSE); });
+    await new Promise((resolve) => { setTimeout(resolve, state.hasCard ? PAUSE : 2 * PAUSE); });
   }
 
   /** What was found, in words. */

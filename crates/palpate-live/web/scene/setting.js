@@ -34,6 +34,10 @@ function promisesOf(words) {
   return [outside, inside];
 }
 
+/** Whether a point is in a box. @param {Box} box @param {Vector} point */
+export const isWithin = ({ low, high }, point) =>
+  point.every((part, axis) => part >= low[axis] && part <= high[axis]);
+
 /** @param {Box} box */
 export const centreOf = (box) => middle(box.low, box.high);
 

@@ -15,8 +15,7 @@
 import { createHand } from '../input/hand.js';
 import { createPointer } from '../input/pointer.js';
 import { boundsOfToys } from '../plane/bounds.js';
-import { connectFall, fall, layFall, listenFall, placeAbove, stepFall } from '../plane/fall.js';
-import { createVeil } from '../plane/veil.js';
+import { connectFall, fall, layFall, listenFall, markOfBall, placeAbove, stepFall } from '../plane/fall.js';
 import { connectToys, layToys, listenToys } from '../plane/toys.js';
 import { changed, listen, state } from '../state.js';
 import { Flat, Orbit } from './camera.js';
@@ -27,6 +26,7 @@ import { gripAt } from './grips.js';
 import { Labels } from './labels.js';
 import { Layer } from './layer.js';
 import { fitLegend } from './marks.js';
+import { marksOf } from './overlay.js';
 import { paintAll } from './paint.js';
 import { hasMap, isFlat, viewsOf } from './panels.js';
 import { createPick } from './pick.js';
@@ -37,6 +37,7 @@ import { comparison, holding, setting } from './setting.js';
 import { listenSlice, meet, slice } from './slice.js';
 import { Source } from './source.js';
 import { along, inSpace } from './vectors.js';
+import { createVeil } from './veil.js';
 import { Views } from './views.js';
 
 /** Room around a ball that begins to fall in pixels, and how the camera steps back for it. */
@@ -58,6 +59,7 @@ export function createStage(container, wire) {
   let requested = 0;
   /** What the camera was laid for last. */
   let laidFor = '';
+  let wasFlat = false;
   /** Where the pointer leads the hand. @type {Vector | null} */
   let target = null;
   /** @type {any} */
@@ -78,7 +80,7 @@ export function createStage(container, wire) {
   const pictures = new Pictures(wire, elements.picture, overlayChanged);
   const labels = new Labels(wire, overlayChanged);
   const probe = new Probe(wire, overlayChanged);
-  const pick = createPick(layer);
+  const pick = createPick(layer, wire);
   const hand = createHand(wire);
   if (!layer.gl) withoutCard();
 
@@ -132,10 +134,10 @@ export function createStage(container, wire) {
       const shown = {
         target, contacts, labels, probe: probe.probed, notes: elements.notes,
         isDrawn: source.kind === 'drawn',
-        isBallHidden: veil.isHiding,
+        hides: veil.hides,
         legendTop: elements.legendTop,
       };
-      veil.look(views[0]);
+      veil.look(views[0], [...markOfBall(), ...marksOf(contacts)]);
       paintAll(elements.context, views, shown, elements.inks, elements.ratio);
     }
   }
@@ -189,14 +191,13 @@ export function createStage(container, wire) {
     if (view.isFlat) return view.lens.at(x, y, cameras.flat.frame.origin);
     const cut = view.hasPlane ? meet(view.lens, x, y) : null;
     if (cut) return cut;
-    if (source.kind === 'drawn') return view.lens.at(x, y, cameras.orbit.target);
-    return (await pick(view.panel, x, y))?.point ?? null;
+    return (await pickAt(view, { x, y }))?.point ?? null;
   }
 
   /** @param {View} view @param {Place} place */
-  const pickAt = (view, { x, y }) => pick(view.panel, x, y);
+  const pickAt = async (view, place) => (await pick(view, [place]))?.[0] ?? null;
 
-  const veil = createVeil(pickAt, overlayChanged);
+  const veil = createVeil(pick, overlayChanged);
 
   function fit() {
     elements.resize();
@@ -212,6 +213,7 @@ export function createStage(container, wire) {
       hand,
       view: (place) => views[viewAt(place)] ?? views[0],
       pick: pickAt,
+      hides: veil.hides,
       click: createClick(wire, pickAt, seenAt),
       changed: sceneChanged,
       show(point) {
@@ -254,6 +256,10 @@ export function createStage(container, wire) {
   listen(['view'], () => {
     probe.leave();
     const isOther = takeScene();
+    const isFlatNow = isFlat(setting());
+    // In a map one comes near, and into bodies.
+    if (wasFlat && !isFlatNow) named.stepOut(current());
+    wasFlat = isFlatNow;
     if (isOther && source.kind === 'samples') source.renew();
     askContacts(wire, (answer) => {
       contacts = answer;

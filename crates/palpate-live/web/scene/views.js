@@ -12,14 +12,13 @@
  */
 
 import { state } from '../state.js';
-import { cornersOf } from './setting.js';
+import { FIELD_OF_VIEW } from './camera.js';
+import { cornersOf, isWithin } from './setting.js';
 import { PLANES, setSlice, slice } from './slice.js';
 import { cross, dot, inSpace, subtract } from './vectors.js';
 
 /** A step of the zoom. */
 const STEP = 0.8;
-/** Room around the scene, over its size. */
-const ROOM = 1.25;
 /** The picture over the scene's box in it. */
 const MARGIN = 1.08;
 /** How far a plane is drawn from its origin, over the size of the scene. */
@@ -93,19 +92,19 @@ export class Views {
   /** Fits the scene's box into the picture of space. @param {Setting} setting */
   fitOrbit(setting) {
     const { orbit } = this;
-    const { right, up } = orbit.basis();
-    const [width, height] = extents(setting, [right, up]);
+    const { right, up, forward } = orbit.basis();
     orbit.target = setting.centre;
-    orbit.height = Math.max(height, width / this.aspect) * ROOM;
-    // What is nearer is larger: the corners tell by how much, and move as the camera does.
-    const rect = { x: -this.aspect / 2, y: -0.5, width: this.aspect, height: 1 };
-    for (let round = 0; round < 4; round += 1) {
-      const lens = orbit.lens(rect);
-      const seen = cornersOf(setting.box).map((corner) => lens.project(corner));
-      const most = Math.max(...seen.map((at) => (at
-        ? Math.max(Math.abs(at.x) / (this.aspect / 2), Math.abs(at.y) / 0.5) : 2)));
-      orbit.height *= most * MARGIN;
-    }
+    // What is nearer is larger: for each corner there is a least height at the target with which it is seen.
+    orbit.height = Math.max(...cornersOf(setting.box).map((corner) => {
+      const [across, above, behind] = [right, up, forward].map((way) => dot(subtract(corner, setting.centre), way));
+      const half = Math.max(Math.abs(across) / this.aspect, Math.abs(above)) * MARGIN;
+      return 2 * (half - behind * Math.tan(FIELD_OF_VIEW / 2));
+    }));
+  }
+
+  /** Shows the whole scene, where the viewer of space is in its box. @param {Setting} setting */
+  stepOut(setting) {
+    if (isWithin(setting.box, this.orbit.basis().eye)) this.fitOrbit(setting);
   }
 
   /** Turns the camera towards the plane. */

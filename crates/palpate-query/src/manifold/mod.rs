@@ -28,10 +28,11 @@ use crate::contact::{Contact, NormalSource};
 use crate::error::QueryError;
 use crate::goal::Goal;
 use crate::pair::body_pair::BodyPair;
+use crate::pair::facing::Face;
 use crate::pair::search::PairSearch;
 use crate::pair::{Nearest, PairWorkspace};
 use crate::placed::Placed;
-use crate::sampler::{arbitrary, normal};
+use crate::sampler::arbitrary;
 pub(crate) use deep::followed;
 use grid::distance;
 use patch::Patches;
@@ -271,13 +272,15 @@ impl<const D: usize> Spanned<D> {
             found.deepen(&deepest.touch, &pair);
         }
         let mut members = self.members.clone();
-        let mut are_pushed = false;
+        let mut are_moved = false;
         for member in &mut members {
             if let Some(touch) = deep::pushed(&mut pair, &member.touch, settings) {
-                (member.touch, are_pushed) = (touch, true);
+                (member.touch, are_moved) = (touch, true);
+            } else if let Some(touch) = member.touch.on_face(&mut pair, settings) {
+                (member.touch, are_moved) = (touch, true);
             }
         }
-        if are_pushed {
+        if are_moved {
             // Several lead to one deepest point.
             drop_copies(&mut members, settings.spacing);
         }
@@ -387,8 +390,8 @@ impl<const D: usize> Touch<D> {
     /// The touch at a point. Where no gradient gives a normal, the line between the bodies'
     /// centres does, if they differ.
     fn at(pair: &mut BodyPair<'_, D>, point: Point<D>) -> Self {
-        let [(a, slope_a), (b, slope_b)] = pair.slopes(point);
-        let (normal, source) = match normal(slope_a - slope_b) {
+        let (normal, [a, b]) = pair.normal(point);
+        let (normal, source) = match normal {
             Some(normal) => (normal, NormalSource::Gradients),
             None => {
                 let between = pair.between_centres().normalized();
@@ -396,6 +399,26 @@ impl<const D: usize> Touch<D> {
             }
         };
         Self { point, normal, gap: 2.0 * a.max(b), source }
+    }
+
+    /// The touch at a face of one body where the other has an edge: along the face's normal, and where
+    /// the bodies are apart, from the edge.
+    fn on_face(&self, pair: &mut BodyPair<'_, D>, settings: &ManifoldSettings) -> Option<Self> {
+        if self.source != NormalSource::Gradients {
+            return None;
+        }
+        let slopes = pair.slopes(self.point);
+        let Face { body, normal } = pair.face(self.point, slopes)?;
+        let turned = Self { normal, ..*self };
+        if self.gap <= 0.0 {
+            return Some(turned);
+        }
+        let near = settings.spacing.max(self.gap);
+        let edge = pair.surface_point(1 - body, self.point)?;
+        let gap = pair.slopes(edge)[body].0;
+        let to_face = if body == 0 { -normal } else { normal };
+        let point = edge + to_face * (0.5 * gap);
+        (distance(edge, self.point) <= near).then_some(Self { point, gap, ..turned })
     }
 
     /// The contact in world coordinates, no less deep than the values say. Points of the surfaces count

@@ -28,6 +28,9 @@ const PRECISE: f64 = 1e-3;
 /// Patches smaller than this many spacings are one contact, as are corners.
 const SMALL: f64 = 1.5;
 
+/// A patch reaches no farther than so many spacings beyond the sides between its corners.
+const BEYOND: f64 = 2.0;
+
 /// A corner is moved by at most so many spacings.
 const FAR: f64 = 4.0;
 
@@ -118,10 +121,17 @@ impl<const D: usize> Patches<'_, '_, D> {
             return;
         }
         let (_, other) = farthest(&|p| distance(p, one.point));
+        // Round the patch, as seen against the normal.
         let mut corners = vec![one, other];
-        if let Some(side) = square_to(deepest.normal, other.point - one.point) {
-            corners.push(farthest(&|p| (p - one.point).dot(side)).1);
-            corners.push(farthest(&|p| -(p - one.point).dot(side)).1);
+        let mut i = 0;
+        while D == 3 && i < corners.len() {
+            let (from, to) = (corners[i].point, corners[(i + 1) % corners.len()].point);
+            let outwards = square_to(to - from, deepest.normal).and_then(Vector::normalized);
+            let beyond = outwards.map(|outwards| farthest(&|p| (p - from).dot(outwards)));
+            match beyond {
+                Some((far, corner)) if far > BEYOND * spacing => corners.insert(i + 1, corner),
+                _ => i += 1,
+            }
         }
         for i in 0..corners.len() {
             let is_apart =

@@ -105,6 +105,14 @@ impl<'a, const D: usize> BodyPair<'a, D> {
         Some(body.in_frame(body.shape.surface_point(body.local(p))?))
     }
 
+    /// The longest side of the smaller of the bodies' boxes [m].
+    pub(crate) fn smaller_size(&self) -> f64 {
+        let size = |aabb: &Aabb<D>| {
+            (0..D).fold(0.0_f64, |longest, k| longest.max(aabb.max[k] - aabb.min[k]))
+        };
+        self.aabbs.iter().flatten().map(size).fold(f64::INFINITY, f64::min)
+    }
+
     /// From the middle of the first body's box to that of the second's; zero if one has
     /// none.
     pub(crate) fn between_centres(&self) -> Vector<f64, D> {

@@ -16,6 +16,7 @@ pub(crate) mod cell;
 mod common_surface;
 pub(crate) mod descent;
 pub(crate) mod distance_bound;
+pub(crate) mod facing;
 mod nearest;
 mod proof;
 mod rates;

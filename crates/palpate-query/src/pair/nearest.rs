@@ -8,7 +8,6 @@ use palpate_field::{Point, Vector};
 use super::body_pair::BodyPair;
 use crate::contact::Contact;
 use crate::placed::Placed;
-use crate::sampler::normal;
 
 /// Where two bodies are nearest, or overlap most, in world coordinates.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -25,11 +24,11 @@ pub struct Nearest<const D: usize> {
 impl<const D: usize> Nearest<D> {
     /// The answer at a point of the pair's frame.
     pub(super) fn at(pair: &mut BodyPair<'_, D>, p: Point<D>) -> Self {
-        let [(_, a), (_, b)] = pair.slopes(p);
+        let (normal, _) = pair.normal(p);
         let pose = &pair.world_from_frame;
         Self {
             point: pose.transform_point(p),
-            normal: normal(a - b).map(|normal| pose.transform_vector(normal)),
+            normal: normal.map(|normal| pose.transform_vector(normal)),
         }
     }
 

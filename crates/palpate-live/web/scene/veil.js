@@ -1,0 +1,71 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+// @ts-check
+
+/**
+ * Which marks lie behind bodies: what is seen at the place of such a mark is nearer than the mark.
+ *
+ * @typedef {import('../input/pointer.js').Place} Place
+ * @typedef {import('./panels.js').View} View
+ * @typedef {import('./pick.js').Hit} Hit
+ * @typedef {import('./vectors.js').Vector} Vector
+ * @typedef {{ key: string, point: Vector, radius: number }} Mark `radius` is how far bodies reach into it
+ *   without hiding it [m]
+ */
+
+import { state } from '../state.js';
+import { newest } from './newest.js';
+import { MOST_PLACES } from './pick.js';
+import { setting } from './setting.js';
+import { slice } from './slice.js';
+import { norm, subtract } from './vectors.js';
+
+/** Marks that are looked at together, and the time until the next are [ms]: by the card, and by the
+ * core, which takes 120 messages a second. */
+const LOOKS = { card: { most: MOST_PLACES, pause: 60 }, core: { most: 8, pause: 600 } };
+/** How far behind a surface a mark still lies on it, over the size of the scene. */
+const NEAR = 0.01;
+/** A mark that moves less than this is not looked at again, over the size of the scene. */
+const STEP = 0.002;
+
+/** @param {(view: View, places: Place[]) => Promise<(Hit | null)[] | null>} pick
+ * @param {() => void} changed */
+export function createVeil(pick, changed) {
+  /** How each mark was seen last, and whether it was hidden. @type {Map<string, { seen: string, isHidden: boolean }>} */
+  const known = new Map();
+  const look = newest(async (/** @type {{ view: View, marks: (Mark & { seen: string })[] }} */ { view, marks }) => {
+    const { most, pause } = state.hasCard ? LOOKS.card : LOOKS.core;
+    const { lens } = view;
+    const { eye } = lens.basis;
+    const size = NEAR * setting().size;
+    const looked = marks.slice(0, most).map((mark) => ({ ...mark, place: lens.project(mark.point) }));
+    const places = looked.map(({ place }) => place ?? { x: 0, y: 0 });
+    const hits = await pick(view, places);
+    hits?.forEach((hit, index) => {
+      const { key, point, radius, seen, place } = looked[index];
+      const far = norm(subtract(point, eye)) - Math.max(radius, size);
+      known.set(key, { seen, isHidden: place !== null && hit !== null && norm(subtract(hit.point, eye)) < far });
+    });
+    changed();
+    await new Promise((resolve) => { setTimeout(resolve, pause); });
+  });
+  return {
+    /** Whether a mark lies behind a body. @param {string} key */
+    hides: (key) => known.get(key)?.isHidden ?? false,
+    /** Looks at those marks again that moved, or all if the viewer did. @param {View | undefined} view
+     * @param {Mark[]} marks */
+    look(view, marks) {
+      if (!view || view.isFlat || !view.isWhole) {
+        known.clear();
+        return;
+      }
+      const { eye, forward } = view.lens.basis;
+      const { revision } = state.scene ?? {};
+      const sight = JSON.stringify([eye, forward, revision, view.hasPlane && slice.frame]);
+      const step = STEP * setting().size;
+      const moved = marks.map((mark) => ({ ...mark, seen: `${mark.point.map((part) => Math.round(part / step))} ${sight}` }))
+        .filter(({ key, seen }) => known.get(key)?.seen !== seen);
+      if (moved.length > 0) look({ view, marks: moved });
+    },
+  };
+}
