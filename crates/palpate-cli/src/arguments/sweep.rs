@@ -30,6 +30,10 @@ pub(crate) struct SweepOptions {
     /// A file of motions in place of the scene's own.
     #[arg(long, value_name = "FILE")]
     pub(crate) motion: Option<PathBuf>,
+    /// List pairs that are apart too; always on where at most 66 pairs are asked about, those of 12
+    /// bodies.
+    #[arg(long)]
+    pub(crate) every_pair: bool,
     /// Only pairs with this body; may be given more than once.
     #[arg(long, value_name = "NAME")]
     pub(crate) body: Vec<String>,
@@ -41,7 +45,8 @@ pub(crate) struct SweepOptions {
     /// out.
     #[arg(long, allow_negative_numbers = true, value_parser = length)]
     pub(crate) gap: Option<f64>,
-    /// How far apart the bounds of a time may be [s]; 1e-4 of the time that is looked at if left out.
+    /// How far apart the bounds of a time may be [s]; if left out, 1e-4 of the part of the motions, each
+    /// of less than half a turn.
     #[arg(long, allow_negative_numbers = true, value_parser = positive("s"))]
     pub(crate) tolerance: Option<f64>,
     /// The budget: the most evaluations of fields for each pair and each part of a motion; 5000000 if

@@ -26,7 +26,7 @@ pub(crate) use report::as_json;
 const FEW: usize = 12;
 
 /// Reports list every pair of at most so many, those of 12 bodies, and only near ones of more.
-const FEW_PAIRS: usize = FEW * (FEW - 1) / 2;
+pub(crate) const FEW_PAIRS: usize = FEW * (FEW - 1) / 2;
 
 /// Finds the pairs that touch; the answer is no if none do.
 pub(crate) fn run(options: &ContactOptions, interrupt: &Interrupt) -> Result<Outcome, Failure> {
@@ -83,7 +83,7 @@ fn answer<const D: usize>(
 }
 
 /// How many pairs `all` bodies have with one of `asked`; all of them if none is asked for.
-fn pairs_of(all: usize, asked: usize) -> usize {
+pub(crate) fn pairs_of(all: usize, asked: usize) -> usize {
     let pairs = |bodies: usize| bodies * bodies.saturating_sub(1) / 2;
     if asked == 0 { pairs(all) } else { pairs(all) - pairs(all - asked) }
 }

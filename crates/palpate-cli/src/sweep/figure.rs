@@ -55,7 +55,13 @@ where
     let drawn = Drawn::new(question, scene, pair)?;
     let plane = drawn.plane(options.plane.as_deref())?;
     let names: Vec<&str> = scene.bodies.iter().map(|body| body.name.as_str()).collect();
-    let report = Report { question, names: &names, pairs: std::slice::from_ref(pair) };
+    let report = Report {
+        question,
+        names: &names,
+        pairs: std::slice::from_ref(pair),
+        apart: 0,
+        unbounded: 0,
+    };
     let mut caption = report.in_words(pair);
     if D == 3 {
         caption = format!("{}; {caption}", plane::in_words(&plane));

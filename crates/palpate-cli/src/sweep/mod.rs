@@ -13,6 +13,7 @@ use palpate::query::{FirstTouch, Moving, Placed, Stop, SweepSettings, SweepWorks
 use palpate::scene::{AnyScene, BuiltScene, Repeat};
 
 use crate::arguments::SweepOptions;
+use crate::contact::{FEW_PAIRS, pairs_of};
 use crate::input;
 use crate::interrupt::Interrupt;
 use crate::outcome::{Failure, Outcome};
@@ -23,7 +24,7 @@ use local::{LocalSearch, Surfaced};
 /// The gap over the size of the smallest body.
 const GAP: f64 = 1e-6;
 
-/// The tolerance of times over the time that is looked at.
+/// The tolerance of times over the part of a motion in which bodies touch.
 const TOLERANCE: f64 = 1e-4;
 
 /// The most parts of motions that are looked at.
@@ -39,11 +40,17 @@ struct Pair<const D: usize> {
     part: [f64; 2],
 }
 
+impl<const D: usize> Pair<D> {
+    fn is_apart(&self) -> bool {
+        self.found.touches() == Some(false)
+    }
+}
+
 /// What is asked of each pair.
 struct Question {
     until: f64,
-    /// [s].
-    tolerance: f64,
+    /// [s]; a share of each part if it is `None`.
+    tolerance: Option<f64>,
     settings: SweepSettings,
     local: Option<LocalSearch>,
 }
@@ -78,7 +85,8 @@ where
     let question = asked_of(options, scene)?;
     let times = scene.times_of_motion(question.until);
     let moving: Vec<usize> = scene.moving().collect();
-    let mut pairs = Vec::new();
+    let is_every = options.every_pair || pairs_of(names.len(), asked.len()) <= FEW_PAIRS;
+    let (mut pairs, mut apart, mut unbounded) = (Vec::new(), 0, 0);
     interrupt.heed();
     for a in 0..names.len() {
         for b in a + 1..names.len() {
@@ -89,11 +97,19 @@ where
             if interrupt.is_asked() {
                 break;
             }
-            pairs.push(first_touch(scene, [a, b], &times, &question, interrupt)?);
+            if are_unbounded(scene, [a, b]) {
+                unbounded += 1;
+                continue;
+            }
+            let found = first_touch(scene, [a, b], &times, &question, interrupt)?;
+            let is_apart = found.as_ref().is_some_and(|pair| pair.is_apart());
+            apart += usize::from(is_apart);
+            pairs.extend(found.filter(|_| is_every || !is_apart));
         }
     }
     pairs.sort_by(|a, b| a.found.upper.total_cmp(&b.found.upper));
-    let report = report::Report { question: &question, names: &names, pairs: &pairs };
+    let report =
+        report::Report { question: &question, names: &names, pairs: &pairs, apart, unbounded };
     if options.json {
         report.print_json()?;
     } else {
@@ -143,18 +159,22 @@ fn asked_of<const D: usize>(
     let smallest = scene.bodies.iter().map(size).fold(f64::INFINITY, f64::min);
     let gap =
         options.gap.unwrap_or(if smallest < f64::INFINITY { GAP * smallest } else { GAP });
-    let tolerance = options.tolerance.unwrap_or(TOLERANCE * until);
     let settings = SweepSettings::of_size(1.0)
         .with_gap(gap)
         .with_budget(options.budget.unwrap_or(SweepSettings::BUDGET));
     let local = LocalSearch::of(options, gap)?;
-    Ok(Question { until, tolerance, settings, local })
+    Ok(Question { until, tolerance: options.tolerance, settings, local })
 }
 
 impl Question {
+    /// How far apart the bounds of a time between two others may be [s].
+    fn tolerance_in(&self, [from, to]: [f64; 2]) -> f64 {
+        self.tolerance.unwrap_or(TOLERANCE * (to - from))
+    }
+
     /// The settings of a search between two times [s].
-    fn settings_over(&self, [from, to]: [f64; 2]) -> SweepSettings {
-        self.settings.with_time_tolerance(self.tolerance / (to - from))
+    fn settings_over(&self, part @ [from, to]: [f64; 2]) -> SweepSettings {
+        self.settings.with_time_tolerance(self.tolerance_in(part) / (to - from))
     }
 }
 
@@ -171,6 +191,11 @@ fn ways<const D: usize>(
         Ok::<_, Failure>(way.map_or_else(rest, |way| Moving::new(shape, way)))
     };
     Ok([moving(bodies[0])?, moving(bodies[1])?])
+}
+
+/// Whether both bodies have no bounds: no search of them ends.
+fn are_unbounded<const D: usize>(scene: &BuiltScene<D>, bodies: [usize; 2]) -> bool {
+    bodies.iter().all(|body| scene.bodies[*body].shape.promise().bounds.is_none())
 }
 
 /// What a local search finds of two bodies [s].
@@ -216,14 +241,14 @@ where
     Ok(all)
 }
 
-/// When two bodies touch first [s].
+/// When two bodies touch first [s]; `None` at an interrupt.
 fn first_touch<const D: usize>(
     scene: &BuiltScene<D>,
     bodies: [usize; 2],
     times: &[f64],
     question: &Question,
     interrupt: &Interrupt,
-) -> Result<Pair<D>, Failure>
+) -> Result<Option<Pair<D>>, Failure>
 where
     Dimensions: Surfaced<D>,
 {
@@ -235,6 +260,9 @@ where
     let mut last = None;
     for part in times.windows(2) {
         let &[from, to] = part else { continue };
+        if interrupt.is_asked() {
+            return Ok(None);
+        }
         let [a, b] = ways(scene, bodies, [from, to])?;
         let (length, settings) = (to - from, question.settings_over([from, to]));
         let mut found = sweep(a, b, &settings, &mut workspace).map_err(Failure::input)?;
@@ -244,9 +272,9 @@ where
         found.upper = from + length * found.upper;
         let pair = Pair { bodies, found, local, part: [from, to] };
         if found.stop != Stop::SignKnown {
-            return Ok(pair);
+            return Ok(Some(pair));
         }
         last = Some(pair);
     }
-    last.ok_or_else(|| Failure::input("there is no time to look at"))
+    Ok(last)
 }

@@ -19,7 +19,12 @@ pub(super) struct Report<'a, const D: usize> {
     pub(super) question: &'a Question,
     /// The names of the bodies.
     pub(super) names: &'a [&'a str],
+    /// Those that are listed.
     pub(super) pairs: &'a [Pair<D>],
+    /// How many pairs are apart, listed or not.
+    pub(super) apart: usize,
+    /// Of how many pairs both bodies have no bounds.
+    pub(super) unbounded: usize,
 }
 
 impl<const D: usize> Report<'_, D> {
@@ -37,9 +42,16 @@ impl<const D: usize> Report<'_, D> {
             rounded(self.question.until),
             counted(count(Some(true)), "pair touches", "pairs touch"),
             rounded(self.question.settings.gap),
-            count(Some(false)),
+            self.apart,
             count(None),
         )?;
+        if self.unbounded > 0 {
+            let pairs = counted(self.unbounded, "pair", "pairs");
+            writeln!(
+                out,
+                "{pairs} not searched: both bodies have no bounds, and no search ends"
+            )?;
+        }
         Ok(())
     }
 
@@ -53,20 +65,14 @@ impl<const D: usize> Report<'_, D> {
                 format!("touching at the start, {}", in_a_word(start))
             }
             (Some(true), _) => {
-                let (upper, lower) = (found.upper, found.lower);
-                let proven =
-                    format!("touching at {upper:.9} s; before {lower:.9} s apart, proven");
+                let proven = format!("touching at {:.9} s{}", found.upper, apart_before(found));
                 if found.stop.is_early() {
                     format!("{proven}; not when first: {}", self.why(found.stop))
                 } else {
                     proven
                 }
             }
-            (None, _) => format!(
-                "undecided; before {:.9} s apart, proven; {}",
-                found.lower,
-                self.why(found.stop)
-            ),
+            (None, _) => format!("undecided{}; {}", apart_before(found), self.why(found.stop)),
         };
         let mut words = format!("{a} – {b}: {what} ({cost})");
         if let Some(contact) = &found.contact {
@@ -94,10 +100,12 @@ impl<const D: usize> Report<'_, D> {
     fn why(&self, stop: Stop) -> String {
         match stop {
             Stop::BudgetSpent => format!(
-                "the budget of {} evaluations is spent; raise --budget or --gap",
+                "the budget of {} evaluations is spent; raise --budget, --tolerance or --gap",
                 self.question.settings.budget
             ),
-            Stop::MemoryFull => "the memory for waiting boxes is full; raise --gap".to_owned(),
+            Stop::MemoryFull => {
+                "the memory for waiting boxes is full; raise --tolerance or --gap".to_owned()
+            }
             _ => "no closer bounds of their separation are found; raise --gap".to_owned(),
         }
     }
@@ -108,9 +116,10 @@ impl<const D: usize> Report<'_, D> {
         output::answer().json(&json!({
             "until_s": self.question.until,
             "gap_m": self.question.settings.gap,
-            "tolerance_s": self.question.tolerance,
             "budget": self.question.settings.budget,
             "bodies": self.names,
+            "apart": self.apart,
+            "unbounded": self.unbounded,
             "pairs": pairs,
         }))?;
         Ok(())
@@ -129,6 +138,7 @@ impl<const D: usize> Report<'_, D> {
             "upper_s": found.upper,
             "start": found.start.map(in_a_word),
             "contact": found.contact.as_ref().map(as_json),
+            "tolerance_s": self.question.tolerance_in(pair.part),
             "stop": found.stop.to_string(),
             "evaluations": found.evaluations,
             "local": pair.local.as_ref().zip(self.question.local.as_ref()).map(|(local, search)| {
@@ -145,6 +155,12 @@ impl<const D: usize> Report<'_, D> {
     }
 }
 
+/// Until when bodies are proven apart, if they are at all.
+fn apart_before<const D: usize>(found: &FirstTouch<D>) -> String {
+    let words = || format!("; before {:.9} s apart, proven", found.lower);
+    if found.lower > 0.0 { words() } else { String::new() }
+}
+
 /// How a time that a local search found stands to the proven ones.
 fn against<const D: usize>(time: f64, found: &FirstTouch<D>) -> String {
     let (late, early) = (time - found.upper, found.lower - time);
@@ -153,6 +169,7 @@ fn against<const D: usize>(time: f64, found: &FirstTouch<D>) -> String {
         () if early > 0.0 => {
             format!("early by {early:.3e} s: the elements of its surface lie off the body")
         }
+        () if found.stop.is_early() => "between bounds that are far apart".to_owned(),
         () => "within the proven bounds".to_owned(),
     }
 }

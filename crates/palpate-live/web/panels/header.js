@@ -5,6 +5,7 @@
 /** The line at the top: the scene, the device, the connection, and the stop button. */
 
 import { html, useEffect, useRef, useState } from '../vendor/htm-preact.js';
+import { isDark } from '../scene/colors.js';
 import { changed, state } from '../state.js';
 import * as actions from './actions.js';
 import { GALLERY } from './gallery.js';
@@ -14,12 +15,6 @@ import { baseName, save, saveAs } from './saving.js';
 import { StopButton } from './stop.js';
 
 const THEME = 'palpate-theme';
-
-/** The theme in use. */
-export function isDark() {
-  const chosen = document.documentElement.dataset.theme;
-  return chosen ? chosen === 'dark' : matchMedia('(prefers-color-scheme: dark)').matches;
-}
 
 /** Takes the theme that was chosen before, and follows the system's. */
 export function startTheme() {

@@ -7,6 +7,7 @@
 import { html } from '../vendor/htm-preact.js';
 import { setSound, setVolume } from '../input/audio.js';
 import { firstPad } from '../input/gamepad.js';
+import { pullInWords } from '../scene/guides.js';
 import { setTouch, state } from '../state.js';
 import { ChoiceField, Switch } from './fields.js';
 import { page, useTopics } from './page.js';
@@ -67,10 +68,11 @@ function Readout() {
   const others = names.length > NAMED ? ` and ${names.length - NAMED} more` : '';
   const lifted = frame?.lifted ? ' while the hand is lifted to another place' : '';
   const isSlipping = touched.some((point) => point.slipping);
+  const pull = frame?.points.map(pullInWords).find(Boolean) ?? '';
   return html`<dl class="readout">
     <div title="The largest of all contact points"><dt>force</dt><dd><span class="large">${(frame?.force ?? 0).toFixed(2)}</span> N</dd></div>
     <div title="The largest of all contact points"><dt>depth</dt><dd><span class="large">${(1000 * (frame?.depth ?? 0)).toFixed(2)}</span> mm</dd></div>
     <div class="touched" title=${lifted ? 'It passes through bodies, and feels them again where it is set down' : names.join(', ')}><dt>touches</dt>
-      <dd>${names.length > 0 ? `${names.slice(0, NAMED).join(', ')}${others}${isSlipping ? ', slipping' : ''}` : `nothing${lifted}`}</dd></div>
+      <dd>${names.length > 0 ? `${names.slice(0, NAMED).join(', ')}${others}${isSlipping ? ', slipping' : ''}` : `nothing${lifted}`}${pull && `, ${pull}`}</dd></div>
   </dl>`;
 }

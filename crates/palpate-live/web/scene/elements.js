@@ -67,7 +67,7 @@ export class Elements {
     this.height = 1;
     this.ratio = 1;
     /** The colours of the theme. @type {Inks} */
-    this.inks = { ink: '#000000', halo: '#ffffff', muted: '#8a909a' };
+    this.inks = { ink: '#000000', halo: '#ffffff', paper: '#ffffff', muted: '#8a909a' };
     this.useCard(true);
     this.dress();
   }
@@ -95,7 +95,7 @@ export class Elements {
   dress() {
     const paper = behind(this.container);
     const ink = getComputedStyle(this.container).color;
-    this.inks = { ink, halo: paper, muted: '#8a909a' };
+    this.inks = { ink, halo: paper, paper, muted: '#8a909a' };
     for (const text of [this.way, this.readout]) {
       Object.assign(text.style, { color: ink, background: paper });
     }
@@ -139,7 +139,7 @@ export class Elements {
     canvas.width = width;
     canvas.height = height;
     const context = /** @type {CanvasRenderingContext2D} */ (canvas.getContext('2d'));
-    const { ink, halo: paper } = this.inks;
+    const { ink, paper } = this.inks;
     context.fillStyle = paper;
     context.fillRect(0, 0, width, height);
     context.drawImage(isDrawn ? this.picture : this.scene, 0, 0, width, height);

@@ -10,7 +10,7 @@
  * know: compilers write every call out, and a scene's formula may have thousands of operations.
  */
 
-import { MAP_COLORS, MAP_NUMBERS, OKLAB, WHEEL } from './colors.js';
+import { MAP_COLORS, MAP_NUMBERS, OKLAB, THEMED, WHEEL } from './colors.js';
 
 /** The maps of a plane, by the number that the programs know. */
 export const MAPS = { inside: 0, distance: 1, gradient: 2, promise: 3, difference: 4 };
@@ -37,6 +37,9 @@ const mat3 = (rows) => `mat3(${[0, 1, 2].flatMap((column) => rows.map((row) => r
 
 /** @param {number} number */
 const float = (number) => (Number.isInteger(number) ? `${number}.0` : `${number}`);
+
+/** A colour of the theme: another theme needs no other program. @param {string} name */
+const themed = (name) => `themed[${THEMED.indexOf(name)}]`;
 
 /** A point in as many dimensions as the field has. */
 const argument = (/** @type {number} */ dimension) => (dimension === 2 ? '.xy' : '');
@@ -127,8 +130,7 @@ vec3 corner(int k) {
 const MAP = `
 uniform float spacing, range, sineFactor;
 uniform bool isolines, asInMemoir, positiveInside;
-uniform vec3 channels;
-const vec3 INK = ${vec3(MAP_COLORS.ink)};
+uniform vec3 channels, themed[${THEMED.length}];
 
 vec3 fromOklab(vec3 c) {
   vec3 roots = ${mat3(OKLAB.roots)} * c;
@@ -140,7 +142,7 @@ vec3 fromOklab(vec3 c) {
 vec3 direction(vec2 g) {
   float beyond = max(length(g), 1.0);
   g /= beyond;
-  return fromOklab((${vec3(WHEEL.middle)} + g.x * ${vec3(WHEEL.right)} + g.y * ${vec3(WHEEL.up)}) / beyond);
+  return fromOklab((${themed('wheel')} + g.x * ${vec3(WHEEL.right)} + g.y * ${vec3(WHEEL.up)}) / beyond);
 }
 
 // How much a line covers of a pixel at this many pixels from its middle.
@@ -157,22 +159,22 @@ vec3 mapped(float value, float other, vec2 g, float slope, float pixel, int numb
   float zeroLine = line(abs(value) / pixel, isChosen ? 3.0 : 2.0);
   if (map == 4) {
     float change = (value - other) / range;
-    vec3 c = mix(${vec3(MAP_COLORS.equal)}, change < 0.0 ? ${vec3(MAP_COLORS.less)} : ${vec3(MAP_COLORS.more)},
+    vec3 c = mix(${themed('equal')}, change < 0.0 ? ${themed('less')} : ${themed('more')},
       1.0 - exp(-${float(MAP_NUMBERS.contrast)} * abs(change)));
-    return mix(c, INK, 0.8 * zeroLine);
+    return mix(c, ${themed('ink')}, 0.8 * zeroLine);
   }
   float wave = cos(${float(MAP_NUMBERS.waves)} * sineFactor * value / range);
   vec3 colour;
   if (map == 0) {
-    colour = mix(${vec3(MAP_COLORS.outside)}, mix(tint, vec3(1), ${MAP_NUMBERS.pale}), inner);
+    colour = mix(${themed('outside')}, mix(tint, ${themed('pale')}, ${MAP_NUMBERS.pale}), inner);
   } else if (map == 1 && asInMemoir) {
     colour = mix(${vec3(MAP_COLORS.memoirOutside)}, ${vec3(MAP_COLORS.memoirInside)}, inner);
     colour *= 1.0 - ${MAP_NUMBERS.wave} * (1.0 - wave);
-    return mix(colour, vec3(1), zeroLine);
+    return mix(colour, ${vec3(MAP_COLORS.surface)}, zeroLine);
   } else if (map == 1) {
     float far = 1.0 - exp(-${MAP_NUMBERS.fade} * abs(value) / range);
-    colour = value < 0.0 ? mix(${vec3(MAP_COLORS.insideNear)}, ${vec3(MAP_COLORS.insideFar)}, far)
-      : mix(${vec3(MAP_COLORS.outsideNear)}, ${vec3(MAP_COLORS.outsideFar)}, far);
+    colour = value < 0.0 ? mix(${themed('insideNear')}, ${themed('insideFar')}, far)
+      : mix(${themed('outsideNear')}, ${themed('outsideFar')}, far);
     colour *= mod(floor(value / spacing), 2.0) < 0.5 ? 1.0 : ${MAP_NUMBERS.band};
   } else if (map == 2) {
     g = positiveInside ? -g : g;
@@ -181,23 +183,22 @@ vec3 mapped(float value, float other, vec2 g, float slope, float pixel, int numb
     // Outside and inside have promises of their own: exact, bound or Lipschitz.
     int codes = int(body(number).a * 255.0 + 0.5);
     int promise = value < 0.0 ? codes / 4 : codes % 4;
-    colour = promise == 0 ? ${vec3(MAP_COLORS.exact)} : promise == 1 ? ${vec3(MAP_COLORS.bound)}
-      : ${vec3(MAP_COLORS.lipschitz)};
-    colour = mix(colour, ${vec3(MAP_COLORS.flat)}, clamp(1.0 - slope, 0.0, 1.0));
-    colour = mix(colour, ${vec3(MAP_COLORS.steep)}, clamp(2.0 * (slope - ${MAP_NUMBERS.steepest}), 0.0, 1.0));
+    colour = promise == 0 ? ${themed('exact')} : promise == 1 ? ${themed('bound')} : ${themed('lipschitz')};
+    colour = mix(colour, ${themed('flat')}, clamp(1.0 - slope, 0.0, 1.0));
+    colour = mix(colour, ${themed('steep')}, clamp(2.0 * (slope - ${MAP_NUMBERS.steepest}), 0.0, 1.0));
   }
   if (isolines && spacing > 0.0) {
     float nearest = round(value / spacing);
     float covered = line(abs(value - nearest * spacing) / pixel, 1.0);
     float fade = clamp(spacing / pixel / 5.0 - 0.4, 0.0, 1.0);
     float strong = mod(abs(nearest), 5.0) < 0.5 ? 0.6 : 0.34;
-    vec3 ink = map == 2 ? ${vec3(MAP_COLORS.gradientLine)}
-      : value < 0.0 ? ${vec3(MAP_COLORS.insideLine)} : ${vec3(MAP_COLORS.outsideLine)};
+    vec3 ink = map == 2 ? ${themed('gradientLine')}
+      : value < 0.0 ? ${themed('insideLine')} : ${themed('outsideLine')};
     colour = mix(colour, ink, nearest == 0.0 ? 0.0 : covered * fade * strong);
   }
   bool white = map == 1;
-  colour = mix(colour, INK, white ? 0.7 * line(abs(value) / pixel, 4.5) : 0.0);
-  return mix(colour, isChosen ? CHOSEN : white ? vec3(1) : INK, zeroLine);
+  colour = mix(colour, ${vec3(MAP_COLORS.rim)}, white ? 0.7 * line(abs(value) / pixel, 4.5) : 0.0);
+  return mix(colour, isChosen ? CHOSEN : white ? ${vec3(MAP_COLORS.surface)} : ${themed('ink')}, zeroLine);
 }
 `;
 

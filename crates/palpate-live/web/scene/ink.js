@@ -7,7 +7,8 @@
  *
  * @typedef {CanvasRenderingContext2D} Context
  * @typedef {{ x: number, y: number }} Place
- * @typedef {{ ink: string, halo: string, muted: string }} Inks
+ * @typedef {{ ink: string, halo: string, paper: string, muted: string }} Inks `halo` is around marks, `paper`
+ *   around and behind texts
  */
 
 /** Twelve colours that are told apart, as palpate-plot numbers points and bodies. */
@@ -113,7 +114,7 @@ export function label(context, text, x, y, inks, align = 'center', color = inks.
   context.textAlign = align;
   context.textBaseline = 'middle';
   context.lineJoin = 'round';
-  context.strokeStyle = inks.halo;
+  context.strokeStyle = color === inks.ink ? inks.paper : inks.halo;
   context.lineWidth = 3.5;
   context.strokeText(text, x, y);
   context.fillStyle = color;

@@ -11,7 +11,7 @@
  */
 
 import { state } from '../state.js';
-import { MAP_COLORS, css, direction } from './colors.js';
+import { MAP_COLORS, css, direction, themed } from './colors.js';
 import { MAPS } from './glsl.js';
 import { arrow, label, stroke } from './ink.js';
 import { AXIS_COLORS, COLORS, isLegendOpen, mark } from './marks.js';
@@ -34,7 +34,7 @@ export function paintScale(context, { lens }, at, inks) {
     context.lineTo(right - wide, y);
     context.lineTo(right, y);
     context.lineTo(right, y - 4);
-  }, inks.ink, 1.5, inks.halo);
+  }, inks.ink, 1.5, inks.paper);
   label(context, level(metres, metres), right - wide / 2, y - 10, inks);
 }
 
@@ -62,6 +62,7 @@ export function paintAxes(context, { lens, isFlat }, inks) {
 export function paintLegend(context, { lens: { rect }, hasLines, spacing, panel }, top, inks) {
   if (!isLegendOpen()) return top;
   const { map, asInMemoir } = state.view;
+  const colors = themed();
   const right = rect.x + rect.width - MARGIN;
   let y = top + 6;
   /** @param {string} text @param {import('./colors.js').Color} from @param {import('./colors.js').Color} [to] */
@@ -78,22 +79,22 @@ export function paintLegend(context, { lens: { rect }, hasLines, spacing, panel 
     y += 18;
   };
   if (panel.map === MAPS.difference) {
-    entry('the first is less', MAP_COLORS.less);
-    entry('the first is more', MAP_COLORS.more);
+    entry('the first is less', colors.less);
+    entry('the first is more', colors.more);
     return y;
   }
   if (map === 'distance' && asInMemoir) {
     entry('inside', MAP_COLORS.memoirInside);
     entry('outside', MAP_COLORS.memoirOutside);
   } else if (map === 'distance') {
-    entry('inside', MAP_COLORS.insideNear, MAP_COLORS.insideFar);
-    entry('outside', MAP_COLORS.outsideNear, MAP_COLORS.outsideFar);
+    entry('inside', colors.insideNear, colors.insideFar);
+    entry('outside', colors.outsideNear, colors.outsideFar);
   } else if (map === 'promise') {
-    entry('exact', MAP_COLORS.exact);
-    entry('bound', MAP_COLORS.bound);
-    entry('Lipschitz', MAP_COLORS.lipschitz);
-    entry('slope below 1', MAP_COLORS.flat);
-    entry('slope above 1', MAP_COLORS.steep);
+    entry('exact', colors.exact);
+    entry('bound', colors.bound);
+    entry('Lipschitz', colors.lipschitz);
+    entry('slope below 1', colors.flat);
+    entry('slope above 1', colors.steep);
   } else if (map === 'gradient' && !asInMemoir) {
     paintWheel(context, right - 30, y + 26);
     label(context, 'where ∇f points', right - 62, y + 26, inks, 'right');

@@ -18,7 +18,7 @@ import { FONT, arrow, dot, label, polyline, ring, spring } from './ink.js';
 export const COLORS = {
   force: '#d1480a', normal: '#007355', contact: '#9e2f78', path: '#e02020', hit: '#b3261e',
   ball: '#c9730a', selected: '#e0a000', moves: '#007355', turns: '#743aa6',
-  proof: 'rgba(158, 47, 120, 0.7)',
+  proof: 'rgba(158, 47, 120, 0.7)', guide: '#00838f',
 };
 
 /** The colours of the axes of the scene. */
@@ -26,8 +26,8 @@ export const AXIS_COLORS = ['#c0392b', '#1a7d3c', '#2563b0'];
 
 /** How opaque a hand is that is lifted. */
 export const LIFTED = 0.55;
-/** How opaque marks are that lie behind a body, and the dashes of their lines in pixels. */
-const HIDDEN = { opacity: 0.5, dashes: [1, 6] };
+/** How opaque marks are that lie behind a body. */
+const HIDDEN = 0.4;
 
 /** A line across. @param {string} color @param {number} width @returns {Icon} */
 const line = (color, width) => (context, x, y) =>
@@ -44,15 +44,6 @@ const square = (color) => (context, x, y) => {
   context.strokeRect(x - 7, y - 5, 14, 10);
 };
 
-/** @param {Context} context @param {() => void} paint */
-function behind(context, paint) {
-  context.globalAlpha = HIDDEN.opacity;
-  context.setLineDash(HIDDEN.dashes);
-  paint();
-  context.setLineDash([]);
-  context.globalAlpha = 1;
-}
-
 /** @type {Record<string, [string, Icon]>} */
 const MARKS = {
   free: ['device point, free', (context, x, y, inks) => dot(context, { x, y }, 4, '#1b5fb0', inks.halo)],
@@ -61,8 +52,11 @@ const MARKS = {
     ring(context, { x, y }, 5, '#1b5fb0', 1.5, inks.halo);
     context.globalAlpha = 1;
   }],
-  hidden: ['dotted: behind a body', (context, x, y, inks) =>
-    behind(context, () => ring(context, { x, y }, 5, '#1b5fb0', 1.5, inks.halo))],
+  hidden: ['faded: behind a body', (context, x, y, inks) => {
+    context.globalAlpha = HIDDEN;
+    dot(context, { x, y }, 5, '#1b5fb0', inks.halo);
+    context.globalAlpha = 1;
+  }],
   off: ['hollow: off the plane', (context, x, y, inks) => ring(context, { x, y }, 5, '#1b5fb0', 1.5, inks.halo)],
   device: ['device point in a body', (context, x, y, inks) => ring(context, { x, y }, 4, '#1b5fb0', 1.5, inks.halo)],
   proxy: ['proxy on the surface', (context, x, y, inks) => dot(context, { x, y }, 5, '#1b5fb0', inks.halo)],
@@ -70,6 +64,7 @@ const MARKS = {
     spring(context, { x: x - 9, y }, { x: x + 9, y }, inks.ink, inks.halo)],
   force: ['force on the hand', pointer(COLORS.force, 3)],
   normal: ['normal at the touch', pointer(COLORS.normal, 1.5)],
+  guide: ['guide, which pulls the hand', line(COLORS.guide, 1.5)],
   contact: ['contact of bodies', (context, x, y, inks) => dot(context, { x, y }, 4, COLORS.contact, inks.halo)],
   contactNormal: ['its normal', pointer(COLORS.contact, 1.5)],
   proof: ['box that is ruled out', square(COLORS.proof)],
@@ -94,8 +89,8 @@ const MARKS = {
     dot(context, { x: x + 7, y }, 3, '#ffffff', inks.muted);
   }],
   enclosing: ['enclosing circle', (context, x, y, inks) => ring(context, { x, y }, 5, inks.muted, 1, inks.halo)],
-  path: ['path of a descent', (context, x, y) => {
-    line(COLORS.path, 1)(context, x, y, { ink: '', halo: '', muted: '' });
+  path: ['path of a descent', (context, x, y, inks) => {
+    line(COLORS.path, 1)(context, x, y, inks);
     for (const across of [-8, -3, 2, 7]) dot(context, { x: x + across, y }, 2, COLORS.path, 'transparent');
   }],
   found: ['start that found the minimum', (context, x, y, inks) => dot(context, { x, y }, 5, COLORS.normal, inks.halo)],
@@ -145,15 +140,13 @@ const seen = new Set();
 /** Names a mark that is painted. @param {keyof typeof MARKS} name */
 export const mark = (name) => void seen.add(name);
 
-/** Paints a mark, dotted if it lies behind a body. @param {Context} context @param {boolean} isHidden
+/** Paints a mark, faded if it lies behind a body. @param {Context} context @param {boolean} isHidden
  * @param {() => void} paint */
 export function veiled(context, isHidden, paint) {
-  if (!isHidden) {
-    paint();
-    return;
-  }
-  mark('hidden');
-  behind(context, paint);
+  if (isHidden) mark('hidden');
+  context.globalAlpha = isHidden ? HIDDEN : 1;
+  paint();
+  context.globalAlpha = 1;
 }
 
 /** Begins a picture. */
@@ -173,7 +166,7 @@ export function paintMarks(context, right, top, bottom, inks) {
   const wide = 30 + Math.max(...entries.map(([text]) => context.measureText(text).width));
   const high = ROW * entries.length;
   context.globalAlpha = 0.75;
-  context.fillStyle = inks.halo;
+  context.fillStyle = inks.paper;
   context.fillRect(right - wide - 4, top - 2, wide + 8, high + 4);
   context.globalAlpha = 1;
   entries.forEach(([text, icon], row) => {

@@ -17,10 +17,12 @@
 
 import { handOf, ledPlace } from '../input/hand.js';
 import { state } from '../state.js';
+import { pullInWords } from './guides.js';
 import { arrow, dot, numbered, polyline, ring, spring } from './ink.js';
 import { COLORS, LIFTED, mark, veiled } from './marks.js';
 import { centreOf, cornersOf } from './setting.js';
 import { slice } from './slice.js';
+import { widthOf } from './texts.js';
 import { level, roundUp } from './units.js';
 import { along, dot as product, inSpace, norm, subtract } from './vectors.js';
 
@@ -226,7 +228,7 @@ export function paintHand(context, view, target, texts, inks, hides) {
     const place = project(point.device);
     const leads = number === state.touch.point;
     // A contact on the far side of a body lies behind it.
-    const isFar = point.contact && product(point.normal, view.lens.towards(point.proxy)) < -0.05;
+    const isFar = !view.isFlat && point.contact && product(point.normal, view.lens.towards(point.proxy)) < -0.05;
     veiled(context, isFar || hides(keyOfPoint(number)), () => {
       paintPoint(context, view, point, numbered(number), inks);
       if (leads) ring(context, place, 10, inks.ink, 1.5, inks.halo);
@@ -253,7 +255,9 @@ export function paintHand(context, view, target, texts, inks, hides) {
   const strongest = points.reduce((most, point) => (norm(point.force) > norm(most.force) ? point : most));
   const place = project(strongest.proxy);
   if (state.view.shown.forces && force > 0.01 && place) {
-    texts.add(`${force.toFixed(2)} N`, place.x + 32, place.y + 16, { rank: RANK.force });
+    const pull = pullInWords(strongest);
+    const words = `${force.toFixed(2)} N${pull && `, ${pull}`}`;
+    texts.add(words, place.x + 16 + widthOf(context, words) / 2, place.y + 16, { rank: RANK.force });
   }
 }
 

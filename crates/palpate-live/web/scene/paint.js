@@ -17,7 +17,9 @@
 import { paintToys } from '../plane/drawn.js';
 import { paintFall } from '../plane/falling.js';
 import { state } from '../state.js';
+import { isDark } from './colors.js';
 import { paintGrips } from './grips.js';
+import { paintGuides } from './guides.js';
 import {
   MARGIN, paintAxes, paintHandles, paintLegend, paintOutline, paintScale, paintTitle,
 } from './legend.js';
@@ -28,8 +30,11 @@ import { setting } from './setting.js';
 import { corners, handles, slice } from './slice.js';
 import { Texts } from './texts.js';
 
-/** On maps, whose colours are light in both themes. */
-const ON_MAP = { ink: '#171a1f', halo: 'rgba(255, 255, 255, 0.82)', muted: '#595f69' };
+/** On maps: the colours of marks are dark, and have a light halo in both themes. */
+const ON_MAP = {
+  light: { ink: '#171a1f', halo: 'rgba(255, 255, 255, 0.82)', paper: 'rgba(255, 255, 255, 0.82)', muted: '#595f69' },
+  dark: { ink: '#eceef2', halo: 'rgba(236, 238, 242, 0.62)', paper: 'rgba(14, 16, 20, 0.82)', muted: '#a3a9b3' },
+};
 /** Below the legend of marks: the title and the scale. */
 const BELOW = 60;
 
@@ -47,9 +52,10 @@ export function paintAll(context, views, shown, theme, ratio) {
   context.setTransform(ratio, 0, 0, ratio, 0, 0);
   context.clearRect(0, 0, context.canvas.width, context.canvas.height);
   const current = setting();
+  const onMap = isDark() ? ON_MAP.dark : ON_MAP.light;
   views.forEach((view, number) => {
     const { lens: { rect }, isFlat, isWhole } = view;
-    const inks = isFlat ? ON_MAP : theme;
+    const inks = isFlat ? onMap : theme;
     context.save();
     context.beginPath();
     context.rect(rect.x, rect.y, rect.width, rect.height);
@@ -59,6 +65,7 @@ export function paintAll(context, views, shown, theme, ratio) {
     if (isCut) paintOutline(context, view, corners(), inks);
     const texts = new Texts(context, rect, inks, [...shown.notes, ...fixed(rect, view)]);
     if (isWhole) {
+      paintGuides(context, view, current, inks);
       paintBodies(context, view, current, texts, inks, {
         outlined: shown.isDrawn || !isFlat ? selectedBody() : -1,
         hovered: hoveredBody(view, shown.probe),
@@ -81,7 +88,7 @@ export function paintAll(context, views, shown, theme, ratio) {
     paintScale(context, view, slice.frame.origin, inks);
     paintTitle(context, view, inks);
     texts.paint();
-    if (hasMap(view) && view.hasLines) shown.labels.paint(view, number, texts, ON_MAP);
+    if (hasMap(view) && view.hasLines) shown.labels.paint(view, number, texts, onMap);
     context.restore();
   });
 }

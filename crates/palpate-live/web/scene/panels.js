@@ -19,6 +19,7 @@
 
 import { state } from '../state.js';
 import { FIELD_OF_VIEW } from './camera.js';
+import { themed } from './colors.js';
 import { MAPS } from './glsl.js';
 import { selectedBody } from './overlay.js';
 import { shifts } from './setting.js';
@@ -101,6 +102,7 @@ function viewOf(setting, cameras, rect, title, [only, other], map) {
     positiveInside: view.positiveInside,
     channels: [view.channels.red, view.channels.green, view.channels.blue].map(Number),
     leastStep: LEAST_STEP * setting.size,
+    themed: Object.values(themed()),
   };
   const hasPlane = flat || view.mode === 'slice' || view.mode === 'compare';
   const hasLines = hasPlane && view.isolines && map !== MAPS.difference

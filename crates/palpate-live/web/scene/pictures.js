@@ -14,7 +14,7 @@
  */
 
 import { FIELD_OF_VIEW } from './camera.js';
-import { MAP_COLORS, MAP_NUMBERS, PROMISES, direction, mix } from './colors.js';
+import { MAP_COLORS, MAP_NUMBERS, direction, mix, themed } from './colors.js';
 import { MAPS } from './glsl.js';
 import { askSlice } from './labels.js';
 import { asking, newest } from './newest.js';
@@ -36,7 +36,9 @@ const line = (pixels, width) => clamp(0.5 * width + 0.5 - pixels, 0, 1);
  *   change of the value over a pixel @returns {Color} */
 function colorOf(map, shown, { value, other, slope, pixel, body }) {
   const { spacing, range, sineFactor, asInMemoir, positiveInside, isolines, channels } = shown;
-  const { ink, white, flat, steep, equal, less, more } = MAP_COLORS;
+  const colors = themed();
+  const { ink, flat, steep, equal, less, more } = colors;
+  const { surface, rim } = MAP_COLORS;
   const isInside = value < 0;
   const zeroLine = line(Math.abs(value) / pixel, 2);
   if (map === MAPS.difference) {
@@ -45,18 +47,18 @@ function colorOf(map, shown, { value, other, slope, pixel, body }) {
     return mix(color, ink, 0.8 * zeroLine);
   }
   const wave = Math.cos((MAP_NUMBERS.waves * sineFactor * value) / range);
-  let color = MAP_COLORS.outside;
-  if (map === MAPS.inside && isInside) color = mix(body.color, white, MAP_NUMBERS.pale);
+  let color = colors.outside;
+  if (map === MAPS.inside && isInside) color = mix(body.color, colors.pale, MAP_NUMBERS.pale);
   if (map === MAPS.distance && asInMemoir) {
     const shade = 1 - MAP_NUMBERS.wave * (1 - wave);
     const side = isInside ? MAP_COLORS.memoirInside : MAP_COLORS.memoirOutside;
-    return mix(side.map((part) => shade * part), white, zeroLine);
+    return mix(side.map((part) => shade * part), surface, zeroLine);
   }
   if (map === MAPS.distance) {
     const far = 1 - Math.exp((-MAP_NUMBERS.fade * Math.abs(value)) / range);
     const band = Math.abs(Math.floor(value / spacing)) % 2 === 0 ? 1 : MAP_NUMBERS.band;
-    color = isInside ? mix(MAP_COLORS.insideNear, MAP_COLORS.insideFar, far)
-      : mix(MAP_COLORS.outsideNear, MAP_COLORS.outsideFar, far);
+    color = isInside ? mix(colors.insideNear, colors.insideFar, far)
+      : mix(colors.outsideNear, colors.outsideFar, far);
     color = color.map((part) => band * part);
   }
   if (map === MAPS.gradient) {
@@ -65,7 +67,8 @@ function colorOf(map, shown, { value, other, slope, pixel, body }) {
   }
   if (map === MAPS.promise) {
     const length = norm(slope);
-    color = mix(PROMISES[body.promises[isInside ? 1 : 0]], flat, 1 - length);
+    const promises = [colors.exact, colors.bound, colors.lipschitz];
+    color = mix(promises[body.promises[isInside ? 1 : 0]], flat, 1 - length);
     color = mix(color, steep, 2 * (length - MAP_NUMBERS.steepest));
   }
   const nearest = Math.round(value / spacing);
@@ -73,12 +76,12 @@ function colorOf(map, shown, { value, other, slope, pixel, body }) {
     const covered = line(Math.abs(value - nearest * spacing) / pixel, 1);
     const fade = clamp(spacing / pixel / 5 - 0.4, 0, 1);
     const strong = nearest % 5 === 0 ? 0.6 : 0.34;
-    const lines = map === MAPS.gradient ? MAP_COLORS.gradientLine
-      : isInside ? MAP_COLORS.insideLine : MAP_COLORS.outsideLine;
+    const lines = map === MAPS.gradient ? colors.gradientLine
+      : isInside ? colors.insideLine : colors.outsideLine;
     color = mix(color, lines, covered * fade * strong);
   }
   if (map !== MAPS.distance) return mix(color, ink, zeroLine);
-  return mix(mix(color, ink, 0.7 * line(Math.abs(value) / pixel, 4.5)), white, zeroLine);
+  return mix(mix(color, rim, 0.7 * line(Math.abs(value) / pixel, 4.5)), surface, zeroLine);
 }
 
 export class Pictures {
@@ -140,7 +143,7 @@ export class Pictures {
     const forth = along(view.shift, cross(flat.frame.right, flat.frame.up), between);
     const before = isLengthSeen ? (await ask({ shift: forth })).values : values;
     // A slice of the whole scene does not tell its bodies apart.
-    const whole = { color: setting.bodies[0]?.color ?? MAP_COLORS.outside, promises: setting.promises };
+    const whole = { color: setting.bodies[0]?.color ?? themed().outside, promises: setting.promises };
     const body = setting.bodies[view.only] ?? whole;
     /** The slope along a row or a column. @param {number} at @param {number} step from one value to the
      * next @param {number} number @param {number} count */

@@ -44,6 +44,8 @@ import { Views } from './views.js';
 const ROOM = 30;
 const STEP_BACK = 1.08;
 const STEPS_BACK = 24;
+/** A core that works on a question for longer has no time for what nobody pressed for [ms]. */
+const BUSY = 300;
 
 /** Builds the stage into a container.
  * @param {HTMLElement} container @param {Wire} wire */
@@ -191,13 +193,18 @@ export function createStage(container, wire) {
     if (view.isFlat) return view.lens.at(x, y, cameras.flat.frame.origin);
     const cut = view.hasPlane ? meet(view.lens, x, y) : null;
     if (cut) return cut;
-    return (await pickAt(view, { x, y }))?.point ?? null;
+    return (await glance(view, [{ x, y }]))?.[0]?.point ?? null;
   }
 
   /** @param {View} view @param {Place} place */
   const pickAt = async (view, place) => (await pick(view, [place]))?.[0] ?? null;
 
-  const veil = createVeil(pick, overlayChanged);
+  /** Picks as well, unless the core would have to and has no time.
+   * @param {View} view @param {Place[]} places */
+  const glance = async (view, places) =>
+    (state.hasCard || wire.slow(BUSY).length === 0 ? pick(view, places) : null);
+
+  const veil = createVeil(glance, overlayChanged);
 
   function fit() {
     elements.resize();
@@ -270,7 +277,7 @@ export function createStage(container, wire) {
   listen(['connection'], sceneChanged);
   const dress = () => {
     elements.dress();
-    overlayChanged();
+    sceneChanged();
   };
   listen(['theme'], dress);
   matchMedia('(prefers-color-scheme: dark)').addEventListener('change', dress);

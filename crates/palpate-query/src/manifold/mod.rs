@@ -411,7 +411,14 @@ impl<const D: usize> Touch<D> {
         let Face { body, normal } = pair.face(self.point, slopes)?;
         let turned = Self { normal, ..*self };
         if self.gap <= 0.0 {
-            return Some(turned);
+            // The edge is deeper along the normal than the widest ball in the overlap is wide.
+            let deepest = deep::in_host(pair, body, self.point, settings);
+            let deepest = deepest.filter(|found| found.gap <= self.gap);
+            return Some(deepest.map_or(turned, |Self { point, gap, .. }| Self {
+                point,
+                gap,
+                ..turned
+            }));
         }
         let near = settings.spacing.max(self.gap);
         let edge = pair.surface_point(1 - body, self.point)?;

@@ -341,11 +341,14 @@ impl<const D: usize> BoxSweep<'_, '_, D> {
             .min_by(|&i, &k| round[i].cell.lower.total_cmp(&round[k].cell.lower));
         let Some(i) = first else { return };
         let cell = &round[i].cell;
-        let time = (cell.lower + SOON * self.settings.time_tolerance).min(1.0);
-        if time >= self.upper {
-            return;
+        let latest = (cell.lower + SOON * self.settings.time_tolerance).min(1.0);
+        // What passes by within a tolerance is there no more at its end, but where the box says.
+        let met = cell.lower + seen[i].value.max(0.0) / seen[i].velocity.norm();
+        for time in [latest, met] {
+            if time <= latest && time < self.upper {
+                self.touches(time, cell.centre);
+            }
         }
-        self.touches(time, cell.centre);
     }
 
     /// Looks for a touch at a time, from a point on; `true` if there is one.

@@ -20,6 +20,11 @@ use crate::pair::{PairWorkspace, separation};
 /// After so many evaluations without a time, a touch at the start is asked for.
 const SOON: u32 = 1 << 14;
 
+/// After a search that ended early a touch is looked for at so many times, with so many evaluations
+/// each at most.
+const SAMPLES: u32 = 32;
+const A_SAMPLE: u32 = 100_000;
+
 /// The separation at a touch is searched to this share of the gap.
 const SHARE: f64 = 0.25;
 
@@ -108,11 +113,10 @@ pub(super) fn swept<const D: usize>(
         ruled_out: boxes,
     };
     let mut end = engine::search(&mut search, frontier);
-    if end.stop().is_early() && search.upper == f64::INFINITY {
-        let apart_until = frontier.lower(search.dropped);
-        if apart_until <= 0.0
-            && touches_at(0.0, bodies, settings, pair, &mut search.evaluations)?
-        {
+    if end.stop().is_early() {
+        let may_touch_now =
+            search.upper == f64::INFINITY && frontier.lower(search.dropped) <= 0.0;
+        if may_touch_now && touches_at(0.0, bodies, settings, pair, &mut search.evaluations)? {
             // Places at which bodies lie on each other are as small as the gap, and many.
             search.upper = 0.0;
         } else {
@@ -124,7 +128,10 @@ pub(super) fn swept<const D: usize>(
     if search.upper < f64::INFINITY {
         search.refine(lower);
     }
-    let (upper, evaluations) = (search.upper, search.evaluations);
+    let (mut upper, mut evaluations) = (search.upper, search.evaluations);
+    if end.stop().is_early() && upper == f64::INFINITY {
+        upper = sampled_touch(lower, bodies, settings, pair, &mut evaluations)?;
+    }
     if let Some(boxes) = search.ruled_out {
         boxes.extend(frontier.queue.cells().map(|space: SpaceCell<D>| space.free()));
         boxes.extend(frontier.pending.iter().map(|space| space.free()));
@@ -147,9 +154,39 @@ fn touches_at<const D: usize>(
     evaluations: &mut u32,
 ) -> Result<bool, QueryError> {
     let [a, b] = bodies.map(|body| body.at(time));
-    let near = separation(a, b, &Limits::new(SHARE * settings.gap), workspace)?;
+    let limits = Limits::new(SHARE * settings.gap).with_budget(A_SAMPLE);
+    let near = separation(a, b, &limits, workspace)?;
     *evaluations = evaluations.saturating_add(near.evaluations);
     Ok(near.upper <= settings.gap)
+}
+
+/// A time after `lower` at which the bodies touch, by samples: what a search that ended early did not
+/// come to. Infinite if they touch at none of them.
+fn sampled_touch<const D: usize>(
+    lower: f64,
+    bodies: [Moving<'_, D>; 2],
+    settings: &SweepSettings,
+    workspace: &mut PairWorkspace<D>,
+    evaluations: &mut u32,
+) -> Result<f64, QueryError> {
+    let mut touches = |time| touches_at(time, bodies, settings, workspace, evaluations);
+    let mut before = lower;
+    for sample in 1..=SAMPLES {
+        let time = lower + (1.0 - lower) * f64::from(sample) / f64::from(SAMPLES);
+        if touches(time)? {
+            let mut upper = time;
+            while upper - before > settings.time_tolerance {
+                let middle = 0.5 * (before + upper);
+                if middle <= before || middle >= upper {
+                    break;
+                }
+                *(if touches(middle)? { &mut upper } else { &mut before }) = middle;
+            }
+            return Ok(upper);
+        }
+        before = time;
+    }
+    Ok(f64::INFINITY)
 }
 
 /// Adds the contact at the time of a touch.

@@ -318,3 +318,51 @@ fn the_deepest_contact_is_as_deep_as_the_separation() -> Result<(), ShapeError> 
     assert!(checked > 100, "{checked}");
     Ok(())
 }
+
+/// Of a hexagon, contacts once spanned four corners.
+#[test]
+fn a_hexagon_touches_at_all_its_corners() -> Result<(), ShapeError> {
+    let table = cuboid([1.0, 0.2, 1.0])?;
+    let nut = Shape::<3>::hexagonal_prism(0.1, 0.1)?;
+    let corners: [[f64; 3]; 6] = std::array::from_fn(|i| {
+        let (sin, cos) = (i as f64 * std::f64::consts::FRAC_PI_3).sin_cos();
+        [0.1 * sin, 0.1, 0.1 * cos]
+    });
+    for spacing in [0.001, 0.008] {
+        let settings = settings(4e-4).with_spacing(spacing);
+        let pose = Pose::translation(Vector([0.0, 0.15, 0.0]));
+        let found = touching(&table, &nut, pose, &settings);
+        laws(&found, &settings);
+        includes(&found, &corners, 0.75 * spacing);
+    }
+    Ok(())
+}
+
+/// At an edge the gradient leads out of any of the sides that meet: the normal once was 34° off, by the
+/// tolerance.
+#[test]
+fn the_normal_of_an_edge_on_a_face_is_that_of_the_face() -> Result<(), ShapeError> {
+    let (floor, cube) = (cuboid([2.0, 0.2, 2.0])?, cuboid([0.2, 0.2, 0.2])?);
+    let mut workspace = PairWorkspace::new();
+    for height in [-1e-4, -1e-6, 0.0, 1e-6, 1e-4] {
+        for angle in [0.3, std::f64::consts::FRAC_PI_4, 1.0] {
+            let turn = Rotation::from_axis_angle(Vector([0.3, 0.2, 1.0]), angle)?;
+            let lowest = [0, 1, 2].map(|k| turn.rotate(Vector::unit(k) * 0.1)[1].abs());
+            let middle = 0.1 + lowest.iter().sum::<f64>() + height;
+            let pose = Pose::new(turn, Vector([0.0, middle, 0.0]));
+            for tolerance in [1e-5, 1e-6, 1e-8] {
+                let limits = Limits::new(tolerance);
+                let there = Placed::new(&cube, pose);
+                let found =
+                    manifold(&floor, there, &settings(4e-4), &limits, &mut workspace).unwrap();
+                let contact = found.contacts[0];
+                assert!(contact.normal[1] > 0.9999, "{height} m, {angle}: {contact:?}");
+                let allowed = tolerance + 2e-6;
+                assert!((contact.gap - height).abs() <= allowed, "{height} m: {contact:?}");
+                let best = found.separation.best.normal.unwrap();
+                assert!(best[1] > 0.98, "{height} m, {angle}: {best:?}");
+            }
+        }
+    }
+    Ok(())
+}

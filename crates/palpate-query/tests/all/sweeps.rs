@@ -206,3 +206,51 @@ fn bodies_that_rest_on_each_other_and_part_touch_at_the_start() {
         }
     }
 }
+
+/// Bodies that are through each other within a fraction of the tolerance: their touch was looked for at
+/// the end of the tolerance alone, and boxes filled the memory.
+#[test]
+fn what_passes_within_a_tolerance_is_found() {
+    let along = |axis: usize| {
+        let end = Vector::<f64, 3>::unit(axis);
+        Shape::<3>::segment(-end, end, 0.0).unwrap()
+    };
+    let (wire, other, ball) = (along(0), along(2), Shape::<3>::ball(1e-3).unwrap());
+    for way in [1.0, 1e3] {
+        let [above, below] = [way, -way].map(|y| at([0.01, y, 0.0]));
+        for (thrown, reach) in [(&other, 0.0), (&ball, 1e-3)] {
+            let found = first((&wire).into(), moves(thrown, above, below));
+            is_at(&found, 0.5 - 0.5 * reach / way);
+        }
+    }
+}
+
+/// A cube that slides over a plate into a wall: a touch that was known early, not when first, once ended
+/// the search with most of its budget unspent.
+#[test]
+fn a_late_touch_that_is_known_soon_does_not_end_the_search() {
+    let plate = Shape::<3>::cuboid([4.0, 1.0, 2.0]).unwrap();
+    let wall =
+        Shape::<3>::cuboid([1.0, 2.0, 2.0]).unwrap().translated([2.5, 1.0, 0.0]).unwrap();
+    let ground = plate | wall;
+    let cube = Shape::<3>::cuboid([1.0; 3]).unwrap();
+    let slides = moves(&cube, at([-1.0, 1.0001, 0.0]), at([3.0, 1.0001, 0.0]));
+    let settings = SweepSettings::of_size(1.0);
+    let found = sweep(&ground, slides, &settings, &mut SweepWorkspace::new()).unwrap();
+    assert_eq!(found.stop, Stop::Converged, "{found:?}");
+    assert!(found.lower <= 0.625 && found.upper - found.lower <= 1e-4, "{found:?}");
+}
+
+/// A peg that goes into its hole with little room: the memory is full before it is proven free, and its
+/// touch at the bottom was not looked for.
+#[test]
+fn a_search_that_ends_early_still_knows_a_touch() {
+    let hole = Shape::<3>::cylinder(0.020_001, 0.2).unwrap();
+    let block = Shape::<3>::cuboid([0.1, 0.1, 0.1]).unwrap()
+        - hole.translated([0.0, 0.08, 0.0]).unwrap();
+    let peg = Shape::<3>::cylinder(0.02, 0.05).unwrap();
+    let found = first((&block).into(), moves(&peg, at([0.0, 0.1, 0.0]), at([0.0, 0.0, 0.0])));
+    // The bottom of the hole is at −0.02 m, that of the peg 0.025 m below its middle.
+    let truth = 0.95;
+    assert!(found.lower <= truth && (found.upper - truth).abs() < 2e-3, "{found:?}");
+}

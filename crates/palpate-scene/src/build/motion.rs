@@ -16,6 +16,10 @@ use crate::scene::Scene;
 /// The largest angle between two times of a motion [rad]: less than half a turn.
 const LARGEST_PART: f64 = 3.0;
 
+/// The least share that a part of a motion has of the time at which it begins: of less, rounding of the
+/// time is more than a millionth.
+const LEAST_PART: f64 = 1e-10;
+
 /// Times are as exact as this part of a period.
 const ROUNDING: f64 = 1e-12;
 
@@ -300,5 +304,15 @@ where
     let screw = Screw::new(from, to, motion.turns)
         .map_err(|error| Problem::of_shape(error).under("turns"))?;
     let Motion { start, duration, repeat, .. } = *motion;
-    Ok(BuiltMotion { body, screw, start, duration, repeat })
+    let built = BuiltMotion { body, screw, start, duration, repeat };
+    if built.parts().0 < LEAST_PART * start {
+        let least = LEAST_PART * start * duration / built.parts().0;
+        return Err(Problem::new(format!(
+            "the motion is too short to be timed after {start} s: it must take {least:.0e} s at least, \
+             and takes {duration:e} s; begin earlier"
+        ))
+        .under("duration")
+        .into());
+    }
+    Ok(built)
 }
