@@ -9,7 +9,10 @@ use palpate_field::{Point, Vector};
 use super::body_pair::BodyPair;
 use crate::sampler::normal;
 
-/// The cosine from which on two directions count as one, 8°.
+/// The cosine from which on gradients count as opposite, 0.8°.
+const OPPOSITE: f64 = 0.9999;
+
+/// The cosine from which on the gradients of a face count as one, 8°.
 const ALIKE: f64 = 0.99;
 
 /// The cosine below which a gradient has turned as at an edge, 26°.
@@ -46,7 +49,7 @@ impl<const D: usize> BodyPair<'_, D> {
         [(a, slope_a), (b, slope_b)]: [(f64, Vector<f64, D>); 2],
     ) -> Option<Face<D>> {
         let units = [normal(slope_a)?, normal(slope_b)?];
-        if units[0].dot(units[1]) < -ALIKE {
+        if units[0].dot(units[1]) < -OPPOSITE {
             return None;
         }
         let far = (8.0 * a.max(b).abs()).max(AROUND * self.smaller_size());

@@ -360,8 +360,9 @@ fn the_normal_of_an_edge_on_a_face_is_that_of_the_face() -> Result<(), ShapeErro
                 let allowed = tolerance + 2e-6;
                 assert!((contact.gap - height).abs() <= allowed, "{height} m: {contact:?}");
                 let best = found.separation.best.normal.unwrap();
-                let is_shallow = height.abs() <= 1e-6;
-                assert!(!is_shallow || best[1] > 0.9999, "{height} m, {angle}: {best:?}");
+                // Of several places to the tolerance, one may lie off the edge.
+                let is_sharp = tolerance <= 0.01 * height.abs();
+                assert!(!is_sharp || best[1] > 0.9999, "{height} m, {angle}: {best:?}");
             }
         }
     }

@@ -131,9 +131,14 @@ impl<const D: usize> Lead<D> {
         &self.targets
     }
 
-    /// Goes on in a scene with other bodies.
+    /// Goes on in a scene with other bodies. A hand that is lifted is set down beside them.
     pub(super) fn take_scene(&mut self, scene: &Arc<BuiltScene<D>>) {
         (self.scene, self.size) = (Arc::clone(scene), size(scene));
+        if self.is_lifted()
+            && let Some(lift) = self.lift.take()
+        {
+            self.bring(lift.places());
+        }
     }
 
     pub(super) fn is_touring(&self) -> bool {
@@ -170,8 +175,9 @@ impl<const D: usize> Lead<D> {
             self.is_held = other.is_held;
             self.targets.clone_from(&other.targets);
             self.goal = other.goal;
-            // The time of another servo begins anew.
-            self.lift = other.lift.as_ref().map(|lift| Lift::to(lift.places().to_vec(), 0.0));
+            if let Some(lift) = &other.lift {
+                self.bring(lift.places());
+            }
         }
     }
 
