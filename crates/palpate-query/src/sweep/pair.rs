@@ -33,7 +33,8 @@ const SHARE: f64 = 0.25;
 ///
 /// Each box of space advances through time on its own, by models of both fields over it and over a
 /// span of time. So no motion is too fast and no body too thin. What passes at a small distance takes
-/// many boxes; if the budget is spent, `lower` says until when the bodies are proven apart.
+/// many boxes; if the budget is spent, `lower` says until when the bodies are proven apart, and `upper` is
+/// the earliest touch that samples of the time find.
 ///
 /// ```
 /// use palpate_field::{Pose, Screw, Shape};
