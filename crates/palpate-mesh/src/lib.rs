@@ -30,17 +30,17 @@ mod error;
 #[doc(hidden)]
 pub mod internal;
 mod mesh;
-#[cfg(feature = "files")]
 mod polygon;
 #[cfg(feature = "files")]
 mod read;
 mod report;
+mod solid;
 mod tree;
 
 pub use error::MeshError;
 pub use mesh::{Mesh, Outline, TriangleMesh};
-#[cfg(feature = "files")]
 pub use polygon::MOST_CORNERS;
 #[cfg(feature = "files")]
 pub use read::{Format, LARGEST_FILE, ReadError, ReadProblem, read, read_file};
 pub use report::Report;
+pub use solid::{Findings, Opening, Solid, SolidError};

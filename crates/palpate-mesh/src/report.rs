@@ -184,7 +184,7 @@ fn size<const N: usize, const D: usize>(corners: &[Point<D>; N]) -> (f64, f64) {
 ///
 /// With the inside on the left of a segment, and triangles counter-clockwise seen from
 /// outside, those of a closed mesh add up to what it encloses.
-fn signed_volume<const N: usize, const D: usize>(
+pub(crate) fn signed_volume<const N: usize, const D: usize>(
     corners: &[Point<D>; N],
     apex: Point<D>,
 ) -> f64 {

@@ -1,0 +1,186 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! Meshes as solids: the exact distance to their surface, with a sign that is proven.
+
+mod boxes;
+mod error;
+mod field;
+mod findings;
+mod foot;
+mod normals;
+mod repair;
+mod winding;
+
+use palpate_field::{Aabb, Point, Promise, Quality, Rounding, Vector};
+
+use crate::mesh::Mesh;
+use crate::tree::{BallTree, FAN};
+use boxes::Boxes;
+pub use error::SolidError;
+pub use findings::Findings;
+use foot::{Foot, foot};
+use normals::Normals;
+pub use repair::Opening;
+use repair::{Crossings, Pieces, Repair};
+use winding::WindingTree;
+
+/// Rounded operations of a distance on numbers up to `|p| + size`.
+const OPERATIONS: f64 = 64.0;
+
+/// The solid that a mesh bounds: the points of winding number above one half.
+///
+/// Its field is the distance to the nearest face, negative inside. Where faces bound the solid alone, that is
+/// exact; where faces cross or lie within the solid, the values inside are bounds. The sign is that of the
+/// nearest face, and where faces cross or meet in more than pairs, that of the winding number, which is
+/// bounded until it is certain.
+///
+/// ```
+/// use palpate_field::{Shape, Vector};
+/// use palpate_mesh::{Solid, TriangleMesh};
+///
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let corners = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+/// // One face faces the wrong way.
+/// let faces = vec![[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 2, 3]];
+/// let mesh = TriangleMesh::new(corners.map(Vector).to_vec(), faces)?;
+/// let (solid, findings) = Solid::from_mesh(&mesh)?;
+/// assert_eq!(findings.to_string(), "1 face faced the wrong way and was turned");
+/// let shape: Shape<3> = solid.into();
+/// assert_eq!(shape.promise().in_words(), "exact outside, exact inside");
+/// assert_eq!(shape.distance([0.1, 0.2, -0.5]), 0.5);
+/// assert_eq!(shape.distance([0.1, 0.2, 0.2]), -0.1);
+/// # Ok(())
+/// # }
+/// ```
+#[derive(Clone, Debug)]
+pub struct Solid<const N: usize, const D: usize> {
+    /// The corners of each face, in the order of the boxes.
+    faces: Vec<[Point<D>; N]>,
+    boxes: Boxes<D>,
+    normals: Normals<N, D>,
+    /// `None` if the nearest face alone tells the sign.
+    winding: Option<WindingTree<N, D>>,
+    promise: Promise<D>,
+}
+
+impl<const N: usize, const D: usize> Solid<N, D> {
+    /// The solid of a mesh, and what was found and mended.
+    ///
+    /// Equal vertices are merged; faces without area and doubled faces are dropped; neighbours are turned to agree
+    /// on the inside; openings are closed by flat caps; pieces inside out are turned.
+    ///
+    /// # Errors
+    ///
+    /// If no face is left, or the faces bound no solid: a piece has one side alone, as a Möbius strip, an edge has
+    /// an odd number of faces that no cap completes, or caps are most of the surface, as of a sheet.
+    pub fn from_mesh(mesh: &Mesh<N, D>) -> Result<(Self, Findings<D>), SolidError> {
+        let Repair { vertices, elements, mut findings, pieces } = Repair::of(mesh);
+        let given = mesh.elements().len();
+        if elements.is_empty() {
+            return Err(SolidError::NoFaces { given });
+        }
+        if findings.one_sided > 0 {
+            return Err(SolidError::OneSided { pieces: findings.one_sided });
+        }
+        if findings.open_rims > 0 {
+            return Err(SolidError::Open { rims: findings.open_rims });
+        }
+        let order = BallTree::new(&vertices, &elements);
+        let (mut ordered, mut of_piece) = (Vec::new(), Vec::new());
+        for element in order.order() {
+            ordered.push(elements[*element as usize]);
+            of_piece.push(pieces.of_element[*element as usize]);
+        }
+        let faces: Vec<_> = ordered
+            .iter()
+            .map(|element| element.map(|index| vertices[index as usize]))
+            .collect();
+        let boxes = Boxes::new(&faces);
+        let crossings = Crossings::of(&vertices, &ordered, &boxes);
+        (findings.crossings, findings.touching) =
+            (crossings.crossings.len(), crossings.touching);
+        findings.crossing_at = crossings.at;
+        let flaws =
+            findings.crossings + findings.touching + findings.crowded_rims + findings.nested;
+        let winding = (flaws > 0).then(|| WindingTree::new(&faces));
+        let normals = Normals::new(vertices.len(), &ordered, &faces);
+        let promise = promise(&faces, &quality(&findings, &crossings, &pieces, &of_piece));
+        Ok((Self { faces, boxes, normals, winding, promise }, findings))
+    }
+
+    /// The promise of its field.
+    #[must_use]
+    pub fn promise(&self) -> &Promise<D> {
+        &self.promise
+    }
+
+    /// The face nearest to a point, in the order of the boxes, and its nearest point.
+    fn nearest(&self, p: Point<D>) -> (usize, Foot<D>) {
+        let mut best = (0, foot(&self.faces[0], p));
+        self.boxes.nearest_first(p, best.1.squared, |group| {
+            let first = group * FAN;
+            for (i, face) in self.faces.iter().enumerate().skip(first).take(FAN) {
+                let found = foot(face, p);
+                if found.squared < best.1.squared {
+                    best = (i, found);
+                }
+            }
+            best.1.squared
+        });
+        best
+    }
+
+    /// The signed distance at a point [m], and its gradient.
+    fn at(&self, p: Point<D>) -> (f64, Vector<f64, D>) {
+        let (face, foot) = self.nearest(p);
+        let away = p - foot.point;
+        let distance = foot.squared.sqrt();
+        let normal = self.normals.at(face, foot.part);
+        let is_inside = match &self.winding {
+            None => away.dot(normal) < 0.0,
+            Some(winding) => winding.is_inside(&self.faces, p).0,
+        };
+        let side = if is_inside { -1.0 } else { 1.0 };
+        let gradient = if distance > 0.0 { away * (side / distance) } else { normal };
+        (side * distance, gradient)
+    }
+}
+
+/// The qualities outside and inside.
+///
+/// The winding number is a sum over pieces. Of one whose faces do not cross each other it is 1 within and 0
+/// without, of a cavity −1: it is nowhere negative unless a cavity crosses a piece, and the nearest face
+/// bounds the solid. Faces within the solid are nearer than its surface, never farther.
+fn quality<const D: usize>(
+    findings: &Findings<D>,
+    crossings: &Crossings<D>,
+    pieces: &Pieces,
+    of_piece: &[usize],
+) -> [Quality; 2] {
+    let exact_if = |is_exact: bool| if is_exact { Quality::Exact } else { Quality::Bound };
+    let is_apart = |[a, b]: &[u32; 2]| {
+        let [a, b] = [a, b].map(|face| of_piece[*face as usize]);
+        a != b && !pieces.is_cavity[a] && !pieces.is_cavity[b]
+    };
+    let cavities = pieces.is_cavity.iter().any(|is_cavity| *is_cavity);
+    let is_outside_exact = crossings.crossings.iter().all(is_apart)
+        && (!cavities || findings.touching + findings.nested == 0);
+    let flaws =
+        findings.crossings + findings.touching + findings.crowded_rims + findings.nested;
+    [exact_if(is_outside_exact), exact_if(flaws == 0)]
+}
+
+fn promise<const N: usize, const D: usize>(
+    faces: &[[Point<D>; N]],
+    [outside, inside]: &[Quality; 2],
+) -> Promise<D> {
+    let aabb = Aabb::around(faces.iter().flatten().copied())
+        .unwrap_or(Aabb { min: Vector::ZERO, max: Vector::ZERO });
+    let bounds = palpate_field::Bounds::of_box(aabb);
+    let size = bounds.radius_about_origin();
+    let mut promise = Promise::exact(Some(bounds), OPERATIONS, size)
+        .with_rounding(Rounding::of_operations(OPERATIONS, size));
+    (promise.outside, promise.inside) = (*outside, *inside);
+    promise
+}

@@ -1,0 +1,111 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! A mesh made into one that bounds a solid, step by step.
+
+mod cap;
+mod crossing;
+mod orient;
+mod rims;
+
+use std::collections::HashMap;
+
+use palpate_field::Point;
+
+pub use cap::Opening;
+pub(super) use crossing::Crossings;
+pub(super) use orient::Pieces;
+pub(super) use rims::{by_rim, sides};
+
+use super::findings::Findings;
+use crate::mesh::{Mesh, weld};
+
+/// A mesh under repair.
+pub(super) struct Repair<const N: usize, const D: usize> {
+    pub(super) vertices: Vec<Point<D>>,
+    pub(super) elements: Vec<[u32; N]>,
+    pub(super) findings: Findings<D>,
+    pub(super) pieces: Pieces,
+}
+
+impl<const N: usize, const D: usize> Repair<N, D> {
+    /// All steps but the search for faces that cross: equal vertices are welded; elements with a vertex twice and
+    /// doubled elements are dropped; neighbours are turned to agree on the inside; openings are capped; pieces
+    /// that are inside out are turned.
+    pub(super) fn of(mesh: &Mesh<N, D>) -> Self {
+        let (vertices, names) = weld(mesh.vertices());
+        let mut findings = Findings { faces: mesh.elements().len(), ..Findings::default() };
+        findings.welded = mesh.vertices().len() - vertices.len();
+        let named = |element: &[u32; N]| element.map(|index| names[index as usize]);
+        let mut elements: Vec<_> = mesh.elements().iter().map(named).collect();
+        elements.retain(|element| (1..N).all(|i| !element[..i].contains(&element[i])));
+        findings.degenerate = findings.faces - elements.len();
+        let mut repair = Self { vertices, elements, findings, pieces: Pieces::default() };
+        repair.drop_duplicates();
+        (repair.findings.turned, repair.findings.one_sided) =
+            orient::agree(&mut repair.elements);
+        repair.findings.openings = cap::close(&mut repair.vertices, &mut repair.elements);
+        repair.pieces = orient::outwards(&repair.vertices, &mut repair.elements);
+        (repair.findings.inside_out, repair.findings.nested) =
+            (repair.pieces.turned, repair.pieces.nested);
+        for at_rim in by_rim(&sides(&repair.elements)) {
+            repair.findings.open_rims += usize::from(at_rim.len() % 2 == 1);
+            repair.findings.crowded_rims += usize::from(at_rim.len() > 2);
+        }
+        repair
+    }
+
+    /// Drops elements with the vertices of another. Two that face each other are a wall between two volumes, and
+    /// both go, unless that would leave an opening: then one stays.
+    fn drop_duplicates(&mut self) {
+        let key = |element: &[u32; N]| {
+            let mut key = *element;
+            key.sort_unstable();
+            key
+        };
+        let mut copies: HashMap<[u32; N], Vec<usize>> = HashMap::new();
+        for (i, element) in self.elements.iter().enumerate() {
+            copies.entry(key(element)).or_default().push(i);
+        }
+        let mut at_rims: HashMap<[u32; 2], usize> = HashMap::new();
+        for side in sides(&self.elements) {
+            *at_rims.entry(side.rim).or_default() += 1;
+        }
+        let mut is_dropped = vec![false; self.elements.len()];
+        let mut doubled: Vec<_> = copies.into_values().filter(|same| same.len() > 1).collect();
+        doubled.sort_unstable();
+        for same in doubled {
+            let is_even = |element: &[u32; N]| is_even(element, self.elements[same[0]]);
+            let even = same.iter().filter(|i| is_even(&self.elements[**i])).count();
+            let element = self.elements[same[0]];
+            let rims = rims_of(&element);
+            let leaves_rims = |left: usize| {
+                rims.iter().all(|rim| {
+                    let others = at_rims.get(rim).map_or(0, |count| count - same.len());
+                    others + left >= 2
+                })
+            };
+            let is_wall = 2 * even == same.len() && leaves_rims(0);
+            for &i in &same[usize::from(!is_wall)..] {
+                is_dropped[i] = true;
+            }
+        }
+        let mut dropped = is_dropped.iter();
+        self.elements.retain(|_| dropped.next() == Some(&false));
+        self.findings.duplicates = is_dropped.iter().filter(|dropped| **dropped).count();
+    }
+}
+
+/// The rims of an element.
+fn rims_of<const N: usize>(element: &[u32; N]) -> [[u32; 2]; N] {
+    std::array::from_fn(|i| {
+        let (from, to) = (element[i], element[(i + 1) % N]);
+        if N == 2 { [from; 2] } else { [from.min(to), from.max(to)] }
+    })
+}
+
+/// Whether an element has its vertices in the same direction as another with the same vertices.
+fn is_even<const N: usize>(element: &[u32; N], other: [u32; N]) -> bool {
+    let at = other.iter().position(|index| *index == element[0]).unwrap_or(0);
+    N == 2 && at == 0 || N == 3 && other[(at + 1) % N] == element[1]
+}

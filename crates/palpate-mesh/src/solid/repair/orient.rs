@@ -1,0 +1,156 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! Elements that agree on the inside, and pieces whose inside is within.
+
+use palpate_field::{Aabb, Point};
+
+use super::rims::{Side, by_rim, pieces, sides};
+use crate::report::signed_volume;
+use crate::solid::winding::share;
+
+/// Turns elements so that the two at each rim of two agree on the inside. A piece keeps the direction that
+/// most of its elements have.
+///
+/// Returns how many elements were turned, and of how many pieces no directions agree: they are one-sided, as
+/// a Möbius strip.
+pub(super) fn agree<const N: usize>(elements: &mut [[u32; N]]) -> (usize, usize) {
+    let sides = sides(elements);
+    // Of each element the neighbours at rims of two, and whether they agree now.
+    let mut neighbours = vec![[(u32::MAX, false); N]; elements.len()];
+    for at_rim in by_rim(&sides) {
+        if let [a, b] = at_rim {
+            let agree = a.is_forward != b.is_forward;
+            let mut join = |a: &Side, b: &Side| {
+                neighbours[a.element as usize][a.number as usize] = (b.element, agree);
+            };
+            join(a, b);
+            join(b, a);
+        }
+    }
+    // Whether each element is to be turned.
+    let mut turns: Vec<Option<bool>> = vec![None; elements.len()];
+    let (mut turned, mut one_sided) = (0, 0);
+    let mut piece = Vec::new();
+    for first in 0..elements.len() {
+        if turns[first].is_some() {
+            continue;
+        }
+        turns[first] = Some(false);
+        piece.clear();
+        piece.push(first);
+        let (mut next, mut is_one_sided) = (0, false);
+        while next < piece.len() {
+            let element = piece[next];
+            next += 1;
+            for (neighbour, agree) in neighbours[element] {
+                if neighbour == u32::MAX {
+                    continue;
+                }
+                let neighbour = neighbour as usize;
+                // Where both agree, both are turned or neither.
+                let wanted = turns[element].map(|is_turned| is_turned == agree);
+                if turns[neighbour].is_none() {
+                    turns[neighbour] = wanted;
+                    piece.push(neighbour);
+                } else {
+                    is_one_sided |= turns[neighbour] != wanted;
+                }
+            }
+        }
+        one_sided += usize::from(is_one_sided);
+        let count = piece.iter().filter(|element| turns[**element] == Some(true)).count();
+        // Of a tie, the first element stays.
+        let is_other = 2 * count > piece.len();
+        turned += if is_other { piece.len() - count } else { count };
+        for &element in &piece {
+            if turns[element] == Some(!is_other) {
+                turn(&mut elements[element]);
+            }
+        }
+    }
+    (turned, one_sided)
+}
+
+fn turn<const N: usize>(element: &mut [u32; N]) {
+    element.swap(0, 1);
+}
+
+/// A piece, and how it lies to the others.
+#[derive(Debug)]
+pub(in crate::solid) struct Piece<const D: usize> {
+    elements: Vec<usize>,
+    bounds: Aabb<D>,
+    /// What it encloses [m³], in the plane [m²]: negative if its inside is without.
+    volume: f64,
+    corner: Point<D>,
+}
+
+/// How the pieces of a mesh lie to each other.
+#[derive(Debug, Default)]
+pub(in crate::solid) struct Pieces {
+    /// Of each element, the number of its piece.
+    pub(in crate::solid) of_element: Vec<usize>,
+    /// Which pieces are cavities: their inside is without.
+    pub(in crate::solid) is_cavity: Vec<bool>,
+    /// How many pieces lie right within one that turns the same way: walls within the solid, or cavities within
+    /// cavities.
+    pub(in crate::solid) nested: usize,
+    /// How many pieces were inside out.
+    pub(in crate::solid) turned: usize,
+}
+
+/// Turns pieces that are inside out, with all that lie within them: those with a negative volume that lie
+/// within no other.
+pub(super) fn outwards<const N: usize, const D: usize>(
+    vertices: &[Point<D>],
+    elements: &mut [[u32; N]],
+) -> Pieces {
+    let (of_element, count) = pieces(elements);
+    let corners = |element: &[u32; N]| element.map(|index| vertices[index as usize]);
+    let mut members = vec![Vec::new(); count];
+    for (element, piece) in of_element.iter().enumerate() {
+        members[*piece].push(element);
+    }
+    let all: Vec<Piece<D>> = members
+        .into_iter()
+        .map(|members| {
+            let all = || members.iter().map(|element| corners(&elements[*element]));
+            let first = corners(&elements[members[0]])[0];
+            let bounds =
+                Aabb::around(all().flatten()).unwrap_or(Aabb { min: first, max: first });
+            let middle = bounds.centre();
+            let volume = all().map(|corners| signed_volume(&corners, middle)).sum();
+            Piece { elements: members, bounds, volume, corner: first }
+        })
+        .collect();
+    let winding = |outer: &Piece<D>, p: Point<D>| -> f64 {
+        outer.elements.iter().map(|element| share(&corners(&elements[*element]), p)).sum()
+    };
+    let is_within = |inner: &Piece<D>, outer: &Piece<D>| {
+        outer.bounds.contains(inner.corner)
+            && outer.volume.abs() > inner.volume.abs()
+            && winding(outer, inner.corner).abs() > 0.5
+    };
+    // The pieces around each, the smallest first.
+    let around: Vec<Vec<usize>> = (0..count)
+        .map(|i| {
+            let mut around: Vec<_> =
+                (0..count).filter(|k| *k != i && is_within(&all[i], &all[*k])).collect();
+            around.sort_by(|a, b| all[*a].volume.abs().total_cmp(&all[*b].volume.abs()));
+            around
+        })
+        .collect();
+    let is_turned = |i: usize| all[*around[i].last().unwrap_or(&i)].volume < 0.0;
+    let is_cavity: Vec<bool> =
+        (0..count).map(|i| (all[i].volume < 0.0) != is_turned(i)).collect();
+    let is_alike =
+        |i: &usize| around[*i].first().is_some_and(|k| is_cavity[*k] == is_cavity[*i]);
+    let nested = (0..count).filter(is_alike).count();
+    let mut turned = 0;
+    for i in (0..count).filter(|i| is_turned(*i)) {
+        all[i].elements.iter().for_each(|element| turn(&mut elements[*element]));
+        turned += 1;
+    }
+    Pieces { of_element, is_cavity, nested, turned }
+}

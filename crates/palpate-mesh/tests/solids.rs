@@ -1,0 +1,277 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! Solids of meshes, sound and damaged, against every face and the exact winding number.
+
+use std::f64::consts::{PI, TAU};
+use std::path::Path;
+
+use palpate_field::{Point, Quality, Rotation, Shape, Vector};
+use palpate_mesh::{Findings, Mesh, Outline, Solid, SolidError, TriangleMesh, read_file};
+
+/// Triangles, to be put together.
+#[derive(Clone, Default)]
+struct Soup {
+    vertices: Vec<Point<3>>,
+    faces: Vec<[u32; 3]>,
+}
+
+impl Soup {
+    /// A box about a point, its faces counter-clockwise seen from outside.
+    fn cuboid(centre: [f64; 3], size: [f64; 3]) -> Self {
+        let corner = |i: u32| {
+            Vector(std::array::from_fn(|k| {
+                centre[k] + size[k] * (f64::from((i >> k) & 1) - 0.5)
+            }))
+        };
+        let quads = [
+            [0, 4, 6, 2],
+            [1, 3, 7, 5],
+            [0, 1, 5, 4],
+            [2, 6, 7, 3],
+            [0, 2, 3, 1],
+            [4, 5, 7, 6],
+        ];
+        let faces = quads.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]).collect();
+        Self { vertices: (0..8).map(corner).collect(), faces }
+    }
+
+    /// A ball about a point, of rings of triangles.
+    fn ball(centre: [f64; 3], radius: f64, rings: u32) -> Self {
+        let sectors = 2 * rings;
+        let at = |ring: u32, sector: u32| {
+            let (up, around) = (
+                PI * f64::from(ring) / f64::from(rings),
+                TAU * f64::from(sector) / f64::from(sectors),
+            );
+            Vector(centre)
+                + Vector([up.sin() * around.cos(), up.cos(), up.sin() * around.sin()]) * radius
+        };
+        let mut soup = Self::default();
+        for ring in 0..=rings {
+            soup.vertices.extend(
+                (0..sectors).map(|sector| at(ring, if ring % rings == 0 { 0 } else { sector })),
+            );
+        }
+        for ring in 0..rings {
+            for sector in 0..sectors {
+                let next = (sector + 1) % sectors;
+                let [a, b, c, d] =
+                    [(ring, sector), (ring, next), (ring + 1, sector), (ring + 1, next)]
+                        .map(|(ring, sector)| ring * sectors + sector);
+                if ring > 0 {
+                    soup.faces.push([a, b, c]);
+                }
+                if ring + 1 < rings {
+                    soup.faces.push([b, d, c]);
+                }
+            }
+        }
+        soup
+    }
+
+    fn and(mut self, other: Self) -> Self {
+        let offset = self.vertices.len() as u32;
+        self.vertices.extend(other.vertices);
+        self.faces.extend(other.faces.iter().map(|face| face.map(|index| index + offset)));
+        self
+    }
+
+    fn inside_out(mut self) -> Self {
+        self.faces.iter_mut().for_each(|face| face.swap(0, 1));
+        self
+    }
+
+    fn turned(mut self, rotation: &Rotation<3>) -> Self {
+        self.vertices.iter_mut().for_each(|p| *p = rotation.rotate(*p));
+        self
+    }
+
+    fn mesh(&self) -> TriangleMesh {
+        Mesh::new(self.vertices.clone(), self.faces.clone()).unwrap()
+    }
+
+    fn solid(&self) -> (Shape<3>, Findings<3>) {
+        let (solid, findings) = Solid::from_mesh(&self.mesh()).unwrap();
+        (solid.into(), findings)
+    }
+}
+
+/// Points in and around a box, from a sequence without period.
+fn points(count: u32, reach: f64) -> impl Iterator<Item = Point<3>> {
+    (1..=count).map(move |i| {
+        let share = |step: f64| 2.0 * (f64::from(i) * step).fract() - 1.0;
+        Vector([share(0.819_172_513_4), share(0.671_043_606_7), share(0.549_700_477_9)]) * reach
+    })
+}
+
+/// The winding number by a sum over all faces.
+fn winding(soup: &Soup, p: Point<3>) -> f64 {
+    let angle = |face: &[u32; 3]| {
+        let [a, b, c] = face.map(|index| soup.vertices[index as usize] - p);
+        let (la, lb, lc) = (a.norm(), b.norm(), c.norm());
+        let below = la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb;
+        a.dot(b.cross(c)).atan2(below) / TAU
+    };
+    soup.faces.iter().map(angle).sum()
+}
+
+/// Values have the sign of the winding number of `truth`, and the size of the distance to the nearest face of
+/// the mesh.
+fn agrees(shape: &Shape<3>, soup: &Soup, truth: &Soup, reach: f64) {
+    for p in points(600, reach) {
+        let found = shape.distance(p);
+        let nearest = soup.faces.iter().map(|face| {
+            let [a, b, c] = face.map(|index| soup.vertices[index as usize]);
+            Shape::<3>::triangle_sheet([a.0, b.0, c.0], 0.0)
+                .map_or(f64::INFINITY, |face| face.distance(p))
+        });
+        let distance = nearest.fold(f64::INFINITY, f64::min);
+        assert!((found.abs() - distance).abs() < 1e-12, "{p:?}: {found} of {distance}");
+        assert_eq!(found < 0.0, winding(truth, p) > 0.5, "{p:?}: {found}");
+    }
+}
+
+#[test]
+fn a_cuboid_of_triangles_is_the_cuboid() {
+    let (shape, findings) = Soup::cuboid([0.0; 3], [1.0, 2.0, 3.0]).solid();
+    assert!(findings.is_clean(), "{findings}");
+    let exact = Shape::<3>::cuboid([1.0, 2.0, 3.0]).unwrap();
+    assert_eq!(
+        (shape.promise().outside, shape.promise().inside),
+        (Quality::Exact, Quality::Exact)
+    );
+    for p in points(2000, 3.0) {
+        let [(f, slope), (g, other)] = [&shape, &exact].map(|shape| shape.distance_gradient(p));
+        assert!((f - g).abs() < 1e-15 && (slope - other).norm() < 1e-12, "{p:?}: {f}, {g}");
+    }
+}
+
+#[test]
+fn solids_that_overlap_nest_or_touch_keep_their_signs() {
+    let turn = Rotation::from_axis_angle([0.3, 1.0, 0.2], 0.7).unwrap();
+    let (one, two) = (
+        Soup::cuboid([0.0; 3], [1.0; 3]),
+        Soup::cuboid([0.4, 0.3, 0.2], [1.0, 0.8, 0.9]).turned(&turn),
+    );
+    let both = one.clone().and(two);
+    let (shape, findings) = both.solid();
+    assert!(findings.crossings > 0 && findings.turned == 0, "{findings}");
+    assert_eq!(
+        (shape.promise().outside, shape.promise().inside),
+        (Quality::Exact, Quality::Bound)
+    );
+    agrees(&shape, &both, &both, 1.5);
+
+    let nested = Soup::ball([0.0; 3], 1.0, 12).and(Soup::ball([0.1, 0.0, 0.0], 0.5, 9));
+    let (shape, findings) = nested.solid();
+    assert_eq!((findings.nested, findings.crossings), (1, 0), "{findings}");
+    agrees(&shape, &nested, &nested, 1.2);
+
+    let hollow =
+        Soup::ball([0.0; 3], 1.0, 12).and(Soup::ball([0.1, 0.0, 0.0], 0.5, 9).inside_out());
+    let (shape, findings) = hollow.solid();
+    assert_eq!((findings.nested, findings.inside_out), (0, 0), "{findings}");
+    assert_eq!(shape.promise().inside, Quality::Exact);
+    agrees(&shape, &hollow, &hollow, 1.2);
+    // The whole inside out: both are turned.
+    let (shape, findings) = hollow.clone().inside_out().solid();
+    assert_eq!(findings.inside_out, 2, "{findings}");
+    agrees(&shape, &hollow, &hollow, 1.2);
+
+    // Cubes that share an edge, and a wall that both have.
+    let (left, right) =
+        (Soup::cuboid([-0.5, 0.0, 0.0], [1.0; 3]), Soup::cuboid([0.5, 1.0, 0.0], [1.0; 3]));
+    let edge = left.clone().and(right);
+    let (shape, findings) = edge.solid();
+    assert_eq!(findings.crowded_rims, 1, "{findings}");
+    agrees(&shape, &edge, &edge, 2.0);
+    let stacked = left.clone().and(Soup::cuboid([0.5, 0.0, 0.0], [1.0; 3]));
+    let (shape, findings) = stacked.solid();
+    assert_eq!(findings.duplicates, 4, "{findings}");
+    let whole = Soup::cuboid([0.0; 3], [2.0, 1.0, 1.0]);
+    agrees(&shape, &whole, &whole, 1.5);
+}
+
+#[test]
+fn faces_that_are_turned_doubled_or_gone_are_mended() {
+    let ball = Soup::ball([0.0; 3], 1.0, 12);
+    let every = |n: usize| move |i: &usize| i.is_multiple_of(n);
+    let mut turned = ball.clone();
+    (0..turned.faces.len()).filter(every(10)).for_each(|i| turned.faces[i].swap(0, 1));
+    let (shape, findings) = turned.solid();
+    assert_eq!(findings.turned, turned.faces.len().div_ceil(10), "{findings}");
+    agrees(&shape, &ball, &ball, 1.2);
+
+    let mut doubled = ball.clone();
+    for i in (0..ball.faces.len()).filter(every(5)) {
+        let [a, b, c] = ball.faces[i];
+        doubled.faces.push([b, a, c]);
+    }
+    let (shape, findings) = doubled.solid();
+    assert_eq!(findings.duplicates, ball.faces.len().div_ceil(5), "{findings}");
+    agrees(&shape, &ball, &ball, 1.2);
+
+    let mut open = ball.clone();
+    open.faces.retain(|face| face.iter().any(|index| ball.vertices[*index as usize][1] < 0.8));
+    let (shape, findings) = open.solid();
+    assert_eq!(findings.openings.len(), 1, "{findings}");
+    let words = findings.to_string();
+    assert!(
+        words.contains("1 opening, ") && words.ends_with("was closed by a flat cap"),
+        "{words}"
+    );
+    assert!(shape.distance([0.0, 0.5, 0.0]) < 0.0 && shape.distance([0.0, 0.95, 0.0]) > 0.0);
+}
+
+#[test]
+fn what_bounds_no_solid_is_refused() {
+    // A Möbius strip of triangles.
+    let mut strip = Soup::default();
+    for i in 0..20 {
+        let angle = TAU * f64::from(i) / 20.0;
+        let ring = Vector([angle.cos(), 0.0, angle.sin()]);
+        let across =
+            ring * (0.5 * angle).cos() * 0.2 + Vector([0.0, 0.2 * (0.5 * angle).sin(), 0.0]);
+        strip.vertices.extend([ring - across, ring + across]);
+    }
+    for i in 0..20_u32 {
+        let [a, b] = [2 * i, 2 * i + 1];
+        let [c, d] = if i == 19 { [1, 0] } else { [2 * i + 2, 2 * i + 3] };
+        strip.faces.extend([[a, b, c], [b, d, c]]);
+    }
+    let error = Solid::from_mesh(&strip.mesh()).unwrap_err();
+    assert_eq!(error, SolidError::OneSided { pieces: 1 });
+    let flat = Soup { vertices: vec![Vector::ZERO; 3], faces: vec![[0, 0, 1]] };
+    let error = Solid::from_mesh(&flat.mesh()).unwrap_err();
+    assert_eq!(error, SolidError::NoFaces { given: 1 });
+}
+
+#[test]
+fn outlines_are_solids_of_the_plane() {
+    let corners = [[0.0, 0.0], [3.0, 0.0], [3.0, 1.0], [1.0, 1.0], [1.0, 2.0], [0.0, 2.0]];
+    let sides = |count: u32| (0..count).map(|i| [i, (i + 1) % 6]).collect::<Vec<_>>();
+    let polygon = Shape::<2>::polygon(vec![corners.to_vec()]).unwrap();
+    // Closed, and without its last side.
+    for count in [6, 5] {
+        let outline = Outline::new(corners.map(Vector).to_vec(), sides(count)).unwrap();
+        let (solid, findings) = Solid::from_mesh(&outline).unwrap();
+        assert_eq!(findings.openings.len() as u32, 6 - count, "{findings}");
+        let shape: Shape<2> = solid.into();
+        for p in points(1000, 4.0) {
+            let p = Vector([p[0], p[1]]);
+            assert!((shape.distance(p) - polygon.distance(p)).abs() < 1e-14, "{p:?}");
+        }
+    }
+}
+
+#[test]
+fn the_meshes_of_the_tests_are_solids() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../testdata/meshes");
+    for (file, crossings) in [("nut", 0), ("ant", 99), ("bunny", 0), ("airplane", 0)] {
+        let mesh = read_file(folder.join(file).with_extension("ply")).unwrap();
+        let (solid, findings) = Solid::from_mesh(&mesh).unwrap();
+        println!("{file}: {findings}; {}", solid.promise());
+        assert_eq!(findings.crossings, crossings, "{file}: {findings}");
+    }
+}
