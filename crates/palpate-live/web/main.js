@@ -7,7 +7,9 @@
 import { startGamepad } from './input/gamepad.js';
 import { listenKeys } from './input/keys.js';
 import { nextKind } from './input/placing.js';
+import { letGo, startSteering } from './input/steer.js';
 import * as actions from './panels/actions.js';
+import { keepBefore } from './panels/before.js';
 import { Checks } from './panels/checks.js';
 import { closeDialog, isDialogOpen, openDialog } from './panels/dialog.js';
 import { takeScene } from './panels/edits.js';
@@ -16,7 +18,7 @@ import { watchFar } from './panels/far.js';
 import { Header, startTheme } from './panels/header.js';
 import { Help } from './panels/help.js';
 import { followLink, takeAddress } from './panels/link.js';
-import { page, tell } from './panels/page.js';
+import { dismiss, page, tell } from './panels/page.js';
 import { valueAt } from './panels/schema.js';
 import { Time } from './panels/play.js';
 import { startProfile } from './panels/profile.js';
@@ -24,7 +26,7 @@ import { takeRecording, watchRecording } from './panels/recording.js';
 import { takeSafety, watchSafety } from './panels/safety.js';
 import { baseName, save, saveAs } from './panels/saving.js';
 import { Selected } from './panels/selected.js';
-import { FORCES_COME_BACK, stop } from './panels/stop.js';
+import { FORCES_COME_BACK, stop, watchStop } from './panels/stop.js';
 import { Tabs } from './panels/tabs.js';
 import { Toasts, Words } from './panels/toasts.js';
 import { Touch } from './panels/touch.js';
@@ -46,7 +48,10 @@ function takeMessage(message) {
     state.welcome = message;
     changed('welcome');
   }
-  if (message.do === 'scene') takeScene(message);
+  if (message.do === 'scene') {
+    keepBefore(state.scene, message);
+    takeScene(message);
+  }
   if (message.do === 'events') takeEvents(message.events);
   if (message.do === 'safety') takeSafety(message.stages);
   if (message.do === 'recording') takeRecording(/** @type {any} */ (message));
@@ -55,7 +60,21 @@ function takeMessage(message) {
     changed('clients');
   }
   // The answer to a question without a number: what failed was nobody's in particular.
-  if (message.do === 'notice' || message.do === 'refused') tell(message.message, 'bad');
+  if (message.do === 'notice' || message.do === 'refused') takeNotice(message.message);
+}
+
+/** The message that tells what is wrong with the file. */
+let aboutFile = 0;
+
+/** @param {string} text */
+function takeNotice(text) {
+  const { file } = state.scene ?? {};
+  if (!file || !text.startsWith(file)) {
+    tell(text, 'bad');
+    return;
+  }
+  dismiss(aboutFile);
+  aboutFile = tell(text, 'bad');
 }
 
 /** The scene that the page was made to suit last. @type {import('./wire.js').Message} */
@@ -80,7 +99,10 @@ function suitView() {
   }
   if ((state.touch.point ?? 0) >= scene.device.points) setTouch({ point: null });
   if (scene.restarted) tell(`${scene.why[0].toUpperCase()}${scene.why.slice(1)}. ${FORCES_COME_BACK}`);
-  if (scene.by === 'file') tell('The file was changed elsewhere; the page shows it as it is now.');
+  if (scene.by === 'file') {
+    dismiss(aboutFile);
+    tell('The file was changed elsewhere; the page shows it as it is now.');
+  }
 }
 
 /** Connects with a token; again, if the program refused the one before. @param {string} token */
@@ -97,6 +119,7 @@ function connect(token) {
       takeFrame(frame);
       watchRecording(frame);
       watchSafety(frame);
+      watchStop(frame);
       performance.measure('take a frame', { start });
     },
     message: takeMessage,
@@ -151,6 +174,7 @@ listen(['scene'], suitView);
 listen(['scene'], watchFar);
 takeDrops();
 startGamepad();
+startSteering();
 listenKeys({
   stop,
   hold: actions.hold,
@@ -165,6 +189,7 @@ listenKeys({
   compare: () => actions.setMode('compare'),
   fit: () => page.stage?.setCamera('reset'),
   place: nextKind,
+  letGo,
   undo: actions.undo,
   redo: actions.redo,
   save: () => void save(),

@@ -56,7 +56,6 @@ export const state = {
     input: 'pointer',
     /** The contact point that leads; null for the middle of all. @type {number | null} */
     point: null,
-    tour: true,
     rumble: true,
     vibration: true,
     sound: false,

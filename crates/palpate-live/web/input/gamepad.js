@@ -6,7 +6,7 @@
  * A gamepad leads the hand and shakes with the force; a telephone shakes at events.
  */
 
-import { axesSeen, letGo, push } from './steer.js';
+import { axesSeen, isSteering, letGo, push } from './steer.js';
 import { listen, state } from '../state.js';
 
 /** Sticks that are nearer to their middle rest. */
@@ -41,6 +41,7 @@ export function startGamepad() {
 
   const read = () => {
     requestAnimationFrame(read);
+    isLeading &&= isSteering();
     const pad = firstPad();
     if (!pad) {
       if (isLeading) letGo();

@@ -64,6 +64,8 @@ export function createHand(wire) {
       else if (timer === 0) timer = window.setTimeout(() => send(), wait);
     },
 
+    isHeld: () => isHeld,
+
     /** Lets go of the hand, where it was led last. */
     release() {
       if (!isHeld) return;

@@ -5,8 +5,8 @@
 /**
  * The keys of the page, in one table, which the help shows too.
  *
- * `where` says when a key counts: `anywhere`; `untyped`: not while a text field has the focus;
- * `outside`: nor a `<select>`; `moveless`: nor a slider, tree or tab list; `free`: only while no
+ * `where` says when a key counts: `anywhere`; `untyped`: not while a text field holds what was typed
+ * and not entered yet; `outside`: not while a text field or a `<select>` has the focus; `moveless`: nor a slider, tree or tab list; `free`: only while no
  * control has the focus.
  *
  * @typedef {'anywhere' | 'untyped' | 'outside' | 'moveless' | 'free'} Where
@@ -16,7 +16,7 @@
 
 import { endKeys, takeKey } from './placing.js';
 import { deepen, isLeading } from './pointer.js';
-import { axesSeen, letGo, push } from './steer.js';
+import { axesSeen, letGo, nudge, push } from './steer.js';
 import { state } from '../state.js';
 
 /** @type {Key[]} */
@@ -34,13 +34,14 @@ export const KEYS = [
   { keys: ['4'], shown: '4', text: 'compare two bodies', where: 'outside', does: 'compare' },
   { keys: ['f', 'F'], shown: 'F', text: 'show the whole scene', where: 'outside', does: 'fit' },
   { keys: ['m', 'M'], shown: 'M', text: 'the arrow and Page keys move the selected body or shape; again: turn it, scale it, move the hand', where: 'outside', does: 'place' },
+  { keys: ['l', 'L'], shown: 'L', text: 'let go of the hand, which keys hold where they led it', where: 'outside', does: 'letGo' },
   { keys: ['z', 'Z'], shown: 'Ctrl Z', text: 'undo', where: 'untyped', does: 'undo', control: true },
   { keys: ['y', 'Y'], shown: 'Ctrl Y', text: 'redo', where: 'untyped', does: 'redo', control: true },
   { keys: ['s', 'S'], shown: 'Ctrl S', text: 'save the scene; with Shift as another file', where: 'anywhere', does: 'save', control: true },
   { keys: ['?', 'F1'], shown: '? or F1', text: 'this help', where: 'outside', does: 'help' },
 ];
 
-/** Keys that move the hand while they are held: to the right, up, away. @type {Record<string, number[]>} */
+/** Keys that move the hand: to the right, up, away. @type {Record<string, number[]>} */
 const MOVES = {
   ArrowLeft: [-1, 0, 0], ArrowRight: [1, 0, 0], ArrowDown: [0, -1, 0], ArrowUp: [0, 1, 0],
   PageDown: [0, 0, 1], PageUp: [0, 0, -1],
@@ -48,7 +49,7 @@ const MOVES = {
 
 /** What the table does not hold, for the help. */
 export const MOVE_HELP = [
-  { shown: '← → ↑ ↓', text: 'move the hand; while looking back ← and → go from frame to frame' },
+  { shown: '← → ↑ ↓', text: 'move the hand a step, and on while they are held; it stays there, and presses on. While looking back ← and → go from frame to frame' },
   { shown: 'Page ↑ Page ↓', text: 'move the hand nearer and away, in depth' },
   { shown: 'Shift', text: 'with these: a quarter of the speed; a fifth of a step of what is selected' },
 ];
@@ -59,39 +60,61 @@ const WITH_ARROWS = `${CHOSEN}, input[type=range], [role=tree], [role=tablist]`;
 /** In what a key of each kind does not count. @type {Record<Where, string>} */
 const ELSEWHERE = {
   anywhere: ':not(*)',
-  untyped: TYPED,
+  untyped: ':not(*)',
   outside: CHOSEN,
   moveless: WITH_ARROWS,
   free: `${WITH_ARROWS}, input, button, a, summary`,
 };
 
+/** The text field with what was typed and not entered yet. @type {EventTarget | null} */
+let draft = null;
+
+/** Takes note of what is typed, until it is entered. */
+function watchDraft() {
+  addEventListener('input', ({ target }) => {
+    draft = target instanceof Element && target.matches(TYPED) ? target : null;
+  });
+  addEventListener('focusout', () => {
+    draft = null;
+  });
+  addEventListener('keydown', ({ key, target }) => {
+    if (key === 'Enter' && target instanceof HTMLInputElement) draft = null;
+  });
+}
+
 /** @param {EventTarget | null} target @param {Where} where */
 function counts(target, where) {
-  return !(target instanceof Element && target.closest(ELSEWHERE[where]));
+  if (!(target instanceof Element)) return true;
+  // What is wrong with a text is mended there.
+  if (where === 'untyped' && (target === draft || target.matches('[aria-invalid=true]'))) return false;
+  return !target.closest(ELSEWHERE[where]);
 }
 
 /** A speed while Shift is down, over that without. */
 const SLOW = 0.25;
+/** How long a key is down before the hand moves on after its first step [ms]. */
+const TAP = 250;
 
 /** Listens for keys. @param {Record<string, () => void>} actions one for each `does` */
 export function listenKeys(actions) {
-  /** @type {Set<string>} */
-  const held = new Set();
+  /** Keys that are down, and since when. @type {Map<string, number>} */
+  const held = new Map();
   let isSlow = false;
   let isRunning = false;
 
   const run = () => {
     if (held.size === 0 || state.lookingAt !== null) {
       isRunning = false;
-      letGo();
       return;
     }
+    const moving = [...held].filter(([, since]) => performance.now() - since > TAP).map(([key]) => key);
     const speeds = [0, 1, 2].map((axis) =>
-      (isSlow ? SLOW : 1) * [...held].reduce((sum, key) => sum + MOVES[key][axis], 0));
-    push(speeds, axesSeen());
+      (isSlow ? SLOW : 1) * moving.reduce((sum, key) => sum + MOVES[key][axis], 0));
+    if (moving.length > 0) push(speeds, axesSeen());
     requestAnimationFrame(run);
   };
 
+  watchDraft();
   // In the capturing phase, so that nothing can keep Escape to itself.
   addEventListener('keydown', (event) => {
     isSlow = event.shiftKey;
@@ -121,7 +144,9 @@ export function listenKeys(actions) {
     }
     if (takeKey(MOVES[event.key], event)) return;
     if (state.touch.input !== 'keys') actions.useKeys?.();
-    held.add(event.key);
+    if (held.has(event.key)) return;
+    held.set(event.key, performance.now());
+    nudge(MOVES[event.key].map((way) => way * (isSlow ? SLOW : 1)), axesSeen());
     if (!isRunning) {
       isRunning = true;
       requestAnimationFrame(run);

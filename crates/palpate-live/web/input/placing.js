@@ -12,7 +12,7 @@
 
 import { edit, settled } from '../panels/edits.js';
 import { extent } from '../panels/numbers.js';
-import { dismiss, tell, toasts } from '../panels/page.js';
+import { dismiss, tell } from '../panels/page.js';
 import { keyed } from '../scene/grips.js';
 import { movedPart, scaledPart, selectedPart, turnedPart } from '../scene/placement.js';
 import { roundUp } from '../scene/units.js';
@@ -33,8 +33,8 @@ const KINDS = /** @type {const} */ ([
   ['scale', (/** @type {string} */ name) => `Arrow keys scale “${name}”; M: they move the hand.`],
 ]);
 
-/** What was told last. */
-let told = '';
+/** The message that was told last. */
+let told = 0;
 
 /** Goes on to what the arrow keys do next. */
 export function nextKind() {
@@ -42,10 +42,9 @@ export function nextKind() {
   const at = part ? (KINDS.findIndex(([kind]) => kind === keyed.kind) + 1) % KINDS.length : 0;
   const [kind, words] = KINDS[at];
   keyed.kind = kind;
-  const before = toasts.find(({ text }) => text === told);
-  if (before) dismiss(before.id);
-  told = part ? words(part.name) : 'Select a body or a shape first: then M lets the arrow keys move, turn and scale it.';
-  tell(told);
+  dismiss(told);
+  const text = part ? words(part.name) : 'Select a body or a shape first: then M lets the arrow keys move, turn and scale it.';
+  told = tell(text);
 }
 
 /** The axis of a part that is seen most along a key's way, and its sign; no two keys share one.

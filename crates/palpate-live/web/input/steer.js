@@ -10,12 +10,17 @@
 
 import { extent } from '../panels/numbers.js';
 import { page } from '../panels/page.js';
-import { state } from '../state.js';
+import { along, norm, subtract } from '../scene/vectors.js';
+import { listen, state } from '../state.js';
 import { ledPlace } from './hand.js';
 import { isLeading } from './pointer.js';
 
 /** The time that the hand takes across the scene at full speed [s]. */
 const CROSSING = 3;
+/** A tap of a key, and how far the hand is led from where it is, over the scene's size: what presses on
+ * a body comes off it soon. */
+const TAP = 1 / 250;
+const FARTHEST = 1 / 20;
 /** The longest time between two frames that counts [s]: after a pause the hand does not jump. */
 const LONGEST = 0.05;
 
@@ -23,26 +28,51 @@ const LONGEST = 0.05;
 let target = null;
 let last = 0;
 
+/** Moves the hand by so much of the scene's size: to the right, up, and away.
+ * @param {number[]} parts @param {Axes} axes */
+function move(parts, axes) {
+  const { scene } = state;
+  const at = ledPlace();
+  if (isLeading() || !at || !scene) return;
+  const size = extent(scene.bounds);
+  const ways = [axes.right, axes.up, axes.away].slice(0, scene.dimension);
+  const from = page.stage?.hand.isHeld() ? target ?? at : at;
+  const next = ways.reduce((place, way, index) => along(place, way, size * parts[index]), from);
+  const way = subtract(next, at);
+  target = along(at, way, Math.min(1, (FARTHEST * size) / (norm(way) || 1)));
+  page.stage?.lead(target);
+}
+
+/** Moves the hand by a step. @param {number[]} ways to the right, up, and away @param {Axes} axes */
+export function nudge(ways, axes) {
+  move(ways.map((way) => TAP * way), axes);
+}
+
 /** Moves the hand on for a frame. `speeds` are from −1 to 1: to the right, up, and away.
  * @param {number[]} speeds @param {Axes} axes */
 export function push(speeds, axes) {
   const now = performance.now();
   const seconds = Math.min((now - last) / 1000, LONGEST);
   last = now;
-  target = isLeading() ? null : target ?? ledPlace()?.slice() ?? null;
-  if (!target || !state.scene) return;
-  const reach = (extent(state.scene.bounds) / CROSSING) * seconds;
-  const ways = [axes.right, axes.up, axes.away];
-  for (const axis of [0, 1, 2]) {
-    target[axis] += reach * ways.reduce((sum, way, index) => sum + way[axis] * speeds[index], 0);
-  }
-  page.stage?.hand.lead([...target]);
+  move(speeds.map((speed) => (speed * seconds) / CROSSING), axes);
 }
+
+/** Whether keys or a gamepad hold the hand. */
+export const isSteering = () => target !== null && !isLeading() && (page.stage?.hand.isHeld() ?? false);
 
 /** Lets go of the hand, unless the pointer has taken it. */
 export function letGo() {
-  if (target && !isLeading()) page.stage?.hand.release();
+  if (isSteering()) page.stage?.lead(null);
   target = null;
+}
+
+/** Lets go of the hand where it cannot be led on: in another scene, and without a program. */
+export function startSteering() {
+  let opened = 0;
+  listen(['scene', 'connection'], () => {
+    if (state.connection !== 'live' || state.opened !== opened) letGo();
+    opened = state.opened;
+  });
 }
 
 /** The axes of the picture. @returns {Axes} */

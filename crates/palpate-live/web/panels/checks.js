@@ -9,6 +9,7 @@
  * @typedef {import('../plane/toys.js').Toy} Toy
  */
 
+import { LETTERS } from '../plane/handles.js';
 import { GRADIENTS, METHODS, PAIR_METHODS, listenToys, setToys, toys } from '../plane/toys.js';
 import { boxOf, centreOf } from '../scene/setting.js';
 import { toDecimals } from '../scene/vectors.js';
@@ -62,9 +63,10 @@ export function Checks() {
       ${isPlane && TOYS.map(([toy, name, help]) => html`<div key=${toy} class="check">
         <${Switch} label=${name} help=${help} value=${toys.shown[toy]}
           change=${(/** @type {boolean} */ is) => setToys({ shown: { ...toys.shown, [toy]: is } })} />
-        ${toys.shown[toy] && html`<${Parameters} toy=${toy} />
+        ${toys.shown[toy] && html`
           ${toys.refused[toy] && html`<p class="problem">${toys.refused[toy]}</p>`}
           <${Verdict} toy=${toy} result=${toys.results[toy]} />
+          <${Parameters} toy=${toy} />
           ${toy === 'pair' && html`<${Starts} />`}`}
       </div>`)}
     </div>`;
@@ -115,7 +117,7 @@ function Corners() {
   };
   return html`<${ChoiceField} label="element" value=${String(corners.length)} change=${take}
       choices=${KINDS.map((name, index) => [String(index + 1), name])} />
-    ${corners.map((corner, index) => html`<${VectorField} key=${index} label=${`vertex ${'ABC'[index]}`} unit="m"
+    ${corners.map((corner, index) => html`<${VectorField} key=${index} label=${`vertex ${LETTERS[index]}`} unit="m"
       value=${corner} scale=${scale()} change=${(/** @type {number[]} */ to) =>
         setToys({ corners: corners.map((old, at) => (at === index ? to : old)) })} />`)}`;
 }

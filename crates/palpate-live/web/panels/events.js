@@ -13,6 +13,7 @@ import { changed, state } from '../state.js';
 import { count, servoTime, short } from './numbers.js';
 import { useTopics } from './page.js';
 import { actingStages, useClock } from './safety.js';
+import { withheldInWords } from './stop.js';
 
 /** Events that are kept. */
 const KEPT = 200;
@@ -62,8 +63,8 @@ export function Status() {
   useClock();
   const { scene, connection, newest } = state;
   const limit = scene?.device?.max_force;
-  const safety = connection !== 'live' ? 'not connected' : newest?.stopped ? 'stopped, all forces are zero'
-    : actingStages() || 'ok';
+  const safety = connection !== 'live' ? 'not connected' : newest?.stopped ? 'stopped, all forces are zero until “release” at the top'
+    : withheldInWords(newest) || actingStages() || 'ok';
   const isCalm = safety === 'ok';
   return html`
     <span class=${isCalm ? 'safety' : 'safety acting'} title="What stands between the wanted force and the hand: the tab Safety explains each stage">safety: <b>${safety}</b></span>

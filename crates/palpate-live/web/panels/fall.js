@@ -97,12 +97,12 @@ export function FallingBall() {
       </div>
       ${isShown && html`<${VectorField} label="it begins at" unit="m" value=${centre} scale=${scale}
           change=${(/** @type {number[]} */ to) => setFall({ centre: to })} />
-        <${NumberField} label="radius" unit="m" value=${radius} min=${0} above scale=${scale / 10}
+        <${NumberField} label="radius" unit="m" value=${radius} min=${0} above slider=${false} scale=${scale / 10}
           change=${(/** @type {number} */ to) => setFall({ radius: to })} />
-        <${NumberField} label="restitution" value=${restitution} min=${0} max=${1}
+        <${NumberField} label="restitution" value=${restitution} min=${0} max=${1} slider=${false}
           help="The part of the speed that a bounce gives back"
           change=${(/** @type {number} */ to) => setFall({ restitution: to })} />
-        <${NumberField} label="gravity" unit="m/s²" value=${gravity} min=${0} above scale=${9.81}
+        <${NumberField} label="gravity" unit="m/s²" value=${gravity} min=${0} above slider=${false} scale=${9.81}
           change=${(/** @type {number} */ to) => setFall({ gravity: to })} />`}
     </div>
     ${isShown && html`<div class="form">

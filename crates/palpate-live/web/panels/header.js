@@ -8,6 +8,7 @@ import { html, useEffect, useRef, useState } from '../vendor/htm-preact.js';
 import { isDark } from '../scene/colors.js';
 import { changed, state } from '../state.js';
 import * as actions from './actions.js';
+import { openedBefore } from './before.js';
 import { GALLERY } from './gallery.js';
 import { copyLink } from './link.js';
 import { page, tellError, useTopics } from './page.js';
@@ -105,6 +106,7 @@ function Menu() {
       removeEventListener('keydown', close);
     };
   }, [isOpen]);
+  const before = isOpen ? openedBefore() : [];
   const item = (/** @type {string} */ name, /** @type {() => unknown} */ run, disabled = false, key = '') => html`
     <li><button disabled=${disabled} onClick=${() => {
       setIsOpen(false);
@@ -131,6 +133,8 @@ function Menu() {
       ${item('Copy a link to this view', copyLink, !scene)}
       ${page.shownLink && html`<li class="link"><label>Link <input readonly value=${page.shownLink}
         onFocus=${(/** @type {any} */ event) => event.currentTarget.select()} /></label></li>`}
+      ${before.length > 0 && html`<li class="menu-title" title="As they were in this page when another took their place; a file is not watched any more">Opened before</li>`}
+      ${before.map(({ name, text, isEdited }) => item(`${name}${isEdited ? ', edited' : ''}`, () => actions.openText(name, text)))}
       <li class="menu-title">Gallery</li>
       ${GALLERY.map(([name, make]) => item(name, () =>
         actions.openText(name, JSON.stringify(make(), null, 2)), !welcome))}

@@ -43,18 +43,20 @@ export function listenToasts(listener) {
 
 /** @param {number} id */
 export function dismiss(id) {
-  setToasts(toasts.filter((toast) => toast.id !== id));
+  if (toasts.some((toast) => toast.id === id)) setToasts(toasts.filter((toast) => toast.id !== id));
 }
 
-/** Tells a person something; the same text is not told twice at once.
+/** Tells a person something; the same text is not told twice at once. Gives the message's number.
  * @param {string} text @param {'word' | 'bad'} [kind]
  * @param {Action[]} [actions] with an action the message stays */
 export function tell(text, kind = 'word', actions = []) {
-  if (toasts.some((toast) => toast.text === text)) return;
+  const told = toasts.find((toast) => toast.text === text);
+  if (told) return told.id;
   const id = nextToast;
   nextToast += 1;
   setToasts([...toasts.slice(-3), { id, kind, text, actions }]);
   if (actions.length === 0) setTimeout(() => dismiss(id), kind === 'bad' ? 2 * TOAST_TIME : TOAST_TIME);
+  return id;
 }
 
 /** Why something failed, in words. @param {unknown} error */

@@ -6,7 +6,7 @@
 
 import { changed } from '../state.js';
 import { count } from './numbers.js';
-import { ask, download, fileName, page, tell, tellError } from './page.js';
+import { ask, dismiss, download, fileName, page, tell, tellError } from './page.js';
 
 /** More bytes than the header and one row have. */
 const LONGEST_LINES = 4096;
@@ -15,6 +15,8 @@ const LONGEST_LINES = 4096;
 let told = null;
 let isRecording = false;
 let isReplaying = false;
+/** The message that offers what was recorded. */
+let offer = 0;
 
 /** How much was recorded, or is so far: "12 300 of at most 200 000 rows"; empty while nobody knows. */
 export function recorded() {
@@ -25,10 +27,11 @@ export function recorded() {
  * @param {{ on: boolean, rows: number, most: number }} message */
 export function takeRecording({ on, rows, most }) {
   if (told?.on && !on) {
-    tell(`Recorded ${count(rows)} rows.`, 'word', [
+    offer = tell(`Recorded ${count(rows)} rows.`, 'word', [
       { name: 'Replay', run: () => void replay(true) }, { name: 'Export CSV', run: () => void downloadTrace() },
     ]);
   }
+  if (on) dismiss(offer);
   told = { on, rows, most };
   changed('playback');
 }
@@ -36,6 +39,7 @@ export function takeRecording({ on, rows, most }) {
 /** Takes note of what frames say of recording and replaying. @param {import('../wire.js').Frame} frame */
 export function watchRecording(frame) {
   if (isReplaying && !frame.replaying) tell('The replay is over.');
+  if (frame.replaying) dismiss(offer);
   if (isReplaying !== frame.replaying) changed('playback');
   isRecording = frame.recording;
   isReplaying = frame.replaying;

@@ -31,7 +31,7 @@ const WORDS = {
   'largest force': ['force limited', 'The force is shortened to the largest that is allowed; its direction stays.'],
   'lasting force': ['lasting force lowered', 'A large force that lasts is lowered before the motors grow hot.'],
   'not a number': ['force zero: not a number', 'A force or a reading that is no finite number makes the force zero.'],
-  'rise from zero': ['force comes back', 'A force that was zero at the start or after a stop comes back once the hand is out of the bodies, and slowly.'],
+  'rise from zero': ['force rises from zero', 'A force that was zero at the start or after a stop comes back once the hand is out of the bodies, and slowly.'],
   watchdog: ['force lowered: late ticks', 'While ticks are late the force falls to zero, since an old force is a wrong one.'],
   'emergency stop': ['stopped', 'STOP, Esc or the device’s own switch makes all forces zero.'],
   'torque rate': ['torque rate limited', 'The torque changes by no more in a tick than the device follows.'],
@@ -57,7 +57,7 @@ export function watchSafety(frame) {
 }
 
 /** @param {number} time on the clock of `performance.now()` */
-const isNow = (time) => performance.now() - time < NOW;
+export const isNow = (time) => performance.now() - time < NOW;
 
 /** What the stages do now, for the foot line; empty if none acts. */
 export function actingStages() {

@@ -5,18 +5,23 @@
 /** The selected part with all its numbers. */
 
 import { html } from '../vendor/htm-preact.js';
+import { isScaled, scaleOf, scaledPart, selectedPart } from '../scene/placement.js';
 import { boxOf } from '../scene/setting.js';
 import { subtract } from '../scene/vectors.js';
 import { select, state } from '../state.js';
 import { hasName, rename } from './changes.js';
 import { edit, problemAt } from './edits.js';
-import { ChoiceField, TextField } from './fields.js';
+import { ChoiceField, NumberField, TextField } from './fields.js';
 import { operations } from './events.js';
 import { Form, named } from './form.js';
 import { listOf, makerOf, partAt, partsOfScene } from './nodes.js';
-import { short } from './numbers.js';
+import { extent, short } from './numbers.js';
 import { useTopics } from './page.js';
 import { parts, schemaAt, schemaOf, valueAt, within, withoutUnit } from './schema.js';
+
+/** What a scale that is typed keeps: its digits, and places over the size of the scene. */
+const DIGITS = 9;
+const FINE = 1e-6;
 
 export function Selected() {
   useTopics(['scene', 'selection', 'problems']);
@@ -34,7 +39,8 @@ export function Selected() {
         problem=${problemAt(within(part.pointer, 'name'))}
         change=${(/** @type {string} */ to) => rename(part.pointer, to)} />`}
       ${part.kind === 'body' ? html`<${Body} pointer=${part.pointer} body=${value} />`
-        : part.kind === 'shape' ? html`<${Shape} key=${part.pointer} pointer=${part.pointer} />`
+        : part.kind === 'shape' ? html`<${Shape} key=${part.pointer} pointer=${part.pointer} />
+            ${!isScaled(selectedPart()) && html`<${Scale} />`}`
           : html`<${Form} key=${part.pointer} pointer=${part.pointer} value=${value}
               node=${schemaAt(part.pointer)} skip=${['name', 'shape']} />`}
     </div>`;
@@ -105,8 +111,27 @@ function Body({ pointer, body }) {
     <${ChoiceField} label="material" value=${material} change=${take}
       choices=${[['default', 'default'], ...names.map((name) => [name, name.replace(/_/g, ' ')]), ['own', 'own numbers']]}
       problem=${typeof body.material === 'object' ? null : problemAt(within(pointer, 'material'))} />
+    <${Scale} />
     <${Form} key=${pointer} pointer=${pointer} value=${body} node=${node}
       skip=${['name', 'shape', ...(typeof body.material === 'object' ? [] : ['material'])]} />`;
+}
+
+/** How the selected body or shape is scaled, as the square handle does it. */
+function Scale() {
+  const part = selectedPart();
+  const value = part ? scaleOf(part) : null;
+  if (typeof value !== 'number') return null;
+  return html`<${NumberField} label="scale" value=${value} min=${0} above
+    help="About its middle, by a “scale” inside its shape"
+    change=${(/** @type {number} */ to, /** @type {boolean} */ moving) => {
+      const now = selectedPart();
+      const before = now && scaleOf(now);
+      // A shape with a scale shows it in its form, in place of this field, which would end the drag.
+      if (moving && !now?.isBody && !isScaled(now)) return;
+      if (now && typeof before === 'number') {
+        edit(scaledPart(now, to / before, FINE * extent(state.scene?.bounds), DIGITS), moving);
+      }
+    }} />`;
 }
 
 /** A shape: its moves and turns, and then the primitive or operator below them.

@@ -4,9 +4,11 @@
 
 /** The button that stops all forces, in the header and in every window that lies over it. */
 
+import { norm } from '../scene/vectors.js';
 import { state } from '../state.js';
 import { html } from '../vendor/htm-preact.js';
-import { page, useTopics } from './page.js';
+import { page, tell, useTopics } from './page.js';
+import { isNow } from './safety.js';
 
 /** Stops all forces; over HTTP if there is no socket. */
 export function stop() {
@@ -14,12 +16,34 @@ export function stop() {
   else navigator.sendBeacon(`stop?token=${encodeURIComponent(page.token)}`);
 }
 
-/** How forces come back after a stop, and of a servo that has begun. */
-export const FORCES_COME_BACK = 'Forces come back once the hand is out of the bodies, rising from zero.';
+/** How forces come back after a release, and of a servo that has begun. */
+export const FORCES_COME_BACK = 'Forces come back once the hand is out of the bodies, rising from zero: draw it out by the mouse or the arrow keys.';
 
-/** Gives forces again. */
+/** What a person does who touches a body and feels no force after a stop; empty where there is one.
+ * @param {import('../wire.js').Frame | null} frame */
+export function withheldInWords(frame) {
+  const isWithheld = frame?.points.some(({ contact, wanted, force }) => contact && norm(wanted) > 0 && norm(force) === 0);
+  const isRising = state.safety.some((stage) => stage.name === 'rise from zero' && isNow(stage.acted));
+  return isWithheld && isRising ? 'no force until the hand is out of the bodies: draw it out by the mouse or the arrow keys' : '';
+}
+
+/** Whether this stop has paused the tour. */
+let hasPaused = false;
+
+/** Pauses the tour while forces are stopped: a hand that feels nothing moves no further by itself.
+ * @param {import('../wire.js').Frame} frame */
+export function watchStop({ stopped, touring }) {
+  if (!stopped) hasPaused = false;
+  if (!stopped || !touring || hasPaused) return;
+  hasPaused = true;
+  page.wire?.send({ do: 'tour', on: false });
+}
+
+/** Gives forces again, and lets the tour go on that the stop has paused. */
 function release() {
   page.wire?.send({ do: 'release' });
+  if (hasPaused) page.wire?.send({ do: 'tour', on: true });
+  tell(FORCES_COME_BACK);
 }
 
 /** Stops; once stopped it gives the forces back. @param {{ id?: string }} given */
@@ -27,7 +51,8 @@ export function StopButton({ id }) {
   useTopics(['newest', 'connection'], 50);
   const isStopped = state.newest?.stopped ?? false;
   if (isStopped && state.connection === 'live') {
-    return html`<button type="button" id=${id} class="stop stopped" onClick=${release}>forces are zero — release</button>`;
+    return html`<button type="button" id=${id} class="stop stopped" onClick=${release}
+      title=${`${hasPaused ? 'The tour is paused, and goes on with a release. ' : ''}${FORCES_COME_BACK}`}>forces are zero — release</button>`;
   }
   return html`<button type="button" id=${id} class="stop" onClick=${stop} title="All forces to zero: Esc">
     <span class="square" aria-hidden="true"></span>STOP</button>`;

@@ -7,13 +7,17 @@
 import { html } from '../vendor/htm-preact.js';
 import { setSound, setVolume } from '../input/audio.js';
 import { firstPad } from '../input/gamepad.js';
+import { isSteering, letGo } from '../input/steer.js';
 import { pullInWords } from '../scene/guides.js';
 import { setTouch, state } from '../state.js';
 import { ChoiceField, Switch } from './fields.js';
 import { page, useTopics } from './page.js';
+import { withheldInWords } from './stop.js';
 
 /** Between two updates of the numbers [ms]: faster ones cannot be read. */
 const INTERVAL = 100;
+/** The longest until a hand that was let go is on its tour, after a rest of 2 s [ms]. */
+const UNTIL_TOUR = 4000;
 /** Bodies that are named; the others are counted. */
 const NAMED = 2;
 
@@ -22,12 +26,15 @@ export function Touch() {
   const { touch } = state;
   const points = state.scene?.device?.points ?? 1;
   return html`
-    <div class="panel-head"><h2>Touch</h2><${Tour} /></div>
+    <div class="panel-head"><h2>Touch</h2><${Led} /></div>
     <div class="scroll" tabindex="0" role="region" aria-label="Touch settings">
     <${Readout} />
     <${ChoiceField} label="led by" value=${touch.input}
       choices=${[['pointer', 'mouse, touch, pen'], ['gamepad', padName()], ['keys', 'arrow keys']]}
-      change=${(/** @type {typeof touch.input} */ input) => setTouch({ input })} />
+      change=${(/** @type {typeof touch.input} */ input) => {
+        letGo();
+        setTouch({ input });
+      }} />
     ${points > 1 && html`<${ChoiceField} label="point" value=${String(touch.point ?? 'all')}
       choices=${[['all', 'the middle of all'], ...Array.from({ length: points }, (_, at) => [String(at), `point ${at + 1}`])]}
       change=${(/** @type {string} */ to) => setTouch({ point: to === 'all' ? null : Number(to) })} />`}
@@ -50,11 +57,23 @@ function padName() {
   return pad ? `gamepad: ${pad.id.replace(/\s*\(.*/, '')}` : 'gamepad: none yet';
 }
 
-function Tour() {
+/** What the tour was switched to last, until frames say so too. */
+let asked = { on: false, until: -Infinity };
+
+/** Whether the hand is on its tour, or is held by keys or a gamepad. */
+function Led() {
   useTopics(['newest'], INTERVAL);
-  const isOn = state.newest?.touring ?? false;
-  return html`<${Switch} label="tour" value=${isOn} help="A hand that nobody leads goes along the bodies"
-    change=${(/** @type {boolean} */ on) => page.wire?.send({ do: 'tour', on })} />`;
+  const isTouring = state.newest?.touring ?? false;
+  if (isTouring === asked.on) asked.until = -Infinity;
+  const isOn = performance.now() < asked.until ? asked.on : isTouring;
+  return html`<span class="gap"></span>
+    ${isSteering() && html`<button class="small" onClick=${letGo} title="Let go of the hand: L">let go</button>`}
+    <${Switch} label="tour" value=${isOn} help="A hand that nobody leads goes along the bodies"
+      change=${(/** @type {boolean} */ on) => {
+        letGo();
+        asked = { on, until: performance.now() + UNTIL_TOUR };
+        page.wire?.send({ do: 'tour', on });
+      }} />`;
 }
 
 /** Force, depth and body in large numbers. */
@@ -68,11 +87,12 @@ function Readout() {
   const others = names.length > NAMED ? ` and ${names.length - NAMED} more` : '';
   const lifted = frame?.lifted ? ' while the hand is lifted to another place' : '';
   const isSlipping = touched.some((point) => point.slipping);
+  const withheld = withheldInWords(frame);
   const pull = frame?.points.map(pullInWords).find(Boolean) ?? '';
   return html`<dl class="readout">
     <div title="The largest of all contact points"><dt>force</dt><dd><span class="large">${(frame?.force ?? 0).toFixed(2)}</span> N</dd></div>
     <div title="The largest of all contact points"><dt>depth</dt><dd><span class="large">${(1000 * (frame?.depth ?? 0)).toFixed(2)}</span> mm</dd></div>
     <div class="touched" title=${lifted ? 'It passes through bodies, and feels them again where it is set down' : names.join(', ')}><dt>touches</dt>
-      <dd>${names.length > 0 ? `${names.slice(0, NAMED).join(', ')}${others}${isSlipping ? ', slipping' : ''}` : `nothing${lifted}`}${pull && `, ${pull}`}</dd></div>
+      <dd>${names.length > 0 ? `${names.slice(0, NAMED).join(', ')}${others}${isSlipping ? ', slipping' : ''}` : `nothing${lifted}`}${pull && `, ${pull}`}${withheld && `: ${withheld}`}</dd></div>
   </dl>`;
 }

@@ -103,6 +103,15 @@ function startTitle(local, index, certified) {
   return isFoundHere ? `${name} found the minimum` : `${name} misses it by ${short(gap - certified.upper)} m`;
 }
 
+/** What is proven, and beside it what one local method says, in a line.
+ * @param {any} certified @param {any[]} locals */
+function inShort(certified, locals) {
+  if (!certified) return '';
+  const bounds = [certified.lower, certified.upper].map((bound) => short(bound, 4));
+  const proven = `proven: ${[...new Set(bounds)].join(' to ')} m`;
+  return locals.length === 1 && typeof locals[0].value === 'number' ? `${proven}; local: ${short(locals[0].value, 4)} m` : proven;
+}
+
 /** @param {{ toy: string, result: any }} given */
 export function Verdict({ toy, result }) {
   if (!result) return null;
@@ -114,10 +123,13 @@ export function Verdict({ toy, result }) {
   const state = said.length === 0 ? '' : said.every(({ isRight }) => isRight) ? 'right' : 'wrong';
   return html`<div class=${`verdict ${state}`} role="status" aria-label=${`Verdict of ${toy}`}>
     ${said.map(({ text }) => html`<b key=${text}>${text}</b>`)}
+    ${said.length > 0 && html`<p>${inShort(certified, locals)}</p>`}
+    <details><summary>numbers</summary>
     <${Table} title="proven" answer=${certified} />
     ${locals.map((one, index) => html`<${Table} key=${index} answer=${withEnd(one)}
       title=${toy === 'pair' ? startTitle(one, index, certified) : 'local'} />`)}
     <${Table} title="enclosing circle" answer=${enclosing} />
     <${Table} title="answer" answer=${rest} />
+    </details>
   </div>`;
 }

@@ -18,12 +18,15 @@ import { COLORS, mark } from '../scene/marks.js';
 import { RANK } from '../scene/overlay.js';
 import { length } from '../scene/units.js';
 import { inSpace } from '../scene/vectors.js';
-import { middleOfElement } from './handles.js';
+import { LETTERS, handles, middleOfElement } from './handles.js';
 import { toys } from './toys.js';
 
 const { hit: HIT, normal: FREE, path: PATH } = COLORS;
 const OPEN = '#7a6a00';
 const VERDICT = RANK.verdict;
+/** The size of a handle in pixels, and how far beside it its letter is. */
+const HANDLE = 16;
+const BESIDE = 18;
 const NOT_DECIDED = { color: OPEN, word: 'not decided' };
 
 /** The colour and word of a proven bound of the least distance.
@@ -86,6 +89,13 @@ function paintElement(context, lens, texts, inks) {
   if (certified?.point) dot(context, project(certified.point), 5, color, inks.halo);
   const low = Math.max(...toys.corners.map((corner) => project(corner)?.y ?? 0));
   const middle = project(middleOfElement());
+  toys.corners.forEach((corner, index) => {
+    const place = project(corner);
+    if (!place || !middle) return;
+    const [across, down] = [place.x - middle.x, place.y - middle.y];
+    const by = BESIDE / (Math.hypot(across, down) || 1);
+    texts.add(LETTERS[index], place.x + by * across, place.y + by * down, { rank: VERDICT, color });
+  });
   if (word && middle) {
     const bounds = `${length(certified.lower)} to ${length(certified.upper)}`;
     texts.add(`${word}: ${bounds}`, middle.x, low + 18, { rank: VERDICT, color });
@@ -181,6 +191,10 @@ function paintSweep(context, lens, texts, inks) {
 /** @param {Context} context @param {Lens} lens @param {Texts} texts @param {Inks} inks */
 export function paintToys(context, lens, texts, inks) {
   const { shown, corners } = toys;
+  for (const { point } of handles()) {
+    const place = lens.project(inSpace(point));
+    if (place) texts.taken.push({ ...place, wide: HANDLE, high: HANDLE });
+  }
   if (shown.sweep && corners.length > 0) paintSweep(context, lens, texts, inks);
   if (shown.element && corners.length > 0) paintElement(context, lens, texts, inks);
   if (shown.ball) paintBall(context, lens, texts, inks);

@@ -42,9 +42,9 @@ function paintBall(context, place, radius, inks) {
   context.stroke();
 }
 
-/** @param {Context} context @param {Lens} lens @param {Inks} inks
+/** @param {Context} context @param {Lens} lens @param {import('../scene/texts.js').Texts} texts @param {Inks} inks
  * @param {boolean} isHidden whether the ball is behind a body */
-export function paintFall(context, lens, inks, isHidden) {
+export function paintFall(context, lens, texts, inks, isHidden) {
   if (!fall.isShown || fall.centre.length === 0) return;
   const { answer, radius } = fall;
   const begin = inSpace(fall.centre);
@@ -76,8 +76,10 @@ export function paintFall(context, lens, inks, isHidden) {
     if (place) paintBall(context, lens.project(inSpace(place)), wide(place), inks);
     context.globalAlpha = 1;
   }
-  ring(context, lens.project(begin), wide(begin), BALL, 2, inks.halo);
-  dot(context, lens.project(begin), 5, '#ffffff', BALL);
+  const from = lens.project(begin);
+  ring(context, from, wide(begin), BALL, 2, inks.halo);
+  if (from) texts.taken.push({ ...from, wide: 2 * wide(begin), high: 2 * wide(begin) });
+  dot(context, from, 5, '#ffffff', BALL);
 }
 
 /** The drag of the ball where it begins, if that is near a place; or null.

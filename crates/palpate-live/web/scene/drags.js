@@ -74,6 +74,8 @@ export function handDrag(view, place, through, pushes, hand, show) {
     hand.lead(target, begin);
     show(target);
   };
+  // A hand that keys hold may be elsewhere: the pointer takes hold of it anew.
+  hand.release();
   lead();
   return {
     move(next) {

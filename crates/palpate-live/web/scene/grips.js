@@ -40,6 +40,8 @@ const EDGE_ON = 0.2;
 const KNOB = 7;
 /** The tip of an arrow, over how far its knob is from the middle. */
 const TIP = 1.35;
+/** Where no text lies over an arrow, as parts of its length. */
+const ON_ARROW = [0.25, 0.5, 0.75, 1];
 
 /** What is dragged, and what the drag says. @type {{ kind: Kind, axis: number, text: string } | null} */
 let active = null;
@@ -91,9 +93,9 @@ function apart(lens, { x, y }, point) {
 }
 
 /** The handle that is nearest to a place within a reach in pixels, how far it is, and what a drag of
- * it does; null without one. A ring is held anywhere, within half of the reach.
+ * it does, in words too; null without one. A ring is held anywhere, within half of the reach.
  * @param {() => Lens} lens @param {boolean} isFlat @param {Place} place @param {number} reach
- * @returns {{ apart: number, begin: () => Drag } | null} */
+ * @returns {{ apart: number, name: string, begin: () => Drag } | null} */
 export function gripAt(lens, isFlat, place, reach) {
   const part = partShown();
   if (!part) return null;
@@ -103,7 +105,14 @@ export function gripAt(lens, isFlat, place, reach) {
     return { grip, apart: Math.min(apart(now, place, grip.knob), 2 * line) };
   }).sort((a, b) => a.apart - b.apart);
   if (!nearest || nearest.apart > reach) return null;
-  return { apart: nearest.apart, begin: () => gripDrag(part, nearest.grip, lens, place) };
+  return { apart: nearest.apart, name: nameOf(nearest.grip), begin: () => gripDrag(part, nearest.grip, lens, place) };
+}
+
+/** What a handle does. @param {Grip} grip */
+function nameOf({ kind, axis }) {
+  if (kind === 'move') return `Move along ${'xyz'[axis]}`;
+  if (kind === 'turn') return `Turn about ${'xyz'[axis]}`;
+  return kind === 'scale' ? 'Scale' : 'Move parallel to the screen';
 }
 
 /** Where along an axis through a point a place of the screen is [m]. @param {Lens} lens
@@ -206,7 +215,15 @@ export function paintGrips(context, lens, isFlat, texts, inks) {
     const radius = isStrong ? KNOB + 2 : KNOB;
     if (kind === 'move') {
       const tip = along(middle, subtract(knob, middle), TIP);
-      arrow(context, lens.project(middle), lens.project(tip), color, isStrong ? 3.5 : 2, inks.halo);
+      const [from, to] = [lens.project(middle), lens.project(tip)];
+      arrow(context, from, to, color, isStrong ? 3.5 : 2, inks.halo);
+      if (from && to) {
+        for (const share of ON_ARROW) {
+          texts.taken.push({
+            x: from.x + share * (to.x - from.x), y: from.y + share * (to.y - from.y), wide: 2 * KNOB, high: 2 * KNOB,
+          });
+        }
+      }
     }
     polyline(context, ring.map(lens.project), color, isStrong ? 2.5 : 1, inks.halo, true);
     if (kind === 'scale') square(context, place, radius, color);

@@ -60,7 +60,7 @@ const MARKS = {
   off: ['hollow: off the plane', (context, x, y, inks) => ring(context, { x, y }, 5, '#1b5fb0', 1.5, inks.halo)],
   device: ['device point in a body', (context, x, y, inks) => ring(context, { x, y }, 4, '#1b5fb0', 1.5, inks.halo)],
   proxy: ['proxy on the surface', (context, x, y, inks) => dot(context, { x, y }, 5, '#1b5fb0', inks.halo)],
-  spring: ['spring to the pointer', (context, x, y, inks) =>
+  spring: ['spring to the goal', (context, x, y, inks) =>
     spring(context, { x: x - 9, y }, { x: x + 9, y }, inks.ink, inks.halo)],
   force: ['force on the hand', pointer(COLORS.force, 3)],
   normal: ['normal at the touch', pointer(COLORS.normal, 1.5)],

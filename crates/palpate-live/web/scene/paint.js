@@ -72,7 +72,7 @@ export function paintAll(context, views, shown, theme, ratio) {
       });
       paintContacts(context, view, shown.contacts, inks, shown.hides);
       if (isFlat && current.dimension === 2) paintToys(context, view.lens, texts, inks);
-      paintFall(context, view.lens, inks, shown.hides('ball'));
+      paintFall(context, view.lens, texts, inks, shown.hides('ball'));
       paintGrips(context, view.lens, isFlat, texts, inks);
       paintHand(context, view, shown.target, texts, inks, shown.hides);
     }

@@ -104,28 +104,39 @@ export function selectedPart() {
   return found.part;
 }
 
-/** @param {any} old @param {number} factor */
-const scaledNumber = (old, factor) => {
-  const by = (/** @type {number} */ one) => Number((one * factor).toPrecision(3));
+/** @typedef {{ factor: number, digits: number }} Scaling */
+
+/** @param {any} old @param {Scaling} by */
+const scaledNumber = (old, { factor, digits }) => {
+  const by = (/** @type {number} */ one) => Number((one * factor).toPrecision(digits));
   return Array.isArray(old) ? old.map(by) : by(old);
 };
 
-/** A shape that is scaled. @param {any} shape @param {number} factor */
-const scaledShape = (shape, factor) => (shape.scale === undefined
-  ? { scale: scaledNumber(1, factor), of: shape } : { ...shape, scale: scaledNumber(shape.scale, factor) });
+/** A shape that is scaled. @param {any} shape @param {Scaling} by */
+const scaledShape = (shape, by) => (shape.scale === undefined
+  ? { scale: scaledNumber(1, by), of: shape } : { ...shape, scale: scaledNumber(shape.scale, by) });
 
-/** @param {string} at @param {any} shape @param {number} factor @returns {Change[]} */
-const scaling = (at, shape, factor) => [shape.scale === undefined
-  ? { at, to: scaledShape(shape, factor) } : { at: pointerWithin(at, 'scale'), to: scaledNumber(shape.scale, factor) }];
+/** @param {string} at @param {any} shape @param {Scaling} by @returns {Change[]} */
+const scaling = (at, shape, by) => [shape.scale === undefined
+  ? { at, to: scaledShape(shape, by) } : { at: pointerWithin(at, 'scale'), to: scaledNumber(shape.scale, by) }];
+
+/** The shape of a part that a scaling goes to. @param {Part} part */
+const scaledBy = ({ isBody, value }) => (isBody ? value.shape : isPlacement(value) ? value.of : value);
+
+/** How a part is scaled: a factor, or one for each axis. @param {Part} part @returns {number | number[]} */
+export const scaleOf = (part) => scaledBy(part).scale ?? 1;
+
+/** Whether a part has a scale already. @param {Part | null} part */
+export const isScaled = (part) => part !== null && scaledBy(part).scale !== undefined;
 
 /** The edit that places a part anew.
- * @param {Part} part @param {{ translation?: number[], turned?: Record<string, any>, factor?: number }} to
+ * @param {Part} part @param {{ translation?: number[], turned?: Record<string, any>, by?: Scaling }} to
  * @returns {Change[]} */
-function placing({ pointer, isBody, value }, { translation, turned = {}, factor }) {
+function placing({ pointer, isBody, value }, { translation, turned = {}, by }) {
   const place = { ...(translation && { [isBody ? 'translation' : 'translate']: translation }), ...turned };
   const isPlaced = Object.keys(place).length > 0;
   const scaled = (/** @type {string} */ key) =>
-    (factor === undefined ? [] : scaling(pointerWithin(pointer, key), value[key], factor));
+    (by === undefined ? [] : scaling(pointerWithin(pointer, key), value[key], by));
   if (isBody) {
     const pose = { at: pointerWithin(pointer, 'pose'), to: { ...value.pose, ...place } };
     return [...(isPlaced ? [pose] : []), ...scaled('shape')];
@@ -133,8 +144,8 @@ function placing({ pointer, isBody, value }, { translation, turned = {}, factor 
   if (isPlacement(value)) {
     return [...Object.entries(place).map(([key, to]) => ({ at: pointerWithin(pointer, key), to })), ...scaled('of')];
   }
-  if (!isPlaced) return factor === undefined ? [] : scaling(pointer, value, factor);
-  return [{ at: pointer, to: { ...place, of: factor === undefined ? value : scaledShape(value, factor) } }];
+  if (!isPlaced) return by === undefined ? [] : scaling(pointer, value, by);
+  return [{ at: pointer, to: { ...place, of: by === undefined ? value : scaledShape(value, by) } }];
 }
 
 /** @param {Part} part @returns {Vector} */
@@ -169,8 +180,8 @@ export function turnedPart(part, axis, degrees, pixel) {
 }
 
 /** The edit that scales a part about its middle. @param {Part} part @param {number} factor
- * @param {number} pixel [m] */
-export function scaledPart(part, factor, pixel) {
+ * @param {number} pixel [m] @param {number} [digits] that its scale keeps */
+export function scaledPart(part, factor, pixel, digits = 3) {
   const arm = scale(subtract(translationOf(part), part.middle), factor);
-  return placing(part, { ...translated(part, add(part.middle, arm), pixel / part.frame.scale), factor });
+  return placing(part, { ...translated(part, add(part.middle, arm), pixel / part.frame.scale), by: { factor, digits } });
 }

@@ -16,6 +16,7 @@ import { createHand } from '../input/hand.js';
 import { createPointer } from '../input/pointer.js';
 import { boundsOfToys } from '../plane/bounds.js';
 import { connectFall, fall, layFall, listenFall, markOfBall, placeAbove, stepFall } from '../plane/fall.js';
+import { toyAt } from '../plane/handles.js';
 import { connectToys, layToys, listenToys } from '../plane/toys.js';
 import { changed, listen, state } from '../state.js';
 import { Flat, Orbit } from './camera.js';
@@ -232,7 +233,10 @@ export function createStage(container, wire) {
       const number = place ? viewAt(place) : -1;
       const view = views[number];
       const grip = place && view?.isWhole ? gripAt(() => view.lens, view.isFlat, place, REACH.mouse) : null;
-      elements.overlay.style.cursor = grip ? 'grab' : '';
+      const toy = place && view?.isFlat && view.isWhole && state.scene?.dimension === 2
+        ? toyAt(view.lens, place, REACH.mouse) : null;
+      elements.overlay.style.cursor = grip ?? toy ? 'grab' : '';
+      elements.overlay.title = (toy ?? grip)?.name ?? '';
       if (!place || !view || isPressed || state.connection !== 'live') probe.leave();
       else probe.follow(() => seenAt(view, place), view, number);
     },
@@ -302,6 +306,13 @@ export function createStage(container, wire) {
 
   return {
     hand,
+    /** Leads the hand to a point, which is shown; without one it lets go. @param {Vector | null} point */
+    lead(point) {
+      target = point;
+      if (point) hand.lead(point);
+      else hand.release();
+      overlayChanged();
+    },
     fit,
     /** @param {string} name `reset`, `x`, `y`, `z`, `in`, `out` or a view of the scene */
     setCamera(name) {

@@ -20,10 +20,9 @@ use crate::pair::{PairWorkspace, separation};
 /// After so many evaluations without a time, a touch at the start is asked for.
 const SOON: u32 = 1 << 14;
 
-/// After a search that ended early a touch is looked for at so many times, with so many evaluations
-/// each at most.
+/// After a search that ended early a touch is looked for at so many times. Each costs at most that share of
+/// the budget.
 const SAMPLES: u32 = 32;
-const A_SAMPLE: u32 = 100_000;
 
 /// The separation at a touch is searched to this share of the gap.
 const SHARE: f64 = 0.25;
@@ -155,7 +154,7 @@ fn touches_at<const D: usize>(
     evaluations: &mut u32,
 ) -> Result<bool, QueryError> {
     let [a, b] = bodies.map(|body| body.at(time));
-    let limits = Limits::new(SHARE * settings.gap).with_budget(A_SAMPLE);
+    let limits = Limits::new(SHARE * settings.gap).with_budget(settings.budget / SAMPLES);
     let near = separation(a, b, &limits, workspace)?;
     *evaluations = evaluations.saturating_add(near.evaluations);
     Ok(near.upper <= settings.gap)
@@ -197,7 +196,7 @@ fn touch_at<const D: usize>(
     workspace: &mut PairWorkspace<D>,
     found: &mut FirstTouch<D>,
 ) -> Result<(), QueryError> {
-    let limits = Limits::new(SHARE * settings.gap);
+    let limits = Limits::new(SHARE * settings.gap).with_budget(settings.budget);
     let mut near = |time: f64| -> Result<_, QueryError> {
         let [a, b] = bodies.map(|body| body.at(time));
         let near = separation(a, b, &limits, workspace)?;
