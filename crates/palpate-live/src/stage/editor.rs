@@ -3,6 +3,7 @@
 
 //! The thread that edits and builds the scene.
 
+use std::path::Path;
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, sync_channel};
 use std::time::{Duration, Instant};
@@ -24,6 +25,9 @@ use crate::wire::{Ask, Change, Question, VERSION};
 
 /// How often the file of the scene is looked at.
 const LOOK: Duration = Duration::from_millis(500);
+
+/// After so many looks in vain a file is gone: one that is being replaced is there again by then.
+const MISSED: u32 = 2;
 
 /// The most tours that are searched at once: of a steep scene one takes minutes.
 const MOST_SEARCHES: usize = 3;
@@ -52,6 +56,8 @@ pub(super) struct Editor {
     to_tour: Option<(Arc<AnyScene>, u32)>,
     /// Held by each thread that searches a tour.
     searches: Arc<()>,
+    /// How often the file was looked at in vain.
+    missed: u32,
 }
 
 /// What parts of an edit took.
@@ -102,6 +108,7 @@ impl Editor {
             editing: None,
             to_tour: None,
             searches: Arc::default(),
+            missed: 0,
         }
     }
 
@@ -216,7 +223,11 @@ impl Editor {
             return;
         };
         // A file that is being replaced may not be there for a moment.
-        let Ok(text) = read_file(&file) else { return };
+        let text = match read_file(&file) {
+            Ok(text) => text,
+            Err(error) => return self.miss_file(&file, &error),
+        };
+        self.missed = 0;
         let before = self.document.clone();
         let taken = match self.document.take_file(&text) {
             None => {
@@ -232,6 +243,18 @@ impl Editor {
             self.document.take_note_of_file(&looked);
             let message =
                 format!("{} was changed, and has an error: {message}", file.display());
+            self.pages.broadcast(&json!({ "do": "notice", "message": message }));
+        }
+    }
+
+    /// Tells the pages once of a file that cannot be read, however often it is looked at.
+    fn miss_file(&mut self, file: &Path, error: &std::io::Error) {
+        self.missed = self.missed.saturating_add(1);
+        if self.missed == MISSED {
+            let message = format!(
+                "{} cannot be read any more: {error}; the page keeps the scene, and saves it there again",
+                file.display()
+            );
             self.pages.broadcast(&json!({ "do": "notice", "message": message }));
         }
     }

@@ -451,6 +451,14 @@ const cases = [
       return new Set(new Uint32Array(data.buffer)).size > 50;
     }));
     await without.page.screenshot({ path: join(pictures, 'drawn.png') });
+    // Bodies once could not be pressed where no card draws them.
+    const stage = await without.page.locator('#stage').boundingBox();
+    const [x, y] = [stage.x + stage.width / 2, stage.y + stage.height / 2];
+    await without.page.mouse.move(x, y);
+    await without.page.mouse.down();
+    await without.page.mouse.move(x + 3, y + 3, { steps: 3 });
+    await until('a contact', async () => (await state(without.page, 'frame.force')) > 0.05);
+    await without.page.mouse.up();
     await without.context.close();
   })],
 
@@ -493,6 +501,21 @@ const cases = [
       return Math.hypot(...now.map((x, axis) => x - before[axis])) > 1e-3;
     });
     await page.keyboard.up('ArrowRight');
+    // Keys that came up once let go of the hand: nobody could press on a body by them.
+    let rests = [0, 0, 0];
+    const way = async () => {
+      const now = await state(page, 'frame.points.0.device');
+      const gone = Math.hypot(...now.map((x, axis) => x - rests[axis]));
+      rests = now;
+      return gone;
+    };
+    await until('a hand at rest', async () => {
+      await page.waitForTimeout(300);
+      return (await way()) < 1e-4;
+    });
+    await page.waitForTimeout(2500);
+    const gone = await way();
+    check(gone < 1e-3, `the hand went by ${gone} m`);
     await page.keyboard.press('?');
     await page.locator('dialog').waitFor();
     await page.screenshot({ path: join(pictures, 'help.png') });
