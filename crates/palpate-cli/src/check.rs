@@ -6,12 +6,13 @@
 use std::io::Write;
 
 use palpate::field::Shape;
-use palpate::scene::{AnyScene, Scene, SceneProblem};
+use palpate::mesh::Findings;
+use palpate::scene::{AnyScene, BuiltMesh, Scene, SceneProblem};
 use serde_json::{Value, json};
 
 use crate::arguments::CheckOptions;
 use crate::emptiness::is_empty;
-use crate::input::{bytes, other_than_scene};
+use crate::input::{bytes, folder, other_than_scene};
 use crate::outcome::{Failure, Outcome};
 use crate::output::{self, counted, shown};
 
@@ -20,7 +21,7 @@ pub(crate) fn run(options: &CheckOptions) -> Result<Outcome, Failure> {
     let mut out = output::answer();
     let name = options.scene.display().to_string();
     let name = shown(&name);
-    match Scene::from_bytes(&bytes).and_then(|scene| scene.build()) {
+    match Scene::from_bytes_in(&bytes, folder(&options.scene)).and_then(|scene| scene.build()) {
         Err(error) => {
             let other = other_than_scene(&options.scene, &bytes);
             if options.json {
@@ -42,8 +43,15 @@ pub(crate) fn run(options: &CheckOptions) -> Result<Outcome, Failure> {
                 AnyScene::Planar(scene) => (2, described(&scene.bodies)),
                 AnyScene::Spatial(scene) => (3, described(&scene.bodies)),
             };
+            let meshes = match &world {
+                AnyScene::Planar(scene) => &scene.meshes,
+                AnyScene::Spatial(scene) => &scene.meshes,
+            };
             if options.json {
-                let answer = json!({ "ok": true, "dimension": dimension, "bodies": bodies });
+                let meshes: Vec<_> = meshes.iter().map(of_mesh).collect();
+                let answer = json!({
+                    "ok": true, "dimension": dimension, "bodies": bodies, "meshes": meshes,
+                });
                 out.json(&answer)?;
             } else {
                 writeln!(
@@ -60,10 +68,59 @@ pub(crate) fn run(options: &CheckOptions) -> Result<Outcome, Failure> {
                     };
                     writeln!(out, "  {}: {}{empty}", shown(&text("name")), text("promise"))?;
                 }
+                for mesh in meshes {
+                    let found = if mesh.findings.is_clean() {
+                        "closed, and no faces cross".to_owned()
+                    } else {
+                        mesh.findings.to_string()
+                    };
+                    let size = mesh
+                        .shape
+                        .promise()
+                        .bounds
+                        .map(|bounds| bounds.aabb.half_extents() * 2.0);
+                    let size =
+                        size.map(|size| size.0.map(|side| format!("{side:.4}")).join(" × "));
+                    writeln!(
+                        out,
+                        "  {}: {}, {} m: {found}",
+                        shown(&mesh.file),
+                        counted(mesh.findings.faces, "face", "faces"),
+                        size.unwrap_or_default(),
+                    )?;
+                }
             }
             Ok(Outcome::Yes)
         }
     }
+}
+
+/// A mesh of the scene.
+fn of_mesh(mesh: &BuiltMesh) -> Value {
+    let Findings { faces, welded, degenerate, duplicates, turned, inside_out, .. } =
+        mesh.findings;
+    let findings = &mesh.findings;
+    let openings: Vec<_> = findings
+        .openings
+        .iter()
+        .map(|opening| json!({ "place_m": opening.place.0, "size_m": opening.size, "edges": opening.edges }))
+        .collect();
+    json!({
+        "file": mesh.file,
+        "scale": mesh.scale,
+        "faces": faces,
+        "welded": welded,
+        "degenerate": degenerate,
+        "duplicates": duplicates,
+        "turned": turned,
+        "inside_out": inside_out,
+        "nested": findings.nested,
+        "openings": openings,
+        "crowded_edges": findings.crowded_rims,
+        "crossing_pairs": findings.crossings,
+        "touching_pairs": findings.touching,
+        "first_crossing_m": findings.crossing_at.map(|at| at.0),
+    })
 }
 
 fn told(problem: &SceneProblem) -> Value {

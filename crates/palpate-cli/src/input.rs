@@ -48,13 +48,22 @@ pub(crate) fn moving(path: Option<&Path>, motions: Option<&Path>) -> Result<Name
     };
     let no_scene =
         |error| Failure::input(format!("{name}: {}", no_scene(path, &bytes, &error)));
-    let mut scene = Scene::from_bytes(&bytes).map_err(no_scene)?;
+    let mut scene = match path.map(folder) {
+        None => Scene::from_bytes(&bytes),
+        Some(folder) => Scene::from_bytes_in(&bytes, folder),
+    }
+    .map_err(no_scene)?;
     if let Some(path) = motions {
         let moved = scene.with_motions_of(&self::bytes(path)?);
         scene = moved.map_err(|error| Failure::file(path, error))?;
     }
     let scene = scene.build().map_err(no_scene)?;
     Ok(Named { name, scene })
+}
+
+/// The folder of a file, in which the files that it names are.
+pub(crate) fn folder(path: &Path) -> &Path {
+    path.parent().unwrap_or(Path::new(""))
 }
 
 /// Why a file is no scene: what it is instead, or what is wrong with it.

@@ -7,7 +7,7 @@ use std::fs::File;
 use std::io::{Read, Write};
 use std::path::Path;
 
-use palpate::mesh::{Format, ReadError, ReadProblem, Report, read_file};
+use palpate::mesh::{Format, ReadError, ReadProblem, Report, Solid, read_file};
 use serde_json::json;
 
 use crate::arguments::MeshOptions;
@@ -26,17 +26,36 @@ pub(crate) fn run(options: &MeshOptions) -> Result<Outcome, Failure> {
         mesh = mesh.welded();
     }
     let report = mesh.report();
-    let is_good = report.is_watertight() && report.degenerate == 0;
+    let solid = Solid::from_mesh(&mesh);
+    let crosses = solid.as_ref().is_ok_and(|(_, found)| found.crossings + found.touching > 0);
+    let is_good = report.is_watertight() && report.degenerate == 0 && !crosses;
     let mut out = output::answer();
     let hint = hint(&report, options.scale);
     if options.json {
         let mut answer = as_json(&report, is_good);
         answer["hint"] = hint.into();
+        answer["solid"] = match &solid {
+            Ok((solid, found)) => json!({
+                "promise": solid.promise().in_words(),
+                "crossing_pairs": found.crossings,
+                "touching_pairs": found.touching,
+                "findings": found.to_string(),
+            }),
+            Err(error) => json!({ "error": error.to_string() }),
+        };
         out.json(&answer)?;
     } else {
         let name = options.file.display().to_string();
         let verdict = if is_good { "good" } else { "not good" };
         writeln!(out, "{}: {verdict}, {}", shown(&name), in_words(&report))?;
+        match &solid {
+            Ok((solid, found)) => {
+                let separator = if found.is_clean() { "" } else { ": " };
+                let found = if found.is_clean() { String::new() } else { found.to_string() };
+                writeln!(out, "  solid    {}{separator}{found}", solid.promise().in_words())?;
+            }
+            Err(error) => writeln!(out, "  solid    none: {error}")?,
+        }
         if let Some(hint) = hint {
             writeln!(out, "  hint     {hint}")?;
         }

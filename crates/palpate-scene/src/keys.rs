@@ -67,6 +67,8 @@ pub(crate) const EXTRUDE: &str = "extrude";
 pub(crate) const REVOLVE: &str = "revolve";
 /// The operand of the operators that have one.
 pub(crate) const OF: &str = "of";
+/// `{ "mesh": { "file": "nut.ply", "scale": 0.001 } }`.
+pub(crate) const MESH: &str = "mesh";
 /// `{ "shape": "name" }`.
 pub(crate) const SHAPE: &str = "shape";
 /// What a shape is for.
@@ -158,11 +160,12 @@ pub(crate) fn is_one_of(operators: &[(&str, &str)], key: &str) -> bool {
 
 /// Every key that the object of a shape of a dimension may have, the primitives' names included.
 pub(crate) fn all_keys(dimension: Dimension) -> Vec<&'static str> {
-    let is_there = |key: &&str| dimension == Dimension::Three || !SOLID.contains(key);
+    let is_there =
+        |key: &&str| dimension == Dimension::Three || !SOLID.contains(key) && *key != MESH;
     let lists = LISTS.iter().map(|(key, _)| *key);
     let unary = UNARY.iter().map(|(key, _)| *key).filter(is_there);
     let primitives = catalogue::signatures().filter(|s| s.dimension == dimension);
-    let others = OTHERS.into_iter().chain([SHAPE]);
+    let others = OTHERS.into_iter().chain([SHAPE]).chain([MESH].into_iter().filter(is_there));
     let names = primitives.map(|signature| signature.name);
     let mut keys: Vec<_> = names.chain(lists).chain(unary).chain(others).collect();
     keys.sort_unstable();

@@ -4,7 +4,7 @@
 //! The data of a scene file.
 
 use std::fmt;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use indexmap::IndexMap;
 use schemars::JsonSchema;
@@ -101,6 +101,10 @@ pub struct Scene {
     /// Pictures worth making of the scene.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub views: Vec<View>,
+    /// The folder in which files of meshes are looked for; a scene without one has no meshes.
+    #[serde(skip)]
+    #[schemars(skip)]
+    pub folder: Option<PathBuf>,
 }
 
 /// A body: a shape with its pose in the world and its material.
@@ -147,6 +151,7 @@ impl Scene {
             guides: Vec::new(),
             motions: Vec::new(),
             views: Vec::new(),
+            folder: None,
         }
     }
 
@@ -157,8 +162,28 @@ impl Scene {
     ///
     /// All that is wrong, with paths, lines and columns.
     pub fn from_json(text: &str) -> Result<Self, SceneError> {
+        Self::read(text, None)
+    }
+
+    /// As [`from_json`](Self::from_json); the files of its meshes are in `folder`.
+    ///
+    /// # Errors
+    ///
+    /// As `from_json`.
+    pub fn from_json_in(text: &str, folder: impl Into<PathBuf>) -> Result<Self, SceneError> {
+        Self::read(text, Some(folder.into()))
+    }
+
+    fn read(text: &str, folder: Option<PathBuf>) -> Result<Self, SceneError> {
         let source = Source::of(text);
-        Document::parse(&source)?.read(|scene| build::world(scene).map(drop))
+        let read = Document::parse(&source)?.read(|scene: &Self| {
+            build::world(&scene.clone().in_folder(folder.clone())).map(drop)
+        })?;
+        Ok(read.in_folder(folder))
+    }
+
+    fn in_folder(self, folder: Option<PathBuf>) -> Self {
+        Self { folder, ..self }
     }
 
     /// Reads a scene from the bytes of a file, as [`from_json`](Self::from_json).
@@ -177,7 +202,18 @@ impl Scene {
         Self::from_json(utf8(bytes).map_err(|error| Problem::new(error.to_string()))?)
     }
 
-    /// Reads a scene from the file at `path`, as [`from_bytes`](Self::from_bytes).
+    /// As [`from_bytes`](Self::from_bytes), with the files of its meshes in `folder`.
+    ///
+    /// # Errors
+    ///
+    /// As `from_bytes`.
+    pub fn from_bytes_in(bytes: &[u8], folder: impl Into<PathBuf>) -> Result<Self, SceneError> {
+        let text = utf8(bytes).map_err(|error| Problem::new(error.to_string()))?;
+        Self::from_json_in(text, folder)
+    }
+
+    /// Reads a scene from the file at `path`, as [`from_bytes`](Self::from_bytes); the files of its meshes
+    /// are looked for beside it.
     ///
     /// # Errors
     ///
@@ -190,7 +226,7 @@ impl Scene {
             cause: Some(Box::new(SceneCause::File(error.kind()))),
             ..SceneProblem::default()
         })?;
-        Self::from_bytes(&bytes)
+        Self::from_bytes_in(&bytes, path.parent().unwrap_or(Path::new("")))
     }
 
     /// The scene as a file: its keys in a fixed order, those of shapes as they were read.

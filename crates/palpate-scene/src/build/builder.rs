@@ -13,8 +13,9 @@ use super::operator::{over, refused};
 use super::primitive::primitive;
 use super::size::{Allowance, Size};
 use crate::advice;
-use crate::json::found;
-use crate::keys::{self, EXTRUDE, OF, REVOLVE};
+use crate::json::{self, found};
+use crate::keys::{self, EXTRUDE, MESH, OF, REVOLVE};
+use crate::mesh_file::{BuiltMesh, WrittenMesh};
 use crate::names::shortened;
 use crate::pose::{Turning, Turns};
 use crate::problem::Problem;
@@ -41,6 +42,8 @@ pub(super) struct Builder<'a> {
     /// The names of shapes under construction, outermost first, to find cycles.
     open: Vec<&'a str>,
     pub(super) allowance: Allowance,
+    /// The meshes that were read, each file and scale once.
+    pub(super) meshes: Vec<BuiltMesh>,
 }
 
 /// What differs between the dimensions.
@@ -54,6 +57,9 @@ pub(super) trait Space<'a, const D: usize> {
     /// A 2D shape extruded or revolved.
     fn solid(&mut self, object: Object<'a>, level: usize) -> Result<Built<D>, Problems>;
 
+    /// The solid of a mesh file.
+    fn mesh(&mut self, object: &Object<'a>, level: usize) -> Result<Built<D>, Problems>;
+
     /// A shape twisted by a `rate` [rad/m] that is given under `key`.
     fn twisted(shape: Shape<D>, key: &str, rate: f64) -> Result<Shape<D>, Problems>;
 }
@@ -66,6 +72,7 @@ impl<'a> Builder<'a> {
             spatial: HashMap::new(),
             open: Vec::new(),
             allowance: Allowance::default(),
+            meshes: Vec::new(),
         }
     }
 
@@ -232,6 +239,7 @@ impl<'a> Builder<'a> {
                 }
             },
             EXTRUDE | REVOLVE => self.solid(object, level),
+            MESH => self.mesh(&object, level).map_err(|problems| problems.under(MESH)),
             head if keys::is_one_of(&keys::UNARY, head) => self.unary(&object, level),
             head if keys::is_one_of(&keys::LISTS, head) => self.list(&object, level),
             name => {
@@ -279,6 +287,11 @@ impl<'a> Space<'a, 2> for Builder<'a> {
         Err(Problem::new(message).of_dimension().into())
     }
 
+    fn mesh(&mut self, _object: &Object<'a>, _level: usize) -> Result<Built<2>, Problems> {
+        let message = "`mesh` makes a 3D shape, this place is 2D";
+        Err(Problem::new(message).of_dimension().into())
+    }
+
     fn twisted(_shape: Shape<2>, key: &str, _rate: f64) -> Result<Shape<2>, Problems> {
         let message = format!("`{key}` twists a 3D shape, this place is 2D");
         Err(Problem::new(message).of_dimension().into())
@@ -307,6 +320,18 @@ impl<'a> Space<'a, 3> for Builder<'a> {
             let shape = shape.map_err(|error| refused(object.head, error))?;
             Ok(Built { shape, size })
         })
+    }
+
+    fn mesh(&mut self, object: &Object<'a>, level: usize) -> Result<Built<3>, Problems> {
+        let written: WrittenMesh = json::read(object.value(MESH)?)?;
+        let size = Size { nodes: 1, depth: 0 };
+        self.allowance.take(size, level)?;
+        let mesh = written.built(self.scene.folder.as_deref())?;
+        let shape = mesh.shape.clone();
+        if !self.meshes.iter().any(|other| other.is_same(&mesh)) {
+            self.meshes.push(mesh);
+        }
+        Ok(Built { shape, size })
     }
 
     fn twisted(shape: Shape<3>, key: &str, rate: f64) -> Result<Shape<3>, Problems> {

@@ -19,6 +19,7 @@ use palpate_field::{Point, Pose, Shape};
 use palpate_haptics::{Acceptance, Guide, Material, ToolOptions, WorkspaceMap};
 use palpate_vibration::Actuator;
 
+use crate::mesh_file::BuiltMesh;
 use crate::names::shortened;
 use crate::pose::{Turning, Turns, vector};
 use crate::problem::Problem;
@@ -57,6 +58,8 @@ pub struct BuiltScene<const D: usize> {
     pub views: Vec<View>,
     /// The map from the device's space to the world; `None` if the scene gives none.
     pub workspace: Option<WorkspaceMap<D>>,
+    /// The mesh files that its shapes are made of, and what was found in each.
+    pub meshes: Vec<BuiltMesh>,
 }
 
 /// The tool of a built scene.
@@ -158,7 +161,8 @@ where
     let whole = Shape::union(bodies.iter().map(|body| body.shape.clone()))
         .map_err(|error| Problem::of_shape(error).under("bodies"))?;
     let views = scene.views.clone();
-    Ok(BuiltScene { bodies, whole, tool, guides, motions, views, workspace })
+    let meshes = builder.meshes;
+    Ok(BuiltScene { bodies, whole, tool, guides, motions, views, workspace, meshes })
 }
 
 fn bodies<'a, const D: usize>(

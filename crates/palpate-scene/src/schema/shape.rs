@@ -50,6 +50,10 @@ pub(super) fn schema(dimension: Dimension) -> Value {
     makers.extend(others.into_iter().map(requires));
     makers.push(json!({ "anyOf": moving.into_iter().map(requires).collect::<Vec<_>>() }));
     makers.push(requires(keys::SHAPE));
+    if dimension == Dimension::Three {
+        properties.insert(keys::MESH.to_owned(), mesh());
+        makers.push(requires(keys::MESH));
+    }
 
     let rest = [
         (keys::WIDTH, json!({ "type": "number", "exclusiveMinimum": 0 })),
@@ -264,4 +268,26 @@ fn capitalised(text: &str) -> String {
         Some(first) => first.to_uppercase().chain(characters).collect(),
         None => String::new(),
     }
+}
+
+/// The solid of a mesh file.
+fn mesh() -> Value {
+    json!({
+        "description": "The solid that a mesh of triangles bounds: a file, beside the scene's or in a folder beside it.",
+        "type": "object",
+        "properties": {
+            "file": {
+                "description": "An OBJ, STL, PLY or GLB file.",
+                "type": "string",
+                "minLength": 1,
+            },
+            "scale": {
+                "description": "Metres for a unit of the file: 0.001 for millimetres; 1 if left out.",
+                "type": "number",
+                "exclusiveMinimum": 0,
+            },
+        },
+        "required": ["file"],
+        "additionalProperties": false,
+    })
 }
