@@ -26,7 +26,7 @@ import { takeRecording, watchRecording } from './panels/recording.js';
 import { takeSafety, watchSafety } from './panels/safety.js';
 import { baseName, save, saveAs } from './panels/saving.js';
 import { Selected } from './panels/selected.js';
-import { FORCES_COME_BACK, stop, watchStop } from './panels/stop.js';
+import { FORCES_COME_BACK, stop } from './panels/stop.js';
 import { Tabs } from './panels/tabs.js';
 import { Toasts, Words } from './panels/toasts.js';
 import { Touch } from './panels/touch.js';
@@ -60,21 +60,18 @@ function takeMessage(message) {
     changed('clients');
   }
   // The answer to a question without a number: what failed was nobody's in particular.
-  if (message.do === 'notice' || message.do === 'refused') takeNotice(message.message);
+  if (message.do === 'notice' || message.do === 'refused') takeNotice(message);
 }
 
 /** The message that tells what is wrong with the file. */
 let aboutFile = 0;
 
-/** @param {string} text */
-function takeNotice(text) {
-  const { file } = state.scene ?? {};
-  if (!file || !text.startsWith(file)) {
-    tell(text, 'bad');
-    return;
-  }
-  dismiss(aboutFile);
-  aboutFile = tell(text, 'bad');
+/** @param {import('./wire.js').Message} notice */
+function takeNotice({ about, message }) {
+  const isAboutFile = about === 'file';
+  if (isAboutFile) dismiss(aboutFile);
+  const told = tell(message, 'bad');
+  if (isAboutFile) aboutFile = told;
 }
 
 /** The scene that the page was made to suit last. @type {import('./wire.js').Message} */
@@ -119,7 +116,6 @@ function connect(token) {
       takeFrame(frame);
       watchRecording(frame);
       watchSafety(frame);
-      watchStop(frame);
       performance.measure('take a frame', { start });
     },
     message: takeMessage,

@@ -45,8 +45,8 @@ pub(crate) struct SweepOptions {
     /// out.
     #[arg(long, allow_negative_numbers = true, value_parser = length)]
     pub(crate) gap: Option<f64>,
-    /// How far apart the bounds of a time may be [s]; if left out, 1e-4 of the part of the motions, each
-    /// of less than half a turn.
+    /// How far apart the bounds of a time may be [s]; if left out, 1e-4 of the duration of the part
+    /// that is searched: motions are split into parts of less than half a turn.
     #[arg(long, allow_negative_numbers = true, value_parser = positive("s"))]
     pub(crate) tolerance: Option<f64>,
     /// The budget: the most evaluations of fields for each pair and each part of a motion; 5000000 if

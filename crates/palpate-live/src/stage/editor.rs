@@ -27,7 +27,7 @@ use crate::wire::{Ask, Change, Question, VERSION};
 const LOOK: Duration = Duration::from_millis(500);
 
 /// After so many looks in vain a file is gone: one that is being replaced is there again by then.
-const MISSED: u32 = 2;
+const MISSES_UNTIL_TOLD: u32 = 2;
 
 /// The most tours that are searched at once: of a steep scene one takes minutes.
 const MOST_SEARCHES: usize = 3;
@@ -57,7 +57,7 @@ pub(super) struct Editor {
     /// Held by each thread that searches a tour.
     searches: Arc<()>,
     /// How often the file was looked at in vain.
-    missed: u32,
+    misses: u32,
 }
 
 /// What parts of an edit took.
@@ -108,7 +108,7 @@ impl Editor {
             editing: None,
             to_tour: None,
             searches: Arc::default(),
-            missed: 0,
+            misses: 0,
         }
     }
 
@@ -155,6 +155,7 @@ impl Editor {
             Ask::Open { name, text } => {
                 let opened = Document::open(name, None, &text)?;
                 let before = std::mem::replace(&mut self.document, opened);
+                self.misses = 0;
                 self.show("open", false).inspect_err(|_| self.document = before)
             }
             Ask::Save { force, name } => {
@@ -227,7 +228,7 @@ impl Editor {
             Ok(text) => text,
             Err(error) => return self.miss_file(&file, &error),
         };
-        self.missed = 0;
+        self.misses = 0;
         let before = self.document.clone();
         let taken = match self.document.take_file(&text) {
             None => {
@@ -243,20 +244,24 @@ impl Editor {
             self.document.take_note_of_file(&looked);
             let message =
                 format!("{} was changed, and has an error: {message}", file.display());
-            self.pages.broadcast(&json!({ "do": "notice", "message": message }));
+            self.tell_of_file(&message);
         }
     }
 
     /// Tells the pages once of a file that cannot be read, however often it is looked at.
     fn miss_file(&mut self, file: &Path, error: &std::io::Error) {
-        self.missed = self.missed.saturating_add(1);
-        if self.missed == MISSED {
+        self.misses = self.misses.saturating_add(1);
+        if self.misses == MISSES_UNTIL_TOLD {
             let message = format!(
-                "{} cannot be read any more: {error}; the page keeps the scene, and saves it there again",
+                "{} cannot be read any more: {error}; the page keeps the scene, and Save writes the file anew",
                 file.display()
             );
-            self.pages.broadcast(&json!({ "do": "notice", "message": message }));
+            self.tell_of_file(&message);
         }
+    }
+
+    fn tell_of_file(&self, message: &str) {
+        self.pages.broadcast(&json!({ "do": "notice", "about": "file", "message": message }));
     }
 
     /// Renders the scene, and tells the pages.

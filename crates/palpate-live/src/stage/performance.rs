@@ -337,6 +337,7 @@ impl Performance {
         let room = self.room.insert(room);
         let is_stopped = self.stop.is_stopped();
         let is_news = std::mem::replace(&mut self.was_stopped, is_stopped) != is_stopped;
+        of_either!(AnyRoom, &mut *room, room => room.set_stopped(is_stopped));
         let speed = of_either!(AnyRoom, &*room, room => room.speed());
         if is_news && speed.get() == 0.0 {
             // A servo whose clock is held takes note by a tick.

@@ -193,6 +193,11 @@ impl<const D: usize> Room<D> {
         &self.speed
     }
 
+    /// Tells the hand whether forces are stopped.
+    pub(super) fn set_stopped(&mut self, is_stopped: bool) {
+        self.lead.set_stopped(is_stopped);
+    }
+
     pub(super) fn has_ended(&self) -> bool {
         self.thread.has_ended()
     }

@@ -240,3 +240,27 @@ fn a_recording_outlives_its_servo() {
     // The first line is the head.
     assert_eq!(trace.lines().count() as u64 - 1, ended["rows"].as_u64().unwrap());
 }
+
+#[test]
+fn a_tour_waits_while_forces_are_stopped() {
+    let (_live, mut page) = ring();
+    page.ask(json!({ "do": "tour", "on": true }));
+    // How far the device goes in half a second of ticks.
+    let way = |page: &mut Page| {
+        let begin = moment(page);
+        loop {
+            let now = moment(page);
+            if now.ticks >= begin.ticks + 500 {
+                return (now.device[0] - begin.device[0])
+                    .hypot(now.device[1] - begin.device[1]);
+            }
+        }
+    };
+    while way(&mut page) < 2e-3 {}
+    page.ask(json!({ "do": "stop" }));
+    // The device comes to where the tour waits.
+    while way(&mut page) > 1e-4 {}
+    assert!(way(&mut page) < 1e-4, "the tour goes on");
+    page.ask(json!({ "do": "release" }));
+    while way(&mut page) < 2e-3 {}
+}

@@ -5,9 +5,12 @@
 /**
  * The keys of the page, in one table, which the help shows too.
  *
- * `where` says when a key counts: `anywhere`; `untyped`: not while a text field holds what was typed
- * and not entered yet; `outside`: not while a text field or a `<select>` has the focus; `moveless`: nor a slider, tree or tab list; `free`: only while no
- * control has the focus.
+ * `where` says when a key counts:
+ * - `anywhere`: always;
+ * - `untyped`: not while a text field holds what was typed and not entered yet;
+ * - `outside`: not while a text field or a `<select>` has the focus;
+ * - `moveless`: nor while a slider, tree or tab list has it;
+ * - `free`: only while no control has it.
  *
  * @typedef {'anywhere' | 'untyped' | 'outside' | 'moveless' | 'free'} Where
  * @typedef {{ keys: string[], shown: string, text: string, where: Where, does: string,
@@ -85,7 +88,7 @@ function watchDraft() {
 /** @param {EventTarget | null} target @param {Where} where */
 function counts(target, where) {
   if (!(target instanceof Element)) return true;
-  // What is wrong with a text is mended there.
+  // A field marked invalid keeps Ctrl Z for itself.
   if (where === 'untyped' && (target === draft || target.matches('[aria-invalid=true]'))) return false;
   return !target.closest(ELSEWHERE[where]);
 }
@@ -93,7 +96,7 @@ function counts(target, where) {
 /** A speed while Shift is down, over that without. */
 const SLOW = 0.25;
 /** How long a key is down before the hand moves on after its first step [ms]. */
-const TAP = 250;
+const REPEAT_AFTER = 250;
 
 /** Listens for keys. @param {Record<string, () => void>} actions one for each `does` */
 export function listenKeys(actions) {
@@ -107,7 +110,7 @@ export function listenKeys(actions) {
       isRunning = false;
       return;
     }
-    const moving = [...held].filter(([, since]) => performance.now() - since > TAP).map(([key]) => key);
+    const moving = [...held].filter(([, since]) => performance.now() - since > REPEAT_AFTER).map(([key]) => key);
     const speeds = [0, 1, 2].map((axis) =>
       (isSlow ? SLOW : 1) * moving.reduce((sum, key) => sum + MOVES[key][axis], 0));
     if (moving.length > 0) push(speeds, axesSeen());

@@ -17,9 +17,10 @@ import { isLeading } from './pointer.js';
 
 /** The time that the hand takes across the scene at full speed [s]. */
 const CROSSING = 3;
-/** A tap of a key, and how far the hand is led from where it is, over the scene's size: what presses on
- * a body comes off it soon. */
-const TAP = 1 / 250;
+/** How far one key press moves the hand, over the scene's size. */
+const NUDGE = 1 / 250;
+/** How far ahead of the device the target may be, so that a reversed key lifts the hand off a body at once,
+ * over the scene's size. */
 const FARTHEST = 1 / 20;
 /** The longest time between two frames that counts [s]: after a pause the hand does not jump. */
 const LONGEST = 0.05;
@@ -45,7 +46,7 @@ function move(parts, axes) {
 
 /** Moves the hand by a step. @param {number[]} ways to the right, up, and away @param {Axes} axes */
 export function nudge(ways, axes) {
-  move(ways.map((way) => TAP * way), axes);
+  move(ways.map((way) => NUDGE * way), axes);
 }
 
 /** Moves the hand on for a frame. `speeds` are from −1 to 1: to the right, up, and away.

@@ -3,11 +3,10 @@
 // @ts-check
 
 /**
- * Scenes whose place another took, so that a person gets back to them: first of all that with which
- * the program was started.
+ * Scenes whose place another took, so that a person gets back to them.
  *
  * @typedef {import('../wire.js').Message} Message
- * @typedef {{ name: string, file: string | null, text: string, isEdited: boolean }} Before
+ * @typedef {{ name: string, file: string | null, text: string, isEdited: boolean }} PreviousScene
  */
 
 import { state } from '../state.js';
@@ -17,19 +16,20 @@ import { baseName } from './saving.js';
 /** Scenes that are kept, beside the first. */
 const MOST = 4;
 
-/** The first scene, and then the others, newest last. @type {Before[]} */
+/** The first scene that was replaced in this page, then at most four later ones, the newest last.
+ * @type {PreviousScene[]} */
 let kept = [];
 
-/** Keeps a scene whose place another takes. @param {Message | null} before @param {Message} scene */
-export function keepBefore(before, scene) {
-  if (!before || scene.by !== 'open' || scene.text === before.text) return;
-  const { file, text, is_saved: isSaved } = before;
-  const name = baseName(file ?? before.name);
+/** Keeps a scene whose place another takes. @param {Message | null} previous @param {Message} scene */
+export function keepBefore(previous, scene) {
+  if (!previous || scene.by !== 'open' || scene.text === previous.text) return;
+  const { file, text, is_saved: isSaved } = previous;
+  const name = baseName(file ?? previous.name);
   if (isSaved && GALLERY.some(([made]) => made === name)) return;
-  const one = { name, file, text, isEdited: !isSaved };
+  const entry = { name, file, text, isEdited: !isSaved };
   const at = kept.findIndex((other) => other.name === name && other.file === file);
-  if (at >= 0) kept[at] = one;
-  else kept = [...kept.slice(0, 1), ...kept.slice(1).slice(1 - MOST), one];
+  if (at >= 0) kept[at] = entry;
+  else kept = [...kept.slice(0, 1), ...kept.slice(1).slice(1 - MOST), entry];
 }
 
 /** The scenes that were open before, without that which is open now. */

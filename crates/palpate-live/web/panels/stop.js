@@ -16,7 +16,7 @@ export function stop() {
   else navigator.sendBeacon(`stop?token=${encodeURIComponent(page.token)}`);
 }
 
-/** How forces come back after a release, and of a servo that has begun. */
+/** How forces come back after a release and after the servo starts. */
 export const FORCES_COME_BACK = 'Forces come back once the hand is out of the bodies, rising from zero: draw it out by the mouse or the arrow keys.';
 
 /** What a person does who touches a body and feels no force after a stop; empty where there is one.
@@ -27,22 +27,9 @@ export function withheldInWords(frame) {
   return isWithheld && isRising ? 'no force until the hand is out of the bodies: draw it out by the mouse or the arrow keys' : '';
 }
 
-/** Whether this stop has paused the tour. */
-let hasPaused = false;
-
-/** Pauses the tour while forces are stopped: a hand that feels nothing moves no further by itself.
- * @param {import('../wire.js').Frame} frame */
-export function watchStop({ stopped, touring }) {
-  if (!stopped) hasPaused = false;
-  if (!stopped || !touring || hasPaused) return;
-  hasPaused = true;
-  page.wire?.send({ do: 'tour', on: false });
-}
-
-/** Gives forces again, and lets the tour go on that the stop has paused. */
+/** Gives forces again. */
 function release() {
   page.wire?.send({ do: 'release' });
-  if (hasPaused) page.wire?.send({ do: 'tour', on: true });
   tell(FORCES_COME_BACK);
 }
 
@@ -52,7 +39,7 @@ export function StopButton({ id }) {
   const isStopped = state.newest?.stopped ?? false;
   if (isStopped && state.connection === 'live') {
     return html`<button type="button" id=${id} class="stop stopped" onClick=${release}
-      title=${`${hasPaused ? 'The tour is paused, and goes on with a release. ' : ''}${FORCES_COME_BACK}`}>forces are zero — release</button>`;
+      title=${FORCES_COME_BACK}>forces are zero — release</button>`;
   }
   return html`<button type="button" id=${id} class="stop" onClick=${stop} title="All forces to zero: Esc">
     <span class="square" aria-hidden="true"></span>STOP</button>`;

@@ -4,7 +4,7 @@
 
 /** How the scene is touched, and what is felt. */
 
-import { html } from '../vendor/htm-preact.js';
+import { html, useEffect, useState } from '../vendor/htm-preact.js';
 import { setSound, setVolume } from '../input/audio.js';
 import { firstPad } from '../input/gamepad.js';
 import { isSteering, letGo } from '../input/steer.js';
@@ -26,7 +26,7 @@ export function Touch() {
   const { touch } = state;
   const points = state.scene?.device?.points ?? 1;
   return html`
-    <div class="panel-head"><h2>Touch</h2><${Led} /></div>
+    <div class="panel-head"><h2>Touch</h2><${TourSwitch} /></div>
     <div class="scroll" tabindex="0" role="region" aria-label="Touch settings">
     <${Readout} />
     <${ChoiceField} label="led by" value=${touch.input}
@@ -57,21 +57,22 @@ function padName() {
   return pad ? `gamepad: ${pad.id.replace(/\s*\(.*/, '')}` : 'gamepad: none yet';
 }
 
-/** What the tour was switched to last, until frames say so too. */
-let asked = { on: false, until: -Infinity };
-
-/** Whether the hand is on its tour, or is held by keys or a gamepad. */
-function Led() {
+/** The switch of the tour, and a button that lets go of a hand that keys or a gamepad hold. */
+function TourSwitch() {
   useTopics(['newest'], INTERVAL);
   const isTouring = state.newest?.touring ?? false;
-  if (isTouring === asked.on) asked.until = -Infinity;
-  const isOn = performance.now() < asked.until ? asked.on : isTouring;
+  // What the tour was switched to last, until frames say so too.
+  const [asked, setAsked] = useState(/** @type {{ on: boolean, until: number } | null} */ (null));
+  useEffect(() => {
+    if (asked?.on === isTouring) setAsked(null);
+  }, [asked, isTouring]);
+  const isOn = asked && performance.now() < asked.until ? asked.on : isTouring;
   return html`<span class="gap"></span>
     ${isSteering() && html`<button class="small" onClick=${letGo} title="Let go of the hand: L">let go</button>`}
     <${Switch} label="tour" value=${isOn} help="A hand that nobody leads goes along the bodies"
       change=${(/** @type {boolean} */ on) => {
         letGo();
-        asked = { on, until: performance.now() + UNTIL_TOUR };
+        setAsked({ on, until: performance.now() + UNTIL_TOUR });
         page.wire?.send({ do: 'tour', on });
       }} />`;
 }

@@ -13,7 +13,7 @@
  */
 
 import { arrow, dot, polyline, ring } from '../scene/ink.js';
-import { COLORS, mark } from '../scene/marks.js';
+import { COLORS, mark, veiled } from '../scene/marks.js';
 import { along, inSpace, rounded } from '../scene/vectors.js';
 import { fall, lasts, moment, placeAt, setFall } from './fall.js';
 
@@ -72,9 +72,8 @@ export function paintFall(context, lens, texts, inks, isHidden) {
       dot(context, lens.project(touched), 3, GREEN, inks.halo);
     }
     const place = placeAt(now);
-    context.globalAlpha = isHidden ? 0.4 : 1;
-    if (place) paintBall(context, lens.project(inSpace(place)), wide(place), inks);
     context.globalAlpha = 1;
+    if (place) veiled(context, isHidden, () => paintBall(context, lens.project(inSpace(place)), wide(place), inks));
   }
   const from = lens.project(begin);
   ring(context, from, wide(begin), BALL, 2, inks.halo);

@@ -76,7 +76,7 @@ const DARK = {
 };
 
 /** The names of the colours that a theme has, in the order in which the programs take them. */
-export const THEMED = Object.keys(LIGHT);
+export const THEMED = /** @type {(keyof typeof LIGHT)[]} */ (Object.keys(LIGHT));
 
 /** Whether the theme in use is dark. */
 export function isDark() {
@@ -85,7 +85,7 @@ export function isDark() {
 }
 
 /** The colours of the theme in use. */
-export const themed = () => (isDark() ? DARK : LIGHT);
+export const colorsInUse = () => (isDark() ? DARK : LIGHT);
 
 /** How the colours depend on the values. */
 export const MAP_NUMBERS = {
@@ -126,9 +126,10 @@ function fromOklab(lab) {
     .map((part) => (part <= 0.0031308 ? 12.92 * part : 1.055 * part ** (1 / 2.4) - 0.055));
 }
 
-/** The colour of a gradient in the plane. @param {number[]} gradient @returns {Color} */
-export function direction([across, above]) {
+/** The colour of a gradient in the plane. @param {number[]} gradient @param {typeof LIGHT} colors of the theme
+ * @returns {Color} */
+export function direction([across, above], { wheel }) {
   const beyond = Math.max(norm([across, above, 0]), 1);
   const { right, up } = WHEEL;
-  return fromOklab(scale(along(along(themed().wheel, right, across / beyond), up, above / beyond), 1 / beyond));
+  return fromOklab(scale(along(along(wheel, right, across / beyond), up, above / beyond), 1 / beyond));
 }

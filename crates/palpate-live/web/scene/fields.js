@@ -10,13 +10,13 @@
  * @typedef {import('./setting.js').Setting} Setting
  */
 
-import { themed } from './colors.js';
+import { colorsInUse } from './colors.js';
 import { flat, space } from './glsl.js';
 
 /** The colours of the bodies, and their promises in the last channel: outside + 4·inside.
  * @param {Setting} setting */
 function paletteOf({ bodies }) {
-  const all = bodies.length > 0 ? bodies : [{ color: themed().outside, promises: [0, 0] }];
+  const all = bodies.length > 0 ? bodies : [{ color: colorsInUse().outside, promises: [0, 0] }];
   return new Uint8Array(all.flatMap(({ color, promises: [outside, inside] }) =>
     [...color.map((part) => Math.round(255 * part)), outside + 4 * inside]));
 }

@@ -15,6 +15,9 @@ import { MAP_COLORS, MAP_NUMBERS, OKLAB, THEMED, WHEEL } from './colors.js';
 /** The maps of a plane, by the number that the programs know. */
 export const MAPS = { inside: 0, distance: 1, gradient: 2, promise: 3, difference: 4 };
 
+/** The number of the body in a pixel that shows nothing; −1 is a body that is not known. */
+export const NOTHING = -2;
+
 export const VERTEX = `#version 300 es
 void main() {
   gl_Position = vec4(vec2(gl_VertexID == 1 ? 3 : -1, gl_VertexID == 2 ? 3 : -1), 0, 1);
@@ -38,8 +41,12 @@ const mat3 = (rows) => `mat3(${[0, 1, 2].flatMap((column) => rows.map((row) => r
 /** @param {number} number */
 const float = (number) => (Number.isInteger(number) ? `${number}.0` : `${number}`);
 
-/** A colour of the theme: another theme needs no other program. @param {string} name */
-const themed = (name) => `themed[${THEMED.indexOf(name)}]`;
+/** A colour of the theme: another theme needs no other program. @param {typeof THEMED[number]} name */
+function themeColor(name) {
+  const number = THEMED.indexOf(name);
+  if (number < 0) throw new Error(`themes have no colour ${name}`);
+  return `theme[${number}]`;
+}
 
 /** A point in as many dimensions as the field has. */
 const argument = (/** @type {number} */ dimension) => (dimension === 2 ? '.xy' : '');
@@ -130,7 +137,7 @@ vec3 corner(int k) {
 const MAP = `
 uniform float spacing, range, sineFactor;
 uniform bool isolines, asInMemoir, positiveInside;
-uniform vec3 channels, themed[${THEMED.length}];
+uniform vec3 channels, theme[${THEMED.length}];
 
 vec3 fromOklab(vec3 c) {
   vec3 roots = ${mat3(OKLAB.roots)} * c;
@@ -142,7 +149,7 @@ vec3 fromOklab(vec3 c) {
 vec3 direction(vec2 g) {
   float beyond = max(length(g), 1.0);
   g /= beyond;
-  return fromOklab((${themed('wheel')} + g.x * ${vec3(WHEEL.right)} + g.y * ${vec3(WHEEL.up)}) / beyond);
+  return fromOklab((${themeColor('wheel')} + g.x * ${vec3(WHEEL.right)} + g.y * ${vec3(WHEEL.up)}) / beyond);
 }
 
 // How much a line covers of a pixel at this many pixels from its middle.
@@ -159,22 +166,22 @@ vec3 mapped(float value, float other, vec2 g, float slope, float pixel, int numb
   float zeroLine = line(abs(value) / pixel, isChosen ? 3.0 : 2.0);
   if (map == 4) {
     float change = (value - other) / range;
-    vec3 c = mix(${themed('equal')}, change < 0.0 ? ${themed('less')} : ${themed('more')},
+    vec3 c = mix(${themeColor('equal')}, change < 0.0 ? ${themeColor('less')} : ${themeColor('more')},
       1.0 - exp(-${float(MAP_NUMBERS.contrast)} * abs(change)));
-    return mix(c, ${themed('ink')}, 0.8 * zeroLine);
+    return mix(c, ${themeColor('ink')}, 0.8 * zeroLine);
   }
   float wave = cos(${float(MAP_NUMBERS.waves)} * sineFactor * value / range);
   vec3 colour;
   if (map == 0) {
-    colour = mix(${themed('outside')}, mix(tint, ${themed('pale')}, ${MAP_NUMBERS.pale}), inner);
+    colour = mix(${themeColor('outside')}, mix(tint, ${themeColor('pale')}, ${MAP_NUMBERS.pale}), inner);
   } else if (map == 1 && asInMemoir) {
     colour = mix(${vec3(MAP_COLORS.memoirOutside)}, ${vec3(MAP_COLORS.memoirInside)}, inner);
     colour *= 1.0 - ${MAP_NUMBERS.wave} * (1.0 - wave);
     return mix(colour, ${vec3(MAP_COLORS.surface)}, zeroLine);
   } else if (map == 1) {
     float far = 1.0 - exp(-${MAP_NUMBERS.fade} * abs(value) / range);
-    colour = value < 0.0 ? mix(${themed('insideNear')}, ${themed('insideFar')}, far)
-      : mix(${themed('outsideNear')}, ${themed('outsideFar')}, far);
+    colour = value < 0.0 ? mix(${themeColor('insideNear')}, ${themeColor('insideFar')}, far)
+      : mix(${themeColor('outsideNear')}, ${themeColor('outsideFar')}, far);
     colour *= mod(floor(value / spacing), 2.0) < 0.5 ? 1.0 : ${MAP_NUMBERS.band};
   } else if (map == 2) {
     g = positiveInside ? -g : g;
@@ -183,22 +190,22 @@ vec3 mapped(float value, float other, vec2 g, float slope, float pixel, int numb
     // Outside and inside have promises of their own: exact, bound or Lipschitz.
     int codes = int(body(number).a * 255.0 + 0.5);
     int promise = value < 0.0 ? codes / 4 : codes % 4;
-    colour = promise == 0 ? ${themed('exact')} : promise == 1 ? ${themed('bound')} : ${themed('lipschitz')};
-    colour = mix(colour, ${themed('flat')}, clamp(1.0 - slope, 0.0, 1.0));
-    colour = mix(colour, ${themed('steep')}, clamp(2.0 * (slope - ${MAP_NUMBERS.steepest}), 0.0, 1.0));
+    colour = promise == 0 ? ${themeColor('exact')} : promise == 1 ? ${themeColor('bound')} : ${themeColor('lipschitz')};
+    colour = mix(colour, ${themeColor('flat')}, clamp(1.0 - slope, 0.0, 1.0));
+    colour = mix(colour, ${themeColor('steep')}, clamp(2.0 * (slope - ${MAP_NUMBERS.steepest}), 0.0, 1.0));
   }
   if (isolines && spacing > 0.0) {
     float nearest = round(value / spacing);
     float covered = line(abs(value - nearest * spacing) / pixel, 1.0);
     float fade = clamp(spacing / pixel / 5.0 - 0.4, 0.0, 1.0);
     float strong = mod(abs(nearest), 5.0) < 0.5 ? 0.6 : 0.34;
-    vec3 ink = map == 2 ? ${themed('gradientLine')}
-      : value < 0.0 ? ${themed('insideLine')} : ${themed('outsideLine')};
+    vec3 ink = map == 2 ? ${themeColor('gradientLine')}
+      : value < 0.0 ? ${themeColor('insideLine')} : ${themeColor('outsideLine')};
     colour = mix(colour, ink, nearest == 0.0 ? 0.0 : covered * fade * strong);
   }
   bool white = map == 1;
   colour = mix(colour, ${vec3(MAP_COLORS.rim)}, white ? 0.7 * line(abs(value) / pixel, 4.5) : 0.0);
-  return mix(colour, isChosen ? CHOSEN : white ? ${vec3(MAP_COLORS.surface)} : ${themed('ink')}, zeroLine);
+  return mix(colour, isChosen ? CHOSEN : white ? ${vec3(MAP_COLORS.surface)} : ${themeColor('ink')}, zeroLine);
 }
 `;
 
@@ -279,7 +286,7 @@ uniform vec3 sliceOrigin, sliceAcross, sliceAbove;
 uniform float sliceReach;`;
 
 /** A march through space. With `picking`, the place that a pixel shows, and the number of its
- * body; −2 where it shows nothing. The loop holds little but the field: emulated graphics cards
+ * body; `NOTHING` where it shows nothing. The loop holds little but the field: emulated graphics cards
  * do all that stands in a loop each time round, so colours come after it.
  * @param {string} field @param {boolean} isSliced whether a plane cuts the scene
  * @param {number} map of the plane */
@@ -307,7 +314,7 @@ void main() {
   vec2 planeValue = vec2(0);
   float number = 0.0, open = 1.0, otherValue = 0.0;${isSliced ? CUT : ''}
   if (k < 0 && t > end) {
-    result = vec4(0, 0, 0, picking ? -2 : 0);
+    result = vec4(0, 0, 0, picking ? ${NOTHING} : 0);
     return;
   }
   vec3 base = ${isSliced ? 'k < 0 ? eye + t * ray : place' : 'eye + t * ray'};
@@ -341,7 +348,7 @@ void main() {
   bool isHit = k >= 0 && k < 8;
   number = owner(eye + t * ray + shift, number);
   if (picking) {
-    result = isHit ? vec4(eye + t * ray, number) : vec4(0, 0, 0, -2);
+    result = isHit ? vec4(eye + t * ray, number) : vec4(0, 0, 0, ${NOTHING});
     return;
   }
   vec3 n = normalize(sum);

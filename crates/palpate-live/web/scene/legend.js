@@ -11,7 +11,7 @@
  */
 
 import { state } from '../state.js';
-import { MAP_COLORS, css, direction, themed } from './colors.js';
+import { MAP_COLORS, colorsInUse, css, direction } from './colors.js';
 import { MAPS } from './glsl.js';
 import { arrow, label, stroke } from './ink.js';
 import { AXIS_COLORS, COLORS, isLegendOpen, mark } from './marks.js';
@@ -62,7 +62,7 @@ export function paintAxes(context, { lens, isFlat }, inks) {
 export function paintLegend(context, { lens: { rect }, hasLines, spacing, panel }, top, inks) {
   if (!isLegendOpen()) return top;
   const { map, asInMemoir } = state.view;
-  const colors = themed();
+  const colors = colorsInUse();
   const right = rect.x + rect.width - MARGIN;
   let y = top + 6;
   /** @param {string} text @param {import('./colors.js').Color} from @param {import('./colors.js').Color} [to] */
@@ -96,7 +96,7 @@ export function paintLegend(context, { lens: { rect }, hasLines, spacing, panel 
     entry('slope below 1', colors.flat);
     entry('slope above 1', colors.steep);
   } else if (map === 'gradient' && !asInMemoir) {
-    paintWheel(context, right - 30, y + 26);
+    paintWheel(context, right - 30, y + 26, colors);
     label(context, 'where ∇f points', right - 62, y + 26, inks, 'right');
     y += 68;
   } else if (map === 'gradient') {
@@ -109,12 +109,13 @@ export function paintLegend(context, { lens: { rect }, hasLines, spacing, panel 
   return y + 14;
 }
 
-/** The wheel of directions. @param {Context} context @param {number} x @param {number} y */
-function paintWheel(context, x, y) {
+/** The wheel of directions. @param {Context} context @param {number} x @param {number} y
+ * @param {ReturnType<typeof colorsInUse>} colors */
+function paintWheel(context, x, y, colors) {
   const parts = 48;
   for (let i = 0; i < parts; i += 1) {
     const angle = (2 * Math.PI * (i + 0.5)) / parts;
-    context.fillStyle = css(direction([Math.cos(angle), Math.sin(angle)]));
+    context.fillStyle = css(direction([Math.cos(angle), Math.sin(angle)], colors));
     context.beginPath();
     context.moveTo(x, y);
     context.arc(x, y, 26, -angle - Math.PI / parts, -angle + Math.PI / parts);

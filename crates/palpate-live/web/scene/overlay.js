@@ -35,6 +35,8 @@ const { force: FORCE, normal: NORMAL, contact: CONTACT } = COLORS;
 export const RANK = { hovered: 0, selected: 1, verdict: 2, force: 3, touched: 4, name: 10, point: 15, small: 20 };
 /** A body that is seen smaller than this has its name last, in pixels. */
 const SMALL = 24;
+/** A contact is on the far side of its body where the cosine from its normal to the viewer is less. */
+const FAR_SIDE = -0.05;
 /** How far off the plane a hand is for words to say so, in pixels. */
 const WORTH_TELLING = 2;
 /** The part of an edge that a bracket around the selected body covers. */
@@ -207,28 +209,22 @@ function paintPoint(context, view, point, color, inks) {
   }
 }
 
-/** The hand with its points, and the spring by which the page leads it.
- * @param {Context} context @param {View} view @param {Vector | null} target @param {Texts} texts
- * @param {Inks} inks @param {(key: string) => boolean} hides */
-export function paintHand(context, view, target, texts, inks, hides) {
-  const { frame } = state;
-  const points = frame?.points ?? [];
-  const hand = handOf();
-  if (!hand) return;
-  const { project } = view.lens;
+/** The middle of a hand with several points, and its arms. @param {Context} context @param {View} view
+ * @param {Vector} hand @param {Point[]} points @param {Inks} inks @param {(key: string) => boolean} hides */
+function paintMiddle(context, { lens: { project } }, hand, points, inks, hides) {
   const middle = project(hand);
-  if (points.length > 1) {
-    for (const { device } of points) {
-      polyline(context, [middle, project(device)], inks.muted, 1, 'transparent');
-    }
-    veiled(context, hides(MIDDLE), () => ring(context, middle, 8, inks.ink, 1.5, inks.halo));
-  }
-  const led = ledPlace() ?? hand;
+  for (const { device } of points) polyline(context, [middle, project(device)], inks.muted, 1, 'transparent');
+  veiled(context, hides(MIDDLE), () => ring(context, middle, 8, inks.ink, 1.5, inks.halo));
+}
+
+/** The contact points, with their numbers if there are several. @param {Context} context @param {View} view
+ * @param {Point[]} points @param {Texts} texts @param {Inks} inks @param {(key: string) => boolean} hides */
+function paintPoints(context, view, points, texts, inks, hides) {
   points.forEach((point, number) => {
-    const place = project(point.device);
+    const place = view.lens.project(point.device);
     const leads = number === state.touch.point;
     // A contact on the far side of a body lies behind it.
-    const isFar = !view.isFlat && point.contact && product(point.normal, view.lens.towards(point.proxy)) < -0.05;
+    const isFar = !view.isFlat && point.contact && product(point.normal, view.lens.towards(point.proxy)) < FAR_SIDE;
     veiled(context, isFar || hides(keyOfPoint(number)), () => {
       paintPoint(context, view, point, numbered(number), inks);
       if (leads) ring(context, place, 10, inks.ink, 1.5, inks.halo);
@@ -237,28 +233,53 @@ export function paintHand(context, view, target, texts, inks, hides) {
       texts.add(String(number + 1), place.x + 12, place.y - 10, { rank: leads ? RANK.selected : RANK.point, isFixed: true });
     }
   });
-  if (target && state.view.shown.spring) {
-    mark('spring');
-    const goal = project(target);
-    spring(context, project(led), goal, inks.ink, inks.halo);
-    ring(context, goal, 7, inks.ink, 1.5, inks.halo);
-    dot(context, goal, 2, inks.ink, inks.halo);
-  }
+}
+
+/** The spring by which the page leads the hand. @param {Context} context @param {View} view
+ * @param {Vector} led @param {Vector} target @param {Inks} inks */
+function paintSpring(context, { lens: { project } }, led, target, inks) {
+  mark('spring');
+  const goal = project(target);
+  spring(context, project(led), goal, inks.ink, inks.halo);
+  ring(context, goal, 7, inks.ink, 1.5, inks.halo);
+  dot(context, goal, 2, inks.ink, inks.halo);
+}
+
+/** How far the hand is off the plane. @param {View} view @param {Vector} led @param {Texts} texts */
+function addDistance(view, led, texts) {
   const behind = behindPlane(view, led);
   const pixel = view.lens.pixel(led);
-  const at = project(led);
-  if (at && Math.abs(behind) > WORTH_TELLING * pixel) {
-    const far = level(Math.abs(behind), roundUp(WORTH_TELLING * pixel));
-    texts.add(`${far} ${behind > 0 ? 'behind' : 'in front of'} the plane`, at.x, at.y - 20, { rank: RANK.force });
-  }
-  const force = frame?.force ?? 0;
+  const at = view.lens.project(led);
+  if (!at || Math.abs(behind) <= WORTH_TELLING * pixel) return;
+  const far = level(Math.abs(behind), roundUp(WORTH_TELLING * pixel));
+  texts.add(`${far} ${behind > 0 ? 'behind' : 'in front of'} the plane`, at.x, at.y - 20, { rank: RANK.force });
+}
+
+/** The force, beside the point that feels most of it. @param {Context} context @param {View} view
+ * @param {Point[]} points @param {Texts} texts */
+function addForce(context, view, points, texts) {
+  const force = state.frame?.force ?? 0;
   const strongest = points.reduce((most, point) => (norm(point.force) > norm(most.force) ? point : most));
-  const place = project(strongest.proxy);
-  if (state.view.shown.forces && force > 0.01 && place) {
-    const pull = pullInWords(strongest);
-    const words = `${force.toFixed(2)} N${pull && `, ${pull}`}`;
-    texts.add(words, place.x + 16 + widthOf(context, words) / 2, place.y + 16, { rank: RANK.force });
-  }
+  const place = view.lens.project(strongest.proxy);
+  if (!(force > 0.01) || !place) return;
+  const pull = pullInWords(strongest);
+  const words = `${force.toFixed(2)} N${pull && `, ${pull}`}`;
+  texts.add(words, place.x + 16 + widthOf(context, words) / 2, place.y + 16, { rank: RANK.force });
+}
+
+/** The hand with its points, and the spring by which the page leads it.
+ * @param {Context} context @param {View} view @param {Vector | null} target @param {Texts} texts
+ * @param {Inks} inks @param {(key: string) => boolean} hides */
+export function paintHand(context, view, target, texts, inks, hides) {
+  const points = state.frame?.points ?? [];
+  const hand = handOf();
+  if (!hand) return;
+  const led = ledPlace() ?? hand;
+  if (points.length > 1) paintMiddle(context, view, hand, points, inks, hides);
+  paintPoints(context, view, points, texts, inks, hides);
+  if (target && state.view.shown.spring) paintSpring(context, view, led, target, inks);
+  addDistance(view, led, texts);
+  if (state.view.shown.forces) addForce(context, view, points, texts);
 }
 
 /** What the probe found, and the name of the body that it is on. @param {Context} context

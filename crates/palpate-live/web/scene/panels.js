@@ -19,7 +19,7 @@
 
 import { state } from '../state.js';
 import { FIELD_OF_VIEW } from './camera.js';
-import { themed } from './colors.js';
+import { THEMED, colorsInUse } from './colors.js';
 import { MAPS } from './glsl.js';
 import { selectedBody } from './overlay.js';
 import { shifts } from './setting.js';
@@ -92,6 +92,7 @@ function viewOf(setting, cameras, rect, title, [only, other], map) {
   const isWhole = only < 0;
   const [shift, otherShift] = isWhole ? [[0, 0, 0], [0, 0, 0]] : shifts(setting, [only, other]);
   const spacing = view.spacing ?? roundUp(camera.height / LINES);
+  const colors = colorsInUse();
   const shown = {
     spacing, only, other, shift, otherShift,
     selected: selectedBody() + 1,
@@ -102,7 +103,7 @@ function viewOf(setting, cameras, rect, title, [only, other], map) {
     positiveInside: view.positiveInside,
     channels: [view.channels.red, view.channels.green, view.channels.blue].map(Number),
     leastStep: LEAST_STEP * setting.size,
-    themed: Object.values(themed()),
+    theme: THEMED.map((name) => colors[name]),
   };
   const hasPlane = flat || view.mode === 'slice' || view.mode === 'compare';
   const hasLines = hasPlane && view.isolines && map !== MAPS.difference

@@ -15,6 +15,7 @@
  * @typedef {{ point: Vector, body: number }} Hit the number of the body is −1 where it is not known
  */
 
+import { NOTHING } from './glsl.js';
 import { setting } from './setting.js';
 import { along, norm, scale, subtract, unit } from './vectors.js';
 
@@ -22,24 +23,29 @@ import { along, norm, scale, subtract, unit } from './vectors.js';
 const POLL = 3;
 /** Places that are looked at together. */
 export const MOST_PLACES = 64;
+/** Numbers of a pixel. */
+const CHANNELS = 4;
 /** How far lines of sight reach behind the middle of the scene, over its size. */
 const BEYOND = 2;
 
-/** Asks the core where the line of sight through a place first meets the scene.
+/** Asks the core where the line of sight through a place first meets the scene: all of it, as its pictures
+ * are not cut by the plane. Fails where the core cannot tell within its budget.
  * @param {Wire} wire @param {View} view @param {Place} place @returns {Promise<Hit | null>} */
 async function cast(wire, { lens }, { x, y }) {
   const { centre, size } = setting();
   const { eye } = lens.basis;
   const reach = norm(subtract(centre, eye)) + BEYOND * size;
   const by = scale(unit(subtract(lens.at(x, y, centre), eye)), reach);
-  const { upper } = await wire.ask({ do: 'sweep', corners: [eye], by });
-  return upper === null ? null : { point: along(eye, by, upper), body: -1 };
+  const { touches, upper } = await wire.ask({ do: 'sweep', corners: [eye], by });
+  if (touches === false) return null;
+  if (upper === null) throw new Error('the budget is spent');
+  return { point: along(eye, by, upper), body: -1 };
 }
 
 /** Creates the function that picks: for each place of a view the point of the surface that is seen
- * there, or null where there is none; null while nothing can tell.
+ * there, null where there is none, undefined where that is not known; null while nothing can tell.
  * @param {Layer} layer @param {Wire} wire
- * @returns {(view: View, places: Place[]) => Promise<(Hit | null)[] | null>} */
+ * @returns {(view: View, places: Place[]) => Promise<(Hit | null | undefined)[] | null>} */
 export function createPick(layer, wire) {
   /** The pixels, null where the card has none of floats, and the losses of its context.
    * @type {{ frame: WebGLFramebuffer | null, losses: number }} */
@@ -64,7 +70,7 @@ export function createPick(layer, wire) {
     const { panel } = view;
     const { gl, field, programs } = layer;
     if (panel.kind === 'flat') return null;
-    if (!gl) return Promise.all(places.map((place) => cast(wire, view, place)));
+    if (!gl) return Promise.all(places.map((place) => cast(wire, view, place).catch(() => undefined)));
     if (!field || !programs || gl.isContextLost()) return null;
     const program = programs.get(field.program(panel));
     const frame = program.isReady() ? targetOf(gl) : null;
@@ -86,9 +92,10 @@ export function createPick(layer, wire) {
       gl.drawArrays(gl.TRIANGLES, 0, 3);
     });
     program.set({ picking: false });
+    const read = new Float32Array(CHANNELS * places.length);
     const buffer = gl.createBuffer();
     gl.bindBuffer(gl.PIXEL_PACK_BUFFER, buffer);
-    gl.bufferData(gl.PIXEL_PACK_BUFFER, 16 * places.length, gl.STREAM_READ);
+    gl.bufferData(gl.PIXEL_PACK_BUFFER, read.byteLength, gl.STREAM_READ);
     gl.readPixels(0, 0, places.length, 1, gl.RGBA, gl.FLOAT, 0);
     gl.bindBuffer(gl.PIXEL_PACK_BUFFER, null);
     const fence = gl.fenceSync(gl.SYNC_GPU_COMMANDS_COMPLETE, 0);
@@ -97,7 +104,6 @@ export function createPick(layer, wire) {
       && gl.getSyncParameter(fence, gl.SYNC_STATUS) !== gl.SIGNALED) {
       await new Promise((resolve) => { setTimeout(resolve, POLL); });
     }
-    const read = new Float32Array(4 * places.length);
     gl.bindBuffer(gl.PIXEL_PACK_BUFFER, buffer);
     gl.getBufferSubData(gl.PIXEL_PACK_BUFFER, 0, read);
     gl.bindBuffer(gl.PIXEL_PACK_BUFFER, null);
@@ -105,8 +111,8 @@ export function createPick(layer, wire) {
     gl.deleteSync(fence);
     if (gl.isContextLost()) return null;
     return places.map((_, index) => {
-      const [x, y, z, body] = read.subarray(4 * index, 4 * index + 4);
-      return body < -1.5 ? null : { point: [x, y, z], body };
+      const [x, y, z, body] = read.subarray(CHANNELS * index, CHANNELS * (index + 1));
+      return body === NOTHING ? null : { point: [x, y, z], body };
     });
   };
 }

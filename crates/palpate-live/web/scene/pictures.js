@@ -14,7 +14,7 @@
  */
 
 import { FIELD_OF_VIEW } from './camera.js';
-import { MAP_COLORS, MAP_NUMBERS, direction, mix, themed } from './colors.js';
+import { MAP_COLORS, MAP_NUMBERS, colorsInUse, direction, mix } from './colors.js';
 import { MAPS } from './glsl.js';
 import { askSlice } from './labels.js';
 import { asking, newest } from './newest.js';
@@ -25,18 +25,21 @@ const CELLS = 320;
 /** Pixels of a picture at most. */
 const MOST_PIXELS = 640 * 400;
 
+/** The names of the colours of promises, by the numbers that bodies have. */
+const PROMISES = /** @type {const} */ (['exact', 'bound', 'lipschitz']);
+
 /** How much a line covers of a pixel at so many pixels from its middle.
  * @param {number} pixels @param {number} width */
 const line = (pixels, width) => clamp(0.5 * width + 0.5 - pixels, 0, 1);
 
 /** The colour of a value: what `mapped` does in the programs, where a card draws.
  * @param {number} map @param {Record<string, any>} shown the numbers of the panel
+ * @param {ReturnType<typeof colorsInUse>} colors
  * @param {{ value: number, other: number, slope: number[], pixel: number, body: Body }} at `other` is the
  *   value of the other body, `slope` the gradient across, above and towards the viewer, `pixel` the
  *   change of the value over a pixel @returns {Color} */
-function colorOf(map, shown, { value, other, slope, pixel, body }) {
+function colorOf(map, shown, colors, { value, other, slope, pixel, body }) {
   const { spacing, range, sineFactor, asInMemoir, positiveInside, isolines, channels } = shown;
-  const colors = themed();
   const { ink, flat, steep, equal, less, more } = colors;
   const { surface, rim } = MAP_COLORS;
   const isInside = value < 0;
@@ -63,12 +66,12 @@ function colorOf(map, shown, { value, other, slope, pixel, body }) {
   }
   if (map === MAPS.gradient) {
     const gradient = slope.slice(0, 2).map((part) => (positiveInside ? -part : part));
-    color = asInMemoir ? [...gradient, wave].map((part, index) => channels[index] * (0.5 + 0.5 * part)) : direction(gradient);
+    color = asInMemoir ? [...gradient, wave].map((part, index) => channels[index] * (0.5 + 0.5 * part))
+      : direction(gradient, colors);
   }
   if (map === MAPS.promise) {
     const length = norm(slope);
-    const promises = [colors.exact, colors.bound, colors.lipschitz];
-    color = mix(promises[body.promises[isInside ? 1 : 0]], flat, 1 - length);
+    color = mix(colors[PROMISES[body.promises[isInside ? 1 : 0]]], flat, 1 - length);
     color = mix(color, steep, 2 * (length - MAP_NUMBERS.steepest));
   }
   const nearest = Math.round(value / spacing);
@@ -142,8 +145,9 @@ export class Pictures {
     const isLengthSeen = panel.map === MAPS.promise && setting.dimension === 3;
     const forth = along(view.shift, cross(flat.frame.right, flat.frame.up), between);
     const before = isLengthSeen ? (await ask({ shift: forth })).values : values;
+    const colors = colorsInUse();
     // A slice of the whole scene does not tell its bodies apart.
-    const whole = { color: setting.bodies[0]?.color ?? themed().outside, promises: setting.promises };
+    const whole = { color: setting.bodies[0]?.color ?? colors.outside, promises: setting.promises };
     const body = setting.bodies[view.only] ?? whole;
     /** The slope along a row or a column. @param {number} at @param {number} step from one value to the
      * next @param {number} number @param {number} count */
@@ -158,7 +162,8 @@ export class Pictures {
         const slope = [slopeAlong(at, 1, column, columns), slopeAlong(at, columns, row, rows),
           (before[at] - values[at]) / between];
         const pixel = between * Math.max(Math.hypot(slope[0], slope[1]), 0.2);
-        const color = colorOf(panel.map, panel.values, { value: values[at], other: others[at], slope, pixel, body });
+        const color = colorOf(panel.map, panel.values, colors,
+          { value: values[at], other: others[at], slope, pixel, body });
         // Rows of a slice go up, those of a picture down.
         image.data.set([...color.map((c) => 255 * c), 255], 4 * ((rows - 1 - row) * columns + column));
       }

@@ -121,13 +121,13 @@ const scaling = (at, shape, by) => [shape.scale === undefined
   ? { at, to: scaledShape(shape, by) } : { at: pointerWithin(at, 'scale'), to: scaledNumber(shape.scale, by) }];
 
 /** The shape of a part that a scaling goes to. @param {Part} part */
-const scaledBy = ({ isBody, value }) => (isBody ? value.shape : isPlacement(value) ? value.of : value);
+const shapeToScale = ({ isBody, value }) => (isBody ? value.shape : isPlacement(value) ? value.of : value);
 
 /** How a part is scaled: a factor, or one for each axis. @param {Part} part @returns {number | number[]} */
-export const scaleOf = (part) => scaledBy(part).scale ?? 1;
+export const scaleOf = (part) => shapeToScale(part).scale ?? 1;
 
 /** Whether a part has a scale already. @param {Part | null} part */
-export const isScaled = (part) => part !== null && scaledBy(part).scale !== undefined;
+export const isScaled = (part) => part !== null && shapeToScale(part).scale !== undefined;
 
 /** The edit that places a part anew.
  * @param {Part} part @param {{ translation?: number[], turned?: Record<string, any>, by?: Scaling }} to

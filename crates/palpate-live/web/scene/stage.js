@@ -45,7 +45,7 @@ import { Views } from './views.js';
 const ROOM = 30;
 const STEP_BACK = 1.08;
 const STEPS_BACK = 24;
-/** A core that works on a question for longer has no time for what nobody pressed for [ms]. */
+/** Skip background picks while the core has worked on one question for this long [ms]. */
 const BUSY = 300;
 
 /** Builds the stage into a container.
@@ -207,6 +207,19 @@ export function createStage(container, wire) {
 
   const veil = createVeil(glance, overlayChanged);
 
+  /** The handle of a toy or of the selected part at a place, or null. @param {View} view @param {Place} place */
+  function handleAt({ lens, isFlat: isPlane, isWhole }, place) {
+    if (!isWhole) return null;
+    const toy = isPlane && state.scene?.dimension === 2 ? toyAt(lens, place, REACH.mouse) : null;
+    return toy ?? gripAt(() => lens, isPlane, place, REACH.mouse);
+  }
+
+  /** Tells of a handle under the pointer. @param {{ name: string } | null} handle */
+  function showHandle(handle) {
+    elements.overlay.style.cursor = handle ? 'grab' : '';
+    elements.overlay.title = handle?.name ?? '';
+  }
+
   function fit() {
     elements.resize();
     elements.dress();
@@ -232,11 +245,7 @@ export function createStage(container, wire) {
     hover(place) {
       const number = place ? viewAt(place) : -1;
       const view = views[number];
-      const grip = place && view?.isWhole ? gripAt(() => view.lens, view.isFlat, place, REACH.mouse) : null;
-      const toy = place && view?.isFlat && view.isWhole && state.scene?.dimension === 2
-        ? toyAt(view.lens, place, REACH.mouse) : null;
-      elements.overlay.style.cursor = grip ?? toy ? 'grab' : '';
-      elements.overlay.title = (toy ?? grip)?.name ?? '';
+      showHandle(place && view ? handleAt(view, place) : null);
       if (!place || !view || isPressed || state.connection !== 'live') probe.leave();
       else probe.follow(() => seenAt(view, place), view, number);
     },
@@ -268,7 +277,7 @@ export function createStage(container, wire) {
     probe.leave();
     const isOther = takeScene();
     const isFlatNow = isFlat(setting());
-    // In a map one comes near, and into bodies.
+    // Zooming in a map may have put the 3D camera inside the scene; step out.
     if (wasFlat && !isFlatNow) named.stepOut(current());
     wasFlat = isFlatNow;
     if (isOther && source.kind === 'samples') source.renew();

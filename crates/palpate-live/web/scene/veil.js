@@ -28,30 +28,42 @@ const NEAR = 0.01;
 /** A mark that moves less than this is not looked at again, over the size of the scene. */
 const STEP = 0.002;
 
-/** @param {(view: View, places: Place[]) => Promise<(Hit | null)[] | null>} pick
+/** @param {(view: View, places: Place[]) => Promise<(Hit | null | undefined)[] | null>} pick
  * @param {() => void} changed */
 export function createVeil(pick, changed) {
-  /** How each mark was seen last, and whether it was hidden. @type {Map<string, { seen: string, isHidden: boolean }>} */
+  /** How each mark was seen, empty until that is told; whether it was hidden; and when it was looked at [ms].
+   * @type {Map<string, { seen: string, isHidden: boolean, at: number }>} */
   const known = new Map();
+  /** Whether a mark lies behind a body. @param {string} key */
+  const hides = (key) => known.get(key)?.isHidden ?? false;
   const look = newest(async (/** @type {{ view: View, marks: (Mark & { seen: string })[] }} */ { view, marks }) => {
     const { most, pause } = state.hasCard ? LOOKS.card : LOOKS.core;
     const { lens } = view;
     const { eye } = lens.basis;
-    const size = NEAR * setting().size;
-    const looked = marks.slice(0, most).map((mark) => ({ ...mark, place: lens.project(mark.point) }));
+    const tolerance = NEAR * setting().size;
+    const lookedAt = (/** @type {Mark} */ { key }) => known.get(key)?.at ?? 0;
+    // Marks that move in each frame leave the others their turn.
+    const looked = [...marks].sort((a, b) => lookedAt(a) - lookedAt(b)).slice(0, most)
+      .map((mark) => ({ ...mark, place: lens.project(mark.point) }));
+    const at = performance.now();
+    for (const { key } of looked) known.set(key, { seen: '', isHidden: hides(key), at });
     const places = looked.map(({ place }) => place ?? { x: 0, y: 0 });
-    const hits = await pick(view, places);
-    hits?.forEach((hit, index) => {
-      const { key, point, radius, seen, place } = looked[index];
-      const far = norm(subtract(point, eye)) - Math.max(radius, size);
-      known.set(key, { seen, isHidden: place !== null && hit !== null && norm(subtract(hit.point, eye)) < far });
-    });
-    changed();
-    await new Promise((resolve) => { setTimeout(resolve, pause); });
+    try {
+      const hits = await pick(view, places);
+      hits?.forEach((hit, index) => {
+        if (hit === undefined) return;
+        const { key, point, radius, seen, place } = looked[index];
+        const far = norm(subtract(point, eye)) - Math.max(radius, tolerance);
+        const isHidden = place !== null && hit !== null && norm(subtract(hit.point, eye)) < far;
+        known.set(key, { seen, isHidden, at });
+      });
+      changed();
+    } finally {
+      await new Promise((resolve) => { setTimeout(resolve, pause); });
+    }
   });
   return {
-    /** Whether a mark lies behind a body. @param {string} key */
-    hides: (key) => known.get(key)?.isHidden ?? false,
+    hides,
     /** Looks at those marks again that moved, or all if the viewer did. @param {View | undefined} view
      * @param {Mark[]} marks */
     look(view, marks) {

@@ -9,8 +9,11 @@ use palpate_field::{Aabb, Point};
 
 use crate::tree::FAN;
 
-/// The most boxes that wait: seven of each level but the last, of at most eleven levels.
-const WAITING: usize = 96;
+/// The most levels: eight boxes around eight each, up to `u32::MAX` elements.
+const MOST_LEVELS: usize = 11;
+
+/// The most boxes that wait: seven of each level but the last.
+const WAITING: usize = FAN + (FAN - 1) * (MOST_LEVELS - 1);
 
 /// The boxes of one level, padded to whole groups of eight.
 #[derive(Clone, Debug)]
@@ -48,8 +51,9 @@ impl<const D: usize> Boxes<D> {
         Self { levels }
     }
 
-    /// Calls `visit` with groups of eight elements, by number, the nearest first as far as boxes tell. It
-    /// returns the square of the distance [m²] beyond which no group matters any more.
+    /// Calls `visit` with groups of eight elements, by number, the nearest first as far as boxes tell. `visit`
+    /// returns the square of the distance [m²] beyond which no group matters any more. From a point that is
+    /// not finite there are none.
     #[inline]
     pub(crate) fn nearest_first(
         &self,
@@ -63,7 +67,9 @@ impl<const D: usize> Boxes<D> {
         while count > 0 {
             count -= 1;
             let Waiting { squared, level, node } = waiting[count];
-            if squared >= least {
+            // Written so that NaN, and padding, are passed over.
+            let matters = squared < least;
+            if !matters {
                 continue;
             }
             if level == 0 {
@@ -102,7 +108,8 @@ impl<const D: usize> Boxes<D> {
         let squared = self.levels[level].squared_distances(p, group);
         let first = *count;
         for (i, squared) in squared.into_iter().enumerate() {
-            if squared >= least {
+            let matters = squared < least;
+            if !matters {
                 continue;
             }
             let mut place = *count;
@@ -119,7 +126,7 @@ impl<const D: usize> Boxes<D> {
 impl<const D: usize> Level<D> {
     fn new(boxes: &[Aabb<D>]) -> Self {
         let padded = boxes.len().div_ceil(FAN) * FAN;
-        // What completes a group is infinitely far.
+        // Padding boxes are at infinity.
         let mut level = Self {
             min: std::array::from_fn(|_| vec![f64::INFINITY; padded]),
             max: std::array::from_fn(|_| vec![f64::INFINITY; padded]),

@@ -7,7 +7,7 @@
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SolidError {
-    /// No face has area.
+    /// All faces were dropped.
     #[error(
         "none of the {given} faces is left: each has a vertex twice, or is cancelled by its copy"
     )]
@@ -15,20 +15,18 @@ pub enum SolidError {
         /// The faces of the mesh.
         given: usize,
     },
-    /// Directions of faces do not agree, whatever is turned.
-    #[error(
-        "{pieces} pieces have one side alone, as a Möbius strip or a Klein bottle: they have no inside"
-    )]
+    /// A piece is not orientable.
+    #[error("{pieces} pieces are not orientable (like a Möbius strip) and bound no solid")]
     OneSided {
         /// The number of such pieces.
         pieces: usize,
     },
-    /// Edges stay open.
+    /// The mesh is a sheet.
     #[error(
-        "{rims} edges have an odd number of faces, and no cap closes them: mend the mesh there"
+        "the openings are as large as the surface: it is a sheet of {area} m², and bounds no solid"
     )]
-    Open {
-        /// The number of such edges.
-        rims: usize,
+    Sheet {
+        /// The area of the faces [m²]; in the plane the length of the segments [m].
+        area: f64,
     },
 }

@@ -15,6 +15,8 @@ use super::repair::Opening;
 pub struct Findings<const D: usize> {
     /// The triangles or segments of the mesh.
     pub faces: usize,
+    /// The faces that are left, without caps.
+    pub own: usize,
     /// Vertices equal to another, merged with it.
     pub welded: usize,
     /// Faces with a vertex twice, dropped.
@@ -23,27 +25,32 @@ pub struct Findings<const D: usize> {
     pub duplicates: usize,
     /// Faces whose inside was not that of their neighbours, turned.
     pub turned: usize,
-    /// Pieces of which no directions agree, as of a Möbius strip.
+    /// Pieces that are not orientable, as a Möbius strip.
     pub one_sided: usize,
     /// Pieces that were inside out, turned.
     pub inside_out: usize,
-    /// Pieces within a piece that turns the same way, which are walls within the solid.
+    /// Pieces that lie inside another piece and have the same orientation: their faces are inside the solid.
     pub nested: usize,
     /// Openings, closed by flat caps.
     pub openings: Vec<Opening<D>>,
-    /// Edges of an odd number of faces that are left: no cap closes them.
-    pub open_rims: usize,
+    /// Faces without area, whose normal is unknown.
+    pub flat: usize,
     /// Edges of more than two faces.
     pub crowded_rims: usize,
     /// Pairs of faces that cross each other.
     pub crossings: usize,
     /// Pairs of faces that touch without a common corner, or lie on each other.
     pub touching: usize,
-    /// Where the first of these are [m].
+    /// Where the first faces that cross are [m]; if none do, the first that touch.
     pub crossing_at: Option<Point<D>>,
 }
 
 impl<const D: usize> Findings<D> {
+    /// Whether faces may lie within the solid, or the nearest face does not tell the sign.
+    pub(super) fn has_inner_faces(&self) -> bool {
+        self.crossings + self.touching + self.crowded_rims + self.nested + self.flat > 0
+    }
+
     /// Whether the mesh was a solid as it came: closed, each face's inside that of its neighbours, and no faces
     /// that cross.
     #[must_use]
@@ -56,7 +63,7 @@ impl<const D: usize> Findings<D> {
             self.inside_out,
             self.nested,
             self.openings.len(),
-            self.open_rims,
+            self.flat,
             self.crowded_rims,
             self.crossings,
             self.touching,
@@ -66,12 +73,12 @@ impl<const D: usize> Findings<D> {
 }
 
 impl<const D: usize> fmt::Display for Findings<D> {
-    /// One sentence for each thing that was found, none if nothing was.
+    /// What was found, separated by semicolons; nothing if nothing was.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let mut sentences = Vec::new();
+        let mut found = Vec::new();
         let mut say = |count: usize, one: &str, many: &str| {
             if count > 0 {
-                sentences.push(format!("{count} {}", if count == 1 { one } else { many }));
+                found.push(format!("{count} {}", if count == 1 { one } else { many }));
             }
         };
         say(
@@ -81,8 +88,8 @@ impl<const D: usize> fmt::Display for Findings<D> {
         );
         say(
             self.degenerate,
-            "face without area was dropped",
-            "faces without area were dropped",
+            "face with a vertex twice was dropped",
+            "faces with a vertex twice were dropped",
         );
         say(self.duplicates, "doubled face was dropped", "doubled faces were dropped");
         say(
@@ -95,41 +102,40 @@ impl<const D: usize> fmt::Display for Findings<D> {
             "piece was inside out and was turned",
             "pieces were inside out and were turned",
         );
-        say(self.one_sided, "piece has one side alone", "pieces have one side alone");
-        let largest = self.openings.iter().max_by(|a, b| a.size.total_cmp(&b.size));
-        if let Some(largest) = largest {
-            let (count, Opening { size, place, .. }) = (self.openings.len(), largest);
-            let place = place.0.map(|x| format!("{x:.6}")).join(", ");
-            sentences.push(if count == 1 {
-                format!("1 opening, {size:.6} m across at ({place}), was closed by a flat cap")
-            } else {
-                format!("{count} openings, the largest {size:.6} m across at ({place}), were closed by flat caps")
-            });
-        }
-        let mut say = |count: usize, one: &str, many: &str| {
-            if count > 0 {
-                sentences.push(format!("{count} {}", if count == 1 { one } else { many }));
-            }
-        };
+        say(self.one_sided, "piece is not orientable", "pieces are not orientable");
         say(self.nested, "piece lies within the solid", "pieces lie within the solid");
-        say(self.open_rims, "edge could not be closed", "edges could not be closed");
+        say(self.flat, "face has no area", "faces have no area");
         say(
             self.crowded_rims,
             "edge has more than two faces",
             "edges have more than two faces",
         );
-        say(self.crossings, "pair of faces crosses", "pairs of faces cross");
+        let crossed_at =
+            self.crossing_at.map(|at| format!(", first at ({})", place_in_words(at)));
+        let crossed_at = crossed_at.unwrap_or_default();
+        say(
+            self.crossings,
+            &format!("pair of faces crosses{crossed_at}"),
+            &format!("pairs of faces cross{crossed_at}"),
+        );
         say(
             self.touching,
             "pair of faces touches without a common corner",
             "pairs of faces touch without a common corner",
         );
-        if let Some(at) = self.crossing_at
-            && let Some(last) = sentences.last_mut()
-        {
-            let place = at.0.map(|x| format!("{x:.6}")).join(", ");
-            last.push_str(&format!(", first at ({place})"));
+        let largest = self.openings.iter().max_by(|a, b| a.size.total_cmp(&b.size));
+        if let Some(Opening { size, place, .. }) = largest {
+            let (count, place) = (self.openings.len(), place_in_words(*place));
+            found.push(if count == 1 {
+                format!("1 opening, {size:.6} m across at ({place}), was closed by a flat cap")
+            } else {
+                format!("{count} openings, the largest {size:.6} m across at ({place}), were closed by flat caps")
+            });
         }
-        f.write_str(&sentences.join("; "))
+        f.write_str(&found.join("; "))
     }
+}
+
+fn place_in_words<const D: usize>(place: Point<D>) -> String {
+    place.0.map(|x| format!("{x:.6}")).join(", ")
 }

@@ -34,8 +34,8 @@ impl<const D: usize> Foot<D> {
 
 /// The nearest point of an element.
 ///
-/// Within a triangle it is the foot of the perpendicular, if that lies on the inner side of all edges; else
-/// the nearest of the three edges has it, so that a sliver's is as exact as its edges.
+/// If the foot of the perpendicular lies in the triangle, it is the nearest point; else the nearest point of
+/// the three edges is. Slivers use the edges alone, since their plane is inexact.
 #[inline]
 pub(crate) fn foot<const N: usize, const D: usize>(
     corners: &[Point<D>; N],
@@ -90,7 +90,7 @@ fn on_segment<const D: usize>(
     }
 }
 
-/// A vector square to an element, as long as its length or twice its area: out of a solid whose triangles
+/// A vector perpendicular to an element, as long as its length or twice its area: out of a solid whose triangles
 /// are counter-clockwise seen from outside, and whose segments have it on their left. Zero if the element
 /// is not one less in dimension than space.
 #[inline]

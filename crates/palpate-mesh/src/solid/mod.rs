@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! Meshes as solids: the exact distance to their surface, with a sign that is proven.
+//! Meshes as solids: the distance to their surface, with a sign by normals or winding numbers.
 
 mod boxes;
 mod error;
@@ -19,7 +19,7 @@ use crate::tree::{BallTree, FAN};
 use boxes::Boxes;
 pub use error::SolidError;
 pub use findings::Findings;
-use foot::{Foot, foot};
+use foot::{Foot, across, foot};
 use normals::Normals;
 pub use repair::Opening;
 use repair::{Crossings, Pieces, Repair};
@@ -27,6 +27,9 @@ use winding::WindingTree;
 
 /// Rounded operations of a distance on numbers up to `|p| + size`.
 const OPERATIONS: f64 = 64.0;
+
+/// A mesh whose caps are larger than this share of its faces is a sheet.
+const SHEET: f64 = 0.9;
 
 /// The solid that a mesh bounds: the points of winding number above one half.
 ///
@@ -72,8 +75,8 @@ impl<const N: usize, const D: usize> Solid<N, D> {
     ///
     /// # Errors
     ///
-    /// If no face is left, or the faces bound no solid: a piece has one side alone, as a Möbius strip, an edge has
-    /// an odd number of faces that no cap completes, or caps are most of the surface, as of a sheet.
+    /// If no face is left, or the faces bound no solid: a piece is not orientable, faces around an edge do not
+    /// cancel even with caps, or the caps are as large as the faces, as of a sheet.
     pub fn from_mesh(mesh: &Mesh<N, D>) -> Result<(Self, Findings<D>), SolidError> {
         let Repair { vertices, elements, mut findings, pieces } = Repair::of(mesh);
         let given = mesh.elements().len();
@@ -83,8 +86,14 @@ impl<const N: usize, const D: usize> Solid<N, D> {
         if findings.one_sided > 0 {
             return Err(SolidError::OneSided { pieces: findings.one_sided });
         }
-        if findings.open_rims > 0 {
-            return Err(SolidError::Open { rims: findings.open_rims });
+        let area = |elements: &[[u32; N]]| -> f64 {
+            let corners = |element: &[u32; N]| element.map(|index| vertices[index as usize]);
+            elements.iter().map(|element| across(&corners(element)).norm()).sum()
+        };
+        let (own, caps) = (area(&elements[..findings.own]), area(&elements[findings.own..]));
+        if caps > SHEET * own {
+            let halved = if N == 3 { 0.5 } else { 1.0 };
+            return Err(SolidError::Sheet { area: halved * own });
         }
         let order = BallTree::new(&vertices, &elements);
         let (mut ordered, mut of_piece) = (Vec::new(), Vec::new());
@@ -97,15 +106,17 @@ impl<const N: usize, const D: usize> Solid<N, D> {
             .map(|element| element.map(|index| vertices[index as usize]))
             .collect();
         let boxes = Boxes::new(&faces);
-        let crossings = Crossings::of(&vertices, &ordered, &boxes);
-        (findings.crossings, findings.touching) =
-            (crossings.crossings.len(), crossings.touching);
+        let are_solids = |a: usize, b: usize| {
+            let [a, b] = [of_piece[a], of_piece[b]];
+            a != b && !pieces.is_cavity[a] && !pieces.is_cavity[b]
+        };
+        let crossings = Crossings::of(&vertices, &ordered, &boxes, are_solids);
+        (findings.crossings, findings.touching) = (crossings.crossings, crossings.touching);
         findings.crossing_at = crossings.at;
-        let flaws =
-            findings.crossings + findings.touching + findings.crowded_rims + findings.nested;
-        let winding = (flaws > 0).then(|| WindingTree::new(&faces));
+        findings.flat = faces.iter().filter(|face| across(face) == Vector::ZERO).count();
+        let winding = findings.has_inner_faces().then(|| WindingTree::new(&faces));
         let normals = Normals::new(vertices.len(), &ordered, &faces);
-        let promise = promise(&faces, &quality(&findings, &crossings, &pieces, &of_piece));
+        let promise = promise(&faces, &quality(&findings, &crossings, &pieces));
         Ok((Self { faces, boxes, normals, winding, promise }, findings))
     }
 
@@ -133,13 +144,16 @@ impl<const N: usize, const D: usize> Solid<N, D> {
 
     /// The signed distance at a point [m], and its gradient.
     fn at(&self, p: Point<D>) -> (f64, Vector<f64, D>) {
+        if p.0.iter().any(|x| !x.is_finite()) {
+            return (f64::NAN, Vector::ZERO);
+        }
         let (face, foot) = self.nearest(p);
         let away = p - foot.point;
         let distance = foot.squared.sqrt();
         let normal = self.normals.at(face, foot.part);
         let is_inside = match &self.winding {
             None => away.dot(normal) < 0.0,
-            Some(winding) => winding.is_inside(&self.faces, p).0,
+            Some(winding) => winding.is_inside(&self.faces, p),
         };
         let side = if is_inside { -1.0 } else { 1.0 };
         let gradient = if distance > 0.0 { away * (side / distance) } else { normal };
@@ -156,19 +170,12 @@ fn quality<const D: usize>(
     findings: &Findings<D>,
     crossings: &Crossings<D>,
     pieces: &Pieces,
-    of_piece: &[usize],
 ) -> [Quality; 2] {
     let exact_if = |is_exact: bool| if is_exact { Quality::Exact } else { Quality::Bound };
-    let is_apart = |[a, b]: &[u32; 2]| {
-        let [a, b] = [a, b].map(|face| of_piece[*face as usize]);
-        a != b && !pieces.is_cavity[a] && !pieces.is_cavity[b]
-    };
     let cavities = pieces.is_cavity.iter().any(|is_cavity| *is_cavity);
-    let is_outside_exact = crossings.crossings.iter().all(is_apart)
-        && (!cavities || findings.touching + findings.nested == 0);
-    let flaws =
-        findings.crossings + findings.touching + findings.crowded_rims + findings.nested;
-    [exact_if(is_outside_exact), exact_if(flaws == 0)]
+    let is_outside_exact =
+        crossings.only_solids && (!cavities || findings.touching + findings.nested == 0);
+    [exact_if(is_outside_exact), exact_if(!findings.has_inner_faces())]
 }
 
 fn promise<const N: usize, const D: usize>(

@@ -21,7 +21,7 @@ use palpate_field::{Point, Vector};
 use super::foot::across;
 use crate::tree::FAN;
 
-/// Errors of groups at most, one after another, until a sign is certain; the last is exact.
+/// Error bounds of a group, tried in this order until the sign is certain; with 0 every element is summed.
 const ERRORS: [f64; 4] = [1e-2, 1e-3, 1e-4, 0.0];
 
 /// The rounding of the share of an element.
@@ -78,17 +78,16 @@ impl<const N: usize, const D: usize> WindingTree<N, D> {
         }
     }
 
-    /// Whether a point is within the solid of winding numbers above one half, and whether that is certain:
-    /// only where the number is one half to rounding, it is not.
-    pub(crate) fn is_inside(&self, elements: &[[Point<D>; N]], p: Point<D>) -> (bool, bool) {
+    /// Whether a point is within the solid of winding numbers above one half.
+    pub(crate) fn is_inside(&self, elements: &[[Point<D>; N]], p: Point<D>) -> bool {
         let mut last = Winding::default();
         for error in ERRORS {
             last = self.at(elements, p, error);
             if let Some(is_inside) = last.is_inside() {
-                return (is_inside, true);
+                return is_inside;
             }
         }
-        (last.number > 0.5, false)
+        last.number > 0.5
     }
 
     /// The winding number of a point, with an error of at most `error` from each group of elements.
@@ -163,7 +162,7 @@ impl<const D: usize> Moments<D> {
         Self { centroid, radius, area, normals, first }
     }
 
-    /// At most so much is left out by [`share`](Self::share); infinite in the group's own ball.
+    /// A bound on the error of [`share`](Self::share); infinite in the group's own ball.
     fn remainder(&self, towards: Vector<f64, D>) -> f64 {
         let squared = towards.dot(towards);
         let distance = squared.sqrt();

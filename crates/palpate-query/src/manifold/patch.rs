@@ -129,7 +129,13 @@ impl<const D: usize> Patches<'_, '_, D> {
             let outwards = square_to(to - from, deepest.normal).and_then(Vector::normalized);
             let beyond = outwards.map(|outwards| farthest(&|p| (p - from).dot(outwards)));
             match beyond {
-                Some((far, corner)) if far > BEYOND * spacing => corners.insert(i + 1, corner),
+                // A candidate that is no corner of the flat polygon could come again and again.
+                Some((far, corner))
+                    if far > BEYOND * spacing
+                        && corners.iter().all(|known| known.point != corner.point) =>
+                {
+                    corners.insert(i + 1, corner);
+                }
                 _ => i += 1,
             }
         }

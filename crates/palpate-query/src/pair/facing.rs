@@ -41,8 +41,8 @@ impl<const D: usize> BodyPair<'_, D> {
         (face.or_else(|| normal(slope_a - slope_b)), [a, b])
     }
 
-    /// The face at a point with these slopes, if one of the bodies alone has an edge there: its
-    /// gradient leads to any of the sides that meet.
+    /// The face at a point with these slopes, if one of the bodies alone has an edge there: at an
+    /// edge the gradient may point along the normal of either adjacent face.
     pub(crate) fn face(
         &mut self,
         p: Point<D>,

@@ -342,7 +342,7 @@ impl<const D: usize> BoxSweep<'_, '_, D> {
         let Some(i) = first else { return };
         let cell = &round[i].cell;
         let latest = (cell.lower + SOON * self.settings.time_tolerance).min(1.0);
-        // What passes by within a tolerance is there no more at its end, but where the box says.
+        // A body that passes within a tolerance has left at `latest`; at `met` its nearest point is there.
         let met = cell.lower + seen[i].value.max(0.0) / seen[i].velocity.norm();
         for time in [latest, met] {
             if time <= latest && time < self.upper {

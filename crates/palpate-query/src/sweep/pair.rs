@@ -20,8 +20,8 @@ use crate::pair::{PairWorkspace, separation};
 /// After so many evaluations without a time, a touch at the start is asked for.
 const SOON: u32 = 1 << 14;
 
-/// After a search that ended early a touch is looked for at so many times. Each costs at most that share of
-/// the budget.
+/// After a search that ended early a touch is looked for at so many times. Each may use `budget / SAMPLES`
+/// evaluations.
 const SAMPLES: u32 = 32;
 
 /// The separation at a touch is searched to this share of the gap.
@@ -180,7 +180,11 @@ fn sampled_touch<const D: usize>(
                 if middle <= before || middle >= upper {
                     break;
                 }
-                *(if touches(middle)? { &mut upper } else { &mut before }) = middle;
+                if touches(middle)? {
+                    upper = middle;
+                } else {
+                    before = middle;
+                }
             }
             return Ok(upper);
         }
@@ -200,7 +204,7 @@ fn touch_at<const D: usize>(
     let mut near = |time: f64| -> Result<_, QueryError> {
         let [a, b] = bodies.map(|body| body.at(time));
         let near = separation(a, b, &limits, workspace)?;
-        found.evaluations += near.evaluations;
+        found.evaluations = found.evaluations.saturating_add(near.evaluations);
         Ok(([a, b], near))
     };
     let mut time = found.upper;

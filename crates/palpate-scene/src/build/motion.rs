@@ -16,8 +16,8 @@ use crate::scene::Scene;
 /// The largest angle between two times of a motion [rad]: less than half a turn.
 const LARGEST_PART: f64 = 3.0;
 
-/// The least share that a part of a motion has of the time at which it begins: of less, rounding of the
-/// time is more than a millionth.
+/// The least share that a part of a motion has of the time at which it begins: a shorter
+/// part is less than 10⁶ rounding errors of its start.
 const LEAST_PART: f64 = 1e-10;
 
 /// Times are as exact as this part of a period.
@@ -306,9 +306,10 @@ where
     let Motion { start, duration, repeat, .. } = *motion;
     let built = BuiltMotion { body, screw, start, duration, repeat };
     if built.parts().0 < LEAST_PART * start {
-        let least = LEAST_PART * start * duration / built.parts().0;
+        // Rounded up, so that what is told is accepted.
+        let least = 1.1 * LEAST_PART * start * duration / built.parts().0;
         return Err(Problem::new(format!(
-            "the motion is too short to be timed after {start} s: it must take {least:.0e} s at least, \
+            "the motion is too short to be timed after {start} s: it must take {least:.1e} s at least, \
              and takes {duration:e} s; begin earlier"
         ))
         .under("duration")

@@ -144,10 +144,10 @@ fn a_wrong_motion_is_refused_with_its_place() {
                 "motions[0].repeat, line 6: unknown value `twice`; known are `once`, `loop` and `back_and_forth`",
                 Refuses,
             ),
-            // Its end was its start, and a sweep took it for a motion until the next one.
+            // The end of such a motion is its start, to rounding.
             (
                 r#"{ "body": "a", "to": {}, "start": 1, "duration": 1e-17 }"#,
-                "motions[0].duration, line 6: the motion is too short to be timed after 1 s: it must take 1e-10 s at least, and takes 1e-17 s; begin earlier",
+                "motions[0].duration, line 6: the motion is too short to be timed after 1 s: it must take 1.1e-10 s at least, and takes 1e-17 s; begin earlier",
                 Accepts,
             ),
         ],

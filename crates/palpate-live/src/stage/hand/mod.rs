@@ -62,6 +62,8 @@ pub(super) struct Lead<const D: usize> {
     is_tool: bool,
     tour: Option<HandPath<D>>,
     is_touring: bool,
+    /// Whether forces are stopped: a tour waits.
+    is_stopped: bool,
     /// The time on the tour [s]; `None` if the hand is not on it yet.
     tour_time: Option<f64>,
     /// A path of each contact point, and the time on it [s], `None` before it begins.
@@ -102,6 +104,7 @@ impl<const D: usize> Lead<D> {
             is_tool,
             tour: None,
             is_touring: true,
+            is_stopped: false,
             tour_time: None,
             replay: None,
             lift: None,
@@ -148,6 +151,10 @@ impl<const D: usize> Lead<D> {
     /// Sets whether a hand that nobody leads goes on its tour.
     pub(super) fn set_touring(&mut self, is_touring: bool) {
         self.is_touring = is_touring;
+    }
+
+    pub(super) fn set_stopped(&mut self, is_stopped: bool) {
+        self.is_stopped = is_stopped;
     }
 
     /// Starts to follow a path of each contact point, or ends it.
@@ -286,6 +293,7 @@ impl<const D: usize> Lead<D> {
         }
         match leader {
             Leader::Page => {}
+            Leader::Tour if self.is_stopped => {}
             Leader::Tour => self.go_on_touring(passed),
             Leader::Replay => self.go_on_replaying(passed),
         }

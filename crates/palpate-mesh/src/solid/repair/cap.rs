@@ -62,68 +62,73 @@ pub(super) fn close<const N: usize, const D: usize>(
     openings
 }
 
-/// The loops of the rims of one element each, in the direction in which a cap passes them; in the plane the
-/// end and the start of each chain.
+/// The loops of the rims that elements pass more often in one direction, against it, as a cap passes them. The
+/// boundary of elements has no boundary itself, so all edges go in loops. In the plane: the end and the start of
+/// each chain.
 fn loops<const N: usize>(elements: &[[u32; N]]) -> Vec<Vec<u32>> {
     let mut next: HashMap<u32, Vec<u32>> = HashMap::new();
-    let mut starts = Vec::new();
-    let mut ends = HashMap::new();
-    let sides = sides(elements);
-    for at_rim in by_rim(&sides) {
-        let [side] = at_rim else { continue };
-        let [low, high] = side.rim;
-        if N == 2 {
-            if side.is_forward {
-                starts.push(low);
-            } else {
-                ends.insert(low, side.element);
+    let (mut starts, mut ends) = (Vec::new(), Vec::new());
+    for at_rim in by_rim(&sides(elements)) {
+        let [low, high] = at_rim[0].rim;
+        let forward = at_rim.iter().filter(|side| side.is_forward).count();
+        let backward = at_rim.len() - forward;
+        let (is_forward, surplus) = (forward > backward, forward.abs_diff(backward));
+        for _ in 0..surplus {
+            match (N, is_forward) {
+                (2, true) => starts.push(low),
+                (2, false) => ends.push(low),
+                (_, true) => next.entry(high).or_default().push(low),
+                (_, false) => next.entry(low).or_default().push(high),
             }
-            continue;
         }
-        // Against the triangle.
-        let (from, to) = if side.is_forward { (high, low) } else { (low, high) };
-        next.entry(from).or_default().push(to);
-        starts.push(from);
     }
-    if N == 2 {
-        return chains(elements, &starts, &ends);
-    }
+    if N == 2 { chains(elements, starts, ends) } else { closed(next) }
+}
+
+/// The loops of directed edges, of which as many end at each vertex as begin there.
+fn closed(mut next: HashMap<u32, Vec<u32>>) -> Vec<Vec<u32>> {
+    let mut starts: Vec<u32> = next.keys().copied().collect();
+    starts.sort_unstable();
     let mut found = Vec::new();
     for start in starts {
         let mut path = vec![start];
+        let mut places = HashMap::from([(start, 0)]);
         while let Some(to) = path.last().and_then(|last| next.get_mut(last)?.pop()) {
             // Where the path meets itself, what lies between is a loop of its own.
-            if let Some(at) = path.iter().position(|vertex| *vertex == to) {
-                found.push(path.split_off(at));
-                path.push(to);
-            } else {
-                path.push(to);
+            if let Some(at) = places.get(&to).copied() {
+                let corners = path.split_off(at);
+                corners.iter().for_each(|corner| drop(places.remove(corner)));
+                found.push(corners);
             }
+            places.insert(to, path.len());
+            path.push(to);
         }
     }
     found.retain(|corners| corners.len() > 2);
     found
 }
 
-/// The end and the start of each chain of segments.
+/// The end and the start of each chain of segments; of chains that cross, an end that is left.
 fn chains<const N: usize>(
     elements: &[[u32; N]],
-    starts: &[u32],
-    ends: &HashMap<u32, u32>,
+    starts: Vec<u32>,
+    mut ends: Vec<u32>,
 ) -> Vec<Vec<u32>> {
     let after: HashMap<u32, u32> = elements.iter().map(|ends| (ends[0], ends[1])).collect();
     let mut found = Vec::new();
     for start in starts {
-        let (mut vertex, mut steps) = (*start, 0);
-        while let Some(next) = after.get(&vertex) {
+        let mut vertex = start;
+        let mut place = None;
+        for _ in 0..elements.len() {
+            let Some(next) = after.get(&vertex) else { break };
             vertex = *next;
-            steps += 1;
-            if ends.contains_key(&vertex) || steps > elements.len() {
+            place = ends.iter().position(|end| *end == vertex);
+            if place.is_some() {
                 break;
             }
         }
-        if ends.contains_key(&vertex) {
-            found.push(vec![vertex, *start]);
+        if let Some(place) = place.or(ends.len().checked_sub(1)) {
+            found.push(vec![ends.swap_remove(place), start]);
         }
     }
     found

@@ -12,7 +12,7 @@ use crate::tree::FAN;
 /// How two faces meet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Meeting {
-    /// At common corners at most.
+    /// At common corners at most; in one plane, at a border at most.
     Apart,
     /// At points of a border, or in a part of their common plane.
     Touching,
@@ -23,11 +23,13 @@ enum Meeting {
 /// The faces that cross or touch.
 #[derive(Clone, Debug, Default)]
 pub(in crate::solid) struct Crossings<const D: usize> {
-    /// Pairs of elements that cross.
-    pub(in crate::solid) crossings: Vec<[u32; 2]>,
+    /// How many pairs cross.
+    pub(in crate::solid) crossings: usize,
+    /// Whether all that cross are of two different pieces, neither a cavity.
+    pub(in crate::solid) only_solids: bool,
     /// How many pairs touch.
     pub(in crate::solid) touching: usize,
-    /// Where the first pair is [m].
+    /// Where the first pair that crosses is, or if none does, the first that touches [m].
     pub(in crate::solid) at: Option<Point<D>>,
 }
 
@@ -39,17 +41,20 @@ struct Element<const N: usize, const D: usize> {
 }
 
 impl<const D: usize> Crossings<D> {
-    /// Of all elements, which are in the order of the boxes.
+    /// Of all elements, which are in the order of the boxes. `are_solids` tells whether two of them are of
+    /// different pieces, neither a cavity.
     pub(in crate::solid) fn of<const N: usize>(
         vertices: &[Point<D>],
         elements: &[[u32; N]],
         boxes: &Boxes<D>,
+        are_solids: impl Fn(usize, usize) -> bool,
     ) -> Self {
         let of = |i: usize| Element {
             corners: elements[i].map(|index| vertices[index as usize]),
             names: elements[i],
         };
-        let mut found = Self::default();
+        let mut found = Self { only_solids: true, ..Self::default() };
+        let mut touching_at = None;
         for i in 0..elements.len() {
             let one = of(i);
             let Some(around) = Aabb::around(one.corners) else { continue };
@@ -57,14 +62,21 @@ impl<const D: usize> Crossings<D> {
                 for k in (group * FAN).max(i + 1)..elements.len().min((group + 1) * FAN) {
                     let meeting = one.meeting(&of(k));
                     match meeting {
-                        Meeting::Apart => continue,
-                        Meeting::Touching => found.touching += 1,
-                        Meeting::Crossing => found.crossings.push([i as u32, k as u32]),
+                        Meeting::Apart => {}
+                        Meeting::Touching => {
+                            found.touching += 1;
+                            touching_at.get_or_insert_with(|| one.middle());
+                        }
+                        Meeting::Crossing => {
+                            found.crossings += 1;
+                            found.only_solids &= are_solids(i, k);
+                            found.at.get_or_insert_with(|| one.middle());
+                        }
                     }
-                    found.at.get_or_insert_with(|| one.middle());
                 }
             });
         }
+        found.at = found.at.or(touching_at);
         found
     }
 }

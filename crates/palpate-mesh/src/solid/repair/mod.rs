@@ -44,12 +44,12 @@ impl<const N: usize, const D: usize> Repair<N, D> {
         repair.drop_duplicates();
         (repair.findings.turned, repair.findings.one_sided) =
             orient::agree(&mut repair.elements);
+        repair.findings.own = repair.elements.len();
         repair.findings.openings = cap::close(&mut repair.vertices, &mut repair.elements);
         repair.pieces = orient::outwards(&repair.vertices, &mut repair.elements);
         (repair.findings.inside_out, repair.findings.nested) =
             (repair.pieces.turned, repair.pieces.nested);
         for at_rim in by_rim(&sides(&repair.elements)) {
-            repair.findings.open_rims += usize::from(at_rim.len() % 2 == 1);
             repair.findings.crowded_rims += usize::from(at_rim.len() > 2);
         }
         repair
@@ -75,19 +75,21 @@ impl<const N: usize, const D: usize> Repair<N, D> {
         let mut doubled: Vec<_> = copies.into_values().filter(|same| same.len() > 1).collect();
         doubled.sort_unstable();
         for same in doubled {
-            let is_even = |element: &[u32; N]| is_even(element, self.elements[same[0]]);
-            let even = same.iter().filter(|i| is_even(&self.elements[**i])).count();
             let element = self.elements[same[0]];
-            let rims = rims_of(&element);
-            let leaves_rims = |left: usize| {
-                rims.iter().all(|rim| {
-                    let others = at_rims.get(rim).map_or(0, |count| count - same.len());
-                    others + left >= 2
-                })
-            };
-            let is_wall = 2 * even == same.len() && leaves_rims(0);
-            for &i in &same[usize::from(!is_wall)..] {
-                is_dropped[i] = true;
+            let has_its_direction =
+                |i: &&usize| has_same_direction(&self.elements[**i], element);
+            let along = same.iter().filter(has_its_direction).count();
+            let others =
+                |rim: &[u32; 2]| at_rims.get(rim).map_or(0, |count| count - same.len());
+            let is_wall =
+                2 * along == same.len() && rims_of(&element).iter().all(|rim| others(rim) >= 2);
+            // Of an odd number, one stays that has the direction of most.
+            let stays = same.iter().find(|i| has_its_direction(i) == (2 * along >= same.len()));
+            for i in same.iter().filter(|i| is_wall || Some(*i) != stays) {
+                is_dropped[*i] = true;
+                for rim in rims_of(&element) {
+                    at_rims.entry(rim).and_modify(|count| *count -= 1);
+                }
             }
         }
         let mut dropped = is_dropped.iter();
@@ -105,7 +107,7 @@ fn rims_of<const N: usize>(element: &[u32; N]) -> [[u32; 2]; N] {
 }
 
 /// Whether an element has its vertices in the same direction as another with the same vertices.
-fn is_even<const N: usize>(element: &[u32; N], other: [u32; N]) -> bool {
+fn has_same_direction<const N: usize>(element: &[u32; N], other: [u32; N]) -> bool {
     let at = other.iter().position(|index| *index == element[0]).unwrap_or(0);
     N == 2 && at == 0 || N == 3 && other[(at + 1) % N] == element[1]
 }

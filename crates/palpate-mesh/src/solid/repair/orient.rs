@@ -3,7 +3,7 @@
 
 //! Elements that agree on the inside, and pieces whose inside is within.
 
-use palpate_field::{Aabb, Point};
+use palpate_field::{Aabb, Point, Vector};
 
 use super::rims::{Side, by_rim, pieces, sides};
 use crate::report::signed_volume;
@@ -76,14 +76,18 @@ fn turn<const N: usize>(element: &mut [u32; N]) {
     element.swap(0, 1);
 }
 
+/// So many elements of a piece tell whether it lies in another.
+const SAMPLES: usize = 3;
+
 /// A piece, and how it lies to the others.
 #[derive(Debug)]
 pub(in crate::solid) struct Piece<const D: usize> {
     elements: Vec<usize>,
     bounds: Aabb<D>,
-    /// What it encloses [m³], in the plane [m²]: negative if its inside is without.
+    /// What it encloses [m³], in the plane [m²]: negative if its normals point inwards.
     volume: f64,
-    corner: Point<D>,
+    /// The middles of a few elements.
+    samples: [Point<D>; SAMPLES],
 }
 
 /// How the pieces of a mesh lie to each other.
@@ -91,10 +95,9 @@ pub(in crate::solid) struct Piece<const D: usize> {
 pub(in crate::solid) struct Pieces {
     /// Of each element, the number of its piece.
     pub(in crate::solid) of_element: Vec<usize>,
-    /// Which pieces are cavities: their inside is without.
+    /// Which pieces are cavities: their normals point inwards.
     pub(in crate::solid) is_cavity: Vec<bool>,
-    /// How many pieces lie right within one that turns the same way: walls within the solid, or cavities within
-    /// cavities.
+    /// How many pieces lie right inside a piece with the same orientation.
     pub(in crate::solid) nested: usize,
     /// How many pieces were inside out.
     pub(in crate::solid) turned: usize,
@@ -116,21 +119,26 @@ pub(super) fn outwards<const N: usize, const D: usize>(
         .into_iter()
         .map(|members| {
             let all = || members.iter().map(|element| corners(&elements[*element]));
-            let first = corners(&elements[members[0]])[0];
-            let bounds =
-                Aabb::around(all().flatten()).unwrap_or(Aabb { min: first, max: first });
-            let middle = bounds.centre();
-            let volume = all().map(|corners| signed_volume(&corners, middle)).sum();
-            Piece { elements: members, bounds, volume, corner: first }
+            let samples = std::array::from_fn(|i| {
+                let at = members[i * (members.len() - 1) / (SAMPLES - 1)];
+                middle(&corners(&elements[at]))
+            });
+            let bounds = Aabb::around(all().flatten())
+                .unwrap_or(Aabb { min: samples[0], max: samples[0] });
+            let centre = bounds.centre();
+            let volume = all().map(|corners| signed_volume(&corners, centre)).sum();
+            Piece { elements: members, bounds, volume, samples }
         })
         .collect();
     let winding = |outer: &Piece<D>, p: Point<D>| -> f64 {
         outer.elements.iter().map(|element| share(&corners(&elements[*element]), p)).sum()
     };
     let is_within = |inner: &Piece<D>, outer: &Piece<D>| {
-        outer.bounds.contains(inner.corner)
-            && outer.volume.abs() > inner.volume.abs()
-            && winding(outer, inner.corner).abs() > 0.5
+        // Where pieces touch, one sample may lie on the outer one.
+        let is_in =
+            |p: &&Point<D>| outer.bounds.contains(**p) && winding(outer, **p).abs() > 0.5;
+        outer.volume.abs() > inner.volume.abs()
+            && 2 * inner.samples.iter().filter(is_in).count() > SAMPLES
     };
     // The pieces around each, the smallest first.
     let around: Vec<Vec<usize>> = (0..count)
@@ -153,4 +161,8 @@ pub(super) fn outwards<const N: usize, const D: usize>(
         turned += 1;
     }
     Pieces { of_element, is_cavity, nested, turned }
+}
+
+fn middle<const N: usize, const D: usize>(corners: &[Point<D>; N]) -> Point<D> {
+    corners.iter().fold(Vector::ZERO, |sum, corner| sum + *corner * (1.0 / N as f64))
 }
