@@ -25,7 +25,7 @@ const SPACE: &str = include_str!("../../../scenes/s3.json");
 /// If reading or answering does.
 pub fn hear(text: &str) {
     // A trace may be anything.
-    let _ = (trace::read_paths::<2>(text.as_bytes()), trace::read_paths::<3>(text.as_bytes()));
+    let _ = (trace::read::<2>(text.as_bytes()), trace::read::<3>(text.as_bytes()));
     let Ok(Question { ask, .. }) = Question::read(text) else { return };
     let is_large = match &ask {
         Ask::Slice { columns, rows, .. } => *columns.max(rows) > LARGEST,

@@ -30,6 +30,8 @@ pub struct TraceRow<const D: usize> {
     pub body: u32,
     /// `true` if the proxy moves along the surface against friction.
     pub is_slipping: bool,
+    /// `true` if the hand is lifted off the bodies, and passes through them.
+    pub is_lifted: bool,
     /// Energy that the forces took from the hand and gave to it so far, and what the safety
     /// chain held back [J].
     pub energy: Energy,
@@ -58,6 +60,7 @@ impl<const D: usize> TraceRow<D> {
             contact: false,
             body: 0,
             is_slipping: false,
+            is_lifted: false,
             energy: Energy::default(),
             tool: None,
             evaluations: 0,
@@ -130,6 +133,7 @@ pub(crate) fn rows<const D: usize>(
         contact: touch.contact,
         body: touch.body,
         is_slipping: touch.is_slipping,
+        is_lifted: servo.is_lifted(),
         energy: servo.energy(point),
         tool: servo.held_tool(),
         evaluations: touch.evaluations,

@@ -105,6 +105,7 @@ impl<'a, const D: usize, W: io::Write> TraceWriter<'a, D, W> {
         self.field(row.contact)?;
         self.field(row.body)?;
         self.field(row.is_slipping)?;
+        self.field(row.is_lifted)?;
         self.fields([row.energy.taken, row.energy.given, row.energy.kept])?;
         self.field(row.evaluations)?;
         self.field(row.cost_ns)?;
@@ -158,7 +159,7 @@ impl<'a, const D: usize, W: io::Write> TraceWriter<'a, D, W> {
         ] {
             self.names(&format!("{vector}_"), &AXES[..D], unit)?;
         }
-        self.fields(["contact", "body", "slipping", "taken_j", "given_j", "kept_j"])?;
+        self.fields(["contact", "body", "slipping", "lifted", "taken_j", "given_j", "kept_j"])?;
         self.fields(["evaluations", "cost_ns", "lateness_ns"])?;
         let about: Vec<_> = turns::<_, D>(AXES).collect();
         if columns.has_tool {
@@ -281,9 +282,9 @@ mod tests {
         };
         let lines = written(|trace| trace.write(&row).unwrap(), &[]);
         let names = "time_s,point,device_x_m,device_y_m,proxy_x_m,proxy_y_m,wanted_x_n,wanted_y_n,\
-                     force_x_n,force_y_n,normal_x,normal_y,contact,body,slipping,taken_j,given_j,\
+                     force_x_n,force_y_n,normal_x,normal_y,contact,body,slipping,lifted,taken_j,given_j,\
                      kept_j,evaluations,cost_ns,lateness_ns";
-        let numbers = "0.1,6,-0.1,0.00000000000000000001,0.5,0.75,1,2,3,4,0,1,true,7,true,0,0,0,11,\
+        let numbers = "0.1,6,-0.1,0.00000000000000000001,0.5,0.75,1,2,3,4,0,1,true,7,true,false,0,0,0,11,\
                        12,13";
         assert_eq!(lines, [names, numbers]);
     }

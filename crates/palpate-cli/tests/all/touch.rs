@@ -64,7 +64,7 @@ fn feel_reports_traces_and_draws() {
         rows.lines().next().unwrap(),
         "time_s,point,device_x_m,device_y_m,device_z_m,proxy_x_m,proxy_y_m,proxy_z_m,\
          wanted_x_n,wanted_y_n,wanted_z_n,force_x_n,force_y_n,force_z_n,\
-         normal_x,normal_y,normal_z,contact,body,slipping,taken_j,given_j,kept_j,\
+         normal_x,normal_y,normal_z,contact,body,slipping,lifted,taken_j,given_j,kept_j,\
          evaluations,cost_ns,lateness_ns"
     );
     let svg = std::fs::read_to_string(&plot).unwrap();

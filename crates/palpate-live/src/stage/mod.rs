@@ -39,7 +39,7 @@ use inquiry::Inquiries;
 pub(crate) use inquiry::answer_alone;
 pub(crate) use pages::{Out, PageId, Pages};
 use performance::Order;
-use recording::{AnyPaths, Trace};
+use recording::{AnyReplay, Trace};
 use room::Terms;
 pub(crate) use room::{GivenClock, MOST_POINTS};
 
@@ -252,11 +252,11 @@ impl Stage {
     pub(crate) fn take_trace(&self, bytes: &[u8]) -> Result<(), String> {
         let (scene, _) =
             self.shown.get().ok_or("there is no scene yet: open the page first")?;
-        let paths = match &*scene {
-            AnyScene::Planar(_) => AnyPaths::Planar(trace::read_paths(bytes)?),
-            AnyScene::Spatial(_) => AnyPaths::Spatial(trace::read_paths(bytes)?),
+        let replay = match &*scene {
+            AnyScene::Planar(_) => AnyReplay::Planar(trace::read(bytes)?),
+            AnyScene::Spatial(_) => AnyReplay::Spatial(trace::read(bytes)?),
         };
-        let sent = self.orders.try_send(Order::TakePaths(paths));
+        let sent = self.orders.try_send(Order::TakeReplay(replay));
         sent.map_err(|_| "the program is busy: send the trace again".to_owned())
     }
 

@@ -16,7 +16,7 @@ use tokio::sync::watch;
 
 use super::Stop;
 use super::pages::{PageId, Pages};
-use super::recording::{AnyPaths, MOST_ROWS, Recording, Trace};
+use super::recording::{AnyReplay, MOST_ROWS, Recording, Trace};
 use super::room::{AnyRoom, Room, Terms, of_either};
 use crate::wire::Frame;
 
@@ -67,8 +67,8 @@ pub(crate) enum Order {
         id: Option<u32>,
         on: bool,
     },
-    /// Takes paths to be replayed.
-    TakePaths(AnyPaths),
+    /// Takes what is to be replayed.
+    TakeReplay(AnyReplay),
     /// What was recorded, as a file.
     Trace(SyncSender<Trace>),
     /// Renders another scene.
@@ -224,7 +224,7 @@ impl Performance {
                 Ok(()) => self.pages.answer(page, id, json!({ "do": "done" })),
                 Err(why) => self.pages.refuse(page, id, &why, &[]),
             },
-            Order::TakePaths(paths) => self.recording.take(paths),
+            Order::TakeReplay(replay) => self.recording.take(replay),
             Order::Trace(reply) => {
                 // Who asked may have gone.
                 let _ = reply.send(self.recording.trace());

@@ -3,12 +3,11 @@
 
 //! What is recorded of a servo, and replayed.
 
-use palpate::devices::HandPath;
 use palpate::servo_loop::TraceRow;
 use serde_json::{Value, json};
 
 use super::room::{AnyRoom, of_either};
-use super::trace;
+use super::trace::{self, Replay};
 
 /// The most rows that are recorded: 20 s of ten points at 1 kHz.
 pub(super) const MOST_ROWS: usize = 200_000;
@@ -16,11 +15,11 @@ pub(super) const MOST_ROWS: usize = 200_000;
 /// Frames from one message on the number of rows to the next: a quarter of a second.
 const FRAMES: u32 = 15;
 
-/// A path of each contact point, of either dimension.
+/// What is replayed, of either dimension.
 #[derive(Debug)]
-pub(crate) enum AnyPaths {
-    Planar(Vec<HandPath<2>>),
-    Spatial(Vec<HandPath<3>>),
+pub(crate) enum AnyReplay {
+    Planar(Replay<2>),
+    Spatial(Replay<3>),
 }
 
 /// Rows as text, made where there is time for it.
@@ -38,8 +37,8 @@ enum AnyRows {
 pub(super) struct Recording {
     rows: AnyRows,
     is_on: bool,
-    /// Paths to be replayed instead of the rows.
-    paths: Option<AnyPaths>,
+    /// What was read, to be replayed instead of the rows.
+    read: Option<AnyReplay>,
     /// What the pages were told last: whether it is on, the rows; and how many frames ago.
     told: (bool, usize, u32),
 }
@@ -49,7 +48,7 @@ impl Default for Recording {
         Self {
             rows: AnyRows::Planar(Vec::new()),
             is_on: false,
-            paths: None,
+            read: None,
             told: (false, 0, 0),
         }
     }
@@ -60,7 +59,7 @@ impl Recording {
         self.is_on
     }
 
-    /// Starts or ends the recording. Both discard paths that were taken from a file before.
+    /// Starts or ends the recording. Both discard what was read from a file before.
     pub(super) fn switch(&mut self, is_on: bool, room: &AnyRoom) {
         if is_on && !self.is_on {
             self.rows = match room {
@@ -69,7 +68,7 @@ impl Recording {
             };
         }
         if is_on || self.is_on {
-            self.paths = None;
+            self.read = None;
         }
         self.is_on = is_on;
     }
@@ -79,25 +78,25 @@ impl Recording {
         std::mem::take(&mut self.is_on).then_some(self.len())
     }
 
-    /// Takes paths to be replayed instead of what was recorded.
-    pub(super) fn take(&mut self, paths: AnyPaths) {
-        self.paths = Some(paths);
+    /// Takes what is replayed instead of what was recorded.
+    pub(super) fn take(&mut self, replay: AnyReplay) {
+        self.read = Some(replay);
     }
 
     /// Leads the hand of a room along what was taken or recorded last; a recording ends.
     pub(super) fn replay(&mut self, room: &mut AnyRoom) -> Result<(), String> {
-        match (room, &self.paths, &self.rows) {
-            (AnyRoom::Planar(room), Some(AnyPaths::Planar(paths)), _) => {
-                room.replay(Some(paths.clone()))
+        match (room, &self.read, &self.rows) {
+            (AnyRoom::Planar(room), Some(AnyReplay::Planar(read)), _) => {
+                room.replay(Some(read.clone()))
             }
-            (AnyRoom::Spatial(room), Some(AnyPaths::Spatial(paths)), _) => {
-                room.replay(Some(paths.clone()))
+            (AnyRoom::Spatial(room), Some(AnyReplay::Spatial(read)), _) => {
+                room.replay(Some(read.clone()))
             }
             (AnyRoom::Planar(room), None, AnyRows::Planar(rows)) => {
-                room.replay(Some(trace::paths(rows)?))
+                room.replay(Some(trace::replay(rows)?))
             }
             (AnyRoom::Spatial(room), None, AnyRows::Spatial(rows)) => {
-                room.replay(Some(trace::paths(rows)?))
+                room.replay(Some(trace::replay(rows)?))
             }
             (_, None, _) if self.len() == 0 => Err(trace::NOTHING.to_owned()),
             _ => Err("the trace is of a scene of another dimension".to_owned()),

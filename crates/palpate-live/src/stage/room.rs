@@ -19,6 +19,7 @@ use palpate::servo_loop::{
 
 use super::hand::{Lead, Leader};
 use super::points::{in_space, point_of};
+use super::trace::Replay;
 use crate::wire::{Frame, FramePoint};
 
 /// The fastest that a hand follows the page, at the device [m/s].
@@ -248,8 +249,8 @@ impl<const D: usize> Room<D> {
     }
 
     /// Starts to lead the hand along a path of each contact point, or ends it.
-    pub(super) fn replay(&mut self, paths: Option<Vec<HandPath<D>>>) -> Result<(), String> {
-        self.lead.replay(paths)
+    pub(super) fn replay(&mut self, replay: Option<Replay<D>>) -> Result<(), String> {
+        self.lead.replay(replay)
     }
 
     /// In how many ticks each stage of the safety chain has acted.

@@ -21,6 +21,33 @@ pub(crate) const NOTHING: &str = "there are no rows to replay";
 /// Times [s] and places [m] of a contact point.
 type Places<const D: usize> = (Vec<f64>, Vec<Point<D>>);
 
+/// What a hand is led along: a path of each contact point, and the times [s] between which the hand is lifted.
+#[derive(Clone, Debug)]
+pub(crate) struct Replay<const D: usize> {
+    pub(crate) paths: Vec<HandPath<D>>,
+    pub(crate) lifts: Vec<[f64; 2]>,
+}
+
+impl<const D: usize> Replay<D> {
+    /// The places of the contact points at a time from the beginning on [m].
+    pub(crate) fn places(&self, time: f64) -> Vec<Point<D>> {
+        let place = |path: &HandPath<D>| path.state_at(path.start() + time).position;
+        self.paths.iter().map(place).collect()
+    }
+
+    /// The end of the lift at a time from the beginning on [s], if the hand is lifted then.
+    pub(crate) fn lifted_until(&self, time: f64) -> Option<f64> {
+        let start = self.paths.first()?.start();
+        let lift =
+            self.lifts.iter().find(|[from, to]| (*from..*to).contains(&(start + time)))?;
+        Some(lift[1] - start)
+    }
+
+    pub(crate) fn is_over(&self, time: f64) -> bool {
+        self.paths.iter().all(|path| time > path.duration())
+    }
+}
+
 /// Rows as a file.
 pub(crate) fn written<const D: usize>(rows: &[TraceRow<D>]) -> Vec<u8> {
     let mut out = TraceWriter::new(Vec::new());
@@ -29,18 +56,28 @@ pub(crate) fn written<const D: usize>(rows: &[TraceRow<D>]) -> Vec<u8> {
     written.and_then(|()| out.finish()).unwrap_or_default()
 }
 
-/// The paths of the device points of rows.
-pub(crate) fn paths<const D: usize>(rows: &[TraceRow<D>]) -> Result<Vec<HandPath<D>>, String> {
-    let mut all = Vec::new();
+/// The replay of rows.
+pub(crate) fn replay<const D: usize>(rows: &[TraceRow<D>]) -> Result<Replay<D>, String> {
+    let (mut all, mut lifts) = (Vec::new(), Vec::new());
     for row in rows {
         add(&mut all, row.point as usize, row.time_s, row.device)?;
+        add_lift(&mut lifts, row.time_s, row.is_lifted);
     }
-    finished(all)
+    finished(all, lifts)
 }
 
-/// The paths of the device points of a file: `time_s`, `point` if there are several, and
-/// `device_x_m` … or, as in the paths of `palpate feel`, `x_m` ….
-pub(crate) fn read_paths<const D: usize>(bytes: &[u8]) -> Result<Vec<HandPath<D>>, String> {
+/// Adds what a row says of the lifts; one that goes on ends at the last row.
+fn add_lift(lifts: &mut Vec<(bool, [f64; 2])>, time: f64, is_lifted: bool) {
+    match lifts.last_mut() {
+        Some((goes_on, lift)) if *goes_on => (*goes_on, lift[1]) = (is_lifted, time),
+        _ if is_lifted => lifts.push((true, [time; 2])),
+        _ => {}
+    }
+}
+
+/// The replay of a file: `time_s`, `point` if there are several, `lifted` if it says so, and `device_x_m` … or,
+/// as in the paths of `palpate feel`, `x_m` ….
+pub(crate) fn read<const D: usize>(bytes: &[u8]) -> Result<Replay<D>, String> {
     let mut reader = csv::Reader::from_reader(bytes);
     let said = |error: csv::Error| error.to_string();
     let names = reader.headers().map_err(said)?.clone();
@@ -57,8 +94,8 @@ pub(crate) fn read_paths<const D: usize>(bytes: &[u8]) -> Result<Vec<HandPath<D>
     if D == 2 && column(&format!("{prefix}z_m")).is_some() {
         return Err("the trace is of a scene in space, this one is in the plane".to_owned());
     }
-    let (time, point) = (needed("time_s")?, column("point"));
-    let mut all = Vec::new();
+    let (time, point, lifted) = (needed("time_s")?, column("point"), column("lifted"));
+    let (mut all, mut lifts) = (Vec::new(), Vec::new());
     for row in reader.records() {
         let row = row.map_err(said)?;
         let line = row.position().map_or(0, csv::Position::line);
@@ -78,9 +115,12 @@ pub(crate) fn read_paths<const D: usize>(bytes: &[u8]) -> Result<Vec<HandPath<D>
             return Err(format!("line {line}: point must be 0, 1, 2 …, got {point}"));
         }
         let at_line = |why: String| format!("line {line}: {why}");
-        add(&mut all, point as usize, number(time)?, place).map_err(at_line)?;
+        let time = number(time)?;
+        add(&mut all, point as usize, time, place).map_err(at_line)?;
+        let is_lifted = lifted.is_some_and(|column| row.get(column) == Some("true"));
+        add_lift(&mut lifts, time, is_lifted);
     }
-    finished(all)
+    finished(all, lifts)
 }
 
 /// Adds a place of a contact point, unless it comes too soon after the last one.
@@ -109,7 +149,10 @@ fn add<const D: usize>(
     Ok(())
 }
 
-fn finished<const D: usize>(all: Vec<Places<D>>) -> Result<Vec<HandPath<D>>, String> {
+fn finished<const D: usize>(
+    all: Vec<Places<D>>,
+    lifts: Vec<(bool, [f64; 2])>,
+) -> Result<Replay<D>, String> {
     if all.is_empty() {
         return Err(NOTHING.to_owned());
     }
@@ -117,7 +160,8 @@ fn finished<const D: usize>(all: Vec<Places<D>>) -> Result<Vec<HandPath<D>>, Str
         HandPath::new(times, places, Interpolation::Monotone)
             .map_err(|error| format!("contact point {point}: {error}"))
     };
-    all.into_iter().enumerate().map(path).collect()
+    let paths = all.into_iter().enumerate().map(path).collect::<Result<_, _>>()?;
+    Ok(Replay { paths, lifts: lifts.into_iter().map(|(_, lift)| lift).collect() })
 }
 
 #[cfg(test)]
@@ -128,18 +172,29 @@ mod tests {
     fn paths_are_read_from_traces_and_from_paths() {
         let trace = "time_s,point,device_x_m,device_y_m,proxy_x_m\n\
                      0.001,0,0.5,0.25,9\n0.002,0,7,7,9\n0.011,0,0.75,0.25,9\n";
-        let paths = read_paths::<2>(trace.as_bytes()).unwrap();
+        let paths = read::<2>(trace.as_bytes()).unwrap().paths;
         assert_eq!(paths.len(), 1);
         assert!((paths[0].duration() - 0.01).abs() < 1e-15);
         assert_eq!(paths[0].state_at(0.011).position, Vector([0.75, 0.25]));
         let path = "time_s,x_m,y_m,z_m\n0,1,2,3\n1,1,2,4\n";
-        let found = read_paths::<3>(path.as_bytes()).unwrap();
-        assert_eq!(found[0].state_at(1.0).position, Vector([1.0, 2.0, 4.0]));
+        let found = read::<3>(path.as_bytes()).unwrap();
+        assert_eq!(found.paths[0].state_at(1.0).position, Vector([1.0, 2.0, 4.0]));
+    }
+
+    #[test]
+    fn lifts_are_read_from_traces() {
+        let trace = "time_s,x_m,y_m,lifted\n5,0,0,false\n5.1,0,0,true\n5.2,1,0,true\n\
+                     5.3,1,0,false\n5.4,2,0,true\n5.5,2,0,true\n";
+        let replay = read::<2>(trace.as_bytes()).unwrap();
+        assert_eq!(replay.lifts, [[5.1, 5.3], [5.4, 5.5]]);
+        assert_eq!(replay.lifted_until(0.05), None);
+        assert!((replay.lifted_until(0.15).unwrap() - 0.3).abs() < 1e-12);
+        assert_eq!(replay.lifted_until(0.35), None);
     }
 
     #[test]
     fn what_is_no_trace_is_told_with_its_line() {
-        let why = |text: &str| read_paths::<2>(text.as_bytes()).unwrap_err();
+        let why = |text: &str| read::<2>(text.as_bytes()).unwrap_err();
         assert_eq!(why("a,b\n1,2\n"), "there is no column x_m: a trace in 2D has one");
         assert_eq!(
             why("time_s,x_m,y_m\n0,0,0\n1,east,0\n"),

@@ -264,3 +264,23 @@ fn a_tour_waits_while_forces_are_stopped() {
     page.ask(json!({ "do": "release" }));
     while way(&mut page) < 2e-3 {}
 }
+
+/// The way of a hand that was lifted leads through bodies.
+#[test]
+fn a_replay_lifts_the_hand_where_it_was_lifted() {
+    let (live, mut page) = ring();
+    let trace = "time_s,x_m,y_m,lifted\n0,0.2,0,false\n0.1,0.2,0,true\n0.3,0,0,true\n\
+                 0.4,0,0,false\n1,0,0,false\n";
+    assert!(request_trace(&live, "POST", trace).starts_with("HTTP/1.1 204"));
+    assert_eq!(page.ask(json!({ "do": "replay", "on": true }))["do"], "done");
+    let (mut hardest, mut was_outside) = (0.0_f32, false);
+    loop {
+        let now = moment(&mut page);
+        hardest = hardest.max(now.force);
+        was_outside |= now.is_at([0.2, 0.0]);
+        if was_outside && !now.is_lifted && now.is_at([0.0, 0.0]) {
+            break;
+        }
+    }
+    assert!(hardest < 0.05, "{hardest} N");
+}

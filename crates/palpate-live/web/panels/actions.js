@@ -20,7 +20,7 @@ export const TWO_NEEDED = 'This needs two bodies, and the scene has fewer: add o
 export const undo = () => goBack('undo');
 export const redo = () => goBack('redo');
 
-/** Opens a file: a trace to replay it, any other as the scene. @param {File} file */
+/** Opens a file: a trace to be replayed, any other as the scene. @param {File} file */
 export async function openFile(file) {
   try {
     if (/\.csv$/i.test(file.name)) await openTrace(file);

@@ -164,6 +164,12 @@ export function NumberField(given) {
     field.addEventListener('pointerup', end);
     field.addEventListener('pointercancel', end);
   };
+  /** Shows all digits, selected: the text that replaces the short one would lose a selection made before. */
+  const focus = (/** @type {any} */ event) => {
+    const input = event.currentTarget;
+    setText(text ?? typed(shown));
+    requestAnimationFrame(() => document.activeElement === input && input.select());
+  };
   const sliderValue = (/** @type {Event} */ event) =>
     Number(/** @type {HTMLInputElement} */ (event.currentTarget).value);
 
@@ -172,7 +178,7 @@ export function NumberField(given) {
     <input id=${`f${id}`} class="number" type="text" inputmode="decimal" autocomplete="off"
       value=${text ?? short(shown, 6)} title=${`${help ?? label}: drag sideways, or type${unit && ', also with another unit'}`}
       aria-invalid=${problem ? 'true' : undefined} aria-describedby=${problem ? `p${id}` : undefined}
-      onFocus=${(/** @type {any} */ event) => { setText(text ?? typed(shown)); event.currentTarget.select(); }}
+      onFocus=${focus}
       onInput=${(/** @type {any} */ event) => setTyped(event.currentTarget.value)}
       onBlur=${finish} onKeyDown=${key} onPointerDown=${press} />
     ${slider && html`<input type="range" class="slider" min=${low} max=${high}

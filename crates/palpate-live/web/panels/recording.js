@@ -72,11 +72,12 @@ export async function downloadTrace() {
   }
 }
 
-/** Gives a trace to the program, and replays it. @param {File} file */
+/** Gives a trace to the program, to be replayed. @param {File} file */
 export async function openTrace(file) {
   const answer = await fetch(address(), { method: 'POST', body: file, headers: { 'Content-Type': 'text/csv' } });
   if (!answer.ok) throw new Error(`${file.name}: ${await reason(answer, 'the program does not take it')}`);
-  if (await replay(true)) tell(`${file.name} is replayed.`);
+  dismiss(offer);
+  offer = tell(`${file.name} is ready to be replayed.`, 'word', [{ name: 'Replay', run: () => void replay(true) }]);
 }
 
 /** Why the program did not do it. @param {Response} answer @param {string} otherwise */

@@ -277,7 +277,9 @@ export function paintHand(context, view, target, texts, inks, hides) {
   const led = ledPlace() ?? hand;
   if (points.length > 1) paintMiddle(context, view, hand, points, inks, hides);
   paintPoints(context, view, points, texts, inks, hides);
-  if (target && state.view.shown.spring) paintSpring(context, view, led, target, inks);
+  // Of the past, where the hand was led is not known.
+  const isNow = state.frame === state.newest;
+  if (target && isNow && state.view.shown.spring) paintSpring(context, view, led, target, inks);
   addDistance(view, led, texts);
   if (state.view.shown.forces) addForce(context, view, points, texts);
 }

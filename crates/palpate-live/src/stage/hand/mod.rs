@@ -15,6 +15,7 @@ use palpate::field::{Aabb, Point, Vector};
 use palpate::scene::BuiltScene;
 
 use super::points::size;
+use super::trace::Replay;
 use lift::{Lift, Step};
 pub(super) use tour::tour;
 use tour::{LAG, radius};
@@ -66,8 +67,8 @@ pub(super) struct Lead<const D: usize> {
     is_stopped: bool,
     /// The time on the tour [s]; `None` if the hand is not on it yet.
     tour_time: Option<f64>,
-    /// A path of each contact point, and the time on it [s], `None` before it begins.
-    replay: Option<(Vec<HandPath<D>>, Option<f64>)>,
+    /// What is replayed, and the time on it [s], `None` before it begins.
+    replay: Option<(Replay<D>, Option<f64>)>,
     /// The hand is brought to another place.
     lift: Option<Lift<D>>,
     /// Where a hand is led once it is set down [m].
@@ -157,20 +158,20 @@ impl<const D: usize> Lead<D> {
         self.is_stopped = is_stopped;
     }
 
-    /// Starts to follow a path of each contact point, or ends it.
-    pub(super) fn replay(&mut self, paths: Option<Vec<HandPath<D>>>) -> Result<(), String> {
-        if let Some(paths) = &paths
-            && paths.len() != self.arms.len()
+    /// Starts to follow what was recorded or read, or ends it.
+    pub(super) fn replay(&mut self, replay: Option<Replay<D>>) -> Result<(), String> {
+        if let Some(replay) = &replay
+            && replay.paths.len() != self.arms.len()
         {
-            let (recorded, points) = (paths.len(), self.arms.len());
+            let (recorded, points) = (replay.paths.len(), self.arms.len());
             return Err(format!(
                 "the hand has {points} contact points, what was recorded has {recorded}"
             ));
         }
-        if paths.is_none() {
+        if replay.is_none() {
             self.led = Some(Instant::now());
         }
-        self.replay = paths.map(|paths| (paths, None));
+        self.replay = replay.map(|replay| (replay, None));
         (self.is_held, self.tour_time) = (false, None);
         Ok(())
     }
@@ -339,22 +340,24 @@ impl<const D: usize> Lead<D> {
         }
     }
 
-    /// Goes on along the paths of a recording.
+    /// Goes on along a recording. Where its hand was lifted, this one is, and is set down where that was.
     fn go_on_replaying(&mut self, passed: f64) {
-        let Some((paths, at)) = &mut self.replay else { return };
-        let places = |time: f64| -> Vec<_> {
-            paths.iter().map(|path| path.state_at(path.start() + time).position).collect()
-        };
-        let Some(time) = at else {
+        let Some((replay, at)) = &mut self.replay else { return };
+        let Some(time) = *at else {
             *at = Some(0.0);
-            let begin = places(0.0);
+            let begin = replay.places(0.0);
             return self.bring(&begin);
         };
-        self.targets = places(*time);
-        if paths.iter().all(|path| *time > path.duration()) {
+        if let Some(end) = replay.lifted_until(time) {
+            *at = Some(end);
+            let end = replay.places(end);
+            return self.bring(&end);
+        }
+        self.targets = replay.places(time);
+        if replay.is_over(time) {
             (self.replay, self.led) = (None, Some(Instant::now()));
         } else {
-            *time += passed;
+            *at = Some(time + passed);
         }
     }
 

@@ -97,7 +97,9 @@ fn closed(mut next: HashMap<u32, Vec<u32>>) -> Vec<Vec<u32>> {
             // Where the path meets itself, what lies between is a loop of its own.
             if let Some(at) = places.get(&to).copied() {
                 let corners = path.split_off(at);
-                corners.iter().for_each(|corner| drop(places.remove(corner)));
+                for corner in &corners {
+                    places.remove(corner);
+                }
                 found.push(corners);
             }
             places.insert(to, path.len());
