@@ -88,11 +88,11 @@ impl Soup {
     }
 
     fn mesh(&self) -> TriangleMesh {
-        Mesh::new(self.vertices.clone(), self.faces.clone()).unwrap()
+        Mesh::new(self.vertices.clone(), self.faces.clone()).expect("faces")
     }
 
     fn solid(&self) -> (Shape<3>, Findings<3>) {
-        let (solid, findings) = Solid::from_mesh(&self.mesh()).unwrap();
+        let (solid, findings) = Solid::from_mesh(&self.mesh()).expect("a solid");
         (solid.into(), findings)
     }
 }
@@ -245,6 +245,12 @@ fn what_bounds_no_solid_is_refused() {
     let flat = Soup { vertices: vec![Vector::ZERO; 3], faces: vec![[0, 0, 1]] };
     let error = Solid::from_mesh(&flat.mesh()).unwrap_err();
     assert_eq!(error, SolidError::NoFaces { given: 1 });
+    let square = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]]
+        .map(Vector)
+        .to_vec();
+    let sheet = Soup { vertices: square, faces: vec![[0, 1, 2], [0, 2, 3]] };
+    let error = Solid::from_mesh(&sheet.mesh()).unwrap_err();
+    assert_eq!(error, SolidError::Sheet { area: 1.0 });
 }
 
 #[test]
@@ -266,12 +272,35 @@ fn outlines_are_solids_of_the_plane() {
 }
 
 #[test]
-fn the_meshes_of_the_tests_are_solids() {
+fn a_point_that_is_nowhere_has_no_distance() {
+    // Once the padding of the boxes was looked up, beyond their end.
+    let (shape, _) = Soup::ball([0.0; 3], 1.0, 12).solid();
+    for x in [f64::NAN, f64::INFINITY] {
+        assert!(shape.distance([x, 0.0, 0.0]).is_nan());
+    }
+    assert!((shape.distance([1e12, 0.0, 0.0]) - 1e12).abs() < 2.0);
+}
+
+/// Of the airplane, caps cross faces.
+#[test]
+fn real_meshes_become_solids() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../testdata/meshes");
-    for (file, crossings) in [("nut", 0), ("ant", 99), ("bunny", 0), ("airplane", 0)] {
+    for (file, crossings, openings) in
+        [("nut", 0, 0), ("ant", 99, 0), ("bunny", 0, 0), ("airplane", 75, 17)]
+    {
         let mesh = read_file(folder.join(file).with_extension("ply")).unwrap();
         let (solid, findings) = Solid::from_mesh(&mesh).unwrap();
-        println!("{file}: {findings}; {}", solid.promise());
         assert_eq!(findings.crossings, crossings, "{file}: {findings}");
+        assert_eq!(findings.openings.len(), openings, "{file}: {findings}");
+        let truth =
+            Soup { vertices: mesh.vertices().to_vec(), faces: mesh.elements().to_vec() };
+        let shape: Shape<3> = solid.into();
+        let (middle, reach) = (mesh.bounds().centre(), mesh.bounds().half_extents().norm());
+        for p in points(300, reach).map(|p| p + middle) {
+            let number = winding(&truth, p);
+            // Near openings, caps decide.
+            let is_clear = openings == 0 || (number - 0.5).abs() > 0.45;
+            assert!(!is_clear || (shape.distance(p) < 0.0) == (number > 0.5), "{file}, {p:?}");
+        }
     }
 }

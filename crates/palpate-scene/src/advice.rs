@@ -193,9 +193,9 @@ mod tests {
                 "unknown key `radius`; parameters stand in the object of their primitive, as in { \"ball\": { \"radius\": 0.7 } }",
             ),
             (
-                "mesh",
+                "lattice",
                 Three,
-                "unknown key `mesh`; the schema and `palpate shapes` list those there are",
+                "unknown key `lattice`; the schema and `palpate shapes` list those there are",
             ),
         ] {
             assert_eq!(told(key, dimension), expected);

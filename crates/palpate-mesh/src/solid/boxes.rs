@@ -61,12 +61,9 @@ impl<const D: usize> Boxes<D> {
         mut least: f64,
         mut visit: impl FnMut(usize) -> f64,
     ) {
-        let mut waiting = [Waiting { squared: 0.0, level: 0, node: 0 }; WAITING];
-        let mut count = 0;
-        self.push(p, self.levels.len() - 1, 0, least, (&mut waiting, &mut count));
-        while count > 0 {
-            count -= 1;
-            let Waiting { squared, level, node } = waiting[count];
+        let mut waiting = Stack::new();
+        waiting.push(self, p, [self.levels.len() - 1, 0], least);
+        while let Some(Waiting { squared, level, node }) = waiting.pop() {
             // Written so that NaN, and padding, are passed over.
             let matters = squared < least;
             if !matters {
@@ -75,7 +72,7 @@ impl<const D: usize> Boxes<D> {
             if level == 0 {
                 least = visit(node);
             } else {
-                self.push(p, level - 1, node, least, (&mut waiting, &mut count));
+                waiting.push(self, p, [level - 1, node], least);
             }
         }
     }
@@ -94,31 +91,48 @@ impl<const D: usize> Boxes<D> {
             }
         }
     }
+}
 
-    /// Adds the boxes of one group that are nearer than the square of a distance, the nearest last.
+/// Boxes that wait, of each group the nearest last.
+struct Stack {
+    waiting: [Waiting; WAITING],
+    count: usize,
+}
+
+impl Stack {
+    fn new() -> Self {
+        Self { waiting: [Waiting { squared: 0.0, level: 0, node: 0 }; WAITING], count: 0 }
+    }
+
     #[inline]
-    fn push(
-        &self,
+    fn pop(&mut self) -> Option<Waiting> {
+        self.count = self.count.checked_sub(1)?;
+        Some(self.waiting[self.count])
+    }
+
+    /// Adds the boxes of a group of a level that are nearer than the square of a distance.
+    #[inline]
+    fn push<const D: usize>(
+        &mut self,
+        boxes: &Boxes<D>,
         p: Point<D>,
-        level: usize,
-        group: usize,
+        [level, group]: [usize; 2],
         least: f64,
-        (waiting, count): (&mut [Waiting; WAITING], &mut usize),
     ) {
-        let squared = self.levels[level].squared_distances(p, group);
-        let first = *count;
+        let first = self.count;
+        let squared = boxes.levels[level].squared_distances(p, group);
         for (i, squared) in squared.into_iter().enumerate() {
             let matters = squared < least;
             if !matters {
                 continue;
             }
-            let mut place = *count;
-            while place > first && waiting[place - 1].squared < squared {
-                waiting[place] = waiting[place - 1];
+            let mut place = self.count;
+            while place > first && self.waiting[place - 1].squared < squared {
+                self.waiting[place] = self.waiting[place - 1];
                 place -= 1;
             }
-            waiting[place] = Waiting { squared, level, node: group * FAN + i };
-            *count += 1;
+            self.waiting[place] = Waiting { squared, level, node: group * FAN + i };
+            self.count += 1;
         }
     }
 }

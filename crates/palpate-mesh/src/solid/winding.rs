@@ -93,39 +93,46 @@ impl<const N: usize, const D: usize> WindingTree<N, D> {
     /// The winding number of a point, with an error of at most `error` from each group of elements.
     pub(crate) fn at(&self, elements: &[[Point<D>; N]], p: Point<D>, error: f64) -> Winding {
         let top = self.levels.len() - 1;
-        let mut sum = Winding::default();
+        let sum = Winding::default();
+        let mut walk = Walk { levels: &self.levels, elements, p, error, sum };
         for node in 0..self.levels[top].len() {
-            self.add(elements, p, error, [top, node], &mut sum);
+            walk.add(top, node);
         }
-        sum
+        walk.sum
     }
+}
 
-    fn add(
-        &self,
-        elements: &[[Point<D>; N]],
-        p: Point<D>,
-        error: f64,
-        [level, node]: [usize; 2],
-        sum: &mut Winding,
-    ) {
+/// A sum over the groups of a tree, as seen from a point.
+struct Walk<'a, const N: usize, const D: usize> {
+    levels: &'a [Vec<Moments<D>>],
+    elements: &'a [[Point<D>; N]],
+    p: Point<D>,
+    error: f64,
+    sum: Winding,
+}
+
+impl<const N: usize, const D: usize> Walk<'_, N, D> {
+    /// Adds a group: as a whole, if that is exact enough, else its parts.
+    fn add(&mut self, level: usize, node: usize) {
         let group = &self.levels[level][node];
-        let towards = group.centroid - p;
+        let towards = group.centroid - self.p;
         let remainder = group.remainder(towards);
-        if remainder <= error {
-            sum.number += group.share(towards);
-            sum.error += remainder + ROUNDING;
+        if remainder <= self.error {
+            self.sum.number += group.share(towards);
+            self.sum.error += remainder + ROUNDING;
             return;
         }
         let first = node * FAN;
         if level == 0 {
-            for corners in &elements[first..elements.len().min(first + FAN)] {
-                sum.number += share(corners, p);
-                sum.error += ROUNDING;
+            let end = self.elements.len().min(first + FAN);
+            for corners in &self.elements[first..end] {
+                self.sum.number += share(corners, self.p);
+                self.sum.error += ROUNDING;
             }
             return;
         }
         for child in first..self.levels[level - 1].len().min(first + FAN) {
-            self.add(elements, p, error, [level - 1, child], sum);
+            self.add(level - 1, child);
         }
     }
 }
@@ -217,5 +224,58 @@ pub(crate) fn share<const N: usize, const D: usize>(
             volume.atan2(denominator) / TAU
         }
         _ => 0.0,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A ball of radius 1 of random triangles that lie on it, of which no number is a whole one.
+    fn scales() -> Vec<[Point<3>; 3]> {
+        let turn = |i: u32, step: f64| (f64::from(i) * step).fract() * TAU;
+        (1..=600)
+            .map(|i| {
+                let (a, b) = (turn(i, 0.754_877_666), 0.5 * turn(i, 0.569_840_291));
+                let out = Vector([a.cos() * b.sin(), b.cos(), a.sin() * b.sin()]);
+                let aside = Vector([-a.sin(), 0.0, a.cos()]);
+                let along = out.cross(aside);
+                [out, out + aside * 0.1, out + along * 0.1]
+            })
+            .collect()
+    }
+
+    #[test]
+    fn the_error_of_groups_is_within_its_bound() {
+        let elements = scales();
+        let tree = WindingTree::new(&elements);
+        for i in 1..200_u32 {
+            let far = 0.02 * f64::from(i);
+            let p = Vector([far, 0.3 * far, -0.7 * far]);
+            let exact: f64 = elements.iter().map(|corners| share(corners, p)).sum();
+            for error in ERRORS {
+                let Winding { number, error: bound } = tree.at(&elements, p, error);
+                assert!((number - exact).abs() <= bound, "{p:?}: {number}, {exact} ± {bound}");
+            }
+        }
+        let outline: Vec<[Point<2>; 2]> = (0..300)
+            .map(|i| [i, i + 1].map(|i| TAU * f64::from(i) / 320.0))
+            .map(|ends| ends.map(|angle| Vector([angle.cos(), angle.sin()])))
+            .collect();
+        let tree = WindingTree::new(&outline);
+        for i in 1..200_u32 {
+            let p = Vector([0.02 * f64::from(i), 0.01 * f64::from(i)]);
+            let exact: f64 = outline.iter().map(|corners| share(corners, p)).sum();
+            let Winding { number, error: bound } = tree.at(&outline, p, 1e-2);
+            assert!((number - exact).abs() <= bound, "{p:?}: {number}, {exact} ± {bound}");
+        }
+    }
+
+    #[test]
+    fn an_octant_is_an_eighth_of_a_turn() {
+        let corners = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].map(Vector);
+        assert!((share(&corners, Vector::ZERO) - 0.125).abs() < 1e-15);
+        let quarter = [[1.0, 0.0], [0.0, 1.0]].map(Vector);
+        assert!((share(&quarter, Vector::ZERO) - 0.25).abs() < 1e-15);
     }
 }

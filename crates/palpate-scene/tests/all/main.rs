@@ -13,6 +13,7 @@ mod fuzz;
 mod generated;
 mod hostile;
 mod materials;
+mod mesh_files;
 mod motions;
 mod origins;
 mod random;

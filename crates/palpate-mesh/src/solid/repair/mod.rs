@@ -81,8 +81,8 @@ impl<const N: usize, const D: usize> Repair<N, D> {
             let along = same.iter().filter(has_its_direction).count();
             let others =
                 |rim: &[u32; 2]| at_rims.get(rim).map_or(0, |count| count - same.len());
-            let is_wall =
-                2 * along == same.len() && rims_of(&element).iter().all(|rim| others(rim) >= 2);
+            let is_wall = 2 * along == same.len()
+                && rims_of(&element).iter().all(|rim| others(rim).is_multiple_of(2));
             // Of an odd number, one stays that has the direction of most.
             let stays = same.iter().find(|i| has_its_direction(i) == (2 * along >= same.len()));
             for i in same.iter().filter(|i| is_wall || Some(*i) != stays) {

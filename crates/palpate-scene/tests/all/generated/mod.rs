@@ -68,8 +68,8 @@ fn sorted(mut names: Vec<&str>) -> Vec<&str> {
 }
 
 /// Keys of a shape's object that are neither primitive nor operator.
-const OTHERS: [&str; 7] =
-    ["width", "profile", "height", "progress", "of", "shape", "description"];
+const OTHERS: [&str; 8] =
+    ["width", "profile", "height", "progress", "of", "shape", "mesh", "description"];
 
 /// Operators of the sampler in another unit.
 const IN_RADIANS: [&str; 2] = ["bend", "twist"];

@@ -1,0 +1,60 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! Shapes of mesh files.
+
+use palpate_field::Vector;
+use palpate_scene::{AnyScene, BuiltScene, Scene};
+
+/// A tetrahedron of 1, 2 and 3 m.
+const TETRAHEDRON: &str =
+    "v 0 0 0\nv 1 0 0\nv 0 2 0\nv 0 0 3\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n";
+
+fn text(mesh: &str) -> String {
+    format!(
+        r#"{{ "palpate": 1, "dimension": 3, "bodies": [
+          {{ "name": "a", "shape": {{ "mesh": {mesh} }} }} ] }}"#
+    )
+}
+
+#[test]
+fn a_mesh_is_looked_for_beside_the_scene() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("parts").join("part.obj");
+    std::fs::create_dir(file.parent().unwrap()).unwrap();
+    std::fs::write(&file, TETRAHEDRON).unwrap();
+    let built = |mesh: &str| -> Result<BuiltScene<3>, String> {
+        let scene = Scene::from_json_in(&text(mesh), folder.path());
+        match scene.and_then(|scene| scene.build()) {
+            Ok(AnyScene::Spatial(scene)) => Ok(scene),
+            Ok(AnyScene::Planar(_)) => Err("in the plane".to_owned()),
+            Err(error) => Err(error.to_string()),
+        }
+    };
+    let scene = built(r#"{ "file": "parts/part.obj", "scale": 0.1 }"#).unwrap();
+    assert_eq!(scene.meshes.len(), 1);
+    assert!(scene.meshes[0].findings.is_clean());
+    assert!((scene.whole.distance(Vector([0.01, 0.02, -0.5])) - 0.5).abs() < 1e-15);
+    // A file that changed is read anew.
+    std::fs::write(&file, TETRAHEDRON.replace("v 0 0 3", "v 0 0 30")).unwrap();
+    let scene = built(r#"{ "file": "parts/part.obj", "scale": 0.1 }"#).unwrap();
+    assert_eq!(scene.whole.promise().bounds.unwrap().aabb.max[2], 3.0);
+    for (mesh, expected) in [
+        (
+            r#"{ "file": "../part.obj" }"#,
+            "a mesh is a file in the scene's folder or below it, got \"../part.obj\"",
+        ),
+        (
+            r#"{ "file": "/part.obj" }"#,
+            "a mesh is a file in the scene's folder or below it, got \"/part.obj\"",
+        ),
+        (r#"{ "file": "parts/part.obj", "scale": 0 }"#, "scale must be positive, got 0"),
+        (r#"{ "file": "gone.obj" }"#, "gone.obj: "),
+        (r#"{ "scale": 1 }"#, "missing key `file`"),
+    ] {
+        let error = built(mesh).unwrap_err();
+        assert!(error.contains(expected), "{error}");
+    }
+    let error = Scene::from_json(&text(r#"{ "file": "part.obj" }"#)).unwrap_err();
+    assert!(error.to_string().contains("this scene is in no file"), "{error}");
+}
