@@ -20,8 +20,11 @@ use crate::pair::{PairWorkspace, separation};
 /// After so many evaluations without a time, a touch at the start is asked for.
 const SOON: u32 = 1 << 14;
 
-/// After a search that ended early a touch is looked for at so many times. Each may use `budget / SAMPLES`
-/// evaluations.
+/// What is done after the search, samples of the time and the contact, may use a share of its budget each:
+/// one of so many.
+const AFTERWARDS: u32 = 4;
+
+/// After a search that ended early a touch is looked for at so many times.
 const SAMPLES: u32 = 32;
 
 /// The separation at a touch is searched to this share of the gap.
@@ -154,7 +157,8 @@ fn touches_at<const D: usize>(
     evaluations: &mut u32,
 ) -> Result<bool, QueryError> {
     let [a, b] = bodies.map(|body| body.at(time));
-    let limits = Limits::new(SHARE * settings.gap).with_budget(settings.budget / SAMPLES);
+    let limits =
+        Limits::new(SHARE * settings.gap).with_budget(settings.budget / (AFTERWARDS * SAMPLES));
     let near = separation(a, b, &limits, workspace)?;
     *evaluations = evaluations.saturating_add(near.evaluations);
     Ok(near.upper <= settings.gap)
@@ -200,7 +204,7 @@ fn touch_at<const D: usize>(
     workspace: &mut PairWorkspace<D>,
     found: &mut FirstTouch<D>,
 ) -> Result<(), QueryError> {
-    let limits = Limits::new(SHARE * settings.gap).with_budget(settings.budget);
+    let limits = Limits::new(SHARE * settings.gap).with_budget(settings.budget / AFTERWARDS);
     let mut near = |time: f64| -> Result<_, QueryError> {
         let [a, b] = bodies.map(|body| body.at(time));
         let near = separation(a, b, &limits, workspace)?;
