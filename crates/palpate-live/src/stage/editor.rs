@@ -58,6 +58,8 @@ pub(super) struct Editor {
     searches: Arc<()>,
     /// How often the file was looked at in vain.
     misses: u32,
+    /// Whether the file had an error when it was read last.
+    is_file_wrong: bool,
 }
 
 /// What parts of an edit took.
@@ -109,6 +111,7 @@ impl Editor {
             to_tour: None,
             searches: Arc::default(),
             misses: 0,
+            is_file_wrong: false,
         }
     }
 
@@ -232,6 +235,9 @@ impl Editor {
         let before = self.document.clone();
         let taken = match self.document.take_file(&text) {
             None => {
+                if self.document.text() == text && std::mem::take(&mut self.is_file_wrong) {
+                    self.tell_of_file(&format!("{} is as it was again", file.display()));
+                }
                 if self.document.is_saved() != before.is_saved() {
                     self.tell_saved();
                 }
@@ -239,6 +245,7 @@ impl Editor {
             }
             Some(taken) => taken.and_then(|()| self.show("file", false)),
         };
+        self.is_file_wrong = taken.is_err();
         if let Err(Refusal { message, .. }) = taken {
             let looked = std::mem::replace(&mut self.document, before);
             self.document.take_note_of_file(&looked);

@@ -246,3 +246,24 @@ fn edits_of_two_pages_are_two_steps_back() {
     assert_eq!(scene["bodies"][0]["name"], "ball");
     assert_eq!(scene["scene"]["bodies"][0]["shape"]["ball"]["radius"], 0.06);
 }
+
+/// A file that is broken, mended, deleted and there again is told each time, and once.
+#[test]
+fn what_becomes_of_the_file_is_told() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("ball.json");
+    std::fs::write(&file, BALL).unwrap();
+    let live = Live::start("ball", Some(file.clone()), BALL, LiveOptions::default()).unwrap();
+    let mut page = Page::open(&live);
+    let notice = |page: &mut Page| {
+        let notice = page.text(|message| message["do"] == "notice");
+        assert_eq!(notice["about"], "file");
+        notice["message"].as_str().unwrap().to_owned()
+    };
+    std::fs::write(&file, "{").unwrap();
+    assert!(notice(&mut page).contains("was changed, and has an error"));
+    std::fs::write(&file, BALL).unwrap();
+    assert!(notice(&mut page).ends_with("is as it was again"));
+    std::fs::remove_file(&file).unwrap();
+    assert!(notice(&mut page).contains("cannot be read any more"));
+}

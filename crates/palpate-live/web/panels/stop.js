@@ -30,7 +30,7 @@ export function withheldInWords(frame) {
 /** Gives forces again. */
 function release() {
   page.wire?.send({ do: 'release' });
-  tell(FORCES_COME_BACK);
+  tell(state.newest?.touring ? 'Forces rise from zero once the hand is out of the bodies; the tour goes on.' : FORCES_COME_BACK);
 }
 
 /** Stops; once stopped it gives the forces back. @param {{ id?: string }} given */

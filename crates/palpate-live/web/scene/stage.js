@@ -62,6 +62,8 @@ export function createStage(container, wire) {
   let requested = 0;
   /** What the camera was laid for last. */
   let laidFor = '';
+  /** Of which opened scene the checks and the ball were laid out. @type {number | null} */
+  let toysLaidFor = null;
   let wasFlat = false;
   /** Where the pointer leads the hand. @type {Vector | null} */
   let target = null;
@@ -163,8 +165,12 @@ export function createStage(container, wire) {
     if (key === laidFor || !state.scene) return false;
     laidFor = key;
     measure();
-    if (shown.dimension === 2) layToys(shown.centre, shown.size);
-    layFall(setting());
+    // Another view of the same scene keeps what was dragged.
+    if (state.opened !== toysLaidFor) {
+      toysLaidFor = state.opened;
+      if (shown.dimension === 2) layToys(shown.centre, shown.size);
+      layFall(setting());
+    }
     named.reset(shown);
     if (fall.isShown) showBall();
     return true;
