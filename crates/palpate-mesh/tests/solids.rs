@@ -6,7 +6,8 @@
 use std::f64::consts::{PI, TAU};
 use std::path::Path;
 
-use palpate_field::{Point, Quality, Rotation, Shape, Vector};
+use palpate_field::scalar::Model;
+use palpate_field::{CustomField, Point, Quality, Rotation, Shape, Vector};
 use palpate_mesh::{Findings, Mesh, Outline, Solid, SolidError, TriangleMesh, read_file};
 
 /// Triangles, to be put together.
@@ -302,5 +303,41 @@ fn real_meshes_become_solids() {
             let is_clear = openings == 0 || (number - 0.5).abs() > 0.45;
             assert!(!is_clear || (shape.distance(p) < 0.0) == (number > 0.5), "{file}, {p:?}");
         }
+    }
+}
+
+/// No value over a cell leaves its model, and the models of small cells off the surface are much closer than
+/// those of the Lipschitz constant.
+#[test]
+fn models_bound_what_is_in_their_cells() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../testdata/meshes");
+    let nut = read_file(folder.join("nut.ply")).unwrap();
+    let ball =
+        Soup::ball([0.0; 3], 1.0, 12).and(Soup::cuboid([0.9, 0.2, 0.1], [0.5; 3])).mesh();
+    for mesh in [nut, ball] {
+        let (middle, size) = (mesh.bounds().centre(), mesh.bounds().half_extents().norm());
+        let (solid, _) = Solid::from_mesh(&mesh).unwrap();
+        let (mut closer, mut count) = (0.0, 0.0);
+        for (i, p) in points(400, 1.3 * size).enumerate() {
+            let centre = p + middle;
+            let half = [0.2, 0.05, 0.01, 0.002][i % 4] * size;
+            let sides = [half, 0.7 * half, 0.4 * half];
+            let cell = Model::cell(centre.0, sides);
+            let model = CustomField::model(&solid, &cell);
+            for u in points(60, 1.0).chain([Vector([1.0; 3]), Vector([-1.0; 3])]) {
+                let at = Vector(std::array::from_fn(|k| centre[k] + sides[k] * u[k]));
+                let f = CustomField::distance(&solid, at);
+                let plane = model.value + (0..3).map(|k| model.gradient[k] * u[k]).sum::<f64>();
+                assert!(
+                    plane - model.lower <= f && f <= plane + model.upper,
+                    "{at:?}: {f}, {model:?}"
+                );
+            }
+            if i % 4 == 3 {
+                closer += (model.lower + model.upper) / (2.0 * Model::radius(&cell));
+                count += 1.0;
+            }
+        }
+        assert!(closer / count < 0.1, "{}", closer / count);
     }
 }

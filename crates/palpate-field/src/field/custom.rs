@@ -16,7 +16,8 @@ use crate::vector::{Point, Vector};
 ///
 /// A closed formula is faster as a [`Kernel`](crate::kernel::Kernel): its blocks
 /// vectorise, and gradient and model follow from the formula. A `CustomField` is for
-/// data and algorithms. Its Lipschitz constant bounds it over cells.
+/// data and algorithms. Its Lipschitz constant bounds it over cells, unless it has a
+/// [`model`](Self::model) of its own.
 ///
 /// ```
 /// use palpate_field::{CustomField, Point, Promise, Shape, Vector};
@@ -51,6 +52,17 @@ pub trait CustomField<const D: usize>: std::fmt::Debug + Send + Sync + 'static {
 
     /// The promise of the values.
     fn promise(&self) -> &Promise<D>;
+
+    /// Bounds of the values over a cell, rounding included, with which certified searches go on. By
+    /// default those of the Lipschitz constant, with which they halve cells down to what they look for.
+    ///
+    /// It may bound no less than the field does: a model that some value leaves makes proofs false.
+    fn model<const N: usize>(&self, cell: &[AffineModel<N>; D]) -> AffineModel<N> {
+        let promise = self.promise();
+        let centre = Vector(cell.map(|x| x.value));
+        let rounding = promise.rounding.within(centre.norm() + AffineModel::radius(cell));
+        AffineModel::lipschitz(self.distance(centre), promise.lipschitz, cell, rounding)
+    }
 }
 
 /// A closure over duals, which give its gradient without differences.
@@ -114,8 +126,6 @@ impl<T: Float + Lane, F: CustomField<D>, const D: usize, const W: usize> Evaluat
     }
 }
 
-/// Cells are bounded by the steepness: of a field that answers at points alone, nothing else is
-/// known between them. A [`Kernel`](crate::kernel::Kernel) of one's own has models.
 impl<F: CustomField<D>, const N: usize, const D: usize, const W: usize>
     EvaluateBlock<AffineModel<N>, D, W> for Custom<F>
 {
@@ -125,14 +135,7 @@ impl<F: CustomField<D>, const N: usize, const D: usize, const W: usize>
         count: usize,
         out: &mut Column<AffineModel<N>, W>,
     ) {
-        let promise = self.0.promise();
-        out.fill(count, |i| {
-            let cell = p.get(i).0;
-            let centre = Vector(cell.map(|x| x.value));
-            let rounding = promise.rounding.within(centre.norm() + AffineModel::radius(&cell));
-            let value = self.0.distance(centre);
-            AffineModel::lipschitz(value, promise.lipschitz, &cell, rounding)
-        });
+        out.fill(count, |i| self.0.model(&p.get(i).0));
     }
 }
 
