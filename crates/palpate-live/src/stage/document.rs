@@ -4,7 +4,7 @@
 //! The scene as it is edited: its data, the steps back, the file it came from.
 
 use std::io::ErrorKind;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use palpate::scene::{AnyScene, Scene, SceneError, SceneProblem};
@@ -46,12 +46,17 @@ struct Version {
 }
 
 impl Version {
-    fn read(text: &str) -> Result<Arc<Self>, Refusal> {
+    /// The scene of a text; the files of its meshes are beside its own file.
+    fn read(text: &str, file: Option<&Path>) -> Result<Arc<Self>, Refusal> {
         if text.len() > LARGEST {
             let size = text.len();
             return Err(format!("a scene has at most {LARGEST} bytes here, got {size}").into());
         }
-        Ok(Arc::new(Self { scene: Scene::from_json(text)?, text: text.to_owned() }))
+        let scene = match file {
+            None => Scene::from_json(text)?,
+            Some(file) => Scene::from_json_in(text, file.parent().unwrap_or(Path::new("")))?,
+        };
+        Ok(Arc::new(Self { scene, text: text.to_owned() }))
     }
 }
 
@@ -110,7 +115,7 @@ impl Document {
         file: Option<PathBuf>,
         text: &str,
     ) -> Result<Self, Refusal> {
-        let now = Version::read(text)?;
+        let now = Version::read(text, file.as_deref())?;
         let saved: Arc<str> = now.text.as_str().into();
         let (back, forth) = (Vec::new(), Vec::new());
         let seen = Arc::clone(&saved);
@@ -161,7 +166,7 @@ impl Document {
             Ok(scene) => scene.to_json(),
             Err(_) => serde_json::to_string_pretty(&data).unwrap_or_default(),
         };
-        let version = Version::read(&text)?;
+        let version = Version::read(&text, self.file.as_deref())?;
         let is_same_drag = self.is_moving && !self.back.is_empty();
         if is_same_drag {
             self.now = version;
@@ -273,7 +278,8 @@ impl Document {
             return None;
         }
         self.is_moving = false;
-        Some(Version::read(text).map(|version| {
+        let read = Version::read(text, self.file.as_deref());
+        Some(read.map(|version| {
             self.saved = text.into();
             self.push(version);
         }))
