@@ -225,6 +225,27 @@ fn faces_that_are_turned_doubled_or_gone_are_mended() {
     assert!(shape.distance([0.0, 0.5, 0.0]) < 0.0 && shape.distance([0.0, 0.95, 0.0]) > 0.0);
 }
 
+/// A tube without ends, of more corners than are cut one by one.
+#[test]
+fn long_openings_are_closed() {
+    let sectors = 1500_u32;
+    let mut tube = Soup::default();
+    for i in 0..sectors {
+        let angle = TAU * f64::from(i) / f64::from(sectors);
+        tube.vertices.extend([-1.0, 1.0].map(|y| Vector([angle.cos(), y, angle.sin()])));
+        let [a, b] = [2 * i, 2 * i + 1];
+        let [c, d] = [2 * ((i + 1) % sectors), 2 * ((i + 1) % sectors) + 1];
+        tube.faces.extend([[a, b, c], [b, d, c]]);
+    }
+    let (shape, findings) = tube.solid();
+    assert_eq!((findings.openings.len(), findings.crossings), (2, 0), "{findings}");
+    let cylinder = Shape::<3>::cylinder(1.0, 2.0).unwrap();
+    for p in points(500, 2.0) {
+        let [f, g] = [&shape, &cylinder].map(|shape| shape.distance(p));
+        assert!((f - g).abs() < 1e-5, "{p:?}: {f}, {g}");
+    }
+}
+
 #[test]
 fn what_bounds_no_solid_is_refused() {
     // A Möbius strip of triangles.

@@ -23,10 +23,10 @@ pub struct Opening<const D: usize> {
     pub edges: usize,
 }
 
-/// Closes all openings by flat caps, as far as their edges go in loops, and tells them. A loop of more corners
-/// than can be cut is closed by a fan about its middle.
+/// Closes all openings by flat caps, and tells them. A loop of more corners than can be cut is closed by a
+/// strip from side to side.
 pub(super) fn close<const N: usize, const D: usize>(
-    vertices: &mut Vec<Point<D>>,
+    vertices: &[Point<D>],
     elements: &mut Vec<[u32; N]>,
 ) -> Vec<Opening<D>> {
     let mut openings = Vec::new();
@@ -44,12 +44,7 @@ pub(super) fn close<const N: usize, const D: usize>(
             continue;
         }
         if corners.len() > MOST_CORNERS {
-            let middle = vertices.len() as u32;
-            vertices.push(place);
-            for i in 0..corners.len() {
-                let triangle = [corners[i], corners[(i + 1) % corners.len()], middle];
-                elements.push(std::array::from_fn(|k| triangle[k]));
-            }
+            elements.extend(strip(&corners));
             continue;
         }
         let in_space: Vec<Point<3>> = points.iter().map(|p| p.in_space()).collect();
@@ -60,6 +55,23 @@ pub(super) fn close<const N: usize, const D: usize>(
             .extend(triangles.iter().map(|t| std::array::from_fn(|k| corners[t[k] as usize])));
     }
     openings
+}
+
+/// Triangles between both sides of a loop, from its first corner to its middle one.
+fn strip<const N: usize>(corners: &[u32]) -> Vec<[u32; N]> {
+    let mut triangles = Vec::with_capacity(corners.len());
+    let (mut low, mut high) = (0, corners.len() - 1);
+    while low + 1 < high {
+        let next = if triangles.len() % 2 == 0 { low + 1 } else { high - 1 };
+        let triangle = [low, next, high].map(|i| corners[i]);
+        triangles.push(std::array::from_fn(|k| triangle[k]));
+        if next == low + 1 {
+            low = next;
+        } else {
+            high = next;
+        }
+    }
+    triangles
 }
 
 /// The loops of the rims that elements pass more often in one direction, against it, as a cap passes them. The

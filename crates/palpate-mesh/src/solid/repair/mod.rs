@@ -45,7 +45,7 @@ impl<const N: usize, const D: usize> Repair<N, D> {
         (repair.findings.turned, repair.findings.one_sided) =
             orient::agree(&mut repair.elements);
         repair.findings.own = repair.elements.len();
-        repair.findings.openings = cap::close(&mut repair.vertices, &mut repair.elements);
+        repair.findings.openings = cap::close(&repair.vertices, &mut repair.elements);
         repair.pieces = orient::outwards(&repair.vertices, &mut repair.elements);
         (repair.findings.inside_out, repair.findings.nested) =
             (repair.pieces.turned, repair.pieces.nested);
