@@ -341,13 +341,16 @@ impl<const D: usize> BoxSweep<'_, '_, D> {
             .min_by(|&i, &k| round[i].cell.lower.total_cmp(&round[k].cell.lower));
         let Some(i) = first else { return };
         let cell = &round[i].cell;
-        let latest = (cell.lower + SOON * self.settings.time_tolerance).min(1.0);
-        // A body that passes within a tolerance has left at `latest`; at `met` its nearest point is there.
-        let met = cell.lower + seen[i].value.max(0.0) / seen[i].velocity.norm();
-        for time in [latest, met] {
-            if time <= latest && time < self.upper {
-                self.touches(time, cell.centre);
-            }
+        let (speed, tolerance) = (seen[i].velocity.norm(), self.settings.time_tolerance);
+        let latest = (cell.lower + SOON * tolerance).min(1.0);
+        if latest < self.upper {
+            self.touches(latest, cell.centre);
+        }
+        // A body that passes within a tolerance has left at `latest`: its boxes become smaller than its way in
+        // a tolerance. At `met` its nearest point is there.
+        let met = cell.lower + seen[i].value.max(0.0) / speed;
+        if seen[i].radius < tolerance * speed && met < latest && met < self.upper {
+            self.touches(met, cell.centre);
         }
     }
 
