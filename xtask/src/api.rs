@@ -18,6 +18,7 @@ const CRATES: &[&str] = &[
     "palpate-cli",
     "palpate-devices",
     "palpate-field",
+    "palpate-grid",
     "palpate-haptics",
     "palpate-local",
     "palpate-loop",

@@ -8,9 +8,10 @@ use serde_json::Value;
 use crate::command::Failure;
 
 /// The crates from the lowest layer to the highest.
-const LAYERS: [&str; 18] = [
+const LAYERS: [&str; 19] = [
     "palpate-field",
     "palpate-mesh",
+    "palpate-grid",
     "palpate-query",
     "palpate-local",
     "palpate-safety",

@@ -64,7 +64,7 @@ pub use machine::{
 pub use mass::{Mass, MassLimits};
 pub use node::Node;
 pub use pose::{Pose, Rotation};
-pub use promise::{Promise, Quality, Rounding};
+pub use promise::{Deviation, Promise, Quality, Rounding};
 pub use screw::Screw;
 pub use shape::Shape;
 pub use strided::{Layout, Strided, StridedMut};

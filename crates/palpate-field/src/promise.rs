@@ -128,6 +128,48 @@ impl Rounding {
     }
 }
 
+/// How far a field may be from the one that it stands in for, as a grid for the shape that was baked.
+///
+/// With both clamped to `within` on both sides, their values differ by at most `value` everywhere. So the
+/// surfaces of both lie where the size of the other is at most `value`: what is farther from one surface is on the
+/// same side of the other. (Where the source is a bound that falls below the distance to its box, that distance
+/// is meant.) Where `within` is not larger than `value`, nothing is known.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Deviation {
+    /// The largest difference of the values [m].
+    pub value: f64,
+    /// The values to which both are clamped [m].
+    pub within: f64,
+}
+
+impl Deviation {
+    /// How far from one surface the values of the other are the same in sign [m]; `None` if nothing is known.
+    #[must_use]
+    pub fn of_surface(&self) -> Option<f64> {
+        (self.value < self.within).then_some(self.value)
+    }
+
+    /// The deviation of `factor` times the values.
+    #[must_use]
+    pub fn times(self, factor: f64) -> Self {
+        Self { value: self.value * factor, within: self.within * factor }
+    }
+
+    /// The deviation of what values change into that move by at most `by` [m].
+    #[must_use]
+    pub fn moved(self, by: f64) -> Self {
+        Self { within: (self.within - by).max(0.0), ..self }
+    }
+
+    /// The deviation of an operation on two fields, of which either value may become the result.
+    #[must_use]
+    pub fn either(a: Option<Self>, b: Option<Self>) -> Option<Self> {
+        let (Some(a), Some(b)) = (a, b) else { return a.or(b) };
+        Some(Self { value: a.value.max(b.value), within: a.within.min(b.within) })
+    }
+}
+
 /// All that a field promises about its values.
 ///
 /// ```
@@ -168,6 +210,9 @@ pub struct Promise<const D: usize> {
     pub reach: f64,
     /// The absolute error of `distance` in double precision.
     pub rounding: Rounding,
+    /// How far the field may be from the one that it stands in for; `None` if it stands for itself, as
+    /// formulas do.
+    pub deviation: Option<Deviation>,
 }
 
 impl<const D: usize> fmt::Display for Promise<D> {
@@ -194,9 +239,14 @@ impl<const D: usize> fmt::Display for Promise<D> {
         }
         match self.bounds {
             Some(Bounds { aabb, .. }) => {
-                write!(f, ", within {:?} to {:?} m", aabb.min.0, aabb.max.0)
+                write!(f, ", within {:?} to {:?} m", aabb.min.0, aabb.max.0)?;
             }
-            None => f.write_str(", without bounds"),
+            None => f.write_str(", without bounds")?,
+        }
+        match self.deviation.map(|deviation| deviation.of_surface()) {
+            None => Ok(()),
+            Some(Some(value)) => write!(f, ", off its source by at most {value} m"),
+            Some(None) => f.write_str(", off its source by an unknown distance"),
         }
     }
 }
@@ -241,6 +291,7 @@ impl<const D: usize> Promise<D> {
             has_interior: true,
             reach: 0.0,
             rounding: Rounding::of_operations(operations, size),
+            deviation: None,
         }
     }
 
@@ -285,6 +336,12 @@ impl<const D: usize> Promise<D> {
     #[must_use]
     pub const fn with_rounding(self, rounding: Rounding) -> Self {
         Self { rounding, ..self }
+    }
+
+    /// The same promise of a field that stands in for another.
+    #[must_use]
+    pub const fn with_deviation(self, deviation: Deviation) -> Self {
+        Self { deviation: Some(deviation), ..self }
     }
 
     /// The radius of a ball about `p` that is sure to hold no surface, where the

@@ -5,6 +5,8 @@
 
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
+mod guided;
+
 use palpate_field::{Point, Vector};
 
 use crate::bodies::Body;
@@ -89,6 +91,8 @@ pub(crate) struct ContactPoint<const D: usize> {
     /// The force of their springs over the depth, in the last contact [N/m]; infinite before the first.
     pub(crate) stiffness: f64,
     pub(crate) guides: Vec<Guide<D>>,
+    /// The rendered part of the force of the guides, in [0, 1]: it rises from zero where the hand is set down.
+    guided: f64,
     /// The port to the device; `None` without protection.
     pub(crate) port: Option<Port<D>>,
 }
@@ -179,7 +183,8 @@ impl<const D: usize> ContactPoint<D> {
         let (proxy, guides) = (Proxy::new(probe), Vec::new());
         let (rise, of_others, ringing) = (1.0, f64::INFINITY, Ringing::SILENT);
         let (crease, stiffness) = (Crease::NONE, f64::INFINITY);
-        Self { proxy, rise, of_others, ringing, crease, stiffness, guides, port: None }
+        let guided = 1.0;
+        Self { proxy, rise, of_others, ringing, crease, stiffness, guides, guided, port: None }
     }
 
     /// A copy that rehearses a tick. It has no guides, because copying guides would allocate.
@@ -187,8 +192,9 @@ impl<const D: usize> ContactPoint<D> {
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     pub(crate) fn double(&self) -> Self {
         let (proxy, port) = (self.proxy.clone(), self.port.clone());
-        let Self { rise, of_others, ringing, crease, stiffness, .. } = *self;
-        Self { proxy, rise, of_others, ringing, crease, stiffness, guides: Vec::new(), port }
+        let Self { rise, of_others, ringing, crease, stiffness, guided, .. } = *self;
+        let guides = Vec::new();
+        Self { proxy, rise, of_others, ringing, crease, stiffness, guides, guided, port }
     }
 
     /// Forgets the bodies, which are replaced before the next tick; `wanted` is their last
@@ -294,9 +300,7 @@ impl<const D: usize> ContactPoint<D> {
             self.fall_silent(tick, before);
             return FreeForce { force: Vector::ZERO, placed: following.placed };
         };
-        let guides = self.guides.iter_mut();
-        let mut free =
-            guides.fold(Vector::ZERO, |sum, guide| sum + guide.force(device, state.velocity));
+        let mut free = self.guided(device, state.velocity, tick.setting.rise_step);
         if following.contact {
             touch.wanted = self.held(tick, touch, before, body);
         } else {
@@ -318,7 +322,7 @@ impl<const D: usize> ContactPoint<D> {
         let before = Before::of(touch);
         self.fall_silent(tick, before);
         self.proxy.lift();
-        self.guides.iter_mut().for_each(Guide::let_go);
+        self.let_go();
         let is_known = state.is_finite();
         *touch = Touch {
             device: state.position,

@@ -6,12 +6,11 @@
 
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-use palpate_field::{Point, Pose, Vector};
+use palpate_field::{Pose, Vector};
 
 use crate::accepted_bodies::AcceptedBodies;
 use crate::bodies::Bodies;
 use crate::contact_point::{ContactPoint, FreeForce, Setting, Touch};
-use crate::guide::Guide;
 use crate::ports::{Port, TurningPort};
 use crate::tool::{Coupling, HeldTool, Tool, ToolState};
 use palpate_safety::internal::limited;
@@ -123,7 +122,7 @@ impl<const D: usize> CoupledTool<D> {
         touch: &mut Touch<D>,
     ) -> Vector<f64, D> {
         let Sides { point, bodies } = sides;
-        let Setting { map, arrival, is_lifted, .. } = setting;
+        let Setting { map, arrival, is_lifted, rise_step, .. } = setting;
         let is_turn_sound = self
             .port
             .as_mut()
@@ -151,9 +150,9 @@ impl<const D: usize> CoupledTool<D> {
         if *is_lifted {
             bodies.settle();
             self.tool.hover(&state);
-            point.guides.iter_mut().for_each(Guide::let_go);
+            point.let_go();
         } else {
-            free = point.guided(position, velocity);
+            free = point.guided(position, velocity, *rise_step);
             self.tool.step(bodies, &state);
         }
         let felt = self.tool.touch();
@@ -197,20 +196,5 @@ impl<const D: usize> CoupledTool<D> {
         };
         self.given = turn.map(|_| map.torque_to_world(self.torque));
         force
-    }
-}
-
-impl<const D: usize> ContactPoint<D> {
-    /// The force of the guides [N]; zero if a number is not finite.
-    ///
-    /// Real-time: allocates nothing, takes no lock, cannot panic.
-    fn guided(&mut self, position: Point<D>, velocity: Vector<f64, D>) -> Vector<f64, D> {
-        let mut free = Vector::ZERO;
-        if position.is_finite() && velocity.is_finite() {
-            for guide in &mut self.guides {
-                free += guide.force(position, velocity);
-            }
-        }
-        free
     }
 }

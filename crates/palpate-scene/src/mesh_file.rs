@@ -13,11 +13,18 @@ use serde::Deserialize;
 
 use crate::problem::Problem;
 
-/// How many solids are kept, so that an edit of a scene does not read its files anew.
-const KEPT: usize = 16;
+/// How many triangles are kept in solids, so that an edit of a scene does not read its files anew: a few GB.
+const KEPT: usize = 1 << 22;
 
-/// Those that were used last, the last one last.
-static SOLIDS: Mutex<Vec<(Stamp, BuiltMesh)>> = Mutex::new(Vec::new());
+/// Those that were used last, the last one last, in units of their files.
+static SOLIDS: Mutex<Vec<(Stamp, Kept)>> = Mutex::new(Vec::new());
+
+/// The solid of a file, in its units.
+#[derive(Clone)]
+struct Kept {
+    shape: Shape<3>,
+    findings: Findings<3>,
+}
 
 /// The solid of a mesh file, as a scene uses it.
 #[derive(Clone, Debug)]
@@ -46,7 +53,6 @@ struct Stamp {
     path: PathBuf,
     modified: Option<SystemTime>,
     bytes: u64,
-    scale: f64,
 }
 
 /// A mesh as a file gives it.
@@ -85,43 +91,51 @@ impl WrittenMesh {
         let path = folder.join(file);
         let cannot =
             |why: &dyn std::fmt::Display| of_file(format!("{}: {why}", path.display()));
-        let metadata = std::fs::metadata(&path).map_err(|error| cannot(&error))?;
-        let stamp = Stamp {
-            path: path.canonicalize().unwrap_or_else(|_| path.clone()),
-            modified: metadata.modified().ok(),
-            bytes: metadata.len(),
-            scale: self.scale,
-        };
-        if let Some(known) = kept(&stamp) {
-            return Ok(BuiltMesh { file: self.file.clone(), ..known });
+        let real = path.canonicalize().map_err(|error| cannot(&error))?;
+        let folder = folder.canonicalize().map_err(|error| cannot(&error))?;
+        if !real.starts_with(&folder) {
+            return Err(cannot(&"it is a link out of the scene's folder"));
         }
-        let mesh = read_file(&path).map_err(|error| of_file(error.to_string()))?;
-        let mesh = mesh.scaled(self.scale).map_err(|error| cannot(&error))?;
-        let (solid, findings) = Solid::from_mesh(&mesh).map_err(|error| cannot(&error))?;
-        let built = BuiltMesh {
+        let metadata = std::fs::metadata(&real).map_err(|error| cannot(&error))?;
+        let (modified, bytes) = (metadata.modified().ok(), metadata.len());
+        let stamp = Stamp { path: real, modified, bytes };
+        let solid = match kept(&stamp) {
+            Some(known) => known,
+            None => {
+                let mesh = read_file(&path).map_err(|error| of_file(error.to_string()))?;
+                let (solid, findings) =
+                    Solid::from_mesh(&mesh).map_err(|error| cannot(&error))?;
+                let solid = Kept { shape: solid.into(), findings };
+                keep(stamp, &solid);
+                solid
+            }
+        };
+        let scaled = solid.shape.scaled(self.scale);
+        Ok(BuiltMesh {
             file: self.file.clone(),
             scale: self.scale,
-            findings,
-            shape: solid.into(),
-        };
-        keep(stamp, &built);
-        Ok(built)
+            findings: solid.findings.scaled(self.scale),
+            shape: scaled.map_err(|error| Problem::new(error.to_string()).under("scale"))?,
+        })
     }
 }
 
-fn kept(stamp: &Stamp) -> Option<BuiltMesh> {
+fn kept(stamp: &Stamp) -> Option<Kept> {
     let mut solids = SOLIDS.lock().unwrap_or_else(PoisonError::into_inner);
     let found = solids.iter().position(|(known, _)| known == stamp)?;
     let used = solids.remove(found);
-    let built = used.1.clone();
+    let solid = used.1.clone();
     solids.push(used);
-    Some(built)
+    Some(solid)
 }
 
-fn keep(stamp: Stamp, built: &BuiltMesh) {
+fn keep(stamp: Stamp, solid: &Kept) {
     let mut solids = SOLIDS.lock().unwrap_or_else(PoisonError::into_inner);
-    if solids.len() >= KEPT {
-        solids.remove(0);
+    // An older state of the file is of no use.
+    solids.retain(|(known, _)| known.path != stamp.path);
+    solids.push((stamp, solid.clone()));
+    let mut triangles: usize = solids.iter().map(|(_, solid)| solid.findings.faces).sum();
+    while triangles > KEPT && solids.len() > 1 {
+        triangles -= solids.remove(0).1.findings.faces;
     }
-    solids.push((stamp, built.clone()));
 }

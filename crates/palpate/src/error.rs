@@ -5,8 +5,9 @@
 
 use palpate_devices::{DeviceError, DeviceLost, UnknownDevice};
 use palpate_field::ShapeError;
+use palpate_grid::GridError;
 use palpate_haptics::{HapticsError, NumberError, SafetyError, UnknownMaterial};
-use palpate_mesh::MeshError;
+use palpate_mesh::{MeshError, SolidError};
 use palpate_query::QueryError;
 #[cfg(feature = "scene")]
 use palpate_scene::SceneCause;
@@ -69,6 +70,10 @@ pub enum Error {
     Device(#[from] DeviceError),
     /// Vertices and faces are no mesh.
     Mesh(#[from] MeshError),
+    /// A mesh bounds no solid.
+    Solid(#[from] SolidError),
+    /// A grid cannot be made.
+    Grid(#[from] GridError),
     /// A mesh file cannot be read.
     #[cfg(feature = "mesh-files")]
     MeshFile(#[from] palpate_mesh::ReadError),
@@ -118,8 +123,10 @@ pub enum ErrorKind {
     Haptics,
     /// A hand path, a hand or a device cannot be made.
     Device,
-    /// Vertices and faces are no mesh, or a mesh file cannot be read.
+    /// Vertices and faces are no mesh or bound no solid, or a mesh file cannot be read.
     Mesh,
+    /// A grid cannot be made.
+    Grid,
     /// A scene cannot be read or built.
     Scene,
     /// A picture cannot be drawn.
@@ -146,6 +153,7 @@ impl ErrorKind {
             Self::Haptics => "haptics",
             Self::Device => "device",
             Self::Mesh => "mesh",
+            Self::Grid => "grid",
             Self::Scene => "scene",
             Self::Plot => "plot",
             Self::UnknownName => "unknown_name",
@@ -166,7 +174,8 @@ impl Error {
             Self::Query(_) => ErrorKind::Query,
             Self::Haptics(_) => ErrorKind::Haptics,
             Self::Device(_) => ErrorKind::Device,
-            Self::Mesh(_) => ErrorKind::Mesh,
+            Self::Mesh(_) | Self::Solid(_) => ErrorKind::Mesh,
+            Self::Grid(_) => ErrorKind::Grid,
             #[cfg(feature = "mesh-files")]
             Self::MeshFile(_) => ErrorKind::Mesh,
             #[cfg(feature = "scene")]

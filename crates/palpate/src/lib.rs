@@ -38,7 +38,7 @@
 //!
 //! # Features
 //!
-//! On by default: `mesh-files` reads OBJ, STL, PLY and GLB; `parallel` shares batches and worlds
+//! On by default: `mesh-files` reads OBJ, STL, PLY and GLB; `parallel` shares grids, batches and worlds
 //! among threads; `plot` draws; `render` renders; `scene` reads and writes scene files; `serde` implements serde's
 //! traits for plain data; `std-loop` runs servos on the machine's clock and in threads; `vibration`
 //! makes commands for motors and audio. Off by default: `local` has local searches from the
@@ -50,6 +50,7 @@ pub mod prelude;
 pub use error::{Error, ErrorKind};
 pub use palpate_devices as devices;
 pub use palpate_field as field;
+pub use palpate_grid as grid;
 pub use palpate_haptics as haptics;
 #[cfg(feature = "local")]
 pub use palpate_local as local;

@@ -6,7 +6,7 @@
 use crate::bounds::{BoundingBall, Bounds};
 use crate::error::ShapeError;
 use crate::field::{Combine, Combined, SharedField, Union};
-use crate::promise::{Promise, Quality};
+use crate::promise::{Deviation, Promise, Quality};
 use crate::scalar::Scalar;
 
 /// Intersection: `max(a, b)`.
@@ -62,6 +62,7 @@ fn join<const D: usize>(a: &mut Promise<D>, b: &Promise<D>) {
     }
     a.reach = Scalar::max(a.reach, b.reach);
     a.rounding = a.rounding.or(&b.rounding);
+    a.deviation = Deviation::either(a.deviation, b.deviation);
 }
 
 /// A ball in which both Lipschitz constants hold.

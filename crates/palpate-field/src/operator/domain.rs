@@ -192,6 +192,7 @@ pub(crate) fn extruded(
         symmetric: [of.symmetric[0], true, of.symmetric[1]],
         has_interior: of.has_interior,
         reach: of.reach,
+        deviation: of.deviation,
         rounding: of.rounding.times(2.0).plus(&own),
     };
     Warped::shared(Extrusion { half_height }, child, promise)
@@ -231,6 +232,7 @@ pub(crate) fn revolved(child: SharedField<2>) -> Result<SharedField<3>, ShapeErr
         symmetric: [true, of.symmetric[1], true],
         has_interior: of.has_interior,
         reach: of.reach,
+        deviation: of.deviation,
         rounding: of.rounding.plus(&own),
     };
     Warped::shared(Revolution, child, promise)

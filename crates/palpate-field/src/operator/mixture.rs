@@ -7,7 +7,7 @@ use super::boolean::{combined, joined, promise_of_union};
 use super::guard::guarded;
 use crate::error::{ShapeError, Unit, positive};
 use crate::field::{Combine, SharedField};
-use crate::promise::{Promise, Quality, Rounding};
+use crate::promise::{Deviation, Promise, Quality, Rounding};
 use crate::scalar::Scalar;
 
 /// `a − clamp(b, −h, h)`.
@@ -50,8 +50,14 @@ fn promise_of_displacement<const D: usize>(
         bounds: a.bounds.map(|bounds| bounds.grown(height)),
         has_interior: true,
         rounding: a.rounding.plus(&b.rounding).plus(&Rounding::of_operations(2.0, size)),
+        deviation: summed(a.deviation, b.deviation).map(|deviation| deviation.moved(height)),
         ..joined(a, b)
     }
+}
+
+fn summed(a: Option<Deviation>, b: Option<Deviation>) -> Option<Deviation> {
+    let (Some(a), Some(b)) = (a, b) else { return a.or(b) };
+    Some(Deviation { value: a.value + b.value, within: a.within.min(b.within) })
 }
 
 fn promise_of_morph<const D: usize>(
@@ -68,6 +74,8 @@ fn promise_of_morph<const D: usize>(
         lipschitz: (weights[0] * a.lipschitz + weights[1] * b.lipschitz)
             * (1.0 + 4.0 * f64::EPSILON),
         rounding: a.rounding.or(&b.rounding).plus(&Rounding::of_operations(4.0, size)),
+        // A mean is small also where both values are large.
+        deviation: union.deviation.map(|deviation| Deviation { within: 0.0, ..deviation }),
         ..union
     }
 }

@@ -12,7 +12,7 @@ use super::boolean::{
 use super::guard;
 use crate::error::{ShapeError, Unit, positive};
 use crate::field::{Combine, SharedField};
-use crate::promise::{Promise, Quality, Rounding};
+use crate::promise::{Deviation, Promise, Quality, Rounding};
 use crate::scalar::{Blend, Circular, Cubic, Exponential, Quadratic, Quartic, Root, Scalar};
 
 /// The profile that fills the crease of a smooth boolean.
@@ -117,6 +117,8 @@ fn blended<const D: usize>(sharp: Promise<D>, reach: f64, unit: f64) -> Promise<
     Promise {
         convex: false,
         reach: sharp.reach.max(reach),
+        // Values change by what lies within reach, or is blended in.
+        deviation: sharp.deviation.map(|deviation| deviation.moved(reach)),
         rounding: sharp.rounding.plus(&fill),
         ..sharp.bound()
     }
@@ -130,6 +132,10 @@ fn steeper<const D: usize>(promise: Promise<D>) -> Promise<D> {
         // Rounded up.
         lipschitz: promise.lipschitz * 1.414_213_562_373_096,
         rounding: promise.rounding.times(2.0),
+        deviation: promise.deviation.map(|deviation| Deviation {
+            value: deviation.value * 1.414_213_562_373_096,
+            ..deviation
+        }),
         ..promise
     }
 }

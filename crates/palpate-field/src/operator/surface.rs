@@ -72,6 +72,7 @@ pub(crate) fn offset<const D: usize>(
         bounds: promise.bounds.map(|b| if grows { b.grown(distance) } else { b }),
         has_interior: promise.has_interior || grows,
         rounding: rounding(promise, distance.abs()),
+        deviation: promise.deviation.map(|deviation| deviation.moved(distance.abs())),
         ..*promise
     };
     Remapped::shared(Offset { distance }, child, promise)
@@ -93,6 +94,7 @@ pub(crate) fn shell<const D: usize>(
         convex: false,
         has_interior: true,
         rounding: rounding(promise, half_thickness),
+        deviation: promise.deviation.map(|deviation| deviation.moved(half_thickness)),
         ..*promise
     };
     Remapped::shared(Shell { half_thickness }, child, promise)

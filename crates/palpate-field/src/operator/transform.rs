@@ -98,6 +98,7 @@ pub(crate) fn scaled<const D: usize>(
             radius: ball.radius * factor,
         }),
         reach: of.reach * factor,
+        deviation: of.deviation.map(|deviation| deviation.times(factor)),
         rounding: of.rounding.at(1.0 / factor, 0.0).times(factor).plus(&own),
         ..*of
     };
@@ -127,6 +128,7 @@ pub(crate) fn stretched<const D: usize>(
             radius: ball.radius * smallest,
         }),
         reach: of.reach * smallest,
+        deviation: of.deviation.map(|deviation| deviation.times(smallest)),
         rounding: of.rounding.at(1.0 / smallest, 0.0).times(smallest).plus(&own),
         ..of.bound()
     };

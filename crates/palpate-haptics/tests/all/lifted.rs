@@ -105,12 +105,20 @@ fn a_lifted_hand_is_not_guided() {
     for mut servo in [with_points(), with_tool()] {
         servo.guide(std::slice::from_ref(&guide));
         let points = servo.touches().len();
-        for is_lifted in [false, true, false] {
-            servo.lift(is_lifted);
-            let force = servo.step(&at(0.08)[..points])[0].force;
-            assert_eq!(force == Vector::ZERO, is_lifted, "{force:?}");
-            assert_eq!(servo.guides(0)[0].is_engaged(), !is_lifted);
+        let guided = servo.step(&at(0.08)[..points])[0].force.norm();
+        assert!(guided > 0.0 && servo.guides(0)[0].is_engaged());
+        servo.lift(true);
+        assert_eq!(servo.step(&at(0.08)[..points])[0].force, Vector::ZERO);
+        assert!(!servo.guides(0)[0].is_engaged());
+        // Where it is set down, the force rises from zero: it gave 6 N in the first tick.
+        servo.lift(false);
+        let mut last = 0.0;
+        for tick in 0..1000 {
+            let force = servo.step(&at(0.08)[..points])[0].force.norm();
+            assert!(force <= last + 0.011 * guided, "{force} N after {last} N in tick {tick}");
+            last = force;
         }
+        assert!((last - guided).abs() < 1e-9, "{last} N of {guided} N");
     }
 }
 

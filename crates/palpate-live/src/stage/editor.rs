@@ -147,13 +147,17 @@ impl Editor {
                 if !self.document.undo() {
                     return Err("there is nothing to undo".to_owned().into());
                 }
-                self.show("undo", false)
+                self.show("undo", false).inspect_err(|_| {
+                    self.document.redo();
+                })
             }
             Ask::Redo {} => {
                 if !self.document.redo() {
                     return Err("there is nothing to do again".to_owned().into());
                 }
-                self.show("redo", false)
+                self.show("redo", false).inspect_err(|_| {
+                    self.document.undo();
+                })
             }
             Ask::Open { name, text } => {
                 let opened = Document::open(name, None, &text)?;

@@ -38,9 +38,9 @@ impl<const D: usize> Replay<D> {
     /// The end of the lift at a time from the beginning on [s], if the hand is lifted then.
     pub(crate) fn lifted_until(&self, time: f64) -> Option<f64> {
         let start = self.paths.first()?.start();
-        let lift =
-            self.lifts.iter().find(|[from, to]| (*from..*to).contains(&(start + time)))?;
-        Some(lift[1] - start)
+        // Both ends are rounded alike, so that the end of a lift is past it.
+        let mut lifts = self.lifts.iter().map(|lift| lift.map(|end| end - start));
+        lifts.find(|[from, to]| (*from..*to).contains(&time)).map(|[_, to]| to)
     }
 
     pub(crate) fn is_over(&self, time: f64) -> bool {
@@ -190,6 +190,19 @@ mod tests {
         assert_eq!(replay.lifted_until(0.05), None);
         assert!((replay.lifted_until(0.15).unwrap() - 0.3).abs() < 1e-12);
         assert_eq!(replay.lifted_until(0.35), None);
+        // The end of a lift is past it, also where the difference of times is rounded: such a replay lifted and
+        // set down the hand for ever.
+        for (start, end) in [(0.26, 3.063), (0.022, 0.085), (-5.0, 0.1)] {
+            let replay = Replay { lifts: vec![[start + 0.01, end]], ..long(start) };
+            let end = replay.lifted_until(0.02).unwrap();
+            assert_eq!(replay.lifted_until(end), None);
+        }
+    }
+
+    /// A recording of ten seconds.
+    fn long(start: f64) -> Replay<2> {
+        let text = format!("time_s,x_m,y_m\n{start},0,0\n{},1,0\n", start + 10.0);
+        read(text.as_bytes()).unwrap()
     }
 
     #[test]

@@ -269,3 +269,50 @@ fn what_becomes_of_the_file_is_told() {
     std::fs::remove_file(&file).unwrap();
     assert!(notice(&mut page).contains("cannot be read any more"));
 }
+
+/// A step back that could not be shown had moved the document all the same: the next edit brought back what the
+/// page did not show, and a save wrote it.
+#[test]
+fn a_step_back_that_is_refused_changes_nothing() {
+    let folder = tempfile::tempdir().unwrap();
+    let part = folder.path().join("part.obj");
+    let faces = "v 0 0 0\nv 1 0 0\nv 0 2 0\nv 0 0 3\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n";
+    std::fs::write(&part, faces).unwrap();
+    let shape = json!({ "mesh": { "file": "part.obj", "scale": 0.01 } });
+    let scene =
+        json!({ "palpate": 1, "dimension": 3, "bodies": [{ "name": "part", "shape": shape }] })
+            .to_string();
+    let file = folder.path().join("scene.json");
+    std::fs::write(&file, &scene).unwrap();
+    let live = Live::start("part", Some(file), &scene, LiveOptions::default()).unwrap();
+    let mut page = Page::open(&live);
+    let edit = |base: u64, at: &str, to: Value| json!({ "do": "edit", "base": base, "changes": [{ "at": at, "to": to }] });
+    let ball = json!({ "ball": { "radius": 0.02 } });
+    assert_eq!(page.ask(edit(1, "/bodies/0/shape", ball))["do"], "done");
+    std::fs::rename(&part, folder.path().join("hidden.obj")).unwrap();
+    let refused = page.ask(json!({ "do": "undo" }));
+    assert!(refused["message"].as_str().unwrap().contains("part.obj"), "{refused}");
+    std::fs::rename(folder.path().join("hidden.obj"), &part).unwrap();
+    assert_eq!(page.ask(edit(2, "/bodies/0/name", json!("ball")))["do"], "done");
+    page.say(&json!({ "do": "hello", "version": 1, "id": 77 }));
+    let shown = page.text(|message| message["do"] == "scene" && message["revision"] == 3);
+    assert_eq!(shown["scene"]["bodies"][0]["shape"]["ball"]["radius"], 0.02, "{shown}");
+}
+
+/// The gap of a sweep was a part of the scene's size: beside a body of 1000 km, a point 9 cm from a ball touched it.
+#[test]
+fn what_is_large_and_far_makes_no_touch_of_what_is_near() {
+    let scene = json!({ "palpate": 1, "dimension": 3, "bodies": [
+        { "name": "small", "shape": { "ball": { "radius": 0.02 } } },
+        { "name": "large", "shape": { "ball": { "radius": 1e6 } },
+          "pose": { "translation": [3e6, -3e6, -3e6] } },
+    ] });
+    let live = Live::start("far", None, &scene.to_string(), LiveOptions::default()).unwrap();
+    let mut page = Page::open(&live);
+    let corners = json!([[-0.07, 0.05, 0.0], [-0.06, 0.05, 0.0]]);
+    let swept = page.ask(json!({ "do": "sweep", "corners": corners, "by": [0.0, 1.0, 0.0] }));
+    assert_eq!(swept["touches"], false, "{swept}");
+    let swept = page
+        .ask(json!({ "do": "sweep", "corners": [[-0.07, 0.05, 0.0]], "by": [0.0, 1.0, 0.0] }));
+    assert_eq!(swept["touches"], false, "{swept}");
+}

@@ -22,6 +22,9 @@ pub enum ReadProblem {
     /// Reading failed.
     #[error("it cannot be read: {0}")]
     Unreadable(#[from] std::io::Error),
+    /// It is a folder, a pipe or a device.
+    #[error("it is no file")]
+    NoFile,
     /// The file is larger than [`LARGEST_FILE`].
     #[error("it has {bytes} bytes, {LARGEST_FILE} at most: cut the mesh into parts")]
     TooLarge {

@@ -140,6 +140,10 @@ impl TriangleMesh {
 fn from_path(path: &Path) -> Result<TriangleMesh, ReadProblem> {
     let ending = || path.extension().unwrap_or_default().to_string_lossy().into_owned();
     let format = Format::of(path).ok_or_else(|| ReadProblem::Ending { ending: ending() })?;
+    // A pipe or a device would never end, and opening one may wait for ever.
+    if !std::fs::metadata(path)?.is_file() {
+        return Err(ReadProblem::NoFile);
+    }
     let file = File::open(path)?;
     let length = file.metadata()?.len();
     if length > LARGEST_FILE {

@@ -3,6 +3,8 @@
 
 //! Why a mesh bounds no solid.
 
+use palpate_field::{LARGEST_LENGTH, SMALLEST_LENGTH};
+
 /// Why a mesh bounds no solid.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
@@ -15,6 +17,14 @@ pub enum SolidError {
         /// The faces of the mesh.
         given: usize,
     },
+    /// The mesh is too small or too large for its distances.
+    #[error(
+        "it is {size:e} units across, and must be from {SMALLEST_LENGTH:e} to {LARGEST_LENGTH:e}: export it in other units"
+    )]
+    Size {
+        /// The longest side of the box around it, in its units.
+        size: f64,
+    },
     /// A piece is not orientable.
     #[error("{pieces} pieces are not orientable (like a Möbius strip) and bound no solid")]
     OneSided {
@@ -22,11 +32,6 @@ pub enum SolidError {
         pieces: usize,
     },
     /// The mesh is a sheet.
-    #[error(
-        "the openings are as large as the surface: it is a sheet of {area} m², and bounds no solid"
-    )]
-    Sheet {
-        /// The area of the faces [m²]; in the plane the length of the segments [m].
-        area: f64,
-    },
+    #[error("the openings are as large as the surface: it is a sheet, and bounds no solid")]
+    Sheet,
 }

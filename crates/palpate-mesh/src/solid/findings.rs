@@ -51,6 +51,20 @@ impl<const D: usize> Findings<D> {
         self.crossings + self.touching + self.crowded_rims + self.nested + self.flat > 0
     }
 
+    /// The same with lengths and places in other units.
+    #[must_use]
+    pub fn scaled(mut self, factor: f64) -> Self {
+        for opening in &mut self.openings {
+            *opening = Opening {
+                place: opening.place * factor,
+                size: opening.size * factor,
+                ..*opening
+            };
+        }
+        self.crossing_at = self.crossing_at.map(|at| at * factor);
+        self
+    }
+
     /// Whether the mesh was a solid as it came: closed, each face's inside that of its neighbours, and no faces
     /// that cross.
     #[must_use]

@@ -12,7 +12,9 @@ mod normals;
 mod repair;
 mod winding;
 
-use palpate_field::{Aabb, Point, Promise, Quality, Rounding, Vector};
+use palpate_field::{
+    Aabb, LARGEST_LENGTH, Point, Promise, Quality, Rounding, SMALLEST_LENGTH, Vector,
+};
 
 use crate::mesh::Mesh;
 use crate::tree::{BallTree, FAN};
@@ -78,6 +80,11 @@ impl<const N: usize, const D: usize> Solid<N, D> {
     /// If no face is left, or the faces bound no solid: a piece is not orientable, faces around an edge do not
     /// cancel even with caps, or the caps are as large as the faces, as of a sheet.
     pub fn from_mesh(mesh: &Mesh<N, D>) -> Result<(Self, Findings<D>), SolidError> {
+        let size =
+            mesh.bounds().half_extents().0.iter().fold(0.0, |size, half| half.max(size)) * 2.0;
+        if !(SMALLEST_LENGTH..=LARGEST_LENGTH).contains(&size) {
+            return Err(SolidError::Size { size });
+        }
         let Repair { vertices, elements, mut findings, pieces } = Repair::of(mesh);
         let given = mesh.elements().len();
         if elements.is_empty() {
@@ -92,8 +99,7 @@ impl<const N: usize, const D: usize> Solid<N, D> {
         };
         let (own, caps) = (area(&elements[..findings.own]), area(&elements[findings.own..]));
         if caps > SHEET * own {
-            let halved = if N == 3 { 0.5 } else { 1.0 };
-            return Err(SolidError::Sheet { area: halved * own });
+            return Err(SolidError::Sheet);
         }
         let order = BallTree::new(&vertices, &elements);
         let (mut ordered, mut of_piece) = (Vec::new(), Vec::new());

@@ -58,3 +58,31 @@ fn a_mesh_is_looked_for_beside_the_scene() {
     let error = Scene::from_json(&text(r#"{ "file": "part.obj" }"#)).unwrap_err();
     assert!(error.to_string().contains("this scene is in no file"), "{error}");
 }
+
+/// A link led to files outside, whose first words an error told; a pipe or a device was opened, which never ended.
+#[cfg(unix)]
+#[test]
+fn links_out_of_the_folder_and_what_is_no_file_are_refused() {
+    use std::os::unix::fs::symlink;
+    let outside = tempfile::tempdir().unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    let secret = outside.path().join("secret.obj");
+    std::fs::write(&secret, TETRAHEDRON).unwrap();
+    symlink(&secret, folder.path().join("link.obj")).unwrap();
+    symlink(outside.path(), folder.path().join("way")).unwrap();
+    std::fs::create_dir(folder.path().join("folder.obj")).unwrap();
+    std::fs::write(folder.path().join("part.obj"), TETRAHEDRON).unwrap();
+    symlink(folder.path().join("part.obj"), folder.path().join("same.obj")).unwrap();
+    let built = |file: &str| {
+        let text = text(&format!("{{ \"file\": \"{file}\" }}"));
+        let scene = Scene::from_json_in(&text, folder.path());
+        scene.and_then(|scene| scene.build()).map(|_| ()).map_err(|error| error.to_string())
+    };
+    for file in ["link.obj", "way/secret.obj"] {
+        let error = built(file).unwrap_err();
+        assert!(error.contains("it is a link out of the scene's folder"), "{error}");
+    }
+    let error = built("folder.obj").unwrap_err();
+    assert!(error.contains("it is no file"), "{error}");
+    assert_eq!(built("same.obj"), Ok(()));
+}

@@ -5,16 +5,16 @@
 
 use std::time::Instant;
 
-use palpate::field::{LARGEST_LENGTH, Pose, Screw, Vector};
+use palpate::field::{Aabb, LARGEST_LENGTH, Pose, Screw, Vector};
 use palpate::local::{ElementMethod, GradientMethod, NaiveDescent, Weights};
 use palpate::query::{
-    BallWorkspace, Element, ElementSweep, ElementWorkspace, Ray, Stop, SweepSettings,
+    BallWorkspace, Element, ElementSweep, ElementWorkspace, Limits, Ray, Stop, SweepSettings,
     cast_ball, evaluate_point, minimum, sweep_element,
 };
 use palpate::scene::BuiltScene;
 use serde_json::{Value, json};
 
-use super::{limits, nanoseconds};
+use super::{TOLERANCE, limits, nanoseconds};
 use crate::stage::points::{point_of, size};
 use crate::wire::Ask;
 
@@ -158,7 +158,10 @@ pub(super) fn swept<const N: usize, const D: usize>(
     let (element, by) = (element_of::<N, D>(corners)?, point_of::<D>(by)?);
     let motion = Screw::new(Pose::identity(), Pose::translation(by), 0);
     let motion = motion.map_err(|error| error.to_string())?;
-    let settings = SweepSettings::of_size(size(scene)).with_budget(BUDGET);
+    // What is large and far away makes no gap near what moves.
+    let moved = Aabb::around(element.vertices().iter().flat_map(|p| [*p, *p + by]));
+    let reach = moved.map_or(0.0, |moved| 2.0 * moved.half_extents().norm());
+    let settings = SweepSettings::of_size(size(scene).min(reach)).with_budget(BUDGET);
     let begin = Instant::now();
     let mut workspace = ElementSweep::new();
     let found = sweep_element(&scene.whole, &element, motion, &settings, &mut workspace)
@@ -184,7 +187,7 @@ pub(super) fn swept_point<const D: usize>(
     let way = by.normalized().ok_or("the motion has no length")?;
     let begin = Instant::now();
     let ray = Ray::new(point, way, far).map_err(said)?;
-    let limits = limits(scene).with_budget(BUDGET);
+    let limits = Limits::new(TOLERANCE * size(scene).min(far)).with_budget(BUDGET);
     let found = cast_ball(&scene.whole, &ray, 0.0, &limits, &mut BallWorkspace::new());
     let found = found.map_err(said)?;
     let touches = match (found.best, found.stop) {

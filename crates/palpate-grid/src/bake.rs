@@ -1,0 +1,487 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! Grids from shapes.
+
+use std::ops::ControlFlow;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use palpate_field::kernel::Cuboid;
+use palpate_field::{Aabb, BLOCK, Block, Column, Deviation, Point, Pose, Shape, Vector};
+
+use crate::certificate::{Cells, Certificate};
+use crate::error::GridError;
+use crate::grid::{Compared, Grid};
+use crate::lattice::{Lattice, unravelled};
+use crate::options::{GridOptions, Resolution};
+use crate::samples::{
+    BRICK, Brick, Codes, Order, Samples, Store, WIDE, strides, wide_brick, wide_node,
+};
+use crate::spline::{Kernel, OfTaps, QUADRATIC, Spline, TRILINEAR};
+use crate::threads::each;
+
+/// Nodes that one thread samples in a row.
+const RUN: usize = 4096;
+
+/// Cells along the longest side of the bounds with which a tolerance is tried first.
+const FIRST_TRY: f64 = 24.0;
+
+/// How often cells are made smaller for a tolerance.
+const MOST_TRIES: usize = 12;
+
+/// The largest step of one try to the next.
+const MOST_REFINED: f64 = 4.0;
+
+/// A cell that serves is taken if one that is so many times as large does not.
+const MOST_APART: f64 = 1.5;
+
+/// How far a grid is made.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Progress {
+    /// The size of a cell of the grid that is made now [m]; for a tolerance, cells grow smaller from try to try.
+    pub cell: f64,
+    /// Pieces of work done.
+    pub done: usize,
+    /// Pieces of work in all.
+    pub of: usize,
+}
+
+impl<const D: usize> Grid<D> {
+    /// The grid of a shape.
+    ///
+    /// # Errors
+    ///
+    /// If the shape has no bounds, is thinner than a cell everywhere, or has a value that is no number; if a
+    /// number of the options breaks its rule; if more nodes are needed than the options allow.
+    pub fn bake(shape: &Shape<D>, options: &GridOptions) -> Result<Self, GridError> {
+        Self::bake_with(shape, options, &|_| ControlFlow::Continue(()))
+    }
+
+    /// The grid of a shape. `progress` is called by the threads that work, and can stop them.
+    ///
+    /// # Errors
+    ///
+    /// As [`bake`](Self::bake), and if `progress` breaks.
+    pub fn bake_with(
+        shape: &Shape<D>,
+        options: &GridOptions,
+        progress: &(dyn Fn(Progress) -> ControlFlow<()> + Sync),
+    ) -> Result<Self, GridError> {
+        options.check()?;
+        let bounds = shape.promise().bounds.ok_or(GridError::Unbounded)?.aabb;
+        let source = raised(shape, &bounds)?;
+        let bake = |cell| Bake { source: &source, bounds, options, cell, progress }.grid();
+        let tolerance = match options.resolution {
+            Resolution::Cell(cell) => return bake(cell),
+            Resolution::Tolerance(tolerance) => tolerance,
+        };
+        let longest = bounds.half_extents().0.into_iter().fold(0.0, f64::max) * 2.0;
+        let mut cell = (longest / FIRST_TRY).max(tolerance);
+        // The cell and the deviation of the try before; the smallest cell that was too large.
+        let mut last: Option<[f64; 2]> = None;
+        let mut coarse: Option<f64> = None;
+        let mut best: Option<Self> = None;
+        for _ in 0..MOST_TRIES {
+            let reached = match bake(cell) {
+                Ok(grid) if grid.deviation() <= tolerance => {
+                    let has_room = coarse.is_some_and(|coarse| coarse > MOST_APART * cell);
+                    if !has_room {
+                        return Ok(grid);
+                    }
+                    best = Some(grid);
+                    cell = (cell * coarse.unwrap_or(cell)).sqrt();
+                    continue;
+                }
+                Ok(grid) => Some(grid.deviation()),
+                Err(GridError::NoInside { .. }) => None,
+                Err(GridError::TooLarge { limit, .. }) => {
+                    let [cell, reached] = last.unwrap_or([cell, f64::INFINITY]);
+                    return Err(GridError::TooFine { tolerance, limit, cell, reached });
+                }
+                Err(error) => return Err(error),
+            };
+            coarse = Some(cell);
+            if let Some(best) = best.as_ref().map(|best| best.lattice().cell) {
+                if cell <= MOST_APART * best {
+                    break;
+                }
+                cell = (cell * best).sqrt();
+                continue;
+            }
+            let finer = reached.map_or(0.5, |reached| {
+                // The order of the last two tries; smooth shapes have 2, edges 1.
+                let order = last.map_or(2.0, |[before, worse]| {
+                    ((worse / reached).ln() / (before / cell).ln()).clamp(0.75, 2.0)
+                });
+                (0.95 * tolerance / reached).powf(1.0 / order)
+            });
+            last = reached.map(|reached| [cell, reached]).or(last);
+            cell *= finer.max(1.0 / MOST_REFINED);
+        }
+        let [cell, reached] = last.unwrap_or([cell, f64::INFINITY]);
+        best.ok_or(GridError::TooFine { tolerance, limit: options.most_nodes, cell, reached })
+    }
+
+    /// The grid of given samples [m], one for each node, the first axis first: a field for itself.
+    ///
+    /// ```
+    /// use palpate_field::{CustomField, Vector};
+    /// use palpate_grid::{Grid, Kernel, Lattice, Store};
+    ///
+    /// # fn main() -> Result<(), palpate_grid::GridError> {
+    /// // |x| + |y| − 1, which is √2 times as steep as a distance.
+    /// let lattice = Lattice { origin: Vector([-2.0, -2.0]), cell: 0.5, counts: [9, 9] };
+    /// let mut samples = Vec::new();
+    /// for y in 0..9 {
+    ///     for x in 0..9 {
+    ///         let p = lattice.node([x, y]);
+    ///         samples.push(p[0].abs() + p[1].abs() - 1.0);
+    ///     }
+    /// }
+    /// let grid = Grid::from_samples(lattice, &samples, Kernel::Trilinear, Store::F32)?;
+    /// assert_eq!(grid.distance(Vector([0.75, 1.0])), 0.75);
+    /// assert!((grid.promise().lipschitz - 2.0_f64.sqrt()).abs() < 1e-9);
+    /// # Ok(())
+    /// # }
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// If there are not as many samples as nodes, one is not finite, none is inside, or one at the border is.
+    pub fn from_samples(
+        lattice: Lattice<D>,
+        samples: &[f64],
+        kernel: Kernel,
+        store: Store,
+    ) -> Result<Self, GridError> {
+        GridOptions::with_cell(lattice.cell).check()?;
+        let nodes = lattice.nodes().unwrap_or(usize::MAX);
+        let is_small = lattice.counts.iter().any(|count| *count < kernel.taps());
+        if nodes != samples.len() || is_small {
+            return Err(GridError::Samples { nodes, samples: samples.len() });
+        }
+        if let Some(wrong) = samples.iter().position(|sample| !sample.is_finite()) {
+            let point = lattice.node(unravelled(wrong, lattice.counts)).0.to_vec();
+            return Err(GridError::NotFinite { point });
+        }
+        let largest = samples.iter().fold(0.0_f64, |largest, sample| largest.max(sample.abs()));
+        let scale = store.scale(largest);
+        let samples = Samples {
+            codes: Codes::encode(store, scale, samples),
+            scale,
+            band: f64::INFINITY,
+            order: Order::Dense { strides: strides(lattice.counts) },
+            bricks: lattice.counts.map(|count| count.div_ceil(BRICK)),
+        };
+        let cells =
+            Cells { lattice: &lattice, source: None, within: 0.0, reach: 0.0, worst: 0.0 };
+        let certificates = each(samples.bricks.iter().product(), |number| {
+            let brick = unravelled(number, samples.bricks);
+            Ok(match kernel {
+                Kernel::Quadratic => cells.of_brick::<QUADRATIC>(&samples, brick),
+                Kernel::Trilinear => cells.of_brick::<TRILINEAR>(&samples, brick),
+            })
+        })?;
+        Self::assemble(lattice, kernel, samples, certificates, None)
+    }
+
+    /// Samples the bricks again whose values change when the shape changes within `region` alone.
+    ///
+    /// The samples are those of a new grid of the shape on the same lattice, to the bit.
+    ///
+    /// # Errors
+    ///
+    /// As [`bake`](Self::bake); if the grid has no band: then every value may change. The grid is then as before.
+    pub fn rebuild(&mut self, shape: &Shape<D>, region: &Aabb<D>) -> Result<(), GridError> {
+        let bounds = shape.promise().bounds.ok_or(GridError::Unbounded)?.aabb;
+        let band = self.samples.band;
+        if band.is_infinite() {
+            return Err(GridError::NoBand);
+        }
+        let source = raised(shape, &bounds)?;
+        let lattice = *self.lattice();
+        let options = GridOptions {
+            kernel: self.kernel(),
+            store: self.store(),
+            band: Some(band / lattice.cell),
+            ..GridOptions::with_cell(lattice.cell)
+        };
+        let progress = &|_| ControlFlow::Continue(());
+        let bake =
+            Bake { source: &source, bounds, options: &options, cell: lattice.cell, progress };
+        *self = match self.kernel() {
+            Kernel::Quadratic => bake.again::<QUADRATIC>(self, region)?,
+            Kernel::Trilinear => bake.again::<TRILINEAR>(self, region)?,
+        };
+        Ok(())
+    }
+}
+
+/// A shape whose values are at least the distances to its bounds, as the grid's are outside its lattice.
+fn raised<const D: usize>(shape: &Shape<D>, bounds: &Aabb<D>) -> Result<Shape<D>, GridError> {
+    if shape.promise().above_bounds {
+        return Ok(shape.clone());
+    }
+    let cuboid = Cuboid::new(bounds.half_extents() * 2.0)?;
+    let around = Shape::from_kernel_at(cuboid, &Pose::translation(bounds.centre()))?;
+    Ok(shape.clone() & around)
+}
+
+/// One grid with cells of one size.
+struct Bake<'a, const D: usize> {
+    source: &'a Shape<D>,
+    bounds: Aabb<D>,
+    options: &'a GridOptions,
+    cell: f64,
+    progress: &'a (dyn Fn(Progress) -> ControlFlow<()> + Sync),
+}
+
+impl<const D: usize> Bake<'_, D> {
+    fn grid(&self) -> Result<Grid<D>, GridError> {
+        match self.options.kernel {
+            Kernel::Quadratic => self.grid_of::<QUADRATIC>(),
+            Kernel::Trilinear => self.grid_of::<TRILINEAR>(),
+        }
+    }
+
+    fn grid_of<const K: usize>(&self) -> Result<Grid<D>, GridError>
+    where
+        OfTaps<K>: Spline<K>,
+    {
+        let lattice = self.lattice()?;
+        let bricks = lattice.counts.map(|count| count.div_ceil(BRICK));
+        let done = AtomicUsize::new(0);
+        let count = bricks.iter().product::<usize>();
+        let pieces = match self.options.band {
+            Some(_) => count,
+            None => lattice.counts.iter().product::<usize>().div_ceil(RUN),
+        };
+        let step = || {
+            let done = done.fetch_add(1, Ordering::Relaxed) + 1;
+            match (self.progress)(Progress { cell: self.cell, done, of: pieces + count }) {
+                ControlFlow::Continue(()) => Ok(()),
+                ControlFlow::Break(()) => Err(GridError::Stopped),
+            }
+        };
+        let samples = match self.options.band {
+            Some(band) => self.bricks(&lattice, bricks, band * self.cell, &step)?,
+            None => self.dense(&lattice, bricks, &step)?,
+        };
+        self.certified::<K>(lattice, samples, &step)
+    }
+
+    /// The grid with the bricks near `region` made again.
+    fn again<const K: usize>(
+        &self,
+        old: &Grid<D>,
+        region: &Aabb<D>,
+    ) -> Result<Grid<D>, GridError>
+    where
+        OfTaps<K>: Spline<K>,
+    {
+        let lattice = *old.lattice();
+        let band = old.samples.band;
+        let bricks = old.samples.bricks;
+        // A value changes if it was, or is, within the band.
+        let changed = region.grown(band * self.source.promise().lipschitz.max(1.0));
+        let is_near = |brick: [usize; D]| {
+            (0..D).all(|i| {
+                let along = |index: f64| lattice.origin[i] + index * lattice.cell;
+                let start = (brick[i] * BRICK) as f64 - 1.0;
+                along(start) <= changed.max[i] && changed.min[i] <= along(start + WIDE as f64)
+            })
+        };
+        let made = each(bricks.iter().product(), |number| {
+            let brick = unravelled(number, bricks);
+            if !is_near(brick) {
+                return Ok(old.samples.codes_of(brick));
+            }
+            let brick = self.brick(&lattice, brick, band)?;
+            Ok(brick.map(|samples| Codes::encode(old.store(), old.samples.scale, &samples)))
+        })?;
+        let samples = Samples::of_bricks(&made, old.samples.scale, band, bricks);
+        let cells = self.cells::<K>(&lattice, &samples);
+        let certificates = each(bricks.iter().product(), |number| {
+            let brick = unravelled(number, bricks);
+            let known = &old.certificates[number];
+            Ok(if is_near(brick) {
+                cells.of_brick::<K>(&samples, brick)
+            } else {
+                known.clone()
+            })
+        })?;
+        self.assembled(lattice, samples, certificates, cells.within)
+    }
+
+    /// The lattice with room for the values that are compared with the source, and for the samples that the
+    /// outermost of them take.
+    fn lattice(&self) -> Result<Lattice<D>, GridError> {
+        let cells = self.options.band.unwrap_or(self.options.certified) + 3.0;
+        let lattice = Lattice::over(&self.bounds.grown(cells * self.cell), self.cell);
+        let nodes = lattice.counts.iter().map(|count| *count as f64).product::<f64>();
+        let limit = self.options.most_nodes;
+        if nodes > limit as f64 {
+            return Err(GridError::TooLarge { cell: self.cell, nodes, limit });
+        }
+        Ok(lattice)
+    }
+
+    /// All nodes.
+    fn dense(
+        &self,
+        lattice: &Lattice<D>,
+        bricks: [usize; D],
+        step: &(impl Fn() -> Result<(), GridError> + Sync),
+    ) -> Result<Samples<D>, GridError> {
+        let nodes = lattice.counts.iter().product::<usize>();
+        let runs = each(nodes.div_ceil(RUN), |run| {
+            let first = run * RUN;
+            let count = RUN.min(nodes - first);
+            let at = |i| lattice.node(unravelled(first + i, lattice.counts));
+            let samples = distances(self.source, count, at)?;
+            step()?;
+            Ok(samples)
+        })?;
+        let largest =
+            runs.iter().flatten().fold(0.0_f64, |largest, sample| largest.max(sample.abs()));
+        let scale = self.options.store.scale(largest);
+        let codes: Vec<_> =
+            runs.iter().map(|run| Codes::encode(self.options.store, scale, run)).collect();
+        let codes = Codes::joined(codes.iter());
+        let order = Order::Dense { strides: strides(lattice.counts) };
+        Ok(Samples { codes, scale, band: f64::INFINITY, order, bricks })
+    }
+
+    /// The bricks with values within the band.
+    fn bricks(
+        &self,
+        lattice: &Lattice<D>,
+        bricks: [usize; D],
+        band: f64,
+        step: &(impl Fn() -> Result<(), GridError> + Sync),
+    ) -> Result<Samples<D>, GridError> {
+        let scale = self.options.store.scale(band);
+        let made = each(bricks.iter().product(), |number| {
+            let brick = self.brick(lattice, unravelled(number, bricks), band)?;
+            step()?;
+            Ok(brick.map(|samples| Codes::encode(self.options.store, scale, &samples)))
+        })?;
+        Ok(Samples::of_bricks(&made, scale, band, bricks))
+    }
+
+    /// The samples that a brick's cells take, clamped to the band.
+    fn brick(
+        &self,
+        lattice: &Lattice<D>,
+        brick: [usize; D],
+        band: f64,
+    ) -> Result<Brick<Vec<f64>>, GridError> {
+        let start = Vector(brick.map(|i| (i * BRICK) as f64 - 1.0));
+        let half = 0.5 * (WIDE - 1) as f64;
+        let middle = lattice.at(start + Vector([half; D]));
+        let promise = self.source.promise();
+        let reach = promise.lipschitz * half * (D as f64).sqrt() * lattice.cell * (1.0 + 1e-9);
+        let far = |value: f64| {
+            if value > 0.0 { Brick::FarOutside } else { Brick::FarInside }
+        };
+        let value = self.source.distance(middle);
+        let rounding = promise.rounding.within(middle.norm());
+        if promise.region.is_none() && value.abs() - reach - rounding > band {
+            return Ok(far(value));
+        }
+        let index = |i: usize| -> [usize; D] {
+            let own: [usize; D] = unravelled(i, [WIDE; D]);
+            std::array::from_fn(|axis| wide_node(brick[axis], own[axis], lattice.counts[axis]))
+        };
+        let mut samples = distances(self.source, wide_brick(D), |i| lattice.node(index(i)))?;
+        if samples.iter().all(|sample| *sample >= band) || samples.iter().all(|s| *s <= -band) {
+            return Ok(far(samples[0]));
+        }
+        for sample in &mut samples {
+            *sample = sample.clamp(-band, band);
+        }
+        Ok(Brick::Near(samples))
+    }
+
+    /// The grid of samples, with its certificates.
+    fn certified<const K: usize>(
+        &self,
+        lattice: Lattice<D>,
+        samples: Samples<D>,
+        step: &(impl Fn() -> Result<(), GridError> + Sync),
+    ) -> Result<Grid<D>, GridError>
+    where
+        OfTaps<K>: Spline<K>,
+    {
+        let cells = self.cells::<K>(&lattice, &samples);
+        let certificates = each(samples.bricks.iter().product(), |number| {
+            step()?;
+            Ok(cells.of_brick::<K>(&samples, unravelled(number, samples.bricks)))
+        })?;
+        self.assembled(lattice, samples, certificates, cells.within)
+    }
+
+    fn assembled(
+        &self,
+        lattice: Lattice<D>,
+        samples: Samples<D>,
+        certificates: Vec<Certificate<D>>,
+        within: f64,
+    ) -> Result<Grid<D>, GridError> {
+        let value = certificates.iter().fold(0.0_f64, |e, brick| e.max(brick.deviation));
+        let compared = Compared { deviation: Deviation { value, within }, bounds: self.bounds };
+        Grid::assemble(lattice, self.options.kernel, samples, certificates, Some(compared))
+    }
+
+    fn cells<'a, const K: usize>(
+        &'a self,
+        lattice: &'a Lattice<D>,
+        samples: &Samples<D>,
+    ) -> Cells<'a, D> {
+        let cell = lattice.cell;
+        let lipschitz = self.source.promise().lipschitz;
+        let diagonal = lipschitz * (D as f64).sqrt() * cell;
+        let largest = match &samples.order {
+            Order::Bricks { .. } => samples.band,
+            Order::Dense { .. } => samples.codes.largest() * samples.scale,
+        };
+        let stored = self.options.store.error(largest, samples.scale);
+        // The samples that a value takes lie at most so far away.
+        let reach = diagonal * 0.5 * K as f64 + stored;
+        let within = match self.options.band {
+            None => self.options.certified * cell,
+            Some(band) => (band * cell - reach * (1.0 + 1e-9)).max(0.0),
+        };
+        // The variance of the weights along an axis is at most a quarter of a cell's square.
+        let worst = if self.source.promise().region.is_none() {
+            0.5 * diagonal + stored
+        } else {
+            f64::INFINITY
+        };
+        Cells { lattice, source: Some(self.source), within, reach, worst }
+    }
+}
+
+/// The distances at `count` points [m].
+fn distances<const D: usize>(
+    shape: &Shape<D>,
+    count: usize,
+    at: impl Fn(usize) -> Point<D>,
+) -> Result<Vec<f64>, GridError> {
+    let mut samples = Vec::with_capacity(count);
+    let (mut points, mut values) =
+        (Block::<f64, D, BLOCK>::zero(), Column::<f64, BLOCK>::zero());
+    for first in (0..count).step_by(BLOCK) {
+        let lanes = BLOCK.min(count - first);
+        points.fill(lanes, |i| at(first + i));
+        shape.block_distances(&points, lanes, &mut values);
+        for i in 0..lanes {
+            let value = values.get(i);
+            if !value.is_finite() {
+                return Err(GridError::NotFinite { point: at(first + i).0.to_vec() });
+            }
+            samples.push(value);
+        }
+    }
+    Ok(samples)
+}

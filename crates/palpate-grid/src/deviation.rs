@@ -1,0 +1,135 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! How far interpolated values may be from the source's.
+
+use palpate_field::scalar::Model;
+use palpate_field::{BLOCK, Block, Column, Vector};
+
+use crate::certificate::Cells;
+use crate::control::{MOST_TAPS, apply, gather};
+use crate::lattice::{indices, unravelled};
+use crate::samples::BRICK;
+use crate::spline::{OfTaps, Spline};
+
+/// A cell is halved where its bound is more than this share of a cell.
+const COARSE: f64 = 0.05;
+
+/// How often a cell is halved at most: at an edge of the source, two halvings take a bound from 0.87 to half a cell.
+const DEEPEST: u32 = 2;
+
+/// A cell of a brick, or a part of it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Part<const D: usize> {
+    /// The cell's middle node in the brick, or the lower of two.
+    key: [usize; D],
+    /// The place of the cell's first sample.
+    place: usize,
+    /// How often the cell was halved along each axis.
+    level: u32,
+    /// Which of the parts it is.
+    number: [usize; D],
+}
+
+impl<const D: usize> Part<D> {
+    pub(crate) fn whole(key: [usize; D], place: usize) -> Self {
+        Self { key, place, level: 0, number: [0; D] }
+    }
+
+    fn halves(self) -> impl Iterator<Item = Self> {
+        indices([0; D], [2; D]).map(move |side| Self {
+            level: self.level + 1,
+            number: std::array::from_fn(|i| 2 * self.number[i] + side[i]),
+            ..self
+        })
+    }
+
+    /// The middle of the part from the cell's own middle, along each axis [cells].
+    fn middle(&self) -> [f64; D] {
+        let parts = f64::from(1 << self.level);
+        self.number.map(|number| (number as f64 + 0.5) / parts - 0.5)
+    }
+}
+
+impl<const D: usize> Cells<'_, D> {
+    /// How far the interpolated values of cells may be from the source's [m].
+    ///
+    /// Over a part of a cell the source is within `[−lower, upper]` of an affine function, which the interpolation
+    /// reproduces. So the difference is that of the samples from the affine function, interpolated, and the
+    /// remainders: the control values bound it.
+    pub(crate) fn deviation<const K: usize>(
+        &self,
+        brick: [usize; D],
+        samples: &[f64],
+        near: Vec<Part<D>>,
+    ) -> f64
+    where
+        OfTaps<K>: Spline<K>,
+    {
+        let Some(source) = self.source else { return 0.0 };
+        let cell = self.lattice.cell;
+        let mut largest = 0.0_f64;
+        let (mut boxes, mut models) = (Block::<Model, D, BLOCK>::zero(), Column::zero());
+        let mut waiting = near;
+        let mut parts = Vec::new();
+        while !waiting.is_empty() {
+            parts.clear();
+            parts.extend(waiting.drain(waiting.len().saturating_sub(BLOCK)..));
+            boxes.fill_boxes(parts.len(), None, |i| {
+                let part: &Part<D> = &parts[i];
+                let (key, middle) = (part.key, part.middle());
+                let along = |axis: usize| {
+                    (brick[axis] * BRICK + key[axis]) as f64 + 1.5 - 0.5 * K as f64
+                        + middle[axis]
+                };
+                let centre = self.lattice.at(Vector(std::array::from_fn(along)));
+                (centre, Vector([half(cell, part.level); D]))
+            });
+            source.block_distances(&boxes, parts.len(), &mut models);
+            for (i, part) in parts.iter().enumerate() {
+                let bound = self.bound::<K>(samples, part, &models.get(i)).min(self.worst);
+                if part.level < DEEPEST && bound > largest.max(COARSE * cell) {
+                    waiting.extend(part.halves());
+                } else {
+                    largest = largest.max(bound);
+                }
+            }
+        }
+        largest * (1.0 + 1e-12)
+    }
+
+    /// The same over a part, from the source's model.
+    fn bound<const K: usize>(&self, samples: &[f64], part: &Part<D>, model: &Model) -> f64
+    where
+        OfTaps<K>: Spline<K>,
+    {
+        let mut taps = [0.0; MOST_TAPS];
+        let taps = &mut taps[..K.pow(D as u32)];
+        gather::<K, D>(samples, part.place, taps);
+        let middle = part.middle();
+        let steps = self.lattice.cell / half(self.lattice.cell, part.level);
+        for (number, tap) in taps.iter_mut().enumerate() {
+            let index: [usize; D] = unravelled(number, [K; D]);
+            let along = |axis: usize| {
+                let offset = index[axis] as f64 - 0.5 * (K - 1) as f64 - middle[axis];
+                model.gradient[axis] * (offset * steps)
+            };
+            *tap -= model.value + (0..D).map(along).sum::<f64>();
+        }
+        for axis in 0..D {
+            apply::<K, D>(taps, axis, &OfTaps::<K>::VALUES);
+            for level in (0..part.level).rev() {
+                let side = (part.number[axis] >> level) & 1;
+                apply::<K, D>(taps, axis, &OfTaps::<K>::HALVES[side]);
+            }
+        }
+        let above = taps.iter().copied().fold(f64::NEG_INFINITY, f64::max) + model.lower;
+        let below = model.upper - taps.iter().copied().fold(f64::INFINITY, f64::min);
+        above.max(below)
+    }
+}
+
+/// Half the side of a part, with room for rounding [m].
+fn half(cell: f64, level: u32) -> f64 {
+    0.5 * cell / f64::from(1 << level) * (1.0 + 1e-12)
+}

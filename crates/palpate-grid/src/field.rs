@@ -1,0 +1,54 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! A grid as a field.
+
+use palpate_field::scalar::AffineModel;
+use palpate_field::{Aabb, CustomField, Point, Promise, Shape, Vector};
+
+use crate::grid::Grid;
+
+impl<const D: usize> CustomField<D> for Grid<D> {
+    fn distance(&self, p: Point<D>) -> f64 {
+        self.value_at(p)
+    }
+
+    fn distance_gradient(&self, p: Point<D>) -> (f64, Vector<f64, D>) {
+        self.at(p)
+    }
+
+    fn promise(&self) -> &Promise<D> {
+        self.promise()
+    }
+
+    /// The mean value form: the value at the centre, the middle of the range of each derivative over the box
+    /// around the cell, and half the range times half the box for what it leaves open.
+    fn model<const M: usize>(&self, cell: &[AffineModel<M>; D]) -> AffineModel<M> {
+        let centre = Vector(cell.map(|x| x.value));
+        let half = Vector(cell.map(|x| x.deviation()));
+        let rounding = self.promise().rounding.within(centre.norm() + half.norm());
+        let value = self.value_at(centre);
+        let around = Aabb { min: centre - half, max: centre + half };
+        let Some(slopes) = self.slopes_over(&around) else {
+            return AffineModel::lipschitz(value, self.promise().lipschitz, cell, rounding);
+        };
+        let mut gradient = [0.0; M];
+        let mut remainder = rounding;
+        for (i, [middle, range]) in slopes.into_iter().enumerate() {
+            for (k, gradient) in gradient.iter_mut().enumerate() {
+                *gradient += middle * cell[i].gradient[k];
+            }
+            let bent = cell[i].lower.max(cell[i].upper);
+            // The gradient is rounded too.
+            remainder += range * half[i] + middle.abs() * (bent + 4.0 * f64::EPSILON * half[i]);
+        }
+        remainder *= 1.0 + 16.0 * f64::EPSILON;
+        AffineModel { value, gradient, lower: remainder, upper: remainder }
+    }
+}
+
+impl<const D: usize> From<Grid<D>> for Shape<D> {
+    fn from(grid: Grid<D>) -> Self {
+        Self::custom(grid)
+    }
+}

@@ -1,0 +1,307 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! A grid: its samples, what is certified of them, and how they are interpolated.
+
+use palpate_field::{Aabb, Bounds, Deviation, Point, Promise, Rounding, Vector};
+
+use crate::certificate::Certificate;
+use crate::control::{MOST_TAPS, gather};
+use crate::error::GridError;
+use crate::lattice::{Lattice, indices, raveled};
+use crate::outside::{at_border, outside};
+use crate::samples::{BRICK, Samples, Store, WIDE};
+use crate::slopes::{SLOPE_BLOCK, Slopes};
+use crate::spline::{Kernel, OfTaps, QUADRATIC, Spline, TRILINEAR};
+
+/// Rounded operations of an interpolated value on numbers up to `|p| + size`.
+const OPERATIONS: f64 = 96.0;
+
+/// Samples of a signed distance at the nodes of a lattice, interpolated: a field.
+///
+/// Within the lattice the value is a B-spline of the samples; outside it grows with the distance to the lattice,
+/// and never exceeds the Lipschitz constant times the distance to the surface. The [`Promise`] holds the Lipschitz
+/// constant, from the control values of every cell's gradient, and the deviation from the shape that was baked.
+#[derive(Clone, Debug)]
+pub struct Grid<const D: usize> {
+    lattice: Lattice<D>,
+    kernel: Kernel,
+    pub(crate) samples: Samples<D>,
+    pub(crate) certificates: Vec<Certificate<D>>,
+    slopes: Slopes<D>,
+    /// The box of the cells [m].
+    region: Aabb<D>,
+    /// How far the formula outside takes the surface to be from the box [m].
+    margin: f64,
+    promise: Promise<D>,
+}
+
+impl<const D: usize> Grid<D> {
+    /// The lattice of its nodes.
+    #[must_use]
+    pub fn lattice(&self) -> &Lattice<D> {
+        &self.lattice
+    }
+
+    /// How it interpolates.
+    #[must_use]
+    pub fn kernel(&self) -> Kernel {
+        self.kernel
+    }
+
+    /// How its samples are stored.
+    #[must_use]
+    pub fn store(&self) -> Store {
+        self.samples.codes.store()
+    }
+
+    /// The samples that are stored: of sparse grids each brick's, those at its border too.
+    #[must_use]
+    pub fn stored_samples(&self) -> usize {
+        self.samples.codes.len()
+    }
+
+    /// The size to which values are clamped [m]; infinite if they are not.
+    #[must_use]
+    pub fn band(&self) -> f64 {
+        self.samples.band
+    }
+
+    /// What its values promise.
+    #[must_use]
+    pub fn promise(&self) -> &Promise<D> {
+        &self.promise
+    }
+
+    /// How far it is certified to deviate from its source [m]; infinite if that is not known.
+    #[must_use]
+    pub fn deviation(&self) -> f64 {
+        let deviation = self.promise.deviation.and_then(|deviation| deviation.of_surface());
+        deviation.unwrap_or(f64::INFINITY)
+    }
+
+    /// Puts certified samples together.
+    pub(crate) fn assemble(
+        lattice: Lattice<D>,
+        kernel: Kernel,
+        samples: Samples<D>,
+        certificates: Vec<Certificate<D>>,
+        compared: Option<Compared<D>>,
+    ) -> Result<Self, GridError> {
+        let cell = lattice.cell;
+        let reach = 0.5 * kernel.taps() as f64;
+        let mut inside: Option<[[usize; 2]; D]> = None;
+        for span in certificates.iter().filter_map(|certificate| certificate.inside) {
+            let whole = inside.get_or_insert(span);
+            for i in 0..D {
+                whole[i] = [whole[i][0].min(span[i][0]), whole[i][1].max(span[i][1])];
+            }
+        }
+        let inside = inside.ok_or(GridError::NoInside { cell })?;
+        let first = Vector(inside.map(|span| span[0] as f64 - reach));
+        let last = Vector(inside.map(|span| span[1] as f64 + reach));
+        let region = region(&lattice, kernel);
+        let bounds = Aabb { min: lattice.at(first), max: lattice.at(last) };
+        for i in 0..D {
+            if bounds.min[i] < region.min[i] || bounds.max[i] > region.max[i] {
+                let mut node = lattice.region().centre();
+                let at_start = bounds.min[i] < region.min[i];
+                node[i] = lattice.node(inside.map(|span| span[usize::from(!at_start)]))[i];
+                return Err(GridError::AtBorder { cell, node: node.0.to_vec() });
+            }
+        }
+        let lipschitz =
+            certificates.iter().fold(0.0_f64, |l, certificate| l.max(certificate.steepness));
+        let parts = BRICK / SLOPE_BLOCK;
+        let slopes = Slopes::new(samples.bricks, parts, |brick| {
+            &certificates[raveled(brick, samples.bricks)].slopes
+        });
+        let size = region.radius_about_origin();
+        // What the source is compared as is never nearer than its box, so no operator may raise the grid more.
+        let all = compared.map_or(bounds, |source| bounds.union(&source.bounds));
+        let promise = Promise::lipschitz(Some(Bounds::of_box(all)), lipschitz)
+            .with_rounding(Rounding::of_operations(OPERATIONS, size));
+        let mut grid = Self {
+            lattice,
+            kernel,
+            samples,
+            certificates,
+            slopes,
+            region,
+            margin: 0.0,
+            promise,
+        };
+        let [least, margin] = match kernel {
+            Kernel::Quadratic => grid.border::<QUADRATIC>(&bounds),
+            Kernel::Trilinear => grid.border::<TRILINEAR>(&bounds),
+        };
+        grid.margin = margin;
+        grid.promise.deviation = compared.map(|source| Deviation {
+            // Outside, values are at least the least at the border.
+            within: source.deviation.within.min(least),
+            ..source.deviation
+        });
+        Ok(grid)
+    }
+
+    /// The least value at the border of the region, and how far the formula outside may take the surface to be from
+    /// it without being steeper than the grid [m].
+    fn border<const K: usize>(&self, bounds: &Aabb<D>) -> [f64; 2]
+    where
+        OfTaps<K>: Spline<K>,
+    {
+        let gaps = (0..D).flat_map(|i| {
+            [bounds.min[i] - self.region.min[i], self.region.max[i] - bounds.max[i]]
+        });
+        let mut margin = gaps.fold(f64::INFINITY, f64::min);
+        let mut least = f64::INFINITY;
+        let last = self.lattice.counts.map(|count| count - K);
+        let mut samples = Vec::new();
+        let mut taps = [0.0; MOST_TAPS];
+        let taps = &mut taps[..K.pow(D as u32)];
+        for brick in indices([0; D], self.samples.bricks) {
+            let keys = |i: usize| [brick[i] * BRICK, brick[i] * BRICK + BRICK - 1];
+            let is_at_border =
+                (0..D).any(|i| keys(i)[0] <= K - 2 || keys(i)[1] >= last[i] + K - 2);
+            if !is_at_border {
+                continue;
+            }
+            self.samples.brick(brick, self.lattice.counts, &mut samples);
+            for own in indices([0; D], [BRICK; D]) {
+                let key: [usize; D] = std::array::from_fn(|i| brick[i] * BRICK + own[i]);
+                if (0..D).any(|i| key[i] < K - 2 || key[i] > last[i] + K - 2) {
+                    continue;
+                }
+                let first = key.map(|key| key + 2 - K);
+                let side = |i: usize| match first[i] {
+                    0 => Some(0),
+                    index if index == last[i] => Some(K - 1),
+                    _ => None,
+                };
+                let sides: [Option<usize>; D] = std::array::from_fn(side);
+                if sides.iter().all(Option::is_none) {
+                    continue;
+                }
+                let place = raveled(own.map(|own| own + 3 - K), [WIDE; D]);
+                gather::<K, D>(&samples, place, taps);
+                let lipschitz = self.promise.lipschitz;
+                let here = at_border::<K, D>(taps, sides, self.lattice.cell, lipschitz);
+                least = least.min(here[0]);
+                margin = margin.min(here[1]);
+            }
+        }
+        [least, margin.max(0.0)]
+    }
+
+    #[inline(always)]
+    fn locate<const K: usize>(&self, p: Point<D>) -> ([usize; D], [f64; D]) {
+        let inverse = 1.0 / self.lattice.cell;
+        let (mut first, mut local) = ([0; D], [0.0; D]);
+        for i in 0..D {
+            let along = (p[i] - self.lattice.origin[i]) * inverse - (0.5 * K as f64 - 1.0);
+            first[i] = (along as usize).min(self.lattice.counts[i] - K);
+            local[i] = along - first[i] as f64;
+        }
+        (first, local)
+    }
+
+    /// The value [m] and the gradient at a point of the region.
+    #[inline]
+    fn inner_gradient(&self, p: Point<D>) -> (f64, Vector<f64, D>) {
+        let (value, slope) = match self.kernel {
+            Kernel::Quadratic => {
+                let (first, local) = self.locate::<QUADRATIC>(p);
+                self.samples.value_slope::<QUADRATIC>(first, local)
+            }
+            Kernel::Trilinear => {
+                let (first, local) = self.locate::<TRILINEAR>(p);
+                self.samples.value_slope::<TRILINEAR>(first, local)
+            }
+        };
+        (value, slope * (1.0 / self.lattice.cell))
+    }
+
+    #[inline]
+    fn inner(&self, p: Point<D>) -> f64 {
+        match self.kernel {
+            Kernel::Quadratic => {
+                let (first, local) = self.locate::<QUADRATIC>(p);
+                self.samples.value::<QUADRATIC>(first, local)
+            }
+            Kernel::Trilinear => {
+                let (first, local) = self.locate::<TRILINEAR>(p);
+                self.samples.value::<TRILINEAR>(first, local)
+            }
+        }
+    }
+
+    #[inline]
+    fn nearest_inside(&self, p: Point<D>) -> Point<D> {
+        Vector(std::array::from_fn(|i| p[i].max(self.region.min[i]).min(self.region.max[i])))
+    }
+
+    /// The value at a point [m].
+    #[inline]
+    pub(crate) fn value_at(&self, p: Point<D>) -> f64 {
+        let q = self.nearest_inside(p);
+        let away = p - q;
+        if away == Vector::ZERO {
+            return self.inner(q);
+        }
+        outside(away, (self.inner(q), Vector::ZERO), self.promise.lipschitz, self.margin).0
+    }
+
+    /// The value at a point [m] and its gradient.
+    #[inline]
+    pub(crate) fn at(&self, p: Point<D>) -> (f64, Vector<f64, D>) {
+        let q = self.nearest_inside(p);
+        let away = p - q;
+        let inner = self.inner_gradient(q);
+        if away == Vector::ZERO {
+            return inner;
+        }
+        outside(away, inner, self.promise.lipschitz, self.margin)
+    }
+
+    /// The middle and half the range of each derivative over a box; `None` where the box leaves the region.
+    pub(crate) fn slopes_over(&self, around: &Aabb<D>) -> Option<[[f64; 2]; D]> {
+        let is_within = (0..D).all(|i| {
+            self.region.min[i] <= around.min[i] && around.max[i] <= self.region.max[i]
+        });
+        if !is_within {
+            return None;
+        }
+        let taps = self.kernel.taps();
+        let (first, last) = match self.kernel {
+            Kernel::Quadratic => {
+                (self.locate::<QUADRATIC>(around.min).0, self.locate::<QUADRATIC>(around.max).0)
+            }
+            Kernel::Trilinear => {
+                (self.locate::<TRILINEAR>(around.min).0, self.locate::<TRILINEAR>(around.max).0)
+            }
+        };
+        let last = last.map(|index| index + taps - 1);
+        let cell = self.lattice.cell;
+        Some(self.slopes.over(first, last).map(|range| {
+            let (least, largest) = (f64::from(range.least), f64::from(range.largest));
+            let half = 0.5 * (largest - least) / cell * (1.0 + 8.0 * f64::EPSILON);
+            [0.5 * (least + largest) / cell, half]
+        }))
+    }
+}
+
+/// What is known of the shape that a grid was baked from.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Compared<const D: usize> {
+    pub(crate) deviation: Deviation,
+    pub(crate) bounds: Aabb<D>,
+}
+
+/// The box of the cells: every point of it has all the samples that its value takes.
+pub(crate) fn region<const D: usize>(lattice: &Lattice<D>, kernel: Kernel) -> Aabb<D> {
+    let start = 0.5 * kernel.taps() as f64 - 1.0;
+    Aabb {
+        min: lattice.at(Vector([start; D])),
+        max: lattice.at(Vector(lattice.counts.map(|count| (count - 1) as f64 - start))),
+    }
+}

@@ -1,0 +1,47 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! Voxel grids as signed distance fields, with certified steepness and deviation.
+//!
+//! A [`Grid`] holds samples of a shape's distance at the nodes of a lattice, and interpolates them with
+//! B-splines. It is a shape of its own: its [`Promise`](palpate_field::Promise) says how steep it is, and how far
+//! it deviates from the shape that it was baked from. A distance and its gradient take the same short time
+//! everywhere, whatever the shape costs.
+//!
+//! ```
+//! use palpate_field::Shape;
+//! use palpate_grid::{Grid, GridOptions};
+//!
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! let ball = Shape::sphere(0.05)?;
+//! let grid = Grid::bake(&ball, &GridOptions::with_tolerance(2e-4))?;
+//! // The grid's surface is nowhere farther from the ball's than was asked for.
+//! assert!(grid.deviation() <= 2e-4);
+//! let baked: Shape<3> = grid.into();
+//! assert!((baked.distance([0.06, 0.0, 0.0]) - 0.01).abs() <= 2e-4);
+//! # Ok(())
+//! # }
+//! ```
+
+mod bake;
+mod certificate;
+mod control;
+mod deviation;
+mod error;
+mod field;
+mod grid;
+mod lattice;
+mod options;
+mod outside;
+mod samples;
+mod slopes;
+mod spline;
+mod threads;
+
+pub use bake::Progress;
+pub use error::GridError;
+pub use grid::Grid;
+pub use lattice::Lattice;
+pub use options::{GridOptions, Resolution};
+pub use samples::Store;
+pub use spline::Kernel;

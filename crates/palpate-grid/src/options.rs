@@ -1,0 +1,125 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! What a grid is asked for.
+
+use palpate_field::{LARGEST_LENGTH, Quantity, SMALLEST_LENGTH, ShapeError, Unit};
+
+use crate::error::GridError;
+use crate::samples::Store;
+use crate::spline::Kernel;
+
+/// How fine a grid is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Resolution {
+    /// The size of a cell [m].
+    Cell(f64),
+    /// The largest deviation from the source that is allowed [m]: cells are as small as that takes.
+    Tolerance(f64),
+}
+
+/// What a grid is asked for.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct GridOptions {
+    /// How fine it is.
+    pub resolution: Resolution,
+    /// How samples are interpolated.
+    pub kernel: Kernel,
+    /// How samples are stored.
+    pub store: Store,
+    /// `None` keeps every sample. With `Some`, values are clamped to so many cells on both sides of the surface,
+    /// and only bricks of samples with smaller ones are stored: a seventh of the memory at 256 cells along each
+    /// axis. Far from the surface the value is then the band, a true bound that says less.
+    pub band: Option<f64>,
+    /// Without a band, values up to so many cells are compared with the source: the deviation is that of the
+    /// surface from 1 on, and of what an operator blends with it from its reach on.
+    pub certified: f64,
+    /// More nodes than these are refused.
+    pub most_nodes: usize,
+}
+
+impl GridOptions {
+    /// The smallest band: a value within less takes clamped samples, so nothing would be certified.
+    pub const SMALLEST_BAND: f64 = 3.0;
+
+    /// Quadratic splines of samples in single precision, all of them, with cells of a size [m].
+    #[must_use]
+    pub const fn with_cell(cell: f64) -> Self {
+        Self::with_resolution(Resolution::Cell(cell))
+    }
+
+    /// The same, with cells as small as a deviation takes [m].
+    #[must_use]
+    pub const fn with_tolerance(tolerance: f64) -> Self {
+        Self::with_resolution(Resolution::Tolerance(tolerance))
+    }
+
+    /// The same, with either.
+    #[must_use]
+    pub const fn with_resolution(resolution: Resolution) -> Self {
+        Self {
+            resolution,
+            kernel: Kernel::Quadratic,
+            store: Store::F32,
+            band: None,
+            certified: 1.0,
+            most_nodes: 1 << 26,
+        }
+    }
+
+    /// The same with another interpolation.
+    #[must_use]
+    pub const fn with_kernel(self, kernel: Kernel) -> Self {
+        Self { kernel, ..self }
+    }
+
+    /// The same with another store.
+    #[must_use]
+    pub const fn with_store(self, store: Store) -> Self {
+        Self { store, ..self }
+    }
+
+    /// The same with only the samples near the surface, within a band of so many cells.
+    #[must_use]
+    pub const fn with_band(self, cells: f64) -> Self {
+        Self { band: Some(cells), ..self }
+    }
+
+    /// The same with the values compared with the source up to so many cells.
+    #[must_use]
+    pub const fn with_certified(self, cells: f64) -> Self {
+        Self { certified: cells, ..self }
+    }
+
+    /// The same with another limit of nodes.
+    #[must_use]
+    pub const fn with_most_nodes(self, most_nodes: usize) -> Self {
+        Self { most_nodes, ..self }
+    }
+
+    pub(crate) fn check(&self) -> Result<(), GridError> {
+        let (name, size) = match self.resolution {
+            Resolution::Cell(cell) => ("cell", cell),
+            Resolution::Tolerance(tolerance) => ("tolerance", tolerance),
+        };
+        let wrong = |parameter: &'static str, rule: &'static str, value: f64, unit: Unit| {
+            Err(GridError::Number(ShapeError::Number {
+                parameter: parameter.into(),
+                rule: rule.into(),
+                value: Quantity(value, unit),
+            }))
+        };
+        if !(SMALLEST_LENGTH..=LARGEST_LENGTH).contains(&size) {
+            return wrong(name, "from 1e-15 to 1e15 m", size, Unit::Metre);
+        }
+        if let Some(band) = self.band.filter(|band| !(Self::SMALLEST_BAND..=1e6).contains(band))
+        {
+            return wrong("band", "from 3 to 1e6 cells", band, Unit::One);
+        }
+        if !(0.0..=1e6).contains(&self.certified) {
+            return wrong("certified", "from 0 to 1e6 cells", self.certified, Unit::One);
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,96 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! B-splines over the samples of a grid, and their control values over a cell.
+
+/// How a grid's samples are interpolated.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Kernel {
+    /// Quadratic B-splines, with samples as coefficients: the gradient is continuous, so a force does not
+    /// step where a hand crosses a cell's side. To be felt.
+    #[default]
+    Quadratic,
+    /// Products of linear functions: half the time, but the gradient steps at the sides of cells.
+    Trilinear,
+}
+
+impl Kernel {
+    /// The name, which stays the same: "quadratic" or "trilinear".
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Quadratic => "quadratic",
+            Self::Trilinear => "trilinear",
+        }
+    }
+
+    /// The samples of a cell along an axis.
+    pub(crate) const fn taps(self) -> usize {
+        match self {
+            Self::Quadratic => QUADRATIC,
+            Self::Trilinear => TRILINEAR,
+        }
+    }
+}
+
+pub(crate) const QUADRATIC: usize = 3;
+pub(crate) const TRILINEAR: usize = 2;
+
+/// A cell's splines along one axis, with the `K` samples that they take.
+///
+/// The weights are a partition of one with mean `x + K/2 − 1`, so affine samples give the affine function.
+pub(crate) trait Spline<const K: usize> {
+    /// The weights of the samples at `x`, from 0 to 1 within the cell.
+    fn weights(x: f64) -> [f64; K];
+    /// The derivatives of the weights.
+    fn slopes(x: f64) -> [f64; K];
+    /// The samples' share in the control values of the value, in the basis of Bernstein of degree `K − 1`.
+    const VALUES: [[f64; K]; K];
+    /// The samples' share in the control values of the derivative, in the same basis.
+    const SLOPES: [[f64; K]; K];
+    /// The control values' share in those of the lower and of the upper half of the cell (de Casteljau).
+    const HALVES: [[[f64; K]; K]; 2];
+}
+
+/// The splines that the number of samples along an axis names.
+#[derive(Debug)]
+pub(crate) struct OfTaps<const K: usize>;
+
+impl Spline<QUADRATIC> for OfTaps<QUADRATIC> {
+    #[inline(always)]
+    fn weights(x: f64) -> [f64; QUADRATIC] {
+        let y = 1.0 - x;
+        [0.5 * y * y, 0.5 + x * y, 0.5 * x * x]
+    }
+
+    #[inline(always)]
+    fn slopes(x: f64) -> [f64; QUADRATIC] {
+        [x - 1.0, 1.0 - 2.0 * x, x]
+    }
+
+    const VALUES: [[f64; QUADRATIC]; QUADRATIC] =
+        [[0.5, 0.5, 0.0], [0.0, 1.0, 0.0], [0.0, 0.5, 0.5]];
+    const SLOPES: [[f64; QUADRATIC]; QUADRATIC] =
+        [[-1.0, 1.0, 0.0], [-0.5, 0.0, 0.5], [0.0, -1.0, 1.0]];
+    const HALVES: [[[f64; QUADRATIC]; QUADRATIC]; 2] = [
+        [[1.0, 0.0, 0.0], [0.5, 0.5, 0.0], [0.25, 0.5, 0.25]],
+        [[0.25, 0.5, 0.25], [0.0, 0.5, 0.5], [0.0, 0.0, 1.0]],
+    ];
+}
+
+impl Spline<TRILINEAR> for OfTaps<TRILINEAR> {
+    #[inline(always)]
+    fn weights(x: f64) -> [f64; TRILINEAR] {
+        [1.0 - x, x]
+    }
+
+    #[inline(always)]
+    fn slopes(_x: f64) -> [f64; TRILINEAR] {
+        [-1.0, 1.0]
+    }
+
+    const VALUES: [[f64; TRILINEAR]; TRILINEAR] = [[1.0, 0.0], [0.0, 1.0]];
+    const SLOPES: [[f64; TRILINEAR]; TRILINEAR] = [[-1.0, 1.0], [-1.0, 1.0]];
+    const HALVES: [[[f64; TRILINEAR]; TRILINEAR]; 2] =
+        [[[1.0, 0.0], [0.5, 0.5]], [[0.5, 0.5], [0.0, 1.0]]];
+}
