@@ -137,6 +137,7 @@ const cases = [
         const { page, context, complaints } = await opened(url, { viewport: { width, height }, colorScheme });
         check(!page.url().includes('#'), 'the token stays in the address');
         await page.waitForTimeout(3000);
+        await until('a whole picture', () => page.evaluate(async () => (await import('/panels/page.js')).page.stage.stats().isStill));
         const wrong = await violations(page);
         check(wrong.length === 0, `axe: ${wrong.join('; ')}`);
         await page.screenshot({ path: join(pictures, `gallery-${width}-${colorScheme}.png`) });
