@@ -17,6 +17,7 @@ mod eval;
 mod feel;
 mod gallery;
 mod gradients;
+mod grid;
 mod hand_csv;
 mod identify;
 mod input;
@@ -110,7 +111,8 @@ fn obey(command: &Command, interrupt: &Interrupt) -> Result<Outcome, Failure> {
         Command::Gallery(options) => gallery::run(options, interrupt),
         Command::Check(options) => check::run(options),
         Command::Mass(options) => mass::run(options, interrupt),
-        Command::Mesh(options) => mesh::run(options),
+        Command::Grid(options) => grid::run(options, interrupt),
+        Command::Mesh(options) => mesh::run(options, interrupt),
         Command::Schema => schema::run(),
         Command::Shapes(options) => shapes::run(options),
         Command::Devices(options) => devices::run(options),

@@ -1,30 +1,30 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! `palpate mesh`: checks a mesh file.
+//! `palpate mesh`: checks a mesh file, or makes one of a scene.
+
+mod contour;
 
 use std::fs::File;
 use std::io::{Read, Write};
 use std::path::Path;
 
-use palpate::mesh::{Format, ReadError, ReadProblem, Report, Solid, read_file};
+use palpate::mesh::{Format, ReadError, ReadProblem, Report, Solid, TriangleMesh, read_file};
 use serde_json::json;
 
 use crate::arguments::MeshOptions;
+use crate::interrupt::Interrupt;
 use crate::kind::Kind;
 use crate::numbers::rounded;
 use crate::outcome::{Failure, Outcome};
 use crate::output::{self, shown};
 
 /// Reports on a mesh; the answer is no if it is not watertight or has degenerate triangles.
-pub(crate) fn run(options: &MeshOptions) -> Result<Outcome, Failure> {
-    let mut mesh = read_file(&options.file).map_err(|error| refused(&options.file, &error))?;
-    if let Some(scale) = options.scale {
-        mesh = mesh.scaled(scale).map_err(|error| Failure::file(&options.file, error))?;
+pub(crate) fn run(options: &MeshOptions, interrupt: &Interrupt) -> Result<Outcome, Failure> {
+    if let Some(output) = &options.output {
+        return contour::run(options, output, interrupt);
     }
-    if options.weld {
-        mesh = mesh.welded();
-    }
+    let mesh = mesh(options)?;
     let report = mesh.report();
     let solid = Solid::from_mesh(&mesh);
     let crosses = solid.as_ref().is_ok_and(|(_, found)| found.crossings + found.touching > 0);
@@ -61,6 +61,15 @@ pub(crate) fn run(options: &MeshOptions) -> Result<Outcome, Failure> {
         }
     }
     Ok(if is_good { Outcome::Yes } else { Outcome::No })
+}
+
+/// The mesh of the file, as the options change it.
+fn mesh(options: &MeshOptions) -> Result<TriangleMesh, Failure> {
+    let mut mesh = read_file(&options.file).map_err(|error| refused(&options.file, &error))?;
+    if let Some(scale) = options.scale {
+        mesh = mesh.scaled(scale).map_err(|error| Failure::file(&options.file, error))?;
+    }
+    Ok(if options.weld { mesh.welded() } else { mesh })
 }
 
 /// Bytes of a file that tell what it is.

@@ -267,10 +267,19 @@ impl<const D: usize> Promise<D> {
     #[must_use]
     pub fn in_words(&self) -> String {
         let outside = self.outside.word();
-        if !self.has_interior {
-            return format!("{outside} outside, no inside");
+        let inside = match self.has_interior {
+            true => format!("{} inside", self.inside.word()),
+            false => "no inside".to_owned(),
+        };
+        match self.deviation.map(|deviation| deviation.of_surface()) {
+            None => format!("{outside} outside, {inside}"),
+            Some(Some(value)) => {
+                format!("{outside} outside, {inside}, off its source by at most {value:.2e} m")
+            }
+            Some(None) => {
+                format!("{outside} outside, {inside}, off its source by an unknown distance")
+            }
         }
-        format!("{outside} outside, {} inside", self.inside.word())
     }
 
     /// The promise of a closed formula that is exact on both sides.

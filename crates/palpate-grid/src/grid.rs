@@ -33,6 +33,7 @@ pub struct Grid<const D: usize> {
     region: Aabb<D>,
     /// How far the formula outside takes the surface to be from the box [m].
     margin: f64,
+    compared: Option<Compared<D>>,
     promise: Promise<D>,
 }
 
@@ -78,6 +79,10 @@ impl<const D: usize> Grid<D> {
     pub fn deviation(&self) -> f64 {
         let deviation = self.promise.deviation.and_then(|deviation| deviation.of_surface());
         deviation.unwrap_or(f64::INFINITY)
+    }
+
+    pub(crate) fn compared(&self) -> Option<Compared<D>> {
+        self.compared
     }
 
     /// Puts certified samples together.
@@ -129,6 +134,7 @@ impl<const D: usize> Grid<D> {
             slopes,
             region,
             margin: 0.0,
+            compared,
             promise,
         };
         let [least, margin] = match kernel {
@@ -295,6 +301,14 @@ impl<const D: usize> Grid<D> {
 pub(crate) struct Compared<const D: usize> {
     pub(crate) deviation: Deviation,
     pub(crate) bounds: Aabb<D>,
+}
+
+impl<const D: usize> Compared<D> {
+    /// What stands in a file for nothing.
+    pub(crate) const NONE: Self = Self {
+        deviation: Deviation { value: 0.0, within: 0.0 },
+        bounds: Aabb { min: Vector::ZERO, max: Vector::ZERO },
+    };
 }
 
 /// The box of the cells: every point of it has all the samples that its value takes.

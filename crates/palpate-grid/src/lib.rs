@@ -29,6 +29,8 @@ mod control;
 mod deviation;
 mod error;
 mod field;
+#[cfg(feature = "files")]
+mod file;
 mod grid;
 mod lattice;
 mod options;
@@ -40,6 +42,8 @@ mod threads;
 
 pub use bake::Progress;
 pub use error::GridError;
+#[cfg(feature = "files")]
+pub use file::{GridFileError, GridFileProblem, LARGEST_FILE};
 pub use grid::Grid;
 pub use lattice::Lattice;
 pub use options::{GridOptions, Resolution};

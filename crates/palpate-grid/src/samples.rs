@@ -27,6 +27,9 @@ pub enum Store {
 }
 
 impl Store {
+    /// Every store.
+    pub const ALL: [Self; 3] = [Self::F32, Self::I16, Self::I8];
+
     /// The name, which stays the same: "f32", "i16" or "i8".
     #[must_use]
     pub const fn name(self) -> &'static str {
@@ -116,6 +119,26 @@ impl Codes {
             Self::I8(codes) => {
                 codes.iter().map(|code| code.unsigned_abs()).max().unwrap_or(0).into()
             }
+        }
+    }
+
+    /// The codes that a file holds.
+    pub(crate) fn from_le_bytes(store: Store, bytes: &[u8]) -> Self {
+        match store {
+            Store::F32 => {
+                Self::F32(bytes.as_chunks().0.iter().map(|c| f32::from_le_bytes(*c)).collect())
+            }
+            Store::I16 => {
+                Self::I16(bytes.as_chunks().0.iter().map(|c| i16::from_le_bytes(*c)).collect())
+            }
+            Store::I8 => Self::I8(bytes.iter().map(|c| c.cast_signed()).collect()),
+        }
+    }
+
+    pub(crate) fn are_finite(&self) -> bool {
+        match self {
+            Self::F32(codes) => codes.iter().all(|code| code.is_finite()),
+            Self::I16(_) | Self::I8(_) => true,
         }
     }
 

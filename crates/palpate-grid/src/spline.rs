@@ -15,6 +15,9 @@ pub enum Kernel {
 }
 
 impl Kernel {
+    /// Every kernel.
+    pub const ALL: [Self; 2] = [Self::Quadratic, Self::Trilinear];
+
     /// The name, which stays the same: "quadratic" or "trilinear".
     #[must_use]
     pub const fn name(self) -> &'static str {

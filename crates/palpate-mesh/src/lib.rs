@@ -26,6 +26,7 @@
 #![cfg_attr(test, allow(clippy::float_cmp, reason = "tests compare exact numbers"))]
 
 mod ball;
+mod contour;
 mod error;
 #[doc(hidden)]
 pub mod internal;
@@ -36,7 +37,10 @@ mod read;
 mod report;
 mod solid;
 mod tree;
+#[cfg(feature = "files")]
+mod write;
 
+pub use contour::{ContourError, ContourOptions};
 pub use error::MeshError;
 pub use mesh::{Mesh, Outline, TriangleMesh};
 pub use polygon::MOST_CORNERS;

@@ -118,10 +118,8 @@ impl<const N: usize, const D: usize> Mesh<N, D> {
         for (element, indices) in self.elements().iter().enumerate() {
             let corners = self.corners(element);
             let is_repeated = (1..N).any(|i| indices[..i].contains(&indices[i]));
-            let (size, height) = size(&corners);
-            let largest = corners.iter().flat_map(|p| p.0).fold(0.0_f64, |m, x| m.max(x.abs()));
-            report.degenerate += usize::from(is_repeated || height <= FLAT * largest);
-            report.surface += size;
+            report.degenerate += usize::from(is_repeated || is_flat(&corners, FLAT));
+            report.surface += size(&corners).0;
             enclosed += signed_volume(&corners, middle);
         }
         for rim in self.rims().chunk_by(|a, b| a.0 == b.0) {
@@ -161,6 +159,15 @@ impl<const N: usize, const D: usize> Mesh<N, D> {
         sets.sort_unstable();
         sets.windows(2).filter(|pair| pair[0] == pair[1]).count()
     }
+}
+
+/// Whether the height of an element is at most this share of its largest coordinate.
+pub(crate) fn is_flat<const N: usize, const D: usize>(
+    corners: &[Point<D>; N],
+    share: f64,
+) -> bool {
+    let largest = corners.iter().flat_map(|p| p.0).fold(0.0_f64, |m, x| m.max(x.abs()));
+    size(corners).1 <= share * largest
 }
 
 /// The length of a segment or the area of a triangle, and its least extent: its length,

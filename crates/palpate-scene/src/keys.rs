@@ -61,6 +61,8 @@ pub(crate) const BEND: &str = "bend";
 pub(crate) const TWIST_DEGREES: &str = "twist_degrees";
 /// `{ "twist": .., "of": .. }`.
 pub(crate) const TWIST: &str = "twist";
+/// `{ "bake": { "tolerance": .. }, "of": .. }`.
+pub(crate) const BAKE: &str = "bake";
 /// `{ "extrude": .., "of": .. }`.
 pub(crate) const EXTRUDE: &str = "extrude";
 /// `{ "revolve": "y", "of": .. }`.
@@ -69,6 +71,8 @@ pub(crate) const REVOLVE: &str = "revolve";
 pub(crate) const OF: &str = "of";
 /// `{ "mesh": { "file": "nut.ply", "scale": 0.001 } }`.
 pub(crate) const MESH: &str = "mesh";
+/// `{ "grid": { "file": "part.grid" } }`.
+pub(crate) const GRID: &str = "grid";
 /// `{ "shape": "name" }`.
 pub(crate) const SHAPE: &str = "shape";
 /// What a shape is for.
@@ -94,7 +98,7 @@ pub(crate) const LISTS: [(&str, &str); 9] = [
 ];
 
 /// The operators with one operand, under [`OF`]; the first three go together.
-pub(crate) const UNARY: [(&str, &str); 15] = [
+pub(crate) const UNARY: [(&str, &str); 16] = [
     (TRANSLATE, "Moves the shape [m]; after the rotation, if there is one."),
     (ROTATE_DEGREES, "Turns the shape: degrees in 2D, axis and angle in 3D."),
     (ROTATION, "Turns the shape: the rows of a matrix, or in 3D a quaternion [x, y, z, w]."),
@@ -111,6 +115,10 @@ pub(crate) const UNARY: [(&str, &str); 15] = [
     (BEND, "As bend_degrees, in radians for each metre."),
     (TWIST_DEGREES, "Twists the shape: turns it about y by so much for each metre of y."),
     (TWIST, "As twist_degrees, in radians for each metre."),
+    (
+        BAKE,
+        "Samples the shape on a grid: its distance then takes the same short time everywhere.",
+    ),
     (EXTRUDE, "Gives a 2D shape, drawn in x and z, a height along y [m]."),
     (REVOLVE, "Turns a 2D shape about y, its x the distance from the axis."),
 ];
@@ -165,7 +173,8 @@ pub(crate) fn all_keys(dimension: Dimension) -> Vec<&'static str> {
     let lists = LISTS.iter().map(|(key, _)| *key);
     let unary = UNARY.iter().map(|(key, _)| *key).filter(is_there);
     let primitives = catalogue::signatures().filter(|s| s.dimension == dimension);
-    let others = OTHERS.into_iter().chain([SHAPE]).chain([MESH].into_iter().filter(is_there));
+    let others =
+        OTHERS.into_iter().chain([SHAPE, GRID]).chain([MESH].into_iter().filter(is_there));
     let names = primitives.map(|signature| signature.name);
     let mut keys: Vec<_> = names.chain(lists).chain(unary).chain(others).collect();
     keys.sort_unstable();

@@ -41,12 +41,14 @@
 mod advice;
 mod angle;
 mod attitude;
+mod beside;
 mod build;
 mod catalogue;
 mod check;
 mod device_file;
 mod encoding;
 mod error;
+mod grids;
 mod guide;
 mod json;
 mod keys;

@@ -13,14 +13,29 @@ pub(super) const EXAMPLES: &str = "\
 Examples:
   palpate mesh testdata/meshes/nut.ply
   palpate mesh part.stl --scale 0.001 --json
+  palpate mesh scenes/cup.json --tolerance 2e-4 --output cup.stl
 
-Status 1 if the mesh is not watertight, or has triangles without area.";
+Status 1 if the mesh is not watertight, or has triangles without area or that cross. A mesh that is
+written is closed, faces outwards and keeps edges sharp; what it says of its error is certified.";
 
 /// The options of `palpate mesh`.
 #[derive(Args, Debug)]
 pub(crate) struct MeshOptions {
-    /// The mesh file: .obj, .stl, .ply or .glb.
+    /// The mesh file to check: .obj, .stl, .ply or .glb. With --output, the scene or the mesh to make a
+    /// mesh of.
     pub(crate) file: PathBuf,
+    /// Write the surface of the scene as a mesh; the name ends in .obj, .stl, .ply or .glb.
+    #[arg(long, short, value_name = "FILE")]
+    pub(crate) output: Option<PathBuf>,
+    /// The largest distance of a triangle from the surface [m]: cells are as small as it takes.
+    #[arg(long, requires = "output", allow_negative_numbers = true, value_parser = length, conflicts_with = "cell")]
+    pub(crate) tolerance: Option<f64>,
+    /// The side of the cells in which vertices lie [m]; a hundredth of the scene if left out.
+    #[arg(long, requires = "output", allow_negative_numbers = true, value_parser = length)]
+    pub(crate) cell: Option<f64>,
+    /// Of a scene, one body instead of all.
+    #[arg(long, requires = "output", value_name = "NAME")]
+    pub(crate) body: Option<String>,
     /// The unit of the file in metres: 0.001 for millimetres.
     #[arg(long, value_name = "METRES", allow_negative_numbers = true, value_parser = length)]
     pub(crate) scale: Option<f64>,

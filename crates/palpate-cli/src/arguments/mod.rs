@@ -11,6 +11,7 @@ mod eval;
 mod feel;
 mod gallery;
 mod gradients;
+mod grid;
 mod identify;
 mod jitter;
 mod live;
@@ -33,6 +34,7 @@ pub(crate) use eval::EvalOptions;
 pub(crate) use feel::{DeviceChoice, FeelOptions, RecoveryChoice};
 pub(crate) use gallery::{Format, GalleryOptions, Plane};
 pub(crate) use gradients::GradientsOptions;
+pub(crate) use grid::GridOptions;
 pub(crate) use identify::IdentifyOptions;
 pub(crate) use jitter::JitterOptions;
 pub(crate) use live::{LiveOptions, PageOptions};
@@ -102,6 +104,9 @@ pub(crate) enum Command {
     /// Compute volume, mass, centroid and moments of the bodies, with error bounds.
     #[command(after_help = mass::EXAMPLES)]
     Mass(MassOptions),
+    /// Sample a scene on a grid, with a certified deviation, and write it as a file.
+    #[command(after_help = grid::EXAMPLES)]
+    Grid(GridOptions),
     /// Check whether a mesh file (OBJ, STL, PLY, GLB) is watertight, and list its defects.
     #[command(after_help = mesh::EXAMPLES)]
     Mesh(MeshOptions),

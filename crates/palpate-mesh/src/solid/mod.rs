@@ -17,18 +17,24 @@ use palpate_field::{
 };
 
 use crate::mesh::Mesh;
+use crate::report::is_flat;
 use crate::tree::{BallTree, FAN};
 use boxes::Boxes;
 pub use error::SolidError;
 pub use findings::Findings;
-use foot::{Foot, across, foot};
+use foot::{Foot, Part, across, foot};
 use normals::Normals;
 pub use repair::Opening;
+pub(crate) use repair::crossing_faces;
 use repair::{Crossings, Pieces, Repair};
 use winding::WindingTree;
 
 /// Rounded operations of a distance on numbers up to `|p| + size`.
 const OPERATIONS: f64 = 64.0;
+
+/// The normal of a face of at most this height, as a share of its largest coordinate, may be off by more than 1e-3:
+/// the rounding of its corners.
+const DOUBTFUL: f64 = 1e-12;
 
 /// A mesh whose caps are larger than this share of its faces is a sheet.
 const SHEET: f64 = 0.9;
@@ -80,15 +86,15 @@ impl<const N: usize, const D: usize> Solid<N, D> {
     /// If no face is left, or the faces bound no solid: a piece is not orientable, faces around an edge do not
     /// cancel even with caps, or the caps are as large as the faces, as of a sheet.
     pub fn from_mesh(mesh: &Mesh<N, D>) -> Result<(Self, Findings<D>), SolidError> {
-        let size =
-            mesh.bounds().half_extents().0.iter().fold(0.0, |size, half| half.max(size)) * 2.0;
-        if !(SMALLEST_LENGTH..=LARGEST_LENGTH).contains(&size) {
-            return Err(SolidError::Size { size });
-        }
         let Repair { vertices, elements, mut findings, pieces } = Repair::of(mesh);
         let given = mesh.elements().len();
         if elements.is_empty() {
             return Err(SolidError::NoFaces { given });
+        }
+        let size =
+            mesh.bounds().half_extents().0.iter().fold(0.0, |size, half| half.max(size)) * 2.0;
+        if !(SMALLEST_LENGTH..=LARGEST_LENGTH).contains(&size) {
+            return Err(SolidError::Size { size });
         }
         if findings.one_sided > 0 {
             return Err(SolidError::OneSided { pieces: findings.one_sided });
@@ -119,7 +125,7 @@ impl<const N: usize, const D: usize> Solid<N, D> {
         let crossings = Crossings::of(&vertices, &ordered, &boxes, are_solids);
         (findings.crossings, findings.touching) = (crossings.crossings, crossings.touching);
         findings.crossing_at = crossings.at;
-        findings.flat = faces.iter().filter(|face| across(face) == Vector::ZERO).count();
+        findings.flat = faces.iter().filter(|face| is_flat(face, DOUBTFUL)).count();
         let winding = findings.has_inner_faces().then(|| WindingTree::new(&faces));
         let normals = Normals::new(vertices.len(), &ordered, &faces);
         let promise = promise(&faces, &quality(&findings, &crossings, &pieces));
@@ -162,7 +168,14 @@ impl<const N: usize, const D: usize> Solid<N, D> {
             Some(winding) => winding.is_inside(&self.faces, p),
         };
         let side = if is_inside { -1.0 } else { 1.0 };
-        let gradient = if distance > 0.0 { away * (side / distance) } else { normal };
+        // Near the surface the way to the foot is rounding alone; over a face it is the normal.
+        let is_known = distance > self.promise.rounding.within(p.norm());
+        let gradient = match foot.part {
+            Part::Face if is_known && side * away.dot(normal) < 0.0 => -normal,
+            Part::Face => normal,
+            _ if is_known => away * (side / distance),
+            _ => normal,
+        };
         (side * distance, gradient)
     }
 }

@@ -13,8 +13,9 @@ use super::operator::{over, refused};
 use super::primitive::primitive;
 use super::size::{Allowance, Size};
 use crate::advice;
+use crate::grids::{KeptGrids, PLANAR, SPATIAL, WrittenGrid};
 use crate::json::{self, found};
-use crate::keys::{self, EXTRUDE, MESH, OF, REVOLVE};
+use crate::keys::{self, EXTRUDE, GRID, MESH, OF, REVOLVE};
 use crate::mesh_file::{BuiltMesh, WrittenMesh};
 use crate::names::shortened;
 use crate::pose::{Turning, Turns};
@@ -59,6 +60,9 @@ pub(super) trait Space<'a, const D: usize> {
 
     /// The solid of a mesh file.
     fn mesh(&mut self, object: &Object<'a>, level: usize) -> Result<Built<D>, Problems>;
+
+    /// The grids of its shapes that are kept.
+    fn grids() -> &'static KeptGrids<D>;
 
     /// A shape twisted by a `rate` [rad/m] that is given under `key`.
     fn twisted(shape: Shape<D>, key: &str, rate: f64) -> Result<Shape<D>, Problems>;
@@ -239,6 +243,16 @@ impl<'a> Builder<'a> {
                 }
             },
             EXTRUDE | REVOLVE => self.solid(object, level),
+            GRID => {
+                let written: WrittenGrid =
+                    json::read(object.value(GRID)?).map_err(|problems| problems.under(GRID))?;
+                let size = Size { nodes: 1, depth: 0 };
+                self.allowance.take(size, level)?;
+                let shape = written
+                    .built(self.scene.folder.as_deref(), Self::grids())
+                    .map_err(|problem| problem.under(GRID))?;
+                Ok(Built { shape, size })
+            }
             MESH => self.mesh(&object, level).map_err(|problems| problems.under(MESH)),
             head if keys::is_one_of(&keys::UNARY, head) => self.unary(&object, level),
             head if keys::is_one_of(&keys::LISTS, head) => self.list(&object, level),
@@ -292,6 +306,10 @@ impl<'a> Space<'a, 2> for Builder<'a> {
         Err(Problem::new(message).of_dimension().into())
     }
 
+    fn grids() -> &'static KeptGrids<2> {
+        &PLANAR
+    }
+
     fn twisted(_shape: Shape<2>, key: &str, _rate: f64) -> Result<Shape<2>, Problems> {
         let message = format!("`{key}` twists a 3D shape, this place is 2D");
         Err(Problem::new(message).of_dimension().into())
@@ -332,6 +350,10 @@ impl<'a> Space<'a, 3> for Builder<'a> {
             self.meshes.push(mesh);
         }
         Ok(Built { shape, size })
+    }
+
+    fn grids() -> &'static KeptGrids<3> {
+        &SPATIAL
     }
 
     fn twisted(shape: Shape<3>, key: &str, rate: f64) -> Result<Shape<3>, Problems> {

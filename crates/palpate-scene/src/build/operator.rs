@@ -11,6 +11,7 @@ use serde_json::Value;
 use super::builder::{Builder, Built, Space};
 use super::object::Object;
 use super::size::Size;
+use crate::grids::WrittenBake;
 use crate::json::{self, found};
 use crate::keys;
 use crate::pose::{self, Turning, Turns};
@@ -128,6 +129,16 @@ impl<'a> Builder<'a> {
         Turns: Turning<D>,
     {
         let child = self.operand(object, level);
+        if object.head == keys::BAKE && child.is_err() {
+            // What stands in for the operand may have another size, so it is not baked.
+            return over(child, |child| {
+                object
+                    .read::<WrittenBake>(keys::BAKE)?
+                    .check()
+                    .map_err(|p| p.under(keys::BAKE))?;
+                Ok(child)
+            });
+        }
         over(child, |child| {
             let size = match object.head {
                 keys::REPEAT => Size::over(&[child.size.repeated(D as u32)]),
@@ -183,6 +194,12 @@ impl<'a> Builder<'a> {
                 let is_degrees = key == keys::TWIST_DEGREES;
                 let rate = if is_degrees { rate.to_radians() } else { rate };
                 return Self::twisted(child, key, rate);
+            }
+            keys::BAKE => {
+                let written: WrittenBake = object.read(key)?;
+                return written
+                    .baked(child, Self::grids())
+                    .map_err(|problem| problem.under(key).into());
             }
             _ => {
                 let (degrees, rows) = Problems::both(

@@ -4,6 +4,7 @@
 //! The schema of a shape: its keys, and which go together.
 
 use palpate_field::kernel::{Parameter, ParameterKind};
+use palpate_grid::{GridOptions, Kernel, Store};
 use serde_json::{Map, Value, json};
 
 use super::{place, reference};
@@ -50,6 +51,8 @@ pub(super) fn schema(dimension: Dimension) -> Value {
     makers.extend(others.into_iter().map(requires));
     makers.push(json!({ "anyOf": moving.into_iter().map(requires).collect::<Vec<_>>() }));
     makers.push(requires(keys::SHAPE));
+    properties.insert(keys::GRID.to_owned(), grid());
+    makers.push(requires(keys::GRID));
     if dimension == Dimension::Three {
         properties.insert(keys::MESH.to_owned(), mesh());
         makers.push(requires(keys::MESH));
@@ -197,6 +200,7 @@ fn operator(key: &str, dimension: Dimension) -> Option<Value> {
         keys::REPEAT => rows(dimension),
         keys::BEND_DEGREES | keys::BEND => json!({ "type": "number" }),
         keys::TWIST_DEGREES | keys::TWIST if is_solid => json!({ "type": "number" }),
+        keys::BAKE => bake(),
         keys::EXTRUDE if is_solid => factor,
         keys::REVOLVE if is_solid => json!({ "enum": ["y"] }),
         _ => return None,
@@ -268,6 +272,47 @@ fn capitalised(text: &str) -> String {
         Some(first) => first.to_uppercase().chain(characters).collect(),
         None => String::new(),
     }
+}
+
+/// The grid of a file.
+fn grid() -> Value {
+    json!({
+        "description": "A grid that was baked before: a file, beside the scene's or in a folder beside it.",
+        "type": "object",
+        "properties": {
+            "file": { "description": "A file of `palpate grid`.", "type": "string", "minLength": 1 },
+        },
+        "required": ["file"],
+        "additionalProperties": false,
+    })
+}
+
+/// How a shape is baked.
+fn bake() -> Value {
+    let length =
+        |about: &str| json!({ "description": about, "type": "number", "exclusiveMinimum": 0 });
+    json!({
+        "type": "object",
+        "properties": {
+            "tolerance": length("The largest deviation from the shape [m]; cells are as small as it takes."),
+            "cell": length("The size of a cell [m], instead of a tolerance."),
+            "kernel": {
+                "description": "How samples are interpolated; quadratic if left out, to be touched.",
+                "enum": Kernel::ALL.map(Kernel::name),
+            },
+            "store": {
+                "description": "How samples are stored; f32 if left out.",
+                "enum": Store::ALL.map(Store::name),
+            },
+            "band": {
+                "description": "Only samples within so many cells of the surface are kept; all if left out.",
+                "type": "number",
+                "minimum": GridOptions::SMALLEST_BAND,
+            },
+        },
+        "oneOf": [{ "required": ["tolerance"] }, { "required": ["cell"] }],
+        "additionalProperties": false,
+    })
 }
 
 /// The solid of a mesh file.

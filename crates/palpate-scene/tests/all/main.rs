@@ -11,6 +11,7 @@ mod errors_in_bodies;
 mod from_code;
 mod fuzz;
 mod generated;
+mod grids;
 mod hostile;
 mod materials;
 mod mesh_files;

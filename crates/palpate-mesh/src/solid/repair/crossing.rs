@@ -3,9 +3,12 @@
 
 //! Faces that cross or touch each other elsewhere than at common corners, by exact predicates (Shewchuk 1997).
 
+use std::collections::BTreeSet;
+
 use palpate_field::{Aabb, Point, Vector};
 use robust::{Coord, Coord3D, orient2d, orient3d};
 
+use crate::mesh::Mesh;
 use crate::solid::boxes::Boxes;
 use crate::tree::FAN;
 
@@ -49,35 +52,62 @@ impl<const D: usize> Crossings<D> {
         boxes: &Boxes<D>,
         are_solids: impl Fn(usize, usize) -> bool,
     ) -> Self {
-        let of = |i: usize| Element {
-            corners: elements[i].map(|index| vertices[index as usize]),
-            names: elements[i],
-        };
         let mut found = Self { only_solids: true, ..Self::default() };
         let mut touching_at = None;
-        for i in 0..elements.len() {
-            let one = of(i);
-            let Some(around) = Aabb::around(one.corners) else { continue };
-            boxes.overlapping(&around, |group| {
-                for k in (group * FAN).max(i + 1)..elements.len().min((group + 1) * FAN) {
-                    let meeting = one.meeting(&of(k));
-                    match meeting {
-                        Meeting::Apart => {}
-                        Meeting::Touching => {
-                            found.touching += 1;
-                            touching_at.get_or_insert_with(|| one.middle());
-                        }
-                        Meeting::Crossing => {
-                            found.crossings += 1;
-                            found.only_solids &= are_solids(i, k);
-                            found.at.get_or_insert_with(|| one.middle());
-                        }
-                    }
-                }
-            });
-        }
+        each_meeting(vertices, elements, boxes, |[i, k], meeting, place| match meeting {
+            Meeting::Apart => {}
+            Meeting::Touching => {
+                found.touching += 1;
+                touching_at.get_or_insert(place);
+            }
+            Meeting::Crossing => {
+                found.crossings += 1;
+                found.only_solids &= are_solids(i, k);
+                found.at.get_or_insert(place);
+            }
+        });
         found.at = found.at.or(touching_at);
         found
+    }
+}
+
+/// The faces of a mesh that cross others, or touch them elsewhere than at common corners.
+pub(crate) fn crossing_faces<const N: usize, const D: usize>(
+    mesh: &Mesh<N, D>,
+) -> BTreeSet<usize> {
+    let order = mesh.tree().order();
+    let ordered: Vec<_> = order.iter().map(|face| mesh.elements()[*face as usize]).collect();
+    let corners = |element: &[u32; N]| element.map(|index| mesh.vertices()[index as usize]);
+    let boxes = Boxes::new(&ordered.iter().map(corners).collect::<Vec<_>>());
+    let mut found = BTreeSet::new();
+    each_meeting(mesh.vertices(), &ordered, &boxes, |pair, meeting, _| {
+        if meeting != Meeting::Apart {
+            found.extend(pair.map(|face| order[face] as usize));
+        }
+    });
+    found
+}
+
+/// Calls `visit` with each pair of elements whose boxes share a point, how they meet, and the middle of the first
+/// one. Elements are in the order of the boxes.
+fn each_meeting<const N: usize, const D: usize>(
+    vertices: &[Point<D>],
+    elements: &[[u32; N]],
+    boxes: &Boxes<D>,
+    mut visit: impl FnMut([usize; 2], Meeting, Point<D>),
+) {
+    let of = |i: usize| Element {
+        corners: elements[i].map(|index| vertices[index as usize]),
+        names: elements[i],
+    };
+    for i in 0..elements.len() {
+        let one = of(i);
+        let Some(around) = Aabb::around(one.corners) else { continue };
+        boxes.overlapping(&around, |group| {
+            for k in (group * FAN).max(i + 1)..elements.len().min((group + 1) * FAN) {
+                visit([i, k], one.meeting(&of(k)), one.middle());
+            }
+        });
     }
 }
 

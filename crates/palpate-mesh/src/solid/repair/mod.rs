@@ -14,6 +14,7 @@ use palpate_field::Point;
 
 pub use cap::Opening;
 pub(super) use crossing::Crossings;
+pub(crate) use crossing::crossing_faces;
 pub(super) use orient::Pieces;
 pub(super) use rims::{by_rim, sides};
 

@@ -1,0 +1,120 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! `palpate grid`: samples a scene on a grid.
+
+use std::io::Write;
+use std::ops::ControlFlow;
+
+use palpate::field::Shape;
+use palpate::grid::{Grid, GridError, Progress};
+use palpate::scene::{AnyScene, BuiltScene};
+use serde_json::json;
+
+use crate::arguments::GridOptions;
+use crate::error_map::bar;
+use crate::input;
+use crate::interrupt::Interrupt;
+use crate::outcome::{Failure, Outcome};
+use crate::output::{self, Files, shown};
+use crate::threads;
+
+/// Bakes the scene, or one of its bodies; the answer is no if the deviation is not known.
+pub(crate) fn run(options: &GridOptions, interrupt: &Interrupt) -> Result<Outcome, Failure> {
+    let named = input::scene(Some(&options.scene))?;
+    match &named.scene {
+        AnyScene::Planar(scene) => bake(options, scene, interrupt),
+        AnyScene::Spatial(scene) => bake(options, scene, interrupt),
+    }
+}
+
+fn bake<const D: usize>(
+    options: &GridOptions,
+    scene: &BuiltScene<D>,
+    interrupt: &Interrupt,
+) -> Result<Outcome, Failure> {
+    let shape = match &options.body {
+        None => &scene.whole,
+        Some(name) => {
+            let names: Vec<_> = scene.bodies.iter().map(|body| body.name.as_str()).collect();
+            let found = input::bodies(std::slice::from_ref(name), &names)?;
+            &scene.bodies[found[0]].shape
+        }
+    };
+    let mut files = Files::reading([options.scene.as_path()]);
+    let destination = files.output_as(&options.output, "a grid", "grid")?;
+    let pool = threads::pool(options.threads)?;
+    interrupt.heed();
+    let made = pool.install(|| grid(options, shape, interrupt));
+    let Some(grid) = made? else {
+        output::remark("interrupted: nothing was written");
+        return Ok(Outcome::Interrupted);
+    };
+    destination.write(|out| Ok(grid.write(out)?))?;
+    report(options, &grid)?;
+    Ok(if grid.deviation().is_finite() { Outcome::Yes } else { Outcome::No })
+}
+
+/// The grid of a shape; `None` if the program is asked to end.
+fn grid<const D: usize>(
+    options: &GridOptions,
+    shape: &Shape<D>,
+    interrupt: &Interrupt,
+) -> Result<Option<Grid<D>>, Failure> {
+    let bar = bar();
+    let progress = |Progress { done, of, .. }: Progress| {
+        bar.set_length(of as u64);
+        bar.set_position(done as u64);
+        if interrupt.is_asked() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    };
+    let made = Grid::bake_with(shape, &options.options(), &progress);
+    bar.finish_and_clear();
+    match made {
+        Ok(grid) => Ok(Some(grid)),
+        Err(GridError::Stopped) => Ok(None),
+        Err(error) => Err(Failure::file(&options.scene, error)),
+    }
+}
+
+fn report<const D: usize>(options: &GridOptions, grid: &Grid<D>) -> Result<(), Failure> {
+    let mut out = output::answer();
+    let (lattice, promise) = (grid.lattice(), grid.promise());
+    let name = options.output.display().to_string();
+    let deviation = Some(grid.deviation()).filter(|deviation| deviation.is_finite());
+    if options.json {
+        out.json(&json!({
+            "output": name,
+            "cell_m": lattice.cell,
+            "nodes": lattice.counts.to_vec(),
+            "origin_m": lattice.origin.0.to_vec(),
+            "stored_samples": grid.stored_samples(),
+            "kernel": grid.kernel().name(),
+            "store": grid.store().name(),
+            "deviation_m": deviation,
+            "lipschitz": promise.lipschitz,
+            "promise": promise.in_words(),
+        }))?;
+        return Ok(());
+    }
+    let counts = lattice.counts.map(|count| count.to_string()).join(" × ");
+    writeln!(
+        out,
+        "{}: {counts} nodes, {} m apart; {}, {}, {} samples",
+        shown(&name),
+        lattice.cell,
+        grid.kernel().name(),
+        grid.store().name(),
+        grid.stored_samples(),
+    )?;
+    match deviation {
+        Some(deviation) => {
+            writeln!(out, "  surface  off the scene's by at most {deviation:.3e} m")?
+        }
+        None => writeln!(
+            out,
+            "  surface  off the scene's by an unknown distance: take smaller cells, or a wider --band"
+        )?,
+    }
+    writeln!(out, "  slope    at most {:.4}", promise.lipschitz)?;
+    Ok(())
+}

@@ -1,0 +1,337 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! Grids as files.
+//!
+//! Little-endian: the head below, then for each brick its deviation from the source and, of sparse grids, its place,
+//! then the samples as they are stored, then the BLAKE3 sum of all of it. Steepness and slopes are not in the file:
+//! they follow from the samples, so no file can make a promise false.
+
+use std::fs::File;
+use std::io::{BufWriter, Read, Write};
+use std::path::{Path, PathBuf};
+
+use palpate_field::{Aabb, Deviation, Vector};
+
+use crate::certificate::Cells;
+use crate::error::GridError;
+use crate::grid::{Compared, Grid};
+use crate::lattice::{Lattice, unravelled};
+use crate::samples::{BRICK, Codes, FAR_INSIDE, Order, Samples, Store, strides, wide_brick};
+use crate::spline::{Kernel, QUADRATIC, TRILINEAR};
+use crate::threads::each;
+
+/// What a file begins with: the name, and the version of the format.
+const MAGIC: [u8; 8] = *b"palpate\x01";
+
+/// The bytes of the sum at the end.
+const SUM: usize = blake3::OUT_LEN;
+
+/// Files larger than this are not read: 4 GiB.
+pub const LARGEST_FILE: u64 = 1 << 32;
+
+/// Why a grid's file cannot be read or written.
+#[derive(Debug, thiserror::Error)]
+#[error("{}: {problem}", path.display())]
+pub struct GridFileError {
+    /// The file.
+    pub path: PathBuf,
+    /// What is wrong.
+    pub problem: GridFileProblem,
+}
+
+/// What is wrong with a grid's file.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum GridFileProblem {
+    /// Reading or writing failed.
+    #[error("it cannot be read or written: {0}")]
+    System(#[from] std::io::Error),
+    /// It is a folder, a pipe or a device.
+    #[error("it is no file")]
+    NoFile,
+    /// It is larger than [`LARGEST_FILE`].
+    #[error("it has {bytes} bytes, {LARGEST_FILE} at most")]
+    TooLarge {
+        /// Its size.
+        bytes: u64,
+    },
+    /// It does not begin as a grid's file of this version.
+    #[error("it is no grid of this version of palpate: make it again with `palpate grid`")]
+    OtherFormat,
+    /// It is of another dimension.
+    #[error("it is a grid in {found}D, wanted one in {wanted}D")]
+    Dimension {
+        /// The file's.
+        found: usize,
+        /// What was asked for.
+        wanted: usize,
+    },
+    /// It has another length than its head says, or another sum than its end.
+    #[error("it is damaged ({what}): copy it again, or make it again with `palpate grid`")]
+    Damaged {
+        /// What does not fit.
+        what: &'static str,
+    },
+    /// Its samples make no grid.
+    #[error(transparent)]
+    Grid(#[from] GridError),
+}
+
+fn damaged(what: &'static str) -> GridFileProblem {
+    GridFileProblem::Damaged { what }
+}
+
+impl<const D: usize> Grid<D> {
+    /// Writes the grid to a file, which is there whole or not at all.
+    ///
+    /// ```
+    /// use palpate_field::Shape;
+    /// use palpate_grid::{Grid, GridOptions};
+    ///
+    /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+    /// # let folder = tempfile::tempdir()?;
+    /// # let path = folder.path().join("ball.grid");
+    /// let grid = Grid::bake(&Shape::sphere(0.05)?, &GridOptions::with_cell(0.005))?;
+    /// grid.save(&path)?;
+    /// let again = Grid::<3>::open(&path)?;
+    /// assert_eq!(again.promise(), grid.promise());
+    /// # Ok(())
+    /// # }
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// If the file cannot be written.
+    pub fn save(&self, path: impl AsRef<Path>) -> Result<(), GridFileError> {
+        let path = path.as_ref();
+        let written = || -> Result<(), GridFileProblem> {
+            let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
+            let file = tempfile::NamedTempFile::new_in(folder.unwrap_or(Path::new(".")))?;
+            self.write(BufWriter::new(file.as_file()))?;
+            file.as_file().sync_all()?;
+            file.persist(path).map_err(|error| error.error)?;
+            Ok(())
+        };
+        written().map_err(|problem| GridFileError { path: path.to_owned(), problem })
+    }
+
+    /// Reads the grid of a file.
+    ///
+    /// # Errors
+    ///
+    /// If the file cannot be read, is no grid of this dimension, or is damaged.
+    pub fn open(path: impl AsRef<Path>) -> Result<Self, GridFileError> {
+        let path = path.as_ref();
+        let read = || -> Result<Self, GridFileProblem> {
+            if !std::fs::metadata(path)?.is_file() {
+                return Err(GridFileProblem::NoFile);
+            }
+            let file = File::open(path)?;
+            let bytes = file.metadata()?.len();
+            if bytes > LARGEST_FILE {
+                return Err(GridFileProblem::TooLarge { bytes });
+            }
+            let mut text = Vec::new();
+            file.take(LARGEST_FILE).read_to_end(&mut text)?;
+            Self::from_bytes(&text)
+        };
+        read().map_err(|problem| GridFileError { path: path.to_owned(), problem })
+    }
+
+    /// Writes the bytes of a file.
+    ///
+    /// # Errors
+    ///
+    /// As of `out`.
+    pub fn write(&self, out: impl Write) -> std::io::Result<()> {
+        let mut out = Summed { out, sum: blake3::Hasher::new() };
+        let lattice = self.lattice();
+        let Samples { codes, scale, band, order, .. } = &self.samples;
+        out.write_all(&MAGIC)?;
+        let is_sparse = matches!(order, Order::Bricks { .. });
+        let compared = self.compared();
+        out.write_all(&[
+            D as u8 | u8::from(compared.is_some()) << 7,
+            match self.kernel() {
+                Kernel::Quadratic => 0,
+                Kernel::Trilinear => 1,
+            },
+            match codes.store() {
+                Store::F32 => 0,
+                Store::I16 => 1,
+                Store::I8 => 2,
+            },
+            u8::from(is_sparse),
+        ])?;
+        let Compared { deviation, bounds } = compared.unwrap_or(Compared::NONE);
+        for number in [lattice.cell, *scale, *band, deviation.value, deviation.within] {
+            out.write_all(&number.to_le_bytes())?;
+        }
+        for i in 0..D {
+            out.write_all(&(lattice.counts[i] as u64).to_le_bytes())?;
+            for number in [lattice.origin[i], bounds.min[i], bounds.max[i]] {
+                out.write_all(&number.to_le_bytes())?;
+            }
+        }
+        for certificate in &self.certificates {
+            out.write_all(&certificate.deviation.to_le_bytes())?;
+        }
+        if let Order::Bricks { table } = order {
+            for place in table {
+                out.write_all(&place.to_le_bytes())?;
+            }
+        }
+        match codes {
+            Codes::F32(codes) => codes.iter().try_for_each(|c| out.write_all(&c.to_le_bytes())),
+            Codes::I16(codes) => codes.iter().try_for_each(|c| out.write_all(&c.to_le_bytes())),
+            Codes::I8(codes) => codes.iter().try_for_each(|c| out.write_all(&c.to_le_bytes())),
+        }?;
+        let sum = out.sum.finalize();
+        out.out.write_all(sum.as_bytes())?;
+        out.out.flush()
+    }
+
+    /// Reads the bytes of a file.
+    ///
+    /// # Errors
+    ///
+    /// As of [`open`](Self::open).
+    pub fn from_bytes(bytes: &[u8]) -> Result<Self, GridFileProblem> {
+        let Some(rest) = bytes.strip_prefix(&MAGIC) else {
+            return Err(GridFileProblem::OtherFormat);
+        };
+        let head = rest.first_chunk::<4>().ok_or(damaged("it ends in its head"))?;
+        let found = usize::from(head[0] & 0x7f);
+        if found != D {
+            return Err(GridFileProblem::Dimension { found, wanted: D });
+        }
+        // All but the head's first numbers may be believed once the sum is right.
+        let Some((text, sum)) = bytes.split_last_chunk::<SUM>() else {
+            return Err(damaged("it ends in its head"));
+        };
+        if blake3::hash(text) != blake3::Hash::from_bytes(*sum) {
+            return Err(damaged("its sum is another"));
+        }
+        let is_compared = head[0] & 0x80 != 0;
+        let kernel = match head[1] {
+            0 => Kernel::Quadratic,
+            1 => Kernel::Trilinear,
+            _ => return Err(damaged("its kernel is unknown")),
+        };
+        let (store, width) = match head[2] {
+            0 => (Store::F32, 4),
+            1 => (Store::I16, 2),
+            2 => (Store::I8, 1),
+            _ => return Err(damaged("its store is unknown")),
+        };
+        let mut numbers = Numbers(text.get(MAGIC.len() + 4..).unwrap_or_default());
+        let [cell, scale, band, value, within] = numbers.floats()?;
+        let (mut counts, mut origin) = ([0; D], Vector([0.0; D]));
+        let (mut min, mut max) = (Vector([0.0; D]), Vector([0.0; D]));
+        for i in 0..D {
+            counts[i] = usize::try_from(u64::from_le_bytes(numbers.take()?))
+                .map_err(|_| damaged("it has too many nodes"))?;
+            [origin[i], min[i], max[i]] = numbers.floats()?;
+        }
+        let lattice = Lattice { origin, cell, counts };
+        let is_finite = [cell, scale, value, within].iter().all(|x| x.is_finite() && *x >= 0.0);
+        let is_small = counts.iter().any(|count| *count < kernel.taps());
+        if !is_finite || band.is_nan() || is_small || lattice.nodes().is_none() {
+            return Err(damaged("a number of its head is out of range"));
+        }
+        let bricks = counts.map(|count| count.div_ceil(BRICK));
+        let count = bricks.iter().product::<usize>();
+        let has = |bytes: usize| count.checked_mul(bytes).is_some_and(|all| all <= text.len());
+        if !has(if head[3] == 1 { 12 } else { 8 }) {
+            return Err(damaged("it ends before its samples"));
+        }
+        let deviations = (0..count)
+            .map(|_| Ok(numbers.floats::<1>()?[0]))
+            .collect::<Result<Vec<_>, GridFileProblem>>()?;
+        let (order, nodes) = if head[3] == 1 {
+            let table = (0..count)
+                .map(|_| Ok(u32::from_le_bytes(numbers.take()?)))
+                .collect::<Result<Vec<_>, GridFileProblem>>()?;
+            let near = table.iter().filter(|place| **place < FAR_INSIDE).count();
+            if table.iter().any(|place| *place < FAR_INSIDE && *place as usize >= near) {
+                return Err(damaged("a brick has no samples"));
+            }
+            (Order::Bricks { table }, near * wide_brick(D))
+        } else {
+            (Order::Dense { strides: strides(counts) }, lattice.nodes().unwrap_or(usize::MAX))
+        };
+        if nodes.checked_mul(width) != Some(numbers.0.len()) {
+            return Err(damaged("it has another number of samples than its head says"));
+        }
+        let codes = Codes::from_le_bytes(store, numbers.0);
+        if !codes.are_finite() {
+            return Err(damaged("a sample is no number"));
+        }
+        let samples = Samples { codes, scale, band, order, bricks };
+        let compared = is_compared.then_some(Compared {
+            deviation: Deviation { value, within },
+            bounds: Aabb { min, max },
+        });
+        Ok(Self::from_samples_of_file(lattice, kernel, samples, &deviations, compared)?)
+    }
+
+    fn from_samples_of_file(
+        lattice: Lattice<D>,
+        kernel: Kernel,
+        samples: Samples<D>,
+        deviations: &[f64],
+        compared: Option<Compared<D>>,
+    ) -> Result<Self, GridError> {
+        let cells =
+            Cells { lattice: &lattice, source: None, within: 0.0, reach: 0.0, worst: 0.0 };
+        let certificates = each(deviations.len(), |number| {
+            let brick = unravelled(number, samples.bricks);
+            let mut certificate = match kernel {
+                Kernel::Quadratic => cells.of_brick::<QUADRATIC>(&samples, brick),
+                Kernel::Trilinear => cells.of_brick::<TRILINEAR>(&samples, brick),
+            };
+            certificate.deviation = deviations[number];
+            Ok(certificate)
+        })?;
+        Self::assemble(lattice, kernel, samples, certificates, compared)
+    }
+}
+
+/// Numbers one after another.
+struct Numbers<'a>(&'a [u8]);
+
+impl Numbers<'_> {
+    fn take<const N: usize>(&mut self) -> Result<[u8; N], GridFileProblem> {
+        let (first, rest) =
+            self.0.split_first_chunk::<N>().ok_or(damaged("it ends before its samples"))?;
+        self.0 = rest;
+        Ok(*first)
+    }
+
+    fn floats<const N: usize>(&mut self) -> Result<[f64; N], GridFileProblem> {
+        let mut floats = [0.0; N];
+        for float in &mut floats {
+            *float = f64::from_le_bytes(self.take()?);
+        }
+        Ok(floats)
+    }
+}
+
+/// A writer that sums what it writes.
+struct Summed<W> {
+    out: W,
+    sum: blake3::Hasher,
+}
+
+impl<W: Write> Write for Summed<W> {
+    fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
+        let written = self.out.write(bytes)?;
+        self.sum.update(&bytes[..written]);
+        Ok(written)
+    }
+
+    fn flush(&mut self) -> std::io::Result<()> {
+        self.out.flush()
+    }
+}

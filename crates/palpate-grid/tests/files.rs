@@ -1,0 +1,81 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! Grids as files: what was saved is read, and what is damaged is refused.
+#![cfg(feature = "files")]
+#![expect(clippy::unwrap_used, reason = "tests")]
+
+use palpate_field::{CustomField, Shape, Vector};
+use palpate_grid::{Grid, GridFileProblem, GridOptions, Kernel, Store};
+use palpate_testkit::arbitrary::within;
+use palpate_testkit::cases;
+
+fn grids() -> Vec<Grid<3>> {
+    let shape = Shape::torus(0.3, 0.1).unwrap();
+    let mut grids = Vec::new();
+    for kernel in [Kernel::Quadratic, Kernel::Trilinear] {
+        for store in [Store::F32, Store::I16, Store::I8] {
+            for band in [None, Some(4.0)] {
+                let mut options =
+                    GridOptions::with_cell(0.04).with_kernel(kernel).with_store(store);
+                options.band = band;
+                grids.push(Grid::bake(&shape, &options).unwrap());
+            }
+        }
+    }
+    grids
+}
+
+#[test]
+fn what_was_saved_is_read_to_the_bit() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("torus.grid");
+    for grid in grids() {
+        grid.save(&path).unwrap();
+        let again = Grid::<3>::open(&path).unwrap();
+        assert_eq!(again.promise(), grid.promise());
+        assert_eq!((again.lattice(), again.store()), (grid.lattice(), grid.store()));
+        cases::check(200, |u| {
+            let mut p = Vector([0.0; 3]);
+            for x in &mut p.0 {
+                *x = within(u, -0.4, 0.4)?;
+            }
+            assert_eq!(again.distance_gradient(p), grid.distance_gradient(p));
+            Ok(Ok(()))
+        });
+    }
+    // Nothing else is left in the folder.
+    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
+}
+
+#[test]
+fn what_is_damaged_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("torus.grid");
+    for grid in grids() {
+        grid.save(&path).unwrap();
+        let good = std::fs::read(&path).unwrap();
+        assert!(Grid::<3>::from_bytes(&good).is_ok());
+        cases::check(100, |u| {
+            let mut bad = good.clone();
+            match u.int_in_range(0..=2)? {
+                0 => bad.truncate(u.int_in_range(0..=good.len() - 1)?),
+                1 => bad.push(0),
+                _ => {
+                    let at = u.int_in_range(0..=good.len() - 1)?;
+                    bad[at] ^= 1 << u.int_in_range(0..=7)?;
+                }
+            }
+            assert!(Grid::<3>::from_bytes(&bad).is_err());
+            Ok(Ok(()))
+        });
+    }
+    assert!(matches!(Grid::<3>::from_bytes(b"solid"), Err(GridFileProblem::OtherFormat)));
+    let disc = Grid::bake(&Shape::circle(0.3).unwrap(), &GridOptions::with_cell(0.02)).unwrap();
+    disc.save(&path).unwrap();
+    let error = Grid::<3>::open(&path).unwrap_err();
+    assert!(error.to_string().ends_with("torus.grid: it is a grid in 2D, wanted one in 3D"));
+    let error = Grid::<3>::open(folder.path()).unwrap_err();
+    assert!(matches!(error.problem, GridFileProblem::NoFile));
+    assert!(disc.save(folder.path().join("no folder").join("disc.grid")).is_err());
+}

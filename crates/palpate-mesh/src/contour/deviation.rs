@@ -1,0 +1,130 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! How large a field is on the triangles of a mesh.
+
+use std::cmp::Ordering;
+use std::collections::BinaryHeap;
+
+use palpate_field::scalar::Model;
+use palpate_field::{BLOCK, Block, Column, Point, Shape, Vector};
+
+use crate::mesh::TriangleMesh;
+
+/// The bounds are close enough if the upper one is at most this times the lower one.
+const CLOSE: f64 = 1.05;
+
+/// Parts of triangles that are looked at at most, for each triangle.
+const PARTS: usize = 64;
+
+/// A part of a triangle, with a bound of the field's size on it.
+struct Part {
+    corners: [Point<3>; 3],
+    bound: f64,
+}
+
+impl PartialEq for Part {
+    fn eq(&self, other: &Self) -> bool {
+        self.cmp(other) == Ordering::Equal
+    }
+}
+
+impl Eq for Part {}
+
+impl PartialOrd for Part {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl Ord for Part {
+    fn cmp(&self, other: &Self) -> Ordering {
+        self.bound.total_cmp(&other.bound)
+    }
+}
+
+impl TriangleMesh {
+    /// Bounds of the largest size of a shape's field on the triangles [m]: a value that one has, and a value that
+    /// none exceeds. Of an exact field it is the largest distance of a triangle from the surface.
+    ///
+    /// ```
+    /// use palpate_field::Shape;
+    /// use palpate_mesh::{ContourOptions, TriangleMesh};
+    ///
+    /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+    /// let ball = Shape::sphere(0.5)?;
+    /// let mesh = TriangleMesh::of_shape(&ball, &ContourOptions::with_cell(0.05))?;
+    /// let [least, most] = mesh.largest_distance(&ball);
+    /// assert!(least <= most && most < 0.1 * 0.05, "{most}");
+    /// # Ok(())
+    /// # }
+    /// ```
+    #[must_use]
+    pub fn largest_distance(&self, shape: &Shape<3>) -> [f64; 2] {
+        let all = 0..self.elements().len();
+        let mut search = Search::new(shape);
+        let mut heap = BinaryHeap::new();
+        search.bound(&all.map(|face| self.corners(face)).collect::<Vec<_>>(), &mut heap);
+        let budget = PARTS * self.elements().len();
+        let mut halves = Vec::new();
+        while let Some(largest) = heap.peek().map(|part| part.bound) {
+            if largest <= CLOSE * search.known || search.parts > budget {
+                return [search.known, largest];
+            }
+            halves.clear();
+            for _ in 0..BLOCK / 4 {
+                let Some(Part { corners: [a, b, c], .. }) = heap.pop() else { break };
+                let [ab, bc, ca] = [(a + b) * 0.5, (b + c) * 0.5, (c + a) * 0.5];
+                halves.extend([[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]]);
+            }
+            search.bound(&halves, &mut heap);
+        }
+        [search.known; 2]
+    }
+}
+
+struct Search<'a> {
+    shape: &'a Shape<3>,
+    cells: Block<Model, 3, BLOCK>,
+    models: Column<Model, BLOCK>,
+    /// The largest size of a value that was found [m].
+    known: f64,
+    /// The parts that were looked at.
+    parts: usize,
+}
+
+impl<'a> Search<'a> {
+    fn new(shape: &'a Shape<3>) -> Self {
+        Self { shape, cells: Block::zero(), models: Column::zero(), known: 0.0, parts: 0 }
+    }
+
+    /// Adds triangles with their bounds: the model is over the parallelogram of two sides, the bound at the corners
+    /// of the triangle.
+    fn bound(&mut self, triangles: &[[Point<3>; 3]], heap: &mut BinaryHeap<Part>) {
+        for triangles in triangles.chunks(BLOCK) {
+            self.cells.fill(triangles.len(), |i| {
+                let [a, b, c] = triangles[i];
+                let (middle, u, v) = ((b + c) * 0.5, (b - a) * 0.5, (c - a) * 0.5);
+                Vector(std::array::from_fn(|k| Model {
+                    value: middle[k],
+                    gradient: [u[k], v[k], 0.0],
+                    // The middle and the sides are rounded.
+                    lower: 4.0 * f64::EPSILON * middle[k].abs(),
+                    upper: 4.0 * f64::EPSILON * middle[k].abs(),
+                }))
+            });
+            self.shape.block_distances(&self.cells, triangles.len(), &mut self.models);
+            self.parts += triangles.len();
+            for (i, corners) in triangles.iter().enumerate() {
+                let Model { value, gradient: [u, v, _], lower, upper } = self.models.get(i);
+                let at = [value - u - v, value + u - v, value - u + v];
+                let high = at.into_iter().fold(f64::NEG_INFINITY, f64::max) + upper;
+                let low = at.into_iter().fold(f64::INFINITY, f64::min) - lower;
+                let bound = high.max(-low) * (1.0 + 1e-12);
+                self.known =
+                    self.known.max(self.shape.distance(corners[0]).abs()).max(value.abs());
+                heap.push(Part { corners: *corners, bound });
+            }
+        }
+    }
+}

@@ -1,0 +1,218 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! Meshes of shapes, by manifold dual contouring (Ju et al. 2002; Schaefer, Ju and Warren 2007).
+//!
+//! A lattice of cells is laid over the shape. Where the ends of an edge differ in sign, the surface crosses it; the
+//! crossings of a cell fall into patches, and each patch gets a vertex where the planes at its crossings meet best.
+//! So edges and corners stay sharp, and sheets that share a cell stay apart. Around each crossing the vertices of
+//! four cells make two triangles.
+
+mod cells;
+mod crossings;
+mod deviation;
+mod faces;
+mod patches;
+mod vertex;
+
+use std::collections::HashMap;
+use std::ops::ControlFlow;
+
+use palpate_field::{Point, Shape};
+
+use crate::error::MeshError;
+use crate::mesh::TriangleMesh;
+use crate::solid::crossing_faces;
+use cells::{Cells, Signed};
+use crossings::Crossing;
+use patches::{EDGES, NONE, Patches};
+
+/// Cells around the bounds of the shape, on each side.
+const AROUND: f64 = 1.5;
+
+/// How often vertices of faces that cross are moved.
+const MOST_MENDS: usize = 8;
+
+/// What a mesh of a shape is asked for.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct ContourOptions {
+    /// The side of a cell [m]: parts thinner than it may be lost.
+    pub cell: f64,
+    /// More cells than these are refused.
+    pub most_cells: usize,
+}
+
+impl ContourOptions {
+    /// Cells of a size [m], at most 2³⁰ of them.
+    #[must_use]
+    pub const fn with_cell(cell: f64) -> Self {
+        Self { cell, most_cells: 1 << 30 }
+    }
+}
+
+/// Why a shape has no mesh.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum ContourError {
+    /// The size of a cell is no length.
+    #[error("the size of a cell must be positive and finite, got {cell} m")]
+    Cell {
+        /// The size given [m].
+        cell: f64,
+    },
+    /// The shape has no bounds.
+    #[error("the shape has no bounds: intersect it with a box first")]
+    Unbounded,
+    /// There are more cells than allowed.
+    #[error(
+        "cells of {cell} m are {cells:.3e} in all, more than the {limit} allowed; choose larger ones"
+    )]
+    TooMany {
+        /// The size of a cell [m].
+        cell: f64,
+        /// How many cells there are.
+        cells: f64,
+        /// How many are allowed.
+        limit: usize,
+    },
+    /// No edge of a cell crosses the surface.
+    #[error("no surface was found with cells of {cell} m; choose smaller ones")]
+    NoSurface {
+        /// The size of a cell [m].
+        cell: f64,
+    },
+    /// A value of the shape is no number.
+    #[error("the shape's distance is no number at {point:?} [m]")]
+    NotFinite {
+        /// Where [m].
+        point: [f64; 3],
+    },
+    /// The caller stopped the work.
+    #[error("stopped before the mesh was complete")]
+    Stopped,
+    /// The triangles make no mesh.
+    #[error(transparent)]
+    Mesh(#[from] MeshError),
+}
+
+impl TriangleMesh {
+    /// The surface of a shape in triangles, closed, and facing outwards.
+    ///
+    /// ```
+    /// use palpate_field::Shape;
+    /// use palpate_mesh::{ContourOptions, TriangleMesh};
+    ///
+    /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+    /// let block = Shape::cuboid([0.3, 0.2, 0.1])?;
+    /// let mesh = TriangleMesh::of_shape(&block, &ContourOptions::with_cell(0.017))?;
+    /// let report = mesh.report();
+    /// assert!(report.is_watertight());
+    /// // The corners are sharp: nothing of the volume is lost.
+    /// assert!((report.enclosed.unwrap() - 0.006).abs() < 1e-9);
+    /// # Ok(())
+    /// # }
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// If the shape has no bounds, no surface is found, there are too many cells, or a value is no number.
+    pub fn of_shape(shape: &Shape<3>, options: &ContourOptions) -> Result<Self, ContourError> {
+        Self::of_shape_with(shape, options, &mut |_| ControlFlow::Continue(()))
+    }
+
+    /// The same; `progress` gets the share that is done, and can stop the work.
+    ///
+    /// # Errors
+    ///
+    /// As of [`of_shape`](Self::of_shape), and if `progress` breaks.
+    pub fn of_shape_with(
+        shape: &Shape<3>,
+        options: &ContourOptions,
+        progress: &mut dyn FnMut(f64) -> ControlFlow<()>,
+    ) -> Result<Self, ContourError> {
+        let cell = options.cell;
+        if !(cell > 0.0 && cell.is_finite()) {
+            return Err(ContourError::Cell { cell });
+        }
+        let bounds = shape.promise().bounds.ok_or(ContourError::Unbounded)?.aabb;
+        let cells = Cells::over(&bounds.grown(AROUND * cell), options)?;
+        let signed = cells.signed(shape, progress)?;
+        if signed.is_empty() {
+            return Err(ContourError::NoSurface { cell });
+        }
+        let contour = Contour::of(shape, &cells, &signed)?;
+        contour.mesh(shape)
+    }
+}
+
+/// A vertex, with what it stands for.
+#[derive(Clone, Debug)]
+struct Corner {
+    /// Where it is [m].
+    place: Point<3>,
+    /// The middle of the crossings of its patch [m].
+    middle: Point<3>,
+}
+
+/// The vertices of patches, and the four around each crossing.
+struct Contour {
+    corners: Vec<Corner>,
+    quads: Vec<[u32; 4]>,
+}
+
+impl Contour {
+    fn of(shape: &Shape<3>, cells: &Cells, signed: &[Signed]) -> Result<Self, ContourError> {
+        let patches = Patches::of(signed);
+        let mut crossings: HashMap<[u32; 4], Crossing> = HashMap::new();
+        let mut corners = Vec::new();
+        // The vertex of each edge of each cell.
+        let mut of_edges = Vec::with_capacity(signed.len());
+        let mut found = Vec::new();
+        for (signed, patches) in signed.iter().zip(&patches) {
+            let first = corners.len() as u32;
+            for patch in 0..patches.count {
+                found.clear();
+                for edge in (0..EDGES).filter(|edge| patches.of_edge[*edge] == patch) {
+                    let key = signed.edge(edge);
+                    if let Some(known) = crossings.get(&key) {
+                        found.push(*known);
+                        continue;
+                    }
+                    let crossing = Crossing::on(shape, cells.ends(key))?;
+                    crossings.insert(key, crossing);
+                    found.push(crossing);
+                }
+                let around = cells.around(signed.cell);
+                corners.push(vertex::of(shape, &found, &around));
+            }
+            of_edges.push(patches.of_edge.map(|patch| match patch {
+                NONE => u32::MAX,
+                patch => first + u32::from(patch),
+            }));
+        }
+        let quads = faces::quads(signed, &of_edges);
+        Ok(Self { corners, quads })
+    }
+
+    /// Triangles, with the vertices of those that cross moved to the middles of their patches.
+    fn mesh(mut self, shape: &Shape<3>) -> Result<TriangleMesh, ContourError> {
+        for mend in 0.. {
+            let places: Vec<_> = self.corners.iter().map(|corner| corner.place).collect();
+            let triangles = faces::triangles(shape, &places, &self.quads);
+            let mesh = TriangleMesh::new(places, triangles)?;
+            if mend == MOST_MENDS {
+                return Ok(mesh);
+            }
+            let crossing = crossing_faces(&mesh);
+            if crossing.is_empty() {
+                return Ok(mesh);
+            }
+            for vertex in crossing.into_iter().flat_map(|face| mesh.elements()[face]) {
+                let corner = &mut self.corners[vertex as usize];
+                corner.place = (corner.place + corner.middle) * 0.5;
+            }
+        }
+        unreachable!("the loop returns")
+    }
+}

@@ -1,0 +1,137 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! Meshes of shapes: closed, without faces that cross, near the surface, sharp.
+#![expect(clippy::unwrap_used, reason = "tests")]
+
+use std::ops::ControlFlow;
+
+use palpate_field::operator::Profile;
+use palpate_field::{Rotation, Shape, Vector};
+use palpate_mesh::{ContourError, ContourOptions, Solid, TriangleMesh};
+use palpate_testkit::arbitrary::tree;
+use palpate_testkit::cases;
+
+fn mesh(shape: &Shape<3>, cell: f64) -> TriangleMesh {
+    TriangleMesh::of_shape(shape, &ContourOptions::with_cell(cell)).unwrap()
+}
+
+fn solids() -> Vec<(&'static str, Shape<3>)> {
+    let turn = Rotation::from_axis_angle([1.0, 2.0, 3.0], 0.7).unwrap();
+    let cuboid = Shape::cuboid([0.5, 0.3, 0.4]).unwrap();
+    let ball = Shape::sphere(0.3).unwrap();
+    let torus = Shape::torus(0.3, 0.1).unwrap();
+    vec![
+        ("ball", ball.clone()),
+        ("torus", torus.clone()),
+        ("box", cuboid.clone()),
+        ("turned box", cuboid.clone().rotated(turn).unwrap()),
+        ("plate", Shape::cuboid([0.5, 0.5, 0.08]).unwrap().rotated(turn).unwrap()),
+        ("box less ball", cuboid.clone() - ball.clone().translated([0.2, 0.1, 0.1]).unwrap()),
+        ("hollow", ball.clone() - Shape::sphere(0.2).unwrap()),
+        ("two", ball.translated([1.0, 0.0, 0.0]).unwrap() | cuboid.clone()),
+        ("blend", Shape::smooth_union([cuboid, torus], Profile::Quadratic, 0.1).unwrap()),
+    ]
+}
+
+#[test]
+fn a_mesh_of_a_shape_is_a_solid_near_it() {
+    for (name, shape) in solids() {
+        for cell in [0.037, 0.0211] {
+            let mesh = mesh(&shape, cell);
+            let report = mesh.report();
+            assert!(report.is_watertight(), "{name}, {cell} m: {report}");
+            assert!(report.enclosed.unwrap() > 0.0, "{name}");
+            let (solid, findings) = Solid::from_mesh(&mesh).unwrap();
+            assert_eq!(
+                findings.crossings + findings.touching,
+                0,
+                "{name}, {cell} m: {findings}"
+            );
+            for vertex in mesh.vertices() {
+                let off = shape.distance(*vertex).abs();
+                assert!(off < 0.25 * cell, "{name}, {cell} m: {} cells", off / cell);
+            }
+            // The other way: points of the surface lie near the mesh.
+            let solid: Shape<3> = solid.into();
+            for vertex in mesh.vertices() {
+                let Some(on) = shape.surface_point(*vertex) else { continue };
+                assert!(solid.distance(on).abs() < 0.3 * cell, "{name}");
+            }
+        }
+    }
+}
+
+#[test]
+fn edges_and_corners_stay_sharp() {
+    let size = [0.5, 0.3, 0.4];
+    let mesh = mesh(&Shape::cuboid(size).unwrap(), 0.037);
+    assert!((mesh.report().enclosed.unwrap() - 0.06).abs() < 1e-12);
+    for corner in 0..8_usize {
+        let place: Vector<f64, 3> =
+            Vector(std::array::from_fn(|i| size[i] * (((corner >> i) & 1) as f64 - 0.5)));
+        let nearest =
+            mesh.vertices().iter().map(|v| (*v - place).norm()).fold(f64::INFINITY, f64::min);
+        assert!(nearest < 1e-9, "{nearest}");
+    }
+}
+
+#[test]
+fn a_mesh_of_a_mesh_is_the_same_solid() {
+    let turn = Rotation::from_axis_angle([1.0, 2.0, 3.0], 0.7).unwrap();
+    let cuboid = Shape::cuboid([0.5, 0.3, 0.4]).unwrap().rotated(turn).unwrap();
+    let first = mesh(&cuboid, 0.05);
+    let (solid, _) = Solid::from_mesh(&first).unwrap();
+    let solid: Shape<3> = solid.into();
+    let again = mesh(&solid, 0.021);
+    assert!(again.report().is_watertight(), "{}", again.report());
+    let enclosed = [&first, &again].map(|mesh| mesh.report().enclosed.unwrap());
+    assert!((enclosed[0] - enclosed[1]).abs() < 1e-3 * enclosed[0], "{enclosed:?}");
+    for vertex in again.vertices() {
+        let off = solid.distance(*vertex).abs();
+        assert!(off < 0.25 * 0.021, "{off}");
+    }
+}
+
+/// Random trees have sheets that touch, edges that meet at points and cells with several patches.
+#[test]
+fn meshes_of_random_trees_are_closed() {
+    let mut meshed = 0;
+    cases::check(60, |u| {
+        let Ok(shape) = tree::<3>(u, 3)?.shape() else { return Ok(Ok(())) };
+        let Some(bounds) = shape.promise().bounds else { return Ok(Ok(())) };
+        let longest = bounds.aabb.half_extents().0.into_iter().fold(0.0, f64::max) * 2.0;
+        let options = ContourOptions::with_cell(longest / 24.3);
+        let mesh = match TriangleMesh::of_shape(&shape, &options) {
+            Ok(mesh) => mesh,
+            Err(ContourError::NoSurface { .. } | ContourError::Cell { .. }) => {
+                return Ok(Ok(()));
+            }
+            Err(error) => return Ok(Err(error.to_string())),
+        };
+        meshed += 1;
+        let report = mesh.report();
+        Ok(if report.is_watertight() { Ok(()) } else { Err(report.to_string()) })
+    });
+    assert!(meshed > 20, "{meshed}");
+}
+
+#[test]
+fn what_has_no_mesh_is_refused() {
+    let ball = Shape::sphere(0.3).unwrap();
+    let plane = Shape::half_space([0.0, 1.0, 0.0], 0.0).unwrap();
+    let of = |shape: &Shape<3>, cell: f64| {
+        TriangleMesh::of_shape(shape, &ContourOptions::with_cell(cell)).unwrap_err()
+    };
+    assert_eq!(of(&plane, 0.1), ContourError::Unbounded);
+    assert_eq!(of(&ball, 0.0), ContourError::Cell { cell: 0.0 });
+    assert!(matches!(of(&ball, f64::NAN), ContourError::Cell { .. }));
+    assert!(matches!(of(&ball, 1e-5), ContourError::TooMany { .. }));
+    let empty = ball.clone() & ball.clone().translated([1.0, 0.0, 0.0]).unwrap();
+    assert_eq!(of(&empty, 0.1), ContourError::NoSurface { cell: 0.1 });
+    let stopped =
+        TriangleMesh::of_shape_with(&ball, &ContourOptions::with_cell(0.01), &mut |_| {
+            ControlFlow::Break(())
+        });
+    assert_eq!(stopped.unwrap_err(), ContourError::Stopped);
+}
