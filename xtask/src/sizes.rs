@@ -16,7 +16,7 @@ const LARGER: &[(&str, usize)] = &[
     // All fields know one another: operators, kernels and the engine that evaluates both.
     ("palpate-field", usize::MAX),
     // A folder a command, and no command knows another: what would be parted is parted already.
-    ("palpate-cli", 15_000),
+    ("palpate-cli", 16_000),
     // Proxy, creases, tools and their servo share one tick; guides alone could leave it.
     ("palpate-haptics", 13_500),
     // All searches share one engine, one pair of bodies and their cells.

@@ -11,7 +11,8 @@ use palpate_field::{Aabb, BLOCK, Block, Column, Deviation, Point, Pose, Shape, V
 
 use crate::certificate::{Cells, Certificate};
 use crate::error::GridError;
-use crate::grid::{Compared, Grid};
+use crate::far::Far;
+use crate::grid::{Compared, Grid, Known};
 use crate::lattice::{Lattice, unravelled};
 use crate::options::{GridOptions, Resolution};
 use crate::samples::{
@@ -70,10 +71,19 @@ impl<const D: usize> Grid<D> {
         options.check()?;
         let bounds = shape.promise().bounds.ok_or(GridError::Unbounded)?.aabb;
         let source = raised(shape, &bounds)?;
-        let bake = |cell| Bake { source: &source, bounds, options, cell, progress }.grid();
+        let around = options.band.unwrap_or(options.certified) + 3.0;
+        let bake_as = |cell, options| {
+            Bake { source: &source, bounds, options, cell, around, progress }.grid()
+        };
         let tolerance = match options.resolution {
-            Resolution::Cell(cell) => return bake(cell),
+            Resolution::Cell(cell) => return bake_as(cell, options),
             Resolution::Tolerance(tolerance) => tolerance,
+        };
+        // What is far from the surface changes no deviation: tries leave it out.
+        let tried = options.with_narrow_band();
+        let bake = |cell| bake_as(cell, &tried);
+        let whole = |grid: Self| {
+            if tried == *options { Ok(grid) } else { bake_as(grid.lattice().cell, options) }
         };
         let longest = bounds.half_extents().0.into_iter().fold(0.0, f64::max) * 2.0;
         let mut cell = (longest / FIRST_TRY).max(tolerance);
@@ -86,7 +96,7 @@ impl<const D: usize> Grid<D> {
                 Ok(grid) if grid.deviation() <= tolerance => {
                     let has_room = coarse.is_some_and(|coarse| coarse > MOST_APART * cell);
                     if !has_room {
-                        return Ok(grid);
+                        return whole(grid);
                     }
                     best = Some(grid);
                     cell = (cell * coarse.unwrap_or(cell)).sqrt();
@@ -119,7 +129,8 @@ impl<const D: usize> Grid<D> {
             cell *= finer.max(1.0 / MOST_REFINED);
         }
         let [cell, reached] = last.unwrap_or([cell, f64::INFINITY]);
-        best.ok_or(GridError::TooFine { tolerance, limit: options.most_nodes, cell, reached })
+        let limit = options.most_nodes;
+        best.map_or(Err(GridError::TooFine { tolerance, limit, cell, reached }), whole)
     }
 
     /// The grid of given samples [m], one for each node, the first axis first: a field for itself.
@@ -182,7 +193,7 @@ impl<const D: usize> Grid<D> {
                 Kernel::Trilinear => cells.of_brick::<TRILINEAR>(&samples, brick),
             })
         })?;
-        Self::assemble(lattice, kernel, samples, certificates, None)
+        Self::assemble(lattice, kernel, samples, certificates, Known::default())
     }
 
     /// Samples the bricks again whose values change when the shape changes within `region` alone.
@@ -208,7 +219,8 @@ impl<const D: usize> Grid<D> {
         };
         let progress = &|_| ControlFlow::Continue(());
         let bake =
-            Bake { source: &source, bounds, options: &options, cell: lattice.cell, progress };
+            // The lattice is the old one.
+            Bake { source: &source, bounds, options: &options, cell: lattice.cell, around: 0.0, progress };
         *self = match self.kernel() {
             Kernel::Quadratic => bake.again::<QUADRATIC>(self, region)?,
             Kernel::Trilinear => bake.again::<TRILINEAR>(self, region)?,
@@ -233,6 +245,8 @@ struct Bake<'a, const D: usize> {
     bounds: Aabb<D>,
     options: &'a GridOptions,
     cell: f64,
+    /// Cells around the bounds on each side.
+    around: f64,
     progress: &'a (dyn Fn(Progress) -> ControlFlow<()> + Sync),
 }
 
@@ -310,14 +324,14 @@ impl<const D: usize> Bake<'_, D> {
                 known.clone()
             })
         })?;
-        self.assembled(lattice, samples, certificates, cells.within)
+        let known = [cells.within, cells.reach];
+        self.assembled(lattice, samples, certificates, known)
     }
 
     /// The lattice with room for the values that are compared with the source, and for the samples that the
     /// outermost of them take.
     fn lattice(&self) -> Result<Lattice<D>, GridError> {
-        let cells = self.options.band.unwrap_or(self.options.certified) + 3.0;
-        let lattice = Lattice::over(&self.bounds.grown(cells * self.cell), self.cell);
+        let lattice = Lattice::over(&self.bounds.grown(self.around * self.cell), self.cell);
         let nodes = lattice.counts.iter().map(|count| *count as f64).product::<f64>();
         let limit = self.options.most_nodes;
         if nodes > limit as f64 {
@@ -418,7 +432,8 @@ impl<const D: usize> Bake<'_, D> {
             step()?;
             Ok(cells.of_brick::<K>(&samples, unravelled(number, samples.bricks)))
         })?;
-        self.assembled(lattice, samples, certificates, cells.within)
+        let known = [cells.within, cells.reach];
+        self.assembled(lattice, samples, certificates, known)
     }
 
     fn assembled(
@@ -426,11 +441,24 @@ impl<const D: usize> Bake<'_, D> {
         lattice: Lattice<D>,
         samples: Samples<D>,
         certificates: Vec<Certificate<D>>,
-        within: f64,
+        [within, reach]: [f64; 2],
     ) -> Result<Grid<D>, GridError> {
         let value = certificates.iter().fold(0.0_f64, |e, brick| e.max(brick.deviation));
         let compared = Compared { deviation: Deviation { value, within }, bounds: self.bounds };
-        Grid::assemble(lattice, self.options.kernel, samples, certificates, Some(compared))
+        // Beyond the band nothing is known where the source's steepness holds in a part of space alone.
+        let far = match self.source.promise().region {
+            None if samples.band.is_finite() => {
+                Some(Far::of(self.source, &lattice, reach + 2e-6 * samples.band)?)
+            }
+            _ => None,
+        };
+        Grid::assemble(
+            lattice,
+            self.options.kernel,
+            samples,
+            certificates,
+            Known { compared: Some(compared), far },
+        )
     }
 
     fn cells<'a, const K: usize>(
@@ -448,15 +476,16 @@ impl<const D: usize> Bake<'_, D> {
         let stored = self.options.store.error(largest, samples.scale);
         // The samples that a value takes lie at most so far away.
         let reach = diagonal * 0.5 * K as f64 + stored;
-        let within = match self.options.band {
-            None => self.options.certified * cell,
-            Some(band) => (band * cell - reach * (1.0 + 1e-9)).max(0.0),
-        };
         // The variance of the weights along an axis is at most a quarter of a cell's square.
         let worst = if self.source.promise().region.is_none() {
             0.5 * diagonal + stored
         } else {
             f64::INFINITY
+        };
+        let within = match self.options.band {
+            None => self.options.certified * cell,
+            // None of the samples that these values take is clamped.
+            Some(band) => (band * cell - (reach + worst) * (1.0 + 1e-9)).max(0.0),
         };
         Cells { lattice, source: Some(self.source), within, reach, worst }
     }

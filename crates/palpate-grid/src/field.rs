@@ -29,7 +29,7 @@ impl<const D: usize> CustomField<D> for Grid<D> {
         let rounding = self.promise().rounding.within(centre.norm() + half.norm());
         let value = self.value_at(centre);
         let around = Aabb { min: centre - half, max: centre + half };
-        let Some(slopes) = self.slopes_over(&around) else {
+        let Some(slopes) = self.slopes_over(&around, value.abs()) else {
             return AffineModel::lipschitz(value, self.promise().lipschitz, cell, rounding);
         };
         let mut gradient = [0.0; M];

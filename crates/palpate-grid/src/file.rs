@@ -4,7 +4,7 @@
 //! Grids as files.
 //!
 //! Little-endian: the head below, then for each brick its deviation from the source and, of sparse grids, its place,
-//! then the samples as they are stored, then the BLAKE3 sum of all of it. Steepness and slopes are not in the file:
+//! then the samples as they are stored, those beyond the band, then the BLAKE3 sum of all of it. Steepness and slopes are not in the file:
 //! they follow from the samples, so no file can make a promise false.
 
 use std::fs::File;
@@ -15,7 +15,8 @@ use palpate_field::{Aabb, Deviation, Vector};
 
 use crate::certificate::Cells;
 use crate::error::GridError;
-use crate::grid::{Compared, Grid};
+use crate::far::Far;
+use crate::grid::{Compared, Grid, Known};
 use crate::lattice::{Lattice, unravelled};
 use crate::samples::{BRICK, Codes, FAR_INSIDE, Order, Samples, Store, strides, wide_brick};
 use crate::spline::{Kernel, QUADRATIC, TRILINEAR};
@@ -150,7 +151,9 @@ impl<const D: usize> Grid<D> {
         let Samples { codes, scale, band, order, .. } = &self.samples;
         out.write_all(&MAGIC)?;
         let is_sparse = matches!(order, Order::Bricks { .. });
-        let compared = self.compared();
+        // Its bounds are those of the source too.
+        let promise = self.promise();
+        let compared = promise.deviation.zip(promise.bounds);
         out.write_all(&[
             D as u8 | u8::from(compared.is_some()) << 7,
             match self.kernel() {
@@ -164,8 +167,11 @@ impl<const D: usize> Grid<D> {
             },
             u8::from(is_sparse),
         ])?;
-        let Compared { deviation, bounds } = compared.unwrap_or(Compared::NONE);
-        for number in [lattice.cell, *scale, *band, deviation.value, deviation.within] {
+        let (value, within, bounds) = match compared {
+            Some((deviation, bounds)) => (deviation.value, deviation.within, bounds.aabb),
+            None => (0.0, 0.0, Aabb { min: Vector::ZERO, max: Vector::ZERO }),
+        };
+        for number in [lattice.cell, *scale, *band, value, within] {
             out.write_all(&number.to_le_bytes())?;
         }
         for i in 0..D {
@@ -187,6 +193,11 @@ impl<const D: usize> Grid<D> {
             Codes::I16(codes) => codes.iter().try_for_each(|c| out.write_all(&c.to_le_bytes())),
             Codes::I8(codes) => codes.iter().try_for_each(|c| out.write_all(&c.to_le_bytes())),
         }?;
+        let far = self.far.as_ref();
+        out.write_all(&far.map_or(-1.0, |far| far.reach).to_le_bytes())?;
+        if let Some(Far { samples: Samples { codes: Codes::F32(codes), .. }, .. }) = far {
+            codes.iter().try_for_each(|c| out.write_all(&c.to_le_bytes()))?;
+        }
         let sum = out.sum.finalize();
         out.out.write_all(sum.as_bytes())?;
         out.out.flush()
@@ -261,11 +272,19 @@ impl<const D: usize> Grid<D> {
         } else {
             (Order::Dense { strides: strides(counts) }, lattice.nodes().unwrap_or(usize::MAX))
         };
-        if nodes.checked_mul(width) != Some(numbers.0.len()) {
-            return Err(damaged("it has another number of samples than its head says"));
+        let counted = || damaged("it has another number of samples than its head says");
+        let own = nodes.checked_mul(width).filter(|own| *own <= numbers.0.len());
+        let (own, rest) = numbers.0.split_at(own.ok_or_else(counted)?);
+        let codes = Codes::from_le_bytes(store, own);
+        numbers.0 = rest;
+        let [reach] = numbers.floats()?;
+        let nodes_far =
+            if reach < 0.0 { 0 } else { Far::lattice(&lattice).nodes().unwrap_or(usize::MAX) };
+        if nodes_far.checked_mul(4) != Some(numbers.0.len()) || reach.is_nan() {
+            return Err(counted());
         }
-        let codes = Codes::from_le_bytes(store, numbers.0);
-        if !codes.are_finite() {
+        let far = Codes::from_le_bytes(Store::F32, numbers.0);
+        if !codes.are_finite() || !far.are_finite() {
             return Err(damaged("a sample is no number"));
         }
         let samples = Samples { codes, scale, band, order, bricks };
@@ -273,15 +292,19 @@ impl<const D: usize> Grid<D> {
             deviation: Deviation { value, within },
             bounds: Aabb { min, max },
         });
-        Ok(Self::from_samples_of_file(lattice, kernel, samples, &deviations, compared)?)
+        let far = match far {
+            Codes::F32(far) if reach >= 0.0 => Some(Far::of_samples(&lattice, far, reach)?),
+            _ => None,
+        };
+        let known = Known { compared, far };
+        Ok(Self::from_samples_of_file(lattice, kernel, samples, (&deviations, known))?)
     }
 
     fn from_samples_of_file(
         lattice: Lattice<D>,
         kernel: Kernel,
         samples: Samples<D>,
-        deviations: &[f64],
-        compared: Option<Compared<D>>,
+        (deviations, known): (&[f64], Known<D>),
     ) -> Result<Self, GridError> {
         let cells =
             Cells { lattice: &lattice, source: None, within: 0.0, reach: 0.0, worst: 0.0 };
@@ -294,7 +317,29 @@ impl<const D: usize> Grid<D> {
             certificate.deviation = deviations[number];
             Ok(certificate)
         })?;
-        Self::assemble(lattice, kernel, samples, certificates, compared)
+        Self::assemble(lattice, kernel, samples, certificates, known)
+    }
+}
+
+impl Codes {
+    /// The codes that a file holds.
+    fn from_le_bytes(store: Store, bytes: &[u8]) -> Self {
+        match store {
+            Store::F32 => {
+                Self::F32(bytes.as_chunks().0.iter().map(|c| f32::from_le_bytes(*c)).collect())
+            }
+            Store::I16 => {
+                Self::I16(bytes.as_chunks().0.iter().map(|c| i16::from_le_bytes(*c)).collect())
+            }
+            Store::I8 => Self::I8(bytes.iter().map(|c| c.cast_signed()).collect()),
+        }
+    }
+
+    fn are_finite(&self) -> bool {
+        match self {
+            Self::F32(codes) => codes.iter().all(|code| code.is_finite()),
+            Self::I16(_) | Self::I8(_) => true,
+        }
     }
 }
 

@@ -8,6 +8,7 @@ use palpate_field::{Aabb, Bounds, Deviation, Point, Promise, Rounding, Vector};
 use crate::certificate::Certificate;
 use crate::control::{MOST_TAPS, gather};
 use crate::error::GridError;
+use crate::far::Far;
 use crate::lattice::{Lattice, indices, raveled};
 use crate::outside::{at_border, outside};
 use crate::samples::{BRICK, Samples, Store, WIDE};
@@ -33,7 +34,9 @@ pub struct Grid<const D: usize> {
     region: Aabb<D>,
     /// How far the formula outside takes the surface to be from the box [m].
     margin: f64,
-    compared: Option<Compared<D>>,
+    pub(crate) far: Option<Far<D>>,
+    /// From this size on a value may be clamped [m].
+    clamped: f64,
     promise: Promise<D>,
 }
 
@@ -81,18 +84,15 @@ impl<const D: usize> Grid<D> {
         deviation.unwrap_or(f64::INFINITY)
     }
 
-    pub(crate) fn compared(&self) -> Option<Compared<D>> {
-        self.compared
-    }
-
     /// Puts certified samples together.
     pub(crate) fn assemble(
         lattice: Lattice<D>,
         kernel: Kernel,
         samples: Samples<D>,
         certificates: Vec<Certificate<D>>,
-        compared: Option<Compared<D>>,
+        known: Known<D>,
     ) -> Result<Self, GridError> {
+        let Known { compared, far } = known;
         let cell = lattice.cell;
         let reach = 0.5 * kernel.taps() as f64;
         let mut inside: Option<[[usize; 2]; D]> = None;
@@ -115,8 +115,11 @@ impl<const D: usize> Grid<D> {
                 return Err(GridError::AtBorder { cell, node: node.0.to_vec() });
             }
         }
+        // Codes of the band are rounded.
+        let clamped = samples.band * (1.0 - 1e-6);
         let lipschitz =
             certificates.iter().fold(0.0_f64, |l, certificate| l.max(certificate.steepness));
+        let far = far.map(|far| far.no_steeper(lipschitz));
         let parts = BRICK / SLOPE_BLOCK;
         let slopes = Slopes::new(samples.bricks, parts, |brick| {
             &certificates[raveled(brick, samples.bricks)].slopes
@@ -134,7 +137,8 @@ impl<const D: usize> Grid<D> {
             slopes,
             region,
             margin: 0.0,
-            compared,
+            far,
+            clamped,
             promise,
         };
         let [least, margin] = match kernel {
@@ -199,45 +203,43 @@ impl<const D: usize> Grid<D> {
         [least, margin.max(0.0)]
     }
 
-    #[inline(always)]
-    fn locate<const K: usize>(&self, p: Point<D>) -> ([usize; D], [f64; D]) {
-        let inverse = 1.0 / self.lattice.cell;
-        let (mut first, mut local) = ([0; D], [0.0; D]);
-        for i in 0..D {
-            let along = (p[i] - self.lattice.origin[i]) * inverse - (0.5 * K as f64 - 1.0);
-            first[i] = (along as usize).min(self.lattice.counts[i] - K);
-            local[i] = along - first[i] as f64;
-        }
-        (first, local)
-    }
-
     /// The value [m] and the gradient at a point of the region.
     #[inline]
     fn inner_gradient(&self, p: Point<D>) -> (f64, Vector<f64, D>) {
         let (value, slope) = match self.kernel {
             Kernel::Quadratic => {
-                let (first, local) = self.locate::<QUADRATIC>(p);
+                let (first, local) = self.lattice.locate::<QUADRATIC>(p);
                 self.samples.value_slope::<QUADRATIC>(first, local)
             }
             Kernel::Trilinear => {
-                let (first, local) = self.locate::<TRILINEAR>(p);
+                let (first, local) = self.lattice.locate::<TRILINEAR>(p);
                 self.samples.value_slope::<TRILINEAR>(first, local)
             }
         };
-        (value, slope * (1.0 / self.lattice.cell))
+        let found = (value, slope * (1.0 / self.lattice.cell));
+        match &self.far {
+            Some(far) if value.abs() >= self.clamped => far.or_larger(p, found),
+            _ => found,
+        }
     }
 
     #[inline]
     fn inner(&self, p: Point<D>) -> f64 {
-        match self.kernel {
+        let value = match self.kernel {
             Kernel::Quadratic => {
-                let (first, local) = self.locate::<QUADRATIC>(p);
+                let (first, local) = self.lattice.locate::<QUADRATIC>(p);
                 self.samples.value::<QUADRATIC>(first, local)
             }
             Kernel::Trilinear => {
-                let (first, local) = self.locate::<TRILINEAR>(p);
+                let (first, local) = self.lattice.locate::<TRILINEAR>(p);
                 self.samples.value::<TRILINEAR>(first, local)
             }
+        };
+        match &self.far {
+            Some(far) if value.abs() >= self.clamped => {
+                far.or_larger(p, (value, Vector::ZERO)).0
+            }
+            _ => value,
         }
     }
 
@@ -269,29 +271,28 @@ impl<const D: usize> Grid<D> {
         outside(away, inner, self.promise.lipschitz, self.margin)
     }
 
-    /// The middle and half the range of each derivative over a box; `None` where the box leaves the region.
-    pub(crate) fn slopes_over(&self, around: &Aabb<D>) -> Option<[[f64; 2]; D]> {
+    /// The middle and half the range of each derivative over a box, at whose centre the value has a size [m]; `None`
+    /// where the box leaves the region.
+    pub(crate) fn slopes_over(&self, around: &Aabb<D>, size: f64) -> Option<[[f64; 2]; D]> {
         let is_within = (0..D).all(|i| {
             self.region.min[i] <= around.min[i] && around.max[i] <= self.region.max[i]
         });
         if !is_within {
             return None;
         }
-        let taps = self.kernel.taps();
-        let (first, last) = match self.kernel {
-            Kernel::Quadratic => {
-                (self.locate::<QUADRATIC>(around.min).0, self.locate::<QUADRATIC>(around.max).0)
-            }
-            Kernel::Trilinear => {
-                (self.locate::<TRILINEAR>(around.min).0, self.locate::<TRILINEAR>(around.max).0)
-            }
+        let mut slopes = match self.kernel {
+            Kernel::Quadratic => self.slopes.of_box::<QUADRATIC>(&self.lattice, around),
+            Kernel::Trilinear => self.slopes.of_box::<TRILINEAR>(&self.lattice, around),
         };
-        let last = last.map(|index| index + taps - 1);
-        let cell = self.lattice.cell;
-        Some(self.slopes.over(first, last).map(|range| {
-            let (least, largest) = (f64::from(range.least), f64::from(range.largest));
-            let half = 0.5 * (largest - least) / cell * (1.0 + 8.0 * f64::EPSILON);
-            [0.5 * (least + largest) / cell, half]
+        let reach = self.promise.lipschitz * around.half_extents().norm();
+        if let Some(far) = self.far.as_ref().filter(|_| size + reach >= self.clamped) {
+            for (slope, far) in slopes.iter_mut().zip(far.slopes_over(around)) {
+                *slope = [slope[0].min(far[0]), slope[1].max(far[1])];
+            }
+        }
+        Some(slopes.map(|[least, largest]| {
+            let half = 0.5 * (largest - least) * (1.0 + 8.0 * f64::EPSILON);
+            [0.5 * (least + largest), half]
         }))
     }
 }
@@ -303,12 +304,13 @@ pub(crate) struct Compared<const D: usize> {
     pub(crate) bounds: Aabb<D>,
 }
 
-impl<const D: usize> Compared<D> {
-    /// What stands in a file for nothing.
-    pub(crate) const NONE: Self = Self {
-        deviation: Deviation { value: 0.0, within: 0.0 },
-        bounds: Aabb { min: Vector::ZERO, max: Vector::ZERO },
-    };
+/// What is known of a grid beside its samples.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Known<const D: usize> {
+    /// `None` if it has no source.
+    pub(crate) compared: Option<Compared<D>>,
+    /// Values beyond the band; `None` if all are within, or nothing is known beyond.
+    pub(crate) far: Option<Far<D>>,
 }
 
 /// The box of the cells: every point of it has all the samples that its value takes.

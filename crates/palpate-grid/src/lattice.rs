@@ -40,6 +40,19 @@ impl<const D: usize> Lattice<D> {
         self.origin + index * self.cell
     }
 
+    /// The first sample of the cell that a point lies in, and where in the cell it lies, from 0 to 1 along each axis.
+    #[inline(always)]
+    pub(crate) fn locate<const K: usize>(&self, p: Point<D>) -> ([usize; D], [f64; D]) {
+        let inverse = 1.0 / self.cell;
+        let (mut first, mut local) = ([0; D], [0.0; D]);
+        for i in 0..D {
+            let along = (p[i] - self.origin[i]) * inverse - (0.5 * K as f64 - 1.0);
+            first[i] = (along as usize).min(self.counts[i] - K);
+            local[i] = along - first[i] as f64;
+        }
+        (first, local)
+    }
+
     /// How many nodes there are, if a number can say it.
     #[must_use]
     pub fn nodes(&self) -> Option<usize> {

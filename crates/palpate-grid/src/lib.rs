@@ -28,6 +28,7 @@ mod certificate;
 mod control;
 mod deviation;
 mod error;
+mod far;
 mod field;
 #[cfg(feature = "files")]
 mod file;

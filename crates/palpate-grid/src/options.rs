@@ -9,6 +9,10 @@ use crate::error::GridError;
 use crate::samples::Store;
 use crate::spline::Kernel;
 
+/// The band is wider by this than what is certified [cells]: half the diagonal of three cells for the samples that
+/// a value takes, half that of one for its deviation, and rounding.
+const SAMPLES_REACH: f64 = 3.6;
+
 /// How fine a grid is.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Resolution {
@@ -40,8 +44,8 @@ pub struct GridOptions {
 }
 
 impl GridOptions {
-    /// The smallest band: a value within less takes clamped samples, so nothing would be certified.
-    pub const SMALLEST_BAND: f64 = 3.0;
+    /// The smallest band: within less, values take clamped samples, and nothing would be certified.
+    pub const SMALLEST_BAND: f64 = 4.5;
 
     /// Quadratic splines of samples in single precision, all of them, with cells of a size [m].
     #[must_use]
@@ -98,6 +102,12 @@ impl GridOptions {
         Self { most_nodes, ..self }
     }
 
+    /// The same with a band, if there is none: as wide as what is certified takes.
+    pub(crate) fn with_narrow_band(&self) -> Self {
+        let narrow = self.certified + SAMPLES_REACH;
+        Self { band: self.band.or(Some(narrow)), ..self.clone() }
+    }
+
     pub(crate) fn check(&self) -> Result<(), GridError> {
         let (name, size) = match self.resolution {
             Resolution::Cell(cell) => ("cell", cell),
@@ -115,7 +125,7 @@ impl GridOptions {
         }
         if let Some(band) = self.band.filter(|band| !(Self::SMALLEST_BAND..=1e6).contains(band))
         {
-            return wrong("band", "from 3 to 1e6 cells", band, Unit::One);
+            return wrong("band", "from 4.5 to 1e6 cells", band, Unit::One);
         }
         if !(0.0..=1e6).contains(&self.certified) {
             return wrong("certified", "from 0 to 1e6 cells", self.certified, Unit::One);

@@ -122,26 +122,6 @@ impl Codes {
         }
     }
 
-    /// The codes that a file holds.
-    pub(crate) fn from_le_bytes(store: Store, bytes: &[u8]) -> Self {
-        match store {
-            Store::F32 => {
-                Self::F32(bytes.as_chunks().0.iter().map(|c| f32::from_le_bytes(*c)).collect())
-            }
-            Store::I16 => {
-                Self::I16(bytes.as_chunks().0.iter().map(|c| i16::from_le_bytes(*c)).collect())
-            }
-            Store::I8 => Self::I8(bytes.iter().map(|c| c.cast_signed()).collect()),
-        }
-    }
-
-    pub(crate) fn are_finite(&self) -> bool {
-        match self {
-            Self::F32(codes) => codes.iter().all(|code| code.is_finite()),
-            Self::I16(_) | Self::I8(_) => true,
-        }
-    }
-
     /// Some of the codes.
     fn run(&self, first: usize, count: usize) -> Self {
         match self {

@@ -5,7 +5,9 @@
 //!
 //! Over any cells, each derivative of the interpolation is a mean of differences of neighbours along its axis.
 
-use crate::lattice::{indices, raveled};
+use palpate_field::Aabb;
+
+use crate::lattice::{Lattice, indices, raveled};
 
 /// Nodes along an axis of the smallest blocks.
 pub(crate) const SLOPE_BLOCK: usize = 4;
@@ -86,8 +88,21 @@ impl<const D: usize> Slopes<D> {
         Self { levels }
     }
 
+    /// The least and the largest of each derivative over a box, within the cells of `K` samples along each axis.
+    pub(crate) fn of_box<const K: usize>(
+        &self,
+        lattice: &Lattice<D>,
+        around: &Aabb<D>,
+    ) -> [[f64; 2]; D] {
+        let (first, _) = lattice.locate::<K>(around.min);
+        let (last, _) = lattice.locate::<K>(around.max);
+        self.over(first, last.map(|index| index + K - 1)).map(|range| {
+            [range.least, range.largest].map(|difference| f64::from(difference) / lattice.cell)
+        })
+    }
+
     /// A range for each axis that holds the differences [m] between the nodes from `first` to `last`.
-    pub(crate) fn over(&self, first: [usize; D], last: [usize; D]) -> [Range; D] {
+    fn over(&self, first: [usize; D], last: [usize; D]) -> [Range; D] {
         let mut size = SLOPE_BLOCK;
         let mut ranges = [Range::EMPTY; D];
         for (number, level) in self.levels.iter().enumerate() {

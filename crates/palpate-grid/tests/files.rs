@@ -15,7 +15,7 @@ fn grids() -> Vec<Grid<3>> {
     let mut grids = Vec::new();
     for kernel in [Kernel::Quadratic, Kernel::Trilinear] {
         for store in [Store::F32, Store::I16, Store::I8] {
-            for band in [None, Some(4.0)] {
+            for band in [None, Some(5.0)] {
                 let mut options =
                     GridOptions::with_cell(0.04).with_kernel(kernel).with_store(store);
                 options.band = band;

@@ -3,7 +3,6 @@
 
 //! What is written is read again.
 #![cfg(feature = "files")]
-#![expect(clippy::unwrap_used, reason = "tests")]
 
 use palpate_field::Shape;
 use palpate_mesh::{ContourOptions, Format, TriangleMesh, read};

@@ -13,6 +13,7 @@ mod documented;
 mod error_maps;
 mod feel;
 mod gradients;
+mod grids;
 mod identify;
 mod interrupted;
 mod live;

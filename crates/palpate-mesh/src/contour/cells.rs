@@ -110,8 +110,8 @@ impl Cells {
         let half = 0.5 * SIDE as f64 * self.cell;
         let middle = self.node(first) + Vector([half; 3]);
         let radius = half * 3.0_f64.sqrt() * (1.0 + 1e-9);
-        // A radius that is no number is near.
-        !(shape.safe_radius(middle) > radius)
+        let safe = shape.safe_radius(middle);
+        safe.is_nan() || safe <= radius
     }
 
     fn in_block(

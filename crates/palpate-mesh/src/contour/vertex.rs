@@ -91,9 +91,8 @@ fn eigen(mut a: [[f64; 3]; 3]) -> ([f64; 3], [Vector<f64, 3>; 3]) {
             for row in &mut a {
                 (row[p], row[q]) = (c * row[p] - s * row[q], s * row[p] + c * row[q]);
             }
-            for k in 0..3 {
-                (a[p][k], a[q][k]) = (c * a[p][k] - s * a[q][k], s * a[p][k] + c * a[q][k]);
-            }
+            let [low, high] = [Vector(a[p]), Vector(a[q])];
+            (a[p], a[q]) = ((low * c - high * s).0, (low * s + high * c).0);
             for row in &mut v {
                 (row[p], row[q]) = (c * row[p] - s * row[q], s * row[p] + c * row[q]);
             }

@@ -26,7 +26,7 @@ fn a_shape_is_baked_where_the_scene_says_so() {
     let ball = r#"{ "ball": { "radius": 0.05 } }"#;
     for how in [
         r#"{ "tolerance": 1e-3 }"#,
-        r#"{ "cell": 0.01, "kernel": "trilinear", "store": "i16", "band": 4 }"#,
+        r#"{ "cell": 0.01, "kernel": "trilinear", "store": "i16", "band": 5 }"#,
     ] {
         let scene = text(&format!(r#"{{ "bake": {how}, "of": {ball} }}"#));
         let scene = built(Scene::from_json(&scene)).unwrap();

@@ -1,0 +1,81 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! `palpate grid`, and meshes of scenes by `palpate mesh --output`.
+
+use crate::common::{Folder, assert_refused, json, number, palpate, status, text};
+
+const BALL: &str = r#"{ "palpate": 1, "dimension": 3, "bodies": [
+  { "name": "ball", "shape": { "ball": { "radius": 0.05 } } },
+  { "name": "block", "shape": { "translate": [0.2, 0, 0],
+    "of": { "cuboid": { "size": [0.06, 0.06, 0.06] } } } } ] }"#;
+
+#[test]
+fn a_grid_is_made_and_used() {
+    let folder = Folder::new();
+    let (scene, grid) = (folder.write("ball.json", BALL), folder.name("ball.grid"));
+    let made = json(&[
+        "grid",
+        &scene,
+        "--body",
+        "ball",
+        "--tolerance",
+        "1e-3",
+        "--output",
+        &grid,
+        "--json",
+    ]);
+    assert!(number(&made["deviation_m"]) <= 1e-3, "{made}");
+    let used = r#"{ "palpate": 1, "dimension": 3, "bodies": [
+      { "name": "baked", "shape": { "grid": { "file": "ball.grid" } } } ] }"#;
+    let used = folder.write("used.json", used);
+    let said = text(&palpate(&["check", &used]));
+    assert!(said.contains("off its source by at most"), "{said}");
+    let at = json(&["eval", &used, "--at", "0,0.06,0", "--json"]);
+    assert!((number(&at["distance_m"]) - 0.01).abs() <= 1e-3, "{at}");
+    let felt = palpate(&["feel", &used, "--fast", "--duration", "1"]);
+    assert_eq!(status(&felt), 0, "{}", text(&felt));
+    // A grid of both bodies takes a band.
+    let said = palpate(&["grid", &scene, "--cell", "0.004", "--band", "5", "--output", &grid]);
+    assert!(text(&said).contains("quadratic, f32"), "{}", text(&said));
+    let disc = folder.write("disc.json", &crate::common::disc(0.05));
+    let flat = folder.name("disc.grid");
+    let said = palpate(&["grid", &disc, "--cell", "0.004", "--output", &flat]);
+    assert_eq!(status(&said), 0);
+    assert_refused(&["grid", &scene, "--cell", "0.004", "--output", &scene], "ball.json");
+    assert_refused(&["grid", &scene, "--output", &grid], "--tolerance");
+    let long = ["grid", &scene, "--tolerance", "1e-9", "--output", &grid];
+    assert_refused(&long, "more than the 67108864 nodes allowed");
+}
+
+#[test]
+fn a_mesh_is_made_of_a_scene_and_is_good() {
+    let folder = Folder::new();
+    let scene = folder.write("ball.json", BALL);
+    for ending in ["stl", "obj", "ply", "glb"] {
+        let mesh = folder.name(&format!("ball.{ending}"));
+        let made = json(&["mesh", &scene, "--cell", "0.0031", "--output", &mesh, "--json"]);
+        assert_eq!(made["ok"], true, "{made}");
+        let checked = palpate(&["mesh", &mesh]);
+        assert_eq!(status(&checked), 0, "{}", text(&checked));
+    }
+    let (mesh, again) = (folder.name("ball.ply"), folder.name("again.ply"));
+    let made = text(&palpate(&[
+        "mesh",
+        &scene,
+        "--body",
+        "ball",
+        "--tolerance",
+        "1e-4",
+        "--output",
+        &mesh,
+    ]));
+    assert!(made.contains("closed, none cross"), "{made}");
+    assert!(made.contains("distance from the surface is at most"), "{made}");
+    let made = palpate(&["mesh", &mesh, "--cell", "0.004", "--output", &again]);
+    assert_eq!(status(&made), 0, "{}", text(&made));
+    assert_refused(&["mesh", &mesh, "--output", &mesh], "ball.ply");
+    assert_refused(&["mesh", &scene, "--output", &folder.name("ball.txt")], ".glb");
+    let disc = folder.write("disc.json", &crate::common::disc(0.05));
+    assert_refused(&["mesh", &disc, "--output", &mesh], "dimension");
+}
