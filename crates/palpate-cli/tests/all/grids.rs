@@ -3,12 +3,19 @@
 
 //! `palpate grid`, and meshes of scenes by `palpate mesh --output`.
 
-use crate::common::{Folder, assert_refused, json, number, palpate, status, text};
+use crate::common::{Folder, errors, json, number, palpate, status, text};
 
 const BALL: &str = r#"{ "palpate": 1, "dimension": 3, "bodies": [
   { "name": "ball", "shape": { "ball": { "radius": 0.05 } } },
   { "name": "block", "shape": { "translate": [0.2, 0, 0],
     "of": { "cuboid": { "size": [0.06, 0.06, 0.06] } } } } ] }"#;
+
+/// Runs a command that must fail with status 2 and say this among other things.
+fn refuses(arguments: &[&str], said: &str) {
+    let output = palpate(arguments);
+    assert!(errors(&output).contains(said), "{}", errors(&output));
+    assert_eq!((status(&output), text(&output).as_str()), (2, ""), "{arguments:?}");
+}
 
 #[test]
 fn a_grid_is_made_and_used() {
@@ -42,10 +49,10 @@ fn a_grid_is_made_and_used() {
     let flat = folder.name("disc.grid");
     let said = palpate(&["grid", &disc, "--cell", "0.004", "--output", &flat]);
     assert_eq!(status(&said), 0);
-    assert_refused(&["grid", &scene, "--cell", "0.004", "--output", &scene], "ball.json");
-    assert_refused(&["grid", &scene, "--output", &grid], "--tolerance");
+    refuses(&["grid", &scene, "--cell", "0.004", "--output", &scene], "ball.json");
+    refuses(&["grid", &scene, "--output", &grid], "--tolerance");
     let long = ["grid", &scene, "--tolerance", "1e-9", "--output", &grid];
-    assert_refused(&long, "more than the 67108864 nodes allowed");
+    refuses(&long, "more than the 67108864 nodes allowed");
 }
 
 #[test]
@@ -74,8 +81,8 @@ fn a_mesh_is_made_of_a_scene_and_is_good() {
     assert!(made.contains("distance from the surface is at most"), "{made}");
     let made = palpate(&["mesh", &mesh, "--cell", "0.004", "--output", &again]);
     assert_eq!(status(&made), 0, "{}", text(&made));
-    assert_refused(&["mesh", &mesh, "--output", &mesh], "ball.ply");
-    assert_refused(&["mesh", &scene, "--output", &folder.name("ball.txt")], ".glb");
+    refuses(&["mesh", &mesh, "--output", &mesh], "ball.ply");
+    refuses(&["mesh", &scene, "--output", &folder.name("ball.txt")], ".glb");
     let disc = folder.write("disc.json", &crate::common::disc(0.05));
-    assert_refused(&["mesh", &disc, "--output", &mesh], "dimension");
+    refuses(&["mesh", &disc, "--output", &mesh], "dimension");
 }
