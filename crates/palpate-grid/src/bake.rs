@@ -79,8 +79,12 @@ impl<const D: usize> Grid<D> {
             Resolution::Cell(cell) => return bake_as(cell, options),
             Resolution::Tolerance(tolerance) => tolerance,
         };
-        // What is far from the surface changes no deviation: tries leave it out.
-        let tried = options.with_narrow_band();
+        // What is far from the surface changes no deviation, but where it makes steps of whole numbers larger:
+        // tries leave it out.
+        let tried = match options.store {
+            Store::F32 => options.with_narrow_band(),
+            Store::I16 | Store::I8 => options.clone(),
+        };
         let bake = |cell| bake_as(cell, &tried);
         let whole = |grid: Self| {
             if tried == *options { Ok(grid) } else { bake_as(grid.lattice().cell, options) }
@@ -198,7 +202,8 @@ impl<const D: usize> Grid<D> {
 
     /// Samples the bricks again whose values change when the shape changes within `region` alone.
     ///
-    /// The samples are those of a new grid of the shape on the same lattice, to the bit.
+    /// Of a shape whose distances are exact up to the band, the samples are those of a new grid on the same lattice,
+    /// to the bit. Values that are bounds may change farther away from what changed than the band.
     ///
     /// # Errors
     ///
@@ -217,10 +222,15 @@ impl<const D: usize> Grid<D> {
             band: Some(band / lattice.cell),
             ..GridOptions::with_cell(lattice.cell)
         };
-        let progress = &|_| ControlFlow::Continue(());
-        let bake =
+        let bake = Bake {
+            source: &source,
+            bounds,
+            options: &options,
+            cell: lattice.cell,
             // The lattice is the old one.
-            Bake { source: &source, bounds, options: &options, cell: lattice.cell, around: 0.0, progress };
+            around: 0.0,
+            progress: &|_| ControlFlow::Continue(()),
+        };
         *self = match self.kernel() {
             Kernel::Quadratic => bake.again::<QUADRATIC>(self, region)?,
             Kernel::Trilinear => bake.again::<TRILINEAR>(self, region)?,

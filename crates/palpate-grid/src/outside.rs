@@ -27,6 +27,10 @@ pub(crate) fn outside<const D: usize>(
     let sum: f64 = away.0.iter().map(|a| a.abs()).sum();
     let square = lipschitz * lipschitz;
     let result = (square * (away.dot(away) + 2.0 * margin * sum) + value * value).sqrt();
+    if !result.is_finite() {
+        // Of a point that is nowhere, or too far away for squares.
+        return (result, Vector::ZERO);
+    }
     let gradient = std::array::from_fn(|i| {
         if away[i] == 0.0 {
             value * slope[i] / result

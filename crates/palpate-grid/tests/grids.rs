@@ -378,6 +378,23 @@ fn what_cannot_be_a_grid_is_refused() {
 }
 
 #[test]
+fn a_point_that_is_nowhere_has_no_gradient() {
+    let ball = Shape::sphere(0.5).unwrap();
+    for band in [None, Some(5.0)] {
+        let mut options = GridOptions::with_cell(0.05);
+        options.band = band;
+        let grid = Grid::bake(&ball, &options).unwrap();
+        for x in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+            let (value, gradient) = grid.distance_gradient(Vector([x, 0.0, 0.0]));
+            assert!(!value.is_finite());
+            assert_eq!(gradient, Vector::ZERO);
+        }
+        let far = grid.distance(Vector([1e9, 0.0, 0.0]));
+        assert!(far > 0.9e9 && far <= grid.promise().lipschitz * 1e9);
+    }
+}
+
+#[test]
 fn a_grid_in_the_plane() {
     let disc = Shape::circle(0.3).unwrap();
     for kernel in KERNELS {
