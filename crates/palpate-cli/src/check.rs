@@ -81,9 +81,11 @@ pub(crate) fn run(options: &CheckOptions) -> Result<Outcome, Failure> {
                         .map(|bounds| bounds.aabb.half_extents() * 2.0);
                     let size =
                         size.map(|size| size.0.map(|side| format!("{side:.4}")).join(" × "));
+                    let at =
+                        mesh.value.map_or_else(String::new, |value| format!(" at {value}"));
                     writeln!(
                         out,
-                        "  {}: {}, {} m: {found}",
+                        "  {}{at}: {}, {} m: {found}",
                         shown(&mesh.file),
                         counted(mesh.findings.faces, "face", "faces"),
                         size.unwrap_or_default(),
@@ -108,6 +110,7 @@ fn of_mesh(mesh: &BuiltMesh) -> Value {
     json!({
         "file": mesh.file,
         "scale": mesh.scale,
+        "value": mesh.value,
         "faces": faces,
         "welded": welded,
         "degenerate": degenerate,

@@ -7,7 +7,9 @@ use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use palpate_field::kernel::Cuboid;
-use palpate_field::{Aabb, BLOCK, Block, Column, Deviation, Point, Pose, Shape, Vector};
+use palpate_field::{
+    Aabb, BLOCK, Block, Column, Deviation, Point, Pose, Quality, Shape, Vector,
+};
 
 use crate::certificate::{Cells, Certificate};
 use crate::error::GridError;
@@ -33,7 +35,7 @@ const MOST_TRIES: usize = 12;
 /// The largest step of one try to the next.
 const MOST_REFINED: f64 = 4.0;
 
-/// A cell that serves is taken if one that is so many times as large does not.
+/// Tries end when cells this many times as large fail.
 const MOST_APART: f64 = 1.5;
 
 /// How far a grid is made.
@@ -70,6 +72,10 @@ impl<const D: usize> Grid<D> {
     ) -> Result<Self, GridError> {
         options.check()?;
         let bounds = shape.promise().bounds.ok_or(GridError::Unbounded)?.aabb;
+        if !shape.promise().has_interior {
+            let (Resolution::Cell(cell) | Resolution::Tolerance(cell)) = options.resolution;
+            return Err(GridError::NoInside { cell });
+        }
         let source = raised(shape, &bounds)?;
         let around = options.band.unwrap_or(options.certified) + 3.0;
         let bake_as = |cell, options| {
@@ -79,10 +85,10 @@ impl<const D: usize> Grid<D> {
             Resolution::Cell(cell) => return bake_as(cell, options),
             Resolution::Tolerance(tolerance) => tolerance,
         };
-        // What is far from the surface changes no deviation, but where it makes steps of whole numbers larger:
-        // tries leave it out.
+        // Samples far from the surface change no deviation in single precision, so tries use a band. The steps of
+        // whole numbers grow with the largest sample, so tries keep all.
         let tried = match options.store {
-            Store::F32 => options.with_narrow_band(),
+            Store::F32 => options.with_narrow_band::<D>(source.promise().lipschitz),
             Store::I16 | Store::I8 => options.clone(),
         };
         let bake = |cell| bake_as(cell, &tried);
@@ -108,9 +114,14 @@ impl<const D: usize> Grid<D> {
                 }
                 Ok(grid) => Some(grid.deviation()),
                 Err(GridError::NoInside { .. }) => None,
-                Err(GridError::TooLarge { limit, .. }) => {
-                    let [cell, reached] = last.unwrap_or([cell, f64::INFINITY]);
-                    return Err(GridError::TooFine { tolerance, limit, cell, reached });
+                Err(GridError::TooLarge { cell, nodes, limit }) => {
+                    return Err(match last {
+                        Some([cell, reached]) => {
+                            GridError::TooFine { tolerance, limit, cell, reached }
+                        }
+                        None if coarse.is_some() => GridError::NoInside { cell },
+                        None => GridError::TooLarge { cell, nodes, limit },
+                    });
                 }
                 Err(error) => return Err(error),
             };
@@ -132,9 +143,13 @@ impl<const D: usize> Grid<D> {
             last = reached.map(|reached| [cell, reached]).or(last);
             cell *= finer.max(1.0 / MOST_REFINED);
         }
-        let [cell, reached] = last.unwrap_or([cell, f64::INFINITY]);
-        let limit = options.most_nodes;
-        best.map_or(Err(GridError::TooFine { tolerance, limit, cell, reached }), whole)
+        match (best, last) {
+            (Some(best), _) => whole(best),
+            (None, Some([cell, reached])) => {
+                Err(GridError::NotReached { tolerance, cell, reached })
+            }
+            (None, None) => Err(GridError::NoInside { cell }),
+        }
     }
 
     /// The grid of given samples [m], one for each node, the first axis first: a field for itself.
@@ -175,7 +190,7 @@ impl<const D: usize> Grid<D> {
         if nodes != samples.len() || is_small {
             return Err(GridError::Samples { nodes, samples: samples.len() });
         }
-        if let Some(wrong) = samples.iter().position(|sample| !sample.is_finite()) {
+        if let Some(wrong) = samples.iter().position(|sample| !fits(*sample)) {
             let point = lattice.node(unravelled(wrong, lattice.counts)).0.to_vec();
             return Err(GridError::NotFinite { point });
         }
@@ -188,8 +203,7 @@ impl<const D: usize> Grid<D> {
             order: Order::Dense { strides: strides(lattice.counts) },
             bricks: lattice.counts.map(|count| count.div_ceil(BRICK)),
         };
-        let cells =
-            Cells { lattice: &lattice, source: None, within: 0.0, reach: 0.0, worst: 0.0 };
+        let cells = Cells::without_source(&lattice);
         let certificates = each(samples.bricks.iter().product(), |number| {
             let brick = unravelled(number, samples.bricks);
             Ok(match kernel {
@@ -202,12 +216,13 @@ impl<const D: usize> Grid<D> {
 
     /// Samples the bricks again whose values change when the shape changes within `region` alone.
     ///
-    /// Of a shape whose distances are exact up to the band, the samples are those of a new grid on the same lattice,
-    /// to the bit. Values that are bounds may change farther away from what changed than the band.
+    /// The samples are those of a new grid on the same lattice, to the bit. Values that are bounds may change far
+    /// away from what changed: unless the shape is exact on both sides, every brick is sampled again.
     ///
     /// # Errors
     ///
-    /// As [`bake`](Self::bake); if the grid has no band: then every value may change. The grid is then as before.
+    /// As [`bake`](Self::bake); if the grid has no band, for then every value may change; if the shape has grown out
+    /// of the lattice. The grid is then as before.
     pub fn rebuild(&mut self, shape: &Shape<D>, region: &Aabb<D>) -> Result<(), GridError> {
         let bounds = shape.promise().bounds.ok_or(GridError::Unbounded)?.aabb;
         let band = self.samples.band;
@@ -216,6 +231,11 @@ impl<const D: usize> Grid<D> {
         }
         let source = raised(shape, &bounds)?;
         let lattice = *self.lattice();
+        let room = lattice.region();
+        let needed = bounds.grown(2.0 * lattice.cell);
+        if (0..D).any(|i| needed.min[i] < room.min[i] || needed.max[i] > room.max[i]) {
+            return Err(GridError::Outgrown);
+        }
         let options = GridOptions {
             kernel: self.kernel(),
             store: self.store(),
@@ -288,7 +308,10 @@ impl<const D: usize> Bake<'_, D> {
             }
         };
         let samples = match self.options.band {
-            Some(band) => self.bricks(&lattice, bricks, band * self.cell, &step)?,
+            Some(band) => {
+                let band = self.options.store.band(band * self.cell);
+                self.bricks(&lattice, bricks, band, &step)?
+            }
             None => self.dense(&lattice, bricks, &step)?,
         };
         self.certified::<K>(lattice, samples, &step)
@@ -306,14 +329,18 @@ impl<const D: usize> Bake<'_, D> {
         let lattice = *old.lattice();
         let band = old.samples.band;
         let bricks = old.samples.bricks;
-        // A value changes if it was, or is, within the band.
-        let changed = region.grown(band * self.source.promise().lipschitz.max(1.0));
+        let promise = self.source.promise();
+        let is_exact = promise.outside == Quality::Exact && promise.inside == Quality::Exact;
+        // A distance changes if it was, or is, within the band.
+        let changed = region.grown(band);
         let is_near = |brick: [usize; D]| {
-            (0..D).all(|i| {
-                let along = |index: f64| lattice.origin[i] + index * lattice.cell;
-                let start = (brick[i] * BRICK) as f64 - 1.0;
-                along(start) <= changed.max[i] && changed.min[i] <= along(start + WIDE as f64)
-            })
+            !is_exact
+                || (0..D).all(|i| {
+                    let along = |index: f64| lattice.origin[i] + index * lattice.cell;
+                    let start = (brick[i] * BRICK) as f64 - 1.0;
+                    along(start) <= changed.max[i]
+                        && changed.min[i] <= along(start + WIDE as f64)
+                })
         };
         let made = each(bricks.iter().product(), |number| {
             let brick = unravelled(number, bricks);
@@ -493,12 +520,19 @@ impl<const D: usize> Bake<'_, D> {
             f64::INFINITY
         };
         let within = match self.options.band {
+            // Where the steepness holds in a part of space alone, so do the models.
+            _ if self.source.promise().region.is_some() => 0.0,
             None => self.options.certified * cell,
             // None of the samples that these values take is clamped.
-            Some(band) => (band * cell - (reach + worst) * (1.0 + 1e-9)).max(0.0),
+            Some(_) => (samples.band - (reach + worst) * (1.0 + 1e-9)).max(0.0),
         };
         Cells { lattice, source: Some(self.source), within, reach, worst }
     }
+}
+
+/// Whether a sample is a number in single precision too.
+pub(crate) fn fits(sample: f64) -> bool {
+    sample.abs() <= f64::from(f32::MAX)
 }
 
 /// The distances at `count` points [m].
@@ -516,7 +550,7 @@ fn distances<const D: usize>(
         shape.block_distances(&points, lanes, &mut values);
         for i in 0..lanes {
             let value = values.get(i);
-            if !value.is_finite() {
+            if !fits(value) {
                 return Err(GridError::NotFinite { point: at(first + i).0.to_vec() });
             }
             samples.push(value);

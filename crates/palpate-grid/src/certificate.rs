@@ -48,13 +48,18 @@ pub(crate) struct Cells<'a, const D: usize> {
     pub(crate) source: Option<&'a Shape<D>>,
     /// Values up to this size are compared with the source [m].
     pub(crate) within: f64,
-    /// The samples that a value takes differ from it by at most so much [m].
+    /// How far a sample may be from the source's value at a point whose value takes the sample [m].
     pub(crate) reach: f64,
-    /// The largest deviation that any sample allows [m].
+    /// A bound of the deviation that holds whatever the samples are [m].
     pub(crate) worst: f64,
 }
 
-impl<const D: usize> Cells<'_, D> {
+impl<'a, const D: usize> Cells<'a, D> {
+    /// The cells of samples that stand for themselves.
+    pub(crate) fn without_source(lattice: &'a Lattice<D>) -> Self {
+        Self { lattice, source: None, within: 0.0, reach: 0.0, worst: 0.0 }
+    }
+
     /// The certificate of a brick.
     pub(crate) fn of_brick<const K: usize>(
         &self,
@@ -79,9 +84,7 @@ impl<const D: usize> Cells<'_, D> {
     {
         let first = |axis: usize| (K - 2).saturating_sub(brick[axis] * BRICK);
         let end = |axis: usize| {
-            (self.lattice.counts[axis] + 1 - (K - 1))
-                .saturating_sub(brick[axis] * BRICK)
-                .min(BRICK)
+            (self.lattice.counts[axis] - 1).saturating_sub(brick[axis] * BRICK).min(BRICK)
         };
         let mut steepness = 0.0_f64;
         let mut near = Vec::new();
@@ -91,14 +94,16 @@ impl<const D: usize> Cells<'_, D> {
         for key in indices::<D>(std::array::from_fn(first), std::array::from_fn(end)) {
             let place: usize = (0..D).map(|i| (key[i] + 3 - K) * ways[i]).sum();
             gather::<K, D>(samples, place, taps);
-            steepness = steepness.max(steepest::<K, D>(taps, steepness * self.lattice.cell));
-            // One of the values, or of the source's, may be small.
-            let sizes = taps.iter().map(|sample| sample.abs());
-            let [least, largest] = sizes
-                .fold([f64::INFINITY, 0.0], |[least, largest], size| {
-                    [least.min(size), largest.max(size)]
-                });
-            if least <= self.within || largest <= self.within + self.reach {
+            steepness = steepness.max(steepest::<K, D>(taps, steepness));
+            let none = [f64::INFINITY, f64::NEG_INFINITY];
+            let [least, largest] = taps.iter().fold(none, |[least, largest], sample| {
+                [least.min(*sample), largest.max(*sample)]
+            });
+            // Where the values and the source's are all beyond on one side, both are clamped alike.
+            let [value, source] = [self.within, self.within + self.reach];
+            let is_outside = least > value && largest > source;
+            let is_inside = largest < -value && least < -source;
+            if !is_outside && !is_inside {
                 near.push(Part::whole(key, place));
             }
         }

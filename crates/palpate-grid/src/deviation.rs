@@ -8,12 +8,15 @@ use palpate_field::{BLOCK, Block, Column, Vector};
 
 use crate::certificate::Cells;
 use crate::control::{MOST_TAPS, apply, gather};
-use crate::lattice::{indices, unravelled};
+use crate::lattice::{Lattice, indices, unravelled};
 use crate::samples::BRICK;
 use crate::spline::{OfTaps, Spline};
 
 /// A cell is halved where its bound is more than this share of a cell.
 const COARSE: f64 = 0.05;
+
+/// Rounded operations on samples that a bound takes at most.
+const ROUNDED: f64 = 64.0;
 
 /// How often a cell is halved at most: at an edge of the source, two halvings take a bound from 0.87 to half a cell.
 const DEEPEST: u32 = 2;
@@ -54,9 +57,9 @@ impl<const D: usize> Part<D> {
 impl<const D: usize> Cells<'_, D> {
     /// How far the interpolated values of cells may be from the source's [m].
     ///
-    /// Over a part of a cell the source is within `[−lower, upper]` of an affine function, which the interpolation
-    /// reproduces. So the difference is that of the samples from the affine function, interpolated, and the
-    /// remainders: the control values bound it.
+    /// Over a part of a cell the source lies within `[−lower, upper]` of an affine function a, and the spline
+    /// reproduces a. So the spline less the source is the spline of the samples less a, and the remainders; control
+    /// values bound that spline.
     pub(crate) fn deviation<const K: usize>(
         &self,
         brick: [usize; D],
@@ -83,7 +86,7 @@ impl<const D: usize> Cells<'_, D> {
                         + middle[axis]
                 };
                 let centre = self.lattice.at(Vector(std::array::from_fn(along)));
-                (centre, Vector([half(cell, part.level); D]))
+                (centre, Vector([self.half(part.level); D]))
             });
             source.block_distances(&boxes, parts.len(), &mut models);
             for (i, part) in parts.iter().enumerate() {
@@ -107,7 +110,8 @@ impl<const D: usize> Cells<'_, D> {
         let taps = &mut taps[..K.pow(D as u32)];
         gather::<K, D>(samples, part.place, taps);
         let middle = part.middle();
-        let steps = self.lattice.cell / half(self.lattice.cell, part.level);
+        let largest = taps.iter().fold(model.value.abs(), |most, tap| tap.abs().max(most));
+        let steps = self.lattice.cell / self.half(part.level);
         for (number, tap) in taps.iter_mut().enumerate() {
             let index: [usize; D] = unravelled(number, [K; D]);
             let along = |axis: usize| {
@@ -125,11 +129,13 @@ impl<const D: usize> Cells<'_, D> {
         }
         let above = taps.iter().copied().fold(f64::NEG_INFINITY, f64::max) + model.lower;
         let below = model.upper - taps.iter().copied().fold(f64::INFINITY, f64::min);
-        above.max(below)
+        above.max(below) + ROUNDED * f64::EPSILON * largest
     }
-}
 
-/// Half the side of a part, with room for rounding [m].
-fn half(cell: f64, level: u32) -> f64 {
-    0.5 * cell / f64::from(1 << level) * (1.0 + 1e-12)
+    /// Half the side of a part, with room for the rounding of its middle [m].
+    fn half(&self, level: u32) -> f64 {
+        let Lattice { origin, cell, counts } = self.lattice;
+        let far = (0..D).map(|i| origin[i].abs() + counts[i] as f64 * cell).fold(0.0, f64::max);
+        0.5 * cell / f64::from(1 << level) * (1.0 + 1e-12) + 8.0 * f64::EPSILON * far
+    }
 }

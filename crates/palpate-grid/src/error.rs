@@ -61,16 +61,29 @@ pub enum GridError {
         /// The deviation certified with them [m].
         reached: f64,
     },
+    /// The tolerance is not reached by smaller cells.
+    #[error(
+        "a deviation of {tolerance} m is not reached: cells of {cell} m deviate by {reached} m; take a larger tolerance, or store f32"
+    )]
+    NotReached {
+        /// The deviation asked for [m].
+        tolerance: f64,
+        /// The smallest cells tried [m].
+        cell: f64,
+        /// The deviation certified with them [m].
+        reached: f64,
+    },
+    /// The shape has grown out of the lattice.
+    #[error("the shape reaches beyond the lattice of the grid: bake a new grid")]
+    Outgrown,
     /// A value of the shape is no number.
-    #[error("the shape's distance is no number at {point:?} [m]")]
+    #[error("the shape's distance is no number in single precision at {point:?} [m]")]
     NotFinite {
         /// Where [m].
         point: Vec<f64>,
     },
     /// A grid without a band cannot be made again in part.
-    #[error(
-        "without a band every value may change; make the whole grid again, or give it a band"
-    )]
+    #[error("a grid without a band can only be baked as a whole")]
     NoBand,
     /// The caller stopped the work.
     #[error("stopped before the grid was complete")]

@@ -9,6 +9,7 @@
 
 use palpate_field::{Aabb, Point, Shape, Vector};
 
+use crate::bake::fits;
 use crate::certificate::Cells;
 use crate::error::GridError;
 use crate::lattice::{Lattice, raveled, unravelled};
@@ -52,7 +53,7 @@ impl<const D: usize> Far<D> {
         let samples = each(nodes, |number| {
             let node = lattice.node(unravelled(number, lattice.counts));
             match source.distance(node) {
-                sample if sample.is_finite() => Ok(sample as f32),
+                sample if fits(sample) => Ok(sample as f32),
                 _ => Err(GridError::NotFinite { point: node.0.to_vec() }),
             }
         })?;
@@ -77,8 +78,7 @@ impl<const D: usize> Far<D> {
             order: Order::Dense { strides: strides(lattice.counts) },
             bricks,
         };
-        let cells =
-            Cells { lattice: &lattice, source: None, within: 0.0, reach: 0.0, worst: 0.0 };
+        let cells = Cells::without_source(&lattice);
         let certificates = each(bricks.iter().product(), |number| {
             Ok(cells.of_brick::<QUADRATIC>(&samples, unravelled(number, bricks)))
         })?;
@@ -92,7 +92,9 @@ impl<const D: usize> Far<D> {
 
     /// The same, no steeper than `lipschitz`.
     pub(crate) fn no_steeper(self, lipschitz: f64) -> Self {
-        let share = (lipschitz / self.lipschitz).min(1.0) * (1.0 - 1e-12);
+        // A flat lattice is no steeper than any.
+        let steep = self.lipschitz.max(f64::MIN_POSITIVE);
+        let share = (lipschitz / steep).min(1.0) * (1.0 - 1e-12);
         Self { share, ..self }
     }
 

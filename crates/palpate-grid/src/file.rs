@@ -3,22 +3,27 @@
 
 //! Grids as files.
 //!
-//! Little-endian: the head below, then for each brick its deviation from the source and, of sparse grids, its place,
-//! then the samples as they are stored, those beyond the band, then the BLAKE3 sum of all of it. Steepness and slopes are not in the file:
-//! they follow from the samples, so no file can make a promise false.
+//! Little-endian, one after another: the head; of each brick its deviation from the source; of sparse grids each
+//! brick's place; the samples as they are stored; those beyond the band; the BLAKE3 sum of all of it. Steepness and
+//! slopes are not in the file, for they follow from the samples. What its author wrote of the source is believed: the
+//! deviations, and the samples beyond the band.
 
 use std::fs::File;
 use std::io::{BufWriter, Read, Write};
 use std::path::{Path, PathBuf};
 
-use palpate_field::{Aabb, Deviation, Vector};
+use palpate_field::{Aabb, Deviation, LARGEST_LENGTH, Vector};
 
 use crate::certificate::Cells;
 use crate::error::GridError;
 use crate::far::Far;
 use crate::grid::{Compared, Grid, Known};
-use crate::lattice::{Lattice, unravelled};
-use crate::samples::{BRICK, Codes, FAR_INSIDE, Order, Samples, Store, strides, wide_brick};
+use crate::lattice::{Lattice, indices, unravelled};
+use crate::options::GridOptions;
+use crate::samples::{
+    BRICK, Codes, FAR_INSIDE, Order, Samples, Store, WIDE, Window, strides, wide_brick,
+    wide_node,
+};
 use crate::spline::{Kernel, QUADRATIC, TRILINEAR};
 use crate::threads::each;
 
@@ -52,7 +57,7 @@ pub enum GridFileProblem {
     #[error("it is no file")]
     NoFile,
     /// It is larger than [`LARGEST_FILE`].
-    #[error("it has {bytes} bytes, {LARGEST_FILE} at most")]
+    #[error("it has {bytes} bytes; at most {LARGEST_FILE} are read")]
     TooLarge {
         /// Its size.
         bytes: u64,
@@ -222,7 +227,7 @@ impl<const D: usize> Grid<D> {
             return Err(damaged("it ends in its head"));
         };
         if blake3::hash(text) != blake3::Hash::from_bytes(*sum) {
-            return Err(damaged("its sum is another"));
+            return Err(damaged("its checksum does not match"));
         }
         let is_compared = head[0] & 0x80 != 0;
         let kernel = match head[1] {
@@ -246,21 +251,42 @@ impl<const D: usize> Grid<D> {
             [origin[i], min[i], max[i]] = numbers.floats()?;
         }
         let lattice = Lattice { origin, cell, counts };
-        let is_finite = [cell, scale, value, within].iter().all(|x| x.is_finite() && *x >= 0.0);
         let is_small = counts.iter().any(|count| *count < kernel.taps());
-        if !is_finite || band.is_nan() || is_small || lattice.nodes().is_none() {
+        if is_small || lattice.nodes().is_none() {
+            return Err(damaged("it has too few nodes, or too many"));
+        }
+        let is_sparse = match head[3] {
+            0 => false,
+            1 => true,
+            _ => return Err(damaged("its order is unknown")),
+        };
+        let is_length = |x: &f64| x.abs() <= LARGEST_LENGTH;
+        let places = origin.0.iter().chain(&min.0).chain(&max.0);
+        let is_placed =
+            places.clone().all(is_length) && is_length(&lattice.region().max.norm());
+        let is_known = [value, within].iter().all(|x| *x >= 0.0 && is_length(x));
+        let is_scaled =
+            if store == Store::F32 { scale == 1.0 } else { scale > 0.0 && is_length(&scale) };
+        let widest = GridOptions::SMALLEST_BAND * cell * (1.0 - 1e-9);
+        let is_banded =
+            if is_sparse { band >= widest && is_length(&band) } else { band == f64::INFINITY };
+        GridOptions::with_cell(cell).check()?;
+        if !(is_placed && is_known && is_scaled && is_banded) {
             return Err(damaged("a number of its head is out of range"));
         }
         let bricks = counts.map(|count| count.div_ceil(BRICK));
         let count = bricks.iter().product::<usize>();
         let has = |bytes: usize| count.checked_mul(bytes).is_some_and(|all| all <= text.len());
-        if !has(if head[3] == 1 { 12 } else { 8 }) {
+        if !has(if is_sparse { 12 } else { 8 }) {
             return Err(damaged("it ends before its samples"));
         }
         let deviations = (0..count)
             .map(|_| Ok(numbers.floats::<1>()?[0]))
             .collect::<Result<Vec<_>, GridFileProblem>>()?;
-        let (order, nodes) = if head[3] == 1 {
+        if deviations.iter().any(|deviation| !(0.0..=value).contains(deviation)) {
+            return Err(damaged("a deviation is larger than its head says"));
+        }
+        let (order, nodes) = if is_sparse {
             let table = (0..count)
                 .map(|_| Ok(u32::from_le_bytes(numbers.take()?)))
                 .collect::<Result<Vec<_>, GridFileProblem>>()?;
@@ -288,6 +314,9 @@ impl<const D: usize> Grid<D> {
             return Err(damaged("a sample is no number"));
         }
         let samples = Samples { codes, scale, band, order, bricks };
+        if !samples.agree(counts) {
+            return Err(damaged("bricks differ at their border"));
+        }
         let compared = is_compared.then_some(Compared {
             deviation: Deviation { value, within },
             bounds: Aabb { min, max },
@@ -306,8 +335,7 @@ impl<const D: usize> Grid<D> {
         samples: Samples<D>,
         (deviations, known): (&[f64], Known<D>),
     ) -> Result<Self, GridError> {
-        let cells =
-            Cells { lattice: &lattice, source: None, within: 0.0, reach: 0.0, worst: 0.0 };
+        let cells = Cells::without_source(&lattice);
         let certificates = each(deviations.len(), |number| {
             let brick = unravelled(number, samples.bricks);
             let mut certificate = match kernel {
@@ -318,6 +346,28 @@ impl<const D: usize> Grid<D> {
             Ok(certificate)
         })?;
         Self::assemble(lattice, kernel, samples, certificates, known)
+    }
+}
+
+impl<const D: usize> Samples<D> {
+    /// Whether each sample that several bricks hold is the same in all of them.
+    fn agree(&self, counts: [usize; D]) -> bool {
+        if matches!(self.order, Order::Dense { .. }) {
+            return true;
+        }
+        let mut samples = Vec::new();
+        indices([0; D], self.bricks).all(|brick| {
+            self.brick(brick, counts, &mut samples);
+            indices([0; D], [WIDE; D]).zip(&samples).all(|(index, sample)| {
+                let node: [usize; D] =
+                    std::array::from_fn(|i| wide_node(brick[i], index[i], counts[i]));
+                let own = match self.window(node, 2) {
+                    Window::Far { inside } => self.far(inside),
+                    Window::Stored { first, .. } => self.decoded(first),
+                };
+                own == *sample
+            })
+        })
     }
 }
 

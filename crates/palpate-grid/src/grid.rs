@@ -125,10 +125,18 @@ impl<const D: usize> Grid<D> {
             &certificates[raveled(brick, samples.bricks)].slopes
         });
         let size = region.radius_about_origin();
-        // What the source is compared as is never nearer than its box, so no operator may raise the grid more.
+        // The compared source is at least the distance to its own box. The bounds include that box, so that a guard
+        // raises the grid no further.
         let all = compared.map_or(bounds, |source| bounds.union(&source.bounds));
-        let promise = Promise::lipschitz(Some(Bounds::of_box(all)), lipschitz)
-            .with_rounding(Rounding::of_operations(OPERATIONS, size));
+        // The place in a cell is rounded, and so are the products with samples.
+        let largest = samples.codes.largest() * samples.scale;
+        let of_samples =
+            Rounding { constant: OPERATIONS * f64::EPSILON * largest, per_metre: 0.0 };
+        let rounding = Rounding::of_operations(OPERATIONS, size)
+            .times(lipschitz.max(1.0))
+            .plus(&of_samples);
+        let promise =
+            Promise::lipschitz(Some(Bounds::of_box(all)), lipschitz).with_rounding(rounding);
         let mut grid = Self {
             lattice,
             kernel,
@@ -145,7 +153,8 @@ impl<const D: usize> Grid<D> {
             Kernel::Quadratic => grid.border::<QUADRATIC>(&bounds),
             Kernel::Trilinear => grid.border::<TRILINEAR>(&bounds),
         };
-        grid.margin = margin;
+        // What is beyond the band may be as steep along the box as the grid at all.
+        grid.margin = if grid.far.is_some() { 0.0 } else { margin };
         grid.promise.deviation = compared.map(|source| Deviation {
             // Outside, values are at least the least at the border.
             within: source.deviation.within.min(least),
@@ -297,7 +306,7 @@ impl<const D: usize> Grid<D> {
     }
 }
 
-/// What is known of the shape that a grid was baked from.
+/// What is known of the source of a grid.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Compared<const D: usize> {
     pub(crate) deviation: Deviation,

@@ -20,9 +20,9 @@ impl<const D: usize> Lattice<D> {
     /// The nodes of a box that is grown to whole cells about its centre.
     #[must_use]
     pub fn over(region: &Aabb<D>, cell: f64) -> Self {
-        let counts = std::array::from_fn(|i| {
-            ((region.max[i] - region.min[i]) / cell).ceil() as usize + 1
-        });
+        let counts =
+            std::array::from_fn(|i| ((region.max[i] - region.min[i]) / cell).ceil() as usize);
+        let counts = counts.map(|cells: usize| cells.saturating_add(1));
         let size = Vector(std::array::from_fn(|i| (counts[i] - 1) as f64 * cell));
         Self { origin: region.centre() - size * 0.5, cell, counts }
     }

@@ -40,6 +40,8 @@ mod samples;
 mod slopes;
 mod spline;
 mod threads;
+#[cfg(feature = "volumes")]
+mod volume;
 
 pub use bake::Progress;
 pub use error::GridError;
@@ -50,3 +52,5 @@ pub use lattice::Lattice;
 pub use options::{GridOptions, Resolution};
 pub use samples::Store;
 pub use spline::Kernel;
+#[cfg(feature = "volumes")]
+pub use volume::{LARGEST_VOLUME, Volume, VolumeError, VolumeProblem};

@@ -9,16 +9,12 @@ use crate::error::GridError;
 use crate::samples::Store;
 use crate::spline::Kernel;
 
-/// The band is wider by this than what is certified [cells]: half the diagonal of three cells for the samples that
-/// a value takes, half that of one for its deviation, and rounding.
-const SAMPLES_REACH: f64 = 3.6;
-
 /// How fine a grid is.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Resolution {
     /// The size of a cell [m].
     Cell(f64),
-    /// The largest deviation from the source that is allowed [m]: cells are as small as that takes.
+    /// The largest difference from the source's values near the surface [m]: cells are made small enough.
     Tolerance(f64),
 }
 
@@ -34,10 +30,10 @@ pub struct GridOptions {
     pub store: Store,
     /// `None` keeps every sample. With `Some`, values are clamped to so many cells on both sides of the surface,
     /// and only bricks of samples with smaller ones are stored: a seventh of the memory at 256 cells along each
-    /// axis. Far from the surface the value is then the band, a true bound that says less.
+    /// axis. Beyond the band a coarser lattice gives values that are smaller than the distance.
     pub band: Option<f64>,
-    /// Without a band, values up to so many cells are compared with the source: the deviation is that of the
-    /// surface from 1 on, and of what an operator blends with it from its reach on.
+    /// Without a band, values up to so many cells are compared with the source. An operator that blends over a
+    /// reach needs as much.
     pub certified: f64,
     /// More nodes than these are refused.
     pub most_nodes: usize,
@@ -102,9 +98,11 @@ impl GridOptions {
         Self { most_nodes, ..self }
     }
 
-    /// The same with a band, if there is none: as wide as what is certified takes.
-    pub(crate) fn with_narrow_band(&self) -> Self {
-        let narrow = self.certified + SAMPLES_REACH;
+    /// The same with a band, if there is none: wider than what is certified by half the diagonal of three cells for
+    /// the samples that a value takes, by half that of one for its deviation, and by some room; for a source in `D`
+    /// dimensions with a Lipschitz constant.
+    pub(crate) fn with_narrow_band<const D: usize>(&self, lipschitz: f64) -> Self {
+        let narrow = self.certified + 2.1 * (D as f64).sqrt() * lipschitz.max(1.0);
         Self { band: self.band.or(Some(narrow)), ..self.clone() }
     }
 

@@ -49,6 +49,14 @@ impl Store {
         }
     }
 
+    /// The band as samples of it are stored, so that bricks with and without samples meet [m].
+    pub(crate) fn band(self, wanted: f64) -> f64 {
+        match self.largest() {
+            None => f64::from(wanted as f32),
+            Some(codes) => codes * (wanted / codes),
+        }
+    }
+
     /// How far a sample may be from the one that is stored [m].
     pub(crate) fn error(self, largest: f64, scale: f64) -> f64 {
         match self {
@@ -369,12 +377,12 @@ impl<const D: usize> Samples<D> {
         raveled(brick, self.bricks)
     }
 
-    fn far(&self, inside: bool) -> f64 {
+    pub(crate) fn far(&self, inside: bool) -> f64 {
         if inside { -self.band } else { self.band }
     }
 
     #[inline]
-    fn decoded(&self, place: usize) -> f64 {
+    pub(crate) fn decoded(&self, place: usize) -> f64 {
         match &self.codes {
             Codes::F32(codes) => f64::from(codes[place]),
             Codes::I16(codes) => f64::from(codes[place]) * self.scale,

@@ -316,29 +316,79 @@ fn a_grid_with_a_band_has_the_values_of_one_without_near_the_surface() {
     }
 }
 
+/// A plate with a notch, exact on both sides.
+fn notched(notch: f64) -> Shape<2> {
+    let corners = [[-0.4, -0.25], [0.4, -0.25], [0.4, 0.25], [0.3, 0.25], [0.25, notch]];
+    let corners = corners.into_iter().chain([[0.2, 0.25], [-0.4, 0.25]]);
+    Shape::polygon(vec![corners.collect::<Vec<_>>()]).unwrap()
+}
+
 #[test]
 fn a_region_made_again_has_the_samples_of_a_new_grid() {
     let ball = Shape::sphere(0.1).unwrap();
     let cuboid = Shape::cuboid([0.8, 0.5, 0.5]).unwrap();
     let before = cuboid.clone() - ball.clone().translated([0.3, 0.25, 0.0]).unwrap();
-    let after = cuboid - ball.translated([0.3, 0.24, 0.02]).unwrap();
+    let after = cuboid - ball.clone().translated([0.3, 0.24, 0.02]).unwrap();
     for kernel in KERNELS {
         for store in STORES {
             let options = options(0.02, kernel).with_store(store).with_band(5.0);
+            // Bounds, of which all is made again.
             let mut again = Grid::bake(&before, &options).unwrap();
             let region =
                 Aabb { min: Vector([0.2, 0.13, -0.1]), max: Vector([0.4, 0.26, 0.13]) };
             again.rebuild(&after, &region).unwrap();
             let new = Grid::bake(&after, &options).unwrap();
-            assert_eq!(again.promise().lipschitz, new.promise().lipschitz);
+            assert_eq!(again.promise(), new.promise());
             assert_eq!(again.stored_samples(), new.stored_samples());
-            cases::check(3000, |u| {
+            // Exact distances, of which a part is.
+            let mut flat = Grid::bake(&notched(0.1), &options).unwrap();
+            let region = Aabb { min: Vector([0.2, 0.0]), max: Vector([0.3, 0.25]) };
+            flat.rebuild(&notched(0.03), &region).unwrap();
+            let fresh = Grid::bake(&notched(0.03), &options).unwrap();
+            assert_eq!(flat.promise().lipschitz, fresh.promise().lipschitz);
+            assert_eq!(flat.stored_samples(), fresh.stored_samples());
+            cases::check(1000, |u| {
                 let p = point(u, &new, 0.1)?;
                 assert_eq!(again.distance_gradient(p), new.distance_gradient(p));
+                let p = point(u, &fresh, 0.1)?;
+                assert_eq!(flat.distance_gradient(p), fresh.distance_gradient(p));
                 Ok(Ok(()))
             });
         }
     }
+    let mut grid = Grid::bake(&before, &options(0.02, KERNELS[0]).with_band(5.0)).unwrap();
+    let grown = before | ball.translated([2.0, 0.0, 0.0]).unwrap();
+    let region = Aabb { min: Vector([1.8, -0.2, -0.2]), max: Vector([2.2, 0.2, 0.2]) };
+    assert_eq!(grid.rebuild(&grown, &region), Err(GridError::Outgrown));
+}
+
+/// The steepness was compared in units of cells with one in metres: grids of large cells were called steeper.
+#[test]
+fn a_grid_promises_the_same_in_metres_and_in_millimetres() {
+    let lipschitz = |scale: f64| {
+        let ball = Shape::sphere(0.5 * scale).unwrap();
+        let grid = Grid::bake(&ball, &options(0.05 * scale, KERNELS[0])).unwrap();
+        grid.promise().lipschitz
+    };
+    assert!(
+        (lipschitz(1e4) - lipschitz(1.0)).abs() < 1e-6,
+        "{} {}",
+        lipschitz(1e4),
+        lipschitz(1.0)
+    );
+    assert!((lipschitz(1e-3) - lipschitz(1.0)).abs() < 1e-6);
+}
+
+/// A band of fixed width left nothing to compare where the source is steep.
+#[test]
+fn steep_sources_have_a_tolerance_too() {
+    let twisted = Shape::cuboid([0.1, 0.3, 0.2]).unwrap().twisted(3.0).unwrap();
+    assert!(twisted.promise().lipschitz > 1.1);
+    let grid = Grid::bake(&twisted, &GridOptions::with_tolerance(0.06)).unwrap();
+    assert!(grid.deviation() <= 0.06);
+    let nothing = Shape::segment([0.0, 0.0, 0.0], [0.1, 0.0, 0.0], 0.0).unwrap();
+    let error = Grid::bake(&nothing, &GridOptions::with_tolerance(1e-3)).unwrap_err();
+    assert!(matches!(error, GridError::NoInside { .. }), "{error}");
 }
 
 #[test]

@@ -71,6 +71,8 @@ pub(crate) const REVOLVE: &str = "revolve";
 pub(crate) const OF: &str = "of";
 /// `{ "mesh": { "file": "nut.ply", "scale": 0.001 } }`.
 pub(crate) const MESH: &str = "mesh";
+/// `{ "volume": { "file": "scan.nrrd", "value": 300 } }`.
+pub(crate) const VOLUME: &str = "volume";
 /// `{ "grid": { "file": "part.grid" } }`.
 pub(crate) const GRID: &str = "grid";
 /// `{ "shape": "name" }`.
@@ -168,13 +170,16 @@ pub(crate) fn is_one_of(operators: &[(&str, &str)], key: &str) -> bool {
 
 /// Every key that the object of a shape of a dimension may have, the primitives' names included.
 pub(crate) fn all_keys(dimension: Dimension) -> Vec<&'static str> {
-    let is_there =
-        |key: &&str| dimension == Dimension::Three || !SOLID.contains(key) && *key != MESH;
+    let is_there = |key: &&str| {
+        dimension == Dimension::Three || !SOLID.contains(key) && ![MESH, VOLUME].contains(key)
+    };
     let lists = LISTS.iter().map(|(key, _)| *key);
     let unary = UNARY.iter().map(|(key, _)| *key).filter(is_there);
     let primitives = catalogue::signatures().filter(|s| s.dimension == dimension);
-    let others =
-        OTHERS.into_iter().chain([SHAPE, GRID]).chain([MESH].into_iter().filter(is_there));
+    let others = OTHERS
+        .into_iter()
+        .chain([SHAPE, GRID])
+        .chain([MESH, VOLUME].into_iter().filter(is_there));
     let names = primitives.map(|signature| signature.name);
     let mut keys: Vec<_> = names.chain(lists).chain(unary).chain(others).collect();
     keys.sort_unstable();

@@ -1,28 +1,34 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! Shapes of mesh files.
+//! Shapes of mesh files, and of surfaces in volumes.
 
 use std::path::Path;
 
 use palpate_field::Shape;
-use palpate_mesh::{Findings, Solid, read_file};
+use palpate_grid::Volume;
+use palpate_mesh::{Findings, Solid, TriangleMesh, read_file};
 use serde::Deserialize;
 
 use crate::beside::{Beside, Kept, Stamp};
 use crate::problem::Problem;
 
 /// The solids of files, in the units of the files, up to as many triangles: a few GB.
-static SOLIDS: Kept<Stamp, (Shape<3>, Findings<3>)> = Kept::new(1 << 22);
+static SOLIDS: Kept<Key, (Shape<3>, Findings<3>)> = Kept::new(1 << 22);
 
-/// The solid of a mesh file, as a scene uses it.
+/// A file, and in a volume the value of the surface, by its bits.
+type Key = (Stamp, Option<u64>);
+
+/// The solid of a mesh file or of a surface in a volume, as a scene uses it.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct BuiltMesh {
     /// The file, as the scene names it.
     pub file: String,
-    /// Metres for a unit of the file.
+    /// Metres for a unit of the file; of a volume, whose head tells lengths, a factor.
     pub scale: f64,
+    /// The value of the surface in a volume; `None` of a mesh.
+    pub value: Option<f64>,
     /// What was found in it, and mended.
     pub findings: Findings<3>,
     /// The solid.
@@ -32,7 +38,8 @@ pub struct BuiltMesh {
 impl BuiltMesh {
     /// Whether it is the same file at the same scale.
     pub(crate) fn is_same(&self, other: &Self) -> bool {
-        self.file == other.file && self.scale.to_bits() == other.scale.to_bits()
+        let numbers = |mesh: &Self| (mesh.scale.to_bits(), mesh.value.map(f64::to_bits));
+        self.file == other.file && numbers(self) == numbers(other)
     }
 }
 
@@ -45,6 +52,16 @@ pub(crate) struct WrittenMesh {
     scale: f64,
 }
 
+/// The surface of a volume as a file gives it.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields, expecting = "an object")]
+pub(crate) struct WrittenVolume {
+    file: String,
+    value: f64,
+    #[serde(default = "one")]
+    scale: f64,
+}
+
 fn one() -> f64 {
     1.0
 }
@@ -52,30 +69,57 @@ fn one() -> f64 {
 impl WrittenMesh {
     /// The solid of the file, which is looked for in `folder`.
     pub(crate) fn built(&self, folder: Option<&Path>) -> Result<BuiltMesh, Problem> {
-        if self.scale.is_nan() || self.scale <= 0.0 || self.scale.is_infinite() {
-            let message = format!("scale must be positive, got {}", self.scale);
-            return Err(Problem::new(message).under("scale"));
-        }
-        let Beside { path, stamp } = Beside::of("a mesh", &self.file, folder)
-            .map_err(|problem| problem.under("file"))?;
-        let of_file = |message: String| Problem::new(message).under("file");
-        let (shape, findings) = match SOLIDS.of(&stamp) {
-            Some(known) => known,
-            None => {
-                let mesh = read_file(&path).map_err(|error| of_file(error.to_string()))?;
-                let (solid, findings) = Solid::from_mesh(&mesh)
-                    .map_err(|error| of_file(format!("{}: {error}", path.display())))?;
-                let (made, faces) = ((solid.into(), findings), mesh.elements().len());
-                SOLIDS.keep(stamp.clone(), &made, faces, |known| known.is_of_same_file(&stamp));
-                made
-            }
-        };
-        let scaled = shape.scaled(self.scale);
-        Ok(BuiltMesh {
-            file: self.file.clone(),
-            scale: self.scale,
-            findings: findings.scaled(self.scale),
-            shape: scaled.map_err(|error| Problem::new(error.to_string()).under("scale"))?,
-        })
+        let read = |path: &Path| read_file(path).map_err(|error| error.to_string());
+        built(("a mesh", &self.file), (self.scale, None), folder, read)
     }
+}
+
+impl WrittenVolume {
+    /// The solid within the surface, in the volume of a file, which is looked for in `folder`.
+    pub(crate) fn built(&self, folder: Option<&Path>) -> Result<BuiltMesh, Problem> {
+        let surface = |path: &Path| {
+            let volume = Volume::open(path).map_err(|error| error.to_string())?;
+            let surface = volume.surface(self.value);
+            surface.map_err(|problem| format!("{}: {problem}", path.display()))
+        };
+        built(("a volume", &self.file), (self.scale, Some(self.value)), folder, surface)
+    }
+}
+
+/// The solid of what `read` makes of a file.
+fn built(
+    (what, file): (&str, &str),
+    (scale, value): (f64, Option<f64>),
+    folder: Option<&Path>,
+    read: impl FnOnce(&Path) -> Result<TriangleMesh, String>,
+) -> Result<BuiltMesh, Problem> {
+    if scale.is_nan() || scale <= 0.0 || scale.is_infinite() {
+        return Err(Problem::new(format!("scale must be positive, got {scale}")).under("scale"));
+    }
+    let of_file = |message: String| Problem::new(message).under("file");
+    let Beside { path, stamp } =
+        Beside::of(what, file, folder).map_err(|problem| problem.under("file"))?;
+    let key = (stamp, value.map(f64::to_bits));
+    let (shape, findings) = match SOLIDS.of(&key) {
+        Some(known) => known,
+        None => {
+            let mesh = read(&path).map_err(of_file)?;
+            let (solid, findings) = Solid::from_mesh(&mesh)
+                .map_err(|error| of_file(format!("{}: {error}", path.display())))?;
+            let (made, faces) = ((solid.into(), findings), mesh.elements().len());
+            // Another state of the file is of no use any more.
+            SOLIDS.keep(key.clone(), &made, faces, |(known, other)| {
+                known.is_of_same_file(&key.0) && (*known != key.0 || *other == key.1)
+            });
+            made
+        }
+    };
+    let scaled = shape.scaled(scale);
+    Ok(BuiltMesh {
+        file: file.to_owned(),
+        scale,
+        value,
+        findings: findings.scaled(scale),
+        shape: scaled.map_err(|error| Problem::new(error.to_string()).under("scale"))?,
+    })
 }

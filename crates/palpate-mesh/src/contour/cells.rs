@@ -52,7 +52,7 @@ impl Cells {
     ) -> Result<Self, ContourError> {
         let (cell, limit) = (options.cell, options.most_cells);
         let size = region.max - region.min;
-        let counts = size.0.map(|side| (side / cell).ceil() as usize + 1);
+        let counts = size.0.map(|side| ((side / cell).ceil() as usize).saturating_add(1));
         let cells = counts.iter().map(|count| *count as f64).product::<f64>();
         let is_narrow = counts.iter().all(|count| u32::try_from(*count).is_ok());
         if cells > limit as f64 || !is_narrow {

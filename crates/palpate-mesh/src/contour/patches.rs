@@ -40,24 +40,29 @@ impl Patches {
         let mut turned = HashSet::new();
         let mut patches: Vec<_> =
             signed.iter().map(|signed| Self::of_cell(signed, &turned)).collect();
-        for (number, cell) in signed.iter().enumerate() {
-            for axis in 0..3 {
-                // Each face once: the upper one of its lower cell.
-                let face = (axis, 1);
-                if !is_ambiguous(cell.inside, face) || !patches[number].joins(face) {
-                    continue;
-                }
-                let mut beyond = cell.cell;
-                beyond[axis] += 1;
-                let Some(&other) = numbers.get(&beyond) else { continue };
-                if patches[other].joins((axis, 0)) {
-                    turned.insert(name(cell.cell, face));
-                    patches[number] = Self::of_cell(cell, &turned);
-                    patches[other] = Self::of_cell(&signed[other], &turned);
+        // A face that is turned may join patches at others. Each is turned once at most.
+        loop {
+            let before = turned.len();
+            for (number, cell) in signed.iter().enumerate() {
+                for axis in 0..3 {
+                    // Each face once: the upper one of its lower cell.
+                    let face = (axis, 1);
+                    if !is_ambiguous(cell.inside, face) || !patches[number].joins(face) {
+                        continue;
+                    }
+                    let mut beyond = cell.cell;
+                    beyond[axis] += 1;
+                    let Some(&other) = numbers.get(&beyond) else { continue };
+                    if patches[other].joins((axis, 0)) && turned.insert(name(cell.cell, face)) {
+                        patches[number] = Self::of_cell(cell, &turned);
+                        patches[other] = Self::of_cell(&signed[other], &turned);
+                    }
                 }
             }
+            if turned.len() == before {
+                return patches;
+            }
         }
-        patches
     }
 
     fn of_cell(signed: &Signed, turned: &HashSet<[u32; 4]>) -> Self {

@@ -15,8 +15,8 @@ use super::size::{Allowance, Size};
 use crate::advice;
 use crate::grids::{KeptGrids, PLANAR, SPATIAL, WrittenGrid};
 use crate::json::{self, found};
-use crate::keys::{self, EXTRUDE, GRID, MESH, OF, REVOLVE};
-use crate::mesh_file::{BuiltMesh, WrittenMesh};
+use crate::keys::{self, EXTRUDE, GRID, MESH, OF, REVOLVE, VOLUME};
+use crate::mesh_file::{BuiltMesh, WrittenMesh, WrittenVolume};
 use crate::names::shortened;
 use crate::pose::{Turning, Turns};
 use crate::problem::Problem;
@@ -58,7 +58,7 @@ pub(super) trait Space<'a, const D: usize> {
     /// A 2D shape extruded or revolved.
     fn solid(&mut self, object: Object<'a>, level: usize) -> Result<Built<D>, Problems>;
 
-    /// The solid of a mesh file.
+    /// The solid of a mesh file, or of a surface in a volume.
     fn mesh(&mut self, object: &Object<'a>, level: usize) -> Result<Built<D>, Problems>;
 
     /// The grids of its shapes that are kept.
@@ -253,7 +253,9 @@ impl<'a> Builder<'a> {
                     .map_err(|problem| problem.under(GRID))?;
                 Ok(Built { shape, size })
             }
-            MESH => self.mesh(&object, level).map_err(|problems| problems.under(MESH)),
+            MESH | VOLUME => {
+                self.mesh(&object, level).map_err(|problems| problems.under(object.head))
+            }
             head if keys::is_one_of(&keys::UNARY, head) => self.unary(&object, level),
             head if keys::is_one_of(&keys::LISTS, head) => self.list(&object, level),
             name => {
@@ -301,8 +303,8 @@ impl<'a> Space<'a, 2> for Builder<'a> {
         Err(Problem::new(message).of_dimension().into())
     }
 
-    fn mesh(&mut self, _object: &Object<'a>, _level: usize) -> Result<Built<2>, Problems> {
-        let message = "`mesh` makes a 3D shape, this place is 2D";
+    fn mesh(&mut self, object: &Object<'a>, _level: usize) -> Result<Built<2>, Problems> {
+        let message = format!("`{}` makes a 3D shape, this place is 2D", object.head);
         Err(Problem::new(message).of_dimension().into())
     }
 
@@ -341,10 +343,14 @@ impl<'a> Space<'a, 3> for Builder<'a> {
     }
 
     fn mesh(&mut self, object: &Object<'a>, level: usize) -> Result<Built<3>, Problems> {
-        let written: WrittenMesh = json::read(object.value(MESH)?)?;
         let size = Size { nodes: 1, depth: 0 };
         self.allowance.take(size, level)?;
-        let mesh = written.built(self.scene.folder.as_deref())?;
+        let (written, folder) = (object.value(object.head)?, self.scene.folder.as_deref());
+        let mesh = if object.head == MESH {
+            json::read::<WrittenMesh>(written)?.built(folder)?
+        } else {
+            json::read::<WrittenVolume>(written)?.built(folder)?
+        };
         let shape = mesh.shape.clone();
         if !self.meshes.iter().any(|other| other.is_same(&mesh)) {
             self.meshes.push(mesh);

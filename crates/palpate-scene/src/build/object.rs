@@ -108,7 +108,7 @@ impl<'a> Object<'a> {
 /// `true` if a primitive or an operator has this name.
 fn is_head(key: &str) -> bool {
     key == keys::SHAPE
-        || [keys::MESH, keys::GRID].contains(&key)
+        || [keys::MESH, keys::VOLUME, keys::GRID].contains(&key)
         || keys::is_one_of(&keys::LISTS, key)
         || keys::is_one_of(&keys::UNARY, key)
         || !catalogue::named(key).is_empty()

@@ -56,6 +56,8 @@ pub(super) fn schema(dimension: Dimension) -> Value {
     if dimension == Dimension::Three {
         properties.insert(keys::MESH.to_owned(), mesh());
         makers.push(requires(keys::MESH));
+        properties.insert(keys::VOLUME.to_owned(), volume());
+        makers.push(requires(keys::VOLUME));
     }
 
     let rest = [
@@ -272,6 +274,32 @@ fn capitalised(text: &str) -> String {
         Some(first) => first.to_uppercase().chain(characters).collect(),
         None => String::new(),
     }
+}
+
+/// The surface of a volume.
+fn volume() -> Value {
+    json!({
+        "description": "What lies within a surface of a scanner's volume, where samples are above a value: a file, beside the scene's or in a folder beside it.",
+        "type": "object",
+        "properties": {
+            "file": {
+                "description": "An NRRD, MetaImage, NIfTI or NumPy file.",
+                "type": "string",
+                "minLength": 1,
+            },
+            "value": {
+                "description": "The value at the surface, between the least and the largest sample.",
+                "type": "number",
+            },
+            "scale": {
+                "description": "A factor of all lengths; 1 if left out. Of NumPy, which has no lengths, metres between samples.",
+                "type": "number",
+                "exclusiveMinimum": 0,
+            },
+        },
+        "required": ["file", "value"],
+        "additionalProperties": false,
+    })
 }
 
 /// The grid of a file.

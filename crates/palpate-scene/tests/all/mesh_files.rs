@@ -86,3 +86,44 @@ fn links_out_of_the_folder_and_what_is_no_file_are_refused() {
     assert!(error.contains("it is no file"), "{error}");
     assert_eq!(built("same.obj"), Ok(()));
 }
+
+#[test]
+fn a_surface_of_a_volume_is_a_solid() {
+    let folder = tempfile::tempdir().unwrap();
+    let head =
+        "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 5 5 5\nencoding: raw\nspacings: 2 2 2\n\n";
+    let mut file = head.as_bytes().to_vec();
+    file.extend((0..125).map(|node| if node == 62 { 200 } else { 0 }));
+    std::fs::write(folder.path().join("dot.nrrd"), &file).unwrap();
+    let built = |volume: &str| {
+        let text = text("0").replace("\"mesh\": 0", &format!("\"volume\": {volume}"));
+        match Scene::from_json_in(&text, folder.path()).and_then(|scene| scene.build()) {
+            Ok(AnyScene::Spatial(scene)) => Ok(scene),
+            Ok(AnyScene::Planar(_)) => Err("in the plane".to_owned()),
+            Err(error) => Err(error.to_string()),
+        }
+    };
+    let scene = built(r#"{ "file": "dot.nrrd", "value": 100 }"#).unwrap();
+    assert_eq!(scene.meshes[0].value, Some(100.0));
+    // The dot is in the middle, 4 mm from the first node, and at most a millimetre large.
+    assert!(scene.whole.distance(Vector([0.004; 3])) < 0.0);
+    let off = scene.whole.distance(Vector([0.006, 0.004, 0.004]));
+    assert!((1e-3..1.8e-3).contains(&off), "{off}");
+    let smaller = built(r#"{ "file": "dot.nrrd", "value": 150, "scale": 0.5 }"#).unwrap();
+    assert!(smaller.whole.distance(Vector([0.002; 3])) < 0.0);
+    for (volume, expected) in [
+        (
+            r#"{ "file": "dot.nrrd", "value": 300 }"#,
+            "the samples are from 0 to 200: no surface lies at 300",
+        ),
+        (r#"{ "file": "dot.nrrd" }"#, "missing key `value`"),
+        (r#"{ "file": "gone.nii", "value": 1 }"#, "gone.nii"),
+        (
+            r#"{ "file": "../dot.nrrd", "value": 1 }"#,
+            "a volume is a file in the scene's folder",
+        ),
+    ] {
+        let error = built(volume).unwrap_err();
+        assert!(error.contains(expected), "{error}");
+    }
+}

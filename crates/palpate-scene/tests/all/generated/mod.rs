@@ -67,9 +67,20 @@ fn sorted(mut names: Vec<&str>) -> Vec<&str> {
     names
 }
 
-/// Keys of a shape's object that are neither primitive nor operator.
-const OTHERS: [&str; 8] =
-    ["width", "profile", "height", "progress", "of", "shape", "mesh", "description"];
+/// Keys of a shape's object that are neither primitive nor operator, or change no shape.
+const OTHERS: [&str; 11] = [
+    "width",
+    "profile",
+    "height",
+    "progress",
+    "of",
+    "shape",
+    "mesh",
+    "volume",
+    "grid",
+    "bake",
+    "description",
+];
 
 /// Operators of the sampler in another unit.
 const IN_RADIANS: [&str; 2] = ["bend", "twist"];

@@ -1,0 +1,105 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! What is wrong with a volume.
+
+use std::path::PathBuf;
+
+use palpate_mesh::ContourError;
+
+use super::LARGEST_VOLUME;
+
+/// Why a file is no volume.
+#[derive(Debug, thiserror::Error)]
+#[error("{}: {problem}", path.display())]
+pub struct VolumeError {
+    /// The file.
+    pub path: PathBuf,
+    /// What is wrong.
+    pub problem: VolumeProblem,
+}
+
+/// What is wrong with a volume.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum VolumeProblem {
+    /// Reading failed.
+    #[error("it cannot be read: {0}")]
+    Unreadable(#[from] std::io::Error),
+    /// It is a folder, a pipe or a device.
+    #[error("it is no file")]
+    NoFile,
+    /// It is larger than [`LARGEST_VOLUME`].
+    #[error(
+        "it has {bytes} bytes, {LARGEST_VOLUME} at most: cut the volume, or sample it coarser"
+    )]
+    TooLarge {
+        /// Its size.
+        bytes: u64,
+    },
+    /// Its name ends in nothing known.
+    #[error(
+        "{name}: a volume ends in .nrrd, .nhdr, .mha, .mhd, .nii, .nii.gz or .npy; dcm2niix makes .nii.gz of DICOM, nanovdb_convert and others make .npy of .vdb"
+    )]
+    Ending {
+        /// The name.
+        name: String,
+    },
+    /// Its head names a file elsewhere.
+    #[error("its head names the file {name:?}: the samples must lie in the folder of the head")]
+    Elsewhere {
+        /// The name.
+        name: String,
+    },
+    /// It breaks the rules of its format.
+    #[error("it is no good {format}: {problem}")]
+    Malformed {
+        /// The name of the format.
+        format: &'static str,
+        /// What is wrong.
+        problem: String,
+    },
+    /// It has not as many samples as nodes, or an axis of one node.
+    #[error(
+        "{counts:?} nodes need as many samples, got {samples}; each axis has at least 2 nodes"
+    )]
+    Counts {
+        /// The nodes along each axis.
+        counts: [usize; 3],
+        /// The samples.
+        samples: usize,
+    },
+    /// A step is zero or no number.
+    #[error("the spacing must be positive and finite, got {steps:?} m")]
+    Spacing {
+        /// The lengths of the steps [m].
+        steps: [f64; 3],
+    },
+    /// The axes are not square to each other.
+    #[error(
+        "its axes are sheared (the cosine between two is {cosine:.4}): resample it on square axes"
+    )]
+    Shear {
+        /// The cosine of the angle between two axes.
+        cosine: f64,
+    },
+    /// A sample is no number.
+    #[error("sample {node} is no number")]
+    NotFinite {
+        /// The sample, counted from 0.
+        node: usize,
+    },
+    /// The value makes no surface.
+    #[error("the samples are from {least} to {largest}: no surface lies at {value}")]
+    NoSurface {
+        /// The value asked for.
+        value: f64,
+        /// The least sample.
+        least: f32,
+        /// The largest sample.
+        largest: f32,
+    },
+    /// The surface cannot be meshed.
+    #[error(transparent)]
+    Contour(#[from] ContourError),
+}

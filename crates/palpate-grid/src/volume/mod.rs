@@ -1,0 +1,175 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! Volumes of a scanner, and the surfaces in them.
+//!
+//! Samples of a scan are densities, not distances: a value makes a surface, which becomes a mesh.
+
+mod error;
+mod meta;
+mod nifti;
+mod npy;
+mod nrrd;
+mod numbers;
+mod surface;
+
+use std::fs::File;
+use std::io::Read;
+use std::path::Path;
+
+use palpate_field::{Point, Vector};
+
+pub use error::{VolumeError, VolumeProblem};
+
+/// The size of the largest file that is read, in bytes: 1 GiB.
+pub const LARGEST_VOLUME: u64 = 1 << 30;
+
+/// The cosine of the angle between two axes of a lattice that are taken to be square to each other.
+const SQUARE: f64 = 1e-3;
+
+/// Samples at the nodes of a lattice in space, as a scanner gives them.
+///
+/// [`open`](Self::open) reads NRRD, MetaImage, NIfTI and NumPy files, with the spacing, place and orientation of
+/// their heads, in metres.
+///
+/// ```
+/// use palpate_field::Vector;
+/// use palpate_grid::Volume;
+///
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let head = "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 3 3 3\nencoding: raw\nspacings: 2 2 2\n\n";
+/// let mut file = head.as_bytes().to_vec();
+/// file.extend((0..27).map(|node| if node == 13 { 200 } else { 0 }));
+/// let volume = Volume::from_bytes(&file, std::path::Path::new("dot.nrrd"))?;
+/// assert_eq!(volume.counts, [3; 3]);
+/// assert_eq!(volume.node([1, 1, 1]), Vector([0.002; 3])); // millimetres are made metres
+/// // The dot in the middle is as large as half of its value reaches: a millimetre to each side.
+/// let mesh = volume.surface(100.0)?;
+/// assert!(mesh.report().is_watertight());
+/// assert!(mesh.vertices().iter().all(|v| (*v - Vector([0.002; 3])).norm() < 0.0011));
+/// # Ok(())
+/// # }
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Volume {
+    /// How many nodes there are along each axis.
+    pub counts: [usize; 3],
+    /// The first node [m].
+    pub origin: Point<3>,
+    /// The way from a node to the next along each axis [m]; square to each other.
+    pub steps: [Vector<f64, 3>; 3],
+    /// The samples, the first axis first.
+    pub samples: Vec<f32>,
+}
+
+impl Volume {
+    /// A volume of samples.
+    ///
+    /// # Errors
+    ///
+    /// If an axis has fewer than two nodes, there are not as many samples as nodes, a step or a sample is not finite,
+    /// or steps are zero or not square to each other.
+    pub fn new(
+        counts: [usize; 3],
+        origin: Point<3>,
+        steps: [Vector<f64, 3>; 3],
+        samples: Vec<f32>,
+    ) -> Result<Self, VolumeProblem> {
+        let nodes = counts.iter().try_fold(1_usize, |all, count| all.checked_mul(*count));
+        if nodes != Some(samples.len()) || counts.iter().any(|count| *count < 2) {
+            return Err(VolumeProblem::Counts { counts, samples: samples.len() });
+        }
+        let is_finite = origin.is_finite() && steps.iter().all(Vector::is_finite);
+        let lengths = steps.map(Vector::norm);
+        if !is_finite || lengths.iter().any(|length| *length <= 0.0 || length.is_infinite()) {
+            return Err(VolumeProblem::Spacing { steps: lengths });
+        }
+        for (a, b) in [(0, 1), (0, 2), (1, 2)] {
+            let cosine = steps[a].dot(steps[b]) / (lengths[a] * lengths[b]);
+            if cosine.abs() > SQUARE {
+                return Err(VolumeProblem::Shear { cosine });
+            }
+        }
+        if let Some(node) = samples.iter().position(|sample| !sample.is_finite()) {
+            return Err(VolumeProblem::NotFinite { node });
+        }
+        Ok(Self { counts, origin, steps, samples })
+    }
+
+    /// A node's place [m].
+    #[must_use]
+    pub fn node(&self, index: [usize; 3]) -> Point<3> {
+        (0..3).fold(self.origin, |p, axis| p + self.steps[axis] * index[axis] as f64)
+    }
+
+    /// The least and the largest sample.
+    #[must_use]
+    pub fn range(&self) -> [f32; 2] {
+        self.samples
+            .iter()
+            .fold([f32::INFINITY, f32::NEG_INFINITY], |[least, largest], sample| {
+                [least.min(*sample), largest.max(*sample)]
+            })
+    }
+
+    /// Reads a volume whose file name ends in `.nrrd`, `.nhdr`, `.mha`, `.mhd`, `.nii`, `.nii.gz` or `.npy`. A head
+    /// that names a file of samples reads it from the same folder.
+    ///
+    /// # Errors
+    ///
+    /// If the file cannot be read, is larger than [`LARGEST_VOLUME`], is damaged, or is no volume.
+    pub fn open(path: impl AsRef<Path>) -> Result<Self, VolumeError> {
+        let path = path.as_ref();
+        let read = || Self::from_bytes(&bytes(path)?, path);
+        read().map_err(|problem| VolumeError { path: path.to_owned(), problem })
+    }
+
+    /// Reads the bytes of a file; `path` tells the format, and where a file of samples lies.
+    ///
+    /// # Errors
+    ///
+    /// As of [`open`](Self::open).
+    pub fn from_bytes(bytes: &[u8], path: &Path) -> Result<Self, VolumeProblem> {
+        let name = path.file_name().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
+        let ends = |ending: &str| name.ends_with(ending);
+        let folder = path.parent().unwrap_or(Path::new(""));
+        if ends(".nrrd") || ends(".nhdr") {
+            nrrd::read(bytes, folder)
+        } else if ends(".mha") || ends(".mhd") {
+            meta::read(bytes, folder)
+        } else if ends(".nii") || ends(".nii.gz") {
+            nifti::read(bytes)
+        } else if ends(".npy") {
+            npy::read(bytes)
+        } else {
+            Err(VolumeProblem::Ending { name })
+        }
+    }
+}
+
+/// The bytes of a file that is no pipe, and not too large.
+fn bytes(path: &Path) -> Result<Vec<u8>, VolumeProblem> {
+    if !std::fs::metadata(path)?.is_file() {
+        return Err(VolumeProblem::NoFile);
+    }
+    let file = File::open(path)?;
+    let length = file.metadata()?.len();
+    if length > LARGEST_VOLUME {
+        return Err(VolumeProblem::TooLarge { bytes: length });
+    }
+    let mut bytes = Vec::new();
+    file.take(LARGEST_VOLUME).read_to_end(&mut bytes)?;
+    Ok(bytes)
+}
+
+/// The bytes of a file beside a head, which names it.
+fn beside(folder: &Path, name: &str) -> Result<Vec<u8>, VolumeProblem> {
+    let mut parts = Path::new(name).components();
+    let is_name =
+        matches!((parts.next(), parts.next()), (Some(std::path::Component::Normal(_)), None));
+    if !is_name {
+        return Err(VolumeProblem::Elsewhere { name: name.to_owned() });
+    }
+    bytes(&folder.join(name))
+}

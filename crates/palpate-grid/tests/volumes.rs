@@ -1,0 +1,221 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! Volumes: the same ball from every format, and what is damaged.
+#![cfg(feature = "volumes")]
+#![expect(clippy::unwrap_used, reason = "tests")]
+
+use std::io::Write;
+use std::path::Path;
+
+use flate2::Compression;
+use flate2::write::{GzEncoder, ZlibEncoder};
+use palpate_field::Vector;
+use palpate_grid::{Volume, VolumeProblem};
+use palpate_testkit::cases;
+
+/// Nodes along each axis, all different.
+const COUNTS: [usize; 3] = [20, 24, 16];
+/// The spacing [mm].
+const SPACING: [f64; 3] = [1.0, 0.5, 2.0];
+/// The middle of a ball [mm].
+const MIDDLE: [f64; 3] = [10.0, 6.0, 15.0];
+
+/// A ball of 4 mm, denser than what is around it: 100 less its distance in tenths of a millimetre.
+fn densities() -> Vec<i16> {
+    let mut samples = Vec::new();
+    for z in 0..COUNTS[2] {
+        for y in 0..COUNTS[1] {
+            for x in 0..COUNTS[0] {
+                let p = [x, y, z];
+                let off: [f64; 3] =
+                    std::array::from_fn(|i| p[i] as f64 * SPACING[i] - MIDDLE[i]);
+                samples.push((100.0 - 10.0 * Vector(off).norm()).round() as i16);
+            }
+        }
+    }
+    samples
+}
+
+fn little() -> Vec<u8> {
+    densities().into_iter().flat_map(i16::to_le_bytes).collect()
+}
+
+fn gzip(bytes: &[u8]) -> Vec<u8> {
+    let mut out = GzEncoder::new(Vec::new(), Compression::default());
+    out.write_all(bytes).unwrap();
+    out.finish().unwrap()
+}
+
+fn nrrd(encoding: &str) -> Vec<u8> {
+    let head = format!(
+        "NRRD0005\n# a ball\ntype: short\ndimension: 3\nspace: left-posterior-superior\nsizes: 20 24 16\n\
+         space directions: (1,0,0) (0,0.5,0) (0,0,2)\nkinds: domain domain domain\nendian: little\n\
+         encoding: {encoding}\nspace origin: (0,0,0)\n\n"
+    );
+    let samples = if encoding == "raw" { little() } else { gzip(&little()) };
+    [head.into_bytes(), samples].concat()
+}
+
+fn meta(is_compressed: bool) -> Vec<u8> {
+    let said = if is_compressed { "True" } else { "False" };
+    let head = format!(
+        "ObjectType = Image\nNDims = 3\nBinaryData = True\nBinaryDataByteOrderMSB = True\nCompressedData = {said}\n\
+         TransformMatrix = 1 0 0 0 1 0 0 0 1\nOffset = 0 0 0\nElementSpacing = 1 0.5 2\nDimSize = 20 24 16\n\
+         ElementType = MET_SHORT\nElementDataFile = LOCAL\n"
+    );
+    let big: Vec<u8> = densities().into_iter().flat_map(i16::to_be_bytes).collect();
+    let samples = if is_compressed {
+        let mut out = ZlibEncoder::new(Vec::new(), Compression::default());
+        out.write_all(&big).unwrap();
+        out.finish().unwrap()
+    } else {
+        big
+    };
+    [head.into_bytes(), samples].concat()
+}
+
+fn nifti() -> Vec<u8> {
+    let mut head = [0_u8; 352];
+    let mut put =
+        |place: usize, bytes: &[u8]| head[place..place + bytes.len()].copy_from_slice(bytes);
+    put(0, &348_i32.to_le_bytes());
+    for (i, count) in [3, 20, 24, 16, 1, 1, 1, 1_i16].into_iter().enumerate() {
+        put(40 + 2 * i, &count.to_le_bytes());
+    }
+    put(70, &4_i16.to_le_bytes());
+    for (i, side) in [1.0, 1.0, 0.5, 2.0_f32].into_iter().enumerate() {
+        put(76 + 4 * i, &side.to_le_bytes());
+    }
+    put(108, &352_f32.to_le_bytes());
+    put(112, &1_f32.to_le_bytes());
+    put(123, &[2]);
+    put(252, &1_i16.to_le_bytes());
+    put(344, b"n+1\0");
+    [head.to_vec(), little()].concat()
+}
+
+fn npy(is_fortran: bool) -> Vec<u8> {
+    let order = if is_fortran { "True" } else { "False" };
+    let mut head =
+        format!("{{'descr': '<i2', 'fortran_order': {order}, 'shape': (20, 24, 16), }}");
+    head.push('\n');
+    let samples = densities();
+    let samples: Vec<u8> = if is_fortran {
+        little()
+    } else {
+        let at = |x: usize, y: usize, z: usize| samples[x + 20 * (y + 24 * z)];
+        let all =
+            (0..20).flat_map(|x| (0..24).flat_map(move |y| (0..16).map(move |z| (x, y, z))));
+        all.flat_map(|(x, y, z)| at(x, y, z).to_le_bytes()).collect()
+    };
+    let mut file = b"\x93NUMPY\x01\x00".to_vec();
+    file.extend((head.len() as u16).to_le_bytes());
+    file.extend(head.into_bytes());
+    file.extend(samples);
+    file
+}
+
+fn files() -> Vec<(&'static str, Vec<u8>)> {
+    vec![
+        ("ball.nrrd", nrrd("raw")),
+        ("packed.nrrd", nrrd("gzip")),
+        ("ball.mha", meta(false)),
+        ("packed.mha", meta(true)),
+        ("ball.nii", nifti()),
+        ("ball.nii.gz", gzip(&nifti())),
+    ]
+}
+
+#[test]
+fn every_format_gives_the_same_ball() {
+    let expected: Vec<f32> = densities().into_iter().map(f32::from).collect();
+    for (name, bytes) in files() {
+        let volume = Volume::from_bytes(&bytes, Path::new(name)).unwrap();
+        assert_eq!((volume.counts, volume.range()[1]), (COUNTS, 90.0), "{name}");
+        assert_eq!(volume.samples, expected, "{name}");
+        let last = volume.node([19, 23, 15]) - Vector([0.019, 0.0115, 0.03]);
+        assert!(last.norm() < 1e-9, "{name}: {last:?}");
+        let mesh = volume.surface(60.0).unwrap();
+        assert!(mesh.report().is_watertight(), "{name}");
+        assert!(mesh.report().enclosed.unwrap() > 0.0, "{name}");
+        for vertex in mesh.vertices() {
+            let off = (*vertex - Vector(MIDDLE) * 1e-3).norm() - 4e-3;
+            assert!(off.abs() < 6e-4, "{name}: {off}");
+        }
+    }
+    for is_fortran in [true, false] {
+        let volume = Volume::from_bytes(&npy(is_fortran), Path::new("ball.npy")).unwrap();
+        assert_eq!(volume.samples, expected);
+    }
+}
+
+#[test]
+fn samples_beside_a_head_are_read_and_nothing_else() {
+    let folder = tempfile::tempdir().unwrap();
+    let bytes = meta(false);
+    let head = String::from_utf8_lossy(&bytes);
+    let head =
+        head.split("ElementDataFile").next().unwrap().replace("MSB = True", "MSB = False");
+    let write = |name: &str| {
+        let path = folder.path().join("ball.mhd");
+        std::fs::write(&path, format!("{head}ElementDataFile = {name}\n")).unwrap();
+        Volume::open(path)
+    };
+    std::fs::write(folder.path().join("ball.raw"), little()).unwrap();
+    assert_eq!(write("ball.raw").unwrap().counts, COUNTS);
+    for name in ["../ball.raw", "/etc/passwd", "a/ball.raw", ".."] {
+        let error = write(name).unwrap_err();
+        assert!(matches!(error.problem, VolumeProblem::Elsewhere { .. }), "{error}");
+    }
+}
+
+#[test]
+fn a_ball_that_the_volume_cuts_off_is_closed() {
+    let bytes = nrrd("raw");
+    let mut volume = Volume::from_bytes(&bytes, Path::new("ball.nrrd")).unwrap();
+    for sample in &mut volume.samples[..20 * 24] {
+        *sample = 100.0;
+    }
+    assert!(volume.surface(60.0).unwrap().report().is_watertight());
+}
+
+#[test]
+fn what_is_damaged_is_refused() {
+    for (name, good) in files().into_iter().chain([("ball.npy", npy(true))]) {
+        cases::check(200, |u| {
+            let mut bad = good.clone();
+            if u.ratio(1, 2)? {
+                bad.truncate(u.int_in_range(0..=good.len() - 1)?);
+            }
+            for _ in 0..u.int_in_range(0..=3)? {
+                let most = bad.len().min(400);
+                if most > 0 {
+                    let at = u.int_in_range(0..=most - 1)?;
+                    bad[at] = u.arbitrary()?;
+                }
+            }
+            // Either an error or a volume: never a panic, nor memory for what is not there.
+            if let Ok(volume) = Volume::from_bytes(&bad, Path::new(name)) {
+                assert!(volume.samples.len() <= 1 << 22);
+            }
+            Ok(Ok(()))
+        });
+    }
+    let said = |bytes: &[u8], name: &str| {
+        Volume::from_bytes(bytes, Path::new(name)).unwrap_err().to_string()
+    };
+    assert!(said(b"", "scan.dcm").contains("dcm2niix"));
+    assert!(said(&nrrd("bzip2"), "a.nrrd").contains("encoding \"bzip2\" is not read"));
+    let text = String::from_utf8_lossy(&nrrd("raw")[..200])
+        .replace("sizes: 20 24 16", "sizes: 2000 2400 1600");
+    assert!(said(text.as_bytes(), "a.nrrd").contains("bytes, it has"));
+    let sheared = nrrd("raw");
+    let sheared = [&sheared[..], &[]].concat();
+    let place = sheared.windows(9).position(|w| w == b"(0,0.5,0)").unwrap();
+    let mut bytes = sheared.clone();
+    bytes[place..place + 9].copy_from_slice(b"(1,0.5,0)");
+    assert!(said(&bytes, "a.nrrd").contains("sheared"));
+    let volume = Volume::from_bytes(&nrrd("raw"), Path::new("a.nrrd")).unwrap();
+    assert!(volume.surface(101.0).unwrap_err().to_string().contains("no surface lies at 101"));
+}
