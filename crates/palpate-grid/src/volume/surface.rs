@@ -37,7 +37,9 @@ impl Volume {
         let steps = self.steps.map(Vector::norm);
         let cell = steps.into_iter().fold(f64::INFINITY, f64::min);
         let above = Above::new(self.clone(), value, f64::from(least));
-        Ok(TriangleMesh::of_shape(&Shape::custom(above), &ContourOptions::with_cell(cell))?)
+        // On the nodes of the volume, no sample is passed over.
+        let options = ContourOptions::with_cell(cell).with_node(self.origin);
+        Ok(TriangleMesh::of_shape(&Shape::custom(above), &options)?)
     }
 }
 

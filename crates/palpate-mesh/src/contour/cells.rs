@@ -15,8 +15,7 @@ const SIDE: usize = 8;
 /// Nodes of a block along an axis.
 const NODES: usize = SIDE + 1;
 
-/// The share of a cell by which the lattice is moved: faces of shapes lie at round numbers, and should not lie on
-/// those of cells.
+/// The lattice is shifted by this share of a cell, because faces of shapes often lie at round numbers.
 const OFFSET: [f64; 3] = [0.3819, 0.4271, 0.3533];
 
 /// Nodes at `origin + cell·i`, and cells between them.
@@ -58,7 +57,14 @@ impl Cells {
         if cells > limit as f64 || !is_narrow {
             return Err(ContourError::TooMany { cell, cells, limit });
         }
-        Ok(Self { origin: region.min - Vector(OFFSET) * cell, cell, counts })
+        let origin = match options.node {
+            None => region.min - Vector(OFFSET) * cell,
+            Some(node) => {
+                let before = (region.min - node).0.map(|along| (along / cell).floor());
+                node + Vector(before) * cell
+            }
+        };
+        Ok(Self { origin, cell, counts })
     }
 
     fn node(&self, index: [usize; 3]) -> Point<3> {

@@ -39,6 +39,8 @@ const MOST_MENDS: usize = 8;
 pub struct ContourOptions {
     /// The side of a cell [m]: parts thinner than it may be lost.
     pub cell: f64,
+    /// A node of the lattice of cells [m]; `None` leaves it beside round numbers, where faces of shapes often lie.
+    pub node: Option<Point<3>>,
     /// More cells than these are refused.
     pub most_cells: usize,
 }
@@ -47,7 +49,13 @@ impl ContourOptions {
     /// Cells of a size [m], at most 2³⁰ of them.
     #[must_use]
     pub const fn with_cell(cell: f64) -> Self {
-        Self { cell, most_cells: 1 << 30 }
+        Self { cell, node: None, most_cells: 1 << 30 }
+    }
+
+    /// The same with a node of the lattice at a place [m].
+    #[must_use]
+    pub const fn with_node(self, node: Point<3>) -> Self {
+        Self { node: Some(node), ..self }
     }
 }
 
