@@ -5,7 +5,7 @@
 
 use std::io::{Read, Write};
 use std::net::{SocketAddr, TcpStream};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use palpate_live::{Live, LiveOptions};
 use serde_json::{Value, json};
@@ -24,13 +24,13 @@ pub(crate) fn served(options: LiveOptions) -> Live {
     Live::start("ball", None, BALL, options).unwrap()
 }
 
-/// The most messages that a test waits for: 5 minutes of frames.
-const MOST: u32 = 18_000;
+/// How long a page may be open: a test that waits for what never comes fails.
+const LONGEST: Duration = Duration::from_secs(600);
 
 /// A page.
 pub(crate) struct Page {
     socket: WebSocket<TcpStream>,
-    messages: u32,
+    opened: Instant,
 }
 
 impl Page {
@@ -52,7 +52,7 @@ impl Page {
         let stream = TcpStream::connect(address).unwrap();
         stream.set_read_timeout(Some(PATIENCE)).unwrap();
         let (socket, _) = tungstenite::client(request, stream).unwrap();
-        Self { socket, messages: 0 }
+        Self { socket, opened: Instant::now() }
     }
 
     pub(crate) fn say(&mut self, message: &Value) {
@@ -66,8 +66,7 @@ impl Page {
 
     /// The next message; `None` if the server has closed.
     pub(crate) fn next(&mut self) -> Option<Message> {
-        self.messages += 1;
-        assert!(self.messages < MOST, "what is waited for does not come");
+        assert!(self.opened.elapsed() < LONGEST, "what is waited for does not come");
         self.socket.read().ok()
     }
 
