@@ -72,6 +72,9 @@ pub(crate) const COLLIDE: &[Bar] = &[
     ("world.1000_bodies.step.over_S3", 2_800_000.0),
     ("parry.heap_of_cubes.ours_over_parry", 38.0),
     ("parry.heap_of_cups.ours_over_parry", 0.2),
+    ("sampled.separation.trilinear_S3.over_formula", 1.5),
+    ("sampled.separation.quadratic_S3.over_formula", 3.0),
+    ("sampled.separation.mesh_S3.over_formula", 15.0),
 ];
 
 /// Those of the servo.
@@ -88,6 +91,20 @@ pub(crate) const HAPTICS: &[Bar] = &[
     ("tick.24_points_union_1000.p99.over_S3", 6100.0),
     ("tick.tool_1000_points_S3.p50.over_S3", 4600.0),
     ("tick.tool_1000_points_S3.p99.over_S3", 26_000.0),
+    ("tick.grid_S3.p50.over_tick_S3", 1.2),
+];
+
+/// Those of meshes and grids.
+pub(crate) const SAMPLED: &[Bar] = &[
+    ("mesh.near.ours_over_parry", 0.35),
+    ("mesh.box.ours_over_parry", 0.35),
+    ("mesh.touching.ours_over_parry", 0.5),
+    ("mesh.path.ours_over_parry", 0.75),
+    ("mesh.tree.ours_over_parry", 0.7),
+    ("grid.quadratic.gradient.path.over_ball", 5.0),
+    ("grid.quadratic.gradient.random.over_ball", 7.5),
+    ("grid.trilinear.64.over_loop", 0.6),
+    ("grid.bake.band.over_samples", 4.0),
 ];
 
 /// Those of the live page, which only reports.
@@ -192,8 +209,13 @@ mod tests {
             "_over_f32",
             ".over_child",
             ".over_S3_model",
+            ".over_formula",
+            ".over_ball",
+            ".over_loop",
+            ".over_samples",
+            ".over_tick_S3",
         ];
-        for (key, _) in [FIELDS, COLLIDE, HAPTICS].concat() {
+        for (key, _) in [FIELDS, COLLIDE, HAPTICS, SAMPLED].concat() {
             assert!(ratios.iter().any(|ratio| key.ends_with(ratio)), "{key}");
         }
     }

@@ -17,6 +17,7 @@ mod peers;
 mod random;
 mod reference;
 mod rounds;
+mod sampled;
 mod scenes;
 
 use std::error::Error;
@@ -79,6 +80,12 @@ enum Suite {
         #[arg(long)]
         json: bool,
     },
+    /// Meshes beside parry's, and grids.
+    Sampled {
+        /// Print one JSON object of keys and numbers.
+        #[arg(long)]
+        json: bool,
+    },
     /// A suite of this program beside that of another revision; status 1 if a key got slower.
     Compare(compare::Comparison),
     /// Ticks of the servo.
@@ -137,6 +144,7 @@ fn measure(suite: Suite) -> Result<ExitCode, Box<dyn Error>> {
         Suite::Haptics { json, runs: Runs { runs } } => {
             (haptics::measure(runs)?, bars::HAPTICS, false, json)
         }
+        Suite::Sampled { json } => (sampled::measure()?, bars::SAMPLED, false, json),
         Suite::Live { json } => (live::measure()?, bars::LIVE, false, json),
         Suite::Mujoco { options, json } => {
             let (rows, is_part) = (mujoco::measure(&options, json)?, options.is_part());

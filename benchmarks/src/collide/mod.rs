@@ -9,6 +9,7 @@ mod manifolds;
 mod meshes;
 mod pairs;
 mod peers;
+mod sampled;
 mod sweeps;
 mod triangles;
 mod worlds;
@@ -38,6 +39,7 @@ const PARTS: &[(&str, Part)] = &[
     ("manifolds", manifolds::measure),
     ("worlds", worlds::measure),
     ("heaps", heaps::measure),
+    ("sampled", sampled::measure),
 ];
 
 /// The names of the parts.
@@ -95,6 +97,7 @@ impl TimedRows {
         }
         peers::compare(&mut rows);
         heaps::compare(&mut rows);
+        sampled::compare(&mut rows);
         worlds::name_medians(&mut rows);
         rows
     }

@@ -80,7 +80,7 @@ where
     follow(&format!("pair.warm_1mm.{name}"), 1e-3, &placed([shape, shape], -0.005)?, rows)
 }
 
-fn ask<'a, const D: usize>(
+pub(super) fn ask<'a, const D: usize>(
     key: &str,
     ask: Ask<'a, D>,
     tolerance: f64,

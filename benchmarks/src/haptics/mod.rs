@@ -17,6 +17,7 @@ use std::error::Error;
 use std::hint::black_box;
 
 use palpate::field::{Point, Shape, Vector, kernel::Ball};
+use palpate::grid::{Grid, GridOptions};
 use palpate::haptics::{
     Bodies, Body, Material, PointState, Probe, ServoOptions, Surface, UnprotectedServo,
 };
@@ -38,6 +39,9 @@ const PASSES: u32 = 5;
 /// The radius of the sphere and of the ball that S3 is scaled to [m].
 const RADIUS: f64 = 0.05;
 
+/// Cells of the grid of S3 along its longest side.
+const CELLS: f64 = 160.0;
+
 /// The radius of the probe [m].
 const PROBE: f64 = 0.002;
 
@@ -53,9 +57,12 @@ pub(crate) fn measure(runs: u32) -> Result<Rows, Box<dyn Error>> {
     let sphere = Shape::from_kernel(Ball::new(RADIUS)?);
     let s3 = scenes::s3()?.shape.scaled(RADIUS)?;
     let thousand = scenes::thousand()?.shape;
+    let longest = 2.0 * RADIUS;
+    let grid = Grid::bake(&s3, &GridOptions::with_cell(longest / CELLS))?.into();
     let mut cases = vec![
         ticks("tick.sphere", &sphere, 1),
         ticks("tick.S3", &s3, 1),
+        ticks("tick.grid_S3", &grid, 1),
         ticks("tick.union_1000", &thousand, 1),
         ticks("tick.ten_fingers_S3", &s3, 10),
         ticks("tick.24_points_union_1000", &thousand, 24),
@@ -68,7 +75,13 @@ pub(crate) fn measure(runs: u32) -> Result<Rows, Box<dyn Error>> {
             all.push(reference.beside(&mut *case)?);
         }
     }
-    Ok(rounds::medians(all))
+    let mut rows = rounds::medians(all);
+    let [grid, formula] = ["tick.grid_S3", "tick.S3"].map(|key| format!("{key}.p50_ns"));
+    if let Some((grid, formula)) = rows.get(&grid).zip(rows.get(&formula)) {
+        let ratio = grid / formula;
+        rows.insert("tick.grid_S3.p50.over_tick_S3".to_owned(), ratio);
+    }
+    Ok(rows)
 }
 
 /// What a tick costs with so many contact points.

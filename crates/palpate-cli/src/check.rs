@@ -12,7 +12,7 @@ use serde_json::{Value, json};
 
 use crate::arguments::CheckOptions;
 use crate::emptiness::is_empty;
-use crate::input::{bytes, folder, other_than_scene};
+use crate::input::{Bakes, bytes, folder, other_than_scene};
 use crate::outcome::{Failure, Outcome};
 use crate::output::{self, counted, shown};
 
@@ -21,7 +21,9 @@ pub(crate) fn run(options: &CheckOptions) -> Result<Outcome, Failure> {
     let mut out = output::answer();
     let name = options.scene.display().to_string();
     let name = shown(&name);
-    match Scene::from_bytes_in(&bytes, folder(&options.scene)).and_then(|scene| scene.build()) {
+    let bakes = Bakes::new(Some(folder(&options.scene)));
+    let built = Scene::from_bytes_in(&bytes, bakes.resources.clone());
+    match built.and_then(|scene| scene.build()) {
         Err(error) => {
             let other = other_than_scene(&options.scene, &bytes);
             if options.json {

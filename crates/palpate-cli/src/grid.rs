@@ -33,14 +33,7 @@ fn bake<const D: usize>(
     scene: &BuiltScene<D>,
     interrupt: &Interrupt,
 ) -> Result<Outcome, Failure> {
-    let shape = match &options.body {
-        None => &scene.whole,
-        Some(name) => {
-            let names: Vec<_> = scene.bodies.iter().map(|body| body.name.as_str()).collect();
-            let found = input::bodies(std::slice::from_ref(name), &names)?;
-            &scene.bodies[found[0]].shape
-        }
-    };
+    let shape = input::body_or_whole(scene, options.body.as_deref())?;
     let mut files = Files::reading([options.scene.as_path()]);
     let destination = files.output_as(&options.output, "a grid", "grid")?;
     let pool = threads::pool(options.threads)?;
@@ -51,7 +44,7 @@ fn bake<const D: usize>(
         return Ok(Outcome::Interrupted);
     };
     destination.write(|out| Ok(grid.write(out)?))?;
-    report(options, &grid)?;
+    report(options, shape, &grid)?;
     Ok(if grid.deviation().is_finite() { Outcome::Yes } else { Outcome::No })
 }
 
@@ -76,10 +69,15 @@ fn grid<const D: usize>(
     }
 }
 
-fn report<const D: usize>(options: &GridOptions, grid: &Grid<D>) -> Result<(), Failure> {
+fn report<const D: usize>(
+    options: &GridOptions,
+    shape: &Shape<D>,
+    grid: &Grid<D>,
+) -> Result<(), Failure> {
     let mut out = output::answer();
     let (lattice, promise) = (grid.lattice(), grid.promise());
     let name = options.output.display().to_string();
+    let is_exact = shape.promise().is_exact();
     let deviation = Some(grid.deviation()).filter(|deviation| deviation.is_finite());
     if options.json {
         out.json(&json!({
@@ -91,6 +89,7 @@ fn report<const D: usize>(options: &GridOptions, grid: &Grid<D>) -> Result<(), F
             "kernel": grid.kernel().name(),
             "store": grid.store().name(),
             "deviation_m": deviation,
+            "source_is_exact": is_exact,
             "lipschitz": promise.lipschitz,
             "promise": promise.in_words(),
         }))?;
@@ -108,11 +107,19 @@ fn report<const D: usize>(options: &GridOptions, grid: &Grid<D>) -> Result<(), F
     )?;
     match deviation {
         Some(deviation) => {
-            writeln!(out, "  surface  off the scene's by at most {deviation:.3e} m")?
+            writeln!(out, "  values   off the scene's by at most {deviation:.3e} m, proven")?;
+            if is_exact {
+                writeln!(out, "  surface  within that of the scene's")?;
+            } else {
+                writeln!(
+                    out,
+                    "  surface  may be farther off: the scene's values are bounds of the distance"
+                )?;
+            }
         }
         None => writeln!(
             out,
-            "  surface  off the scene's by an unknown distance: take smaller cells, or a wider --band"
+            "  values   off the scene's by an unknown amount: take smaller cells, or a wider --band"
         )?,
     }
     writeln!(out, "  slope    at most {:.4}", promise.lipschitz)?;

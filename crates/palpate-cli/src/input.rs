@@ -3,12 +3,18 @@
 
 //! Reads scenes and points.
 
-use std::path::Path;
+use std::ops::ControlFlow;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
-use palpate::field::{Aabb, LARGEST_LENGTH, Vector};
+use palpate::field::{Aabb, LARGEST_LENGTH, Shape, Vector};
+use indicatif::ProgressBar;
 use palpate::local::GradientMethod;
-use palpate::scene::{AnyScene, BuiltScene, Scene, SceneError, unknown_name, utf8};
+use palpate::scene::{
+    AnyScene, BuiltScene, Resources, Scene, SceneError, unknown_name, utf8,
+};
 
+use crate::error_map::bar;
 use crate::kind::Kind;
 use crate::outcome::Failure;
 
@@ -48,17 +54,52 @@ pub(crate) fn moving(path: Option<&Path>, motions: Option<&Path>) -> Result<Name
     };
     let no_scene =
         |error| Failure::input(format!("{name}: {}", no_scene(path, &bytes, &error)));
-    let mut scene = match path.map(folder) {
-        None => Scene::from_bytes(&bytes),
-        Some(folder) => Scene::from_bytes_in(&bytes, folder),
-    }
-    .map_err(no_scene)?;
+    let bakes = Bakes::new(path.map(folder));
+    let mut scene = Scene::from_bytes_in(&bytes, bakes.resources.clone()).map_err(no_scene)?;
     if let Some(path) = motions {
         let moved = scene.with_motions_of(&self::bytes(path)?);
         scene = moved.map_err(|error| Failure::file(path, error))?;
     }
     let scene = scene.build().map_err(no_scene)?;
     Ok(Named { name, scene })
+}
+
+/// The folder in which grids are kept: the user's cache, or what `PALPATE_CACHE` names; `None` if that is empty.
+pub(crate) fn cache() -> Option<PathBuf> {
+    match std::env::var_os("PALPATE_CACHE") {
+        None => Some(dirs::cache_dir()?.join("palpate").join("grids")),
+        Some(folder) => Some(folder.into()).filter(|folder: &PathBuf| !folder.as_os_str().is_empty()),
+    }
+}
+
+/// What scenes use beside their text, with a bar that shows how a grid is made.
+pub(crate) struct Bakes {
+    pub(crate) resources: Resources,
+    bar: ProgressBar,
+}
+
+impl Bakes {
+    /// For a scene whose files are in `folder`.
+    pub(crate) fn new(folder: Option<&Path>) -> Self {
+        let bar = bar();
+        let shown = bar.clone();
+        let mut resources = Resources::default().with_progress(Arc::new(move |progress| {
+            shown.set_length(progress.of as u64);
+            shown.set_position(progress.done as u64);
+            ControlFlow::Continue(())
+        }));
+        resources.folder = folder.map(Path::to_owned);
+        if let Some(cache) = cache() {
+            resources = resources.with_cache(cache);
+        }
+        Self { resources, bar }
+    }
+}
+
+impl Drop for Bakes {
+    fn drop(&mut self) {
+        self.bar.finish_and_clear();
+    }
 }
 
 /// The folder of a file, in which the files that it names are.
@@ -104,6 +145,17 @@ pub(crate) fn bodies(asked: &[String], names: &[&str]) -> Result<Vec<usize>, Fai
     bodies.sort_unstable();
     bodies.dedup();
     Ok(bodies)
+}
+
+/// The body with this name, or all bodies as one shape.
+pub(crate) fn body_or_whole<'a, const D: usize>(
+    scene: &'a BuiltScene<D>,
+    body: Option<&str>,
+) -> Result<&'a Shape<D>, Failure> {
+    let Some(name) = body else { return Ok(&scene.whole) };
+    let names: Vec<_> = scene.bodies.iter().map(|body| body.name.as_str()).collect();
+    let found = bodies(&[name.to_owned()], &names)?;
+    Ok(&scene.bodies[found[0]].shape)
 }
 
 /// The point that `text` names: as many numbers as dimensions, joined by commas.

@@ -131,9 +131,10 @@ impl Rounding {
 /// How far a field may be from the one that it stands in for, as a grid for the shape that was baked.
 ///
 /// With both clamped to `within` on both sides, their values differ by at most `value` everywhere. So the
-/// surfaces of both lie where the size of the other is at most `value`: what is farther from one surface is on the
-/// same side of the other. (Where the source is a bound that falls below the distance to its box, that distance
-/// is meant.) Where `within` is not larger than `value`, nothing is known.
+/// surface of each lies where the size of the other's values is at most `value`: of an exact source, nowhere
+/// farther than `value` from its surface. Where the source is a bound, places may be farther off. (Where the
+/// source is a bound that falls below the distance to its box, that distance is meant.) Where `within` is not
+/// larger than `value`, nothing is known.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Deviation {
@@ -144,7 +145,7 @@ pub struct Deviation {
 }
 
 impl Deviation {
-    /// How far from one surface the values of the other are the same in sign [m]; `None` if nothing is known.
+    /// The values of one field beyond which the other has the same sign [m]; `None` if nothing is known.
     #[must_use]
     pub fn of_surface(&self) -> Option<f64> {
         (self.value < self.within).then_some(self.value)
@@ -245,13 +246,20 @@ impl<const D: usize> fmt::Display for Promise<D> {
         }
         match self.deviation.map(|deviation| deviation.of_surface()) {
             None => Ok(()),
-            Some(Some(value)) => write!(f, ", off its source by at most {value} m"),
-            Some(None) => f.write_str(", off its source by an unknown distance"),
+            Some(Some(value)) => write!(f, ", values off its source's by at most {value} m"),
+            Some(None) => f.write_str(", values off its source's by an unknown amount"),
         }
     }
 }
 
 impl<const D: usize> Promise<D> {
+    /// Whether the values are distances on both sides.
+    #[must_use]
+    pub fn is_exact(&self) -> bool {
+        let is_inside_exact = self.inside == Quality::Exact || !self.has_interior;
+        self.outside == Quality::Exact && is_inside_exact
+    }
+
     /// The qualities in a few words: "exact outside, bound inside".
     ///
     /// ```
@@ -274,10 +282,12 @@ impl<const D: usize> Promise<D> {
         match self.deviation.map(|deviation| deviation.of_surface()) {
             None => format!("{outside} outside, {inside}"),
             Some(Some(value)) => {
-                format!("{outside} outside, {inside}, off its source by at most {value:.2e} m")
+                format!(
+                    "{outside} outside, {inside}, values off its source's by at most {value:.2e} m"
+                )
             }
             Some(None) => {
-                format!("{outside} outside, {inside}, off its source by an unknown distance")
+                format!("{outside} outside, {inside}, values off its source's by an unknown amount")
             }
         }
     }

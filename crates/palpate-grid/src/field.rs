@@ -45,6 +45,28 @@ impl<const D: usize> CustomField<D> for Grid<D> {
         remainder *= 1.0 + 16.0 * f64::EPSILON;
         AffineModel { value, gradient, lower: remainder, upper: remainder }
     }
+
+    /// The bytes of its file.
+    #[cfg(feature = "files")]
+    fn content(&self, sink: &mut dyn FnMut(&[u8])) -> bool {
+        self.write(Sink(sink)).is_ok()
+    }
+}
+
+/// What is fed as what is written.
+#[cfg(feature = "files")]
+struct Sink<'a>(&'a mut dyn FnMut(&[u8]));
+
+#[cfg(feature = "files")]
+impl std::io::Write for Sink<'_> {
+    fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
+        (self.0)(bytes);
+        Ok(bytes.len())
+    }
+
+    fn flush(&mut self) -> std::io::Result<()> {
+        Ok(())
+    }
 }
 
 impl<const D: usize> From<Grid<D>> for Shape<D> {

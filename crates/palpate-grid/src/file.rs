@@ -28,12 +28,12 @@ use crate::spline::{Kernel, QUADRATIC, TRILINEAR};
 use crate::threads::each;
 
 /// What a file begins with: the name, and the version of the format.
-const MAGIC: [u8; 8] = *b"palpate\x01";
+pub(crate) const MAGIC: [u8; 8] = *b"palpate\x01";
 
 /// The bytes of the sum at the end.
 const SUM: usize = blake3::OUT_LEN;
 
-/// Files larger than this are not read: 4 GiB.
+/// Files larger than this are neither written nor read: 4 GiB.
 pub const LARGEST_FILE: u64 = 1 << 32;
 
 /// Why a grid's file cannot be read or written.
@@ -57,7 +57,9 @@ pub enum GridFileProblem {
     #[error("it is no file")]
     NoFile,
     /// It is larger than [`LARGEST_FILE`].
-    #[error("it has {bytes} bytes; at most {LARGEST_FILE} are read")]
+    #[error(
+        "it has {bytes} bytes, at most {LARGEST_FILE} are written and read: larger cells, i16 or a band make it smaller"
+    )]
     TooLarge {
         /// Its size.
         bytes: u64,
@@ -82,6 +84,18 @@ pub enum GridFileProblem {
     /// Its samples make no grid.
     #[error(transparent)]
     Grid(#[from] GridError),
+}
+
+/// A temporary file with the permissions of any new file, from which the user's mask takes away.
+fn as_any_file() -> tempfile::Builder<'static, 'static> {
+    let mut builder = tempfile::Builder::new();
+    builder.prefix(".palpate-");
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::PermissionsExt;
+        builder.permissions(std::fs::Permissions::from_mode(0o666));
+    }
+    builder
 }
 
 fn damaged(what: &'static str) -> GridFileProblem {
@@ -113,7 +127,11 @@ impl<const D: usize> Grid<D> {
         let path = path.as_ref();
         let written = || -> Result<(), GridFileProblem> {
             let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
-            let file = tempfile::NamedTempFile::new_in(folder.unwrap_or(Path::new(".")))?;
+            let bytes = self.stored_samples() as u64 * self.store().bytes();
+            if bytes > LARGEST_FILE {
+                return Err(GridFileProblem::TooLarge { bytes });
+            }
+            let file = as_any_file().tempfile_in(folder.unwrap_or(Path::new(".")))?;
             self.write(BufWriter::new(file.as_file()))?;
             file.as_file().sync_all()?;
             file.persist(path).map_err(|error| error.error)?;

@@ -77,7 +77,7 @@ impl<const D: usize> Grid<D> {
         &self.promise
     }
 
-    /// How far it is certified to deviate from its source [m]; infinite if that is not known.
+    /// How far its values are certified to be off those of its source [m]; infinite if that is not known.
     #[must_use]
     pub fn deviation(&self) -> f64 {
         let deviation = self.promise.deviation.and_then(|deviation| deviation.of_surface());

@@ -40,6 +40,16 @@ impl Store {
         }
     }
 
+    /// The bytes of a sample.
+    #[cfg(feature = "files")]
+    pub(crate) const fn bytes(self) -> u64 {
+        match self {
+            Self::F32 => 4,
+            Self::I16 => 2,
+            Self::I8 => 1,
+        }
+    }
+
     /// The largest whole number; `None` in single precision.
     const fn largest(self) -> Option<f64> {
         match self {

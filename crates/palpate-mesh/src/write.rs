@@ -7,7 +7,9 @@ use std::borrow::Cow;
 use std::io::{self, Write};
 
 use gltf::binary::{Glb, Header};
+use palpate_field::{Point, Vector};
 
+use crate::error::MeshError;
 use crate::mesh::TriangleMesh;
 use crate::read::Format;
 
@@ -42,6 +44,34 @@ impl TriangleMesh {
         }
     }
 
+    /// The mesh as a file of a format holds it: in single precision in STL and GLB, and in STL with equal vertices
+    /// merged, as its readers do. So what is measured of it holds for the file.
+    ///
+    /// ```
+    /// use palpate_field::Vector;
+    /// use palpate_mesh::{Format, TriangleMesh};
+    ///
+    /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+    /// let corners = [[0.1, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 2.0, 0.0]].map(Vector);
+    /// let mesh = TriangleMesh::new(corners.to_vec(), vec![[0, 1, 2]])?;
+    /// assert_eq!(mesh.in_format(Format::Stl)?.vertices()[0][0], f64::from(0.1_f32));
+    /// # Ok(())
+    /// # }
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// As of [`new`](Self::new).
+    pub fn in_format(&self, format: Format) -> Result<Self, MeshError> {
+        if matches!(format, Format::Obj | Format::Ply) {
+            return Ok(self.clone());
+        }
+        let single = |p: &Point<3>| Vector(p.0.map(|x| f64::from(x as f32)));
+        let vertices = self.vertices().iter().map(single).collect();
+        let mesh = Self::new(vertices, self.elements().to_vec())?;
+        Ok(if format == Format::Stl { mesh.welded() } else { mesh })
+    }
+
     fn write_obj(&self, mut out: impl Write) -> io::Result<()> {
         for p in self.vertices() {
             writeln!(out, "v {} {} {}", p[0], p[1], p[2])?;
@@ -58,9 +88,8 @@ impl TriangleMesh {
             .map(|face| {
                 let corners = self.corners(face);
                 let across = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
-                let normal = across.normalized().unwrap_or(palpate_field::Vector::ZERO);
-                let single =
-                    |p: palpate_field::Point<3>| stl_io::Vector::new(p.0.map(|x| x as f32));
+                let normal = across.normalized().unwrap_or(Vector::ZERO);
+                let single = |p: Point<3>| stl_io::Vector::new(p.0.map(|x| x as f32));
                 stl_io::Triangle { normal: single(normal), vertices: corners.map(single) }
             })
             .collect();

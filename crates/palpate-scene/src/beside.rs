@@ -52,6 +52,8 @@ impl Beside {
         let cannot =
             |error: std::io::Error| Problem::new(format!("{}: {error}", path.display()));
         let real = path.canonicalize().map_err(cannot)?;
+        // The folder of a file that is named alone is empty.
+        let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
         if !real.starts_with(folder.canonicalize().map_err(cannot)?) {
             let shown = path.display();
             return Err(Problem::new(format!(

@@ -11,6 +11,7 @@ use serde::Deserialize;
 
 use crate::beside::{Beside, Kept, Stamp};
 use crate::problem::Problem;
+use crate::resources::Resources;
 
 /// The samples of all grids that are kept.
 const MOST_SAMPLES: usize = 1 << 27;
@@ -110,13 +111,14 @@ impl WrittenBake {
         &self,
         shape: Shape<D>,
         kept: &KeptGrids<D>,
+        resources: &Resources,
     ) -> Result<Shape<D>, Problem> {
         let source = Source::Shape(shape, self.options()?);
         if let Some(known) = kept.of(&source) {
             return Ok(known);
         }
         let Source::Shape(shape, options) = &source else { unreachable!("it was made above") };
-        let grid = Grid::bake(shape, options).map_err(|error| match error {
+        let grid = resources.bake(shape, options).map_err(|error| match error {
             GridError::Number(error) => Problem::of_shape(error),
             error => Problem::new(error.to_string()),
         })?;

@@ -4,7 +4,7 @@
 //! The data of a scene file.
 
 use std::fmt;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use indexmap::IndexMap;
 use schemars::JsonSchema;
@@ -18,6 +18,7 @@ use crate::guide::WrittenGuide;
 use crate::json::{self, Document, Source};
 use crate::motion::Motion;
 use crate::pose::WrittenPose;
+use crate::resources::Resources;
 use crate::problem::Problem;
 use crate::shape::WrittenShape;
 use crate::tool::WrittenTool;
@@ -101,10 +102,10 @@ pub struct Scene {
     /// Pictures worth making of the scene.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub views: Vec<View>,
-    /// The folder in which files of meshes are looked for; a scene without one has no meshes.
+    /// What it uses beside its text.
     #[serde(skip)]
     #[schemars(skip)]
-    pub folder: Option<PathBuf>,
+    pub resources: Resources,
 }
 
 /// A body: a shape with its pose in the world and its material.
@@ -151,7 +152,7 @@ impl Scene {
             guides: Vec::new(),
             motions: Vec::new(),
             views: Vec::new(),
-            folder: None,
+            resources: Resources::default(),
         }
     }
 
@@ -162,28 +163,23 @@ impl Scene {
     ///
     /// All that is wrong, with paths, lines and columns.
     pub fn from_json(text: &str) -> Result<Self, SceneError> {
-        Self::read(text, None)
+        Self::from_json_in(text, Resources::default())
     }
 
-    /// As [`from_json`](Self::from_json); the files of its meshes are in `folder`.
+    /// As [`from_json`](Self::from_json); its files are in a folder, or it uses other resources too.
     ///
     /// # Errors
     ///
     /// As `from_json`.
-    pub fn from_json_in(text: &str, folder: impl Into<PathBuf>) -> Result<Self, SceneError> {
-        Self::read(text, Some(folder.into()))
-    }
-
-    fn read(text: &str, folder: Option<PathBuf>) -> Result<Self, SceneError> {
-        let source = Source::of(text);
-        let read = Document::parse(&source)?.read(|scene: &Self| {
-            build::world(&scene.clone().in_folder(folder.clone())).map(drop)
-        })?;
-        Ok(read.in_folder(folder))
-    }
-
-    fn in_folder(self, folder: Option<PathBuf>) -> Self {
-        Self { folder, ..self }
+    pub fn from_json_in(
+        text: &str,
+        resources: impl Into<Resources>,
+    ) -> Result<Self, SceneError> {
+        let (source, resources) = (Source::of(text), resources.into());
+        let with = |scene: Self| Self { resources: resources.clone(), ..scene };
+        let read = Document::parse(&source)?
+            .read(|scene: &Self| build::world(&with(scene.clone())).map(drop))?;
+        Ok(with(read))
     }
 
     /// Reads a scene from the bytes of a file, as [`from_json`](Self::from_json).
@@ -202,14 +198,17 @@ impl Scene {
         Self::from_json(utf8(bytes).map_err(|error| Problem::new(error.to_string()))?)
     }
 
-    /// As [`from_bytes`](Self::from_bytes), with the files of its meshes in `folder`.
+    /// As [`from_bytes`](Self::from_bytes); its files are in a folder, or it uses other resources too.
     ///
     /// # Errors
     ///
     /// As `from_bytes`.
-    pub fn from_bytes_in(bytes: &[u8], folder: impl Into<PathBuf>) -> Result<Self, SceneError> {
+    pub fn from_bytes_in(
+        bytes: &[u8],
+        resources: impl Into<Resources>,
+    ) -> Result<Self, SceneError> {
         let text = utf8(bytes).map_err(|error| Problem::new(error.to_string()))?;
-        Self::from_json_in(text, folder)
+        Self::from_json_in(text, resources)
     }
 
     /// Reads a scene from the file at `path`, as [`from_bytes`](Self::from_bytes); the files of its meshes

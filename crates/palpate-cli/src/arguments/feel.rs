@@ -12,7 +12,7 @@ use palpate::haptics::{Acceptance, Recovery};
 use palpate::scene::unknown_name;
 use palpate::vibration::{ACTUATORS, Actuator, actuator_named};
 
-use super::numbers::{count, length_or_zero, positive, within, zero_or_more};
+use super::numbers::{count, length, length_or_zero, positive, within, zero_or_more};
 use super::{PageOptions, ProfileChoice};
 
 /// The most contact points: more than any device has.
@@ -85,6 +85,13 @@ pub(crate) struct FeelOptions {
     /// or else 2 mm, if left out.
     #[arg(long, allow_negative_numbers = true, value_parser = length_or_zero)]
     pub(crate) radius: Option<f64>,
+    /// Touch meshes themselves. If left out, a body that holds a mesh is touched as a grid of it, whose
+    /// distances take the same short time everywhere.
+    #[arg(long)]
+    pub(crate) exact: bool,
+    /// The size of the cells of those grids [m]; a 160th of each body if left out.
+    #[arg(long, conflicts_with = "exact", allow_negative_numbers = true, value_parser = length)]
+    pub(crate) cell: Option<f64>,
     /// Serve no page. Without a scene, `feel` serves one that shows the built-in gallery, and stays as
     /// long as it is open; `palpate live` shows other scenes.
     #[arg(long)]

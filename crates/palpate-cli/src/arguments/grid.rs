@@ -16,14 +16,14 @@ Examples:
   palpate grid scenes/cup.json --cell 0.001 --band 5 --store i16 --output cup.grid --json
 
 A scene uses the file as { \"grid\": { \"file\": \"cup.grid\" } }. The deviation is certified: the
-surface of the grid is nowhere farther from the scene's. Status 1 if it is not known.";
+values of the grid differ from the scene's by no more. Status 1 if it is not known.";
 
 /// The options of `palpate grid`.
 #[derive(Args, Debug)]
 pub(crate) struct GridOptions {
     /// The scene file.
     pub(crate) scene: PathBuf,
-    /// The largest deviation from the scene [m]: cells are as small as it takes.
+    /// The largest deviation from the values of the scene [m]: cells are as small as it takes.
     #[arg(long, allow_negative_numbers = true, value_parser = length, required_unless_present = "cell", conflicts_with = "cell")]
     pub(crate) tolerance: Option<f64>,
     /// The size of a cell [m].

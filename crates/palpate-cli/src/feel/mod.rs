@@ -4,6 +4,7 @@
 //! `palpate feel`: runs a servo with a device in a hand, and reports.
 
 mod asked;
+mod baked;
 mod figure;
 mod held;
 mod inside;
@@ -68,7 +69,8 @@ where
     let choice = choice(options)?;
     check_forces(&choice, options)?;
     check_page(options)?;
-    let scene = &asked(scene, options).at(0.0).map_err(Failure::input)?;
+    let (scene, baked) = baked::scene(scene, options)?;
+    let scene = &asked(&scene, options).at(0.0).map_err(Failure::input)?;
     let tool = tool::of_scene(scene, options)?;
     let paths = hands(scene, options, tool.as_ref(), outputs)?;
     let longest = paths.iter().map(|p| p.start() + p.duration()).fold(0.0, f64::max);
@@ -160,6 +162,7 @@ where
         workspace_scale: held::is_fitted(scene, &choice).then(|| map.scale()),
         beyond,
         played: played.as_ref(),
+        baked: &baked,
     };
     // The report is whole even if a file cannot be written, and a reader that closed the pipe
     // hides no file that is missing.

@@ -11,7 +11,7 @@ use palpate::haptics::{
     Acceptance, Accepted, Body, DeviceProfile, Progress, Rule, Servo, Surface, Texture,
     TextureKind,
 };
-use palpate::scene::BuiltScene;
+use palpate::scene::{BakedBody, BuiltScene};
 use palpate::servo_loop::RunReport;
 use serde_json::Value;
 
@@ -20,6 +20,7 @@ use crate::outcome::Failure;
 use crate::output::{self, counted, shown};
 
 use super::asked::{self, range};
+use super::baked;
 use super::held::Beyond;
 use super::inside;
 use super::vibration::Played;
@@ -72,6 +73,8 @@ pub(super) struct Felt<'a, const D: usize> {
     pub(super) beyond: Option<Beyond>,
     /// What actuators played, if that was written to a file.
     pub(super) played: Option<&'a Played>,
+    /// The bodies of meshes, and how they were touched.
+    pub(super) baked: &'a [BakedBody],
 }
 
 impl<const D: usize> Felt<'_, D> {
@@ -112,6 +115,9 @@ impl<const D: usize> Felt<'_, D> {
             {
                 told.extend(accepted);
             }
+        }
+        if !self.baked.is_empty() {
+            json["as_grids"] = baked::json(self.baked);
         }
         if let Some(played) = self.played {
             json["vibration"] = played.json();
@@ -219,6 +225,7 @@ fn write_report<const D: usize>(out: &mut String, felt: &Felt<'_, D>) -> std::fm
         let scale = rounded(scale);
         writeln!(out, "  workspace      {scale} m of the scene for each metre of the device")?;
     }
+    baked::write(out, felt.baked)?;
     if !felt.scene.motions.is_empty() {
         let moving: Vec<_> = felt.moving().map(|name| shown(name).to_string()).collect();
         writeln!(out, "  moving         {}", moving.join(", "))?;

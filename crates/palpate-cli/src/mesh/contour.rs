@@ -3,11 +3,12 @@
 
 //! A mesh of a scene, or of another mesh.
 
+use std::fmt::Display;
 use std::io::Write;
 use std::ops::ControlFlow;
 use std::path::Path;
 
-use palpate::field::{Quality, Shape};
+use palpate::field::Shape;
 use palpate::mesh::{ContourError, ContourOptions, Format, Solid, TriangleMesh};
 use palpate::scene::AnyScene;
 use serde_json::json;
@@ -31,7 +32,7 @@ const MOST_TRIES: usize = 12;
 /// Steps of the progress bar.
 const STEPS: f64 = 1000.0;
 
-/// A mesh, and how far it is from the surface.
+/// A mesh as its file holds it, and how far it is from the surface.
 struct Made {
     mesh: TriangleMesh,
     cell: f64,
@@ -52,7 +53,8 @@ pub(super) fn run(
     })?;
     let shape = shape(options)?;
     interrupt.heed();
-    let Some(made) = made(options, &shape, interrupt)? else {
+    let work = Work { options, shape: &shape, format, interrupt };
+    let Some(made) = work.made()? else {
         output::remark("interrupted: nothing was written");
         return Ok(Outcome::Interrupted);
     };
@@ -63,85 +65,129 @@ pub(super) fn run(
 /// The shape that a mesh is made of.
 fn shape(options: &MeshOptions) -> Result<Shape<3>, Failure> {
     if Format::of(&options.file).is_some() {
+        if options.body.is_some() {
+            return Err(Failure::file(&options.file, "a mesh has no bodies: leave --body out"));
+        }
         let solid = Solid::from_mesh(&super::mesh(options)?);
         return solid
             .map(|(solid, _)| solid.into())
             .map_err(|error| Failure::file(&options.file, error));
+    }
+    if options.weld {
+        return Err(Failure::file(&options.file, "a scene has no vertices: leave --weld out"));
     }
     let named = input::scene(Some(&options.file))?;
     let AnyScene::Spatial(scene) = named.scene else {
         let problem = "the scene is in the plane; a mesh needs \"dimension\": 3";
         return Err(Failure::file(&options.file, problem));
     };
-    let shape = match &options.body {
-        None => scene.whole,
-        Some(name) => {
-            let names: Vec<_> = scene.bodies.iter().map(|body| body.name.as_str()).collect();
-            let found = input::bodies(std::slice::from_ref(name), &names)?;
-            scene.bodies[found[0]].shape.clone()
-        }
-    };
+    let shape = input::body_or_whole(&scene, options.body.as_deref())?.clone();
     match options.scale {
         None => Ok(shape),
         Some(scale) => shape.scaled(scale).map_err(Failure::input),
     }
 }
 
-/// The mesh with the cells that the options ask for; `None` if the program is asked to end.
-fn made(
-    options: &MeshOptions,
-    shape: &Shape<3>,
-    interrupt: &Interrupt,
-) -> Result<Option<Made>, Failure> {
-    let Some(bounds) = shape.promise().bounds else {
-        return Err(Failure::file(&options.file, ContourError::Unbounded));
-    };
-    let longest = longest_edge(&bounds.aabb);
-    let Some(tolerance) = options.tolerance else {
-        return with_cells(options, shape, options.cell.unwrap_or(longest / CELLS), interrupt);
-    };
-    let mut cell = (longest / FIRST_TRY).max(tolerance);
-    let mut last = None;
-    for _ in 0..MOST_TRIES {
-        let made = match with_cells(options, shape, cell, interrupt) {
-            Ok(made) => made,
-            // Finer cells than the limit allows: the last mesh is the best.
-            Err(failure) => return last.map(Some).ok_or(failure),
-        };
-        let Some(made) = made else { return Ok(None) };
-        let share = tolerance / made.error[1];
-        if share >= 1.0 {
-            return Ok(Some(made));
-        }
-        // Errors go with the square of a cell where a surface is curved, with the cell at edges.
-        cell *= (0.9 * share).sqrt().clamp(0.3, 0.9);
-        last = Some(made);
-    }
-    Ok(last)
+/// What a mesh is made of, and how.
+struct Work<'a> {
+    options: &'a MeshOptions,
+    shape: &'a Shape<3>,
+    format: Format,
+    interrupt: &'a Interrupt,
 }
 
-fn with_cells(
-    options: &MeshOptions,
-    shape: &Shape<3>,
-    cell: f64,
-    interrupt: &Interrupt,
-) -> Result<Option<Made>, Failure> {
-    let bar = bar();
-    bar.set_length(STEPS as u64);
-    let mut progress = |share: f64| {
-        bar.set_position((share * STEPS) as u64);
-        if interrupt.is_asked() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
-    };
-    let mesh =
-        TriangleMesh::of_shape_with(shape, &ContourOptions::with_cell(cell), &mut progress);
-    bar.finish_and_clear();
-    match mesh {
-        Err(ContourError::Stopped) => Ok(None),
-        Err(error) => Err(Failure::file(&options.file, error)),
-        Ok(mesh) => {
-            let error = mesh.largest_distance(shape);
-            Ok(Some(Made { mesh, cell, error }))
+/// A try with cells of one size.
+enum Try {
+    Made(Made),
+    /// No cell sees the surface.
+    TooCoarse(Failure),
+    Refused(Failure),
+    Stopped,
+}
+
+impl Work<'_> {
+    /// The mesh with the cells that the options ask for; `None` if the program is asked to end.
+    fn made(&self) -> Result<Option<Made>, Failure> {
+        let Some(bounds) = self.shape.promise().bounds else {
+            return Err(Failure::file(&self.options.file, ContourError::Unbounded));
+        };
+        let longest = longest_edge(&bounds.aabb);
+        let Some(tolerance) = self.options.tolerance else {
+            let cell = self.options.cell.unwrap_or(longest / CELLS);
+            return match self.with_cells(cell, f64::INFINITY) {
+                Try::Made(made) => Ok(Some(made)),
+                Try::Stopped => Ok(None),
+                Try::Refused(failure) | Try::TooCoarse(failure) => Err(failure),
+            };
+        };
+        let mut cell = (longest / FIRST_TRY).max(tolerance);
+        let (mut last, mut refused) = (None, None);
+        for _ in 0..MOST_TRIES {
+            let off = match self.with_cells(cell, tolerance) {
+                Try::Made(made) if made.error[1] <= tolerance => return Ok(Some(made)),
+                Try::Made(made) => last.insert(made).error[1],
+                Try::Stopped => return Ok(None),
+                Try::TooCoarse(failure) => {
+                    refused = Some(failure);
+                    f64::INFINITY
+                }
+                Try::Refused(failure) => {
+                    refused = Some(failure);
+                    break;
+                }
+            };
+            // Errors go with the square of a cell where a surface is curved, with the cell at edges.
+            cell *= (0.9 * tolerance / off).sqrt().clamp(0.3, 0.9);
         }
+        // The last mesh is the best. Its error was looked at only until it was above the tolerance.
+        match (last, refused) {
+            (Some(last), _) => Ok(self.measured(last.mesh, last.cell, f64::INFINITY)),
+            (None, Some(failure)) => Err(failure),
+            (None, None) => Ok(None),
+        }
+    }
+
+    /// The mesh with cells of a size; its error, as far as it is not above `most` [m].
+    fn with_cells(&self, cell: f64, most: f64) -> Try {
+        let bar = bar();
+        bar.set_length(STEPS as u64);
+        let mut progress = |share: f64| {
+            bar.set_position((share * STEPS) as u64);
+            self.is_going_on()
+        };
+        let options = ContourOptions::with_cell(cell);
+        let mesh = TriangleMesh::of_shape_with(self.shape, &options, &mut progress);
+        bar.finish_and_clear();
+        let refused = |error: &dyn Display| Failure::file(&self.options.file, error);
+        let mesh = match mesh {
+            Ok(mesh) => mesh.in_format(self.format),
+            Err(ContourError::Stopped) => return Try::Stopped,
+            Err(error @ ContourError::NoSurface { .. }) => {
+                return Try::TooCoarse(refused(&error));
+            }
+            Err(error) => return Try::Refused(refused(&error)),
+        };
+        match mesh {
+            Ok(mesh) => self.measured(mesh, cell, most).map_or(Try::Stopped, Try::Made),
+            Err(error) => Try::Refused(refused(&error)),
+        }
+    }
+
+    /// The mesh with its error. An error above `most` [m] is not looked at further: it is then what was found.
+    fn measured(&self, mesh: TriangleMesh, cell: f64, most: f64) -> Option<Made> {
+        let mut known = 0.0;
+        let error = mesh.largest_distance_with(self.shape, &mut |found| {
+            known = found;
+            if found > most { ControlFlow::Break(()) } else { self.is_going_on() }
+        });
+        if error.is_none() && self.interrupt.is_asked() {
+            return None;
+        }
+        Some(Made { mesh, cell, error: error.unwrap_or([known; 2]) })
+    }
+
+    fn is_going_on(&self) -> ControlFlow<()> {
+        if self.interrupt.is_asked() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     }
 }
 
@@ -156,10 +202,12 @@ fn report(
     let mesh_report = mesh.report();
     let solid = Solid::from_mesh(mesh);
     let crosses = solid.as_ref().map_or(0, |(_, found)| found.crossings + found.touching);
-    let is_good = mesh_report.is_watertight() && crosses == 0;
-    let promise = shape.promise();
+    let is_good = mesh_report.is_watertight()
+        && mesh_report.degenerate == 0
+        && solid.is_ok()
+        && crosses == 0;
     // A bound may be smaller than the distance.
-    let is_exact = promise.outside == Quality::Exact && promise.inside == Quality::Exact;
+    let is_exact = shape.promise().is_exact();
     let mut out = output::answer();
     let name = output.display().to_string();
     if options.json {
@@ -171,6 +219,7 @@ fn report(
             "vertices": mesh.vertices().len(),
             "watertight": mesh_report.is_watertight(),
             "crossing_pairs": crosses,
+            "degenerate_triangles": mesh_report.degenerate,
             "enclosed_m3": mesh_report.enclosed,
             "field_on_triangles_m": { "found": found, "at_most": proven },
             "field_is_distance": is_exact,
@@ -187,12 +236,18 @@ fn report(
             shown(&name),
             counted(mesh.elements().len(), "triangle", "triangles"),
         )?;
-        let what = if is_exact {
-            "distance from the surface"
+        if is_exact {
+            writeln!(
+                out,
+                "  error    every triangle is within {proven:.3e} m of the surface, proven"
+            )?;
         } else {
-            "size of the field, a bound of the distance,"
-        };
-        writeln!(out, "  error    the {what} is at most {proven:.3e} m on every triangle")?;
+            writeln!(
+                out,
+                "  error    the field is at most {proven:.3e} m in size on every triangle, proven; it is \
+                 a bound, so the surface may be farther away"
+            )?;
+        }
         if let Some(tolerance) = options.tolerance.filter(|_| !is_reached) {
             writeln!(
                 out,

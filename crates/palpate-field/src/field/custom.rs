@@ -63,6 +63,15 @@ pub trait CustomField<const D: usize>: std::fmt::Debug + Send + Sync + 'static {
         let rounding = promise.rounding.within(centre.norm() + AffineModel::radius(cell));
         AffineModel::lipschitz(self.distance(centre), promise.lipschitz, cell, rounding)
     }
+
+    /// Feeds `sink` with all that determines the values, as bytes; `false`, the default, if that is not
+    /// known. What is made of a field, as a grid, can be kept in a file under the sum of these bytes: see
+    /// [`Shape::content`](crate::Shape::content).
+    ///
+    /// Two fields of one Rust type that feed the same bytes must have the same values.
+    fn content(&self, _sink: &mut dyn FnMut(&[u8])) -> bool {
+        false
+    }
 }
 
 /// A closure over duals, which give its gradient without differences.
@@ -173,5 +182,9 @@ impl<F: CustomField<D>, const D: usize> Field<D> for Custom<F> {
 
     fn placed(self: Arc<Self>, _pose: &Pose<D>) -> Moved<D> {
         Err(self)
+    }
+
+    fn content(&self, sink: &mut dyn FnMut(&[u8])) -> bool {
+        self.0.content(sink)
     }
 }

@@ -154,4 +154,9 @@ pub trait Field<const D: usize>:
     fn members(&self) -> Option<&[SharedField<D>]> {
         None
     }
+
+    /// Feeds `sink` with all that determines the values of a [`CustomField`]; `false` if that is not known.
+    fn content(&self, _sink: &mut dyn FnMut(&[u8])) -> bool {
+        false
+    }
 }

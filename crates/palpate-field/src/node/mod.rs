@@ -4,6 +4,7 @@
 //! What a shape is made of: its operator with its parameters, or its primitive.
 
 mod build;
+mod content;
 mod primitive;
 mod text;
 

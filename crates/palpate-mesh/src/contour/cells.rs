@@ -23,6 +23,8 @@ pub(super) struct Cells {
     origin: Point<3>,
     cell: f64,
     counts: [usize; 3],
+    /// The most cells that are looked at.
+    most: usize,
 }
 
 /// A cell that the surface passes: corner `i` is inside if bit `i` is set, and lies at bit `k` of `i` along axis k.
@@ -49,13 +51,11 @@ impl Cells {
         region: &Aabb<3>,
         options: &ContourOptions,
     ) -> Result<Self, ContourError> {
-        let (cell, limit) = (options.cell, options.most_cells);
+        let cell = options.cell;
         let size = region.max - region.min;
         let counts = size.0.map(|side| ((side / cell).ceil() as usize).saturating_add(1));
-        let cells = counts.iter().map(|count| *count as f64).product::<f64>();
-        let is_narrow = counts.iter().all(|count| u32::try_from(*count).is_ok());
-        if cells > limit as f64 || !is_narrow {
-            return Err(ContourError::TooMany { cell, cells, limit });
+        if counts.iter().any(|count| u32::try_from(*count).is_err()) {
+            return Err(ContourError::TooMany { cell, limit: options.most_cells });
         }
         let origin = match options.node {
             None => region.min - Vector(OFFSET) * cell,
@@ -64,7 +64,7 @@ impl Cells {
                 node + Vector(before) * cell
             }
         };
-        Ok(Self { origin, cell, counts })
+        Ok(Self { origin, cell, counts, most: options.most_cells })
     }
 
     fn node(&self, index: [usize; 3]) -> Point<3> {
@@ -92,32 +92,13 @@ impl Cells {
         progress: &mut dyn FnMut(f64) -> ControlFlow<()>,
     ) -> Result<Vec<Signed>, ContourError> {
         let blocks = self.counts.map(|count| count.div_ceil(SIDE));
-        let all = blocks.iter().product::<usize>();
-        let mut found = Vec::new();
-        for number in 0..all {
-            let block = [
-                number % blocks[0],
-                number / blocks[0] % blocks[1],
-                number / (blocks[0] * blocks[1]),
-            ];
-            let first = block.map(|i| i * SIDE);
-            if number % 64 == 0 && progress(number as f64 / all as f64).is_break() {
-                return Err(ContourError::Stopped);
-            }
-            if self.is_near(shape, first) {
-                self.in_block(shape, first, &mut found)?;
-            }
-        }
-        Ok(found)
-    }
-
-    /// Whether the surface may pass a block.
-    fn is_near(&self, shape: &Shape<3>, first: [usize; 3]) -> bool {
-        let half = 0.5 * SIDE as f64 * self.cell;
-        let middle = self.node(first) + Vector([half; 3]);
-        let radius = half * 3.0_f64.sqrt() * (1.0 + 1e-9);
-        let safe = shape.safe_radius(middle);
-        safe.is_nan() || safe <= radius
+        let all = blocks.into_iter().map(|count| count as f64).product();
+        let side = blocks.into_iter().fold(1, usize::max).next_power_of_two();
+        let found = Vec::new();
+        let mut octree =
+            Octree { cells: self, shape, progress, blocks, all, passed: 0.0, leaves: 0, found };
+        octree.descend([0; 3], side)?;
+        Ok(octree.found)
     }
 
     fn in_block(
@@ -161,5 +142,57 @@ impl Cells {
             }
         }
         Ok(())
+    }
+}
+
+/// Looks for the surface in blocks of blocks, those that it may pass alone.
+struct Octree<'a> {
+    cells: &'a Cells,
+    shape: &'a Shape<3>,
+    progress: &'a mut dyn FnMut(f64) -> ControlFlow<()>,
+    /// Blocks of cells along each axis, and in all.
+    blocks: [usize; 3],
+    all: f64,
+    /// Blocks that were looked at or passed over.
+    passed: f64,
+    /// Blocks whose cells were looked at.
+    leaves: usize,
+    found: Vec<Signed>,
+}
+
+impl Octree<'_> {
+    /// Looks at the blocks from `first` on, so many along each axis.
+    fn descend(&mut self, first: [usize; 3], side: usize) -> Result<(), ContourError> {
+        let end: [usize; 3] = std::array::from_fn(|i| self.blocks[i].min(first[i] + side));
+        if (0..3).any(|i| first[i] >= end[i]) {
+            return Ok(());
+        }
+        if !self.is_near(first, end) {
+            self.passed += (0..3).map(|i| (end[i] - first[i]) as f64).product::<f64>();
+            return Ok(());
+        }
+        if side > 1 {
+            let half = side / 2;
+            return (0..8).try_for_each(|child| {
+                self.descend(std::array::from_fn(|i| first[i] + half * ((child >> i) & 1)), half)
+            });
+        }
+        let Cells { cell, most: limit, .. } = *self.cells;
+        if (self.leaves + 1) * SIDE * SIDE * SIDE > limit {
+            return Err(ContourError::TooMany { cell, limit });
+        }
+        if self.leaves.is_multiple_of(64) && (self.progress)(self.passed / self.all).is_break() {
+            return Err(ContourError::Stopped);
+        }
+        self.leaves += 1;
+        self.passed += 1.0;
+        self.cells.in_block(self.shape, first.map(|i| i * SIDE), &mut self.found)
+    }
+
+    /// Whether the surface may pass the blocks from `first` to before `end`.
+    fn is_near(&self, first: [usize; 3], end: [usize; 3]) -> bool {
+        let [min, max] = [first, end].map(|block| self.cells.node(block.map(|i| i * SIDE)));
+        let safe = self.shape.safe_radius((min + max) * 0.5);
+        safe.is_nan() || safe <= 0.5 * (max - min).norm() * (1.0 + 1e-9)
     }
 }

@@ -5,6 +5,7 @@
 
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
+use std::ops::ControlFlow;
 
 use palpate_field::scalar::Model;
 use palpate_field::{BLOCK, Block, Column, Point, Shape, Vector};
@@ -61,25 +62,47 @@ impl TriangleMesh {
     /// ```
     #[must_use]
     pub fn largest_distance(&self, shape: &Shape<3>) -> [f64; 2] {
-        let all = 0..self.elements().len();
+        let never = self.largest_distance_with(shape, &mut |_| ControlFlow::Continue(()));
+        never.unwrap_or([0.0, f64::INFINITY])
+    }
+
+    /// The same; `stop` gets the largest size that was found so far, and can stop the work, which then has no
+    /// answer: a tolerance may be missed already.
+    #[must_use]
+    pub fn largest_distance_with(
+        &self,
+        shape: &Shape<3>,
+        stop: &mut dyn FnMut(f64) -> ControlFlow<()>,
+    ) -> Option<[f64; 2]> {
         let mut search = Search::new(shape);
         let mut heap = BinaryHeap::new();
-        search.bound(&all.map(|face| self.corners(face)).collect::<Vec<_>>(), &mut heap);
+        let mut parts = Vec::with_capacity(BLOCK);
+        for first in (0..self.elements().len()).step_by(BLOCK) {
+            let end = self.elements().len().min(first + BLOCK);
+            parts.clear();
+            parts.extend((first..end).map(|face| self.corners(face)));
+            search.bound(&parts, &mut heap);
+            if stop(search.known).is_break() {
+                return None;
+            }
+        }
         let budget = PARTS * self.elements().len();
-        let mut halves = Vec::new();
         while let Some(largest) = heap.peek().map(|part| part.bound) {
             if largest <= CLOSE * search.known || search.parts > budget {
-                return [search.known, largest];
+                return Some([search.known, largest]);
             }
-            halves.clear();
+            if stop(search.known).is_break() {
+                return None;
+            }
+            parts.clear();
             for _ in 0..BLOCK / 4 {
                 let Some(Part { corners: [a, b, c], .. }) = heap.pop() else { break };
                 let [ab, bc, ca] = [(a + b) * 0.5, (b + c) * 0.5, (c + a) * 0.5];
-                halves.extend([[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]]);
+                parts.extend([[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]]);
             }
-            search.bound(&halves, &mut heap);
+            search.bound(&parts, &mut heap);
         }
-        [search.known; 2]
+        Some([search.known; 2])
     }
 }
 

@@ -30,6 +30,13 @@ use patches::{EDGES, NONE, Patches};
 /// Cells around the bounds of the shape, on each side.
 const AROUND: f64 = 1.5;
 
+/// The shares of the work that looking for cells and finding crossings are.
+const LOOKING: f64 = 0.4;
+const CROSSING: f64 = 0.5;
+
+/// Cells from one look at whether to stop to the next.
+const A_LOOK: usize = 1024;
+
 /// How often vertices of faces that cross are moved.
 const MOST_MENDS: usize = 8;
 
@@ -41,15 +48,15 @@ pub struct ContourOptions {
     pub cell: f64,
     /// A node of the lattice of cells [m]; `None` leaves it beside round numbers, where faces of shapes often lie.
     pub node: Option<Point<3>>,
-    /// More cells than these are refused.
+    /// More cells than these near the surface are refused.
     pub most_cells: usize,
 }
 
 impl ContourOptions {
-    /// Cells of a size [m], at most 2³⁰ of them.
+    /// Cells of a size [m], at most 2²⁶ of them near the surface: a mesh of about ten million triangles.
     #[must_use]
     pub const fn with_cell(cell: f64) -> Self {
-        Self { cell, node: None, most_cells: 1 << 30 }
+        Self { cell, node: None, most_cells: 1 << 26 }
     }
 
     /// The same with a node of the lattice at a place [m].
@@ -74,13 +81,11 @@ pub enum ContourError {
     Unbounded,
     /// There are more cells than allowed.
     #[error(
-        "cells of {cell} m are {cells:.3e} in all, more than the {limit} allowed; choose larger ones"
+        "cells of {cell} m near the surface are more than the {limit} allowed; choose larger ones"
     )]
     TooMany {
         /// The size of a cell [m].
         cell: f64,
-        /// How many cells there are.
-        cells: f64,
         /// How many are allowed.
         limit: usize,
     },
@@ -145,12 +150,16 @@ impl TriangleMesh {
         }
         let bounds = shape.promise().bounds.ok_or(ContourError::Unbounded)?.aabb;
         let cells = Cells::over(&bounds.grown(AROUND * cell), options)?;
-        let signed = cells.signed(shape, progress)?;
+        let [looking, crossing] = [LOOKING, CROSSING];
+        let signed = cells.signed(shape, &mut |share| progress(share * looking))?;
         if signed.is_empty() {
             return Err(ContourError::NoSurface { cell });
         }
-        let contour = Contour::of(shape, &cells, &signed)?;
-        contour.mesh(shape)
+        let mut found = |share| progress(looking + share * crossing);
+        let contour = Contour::of(shape, &cells, &signed, &mut found)?;
+        contour.mesh(shape, &mut |share| {
+            progress(looking + crossing + share * (1.0 - looking - crossing))
+        })
     }
 }
 
@@ -170,19 +179,29 @@ struct Contour {
 }
 
 impl Contour {
-    fn of(shape: &Shape<3>, cells: &Cells, signed: &[Signed]) -> Result<Self, ContourError> {
+    fn of(
+        shape: &Shape<3>,
+        cells: &Cells,
+        signed: &[Signed],
+        progress: &mut dyn FnMut(f64) -> ControlFlow<()>,
+    ) -> Result<Self, ContourError> {
         let patches = Patches::of(signed);
         let mut crossings: HashMap<[u32; 4], Crossing> = HashMap::new();
         let mut corners = Vec::new();
         // The vertex of each edge of each cell.
         let mut of_edges = Vec::with_capacity(signed.len());
         let mut found = Vec::new();
-        for (signed, patches) in signed.iter().zip(&patches) {
+        for (number, (cell, patches)) in signed.iter().zip(&patches).enumerate() {
+            if number.is_multiple_of(A_LOOK)
+                && progress(number as f64 / signed.len() as f64).is_break()
+            {
+                return Err(ContourError::Stopped);
+            }
             let first = corners.len() as u32;
             for patch in 0..patches.count {
                 found.clear();
                 for edge in (0..EDGES).filter(|edge| patches.of_edge[*edge] == patch) {
-                    let key = signed.edge(edge);
+                    let key = cell.edge(edge);
                     if let Some(known) = crossings.get(&key) {
                         found.push(*known);
                         continue;
@@ -191,7 +210,7 @@ impl Contour {
                     crossings.insert(key, crossing);
                     found.push(crossing);
                 }
-                let around = cells.around(signed.cell);
+                let around = cells.around(cell.cell);
                 corners.push(vertex::of(shape, &found, &around));
             }
             of_edges.push(patches.of_edge.map(|patch| match patch {
@@ -204,8 +223,15 @@ impl Contour {
     }
 
     /// Triangles, with the vertices of those that cross moved to the middles of their patches.
-    fn mesh(mut self, shape: &Shape<3>) -> Result<TriangleMesh, ContourError> {
+    fn mesh(
+        mut self,
+        shape: &Shape<3>,
+        progress: &mut dyn FnMut(f64) -> ControlFlow<()>,
+    ) -> Result<TriangleMesh, ContourError> {
         for mend in 0.. {
+            if progress(mend as f64 / MOST_MENDS as f64).is_break() {
+                return Err(ContourError::Stopped);
+            }
             let places: Vec<_> = self.corners.iter().map(|corner| corner.place).collect();
             let triangles = faces::triangles(shape, &places, &self.quads);
             let mesh = TriangleMesh::new(places, triangles)?;

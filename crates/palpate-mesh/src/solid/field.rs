@@ -47,6 +47,15 @@ impl<const N: usize, const D: usize> CustomField<D> for Solid<N, D> {
             Some(model) => model,
         }
     }
+
+    /// The corners of all faces, in their order, and whether the distance is exact.
+    fn content(&self, sink: &mut dyn FnMut(&[u8])) -> bool {
+        for coordinate in self.faces.iter().flatten().flat_map(|corner| corner.0) {
+            sink(&coordinate.to_le_bytes());
+        }
+        sink(self.promise().to_string().as_bytes());
+        true
+    }
 }
 
 impl<const N: usize, const D: usize> Solid<N, D> {

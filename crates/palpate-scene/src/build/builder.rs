@@ -37,7 +37,7 @@ type Memory<'a, const D: usize> = HashMap<&'a str, Result<Built<D>, Problems>>;
 /// Builds the shapes of a scene.
 #[derive(Debug)]
 pub(super) struct Builder<'a> {
-    scene: &'a Scene,
+    pub(super) scene: &'a Scene,
     planar: Memory<'a, 2>,
     spatial: Memory<'a, 3>,
     /// The names of shapes under construction, outermost first, to find cycles.
@@ -249,7 +249,7 @@ impl<'a> Builder<'a> {
                 let size = Size { nodes: 1, depth: 0 };
                 self.allowance.take(size, level)?;
                 let shape = written
-                    .built(self.scene.folder.as_deref(), Self::grids())
+                    .built(self.scene.resources.folder.as_deref(), Self::grids())
                     .map_err(|problem| problem.under(GRID))?;
                 Ok(Built { shape, size })
             }
@@ -345,7 +345,7 @@ impl<'a> Space<'a, 3> for Builder<'a> {
     fn mesh(&mut self, object: &Object<'a>, level: usize) -> Result<Built<3>, Problems> {
         let size = Size { nodes: 1, depth: 0 };
         self.allowance.take(size, level)?;
-        let (written, folder) = (object.value(object.head)?, self.scene.folder.as_deref());
+        let (written, folder) = (object.value(object.head)?, self.scene.resources.folder.as_deref());
         let mesh = if object.head == MESH {
             json::read::<WrittenMesh>(written)?.built(folder)?
         } else {

@@ -145,12 +145,13 @@ impl<'a> Builder<'a> {
                 _ => Size::over(&[child.size]),
             };
             self.allowance.take(size, level)?;
-            Ok(Built { shape: Self::applied(object, child.shape)?, size })
+            Ok(Built { shape: self.applied(object, child.shape)?, size })
         })
     }
 
     /// What an operator makes of one shape.
     fn applied<const D: usize>(
+        &self,
         object: &Object<'a>,
         child: Shape<D>,
     ) -> Result<Shape<D>, Problems>
@@ -198,7 +199,7 @@ impl<'a> Builder<'a> {
             keys::BAKE => {
                 let written: WrittenBake = object.read(key)?;
                 return written
-                    .baked(child, Self::grids())
+                    .baked(child, Self::grids(), &self.scene.resources)
                     .map_err(|problem| problem.under(key).into());
             }
             _ => {

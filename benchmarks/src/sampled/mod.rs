@@ -1,0 +1,37 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! Shapes of data: meshes beside parry's, and grids.
+
+mod bumpy;
+mod grids;
+mod meshes;
+mod places;
+
+use std::error::Error;
+
+use crate::fields::Rows;
+use crate::reference::Reference;
+
+/// Questions of a run.
+const QUESTIONS: usize = 1024;
+
+/// All rows of the suite.
+pub(crate) fn measure() -> Result<Rows, Box<dyn Error>> {
+    let reference = Reference::new()?;
+    let mesh = bumpy::mesh()?;
+    let mut rows = Rows::new();
+    eprintln!("measuring meshes …");
+    meshes::measure(&mesh, &reference, &mut rows)?;
+    eprintln!("measuring grids …");
+    grids::measure(&mesh, &reference, &mut rows)?;
+    Ok(rows)
+}
+
+/// Adds the ratio of the times of two keys.
+fn compare(rows: &mut Rows, [ours, theirs]: [&str; 2], key: &str) {
+    if let Some((ours, theirs)) = rows.get(ours).zip(rows.get(theirs)) {
+        let ratio = ours / theirs;
+        rows.insert(key.to_owned(), ratio);
+    }
+}

@@ -1,0 +1,54 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! Bodies of meshes, touched as grids.
+
+use std::fmt::Write;
+
+use palpate::scene::{BakedBody, BuiltScene};
+use serde_json::{Value, json};
+
+use crate::arguments::FeelOptions;
+use crate::input::Bakes;
+use crate::numbers::rounded;
+use crate::outcome::Failure;
+use crate::output::shown;
+
+/// The scene as it is touched, and its bodies of meshes; none with `--exact`.
+pub(super) fn scene<const D: usize>(
+    scene: &BuiltScene<D>,
+    options: &FeelOptions,
+) -> Result<(BuiltScene<D>, Vec<BakedBody>), Failure> {
+    if options.exact {
+        return Ok((scene.clone(), Vec::new()));
+    }
+    let bakes = Bakes::new(None);
+    let baked = scene.meshes_baked(options.cell, &bakes.resources).map_err(Failure::input)?;
+    Ok((baked.scene, baked.bodies))
+}
+
+/// A line for each body of meshes.
+pub(super) fn write(out: &mut String, bodies: &[BakedBody]) -> std::fmt::Result {
+    for BakedBody { name, grid, .. } in bodies {
+        let name = shown(name);
+        match grid {
+            Ok([cell, deviation]) => writeln!(
+                out,
+                "  as a grid      {name}: cells of {} m, values off the mesh's by at most {} m; \
+                 --exact touches the mesh itself",
+                rounded(*cell),
+                rounded(*deviation),
+            )?,
+            Err(why) => writeln!(out, "  as a mesh      {name}: no grid was made, as {why}")?,
+        }
+    }
+    Ok(())
+}
+
+pub(super) fn json(bodies: &[BakedBody]) -> Value {
+    let told = |BakedBody { name, grid, .. }: &BakedBody| match grid {
+        Ok([cell, deviation]) => json!({ "name": name, "cell_m": cell, "deviation_m": deviation }),
+        Err(why) => json!({ "name": name, "error": why.to_string() }),
+    };
+    bodies.iter().map(told).collect()
+}
