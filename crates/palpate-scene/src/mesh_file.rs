@@ -133,7 +133,7 @@ fn built(
             // Another state of the file is of no use any more.
             SOLIDS.keep(key.clone(), &made, faces, |(known, other, side)| {
                 known.is_of_same_file(&key.0)
-                    && (*known != key.0 || *other == key.1 && *side == key.2)
+                    && (*known != key.0 || (*other, *side) == (key.1, key.2))
             });
             made
         }
