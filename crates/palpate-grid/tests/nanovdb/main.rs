@@ -164,10 +164,8 @@ fn damaged_files_are_refused_or_read_without_panic() {
     };
     for at in (0..good.len()).filter(|at| !is_table(*at) || at % 601 == 0) {
         let mut bad = good.clone();
-        for flip in [0xff, 0x01] {
-            bad[at] = good[at] ^ flip;
-            survives(&bad);
-        }
+        bad[at] ^= if at % 2 == 0 { 0xff } else { 0x01 };
+        survives(&bad);
     }
     let zipped = file(b"NanoVDB2", &[&Grid::small()], 1);
     for at in 0..zipped.len() {

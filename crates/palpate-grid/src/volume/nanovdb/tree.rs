@@ -185,7 +185,7 @@ pub(super) fn volume(bytes: Bytes<'_>, kind: Kind) -> Result<Volume, VolumeProbl
     let background = kind.value(bytes, tree.root + kind.root()[1])?;
     // Spans are below 2^28 here.
     let mut dense = Dense::new(first, spans.map(|span| span as usize), background);
-    tree.walk(&mut |part| dense.fill(&part, kind))?;
+    tree.walk(Which::All, &mut |part| dense.fill(&part, kind))?;
     // World = matrix · index + translation, the matrix row by row.
     let at = |place: usize, i: usize| bytes.f64(place + 8 * i);
     let mut steps = [Vector::ZERO; 3];
@@ -225,16 +225,18 @@ impl<'a> Tree<'a> {
         Ok(Self { bytes, kind, root, counts })
     }
 
-    /// Goes through all cubes without children and all leaves.
+    /// Goes through all leaves and cubes without children, or the active ones of those cubes alone.
     fn walk(
         &self,
+        which: Which,
         visit: &mut dyn FnMut(Part<'a>) -> Result<(), VolumeProblem>,
     ) -> Result<(), VolumeProblem> {
         let count = self.bytes.u32(self.root.saturating_add(24))? as usize;
         let [head, _, value] = self.kind.root();
         let list = self.root.saturating_add(head);
         let entries = Bytes(self.bytes.part(list, count.saturating_mul(ENTRY))?);
-        let (mut cubes, mut seen) = (HashSet::new(), [0; 3]);
+        let mut cubes = HashSet::new();
+        let mut walk = Walk { which, seen: [0; 3], visit };
         for place in (0..count).map(|number| number * ENTRY) {
             let key = entries.u64(place)?;
             // 21 bits for each axis, the last axis first, of which 20 are used.
@@ -249,24 +251,23 @@ impl<'a> Tree<'a> {
             if child == 0 {
                 let is_active = entries.u32(place + 16)? != 0;
                 let value = self.kind.value(entries, place + value)?;
-                visit(Part { first, side: ROOT, what: What::Tile { value, is_active } })?;
+                (walk.visit)(Part {
+                    first,
+                    side: ROOT,
+                    what: What::Tile { value, is_active },
+                })?;
             } else {
                 let node = Node { level: 0, place: beside(self.root, child)?, first };
-                self.node(&node, &mut seen, visit)?;
+                self.node(&node, &mut walk)?;
             }
         }
         Ok(())
     }
 
-    fn node(
-        &self,
-        node: &Node,
-        seen: &mut [usize; 3],
-        visit: &mut dyn FnMut(Part<'a>) -> Result<(), VolumeProblem>,
-    ) -> Result<(), VolumeProblem> {
+    fn node(&self, node: &Node, walk: &mut Walk<'_, 'a>) -> Result<(), VolumeProblem> {
         let Node { level, place, first } = *node;
-        seen[level] += 1;
-        if seen[level] > self.counts[level] {
+        walk.seen[level] += 1;
+        if walk.seen[level] > self.counts[level] {
             return Err(wrong(format!(
                 "its tree reaches more than its {} nodes of level {level}: places are damaged",
                 self.counts[level]
@@ -275,26 +276,33 @@ impl<'a> Tree<'a> {
         let Some(Level { log, side, table, bytes }) = LEVELS.get(level) else {
             let length = self.leaf_bytes(place)?;
             let bytes = self.bytes.part(place, length)?;
-            return visit(Part { first, side: LEAF, what: What::Leaf(bytes) });
+            return (walk.visit)(Part { first, side: LEAF, what: What::Leaf(bytes) });
         };
         let bytes = Bytes(self.bytes.part(place, *bytes)?);
         let mask = (1_usize << (3 * log)) / 8;
         let (active, children) = (bytes.part(32, mask)?, bytes.part(32 + mask, mask)?);
         let is_set = |mask: &[u8], number: usize| mask[number >> 3] >> (number & 7) & 1 == 1;
         for number in 0..1_usize << (3 * log) {
+            let (is_active, has_child) = (is_set(active, number), is_set(children, number));
+            if !is_active && !has_child && walk.which == Which::Active {
+                continue;
+            }
             let ways = [number >> (2 * log), number >> log, number];
             let first = std::array::from_fn(|axis| {
                 first[axis] + side * (ways[axis] & ((1 << log) - 1)) as i64
             });
             let entry = table + 8 * number;
-            if is_set(children, number) {
+            if has_child {
                 let child = i64::from_le_bytes(bytes.at(entry)?);
                 let node = Node { level: level + 1, place: beside(place, child)?, first };
-                self.node(&node, seen, visit)?;
+                self.node(&node, walk)?;
             } else {
-                let (value, is_active) =
-                    (self.kind.value(bytes, entry)?, is_set(active, number));
-                visit(Part { first, side: *side, what: What::Tile { value, is_active } })?;
+                let value = self.kind.value(bytes, entry)?;
+                (walk.visit)(Part {
+                    first,
+                    side: *side,
+                    what: What::Tile { value, is_active },
+                })?;
             }
         }
         Ok(())
@@ -318,7 +326,7 @@ impl<'a> Tree<'a> {
                 most[axis] = most[axis].max(last[axis]);
             }
         };
-        self.walk(&mut |Part { first, side, what }| {
+        self.walk(Which::Active, &mut |Part { first, side, what }| {
             match what {
                 What::Tile { is_active: true, .. } => add(first, first.map(|i| i + side - 1)),
                 What::Tile { .. } => {}
@@ -341,6 +349,21 @@ impl<'a> Tree<'a> {
         }
         Ok([least, most])
     }
+}
+
+/// The cubes without children that are visited.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Which {
+    All,
+    Active,
+}
+
+/// A way through a tree.
+struct Walk<'v, 'a> {
+    which: Which,
+    /// Nodes of each level so far, and leaves.
+    seen: [usize; 3],
+    visit: &'v mut dyn FnMut(Part<'a>) -> Result<(), VolumeProblem>,
 }
 
 /// A node at a place.
