@@ -57,4 +57,4 @@ pub use options::{GridOptions, Resolution};
 pub use samples::Store;
 pub use spline::Kernel;
 #[cfg(feature = "volumes")]
-pub use volume::{LARGEST_VOLUME, Volume, VolumeError, VolumeProblem};
+pub use volume::{Inside, LARGEST_VOLUME, Volume, VolumeError, VolumeProblem};

@@ -130,7 +130,7 @@ impl WrittenBake {
 }
 
 /// What a name stands for.
-fn named<T: Copy, const N: usize>(
+pub(crate) fn named<T: Copy, const N: usize>(
     name: &str,
     key: &str,
     known: [(&str, T); N],

@@ -71,7 +71,7 @@ pub(crate) const REVOLVE: &str = "revolve";
 pub(crate) const OF: &str = "of";
 /// `{ "mesh": { "file": "nut.ply", "scale": 0.001 } }`.
 pub(crate) const MESH: &str = "mesh";
-/// `{ "volume": { "file": "scan.nrrd", "value": 300 } }`.
+/// `{ "volume": { "file": "scan.nrrd", "value": 300 } }`, `"inside": "below"` if so wished.
 pub(crate) const VOLUME: &str = "volume";
 /// `{ "grid": { "file": "part.grid" } }`.
 pub(crate) const GRID: &str = "grid";

@@ -6,18 +6,19 @@
 use std::path::Path;
 
 use palpate_field::Shape;
-use palpate_grid::Volume;
+use palpate_grid::{Inside, Volume};
 use palpate_mesh::{Findings, Solid, TriangleMesh, read_file};
 use serde::Deserialize;
 
 use crate::beside::{Beside, Kept, Stamp};
+use crate::grids::named;
 use crate::problem::Problem;
 
 /// The solids of files, in the units of the files, up to as many triangles: a few GB.
 static SOLIDS: Kept<Key, (Shape<3>, Findings<3>)> = Kept::new(1 << 22);
 
-/// A file, and in a volume the value of the surface, by its bits.
-type Key = (Stamp, Option<u64>);
+/// A file, and in a volume the value of the surface, by its bits, and the side asked for.
+type Key = (Stamp, Option<u64>, Option<Inside>);
 
 /// The solid of a mesh file or of a surface in a volume, as a scene uses it.
 #[derive(Clone, Debug)]
@@ -29,6 +30,8 @@ pub struct BuiltMesh {
     pub scale: f64,
     /// The value of the surface in a volume; `None` of a mesh.
     pub value: Option<f64>,
+    /// The side of the value that is inside, where the scene says it; else the file does.
+    pub inside: Option<Inside>,
     /// What was found in it, and mended.
     pub findings: Findings<3>,
     /// The solid.
@@ -39,7 +42,8 @@ impl BuiltMesh {
     /// Whether it is the same file at the same scale.
     pub(crate) fn is_same(&self, other: &Self) -> bool {
         let numbers = |mesh: &Self| (mesh.scale.to_bits(), mesh.value.map(f64::to_bits));
-        self.file == other.file && numbers(self) == numbers(other)
+        let is_same_side = self.inside == other.inside;
+        self.file == other.file && numbers(self) == numbers(other) && is_same_side
     }
 }
 
@@ -60,6 +64,18 @@ pub(crate) struct WrittenVolume {
     value: f64,
     #[serde(default = "one")]
     scale: f64,
+    inside: Option<String>,
+}
+
+/// The surface of a file that a solid is within.
+#[derive(Clone, Copy)]
+struct Asked<'a> {
+    /// The kind of file, for messages.
+    what: &'a str,
+    file: &'a str,
+    scale: f64,
+    value: Option<f64>,
+    inside: Option<Inside>,
 }
 
 fn one() -> f64 {
@@ -70,26 +86,33 @@ impl WrittenMesh {
     /// The solid of the file, which is looked for in `folder`.
     pub(crate) fn built(&self, folder: Option<&Path>) -> Result<BuiltMesh, Problem> {
         let read = |path: &Path| read_file(path).map_err(|error| error.to_string());
-        built(("a mesh", &self.file), (self.scale, None), folder, read)
+        let (file, scale) = (self.file.as_str(), self.scale);
+        let asked = Asked { what: "a mesh", file, scale, value: None, inside: None };
+        built(asked, folder, read)
     }
 }
 
 impl WrittenVolume {
     /// The solid within the surface, in the volume of a file, which is looked for in `folder`.
     pub(crate) fn built(&self, folder: Option<&Path>) -> Result<BuiltMesh, Problem> {
+        let sides = Inside::ALL.map(|side| (side.name(), side));
+        let inside = self.inside.as_deref().map(|name| named(name, "inside", sides));
+        let inside = inside.transpose()?;
         let surface = |path: &Path| {
-            let volume = Volume::open(path).map_err(|error| error.to_string())?;
+            let mut volume = Volume::open(path).map_err(|error| error.to_string())?;
+            volume.inside = inside.unwrap_or(volume.inside);
             let surface = volume.surface(self.value);
             surface.map_err(|problem| format!("{}: {problem}", path.display()))
         };
-        built(("a volume", &self.file), (self.scale, Some(self.value)), folder, surface)
+        let (file, scale) = (self.file.as_str(), self.scale);
+        let asked = Asked { what: "a volume", file, scale, value: Some(self.value), inside };
+        built(asked, folder, surface)
     }
 }
 
 /// The solid of what `read` makes of a file.
 fn built(
-    (what, file): (&str, &str),
-    (scale, value): (f64, Option<f64>),
+    Asked { what, file, scale, value, inside }: Asked<'_>,
     folder: Option<&Path>,
     read: impl FnOnce(&Path) -> Result<TriangleMesh, String>,
 ) -> Result<BuiltMesh, Problem> {
@@ -99,7 +122,7 @@ fn built(
     let of_file = |message: String| Problem::new(message).under("file");
     let Beside { path, stamp } =
         Beside::of(what, file, folder).map_err(|problem| problem.under("file"))?;
-    let key = (stamp, value.map(f64::to_bits));
+    let key = (stamp, value.map(f64::to_bits), inside);
     let (shape, findings) = match SOLIDS.of(&key) {
         Some(known) => known,
         None => {
@@ -108,8 +131,9 @@ fn built(
                 .map_err(|error| of_file(format!("{}: {error}", path.display())))?;
             let (made, faces) = ((solid.into(), findings), mesh.elements().len());
             // Another state of the file is of no use any more.
-            SOLIDS.keep(key.clone(), &made, faces, |(known, other)| {
-                known.is_of_same_file(&key.0) && (*known != key.0 || *other == key.1)
+            SOLIDS.keep(key.clone(), &made, faces, |(known, other, side)| {
+                known.is_of_same_file(&key.0)
+                    && (*known != key.0 || (*other, *side) == (key.1, key.2))
             });
             made
         }
@@ -119,6 +143,7 @@ fn built(
         file: file.to_owned(),
         scale,
         value,
+        inside,
         findings: findings.scaled(scale),
         shape: scaled.map_err(|error| Problem::new(error.to_string()).under("scale"))?,
     })

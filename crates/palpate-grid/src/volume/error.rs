@@ -39,11 +39,26 @@ pub enum VolumeProblem {
     },
     /// Its name ends in nothing known.
     #[error(
-        "{name}: a volume ends in .nrrd, .nhdr, .mha, .mhd, .nii, .nii.gz or .npy; dcm2niix makes .nii.gz of DICOM, nanovdb_convert and others make .npy of .vdb"
+        "{name}: a volume ends in .nrrd, .nhdr, .mha, .mhd, .nii, .nii.gz, .npy or .nvdb; dcm2niix makes .nii.gz of DICOM"
     )]
     Ending {
         /// The name.
         name: String,
+    },
+    /// It is a file of OpenVDB.
+    #[error(
+        "it is a file of OpenVDB, which is not read: `nanovdb_convert in.vdb out.nvdb` of OpenVDB's tools makes of it one that is"
+    )]
+    OpenVdb,
+    /// The active voxels of a sparse grid, and one around them, are too many for a volume.
+    #[error(
+        "its active voxels span {spans:?} nodes, at most {allowed} in all are made of a file of its size: cut it, or resample it coarser"
+    )]
+    TooWide {
+        /// The nodes along each axis.
+        spans: [u64; 3],
+        /// How many there may be.
+        allowed: u64,
     },
     /// Its head names a file elsewhere.
     #[error("its head names the file {name:?}: the samples must lie in the folder of the head")]

@@ -7,6 +7,7 @@
 
 mod error;
 mod meta;
+mod nanovdb;
 mod nifti;
 mod npy;
 mod nrrd;
@@ -24,13 +25,37 @@ pub use error::{VolumeError, VolumeProblem};
 /// The size of the largest file that is read, in bytes: 1 GiB.
 pub const LARGEST_VOLUME: u64 = 1 << 30;
 
+/// The side of a value that is inside.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Inside {
+    /// Where samples are larger: densities.
+    #[default]
+    Above,
+    /// Where samples are smaller: distances, negative inside, as of level sets.
+    Below,
+}
+
+impl Inside {
+    /// Both sides.
+    pub const ALL: [Self; 2] = [Self::Above, Self::Below];
+
+    /// The name, which stays the same: "above" or "below".
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Above => "above",
+            Self::Below => "below",
+        }
+    }
+}
+
 /// The cosine of the angle between two axes of a lattice that are taken to be square to each other.
 const SQUARE: f64 = 1e-3;
 
 /// Samples at the nodes of a lattice in space, as a scanner gives them.
 ///
-/// [`open`](Self::open) reads NRRD, MetaImage, NIfTI and NumPy files, with the spacing, place and orientation of
-/// their heads, in metres.
+/// [`open`](Self::open) reads NRRD, MetaImage, NIfTI, NumPy and NanoVDB files, with the spacing, place and
+/// orientation of their heads, in metres.
 ///
 /// ```
 /// use palpate_field::Vector;
@@ -61,10 +86,31 @@ pub struct Volume {
     pub steps: [Vector<f64, 3>; 3],
     /// The samples, the first axis first.
     pub samples: Vec<f32>,
+    /// The side of a value that is inside: below in a level set of NanoVDB, else above. May be set.
+    ///
+    /// ```
+    /// use palpate_field::Vector;
+    /// use palpate_grid::{Inside, Volume};
+    ///
+    /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+    /// // Distances [m] to a ball of 1.2 m about the middle node: |p - (2, 2, 2)| - 1.2.
+    /// let middle = Vector([2.0; 3]);
+    /// let node = |i: usize| Vector([(i % 5) as f64, (i / 5 % 5) as f64, (i / 25) as f64]);
+    /// let samples = (0..125).map(|i| ((node(i) - middle).norm() - 1.2) as f32).collect();
+    /// let steps = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].map(Vector);
+    /// let mut volume = Volume::new([5; 3], Vector([0.0; 3]), steps, samples)?;
+    /// volume.inside = Inside::Below;
+    /// let ball = volume.surface(0.0)?;
+    /// // So few nodes make less of it than 4/3 π 1.2³ m³, and more than the octahedron with its corners, 4/3 1.2³ m³.
+    /// assert!(ball.report().enclosed.is_some_and(|m3| (2.3..7.24).contains(&m3)));
+    /// # Ok(())
+    /// # }
+    /// ```
+    pub inside: Inside,
 }
 
 impl Volume {
-    /// A volume of samples.
+    /// A volume of samples, inside above a value.
     ///
     /// # Errors
     ///
@@ -94,7 +140,7 @@ impl Volume {
         if let Some(node) = samples.iter().position(|sample| !sample.is_finite()) {
             return Err(VolumeProblem::NotFinite { node });
         }
-        Ok(Self { counts, origin, steps, samples })
+        Ok(Self { counts, origin, steps, samples, inside: Inside::Above })
     }
 
     /// A node's place [m].
@@ -113,8 +159,11 @@ impl Volume {
             })
     }
 
-    /// Reads a volume whose file name ends in `.nrrd`, `.nhdr`, `.mha`, `.mhd`, `.nii`, `.nii.gz` or `.npy`. A head
-    /// that names a file of samples reads it from the same folder.
+    /// Reads a volume whose file name ends in `.nrrd`, `.nhdr`, `.mha`, `.mhd`, `.nii`, `.nii.gz`, `.npy` or
+    /// `.nvdb`. A head that names a file of samples reads it from the same folder.
+    ///
+    /// A sparse grid of NanoVDB becomes samples over the box of its active voxels and one voxel around it; voxels that
+    /// are not active have the value that the file tells of them. Its units are metres.
     ///
     /// # Errors
     ///
@@ -142,6 +191,10 @@ impl Volume {
             nifti::read(bytes)
         } else if ends(".npy") {
             npy::read(bytes)
+        } else if ends(".nvdb") {
+            nanovdb::read(bytes)
+        } else if ends(".vdb") {
+            Err(VolumeProblem::OpenVdb)
         } else {
             Err(VolumeProblem::Ending { name })
         }

@@ -110,7 +110,7 @@ impl Stored {
 }
 
 /// At most `length` bytes of what is unpacked.
-fn inflated(from: impl Read, length: usize) -> std::io::Result<Vec<u8>> {
+pub(super) fn inflated(from: impl Read, length: usize) -> std::io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
     from.take(length as u64).read_to_end(&mut bytes)?;
     Ok(bytes)

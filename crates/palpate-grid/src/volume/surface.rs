@@ -6,7 +6,7 @@
 use palpate_field::{Aabb, Bounds, CustomField, Point, Promise, Rounding, Shape, Vector};
 use palpate_mesh::{ContourOptions, TriangleMesh};
 
-use super::{Volume, VolumeProblem};
+use super::{Inside, Volume, VolumeProblem};
 use crate::lattice::raveled;
 
 /// What a volume has more than a value, interpolated linearly between its nodes, with the sign of distances:
@@ -23,8 +23,8 @@ struct Above {
 }
 
 impl Volume {
-    /// The surface where the samples have a value, closed, around what is above it. What the volume cuts off is
-    /// closed half a step beyond its border.
+    /// The surface where the samples have a value, closed, around what is above it, or below it if that is
+    /// [`inside`](Self::inside). What the volume cuts off is closed half a step beyond its border.
     ///
     /// # Errors
     ///
@@ -36,7 +36,17 @@ impl Volume {
         }
         let steps = self.steps.map(Vector::norm);
         let cell = steps.into_iter().fold(f64::INFINITY, f64::min);
-        let above = Above::new(self.clone(), value, f64::from(least));
+        let mut volume = self.clone();
+        let above = match self.inside {
+            Inside::Above => Above::new(volume, value, least.into()),
+            // What is below a value is above it with the signs turned.
+            Inside::Below => {
+                for sample in &mut volume.samples {
+                    *sample = -*sample;
+                }
+                Above::new(volume, -value, -f64::from(largest))
+            }
+        };
         // On the nodes of the volume, no sample is passed over.
         let options = ContourOptions::with_cell(cell).with_node(self.origin);
         Ok(TriangleMesh::of_shape(&Shape::custom(above), &options)?)

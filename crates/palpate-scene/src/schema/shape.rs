@@ -4,7 +4,7 @@
 //! The schema of a shape: its keys, and which go together.
 
 use palpate_field::kernel::{Parameter, ParameterKind};
-use palpate_grid::{GridOptions, Kernel, Store};
+use palpate_grid::{GridOptions, Inside, Kernel, Store};
 use serde_json::{Map, Value, json};
 
 use super::{place, reference};
@@ -279,11 +279,11 @@ fn capitalised(text: &str) -> String {
 /// The surface of a volume.
 fn volume() -> Value {
     json!({
-        "description": "What lies within a surface of a scanner's volume, where samples are above a value: a file, beside the scene's or in a folder beside it.",
+        "description": "What lies within a surface of a volume, where samples are above or below a value: a file, beside the scene's or in a folder beside it.",
         "type": "object",
         "properties": {
             "file": {
-                "description": "An NRRD, MetaImage, NIfTI or NumPy file.",
+                "description": "An NRRD, MetaImage, NIfTI, NumPy or NanoVDB file.",
                 "type": "string",
                 "minLength": 1,
             },
@@ -295,6 +295,10 @@ fn volume() -> Value {
                 "description": "A factor of all lengths; 1 if left out. Of NumPy, which has no lengths, metres between samples.",
                 "type": "number",
                 "exclusiveMinimum": 0,
+            },
+            "inside": {
+                "description": "The side of the value that is inside: above for densities, below for distances that are negative inside. If left out, below for a level set of NanoVDB, else above.",
+                "enum": Inside::ALL.map(Inside::name),
             },
         },
         "required": ["file", "value"],

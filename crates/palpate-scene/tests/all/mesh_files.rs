@@ -111,7 +111,17 @@ fn a_surface_of_a_volume_is_a_solid() {
     assert!((0.7e-3..1.8e-3).contains(&off), "{off}");
     let smaller = built(r#"{ "file": "dot.nrrd", "value": 150, "scale": 0.5 }"#).unwrap();
     assert!(smaller.whole.distance(Vector([0.002; 3])) < 0.0);
+    // Below the value is all but the dot.
+    let around = built(r#"{ "file": "dot.nrrd", "value": 100, "inside": "below" }"#).unwrap();
+    assert!(around.whole.distance(Vector([0.004; 3])) > 0.0);
+    assert!(around.whole.distance(Vector([0.001, 0.004, 0.004])) < 0.0);
+    let same = built(r#"{ "file": "dot.nrrd", "value": 100, "inside": "above" }"#).unwrap();
+    assert!(same.whole.distance(Vector([0.004; 3])) < 0.0);
     for (volume, expected) in [
+        (
+            r#"{ "file": "dot.nrrd", "value": 100, "inside": "left" }"#,
+            "inside must be one of \"above\", \"below\", got \"left\"",
+        ),
         (
             r#"{ "file": "dot.nrrd", "value": 300 }"#,
             "the samples are from 0 to 200: no surface lies at 300",
