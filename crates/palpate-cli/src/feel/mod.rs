@@ -69,10 +69,12 @@ where
     let choice = choice(options)?;
     check_forces(&choice, options)?;
     check_page(options)?;
-    let (scene, baked) = baked::scene(scene, options)?;
-    let scene = &asked(&scene, options).at(0.0).map_err(Failure::input)?;
-    let tool = tool::of_scene(scene, options)?;
-    let paths = hands(scene, options, tool.as_ref(), outputs)?;
+    // The hand goes where the shapes are: grids tell smaller distances far away.
+    let exact = &asked(scene, options).at(0.0).map_err(Failure::input)?;
+    let tool = tool::of_scene(exact, options)?;
+    let paths = hands(exact, options, tool.as_ref(), outputs)?;
+    let (scene, baked) = baked::scene(exact, options)?;
+    let scene = &scene;
     let longest = paths.iter().map(|p| p.start() + p.duration()).fold(0.0, f64::max);
     let usual = if options.path.is_some() { longest } else { DURATION };
     let duration = options.duration.unwrap_or(usual);
