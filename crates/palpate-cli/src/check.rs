@@ -120,6 +120,8 @@ fn of_mesh(mesh: &BuiltMesh) -> Value {
         "turned": turned,
         "inside_out": inside_out,
         "nested": findings.nested,
+        "parted": findings.parted,
+        "inner": findings.inner,
         "openings": openings,
         "crowded_edges": findings.crowded_rims,
         "crossing_pairs": findings.crossings,

@@ -49,7 +49,7 @@ pub(crate) fn triangulate(
 }
 
 /// The normal of a polygon with a length of twice its area (Newell).
-fn newell(corners: impl Iterator<Item = Point<3>> + Clone) -> Vector<f64, 3> {
+pub(crate) fn newell(corners: impl Iterator<Item = Point<3>> + Clone) -> Vector<f64, 3> {
     let next = corners.clone().skip(1);
     let Some(first) = corners.clone().next() else { return Vector::ZERO };
     let mut normal = Vector::ZERO;

@@ -11,15 +11,18 @@
 //! - [`separation`]: separations by a plain search; [`recall`]: poses with proven separations,
 //!   as files;
 //! - [`kernels`]: kernels by their names in the catalogue;
+//! - [`soup`]: triangles, made and damaged; [`hard`]: meshes that are hard to make solids of;
 //! - [`cases`]: runs a property a fixed number of times.
 #![cfg_attr(test, allow(clippy::float_cmp, reason = "tests compare exact numbers"))]
 
 pub mod arbitrary;
 pub mod cases;
 pub mod double;
+pub mod hard;
 pub mod kernels;
 pub mod laws;
 pub mod oracle;
 pub mod recall;
 pub mod separation;
+pub mod soup;
 pub mod tree;

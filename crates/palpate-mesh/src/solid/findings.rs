@@ -25,12 +25,17 @@ pub struct Findings<const D: usize> {
     pub duplicates: usize,
     /// Faces whose inside was not that of their neighbours, turned.
     pub turned: usize,
+    /// Faces on an edge of which corners of others lie, parted there.
+    pub parted: usize,
     /// Pieces that are not orientable, as a Möbius strip.
     pub one_sided: usize,
     /// Pieces that were inside out, turned.
     pub inside_out: usize,
     /// Pieces that lie inside another piece and have the same orientation: their faces are inside the solid.
     pub nested: usize,
+    /// Faces with the solid on both sides, or on neither, dropped: of sheets within the solid, and of pieces that
+    /// nothing crosses or touches.
+    pub inner: usize,
     /// Openings, closed by flat caps.
     pub openings: Vec<Opening<D>>,
     /// Faces without area, whose normal is unknown.
@@ -46,11 +51,6 @@ pub struct Findings<const D: usize> {
 }
 
 impl<const D: usize> Findings<D> {
-    /// Whether faces may lie within the solid, or the nearest face does not tell the sign.
-    pub(super) fn has_inner_faces(&self) -> bool {
-        self.crossings + self.touching + self.crowded_rims + self.nested + self.flat > 0
-    }
-
     /// The same with lengths and places in other units.
     #[must_use]
     pub fn scaled(mut self, factor: f64) -> Self {
@@ -73,9 +73,11 @@ impl<const D: usize> Findings<D> {
             self.degenerate,
             self.duplicates,
             self.turned,
+            self.parted,
             self.one_sided,
             self.inside_out,
             self.nested,
+            self.inner,
             self.openings.len(),
             self.flat,
             self.crowded_rims,
@@ -112,12 +114,22 @@ impl<const D: usize> fmt::Display for Findings<D> {
             "faces faced the wrong way and were turned",
         );
         say(
+            self.parted,
+            "face had corners of others on an edge and was parted there",
+            "faces had corners of others on an edge and were parted there",
+        );
+        say(
             self.inside_out,
             "piece was inside out and was turned",
             "pieces were inside out and were turned",
         );
         say(self.one_sided, "piece is not orientable", "pieces are not orientable");
         say(self.nested, "piece lies within the solid", "pieces lie within the solid");
+        say(
+            self.inner,
+            "face with the solid on both sides, or on neither, was dropped",
+            "faces with the solid on both sides, or on neither, were dropped",
+        );
         say(self.flat, "face has no area", "faces have no area");
         say(
             self.crowded_rims,

@@ -10,23 +10,26 @@ mod findings;
 mod foot;
 mod normals;
 mod repair;
+mod walls;
 mod winding;
 
 use palpate_field::{
     Aabb, LARGEST_LENGTH, Point, Promise, Quality, Rounding, SMALLEST_LENGTH, Vector,
 };
 
+use crate::error::MeshError;
 use crate::mesh::Mesh;
 use crate::report::is_flat;
 use crate::tree::{BallTree, FAN};
 use boxes::Boxes;
 pub use error::SolidError;
 pub use findings::Findings;
-use foot::{Foot, Part, across, foot};
+use foot::{Foot, Part, foot};
 use normals::Normals;
 pub use repair::Opening;
 pub(crate) use repair::crossing_faces;
-use repair::{Crossings, Pieces, Repair};
+use repair::{Crossings, Known, Repair, by_rim, sides};
+use walls::Walls;
 use winding::WindingTree;
 
 /// Rounded operations of a distance on numbers up to `|p| + size`.
@@ -36,15 +39,13 @@ const OPERATIONS: f64 = 64.0;
 /// the rounding of its corners.
 const DOUBTFUL: f64 = 1e-12;
 
-/// A mesh whose caps are larger than this share of its faces is a sheet.
-const SHEET: f64 = 0.9;
-
 /// The solid that a mesh bounds: the points of winding number above one half.
 ///
-/// Its field is the distance to the nearest face, negative inside. Where faces bound the solid alone, that is
-/// exact; where faces cross or lie within the solid, the values inside are bounds. The sign is that of the
-/// nearest face, and where faces cross or meet in more than pairs, that of the winding number, which is
-/// bounded until it is certain.
+/// Its field is the distance to the nearest face, negative inside. Faces that have the solid on both sides, or on
+/// neither, are no surface and are dropped, unless others cross or touch their piece. Where no faces cross or touch,
+/// the distance is exact; else the values inside are bounds, since a wall within the solid may be nearer than its
+/// surface. The sign is that of the nearest face, and where faces cross or meet in more than pairs, that of the
+/// winding number, which is bounded until it is certain.
 ///
 /// ```
 /// use palpate_field::{Shape, Vector};
@@ -66,70 +67,108 @@ const SHEET: f64 = 0.9;
 /// ```
 #[derive(Clone, Debug)]
 pub struct Solid<const N: usize, const D: usize> {
-    /// The corners of each face, in the order of the boxes.
+    /// The vertices and the faces as they were mended, in the order in which they came.
+    vertices: Vec<Point<D>>,
+    elements: Vec<[u32; N]>,
+    /// The corners of each face that counts for the distance, in the order of the boxes.
     faces: Vec<[Point<D>; N]>,
     boxes: Boxes<D>,
     normals: Normals<N, D>,
     /// `None` if the nearest face alone tells the sign.
-    winding: Option<WindingTree<N, D>>,
+    signs: Option<Signs<N, D>>,
     promise: Promise<D>,
+}
+
+/// The faces whose winding number tells the sign, walls among them.
+#[derive(Clone, Debug)]
+struct Signs<const N: usize, const D: usize> {
+    faces: Vec<[Point<D>; N]>,
+    tree: WindingTree<N, D>,
 }
 
 impl<const N: usize, const D: usize> Solid<N, D> {
     /// The solid of a mesh, and what was found and mended.
     ///
-    /// Equal vertices are merged; faces without area and doubled faces are dropped; neighbours are turned to agree
-    /// on the inside; openings are closed by flat caps; pieces inside out are turned.
+    /// Equal vertices are merged; faces with a vertex twice and doubled faces are dropped; neighbours are turned to
+    /// agree on the inside; faces are parted where corners of others lie on their edges; openings are closed by
+    /// caps; sheets within the solid are dropped; pieces inside out are turned; faces with the solid on both sides,
+    /// or on neither, are dropped.
     ///
     /// # Errors
     ///
-    /// If no face is left, or the faces bound no solid: a piece is not orientable, faces around an edge do not
-    /// cancel even with caps, or the caps are as large as the faces, as of a sheet.
+    /// If no face is left, or the faces bound no solid: a piece is not orientable, or the caps are as large as the
+    /// faces, as of a sheet.
     pub fn from_mesh(mesh: &Mesh<N, D>) -> Result<(Self, Findings<D>), SolidError> {
-        let Repair { vertices, elements, mut findings, pieces } = Repair::of(mesh);
-        let given = mesh.elements().len();
-        if elements.is_empty() {
-            return Err(SolidError::NoFaces { given });
-        }
-        let size =
-            mesh.bounds().half_extents().0.iter().fold(0.0, |size, half| half.max(size)) * 2.0;
-        if !(SMALLEST_LENGTH..=LARGEST_LENGTH).contains(&size) {
-            return Err(SolidError::Size { size });
-        }
-        if findings.one_sided > 0 {
-            return Err(SolidError::OneSided { pieces: findings.one_sided });
-        }
-        let area = |elements: &[[u32; N]]| -> f64 {
-            let corners = |element: &[u32; N]| element.map(|index| vertices[index as usize]);
-            elements.iter().map(|element| across(&corners(element)).norm()).sum()
-        };
-        let (own, caps) = (area(&elements[..findings.own]), area(&elements[findings.own..]));
-        if caps > SHEET * own {
-            return Err(SolidError::Sheet);
-        }
-        let order = BallTree::new(&vertices, &elements);
-        let (mut ordered, mut of_piece) = (Vec::new(), Vec::new());
-        for element in order.order() {
-            ordered.push(elements[*element as usize]);
-            of_piece.push(pieces.of_element[*element as usize]);
-        }
-        let faces: Vec<_> = ordered
-            .iter()
-            .map(|element| element.map(|index| vertices[index as usize]))
-            .collect();
-        let boxes = Boxes::new(&faces);
-        let are_solids = |a: usize, b: usize| {
-            let [a, b] = [of_piece[a], of_piece[b]];
-            a != b && !pieces.is_cavity[a] && !pieces.is_cavity[b]
-        };
-        let crossings = Crossings::of(&vertices, &ordered, &boxes, are_solids);
+        let repair = Repair::of(mesh);
+        check(mesh, &repair)?;
+        let all = Ordered::of(&repair.vertices, &repair.elements);
+        let (crossings, walls, tree) = examine(&repair, &all);
+        let Repair { mut vertices, mut elements, mut findings, caps, .. } = repair;
         (findings.crossings, findings.touching) = (crossings.crossings, crossings.touching);
         findings.crossing_at = crossings.at;
+        let mut is_wall = vec![false; elements.len()];
+        for (i, wall) in all.order.iter().zip(&walls.is_wall) {
+            is_wall[*i as usize] = *wall;
+        }
+        let own_walls =
+            is_wall.iter().zip(&caps).filter(|(is_wall, cap)| **is_wall && cap.is_none());
+        let inner = own_walls.count();
+        (findings.inner, findings.own) = (findings.inner + inner, findings.own - inner);
+        let on_surface = |elements: &[[u32; N]]| -> Vec<[u32; N]> {
+            let with_walls = elements.iter().zip(&is_wall);
+            with_walls.filter(|(_, is_wall)| !**is_wall).map(|(element, _)| *element).collect()
+        };
+        if walls.are_all_known {
+            elements = on_surface(&elements);
+        }
+        (vertices, elements) = named(&vertices, elements);
+        let surface =
+            if walls.are_all_known { elements.clone() } else { on_surface(&elements) };
+        if surface.is_empty() {
+            return Err(SolidError::NoFaces { given: findings.faces });
+        }
+        let Ordered { elements: ordered, faces, .. } = Ordered::of(&vertices, &surface);
         findings.flat = faces.iter().filter(|face| is_flat(face, DOUBTFUL)).count();
-        let winding = findings.has_inner_faces().then(|| WindingTree::new(&faces));
+        let is_crowded = || by_rim(&sides(&surface)).any(|at_rim| at_rim.len() > 2);
+        let signs = match tree {
+            Some(tree) if !walls.are_all_known => Some(Signs { faces: all.faces, tree }),
+            _ if findings.flat > 0 || is_crowded() => {
+                Some(Signs { tree: WindingTree::new(&faces), faces: faces.clone() })
+            }
+            _ => None,
+        };
+        let promise = promise(&faces, quality(&crossings, &walls));
+        let boxes = Boxes::new(&faces);
         let normals = Normals::new(vertices.len(), &ordered, &faces);
-        let promise = promise(&faces, &quality(&findings, &crossings, &pieces));
-        Ok((Self { faces, boxes, normals, winding, promise }, findings))
+        Ok((Self { vertices, elements, faces, boxes, normals, signs, promise }, findings))
+    }
+
+    /// The mesh that bounds the solid, mended: equal vertices merged, all faces turned, openings closed.
+    ///
+    /// The solid of this mesh is the same, and nothing is left to mend. Where faces cross or touch, they are as they
+    /// were; then the walls within the solid are there too, since the winding number counts them.
+    ///
+    /// ```
+    /// use palpate_field::Vector;
+    /// use palpate_mesh::{Solid, TriangleMesh};
+    ///
+    /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+    /// let corners = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+    /// // One face is missing.
+    /// let faces = vec![[0, 2, 1], [0, 1, 3], [1, 2, 3]];
+    /// let (solid, _) = Solid::from_mesh(&TriangleMesh::new(corners.map(Vector).to_vec(), faces)?)?;
+    /// let mended = solid.mesh()?;
+    /// assert!(mended.report().is_watertight());
+    /// assert_eq!(mended.report().enclosed, Some(1.0 / 6.0)); // [m³]
+    /// # Ok(())
+    /// # }
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// If it has more faces than `u32::MAX`, by its caps.
+    pub fn mesh(&self) -> Result<Mesh<N, D>, MeshError> {
+        Mesh::new(self.vertices.clone(), self.elements.clone())
     }
 
     /// The promise of its field.
@@ -163,9 +202,9 @@ impl<const N: usize, const D: usize> Solid<N, D> {
         let away = p - foot.point;
         let distance = foot.squared.sqrt();
         let normal = self.normals.at(face, foot.part);
-        let is_inside = match &self.winding {
+        let is_inside = match &self.signs {
             None => away.dot(normal) < 0.0,
-            Some(winding) => winding.is_inside(&self.faces, p),
+            Some(Signs { faces, tree }) => tree.is_inside(faces, p),
         };
         let side = if is_inside { -1.0 } else { 1.0 };
         // Near the surface the way to the foot is rounding alone; over a face it is the normal.
@@ -180,26 +219,108 @@ impl<const N: usize, const D: usize> Solid<N, D> {
     }
 }
 
+/// Refuses what bounds no solid.
+fn check<const N: usize, const D: usize>(
+    mesh: &Mesh<N, D>,
+    repair: &Repair<N, D>,
+) -> Result<(), SolidError> {
+    let given = mesh.elements().len();
+    if repair.elements.is_empty() {
+        return Err(SolidError::NoFaces { given });
+    }
+    let half_extents = mesh.bounds().half_extents().0;
+    let size = half_extents.iter().fold(0.0_f64, |size, half| half.max(size)) * 2.0;
+    if !(SMALLEST_LENGTH..=LARGEST_LENGTH).contains(&size) {
+        return Err(SolidError::Size { size });
+    }
+    match repair.findings.one_sided {
+        0 if repair.is_sheet => Err(SolidError::Sheet),
+        0 => Ok(()),
+        pieces => Err(SolidError::OneSided { pieces }),
+    }
+}
+
+/// Elements in the order of the tree.
+struct Ordered<const N: usize, const D: usize> {
+    order: Vec<u32>,
+    elements: Vec<[u32; N]>,
+    faces: Vec<[Point<D>; N]>,
+}
+
+impl<const N: usize, const D: usize> Ordered<N, D> {
+    fn of(vertices: &[Point<D>], elements: &[[u32; N]]) -> Self {
+        let order = BallTree::new(vertices, elements).order().to_vec();
+        let elements: Vec<_> = order.iter().map(|i| elements[*i as usize]).collect();
+        let corners = |element: &[u32; N]| element.map(|index| vertices[index as usize]);
+        let faces = elements.iter().map(corners).collect();
+        Self { order, elements, faces }
+    }
+}
+
+/// Which faces cross or touch, which are walls, and the winding numbers if they were asked.
+fn examine<const N: usize, const D: usize>(
+    repair: &Repair<N, D>,
+    all: &Ordered<N, D>,
+) -> (Crossings<D>, Walls, Option<WindingTree<N, D>>) {
+    let Repair { vertices, pieces, caps, is_flat, findings, .. } = repair;
+    let Ordered { order, elements, faces } = all;
+    let of_piece: Vec<_> = order.iter().map(|i| pieces.of_element[*i as usize]).collect();
+    let are_solids = |a: usize, b: usize| {
+        let [a, b] = [of_piece[a], of_piece[b]];
+        a != b && !pieces.is_cavity[a] && !pieces.is_cavity[b]
+    };
+    let are_apart = |a: usize, b: usize| {
+        let [a, b] = [a, b].map(|face| caps[order[face] as usize]);
+        a == b && a.is_some_and(|opening| is_flat[opening])
+    };
+    let known = Known { are_apart, are_solids };
+    let crossings = Crossings::of(vertices, elements, &Boxes::new(faces), &known);
+    // Pieces that nothing meets, of which none lies right within its like, are surface all over.
+    if crossings.crossings + crossings.touching + findings.nested == 0 {
+        return (crossings, Walls::none(faces.len()), None);
+    }
+    let tree = WindingTree::new(faces);
+    let walls = walls::find(faces, &tree, &of_piece, &crossings.is_met);
+    (crossings, walls, Some(tree))
+}
+
+/// The vertices that elements name, in their order, and the elements with their new names.
+fn named<const N: usize, const D: usize>(
+    vertices: &[Point<D>],
+    mut elements: Vec<[u32; N]>,
+) -> (Vec<Point<D>>, Vec<[u32; N]>) {
+    let mut is_named = vec![false; vertices.len()];
+    for index in elements.iter().flatten() {
+        is_named[*index as usize] = true;
+    }
+    let (mut kept, mut names) = (Vec::new(), Vec::with_capacity(vertices.len()));
+    for (vertex, is_named) in vertices.iter().zip(is_named) {
+        names.push(kept.len() as u32);
+        if is_named {
+            kept.push(*vertex);
+        }
+    }
+    for index in elements.iter_mut().flatten() {
+        *index = names[*index as usize];
+    }
+    (kept, elements)
+}
+
 /// The qualities outside and inside.
 ///
-/// The winding number is a sum over pieces. Of one whose faces do not cross each other it is 1 within and 0
-/// without, of a cavity −1: it is nowhere negative unless a cavity crosses a piece, and the nearest face
-/// bounds the solid. Faces within the solid are nearer than its surface, never farther.
-fn quality<const D: usize>(
-    findings: &Findings<D>,
-    crossings: &Crossings<D>,
-    pieces: &Pieces,
-) -> [Quality; 2] {
+/// Where it is known of all faces that they bound the solid, the distance is exact. Else the winding number is a sum
+/// over pieces. Of one whose faces do not cross or touch each other it is 1 within and 0 without, of a cavity −1: if
+/// only pieces meet that are no cavities, and it is not negative beside the others, it is nowhere negative, and from
+/// outside the nearest face bounds the solid. Faces within the solid are nearer than its surface, never farther.
+fn quality<const D: usize>(crossings: &Crossings<D>, walls: &Walls) -> [Quality; 2] {
     let exact_if = |is_exact: bool| if is_exact { Quality::Exact } else { Quality::Bound };
-    let cavities = pieces.is_cavity.iter().any(|is_cavity| *is_cavity);
-    let is_outside_exact =
-        crossings.only_solids && (!cavities || findings.touching + findings.nested == 0);
-    [exact_if(is_outside_exact), exact_if(!findings.has_inner_faces())]
+    let is_outside_exact = walls.are_all_known || crossings.only_solids && !walls.has_negative;
+    [exact_if(is_outside_exact), exact_if(walls.are_all_known)]
 }
 
 fn promise<const N: usize, const D: usize>(
     faces: &[[Point<D>; N]],
-    [outside, inside]: &[Quality; 2],
+    [outside, inside]: [Quality; 2],
 ) -> Promise<D> {
     let aabb = Aabb::around(faces.iter().flatten().copied())
         .unwrap_or(Aabb { min: Vector::ZERO, max: Vector::ZERO });
@@ -207,6 +328,6 @@ fn promise<const N: usize, const D: usize>(
     let size = bounds.radius_about_origin();
     let mut promise = Promise::exact(Some(bounds), OPERATIONS, size)
         .with_rounding(Rounding::of_operations(OPERATIONS, size));
-    (promise.outside, promise.inside) = (*outside, *inside);
+    (promise.outside, promise.inside) = (outside, inside);
     promise
 }

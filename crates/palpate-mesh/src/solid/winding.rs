@@ -19,7 +19,7 @@ use std::f64::consts::{PI, TAU};
 use palpate_field::{Point, Vector};
 
 use super::foot::across;
-use crate::tree::FAN;
+use crate::tree::{BallTree, FAN};
 
 /// Error bounds of a group, tried in this order until the sign is certain; with 0 every element is summed.
 const ERRORS: [f64; 4] = [1e-2, 1e-3, 1e-4, 0.0];
@@ -80,14 +80,24 @@ impl<const N: usize, const D: usize> WindingTree<N, D> {
 
     /// Whether a point is within the solid of winding numbers above one half.
     pub(crate) fn is_inside(&self, elements: &[[Point<D>; N]], p: Point<D>) -> bool {
+        self.settled(elements, p, |w| w.is_inside().is_some()).number > 0.5
+    }
+
+    /// The winding number of a point, as exact as it takes to settle a question, or as it can be.
+    pub(crate) fn settled(
+        &self,
+        elements: &[[Point<D>; N]],
+        p: Point<D>,
+        is_settled: impl Fn(Winding) -> bool,
+    ) -> Winding {
         let mut last = Winding::default();
         for error in ERRORS {
             last = self.at(elements, p, error);
-            if let Some(is_inside) = last.is_inside() {
-                return is_inside;
+            if is_settled(last) {
+                break;
             }
         }
-        last.number > 0.5
+        last
     }
 
     /// The winding number of a point, with an error of at most `error` from each group of elements.
@@ -99,6 +109,32 @@ impl<const N: usize, const D: usize> WindingTree<N, D> {
             walk.add(top, node);
         }
         walk.sum
+    }
+}
+
+/// Elements with their tree.
+#[derive(Debug)]
+pub(crate) struct Groups<const N: usize, const D: usize> {
+    elements: Vec<[Point<D>; N]>,
+    tree: WindingTree<N, D>,
+}
+
+impl<const N: usize, const D: usize> Groups<N, D> {
+    /// Of elements in any order.
+    pub(crate) fn new(elements: &[[Point<D>; N]]) -> Self {
+        let vertices: Vec<_> = elements.iter().flatten().copied().collect();
+        let named: Vec<[u32; N]> =
+            (0..elements.len()).map(|i| std::array::from_fn(|k| (N * i + k) as u32)).collect();
+        let order = BallTree::new(&vertices, &named);
+        let elements: Vec<_> = order.order().iter().map(|i| elements[*i as usize]).collect();
+        let tree = WindingTree::new(&elements);
+        Self { elements, tree }
+    }
+
+    /// Whether the winding number about a point is above one half or below minus one half.
+    pub(crate) fn goes_around(&self, p: Point<D>) -> bool {
+        let is_settled = |w: Winding| (w.number.abs() - 0.5).abs() > w.error;
+        self.tree.settled(&self.elements, p, is_settled).number.abs() > 0.5
     }
 }
 

@@ -7,6 +7,7 @@ use std::collections::HashMap;
 
 use palpate_field::{Aabb, Point, Vector};
 
+use super::ears::{Cut, cut};
 use super::rims::{by_rim, sides};
 use crate::polygon::{MOST_CORNERS, triangulate};
 
@@ -23,13 +24,22 @@ pub struct Opening<const D: usize> {
     pub edges: usize,
 }
 
-/// Closes all openings by flat caps, and tells them. A loop of more corners than can be cut is closed by a
-/// strip from side to side.
+/// The openings of a mesh, and what closes them.
+#[derive(Debug, Default)]
+pub(super) struct Caps<const D: usize> {
+    pub(super) openings: Vec<Opening<D>>,
+    /// Of each element that was added, the number of its opening.
+    pub(super) of_element: Vec<usize>,
+    /// Of each opening, whether its elements are known to meet at common corners and edges alone.
+    pub(super) is_flat: Vec<bool>,
+}
+
+/// Closes all openings by caps, flat ones where the corners of the opening lie in a plane.
 pub(super) fn close<const N: usize, const D: usize>(
     vertices: &[Point<D>],
     elements: &mut Vec<[u32; N]>,
-) -> Vec<Opening<D>> {
-    let mut openings = Vec::new();
+) -> Caps<D> {
+    let mut caps = Caps::default();
     for corners in loops(elements) {
         let points: Vec<_> = corners.iter().map(|index| vertices[*index as usize]).collect();
         let Some(bounds) = Aabb::around(points.iter().copied()) else { continue };
@@ -37,47 +47,44 @@ pub(super) fn close<const N: usize, const D: usize>(
             bounds.half_extents().0.iter().fold(0.0_f64, |size, half| size.max(2.0 * half));
         let place =
             points.iter().fold(Vector::ZERO, |sum, p| sum + *p * (1.0 / points.len() as f64));
-        openings.push(Opening { place, size, edges: if N == 2 { 1 } else { corners.len() } });
-        if N == 2 {
-            // From the end of the chain to its start.
-            elements.push(std::array::from_fn(|i| corners[i]));
-            continue;
-        }
-        if corners.len() > MOST_CORNERS {
-            elements.extend(strip(&corners));
-            continue;
-        }
-        let in_space: Vec<Point<3>> = points.iter().map(|p| p.in_space()).collect();
-        let numbers: Vec<u32> = (0..corners.len() as u32).collect();
-        let mut triangles = Vec::new();
-        triangulate(&numbers, &in_space, &mut triangles);
-        elements
-            .extend(triangles.iter().map(|t| std::array::from_fn(|k| corners[t[k] as usize])));
+        let edges = if N == 2 { 1 } else { corners.len() };
+        let count = elements.len();
+        caps.is_flat.push(add(&corners, &points, elements));
+        caps.of_element
+            .resize(caps.of_element.len() + elements.len() - count, caps.openings.len());
+        caps.openings.push(Opening { place, size, edges });
     }
-    openings
+    caps
 }
 
-/// Triangles between both sides of a loop, from its first corner to its middle one.
-fn strip<const N: usize>(corners: &[u32]) -> Vec<[u32; N]> {
-    let mut triangles = Vec::with_capacity(corners.len());
-    let (mut low, mut high) = (0, corners.len() - 1);
-    while low + 1 < high {
-        let next = if triangles.len() % 2 == 0 { low + 1 } else { high - 1 };
-        let triangle = [low, next, high].map(|i| corners[i]);
-        triangles.push(std::array::from_fn(|k| triangle[k]));
-        if next == low + 1 {
-            low = next;
-        } else {
-            high = next;
-        }
+/// Adds the elements that close a loop; whether they are known to meet at common corners and edges alone.
+fn add<const N: usize, const D: usize>(
+    corners: &[u32],
+    points: &[Point<D>],
+    elements: &mut Vec<[u32; N]>,
+) -> bool {
+    if N == 2 {
+        // From the end of a chain to its start.
+        elements.push(std::array::from_fn(|i| corners[i]));
+        return false;
     }
-    triangles
+    let in_space: Vec<Point<3>> = points.iter().map(|p| p.in_space()).collect();
+    if corners.len() > MOST_CORNERS {
+        let Cut { triangles, is_flat } = cut(&in_space);
+        elements.extend(triangles.iter().map(|t| std::array::from_fn(|k| corners[t[k]])));
+        return is_flat;
+    }
+    let numbers: Vec<u32> = (0..corners.len() as u32).collect();
+    let mut triangles = Vec::new();
+    triangulate(&numbers, &in_space, &mut triangles);
+    elements.extend(triangles.iter().map(|t| std::array::from_fn(|k| corners[t[k] as usize])));
+    false
 }
 
 /// The loops of the rims that elements pass more often in one direction, against it, as a cap passes them. The
 /// boundary of elements has no boundary itself, so all edges go in loops. In the plane: the end and the start of
 /// each chain.
-fn loops<const N: usize>(elements: &[[u32; N]]) -> Vec<Vec<u32>> {
+pub(super) fn loops<const N: usize>(elements: &[[u32; N]]) -> Vec<Vec<u32>> {
     let mut next: HashMap<u32, Vec<u32>> = HashMap::new();
     let (mut starts, mut ends) = (Vec::new(), Vec::new());
     for at_rim in by_rim(&sides(elements)) {
@@ -129,20 +136,44 @@ fn chains<const N: usize>(
     mut ends: Vec<u32>,
 ) -> Vec<Vec<u32>> {
     let after: HashMap<u32, u32> = elements.iter().map(|ends| (ends[0], ends[1])).collect();
-    let mut found = Vec::new();
-    for start in starts {
-        let mut vertex = start;
-        let mut place = None;
-        for _ in 0..elements.len() {
-            let Some(next) = after.get(&vertex) else { break };
+    // How many chains end at each vertex and have no start yet.
+    let mut left: HashMap<u32, usize> = HashMap::new();
+    for end in &ends {
+        *left.entry(*end).or_default() += 1;
+    }
+    let (mut found, mut without_end) = (Vec::new(), Vec::new());
+    // Of each vertex that was passed, the number of the start from which it was; where each of those stopped.
+    let mut passed: HashMap<u32, usize> = HashMap::new();
+    let mut stops = Vec::new();
+    for (number, start) in starts.into_iter().enumerate() {
+        let (mut vertex, mut end, mut jumps) = (start, None, 0);
+        while let Some(next) = after.get(&vertex) {
             vertex = *next;
-            place = ends.iter().position(|end| *end == vertex);
-            if place.is_some() {
+            if let Some(count) = left.get_mut(&vertex).filter(|count| **count > 0) {
+                *count -= 1;
+                end = Some(vertex);
                 break;
             }
+            // What was passed before has no end up to where that stopped.
+            match passed.insert(vertex, number) {
+                Some(other) if other == number || jumps > number => break,
+                Some(other) => (vertex, jumps) = (stops[other], jumps + 1),
+                None => {}
+            }
         }
-        if let Some(place) = place.or(ends.len().checked_sub(1)) {
-            found.push(vec![ends.swap_remove(place), start]);
+        stops.push(vertex);
+        match end {
+            Some(end) => found.push(vec![end, start]),
+            None => without_end.push(start),
+        }
+    }
+    for start in without_end {
+        while let Some(end) = ends.pop() {
+            if let Some(count) = left.get_mut(&end).filter(|count| **count > 0) {
+                *count -= 1;
+                found.push(vec![end, start]);
+                break;
+            }
         }
     }
     found

@@ -8,9 +8,11 @@ use std::collections::BTreeSet;
 use palpate_field::{Aabb, Point, Vector};
 use robust::{Coord, Coord3D, orient2d, orient3d};
 
+use super::hubs::Hubs;
 use crate::mesh::Mesh;
 use crate::solid::boxes::Boxes;
-use crate::tree::FAN;
+use crate::solid::foot::across;
+use crate::tree::{BallTree, FAN};
 
 /// How two faces meet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -34,39 +36,66 @@ pub(in crate::solid) struct Crossings<const D: usize> {
     pub(in crate::solid) touching: usize,
     /// Where the first pair that crosses is, or if none does, the first that touches [m].
     pub(in crate::solid) at: Option<Point<D>>,
+    /// Of each element, whether it crosses or touches another.
+    pub(in crate::solid) is_met: Vec<bool>,
 }
 
-/// The corners of an element in the order of the boxes, with their names.
+/// The corners of an element in the order of the boxes, with their names, and what separates it from most others.
 #[derive(Clone, Copy)]
 struct Element<const N: usize, const D: usize> {
     corners: [Point<D>; N],
     names: [u32; N],
+    around: Aabb<D>,
+    /// Along this unit vector the element has next to no extent.
+    normal: Vector<f64, D>,
+    /// From where to where it is along that.
+    span: [f64; 2],
+    /// By how much a place of one of its corners along a unit vector may be off.
+    room: f64,
+}
+
+/// Rounded operations of a place along a unit vector, relative to the largest coordinates: three products, their
+/// sum, and the room itself.
+const ROUNDINGS: f64 = 8.0 * f64::EPSILON;
+
+/// What is known of pairs of elements before they are compared.
+pub(in crate::solid) struct Known<A, S> {
+    /// Whether two elements meet at common corners and edges alone.
+    pub(in crate::solid) are_apart: A,
+    /// Whether two elements are of different pieces, neither a cavity.
+    pub(in crate::solid) are_solids: S,
 }
 
 impl<const D: usize> Crossings<D> {
-    /// Of all elements, which are in the order of the boxes. `are_solids` tells whether two of them are of
-    /// different pieces, neither a cavity.
+    /// Of all elements, which are in the order of the boxes.
     pub(in crate::solid) fn of<const N: usize>(
         vertices: &[Point<D>],
         elements: &[[u32; N]],
         boxes: &Boxes<D>,
-        are_solids: impl Fn(usize, usize) -> bool,
+        known: &Known<impl Fn(usize, usize) -> bool, impl Fn(usize, usize) -> bool>,
     ) -> Self {
-        let mut found = Self { only_solids: true, ..Self::default() };
-        let mut touching_at = None;
-        each_meeting(vertices, elements, boxes, |[i, k], meeting, place| match meeting {
-            Meeting::Apart => {}
-            Meeting::Touching => {
-                found.touching += 1;
-                touching_at.get_or_insert(place);
-            }
-            Meeting::Crossing => {
-                found.crossings += 1;
-                found.only_solids &= are_solids(i, k);
-                found.at.get_or_insert(place);
-            }
+        let mut found =
+            Self { only_solids: true, is_met: vec![false; elements.len()], ..Self::default() };
+        // The lowest element that crosses another, and that touches one.
+        let mut first = [None::<usize>; 2];
+        let search = Search { vertices, elements, boxes, are_apart: &known.are_apart };
+        search.each_meeting(|[i, k], meeting| {
+            let kind = match meeting {
+                Meeting::Apart => return,
+                Meeting::Touching => {
+                    found.touching += 1;
+                    1
+                }
+                Meeting::Crossing => {
+                    found.crossings += 1;
+                    0
+                }
+            };
+            found.only_solids &= (known.are_solids)(i, k);
+            (found.is_met[i], found.is_met[k]) = (true, true);
+            first[kind] = Some(first[kind].map_or(i, |lowest| lowest.min(i)));
         });
-        found.at = found.at.or(touching_at);
+        found.at = first[0].or(first[1]).map(|i| search.element(elements[i]).middle());
         found
     }
 }
@@ -80,7 +109,9 @@ pub(crate) fn crossing_faces<const N: usize, const D: usize>(
     let corners = |element: &[u32; N]| element.map(|index| mesh.vertices()[index as usize]);
     let boxes = Boxes::new(&ordered.iter().map(corners).collect::<Vec<_>>());
     let mut found = BTreeSet::new();
-    each_meeting(mesh.vertices(), &ordered, &boxes, |pair, meeting, _| {
+    let (vertices, elements) = (mesh.vertices(), &ordered);
+    let search = Search { vertices, elements, boxes: &boxes, are_apart: |_, _| false };
+    search.each_meeting(|pair, meeting| {
         if meeting != Meeting::Apart {
             found.extend(pair.map(|face| order[face] as usize));
         }
@@ -88,27 +119,76 @@ pub(crate) fn crossing_faces<const N: usize, const D: usize>(
     found
 }
 
-/// Calls `visit` with each pair of elements whose boxes share a point, how they meet, and the middle of the first
-/// one. Elements are in the order of the boxes.
-fn each_meeting<const N: usize, const D: usize>(
-    vertices: &[Point<D>],
-    elements: &[[u32; N]],
-    boxes: &Boxes<D>,
-    mut visit: impl FnMut([usize; 2], Meeting, Point<D>),
-) {
-    let of = |i: usize| Element {
-        corners: elements[i].map(|index| vertices[index as usize]),
-        names: elements[i],
-    };
-    for i in 0..elements.len() {
-        let one = of(i);
-        let Some(around) = Aabb::around(one.corners) else { continue };
-        boxes.overlapping(&around, |group| {
-            for k in (group * FAN).max(i + 1)..elements.len().min((group + 1) * FAN) {
-                visit([i, k], one.meeting(&of(k)), one.middle());
+/// Whether any two segments of the plane meet elsewhere than at common ends.
+pub(super) fn meet_in_the_plane(vertices: &[Point<2>], segments: &[[u32; 2]]) -> bool {
+    let tree = BallTree::new(vertices, segments);
+    let elements: Vec<_> = tree.order().iter().map(|i| segments[*i as usize]).collect();
+    let corners = |segment: &[u32; 2]| segment.map(|index| vertices[index as usize]);
+    let boxes = Boxes::new(&elements.iter().map(corners).collect::<Vec<_>>());
+    let mut meet = false;
+    let search =
+        Search { vertices, elements: &elements, boxes: &boxes, are_apart: |_, _| false };
+    search.each_meeting(|_, meeting| meet |= meeting != Meeting::Apart);
+    meet
+}
+
+/// The elements among which pairs that meet are looked for, in the order of the boxes.
+struct Search<'a, const N: usize, const D: usize, A> {
+    vertices: &'a [Point<D>],
+    elements: &'a [[u32; N]],
+    boxes: &'a Boxes<D>,
+    /// Whether two elements are known to meet at common corners and edges alone.
+    are_apart: A,
+}
+
+impl<const N: usize, const D: usize, A: Fn(usize, usize) -> bool> Search<'_, N, D, A> {
+    /// Calls `visit` with pairs of elements, the lower first, and how they meet; among them are all that cross or
+    /// touch, each once.
+    fn each_meeting(&self, mut visit: impl FnMut([usize; 2], Meeting)) {
+        let hubs = Hubs::of(self.vertices.len(), self.elements);
+        let all: Vec<_> = self.elements.iter().map(|names| self.element(*names)).collect();
+        // Apart from the rest, since most pairs need no more.
+        let boxes: Vec<_> = all.iter().map(|element| element.around).collect();
+        for (i, (one, around)) in all.iter().zip(&boxes).enumerate() {
+            self.boxes.overlapping(around, |group| {
+                for k in (group * FAN).max(i + 1)..all.len().min((group + 1) * FAN) {
+                    if hubs.common([i, k]).is_none()
+                        && share_a_point(around, &boxes[k])
+                        && !(self.are_apart)(i, k)
+                        && !one.is_separate(&all[k])
+                    {
+                        visit([i, k], one.meeting(&all[k]));
+                    }
+                }
+            });
+        }
+        hubs.each_pair(self.vertices, self.elements, |[i, k]| {
+            if share_a_point(&boxes[i], &boxes[k]) && !(self.are_apart)(i, k) {
+                visit([i, k], all[i].meeting(&all[k]));
             }
         });
     }
+
+    fn element(&self, names: [u32; N]) -> Element<N, D> {
+        let corners = names.map(|index| self.vertices[index as usize]);
+        let around = Aabb::around(corners).unwrap_or(Aabb { min: corners[0], max: corners[0] });
+        let normal = across(&corners).normalized().unwrap_or(Vector::ZERO);
+        let most = |k: usize| around.min[k].abs().max(around.max[k].abs());
+        let room = ROUNDINGS * (0..D).map(most).sum::<f64>();
+        Element { corners, names, around, normal, span: span(normal, &corners), room }
+    }
+}
+
+/// From where to where corners are along a vector, up to rounding.
+#[inline]
+fn span<const N: usize, const D: usize>(
+    along: Vector<f64, D>,
+    corners: &[Point<D>; N],
+) -> [f64; 2] {
+    let places = corners.map(|corner| along.dot(corner));
+    places.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], at| {
+        [low.min(*at), high.max(*at)]
+    })
 }
 
 impl<const N: usize, const D: usize> Element<N, D> {
@@ -116,12 +196,18 @@ impl<const N: usize, const D: usize> Element<N, D> {
         self.corners.iter().fold(Vector::ZERO, |sum, corner| sum + *corner * (1.0 / N as f64))
     }
 
+    /// Whether a plane along one of two elements is sure to part them.
+    #[inline]
+    fn is_separate(&self, other: &Self) -> bool {
+        let room = self.room + other.room;
+        let is_beside = |element: &Self, of: &Self| {
+            let [low, high] = span(of.normal, &element.corners);
+            low - of.span[1] > room || of.span[0] - high > room
+        };
+        is_beside(other, self) || is_beside(self, other)
+    }
+
     fn meeting(&self, other: &Self) -> Meeting {
-        let [one, two] = [self, other].map(|element| Aabb::around(element.corners));
-        let (Some(one), Some(two)) = (one, two) else { return Meeting::Apart };
-        if (0..D).any(|k| one.min[k] > two.max[k] || two.min[k] > one.max[k]) {
-            return Meeting::Apart;
-        }
         if N == 2 { self.meeting_in_the_plane(other) } else { self.meeting_in_space(other) }
     }
 
@@ -154,12 +240,25 @@ impl<const N: usize, const D: usize> Element<N, D> {
         let common = self.names.iter().filter(|name| other.names.contains(name)).count();
         let sides = |of: &Self, element: &Self| {
             let [a, b, c] = three(&of.corners);
-            three(&element.corners).map(|p| side(a, b, c, p))
+            // A common corner is on the plane.
+            let at = |i: usize| {
+                let is_common = of.names.contains(&element.names[i]);
+                if is_common { 0 } else { side(a, b, c, element.corners[i]) }
+            };
+            [0, 1, 2].map(at)
         };
-        let (here, there) = (sides(other, self), sides(self, other));
-        let is_beside =
-            |sides: [i32; 3]| sides.iter().all(|s| *s > 0) || sides.iter().all(|s| *s < 0);
-        if is_beside(here) || is_beside(there) {
+        // Strictly on one side, but for a common corner.
+        let is_beside = |sides: [i32; 3]| {
+            let [least, most] = [sides.iter().min(), sides.iter().max()];
+            let away = sides.iter().filter(|side| **side != 0).count();
+            away + common.min(1) >= 3 && (least >= Some(&0) || most <= Some(&0))
+        };
+        let here = sides(other, self);
+        if is_beside(here) {
+            return Meeting::Apart;
+        }
+        let there = sides(self, other);
+        if is_beside(there) {
             return Meeting::Apart;
         }
         if here == [0; 3] || there == [0; 3] {
@@ -220,6 +319,12 @@ impl<const N: usize, const D: usize> Element<N, D> {
         let (one, two) = (flat(self), flat(other));
         !separates(one, two) && !separates(two, one)
     }
+}
+
+/// Whether two boxes share a point.
+#[inline]
+fn share_a_point<const D: usize>(one: &Aabb<D>, two: &Aabb<D>) -> bool {
+    (0..D).all(|k| one.min[k] <= two.max[k] && two.min[k] <= one.max[k])
 }
 
 fn ends<const N: usize, const D: usize>(corners: &[Point<D>; N]) -> [Point<D>; 2] {

@@ -5,16 +5,20 @@
 
 mod cap;
 mod crossing;
+mod ears;
+mod hubs;
+mod junctions;
 mod orient;
 mod rims;
+mod sheets;
 
 use std::collections::HashMap;
 
 use palpate_field::Point;
 
 pub use cap::Opening;
-pub(super) use crossing::Crossings;
 pub(crate) use crossing::crossing_faces;
+pub(super) use crossing::{Crossings, Known};
 pub(super) use orient::Pieces;
 pub(super) use rims::{by_rim, sides};
 
@@ -27,12 +31,19 @@ pub(super) struct Repair<const N: usize, const D: usize> {
     pub(super) elements: Vec<[u32; N]>,
     pub(super) findings: Findings<D>,
     pub(super) pieces: Pieces,
+    /// Of each element, the opening that it closes.
+    pub(super) caps: Vec<Option<usize>>,
+    /// Of each opening, whether its elements are known to meet at common corners and edges alone.
+    pub(super) is_flat: Vec<bool>,
+    /// Whether the mesh as a whole is a sheet.
+    pub(super) is_sheet: bool,
 }
 
 impl<const N: usize, const D: usize> Repair<N, D> {
     /// All steps but the search for faces that cross: equal vertices are welded; elements with a vertex twice and
-    /// doubled elements are dropped; neighbours are turned to agree on the inside; openings are capped; pieces
-    /// that are inside out are turned.
+    /// doubled elements are dropped; neighbours are turned to agree on the inside; faces are parted at corners of
+    /// others on their edges; openings are capped; sheets within the solid are dropped; pieces that are inside out
+    /// are turned.
     pub(super) fn of(mesh: &Mesh<N, D>) -> Self {
         let (vertices, names) = weld(mesh.vertices());
         let mut findings = Findings { faces: mesh.elements().len(), ..Findings::default() };
@@ -41,12 +52,25 @@ impl<const N: usize, const D: usize> Repair<N, D> {
         let mut elements: Vec<_> = mesh.elements().iter().map(named).collect();
         elements.retain(|element| (1..N).all(|i| !element[..i].contains(&element[i])));
         findings.degenerate = findings.faces - elements.len();
-        let mut repair = Self { vertices, elements, findings, pieces: Pieces::default() };
+        let mut repair = Self {
+            vertices,
+            elements,
+            findings,
+            pieces: Pieces::default(),
+            caps: Vec::new(),
+            is_flat: Vec::new(),
+            is_sheet: false,
+        };
         repair.drop_duplicates();
         (repair.findings.turned, repair.findings.one_sided) =
             orient::agree(&mut repair.elements);
-        repair.findings.own = repair.elements.len();
-        repair.findings.openings = cap::close(&repair.vertices, &mut repair.elements);
+        repair.findings.parted = junctions::part(&repair.vertices, &mut repair.elements);
+        repair.caps = vec![None; repair.elements.len()];
+        let caps = cap::close(&repair.vertices, &mut repair.elements);
+        repair.caps.extend(caps.of_element.into_iter().map(Some));
+        (repair.findings.openings, repair.is_flat) = (caps.openings, caps.is_flat);
+        repair.drop_membranes();
+        repair.findings.own = repair.caps.iter().filter(|cap| cap.is_none()).count();
         repair.pieces = orient::outwards(&repair.vertices, &mut repair.elements);
         (repair.findings.inside_out, repair.findings.nested) =
             (repair.pieces.turned, repair.pieces.nested);
@@ -54,6 +78,37 @@ impl<const N: usize, const D: usize> Repair<N, D> {
             repair.findings.crowded_rims += usize::from(at_rim.len() > 2);
         }
         repair
+    }
+
+    /// Drops the sheets within the solid, and what closes them; none if the mesh as a whole is a sheet.
+    fn drop_membranes(&mut self) {
+        let found = sheets::membranes(&self.vertices, &self.elements, &self.caps);
+        let Some(is_of_one) = found else {
+            self.is_sheet = true;
+            return;
+        };
+        let own =
+            is_of_one.iter().zip(&self.caps).filter(|(is_one, cap)| **is_one && cap.is_none());
+        self.findings.inner = own.count();
+        if self.findings.inner == 0 {
+            return;
+        }
+        let is_kept = |i: &usize| !is_of_one[*i];
+        let kept: Vec<usize> = (0..self.elements.len()).filter(is_kept).collect();
+        self.elements = kept.iter().map(|i| self.elements[*i]).collect();
+        let caps: Vec<_> = kept.iter().map(|i| self.caps[*i]).collect();
+        // The openings of membranes were none.
+        let mut number = vec![None; self.is_flat.len()];
+        let (mut openings, mut is_flat) = (Vec::new(), Vec::new());
+        for opening in caps.iter().flatten() {
+            if number[*opening].is_none() {
+                number[*opening] = Some(openings.len());
+                openings.push(self.findings.openings[*opening]);
+                is_flat.push(self.is_flat[*opening]);
+            }
+        }
+        self.caps = caps.into_iter().map(|cap| cap.and_then(|i| number[i])).collect();
+        (self.findings.openings, self.is_flat) = (openings, is_flat);
     }
 
     /// Drops elements with the vertices of another. Two that face each other are a wall between two volumes, and

@@ -3,11 +3,15 @@
 
 //! Elements that agree on the inside, and pieces whose inside is within.
 
+use std::cell::OnceCell;
+
 use palpate_field::{Aabb, Point, Vector};
 
 use super::rims::{Side, by_rim, pieces, sides};
 use crate::report::signed_volume;
-use crate::solid::winding::share;
+use crate::solid::boxes::Boxes;
+use crate::solid::winding::{Groups, share};
+use crate::tree::{BallTree, FAN};
 
 /// Turns elements so that the two at each rim of two agree on the inside. A piece keeps the direction that
 /// most of its elements have.
@@ -79,15 +83,20 @@ fn turn<const N: usize>(element: &mut [u32; N]) {
 /// So many elements of a piece tell whether it lies in another.
 const SAMPLES: usize = 3;
 
+/// Of a piece of more elements the winding number is summed by groups.
+const MANY: usize = 64;
+
 /// A piece, and how it lies to the others.
 #[derive(Debug)]
-pub(in crate::solid) struct Piece<const D: usize> {
+struct Piece<const N: usize, const D: usize> {
     elements: Vec<usize>,
     bounds: Aabb<D>,
     /// What it encloses [m³], in the plane [m²]: negative if its normals point inwards.
     volume: f64,
     /// The middles of a few elements.
     samples: [Point<D>; SAMPLES],
+    /// Made when first asked for.
+    winding: OnceCell<Groups<N, D>>,
 }
 
 /// How the pieces of a mesh lie to each other.
@@ -109,46 +118,17 @@ pub(super) fn outwards<const N: usize, const D: usize>(
     vertices: &[Point<D>],
     elements: &mut [[u32; N]],
 ) -> Pieces {
-    let (of_element, count) = pieces(elements);
+    let (of_element, count) = pieces(vertices, elements);
     let corners = |element: &[u32; N]| element.map(|index| vertices[index as usize]);
     let mut members = vec![Vec::new(); count];
     for (element, piece) in of_element.iter().enumerate() {
         members[*piece].push(element);
     }
-    let all: Vec<Piece<D>> = members
+    let all: Vec<Piece<N, D>> = members
         .into_iter()
-        .map(|members| {
-            let all = || members.iter().map(|element| corners(&elements[*element]));
-            let samples = std::array::from_fn(|i| {
-                let at = members[i * (members.len() - 1) / (SAMPLES - 1)];
-                middle(&corners(&elements[at]))
-            });
-            let bounds = Aabb::around(all().flatten())
-                .unwrap_or(Aabb { min: samples[0], max: samples[0] });
-            let centre = bounds.centre();
-            let volume = all().map(|corners| signed_volume(&corners, centre)).sum();
-            Piece { elements: members, bounds, volume, samples }
-        })
+        .map(|members| Piece::of(members, |element| corners(&elements[element])))
         .collect();
-    let winding = |outer: &Piece<D>, p: Point<D>| -> f64 {
-        outer.elements.iter().map(|element| share(&corners(&elements[*element]), p)).sum()
-    };
-    let is_within = |inner: &Piece<D>, outer: &Piece<D>| {
-        // Where pieces touch, one sample may lie on the outer one.
-        let is_in =
-            |p: &&Point<D>| outer.bounds.contains(**p) && winding(outer, **p).abs() > 0.5;
-        outer.volume.abs() > inner.volume.abs()
-            && 2 * inner.samples.iter().filter(is_in).count() > SAMPLES
-    };
-    // The pieces around each, the smallest first.
-    let around: Vec<Vec<usize>> = (0..count)
-        .map(|i| {
-            let mut around: Vec<_> =
-                (0..count).filter(|k| *k != i && is_within(&all[i], &all[*k])).collect();
-            around.sort_by(|a, b| all[*a].volume.abs().total_cmp(&all[*b].volume.abs()));
-            around
-        })
-        .collect();
+    let around = around(&all, |element| corners(&elements[element]));
     let is_turned = |i: usize| all[*around[i].last().unwrap_or(&i)].volume < 0.0;
     let is_cavity: Vec<bool> =
         (0..count).map(|i| (all[i].volume < 0.0) != is_turned(i)).collect();
@@ -161,6 +141,73 @@ pub(super) fn outwards<const N: usize, const D: usize>(
         turned += 1;
     }
     Pieces { of_element, is_cavity, nested, turned }
+}
+
+/// The pieces around each, the smallest first: those that hold most of its samples. Where pieces touch, one sample
+/// may lie on the outer one.
+fn around<const N: usize, const D: usize>(
+    all: &[Piece<N, D>],
+    corners: impl Fn(usize) -> [Point<D>; N],
+) -> Vec<Vec<usize>> {
+    let size = |i: usize| all[i].volume.abs();
+    // A tree of the pieces' boxes, whose diagonals are its elements.
+    let ends: Vec<Point<D>> =
+        all.iter().flat_map(|piece| [piece.bounds.min, piece.bounds.max]).collect();
+    let lines: Vec<[u32; 2]> = (0..all.len() as u32).map(|i| [2 * i, 2 * i + 1]).collect();
+    let order = BallTree::new(&ends, &lines).order().to_vec();
+    let line = |i: &u32| lines[*i as usize].map(|end| ends[end as usize]);
+    let boxes = Boxes::new(&order.iter().map(line).collect::<Vec<_>>());
+    (0..all.len())
+        .map(|i| {
+            let mut holders = Vec::new();
+            for p in all[i].samples {
+                boxes.overlapping(&Aabb { min: p, max: p }, |group| {
+                    for k in order.iter().skip(group * FAN).take(FAN).map(|k| *k as usize) {
+                        if k != i
+                            && size(k) > size(i)
+                            && all[k].bounds.contains(p)
+                            && all[k].goes_around(p, &corners)
+                        {
+                            holders.push(k);
+                        }
+                    }
+                });
+            }
+            holders.sort_unstable();
+            let mut around: Vec<usize> = holders
+                .chunk_by(|a, b| a == b)
+                .filter(|same| 2 * same.len() > SAMPLES)
+                .map(|same| same[0])
+                .collect();
+            around.sort_by(|a, b| size(*a).total_cmp(&size(*b)));
+            around
+        })
+        .collect()
+}
+
+impl<const N: usize, const D: usize> Piece<N, D> {
+    fn of(elements: Vec<usize>, corners: impl Fn(usize) -> [Point<D>; N]) -> Self {
+        let all = || elements.iter().map(|element| corners(*element));
+        let samples = std::array::from_fn(|i| {
+            middle(&corners(elements[i * (elements.len() - 1) / (SAMPLES - 1)]))
+        });
+        let bounds =
+            Aabb::around(all().flatten()).unwrap_or(Aabb { min: samples[0], max: samples[0] });
+        let centre = bounds.centre();
+        let volume = all().map(|corners| signed_volume(&corners, centre)).sum();
+        Self { elements, bounds, volume, samples, winding: OnceCell::new() }
+    }
+
+    /// Whether its winding number about a point is not 0.
+    fn goes_around(&self, p: Point<D>, corners: impl Fn(usize) -> [Point<D>; N]) -> bool {
+        if self.elements.len() <= MANY {
+            let number: f64 =
+                self.elements.iter().map(|element| share(&corners(*element), p)).sum();
+            return number.abs() > 0.5;
+        }
+        let own = || self.elements.iter().map(|element| corners(*element)).collect::<Vec<_>>();
+        self.winding.get_or_init(|| Groups::new(&own())).goes_around(p)
+    }
 }
 
 fn middle<const N: usize, const D: usize>(corners: &[Point<D>; N]) -> Point<D> {

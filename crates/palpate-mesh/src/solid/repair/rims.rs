@@ -3,6 +3,10 @@
 
 //! Rims: the edges at which triangles meet, the end points at which segments do.
 
+use std::f64::consts::TAU;
+
+use palpate_field::{Point, Vector};
+
 /// A rim of an element.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(in crate::solid) struct Side {
@@ -38,17 +42,30 @@ pub(in crate::solid) fn by_rim(sides: &[Side]) -> impl Iterator<Item = &[Side]> 
     sides.chunk_by(|a, b| a.rim == b.rim)
 }
 
-/// The pieces of a mesh, whose elements meet in pairs: of each element the number of its piece, and how many
-/// pieces there are.
-pub(super) fn pieces<const N: usize>(elements: &[[u32; N]]) -> (Vec<usize>, usize) {
+/// The pieces of a mesh: of each element the number of its piece, and how many pieces there are.
+///
+/// Two elements at a rim are of one piece. Of more, those are that have the solid between them, so that cubes which
+/// share an edge are two pieces. Where as many elements pass each rim in one direction as in the other, no piece has
+/// a boundary, and on each of its sides the winding number is the same all over, unless something crosses it: what
+/// lies between two that are paired cancels.
+pub(super) fn pieces<const N: usize, const D: usize>(
+    vertices: &[Point<D>],
+    elements: &[[u32; N]],
+) -> (Vec<usize>, usize) {
     let mut parents: Vec<usize> = (0..elements.len()).collect();
+    let mut join = |a: u32, b: u32| {
+        let (a, b) = (root(&mut parents, a as usize), root(&mut parents, b as usize));
+        parents[a.max(b)] = a.min(b);
+    };
     for at_rim in by_rim(&sides(elements)) {
-        if let [a, b] = at_rim {
-            let (a, b) = (
-                root(&mut parents, a.element as usize),
-                root(&mut parents, b.element as usize),
-            );
-            parents[a.max(b)] = a.min(b);
+        match at_rim {
+            [_] => {}
+            [a, b] => join(a.element, b.element),
+            _ => {
+                for [a, b] in pairs(vertices, elements, at_rim) {
+                    join(a, b);
+                }
+            }
         }
     }
     let (mut numbers, mut count) = (vec![usize::MAX; elements.len()], 0);
@@ -63,6 +80,92 @@ pub(super) fn pieces<const N: usize>(elements: &[[u32; N]]) -> (Vec<usize>, usiz
         }
     }
     (numbers, count)
+}
+
+/// An element as seen along a rim.
+struct Spoke {
+    /// Around the rim [rad].
+    angle: f64,
+    /// Whether the solid is on the side of larger angles.
+    opens: bool,
+    element: u32,
+}
+
+/// Elements at angles that differ by less [rad] lie on each other up to rounding: a sheet and its cap.
+const SAME_ANGLE: f64 = 1e-9;
+
+/// The pairs of elements at a rim that have the solid between them: around the rim, as brackets are paired.
+fn pairs<const N: usize, const D: usize>(
+    vertices: &[Point<D>],
+    elements: &[[u32; N]],
+    at_rim: &[Side],
+) -> Vec<[u32; 2]> {
+    let mut spokes = spokes(vertices, elements, at_rim);
+    spokes.sort_by(|a, b| a.angle.total_cmp(&b.angle));
+    // From the widest gap on, so that no two at one angle are first and last.
+    let gap = |i: usize| {
+        let before =
+            if i == 0 { spokes[spokes.len() - 1].angle - TAU } else { spokes[i - 1].angle };
+        spokes[i].angle - before
+    };
+    let widest = (1..spokes.len()).fold(0, |w, i| if gap(i) > gap(w) { i } else { w });
+    spokes.rotate_left(widest);
+    let turned = |angle: f64, first: f64| (angle - first).rem_euclid(TAU);
+    let first = spokes[0].angle;
+    // Of those that lie on each other, a sheet and its cap pair with each other.
+    for run in
+        spokes.chunk_by_mut(|a, b| turned(b.angle, first) - turned(a.angle, first) < SAME_ANGLE)
+    {
+        run.sort_by_key(|spoke| !spoke.opens);
+    }
+    let (mut open, mut found) = (Vec::new(), Vec::new());
+    let mut is_paired = vec![false; spokes.len()];
+    // Twice around: what opens last may close first.
+    for round in 0..2 {
+        for (i, spoke) in spokes.iter().enumerate() {
+            if spoke.opens && round == 0 {
+                open.push(i);
+            } else if !spoke.opens
+                && !is_paired[i]
+                && let Some(k) = open.pop()
+            {
+                is_paired[i] = true;
+                found.push([spokes[k].element, spoke.element]);
+            }
+        }
+    }
+    found
+}
+
+/// The elements at a rim, by their angles around it.
+fn spokes<const N: usize, const D: usize>(
+    vertices: &[Point<D>],
+    elements: &[[u32; N]],
+    at_rim: &[Side],
+) -> Vec<Spoke> {
+    let at = |index: u32| vertices[index as usize].in_space();
+    let [low, high] = at_rim.first().map_or([0, 0], |side| side.rim).map(at);
+    // Around a point of the plane, elements turn about the third axis.
+    let axis = (high - low).normalized().unwrap_or(Vector([0.0, 0.0, 1.0]));
+    let away = |side: &Side| {
+        let element = elements[side.element as usize];
+        let other = element.iter().find(|index| !side.rim.contains(index));
+        let to = other.map_or(low, |index| at(*index)) - low;
+        to - axis * to.dot(axis)
+    };
+    let along = at_rim.first().and_then(|side| away(side).normalized()).unwrap_or(Vector::ZERO);
+    let across = axis.cross(along);
+    let spoke = |side: &Side| {
+        let away = away(side);
+        Spoke {
+            angle: away.dot(across).atan2(away.dot(along)),
+            // A triangle that passes its rim forwards has its normal, which leads out, on the side of larger
+            // angles; a segment that begins at its rim has the solid there, on its left.
+            opens: side.is_forward == (N == 2),
+            element: side.element,
+        }
+    };
+    at_rim.iter().map(spoke).collect()
 }
 
 fn root(parents: &mut [usize], mut i: usize) -> usize {
