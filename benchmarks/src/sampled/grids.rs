@@ -6,7 +6,7 @@
 use std::error::Error;
 
 use palpate::field::kernel::Ball;
-use palpate::field::{BLOCK, Block, Column, Point, Shape, Vector};
+use palpate::field::{BLOCK, Block, Column, CustomField as _, Point, Shape, Vector};
 use palpate::grid::{Grid, GridOptions, Kernel};
 use palpate::mesh::{Solid, TriangleMesh};
 

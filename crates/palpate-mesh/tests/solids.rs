@@ -258,3 +258,35 @@ fn models_bound_what_is_in_their_cells() {
         assert!(closer / count < 0.1, "{}", closer / count);
     }
 }
+
+/// A model of a cell that the surface passes once was that of the Lipschitz constant alone.
+#[test]
+fn models_across_the_surface_know_its_direction() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../testdata/meshes");
+    for name in ["nut.ply", "bunny.ply"] {
+        let mesh = read_file(folder.join(name)).unwrap();
+        let size = mesh.bounds().half_extents().norm();
+        let (solid, _) = Solid::from_mesh(&mesh).unwrap();
+        let (mut share, mut count) = (0.0, 0.0);
+        for (face, u) in (0..mesh.elements().len()).step_by(7).zip(points(4000, 1.0)) {
+            let [a, b, c] = mesh.corners(face);
+            // Near the surface, at places that are edges and corners too.
+            let near = a + (b - a) * u[0].abs() * 0.5 + (c - a) * u[1].abs() * 0.5;
+            let half = [0.03, 0.01, 0.003][face % 3] * size;
+            let centre = near + u * (0.5 * half);
+            let cell = Model::cell(centre.0, [half; 3]);
+            let model = CustomField::model(&solid, &cell);
+            for v in points(80, 1.0).chain([Vector([1.0; 3]), Vector([-1.0; 3])]) {
+                let f = CustomField::distance(&solid, centre + v * half);
+                let plane = model.value + (0..3).map(|k| model.gradient[k] * v[k]).sum::<f64>();
+                assert!(
+                    plane - model.lower <= f && f <= plane + model.upper,
+                    "{name}, face {face}: {f}, {model:?}"
+                );
+            }
+            share += (model.lower + model.upper) / (2.0 * Model::radius(&cell));
+            count += 1.0;
+        }
+        assert!(share / count < 0.55, "{name}: {}", share / count);
+    }
+}
