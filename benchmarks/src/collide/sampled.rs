@@ -39,9 +39,12 @@ pub(super) fn measure(rows: &mut TimedRows) -> Result<(), Box<dyn Error>> {
         ("quadratic", baked(Kernel::Quadratic)?.into()),
         ("mesh", Solid::from_mesh(&mesh)?.0.into()),
     ];
+    // A grid and a mesh of S3 are where S3 is, nearly.
+    let pairs = placed([&s3, &s3], GAP)?;
     for (name, body) in &bodies {
         let key = format!("sampled.separation.{name}_S3");
-        ask(&key, separation, TOLERANCE, &placed([body, &s3], GAP)?, rows)?;
+        let pairs: Vec<_> = pairs.iter().map(|[_, other]| [body.into(), *other]).collect();
+        ask(&key, separation, TOLERANCE, &pairs, rows)?;
     }
     Ok(())
 }

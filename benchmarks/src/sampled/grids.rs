@@ -4,11 +4,14 @@
 //! Values and gradients of grids, and their baking.
 
 use std::error::Error;
+use std::hint::black_box;
+use std::time::Instant;
 
 use palpate::field::kernel::Ball;
 use palpate::field::{BLOCK, Block, Column, CustomField as _, Point, Shape, Vector};
 use palpate::grid::{Grid, GridOptions, Kernel};
 use palpate::mesh::{Solid, TriangleMesh};
+use rayon::iter::{IntoParallelRefIterator as _, ParallelIterator as _};
 
 use super::places::places;
 use super::{QUESTIONS, compare};
@@ -47,7 +50,9 @@ pub(super) fn measure(
         .collect();
     let mut column = Column::<f64, BLOCK>::zero();
     let mut subjects = vec![
-        Subject::new("grid.quadratic.gradient.path", QUESTIONS, || gradients(&quadratic, &path)),
+        Subject::new("grid.quadratic.gradient.path", QUESTIONS, || {
+            gradients(&quadratic, &path)
+        }),
         Subject::new("grid.quadratic.gradient.random", QUESTIONS, || {
             gradients(&quadratic, &near)
         }),
@@ -64,14 +69,6 @@ pub(super) fn measure(
         Subject::new("grid.trilinear.loop", QUESTIONS, || {
             near.iter().map(|p| plain.value(*p)).sum()
         }),
-        Subject::new("grid.bake.band", 1, || {
-            let banded = options.clone().with_band(GridOptions::SMALLEST_BAND);
-            Grid::bake(&solid, &banded).map_or(0.0, |grid| grid.deviation())
-        }),
-        Subject::new("grid.bake.samples", 1, || {
-            // What is baked without what is certified: the samples of the bricks.
-            plain.near(GridOptions::SMALLEST_BAND).map(|p| solid.distance(p)).sum()
-        }),
     ];
     for measured in rounds::measure(&mut subjects, reference) {
         measured.insert(rows);
@@ -80,11 +77,25 @@ pub(super) fn measure(
         ("quadratic.gradient.path", "ball.value.path", "over_ball"),
         ("quadratic.gradient.random", "ball.value.random", "over_ball"),
         ("trilinear.64", "trilinear.loop", "over_loop"),
-        ("bake.band", "bake.samples", "over_samples"),
     ] {
         let [ours, other] = [key, over].map(|key| format!("grid.{key}.ns"));
         compare(rows, [&ours, &other], &format!("grid.{key}.{beside}"));
     }
+    let start = Instant::now();
+    let banded = Grid::bake(&solid, &options.with_band(GridOptions::SMALLEST_BAND))?;
+    let baked = start.elapsed().as_nanos() as f64;
+    // What is baked without what is certified: the samples within the band, with as many threads.
+    let near: Vec<_> = plain.near(GridOptions::SMALLEST_BAND).collect();
+    let start = Instant::now();
+    black_box(near.par_iter().map(|p| solid.distance(*p)).sum::<f64>());
+    let sampled = start.elapsed().as_nanos() as f64;
+    rows.insert("grid.bake.band.ns".to_owned(), baked);
+    rows.insert("grid.bake.samples.ns".to_owned(), sampled);
+    rows.insert("grid.bake.band.over_samples".to_owned(), baked / sampled);
+    rows.insert(
+        "grid.bake.band.deviation_cells".to_owned(),
+        banded.deviation() / banded.lattice().cell,
+    );
     Ok(())
 }
 
@@ -101,9 +112,7 @@ fn gradients(shape: &Shape<3>, points: &[Point<3>]) -> f64 {
 
 /// The values at points, one after another.
 fn values(shape: &Shape<3>, points: &[Point<3>]) -> f64 {
-    points
-        .iter()
-        .fold(0.0, |last, p| shape.distance(*p + Vector([NUDGE * last, 0.0, 0.0])))
+    points.iter().fold(0.0, |last, p| shape.distance(*p + Vector([NUDGE * last, 0.0, 0.0])))
 }
 
 /// Samples, interpolated by a plain loop.

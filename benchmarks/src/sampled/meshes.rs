@@ -11,8 +11,8 @@ use parry3d_f64::math::Vector as ParryVector;
 use parry3d_f64::query::PointQuery;
 use parry3d_f64::shape::{TriMesh, TriMeshFlags};
 
-use super::places::places;
 use super::compare;
+use super::places::places;
 use crate::fields::Rows;
 use crate::reference::Reference;
 use crate::rounds::{self, Subject};
@@ -34,9 +34,12 @@ pub(super) fn measure(
     for (name, points) in &places {
         let asked: Vec<_> = points.iter().map(|p| ParryVector::new(p[0], p[1], p[2])).collect();
         for (p, asked) in points.iter().zip(&asked) {
-            let (our, their) = (ours.distance(*p), theirs.distance_to_local_point(*asked, false));
+            let (our, their) =
+                (ours.distance(*p), theirs.distance_to_local_point(*asked, false));
             if (our.abs() - their.abs()).abs() > SAME {
-                return Err(format!("parry's distance is {their} m, ours {our} m, at {p:?}").into());
+                return Err(
+                    format!("parry's distance is {their} m, ours {our} m, at {p:?}").into()
+                );
             }
         }
         let (ours, theirs) = (&ours, &theirs);
@@ -55,9 +58,7 @@ pub(super) fn measure(
     subjects.push(Subject::new("mesh.solid.ours", 1, || {
         Solid::from_mesh(mesh).map_or(0.0, |(_, found)| found.faces as f64)
     }));
-    for (name, flags) in
-        [("tree", TriMeshFlags::empty()), ("solid", TriMeshFlags::ORIENTED)]
-    {
+    for (name, flags) in [("tree", TriMeshFlags::empty()), ("solid", TriMeshFlags::ORIENTED)] {
         let (corners, faces) = (&corners, &faces);
         subjects.push(Subject::new(format!("mesh.{name}.parry"), 1, move || {
             let made = TriMesh::with_flags(corners.clone(), faces.clone(), flags);

@@ -7,12 +7,10 @@ use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use palpate::field::{Aabb, LARGEST_LENGTH, Shape, Vector};
 use indicatif::ProgressBar;
+use palpate::field::{Aabb, LARGEST_LENGTH, Shape, Vector};
 use palpate::local::GradientMethod;
-use palpate::scene::{
-    AnyScene, BuiltScene, Resources, Scene, SceneError, unknown_name, utf8,
-};
+use palpate::scene::{AnyScene, BuiltScene, Resources, Scene, SceneError, unknown_name, utf8};
 
 use crate::error_map::bar;
 use crate::kind::Kind;
@@ -68,7 +66,9 @@ pub(crate) fn moving(path: Option<&Path>, motions: Option<&Path>) -> Result<Name
 pub(crate) fn cache() -> Option<PathBuf> {
     match std::env::var_os("PALPATE_CACHE") {
         None => Some(dirs::cache_dir()?.join("palpate").join("grids")),
-        Some(folder) => Some(folder.into()).filter(|folder: &PathBuf| !folder.as_os_str().is_empty()),
+        Some(folder) => {
+            Some(folder.into()).filter(|folder: &PathBuf| !folder.as_os_str().is_empty())
+        }
     }
 }
 

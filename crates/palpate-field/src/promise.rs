@@ -287,7 +287,9 @@ impl<const D: usize> Promise<D> {
                 )
             }
             Some(None) => {
-                format!("{outside} outside, {inside}, values off its source's by an unknown amount")
+                format!(
+                    "{outside} outside, {inside}, values off its source's by an unknown amount"
+                )
             }
         }
     }

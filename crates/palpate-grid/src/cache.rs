@@ -97,9 +97,12 @@ impl GridCache {
         };
         if let Ok(kept) = Grid::open(&path) {
             // The time of a file that may not be written to stays.
-            drop(File::options().append(true).open(&path).and_then(|file| {
-                file.set_modified(SystemTime::now())
-            }));
+            drop(
+                File::options()
+                    .append(true)
+                    .open(&path)
+                    .and_then(|file| file.set_modified(SystemTime::now())),
+            );
             return Ok((kept, Found::Kept));
         }
         let grid = Grid::bake_with(shape, options, progress)?;

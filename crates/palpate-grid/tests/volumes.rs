@@ -5,6 +5,10 @@
 #![cfg(feature = "volumes")]
 #![expect(clippy::unwrap_used, reason = "tests")]
 
+#[path = "../../../fuzz/volume_bytes.rs"]
+#[expect(unreachable_pub, reason = "shared with the fuzz target")]
+mod volume_bytes;
+
 use std::io::Write;
 use std::path::Path;
 
@@ -196,6 +200,7 @@ fn what_is_damaged_is_refused() {
                 }
             }
             // Either an error or a volume: never a panic, nor memory for what is not there.
+            volume_bytes::check(&bad, name);
             if let Ok(volume) = Volume::from_bytes(&bad, Path::new(name)) {
                 assert!(volume.samples.len() <= 1 << 22);
             }

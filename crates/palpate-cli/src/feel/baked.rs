@@ -47,7 +47,9 @@ pub(super) fn write(out: &mut String, bodies: &[BakedBody]) -> std::fmt::Result 
 
 pub(super) fn json(bodies: &[BakedBody]) -> Value {
     let told = |BakedBody { name, grid, .. }: &BakedBody| match grid {
-        Ok([cell, deviation]) => json!({ "name": name, "cell_m": cell, "deviation_m": deviation }),
+        Ok([cell, deviation]) => {
+            json!({ "name": name, "cell_m": cell, "deviation_m": deviation })
+        }
         Err(why) => json!({ "name": name, "error": why.to_string() }),
     };
     bodies.iter().map(told).collect()

@@ -187,7 +187,11 @@ impl Work<'_> {
     }
 
     fn is_going_on(&self) -> ControlFlow<()> {
-        if self.interrupt.is_asked() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        if self.interrupt.is_asked() {
+            ControlFlow::Break(())
+        } else {
+            ControlFlow::Continue(())
+        }
     }
 }
 

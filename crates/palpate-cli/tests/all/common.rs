@@ -20,7 +20,8 @@ pub(crate) fn root(file: &str) -> String {
 /// The program in the root of the repository, about to start.
 pub(crate) fn program(arguments: &[&str]) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_palpate"));
-    command.args(arguments).current_dir(repository());
+    // Nothing is kept from run to run.
+    command.args(arguments).current_dir(repository()).env("PALPATE_CACHE", "");
     command
 }
 

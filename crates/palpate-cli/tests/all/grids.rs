@@ -3,7 +3,9 @@
 
 //! `palpate grid`, and meshes of scenes by `palpate mesh --output`.
 
-use crate::common::{Folder, errors, json, number, palpate, status, text};
+use std::path::Path;
+
+use crate::common::{Folder, errors, json, number, palpate, program, status, text};
 
 const BALL: &str = r#"{ "palpate": 1, "dimension": 3, "bodies": [
   { "name": "ball", "shape": { "ball": { "radius": 0.05 } } },
@@ -85,4 +87,51 @@ fn a_mesh_is_made_of_a_scene_and_is_good() {
     refuses(&["mesh", &scene, "--output", &folder.name("ball.txt")], ".glb");
     let disc = folder.write("disc.json", &crate::common::disc(0.05));
     refuses(&["mesh", &disc, "--output", &mesh], "dimension");
+}
+
+/// The scenes of a scan and of a volume are checked, felt and asked. A scene named alone, in its own folder, once
+/// found none of its files.
+#[test]
+fn what_was_scanned_is_checked_and_felt() {
+    let scans = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes/scans");
+    let folder = Folder::new();
+    for file in ["bunny.json", "bunny.ply", "bone.json", "bone.nrrd"] {
+        std::fs::copy(scans.join(file), folder.path(file)).unwrap();
+    }
+    let good = folder.run(&["check", "bunny.json"]);
+    assert!(text(&good).contains("3674 faces"), "{}{}", text(&good), errors(&good));
+    let bone = folder.run(&["check", "bone.json"]);
+    assert!(text(&bone).contains("bone.nrrd at 300"), "{}{}", text(&bone), errors(&bone));
+    let felt = ["feel", "bone.json", "--fast", "--duration", "1", "--cell", "0.002", "--json"];
+    let felt = text(&folder.run(&felt));
+    let felt: serde_json::Value = serde_json::from_str(&felt).unwrap();
+    assert_eq!(felt["as_grids"][0]["name"], "bone", "{felt}");
+    assert!(number(&felt["as_grids"][0]["deviation_m"]) < 2e-3, "{felt}");
+    let exact = ["feel", "bunny.json", "--fast", "--duration", "1", "--exact"];
+    assert!(!text(&folder.run(&exact)).contains("as a grid"));
+}
+
+#[test]
+fn grids_of_scenes_are_kept_from_run_to_run() {
+    let folder = Folder::new();
+    let scene = r#"{ "palpate": 1, "dimension": 2, "bodies": [ { "name": "disc",
+      "shape": { "bake": { "cell": 0.002 }, "of": { "ball": { "radius": 0.05 } } } } ] }"#;
+    folder.write("disc.json", scene);
+    let check = |kept: &str| {
+        let mut check = program(&["check", "disc.json"]);
+        let output = check.current_dir(folder.path("")).env("PALPATE_CACHE", kept).output();
+        assert_eq!(status(&output.unwrap()), 0);
+    };
+    let kept = folder.name("kept");
+    check(&kept);
+    let grid = std::fs::read_dir(&kept).unwrap().next().unwrap().unwrap().path();
+    let made = std::fs::read(&grid).unwrap();
+    check(&kept);
+    assert_eq!(std::fs::read(&grid).unwrap(), made);
+    // A damaged file is made anew.
+    std::fs::write(&grid, &made[..made.len() / 2]).unwrap();
+    check(&kept);
+    assert_eq!(std::fs::read(&grid).unwrap(), made);
+    // A folder that cannot be made keeps nothing from being checked.
+    check(&folder.name("disc.json/kept"));
 }

@@ -18,6 +18,9 @@ fn root() -> Folder {
     let scenes = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes");
     for scene in fs::read_dir(scenes).unwrap() {
         let scene = scene.unwrap();
+        if scene.path().is_dir() {
+            continue;
+        }
         let name = scene.file_name().into_string().unwrap();
         fs::copy(scene.path(), folder.path("scenes").join(name)).unwrap();
     }

@@ -174,14 +174,18 @@ impl Octree<'_> {
         if side > 1 {
             let half = side / 2;
             return (0..8).try_for_each(|child| {
-                self.descend(std::array::from_fn(|i| first[i] + half * ((child >> i) & 1)), half)
+                self.descend(
+                    std::array::from_fn(|i| first[i] + half * ((child >> i) & 1)),
+                    half,
+                )
             });
         }
         let Cells { cell, most: limit, .. } = *self.cells;
         if (self.leaves + 1) * SIDE * SIDE * SIDE > limit {
             return Err(ContourError::TooMany { cell, limit });
         }
-        if self.leaves.is_multiple_of(64) && (self.progress)(self.passed / self.all).is_break() {
+        if self.leaves.is_multiple_of(64) && (self.progress)(self.passed / self.all).is_break()
+        {
             return Err(ContourError::Stopped);
         }
         self.leaves += 1;

@@ -176,13 +176,14 @@ impl<const N: usize, const D: usize> Solid<N, D> {
 }
 
 /// The outward unit normal of a face, and a bound of its error.
-fn outward<const N: usize, const D: usize>(
-    corners: &[Point<D>; N],
-) -> (Vector<f64, D>, f64) {
+fn outward<const N: usize, const D: usize>(corners: &[Point<D>; N]) -> (Vector<f64, D>, f64) {
     let normal = across(corners);
-    let (size, longest) = (normal.norm(), corners.iter().fold(0.0_f64, |longest, corner| {
-        longest.max((*corner - corners[0]).norm()).max((*corner - corners[N - 1]).norm())
-    }));
+    let (size, longest) = (
+        normal.norm(),
+        corners.iter().fold(0.0_f64, |longest, corner| {
+            longest.max((*corner - corners[0]).norm()).max((*corner - corners[N - 1]).norm())
+        }),
+    );
     // Each component of a product of two sides is rounded thrice; the product of one side is exact.
     let error = 16.0 * f64::EPSILON * longest.powi(N as i32 - 1) / size;
     // Without area, no direction is known.

@@ -345,7 +345,8 @@ impl<'a> Space<'a, 3> for Builder<'a> {
     fn mesh(&mut self, object: &Object<'a>, level: usize) -> Result<Built<3>, Problems> {
         let size = Size { nodes: 1, depth: 0 };
         self.allowance.take(size, level)?;
-        let (written, folder) = (object.value(object.head)?, self.scene.resources.folder.as_deref());
+        let (written, folder) =
+            (object.value(object.head)?, self.scene.resources.folder.as_deref());
         let mesh = if object.head == MESH {
             json::read::<WrittenMesh>(written)?.built(folder)?
         } else {
