@@ -3,8 +3,11 @@
 
 //! How far interpolated values may be from the source's.
 
+use std::cmp::Ordering;
+use std::collections::BinaryHeap;
+
 use palpate_field::scalar::Model;
-use palpate_field::{BLOCK, Block, Column, Vector};
+use palpate_field::{BLOCK, Block, Column, Shape, Vector};
 
 use crate::certificate::Cells;
 use crate::control::{MOST_TAPS, apply, gather};
@@ -54,6 +57,32 @@ impl<const D: usize> Part<D> {
     }
 }
 
+/// A part that may be halved, with the bound over it [m].
+struct Waiting<const D: usize> {
+    bound: f64,
+    part: Part<D>,
+}
+
+impl<const D: usize> PartialEq for Waiting<D> {
+    fn eq(&self, other: &Self) -> bool {
+        self.cmp(other) == Ordering::Equal
+    }
+}
+
+impl<const D: usize> Eq for Waiting<D> {}
+
+impl<const D: usize> PartialOrd for Waiting<D> {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl<const D: usize> Ord for Waiting<D> {
+    fn cmp(&self, other: &Self) -> Ordering {
+        self.bound.total_cmp(&other.bound)
+    }
+}
+
 impl<const D: usize> Cells<'_, D> {
     /// How far the interpolated values of cells may be from the source's [m].
     ///
@@ -72,33 +101,60 @@ impl<const D: usize> Cells<'_, D> {
         let Some(source) = self.source else { return 0.0 };
         let cell = self.lattice.cell;
         let mut largest = 0.0_f64;
-        let (mut boxes, mut models) = (Block::<Model, D, BLOCK>::zero(), Column::zero());
-        let mut waiting = near;
-        let mut parts = Vec::new();
-        while !waiting.is_empty() {
-            parts.clear();
-            parts.extend(waiting.drain(waiting.len().saturating_sub(BLOCK)..));
-            boxes.fill_boxes(parts.len(), None, |i| {
-                let part: &Part<D> = &parts[i];
-                let (key, middle) = (part.key, part.middle());
-                let along = |axis: usize| {
-                    (brick[axis] * BRICK + key[axis]) as f64 + 1.5 - 0.5 * K as f64
-                        + middle[axis]
-                };
-                let centre = self.lattice.at(Vector(std::array::from_fn(along)));
-                (centre, Vector([self.half(part.level); D]))
-            });
-            source.block_distances(&boxes, parts.len(), &mut models);
-            for (i, part) in parts.iter().enumerate() {
-                let bound = self.bound::<K>(samples, part, &models.get(i)).min(self.worst);
-                if part.level < DEEPEST && bound > largest.max(COARSE * cell) {
-                    waiting.extend(part.halves());
+        let mut work = (Block::<Model, D, BLOCK>::zero(), Column::zero());
+        // Those with the largest bounds are halved first, so that others need not be.
+        let mut waiting = BinaryHeap::new();
+        let mut parts = near;
+        loop {
+            for parts in parts.chunks(BLOCK) {
+                self.bounds::<K>((source, brick, samples), parts, &mut work, |part, bound| {
+                    if part.level < DEEPEST {
+                        waiting.push(Waiting { bound, part });
+                    } else {
+                        largest = largest.max(bound);
+                    }
+                });
+            }
+            parts = Vec::new();
+            while parts.len() + (1 << D) <= BLOCK
+                && let Some(Waiting { bound, part }) = waiting.pop()
+            {
+                if bound > largest.max(COARSE * cell) {
+                    parts.extend(part.halves());
                 } else {
                     largest = largest.max(bound);
+                    waiting.clear();
                 }
             }
+            if parts.is_empty() {
+                return largest * (1.0 + 1e-12);
+            }
         }
-        largest * (1.0 + 1e-12)
+    }
+
+    /// Calls `found` with each part, at most a block of them, and the bound over it [m].
+    fn bounds<const K: usize>(
+        &self,
+        (source, brick, samples): (&Shape<D>, [usize; D], &[f64]),
+        parts: &[Part<D>],
+        (boxes, models): &mut (Block<Model, D, BLOCK>, Column<Model, BLOCK>),
+        mut found: impl FnMut(Part<D>, f64),
+    ) where
+        OfTaps<K>: Spline<K>,
+    {
+        boxes.fill_boxes(parts.len(), None, |i| {
+            let part: &Part<D> = &parts[i];
+            let (key, middle) = (part.key, part.middle());
+            let along = |axis: usize| {
+                (brick[axis] * BRICK + key[axis]) as f64 + 1.5 - 0.5 * K as f64 + middle[axis]
+            };
+            let centre = self.lattice.at(Vector(std::array::from_fn(along)));
+            (centre, Vector([self.half(part.level); D]))
+        });
+        source.block_distances(boxes, parts.len(), models);
+        for (i, part) in parts.iter().enumerate() {
+            found(*part, self.bound::<K>(samples, part, &models.get(i)).min(self.worst));
+        }
     }
 
     /// The same over a part, from the source's model.

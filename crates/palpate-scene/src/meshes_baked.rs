@@ -11,10 +11,7 @@ use crate::build::BuiltScene;
 use crate::resources::Resources;
 
 /// Cells along the longest side of a body unless another size is asked for.
-const CELLS: f64 = 160.0;
-
-/// The band of the grids, in cells: a hand that is farther out is told a smaller distance.
-const BAND: f64 = 8.0;
+const CELLS: f64 = 128.0;
 
 /// A body that holds a mesh, as it is touched.
 #[derive(Clone, Debug)]
@@ -39,8 +36,8 @@ pub struct MeshesBaked<const D: usize> {
 
 impl<const D: usize> BuiltScene<D> {
     /// The scene with each body that holds a mesh sampled on a grid: its distance and gradient then take the same
-    /// short time everywhere, and the gradient is continuous. Cells are of a size [m], or a 160th of the longest
-    /// side of each body. A body that makes no grid, or one of which no deviation is certified, stays as it is.
+    /// short time everywhere, and the gradient is continuous. Cells are of a size [m], or a 128th of the longest
+    /// side of each body. All samples are kept: a probe rests farther from the surface than any band of some cells. A body that makes no grid, or one of which no deviation is certified, stays as it is.
     ///
     /// # Errors
     ///
@@ -85,7 +82,7 @@ fn baked<const D: usize>(
 ) -> Result<(Shape<D>, [f64; 2]), GridError> {
     let bounds = shape.promise().bounds.ok_or(GridError::Unbounded)?.aabb;
     let longest = bounds.half_extents().0.into_iter().fold(0.0, f64::max) * 2.0;
-    let options = GridOptions::with_cell(cell.unwrap_or(longest / CELLS)).with_band(BAND);
+    let options = GridOptions::with_cell(cell.unwrap_or(longest / CELLS));
     let grid = resources.bake(shape, &options)?;
     let (cell, deviation) = (grid.lattice().cell, grid.deviation());
     if deviation.is_infinite() {

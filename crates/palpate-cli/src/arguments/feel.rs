@@ -89,7 +89,7 @@ pub(crate) struct FeelOptions {
     /// distances take the same short time everywhere.
     #[arg(long)]
     pub(crate) exact: bool,
-    /// The size of the cells of those grids [m]; a 160th of each body if left out.
+    /// The size of the cells of those grids [m]; a 128th of each body if left out.
     #[arg(long, conflicts_with = "exact", allow_negative_numbers = true, value_parser = length)]
     pub(crate) cell: Option<f64>,
     /// Serve no page. Without a scene, `feel` serves one that shows the built-in gallery, and stays as

@@ -12,7 +12,7 @@ use crate::arguments::FeelOptions;
 use crate::input::Bakes;
 use crate::numbers::rounded;
 use crate::outcome::Failure;
-use crate::output::shown;
+use crate::output::{self, shown};
 
 /// The scene as it is touched, and its bodies of meshes; none with `--exact`.
 pub(super) fn scene<const D: usize>(
@@ -21,6 +21,9 @@ pub(super) fn scene<const D: usize>(
 ) -> Result<(BuiltScene<D>, Vec<BakedBody>), Failure> {
     if options.exact {
         return Ok((scene.clone(), Vec::new()));
+    }
+    if !scene.meshes.is_empty() {
+        output::remark("meshes are sampled on grids first; --exact touches them as they are");
     }
     let bakes = Bakes::new(None);
     let baked = scene.meshes_baked(options.cell, &bakes.resources).map_err(Failure::input)?;
