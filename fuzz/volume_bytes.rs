@@ -9,7 +9,7 @@ use palpate_field::CustomField;
 use palpate_grid::{Grid, Volume};
 
 /// Volumes of more samples are not meshed.
-const SMALL: usize = 1 << 14;
+const SMALL: usize = 1 << 12;
 
 /// Reads `bytes` as a file of this name and checks what came of it; whether it is one.
 ///
