@@ -37,11 +37,12 @@ pub struct MeshesBaked<const D: usize> {
 impl<const D: usize> BuiltScene<D> {
     /// The scene with each body that holds a mesh sampled on a grid: its distance and gradient then take the same
     /// short time everywhere, and the gradient is continuous. Cells are of a size [m], or a 128th of the longest
-    /// side of each body. All samples are kept: a probe rests farther from the surface than any band of some cells. A body that makes no grid, or one of which no deviation is certified, stays as it is.
+    /// side of each body. All samples are kept: a probe rests farther from the surface than any band of some cells.
+    /// A body that makes no grid, or one of which no deviation is certified, stays as it is.
     ///
     /// # Errors
     ///
-    /// If the progress of the resources stops the work.
+    /// If the progress of the resources stops the work, or the bodies make no union.
     pub fn meshes_baked(
         &self,
         cell: Option<f64>,
@@ -52,12 +53,12 @@ impl<const D: usize> BuiltScene<D> {
             if !body.shape_in_body.holds(std::any::type_name::<Solid<3, 3>>()) {
                 continue;
             }
-            let grid = match baked(&body.shape_in_body, cell, resources) {
-                Ok((grid, told)) => {
-                    // A shape that was placed can be placed again.
-                    if let Ok(placed) = grid.clone().placed(&body.world_from_body) {
-                        (body.shape, body.shape_in_body) = (placed, grid);
-                    }
+            let made = baked(&body.shape_in_body, cell, resources).and_then(|(grid, told)| {
+                Ok((grid.clone().placed(&body.world_from_body)?, grid, told))
+            });
+            let grid = match made {
+                Ok((placed, grid, told)) => {
+                    (body.shape, body.shape_in_body) = (placed, grid);
                     Ok(told)
                 }
                 Err(GridError::Stopped) => return Err(GridError::Stopped),
@@ -65,10 +66,8 @@ impl<const D: usize> BuiltScene<D> {
             };
             bodies.push(BakedBody { name: body.name.clone(), grid });
         }
-        if !bodies.is_empty()
-            && let Ok(whole) = Shape::union(scene.bodies.iter().map(|body| body.shape.clone()))
-        {
-            scene.whole = whole;
+        if !bodies.is_empty() {
+            scene.whole = Shape::union(scene.bodies.iter().map(|body| body.shape.clone()))?;
         }
         Ok(MeshesBaked { scene, bodies })
     }
