@@ -105,6 +105,11 @@ pub(crate) const SAMPLED: &[Bar] = &[
     ("grid.quadratic.gradient.random.over_ball", 7.5),
     ("grid.trilinear.64.over_loop", 0.6),
     ("grid.bake.band.over_samples", 4.0),
+    ("mesh.near.all.ours_over_open3d", 0.4),
+    ("mesh.near.all.ours_over_libigl", 0.35),
+    ("mesh.near.winding.ours_over_libigl_winding", 0.5),
+    ("mesh.all_nodes.ours_over_libigl", 0.15),
+    ("mesh.band.ours_over_meshlib", 0.6),
 ];
 
 /// Those of the live page, which only reports.
@@ -214,6 +219,10 @@ mod tests {
             ".over_loop",
             ".over_samples",
             ".over_tick_S3",
+            "_over_open3d",
+            "_over_libigl",
+            "_over_libigl_winding",
+            "_over_meshlib",
         ];
         for (key, _) in [FIELDS, COLLIDE, HAPTICS, SAMPLED].concat() {
             assert!(ratios.iter().any(|ratio| key.ends_with(ratio)), "{key}");

@@ -14,6 +14,7 @@ mod haptics;
 mod live;
 mod mujoco;
 mod peers;
+mod python;
 mod random;
 mod reference;
 mod rounds;
@@ -82,6 +83,9 @@ enum Suite {
     },
     /// Meshes beside parry's, and grids.
     Sampled {
+        /// Measure beside libigl, MeshLib and Open3D too; needs Python and its package index once.
+        #[arg(long)]
+        peers: bool,
         /// Print one JSON object of keys and numbers.
         #[arg(long)]
         json: bool,
@@ -144,7 +148,9 @@ fn measure(suite: Suite) -> Result<ExitCode, Box<dyn Error>> {
         Suite::Haptics { json, runs: Runs { runs } } => {
             (haptics::measure(runs)?, bars::HAPTICS, false, json)
         }
-        Suite::Sampled { json } => (sampled::measure()?, bars::SAMPLED, false, json),
+        Suite::Sampled { peers, json } => {
+            (sampled::measure(peers)?, bars::SAMPLED, !peers, json)
+        }
         Suite::Live { json } => (live::measure()?, bars::LIVE, false, json),
         Suite::Mujoco { options, json } => {
             let (rows, is_part) = (mujoco::measure(&options, json)?, options.is_part());

@@ -9,7 +9,6 @@
 //! its search is in `src/engine/engine_collision_sdf.c`.
 
 mod bodies;
-mod environment;
 mod exchange;
 mod fastener;
 mod gear;
@@ -26,11 +25,15 @@ use std::process::Command;
 use clap::Args;
 
 use crate::fields::Rows;
+use crate::python::Peers;
 use bodies::Body;
 use exchange::{Answer, Asked, Question, Sampled};
 use ours::Ours;
 use poses::Known;
 use results::Case;
+
+const PEERS: Peers =
+    Peers { name: "MuJoCo", packages: &[("mujoco", "4.0.0"), ("numpy", "2.4.6")] };
 
 /// The depths of the poses [m], and how keys name them.
 const DEPTHS: [(f64, &str); 3] = [(1e-4, "0.1mm"), (1e-3, "1mm"), (5e-3, "5mm")];
@@ -69,7 +72,7 @@ pub(crate) fn measure(
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../target/mujoco");
     fs::create_dir_all(&folder)?;
     let folder = folder.canonicalize()?;
-    let python = match environment::python(&folder.join("environment")) {
+    let python = match PEERS.python(&folder.join("environment")) {
         Ok(python) => python,
         Err(missing) => {
             eprintln!("palpate-bench: {missing}");

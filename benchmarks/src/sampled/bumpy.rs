@@ -24,6 +24,18 @@ pub(super) fn mesh() -> Result<TriangleMesh, Box<dyn Error>> {
     Ok(TriangleMesh::new(directions.into_iter().map(on_surface).collect(), faces)?)
 }
 
+/// The mesh with an icosahedron that crosses it: signs take winding numbers.
+pub(super) fn with_a_crossing_piece(
+    mesh: &TriangleMesh,
+) -> Result<TriangleMesh, Box<dyn Error>> {
+    let (mut vertices, mut faces) = (mesh.vertices().to_vec(), mesh.elements().to_vec());
+    let (corners, small) = icosahedron();
+    let first = vertices.len() as u32;
+    vertices.extend(corners.into_iter().map(|p| p * 0.05 + Vector::unit(0) * RADIUS));
+    faces.extend(small.into_iter().map(|face| face.map(|corner| first + corner)));
+    Ok(TriangleMesh::new(vertices, faces)?)
+}
+
 fn on_surface(direction: Point<3>) -> Point<3> {
     let bump = direction.0.map(|x| (9.0 * x).sin()).iter().product::<f64>();
     direction * (RADIUS * (1.0 + HEIGHT * bump))

@@ -14,13 +14,13 @@ use palpate::mesh::{Solid, TriangleMesh};
 use rayon::iter::{IntoParallelRefIterator as _, ParallelIterator as _};
 
 use super::places::places;
-use super::{QUESTIONS, compare};
+use super::{QUESTIONS, compare, longest};
 use crate::fields::Rows;
 use crate::reference::Reference;
 use crate::rounds::{self, Subject};
 
 /// Cells along the longest side of the mesh.
-const CELLS: f64 = 128.0;
+pub(super) const CELLS: f64 = 128.0;
 
 /// How much the last answer moves the next question, so that they cannot overlap.
 const NUDGE: f64 = 1e-30;
@@ -32,8 +32,7 @@ pub(super) fn measure(
 ) -> Result<(), Box<dyn Error>> {
     let (solid, _) = Solid::from_mesh(mesh)?;
     let solid: Shape<3> = solid.into();
-    let longest = mesh.bounds().half_extents().0.into_iter().fold(0.0, f64::max) * 2.0;
-    let options = GridOptions::with_cell(longest / CELLS);
+    let options = GridOptions::with_cell(longest(mesh) / CELLS);
     let trilinear = Grid::bake(&solid, &options.clone().with_kernel(Kernel::Trilinear))?;
     let plain = Plain::of(&trilinear);
     let quadratic: Shape<3> = Grid::bake(&solid, &options)?.into();

@@ -23,14 +23,24 @@ const HEIGHT: f64 = 2e-3;
 /// Points by the names of their rows.
 pub(super) fn places(mesh: &TriangleMesh) -> [(&'static str, Vec<Point<3>>); 4] {
     let mut random = Random::new(7);
-    let near = off(mesh, &mut random, NEAR);
-    let touching = off(mesh, &mut random, TOUCHING);
+    let near = off(mesh, &mut random, QUESTIONS, NEAR);
+    let touching = off(mesh, &mut random, QUESTIONS, TOUCHING);
     let anywhere = (0..QUESTIONS).map(|_| Vector(random.point([0.0; 3], HALF))).collect();
     [("near", near), ("box", anywhere), ("touching", touching), ("path", path())]
 }
 
+/// Points near the surface.
+pub(super) fn near(mesh: &TriangleMesh, count: usize) -> Vec<Point<3>> {
+    off(mesh, &mut Random::new(11), count, NEAR)
+}
+
 /// Points off random triangles, on both sides, by distances that are uniform in their logarithm.
-fn off(mesh: &TriangleMesh, random: &mut Random, [least, most]: [f64; 2]) -> Vec<Point<3>> {
+fn off(
+    mesh: &TriangleMesh,
+    random: &mut Random,
+    count: usize,
+    [least, most]: [f64; 2],
+) -> Vec<Point<3>> {
     let faces = mesh.elements().len();
     let mut point = || {
         let [a, b, c] = mesh.corners(random.between(0.0, faces as f64) as usize);
@@ -41,7 +51,7 @@ fn off(mesh: &TriangleMesh, random: &mut Random, [least, most]: [f64; 2]) -> Vec
         let side = if random.between(0.0, 1.0) < 0.5 { -far } else { far };
         a + (b - a) * u + (c - a) * v + normal * side
     };
-    (0..QUESTIONS).map(|_| point()).collect()
+    (0..count).map(|_| point()).collect()
 }
 
 /// A hand that goes round at the height of the bumps.

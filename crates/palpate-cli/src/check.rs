@@ -3,18 +3,20 @@
 
 //! `palpate check`: checks a scene file.
 
-use std::io::Write;
+use std::io::{self, Write};
 
-use palpate::field::Shape;
+use palpate::field::{Shape, Vector};
 use palpate::mesh::Findings;
-use palpate::scene::{AnyScene, BuiltMesh, Scene, SceneProblem};
+use palpate::scene::{AnyScene, BuiltMesh, Samples, Scene, SceneProblem};
 use serde_json::{Value, json};
 
 use crate::arguments::CheckOptions;
 use crate::emptiness::is_empty;
-use crate::input::{Bakes, bytes, folder, other_than_scene};
+use crate::input::{Bakes, bytes, folder, longest_edge, other_than_scene};
+use crate::numbers::rounded;
 use crate::outcome::{Failure, Outcome};
 use crate::output::{self, counted, shown};
+use crate::units::hint;
 
 pub(crate) fn run(options: &CheckOptions) -> Result<Outcome, Failure> {
     let bytes = bytes(&options.scene)?;
@@ -71,32 +73,64 @@ pub(crate) fn run(options: &CheckOptions) -> Result<Outcome, Failure> {
                     writeln!(out, "  {}: {}{empty}", shown(&text("name")), text("promise"))?;
                 }
                 for mesh in meshes {
-                    let found = if mesh.findings.is_clean() {
-                        "closed, and no faces cross".to_owned()
-                    } else {
-                        mesh.findings.to_string()
-                    };
-                    let size = mesh
-                        .shape
-                        .promise()
-                        .bounds
-                        .map(|bounds| bounds.aabb.half_extents() * 2.0);
-                    let size =
-                        size.map(|size| size.0.map(|side| format!("{side:.4}")).join(" × "));
-                    let at =
-                        mesh.value.map_or_else(String::new, |value| format!(" at {value}"));
-                    writeln!(
-                        out,
-                        "  {}{at}: {}, {} m: {found}",
-                        shown(&mesh.file),
-                        counted(mesh.findings.faces, "face", "faces"),
-                        size.unwrap_or_default(),
-                    )?;
+                    write_mesh(&mut out, mesh)?;
                 }
             }
             Ok(Outcome::Yes)
         }
     }
+}
+
+/// Says what a file of a mesh or of a volume holds.
+fn write_mesh(out: &mut impl Write, mesh: &BuiltMesh) -> io::Result<()> {
+    let found = match mesh.thickness {
+        Some(thickness) => format!("a plate {thickness} m thick"),
+        None if mesh.findings.is_clean() => "closed, and no faces cross".to_owned(),
+        None => mesh.findings.to_string(),
+    };
+    let at = mesh.value.map_or_else(String::new, |value| format!(" at {value}"));
+    let faces = counted(mesh.findings.faces, "face", "faces");
+    let bounds = mesh.shape.promise().bounds.map(|bounds| bounds.aabb);
+    let size = bounds.map_or([0.0; 3], |aabb| (aabb.half_extents() * 2.0).0);
+    let size = size.map(rounded).join(" × ");
+    writeln!(out, "  {}{at}: {faces}, {size} m: {found}", shown(&mesh.file))?;
+    if let Some(samples) = &mesh.samples {
+        let Samples { counts, range: [least, largest], .. } = samples;
+        let steps = samples.steps.map(|step| rounded(step.norm() * mesh.scale)).join(" × ");
+        writeln!(
+            out,
+            "    samples  {} from {least} to {largest}, {steps} m apart along {}",
+            counts.map(|count| count.to_string()).join(" × "),
+            samples.steps.map(direction).join(", "),
+        )?;
+        if let Some(aabb) = bounds {
+            let [min, max] = [aabb.min, aabb.max].map(|p| p.0.map(rounded).join(", "));
+            writeln!(out, "    surface  from ({min}) to ({max}) m")?;
+        }
+    }
+    if let Some(hint) = unit_hint(mesh) {
+        writeln!(out, "    hint     {hint}")?;
+    }
+    Ok(())
+}
+
+/// The direction of an axis of a volume.
+fn direction(step: Vector<f64, 3>) -> String {
+    let along = step * (1.0 / step.norm());
+    let axis = (0..3).find(|i| along[*i].abs() > 1.0 - 1e-6);
+    match axis {
+        Some(i) => format!("{}{}", if along[i] < 0.0 { "-" } else { "" }, ["x", "y", "z"][i]),
+        None => format!("({})", along.0.map(rounded).join(", ")),
+    }
+}
+
+/// What to do if the size of a mesh is that of another unit. The head of a volume tells its own.
+pub(crate) fn unit_hint(mesh: &BuiltMesh) -> Option<String> {
+    let aabb = mesh.shape.promise().bounds?.aabb;
+    // A factor of one may have been left out.
+    let scale = Some(mesh.scale).filter(|scale| (scale - 1.0).abs() > 0.0);
+    let is_mesh = mesh.samples.is_none();
+    is_mesh.then(|| hint(longest_edge(&aabb), "\"scale\":", scale)).flatten()
 }
 
 /// A mesh of the scene.
@@ -107,12 +141,13 @@ fn of_mesh(mesh: &BuiltMesh) -> Value {
     let openings: Vec<_> = findings
         .openings
         .iter()
-        .map(|opening| json!({ "place_m": opening.place.0, "size_m": opening.size, "edges": opening.edges }))
+        .map(|opening| json!({ "place_m": opening.place.0, "size_m": opening.size, "doubtful_m": opening.doubtful, "edges": opening.edges }))
         .collect();
     json!({
         "file": mesh.file,
         "scale": mesh.scale,
         "value": mesh.value,
+        "thickness_m": mesh.thickness,
         "faces": faces,
         "welded": welded,
         "degenerate": degenerate,
@@ -127,6 +162,13 @@ fn of_mesh(mesh: &BuiltMesh) -> Value {
         "crossing_pairs": findings.crossings,
         "touching_pairs": findings.touching,
         "first_crossing_m": findings.crossing_at.map(|at| at.0),
+        "samples": mesh.samples.map(|samples| json!({
+            "counts": samples.counts,
+            "range": samples.range,
+            "origin_m": samples.origin.0,
+            "steps_m": samples.steps.map(|step| step.0),
+        })),
+        "hint": unit_hint(mesh),
     })
 }
 

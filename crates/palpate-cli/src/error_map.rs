@@ -5,7 +5,7 @@
 
 use std::path::Path;
 
-use indicatif::{ProgressBar, ProgressStyle};
+use indicatif::ProgressBar;
 use palpate::field::{LARGEST_LENGTH, Point, Shape, Vector};
 use palpate::local::{GradientMethod, GradientSampler, angle_between, closest_vector};
 use palpate::plot::{Dash, Isolines, PlotError, Polyline, Sampling, Scale, Slice};
@@ -18,6 +18,7 @@ use crate::input::{self, longest_edge};
 use crate::outcome::Failure;
 use crate::picture::{self, Dimensions, Drawable, values};
 use crate::plot::title;
+use crate::progress;
 
 /// The smallest angle of the scale [degrees]: finer than any picture shows a direction.
 const SMALLEST: f64 = 1e-3;
@@ -32,14 +33,6 @@ const FEWEST: usize = 64;
 /// The tolerance of closest points in pictures, as a share of the longest edge of the scene's
 /// box: a pixel or less.
 const TOLERANCE: f64 = 1e-3;
-
-/// The progress bar over pixels, which is hidden unless standard error is a terminal.
-pub(crate) fn bar() -> ProgressBar {
-    ProgressBar::new(0).with_style(
-        ProgressStyle::with_template("{bar:40} {percent} %, {eta} left")
-            .unwrap_or_else(|_| ProgressStyle::default_bar()),
-    )
-}
 
 /// The sampler of `--offset` and `--single`; the offset follows from the scene if left out.
 pub(crate) fn sampler<const D: usize>(
@@ -250,7 +243,7 @@ where
         isolines: Isolines,
         plane: &Slice,
     ) -> Result<Isolines, PlotError> {
-        let bar = bar();
+        let bar = progress::bar();
         let drawn = match self {
             Self::Nothing => Ok(isolines),
             Self::Gradient(gradient) if map == PlotMap::Error => {

@@ -15,12 +15,13 @@ use palpate::scene::{AnyScene, BuiltScene};
 use serde_json::{Value, json};
 
 use crate::arguments::GradientsOptions;
-use crate::error_map::{Gradient, bar, sampler};
+use crate::error_map::{Gradient, sampler};
 use crate::input::{self, joined, longest_edge};
 use crate::outcome::{Failure, Outcome};
 use crate::output::{self, Files};
 use crate::picture::{self, Dimensions, Drawable, Picture, in_space};
 use crate::plot::{square, title};
+use crate::progress;
 
 /// Panels in a row.
 const COLUMNS: usize = 2;
@@ -230,7 +231,7 @@ where
         let sampling = Sampling::new(CELLS).map_err(Failure::input)?;
         let isolines = picture::isolines(&scene.whole, &plane, &view, sampling);
         let isolines = isolines.map_err(Failure::input)?;
-        let bar = bar();
+        let bar = progress::bar();
         let here = plane.project(in_space(self.at.point));
         let methods = GradientMethod::ALL.iter().filter(|m| D < 3 || !m.is_planar());
         let panels = methods.map(|method| {

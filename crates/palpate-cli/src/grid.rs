@@ -12,12 +12,12 @@ use palpate::scene::{AnyScene, BuiltScene};
 use serde_json::json;
 
 use crate::arguments::GridOptions;
-use crate::error_map::bar;
 use crate::input;
 use crate::interrupt::Interrupt;
+use crate::numbers::rounded;
 use crate::outcome::{Failure, Outcome};
 use crate::output::{self, Files, shown};
-use crate::threads;
+use crate::{progress, threads};
 
 /// Bakes the scene, or one of its bodies; the answer is no if the deviation is not known.
 pub(crate) fn run(options: &GridOptions, interrupt: &Interrupt) -> Result<Outcome, Failure> {
@@ -54,14 +54,13 @@ fn grid<const D: usize>(
     shape: &Shape<D>,
     interrupt: &Interrupt,
 ) -> Result<Option<Grid<D>>, Failure> {
-    let bar = bar();
-    let progress = |Progress { done, of, .. }: Progress| {
-        bar.set_length(of as u64);
-        bar.set_position(done as u64);
+    let shown = progress::Progress::of("sampling");
+    let progress = |Progress { done, of, cell }: Progress| {
+        shown.show(done, of, format_args!("cells of {} m", rounded(cell)));
         if interrupt.is_asked() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     };
     let made = Grid::bake_with(shape, &options.options(), &progress);
-    bar.finish_and_clear();
+    drop(shown);
     match made {
         Ok(grid) => Ok(Some(grid)),
         Err(GridError::Stopped) => Ok(None),

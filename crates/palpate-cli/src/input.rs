@@ -5,16 +5,15 @@
 
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, PoisonError};
 
-use indicatif::ProgressBar;
 use palpate::field::{Aabb, LARGEST_LENGTH, Shape, Vector};
 use palpate::local::GradientMethod;
 use palpate::scene::{AnyScene, BuiltScene, Resources, Scene, SceneError, unknown_name, utf8};
 
-use crate::error_map::bar;
 use crate::kind::Kind;
 use crate::outcome::Failure;
+use crate::progress::Progress;
 
 /// The built-in gallery, which `palpate feel` feels if no scene is named.
 const GALLERY: &str = include_str!("../../../scenes/article_gallery.json");
@@ -72,33 +71,35 @@ pub(crate) fn cache() -> Option<PathBuf> {
     }
 }
 
-/// What scenes use beside their text, with a bar that shows how a grid is made.
+/// What scenes use beside their text. How far a grid is made is shown.
 pub(crate) struct Bakes {
     pub(crate) resources: Resources,
-    bar: ProgressBar,
+    shown: Arc<Mutex<Option<Progress>>>,
 }
 
 impl Bakes {
     /// For a scene whose files are in `folder`.
     pub(crate) fn new(folder: Option<&Path>) -> Self {
-        let bar = bar();
-        let shown = bar.clone();
+        let shown = Arc::new(Mutex::new(None));
+        let shared = Arc::clone(&shown);
         let mut resources = Resources::default().with_progress(Arc::new(move |progress| {
-            shown.set_length(progress.of as u64);
-            shown.set_position(progress.done as u64);
+            let mut shown = shared.lock().unwrap_or_else(PoisonError::into_inner);
+            let shown = shown.get_or_insert_with(|| Progress::of("sampling a grid"));
+            shown.show(progress.done, progress.of, "");
             ControlFlow::Continue(())
         }));
         resources.folder = folder.map(Path::to_owned);
         if let Some(cache) = cache() {
             resources = resources.with_cache(cache);
         }
-        Self { resources, bar }
+        Self { resources, shown }
     }
 }
 
 impl Drop for Bakes {
     fn drop(&mut self) {
-        self.bar.finish_and_clear();
+        // The scene that was built may keep its resources.
+        drop(self.shown.lock().unwrap_or_else(PoisonError::into_inner).take());
     }
 }
 

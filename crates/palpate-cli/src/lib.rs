@@ -33,6 +33,7 @@ mod output;
 mod picture;
 mod plane;
 mod plot;
+mod progress;
 mod render;
 mod schema;
 mod shapes;
@@ -40,6 +41,7 @@ mod sweep;
 mod table;
 mod threads;
 mod times;
+mod units;
 mod views;
 
 use std::ffi::OsString;

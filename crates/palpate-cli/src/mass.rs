@@ -93,7 +93,11 @@ impl<const D: usize> Weighed<'_, D> {
     fn write(&self, out: &mut impl Write, options: &MassOptions) -> io::Result<()> {
         let Self { body, mass, is_open, units: [volume_unit, mass_unit, moment_unit] } = self;
         let (density, cells) = (options.density, mass.cells);
-        writeln!(out, "{}, at {density} kg/m³ ({cells} cells)", shown(&body.name))?;
+        let by = match cells {
+            0 if !mass.is_zero() => "its faces".to_owned(),
+            _ => format!("{cells} cells"),
+        };
+        writeln!(out, "{}, at {density} kg/m³ ({by})", shown(&body.name))?;
         if mass.is_zero() {
             let why = if body.shape.promise().has_interior {
                 "empty: no point is in it, its volume is proven to be 0"

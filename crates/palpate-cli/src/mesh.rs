@@ -9,15 +9,18 @@ use std::fs::File;
 use std::io::{Read, Write};
 use std::path::Path;
 
+use palpate::grid::Volume;
 use palpate::mesh::{Format, ReadError, ReadProblem, Report, Solid, TriangleMesh, read_file};
 use serde_json::json;
 
 use crate::arguments::MeshOptions;
+use crate::input::longest_edge;
 use crate::interrupt::Interrupt;
 use crate::kind::Kind;
 use crate::numbers::rounded;
 use crate::outcome::{Failure, Outcome};
 use crate::output::{self, shown};
+use crate::units::hint;
 
 /// Reports on a mesh; the answer is no if it is not watertight or has degenerate triangles.
 pub(crate) fn run(options: &MeshOptions, interrupt: &Interrupt) -> Result<Outcome, Failure> {
@@ -28,9 +31,10 @@ pub(crate) fn run(options: &MeshOptions, interrupt: &Interrupt) -> Result<Outcom
     let report = mesh.report();
     let solid = Solid::from_mesh(&mesh);
     let crosses = solid.as_ref().is_ok_and(|(_, found)| found.crossings + found.touching > 0);
+    let overlaps = solid.as_ref().is_ok_and(|(_, found)| found.crossings + found.nested > 0);
     let is_good = report.is_watertight() && report.degenerate == 0 && !crosses;
     let mut out = output::answer();
-    let hint = hint(&report, options.scale);
+    let hint = hint(longest_edge(&report.bounds), "--scale", options.scale);
     if options.json {
         let mut answer = as_json(&report, is_good);
         answer["hint"] = hint.into();
@@ -47,7 +51,7 @@ pub(crate) fn run(options: &MeshOptions, interrupt: &Interrupt) -> Result<Outcom
     } else {
         let name = options.file.display().to_string();
         let verdict = if is_good { "good" } else { "not good" };
-        writeln!(out, "{}: {verdict}, {}", shown(&name), in_words(&report))?;
+        writeln!(out, "{}: {verdict}, {}", shown(&name), in_words(&report, overlaps))?;
         match &solid {
             Ok((solid, found)) => {
                 let separator = if found.is_clean() { "" } else { ": " };
@@ -75,42 +79,13 @@ fn mesh(options: &MeshOptions) -> Result<TriangleMesh, Failure> {
 /// Bytes of a file that tell what it is.
 const HEAD: u64 = 1 << 16;
 
-/// Meshes larger than this are rarely touched, and often in millimetres [m].
-const LARGE: f64 = 2.0;
-
-/// Meshes larger than this are rarely meant [m].
-const HUGE: f64 = 1e3;
-
-/// Meshes smaller than this are rarely meant, and often in another unit [m].
-const SMALL: f64 = 1e-5;
-
-/// What to do if the size of a mesh is that of another unit.
-fn hint(report: &Report<3>, scale: Option<f64>) -> Option<String> {
-    let size =
-        report.bounds.half_extents().0.into_iter().fold(0.0, |m, x| f64::max(m, 2.0 * x));
-    let across = rounded(size);
-    match scale {
-        _ if (SMALL..=LARGE).contains(&size) || size <= 0.0 => None,
-        // Who says how large a unit is may mean a hall or a bridge.
-        Some(_) if (LARGE..=HUGE).contains(&size) => None,
-        Some(_) => Some(format!(
-            "it is {across} m across: --scale says how many metres a unit of the file is, 0.001 of \
-             a file in millimetres"
-        )),
-        None if size > LARGE => Some(format!(
-            "it is {across} m across: if the file is in millimetres, --scale 0.001 makes that \
-             {across} mm"
-        )),
-        None => Some(format!(
-            "it is {across} m across: --scale enlarges it, if a unit of the file is more than a metre"
-        )),
-    }
-}
-
 /// Why a file is no mesh: what it is instead, or what is wrong with it.
 fn refused(path: &Path, error: &ReadError) -> Failure {
     if path.is_dir() {
         return Failure::file(path, "is a folder; name a file in it");
+    }
+    if let Some(volume) = as_volume(path) {
+        return volume;
     }
     let named = Format::of(path);
     let mut head = Vec::new();
@@ -132,6 +107,28 @@ fn refused(path: &Path, error: &ReadError) -> Failure {
     }
 }
 
+/// What to do with a volume, if the file has the name of one.
+fn as_volume(path: &Path) -> Option<Failure> {
+    if !Volume::is_named(path) {
+        return None;
+    }
+    let volume = match Volume::open(path) {
+        Ok(volume) => volume,
+        Err(error) => return Some(Failure::input(error)),
+    };
+    let ([least, largest], [x, y, z]) = (volume.range(), volume.counts);
+    let file = path.file_name().unwrap_or_default().to_string_lossy();
+    Some(Failure::file(
+        path,
+        format_args!(
+            "it is a volume of {x} × {y} × {z} samples from {least} to {largest}, not a mesh; a scene takes \
+             a surface in it: {{ \"volume\": {{ \"file\": {}, \"value\": {} }} }}",
+            json!(file),
+            rounded(0.5 * (f64::from(least) + f64::from(largest))),
+        ),
+    ))
+}
+
 fn as_json(report: &Report<3>, is_good: bool) -> serde_json::Value {
     json!({
         "ok": is_good,
@@ -151,10 +148,11 @@ fn as_json(report: &Report<3>, is_good: bool) -> serde_json::Value {
     })
 }
 
-fn in_words(report: &Report<3>) -> String {
+fn in_words(report: &Report<3>, overlaps: bool) -> String {
     let size = (report.bounds.half_extents() * 2.0).0.map(rounded);
+    let twice = if overlaps { ": what overlaps is counted twice" } else { "" };
     let mut words = format!(
-        "{} triangles, {} vertices\n  size     {} m\n  area     {:.6e} m²\n",
+        "{} triangles, {} vertices\n  size     {} m\n  area     {:.6e} m²{twice}\n",
         report.elements,
         report.vertices,
         size.join(" × "),
@@ -162,7 +160,7 @@ fn in_words(report: &Report<3>) -> String {
     );
     words += &match report.enclosed {
         Some(volume) if volume < 0.0 => format!("  volume   {volume:.6e} m³: inside out"),
-        Some(volume) => format!("  volume   {volume:.6e} m³"),
+        Some(volume) => format!("  volume   {volume:.6e} m³{twice}"),
         None => "  volume   none: not watertight".to_owned(),
     };
     let flaws = [

@@ -14,13 +14,13 @@ use serde_json::{Value, json};
 use crate::arguments::{PlotMap, PlotOptions};
 use crate::contact::Touched;
 use crate::emptiness;
-use crate::error_map::{self, Compared};
+use crate::error_map::Compared;
 use crate::input;
 use crate::interrupt::Interrupt;
 use crate::outcome::{Failure, Outcome};
 use crate::output::{self, Files, shown};
 use crate::picture::{self, Colours, Dimensions, Drawable, Picture};
-use crate::{plane, views};
+use crate::{plane, progress, views};
 
 pub(crate) fn run(options: &PlotOptions, interrupt: &Interrupt) -> Result<Outcome, Failure> {
     let inputs = [Some(options.scene.as_path()), options.against.as_deref()];
@@ -195,7 +195,7 @@ where
         match (&self.compared, map.of_one_field()) {
             (Compared::Nothing, Some(map)) => {
                 let grid = Sampling::new(<Dimensions as Drawable<D>>::COMPARED)?;
-                let bar = error_map::bar();
+                let bar = progress::bar();
                 bar.inc_length(isolines.compared_places(grid).len() as u64);
                 let watch = || {
                     bar.inc(1);

@@ -13,9 +13,13 @@
 //! counted half, and its whole half is the error; it shrinks with the square of the
 //! cell where the surface is smooth. Cells that contribute most are cut again.
 //!
+//! A polyhedron needs no cells: it is a sum of simplices, of its faces and one apex.
+//!
 //! This loop is not the best-first search of `palpate-query`, which bounds a least value and
 //! leaves cells alone that cannot hold it. A volume is a sum: every cell counts, and which
 //! cells to cut follows from the errors of all.
+
+mod faces;
 
 use std::fmt;
 
@@ -99,7 +103,7 @@ pub struct Mass<const D: usize> {
     pub second_moments: [[f64; D]; D],
     /// The largest error of each second moment [kg·m²].
     pub second_moments_error: f64,
-    /// The cells that were looked at.
+    /// The cells that were looked at; none of a polyhedron, whose faces tell.
     pub cells: usize,
 }
 
@@ -194,10 +198,15 @@ impl<const D: usize> Moments<D> {
         // Of the corners: D + 1 points, of which one differs from `corner` in axis i.
         let count = (D + 1) as f64;
         let sum: [f64; D] = std::array::from_fn(|i| count * corner[i] + edges[i]);
-        let products = |i: usize, k: usize| {
+        Self::of_corners(volume, &sum, |i, k| {
             let same = if i == k { edges[i] * edges[i] } else { 0.0 };
             count * corner[i] * corner[k] + corner[i] * edges[k] + edges[i] * corner[k] + same
-        };
+        })
+    }
+
+    /// Those of a simplex, from the sums of the coordinates of its corners and of their products.
+    fn of_corners(volume: f64, sum: &[f64; D], products: impl Fn(usize, usize) -> f64) -> Self {
+        let count = (D + 1) as f64;
         Self {
             volume,
             first: std::array::from_fn(|i| volume * sum[i] / count),
@@ -367,7 +376,8 @@ impl<const D: usize> Shape<D> {
     ///
     /// Cells are cut until the error of the volume is below the tolerance or the limit
     /// of cells is reached: then the errors are larger, and say so. Curves and sheets have no
-    /// inside, and a volume of zero.
+    /// inside, and a volume of zero. A field of [faces](crate::CustomField::faces), moved and scaled at
+    /// most, is summed over its faces.
     ///
     /// ```
     /// use palpate_field::{MassLimits, Shape, Vector, kernel::Ball};
@@ -411,6 +421,11 @@ impl<const D: usize> Shape<D> {
         let aabb = bounds.aabb.grown(slack.max(moved));
         let middle = aabb.centre().0;
         let mut total = Total::new(&aabb);
+        let mut faces = 0;
+        if self.faces(&mut |_| faces += 1) {
+            self.faces(&mut |face| total.take_face(&face, &middle, (slack, faces)));
+            return Ok(total.mass(density, &middle));
+        }
         let mut cells = vec![MassCell { centre: [0.0; D], half: aabb.half_extents().0 }];
         loop {
             let fillings = filled(self, &middle, slack, &cells);
@@ -484,11 +499,15 @@ impl<const D: usize> Total<D> {
     }
 
     fn take(&mut self, filling: &Filling<D>) {
-        self.moments.add(&filling.moments, 1.0);
-        let farthest = filling.cell.farthest();
-        self.unsure += filling.unsure;
-        self.unsure_first += filling.unsure * farthest;
-        self.unsure_second += filling.unsure * farthest * farthest;
+        self.add(&filling.moments, filling.unsure, filling.cell.farthest());
+    }
+
+    /// Adds moments, of which so much volume is unsure, not farther than `farthest` from the middle.
+    fn add(&mut self, moments: &Moments<D>, unsure: f64, farthest: f64) {
+        self.moments.add(moments, 1.0);
+        self.unsure += unsure;
+        self.unsure_first += unsure * farthest;
+        self.unsure_second += unsure * farthest * farthest;
     }
 
     /// The result, with the error of sums of so many terms.

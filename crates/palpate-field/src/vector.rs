@@ -165,6 +165,31 @@ impl<const D: usize> Vector<f64, D> {
     pub fn in_space(self) -> Vector<f64, 3> {
         Vector(std::array::from_fn(|k| self.0.get(k).copied().unwrap_or(0.0)))
     }
+
+    /// The vector across a face, out of what it bounds: as long as the segment, which has the inside on its left, or
+    /// twice as long as the triangle is large, which is counter-clockwise seen from outside.
+    ///
+    /// Times a corner of the face, and over `D!`, it is the volume of the simplex of the face and the origin.
+    ///
+    /// ```
+    /// use palpate_field::Vector;
+    ///
+    /// let [right, up] = [[3.0, 0.0], [3.0, 2.0]].map(Vector);
+    /// assert_eq!(Vector::across(&[right, up]), Vector([2.0, 0.0]));
+    /// let corners = [[0.0, 0.0, 1.0], [3.0, 0.0, 1.0], [0.0, 2.0, 1.0]].map(Vector);
+    /// assert_eq!(Vector::across(&corners), Vector([0.0, 0.0, 6.0]));
+    /// ```
+    #[must_use]
+    #[inline]
+    pub fn across(face: &[Self; D]) -> Self {
+        let ab = face[1 % D] - face[0];
+        if D == 2 {
+            let mut out = Self::ZERO;
+            (out[0], out[1]) = (ab[1], -ab[0]);
+            return out;
+        }
+        ab.in_space().cross((face[D - 1] - face[0]).in_space()).truncated()
+    }
 }
 
 impl Vector<f64, 3> {

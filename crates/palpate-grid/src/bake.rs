@@ -302,7 +302,7 @@ impl<const D: usize> Bake<'_, D> {
         };
         let step = || {
             let done = done.fetch_add(1, Ordering::Relaxed) + 1;
-            match (self.progress)(Progress { cell: self.cell, done, of: pieces + count }) {
+            match (self.progress)(Progress { cell: self.cell, done, of: pieces + 2 * count }) {
                 ControlFlow::Continue(()) => Ok(()),
                 ControlFlow::Break(()) => Err(GridError::Stopped),
             }
@@ -361,8 +361,10 @@ impl<const D: usize> Bake<'_, D> {
                 known.clone()
             })
         })?;
-        let known = [cells.within, cells.reach];
-        self.assembled(lattice, samples, certificates, known)
+        let value = cells.deviation::<K>(&samples, &certificates, &|| Ok(()))?;
+        let reach = cells.reach;
+        let deviation = Deviation { value, within: cells.within };
+        self.assembled(lattice, samples, certificates, (deviation, reach))
     }
 
     /// The lattice with room for the values that are compared with the source, and for the samples that the
@@ -469,8 +471,10 @@ impl<const D: usize> Bake<'_, D> {
             step()?;
             Ok(cells.of_brick::<K>(&samples, unravelled(number, samples.bricks)))
         })?;
-        let known = [cells.within, cells.reach];
-        self.assembled(lattice, samples, certificates, known)
+        let value = cells.deviation::<K>(&samples, &certificates, step)?;
+        let reach = cells.reach;
+        let deviation = Deviation { value, within: cells.within };
+        self.assembled(lattice, samples, certificates, (deviation, reach))
     }
 
     fn assembled(
@@ -478,10 +482,9 @@ impl<const D: usize> Bake<'_, D> {
         lattice: Lattice<D>,
         samples: Samples<D>,
         certificates: Vec<Certificate<D>>,
-        [within, reach]: [f64; 2],
+        (deviation, reach): (Deviation, f64),
     ) -> Result<Grid<D>, GridError> {
-        let value = certificates.iter().fold(0.0_f64, |e, brick| e.max(brick.deviation));
-        let compared = Compared { deviation: Deviation { value, within }, bounds: self.bounds };
+        let compared = Compared { deviation, bounds: self.bounds };
         // Beyond the band nothing is known where the source's steepness holds in a part of space alone.
         let far = match self.source.promise().region {
             None if samples.band.is_finite() => {

@@ -20,7 +20,8 @@ const HALVES: usize = BRICK / SLOPE_BLOCK;
 pub(crate) struct Certificate<const D: usize> {
     /// No gradient is longer.
     pub(crate) steepness: f64,
-    /// No value within the band that was asked for differs more from the source's [m].
+    /// No value within the band that was asked for differs more from the source's [m], as the models over whole cells
+    /// tell; [`Cells::deviation`] tells better.
     pub(crate) deviation: f64,
     /// The ranges of differences of neighbours [m], along each axis, in each part of the brick.
     pub(crate) slopes: Vec<[Range; D]>,
@@ -82,19 +83,26 @@ impl<'a, const D: usize> Cells<'a, D> {
     where
         OfTaps<K>: Spline<K>,
     {
-        let first = |axis: usize| (K - 2).saturating_sub(brick[axis] * BRICK);
-        let end = |axis: usize| {
-            (self.lattice.counts[axis] - 1).saturating_sub(brick[axis] * BRICK).min(BRICK)
-        };
         let mut steepness = 0.0_f64;
-        let mut near = Vec::new();
-        let ways = strides([WIDE; D]);
-        let mut taps = [0.0; MOST_TAPS];
-        let taps = &mut taps[..K.pow(D as u32)];
-        for key in indices::<D>(std::array::from_fn(first), std::array::from_fn(end)) {
-            let place: usize = (0..D).map(|i| (key[i] + 3 - K) * ways[i]).sum();
-            gather::<K, D>(samples, place, taps);
+        self.each_cell::<K>(brick, samples, |_, _, taps| {
             steepness = steepness.max(steepest::<K, D>(taps, steepness));
+        });
+        Certificate {
+            steepness: steepness / self.lattice.cell * (1.0 + 1e-12),
+            deviation: self.deviation_of_whole_cells::<K>(brick, samples),
+            slopes: slopes(samples),
+            inside: self.inside(brick, samples),
+        }
+    }
+
+    /// The cells of a brick whose values are compared with the source's.
+    pub(crate) fn compared<const K: usize>(
+        &self,
+        brick: [usize; D],
+        samples: &[f64],
+    ) -> Vec<Part<D>> {
+        let mut near = Vec::new();
+        self.each_cell::<K>(brick, samples, |key, place, taps| {
             let none = [f64::INFINITY, f64::NEG_INFINITY];
             let [least, largest] = taps.iter().fold(none, |[least, largest], sample| {
                 [least.min(*sample), largest.max(*sample)]
@@ -104,14 +112,31 @@ impl<'a, const D: usize> Cells<'a, D> {
             let is_outside = least > value && largest > source;
             let is_inside = largest < -value && least < -source;
             if !is_outside && !is_inside {
-                near.push(Part::whole(key, place));
+                near.push(Part::whole(key, place, self.worst));
             }
-        }
-        Certificate {
-            steepness: steepness / self.lattice.cell * (1.0 + 1e-12),
-            deviation: self.deviation::<K>(brick, samples, near),
-            slopes: slopes(samples),
-            inside: self.inside(brick, samples),
+        });
+        near
+    }
+
+    /// Calls `visit` with each cell of a brick: its middle node in the brick, or the lower of two, the place of its
+    /// first sample, and its samples.
+    fn each_cell<const K: usize>(
+        &self,
+        brick: [usize; D],
+        samples: &[f64],
+        mut visit: impl FnMut([usize; D], usize, &[f64]),
+    ) {
+        let first = |axis: usize| (K - 2).saturating_sub(brick[axis] * BRICK);
+        let end = |axis: usize| {
+            (self.lattice.counts[axis] - 1).saturating_sub(brick[axis] * BRICK).min(BRICK)
+        };
+        let ways = strides([WIDE; D]);
+        let mut taps = [0.0; MOST_TAPS];
+        let taps = &mut taps[..K.pow(D as u32)];
+        for key in indices::<D>(std::array::from_fn(first), std::array::from_fn(end)) {
+            let place: usize = (0..D).map(|i| (key[i] + 3 - K) * ways[i]).sum();
+            gather::<K, D>(samples, place, taps);
+            visit(key, place, taps);
         }
     }
 

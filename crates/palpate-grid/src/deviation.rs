@@ -5,15 +5,18 @@
 
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
+use std::sync::atomic::{self, AtomicU64};
 
 use palpate_field::scalar::Model;
 use palpate_field::{BLOCK, Block, Column, Shape, Vector};
 
-use crate::certificate::Cells;
+use crate::certificate::{Cells, Certificate};
 use crate::control::{MOST_TAPS, apply, gather};
+use crate::error::GridError;
 use crate::lattice::{Lattice, indices, unravelled};
-use crate::samples::BRICK;
+use crate::samples::{BRICK, Samples};
 use crate::spline::{OfTaps, Spline};
+use crate::threads::each;
 
 /// A cell is halved where its bound is more than this share of a cell.
 const COARSE: f64 = 0.05;
@@ -23,6 +26,9 @@ const ROUNDED: f64 = 64.0;
 
 /// How often a cell is halved at most: at an edge of the source, two halvings take a bound from 0.87 to half a cell.
 const DEEPEST: u32 = 2;
+
+/// Bricks of which the threads take one after another, before the largest bound is looked at again.
+const AT_ONCE: usize = 64;
 
 /// A cell of a brick, or a part of it.
 #[derive(Clone, Copy, Debug)]
@@ -35,11 +41,13 @@ pub(crate) struct Part<const D: usize> {
     level: u32,
     /// Which of the parts it is.
     number: [usize; D],
+    /// How far the values over it may be from the source's [m].
+    bound: f64,
 }
 
 impl<const D: usize> Part<D> {
-    pub(crate) fn whole(key: [usize; D], place: usize) -> Self {
-        Self { key, place, level: 0, number: [0; D] }
+    pub(crate) fn whole(key: [usize; D], place: usize, bound: f64) -> Self {
+        Self { key, place, level: 0, number: [0; D], bound }
     }
 
     fn halves(self) -> impl Iterator<Item = Self> {
@@ -57,88 +65,137 @@ impl<const D: usize> Part<D> {
     }
 }
 
-/// A part that may be halved, with the bound over it [m].
-struct Waiting<const D: usize> {
-    bound: f64,
-    part: Part<D>,
-}
-
-impl<const D: usize> PartialEq for Waiting<D> {
-    fn eq(&self, other: &Self) -> bool {
-        self.cmp(other) == Ordering::Equal
-    }
-}
-
-impl<const D: usize> Eq for Waiting<D> {}
-
-impl<const D: usize> PartialOrd for Waiting<D> {
-    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
-        Some(self.cmp(other))
-    }
-}
-
-impl<const D: usize> Ord for Waiting<D> {
+/// Parts are in the order of their bounds.
+impl<const D: usize> Ord for Part<D> {
     fn cmp(&self, other: &Self) -> Ordering {
         self.bound.total_cmp(&other.bound)
     }
 }
 
+impl<const D: usize> PartialOrd for Part<D> {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl<const D: usize> PartialEq for Part<D> {
+    fn eq(&self, other: &Self) -> bool {
+        self.cmp(other) == Ordering::Equal
+    }
+}
+
+impl<const D: usize> Eq for Part<D> {}
+
+/// A block of parts and their models.
+type Work<const D: usize> = (Block<Model, D, BLOCK>, Column<Model, BLOCK>);
+
 impl<const D: usize> Cells<'_, D> {
-    /// How far the interpolated values of cells may be from the source's [m].
+    /// How far the interpolated values of a brick may be from the source's [m], by the models over whole cells.
     ///
     /// Over a part of a cell the source lies within `[−lower, upper]` of an affine function a, and the spline
     /// reproduces a. So the spline less the source is the spline of the samples less a, and the remainders; control
     /// values bound that spline.
-    pub(crate) fn deviation<const K: usize>(
+    pub(crate) fn deviation_of_whole_cells<const K: usize>(
         &self,
         brick: [usize; D],
         samples: &[f64],
-        near: Vec<Part<D>>,
     ) -> f64
     where
         OfTaps<K>: Spline<K>,
     {
         let Some(source) = self.source else { return 0.0 };
-        let cell = self.lattice.cell;
-        let mut largest = 0.0_f64;
-        let mut work = (Block::<Model, D, BLOCK>::zero(), Column::zero());
-        // Those with the largest bounds are halved first, so that others need not be.
+        let mut near = self.compared::<K>(brick, samples);
+        let mut work = (Block::zero(), Column::zero());
+        for parts in near.chunks_mut(BLOCK) {
+            self.bound_parts::<K>((source, brick, samples), parts, &mut work);
+        }
+        near.iter().fold(0.0, |largest, part| part.bound.max(largest))
+    }
+
+    /// How far the interpolated values may be from the source's [m].
+    ///
+    /// Cells are halved where their bound is largest, until none that can be halved has a larger bound than one that
+    /// cannot. A part's bound is at most that of what it is a half of: so the result does not depend on which is
+    /// halved first. `step` is called for each brick with such cells.
+    pub(crate) fn deviation<const K: usize>(
+        &self,
+        samples: &Samples<D>,
+        certificates: &[Certificate<D>],
+        step: &(impl Fn() -> Result<(), GridError> + Sync),
+    ) -> Result<f64, GridError>
+    where
+        OfTaps<K>: Spline<K>,
+    {
+        let Some(source) = self.source else { return Ok(0.0) };
+        let bound = |number: usize| certificates[number].deviation;
+        let mut order: Vec<usize> = (0..certificates.len()).collect();
+        order.sort_by(|a, b| bound(*b).total_cmp(&bound(*a)));
+        // The bits of numbers that are not negative are in the order of the numbers.
+        let largest = AtomicU64::new(0);
+        for numbers in order.chunks(AT_ONCE) {
+            each(numbers.len(), |i| {
+                let known = f64::from_bits(largest.load(atomic::Ordering::Relaxed));
+                if bound(numbers[i]) <= known {
+                    return Ok(());
+                }
+                step()?;
+                let brick = unravelled(numbers[i], samples.bricks);
+                let mut own = Vec::new();
+                samples.brick(brick, self.lattice.counts, &mut own);
+                let found = self.deviation_beyond::<K>((source, brick, &own), known);
+                largest.fetch_max(found.to_bits(), atomic::Ordering::Relaxed);
+                Ok(())
+            })?;
+        }
+        Ok(f64::from_bits(largest.into_inner()))
+    }
+
+    /// The same in a brick, or what is known if that is larger.
+    fn deviation_beyond<const K: usize>(
+        &self,
+        (source, brick, samples): (&Shape<D>, [usize; D], &[f64]),
+        known: f64,
+    ) -> f64
+    where
+        OfTaps<K>: Spline<K>,
+    {
+        let mut largest = known;
+        let mut work = (Block::zero(), Column::zero());
         let mut waiting = BinaryHeap::new();
-        let mut parts = near;
+        let mut parts = self.compared::<K>(brick, samples);
         loop {
-            for parts in parts.chunks(BLOCK) {
-                self.bounds::<K>((source, brick, samples), parts, &mut work, |part, bound| {
-                    if part.level < DEEPEST {
-                        waiting.push(Waiting { bound, part });
-                    } else {
-                        largest = largest.max(bound);
-                    }
-                });
+            for parts in parts.chunks_mut(BLOCK) {
+                self.bound_parts::<K>((source, brick, samples), parts, &mut work);
             }
-            parts = Vec::new();
+            for part in parts.drain(..) {
+                if part.level < DEEPEST {
+                    waiting.push(part);
+                } else {
+                    largest = largest.max(part.bound);
+                }
+            }
             while parts.len() + (1 << D) <= BLOCK
-                && let Some(Waiting { bound, part }) = waiting.pop()
+                && let Some(part) = waiting.pop()
             {
-                if bound > largest.max(COARSE * cell) {
+                if part.bound > largest.max(COARSE * self.lattice.cell) {
                     parts.extend(part.halves());
                 } else {
-                    largest = largest.max(bound);
+                    largest = largest.max(part.bound);
                     waiting.clear();
                 }
             }
             if parts.is_empty() {
-                return largest * (1.0 + 1e-12);
+                return largest;
             }
         }
     }
 
-    /// Calls `found` with each part, at most a block of them, and the bound over it [m].
-    fn bounds<const K: usize>(
+    /// Gives each part, at most a block of them, its bound.
+    fn bound_parts<const K: usize>(
         &self,
         (source, brick, samples): (&Shape<D>, [usize; D], &[f64]),
-        parts: &[Part<D>],
-        (boxes, models): &mut (Block<Model, D, BLOCK>, Column<Model, BLOCK>),
-        mut found: impl FnMut(Part<D>, f64),
+        parts: &mut [Part<D>],
+        (boxes, models): &mut Work<D>,
     ) where
         OfTaps<K>: Spline<K>,
     {
@@ -152,12 +209,12 @@ impl<const D: usize> Cells<'_, D> {
             (centre, Vector([self.half(part.level); D]))
         });
         source.block_distances(boxes, parts.len(), models);
-        for (i, part) in parts.iter().enumerate() {
-            found(*part, self.bound::<K>(samples, part, &models.get(i)).min(self.worst));
+        for (i, part) in parts.iter_mut().enumerate() {
+            part.bound = part.bound.min(self.bound::<K>(samples, part, &models.get(i)));
         }
     }
 
-    /// The same over a part, from the source's model.
+    /// How far the values over a part may be from the source's [m], by the source's model.
     fn bound<const K: usize>(&self, samples: &[f64], part: &Part<D>, model: &Model) -> f64
     where
         OfTaps<K>: Spline<K>,
@@ -185,7 +242,7 @@ impl<const D: usize> Cells<'_, D> {
         }
         let above = taps.iter().copied().fold(f64::NEG_INFINITY, f64::max) + model.lower;
         let below = model.upper - taps.iter().copied().fold(f64::INFINITY, f64::min);
-        above.max(below) + ROUNDED * f64::EPSILON * largest
+        (above.max(below) + ROUNDED * f64::EPSILON * largest) * (1.0 + 1e-12)
     }
 
     /// Half the side of a part, with room for the rounding of its middle [m].

@@ -25,6 +25,14 @@ pub enum GridError {
         /// The size of a cell [m].
         cell: f64,
     },
+    /// Values are off those of the shape by an amount that is not known.
+    #[error(
+        "with cells of {cell} m it is not known how far values are off those of the shape; choose smaller cells"
+    )]
+    Unknown {
+        /// The size of a cell [m].
+        cell: f64,
+    },
     /// The surface comes too near to the border of the lattice.
     #[error(
         "the shape reaches the border of the grid, at the node {node:?} [m]; leave at least two cells of {cell} m around it"

@@ -21,29 +21,41 @@ impl<const D: usize> CustomField<D> for Grid<D> {
         self.promise()
     }
 
-    /// The mean value form: the value at the centre, the middle of the range of each derivative over the box
-    /// around the cell, and half the range times half the box for what it leaves open.
+    /// Over a few cells the tangent plane at the centre, and how far second derivatives lead off it. Over more the mean
+    /// value form: the value at the centre, the middle of the range of each derivative over the box around the cell,
+    /// and half the range times half the box for what it leaves open.
     fn model<const M: usize>(&self, cell: &[AffineModel<M>; D]) -> AffineModel<M> {
         let centre = Vector(cell.map(|x| x.value));
         let half = Vector(cell.map(|x| x.deviation()));
         let rounding = self.promise().rounding.within(centre.norm() + half.norm());
-        let value = self.value_at(centre);
         let around = Aabb { min: centre - half, max: centre + half };
-        let Some(slopes) = self.slopes_over(&around, value.abs()) else {
-            return AffineModel::lipschitz(value, self.promise().lipschitz, cell, rounding);
+        let (value, slope) = self.at(centre);
+        let (slopes, [below, above]) = match self.off_tangent(&around, half, value.abs()) {
+            Some(off) => (slope, off),
+            None => match self.slopes_over(&around, value.abs()) {
+                Some(slopes) => {
+                    let off = (0..D).map(|i| slopes[i][1] * half[i]).sum();
+                    (Vector(slopes.map(|[middle, _]| middle)), [off; 2])
+                }
+                None => {
+                    let lipschitz = self.promise().lipschitz;
+                    return AffineModel::lipschitz(value, lipschitz, cell, rounding);
+                }
+            },
         };
         let mut gradient = [0.0; M];
-        let mut remainder = rounding;
-        for (i, [middle, range]) in slopes.into_iter().enumerate() {
+        // The slopes are rounded too.
+        let mut remainder = 2.0 * rounding;
+        for i in 0..D {
             for (k, gradient) in gradient.iter_mut().enumerate() {
-                *gradient += middle * cell[i].gradient[k];
+                *gradient += slopes[i] * cell[i].gradient[k];
             }
             let bent = cell[i].lower.max(cell[i].upper);
-            // The gradient is rounded too.
-            remainder += range * half[i] + middle.abs() * (bent + 4.0 * f64::EPSILON * half[i]);
+            remainder += slopes[i].abs() * (bent + 4.0 * f64::EPSILON * half[i]);
         }
-        remainder *= 1.0 + 16.0 * f64::EPSILON;
-        AffineModel { value, gradient, lower: remainder, upper: remainder }
+        let [lower, upper] =
+            [below, above].map(|off| (off + remainder) * (1.0 + 16.0 * f64::EPSILON));
+        AffineModel { value, gradient, lower, upper }
     }
 
     /// The bytes of its file.

@@ -3,7 +3,7 @@
 
 //! Grids as files.
 //!
-//! Little-endian, one after another: the head; of each brick its deviation from the source; of sparse grids each
+//! Little-endian, one after another: the head; of each brick a bound of its deviation from the source; of sparse grids each
 //! brick's place; the samples as they are stored; those beyond the band; the BLAKE3 sum of all of it. Steepness and
 //! slopes are not in the file, for they follow from the samples. What its author wrote of the source is believed: the
 //! deviations, and the samples beyond the band.
@@ -301,8 +301,8 @@ impl<const D: usize> Grid<D> {
         let deviations = (0..count)
             .map(|_| Ok(numbers.floats::<1>()?[0]))
             .collect::<Result<Vec<_>, GridFileProblem>>()?;
-        if deviations.iter().any(|deviation| !(0.0..=value).contains(deviation)) {
-            return Err(damaged("a deviation is larger than its head says"));
+        if deviations.iter().any(|deviation| deviation.is_nan() || *deviation < 0.0) {
+            return Err(damaged("a deviation is no distance"));
         }
         let (order, nodes) = if is_sparse {
             let table = (0..count)

@@ -7,6 +7,7 @@ use palpate_field::{Aabb, Bounds, Deviation, Point, Promise, Rounding, Vector};
 
 use crate::certificate::Certificate;
 use crate::control::{MOST_TAPS, gather};
+use crate::curvature::Curvature;
 use crate::error::GridError;
 use crate::far::Far;
 use crate::lattice::{Lattice, indices, raveled};
@@ -280,13 +281,40 @@ impl<const D: usize> Grid<D> {
         outside(away, inner, self.promise.lipschitz, self.margin)
     }
 
+    /// How far the values over a box of half sides are below and above the tangent plane at its centre at most [m],
+    /// where the value has a size [m]; `None` where that is not known, as of large boxes.
+    pub(crate) fn off_tangent(
+        &self,
+        around: &Aabb<D>,
+        half: Vector<f64, D>,
+        size: f64,
+    ) -> Option<[f64; 2]> {
+        let reach = self.promise.lipschitz * half.norm();
+        let is_spline = self.far.is_none() || size + reach < self.clamped;
+        if !is_spline || !self.is_within(around) {
+            return None;
+        }
+        let curvature = match self.kernel {
+            Kernel::Quadratic => self.curvature::<QUADRATIC>(around),
+            Kernel::Trilinear => self.curvature::<TRILINEAR>(around),
+        };
+        curvature.map(|curvature| curvature.off_tangent(self.lattice.cell, half.0))
+    }
+
+    fn curvature<const K: usize>(&self, around: &Aabb<D>) -> Option<Curvature<D>> {
+        let [first, last] = [around.min, around.max].map(|p| self.lattice.locate::<K>(p).0);
+        self.samples.curvature::<K>(first, last)
+    }
+
+    fn is_within(&self, around: &Aabb<D>) -> bool {
+        (0..D)
+            .all(|i| self.region.min[i] <= around.min[i] && around.max[i] <= self.region.max[i])
+    }
+
     /// The middle and half the range of each derivative over a box, at whose centre the value has a size [m]; `None`
     /// where the box leaves the region.
     pub(crate) fn slopes_over(&self, around: &Aabb<D>, size: f64) -> Option<[[f64; 2]; D]> {
-        let is_within = (0..D).all(|i| {
-            self.region.min[i] <= around.min[i] && around.max[i] <= self.region.max[i]
-        });
-        if !is_within {
+        if !self.is_within(around) {
             return None;
         }
         let mut slopes = match self.kernel {

@@ -28,6 +28,7 @@ mod bake;
 mod cache;
 mod certificate;
 mod control;
+mod curvature;
 mod deviation;
 mod error;
 mod far;

@@ -10,7 +10,7 @@ use palpate_field::Aabb;
 use crate::lattice::{Lattice, indices, raveled};
 
 /// Nodes along an axis of the smallest blocks.
-pub(crate) const SLOPE_BLOCK: usize = 4;
+pub(crate) const SLOPE_BLOCK: usize = 2;
 
 /// Blocks that one question looks at, at most, along an axis.
 const MOST_BLOCKS: usize = 3;

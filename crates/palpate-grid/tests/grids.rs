@@ -155,8 +155,11 @@ fn models_hold_every_value_of_their_cells() {
             let grid = Grid::bake(&shape, &options(0.03, kernel)).unwrap();
             cases::check(2000, |u| {
                 let centre = point(u, &grid, 0.1)?;
+                // From parts of a cell to many cells.
+                let size = *u.choose(&[1.0, 0.3, 0.03])?;
                 let half: [f64; 3] =
                     [0.2 * coordinate(u)?.abs().min(1.0), 0.01, within(u, 0.0, 0.05)?];
+                let half = half.map(|half| size * half);
                 let cell = Model::cell(centre.0, half);
                 let model = grid.model(&cell);
                 for _ in 0..16 {

@@ -47,4 +47,4 @@ pub use polygon::MOST_CORNERS;
 #[cfg(feature = "files")]
 pub use read::{Format, LARGEST_FILE, ReadError, ReadProblem, read, read_file};
 pub use report::Report;
-pub use solid::{Findings, Opening, Solid, SolidError};
+pub use solid::{Findings, Opening, Sheet, Solid, SolidError};

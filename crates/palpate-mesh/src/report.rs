@@ -5,9 +5,10 @@
 
 use std::fmt;
 
-use palpate_field::{Aabb, Point, Vector};
+use palpate_field::{Aabb, Point};
 
 use crate::mesh::{Mesh, weld};
+use crate::solid::across;
 
 /// An element is degenerate if its height is at most this times its largest coordinate: the
 /// rounding of its vertices.
@@ -195,18 +196,8 @@ pub(crate) fn signed_volume<const N: usize, const D: usize>(
     corners: &[Point<D>; N],
     apex: Point<D>,
 ) -> f64 {
-    let v = |i: usize| corners[i] - apex;
-    let minor =
-        |a: Vector<f64, D>, b: Vector<f64, D>, i: usize, k: usize| a[i] * b[k] - a[k] * b[i];
-    match (N, D) {
-        (2, 2) => 0.5 * minor(v(0), v(1), 0, 1),
-        (3, 3) => {
-            let (a, b, c) = (v(0), v(1), v(2));
-            (a[0] * minor(b, c, 1, 2) + a[1] * minor(b, c, 2, 0) + a[2] * minor(b, c, 0, 1))
-                / 6.0
-        }
-        _ => 0.0,
-    }
+    let simplices = if D == 2 { 2.0 } else { 6.0 };
+    (corners[0] - apex).dot(across(corners)) / simplices
 }
 
 #[cfg(test)]

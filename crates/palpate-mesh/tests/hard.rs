@@ -12,6 +12,7 @@ use palpate_mesh::{
     Findings, Format, Mesh, Outline, Solid, SolidError, TriangleMesh, read, read_file,
 };
 use palpate_testkit::hard::{self, Hard};
+use palpate_testkit::models;
 use palpate_testkit::soup::{Soup, points};
 
 fn mesh(soup: &Soup) -> TriangleMesh {
@@ -95,6 +96,25 @@ fn signs_are_those_of_the_winding_number_and_distances_those_of_the_faces() {
         }
         let count = probes(&given).len();
         assert!(10 * decided >= 9 * count, "{name}: {decided} of {count}");
+    }
+}
+
+/// No value over a cell leaves its model, at faces that cross, touch, double each other or have no area either.
+#[test]
+fn models_bound_what_is_in_their_cells() {
+    for Hard { name, mesh: given, .. } in all() {
+        let given = mesh(&given);
+        let (solid, findings) = Solid::from_mesh(&given).unwrap();
+        let size = given.bounds().half_extents().norm();
+        let faces = given.elements().len();
+        for (i, u) in points(if faces > 5000 { 6 } else { 60 }, 1.0).enumerate() {
+            let [a, b, c] = given.corners(i * 7 % faces);
+            let near = a + (b - a) * (u[0].abs() * 0.5) + (c - a) * (u[1].abs() * 0.5);
+            let half = [0.1, 0.02, 0.004][i % 3] * size;
+            let centre = near + u * (0.6 * half);
+            let model = models::bounding(&solid, centre, [half; 3], 30);
+            assert!(model.is_ok(), "{name}: {model:?}; {findings}");
+        }
     }
 }
 

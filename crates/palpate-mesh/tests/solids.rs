@@ -6,10 +6,12 @@
 use std::f64::consts::TAU;
 use std::path::Path;
 
-use palpate_field::scalar::Model;
-use palpate_field::{CustomField, Quality, Rotation, Shape, Vector};
-use palpate_mesh::{Findings, Mesh, Outline, Solid, SolidError, TriangleMesh, read_file};
+use palpate_field::{CustomField, MassLimits, Quality, Rotation, Shape, Vector};
+use palpate_mesh::{
+    Findings, Mesh, Outline, Sheet, Solid, SolidError, TriangleMesh, read_file,
+};
 use palpate_testkit::soup::{Soup, points};
+use palpate_testkit::{hard, models};
 
 /// The mesh of triangles.
 fn mesh(soup: &Soup) -> TriangleMesh {
@@ -123,7 +125,7 @@ fn faces_that_are_turned_doubled_or_gone_are_mended() {
     assert_eq!(findings.openings.len(), 1, "{findings}");
     let words = findings.to_string();
     assert!(
-        words.contains("1 opening, ") && words.ends_with("was closed by a flat cap"),
+        words.contains("1 opening, ") && words.contains(" was closed by a flat cap: within 0."),
         "{words}"
     );
     assert!(shape.distance([0.0, 0.5, 0.0]) < 0.0 && shape.distance([0.0, 0.95, 0.0]) > 0.0);
@@ -239,19 +241,9 @@ fn models_bound_what_is_in_their_cells() {
             let centre = p + middle;
             let half = [0.2, 0.05, 0.01, 0.002][i % 4] * size;
             let sides = [half, 0.7 * half, 0.4 * half];
-            let cell = Model::cell(centre.0, sides);
-            let model = CustomField::model(&solid, &cell);
-            for u in points(60, 1.0).chain([Vector([1.0; 3]), Vector([-1.0; 3])]) {
-                let at = Vector(std::array::from_fn(|k| centre[k] + sides[k] * u[k]));
-                let f = CustomField::distance(&solid, at);
-                let plane = model.value + (0..3).map(|k| model.gradient[k] * u[k]).sum::<f64>();
-                assert!(
-                    plane - model.lower <= f && f <= plane + model.upper,
-                    "{at:?}: {f}, {model:?}"
-                );
-            }
+            let model = models::bounding(&solid, centre, sides, 60).unwrap();
             if i % 4 == 3 {
-                closer += (model.lower + model.upper) / (2.0 * Model::radius(&cell));
+                closer += (model.lower + model.upper) / (2.0 * Vector(sides).norm());
                 count += 1.0;
             }
         }
@@ -259,34 +251,101 @@ fn models_bound_what_is_in_their_cells() {
     }
 }
 
-/// A model of a cell that the surface passes once was that of the Lipschitz constant alone.
+/// A model of a cell that the surface passes once was that of the Lipschitz constant alone. The cuboids overlap.
 #[test]
 fn models_across_the_surface_know_its_direction() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../testdata/meshes");
-    for name in ["nut.ply", "bunny.ply"] {
-        let mesh = read_file(folder.join(name)).unwrap();
+    let turn = Rotation::from_axis_angle([0.3, 1.0, 0.2], 0.7).unwrap();
+    let cuboids = Soup::cuboid([0.0; 3], [1.0; 3])
+        .and(Soup::cuboid([0.4, 0.3, 0.2], [1.0, 0.8, 0.9]).turned(&turn));
+    let real = |name| (name, read_file(folder.join(name)).unwrap());
+    for (name, mesh) in [real("nut.ply"), real("bunny.ply"), ("cuboids", mesh(&cuboids))] {
+        let most = if name == "cuboids" { 0.7 } else { 0.55 };
         let size = mesh.bounds().half_extents().norm();
         let (solid, _) = Solid::from_mesh(&mesh).unwrap();
         let (mut share, mut count) = (0.0, 0.0);
-        for (face, u) in (0..mesh.elements().len()).step_by(7).zip(points(4000, 1.0)) {
-            let [a, b, c] = mesh.corners(face);
+        for (face, u) in (0..mesh.elements().len() * 9).step_by(7).zip(points(4000, 1.0)) {
+            let [a, b, c] = mesh.corners(face % mesh.elements().len());
             // Near the surface, at places that are edges and corners too.
             let near = a + (b - a) * u[0].abs() * 0.5 + (c - a) * u[1].abs() * 0.5;
             let half = [0.03, 0.01, 0.003][face % 3] * size;
             let centre = near + u * (0.5 * half);
-            let cell = Model::cell(centre.0, [half; 3]);
-            let model = CustomField::model(&solid, &cell);
-            for v in points(80, 1.0).chain([Vector([1.0; 3]), Vector([-1.0; 3])]) {
-                let f = CustomField::distance(&solid, centre + v * half);
-                let plane = model.value + (0..3).map(|k| model.gradient[k] * v[k]).sum::<f64>();
-                assert!(
-                    plane - model.lower <= f && f <= plane + model.upper,
-                    "{name}, face {face}: {f}, {model:?}"
-                );
-            }
-            share += (model.lower + model.upper) / (2.0 * Model::radius(&cell));
+            let model = models::bounding(&solid, centre, [half; 3], 80).unwrap();
+            share += (model.lower + model.upper) / (2.0 * 3.0_f64.sqrt() * half);
             count += 1.0;
         }
-        assert!(share / count < 0.55, "{name}: {}", share / count);
+        assert!(share / count < most, "{name}: {}", share / count);
+    }
+}
+
+/// Of a polyhedron no cells are cut; of faces that cross they are.
+#[test]
+fn the_mass_of_a_mesh_is_that_of_its_faces() {
+    let (shape, _) = solid(&Soup::cuboid([0.3, 0.1, -0.2], [1.0, 2.0, 3.0]));
+    let turn = Rotation::from_axis_angle([0.3, 1.0, 0.2], 0.7).unwrap();
+    let moved = shape.clone().rotated(turn).unwrap().scaled(2.0).unwrap();
+    let moved = moved.translated([5.0, 0.0, 0.0]).unwrap();
+    let middle = turn.rotate(Vector([0.3, 0.1, -0.2])) * 2.0 + Vector([5.0, 0.0, 0.0]);
+    for (shape, scale, middle) in
+        [(shape, 1.0_f64, Vector([0.3, 0.1, -0.2])), (moved, 2.0, middle)]
+    {
+        let mass = shape.mass(500.0, MassLimits::default()).unwrap();
+        let volume = 6.0 * scale.powi(3);
+        assert_eq!(mass.cells, 0);
+        assert!((mass.volume - volume).abs() <= mass.volume_error, "{mass:?}");
+        assert!((mass.centroid - middle).norm() <= 2.0 * mass.centroid_error, "{mass:?}");
+        // (a² + b² + c²)/12 of the mass, whichever way it is turned.
+        let inertia = 500.0 * volume * 14.0 * scale.powi(2) / 12.0;
+        let off = (mass.polar_inertia() - inertia).abs();
+        assert!(off <= 3.0 * mass.second_moments_error, "{off}, {mass:?}");
+        let relative = [
+            mass.volume_error / volume,
+            mass.centroid_error / scale,
+            mass.second_moments_error / inertia,
+        ];
+        assert!(relative.iter().all(|error| *error < 1e-10), "{relative:?}");
+    }
+    let square = [[0.0, 0.0], [2.0, 0.0], [2.0, 1.0], [0.0, 1.0]].map(Vector).to_vec();
+    let outline = Outline::new(square, (0..4).map(|i| [i, (i + 1) % 4]).collect()).unwrap();
+    let flat: Shape<2> = Solid::from_mesh(&outline).unwrap().0.into();
+    let mass = flat.mass(1.0, MassLimits::default()).unwrap();
+    assert!((mass.volume - 2.0).abs() <= mass.volume_error && mass.volume_error < 1e-12);
+    assert!((mass.centroid - Vector([1.0, 0.5])).norm() < 1e-12);
+    // Two cubes that share a half: 1.5 m³, though their faces enclose 2.
+    let [one, two] = [0.0, 0.5].map(|x| Soup::cuboid([x, 0.01 * x, 0.0], [1.0; 3]));
+    let (both, findings) = solid(&one.and(two));
+    assert!(findings.crossings > 0);
+    let mass = both.mass(1.0, MassLimits::default().with_tolerance(1e-2)).unwrap();
+    let volume = 2.0 - 0.5 * 0.995;
+    assert!(mass.cells > 0 && (mass.volume - volume).abs() <= mass.volume_error, "{mass:?}");
+}
+
+/// Walls within overlapping solids were once named as surface.
+#[test]
+fn a_wall_within_is_no_surface() {
+    let [one, two] = [0.0, 0.5].map(|x| Soup::cuboid([x, 0.01 * x, 0.0], [1.0; 3]));
+    let (both, _) = solid(&one.and(two));
+    assert_eq!(both.surface_point([0.45, 0.0, 0.0]), None);
+    let on_surface = both.surface_point([-0.3, 0.0, 0.1]);
+    assert!(on_surface.is_some_and(|p| (p - Vector([-0.5, 0.0, 0.1])).norm() < 1e-12));
+}
+
+/// A plate is as far as its faces, whatever they are, less half its thickness.
+#[test]
+fn faces_without_an_inside_are_a_plate() {
+    let turn = Rotation::from_axis_angle([0.3, 1.0, 0.2], 0.7).unwrap();
+    let crossing = Soup::cuboid([0.1, 0.2, 0.0], [0.5, 0.6, 0.7]).turned(&turn);
+    let soup = hard::sheet(6, 1.0).and(crossing.without(|face| face % 3 == 0));
+    let sheet = Sheet::from_mesh(&mesh(&soup), 0.02).unwrap();
+    let size = soup.reach();
+    for (i, p) in points(300, 1.5 * size).enumerate() {
+        let (f, gradient) = CustomField::distance_gradient(&sheet, p);
+        assert!((f + 0.01 - soup.distance(p)).abs() < 1e-14, "{p:?}: {f}");
+        assert!((gradient.norm() - 1.0).abs() < 1e-12, "{p:?}: {gradient:?}");
+        let half = [0.2, 0.02, 0.003][i % 3] * size;
+        models::bounding(&sheet, p, [half, 0.5 * half, half], 40).unwrap();
+    }
+    for thickness in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+        assert!(Sheet::from_mesh(&mesh(&soup), thickness).is_err());
     }
 }

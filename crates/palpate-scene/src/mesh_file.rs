@@ -5,9 +5,9 @@
 
 use std::path::Path;
 
-use palpate_field::Shape;
+use palpate_field::{LARGEST_LENGTH, Point, SMALLEST_LENGTH, Shape, Vector};
 use palpate_grid::{Inside, Volume};
-use palpate_mesh::{Findings, Solid, TriangleMesh, read_file};
+use palpate_mesh::{Findings, Sheet, Solid, TriangleMesh, read_file};
 use serde::Deserialize;
 
 use crate::beside::{Beside, Kept, Stamp};
@@ -15,10 +15,13 @@ use crate::grids::named;
 use crate::problem::Problem;
 
 /// The solids of files, in the units of the files, up to as many triangles: a few GB.
-static SOLIDS: Kept<Key, (Shape<3>, Findings<3>)> = Kept::new(1 << 22);
+static SOLIDS: Kept<Key, Made> = Kept::new(1 << 22);
 
-/// A file, and in a volume the value of the surface, by its bits, and the side asked for.
-type Key = (Stamp, Option<u64>, Option<Inside>);
+/// A solid, what was found in its mesh, and the samples of its volume if it has one.
+type Made = (Shape<3>, Findings<3>, Option<Samples>);
+
+/// A file, and of what is taken from it the number, by its bits, and the side asked for.
+type Key = (Stamp, Option<(&'static str, u64)>, Option<Inside>);
 
 /// The solid of a mesh file or of a surface in a volume, as a scene uses it.
 #[derive(Clone, Debug)]
@@ -32,16 +35,45 @@ pub struct BuiltMesh {
     pub value: Option<f64>,
     /// The side of the value that is inside, where the scene says it; else the file does.
     pub inside: Option<Inside>,
-    /// What was found in it, and mended.
+    /// The samples of a volume, in metres before `scale`; `None` of a mesh.
+    pub samples: Option<Samples>,
+    /// The thickness of the plate that a sheet makes [m]; `None` of a solid.
+    pub thickness: Option<f64>,
+    /// What was found in it, and mended; nothing is looked for in a sheet.
     pub findings: Findings<3>,
     /// The solid.
     pub shape: Shape<3>,
 }
 
+/// The samples of a volume, as its file tells.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Samples {
+    /// How many there are along each axis.
+    pub counts: [usize; 3],
+    /// The place of the first [m].
+    pub origin: Point<3>,
+    /// The way from one to the next along each axis [m].
+    pub steps: [Vector<f64, 3>; 3],
+    /// The least and the largest.
+    pub range: [f32; 2],
+}
+
+impl Samples {
+    /// The samples of a volume.
+    #[must_use]
+    pub fn of(volume: &Volume) -> Self {
+        let Volume { counts, origin, steps, .. } = *volume;
+        Self { counts, origin, steps, range: volume.range() }
+    }
+}
+
 impl BuiltMesh {
     /// Whether it is the same file at the same scale.
     pub(crate) fn is_same(&self, other: &Self) -> bool {
-        let numbers = |mesh: &Self| (mesh.scale.to_bits(), mesh.value.map(f64::to_bits));
+        let numbers = |mesh: &Self| {
+            (mesh.scale.to_bits(), [mesh.value, mesh.thickness].map(|x| x.map(f64::to_bits)))
+        };
         let is_same_side = self.inside == other.inside;
         self.file == other.file && numbers(self) == numbers(other) && is_same_side
     }
@@ -54,6 +86,7 @@ pub(crate) struct WrittenMesh {
     file: String,
     #[serde(default = "one")]
     scale: f64,
+    thickness: Option<f64>,
 }
 
 /// The surface of a volume as a file gives it.
@@ -76,6 +109,7 @@ struct Asked<'a> {
     scale: f64,
     value: Option<f64>,
     inside: Option<Inside>,
+    thickness: Option<f64>,
 }
 
 fn one() -> f64 {
@@ -85,9 +119,12 @@ fn one() -> f64 {
 impl WrittenMesh {
     /// The solid of the file, which is looked for in `folder`.
     pub(crate) fn built(&self, folder: Option<&Path>) -> Result<BuiltMesh, Problem> {
-        let read = |path: &Path| read_file(path).map_err(|error| error.to_string());
+        let read = |path: &Path| {
+            read_file(path).map(|mesh| (mesh, None)).map_err(|error| error.to_string())
+        };
         let (file, scale) = (self.file.as_str(), self.scale);
-        let asked = Asked { what: "a mesh", file, scale, value: None, inside: None };
+        let (value, inside, thickness) = (None, None, self.thickness);
+        let asked = Asked { what: "a mesh", file, scale, value, inside, thickness };
         built(asked, folder, read)
     }
 }
@@ -102,34 +139,56 @@ impl WrittenVolume {
             let mut volume = Volume::open(path).map_err(|error| error.to_string())?;
             volume.inside = inside.unwrap_or(volume.inside);
             let surface = volume.surface(self.value);
-            surface.map_err(|problem| format!("{}: {problem}", path.display()))
+            surface
+                .map(|mesh| (mesh, Some(Samples::of(&volume))))
+                .map_err(|problem| format!("{}: {problem}", path.display()))
         };
         let (file, scale) = (self.file.as_str(), self.scale);
-        let asked = Asked { what: "a volume", file, scale, value: Some(self.value), inside };
+        let (value, thickness) = (Some(self.value), None);
+        let asked = Asked { what: "a volume", file, scale, value, inside, thickness };
         built(asked, folder, surface)
     }
 }
 
 /// The solid of what `read` makes of a file.
 fn built(
-    Asked { what, file, scale, value, inside }: Asked<'_>,
+    Asked { what, file, scale, value, inside, thickness }: Asked<'_>,
     folder: Option<&Path>,
-    read: impl FnOnce(&Path) -> Result<TriangleMesh, String>,
+    read: impl FnOnce(&Path) -> Result<(TriangleMesh, Option<Samples>), String>,
 ) -> Result<BuiltMesh, Problem> {
     if scale.is_nan() || scale <= 0.0 || scale.is_infinite() {
         return Err(Problem::new(format!("scale must be positive, got {scale}")).under("scale"));
     }
+    if let Some(thickness) = thickness
+        && !(SMALLEST_LENGTH..=LARGEST_LENGTH).contains(&thickness)
+    {
+        let rule = format!("{SMALLEST_LENGTH:e} to {LARGEST_LENGTH:e} m");
+        let problem = format!("thickness must be from {rule}, got {thickness} m");
+        return Err(Problem::new(problem).under("thickness"));
+    }
     let of_file = |message: String| Problem::new(message).under("file");
     let Beside { path, stamp } =
         Beside::of(what, file, folder).map_err(|problem| problem.under("file"))?;
-    let key = (stamp, value.map(f64::to_bits), inside);
-    let (shape, findings) = match SOLIDS.of(&key) {
+    // A thickness is in metres, the solids that are kept in units of the file.
+    let thick = thickness.map(|thickness| thickness / scale);
+    let number = |name, number: Option<f64>| number.map(|number| (name, number.to_bits()));
+    let key = (stamp, number("value", value).or(number("thickness", thick)), inside);
+    let (shape, findings, samples) = match SOLIDS.of(&key) {
         Some(known) => known,
         None => {
-            let mesh = read(&path).map_err(of_file)?;
-            let (solid, findings) = Solid::from_mesh(&mesh)
-                .map_err(|error| of_file(format!("{}: {error}", path.display())))?;
-            let (made, faces) = ((solid.into(), findings), mesh.elements().len());
+            let (mesh, samples) = read(&path).map_err(of_file)?;
+            let faces = mesh.elements().len();
+            let solid = match thick {
+                Some(thick) => Sheet::from_mesh(&mesh, thick).map(|sheet| {
+                    let mut found = Findings::default();
+                    (found.faces, found.own) = (faces, faces);
+                    (sheet.into(), found)
+                }),
+                None => Solid::from_mesh(&mesh).map(|(solid, found)| (solid.into(), found)),
+            };
+            let (shape, findings) =
+                solid.map_err(|error| of_file(format!("{}: {error}", path.display())))?;
+            let made = (shape, findings, samples);
             // Another state of the file is of no use any more.
             SOLIDS.keep(key.clone(), &made, faces, |(known, other, side)| {
                 known.is_of_same_file(&key.0)
@@ -144,6 +203,8 @@ fn built(
         scale,
         value,
         inside,
+        thickness,
+        samples,
         findings: findings.scaled(scale),
         shape: scaled.map_err(|error| Problem::new(error.to_string()).under("scale"))?,
     })

@@ -5,7 +5,7 @@
 
 use palpate_field::Shape;
 use palpate_grid::{GridError, GridOptions};
-use palpate_mesh::Solid;
+use palpate_mesh::{Sheet, Solid};
 
 use crate::build::BuiltScene;
 use crate::resources::Resources;
@@ -50,7 +50,9 @@ impl<const D: usize> BuiltScene<D> {
     ) -> Result<MeshesBaked<D>, GridError> {
         let (mut scene, mut bodies) = (self.clone(), Vec::new());
         for body in &mut scene.bodies {
-            if !body.shape_in_body.holds(std::any::type_name::<Solid<3, 3>>()) {
+            let kinds =
+                [std::any::type_name::<Solid<3, 3>>(), std::any::type_name::<Sheet<3, 3>>()];
+            if !kinds.iter().any(|kind| body.shape_in_body.holds(kind)) {
                 continue;
             }
             let made = baked(&body.shape_in_body, cell, resources).and_then(|(grid, told)| {
@@ -85,7 +87,7 @@ fn baked<const D: usize>(
     let grid = resources.bake(shape, &options)?;
     let (cell, deviation) = (grid.lattice().cell, grid.deviation());
     if deviation.is_infinite() {
-        return Err(GridError::NoInside { cell });
+        return Err(GridError::Unknown { cell });
     }
     Ok((grid.into(), [cell, deviation]))
 }

@@ -6,7 +6,7 @@
 //! - [`arbitrary`]: trees and points, biased towards what breaks formulas;
 //! - [`tree`]: shapes as plain data, and their formulas written a second time;
 //! - [`double`]: numbers of twice the precision, to measure rounding with;
-//! - [`laws`]: laws that every field must obey;
+//! - [`laws`]: laws that every field must obey; [`models`]: models against values;
 //! - [`oracle`]: distances from definitions, without any formula of the library;
 //! - [`separation`]: separations by a plain search; [`recall`]: poses with proven separations,
 //!   as files;
@@ -21,6 +21,7 @@ pub mod double;
 pub mod hard;
 pub mod kernels;
 pub mod laws;
+pub mod models;
 pub mod oracle;
 pub mod recall;
 pub mod separation;

@@ -9,6 +9,7 @@ use palpate::scene::{BakedBody, BuiltScene};
 use serde_json::{Value, json};
 
 use crate::arguments::FeelOptions;
+use crate::check::unit_hint;
 use crate::input::Bakes;
 use crate::numbers::rounded;
 use crate::outcome::Failure;
@@ -21,6 +22,11 @@ pub(super) fn scene<const D: usize>(
 ) -> Result<(BuiltScene<D>, Vec<BakedBody>), Failure> {
     if options.exact {
         return Ok((scene.clone(), Vec::new()));
+    }
+    for mesh in &scene.meshes {
+        if let Some(hint) = unit_hint(mesh) {
+            output::remark(format_args!("{}: {hint}", shown(&mesh.file)));
+        }
     }
     if !scene.meshes.is_empty() {
         output::remark("meshes are sampled on grids first; --exact touches them as they are");

@@ -1,24 +1,26 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! A mesh of a scene, or of another mesh.
+//! A mesh of a scene, or of another mesh: of one whose faces bound its solid these faces, mended, else a surface made
+//! anew.
 
 use std::fmt::Display;
 use std::io::Write;
 use std::ops::ControlFlow;
 use std::path::Path;
 
-use palpate::field::Shape;
+use palpate::field::{Quality, Shape};
 use palpate::mesh::{ContourError, ContourOptions, Format, Solid, TriangleMesh};
 use palpate::scene::AnyScene;
 use serde_json::json;
 
 use crate::arguments::MeshOptions;
-use crate::error_map::bar;
 use crate::input::{self, longest_edge};
 use crate::interrupt::Interrupt;
+use crate::numbers::rounded;
 use crate::outcome::{Failure, Outcome};
 use crate::output::{self, Files, counted, shown};
+use crate::progress::Progress;
 
 /// Cells along the longest side of the scene unless the options say another number.
 const CELLS: f64 = 100.0;
@@ -29,13 +31,14 @@ const FIRST_TRY: f64 = 30.0;
 /// How often cells are made smaller for a tolerance.
 const MOST_TRIES: usize = 12;
 
-/// Steps of the progress bar.
+/// Steps of the progress.
 const STEPS: f64 = 1000.0;
 
 /// A mesh as its file holds it, and how far it is from the surface.
 struct Made {
     mesh: TriangleMesh,
-    cell: f64,
+    /// The cells of its vertices [m]; `None` of the faces of another mesh.
+    cell: Option<f64>,
     /// The largest size of the field on a triangle [m]: found, and proven.
     error: [f64; 2],
 }
@@ -51,28 +54,59 @@ pub(super) fn run(
     let format = Format::of(output).ok_or_else(|| {
         Failure::file(output, "the name of a mesh must end in .obj, .stl, .ply or .glb")
     })?;
-    let shape = shape(options)?;
+    let (shape, mended) = match Format::of(&options.file) {
+        None => (shape(options)?, None),
+        Some(_) => {
+            let solid = solid(options)?;
+            let mended = mended(&solid, options, format)?;
+            (solid.into(), mended)
+        }
+    };
     interrupt.heed();
     let work = Work { options, shape: &shape, format, interrupt };
-    let Some(made) = work.made()? else {
+    let made = if mended.is_some() { mended } else { work.made()? };
+    let Some(made) = made else {
         output::remark("interrupted: nothing was written");
         return Ok(Outcome::Interrupted);
     };
     destination.write(|out| Ok(made.mesh.write(format, out)?))?;
-    report(options, output, &shape, &made)
+    report(options, output, shape.promise().is_exact(), &made)
 }
 
-/// The shape that a mesh is made of.
-fn shape(options: &MeshOptions) -> Result<Shape<3>, Failure> {
-    if Format::of(&options.file).is_some() {
-        if options.body.is_some() {
-            return Err(Failure::file(&options.file, "a mesh has no bodies: leave --body out"));
-        }
-        let solid = Solid::from_mesh(&super::mesh(options)?);
-        return solid
-            .map(|(solid, _)| solid.into())
-            .map_err(|error| Failure::file(&options.file, error));
+/// The solid of a mesh.
+fn solid(options: &MeshOptions) -> Result<Solid<3, 3>, Failure> {
+    if options.body.is_some() {
+        return Err(Failure::file(&options.file, "a mesh has no bodies: leave --body out"));
     }
+    let solid = Solid::from_mesh(&super::mesh(options)?);
+    solid.map(|(solid, _)| solid).map_err(|error| Failure::file(&options.file, error))
+}
+
+/// The mended faces of a solid, if they bound it and no cells are asked for.
+fn mended(
+    solid: &Solid<3, 3>,
+    options: &MeshOptions,
+    format: Format,
+) -> Result<Option<Made>, Failure> {
+    let promise = solid.promise();
+    let are_boundary = [promise.outside, promise.inside] == [Quality::Exact; 2];
+    if !are_boundary || options.cell.is_some() || options.tolerance.is_some() {
+        return Ok(None);
+    }
+    let refused = |error: &dyn Display| Failure::file(&options.file, error);
+    let faces = solid.mesh().map_err(|error| refused(&error))?;
+    let mesh = faces.in_format(format).map_err(|error| refused(&error))?;
+    // No point of a triangle moves farther than its corners do.
+    let moved = (0..faces.elements().len()).flat_map(|face| {
+        let corners = faces.corners(face).into_iter().zip(mesh.corners(face));
+        corners.map(|(from, to)| (to - from).norm())
+    });
+    let moved = moved.fold(0.0, f64::max) * (1.0 + 1e-12);
+    Ok(Some(Made { mesh, cell: None, error: [moved; 2] }))
+}
+
+/// The shape of a scene.
+fn shape(options: &MeshOptions) -> Result<Shape<3>, Failure> {
     if options.weld {
         return Err(Failure::file(&options.file, "a scene has no vertices: leave --weld out"));
     }
@@ -141,7 +175,9 @@ impl Work<'_> {
         }
         // The last mesh is the best. Its error was looked at only until it was above the tolerance.
         match (last, refused) {
-            (Some(last), _) => Ok(self.measured(last.mesh, last.cell, f64::INFINITY)),
+            (Some(last), _) => {
+                Ok(self.measured(last.mesh, last.cell.unwrap_or(cell), f64::INFINITY))
+            }
             (None, Some(failure)) => Err(failure),
             (None, None) => Ok(None),
         }
@@ -149,15 +185,15 @@ impl Work<'_> {
 
     /// The mesh with cells of a size; its error, as far as it is not above `most` [m].
     fn with_cells(&self, cell: f64, most: f64) -> Try {
-        let bar = bar();
-        bar.set_length(STEPS as u64);
+        let shown = Progress::of("making triangles");
         let mut progress = |share: f64| {
-            bar.set_position((share * STEPS) as u64);
+            let cells = format_args!("cells of {} m", rounded(cell));
+            shown.show((share * STEPS) as usize, STEPS as usize, cells);
             self.is_going_on()
         };
         let options = ContourOptions::with_cell(cell);
         let mesh = TriangleMesh::of_shape_with(self.shape, &options, &mut progress);
-        bar.finish_and_clear();
+        drop(shown);
         let refused = |error: &dyn Display| Failure::file(&self.options.file, error);
         let mesh = match mesh {
             Ok(mesh) => mesh.in_format(self.format),
@@ -183,7 +219,7 @@ impl Work<'_> {
         if error.is_none() && self.interrupt.is_asked() {
             return None;
         }
-        Some(Made { mesh, cell, error: error.unwrap_or([known; 2]) })
+        Some(Made { mesh, cell: Some(cell), error: error.unwrap_or([known; 2]) })
     }
 
     fn is_going_on(&self) -> ControlFlow<()> {
@@ -198,7 +234,7 @@ impl Work<'_> {
 fn report(
     options: &MeshOptions,
     output: &Path,
-    shape: &Shape<3>,
+    is_exact: bool,
     made: &Made,
 ) -> Result<Outcome, Failure> {
     let Made { mesh, cell, error: [found, proven] } = made;
@@ -210,8 +246,6 @@ fn report(
         && mesh_report.degenerate == 0
         && solid.is_ok()
         && crosses == 0;
-    // A bound may be smaller than the distance.
-    let is_exact = shape.promise().is_exact();
     let mut out = output::answer();
     let name = output.display().to_string();
     if options.json {
@@ -234,13 +268,18 @@ fn report(
         } else {
             "not good: check it with `palpate mesh`"
         };
+        let by = match cell {
+            Some(cell) => format!("with cells of {cell:.3e} m"),
+            None => format!("those of {}, mended", shown(&options.file.display().to_string())),
+        };
         writeln!(
             out,
-            "{}: {} with cells of {cell:.3e} m, {closed}",
+            "{}: {} {by}, {closed}",
             shown(&name),
             counted(mesh.elements().len(), "triangle", "triangles"),
         )?;
         if is_exact {
+            // A bound may be smaller than the distance.
             writeln!(
                 out,
                 "  error    every triangle is within {proven:.3e} m of the surface, proven"

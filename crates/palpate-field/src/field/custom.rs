@@ -72,6 +72,16 @@ pub trait CustomField<const D: usize>: std::fmt::Debug + Send + Sync + 'static {
     fn content(&self, _sink: &mut dyn FnMut(&[u8])) -> bool {
         false
     }
+
+    /// Calls `visit` with each face of the surface if the field is that of a polyhedron or polygon: triangles
+    /// counter-clockwise seen from outside, segments with the inside on their left. `false`, the default, if it is
+    /// not.
+    ///
+    /// The faces must close: around each point inside they turn once, around each point outside not at all.
+    /// [`Shape::mass`](crate::Shape::mass) follows from them.
+    fn faces(&self, _visit: &mut dyn FnMut([Point<D>; D])) -> bool {
+        false
+    }
 }
 
 /// A closure over duals, which give its gradient without differences.
@@ -186,5 +196,9 @@ impl<F: CustomField<D>, const D: usize> Field<D> for Custom<F> {
 
     fn content(&self, sink: &mut dyn FnMut(&[u8])) -> bool {
         self.0.content(sink)
+    }
+
+    fn faces(&self, visit: &mut dyn FnMut([Point<D>; D])) -> bool {
+        self.0.faces(visit)
     }
 }

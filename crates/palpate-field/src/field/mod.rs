@@ -26,7 +26,7 @@ use crate::machine::{BLOCK, Block, Column, Gradients, Lane, SHORT};
 use crate::pose::Pose;
 use crate::promise::Promise;
 use crate::scalar::{Float, Model, Recorded, SpaceTimeModel};
-use crate::vector::Vector;
+use crate::vector::{Point, Vector};
 
 pub use crate::pose::Placement;
 pub(crate) use combine::{Combine, Combined, Minimum};
@@ -153,6 +153,11 @@ pub trait Field<const D: usize>:
     /// The members, if this is a sharp union: a union of unions has them all.
     fn members(&self) -> Option<&[SharedField<D>]> {
         None
+    }
+
+    /// As [`CustomField::faces`].
+    fn faces(&self, _visit: &mut dyn FnMut([Point<D>; D])) -> bool {
+        false
     }
 
     /// Feeds `sink` with all that determines the values of a [`CustomField`]; `false` if that is not known.

@@ -5,6 +5,7 @@
 
 mod build;
 mod content;
+mod faces;
 mod primitive;
 mod text;
 

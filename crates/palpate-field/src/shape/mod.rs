@@ -293,12 +293,12 @@ impl<const D: usize> Shape<D> {
     }
 
     /// A place near `p` where the field is zero [m]: where the promise is exact the nearest point
-    /// of the surface, else one close by. A bound may be zero inside too, at the wall where
-    /// members of a union touch.
+    /// of the surface, else one close by.
     ///
     /// Newton's method along the gradient, which need not be of length one:
     /// `p − f·∇f/|∇f|²`, until the distance is rounding. `None` if the gradient
-    /// vanishes on the way, or it takes more than 64 steps.
+    /// vanishes on the way, it takes more than 64 steps, or the zero that is found has the inside on both
+    /// sides, as bounds have at the wall where members of a union touch.
     ///
     /// ```
     /// use palpate_field::{Shape, Vector, kernel::Ball};
@@ -313,11 +313,17 @@ impl<const D: usize> Shape<D> {
     pub fn surface_point(&self, p: impl Into<Point<D>>) -> Option<Point<D>> {
         const MOST_STEPS: usize = 64;
         const SMALLEST_SLOPE: f64 = 1e-6;
+        /// In roundings.
+        const FAR: f64 = 16.0;
         let mut p = p.into();
         for _ in 0..MOST_STEPS {
             let (distance, gradient) = self.distance_gradient(p);
-            if distance.abs() <= self.promise().rounding.within(p.norm()) {
-                return Some(p);
+            let rounding = self.promise().rounding.within(p.norm());
+            if distance.abs() <= rounding {
+                let aside = gradient * (FAR * rounding);
+                let is_inside = |p| self.distance(p) < -rounding;
+                let is_wall = is_inside(p + aside) && is_inside(p - aside);
+                return (!is_wall).then_some(p);
             }
             let steepness = gradient.dot(gradient);
             if steepness.is_nan() || steepness < SMALLEST_SLOPE * SMALLEST_SLOPE {

@@ -25,6 +25,10 @@ pub use error::{VolumeError, VolumeProblem};
 /// The size of the largest file that is read, in bytes: 1 GiB.
 pub const LARGEST_VOLUME: u64 = 1 << 30;
 
+/// What the names of files of volumes end in.
+const ENDINGS: [&str; 8] =
+    [".nrrd", ".nhdr", ".mha", ".mhd", ".nii", ".nii.gz", ".npy", ".nvdb"];
+
 /// The side of a value that is inside.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Inside {
@@ -147,6 +151,20 @@ impl Volume {
     #[must_use]
     pub fn node(&self, index: [usize; 3]) -> Point<3> {
         (0..3).fold(self.origin, |p, axis| p + self.steps[axis] * index[axis] as f64)
+    }
+
+    /// Whether a file has the name of a volume: the ending of one that [`open`](Self::open) reads.
+    ///
+    /// ```
+    /// use palpate_grid::Volume;
+    ///
+    /// assert!(Volume::is_named("head.nii.gz") && !Volume::is_named("head.stl"));
+    /// ```
+    #[must_use]
+    pub fn is_named(path: impl AsRef<Path>) -> bool {
+        let name = path.as_ref().file_name().unwrap_or_default().to_string_lossy();
+        let name = name.to_ascii_lowercase();
+        ENDINGS.iter().any(|ending| name.ends_with(ending))
     }
 
     /// The least and the largest sample.

@@ -32,6 +32,8 @@ pub enum SolidError {
         pieces: usize,
     },
     /// The mesh is a sheet.
-    #[error("the openings are as large as the surface: it is a sheet, and bounds no solid")]
+    #[error(
+        "the openings are as large as the surface: it is a sheet, and bounds no solid; with a thickness it is a plate"
+    )]
     Sheet,
 }

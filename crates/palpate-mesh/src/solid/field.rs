@@ -4,17 +4,18 @@
 //! A solid as a field.
 
 use palpate_field::scalar::AffineModel;
-use palpate_field::{CustomField, Point, Promise, Shape, Vector};
+use palpate_field::{CustomField, Point, Promise, Quality, Shape, Vector};
 
-use super::Solid;
-use super::foot::{across, foot};
-use crate::tree::FAN;
+use super::foot::across;
+use super::surface::MOST_GROUPS;
+use super::winding::Winding;
+use super::{Signs, Solid};
 
 /// Normals that are farther than about 80° apart make no model of a cell that the surface passes.
 const LEAST_COSINE: f64 = 0.17;
 
-/// A model looks at so many groups of eight faces at most: a cell near more is large.
-const MOST_GROUPS: usize = 32;
+/// The same where the winding number tells the sign.
+const LEAST_COSINE_OF_SIGNS: f64 = 0.5 + 1e-9;
 
 impl<const N: usize, const D: usize> CustomField<D> for Solid<N, D> {
     fn distance(&self, p: Point<D>) -> f64 {
@@ -41,7 +42,7 @@ impl<const N: usize, const D: usize> CustomField<D> for Solid<N, D> {
             let across = self.model_across(cell, f, radius, rounding);
             return across.filter(|model| model.lower < lipschitz.lower).unwrap_or(lipschitz);
         }
-        match self.model_of_distance(cell, (distance, away), radius, rounding) {
+        match self.surface.model_of_distance(cell, (distance, away), radius, rounding) {
             None => AffineModel::lipschitz(f, 1.0, cell, rounding),
             Some(model) if f < 0.0 => AffineModel {
                 value: -model.value,
@@ -55,66 +56,27 @@ impl<const N: usize, const D: usize> CustomField<D> for Solid<N, D> {
 
     /// The vertices and faces as they were mended, of which all else follows.
     fn content(&self, sink: &mut dyn FnMut(&[u8])) -> bool {
-        for count in [self.vertices.len(), self.elements.len()] {
-            sink(&(count as u64).to_le_bytes());
-        }
-        for coordinate in self.vertices.iter().flat_map(|vertex| vertex.0) {
-            sink(&coordinate.to_le_bytes());
-        }
-        for index in self.elements.iter().flatten() {
-            sink(&index.to_le_bytes());
-        }
+        content(&self.vertices, &self.elements, sink);
         true
+    }
+
+    fn faces(&self, visit: &mut dyn FnMut([Point<D>; D])) -> bool {
+        let Promise { outside, inside, .. } = self.promise();
+        // Else faces lie within the solid, or it is counted twice where it overlaps itself.
+        let are_boundary = N == D && *outside == Quality::Exact && *inside == Quality::Exact;
+        if are_boundary {
+            for face in 0..self.surface.faces.len() {
+                let corners = self.surface.faces.corners(face);
+                visit(std::array::from_fn(|i| corners[i]));
+            }
+        }
+        are_boundary
     }
 }
 
 impl<const N: usize, const D: usize> Solid<N, D> {
-    /// A model of the distance to the nearest face over a cell that no face meets, from the distance at its
-    /// centre and the unit vector away from the nearest point; `None` if too many faces may be nearest
-    /// somewhere in it.
-    ///
-    /// The distance to each face is convex. So it is at least its tangent plane, and the nearest face's is
-    /// largest, above a plane, at a corner of the cell.
-    fn model_of_distance<const M: usize>(
-        &self,
-        cell: &[AffineModel<M>; D],
-        (distance, away): (f64, Vector<f64, D>),
-        radius: f64,
-        rounding: f64,
-    ) -> Option<AffineModel<M>> {
-        let centre = Vector(cell.map(|x| x.value));
-        let (nearest, _) = self.nearest(centre);
-        let to_nearest = |p: [f64; D]| foot(&self.faces[nearest], Vector(p)).squared.sqrt();
-        let mut model = AffineModel::tangent(distance, away.0, to_nearest, cell, rounding);
-        let own = model.lower;
-        // How far the cell's own remainders move the planes apart.
-        let remainders: f64 = cell.iter().map(|x| x.lower.max(x.upper)).sum();
-        let farthest = distance + 2.0 * radius + rounding;
-        let mut groups = 0;
-        self.boxes.nearest_first(centre, farthest * farthest, |group| {
-            groups += 1;
-            let first = group * FAN;
-            for face in self.faces.iter().skip(first).take(FAN) {
-                let found = foot(face, centre);
-                let far = found.squared.sqrt();
-                if far > farthest {
-                    continue;
-                }
-                let between = away - (centre - found.point) * (1.0 / far);
-                let apart: f64 = (0..M)
-                    .map(|k| {
-                        (0..D).map(|i| between[i] * cell[i].gradient[k]).sum::<f64>().abs()
-                    })
-                    .sum();
-                model.lower = model.lower.max(own + distance - far + apart + 2.0 * remainders);
-            }
-            if groups > MOST_GROUPS { 0.0 } else { farthest * farthest }
-        });
-        (groups <= MOST_GROUPS).then_some(model)
-    }
-
     /// A model of the signed distance `f` at the centre of a cell that the surface may pass; `None` if too many faces
-    /// may be nearest somewhere in it, if they face too different ways, or if faces cross.
+    /// may be nearest somewhere in it, if they face too different ways, or if one of them may not be surface.
     ///
     /// Wherever the gradient exists, it is a unit vector in the cone of the outward normals of the faces at the
     /// nearest point: a vertex or an edge is nearest only to points whose direction from it is in the polar cone of
@@ -128,35 +90,42 @@ impl<const N: usize, const D: usize> Solid<N, D> {
         radius: f64,
         rounding: f64,
     ) -> Option<AffineModel<M>> {
-        if self.signs.is_some() {
-            return None;
-        }
         let centre = Vector(cell.map(|x| x.value));
         let sides: [Vector<f64, D>; M] =
             std::array::from_fn(|k| Vector(cell.map(|x| x.gradient[k])));
         let farthest = f.abs() + 2.0 * radius + rounding;
+        let (reach, least_cosine) = match self.signs {
+            None => (farthest, LEAST_COSINE),
+            Some(_) => (2.0 * farthest * (1.0 + 1e-9), LEAST_COSINE_OF_SIGNS),
+        };
         let mut ranges = [[f64::INFINITY, f64::NEG_INFINITY]; M];
         // The first normal, and the least cosine of another with it.
         let mut first: Option<Vector<f64, D>> = None;
         let (mut least, mut groups, mut is_known) = (1.0_f64, 0, true);
-        self.boxes.nearest_first(centre, farthest * farthest, |group| {
+        self.surface.boxes.nearest_first(centre, reach * reach, |group| {
             groups += 1;
-            for face in self.faces.iter().skip(group * FAN).take(FAN) {
-                if foot(face, centre).squared.sqrt() > farthest {
+            let squared = self.surface.faces.squared_distances(group, centre);
+            for (face, squared) in self.surface.faces.of_group(group).zip(squared) {
+                let far = squared.sqrt();
+                if far > reach {
                     continue;
                 }
-                let (normal, error) = outward(face);
+                let (normal, error) = outward(&self.surface.faces.corners(face));
                 let cosine = first.get_or_insert(normal).dot(normal) - 2.0 * error;
+                is_known &= cosine > least_cosine;
+                if far > farthest {
+                    continue;
+                }
                 least = least.min(cosine);
-                is_known &= cosine > LEAST_COSINE;
                 for (range, side) in ranges.iter_mut().zip(&sides) {
                     let (along, error) = (normal.dot(*side), error * side.norm());
                     *range = [range[0].min(along - error), range[1].max(along + error)];
                 }
             }
-            if is_known && groups <= MOST_GROUPS { farthest * farthest } else { 0.0 }
+            if is_known && groups <= MOST_GROUPS { reach * reach } else { 0.0 }
         });
-        if !is_known || groups > MOST_GROUPS || first.is_none() {
+        let first = first.filter(|_| is_known && groups <= MOST_GROUPS)?;
+        if !self.are_surface(centre, first * (2.0 * farthest)) {
             return None;
         }
         let mut model = AffineModel { value: f, gradient: [0.0; M], lower: 0.0, upper: 0.0 };
@@ -172,6 +141,43 @@ impl<const N: usize, const D: usize> Solid<N, D> {
         remainder = (remainder + own) * (1.0 + 16.0 * f64::EPSILON) + rounding;
         (model.lower, model.upper) = (remainder, remainder);
         Some(model)
+    }
+
+    /// Whether all faces are surface that are at most half as far from a point as `across` is long, of which the normals
+    /// of all faces within its whole length are at most 60° away.
+    ///
+    /// The winding number grows by one behind each face. From every point of the smaller ball the way to the end of
+    /// `-across` leads in at all faces that it meets, the way to the end of `across` out. So the winding number in the
+    /// ball is between those at the two ends: if these are 1 and 0, each face parts the inside from the outside.
+    fn are_surface(&self, centre: Point<D>, across: Vector<f64, D>) -> bool {
+        let Some(Signs { faces, tree }) = &self.signs else { return true };
+        // Walls that were dropped change the winding number too.
+        if faces.len() > self.surface.faces.len() {
+            return false;
+        }
+        let is = |p: Point<D>, number: f64| {
+            let is_settled = |w: Winding| w.error < 0.4;
+            let found = tree.settled(faces, p, is_settled);
+            (found.number - number).abs() + found.error < 0.5
+        };
+        is(centre - across, 1.0) && is(centre + across, 0.0)
+    }
+}
+
+/// Feeds `sink` with vertices and faces.
+pub(super) fn content<const N: usize, const D: usize>(
+    vertices: &[Point<D>],
+    elements: &[[u32; N]],
+    sink: &mut dyn FnMut(&[u8]),
+) {
+    for count in [vertices.len(), elements.len()] {
+        sink(&(count as u64).to_le_bytes());
+    }
+    for coordinate in vertices.iter().flat_map(|vertex| vertex.0) {
+        sink(&coordinate.to_le_bytes());
+    }
+    for index in elements.iter().flatten() {
+        sink(&index.to_le_bytes());
     }
 }
 

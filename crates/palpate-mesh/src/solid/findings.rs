@@ -58,6 +58,7 @@ impl<const D: usize> Findings<D> {
             *opening = Opening {
                 place: opening.place * factor,
                 size: opening.size * factor,
+                doubtful: opening.doubtful * factor,
                 ..*opening
             };
         }
@@ -150,12 +151,13 @@ impl<const D: usize> fmt::Display for Findings<D> {
             "pairs of faces touch without a common corner",
         );
         let largest = self.openings.iter().max_by(|a, b| a.size.total_cmp(&b.size));
-        if let Some(Opening { size, place, .. }) = largest {
-            let (count, place) = (self.openings.len(), place_in_words(*place));
+        if let Some(Opening { size, place, doubtful, .. }) = largest {
+            let (count, at) = (self.openings.len(), place_in_words(*place));
+            let [size, doubtful] = [size, doubtful].map(|length| metres(*length));
             found.push(if count == 1 {
-                format!("1 opening, {size:.6} m across at ({place}), was closed by a flat cap")
+                format!("1 opening, {size} m across at ({at}), was closed by a flat cap: within {doubtful} m of it the sign is a guess")
             } else {
-                format!("{count} openings, the largest {size:.6} m across at ({place}), were closed by flat caps")
+                format!("{count} openings, the largest {size} m across at ({at}), were closed by flat caps: within {doubtful} m of the largest the sign is a guess")
             });
         }
         f.write_str(&found.join("; "))
@@ -163,5 +165,11 @@ impl<const D: usize> fmt::Display for Findings<D> {
 }
 
 fn place_in_words<const D: usize>(place: Point<D>) -> String {
-    place.0.map(|x| format!("{x:.6}")).join(", ")
+    place.0.map(metres).join(", ")
+}
+
+/// A length, to the micrometre if it is at least a millimetre.
+fn metres(length: f64) -> String {
+    let is_small = length.abs() < 1e-3 && length.abs() > 0.0;
+    if is_small { format!("{length:.3e}") } else { format!("{length:.6}") }
 }

@@ -70,7 +70,7 @@ pub(crate) fn foot<const N: usize, const D: usize>(
 }
 
 /// Below this share of what it would be at a right angle, the squared area of a triangle is rounding.
-const FLAT: f64 = 1e-12;
+pub(super) const FLAT: f64 = 1e-12;
 
 /// The nearest point of a segment; the parts are its ends and what is between.
 #[inline]
@@ -97,19 +97,10 @@ fn on_segment<const D: usize>(
 pub(crate) fn across<const N: usize, const D: usize>(
     corners: &[Point<D>; N],
 ) -> Vector<f64, D> {
-    let ab = corners[1] - corners[0];
-    match (N, D) {
-        (2, 2) => {
-            let mut out = Vector::ZERO;
-            (out[0], out[1]) = (ab[1], -ab[0]);
-            out
-        }
-        (3, 3) => {
-            let ac = corners[2] - corners[0];
-            ab.in_space().cross(ac.in_space()).truncated()
-        }
-        _ => Vector::ZERO,
+    if N != D {
+        return Vector::ZERO;
     }
+    Vector::across(&std::array::from_fn(|i| corners[i]))
 }
 
 #[cfg(test)]
@@ -141,13 +132,5 @@ mod tests {
         let found = foot(&corners, Vector([0.25, 0.0, 2.0]));
         assert!((found.squared - 4.0).abs() < 1e-14, "{found:?}");
         assert!((found.point - Vector([0.25, 0.0, 0.0])).norm() < 1e-11);
-    }
-
-    #[test]
-    fn across_leads_out() {
-        let segment = [[0.0, 0.0], [0.0, 2.0]].map(Vector);
-        assert_eq!(across(&segment), Vector([2.0, 0.0]));
-        let triangle = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 2.0, 0.0]].map(Vector);
-        assert_eq!(across(&triangle), Vector([0.0, 0.0, 2.0]));
     }
 }

@@ -5,11 +5,14 @@
 
 mod boxes;
 mod error;
+mod faces;
 mod field;
 mod findings;
 mod foot;
 mod normals;
 mod repair;
+mod sheet;
+mod surface;
 mod walls;
 mod winding;
 
@@ -20,15 +23,18 @@ use palpate_field::{
 use crate::error::MeshError;
 use crate::mesh::Mesh;
 use crate::report::is_flat;
-use crate::tree::{BallTree, FAN};
+use crate::tree::BallTree;
 use boxes::Boxes;
 pub use error::SolidError;
 pub use findings::Findings;
-use foot::{Foot, Part, foot};
+use foot::Part;
+pub(crate) use foot::across;
 use normals::Normals;
 pub use repair::Opening;
 pub(crate) use repair::crossing_faces;
 use repair::{Crossings, Known, Repair, by_rim, sides};
+pub use sheet::Sheet;
+use surface::Surface;
 use walls::Walls;
 use winding::WindingTree;
 
@@ -70,9 +76,8 @@ pub struct Solid<const N: usize, const D: usize> {
     /// The vertices and the faces as they were mended, in the order in which they came.
     vertices: Vec<Point<D>>,
     elements: Vec<[u32; N]>,
-    /// The corners of each face that counts for the distance, in the order of the boxes.
-    faces: Vec<[Point<D>; N]>,
-    boxes: Boxes<D>,
+    /// The faces that count for the distance.
+    surface: Surface<N, D>,
     normals: Normals<N, D>,
     /// `None` if the nearest face alone tells the sign.
     signs: Option<Signs<N, D>>,
@@ -138,9 +143,9 @@ impl<const N: usize, const D: usize> Solid<N, D> {
             _ => None,
         };
         let promise = promise(&faces, quality(&crossings, &walls));
-        let boxes = Boxes::new(&faces);
         let normals = Normals::new(vertices.len(), &ordered, &faces);
-        Ok((Self { vertices, elements, faces, boxes, normals, signs, promise }, findings))
+        let surface = Surface::new(&faces);
+        Ok((Self { vertices, elements, surface, normals, signs, promise }, findings))
     }
 
     /// The mesh that bounds the solid, mended: equal vertices merged, all faces turned, openings closed.
@@ -177,28 +182,12 @@ impl<const N: usize, const D: usize> Solid<N, D> {
         &self.promise
     }
 
-    /// The face nearest to a point, in the order of the boxes, and its nearest point.
-    fn nearest(&self, p: Point<D>) -> (usize, Foot<D>) {
-        let mut best = (0, foot(&self.faces[0], p));
-        self.boxes.nearest_first(p, best.1.squared, |group| {
-            let first = group * FAN;
-            for (i, face) in self.faces.iter().enumerate().skip(first).take(FAN) {
-                let found = foot(face, p);
-                if found.squared < best.1.squared {
-                    best = (i, found);
-                }
-            }
-            best.1.squared
-        });
-        best
-    }
-
     /// The signed distance at a point [m], and its gradient.
     fn at(&self, p: Point<D>) -> (f64, Vector<f64, D>) {
         if p.0.iter().any(|x| !x.is_finite()) {
             return (f64::NAN, Vector::ZERO);
         }
-        let (face, foot) = self.nearest(p);
+        let (face, foot) = self.surface.nearest(p);
         let away = p - foot.point;
         let distance = foot.squared.sqrt();
         let normal = self.normals.at(face, foot.part);

@@ -23,6 +23,7 @@ mod queries;
 mod rays;
 mod recall;
 mod recall_motions;
+mod sampled;
 mod separating_translations;
 mod serde;
 mod sweeps;

@@ -363,6 +363,11 @@ fn mesh() -> Value {
                 "type": "number",
                 "exclusiveMinimum": 0,
             },
+            "thickness": {
+                "description": "Of faces that bound nothing, the thickness of the plate about them [m].",
+                "type": "number",
+                "exclusiveMinimum": 0,
+            },
         },
         "required": ["file"],
         "additionalProperties": false,

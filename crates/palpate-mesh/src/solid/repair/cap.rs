@@ -4,12 +4,14 @@
 //! Openings, and the caps that close them.
 
 use std::collections::HashMap;
+use std::f64::consts::TAU;
 
 use palpate_field::{Aabb, Point, Vector};
 
 use super::ears::{Cut, cut};
 use super::rims::{by_rim, sides};
 use crate::polygon::{MOST_CORNERS, triangulate};
+use crate::solid::foot::across;
 
 /// An opening of a mesh: a loop of edges of one triangle each, or a gap between the ends of a chain of
 /// segments.
@@ -22,6 +24,9 @@ pub struct Opening<const D: usize> {
     pub size: f64,
     /// How many edges it has; 1 in the plane.
     pub edges: usize,
+    /// How far from its cap the sign may be a guess [m]: `√(A/2π)` of a cap of area A. Farther off, the cap takes less
+    /// than half of the winding number, and the faces of the mesh decide. In the plane half its length.
+    pub doubtful: f64,
 }
 
 /// The openings of a mesh, and what closes them.
@@ -52,7 +57,14 @@ pub(super) fn close<const N: usize, const D: usize>(
         caps.is_flat.push(add(&corners, &points, elements));
         caps.of_element
             .resize(caps.of_element.len() + elements.len() - count, caps.openings.len());
-        caps.openings.push(Opening { place, size, edges });
+        let area = |element: &[u32; N]| {
+            0.5 * across(&element.map(|index| vertices[index as usize])).norm()
+        };
+        let doubtful = match N {
+            2 => 0.5 * size,
+            _ => (elements[count..].iter().map(area).sum::<f64>() / TAU).sqrt(),
+        };
+        caps.openings.push(Opening { place, size, edges, doubtful });
     }
     caps
 }

@@ -1,0 +1,88 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! Faces, and the distance to the nearest of them.
+
+use palpate_field::scalar::AffineModel;
+use palpate_field::{Point, Vector};
+
+use super::boxes::Boxes;
+use super::faces::Faces;
+use super::foot::{Foot, foot};
+
+/// A model looks at so many groups of eight faces at most: a cell near more is large.
+pub(super) const MOST_GROUPS: usize = 32;
+
+/// Faces in the order of their boxes.
+#[derive(Clone, Debug)]
+pub(super) struct Surface<const N: usize, const D: usize> {
+    pub(super) faces: Faces<N, D>,
+    pub(super) boxes: Boxes<D>,
+}
+
+impl<const N: usize, const D: usize> Surface<N, D> {
+    /// Of faces in the order of the tree.
+    pub(super) fn new(faces: &[[Point<D>; N]]) -> Self {
+        Self { faces: Faces::new(faces), boxes: Boxes::new(faces) }
+    }
+
+    /// The face nearest to a point, in the order of the boxes, and its nearest point.
+    pub(super) fn nearest(&self, p: Point<D>) -> (usize, Foot<D>) {
+        let (mut nearest, mut least) = (0, f64::INFINITY);
+        self.boxes.nearest_first(p, least, |group| {
+            let squared = self.faces.squared_distances(group, p);
+            for (face, squared) in self.faces.of_group(group).zip(squared) {
+                if squared < least {
+                    (nearest, least) = (face, squared);
+                }
+            }
+            least
+        });
+        (nearest, foot(&self.faces.corners(nearest), p))
+    }
+
+    /// A model of the distance to the nearest face over a cell that no face meets, from the distance at its
+    /// centre and the unit vector away from the nearest point; `None` if too many faces may be nearest
+    /// somewhere in it.
+    ///
+    /// The distance to each face is convex. So it is at least its tangent plane, and the nearest face's is
+    /// largest, above a plane, at a corner of the cell.
+    pub(super) fn model_of_distance<const M: usize>(
+        &self,
+        cell: &[AffineModel<M>; D],
+        (distance, away): (f64, Vector<f64, D>),
+        radius: f64,
+        rounding: f64,
+    ) -> Option<AffineModel<M>> {
+        let centre = Vector(cell.map(|x| x.value));
+        let (nearest, _) = self.nearest(centre);
+        let nearest = self.faces.corners(nearest);
+        let to_nearest = |p: [f64; D]| foot(&nearest, Vector(p)).squared.sqrt();
+        let mut model = AffineModel::tangent(distance, away.0, to_nearest, cell, rounding);
+        let own = model.lower;
+        // How far the cell's own remainders move the planes apart.
+        let remainders: f64 = cell.iter().map(|x| x.lower.max(x.upper)).sum();
+        let farthest = distance + 2.0 * radius + rounding;
+        let mut groups = 0;
+        self.boxes.nearest_first(centre, farthest * farthest, |group| {
+            groups += 1;
+            let squared = self.faces.squared_distances(group, centre);
+            for (face, squared) in self.faces.of_group(group).zip(squared) {
+                let far = squared.sqrt();
+                if far > farthest {
+                    continue;
+                }
+                let found = foot(&self.faces.corners(face), centre);
+                let between = away - (centre - found.point) * (1.0 / far);
+                let apart: f64 = (0..M)
+                    .map(|k| {
+                        (0..D).map(|i| between[i] * cell[i].gradient[k]).sum::<f64>().abs()
+                    })
+                    .sum();
+                model.lower = model.lower.max(own + distance - far + apart + 2.0 * remainders);
+            }
+            if groups > MOST_GROUPS { 0.0 } else { farthest * farthest }
+        });
+        (groups <= MOST_GROUPS).then_some(model)
+    }
+}
