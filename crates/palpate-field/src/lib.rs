@@ -60,6 +60,7 @@ pub use field::MAX_DEPTH;
 pub use kernel::Kernel;
 pub use machine::{
     BLOCK, Block, Column, Gradients, InstructionSet, Lane, LaneArray, Lanes, ModelLanes, SHORT,
+    Wide, wide,
 };
 pub use mass::{Mass, MassLimits};
 pub use node::Node;

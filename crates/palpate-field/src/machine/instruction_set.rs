@@ -199,3 +199,49 @@ pub(crate) fn run_point<T, G, J: PointJob<T, G>>(
 fn point_with_avx2<T, G, J: PointJob<T, G>>(job: &J, x: T, y: T, z: T, gradient: &mut G) -> T {
     job.at(x, y, z, gradient)
 }
+
+/// Work that gains from wider instructions, as a loop over arrays does.
+///
+/// [`run`](Self::run) must be `#[inline(always)]`, and so must all that it calls, to be compiled with them.
+pub trait Wide {
+    /// What it gives.
+    type Out;
+
+    /// Does the work.
+    fn run(self) -> Self::Out;
+}
+
+/// Does some work with the instruction set in use: with AVX2 at most. The bits are the same with each.
+///
+/// ```
+/// use palpate_field::{Wide, wide};
+///
+/// struct Sum<'a>(&'a [f64; 8]);
+///
+/// impl Wide for Sum<'_> {
+///     type Out = f64;
+///
+///     #[inline(always)]
+///     fn run(self) -> f64 {
+///         self.0.iter().sum()
+///     }
+/// }
+///
+/// assert_eq!(wide(Sum(&[0.5; 8])), 4.0);
+/// ```
+#[inline(always)]
+pub fn wide<W: Wide>(work: W) -> W::Out {
+    #[cfg(target_arch = "x86_64")]
+    if InstructionSet::in_use() >= InstructionSet::Avx2 {
+        // SAFETY: in_use() returns only sets for which is_available() found every
+        // feature that the function is compiled with; AVX-512 includes AVX2.
+        return unsafe { wide_with_avx2(work) };
+    }
+    work.run()
+}
+
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx2,bmi2")]
+fn wide_with_avx2<W: Wide>(work: W) -> W::Out {
+    work.run()
+}

@@ -20,6 +20,6 @@ mod lanes;
 
 pub(crate) use block::Boxes;
 pub use block::{BLOCK, Block, Column, Gradients, SHORT};
-pub use instruction_set::InstructionSet;
+pub use instruction_set::{InstructionSet, Wide, wide};
 pub(crate) use instruction_set::{Job, PointJob, run, run_point};
 pub use lanes::{Lane, LaneArray, Lanes, ModelLanes};

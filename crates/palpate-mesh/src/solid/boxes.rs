@@ -12,8 +12,11 @@ use crate::tree::FAN;
 /// The most levels: eight boxes around eight each, up to `u32::MAX` elements.
 const MOST_LEVELS: usize = 11;
 
-/// The most boxes that wait: seven of each level but the last.
-const WAITING: usize = FAN + (FAN - 1) * (MOST_LEVELS - 1);
+/// The bits of a key that tell the number of its box.
+const NUMBER: u64 = FAN as u64 - 1;
+
+/// No key of a box that is left is as large: the largest number but for those bits.
+const DONE: f64 = f64::from_bits(f64::MAX.to_bits() & !NUMBER);
 
 /// The boxes of one level, padded to whole groups of eight.
 #[derive(Clone, Debug)]
@@ -27,14 +30,6 @@ struct Level<const D: usize> {
 pub(crate) struct Boxes<const D: usize> {
     /// The first level has boxes around eight elements each, the last at most eight boxes.
     levels: Vec<Level<D>>,
-}
-
-/// A group of elements or of boxes, and the square of the distance to its box [m²].
-#[derive(Clone, Copy, Debug)]
-struct Waiting {
-    squared: f64,
-    level: usize,
-    node: usize,
 }
 
 impl<const D: usize> Boxes<D> {
@@ -51,30 +46,13 @@ impl<const D: usize> Boxes<D> {
         Self { levels }
     }
 
-    /// Calls `visit` with groups of eight elements, by number, the nearest first as far as boxes tell. `visit`
-    /// returns the square of the distance [m²] beyond which no group matters any more. From a point that is
-    /// not finite there are none.
-    #[inline]
-    pub(crate) fn nearest_first(
-        &self,
-        p: Point<D>,
-        mut least: f64,
-        mut visit: impl FnMut(usize) -> f64,
-    ) {
-        let mut waiting = Stack::new();
-        waiting.push(self, p, [self.levels.len() - 1, 0], least);
-        while let Some(Waiting { squared, level, node }) = waiting.pop() {
-            // Written so that NaN, and padding, are passed over.
-            let matters = squared < least;
-            if !matters {
-                continue;
-            }
-            if level == 0 {
-                least = visit(node);
-            } else {
-                waiting.push(self, p, [level - 1, node], least);
-            }
-        }
+    /// The groups of eight elements as seen from a point.
+    #[inline(always)]
+    pub(crate) fn from(&self, p: Point<D>) -> Walk<'_, D> {
+        let level = self.levels.len() - 1;
+        let mut keys = [[DONE; FAN]; MOST_LEVELS];
+        keys[level] = self.levels[level].keys(p, 0);
+        Walk { boxes: self, p, level, groups: [0; MOST_LEVELS], keys }
     }
 
     /// Calls `visit` with the groups of eight elements, by number, whose boxes share a point with a box.
@@ -93,46 +71,44 @@ impl<const D: usize> Boxes<D> {
     }
 }
 
-/// Boxes that wait, of each group the nearest last.
-struct Stack {
-    waiting: [Waiting; WAITING],
-    count: usize,
+/// A walk over groups, the nearest first as far as boxes tell.
+pub(crate) struct Walk<'a, const D: usize> {
+    boxes: &'a Boxes<D>,
+    p: Point<D>,
+    level: usize,
+    /// Of each level, the group that is looked into, and the keys of its boxes.
+    groups: [usize; MOST_LEVELS],
+    keys: [[f64; FAN]; MOST_LEVELS],
 }
 
-impl Stack {
-    fn new() -> Self {
-        Self { waiting: [Waiting { squared: 0.0, level: 0, node: 0 }; WAITING], count: 0 }
-    }
-
-    #[inline]
-    fn pop(&mut self) -> Option<Waiting> {
-        self.count = self.count.checked_sub(1)?;
-        Some(self.waiting[self.count])
-    }
-
-    /// Adds the boxes of a group of a level that are nearer than the square of a distance.
-    #[inline]
-    fn push<const D: usize>(
-        &mut self,
-        boxes: &Boxes<D>,
-        p: Point<D>,
-        [level, group]: [usize; 2],
-        least: f64,
-    ) {
-        let first = self.count;
-        let squared = boxes.levels[level].squared_distances(p, group);
-        for (i, squared) in squared.into_iter().enumerate() {
-            let matters = squared < least;
+impl<const D: usize> Walk<'_, D> {
+    /// The number of the next group of eight elements whose box is nearer than the square of a distance [m²]; none
+    /// from a point that is not finite.
+    #[inline(always)]
+    pub(crate) fn next(&mut self, least: f64) -> Option<usize> {
+        loop {
+            let keys = &mut self.keys[self.level];
+            let mut nearest = DONE;
+            for key in *keys {
+                nearest = if key < nearest { key } else { nearest };
+            }
+            let matters = nearest < least && nearest < DONE;
             if !matters {
+                if self.level + 1 == self.boxes.levels.len() {
+                    return None;
+                }
+                self.level += 1;
                 continue;
             }
-            let mut place = self.count;
-            while place > first && self.waiting[place - 1].squared < squared {
-                self.waiting[place] = self.waiting[place - 1];
-                place -= 1;
+            let number = (nearest.to_bits() & NUMBER) as usize;
+            keys[number] = DONE;
+            let node = self.groups[self.level] * FAN + number;
+            if self.level == 0 {
+                return Some(node);
             }
-            self.waiting[place] = Waiting { squared, level, node: group * FAN + i };
-            self.count += 1;
+            self.level -= 1;
+            self.groups[self.level] = node;
+            self.keys[self.level] = self.boxes.levels[self.level].keys(self.p, node);
         }
     }
 }
@@ -153,9 +129,10 @@ impl<const D: usize> Level<D> {
         level
     }
 
-    /// The squares of the distances to the boxes of a group [m²].
-    #[inline]
-    fn squared_distances(&self, p: Point<D>, group: usize) -> [f64; FAN] {
+    /// The squares of the distances to the boxes of a group [m²], each with the box's number in its last three bits, so
+    /// that the least tells which box it is without a branch.
+    #[inline(always)]
+    fn keys(&self, p: Point<D>, group: usize) -> [f64; FAN] {
         let mut squared = [0.0; FAN];
         for k in 0..D {
             let min = &self.min[k][group * FAN..][..FAN];
@@ -164,6 +141,11 @@ impl<const D: usize> Level<D> {
                 let away = (min[i] - p[k]).max(p[k] - max[i]).max(0.0);
                 squared[i] += away * away;
             }
+        }
+        for (i, squared) in squared.iter_mut().enumerate() {
+            // Padding is at infinity; what is not a number is passed over.
+            let far = if *squared < DONE { *squared } else { DONE };
+            *squared = f64::from_bits(far.to_bits() & !NUMBER | i as u64);
         }
         squared
     }

@@ -1,172 +1,340 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! The faces of a solid by eights, so that one instruction treats several of them.
-
-use std::array::from_fn;
-use std::ops::Range;
+//! The faces of a solid by eights. Distances to all eight in single precision tell which may be the nearest; of these
+//! the [`foot`] is taken.
 
 use palpate_field::{Point, Vector};
 
-use super::foot::FLAT;
+use super::foot::{Foot, foot};
 use crate::tree::FAN;
 
+/// The rounding of a distance in single precision, as a share of what the point and the group are from its middle: a
+/// product of unit vectors, coordinates that were rounded, and sums of a dozen terms.
+const ROUNDING: f32 = 64.0 * f32::EPSILON;
+
+/// The least rounding of a distance, in units of the size of all faces: below it squares have no digits.
+const LEAST: f32 = 1e-18;
+
+/// The bits of a number that tell which of eight faces it is of.
+const NUMBER: u32 = FAN as u32 - 1;
+
 /// One number of each of eight faces.
-type Lanes = [f64; FAN];
+type Lanes = [f32; FAN];
 
 /// The faces of a solid, in the order of its boxes.
 #[derive(Clone, Debug)]
 pub(super) struct Faces<const N: usize, const D: usize> {
-    /// Of each eight faces, of each corner, along each axis [m]. What completes the last eight is no number.
-    groups: Vec<[[Lanes; D]; N]>,
-    count: usize,
+    corners: Vec<[Point<D>; N]>,
+    groups: Vec<Group<D>>,
+    /// One over the size of all faces, about.
+    scale: f64,
+}
+
+/// Eight faces, in single precision, from the middle of their box and in units of the size of all.
+///
+/// A face lies in a plane of two axes at its first corner: one along its first edge, the other towards the third corner.
+/// Of a segment there is the first axis alone.
+#[derive(Clone, Debug)]
+struct Group<const D: usize> {
+    middle: Point<D>,
+    /// How far corners are from the middle, at most.
+    radius: f32,
+    first: [Lanes; D],
+    axes: [[Lanes; D]; 2],
+    /// The length of the first edge.
+    length: Lanes,
+    /// The edges from the second corner to the third, and from the first to it, in the plane of the axes: their
+    /// directions and lengths.
+    edges: [Edge; 2],
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Edge {
+    direction: [Lanes; 2],
+    length: Lanes,
 }
 
 impl<const N: usize, const D: usize> Faces<N, D> {
+    /// Of faces in the order of the tree.
     pub(super) fn new(faces: &[[Point<D>; N]]) -> Self {
-        let groups = faces.chunks(FAN).map(|group| {
-            let mut lanes = [[[f64::NAN; FAN]; D]; N];
-            for (lane, face) in group.iter().enumerate() {
-                for (corner, point) in face.iter().enumerate() {
-                    for (axis, x) in point.0.into_iter().enumerate() {
-                        lanes[corner][axis][lane] = x;
-                    }
-                }
-            }
-            lanes
-        });
-        Self { groups: groups.collect(), count: faces.len() }
+        const { assert!(N == 2 || N == 3, "segments and triangles") };
+        let far = faces
+            .iter()
+            .flatten()
+            .fold(0.0_f64, |far, corner| far.max((*corner - faces[0][0]).norm()));
+        // A power of two, by which nothing is rounded.
+        let scale = if far > 0.0 { 2.0_f64.powi(-(far.log2().ceil() as i32)) } else { 1.0 };
+        let groups = faces.chunks(FAN).map(|faces| Group::of(faces, scale)).collect();
+        Self { corners: faces.to_vec(), groups, scale }
     }
 
     pub(super) fn len(&self) -> usize {
-        self.count
+        self.corners.len()
     }
 
     /// The corners of a face.
+    #[inline(always)]
+    pub(super) fn corners(&self, face: usize) -> &[Point<D>; N] {
+        &self.corners[face]
+    }
+
+    /// Takes the nearest point of each face of a group that may be nearer to a point than the nearest so far, if it is.
+    #[inline(always)]
+    pub(super) fn nearer(&self, group: usize, p: Point<D>, nearest: &mut (usize, Foot<D>)) {
+        let Squared { squared, rounding } = self.groups[group].squared::<N>(p, self.scale);
+        let (first, last) = (group * FAN, self.corners.len() - 1);
+        // The likeliest first, so that others need not be looked at; its number in the last bits.
+        let mut key = f32::MAX.to_bits();
+        for (lane, squared) in squared.iter().enumerate() {
+            let other = squared.to_bits() & !NUMBER | lane as u32;
+            key = if other < key { other } else { key };
+        }
+        let mut lane = (key & NUMBER) as usize;
+        let mut left = u32::MAX;
+        loop {
+            let farthest = {
+                let far = ((nearest.1.squared * self.scale * self.scale) as f32).sqrt();
+                let within = far * (1.0 + 4.0 * f32::EPSILON) + rounding;
+                within * within
+            };
+            let mut near = 0;
+            for (lane, squared) in squared.iter().enumerate() {
+                near |= u32::from(*squared <= farthest) << lane;
+            }
+            left &= near;
+            if left == 0 {
+                return;
+            }
+            if (left >> lane) & 1 == 0 {
+                lane = left.trailing_zeros() as usize;
+            }
+            left &= !(1 << lane);
+            let face = last.min(first + lane);
+            let found = foot(&self.corners[face], p);
+            if found.squared < nearest.1.squared {
+                *nearest = (face, found);
+            }
+        }
+    }
+
+    /// Calls `visit` with each face of a group that is at most so far from a point [m], and its nearest point.
     #[inline]
-    pub(super) fn corners(&self, face: usize) -> [Point<D>; N] {
-        let group = &self.groups[face / FAN];
-        from_fn(|corner| Vector(from_fn(|axis| group[corner][axis][face % FAN])))
+    pub(super) fn within(
+        &self,
+        group: usize,
+        p: Point<D>,
+        farthest: f64,
+        mut visit: impl FnMut(&[Point<D>; N], &Foot<D>, f64),
+    ) {
+        let Squared { squared, rounding } = self.groups[group].squared::<N>(p, self.scale);
+        let within = (farthest * self.scale) as f32 + rounding;
+        for (face, squared) in self.faces(group).zip(squared) {
+            if squared > within * within {
+                continue;
+            }
+            let found = foot(&self.corners[face], p);
+            let far = found.squared.sqrt();
+            if far <= farthest {
+                visit(&self.corners[face], &found, far);
+            }
+        }
     }
 
     /// The numbers of the faces of a group.
-    pub(super) fn of_group(&self, group: usize) -> Range<usize> {
-        group * FAN..self.count.min(group * FAN + FAN)
-    }
-
-    /// The squares of the distances from a point to the faces of a group [m²], those of
-    /// [`foot`](super::foot::foot) to the bit; infinite where there is no face.
     #[inline]
-    pub(super) fn squared_distances(&self, group: usize, p: Point<D>) -> Lanes {
-        const { assert!(N == 2 || N == 3, "segments and triangles") };
-        let corners = &self.groups[group];
-        let from: [[Lanes; D]; N] =
-            from_fn(|i| from_fn(|k| lanes(|l| p[k] - corners[i][k][l])));
-        let to_next: [[Lanes; D]; N] = from_fn(|i| {
-            let next = (i + 1) % N;
-            from_fn(|k| lanes(|l| corners[next][k][l] - corners[i][k][l]))
-        });
-        let mut squared = [f64::INFINITY; FAN];
-        for i in 0..if N == 2 { 1 } else { N } {
-            let next = (i + 1) % N;
-            let (along, length) = (dot(&from[i], &to_next[i]), dot(&to_next[i], &to_next[i]));
-            let share = lanes(|l| along[l] / length[l]);
-            let (at_start, at_end) = (dot(&from[i], &from[i]), dot(&from[next], &from[next]));
-            let between: [Lanes; D] =
-                from_fn(|k| lanes(|l| p[k] - (corners[i][k][l] + to_next[i][k][l] * share[l])));
-            let between = dot(&between, &between);
-            let edge = lanes(|l| {
-                let inner = if along[l] >= length[l] { at_end[l] } else { between[l] };
-                if along[l] <= 0.0 { at_start[l] } else { inner }
-            });
-            squared = lanes(|l| if edge[l] < squared[l] { edge[l] } else { squared[l] });
-        }
-        if N == 2 {
-            return squared;
-        }
-        let ab = &to_next[0];
-        let ac: [Lanes; D] = from_fn(|k| lanes(|l| corners[N - 1][k][l] - corners[0][k][l]));
-        let (bb, bc, cc) = (dot(ab, ab), dot(ab, &ac), dot(&ac, &ac));
-        let (pb, pc) = (dot(&from[0], ab), dot(&from[0], &ac));
-        let area = lanes(|l| bb[l] * cc[l] - bc[l] * bc[l]);
-        let v = lanes(|l| cc[l] * pb[l] - bc[l] * pc[l]);
-        let w = lanes(|l| bb[l] * pc[l] - bc[l] * pb[l]);
-        let shares = [lanes(|l| v[l] / area[l]), lanes(|l| w[l] / area[l])];
-        let away: [Lanes; D] = from_fn(|k| {
-            lanes(|l| {
-                let point =
-                    corners[0][k][l] + ab[k][l] * shares[0][l] + ac[k][l] * shares[1][l];
-                p[k] - point
-            })
-        });
-        let face = dot(&away, &away);
-        lanes(|l| {
-            let is_known = area[l] > FLAT * bb[l] * cc[l];
-            let is_within = is_known & (v[l] >= 0.0) & (w[l] >= 0.0) & (v[l] + w[l] <= area[l]);
-            if is_within { face[l] } else { squared[l] }
-        })
+    fn faces(&self, group: usize) -> std::ops::Range<usize> {
+        group * FAN..self.corners.len().min(group * FAN + FAN)
     }
 }
 
-/// What a function says of each lane.
-#[inline(always)]
-fn lanes(of: impl Fn(usize) -> f64) -> Lanes {
-    from_fn(of)
+/// The squares of the distances from a point to the faces of a group, and what rounding may add to a distance.
+struct Squared {
+    squared: Lanes,
+    rounding: f32,
 }
 
-/// The scalar products of two vectors in each lane.
-#[inline(always)]
-fn dot<const D: usize>(a: &[Lanes; D], b: &[Lanes; D]) -> Lanes {
-    let mut sum = lanes(|l| a[0][l] * b[0][l]);
-    for k in 1..D {
-        sum = lanes(|l| sum[l] + a[k][l] * b[k][l]);
+impl<const D: usize> Group<D> {
+    fn of<const N: usize>(faces: &[[Point<D>; N]], scale: f64) -> Self {
+        let (mut min, mut max) = (faces[0][0], faces[0][0]);
+        for corner in faces.iter().flatten() {
+            for i in 0..D {
+                (min[i], max[i]) = (min[i].min(corner[i]), max[i].max(corner[i]));
+            }
+        }
+        let middle = min + (max - min) * 0.5;
+        let none = Edge { direction: [[0.0; FAN]; 2], length: [0.0; FAN] };
+        let mut group = Self {
+            middle,
+            radius: ((max - min).norm() * scale) as f32,
+            first: [[0.0; FAN]; D],
+            axes: [[[0.0; FAN]; D]; 2],
+            length: [0.0; FAN],
+            edges: [none; 2],
+        };
+        for lane in 0..FAN {
+            // The last group is completed by its last face, which changes nothing.
+            let face = &faces[lane.min(faces.len() - 1)];
+            group.set(lane, &face.map(|corner| (corner - middle) * scale));
+        }
+        group
     }
-    sum
+
+    /// Sets a face.
+    fn set<const N: usize>(&mut self, lane: usize, face: &[Point<D>; N]) {
+        let (along, length) = direction(face[1] - face[0]);
+        let to_third = face[N - 1] - face[0];
+        let side = if N == 2 { Vector::ZERO } else { square(along, to_third) };
+        let third = [to_third.dot(along), to_third.dot(side)];
+        for i in 0..D {
+            self.first[i][lane] = face[0][i] as f32;
+            self.axes[0][i][lane] = along[i] as f32;
+            self.axes[1][i][lane] = side[i] as f32;
+        }
+        self.length[lane] = length as f32;
+        for (edge, from) in self.edges.iter_mut().zip([length, 0.0]) {
+            let (direction, length) = direction(Vector([third[0] - from, third[1]]));
+            for i in 0..2 {
+                edge.direction[i][lane] = direction[i] as f32;
+            }
+            edge.length[lane] = length as f32;
+        }
+    }
+
+    /// The squares of the distances from a point to the faces, never larger by more than the rounding.
+    #[inline(always)]
+    fn squared<const N: usize>(&self, p: Point<D>, scale: f64) -> Squared {
+        let q = (p - self.middle) * scale;
+        let rounding = ROUNDING * (q.norm() as f32 + self.radius) + LEAST;
+        let mut at = [0.0_f32; D];
+        for i in 0..D {
+            at[i] = q[i] as f32;
+        }
+        let mut squared = [0.0; FAN];
+        // A loop without branches over numbers side by side: LLVM treats several lanes at once.
+        for (lane, squared) in squared.iter_mut().enumerate() {
+            let mut away = at;
+            let [mut u, mut v] = [0.0_f32; 2];
+            for (i, away) in away.iter_mut().enumerate() {
+                *away -= self.first[i][lane];
+                u += *away * self.axes[0][i][lane];
+                v += *away * self.axes[1][i][lane];
+            }
+            // Off the plane of the axes, and in it.
+            let mut off = 0.0_f32;
+            for (i, away) in away.iter().enumerate() {
+                let left = away - u * self.axes[0][i][lane] - v * self.axes[1][i][lane];
+                off += left * left;
+            }
+            let first = u - clamped(u, self.length[lane]);
+            let mut least = first * first + v * v;
+            if N == 3 {
+                let (mut is_outside, mut side) = (v < 0.0, 1.0);
+                for (edge, from) in self.edges.iter().zip([self.length[lane], 0.0]) {
+                    let (x, y, w) =
+                        (edge.direction[0][lane], edge.direction[1][lane], u - from);
+                    let along = clamped(w * x + v * y, edge.length[lane]);
+                    let (dx, dy) = (w - along * x, v - along * y);
+                    let other = dx * dx + dy * dy;
+                    least = if other < least { other } else { least };
+                    is_outside |= side * (x * v - y * w) < 0.0;
+                    side = -1.0;
+                }
+                least = if is_outside { least } else { 0.0 };
+            }
+            let sum = off + least;
+            // Where squares overflow, the foot tells.
+            *squared = if sum < f32::MAX { sum } else { 0.0 };
+        }
+        Squared { squared, rounding }
+    }
+}
+
+/// A number moved to between zero and the largest.
+#[inline(always)]
+fn clamped(x: f32, largest: f32) -> f32 {
+    let x = if x > 0.0 { x } else { 0.0 };
+    if x < largest { x } else { largest }
+}
+
+/// The direction square to a unit vector, towards another vector if that has another direction.
+fn square<const D: usize>(along: Vector<f64, D>, towards: Vector<f64, D>) -> Vector<f64, D> {
+    let off = |v: Vector<f64, D>| v - along * v.dot(along);
+    let units = (0..D).map(Vector::unit);
+    for towards in std::iter::once(towards).chain(units) {
+        let aside = off(direction(towards).0);
+        // Less is rounding.
+        if aside.norm() > 1e-12 {
+            // Once more, for what the length has blown up.
+            return direction(off(direction(aside).0)).0;
+        }
+    }
+    Vector::ZERO
+}
+
+/// A vector's direction and length; of none, any direction.
+fn direction<const D: usize>(v: Vector<f64, D>) -> (Vector<f64, D>, f64) {
+    v.normalized().map_or((Vector::unit(0), 0.0), |direction| (direction, v.norm()))
 }
 
 #[cfg(test)]
 mod tests {
     use palpate_testkit::cases;
 
-    use super::super::foot::foot;
     use super::*;
+    use crate::solid::foot::Part;
 
-    fn lanes_are_feet<const N: usize, const D: usize>() {
-        cases::check(2000, |u| {
-            let scale = *u.choose(&[1e-9, 1.0, 1e12])?;
-            let mut point = || -> arbitrary::Result<Point<D>> {
+    /// The nearest of all faces by their feet, and by groups.
+    fn same<const N: usize, const D: usize>() {
+        cases::check(4000, |u| {
+            let scale = *u.choose(&[1e-12, 1e-3, 1.0, 1e9])?;
+            let spread = *u.choose(&[1.0, 1e-3, 1e-6])?;
+            let shift = *u.choose(&[0.0, 1.0, 1e3])?;
+            let mut point = |far: f64| -> arbitrary::Result<Point<D>> {
                 let mut p = Vector::ZERO;
                 for i in 0..D {
-                    // Few numbers, so that corners coincide and triangles are flat.
-                    p[i] = scale * f64::from(u.int_in_range(-4..=4)?) / 4.0;
+                    // Few numbers, so that corners coincide, and triangles are flat or nearly so.
+                    let step = f64::from(u.int_in_range(-4..=4)?) / 4.0;
+                    let off = *u.choose(&[0.0, 0.0, 1e-9, 1e-5])?;
+                    p[i] = scale * (shift + far * (step + off));
                 }
                 Ok(p)
             };
-            let p = point()?;
             let mut faces = Vec::new();
             for _ in 0..11 {
                 let mut face = [Vector::ZERO; N];
                 for corner in &mut face {
-                    *corner = point()?;
+                    *corner = point(spread)?;
                 }
                 faces.push(face);
             }
             let lanes = Faces::new(&faces);
-            for group in 0..2 {
-                let squared = lanes.squared_distances(group, p);
-                assert!(squared[lanes.of_group(group).len()..].iter().all(|s| s.is_infinite()));
-                for (face, squared) in lanes.of_group(group).zip(squared) {
-                    assert_eq!(lanes.corners(face), faces[face]);
-                    assert_eq!(squared, foot(&faces[face], p).squared, "{:?}", faces[face]);
+            for far in [spread, 3.0 * spread, 1e3] {
+                let p = point(far)?;
+                let least = faces.iter().map(|face| foot(face, p).squared).fold(
+                    f64::INFINITY,
+                    |least, squared| if squared < least { squared } else { least },
+                );
+                let mut nearest =
+                    (0, Foot { point: p, part: Part::Corner(0), squared: f64::INFINITY });
+                for group in 0..2 {
+                    lanes.nearer(group, p, &mut nearest);
                 }
+                assert_eq!(nearest.1.squared, least, "{p:?} of {faces:?}");
+                let (mut found, reach) = (0, 1.5 * least.sqrt());
+                for group in 0..2 {
+                    lanes.within(group, p, reach, |_, _, _| found += 1);
+                }
+                let all = faces.iter().filter(|face| foot(face, p).squared.sqrt() <= reach);
+                assert_eq!(found, all.count(), "{p:?} of {faces:?}");
             }
             Ok(Ok(()))
         });
     }
 
     #[test]
-    fn the_lanes_of_a_group_have_the_distances_of_feet() {
-        lanes_are_feet::<2, 2>();
-        lanes_are_feet::<3, 3>();
+    fn single_precision_passes_no_face_over() {
+        same::<2, 2>();
+        same::<3, 3>();
     }
 }

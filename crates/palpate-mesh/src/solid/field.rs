@@ -102,29 +102,27 @@ impl<const N: usize, const D: usize> Solid<N, D> {
         // The first normal, and the least cosine of another with it.
         let mut first: Option<Vector<f64, D>> = None;
         let (mut least, mut groups, mut is_known) = (1.0_f64, 0, true);
-        self.surface.boxes.nearest_first(centre, reach * reach, |group| {
+        let mut walk = self.surface.boxes.from(centre);
+        while let Some(group) = walk.next(reach * reach) {
             groups += 1;
-            let squared = self.surface.faces.squared_distances(group, centre);
-            for (face, squared) in self.surface.faces.of_group(group).zip(squared) {
-                let far = squared.sqrt();
-                if far > reach {
-                    continue;
-                }
-                let (normal, error) = outward(&self.surface.faces.corners(face));
+            self.surface.faces.within(group, centre, reach, |corners, _, far| {
+                let (normal, error) = outward(corners);
                 let cosine = first.get_or_insert(normal).dot(normal) - 2.0 * error;
                 is_known &= cosine > least_cosine;
                 if far > farthest {
-                    continue;
+                    return;
                 }
                 least = least.min(cosine);
                 for (range, side) in ranges.iter_mut().zip(&sides) {
                     let (along, error) = (normal.dot(*side), error * side.norm());
                     *range = [range[0].min(along - error), range[1].max(along + error)];
                 }
+            });
+            if !is_known || groups > MOST_GROUPS {
+                return None;
             }
-            if is_known && groups <= MOST_GROUPS { reach * reach } else { 0.0 }
-        });
-        let first = first.filter(|_| is_known && groups <= MOST_GROUPS)?;
+        }
+        let first = first?;
         if !self.are_surface(centre, first * (2.0 * farthest)) {
             return None;
         }

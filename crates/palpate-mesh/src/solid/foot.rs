@@ -26,6 +26,7 @@ pub(crate) struct Foot<const D: usize> {
 }
 
 impl<const D: usize> Foot<D> {
+    #[inline(always)]
     fn at(p: Point<D>, point: Point<D>, part: Part) -> Self {
         let away = p - point;
         Self { point, part, squared: away.dot(away) }
@@ -36,7 +37,7 @@ impl<const D: usize> Foot<D> {
 ///
 /// If the foot of the perpendicular lies in the triangle, it is the nearest point; else the nearest point of
 /// the three edges is. Slivers use the edges alone, since their plane is inexact.
-#[inline]
+#[inline(always)]
 pub(crate) fn foot<const N: usize, const D: usize>(
     corners: &[Point<D>; N],
     p: Point<D>,
@@ -61,19 +62,19 @@ pub(crate) fn foot<const N: usize, const D: usize>(
         let point = a + ab * (v / area) + ac * (w / area);
         return Foot::at(p, point, Part::Face);
     }
-    let edges = [(0, 1), (1, 2), (2, 0)].map(|(from, to)| {
+    let nearer = |a: Foot<D>, b: Foot<D>| if b.squared < a.squared { b } else { a };
+    let edge = |from: usize, to: usize| {
         let parts = [Part::Corner(from), Part::Corner(to), Part::Edge(from)];
         on_segment(corners[from], corners[to], p, parts)
-    });
-    let nearer = |a: Foot<D>, b: Foot<D>| if b.squared < a.squared { b } else { a };
-    nearer(nearer(edges[0], edges[1]), edges[2])
+    };
+    nearer(nearer(edge(0, 1), edge(1, 2)), edge(2, 0))
 }
 
 /// Below this share of what it would be at a right angle, the squared area of a triangle is rounding.
-pub(super) const FLAT: f64 = 1e-12;
+const FLAT: f64 = 1e-12;
 
 /// The nearest point of a segment; the parts are its ends and what is between.
-#[inline]
+#[inline(always)]
 fn on_segment<const D: usize>(
     a: Point<D>,
     b: Point<D>,

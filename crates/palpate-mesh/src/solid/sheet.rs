@@ -78,7 +78,7 @@ impl<const N: usize, const D: usize> Sheet<N, D> {
         let gradient = if is_known {
             (p - foot.point) * (1.0 / distance)
         } else {
-            let normal = across(&self.surface.faces.corners(face)).normalized();
+            let normal = across(self.surface.faces.corners(face)).normalized();
             normal.unwrap_or(Vector::unit(0))
         };
         (distance - self.half, gradient)

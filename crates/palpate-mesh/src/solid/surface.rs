@@ -4,11 +4,11 @@
 //! Faces, and the distance to the nearest of them.
 
 use palpate_field::scalar::AffineModel;
-use palpate_field::{Point, Vector};
+use palpate_field::{Point, Vector, Wide, wide};
 
 use super::boxes::Boxes;
 use super::faces::Faces;
-use super::foot::{Foot, foot};
+use super::foot::{Foot, Part, foot};
 
 /// A model looks at so many groups of eight faces at most: a cell near more is large.
 pub(super) const MOST_GROUPS: usize = 32;
@@ -28,17 +28,7 @@ impl<const N: usize, const D: usize> Surface<N, D> {
 
     /// The face nearest to a point, in the order of the boxes, and its nearest point.
     pub(super) fn nearest(&self, p: Point<D>) -> (usize, Foot<D>) {
-        let (mut nearest, mut least) = (0, f64::INFINITY);
-        self.boxes.nearest_first(p, least, |group| {
-            let squared = self.faces.squared_distances(group, p);
-            for (face, squared) in self.faces.of_group(group).zip(squared) {
-                if squared < least {
-                    (nearest, least) = (face, squared);
-                }
-            }
-            least
-        });
-        (nearest, foot(&self.faces.corners(nearest), p))
+        wide(Nearest { surface: self, p })
     }
 
     /// A model of the distance to the nearest face over a cell that no face meets, from the distance at its
@@ -57,22 +47,20 @@ impl<const N: usize, const D: usize> Surface<N, D> {
         let centre = Vector(cell.map(|x| x.value));
         let (nearest, _) = self.nearest(centre);
         let nearest = self.faces.corners(nearest);
-        let to_nearest = |p: [f64; D]| foot(&nearest, Vector(p)).squared.sqrt();
+        let to_nearest = |p: [f64; D]| foot(nearest, Vector(p)).squared.sqrt();
         let mut model = AffineModel::tangent(distance, away.0, to_nearest, cell, rounding);
         let own = model.lower;
         // How far the cell's own remainders move the planes apart.
         let remainders: f64 = cell.iter().map(|x| x.lower.max(x.upper)).sum();
         let farthest = distance + 2.0 * radius + rounding;
         let mut groups = 0;
-        self.boxes.nearest_first(centre, farthest * farthest, |group| {
+        let mut walk = self.boxes.from(centre);
+        while let Some(group) = walk.next(farthest * farthest) {
             groups += 1;
-            let squared = self.faces.squared_distances(group, centre);
-            for (face, squared) in self.faces.of_group(group).zip(squared) {
-                let far = squared.sqrt();
-                if far > farthest {
-                    continue;
-                }
-                let found = foot(&self.faces.corners(face), centre);
+            if groups > MOST_GROUPS {
+                return None;
+            }
+            self.faces.within(group, centre, farthest, |_, found, far| {
                 let between = away - (centre - found.point) * (1.0 / far);
                 let apart: f64 = (0..M)
                     .map(|k| {
@@ -80,9 +68,29 @@ impl<const N: usize, const D: usize> Surface<N, D> {
                     })
                     .sum();
                 model.lower = model.lower.max(own + distance - far + apart + 2.0 * remainders);
-            }
-            if groups > MOST_GROUPS { 0.0 } else { farthest * farthest }
-        });
-        (groups <= MOST_GROUPS).then_some(model)
+            });
+        }
+        Some(model)
+    }
+}
+
+/// The search of the nearest face.
+struct Nearest<'a, const N: usize, const D: usize> {
+    surface: &'a Surface<N, D>,
+    p: Point<D>,
+}
+
+impl<const N: usize, const D: usize> Wide for Nearest<'_, N, D> {
+    type Out = (usize, Foot<D>);
+
+    #[inline(always)]
+    fn run(self) -> (usize, Foot<D>) {
+        let Self { surface: Surface { faces, boxes }, p } = self;
+        let mut nearest = (0, Foot { point: p, part: Part::Corner(0), squared: f64::INFINITY });
+        let mut walk = boxes.from(p);
+        while let Some(group) = walk.next(nearest.1.squared) {
+            faces.nearer(group, p, &mut nearest);
+        }
+        if nearest.1.squared < f64::INFINITY { nearest } else { (0, foot(faces.corners(0), p)) }
     }
 }
