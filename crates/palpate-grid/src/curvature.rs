@@ -7,7 +7,6 @@
 //! the mixed ones of two axes. So they bound it over every cell that takes these samples. In a cell of products of
 //! linear functions only mixed ones are not zero, and nothing bounds it across a side of the cell.
 
-use crate::lattice::{indices, raveled, unravelled};
 use crate::samples::{BRICK, Order, Samples, Window};
 use crate::spline::TRILINEAR;
 
@@ -60,44 +59,74 @@ impl<const D: usize> Samples<D> {
             return None;
         }
         let Window::Stored { first, strides } = self.window(first, K) else { return None };
-        let mut samples = [0.0; MOST.pow(3)];
-        let all = counts.iter().product();
-        for (number, sample) in samples.iter_mut().enumerate().take(all) {
-            let index: [usize; D] = unravelled(number, counts);
-            *sample =
-                self.decoded(first + (0..D).map(|i| index[i] * strides[i]).sum::<usize>());
+        // An axis that is not there has one sample.
+        let of =
+            |all: [usize; D], axis: usize, none: usize| all.get(axis).copied().unwrap_or(none);
+        let [counts, strides] = [(counts, 1), (strides, 0)]
+            .map(|(all, none)| [0, 1, 2].map(|axis| of(all, axis, none)));
+        let mut samples = [[[0.0; MOST]; MOST]; MOST];
+        for (z, plane) in samples.iter_mut().enumerate().take(counts[2]) {
+            for (y, row) in plane.iter_mut().enumerate().take(counts[1]) {
+                let start = first + y * strides[1] + z * strides[2];
+                for (x, sample) in row.iter_mut().enumerate().take(counts[0]) {
+                    *sample = self.decoded(start + x);
+                }
+            }
         }
         Some(second_differences(&samples, counts))
     }
 }
 
-/// The second differences of samples, the first axis first.
-fn second_differences<const D: usize>(samples: &[f64], counts: [usize; D]) -> Curvature<D> {
-    let ways = crate::samples::strides(counts);
-    let mut along = [[0.0_f64; 2]; D];
-    let mut mixed = [[0.0_f64; D]; D];
-    for (i, [least, largest]) in along.iter_mut().enumerate() {
-        let mut end = counts;
-        end[i] = end[i].saturating_sub(2);
-        for index in indices([0; D], end) {
-            let place = raveled(index, counts);
-            let second =
-                samples[place] - 2.0 * samples[place + ways[i]] + samples[place + 2 * ways[i]];
-            (*least, *largest) = (least.min(second), largest.max(second));
-        }
-        for k in i + 1..D {
-            let mut end = counts;
-            (end[i], end[k]) = (end[i] - 1, end[k] - 1);
-            for index in indices([0; D], end) {
-                let place = raveled(index, counts);
-                let twice =
-                    samples[place] - samples[place + ways[i]] - samples[place + ways[k]]
-                        + samples[place + ways[i] + ways[k]];
-                mixed[i][k] = mixed[i][k].max(twice.abs());
+/// The second differences of samples, the last axis first.
+fn second_differences<const D: usize>(
+    samples: &[[[f64; MOST]; MOST]; MOST],
+    [nx, ny, nz]: [usize; 3],
+) -> Curvature<D> {
+    let mut along = [[0.0_f64; 2]; 3];
+    let mut mixed = [0.0_f64; 3];
+    let bend = |[least, largest]: &mut [f64; 2], [a, b, c]: [f64; 3]| {
+        let second = a - 2.0 * b + c;
+        (*least, *largest) = (least.min(second), largest.max(second));
+    };
+    let twist = |largest: &mut f64, [[a, b], [c, d]]: [[f64; 2]; 2]| {
+        *largest = largest.max((a - b - c + d).abs());
+    };
+    for z in 0..nz {
+        for y in 0..ny {
+            for x in 0..nx {
+                let at = |i: usize, k: usize, l: usize| samples[z + l][y + k][x + i];
+                if x + 2 < nx {
+                    bend(&mut along[0], [at(0, 0, 0), at(1, 0, 0), at(2, 0, 0)]);
+                }
+                if y + 2 < ny {
+                    bend(&mut along[1], [at(0, 0, 0), at(0, 1, 0), at(0, 2, 0)]);
+                }
+                if z + 2 < nz {
+                    bend(&mut along[2], [at(0, 0, 0), at(0, 0, 1), at(0, 0, 2)]);
+                }
+                let [right, up, back] = [x + 1 < nx, y + 1 < ny, z + 1 < nz];
+                if right && up {
+                    let square = [[at(0, 0, 0), at(1, 0, 0)], [at(0, 1, 0), at(1, 1, 0)]];
+                    twist(&mut mixed[0], square);
+                }
+                if right && back {
+                    let square = [[at(0, 0, 0), at(1, 0, 0)], [at(0, 0, 1), at(1, 0, 1)]];
+                    twist(&mut mixed[1], square);
+                }
+                if up && back {
+                    let square = [[at(0, 0, 0), at(0, 1, 0)], [at(0, 0, 1), at(0, 1, 1)]];
+                    twist(&mut mixed[2], square);
+                }
             }
         }
     }
-    Curvature { along, mixed }
+    let pair = |i: usize, k: usize| mixed[i + k - 1];
+    Curvature {
+        along: std::array::from_fn(|i| along[i]),
+        mixed: std::array::from_fn(|i| {
+            std::array::from_fn(|k| if i < k { pair(i, k) } else { 0.0 })
+        }),
+    }
 }
 
 #[cfg(test)]
@@ -108,9 +137,9 @@ mod tests {
     fn the_second_differences_of_a_polynomial_are_its_second_derivatives() {
         // 3x² − 2y² + xy − 4yz.
         let f = |[x, y, z]: [f64; 3]| 3.0 * x * x - 2.0 * y * y + x * y - 4.0 * y * z;
-        let samples: Vec<f64> =
-            indices([0; 3], [4; 3]).map(|index| f(index.map(|i| i as f64))).collect();
-        let found = second_differences(&samples, [4; 3]);
+        let along = [0.0, 1.0, 2.0, 3.0];
+        let samples = along.map(|z| along.map(|y| along.map(|x| f([x, y, z]))));
+        let found = second_differences::<3>(&samples, [4; 3]);
         assert_eq!(found.along, [[0.0, 6.0], [-4.0, 0.0], [0.0, 0.0]]);
         assert_eq!(found.mixed, [[0.0, 1.0, 0.0], [0.0, 0.0, 4.0], [0.0; 3]]);
         // Half sides of one and two cells of 0.1 m: ½·6·1² + |1|·1·2 above, ½·4·2² + 2 below.

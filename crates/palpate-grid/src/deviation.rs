@@ -24,8 +24,9 @@ const COARSE: f64 = 0.05;
 /// Rounded operations on samples that a bound takes at most.
 const ROUNDED: f64 = 64.0;
 
-/// How often a cell is halved at most: at an edge of the source, two halvings take a bound from 0.87 to half a cell.
-const DEEPEST: u32 = 2;
+/// How often a cell is halved at most: at edges of a mesh, four halvings take a bound from 0.87 to 0.57 of a cell, two to
+/// 0.82.
+const DEEPEST: u32 = 4;
 
 /// Bricks of which the threads take one after another, before the largest bound is looked at again.
 const AT_ONCE: usize = 64;

@@ -6,7 +6,7 @@
 use palpate_field::scalar::AffineModel;
 use palpate_field::{Aabb, CustomField, Point, Promise, Shape, Vector};
 
-use crate::grid::Grid;
+use crate::grid::{Grid, Tangent};
 
 impl<const D: usize> CustomField<D> for Grid<D> {
     fn distance(&self, p: Point<D>) -> f64 {
@@ -29,19 +29,18 @@ impl<const D: usize> CustomField<D> for Grid<D> {
         let half = Vector(cell.map(|x| x.deviation()));
         let rounding = self.promise().rounding.within(centre.norm() + half.norm());
         let around = Aabb { min: centre - half, max: centre + half };
-        let (value, slope) = self.at(centre);
-        let (slopes, [below, above]) = match self.off_tangent(&around, half, value.abs()) {
-            Some(off) => (slope, off),
-            None => match self.slopes_over(&around, value.abs()) {
-                Some(slopes) => {
-                    let off = (0..D).map(|i| slopes[i][1] * half[i]).sum();
-                    (Vector(slopes.map(|[middle, _]| middle)), [off; 2])
-                }
-                None => {
+        let tangent = self.tangent(centre, &around, half);
+        let (value, slopes, [below, above]) = match tangent {
+            Some(Tangent { at: (value, slope), off }) => (value, slope, off),
+            None => {
+                let value = self.value_at(centre);
+                let Some(slopes) = self.slopes_over(&around, value.abs()) else {
                     let lipschitz = self.promise().lipschitz;
                     return AffineModel::lipschitz(value, lipschitz, cell, rounding);
-                }
-            },
+                };
+                let off = (0..D).map(|i| slopes[i][1] * half[i]).sum();
+                (value, Vector(slopes.map(|[middle, _]| middle)), [off; 2])
+            }
         };
         let mut gradient = [0.0; M];
         // The slopes are rounded too.

@@ -281,24 +281,25 @@ impl<const D: usize> Grid<D> {
         outside(away, inner, self.promise.lipschitz, self.margin)
     }
 
-    /// How far the values over a box of half sides are below and above the tangent plane at its centre at most [m],
-    /// where the value has a size [m]; `None` where that is not known, as of large boxes.
-    pub(crate) fn off_tangent(
+    /// The tangent plane at the centre of a box of half sides [m]; `None` where it is not known how far values are off it,
+    /// as of large boxes.
+    pub(crate) fn tangent(
         &self,
+        centre: Point<D>,
         around: &Aabb<D>,
         half: Vector<f64, D>,
-        size: f64,
-    ) -> Option<[f64; 2]> {
-        let reach = self.promise.lipschitz * half.norm();
-        let is_spline = self.far.is_none() || size + reach < self.clamped;
-        if !is_spline || !self.is_within(around) {
+    ) -> Option<Tangent<D>> {
+        if !self.is_within(around) {
             return None;
         }
         let curvature = match self.kernel {
             Kernel::Quadratic => self.curvature::<QUADRATIC>(around),
             Kernel::Trilinear => self.curvature::<TRILINEAR>(around),
-        };
-        curvature.map(|curvature| curvature.off_tangent(self.lattice.cell, half.0))
+        }?;
+        let at = self.at(centre);
+        let reach = self.promise.lipschitz * half.norm();
+        let is_spline = self.far.is_none() || at.0.abs() + reach < self.clamped;
+        is_spline.then(|| Tangent { at, off: curvature.off_tangent(self.lattice.cell, half.0) })
     }
 
     fn curvature<const K: usize>(&self, around: &Aabb<D>) -> Option<Curvature<D>> {
@@ -332,6 +333,14 @@ impl<const D: usize> Grid<D> {
             [0.5 * (least + largest), half]
         }))
     }
+}
+
+/// A plane that values over a box are near.
+pub(crate) struct Tangent<const D: usize> {
+    /// The value at the centre of the box [m], and its gradient.
+    pub(crate) at: (f64, Vector<f64, D>),
+    /// How far values are below the plane and above it, at most [m].
+    pub(crate) off: [f64; 2],
 }
 
 /// What is known of the source of a grid.

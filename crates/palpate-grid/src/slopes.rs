@@ -57,6 +57,21 @@ impl<const D: usize> Level<D> {
         Self { counts, ranges: vec![[Range::EMPTY; D]; counts.iter().product()] }
     }
 
+    /// Calls `visit` with the ranges of the blocks from `from` to before `end`, row by row of the first axis.
+    #[inline]
+    fn rows(&self, from: [usize; D], end: [usize; D], mut visit: impl FnMut(&[[Range; D]])) {
+        // An axis that is not there has one row.
+        let of =
+            |all: &[usize; D], axis: usize, none: usize| all.get(axis).copied().unwrap_or(none);
+        let [ys, zs] = [1, 2].map(|axis| of(&from, axis, 0)..of(&end, axis, 1));
+        for z in zs {
+            for y in ys.clone() {
+                let row = self.counts[0] * (y + of(&self.counts, 1, 1) * z);
+                visit(&self.ranges[row + from[0]..row + end[0]]);
+            }
+        }
+    }
+
     fn add(&mut self, block: [usize; D], ranges: &[Range; D]) {
         for (range, more) in self.ranges[raveled(block, self.counts)].iter_mut().zip(ranges) {
             range.union(*more);
@@ -110,14 +125,15 @@ impl<const D: usize> Slopes<D> {
             let is_last = number + 1 == self.levels.len();
             if is_last || spans.max() <= Some(MOST_BLOCKS) {
                 let from = first.map(|i| i / size);
-                let end = std::array::from_fn(|i| (last[i] / size + 1).min(level.counts[i]));
-                for block in indices(from, end) {
-                    for (range, more) in
-                        ranges.iter_mut().zip(level.ranges[raveled(block, level.counts)])
-                    {
-                        range.union(more);
+                let end: [usize; D] =
+                    std::array::from_fn(|i| (last[i] / size + 1).min(level.counts[i]));
+                level.rows(from, end, |row| {
+                    for more in row {
+                        for (range, more) in ranges.iter_mut().zip(more) {
+                            range.union(*more);
+                        }
                     }
-                }
+                });
                 break;
             }
             size *= 2;

@@ -4,7 +4,7 @@
 //! The faces of a solid by eights. Distances to all eight in single precision tell which may be the nearest; of these
 //! the [`foot`] is taken.
 
-use palpate_field::{Point, Vector};
+use palpate_field::{Point, Vector, Wide, wide};
 
 use super::foot::{Foot, foot};
 use crate::tree::FAN;
@@ -26,7 +26,7 @@ type Lanes = [f32; FAN];
 #[derive(Clone, Debug)]
 pub(super) struct Faces<const N: usize, const D: usize> {
     corners: Vec<[Point<D>; N]>,
-    groups: Vec<Group<D>>,
+    groups: Vec<Group<N, D>>,
     /// One over the size of all faces, about.
     scale: f64,
 }
@@ -36,7 +36,7 @@ pub(super) struct Faces<const N: usize, const D: usize> {
 /// A face lies in a plane of two axes at its first corner: one along its first edge, the other towards the third corner.
 /// Of a segment there is the first axis alone.
 #[derive(Clone, Debug)]
-struct Group<const D: usize> {
+struct Group<const N: usize, const D: usize> {
     middle: Point<D>,
     /// How far corners are from the middle, at most.
     radius: f32,
@@ -82,7 +82,7 @@ impl<const N: usize, const D: usize> Faces<N, D> {
     /// Takes the nearest point of each face of a group that may be nearer to a point than the nearest so far, if it is.
     #[inline(always)]
     pub(super) fn nearer(&self, group: usize, p: Point<D>, nearest: &mut (usize, Foot<D>)) {
-        let Squared { squared, rounding } = self.groups[group].squared::<N>(p, self.scale);
+        let Squared { squared, rounding } = self.groups[group].squared(p, self.scale);
         let (first, last) = (group * FAN, self.corners.len() - 1);
         // The likeliest first, so that others need not be looked at; its number in the last bits.
         let mut key = f32::MAX.to_bits();
@@ -125,20 +125,36 @@ impl<const N: usize, const D: usize> Faces<N, D> {
         group: usize,
         p: Point<D>,
         farthest: f64,
-        mut visit: impl FnMut(&[Point<D>; N], &Foot<D>, f64),
+        mut visit: impl FnMut(&Foot<D>, f64),
     ) {
-        let Squared { squared, rounding } = self.groups[group].squared::<N>(p, self.scale);
-        let within = (farthest * self.scale) as f32 + rounding;
-        for (face, squared) in self.faces(group).zip(squared) {
-            if squared > within * within {
-                continue;
-            }
+        for (face, _) in self.near(group, p, [farthest; 2]) {
             let found = foot(&self.corners[face], p);
             let far = found.squared.sqrt();
             if far <= farthest {
-                visit(&self.corners[face], &found, far);
+                visit(&found, far);
             }
         }
+    }
+
+    /// The faces of a group at most so far from a point [m], and for each whether it is within a second distance too;
+    /// some may be a little farther.
+    #[inline]
+    pub(super) fn near(
+        &self,
+        group: usize,
+        p: Point<D>,
+        distances: [f64; 2],
+    ) -> impl Iterator<Item = (usize, bool)> {
+        let Squared { squared, rounding } =
+            wide(FromGroup { group: &self.groups[group], p, scale: self.scale });
+        let farthest = distances.map(|distance| {
+            let within = (distance * self.scale) as f32 * (1.0 + f32::EPSILON) + rounding;
+            within * within
+        });
+        let faces = self.faces(group).zip(squared);
+        faces
+            .filter(move |(_, squared)| *squared <= farthest[0])
+            .map(move |(face, squared)| (face, squared <= farthest[1]))
     }
 
     /// The numbers of the faces of a group.
@@ -154,8 +170,24 @@ struct Squared {
     rounding: f32,
 }
 
-impl<const D: usize> Group<D> {
-    fn of<const N: usize>(faces: &[[Point<D>; N]], scale: f64) -> Self {
+/// The distances to a group, with wide instructions.
+struct FromGroup<'a, const N: usize, const D: usize> {
+    group: &'a Group<N, D>,
+    p: Point<D>,
+    scale: f64,
+}
+
+impl<const N: usize, const D: usize> Wide for FromGroup<'_, N, D> {
+    type Out = Squared;
+
+    #[inline(always)]
+    fn run(self) -> Squared {
+        self.group.squared(self.p, self.scale)
+    }
+}
+
+impl<const N: usize, const D: usize> Group<N, D> {
+    fn of(faces: &[[Point<D>; N]], scale: f64) -> Self {
         let (mut min, mut max) = (faces[0][0], faces[0][0]);
         for corner in faces.iter().flatten() {
             for i in 0..D {
@@ -181,7 +213,7 @@ impl<const D: usize> Group<D> {
     }
 
     /// Sets a face.
-    fn set<const N: usize>(&mut self, lane: usize, face: &[Point<D>; N]) {
+    fn set(&mut self, lane: usize, face: &[Point<D>; N]) {
         let (along, length) = direction(face[1] - face[0]);
         let to_third = face[N - 1] - face[0];
         let side = if N == 2 { Vector::ZERO } else { square(along, to_third) };
@@ -203,7 +235,7 @@ impl<const D: usize> Group<D> {
 
     /// The squares of the distances from a point to the faces, never larger by more than the rounding.
     #[inline(always)]
-    fn squared<const N: usize>(&self, p: Point<D>, scale: f64) -> Squared {
+    fn squared(&self, p: Point<D>, scale: f64) -> Squared {
         let q = (p - self.middle) * scale;
         let rounding = ROUNDING * (q.norm() as f32 + self.radius) + LEAST;
         let mut at = [0.0_f32; D];
@@ -323,7 +355,7 @@ mod tests {
                 assert_eq!(nearest.1.squared, least, "{p:?} of {faces:?}");
                 let (mut found, reach) = (0, 1.5 * least.sqrt());
                 for group in 0..2 {
-                    lanes.within(group, p, reach, |_, _, _| found += 1);
+                    lanes.within(group, p, reach, |_, _| found += 1);
                 }
                 let all = faces.iter().filter(|face| foot(face, p).squared.sqrt() <= reach);
                 assert_eq!(found, all.count(), "{p:?} of {faces:?}");

@@ -6,7 +6,6 @@
 use palpate_field::scalar::AffineModel;
 use palpate_field::{CustomField, Point, Promise, Quality, Shape, Vector};
 
-use super::foot::across;
 use super::surface::MOST_GROUPS;
 use super::winding::Winding;
 use super::{Signs, Solid};
@@ -34,7 +33,11 @@ impl<const N: usize, const D: usize> CustomField<D> for Solid<N, D> {
         let centre = Vector(cell.map(|x| x.value));
         let radius = AffineModel::radius(cell);
         let rounding = self.promise().rounding.within(centre.norm() + radius);
-        let (f, gradient) = self.at(centre);
+        if !centre.is_finite() {
+            return AffineModel::lipschitz(f64::NAN, 1.0, cell, rounding);
+        }
+        let nearest = self.surface.nearest(centre);
+        let (f, gradient) = self.at_foot(centre, &nearest);
         let distance = f.abs();
         let away = if f < 0.0 { -gradient } else { gradient };
         if distance <= radius + rounding {
@@ -42,7 +45,12 @@ impl<const N: usize, const D: usize> CustomField<D> for Solid<N, D> {
             let across = self.model_across(cell, f, radius, rounding);
             return across.filter(|model| model.lower < lipschitz.lower).unwrap_or(lipschitz);
         }
-        match self.surface.model_of_distance(cell, (distance, away), radius, rounding) {
+        match self.surface.model_of_distance(
+            cell,
+            (nearest.0, distance, away),
+            radius,
+            rounding,
+        ) {
             None => AffineModel::lipschitz(f, 1.0, cell, rounding),
             Some(model) if f < 0.0 => AffineModel {
                 value: -model.value,
@@ -105,20 +113,22 @@ impl<const N: usize, const D: usize> Solid<N, D> {
         let mut walk = self.surface.boxes.from(centre);
         while let Some(group) = walk.next(reach * reach) {
             groups += 1;
-            self.surface.faces.within(group, centre, reach, |corners, _, far| {
-                let (normal, error) = outward(corners);
+            for (face, is_nearest) in self.surface.faces.near(group, centre, [reach, farthest])
+            {
+                let (normal, error) = self.normals.of_face(face);
                 let cosine = first.get_or_insert(normal).dot(normal) - 2.0 * error;
                 is_known &= cosine > least_cosine;
-                if far > farthest {
-                    return;
+                if !is_nearest {
+                    continue;
                 }
                 least = least.min(cosine);
                 for (range, side) in ranges.iter_mut().zip(&sides) {
                     let (along, error) = (normal.dot(*side), error * side.norm());
                     *range = [range[0].min(along - error), range[1].max(along + error)];
                 }
-            });
-            if !is_known || groups > MOST_GROUPS {
+            }
+            let width: f64 = ranges.iter().map(|[low, high]| 0.5 * (high - low)).sum();
+            if !is_known || groups > MOST_GROUPS || width > radius {
                 return None;
             }
         }
@@ -177,21 +187,6 @@ pub(super) fn content<const N: usize, const D: usize>(
     for index in elements.iter().flatten() {
         sink(&index.to_le_bytes());
     }
-}
-
-/// The outward unit normal of a face, and a bound of its error.
-fn outward<const N: usize, const D: usize>(corners: &[Point<D>; N]) -> (Vector<f64, D>, f64) {
-    let normal = across(corners);
-    let (size, longest) = (
-        normal.norm(),
-        corners.iter().fold(0.0_f64, |longest, corner| {
-            longest.max((*corner - corners[0]).norm()).max((*corner - corners[N - 1]).norm())
-        }),
-    );
-    // Each component of a product of two sides is rounded thrice; the product of one side is exact.
-    let error = 16.0 * f64::EPSILON * longest.powi(N as i32 - 1) / size;
-    // Without area, no direction is known.
-    if error < 1.0 { (normal * (1.0 / size), error) } else { (Vector::unit(0), 2.0) }
 }
 
 impl<const N: usize, const D: usize> From<Solid<N, D>> for Shape<D> {

@@ -27,8 +27,8 @@ use crate::tree::BallTree;
 use boxes::Boxes;
 pub use error::SolidError;
 pub use findings::Findings;
-use foot::Part;
 pub(crate) use foot::across;
+use foot::{Foot, Part};
 use normals::Normals;
 pub use repair::Opening;
 pub(crate) use repair::crossing_faces;
@@ -187,10 +187,14 @@ impl<const N: usize, const D: usize> Solid<N, D> {
         if p.0.iter().any(|x| !x.is_finite()) {
             return (f64::NAN, Vector::ZERO);
         }
-        let (face, foot) = self.surface.nearest(p);
+        self.at_foot(p, &self.surface.nearest(p))
+    }
+
+    /// The same, from the nearest face and its nearest point.
+    fn at_foot(&self, p: Point<D>, (face, foot): &(usize, Foot<D>)) -> (f64, Vector<f64, D>) {
         let away = p - foot.point;
         let distance = foot.squared.sqrt();
-        let normal = self.normals.at(face, foot.part);
+        let normal = self.normals.at(*face, foot.part);
         let is_inside = match &self.signs {
             None => away.dot(normal) < 0.0,
             Some(Signs { faces, tree }) => tree.is_inside(faces, p),

@@ -21,6 +21,8 @@ pub(super) struct Normals<const N: usize, const D: usize> {
 #[derive(Clone, Copy, Debug)]
 struct FaceNormals<const N: usize, const D: usize> {
     face: Vector<f64, D>,
+    /// A bound of the error of the face's own; 2 if it has no area, and no direction is known.
+    error: f64,
     edges: [Vector<f64, D>; N],
     corners: [u32; N],
 }
@@ -31,12 +33,15 @@ impl<const N: usize, const D: usize> Normals<N, D> {
             .iter()
             .map(|corners| across(corners).normalized().unwrap_or(Vector::ZERO))
             .collect();
+        let errors = faces.iter().map(error);
         let mut normals = Self {
             faces: elements
                 .iter()
                 .zip(&own)
-                .map(|(element, face)| FaceNormals {
+                .zip(errors)
+                .map(|((element, face), error)| FaceNormals {
                     face: *face,
+                    error,
                     edges: [*face; N],
                     corners: *element,
                 })
@@ -65,6 +70,13 @@ impl<const N: usize, const D: usize> Normals<N, D> {
         normals
     }
 
+    /// The normal of a face, and a bound of its error.
+    #[inline]
+    pub(super) fn of_face(&self, face: usize) -> (Vector<f64, D>, f64) {
+        let FaceNormals { face, error, .. } = &self.faces[face];
+        (*face, *error)
+    }
+
     /// The normal at a part of a face.
     pub(super) fn at(&self, face: usize, part: Part) -> Vector<f64, D> {
         let normals = &self.faces[face];
@@ -74,6 +86,16 @@ impl<const N: usize, const D: usize> Normals<N, D> {
             Part::Corner(i) => self.corners[normals.corners[i] as usize],
         }
     }
+}
+
+/// A bound of the error of a unit normal.
+fn error<const N: usize, const D: usize>(corners: &[Point<D>; N]) -> f64 {
+    let longest = corners.iter().fold(0.0_f64, |longest, corner| {
+        longest.max((*corner - corners[0]).norm()).max((*corner - corners[N - 1]).norm())
+    });
+    // Each component of a product of two sides is rounded thrice; the product of one side is exact.
+    let error = 16.0 * f64::EPSILON * longest.powi(N as i32 - 1) / across(corners).norm();
+    if error < 1.0 { error } else { 2.0 }
 }
 
 /// The angle of a triangle at a corner [rad]; 1 at the end of a segment.

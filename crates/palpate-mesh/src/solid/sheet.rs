@@ -10,7 +10,7 @@ use palpate_field::{
 };
 
 use super::field::content;
-use super::foot::across;
+use super::foot::{Foot, across};
 use super::surface::Surface;
 use super::{OPERATIONS, Ordered, SolidError};
 use crate::mesh::Mesh;
@@ -73,6 +73,12 @@ impl<const N: usize, const D: usize> Sheet<N, D> {
             return (f64::NAN, Vector::ZERO);
         }
         let (face, foot) = self.surface.nearest(p);
+        let (distance, gradient) = self.at_foot(p, face, &foot);
+        (distance - self.half, gradient)
+    }
+
+    /// The distance to the nearest face [m], from its nearest point, and its gradient.
+    fn at_foot(&self, p: Point<D>, face: usize, foot: &Foot<D>) -> (f64, Vector<f64, D>) {
         let distance = foot.squared.sqrt();
         let is_known = distance > self.promise.rounding.within(p.norm());
         let gradient = if is_known {
@@ -81,7 +87,7 @@ impl<const N: usize, const D: usize> Sheet<N, D> {
             let normal = across(self.surface.faces.corners(face)).normalized();
             normal.unwrap_or(Vector::unit(0))
         };
-        (distance - self.half, gradient)
+        (distance, gradient)
     }
 }
 
@@ -111,10 +117,15 @@ impl<const N: usize, const D: usize> CustomField<D> for Sheet<N, D> {
         let centre = Vector(cell.map(|x| x.value));
         let radius = AffineModel::radius(cell);
         let rounding = self.promise.rounding.within(centre.norm() + radius);
-        let (f, away) = self.at(centre);
-        let distance = f + self.half;
+        if !centre.is_finite() {
+            return AffineModel::lipschitz(f64::NAN, 1.0, cell, rounding);
+        }
+        let (face, foot) = self.surface.nearest(centre);
+        let (distance, away) = self.at_foot(centre, face, &foot);
+        let f = distance - self.half;
+        let nearest = (face, distance, away);
         let model = (distance > radius + rounding)
-            .then(|| self.surface.model_of_distance(cell, (distance, away), radius, rounding));
+            .then(|| self.surface.model_of_distance(cell, nearest, radius, rounding));
         match model.flatten() {
             Some(model) => AffineModel { value: model.value - self.half, ..model },
             None => AffineModel::lipschitz(f, 1.0, cell, rounding),

@@ -31,8 +31,7 @@ impl<const N: usize, const D: usize> Surface<N, D> {
         wide(Nearest { surface: self, p })
     }
 
-    /// A model of the distance to the nearest face over a cell that no face meets, from the distance at its
-    /// centre and the unit vector away from the nearest point; `None` if too many faces may be nearest
+    /// A model of the distance to the nearest face over a cell that no face meets, from the face nearest to its centre, the distance there, and the unit vector away from the nearest point; `None` if too many faces may be nearest
     /// somewhere in it.
     ///
     /// The distance to each face is convex. So it is at least its tangent plane, and the nearest face's is
@@ -40,13 +39,12 @@ impl<const N: usize, const D: usize> Surface<N, D> {
     pub(super) fn model_of_distance<const M: usize>(
         &self,
         cell: &[AffineModel<M>; D],
-        (distance, away): (f64, Vector<f64, D>),
+        (face, distance, away): (usize, f64, Vector<f64, D>),
         radius: f64,
         rounding: f64,
     ) -> Option<AffineModel<M>> {
         let centre = Vector(cell.map(|x| x.value));
-        let (nearest, _) = self.nearest(centre);
-        let nearest = self.faces.corners(nearest);
+        let nearest = self.faces.corners(face);
         let to_nearest = |p: [f64; D]| foot(nearest, Vector(p)).squared.sqrt();
         let mut model = AffineModel::tangent(distance, away.0, to_nearest, cell, rounding);
         let own = model.lower;
@@ -57,10 +55,11 @@ impl<const N: usize, const D: usize> Surface<N, D> {
         let mut walk = self.boxes.from(centre);
         while let Some(group) = walk.next(farthest * farthest) {
             groups += 1;
-            if groups > MOST_GROUPS {
+            // A model no narrower than that of the Lipschitz constant is not worth the search.
+            if groups > MOST_GROUPS || model.lower + model.upper > 2.0 * radius {
                 return None;
             }
-            self.faces.within(group, centre, farthest, |_, found, far| {
+            self.faces.within(group, centre, farthest, |found, far| {
                 let between = away - (centre - found.point) * (1.0 / far);
                 let apart: f64 = (0..M)
                     .map(|k| {
