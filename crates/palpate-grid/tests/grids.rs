@@ -281,7 +281,7 @@ fn a_tolerance_chooses_the_cell() {
             let grid = Grid::bake(&shape, &asked_for).unwrap();
             assert!(grid.deviation() <= asked, "{name}");
             // Not finer by much than it takes.
-            let cell = 1.6 * grid.lattice().cell;
+            let cell = 2.0 * grid.lattice().cell;
             if cell > shape.promise().bounds.unwrap().aabb.half_extents()[0] / 12.0 {
                 continue;
             }

@@ -106,7 +106,9 @@ fn a_wall_between_members_that_touch_is_zero_and_parts_that_overlap_have_none()
     assert_eq!(touching.promise().inside, Quality::Bound);
     // The surface is 1 m away, at the top and the bottom.
     assert_eq!(touching.distance([0.0, 0.0]), 0.0);
-    assert_eq!(touching.surface_point([0.25, 0.0]), Some(Vector([0.0, 0.0])));
+    // The zero at the wall was once named as surface.
+    assert_eq!(touching.surface_point([0.25, 0.0]), None);
+    assert_eq!(touching.surface_point([0.75, 0.75]), Some(Vector([0.75, 1.0])));
     assert_eq!(touching.safe_radius([0.0, 0.0]), 0.0);
     assert_eq!(pair(0.5)?.distance([0.0, 0.0]), -0.25);
     Ok(())
