@@ -121,7 +121,9 @@ where
         picture.save(&figure, picture::WIDTH)?;
     }
     if interrupt.is_asked() {
-        output::remark("interrupted: some pairs are not listed");
+        output::remark(
+            "interrupted: some pairs, or what --method finds of them, are not listed",
+        );
         return Ok(Outcome::Interrupted);
     }
     let touch = pairs.iter().any(|pair| pair.found.touches() == Some(true));
@@ -204,7 +206,6 @@ fn local_touch<const D: usize>(
     bodies: [usize; 2],
     times: &[f64],
     search: &LocalSearch,
-    interrupt: &Interrupt,
 ) -> Result<Option<LocalSweep<D>>, Failure>
 where
     Dimensions: Surfaced<D>,
@@ -222,9 +223,6 @@ where
     let mut all: Option<LocalSweep<D>> = None;
     for part in times.windows(2) {
         let &[from, to] = part else { continue };
-        if interrupt.is_asked() {
-            break;
-        }
         let mut found = search.first_touch(ways(scene, bodies, [from, to])?, &prepared)?;
         if let Some(touch) = &mut found.touch {
             touch.time = from + (to - from) * touch.time;
@@ -252,9 +250,27 @@ fn first_touch<const D: usize>(
 where
     Dimensions: Surfaced<D>,
 {
-    let local =
-        question.local.map(|search| local_touch(scene, bodies, times, &search, interrupt));
-    let local = local.transpose()?.flatten();
+    let mut proven = match proven_touch(scene, bodies, times, question, interrupt)? {
+        Some(proven) => proven,
+        None => return Ok(None),
+    };
+    if let Some(search) = question.local {
+        // A search of some minutes must end when it is asked to; what is proven stays.
+        let (scene, times) = (scene.clone(), times.to_vec());
+        let work = move || local_touch(&scene, bodies, &times, &search);
+        proven.local = interrupt.unless_asked(work).transpose()?.flatten();
+    }
+    Ok(Some(proven))
+}
+
+/// The same without a local search beside it.
+fn proven_touch<const D: usize>(
+    scene: &BuiltScene<D>,
+    bodies: [usize; 2],
+    times: &[f64],
+    question: &Question,
+    interrupt: &Interrupt,
+) -> Result<Option<Pair<D>>, Failure> {
     let mut workspace = SweepWorkspace::new();
     let mut evaluations = 0_u32;
     let mut last = None;
@@ -270,7 +286,7 @@ where
         found.evaluations = evaluations;
         found.lower = from + length * found.lower;
         found.upper = from + length * found.upper;
-        let pair = Pair { bodies, found, local, part: [from, to] };
+        let pair = Pair { bodies, found, local: None, part: [from, to] };
         if found.stop != Stop::SignKnown {
             return Ok(Some(pair));
         }
