@@ -76,7 +76,8 @@ impl Interrupt {
     ) -> Option<T> {
         self.heed();
         let (sender, done) = mpsc::channel();
-        let worker = thread::spawn(move || sender.send(work()));
+        let named = thread::Builder::new().name("interruptible".to_owned());
+        let worker = named.spawn(move || sender.send(work())).ok()?;
         loop {
             match done.recv_timeout(LOOK) {
                 _ if self.is_asked() => return None,

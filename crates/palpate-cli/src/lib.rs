@@ -7,6 +7,7 @@
 //! process. The caller chooses the allocator and handles signals.
 
 mod arguments;
+mod bound_fields;
 mod check;
 mod contact;
 mod descend;

@@ -115,7 +115,7 @@ pub enum LiveError {
     #[error("the rate must be positive and finite, got {0} Hz")]
     Rate(f64),
     /// The address cannot be listened at.
-    #[error("cannot listen at {address}: {error}")]
+    #[error("cannot listen at {address}: {error}{}", hint(error))]
     Address {
         /// The address.
         address: SocketAddr,
@@ -128,6 +128,18 @@ pub enum LiveError {
     /// The operating system gives no thread or no random numbers.
     #[error("the page cannot be served: {0}")]
     System(String),
+}
+
+/// What helps where an address cannot be listened at.
+fn hint(error: &std::io::Error) -> &'static str {
+    match error.kind() {
+        std::io::ErrorKind::AddrInUse => {
+            "; another program listens there: end it, or take another port, 0 for any that is free"
+        }
+        std::io::ErrorKind::PermissionDenied => "; take a port of 1024 or more",
+        std::io::ErrorKind::AddrNotAvailable => "; this machine has no such address",
+        _ => "",
+    }
 }
 
 /// A page that is served, until this is dropped: then forces are zero and sockets closed.

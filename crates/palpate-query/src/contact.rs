@@ -61,10 +61,9 @@ impl fmt::Display for NormalSource {
 #[non_exhaustive]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Contact<const D: usize> {
-    /// The point on the surface of body `a` [m]. Where a manifold's search finds no surface along
-    /// the normal, it is estimated from the values of both fields.
+    /// The point on the surface of body `a` [m]; see [`on_surfaces`](Self::on_surfaces).
     pub point_a: Point<D>,
-    /// The point on the surface of body `b` [m]; estimated where that of `a` is.
+    /// The point on the surface of body `b` [m].
     pub point_b: Point<D>,
     /// The unit vector from body `a` to body `b`, along which a solver separates them. Where the
     /// fields give no direction, as in the middle of a ball, a manifold takes the line between
@@ -73,6 +72,9 @@ pub struct Contact<const D: usize> {
     pub normal: Vector<f64, D>,
     /// What the normal was taken from.
     pub normal_from: NormalSource,
+    /// `false` where a point is not found on its surface, but estimated along the normal from the values
+    /// of both fields: where a field is a bound, the surfaces may be farther apart than the gap.
+    pub on_surfaces: bool,
     /// The distance from `point_a` to `point_b` along the normal,
     /// `(point_b − point_a)·normal` [m]; negative where the bodies overlap.
     pub gap: f64,
@@ -91,7 +93,22 @@ impl<const D: usize> Contact<D> {
     #[inline]
     pub fn new(point_a: Point<D>, point_b: Point<D>, normal: Vector<f64, D>) -> Self {
         let gap = (point_b - point_a).dot(normal);
-        Self { point_a, point_b, normal, normal_from: NormalSource::Gradients, gap, id: 0 }
+        Self {
+            point_a,
+            point_b,
+            normal,
+            normal_from: NormalSource::Gradients,
+            on_surfaces: true,
+            gap,
+            id: 0,
+        }
+    }
+
+    /// The contact about a point between the bodies, or in both, where values of the fields tell the
+    /// `gap`.
+    pub(crate) fn estimated(point: Point<D>, normal: Vector<f64, D>, gap: f64) -> Self {
+        let half = normal * (0.5 * gap);
+        Self { gap, on_surfaces: false, ..Self::new(point - half, point + half, normal) }
     }
 
     /// The same contact, whose normal was taken from elsewhere.

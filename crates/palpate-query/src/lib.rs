@@ -78,6 +78,7 @@ mod ray;
 mod sampler;
 mod sweep;
 mod track;
+mod verdict;
 #[cfg(feature = "world")]
 mod world;
 
@@ -108,5 +109,6 @@ pub use sweep::{
     SweepWorkspace, cast_ball, sweep, sweep_element, sweep_mesh, sweep_proof,
 };
 pub use track::Track;
+pub use verdict::Verdict;
 #[cfg(feature = "world")]
-pub use world::{BodyId, Impact, Neighbours, Verdict, World, WorldSettings};
+pub use world::{BodyId, Impact, Neighbours, World, WorldSettings};

@@ -19,8 +19,10 @@ Examples:
 
 The separation of bodies that are exact outside is their distance; that of bodies that
 overlap is minus the diameter of the largest ball inside both. It lies between the printed
-bounds, which include rounding. A pair touches if the upper bound is at most the margin, is
-apart if the lower bound is more than the margin, and is undecided otherwise.";
+bounds, which include rounding. Of other bodies that are apart, separations are lower bounds of
+distances. A pair touches if its distance is proven to be at most the margin: by the upper
+bound, where that is no distance by two points of the bodies. It is apart if the lower bound is
+more than the margin, and is undecided otherwise.";
 
 /// The options of `palpate contact`.
 #[derive(Args, Debug)]

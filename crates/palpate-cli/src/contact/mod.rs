@@ -11,6 +11,7 @@ use palpate::query::Verdict;
 use palpate::scene::{AnyScene, BuiltScene};
 
 use crate::arguments::ContactOptions;
+use crate::bound_fields::BoundFields;
 use crate::input;
 use crate::interrupt::Interrupt;
 use crate::outcome::{Failure, Outcome};
@@ -64,6 +65,7 @@ fn answer<const D: usize>(
     let report = report::Report {
         question: &question,
         names: &names,
+        bounds: &BoundFields::of(scene),
         pairs: &pairs,
         count,
         time: options.time,

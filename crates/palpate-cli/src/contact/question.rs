@@ -32,6 +32,8 @@ pub(crate) struct Pair<const D: usize> {
     pub(crate) empty: Option<usize>,
     /// `None` if neither body has bounds, or one has no point.
     pub(crate) separation: Option<Certified<Nearest<D>>>,
+    /// What their distance is at most, if anything is known [m].
+    pub(crate) distance_at_most: Option<f64>,
     /// Where the bodies touch; for bodies that are apart, the witness points.
     pub(crate) contacts: Vec<Contact<D>>,
     /// The number of contacts of each patch.
@@ -150,8 +152,10 @@ impl Question {
         let margin = self.settings.manifold.margin;
         Ok(Pair {
             bodies,
-            verdict: Verdict::of_bounds([found.lower, found.upper], margin),
+            // The world finds all pairs that touch.
+            verdict: Verdict::of_bounds([found.lower, f64::INFINITY], margin),
             empty: None,
+            distance_at_most: None,
             contacts: found.best.contact(a, b).into_iter().collect(),
             separation: Some(found),
             groups: Vec::new(),
@@ -178,6 +182,7 @@ fn without_points<const D: usize>(bodies: [usize; 2], empty: usize) -> Pair<D> {
         verdict: Verdict::Apart,
         empty: Some(empty),
         separation: None,
+        distance_at_most: None,
         contacts: Vec::new(),
         groups: Vec::new(),
         dropped: 0,
@@ -193,6 +198,9 @@ fn near<const D: usize>(found: &Neighbours<D>, margin: f64) -> Pair<D> {
         verdict: found.verdict(margin),
         empty: None,
         separation: manifold.map(|manifold| manifold.separation),
+        distance_at_most: manifold
+            .map(|manifold| manifold.distance_at_most)
+            .filter(|distance| distance.is_finite()),
         contacts: found.contacts().to_vec(),
         groups: manifold.map_or_else(Vec::new, |manifold| manifold.groups.clone()),
         dropped: manifold.map_or(0, |manifold| manifold.dropped),

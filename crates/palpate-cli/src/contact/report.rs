@@ -9,6 +9,7 @@ use palpate::query::{Contact, NormalSource, Stop, Verdict};
 use serde_json::{Value, json};
 
 use super::question::{Pair, Question};
+use crate::bound_fields::BoundFields;
 use crate::outcome::Failure;
 use crate::output::{self, counted, shown};
 
@@ -17,6 +18,7 @@ pub(super) struct Report<'a, const D: usize> {
     pub(super) question: &'a Question,
     /// The names of the bodies.
     pub(super) names: &'a [&'a str],
+    pub(super) bounds: &'a BoundFields,
     pub(super) pairs: &'a [Pair<D>],
     /// How many pairs were asked about.
     pub(super) count: usize,
@@ -48,6 +50,9 @@ impl<const D: usize> Report<'_, D> {
                 millimetres(tolerance)
             )?;
         }
+        let is_above = |pair: &&Pair<D>| pair.separation.is_some_and(|found| found.upper > 0.0);
+        let above = self.pairs.iter().filter(is_above).map(|pair| pair.bodies);
+        self.bounds.say(&mut out, self.names, above)?;
         let count = |verdict| self.pairs.iter().filter(|pair| pair.verdict == verdict).count();
         let [touching, open] = [Verdict::Touching, Verdict::Undecided].map(count);
         writeln!(
@@ -66,13 +71,16 @@ impl<const D: usize> Report<'_, D> {
         let [a, b] = pair.bodies.map(|i| shown(self.names[i]));
         let mut words = format!("{a} – {b}: {}", pair.verdict);
         words += &match &pair.separation {
-            Some(found) => format!(
-                ", separation {} to {} mm ({}; {} evaluations with its contacts)",
-                millimetres(found.lower),
-                millimetres(found.upper),
-                found.stop,
-                found.evaluations
-            ),
+            Some(found) => {
+                let digits = digits_of(found.upper - found.lower);
+                format!(
+                    ", separation {} to {} mm ({}; {} evaluations with its contacts)",
+                    decimal(1e3 * found.lower, digits),
+                    decimal(1e3 * found.upper, digits),
+                    found.stop,
+                    found.evaluations
+                )
+            }
             None => match pair.empty {
                 Some(empty) => format!(", {} has no point", shown(self.names[empty])),
                 None => ", neither has bounds".to_owned(),
@@ -97,8 +105,14 @@ impl<const D: usize> Report<'_, D> {
     /// Why the bounds of a pair do not tell, and what helps.
     fn undecided(&self, pair: &Pair<D>) -> Option<String> {
         let found = pair.separation.as_ref()?;
-        let budget = self.question.settings.limits.budget;
+        let settings = &self.question.settings;
+        let (budget, margin) = (settings.limits.budget, settings.manifold.margin);
         Some(match found.stop {
+            Stop::Converged | Stop::SignKnown if found.upper <= margin => format!(
+                "fields are bounds there, and no points of both bodies within the margin of {} mm \
+                 are found; they may be farther apart",
+                millimetres(margin)
+            ),
             Stop::BudgetSpent => {
                 format!("the budget of {budget} evaluations is spent; raise --budget")
             }
@@ -113,7 +127,7 @@ impl<const D: usize> Report<'_, D> {
             Stop::Converged | Stop::SignKnown => format!(
                 "the margin of {} mm lies between the bounds; lower --tolerance, or take another \
                  --margin",
-                millimetres(self.question.settings.manifold.margin)
+                millimetres(margin)
             ),
         })
     }
@@ -178,6 +192,7 @@ impl<const D: usize> Report<'_, D> {
         }
         if let Some(found) = &pair.separation {
             said["separation_m"] = json!({ "lower": found.lower, "upper": found.upper });
+            said["distance_at_most_m"] = json!(pair.distance_at_most);
             said["stop"] = json!(found.stop.to_string());
             said["evaluations"] = json!(found.evaluations);
         }
@@ -193,6 +208,7 @@ pub(crate) fn as_json<const D: usize>(contact: &Contact<D>) -> Value {
         "point_b_m": contact.point_b.0.to_vec(),
         "normal": contact.normal.0.to_vec(),
         "normal_from": contact.normal_from.to_string(),
+        "on_surfaces": contact.on_surfaces,
     })
 }
 
@@ -202,13 +218,19 @@ fn contact_in_words<const D: usize>(contact: &Contact<D>) -> String {
         NormalSource::Gradients => String::new(),
         source => format!("  from {source}"),
     };
+    let estimated = if contact.on_surfaces || contact.gap <= 0.0 { "" } else { " by values" };
     format!(
-        "\n  {:>3}  gap {} mm  at ({})  normal ({}){from}",
+        "\n  {:>3}  gap {} mm{estimated}  at ({})  normal ({}){from}",
         contact.id,
         millimetres(contact.gap),
         joined(contact.point_a.0, 6),
         joined(contact.normal.0, 4)
     )
+}
+
+/// Decimals of millimetres that tell numbers apart which differ by a length [m].
+fn digits_of(length: f64) -> usize {
+    (4..12).find(|&digits| 1e3 * length >= 10_f64.powi(-(digits as i32))).unwrap_or(12)
 }
 
 fn millimetres(length: f64) -> String {

@@ -74,7 +74,12 @@ where
     let search = Search::of::<D>(options)?;
     // Of a long element over a small scene, most is far away.
     let scene_size = scene.bounds().map_or(f64::INFINITY, |bounds| longest_edge(&bounds));
-    let size = element.longest_edge().min(scene_size);
+    // Of a point, only the scene has a size.
+    let size = match element.longest_edge() {
+        edge if edge > 0.0 => edge.min(scene_size),
+        _ if scene_size < f64::INFINITY => scene_size,
+        _ => 1.0,
+    };
     let limits = limits(options.tolerance, size);
     let shape = &scene.whole;
     let mut workspace = ElementWorkspace::new();

@@ -15,6 +15,7 @@ use palpate::scene::BuiltScene;
 use super::report::Report;
 use super::{Pair, Question, ways};
 use crate::arguments::SweepOptions;
+use crate::bound_fields::BoundFields;
 use crate::outcome::Failure;
 use crate::picture::{self, Dimensions, Drawable, cut, in_space};
 use crate::plane;
@@ -26,8 +27,14 @@ const EARLIER: u32 = 5;
 /// Times at which the way of a point is drawn, and separations are searched.
 const TIMES: u32 = 60;
 
+/// Separations are shown over all parts of motions if so many times are within each.
+const PARTS: u32 = 8;
+
 /// How exactly separations are searched, as a share of what is shown.
-const EXACT: f64 = 1e-3;
+const EXACT: f64 = 1e-5;
+
+/// Bounds are shown both if they are farther apart than this share of the range.
+const OPEN: f64 = 0.01;
 
 /// The first touch of a pair of a scene.
 struct Drawn<'a, const D: usize> {
@@ -37,6 +44,9 @@ struct Drawn<'a, const D: usize> {
     time: f64,
     /// The bodies then.
     then: BuiltScene<D>,
+    /// The times that are shown [s]: all that is looked at; of motions of many parts, the part in which
+    /// the bodies touch.
+    part: [f64; 2],
     proof: SweepProof<D>,
     /// What is shown of the scene.
     bounds: Aabb<D>,
@@ -58,6 +68,7 @@ where
     let report = Report {
         question,
         names: &names,
+        bounds: &BoundFields::of(scene),
         pairs: std::slice::from_ref(pair),
         apart: 0,
         unbounded: 0,
@@ -67,7 +78,7 @@ where
         caption = format!("{}; {caption}", plane::in_words(&plane));
     }
     let isolines = drawn.isolines(&plane).map_err(Failure::input)?;
-    let chart = drawn.separations(question)?;
+    let chart = drawn.separations()?;
     let figure = Figure::new(title(&options.scene)).with_caption(caption);
     Ok(figure.with_isolines(isolines).with_chart(chart))
 }
@@ -88,15 +99,19 @@ where
         let [_, end] = pair.part;
         let time = if pair.found.upper < f64::INFINITY { pair.found.upper } else { end };
         let then = scene.at(time).map_err(Failure::input)?;
-        let mut drawn =
-            Self { scene, pair, time, then, proof, bounds: Aabb::centred(Vector::ZERO) };
+        let [from, to] = pair.part;
+        let is_short = (to - from) * f64::from(TIMES / PARTS) < question.until;
+        let part = if is_short { pair.part } else { [0.0, question.until] };
+        let bounds = Aabb::centred(Vector::ZERO);
+        let mut drawn = Self { scene, pair, time, then, part, proof, bounds };
         drawn.bounds = drawn.shown()?;
         Ok(drawn)
     }
 
     /// A time before that of the touch [s], the `i`-th of `count`.
     fn before(&self, i: u32, count: u32) -> f64 {
-        self.time * f64::from(i) / f64::from(count)
+        let [from, _] = self.part;
+        from + (self.time - from) * f64::from(i) / f64::from(count)
     }
 
     /// The bodies of the pair that have motions.
@@ -137,7 +152,7 @@ where
         }
         let along = self.pair.found.contact.and_then(|contact| {
             let way = self.movers().find_map(|body| {
-                let before = self.time - 1e-3 * self.time;
+                let before = self.time - 1e-3 * (self.time - self.part[0]);
                 let way = self.carried(body, self.time) - self.carried(body, before);
                 way.normalized()
             })?;
@@ -229,13 +244,19 @@ where
         Ok(isolines.with_polyline(way))
     }
 
-    /// The separation over the time that is looked at.
-    fn separations(&self, question: &Question) -> Result<Chart, Failure> {
+    /// The separation over the times that are shown.
+    fn separations(&self) -> Result<Chart, Failure> {
+        let [from, to] = self.part;
+        let mut times: Vec<f64> = (0..=TIMES)
+            .map(|i| from + (to - from) * f64::from(i) / f64::from(TIMES))
+            .chain([self.time])
+            .filter(|time| (from..=to).contains(time))
+            .collect();
+        times.sort_by(f64::total_cmp);
         let limits = Limits::new(EXACT * 2.0 * self.bounds.half_extents().norm());
         let mut workspace = PairWorkspace::new();
-        let mut points = Vec::new();
-        for i in 0..=TIMES {
-            let time = question.until * f64::from(i) / f64::from(TIMES);
+        let (mut lower, mut upper) = (Vec::new(), Vec::new());
+        for time in times {
             let [a, b] = self.pair.bodies.map(|body| {
                 Placed::new(
                     &self.scene.bodies[body].shape_in_body,
@@ -243,13 +264,27 @@ where
                 )
             });
             let apart = palpate::query::separation(a, b, &limits, &mut workspace);
-            points.push([time, apart.map_err(Failure::input)?.upper]);
+            let apart = apart.map_err(Failure::input)?;
+            lower.push([time, apart.lower]);
+            upper.push([time, apart.upper]);
         }
-        let least = points.iter().map(|point| point[1]).fold(f64::INFINITY, f64::min);
-        let most = points.iter().map(|point| point[1]).fold(f64::NEG_INFINITY, f64::max);
+        let values = || upper.iter().map(|point| point[1]);
+        let least = values().fold(f64::INFINITY, f64::min);
+        let most = values().fold(f64::NEG_INFINITY, f64::max);
+        let is_open = |(lower, upper): (&[f64; 2], &[f64; 2])| {
+            lower[1].is_finite() && upper[1] - lower[1] > OPEN * (most - least)
+        };
+        let are_open = lower.iter().zip(&upper).any(is_open);
         let mut chart =
             Chart::new(Quantity::new("time", "s"), Quantity::new("separation", "m"));
-        chart = chart.with_series(Series::new("separation", points).map_err(Failure::input)?);
+        let name = if are_open { "separation at most" } else { "separation" };
+        chart = chart.with_series(Series::new(name, upper).map_err(Failure::input)?);
+        if are_open {
+            let lower = lower.into_iter().filter(|point: &[f64; 2]| point[1].is_finite());
+            let lower = Series::new("and at least", lower.collect::<Vec<_>>())
+                .map_err(Failure::input)?;
+            chart = chart.with_series(lower.with_dash(Dash::Dotted));
+        }
         if self.pair.found.upper < f64::INFINITY && self.pair.found.contact.is_some() {
             let touch = [[self.time, least], [self.time, most]];
             let touch = Series::new("first touch", touch).map_err(Failure::input)?;

@@ -8,17 +8,20 @@ mod local;
 mod report;
 mod surface;
 
+use palpate::field::Vector;
 use palpate::local::LocalSweep;
 use palpate::query::{FirstTouch, Moving, Placed, Stop, SweepSettings, SweepWorkspace, sweep};
 use palpate::scene::{AnyScene, BuiltScene, Repeat};
 
 use crate::arguments::SweepOptions;
+use crate::bound_fields::BoundFields;
 use crate::contact::{FEW_PAIRS, pairs_of};
 use crate::input;
 use crate::interrupt::Interrupt;
 use crate::outcome::{Failure, Outcome};
 use crate::output::{self, Files, shown};
 use crate::picture::{self, Dimensions, Drawable, Picture};
+use crate::plane;
 use local::{LocalSearch, Surfaced};
 
 /// The gap over the size of the smallest body.
@@ -67,7 +70,13 @@ pub(crate) fn run(options: &SweepOptions, interrupt: &Interrupt) -> Result<Outco
             "--plane is for scenes in space; this scene is in the plane, and drawn whole",
         )),
         AnyScene::Planar(scene) => answer(options, scene, picture.as_ref(), interrupt),
-        AnyScene::Spatial(scene) => answer(options, scene, picture.as_ref(), interrupt),
+        AnyScene::Spatial(scene) => {
+            if let Some(asked) = &options.plane {
+                // A plane that cannot be read is told before a long search.
+                plane::named("--plane", asked, None, Vector::ZERO)?;
+            }
+            answer(options, scene, picture.as_ref(), interrupt)
+        }
     }
 }
 
@@ -108,8 +117,14 @@ where
         }
     }
     pairs.sort_by(|a, b| a.found.upper.total_cmp(&b.found.upper));
-    let report =
-        report::Report { question: &question, names: &names, pairs: &pairs, apart, unbounded };
+    let report = report::Report {
+        question: &question,
+        names: &names,
+        bounds: &BoundFields::of(scene),
+        pairs: &pairs,
+        apart,
+        unbounded,
+    };
     if options.json {
         report.print_json()?;
     } else {

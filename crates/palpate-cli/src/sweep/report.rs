@@ -9,6 +9,7 @@ use palpate::query::{FirstTouch, Start, Stop};
 use serde_json::{Value, json};
 
 use super::{Pair, Question};
+use crate::bound_fields::BoundFields;
 use crate::contact::as_json;
 use crate::numbers::rounded;
 use crate::outcome::Failure;
@@ -19,6 +20,7 @@ pub(super) struct Report<'a, const D: usize> {
     pub(super) question: &'a Question,
     /// The names of the bodies.
     pub(super) names: &'a [&'a str],
+    pub(super) bounds: &'a BoundFields,
     /// Those that are listed.
     pub(super) pairs: &'a [Pair<D>],
     /// How many pairs are apart, listed or not.
@@ -33,6 +35,8 @@ impl<const D: usize> Report<'_, D> {
         for pair in self.pairs {
             writeln!(out, "{}", self.in_words(pair))?;
         }
+        let touch = self.pairs.iter().filter(|pair| pair.found.touches() == Some(true));
+        self.bounds.say(&mut out, self.names, touch.map(|pair| pair.bodies))?;
         let count =
             |touches| self.pairs.iter().filter(|pair| pair.found.touches() == touches).count();
         writeln!(
@@ -104,7 +108,9 @@ impl<const D: usize> Report<'_, D> {
                 self.question.settings.budget
             ),
             Stop::MemoryFull => {
-                "the memory for waiting boxes is full; raise --tolerance or --gap".to_owned()
+                "the memory for waiting boxes is full, as where large surfaces slide closely past each \
+                 other; raise --tolerance or --gap, or ask palpate contact at single times by --time"
+                    .to_owned()
             }
             _ => "no closer bounds of their separation are found; raise --gap".to_owned(),
         }

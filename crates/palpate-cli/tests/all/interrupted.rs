@@ -248,3 +248,36 @@ fn mass_tells_of_the_bodies_that_it_has_weighed() {
     assert_eq!(run.0.wait().unwrap().code(), INTERRUPTED);
     assert!(told < 999, "all bodies were weighed");
 }
+
+/// A local search beside a proof could not be interrupted, and the proof was lost with it.
+#[cfg(target_os = "linux")]
+#[test]
+fn sweep_reports_its_proof_when_a_local_search_is_interrupted() {
+    let folder = Folder::new();
+    let scene = folder.write(
+        "falls.json",
+        r#"{ "palpate": 1, "dimension": 3, "bodies": [
+            { "name": "floor", "shape": { "cuboid": { "size": [1, 0.1, 1] } } },
+            { "name": "ball", "shape": { "ball": { "radius": 0.02 } },
+              "pose": { "translation": [0, 0.3, 0] } } ],
+          "motions": [{ "body": "ball", "to": { "translation": [0, 0.08, 0] } }] }"#,
+    );
+    let arguments = ["sweep", &scene, "--method", "naive_descent", "--samples", "10000"];
+    let mut run = Run::start(&arguments);
+    // The proof has its end when the thread of the local search begins.
+    let tasks = format!("/proc/{}/task", run.0.id());
+    let is_begun = || {
+        let tasks = fs::read_dir(&tasks).unwrap().flatten();
+        let name = |task: fs::DirEntry| fs::read_to_string(task.path().join("comm"));
+        tasks.filter_map(|task| name(task).ok()).any(|name| name == "interruptible\n")
+    };
+    while !is_begun() {
+        assert_eq!(run.0.try_wait().unwrap(), None, "it has ended");
+        std::thread::yield_now();
+    }
+    run.signal(SIGTERM);
+    let mut said = String::new();
+    run.0.stdout.take().unwrap().read_to_string(&mut said).unwrap();
+    assert_eq!(run.0.wait().unwrap().code(), INTERRUPTED);
+    assert!(said.starts_with("floor \u{2013} ball: apart all the time, proven"), "{said}");
+}

@@ -31,6 +31,7 @@ fn what_cannot_be_served_is_refused() {
         palpate(&["live", "--port", &address.port().to_string(), "--token-file", &new]);
     let said = errors(&output);
     assert!(said.starts_with(&format!("palpate: cannot listen at {address}: ")), "{said}");
+    assert!(said.contains("another port, 0 for any that is free"), "{said}");
     assert_eq!(status(&output), 2);
     assert!(!folder.path("new").exists(), "a page that is not served leaves no token");
     let rate = errors(&palpate(&["live", "--rate", "1e9"]));

@@ -14,7 +14,7 @@ use std::net::SocketAddr;
 use std::sync::Arc;
 
 use axum::Router;
-use axum::body::{Body, to_bytes};
+use axum::body::{Body, HttpBody, to_bytes};
 use axum::extract::ws::WebSocketUpgrade;
 use axum::extract::{Path, Query, Request, State};
 use axum::http::{HeaderMap, HeaderName, HeaderValue, StatusCode, header};
@@ -74,17 +74,40 @@ pub(crate) async fn serve(
     }
 }
 
-/// Checks the host of every request, and sets the headers of every answer.
+/// Checks the host of every request, sets the headers of every answer, and says in words what is refused.
 async fn guarded(State(shared): State<Shared>, request: Request, next: Next) -> Response {
     let mut response = match shared.guard.check_host(request.headers()) {
         Ok(()) => next.run(request).await,
         Err(status) => status.into_response(),
     };
+    if response.body().is_end_stream()
+        && let Some(words) = in_words(response.status())
+    {
+        response = (response.status(), words).into_response();
+    }
     for (name, value) in HEADERS {
         let name = HeaderName::from_static(name);
         response.headers_mut().insert(name, HeaderValue::from_static(value));
     }
     response
+}
+
+/// Why a request is refused, by the status of its answer.
+fn in_words(status: StatusCode) -> Option<&'static str> {
+    Some(match status {
+        StatusCode::UNAUTHORIZED => {
+            "The token is missing or wrong: open the address that the program printed, to its end.\n"
+        }
+        StatusCode::FORBIDDEN => "The request comes from the page of another server.\n",
+        StatusCode::MISDIRECTED_REQUEST => {
+            "The host of the request is not one at which this server listens.\n"
+        }
+        StatusCode::NOT_FOUND => "There is nothing at this path.\n",
+        StatusCode::REQUEST_TIMEOUT => "The trace came too slowly.\n",
+        StatusCode::PAYLOAD_TOO_LARGE => "The trace is too large.\n",
+        StatusCode::SERVICE_UNAVAILABLE => "The program is busy: ask again.\n",
+        _ => return None,
+    })
 }
 
 async fn socket(
@@ -131,8 +154,14 @@ async fn trace(
     let place = Arc::clone(&shared.traces).try_acquire_owned();
     let place = place.map_err(|_| StatusCode::SERVICE_UNAVAILABLE)?;
     let stage = Arc::clone(&shared.stage);
-    let rows = tokio::task::spawn_blocking(move || stage.trace().map(|trace| trace()));
+    let rows = tokio::task::spawn_blocking(move || {
+        stage.trace().map(|trace| trace.map(|trace| trace()))
+    });
     let rows = rows.await.ok().flatten().ok_or(StatusCode::SERVICE_UNAVAILABLE)?;
+    let Some(rows) = rows else {
+        let words = "Nothing is recorded yet: send `record` first.\n";
+        return Ok((StatusCode::NOT_FOUND, words).into_response());
+    };
     let body = Body::new(Whole::new(rows.into(), place));
     Ok(([(header::CONTENT_TYPE, "text/csv")], body).into_response())
 }

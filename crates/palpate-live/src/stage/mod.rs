@@ -260,8 +260,8 @@ impl Stage {
         sent.map_err(|_| "the program is busy: send the trace again".to_owned())
     }
 
-    /// What was recorded last.
-    pub(crate) fn trace(&self) -> Option<Trace> {
+    /// What was recorded last, if anything was; `None` where the program is busy.
+    pub(crate) fn trace(&self) -> Option<Option<Trace>> {
         let (reply, answer) = sync_channel(1);
         self.orders.try_send(Order::Trace(reply)).ok()?;
         answer.recv().ok()

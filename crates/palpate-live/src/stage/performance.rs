@@ -70,7 +70,7 @@ pub(crate) enum Order {
     /// Takes what is to be replayed.
     TakeReplay(AnyReplay),
     /// What was recorded, as a file.
-    Trace(SyncSender<Trace>),
+    Trace(SyncSender<Option<Trace>>),
     /// Renders another scene.
     Show {
         scene: Arc<AnyScene>,

@@ -121,12 +121,15 @@ impl Recording {
         of_either!(AnyRows, &self.rows, rows => rows.len())
     }
 
-    /// The rows as a file.
-    pub(super) fn trace(&self) -> Trace {
-        of_either!(AnyRows, &self.rows, rows => {
+    /// The rows as a file, if there are any.
+    pub(super) fn trace(&self) -> Option<Trace> {
+        if self.len() == 0 {
+            return None;
+        }
+        Some(of_either!(AnyRows, &self.rows, rows => {
             let rows = rows.clone();
             Box::new(move || trace::written(&rows))
-        })
+        }))
     }
 
     /// What the pages are told: a few times a second while it is on, and when it ends.

@@ -33,6 +33,7 @@ use crate::pair::search::PairSearch;
 use crate::pair::{Nearest, PairWorkspace};
 use crate::placed::Placed;
 use crate::sampler::arbitrary;
+use crate::verdict::Verdict;
 pub(crate) use deep::followed;
 use grid::distance;
 use patch::Patches;
@@ -104,6 +105,10 @@ pub struct Manifold<const D: usize> {
     /// The separation and where it is found: at the deepest contact, unless the separation exceeds the
     /// margin, or the normal of that contact was taken from a thicker body or from history.
     pub separation: Certified<Nearest<D>>,
+    /// The distance of the bodies is at most this [m]: zero if they overlap, the separation where both
+    /// fields are exact outside, else that of two points found in the bodies. Infinite where none of
+    /// these is known: a separation made of bounds does not tell how far the bodies are apart at most.
+    pub distance_at_most: f64,
     /// How many contacts were left out beyond [`ManifoldSettings::most`].
     pub dropped: usize,
     /// `false` if the search ended before it had seen the whole region.
@@ -160,6 +165,22 @@ pub fn manifold<'a, const D: usize>(
     let budget = limits.budget;
     let separated = SeparatedPair { pair, best: search.best, separation };
     Ok(spanning(separated, settings, budget, workspace))
+}
+
+/// The deepest contact of two bodies, as a manifold has it, from where their separation is found; and
+/// how often fields were evaluated.
+pub(crate) fn deepest<const D: usize>(
+    a: Placed<'_, D>,
+    b: Placed<'_, D>,
+    nearest: &Nearest<D>,
+    margin: f64,
+) -> Result<(Contact<D>, u32), QueryError> {
+    let mut pair = BodyPair::new(a, b)?;
+    let settings = ManifoldSettings::of_size(pair.smaller_size()).with_margin(margin);
+    let there = pair.world_from_frame.inverse().transform_point(nearest.point);
+    let touch = Touch::at(&mut pair, there);
+    let touch = touch.along_surface(&mut pair, &settings).unwrap_or(touch);
+    Ok((touch.contact(&pair, settings.spacing), pair.evaluations))
 }
 
 /// A pair whose separation was found at the point `best`, in its frame.
@@ -274,9 +295,7 @@ impl<const D: usize> Spanned<D> {
         let mut members = self.members.clone();
         let mut are_moved = false;
         for member in &mut members {
-            if let Some(touch) = deep::pushed(&mut pair, &member.touch, settings) {
-                (member.touch, are_moved) = (touch, true);
-            } else if let Some(touch) = member.touch.on_face(&mut pair, settings) {
+            if let Some(touch) = member.touch.along_surface(&mut pair, settings) {
                 (member.touch, are_moved) = (touch, true);
             }
         }
@@ -284,6 +303,9 @@ impl<const D: usize> Spanned<D> {
             // Several lead to one deepest point.
             drop_copies(&mut members, settings.spacing);
         }
+        let upper = found.separation.upper;
+        let places = self.members.iter().map(|member| member.touch.point);
+        found.distance_at_most = pair.distance_at_most(upper, places, settings.margin);
         found.separation.evaluations += pair.evaluations;
         let contact = |member: &Member<D>| member.touch.contact(&pair, settings.spacing);
         let spanning = members.iter().map(|member| (*member, contact(member)));
@@ -299,10 +321,18 @@ impl<const D: usize> Manifold<D> {
             contacts: Vec::new(),
             groups: Vec::new(),
             separation,
+            distance_at_most: f64::INFINITY,
             dropped: 0,
             is_whole: true,
             region_stop: Stop::Converged,
         }
+    }
+
+    /// Whether the bodies touch, up to `margin` [m]: what the bounds of their separation and of their
+    /// distance prove.
+    #[must_use]
+    pub fn verdict(&self, margin: f64) -> Verdict {
+        Verdict::of_bounds([self.separation.lower, self.distance_at_most], margin)
     }
 
     /// Keeps the contacts within the margin, the deepest first.
@@ -401,6 +431,16 @@ impl<const D: usize> Touch<D> {
         Self { point, normal, gap: 2.0 * a.max(b), source }
     }
 
+    /// The touch along the surface of one body, where gradients of both lead elsewhere: in a thin body, and
+    /// at an edge. `None` where they do not.
+    fn along_surface(
+        &self,
+        pair: &mut BodyPair<'_, D>,
+        settings: &ManifoldSettings,
+    ) -> Option<Self> {
+        deep::pushed(pair, self, settings).or_else(|| self.on_face(pair, settings))
+    }
+
     /// The touch at a face of one body where the other has an edge: along the face's normal, and where
     /// the bodies are apart, from the edge.
     fn on_face(&self, pair: &mut BodyPair<'_, D>, settings: &ManifoldSettings) -> Option<Self> {
@@ -433,29 +473,22 @@ impl<const D: usize> Touch<D> {
     /// side.
     pub(crate) fn contact(&self, pair: &BodyPair<'_, D>, near: f64) -> Contact<D> {
         let near = near.max(2.0 * self.gap.abs());
-        let estimated = |side: f64| self.point + self.normal * (side * 0.5 * self.gap);
-        let placed = |contact: Contact<D>| {
-            contact.with_normal_from(self.source).placed(&pair.world_from_frame)
+        let by_values = Contact::estimated(self.point, self.normal, self.gap);
+        let is_near = |p: &Point<D>| {
+            let away = *p - self.point;
+            let along = away.dot(self.normal);
+            away.norm() <= near && 2.0 * along * along >= away.dot(away)
         };
-        if matches!(self.source, NormalSource::ThickerBody | NormalSource::History) {
-            return placed(Contact::new(estimated(-1.0), estimated(1.0), self.normal));
-        }
-        let on = |body: usize, side: f64| {
-            let found = pair.surface_point(body, self.point);
-            let found = found.filter(|p| {
-                let away = *p - self.point;
-                let along = away.dot(self.normal);
-                away.norm() <= near && 2.0 * along * along >= away.dot(away)
-            });
-            found.unwrap_or(estimated(side))
-        };
-        let mut contact = Contact::new(on(0, -1.0), on(1, 1.0), self.normal);
+        let on = |body: usize| pair.surface_point(body, self.point).filter(is_near);
+        let by_surfaces = || Some(Contact::new(on(0)?, on(1)?, self.normal));
         // Of an edge in a corner, the nearest points of the surfaces are not along the normal: a solver
         // that closes their distance along it would leave the bodies in each other.
-        if self.gap < 0.0 && contact.gap > self.gap {
-            contact = Contact::new(estimated(-1.0), estimated(1.0), self.normal);
-        }
-        placed(contact)
+        let is_deep = |contact: &Contact<D>| self.gap >= 0.0 || contact.gap <= self.gap;
+        let contact = match self.source {
+            NormalSource::ThickerBody | NormalSource::History => by_values,
+            _ => by_surfaces().filter(is_deep).unwrap_or(by_values),
+        };
+        contact.with_normal_from(self.source).placed(&pair.world_from_frame)
     }
 }
 

@@ -105,6 +105,30 @@ impl<'a, const D: usize> BodyPair<'a, D> {
         Some(body.in_frame(body.shape.surface_point(body.local(p))?))
     }
 
+    /// What the bodies' distance is at most, by the upper bound of their separation and points of both
+    /// near these places of the frame, of which none is looked at after one that shows a distance of
+    /// `enough`; infinite if nothing is known.
+    pub(crate) fn distance_at_most(
+        &self,
+        upper: f64,
+        places: impl IntoIterator<Item = Point<D>>,
+        enough: f64,
+    ) -> f64 {
+        if upper <= 0.0 || self.bodies.iter().all(DistanceBound::is_exact_outside) {
+            return upper.max(0.0);
+        }
+        let mut least = f64::INFINITY;
+        for place in places {
+            let points = [0, 1].map(|body| self.bodies[body].point_within(place));
+            let [Some(a), Some(b)] = points else { continue };
+            least = least.min((a - b).norm() + self.slack(a.norm().max(b.norm())));
+            if least <= enough {
+                break;
+            }
+        }
+        least
+    }
+
     /// The longest side of the smaller of the bodies' boxes [m].
     pub(crate) fn smaller_size(&self) -> f64 {
         let size = |aabb: &Aabb<D>| {

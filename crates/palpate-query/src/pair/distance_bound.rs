@@ -5,7 +5,7 @@
 //! than one.
 
 use palpate_field::scalar::Model;
-use palpate_field::{Aabb, BoundingBall, Point, Pose, Rotation, Shape, Vector};
+use palpate_field::{Aabb, BoundingBall, Point, Pose, Quality, Rotation, Shape, Vector};
 
 use crate::error::QueryError;
 use crate::larger::larger;
@@ -16,6 +16,11 @@ const GEOMETRY_ROUNDINGS: f64 = 16.0;
 
 /// A coordinate that a side of a box depends on less than this is not bounded by it.
 const LEAST_TURN: f64 = 1e-2;
+
+/// Steps to a point that is in a shape from one on its surface, and the depth that they aim at, in
+/// roundings of its field.
+const STEPS_WITHIN: u32 = 16;
+const DEPTH_WITHIN: f64 = 4.0;
 
 /// `g = max(f/L, distance to the shape's box)`, with `L` the steepness of the field, at least
 /// one: a lower bound of the distance to a shape, nowhere steeper than one, of which
@@ -92,6 +97,34 @@ impl<'a, const D: usize> DistanceBound<'a, D> {
         check_pose(0, &a.world_from_body)?;
         check_pose(1, &b.world_from_body)?;
         Ok([a, b].map(|body| Self::new(body.shape, body.world_from_body.inverse())))
+    }
+
+    /// `true` if the field is the distance outside of the shape.
+    pub(crate) fn is_exact_outside(&self) -> bool {
+        self.shape.promise().outside == Quality::Exact
+    }
+
+    /// A point of the frame that is in the shape, rounding included, near another one; on its surface
+    /// where the field is exact.
+    pub(crate) fn point_within(&self, p: Point<D>) -> Option<Point<D>> {
+        let mut within = self.shape.surface_point(self.local(p))?;
+        if self.is_exact_outside() {
+            return Some(self.in_frame(within));
+        }
+        let rounding = self.shape.promise().rounding.within(within.norm());
+        // Behind one face after the other of an edge.
+        for _ in 0..STEPS_WITHIN {
+            let (value, slope) = self.shape.distance_gradient(within);
+            if value <= -rounding {
+                return Some(self.in_frame(within));
+            }
+            let squared = slope.dot(slope);
+            if squared.is_nan() || squared <= 0.0 {
+                return None;
+            }
+            within -= slope * ((value + DEPTH_WITHIN * rounding) / squared);
+        }
+        None
     }
 
     /// A box of the frame that holds the shape.

@@ -49,7 +49,8 @@ pub struct FirstTouch<const D: usize> {
     /// At this time their separation is at most the gap, or the field at a point of the element or
     /// the mesh; infinite if no such time was found, and 1 if they are proven to be apart all the time.
     pub upper: f64,
-    /// The contact at `upper`; `None` if there is none, or no surface was found there.
+    /// The contact at `upper`, that of bodies the deepest as a [`manifold`](crate::manifold) has it; `None`
+    /// if there is none, or no surface of an element was found there.
     pub contact: Option<Contact<D>>,
     /// How the bodies move on, if they touch at the start.
     pub start: Option<Start>,

@@ -3,6 +3,7 @@
 
 //! When moving bodies touch first.
 
+mod advancement;
 mod ball;
 mod boxes;
 mod element;

@@ -5,6 +5,7 @@
 
 use palpate_field::{Pose, Vector};
 
+use super::advancement::Advancement;
 use super::boxes::{BoxFrontier, BoxMemory, BoxSweep, SpaceCell, frontier};
 use super::first_touch::{FirstTouch, Start};
 use super::moving::{Moving, corners};
@@ -12,8 +13,10 @@ use super::path::Path;
 use super::proof::FreeBox;
 use super::settings::{FREE, SweepSettings};
 use crate::certified::{Limits, Stop};
+use crate::contact::NormalSource;
 use crate::engine;
 use crate::error::QueryError;
+use crate::manifold::deepest;
 use crate::pair::distance_bound::DistanceBound;
 use crate::pair::{PairWorkspace, separation};
 
@@ -35,8 +38,9 @@ const SHARE: f64 = 0.25;
 ///
 /// Each box of space advances through time on its own, by models of both fields over it and over a
 /// span of time. So no motion is too fast and no body too thin. What passes at a small distance takes
-/// many boxes; if the budget is spent, `lower` says until when the bodies are proven apart, and `upper` is
-/// the earliest touch that samples of the time find.
+/// many boxes: where their memory is full or the budget spent, the bodies go on by conservative advancement.
+/// If that ends early too, `lower` says until when the bodies are proven apart, and `upper` is the earliest
+/// touch that samples of the time find.
 ///
 /// ```
 /// use palpate_field::{Pose, Screw, Shape};
@@ -127,19 +131,33 @@ pub(super) fn swept<const D: usize>(
             end = engine::search(&mut search, frontier);
         }
     }
-    let lower = frontier.lower(search.dropped).min(search.upper).min(1.0);
+    let mut lower = frontier.lower(search.dropped).min(search.upper).min(1.0);
     if search.upper < f64::INFINITY {
         search.refine(lower);
     }
     let (mut upper, mut evaluations) = (search.upper, search.evaluations);
-    if end.stop().is_early() && upper == f64::INFINITY {
-        upper = sampled_touch(lower, bodies, settings, pair, &mut evaluations)?;
+    let mut stop = end.stop();
+    if stop.is_early() && upper > lower {
+        let budget =
+            settings.budget.saturating_sub(evaluations).max(settings.budget / AFTERWARDS);
+        let advancement = Advancement { bodies, way, size: search.size, settings, budget };
+        let advanced = advancement.run(lower, pair)?;
+        evaluations = evaluations.saturating_add(advanced.evaluations);
+        lower = advanced.lower.min(upper);
+        upper = upper.min(advanced.upper);
+        if lower >= 1.0 {
+            stop = Stop::SignKnown;
+        } else if upper - lower <= settings.time_tolerance {
+            stop = Stop::Converged;
+        } else if upper == f64::INFINITY {
+            upper = sampled_touch(lower, bodies, settings, pair, &mut evaluations)?;
+        }
     }
     if let Some(boxes) = search.ruled_out {
         boxes.extend(frontier.queue.cells().map(|space: SpaceCell<D>| space.free()));
         boxes.extend(frontier.pending.iter().map(|space| space.free()));
     }
-    let stop = if upper == 0.0 { Stop::Converged } else { end.stop() };
+    let stop = if upper == 0.0 { Stop::Converged } else { stop };
     let upper = if stop == Stop::SignKnown { 1.0 } else { upper };
     let mut found = FirstTouch { lower, upper, contact: None, start: None, stop, evaluations };
     if stop != Stop::SignKnown && upper.is_finite() {
@@ -221,12 +239,13 @@ fn touch_at<const D: usize>(
         }
     }
     found.upper = time;
-    found.contact = best.best.contact(a, b);
-    let normal = best.best.normal.filter(|_| time == 0.0);
-    found.start = normal.map(|normal| {
+    let (contact, evaluations) = deepest(a, b, &best.best, settings.gap)?;
+    found.evaluations = found.evaluations.saturating_add(evaluations);
+    found.contact = Some(contact);
+    if time == 0.0 && contact.normal_from != NormalSource::Assumed {
         let [of_a, of_b] = bodies.map(|body| body.velocity(0.0, best.best.point));
-        Start::of(of_b - of_a, normal)
-    });
+        found.start = Some(Start::of(of_b - of_a, contact.normal));
+    }
     Ok(())
 }
 

@@ -11,7 +11,6 @@ mod impact;
 mod near;
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::fmt;
 
 use palpate_field::{Aabb, Pose, Shape};
 #[cfg(feature = "parallel")]
@@ -24,6 +23,7 @@ use crate::manifold::{Manifold, ManifoldSettings};
 use crate::placed::check_pose;
 use crate::pool::Pool;
 use crate::track::Track;
+use crate::verdict::Verdict;
 use near::pairs_near;
 
 pub use impact::Impact;
@@ -82,53 +82,6 @@ pub struct Neighbours<const D: usize> {
     pub manifold: Option<Manifold<D>>,
 }
 
-/// Whether two bodies touch.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub enum Verdict {
-    /// Their separation is proven to be at most the margin.
-    Touching,
-    /// Their separation is proven to be more than the margin.
-    Apart,
-    /// The margin lies between the bounds: the search ended early, the separation is so near the
-    /// margin that the tolerance does not tell, or neither body is bounded.
-    Undecided,
-}
-
-impl Verdict {
-    /// What bounds of a separation [m], the lower and the upper one, prove up to `margin` [m].
-    ///
-    /// ```
-    /// use palpate_query::Verdict;
-    ///
-    /// let verdict = |lower, upper| Verdict::of_bounds([lower, upper], 0.5);
-    /// assert_eq!(verdict(0.25, 0.5), Verdict::Touching);
-    /// assert_eq!(verdict(0.625, 0.75), Verdict::Apart);
-    /// assert_eq!(verdict(0.5, 0.625), Verdict::Undecided);
-    /// ```
-    #[must_use]
-    pub fn of_bounds([lower, upper]: [f64; 2], margin: f64) -> Self {
-        if lower > margin {
-            Self::Apart
-        } else if upper <= margin {
-            Self::Touching
-        } else {
-            // Also if a bound is NaN.
-            Self::Undecided
-        }
-    }
-}
-
-impl fmt::Display for Verdict {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Touching => "touching",
-            Self::Apart => "apart",
-            Self::Undecided => "undecided",
-        })
-    }
-}
-
 impl<const D: usize> Neighbours<D> {
     /// The bounds of the separation [m]; infinite if neither body is bounded.
     #[must_use]
@@ -142,7 +95,8 @@ impl<const D: usize> Neighbours<D> {
     /// Whether they touch, up to `margin` [m]: what the bounds prove.
     #[must_use]
     pub fn verdict(&self, margin: f64) -> Verdict {
-        Verdict::of_bounds(self.bounds(), margin)
+        let of = |manifold: &Manifold<D>| manifold.verdict(margin);
+        self.manifold.as_ref().map_or(Verdict::Undecided, of)
     }
 
     /// The contacts.

@@ -6,7 +6,7 @@
 use palpate_field::kernel::{Ball, Cuboid, Cylinder, Torus};
 use palpate_field::{Pose, Rotation, Shape, ShapeError, Vector};
 use palpate_query::{
-    Limits, Manifold, ManifoldSettings, PairWorkspace, Placed, Track, manifold,
+    Limits, Manifold, ManifoldSettings, PairWorkspace, Placed, Track, Verdict, manifold,
 };
 use palpate_testkit::recall::{in_space, rows};
 
@@ -367,4 +367,34 @@ fn the_normal_of_an_edge_on_a_face_is_that_of_the_face() -> Result<(), ShapeErro
         }
     }
     Ok(())
+}
+
+/// A wedge of 2° whose field tells a 57th of the distance in front of its edge: a ball 10 mm away was said
+/// to touch it within 0.4 mm.
+#[test]
+fn a_bound_is_no_touch_until_points_of_both_bodies_show_it() {
+    let wedge = |half_angle: f64| {
+        let (sin, cos) = half_angle.to_radians().sin_cos();
+        let side = |x: f64| Shape::<3>::half_space([x, -sin, 0.0], 0.0).unwrap();
+        side(cos) & side(-cos) & Shape::<3>::cube(0.2).unwrap()
+    };
+    let ball = Shape::<3>::ball(0.1).unwrap();
+    let settings = ManifoldSettings::of_size(0.2);
+    let found = |half_angle: f64, gap: f64| {
+        let there = Placed::new(&ball, Pose::translation([0.0, -0.1 - gap, 0.0]));
+        let limits = Limits::new(0.5 * settings.margin);
+        let wedge = wedge(half_angle);
+        manifold(&wedge, there, &settings, &limits, &mut PairWorkspace::new()).unwrap()
+    };
+    let far = found(1.0, 0.01);
+    assert!(far.separation.upper < settings.margin);
+    assert_eq!(far.verdict(settings.margin), Verdict::Undecided);
+    assert_eq!(far.distance_at_most, f64::INFINITY);
+    let contact = far.contacts[0];
+    assert!(!contact.on_surfaces && contact.gap >= far.separation.lower, "{contact:?}");
+    let near = found(45.0, 1e-4);
+    assert_eq!(near.verdict(settings.margin), Verdict::Touching);
+    assert!((1e-4..=settings.margin).contains(&near.distance_at_most), "{near:?}");
+    let within = found(1.0, -0.05);
+    assert_eq!((within.verdict(0.0), within.distance_at_most), (Verdict::Touching, 0.0));
 }

@@ -13,8 +13,8 @@ mod sweep_answers;
 use palpate_field::kernel::HalfSpace;
 use palpate_field::{Pose, Rotation, Screw, Shape, Vector};
 use palpate_query::{
-    FirstTouch, Moving, PairWorkspace, Placed, QueryError, Start, Stop, SweepSettings,
-    SweepWorkspace, sweep,
+    FirstTouch, Limits, ManifoldSettings, Moving, PairWorkspace, Placed, QueryError, Start,
+    Stop, SweepSettings, SweepWorkspace, manifold, sweep,
 };
 use palpate_testkit::arbitrary::{self as draw, Turn};
 use palpate_testkit::cases;
@@ -113,6 +113,56 @@ fn motions_that_end_at_a_touch_and_bodies_at_rest() {
     assert_eq!((apart.touches(), apart.upper), (Some(false), 1.0));
     let still = first((&block).into(), Placed::new(&block, at([0.0, 1.5])).into());
     assert_eq!((still.touches(), still.contact), (Some(false), None), "{still:?}");
+}
+
+/// The nearest points of the surfaces told less than the depth at an edge, and half of it in a thin body.
+#[test]
+fn the_contact_of_a_touch_is_as_deep_as_that_of_a_manifold() {
+    let ball = Shape::<3>::ball(0.05).unwrap();
+    let corner = Shape::<3>::cube(0.2).unwrap().translated([-0.1, -0.1, 0.0]).unwrap();
+    let turn = Rotation::from_axis_angle(Vector([0.0, 0.0, 1.0]), PI / 6.0).unwrap();
+    let corner = corner.placed(&Pose::new(turn, Vector::ZERO)).unwrap();
+    let falls = moves(&ball, at([0.01, 20.0, 0.0]), at([0.01, -20.0, 0.0]));
+    let plate = Shape::<3>::cuboid([1.0, 0.4, 1.0]).unwrap();
+    let small = Shape::<3>::ball(0.005).unwrap();
+    let stays = moves(&small, at([0.0, 0.19, 0.0]), at([0.0, 0.3, 0.0]));
+    for (still, moving) in [(&corner, falls), (&plate, stays)] {
+        let settings = SweepSettings::of_size(0.1);
+        let mut workspace = SweepWorkspace::new();
+        let touch = sweep(still, moving, &settings, &mut workspace).unwrap();
+        let contact = touch.contact.unwrap();
+        let margin = ManifoldSettings::of_size(0.1).with_margin(settings.gap);
+        let spanned = manifold(
+            still,
+            moving.at(touch.upper),
+            &margin,
+            &Limits::new(0.25 * settings.gap),
+            &mut PairWorkspace::new(),
+        );
+        let deepest = spanned.unwrap().contacts[0];
+        assert!((contact.gap - deepest.gap).abs() < 1e-6, "{contact:?}, {deepest:?}");
+        assert!(contact.normal.dot(deepest.normal) > 0.999, "{contact:?}, {deepest:?}");
+        assert_eq!(contact.normal_from, deepest.normal_from);
+    }
+}
+
+/// Boxes of space and time that are as small as the gap between two plates do not fit into the budget.
+#[test]
+fn plates_that_slide_closely_past_each_other_advance_in_time() {
+    let plate = Shape::<3>::cuboid([1.0, 0.1, 1.0]).unwrap();
+    let settings = SweepSettings::of_size(1.0).with_budget(400_000);
+    let slide = |to: [f64; 3]| {
+        let turned = Rotation::identity().turned([0.0, 0.02, 0.0]);
+        let to = Pose::new(turned, Vector(to));
+        let moving = moves(&plate, at([0.0, 0.1001, 0.0]), to);
+        sweep(&plate, moving, &settings, &mut SweepWorkspace::new()).unwrap()
+    };
+    let past = slide([0.003, 0.1001, 0.0]);
+    assert_eq!((past.touches(), past.stop), (Some(false), Stop::SignKnown), "{past:?}");
+    // Falls by 0.2 mm: a touch halfway.
+    let falls = slide([0.003, 0.0999, 0.0]);
+    assert!(falls.lower <= 0.5 && falls.upper >= 0.495, "{falls:?}");
+    assert!(falls.upper - falls.lower <= 0.01, "{falls:?}");
 }
 
 /// Plates of 0.1 mm, which a cube crosses at 10 m in one step from any direction.
