@@ -3,9 +3,9 @@
 
 //! Python environments with peers, which are made under `target/` and reused.
 
-use std::fmt;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
+use std::{fmt, fs, io};
 
 /// Peers of Python.
 #[derive(Clone, Copy, Debug)]
@@ -52,8 +52,23 @@ impl Peers {
         self.packages.iter().map(|(name, version)| format!("{name}=={version}")).collect()
     }
 
+    /// The folder of this name under `target/`, and the Python program of its environment; both are made
+    /// unless they are there. `None`, and a sentence that says why, without these peers.
+    pub(crate) fn prepared(self, name: &str) -> io::Result<Option<(PathBuf, PathBuf)>> {
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../target").join(name);
+        fs::create_dir_all(&folder)?;
+        let folder = folder.canonicalize()?;
+        Ok(match self.python(&folder.join("environment")) {
+            Ok(python) => Some((folder, python)),
+            Err(missing) => {
+                eprintln!("palpate-bench: {missing}");
+                None
+            }
+        })
+    }
+
     /// The Python program of the environment in a folder, which is made unless it is there.
-    pub(crate) fn python(self, folder: &Path) -> Result<PathBuf, Missing> {
+    fn python(self, folder: &Path) -> Result<PathBuf, Missing> {
         let python = program(folder);
         if self.are_in(&python) {
             return Ok(python);

@@ -69,16 +69,7 @@ pub(crate) fn measure(
     options: &Options,
     is_quiet: bool,
 ) -> Result<Option<Rows>, Box<dyn Error>> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../target/mujoco");
-    fs::create_dir_all(&folder)?;
-    let folder = folder.canonicalize()?;
-    let python = match PEERS.python(&folder.join("environment")) {
-        Ok(python) => python,
-        Err(missing) => {
-            eprintln!("palpate-bench: {missing}");
-            return Ok(None);
-        }
-    };
+    let Some((folder, python)) = PEERS.prepared("mujoco")? else { return Ok(None) };
     let bodies = bodies::all()?;
     let mut measured = Vec::new();
     let mut question = Question { bodies: sampled(&bodies), pairs: Vec::new() };

@@ -10,7 +10,6 @@ use std::collections::BTreeMap;
 use std::error::Error;
 use std::fs;
 use std::hint::black_box;
-use std::path::Path;
 use std::process::Command;
 use std::time::Instant;
 
@@ -70,16 +69,7 @@ struct Answer {
 
 /// Adds the rows beside peers; none, and a sentence that says why, without them.
 pub(super) fn measure(mesh: &TriangleMesh, rows: &mut Rows) -> Result<(), Box<dyn Error>> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../target/sampled");
-    fs::create_dir_all(&folder)?;
-    let folder = folder.canonicalize()?;
-    let python = match PEERS.python(&folder.join("environment")) {
-        Ok(python) => python,
-        Err(missing) => {
-            eprintln!("palpate-bench: {missing}");
-            return Ok(());
-        }
-    };
+    let Some((folder, python)) = PEERS.prepared("sampled")? else { return Ok(()) };
     let crossing = bumpy::with_a_crossing_piece(mesh)?;
     let cell = longest(mesh) / CELLS;
     let lattice = Lattice::over(&mesh.bounds().grown(cell), cell);

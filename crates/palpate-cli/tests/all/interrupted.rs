@@ -262,7 +262,7 @@ fn sweep_reports_its_proof_when_a_local_search_is_interrupted() {
               "pose": { "translation": [0, 0.3, 0] } } ],
           "motions": [{ "body": "ball", "to": { "translation": [0, 0.08, 0] } }] }"#,
     );
-    let arguments = ["sweep", &scene, "--method", "naive_descent", "--samples", "10000"];
+    let arguments = ["sweep", &scene, "--method", "naive", "--samples", "10000"];
     let mut run = Run::start(&arguments);
     // The proof has its end when the thread of the local search begins.
     let tasks = format!("/proc/{}/task", run.0.id());
