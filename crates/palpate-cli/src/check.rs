@@ -58,9 +58,18 @@ pub(crate) fn run(options: &CheckOptions) -> Result<Outcome, Failure> {
                 });
                 out.json(&answer)?;
             } else {
+                let is_mended =
+                    |mesh: &&BuiltMesh| mesh.thickness.is_none() && !mesh.findings.is_clean();
+                let mended = match meshes.iter().filter(is_mended).count() {
+                    0 => String::new(),
+                    count => {
+                        let files = counted(count, "mesh is", "meshes are");
+                        format!("; {files} used as mended, and not good alone")
+                    }
+                };
                 writeln!(
                     out,
-                    "{name}: good, {dimension}D, {}",
+                    "{name}: good, {dimension}D, {}{mended}",
                     counted(bodies.len(), "body", "bodies")
                 )?;
                 for body in &bodies {

@@ -17,6 +17,19 @@ impl<const D: usize> CustomField<D> for Grid<D> {
         self.at(p)
     }
 
+    fn distances(&self, points: &[Point<D>], distances: &mut [f64]) {
+        self.values_at(points, distances);
+    }
+
+    fn distances_gradients(
+        &self,
+        points: &[Point<D>],
+        distances: &mut [f64],
+        gradients: &mut [Vector<f64, D>],
+    ) {
+        self.all_at(points, distances, gradients);
+    }
+
     fn promise(&self) -> &Promise<D> {
         self.promise()
     }

@@ -253,6 +253,18 @@ impl<const D: usize> Grid<D> {
         }
     }
 
+    /// `true` where a value that the samples give may be clamped, and what is beyond the band tells more.
+    #[inline]
+    pub(crate) fn may_be_clamped(&self, value: f64) -> bool {
+        self.far.is_some() && value.abs() >= self.clamped
+    }
+
+    /// The box of the cells [m].
+    #[inline]
+    pub(crate) fn region(&self) -> &Aabb<D> {
+        &self.region
+    }
+
     #[inline]
     fn nearest_inside(&self, p: Point<D>) -> Point<D> {
         Vector(std::array::from_fn(|i| p[i].max(self.region.min[i]).min(self.region.max[i])))

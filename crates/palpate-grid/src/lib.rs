@@ -24,6 +24,7 @@
 //! ```
 
 mod bake;
+mod blocks;
 #[cfg(feature = "files")]
 mod cache;
 mod certificate;

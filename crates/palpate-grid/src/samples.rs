@@ -6,7 +6,7 @@
 use palpate_field::Vector;
 
 use crate::lattice::{indices, raveled};
-use crate::spline::{OfTaps, Spline};
+use crate::spline::{OfTaps, Spline, value, value_slope};
 
 /// Cells of a brick along an axis.
 pub(crate) const BRICK: usize = 8;
@@ -324,9 +324,9 @@ impl<const D: usize> Samples<D> {
             Window::Stored { first, strides } => (first, strides),
         };
         let (value, slope) = match &self.codes {
-            Codes::F32(codes) => value_slope::<f32, K, D>(&codes[first..], strides, local),
-            Codes::I16(codes) => value_slope::<i16, K, D>(&codes[first..], strides, local),
-            Codes::I8(codes) => value_slope::<i8, K, D>(&codes[first..], strides, local),
+            Codes::F32(codes) => slope_of::<f32, K, D>(&codes[first..], strides, local),
+            Codes::I16(codes) => slope_of::<i16, K, D>(&codes[first..], strides, local),
+            Codes::I8(codes) => slope_of::<i8, K, D>(&codes[first..], strides, local),
         };
         (value * self.scale, slope * self.scale)
     }
@@ -342,9 +342,9 @@ impl<const D: usize> Samples<D> {
             Window::Stored { first, strides } => (first, strides),
         };
         let value = match &self.codes {
-            Codes::F32(codes) => value::<f32, K, D>(&codes[first..], strides, local),
-            Codes::I16(codes) => value::<i16, K, D>(&codes[first..], strides, local),
-            Codes::I8(codes) => value::<i8, K, D>(&codes[first..], strides, local),
+            Codes::F32(codes) => value_of::<f32, K, D>(&codes[first..], strides, local),
+            Codes::I16(codes) => value_of::<i16, K, D>(&codes[first..], strides, local),
+            Codes::I8(codes) => value_of::<i8, K, D>(&codes[first..], strides, local),
         };
         value * self.scale
     }
@@ -407,9 +407,28 @@ pub(crate) fn wide_node(brick: usize, index: usize, count: usize) -> usize {
     (brick * BRICK + index).saturating_sub(1).min(count - 1)
 }
 
-/// `Σ wᵢ cᵢ` over a cell's samples, the product of the axes' weights for each.
+/// Where a row of a cell's samples along the first axis begins.
 #[inline(always)]
-fn value<T: Code, const K: usize, const D: usize>(
+pub(crate) fn row_place<const K: usize, const D: usize>(
+    mut row: usize,
+    strides: [usize; D],
+) -> usize {
+    let mut place = 0;
+    for stride in strides.into_iter().skip(1) {
+        place += row % K * stride;
+        row /= K;
+    }
+    place
+}
+
+#[inline(always)]
+fn row_of<T: Code, const K: usize>(codes: &[T], place: usize) -> [f64; K] {
+    let row = &codes[place..place + K];
+    std::array::from_fn(|tap| row[tap].into())
+}
+
+#[inline(always)]
+fn value_of<T: Code, const K: usize, const D: usize>(
     codes: &[T],
     strides: [usize; D],
     local: [f64; D],
@@ -417,29 +436,11 @@ fn value<T: Code, const K: usize, const D: usize>(
 where
     OfTaps<K>: Spline<K>,
 {
-    let weights = local.map(OfTaps::<K>::weights);
-    let mut sum = 0.0;
-    for row in 0..K.pow(D as u32 - 1) {
-        let (mut rest, mut place, mut weight) = (row, 0, 1.0);
-        for axis in 1..D {
-            let tap = rest % K;
-            rest /= K;
-            place += tap * strides[axis];
-            weight *= weights[axis][tap];
-        }
-        let codes = &codes[place..place + K];
-        let mut along = 0.0;
-        for tap in 0..K {
-            along += weights[0][tap] * codes[tap].into();
-        }
-        sum += weight * along;
-    }
-    sum
+    value(|row| row_of::<T, K>(codes, row_place::<K, D>(row, strides)), local)
 }
 
-/// The same, with the derivatives along the axes.
 #[inline(always)]
-fn value_slope<T: Code, const K: usize, const D: usize>(
+fn slope_of<T: Code, const K: usize, const D: usize>(
     codes: &[T],
     strides: [usize; D],
     local: [f64; D],
@@ -447,34 +448,5 @@ fn value_slope<T: Code, const K: usize, const D: usize>(
 where
     OfTaps<K>: Spline<K>,
 {
-    let weights = local.map(OfTaps::<K>::weights);
-    let slopes = local.map(OfTaps::<K>::slopes);
-    let (mut sum, mut gradient) = (0.0, Vector::ZERO);
-    for row in 0..K.pow(D as u32 - 1) {
-        let (mut rest, mut place) = (row, 0);
-        let mut products = [1.0; D];
-        for axis in 1..D {
-            let tap = rest % K;
-            rest /= K;
-            place += tap * strides[axis];
-            for (other, product) in products.iter_mut().enumerate() {
-                let factor = if other == axis { slopes[axis][tap] } else { weights[axis][tap] };
-                *product *= factor;
-            }
-        }
-        let codes = &codes[place..place + K];
-        let (mut along, mut slope) = (0.0, 0.0);
-        for tap in 0..K {
-            let code = codes[tap].into();
-            along += weights[0][tap] * code;
-            slope += slopes[0][tap] * code;
-        }
-        // The weight of the row is the product without slopes, which is that of the first axis.
-        sum += products[0] * along;
-        gradient[0] += products[0] * slope;
-        for axis in 1..D {
-            gradient[axis] += products[axis] * along;
-        }
-    }
-    (sum, gradient)
+    value_slope(|row| row_of::<T, K>(codes, row_place::<K, D>(row, strides)), local)
 }

@@ -3,6 +3,8 @@
 
 //! B-splines over the samples of a grid, and their control values over a cell.
 
+use palpate_field::Vector;
+
 /// How a grid's samples are interpolated.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Kernel {
@@ -96,4 +98,82 @@ impl Spline<TRILINEAR> for OfTaps<TRILINEAR> {
     const SLOPES: [[f64; TRILINEAR]; TRILINEAR] = [[-1.0, 1.0], [-1.0, 1.0]];
     const HALVES: [[[f64; TRILINEAR]; TRILINEAR]; 2] =
         [[[1.0, 0.0], [0.5, 0.5]], [[0.5, 0.5], [0.0, 1.0]]];
+}
+
+/// The most rows of samples along the first axis of a cell.
+const MOST_ROWS: usize = QUADRATIC.pow(2);
+
+/// `Σ wᵢ cᵢ` over a cell's samples, with the product of the axes' weights for each: summed along one axis after
+/// the other.
+#[inline(always)]
+pub(crate) fn value<const K: usize, const D: usize>(
+    row: impl Fn(usize) -> [f64; K],
+    local: [f64; D],
+) -> f64
+where
+    OfTaps<K>: Spline<K>,
+{
+    let mut sums = [0.0; MOST_ROWS];
+    let mut rows = K.pow(D as u32 - 1);
+    let weights = OfTaps::<K>::weights(local[0]);
+    for (i, sum) in sums[..rows].iter_mut().enumerate() {
+        *sum = dot(weights, row(i));
+    }
+    for x in local.into_iter().skip(1) {
+        let weights = OfTaps::<K>::weights(x);
+        rows /= K;
+        for i in 0..rows {
+            sums[i] = dot(weights, taps(&sums, i));
+        }
+    }
+    sums[0]
+}
+
+/// The same, with the derivatives along the axes.
+#[inline(always)]
+pub(crate) fn value_slope<const K: usize, const D: usize>(
+    row: impl Fn(usize) -> [f64; K],
+    local: [f64; D],
+) -> (f64, Vector<f64, D>)
+where
+    OfTaps<K>: Spline<K>,
+{
+    let mut sums = [0.0; MOST_ROWS];
+    let mut slopes = [[0.0; MOST_ROWS]; D];
+    let mut rows = K.pow(D as u32 - 1);
+    let (weights, rises) = (OfTaps::<K>::weights(local[0]), OfTaps::<K>::slopes(local[0]));
+    for i in 0..rows {
+        let row = row(i);
+        sums[i] = dot(weights, row);
+        slopes[0][i] = dot(rises, row);
+    }
+    for axis in 1..D {
+        let x = local[axis];
+        let (weights, rises) = (OfTaps::<K>::weights(x), OfTaps::<K>::slopes(x));
+        rows /= K;
+        for i in 0..rows {
+            for slope in &mut slopes[..axis] {
+                slope[i] = dot(weights, taps(slope, i));
+            }
+            let row = taps(&sums, i);
+            slopes[axis][i] = dot(rises, row);
+            sums[i] = dot(weights, row);
+        }
+    }
+    (sums[0], Vector(slopes.map(|slope| slope[0])))
+}
+
+#[inline(always)]
+fn dot<const K: usize>(weights: [f64; K], row: [f64; K]) -> f64 {
+    let mut sum = weights[0] * row[0];
+    for tap in 1..K {
+        sum += weights[tap] * row[tap];
+    }
+    sum
+}
+
+/// The `i`th `K` numbers.
+#[inline(always)]
+fn taps<const K: usize>(numbers: &[f64; MOST_ROWS], i: usize) -> [f64; K] {
+    std::array::from_fn(|tap| numbers[i * K + tap])
 }

@@ -12,7 +12,7 @@ use crate::promise::Promise;
 use crate::scalar::{AffineModel, Dual, Float, Recorded};
 use crate::vector::{Point, Vector};
 
-/// A field of a user, evaluated point by point in double precision.
+/// A field of a user, evaluated in double precision.
 ///
 /// A closed formula is faster as a [`Kernel`](crate::kernel::Kernel): its blocks
 /// vectorise, and gradient and model follow from the formula. A `CustomField` is for
@@ -49,6 +49,28 @@ pub trait CustomField<const D: usize>: std::fmt::Debug + Send + Sync + 'static {
 
     /// The signed distance at `p` [m] and its gradient, never NaN.
     fn distance_gradient(&self, p: Point<D>) -> (f64, Vector<f64, D>);
+
+    /// The signed distances at points [m], into as many `distances`: those of
+    /// [`distance`](Self::distance), to the bit. By default a loop; searches and pictures ask for up to 64.
+    fn distances(&self, points: &[Point<D>], distances: &mut [f64]) {
+        for (distance, p) in distances.iter_mut().zip(points) {
+            *distance = self.distance(*p);
+        }
+    }
+
+    /// The signed distances at points [m] and their gradients, those of
+    /// [`distance_gradient`](Self::distance_gradient), to the bit. By default a loop.
+    fn distances_gradients(
+        &self,
+        points: &[Point<D>],
+        distances: &mut [f64],
+        gradients: &mut [Vector<f64, D>],
+    ) {
+        let out = distances.iter_mut().zip(gradients);
+        for ((distance, gradient), p) in out.zip(points) {
+            (*distance, *gradient) = self.distance_gradient(*p);
+        }
+    }
 
     /// The promise of the values.
     fn promise(&self) -> &Promise<D>;
@@ -114,12 +136,26 @@ where
     }
 }
 
-/// A [`CustomField`] as a node: its blocks are loops over points.
+/// A [`CustomField`] as a node.
 #[derive(Debug)]
 pub(crate) struct Custom<F>(pub(crate) F);
 
 fn widened<T: Float, const D: usize>(x: T, y: T, z: T) -> Point<D> {
     Vector::of_coordinates(x.to_f64(), y.to_f64(), z.to_f64())
+}
+
+/// The first `count` points of a block.
+#[inline(always)]
+fn listed<T: Float + Lane, const D: usize, const W: usize>(
+    p: &Block<T, D, W>,
+    count: usize,
+) -> [Point<D>; W] {
+    let mut points = [Vector::ZERO; W];
+    for (i, point) in points[..count].iter_mut().enumerate() {
+        let (x, y, z) = p.get(i).coordinates();
+        *point = widened(x, y, z);
+    }
+    points
 }
 
 impl<T: Float, F: CustomField<D>, const D: usize> EvaluatePoint<T, D> for Custom<F> {
@@ -138,10 +174,9 @@ impl<T: Float + Lane, F: CustomField<D>, const D: usize, const W: usize> Evaluat
     for Custom<F>
 {
     fn distances(&self, p: &Block<T, D, W>, count: usize, out: &mut Column<T, W>) {
-        out.fill(count, |i| {
-            let (x, y, z) = p.get(i).coordinates();
-            EvaluatePoint::distance(self, x, y, z)
-        });
+        let (points, mut distances) = (listed(p, count), [0.0; W]);
+        self.0.distances(&points[..count], &mut distances[..count]);
+        out.fill(count, |i| T::constant(distances[i]));
     }
 }
 
@@ -167,11 +202,11 @@ impl<T: Float + Lane, F: CustomField<D>, const D: usize, const W: usize>
         count: usize,
         out: &mut Gradients<T, D, W>,
     ) {
-        out.fill(count, |i| {
-            let mut gradient = Vector([T::default(); D]);
-            let (x, y, z) = p.get(i).coordinates();
-            (EvaluatePoint::distance_gradient(self, x, y, z, &mut gradient), gradient)
-        });
+        let (points, mut distances) = (listed(p, count), [0.0; W]);
+        let mut gradients = [Vector::ZERO; W];
+        let (distances, gradients) = (&mut distances[..count], &mut gradients[..count]);
+        self.0.distances_gradients(&points[..count], distances, gradients);
+        out.fill(count, |i| (T::constant(distances[i]), Vector::of(&gradients[i].0)));
     }
 }
 

@@ -25,9 +25,40 @@ pub use error::{VolumeError, VolumeProblem};
 /// The size of the largest file that is read, in bytes: 1 GiB.
 pub const LARGEST_VOLUME: u64 = 1 << 30;
 
-/// What the names of files of volumes end in.
-const ENDINGS: [&str; 8] =
-    [".nrrd", ".nhdr", ".mha", ".mhd", ".nii", ".nii.gz", ".npy", ".nvdb"];
+/// A format of files of volumes.
+#[derive(Clone, Copy, Debug)]
+enum Format {
+    Nrrd,
+    MetaImage,
+    Nifti,
+    NumPy,
+    NanoVdb,
+}
+
+impl Format {
+    /// What the names of files end in.
+    const ENDINGS: [(&str, Self); 8] = [
+        (".nrrd", Self::Nrrd),
+        (".nhdr", Self::Nrrd),
+        (".mha", Self::MetaImage),
+        (".mhd", Self::MetaImage),
+        (".nii", Self::Nifti),
+        (".nii.gz", Self::Nifti),
+        (".npy", Self::NumPy),
+        (".nvdb", Self::NanoVdb),
+    ];
+
+    /// By the name of a file, in lower case.
+    fn of(name: &str) -> Option<Self> {
+        let found = Self::ENDINGS.iter().find(|(ending, _)| name.ends_with(ending));
+        found.map(|(_, format)| *format)
+    }
+}
+
+/// The name of a file, in lower case.
+fn name_of(path: &Path) -> String {
+    path.file_name().unwrap_or_default().to_string_lossy().to_ascii_lowercase()
+}
 
 /// The side of a value that is inside.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -162,9 +193,7 @@ impl Volume {
     /// ```
     #[must_use]
     pub fn is_named(path: impl AsRef<Path>) -> bool {
-        let name = path.as_ref().file_name().unwrap_or_default().to_string_lossy();
-        let name = name.to_ascii_lowercase();
-        ENDINGS.iter().any(|ending| name.ends_with(ending))
+        Format::of(&name_of(path.as_ref())).is_some()
     }
 
     /// The least and the largest sample.
@@ -198,23 +227,16 @@ impl Volume {
     ///
     /// As of [`open`](Self::open).
     pub fn from_bytes(bytes: &[u8], path: &Path) -> Result<Self, VolumeProblem> {
-        let name = path.file_name().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
-        let ends = |ending: &str| name.ends_with(ending);
+        let name = name_of(path);
         let folder = path.parent().unwrap_or(Path::new(""));
-        if ends(".nrrd") || ends(".nhdr") {
-            nrrd::read(bytes, folder)
-        } else if ends(".mha") || ends(".mhd") {
-            meta::read(bytes, folder)
-        } else if ends(".nii") || ends(".nii.gz") {
-            nifti::read(bytes)
-        } else if ends(".npy") {
-            npy::read(bytes)
-        } else if ends(".nvdb") {
-            nanovdb::read(bytes)
-        } else if ends(".vdb") {
-            Err(VolumeProblem::OpenVdb)
-        } else {
-            Err(VolumeProblem::Ending { name })
+        match Format::of(&name) {
+            Some(Format::Nrrd) => nrrd::read(bytes, folder),
+            Some(Format::MetaImage) => meta::read(bytes, folder),
+            Some(Format::Nifti) => nifti::read(bytes),
+            Some(Format::NumPy) => npy::read(bytes),
+            Some(Format::NanoVdb) => nanovdb::read(bytes),
+            None if name.ends_with(".vdb") => Err(VolumeProblem::OpenVdb),
+            None => Err(VolumeProblem::Ending { name }),
         }
     }
 }

@@ -3,10 +3,10 @@
 
 //! The thread that edits and builds the scene.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, sync_channel};
-use std::time::{Duration, Instant};
+use std::time::{Duration, Instant, SystemTime};
 
 use palpate::field::catalogue::Entry;
 use palpate::haptics::Material;
@@ -60,6 +60,8 @@ pub(super) struct Editor {
     misses: u32,
     /// Whether the file had an error when it was read last.
     is_file_wrong: bool,
+    /// The files of the scene's meshes and volumes, as they were when they were read.
+    data: Vec<DataFile>,
 }
 
 /// What parts of an edit took.
@@ -112,6 +114,7 @@ impl Editor {
             searches: Arc::default(),
             misses: 0,
             is_file_wrong: false,
+            data: Vec::new(),
         }
     }
 
@@ -126,6 +129,7 @@ impl Editor {
                 },
                 Err(RecvTimeoutError::Timeout) => {
                     self.look_at_file();
+                    self.look_at_data();
                     self.find_tour();
                 }
                 Err(RecvTimeoutError::Disconnected) => return,
@@ -259,6 +263,20 @@ impl Editor {
         }
     }
 
+    /// Shows the scene anew if the file of a mesh or a volume was changed.
+    fn look_at_data(&mut self) {
+        if !self.data.iter_mut().any(DataFile::has_changed) {
+            return;
+        }
+        // Which one it was, the error says.
+        if let Err(Refusal { message, .. }) = self.show("file", false) {
+            self.data.iter_mut().for_each(|file| _ = file.has_changed());
+            let message =
+                format!("a file of the scene was changed, and has an error: {message}");
+            self.tell_of_file(&message);
+        }
+    }
+
     /// Tells the pages once of a file that cannot be read, however often it is looked at.
     fn miss_file(&mut self, file: &Path, error: &std::io::Error) {
         self.misses = self.misses.saturating_add(1);
@@ -308,6 +326,7 @@ impl Editor {
             Showing::Refused(why) => return Err(why.into()),
         };
         self.rendered = Some(self.document.scene().clone());
+        self.data = data_files(&scene, self.document.file.as_deref());
         self.revision = revision;
         self.shown.set(Arc::clone(&scene), revision);
         self.text.set(self.document.text());
@@ -372,6 +391,47 @@ fn send_tour(
         }
         None => {}
     }
+}
+
+/// A file that a scene reads beside its own.
+#[derive(Debug)]
+struct DataFile {
+    path: PathBuf,
+    /// When it was written, and its bytes; `None` where there is no file.
+    seen: Option<(SystemTime, u64)>,
+}
+
+impl DataFile {
+    fn of(path: PathBuf) -> Self {
+        let seen = Self::now(&path);
+        Self { path, seen }
+    }
+
+    fn now(path: &Path) -> Option<(SystemTime, u64)> {
+        let metadata = std::fs::metadata(path).ok()?;
+        Some((metadata.modified().ok()?, metadata.len()))
+    }
+
+    /// Whether it is another than when this was asked last. One that is being replaced may not be there for a
+    /// moment, which is no change.
+    fn has_changed(&mut self) -> bool {
+        let now = Self::now(&self.path);
+        let is_new = now.is_some() && now != self.seen;
+        if is_new {
+            self.seen = now;
+        }
+        is_new
+    }
+}
+
+/// The files of the meshes and volumes of a scene.
+fn data_files(scene: &AnyScene, file: Option<&Path>) -> Vec<DataFile> {
+    let Some(folder) = file.and_then(Path::parent) else { return Vec::new() };
+    let meshes = match scene {
+        AnyScene::Planar(scene) => &scene.meshes,
+        AnyScene::Spatial(scene) => &scene.meshes,
+    };
+    meshes.iter().map(|mesh| DataFile::of(folder.join(&mesh.file))).collect()
 }
 
 /// What changed from one scene to another.

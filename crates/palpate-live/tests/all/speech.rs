@@ -316,3 +316,32 @@ fn what_is_large_and_far_makes_no_touch_of_what_is_near() {
         .ask(json!({ "do": "sweep", "corners": [[-0.07, 0.05, 0.0]], "by": [0.0, 1.0, 0.0] }));
     assert_eq!(swept["touches"], false, "{swept}");
 }
+
+/// A mesh that another program writes anew is shown anew, and an error in it told.
+#[test]
+fn a_mesh_that_is_changed_is_shown_anew() {
+    let folder = tempfile::tempdir().unwrap();
+    let part = folder.path().join("part.obj");
+    let faces = |height: u32| {
+        format!(
+            "v 0 0 0\nv 1 0 0\nv 0 {height} 0\nv 0 0 3\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n"
+        )
+    };
+    std::fs::write(&part, faces(2)).unwrap();
+    let shape = json!({ "mesh": { "file": "part.obj", "scale": 0.01 } });
+    let bodies = [json!({ "name": "part", "shape": shape })];
+    let scene = json!({ "palpate": 1, "dimension": 3, "bodies": bodies }).to_string();
+    let file = folder.path().join("scene.json");
+    std::fs::write(&file, &scene).unwrap();
+    let live = Live::start("part", Some(file), &scene, LiveOptions::default()).unwrap();
+    let mut page = Page::open(&live);
+    std::fs::write(&part, faces(20)).unwrap();
+    let shown = page.text(|message| message["do"] == "scene" && message["revision"] == 2);
+    assert_eq!(shown["by"], "file");
+    let top = shown["bodies"][0]["bounds"]["max_m"][1].as_f64();
+    assert!(top.is_none_or(|top| (top - 0.2).abs() < 1e-6), "{shown}");
+    std::fs::write(&part, "v 0 0 no\n").unwrap();
+    let notice = page.text(|message| message["do"] == "notice");
+    let message = notice["message"].as_str().unwrap();
+    assert!(message.contains("was changed, and has an error") && message.contains("part.obj"));
+}
