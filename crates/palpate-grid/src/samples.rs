@@ -90,7 +90,7 @@ pub(crate) enum Codes {
 }
 
 /// A number as it is stored.
-pub(crate) trait Code: Copy + Into<f64> {}
+pub(crate) trait Code: Copy + Default + Into<f64> {}
 
 impl Code for f32 {}
 impl Code for i16 {}

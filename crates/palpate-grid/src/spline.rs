@@ -3,6 +3,8 @@
 
 //! B-splines over the samples of a grid, and their control values over a cell.
 
+use std::ops::{Add, Mul, Sub};
+
 use palpate_field::Vector;
 
 /// How a grid's samples are interpolated.
@@ -41,14 +43,28 @@ impl Kernel {
 pub(crate) const QUADRATIC: usize = 3;
 pub(crate) const TRILINEAR: usize = 2;
 
+/// Numbers that are interpolated: one, or several side by side.
+pub(crate) trait Number:
+    Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self>
+{
+    fn constant(number: f64) -> Self;
+}
+
+impl Number for f64 {
+    #[inline(always)]
+    fn constant(number: f64) -> Self {
+        number
+    }
+}
+
 /// A cell's splines along one axis, with the `K` samples that they take.
 ///
 /// The weights are a partition of one with mean `x + K/2 − 1`, so affine samples give the affine function.
 pub(crate) trait Spline<const K: usize> {
     /// The weights of the samples at `x`, from 0 to 1 within the cell.
-    fn weights(x: f64) -> [f64; K];
+    fn weights<N: Number>(x: N) -> [N; K];
     /// The derivatives of the weights.
-    fn slopes(x: f64) -> [f64; K];
+    fn slopes<N: Number>(x: N) -> [N; K];
     /// The samples' share in the control values of the value, in the basis of Bernstein of degree `K − 1`.
     const VALUES: [[f64; K]; K];
     /// The samples' share in the control values of the derivative, in the same basis.
@@ -63,14 +79,16 @@ pub(crate) struct OfTaps<const K: usize>;
 
 impl Spline<QUADRATIC> for OfTaps<QUADRATIC> {
     #[inline(always)]
-    fn weights(x: f64) -> [f64; QUADRATIC] {
-        let y = 1.0 - x;
-        [0.5 * y * y, 0.5 + x * y, 0.5 * x * x]
+    fn weights<N: Number>(x: N) -> [N; QUADRATIC] {
+        let [half, one] = [0.5, 1.0].map(N::constant);
+        let y = one - x;
+        [half * y * y, half + x * y, half * x * x]
     }
 
     #[inline(always)]
-    fn slopes(x: f64) -> [f64; QUADRATIC] {
-        [x - 1.0, 1.0 - 2.0 * x, x]
+    fn slopes<N: Number>(x: N) -> [N; QUADRATIC] {
+        let [one, two] = [1.0, 2.0].map(N::constant);
+        [x - one, one - two * x, x]
     }
 
     const VALUES: [[f64; QUADRATIC]; QUADRATIC] =
@@ -85,13 +103,13 @@ impl Spline<QUADRATIC> for OfTaps<QUADRATIC> {
 
 impl Spline<TRILINEAR> for OfTaps<TRILINEAR> {
     #[inline(always)]
-    fn weights(x: f64) -> [f64; TRILINEAR] {
-        [1.0 - x, x]
+    fn weights<N: Number>(x: N) -> [N; TRILINEAR] {
+        [N::constant(1.0) - x, x]
     }
 
     #[inline(always)]
-    fn slopes(_x: f64) -> [f64; TRILINEAR] {
-        [-1.0, 1.0]
+    fn slopes<N: Number>(_x: N) -> [N; TRILINEAR] {
+        [-1.0, 1.0].map(N::constant)
     }
 
     const VALUES: [[f64; TRILINEAR]; TRILINEAR] = [[1.0, 0.0], [0.0, 1.0]];
@@ -101,19 +119,19 @@ impl Spline<TRILINEAR> for OfTaps<TRILINEAR> {
 }
 
 /// The most rows of samples along the first axis of a cell.
-const MOST_ROWS: usize = QUADRATIC.pow(2);
+pub(crate) const MOST_ROWS: usize = QUADRATIC.pow(2);
 
 /// `Σ wᵢ cᵢ` over a cell's samples, with the product of the axes' weights for each: summed along one axis after
 /// the other.
 #[inline(always)]
-pub(crate) fn value<const K: usize, const D: usize>(
-    row: impl Fn(usize) -> [f64; K],
-    local: [f64; D],
-) -> f64
+pub(crate) fn value<N: Number, const K: usize, const D: usize>(
+    row: impl Fn(usize) -> [N; K],
+    local: [N; D],
+) -> N
 where
     OfTaps<K>: Spline<K>,
 {
-    let mut sums = [0.0; MOST_ROWS];
+    let mut sums = [N::constant(0.0); MOST_ROWS];
     let mut rows = K.pow(D as u32 - 1);
     let weights = OfTaps::<K>::weights(local[0]);
     for (i, sum) in sums[..rows].iter_mut().enumerate() {
@@ -131,15 +149,15 @@ where
 
 /// The same, with the derivatives along the axes.
 #[inline(always)]
-pub(crate) fn value_slope<const K: usize, const D: usize>(
-    row: impl Fn(usize) -> [f64; K],
-    local: [f64; D],
-) -> (f64, Vector<f64, D>)
+pub(crate) fn value_slope<N: Number, const K: usize, const D: usize>(
+    row: impl Fn(usize) -> [N; K],
+    local: [N; D],
+) -> (N, Vector<N, D>)
 where
     OfTaps<K>: Spline<K>,
 {
-    let mut sums = [0.0; MOST_ROWS];
-    let mut slopes = [[0.0; MOST_ROWS]; D];
+    let mut sums = [N::constant(0.0); MOST_ROWS];
+    let mut slopes = [[N::constant(0.0); MOST_ROWS]; D];
     let mut rows = K.pow(D as u32 - 1);
     let (weights, rises) = (OfTaps::<K>::weights(local[0]), OfTaps::<K>::slopes(local[0]));
     for i in 0..rows {
@@ -164,16 +182,16 @@ where
 }
 
 #[inline(always)]
-fn dot<const K: usize>(weights: [f64; K], row: [f64; K]) -> f64 {
+fn dot<N: Number, const K: usize>(weights: [N; K], row: [N; K]) -> N {
     let mut sum = weights[0] * row[0];
     for tap in 1..K {
-        sum += weights[tap] * row[tap];
+        sum = sum + weights[tap] * row[tap];
     }
     sum
 }
 
 /// The `i`th `K` numbers.
 #[inline(always)]
-fn taps<const K: usize>(numbers: &[f64; MOST_ROWS], i: usize) -> [f64; K] {
+fn taps<N: Number, const K: usize>(numbers: &[N; MOST_ROWS], i: usize) -> [N; K] {
     std::array::from_fn(|tap| numbers[i * K + tap])
 }

@@ -13,6 +13,7 @@ use palpate_field::{Aabb, CustomField, Point, Rotation, Shape, Vector};
 use palpate_grid::{Grid, GridError, GridOptions, Kernel, Lattice, Store};
 use palpate_testkit::arbitrary::{coordinate, direction, within};
 use palpate_testkit::cases;
+use palpate_testkit::laws::bits_agree;
 
 const KERNELS: [Kernel; 2] = [Kernel::Quadratic, Kernel::Trilinear];
 const STORES: [Store; 3] = [Store::F32, Store::I16, Store::I8];
@@ -49,6 +50,30 @@ fn point<const D: usize>(
         p[i] = within(u, region.min[i], region.max[i])?;
     }
     Ok(p)
+}
+
+#[test]
+fn blocks_have_the_bits_of_points() {
+    let disc = Shape::<2>::circle(0.3).unwrap();
+    let torus = Shape::torus(0.3, 0.1).unwrap();
+    for kernel in KERNELS {
+        for (store, band) in STORES.into_iter().flat_map(|s| [(s, None), (s, Some(5.0))]) {
+            let mut options = options(0.03, kernel).with_store(store);
+            options.band = band;
+            let planar = Grid::bake(&disc, &options).unwrap();
+            let spatial = Grid::bake(&torus, &options).unwrap();
+            cases::check(20, |u| {
+                let points = (0..64).map(|_| point(u, &planar, 0.1));
+                let points = points.collect::<arbitrary::Result<Vec<_>>>()?;
+                Ok(bits_agree(&planar.clone().into(), &points))
+            });
+            cases::check(20, |u| {
+                let points = (0..61).map(|_| point(u, &spatial, 0.1));
+                let points = points.collect::<arbitrary::Result<Vec<_>>>()?;
+                Ok(bits_agree(&spatial.clone().into(), &points))
+            });
+        }
+    }
 }
 
 #[test]
