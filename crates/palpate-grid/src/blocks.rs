@@ -195,11 +195,11 @@ impl<T: Code, const K: usize, const D: usize> Gathered<T, K, D> {
     #[inline(always)]
     fn take(&mut self, codes: &[T], places: &[usize; TOGETHER], rows: &[usize; MOST_ROWS]) {
         for (i, place) in places.iter().enumerate() {
-            for row in 0..K.pow(D as u32 - 1) {
-                let from = place + rows[row];
-                let row_codes = &codes[from..][..K];
-                for (tap, code) in row_codes.iter().enumerate() {
-                    self.taps[row][tap][i] = *code;
+            let taps = self.taps[..K.pow(D as u32 - 1)].iter_mut();
+            for (taps, row) in taps.zip(rows) {
+                let codes = &codes[place + row..][..K];
+                for (taps, code) in taps.iter_mut().zip(codes) {
+                    taps[i] = *code;
                 }
             }
         }

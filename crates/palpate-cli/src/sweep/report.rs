@@ -71,7 +71,7 @@ impl<const D: usize> Report<'_, D> {
             (Some(true), _) => {
                 let proven = format!("touching at {:.9} s{}", found.upper, apart_before(found));
                 if found.stop.is_early() {
-                    format!("{proven}; not when first: {}", self.why(found.stop))
+                    format!("{proven}; they may touch earlier: {}", self.why(found.stop))
                 } else {
                     proven
                 }
