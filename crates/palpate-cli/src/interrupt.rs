@@ -77,7 +77,9 @@ impl Interrupt {
         self.heed();
         let (sender, done) = mpsc::channel();
         let named = thread::Builder::new().name("interruptible".to_owned());
-        let worker = named.spawn(move || sender.send(work())).ok()?;
+        let worker = named.spawn(move || sender.send(work()));
+        // As `thread::spawn`, which gives no name: a system without threads is no interrupt.
+        let worker = worker.unwrap_or_else(|error| panic!("no thread can be started: {error}"));
         loop {
             match done.recv_timeout(LOOK) {
                 _ if self.is_asked() => return None,
