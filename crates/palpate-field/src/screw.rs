@@ -65,7 +65,7 @@ pub struct Screw<const D: usize> {
 }
 
 impl<const D: usize> Screw<D> {
-    /// The motion between two poses, with whole `turns` added, backwards if negative.
+    /// The motion between two poses, with whole `turns` added in its direction, against it if negative.
     ///
     /// # Errors
     ///

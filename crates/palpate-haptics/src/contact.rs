@@ -14,9 +14,9 @@
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use palpate_field::{Point, Vector};
+use palpate_query::internal::HalfSpace;
 
 use crate::curvature::Curvature;
-use crate::half_spaces::HalfSpace;
 use crate::planes::Planes;
 use crate::sampler::{Sample, Sampler};
 

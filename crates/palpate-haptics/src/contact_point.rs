@@ -8,12 +8,12 @@
 mod guided;
 
 use palpate_field::{Point, Vector};
+use palpate_query::internal::CAPACITY;
 
 use crate::bodies::Body;
 use crate::crease::{Crease, Place, Shared};
 use crate::event::{Event, EventKind};
 use crate::guide::Guide;
-use crate::half_spaces::CAPACITY;
 use crate::nearby::Nearby;
 use crate::options::ServoOptions;
 use crate::ports::Port;

@@ -52,7 +52,6 @@ mod event;
 mod friction;
 mod gripper;
 mod guide;
-mod half_spaces;
 mod handoff;
 mod live;
 mod nearby;

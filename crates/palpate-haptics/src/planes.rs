@@ -6,8 +6,7 @@
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use palpate_field::{Point, Vector};
-
-use crate::half_spaces::{CAPACITY, HalfSpace, closest_point};
+use palpate_query::internal::{CAPACITY, HalfSpace, closest_point};
 
 /// Normals closer than this [rad] count as one plane: rounding would decide where two such
 /// planes meet.

@@ -63,6 +63,7 @@ mod element_search;
 mod engine;
 mod error;
 mod goal;
+mod half_spaces;
 #[doc(hidden)]
 pub mod internal;
 mod larger;

@@ -48,7 +48,7 @@ pub struct Motion {
     #[serde(default = "one_second")]
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub duration: f64,
-    /// Whole turns added to the rotation, backwards if negative; 0 if left out.
+    /// Whole turns added to the rotation in its direction, against it if negative; 0 if left out.
     #[serde(default, skip_serializing_if = "crate::check::is_default")]
     pub turns: i32,
     /// What happens after its end; it stays there if left out.

@@ -19,8 +19,8 @@ Examples:
   palpate sweep scenes/bayonet.json --method golden_section
   palpate sweep scenes/bayonet.json --method sum_descent --samples 30
 
-Before the earlier time the bodies are apart, which is proven, rounding included; at the later
-one their separation is at most the gap.";
+Before the earlier time the bodies are apart by more than half of the gap, which is proven, rounding
+included; at the later one their separation is at most the gap.";
 
 /// The options of `palpate sweep`.
 #[derive(Args, Debug)]
@@ -41,8 +41,8 @@ pub(crate) struct SweepOptions {
     /// repeat after one time, there and back.
     #[arg(long, allow_negative_numbers = true, value_parser = positive("s"))]
     pub(crate) until: Option<f64>,
-    /// The largest separation at which bodies touch [m]; a millionth of the smallest body if left
-    /// out.
+    /// The largest separation at which bodies touch [m], a millionth of the smallest body if left
+    /// out; those more than half of it apart may be called free.
     #[arg(long, allow_negative_numbers = true, value_parser = length)]
     pub(crate) gap: Option<f64>,
     /// How far apart the bounds of a time may be [s]; if left out, 1e-4 of the duration of the part

@@ -83,7 +83,7 @@ impl<const D: usize> Report<'_, D> {
             }
             None => match pair.empty {
                 Some(empty) => format!(", {} has no point", shown(self.names[empty])),
-                None => ", neither has bounds".to_owned(),
+                None => ", neither has bounds; intersect one with a box".to_owned(),
             },
         };
         if let (Verdict::Undecided, Some(why)) = (pair.verdict, self.undecided(pair)) {
@@ -218,7 +218,7 @@ fn contact_in_words<const D: usize>(contact: &Contact<D>) -> String {
         NormalSource::Gradients => String::new(),
         source => format!("  from {source}"),
     };
-    let estimated = if contact.on_surfaces || contact.gap <= 0.0 { "" } else { " by values" };
+    let estimated = if contact.on_surfaces || contact.gap <= 0.0 { "" } else { " estimated" };
     format!(
         "\n  {:>3}  gap {} mm{estimated}  at ({})  normal ({}){from}",
         contact.id,

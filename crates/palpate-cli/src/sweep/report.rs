@@ -64,7 +64,9 @@ impl<const D: usize> Report<'_, D> {
         let found = &pair.found;
         let cost = counted(found.evaluations, "evaluation", "evaluations");
         let what = match (found.touches(), found.start) {
-            (Some(false), _) => "apart all the time, proven".to_owned(),
+            (Some(false), _) => {
+                "apart all the time by more than half of the gap, proven".to_owned()
+            }
             (Some(true), Some(start)) if found.upper == 0.0 => {
                 format!("touching at the start, {}", in_a_word(start))
             }
@@ -163,7 +165,8 @@ impl<const D: usize> Report<'_, D> {
 
 /// Until when bodies are proven apart, if they are at all.
 fn apart_before<const D: usize>(found: &FirstTouch<D>) -> String {
-    let words = || format!("; before {:.9} s apart, proven", found.lower);
+    let words =
+        || format!("; before {:.9} s apart by more than half of the gap, proven", found.lower);
     if found.lower > 0.0 { words() } else { String::new() }
 }
 

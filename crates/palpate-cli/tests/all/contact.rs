@@ -121,7 +121,7 @@ fn two_bodies_without_bounds_are_undecided_and_said_to_be() {
     assert_eq!(status(&said), 1);
     assert_eq!(
         text(&said),
-        "floor – wall: undecided, neither has bounds\n\
+        "floor – wall: undecided, neither has bounds; intersect one with a box\n\
          2 bodies: 0 pairs touch (gap up to 2.0000 mm), 0 apart, 1 undecided\n"
     );
 }

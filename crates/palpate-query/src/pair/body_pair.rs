@@ -14,6 +14,9 @@ use crate::placed::{Placed, check_pose};
 /// Roundings of a pose from one body to another, relative to where they are in the world.
 const PLACE_ROUNDINGS: f64 = 8.0;
 
+/// Pairs of points of two bodies, each nearest to the last one of the other, from one place.
+const APPROACHES: u32 = 16;
+
 /// Memory of questions to two bodies.
 #[derive(Debug)]
 pub(crate) struct Memory<const D: usize> {
@@ -120,10 +123,21 @@ impl<'a, const D: usize> BodyPair<'a, D> {
         let mut least = f64::INFINITY;
         for place in places {
             let points = [0, 1].map(|body| self.bodies[body].point_within(place));
-            let [Some(a), Some(b)] = points else { continue };
-            least = least.min((a - b).norm() + self.slack(a.norm().max(b.norm())));
-            if least <= enough {
-                break;
+            let [Some(mut a), Some(mut b)] = points else { continue };
+            let mut last = f64::INFINITY;
+            for _ in 0..APPROACHES {
+                let distance = (a - b).norm() + self.slack(a.norm().max(b.norm()));
+                least = least.min(distance);
+                if least <= enough {
+                    return least;
+                }
+                let is_nearer = distance < last;
+                let (Some(to_b), true) = (self.bodies[0].point_within(b), is_nearer) else {
+                    break;
+                };
+                last = distance;
+                let Some(to_a) = self.bodies[1].point_within(to_b) else { break };
+                (a, b) = (to_b, to_a);
             }
         }
         least

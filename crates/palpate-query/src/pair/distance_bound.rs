@@ -8,6 +8,7 @@ use palpate_field::scalar::Model;
 use palpate_field::{Aabb, BoundingBall, Point, Pose, Quality, Rotation, Shape, Vector};
 
 use crate::error::QueryError;
+use crate::half_spaces::{CAPACITY, HalfSpace, closest_point};
 use crate::larger::larger;
 use crate::placed::{Placed, check_pose};
 
@@ -17,9 +18,8 @@ const GEOMETRY_ROUNDINGS: f64 = 16.0;
 /// A coordinate that a side of a box depends on less than this is not bounded by it.
 const LEAST_TURN: f64 = 1e-2;
 
-/// Steps to a point that is in a shape from one on its surface, and the depth that they aim at, in
-/// roundings of its field.
-const STEPS_WITHIN: u32 = 16;
+/// Steps to a point that is in a shape, and the depth that they aim at, in roundings of its field.
+const STEPS_WITHIN: usize = 16;
 const DEPTH_WITHIN: f64 = 4.0;
 
 /// `g = max(f/L, distance to the shape's box)`, with `L` the steepness of the field, at least
@@ -107,22 +107,39 @@ impl<'a, const D: usize> DistanceBound<'a, D> {
     /// A point of the frame that is in the shape, rounding included, near another one; on its surface
     /// where the field is exact.
     pub(crate) fn point_within(&self, p: Point<D>) -> Option<Point<D>> {
-        let mut within = self.shape.surface_point(self.local(p))?;
-        if self.is_exact_outside() {
-            return Some(self.in_frame(within));
-        }
-        let rounding = self.shape.promise().rounding.within(within.norm());
-        // Behind one face after the other of an edge.
-        for _ in 0..STEPS_WITHIN {
-            let (value, slope) = self.shape.distance_gradient(within);
+        let start = self.local(p);
+        let along_gradients = self.shape.surface_point(start);
+        let within = if self.is_exact_outside() {
+            along_gradients?
+        } else {
+            let from_surface = along_gradients.and_then(|surface| self.behind_faces(surface));
+            let found = [self.behind_faces(start), from_surface].into_iter().flatten();
+            found.min_by(|a, b| (*a - start).norm().total_cmp(&(*b - start).norm()))?
+        };
+        Some(self.in_frame(within))
+    }
+
+    /// A point in the shape, in its own coordinates: of the points behind the last faces that were met,
+    /// that nearest to the start, until it is within.
+    ///
+    /// Steps behind one face after the other would take as many as the edge between them is sharp.
+    fn behind_faces(&self, start: Point<D>) -> Option<Point<D>> {
+        let rounding = self.shape.promise().rounding.within(start.norm());
+        let none = HalfSpace { point: start, normal: Vector::ZERO };
+        let mut faces = [none; CAPACITY];
+        let mut p = start;
+        for step in 0..STEPS_WITHIN {
+            let (value, slope) = self.shape.distance_gradient(p);
             if value <= -rounding {
-                return Some(self.in_frame(within));
+                return Some(p);
             }
-            let squared = slope.dot(slope);
-            if squared.is_nan() || squared <= 0.0 {
-                return None;
-            }
-            within -= slope * ((value + DEPTH_WITHIN * rounding) / squared);
+            let normal = (-slope).normalized()?;
+            let point = p + normal * ((value + DEPTH_WITHIN * rounding) / slope.norm());
+            faces.rotate_right(1);
+            faces[0] = HalfSpace { point, normal };
+            let met = CAPACITY.min(step + 1);
+            // Faces that have no common point: the shape is hollow, and those met last count.
+            p = (1..=met).rev().find_map(|count| closest_point(start, &faces[..count]))?;
         }
         None
     }

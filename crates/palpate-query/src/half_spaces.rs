@@ -13,7 +13,7 @@ use palpate_field::{Point, Vector};
 
 /// The most half-spaces kept: three make a corner, and a fourth lets the proxy leave one of
 /// them.
-pub(crate) const CAPACITY: usize = 4;
+pub const CAPACITY: usize = 4;
 
 /// How far a point may lie outside a half-space and still count as in it, as a part of the
 /// largest distance involved. Above the rounding of three planes that meet at
@@ -26,23 +26,23 @@ const LEAST_DETERMINANT: f64 = 1e-12;
 
 /// All points `q` with `normal·(q − point) ≥ 0`.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct HalfSpace<const D: usize> {
+pub struct HalfSpace<const D: usize> {
     /// A point of the boundary [m].
-    pub(crate) point: Point<D>,
+    pub point: Point<D>,
     /// The unit normal, pointing in.
-    pub(crate) normal: Vector<f64, D>,
+    pub normal: Vector<f64, D>,
 }
 
 impl<const D: usize> HalfSpace<D> {
     /// The signed distance of `q` from the boundary [m]: positive in the half-space.
     #[inline]
-    pub(crate) fn height(&self, q: Point<D>) -> f64 {
+    pub fn height(&self, q: Point<D>) -> f64 {
         self.normal.dot(q - self.point)
     }
 
     /// The point of the half-space closest to `x`.
     #[inline]
-    pub(crate) fn closest(&self, x: Point<D>) -> Point<D> {
+    pub fn closest(&self, x: Point<D>) -> Point<D> {
         let depth = -self.height(x);
         if depth > 0.0 { x + self.normal * depth } else { x }
     }
@@ -61,7 +61,7 @@ impl<const D: usize> HalfSpace<D> {
 ///
 /// Real-time: allocates nothing, takes no lock, cannot panic; at most 14 sets for
 /// [`CAPACITY`] half-spaces.
-pub(crate) fn closest_point<const D: usize>(
+pub fn closest_point<const D: usize>(
     x: Point<D>,
     half_spaces: &[HalfSpace<D>],
 ) -> Option<Point<D>> {
@@ -115,7 +115,7 @@ pub(crate) fn closest_point<const D: usize>(
 /// are tried, as in [`closest_point`].
 ///
 /// Real-time: allocates nothing, takes no lock, cannot panic.
-pub(crate) fn pushes<const D: usize>(
+pub fn pushes<const D: usize>(
     stretch: Vector<f64, D>,
     normals: [Vector<f64, D>; CAPACITY],
     count: usize,
