@@ -104,7 +104,7 @@ fn hostile() {
             }
         }
     }
-    cases::check(500, |u| {
+    cases::check(150, |u| {
         let mut bad = bytes.clone();
         for _ in 0..u.int_in_range(1..=4)? {
             let at = u.int_in_range(8..=text.min(2000) - 1)?;

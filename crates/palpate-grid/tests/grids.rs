@@ -85,7 +85,7 @@ fn a_grid_is_no_steeper_than_it_promises_and_deviates_no_more() {
             (Kernel::Trilinear, Store::F32, Some(5.0)),
             (Kernel::Trilinear, Store::I8, None),
         ] {
-            let mut options = options(0.02, kernel).with_store(store);
+            let mut options = options(0.03, kernel).with_store(store);
             options.band = band;
             let grid = Grid::bake(&shape, &options).unwrap();
             let promise = *grid.promise();
@@ -359,7 +359,7 @@ fn a_region_made_again_has_the_samples_of_a_new_grid() {
     let after = cuboid - ball.clone().translated([0.3, 0.24, 0.02]).unwrap();
     for kernel in KERNELS {
         for store in STORES {
-            let options = options(0.02, kernel).with_store(store).with_band(5.0);
+            let options = options(0.03, kernel).with_store(store).with_band(5.0);
             // Bounds, of which all is made again.
             let mut again = Grid::bake(&before, &options).unwrap();
             let region =

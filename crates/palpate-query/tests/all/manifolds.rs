@@ -275,10 +275,10 @@ fn a_tiny_spacing_spends_the_budget_and_little_more() -> Result<(), ShapeError> 
     let settings = ManifoldSettings::of_size(1e-6);
     let mut workspace = PairWorkspace::new();
     let there = Placed::new(&cube, Pose::translation(Vector([1.0, 0.0, 0.0])));
-    let limits = Limits::new(1e-10).with_budget(100_000);
+    let limits = Limits::new(1e-10).with_budget(20_000);
     let found = manifold(&cube, there, &settings, &limits, &mut workspace).expect("bounded");
     assert!(!found.is_whole);
-    assert!(found.separation.evaluations < 400_000, "{}", found.separation.evaluations);
+    assert!(found.separation.evaluations < 80_000, "{}", found.separation.evaluations);
     Ok(())
 }
 

@@ -50,7 +50,7 @@ fn pose(bodies: &[Shape<3>; 2], draw: Vector<f64, 3>, gap: f64) -> Option<Pose<3
     let at = |far: f64| Pose::new(turned, draw * 0.2 + way * far);
     let limits = Limits::new(2e-3);
     let (mut near, mut far) = (0.0, 2.0);
-    for _ in 0..16 {
+    for _ in 0..10 {
         let middle = 0.5 * (near + far);
         let there = Placed::new(&bodies[1], at(middle));
         let answer = separation(&bodies[0], there, &limits, &mut workspace).ok()?;
@@ -91,7 +91,7 @@ fn a_nut_and_a_bolt_of_triangles_are_not_missed() {
 fn a_nut_and_a_bolt_on_grids_are_not_missed() {
     let grid = |mesh: &TriangleMesh, band: Option<f64>| {
         let solid = Shape::from(Solid::from_mesh(mesh).expect("a solid").0);
-        let mut options = GridOptions::with_cell(1.0 / 64.0);
+        let mut options = GridOptions::with_cell(1.0 / 40.0);
         options.band = band;
         Shape::from(Grid::bake(&solid, &options).expect("a grid"))
     };
