@@ -23,8 +23,8 @@ impl BoundFields {
         Self(bodies.map(|body| is_bound(body.shape_in_body.promise().outside)).collect())
     }
 
-    /// Says of the pairs of `names` in which such a body is that they may be farther apart than values
-    /// say.
+    /// Names the bodies of `pairs` whose fields are bounds, and says that these may be farther apart than
+    /// their separations.
     pub(crate) fn say(
         &self,
         out: &mut impl Write,
@@ -43,8 +43,8 @@ impl BoundFields {
         }
         writeln!(
             out,
-            "Fields that are bounds outside: {}. Where they are apart, separations of these are lower \
-             bounds of distances.",
+            "Bodies whose fields are bounds outside: {}. Their separations from others are lower bounds \
+             of distances.",
             said.join(", ")
         )
     }

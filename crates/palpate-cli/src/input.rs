@@ -3,6 +3,8 @@
 
 //! Reads scenes and points.
 
+use std::fs::File;
+use std::io::Read;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -126,12 +128,25 @@ pub(crate) fn other_than_scene(path: &Path, bytes: &[u8]) -> Option<String> {
 /// A scene to begin with.
 const SMALL: &str = r#"{ "palpate": 1, "dimension": 3, "bodies": [ { "name": "bead", "shape": { "ball": { "radius": 0.02 } } } ] }"#;
 
+/// The longest file that is read whole [B]: what has no end, such as a device, would fill the memory.
+const LONGEST: u64 = 1 << 28;
+
 /// The bytes of a file.
 pub(crate) fn bytes(path: &Path) -> Result<Vec<u8>, Failure> {
     if path.is_dir() {
         return Err(Failure::file(path, "is a folder; name a file in it"));
     }
-    std::fs::read(path).map_err(|error| Failure::file(path, error))
+    let mut bytes = Vec::new();
+    File::open(path)
+        .and_then(|file| file.take(LONGEST + 1).read_to_end(&mut bytes))
+        .map_err(|error| Failure::file(path, error))?;
+    if bytes.len() as u64 > LONGEST {
+        return Err(Failure::file(
+            path,
+            format!("is longer than {LONGEST} bytes, the most that are read"),
+        ));
+    }
+    Ok(bytes)
 }
 
 /// The numbers of the bodies with these names, each once.

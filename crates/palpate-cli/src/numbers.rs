@@ -36,6 +36,20 @@ pub(crate) fn rounded(number: f64) -> String {
     without_zeros(&text).to_owned()
 }
 
+/// Numbers with so many decimals.
+pub(crate) fn decimals(numbers: &[f64], digits: usize) -> String {
+    numbers.iter().map(|&x| decimal(x, digits)).collect::<Vec<_>>().join(", ")
+}
+
+/// A number with so many decimals, without a sign if they are all zero.
+pub(crate) fn decimal(number: f64, digits: usize) -> String {
+    let text = format!("{number:.digits$}");
+    match text.strip_prefix('-') {
+        Some(zero) if zero.chars().all(|c| matches!(c, '0' | '.')) => zero.to_owned(),
+        _ => text,
+    }
+}
+
 /// A decimal without the zeros at its end.
 fn without_zeros(text: &str) -> &str {
     if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { text }

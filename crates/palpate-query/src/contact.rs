@@ -88,7 +88,8 @@ pub struct Contact<const D: usize> {
 
 impl<const D: usize> Contact<D> {
     /// The contact at these points [m] with this unit `normal`, from body `a` to body `b`.
-    /// The gap is `(point_b − point_a)·normal`; the id is 0.
+    /// The gap is `(point_b − point_a)·normal`; the id is 0, `normal_from` [`NormalSource::Gradients`], and
+    /// `on_surfaces` `true`.
     #[must_use]
     #[inline]
     pub fn new(point_a: Point<D>, point_b: Point<D>, normal: Vector<f64, D>) -> Self {

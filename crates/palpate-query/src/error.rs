@@ -27,7 +27,7 @@ pub enum QueryError {
         value: f64,
     },
     /// A setting that is negative, zero or too large to compute with.
-    #[error("{what} must be positive and at most {LARGEST_LENGTH:e} m, got {value:?} m")]
+    #[error("{what} must be positive and at most {LARGEST_LENGTH:e}, got {value:?}")]
     Setting {
         /// The name of the setting.
         what: &'static str,

@@ -16,8 +16,8 @@ use palpate_field::{Point, Vector};
 pub const CAPACITY: usize = 4;
 
 /// How far a point may lie outside a half-space and still count as in it, as a part of the
-/// largest distance involved. Above the rounding of three planes that meet at
-/// [`LEAST_DETERMINANT`], below what a contact tolerates.
+/// largest distance involved. Far below what a contact tolerates: corners of nearly parallel planes
+/// whose rounding exceeds it count as no common point.
 const FEASIBLE: f64 = 1e-10;
 
 /// Planes whose normals span a squared volume below this count as parallel: their intersection
@@ -66,8 +66,8 @@ pub fn closest_point<const D: usize>(
     half_spaces: &[HalfSpace<D>],
 ) -> Option<Point<D>> {
     let depth = |h: &HalfSpace<D>| -h.height(x);
-    let deepest = half_spaces.iter().map(depth).fold(0.0, f64::max);
-    if deepest <= 0.0 {
+    // Written so that NaN is in no half-space.
+    if half_spaces.iter().all(|h| depth(h) <= 0.0) {
         return Some(x);
     }
     let highest = half_spaces.iter().map(|h| depth(h).abs()).fold(0.0, f64::max);
@@ -111,8 +111,9 @@ pub fn closest_point<const D: usize>(
 /// `stretch = Σ λᵢ nᵢ`.
 ///
 /// The rest `t = stretch − Σ λᵢ nᵢ` has `nᵢ·t ≤ 0` (Karush, Kuhn and Tucker), so the pushes are those
-/// of walls through the proxy on a device point at the other end of the stretch; all sets of walls
-/// are tried, as in [`closest_point`].
+/// of walls through the proxy, `stretch` from the device point; all sets of walls are tried, as in
+/// [`closest_point`], and three that all push are taken as they are. Zeros if no set pushes, or the
+/// stretch is NaN.
 ///
 /// Real-time: allocates nothing, takes no lock, cannot panic.
 pub fn pushes<const D: usize>(

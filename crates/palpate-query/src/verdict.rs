@@ -37,7 +37,7 @@ impl Verdict {
         } else if upper <= margin {
             Self::Touching
         } else {
-            // Also if a bound is NaN.
+            // Also where the bound that would decide is NaN.
             Self::Undecided
         }
     }

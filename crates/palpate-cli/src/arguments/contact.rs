@@ -18,10 +18,10 @@ Examples:
   palpate contact scenes/peg_in_hole.json --time 0.5
 
 The separation of bodies that are exact outside is their distance; that of bodies that
-overlap is minus the diameter of the largest ball inside both. It lies between the printed
-bounds, which include rounding. Of other bodies that are apart, separations are lower bounds of
+overlap is minus the diameter of the largest ball inside both. It lies between the
+bounds, which include rounding and are printed to the nearest digit; --json has them whole. Of other bodies that are apart, separations are lower bounds of
 distances. A pair touches if its distance is proven to be at most the margin: by the upper
-bound, where that is no distance by two points of the bodies. It is apart if the lower bound is
+bound of the separation, or, where that bounds no distance, by two points of the bodies. It is apart if the lower bound is
 more than the margin, and is undecided otherwise.";
 
 /// The options of `palpate contact`.
@@ -58,7 +58,8 @@ pub(crate) struct ContactQuestion {
     /// left out.
     #[arg(long, allow_negative_numbers = true, value_parser = length)]
     pub(crate) spacing: Option<f64>,
-    /// How far apart the bounds of a separation may be [m]; half the margin if left out.
+    /// How far apart the bounds of a separation may be [m]; if left out half the margin, or of the usual
+    /// one if that is zero.
     #[arg(long, allow_negative_numbers = true, value_parser = length_or_zero)]
     pub(crate) tolerance: Option<f64>,
     /// The budget: the most evaluations of fields for each pair; 200000 if left out. The round

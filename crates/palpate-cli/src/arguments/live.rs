@@ -47,7 +47,7 @@ pub(crate) struct LiveOptions {
 /// Where the page is served.
 #[derive(Args, Clone, Debug, Default, PartialEq)]
 pub(crate) struct PageOptions {
-    /// The port of the page; that of the last run, or else any that is free, if left out.
+    /// The port of the page; that of the scene's last run, or else any that is free, if left out.
     #[arg(long)]
     pub(crate) port: Option<u16>,
     /// The address of the page, for other machines to reach it. What it sends is not encrypted:

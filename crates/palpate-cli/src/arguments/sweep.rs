@@ -37,12 +37,12 @@ pub(crate) struct SweepOptions {
     /// Only pairs with this body; may be given more than once.
     #[arg(long, value_name = "NAME")]
     pub(crate) body: Vec<String>,
-    /// The end of the time that is looked at [s]; the end of all motions if left out, of those that
-    /// repeat after one time, there and back.
+    /// The end of the time that is looked at [s]; if left out, the end of the last motion: one that repeats
+    /// counts once, there and back.
     #[arg(long, allow_negative_numbers = true, value_parser = positive("s"))]
     pub(crate) until: Option<f64>,
     /// The largest separation at which bodies touch [m], a millionth of the smallest body if left
-    /// out; those more than half of it apart may be called free.
+    /// out; those more than half of it apart may be called apart.
     #[arg(long, allow_negative_numbers = true, value_parser = length)]
     pub(crate) gap: Option<f64>,
     /// How far apart the bounds of a time may be [s]; if left out, 1e-4 of the duration of the part

@@ -10,6 +10,7 @@ use serde_json::{Value, json};
 
 use super::question::{Pair, Question};
 use crate::bound_fields::BoundFields;
+use crate::numbers::{decimal, decimals};
 use crate::outcome::Failure;
 use crate::output::{self, counted, shown};
 
@@ -136,12 +137,12 @@ impl<const D: usize> Report<'_, D> {
     fn cut_off(&self, stop: Stop) -> Option<String> {
         let budget = self.question.settings.limits.budget;
         match stop {
-            Stop::Converged | Stop::SignKnown => None,
+            Stop::Converged | Stop::SignKnown | Stop::RoundingReached => None,
             Stop::BudgetSpent => Some(format!(
                 "the search for contacts spent its budget of {budget} evaluations; raise --budget \
                  or --spacing"
             )),
-            Stop::MemoryFull | Stop::RoundingReached => Some(
+            Stop::MemoryFull => Some(
                 "the memory of the search is full, and a larger --budget does not help; raise \
                  --spacing"
                     .to_owned(),
@@ -223,8 +224,8 @@ fn contact_in_words<const D: usize>(contact: &Contact<D>) -> String {
         "\n  {:>3}  gap {} mm{estimated}  at ({})  normal ({}){from}",
         contact.id,
         millimetres(contact.gap),
-        joined(contact.point_a.0, 6),
-        joined(contact.normal.0, 4)
+        decimals(&contact.point_a.0, 6),
+        decimals(&contact.normal.0, 4)
     )
 }
 
@@ -235,17 +236,4 @@ fn digits_of(length: f64) -> usize {
 
 fn millimetres(length: f64) -> String {
     decimal(1e3 * length, 4)
-}
-
-fn joined<const D: usize>(numbers: [f64; D], digits: usize) -> String {
-    numbers.map(|x| decimal(x, digits)).join(", ")
-}
-
-/// A number with so many decimals, without a sign if they are all zero.
-fn decimal(number: f64, digits: usize) -> String {
-    let text = format!("{number:.digits$}");
-    match text.strip_prefix('-') {
-        Some(zero) if zero.chars().all(|c| matches!(c, '0' | '.')) => zero.to_owned(),
-        _ => text,
-    }
 }

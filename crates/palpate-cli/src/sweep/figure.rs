@@ -100,7 +100,7 @@ where
         let time = if pair.found.upper < f64::INFINITY { pair.found.upper } else { end };
         let then = scene.at(time).map_err(Failure::input)?;
         let [from, to] = pair.part;
-        let is_short = (to - from) * f64::from(TIMES / PARTS) < question.until;
+        let is_short = (to - from) * f64::from(TIMES) < f64::from(PARTS) * question.until;
         let part = if is_short { pair.part } else { [0.0, question.until] };
         let bounds = Aabb::centred(Vector::ZERO);
         let mut drawn = Self { scene, pair, time, then, part, proof, bounds };
@@ -205,7 +205,7 @@ where
         let mut isolines = isolines;
         let kinds = [
             ("no touch there at any time", Dash::Solid),
-            ("no touch there before", Dash::Dotted),
+            ("no touch there for a part of the time", Dash::Dotted),
         ];
         for ((name, dash), is_for_ever) in kinds.into_iter().zip([true, false]) {
             if cuts(is_for_ever).next().is_some() {

@@ -191,7 +191,7 @@ impl Question {
 
     /// The settings of a search between two times [s].
     fn settings_over(&self, part @ [from, to]: [f64; 2]) -> SweepSettings {
-        self.settings.with_time_tolerance(self.tolerance_in(part) / (to - from))
+        self.settings.with_time_tolerance((self.tolerance_in(part) / (to - from)).min(1.0))
     }
 }
 
@@ -299,8 +299,15 @@ fn proven_touch<const D: usize>(
         let mut found = sweep(a, b, &settings, &mut workspace).map_err(Failure::input)?;
         evaluations = evaluations.saturating_add(found.evaluations);
         found.evaluations = evaluations;
-        found.lower = from + length * found.lower;
-        found.upper = from + length * found.upper;
+        if found.lower > 0.0 {
+            // Rounded down: before it the bodies are apart.
+            found.lower = (from + length * found.lower).next_down().max(from);
+        } else {
+            found.lower = from;
+        }
+        if found.upper.is_finite() {
+            found.upper = (from + length * found.upper).min(to);
+        }
         let pair = Pair { bodies, found, local: None, part: [from, to] };
         if found.stop != Stop::SignKnown {
             return Ok(Some(pair));

@@ -11,7 +11,7 @@ use serde_json::{Value, json};
 use super::{Pair, Question};
 use crate::bound_fields::BoundFields;
 use crate::contact::as_json;
-use crate::numbers::rounded;
+use crate::numbers::{decimals, rounded};
 use crate::outcome::Failure;
 use crate::output::{self, counted, shown};
 
@@ -85,8 +85,8 @@ impl<const D: usize> Report<'_, D> {
             words += &format!(
                 "\n    gap {} mm  at ({})  normal ({})",
                 rounded(1e3 * contact.gap),
-                joined(&contact.point_a.0),
-                joined(&contact.normal.0)
+                decimals(&contact.point_a.0, 6),
+                decimals(&contact.normal.0, 6)
             );
         }
         if let (Some(local), Some(search)) = (&pair.local, &self.question.local) {
@@ -190,8 +190,4 @@ fn in_a_word(start: Start) -> &'static str {
         Start::Sliding => "sliding",
         Start::Resting => "resting",
     }
-}
-
-fn joined(numbers: &[f64]) -> String {
-    numbers.iter().map(|x| format!("{x:.6}")).collect::<Vec<_>>().join(", ")
 }

@@ -55,8 +55,8 @@ const SHALLOW: f64 = 1e-3;
 #[non_exhaustive]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ManifoldSettings {
-    /// The largest gap of a contact [m]; the deepest contact may exceed it by the tolerance of the
-    /// search.
+    /// The largest gap of a contact [m]. The deepest contact is kept even if its gap exceeds this: by the
+    /// tolerance of the search, or by more where a field is a bound.
     pub margin: f64,
     /// The size of the smallest boxes searched [m]. Parts of the region that are smaller may be
     /// missed, except for the certified deepest point. Contacts with like normals are at least as
@@ -103,11 +103,12 @@ pub struct Manifold<const D: usize> {
     /// The number of contacts in each group. A group is one patch with like normals.
     pub groups: Vec<usize>,
     /// The separation and where it is found: at the deepest contact, unless the separation exceeds the
-    /// margin, or the normal of that contact was taken from a thicker body or from history.
+    /// margin, or that contact was moved to an edge or has its normal from a thicker body or from history.
     pub separation: Certified<Nearest<D>>,
     /// The distance of the bodies is at most this [m]: zero if they overlap, the separation where both
     /// fields are exact outside, else that of two points found in the bodies. Infinite where none of
-    /// these is known: a separation made of bounds does not tell how far the bodies are apart at most.
+    /// these is known, as a separation made of bounds does not tell how far the bodies are apart at most,
+    /// and of bodies that are proven farther apart than the margin.
     pub distance_at_most: f64,
     /// How many contacts were left out beyond [`ManifoldSettings::most`].
     pub dropped: usize,
@@ -148,8 +149,7 @@ pub struct Manifold<const D: usize> {
 ///
 /// # Errors
 ///
-/// If neither body is bounded, a pose is not finite, the margin or the tolerance is
-/// negative, or the spacing not positive.
+/// If neither body is bounded, or a pose, the margin, the spacing or the tolerance is NaN or out of range.
 pub fn manifold<'a, const D: usize>(
     a: impl Into<Placed<'a, D>>,
     b: impl Into<Placed<'a, D>>,
@@ -290,7 +290,7 @@ impl<const D: usize> Spanned<D> {
             ..Manifold::apart(separated.separation)
         };
         if let Some(deepest) = self.members.first() {
-            found.deepen(&deepest.touch, &pair);
+            found.deepen(&deepest.touch, &mut pair);
         }
         let mut members = self.members.clone();
         let mut are_moved = false;
@@ -362,10 +362,10 @@ impl<const D: usize> Manifold<D> {
         }
     }
 
-    /// Takes a contact as the best point if it is deeper.
-    fn deepen(&mut self, deepest: &Touch<D>, pair: &BodyPair<'_, D>) {
+    /// Takes a contact as the best point if it is deeper by the fields' values.
+    fn deepen(&mut self, deepest: &Touch<D>, pair: &mut BodyPair<'_, D>) {
         let slack = pair.slack(deepest.point.norm() + deepest.gap.abs());
-        let upper = deepest.gap + 2.0 * slack;
+        let upper = pair.gap_at(deepest.point) + 2.0 * slack;
         if upper < self.separation.upper {
             let pose = &pair.world_from_frame;
             self.separation.best = Nearest {
@@ -468,7 +468,7 @@ impl<const D: usize> Touch<D> {
         (distance(edge, self.point) <= near).then_some(Self { point, gap, ..turned })
     }
 
-    /// The contact in world coordinates, no less deep than the values say. Points of the surfaces count
+    /// The contact in world coordinates, where the bodies overlap no less deep than the values say. Points of the surfaces count
     /// only within `near` and 45° of the normal: in the middle of a body the gradient may lead to any
     /// side.
     pub(crate) fn contact(&self, pair: &BodyPair<'_, D>, near: f64) -> Contact<D> {

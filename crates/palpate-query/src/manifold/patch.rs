@@ -102,7 +102,8 @@ impl<const D: usize> Patches<'_, '_, D> {
         contacts: &mut Vec<Member<D>>,
     ) {
         let spacing = self.settings.spacing;
-        let deepest = self.deepest(self.candidates[seed]);
+        let seed = self.by_values(self.candidates[seed]);
+        let deepest = self.deepest(seed);
         let points = || members.iter().map(|&i| self.candidates[i].point);
         let mut centre = Vector::ZERO;
         for p in points() {
@@ -143,10 +144,17 @@ impl<const D: usize> Patches<'_, '_, D> {
             let is_apart =
                 |other: &Touch<D>| distance(other.point, corners[i].point) > SMALL * spacing;
             if corners[..i].iter().all(is_apart) {
-                let touch = self.sharpen(corners[i], centre);
+                let corner = self.by_values(corners[i]);
+                let touch = self.sharpen(corner, centre);
                 contacts.push(Member { touch, group });
             }
         }
+    }
+
+    /// A candidate with the gap of the fields' values: that of a flat model is too small where bodies are
+    /// round.
+    fn by_values(&mut self, candidate: Touch<D>) -> Touch<D> {
+        Touch { gap: self.pair.gap_at(candidate.point), ..candidate }
     }
 
     /// The deepest point near a candidate.

@@ -9,6 +9,7 @@ use palpate_field::{Aabb, BLOCK, Block, Column, Gradients, Point, Pose, Vector};
 use super::cell::BoxCell;
 use super::distance_bound::DistanceBound;
 use crate::error::QueryError;
+use crate::larger::larger;
 use crate::placed::{Placed, check_pose};
 
 /// Roundings of a pose from one body to another, relative to where they are in the world.
@@ -39,9 +40,7 @@ impl<const D: usize> Memory<D> {
             models: [Column::zero(), Column::zero()],
         }
     }
-}
 
-impl<const D: usize> Memory<D> {
     /// The centre of a box, in coordinates of the body that was asked there just before.
     #[inline]
     pub(crate) fn local(&self, body: usize, i: usize) -> Point<D> {
@@ -55,7 +54,7 @@ impl<const D: usize> Memory<D> {
     }
 }
 
-/// Two bodies in the frame of the first: bounds over its places hold for it while both move.
+/// Two bodies in the frame of the first: bounds of the first body over boxes stay valid while both move.
 #[derive(Clone, Copy)]
 pub(crate) struct BodyPair<'a, const D: usize> {
     pub(crate) bodies: [DistanceBound<'a, D>; 2],
@@ -102,23 +101,34 @@ impl<'a, const D: usize> BodyPair<'a, D> {
         [self.bodies[0].distance_gradient(p), self.bodies[1].distance_gradient(p)]
     }
 
+    /// The diameter of the largest ball about a point of the frame that may be between the bodies; if
+    /// negative, minus that of the largest one that may be in both [m].
+    #[inline]
+    pub(crate) fn gap_at(&mut self, p: Point<D>) -> f64 {
+        let [(a, _), (b, _)] = self.slopes(p);
+        2.0 * larger(a, b)
+    }
+
     /// A point of a body's surface near a point of the frame, in the frame.
     pub(crate) fn surface_point(&self, body: usize, p: Point<D>) -> Option<Point<D>> {
         let body = &self.bodies[body];
         Some(body.in_frame(body.shape.surface_point(body.local(p))?))
     }
 
-    /// What the bodies' distance is at most, by the upper bound of their separation and points of both
-    /// near these places of the frame, of which none is looked at after one that shows a distance of
-    /// `enough`; infinite if nothing is known.
+    /// An upper bound of the bodies' distance [m]: that of their separation, where it bounds the distance, else
+    /// the distance of two points of the bodies found near `places` of the frame. Ends at the first of at
+    /// most `enough`; infinite if none is found.
     pub(crate) fn distance_at_most(
         &self,
         upper: f64,
         places: impl IntoIterator<Item = Point<D>>,
         enough: f64,
     ) -> f64 {
-        if upper <= 0.0 || self.bodies.iter().all(DistanceBound::is_exact_outside) {
-            return upper.max(0.0);
+        if upper <= 0.0 {
+            return 0.0;
+        }
+        if self.bodies.iter().all(DistanceBound::is_exact_outside) {
+            return upper;
         }
         let mut least = f64::INFINITY;
         for place in places {
@@ -126,7 +136,8 @@ impl<'a, const D: usize> BodyPair<'a, D> {
             let [Some(mut a), Some(mut b)] = points else { continue };
             let mut last = f64::INFINITY;
             for _ in 0..APPROACHES {
-                let distance = (a - b).norm() + self.slack(a.norm().max(b.norm()));
+                // Each of the points is within two roundings of its body.
+                let distance = (a - b).norm() + 4.0 * self.slack(a.norm().max(b.norm()));
                 least = least.min(distance);
                 if least <= enough {
                     return least;

@@ -15,7 +15,7 @@ use crate::placed::{Placed, check_pose};
 /// Roundings of places and of distances to boxes, relative to the largest coordinate.
 const GEOMETRY_ROUNDINGS: f64 = 16.0;
 
-/// A coordinate that a side of a box depends on less than this is not bounded by it.
+/// A smaller entry of a rotation bounds no coordinate: a division by it would magnify rounding.
 const LEAST_TURN: f64 = 1e-2;
 
 /// Steps to a point that is in a shape, and the depth that they aim at, in roundings of its field.
@@ -104,8 +104,8 @@ impl<'a, const D: usize> DistanceBound<'a, D> {
         self.shape.promise().outside == Quality::Exact
     }
 
-    /// A point of the frame that is in the shape, rounding included, near another one; on its surface
-    /// where the field is exact.
+    /// A point of the shape near another one, both of the frame: proven to be in it, or within two roundings
+    /// of its surface where the field is exact outside.
     pub(crate) fn point_within(&self, p: Point<D>) -> Option<Point<D>> {
         let start = self.local(p);
         let along_gradients = self.shape.surface_point(start);
@@ -119,17 +119,16 @@ impl<'a, const D: usize> DistanceBound<'a, D> {
         Some(self.in_frame(within))
     }
 
-    /// A point in the shape, in its own coordinates: of the points behind the last faces that were met,
-    /// that nearest to the start, until it is within.
-    ///
-    /// Steps behind one face after the other would take as many as the edge between them is sharp.
+    /// A point in the shape, in its own coordinates. Each step adds the half-space behind the tangent plane
+    /// at the last point, and goes to the point nearest to the start in the last few half-spaces. Steps
+    /// behind one face at a time converge slowly at a sharp edge.
     fn behind_faces(&self, start: Point<D>) -> Option<Point<D>> {
-        let rounding = self.shape.promise().rounding.within(start.norm());
         let none = HalfSpace { point: start, normal: Vector::ZERO };
         let mut faces = [none; CAPACITY];
         let mut p = start;
         for step in 0..STEPS_WITHIN {
             let (value, slope) = self.shape.distance_gradient(p);
+            let rounding = self.shape.promise().rounding.within(p.norm());
             if value <= -rounding {
                 return Some(p);
             }
@@ -138,7 +137,7 @@ impl<'a, const D: usize> DistanceBound<'a, D> {
             faces.rotate_right(1);
             faces[0] = HalfSpace { point, normal };
             let met = CAPACITY.min(step + 1);
-            // Faces that have no common point: the shape is hollow, and those met last count.
+            // Without a common point the shape is not convex there, and the faces met last count.
             p = (1..=met).rev().find_map(|count| closest_point(start, &faces[..count]))?;
         }
         None
@@ -253,6 +252,9 @@ impl<'a, const D: usize> DistanceBound<'a, D> {
     #[inline]
     pub(crate) fn empty(&self, local: Point<D>, value: f64, level: f64) -> f64 {
         let empty = value - level;
+        if empty.is_nan() {
+            return empty;
+        }
         match &self.region {
             None => empty,
             Some(region) => {

@@ -18,8 +18,8 @@ use crate::pair::{PairWorkspace, separation};
 /// upper one.
 const KNOWN: f64 = 0.5;
 
-/// What the tolerance of the separation is multiplied by until it is; of the size at first, and of the
-/// gap in the end.
+/// The tolerance of the separation begins at `COARSEST` of the size, and is multiplied by `FINER` until the
+/// separation is known well enough, down to `FINEST` of the gap.
 const FINER: f64 = 0.25;
 const COARSEST: f64 = 1e-2;
 const FINEST: f64 = 0.25;
@@ -29,7 +29,7 @@ pub(super) struct Advancement<'a, const D: usize> {
     pub(super) bodies: [Moving<'a, D>; 2],
     /// The way of one as the other sees it.
     pub(super) way: WayBounds,
-    /// The size of the smaller body [m].
+    /// Half the diagonal of the smaller body's box [m].
     pub(super) size: f64,
     pub(super) settings: &'a SweepSettings,
     /// How often fields may be evaluated.

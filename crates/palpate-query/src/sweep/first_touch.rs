@@ -52,7 +52,7 @@ pub struct FirstTouch<const D: usize> {
     /// The contact at `upper`, that of bodies the deepest as a [`manifold`](crate::manifold) has it; `None`
     /// if there is none, or no surface of an element was found there.
     pub contact: Option<Contact<D>>,
-    /// How the bodies move on, if they touch at the start.
+    /// How the bodies move on, if they touch at the start and a field gives the normal there.
     pub start: Option<Start>,
     /// Why the search stopped: [`Stop::Converged`] at a touch, [`Stop::SignKnown`] if there is none.
     pub stop: Stop,

@@ -34,7 +34,7 @@ pub struct Motion<const D: usize> {
 }
 
 impl<const D: usize> Motion<D> {
-    /// The pose at a time, from 0 to 1.
+    /// The pose at a time, from 0 to 1: the first at 0 and below, the last at 1 and above.
     #[must_use]
     pub fn pose(&self, time: f64) -> Pose<D> {
         self.screw.map_or(self.first, |screw| screw.pose(time))

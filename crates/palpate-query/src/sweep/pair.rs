@@ -23,7 +23,7 @@ use crate::pair::{PairWorkspace, separation};
 /// After so many evaluations without a time, a touch at the start is asked for.
 const SOON: u32 = 1 << 14;
 
-/// What is done after the search, samples of the time and the contact, may use a share of its budget each:
+/// Advancement, the samples, and each search at the contact may use a share of the budget after the search:
 /// one of so many.
 const AFTERWARDS: u32 = 4;
 
@@ -33,8 +33,8 @@ const SAMPLES: u32 = 32;
 /// The separation at a touch is searched to this share of the gap.
 const SHARE: f64 = 0.25;
 
-/// When two bodies that move touch first: the first time at which their [`separation`] is at most
-/// `settings.gap`.
+/// When two bodies that move touch first. Before `lower` they are proven to be apart by more than half of
+/// `settings.gap`; at `upper` their [`separation`] is at most the gap.
 ///
 /// Each box of space advances through time on its own, by models of both fields over it and over a
 /// span of time. So no motion is too fast and no body too thin. What passes at a small distance takes
@@ -63,7 +63,8 @@ const SHARE: f64 = 0.25;
 ///
 /// # Errors
 ///
-/// If neither body is bounded, a pose is NaN or out of range, or a setting is not positive.
+/// If neither body is bounded, a pose is NaN or out of range, or the gap or the tolerance of times is NaN, not
+/// positive or above 1e15.
 pub fn sweep<'a, const D: usize>(
     a: impl Into<Moving<'a, D>>,
     b: impl Into<Moving<'a, D>>,
@@ -83,7 +84,7 @@ pub(super) fn swept<const D: usize>(
     let SweepWorkspace { frontier, memory, pair } = workspace;
     // The first is that whose coordinates are searched: the smaller one.
     let size = |body: &Moving<'_, D>| {
-        body.shape.promise().bounds.map_or(f64::INFINITY, |b| b.radius_about_origin())
+        body.shape.promise().bounds.map_or(f64::INFINITY, |b| b.aabb.half_extents().norm())
     };
     let is_swapped = size(&bodies[1]) < size(&bodies[0]);
     let [a, b] = bodies;
@@ -145,10 +146,8 @@ pub(super) fn swept<const D: usize>(
         evaluations = evaluations.saturating_add(advanced.evaluations);
         lower = advanced.lower.min(upper);
         upper = upper.min(advanced.upper);
-        if lower >= 1.0 {
-            stop = Stop::SignKnown;
-        } else if upper - lower <= settings.time_tolerance {
-            stop = Stop::Converged;
+        if let Some(decided) = settings.decided(lower, upper) {
+            stop = decided;
         } else if upper == f64::INFINITY {
             upper = sampled_touch(lower, bodies, settings, pair, &mut evaluations)?;
         }
@@ -236,6 +235,7 @@ fn touch_at<const D: usize>(
         let ([first_a, first_b], first) = near(0.0)?;
         if first.upper <= settings.gap {
             (time, a, b, best) = (0.0, first_a, first_b, first);
+            found.stop = Stop::Converged;
         }
     }
     found.upper = time;

@@ -33,8 +33,9 @@ pub struct SweepProof<const D: usize> {
     pub body: usize,
     /// From the coordinates of that body to the world's, at the answer's upper time.
     pub world_from_boxes: Pose<D>,
-    /// Boxes that hold the body but for what its own field proves free. Each is free before its time,
-    /// which is at least the answer's lower one.
+    /// Boxes that hold the body but for what its own field proves free. Each is free before its own time.
+    /// That is at least the answer's lower one, unless the search went on by conservative advancement:
+    /// the answer's lower time is then proven by separations.
     pub boxes: Vec<FreeBox<D>>,
 }
 

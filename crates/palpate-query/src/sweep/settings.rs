@@ -24,12 +24,14 @@ pub(super) const HALVES: u32 = 8;
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct SweepSettings {
-    /// Bodies whose separation is at most this touch [m].
+    /// Bodies whose separation is at most this touch [m]; those more than half of it apart may be called
+    /// apart.
     pub gap: f64,
-    /// How far apart the bounds of the time may be, of a motion over the time from 0 to 1.
+    /// How far apart the bounds of the time may be, as a share of the motion, which takes the time from 0
+    /// to 1.
     pub time_tolerance: f64,
-    /// How often fields are evaluated at most, until the time is found. The contact of two bodies costs
-    /// up to two searches for a separation more, and a round may exceed it.
+    /// How often the search in boxes evaluates fields at most; a round may exceed it. Conservative
+    /// advancement and samples after an early end, and the contact, may use about as many again.
     pub budget: u32,
 }
 

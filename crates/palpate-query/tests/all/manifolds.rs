@@ -369,6 +369,33 @@ fn the_normal_of_an_edge_on_a_face_is_that_of_the_face() -> Result<(), ShapeErro
     Ok(())
 }
 
+/// Gaps of flat models, which are too small where a body is round, were once called the upper bound: of a box
+/// and a ball 1 m apart, 0.989 m at a margin of 3 m.
+#[test]
+fn bounds_hold_at_margins_that_are_larger_than_the_gap() -> Result<(), ShapeError> {
+    fn hold<const D: usize>(bodies: [&Shape<D>; 2], there: Pose<D>, truth: f64) {
+        for margin in [1e-3, 1.1, 1.5, 2.0, 3.0, 10.0] {
+            let settings = ManifoldSettings::of_size(2.0).with_margin(margin * truth);
+            let limits = Limits::new(0.5 * settings.margin);
+            let there = Placed::new(bodies[1], there);
+            let mut workspace = PairWorkspace::new();
+            let found = manifold(bodies[0], there, &settings, &limits, &mut workspace);
+            let found = found.expect("bounded");
+            let bounds = [found.separation.lower, found.separation.upper];
+            assert!(bounds[0] <= truth && bounds[1] >= truth, "margin {margin}: {bounds:?}");
+            assert!(found.distance_at_most >= truth, "margin {margin}: {found:?}");
+        }
+    }
+    let [square, disc] = [Shape::<2>::cuboid([2.0, 2.0])?, Shape::ball(1.0)?];
+    hold([&square, &disc], Pose::translation([3.0, 0.3]), 1.0);
+    let [cube, ball] = [Shape::<3>::cuboid([2.0, 2.0, 2.0])?, Shape::ball(1.0)?];
+    for away in [[3.0, 0.3, 0.2], [1.5, 3.2, -0.4], [2.4, 2.6, 2.2]] {
+        let to_box = Vector(away.map(|x: f64| (x.abs() - 1.0).max(0.0))).norm();
+        hold([&cube, &ball], Pose::translation(away), to_box - 1.0);
+    }
+    Ok(())
+}
+
 /// A wedge of 2° whose field tells a 57th of the distance in front of its edge: a ball 10 mm away was said
 /// to touch it within 0.4 mm.
 #[test]
