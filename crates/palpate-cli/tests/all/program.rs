@@ -43,6 +43,19 @@ fn a_scene_that_is_not_there_is_named_once() {
     }
 }
 
+/// The file was read until the memory was full.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_scene_without_an_end_is_refused() {
+    let output = palpate(&["check", "/dev/zero"]);
+    let expected =
+        "palpate: /dev/zero: is longer than 268435456 bytes, the most that are read\n";
+    assert_eq!(
+        (status(&output), String::from_utf8_lossy(&output.stderr).as_ref()),
+        (2, expected)
+    );
+}
+
 /// Many points give the bytes of one point each, for any number of threads.
 #[test]
 fn eval_streams_the_same_bytes_for_any_number_of_threads() {
