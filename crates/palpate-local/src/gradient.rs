@@ -310,7 +310,7 @@ mod tests {
     #[test]
     fn an_offset_is_a_length() {
         for (offset, said) in [
-            (0.0, "an offset must be positive and at most 1e15 m, got 0.0 m"),
+            (0.0, "an offset must be positive and at most 1e15, got 0.0"),
             (-1.0, "a length must be from 0 m to 1e15 m, got -1.0 m"),
         ] {
             let error = GradientSampler::new(offset).err().map(|error| error.to_string());
