@@ -19,10 +19,11 @@ Examples:
 
 The separation of bodies that are exact outside is their distance; that of bodies that
 overlap is minus the diameter of the largest ball inside both. It lies between the
-bounds, which include rounding and are printed to the nearest digit; --json has them whole. Of other bodies that are apart, separations are lower bounds of
-distances. A pair touches if its distance is proven to be at most the margin: by the upper
-bound of the separation, or, where that bounds no distance, by two points of the bodies. It is apart if the lower bound is
-more than the margin, and is undecided otherwise.";
+bounds, which include rounding and are printed to the nearest digit; --json has them whole. Of
+other bodies that are apart, separations are lower bounds of distances. A pair touches if its
+distance is proven to be at most the margin: by the upper bound of the separation, or, where that
+bounds no distance, by two points of the bodies. It is apart if the lower bound is more than the
+margin, and is undecided otherwise.";
 
 /// The options of `palpate contact`.
 #[derive(Args, Debug)]

@@ -299,12 +299,12 @@ fn proven_touch<const D: usize>(
         let mut found = sweep(a, b, &settings, &mut workspace).map_err(Failure::input)?;
         evaluations = evaluations.saturating_add(found.evaluations);
         found.evaluations = evaluations;
-        if found.lower > 0.0 {
+        found.lower = if found.lower < 1.0 {
             // Rounded down: before it the bodies are apart.
-            found.lower = (from + length * found.lower).next_down().max(from);
+            (from + length * found.lower).next_down().max(from)
         } else {
-            found.lower = from;
-        }
+            to
+        };
         if found.upper.is_finite() {
             found.upper = (from + length * found.upper).min(to);
         }

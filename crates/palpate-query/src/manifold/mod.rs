@@ -469,9 +469,9 @@ impl<const D: usize> Touch<D> {
         (distance(edge, self.point) <= near).then_some(Self { point, gap, ..turned })
     }
 
-    /// The contact in world coordinates, where the bodies overlap no less deep than the values say. Points of the surfaces count
-    /// only within `near` and 45° of the normal: in the middle of a body the gradient may lead to any
-    /// side.
+    /// The contact in world coordinates, where the bodies overlap no less deep than the values say.
+    /// Points of the surfaces count only within `near` and 45° of the normal: in the middle of a body
+    /// the gradient may lead to any side.
     pub(crate) fn contact(&self, pair: &BodyPair<'_, D>, near: f64) -> Contact<D> {
         let near = near.max(2.0 * self.gap.abs());
         let by_values = Contact::estimated(self.point, self.normal, self.gap);

@@ -101,11 +101,14 @@ impl<'a, const D: usize> BodyPair<'a, D> {
         [self.bodies[0].distance_gradient(p), self.bodies[1].distance_gradient(p)]
     }
 
-    /// The diameter of the largest ball about a point of the frame that may be between the bodies; if
-    /// negative, minus that of the largest one that may be in both [m].
-    #[inline]
+    /// The separation that the values at a point of the frame show: twice the larger `g` [m].
     pub(crate) fn gap_at(&mut self, p: Point<D>) -> f64 {
-        let [(a, _), (b, _)] = self.slopes(p);
+        self.evaluations += 2;
+        let [a, b] = [0, 1].map(|i| {
+            let body = &self.bodies[i];
+            let local = body.local(p);
+            body.value(local, body.shape.distance(local))
+        });
         2.0 * larger(a, b)
     }
 
