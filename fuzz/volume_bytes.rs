@@ -26,7 +26,7 @@ pub fn check(bytes: &[u8], name: &str) -> bool {
     };
     let [least, largest] = volume.range();
     assert!(least.is_finite() && least <= largest, "{least} to {largest}");
-    if volume.samples.len() <= SMALL {
+    if volume.samples().len() <= SMALL {
         let value = 0.5 * (f64::from(least) + f64::from(largest));
         match volume.surface(value) {
             Ok(mesh) => assert!(mesh.report().is_watertight(), "a surface has openings"),

@@ -97,12 +97,13 @@ fn write_mesh(out: &mut impl Write, mesh: &BuiltMesh) -> io::Result<()> {
         None if mesh.findings.is_clean() => "closed, and no faces cross".to_owned(),
         None => mesh.findings.to_string(),
     };
+    let grid = mesh.grid.as_ref().map_or_else(String::new, |grid| format!(", {}", shown(grid)));
     let at = mesh.value.map_or_else(String::new, |value| format!(" at {value}"));
     let faces = counted(mesh.findings.faces, "face", "faces");
     let bounds = mesh.shape.promise().bounds.map(|bounds| bounds.aabb);
     let size = bounds.map_or([0.0; 3], |aabb| (aabb.half_extents() * 2.0).0);
     let size = size.map(rounded).join(" × ");
-    writeln!(out, "  {}{at}: {faces}, {size} m: {found}", shown(&mesh.file))?;
+    writeln!(out, "  {}{grid}{at}: {faces}, {size} m: {found}", shown(&mesh.file))?;
     if let Some(samples) = &mesh.samples {
         let Samples { counts, range: [least, largest], .. } = samples;
         let steps = samples.steps.map(|step| rounded(step.norm() * mesh.scale)).join(" × ");
@@ -155,6 +156,7 @@ fn of_mesh(mesh: &BuiltMesh) -> Value {
     json!({
         "file": mesh.file,
         "scale": mesh.scale,
+        "grid": mesh.grid,
         "value": mesh.value,
         "thickness_m": mesh.thickness,
         "faces": faces,

@@ -7,7 +7,7 @@ use std::io::Write;
 use std::ops::ControlFlow;
 
 use palpate::field::Shape;
-use palpate::grid::{Grid, GridError, Progress};
+use palpate::grid::{Grid, GridError, GridFileProblem, Progress};
 use palpate::scene::{AnyScene, BuiltScene};
 use serde_json::json;
 
@@ -43,7 +43,12 @@ fn bake<const D: usize>(
         output::remark("interrupted: nothing was written");
         return Ok(Outcome::Interrupted);
     };
-    destination.write(|out| Ok(grid.write(out)?))?;
+    destination.write(|out| {
+        grid.write(out).map_err(|problem| match problem {
+            GridFileProblem::System(error) => error.into(),
+            problem => Failure::file(&options.output, problem),
+        })
+    })?;
     report(options, shape, &grid)?;
     Ok(if grid.deviation().is_finite() { Outcome::Yes } else { Outcome::No })
 }

@@ -116,7 +116,7 @@ fn as_volume(path: &Path) -> Option<Failure> {
         Ok(volume) => volume,
         Err(error) => return Some(Failure::input(error)),
     };
-    let ([least, largest], [x, y, z]) = (volume.range(), volume.counts);
+    let ([least, largest], [x, y, z]) = (volume.range(), volume.counts());
     let file = path.file_name().unwrap_or_default().to_string_lossy();
     Some(Failure::file(
         path,

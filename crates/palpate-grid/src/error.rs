@@ -45,7 +45,7 @@ pub enum GridError {
     },
     /// More nodes than allowed.
     #[error(
-        "cells of {cell} m take {nodes} nodes, more than the {limit} allowed; choose larger cells, or raise the limit"
+        "cells of {cell} m take {nodes} nodes, more than the {limit} allowed; choose larger cells, or allow more (`palpate grid --nodes`; a scene takes its file)"
     )]
     TooLarge {
         /// The size of a cell [m].
@@ -57,7 +57,7 @@ pub enum GridError {
     },
     /// The tolerance is not reached with the nodes allowed.
     #[error(
-        "a deviation of {tolerance} m takes more than the {limit} nodes allowed: cells of {cell} m deviate by {reached} m; allow more, or a larger tolerance"
+        "a deviation of {tolerance} m takes more than the {limit} nodes allowed: cells of {cell} m deviate by {reached} m; take a larger tolerance, or allow more (`palpate grid --nodes`; a scene takes its file)"
     )]
     TooFine {
         /// The deviation asked for [m].

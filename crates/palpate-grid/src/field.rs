@@ -73,7 +73,7 @@ impl<const D: usize> CustomField<D> for Grid<D> {
     /// The bytes of its file.
     #[cfg(feature = "files")]
     fn content(&self, sink: &mut dyn FnMut(&[u8])) -> bool {
-        self.write(Sink(sink)).is_ok()
+        self.put(Sink(sink)).is_ok()
     }
 }
 

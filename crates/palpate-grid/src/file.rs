@@ -127,10 +127,6 @@ impl<const D: usize> Grid<D> {
         let path = path.as_ref();
         let written = || -> Result<(), GridFileProblem> {
             let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
-            let bytes = self.stored_samples() as u64 * self.store().bytes();
-            if bytes > LARGEST_FILE {
-                return Err(GridFileProblem::TooLarge { bytes });
-            }
             let file = as_any_file().tempfile_in(folder.unwrap_or(Path::new(".")))?;
             self.write(BufWriter::new(file.as_file()))?;
             file.as_file().sync_all()?;
@@ -157,7 +153,8 @@ impl<const D: usize> Grid<D> {
                 return Err(GridFileProblem::TooLarge { bytes });
             }
             let mut text = Vec::new();
-            file.take(LARGEST_FILE).read_to_end(&mut text)?;
+            // One more: a file that grows meanwhile is not cut in silence.
+            file.take(LARGEST_FILE + 1).read_to_end(&mut text)?;
             Self::from_bytes(&text)
         };
         read().map_err(|problem| GridFileError { path: path.to_owned(), problem })
@@ -167,8 +164,29 @@ impl<const D: usize> Grid<D> {
     ///
     /// # Errors
     ///
-    /// As of `out`.
-    pub fn write(&self, out: impl Write) -> std::io::Result<()> {
+    /// As of `out`; if there are more bytes than [`LARGEST_FILE`], before the first one is written.
+    pub fn write(&self, out: impl Write) -> Result<(), GridFileProblem> {
+        let bytes = self.file_bytes();
+        if bytes > LARGEST_FILE {
+            return Err(GridFileProblem::TooLarge { bytes });
+        }
+        Ok(self.put(out)?)
+    }
+
+    /// The bytes of the file.
+    fn file_bytes(&self) -> u64 {
+        let head = MAGIC.len() + 4 + 8 * (5 + 4 * D) + 8 + SUM;
+        let table = match &self.samples.order {
+            Order::Bricks { table } => table.len(),
+            Order::Dense { .. } => 0,
+        };
+        let far = self.far.as_ref().map_or(0, |far| far.samples.codes.len());
+        let own = self.stored_samples() as u64 * self.store().bytes();
+        own + (head + 8 * self.certificates.len() + 4 * (table + far)) as u64
+    }
+
+    /// Writes what a file holds.
+    pub(crate) fn put(&self, out: impl Write) -> std::io::Result<()> {
         let mut out = Summed { out, sum: blake3::Hasher::new() };
         let lattice = self.lattice();
         let Samples { codes, scale, band, order, .. } = &self.samples;
@@ -240,7 +258,7 @@ impl<const D: usize> Grid<D> {
         if found != D {
             return Err(GridFileProblem::Dimension { found, wanted: D });
         }
-        // All but the head's first numbers may be believed once the sum is right.
+        // The sum proves that the bytes are those that were written, not who wrote them: what follows is checked too.
         let Some((text, sum)) = bytes.split_last_chunk::<SUM>() else {
             return Err(damaged("it ends in its head"));
         };
@@ -446,5 +464,27 @@ impl<W: Write> Write for Summed<W> {
 
     fn flush(&mut self) -> std::io::Result<()> {
         self.out.flush()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use palpate_field::Shape;
+
+    use super::*;
+
+    #[test]
+    fn the_length_of_a_file_is_known_before_it_is_written() {
+        let ball = Shape::<3>::ball(0.05).unwrap();
+        for options in [
+            GridOptions::with_cell(0.005),
+            GridOptions::with_cell(0.005).with_store(Store::I16),
+            GridOptions::with_cell(0.003).with_band(GridOptions::SMALLEST_BAND),
+        ] {
+            let grid = Grid::bake(&ball, &options).unwrap();
+            let mut bytes = Vec::new();
+            grid.write(&mut bytes).unwrap();
+            assert_eq!(grid.file_bytes(), bytes.len() as u64);
+        }
     }
 }

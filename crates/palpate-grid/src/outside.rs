@@ -28,7 +28,7 @@ pub(crate) fn outside<const D: usize>(
     let square = lipschitz * lipschitz;
     let result = (square * (away.dot(away) + 2.0 * margin * sum) + value * value).sqrt();
     if !result.is_finite() {
-        // Of a point that is nowhere, or too far away for squares.
+        // NaN, or too far away for squares.
         return (result, Vector::ZERO);
     }
     let gradient = std::array::from_fn(|i| {

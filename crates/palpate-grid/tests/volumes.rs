@@ -16,6 +16,7 @@ use flate2::Compression;
 use flate2::write::{GzEncoder, ZlibEncoder};
 use palpate_field::Vector;
 use palpate_grid::{Volume, VolumeProblem};
+use palpate_mesh::Solid;
 use palpate_testkit::cases;
 
 /// Nodes along each axis, all different.
@@ -53,7 +54,7 @@ fn gzip(bytes: &[u8]) -> Vec<u8> {
 
 fn nrrd(encoding: &str) -> Vec<u8> {
     let head = format!(
-        "NRRD0005\n# a ball\ntype: short\ndimension: 3\nspace: left-posterior-superior\nsizes: 20 24 16\n\
+        "NRRD0005\n# a ball\ntype: short\ndimension: 3\nspace: right-anterior-superior\nsizes: 20 24 16\n\
          space directions: (1,0,0) (0,0.5,0) (0,0,2)\nkinds: domain domain domain\nendian: little\n\
          encoding: {encoding}\nspace origin: (0,0,0)\n\n"
     );
@@ -136,8 +137,8 @@ fn every_format_gives_the_same_ball() {
     let expected: Vec<f32> = densities().into_iter().map(f32::from).collect();
     for (name, bytes) in files() {
         let volume = Volume::from_bytes(&bytes, Path::new(name)).unwrap();
-        assert_eq!((volume.counts, volume.range()[1]), (COUNTS, 90.0), "{name}");
-        assert_eq!(volume.samples, expected, "{name}");
+        assert_eq!((volume.counts(), volume.range()[1]), (COUNTS, 90.0), "{name}");
+        assert_eq!(volume.samples(), expected, "{name}");
         let last = volume.node([19, 23, 15]) - Vector([0.019, 0.0115, 0.03]);
         assert!(last.norm() < 1e-9, "{name}: {last:?}");
         let mesh = volume.surface(60.0).unwrap();
@@ -150,8 +151,93 @@ fn every_format_gives_the_same_ball() {
     }
     for is_fortran in [true, false] {
         let volume = Volume::from_bytes(&npy(is_fortran), Path::new("ball.npy")).unwrap();
-        assert_eq!(volume.samples, expected);
+        assert_eq!(volume.samples(), expected);
     }
+}
+
+/// The same scan by formats of both conventions stood in two places.
+#[test]
+fn places_in_a_patient_are_the_same_in_every_format() {
+    let text = |bytes: Vec<u8>, from: &str, to: &str| {
+        let at = bytes.windows(from.len()).position(|part| part == from.as_bytes()).unwrap();
+        [&bytes[..at], to.as_bytes(), &bytes[at + from.len()..]].concat()
+    };
+    let nrrd = text(nrrd("raw"), "right-anterior-superior", "left-posterior-superior");
+    let meta = text(meta(false), "Offset", "AnatomicalOrientation = RAI\nOffset");
+    for (name, bytes) in [("ball.nrrd", nrrd), ("ball.mha", meta)] {
+        let volume = Volume::from_bytes(&bytes, Path::new(name)).unwrap();
+        let last = volume.node([19, 23, 15]) - Vector([-0.019, -0.0115, 0.03]);
+        assert!(last.norm() < 1e-9, "{name}: {last:?}");
+        assert!(volume.surface(60.0).unwrap().report().enclosed.unwrap() > 0.0, "{name}");
+    }
+}
+
+/// Units were compared by their beginning: three times "m" was taken for "mm", "micron" for "m".
+#[test]
+fn units_of_a_head_are_whole_words() {
+    let of = |units: &str| {
+        let bytes = nrrd("raw");
+        let head = String::from_utf8_lossy(&bytes[..bytes.len() - 2 * 20 * 24 * 16]);
+        let head = head.replace("kinds:", &format!("space units: {units}\nkinds:"));
+        let bytes = [head.into_bytes(), little()].concat();
+        let volume = Volume::from_bytes(&bytes, Path::new("ball.nrrd"));
+        volume.map(|volume| volume.steps()[0].norm()).map_err(|error| error.to_string())
+    };
+    for (units, metres) in [
+        ("\"m\" \"m\" \"m\"", 1.0),
+        ("\"mm\" \"mm\" \"mm\"", 1e-3),
+        ("\"micron\" \"micron\" \"micron\"", 1e-6),
+        ("\"cm\" \"cm\" \"cm\"", 1e-2),
+    ] {
+        assert_eq!(of(units), Ok(metres), "{units}");
+    }
+    for units in ["\"mm\" \"m\" \"mm\"", "\"mil\" \"mil\" \"mil\""] {
+        assert!(of(units).unwrap_err().contains("space units"), "{units}");
+    }
+}
+
+/// What lies before the samples was not looked at, and the samples were read from the wrong place.
+#[test]
+fn what_a_head_says_of_other_places_is_refused() {
+    let of = |name: &str, bytes: Vec<u8>, from: &str, to: &str| {
+        let at = bytes.windows(from.len()).position(|part| part == from.as_bytes()).unwrap();
+        let bytes = [&bytes[..at], to.as_bytes(), &bytes[at + from.len()..]].concat();
+        Volume::from_bytes(&bytes, Path::new(name)).unwrap_err().to_string()
+    };
+    let error = of("a.nrrd", nrrd("raw"), "kinds:", "byte skip: 2\nkinds:");
+    assert!(error.contains("byte skip \"2\" is not read"), "{error}");
+    let error = of("a.mha", meta(false), "Offset", "HeaderSize = 2\nOffset");
+    assert!(error.contains("HeaderSize 2 is not read"), "{error}");
+    let error = of("a.mha", meta(false), "BinaryData = True", "BinaryData = False");
+    assert!(error.contains("its samples are text"), "{error}");
+}
+
+/// The lattice of the surface lay along the axes of space: nodes of a volume that does not were passed over.
+#[test]
+fn no_sample_of_a_turned_volume_is_passed_over() {
+    let turn = |v: [f64; 3]| {
+        let ([x, y, z], [c, s]) = (v, [0.8, 0.6]);
+        Vector([c * x - s * y, s * x + c * y, z])
+    };
+    let steps = [[1.0, 0.0, 0.0], [0.0, 0.3, 0.0], [0.0, 0.0, 2.0]].map(turn);
+    let mut samples = vec![0.0; 9 * 9 * 9];
+    let bright: Vec<usize> = (0..8).map(|i| 91 + 70 * i).collect();
+    for node in &bright {
+        samples[*node] = 1.0;
+    }
+    let volume = Volume::new([9; 3], Vector([5.0, 0.0, 0.0]), steps, samples).unwrap();
+    let mesh = volume.surface(0.9).unwrap();
+    let found = Solid::from_mesh(&mesh).unwrap().0;
+    let shape: palpate_field::Shape<3> = found.into();
+    for node in bright {
+        assert!(shape.distance(volume.node([node % 9, node / 9 % 9, node / 81])) < 0.0);
+    }
+    let mirrored = [steps[0], steps[1], steps[2] * -1.0];
+    let samples = volume.samples().to_vec();
+    let mirrored = Volume::new([9; 3], volume.origin(), mirrored, samples).unwrap();
+    let enclosed = |mesh: palpate_mesh::TriangleMesh| mesh.report().enclosed.unwrap();
+    let [one, other] = [mesh, mirrored.surface(0.9).unwrap()].map(enclosed);
+    assert!(one > 0.0 && (one - other).abs() < 1e-12, "{one} {other}");
 }
 
 #[test]
@@ -167,7 +253,7 @@ fn samples_beside_a_head_are_read_and_nothing_else() {
         Volume::open(path)
     };
     std::fs::write(folder.path().join("ball.raw"), little()).unwrap();
-    assert_eq!(write("ball.raw").unwrap().counts, COUNTS);
+    assert_eq!(write("ball.raw").unwrap().counts(), COUNTS);
     for name in ["../ball.raw", "/etc/passwd", "a/ball.raw", ".."] {
         let error = write(name).unwrap_err();
         assert!(matches!(error.problem, VolumeProblem::Elsewhere { .. }), "{error}");
@@ -177,11 +263,11 @@ fn samples_beside_a_head_are_read_and_nothing_else() {
 #[test]
 fn a_ball_that_the_volume_cuts_off_is_closed() {
     let bytes = nrrd("raw");
-    let mut volume = Volume::from_bytes(&bytes, Path::new("ball.nrrd")).unwrap();
-    for sample in &mut volume.samples[..20 * 24] {
-        *sample = 100.0;
-    }
-    assert!(volume.surface(60.0).unwrap().report().is_watertight());
+    let volume = Volume::from_bytes(&bytes, Path::new("ball.nrrd")).unwrap();
+    let mut samples = volume.samples().to_vec();
+    samples[..20 * 24].fill(100.0);
+    let cut = Volume::new(volume.counts(), volume.origin(), volume.steps(), samples).unwrap();
+    assert!(cut.surface(60.0).unwrap().report().is_watertight());
 }
 
 #[test]
@@ -202,7 +288,7 @@ fn what_is_damaged_is_refused() {
             // Either an error or a volume: never a panic, nor memory for what is not there.
             volume_bytes::check(&bad, name);
             if let Ok(volume) = Volume::from_bytes(&bad, Path::new(name)) {
-                assert!(volume.samples.len() <= 1 << 22);
+                assert!(volume.samples().len() <= 1 << 22);
             }
             Ok(Ok(()))
         });
@@ -212,9 +298,14 @@ fn what_is_damaged_is_refused() {
     };
     assert!(said(b"", "scan.dcm").contains("dcm2niix"));
     assert!(said(&nrrd("bzip2"), "a.nrrd").contains("encoding \"bzip2\" is not read"));
-    let text = String::from_utf8_lossy(&nrrd("raw")[..200])
-        .replace("sizes: 20 24 16", "sizes: 2000 2400 1600");
-    assert!(said(text.as_bytes(), "a.nrrd").contains("bytes, it has"));
+    let head = nrrd("raw");
+    let head = String::from_utf8_lossy(&head[..200]);
+    for (sizes, expected) in
+        [("200 240 160", "bytes, it has"), ("2000 2400 1600", "268435456 at most")]
+    {
+        let text = head.replace("sizes: 20 24 16", &format!("sizes: {sizes}"));
+        assert!(said(text.as_bytes(), "a.nrrd").contains(expected), "{sizes}");
+    }
     let sheared = nrrd("raw");
     let sheared = [&sheared[..], &[]].concat();
     let place = sheared.windows(9).position(|w| w == b"(0,0.5,0)").unwrap();

@@ -1,11 +1,12 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! Polygons into triangles.
+//! Polygons with few corners into triangles; `solid::repair::ears` cuts long loops, at a cost for each that short ones
+//! need not pay.
 
 use palpate_field::{Point, Vector};
 
-/// The largest number of corners of a polygon: cutting takes up to its square in time.
+/// The largest number of corners of a polygon. Cutting takes up to the cube of the number in time.
 pub const MOST_CORNERS: usize = 1024;
 
 /// Cuts a polygon into triangles, two fewer than it has corners and with its orientation, and

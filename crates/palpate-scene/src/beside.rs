@@ -22,11 +22,19 @@ pub(crate) struct Beside {
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Stamp {
     path: PathBuf,
-    modified: Option<SystemTime>,
-    bytes: u64,
+    /// When it was written, and its bytes; the same of files that it names.
+    states: Vec<State>,
 }
 
+type State = Option<(Option<SystemTime>, u64)>;
+
 impl Stamp {
+    /// The same, with files that this one names.
+    pub(crate) fn with(mut self, files: &[PathBuf]) -> Self {
+        self.states.extend(files.iter().map(|file| state(file)));
+        self
+    }
+
     /// Whether it is of the same file, as it is or as it was.
     pub(crate) fn is_of_same_file(&self, other: &Self) -> bool {
         self.path == other.path
@@ -60,10 +68,15 @@ impl Beside {
                 "{shown}: it is a link out of the scene's folder"
             )));
         }
-        let metadata = std::fs::metadata(&real).map_err(cannot)?;
-        let (modified, bytes) = (metadata.modified().ok(), metadata.len());
-        Ok(Self { path, stamp: Stamp { path: real, modified, bytes } })
+        let states = vec![state(&real)];
+        Ok(Self { path, stamp: Stamp { path: real, states } })
     }
+}
+
+/// When a file was written, and its bytes; `None` where there is no file.
+fn state(path: &Path) -> State {
+    let metadata = std::fs::metadata(path).ok()?;
+    Some((metadata.modified().ok(), metadata.len()))
 }
 
 /// What was made, by what it was made of: those used last, up to a weight in all.

@@ -78,7 +78,7 @@ pub use encoding::{NotUtf8, utf8};
 pub use error::{SceneCause, SceneError, SceneProblem};
 pub use guide::{GuideCurve, GuideLine, GuidePlane, GuideSegment, GuideWell, WrittenGuide};
 pub use mesh_file::{BuiltMesh, Samples};
-pub use meshes_baked::{BakedBody, MeshesBaked};
+pub use meshes_baked::{BakedBody, BakedGrid, MeshesBaked};
 pub use motion::{Motion, Repeat};
 pub use names::{near as near_names, shortened, unknown as unknown_name};
 pub use pose::{AxisAngle, WrittenPose, WrittenRotation};

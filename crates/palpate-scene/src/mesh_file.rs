@@ -3,7 +3,7 @@
 
 //! Shapes of mesh files, and of surfaces in volumes.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use palpate_field::{LARGEST_LENGTH, Point, SMALLEST_LENGTH, Shape, Vector};
 use palpate_grid::{Inside, Volume};
@@ -14,14 +14,15 @@ use crate::beside::{Beside, Kept, Stamp};
 use crate::grids::named;
 use crate::problem::Problem;
 
-/// The solids of files, in the units of the files, up to as many triangles: a few GB.
+/// The solids of files, in the units of the files, with at most so many triangles in all, which take a few GB.
 static SOLIDS: Kept<Key, Made> = Kept::new(1 << 22);
 
 /// A solid, what was found in its mesh, and the samples of its volume if it has one.
 type Made = (Shape<3>, Findings<3>, Option<Samples>);
 
-/// A file, and of what is taken from it the number, by its bits, and the side asked for.
-type Key = (Stamp, Option<(&'static str, u64)>, Option<Inside>);
+/// A file, and of what is taken from it the number, by its bits, the grid and the side asked for.
+type Key = (Stamp, Taken);
+type Taken = (Option<(&'static str, u64)>, Option<String>, Option<Inside>);
 
 /// The solid of a mesh file or of a surface in a volume, as a scene uses it.
 #[derive(Clone, Debug)]
@@ -31,6 +32,8 @@ pub struct BuiltMesh {
     pub file: String,
     /// Metres for a unit of the file; of a volume, whose head tells lengths, a factor.
     pub scale: f64,
+    /// The grid of the file that is the volume, where the scene names it.
+    pub grid: Option<String>,
     /// The value of the surface in a volume; `None` of a mesh.
     pub value: Option<f64>,
     /// The side of the value that is inside, where the scene says it; else the file does.
@@ -63,19 +66,27 @@ impl Samples {
     /// The samples of a volume.
     #[must_use]
     pub fn of(volume: &Volume) -> Self {
-        let Volume { counts, origin, steps, .. } = *volume;
+        let (counts, origin, steps) = (volume.counts(), volume.origin(), volume.steps());
         Self { counts, origin, steps, range: volume.range() }
     }
 }
 
 impl BuiltMesh {
+    /// The files that it was read from, in the scene's folder.
+    #[must_use]
+    pub fn files(&self, folder: impl AsRef<Path>) -> Vec<PathBuf> {
+        let path = folder.as_ref().join(&self.file);
+        let others = others(&path, self.samples.is_some());
+        std::iter::once(path).chain(others).collect()
+    }
+
     /// Whether it is the same file at the same scale.
     pub(crate) fn is_same(&self, other: &Self) -> bool {
         let numbers = |mesh: &Self| {
             (mesh.scale.to_bits(), [mesh.value, mesh.thickness].map(|x| x.map(f64::to_bits)))
         };
-        let is_same_side = self.inside == other.inside;
-        self.file == other.file && numbers(self) == numbers(other) && is_same_side
+        let names = |mesh: &Self| (mesh.file.clone(), mesh.grid.clone(), mesh.inside);
+        names(self) == names(other) && numbers(self) == numbers(other)
     }
 }
 
@@ -94,6 +105,7 @@ pub(crate) struct WrittenMesh {
 #[serde(deny_unknown_fields, expecting = "an object")]
 pub(crate) struct WrittenVolume {
     file: String,
+    grid: Option<String>,
     value: f64,
     #[serde(default = "one")]
     scale: f64,
@@ -107,6 +119,7 @@ struct Asked<'a> {
     what: &'a str,
     file: &'a str,
     scale: f64,
+    grid: Option<&'a str>,
     value: Option<f64>,
     inside: Option<Inside>,
     thickness: Option<f64>,
@@ -123,8 +136,8 @@ impl WrittenMesh {
             read_file(path).map(|mesh| (mesh, None)).map_err(|error| error.to_string())
         };
         let (file, scale) = (self.file.as_str(), self.scale);
-        let (value, inside, thickness) = (None, None, self.thickness);
-        let asked = Asked { what: "a mesh", file, scale, value, inside, thickness };
+        let (grid, value, inside, thickness) = (None, None, None, self.thickness);
+        let asked = Asked { what: "a mesh", file, scale, grid, value, inside, thickness };
         built(asked, folder, read)
     }
 }
@@ -136,23 +149,35 @@ impl WrittenVolume {
         let inside = self.inside.as_deref().map(|name| named(name, "inside", sides));
         let inside = inside.transpose()?;
         let surface = |path: &Path| {
-            let mut volume = Volume::open(path).map_err(|error| error.to_string())?;
-            volume.inside = inside.unwrap_or(volume.inside);
+            let volume = match &self.grid {
+                Some(grid) => Volume::open_grid(path, grid),
+                None => Volume::open(path),
+            };
+            let volume = volume.map_err(|error| error.to_string())?;
+            let side = inside.unwrap_or(volume.inside());
+            let volume = volume.with_inside(side);
             let surface = volume.surface(self.value);
             surface
                 .map(|mesh| (mesh, Some(Samples::of(&volume))))
                 .map_err(|problem| format!("{}: {problem}", path.display()))
         };
         let (file, scale) = (self.file.as_str(), self.scale);
-        let (value, thickness) = (Some(self.value), None);
-        let asked = Asked { what: "a volume", file, scale, value, inside, thickness };
+        let (grid, value, thickness) = (self.grid.as_deref(), Some(self.value), None);
+        let asked = Asked { what: "a volume", file, scale, grid, value, inside, thickness };
         built(asked, folder, surface)
     }
 }
 
+/// The files that the head of a volume names.
+fn others(path: &Path, is_volume: bool) -> Vec<PathBuf> {
+    // Why a head cannot be read is told where the volume is read.
+    let files = if is_volume { Volume::files(path).unwrap_or_default() } else { Vec::new() };
+    files.into_iter().skip(1).collect()
+}
+
 /// The solid of what `read` makes of a file.
 fn built(
-    Asked { what, file, scale, value, inside, thickness }: Asked<'_>,
+    Asked { what, file, scale, grid, value, inside, thickness }: Asked<'_>,
     folder: Option<&Path>,
     read: impl FnOnce(&Path) -> Result<(TriangleMesh, Option<Samples>), String>,
 ) -> Result<BuiltMesh, Problem> {
@@ -169,10 +194,13 @@ fn built(
     let of_file = |message: String| Problem::new(message).under("file");
     let Beside { path, stamp } =
         Beside::of(what, file, folder).map_err(|problem| problem.under("file"))?;
+    let stamp = stamp.with(&others(&path, value.is_some()));
     // A thickness is in metres, the solids that are kept in units of the file.
     let thick = thickness.map(|thickness| thickness / scale);
     let number = |name, number: Option<f64>| number.map(|number| (name, number.to_bits()));
-    let key = (stamp, number("value", value).or(number("thickness", thick)), inside);
+    let grid = grid.map(str::to_owned);
+    let taken = number("value", value).or(number("thickness", thick));
+    let key: Key = (stamp, (taken, grid.clone(), inside));
     let (shape, findings, samples) = match SOLIDS.of(&key) {
         Some(known) => known,
         None => {
@@ -190,9 +218,8 @@ fn built(
                 solid.map_err(|error| of_file(format!("{}: {error}", path.display())))?;
             let made = (shape, findings, samples);
             // Another state of the file is of no use any more.
-            SOLIDS.keep(key.clone(), &made, faces, |(known, other, side)| {
-                known.is_of_same_file(&key.0)
-                    && (*known != key.0 || (*other, *side) == (key.1, key.2))
+            SOLIDS.keep(key.clone(), &made, faces, |(known, other)| {
+                known.is_of_same_file(&key.0) && (*known != key.0 || *other == key.1)
             });
             made
         }
@@ -201,6 +228,7 @@ fn built(
     Ok(BuiltMesh {
         file: file.to_owned(),
         scale,
+        grid,
         value,
         inside,
         thickness,

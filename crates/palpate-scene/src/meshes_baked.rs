@@ -19,9 +19,18 @@ const CELLS: f64 = 128.0;
 pub struct BakedBody {
     /// Its name.
     pub name: String,
-    /// The cells of its grid [m], and how far the values are off those of the shape at most [m]; or why it is
-    /// touched as it is.
-    pub grid: Result<[f64; 2], GridError>,
+    /// Its grid, or why it is touched as it is.
+    pub grid: Result<BakedGrid, GridError>,
+}
+
+/// The grid of a body.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct BakedGrid {
+    /// The size of its cells [m].
+    pub cell: f64,
+    /// How far its values are off those of the shape at most [m].
+    pub deviation: f64,
 }
 
 /// A scene whose bodies that hold meshes are grids.
@@ -37,7 +46,7 @@ pub struct MeshesBaked<const D: usize> {
 impl<const D: usize> BuiltScene<D> {
     /// The scene with each body that holds a mesh sampled on a grid: its distance and gradient then take the same
     /// short time everywhere, and the gradient is continuous. Cells are of a size [m], or a 128th of the longest
-    /// side of each body. All samples are kept: a probe rests farther from the surface than any band of some cells.
+    /// side of each body. All samples are kept, without a band: beside fine cells a probe is so large that its centre would rest beyond the band.
     /// A body that makes no grid, or one of which no deviation is certified, stays as it is.
     ///
     /// # Errors
@@ -75,12 +84,12 @@ impl<const D: usize> BuiltScene<D> {
     }
 }
 
-/// The grid of a body's shape, its cells [m] and its deviation [m].
+/// The grid of a body's shape, and what is told of it.
 fn baked<const D: usize>(
     shape: &Shape<D>,
     cell: Option<f64>,
     resources: &Resources,
-) -> Result<(Shape<D>, [f64; 2]), GridError> {
+) -> Result<(Shape<D>, BakedGrid), GridError> {
     let bounds = shape.promise().bounds.ok_or(GridError::Unbounded)?.aabb;
     let longest = bounds.half_extents().0.into_iter().fold(0.0, f64::max) * 2.0;
     let options = GridOptions::with_cell(cell.unwrap_or(longest / CELLS));
@@ -89,5 +98,5 @@ fn baked<const D: usize>(
     if deviation.is_infinite() {
         return Err(GridError::Unknown { cell });
     }
-    Ok((grid.into(), [cell, deviation]))
+    Ok((grid.into(), BakedGrid { cell, deviation }))
 }

@@ -27,7 +27,8 @@ pub(crate) struct MeshOptions {
     /// Write the surface of the scene as a mesh; the name ends in .obj, .stl, .ply or .glb.
     #[arg(long, short, value_name = "FILE")]
     pub(crate) output: Option<PathBuf>,
-    /// The largest distance of a triangle from the surface [m]: cells are as small as it takes.
+    /// The largest distance of a triangle from the surface [m], or size of the field on it where the scene's values are
+    /// bounds: cells are as small as it takes.
     #[arg(long, requires = "output", allow_negative_numbers = true, value_parser = length, conflicts_with = "cell")]
     pub(crate) tolerance: Option<f64>,
     /// The side of the cells in which vertices lie [m]; a hundredth of the scene if left out.

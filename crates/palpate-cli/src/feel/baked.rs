@@ -5,7 +5,7 @@
 
 use std::fmt::Write;
 
-use palpate::scene::{BakedBody, BuiltScene};
+use palpate::scene::{BakedBody, BakedGrid, BuiltScene};
 use serde_json::{Value, json};
 
 use crate::arguments::FeelOptions;
@@ -41,7 +41,7 @@ pub(super) fn write(out: &mut String, bodies: &[BakedBody]) -> std::fmt::Result 
     for BakedBody { name, grid, .. } in bodies {
         let name = shown(name);
         match grid {
-            Ok([cell, deviation]) => writeln!(
+            Ok(BakedGrid { cell, deviation, .. }) => writeln!(
                 out,
                 "  as a grid      {name}: cells of {} m, values off the mesh's by at most {} m; \
                  --exact touches the mesh itself",
@@ -56,7 +56,7 @@ pub(super) fn write(out: &mut String, bodies: &[BakedBody]) -> std::fmt::Result 
 
 pub(super) fn json(bodies: &[BakedBody]) -> Value {
     let told = |BakedBody { name, grid, .. }: &BakedBody| match grid {
-        Ok([cell, deviation]) => {
+        Ok(BakedGrid { cell, deviation, .. }) => {
             json!({ "name": name, "cell_m": cell, "deviation_m": deviation })
         }
         Err(why) => json!({ "name": name, "error": why.to_string() }),

@@ -294,7 +294,8 @@ fn report(
         if let Some(tolerance) = options.tolerance.filter(|_| !is_reached) {
             writeln!(
                 out,
-                "  open     --tolerance asks for {tolerance} m: edges that cells cut off need smaller --cell"
+                "  open     more than --tolerance {tolerance} m, after as many tries as are made: allow more, or ask \
+                 for a smaller --cell instead"
             )?;
         }
     }

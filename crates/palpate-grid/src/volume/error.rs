@@ -50,6 +50,12 @@ pub enum VolumeProblem {
         "it is a file of OpenVDB, which is not read: `nanovdb_convert in.vdb out.nvdb` of OpenVDB's tools makes of it one that is"
     )]
     OpenVdb,
+    /// A grid was asked for by its name, of a file that has none.
+    #[error("there is no grid {name:?} in it: only a file of NanoVDB has grids with names")]
+    NoGrids {
+        /// The name.
+        name: String,
+    },
     /// The active voxels of a sparse grid, and one around them, are too many for a volume.
     #[error(
         "its active voxels span {spans:?} nodes, at most {allowed} in all are made of a file of its size: cut it, or resample it coarser"
@@ -76,7 +82,8 @@ pub enum VolumeProblem {
     },
     /// It has not as many samples as nodes, or an axis of one node.
     #[error(
-        "{counts:?} nodes need as many samples, got {samples}; each axis has at least 2 nodes"
+        "{} × {} × {} nodes need as many samples, got {samples}; each axis needs at least 2 nodes",
+        counts[0], counts[1], counts[2]
     )]
     Counts {
         /// The nodes along each axis.
@@ -99,10 +106,12 @@ pub enum VolumeProblem {
         cosine: f64,
     },
     /// A sample is no number.
-    #[error("sample {node} is no number")]
+    #[error(
+        "the sample at node {node:?} is NaN or beyond single precision: replace it by the value of what is around the body"
+    )]
     NotFinite {
-        /// The sample, counted from 0.
-        node: usize,
+        /// The node's number along each axis, from 0.
+        node: [usize; 3],
     },
     /// The value makes no surface.
     #[error("the samples are from {least} to {largest}: no surface lies at {value}")]
@@ -114,7 +123,15 @@ pub enum VolumeProblem {
         /// The largest sample.
         largest: f32,
     },
+    /// The surface takes too many triangles.
+    #[error(
+        "the surface passes more than {limit} cells: resample the volume coarser, or cut it"
+    )]
+    TooFine {
+        /// How many cells it may pass.
+        limit: usize,
+    },
     /// The surface cannot be meshed.
     #[error(transparent)]
-    Contour(#[from] ContourError),
+    Contour(ContourError),
 }

@@ -10,12 +10,9 @@ use std::path::Path;
 use palpate_field::Vector;
 
 use super::numbers::{Kind, Packing, Stored, list};
-use super::{Volume, VolumeProblem, beside};
+use super::{LEFT_POSTERIOR, LONGEST_HEAD, Volume, VolumeProblem, beside};
 
 const FORMAT: &str = "MetaImage";
-
-/// The longest head [bytes].
-const LONGEST: usize = 1 << 16;
 
 /// Lengths are in millimetres.
 const UNIT: f64 = 1e-3;
@@ -24,11 +21,25 @@ fn wrong(problem: impl Into<String>) -> VolumeProblem {
     VolumeProblem::Malformed { format: FORMAT, problem: problem.into() }
 }
 
-pub(super) fn read(bytes: &[u8], folder: &Path) -> Result<Volume, VolumeProblem> {
+/// The fields of a head.
+struct Head<'a> {
+    fields: HashMap<&'a str, &'a str>,
+    /// The file of the samples; `None` if they follow.
+    samples_file: Option<&'a str>,
+    /// Where samples begin that are in the same file.
+    samples: usize,
+}
+
+/// The file of the samples that a head names, if it is another.
+pub(super) fn samples_file(bytes: &[u8]) -> Option<String> {
+    head(bytes).ok()?.samples_file.map(str::to_owned)
+}
+
+fn head(bytes: &[u8]) -> Result<Head<'_>, VolumeProblem> {
     let mut fields = HashMap::new();
     let mut place = 0;
     let mut file = None;
-    for line in bytes[..bytes.len().min(LONGEST)].split_inclusive(|byte| *byte == b'\n') {
+    for line in bytes[..bytes.len().min(LONGEST_HEAD)].split_inclusive(|byte| *byte == b'\n') {
         place += line.len();
         let Ok(line) = std::str::from_utf8(line) else { break };
         let Some((key, value)) = line.split_once('=') else { break };
@@ -40,7 +51,13 @@ pub(super) fn read(bytes: &[u8], folder: &Path) -> Result<Volume, VolumeProblem>
         fields.insert(key, value);
     }
     let file = file.ok_or_else(|| wrong("its head lacks `ElementDataFile`"))?;
-    let field = |key: &str| fields.get(key).copied();
+    let samples_file = Some(file).filter(|file| !file.eq_ignore_ascii_case("LOCAL"));
+    Ok(Head { fields, samples_file, samples: place })
+}
+
+pub(super) fn read(bytes: &[u8], folder: &Path) -> Result<Volume, VolumeProblem> {
+    let head = head(bytes)?;
+    let field = |key: &str| head.fields.get(key).copied();
     let needed =
         |key: &'static str| field(key).ok_or_else(|| wrong(format!("its head lacks `{key}`")));
     let no = |key: &str, value: &str| wrong(format!("{key} {value:?} is not read"));
@@ -64,6 +81,14 @@ pub(super) fn read(bytes: &[u8], folder: &Path) -> Result<Volume, VolumeProblem>
     {
         return Err(no("ElementNumberOfChannels", channels));
     }
+    if let Some(size) = field("HeaderSize").filter(|size| *size != "0") {
+        return Err(wrong(format!(
+            "HeaderSize {size} is not read; write the samples by themselves"
+        )));
+    }
+    if field("BinaryData").is_some_and(|value| value.eq_ignore_ascii_case("false")) {
+        return Err(wrong("its samples are text; write them with BinaryData = True"));
+    }
     let is_true =
         |key: &str| field(key).is_some_and(|value| value.eq_ignore_ascii_case("true"));
     let is_big = is_true("BinaryDataByteOrderMSB") || is_true("ElementByteOrderMSB");
@@ -85,13 +110,18 @@ pub(super) fn read(bytes: &[u8], folder: &Path) -> Result<Volume, VolumeProblem>
     let count = counts.iter().try_fold(1_usize, |all, count| all.checked_mul(*count));
     let count = count.ok_or_else(|| wrong("it has too many samples"))?;
     let stored = Stored { format: FORMAT, kind, is_big, packing, count };
-    let samples = if file.eq_ignore_ascii_case("LOCAL") {
-        stored.read(&bytes[place..])?
-    } else {
-        stored.read(&beside(folder, file)?)?
+    let samples = match head.samples_file {
+        Some(file) => stored.read(&beside(folder, file)?)?,
+        None => stored.read(&bytes[head.samples..])?,
     };
+    // Whoever tells the orientation of a patient has coordinates to the left, the back and the top.
+    let is_oriented = |text: &str| text.chars().all(|c| "RLAPIS".contains(c));
+    let is_patient = field("AnatomicalOrientation").is_some_and(is_oriented);
+    let signs = if is_patient { LEFT_POSTERIOR } else { [1.0; 3] };
     let steps = std::array::from_fn(|axis| {
-        Vector(std::array::from_fn(|i| directions[3 * axis + i])) * (spacing[axis] * UNIT)
+        let step = spacing[axis] * UNIT;
+        Vector(std::array::from_fn(|i| signs[i] * directions[3 * axis + i])) * step
     });
-    Volume::new(counts, Vector(origin) * UNIT, steps, samples)
+    let origin = Vector(std::array::from_fn(|i| signs[i] * origin[i])) * UNIT;
+    Volume::new(counts, origin, steps, samples)
 }

@@ -16,14 +16,23 @@ mod surface;
 
 use std::fs::File;
 use std::io::Read;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use palpate_field::{Point, Vector};
 
 pub use error::{VolumeError, VolumeProblem};
 
+use crate::lattice::unravelled;
+
 /// The size of the largest file that is read, in bytes: 1 GiB.
 pub const LARGEST_VOLUME: u64 = 1 << 30;
+
+/// The longest head of text [bytes].
+const LONGEST_HEAD: usize = 1 << 16;
+
+/// What turns coordinates to the left, the back and the top of a patient into those that all volumes have, as NIfTI: to
+/// the right, the front and the top.
+const LEFT_POSTERIOR: [f64; 3] = [-1.0, -1.0, 1.0];
 
 /// A format of files of volumes.
 #[derive(Clone, Copy, Debug)]
@@ -90,7 +99,8 @@ const SQUARE: f64 = 1e-3;
 /// Samples at the nodes of a lattice in space, as a scanner gives them.
 ///
 /// [`open`](Self::open) reads NRRD, MetaImage, NIfTI, NumPy and NanoVDB files, with the spacing, place and
-/// orientation of their heads, in metres.
+/// orientation of their heads, in metres. Where the head tells how a patient lies, x is to the right, y to the front and
+/// z to the top, whatever the format.
 ///
 /// ```
 /// use palpate_field::Vector;
@@ -101,7 +111,7 @@ const SQUARE: f64 = 1e-3;
 /// let mut file = head.as_bytes().to_vec();
 /// file.extend((0..27).map(|node| if node == 13 { 200 } else { 0 }));
 /// let volume = Volume::from_bytes(&file, std::path::Path::new("dot.nrrd"))?;
-/// assert_eq!(volume.counts, [3; 3]);
+/// assert_eq!(volume.counts(), [3; 3]);
 /// assert_eq!(volume.node([1, 1, 1]), Vector([0.002; 3])); // millimetres are made metres
 /// // Half of the dot's value lies a millimetre from it along each axis.
 /// let mesh = volume.surface(100.0)?;
@@ -111,37 +121,12 @@ const SQUARE: f64 = 1e-3;
 /// # }
 /// ```
 #[derive(Clone, Debug, PartialEq)]
-#[non_exhaustive]
 pub struct Volume {
-    /// How many nodes there are along each axis.
-    pub counts: [usize; 3],
-    /// The first node [m].
-    pub origin: Point<3>,
-    /// The way from a node to the next along each axis [m]; square to each other.
-    pub steps: [Vector<f64, 3>; 3],
-    /// The samples, the first axis first.
-    pub samples: Vec<f32>,
-    /// The side of a value that is inside: below in a level set of NanoVDB, else above. May be set.
-    ///
-    /// ```
-    /// use palpate_field::Vector;
-    /// use palpate_grid::{Inside, Volume};
-    ///
-    /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
-    /// // Distances [m] to a ball of 1.2 m about the middle node: |p - (2, 2, 2)| - 1.2.
-    /// let middle = Vector([2.0; 3]);
-    /// let node = |i: usize| Vector([(i % 5) as f64, (i / 5 % 5) as f64, (i / 25) as f64]);
-    /// let samples = (0..125).map(|i| ((node(i) - middle).norm() - 1.2) as f32).collect();
-    /// let steps = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].map(Vector);
-    /// let mut volume = Volume::new([5; 3], Vector([0.0; 3]), steps, samples)?;
-    /// volume.inside = Inside::Below;
-    /// let ball = volume.surface(0.0)?;
-    /// // So few nodes make less of it than 4/3 π 1.2³ m³, and more than the octahedron with its corners, 4/3 1.2³ m³.
-    /// assert!(ball.report().enclosed.is_some_and(|m3| (2.3..7.24).contains(&m3)));
-    /// # Ok(())
-    /// # }
-    /// ```
-    pub inside: Inside,
+    counts: [usize; 3],
+    origin: Point<3>,
+    steps: [Vector<f64, 3>; 3],
+    samples: Vec<f32>,
+    inside: Inside,
 }
 
 impl Volume {
@@ -173,9 +158,64 @@ impl Volume {
             }
         }
         if let Some(node) = samples.iter().position(|sample| !sample.is_finite()) {
-            return Err(VolumeProblem::NotFinite { node });
+            return Err(VolumeProblem::NotFinite { node: unravelled(node, counts) });
         }
         Ok(Self { counts, origin, steps, samples, inside: Inside::Above })
+    }
+
+    /// The same with another side of a value inside. Without it the samples above a value are inside, of a level set of
+    /// NanoVDB those below.
+    ///
+    /// ```
+    /// use palpate_field::Vector;
+    /// use palpate_grid::{Inside, Volume};
+    ///
+    /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+    /// // Distances [m] to a ball of 1.2 m about the middle node: |p - (2, 2, 2)| - 1.2.
+    /// let middle = Vector([2.0; 3]);
+    /// let node = |i: usize| Vector([(i % 5) as f64, (i / 5 % 5) as f64, (i / 25) as f64]);
+    /// let samples = (0..125).map(|i| ((node(i) - middle).norm() - 1.2) as f32).collect();
+    /// let steps = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].map(Vector);
+    /// let volume = Volume::new([5; 3], Vector([0.0; 3]), steps, samples)?.with_inside(Inside::Below);
+    /// let ball = volume.surface(0.0)?;
+    /// // So few nodes make less of it than 4/3 π 1.2³ m³, and more than the octahedron with its corners, 4/3 1.2³ m³.
+    /// assert!(ball.report().enclosed.is_some_and(|m3| (2.3..7.24).contains(&m3)));
+    /// # Ok(())
+    /// # }
+    /// ```
+    #[must_use]
+    pub fn with_inside(self, inside: Inside) -> Self {
+        Self { inside, ..self }
+    }
+
+    /// The side of a value that is inside.
+    #[must_use]
+    pub const fn inside(&self) -> Inside {
+        self.inside
+    }
+
+    /// How many nodes there are along each axis.
+    #[must_use]
+    pub const fn counts(&self) -> [usize; 3] {
+        self.counts
+    }
+
+    /// The place of the first node [m].
+    #[must_use]
+    pub const fn origin(&self) -> Point<3> {
+        self.origin
+    }
+
+    /// The way from a node to the next along each axis [m].
+    #[must_use]
+    pub const fn steps(&self) -> [Vector<f64, 3>; 3] {
+        self.steps
+    }
+
+    /// The samples, the first axis first.
+    #[must_use]
+    pub fn samples(&self) -> &[f32] {
+        &self.samples
     }
 
     /// A node's place [m].
@@ -210,15 +250,64 @@ impl Volume {
     /// `.nvdb`. A head that names a file of samples reads it from the same folder.
     ///
     /// A sparse grid of NanoVDB becomes samples over the box of its active voxels and one voxel around it; voxels that
-    /// are not active have the value that the file tells of them. Its units are metres.
+    /// are not active have the value that the file tells of them. Its units are metres. Of a file with several grids,
+    /// [`open_grid`](Self::open_grid) reads one.
     ///
     /// # Errors
     ///
-    /// If the file cannot be read, is larger than [`LARGEST_VOLUME`], is damaged, or is no volume.
+    /// If the file cannot be read, is larger than [`LARGEST_VOLUME`], is damaged, or is no volume, or has several.
     pub fn open(path: impl AsRef<Path>) -> Result<Self, VolumeError> {
         let path = path.as_ref();
         let read = || Self::from_bytes(&bytes(path)?, path);
         read().map_err(|problem| VolumeError { path: path.to_owned(), problem })
+    }
+
+    /// Reads the grid of this name, of a file of NanoVDB.
+    ///
+    /// ```
+    /// use palpate_grid::Volume;
+    ///
+    /// let error = Volume::open_grid("head.nii.gz", "density").unwrap_err();
+    /// assert!(error.to_string().contains("only a file of NanoVDB has grids with names"));
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// As of [`open`](Self::open); if the file is none of NanoVDB, or has no or several grids of this name.
+    pub fn open_grid(path: impl AsRef<Path>, name: &str) -> Result<Self, VolumeError> {
+        let path = path.as_ref();
+        let read = || match Format::of(&name_of(path)) {
+            Some(Format::NanoVdb) => nanovdb::read(&bytes(path)?, Some(name)),
+            _ => match Self::from_bytes(&[], path) {
+                Err(problem @ (VolumeProblem::OpenVdb | VolumeProblem::Ending { .. })) => {
+                    Err(problem)
+                }
+                _ => Err(VolumeProblem::NoGrids { name: name.to_owned() }),
+            },
+        };
+        read().map_err(|problem| VolumeError { path: path.to_owned(), problem })
+    }
+
+    /// The files that [`open`](Self::open) reads: the one named, and that of the samples if its head names one.
+    ///
+    /// # Errors
+    ///
+    /// If the file cannot be read.
+    pub fn files(path: impl AsRef<Path>) -> Result<Vec<PathBuf>, VolumeError> {
+        let path = path.as_ref();
+        let read = || -> Result<Vec<u8>, VolumeProblem> {
+            let mut head = Vec::new();
+            opened(path)?.take(LONGEST_HEAD as u64).read_to_end(&mut head)?;
+            Ok(head)
+        };
+        let head = read().map_err(|problem| VolumeError { path: path.to_owned(), problem })?;
+        let samples = match Format::of(&name_of(path)) {
+            Some(Format::Nrrd) => nrrd::samples_file(&head),
+            Some(Format::MetaImage) => meta::samples_file(&head),
+            _ => None,
+        };
+        let beside = samples.map(|name| path.with_file_name(name));
+        Ok(std::iter::once(path.to_owned()).chain(beside).collect())
     }
 
     /// Reads the bytes of a file; `path` tells the format, and where a file of samples lies.
@@ -234,19 +323,24 @@ impl Volume {
             Some(Format::MetaImage) => meta::read(bytes, folder),
             Some(Format::Nifti) => nifti::read(bytes),
             Some(Format::NumPy) => npy::read(bytes),
-            Some(Format::NanoVdb) => nanovdb::read(bytes),
+            Some(Format::NanoVdb) => nanovdb::read(bytes, None),
             None if name.ends_with(".vdb") => Err(VolumeProblem::OpenVdb),
             None => Err(VolumeProblem::Ending { name }),
         }
     }
 }
 
-/// The bytes of a file that is no pipe, and not too large.
-fn bytes(path: &Path) -> Result<Vec<u8>, VolumeProblem> {
+/// A file that is no pipe.
+fn opened(path: &Path) -> Result<File, VolumeProblem> {
     if !std::fs::metadata(path)?.is_file() {
         return Err(VolumeProblem::NoFile);
     }
-    let file = File::open(path)?;
+    Ok(File::open(path)?)
+}
+
+/// The bytes of a file that is not too large.
+fn bytes(path: &Path) -> Result<Vec<u8>, VolumeProblem> {
+    let file = opened(path)?;
     let length = file.metadata()?.len();
     if length > LARGEST_VOLUME {
         return Err(VolumeProblem::TooLarge { bytes: length });
@@ -264,5 +358,11 @@ fn beside(folder: &Path, name: &str) -> Result<Vec<u8>, VolumeProblem> {
     if !is_name {
         return Err(VolumeProblem::Elsewhere { name: name.to_owned() });
     }
-    bytes(&folder.join(name))
+    let path = folder.join(name);
+    // The folder of a file that is named alone is empty.
+    let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
+    if !path.canonicalize()?.starts_with(folder.canonicalize()?) {
+        return Err(VolumeProblem::Elsewhere { name: name.to_owned() });
+    }
+    bytes(&path)
 }

@@ -92,7 +92,7 @@ fn parsed(bytes: &[u8; HEAD]) -> Result<Head<'_>, VolumeProblem> {
 fn counts(head: &Head<'_>) -> Result<[usize; 3], VolumeProblem> {
     let dimension = head.short(40);
     // Further axes of one node are no axes.
-    let others = usize::try_from(dimension - 3).unwrap_or(0).min(4);
+    let others = usize::try_from(dimension.saturating_sub(3)).unwrap_or(0).min(4);
     let are_single = (0..others).all(|axis| head.short(48 + 2 * axis) <= 1);
     let counts = [42, 44, 46].map(|place| usize::try_from(head.short(place)).unwrap_or(0));
     if dimension < 3 || !are_single {

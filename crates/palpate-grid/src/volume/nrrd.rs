@@ -10,22 +10,42 @@ use std::path::Path;
 use palpate_field::Vector;
 
 use super::numbers::{Kind, Packing, Stored, list};
-use super::{Volume, VolumeProblem, beside};
+use super::{LEFT_POSTERIOR, LONGEST_HEAD, Volume, VolumeProblem, beside};
 
 const FORMAT: &str = "NRRD";
-
-/// The longest head [bytes].
-const LONGEST: usize = 1 << 16;
 
 fn wrong(problem: impl Into<String>) -> VolumeProblem {
     VolumeProblem::Malformed { format: FORMAT, problem: problem.into() }
 }
 
-pub(super) fn read(bytes: &[u8], folder: &Path) -> Result<Volume, VolumeProblem> {
+/// The fields of a head.
+struct Head<'a> {
+    fields: HashMap<String, &'a str>,
+    /// Where samples begin that are in the same file.
+    samples: usize,
+}
+
+impl Head<'_> {
+    fn field(&self, key: &str) -> Option<&str> {
+        self.fields.get(key).copied()
+    }
+
+    /// The file of the samples, if it is another.
+    fn samples_file(&self) -> Option<&str> {
+        self.field("data file").or_else(|| self.field("datafile"))
+    }
+}
+
+/// The file of the samples that a head names, if it is another.
+pub(super) fn samples_file(bytes: &[u8]) -> Option<String> {
+    head(bytes).ok()?.samples_file().map(str::to_owned)
+}
+
+fn head(bytes: &[u8]) -> Result<Head<'_>, VolumeProblem> {
     if !bytes.starts_with(b"NRRD") {
         return Err(wrong("it does not begin with NRRD"));
     }
-    let start = &bytes[..bytes.len().min(LONGEST)];
+    let start = &bytes[..bytes.len().min(LONGEST_HEAD)];
     let blank = start.windows(2).position(|pair| pair == b"\n\n").map(|at| (at, 2));
     let blank = blank
         .or_else(|| start.windows(4).position(|four| four == b"\r\n\r\n").map(|at| (at, 4)));
@@ -37,7 +57,12 @@ pub(super) fn read(bytes: &[u8], folder: &Path) -> Result<Volume, VolumeProblem>
             fields.insert(key.trim().to_ascii_lowercase(), value.trim());
         }
     }
-    let field = |key: &str| fields.get(key).copied();
+    Ok(Head { fields, samples: end + gap })
+}
+
+pub(super) fn read(bytes: &[u8], folder: &Path) -> Result<Volume, VolumeProblem> {
+    let head = head(bytes)?;
+    let field = |key: &str| head.field(key);
     let needed =
         |key: &'static str| field(key).ok_or_else(|| wrong(format!("its head lacks `{key}`")));
     let no = |key: &str, value: &str| wrong(format!("{key} {value:?} is not read"));
@@ -68,13 +93,16 @@ pub(super) fn read(bytes: &[u8], folder: &Path) -> Result<Volume, VolumeProblem>
         None if kind.bytes() == 1 => false,
         other => return Err(wrong(format!("endian {other:?} is neither little nor big"))),
     };
-    // Lengths are in millimetres unless the head says otherwise.
-    let unit = match field("space units").map(|units| units.replace(['"', ' '], "")) {
-        Some(units) if units.starts_with("mmm") || units == "mm" => 1e-3,
-        Some(units) if units.starts_with('m') => 1.0,
-        Some(units) if units.starts_with("um") || units.starts_with('µ') => 1e-6,
-        Some(units) if units.starts_with("cm") => 1e-2,
-        Some(units) => return Err(no("space units", &units)),
+    for key in ["line skip", "lineskip", "byte skip", "byteskip"] {
+        if let Some(skipped) = field(key).filter(|skipped| *skipped != "0") {
+            let problem =
+                format!("{key} {skipped:?} is not read; write the samples by themselves");
+            return Err(wrong(problem));
+        }
+    }
+    let unit = match field("space units").or_else(|| field("units")) {
+        Some(units) => unit(units).ok_or_else(|| no("space units", units))?,
+        // Lengths are in millimetres unless the head says otherwise.
         None => 1e-3,
     };
     let steps: [[f64; 3]; 3] = match (field("space directions"), field("spacings")) {
@@ -94,12 +122,35 @@ pub(super) fn read(bytes: &[u8], folder: &Path) -> Result<Volume, VolumeProblem>
     let count = counts.iter().try_fold(1_usize, |all, count| all.checked_mul(*count));
     let count = count.ok_or_else(|| wrong("it has too many samples"))?;
     let stored = Stored { format: FORMAT, kind, is_big, packing, count };
-    let samples = match field("data file").or_else(|| field("datafile")) {
+    let samples = match head.samples_file() {
         Some(name) => stored.read(&beside(folder, name)?)?,
-        None => stored.read(&bytes[end + gap..])?,
+        None => stored.read(&bytes[head.samples..])?,
     };
-    let metres = |v: [f64; 3]| Vector(v) * unit;
+    let signs = match field("space").map(str::to_ascii_lowercase).as_deref() {
+        Some("left-posterior-superior" | "lps") => LEFT_POSTERIOR,
+        Some("left-anterior-superior" | "las") => [-1.0, 1.0, 1.0],
+        _ => [1.0; 3],
+    };
+    let metres = |v: [f64; 3]| Vector(std::array::from_fn(|i| signs[i] * v[i])) * unit;
     Volume::new(counts, metres(origin), steps.map(metres), samples)
+}
+
+/// The length [m] that the units of all axes, each in quotes, say alike.
+fn unit(units: &str) -> Option<f64> {
+    let mut words = units.split(['"', ' ']).filter(|word| !word.is_empty());
+    let first = words.next()?;
+    let is_alike = words.all(|word| word == first);
+    let metres = match first {
+        "m" | "meter" | "metre" | "meters" | "metres" => 1.0,
+        "cm" | "centimeter" | "centimetre" | "centimeters" | "centimetres" => 1e-2,
+        "mm" | "millimeter" | "millimetre" | "millimeters" | "millimetres" => 1e-3,
+        // The micro sign and the Greek letter.
+        "um" | "\u{b5}m" | "\u{3bc}m" | "micron" | "microns" | "micrometer" | "micrometre" => {
+            1e-6
+        }
+        _ => return None,
+    };
+    is_alike.then_some(metres)
 }
 
 /// Three vectors in parentheses.

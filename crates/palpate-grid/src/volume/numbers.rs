@@ -12,6 +12,9 @@ use super::VolumeProblem;
 /// Deflate makes at most so many bytes of one.
 const MOST_INFLATED: usize = 1040;
 
+/// The most samples of a volume: a gigabyte in memory.
+pub(super) const MOST_SAMPLES: usize = 1 << 28;
+
 /// How a number is stored.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Kind {
@@ -64,6 +67,12 @@ impl Stored {
             .ok_or_else(|| wrong("it has too many samples".to_owned()))?;
         let short =
             |found: usize| wrong(format!("its samples take {length} bytes, it has {found}"));
+        if self.count > MOST_SAMPLES {
+            return Err(wrong(format!(
+                "it has {} samples, {MOST_SAMPLES} at most: cut it, or resample it coarser",
+                self.count
+            )));
+        }
         let unpacked = match self.packing {
             Packing::Raw => None,
             _ if length > bytes.len().saturating_mul(MOST_INFLATED) => {

@@ -4,27 +4,29 @@
 //! The surface where a volume has a value.
 
 use palpate_field::{Aabb, Bounds, CustomField, Point, Promise, Rounding, Shape, Vector};
-use palpate_mesh::{ContourOptions, TriangleMesh};
+use palpate_mesh::{ContourError, ContourOptions, TriangleMesh};
 
 use super::{Inside, Volume, VolumeProblem};
 use crate::lattice::raveled;
 
-/// What a volume has more than a value, interpolated linearly between its nodes, with the sign of distances:
-/// negative where samples are larger. Beyond its nodes there is nothing.
+/// The value less what a volume has at a place, interpolated linearly between its nodes: with the sign of distances,
+/// negative where samples are larger. A step beyond its nodes and farther it is the value less the least sample.
+///
+/// A place is a number of steps along each axis, so that nodes have whole numbers however the volume lies in space.
 #[derive(Debug)]
 struct Above {
-    volume: Volume,
+    counts: [usize; 3],
+    samples: Vec<f32>,
     value: f64,
-    /// What is outside: the value less the least sample.
+    /// The value less the least sample.
     outside: f64,
-    /// What takes a way [m] to steps along each axis.
-    inverse: [Vector<f64, 3>; 3],
     promise: Promise<3>,
 }
 
 impl Volume {
     /// The surface where the samples have a value, closed, around what is above it, or below it if that is
-    /// [`inside`](Self::inside). What the volume cuts off is closed half a step beyond its border.
+    /// [`inside`](Self::inside). What the volume cuts off is closed half a step beyond its border. No sample is passed
+    /// over, however large or turned the steps are.
     ///
     /// # Errors
     ///
@@ -34,66 +36,64 @@ impl Volume {
         if !(f64::from(least) < value && value < f64::from(largest)) {
             return Err(VolumeProblem::NoSurface { value, least, largest });
         }
-        let steps = self.steps.map(Vector::norm);
-        let cell = steps.into_iter().fold(f64::INFINITY, f64::min);
-        let mut volume = self.clone();
         let above = match self.inside {
-            Inside::Above => Above::new(volume, value, least.into()),
+            Inside::Above => Above::new(self.counts, self.samples.clone(), value, least.into()),
             // What is below a value is above it with the signs turned.
             Inside::Below => {
-                for sample in &mut volume.samples {
-                    *sample = -*sample;
-                }
-                Above::new(volume, -value, -f64::from(largest))
+                let samples = self.samples.iter().map(|sample| -*sample).collect();
+                Above::new(self.counts, samples, -value, -f64::from(largest))
             }
         };
-        // On the nodes of the volume, no sample is passed over.
-        let options = ContourOptions::with_cell(cell).with_node(self.origin);
-        Ok(TriangleMesh::of_shape(&Shape::custom(above), &options)?)
+        let options = ContourOptions::with_cell(1.0).with_node(Vector::ZERO);
+        let mesh = TriangleMesh::of_shape(&Shape::custom(above), &options).map_err(refused)?;
+        let [x, y, z] = self.steps;
+        let place = |at: &Point<3>| self.origin + x * at[0] + y * at[1] + z * at[2];
+        // Steps that are left-handed turn faces over.
+        let is_mirrored = x.cross(y).dot(z) < 0.0;
+        let face = |[a, b, c]: &[u32; 3]| if is_mirrored { [*a, *c, *b] } else { [*a, *b, *c] };
+        let (vertices, faces) = (mesh.vertices(), mesh.elements());
+        let placed = TriangleMesh::new(
+            vertices.iter().map(place).collect(),
+            faces.iter().map(face).collect(),
+        );
+        placed.map_err(|error| refused(error.into()))
+    }
+}
+
+/// Why there is no mesh, with what can be done about it.
+fn refused(error: ContourError) -> VolumeProblem {
+    match error {
+        ContourError::TooMany { limit, .. } => VolumeProblem::TooFine { limit },
+        error => VolumeProblem::Contour(error),
     }
 }
 
 impl Above {
-    fn new(volume: Volume, value: f64, least: f64) -> Self {
-        let inverse = volume.steps.map(|step| step * (1.0 / step.dot(step)));
-        let ends = (0..8_usize).map(|corner| {
-            (0..3).fold(volume.origin, |p, axis| {
-                let last = volume.counts[axis] as f64;
-                let index = if (corner >> axis) & 1 == 0 { -1.0 } else { last };
-                p + volume.steps[axis] * index
-            })
-        });
-        let aabb = Aabb::around(ends).unwrap_or(Aabb { min: Vector::ZERO, max: Vector::ZERO });
+    fn new(counts: [usize; 3], samples: Vec<f32>, value: f64, least: f64) -> Self {
+        let ends = [Vector([-1.0; 3]), Vector(counts.map(|count| count as f64))];
+        let aabb = Aabb { min: ends[0], max: ends[1] };
         let outside = value - least;
         // A derivative along an axis is at most the largest difference of neighbours.
         let mut steepest = [outside; 3];
-        for (number, sample) in volume.samples.iter().enumerate() {
+        for (number, sample) in samples.iter().enumerate() {
             let mut rest = number;
             let mut way = 1;
             for (axis, steepest) in steepest.iter_mut().enumerate() {
-                let index = rest % volume.counts[axis];
-                rest /= volume.counts[axis];
-                if index + 1 < volume.counts[axis] {
-                    let next = f64::from(volume.samples[number + way]);
-                    *steepest = steepest.max((next - f64::from(*sample)).abs());
-                } else {
-                    *steepest = steepest.max((f64::from(*sample) - least).abs());
-                }
+                let index = rest % counts[axis];
+                rest /= counts[axis];
+                let is_last = index + 1 == counts[axis];
+                let next = if is_last { least } else { f64::from(samples[number + way]) };
+                *steepest = steepest.max((next - f64::from(*sample)).abs());
                 if index == 0 {
                     *steepest = steepest.max((f64::from(*sample) - least).abs());
                 }
-                way *= volume.counts[axis];
+                way *= counts[axis];
             }
         }
-        let slope: Vector<f64, 3> =
-            Vector(std::array::from_fn(|axis| steepest[axis] / volume.steps[axis].norm()));
-        let promise =
-            Promise::lipschitz(Some(Bounds::of_box(aabb)), slope.norm() * (1.0 + 1e-9))
-                .with_rounding(Rounding::of_operations(
-                    64.0,
-                    slope.norm() * aabb.radius_about_origin(),
-                ));
-        Self { volume, value, outside, inverse, promise }
+        let slope = Vector(steepest).norm();
+        let rounding = Rounding::of_operations(64.0, slope * aabb.radius_about_origin());
+        let promise = Promise::lipschitz(Some(Bounds::of_box(aabb)), slope * (1.0 + 1e-9));
+        Self { counts, samples, value, outside, promise: promise.with_rounding(rounding) }
     }
 
     /// The field's value at a node, which may be beyond the border.
@@ -101,11 +101,11 @@ impl Above {
         let mut node = [0; 3];
         for (axis, node) in node.iter_mut().enumerate() {
             match usize::try_from(index[axis]) {
-                Ok(i) if i < self.volume.counts[axis] => *node = i,
+                Ok(i) if i < self.counts[axis] => *node = i,
                 _ => return self.outside,
             }
         }
-        self.value - f64::from(self.volume.samples[raveled(node, self.volume.counts)])
+        self.value - f64::from(self.samples[raveled(node, self.counts)])
     }
 }
 
@@ -117,15 +117,15 @@ impl CustomField<3> for Above {
     fn distance_gradient(&self, p: Point<3>) -> (f64, Vector<f64, 3>) {
         let (mut first, mut local) = ([0_i64; 3], [0.0; 3]);
         for axis in 0..3 {
-            let along = (p - self.volume.origin).dot(self.inverse[axis]);
-            let last = self.volume.counts[axis] as f64;
+            let along = p[axis];
+            let last = self.counts[axis] as f64;
             if !(-1.0..=last).contains(&along) {
                 return (self.outside, Vector::ZERO);
             }
             first[axis] = along.floor() as i64;
             local[axis] = along - along.floor();
         }
-        let (mut value, mut slopes) = (0.0, [0.0; 3]);
+        let (mut value, mut gradient) = (0.0, Vector::ZERO);
         for corner in 0..8_usize {
             let side: [usize; 3] = std::array::from_fn(|axis| (corner >> axis) & 1);
             let sample = self.at(std::array::from_fn(|axis| first[axis] + side[axis] as i64));
@@ -133,12 +133,10 @@ impl CustomField<3> for Above {
                 |axis: usize| if side[axis] == 1 { local[axis] } else { 1.0 - local[axis] };
             let sign = |axis: usize| if side[axis] == 1 { 1.0 } else { -1.0 };
             value += weight(0) * weight(1) * weight(2) * sample;
-            slopes[0] += sign(0) * weight(1) * weight(2) * sample;
-            slopes[1] += weight(0) * sign(1) * weight(2) * sample;
-            slopes[2] += weight(0) * weight(1) * sign(2) * sample;
+            gradient[0] += sign(0) * weight(1) * weight(2) * sample;
+            gradient[1] += weight(0) * sign(1) * weight(2) * sample;
+            gradient[2] += weight(0) * weight(1) * sign(2) * sample;
         }
-        let gradient =
-            (0..3).fold(Vector::ZERO, |sum, axis| sum + self.inverse[axis] * slopes[axis]);
         (value, gradient)
     }
 

@@ -431,7 +431,7 @@ fn data_files(scene: &AnyScene, file: Option<&Path>) -> Vec<DataFile> {
         AnyScene::Planar(scene) => &scene.meshes,
         AnyScene::Spatial(scene) => &scene.meshes,
     };
-    meshes.iter().map(|mesh| DataFile::of(folder.join(&mesh.file))).collect()
+    meshes.iter().flat_map(|mesh| mesh.files(folder)).map(DataFile::of).collect()
 }
 
 /// What changed from one scene to another.

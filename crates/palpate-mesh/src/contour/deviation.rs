@@ -128,12 +128,11 @@ impl<'a> Search<'a> {
             self.cells.fill(triangles.len(), |i| {
                 let [a, b, c] = triangles[i];
                 let (middle, u, v) = ((b + c) * 0.5, (b - a) * 0.5, (c - a) * 0.5);
-                Vector(std::array::from_fn(|k| Model {
-                    value: middle[k],
-                    gradient: [u[k], v[k], 0.0],
+                Vector(std::array::from_fn(|k| {
                     // The middle and the sides are rounded.
-                    lower: 4.0 * f64::EPSILON * middle[k].abs(),
-                    upper: 4.0 * f64::EPSILON * middle[k].abs(),
+                    let rounding = 4.0 * f64::EPSILON * (a[k].abs() + b[k].abs() + c[k].abs());
+                    let gradient = [u[k], v[k], 0.0];
+                    Model { value: middle[k], gradient, lower: rounding, upper: rounding }
                 }))
             });
             self.shape.block_distances(&self.cells, triangles.len(), &mut self.models);

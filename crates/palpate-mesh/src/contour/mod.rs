@@ -44,7 +44,7 @@ const MOST_MENDS: usize = 8;
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct ContourOptions {
-    /// The side of a cell [m]: parts thinner than it may be lost.
+    /// The side of a cell [m]: parts thinner than two may be lost or get holes.
     pub cell: f64,
     /// A node of the lattice of cells [m]; `None` leaves it beside round numbers, where faces of shapes often lie.
     pub node: Option<Point<3>>,

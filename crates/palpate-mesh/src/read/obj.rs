@@ -54,8 +54,10 @@ fn essence(text: &str) -> Result<String, ReadProblem> {
     while let Some((number, first)) = lines.next() {
         let mut whole = first.to_owned();
         // A backslash at the end joins a line to the next.
-        while let Some(joined) = whole.strip_suffix('\\').map(str::to_owned) {
-            whole = joined + " " + lines.next().map_or("", |(_, next)| next);
+        while whole.ends_with('\\') {
+            whole.pop();
+            whole.push(' ');
+            whole.push_str(lines.next().map_or("", |(_, next)| next));
         }
         let line = Line { text, number: number + 1 };
         let mut words = whole.split('#').next().unwrap_or_default().split_whitespace();

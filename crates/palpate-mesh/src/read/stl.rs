@@ -37,7 +37,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<TriangleMesh, ReadProblem> {
     Ok(TriangleMesh::new(vertices, triangles.to_vec())?.welded())
 }
 
-/// Refuses a binary file that is shorter than its count of triangles says.
+/// Refuses a binary file that is shorter than its count of triangles says, or has whole triangles beyond it.
 fn check_length(bytes: &[u8]) -> Result<(), ReadProblem> {
     match binary_length(bytes) {
         Some(length) if length > bytes.len() => {
@@ -46,6 +46,15 @@ fn check_length(bytes: &[u8]) -> Result<(), ReadProblem> {
             Err(Format::Stl.malformed(format_args!(
                 "byte {HEADER}: {triangles} triangles are counted, which take {length} bytes, and \
                  the file ends at byte {found}: it is cut off"
+            )))
+        }
+        Some(length)
+            if length < bytes.len() && (bytes.len() - length).is_multiple_of(TRIANGLE) =>
+        {
+            let triangles = (length - HEADER - COUNT) / TRIANGLE;
+            let more = (bytes.len() - length) / TRIANGLE;
+            Err(Format::Stl.malformed(format_args!(
+                "byte {HEADER}: {triangles} triangles are counted, and {more} more follow: export it again"
             )))
         }
         _ => Ok(()),

@@ -11,7 +11,8 @@ use palpate_field::{LARGEST_LENGTH, SMALLEST_LENGTH};
 pub enum SolidError {
     /// All faces were dropped.
     #[error(
-        "none of the {given} faces is left: each has a vertex twice, or is cancelled by its copy"
+        "none of the {given} faces is left: each has a vertex twice, is cancelled by its copy, or has the same side \
+         on both sides"
     )]
     NoFaces {
         /// The faces of the mesh.
@@ -25,15 +26,27 @@ pub enum SolidError {
         /// The longest side of the box around it, in its units.
         size: f64,
     },
+    /// The thickness of a sheet is too small or too large.
+    #[error(
+        "thickness must be from {SMALLEST_LENGTH:e} to {LARGEST_LENGTH:e} of its units, got {thickness:e}"
+    )]
+    Thickness {
+        /// The thickness, in the units of the mesh.
+        thickness: f64,
+    },
     /// A piece is not orientable.
-    #[error("{pieces} pieces are not orientable (like a Möbius strip) and bound no solid")]
+    #[error(
+        "pieces that are not orientable (like a Möbius strip): {pieces}; they bound no solid; with a thickness \
+         (\"thickness\": METRES in a scene, `Sheet` in Rust) it is a plate"
+    )]
     OneSided {
         /// The number of such pieces.
         pieces: usize,
     },
     /// The mesh is a sheet.
     #[error(
-        "the openings are as large as the surface: it is a sheet, and bounds no solid; with a thickness it is a plate"
+        "the openings are as large as the surface: it is a sheet, and bounds no solid; with a thickness \
+         (\"thickness\": METRES in a scene, `Sheet` in Rust) it is a plate"
     )]
     Sheet,
 }

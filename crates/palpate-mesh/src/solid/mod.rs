@@ -16,9 +16,7 @@ mod surface;
 mod walls;
 mod winding;
 
-use palpate_field::{
-    Aabb, LARGEST_LENGTH, Point, Promise, Quality, Rounding, SMALLEST_LENGTH, Vector,
-};
+use palpate_field::{Aabb, LARGEST_LENGTH, Point, Promise, Quality, SMALLEST_LENGTH, Vector};
 
 use crate::error::MeshError;
 use crate::mesh::Mesh;
@@ -319,8 +317,7 @@ fn promise<const N: usize, const D: usize>(
         .unwrap_or(Aabb { min: Vector::ZERO, max: Vector::ZERO });
     let bounds = palpate_field::Bounds::of_box(aabb);
     let size = bounds.radius_about_origin();
-    let mut promise = Promise::exact(Some(bounds), OPERATIONS, size)
-        .with_rounding(Rounding::of_operations(OPERATIONS, size));
+    let mut promise = Promise::exact(Some(bounds), OPERATIONS, size);
     (promise.outside, promise.inside) = (outside, inside);
     promise
 }

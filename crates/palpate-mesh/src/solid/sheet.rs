@@ -5,8 +5,8 @@
 
 use palpate_field::scalar::AffineModel;
 use palpate_field::{
-    Aabb, Bounds, CustomField, LARGEST_LENGTH, Point, Promise, Quality, Rounding,
-    SMALLEST_LENGTH, Shape, Vector,
+    Aabb, Bounds, CustomField, LARGEST_LENGTH, Point, Promise, Quality, SMALLEST_LENGTH, Shape,
+    Vector,
 };
 
 use super::field::content;
@@ -49,17 +49,16 @@ impl<const N: usize, const D: usize> Sheet<N, D> {
     ///
     /// # Errors
     ///
-    /// If the mesh has no faces, or it or the thickness is too small or too large.
+    /// If the mesh or the thickness is too small or too large.
     pub fn from_mesh(mesh: &Mesh<N, D>, thickness: f64) -> Result<Self, SolidError> {
-        if mesh.elements().is_empty() {
-            return Err(SolidError::NoFaces { given: 0 });
+        let lengths = SMALLEST_LENGTH..=LARGEST_LENGTH;
+        if !lengths.contains(&thickness) {
+            return Err(SolidError::Thickness { thickness });
         }
         let aabb = mesh.bounds().grown(0.5 * thickness);
         let size = aabb.half_extents().0.into_iter().fold(0.0, f64::max) * 2.0;
-        for size in [thickness, size] {
-            if !(SMALLEST_LENGTH..=LARGEST_LENGTH).contains(&size) {
-                return Err(SolidError::Size { size });
-            }
+        if !lengths.contains(&size) {
+            return Err(SolidError::Size { size });
         }
         let Ordered { faces, .. } = Ordered::of(mesh.vertices(), mesh.elements());
         let surface = Surface::new(&faces);
@@ -94,8 +93,7 @@ impl<const N: usize, const D: usize> Sheet<N, D> {
 fn promise<const D: usize>(aabb: Aabb<D>) -> Promise<D> {
     let bounds = Bounds::of_box(aabb);
     let size = bounds.radius_about_origin();
-    let mut promise = Promise::exact(Some(bounds), OPERATIONS, size)
-        .with_rounding(Rounding::of_operations(OPERATIONS, size));
+    let mut promise = Promise::exact(Some(bounds), OPERATIONS, size);
     promise.inside = Quality::Bound;
     promise
 }

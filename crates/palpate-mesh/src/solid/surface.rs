@@ -31,7 +31,8 @@ impl<const N: usize, const D: usize> Surface<N, D> {
         wide(Nearest { surface: self, p })
     }
 
-    /// A model of the distance to the nearest face over a cell that no face meets, from the face nearest to its centre, the distance there, and the unit vector away from the nearest point; `None` if too many faces may be nearest
+    /// A model of the distance to the nearest face over a cell that no face meets, from the face nearest to its centre,
+    /// the distance there, and the unit vector away from the nearest point; `None` if too many faces may be nearest
     /// somewhere in it.
     ///
     /// The distance to each face is convex. So it is at least its tangent plane, and the nearest face's is

@@ -24,7 +24,7 @@ use crate::tree::{BallTree, FAN};
 /// Error bounds of a group, tried in this order until the sign is certain; with 0 every element is summed.
 const ERRORS: [f64; 4] = [1e-2, 1e-3, 1e-4, 0.0];
 
-/// The rounding of the share of an element.
+/// The rounding of the share of a group, and of an element in units of how much its terms cancel.
 const ROUNDING: f64 = 64.0 * f64::EPSILON;
 
 /// A group of elements as seen from afar.
@@ -162,8 +162,9 @@ impl<const N: usize, const D: usize> Walk<'_, N, D> {
         if level == 0 {
             let end = self.elements.len().min(first + FAN);
             for corners in &self.elements[first..end] {
-                self.sum.number += share(corners, self.p);
-                self.sum.error += ROUNDING;
+                let Winding { number, error } = known_share(corners, self.p);
+                self.sum.number += number;
+                self.sum.error += error;
             }
             return;
         }
@@ -245,21 +246,34 @@ pub(crate) fn share<const N: usize, const D: usize>(
     corners: &[Point<D>; N],
     p: Point<D>,
 ) -> f64 {
+    known_share(corners, p).number
+}
+
+/// The share of one element with its rounding: near an edge, sine and cosine of the angle are what is left of terms
+/// as large as the product of the distances to the corners.
+fn known_share<const N: usize, const D: usize>(
+    corners: &[Point<D>; N],
+    p: Point<D>,
+) -> Winding {
     let a = corners[0] - p;
     let b = corners[1] - p;
     match (N, D) {
         (2, 2) => {
             let cross = a[0] * b[1] - a[1] * b[0];
-            cross.atan2(a.dot(b)) / TAU
+            Winding { number: cross.atan2(a.dot(b)) / TAU, error: ROUNDING }
         }
         (3, 3) => {
             let c = corners[2] - p;
             let (la, lb, lc) = (a.norm(), b.norm(), c.norm());
             let volume = a.in_space().dot(b.in_space().cross(c.in_space()));
-            let denominator = la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb;
-            volume.atan2(denominator) / TAU
+            let product = la * lb * lc;
+            let denominator = product + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb;
+            let left = (volume * volume + denominator * denominator).sqrt();
+            // The whole angle may be wrong on an edge itself.
+            let error = if left > ROUNDING * product { ROUNDING * product / left } else { 1.0 };
+            Winding { number: volume.atan2(denominator) / TAU, error }
         }
-        _ => 0.0,
+        _ => Winding::default(),
     }
 }
 
@@ -305,6 +319,24 @@ mod tests {
             let Winding { number, error: bound } = tree.at(&outline, p, 1e-2);
             assert!((number - exact).abs() <= bound, "{p:?}: {number}, {exact} ± {bound}");
         }
+    }
+
+    /// The rounding was taken for that of a face seen from afar, which is less than what is lost beside an edge.
+    #[test]
+    fn the_rounding_of_a_share_grows_towards_an_edge() {
+        let corners = [[0.0, 0.0, 0.0], [3.0, 0.0, 0.0], [1.0, 2.0, 0.0]].map(Vector);
+        for i in 0..40 {
+            let off = 0.5_f64.powi(i);
+            // Beside the middle of an edge, a face is seen under the angle of a half plane: off 45°, 3/8 of a turn
+            // of two, but for what is beyond its corners, which is a few times the distance.
+            let Winding { number, error } = known_share(&corners, Vector([1.5, off, off]));
+            assert!(
+                (number.abs() - 0.375).abs() < error + 2.0 * off,
+                "{off}: {number} {error}"
+            );
+            assert!(error < 1e3 * ROUNDING / off, "{off}: {error}");
+        }
+        assert_eq!(known_share(&corners, Vector([1.5, 0.0, 0.0])).error, 1.0);
     }
 
     #[test]

@@ -287,6 +287,10 @@ fn volume() -> Value {
                 "type": "string",
                 "minLength": 1,
             },
+            "grid": {
+                "description": "The name of a grid, of a NanoVDB file that has several.",
+                "type": "string",
+            },
             "value": {
                 "description": "The value at the surface, between the least and the largest sample.",
                 "type": "number",

@@ -129,6 +129,10 @@ fn a_surface_of_a_volume_is_a_solid() {
         (r#"{ "file": "dot.nrrd" }"#, "missing key `value`"),
         (r#"{ "file": "gone.nii", "value": 1 }"#, "gone.nii"),
         (
+            r#"{ "file": "dot.nrrd", "grid": "density", "value": 1 }"#,
+            "there is no grid \"density\" in it: only a file of NanoVDB has grids with names",
+        ),
+        (
             r#"{ "file": "../dot.nrrd", "value": 1 }"#,
             "a volume is a file in the scene's folder",
         ),

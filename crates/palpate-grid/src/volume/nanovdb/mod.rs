@@ -101,23 +101,24 @@ struct Entry<'a> {
     size: usize,
 }
 
-pub(super) fn read(bytes: &[u8]) -> Result<Volume, VolumeProblem> {
+/// The grid of a name, or the only one of a kind that is read.
+pub(super) fn read(bytes: &[u8], name: Option<&str>) -> Result<Volume, VolumeProblem> {
     if bytes.starts_with(&OPEN_VDB) {
         return Err(VolumeProblem::OpenVdb);
     }
     let bytes = Bytes(bytes);
     let is_old = match bytes.0.first_chunk() {
         Some(b"NanoVDB0") => true,
-        Some(b"NanoVDB1") => return only(&grids(bytes)?)?.volume(),
+        Some(b"NanoVDB1") => return chosen(&grids(bytes)?, name)?.volume(),
         Some(b"NanoVDB2") => false,
         _ => return Err(wrong("it does not begin with NanoVDB0, NanoVDB1 or NanoVDB2")),
     };
     // Segments and grids in memory once began alike; only a segment has its version here and in its first entry.
     let has_version = |place| bytes.u32(place).is_ok_and(|version| major(version) == MAJOR);
     if is_old && has_version(16) && !(has_version(8) && has_version(SEGMENT + ENTRY - 4)) {
-        return only(&grids(bytes)?)?.volume();
+        return chosen(&grids(bytes)?, name)?.volume();
     }
-    only(&segments(bytes)?)?.volume()
+    chosen(&segments(bytes)?, name)?.volume()
 }
 
 /// The grids of a file that holds them as memory does, one after the other.
@@ -199,43 +200,59 @@ fn known_version(version: u32) -> Result<(), VolumeProblem> {
     )))
 }
 
-/// The only grid of a kind that is read.
-fn only<'a, 'b>(entries: &'b [Entry<'a>]) -> Result<&'b Entry<'a>, VolumeProblem> {
-    let mut readable = entries.iter().filter(|entry| tree::Kind::of(entry.kind).is_ok());
-    match (readable.next(), readable.next(), entries) {
+/// The grid of this name, or else the only one of a kind that is read.
+fn chosen<'a, 'b>(
+    entries: &'b [Entry<'a>],
+    name: Option<&str>,
+) -> Result<&'b Entry<'a>, VolumeProblem> {
+    let is_meant = |entry: &&Entry<'_>| match name {
+        Some(name) => entry.name() == name,
+        None => tree::Kind::of(entry.kind).is_ok(),
+    };
+    let mut meant = entries.iter().filter(is_meant);
+    match (meant.next(), meant.next(), entries) {
         (Some(only), None, _) => Ok(only),
-        (None, _, [single]) => {
+        (None, _, [single]) if name.is_none() => {
             Err(tree::Kind::of(single.kind).err().unwrap_or_else(|| wrong("no grid")))
         }
-        (found, _, _) => {
-            let most = entries.len().min(NAMES);
-            let mut names: Vec<String> = entries[..most]
-                .iter()
-                .map(|entry| format!("{} ({})", entry.said(), tree::name(entry.kind)))
-                .collect();
-            if most < entries.len() {
-                names.push(format!("{} more", entries.len() - most));
-            }
-            let what = if found.is_some() {
-                "several grids that could be meant"
-            } else {
-                "no grid of numbers"
-            };
-            let names = names.join(", ");
-            Err(wrong(format!(
-                "it has {what}: {names}; write one of `float` to a file of its own, as with `nanovdb_convert --grid \
-                 NAME in.vdb out.nvdb`"
-            )))
-        }
+        (found, _, _) => Err(wrong(match (name, found) {
+            (None, None) => format!("none of its grids is one of numbers: {}", listed(entries)),
+            (None, Some(_)) => format!(
+                "it has several grids: {}; say which one, in a scene by \"grid\": \"NAME\" beside \"file\"",
+                listed(entries)
+            ),
+            (Some(name), None) => format!("it has no grid {name:?}, only {}", listed(entries)),
+            (Some(name), Some(_)) => format!(
+                "several of its grids have the name {name:?}: {}; write the one meant to a file of its own",
+                listed(entries)
+            ),
+        })),
     }
 }
 
+/// The grids of a file, as many as an error can list.
+fn listed(entries: &[Entry<'_>]) -> String {
+    let most = entries.len().min(NAMES);
+    let mut names: Vec<String> = entries[..most]
+        .iter()
+        .map(|entry| format!("{} ({})", entry.said(), tree::name(entry.kind)))
+        .collect();
+    if most < entries.len() {
+        names.push(format!("{} more", entries.len() - most));
+    }
+    names.join(", ")
+}
+
 impl Entry<'_> {
-    /// The name, which ends at a zero, in quotes and without what a terminal would obey.
-    fn said(&self) -> String {
+    /// The name, which ends at a zero.
+    fn name(&self) -> Cow<'_, str> {
         let name = self.name.split(|byte| *byte == 0).next().unwrap_or_default();
-        let name: String = String::from_utf8_lossy(name).chars().take(NAME).collect();
-        format!("{name:?}")
+        String::from_utf8_lossy(name)
+    }
+
+    /// The beginning of the name, in quotes and without what a terminal would obey.
+    fn said(&self) -> String {
+        format!("{:?}", self.name().chars().take(NAME).collect::<String>())
     }
 
     fn volume(&self) -> Result<Volume, VolumeProblem> {

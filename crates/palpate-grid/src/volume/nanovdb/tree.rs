@@ -4,8 +4,8 @@
 //! A grid of NanoVDB, a tree of cubes of voxels, as samples on a lattice.
 //!
 //! The root lists cubes of 4096³ voxels, which have 32³ cubes of 128³, which have 16³ of 8³: the leaves. A cube is
-//! one value or has children, and is active or not. Of its tree a grid tells how many nodes there are; none is
-//! reached twice, so a tree whose places are wrong ends.
+//! one value or has children, and is active or not. A grid tells how many nodes its tree has; more are refused, so
+//! that the walk of a tree whose places are wrong ends.
 
 use std::collections::HashSet;
 
@@ -199,11 +199,9 @@ pub(super) fn volume(bytes: Bytes<'_>, kind: Kind) -> Result<Volume, VolumeProbl
     for (step, first) in steps.iter().zip(first) {
         origin += *step * first as f64;
     }
-    let mut volume = Volume::new(dense.counts, origin, steps, dense.samples)?;
-    if bytes.u32(632)? == 1 {
-        volume.inside = Inside::Below;
-    }
-    Ok(volume)
+    let volume = Volume::new(dense.counts, origin, steps, dense.samples)?;
+    let is_level_set = bytes.u32(632)? == 1;
+    Ok(if is_level_set { volume.with_inside(Inside::Below) } else { volume })
 }
 
 impl<'a> Tree<'a> {
