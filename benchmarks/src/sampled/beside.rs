@@ -44,6 +44,10 @@ const ROUNDS: usize = 3;
 /// How far values may differ [m]: theirs in single precision.
 const SAME: f64 = 1e-5;
 
+/// The peer whose signs alone are compared: libigl multiplies distances by 1 − 2w with the winding number w, which is not
+/// exact, and two where a mesh overlaps itself.
+const SCALED: &str = "libigl_winding";
+
 #[derive(Serialize)]
 struct Question {
     vertices: Vec<[f64; 3]>,
@@ -58,7 +62,7 @@ struct Question {
 
 #[derive(Deserialize)]
 struct Answer {
-    /// By each peer, at each point [m].
+    /// By each peer that was there, at each point [m].
     distances: BTreeMap<String, Vec<f64>>,
     /// A point [ns].
     times: BTreeMap<String, f64>,
@@ -121,8 +125,9 @@ impl Beside<'_> {
         for (name, shape) in
             [("open3d", &ours), ("libigl", &ours), ("libigl_winding", &winding)]
         {
-            let theirs = answer.distances.get(name).ok_or("beside.py has left out a peer")?;
-            agree(name, shape, points, theirs)?;
+            if let Some(theirs) = answer.distances.get(name) {
+                agree(name, shape, points, theirs)?;
+            }
         }
         let count = points.len() as f64;
         let asked = |shape: &Shape<3>| {
@@ -154,7 +159,9 @@ impl Beside<'_> {
         for (key, name) in
             [("near.all", "open3d"), ("near.all", "libigl"), ("near.winding", "libigl_winding")]
         {
-            rows.insert(format!("mesh.{key}.{name}.ns"), answer.times[name]);
+            if let Some(time) = answer.times.get(name) {
+                rows.insert(format!("mesh.{key}.{name}.ns"), *time);
+            }
         }
         rows.insert("mesh.all_nodes.libigl.ns".to_owned(), answer.all_nodes);
         rows.insert("mesh.band.meshlib.ns".to_owned(), answer.band);
@@ -193,7 +200,7 @@ fn agree(
     let mut wrong = 0;
     for (p, their) in points.iter().zip(theirs) {
         let our = shape.distance(*p);
-        if (our.abs() - their.abs()).abs() > SAME {
+        if name != SCALED && (our.abs() - their.abs()).abs() > SAME {
             return Err(
                 format!("{name}'s distance is {their} m, ours {our} m, at {p:?}").into()
             );
