@@ -38,6 +38,10 @@ const MOST_REFINED: f64 = 4.0;
 /// Tries end when cells this many times as large fail.
 const MOST_APART: f64 = 1.5;
 
+/// A deviation of so much of a cell is not looked at more closely where the size of the cells is given: to halve it takes
+/// twice as long as all else.
+const ENOUGH: f64 = 0.25;
+
 /// How far a grid is made.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Progress {
@@ -529,7 +533,11 @@ impl<const D: usize> Bake<'_, D> {
             // None of the samples that these values take is clamped.
             Some(_) => (samples.band - (reach + worst) * (1.0 + 1e-9)).max(0.0),
         };
-        Cells { lattice, source: Some(self.source), within, reach, worst }
+        let enough = match self.options.resolution {
+            Resolution::Cell(_) => ENOUGH * cell,
+            Resolution::Tolerance(tolerance) => tolerance.min(ENOUGH * cell),
+        };
+        Cells { lattice, source: Some(self.source), within, reach, worst, enough }
     }
 }
 

@@ -53,12 +53,14 @@ pub(crate) struct Cells<'a, const D: usize> {
     pub(crate) reach: f64,
     /// A bound of the deviation that holds whatever the samples are [m].
     pub(crate) worst: f64,
+    /// No smaller deviation is looked for [m].
+    pub(crate) enough: f64,
 }
 
 impl<'a, const D: usize> Cells<'a, D> {
     /// The cells of samples that stand for themselves.
     pub(crate) fn without_source(lattice: &'a Lattice<D>) -> Self {
-        Self { lattice, source: None, within: 0.0, reach: 0.0, worst: 0.0 }
+        Self { lattice, source: None, within: 0.0, reach: 0.0, worst: 0.0, enough: 0.0 }
     }
 
     /// The certificate of a brick.

@@ -18,9 +18,6 @@ use crate::samples::{BRICK, Samples};
 use crate::spline::{OfTaps, Spline};
 use crate::threads::each;
 
-/// A cell is halved where its bound is more than this share of a cell.
-const COARSE: f64 = 0.05;
-
 /// Rounded operations on samples that a bound takes at most.
 const ROUNDED: f64 = 64.0;
 
@@ -115,8 +112,8 @@ impl<const D: usize> Cells<'_, D> {
 
     /// How far the interpolated values may be from the source's [m].
     ///
-    /// Cells are halved where their bound is largest, until none that can be halved has a larger bound than one that
-    /// cannot. A part's bound is at most that of what it is a half of: so the result does not depend on which is
+    /// Cells are halved where their bound is largest and more than [`enough`](Cells::enough), until none that can be
+    /// halved has a larger bound than one that cannot. A part's bound is at most that of what it is a half of: so the result does not depend on which is
     /// halved first. `step` is called for each brick with such cells.
     pub(crate) fn deviation<const K: usize>(
         &self,
@@ -178,7 +175,7 @@ impl<const D: usize> Cells<'_, D> {
             while parts.len() + (1 << D) <= BLOCK
                 && let Some(part) = waiting.pop()
             {
-                if part.bound > largest.max(COARSE * self.lattice.cell) {
+                if part.bound > largest.max(self.enough) {
                     parts.extend(part.halves());
                 } else {
                     largest = largest.max(part.bound);
