@@ -16,7 +16,7 @@
 
 use std::f64::consts::{PI, TAU};
 
-use palpate_field::{Point, Vector};
+use palpate_field::{Point, Vector, Wide, wide};
 
 use super::foot::across;
 use crate::tree::{BallTree, FAN};
@@ -59,7 +59,15 @@ impl Winding {
 #[derive(Clone, Debug)]
 pub(crate) struct WindingTree<const N: usize, const D: usize> {
     /// As [`Boxes`](super::boxes::Boxes): of eight elements each, of eight of those, and so on.
-    levels: Vec<Vec<Moments<D>>>,
+    levels: Vec<Level<D>>,
+}
+
+/// The groups of a level, by eights.
+#[derive(Clone, Debug)]
+struct Level<const D: usize> {
+    eights: Vec<Eight<D>>,
+    /// How many groups there are.
+    count: usize,
 }
 
 impl<const N: usize, const D: usize> WindingTree<N, D> {
@@ -68,10 +76,10 @@ impl<const N: usize, const D: usize> WindingTree<N, D> {
         let mut levels = Vec::new();
         let mut size = FAN;
         loop {
-            let level: Vec<_> = elements.chunks(size).map(Moments::of).collect();
-            let is_last = level.len() <= FAN;
-            levels.push(level);
-            if is_last {
+            let groups: Vec<_> = elements.chunks(size).map(Moments::of).collect();
+            let count = groups.len();
+            levels.push(Level { eights: groups.chunks(FAN).map(Eight::of).collect(), count });
+            if count <= FAN {
                 return Self { levels };
             }
             size *= FAN;
@@ -102,13 +110,7 @@ impl<const N: usize, const D: usize> WindingTree<N, D> {
 
     /// The winding number of a point, with an error of at most `error` from each group of elements.
     pub(crate) fn at(&self, elements: &[[Point<D>; N]], p: Point<D>, error: f64) -> Winding {
-        let top = self.levels.len() - 1;
-        let sum = Winding::default();
-        let mut walk = Walk { levels: &self.levels, elements, p, error, sum };
-        for node in 0..self.levels[top].len() {
-            walk.add(top, node);
-        }
-        walk.sum
+        wide(Sum { levels: &self.levels, elements, p, error })
     }
 }
 
@@ -138,39 +140,169 @@ impl<const N: usize, const D: usize> Groups<N, D> {
     }
 }
 
-/// A sum over the groups of a tree, as seen from a point.
-struct Walk<'a, const N: usize, const D: usize> {
-    levels: &'a [Vec<Moments<D>>],
+/// A sum over the groups of a tree, as seen from a point: of each group as a whole, if that is exact enough, else of its
+/// parts.
+struct Sum<'a, const N: usize, const D: usize> {
+    levels: &'a [Level<D>],
     elements: &'a [[Point<D>; N]],
     p: Point<D>,
     error: f64,
-    sum: Winding,
 }
 
-impl<const N: usize, const D: usize> Walk<'_, N, D> {
-    /// Adds a group: as a whole, if that is exact enough, else its parts.
-    fn add(&mut self, level: usize, node: usize) {
-        let group = &self.levels[level][node];
-        let towards = group.centroid - self.p;
-        let remainder = group.remainder(towards);
-        if remainder <= self.error {
-            self.sum.number += group.share(towards);
-            self.sum.error += remainder + ROUNDING;
-            return;
-        }
-        let first = node * FAN;
-        if level == 0 {
-            let end = self.elements.len().min(first + FAN);
-            for corners in &self.elements[first..end] {
-                let Winding { number, error } = known_share(corners, self.p);
-                self.sum.number += number;
-                self.sum.error += error;
+impl<const N: usize, const D: usize> Wide for Sum<'_, N, D> {
+    type Out = Winding;
+
+    #[inline(always)]
+    fn run(self) -> Winding {
+        let Self { levels, elements, p, error } = self;
+        let mut sum = Winding::default();
+        // Eights that are to be looked at, with their levels.
+        let mut waiting = [(0, 0); MOST_WAITING];
+        let mut count = 1;
+        waiting[0] = (levels.len() - 1, 0);
+        while count > 0 {
+            count -= 1;
+            let (level, eight) = waiting[count];
+            let Seen { shares, remainders } = levels[level].eights[eight].from(p);
+            let first = eight * FAN;
+            for lane in 0..FAN.min(levels[level].count - first) {
+                if remainders[lane] <= error {
+                    sum.number += shares[lane];
+                    sum.error += remainders[lane] + ROUNDING;
+                } else if level == 0 {
+                    let from = (first + lane) * FAN;
+                    let Winding { number, error } =
+                        of_elements(&elements[from..elements.len().min(from + FAN)], p);
+                    sum.number += number;
+                    sum.error += error;
+                } else {
+                    waiting[count] = (level - 1, first + lane);
+                    count += 1;
+                }
             }
-            return;
         }
-        for child in first..self.levels[level - 1].len().min(first + FAN) {
-            self.add(level - 1, child);
+        sum
+    }
+}
+
+/// Groups that wait at most: seven of each level, of which eleven hold all elements that 32 bits can number, and one.
+const MOST_WAITING: usize = 7 * 11 + 1;
+
+/// The winding number of at most eight elements: the unit complex numbers of their angles are multiplied, and whole
+/// turns of the product counted, so that one angle is taken.
+#[inline(always)]
+fn of_elements<const N: usize, const D: usize>(
+    elements: &[[Point<D>; N]],
+    p: Point<D>,
+) -> Winding {
+    let mut turned = [[1.0; FAN], [0.0; FAN], [0.0; FAN]];
+    for (lane, corners) in elements.iter().enumerate() {
+        let [cosine, sine, size] = angle(corners, p);
+        let left = (cosine * cosine + sine * sine).sqrt();
+        if left > ROUNDING * size {
+            turned[0][lane] = cosine / left;
+            turned[1][lane] = sine / left;
+            turned[2][lane] = ROUNDING * size / left;
+        } else {
+            // On an edge the angle may be any.
+            turned[2][lane] = 1.0;
         }
+    }
+    let [cosines, sines, errors] = turned;
+    let (mut turns, mut error) = (0.0, 0.0);
+    let [mut x, mut y] = [1.0, 0.0];
+    for lane in 0..FAN {
+        let (cosine, sine) = (cosines[lane], sines[lane]);
+        let are_up = [y, sine].map(f64::is_sign_positive);
+        [x, y] = [x * cosine - y * sine, x * sine + y * cosine];
+        // Two angles of the same half turn may go beyond its end.
+        if are_up[0] == are_up[1] && y.is_sign_positive() != are_up[0] {
+            turns += if are_up[0] { 1.0 } else { -1.0 };
+        }
+        error += errors[lane];
+    }
+    Winding { number: turns + y.atan2(x) / TAU, error }
+}
+
+/// Eight numbers of groups.
+type Lanes = [f64; FAN];
+
+/// The moments of eight groups side by side; those that are missing are empty.
+#[derive(Clone, Debug)]
+struct Eight<const D: usize> {
+    centroid: [Lanes; D],
+    radius: Lanes,
+    area: Lanes,
+    normals: [Lanes; D],
+    first: [[Lanes; D]; D],
+}
+
+/// What eight groups are as seen from a point.
+struct Seen {
+    shares: Lanes,
+    /// Bounds of the errors of the shares; infinite in a group's own ball.
+    remainders: Lanes,
+}
+
+impl<const D: usize> Eight<D> {
+    fn of(groups: &[Moments<D>]) -> Self {
+        let lanes = |number: &dyn Fn(&Moments<D>) -> f64| -> Lanes {
+            std::array::from_fn(|lane| groups.get(lane).map_or(0.0, number))
+        };
+        Self {
+            centroid: std::array::from_fn(|i| lanes(&|group| group.centroid[i])),
+            radius: lanes(&|group| group.radius),
+            area: lanes(&|group| group.area),
+            normals: std::array::from_fn(|i| lanes(&|group| group.normals[i])),
+            first: std::array::from_fn(|k| {
+                std::array::from_fn(|i| lanes(&|group| group.first[k][i]))
+            }),
+        }
+    }
+
+    /// The shares of the groups to terms of the second degree, and bounds of the rest.
+    #[inline(always)]
+    fn from(&self, p: Point<D>) -> Seen {
+        let mut seen = Seen { shares: [0.0; FAN], remainders: [0.0; FAN] };
+        // A loop without branches over numbers side by side: LLVM treats several lanes at once.
+        for lane in 0..FAN {
+            let mut towards = [0.0; D];
+            let mut squared = 0.0;
+            for i in 0..D {
+                towards[i] = self.centroid[i][lane] - p[i];
+                squared += towards[i] * towards[i];
+            }
+            let (mut flux, mut along) = (0.0, 0.0);
+            for k in 0..D {
+                flux += self.normals[k][lane] * towards[k] + self.first[k][k][lane];
+                let mut row = 0.0;
+                for i in 0..D {
+                    row += self.first[k][i][lane] * towards[i];
+                }
+                along += towards[k] * row;
+            }
+            let distance = squared.sqrt();
+            let rho = self.radius[lane] / distance;
+            let left = 1.0 - rho;
+            let area = self.area[lane];
+            let (share, remainder) = if D == 3 {
+                let sphere = 4.0 * PI * squared;
+                (
+                    (flux - 3.0 * along / squared) / (sphere * distance),
+                    area / sphere * rho * rho * (3.0 - 2.0 * rho) / (left * left),
+                )
+            } else {
+                (
+                    (flux - 2.0 * along / squared) / (TAU * squared),
+                    area / (TAU * distance) * rho * rho / left,
+                )
+            };
+            // Written so that NaN, at the centroid of a point, is not accepted.
+            let is_outside = rho < 1.0;
+            seen.shares[lane] = share;
+            seen.remainders[lane] = if is_outside { remainder } else { f64::INFINITY };
+        }
+        seen
     }
 }
 
@@ -205,39 +337,6 @@ impl<const D: usize> Moments<D> {
         let radius = far.fold(0.0, f64::max) * (1.0 + 8.0 * f64::EPSILON);
         Self { centroid, radius, area, normals, first }
     }
-
-    /// A bound on the error of [`share`](Self::share); infinite in the group's own ball.
-    fn remainder(&self, towards: Vector<f64, D>) -> f64 {
-        let squared = towards.dot(towards);
-        let distance = squared.sqrt();
-        let rho = self.radius / distance;
-        // Written so that NaN, at the centroid of a point, is not accepted.
-        if rho.is_nan() || rho >= 1.0 {
-            return f64::INFINITY;
-        }
-        let left = 1.0 - rho;
-        if D == 3 {
-            self.area / (4.0 * PI * squared) * rho * rho * (3.0 - 2.0 * rho) / (left * left)
-        } else {
-            self.area / (TAU * distance) * rho * rho / left
-        }
-    }
-
-    /// The share of the group, to terms of the second degree.
-    fn share(&self, towards: Vector<f64, D>) -> f64 {
-        let squared = towards.dot(towards);
-        let (mut trace, mut along) = (0.0, 0.0);
-        for (k, row) in self.first.iter().enumerate() {
-            trace += row[k];
-            along += towards[k] * row.dot(towards);
-        }
-        let flux = self.normals.dot(towards) + trace;
-        if D == 3 {
-            (flux - 3.0 * along / squared) / (4.0 * PI * squared * squared.sqrt())
-        } else {
-            (flux - 2.0 * along / squared) / (TAU * squared)
-        }
-    }
 }
 
 /// The share of one element: the angle under which a point sees it, in turns. Half a turn on the element
@@ -246,34 +345,30 @@ pub(crate) fn share<const N: usize, const D: usize>(
     corners: &[Point<D>; N],
     p: Point<D>,
 ) -> f64 {
-    known_share(corners, p).number
+    let [cosine, sine, _] = angle(corners, p);
+    sine.atan2(cosine) / TAU
 }
 
-/// The share of one element with its rounding: near an edge, sine and cosine of the angle are what is left of terms
-/// as large as the product of the distances to the corners.
-fn known_share<const N: usize, const D: usize>(
-    corners: &[Point<D>; N],
-    p: Point<D>,
-) -> Winding {
+/// The angle under which a point sees an element, half of the solid angle in space, as its cosine and sine times a
+/// length, and the size of the terms that these are sums of: beside an edge they cancel. No angle if the element is not
+/// one less in dimension than space.
+#[inline(always)]
+fn angle<const N: usize, const D: usize>(corners: &[Point<D>; N], p: Point<D>) -> [f64; 3] {
     let a = corners[0] - p;
     let b = corners[1] - p;
     match (N, D) {
         (2, 2) => {
-            let cross = a[0] * b[1] - a[1] * b[0];
-            Winding { number: cross.atan2(a.dot(b)) / TAU, error: ROUNDING }
+            let size = (a.dot(a) * b.dot(b)).sqrt();
+            [a.dot(b), a[0] * b[1] - a[1] * b[0], size]
         }
         (3, 3) => {
             let c = corners[2] - p;
             let (la, lb, lc) = (a.norm(), b.norm(), c.norm());
+            let size = la * lb * lc;
             let volume = a.in_space().dot(b.in_space().cross(c.in_space()));
-            let product = la * lb * lc;
-            let denominator = product + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb;
-            let left = (volume * volume + denominator * denominator).sqrt();
-            // The whole angle may be wrong on an edge itself.
-            let error = if left > ROUNDING * product { ROUNDING * product / left } else { 1.0 };
-            Winding { number: volume.atan2(denominator) / TAU, error }
+            [size + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb, volume, size]
         }
-        _ => Winding::default(),
+        _ => [1.0, 0.0, 1.0],
     }
 }
 
@@ -327,16 +422,31 @@ mod tests {
         let corners = [[0.0, 0.0, 0.0], [3.0, 0.0, 0.0], [1.0, 2.0, 0.0]].map(Vector);
         for i in 0..40 {
             let off = 0.5_f64.powi(i);
-            // Beside the middle of an edge, a face is seen under the angle of a half plane: off 45°, 3/8 of a turn
-            // of two, but for what is beyond its corners, which is a few times the distance.
-            let Winding { number, error } = known_share(&corners, Vector([1.5, off, off]));
+            // Beside the middle of an edge, a face is seen as a half plane that goes up at 135°, but for what is beyond
+            // its corners, which is a few times the distance: under 3/4 of half of all directions.
+            let Winding { number, error } = of_elements(&[corners], Vector([1.5, off, off]));
             assert!(
                 (number.abs() - 0.375).abs() < error + 2.0 * off,
                 "{off}: {number} {error}"
             );
             assert!(error < 1e3 * ROUNDING / off, "{off}: {error}");
         }
-        assert_eq!(known_share(&corners, Vector([1.5, 0.0, 0.0])).error, 1.0);
+        assert_eq!(of_elements(&[corners], Vector([1.5, 0.0, 0.0])).error, 1.0);
+    }
+
+    /// Angles in any order and of any sign, with sums of several turns.
+    #[test]
+    fn whole_turns_of_a_product_of_angles_are_counted() {
+        let ends = |turns: f64| Vector([(TAU * turns).cos(), (TAU * turns).sin()]);
+        for step in [0.07, 0.3, 0.4999, -0.2, -0.45] {
+            let around: Vec<[Point<2>; 2]> = (0..8)
+                .map(|i| [ends(step * f64::from(i)), ends(step * f64::from(i + 1))])
+                .collect();
+            let Winding { number, error } = of_elements(&around, Vector::ZERO);
+            assert!((number - 8.0 * step).abs() < error, "{step}: {number}");
+        }
+        let half = [ends(0.0), ends(0.5)].map(|end| Vector([end[0].round(), 0.0]));
+        assert_eq!(of_elements(&[half, half, half, half], Vector::ZERO).number, 2.0);
     }
 
     #[test]
