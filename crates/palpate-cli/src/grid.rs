@@ -93,6 +93,7 @@ fn report<const D: usize>(
             "kernel": grid.kernel().name(),
             "store": grid.store().name(),
             "deviation_m": deviation,
+            "deviation_of_values_up_to_m": promise.deviation.map(|deviation| deviation.within),
             "source_is_exact": is_exact,
             "lipschitz": promise.lipschitz,
             "promise": promise.in_words(),
@@ -111,9 +112,13 @@ fn report<const D: usize>(
     )?;
     match deviation {
         Some(deviation) => {
-            writeln!(out, "  values   off the scene's by at most {deviation:.3e} m, proven")?;
+            let within = promise.deviation.map_or(0.0, |deviation| deviation.within);
+            writeln!(
+                out,
+                "  values   up to {within:.3e} m in size: off the scene's by at most {deviation:.3e} m, proven"
+            )?;
             if is_exact {
-                writeln!(out, "  surface  within that of the scene's")?;
+                writeln!(out, "  surface  at most {deviation:.3e} m from the scene's")?;
             } else {
                 writeln!(
                     out,

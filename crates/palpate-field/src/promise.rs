@@ -244,10 +244,34 @@ impl<const D: usize> fmt::Display for Promise<D> {
             }
             None => f.write_str(", without bounds")?,
         }
-        match self.deviation.map(|deviation| deviation.of_surface()) {
+        match self.deviation {
             None => Ok(()),
-            Some(Some(value)) => write!(f, ", values off its source's by at most {value} m"),
-            Some(None) => f.write_str(", values off its source's by an unknown amount"),
+            Some(deviation) => write!(f, ", {deviation}"),
+        }
+    }
+}
+
+impl fmt::Display for Deviation {
+    /// ```
+    /// use palpate_field::Deviation;
+    ///
+    /// let deviation = Deviation { value: 1e-5, within: 2e-3 };
+    /// assert_eq!(
+    ///     deviation.to_string(),
+    ///     "values up to 2.00e-3 m in size off its source's by at most 1.00e-5 m",
+    /// );
+    /// ```
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.of_surface() {
+            None => f.write_str("values off its source's by an unknown amount"),
+            Some(value) if self.within.is_infinite() => {
+                write!(f, "values off its source's by at most {value:.2e} m")
+            }
+            Some(value) => write!(
+                f,
+                "values up to {:.2e} m in size off its source's by at most {value:.2e} m",
+                self.within
+            ),
         }
     }
 }
@@ -279,18 +303,9 @@ impl<const D: usize> Promise<D> {
             true => format!("{} inside", self.inside.word()),
             false => "no inside".to_owned(),
         };
-        match self.deviation.map(|deviation| deviation.of_surface()) {
+        match self.deviation {
             None => format!("{outside} outside, {inside}"),
-            Some(Some(value)) => {
-                format!(
-                    "{outside} outside, {inside}, values off its source's by at most {value:.2e} m"
-                )
-            }
-            Some(None) => {
-                format!(
-                    "{outside} outside, {inside}, values off its source's by an unknown amount"
-                )
-            }
+            Some(deviation) => format!("{outside} outside, {inside}, {deviation}"),
         }
     }
 

@@ -263,13 +263,19 @@ fn errors_of_text_name_their_line() {
         facet.replace("1 0 0\n   v", "1 x 0\n   v")
     );
     assert!(
-        wrong(two.as_bytes(), Format::Stl).starts_with("line 11: "),
+        wrong(two.as_bytes(), Format::Stl).starts_with("facet at line 11: "),
         "{}",
         wrong(two.as_bytes(), Format::Stl)
     );
     let cut = format!("solid a\n{facet}{}", &facet[..60]);
     let said = wrong(cut.as_bytes(), Format::Stl);
-    assert!(said.starts_with("line 9, the last: the file is cut off: "), "{said}");
+    assert!(said.starts_with("facet at line 9, the last: the file is cut off: "), "{said}");
+    // Capitals, and the mark of an editor, were taken for binary files that are cut off.
+    let one = format!("solid a\n{facet}{facet}endsolid a\n");
+    for text in [one.to_ascii_uppercase(), format!("\u{feff}{one}")] {
+        let mesh = read(text.as_bytes(), Format::Stl).unwrap();
+        assert_eq!(mesh.elements().len(), 2, "{text}");
+    }
     let ply = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n\
                element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 oops\n0 1 0\n3 0 1 2\n";
     let said = wrong(ply.as_bytes(), Format::Ply);

@@ -43,7 +43,7 @@ pub(super) fn write(out: &mut String, bodies: &[BakedBody]) -> std::fmt::Result 
         match grid {
             Ok(BakedGrid { cell, deviation, .. }) => writeln!(
                 out,
-                "  as a grid      {name}: cells of {} m, values off the mesh's by at most {} m; \
+                "  as a grid      {name}: cells of {} m, near the surface off the mesh's by at most {} m; \
                  --exact touches the mesh itself",
                 rounded(*cell),
                 rounded(*deviation),

@@ -270,7 +270,9 @@ fn report(
         };
         let by = match cell {
             Some(cell) => format!("with cells of {cell:.3e} m"),
-            None => format!("those of {}, mended", shown(&options.file.display().to_string())),
+            None => {
+                format!("as {} has them, mended", shown(&options.file.display().to_string()))
+            }
         };
         writeln!(
             out,

@@ -39,7 +39,7 @@ fn a_grid_is_made_and_used() {
       { "name": "baked", "shape": { "grid": { "file": "ball.grid" } } } ] }"#;
     let used = folder.write("used.json", used);
     let said = text(&palpate(&["check", &used]));
-    assert!(said.contains("values off its source's by at most"), "{said}");
+    assert!(said.contains("off its source's by at most"), "{said}");
     let at = json(&["eval", &used, "--at", "0,0.06,0", "--json"]);
     assert!((number(&at["distance_m"]) - 0.01).abs() <= 1e-3, "{at}");
     let felt = palpate(&["feel", &used, "--fast", "--duration", "1"]);

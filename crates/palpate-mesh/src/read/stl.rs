@@ -27,7 +27,8 @@ pub(super) fn read(bytes: &[u8]) -> Result<TriangleMesh, ReadProblem> {
         copy[..HEADER].fill(0);
         append(&copy, &mut vertices, |i| format!("byte {}", HEADER + COUNT + i * TRIANGLE))?;
     } else {
-        let text = String::from_utf8_lossy(bytes);
+        // Some programs write capitals, which stl_io does not read.
+        let text = String::from_utf8_lossy(without_mark(bytes)).to_ascii_lowercase();
         for solid in solids(&text) {
             append(solid.as_bytes(), &mut vertices, |i| line_of_facet(&text, i))?;
         }
@@ -54,14 +55,14 @@ fn check_length(bytes: &[u8]) -> Result<(), ReadProblem> {
             let triangles = (length - HEADER - COUNT) / TRIANGLE;
             let more = (bytes.len() - length) / TRIANGLE;
             Err(Format::Stl.malformed(format_args!(
-                "byte {HEADER}: {triangles} triangles are counted, and {more} more follow: export it again"
+                "byte {HEADER}: {triangles} triangles are counted, and {more} more follow"
             )))
         }
         _ => Ok(()),
     }
 }
 
-/// Where the `i`-th facet of a text is: "line 12", and that the text is cut off if it ends there.
+/// Where the `i`-th facet of a text begins: "facet at line 12", and that the text is cut off if it ends there.
 fn line_of_facet(text: &str, i: usize) -> String {
     let is_facet = |(_, line): &(usize, &str)| line.trim_start().starts_with("facet");
     let mut facets = text.lines().enumerate().filter(is_facet);
@@ -73,15 +74,16 @@ fn line_of_facet(text: &str, i: usize) -> String {
     };
     let is_cut = facets.next().is_none() && !text.contains("endsolid");
     let cut = if is_cut { ", the last: the file is cut off" } else { "" };
-    format!("line {}{cut}", line + 1)
+    format!("facet at line {}{cut}", line + 1)
 }
 
 /// `true` if a file has the length of a binary one, or begins as a text does and goes on with a
 /// facet.
 pub(super) fn is_likely(bytes: &[u8]) -> bool {
-    let mut words = bytes.split(u8::is_ascii_whitespace).filter(|word| !word.is_empty());
-    let is_text =
-        words.next() == Some(b"solid") && words.take(SOON).any(|word| word == b"facet");
+    let words = without_mark(bytes).split(u8::is_ascii_whitespace);
+    let mut words = words.filter(|word| !word.is_empty());
+    let is_text = words.next().is_some_and(|word| word.eq_ignore_ascii_case(b"solid"))
+        && words.take(SOON).any(|word| word.eq_ignore_ascii_case(b"facet"));
     is_text || bytes.len() > HEADER + COUNT && Some(bytes.len()) == binary_length(bytes)
 }
 
@@ -89,8 +91,15 @@ pub(super) fn is_likely(bytes: &[u8]) -> bool {
 const SOON: usize = 100;
 
 fn is_binary(bytes: &[u8]) -> bool {
-    let begins_as_text = bytes.trim_ascii_start().starts_with(b"solid");
+    let start = without_mark(bytes).trim_ascii_start();
+    let begins_as_text =
+        start.first_chunk::<5>().is_some_and(|word| word.eq_ignore_ascii_case(b"solid"));
     binary_length(bytes).is_some_and(|length| bytes.len() == length || !begins_as_text)
+}
+
+/// The bytes behind the mark with which some editors begin texts in UTF-8.
+fn without_mark(bytes: &[u8]) -> &[u8] {
+    bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes)
 }
 
 /// The length of a binary file with the count of triangles that `bytes` would give.

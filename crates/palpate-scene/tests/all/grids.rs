@@ -33,9 +33,7 @@ fn a_shape_is_baked_where_the_scene_says_so() {
         let deviation = scene.whole.promise().deviation.unwrap();
         assert!(deviation.value > 0.0 && deviation.value < 3e-3, "{how}: {deviation:?}");
         assert!((scene.whole.distance(Vector([0.0, 0.06, 0.0])) - 0.01).abs() < 3e-3);
-        assert!(
-            scene.whole.promise().in_words().contains("values off its source's by at most")
-        );
+        assert!(scene.whole.promise().in_words().contains("off its source's by at most"));
     }
     let plane = r#"{ "bake": { "tolerance": 1e-3 }, "of": { "half_space": { "normal": [0, 1, 0], "offset": 0 } } }"#;
     for (shape, expected) in [
