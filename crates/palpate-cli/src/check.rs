@@ -113,6 +113,10 @@ fn write_mesh(out: &mut impl Write, mesh: &BuiltMesh) -> io::Result<()> {
             counts.map(|count| count.to_string()).join(" × "),
             samples.steps.map(direction).join(", "),
         )?;
+        if samples.cut_off {
+            let cut = "their border cuts the body off: it is closed half a sample beyond";
+            writeln!(out, "    border   {cut}")?;
+        }
         if let Some(aabb) = bounds {
             let [min, max] = [aabb.min, aabb.max].map(|p| p.0.map(rounded).join(", "));
             writeln!(out, "    surface  from ({min}) to ({max}) m")?;
@@ -134,13 +138,14 @@ fn direction(step: Vector<f64, 3>) -> String {
     }
 }
 
-/// What to do if the size of a mesh is that of another unit. The head of a volume tells its own.
+/// What to do if the size of a mesh, or of a volume without a head that tells lengths, is that of another unit.
 pub(crate) fn unit_hint(mesh: &BuiltMesh) -> Option<String> {
     let aabb = mesh.shape.promise().bounds?.aabb;
     // A factor of one may have been left out.
     let scale = Some(mesh.scale).filter(|scale| (scale - 1.0).abs() > 0.0);
-    let is_mesh = mesh.samples.is_none();
-    is_mesh.then(|| hint(longest_edge(&aabb), "\"scale\":", scale)).flatten()
+    let is_without_unit =
+        mesh.samples.is_none() || mesh.file.to_ascii_lowercase().ends_with(".npy");
+    is_without_unit.then(|| hint(longest_edge(&aabb), "\"scale\":", scale)).flatten()
 }
 
 /// A mesh of the scene.
@@ -176,6 +181,7 @@ fn of_mesh(mesh: &BuiltMesh) -> Value {
         "samples": mesh.samples.map(|samples| json!({
             "counts": samples.counts,
             "range": samples.range,
+            "cut_off": samples.cut_off,
             "origin_m": samples.origin.0,
             "steps_m": samples.steps.map(|step| step.0),
         })),

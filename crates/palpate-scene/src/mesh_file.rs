@@ -60,14 +60,17 @@ pub struct Samples {
     pub steps: [Vector<f64, 3>; 3],
     /// The least and the largest.
     pub range: [f32; 2],
+    /// Whether their border cuts off what lies within the surface, which is then closed half a step beyond it.
+    pub cut_off: bool,
 }
 
 impl Samples {
-    /// The samples of a volume.
+    /// The samples of a volume, and what they are to the surface at a value.
     #[must_use]
-    pub fn of(volume: &Volume) -> Self {
+    pub fn of(volume: &Volume, value: f64) -> Self {
         let (counts, origin, steps) = (volume.counts(), volume.origin(), volume.steps());
-        Self { counts, origin, steps, range: volume.range() }
+        let (range, cut_off) = (volume.range(), volume.is_cut_off(value));
+        Self { counts, origin, steps, range, cut_off }
     }
 }
 
@@ -158,7 +161,7 @@ impl WrittenVolume {
             let volume = volume.with_inside(side);
             let surface = volume.surface(self.value);
             surface
-                .map(|mesh| (mesh, Some(Samples::of(&volume))))
+                .map(|mesh| (mesh, Some(Samples::of(&volume, self.value))))
                 .map_err(|problem| format!("{}: {problem}", path.display()))
         };
         let (file, scale) = (self.file.as_str(), self.scale);

@@ -246,6 +246,37 @@ impl Volume {
             })
     }
 
+    /// Whether the border of the samples cuts off what lies within the surface at a value: a sample there is inside.
+    ///
+    /// ```
+    /// use palpate_field::Vector;
+    /// use palpate_grid::Volume;
+    ///
+    /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+    /// let steps = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].map(Vector);
+    /// let with_one = |node: usize| {
+    ///     let samples = (0..27).map(|i| if i == node { 1.0 } else { 0.0 }).collect();
+    ///     Volume::new([3; 3], Vector([0.0; 3]), steps, samples)
+    /// };
+    /// assert!(!with_one(13)?.is_cut_off(0.5)); // the middle
+    /// assert!(with_one(14)?.is_cut_off(0.5)); // in a face of the lattice
+    /// # Ok(())
+    /// # }
+    /// ```
+    #[must_use]
+    pub fn is_cut_off(&self, value: f64) -> bool {
+        let is_inside = |sample: f32| match self.inside {
+            Inside::Above => f64::from(sample) > value,
+            Inside::Below => f64::from(sample) < value,
+        };
+        let is_at_border = |number: usize| {
+            let node = unravelled(number, self.counts);
+            (0..3).any(|axis| node[axis] == 0 || node[axis] + 1 == self.counts[axis])
+        };
+        let mut samples = self.samples.iter().enumerate();
+        samples.any(|(number, sample)| is_inside(*sample) && is_at_border(number))
+    }
+
     /// Reads a volume whose file name ends in `.nrrd`, `.nhdr`, `.mha`, `.mhd`, `.nii`, `.nii.gz`, `.npy` or
     /// `.nvdb`. A head that names a file of samples reads it from the same folder.
     ///
