@@ -8,9 +8,12 @@ use std::fs::{self, Metadata, OpenOptions};
 use std::io;
 use std::path::{Path, PathBuf};
 
+use palpate::grid::Volume;
 use same_file::Handle;
+use serde_json::Value;
 
 use super::{Destination, Target, beside, folder, shown};
+use crate::input;
 use crate::outcome::Failure;
 
 /// The files that a run reads and writes, all different by whatever name.
@@ -31,16 +34,47 @@ enum Identity {
     Absent(Handle, OsString),
 }
 
+/// The files of meshes, volumes and grids that a scene names, of the samples of volumes too. None of what is no scene:
+/// that is told where it is read.
+fn files_of_scene(path: &Path) -> Vec<PathBuf> {
+    // A pipe can be read once only.
+    let is_file = fs::metadata(path).is_ok_and(|found| found.is_file());
+    let text = if is_file { input::bytes(path).unwrap_or_default() } else { Vec::new() };
+    let (mut waiting, mut names) = (Vec::new(), Vec::new());
+    waiting.extend(serde_json::from_slice::<Value>(&text));
+    while let Some(value) = waiting.pop() {
+        match value {
+            Value::Object(entries) => {
+                names.extend(entries.get("file").and_then(Value::as_str).map(str::to_owned));
+                waiting.extend(entries.into_iter().map(|(_, value)| value));
+            }
+            Value::Array(elements) => waiting.extend(elements),
+            _ => {}
+        }
+    }
+    let folder = path.parent().unwrap_or(Path::new(""));
+    let named = names.into_iter().map(|name| folder.join(name));
+    named
+        .flat_map(|file| match Volume::is_named(&file) {
+            true => Volume::files(&file).unwrap_or_else(|_| vec![file]),
+            false => vec![file],
+        })
+        .collect()
+}
+
 impl Files {
-    /// A run that reads `inputs`.
+    /// A run that reads `inputs`, and what scenes among them name.
     pub(crate) fn reading<'a>(inputs: impl IntoIterator<Item = &'a Path>) -> Self {
         // A missing input is an error where it is read; a pipe cannot be overwritten.
-        let known = |path: &'a Path| {
-            let is_file = fs::metadata(path).is_ok_and(|metadata| metadata.is_file());
-            let handle = is_file.then(|| Handle::from_path(path).ok())??;
-            Some((path.to_owned(), Identity::Existing(handle)))
+        let known = |path: PathBuf| {
+            let is_file = fs::metadata(&path).is_ok_and(|metadata| metadata.is_file());
+            let handle = is_file.then(|| Handle::from_path(&path).ok())??;
+            Some((path, Identity::Existing(handle)))
         };
-        Self { inputs: inputs.into_iter().filter_map(known).collect(), outputs: Vec::new() }
+        let inputs = inputs
+            .into_iter()
+            .flat_map(|input| std::iter::once(input.to_owned()).chain(files_of_scene(input)));
+        Self { inputs: inputs.filter_map(known).collect(), outputs: Vec::new() }
     }
 
     /// As [`output`](Self::output), for a file whose name must end in `.expected`; a refusal

@@ -47,6 +47,46 @@ fn no_command_overwrites_its_input() {
     assert_eq!(left.len(), 4, "{left:?}");
 }
 
+/// Only the files that a command line names were spared: a grid or a mesh of a scene replaced the mesh that it reads.
+#[test]
+fn no_command_overwrites_what_its_scene_reads() {
+    let folder = Folder::new();
+    let mesh = folder.write("part.stl", "solid a\nendsolid a\n");
+    let samples = folder.write("scan.grid", "samples");
+    folder.write("scan.nhdr", "NRRD0004\ndimension: 3\ndata file: scan.grid\n\n");
+    let scene = folder.write(
+        "scene.json",
+        r#"{ "palpate": 1, "dimension": 3, "bodies": [
+            { "name": "part", "shape": { "union": [ { "mesh": { "file": "part.stl" } },
+              { "volume": { "file": "scan.nhdr", "value": 1 } } ] } } ] }"#,
+    );
+    let points = folder.write("points.csv", POINTS);
+    for command in [
+        &["mesh", &scene, "--output", &mesh][..],
+        &["grid", &scene, "--cell", "0.1", "--output", &samples],
+        &["eval", &scene, "--points", &points, "--output", &mesh],
+    ] {
+        let output = palpate(command);
+        assert_eq!(status(&output), 2, "{command:?}");
+    }
+    assert_eq!(fs::read_to_string(&samples).unwrap(), "samples");
+    assert_eq!(fs::read_to_string(&mesh).unwrap(), "solid a\nendsolid a\n");
+    let good = folder.write("part.stl", "solid a\n facet normal 0 0 1\n  outer loop\n   vertex 0 0 0\n   vertex 1 0 0\n   vertex 0 1 0\n  endloop\n endfacet\nendsolid a\n");
+    let plate = folder.write(
+        "plate.json",
+        r#"{ "palpate": 1, "dimension": 3, "bodies": [
+            { "name": "plate", "shape": { "mesh": { "file": "part.stl", "thickness": 0.01 } } } ] }"#,
+    );
+    for command in [
+        &["mesh", &plate, "--output", &good][..],
+        &["eval", &plate, "--points", &points, "--output", &good],
+    ] {
+        let output = palpate(command);
+        assert_eq!(status(&output), 2, "{command:?}");
+        assert!(errors(&output).contains("would overwrite the"), "{}", errors(&output));
+    }
+}
+
 /// The default name of a plot is made of the scene's.
 #[test]
 fn a_plot_without_a_name_does_not_overwrite_its_scene() {
