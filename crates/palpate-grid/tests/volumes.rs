@@ -196,6 +196,27 @@ fn units_of_a_head_are_whole_words() {
     }
 }
 
+/// The sum of a packed file was not compared, and what follows the samples was dropped.
+#[test]
+fn packed_samples_are_as_long_as_is_said_and_as_their_sum_says() {
+    let of = |bytes: &[u8], name: &str| {
+        Volume::from_bytes(bytes, Path::new(name)).map_err(|error| error.to_string())
+    };
+    let good = nrrd("gzip");
+    let mut bad = good.clone();
+    let last = bad.len() - 5;
+    bad[last] ^= 1;
+    assert!(of(&good, "a.nrrd").is_ok());
+    assert!(of(&bad, "a.nrrd").unwrap_err().contains("checksum"), "{:?}", of(&bad, "a.nrrd"));
+    assert!(of(&good[..good.len() - 6], "a.nrrd").is_err());
+    for kind in ["raw", "gzip"] {
+        let bytes = nrrd(kind);
+        let at = bytes.windows(8).position(|part| part == b"20 24 16").unwrap();
+        let fewer = [&bytes[..at], b"20 24 15", &bytes[at + 8..]].concat();
+        assert!(of(&fewer, "a.nrrd").unwrap_err().contains("and more follow"), "{kind}");
+    }
+}
+
 /// What lies before the samples was not looked at, and the samples were read from the wrong place.
 #[test]
 fn what_a_head_says_of_other_places_is_refused() {

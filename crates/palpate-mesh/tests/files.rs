@@ -276,6 +276,8 @@ fn errors_of_text_name_their_line() {
         let mesh = read(text.as_bytes(), Format::Stl).unwrap();
         assert_eq!(mesh.elements().len(), 2, "{text}");
     }
+    let marked = "\u{feff}v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+    assert_eq!(read(marked.as_bytes(), Format::Obj).unwrap().vertices().len(), 3);
     let ply = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n\
                element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 oops\n0 1 0\n3 0 1 2\n";
     let said = wrong(ply.as_bytes(), Format::Ply);

@@ -15,8 +15,8 @@ Examples:
   palpate grid scenes/cup.json --tolerance 1e-4 --output cup.grid
   palpate grid scenes/cup.json --cell 0.001 --band 5 --store i16 --output cup.grid --json
 
-A scene uses the file as { \"grid\": { \"file\": \"cup.grid\" } }. The deviation is certified: the
-values of the grid differ from the scene's by no more. Status 1 if it is not known.";
+A scene uses the file as { \"grid\": { \"file\": \"cup.grid\" } }. The deviation is certified:
+near the surface, as far as is printed, the values of the grid differ from the scene's by no more. Status 1 if it is not known.";
 
 /// The options of `palpate grid`.
 #[derive(Args, Debug)]

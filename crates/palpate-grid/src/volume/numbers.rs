@@ -83,6 +83,9 @@ impl Stored {
         };
         let unpacked = unpacked.transpose().map_err(|error| wrong(error.to_string()))?;
         let bytes = unpacked.as_deref().unwrap_or(bytes);
+        if bytes.len() > length {
+            return Err(wrong(format!("its samples take {length} bytes, and more follow")));
+        }
         let bytes = bytes.get(..length).ok_or_else(|| short(bytes.len()))?;
         Ok(self.numbers(bytes))
     }
@@ -118,10 +121,11 @@ impl Stored {
     }
 }
 
-/// At most `length` bytes of what is unpacked.
+/// What is unpacked, but at most one byte more than `length`: what goes on is another length than is said, and the sum at
+/// the end of what does not is compared.
 pub(super) fn inflated(from: impl Read, length: usize) -> std::io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
-    from.take(length as u64).read_to_end(&mut bytes)?;
+    from.take(length as u64 + 1).read_to_end(&mut bytes)?;
     Ok(bytes)
 }
 

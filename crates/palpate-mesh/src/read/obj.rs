@@ -18,7 +18,9 @@ use crate::mesh::TriangleMesh;
 pub(super) fn read(bytes: &[u8]) -> Result<TriangleMesh, ReadProblem> {
     let options = tobj::LoadOptions::default();
     let no_material = |_: &std::path::Path| Err(tobj::LoadError::GenericFailure);
-    let essence = essence(&String::from_utf8_lossy(bytes))?;
+    // The mark with which some editors begin a text would hide the first vertex.
+    let text = String::from_utf8_lossy(bytes);
+    let essence = essence(text.trim_start_matches('\u{feff}'))?;
     let (models, _) = tobj::load_obj_buf(&mut essence.as_bytes(), &options, no_material)
         .map_err(|error| Format::Obj.malformed(error))?;
     let Some(model) = models.into_iter().next() else {

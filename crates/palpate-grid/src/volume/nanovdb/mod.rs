@@ -301,6 +301,6 @@ impl Entry<'_> {
         }
         let bytes = inflated(ZlibDecoder::new(packed), self.size)
             .map_err(|error| wrong(error.to_string()))?;
-        if bytes.len() < self.size { Err(short(bytes.len())) } else { Ok(Cow::Owned(bytes)) }
+        if bytes.len() == self.size { Ok(Cow::Owned(bytes)) } else { Err(short(bytes.len())) }
     }
 }
