@@ -268,16 +268,16 @@ impl<const D: usize> Eight<D> {
         for lane in 0..FAN {
             let mut towards = [0.0; D];
             let mut squared = 0.0;
-            for i in 0..D {
-                towards[i] = self.centroid[i][lane] - p[i];
-                squared += towards[i] * towards[i];
+            for (i, towards) in towards.iter_mut().enumerate() {
+                *towards = self.centroid[i][lane] - p[i];
+                squared += *towards * *towards;
             }
             let (mut flux, mut along) = (0.0, 0.0);
             for k in 0..D {
                 flux += self.normals[k][lane] * towards[k] + self.first[k][k][lane];
                 let mut row = 0.0;
-                for i in 0..D {
-                    row += self.first[k][i][lane] * towards[i];
+                for (i, towards) in towards.iter().enumerate() {
+                    row += self.first[k][i][lane] * towards;
                 }
                 along += towards[k] * row;
             }
