@@ -233,6 +233,34 @@ fn what_a_head_says_of_other_places_is_refused() {
     assert!(error.contains("its samples are text"), "{error}");
 }
 
+/// The first node was at the origin whatever `axis mins` said, and unknown spaces were taken for a right-handed one.
+#[test]
+fn a_head_says_where_its_first_node_is() {
+    let of = |from: &str, to: &str| {
+        let bytes = nrrd("raw");
+        let head = String::from_utf8_lossy(&bytes[..bytes.len() - 2 * 20 * 24 * 16]);
+        let bytes = [head.replace(from, to).into_bytes(), little()].concat();
+        let volume = Volume::from_bytes(&bytes, Path::new("ball.nrrd"));
+        volume.map(|volume| volume.node([0; 3])).map_err(|error| error.to_string())
+    };
+    let mins = "axis mins: 10 20 30";
+    let origin = "space origin: (0,0,0)";
+    for (centers, millimetres) in [
+        ("", [10.5, 20.25, 31.0]),
+        ("\ncenters: cell cell cell", [10.5, 20.25, 31.0]),
+        ("\ncenters: node node cell", [10.0, 20.0, 31.0]),
+    ] {
+        let at = of(origin, &format!("{mins}{centers}")).unwrap();
+        assert!((at - Vector(millimetres) * 1e-3).norm() < 1e-15, "{centers}: {at:?}");
+    }
+    assert_eq!(of(origin, &format!("{mins}\n{origin}")), Ok(Vector::ZERO));
+    let space = "right-anterior-superior";
+    assert!(of(space, "3D-left-handed").unwrap_err().contains("space \"3D-left-handed\""));
+    let kinds = "domain domain domain";
+    assert!(of(kinds, "vector domain domain").unwrap_err().contains("kinds"));
+    assert!(of(origin, &format!("{origin}\n{origin}")).unwrap_err().contains("twice"));
+}
+
 /// The lattice of the surface lay along the axes of space: nodes of a volume that does not were passed over.
 #[test]
 fn no_sample_of_a_turned_volume_is_passed_over() {

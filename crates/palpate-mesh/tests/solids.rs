@@ -11,7 +11,7 @@ use palpate_mesh::{
     Findings, Mesh, Outline, Sheet, Solid, SolidError, TriangleMesh, read_file,
 };
 use palpate_testkit::soup::{Soup, points};
-use palpate_testkit::{hard, models};
+use palpate_testkit::{cases, hard, models};
 
 /// The mesh of triangles.
 fn mesh(soup: &Soup) -> TriangleMesh {
@@ -348,4 +348,112 @@ fn faces_without_an_inside_are_a_plate() {
     for thickness in [0.0, -1.0, f64::NAN, f64::INFINITY] {
         assert!(Sheet::from_mesh(&mesh(&soup), thickness).is_err());
     }
+}
+
+#[test]
+fn faces_that_are_all_doubled_are_a_surface_that_is_there_twice() {
+    let ball = Soup::ball([0.0; 3], 1.0, 12);
+    for other in [ball.clone(), ball.clone().inside_out()] {
+        let (shape, findings) = solid(&ball.clone().and(other));
+        assert_eq!(findings.duplicates, ball.faces.len(), "{findings}");
+        assert_eq!(shape.promise().inside, Quality::Exact);
+        agrees(&shape, &ball, &ball, 1.2);
+    }
+}
+
+/// A part that was mirrored has its inside outside; it was told to be a cavity of a part that it overlaps, and of 9 m³
+/// 7.02 were left.
+#[test]
+fn parts_inside_out_that_overlap_or_share_a_face_are_solids() {
+    let cube = Soup::cuboid([1.0; 3], [2.0; 3]);
+    let overlapping = Soup::cuboid([2.0, 1.0, 1.0], [2.0, 1.0, 1.0]);
+    let beside = Soup::cuboid([3.0, 1.0, 1.0], [2.0; 3]);
+    for other in [overlapping, beside] {
+        let truth = cube.clone().and(other.clone());
+        for parts in [
+            cube.clone().inside_out().and(other.clone()),
+            cube.clone().and(other.clone().inside_out()),
+            truth.clone().inside_out(),
+        ] {
+            let (shape, findings) = solid(&parts);
+            assert!(findings.openings.is_empty(), "{findings}");
+            for p in points(600, 4.0) {
+                assert_eq!(
+                    shape.distance(p) < 0.0,
+                    truth.winding(p) > 0.5,
+                    "{p:?}: {findings}"
+                );
+            }
+        }
+    }
+}
+
+/// Needles through one point all cross each other: the time grew with the square of their number.
+#[test]
+fn the_search_for_faces_that_meet_ends() {
+    let mut needles = Soup { vertices: Vec::new(), faces: Vec::new() };
+    for p in points(700, 1.0) {
+        let (one, two) =
+            (p.cross(Vector([0.3, 0.2, 0.9])) * 0.1, p.cross(Vector([0.9, 0.3, 0.2])) * 0.1);
+        let first = needles.vertices.len() as u32;
+        needles.vertices.extend([p, one - p, two - p, -(one + two) - p]);
+        let faces = [[0, 1, 2], [0, 2, 3], [0, 3, 1], [1, 3, 2]];
+        needles.faces.extend(faces.map(|face| face.map(|i| first + i)));
+    }
+    let (_, findings) = solid(&needles);
+    assert!(findings.are_more, "{findings}");
+    assert_eq!(findings.crossings + findings.touching, 1_000_000);
+    assert!(findings.to_string().contains("after these no more pairs were sought"));
+}
+
+/// Random boxes on a lattice, some inside out, that overlap, touch, share faces, edges and corners. Those inside out
+/// neither lie in others or hold them, as cavities do, nor share a whole face with one.
+#[test]
+fn unions_of_boxes_are_what_is_in_one_of_them() {
+    cases::check(300, |u| {
+        let mut boxes: Vec<[[f64; 3]; 2]> = Vec::new();
+        for _ in 0..u.int_in_range(2..=3)? {
+            let mut ends = [[0.0; 3]; 2];
+            for k in 0..3 {
+                let low = u.int_in_range(0..=3_u8)?;
+                ends[0][k] = f64::from(low);
+                ends[1][k] = f64::from(low + u.int_in_range(1..=3_u8)?);
+            }
+            boxes.push(ends);
+        }
+        let lies_in = |a: &[[f64; 3]; 2], b: &[[f64; 3]; 2]| {
+            (0..3).all(|k| b[0][k] <= a[0][k] && a[1][k] <= b[1][k])
+        };
+        let share_a_face = |a: &[[f64; 3]; 2], b: &[[f64; 3]; 2]| {
+            let is_same = |k: usize| a[0][k] == b[0][k] && a[1][k] == b[1][k];
+            (0..3).filter(|k| is_same(*k)).count() >= 2
+        };
+        let mut soup: Option<Soup> = None;
+        for (i, [low, high]) in boxes.iter().enumerate() {
+            let [middle, size] = [
+                [0, 1, 2].map(|k| 0.5 * (low[k] + high[k])),
+                [0, 1, 2].map(|k| high[k] - low[k]),
+            ];
+            let mut part = Soup::cuboid(middle, size);
+            let is_alone = boxes.iter().enumerate().all(|(k, other)| {
+                let own = &boxes[i];
+                k == i
+                    || !lies_in(own, other) && !lies_in(other, own) && !share_a_face(own, other)
+            });
+            if is_alone && u.arbitrary()? {
+                part = part.inside_out();
+            }
+            soup = Some(soup.map_or(part.clone(), |all| all.and(part)));
+        }
+        let (shape, findings) = solid(&soup.expect("boxes"));
+        for p in points(100, 3.5).map(|p| p + Vector([3.0; 3])) {
+            let is_inside =
+                boxes.iter().any(|b| (0..3).all(|k| b[0][k] < p[k] && p[k] < b[1][k]));
+            let value = shape.distance(p);
+            if (value < 0.0) != is_inside {
+                return Ok(Err(format!("{value} at {p:?} of {boxes:?}: {findings}")));
+            }
+        }
+        Ok(Ok(()))
+    });
 }

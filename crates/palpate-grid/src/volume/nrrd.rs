@@ -54,7 +54,10 @@ fn head(bytes: &[u8]) -> Result<Head<'_>, VolumeProblem> {
     let mut fields = HashMap::new();
     for line in head.lines().skip(1).filter(|line| !line.starts_with('#')) {
         if let Some((key, value)) = line.split_once(": ") {
-            fields.insert(key.trim().to_ascii_lowercase(), value.trim());
+            let key = key.trim().to_ascii_lowercase();
+            if fields.insert(key.clone(), value.trim()).is_some() {
+                return Err(wrong(format!("its head has `{key}` twice")));
+            }
         }
     }
     Ok(Head { fields, samples: end + gap })
@@ -113,11 +116,16 @@ pub(super) fn read(bytes: &[u8], folder: &Path) -> Result<Volume, VolumeProblem>
         }
         (None, None) => return Err(wrong("its head lacks `space directions` and `spacings`")),
     };
-    let origin = match field("space origin") {
-        None => [0.0; 3],
-        Some(text) => {
+    let origin = match (field("space origin"), field("axis mins").or_else(|| field("axismins")))
+    {
+        (Some(text), _) => {
             list(text.trim_matches(['(', ')'])).ok_or_else(|| no("space origin", text))?
         }
+        (None, Some(text)) => {
+            let least = list(text).ok_or_else(|| no("axis mins", text))?;
+            first_nodes(least, &steps, field("centers").or_else(|| field("centerings")))
+        }
+        (None, None) => [0.0; 3],
     };
     let count = counts.iter().try_fold(1_usize, |all, count| all.checked_mul(*count));
     let count = count.ok_or_else(|| wrong("it has too many samples"))?;
@@ -126,13 +134,34 @@ pub(super) fn read(bytes: &[u8], folder: &Path) -> Result<Volume, VolumeProblem>
         Some(name) => stored.read(&beside(folder, name)?)?,
         None => stored.read(&bytes[head.samples..])?,
     };
+    if let Some(kinds) = field("kinds")
+        && kinds.split_whitespace().any(|kind| !["domain", "space", "???"].contains(&kind))
+    {
+        return Err(wrong(format!(
+            "kinds {kinds:?} are not read: all three axes are of space"
+        )));
+    }
     let signs = match field("space").map(str::to_ascii_lowercase).as_deref() {
         Some("left-posterior-superior" | "lps") => LEFT_POSTERIOR,
         Some("left-anterior-superior" | "las") => [-1.0, 1.0, 1.0],
-        _ => [1.0; 3],
+        None
+        | Some(
+            "right-anterior-superior" | "ras" | "3d-right-handed" | "3drh" | "scanner-xyz",
+        ) => [1.0; 3],
+        Some(_) => return Err(no("space", field("space").unwrap_or_default())),
     };
     let metres = |v: [f64; 3]| Vector(std::array::from_fn(|i| signs[i] * v[i])) * unit;
     Volume::new(counts, metres(origin), steps.map(metres), samples)
+}
+
+/// Where the first node is, from the least coordinates along the axes: half a step from them, where samples are of
+/// cells, as they are unless the head says that they are of nodes.
+fn first_nodes(least: [f64; 3], steps: &[[f64; 3]; 3], centres: Option<&str>) -> [f64; 3] {
+    let mut of_axis = centres.unwrap_or_default().split_whitespace();
+    std::array::from_fn(|i| {
+        let share = if of_axis.next() == Some("node") { 0.0 } else { 0.5 };
+        least[i] + share * steps[i][i]
+    })
 }
 
 /// The length [m] that the units of all axes, each in quotes, say alike.

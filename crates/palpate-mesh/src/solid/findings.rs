@@ -46,6 +46,8 @@ pub struct Findings<const D: usize> {
     pub crossings: usize,
     /// Pairs of faces that touch without a common corner, or lie on each other.
     pub touching: usize,
+    /// Whether more pairs cross or touch than were counted: the search stops after a million.
+    pub are_more: bool,
     /// Where the first faces that cross are [m]; if none do, the first that touch.
     pub crossing_at: Option<Point<D>>,
 }
@@ -150,6 +152,9 @@ impl<const D: usize> fmt::Display for Findings<D> {
             "pair of faces touches without a common corner",
             "pairs of faces touch without a common corner",
         );
+        if self.are_more {
+            found.push("after these no more pairs were sought".to_owned());
+        }
         let largest = self.openings.iter().max_by(|a, b| a.size.total_cmp(&b.size));
         if let Some(Opening { size, place, doubtful, .. }) = largest {
             let (count, at) = (self.openings.len(), place_in_words(*place));

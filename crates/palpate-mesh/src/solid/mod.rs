@@ -108,7 +108,7 @@ impl<const N: usize, const D: usize> Solid<N, D> {
         let (crossings, walls, tree) = examine(&repair, &all);
         let Repair { mut vertices, mut elements, mut findings, caps, .. } = repair;
         (findings.crossings, findings.touching) = (crossings.crossings, crossings.touching);
-        findings.crossing_at = crossings.at;
+        (findings.crossing_at, findings.are_more) = (crossings.at, crossings.are_more);
         let mut is_wall = vec![false; elements.len()];
         for (i, wall) in all.order.iter().zip(&walls.is_wall) {
             is_wall[*i as usize] = *wall;

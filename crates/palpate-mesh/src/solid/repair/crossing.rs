@@ -3,7 +3,8 @@
 
 //! Faces that cross or touch each other elsewhere than at common corners, by exact predicates (Shewchuk 1997).
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeSet, HashSet};
+use std::ops::ControlFlow;
 
 use palpate_field::{Aabb, Point, Vector};
 use robust::{Coord, Coord3D, orient2d, orient3d};
@@ -36,9 +37,15 @@ pub(in crate::solid) struct Crossings<const D: usize> {
     pub(in crate::solid) touching: usize,
     /// Where the first pair that crosses is, or if none does, the first that touches [m].
     pub(in crate::solid) at: Option<Point<D>>,
-    /// Of each element, whether it crosses or touches another.
+    /// Of each element, whether it crosses or touches another; of all, if the search stopped.
     pub(in crate::solid) is_met: Vec<bool>,
+    /// Whether more than [`MOST_PAIRS`] meet, and the search stopped there.
+    pub(in crate::solid) are_more: bool,
 }
+
+/// After so many pairs that meet, no more are sought: copies of a part that lie in each other meet in as many pairs
+/// as the square of their faces.
+const MOST_PAIRS: usize = 1_000_000;
 
 /// The corners of an element in the order of the boxes, with their names, and what separates it from most others.
 #[derive(Clone, Copy)]
@@ -79,9 +86,9 @@ impl<const D: usize> Crossings<D> {
         // The lowest element that crosses another, and that touches one.
         let mut first = [None::<usize>; 2];
         let search = Search { vertices, elements, boxes, are_apart: &known.are_apart };
-        search.each_meeting(|[i, k], meeting| {
+        let searched = search.each_meeting(|[i, k], meeting| {
             let kind = match meeting {
-                Meeting::Apart => return,
+                Meeting::Apart => return ControlFlow::Continue(()),
                 Meeting::Touching => {
                     found.touching += 1;
                     1
@@ -94,7 +101,13 @@ impl<const D: usize> Crossings<D> {
             found.only_solids &= (known.are_solids)(i, k);
             (found.is_met[i], found.is_met[k]) = (true, true);
             first[kind] = Some(first[kind].map_or(i, |lowest| lowest.min(i)));
+            continue_if(found.crossings + found.touching < MOST_PAIRS)
         });
+        if searched.is_break() {
+            found.are_more = true;
+            found.only_solids = false;
+            found.is_met.fill(true);
+        }
         found.at = first[0].or(first[1]).map(|i| search.element(elements[i]).middle());
         found
     }
@@ -104,32 +117,81 @@ impl<const D: usize> Crossings<D> {
 pub(crate) fn crossing_faces<const N: usize, const D: usize>(
     mesh: &Mesh<N, D>,
 ) -> BTreeSet<usize> {
-    let order = mesh.tree().order();
-    let ordered: Vec<_> = order.iter().map(|face| mesh.elements()[*face as usize]).collect();
-    let corners = |element: &[u32; N]| element.map(|index| mesh.vertices()[index as usize]);
-    let boxes = Boxes::new(&ordered.iter().map(corners).collect::<Vec<_>>());
     let mut found = BTreeSet::new();
-    let (vertices, elements) = (mesh.vertices(), &ordered);
-    let search = Search { vertices, elements, boxes: &boxes, are_apart: |_, _| false };
-    search.each_meeting(|pair, meeting| {
-        if meeting != Meeting::Apart {
-            found.extend(pair.map(|face| order[face] as usize));
-        }
+    let _ = each_meeting(mesh.vertices(), mesh.elements(), |pair, _| {
+        found.extend(pair);
+        ControlFlow::Continue(())
     });
     found
 }
 
 /// Whether any two segments of the plane meet elsewhere than at common ends.
 pub(super) fn meet_in_the_plane(vertices: &[Point<2>], segments: &[[u32; 2]]) -> bool {
-    let tree = BallTree::new(vertices, segments);
-    let elements: Vec<_> = tree.order().iter().map(|i| segments[*i as usize]).collect();
-    let corners = |segment: &[u32; 2]| segment.map(|index| vertices[index as usize]);
-    let boxes = Boxes::new(&elements.iter().map(corners).collect::<Vec<_>>());
-    let mut meet = false;
+    each_meeting(vertices, segments, |_, _| ControlFlow::Break(())).is_break()
+}
+
+/// How the pieces of a mesh meet.
+#[derive(Debug, Default)]
+pub(super) struct PiecesThatMeet {
+    /// The pairs of pieces that cross, the lower first.
+    crossing: HashSet<[usize; 2]>,
+    /// Of each element, whether it crosses or touches another.
+    is_met: Vec<bool>,
+}
+
+impl PiecesThatMeet {
+    /// Of each element the number of its piece is known. Of pairs that meet, so many as [`MOST_PAIRS`] are found.
+    pub(super) fn of<const N: usize, const D: usize>(
+        vertices: &[Point<D>],
+        elements: &[[u32; N]],
+        of_piece: &[usize],
+    ) -> Self {
+        let mut found = Self { is_met: vec![false; elements.len()], ..Self::default() };
+        let mut pairs = 0;
+        let _ = each_meeting(vertices, elements, |[i, k], meeting| {
+            (found.is_met[i], found.is_met[k]) = (true, true);
+            let [a, b] = [of_piece[i], of_piece[k]];
+            if meeting == Meeting::Crossing && a != b {
+                found.crossing.insert([a.min(b), a.max(b)]);
+            }
+            pairs += 1;
+            continue_if(pairs < MOST_PAIRS)
+        });
+        found
+    }
+
+    /// Whether two pieces cross.
+    pub(super) fn cross(&self, a: usize, b: usize) -> bool {
+        self.crossing.contains(&[a.min(b), a.max(b)])
+    }
+
+    /// Whether an element is known to cross or touch another.
+    pub(super) fn is_met(&self, element: usize) -> bool {
+        self.is_met.get(element) == Some(&true)
+    }
+}
+
+/// Calls `visit` with the pairs of elements that cross or touch, and how, until it breaks.
+fn each_meeting<const N: usize, const D: usize>(
+    vertices: &[Point<D>],
+    elements: &[[u32; N]],
+    mut visit: impl FnMut([usize; 2], Meeting) -> ControlFlow<()>,
+) -> ControlFlow<()> {
+    let tree = BallTree::new(vertices, elements);
+    let order = tree.order();
+    let ordered: Vec<_> = order.iter().map(|i| elements[*i as usize]).collect();
+    let corners = |element: &[u32; N]| element.map(|index| vertices[index as usize]);
+    let boxes = Boxes::new(&ordered.iter().map(corners).collect::<Vec<_>>());
     let search =
-        Search { vertices, elements: &elements, boxes: &boxes, are_apart: |_, _| false };
-    search.each_meeting(|_, meeting| meet |= meeting != Meeting::Apart);
-    meet
+        Search { vertices, elements: &ordered, boxes: &boxes, are_apart: |_, _| false };
+    search.each_meeting(|pair, meeting| match meeting {
+        Meeting::Apart => ControlFlow::Continue(()),
+        _ => visit(pair.map(|i| order[i] as usize), meeting),
+    })
+}
+
+fn continue_if(is_to_continue: bool) -> ControlFlow<()> {
+    if is_to_continue { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
 }
 
 /// The elements among which pairs that meet are looked for, in the order of the boxes.
@@ -143,30 +205,38 @@ struct Search<'a, const N: usize, const D: usize, A> {
 
 impl<const N: usize, const D: usize, A: Fn(usize, usize) -> bool> Search<'_, N, D, A> {
     /// Calls `visit` with pairs of elements, the lower first, and how they meet; among them are all that cross or
-    /// touch, each once.
-    fn each_meeting(&self, mut visit: impl FnMut([usize; 2], Meeting)) {
+    /// touch, each once, until it breaks.
+    fn each_meeting(
+        &self,
+        mut visit: impl FnMut([usize; 2], Meeting) -> ControlFlow<()>,
+    ) -> ControlFlow<()> {
         let hubs = Hubs::of(self.vertices.len(), self.elements);
         let all: Vec<_> = self.elements.iter().map(|names| self.element(*names)).collect();
         // Apart from the rest, since most pairs need no more.
         let boxes: Vec<_> = all.iter().map(|element| element.around).collect();
+        let mut state = ControlFlow::Continue(());
         for (i, (one, around)) in all.iter().zip(&boxes).enumerate() {
             self.boxes.overlapping(around, |group| {
                 for k in (group * FAN).max(i + 1)..all.len().min((group + 1) * FAN) {
-                    if hubs.common([i, k]).is_none()
+                    if state.is_continue()
+                        && hubs.common([i, k]).is_none()
                         && share_a_point(around, &boxes[k])
                         && !(self.are_apart)(i, k)
                         && !one.is_separate(&all[k])
                     {
-                        visit([i, k], one.meeting(&all[k]));
+                        state = visit([i, k], one.meeting(&all[k]));
                     }
                 }
             });
+            state?;
         }
         hubs.each_pair(self.vertices, self.elements, |[i, k]| {
-            if share_a_point(&boxes[i], &boxes[k]) && !(self.are_apart)(i, k) {
-                visit([i, k], all[i].meeting(&all[k]));
+            let may_meet = share_a_point(&boxes[i], &boxes[k]) && !(self.are_apart)(i, k);
+            if state.is_continue() && may_meet {
+                state = visit([i, k], all[i].meeting(&all[k]));
             }
         });
+        state
     }
 
     fn element(&self, names: [u32; N]) -> Element<N, D> {

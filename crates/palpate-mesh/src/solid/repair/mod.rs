@@ -5,14 +5,13 @@
 
 mod cap;
 mod crossing;
+mod doubled;
 mod ears;
 mod hubs;
 mod junctions;
 mod orient;
 mod rims;
 mod sheets;
-
-use std::collections::HashMap;
 
 use palpate_field::Point;
 
@@ -21,6 +20,8 @@ pub(crate) use crossing::crossing_faces;
 pub(super) use crossing::{Crossings, Known};
 pub(super) use orient::Pieces;
 pub(super) use rims::{by_rim, sides};
+
+use doubled::{Doubled, Patch};
 
 use super::findings::Findings;
 use crate::mesh::{Mesh, weld};
@@ -111,55 +112,34 @@ impl<const N: usize, const D: usize> Repair<N, D> {
         (self.findings.openings, self.is_flat) = (openings, is_flat);
     }
 
-    /// Drops elements with the vertices of another. Two that face each other are a wall between two volumes, and
-    /// both go, unless that would leave an opening: then one stays.
+    /// Drops elements with the vertices of another: of a wall between two volumes all go, of others one stays that has
+    /// the direction of most. A wall whose elements have one direction is left: volumes on one side of it are both
+    /// within it, and of two on both sides one is inside out.
     fn drop_duplicates(&mut self) {
-        let key = |element: &[u32; N]| {
-            let mut key = *element;
-            key.sort_unstable();
-            key
-        };
-        let mut copies: HashMap<[u32; N], Vec<usize>> = HashMap::new();
-        for (i, element) in self.elements.iter().enumerate() {
-            copies.entry(key(element)).or_default().push(i);
-        }
-        let mut at_rims: HashMap<[u32; 2], usize> = HashMap::new();
-        for side in sides(&self.elements) {
-            *at_rims.entry(side.rim).or_default() += 1;
-        }
+        let doubled = Doubled::of(&self.elements);
         let mut is_dropped = vec![false; self.elements.len()];
-        let mut doubled: Vec<_> = copies.into_values().filter(|same| same.len() > 1).collect();
-        doubled.sort_unstable();
-        for same in doubled {
+        for (group, same) in doubled.groups.iter().enumerate() {
             let element = self.elements[same[0]];
             let has_its_direction =
                 |i: &&usize| has_same_direction(&self.elements[**i], element);
             let along = same.iter().filter(has_its_direction).count();
-            let others =
-                |rim: &[u32; 2]| at_rims.get(rim).map_or(0, |count| count - same.len());
-            let is_wall = 2 * along == same.len()
-                && rims_of(&element).iter().all(|rim| others(rim).is_multiple_of(2));
-            // Of an odd number, one stays that has the direction of most.
-            let stays = same.iter().find(|i| has_its_direction(i) == (2 * along >= same.len()));
-            for i in same.iter().filter(|i| is_wall || Some(*i) != stays) {
-                is_dropped[*i] = true;
-                for rim in rims_of(&element) {
-                    at_rims.entry(rim).and_modify(|count| *count -= 1);
+            let is_balanced = 2 * along == same.len();
+            let goes = |i: &&usize| match doubled.patch_of(group) {
+                Patch::Wall if along == same.len() => false,
+                Patch::Wall if is_balanced => true,
+                Patch::Free if is_balanced && !doubled.are_all => true,
+                _ => {
+                    let is_of_most =
+                        |i: &&usize| has_its_direction(i) == (2 * along >= same.len());
+                    Some(*i) != same.iter().find(is_of_most)
                 }
-            }
+            };
+            same.iter().filter(goes).for_each(|i| is_dropped[*i] = true);
         }
         let mut dropped = is_dropped.iter();
         self.elements.retain(|_| dropped.next() == Some(&false));
         self.findings.duplicates = is_dropped.iter().filter(|dropped| **dropped).count();
     }
-}
-
-/// The rims of an element.
-fn rims_of<const N: usize>(element: &[u32; N]) -> [[u32; 2]; N] {
-    std::array::from_fn(|i| {
-        let (from, to) = (element[i], element[(i + 1) % N]);
-        if N == 2 { [from; 2] } else { [from.min(to), from.max(to)] }
-    })
 }
 
 /// Whether an element has its vertices in the same direction as another with the same vertices.

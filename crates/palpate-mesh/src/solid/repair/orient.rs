@@ -7,6 +7,7 @@ use std::cell::OnceCell;
 
 use palpate_field::{Aabb, Point, Vector};
 
+use super::crossing::PiecesThatMeet;
 use super::rims::{Side, by_rim, pieces, sides};
 use crate::report::signed_volume;
 use crate::solid::boxes::Boxes;
@@ -113,7 +114,7 @@ pub(in crate::solid) struct Pieces {
 }
 
 /// Turns pieces that are inside out, with all that lie within them: those with a negative volume that lie
-/// within no other.
+/// within no other. A piece that crosses another does not lie within it.
 pub(super) fn outwards<const N: usize, const D: usize>(
     vertices: &[Point<D>],
     elements: &mut [[u32; N]],
@@ -124,11 +125,18 @@ pub(super) fn outwards<const N: usize, const D: usize>(
     for (element, piece) in of_element.iter().enumerate() {
         members[*piece].push(element);
     }
-    let all: Vec<Piece<N, D>> = members
+    let mut all: Vec<Piece<N, D>> = members
         .into_iter()
         .map(|members| Piece::of(members, |element| corners(&elements[element])))
         .collect();
-    let around = around(&all, |element| corners(&elements[element]));
+    let mut meet = PiecesThatMeet::default();
+    if count > 1 && all.iter().any(|piece| piece.volume < 0.0) {
+        meet = PiecesThatMeet::of(vertices, elements, &of_element);
+        for piece in &mut all {
+            piece.sample(|element| meet.is_met(element), |element| corners(&elements[element]));
+        }
+    }
+    let around = around(&all, &meet, |element| corners(&elements[element]));
     let is_turned = |i: usize| all[*around[i].last().unwrap_or(&i)].volume < 0.0;
     let is_cavity: Vec<bool> =
         (0..count).map(|i| (all[i].volume < 0.0) != is_turned(i)).collect();
@@ -143,10 +151,11 @@ pub(super) fn outwards<const N: usize, const D: usize>(
     Pieces { of_element, is_cavity, nested, turned }
 }
 
-/// The pieces around each, the smallest first: those that hold most of its samples. Where pieces touch, one sample
-/// may lie on the outer one.
+/// The pieces around each, the smallest first: those that do not cross it and hold most of its samples. Where
+/// pieces touch, one sample may lie on the outer one.
 fn around<const N: usize, const D: usize>(
     all: &[Piece<N, D>],
+    meet: &PiecesThatMeet,
     corners: impl Fn(usize) -> [Point<D>; N],
 ) -> Vec<Vec<usize>> {
     let size = |i: usize| all[i].volume.abs();
@@ -165,7 +174,8 @@ fn around<const N: usize, const D: usize>(
                     for k in order.iter().skip(group * FAN).take(FAN).map(|k| *k as usize) {
                         if k != i
                             && size(k) > size(i)
-                            && all[k].bounds.contains(p)
+                            && lies_in(&all[i].bounds, &all[k].bounds)
+                            && !meet.cross(i, k)
                             && all[k].goes_around(p, &corners)
                         {
                             holders.push(k);
@@ -188,14 +198,25 @@ fn around<const N: usize, const D: usize>(
 impl<const N: usize, const D: usize> Piece<N, D> {
     fn of(elements: Vec<usize>, corners: impl Fn(usize) -> [Point<D>; N]) -> Self {
         let all = || elements.iter().map(|element| corners(*element));
-        let samples = std::array::from_fn(|i| {
-            middle(&corners(elements[i * (elements.len() - 1) / (SAMPLES - 1)]))
-        });
+        let samples = samples(&elements, &corners);
         let bounds =
             Aabb::around(all().flatten()).unwrap_or(Aabb { min: samples[0], max: samples[0] });
         let centre = bounds.centre();
         let volume = all().map(|corners| signed_volume(&corners, centre)).sum();
         Self { elements, bounds, volume, samples, winding: OnceCell::new() }
+    }
+
+    /// Takes its samples on elements that meet no others, if it has any.
+    fn sample(
+        &mut self,
+        is_met: impl Fn(usize) -> bool,
+        corners: impl Fn(usize) -> [Point<D>; N],
+    ) {
+        let free: Vec<usize> =
+            self.elements.iter().copied().filter(|element| !is_met(*element)).collect();
+        if !free.is_empty() {
+            self.samples = samples(&free, corners);
+        }
     }
 
     /// Whether its winding number about a point is not 0.
@@ -208,6 +229,21 @@ impl<const N: usize, const D: usize> Piece<N, D> {
         let own = || self.elements.iter().map(|element| corners(*element)).collect::<Vec<_>>();
         self.winding.get_or_init(|| Groups::new(&own())).goes_around(p)
     }
+}
+
+/// The middles of a few of these elements.
+fn samples<const N: usize, const D: usize>(
+    elements: &[usize],
+    corners: impl Fn(usize) -> [Point<D>; N],
+) -> [Point<D>; SAMPLES] {
+    std::array::from_fn(|i| {
+        middle(&corners(elements[i * (elements.len() - 1) / (SAMPLES - 1)]))
+    })
+}
+
+/// Whether a box lies within another.
+fn lies_in<const D: usize>(inner: &Aabb<D>, outer: &Aabb<D>) -> bool {
+    outer.contains(inner.min) && outer.contains(inner.max)
 }
 
 fn middle<const N: usize, const D: usize>(corners: &[Point<D>; N]) -> Point<D> {

@@ -44,8 +44,8 @@ pub(in crate::solid) fn by_rim(sides: &[Side]) -> impl Iterator<Item = &[Side]> 
 
 /// The pieces of a mesh: of each element the number of its piece, and how many pieces there are.
 ///
-/// Two elements at a rim are of one piece. Of more, those are that have the solid between them, so that cubes which
-/// share an edge are two pieces. Where as many elements pass each rim in one direction as in the other, no piece has
+/// Two elements at a rim are of one piece. Of more, those are that are of one piece by other rims, then those that
+/// have the solid between them, so that cubes which share an edge are two pieces. Where as many elements pass each rim in one direction as in the other, no piece has
 /// a boundary, and on each of its sides the winding number is the same all over, unless something crosses it: what
 /// lies between two that are paired cancels.
 pub(super) fn pieces<const N: usize, const D: usize>(
@@ -53,18 +53,21 @@ pub(super) fn pieces<const N: usize, const D: usize>(
     elements: &[[u32; N]],
 ) -> (Vec<usize>, usize) {
     let mut parents: Vec<usize> = (0..elements.len()).collect();
-    let mut join = |a: u32, b: u32| {
-        let (a, b) = (root(&mut parents, a as usize), root(&mut parents, b as usize));
+    let join = |parents: &mut [usize], [a, b]: [u32; 2]| {
+        let (a, b) = (root(parents, a as usize), root(parents, b as usize));
         parents[a.max(b)] = a.min(b);
     };
-    for at_rim in by_rim(&sides(elements)) {
-        match at_rim {
-            [_] => {}
-            [a, b] => join(a.element, b.element),
-            _ => {
-                for [a, b] in pairs(vertices, elements, at_rim) {
-                    join(a, b);
-                }
+    let sides = sides(elements);
+    for at_rim in by_rim(&sides) {
+        if let [a, b] = at_rim {
+            join(&mut parents, [a.element, b.element]);
+        }
+    }
+    for at_rim in by_rim(&sides).filter(|at_rim| at_rim.len() > 2) {
+        let others = of_other_pieces(at_rim, |side| root(&mut parents, side.element as usize));
+        if others.len() > 1 {
+            for pair in pairs(vertices, elements, &others) {
+                join(&mut parents, pair);
             }
         }
     }
@@ -80,6 +83,21 @@ pub(super) fn pieces<const N: usize, const D: usize>(
         }
     }
     (numbers, count)
+}
+
+/// The sides at a rim without those that pair with one of the same piece.
+fn of_other_pieces(at_rim: &[Side], mut piece: impl FnMut(&Side) -> usize) -> Vec<Side> {
+    let mut sorted: Vec<_> = at_rim.iter().map(|side| (piece(side), *side)).collect();
+    sorted.sort_unstable();
+    let mut others = Vec::new();
+    for same in sorted.chunk_by(|a, b| a.0 == b.0) {
+        let forward = same.iter().filter(|(_, side)| side.is_forward).count();
+        // As many in both directions: whichever pair, they are of this piece.
+        if 2 * forward != same.len() {
+            others.extend(same.iter().map(|(_, side)| *side));
+        }
+    }
+    others
 }
 
 /// An element as seen along a rim.
@@ -168,7 +186,8 @@ fn spokes<const N: usize, const D: usize>(
     at_rim.iter().map(spoke).collect()
 }
 
-fn root(parents: &mut [usize], mut i: usize) -> usize {
+/// The first of the elements that are joined with an element.
+pub(super) fn root(parents: &mut [usize], mut i: usize) -> usize {
     while parents[i] != i {
         parents[i] = parents[parents[i]];
         i = parents[i];
