@@ -142,6 +142,11 @@ impl<const N: usize, const D: usize> Mesh<N, D> {
     }
 }
 
+/// A point in single precision.
+pub(crate) fn single<const D: usize>(p: Point<D>) -> Point<D> {
+    Vector(p.0.map(|x| f64::from(x as f32)))
+}
+
 /// The distinct points, and the index into them of each of `points`; zero equals minus zero.
 pub(crate) fn weld<const D: usize>(points: &[Point<D>]) -> (Vec<Point<D>>, Vec<u32>) {
     let mut places = HashMap::with_capacity(points.len());

@@ -10,7 +10,7 @@ use gltf::binary::{Glb, Header};
 use palpate_field::{Point, Vector};
 
 use crate::error::MeshError;
-use crate::mesh::TriangleMesh;
+use crate::mesh::{TriangleMesh, single};
 use crate::read::Format;
 
 impl TriangleMesh {
@@ -63,11 +63,10 @@ impl TriangleMesh {
     ///
     /// As of [`new`](Self::new).
     pub fn in_format(&self, format: Format) -> Result<Self, MeshError> {
-        if matches!(format, Format::Obj | Format::Ply) {
+        if !format.is_single() {
             return Ok(self.clone());
         }
-        let single = |p: &Point<3>| Vector(p.0.map(|x| f64::from(x as f32)));
-        let vertices = self.vertices().iter().map(single).collect();
+        let vertices = self.vertices().iter().map(|p| single(*p)).collect();
         let mesh = Self::new(vertices, self.elements().to_vec())?;
         Ok(if format == Format::Stl { mesh.welded() } else { mesh })
     }

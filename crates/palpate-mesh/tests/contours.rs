@@ -4,11 +4,12 @@
 //! Meshes of shapes: closed, without faces that cross, near the surface, sharp.
 #![expect(clippy::unwrap_used, reason = "tests")]
 
+use std::f64::consts::TAU;
 use std::ops::ControlFlow;
 
 use palpate_field::operator::Profile;
 use palpate_field::{Rotation, Shape, Vector};
-use palpate_mesh::{ContourError, ContourOptions, Solid, TriangleMesh};
+use palpate_mesh::{ContourError, ContourOptions, Format, Solid, TriangleMesh};
 use palpate_testkit::cases;
 
 #[expect(unreachable_pub, reason = "shared with the fuzz target")]
@@ -94,6 +95,27 @@ fn a_mesh_of_a_mesh_is_the_same_solid() {
         let off = solid.distance(*vertex).abs();
         assert!(off < 0.25 * 0.021, "{off}");
     }
+}
+
+/// A gear that was good in double precision had 12 pairs of faces that touch in the file.
+#[test]
+fn rounding_to_single_precision_makes_no_faces_touch() {
+    let corner = |i: u32| {
+        let angle = TAU * f64::from(i) / 56.0;
+        let radius = 0.018 + 0.004 * (7.0 * angle).sin();
+        Vector([radius * angle.cos(), radius * angle.sin()])
+    };
+    let outline: Vec<_> = (0..56).map(corner).collect();
+    let gear = Shape::<2>::polygon([outline]).unwrap().extruded(0.01).unwrap();
+    let options = ContourOptions::with_cell(4.4e-4);
+    let touching = |is_single| {
+        let options = options.clone().with_single_precision(is_single);
+        let mesh = TriangleMesh::of_shape(&gear, &options).unwrap();
+        let (_, findings) = Solid::from_mesh(&mesh.in_format(Format::Stl).unwrap()).unwrap();
+        findings.touching + findings.crossings
+    };
+    assert!(touching(false) > 0);
+    assert_eq!(touching(true), 0);
 }
 
 /// Random trees have sheets that touch, edges that meet at points and cells with several patches.

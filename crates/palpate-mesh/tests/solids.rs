@@ -413,13 +413,12 @@ fn unions_of_boxes_are_what_is_in_one_of_them() {
     cases::check(300, |u| {
         let mut boxes: Vec<[[f64; 3]; 2]> = Vec::new();
         for _ in 0..u.int_in_range(2..=3)? {
-            let mut ends = [[0.0; 3]; 2];
-            for k in 0..3 {
-                let low = u.int_in_range(0..=3_u8)?;
-                ends[0][k] = f64::from(low);
-                ends[1][k] = f64::from(low + u.int_in_range(1..=3_u8)?);
+            let (mut low, mut high) = ([0.0; 3], [0.0; 3]);
+            for (low, high) in low.iter_mut().zip(&mut high) {
+                let from = u.int_in_range(0..=3_u8)?;
+                (*low, *high) = (from.into(), (from + u.int_in_range(1..=3_u8)?).into());
             }
-            boxes.push(ends);
+            boxes.push([low, high]);
         }
         let lies_in = |a: &[[f64; 3]; 2], b: &[[f64; 3]; 2]| {
             (0..3).all(|k| b[0][k] <= a[0][k] && a[1][k] <= b[1][k])

@@ -4,8 +4,6 @@
 //! The keys of a shape's object that are not primitives: one list for reading, writing
 //! and the schema.
 
-use palpate_field::operator::Profile;
-
 use crate::catalogue;
 use crate::scene::Dimension;
 
@@ -136,17 +134,6 @@ pub(crate) const OTHERS: [&str; 6] = [WIDTH, PROFILE, HEIGHT, PROGRESS, OF, DESC
 
 /// The axes of a mirror and of rows of copies.
 pub(crate) const AXES: [&str; 3] = ["x", "y", "z"];
-
-/// The profiles of smooth booleans.
-pub(crate) const PROFILES: [(&str, Profile); 7] = [
-    ("quadratic", Profile::Quadratic),
-    ("cubic", Profile::Cubic),
-    ("quartic", Profile::Quartic),
-    ("circular", Profile::Circular),
-    ("root", Profile::Root),
-    ("exponential", Profile::Exponential),
-    ("circular_geometrical", Profile::CircularGeometrical),
-];
 
 /// The smooth booleans.
 pub(crate) const SMOOTH: [&str; 3] = [SMOOTH_UNION, SMOOTH_INTERSECTION, SMOOTH_DIFFERENCE];

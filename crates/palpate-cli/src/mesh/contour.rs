@@ -191,7 +191,8 @@ impl Work<'_> {
             shown.show((share * STEPS) as usize, STEPS as usize, cells);
             self.is_going_on()
         };
-        let options = ContourOptions::with_cell(cell);
+        let options =
+            ContourOptions::with_cell(cell).with_single_precision(self.format.is_single());
         let mesh = TriangleMesh::of_shape_with(self.shape, &options, &mut progress);
         drop(shown);
         let refused = |error: &dyn Display| Failure::file(&self.options.file, error);

@@ -39,6 +39,46 @@ pub enum Profile {
     CircularGeometrical,
 }
 
+impl Profile {
+    /// All of them.
+    pub const ALL: [Self; 7] = [
+        Self::Quadratic,
+        Self::Cubic,
+        Self::Quartic,
+        Self::Circular,
+        Self::Root,
+        Self::Exponential,
+        Self::CircularGeometrical,
+    ];
+
+    /// The name in scene files.
+    ///
+    /// ```
+    /// use palpate_field::operator::Profile;
+    ///
+    /// assert_eq!(Profile::CircularGeometrical.name(), "circular_geometrical");
+    /// assert_eq!(Profile::named("root"), Some(Profile::Root));
+    /// ```
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Quadratic => "quadratic",
+            Self::Cubic => "cubic",
+            Self::Quartic => "quartic",
+            Self::Circular => "circular",
+            Self::Root => "root",
+            Self::Exponential => "exponential",
+            Self::CircularGeometrical => "circular_geometrical",
+        }
+    }
+
+    /// The profile of a name.
+    #[must_use]
+    pub fn named(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|profile| profile.name() == name)
+    }
+}
+
 /// Which boolean is smooth.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Boolean {

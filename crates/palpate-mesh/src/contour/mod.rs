@@ -21,7 +21,7 @@ use std::ops::ControlFlow;
 use palpate_field::{Point, Shape};
 
 use crate::error::MeshError;
-use crate::mesh::TriangleMesh;
+use crate::mesh::{TriangleMesh, single};
 use crate::solid::crossing_faces;
 use cells::{Cells, Signed};
 use crossings::Crossing;
@@ -50,19 +50,28 @@ pub struct ContourOptions {
     pub node: Option<Point<3>>,
     /// More cells than these near the surface are refused.
     pub most_cells: usize,
+    /// Whether vertices are in single precision, as files of STL and GLB hold them: faces that cross where they are
+    /// rounded are mended as others are.
+    pub is_single: bool,
 }
 
 impl ContourOptions {
     /// Cells of a size [m], at most 2²⁶ of them near the surface: a mesh of about ten million triangles.
     #[must_use]
     pub const fn with_cell(cell: f64) -> Self {
-        Self { cell, node: None, most_cells: 1 << 26 }
+        Self { cell, node: None, most_cells: 1 << 26, is_single: false }
     }
 
     /// The same with a node of the lattice at a place [m].
     #[must_use]
     pub const fn with_node(self, node: Point<3>) -> Self {
         Self { node: Some(node), ..self }
+    }
+
+    /// The same with vertices in single precision, or not.
+    #[must_use]
+    pub const fn with_single_precision(self, is_single: bool) -> Self {
+        Self { is_single, ..self }
     }
 }
 
@@ -157,7 +166,7 @@ impl TriangleMesh {
         }
         let mut found = |share| progress(looking + share * crossing);
         let contour = Contour::of(shape, &cells, &signed, &mut found)?;
-        contour.mesh(shape, &mut |share| {
+        contour.mesh(shape, options.is_single, &mut |share| {
             progress(looking + crossing + share * (1.0 - looking - crossing))
         })
     }
@@ -226,13 +235,16 @@ impl Contour {
     fn mesh(
         mut self,
         shape: &Shape<3>,
+        is_single: bool,
         progress: &mut dyn FnMut(f64) -> ControlFlow<()>,
     ) -> Result<TriangleMesh, ContourError> {
         for mend in 0.. {
             if progress(mend as f64 / MOST_MENDS as f64).is_break() {
                 return Err(ContourError::Stopped);
             }
-            let places: Vec<_> = self.corners.iter().map(|corner| corner.place).collect();
+            let place =
+                |corner: &Corner| if is_single { single(corner.place) } else { corner.place };
+            let places: Vec<_> = self.corners.iter().map(place).collect();
             let triangles = faces::triangles(shape, &places, &self.quads);
             let mesh = TriangleMesh::new(places, triangles)?;
             if mend == MOST_MENDS {

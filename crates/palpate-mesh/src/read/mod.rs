@@ -55,6 +55,12 @@ impl Format {
         }
     }
 
+    /// Whether its files hold coordinates in single precision.
+    #[must_use]
+    pub const fn is_single(self) -> bool {
+        matches!(self, Self::Stl | Self::Glb)
+    }
+
     /// The format that the first bytes of a file look like; `None` if they could be anything.
     ///
     /// ```

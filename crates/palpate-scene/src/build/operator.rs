@@ -231,8 +231,8 @@ fn profile(object: &Object<'_>) -> Result<Profile, Problems> {
     if !object.has(keys::PROFILE) {
         return Ok(Profile::Quadratic);
     }
-    let place = object.word(keys::PROFILE, &keys::PROFILES.map(|(name, _)| name))?;
-    Ok(keys::PROFILES[place].1)
+    let place = object.word(keys::PROFILE, &Profile::ALL.map(Profile::name))?;
+    Ok(Profile::ALL[place])
 }
 
 /// One number for each axis, under the key of the operator.

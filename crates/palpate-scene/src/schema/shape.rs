@@ -4,6 +4,7 @@
 //! The schema of a shape: its keys, and which go together.
 
 use palpate_field::kernel::{Parameter, ParameterKind};
+use palpate_field::operator::Profile;
 use palpate_grid::{GridOptions, Inside, Kernel, Store};
 use serde_json::{Map, Value, json};
 
@@ -62,7 +63,7 @@ pub(super) fn schema(dimension: Dimension) -> Value {
 
     let rest = [
         (keys::WIDTH, json!({ "type": "number", "exclusiveMinimum": 0 })),
-        (keys::PROFILE, json!({ "enum": keys::PROFILES.map(|(name, _)| name) })),
+        (keys::PROFILE, json!({ "enum": Profile::ALL.map(Profile::name) })),
         (keys::HEIGHT, json!({ "type": "number", "exclusiveMinimum": 0 })),
         (keys::PROGRESS, json!({ "type": "number", "minimum": 0, "maximum": 1 })),
         (OF, operand(dimension)),

@@ -7,7 +7,7 @@ use std::collections::HashMap;
 
 use indexmap::IndexMap;
 use palpate_field::kernel::{Argument, ParameterKind};
-use palpate_field::operator::{Boolean, Copies, Profile};
+use palpate_field::operator::{Boolean, Copies};
 use palpate_field::{Node, Pose, Shape, node};
 use serde_json::{Map, Value, json};
 
@@ -138,7 +138,7 @@ impl Writer {
                     Boolean::Intersection => keys::SMOOTH_INTERSECTION,
                     Boolean::Difference => keys::SMOOTH_DIFFERENCE,
                 };
-                let numbers = json!({ keys::WIDTH: width, keys::PROFILE: name_of(*profile) });
+                let numbers = json!({ keys::WIDTH: width, keys::PROFILE: profile.name() });
                 (numbers, list, of.iter().collect())
             }
             Node::Displaced { of, by, height } => {
@@ -244,12 +244,6 @@ fn placement<const D: usize>(pose: &Pose<D>) -> Value {
         object.insert(keys::ROTATION.to_owned(), json!(attitude));
     }
     Value::Object(object)
-}
-
-/// The name of a profile.
-fn name_of(profile: Profile) -> &'static str {
-    let found = keys::PROFILES.into_iter().find(|(_, known)| *known == profile);
-    found.map_or("", |(name, _)| name)
 }
 
 fn rows<const D: usize>(copies: &[Copies; D]) -> Value {
