@@ -8,7 +8,7 @@ use serde_json::Value;
 use crate::command::Failure;
 
 /// The crates from the lowest layer to the highest.
-const LAYERS: [&str; 19] = [
+const LAYERS: [&str; 20] = [
     "palpate-field",
     "palpate-mesh",
     "palpate-grid",
@@ -26,6 +26,7 @@ const LAYERS: [&str; 19] = [
     "palpate",
     "palpate-live",
     "palpate-cli",
+    "palpate-python",
     "palpate-bench",
     "xtask",
 ];

@@ -11,6 +11,7 @@ mod layers;
 mod licences;
 mod links;
 mod page;
+mod python;
 mod sizes;
 mod sources;
 mod tree;
@@ -63,11 +64,12 @@ fn main() -> ExitCode {
     }
 }
 
-/// All tests, those of the live page in a browser among them.
+/// All tests, those of the live page in a browser and of the Python package among them.
 fn test() -> Result<(), Failure> {
     let tools = page::prepare()?;
     let environment = [(page::VARIABLE, &*tools.to_string_lossy())];
-    cargo_with(&["test", "--workspace", "--locked"], &environment)
+    cargo_with(&["test", "--workspace", "--locked"], &environment)?;
+    python::test()
 }
 
 /// The truths that recall tests replay. The program is an example of the testkit, so that

@@ -3,10 +3,10 @@
 
 //! What the tests of the live page need: Chromium, Node, and packages of npm.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::Command;
 
-use crate::command::{Failure, root};
+use crate::command::{Failure, failed, is_there, root, run, target};
 
 /// Where the names and versions of the packages are.
 const LIST: &str = "crates/palpate-live/tests/page";
@@ -49,16 +49,6 @@ pub(crate) fn prepare() -> Result<PathBuf, Failure> {
     Ok(folder)
 }
 
-/// The folder of what is built.
-fn target() -> PathBuf {
-    std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| root().join("target"), PathBuf::from)
-}
-
-fn is_there(program: &str) -> bool {
-    let path = std::env::var_os("PATH").unwrap_or_default();
-    std::env::split_paths(&path).any(|folder| folder.join(program).is_file())
-}
-
 fn install(packages: &[&str]) -> Result<(), Failure> {
     let by_hand = format!(
         "the tests of the live page need Chromium, Node and npm: \
@@ -75,17 +65,4 @@ fn install(packages: &[&str]) -> Result<(), Failure> {
     };
     apt(&["update"])?;
     apt(&[&["install", "-y", "--no-install-recommends"], packages].concat())
-}
-
-fn run(command: &mut Command) -> Result<(), Failure> {
-    let status = command.status();
-    match status {
-        Ok(status) if status.success() => Ok(()),
-        Ok(status) => Err(Failure(format!("{command:?} failed: {status}"))),
-        Err(error) => Err(Failure(format!("{command:?} did not start: {error}"))),
-    }
-}
-
-fn failed(path: &Path, error: &std::io::Error) -> Failure {
-    Failure(format!("{}: {error}", path.display()))
 }

@@ -7,7 +7,7 @@ use palpate_devices::{DeviceError, DeviceLost, UnknownDevice};
 use palpate_field::ShapeError;
 use palpate_grid::GridError;
 use palpate_haptics::{HapticsError, NumberError, SafetyError, UnknownMaterial};
-use palpate_mesh::{MeshError, SolidError};
+use palpate_mesh::{ContourError, MeshError, SolidError};
 use palpate_query::QueryError;
 #[cfg(feature = "scene")]
 use palpate_scene::SceneCause;
@@ -72,6 +72,8 @@ pub enum Error {
     Mesh(#[from] MeshError),
     /// A mesh bounds no solid.
     Solid(#[from] SolidError),
+    /// A shape has no mesh.
+    Contour(#[from] ContourError),
     /// A grid cannot be made.
     Grid(#[from] GridError),
     /// A mesh file cannot be read.
@@ -123,7 +125,7 @@ pub enum ErrorKind {
     Haptics,
     /// A hand path, a hand or a device cannot be made.
     Device,
-    /// Vertices and faces are no mesh or bound no solid, or a mesh file cannot be read.
+    /// Vertices and faces are no mesh or bound no solid, a shape has no mesh, or a mesh file cannot be read.
     Mesh,
     /// A grid cannot be made.
     Grid,
@@ -174,7 +176,7 @@ impl Error {
             Self::Query(_) => ErrorKind::Query,
             Self::Haptics(_) => ErrorKind::Haptics,
             Self::Device(_) => ErrorKind::Device,
-            Self::Mesh(_) | Self::Solid(_) => ErrorKind::Mesh,
+            Self::Mesh(_) | Self::Solid(_) | Self::Contour(_) => ErrorKind::Mesh,
             Self::Grid(_) => ErrorKind::Grid,
             #[cfg(feature = "mesh-files")]
             Self::MeshFile(_) => ErrorKind::Mesh,

@@ -157,8 +157,35 @@ impl<const D: usize> Query<D> {
         a: impl Into<Placed<'a, D>>,
         b: impl Into<Placed<'a, D>>,
     ) -> Result<Manifold<D>, QueryError> {
+        self.manifold_with(a, b, |settings| settings)
+    }
+
+    /// As [`Query::manifold`], with its settings changed by the caller.
+    ///
+    /// ```
+    /// use palpate_field::{Shape, kernel::Ball};
+    /// use palpate_query::Query;
+    ///
+    /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+    /// let ball = Shape::from_kernel(Ball::new(0.5)?);
+    /// let beside = ball.clone().translated([1.01, 0.0, 0.0])?;
+    /// let near = Query::new().manifold_with(&ball, &beside, |own| own.with_margin(0.02))?;
+    /// assert!((near.contacts[0].gap - 0.01).abs() < 1e-3);
+    /// # Ok(())
+    /// # }
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// As of [`Query::manifold`], and if a setting is no length.
+    pub fn manifold_with<'a>(
+        &mut self,
+        a: impl Into<Placed<'a, D>>,
+        b: impl Into<Placed<'a, D>>,
+        change: impl FnOnce(ManifoldSettings) -> ManifoldSettings,
+    ) -> Result<Manifold<D>, QueryError> {
         let (a, b) = (a.into(), b.into());
-        let settings = ManifoldSettings::of_size(smallest(sizes(&a, &b)));
+        let settings = change(ManifoldSettings::of_size(smallest(sizes(&a, &b))));
         manifold(a, b, &settings, &self.limits(sizes(&a, &b)), self.scratch.pair())
     }
 

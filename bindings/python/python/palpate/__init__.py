@@ -1,0 +1,116 @@
+# SPDX-FileCopyrightText: The palpate authors
+# SPDX-License-Identifier: MIT OR Apache-2.0
+"""Signed distance functions that can be touched.
+
+A :class:`Shape` is a body in the plane or in space, made of closed formulas: a constructor for each primitive, ``|``,
+``&``, ``-`` and ``^``, and a method for each operator. Shapes are immutable. Lengths are in metres, y is up, distances
+are negative inside. Points are arrays of shape (..., D), D the dimension of the shape.
+
+>>> import palpate as pp
+>>> plate = pp.cuboid([0.6, 0.4, 0.6]) - pp.cylinder(radius=0.1, height=1.0)
+>>> plate.distance([0.2, 0.3, 0.0])
+0.09999999999999998
+>>> pp.separation(plate, pp.ball(0.05).translated([0, 0.3, 0])).lower > 0.03
+True
+"""
+
+from palpate import _shapes
+from palpate._answers import (
+    STOPS,
+    AtPoint,
+    Body,
+    ClosestPoints,
+    Contact,
+    Manifold,
+    Mass,
+    MeshContacts,
+    MeshReport,
+    Overlap,
+    Promise,
+    RayHit,
+    Separation,
+    Separations,
+)
+from palpate._errors import (
+    DeviceError,
+    DeviceLostError,
+    Error,
+    FileError,
+    GridError,
+    HapticsError,
+    MeshError,
+    PlotError,
+    QueryError,
+    SceneError,
+    ShapeError,
+    UnknownNameError,
+)
+from palpate._palpate import (
+    Mesh,
+    Scene,
+    Shape,
+    cast_ray,
+    closest_points,
+    difference,
+    intersection,
+    manifold,
+    mesh_contacts,
+    overlap,
+    overlaps,
+    separation,
+    separations,
+    smooth_difference,
+    smooth_intersection,
+    smooth_union,
+    symmetric_difference,
+    union,
+)
+from palpate._shapes import *  # noqa: F403
+
+__all__ = [
+    "STOPS",
+    "AtPoint",
+    "Body",
+    "ClosestPoints",
+    "Contact",
+    "DeviceError",
+    "DeviceLostError",
+    "Error",
+    "FileError",
+    "GridError",
+    "HapticsError",
+    "Manifold",
+    "Mass",
+    "Mesh",
+    "MeshContacts",
+    "MeshError",
+    "MeshReport",
+    "Overlap",
+    "PlotError",
+    "Promise",
+    "QueryError",
+    "RayHit",
+    "Scene",
+    "SceneError",
+    "Separation",
+    "Separations",
+    "Shape",
+    "ShapeError",
+    "UnknownNameError",
+    "cast_ray",
+    "closest_points",
+    "difference",
+    "intersection",
+    "manifold",
+    "mesh_contacts",
+    "overlap",
+    "overlaps",
+    "separation",
+    "separations",
+    "smooth_difference",
+    "smooth_intersection",
+    "smooth_union",
+    "symmetric_difference",
+    "union",
+    *_shapes.__all__,
+]

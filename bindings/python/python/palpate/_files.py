@@ -1,0 +1,31 @@
+# SPDX-FileCopyrightText: The palpate authors
+# SPDX-License-Identifier: MIT OR Apache-2.0
+"""Files that are whole or not there."""
+
+from __future__ import annotations
+
+import os
+import tempfile
+from pathlib import Path
+
+
+def replace(file: str | os.PathLike[str], content: bytes) -> None:
+    """Writes a file beside the one that it then replaces."""
+    place = Path(file)
+    handle, name = tempfile.mkstemp(prefix=f".{place.name}.", dir=place.parent)
+    try:
+        with os.fdopen(handle, "wb") as out:
+            out.write(content)
+            out.flush()
+            os.fsync(out.fileno())
+        os.chmod(name, 0o666 & ~_umask())
+        os.replace(name, place)
+    except BaseException:
+        os.unlink(name)
+        raise
+
+
+def _umask() -> int:
+    mask = os.umask(0)
+    os.umask(mask)
+    return mask

@@ -1,0 +1,235 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! Distances and gradients at one point and at many.
+
+use std::time::{Duration, Instant};
+
+use numpy::{Element, PyReadonlyArrayDyn, PyUntypedArrayMethods};
+use palpate::field::{Layout, Shape, ShapeError, Strided, StridedMut, Vector};
+use palpate::query::evaluate_point;
+use pyo3::prelude::*;
+use rayon::prelude::*;
+
+use crate::answers;
+use crate::arrays::{Numbers, few, misshapen, numbers, place, writable};
+use crate::error::OrRaise;
+use crate::pool::{self, Pool};
+use crate::shape::{AnyShape, of_either};
+
+/// Points that a thread takes at once: whole blocks, in memory that stays in its cache.
+const CHUNK: usize = 4096;
+
+/// How long work goes on before Python is asked whether it is to stop.
+const A_WHILE: Duration = Duration::from_millis(40);
+
+/// Distances and gradients.
+pub(crate) type Slopes<'py> = (Bound<'py, PyAny>, Bound<'py, PyAny>);
+
+/// The distance at a point, or those at the points of an array.
+pub(crate) fn distance<'py>(
+    shape: &AnyShape,
+    points: &Bound<'py, PyAny>,
+    out: Option<&Bound<'py, PyAny>>,
+    threads: usize,
+) -> PyResult<Bound<'py, PyAny>> {
+    of_either!(shape, shape => distances(shape, points, out, threads))
+}
+
+fn distances<'py, const D: usize>(
+    shape: &Shape<D>,
+    points: &Bound<'py, PyAny>,
+    out: Option<&Bound<'py, PyAny>>,
+    threads: usize,
+) -> PyResult<Bound<'py, PyAny>> {
+    let py = points.py();
+    let one = |point: [f64; D]| Ok(shape.distance(Vector(point)).into_pyobject(py)?.into_any());
+    if out.is_none()
+        && let Some(point) = few(points)
+    {
+        return one(point);
+    }
+    match numbers(points, "points")? {
+        Numbers::Double(array) => match <[f64; D]>::try_from(array.as_slice()?) {
+            Ok(point) if out.is_none() && array.ndim() == 1 => one(point),
+            _ => many(shape, &array, out, threads),
+        },
+        Numbers::Single(array) => many(shape, &array, out, threads),
+    }
+}
+
+fn many<'py, T: Element + Copy + Send + Sync, const D: usize>(
+    shape: &Shape<D>,
+    points: &PyReadonlyArrayDyn<'py, T>,
+    out: Option<&Bound<'py, PyAny>>,
+    threads: usize,
+) -> PyResult<Bound<'py, PyAny>>
+where
+    Shape<D>: Rows<T>,
+{
+    let py = points.py();
+    let rows = rows::<D>(points.shape())?;
+    let out = place::<T>(py, out, rows, "out")?;
+    let mut written = writable(&out, "out")?;
+    let pool = pool::of(threads)?;
+    let outs = [(written.as_slice_mut()?, 1)];
+    in_chunks(py, (points.as_slice()?, D), outs, pool.as_deref(), |points, [out]| {
+        shape.distances_of(points, out)
+    })?;
+    drop(written);
+    Ok(out.into_any())
+}
+
+/// The distances and gradients at the points of an array.
+pub(crate) fn distance_gradient<'py>(
+    shape: &AnyShape,
+    points: &Bound<'py, PyAny>,
+    outs: [Option<&Bound<'py, PyAny>>; 2],
+    threads: usize,
+) -> PyResult<Slopes<'py>> {
+    of_either!(shape, shape => match numbers(points, "points")? {
+        Numbers::Double(array) => slopes(shape, &array, outs, threads),
+        Numbers::Single(array) => slopes(shape, &array, outs, threads),
+    })
+}
+
+fn slopes<'py, T: Element + Copy + Send + Sync, const D: usize>(
+    shape: &Shape<D>,
+    points: &PyReadonlyArrayDyn<'py, T>,
+    [distances, gradients]: [Option<&Bound<'py, PyAny>>; 2],
+    threads: usize,
+) -> PyResult<Slopes<'py>>
+where
+    Shape<D>: Rows<T>,
+{
+    let py = points.py();
+    let rows = rows::<D>(points.shape())?;
+    let distances = place::<T>(py, distances, rows, "out[0]")?;
+    let gradients = place::<T>(py, gradients, points.shape(), "out[1]")?;
+    let mut written = [writable(&distances, "out[0]")?, writable(&gradients, "out[1]")?];
+    let pool = pool::of(threads)?;
+    let [to_distances, to_gradients] = &mut written;
+    let outs = [(to_distances.as_slice_mut()?, 1), (to_gradients.as_slice_mut()?, D)];
+    in_chunks(py, (points.as_slice()?, D), outs, pool.as_deref(), |points, [to, slopes]| {
+        shape.slopes_of(points, to, slopes)
+    })?;
+    drop(written);
+    let distances = match rows {
+        // A number, not an array without axes.
+        [] => distances.call_method0("item")?,
+        _ => distances.into_any(),
+    };
+    Ok((distances, gradients.into_any()))
+}
+
+/// What is known of a field at a point.
+pub(crate) fn at<'py>(
+    shape: &AnyShape,
+    point: &Bound<'py, PyAny>,
+) -> PyResult<Bound<'py, PyAny>> {
+    let py = point.py();
+    of_either!(shape, shape => {
+        let point = crate::poses::point(point, "point")?;
+        answers::at_point(py, &evaluate_point(shape, point).or_raise(py)?)
+    })
+}
+
+/// The axes of an array of points but the last, which holds their coordinates.
+fn rows<const D: usize>(shape: &[usize]) -> PyResult<&[usize]> {
+    match shape {
+        [rows @ .., last] if *last == D => Ok(rows),
+        _ => Err(misshapen("points", &format!("(…, {D})"), shape)),
+    }
+}
+
+/// The distances and gradients at rows of coordinates.
+trait Rows<T>: Sync {
+    fn distances_of(&self, points: &[T], to: &mut [T]) -> Result<(), ShapeError>;
+
+    fn slopes_of(&self, points: &[T], to: &mut [T], slopes: &mut [T])
+    -> Result<(), ShapeError>;
+}
+
+macro_rules! rows_of {
+    ($T:ty) => {
+        impl<const D: usize> Rows<$T> for Shape<D> {
+            fn distances_of(&self, points: &[$T], to: &mut [$T]) -> Result<(), ShapeError> {
+                let rows = to.len();
+                self.distances_strided(
+                    Strided::new(points, Layout::contiguous(rows, D))?,
+                    StridedMut::new(to, Layout::contiguous(rows, 1))?,
+                );
+                Ok(())
+            }
+
+            fn slopes_of(
+                &self,
+                points: &[$T],
+                to: &mut [$T],
+                slopes: &mut [$T],
+            ) -> Result<(), ShapeError> {
+                let rows = to.len();
+                self.distances_gradients_strided(
+                    Strided::new(points, Layout::contiguous(rows, D))?,
+                    StridedMut::new(to, Layout::contiguous(rows, 1))?,
+                    StridedMut::new(slopes, Layout::contiguous(rows, D))?,
+                );
+                Ok(())
+            }
+        }
+    };
+}
+
+rows_of!(f64);
+rows_of!(f32);
+
+/// Does work on the rows of an array and of those that it fills, each with its columns, without the interpreter's lock.
+/// Between chunks Python may stop it.
+fn in_chunks<T: Copy + Send + Sync, const K: usize>(
+    py: Python<'_>,
+    (mut given, columns): (&[T], usize),
+    outs: [(&mut [T], usize); K],
+    pool: Option<&Pool>,
+    work: impl Fn(&[T], [&mut [T]; K]) -> Result<(), ShapeError> + Send + Sync,
+) -> PyResult<()> {
+    let widths = outs.each_ref().map(|(_, width)| *width);
+    let mut left = outs.map(|(out, _)| out);
+    let threads = pool.map_or(1, Pool::current_num_threads);
+    // Chunks from one look at Python to the next.
+    let mut chunks = threads;
+    while !given.is_empty() {
+        let mut batch = Vec::with_capacity(chunks);
+        for _ in 0..chunks {
+            if given.is_empty() {
+                break;
+            }
+            let rows = CHUNK.min(given.len() / columns);
+            let (points, rest) = given.split_at(rows * columns);
+            given = rest;
+            let mut widths = widths.iter();
+            let outs = left.each_mut().map(|out| {
+                let width = widths.next().copied().unwrap_or_default();
+                let (own, rest) = std::mem::take(out).split_at_mut(rows * width);
+                *out = rest;
+                own
+            });
+            batch.push((points, outs));
+        }
+        let start = Instant::now();
+        let done = py.detach(|| match pool {
+            Some(pool) if batch.len() > 1 => pool.install(|| {
+                batch.into_par_iter().try_for_each(|(points, outs)| work(points, outs))
+            }),
+            _ => batch.into_iter().try_for_each(|(points, outs)| work(points, outs)),
+        });
+        done.or_raise(py)?;
+        py.check_signals()?;
+        let spent = start.elapsed();
+        chunks = match () {
+            () if spent > A_WHILE => (chunks / 2).max(threads),
+            () if spent < A_WHILE / 4 => chunks * 2,
+            () => chunks,
+        };
+    }
+    Ok(())
+}

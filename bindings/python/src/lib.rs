@@ -1,0 +1,46 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! The module `palpate._palpate`: what Python asks, converted, asked of the core, and converted back.
+
+mod answers;
+mod arrays;
+mod chain;
+mod error;
+mod evaluate;
+mod mass;
+mod mesh;
+mod operators;
+mod pool;
+mod poses;
+mod primitives;
+mod program;
+mod query;
+mod scene;
+mod shape;
+mod text;
+
+use pyo3::prelude::*;
+
+#[pymodule]
+mod _palpate {
+    #[pymodule_export]
+    use super::mesh::{PyMesh, mesh_contacts};
+    #[pymodule_export]
+    use super::operators::{
+        difference, intersection, smooth_difference, smooth_intersection, smooth_union,
+        symmetric_difference, union,
+    };
+    #[pymodule_export]
+    use super::primitives::{catalogue, primitive};
+    #[pymodule_export]
+    use super::program::main;
+    #[pymodule_export]
+    use super::query::{
+        cast_ray, closest_points, manifold, overlap, overlaps, separation, separations,
+    };
+    #[pymodule_export]
+    use super::scene::PyScene;
+    #[pymodule_export]
+    use super::shape::PyShape;
+}

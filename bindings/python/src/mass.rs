@@ -1,0 +1,70 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! Mass, and what meshes and samples a shape.
+
+use palpate::field::{Mass, MassLimits};
+use pyo3::prelude::*;
+
+use crate::answers::{Fields, vector};
+use crate::arrays::row;
+use crate::error::OrRaise;
+use crate::mesh::{self, PyMesh};
+use crate::shape::{PyShape, of_either};
+
+#[pymethods]
+impl PyShape {
+    /// The mass at a density [kg/m³], in the plane [kg/m²], with centroid and moments, and bounds on their errors.
+    ///
+    /// Cells are cut until the error of the volume is below `tolerance`, a share of it, or there are `cells` of them.
+    ///
+    /// >>> import palpate as pp, math
+    /// >>> mass = pp.ball(0.5).mass(density=1000)
+    /// >>> abs(mass.volume - math.pi / 6) <= mass.volume_error <= 1e-3 * mass.volume
+    /// True
+    #[pyo3(signature = (density = 1000.0, *, tolerance = None, cells = None))]
+    fn mass<'py>(
+        &self,
+        py: Python<'py>,
+        density: f64,
+        tolerance: Option<f64>,
+        cells: Option<usize>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let limits = MassLimits::default();
+        let limits = tolerance.map_or(limits, |tolerance| limits.with_tolerance(tolerance));
+        let limits = cells.map_or(limits, |cells| limits.with_cells(cells));
+        of_either!(self.made(py)?, shape => {
+            let found = py.detach(|| shape.mass(density, limits)).or_raise(py)?;
+            told(py, &found)
+        })
+    }
+
+    /// The surface in triangles, closed, facing outwards, with sharp edges; of shapes in space.
+    ///
+    /// `cell` is the size of the cells [m]: parts thinner than two may be lost.
+    ///
+    /// >>> import palpate as pp
+    /// >>> mesh = pp.cuboid([0.3, 0.2, 0.1]).mesh(cell=0.017)
+    /// >>> mesh.is_watertight, round(mesh.report().enclosed, 9)
+    /// (True, 0.006)
+    #[pyo3(signature = (*, cell))]
+    fn mesh(&self, py: Python<'_>, cell: f64) -> PyResult<PyMesh> {
+        mesh::of_shape(py, &self.solid(py, "mesh")?, cell)
+    }
+}
+
+fn told<'py, const D: usize>(py: Python<'py>, found: &Mass<D>) -> PyResult<Bound<'py, PyAny>> {
+    let moments: Vec<f64> = found.second_moments.iter().flatten().copied().collect();
+    Fields::new(py)
+        .with("mass", found.mass())?
+        .with("mass_error", found.mass_error())?
+        .with("volume", found.volume)?
+        .with("volume_error", found.volume_error)?
+        .with("density", found.density)?
+        .with("centroid", vector(py, found.centroid))?
+        .with("centroid_error", found.centroid_error)?
+        .with("second_moments", row(py, moments).call_method1("reshape", (D, D))?)?
+        .with("second_moments_error", found.second_moments_error)?
+        .with("cells", found.cells)?
+        .of_class("Mass")
+}

@@ -1,0 +1,376 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! The class `Mesh`: triangles in space, and outlines of segments in the plane.
+
+use std::ops::ControlFlow;
+use std::path::{Path, PathBuf};
+
+use palpate::field::{Aabb, Point, Shape, Vector};
+use palpate::mesh::{
+    ContourOptions, Format, Mesh, Outline, Report, Sheet, Solid, TriangleMesh, read_file,
+};
+use palpate::query::{ElementMemory, MeshContacts, Query};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+
+use crate::answers::Fields;
+use crate::arrays::{misshapen, numbers, row, table};
+use crate::error::OrRaise;
+use crate::query::query;
+use crate::shape::{AnyShape, PyShape};
+
+/// A mesh in the plane or in space.
+enum AnyMesh {
+    Planar(Outline),
+    Spatial(TriangleMesh),
+}
+
+/// Does the same with a mesh of either dimension.
+macro_rules! of_either {
+    ($any:expr, $mesh:ident => $done:expr) => {
+        match $any {
+            AnyMesh::Planar($mesh) => $done,
+            AnyMesh::Spatial($mesh) => $done,
+        }
+    };
+}
+
+/// Triangles in space, or segments in the plane.
+///
+/// Vertices are an array of shape (n, D) [m], faces one of shape (m, D) with the numbers of their vertices from 0, in an
+/// order in which the solid is on the left in the plane, and normals lead out of it in space. A mesh of another library
+/// can be given instead if it has `vertices` and `faces`, as those of trimesh have.
+///
+/// >>> import palpate as pp
+/// >>> corners = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]
+/// >>> mesh = pp.Mesh(corners, [[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]])
+/// >>> mesh.is_watertight, mesh.shape().distance([0.2, 0.2, -0.5])
+/// (True, 0.5)
+#[pyclass(frozen, module = "palpate", name = "Mesh")]
+pub(crate) struct PyMesh(AnyMesh);
+
+#[pymethods]
+impl PyMesh {
+    #[new]
+    #[pyo3(signature = (vertices, faces = None))]
+    fn new(vertices: &Bound<'_, PyAny>, faces: Option<&Bound<'_, PyAny>>) -> PyResult<Self> {
+        let Some(faces) = faces else {
+            let (vertices, faces) = (vertices.getattr("vertices")?, vertices.getattr("faces")?);
+            return Self::new(&vertices, Some(&faces));
+        };
+        let points = numbers(vertices, "vertices")?;
+        match points.shape() {
+            [_, 2] => Ok(Self(AnyMesh::Planar(of_arrays(vertices, faces)?))),
+            [_, 3] => Ok(Self(AnyMesh::Spatial(of_arrays(vertices, faces)?))),
+            shape => Err(misshapen("vertices", "(n, 2) or (n, 3)", shape)),
+        }
+    }
+
+    /// Reads triangles from a file of OBJ, STL, PLY or GLB, with coordinates in metres; `scale` is what others are.
+    ///
+    /// >>> import palpate as pp, tempfile, os
+    /// >>> file = os.path.join(tempfile.mkdtemp(), "cube.stl")
+    /// >>> pp.cuboid([1, 1, 1]).mesh(cell=0.3).save(file)
+    /// >>> pp.Mesh.load(file).is_watertight
+    /// True
+    #[staticmethod]
+    #[pyo3(signature = (file, *, scale = 1.0))]
+    fn load(py: Python<'_>, file: PathBuf, scale: f64) -> PyResult<Self> {
+        let mesh = py.detach(|| read_file(&file)).or_raise(py)?;
+        let mesh = if scale == 1.0 { mesh } else { mesh.scaled(scale).or_raise(py)? };
+        Ok(Self(AnyMesh::Spatial(mesh)))
+    }
+
+    /// Writes triangles to a file of OBJ, STL, PLY or GLB, by its ending. A file that is there is replaced when the
+    /// new one is whole.
+    ///
+    /// >>> import palpate as pp, tempfile, os
+    /// >>> pp.ball(0.5).mesh(cell=0.1).save(os.path.join(tempfile.mkdtemp(), "ball.ply"))
+    fn save(&self, py: Python<'_>, file: PathBuf) -> PyResult<()> {
+        let AnyMesh::Spatial(mesh) = &self.0 else {
+            return Err(PyValueError::new_err(
+                "outlines have no files: save a mesh of triangles",
+            ));
+        };
+        let format = Format::of(&file).ok_or_else(|| {
+            PyValueError::new_err("the name of a mesh must end in .obj, .stl, .ply or .glb")
+        })?;
+        let mut bytes = Vec::new();
+        mesh.write(format, &mut bytes)?;
+        replace(py, &file, &bytes)
+    }
+
+    /// 2 in the plane, 3 in space.
+    ///
+    /// >>> import palpate as pp
+    /// >>> pp.ball(0.5).mesh(cell=0.1).dimension
+    /// 3
+    #[getter]
+    fn dimension(&self) -> usize {
+        match self.0 {
+            AnyMesh::Planar(_) => 2,
+            AnyMesh::Spatial(_) => 3,
+        }
+    }
+
+    /// The vertices [m], shape (n, D).
+    ///
+    /// >>> import palpate as pp
+    /// >>> pp.ball(0.5).mesh(cell=0.1).vertices.shape[1]
+    /// 3
+    #[getter]
+    fn vertices<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        of_either!(&self.0, mesh => rows(py, mesh.vertices()))
+    }
+
+    /// The numbers of the vertices of each triangle or segment, shape (m, D).
+    ///
+    /// >>> import palpate as pp
+    /// >>> pp.ball(0.5).mesh(cell=0.1).faces.dtype
+    /// dtype('uint32')
+    #[getter]
+    fn faces<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        of_either!(&self.0, mesh => {
+            let columns = mesh.elements().first().map_or(self.dimension(), |e| e.len());
+            let numbers: Vec<u32> = mesh.elements().iter().flatten().copied().collect();
+            row(py, numbers).call_method1("reshape", (mesh.elements().len(), columns))
+        })
+    }
+
+    /// Whether each edge has two triangles, or each vertex two segments, that agree on the inside.
+    ///
+    /// >>> import palpate as pp
+    /// >>> pp.ball(0.5).mesh(cell=0.1).is_watertight
+    /// True
+    #[getter]
+    fn is_watertight(&self) -> bool {
+        of_either!(&self.0, mesh => mesh.report().is_watertight())
+    }
+
+    /// What the mesh is: counts of what is wrong with it, its surface and what it encloses.
+    ///
+    /// >>> import palpate as pp
+    /// >>> report = pp.cuboid([1, 1, 1]).mesh(cell=0.3).report()
+    /// >>> report.boundary, round(report.enclosed, 6)
+    /// (0, 1.0)
+    fn report<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        of_either!(&self.0, mesh => report(py, &mesh.report()))
+    }
+
+    /// The solid that the mesh bounds, as a shape: the distance to the nearest face, negative inside.
+    ///
+    /// What is wrong is mended, and `findings` says in words what was. Faces that bound no solid are refused; with a
+    /// `thickness` [m] they are a plate.
+    ///
+    /// >>> import palpate as pp
+    /// >>> solid = pp.ball(0.5).mesh(cell=0.05).shape()
+    /// >>> solid.promise.outside, bool(abs(solid.distance([0, 1, 0]) - 0.5) < 0.01)
+    /// ('exact', True)
+    #[pyo3(signature = (*, thickness = None))]
+    fn shape(&self, py: Python<'_>, thickness: Option<f64>) -> PyResult<PyShape> {
+        of_either!(&self.0, mesh => match thickness {
+            None => {
+                let solid = py.detach(|| Solid::from_mesh(mesh)).or_raise(py)?;
+                Ok(Shape::from(solid.0).into())
+            }
+            Some(thickness) => {
+                let sheet = py.detach(|| Sheet::from_mesh(mesh, thickness)).or_raise(py)?;
+                Ok(Shape::from(sheet).into())
+            }
+        })
+    }
+
+    /// What is found and mended where the mesh becomes a solid, in words; nothing if it is one as it is.
+    ///
+    /// >>> import palpate as pp
+    /// >>> mesh = pp.ball(0.5).mesh(cell=0.1)
+    /// >>> mesh.findings(), pp.Mesh(mesh.vertices, mesh.faces[1:]).findings()[:9]
+    /// ('', '1 opening')
+    fn findings(&self, py: Python<'_>) -> PyResult<String> {
+        of_either!(&self.0, mesh => {
+            let solid = py.detach(|| Solid::from_mesh(mesh)).or_raise(py)?;
+            Ok(solid.1.to_string())
+        })
+    }
+
+    fn __repr__(&self) -> String {
+        of_either!(&self.0, mesh => {
+            format!("<palpate.Mesh: {}>", mesh.report())
+        })
+    }
+
+    fn __len__(&self) -> usize {
+        of_either!(&self.0, mesh => mesh.elements().len())
+    }
+
+    fn __eq__(&self, other: &Bound<'_, PyAny>) -> bool {
+        let Ok(other) = other.cast::<Self>() else { return false };
+        match (&self.0, &other.get().0) {
+            (AnyMesh::Planar(one), AnyMesh::Planar(two)) => same(one, two),
+            (AnyMesh::Spatial(one), AnyMesh::Spatial(two)) => same(one, two),
+            _ => false,
+        }
+    }
+
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
+        let (py, mesh) = (slf.py(), slf.get());
+        let arrays = (mesh.vertices(py)?, mesh.faces(py)?);
+        Ok((slf.get_type(), arrays).into_pyobject(py)?.into_any())
+    }
+}
+
+fn report<'py, const D: usize>(
+    py: Python<'py>,
+    found: &Report<D>,
+) -> PyResult<Bound<'py, PyAny>> {
+    let Aabb { min, max } = found.bounds;
+    Fields::new(py)
+        .with("elements", found.elements)?
+        .with("vertices", found.vertices)?
+        .with("unreferenced", found.unreferenced)?
+        .with("coincident", found.coincident)?
+        .with("degenerate", found.degenerate)?
+        .with("duplicates", found.duplicates)?
+        .with("boundary", found.boundary)?
+        .with("non_manifold", found.non_manifold)?
+        .with("inconsistent", found.inconsistent)?
+        .with("bounds", table(py, [min.0, max.0].concat(), D)?)?
+        .with("surface", found.surface)?
+        .with("enclosed", found.enclosed)?
+        .with("is_watertight", found.is_watertight())?
+        .with("in_words", found.to_string())?
+        .of_class("MeshReport")
+}
+
+fn same<const N: usize, const D: usize>(one: &Mesh<N, D>, two: &Mesh<N, D>) -> bool {
+    one.vertices() == two.vertices() && one.elements() == two.elements()
+}
+
+fn rows<'py, const D: usize>(
+    py: Python<'py>,
+    points: &[Point<D>],
+) -> PyResult<Bound<'py, PyAny>> {
+    table(py, points.iter().flat_map(|p| p.0).collect(), D)
+}
+
+/// A mesh of vertices and the numbers of those of each element.
+fn of_arrays<const N: usize, const D: usize>(
+    vertices: &Bound<'_, PyAny>,
+    faces: &Bound<'_, PyAny>,
+) -> PyResult<Mesh<N, D>> {
+    let py = vertices.py();
+    let points = numbers(vertices, "vertices")?;
+    let points: Vec<Point<D>> = points
+        .as_doubles()?
+        .chunks_exact(D)
+        .map(|point| Vector(std::array::from_fn(|i| point[i])))
+        .collect();
+    let faces = numbers(faces, "faces")?;
+    if !matches!(faces.shape(), [_, columns] if *columns == N) {
+        return Err(misshapen("faces", &format!("(m, {N})"), faces.shape()));
+    }
+    let faces = faces.as_doubles()?;
+    let is_number = |x: &f64| x.fract() == 0.0 && (0.0..4_294_967_296.0).contains(x);
+    if let Some(place) = faces.iter().position(|x| !is_number(x)) {
+        let problem = format!(
+            "faces[{}, {}] must be the number of a vertex, from 0, got {}",
+            place / N,
+            place % N,
+            faces[place]
+        );
+        return Err(PyValueError::new_err(problem));
+    }
+    let elements = faces.chunks_exact(N).map(|face| std::array::from_fn(|i| face[i] as u32));
+    Mesh::new(points, elements.collect()).or_raise(py)
+}
+
+/// A mesh of a shape, by cells of a size [m].
+pub(crate) fn of_shape(py: Python<'_>, shape: &Shape<3>, cell: f64) -> PyResult<PyMesh> {
+    let options = ContourOptions::with_cell(cell);
+    let mut stopped = None;
+    let made = py.detach(|| {
+        TriangleMesh::of_shape_with(shape, &options, &mut |_| match Python::attach(|py| {
+            py.check_signals()
+        }) {
+            Ok(()) => ControlFlow::Continue(()),
+            Err(error) => {
+                stopped = Some(error);
+                ControlFlow::Break(())
+            }
+        })
+    });
+    match stopped {
+        Some(error) => Err(error),
+        None => made.or_raise(py).map(|mesh| PyMesh(AnyMesh::Spatial(mesh))),
+    }
+}
+
+/// Writes a file beside the one that it then replaces.
+pub(crate) fn replace(py: Python<'_>, file: &Path, bytes: &[u8]) -> PyResult<()> {
+    py.import("palpate._files")?.call_method1("replace", (file, bytes))?;
+    Ok(())
+}
+
+/// Which elements of a mesh touch a shape, with the contacts on each; `gap` [m] is how near is near enough.
+///
+/// `tolerance` is how far apart the bounds may be [m], a ten-thousandth of the smaller body if left out; `budget` how
+/// often the field is evaluated at most, 200 000 if left out.
+///
+/// >>> import palpate as pp
+/// >>> found = pp.mesh_contacts(pp.ball(0.5).translated([0, 0.95, 0]), pp.cuboid([1, 1, 1]).mesh(cell=0.3))
+/// >>> len(found) > 0, bool(abs(found.gaps.min() + 0.05) < 1e-3)
+/// (True, True)
+#[pyfunction]
+#[pyo3(signature = (shape, mesh, *, gap = 0.0, tolerance = None, budget = None))]
+pub(crate) fn mesh_contacts<'py>(
+    py: Python<'py>,
+    shape: &PyShape,
+    mesh: &PyMesh,
+    gap: f64,
+    tolerance: Option<f64>,
+    budget: Option<u32>,
+) -> PyResult<Bound<'py, PyAny>> {
+    match (shape.made(py)?, &mesh.0) {
+        (AnyShape::Planar(shape), AnyMesh::Planar(mesh)) => {
+            touched(py, shape, mesh, query(tolerance, budget).with_gap(gap))
+        }
+        (AnyShape::Spatial(shape), AnyMesh::Spatial(mesh)) => {
+            touched(py, shape, mesh, query(tolerance, budget).with_gap(gap))
+        }
+        (shape, _) => {
+            let (shape, mesh) = (shape.dimension(), mesh.dimension());
+            let problem =
+                format!("shape and mesh must have one dimension, got {shape}D and {mesh}D");
+            Err(PyValueError::new_err(problem))
+        }
+    }
+}
+
+fn touched<'py, const N: usize, const D: usize>(
+    py: Python<'py>,
+    shape: &Shape<D>,
+    mesh: &Mesh<N, D>,
+    mut query: Query<D>,
+) -> PyResult<Bound<'py, PyAny>>
+where
+    Query<D>: ElementMemory<N, D>,
+{
+    let found = py.detach(|| query.mesh_contacts(shape, mesh)).or_raise(py)?;
+    let MeshContacts { contacts, hits, undecided, evaluations, .. } = &found;
+    let points = |of: fn(&palpate::query::Contact<D>) -> [f64; D]| {
+        table(py, contacts.iter().flat_map(|found| of(&found.contact)).collect(), D)
+    };
+    Fields::new(py)
+        .with("points_a", points(|contact| contact.point_a.0)?)?
+        .with("points_b", points(|contact| contact.point_b.0)?)?
+        .with("normals", points(|contact| contact.normal.0)?)?
+        .with("gaps", row(py, contacts.iter().map(|found| found.contact.gap).collect()))?
+        .with("faces", row(py, contacts.iter().map(|found| found.element).collect()))?
+        .with("hits", row(py, hits.clone()))?
+        .with("undecided", row(py, undecided.iter().map(|open| open.element).collect()))?
+        .with("lower", row(py, undecided.iter().map(|open| open.lower).collect()))?
+        .with("upper", row(py, undecided.iter().map(|open| open.upper).collect()))?
+        .with("evaluations", *evaluations)?
+        .of_class("MeshContacts")
+}

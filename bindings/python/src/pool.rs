@@ -1,0 +1,53 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! Threads, which do not outlive a fork.
+
+use std::collections::HashMap;
+use std::sync::{Arc, Mutex, PoisonError};
+
+use pyo3::exceptions::{PyRuntimeError, PyValueError};
+use pyo3::prelude::*;
+use rayon::{ThreadPool, ThreadPoolBuilder};
+
+/// Threads that share work.
+pub(crate) type Pool = ThreadPool;
+
+/// More are a mistake.
+const MOST_THREADS: usize = 1024;
+
+/// The pools by the process that made them and their threads: a child of `fork` has none of its parent's threads, so
+/// it makes pools of its own.
+static POOLS: Mutex<Option<HashMap<(u32, usize), Arc<Pool>>>> = Mutex::new(None);
+
+/// So many threads; those of all processors if that is 0, none but the caller's if it is 1.
+pub(crate) fn of(threads: usize) -> PyResult<Option<Arc<Pool>>> {
+    let threads = match threads {
+        0 => std::thread::available_parallelism().map_or(1, usize::from),
+        threads => threads,
+    };
+    if threads > MOST_THREADS {
+        let problem = format!("threads must be at most {MOST_THREADS}, got {threads}");
+        return Err(PyValueError::new_err(problem));
+    }
+    if threads == 1 { Ok(None) } else { at_least_one(threads).map(Some) }
+}
+
+/// A pool even of one thread: what the core shares among the threads of the pool that it is called from would else be
+/// shared among those of all processors.
+pub(crate) fn at_least_one(threads: usize) -> PyResult<Arc<Pool>> {
+    let mut pools = POOLS.lock().unwrap_or_else(PoisonError::into_inner);
+    let pools = pools.get_or_insert_with(HashMap::new);
+    let key = (std::process::id(), threads);
+    if let Some(pool) = pools.get(&key) {
+        return Ok(Arc::clone(pool));
+    }
+    // Those of another process are never dropped: that would wait for threads that do not exist here.
+    let made = ThreadPoolBuilder::new().num_threads(threads).build();
+    let made = made.map_err(|error| {
+        PyRuntimeError::new_err(format!("{threads} threads did not start: {error}"))
+    })?;
+    let pool = Arc::new(made);
+    pools.insert(key, Arc::clone(&pool));
+    Ok(pool)
+}

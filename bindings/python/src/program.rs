@@ -1,0 +1,12 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! The program `palpate`.
+
+use pyo3::prelude::*;
+
+/// Runs a command line, the program's name first, and returns the exit status.
+#[pyfunction]
+pub(crate) fn main(py: Python<'_>, arguments: Vec<std::ffi::OsString>) -> u8 {
+    py.detach(|| palpate_cli::run(arguments))
+}

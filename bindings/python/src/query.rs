@@ -1,0 +1,375 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! Where two shapes touch, and how far apart they are.
+
+use std::time::{Duration, Instant};
+
+use palpate::field::{Pose, Shape};
+use palpate::query::{Certified, Manifold, Nearest, Query, QueryError, Ray, Stop, Tolerance};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+
+use crate::answers::{Fields, certified, contact, stop, vector};
+use crate::arrays::{row, table};
+use crate::error::OrRaise;
+use crate::pool;
+use crate::poses::{self, Posed};
+use crate::shape::{AnyShape, PyShape};
+
+/// How long poses are worked on before Python is asked whether it is to stop.
+const A_WHILE: Duration = Duration::from_millis(40);
+
+/// Poses that are asked about from one look at Python to the next, at most.
+const MOST_POSES: usize = 1 << 16;
+
+/// Does the same with two shapes of either dimension.
+macro_rules! of_both {
+    ($py:expr, $one:expr, $two:expr, |$a:ident, $b:ident| $done:expr) => {
+        match ($one.made($py)?, $two.made($py)?) {
+            (AnyShape::Planar($a), AnyShape::Planar($b)) => $done,
+            (AnyShape::Spatial($a), AnyShape::Spatial($b)) => $done,
+            (one, two) => {
+                let (one, two) = (one.dimension(), two.dimension());
+                let problem =
+                    format!("both shapes must have one dimension, got {one}D and {two}D");
+                Err(PyValueError::new_err(problem))
+            }
+        }
+    };
+}
+
+/// A query with what a caller asks of its answers.
+pub(crate) fn query<const D: usize>(tolerance: Option<f64>, budget: Option<u32>) -> Query<D> {
+    let query = Query::new();
+    let query = match tolerance {
+        None => query,
+        Some(length) => query.with_tolerance(Tolerance::Absolute(length)),
+    };
+    match budget {
+        None => query,
+        Some(budget) => query.with_budget(budget),
+    }
+}
+
+/// A point between the bodies, and the way from the first to the second.
+fn nearest<'py, const D: usize>(
+    py: Python<'py>,
+    found: &Certified<Nearest<D>>,
+) -> PyResult<Fields<'py>> {
+    certified(py, found)?
+        .with("point", vector(py, found.best.point))?
+        .with("normal", found.best.normal.map(|normal| vector(py, normal)))
+}
+
+/// How far apart two bodies are, between proven bounds: negative if they overlap, by how far one must be moved at least.
+///
+/// `tolerance` is how far apart the bounds may be [m], a ten-thousandth of the smaller body if left out; `budget` how
+/// often the fields are evaluated at most, 200 000 if left out.
+///
+/// >>> import palpate as pp
+/// >>> found = pp.separation(pp.ball(0.5), pp.ball(0.5).translated([1.5, 0, 0]), tolerance=1e-6)
+/// >>> found.lower <= 0.5 <= found.upper, found.stop
+/// (True, 'converged')
+#[pyfunction]
+#[pyo3(signature = (a, b, *, tolerance = None, budget = None))]
+pub(crate) fn separation<'py>(
+    py: Python<'py>,
+    a: &PyShape,
+    b: &PyShape,
+    tolerance: Option<f64>,
+    budget: Option<u32>,
+) -> PyResult<Bound<'py, PyAny>> {
+    of_both!(py, a, b, |a, b| {
+        let found = py.detach(|| query(tolerance, budget).separation(a, b)).or_raise(py)?;
+        nearest(py, &found)?.of_class("Separation")
+    })
+}
+
+/// Whether two bodies overlap, proven. The answer is undecided if `budget` evaluations prove neither.
+///
+/// >>> import palpate as pp
+/// >>> pp.overlap(pp.ball(0.5), pp.ball(0.5).translated([0.9, 0, 0])).overlaps
+/// True
+#[pyfunction]
+#[pyo3(signature = (a, b, *, budget = None))]
+pub(crate) fn overlap<'py>(
+    py: Python<'py>,
+    a: &PyShape,
+    b: &PyShape,
+    budget: Option<u32>,
+) -> PyResult<Bound<'py, PyAny>> {
+    of_both!(py, a, b, |a, b| {
+        let found = py.detach(|| query(None, budget).overlap(a, b)).or_raise(py)?;
+        nearest(py, &found)?.with("overlaps", found.is_hit())?.of_class("Overlap")
+    })
+}
+
+/// The points at which two bodies are nearest to each other, or deepest in each other.
+///
+/// `tolerance` is how far apart the bounds may be [m], a ten-thousandth of the smaller body if left out; `budget` how
+/// often the fields are evaluated at most, 200 000 if left out.
+///
+/// >>> import palpate as pp
+/// >>> found = pp.closest_points(pp.ball(0.5), pp.ball(0.5).translated([1.5, 0, 0]))
+/// >>> found.contact.point_a.round(3)
+/// array([0.5, 0. , 0. ])
+#[pyfunction]
+#[pyo3(signature = (a, b, *, tolerance = None, budget = None))]
+pub(crate) fn closest_points<'py>(
+    py: Python<'py>,
+    a: &PyShape,
+    b: &PyShape,
+    tolerance: Option<f64>,
+    budget: Option<u32>,
+) -> PyResult<Bound<'py, PyAny>> {
+    of_both!(py, a, b, |a, b| {
+        let found = py.detach(|| query(tolerance, budget).closest_points(a, b)).or_raise(py)?;
+        let best = found.best.as_ref().map(|best| contact(py, best)).transpose()?;
+        certified(py, &found)?.with("contact", best)?.of_class("ClosestPoints")
+    })
+}
+
+/// Contacts that span where two bodies touch or are nearer than `margin` [m].
+///
+/// Contacts are at least `spacing` apart [m], and at most `most`. Left out, they fit the smaller body: 0.2 % and 4 % of
+/// its size, and 32.
+///
+/// `tolerance` is how far apart the bounds may be [m], a ten-thousandth of the smaller body if left out; `budget` how
+/// often the fields are evaluated at most, 200 000 if left out.
+///
+/// >>> import palpate as pp
+/// >>> found = pp.manifold(pp.cuboid([1, 1, 1]), pp.cuboid([1, 1, 1]).translated([0, 0.999, 0]))
+/// >>> len(found) >= 4, bool((abs(found.gaps + 0.001) < 2e-4).all())
+/// (True, True)
+#[pyfunction]
+#[pyo3(signature = (a, b, *, margin = None, spacing = None, most = None, tolerance = None, budget = None))]
+#[expect(clippy::too_many_arguments, reason = "each has a name in Python")]
+pub(crate) fn manifold<'py>(
+    py: Python<'py>,
+    a: &PyShape,
+    b: &PyShape,
+    margin: Option<f64>,
+    spacing: Option<f64>,
+    most: Option<usize>,
+    tolerance: Option<f64>,
+    budget: Option<u32>,
+) -> PyResult<Bound<'py, PyAny>> {
+    of_both!(py, a, b, |a, b| {
+        let found = py.detach(|| {
+            query(tolerance, budget).manifold_with(a, b, |own| {
+                let own = margin.map_or(own, |margin| own.with_margin(margin));
+                let own = spacing.map_or(own, |spacing| own.with_spacing(spacing));
+                most.map_or(own, |most| own.with_most(most))
+            })
+        });
+        manifold_of(py, &found.or_raise(py)?)
+    })
+}
+
+fn manifold_of<'py, const D: usize>(
+    py: Python<'py>,
+    found: &Manifold<D>,
+) -> PyResult<Bound<'py, PyAny>> {
+    let all = &found.contacts;
+    let points = |of: fn(&palpate::query::Contact<D>) -> [f64; D]| {
+        table(py, all.iter().flat_map(of).collect(), D)
+    };
+    Fields::new(py)
+        .with("lower", found.separation.lower)?
+        .with("upper", found.distance_at_most)?
+        .with("stop", stop(found.region_stop))?
+        .with("evaluations", found.separation.evaluations)?
+        .with("points_a", points(|contact| contact.point_a.0)?)?
+        .with("points_b", points(|contact| contact.point_b.0)?)?
+        .with("normals", points(|contact| contact.normal.0)?)?
+        .with("gaps", row(py, all.iter().map(|contact| contact.gap).collect()))?
+        .with("ids", row(py, all.iter().map(|contact| contact.id).collect()))?
+        .with("groups", row(py, found.groups.iter().map(|group| *group as u64).collect()))?
+        .with("separation", nearest(py, &found.separation)?.of_class("Separation")?)?
+        .with("dropped", found.dropped)?
+        .with("is_whole", found.is_whole)?
+        .of_class("Manifold")
+}
+
+/// The first surface along a ray of a length [m], proven: none is passed over.
+///
+/// `tolerance` is how far apart the bounds may be [m], a ten-thousandth of the smaller body if left out; `budget` how
+/// often the fields are evaluated at most, 200 000 if left out.
+///
+/// >>> import palpate as pp
+/// >>> pp.cast_ray(pp.ball(0.5), [0, 2, 0], [0, -1, 0]).point.round(3)
+/// array([0. , 0.5, 0. ])
+#[pyfunction]
+#[pyo3(signature = (shape, origin, direction, length = 1e3, *, tolerance = None, budget = None))]
+pub(crate) fn cast_ray<'py>(
+    shape: &PyShape,
+    origin: &Bound<'py, PyAny>,
+    direction: &Bound<'py, PyAny>,
+    length: f64,
+    tolerance: Option<f64>,
+    budget: Option<u32>,
+) -> PyResult<Bound<'py, PyAny>> {
+    crate::shape::of_either!(shape.made(origin.py())?, shape => {
+        cast(shape, (origin, direction, length), &mut query(tolerance, budget))
+    })
+}
+
+fn cast<'py, const D: usize>(
+    shape: &Shape<D>,
+    (origin, direction, length): (&Bound<'py, PyAny>, &Bound<'py, PyAny>, f64),
+    query: &mut Query<D>,
+) -> PyResult<Bound<'py, PyAny>> {
+    let py = origin.py();
+    let (origin, direction) =
+        (poses::point(origin, "origin")?, poses::point(direction, "direction")?);
+    let ray = Ray::new(origin, direction, length).or_raise(py)?;
+    let found = py.detach(|| query.cast_ray(shape, &ray)).or_raise(py)?;
+    let hit = found.best;
+    certified(py, &found)?
+        .with("point", hit.map(|hit| vector(py, hit.point)))?
+        .with("normal", hit.and_then(|hit| hit.normal).map(|normal| vector(py, normal)))?
+        .of_class("RayHit")
+}
+
+/// What is asked about each of many poses.
+#[derive(Clone, Copy)]
+enum Asked {
+    Separation,
+    Overlap,
+}
+
+type Found<const D: usize> = Option<Certified<Nearest<D>>>;
+
+/// How far apart two bodies are, with the second at each of many poses in the frame of the first.
+///
+/// Poses are an array of shape (n, D) of translations, in space (n, 7) of x, y, z, qx, qy, qz, qw or (n, 4, 4), in the
+/// plane (n, 3) of x, y and angle [rad] or (n, 3, 3). `threads` share the work, 0 for all processors; the bits do not
+/// depend on how many.
+///
+/// `tolerance` is how far apart the bounds may be [m], a ten-thousandth of the smaller body if left out; `budget` how
+/// often the fields are evaluated at most, 200 000 if left out.
+///
+/// >>> import palpate as pp
+/// >>> found = pp.separations(pp.ball(0.5), pp.ball(0.5), [[1.5, 0, 0], [2, 0, 0]])
+/// >>> found.upper.round(3)
+/// array([0.5, 1. ])
+#[pyfunction]
+#[pyo3(signature = (a, b, poses, *, tolerance = None, budget = None, threads = 1))]
+pub(crate) fn separations<'py>(
+    a: &PyShape,
+    b: &PyShape,
+    poses: &Bound<'py, PyAny>,
+    tolerance: Option<f64>,
+    budget: Option<u32>,
+    threads: usize,
+) -> PyResult<Bound<'py, PyAny>> {
+    of_both!(poses.py(), a, b, |a, b| {
+        let query = query(tolerance, budget);
+        told(poses.py(), &each(&query, [a, b], poses, Asked::Separation, threads)?)
+    })
+}
+
+/// Whether two bodies overlap, with the second at each of many poses: 1 yes, 0 no, -1 undecided; see `separations`.
+///
+/// >>> import palpate as pp
+/// >>> pp.overlaps(pp.ball(0.5), pp.ball(0.5), [[0.9, 0, 0], [1.1, 0, 0]])
+/// array([1, 0], dtype=int8)
+#[pyfunction]
+#[pyo3(signature = (a, b, poses, *, budget = None, threads = 1))]
+pub(crate) fn overlaps<'py>(
+    a: &PyShape,
+    b: &PyShape,
+    poses: &Bound<'py, PyAny>,
+    budget: Option<u32>,
+    threads: usize,
+) -> PyResult<Bound<'py, PyAny>> {
+    of_both!(poses.py(), a, b, |a, b| {
+        let found = each(&query(None, budget), [a, b], poses, Asked::Overlap, threads)?;
+        let verdict = |found: &Certified<_>| found.is_hit().map_or(-1_i8, i8::from);
+        Ok(row(poses.py(), found.iter().map(verdict).collect()))
+    })
+}
+
+/// The answers for all poses of the second body in the frame of the first. Python may stop them at any time.
+fn each<const D: usize>(
+    query: &Query<D>,
+    bodies: [&Shape<D>; 2],
+    poses: &Bound<'_, PyAny>,
+    asked: Asked,
+    threads: usize,
+) -> PyResult<Vec<Certified<Nearest<D>>>>
+where
+    Pose<D>: Posed,
+{
+    let py = poses.py();
+    let poses: Vec<Pose<D>> = poses::many(poses)?;
+    let pool = match pool::of(threads)? {
+        Some(pool) => pool,
+        None => pool::at_least_one(1)?,
+    };
+    let mut answers: Vec<Found<D>> = vec![None; poses.len()];
+    for (part, (poses, answers)) in
+        poses.chunks(MOST_POSES).zip(answers.chunks_mut(MOST_POSES)).enumerate()
+    {
+        let mut waiting: Vec<usize> = (0..poses.len()).collect();
+        while !waiting.is_empty() {
+            let asked_now: Vec<_> = waiting.iter().map(|i| poses[*i]).collect();
+            let mut found: Vec<Found<D>> = vec![None; waiting.len()];
+            let until = Instant::now() + A_WHILE;
+            let goes_on = || Instant::now() < until;
+            let run = || match asked {
+                Asked::Separation => query.separations(bodies, &asked_now, &mut found, goes_on),
+                Asked::Overlap => query.overlaps(bodies, &asked_now, &mut found, goes_on),
+            };
+            let outcome = py.detach(|| pool.install(run));
+            outcome
+                .map_err(|error| in_place(error, part * MOST_POSES, &waiting))
+                .or_raise(py)?;
+            py.check_signals()?;
+            waiting = waiting
+                .into_iter()
+                .zip(found)
+                .filter_map(|(i, found)| {
+                    answers[i] = found;
+                    found.is_none().then_some(i)
+                })
+                .collect();
+        }
+    }
+    Ok(answers.into_iter().flatten().collect())
+}
+
+/// The error of a pose with its place among all.
+fn in_place(error: QueryError, before: usize, waiting: &[usize]) -> QueryError {
+    match error {
+        QueryError::Pose { index } => QueryError::Pose { index: before + waiting[index] },
+        other => other,
+    }
+}
+
+fn told<'py, const D: usize>(
+    py: Python<'py>,
+    found: &[Certified<Nearest<D>>],
+) -> PyResult<Bound<'py, PyAny>> {
+    let points = found.iter().flat_map(|found| found.best.point.0).collect();
+    let unknown = [f64::NAN; D];
+    let normals = found
+        .iter()
+        .flat_map(|found| found.best.normal.map_or(unknown, |normal| normal.0))
+        .collect();
+    let stops = found.iter().map(|found| place(found.stop)).collect();
+    Fields::new(py)
+        .with("lower", row(py, found.iter().map(|found| found.lower).collect()))?
+        .with("upper", row(py, found.iter().map(|found| found.upper).collect()))?
+        .with("points", table(py, points, D)?)?
+        .with("normals", table(py, normals, D)?)?
+        .with("stops", row(py, stops))?
+        .with("evaluations", row(py, found.iter().map(|found| found.evaluations).collect()))?
+        .of_class("Separations")
+}
+
+/// The place of a reason to stop among `palpate.STOPS`.
+const fn place(stop: Stop) -> u8 {
+    stop as u8
+}

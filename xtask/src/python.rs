@@ -1,0 +1,58 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! The wheel for Python, and its tests, in an environment of their own.
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use crate::command::{Failure, failed, is_there, root, run, target};
+
+/// Where the package is.
+const PACKAGE: &str = "bindings/python";
+
+/// Builds the wheel, installs it with what its tests need, and runs them.
+pub(crate) fn test() -> Result<(), Failure> {
+    let python = environment()?;
+    let package = root().join(PACKAGE);
+    let wheels = target().join("python").join("wheels");
+    if wheels.exists() {
+        std::fs::remove_dir_all(&wheels).map_err(|error| failed(&wheels, &error))?;
+    }
+    // The profile of the other tests, whose crates are compiled already.
+    let mut build = Command::new(&python);
+    build.args(["-m", "maturin", "build", "--profile", "dev", "--locked", "--out"]);
+    run(build.arg(&wheels).current_dir(&package))?;
+    let wheel = std::fs::read_dir(&wheels)
+        .map_err(|error| failed(&wheels, &error))?
+        .find_map(|entry| entry.ok().map(|entry| entry.path()))
+        .ok_or_else(|| Failure(format!("{}: maturin made no wheel", wheels.display())))?;
+    let with_tests = format!("{}[test]", wheel.display());
+    run(pip(&python).arg(with_tests))?;
+    // The version stays the same, so pip would keep the wheel of the last run.
+    run(pip(&python).args(["--force-reinstall", "--no-deps"]).arg(&wheel))?;
+    let mut pytest = Command::new(&python);
+    run(pytest.args(["-m", "pytest", "-q"]).current_dir(&package))
+}
+
+/// The interpreter of an environment with what builds wheels, made if it is not there.
+fn environment() -> Result<PathBuf, Failure> {
+    let folder = target().join("python").join("environment");
+    let python = folder.join(if cfg!(windows) { "Scripts/python.exe" } else { "bin/python" });
+    if !python.exists() {
+        let own = ["python3", "python"].into_iter().find(|name| is_there(name));
+        let own = own.ok_or_else(|| {
+            let by_hand = "the tests of the Python package need Python 3.11 or later: sudo apt-get install python3 python3-venv";
+            Failure(by_hand.to_owned())
+        })?;
+        run(Command::new(own).args(["-m", "venv"]).arg(&folder))?;
+    }
+    run(pip(&python).args(["maturin>=1.16,<2"]))?;
+    Ok(python)
+}
+
+fn pip(python: &Path) -> Command {
+    let mut pip = Command::new(python);
+    pip.args(["-m", "pip", "install", "--quiet", "--disable-pip-version-check"]);
+    pip
+}
