@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! The project's own chores: `cargo xtask test`, `check`, `api` and `oracle`.
+//! The project's own chores: `cargo xtask test`, `python`, `check`, `api` and `oracle`.
 
 mod api;
 mod builds;
@@ -35,6 +35,8 @@ struct Arguments {
 enum Chore {
     /// Run every test of every language in the repository.
     Test,
+    /// Build the wheel for Python and run its tests, as `test` does at its end.
+    Python,
     /// Check formatting, sources, words, links, sizes, layers, licences, lints, documentation,
     /// the list of public items, and that the core compiles without a system.
     Check {
@@ -51,6 +53,7 @@ enum Chore {
 fn main() -> ExitCode {
     let result = match Arguments::parse().chore {
         Chore::Test => test(),
+        Chore::Python => python::test(),
         Chore::Check { stages } => check::run(&stages),
         Chore::Api => check::document().and_then(|()| api::renew()),
         Chore::Oracle => oracle(),

@@ -8,15 +8,18 @@ mod arrays;
 mod chain;
 mod error;
 mod evaluate;
+mod mailbox;
 mod mass;
 mod mesh;
 mod operators;
+mod pictures;
 mod pool;
 mod poses;
 mod primitives;
 mod program;
 mod query;
 mod scene;
+mod servo;
 mod shape;
 mod text;
 
@@ -25,12 +28,16 @@ use pyo3::prelude::*;
 #[pymodule]
 mod _palpate {
     #[pymodule_export]
+    use super::mailbox::PyMailbox;
+    #[pymodule_export]
     use super::mesh::{PyMesh, mesh_contacts};
     #[pymodule_export]
     use super::operators::{
         difference, intersection, smooth_difference, smooth_intersection, smooth_union,
         symmetric_difference, union,
     };
+    #[pymodule_export]
+    use super::pictures::{PyFigure, PyImage};
     #[pymodule_export]
     use super::primitives::{catalogue, primitive};
     #[pymodule_export]
@@ -41,6 +48,8 @@ mod _palpate {
     };
     #[pymodule_export]
     use super::scene::PyScene;
+    #[pymodule_export]
+    use super::servo::{PyServo, feel};
     #[pymodule_export]
     use super::shape::PyShape;
 }

@@ -3,7 +3,9 @@
 
 //! Threads, which do not outlive a fork.
 
+use std::cell::RefCell;
 use std::collections::HashMap;
+use std::mem::ManuallyDrop;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
@@ -30,12 +32,10 @@ pub(crate) fn of(threads: usize) -> PyResult<Option<Arc<Pool>>> {
         let problem = format!("threads must be at most {MOST_THREADS}, got {threads}");
         return Err(PyValueError::new_err(problem));
     }
-    if threads == 1 { Ok(None) } else { at_least_one(threads).map(Some) }
+    if threads == 1 { Ok(None) } else { shared(threads).map(Some) }
 }
 
-/// A pool even of one thread: what the core shares among the threads of the pool that it is called from would else be
-/// shared among those of all processors.
-pub(crate) fn at_least_one(threads: usize) -> PyResult<Arc<Pool>> {
+fn shared(threads: usize) -> PyResult<Arc<Pool>> {
     let mut pools = POOLS.lock().unwrap_or_else(PoisonError::into_inner);
     let pools = pools.get_or_insert_with(HashMap::new);
     let key = (std::process::id(), threads);
@@ -43,11 +43,35 @@ pub(crate) fn at_least_one(threads: usize) -> PyResult<Arc<Pool>> {
         return Ok(Arc::clone(pool));
     }
     // Those of another process are never dropped: that would wait for threads that do not exist here.
-    let made = ThreadPoolBuilder::new().num_threads(threads).build();
-    let made = made.map_err(|error| {
-        PyRuntimeError::new_err(format!("{threads} threads did not start: {error}"))
-    })?;
-    let pool = Arc::new(made);
+    let pool = made(threads)?;
     pools.insert(key, Arc::clone(&pool));
     Ok(pool)
+}
+
+fn made(threads: usize) -> PyResult<Arc<Pool>> {
+    let made = ThreadPoolBuilder::new().num_threads(threads).build();
+    made.map(Arc::new).map_err(|error| {
+        PyRuntimeError::new_err(format!("{threads} threads did not start: {error}"))
+    })
+}
+
+thread_local! {
+    /// A pool of one thread for each thread of Python, and the process that made it.
+    static ALONE: RefCell<Option<(u32, ManuallyDrop<Arc<Pool>>)>> = const { RefCell::new(None) };
+}
+
+/// A pool of one thread that no other thread of Python waits for. What the core shares among the threads of the pool
+/// that it is called from would without one be shared among those of all processors.
+pub(crate) fn alone() -> PyResult<Arc<Pool>> {
+    let process = std::process::id();
+    ALONE.with_borrow_mut(|own| {
+        if let Some((of, pool)) = own.as_ref()
+            && *of == process
+        {
+            return Ok(Arc::clone(pool));
+        }
+        let pool = made(1)?;
+        *own = Some((process, ManuallyDrop::new(Arc::clone(&pool))));
+        Ok(pool)
+    })
 }

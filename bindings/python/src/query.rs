@@ -306,7 +306,7 @@ where
     let poses: Vec<Pose<D>> = poses::many(poses)?;
     let pool = match pool::of(threads)? {
         Some(pool) => pool,
-        None => pool::at_least_one(1)?,
+        None => pool::alone()?,
     };
     let mut answers: Vec<Found<D>> = vec![None; poses.len()];
     for (part, (poses, answers)) in

@@ -48,7 +48,6 @@ impl PyScene {
         Ok(Self { written, built, folder })
     }
 
-    #[expect(dead_code, reason = "for servos")]
     pub(crate) fn built(&self) -> &AnyScene {
         &self.built
     }

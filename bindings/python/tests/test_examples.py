@@ -17,6 +17,10 @@ def documented() -> Iterator[tuple[str, object]]:
     for name in pp.__all__:
         value = getattr(pp, name)
         yield name, value
+        if inspect.ismodule(value):
+            for key, member in vars(value).items():
+                if not key.startswith("_") and getattr(member, "__module__", "") == value.__name__:
+                    yield f"{name}.{key}", member
         if inspect.isclass(value) and value.__module__.startswith("palpate"):
             own = {key: member for key, member in vars(value).items() if not key.startswith("_")}
             for key, member in own.items():

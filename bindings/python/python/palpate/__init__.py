@@ -14,13 +14,15 @@ are negative inside. Points are arrays of shape (..., D), D the dimension of the
 True
 """
 
-from palpate import _shapes
+from palpate import _shapes, batch
 from palpate._answers import (
     STOPS,
     AtPoint,
     Body,
     ClosestPoints,
     Contact,
+    Event,
+    Felt,
     Manifold,
     Mass,
     MeshContacts,
@@ -30,6 +32,9 @@ from palpate._answers import (
     RayHit,
     Separation,
     Separations,
+    Snapshot,
+    Touch,
+    Trace,
 )
 from palpate._errors import (
     DeviceError,
@@ -46,12 +51,17 @@ from palpate._errors import (
     UnknownNameError,
 )
 from palpate._palpate import (
+    Figure,
+    Image,
+    Mailbox,
     Mesh,
     Scene,
+    Servo,
     Shape,
     cast_ray,
     closest_points,
     difference,
+    feel,
     intersection,
     manifold,
     mesh_contacts,
@@ -65,6 +75,7 @@ from palpate._palpate import (
     symmetric_difference,
     union,
 )
+from palpate._plot import plot_contacts
 from palpate._shapes import *  # noqa: F403
 
 __all__ = [
@@ -76,9 +87,14 @@ __all__ = [
     "DeviceError",
     "DeviceLostError",
     "Error",
+    "Event",
+    "Felt",
+    "Figure",
     "FileError",
     "GridError",
     "HapticsError",
+    "Image",
+    "Mailbox",
     "Manifold",
     "Mass",
     "Mesh",
@@ -94,17 +110,24 @@ __all__ = [
     "SceneError",
     "Separation",
     "Separations",
+    "Servo",
     "Shape",
     "ShapeError",
+    "Snapshot",
+    "Touch",
+    "Trace",
     "UnknownNameError",
+    "batch",
     "cast_ray",
     "closest_points",
     "difference",
+    "feel",
     "intersection",
     "manifold",
     "mesh_contacts",
     "overlap",
     "overlaps",
+    "plot_contacts",
     "separation",
     "separations",
     "smooth_difference",

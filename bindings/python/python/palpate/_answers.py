@@ -10,7 +10,7 @@ question), "budget_spent", "memory_full" or "rounding_reached".
 from __future__ import annotations
 
 from dataclasses import dataclass, fields
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -353,3 +353,130 @@ class Body(_Answer):
     shape_in_body: Shape
     #: Where it is: a matrix of shape (D + 1, D + 1).
     pose: Floats
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Touch(_Answer):
+    """A contact point at an instant, in :attr:`Snapshot.touches`."""
+
+    #: Where the hand is [m], shape (D,).
+    device: Floats
+    #: How fast it moves [m/s], shape (D,).
+    velocity: Floats
+    #: Where the proxy is, which enters no body [m], shape (D,).
+    proxy: Floats
+    #: The force that the material wants [N], shape (D,).
+    wanted: Floats
+    #: The force that was written, after the safety chain [N], shape (D,).
+    force: Floats
+    #: The outward unit normal of the surface that is touched, shape (D,); zero if none is.
+    normal: Floats
+    #: The name of the body that is touched; None if none is.
+    body: str | None
+    #: Whether the proxy slips.
+    is_slipping: bool
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Snapshot(_Answer):
+    """The newest state of a servo, by :meth:`Servo.latest`."""
+
+    #: The time of the servo [s].
+    time: float
+    #: How many ticks there were.
+    ticks: int
+    #: The largest force since the last snapshot [N].
+    force: float
+    #: The largest depth since the last snapshot [m].
+    depth: float
+    #: The contact points.
+    touches: tuple[Touch, ...]
+    #: Whether the emergency stop holds.
+    is_stopped: bool
+    #: Events that nobody took in time.
+    events_lost: int
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Event(_Answer):
+    """What a contact point began or ended, by :meth:`Servo.events`."""
+
+    #: The tick, from 0.
+    tick: int
+    #: The contact point.
+    point: int
+    #: The name of the body.
+    body: str | None
+    #: "touch", "leave", "slip", "stick" or "pop".
+    kind: str
+    #: Of a touch, the speed along the normal, relative to the body [m/s].
+    speed: float | None
+    #: Of a pop, the force that broke the layer [N].
+    force: float | None
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Trace(_Answer):
+    """Ticks that were recorded: n rows, one for each tick and contact point."""
+
+    #: The time of the tick [s], shape (n,).
+    time: Floats
+    #: The contact point, shape (n,).
+    point: NDArray[np.uint32]
+    #: Where the hand is [m], shape (n, D).
+    device: Floats
+    #: Where the proxy is [m], shape (n, D).
+    proxy: Floats
+    #: The force that the material wants [N], shape (n, D).
+    wanted: Floats
+    #: The force that was written [N], shape (n, D).
+    force: Floats
+    #: The outward unit normal, shape (n, D).
+    normal: Floats
+    #: Whether a body is touched, shape (n,).
+    contact: NDArray[np.bool_]
+    #: The number of the body, shape (n,); without meaning where none is touched.
+    body: NDArray[np.uint32]
+    #: Whether the proxy slips, shape (n,).
+    is_slipping: NDArray[np.bool_]
+    #: How often the field was evaluated, shape (n,).
+    evaluations: NDArray[np.uint32]
+    #: How long the tick took [ns], shape (n,).
+    cost_ns: NDArray[np.uint64]
+    #: How late it was [ns], shape (n,).
+    lateness_ns: NDArray[np.uint64]
+    #: Rows that were not kept.
+    lost: int
+
+    def __len__(self) -> int:
+        return len(self.time)
+
+    def columns(self) -> dict[str, NDArray[Any]]:
+        """The rows as columns of numbers, for ``pandas.DataFrame``, ``pyarrow.table`` or ``polars.DataFrame``.
+
+        >>> import palpate as pp, pandas
+        >>> felt = pp.feel(pp.Scene(pp.ball(0.05)), hand=[0, 0.049, 0], seconds=0.01)
+        >>> pandas.DataFrame(felt.trace.columns()).shape
+        (10, 23)
+        """
+        columns: dict[str, NDArray[Any]] = {}
+        for field in fields(self):
+            value = getattr(self, field.name)
+            if not isinstance(value, np.ndarray):
+                continue
+            if value.ndim == 1:
+                columns[field.name] = value
+            else:
+                for axis, name in zip(range(value.shape[1]), "xyz", strict=False):
+                    columns[f"{field.name}_{name}"] = np.ascontiguousarray(value[:, axis])
+        return columns
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Felt(_Answer):
+    """What :func:`feel` felt."""
+
+    #: What the run was like: ticks, forces, safety, as a dict.
+    report: dict[str, Any]
+    #: All ticks.
+    trace: Trace

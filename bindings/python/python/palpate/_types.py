@@ -11,6 +11,9 @@ Profile: TypeAlias = Literal[
     "quadratic", "cubic", "quartic", "circular", "root", "exponential", "circular_geometrical"
 ]
 
+#: A plane of space that a picture shows.
+Plane: TypeAlias = Literal["xy", "xz", "yz"]
+
 
 class Row(TypedDict, total=False):
     """A row of copies: the spacing [m], and the numbers of the first and the last, both or neither."""

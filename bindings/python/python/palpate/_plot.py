@@ -1,0 +1,108 @@
+# SPDX-FileCopyrightText: The palpate authors
+# SPDX-License-Identifier: MIT OR Apache-2.0
+"""Pictures with matplotlib, and samples for other programs."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+if TYPE_CHECKING:
+    from palpate._answers import Manifold
+    from palpate._palpate import Shape
+
+#: The axes of a plane: to the right and up, and the one along which it is placed.
+AXES = {"xy": (0, 1, 2), "xz": (0, 2, 1), "yz": (1, 2, 0)}
+
+#: Samples along the longer side of a picture.
+SAMPLES = 300
+
+#: The margin of a picture, as a share of the longer side of what it shows.
+MARGIN = 0.15
+
+#: What is shown of a shape without bounds [m].
+UNBOUNDED = 1.0
+
+#: More values are a mistake.
+MOST_VALUES = 1 << 30
+
+
+def _axes(plane: str) -> tuple[int, int, int]:
+    if plane not in AXES:
+        raise ValueError(f"plane must be xy, xz or yz, got {plane!r}")
+    return AXES[plane]
+
+
+def _box(shape: Shape) -> NDArray[np.float64]:
+    if shape.bounds is not None:
+        return shape.bounds
+    return np.array([[-UNBOUNDED] * shape.dimension, [UNBOUNDED] * shape.dimension])
+
+
+def plot(shape: Shape, plane: str, at: float, ax: Any) -> Any:
+    """Draws a cut of a shape with isolines; gives the axes."""
+    import matplotlib.pyplot as plt
+
+    right, up, along = _axes(plane) if shape.dimension == 3 else (0, 1, 0)
+    low, high = _box(shape)
+    margin = MARGIN * max((high - low)[[right, up]].max(), 1e-12)
+    step = ((high - low)[[right, up]].max() + 2 * margin) / SAMPLES
+    sides = [np.arange(low[k] - margin, high[k] + margin + step, step) for k in (right, up)]
+    points = np.zeros((len(sides[1]), len(sides[0]), shape.dimension))
+    if shape.dimension == 3:
+        points[..., along] = at
+    points[..., right], points[..., up] = np.meshgrid(*sides)
+    values = shape.distance(points)
+    if ax is None:
+        ax = plt.gca()
+    ax.contourf(*sides, values, levels=[-np.inf, 0.0], colors=["#cfd8e8"])
+    ax.contour(*sides, values, levels=12, colors=["#8a94a6"], linewidths=0.6)
+    ax.contour(*sides, values, levels=[0.0], colors=["#1d3557"], linewidths=1.6)
+    names = "xyz"
+    ax.set(xlabel=f"{names[right]} [m]", ylabel=f"{names[up]} [m]", aspect="equal")
+    return ax
+
+
+def plot_contacts(manifold: Manifold, *, plane: str = "xy", ax: Any = None) -> Any:
+    """Draws contacts with matplotlib: their points, and normals from the first body to the second; gives the axes.
+
+    >>> import matplotlib; matplotlib.use("agg")
+    >>> import palpate as pp
+    >>> one, two = pp.ball(0.5), pp.ball(0.5).translated([0.99, 0, 0])
+    >>> ax = pp.plot_contacts(pp.manifold(one, two), ax=(one | two).plot())
+    """
+    import matplotlib.pyplot as plt
+
+    right, up, _ = _axes(plane)
+    if ax is None:
+        ax = plt.gca()
+    points, normals = manifold.points_a, manifold.normals
+    ax.plot(points[:, right], points[:, up], "o", color="#d1495b", markersize=5)
+    if len(points):
+        arrows = (points[:, right], points[:, up], normals[:, right], normals[:, up])
+        ax.quiver(*arrows, color="#d1495b", width=0.004)
+    return ax
+
+
+def sample(
+    shape: Shape, spacing: float, margin: float | None, threads: int
+) -> tuple[NDArray[np.float64], NDArray[np.float64], float]:
+    """The distances at the nodes of a lattice around a shape."""
+    if shape.bounds is None:
+        raise ValueError("the shape has no bounds: intersect it with a box first")
+    if not (spacing > 0 and np.isfinite(spacing)):
+        raise ValueError(f"spacing must be positive, got {spacing} m")
+    around = spacing if margin is None else margin
+    if not 0 <= around < np.inf:
+        raise ValueError(f"margin must be zero or more, got {around} m")
+    low, high = shape.bounds[0] - around, shape.bounds[1] + around
+    counts = np.ceil((high - low) / spacing - 1e-9).astype(np.int64) + 1
+    if np.prod(counts.astype(float)) > MOST_VALUES:
+        raise ValueError(
+            f"{' × '.join(map(str, counts))} nodes are more than {MOST_VALUES}: take a larger spacing"
+        )
+    sides = [low[k] + spacing * np.arange(counts[k]) for k in range(shape.dimension)]
+    points = np.stack(np.meshgrid(*sides, indexing="ij"), axis=-1)
+    return shape.distance(points, threads=threads), low, spacing

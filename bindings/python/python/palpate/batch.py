@@ -1,0 +1,388 @@
+# SPDX-FileCopyrightText: The palpate authors
+# SPDX-License-Identifier: MIT OR Apache-2.0
+"""Many poses or points, on any engine: threads, processes, Dask.
+
+A run is a folder. It is cut into chunks of about a second, each of which is written whole to a file of its own; a run
+that was stopped goes on where it was, whatever engine it goes on with, and the bytes are the same. Work is given to
+any ``concurrent.futures.Executor``: threads by default, ``client.get_executor()`` of Dask for a cluster.
+
+>>> import palpate as pp, numpy as np, tempfile
+>>> plate, ball = pp.cuboid([1, 0.1, 1]), pp.ball(0.05)
+>>> offsets = np.linspace(0, 1, 10)[:, None] * [0.0, 1.0, 0.0]
+>>> run = pp.batch.separations(tempfile.mkdtemp() + "/run", plate, ball, offsets)
+>>> run.table().num_rows
+10
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import math
+import time
+from collections.abc import Callable, Iterator
+from concurrent.futures import FIRST_COMPLETED, Executor, Future, ThreadPoolExecutor, wait
+from dataclasses import dataclass
+from functools import lru_cache
+from os import PathLike, cpu_count
+from pathlib import Path
+from typing import Any, Literal, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from palpate._files import replace
+
+#: Poses or points: an array, the name of a ``.npy`` file that workers can read, or a function of the first number and
+#: the one after the last that gives their rows, the same ones each time.
+Source: TypeAlias = "NDArray[Any] | str | PathLike[str] | Callable[[int, int], NDArray[Any]]"
+
+#: How long a chunk is to take [s].
+SECONDS = 1.0
+
+#: How many rows the pilot takes to find that out.
+PILOT = 1000
+
+#: Chunks that wait at each worker, so that none is idle.
+AHEAD = 2
+
+
+@dataclass(frozen=True, kw_only=True)
+class Run:
+    """What a batch has done, by :func:`overlaps`, :func:`separations` and :func:`distances`."""
+
+    #: The folder of the run.
+    folder: Path
+    #: How many rows there are.
+    count: int
+    #: How many rows a chunk has.
+    chunk: int
+    #: How many chunks were there before this call.
+    resumed: int
+    #: The time that workers spent on the chunks of this call [s].
+    seconds: float
+    #: How many poses were not decided.
+    undecided: int
+
+    def parts(self) -> list[Path]:
+        """The files of the chunks, in order.
+
+        >>> import palpate as pp, tempfile
+        >>> ball = pp.ball(0.5)
+        >>> run = pp.batch.overlaps(tempfile.mkdtemp() + "/run", ball, ball, [[0.9, 0, 0], [1.1, 0, 0]])
+        >>> [part.name for part in run.parts()]
+        ['part-000000000000.parquet']
+        """
+        return [self.folder / _name(start) for start in range(0, self.count, self.chunk)]
+
+    def table(self) -> Any:
+        """All answers as a table of pyarrow.
+
+        >>> import palpate as pp, tempfile
+        >>> ball = pp.ball(0.5)
+        >>> run = pp.batch.overlaps(tempfile.mkdtemp() + "/run", ball, ball, [[0.9, 0, 0], [1.1, 0, 0]])
+        >>> run.table().column("overlaps").to_pylist()
+        [1, 0]
+        """
+        import pyarrow as pa
+        import pyarrow.parquet as pq
+
+        return pa.concat_tables([pq.read_table(part) for part in self.parts()])
+
+
+def overlaps(
+    folder: str | PathLike[str],
+    a: Any,
+    b: Any,
+    poses: Source,
+    *,
+    count: int | None = None,
+    budget: int | None = None,
+    executor: Executor | None = None,
+    workers: int | None = None,
+    chunk: int | None = None,
+    progress: Callable[[int, int], None] | None = None,
+) -> Run:
+    """Whether two shapes overlap, with the second at each of many poses; see :func:`palpate.overlaps`.
+
+    ``count`` is how many poses a function gives. ``chunk`` is how many poses a chunk has; left out, a pilot finds how
+    many take a second. ``progress`` gets how many poses are done and how many there are. Columns: ``overlaps``.
+
+    >>> import palpate as pp, numpy as np, tempfile
+    >>> ball = pp.ball(0.5)
+    >>> offsets = np.linspace(0, 2, 100)[:, None] * [1.0, 0.0, 0.0]
+    >>> pp.batch.overlaps(tempfile.mkdtemp() + "/run", ball, ball, offsets).count
+    100
+    """
+    job = {"kind": "overlaps", "a": _shape(a), "b": _shape(b), "budget": budget}
+    return _run(folder, job, poses, count, executor, workers, chunk, progress)
+
+
+def separations(
+    folder: str | PathLike[str],
+    a: Any,
+    b: Any,
+    poses: Source,
+    *,
+    tolerance: float | None = None,
+    count: int | None = None,
+    budget: int | None = None,
+    executor: Executor | None = None,
+    workers: int | None = None,
+    chunk: int | None = None,
+    progress: Callable[[int, int], None] | None = None,
+) -> Run:
+    """How far apart two shapes are, with the second at each of many poses; see :func:`palpate.separations`.
+
+    The other arguments are those of :func:`overlaps`. Columns: ``lower``, ``upper``, ``stop``, ``evaluations``.
+
+    >>> import palpate as pp, tempfile
+    >>> ball = pp.ball(0.5)
+    >>> run = pp.batch.separations(tempfile.mkdtemp() + "/run", ball, ball, [[1.5, 0, 0]])
+    >>> round(run.table().column("upper")[0].as_py(), 3)
+    0.5
+    """
+    job = {
+        "kind": "separations",
+        "a": _shape(a),
+        "b": _shape(b),
+        "tolerance": tolerance,
+        "budget": budget,
+    }
+    return _run(folder, job, poses, count, executor, workers, chunk, progress)
+
+
+def distances(
+    folder: str | PathLike[str],
+    shape: Any,
+    points: Source,
+    *,
+    count: int | None = None,
+    executor: Executor | None = None,
+    workers: int | None = None,
+    chunk: int | None = None,
+    progress: Callable[[int, int], None] | None = None,
+) -> Run:
+    """The distances at many points. The arguments are those of :func:`overlaps`. Columns: ``distance``.
+
+    >>> import palpate as pp, tempfile
+    >>> run = pp.batch.distances(tempfile.mkdtemp() + "/run", pp.ball(0.5), [[1.5, 0, 0]])
+    >>> run.table().column("distance").to_pylist()
+    [1.0]
+    """
+    return _run(folder, {"kind": "distances", "a": _shape(shape)}, points, count, executor, workers, chunk, progress)
+
+
+def _shape(shape: Any) -> list[Any]:
+    return [shape.to_json(), shape.dimension]
+
+
+@lru_cache(maxsize=8)
+def _made(text: str, dimension: int) -> Any:
+    from palpate._palpate import Shape
+
+    return Shape.from_json(text, dimension=dimension)
+
+
+def _columns(job: dict[str, Any], rows: NDArray[Any]) -> dict[str, NDArray[Any]]:
+    """The answers for some rows."""
+    from palpate import _palpate
+
+    a = _made(*job["a"])
+    if job["kind"] == "distances":
+        return {"distance": a.distance(rows)}
+    b = _made(*job["b"])
+    if job["kind"] == "overlaps":
+        return {"overlaps": _palpate.overlaps(a, b, rows, budget=job["budget"])}
+    found = _palpate.separations(a, b, rows, tolerance=job["tolerance"], budget=job["budget"])
+    return {
+        "lower": found.lower,
+        "upper": found.upper,
+        "stop": found.stops,
+        "evaluations": found.evaluations,
+    }
+
+
+def _undecided(columns: dict[str, NDArray[Any]]) -> int:
+    if "overlaps" in columns:
+        return int((columns["overlaps"] == -1).sum())
+    return int((columns["stop"] > 1).sum()) if "stop" in columns else 0
+
+
+def _name(start: int) -> str:
+    return f"part-{start:012d}.parquet"
+
+
+def _rows(source: Any, start: int, stop: int) -> NDArray[Any]:
+    if isinstance(source, str):
+        return np.array(np.load(source, mmap_mode="r")[start:stop])
+    rows = source(start, stop) if callable(source) else source
+    rows = np.asarray(rows)
+    if len(rows) != stop - start:
+        raise ValueError(f"rows {start} to {stop} are {stop - start}, the source gave {len(rows)}")
+    return rows
+
+
+def _work(folder: str, job: dict[str, Any], source: Any, start: int, stop: int) -> tuple[int, float, int]:
+    """Answers a chunk and writes it whole; in a worker."""
+    import io
+
+    import pyarrow as pa
+    import pyarrow.parquet as pq
+
+    begin = time.perf_counter()
+    columns = _columns(job, _rows(source, start, stop))
+    table = pa.table(columns).replace_schema_metadata({"palpate": _text(job)})
+    out = io.BytesIO()
+    pq.write_table(table, out, compression="zstd", store_schema=False)
+    replace(Path(folder) / _name(start), out.getvalue())
+    return stop - start, time.perf_counter() - begin, _undecided(columns)
+
+
+def _text(job: dict[str, Any]) -> str:
+    return json.dumps(job, sort_keys=True)
+
+
+def _source(source: Source, count: int | None) -> tuple[Any, int, dict[str, Any]]:
+    """The source as workers take it, how many rows it has, and what it is known by."""
+    if callable(source):
+        if count is None:
+            raise TypeError("count= must say how many rows the function gives")
+        first = np.ascontiguousarray(source(0, min(count, PILOT)))
+        return source, count, {"rows": count, "first": hashlib.sha256(first.tobytes()).hexdigest()}
+    if isinstance(source, (str, PathLike)):
+        file = str(Path(source).resolve())
+        rows = np.load(file, mmap_mode="r")
+        state = Path(file).stat()
+        known = {"rows": len(rows), "size": state.st_size, "changed": state.st_mtime_ns}
+        return file, len(rows), known
+    rows = np.asarray(source)
+    if rows.dtype.kind not in "fiu" or rows.ndim < 2:
+        raise TypeError(f"rows must be an array of numbers with an axis of rows, got {rows.dtype} of {rows.shape}")
+    whole = np.ascontiguousarray(rows)
+    return whole, len(whole), {"rows": len(whole), "digest": hashlib.sha256(whole.tobytes()).hexdigest()}
+
+
+def _pilot(job: dict[str, Any], source: Any, count: int) -> int:
+    """How many rows take about a second."""
+    rows = min(PILOT, count)
+    if rows == 0:
+        return 1
+    some = _rows(source if callable(source) or isinstance(source, str) else source[:rows], 0, rows)
+    begin = time.perf_counter()
+    _columns(job, some)
+    each = max((time.perf_counter() - begin) / rows, 1e-9)
+    # Two digits are enough, and say that no more is known.
+    wanted = SECONDS / each
+    unit = 10.0 ** max(math.floor(math.log10(max(wanted, 1.0))) - 1, 0)
+    return max(int(wanted / unit) * int(unit), 1)
+
+
+def _run(
+    folder: str | PathLike[str],
+    job: dict[str, Any],
+    source: Source,
+    count: int | None,
+    executor: Executor | None,
+    workers: int | None,
+    chunk: int | None,
+    progress: Callable[[int, int], None] | None,
+) -> Run:
+    place = Path(folder)
+    place.mkdir(parents=True, exist_ok=True)
+    given, rows, known = _source(source, count)
+    chunk = _agreed(place, job, known, given, rows, chunk)
+    starts = range(0, rows, chunk)
+    waiting = [start for start in starts if not (place / _name(start)).exists()]
+    resumed = len(starts) - len(waiting)
+    done, seconds, undecided = rows - sum(min(chunk, rows - start) for start in waiting), 0.0, 0
+    own = ThreadPoolExecutor(workers) if executor is None else None
+    engine = executor or own
+    assert engine is not None
+    many = AHEAD * (workers or _workers(engine))
+    try:
+        for size, spent, open_ in _asked(engine, many, str(place), job, given, waiting, chunk, rows):
+            done, seconds, undecided = done + size, seconds + spent, undecided + open_
+            if progress:
+                progress(done, rows)
+    finally:
+        if own:
+            own.shutdown(wait=True, cancel_futures=True)
+    return Run(
+        folder=place, count=rows, chunk=chunk, resumed=resumed, seconds=seconds, undecided=undecided
+    )
+
+
+def _workers(engine: Executor) -> int:
+    return int(getattr(engine, "_max_workers", 0) or cpu_count() or 1) if isinstance(
+        engine, ThreadPoolExecutor
+    ) else max(64, cpu_count() or 1)
+
+
+def _asked(
+    engine: Executor,
+    many: int,
+    folder: str,
+    job: dict[str, Any],
+    source: Any,
+    waiting: list[int],
+    chunk: int,
+    rows: int,
+) -> Iterator[tuple[int, float, int]]:
+    """Gives chunks to the engine, so many at once, and what they say as they are done."""
+    open_: set[Future[tuple[int, float, int]]] = set()
+    chunks = iter(waiting)
+    try:
+        while True:
+            while len(open_) < many:
+                start = next(chunks, None)
+                if start is None:
+                    break
+                stop = min(start + chunk, rows)
+                own = source[start:stop] if isinstance(source, np.ndarray) else source
+                open_.add(engine.submit(_work, folder, job, own, start, stop))
+            if not open_:
+                return
+            ready, open_ = wait(open_, return_when=FIRST_COMPLETED)
+            for future in ready:
+                yield future.result()
+    finally:
+        for future in open_:
+            future.cancel()
+
+
+#: What a run is, in its folder.
+MANIFEST = "manifest.json"
+
+
+def _agreed(
+    place: Path,
+    job: dict[str, Any],
+    known: dict[str, Any],
+    source: Any,
+    rows: int,
+    chunk: int | None,
+) -> int:
+    """The rows of a chunk, that of the run that is in the folder if there is one. Anything else that differs is refused."""
+    from importlib.metadata import version
+
+    if chunk is not None and chunk < 1:
+        raise ValueError(f"chunk must be at least 1, got {chunk}")
+    wanted = {"job": job, "source": known, "version": version("palpate")}
+    file = place / MANIFEST
+    if file.exists():
+        there = json.loads(file.read_text(encoding="utf-8"))
+        for key, value in wanted.items():
+            if there.get(key) != json.loads(json.dumps(value)):
+                raise ValueError(
+                    f"{place} holds another run: its {key} differs. Take another folder, or delete this one"
+                )
+        size = int(there["chunk"])
+        if chunk is not None and chunk != size:
+            raise ValueError(f"{place} holds a run with chunks of {size} rows, not {chunk}")
+        return size
+    if any(place.glob("part-*")):
+        raise ValueError(f"{place} holds parts without {MANIFEST}: take another folder")
+    size = chunk if chunk is not None else _pilot(job, source, rows)
+    replace(file, json.dumps({**wanted, "chunk": size}, indent=1).encode())
+    return size

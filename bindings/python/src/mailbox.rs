@@ -1,0 +1,170 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! The class `Mailbox`: a device whose driver is written in Python.
+
+use std::sync::{Mutex, PoisonError};
+
+use palpate::devices::{Device, Mailbox, MailboxDevice, profile_named};
+use palpate::field::Vector;
+use palpate::haptics::PointState;
+use pyo3::exceptions::{PyRuntimeError, PyTypeError, PyValueError};
+use pyo3::prelude::*;
+
+use crate::arrays::{misshapen, numbers, table};
+use crate::error::OrRaise;
+
+/// Both ends of a mailbox; that of the servo until it takes it.
+struct Post<const D: usize> {
+    device: Mutex<Option<MailboxDevice<D>>>,
+    mailbox: Mutex<Mailbox<D>>,
+}
+
+enum AnyPost {
+    Planar(Post<2>),
+    Spatial(Post<3>),
+}
+
+/// Does the same with the mailbox of either dimension.
+macro_rules! of_either {
+    ($any:expr, $post:ident => $done:expr) => {
+        match $any {
+            AnyPost::Planar($post) => $done,
+            AnyPost::Spatial($post) => $done,
+        }
+    };
+}
+
+/// A device of your own: its driver sets where the points are, as often as it likes, and takes the newest forces.
+///
+/// The servo never waits for the driver. If nothing is set for 0.1 s, the device counts as lost. `profile` is the name
+/// of the profile whose limits hold.
+///
+/// >>> import palpate as pp, time
+/// >>> mailbox = pp.Mailbox("omega")
+/// >>> with pp.Servo(pp.Scene(pp.ball(0.05)), device=mailbox) as servo:
+/// ...     while mailbox.ticks < 20:
+/// ...         mailbox.set([[0, 0.1, 0]])
+/// ...         time.sleep(0.001)
+/// ...     mailbox.forces.shape
+/// (1, 3)
+#[pyclass(frozen, module = "palpate", name = "Mailbox")]
+pub(crate) struct PyMailbox(AnyPost);
+
+#[pymethods]
+impl PyMailbox {
+    #[new]
+    #[pyo3(signature = (profile = "omega", *, points = 1, dimension = 3))]
+    fn new(py: Python<'_>, profile: &str, points: usize, dimension: usize) -> PyResult<Self> {
+        match dimension {
+            2 => Ok(Self(AnyPost::Planar(post(py, profile, points)?))),
+            3 => Ok(Self(AnyPost::Spatial(post(py, profile, points)?))),
+            _ => {
+                Err(PyValueError::new_err(format!("dimension must be 2 or 3, got {dimension}")))
+            }
+        }
+    }
+
+    /// Sets where the points are, shape (points, D) [m] at the device, at `time` [s] if it is known.
+    ///
+    /// >>> import palpate as pp
+    /// >>> pp.Mailbox().set([[0, 0.1, 0]])
+    #[pyo3(signature = (positions, *, time = None))]
+    fn set(&self, positions: &Bound<'_, PyAny>, time: Option<f64>) -> PyResult<()> {
+        of_either!(&self.0, post => set(post, positions, time))
+    }
+
+    /// The newest forces, shape (points, D) [N]; shape (0, D) before the first tick.
+    ///
+    /// >>> import palpate as pp
+    /// >>> pp.Mailbox().forces.shape
+    /// (0, 3)
+    #[getter]
+    fn forces<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        of_either!(&self.0, post => {
+            let mut mailbox = post.mailbox.lock().unwrap_or_else(PoisonError::into_inner);
+            rows(py, mailbox.forces())
+        })
+    }
+
+    /// How often the servo has written forces: if that no longer grows, motors must be set to zero.
+    ///
+    /// >>> import palpate as pp
+    /// >>> pp.Mailbox().ticks
+    /// 0
+    #[getter]
+    fn ticks(&self) -> u64 {
+        of_either!(&self.0, post => {
+            post.mailbox.lock().unwrap_or_else(PoisonError::into_inner).ticks()
+        })
+    }
+
+    /// Says that the device no longer answers.
+    ///
+    /// >>> import palpate as pp
+    /// >>> pp.Mailbox().lose()
+    fn lose(&self) {
+        of_either!(&self.0, post => {
+            post.mailbox.lock().unwrap_or_else(PoisonError::into_inner).lose();
+        });
+    }
+}
+
+impl PyMailbox {
+    /// The servo's end, in the plane.
+    pub(crate) fn planar(&self) -> PyResult<Box<dyn Device<2> + Send>> {
+        match &self.0 {
+            AnyPost::Planar(post) => taken(post),
+            AnyPost::Spatial(_) => Err(PyTypeError::new_err("the scene is 2D, the mailbox 3D")),
+        }
+    }
+
+    /// The servo's end, in space.
+    pub(crate) fn spatial(&self) -> PyResult<Box<dyn Device<3> + Send>> {
+        match &self.0 {
+            AnyPost::Spatial(post) => taken(post),
+            AnyPost::Planar(_) => Err(PyTypeError::new_err("the scene is 3D, the mailbox 2D")),
+        }
+    }
+}
+
+fn post<const D: usize>(py: Python<'_>, profile: &str, points: usize) -> PyResult<Post<D>> {
+    let profile = profile_named(profile).or_raise(py)?;
+    let (device, mailbox) = MailboxDevice::new(profile, points).or_raise(py)?;
+    Ok(Post { device: Mutex::new(Some(device)), mailbox: Mutex::new(mailbox) })
+}
+
+fn taken<const D: usize>(post: &Post<D>) -> PyResult<Box<dyn Device<D> + Send>> {
+    let device = post.device.lock().unwrap_or_else(PoisonError::into_inner).take();
+    match device {
+        Some(device) => Ok(Box::new(device)),
+        None => Err(PyRuntimeError::new_err("a mailbox has one servo: make another")),
+    }
+}
+
+fn set<const D: usize>(
+    post: &Post<D>,
+    positions: &Bound<'_, PyAny>,
+    time: Option<f64>,
+) -> PyResult<()> {
+    let array = numbers(positions, "positions")?;
+    if !matches!(array.shape(), [_, columns] if *columns == D) {
+        return Err(misshapen("positions", &format!("(points, {D})"), array.shape()));
+    }
+    let given = array.as_doubles()?;
+    let state = |row: &[f64]| PointState::at_rest(Vector(std::array::from_fn(|i| row[i])));
+    let states: Vec<PointState<D>> = given.chunks_exact(D).map(state).collect();
+    let mut mailbox = post.mailbox.lock().unwrap_or_else(PoisonError::into_inner);
+    let done = match time {
+        None => mailbox.set(&states),
+        Some(time) => mailbox.set_at(time, &states),
+    };
+    done.or_raise(positions.py())
+}
+
+fn rows<'py, const D: usize>(
+    py: Python<'py>,
+    vectors: &[Vector<f64, D>],
+) -> PyResult<Bound<'py, PyAny>> {
+    table(py, vectors.iter().flat_map(|v| v.0).collect(), D)
+}

@@ -1,0 +1,141 @@
+# SPDX-FileCopyrightText: The palpate authors
+# SPDX-License-Identifier: MIT OR Apache-2.0
+"""Touch: the servo's thread, the virtual clock, a driver in Python."""
+
+from __future__ import annotations
+
+import gc
+import json
+import subprocess
+import sys
+import threading
+import time
+from pathlib import Path
+
+import numpy as np
+import palpate as pp
+import pyarrow as pa
+import pytest
+
+SCENE = pp.Scene({"ball": pp.ball(0.05), "table": pp.cuboid([1, 0.1, 1]).translated([0, -0.2, 0])})
+PATH = [[0, 0, 0.06, 0], [0.1, 0, 0.045, 0], [0.2, 0.01, 0.045, 0], [0.3, 0, 0.06, 0]]
+
+
+def test_a_feel_is_the_same_every_time() -> None:
+    one, two = [pp.feel(SCENE, hand=PATH, seconds=0.3) for _ in range(2)]
+    for name in ["time", "device", "proxy", "force", "contact", "evaluations"]:
+        assert np.array_equal(getattr(one.trace, name), getattr(two.trace, name))
+    assert len(one.trace) == 300 and one.trace.lost == 0
+    assert one.trace.force[:, 1].max() > 0.1 and not one.trace.contact[0]
+    # The proxy never enters a body.
+    assert SCENE.whole.distance(one.trace.proxy).min() > -1e-6
+
+
+def test_a_feel_is_that_of_the_program(tmp_path: Path) -> None:
+    file, path, trace = tmp_path / "scene.json", tmp_path / "hand.csv", tmp_path / "trace.csv"
+    SCENE.save(file)
+    path.write_text("time_s,x_m,y_m,z_m\n" + "".join(f"{t},{x},{y},{z}\n" for t, x, y, z in PATH), encoding="utf-8")
+    command = [sys.executable, "-m", "palpate", "feel", str(file), "--fast", "--path", str(path), "--device", "simulated:omega"]
+    command += ["--duration", "0.3", "--trace", str(trace), "--json"]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    rows = np.genfromtxt(trace, delimiter=",", names=True)
+    force = pp.feel(SCENE, hand=PATH, seconds=0.3).trace.force
+    assert np.array_equal(np.stack([rows[f"force_{axis}_n"] for axis in "xyz"], axis=1), force)
+    assert json.loads(done.stdout)["ticks"] == 300
+
+
+def test_a_servo_has_events_snapshots_and_a_trace() -> None:
+    with pp.Servo(SCENE, hand=PATH, duration=0.3, record=0.3) as servo:
+        kinds = [event.kind for event in servo.events()]
+        assert servo.has_ended
+    assert kinds[0] == "touch" and "leave" in kinds
+    assert servo.report["ticks"] == 300 and len(servo.trace) == 300
+    frame = pa.table(servo.trace.columns())
+    assert frame.num_rows == 300 and "force_y" in frame.column_names
+
+
+def test_bodies_move_and_forces_are_limited() -> None:
+    with pp.Servo(SCENE, hand=[0, 0.06, 0]) as servo:
+        servo.set_poses({"ball": [0, 0.012, 0]})
+        until = time.monotonic() + 30
+        while not any(event.body == "ball" for event in servo.take_events()):
+            assert time.monotonic() < until, "the ball that moved up was not felt"
+            time.sleep(0.001)
+        servo.limit_force(0.0)
+        servo.stop()
+        while not (now := servo.latest()) or not now.is_stopped:
+            assert time.monotonic() < until
+            time.sleep(0.001)
+        servo.release()
+        with pytest.raises(KeyError, match="there are ball, table"):
+            servo.set_poses({"bal": [0, 0, 0]})
+        with pytest.raises(pp.Error):
+            servo.limit_force(-1.0)
+    assert servo.latest() is None
+
+
+def test_an_exception_ends_the_servo() -> None:
+    with pytest.raises(ZeroDivisionError), pp.Servo(SCENE, hand=[0, 0.06, 0]) as servo:
+        1 / 0
+    assert servo.has_ended and servo.report["ticks"] >= 0
+    with pytest.raises(RuntimeError, match="a servo runs once"), servo:
+        pass
+
+
+def test_a_servo_that_is_forgotten_ends() -> None:
+    before = threading.active_count()
+    pp.Servo(SCENE, hand=[0, 0.06, 0]).__enter__()
+    gc.collect()
+    assert threading.active_count() == before
+
+
+def test_a_driver_in_python_is_felt() -> None:
+    mailbox = pp.Mailbox("omega")
+    with pp.Servo(SCENE, device=mailbox) as servo:
+        until = time.monotonic() + 30
+        while mailbox.ticks < 200 and time.monotonic() < until:
+            mailbox.set([[0, 0.0, 0]])
+            time.sleep(0.0005)
+    assert servo.report["ticks"] >= 199
+    with pytest.raises(RuntimeError, match="one servo"):
+        pp.Servo(SCENE, device=mailbox)
+    with pytest.raises(ValueError, match=r"positions must have the shape \(points, 3\)"):
+        mailbox.set([0, 0, 0])
+    with pytest.raises(TypeError, match="the scene is 3D, the mailbox 2D"):
+        pp.Servo(SCENE, device=pp.Mailbox(dimension=2))
+
+
+def test_python_that_holds_its_lock_delays_no_tick() -> None:
+    with pp.Servo(SCENE, hand=[0, 0.06, 0], duration=0.3) as servo:
+        until = time.monotonic() + 0.25
+        while time.monotonic() < until:
+            sum(range(2_000_000))
+        list(servo.events())
+    # All ticks were made, though Python was busy all the time.
+    assert servo.report["ticks"] == 300
+
+
+def test_in_the_plane() -> None:
+    scene = pp.Scene(pp.ball(0.05, dimension=2))
+    felt = pp.feel(scene, hand=[[0, 0, 0.06], [0.1, 0, 0.045]], seconds=0.1)
+    assert felt.trace.force.shape == (100, 2) and felt.trace.force[-1, 1] > 0
+    tour = pp.feel(scene, seconds=0.5)
+    assert tour.trace.contact.any()
+
+
+def test_what_cannot_be_touched_is_refused() -> None:
+    for make, error, words in [
+        (lambda: pp.Servo(SCENE, device="omeg"), pp.UnknownNameError, "omeg"),
+        (lambda: pp.Servo(SCENE, device=3), TypeError, "the name of a profile or a Mailbox"),
+        (lambda: pp.Servo(SCENE, hand=[0, 0]), ValueError, "hand must have the shape (3,), or (n, 4) with times first"),
+        (lambda: pp.Servo(SCENE, hand=[0, np.nan, 0]), pp.Error, ""),
+        (lambda: pp.Servo(SCENE, record=-1.0), ValueError, "record must be 0 s to"),
+        (lambda: pp.Servo(SCENE, record=1e9), ValueError, "record must be 0 s to"),
+        (lambda: pp.Servo(SCENE, rate=-5.0), pp.Error, "rate"),
+        (lambda: pp.feel(SCENE, seconds=-1.0), (pp.Error, ValueError), ""),
+        (lambda: pp.Servo(pp.Scene(pp.half_space([0, 1, 0], 0.0))), ValueError, "no body has bounds"),
+    ]:
+        with pytest.raises(error) as caught:
+            make()
+        assert words in str(caught.value)
