@@ -175,7 +175,7 @@ pub(crate) fn table<'py>(
     numbers: Vec<f64>,
     columns: usize,
 ) -> PyResult<Bound<'py, PyAny>> {
-    let rows = if columns == 0 { 0 } else { numbers.len() / columns };
+    let rows = numbers.len().checked_div(columns).unwrap_or(0);
     numbers.into_pyarray(py).call_method1("reshape", (rows, columns))
 }
 

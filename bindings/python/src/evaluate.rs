@@ -3,7 +3,7 @@
 
 //! Distances and gradients at one point and at many.
 
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 use numpy::{Element, PyReadonlyArrayDyn, PyUntypedArrayMethods};
 use palpate::field::{Layout, Shape, ShapeError, Strided, StridedMut, Vector};
@@ -14,14 +14,12 @@ use rayon::prelude::*;
 use crate::answers;
 use crate::arrays::{Numbers, few, misshapen, numbers, place, writable};
 use crate::error::OrRaise;
+use crate::interrupt::A_WHILE;
 use crate::pool::{self, Pool};
 use crate::shape::{AnyShape, of_either};
 
 /// Points that a thread takes at once: whole blocks, in memory that stays in its cache.
 const CHUNK: usize = 4096;
-
-/// How long work goes on before Python is asked whether it is to stop.
-const A_WHILE: Duration = Duration::from_millis(40);
 
 /// Distances and gradients.
 pub(crate) type Slopes<'py> = (Bound<'py, PyAny>, Bound<'py, PyAny>);

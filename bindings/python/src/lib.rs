@@ -3,11 +3,14 @@
 
 //! The module `palpate._palpate`: what Python asks, converted, asked of the core, and converted back.
 
+#![expect(clippy::too_many_arguments, reason = "arguments have names in Python")]
+
 mod answers;
 mod arrays;
 mod chain;
 mod error;
 mod evaluate;
+mod interrupt;
 mod mailbox;
 mod mass;
 mod mesh;
@@ -22,6 +25,7 @@ mod scene;
 mod servo;
 mod shape;
 mod text;
+mod touched;
 
 use pyo3::prelude::*;
 

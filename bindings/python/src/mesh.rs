@@ -5,6 +5,7 @@
 
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
+use std::sync::atomic::Ordering;
 
 use palpate::field::{Aabb, Point, Shape, Vector};
 use palpate::mesh::{
@@ -17,6 +18,7 @@ use pyo3::prelude::*;
 use crate::answers::Fields;
 use crate::arrays::{misshapen, numbers, row, table};
 use crate::error::OrRaise;
+use crate::interrupt::interruptible;
 use crate::query::query;
 use crate::shape::{AnyShape, PyShape};
 
@@ -288,22 +290,16 @@ fn of_arrays<const N: usize, const D: usize>(
 /// A mesh of a shape, by cells of a size [m].
 pub(crate) fn of_shape(py: Python<'_>, shape: &Shape<3>, cell: f64) -> PyResult<PyMesh> {
     let options = ContourOptions::with_cell(cell);
-    let mut stopped = None;
-    let made = py.detach(|| {
-        TriangleMesh::of_shape_with(shape, &options, &mut |_| match Python::attach(|py| {
-            py.check_signals()
-        }) {
-            Ok(()) => ControlFlow::Continue(()),
-            Err(error) => {
-                stopped = Some(error);
-                ControlFlow::Break(())
-            }
-        })
-    });
-    match stopped {
-        Some(error) => Err(error),
-        None => made.or_raise(py).map(|mesh| PyMesh(AnyMesh::Spatial(mesh))),
-    }
+    let made =
+        interruptible(py, |stop| {
+            TriangleMesh::of_shape_with(shape, &options, &mut |_| match stop
+                .load(Ordering::Relaxed)
+            {
+                true => ControlFlow::Break(()),
+                false => ControlFlow::Continue(()),
+            })
+        })?;
+    made.or_raise(py).map(|mesh| PyMesh(AnyMesh::Spatial(mesh)))
 }
 
 /// Writes a file beside the one that it then replaces.

@@ -4,6 +4,7 @@
 //! Pictures: isolines on a plane, and lit views.
 
 use std::path::PathBuf;
+use std::sync::atomic::Ordering;
 
 use palpate::field::{Aabb, Shape, Vector};
 use palpate::plot::{Figure, Isolines, Sampling, Slice, View};
@@ -14,6 +15,7 @@ use pyo3::types::PyBytes;
 
 use crate::arrays::row;
 use crate::error::OrRaise;
+use crate::interrupt::interruptible;
 use crate::mesh::replace;
 use crate::shape::{AnyShape, PyShape};
 
@@ -170,13 +172,13 @@ impl PyShape {
         let shape = self.solid(py, "render")?;
         let (yaw, pitch) = (yaw.to_radians(), pitch.to_radians());
         let aspect = f64::from(width) / f64::from(height.max(1));
-        let made = py.detach(|| {
+        let made = interruptible(py, |stop| {
             let subject = Subject::of_shapes([shape])?;
             let sight = Sight::from_angles(yaw, pitch)?;
             let camera = Camera::fitting(&subject.corners(), sight, Lens::USUAL, aspect)?;
-            let goes_on = |_: f64| Python::attach(|py| py.check_signals()).is_ok();
+            let goes_on = |_: f64| !stop.load(Ordering::Relaxed);
             render(&subject, &camera, &Settings::new(width, height), &goes_on)
-        });
+        })?;
         match made.or_raise(py)? {
             Some(rendering) => Ok(PyImage(rendering.image)),
             None => Err(pyo3::exceptions::PyKeyboardInterrupt::new_err(())),

@@ -20,7 +20,9 @@ const MOST_THREADS: usize = 1024;
 
 /// The pools by the process that made them and their threads: a child of `fork` has none of its parent's threads, so
 /// it makes pools of its own.
-static POOLS: Mutex<Option<HashMap<(u32, usize), Arc<Pool>>>> = Mutex::new(None);
+static POOLS: Mutex<Option<Pools>> = Mutex::new(None);
+
+type Pools = HashMap<(u32, usize), Arc<Pool>>;
 
 /// So many threads; those of all processors if that is 0, none but the caller's if it is 1.
 pub(crate) fn of(threads: usize) -> PyResult<Option<Arc<Pool>>> {

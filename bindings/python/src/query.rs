@@ -3,7 +3,7 @@
 
 //! Where two shapes touch, and how far apart they are.
 
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 use palpate::field::{Pose, Shape};
 use palpate::query::{Certified, Manifold, Nearest, Query, QueryError, Ray, Stop, Tolerance};
@@ -13,12 +13,10 @@ use pyo3::prelude::*;
 use crate::answers::{Fields, certified, contact, stop, vector};
 use crate::arrays::{row, table};
 use crate::error::OrRaise;
+use crate::interrupt::A_WHILE;
 use crate::pool;
 use crate::poses::{self, Posed};
 use crate::shape::{AnyShape, PyShape};
-
-/// How long poses are worked on before Python is asked whether it is to stop.
-const A_WHILE: Duration = Duration::from_millis(40);
 
 /// Poses that are asked about from one look at Python to the next, at most.
 const MOST_POSES: usize = 1 << 16;
@@ -144,7 +142,6 @@ pub(crate) fn closest_points<'py>(
 /// (True, True)
 #[pyfunction]
 #[pyo3(signature = (a, b, *, margin = None, spacing = None, most = None, tolerance = None, budget = None))]
-#[expect(clippy::too_many_arguments, reason = "each has a name in Python")]
 pub(crate) fn manifold<'py>(
     py: Python<'py>,
     a: &PyShape,

@@ -215,12 +215,11 @@ impl PyScene {
         })
     }
 
-    fn __reduce__<'py>(
-        slf: &Bound<'py, Self>,
-    ) -> PyResult<(Bound<'py, PyAny>, (String, Option<PathBuf>))> {
-        let rebuild = slf.py().import("palpate._pickled")?.getattr("scene")?;
-        let scene = slf.get();
-        Ok((rebuild, (scene.to_json(), scene.folder.clone())))
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
+        let (py, scene) = (slf.py(), slf.get());
+        let rebuild = py.import("palpate._pickled")?.getattr("scene")?;
+        let parts = (scene.to_json(), scene.folder.clone());
+        Ok((rebuild, parts).into_pyobject(py)?.into_any())
     }
 }
 

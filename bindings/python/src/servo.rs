@@ -3,15 +3,13 @@
 
 //! Touch: a servo in a thread of its own, which never waits for Python, and runs on a virtual clock.
 
-use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
-use std::time::Duration;
 
 use palpate::devices::{
     Device, Hand, HandPath, Interpolation, SimulatedDevice, Tour, profile_named,
 };
 use palpate::field::{Pose, Vector};
-use palpate::haptics::{Event, EventKind, Servo, Snapshot};
+use palpate::haptics::Servo;
 use palpate::scene::{BuiltScene, ServoSettings};
 use palpate::servo_loop::{
     EndedThread, Pace, Recorder, Records, RunOptions, RunReport, ServoThread, ThreadOptions,
@@ -21,12 +19,14 @@ use pyo3::exceptions::{PyKeyError, PyRuntimeError, PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use crate::answers::{Fields, vector};
-use crate::arrays::{misshapen, numbers, row, table};
+use crate::answers::Fields;
+use crate::arrays::{misshapen, numbers};
 use crate::error::OrRaise;
+use crate::interrupt::interruptible;
 use crate::mailbox::PyMailbox;
 use crate::poses::{self, Posed};
 use crate::scene::PyScene;
+use crate::touched::{event, read, snapshot, trace};
 
 /// More rows are not kept at once.
 const MOST_ROWS: f64 = 1e8;
@@ -39,14 +39,17 @@ struct Ready<const D: usize> {
     options: ThreadOptions<D>,
 }
 
+/// What runs in a thread.
+struct Running<const D: usize> {
+    thread: ServoThread<D>,
+    records: Option<Records<D>>,
+    names: Vec<String>,
+}
+
 /// Where a servo is between its making and its end.
 enum Stage<const D: usize> {
     Ready(Box<Ready<D>>),
-    Running {
-        thread: ServoThread<D>,
-        records: Option<Records<D>>,
-        names: Vec<String>,
-    },
+    Running(Box<Running<D>>),
     Ended {
         report: Box<RunReport>,
         rows: Vec<TraceRow<D>>,
@@ -111,8 +114,10 @@ fn simulated<const D: usize>(
                 PyValueError::new_err("no body has bounds: tell where the hand goes, by hand=")
             })?;
             let bodies: Vec<_> = scene.bodies.iter().map(|body| body.shape.clone()).collect();
-            let tour = Tour::new(bounds, duration)
-                .and_then(|tour| tour.over_each(&scene.whole, &bodies));
+            let tour = py.detach(|| {
+                Tour::new(bounds, duration)
+                    .and_then(|tour| tour.over_each(&scene.whole, &bodies))
+            });
             let path = tour.or_raise(py)?;
             Hand::new(path.mapped(|point| map.point_to_device(point)).or_raise(py)?)
         }
@@ -221,7 +226,7 @@ impl PyServo {
     #[getter]
     fn has_ended(&self) -> bool {
         staged!(&self.0, stage => match stage {
-            Stage::Running { thread, .. } => thread.has_ended(),
+            Stage::Running(own) => own.thread.has_ended(),
             Stage::Ready(_) => false,
             _ => true,
         })
@@ -237,7 +242,8 @@ impl PyServo {
     /// (3,)
     fn latest<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyAny>>> {
         staged!(&self.0, stage => match stage {
-            Stage::Running { thread, names, .. } => {
+            Stage::Running(own) => {
+                let Running { thread, names, .. } = &mut **own;
                 thread.control().latest().map(|now| snapshot(py, now, names)).transpose()
             }
             _ => Ok(None),
@@ -252,7 +258,8 @@ impl PyServo {
     /// []
     fn take_events<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyAny>>> {
         staged!(&self.0, stage => match stage {
-            Stage::Running { thread, names, .. } => {
+            Stage::Running(own) => {
+                let Running { thread, names, .. } = &mut **own;
                 std::iter::from_fn(|| thread.control().next_event())
                     .map(|found| event(py, &found, names))
                     .collect()
@@ -278,7 +285,7 @@ impl PyServo {
     /// ...     servo.set_poses({"ball": [0, 0.01, 0]})
     fn set_poses(&self, poses: &Bound<'_, PyDict>) -> PyResult<()> {
         staged!(&self.0, stage => match stage {
-            Stage::Running { thread, names, .. } => set_poses(poses, thread, names),
+            Stage::Running(own) => set_poses(poses, own),
             _ => Err(PyRuntimeError::new_err("the servo does not run: use it in a with statement")),
         })
     }
@@ -290,7 +297,7 @@ impl PyServo {
     /// ...     servo.limit_force(0.5)
     fn limit_force(&self, py: Python<'_>, newtons: f64) -> PyResult<()> {
         staged!(&self.0, stage => match stage {
-            Stage::Running { thread, .. } => thread.control().limit_force(newtons).or_raise(py),
+            Stage::Running(own) => own.thread.control().limit_force(newtons).or_raise(py),
             _ => Err(PyRuntimeError::new_err("the servo does not run: use it in a with statement")),
         })
     }
@@ -302,8 +309,8 @@ impl PyServo {
     /// ...     servo.stop()
     /// ...     servo.release()
     fn stop(&self) {
-        staged!(&self.0, stage => if let Stage::Running { thread, .. } = stage {
-            thread.control().stop_switch().stop();
+        staged!(&self.0, stage => if let Stage::Running(own) = stage {
+            own.thread.control().stop_switch().stop();
         });
     }
 
@@ -313,8 +320,8 @@ impl PyServo {
     /// >>> with pp.Servo(pp.Scene(pp.ball(0.05)), hand=[0, 0.049, 0]) as servo:
     /// ...     servo.release()
     fn release(&self) {
-        staged!(&self.0, stage => if let Stage::Running { thread, .. } = stage {
-            thread.control().stop_switch().release();
+        staged!(&self.0, stage => if let Stage::Running(own) = stage {
+            own.thread.control().stop_switch().release();
         });
     }
 
@@ -423,7 +430,7 @@ fn start<const D: usize>(py: Python<'_>, stage: &mut Stage<D>) -> PyResult<()> {
             let Ready { servo, device, names, options } = *ready;
             let mut thread = ServoThread::start(servo, device, options).or_raise(py)?;
             let records = thread.take_records();
-            *stage = Stage::Running { thread, records, names };
+            *stage = Stage::Running(Box::new(Running { thread, records, names }));
             Ok(())
         }
         other => {
@@ -438,7 +445,8 @@ fn start<const D: usize>(py: Python<'_>, stage: &mut Stage<D>) -> PyResult<()> {
 fn end<const D: usize>(py: Python<'_>, stage: &Mutex<Stage<D>>) {
     let taken = std::mem::replace(&mut *locked(stage), Stage::Between);
     let next = match taken {
-        Stage::Running { thread, records, .. } => py.detach(|| {
+        Stage::Running(own) => py.detach(|| {
+            let Running { thread, records, .. } = *own;
             let EndedThread { report, .. } = thread.end();
             let (rows, lost) = records.map_or((Vec::new(), 0), |mut records| {
                 let rows = records.take().collect();
@@ -453,8 +461,7 @@ fn end<const D: usize>(py: Python<'_>, stage: &Mutex<Stage<D>>) {
 
 fn set_poses<const D: usize>(
     poses: &Bound<'_, PyDict>,
-    thread: &mut ServoThread<D>,
-    names: &[String],
+    Running { thread, names, .. }: &mut Running<D>,
 ) -> PyResult<()>
 where
     Pose<D>: Posed,
@@ -471,87 +478,6 @@ where
         all.push((body, poses::one(&pose)?));
     }
     thread.control().set_poses(&all).or_raise(poses.py())
-}
-
-fn snapshot<'py, const D: usize>(
-    py: Python<'py>,
-    now: &Snapshot<D>,
-    names: &[String],
-) -> PyResult<Bound<'py, PyAny>> {
-    let touch = |touch: &palpate::haptics::Touch<D>| {
-        Fields::new(py)
-            .with("device", vector(py, touch.device))?
-            .with("velocity", vector(py, touch.velocity))?
-            .with("proxy", vector(py, touch.proxy))?
-            .with("wanted", vector(py, touch.wanted))?
-            .with("force", vector(py, touch.force))?
-            .with("normal", vector(py, touch.normal))?
-            .with("body", touch.contact.then(|| names.get(touch.body as usize)).flatten())?
-            .with("is_slipping", touch.is_slipping)?
-            .of_class("Touch")
-    };
-    let touches: PyResult<Vec<_>> = now.touches.iter().map(touch).collect();
-    Fields::new(py)
-        .with("time", now.progress.time)?
-        .with("ticks", now.progress.ticks)?
-        .with("force", now.progress.force)?
-        .with("depth", now.progress.depth)?
-        .with("touches", pyo3::types::PyTuple::new(py, touches?)?)?
-        .with("is_stopped", now.is_stopped)?
-        .with("events_lost", now.events_lost)?
-        .of_class("Snapshot")
-}
-
-fn event<'py>(py: Python<'py>, found: &Event, names: &[String]) -> PyResult<Bound<'py, PyAny>> {
-    let (kind, speed, force) = match found.kind {
-        EventKind::Touch { speed } => ("touch", Some(speed), None),
-        EventKind::Leave => ("leave", None, None),
-        EventKind::Slip => ("slip", None, None),
-        EventKind::Stick => ("stick", None, None),
-        EventKind::Pop { force } => ("pop", None, Some(force)),
-        _ => ("other", None, None),
-    };
-    Fields::new(py)
-        .with("tick", found.tick)?
-        .with("point", found.point)?
-        .with("body", names.get(found.body as usize))?
-        .with("kind", kind)?
-        .with("speed", speed)?
-        .with("force", force)?
-        .of_class("Event")
-}
-
-/// A report as the dict that its JSON is.
-fn read<'py>(py: Python<'py>, report: &RunReport) -> PyResult<Bound<'py, PyAny>> {
-    let text = serde_json::to_string(report)
-        .map_err(|error| PyRuntimeError::new_err(error.to_string()))?;
-    py.import("json")?.call_method1("loads", (text,))
-}
-
-fn trace<'py, const D: usize>(
-    py: Python<'py>,
-    rows: &[TraceRow<D>],
-    lost: u64,
-) -> PyResult<Bound<'py, PyAny>> {
-    let vectors = |of: fn(&TraceRow<D>) -> Vector<f64, D>| {
-        table(py, rows.iter().flat_map(|row| of(row).0).collect(), D)
-    };
-    Fields::new(py)
-        .with("time", row(py, rows.iter().map(|row| row.time_s).collect()))?
-        .with("point", row(py, rows.iter().map(|row| row.point).collect()))?
-        .with("device", vectors(|row| row.device)?)?
-        .with("proxy", vectors(|row| row.proxy)?)?
-        .with("wanted", vectors(|row| row.wanted)?)?
-        .with("force", vectors(|row| row.force)?)?
-        .with("normal", vectors(|row| row.normal)?)?
-        .with("contact", row(py, rows.iter().map(|row| row.contact).collect()))?
-        .with("body", row(py, rows.iter().map(|row| row.body).collect()))?
-        .with("is_slipping", row(py, rows.iter().map(|row| row.is_slipping).collect()))?
-        .with("evaluations", row(py, rows.iter().map(|row| row.evaluations).collect()))?
-        .with("cost_ns", row(py, rows.iter().map(|row| row.cost_ns).collect()))?
-        .with("lateness_ns", row(py, rows.iter().map(|row| row.lateness_ns).collect()))?
-        .with("lost", lost)?
-        .of_class("Trace")
 }
 
 /// Feels a scene on a virtual clock, as fast as it goes: the same every time. See `Servo`.
@@ -593,24 +519,13 @@ fn felt<'py, const D: usize>(
     let seconds = asked.duration.unwrap_or_default();
     let mut recorder =
         Recorder::new((asked.record * asked.rate).ceil() as usize * device.points());
-    let (stop, mut stopped) = (AtomicBool::new(false), None);
-    let report = py.detach(|| {
-        let mut look = |_: &palpate::haptics::Progress| {
-            if let Err(error) = Python::attach(|py| py.check_signals()) {
-                stopped = Some(error);
-                stop.store(true, Ordering::Relaxed);
-            }
-        };
+    let report = interruptible(py, |stop| {
         let options = RunOptions::new(seconds)
             .with_pace(Pace::AsFastAsPossible)
-            .with_interrupt(&stop)
-            .with_watch(Duration::from_millis(40), &mut look)
+            .with_interrupt(stop)
             .with_recorder(&mut recorder);
         run(&mut servo, device.as_mut(), options)
-    });
-    if let Some(error) = stopped {
-        return Err(error);
-    }
+    })?;
     let report = report.or_raise(py)?;
     Fields::new(py)
         .with("report", read(py, &report)?)?

@@ -1,0 +1,98 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! What a servo tells: its state, events, report and ticks.
+
+use palpate::field::Vector;
+use palpate::haptics::{Event, EventKind, Snapshot};
+use palpate::servo_loop::{RunReport, TraceRow};
+use pyo3::exceptions::PyRuntimeError;
+use pyo3::prelude::*;
+
+use crate::answers::{Fields, vector};
+use crate::arrays::{row, table};
+
+pub(crate) fn snapshot<'py, const D: usize>(
+    py: Python<'py>,
+    now: &Snapshot<D>,
+    names: &[String],
+) -> PyResult<Bound<'py, PyAny>> {
+    let touch = |touch: &palpate::haptics::Touch<D>| {
+        Fields::new(py)
+            .with("device", vector(py, touch.device))?
+            .with("velocity", vector(py, touch.velocity))?
+            .with("proxy", vector(py, touch.proxy))?
+            .with("wanted", vector(py, touch.wanted))?
+            .with("force", vector(py, touch.force))?
+            .with("normal", vector(py, touch.normal))?
+            .with("body", touch.contact.then(|| names.get(touch.body as usize)).flatten())?
+            .with("is_slipping", touch.is_slipping)?
+            .of_class("Touch")
+    };
+    let touches: PyResult<Vec<_>> = now.touches.iter().map(touch).collect();
+    Fields::new(py)
+        .with("time", now.progress.time)?
+        .with("ticks", now.progress.ticks)?
+        .with("force", now.progress.force)?
+        .with("depth", now.progress.depth)?
+        .with("touches", pyo3::types::PyTuple::new(py, touches?)?)?
+        .with("is_stopped", now.is_stopped)?
+        .with("events_lost", now.events_lost)?
+        .of_class("Snapshot")
+}
+
+pub(crate) fn event<'py>(
+    py: Python<'py>,
+    found: &Event,
+    names: &[String],
+) -> PyResult<Bound<'py, PyAny>> {
+    let (kind, speed, force) = match found.kind {
+        EventKind::Touch { speed } => ("touch", Some(speed), None),
+        EventKind::Leave => ("leave", None, None),
+        EventKind::Slip => ("slip", None, None),
+        EventKind::Stick => ("stick", None, None),
+        EventKind::Pop { force } => ("pop", None, Some(force)),
+        _ => ("other", None, None),
+    };
+    Fields::new(py)
+        .with("tick", found.tick)?
+        .with("point", found.point)?
+        .with("body", names.get(found.body as usize))?
+        .with("kind", kind)?
+        .with("speed", speed)?
+        .with("force", force)?
+        .of_class("Event")
+}
+
+/// A report as the dict that its JSON is.
+pub(crate) fn read<'py>(py: Python<'py>, report: &RunReport) -> PyResult<Bound<'py, PyAny>> {
+    let text = serde_json::to_string(report)
+        .map_err(|error| PyRuntimeError::new_err(error.to_string()))?;
+    py.import("json")?.call_method1("loads", (text,))
+}
+
+pub(crate) fn trace<'py, const D: usize>(
+    py: Python<'py>,
+    rows: &[TraceRow<D>],
+    lost: u64,
+) -> PyResult<Bound<'py, PyAny>> {
+    let vectors = |of: fn(&TraceRow<D>) -> Vector<f64, D>| {
+        table(py, rows.iter().flat_map(|row| of(row).0).collect(), D)
+    };
+    Fields::new(py)
+        .with("time", row(py, rows.iter().map(|row| row.time_s).collect()))?
+        .with("point", row(py, rows.iter().map(|row| row.point).collect()))?
+        .with("device", vectors(|row| row.device)?)?
+        .with("proxy", vectors(|row| row.proxy)?)?
+        .with("wanted", vectors(|row| row.wanted)?)?
+        .with("force", vectors(|row| row.force)?)?
+        .with("normal", vectors(|row| row.normal)?)?
+        .with("contact", row(py, rows.iter().map(|row| row.contact).collect()))?
+        .with("body", row(py, rows.iter().map(|row| row.body).collect()))?
+        .with("is_slipping", row(py, rows.iter().map(|row| row.is_slipping).collect()))?
+        .with("evaluations", row(py, rows.iter().map(|row| row.evaluations).collect()))?
+        .with("cost_ns", row(py, rows.iter().map(|row| row.cost_ns).collect()))?
+        .with("lateness_ns", row(py, rows.iter().map(|row| row.lateness_ns).collect()))?
+        .with("lost", lost)?
+        .of_class("Trace")
+}

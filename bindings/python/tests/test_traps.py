@@ -1,0 +1,135 @@
+# SPDX-FileCopyrightText: The palpate authors
+# SPDX-License-Identifier: MIT OR Apache-2.0
+"""What other packages trip over: forks, Ctrl-C, panics, the interpreter's lock."""
+
+from __future__ import annotations
+
+import multiprocessing
+import random
+import subprocess
+import sys
+import threading
+import time
+from typing import Any
+
+import numpy as np
+import palpate as pp
+import pytest
+
+S = (pp.ball(0.5) & pp.cuboid([0.8, 0.8, 0.8])) - pp.cylinder(radius=0.2, height=2.0)
+
+
+def asked(_: int) -> float:
+    """A call that uses threads."""
+    points = np.random.default_rng(1).uniform(-1, 1, (100_000, 3))
+    found = pp.separations(S, pp.ball(0.1), points[:50], threads=2)
+    return float(S.distance(points, threads=2).sum() + found.lower.sum())
+
+
+# A process that has threads may deadlock where it forks: that is what is tested.
+@pytest.mark.filterwarnings("ignore:.*multi-threaded:DeprecationWarning")
+@pytest.mark.parametrize("way", ["fork", "forkserver", "spawn"])
+def test_processes_after_threads(way: str) -> None:
+    here = asked(0)
+    with multiprocessing.get_context(way).Pool(2) as pool:
+        assert pool.map_async(asked, [0, 1]).get(timeout=120) == [here, here]
+
+
+CALLS = {
+    "distance": "pp.Shape.distance(many, np.zeros((3_000_000, 3)))",
+    "threads": "pp.Shape.distance(many, np.zeros((3_000_000, 3)), threads=2)",
+    "gradient": "pp.Shape.gradient(many, np.zeros((3_000_000, 3)))",
+    "separations": "pp.separations(many, many, np.full((200_000, 3), 1.3))",
+    "overlaps": "pp.overlaps(many, many, np.full((200_000, 3), 1.3), threads=2)",
+    "feel": "pp.feel(pp.Scene(many), hand=[0, 0.09, 0], seconds=1000.0)",
+    "mesh": "many.mesh(cell=0.002)",
+    "render": "many.render(width=6000, height=4000)",
+    "events": "[e for s in [pp.Servo(pp.Scene(many), hand=[0, 9, 0]).__enter__()] for e in s.events()]",
+}
+
+PROGRAM = """
+import sys, time, threading, signal, os
+import numpy as np
+import palpate as pp
+many = pp.union(pp.ball(0.1).translated([0.3 * x, 0.3 * y, 0.3 * z]).twisted(degrees=3)
+                for x in range(6) for y in range(6) for z in range(6))
+def interrupt():
+    time.sleep(0.5)
+    interrupt.at = time.perf_counter()
+    os.kill(os.getpid(), signal.SIGINT)
+threading.Thread(target=interrupt, daemon=True).start()
+try:
+    {call}
+    print("the call was too short")
+except KeyboardInterrupt:
+    print(time.perf_counter() - interrupt.at)
+"""
+
+
+@pytest.mark.parametrize("name", CALLS)
+def test_a_long_call_is_stopped(name: str) -> None:
+    text = PROGRAM.format(call=CALLS[name])
+    done = subprocess.run([sys.executable, "-c", text], capture_output=True, text=True, timeout=60, check=False)
+    assert done.returncode == 0, done.stderr
+    # It stops long before its end; how soon is measured by benchmarks, not by tests.
+    assert float(done.stdout) < 30
+
+
+def test_a_second_thread_goes_on() -> None:
+    counted = 0
+    is_over = threading.Event()
+
+    def count() -> None:
+        nonlocal counted
+        while not is_over.is_set():
+            counted += 1
+            time.sleep(0)
+
+    thread = threading.Thread(target=count)
+    thread.start()
+    before = counted
+    S.distance(np.zeros((2_000_000, 3)))
+    during = counted - before
+    is_over.set()
+    thread.join()
+    assert during > 0
+
+
+VALUES: list[Any] = [
+    None, True, 0, 1, -1, 2, 3, 10**30, 0.0, -0.0, 0.5, -0.5, 1e-300, 1e300, np.nan, np.inf, "x", "", b"x", [], [0], [0, 0],
+    [0, 0, 0], [1, 2, 3], [0.1, 0.2, 0.3, 0.4], [[0, 0, 0]], [[0, 0], [1, 0], [0, 1]], [[[0, 0], [1, 0], [0, 1]]], (), {},
+    {"spacing": 1.0}, {"spacing": 1.0, "first": 0, "last": 3}, np.zeros((0, 3)), np.zeros((2, 3), np.float32), np.eye(4),
+    np.eye(3), np.full(3, np.nan), object(), S, pp.ball(0.3, dimension=2), pp.Scene(S), pp.ball(0.2).mesh(cell=0.1),
+    lambda *_: 0, "omega", "quadratic", "xy", 1e9, 5, 7, np.float32(0.5), np.int8(3),
+]  # fmt: skip
+
+LEFT_OUT = {"render", "feel", "Servo", "batch", "plot_contacts", "main", "save", "mesh", "sample", "figure", "plot", "mass"}
+
+
+def test_no_call_panics() -> None:
+    random_ = random.Random(5)
+    names = [name for name in pp.__all__ if callable(getattr(pp, name)) and name not in LEFT_OUT]
+    methods = [name for name in dir(S) if not name.startswith("_") and callable(getattr(S, name)) and name not in LEFT_OUT]
+    shapes = [S, pp.ball(0.3, dimension=2), pp.half_space([0, 1, 0], 0.0)]
+    counts = {"answers": 0, "refusals": 0}
+    for _ in range(20_000):
+        if random_.random() < 0.5:
+            call = getattr(pp, random_.choice(names))
+        else:
+            call = getattr(random_.choice(shapes), random_.choice(methods))
+        given = [random_.choice(VALUES) for _ in range(random_.randrange(4))]
+        named = {
+            name: random_.choice(VALUES)
+            for name in random_.sample(["width", "profile", "tolerance", "degrees", "matrix", "out", "height", "margin"], random_.randrange(2))
+        }
+        if call in (pp.separation, pp.closest_points, pp.manifold, pp.mesh_contacts, pp.separations):
+            named["budget"] = 1000
+        try:
+            answer = call(*given, **named)
+        except (pp.Error, TypeError, ValueError, OverflowError, AttributeError, OSError):
+            counts["refusals"] += 1
+        else:
+            counts["answers"] += 1
+            if isinstance(answer, pp.Shape):
+                shapes = (shapes + [answer])[-20:] if answer.promise.bounds is None or len(repr(answer)) < 2000 else shapes
+    assert counts["answers"] > 500 and counts["refusals"] > 500
