@@ -26,6 +26,7 @@ mod servo;
 mod shape;
 mod text;
 mod touched;
+mod world;
 
 use pyo3::prelude::*;
 
@@ -56,4 +57,6 @@ mod _palpate {
     use super::servo::{PyServo, feel};
     #[pymodule_export]
     use super::shape::PyShape;
+    #[pymodule_export]
+    use super::world::{PyTrack, PyWorld, sweep};
 }

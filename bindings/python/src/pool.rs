@@ -37,6 +37,14 @@ pub(crate) fn of(threads: usize) -> PyResult<Option<Arc<Pool>>> {
     if threads == 1 { Ok(None) } else { shared(threads).map(Some) }
 }
 
+/// The same, with a pool of one thread where one is asked for.
+pub(crate) fn of_at_least_one(threads: usize) -> PyResult<Arc<Pool>> {
+    match of(threads)? {
+        Some(pool) => Ok(pool),
+        None => alone(),
+    }
+}
+
 fn shared(threads: usize) -> PyResult<Arc<Pool>> {
     let mut pools = POOLS.lock().unwrap_or_else(PoisonError::into_inner);
     let pools = pools.get_or_insert_with(HashMap::new);
@@ -64,7 +72,7 @@ thread_local! {
 
 /// A pool of one thread that no other thread of Python waits for. What the core shares among the threads of the pool
 /// that it is called from would without one be shared among those of all processors.
-pub(crate) fn alone() -> PyResult<Arc<Pool>> {
+fn alone() -> PyResult<Arc<Pool>> {
     let process = std::process::id();
     ALONE.with_borrow_mut(|own| {
         if let Some((of, pool)) = own.as_ref()

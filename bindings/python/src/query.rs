@@ -7,7 +7,6 @@ use std::time::Instant;
 
 use palpate::field::{Pose, Shape};
 use palpate::query::{Certified, Manifold, Nearest, Query, QueryError, Ray, Stop, Tolerance};
-use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
 use crate::answers::{Fields, certified, contact, stop, vector};
@@ -16,7 +15,7 @@ use crate::error::OrRaise;
 use crate::interrupt::A_WHILE;
 use crate::pool;
 use crate::poses::{self, Posed};
-use crate::shape::{AnyShape, PyShape};
+use crate::shape::PyShape;
 
 /// Poses that are asked about from one look at Python to the next, at most.
 const MOST_POSES: usize = 1 << 16;
@@ -25,17 +24,21 @@ const MOST_POSES: usize = 1 << 16;
 macro_rules! of_both {
     ($py:expr, $one:expr, $two:expr, |$a:ident, $b:ident| $done:expr) => {
         match ($one.made($py)?, $two.made($py)?) {
-            (AnyShape::Planar($a), AnyShape::Planar($b)) => $done,
-            (AnyShape::Spatial($a), AnyShape::Spatial($b)) => $done,
+            ($crate::shape::AnyShape::Planar($a), $crate::shape::AnyShape::Planar($b)) => $done,
+            ($crate::shape::AnyShape::Spatial($a), $crate::shape::AnyShape::Spatial($b)) => {
+                $done
+            }
             (one, two) => {
                 let (one, two) = (one.dimension(), two.dimension());
                 let problem =
                     format!("both shapes must have one dimension, got {one}D and {two}D");
-                Err(PyValueError::new_err(problem))
+                Err(pyo3::exceptions::PyValueError::new_err(problem))
             }
         }
     };
 }
+
+pub(crate) use of_both;
 
 /// A query with what a caller asks of its answers.
 pub(crate) fn query<const D: usize>(tolerance: Option<f64>, budget: Option<u32>) -> Query<D> {
@@ -51,7 +54,7 @@ pub(crate) fn query<const D: usize>(tolerance: Option<f64>, budget: Option<u32>)
 }
 
 /// A point between the bodies, and the way from the first to the second.
-fn nearest<'py, const D: usize>(
+pub(crate) fn nearest<'py, const D: usize>(
     py: Python<'py>,
     found: &Certified<Nearest<D>>,
 ) -> PyResult<Fields<'py>> {
@@ -164,7 +167,7 @@ pub(crate) fn manifold<'py>(
     })
 }
 
-fn manifold_of<'py, const D: usize>(
+pub(crate) fn manifold_of<'py, const D: usize>(
     py: Python<'py>,
     found: &Manifold<D>,
 ) -> PyResult<Bound<'py, PyAny>> {
@@ -301,10 +304,7 @@ where
 {
     let py = poses.py();
     let poses: Vec<Pose<D>> = poses::many(poses)?;
-    let pool = match pool::of(threads)? {
-        Some(pool) => pool,
-        None => pool::alone()?,
-    };
+    let pool = pool::of_at_least_one(threads)?;
     let mut answers: Vec<Found<D>> = vec![None; poses.len()];
     for (part, (poses, answers)) in
         poses.chunks(MOST_POSES).zip(answers.chunks_mut(MOST_POSES)).enumerate()

@@ -480,3 +480,51 @@ class Felt(_Answer):
     report: dict[str, Any]
     #: All ticks.
     trace: Trace
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class FirstTouch(_Answer):
+    """When two bodies that move touch first, by :func:`sweep`: times from 0 to 1."""
+
+    #: Before this time the bodies are proven apart.
+    lower: float
+    #: At this time they touch; infinite if no such time was found, 1 if they are apart all the time.
+    upper: float
+    #: Why the search ended: "converged" at a touch, "sign_known" if there is none.
+    stop: str
+    #: How often the fields were evaluated.
+    evaluations: int
+    #: Whether they touch, proven; None if the search ended before that was known.
+    touches: bool | None
+    #: Where they touch at ``upper``; None if they do not.
+    contact: Contact | None
+    #: How they move on if they touch at the start: "approaching", "receding", "sliding" or "resting".
+    start: str | None
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Neighbours(_Answer):
+    """Two bodies of a world that are near each other, by :meth:`World.step`."""
+
+    #: The name of the first body.
+    a: str
+    #: The name of the second.
+    b: str
+    #: The separation is at least this [m].
+    lower: float
+    #: The separation is at most this [m].
+    upper: float
+    #: "touching" if their distance is proven to be at most the margin, "apart" if it is more, else "undecided".
+    verdict: str
+    #: Their contacts; None if neither is bounded.
+    manifold: Manifold | None
+
+    @property
+    def stop(self) -> str | None:
+        """Why the search for contacts ended.
+
+        >>> import palpate as pp
+        >>> [near.stop for near in pp.World(pp.Scene({"a": pp.ball(0.5), "b": pp.ball(0.4)})).step()]
+        ['converged']
+        """
+        return self.manifold.stop if self.manifold else None

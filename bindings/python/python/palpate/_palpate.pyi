@@ -15,10 +15,12 @@ from palpate._answers import (
     ClosestPoints,
     Event,
     Felt,
+    FirstTouch,
     Manifold,
     Mass,
     MeshContacts,
     MeshReport,
+    Neighbours,
     Overlap,
     Promise,
     RayHit,
@@ -37,6 +39,8 @@ __all__ = [
     "Scene",
     "Servo",
     "Shape",
+    "Track",
+    "World",
     "cast_ray",
     "catalogue",
     "closest_points",
@@ -54,6 +58,7 @@ __all__ = [
     "smooth_difference",
     "smooth_intersection",
     "smooth_union",
+    "sweep",
     "symmetric_difference",
     "union",
 ]
@@ -278,6 +283,35 @@ class Servo:
     @property
     def trace(self) -> Trace: ...
 
+@final
+class Track:
+    def __new__(cls, a: Shape, b: Shape) -> Track: ...
+    def separation(
+        self,
+        *,
+        a: ArrayLike | None = None,
+        b: ArrayLike | None = None,
+        tolerance: float = 0.0001,
+        budget: int = 200000,
+    ) -> Separation: ...
+    def forget(self) -> None: ...
+
+@final
+class World:
+    def __new__(cls, scene: Scene, *, margin: float | None = None) -> World: ...
+    def set_poses(self, poses: dict[str, Any]) -> None: ...
+    def step(self, *, threads: int = 1) -> list[Neighbours]: ...
+
+def sweep(
+    a: Shape,
+    b: Shape,
+    *,
+    start: ArrayLike | None = None,
+    end: ArrayLike | None = None,
+    a_start: ArrayLike | None = None,
+    a_end: ArrayLike | None = None,
+    gap: float | None = None,
+) -> FirstTouch: ...
 def feel(
     scene: Scene,
     *,

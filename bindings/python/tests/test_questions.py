@@ -1,0 +1,132 @@
+# SPDX-FileCopyrightText: The palpate authors
+# SPDX-License-Identifier: MIT OR Apache-2.0
+"""Questions: known answers lie between the bounds, and what cannot be asked is refused."""
+
+from __future__ import annotations
+
+import math
+import pickle
+from typing import Any
+
+import numpy as np
+import palpate as pp
+import pytest
+
+BALL = pp.ball(0.5)
+PLATE = pp.cuboid([0.6, 0.4, 0.6]) - pp.cylinder(radius=0.1005, height=1.0)
+PEG = pp.cylinder(radius=0.1, height=0.6)
+
+
+def test_known_separations_lie_between_the_bounds() -> None:
+    for gap in [-0.3, -1e-3, 1e-3, 0.5]:
+        other = BALL.translated([1 + gap, 0, 0])
+        found = pp.separation(BALL, other, tolerance=1e-6)
+        assert found.lower - 1e-12 <= gap <= found.upper + 1e-12 and found.upper - found.lower <= 2e-6
+        assert pp.overlap(BALL, other).overlaps == (gap < 0)
+        points = pp.closest_points(BALL, other, tolerance=1e-6)
+        assert points.contact is not None and points.contact.gap == pytest.approx(gap, abs=1e-5)
+
+
+def test_batches_have_the_bits_of_single_questions() -> None:
+    poses = np.random.default_rng(2).uniform(-0.5, 0.5, (60, 3))
+    many = pp.separations(PLATE, PEG, poses, tolerance=1e-4)
+    for i, pose in enumerate(poses):
+        one = pp.separation(PLATE, PEG.translated(pose), tolerance=1e-4)
+        assert abs(one.upper - many.upper[i]) <= 2e-4
+        assert many.lower[i] <= one.upper and one.lower <= many.upper[i]
+    threads = pp.separations(PLATE, PEG, poses, tolerance=1e-4, threads=2)
+    assert threads == many and len(many) == 60
+    hits = pp.overlaps(PLATE, PEG, poses)
+    assert np.array_equal(hits == 1, many.upper < 0) or (np.abs(many.upper[(hits == 1) != (many.upper < 0)]) < 2e-4).all()
+
+
+def test_forms_of_poses_agree() -> None:
+    angle, way = 0.3, [0.1, 0.2, 0.3]
+    quaternion = [0, 0, math.sin(angle / 2), math.cos(angle / 2)]
+    matrix = np.eye(4)
+    matrix[:2, :2] = [[math.cos(angle), -math.sin(angle)], [math.sin(angle), math.cos(angle)]]
+    matrix[:3, 3] = way
+    box = pp.cuboid([1, 2, 3])
+    points = np.random.default_rng(1).uniform(-2, 2, (50, 3))
+    expected = box.rotated([0, 0, 1], radians=angle).translated(way).distance(points)
+    for pose in [[*way, *quaternion], matrix]:
+        assert np.abs(box.placed(pose).distance(points) - expected).max() < 1e-12
+    flat = pp.cuboid([1, 2])
+    turned = flat.rotated(radians=angle).translated([0.1, 0.2])
+    planar = np.array([[math.cos(angle), -math.sin(angle), 0.1], [math.sin(angle), math.cos(angle), 0.2], [0, 0, 1]])
+    for pose in [[0.1, 0.2, angle], planar]:
+        assert np.abs(flat.placed(pose).distance(points[:, :2]) - turned.distance(points[:, :2])).max() < 1e-12
+
+
+def test_a_first_touch_lies_between_its_bounds() -> None:
+    found = pp.sweep(BALL, BALL, start=[3, 0, 0], end=[-3, 0, 0], gap=1e-6)
+    assert found.touches and found.lower <= 1 / 3 <= found.upper + 1e-6
+    assert found.contact is not None and found.contact.point_a[0] == pytest.approx(0.5, abs=1e-3)
+    apart = pp.sweep(BALL, BALL, start=[3, 2, 0], end=[-3, 2, 0])
+    assert apart.touches is False and apart.upper == 1 and apart.contact is None
+    # Both come towards each other.
+    both = pp.sweep(BALL, BALL, start=[3, 0, 0], end=[0, 0, 0], a_start=[-3, 0, 0], a_end=[0, 0, 0], gap=1e-6)
+    assert both.lower <= 5 / 6 <= both.upper + 1e-6
+
+
+def test_a_track_says_what_a_search_says() -> None:
+    track = pp.Track(PLATE, PEG)
+    for i in range(30):
+        pose = [1e-3 * i, 0.02 * i, 0]
+        found, anew = track.separation(b=pose), pp.separation(PLATE, PEG.translated(pose), tolerance=1e-4)
+        assert found.lower <= anew.upper and anew.lower <= found.upper
+    track.forget()
+    assert track.separation(b=[0, 2, 0]).lower > 1
+
+
+def test_a_world_finds_its_pairs() -> None:
+    scene = pp.Scene({"table": pp.cuboid([1, 0.1, 1]), "a": pp.ball(0.05), "b": pp.ball(0.05)})
+    world = pp.World(scene, margin=1e-3)
+    world.set_poses({"a": [0, 0.0995, 0], "b": [0.5, 3, 0]})
+    [near] = world.step()
+    assert (near.a, near.b, near.verdict) == ("table", "a", "touching")
+    assert near.lower <= -0.0005 <= near.upper and len(near.manifold) >= 1
+    assert near.stop == near.manifold.stop
+    world.set_poses({"b": [0.09, 0.0995, 0]})
+    assert {(near.a, near.b) for near in world.step(threads=2)} == {("table", "a"), ("table", "b"), ("a", "b")}
+    with pytest.raises(KeyError, match="there are table, a, b"):
+        world.set_poses({"c": [0, 0, 0]})
+
+
+def test_answers_are_frozen_and_can_be_pickled() -> None:
+    for answer in [
+        pp.separation(BALL, PEG),
+        pp.manifold(BALL, PEG),
+        pp.separations(BALL, PEG, [[1, 0, 0]]),
+        BALL.at([0, 1, 0]),
+        BALL.promise,
+        pp.cast_ray(BALL, [0, 2, 0], [0, -1, 0]),
+    ]:
+        assert pickle.loads(pickle.dumps(answer)) == answer
+        with pytest.raises(AttributeError):
+            answer.lower = 0.0
+        assert repr(answer).startswith(type(answer).__name__)
+
+
+@pytest.mark.parametrize(
+    ("ask", "error", "words"),
+    [
+        (lambda: pp.separation(BALL, pp.ball(1, dimension=2)), ValueError, "got 3D and 2D"),
+        (lambda: pp.separation(pp.half_space([0, 1, 0], 0.0), pp.half_space([0, 1, 0], 0.0)), pp.QueryError, "bounded"),
+        (lambda: pp.separation(BALL, BALL, tolerance=-1), pp.QueryError, "-1"),
+        (lambda: pp.separations(BALL, BALL, [[0, 0, 0], [np.nan, 0, 0]]), pp.QueryError, "1"),
+        (lambda: pp.separations(BALL, BALL, [0, 0, 0]), ValueError, "poses must have the shape (n, …)"),
+        (lambda: pp.separations(BALL, BALL, [[0, 0, 0, 0, 0, 0, 0]]), ValueError, "poses[0]"),
+        (lambda: pp.separations(BALL, BALL, np.ones((2, 4, 4))), ValueError, "poses[0]: the last row of a pose"),
+        (lambda: pp.cast_ray(BALL, [0, 2, 0], [0, 0, 0]), pp.QueryError, "direction"),
+        (lambda: pp.cast_ray(BALL, [0, 2], [0, 0, 1]), ValueError, "origin must have the shape (3,), got (2,)"),
+        (lambda: pp.manifold(BALL, BALL, margin=-1), pp.QueryError, "got -1.0 m"),
+        (lambda: bool(pp.overlap(PLATE, PEG, budget=1)), ValueError, "undecided"),
+        (lambda: pp.Track(BALL, pp.ball(1, dimension=2)), ValueError, "got 3D and 2D"),
+        (lambda: pp.sweep(BALL, BALL, start=[np.inf, 0, 0]), pp.Error, ""),
+    ],
+)
+def test_what_cannot_be_asked_is_refused(ask: Any, error: type, words: str) -> None:
+    with pytest.raises(error) as caught:
+        ask()
+    assert words in str(caught.value)
