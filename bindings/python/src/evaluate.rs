@@ -14,6 +14,7 @@ use rayon::prelude::*;
 use crate::answers;
 use crate::arrays::{Numbers, few, misshapen, numbers, place, writable};
 use crate::error::OrRaise;
+use crate::function::raised;
 use crate::interrupt::A_WHILE;
 use crate::pool::{self, Pool};
 use crate::shape::{AnyShape, of_either};
@@ -41,7 +42,11 @@ fn distances<'py, const D: usize>(
     threads: usize,
 ) -> PyResult<Bound<'py, PyAny>> {
     let py = points.py();
-    let one = |point: [f64; D]| Ok(shape.distance(Vector(point)).into_pyobject(py)?.into_any());
+    let one = |point: [f64; D]| {
+        let distance = shape.distance(Vector(point));
+        raised()?;
+        Ok(distance.into_pyobject(py)?.into_any())
+    };
     if out.is_none()
         && let Some(point) = few(points)
     {
@@ -128,7 +133,9 @@ pub(crate) fn at<'py>(
     let py = point.py();
     of_either!(shape, shape => {
         let point = crate::poses::point(point, "point")?;
-        answers::at_point(py, &evaluate_point(shape, point).or_raise(py)?)
+        let found = evaluate_point(shape, point);
+        raised()?;
+        answers::at_point(py, &found.or_raise(py)?)
     })
 }
 
@@ -220,6 +227,7 @@ fn in_chunks<T: Copy + Send + Sync, const K: usize>(
             }),
             _ => batch.into_iter().try_for_each(|(points, outs)| work(points, outs)),
         });
+        raised()?;
         done.or_raise(py)?;
         py.check_signals()?;
         let spent = start.elapsed();

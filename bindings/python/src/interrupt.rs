@@ -10,6 +10,8 @@ use std::time::Duration;
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
 
+use crate::function::raised;
+
 /// How long work goes on before Python is asked whether it is to stop.
 pub(crate) const A_WHILE: Duration = Duration::from_millis(40);
 
@@ -27,7 +29,10 @@ pub(crate) fn interruptible<T: Send>(
             scope.spawn(move || done.send(work(stop)));
             loop {
                 match answer.recv_timeout(A_WHILE) {
-                    Ok(answer) => return Ok(answer),
+                    Ok(answer) => {
+                        raised()?;
+                        return Ok(answer);
+                    }
                     Err(RecvTimeoutError::Timeout) => {}
                     Err(RecvTimeoutError::Disconnected) => {
                         return Err(PyRuntimeError::new_err("the run ended without an answer"));

@@ -10,6 +10,7 @@ mod arrays;
 mod chain;
 mod error;
 mod evaluate;
+mod function;
 mod interrupt;
 mod mailbox;
 mod mass;
@@ -32,6 +33,8 @@ use pyo3::prelude::*;
 
 #[pymodule]
 mod _palpate {
+    #[pymodule_export]
+    use super::function::from_function;
     #[pymodule_export]
     use super::mailbox::PyMailbox;
     #[pymodule_export]

@@ -9,6 +9,7 @@ use pyo3::prelude::*;
 use crate::answers::{Fields, vector};
 use crate::arrays::row;
 use crate::error::OrRaise;
+use crate::function::detached;
 use crate::mesh::{self, PyMesh};
 use crate::shape::{PyShape, of_either};
 
@@ -34,7 +35,7 @@ impl PyShape {
         let limits = tolerance.map_or(limits, |tolerance| limits.with_tolerance(tolerance));
         let limits = cells.map_or(limits, |cells| limits.with_cells(cells));
         of_either!(self.made(py)?, shape => {
-            let found = py.detach(|| shape.mass(density, limits)).or_raise(py)?;
+            let found = detached(py, || shape.mass(density, limits))?.or_raise(py)?;
             told(py, &found)
         })
     }

@@ -18,6 +18,7 @@ use pyo3::prelude::*;
 use crate::answers::Fields;
 use crate::arrays::{misshapen, numbers, row, table};
 use crate::error::OrRaise;
+use crate::function::detached;
 use crate::interrupt::interruptible;
 use crate::query::query;
 use crate::shape::{AnyShape, PyShape};
@@ -352,7 +353,7 @@ fn touched<'py, const N: usize, const D: usize>(
 where
     Query<D>: ElementMemory<N, D>,
 {
-    let found = py.detach(|| query.mesh_contacts(shape, mesh)).or_raise(py)?;
+    let found = detached(py, || query.mesh_contacts(shape, mesh))?.or_raise(py)?;
     let MeshContacts { contacts, hits, undecided, evaluations, .. } = &found;
     let points = |of: fn(&palpate::query::Contact<D>) -> [f64; D]| {
         table(py, contacts.iter().flat_map(|found| of(&found.contact)).collect(), D)

@@ -12,6 +12,7 @@ use pyo3::prelude::*;
 use crate::answers::{Fields, certified, contact, stop, vector};
 use crate::arrays::{row, table};
 use crate::error::OrRaise;
+use crate::function::detached;
 use crate::interrupt::A_WHILE;
 use crate::pool;
 use crate::poses::{self, Posed};
@@ -82,7 +83,7 @@ pub(crate) fn separation<'py>(
     budget: Option<u32>,
 ) -> PyResult<Bound<'py, PyAny>> {
     of_both!(py, a, b, |a, b| {
-        let found = py.detach(|| query(tolerance, budget).separation(a, b)).or_raise(py)?;
+        let found = detached(py, || query(tolerance, budget).separation(a, b))?.or_raise(py)?;
         nearest(py, &found)?.of_class("Separation")
     })
 }
@@ -101,7 +102,7 @@ pub(crate) fn overlap<'py>(
     budget: Option<u32>,
 ) -> PyResult<Bound<'py, PyAny>> {
     of_both!(py, a, b, |a, b| {
-        let found = py.detach(|| query(None, budget).overlap(a, b)).or_raise(py)?;
+        let found = detached(py, || query(None, budget).overlap(a, b))?.or_raise(py)?;
         nearest(py, &found)?.with("overlaps", found.is_hit())?.of_class("Overlap")
     })
 }
@@ -125,7 +126,8 @@ pub(crate) fn closest_points<'py>(
     budget: Option<u32>,
 ) -> PyResult<Bound<'py, PyAny>> {
     of_both!(py, a, b, |a, b| {
-        let found = py.detach(|| query(tolerance, budget).closest_points(a, b)).or_raise(py)?;
+        let found =
+            detached(py, || query(tolerance, budget).closest_points(a, b))?.or_raise(py)?;
         let best = found.best.as_ref().map(|best| contact(py, best)).transpose()?;
         certified(py, &found)?.with("contact", best)?.of_class("ClosestPoints")
     })
@@ -156,13 +158,13 @@ pub(crate) fn manifold<'py>(
     budget: Option<u32>,
 ) -> PyResult<Bound<'py, PyAny>> {
     of_both!(py, a, b, |a, b| {
-        let found = py.detach(|| {
+        let found = detached(py, || {
             query(tolerance, budget).manifold_with(a, b, |own| {
                 let own = margin.map_or(own, |margin| own.with_margin(margin));
                 let own = spacing.map_or(own, |spacing| own.with_spacing(spacing));
                 most.map_or(own, |most| own.with_most(most))
             })
-        });
+        })?;
         manifold_of(py, &found.or_raise(py)?)
     })
 }
@@ -224,7 +226,7 @@ fn cast<'py, const D: usize>(
     let (origin, direction) =
         (poses::point(origin, "origin")?, poses::point(direction, "direction")?);
     let ray = Ray::new(origin, direction, length).or_raise(py)?;
-    let found = py.detach(|| query.cast_ray(shape, &ray)).or_raise(py)?;
+    let found = detached(py, || query.cast_ray(shape, &ray))?.or_raise(py)?;
     let hit = found.best;
     certified(py, &found)?
         .with("point", hit.map(|hit| vector(py, hit.point)))?
@@ -319,7 +321,7 @@ where
                 Asked::Separation => query.separations(bodies, &asked_now, &mut found, goes_on),
                 Asked::Overlap => query.overlaps(bodies, &asked_now, &mut found, goes_on),
             };
-            let outcome = py.detach(|| pool.install(run));
+            let outcome = detached(py, || pool.install(run))?;
             outcome
                 .map_err(|error| in_place(error, part * MOST_POSES, &waiting))
                 .or_raise(py)?;

@@ -16,6 +16,7 @@ use pyo3::types::PyDict;
 
 use crate::answers::{Fields, contact, stop};
 use crate::error::OrRaise;
+use crate::function::detached;
 use crate::pool::{self, Pool};
 use crate::poses::{self, Posed};
 use crate::query::{manifold_of, nearest, of_both, query};
@@ -74,7 +75,7 @@ fn swept<const D: usize>(
     [a, b]: [&Shape<D>; 2],
     [one, two]: [Screw<D>; 2],
 ) -> PyResult<FirstTouch<D>> {
-    py.detach(|| query.cast_shape(Moving::new(a, one), Moving::new(b, two))).or_raise(py)
+    detached(py, || query.cast_shape(Moving::new(a, one), Moving::new(b, two)))?.or_raise(py)
 }
 
 fn first_touch<'py, const D: usize>(
@@ -190,11 +191,11 @@ where
         given.map_or_else(|| Ok(Pose::identity()), poses::one)
     };
     let poses = [pose(a)?, pose(b)?];
-    let found = py.detach(|| {
+    let found = detached(py, || {
         let mut own = pair.lock().unwrap_or_else(PoisonError::into_inner);
         let Pair { track, workspace } = &mut **own;
         track.separation(poses, limits, workspace)
-    });
+    })?;
     nearest(py, &found.or_raise(py)?)?.of_class("Separation")
 }
 
@@ -317,13 +318,13 @@ fn stepped<'py, const D: usize>(
     world: &Mutex<Named<D>>,
     pool: &Pool,
 ) -> PyResult<Vec<Bound<'py, PyAny>>> {
-    let (found, names, margin) = py.detach(|| {
+    let (found, names, margin) = detached(py, || {
         let mut own = world.lock().unwrap_or_else(PoisonError::into_inner);
         let own = &mut *own;
         let step = || own.world.step().into_iter().cloned().collect();
         let found: Vec<Neighbours<D>> = pool.install(step);
         (found, own.bodies.clone(), own.world.settings().manifold.margin)
-    });
+    })?;
     let name = |body: BodyId| {
         names.iter().find(|(_, own)| *own == body).map_or("", |(name, _)| name.as_str())
     };

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: MIT OR Apache-2.0
 """What is made in Rust. Docstrings are in the module itself."""
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from os import PathLike
 from typing import Any, Literal, final, overload
 
@@ -46,6 +46,7 @@ __all__ = [
     "closest_points",
     "difference",
     "feel",
+    "from_function",
     "intersection",
     "main",
     "manifold",
@@ -379,6 +380,13 @@ def mesh_contacts(
     tolerance: float | None = None,
     budget: int | None = None,
 ) -> MeshContacts: ...
+def from_function(
+    function: Callable[[NDArray[np.float64]], ArrayLike],
+    *,
+    lipschitz: float = 1.0,
+    bounds: ArrayLike | None = None,
+    dimension: int = 3,
+) -> Shape: ...
 def primitive(name: str, dimension: int, values: Sequence[Any]) -> Shape: ...
 def catalogue() -> list[dict[str, Any]]: ...
 def main(arguments: Sequence[str]) -> int: ...

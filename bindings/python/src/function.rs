@@ -1,0 +1,186 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! Fields that are functions of Python.
+
+use std::sync::{Mutex, PoisonError};
+
+use numpy::IntoPyArray;
+use palpate::field::{Aabb, Bounds, CustomField, Point, Promise, Shape, Vector};
+use pyo3::exceptions::{PyTypeError, PyValueError};
+use pyo3::prelude::*;
+
+use crate::arrays::numbers;
+use crate::shape::PyShape;
+
+/// Half of the step of central differences, as a share of the size of what is looked at.
+const STEP: f64 = 1e-6;
+
+/// The first exception of a function since it was last asked for: a search cannot carry it.
+static RAISED: Mutex<Option<PyErr>> = Mutex::new(None);
+
+/// Does work without the interpreter's lock, and raises what functions that it called have raised.
+pub(crate) fn detached<T: Send>(
+    py: Python<'_>,
+    work: impl FnOnce() -> T + Send,
+) -> PyResult<T> {
+    let answer = py.detach(work);
+    raised()?;
+    Ok(answer)
+}
+
+/// The exception of a function that was called.
+pub(crate) fn raised() -> PyResult<()> {
+    let raised = RAISED.lock().unwrap_or_else(PoisonError::into_inner).take();
+    raised.map_or(Ok(()), Err)
+}
+
+/// A field of which only values are known.
+#[derive(Debug)]
+struct Function<const D: usize> {
+    function: Py<PyAny>,
+    promise: Promise<D>,
+    step: f64,
+}
+
+impl<const D: usize> Function<D> {
+    /// The values at points; NaN where the function raises.
+    fn values(&self, points: &[Point<D>], values: &mut [f64]) {
+        let asked = Python::attach(|py| {
+            let coordinates: Vec<f64> = points.iter().flat_map(|p| p.0).collect();
+            let array = coordinates.into_pyarray(py);
+            let array = array.call_method1("reshape", (points.len(), D))?;
+            let answer = self.function.bind(py).call1((array,))?;
+            let answer = numbers(&answer, "the answer of the function")?;
+            if answer.shape() != [points.len()] {
+                let problem = format!(
+                    "the function must answer {} points with an array of shape ({},), got {:?}",
+                    points.len(),
+                    points.len(),
+                    answer.shape()
+                );
+                return Err(PyValueError::new_err(problem));
+            }
+            values.copy_from_slice(&answer.as_doubles()?);
+            Ok(())
+        });
+        if let Err(error) = asked {
+            values.fill(f64::NAN);
+            RAISED.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(error);
+        }
+    }
+}
+
+impl<const D: usize> CustomField<D> for Function<D> {
+    fn distance(&self, p: Point<D>) -> f64 {
+        let mut value = [0.0];
+        self.values(&[p], &mut value);
+        value[0]
+    }
+
+    fn distance_gradient(&self, p: Point<D>) -> (f64, Vector<f64, D>) {
+        let (mut value, mut slope) = ([0.0], [Vector::ZERO]);
+        self.distances_gradients(&[p], &mut value, &mut slope);
+        (value[0], slope[0])
+    }
+
+    fn distances(&self, points: &[Point<D>], distances: &mut [f64]) {
+        self.values(points, distances);
+    }
+
+    fn distances_gradients(
+        &self,
+        points: &[Point<D>],
+        distances: &mut [f64],
+        gradients: &mut [Vector<f64, D>],
+    ) {
+        // Each point, and two beside it along each axis.
+        let each = 1 + 2 * D;
+        let mut all = Vec::with_capacity(points.len() * each);
+        for p in points {
+            all.push(*p);
+            for k in 0..D {
+                for side in [-self.step, self.step] {
+                    let mut beside = *p;
+                    beside.0[k] += side;
+                    all.push(beside);
+                }
+            }
+        }
+        let mut values = vec![0.0; all.len()];
+        self.values(&all, &mut values);
+        let answers = distances.iter_mut().zip(gradients).zip(values.chunks_exact(each));
+        for ((distance, gradient), own) in answers {
+            *distance = own[0];
+            let slope = |k: usize| (own[2 + 2 * k] - own[1 + 2 * k]) / (2.0 * self.step);
+            *gradient = Vector(std::array::from_fn(slope));
+        }
+    }
+
+    fn promise(&self) -> &Promise<D> {
+        &self.promise
+    }
+}
+
+/// A shape of a function of Python, which gives the values at points: an array of shape (n, D) in, one of shape (n,) out.
+///
+/// `lipschitz` is the most that values may differ by, over the distance of their points; everything that is proven rests
+/// on it. `bounds` are the corners of a box that holds the body, shape (2, D) [m]. Gradients are central differences.
+/// Such a shape is opaque: it can be asked, but not written, pickled or felt.
+///
+/// >>> import palpate as pp, numpy as np
+/// >>> waves = pp.from_function(lambda p: p[:, 1] - 0.01 * np.sin(20 * p[:, 0]), lipschitz=1.02)
+/// >>> waves.distance([0, 0.5, 0]), waves.promise.outside
+/// (0.5, 'lipschitz')
+#[pyfunction]
+#[pyo3(signature = (function, *, lipschitz = 1.0, bounds = None, dimension = 3))]
+pub(crate) fn from_function(
+    function: Bound<'_, PyAny>,
+    lipschitz: f64,
+    bounds: Option<&Bound<'_, PyAny>>,
+    dimension: usize,
+) -> PyResult<PyShape> {
+    if !function.is_callable() {
+        return Err(PyTypeError::new_err("function must be callable"));
+    }
+    if !(lipschitz > 0.0 && lipschitz.is_finite()) {
+        let problem = format!("lipschitz must be positive and finite, got {lipschitz}");
+        return Err(PyValueError::new_err(problem));
+    }
+    match dimension {
+        2 => Ok(made::<2>(function, lipschitz, bounds)?.into()),
+        3 => Ok(made::<3>(function, lipschitz, bounds)?.into()),
+        _ => Err(PyValueError::new_err(format!("dimension must be 2 or 3, got {dimension}"))),
+    }
+}
+
+fn made<const D: usize>(
+    function: Bound<'_, PyAny>,
+    lipschitz: f64,
+    bounds: Option<&Bound<'_, PyAny>>,
+) -> PyResult<Shape<D>> {
+    let aabb = match bounds {
+        None => None,
+        Some(given) => {
+            let array = numbers(given, "bounds")?;
+            let corners = array.as_doubles()?;
+            if array.shape() != [2, D] {
+                let expected = format!("(2, {D})");
+                return Err(crate::arrays::misshapen("bounds", &expected, array.shape()));
+            }
+            let corner = |row: usize| Vector(std::array::from_fn(|k| corners[row * D + k]));
+            let (min, max) = (corner(0), corner(1));
+            let is_box = (0..D).all(|k| min[k] <= max[k] && (max[k] - min[k]).is_finite());
+            if !is_box {
+                let problem =
+                    "bounds must be the lower corner, then the upper one, both finite";
+                return Err(PyValueError::new_err(problem));
+            }
+            Some(Aabb { min, max })
+        }
+    };
+    let size = aabb.map_or(1.0, |aabb| 2.0 * aabb.half_extents().norm());
+    let promise = Promise::lipschitz(aabb.map(Bounds::of_box), lipschitz);
+    let step = STEP * if size > 0.0 { size } else { 1.0 };
+    Ok(Shape::custom(Function { function: function.unbind(), promise, step }))
+}

@@ -1,0 +1,77 @@
+# SPDX-FileCopyrightText: The palpate authors
+# SPDX-License-Identifier: MIT OR Apache-2.0
+"""Fields that are functions of Python."""
+
+from __future__ import annotations
+
+import pickle
+from typing import Any
+
+import numpy as np
+import palpate as pp
+import pytest
+
+
+def norm(points: np.ndarray) -> np.ndarray:
+    return np.linalg.norm(points, axis=1) - 0.5
+
+
+BALL = pp.from_function(norm, bounds=[[-0.5] * 3, [0.5] * 3])
+POINTS = np.random.default_rng(4).uniform(-1, 1, (500, 3))
+
+
+def test_a_function_is_a_shape() -> None:
+    truth = pp.ball(0.5)
+    assert np.abs(BALL.distance(POINTS) - truth.distance(POINTS)).max() < 1e-15
+    assert np.abs(BALL.gradient(POINTS) - truth.gradient(POINTS)).max() < 1e-6
+    assert BALL.distance([0, 1, 0]) == 0.5 and "lipschitz" in BALL.promise.outside
+    both = BALL | pp.cuboid([1, 1, 1]).translated([1, 0, 0])
+    found = pp.separation(both, pp.ball(0.1).translated([0, 1, 0]), tolerance=1e-3)
+    assert found.lower <= 0.4 <= found.upper
+    assert np.array_equal(BALL.distance(POINTS, threads=2), BALL.distance(POINTS))
+    flat = pp.from_function(norm, dimension=2)
+    assert flat.distance([0.0, 1.0]) == 0.5
+
+
+def test_a_function_is_opaque() -> None:
+    assert "Function" in repr(BALL) and BALL == BALL and BALL != pp.from_function(norm)
+    for refused in [lambda: pickle.dumps(BALL), lambda: BALL.to_json(), lambda: pp.Scene(BALL)]:
+        with pytest.raises(pp.Error):
+            refused()
+
+
+def test_what_a_function_raises_is_raised() -> None:
+    def broken(_points: np.ndarray) -> np.ndarray:
+        raise ZeroDivisionError("in the function")
+
+    shape = pp.from_function(broken, bounds=[[-1] * 3, [1] * 3])
+    for ask in [
+        lambda: shape.distance([0, 0, 0]),
+        lambda: shape.distance(POINTS),
+        lambda: shape.gradient(POINTS, threads=2),
+        lambda: shape.at([0, 0, 0]),
+        lambda: pp.separation(shape, pp.ball(0.1)),
+        lambda: pp.separations(shape, pp.ball(0.1), [[0, 0, 0]]),
+        lambda: shape.mesh(cell=0.2),
+    ]:
+        with pytest.raises(ZeroDivisionError, match="in the function"):
+            ask()
+    assert pp.ball(0.5).distance([0, 1, 0]) == 0.5
+
+
+@pytest.mark.parametrize(
+    ("make", "error", "words"),
+    [
+        (lambda: pp.from_function(3), TypeError, "must be callable"),
+        (lambda: pp.from_function(norm, lipschitz=0), ValueError, "lipschitz must be positive"),
+        (lambda: pp.from_function(norm, dimension=4), ValueError, "dimension must be 2 or 3"),
+        (lambda: pp.from_function(norm, bounds=[0, 1]), ValueError, "bounds must have the shape (2, 3), got (2,)"),
+        (lambda: pp.from_function(norm, bounds=[[1] * 3, [0] * 3]), ValueError, "the lower corner"),
+        (lambda: pp.from_function(lambda p: p).distance(POINTS), ValueError, "an array of shape"),
+        (lambda: pp.from_function(lambda p: "x").distance(POINTS), TypeError, "real numbers"),
+    ],
+)
+def test_what_is_no_field_is_refused(make: Any, error: type, words: str) -> None:
+    with pytest.raises(error) as caught:
+        make()
+    assert words in str(caught.value)
