@@ -51,6 +51,8 @@ PROGRAM = """
 import sys, time, threading, signal, os
 import numpy as np
 import palpate as pp
+# A process whose parent ignores Ctrl-C ignores it too.
+signal.signal(signal.SIGINT, signal.default_int_handler)
 many = pp.union(pp.ball(0.1).translated([0.3 * x, 0.3 * y, 0.3 * z]).twisted(degrees=3)
                 for x in range(6) for y in range(6) for z in range(6))
 def interrupt():
