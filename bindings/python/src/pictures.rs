@@ -15,6 +15,7 @@ use pyo3::types::PyBytes;
 
 use crate::arrays::row;
 use crate::error::OrRaise;
+use crate::function::detached;
 use crate::interrupt::interruptible;
 use crate::mesh::replace;
 use crate::shape::{AnyShape, PyShape};
@@ -242,7 +243,7 @@ fn figure(
             let Aabb { min, max } = shown(shape);
             let slice = Slice::planar();
             let view = View::from_bounds(min.0, max.0, MARGIN).or_raise(py)?;
-            py.detach(|| isolines(shape, &slice, &view, samples, |st| st)).or_raise(py)?
+            detached(py, || isolines(shape, &slice, &view, samples, |st| st))?.or_raise(py)?
         }
         AnyShape::Spatial(shape) => {
             let Aabb { min, max } = shown(shape);
@@ -257,7 +258,7 @@ fn figure(
             };
             let slice = slice.or_raise(py)?;
             let view = View::of_box(&slice, min.0, max.0, MARGIN).or_raise(py)?;
-            py.detach(|| isolines(shape, &slice, &view, samples, |st| slice.point(st)))
+            detached(py, || isolines(shape, &slice, &view, samples, |st| slice.point(st)))?
                 .or_raise(py)?
         }
     };

@@ -130,6 +130,22 @@ def test_a_run_with_anything_different_is_refused(tmp_path: Path) -> None:
         pp.batch.overlaps(folder, PLATE, PEG, poses(0, 100))
 
 
+def test_drivers_that_begin_at_once_agree_on_one_run(tmp_path: Path) -> None:
+    from concurrent.futures import ThreadPoolExecutor
+
+    def drive(chunk: int) -> object:
+        try:
+            return pp.batch.overlaps(tmp_path / "run", PLATE, PEG, poses(0, 500), chunk=chunk)
+        except ValueError as error:
+            return error
+
+    with ThreadPoolExecutor(4) as drivers:
+        runs = list(drivers.map(drive, [100, 170, 60, 250]))
+    [run] = [run for run in runs if isinstance(run, pp.batch.Run)]
+    assert all("holds a run with chunks of" in str(run) for run in runs if isinstance(run, ValueError))
+    assert sorted(part.name for part in (tmp_path / "run").glob("part-*")) == [part.name for part in run.parts()]
+
+
 def test_other_questions(tmp_path: Path) -> None:
     run = pp.batch.separations(tmp_path / "s", PLATE, PEG, poses(0, 200), tolerance=1e-4)
     truth = pp.separations(PLATE, PEG, poses(0, 200), tolerance=1e-4)

@@ -53,6 +53,9 @@ def test_what_a_function_raises_is_raised() -> None:
         lambda: pp.separation(shape, pp.ball(0.1)),
         lambda: pp.separations(shape, pp.ball(0.1), [[0, 0, 0]]),
         lambda: shape.mesh(cell=0.2),
+        lambda: shape.figure(),
+        lambda: shape.render(width=16, height=16),
+        lambda: shape.mass(),
     ]:
         with pytest.raises(ZeroDivisionError, match="in the function"):
             ask()

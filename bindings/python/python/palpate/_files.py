@@ -25,6 +25,23 @@ def replace(file: str | os.PathLike[str], content: bytes) -> None:
         raise
 
 
+def claim(file: Path, content: bytes) -> bool:
+    """Writes a file whole if there is none; says whether it did. Of several that try, one does."""
+    handle, name = tempfile.mkstemp(prefix=f".{file.name}.", dir=file.parent)
+    try:
+        with os.fdopen(handle, "wb") as out:
+            out.write(content)
+            out.flush()
+            os.fsync(out.fileno())
+        os.chmod(name, 0o666 & ~_umask())
+        os.link(name, file)
+    except FileExistsError:
+        return False
+    finally:
+        os.unlink(name)
+    return True
+
+
 def _umask() -> int:
     mask = os.umask(0)
     os.umask(mask)

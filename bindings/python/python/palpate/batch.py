@@ -31,7 +31,7 @@ from typing import Any, Literal, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from palpate._files import replace
+from palpate._files import claim, replace
 
 #: Poses or points: an array, the name of a ``.npy`` file that workers can read, or a function of the first number and
 #: the one after the last that gives their rows, the same ones each time.
@@ -370,19 +370,20 @@ def _agreed(
         raise ValueError(f"chunk must be at least 1, got {chunk}")
     wanted = {"job": job, "source": known, "version": version("palpate")}
     file = place / MANIFEST
-    if file.exists():
-        there = json.loads(file.read_text(encoding="utf-8"))
-        for key, value in wanted.items():
-            if there.get(key) != json.loads(json.dumps(value)):
-                raise ValueError(
-                    f"{place} holds another run: its {key} differs. Take another folder, or delete this one"
-                )
-        size = int(there["chunk"])
-        if chunk is not None and chunk != size:
-            raise ValueError(f"{place} holds a run with chunks of {size} rows, not {chunk}")
-        return size
-    if any(place.glob("part-*")):
-        raise ValueError(f"{place} holds parts without {MANIFEST}: take another folder")
-    size = chunk if chunk is not None else _pilot(job, source, rows)
-    replace(file, json.dumps({**wanted, "chunk": size}, indent=1).encode())
+    if not file.exists():
+        if any(place.glob("part-*")):
+            raise ValueError(f"{place} holds parts without {MANIFEST}: take another folder")
+        size = chunk if chunk is not None else _pilot(job, source, rows)
+        # Of several drivers that begin at once, one says what the run is.
+        if claim(file, json.dumps({**wanted, "chunk": size}, indent=1).encode()):
+            return size
+    there = json.loads(file.read_text(encoding="utf-8"))
+    for key, value in wanted.items():
+        if there.get(key) != json.loads(json.dumps(value)):
+            raise ValueError(
+                f"{place} holds another run: its {key} differs. Take another folder, or delete this one"
+            )
+    size = int(there["chunk"])
+    if chunk is not None and chunk != size:
+        raise ValueError(f"{place} holds a run with chunks of {size} rows, not {chunk}")
     return size
