@@ -146,6 +146,24 @@ def test_drivers_that_begin_at_once_agree_on_one_run(tmp_path: Path) -> None:
     assert sorted(part.name for part in (tmp_path / "run").glob("part-*")) == [part.name for part in run.parts()]
 
 
+def test_a_part_that_is_cut_short_or_of_another_chunk_is_made_again(tmp_path: Path) -> None:
+    folder = tmp_path / "run"
+    parts = pp.batch.overlaps(folder, PLATE, PEG, poses(0, COUNT), chunk=1000).parts()
+    parts[0].write_bytes(parts[0].read_bytes()[:40])
+    parts[1].write_bytes(b"")
+    parts[2].write_bytes(parts[3].read_bytes())
+    again = pp.batch.overlaps(folder, PLATE, PEG, poses(0, COUNT))
+    assert again.resumed == 1 and answers(again) == TRUTH
+
+
+def test_a_source_of_other_numbers_in_the_same_bytes_is_refused(tmp_path: Path) -> None:
+    points = np.arange(30, dtype="i8").reshape(10, 3)
+    pp.batch.distances(tmp_path / "run", PLATE, points)
+    for other in [points.view("f8"), points.view(">i8"), points.reshape(5, 2, 3)]:
+        with pytest.raises(ValueError, match="its source differs"):
+            pp.batch.distances(tmp_path / "run", PLATE, other)
+
+
 def test_other_questions(tmp_path: Path) -> None:
     run = pp.batch.separations(tmp_path / "s", PLATE, PEG, poses(0, 200), tolerance=1e-4)
     truth = pp.separations(PLATE, PEG, poses(0, 200), tolerance=1e-4)
@@ -163,6 +181,8 @@ def test_what_is_no_batch_is_refused(tmp_path: Path) -> None:
         ({"points": np.zeros(3)}, TypeError, "an axis of rows"),
         ({"points": np.zeros((4, 2))}, ValueError, "points must have the shape"),
         ({"points": poses, "count": 10, "chunk": 0}, ValueError, "chunk must be at least 1"),
+        ({"points": poses, "count": 10, "workers": -1}, ValueError, "workers must be at least 1"),
+        ({"points": poses, "count": 10, "chunk": 1.5}, TypeError, "float"),
         ({"points": lambda start, stop: np.zeros((1, 3)), "count": 10}, ValueError, "the source gave 1"),
     ]:
         with pytest.raises(error, match=words):

@@ -19,6 +19,7 @@ from __future__ import annotations
 import hashlib
 import json
 import math
+import operator
 import time
 from collections.abc import Callable, Iterator
 from concurrent.futures import FIRST_COMPLETED, Executor, Future, ThreadPoolExecutor, wait
@@ -232,15 +233,29 @@ def _work(folder: str, job: dict[str, Any], source: Any, start: int, stop: int) 
 
     begin = time.perf_counter()
     columns = _columns(job, _rows(source, start, stop))
-    table = pa.table(columns).replace_schema_metadata({"palpate": _text(job)})
+    table = pa.table(columns).replace_schema_metadata(_mark(job, start))
     out = io.BytesIO()
-    pq.write_table(table, out, compression="zstd", store_schema=False)
+    pq.write_table(table, out, compression="zstd")
     replace(Path(folder) / _name(start), out.getvalue())
     return stop - start, time.perf_counter() - begin, _undecided(columns)
 
 
-def _text(job: dict[str, Any]) -> str:
-    return json.dumps(job, sort_keys=True)
+def _mark(job: dict[str, Any], start: int) -> dict[bytes, bytes]:
+    """What a part says that it is."""
+    return {b"palpate": json.dumps(job, sort_keys=True).encode(), b"start": str(start).encode()}
+
+
+def _is_there(place: Path, job: dict[str, Any], start: int, rows: int) -> bool:
+    """Whether a part is there and whole, and of this chunk of this run."""
+    import pyarrow.parquet as pq
+
+    part = place / _name(start)
+    try:
+        found = pq.read_metadata(part)
+    except (OSError, ValueError):
+        return False
+    own = found.metadata or {}
+    return bool(found.num_rows == rows and _mark(job, start).items() <= own.items())
 
 
 def _source(source: Source, count: int | None) -> tuple[Any, int, dict[str, Any]]:
@@ -259,8 +274,10 @@ def _source(source: Source, count: int | None) -> tuple[Any, int, dict[str, Any]
     rows = np.asarray(source)
     if rows.dtype.kind not in "fiu" or rows.ndim < 2:
         raise TypeError(f"rows must be an array of numbers with an axis of rows, got {rows.dtype} of {rows.shape}")
-    whole = np.ascontiguousarray(rows)
-    return whole, len(whole), {"rows": len(whole), "digest": hashlib.sha256(whole.tobytes()).hexdigest()}
+    # A copy: what the caller does with the array meanwhile changes nothing.
+    whole = np.array(rows, order="C")
+    form: dict[str, Any] = {"rows": len(whole), "dtype": whole.dtype.str, "shape": list(whole.shape)}
+    return whole, len(whole), {**form, "digest": hashlib.sha256(whole.tobytes()).hexdigest()}
 
 
 def _pilot(job: dict[str, Any], source: Any, count: int) -> int:
@@ -288,12 +305,18 @@ def _run(
     chunk: int | None,
     progress: Callable[[int, int], None] | None,
 ) -> Run:
+    if workers is not None and workers < 1:
+        raise ValueError(f"workers must be at least 1, got {workers}")
+    if chunk is not None:
+        chunk = operator.index(chunk)
     place = Path(folder)
     place.mkdir(parents=True, exist_ok=True)
     given, rows, known = _source(source, count)
     chunk = _agreed(place, job, known, given, rows, chunk)
     starts = range(0, rows, chunk)
-    waiting = [start for start in starts if not (place / _name(start)).exists()]
+    waiting = [
+        start for start in starts if not _is_there(place, job, start, min(chunk, rows - start))
+    ]
     resumed = len(starts) - len(waiting)
     done, seconds, undecided = rows - sum(min(chunk, rows - start) for start in waiting), 0.0, 0
     own = ThreadPoolExecutor(workers) if executor is None else None
