@@ -3,11 +3,12 @@
 
 //! Fields that are functions of Python.
 
+use std::cell::Cell;
 use std::sync::{Mutex, PoisonError};
 
 use numpy::IntoPyArray;
 use palpate::field::{Aabb, Bounds, CustomField, Point, Promise, Shape, Vector};
-use pyo3::exceptions::{PyTypeError, PyValueError};
+use pyo3::exceptions::{PyRecursionError, PyTypeError, PyValueError};
 use pyo3::prelude::*;
 
 use crate::arrays::numbers;
@@ -18,6 +19,14 @@ const STEP: f64 = 1e-6;
 
 /// The first exception of a function since it was last asked for: a search cannot carry it.
 static RAISED: Mutex<Option<PyErr>> = Mutex::new(None);
+
+/// So deep may a function ask shapes of functions: Python's own limit comes after the end of the stack.
+const DEEPEST: u32 = 32;
+
+thread_local! {
+    /// How deep this thread is in functions that ask shapes of functions.
+    static DEPTH: Cell<u32> = const { Cell::new(0) };
+}
 
 /// Does work without the interpreter's lock, and raises what functions that it called have raised.
 pub(crate) fn detached<T: Send>(
@@ -46,7 +55,13 @@ struct Function<const D: usize> {
 impl<const D: usize> Function<D> {
     /// The values at points; NaN where the function raises.
     fn values(&self, points: &[Point<D>], values: &mut [f64]) {
+        let depth = DEPTH.get();
+        DEPTH.set(depth + 1);
         let asked = Python::attach(|py| {
+            if depth >= DEEPEST {
+                let problem = "a function asks a shape of itself, without end";
+                return Err(PyRecursionError::new_err(problem));
+            }
             let coordinates: Vec<f64> = points.iter().flat_map(|p| p.0).collect();
             let array = coordinates.into_pyarray(py);
             let array = array.call_method1("reshape", (points.len(), D))?;
@@ -64,6 +79,7 @@ impl<const D: usize> Function<D> {
             values.copy_from_slice(&answer.as_doubles()?);
             Ok(())
         });
+        DEPTH.set(depth);
         if let Err(error) = asked {
             values.fill(f64::NAN);
             RAISED.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(error);

@@ -62,6 +62,15 @@ def test_what_a_function_raises_is_raised() -> None:
     assert pp.ball(0.5).distance([0, 1, 0]) == 0.5
 
 
+def test_a_function_that_asks_itself_is_stopped() -> None:
+    own: list[pp.Shape] = []
+    own.append(pp.from_function(lambda points: own[0].distance(points)))
+    with pytest.raises(RecursionError):
+        own[0].distance(np.zeros((2, 3)))
+    with pytest.raises(RecursionError):
+        own[0].distance([0.0, 0.0, 0.0])
+
+
 @pytest.mark.parametrize(
     ("make", "error", "words"),
     [
