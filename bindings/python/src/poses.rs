@@ -7,8 +7,9 @@
 //! translation, three numbers `x y angle` with the angle in radians, or a matrix of three rows.
 
 use palpate::field::{Pose, Rotation, Vector};
-use pyo3::exceptions::{PyTypeError, PyValueError};
+use pyo3::exceptions::{PyKeyError, PyTypeError, PyValueError};
 use pyo3::prelude::*;
+use pyo3::types::PyDict;
 
 use crate::arrays::{few, misshapen, numbers};
 use crate::error::OrRaise;
@@ -103,10 +104,7 @@ fn translation<const D: usize>(numbers: &[f64]) -> Vector<f64, D> {
 }
 
 /// The rotation and translation of a matrix with a row of zeros and one at its end.
-fn of_matrix<const D: usize>(py: Python<'_>, numbers: &[f64]) -> PyResult<Pose<D>>
-where
-    Pose<D>: Sized,
-{
+fn of_matrix<const D: usize>(py: Python<'_>, numbers: &[f64]) -> PyResult<Pose<D>> {
     let row = |i: usize| &numbers[i * (D + 1)..(i + 1) * (D + 1)];
     let last = row(D);
     if last[..D].iter().any(|x| *x != 0.0) || last[D] != 1.0 {
@@ -158,6 +156,32 @@ pub(crate) fn one<P: Posed>(given: &Bound<'_, PyAny>) -> PyResult<P> {
     let (numbers, shape) = (array.as_doubles()?, array.shape());
     P::of(given.py(), &numbers, shape)
         .unwrap_or_else(|| Err(misshapen("pose", P::FORMS, shape)))
+}
+
+/// One pose, or that of a body that stays where it is.
+pub(crate) fn or_identity<const D: usize>(given: Option<&Bound<'_, PyAny>>) -> PyResult<Pose<D>>
+where
+    Pose<D>: Posed,
+{
+    given.map_or_else(|| Ok(Pose::identity()), one)
+}
+
+/// The poses of bodies by their names.
+pub(crate) fn named<B: Copy, P: Posed>(
+    poses: &Bound<'_, PyDict>,
+    bodies: &[(String, B)],
+) -> PyResult<Vec<(B, P)>> {
+    let mut all = Vec::with_capacity(poses.len());
+    for (name, pose) in poses {
+        let name: String = name.extract()?;
+        let (_, body) = bodies.iter().find(|(own, _)| *own == name).ok_or_else(|| {
+            let known: Vec<&str> = bodies.iter().map(|(name, _)| name.as_str()).collect();
+            let known = known.join(", ");
+            PyKeyError::new_err(format!("no body is called {name:?}: there are {known}"))
+        })?;
+        all.push((*body, one(&pose)?));
+    }
+    Ok(all)
 }
 
 /// Many poses: one for each row of the first axis.

@@ -15,7 +15,7 @@ use palpate::servo_loop::{
     EndedThread, Pace, Recorder, Records, RunOptions, RunReport, ServoThread, ThreadOptions,
     TraceRow, run,
 };
-use pyo3::exceptions::{PyKeyError, PyRuntimeError, PyTypeError, PyValueError};
+use pyo3::exceptions::{PyRuntimeError, PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -466,17 +466,8 @@ fn set_poses<const D: usize>(
 where
     Pose<D>: Posed,
 {
-    let mut all = Vec::with_capacity(poses.len());
-    for (name, pose) in poses {
-        let name: String = name.extract()?;
-        let body = names.iter().position(|own| *own == name).ok_or_else(|| {
-            PyKeyError::new_err(format!(
-                "no body is called {name:?}: there are {}",
-                names.join(", ")
-            ))
-        })?;
-        all.push((body, poses::one(&pose)?));
-    }
+    let numbered: Vec<(String, usize)> = names.iter().cloned().zip(0..).collect();
+    let all = poses::named(poses, &numbered)?;
     thread.control().set_poses(&all).or_raise(poses.py())
 }
 

@@ -10,7 +10,7 @@ use palpate::query::{
     BodyId, FirstTouch, Limits, Moving, Neighbours, PairWorkspace, Query, Start, Track, World,
     WorldSettings,
 };
-use pyo3::exceptions::{PyKeyError, PyValueError};
+use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -61,11 +61,8 @@ fn moved<const D: usize>(
 where
     Pose<D>: Posed,
 {
-    let pose = |given: Option<&Bound<'_, PyAny>>| {
-        given.map_or_else(|| Ok(Pose::identity()), poses::one)
-    };
-    let from = pose(start)?;
-    let to = if end.is_some() { pose(end)? } else { from };
+    let from = poses::or_identity(start)?;
+    let to = if end.is_some() { poses::or_identity(end)? } else { from };
     Screw::new(from, to, 0).or_raise(py)
 }
 
@@ -187,10 +184,7 @@ fn tracked<'py, const D: usize>(
 where
     Pose<D>: Posed,
 {
-    let pose = |given: Option<&Bound<'py, PyAny>>| {
-        given.map_or_else(|| Ok(Pose::identity()), poses::one)
-    };
-    let poses = [pose(a)?, pose(b)?];
+    let poses = [poses::or_identity(a)?, poses::or_identity(b)?];
     let found = detached(py, || {
         let mut own = pair.lock().unwrap_or_else(PoisonError::into_inner);
         let Pair { track, workspace } = &mut **own;
@@ -262,7 +256,7 @@ impl PyWorld {
     fn set_poses(&self, poses: &Bound<'_, PyDict>) -> PyResult<()> {
         of_either!(&self.0, world => {
             let mut world = world.lock().unwrap_or_else(PoisonError::into_inner);
-            let placed = placed(poses, &world.bodies)?;
+            let placed = poses::named(poses, &world.bodies)?;
             world.world.set_poses(&placed).or_raise(poses.py())
         })
     }
@@ -289,28 +283,6 @@ fn named<const D: usize>(
     let names = scene.bodies.iter().map(|body| body.name.clone());
     let bodies = names.zip(world.bodies()).collect();
     Ok(Named { world, bodies })
-}
-
-fn placed<const D: usize>(
-    poses: &Bound<'_, PyDict>,
-    bodies: &[(String, BodyId)],
-) -> PyResult<Vec<(BodyId, Pose<D>)>>
-where
-    Pose<D>: Posed,
-{
-    let mut all = Vec::with_capacity(poses.len());
-    for (name, pose) in poses {
-        let name: String = name.extract()?;
-        let found = bodies.iter().find(|(own, _)| *own == name).ok_or_else(|| {
-            let known: Vec<&str> = bodies.iter().map(|(name, _)| name.as_str()).collect();
-            PyKeyError::new_err(format!(
-                "no body is called {name:?}: there are {}",
-                known.join(", ")
-            ))
-        })?;
-        all.push((found.1, poses::one(&pose)?));
-    }
-    Ok(all)
 }
 
 fn stepped<'py, const D: usize>(
