@@ -421,10 +421,13 @@ pub(crate) fn row_place<const K: usize, const D: usize>(
     place
 }
 
+/// Numbers of a row that are treated as one: a power of two, of which samples are the first.
+const SIDE: usize = 4;
+
 #[inline(always)]
-fn row_of<T: Code, const K: usize>(codes: &[T], place: usize) -> [f64; K] {
+fn row_of<T: Code, const K: usize>(codes: &[T], place: usize) -> [f64; SIDE] {
     let row = &codes[place..place + K];
-    std::array::from_fn(|tap| row[tap].into())
+    std::array::from_fn(|tap| if tap < K { row[tap].into() } else { 0.0 })
 }
 
 #[inline(always)]
@@ -436,7 +439,7 @@ fn value_of<T: Code, const K: usize, const D: usize>(
 where
     OfTaps<K>: Spline<K>,
 {
-    value(|row| row_of::<T, K>(codes, row_place::<K, D>(row, strides)), local)
+    value::<_, K, SIDE, D>(|row| row_of::<T, K>(codes, row_place::<K, D>(row, strides)), local)
 }
 
 #[inline(always)]
@@ -448,5 +451,8 @@ fn slope_of<T: Code, const K: usize, const D: usize>(
 where
     OfTaps<K>: Spline<K>,
 {
-    value_slope(|row| row_of::<T, K>(codes, row_place::<K, D>(row, strides)), local)
+    value_slope::<_, K, SIDE, D>(
+        |row| row_of::<T, K>(codes, row_place::<K, D>(row, strides)),
+        local,
+    )
 }

@@ -108,10 +108,11 @@ pub(crate) fn radius_about<'a, const D: usize>(
     centre: Point<D>,
     points: impl IntoIterator<Item = &'a Point<D>>,
 ) -> f64 {
-    let (mut radius, mut largest) = (0.0_f64, 0.0_f64);
+    let (mut squared, mut largest) = (0.0_f64, 0.0_f64);
     for point in points {
-        radius = radius.max((*point - centre).norm());
+        let away = *point - centre;
+        squared = squared.max(away.dot(away));
         largest = point.0.iter().fold(largest, |m, x| m.max(x.abs()));
     }
-    radius * (1.0 + ROUNDINGS) + largest * ROUNDINGS
+    squared.sqrt() * (1.0 + ROUNDINGS) + largest * ROUNDINGS
 }

@@ -107,11 +107,15 @@ impl<const D: usize> BallTree<D> {
     pub(crate) fn new<const N: usize>(vertices: &[Point<D>], elements: &[[u32; N]]) -> Self {
         let corners =
             |element: u32| elements[element as usize].map(|index| vertices[index as usize]);
-        let middles: Vec<Point<D>> = (0..elements.len() as u32)
-            .map(|element| corners(element).into_iter().fold(Vector::ZERO, |sum, p| sum + p))
+        // Side by side with its number, a middle need not be looked up at each of the many comparisons.
+        let mut middles: Vec<(Point<D>, u32)> = (0..elements.len() as u32)
+            .map(|element| {
+                let corners = corners(element);
+                (corners.into_iter().fold(Vector::ZERO, |sum, p| sum + p), element)
+            })
             .collect();
-        let mut order: Vec<u32> = (0..elements.len() as u32).collect();
-        sort(&mut order, &middles);
+        sort(&mut middles);
+        let order: Vec<u32> = middles.into_iter().map(|(_, element)| element).collect();
 
         let mut levels = vec![Level::new(order.iter().map(|&element| {
             let ball = smallest_ball(&corners(element));
@@ -156,22 +160,21 @@ impl<const D: usize> BallTree<D> {
 
 /// Sorts elements by the medians of their middles, along the longest side of the box
 /// around those; a tie goes to the lower element.
-fn sort<const D: usize>(order: &mut [u32], middles: &[Point<D>]) {
-    if order.len() <= FAN {
+fn sort<const D: usize>(middles: &mut [(Point<D>, u32)]) {
+    if middles.len() <= FAN {
         return;
     }
-    let Some(bounds) = Aabb::around(order.iter().map(|&i| middles[i as usize])) else { return };
+    let Some(bounds) = Aabb::around(middles.iter().map(|(middle, _)| *middle)) else { return };
     let sides = bounds.half_extents();
     let axis = (1..D).fold(0, |longest, k| if sides[k] > sides[longest] { k } else { longest });
     let mut half = FAN;
-    while 2 * half < order.len() {
+    while 2 * half < middles.len() {
         half *= 2;
     }
-    order.select_nth_unstable_by(half, |&a, &b| {
-        let along = |i: u32| middles[i as usize][axis];
-        along(a).total_cmp(&along(b)).then(a.cmp(&b))
+    middles.select_nth_unstable_by(half, |(a, first), (b, second)| {
+        a[axis].total_cmp(&b[axis]).then(first.cmp(second))
     });
-    let (left, right) = order.split_at_mut(half);
-    sort(left, middles);
-    sort(right, middles);
+    let (left, right) = middles.split_at_mut(half);
+    sort(left);
+    sort(right);
 }

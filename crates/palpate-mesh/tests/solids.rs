@@ -202,6 +202,41 @@ fn a_point_that_is_nowhere_has_no_distance() {
 }
 
 /// Of the airplane, caps cross faces.
+/// The search of a point begins with what is known of the one before; that may be on the surface, or far off.
+#[test]
+fn values_of_many_points_are_those_of_each() {
+    let slivers =
+        Soup::cuboid([0.0; 3], [1e3, 1.0, 1e-6]).and(Soup::cuboid([9.0; 3], [1.0; 3]));
+    let bunny = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../testdata/meshes/bunny.ply");
+    let meshes = [mesh(&slivers), read_file(bunny).expect("a file")];
+    for mesh in meshes {
+        let (solid, _) = Solid::from_mesh(&mesh).expect("a solid");
+        let size = mesh.bounds().half_extents().norm();
+        let mut asked = Vec::new();
+        for (i, p) in points(400, 1.5 * size).into_iter().enumerate() {
+            let p = mesh.bounds().centre() + p;
+            let (distance, gradient) = solid.distance_gradient(p);
+            let foot = p - gradient * distance;
+            asked.extend([p, foot, foot, foot + gradient * (1e-12 * size)]);
+            asked.push(mesh.vertices()[i % mesh.vertices().len()]);
+            if i % 50 == 0 {
+                asked.extend([Vector([f64::NAN, 0.0, 0.0]), Vector([1e200, 0.0, 0.0])]);
+            }
+        }
+        let (mut alone, mut values) = (vec![0.0; asked.len()], vec![0.0; asked.len()]);
+        let mut gradients = vec![Vector::ZERO; asked.len()];
+        solid.distances(&asked, &mut alone);
+        solid.distances_gradients(&asked, &mut values, &mut gradients);
+        for (i, p) in asked.into_iter().enumerate() {
+            let (value, gradient) = solid.distance_gradient(p);
+            for found in [alone[i], values[i]] {
+                assert_eq!(found.to_bits(), value.to_bits(), "{p:?}: {found} {value}");
+            }
+            assert_eq!(gradients[i], gradient, "{p:?}");
+        }
+    }
+}
+
 #[test]
 fn real_meshes_become_solids() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../testdata/meshes");

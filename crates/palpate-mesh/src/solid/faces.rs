@@ -73,6 +73,12 @@ impl<const N: usize, const D: usize> Faces<N, D> {
         self.corners.len()
     }
 
+    /// The size of all faces, about [m]: no edge is twice as long.
+    #[inline(always)]
+    pub(super) fn size(&self) -> f64 {
+        1.0 / self.scale
+    }
+
     /// The corners of a face.
     #[inline(always)]
     pub(super) fn corners(&self, face: usize) -> &[Point<D>; N] {

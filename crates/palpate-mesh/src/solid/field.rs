@@ -18,11 +18,30 @@ const LEAST_COSINE_OF_SIGNS: f64 = 0.5 + 1e-9;
 
 impl<const N: usize, const D: usize> CustomField<D> for Solid<N, D> {
     fn distance(&self, p: Point<D>) -> f64 {
-        self.at(p).0
+        self.at(p, &mut None).0
     }
 
     fn distance_gradient(&self, p: Point<D>) -> (f64, Vector<f64, D>) {
-        self.at(p)
+        self.at(p, &mut None)
+    }
+
+    fn distances(&self, points: &[Point<D>], distances: &mut [f64]) {
+        let mut known = None;
+        for (p, distance) in points.iter().zip(distances) {
+            (*distance, _) = self.at(*p, &mut known);
+        }
+    }
+
+    fn distances_gradients(
+        &self,
+        points: &[Point<D>],
+        distances: &mut [f64],
+        gradients: &mut [Vector<f64, D>],
+    ) {
+        let mut known = None;
+        for ((p, distance), gradient) in points.iter().zip(distances).zip(gradients) {
+            (*distance, *gradient) = self.at(*p, &mut known);
+        }
     }
 
     fn promise(&self) -> &Promise<D> {
@@ -36,7 +55,7 @@ impl<const N: usize, const D: usize> CustomField<D> for Solid<N, D> {
         if !centre.is_finite() {
             return AffineModel::lipschitz(f64::NAN, 1.0, cell, rounding);
         }
-        let nearest = self.surface.nearest(centre);
+        let nearest = self.surface.nearest(centre, None);
         let (f, gradient) = self.at_foot(centre, &nearest);
         let distance = f.abs();
         let away = if f < 0.0 { -gradient } else { gradient };

@@ -180,12 +180,15 @@ impl<const N: usize, const D: usize> Solid<N, D> {
         &self.promise
     }
 
-    /// The signed distance at a point [m], and its gradient.
-    fn at(&self, p: Point<D>) -> (f64, Vector<f64, D>) {
-        if p.0.iter().any(|x| !x.is_finite()) {
+    /// The signed distance at a point [m], and its gradient; `known` is a point of the surface, if there is one, and
+    /// becomes the nearest.
+    fn at(&self, p: Point<D>, known: &mut Option<Point<D>>) -> (f64, Vector<f64, D>) {
+        if !p.is_finite() {
             return (f64::NAN, Vector::ZERO);
         }
-        self.at_foot(p, &self.surface.nearest(p))
+        let nearest = self.surface.nearest(p, *known);
+        *known = Some(nearest.1.point);
+        self.at_foot(p, &nearest)
     }
 
     /// The same, from the nearest face and its nearest point.

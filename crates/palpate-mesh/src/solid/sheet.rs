@@ -71,7 +71,7 @@ impl<const N: usize, const D: usize> Sheet<N, D> {
         if p.0.iter().any(|x| !x.is_finite()) {
             return (f64::NAN, Vector::ZERO);
         }
-        let (face, foot) = self.surface.nearest(p);
+        let (face, foot) = self.surface.nearest(p, None);
         let (distance, gradient) = self.at_foot(p, face, &foot);
         (distance - self.half, gradient)
     }
@@ -118,7 +118,7 @@ impl<const N: usize, const D: usize> CustomField<D> for Sheet<N, D> {
         if !centre.is_finite() {
             return AffineModel::lipschitz(f64::NAN, 1.0, cell, rounding);
         }
-        let (face, foot) = self.surface.nearest(centre);
+        let (face, foot) = self.surface.nearest(centre, None);
         let (distance, away) = self.at_foot(centre, face, &foot);
         let f = distance - self.half;
         let nearest = (face, distance, away);

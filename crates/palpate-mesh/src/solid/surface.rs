@@ -10,6 +10,9 @@ use super::boxes::Boxes;
 use super::faces::Faces;
 use super::foot::{Foot, Part, foot};
 
+/// The rounding of a nearest point and of its distance, as a share of coordinates and of the size of all faces.
+const ROUNDING: f64 = 64.0 * f64::EPSILON;
+
 /// A model looks at so many groups of eight faces at most: a cell near more is large.
 pub(super) const MOST_GROUPS: usize = 32;
 
@@ -27,8 +30,15 @@ impl<const N: usize, const D: usize> Surface<N, D> {
     }
 
     /// The face nearest to a point, in the order of the boxes, and its nearest point.
-    pub(super) fn nearest(&self, p: Point<D>) -> (usize, Foot<D>) {
-        wide(Nearest { surface: self, p })
+    ///
+    /// `known` is a point of a face, if there is one; one that is near spares a part of the search.
+    pub(super) fn nearest(&self, p: Point<D>, known: Option<Point<D>>) -> (usize, Foot<D>) {
+        let least = known.map_or(f64::INFINITY, |known| {
+            // Its face must still be found, whose nearest point is rounded too.
+            let rounding = ROUNDING * (p.norm() + known.norm() + self.faces.size());
+            ((p - known).norm() * (1.0 + ROUNDING) + rounding).powi(2)
+        });
+        wide(Nearest { surface: self, p, least })
     }
 
     /// A model of the distance to the nearest face over a cell that no face meets, from the face nearest to its centre,
@@ -78,6 +88,8 @@ impl<const N: usize, const D: usize> Surface<N, D> {
 struct Nearest<'a, const N: usize, const D: usize> {
     surface: &'a Surface<N, D>,
     p: Point<D>,
+    /// The square of the distance is known to be less [m²].
+    least: f64,
 }
 
 impl<const N: usize, const D: usize> Wide for Nearest<'_, N, D> {
@@ -85,12 +97,12 @@ impl<const N: usize, const D: usize> Wide for Nearest<'_, N, D> {
 
     #[inline(always)]
     fn run(self) -> (usize, Foot<D>) {
-        let Self { surface: Surface { faces, boxes }, p } = self;
-        let mut nearest = (0, Foot { point: p, part: Part::Corner(0), squared: f64::INFINITY });
+        let Self { surface: Surface { faces, boxes }, p, least } = self;
+        let mut nearest = (0, Foot { point: p, part: Part::Corner(0), squared: least });
         let mut walk = boxes.from(p);
         while let Some(group) = walk.next(nearest.1.squared) {
             faces.nearer(group, p, &mut nearest);
         }
-        if nearest.1.squared < f64::INFINITY { nearest } else { (0, foot(faces.corners(0), p)) }
+        if nearest.1.squared < least { nearest } else { (0, foot(faces.corners(0), p)) }
     }
 }

@@ -11,8 +11,13 @@
 //! ```
 //!
 //! with `R` from the point to the group's centroid, `S = ∫ n dA` and `M = ∫ (x − c) ⊗ n dA`. The rest of the
-//! series is bounded in closed form: the kernel's term of degree `k` is at most `k·ρᵏ⁻¹/|R|²` in space and
-//! `ρᵏ⁻¹/|R|` in the plane, with `ρ` the radius of the group over `|R|`.
+//! series is bounded in closed form: at `x` the kernel's term of degree `k` is at most `k·|x − c|ᵏ⁻¹/|R|ᵏ⁺¹` in space
+//! and `|x − c|ᵏ⁻¹/|R|ᵏ` in the plane. Two of the factors `|x − c|` are integrated to `Q = ∫ |x − c|² dA`, and the others
+//! are at most the radius of the group, `ρ|R|`:
+//!
+//! ```text
+//! space: Q (3 − 2ρ)/(1 − ρ)²/(4π|R|⁴),  plane: Q/(1 − ρ)/(2π|R|³)
+//! ```
 
 use std::f64::consts::{PI, TAU};
 
@@ -22,7 +27,7 @@ use super::foot::across;
 use crate::tree::{BallTree, FAN};
 
 /// Error bounds of a group, tried in this order until the sign is certain; with 0 every element is summed.
-const ERRORS: [f64; 4] = [1e-2, 1e-3, 1e-4, 0.0];
+const ERRORS: [f64; 4] = [2e-2, 2e-3, 1e-4, 0.0];
 
 /// The rounding of the share of a group, and of an element in units of how much its terms cancel.
 const ROUNDING: f64 = 64.0 * f64::EPSILON;
@@ -33,8 +38,8 @@ struct Moments<const D: usize> {
     centroid: Point<D>,
     /// From the centroid to the farthest corner [m].
     radius: f64,
-    /// Of all elements [m²], in the plane [m].
-    area: f64,
+    /// `∫ |x − c|² dA` [m⁴], in the plane [m³], rounded up.
+    second: f64,
     /// `∫ n dA`.
     normals: Vector<f64, D>,
     /// `∫ (x − c) ⊗ n dA`, by rows.
@@ -232,7 +237,7 @@ type Lanes = [f64; FAN];
 struct Eight<const D: usize> {
     centroid: [Lanes; D],
     radius: Lanes,
-    area: Lanes,
+    second: Lanes,
     normals: [Lanes; D],
     first: [[Lanes; D]; D],
 }
@@ -252,7 +257,7 @@ impl<const D: usize> Eight<D> {
         Self {
             centroid: std::array::from_fn(|i| lanes(&|group| group.centroid[i])),
             radius: lanes(&|group| group.radius),
-            area: lanes(&|group| group.area),
+            second: lanes(&|group| group.second),
             normals: std::array::from_fn(|i| lanes(&|group| group.normals[i])),
             first: std::array::from_fn(|k| {
                 std::array::from_fn(|i| lanes(&|group| group.first[k][i]))
@@ -284,17 +289,17 @@ impl<const D: usize> Eight<D> {
             let distance = squared.sqrt();
             let rho = self.radius[lane] / distance;
             let left = 1.0 - rho;
-            let area = self.area[lane];
+            let second = self.second[lane];
             let (share, remainder) = if D == 3 {
                 let sphere = 4.0 * PI * squared;
                 (
                     (flux - 3.0 * along / squared) / (sphere * distance),
-                    area / sphere * rho * rho * (3.0 - 2.0 * rho) / (left * left),
+                    second / (sphere * squared) * (3.0 - 2.0 * rho) / (left * left),
                 )
             } else {
                 (
                     (flux - 2.0 * along / squared) / (TAU * squared),
-                    area / (TAU * distance) * rho * rho / left,
+                    second / (TAU * squared * distance) / left,
                 )
             };
             // Written so that NaN, at the centroid of a point, is not accepted.
@@ -325,18 +330,31 @@ impl<const D: usize> Moments<D> {
             plain += middle * (1.0 / group.len() as f64);
         }
         let centroid = if area > 0.0 { weighted * (1.0 / area) } else { plain };
-        let (mut normals, mut first) = (Vector::ZERO, [Vector::ZERO; D]);
+        let (mut normals, mut first, mut second) = (Vector::ZERO, [Vector::ZERO; D], 0.0);
         for corners in group {
-            let (middle, normal, _) = part(corners);
+            let (middle, normal, size) = part(corners);
             normals += normal;
+            second += size * mean_square(corners, centroid);
             for (k, row) in first.iter_mut().enumerate() {
                 *row += normal * (middle - centroid)[k];
             }
         }
         let far = group.iter().flatten().map(|corner| (*corner - centroid).norm());
         let radius = far.fold(0.0, f64::max) * (1.0 + 8.0 * f64::EPSILON);
-        Self { centroid, radius, area, normals, first }
+        let second = second * (1.0 + ROUNDING);
+        Self { centroid, radius, second, normals, first }
     }
+}
+
+/// The mean over an element of the square of the distance to a point [m²]: of the corners and of their sum.
+fn mean_square<const N: usize, const D: usize>(corners: &[Point<D>; N], p: Point<D>) -> f64 {
+    let (mut sum, mut squares) = (Vector::ZERO, 0.0);
+    for corner in corners {
+        let away = *corner - p;
+        sum += away;
+        squares += away.dot(away);
+    }
+    (squares + sum.dot(sum)) / (N * (N + 1)) as f64
 }
 
 /// The share of one element: the angle under which a point sees it, in turns. Half a turn on the element
