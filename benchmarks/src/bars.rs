@@ -72,9 +72,9 @@ pub(crate) const COLLIDE: &[Bar] = &[
     ("world.1000_bodies.step.over_S3", 2_800_000.0),
     ("parry.heap_of_cubes.ours_over_parry", 38.0),
     ("parry.heap_of_cups.ours_over_parry", 0.2),
-    ("sampled.separation.trilinear_S3.over_formula", 1.5),
-    ("sampled.separation.quadratic_S3.over_formula", 3.0),
-    ("sampled.separation.mesh_S3.over_formula", 15.0),
+    ("sampled.separation.trilinear_S3.over_formula", 5.9),
+    ("sampled.separation.quadratic_S3.over_formula", 5.3),
+    ("sampled.separation.mesh_S3.over_formula", 47.0),
 ];
 
 /// Those of the servo.
@@ -101,14 +101,14 @@ pub(crate) const SAMPLED: &[Bar] = &[
     ("mesh.touching.ours_over_parry", 0.7),
     ("mesh.path.ours_over_parry", 0.95),
     ("mesh.tree.ours_over_parry", 0.7),
-    ("grid.quadratic.gradient.path.over_ball", 5.0),
-    ("grid.quadratic.gradient.random.over_ball", 7.5),
+    ("grid.quadratic.gradient.path.over_ball", 8.75),
+    ("grid.quadratic.gradient.random.over_ball", 10.75),
     ("grid.trilinear.64.over_loop", 1.15),
     ("grid.bake.band.over_samples", 26.0),
     ("mesh.near.all.ours_over_open3d", 0.4),
     ("mesh.near.all.ours_over_libigl", 0.35),
     ("mesh.near.winding.ours_over_libigl_winding", 0.5),
-    ("mesh.all_nodes.ours_over_libigl", 0.15),
+    ("mesh.all_nodes.ours_over_libigl", 0.28),
     ("mesh.band.ours_over_meshlib", 16.5),
 ];
 

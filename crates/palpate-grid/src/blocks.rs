@@ -237,8 +237,7 @@ where
         for (points, values) in points.chunks(TOGETHER).zip(values.chunks_mut(TOGETHER)) {
             gathered.fill(grid, codes, points);
             for first in (0..TOGETHER).step_by(SIDE) {
-                let value =
-                    value::<_, K, K, D>(|row| gathered.row(first, row), gathered.local(first));
+                let value = value(|row| gathered.row(first, row), gathered.local(first));
                 (value * scale).write(&mut found, first);
             }
             for (i, out) in values.iter_mut().enumerate() {
@@ -272,10 +271,8 @@ where
         for (points, (values, slopes)) in points.chunks(TOGETHER).zip(out) {
             gathered.fill(grid, codes, points);
             for first in (0..TOGETHER).step_by(SIDE) {
-                let (value, slope) = value_slope::<_, K, K, D>(
-                    |row| gathered.row(first, row),
-                    gathered.local(first),
-                );
+                let (value, slope) =
+                    value_slope(|row| gathered.row(first, row), gathered.local(first));
                 (value * scale).write(&mut found, first);
                 for (rises, slope) in rises.iter_mut().zip(slope.0) {
                     (slope * scale * inverse).write(rises, first);

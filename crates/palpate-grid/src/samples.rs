@@ -421,13 +421,10 @@ pub(crate) fn row_place<const K: usize, const D: usize>(
     place
 }
 
-/// Numbers of a row that are treated as one: a power of two, of which samples are the first.
-const SIDE: usize = 4;
-
 #[inline(always)]
-fn row_of<T: Code, const K: usize>(codes: &[T], place: usize) -> [f64; SIDE] {
+fn row_of<T: Code, const K: usize>(codes: &[T], place: usize) -> [f64; K] {
     let row = &codes[place..place + K];
-    std::array::from_fn(|tap| if tap < K { row[tap].into() } else { 0.0 })
+    std::array::from_fn(|tap| row[tap].into())
 }
 
 #[inline(always)]
@@ -439,7 +436,7 @@ fn value_of<T: Code, const K: usize, const D: usize>(
 where
     OfTaps<K>: Spline<K>,
 {
-    value::<_, K, SIDE, D>(|row| row_of::<T, K>(codes, row_place::<K, D>(row, strides)), local)
+    value(|row| row_of::<T, K>(codes, row_place::<K, D>(row, strides)), local)
 }
 
 #[inline(always)]
@@ -451,8 +448,5 @@ fn slope_of<T: Code, const K: usize, const D: usize>(
 where
     OfTaps<K>: Spline<K>,
 {
-    value_slope::<_, K, SIDE, D>(
-        |row| row_of::<T, K>(codes, row_place::<K, D>(row, strides)),
-        local,
-    )
+    value_slope(|row| row_of::<T, K>(codes, row_place::<K, D>(row, strides)), local)
 }

@@ -122,80 +122,67 @@ impl Spline<TRILINEAR> for OfTaps<TRILINEAR> {
 pub(crate) const MOST_ROWS: usize = QUADRATIC.pow(2);
 
 /// `Σ wᵢ cᵢ` over a cell's samples, with the product of the axes' weights for each: summed along one axis after
-/// the other, the first axis last, so that until then whole rows are added.
-///
-/// A row is `W` numbers, of which the first `K` are samples.
+/// the other.
 #[inline(always)]
-pub(crate) fn value<N: Number, const K: usize, const W: usize, const D: usize>(
-    row: impl Fn(usize) -> [N; W],
+pub(crate) fn value<N: Number, const K: usize, const D: usize>(
+    row: impl Fn(usize) -> [N; K],
     local: [N; D],
 ) -> N
 where
     OfTaps<K>: Spline<K>,
 {
-    let mut sums = [[N::constant(0.0); W]; MOST_ROWS];
+    let mut sums = [N::constant(0.0); MOST_ROWS];
     let mut rows = K.pow(D as u32 - 1);
+    let weights = OfTaps::<K>::weights(local[0]);
     for (i, sum) in sums[..rows].iter_mut().enumerate() {
-        *sum = row(i);
+        *sum = dot(weights, row(i));
     }
-    for x in local.into_iter().skip(1).rev() {
+    for x in local.into_iter().skip(1) {
         let weights = OfTaps::<K>::weights(x);
         rows /= K;
         for i in 0..rows {
-            sums[i] = sum(weights, taps(&sums, i, rows));
+            sums[i] = dot(weights, taps(&sums, i));
         }
     }
-    dot(OfTaps::<K>::weights(local[0]), sums[0])
+    sums[0]
 }
 
 /// The same, with the derivatives along the axes.
 #[inline(always)]
-pub(crate) fn value_slope<N: Number, const K: usize, const W: usize, const D: usize>(
-    row: impl Fn(usize) -> [N; W],
+pub(crate) fn value_slope<N: Number, const K: usize, const D: usize>(
+    row: impl Fn(usize) -> [N; K],
     local: [N; D],
 ) -> (N, Vector<N, D>)
 where
     OfTaps<K>: Spline<K>,
 {
-    let mut sums = [[N::constant(0.0); W]; MOST_ROWS];
-    let mut slopes = [[[N::constant(0.0); W]; MOST_ROWS]; D];
+    let mut sums = [N::constant(0.0); MOST_ROWS];
+    let mut slopes = [[N::constant(0.0); MOST_ROWS]; D];
     let mut rows = K.pow(D as u32 - 1);
-    for (i, sum) in sums[..rows].iter_mut().enumerate() {
-        *sum = row(i);
+    let (weights, rises) = (OfTaps::<K>::weights(local[0]), OfTaps::<K>::slopes(local[0]));
+    for i in 0..rows {
+        let row = row(i);
+        sums[i] = dot(weights, row);
+        slopes[0][i] = dot(rises, row);
     }
-    for axis in (1..D).rev() {
-        let (weights, rises) =
-            (OfTaps::<K>::weights(local[axis]), OfTaps::<K>::slopes(local[axis]));
+    for axis in 1..D {
+        let x = local[axis];
+        let (weights, rises) = (OfTaps::<K>::weights(x), OfTaps::<K>::slopes(x));
         rows /= K;
         for i in 0..rows {
-            for slope in &mut slopes[axis + 1..] {
-                slope[i] = sum(weights, taps(slope, i, rows));
+            for slope in &mut slopes[..axis] {
+                slope[i] = dot(weights, taps(slope, i));
             }
-            let taps = taps(&sums, i, rows);
-            slopes[axis][i] = sum(rises, taps);
-            sums[i] = sum(weights, taps);
+            let row = taps(&sums, i);
+            slopes[axis][i] = dot(rises, row);
+            sums[i] = dot(weights, row);
         }
     }
-    let (weights, rises) = (OfTaps::<K>::weights(local[0]), OfTaps::<K>::slopes(local[0]));
-    let slope = std::array::from_fn(|axis| match axis {
-        0 => dot(rises, sums[0]),
-        _ => dot(weights, slopes[axis][0]),
-    });
-    (dot(weights, sums[0]), Vector(slope))
+    (sums[0], Vector(slopes.map(|slope| slope[0])))
 }
 
-/// Rows added with a weight for each.
 #[inline(always)]
-fn sum<N: Number, const K: usize, const W: usize>(
-    weights: [N; K],
-    rows: [[N; W]; K],
-) -> [N; W] {
-    std::array::from_fn(|i| dot(weights, rows.map(|row| row[i])))
-}
-
-/// The samples of a row added with a weight for each.
-#[inline(always)]
-fn dot<N: Number, const K: usize, const W: usize>(weights: [N; K], row: [N; W]) -> N {
+fn dot<N: Number, const K: usize>(weights: [N; K], row: [N; K]) -> N {
     let mut sum = weights[0] * row[0];
     for tap in 1..K {
         sum = sum + weights[tap] * row[tap];
@@ -203,12 +190,8 @@ fn dot<N: Number, const K: usize, const W: usize>(weights: [N; K], row: [N; W]) 
     sum
 }
 
-/// The `K` rows along an axis, of which one follows another after `rows`.
+/// The `i`th `K` numbers.
 #[inline(always)]
-fn taps<N: Number, const K: usize, const W: usize>(
-    numbers: &[[N; W]; MOST_ROWS],
-    first: usize,
-    rows: usize,
-) -> [[N; W]; K] {
-    std::array::from_fn(|tap| numbers[first + rows * tap])
+fn taps<N: Number, const K: usize>(numbers: &[N; MOST_ROWS], i: usize) -> [N; K] {
+    std::array::from_fn(|tap| numbers[i * K + tap])
 }

@@ -117,18 +117,18 @@ impl<const D: usize> BallTree<D> {
         sort(&mut middles);
         let order: Vec<u32> = middles.into_iter().map(|(_, element)| element).collect();
 
-        let mut levels = vec![Level::new(order.iter().map(|&element| {
-            let ball = smallest_ball(&corners(element));
+        let faces: Vec<[Point<D>; N]> = order.iter().map(|&element| corners(element)).collect();
+        let mut levels = vec![Level::new(faces.iter().map(|corners| {
+            let ball = smallest_ball(corners);
             (ball.centre, ball.radius)
         }))];
         let mut size = FAN;
         while order.len().div_ceil(size / FAN) > FAN {
-            levels.push(Level::new(order.chunks(size).map(|group| {
-                let points: Vec<_> =
-                    group.iter().flat_map(|&element| corners(element)).collect();
+            levels.push(Level::new(faces.chunks(size).map(|group| {
+                let points = group.as_flattened();
                 let centre = Aabb::around(points.iter().copied())
                     .map_or(Vector::ZERO, |bounds| bounds.centre());
-                (centre, radius_about(centre, &points))
+                (centre, radius_about(centre, points))
             })));
             size *= FAN;
         }
