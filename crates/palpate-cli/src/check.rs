@@ -103,7 +103,8 @@ fn write_mesh(out: &mut impl Write, mesh: &BuiltMesh) -> io::Result<()> {
     let bounds = mesh.shape.promise().bounds.map(|bounds| bounds.aabb);
     let size = bounds.map_or([0.0; 3], |aabb| (aabb.half_extents() * 2.0).0);
     let size = size.map(rounded).join(" × ");
-    writeln!(out, "  {}{grid}{at}: {faces}, {size} m: {found}", shown(&mesh.file))?;
+    let name = mesh.file.as_deref().map_or("a mesh".into(), shown);
+    writeln!(out, "  {name}{grid}{at}: {faces}, {size} m: {found}")?;
     if let Some(samples) = &mesh.samples {
         let Samples { counts, range: [least, largest], .. } = samples;
         let steps = samples.steps.map(|step| rounded(step.norm() * mesh.scale)).join(" × ");
@@ -143,8 +144,8 @@ pub(crate) fn unit_hint(mesh: &BuiltMesh) -> Option<String> {
     let aabb = mesh.shape.promise().bounds?.aabb;
     // A factor of one may have been left out.
     let scale = Some(mesh.scale).filter(|scale| (scale - 1.0).abs() > 0.0);
-    let is_without_unit =
-        mesh.samples.is_none() || mesh.file.to_ascii_lowercase().ends_with(".npy");
+    let file = mesh.file.as_ref()?;
+    let is_without_unit = mesh.samples.is_none() || file.to_ascii_lowercase().ends_with(".npy");
     is_without_unit.then(|| hint(longest_edge(&aabb), "\"scale\":", scale)).flatten()
 }
 

@@ -1,13 +1,13 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! Shapes of mesh files, and of surfaces in volumes.
+//! Shapes of meshes, in files and in scenes, and of surfaces in volumes.
 
 use std::path::{Path, PathBuf};
 
 use palpate_field::{LARGEST_LENGTH, Point, SMALLEST_LENGTH, Shape, Vector};
 use palpate_grid::{Inside, Volume};
-use palpate_mesh::{Findings, Sheet, Solid, TriangleMesh, read_file};
+use palpate_mesh::{Findings, Sheet, Solid, SolidError, TriangleMesh, read_file};
 use serde::Deserialize;
 
 use crate::beside::{Beside, Kept, Stamp};
@@ -24,12 +24,12 @@ type Made = (Shape<3>, Findings<3>, Option<Samples>);
 type Key = (Stamp, Taken);
 type Taken = (Option<(&'static str, u64)>, Option<String>, Option<Inside>);
 
-/// The solid of a mesh file or of a surface in a volume, as a scene uses it.
+/// The solid of a mesh or of a surface in a volume, as a scene uses it.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct BuiltMesh {
-    /// The file, as the scene names it.
-    pub file: String,
+    /// The file, as the scene names it; `None` of a mesh whose vertices and faces stand in the scene.
+    pub file: Option<String>,
     /// Metres for a unit of the file; of a volume, whose head tells lengths, a factor.
     pub scale: f64,
     /// The grid of the file that is the volume, where the scene names it.
@@ -78,7 +78,8 @@ impl BuiltMesh {
     /// The files that it was read from, in the scene's folder.
     #[must_use]
     pub fn files(&self, folder: impl AsRef<Path>) -> Vec<PathBuf> {
-        let path = folder.as_ref().join(&self.file);
+        let Some(file) = &self.file else { return Vec::new() };
+        let path = folder.as_ref().join(file);
         let others = others(&path, self.samples.is_some());
         std::iter::once(path).chain(others).collect()
     }
@@ -89,17 +90,18 @@ impl BuiltMesh {
             (mesh.scale.to_bits(), [mesh.value, mesh.thickness].map(|x| x.map(f64::to_bits)))
         };
         let names = |mesh: &Self| (mesh.file.clone(), mesh.grid.clone(), mesh.inside);
-        names(self) == names(other) && numbers(self) == numbers(other)
+        self.file.is_some() && names(self) == names(other) && numbers(self) == numbers(other)
     }
 }
 
-/// A mesh as a file gives it.
+/// A mesh as a scene gives it: a file, or vertices and faces.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields, expecting = "an object")]
 pub(crate) struct WrittenMesh {
-    file: String,
-    #[serde(default = "one")]
-    scale: f64,
+    file: Option<String>,
+    scale: Option<f64>,
+    vertices: Option<Vec<[f64; 3]>>,
+    faces: Option<Vec<[u32; 3]>>,
     thickness: Option<f64>,
 }
 
@@ -133,15 +135,87 @@ fn one() -> f64 {
 }
 
 impl WrittenMesh {
-    /// The solid of the file, which is looked for in `folder`.
-    pub(crate) fn built(&self, folder: Option<&Path>) -> Result<BuiltMesh, Problem> {
-        let read = |path: &Path| {
-            read_file(path).map(|mesh| (mesh, None)).map_err(|error| error.to_string())
-        };
-        let (file, scale) = (self.file.as_str(), self.scale);
-        let (grid, value, inside, thickness) = (None, None, None, self.thickness);
-        let asked = Asked { what: "a mesh", file, scale, grid, value, inside, thickness };
-        built(asked, folder, read)
+    /// The solid; a file is looked for in `folder`.
+    pub(crate) fn built(self, folder: Option<&Path>) -> Result<BuiltMesh, Problem> {
+        match (&self.file, self.vertices, self.faces) {
+            (Some(file), None, None) => {
+                let scale = self.scale.unwrap_or_else(one);
+                of_file(file, scale, self.thickness, folder)
+            }
+            (None, Some(vertices), Some(faces)) if self.scale.is_none() => {
+                of_arrays(vertices, faces, self.thickness)
+            }
+            _ => Err(Problem::new(
+                "must have `file`, and `scale` if it is not in metres, or `vertices` in metres and `faces`",
+            )),
+        }
+    }
+}
+
+/// The solid of a mesh file, which is looked for in `folder`.
+fn of_file(
+    file: &str,
+    scale: f64,
+    thickness: Option<f64>,
+    folder: Option<&Path>,
+) -> Result<BuiltMesh, Problem> {
+    let read = |path: &Path| {
+        read_file(path).map(|mesh| (mesh, None)).map_err(|error| error.to_string())
+    };
+    let (grid, value, inside) = (None, None, None);
+    let asked = Asked { what: "a mesh", file, scale, grid, value, inside, thickness };
+    built(asked, folder, read)
+}
+
+/// The solid of a mesh that stands in the scene.
+fn of_arrays(
+    vertices: Vec<[f64; 3]>,
+    faces: Vec<[u32; 3]>,
+    thickness: Option<f64>,
+) -> Result<BuiltMesh, Problem> {
+    check_thickness(thickness)?;
+    let vertices = vertices.into_iter().map(Vector).collect();
+    let mesh =
+        TriangleMesh::new(vertices, faces).map_err(|error| Problem::new(error.to_string()))?;
+    let (shape, findings) =
+        solid(&mesh, thickness).map_err(|error| Problem::new(error.to_string()))?;
+    Ok(BuiltMesh {
+        file: None,
+        scale: one(),
+        grid: None,
+        value: None,
+        inside: None,
+        thickness,
+        samples: None,
+        findings,
+        shape,
+    })
+}
+
+/// The solid of a mesh, or the plate about its faces.
+fn solid(
+    mesh: &TriangleMesh,
+    thickness: Option<f64>,
+) -> Result<(Shape<3>, Findings<3>), SolidError> {
+    let Some(thickness) = thickness else {
+        return Solid::from_mesh(mesh).map(|(solid, found)| (solid.into(), found));
+    };
+    let faces = mesh.elements().len();
+    Sheet::from_mesh(mesh, thickness).map(|sheet| {
+        let mut found = Findings::default();
+        (found.faces, found.own) = (faces, faces);
+        (sheet.into(), found)
+    })
+}
+
+fn check_thickness(thickness: Option<f64>) -> Result<(), Problem> {
+    match thickness {
+        Some(thickness) if !(SMALLEST_LENGTH..=LARGEST_LENGTH).contains(&thickness) => {
+            let rule = format!("{SMALLEST_LENGTH:e} to {LARGEST_LENGTH:e} m");
+            let problem = format!("thickness must be from {rule}, got {thickness} m");
+            Err(Problem::new(problem).under("thickness"))
+        }
+        _ => Ok(()),
     }
 }
 
@@ -187,13 +261,7 @@ fn built(
     if scale.is_nan() || scale <= 0.0 || scale.is_infinite() {
         return Err(Problem::new(format!("scale must be positive, got {scale}")).under("scale"));
     }
-    if let Some(thickness) = thickness
-        && !(SMALLEST_LENGTH..=LARGEST_LENGTH).contains(&thickness)
-    {
-        let rule = format!("{SMALLEST_LENGTH:e} to {LARGEST_LENGTH:e} m");
-        let problem = format!("thickness must be from {rule}, got {thickness} m");
-        return Err(Problem::new(problem).under("thickness"));
-    }
+    check_thickness(thickness)?;
     let of_file = |message: String| Problem::new(message).under("file");
     let Beside { path, stamp } =
         Beside::of(what, file, folder).map_err(|problem| problem.under("file"))?;
@@ -209,16 +277,8 @@ fn built(
         None => {
             let (mesh, samples) = read(&path).map_err(of_file)?;
             let faces = mesh.elements().len();
-            let solid = match thick {
-                Some(thick) => Sheet::from_mesh(&mesh, thick).map(|sheet| {
-                    let mut found = Findings::default();
-                    (found.faces, found.own) = (faces, faces);
-                    (sheet.into(), found)
-                }),
-                None => Solid::from_mesh(&mesh).map(|(solid, found)| (solid.into(), found)),
-            };
-            let (shape, findings) =
-                solid.map_err(|error| of_file(format!("{}: {error}", path.display())))?;
+            let (shape, findings) = solid(&mesh, thick)
+                .map_err(|error| of_file(format!("{}: {error}", path.display())))?;
             let made = (shape, findings, samples);
             // Another state of the file is of no use any more.
             SOLIDS.keep(key.clone(), &made, faces, |(known, other)| {
@@ -229,7 +289,7 @@ fn built(
     };
     let scaled = shape.scaled(scale);
     Ok(BuiltMesh {
-        file: file.to_owned(),
+        file: Some(file.to_owned()),
         scale,
         grid,
         value,

@@ -24,8 +24,8 @@ pub(super) fn scene<const D: usize>(
         return Ok((scene.clone(), Vec::new()));
     }
     for mesh in &scene.meshes {
-        if let Some(hint) = unit_hint(mesh) {
-            output::remark(format_args!("{}: {hint}", shown(&mesh.file)));
+        if let (Some(file), Some(hint)) = (&mesh.file, unit_hint(mesh)) {
+            output::remark(format_args!("{}: {hint}", shown(file)));
         }
     }
     if !scene.meshes.is_empty() {

@@ -9,10 +9,11 @@ mod faces;
 mod primitive;
 mod text;
 
+use std::any::Any;
 use std::fmt;
 use std::sync::Arc;
 
-use crate::field::SharedField;
+use crate::field::{Custom, CustomField, SharedField};
 use crate::operator::Copies;
 use crate::pose::Pose;
 use crate::shape::Shape;
@@ -183,18 +184,30 @@ pub enum Node<const D: usize> {
     Opaque(Opaque<D>),
 }
 
-/// A field of a user, of which only the type is known.
+/// A kernel, field or closure of a user.
 ///
-/// It equals itself and its copies alone.
+/// It equals its copies, and fields of its type that [feed](crate::CustomField::content) the same bytes.
 #[derive(Clone)]
 pub struct Opaque<const D: usize> {
     kind: &'static str,
     field: SharedField<D>,
+    /// The same as `Custom<F>`, if it is a field.
+    custom: Option<Arc<dyn Any + Send + Sync>>,
 }
 
 impl<const D: usize> Opaque<D> {
     pub(crate) fn new(kind: &'static str, field: SharedField<D>) -> Self {
-        Self { kind, field }
+        Self { kind, field, custom: None }
+    }
+
+    /// Of a field.
+    pub(crate) fn of_custom<F: CustomField<D>>(field: &Arc<Custom<F>>) -> Self {
+        let kind = std::any::type_name::<F>();
+        Self {
+            kind,
+            field: Arc::<Custom<F>>::clone(field),
+            custom: Some(Arc::<Custom<F>>::clone(field)),
+        }
     }
 
     /// The name of the Rust type of the kernel, field or closure.
@@ -202,11 +215,49 @@ impl<const D: usize> Opaque<D> {
     pub fn type_name(&self) -> &'static str {
         self.kind
     }
+
+    /// The field that [`Shape::custom`] was given, if it has the type `F`.
+    ///
+    /// ```
+    /// use palpate_field::{CustomField, Node, Point, Promise, Shape, Vector};
+    ///
+    /// #[derive(Debug)]
+    /// struct Floor(Promise<2>);
+    ///
+    /// impl CustomField<2> for Floor {
+    ///     fn distance(&self, p: Point<2>) -> f64 {
+    ///         p[1]
+    ///     }
+    ///     fn distance_gradient(&self, p: Point<2>) -> (f64, Vector<f64, 2>) {
+    ///         (p[1], Vector([0.0, 1.0]))
+    ///     }
+    ///     fn promise(&self) -> &Promise<2> {
+    ///         &self.0
+    ///     }
+    /// }
+    ///
+    /// let floor = Shape::custom(Floor(Promise::lipschitz(None, 1.0)));
+    /// let Node::Opaque(opaque) = floor.node() else { unreachable!() };
+    /// assert!(opaque.custom::<Floor>().is_some());
+    /// ```
+    #[must_use]
+    pub fn custom<F: CustomField<D>>(&self) -> Option<&F> {
+        self.custom.as_ref()?.downcast_ref::<Custom<F>>().map(|custom| &custom.0)
+    }
+
+    /// What determines its values, if that is known.
+    fn content(&self) -> Option<Vec<u8>> {
+        let mut bytes = Vec::new();
+        self.field.content(&mut |part| bytes.extend_from_slice(part)).then_some(bytes)
+    }
 }
 
 impl<const D: usize> PartialEq for Opaque<D> {
     fn eq(&self, other: &Self) -> bool {
-        std::ptr::addr_eq(Arc::as_ptr(&self.field), Arc::as_ptr(&other.field))
+        let is_copy = std::ptr::addr_eq(Arc::as_ptr(&self.field), Arc::as_ptr(&other.field));
+        is_copy
+            || self.kind == other.kind
+                && self.content().is_some_and(|content| Some(content) == other.content())
     }
 }
 

@@ -92,8 +92,9 @@ impl<const D: usize> Shape<D> {
 
     /// A [`CustomField`] as a shape.
     pub fn custom(field: impl CustomField<D>) -> Self {
-        let kind = std::any::type_name_of_val(&field);
-        Self::opaque(kind, Arc::new(Custom(field)))
+        let field = Arc::new(Custom(field));
+        let node = Node::Opaque(Opaque::of_custom(&field));
+        Self::of_parts(field, node)
     }
 
     /// A closure as a shape, with what it promises.
@@ -120,10 +121,7 @@ impl<const D: usize> Shape<D> {
         closure: impl Fn(Vector<Dual<f64, D>, D>) -> Dual<f64, D> + Send + Sync + 'static,
     ) -> Self {
         let kind = std::any::type_name_of_val(&closure);
-        Self::opaque(kind, Arc::new(Custom(FromClosure { closure, promise })))
-    }
-
-    fn opaque(kind: &'static str, field: SharedField<D>) -> Self {
+        let field: SharedField<D> = Arc::new(Custom(FromClosure { closure, promise }));
         let node = Node::Opaque(Opaque::new(kind, Arc::clone(&field)));
         Self::of_parts(field, node)
     }

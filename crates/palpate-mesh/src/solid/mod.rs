@@ -174,6 +174,18 @@ impl<const N: usize, const D: usize> Solid<N, D> {
         Mesh::new(self.vertices.clone(), self.elements.clone())
     }
 
+    /// The vertices of [`mesh`](Self::mesh) [m].
+    #[must_use]
+    pub fn vertices(&self) -> &[Point<D>] {
+        &self.vertices
+    }
+
+    /// The faces of [`mesh`](Self::mesh), by the numbers of their vertices.
+    #[must_use]
+    pub fn elements(&self) -> &[[u32; N]] {
+        &self.elements
+    }
+
     /// The promise of its field.
     #[must_use]
     pub fn promise(&self) -> &Promise<D> {

@@ -66,6 +66,18 @@ impl<const N: usize, const D: usize> Sheet<N, D> {
         Ok(Self { mesh: mesh.clone(), surface, half: 0.5 * thickness, promise })
     }
 
+    /// The mesh, as it came.
+    #[must_use]
+    pub fn mesh(&self) -> &Mesh<N, D> {
+        &self.mesh
+    }
+
+    /// The thickness of the plate [m].
+    #[must_use]
+    pub fn thickness(&self) -> f64 {
+        2.0 * self.half
+    }
+
     /// The signed distance at a point [m], and its gradient.
     fn at(&self, p: Point<D>) -> (f64, Vector<f64, D>) {
         if p.0.iter().any(|x| !x.is_finite()) {

@@ -319,7 +319,10 @@ fn grid() -> Value {
         "properties": {
             "file": { "description": "A file of `palpate grid`.", "type": "string", "minLength": 1 },
         },
-        "required": ["file"],
+        "oneOf": [
+            { "required": ["file"], "not": { "anyOf": [{ "required": ["vertices"] }, { "required": ["faces"] }] } },
+            { "required": ["vertices", "faces"], "not": { "required": ["scale"] } },
+        ],
         "additionalProperties": false,
     })
 }
@@ -352,10 +355,10 @@ fn bake() -> Value {
     })
 }
 
-/// The solid of a mesh file.
+/// The solid of a mesh.
 fn mesh() -> Value {
     json!({
-        "description": "The solid that a mesh of triangles bounds: a file, beside the scene's or in a folder beside it.",
+        "description": "The solid that a mesh of triangles bounds: of a file, beside the scene's or in a folder beside it, or of vertices and faces.",
         "type": "object",
         "properties": {
             "file": {
@@ -367,6 +370,16 @@ fn mesh() -> Value {
                 "description": "Metres for a unit of the file: 0.001 for millimetres; 1 if left out.",
                 "type": "number",
                 "exclusiveMinimum": 0,
+            },
+            "vertices": {
+                "description": "The vertices [m].",
+                "type": "array",
+                "items": { "type": "array", "items": { "type": "number" }, "minItems": 3, "maxItems": 3 },
+            },
+            "faces": {
+                "description": "The numbers of each triangle's vertices, from 0.",
+                "type": "array",
+                "items": { "type": "array", "items": { "type": "integer", "minimum": 0 }, "minItems": 3, "maxItems": 3 },
             },
             "thickness": {
                 "description": "Of faces that bound nothing, the thickness of the plate about them [m].",

@@ -8,7 +8,8 @@ use std::collections::HashMap;
 use indexmap::IndexMap;
 use palpate_field::kernel::{Argument, ParameterKind};
 use palpate_field::operator::{Boolean, Copies};
-use palpate_field::{Node, Pose, Shape, node};
+use palpate_field::{Node, Point, Pose, Shape, node};
+use palpate_mesh::{Sheet, Solid};
 use serde_json::{Map, Value, json};
 
 use super::{rotation, translation};
@@ -181,12 +182,7 @@ impl Writer {
             Node::Revolved { of } => {
                 return self.with_operand(json!({ keys::REVOLVE: "y" }), of);
             }
-            Node::Opaque(opaque) => {
-                let kind = opaque.type_name();
-                let message =
-                    format!("`{kind}` is opaque: files hold primitives and operators");
-                return Err(Problem::new(message));
-            }
+            Node::Opaque(opaque) => return mesh(opaque),
             other => return Err(Problem::new(format!("files have no operator for {other:?}"))),
         };
         self.with_operand(object, of)
@@ -201,6 +197,33 @@ impl Writer {
         object[keys::OF] = self.json(of).map_err(|problem| problem.under(keys::OF))?;
         Ok(object)
     }
+}
+
+/// The solid of a mesh, or the plate about its faces, with its vertices and faces.
+fn mesh<const D: usize>(opaque: &node::Opaque<D>) -> Result<Value, Problem> {
+    // Scenes have meshes in space alone.
+    let in_space = (D == 3).then_some(opaque);
+    let solid = in_space.and_then(|opaque| opaque.custom::<Solid<3, D>>());
+    let sheet = in_space.and_then(|opaque| opaque.custom::<Sheet<3, D>>());
+    let mut object = match (solid, sheet) {
+        (Some(solid), _) => arrays(solid.vertices(), solid.elements()),
+        (None, Some(sheet)) => arrays(sheet.mesh().vertices(), sheet.mesh().elements()),
+        (None, None) => {
+            let kind = opaque.type_name();
+            let message =
+                format!("`{kind}` is opaque: files hold primitives, operators and meshes");
+            return Err(Problem::new(message));
+        }
+    };
+    if let Some(sheet) = sheet {
+        object["thickness"] = json!(sheet.thickness());
+    }
+    Ok(json!({ keys::MESH: object }))
+}
+
+fn arrays<const D: usize>(vertices: &[Point<D>], faces: &[[u32; 3]]) -> Value {
+    let vertices: Vec<&[f64]> = vertices.iter().map(|vertex| &vertex.0[..]).collect();
+    json!({ "vertices": vertices, "faces": faces })
 }
 
 /// The arguments of a primitive, by their keys.

@@ -331,7 +331,8 @@ fn an_opaque_shape_is_named_with_its_type_and_place() {
     let shape = plate.clone() - wave.translated([0.1, 0.0]).unwrap();
     let error = Scene::of_shape("it", &shape).unwrap_err();
     assert_eq!(error.first().path, "bodies[0].shape.difference[1].of");
-    let problem = "`all::from_code::Wave` is opaque: files hold primitives and operators";
+    let problem =
+        "`all::from_code::Wave` is opaque: files hold primitives, operators and meshes";
     assert_eq!(error.first().problem, problem);
     assert_eq!((error.first().line, error.first().column), (0, 0));
 

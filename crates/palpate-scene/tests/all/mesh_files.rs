@@ -1,10 +1,11 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! Shapes of mesh files.
+//! Shapes of meshes, in files and in scenes.
 
-use palpate_field::Vector;
-use palpate_scene::{AnyScene, BuiltScene, Scene};
+use palpate_field::{Shape, Vector};
+use palpate_mesh::{Sheet, Solid, TriangleMesh};
+use palpate_scene::{AnyScene, BuiltScene, Scene, WrittenShape};
 
 /// A tetrahedron of 1, 2 and 3 m.
 const TETRAHEDRON: &str =
@@ -15,6 +16,58 @@ fn text(mesh: &str) -> String {
         r#"{{ "palpate": 1, "dimension": 3, "bodies": [
           {{ "name": "a", "shape": {{ "mesh": {mesh} }} }} ] }}"#
     )
+}
+
+/// A tetrahedron whose corners have no short decimals, of which one face is turned.
+fn mesh() -> TriangleMesh {
+    let corners = [[0.0, -0.0, 1e-9], [1.0 / 3.0, 0.0, 0.0], [0.0, 0.1, 0.0], [0.0, 0.0, 7e3]];
+    let faces = vec![[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 2, 3]];
+    TriangleMesh::new(corners.map(Vector).to_vec(), faces).unwrap()
+}
+
+#[test]
+fn a_mesh_made_in_code_is_written_and_read_back_to_the_bit() {
+    let solid: Shape<3> = Solid::from_mesh(&mesh()).unwrap().0.into();
+    let sheet: Shape<3> = Sheet::from_mesh(&mesh(), 0.01).unwrap().into();
+    for shape in
+        [solid.clone(), sheet, solid.clone().scaled(0.1).unwrap() - Shape::ball(0.1).unwrap()]
+    {
+        let text = WrittenShape::of(&shape).unwrap().to_json();
+        let read: Shape<3> = WrittenShape::from_json(&text).unwrap().build().unwrap();
+        assert_eq!(read, shape, "{text}");
+        for p in [[0.1, 0.02, 0.5], [0.3, -0.2, 0.1], [0.01, 0.01, 1.0]].map(Vector) {
+            assert_eq!(read.distance(p).to_bits(), shape.distance(p).to_bits(), "{p:?}");
+        }
+    }
+    let other = TriangleMesh::new(
+        mesh().vertices().iter().map(|p| *p * 2.0).collect(),
+        mesh().elements().to_vec(),
+    );
+    assert_ne!(solid, Solid::from_mesh(&other.unwrap()).unwrap().0.into());
+}
+
+#[test]
+fn a_mesh_that_stands_in_a_scene_is_checked() {
+    let error = |mesh: &str| Scene::from_json(&text(mesh)).unwrap_err().to_string();
+    let vertices = r#""vertices": [[0,0,0],[1,0,0],[0,1,0]]"#;
+    for (rest, expected) in [
+        (r#""faces": [[0, 1, 3]]"#, "names vertex 3"),
+        (r#""faces": [[0, 1, 2]]"#, "sheet"),
+        (r#""faces": []"#, "no faces"),
+        (r#""faces": [[0, 1, 2]], "scale": 0.1"#, "or `vertices` in metres"),
+        (r#""faces": [[0, 1, 2]], "thickness": 0"#, "thickness must be from"),
+        (r#""file": "a.stl""#, "must have `file`"),
+    ] {
+        let problem = error(&format!("{{ {vertices}, {rest} }}"));
+        assert!(problem.contains(expected), "{problem}");
+    }
+    let plate = format!(r#"{{ {vertices}, "faces": [[0, 1, 2]], "thickness": 0.1 }}"#);
+    let AnyScene::Spatial(scene) = Scene::from_json(&text(&plate)).unwrap().build().unwrap()
+    else {
+        panic!("in the plane")
+    };
+    assert!((scene.whole.distance(Vector([0.2, 0.2, 0.1])) - 0.05).abs() < 1e-15);
+    assert_eq!(scene.meshes[0].file, None);
 }
 
 #[test]
@@ -50,7 +103,10 @@ fn a_mesh_is_looked_for_beside_the_scene() {
         ),
         (r#"{ "file": "parts/part.obj", "scale": 0 }"#, "scale must be positive, got 0"),
         (r#"{ "file": "gone.obj" }"#, "gone.obj: "),
-        (r#"{ "scale": 1 }"#, "missing key `file`"),
+        (
+            r#"{ "scale": 1 }"#,
+            "must have `file`, and `scale` if it is not in metres, or `vertices`",
+        ),
     ] {
         let error = built(mesh).unwrap_err();
         assert!(error.contains(expected), "{error}");
