@@ -29,6 +29,9 @@ const RUN: usize = 4096;
 /// Cells along the longest side of the bounds with which a tolerance is tried first.
 const FIRST_TRY: f64 = 24.0;
 
+/// Cells along it at least, however large a tolerance is.
+const FEWEST_CELLS: f64 = 4.0;
+
 /// How often cells are made smaller for a tolerance.
 const MOST_TRIES: usize = 12;
 
@@ -100,7 +103,8 @@ impl<const D: usize> Grid<D> {
             if tried == *options { Ok(grid) } else { bake_as(grid.lattice().cell, options) }
         };
         let longest = bounds.half_extents().0.into_iter().fold(0.0, f64::max) * 2.0;
-        let mut cell = (longest / FIRST_TRY).max(tolerance);
+        // A cell as large as the shape finds no inside.
+        let mut cell = (longest / FIRST_TRY).max(tolerance.min(longest / FEWEST_CELLS));
         // The cell and the deviation of the try before; the smallest cell that was too large.
         let mut last: Option<[f64; 2]> = None;
         let mut coarse: Option<f64> = None;
@@ -181,7 +185,8 @@ impl<const D: usize> Grid<D> {
     ///
     /// # Errors
     ///
-    /// If there are not as many samples as nodes, one is not finite, none is inside, or one at the border is.
+    /// If there are not as many samples as nodes, one is not finite, none is inside, or one at the border is; if a node
+    /// is no place.
     pub fn from_samples(
         lattice: Lattice<D>,
         samples: &[f64],
@@ -221,7 +226,9 @@ impl<const D: usize> Grid<D> {
     /// Samples the bricks again whose values change when the shape changes within `region` alone.
     ///
     /// The samples are those of a new grid on the same lattice, to the bit. Values that are bounds may change far
-    /// away from what changed: unless the shape is exact on both sides, every brick is sampled again.
+    /// away from what changed: unless the shape is exact on both sides, every brick is sampled again. The shape that the
+    /// grid was made of must have been exact too. The deviation is certified to a quarter of a cell, also where the grid
+    /// was made by a smaller tolerance.
     ///
     /// # Errors
     ///

@@ -13,7 +13,7 @@ use crate::slopes::{Range, SLOPE_BLOCK};
 use crate::spline::{OfTaps, Spline};
 
 /// Blocks of slopes along an axis of a brick.
-const HALVES: usize = BRICK / SLOPE_BLOCK;
+const PARTS: usize = BRICK / SLOPE_BLOCK;
 
 /// What holds over a brick's cells.
 #[derive(Clone, Debug, PartialEq)]
@@ -36,7 +36,7 @@ impl<const D: usize> Certificate<D> {
         Self {
             steepness: 0.0,
             deviation: 0.0,
-            slopes: vec![[Range { least: 0.0, largest: 0.0 }; D]; HALVES.pow(D as u32)],
+            slopes: vec![[Range { least: 0.0, largest: 0.0 }; D]; PARTS.pow(D as u32)],
             inside: inside.then(|| first.map(|first| [first, first + BRICK - 1])),
         }
     }
@@ -90,7 +90,7 @@ impl<'a, const D: usize> Cells<'a, D> {
             steepness = steepness.max(steepest::<K, D>(taps, steepness));
         });
         Certificate {
-            steepness: steepness / self.lattice.cell * (1.0 + 1e-12),
+            steepness: (steepness * (1.0 + 1e-12) + slack(samples)) / self.lattice.cell,
             deviation: self.deviation_of_whole_cells::<K>(brick, samples),
             slopes: slopes(samples),
             inside: self.inside(brick, samples),
@@ -199,10 +199,16 @@ where
     squares.iter().copied().fold(0.0, f64::max).sqrt()
 }
 
+/// How far the difference of two samples may be off by their rounding [m]: each is a code times a scale.
+fn slack(samples: &[f64]) -> f64 {
+    4.0 * f64::EPSILON * samples.iter().fold(0.0, |largest, sample| sample.abs().max(largest))
+}
+
 /// The ranges of the differences from a brick's own nodes to their next, in each of its parts.
 fn slopes<const D: usize>(samples: &[f64]) -> Vec<[Range; D]> {
+    let slack = slack(samples);
     let ways = strides([WIDE; D]);
-    indices([0; D], [HALVES; D])
+    indices([0; D], [PARTS; D])
         .map(|part| {
             let mut ranges = [Range::EMPTY; D];
             for node in indices([0; D], [SLOPE_BLOCK; D]) {
@@ -210,7 +216,7 @@ fn slopes<const D: usize>(samples: &[f64]) -> Vec<[Range; D]> {
                     std::array::from_fn(|i| part[i] * SLOPE_BLOCK + node[i] + 1);
                 let place = raveled(own, [WIDE; D]);
                 for (range, way) in ranges.iter_mut().zip(ways) {
-                    range.include(samples[place + way] - samples[place]);
+                    range.include(samples[place + way] - samples[place], slack);
                 }
             }
             ranges

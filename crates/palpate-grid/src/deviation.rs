@@ -240,13 +240,21 @@ impl<const D: usize> Cells<'_, D> {
         }
         let above = taps.iter().copied().fold(f64::NEG_INFINITY, f64::max) + model.lower;
         let below = model.upper - taps.iter().copied().fold(f64::INFINITY, f64::min);
-        (above.max(below) + ROUNDED * f64::EPSILON * largest) * (1.0 + 1e-12)
+        // The model is about the middle as it is rounded, the samples about the middle itself.
+        let slopes: f64 = model.gradient.iter().map(|slope| slope.abs()).sum();
+        let moved = slopes * (self.misplaced() / self.half(part.level));
+        (above.max(below) + moved + ROUNDED * f64::EPSILON * largest) * (1.0 + 1e-12)
     }
 
     /// Half the side of a part, with room for the rounding of its middle [m].
     fn half(&self, level: u32) -> f64 {
+        0.5 * self.lattice.cell / f64::from(1 << level) * (1.0 + 1e-12) + self.misplaced()
+    }
+
+    /// How far rounding may move the middle of a part [m].
+    fn misplaced(&self) -> f64 {
         let Lattice { origin, cell, counts } = self.lattice;
         let far = (0..D).map(|i| origin[i].abs() + counts[i] as f64 * cell).fold(0.0, f64::max);
-        0.5 * cell / f64::from(1 << level) * (1.0 + 1e-12) + 8.0 * f64::EPSILON * far
+        8.0 * f64::EPSILON * far
     }
 }

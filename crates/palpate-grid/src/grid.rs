@@ -157,11 +157,19 @@ impl<const D: usize> Grid<D> {
         // What is beyond the band may be as steep along the box as the grid at all.
         grid.margin = if grid.far.is_some() { 0.0 } else { margin };
         grid.promise.deviation = compared.map(|source| Deviation {
-            // Outside, values are at least the least at the border.
-            within: source.deviation.within.min(least),
+            // Outside, values are at least the least at the border, and the source's at least the distance to its bounds.
+            within: source.deviation.within.min(least).min(grid.gap(&source.bounds)),
             ..source.deviation
         });
         Ok(grid)
+    }
+
+    /// How far the region goes beyond bounds, at least [m].
+    fn gap(&self, bounds: &Aabb<D>) -> f64 {
+        let gaps = (0..D).flat_map(|i| {
+            [bounds.min[i] - self.region.min[i], self.region.max[i] - bounds.max[i]]
+        });
+        gaps.fold(f64::INFINITY, f64::min)
     }
 
     /// The least value at the border of the region, and how far the formula outside may take the surface to be from
@@ -170,10 +178,7 @@ impl<const D: usize> Grid<D> {
     where
         OfTaps<K>: Spline<K>,
     {
-        let gaps = (0..D).flat_map(|i| {
-            [bounds.min[i] - self.region.min[i], self.region.max[i] - bounds.max[i]]
-        });
-        let mut margin = gaps.fold(f64::INFINITY, f64::min);
+        let mut margin = self.gap(bounds);
         let mut least = f64::INFINITY;
         let last = self.lattice.counts.map(|count| count - K);
         let mut samples = Vec::new();

@@ -26,10 +26,12 @@ impl Range {
     /// The range of nothing.
     pub(crate) const EMPTY: Self = Self { least: f32::INFINITY, largest: f32::NEG_INFINITY };
 
-    pub(crate) fn include(&mut self, difference: f64) {
-        let near = difference as f32;
-        let below = if f64::from(near) > difference { near.next_down() } else { near };
-        let above = if f64::from(near) < difference { near.next_up() } else { near };
+    /// Widens the range to hold a difference that may be off by `slack` [m].
+    pub(crate) fn include(&mut self, difference: f64, slack: f64) {
+        let [low, high] = [difference - slack, difference + slack];
+        let [below, above] = [low as f32, high as f32];
+        let below = if f64::from(below) > low { below.next_down() } else { below };
+        let above = if f64::from(above) < high { above.next_up() } else { above };
         self.least = self.least.min(below);
         self.largest = self.largest.max(above);
     }

@@ -114,5 +114,6 @@ pub(crate) fn radius_about<'a, const D: usize>(
         squared = squared.max(away.dot(away));
         largest = point.0.iter().fold(largest, |m, x| m.max(x.abs()));
     }
-    squared.sqrt() * (1.0 + ROUNDINGS) + largest * ROUNDINGS
+    // Squares of less than the root of the smallest number have lost their digits.
+    squared.sqrt() * (1.0 + ROUNDINGS) + largest * ROUNDINGS + f64::MIN_POSITIVE.sqrt()
 }

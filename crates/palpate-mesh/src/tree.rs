@@ -147,7 +147,7 @@ impl<const D: usize> BallTree<D> {
         &self.order
     }
 
-    /// The elements in ball `i` of a level; none in what completes a group.
+    /// The elements in ball `i` of a level; none for a ball of padding.
     #[inline]
     #[must_use]
     pub fn elements_below(&self, level: usize, i: usize) -> &[u32] {

@@ -115,7 +115,8 @@ pub(super) fn read(bytes: &[u8], folder: &Path) -> Result<Volume, VolumeProblem>
         None => stored.read(&bytes[head.samples..])?,
     };
     // Whoever tells the orientation of a patient has coordinates to the left, the back and the top.
-    let is_oriented = |text: &str| text.chars().all(|c| "RLAPIS".contains(c));
+    let is_oriented =
+        |text: &str| text.len() == 3 && text.chars().all(|c| "RLAPIS".contains(c));
     let is_patient = field("AnatomicalOrientation").is_some_and(is_oriented);
     let signs = if is_patient { LEFT_POSTERIOR } else { [1.0; 3] };
     let steps = std::array::from_fn(|axis| {

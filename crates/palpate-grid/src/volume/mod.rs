@@ -377,8 +377,12 @@ fn bytes(path: &Path) -> Result<Vec<u8>, VolumeProblem> {
         return Err(VolumeProblem::TooLarge { bytes: length });
     }
     let mut bytes = Vec::new();
-    file.take(LARGEST_VOLUME).read_to_end(&mut bytes)?;
-    Ok(bytes)
+    file.take(LARGEST_VOLUME + 1).read_to_end(&mut bytes)?;
+    // The file may have grown.
+    match bytes.len() as u64 {
+        length if length > LARGEST_VOLUME => Err(VolumeProblem::TooLarge { bytes: length }),
+        _ => Ok(bytes),
+    }
 }
 
 /// The bytes of a file beside a head, which names it.

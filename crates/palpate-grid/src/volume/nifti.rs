@@ -9,7 +9,7 @@ use std::io::Read;
 use flate2::read::MultiGzDecoder;
 use palpate_field::Vector;
 
-use super::numbers::{Kind, Packing, Stored};
+use super::numbers::{Kind, Packing, Stored, inflated};
 use super::{LARGEST_VOLUME, Volume, VolumeProblem};
 
 const FORMAT: &str = "NIfTI";
@@ -55,14 +55,13 @@ pub(super) fn read(bytes: &[u8]) -> Result<Volume, VolumeProblem> {
     }
     // The head tells how much there is, so the head is unpacked alone first.
     let mut head = [0; HEAD];
-    let unpack = |length: u64| MultiGzDecoder::new(bytes).take(length);
-    unpack(HEAD as u64).read_exact(&mut head).map_err(|error| wrong(error.to_string()))?;
+    let unpack = || MultiGzDecoder::new(bytes);
+    unpack().read_exact(&mut head).map_err(|error| wrong(error.to_string()))?;
     let length = length(&parsed(&head)?)?;
     if length > LARGEST_VOLUME {
         return Err(VolumeProblem::TooLarge { bytes: length });
     }
-    let mut all = Vec::new();
-    unpack(length).read_to_end(&mut all).map_err(|error| wrong(error.to_string()))?;
+    let all = inflated(unpack(), length as usize).map_err(|error| wrong(error.to_string()))?;
     unpacked(&all)
 }
 

@@ -46,9 +46,12 @@ fn head(bytes: &[u8]) -> Result<Head<'_>, VolumeProblem> {
         return Err(wrong("it does not begin with NRRD"));
     }
     let start = &bytes[..bytes.len().min(LONGEST_HEAD)];
-    let blank = start.windows(2).position(|pair| pair == b"\n\n").map(|at| (at, 2));
-    let blank = blank
-        .or_else(|| start.windows(4).position(|four| four == b"\r\n\r\n").map(|at| (at, 4)));
+    let first = |blank: &[u8]| start.windows(blank.len()).position(|part| part == blank);
+    // The earlier one: samples may look like the other.
+    let blank = [b"\n\n".as_slice(), b"\r\n\r\n"]
+        .into_iter()
+        .filter_map(|blank| Some((first(blank)?, blank.len())))
+        .min();
     let (end, gap) = blank.unwrap_or((start.len(), 0));
     let head = std::str::from_utf8(&bytes[..end]).map_err(|_| wrong("its head is no text"))?;
     let mut fields = HashMap::new();

@@ -121,8 +121,8 @@ impl Stored {
     }
 }
 
-/// What is unpacked, but at most one byte more than `length`: what goes on is another length than is said, and the sum at
-/// the end of what does not is compared.
+/// The unpacked bytes, at most `length + 1`: one byte more shows that they are more than is said, and reading to the end
+/// compares the checksum.
 pub(super) fn inflated(from: impl Read, length: usize) -> std::io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
     from.take(length as u64 + 1).read_to_end(&mut bytes)?;

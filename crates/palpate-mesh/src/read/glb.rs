@@ -76,6 +76,8 @@ struct Scene {
     blob: Vec<u8>,
     vertices: Vec<Point<3>>,
     triangles: Vec<[u32; 3]>,
+    /// How many primitives, those that are left out too.
+    primitives: usize,
 }
 
 impl Scene {
@@ -125,6 +127,11 @@ impl Scene {
         primitive: &Primitive<'_>,
         world_from_node: &Affine,
     ) -> Result<(), ReadProblem> {
+        self.primitives += 1;
+        if self.primitives > MOST_PLACED {
+            let problem = format!("its nodes place more than {MOST_PLACED} primitives");
+            return Err(malformed(problem));
+        }
         let mode = primitive.mode();
         if !matches!(mode, Mode::Triangles | Mode::TriangleStrip | Mode::TriangleFan) {
             return Ok(());

@@ -3,6 +3,8 @@
 
 //! PLY, with ply-rs-bw.
 
+use std::collections::HashSet;
+
 use ply_rs_bw::parser::{ParseError, Parser, Reader};
 use ply_rs_bw::ply::{Property, PropertyAccess, PropertyAccessResult};
 
@@ -111,18 +113,17 @@ pub(super) fn read(bytes: &[u8]) -> Result<TriangleMesh, ReadProblem> {
 fn doubled_property(bytes: &[u8]) -> Option<String> {
     let header = bytes.split(|byte| *byte == b'\n').map(|line| line.trim_ascii());
     let header = header.take_while(|line| *line != b"end_header");
-    let mut names = Vec::new();
+    let mut names = HashSet::new();
     for (line, text) in (1..).zip(header) {
         let mut words = text.split(u8::is_ascii_whitespace).filter(|word| !word.is_empty());
         match words.next() {
             Some(b"element") => names.clear(),
             Some(b"property") => {
                 let name = words.next_back().unwrap_or_default();
-                if names.contains(&name) {
+                if !names.insert(name) {
                     let name = String::from_utf8_lossy(name);
                     return Some(format!("line {line}: a second property {name:?}"));
                 }
-                names.push(name);
             }
             _ => {}
         }

@@ -15,7 +15,7 @@ const MOST_LEVELS: usize = 11;
 /// The bits of a key that tell the number of its box.
 const NUMBER: u64 = FAN as u64 - 1;
 
-/// No key of a box that is left is as large: the largest number but for those bits.
+/// The key of a box that was visited, or of padding: `f64::MAX` without the bits of the number. All others are less.
 const DONE: f64 = f64::from_bits(f64::MAX.to_bits() & !NUMBER);
 
 /// The boxes of one level, padded to whole groups of eight.

@@ -9,8 +9,8 @@ use palpate_field::{Point, Vector, Wide, wide};
 use super::foot::{Foot, foot};
 use crate::tree::FAN;
 
-/// The rounding of a distance in single precision, as a share of what the point and the group are from its middle: a
-/// product of unit vectors, coordinates that were rounded, and sums of a dozen terms.
+/// The rounding of a distance in single precision, as a share of the distance of the point from the group's middle plus
+/// the group's radius: a product of unit vectors, coordinates that were rounded, and sums of a dozen terms.
 const ROUNDING: f32 = 64.0 * f32::EPSILON;
 
 /// The least rounding of a distance, in units of the size of all faces: below it squares have no digits.
@@ -73,7 +73,7 @@ impl<const N: usize, const D: usize> Faces<N, D> {
         self.corners.len()
     }
 
-    /// The size of all faces, about [m]: no edge is twice as long.
+    /// The size of all faces, about [m]: no edge is longer than twice this.
     #[inline(always)]
     pub(super) fn size(&self) -> f64 {
         1.0 / self.scale

@@ -10,7 +10,8 @@ use super::surface::MOST_GROUPS;
 use super::winding::Winding;
 use super::{Signs, Solid};
 
-/// Normals that are farther than about 80° apart make no model of a cell that the surface passes.
+/// The least cosine, of about 80°, between the first normal and any other with which a cell that the surface passes gets
+/// a model.
 const LEAST_COSINE: f64 = 0.17;
 
 /// The same where the winding number tells the sign.
@@ -156,7 +157,7 @@ impl<const N: usize, const D: usize> Solid<N, D> {
             return None;
         }
         let mut model = AffineModel { value: f, gradient: [0.0; M], lower: 0.0, upper: 0.0 };
-        // A sum of weights one of the normals is at least as long as the least cosine.
+        // A mean of the normals is at least as long as its component along the first, so as the least cosine.
         let longest = 1.0 / least;
         let mut remainder = 0.0;
         for ([low, high], gradient) in ranges.into_iter().zip(&mut model.gradient) {
@@ -170,8 +171,8 @@ impl<const N: usize, const D: usize> Solid<N, D> {
         Some(model)
     }
 
-    /// Whether all faces are surface that are at most half as far from a point as `across` is long, of which the normals
-    /// of all faces within its whole length are at most 60° away.
+    /// Whether all faces in the ball of half the length of `across` bound the solid. The normals of all faces in the ball
+    /// of its whole length must be within 60° of it.
     ///
     /// The winding number grows by one behind each face. From every point of the smaller ball the way to the end of
     /// `-across` leads in at all faces that it meets, the way to the end of `across` out. So the winding number in the

@@ -48,8 +48,8 @@ const DOUBTFUL: f64 = 1e-12;
 /// Its field is the distance to the nearest face, negative inside. Faces that have the solid on both sides, or on
 /// neither, are no surface and are dropped, unless others cross or touch their piece. Where no faces cross or touch,
 /// the distance is exact; else the values inside are bounds, since a wall within the solid may be nearer than its
-/// surface. The sign is that of the nearest face, and where faces cross or meet in more than pairs, that of the
-/// winding number, which is bounded until it is certain.
+/// surface. The sign is that of the nearest face, and where faces cross, are nearly flat, or meet in more than
+/// pairs at an edge, that of the winding number, which is evaluated until its error bound decides.
 ///
 /// ```
 /// use palpate_field::{Shape, Vector};
@@ -199,7 +199,7 @@ impl<const N: usize, const D: usize> Solid<N, D> {
             return (f64::NAN, Vector::ZERO);
         }
         let nearest = self.surface.nearest(p, *known);
-        *known = Some(nearest.1.point);
+        *known = Some(nearest.1.point).filter(|point| point.is_finite());
         self.at_foot(p, &nearest)
     }
 

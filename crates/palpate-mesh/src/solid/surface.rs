@@ -31,7 +31,8 @@ impl<const N: usize, const D: usize> Surface<N, D> {
 
     /// The face nearest to a point, in the order of the boxes, and its nearest point.
     ///
-    /// `known` is a point of a face, if there is one; one that is near spares a part of the search.
+    /// `known` is a point of the surface, if there is one: its distance bounds the search, and the nearer it is, the
+    /// shorter is the search.
     pub(super) fn nearest(&self, p: Point<D>, known: Option<Point<D>>) -> (usize, Foot<D>) {
         let least = known.map_or(f64::INFINITY, |known| {
             // Its face must still be found, whose nearest point is rounded too.

@@ -11,9 +11,10 @@
 //! ```
 //!
 //! with `R` from the point to the group's centroid, `S = ∫ n dA` and `M = ∫ (x − c) ⊗ n dA`. The rest of the
-//! series is bounded in closed form: at `x` the kernel's term of degree `k` is at most `k·|x − c|ᵏ⁻¹/|R|ᵏ⁺¹` in space
-//! and `|x − c|ᵏ⁻¹/|R|ᵏ` in the plane. Two of the factors `|x − c|` are integrated to `Q = ∫ |x − c|² dA`, and the others
-//! are at most the radius of the group, `ρ|R|`:
+//! series is bounded in closed form. At `x` the `k`th term of the kernel (`k = 1` gives `S`, `k = 2` gives `M`) is at most
+//! `k·|x − c|ᵏ⁻¹/|R|ᵏ⁺¹` in space, by the inequality of Bernstein and Szegő for Legendre polynomials, and
+//! `|x − c|ᵏ⁻¹/|R|ᵏ` in the plane. In each term from `k = 3` on, two factors `|x − c|` are integrated to
+//! `Q = ∫ |x − c|² dA`, and the others are at most the radius of the group, `ρ|R|`:
 //!
 //! ```text
 //! space: Q (3 − 2ρ)/(1 − ρ)²/(4π|R|⁴),  plane: Q/(1 − ρ)/(2π|R|³)
@@ -26,11 +27,14 @@ use palpate_field::{Point, Vector, Wide, wide};
 use super::foot::across;
 use crate::tree::{BallTree, FAN};
 
-/// Error bounds of a group, tried in this order until the sign is certain; with 0 every element is summed.
+/// Error bounds of a group, tried in this order until the question is settled; with 0 every element is summed.
 const ERRORS: [f64; 4] = [2e-2, 2e-3, 1e-4, 0.0];
 
 /// The rounding of the share of a group, and of an element in units of how much its terms cancel.
 const ROUNDING: f64 = 64.0 * f64::EPSILON;
+
+/// From within a ball of a radius nearer to the distance, rounding matters in what remains of the series.
+const LARGEST_RHO: f64 = 0.99;
 
 /// A group of elements as seen from afar.
 #[derive(Clone, Copy, Debug)]
@@ -40,6 +44,8 @@ struct Moments<const D: usize> {
     radius: f64,
     /// `∫ |x − c|² dA` [m⁴], in the plane [m³], rounded up.
     second: f64,
+    /// How far rounding may turn `normals`, and `first` over the radius [m²], in the plane [m].
+    rounding: f64,
     /// `∫ n dA`.
     normals: Vector<f64, D>,
     /// `∫ (x − c) ⊗ n dA`, by rows.
@@ -238,6 +244,7 @@ struct Eight<const D: usize> {
     centroid: [Lanes; D],
     radius: Lanes,
     second: Lanes,
+    rounding: Lanes,
     normals: [Lanes; D],
     first: [[Lanes; D]; D],
 }
@@ -258,6 +265,7 @@ impl<const D: usize> Eight<D> {
             centroid: std::array::from_fn(|i| lanes(&|group| group.centroid[i])),
             radius: lanes(&|group| group.radius),
             second: lanes(&|group| group.second),
+            rounding: lanes(&|group| group.rounding),
             normals: std::array::from_fn(|i| lanes(&|group| group.normals[i])),
             first: std::array::from_fn(|k| {
                 std::array::from_fn(|i| lanes(&|group| group.first[k][i]))
@@ -265,7 +273,7 @@ impl<const D: usize> Eight<D> {
         }
     }
 
-    /// The shares of the groups to terms of the second degree, and bounds of the rest.
+    /// The shares of the groups by the first two terms, and bounds of the rest.
     #[inline(always)]
     fn from(&self, p: Point<D>) -> Seen {
         let mut seen = Seen { shares: [0.0; FAN], remainders: [0.0; FAN] };
@@ -289,21 +297,21 @@ impl<const D: usize> Eight<D> {
             let distance = squared.sqrt();
             let rho = self.radius[lane] / distance;
             let left = 1.0 - rho;
-            let second = self.second[lane];
+            let (second, rounding) = (self.second[lane], self.rounding[lane]);
             let (share, remainder) = if D == 3 {
                 let sphere = 4.0 * PI * squared;
                 (
                     (flux - 3.0 * along / squared) / (sphere * distance),
-                    second / (sphere * squared) * (3.0 - 2.0 * rho) / (left * left),
+                    (second / squared * (3.0 - 2.0 * rho) / (left * left) + rounding) / sphere,
                 )
             } else {
                 (
                     (flux - 2.0 * along / squared) / (TAU * squared),
-                    second / (TAU * squared * distance) / left,
+                    (second / squared / left + rounding) / (TAU * distance),
                 )
             };
             // Written so that NaN, at the centroid of a point, is not accepted.
-            let is_outside = rho < 1.0;
+            let is_outside = rho < LARGEST_RHO;
             seen.shares[lane] = share;
             seen.remainders[lane] = if is_outside { remainder } else { f64::INFINITY };
         }
@@ -341,8 +349,13 @@ impl<const D: usize> Moments<D> {
         }
         let far = group.iter().flatten().map(|corner| (*corner - centroid).norm());
         let radius = far.fold(0.0, f64::max) * (1.0 + 8.0 * f64::EPSILON);
-        let second = second * (1.0 + ROUNDING);
-        Self { centroid, radius, second, normals, first }
+        // Sums of so many terms, of middles that are rounded as coordinates are.
+        let terms = (group.len() + 64) as f64 * f64::EPSILON;
+        let coordinates = centroid.norm() + radius;
+        let rounding =
+            if radius > 0.0 { 4.0 * terms * area * (coordinates / radius) } else { 0.0 };
+        let second = (second * (1.0 + terms)) + rounding * radius * radius;
+        Self { centroid, radius, second, rounding, normals, first }
     }
 }
 
