@@ -3,18 +3,20 @@
 
 //! T-junctions: edges on which corners of other faces lie.
 //!
-//! Between the edge and those corners is a loop without area. A cap of it would be a face without area; instead the
-//! face of the edge is parted at the corners.
+//! Between the edge and those corners is a gap without area, which no cap can close. Instead the face of the edge is
+//! parted at the corners. What lies exactly on an edge changes no face when it becomes a corner.
 
 use std::collections::HashMap;
 
-use palpate_field::{Point, Vector};
+use palpate_field::{Aabb, Point, Vector};
 use robust::{Coord, orient2d};
 
-use super::cap::loops;
 use super::rims::{by_rim, sides};
+use crate::solid::boxes::Boxes;
+use crate::tree::{BallTree, FAN};
 
-/// Parts the faces on an edge of which corners of others lie exactly; how many.
+/// Parts the faces on an edge of which corners of others lie exactly, if edges of those lead back along it from corner
+/// to corner; returns how many edges were parted.
 pub(super) fn part<const N: usize, const D: usize>(
     vertices: &[Point<D>],
     elements: &mut Vec<[u32; N]>,
@@ -22,20 +24,15 @@ pub(super) fn part<const N: usize, const D: usize>(
     if N == 2 {
         return 0;
     }
-    let loops = loops(elements);
-    let flat: Vec<Vec<u32>> =
-        loops.into_iter().filter_map(|l| along_an_edge(vertices, l)).collect();
-    if flat.is_empty() {
-        return 0;
-    }
+    let chains = chains(vertices, elements);
     // The element at each edge of one.
     let mut at_edge: HashMap<[u32; 2], usize> = by_rim(&sides(elements))
         .filter(|at_rim| at_rim.len() == 1)
         .map(|at_rim| (at_rim[0].rim, at_rim[0].element as usize))
         .collect();
     let key = |a: u32, b: u32| [a.min(b), a.max(b)];
-    let mut parted = 0;
-    for mut chain in flat {
+    let parted = chains.len();
+    for mut chain in chains {
         let (first, last) = (chain[0], chain[chain.len() - 1]);
         let Some(face) = at_edge.get(&key(first, last)).copied() else { continue };
         let Some(at) = elements[face].iter().position(|i| *i != first && *i != last) else {
@@ -59,37 +56,68 @@ pub(super) fn part<const N: usize, const D: usize>(
         if let Some(element) = at_edge.get_mut(&key(to, opposite)) {
             *element = elements.len() - 1;
         }
-        parted += 1;
     }
     parted
 }
 
-/// The corners of a loop from end to end of a line on which they all lie, if one edge of the loop leads from end to
-/// end and the others go back step by step.
-fn along_an_edge<const D: usize>(
+/// The edges of one element along which other such edges lead back: their ends, and the corners between them.
+fn chains<const N: usize, const D: usize>(
     vertices: &[Point<D>],
-    mut corners: Vec<u32>,
-) -> Option<Vec<u32>> {
-    let at = |i: u32| vertices[i as usize].in_space();
-    let (first, second) = (at(*corners.first()?), at(*corners.get(1)?));
-    let step = second - first;
-    let axis = (1..3).fold(0, |k, i| if step[i].abs() > step[k].abs() { i } else { k });
-    let on_line =
-        |i: &u32| (0..3).all(|k| turn([first, second, at(*i)], [k, (k + 1) % 3]) == 0.0);
-    if !corners.iter().all(on_line) {
-        return None;
+    elements: &[[u32; N]],
+) -> Vec<Vec<u32>> {
+    let sides = sides(elements);
+    let alone: Vec<_> = by_rim(&sides).filter(|at_rim| at_rim.len() == 1).collect();
+    let edges: Vec<[u32; 2]> = alone.iter().map(|at_rim| at_rim[0].rim).collect();
+    // Whether the element of an edge passes it from the lower corner to the higher.
+    let is_forward: HashMap<[u32; 2], bool> =
+        alone.iter().map(|at_rim| (at_rim[0].rim, at_rim[0].is_forward)).collect();
+    if edges.is_empty() {
+        return Vec::new();
     }
-    let along = |i: &u32| at(*i)[axis];
-    let lowest = (0..corners.len())
-        .min_by(|a, b| along(&corners[*a]).total_cmp(&along(&corners[*b])))?;
-    corners.rotate_left(lowest);
-    // From the lowest corner the loop goes straight to the highest and back in steps, or the other way.
-    let is_rising = |chain: &[u32]| chain.windows(2).all(|two| along(&two[0]) < along(&two[1]));
-    if is_rising(&corners) {
-        return Some(corners);
+    let at = |i: u32| vertices[i as usize];
+    let order = BallTree::new(vertices, &edges).order().to_vec();
+    let in_order: Vec<_> = order.iter().map(|i| edges[*i as usize].map(at)).collect();
+    let boxes = Boxes::new(&in_order);
+    let mut ends: Vec<u32> = edges.iter().flatten().copied().collect();
+    ends.sort_unstable();
+    ends.dedup();
+    let mut between = vec![Vec::new(); edges.len()];
+    for end in ends {
+        let p = at(end);
+        boxes.overlapping(&Aabb { min: p, max: p }, |group| {
+            for edge in order.iter().skip(group * FAN).take(FAN).map(|i| *i as usize) {
+                if is_between(edges[edge].map(at), p) {
+                    between[edge].push(end);
+                }
+            }
+        });
     }
-    corners[1..].reverse();
-    is_rising(&corners).then_some(corners)
+    let chain = |([first, last], mut between): ([u32; 2], Vec<u32>)| {
+        let way = at(last) - at(first);
+        let along = |i: &u32| (at(*i) - at(first)).dot(way);
+        between.sort_by(|a, b| along(a).total_cmp(&along(b)));
+        std::iter::once(first).chain(between).chain(std::iter::once(last)).collect()
+    };
+    let leads_back = |chain: &Vec<u32>| {
+        let passes = |from: u32, to: u32| {
+            is_forward
+                .get(&[from.min(to), from.max(to)])
+                .map(|is_forward| *is_forward == (from < to))
+        };
+        let whole = passes(chain[0], chain[chain.len() - 1]);
+        chain.windows(2).all(|step| passes(step[1], step[0]) == whole)
+    };
+    let on_edges =
+        edges.iter().copied().zip(between).filter(|(_, between)| !between.is_empty());
+    on_edges.map(chain).filter(leads_back).collect()
+}
+
+/// Whether a point lies exactly on the line between two others, and between them.
+fn is_between<const D: usize>(ends: [Point<D>; 2], p: Point<D>) -> bool {
+    let around = Aabb::around(ends).is_some_and(|aabb| aabb.contains(p));
+    let [a, b] = ends.map(|end| end.in_space());
+    let p = p.in_space();
+    around && p != a && p != b && (0..3).all(|k| turn([a, b, p], [k, (k + 1) % 3]) == 0.0)
 }
 
 /// The sign of the turn at three points, as seen along an axis.
@@ -122,6 +150,20 @@ mod tests {
         assert_eq!(part(&vertices, &mut elements), 2);
         assert_eq!(elements.len(), 10);
         assert!(by_rim(&sides(&elements)).all(|at_rim| at_rim.len() == 2));
-        assert!(loops(&elements).is_empty());
+    }
+
+    /// Faces were parted along loops of edges. Of a fine lid on a coarse box no edge is of both, so that lid and box had
+    /// a loop each, which were closed by caps.
+    #[test]
+    fn a_lid_of_which_no_edge_is_of_the_box_is_joined_to_it() {
+        // A square of two faces below a pyramid whose eight faces have half its sides each.
+        let vertices: Vec<Point<3>> = (0..9)
+            .map(|i| Vector([f64::from(i % 3), f64::from(i / 3), f64::from(u8::from(i == 4))]))
+            .collect();
+        let mut elements: Vec<[u32; 3]> = vec![[0, 8, 2], [0, 6, 8]];
+        let around = [0, 1, 2, 5, 8, 7, 6, 3];
+        elements.extend((0..8).map(|i| [around[i], around[(i + 1) % 8], 4]));
+        assert_eq!(part(&vertices, &mut elements), 4);
+        assert!(by_rim(&sides(&elements)).all(|at_rim| at_rim.len() == 2));
     }
 }

@@ -4,6 +4,7 @@
 //! Elements that agree on the inside, and pieces whose inside is within.
 
 use std::cell::OnceCell;
+use std::collections::BTreeMap;
 
 use palpate_field::{Aabb, Point, Vector};
 
@@ -81,8 +82,13 @@ fn turn<const N: usize>(element: &mut [u32; N]) {
     element.swap(0, 1);
 }
 
-/// So many elements of a piece tell whether it lies in another.
+/// So many elements of a piece tell whether it lies in another, and so many of one all of whose elements meet others:
+/// there most may lie on the other's.
 const SAMPLES: usize = 3;
+const SAMPLES_OF_MET: usize = 64;
+
+/// A winding number that is not as near to a whole one tells nothing: on a face it is one half.
+const CLEAR: f64 = 0.25;
 
 /// Of a piece of more elements the winding number is summed by groups.
 const MANY: usize = 64;
@@ -95,7 +101,7 @@ struct Piece<const N: usize, const D: usize> {
     /// What it encloses [m³], in the plane [m²]: negative if its normals point inwards.
     volume: f64,
     /// The middles of a few elements.
-    samples: [Point<D>; SAMPLES],
+    samples: Vec<Point<D>>,
     /// Made when first asked for.
     winding: OnceCell<Groups<N, D>>,
 }
@@ -151,8 +157,8 @@ pub(super) fn outwards<const N: usize, const D: usize>(
     Pieces { of_element, is_cavity, nested, turned }
 }
 
-/// The pieces around each, the smallest first: those that do not cross it and hold most of its samples. Where
-/// pieces touch, one sample may lie on the outer one.
+/// The pieces around each, the smallest first: those that do not cross it, and have more of its samples within them than
+/// without.
 fn around<const N: usize, const D: usize>(
     all: &[Piece<N, D>],
     meet: &PiecesThatMeet,
@@ -168,27 +174,24 @@ fn around<const N: usize, const D: usize>(
     let boxes = Boxes::new(&order.iter().map(line).collect::<Vec<_>>());
     (0..all.len())
         .map(|i| {
-            let mut holders = Vec::new();
-            for p in all[i].samples {
+            // Of each piece that may be around, how many more samples are within it.
+            let mut votes: BTreeMap<usize, i32> = BTreeMap::new();
+            for p in all[i].samples.iter().copied() {
                 boxes.overlapping(&Aabb { min: p, max: p }, |group| {
                     for k in order.iter().skip(group * FAN).take(FAN).map(|k| *k as usize) {
                         if k != i
                             && size(k) > size(i)
                             && lies_in(&all[i].bounds, &all[k].bounds)
                             && !meet.cross(i, k)
-                            && all[k].goes_around(p, &corners)
+                            && let Some(is_within) = all[k].goes_around(p, &corners)
                         {
-                            holders.push(k);
+                            *votes.entry(k).or_default() += if is_within { 1 } else { -1 };
                         }
                     }
                 });
             }
-            holders.sort_unstable();
-            let mut around: Vec<usize> = holders
-                .chunk_by(|a, b| a == b)
-                .filter(|same| 2 * same.len() > SAMPLES)
-                .map(|same| same[0])
-                .collect();
+            let mut around: Vec<usize> =
+                votes.into_iter().filter(|(_, votes)| *votes > 0).map(|(k, _)| k).collect();
             around.sort_by(|a, b| size(*a).total_cmp(&size(*b)));
             around
         })
@@ -198,7 +201,7 @@ fn around<const N: usize, const D: usize>(
 impl<const N: usize, const D: usize> Piece<N, D> {
     fn of(elements: Vec<usize>, corners: impl Fn(usize) -> [Point<D>; N]) -> Self {
         let all = || elements.iter().map(|element| corners(*element));
-        let samples = samples(&elements, &corners);
+        let samples = samples(&elements, SAMPLES, &corners);
         let bounds =
             Aabb::around(all().flatten()).unwrap_or(Aabb { min: samples[0], max: samples[0] });
         let centre = bounds.centre();
@@ -214,31 +217,39 @@ impl<const N: usize, const D: usize> Piece<N, D> {
     ) {
         let free: Vec<usize> =
             self.elements.iter().copied().filter(|element| !is_met(*element)).collect();
-        if !free.is_empty() {
-            self.samples = samples(&free, corners);
-        }
+        self.samples = match free.is_empty() {
+            true => samples(&self.elements, SAMPLES_OF_MET, corners),
+            false => samples(&free, SAMPLES, corners),
+        };
     }
 
-    /// Whether its winding number about a point is not 0.
-    fn goes_around(&self, p: Point<D>, corners: impl Fn(usize) -> [Point<D>; N]) -> bool {
-        if self.elements.len() <= MANY {
-            let number: f64 =
-                self.elements.iter().map(|element| share(&corners(*element), p)).sum();
-            return number.abs() > 0.5;
-        }
-        let own = || self.elements.iter().map(|element| corners(*element)).collect::<Vec<_>>();
-        self.winding.get_or_init(|| Groups::new(&own())).goes_around(p)
+    /// Whether its winding number about a point is not 0; `None` if the point is on one of its elements or next to it.
+    fn goes_around(
+        &self,
+        p: Point<D>,
+        corners: impl Fn(usize) -> [Point<D>; N],
+    ) -> Option<bool> {
+        let number = if self.elements.len() <= MANY {
+            self.elements.iter().map(|element| share(&corners(*element), p)).sum::<f64>()
+        } else {
+            let own =
+                || self.elements.iter().map(|element| corners(*element)).collect::<Vec<_>>();
+            self.winding.get_or_init(|| Groups::new(&own())).number(p, CLEAR)
+        };
+        let is_clear = (number - number.round()).abs() < CLEAR;
+        is_clear.then_some(number.abs() > 0.5)
     }
 }
 
 /// The middles of a few of these elements.
 fn samples<const N: usize, const D: usize>(
     elements: &[usize],
+    most: usize,
     corners: impl Fn(usize) -> [Point<D>; N],
-) -> [Point<D>; SAMPLES] {
-    std::array::from_fn(|i| {
-        middle(&corners(elements[i * (elements.len() - 1) / (SAMPLES - 1)]))
-    })
+) -> Vec<Point<D>> {
+    let last = elements.len() - 1;
+    let count = most.min(elements.len());
+    (0..count).map(|i| middle(&corners(elements[i * last / (count - 1).max(1)]))).collect()
 }
 
 /// Whether a box lies within another.
