@@ -11,10 +11,15 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use palpate::field::{Aabb, LARGEST_LENGTH, Shape, Vector};
 use palpate::local::GradientMethod;
-use palpate::scene::{AnyScene, BuiltScene, Resources, Scene, SceneError, unknown_name, utf8};
+use palpate::mesh::Opening;
+use palpate::scene::{
+    AnyScene, BuiltMesh, BuiltScene, Resources, Scene, SceneError, unknown_name, utf8,
+};
 
 use crate::kind::Kind;
+use crate::numbers::rounded;
 use crate::outcome::Failure;
+use crate::output::{self, counted};
 use crate::progress::Progress;
 
 /// The built-in gallery, which `palpate feel` feels if no scene is named.
@@ -60,7 +65,33 @@ pub(crate) fn moving(path: Option<&Path>, motions: Option<&Path>) -> Result<Name
         scene = moved.map_err(|error| Failure::file(path, error))?;
     }
     let scene = scene.build().map_err(no_scene)?;
+    match &scene {
+        AnyScene::Planar(scene) => scene.meshes.iter().for_each(tell_guesses),
+        AnyScene::Spatial(scene) => scene.meshes.iter().for_each(tell_guesses),
+    }
     Ok(Named { name, scene })
+}
+
+/// Says where what is proven of a mesh need not hold of the thing that it was made of.
+fn tell_guesses(mesh: &BuiltMesh) {
+    let Some(file) = mesh.file.as_deref().map(output::shown) else { return };
+    let largest = mesh.findings.openings.iter().max_by(|a, b| a.size.total_cmp(&b.size));
+    if let Some(Opening { place, doubtful, .. }) = largest {
+        output::remark(format_args!(
+            "{file}: {} closed by caps: within {} m of the largest, at ({}) m, the sign is a guess",
+            counted(mesh.findings.openings.len(), "opening", "openings"),
+            rounded(*doubtful),
+            place.0.map(rounded).join(", "),
+        ));
+    }
+    if let Some(samples) = &mesh.samples {
+        let step =
+            samples.steps.iter().map(|step| step.norm() * mesh.scale).fold(0.0, f64::max);
+        output::remark(format_args!(
+            "{file}: answers hold of the surface through samples; the thing itself is known to about a sample, {} m",
+            rounded(step),
+        ));
+    }
 }
 
 /// The folder in which grids are kept: the user's cache, or what `PALPATE_CACHE` names; `None` if that is empty.

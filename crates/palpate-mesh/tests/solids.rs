@@ -424,6 +424,45 @@ fn parts_inside_out_that_overlap_or_share_a_face_are_solids() {
 }
 
 /// Needles through one point all cross each other: the time grew with the square of their number.
+/// Of a cavity all of whose faces touch the outer ones, samples were taken on walls of both: it was turned, and filled.
+#[test]
+fn a_cavity_whose_walls_lie_in_several_outer_walls_stays_one() {
+    let outer = || Soup::cuboid([0.5; 3], [1.0; 3]);
+    for (centre, size) in [
+        ([0.25, 0.25, 0.5], [0.5; 3]),
+        ([0.25; 3], [0.5; 3]),
+        ([0.5, 0.5, 0.25], [1.0, 0.5, 0.5]),
+    ] {
+        let soup = outer().and(Soup::cuboid(centre, size).inside_out());
+        let (shape, findings) = solid(&soup);
+        assert_eq!(findings.inside_out, 0, "{findings}");
+        assert!(shape.distance(centre) > 0.0, "{centre:?}: {}", shape.distance(centre));
+        for p in points(400, 0.8).map(|p| p + Vector([0.5; 3])) {
+            assert_eq!(shape.distance(p) < 0.0, soup.winding(p) > 0.5, "{p:?}");
+        }
+    }
+}
+
+/// The lid of a box, of which each edge is one of the box and two of the lid: both were closed by caps.
+#[test]
+fn a_fine_lid_on_a_coarse_box_is_a_solid() {
+    let cuboid = Soup::cuboid([0.0; 3], [2.0; 3]);
+    let is_lid = |face: &[u32; 3]| face.iter().all(|i| cuboid.vertices[*i as usize][1] > 0.0);
+    let is_of_lid: Vec<bool> = cuboid.faces.iter().map(is_lid).collect();
+    let mut soup = cuboid.without(|i| is_of_lid[i]);
+    // A pyramid above the box, counter-clockwise seen from above.
+    let rim = [[-1, -1], [-1, 0], [-1, 1], [0, 1], [1, 1], [1, 0], [1, -1], [0, -1]];
+    let first = soup.vertices.len() as u32;
+    soup.vertices.extend(rim.map(|[x, z]| Vector([f64::from(x), 1.0, f64::from(z)])));
+    soup.vertices.push(Vector([0.0, 2.0, 0.0]));
+    soup.faces.extend((0..8).map(|i| [first + i, first + (i + 1) % 8, first + 8]));
+    let (shape, findings) = solid(&soup);
+    assert_eq!((findings.parted, findings.openings.len()), (4, 0), "{findings}");
+    assert_eq!(shape.promise().in_words(), "exact outside, exact inside");
+    let mass = shape.mass(1.0, MassLimits::default()).unwrap();
+    assert!((mass.volume - (8.0 + 4.0 / 3.0)).abs() < 1e-12, "{mass:?}");
+}
+
 #[test]
 fn the_search_for_faces_that_meet_ends() {
     let mut needles = Soup { vertices: Vec::new(), faces: Vec::new() };

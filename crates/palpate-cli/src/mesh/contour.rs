@@ -10,7 +10,7 @@ use std::ops::ControlFlow;
 use std::path::Path;
 
 use palpate::field::{Quality, Shape};
-use palpate::mesh::{ContourError, ContourOptions, Format, Solid, TriangleMesh};
+use palpate::mesh::{ContourError, ContourOptions, Format, Report, Solid, TriangleMesh};
 use palpate::scene::AnyScene;
 use serde_json::json;
 
@@ -65,12 +65,32 @@ pub(super) fn run(
     interrupt.heed();
     let work = Work { options, shape: &shape, format, interrupt };
     let made = if mended.is_some() { mended } else { work.made()? };
-    let Some(made) = made else {
+    let judged = made.map(|made| (Judgement::of(&made.mesh), made));
+    let Some((judgement, made)) = judged.filter(|_| !interrupt.is_asked()) else {
         output::remark("interrupted: nothing was written");
         return Ok(Outcome::Interrupted);
     };
     destination.write(|out| Ok(made.mesh.write(format, out)?))?;
-    report(options, output, shape.promise().is_exact(), &made)
+    report(options, output, shape.promise().is_exact(), &made, &judgement)
+}
+
+/// Whether a mesh bounds a solid.
+struct Judgement {
+    report: Report<3>,
+    /// Pairs of faces that cross or touch.
+    crosses: usize,
+    is_good: bool,
+}
+
+impl Judgement {
+    fn of(mesh: &TriangleMesh) -> Self {
+        let report = mesh.report();
+        let solid = Solid::from_mesh(mesh);
+        let crosses = solid.as_ref().map_or(0, |(_, found)| found.crossings + found.touching);
+        let is_good =
+            report.is_watertight() && report.degenerate == 0 && solid.is_ok() && crosses == 0;
+        Self { report, crosses, is_good }
+    }
 }
 
 /// The solid of a mesh.
@@ -237,16 +257,11 @@ fn report(
     output: &Path,
     is_exact: bool,
     made: &Made,
+    Judgement { report: mesh_report, crosses, is_good }: &Judgement,
 ) -> Result<Outcome, Failure> {
     let Made { mesh, cell, error: [found, proven] } = made;
     let is_reached = options.tolerance.is_none_or(|tolerance| *proven <= tolerance);
-    let mesh_report = mesh.report();
-    let solid = Solid::from_mesh(mesh);
-    let crosses = solid.as_ref().map_or(0, |(_, found)| found.crossings + found.touching);
-    let is_good = mesh_report.is_watertight()
-        && mesh_report.degenerate == 0
-        && solid.is_ok()
-        && crosses == 0;
+    let is_good = *is_good;
     let mut out = output::answer();
     let name = output.display().to_string();
     if options.json {
@@ -277,7 +292,7 @@ fn report(
         };
         writeln!(
             out,
-            "{}: {} {by}, {closed}",
+            "{}: {} {by}, in metres, {closed}",
             shown(&name),
             counted(mesh.elements().len(), "triangle", "triangles"),
         )?;

@@ -149,11 +149,6 @@ impl<const N: usize, const D: usize> Groups<N, D> {
         let is_settled = |w: Winding| (w.number.abs() - 0.5).abs() > w.error;
         self.tree.settled(&self.elements, p, is_settled).number.abs() > 0.5
     }
-
-    /// The winding number about a point, within an error if rounding allows.
-    pub(crate) fn number(&self, p: Point<D>, error: f64) -> f64 {
-        self.tree.settled(&self.elements, p, |w| w.error < 0.5 * error).number
-    }
 }
 
 /// A sum over the groups of a tree, as seen from a point: of each group as a whole, if that is exact enough, else of its

@@ -130,29 +130,22 @@ pub(super) fn meet_in_the_plane(vertices: &[Point<2>], segments: &[[u32; 2]]) ->
     each_meeting(vertices, segments, |_, _| ControlFlow::Break(())).is_break()
 }
 
-/// How the pieces of a mesh meet.
+/// The pairs of pieces that cross, the lower first.
 #[derive(Debug, Default)]
-pub(super) struct PiecesThatMeet {
-    /// The pairs of pieces that cross, the lower first.
-    crossing: HashSet<[usize; 2]>,
-    /// Of each element, whether it crosses or touches another.
-    is_met: Vec<bool>,
-}
+pub(super) struct PiecesThatCross(HashSet<[usize; 2]>);
 
-impl PiecesThatMeet {
+impl PiecesThatCross {
     /// Of each element the number of its piece is known. Of pairs that meet, so many as [`MOST_PAIRS`] are found.
     pub(super) fn of<const N: usize, const D: usize>(
         vertices: &[Point<D>],
         elements: &[[u32; N]],
         of_piece: &[usize],
     ) -> Self {
-        let mut found = Self { is_met: vec![false; elements.len()], ..Self::default() };
-        let mut pairs = 0;
+        let (mut found, mut pairs) = (Self::default(), 0);
         let _ = each_meeting(vertices, elements, |[i, k], meeting| {
-            (found.is_met[i], found.is_met[k]) = (true, true);
             let [a, b] = [of_piece[i], of_piece[k]];
             if meeting == Meeting::Crossing && a != b {
-                found.crossing.insert([a.min(b), a.max(b)]);
+                found.0.insert([a.min(b), a.max(b)]);
             }
             pairs += 1;
             continue_if(pairs < MOST_PAIRS)
@@ -162,12 +155,7 @@ impl PiecesThatMeet {
 
     /// Whether two pieces cross.
     pub(super) fn cross(&self, a: usize, b: usize) -> bool {
-        self.crossing.contains(&[a.min(b), a.max(b)])
-    }
-
-    /// Whether an element is known to cross or touch another.
-    pub(super) fn is_met(&self, element: usize) -> bool {
-        self.is_met.get(element) == Some(&true)
+        self.0.contains(&[a.min(b), a.max(b)])
     }
 }
 

@@ -4,13 +4,13 @@
 //! Elements that agree on the inside, and pieces whose inside is within.
 
 use std::cell::OnceCell;
-use std::collections::BTreeMap;
 
 use palpate_field::{Aabb, Point, Vector};
 
-use super::crossing::PiecesThatMeet;
+use super::crossing::PiecesThatCross;
 use super::rims::{Side, by_rim, pieces, sides};
 use crate::report::signed_volume;
+use crate::solid::across;
 use crate::solid::boxes::Boxes;
 use crate::solid::winding::{Groups, share};
 use crate::tree::{BallTree, FAN};
@@ -82,13 +82,12 @@ fn turn<const N: usize>(element: &mut [u32; N]) {
     element.swap(0, 1);
 }
 
-/// So many elements of a piece tell whether it lies in another, and so many of one all of whose elements meet others:
-/// there most may lie on the other's.
+/// So many elements of a piece tell whether it lies in another.
 const SAMPLES: usize = 3;
-const SAMPLES_OF_MET: usize = 64;
 
-/// A winding number that is not as near to a whole one tells nothing: on a face it is one half.
-const CLEAR: f64 = 0.25;
+/// How far behind an element a sample is, as a share of its size: elements may lie on those of another piece, where the
+/// winding number tells nothing.
+const BEHIND: f64 = 1e-6;
 
 /// Of a piece of more elements the winding number is summed by groups.
 const MANY: usize = 64;
@@ -100,8 +99,8 @@ struct Piece<const N: usize, const D: usize> {
     bounds: Aabb<D>,
     /// What it encloses [m³], in the plane [m²]: negative if its normals point inwards.
     volume: f64,
-    /// The middles of a few elements.
-    samples: Vec<Point<D>>,
+    /// Points within it.
+    samples: [Point<D>; SAMPLES],
     /// Made when first asked for.
     winding: OnceCell<Groups<N, D>>,
 }
@@ -131,16 +130,13 @@ pub(super) fn outwards<const N: usize, const D: usize>(
     for (element, piece) in of_element.iter().enumerate() {
         members[*piece].push(element);
     }
-    let mut all: Vec<Piece<N, D>> = members
+    let all: Vec<Piece<N, D>> = members
         .into_iter()
         .map(|members| Piece::of(members, |element| corners(&elements[element])))
         .collect();
-    let mut meet = PiecesThatMeet::default();
+    let mut meet = PiecesThatCross::default();
     if count > 1 && all.iter().any(|piece| piece.volume < 0.0) {
-        meet = PiecesThatMeet::of(vertices, elements, &of_element);
-        for piece in &mut all {
-            piece.sample(|element| meet.is_met(element), |element| corners(&elements[element]));
-        }
+        meet = PiecesThatCross::of(vertices, elements, &of_element);
     }
     let around = around(&all, &meet, |element| corners(&elements[element]));
     let is_turned = |i: usize| all[*around[i].last().unwrap_or(&i)].volume < 0.0;
@@ -157,11 +153,10 @@ pub(super) fn outwards<const N: usize, const D: usize>(
     Pieces { of_element, is_cavity, nested, turned }
 }
 
-/// The pieces around each, the smallest first: those that do not cross it, and have more of its samples within them than
-/// without.
+/// The pieces around each, the smallest first: those that do not cross it and hold most of its samples.
 fn around<const N: usize, const D: usize>(
     all: &[Piece<N, D>],
-    meet: &PiecesThatMeet,
+    meet: &PiecesThatCross,
     corners: impl Fn(usize) -> [Point<D>; N],
 ) -> Vec<Vec<usize>> {
     let size = |i: usize| all[i].volume.abs();
@@ -174,24 +169,27 @@ fn around<const N: usize, const D: usize>(
     let boxes = Boxes::new(&order.iter().map(line).collect::<Vec<_>>());
     (0..all.len())
         .map(|i| {
-            // Of each piece that may be around, how many more samples are within it.
-            let mut votes: BTreeMap<usize, i32> = BTreeMap::new();
-            for p in all[i].samples.iter().copied() {
+            let mut holders = Vec::new();
+            for p in all[i].samples {
                 boxes.overlapping(&Aabb { min: p, max: p }, |group| {
                     for k in order.iter().skip(group * FAN).take(FAN).map(|k| *k as usize) {
                         if k != i
                             && size(k) > size(i)
                             && lies_in(&all[i].bounds, &all[k].bounds)
                             && !meet.cross(i, k)
-                            && let Some(is_within) = all[k].goes_around(p, &corners)
+                            && all[k].goes_around(p, &corners)
                         {
-                            *votes.entry(k).or_default() += if is_within { 1 } else { -1 };
+                            holders.push(k);
                         }
                     }
                 });
             }
-            let mut around: Vec<usize> =
-                votes.into_iter().filter(|(_, votes)| *votes > 0).map(|(k, _)| k).collect();
+            holders.sort_unstable();
+            let mut around: Vec<usize> = holders
+                .chunk_by(|a, b| a == b)
+                .filter(|same| 2 * same.len() > SAMPLES)
+                .map(|same| same[0])
+                .collect();
             around.sort_by(|a, b| size(*a).total_cmp(&size(*b)));
             around
         })
@@ -201,55 +199,40 @@ fn around<const N: usize, const D: usize>(
 impl<const N: usize, const D: usize> Piece<N, D> {
     fn of(elements: Vec<usize>, corners: impl Fn(usize) -> [Point<D>; N]) -> Self {
         let all = || elements.iter().map(|element| corners(*element));
-        let samples = samples(&elements, SAMPLES, &corners);
-        let bounds =
-            Aabb::around(all().flatten()).unwrap_or(Aabb { min: samples[0], max: samples[0] });
+        let first = corners(elements[0])[0];
+        let bounds = Aabb::around(all().flatten()).unwrap_or(Aabb { min: first, max: first });
         let centre = bounds.centre();
         let volume = all().map(|corners| signed_volume(&corners, centre)).sum();
+        let samples = samples(&elements, volume, &corners);
         Self { elements, bounds, volume, samples, winding: OnceCell::new() }
     }
 
-    /// Takes its samples on elements that meet no others, if it has any.
-    fn sample(
-        &mut self,
-        is_met: impl Fn(usize) -> bool,
-        corners: impl Fn(usize) -> [Point<D>; N],
-    ) {
-        let free: Vec<usize> =
-            self.elements.iter().copied().filter(|element| !is_met(*element)).collect();
-        self.samples = match free.is_empty() {
-            true => samples(&self.elements, SAMPLES_OF_MET, corners),
-            false => samples(&free, SAMPLES, corners),
-        };
-    }
-
-    /// Whether its winding number about a point is not 0; `None` if the point is on one of its elements or next to it.
-    fn goes_around(
-        &self,
-        p: Point<D>,
-        corners: impl Fn(usize) -> [Point<D>; N],
-    ) -> Option<bool> {
-        let number = if self.elements.len() <= MANY {
-            self.elements.iter().map(|element| share(&corners(*element), p)).sum::<f64>()
-        } else {
-            let own =
-                || self.elements.iter().map(|element| corners(*element)).collect::<Vec<_>>();
-            self.winding.get_or_init(|| Groups::new(&own())).number(p, CLEAR)
-        };
-        let is_clear = (number - number.round()).abs() < CLEAR;
-        is_clear.then_some(number.abs() > 0.5)
+    /// Whether its winding number about a point is not 0.
+    fn goes_around(&self, p: Point<D>, corners: impl Fn(usize) -> [Point<D>; N]) -> bool {
+        if self.elements.len() <= MANY {
+            let number: f64 =
+                self.elements.iter().map(|element| share(&corners(*element), p)).sum();
+            return number.abs() > 0.5;
+        }
+        let own = || self.elements.iter().map(|element| corners(*element)).collect::<Vec<_>>();
+        self.winding.get_or_init(|| Groups::new(&own())).goes_around(p)
     }
 }
 
-/// The middles of a few of these elements.
+/// Points right behind the middles of a few of these elements, within what they enclose: its normals lead out if
+/// `volume` is positive.
 fn samples<const N: usize, const D: usize>(
     elements: &[usize],
-    most: usize,
+    volume: f64,
     corners: impl Fn(usize) -> [Point<D>; N],
-) -> Vec<Point<D>> {
-    let last = elements.len() - 1;
-    let count = most.min(elements.len());
-    (0..count).map(|i| middle(&corners(elements[i * last / (count - 1).max(1)]))).collect()
+) -> [Point<D>; SAMPLES] {
+    std::array::from_fn(|i| {
+        let corners = corners(elements[i * (elements.len() - 1) / (SAMPLES - 1)]);
+        let out = across(&corners);
+        let size = if N == 3 { out.norm().sqrt() } else { out.norm() };
+        let behind = out.normalized().unwrap_or(Vector::ZERO) * (BEHIND * size);
+        middle(&corners) - behind * volume.signum()
+    })
 }
 
 /// Whether a box lies within another.
