@@ -213,7 +213,7 @@ fn values_of_many_points_are_those_of_each() {
         let (solid, _) = Solid::from_mesh(&mesh).expect("a solid");
         let size = mesh.bounds().half_extents().norm();
         let mut asked = Vec::new();
-        for (i, p) in points(400, 1.5 * size).into_iter().enumerate() {
+        for (i, p) in points(400, 1.5 * size).enumerate() {
             let p = mesh.bounds().centre() + p;
             let (distance, gradient) = solid.distance_gradient(p);
             let foot = p - gradient * distance;
