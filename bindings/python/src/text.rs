@@ -7,6 +7,7 @@ use palpate::field::kernel::{Argument, Parameter};
 use palpate::field::node::Boolean;
 use palpate::field::operator::Copies;
 use palpate::field::{Node, Pose, Rotation, Shape};
+use palpate::mesh::Solid;
 
 /// The expression that makes a shape.
 pub(crate) fn of<const D: usize>(shape: &Shape<D>) -> String {
@@ -57,7 +58,10 @@ pub(crate) fn of<const D: usize>(shape: &Shape<D>) -> String {
         Node::Twisted { rate, of } => format!("{}.twisted(radians={rate:?})", self::of(of)),
         Node::Extruded { height, of } => format!("{}.extruded({height:?})", self::of(of)),
         Node::Revolved { of } => format!("{}.revolved()", self::of(of)),
-        Node::Opaque(opaque) => format!("<{}>", opaque.type_name()),
+        Node::Opaque(opaque) => match opaque.custom::<Solid<D, D>>() {
+            Some(solid) => format!("<solid of {} faces>", solid.elements().len()),
+            None => format!("<{}>", opaque.type_name()),
+        },
         other => format!("<{other:?}>"),
     }
 }

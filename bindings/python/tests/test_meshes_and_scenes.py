@@ -134,3 +134,21 @@ def test_the_error_of_a_scene_has_its_place() -> None:
         pp.Scene.from_json('{ "palpate": 1, "dimension": 3,\n "bodies": [ { "name": "b", "shape": { "ball": { "radius": -1 } } } ] }')
     error = caught.value
     assert (error.line, error.path, error.value) == (2, "bodies[0].shape.ball.radius", -1)
+
+
+def test_a_shape_of_a_mesh_is_pickled_compared_felt_and_sent_to_workers(tmp_path: Path) -> None:
+    mesh = pp.cuboid([0.1, 0.1, 0.1]).mesh(cell=0.03)
+    solid = mesh.shape()
+    again = pickle.loads(pickle.dumps(solid))
+    assert again == solid == mesh.shape() and hash(again) == hash(solid)
+    assert again != pp.cuboid([0.1, 0.1, 0.1]).mesh(cell=0.02).shape()
+    points = np.random.default_rng(7).uniform(-0.1, 0.1, (500, 3))
+    assert np.array_equal(again.distance(points), solid.distance(points))
+    cut = solid - pp.ball(0.02)
+    hand = [[0, 0, 0.08, 0], [0.2, 0, 0.045, 0]]
+    felt = pp.feel(pp.Scene({"part": cut}), hand=hand, seconds=0.2)
+    assert felt.trace.force[-1, 1] > 0
+    heights = np.linspace(0, 0.5, 5)[:, None] * [0, 1, 0]
+    run = pp.batch.overlaps(tmp_path / "run", solid, pp.ball(0.05), heights)
+    assert run.table().column("overlaps").to_pylist() == [1, 0, 0, 0, 0]
+    assert "faces" in repr(solid)
