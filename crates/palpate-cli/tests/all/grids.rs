@@ -99,7 +99,8 @@ fn what_was_scanned_is_checked_and_felt() {
         std::fs::copy(scans.join(file), folder.path(file)).unwrap();
     }
     let good = folder.run(&["check", "bunny.json"]);
-    assert!(text(&good).contains("3674 faces"), "{}{}", text(&good), errors(&good));
+    let bunny = "3674 faces, 0.07926 × 0.07726 × 0.06032 m";
+    assert!(text(&good).contains(bunny), "{}{}", text(&good), errors(&good));
     let bone = folder.run(&["check", "bone.json"]);
     assert!(text(&bone).contains("bone.nrrd at 300"), "{}{}", text(&bone), errors(&bone));
     let felt = ["feel", "bone.json", "--fast", "--duration", "1", "--cell", "0.002", "--json"];
