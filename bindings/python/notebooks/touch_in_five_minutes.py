@@ -60,7 +60,7 @@ ax.set_title("The part and where the peg touches it")
 
 # %%
 hand = [[0, 0.0, 0.03, 0], [0.5, 0.0, 0.011, 0], [1.5, 0.04, 0.024, 0], [2.5, 0.058, 0.011, 0], [3, 0.058, 0.03, 0]]
-felt = pp.feel(pp.Scene({"part": part}), hand=hand, seconds=3.0)
+felt = pp.feel(pp.Scene({"part": part}), hand=hand, duration=3.0)
 print(f"{felt.report['ticks']} ticks, largest force {felt.report['largest_force']:.3f} N")
 
 # %%

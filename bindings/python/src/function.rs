@@ -77,7 +77,21 @@ impl<const D: usize> Function<D> {
                 return Err(PyValueError::new_err(problem));
             }
             values.copy_from_slice(&answer.as_doubles()?);
-            Ok(())
+            for (p, value) in points.iter().zip(&mut *values) {
+                if p.0.iter().any(|x| x.is_nan()) {
+                    *value = f64::NAN;
+                }
+            }
+            // Bounds of a search cannot hold what is no number.
+            let wrong =
+                points.iter().zip(&*values).find(|(p, value)| p.is_finite() && value.is_nan());
+            match wrong {
+                None => Ok(()),
+                Some((p, _)) => {
+                    let problem = format!("the function answers NaN at {:?}", p.0);
+                    Err(PyValueError::new_err(problem))
+                }
+            }
         });
         DEPTH.set(depth);
         if let Err(error) = asked {

@@ -12,7 +12,7 @@ use palpate::mesh::{
     ContourOptions, Format, Mesh, Outline, Report, Sheet, Solid, TriangleMesh, read_file,
 };
 use palpate::query::{ElementMemory, MeshContacts, Query};
-use pyo3::exceptions::PyValueError;
+use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 
 use crate::answers::Fields;
@@ -59,6 +59,12 @@ impl PyMesh {
     #[pyo3(signature = (vertices, faces = None))]
     fn new(vertices: &Bound<'_, PyAny>, faces: Option<&Bound<'_, PyAny>>) -> PyResult<Self> {
         let Some(faces) = faces else {
+            let has = |name| vertices.hasattr(name);
+            if !(has("vertices")? && has("faces")?) {
+                let kind = vertices.get_type().name()?;
+                let problem = format!("a mesh has vertices and faces, got a {kind}");
+                return Err(PyTypeError::new_err(problem));
+            }
             let (vertices, faces) = (vertices.getattr("vertices")?, vertices.getattr("faces")?);
             return Self::new(&vertices, Some(&faces));
         };
@@ -309,7 +315,8 @@ pub(crate) fn replace(py: Python<'_>, file: &Path, bytes: &[u8]) -> PyResult<()>
     Ok(())
 }
 
-/// Which elements of a mesh touch a shape, with the contacts on each; `gap` [m] is how near is near enough.
+/// Which elements of a mesh touch a shape, with the contacts on each; `gap` [m] is how near is near enough. The mesh is a
+/// `Mesh`, or what has `vertices` and `faces`.
 ///
 /// `tolerance` is how far apart the bounds may be [m], a ten-thousandth of the smaller body if left out; `budget` how
 /// often the field is evaluated at most, 200 000 if left out.
@@ -323,12 +330,16 @@ pub(crate) fn replace(py: Python<'_>, file: &Path, bytes: &[u8]) -> PyResult<()>
 pub(crate) fn mesh_contacts<'py>(
     py: Python<'py>,
     shape: &PyShape,
-    mesh: &PyMesh,
+    mesh: &Bound<'py, PyAny>,
     gap: f64,
     tolerance: Option<f64>,
     budget: Option<u32>,
 ) -> PyResult<Bound<'py, PyAny>> {
-    match (shape.made(py)?, &mesh.0) {
+    let own = match mesh.cast::<PyMesh>() {
+        Ok(mesh) => mesh.clone(),
+        Err(_) => Bound::new(py, PyMesh::new(mesh, None)?)?,
+    };
+    match (shape.made(py)?, &own.get().0) {
         (AnyShape::Planar(shape), AnyMesh::Planar(mesh)) => {
             touched(py, shape, mesh, query(tolerance, budget).with_gap(gap))
         }
@@ -336,7 +347,7 @@ pub(crate) fn mesh_contacts<'py>(
             touched(py, shape, mesh, query(tolerance, budget).with_gap(gap))
         }
         (shape, _) => {
-            let (shape, mesh) = (shape.dimension(), mesh.dimension());
+            let (shape, mesh) = (shape.dimension(), own.get().dimension());
             let problem =
                 format!("shape and mesh must have one dimension, got {shape}D and {mesh}D");
             Err(PyValueError::new_err(problem))

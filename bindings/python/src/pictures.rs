@@ -171,6 +171,10 @@ impl PyShape {
         pitch: f64,
     ) -> PyResult<PyImage> {
         let shape = self.solid(py, "render")?;
+        if shape.promise().bounds.is_none() {
+            let problem = "the shape has no bounds: intersect it with a box first";
+            return Err(PyValueError::new_err(problem));
+        }
         let (yaw, pitch) = (yaw.to_radians(), pitch.to_radians());
         let aspect = f64::from(width) / f64::from(height.max(1));
         let made = interruptible(py, |stop| {

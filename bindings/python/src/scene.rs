@@ -51,6 +51,14 @@ impl PyScene {
     pub(crate) fn built(&self) -> &AnyScene {
         &self.built
     }
+
+    /// A scene, or the one that a shape or a dict of shapes makes.
+    pub(crate) fn given<'py>(given: &Bound<'py, PyAny>) -> PyResult<Bound<'py, Self>> {
+        match given.cast::<Self>() {
+            Ok(scene) => Ok(scene.clone()),
+            Err(_) => Bound::new(given.py(), Self::new(given)?),
+        }
+    }
 }
 
 #[pymethods]

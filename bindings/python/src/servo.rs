@@ -150,7 +150,7 @@ fn simulated<const D: usize>(
 }
 
 /// A servo in a thread of its own: it touches the bodies of a scene with a device, a thousand times a second and more,
-/// and never waits for Python.
+/// and never waits for Python. `scene` is a `Scene`, or what makes one: a shape, or a dict of names and shapes.
 ///
 /// `device` is the name of a profile, whose device is simulated in a hand, or a `Mailbox` for a device of your own.
 /// `hand` is where that hand goes in the world: rows of time [s] and position [m], or one position to rest at; left
@@ -171,15 +171,16 @@ impl PyServo {
     #[pyo3(signature = (scene, *, device = None, hand = None, duration = None, record = 0.0, rate = 1000.0))]
     fn new(
         py: Python<'_>,
-        scene: &PyScene,
+        scene: &Bound<'_, PyAny>,
         device: Option<&Bound<'_, PyAny>>,
         hand: Option<&Bound<'_, PyAny>>,
         duration: Option<f64>,
         record: f64,
         rate: f64,
     ) -> PyResult<Self> {
+        let scene = PyScene::given(scene)?;
         let asked = Asked { device, hand, duration, record, rate };
-        Ok(Self(match scene.built() {
+        Ok(Self(match scene.get().built() {
             palpate::scene::AnyScene::Planar(scene) => {
                 let own = asked.mailbox(PyMailbox::planar)?;
                 AnyServo::Planar(Mutex::new(asked.stage(py, scene, own)?))
@@ -232,7 +233,7 @@ impl PyServo {
         })
     }
 
-    /// The newest state: time, force and touches; None before the first tick.
+    /// The newest state: time, force and touches; None before the first tick and after the end.
     ///
     /// >>> import palpate as pp, time
     /// >>> with pp.Servo(pp.Scene(pp.ball(0.05)), hand=[0, 0.049, 0]) as servo:
@@ -275,7 +276,21 @@ impl PyServo {
     /// ...     [event.kind for event in servo.events()][:1]
     /// ['touch']
     fn events<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
+        slf.get().begun()?;
         slf.py().import("palpate._servo")?.call_method1("events", (slf,))
+    }
+
+    /// Waits until the servo ends by itself, as by its `duration`, or until `timeout` [s] is over; whether it has ended.
+    ///
+    /// >>> import palpate as pp
+    /// >>> with pp.Servo(pp.Scene(pp.ball(0.05)), hand=[0, 0.049, 0], duration=0.05) as servo:
+    /// ...     servo.wait()
+    /// True
+    #[pyo3(signature = (timeout = None))]
+    fn wait(slf: &Bound<'_, Self>, timeout: Option<f64>) -> PyResult<bool> {
+        slf.get().begun()?;
+        let wait = slf.py().import("palpate._servo")?.getattr("wait")?;
+        wait.call1((slf, timeout))?.extract()
     }
 
     /// Moves bodies: a dict of their names and poses, as of `Shape.placed`.
@@ -286,7 +301,7 @@ impl PyServo {
     fn set_poses(&self, poses: &Bound<'_, PyDict>) -> PyResult<()> {
         staged!(&self.0, stage => match stage {
             Stage::Running(own) => set_poses(poses, own),
-            _ => Err(PyRuntimeError::new_err("the servo does not run: use it in a with statement")),
+            _ => Err(PyRuntimeError::new_err(NOT_RUNNING)),
         })
     }
 
@@ -298,7 +313,7 @@ impl PyServo {
     fn limit_force(&self, py: Python<'_>, newtons: f64) -> PyResult<()> {
         staged!(&self.0, stage => match stage {
             Stage::Running(own) => own.thread.control().limit_force(newtons).or_raise(py),
-            _ => Err(PyRuntimeError::new_err("the servo does not run: use it in a with statement")),
+            _ => Err(PyRuntimeError::new_err(NOT_RUNNING)),
         })
     }
 
@@ -358,6 +373,18 @@ impl PyServo {
     }
 }
 
+impl PyServo {
+    /// Refuses a servo that does not run yet, whose end nobody should wait for.
+    fn begun(&self) -> PyResult<()> {
+        staged!(&self.0, stage => match stage {
+            Stage::Ready(_) => Err(PyRuntimeError::new_err(NOT_RUNNING)),
+            _ => Ok(()),
+        })
+    }
+}
+
+const NOT_RUNNING: &str = "the servo does not run: use it in a with statement";
+
 /// What a caller asks of a servo.
 struct Asked<'a, 'py> {
     device: Option<&'a Bound<'py, PyAny>>,
@@ -391,6 +418,11 @@ impl Asked<'_, '_> {
                 simulated(scene, DEVICE, self.hand, self.duration.unwrap_or(TOUR), py)?
             }
             (None, Some(name)) => {
+                if name.is_instance_of::<PyMailbox>() {
+                    let problem =
+                        "a virtual clock has no device of its own: a Mailbox is for Servo";
+                    return Err(PyTypeError::new_err(problem));
+                }
                 let name: String = name.extract().map_err(|_| {
                     PyTypeError::new_err("device must be the name of a profile or a Mailbox")
                 })?;
@@ -471,24 +503,25 @@ where
     thread.control().set_poses(&all).or_raise(poses.py())
 }
 
-/// Feels a scene on a virtual clock, as fast as it goes: the same every time. See `Servo`.
+/// Feels a scene on a virtual clock, as fast as it goes: the same every time. See `Servo`; `duration` is in seconds.
 ///
 /// >>> import palpate as pp
-/// >>> felt = pp.feel(pp.Scene(pp.ball(0.05)), hand=[[0, 0, 0.06, 0], [0.1, 0, 0.045, 0]], seconds=0.1)
+/// >>> felt = pp.feel(pp.ball(0.05), hand=[[0, 0, 0.06, 0], [0.1, 0, 0.045, 0]], duration=0.1)
 /// >>> len(felt.trace.time), bool(felt.trace.force[-1, 1] > 0)
 /// (100, True)
 #[pyfunction]
-#[pyo3(signature = (scene, *, device = None, hand = None, seconds = 10.0, rate = 1000.0))]
+#[pyo3(signature = (scene, *, device = None, hand = None, duration = 10.0, rate = 1000.0))]
 pub(crate) fn feel<'py>(
     py: Python<'py>,
-    scene: &PyScene,
+    scene: &Bound<'py, PyAny>,
     device: Option<&Bound<'py, PyAny>>,
     hand: Option<&Bound<'py, PyAny>>,
-    seconds: f64,
+    duration: f64,
     rate: f64,
 ) -> PyResult<Bound<'py, PyAny>> {
-    let asked = Asked { device, hand, duration: Some(seconds), record: seconds, rate };
-    match scene.built() {
+    let scene = PyScene::given(scene)?;
+    let asked = Asked { device, hand, duration: Some(duration), record: duration, rate };
+    match scene.get().built() {
         palpate::scene::AnyScene::Planar(scene) => {
             felt(py, asked.stage(py, scene, None)?, &asked)
         }

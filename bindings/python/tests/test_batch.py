@@ -187,3 +187,32 @@ def test_what_is_no_batch_is_refused(tmp_path: Path) -> None:
     ]:
         with pytest.raises(error, match=words):
             pp.batch.distances(tmp_path / words.replace(" ", "-"), PLATE, **asked)
+
+
+def test_what_is_refused_leaves_no_run(tmp_path: Path) -> None:
+    ball, poses = pp.ball(0.5), np.zeros((10, 3))
+    for settings in ({"tolerance": -1.0}, {"tolerance": float("nan")}):
+        with pytest.raises((ValueError, pp.Error)):
+            pp.batch.separations(tmp_path / "run", ball, ball, poses, chunk=5, **settings)
+    with pytest.raises(ValueError, match="10 rows, count is 9"):
+        pp.batch.separations(tmp_path / "run", ball, ball, poses, chunk=5, count=9)
+    good = pp.batch.separations(
+        tmp_path / "run", ball, ball, poses, chunk=5, tolerance=np.float32(1e-3), budget=np.int64(1000)
+    )
+    assert good.resumed == 0 and good.table().num_rows == 10
+    (tmp_path / "run" / "manifest.json").write_text("{")
+    with pytest.raises(ValueError, match="manifest.json is damaged"):
+        pp.batch.separations(tmp_path / "run", ball, ball, poses)
+
+
+def test_no_rows_are_a_table_without_rows(tmp_path: Path) -> None:
+    assert pp.batch.distances(tmp_path / "run", pp.ball(0.5), np.zeros((0, 3))).table().num_rows == 0
+
+
+def test_an_error_says_that_the_same_call_goes_on(tmp_path: Path) -> None:
+    def stop(done: int, rows: int) -> None:
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt) as stopped:
+        pp.batch.distances(tmp_path / "run", pp.ball(0.5), np.zeros((10, 3)), chunk=5, workers=1, progress=stop)
+    assert "keeps 5 of 10 rows" in stopped.value.__notes__[0]

@@ -87,3 +87,15 @@ def test_what_is_no_field_is_refused(make: Any, error: type, words: str) -> None
     with pytest.raises(error) as caught:
         make()
     assert words in str(caught.value)
+
+
+def test_a_function_that_answers_nan_is_refused() -> None:
+    holed = pp.from_function(
+        lambda p: np.where(p[:, 0] > 0.2, np.nan, p[:, 1]), bounds=[[-1, -1, -1], [1, 0, 1]]
+    )
+    assert holed.distance([0, 0.5, 0]) == 0.5
+    with pytest.raises(ValueError, match="answers NaN at"):
+        holed.distance([0.5, 0.5, 0])
+    with pytest.raises(ValueError, match="answers NaN at"):
+        pp.separation(holed, pp.ball(0.1).translated([0.5, 0.5, 0]))
+    assert np.isnan(holed.distance([np.nan, 0, 0]))

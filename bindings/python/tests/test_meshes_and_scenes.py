@@ -66,7 +66,7 @@ def test_faces_that_bound_nothing_are_a_plate() -> None:
         (lambda: pp.Mesh([[0, 0, 0]], [[0, 0.5, 0]]), ValueError, "faces[0, 1]"),
         (lambda: pp.Mesh([0, 0, 0], [[0, 1, 2]]), ValueError, "vertices must have the shape (n, 2) or (n, 3), got (3,)"),
         (lambda: pp.Mesh([[0, 0, 0]], [[0, 1]]), ValueError, "faces must have the shape (m, 3), got (1, 2)"),
-        (lambda: pp.Mesh(3), AttributeError, "vertices"),
+        (lambda: pp.Mesh(3), TypeError, "vertices"),
         (lambda: pp.Mesh.load("no/such.stl"), pp.Error, "no/such.stl"),
         (lambda: MESH.save("part.doc"), ValueError, "must end in .obj, .stl, .ply or .glb"),
         (lambda: MESH.save("no/such/folder/part.stl"), OSError, ""),
@@ -146,9 +146,23 @@ def test_a_shape_of_a_mesh_is_pickled_compared_felt_and_sent_to_workers(tmp_path
     assert np.array_equal(again.distance(points), solid.distance(points))
     cut = solid - pp.ball(0.02)
     hand = [[0, 0, 0.08, 0], [0.2, 0, 0.045, 0]]
-    felt = pp.feel(pp.Scene({"part": cut}), hand=hand, seconds=0.2)
+    felt = pp.feel(pp.Scene({"part": cut}), hand=hand, duration=0.2)
     assert felt.trace.force[-1, 1] > 0
     heights = np.linspace(0, 0.5, 5)[:, None] * [0, 1, 0]
     run = pp.batch.overlaps(tmp_path / "run", solid, pp.ball(0.05), heights)
     assert run.table().column("overlaps").to_pylist() == [1, 0, 0, 0, 0]
     assert "faces" in repr(solid)
+
+
+def test_contacts_take_a_mesh_of_another_library() -> None:
+    theirs = trimesh.Trimesh(MESH.vertices, MESH.faces)
+    ball = pp.ball(0.05).translated([0, 0.14, 0])
+    ours, found = (pp.mesh_contacts(ball, mesh) for mesh in (MESH, theirs))
+    assert np.array_equal(ours.gaps, found.gaps) and len(found) > 0
+    with pytest.raises(TypeError, match="a mesh has vertices and faces, got a int"):
+        pp.mesh_contacts(ball, 3)
+
+
+def test_a_picture_of_a_shape_without_bounds_is_refused() -> None:
+    with pytest.raises(ValueError, match="no bounds: intersect it with a box"):
+        pp.half_space([0, 1, 0], 0.0).render(width=32, height=24)

@@ -22,7 +22,7 @@ PATH = [[0, 0, 0.06, 0], [0.1, 0, 0.045, 0], [0.2, 0.01, 0.045, 0], [0.3, 0, 0.0
 
 
 def test_a_feel_is_the_same_every_time() -> None:
-    one, two = [pp.feel(SCENE, hand=PATH, seconds=0.3) for _ in range(2)]
+    one, two = [pp.feel(SCENE, hand=PATH, duration=0.3) for _ in range(2)]
     for name in ["time", "device", "proxy", "force", "contact", "evaluations"]:
         assert np.array_equal(getattr(one.trace, name), getattr(two.trace, name))
     assert len(one.trace) == 300 and one.trace.lost == 0
@@ -40,7 +40,7 @@ def test_a_feel_is_that_of_the_program(tmp_path: Path) -> None:
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
     rows = np.genfromtxt(trace, delimiter=",", names=True)
-    force = pp.feel(SCENE, hand=PATH, seconds=0.3).trace.force
+    force = pp.feel(SCENE, hand=PATH, duration=0.3).trace.force
     assert np.array_equal(np.stack([rows[f"force_{axis}_n"] for axis in "xyz"], axis=1), force)
     assert json.loads(done.stdout)["ticks"] == 300
 
@@ -118,9 +118,9 @@ def test_python_that_holds_its_lock_delays_no_tick() -> None:
 
 def test_in_the_plane() -> None:
     scene = pp.Scene(pp.ball(0.05, dimension=2))
-    felt = pp.feel(scene, hand=[[0, 0, 0.06], [0.1, 0, 0.045]], seconds=0.1)
+    felt = pp.feel(scene, hand=[[0, 0, 0.06], [0.1, 0, 0.045]], duration=0.1)
     assert felt.trace.force.shape == (100, 2) and felt.trace.force[-1, 1] > 0
-    tour = pp.feel(scene, seconds=0.5)
+    tour = pp.feel(scene, duration=0.5)
     assert tour.trace.contact.any()
 
 
@@ -133,9 +133,24 @@ def test_what_cannot_be_touched_is_refused() -> None:
         (lambda: pp.Servo(SCENE, record=-1.0), ValueError, "record must be 0 s to"),
         (lambda: pp.Servo(SCENE, record=1e9), ValueError, "record must be 0 s to"),
         (lambda: pp.Servo(SCENE, rate=-5.0), pp.Error, "rate"),
-        (lambda: pp.feel(SCENE, seconds=-1.0), (pp.Error, ValueError), ""),
+        (lambda: pp.feel(SCENE, duration=-1.0), (pp.Error, ValueError), ""),
         (lambda: pp.Servo(pp.Scene(pp.half_space([0, 1, 0], 0.0))), ValueError, "no body has bounds"),
     ]:
         with pytest.raises(error) as caught:
             make()
         assert words in str(caught.value)
+
+
+def test_what_does_not_run_is_not_waited_for() -> None:
+    servo = pp.Servo(pp.ball(0.05), hand=[0, 0.049, 0], duration=0.05)
+    for ask in (servo.events, servo.wait):
+        with pytest.raises(RuntimeError, match="does not run: use it in a with statement"):
+            ask()
+    with servo:
+        assert servo.wait() and servo.has_ended
+    assert servo.report["ticks"] == 50
+
+
+def test_a_virtual_clock_refuses_a_mailbox_in_words() -> None:
+    with pytest.raises(TypeError, match="a Mailbox is for Servo"):
+        pp.feel(pp.ball(0.05), device=pp.Mailbox(), duration=0.01)

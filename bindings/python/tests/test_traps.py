@@ -41,7 +41,7 @@ CALLS = {
     "gradient": "pp.Shape.gradient(many, np.zeros((3_000_000, 3)))",
     "separations": "pp.separations(many, many, np.full((200_000, 3), 1.3))",
     "overlaps": "pp.overlaps(many, many, np.full((200_000, 3), 1.3), threads=2)",
-    "feel": "pp.feel(pp.Scene(many), hand=[0, 0.09, 0], seconds=1000.0)",
+    "feel": "pp.feel(pp.Scene(many), hand=[0, 0.09, 0], duration=1000.0)",
     "mesh": "many.mesh(cell=0.002)",
     "render": "many.render(width=6000, height=4000)",
     "events": "[e for s in [pp.Servo(pp.Scene(many), hand=[0, 9, 0]).__enter__()] for e in s.events()]",

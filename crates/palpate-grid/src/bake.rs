@@ -185,8 +185,7 @@ impl<const D: usize> Grid<D> {
     ///
     /// # Errors
     ///
-    /// If there are not as many samples as nodes, one is not finite, none is inside, or one at the border is; if a node
-    /// is no place.
+    /// If there are not as many samples as nodes, one is not finite, none is inside, or one at the border is.
     pub fn from_samples(
         lattice: Lattice<D>,
         samples: &[f64],

@@ -217,6 +217,42 @@ fn packed_samples_are_as_long_as_is_said_and_as_their_sum_says() {
     }
 }
 
+/// Of NIfTI no sum was compared: one bit of a packed file made 16 times the faces, and what followed was dropped.
+#[test]
+fn a_packed_scan_that_is_damaged_or_goes_on_is_refused() {
+    let of = |bytes: &[u8]| {
+        Volume::from_bytes(bytes, Path::new("a.nii.gz")).map_err(|error| error.to_string())
+    };
+    let good = gzip(&nifti());
+    let whole = of(&good).unwrap();
+    for place in (20..good.len()).step_by(7) {
+        let mut bad = good.clone();
+        bad[place] ^= 4;
+        // The last byte that is packed has bits without meaning.
+        let is_same = of(&bad).is_ok_and(|volume| volume.samples() == whole.samples());
+        assert!(is_same || of(&bad).is_err(), "byte {place}");
+    }
+    for left in [1, 8, 9] {
+        assert!(of(&good[..good.len() - left]).is_err(), "{left}");
+    }
+    let more = gzip(&[nifti(), vec![0; 40]].concat());
+    assert!(of(&more).is_err());
+}
+
+/// In a head of lines that end in CR and LF, two LF among the samples were taken for its end.
+#[test]
+fn a_head_ends_at_its_first_blank_line() {
+    let bytes = nrrd("raw");
+    let samples = bytes.len() - 2 * 20 * 24 * 16;
+    let head = String::from_utf8_lossy(&bytes[..samples]).replace('\n', "\r\n");
+    let mut windows = [head.into_bytes(), little()].concat();
+    let start = windows.len() - 2 * 20 * 24 * 16;
+    windows[start..start + 2].copy_from_slice(b"\n\n");
+    let volume = Volume::from_bytes(&windows, Path::new("a.nrrd")).unwrap();
+    assert_eq!(volume.counts(), COUNTS);
+    assert_eq!(volume.samples()[0], 2570.0);
+}
+
 /// What lies before the samples was not looked at, and the samples were read from the wrong place.
 #[test]
 fn what_a_head_says_of_other_places_is_refused() {

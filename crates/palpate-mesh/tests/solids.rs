@@ -220,7 +220,13 @@ fn values_of_many_points_are_those_of_each() {
             asked.extend([p, foot, foot, foot + gradient * (1e-12 * size)]);
             asked.push(mesh.vertices()[i % mesh.vertices().len()]);
             if i % 50 == 0 {
-                asked.extend([Vector([f64::NAN, 0.0, 0.0]), Vector([1e200, 0.0, 0.0])]);
+                // The nearest point to the last is no point, and was once known to the next.
+                asked.extend([
+                    Vector([f64::NAN, 0.0, 0.0]),
+                    Vector([1e200, 0.0, 0.0]),
+                    p,
+                    Vector([1e308, -1e308, 0.0]),
+                ]);
             }
         }
         let (mut alone, mut values) = (vec![0.0; asked.len()], vec![0.0; asked.len()]);

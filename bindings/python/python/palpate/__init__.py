@@ -14,6 +14,8 @@ are negative inside. Points are arrays of shape (..., D), D the dimension of the
 True
 """
 
+from importlib.metadata import version as _version
+
 from palpate import _shapes, batch
 from palpate._answers import (
     STOPS,
@@ -81,8 +83,10 @@ from palpate._palpate import (
     symmetric_difference,
     union,
 )
-from palpate._plot import plot_contacts
+from palpate._plot import plot_contacts, plot_trace
 from palpate._shapes import *  # noqa: F403
+
+__version__ = _version("palpate")
 
 __all__ = [
     "STOPS",
@@ -139,6 +143,7 @@ __all__ = [
     "overlap",
     "overlaps",
     "plot_contacts",
+    "plot_trace",
     "separation",
     "separations",
     "smooth_difference",

@@ -259,7 +259,7 @@ class Mailbox:
 class Servo:
     def __new__(
         cls,
-        scene: Scene,
+        scene: Scene | Shape | Mapping[str, Shape],
         *,
         device: str | Mailbox | None = None,
         hand: ArrayLike | None = None,
@@ -275,6 +275,7 @@ class Servo:
     def latest(self) -> Snapshot | None: ...
     def take_events(self) -> list[Event]: ...
     def events(self) -> Iterator[Event]: ...
+    def wait(self, timeout: float | None = None) -> bool: ...
     def set_poses(self, poses: dict[str, Any]) -> None: ...
     def limit_force(self, newtons: float) -> None: ...
     def stop(self) -> None: ...
@@ -314,11 +315,11 @@ def sweep(
     gap: float | None = None,
 ) -> FirstTouch: ...
 def feel(
-    scene: Scene,
+    scene: Scene | Shape | Mapping[str, Shape],
     *,
     device: str | None = None,
     hand: ArrayLike | None = None,
-    seconds: float = 10.0,
+    duration: float = 10.0,
     rate: float = 1000.0,
 ) -> Felt: ...
 def union(*shapes: Shape | Iterable[Shape]) -> Shape: ...
@@ -374,7 +375,7 @@ def overlaps(
 ) -> NDArray[np.int8]: ...
 def mesh_contacts(
     shape: Shape,
-    mesh: Mesh,
+    mesh: Mesh | Any,
     *,
     gap: float = 0.0,
     tolerance: float | None = None,

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 if TYPE_CHECKING:
-    from palpate._answers import Manifold
+    from palpate._answers import Manifold, Trace
     from palpate._palpate import Shape
 
 #: The axes of a plane: to the right and up, and the one along which it is placed.
@@ -56,17 +56,23 @@ def plot(shape: Shape, plane: str, at: float, ax: Any) -> Any:
     points[..., right], points[..., up] = np.meshgrid(*sides)
     values = shape.distance(points)
     if ax is None:
-        ax = plt.gca()
+        _, ax = plt.subplots()
     ax.contourf(*sides, values, levels=[-np.inf, 0.0], colors=["#cfd8e8"])
     ax.contour(*sides, values, levels=12, colors=["#8a94a6"], linewidths=0.6)
     ax.contour(*sides, values, levels=[0.0], colors=["#1d3557"], linewidths=1.6)
+    _label(ax, right, up)
+    return ax
+
+
+def _label(ax: Any, right: int, up: int) -> None:
     names = "xyz"
     ax.set(xlabel=f"{names[right]} [m]", ylabel=f"{names[up]} [m]", aspect="equal")
-    return ax
 
 
 def plot_contacts(manifold: Manifold, *, plane: str = "xy", ax: Any = None) -> Any:
     """Draws contacts with matplotlib: their points, and normals from the first body to the second; gives the axes.
+
+    All contacts are drawn as seen along the third axis, however far they are from a cut.
 
     >>> import matplotlib; matplotlib.use("agg")
     >>> import palpate as pp
@@ -77,13 +83,42 @@ def plot_contacts(manifold: Manifold, *, plane: str = "xy", ax: Any = None) -> A
 
     right, up, _ = _axes(plane)
     if ax is None:
-        ax = plt.gca()
+        _, ax = plt.subplots()
+    _label(ax, right, up)
     points, normals = manifold.points_a, manifold.normals
     ax.plot(points[:, right], points[:, up], "o", color="#d1495b", markersize=5)
     if len(points):
         arrows = (points[:, right], points[:, up], normals[:, right], normals[:, up])
         ax.quiver(*arrows, color="#d1495b", width=0.004)
     return ax
+
+
+def plot_trace(trace: Trace, *, axes: Any = None) -> Any:
+    """Draws what was felt with matplotlib, over time: the size of the force, and how deep the device was; gives two axes.
+
+    >>> import matplotlib; matplotlib.use("agg")
+    >>> import palpate as pp
+    >>> felt = pp.feel(pp.Scene(pp.ball(0.05)), hand=[[0, 0, 0.06, 0], [0.1, 0, 0.045, 0]], duration=0.1)
+    >>> [ax.get_ylabel() for ax in pp.plot_trace(felt.trace)]
+    ['force [N]', 'depth [mm]']
+    """
+    import matplotlib.pyplot as plt
+
+    if axes is None:
+        _, axes = plt.subplots(2, sharex=True, layout="constrained")
+    depth = np.linalg.norm(trace.device - trace.proxy, axis=1)
+    for ax, values, name in (
+        (axes[0], np.linalg.norm(trace.force, axis=1), "force [N]"),
+        (axes[1], 1e3 * depth, "depth [mm]"),
+    ):
+        for point in np.unique(trace.point):
+            own = trace.point == point
+            ax.plot(trace.time[own], values[own], linewidth=1, label=f"point {point}")
+        ax.set_ylabel(name)
+    if len(np.unique(trace.point)) > 1:
+        axes[0].legend()
+    axes[1].set_xlabel("time [s]")
+    return axes
 
 
 def sample(

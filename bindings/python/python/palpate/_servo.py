@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: The palpate authors
 # SPDX-License-Identifier: MIT OR Apache-2.0
-"""Events of a servo, for the threads of Python."""
+"""Events and the end of a servo, for the threads of Python."""
 
 from __future__ import annotations
 
@@ -15,6 +15,16 @@ if TYPE_CHECKING:
 
 #: How long a thread that waits for events sleeps [s].
 PAUSE = 0.002
+
+
+def wait(servo: Servo, timeout: float | None) -> bool:
+    """Waits until the servo has ended, or the time is over; whether it has ended."""
+    end = None if timeout is None else time.monotonic() + timeout
+    while not servo.has_ended:
+        if end is not None and time.monotonic() >= end:
+            return False
+        time.sleep(PAUSE)
+    return True
 
 
 def events(servo: Servo) -> Iterator[Event]:

@@ -34,6 +34,13 @@ from numpy.typing import NDArray
 
 from palpate._files import claim, replace
 
+__all__ = ["Run", "distances", "overlaps", "separations"]
+
+
+def __dir__() -> list[str]:
+    return __all__
+
+
 #: Poses or points: an array, the name of a ``.npy`` file that workers can read, or a function of the first number and
 #: the one after the last that gives their rows, the same ones each time.
 Source: TypeAlias = "NDArray[Any] | str | PathLike[str] | Callable[[int, int], NDArray[Any]]"
@@ -50,19 +57,22 @@ AHEAD = 2
 
 @dataclass(frozen=True, kw_only=True)
 class Run:
-    """What a batch has done, by :func:`overlaps`, :func:`separations` and :func:`distances`."""
+    """What a batch has done, by :func:`overlaps`, :func:`separations` and :func:`distances`.
 
-    #: The folder of the run.
+    Fields:
+        folder: The folder of the run.
+        count: How many rows there are.
+        chunk: How many rows a chunk has.
+        resumed: How many chunks were there before this call.
+        seconds: The time that workers spent on the chunks of this call [s].
+        undecided: How many poses this call left undecided.
+    """
+
     folder: Path
-    #: How many rows there are.
     count: int
-    #: How many rows a chunk has.
     chunk: int
-    #: How many chunks were there before this call.
     resumed: int
-    #: The time that workers spent on the chunks of this call [s].
     seconds: float
-    #: How many poses were not decided.
     undecided: int
 
     def parts(self) -> list[Path]:
@@ -88,7 +98,8 @@ class Run:
         import pyarrow as pa
         import pyarrow.parquet as pq
 
-        return pa.concat_tables([pq.read_table(part) for part in self.parts()])
+        tables = [pq.read_table(part) for part in self.parts()]
+        return pa.concat_tables(tables) if tables else pa.table({})
 
 
 def overlaps(
@@ -115,7 +126,7 @@ def overlaps(
     >>> pp.batch.overlaps(tempfile.mkdtemp() + "/run", ball, ball, offsets).count
     100
     """
-    job = {"kind": "overlaps", "a": _shape(a), "b": _shape(b), "budget": budget}
+    job = {"kind": "overlaps", "a": _shape(a), "b": _shape(b), "budget": _whole(budget)}
     return _run(folder, job, poses, count, executor, workers, chunk, progress)
 
 
@@ -147,8 +158,8 @@ def separations(
         "kind": "separations",
         "a": _shape(a),
         "b": _shape(b),
-        "tolerance": tolerance,
-        "budget": budget,
+        "tolerance": None if tolerance is None else float(tolerance),
+        "budget": _whole(budget),
     }
     return _run(folder, job, poses, count, executor, workers, chunk, progress)
 
@@ -176,6 +187,10 @@ def distances(
 
 def _shape(shape: Any) -> list[Any]:
     return [shape.to_json(), shape.dimension]
+
+
+def _whole(budget: int | None) -> int | None:
+    return None if budget is None else operator.index(budget)
 
 
 @lru_cache(maxsize=8)
@@ -312,6 +327,8 @@ def _run(
     place = Path(folder)
     place.mkdir(parents=True, exist_ok=True)
     given, rows, known = _source(source, count)
+    if count is not None and count != rows:
+        raise ValueError(f"the source has {rows} rows, count is {count}")
     chunk = _agreed(place, job, known, given, rows, chunk)
     starts = range(0, rows, chunk)
     waiting = [
@@ -328,6 +345,9 @@ def _run(
             done, seconds, undecided = done + size, seconds + spent, undecided + open_
             if progress:
                 progress(done, rows)
+    except BaseException as stopped:
+        stopped.add_note(f"{place} keeps {done} of {rows} rows: the same call goes on from there")
+        raise
     finally:
         if own:
             own.shutdown(wait=True, cancel_futures=True)
@@ -396,17 +416,22 @@ def _agreed(
     if not file.exists():
         if any(place.glob("part-*")):
             raise ValueError(f"{place} holds parts without {MANIFEST}: take another folder")
-        size = chunk if chunk is not None else _pilot(job, source, rows)
+        # A setting that is refused must not become what the run is.
+        size = _pilot(job, source, rows)
+        size = chunk if chunk is not None else size
         # Of several drivers that begin at once, one says what the run is.
         if claim(file, json.dumps({**wanted, "chunk": size}, indent=1).encode()):
             return size
-    there = json.loads(file.read_text(encoding="utf-8"))
+    try:
+        there = json.loads(file.read_text(encoding="utf-8"))
+        size = int(there["chunk"])
+    except (ValueError, KeyError, TypeError) as problem:
+        raise ValueError(f"{file} is damaged ({problem}): delete {place}, or take another folder") from problem
     for key, value in wanted.items():
         if there.get(key) != json.loads(json.dumps(value)):
             raise ValueError(
                 f"{place} holds another run: its {key} differs. Take another folder, or delete this one"
             )
-    size = int(there["chunk"])
     if chunk is not None and chunk != size:
         raise ValueError(f"{place} holds a run with chunks of {size} rows, not {chunk}")
     return size

@@ -98,9 +98,10 @@ fn on_segment<const D: usize>(
     let squared = ab.dot(ab);
     let t = (p - a).dot(ab);
     match () {
-        () if t <= 0.0 => Foot::at(p, a, parts[0]),
-        () if t >= squared => Foot::at(p, b, parts[1]),
-        () => Foot::at(p, a + ab * (t / squared), parts[2]),
+        () if t > 0.0 && t < squared => Foot::at(p, a + ab * (t / squared), parts[2]),
+        () if t > 0.0 => Foot::at(p, b, parts[1]),
+        // Products that overflow are no number.
+        () => Foot::at(p, a, parts[0]),
     }
 }
 
