@@ -11,7 +11,7 @@ use std::collections::HashMap;
 use palpate_field::{Aabb, Point, Vector};
 use robust::{Coord, orient2d};
 
-use super::rims::{by_rim, sides};
+use super::rims::{Side, by_rim, sides};
 use crate::solid::boxes::Boxes;
 use crate::tree::{BallTree, FAN};
 
@@ -24,12 +24,16 @@ pub(super) fn part<const N: usize, const D: usize>(
     if N == 2 {
         return 0;
     }
-    let chains = chains(vertices, elements);
+    let sides = sides(elements);
+    let alone: Vec<&Side> =
+        by_rim(&sides).filter(|at_rim| at_rim.len() == 1).map(|at_rim| &at_rim[0]).collect();
+    let chains = chains(vertices, &alone);
+    if chains.is_empty() {
+        return 0;
+    }
     // The element at each edge of one.
-    let mut at_edge: HashMap<[u32; 2], usize> = by_rim(&sides(elements))
-        .filter(|at_rim| at_rim.len() == 1)
-        .map(|at_rim| (at_rim[0].rim, at_rim[0].element as usize))
-        .collect();
+    let mut at_edge: HashMap<[u32; 2], usize> =
+        alone.iter().map(|side| (side.rim, side.element as usize)).collect();
     let key = |a: u32, b: u32| [a.min(b), a.max(b)];
     let parted = chains.len();
     for mut chain in chains {
@@ -61,16 +65,8 @@ pub(super) fn part<const N: usize, const D: usize>(
 }
 
 /// The edges of one element along which other such edges lead back: their ends, and the corners between them.
-fn chains<const N: usize, const D: usize>(
-    vertices: &[Point<D>],
-    elements: &[[u32; N]],
-) -> Vec<Vec<u32>> {
-    let sides = sides(elements);
-    let alone: Vec<_> = by_rim(&sides).filter(|at_rim| at_rim.len() == 1).collect();
-    let edges: Vec<[u32; 2]> = alone.iter().map(|at_rim| at_rim[0].rim).collect();
-    // Whether the element of an edge passes it from the lower corner to the higher.
-    let is_forward: HashMap<[u32; 2], bool> =
-        alone.iter().map(|at_rim| (at_rim[0].rim, at_rim[0].is_forward)).collect();
+fn chains<const D: usize>(vertices: &[Point<D>], alone: &[&Side]) -> Vec<Vec<u32>> {
+    let edges: Vec<[u32; 2]> = alone.iter().map(|side| side.rim).collect();
     if edges.is_empty() {
         return Vec::new();
     }
@@ -92,6 +88,9 @@ fn chains<const N: usize, const D: usize>(
             }
         });
     }
+    // Whether the element of an edge passes it from the lower corner to the higher.
+    let is_forward: HashMap<[u32; 2], bool> =
+        alone.iter().map(|side| (side.rim, side.is_forward)).collect();
     let chain = |([first, last], mut between): ([u32; 2], Vec<u32>)| {
         let way = at(last) - at(first);
         let along = |i: &u32| (at(*i) - at(first)).dot(way);
