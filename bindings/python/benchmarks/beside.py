@@ -214,7 +214,7 @@ def main() -> int:
     print(f"{len(bars) - missed} of {len(bars)} bars reached")
     if options.json:
         options.json.write_text(json.dumps(rows, indent=1))
-    return 0
+    return 1 if missed else 0
 
 
 if __name__ == "__main__":

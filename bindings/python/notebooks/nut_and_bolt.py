@@ -31,8 +31,8 @@ nut
 # %% [markdown]
 # ## How far apart
 #
-# The nut is screwed on: moved by a share of the pitch and turned as much. The bounds are proven; the true distance is
-# between them.
+# Nut and bolt share one thread, so the nut lies screwed on as it is. The bounds are proven; the true distance is between
+# them.
 
 # %%
 apart = pp.separation(bolt, nut, tolerance=1e-5)

@@ -45,6 +45,21 @@ fn quality(quality: Quality) -> &'static str {
     }
 }
 
+/// The reasons to end a search, in the order of their numbers in arrays.
+pub(crate) const STOPS: [Stop; 5] = [
+    Stop::Converged,
+    Stop::SignKnown,
+    Stop::BudgetSpent,
+    Stop::MemoryFull,
+    Stop::RoundingReached,
+];
+
+/// The number of a reason to end a search among `palpate.STOPS`.
+pub(crate) fn stop_number(stop: Stop) -> u8 {
+    // There is a place for each reason.
+    STOPS.iter().zip(0..).find(|(own, _)| **own == stop).map_or(u8::MAX, |(_, number)| number)
+}
+
 /// Why a search ended, in one word.
 pub(crate) const fn stop(stop: Stop) -> &'static str {
     match stop {

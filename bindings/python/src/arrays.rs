@@ -120,7 +120,9 @@ fn is_aligned<T>(place: *mut T) -> bool {
 }
 
 fn busy(what: &str) -> PyErr {
-    PyValueError::new_err(format!("{what} must not share memory with another argument"))
+    PyValueError::new_err(format!(
+        "{what} must not share memory with another argument, nor be written by another thread meanwhile"
+    ))
 }
 
 /// Where numbers are written: an array of the caller, or a new one.
@@ -146,7 +148,9 @@ pub(crate) fn place<'py, T: Element>(
         return Err(misshapen(what, &said(shape), array.shape()));
     }
     if !array.is_c_contiguous() || !is_aligned(array.data()) {
-        return Err(PyValueError::new_err(format!("{what} must be in C order: a view is not")));
+        return Err(PyValueError::new_err(format!(
+            "{what} must be in C order and aligned, as np.empty makes it"
+        )));
     }
     Ok(array.clone())
 }

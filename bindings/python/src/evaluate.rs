@@ -13,8 +13,8 @@ use rayon::prelude::*;
 
 use crate::answers;
 use crate::arrays::{Numbers, few, misshapen, numbers, place, writable};
+use crate::call::Call;
 use crate::error::OrRaise;
-use crate::function::raised;
 use crate::interrupt::A_WHILE;
 use crate::pool::{self, Pool};
 use crate::shape::{AnyShape, of_either};
@@ -43,8 +43,9 @@ fn distances<'py, const D: usize>(
 ) -> PyResult<Bound<'py, PyAny>> {
     let py = points.py();
     let one = |point: [f64; D]| {
-        let distance = shape.distance(Vector(point));
-        raised()?;
+        let call = Call::default();
+        let distance = call.run(|| shape.distance(Vector(point)));
+        call.ended()?;
         Ok(distance.into_pyobject(py)?.into_any())
     };
     if out.is_none()
@@ -57,6 +58,10 @@ fn distances<'py, const D: usize>(
             Ok(point) if out.is_none() && array.ndim() == 1 => one(point),
             _ => many(shape, &array, out, threads),
         },
+        Numbers::Single(array) if out.is_none() && array.ndim() == 1 => {
+            // A number, not an array without axes.
+            many(shape, &array, None, threads)?.call_method0("item")
+        }
         Numbers::Single(array) => many(shape, &array, out, threads),
     }
 }
@@ -133,8 +138,9 @@ pub(crate) fn at<'py>(
     let py = point.py();
     of_either!(shape, shape => {
         let point = crate::poses::point(point, "point")?;
-        let found = evaluate_point(shape, point);
-        raised()?;
+        let call = Call::default();
+        let found = call.run(|| evaluate_point(shape, point));
+        call.ended()?;
         answers::at_point(py, &found.or_raise(py)?)
     })
 }
@@ -221,13 +227,15 @@ fn in_chunks<T: Copy + Send + Sync, const K: usize>(
             batch.push((points, outs));
         }
         let start = Instant::now();
+        let call = pool.map_or_else(Call::default, |pool| Call::shared(pool));
+        let work = |(points, outs)| call.run(|| work(points, outs));
         let done = py.detach(|| match pool {
-            Some(pool) if batch.len() > 1 => pool.install(|| {
-                batch.into_par_iter().try_for_each(|(points, outs)| work(points, outs))
-            }),
-            _ => batch.into_iter().try_for_each(|(points, outs)| work(points, outs)),
+            Some(pool) if batch.len() > 1 => {
+                pool.install(|| batch.into_par_iter().try_for_each(work))
+            }
+            _ => batch.into_iter().try_for_each(work),
         });
-        raised()?;
+        call.ended()?;
         done.or_raise(py)?;
         py.check_signals()?;
         let spent = start.elapsed();

@@ -4,7 +4,6 @@
 //! Fields that are functions of Python.
 
 use std::cell::Cell;
-use std::sync::{Mutex, PoisonError};
 
 use numpy::IntoPyArray;
 use palpate::field::{Aabb, Bounds, CustomField, Point, Promise, Shape, Vector};
@@ -12,13 +11,11 @@ use pyo3::exceptions::{PyRecursionError, PyTypeError, PyValueError};
 use pyo3::prelude::*;
 
 use crate::arrays::numbers;
+use crate::call;
 use crate::shape::PyShape;
 
 /// Half of the step of central differences, as a share of the size of what is looked at.
 const STEP: f64 = 1e-6;
-
-/// The first exception of a function since it was last asked for: a search cannot carry it.
-static RAISED: Mutex<Option<PyErr>> = Mutex::new(None);
 
 /// So deep may a function ask shapes of functions: Python's own limit comes after the end of the stack.
 const DEEPEST: u32 = 32;
@@ -26,22 +23,6 @@ const DEEPEST: u32 = 32;
 thread_local! {
     /// How deep this thread is in functions that ask shapes of functions.
     static DEPTH: Cell<u32> = const { Cell::new(0) };
-}
-
-/// Does work without the interpreter's lock, and raises what functions that it called have raised.
-pub(crate) fn detached<T: Send>(
-    py: Python<'_>,
-    work: impl FnOnce() -> T + Send,
-) -> PyResult<T> {
-    let answer = py.detach(work);
-    raised()?;
-    Ok(answer)
-}
-
-/// The exception of a function that was called.
-pub(crate) fn raised() -> PyResult<()> {
-    let raised = RAISED.lock().unwrap_or_else(PoisonError::into_inner).take();
-    raised.map_or(Ok(()), Err)
 }
 
 /// A field of which only values are known.
@@ -53,11 +34,16 @@ struct Function<const D: usize> {
 }
 
 impl<const D: usize> Function<D> {
-    /// The values at points; NaN where the function raises.
+    /// The values at points; NaN where the function raises or has raised.
     fn values(&self, points: &[Point<D>], values: &mut [f64]) {
+        if call::has_failed() {
+            return values.fill(f64::NAN);
+        }
         let depth = DEPTH.get();
         DEPTH.set(depth + 1);
         let asked = Python::attach(|py| {
+            // A search over a function may take long.
+            py.check_signals()?;
             if depth >= DEEPEST {
                 let problem = "a function asks a shape of itself, without end";
                 return Err(PyRecursionError::new_err(problem));
@@ -96,7 +82,7 @@ impl<const D: usize> Function<D> {
         DEPTH.set(depth);
         if let Err(error) = asked {
             values.fill(f64::NAN);
-            RAISED.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(error);
+            call::fail(error);
         }
     }
 }
@@ -155,15 +141,16 @@ impl<const D: usize> CustomField<D> for Function<D> {
 /// A shape of a function of Python, which gives the values at points: an array of shape (n, D) in, one of shape (n,) out.
 ///
 /// `lipschitz` is the most that values may differ by, over the distance of their points; everything that is proven rests
-/// on it. `bounds` are the corners of a box that holds the body, shape (2, D) [m]. Gradients are central differences.
-/// Such a shape is opaque: it can be asked, but not written, pickled or felt.
+/// on it: 1 of a distance. `bounds` are the corners of a box that holds the body, shape (2, D) [m]. Gradients are central
+/// differences over 1e-6 of the size of the box, or 1e-6 m without. Such a shape is opaque: it can be asked, but not
+/// written, pickled or felt. Threads of the core may call the function, one at a time.
 ///
 /// >>> import palpate as pp, numpy as np
 /// >>> waves = pp.from_function(lambda p: p[:, 1] - 0.01 * np.sin(20 * p[:, 0]), lipschitz=1.02)
 /// >>> waves.distance([0, 0.5, 0]), waves.promise.outside
 /// (0.5, 'lipschitz')
 #[pyfunction]
-#[pyo3(signature = (function, *, lipschitz = 1.0, bounds = None, dimension = 3))]
+#[pyo3(signature = (function, *, lipschitz, bounds = None, dimension = 3))]
 pub(crate) fn from_function(
     function: Bound<'_, PyAny>,
     lipschitz: f64,

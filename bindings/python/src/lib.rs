@@ -7,10 +7,15 @@
 
 mod answers;
 mod arrays;
+mod call;
 mod chain;
+mod devices;
 mod error;
 mod evaluate;
 mod function;
+mod grid;
+mod guarded;
+mod hand;
 mod interrupt;
 mod mailbox;
 mod mass;
@@ -25,20 +30,31 @@ mod query;
 mod scene;
 mod servo;
 mod shape;
+mod stage;
 mod text;
 mod touched;
+mod track;
 mod world;
 
 use pyo3::prelude::*;
 
 #[pymodule]
 mod _palpate {
+    use pyo3::prelude::*;
+    use pyo3::types::PyTuple;
+
+    use super::answers::{STOPS, stop};
+
+    #[pymodule_export]
+    use super::devices::device_profiles;
     #[pymodule_export]
     use super::function::from_function;
     #[pymodule_export]
+    use super::grid::from_samples;
+    #[pymodule_export]
     use super::mailbox::PyMailbox;
     #[pymodule_export]
-    use super::mesh::{PyMesh, mesh_contacts};
+    use super::mesh::{PyMesh, mesh_contacts, mesh_hits};
     #[pymodule_export]
     use super::operators::{
         difference, intersection, smooth_difference, smooth_intersection, smooth_union,
@@ -61,5 +77,12 @@ mod _palpate {
     #[pymodule_export]
     use super::shape::PyShape;
     #[pymodule_export]
-    use super::world::{PyTrack, PyWorld, sweep};
+    use super::track::PyTrack;
+    #[pymodule_export]
+    use super::world::{PyWorld, sweep};
+
+    #[pymodule_init]
+    fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
+        module.add("STOPS", PyTuple::new(module.py(), STOPS.map(stop))?)
+    }
 }

@@ -3,7 +3,7 @@
 
 //! The class `Mailbox`: a device whose driver is written in Python.
 
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use palpate::devices::{Device, Mailbox, MailboxDevice, profile_named};
 use palpate::field::Vector;
@@ -13,11 +13,24 @@ use pyo3::prelude::*;
 
 use crate::arrays::{misshapen, numbers, table};
 use crate::error::OrRaise;
+use crate::hand::check_points;
 
 /// Both ends of a mailbox; that of the servo until it takes it.
 struct Post<const D: usize> {
     device: Mutex<Option<MailboxDevice<D>>>,
     mailbox: Mutex<Mailbox<D>>,
+}
+
+impl<const D: usize> Post<D> {
+    /// The driver's end: not held while code of Python may run.
+    fn locked(&self) -> MutexGuard<'_, Mailbox<D>> {
+        self.mailbox.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+/// The coordinates of a vector.
+const fn columns<const D: usize>(_: &Post<D>) -> usize {
+    D
 }
 
 enum AnyPost {
@@ -82,8 +95,8 @@ impl PyMailbox {
     #[getter]
     fn forces<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         of_either!(&self.0, post => {
-            let mut mailbox = post.mailbox.lock().unwrap_or_else(PoisonError::into_inner);
-            rows(py, mailbox.forces())
+            let forces: Vec<Vector<f64, _>> = post.locked().forces().to_vec();
+            table(py, forces.iter().flat_map(|force| force.0).collect(), columns(post))
         })
     }
 
@@ -95,7 +108,7 @@ impl PyMailbox {
     #[getter]
     fn ticks(&self) -> u64 {
         of_either!(&self.0, post => {
-            post.mailbox.lock().unwrap_or_else(PoisonError::into_inner).ticks()
+            post.locked().ticks()
         })
     }
 
@@ -105,7 +118,7 @@ impl PyMailbox {
     /// >>> pp.Mailbox().lose()
     fn lose(&self) {
         of_either!(&self.0, post => {
-            post.mailbox.lock().unwrap_or_else(PoisonError::into_inner).lose();
+            post.locked().lose();
         });
     }
 }
@@ -129,6 +142,7 @@ impl PyMailbox {
 }
 
 fn post<const D: usize>(py: Python<'_>, profile: &str, points: usize) -> PyResult<Post<D>> {
+    check_points(points)?;
     let profile = profile_named(profile).or_raise(py)?;
     let (device, mailbox) = MailboxDevice::new(profile, points).or_raise(py)?;
     Ok(Post { device: Mutex::new(Some(device)), mailbox: Mutex::new(mailbox) })
@@ -154,17 +168,9 @@ fn set<const D: usize>(
     let given = array.as_doubles()?;
     let state = |row: &[f64]| PointState::at_rest(Vector(std::array::from_fn(|i| row[i])));
     let states: Vec<PointState<D>> = given.chunks_exact(D).map(state).collect();
-    let mut mailbox = post.mailbox.lock().unwrap_or_else(PoisonError::into_inner);
     let done = match time {
-        None => mailbox.set(&states),
-        Some(time) => mailbox.set_at(time, &states),
+        None => post.locked().set(&states),
+        Some(time) => post.locked().set_at(time, &states),
     };
     done.or_raise(positions.py())
-}
-
-fn rows<'py, const D: usize>(
-    py: Python<'py>,
-    vectors: &[Vector<f64, D>],
-) -> PyResult<Bound<'py, PyAny>> {
-    table(py, vectors.iter().flat_map(|v| v.0).collect(), D)
 }

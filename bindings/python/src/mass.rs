@@ -7,17 +7,18 @@ use palpate::field::{Mass, MassLimits};
 use pyo3::prelude::*;
 
 use crate::answers::{Fields, vector};
-use crate::arrays::row;
+use crate::arrays::table;
 use crate::error::OrRaise;
-use crate::function::detached;
+use crate::interrupt::abandonable;
 use crate::mesh::{self, PyMesh};
-use crate::shape::{PyShape, of_either};
+use crate::shape::{AnyShape, PyShape};
 
 #[pymethods]
 impl PyShape {
     /// The mass at a density [kg/m³], in the plane [kg/m²], with centroid and moments, and bounds on their errors.
     ///
-    /// Cells are cut until the error of the volume is below `tolerance`, a share of it, or there are `cells` of them.
+    /// Cells are cut until the error of the volume is below `tolerance`, a share of it, 1e-3 if left out, or there are
+    /// `cells` of them, 3 000 000 if left out. After Ctrl-C they are cut on in a thread that nobody waits for.
     ///
     /// >>> import palpate as pp, math
     /// >>> mass = pp.ball(0.5).mass(density=1000)
@@ -34,27 +35,45 @@ impl PyShape {
         let limits = MassLimits::default();
         let limits = tolerance.map_or(limits, |tolerance| limits.with_tolerance(tolerance));
         let limits = cells.map_or(limits, |cells| limits.with_cells(cells));
-        of_either!(self.made(py)?, shape => {
-            let found = detached(py, || shape.mass(density, limits))?.or_raise(py)?;
-            told(py, &found)
-        })
+        match self.made(py)?.clone() {
+            AnyShape::Planar(shape) => {
+                let found =
+                    abandonable(py, move || shape.mass(density, limits))?.or_raise(py)?;
+                told(py, &found)?.with("inertia", found.polar_inertia())?.of_class("Mass")
+            }
+            AnyShape::Spatial(shape) => {
+                let found =
+                    abandonable(py, move || shape.mass(density, limits))?.or_raise(py)?;
+                let inertia = table(py, found.inertia().concat(), 3)?;
+                told(py, &found)?.with("inertia", inertia)?.of_class("Mass")
+            }
+        }
     }
 
     /// The surface in triangles, closed, facing outwards, with sharp edges; of shapes in space.
     ///
-    /// `cell` is the size of the cells [m]: parts thinner than two may be lost.
+    /// Either `cell` is the size of the cells [m]: parts thinner than two may be lost. Or `tolerance` is how large the
+    /// field on a triangle may be [m], of an exact shape how far a triangle may be from the surface: cells are made
+    /// smaller until that is proven.
     ///
     /// >>> import palpate as pp
     /// >>> mesh = pp.cuboid([0.3, 0.2, 0.1]).mesh(cell=0.017)
     /// >>> mesh.is_watertight, round(mesh.report().enclosed, 9)
     /// (True, 0.006)
-    #[pyo3(signature = (*, cell))]
-    fn mesh(&self, py: Python<'_>, cell: f64) -> PyResult<PyMesh> {
-        mesh::of_shape(py, &self.solid(py, "mesh")?, cell)
+    /// >>> len(pp.ball(0.5).mesh(tolerance=1e-3)) > len(pp.ball(0.5).mesh(tolerance=1e-2))
+    /// True
+    #[pyo3(signature = (*, cell = None, tolerance = None))]
+    fn mesh(
+        &self,
+        py: Python<'_>,
+        cell: Option<f64>,
+        tolerance: Option<f64>,
+    ) -> PyResult<PyMesh> {
+        mesh::of_shape(py, &self.solid(py, "mesh")?, cell, tolerance)
     }
 }
 
-fn told<'py, const D: usize>(py: Python<'py>, found: &Mass<D>) -> PyResult<Bound<'py, PyAny>> {
+fn told<'py, const D: usize>(py: Python<'py>, found: &Mass<D>) -> PyResult<Fields<'py>> {
     let moments: Vec<f64> = found.second_moments.iter().flatten().copied().collect();
     Fields::new(py)
         .with("mass", found.mass())?
@@ -64,8 +83,7 @@ fn told<'py, const D: usize>(py: Python<'py>, found: &Mass<D>) -> PyResult<Bound
         .with("density", found.density)?
         .with("centroid", vector(py, found.centroid))?
         .with("centroid_error", found.centroid_error)?
-        .with("second_moments", row(py, moments).call_method1("reshape", (D, D))?)?
+        .with("second_moments", table(py, moments, D)?)?
         .with("second_moments_error", found.second_moments_error)?
-        .with("cells", found.cells)?
-        .of_class("Mass")
+        .with("cells", found.cells)
 }

@@ -3,30 +3,43 @@
 
 //! The class `Mesh`: triangles in space, and outlines of segments in the plane.
 
-use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
-use std::sync::atomic::Ordering;
+use std::sync::Arc;
 
-use palpate::field::{Aabb, Point, Shape, Vector};
+use palpate::field::{Aabb, Point, Pose, Shape, Vector};
 use palpate::mesh::{
-    ContourOptions, Format, Mesh, Outline, Report, Sheet, Solid, TriangleMesh, read_file,
+    ContourOptions, FittedMesh, Format, Mesh, Outline, Report, Sheet, Solid, TriangleMesh,
+    read_file,
 };
-use palpate::query::{ElementMemory, MeshContacts, Query};
+use palpate::query::{ElementMemory, PlacedMesh, Query, Undecided};
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 
 use crate::answers::Fields;
 use crate::arrays::{misshapen, numbers, row, table};
 use crate::error::OrRaise;
-use crate::function::detached;
-use crate::interrupt::interruptible;
+use crate::interrupt::{abandonable, interruptible, unless_asked};
+use crate::pool;
+use crate::poses;
 use crate::query::query;
 use crate::shape::{AnyShape, PyShape};
 
 /// A mesh in the plane or in space.
 enum AnyMesh {
-    Planar(Outline),
-    Spatial(TriangleMesh),
+    Planar(Arc<Outline>),
+    Spatial(Arc<TriangleMesh>),
+}
+
+impl From<Outline> for AnyMesh {
+    fn from(mesh: Outline) -> Self {
+        Self::Planar(Arc::new(mesh))
+    }
+}
+
+impl From<TriangleMesh> for AnyMesh {
+    fn from(mesh: TriangleMesh) -> Self {
+        Self::Spatial(Arc::new(mesh))
+    }
 }
 
 /// Does the same with a mesh of either dimension.
@@ -70,8 +83,8 @@ impl PyMesh {
         };
         let points = numbers(vertices, "vertices")?;
         match points.shape() {
-            [_, 2] => Ok(Self(AnyMesh::Planar(of_arrays(vertices, faces)?))),
-            [_, 3] => Ok(Self(AnyMesh::Spatial(of_arrays(vertices, faces)?))),
+            [_, 2] => Ok(Self(of_arrays::<2, 2>(vertices, faces)?.into())),
+            [_, 3] => Ok(Self(of_arrays::<3, 3>(vertices, faces)?.into())),
             shape => Err(misshapen("vertices", "(n, 2) or (n, 3)", shape)),
         }
     }
@@ -88,7 +101,7 @@ impl PyMesh {
     fn load(py: Python<'_>, file: PathBuf, scale: f64) -> PyResult<Self> {
         let mesh = py.detach(|| read_file(&file)).or_raise(py)?;
         let mesh = if scale == 1.0 { mesh } else { mesh.scaled(scale).or_raise(py)? };
-        Ok(Self(AnyMesh::Spatial(mesh)))
+        Ok(Self(mesh.into()))
     }
 
     /// Writes triangles to a file of OBJ, STL, PLY or GLB, by its ending. A file that is there is replaced when the
@@ -153,8 +166,8 @@ impl PyMesh {
     /// >>> pp.ball(0.5).mesh(cell=0.1).is_watertight
     /// True
     #[getter]
-    fn is_watertight(&self) -> bool {
-        of_either!(&self.0, mesh => mesh.report().is_watertight())
+    fn is_watertight(&self, py: Python<'_>) -> bool {
+        of_either!(&self.0, mesh => py.detach(|| mesh.report()).is_watertight())
     }
 
     /// What the mesh is: counts of what is wrong with it, its surface and what it encloses.
@@ -164,7 +177,7 @@ impl PyMesh {
     /// >>> report.boundary, round(report.enclosed, 6)
     /// (0, 1.0)
     fn report<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        of_either!(&self.0, mesh => report(py, &mesh.report()))
+        of_either!(&self.0, mesh => report(py, &py.detach(|| mesh.report())))
     }
 
     /// The solid that the mesh bounds, as a shape: the distance to the nearest face, negative inside.
@@ -203,9 +216,9 @@ impl PyMesh {
         })
     }
 
-    fn __repr__(&self) -> String {
+    fn __repr__(&self, py: Python<'_>) -> String {
         of_either!(&self.0, mesh => {
-            format!("<palpate.Mesh: {}>", mesh.report())
+            format!("<palpate.Mesh: {}>", py.detach(|| mesh.report()))
         })
     }
 
@@ -294,19 +307,38 @@ fn of_arrays<const N: usize, const D: usize>(
     Mesh::new(points, elements.collect()).or_raise(py)
 }
 
-/// A mesh of a shape, by cells of a size [m].
-pub(crate) fn of_shape(py: Python<'_>, shape: &Shape<3>, cell: f64) -> PyResult<PyMesh> {
-    let options = ContourOptions::with_cell(cell);
-    let made =
-        interruptible(py, |stop| {
-            TriangleMesh::of_shape_with(shape, &options, &mut |_| match stop
-                .load(Ordering::Relaxed)
-            {
-                true => ControlFlow::Break(()),
-                false => ControlFlow::Continue(()),
-            })
-        })?;
-    made.or_raise(py).map(|mesh| PyMesh(AnyMesh::Spatial(mesh)))
+/// A mesh of a shape, by cells of a size or a tolerance [m].
+pub(crate) fn of_shape(
+    py: Python<'_>,
+    shape: &Shape<3>,
+    cell: Option<f64>,
+    tolerance: Option<f64>,
+) -> PyResult<PyMesh> {
+    let pool = pool::of_at_least_one(1)?;
+    let mesh = match (cell, tolerance) {
+        (Some(cell), None) => {
+            let options = ContourOptions::with_cell(cell);
+            let made = interruptible(py, &pool, |stop| {
+                TriangleMesh::of_shape_with(shape, &options, &mut |_| unless_asked(stop))
+            })?;
+            made.or_raise(py)?
+        }
+        (None, Some(tolerance)) => {
+            let options = ContourOptions::with_cell(f64::INFINITY);
+            let made = interruptible(py, &pool, |stop| {
+                let mut progress = |_| unless_asked(stop);
+                let fitted =
+                    FittedMesh::by_tolerance(shape, tolerance, &options, &mut progress)?;
+                fitted.within(tolerance)
+            })?;
+            made.or_raise(py)?
+        }
+        _ => {
+            let problem = "one of cell= and tolerance= must be given";
+            return Err(PyTypeError::new_err(problem));
+        }
+    };
+    Ok(PyMesh(mesh.into()))
 }
 
 /// Writes a file beside the one that it then replaces.
@@ -315,8 +347,28 @@ pub(crate) fn replace(py: Python<'_>, file: &Path, bytes: &[u8]) -> PyResult<()>
     Ok(())
 }
 
+/// Does the same with a shape and a mesh of either dimension.
+macro_rules! of_shape_and_mesh {
+    ($py:expr, $of:expr, $with:expr, |$shape:ident, $mesh:ident| $done:expr) => {{
+        let own = match $with.cast::<PyMesh>() {
+            Ok(mesh) => mesh.clone(),
+            Err(_) => Bound::new($py, PyMesh::new($with, None)?)?,
+        };
+        match ($of.made($py)?, &own.get().0) {
+            (AnyShape::Planar($shape), AnyMesh::Planar($mesh)) => $done,
+            (AnyShape::Spatial($shape), AnyMesh::Spatial($mesh)) => $done,
+            (shape, _) => {
+                let (shape, mesh) = (shape.dimension(), own.get().dimension());
+                let problem =
+                    format!("shape and mesh must have one dimension, got {shape}D and {mesh}D");
+                Err(PyValueError::new_err(problem))
+            }
+        }
+    }};
+}
+
 /// Which elements of a mesh touch a shape, with the contacts on each; `gap` [m] is how near is near enough. The mesh is a
-/// `Mesh`, or what has `vertices` and `faces`.
+/// `Mesh`, or what has `vertices` and `faces`; `pose` is where it is, as of `Shape.placed`.
 ///
 /// `tolerance` is how far apart the bounds may be [m], a ten-thousandth of the smaller body if left out; `budget` how
 /// often the field is evaluated at most, 200 000 if left out.
@@ -326,59 +378,84 @@ pub(crate) fn replace(py: Python<'_>, file: &Path, bytes: &[u8]) -> PyResult<()>
 /// >>> len(found) > 0, bool(abs(found.gaps.min() + 0.05) < 1e-3)
 /// (True, True)
 #[pyfunction]
-#[pyo3(signature = (shape, mesh, *, gap = 0.0, tolerance = None, budget = None))]
+#[pyo3(signature = (shape, mesh, *, pose = None, gap = 0.0, tolerance = None, budget = None))]
 pub(crate) fn mesh_contacts<'py>(
     py: Python<'py>,
     shape: &PyShape,
     mesh: &Bound<'py, PyAny>,
+    pose: Option<&Bound<'py, PyAny>>,
     gap: f64,
     tolerance: Option<f64>,
     budget: Option<u32>,
 ) -> PyResult<Bound<'py, PyAny>> {
-    let own = match mesh.cast::<PyMesh>() {
-        Ok(mesh) => mesh.clone(),
-        Err(_) => Bound::new(py, PyMesh::new(mesh, None)?)?,
-    };
-    match (shape.made(py)?, &own.get().0) {
-        (AnyShape::Planar(shape), AnyMesh::Planar(mesh)) => {
-            touched(py, shape, mesh, query(tolerance, budget).with_gap(gap))
-        }
-        (AnyShape::Spatial(shape), AnyMesh::Spatial(mesh)) => {
-            touched(py, shape, mesh, query(tolerance, budget).with_gap(gap))
-        }
-        (shape, _) => {
-            let (shape, mesh) = (shape.dimension(), own.get().dimension());
-            let problem =
-                format!("shape and mesh must have one dimension, got {shape}D and {mesh}D");
-            Err(PyValueError::new_err(problem))
-        }
-    }
+    of_shape_and_mesh!(py, shape, mesh, |shape, mesh| {
+        let pose = poses::or_identity(pose)?;
+        contacts(py, shape, (mesh, pose), query(tolerance, budget).with_gap(gap))
+    })
 }
 
-fn touched<'py, const N: usize, const D: usize>(
+/// Which elements of a mesh touch a shape, without contacts: faster than `mesh_contacts`, whose arguments it has.
+///
+/// >>> import palpate as pp
+/// >>> mesh = pp.cuboid([1, 1, 1]).mesh(cell=0.3)
+/// >>> len(pp.mesh_hits(pp.ball(0.5), mesh, pose=[0, 0.95, 0]).hits) > 0
+/// True
+#[pyfunction]
+#[pyo3(signature = (shape, mesh, *, pose = None, gap = 0.0, tolerance = None, budget = None))]
+pub(crate) fn mesh_hits<'py>(
+    py: Python<'py>,
+    shape: &PyShape,
+    mesh: &Bound<'py, PyAny>,
+    pose: Option<&Bound<'py, PyAny>>,
+    gap: f64,
+    tolerance: Option<f64>,
+    budget: Option<u32>,
+) -> PyResult<Bound<'py, PyAny>> {
+    of_shape_and_mesh!(py, shape, mesh, |shape, mesh| {
+        let (pose, shape, mesh) = (poses::or_identity(pose)?, shape.clone(), Arc::clone(mesh));
+        let mut query = query(tolerance, budget).with_gap(gap);
+        let work = move || query.mesh_hits(&shape, PlacedMesh::new(&mesh, pose));
+        let found = abandonable(py, work)?.or_raise(py)?;
+        hits(py, &found.hits, &found.undecided, found.evaluations)?.of_class("MeshHits")
+    })
+}
+
+/// What both questions about meshes answer.
+fn hits<'py>(
+    py: Python<'py>,
+    hits: &[u32],
+    undecided: &[Undecided],
+    evaluations: u32,
+) -> PyResult<Fields<'py>> {
+    Fields::new(py)
+        .with("hits", row(py, hits.to_vec()))?
+        .with("undecided", row(py, undecided.iter().map(|open| open.element).collect()))?
+        .with("lower", row(py, undecided.iter().map(|open| open.lower).collect()))?
+        .with("upper", row(py, undecided.iter().map(|open| open.upper).collect()))?
+        .with("evaluations", evaluations)
+}
+
+fn contacts<'py, const N: usize, const D: usize>(
     py: Python<'py>,
     shape: &Shape<D>,
-    mesh: &Mesh<N, D>,
+    (mesh, pose): (&Arc<Mesh<N, D>>, Pose<D>),
     mut query: Query<D>,
 ) -> PyResult<Bound<'py, PyAny>>
 where
     Query<D>: ElementMemory<N, D>,
 {
-    let found = detached(py, || query.mesh_contacts(shape, mesh))?.or_raise(py)?;
-    let MeshContacts { contacts, hits, undecided, evaluations, .. } = &found;
+    let (shape, mesh) = (shape.clone(), Arc::clone(mesh));
+    let work = move || query.mesh_contacts(&shape, PlacedMesh::new(&mesh, pose));
+    let found = abandonable(py, work)?.or_raise(py)?;
+    let all = &found.contacts;
     let points = |of: fn(&palpate::query::Contact<D>) -> [f64; D]| {
-        table(py, contacts.iter().flat_map(|found| of(&found.contact)).collect(), D)
+        table(py, all.iter().flat_map(|found| of(&found.contact)).collect(), D)
     };
-    Fields::new(py)
+    hits(py, &found.hits, &found.undecided, found.evaluations)?
         .with("points_a", points(|contact| contact.point_a.0)?)?
         .with("points_b", points(|contact| contact.point_b.0)?)?
         .with("normals", points(|contact| contact.normal.0)?)?
-        .with("gaps", row(py, contacts.iter().map(|found| found.contact.gap).collect()))?
-        .with("faces", row(py, contacts.iter().map(|found| found.element).collect()))?
-        .with("hits", row(py, hits.clone()))?
-        .with("undecided", row(py, undecided.iter().map(|open| open.element).collect()))?
-        .with("lower", row(py, undecided.iter().map(|open| open.lower).collect()))?
-        .with("upper", row(py, undecided.iter().map(|open| open.upper).collect()))?
-        .with("evaluations", *evaluations)?
+        .with("gaps", row(py, all.iter().map(|found| found.contact.gap).collect()))?
+        .with("faces", row(py, all.iter().map(|found| found.element).collect()))?
         .of_class("MeshContacts")
 }

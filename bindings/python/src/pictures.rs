@@ -14,10 +14,11 @@ use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 
 use crate::arrays::row;
+use crate::call::detached;
 use crate::error::OrRaise;
-use crate::function::detached;
 use crate::interrupt::interruptible;
 use crate::mesh::replace;
+use crate::pool;
 use crate::shape::{AnyShape, PyShape};
 
 /// The margin of a picture, as a share of the longer side of what it shows.
@@ -157,11 +158,12 @@ impl PyShape {
     }
 
     /// A lit view from `yaw` and `pitch` [degrees], by rays that pass over no surface; of shapes in space with bounds.
+    /// From a yaw and pitch of 0 it is seen along -z. `threads` share the work, 0 for all processors.
     ///
     /// >>> import palpate as pp
     /// >>> pp.cuboid([1, 1, 1]).render(width=64, height=48).pixels.shape
     /// (48, 64, 3)
-    #[pyo3(signature = (*, width = 640, height = 480, yaw = 35.0, pitch = 25.0))]
+    #[pyo3(signature = (*, width = 640, height = 480, yaw = 35.0, pitch = 25.0, threads = 1))]
     fn render(
         &self,
         py: Python<'_>,
@@ -169,6 +171,7 @@ impl PyShape {
         height: u32,
         yaw: f64,
         pitch: f64,
+        threads: usize,
     ) -> PyResult<PyImage> {
         let shape = self.solid(py, "render")?;
         if shape.promise().bounds.is_none() {
@@ -177,7 +180,8 @@ impl PyShape {
         }
         let (yaw, pitch) = (yaw.to_radians(), pitch.to_radians());
         let aspect = f64::from(width) / f64::from(height.max(1));
-        let made = interruptible(py, |stop| {
+        let pool = pool::of_at_least_one(threads)?;
+        let made = interruptible(py, &pool, |stop| {
             let subject = Subject::of_shapes([shape])?;
             let sight = Sight::from_angles(yaw, pitch)?;
             let camera = Camera::fitting(&subject.corners(), sight, Lens::USUAL, aspect)?;
@@ -243,6 +247,11 @@ fn figure(
     samples: usize,
 ) -> PyResult<PyFigure> {
     let isolines = match shape {
+        AnyShape::Planar(_) if plane != "xy" || at != 0.0 => {
+            return Err(PyValueError::new_err(
+                "a shape in 2D has no planes: leave plane= and at= out",
+            ));
+        }
         AnyShape::Planar(shape) => {
             let Aabb { min, max } = shown(shape);
             let slice = Slice::planar();

@@ -5,7 +5,6 @@
 
 use std::cell::RefCell;
 use std::collections::HashMap;
-use std::mem::ManuallyDrop;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
@@ -65,9 +64,24 @@ fn made(threads: usize) -> PyResult<Arc<Pool>> {
     })
 }
 
+/// A pool of one thread, and the process that made it.
+struct Alone {
+    process: u32,
+    pool: Option<Arc<Pool>>,
+}
+
+impl Drop for Alone {
+    fn drop(&mut self) {
+        if self.process != std::process::id() {
+            // In a child of `fork` its thread does not exist, and a lock of it may be held for ever.
+            std::mem::forget(self.pool.take());
+        }
+    }
+}
+
 thread_local! {
-    /// A pool of one thread for each thread of Python, and the process that made it.
-    static ALONE: RefCell<Option<(u32, ManuallyDrop<Arc<Pool>>)>> = const { RefCell::new(None) };
+    /// That of each thread of Python.
+    static ALONE: RefCell<Option<Alone>> = const { RefCell::new(None) };
 }
 
 /// A pool of one thread that no other thread of Python waits for. What the core shares among the threads of the pool
@@ -75,13 +89,13 @@ thread_local! {
 fn alone() -> PyResult<Arc<Pool>> {
     let process = std::process::id();
     ALONE.with_borrow_mut(|own| {
-        if let Some((of, pool)) = own.as_ref()
+        if let Some(Alone { process: of, pool: Some(pool) }) = own.as_ref()
             && *of == process
         {
             return Ok(Arc::clone(pool));
         }
         let pool = made(1)?;
-        *own = Some((process, ManuallyDrop::new(Arc::clone(&pool))));
+        *own = Some(Alone { process, pool: Some(Arc::clone(&pool)) });
         Ok(pool)
     })
 }

@@ -95,6 +95,9 @@ pub(crate) trait Posed: Sized {
     /// What a pose may be, in words.
     const FORMS: &'static str;
 
+    /// The shapes of arrays that are one.
+    const SHAPES: [&'static [usize]; 3];
+
     /// From the numbers of an array of this shape.
     fn of(py: Python<'_>, numbers: &[f64], shape: &[usize]) -> Option<PyResult<Self>>;
 }
@@ -118,6 +121,7 @@ fn of_matrix<const D: usize>(py: Python<'_>, numbers: &[f64]) -> PyResult<Pose<D
 
 impl Posed for Pose<2> {
     const FORMS: &'static str = "(2,), (3,) or (3, 3)";
+    const SHAPES: [&'static [usize]; 3] = [&[2], &[3], &[3, 3]];
 
     fn of(py: Python<'_>, numbers: &[f64], shape: &[usize]) -> Option<PyResult<Self>> {
         match shape {
@@ -135,6 +139,7 @@ impl Posed for Pose<2> {
 
 impl Posed for Pose<3> {
     const FORMS: &'static str = "(3,), (7,) or (4, 4)";
+    const SHAPES: [&'static [usize]; 3] = [&[3], &[7], &[4, 4]];
 
     fn of(py: Python<'_>, numbers: &[f64], shape: &[usize]) -> Option<PyResult<Self>> {
         match shape {
@@ -174,14 +179,19 @@ pub(crate) fn named<B: Copy, P: Posed>(
     let mut all = Vec::with_capacity(poses.len());
     for (name, pose) in poses {
         let name: String = name.extract()?;
-        let (_, body) = bodies.iter().find(|(own, _)| *own == name).ok_or_else(|| {
-            let known: Vec<&str> = bodies.iter().map(|(name, _)| name.as_str()).collect();
-            let known = known.join(", ");
-            PyKeyError::new_err(format!("no body is called {name:?}: there are {known}"))
-        })?;
-        all.push((*body, one(&pose)?));
+        all.push((body(&name, bodies)?, one(&pose)?));
     }
     Ok(all)
+}
+
+/// The body of a name.
+pub(crate) fn body<B: Copy>(name: &str, bodies: &[(String, B)]) -> PyResult<B> {
+    let found = bodies.iter().find(|(own, _)| *own == name);
+    found.map(|(_, body)| *body).ok_or_else(|| {
+        let known: Vec<&str> = bodies.iter().map(|(name, _)| name.as_str()).collect();
+        let known = known.join(", ");
+        PyKeyError::new_err(format!("no body is called {name:?}: there are {known}"))
+    })
 }
 
 /// Many poses: one for each row of the first axis.
@@ -191,18 +201,24 @@ pub(crate) fn many<P: Posed>(given: &Bound<'_, PyAny>) -> PyResult<Vec<P>> {
     let wrong = || misshapen("poses", &format!("(n, …) with … of {}", P::FORMS), shape);
     let [count, each @ ..] = shape else { return Err(wrong()) };
     let size: usize = each.iter().product();
+    // Whether one pose can have this shape, also where there is none.
+    if !P::SHAPES.contains(&each) {
+        return Err(wrong());
+    }
     let mut poses = Vec::with_capacity(*count);
     for i in 0..*count {
         let pose =
             P::of(given.py(), &numbers[i * size..(i + 1) * size], each).ok_or_else(wrong)?;
-        poses.push(pose.map_err(|error| at_index(given.py(), i, &error))?);
+        poses.push(pose.map_err(|error| at_index(given.py(), i, error))?);
     }
     Ok(poses)
 }
 
-/// The same exception for one of many poses.
-fn at_index(py: Python<'_>, index: usize, error: &PyErr) -> PyErr {
-    PyValueError::new_err(format!("poses[{index}]: {}", error.value(py)))
+/// The exception of one of many poses, with its own as the cause.
+fn at_index(py: Python<'_>, index: usize, error: PyErr) -> PyErr {
+    let named = PyValueError::new_err(format!("poses[{index}]: {}", error.value(py)));
+    named.set_cause(py, Some(error));
+    named
 }
 
 /// A point or a direction.

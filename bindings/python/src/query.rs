@@ -6,13 +6,15 @@
 use std::time::Instant;
 
 use palpate::field::{Pose, Shape};
-use palpate::query::{Certified, Manifold, Nearest, Query, QueryError, Ray, Stop, Tolerance};
+use palpate::query::{
+    Certified, Manifold, ManifoldSettings, Nearest, Query, QueryError, Ray, Tolerance,
+};
 use pyo3::prelude::*;
 
-use crate::answers::{Fields, certified, contact, stop, vector};
+use crate::answers::{Fields, certified, contact, stop, stop_number, vector};
 use crate::arrays::{row, table};
+use crate::call::{detached, detached_in};
 use crate::error::OrRaise;
-use crate::function::detached;
 use crate::interrupt::A_WHILE;
 use crate::pool;
 use crate::poses::{self, Posed};
@@ -159,14 +161,23 @@ pub(crate) fn manifold<'py>(
 ) -> PyResult<Bound<'py, PyAny>> {
     of_both!(py, a, b, |a, b| {
         let found = detached(py, || {
-            query(tolerance, budget).manifold_with(a, b, |own| {
-                let own = margin.map_or(own, |margin| own.with_margin(margin));
-                let own = spacing.map_or(own, |spacing| own.with_spacing(spacing));
-                most.map_or(own, |most| own.with_most(most))
-            })
+            let change = |own| settings(own, margin, spacing, most);
+            query(tolerance, budget).manifold_with(a, b, change)
         })?;
         manifold_of(py, &found.or_raise(py)?)
     })
+}
+
+/// Settings with what a caller asks of contacts.
+pub(crate) fn settings(
+    own: ManifoldSettings,
+    margin: Option<f64>,
+    spacing: Option<f64>,
+    most: Option<usize>,
+) -> ManifoldSettings {
+    let own = margin.map_or(own, |margin| own.with_margin(margin));
+    let own = spacing.map_or(own, |spacing| own.with_spacing(spacing));
+    most.map_or(own, |most| own.with_most(most))
 }
 
 pub(crate) fn manifold_of<'py, const D: usize>(
@@ -194,10 +205,10 @@ pub(crate) fn manifold_of<'py, const D: usize>(
         .of_class("Manifold")
 }
 
-/// The first surface along a ray of a length [m], proven: none is passed over.
+/// The first surface along a ray of a length [m], proven: none is passed over. `direction` may have any length but 0.
 ///
-/// `tolerance` is how far apart the bounds may be [m], a ten-thousandth of the smaller body if left out; `budget` how
-/// often the fields are evaluated at most, 200 000 if left out.
+/// `tolerance` is how far apart the bounds may be [m], a ten-thousandth of the smaller of shape and ray if left out;
+/// `budget` how often the field is evaluated at most, 200 000 if left out.
 ///
 /// >>> import palpate as pp
 /// >>> pp.cast_ray(pp.ball(0.5), [0, 2, 0], [0, -1, 0]).point.round(3)
@@ -315,13 +326,18 @@ where
         while !waiting.is_empty() {
             let asked_now: Vec<_> = waiting.iter().map(|i| poses[*i]).collect();
             let mut found: Vec<Found<D>> = vec![None; waiting.len()];
-            let until = Instant::now() + A_WHILE;
-            let goes_on = || Instant::now() < until;
-            let run = || match asked {
-                Asked::Separation => query.separations(bodies, &asked_now, &mut found, goes_on),
-                Asked::Overlap => query.overlaps(bodies, &asked_now, &mut found, goes_on),
+            let run = || {
+                // The time begins when the threads of the pool do.
+                let until = Instant::now() + A_WHILE;
+                let goes_on = || Instant::now() < until;
+                match asked {
+                    Asked::Separation => {
+                        query.separations(bodies, &asked_now, &mut found, goes_on)
+                    }
+                    Asked::Overlap => query.overlaps(bodies, &asked_now, &mut found, goes_on),
+                }
             };
-            let outcome = detached(py, || pool.install(run))?;
+            let outcome = detached_in(py, &pool, run)?;
             outcome
                 .map_err(|error| in_place(error, part * MOST_POSES, &waiting))
                 .or_raise(py)?;
@@ -357,7 +373,7 @@ fn told<'py, const D: usize>(
         .iter()
         .flat_map(|found| found.best.normal.map_or(unknown, |normal| normal.0))
         .collect();
-    let stops = found.iter().map(|found| place(found.stop)).collect();
+    let stops = found.iter().map(|found| stop_number(found.stop)).collect();
     Fields::new(py)
         .with("lower", row(py, found.iter().map(|found| found.lower).collect()))?
         .with("upper", row(py, found.iter().map(|found| found.upper).collect()))?
@@ -366,9 +382,4 @@ fn told<'py, const D: usize>(
         .with("stops", row(py, stops))?
         .with("evaluations", row(py, found.iter().map(|found| found.evaluations).collect()))?
         .of_class("Separations")
-}
-
-/// The place of a reason to stop among `palpate.STOPS`.
-const fn place(stop: Stop) -> u8 {
-    stop as u8
 }

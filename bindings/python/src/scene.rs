@@ -7,14 +7,17 @@ use std::path::PathBuf;
 
 use palpate::field::Pose;
 use palpate::scene::{AnyScene, BuiltScene, Dimension, Scene, SceneBody};
-use pyo3::exceptions::{PyKeyError, PyTypeError, PyValueError};
+use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
+use pyo3::types::{PyDict, PyTuple};
 
 use crate::answers::Fields;
 use crate::arrays::row;
+use crate::call::detached_in;
 use crate::error::OrRaise;
 use crate::mesh::replace;
+use crate::pool;
+use crate::poses::{self, Posed};
 use crate::shape::{AnyShape, PyShape};
 
 /// Does the same with a scene of either dimension.
@@ -26,14 +29,21 @@ macro_rules! of_either {
         }
     };
 }
-/// Bodies with names, and what scene files say of tool, guides, motions and views besides.
+/// Bodies with names, and what touches them and how that feels.
 ///
-/// Of shapes in a dict, with their names; a shape alone gets the name "body".
+/// Of shapes in a dict, with their names; a shape alone gets the name "body". `poses` are where bodies are, by their
+/// names, as of `Shape.placed`; `materials` how they feel, by their names: a preset such as "rubber", or a dict as
+/// `{"stiffness": 800}`. `tool` is a dict, `guides` and `motions` are lists of dicts, with the keys of scene files;
+/// arrays and shapes may stand in them.
 ///
 /// >>> import palpate as pp
 /// >>> scene = pp.Scene({"table": pp.cuboid([1, 0.1, 1]), "ball": pp.ball(0.05).translated([0, 0.1, 0])})
 /// >>> scene.names, scene["ball"].shape.distance([0, 0.2, 0])
 /// (('table', 'ball'), 0.05)
+/// >>> soft = pp.Scene(pp.ball(0.05), materials={"body": {"stiffness": 200}}, tool={"radius": 0.005})
+/// >>> hand = [[0, 0, 0.07, 0], [0.2, 0, 0.045, 0]]
+/// >>> bool(pp.feel(soft, hand=hand, duration=0.2).trace.force[-1, 1] > 1)
+/// True
 #[pyclass(frozen, module = "palpate", name = "Scene")]
 pub(crate) struct PyScene {
     written: Scene,
@@ -44,7 +54,9 @@ pub(crate) struct PyScene {
 
 impl PyScene {
     fn of(py: Python<'_>, written: Scene, folder: Option<PathBuf>) -> PyResult<Self> {
-        let built = py.detach(|| written.build()).or_raise(py)?;
+        // Grids of the scene are baked here.
+        let built =
+            detached_in(py, &*pool::of_at_least_one(1)?, || written.build())?.or_raise(py)?;
         Ok(Self { written, built, folder })
     }
 
@@ -52,19 +64,18 @@ impl PyScene {
         &self.built
     }
 
-    /// A scene, or the one that a shape or a dict of shapes makes.
-    pub(crate) fn given<'py>(given: &Bound<'py, PyAny>) -> PyResult<Bound<'py, Self>> {
-        match given.cast::<Self>() {
-            Ok(scene) => Ok(scene.clone()),
-            Err(_) => Bound::new(given.py(), Self::new(given)?),
-        }
+    /// The names of the bodies, in their order.
+    pub(crate) fn body_names(&self) -> Vec<String> {
+        of_either!(&self.built, scene => {
+            scene.bodies.iter().map(|body| body.name.clone()).collect()
+        })
     }
-}
 
-#[pymethods]
-impl PyScene {
-    #[new]
-    fn new(bodies: &Bound<'_, PyAny>) -> PyResult<Self> {
+    /// What a scene of a shape, or of a dict of names and shapes, says.
+    fn of_bodies(
+        bodies: &Bound<'_, PyAny>,
+        poses: Option<&Bound<'_, PyDict>>,
+    ) -> PyResult<Scene> {
         let py = bodies.py();
         let mut named: Vec<(String, PyShape)> = Vec::new();
         if let Ok(shape) = bodies.extract::<PyShape>() {
@@ -77,41 +88,72 @@ impl PyScene {
             let problem = "a scene is made of a shape, or of a dict of names and shapes";
             return Err(PyTypeError::new_err(problem));
         }
-        let shapes =
-            named.iter().map(|(_, shape)| shape.made(py)).collect::<PyResult<Vec<_>>>()?;
-        let names = || named.iter().map(|(name, _)| name);
-        let planar = shapes.iter().filter_map(|shape| match shape {
-            AnyShape::Planar(shape) => Some(shape.clone()),
-            AnyShape::Spatial(_) => None,
-        });
-        let solid = shapes.iter().filter_map(|shape| match shape {
-            AnyShape::Planar(_) => None,
-            AnyShape::Spatial(shape) => Some(shape.clone()),
-        });
-        let (planar, solid): (Vec<_>, Vec<_>) = (planar.collect(), solid.collect());
-        let written = match (planar.len(), solid.len()) {
-            (_, 0) if !planar.is_empty() => {
-                let bodies =
-                    names().zip(planar).map(|(name, shape)| SceneBody::new(name, shape));
-                Scene::new(Dimension::Two).with_bodies(bodies)
+        let (mut planar, mut solid) = (Vec::new(), Vec::new());
+        for (name, shape) in &named {
+            match shape.made(py)? {
+                AnyShape::Planar(shape) => planar.push(SceneBody::new(name, shape.clone())),
+                AnyShape::Spatial(shape) => solid.push(SceneBody::new(name, shape.clone())),
+            }
+        }
+        match (planar.len(), solid.len()) {
+            (1.., 0) => {
+                Scene::new(Dimension::Two).with_bodies(placed(planar, poses)?).or_raise(py)
             }
             (0, _) => {
-                let bodies =
-                    names().zip(solid).map(|(name, shape)| SceneBody::new(name, shape));
-                Scene::new(Dimension::Three).with_bodies(bodies)
+                Scene::new(Dimension::Three).with_bodies(placed(solid, poses)?).or_raise(py)
             }
             (flat, solid) => {
                 let problem = format!(
                     "a scene has one dimension, got {flat} bodies of 2D and {solid} of 3D"
                 );
-                return Err(PyValueError::new_err(problem));
+                Err(PyValueError::new_err(problem))
             }
-        };
-        let written = written.or_raise(py)?;
-        Self::of(py, written, None)
+        }
     }
 
-    /// Reads a scene file.
+    /// A scene, or the one that a shape or a dict of shapes makes.
+    pub(crate) fn given<'py>(given: &Bound<'py, PyAny>) -> PyResult<Bound<'py, Self>> {
+        match given.cast::<Self>() {
+            Ok(scene) => Ok(scene.clone()),
+            Err(_) => {
+                let py = given.py();
+                Bound::new(py, Self::of(py, Self::of_bodies(given, None)?, None)?)
+            }
+        }
+    }
+}
+
+#[pymethods]
+impl PyScene {
+    #[new]
+    #[pyo3(signature = (bodies, *, poses = None, materials = None, tool = None, guides = None, motions = None))]
+    fn new<'py>(
+        bodies: &Bound<'py, PyAny>,
+        poses: Option<&Bound<'py, PyDict>>,
+        materials: Option<&Bound<'py, PyAny>>,
+        tool: Option<&Bound<'py, PyAny>>,
+        guides: Option<&Bound<'py, PyAny>>,
+        motions: Option<&Bound<'py, PyAny>>,
+    ) -> PyResult<Self> {
+        let py = bodies.py();
+        let mut scene = Self::of_bodies(bodies, poses)?;
+        let parts = PyDict::new(py);
+        for (key, part) in [("tool", tool), ("guides", guides), ("motions", motions)] {
+            if let Some(part) = part {
+                parts.set_item(key, part)?;
+            }
+        }
+        if materials.is_some() || !parts.is_empty() {
+            let none = PyDict::new(py).into_any();
+            let given = (scene.to_json(), materials.unwrap_or(&none), parts);
+            let furnished = py.import("palpate._scenes")?.getattr("furnished")?;
+            let text: String = furnished.call1(given)?.extract()?;
+            scene = Scene::from_json(&text).or_raise(py)?;
+        }
+        Self::of(py, scene, None)
+    }
+
+    /// Reads a scene file. Files that it names are read again where the scene is unpickled.
     ///
     /// >>> import palpate as pp, tempfile, os
     /// >>> file = os.path.join(tempfile.mkdtemp(), "scene.json")
@@ -121,7 +163,8 @@ impl PyScene {
     #[staticmethod]
     fn load(py: Python<'_>, file: PathBuf) -> PyResult<Self> {
         let scene = py.detach(|| Scene::from_file(&file)).or_raise(py)?;
-        Self::of(py, scene, file.parent().map(PathBuf::from))
+        let folder = file.parent().map(std::path::absolute).transpose()?;
+        Self::of(py, scene, folder)
     }
 
     /// The scene of a text; files that it names are looked for in `folder`.
@@ -132,6 +175,7 @@ impl PyScene {
     #[staticmethod]
     #[pyo3(signature = (text, *, folder = None))]
     fn from_json(py: Python<'_>, text: &str, folder: Option<PathBuf>) -> PyResult<Self> {
+        let folder = folder.map(std::path::absolute).transpose()?;
         let scene = match &folder {
             None => Scene::from_json(text),
             Some(folder) => {
@@ -177,10 +221,7 @@ impl PyScene {
     /// ('a',)
     #[getter]
     fn names<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        let names: Vec<&str> = of_either!(&self.built, scene => {
-            scene.bodies.iter().map(|body| body.name.as_str()).collect()
-        });
-        Ok(pyo3::types::PyTuple::new(py, names)?.into_any())
+        Ok(PyTuple::new(py, self.body_names())?.into_any())
     }
 
     /// All bodies as one shape.
@@ -197,8 +238,8 @@ impl PyScene {
         of_either!(&self.built, scene => body(py, scene, name))
     }
 
-    fn __contains__(&self, name: &str) -> bool {
-        of_either!(&self.built, scene => scene.bodies.iter().any(|body| body.name == name))
+    fn __contains__(&self, name: &Bound<'_, PyAny>) -> bool {
+        name.extract::<String>().is_ok_and(|name| self.body_names().contains(&name))
     }
 
     fn __len__(&self) -> usize {
@@ -210,10 +251,7 @@ impl PyScene {
     }
 
     fn __repr__(&self) -> String {
-        let names = of_either!(&self.built, scene => {
-            scene.bodies.iter().map(|body| body.name.clone()).collect::<Vec<_>>()
-        });
-        format!("<palpate.Scene in {}D: {}>", self.dimension(), names.join(", "))
+        format!("<palpate.Scene in {}D: {}>", self.dimension(), self.body_names().join(", "))
     }
 
     fn __eq__(&self, other: &Bound<'_, PyAny>) -> bool {
@@ -231,6 +269,22 @@ impl PyScene {
     }
 }
 
+/// Bodies with the poses that a caller gives them.
+fn placed<const D: usize>(
+    mut bodies: Vec<SceneBody<D>>,
+    poses: Option<&Bound<'_, PyDict>>,
+) -> PyResult<Vec<SceneBody<D>>>
+where
+    Pose<D>: Posed,
+{
+    let Some(poses) = poses else { return Ok(bodies) };
+    let names: Vec<_> = bodies.iter().map(|body| body.name.clone()).zip(0..).collect();
+    for (body, pose) in poses::named::<usize, _>(poses, &names)? {
+        bodies[body].world_from_body = Some(pose);
+    }
+    Ok(bodies)
+}
+
 fn body<'py, const D: usize>(
     py: Python<'py>,
     scene: &BuiltScene<D>,
@@ -239,13 +293,8 @@ fn body<'py, const D: usize>(
 where
     PyShape: From<palpate::field::Shape<D>>,
 {
-    let found = scene.bodies.iter().find(|body| body.name == name).ok_or_else(|| {
-        let known: Vec<&str> = scene.bodies.iter().map(|body| body.name.as_str()).collect();
-        PyKeyError::new_err(format!(
-            "no body is called {name:?}: there are {}",
-            known.join(", ")
-        ))
-    })?;
+    let names: Vec<_> = scene.bodies.iter().map(|body| body.name.clone()).zip(0..).collect();
+    let found = &scene.bodies[poses::body::<usize>(name, &names)?];
     Fields::new(py)
         .with("name", name)?
         .with("shape", PyShape::from(found.shape.clone()))?
@@ -255,7 +304,10 @@ where
 }
 
 /// A pose as a matrix, with a row of zeros and a one at its end.
-fn matrix<'py, const D: usize>(py: Python<'py>, pose: &Pose<D>) -> PyResult<Bound<'py, PyAny>> {
+pub(crate) fn matrix<'py, const D: usize>(
+    py: Python<'py>,
+    pose: &Pose<D>,
+) -> PyResult<Bound<'py, PyAny>> {
     let mut numbers = Vec::with_capacity((D + 1) * (D + 1));
     for (turn, way) in pose.rotation.matrix().iter().zip(pose.translation.0) {
         numbers.extend(turn);

@@ -7,6 +7,7 @@ use palpate::field::kernel::{Argument, Parameter};
 use palpate::field::node::Boolean;
 use palpate::field::operator::Copies;
 use palpate::field::{Node, Pose, Rotation, Shape};
+use palpate::grid::{Grid, GridOptions, Resolution};
 use palpate::mesh::Solid;
 
 /// The expression that makes a shape.
@@ -58,10 +59,13 @@ pub(crate) fn of<const D: usize>(shape: &Shape<D>) -> String {
         Node::Twisted { rate, of } => format!("{}.twisted(radians={rate:?})", self::of(of)),
         Node::Extruded { height, of } => format!("{}.extruded({height:?})", self::of(of)),
         Node::Revolved { of } => format!("{}.revolved()", self::of(of)),
-        Node::Opaque(opaque) => match opaque.custom::<Solid<D, D>>() {
-            Some(solid) => format!("<solid of {} faces>", solid.elements().len()),
-            None => format!("<{}>", opaque.type_name()),
-        },
+        Node::Opaque(opaque) => {
+            match (opaque.custom::<Solid<D, D>>(), opaque.custom::<Grid<D>>()) {
+                (Some(solid), _) => format!("<solid of {} faces>", solid.elements().len()),
+                (None, Some(grid)) => baked(grid),
+                (None, None) => format!("<{}>", opaque.type_name()),
+            }
+        }
         other => format!("<{other:?}>"),
     }
 }
@@ -92,6 +96,28 @@ pub(crate) fn argument(argument: &Argument) -> String {
         Argument::Points(points) => format!("{points:?}"),
         Argument::Rings(rings) => format!("{rings:?}"),
     }
+}
+
+/// A grid as the method that makes it.
+fn baked<const D: usize>(grid: &Grid<D>) -> String {
+    let Some((of, options)) = grid.source() else {
+        return format!("<grid with cells of {} m>", grid.lattice().cell);
+    };
+    let own = GridOptions::with_resolution(options.resolution);
+    let mut given = vec![match options.resolution {
+        Resolution::Tolerance(tolerance) => format!("tolerance={tolerance:?}"),
+        Resolution::Cell(cell) => format!("cell={cell:?}"),
+    }];
+    if options.kernel != own.kernel {
+        given.push(format!("kernel='{}'", options.kernel.name()));
+    }
+    if options.store != own.store {
+        given.push(format!("store='{}'", options.store.name()));
+    }
+    if let Some(band) = options.band {
+        given.push(format!("band={band:?}"));
+    }
+    format!("{}.baked({})", self::of(of), given.join(", "))
 }
 
 /// A motion as the methods that make it.

@@ -5,9 +5,10 @@
 
 use palpate::field::Vector;
 use palpate::haptics::{Event, EventKind, Snapshot};
-use palpate::servo_loop::{RunReport, TraceRow};
+use palpate::servo_loop::TraceRow;
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
+use serde::Serialize;
 
 use crate::answers::{Fields, vector};
 use crate::arrays::{row, table};
@@ -46,27 +47,32 @@ pub(crate) fn event<'py>(
     found: &Event,
     names: &[String],
 ) -> PyResult<Bound<'py, PyAny>> {
-    let (kind, speed, force) = match found.kind {
-        EventKind::Touch { speed } => ("touch", Some(speed), None),
-        EventKind::Leave => ("leave", None, None),
-        EventKind::Slip => ("slip", None, None),
-        EventKind::Stick => ("stick", None, None),
-        EventKind::Pop { force } => ("pop", None, Some(force)),
-        _ => ("other", None, None),
+    let (kind, speed, force, button) = match found.kind {
+        EventKind::Touch { speed } => ("touch", Some(speed), None, None),
+        EventKind::Leave => ("leave", None, None, None),
+        EventKind::Slip => ("slip", None, None, None),
+        EventKind::Stick => ("stick", None, None, None),
+        EventKind::Pop { force } => ("pop", None, Some(force), None),
+        EventKind::ButtonDown { button } => ("button_down", None, None, Some(button)),
+        EventKind::ButtonUp { button } => ("button_up", None, None, Some(button)),
+        _ => ("other", None, None, None),
     };
+    // Buttons are of no body.
+    let body = names.get(found.body as usize).filter(|_| button.is_none());
     Fields::new(py)
         .with("tick", found.tick)?
         .with("point", found.point)?
-        .with("body", names.get(found.body as usize))?
+        .with("body", body)?
+        .with("button", button)?
         .with("kind", kind)?
         .with("speed", speed)?
         .with("force", force)?
         .of_class("Event")
 }
 
-/// A report as the dict that its JSON is.
-pub(crate) fn read<'py>(py: Python<'py>, report: &RunReport) -> PyResult<Bound<'py, PyAny>> {
-    let text = serde_json::to_string(report)
+/// Data as the dict that its JSON is.
+pub(crate) fn read<'py>(py: Python<'py>, data: &impl Serialize) -> PyResult<Bound<'py, PyAny>> {
+    let text = serde_json::to_string(data)
         .map_err(|error| PyRuntimeError::new_err(error.to_string()))?;
     py.import("json")?.call_method1("loads", (text,))
 }

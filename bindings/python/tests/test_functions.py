@@ -5,6 +5,8 @@
 from __future__ import annotations
 
 import pickle
+import time
+from concurrent.futures import ThreadPoolExecutor
 from typing import Any
 
 import numpy as np
@@ -16,7 +18,7 @@ def norm(points: np.ndarray) -> np.ndarray:
     return np.linalg.norm(points, axis=1) - 0.5
 
 
-BALL = pp.from_function(norm, bounds=[[-0.5] * 3, [0.5] * 3])
+BALL = pp.from_function(norm, lipschitz=1.0, bounds=[[-0.5] * 3, [0.5] * 3])
 POINTS = np.random.default_rng(4).uniform(-1, 1, (500, 3))
 
 
@@ -29,12 +31,12 @@ def test_a_function_is_a_shape() -> None:
     found = pp.separation(both, pp.ball(0.1).translated([0, 1, 0]), tolerance=1e-3)
     assert found.lower <= 0.4 <= found.upper
     assert np.array_equal(BALL.distance(POINTS, threads=2), BALL.distance(POINTS))
-    flat = pp.from_function(norm, dimension=2)
+    flat = pp.from_function(norm, lipschitz=1.0, dimension=2)
     assert flat.distance([0.0, 1.0]) == 0.5
 
 
 def test_a_function_is_opaque() -> None:
-    assert "Function" in repr(BALL) and BALL == BALL and BALL != pp.from_function(norm)
+    assert "Function" in repr(BALL) and BALL == BALL and BALL != pp.from_function(norm, lipschitz=1.0)
     for refused in [lambda: pickle.dumps(BALL), lambda: BALL.to_json(), lambda: pp.Scene(BALL)]:
         with pytest.raises(pp.Error):
             refused()
@@ -44,7 +46,7 @@ def test_what_a_function_raises_is_raised() -> None:
     def broken(_points: np.ndarray) -> np.ndarray:
         raise ZeroDivisionError("in the function")
 
-    shape = pp.from_function(broken, bounds=[[-1] * 3, [1] * 3])
+    shape = pp.from_function(broken, lipschitz=1.0, bounds=[[-1] * 3, [1] * 3])
     for ask in [
         lambda: shape.distance([0, 0, 0]),
         lambda: shape.distance(POINTS),
@@ -64,7 +66,7 @@ def test_what_a_function_raises_is_raised() -> None:
 
 def test_a_function_that_asks_itself_is_stopped() -> None:
     own: list[pp.Shape] = []
-    own.append(pp.from_function(lambda points: own[0].distance(points)))
+    own.append(pp.from_function(lambda points: own[0].distance(points), lipschitz=1.0))
     with pytest.raises(RecursionError):
         own[0].distance(np.zeros((2, 3)))
     with pytest.raises(RecursionError):
@@ -74,13 +76,13 @@ def test_a_function_that_asks_itself_is_stopped() -> None:
 @pytest.mark.parametrize(
     ("make", "error", "words"),
     [
-        (lambda: pp.from_function(3), TypeError, "must be callable"),
-        (lambda: pp.from_function(norm, lipschitz=0), ValueError, "lipschitz must be positive"),
-        (lambda: pp.from_function(norm, dimension=4), ValueError, "dimension must be 2 or 3"),
-        (lambda: pp.from_function(norm, bounds=[0, 1]), ValueError, "bounds must have the shape (2, 3), got (2,)"),
-        (lambda: pp.from_function(norm, bounds=[[1] * 3, [0] * 3]), ValueError, "the lower corner"),
-        (lambda: pp.from_function(lambda p: p).distance(POINTS), ValueError, "an array of shape"),
-        (lambda: pp.from_function(lambda p: "x").distance(POINTS), TypeError, "real numbers"),
+        (lambda: pp.from_function(3, lipschitz=1.0), TypeError, "must be callable"),
+        (lambda: pp.from_function(norm, lipschitz=1.0, lipschitz=0), ValueError, "lipschitz must be positive"),
+        (lambda: pp.from_function(norm, lipschitz=1.0, dimension=4), ValueError, "dimension must be 2 or 3"),
+        (lambda: pp.from_function(norm, lipschitz=1.0, bounds=[0, 1]), ValueError, "bounds must have the shape (2, 3), got (2,)"),
+        (lambda: pp.from_function(norm, lipschitz=1.0, bounds=[[1] * 3, [0] * 3]), ValueError, "the lower corner"),
+        (lambda: pp.from_function(lambda p: p, lipschitz=1.0).distance(POINTS), ValueError, "an array of shape"),
+        (lambda: pp.from_function(lambda p: "x", lipschitz=1.0).distance(POINTS), TypeError, "real numbers"),
     ],
 )
 def test_what_is_no_field_is_refused(make: Any, error: type, words: str) -> None:
@@ -91,7 +93,7 @@ def test_what_is_no_field_is_refused(make: Any, error: type, words: str) -> None
 
 def test_a_function_that_answers_nan_is_refused() -> None:
     holed = pp.from_function(
-        lambda p: np.where(p[:, 0] > 0.2, np.nan, p[:, 1]), bounds=[[-1, -1, -1], [1, 0, 1]]
+        lambda p: np.where(p[:, 0] > 0.2, np.nan, p[:, 1]), lipschitz=1.0, bounds=[[-1, -1, -1], [1, 0, 1]]
     )
     assert holed.distance([0, 0.5, 0]) == 0.5
     with pytest.raises(ValueError, match="answers NaN at"):
@@ -99,3 +101,49 @@ def test_a_function_that_answers_nan_is_refused() -> None:
     with pytest.raises(ValueError, match="answers NaN at"):
         pp.separation(holed, pp.ball(0.1).translated([0.5, 0.5, 0]))
     assert np.isnan(holed.distance([np.nan, 0, 0]))
+
+
+def test_each_call_raises_what_its_own_function_raised() -> None:
+    # A slot for all calls gave the exception of one thread to another.
+    def raising(number: int) -> pp.Shape:
+        def values(_: np.ndarray) -> np.ndarray:
+            time.sleep(0.001)
+            raise LookupError(number)
+
+        return pp.from_function(values, lipschitz=1.0, bounds=[[-1, -1, -1], [1, 1, 1]])
+
+    def ask(number: int) -> int:
+        for _ in range(20):
+            with pytest.raises(LookupError) as caught:
+                pp.separation(raising(number), pp.ball(0.5))
+            if caught.value.args != (number,):
+                return caught.value.args[0]
+        return number
+
+    with ThreadPoolExecutor(4) as pool:
+        assert list(pool.map(ask, range(4))) == [0, 1, 2, 3]
+
+
+def test_a_function_that_raises_is_called_no_more() -> None:
+    calls = []
+
+    def values(points: np.ndarray) -> np.ndarray:
+        calls.append(len(points))
+        raise LookupError("no")
+
+    with pytest.raises(LookupError):
+        pp.from_function(values, lipschitz=1.0, bounds=[[-1, -1, -1], [1, 1, 1]]).mass()
+    assert len(calls) == 1
+
+
+def test_a_function_that_asks_its_own_track_is_refused() -> None:
+    # It waited for itself for ever.
+    tracks: list[pp.Track] = []
+
+    def values(points: np.ndarray) -> np.ndarray:
+        tracks[0].separation()
+        return np.linalg.norm(points, axis=1) - 0.5
+
+    tracks.append(pp.Track(pp.from_function(values, lipschitz=1.0, bounds=[[-1, -1, -1], [1, 1, 1]]), pp.ball(0.1)))
+    with pytest.raises(RuntimeError, match="asks the object that asks the function"):
+        tracks[0].separation()

@@ -37,6 +37,95 @@ def test_files_hold_the_mesh(tmp_path: Path, ending: str) -> None:
     assert [path.name for path in tmp_path.iterdir()] == [file.name]
 
 
+def test_a_tolerance_chooses_the_cells() -> None:
+    ball = pp.ball(0.5)
+    for tolerance in [1e-2, 1e-3]:
+        mesh = ball.mesh(tolerance=tolerance)
+        assert mesh.is_watertight
+        middles = mesh.vertices[mesh.faces].mean(axis=1)
+        assert np.abs(ball.distance(middles)).max() <= tolerance
+        assert np.abs(ball.distance(mesh.vertices)).max() <= tolerance
+
+
+def test_hits_are_those_of_contacts_and_a_pose_moves_the_mesh() -> None:
+    ball, moved = pp.ball(0.1), MESH.vertices + [0, 0.195, 0]
+    here = pp.mesh_contacts(ball, pp.Mesh(moved, MESH.faces))
+    there = pp.mesh_contacts(ball, MESH, pose=[0, 0.195, 0])
+    assert set(here.hits) == set(there.hits) and len(there.hits) > 0
+    assert there.gaps.min() == pytest.approx(-0.005, abs=1e-4)
+    assert set(pp.mesh_hits(ball, MESH, pose=[0, 0.195, 0]).hits) == set(there.hits)
+    assert len(pp.mesh_hits(ball, MESH, pose=[0, 0.25, 0])) == 0
+    assert len(pp.mesh_hits(ball, MESH, pose=[0, 0.25, 0], gap=0.06)) > 0
+
+
+@pytest.mark.parametrize(
+    "how",
+    [
+        {"tolerance": 2e-4},
+        {"cell": 0.004, "kernel": "trilinear", "store": "i16"},
+        {"cell": 0.002, "band": 8.0},
+    ],
+)
+def test_a_shape_sampled_on_a_grid_is_a_shape(how: dict[str, Any]) -> None:
+    part = pp.cuboid([0.06, 0.04, 0.05]) - pp.ball(0.02)
+    grid = part.baked(**how)
+    value, within = grid.promise.deviation
+    points = np.random.default_rng(7).uniform(-0.05, 0.05, (5000, 3))
+    near = np.abs(part.distance(points)) < within
+    assert near.any()
+    off = np.abs(grid.distance(points) - part.distance(points))[near].max()
+    assert off <= value and value <= how.get("tolerance", 1.0)
+    # As other shapes: pickled, compared, typed, felt.
+    assert pickle.loads(pickle.dumps(grid)) == grid and grid != part
+    assert eval(repr(grid), vars(pp)) == grid and hash(eval(repr(grid), vars(pp))) == hash(grid)
+    felt = pp.feel(grid, hand=[[0.0, 0.0, 0.05, 0.0], [0.3, 0.0, 0.015, 0.0]], duration=0.3)
+    assert felt.trace.force[-1, 1] > 0
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_an_array_of_samples_is_a_shape(dimension: int) -> None:
+    # Axes of different lengths, so that none is taken for another.
+    counts, cell, origin = [31, 41, 51][:dimension], 0.01, [-0.15, -0.2, -0.25][:dimension]
+    truth = pp.cuboid([0.1, 0.15, 0.2][:dimension])
+    sides = [o + cell * np.arange(n) for o, n in zip(origin, counts, strict=True)]
+    nodes = np.stack(np.meshgrid(*sides, indexing="ij"), axis=-1)
+    values = truth.distance(nodes)
+    for given in [values, np.asfortranarray(values), values.astype(np.float32)]:
+        shape = pp.from_samples(given, cell=cell, origin=origin, kernel="trilinear")
+        inner = nodes[1:-1, 1:-1]
+        assert np.abs(shape.distance(inner) - truth.distance(inner)).max() < 1e-7
+    assert pickle.loads(pickle.dumps(shape)) == shape and "grid" in repr(shape)
+    assert pp.overlap(shape, pp.ball(0.05, dimension=dimension)).overlaps
+    down = [[0.0, *([0.0, 0.12, 0.0][:dimension])], [0.3, *([0.0, 0.07, 0.0][:dimension])]]
+    assert pp.feel(shape, hand=down, duration=0.3).trace.force[-1, 1] > 0
+    for wrong, words in [(values.ravel(), "samples must have the shape"), (-values, "border"), (values * np.nan, "")]:
+        with pytest.raises(ValueError) as caught:
+            pp.from_samples(wrong, cell=cell)
+        assert words in str(caught.value)
+
+
+def test_grids_are_of_functions_and_of_the_plane_too() -> None:
+    half = [[-1.0, -1.0], [1.0, 1.0]]
+    disc = pp.from_function(lambda p: np.linalg.norm(p, axis=1) - 0.5, lipschitz=1.0, bounds=half)
+    grid = disc.baked(cell=0.05)
+    assert grid.distance([0.7, 0.0]) == pytest.approx(0.2, abs=2e-3)
+    assert pp.ball(0.5, dimension=2).baked(cell=0.05).distance([0.7, 0.0]) == pytest.approx(0.2, abs=2e-3)
+    for wrong, error, words in [
+        ({}, TypeError, "one of tolerance= and cell="),
+        ({"cell": 0.1, "tolerance": 0.1}, TypeError, "one of tolerance= and cell="),
+        ({"cell": -1.0}, pp.Error, "cell"),
+        ({"cell": 0.1, "kernel": "cubic"}, ValueError, 'kernel must be one of "quadratic", "trilinear", got "cubic"'),
+        ({"cell": 0.1, "store": "f64"}, ValueError, '"f32", "i16", "i8"'),
+        ({"cell": 0.1, "band": 1.0}, pp.Error, "band"),
+        ({"cell": 3.0}, pp.GridError, ""),
+    ]:
+        with pytest.raises(error) as caught:
+            pp.ball(0.5).baked(**wrong)
+        assert words in str(caught.value)
+    with pytest.raises(pp.GridError, match="bounds"):
+        pp.half_space([0, 1, 0], 0.0).baked(cell=0.1)
+
+
 def test_a_mesh_can_be_pickled_and_compared() -> None:
     again = pickle.loads(pickle.dumps(MESH))
     assert again == MESH and again != pp.Mesh(MESH.vertices, MESH.faces[1:])
@@ -71,6 +160,9 @@ def test_faces_that_bound_nothing_are_a_plate() -> None:
         (lambda: MESH.save("part.doc"), ValueError, "must end in .obj, .stl, .ply or .glb"),
         (lambda: MESH.save("no/such/folder/part.stl"), OSError, ""),
         (lambda: BOX.mesh(cell=-1), pp.MeshError, "cell"),
+        (lambda: BOX.mesh(tolerance=0), pp.MeshError, "tolerance"),
+        (lambda: BOX.mesh(), TypeError, "one of cell= and tolerance="),
+        (lambda: pp.mesh_hits(pp.ball(1, dimension=2), MESH), ValueError, "got 2D and 3D"),
         (lambda: pp.half_space([0, 1, 0], 0.0).mesh(cell=0.1), pp.MeshError, "bounds"),
         (lambda: pp.mesh_contacts(pp.ball(1, dimension=2), MESH), ValueError, "got 2D and 3D"),
     ],

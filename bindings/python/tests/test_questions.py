@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import math
 import pickle
+import threading
 from typing import Any
 
 import numpy as np
@@ -79,6 +80,58 @@ def test_a_track_says_what_a_search_says() -> None:
     assert track.separation(b=[0, 2, 0]).lower > 1
 
 
+def test_contacts_keep_their_names_from_step_to_step() -> None:
+    track, plate = pp.Track(pp.cuboid([1, 0.1, 1]), pp.cuboid([0.2, 0.2, 0.2])), pp.cuboid([1, 0.1, 1])
+    first = track.manifold(b=[0, 0.1495, 0])
+    assert len(first) >= 4
+    # Without a track, ids are those of places.
+    anew = pp.manifold(plate, pp.cuboid([0.2, 0.2, 0.2]).translated([0, 0.1495, 0]))
+    assert np.allclose(np.sort(anew.gaps), np.sort(first.gaps), atol=1e-4)
+    for i in range(1, 20):
+        again = track.manifold(b=[1e-4 * i, 0.1495, 0])
+        assert set(again.ids.tolist()) == set(first.ids.tolist())
+    assert len(track.manifold(b=[0, 0.3, 0])) == 0
+    assert len(track.manifold(b=[0, 0.151, 0], margin=0.01, most=2)) == 2
+    with pytest.raises(pp.QueryError, match="spacing"):
+        track.manifold(spacing=-1.0)
+
+
+def test_a_world_knows_what_is_hit_first() -> None:
+    world = pp.World({"floor": pp.half_space([0, 1, 0], 0.0), "shelf": pp.cuboid([1, 0.1, 1]), "ball": BALL})
+    world.set_poses({"shelf": [0, 2, 0], "ball": [0, 4, 0]})
+    hits = world.first_impacts({"ball": [0, 0, 0]})
+    assert [(hit.a, hit.b) for hit in hits] == [("shelf", "ball"), ("floor", "ball")]
+    # 4 - 0.5 - 2.05 m of 4 m, then 3.5 m.
+    assert [hit.upper for hit in hits] == pytest.approx([0.3625, 0.875], abs=1e-4)
+    assert hits[0].touches and hits[0].contact.normal[1] == pytest.approx(1, abs=1e-3)
+    assert world.pose("ball")[1, 3] == 4
+    assert world.first_impacts({"ball": [0, 5, 0]}) == []
+    with pytest.raises(KeyError, match="no body is called"):
+        world.first_impacts({"cup": [0, 0, 0]})
+    with pytest.raises(KeyError, match="there are floor, shelf, ball"):
+        world.pose("cup")
+
+
+def test_a_world_that_steps_keeps_no_other_thread_waiting() -> None:
+    # A thread that waited for the world with the interpreter's lock would stop the one that has the world.
+    world = pp.World({"a": PLATE, "b": PEG}, margin=1e-3)
+
+    def move() -> None:
+        for i in range(50):
+            world.set_poses({"b": [1e-3 * i, 0, 0]})
+            world.first_impacts({"b": [0, 1, 0]}, gap=1e-3)
+            world.pose("b")
+
+    threads = [threading.Thread(target=move, daemon=True) for _ in range(4)]
+    for thread in threads:
+        thread.start()
+    for _ in range(50):
+        world.step()
+    for thread in threads:
+        thread.join(60)
+    assert not any(thread.is_alive() for thread in threads)
+
+
 def test_a_world_finds_its_pairs() -> None:
     scene = pp.Scene({"table": pp.cuboid([1, 0.1, 1]), "a": pp.ball(0.05), "b": pp.ball(0.05)})
     world = pp.World(scene, margin=1e-3)
@@ -91,6 +144,29 @@ def test_a_world_finds_its_pairs() -> None:
     assert {(near.a, near.b) for near in world.step(threads=2)} == {("table", "a"), ("table", "b"), ("a", "b")}
     with pytest.raises(KeyError, match="there are table, a, b"):
         world.set_poses({"c": [0, 0, 0]})
+
+
+def test_the_end_of_a_search_is_told_for_neighbours_without_contacts_too() -> None:
+    world = pp.World({"a": BALL, "b": BALL}, margin=0.3)
+    world.set_poses({"b": [1.29, 0, 0]})
+    assert all(near.stop is not None for near in world.step() if near.manifold is not None)
+
+
+def test_each_number_of_a_stop_has_its_word() -> None:
+    poses = [[1.5, 0, 0]]
+    for how in [{}, {"budget": 20, "tolerance": 1e-9}]:
+        one, many = pp.separation(PLATE, PEG, **how), pp.separations(PLATE, PEG, [[0, 0, 0]], **how)
+        assert pp.STOPS[many.stops[0]] == one.stop
+    assert pp.STOPS[pp.separations(BALL, BALL, poses).stops[0]] == "converged"
+
+
+def test_the_inertia_is_that_of_the_book() -> None:
+    mass = pp.cuboid([0.1, 0.2, 0.3]).mass(1000)
+    m = 6.0
+    for i, (one, two) in enumerate([(0.2, 0.3), (0.1, 0.3), (0.1, 0.2)]):
+        assert mass.inertia[i, i] == pytest.approx(m / 12 * (one**2 + two**2), rel=2e-3)
+    disc = pp.ball(0.1, dimension=2).mass(10)
+    assert disc.inertia == pytest.approx(disc.mass * 0.1**2 / 2, rel=2e-3)
 
 
 def test_answers_are_frozen_and_can_be_pickled() -> None:
@@ -116,6 +192,9 @@ def test_answers_are_frozen_and_can_be_pickled() -> None:
         (lambda: pp.separation(BALL, BALL, tolerance=-1), pp.QueryError, "-1"),
         (lambda: pp.separations(BALL, BALL, [[0, 0, 0], [np.nan, 0, 0]]), pp.QueryError, "1"),
         (lambda: pp.separations(BALL, BALL, [0, 0, 0]), ValueError, "poses must have the shape (n, …)"),
+        (lambda: pp.separations(BALL, BALL, np.zeros((2**40, 0))), ValueError, "poses must have the shape (n, …)"),
+        (lambda: pp.separations(BALL, BALL, np.zeros((0, 5))), ValueError, "poses must have the shape (n, …)"),
+        (lambda: pp.sweep(BALL, BALL, start=[3, 0, 0], end=[0, 0, 0], budget=0), pp.Error, ""),
         (lambda: pp.separations(BALL, BALL, [[0, 0, 0, 0, 0, 0, 0]]), ValueError, "poses[0]"),
         (lambda: pp.separations(BALL, BALL, np.ones((2, 4, 4))), ValueError, "poses[0]: the last row of a pose"),
         (lambda: pp.cast_ray(BALL, [0, 2, 0], [0, 0, 0]), pp.QueryError, "direction"),
@@ -123,6 +202,7 @@ def test_answers_are_frozen_and_can_be_pickled() -> None:
         (lambda: pp.manifold(BALL, BALL, margin=-1), pp.QueryError, "got -1.0 m"),
         (lambda: bool(pp.overlap(PLATE, PEG, budget=1)), ValueError, "undecided"),
         (lambda: pp.Track(BALL, pp.ball(1, dimension=2)), ValueError, "got 3D and 2D"),
+        (lambda: pp.World({"a": BALL}).first_impacts({"a": [np.nan, 0, 0]}), pp.Error, ""),
         (lambda: pp.sweep(BALL, BALL, start=[np.inf, 0, 0]), pp.Error, ""),
     ],
 )

@@ -46,13 +46,125 @@ def test_a_feel_is_that_of_the_program(tmp_path: Path) -> None:
 
 
 def test_a_servo_has_events_snapshots_and_a_trace() -> None:
-    with pp.Servo(SCENE, hand=PATH, duration=0.3, record=0.3) as servo:
+    with pp.Servo(SCENE, hand=PATH, duration=0.3) as servo:
         kinds = [event.kind for event in servo.events()]
         assert servo.has_ended
     assert kinds[0] == "touch" and "leave" in kinds
     assert servo.report["ticks"] == 300 and len(servo.trace) == 300
     frame = pa.table(servo.trace.columns())
     assert frame.num_rows == 300 and "force_y" in frame.column_names
+
+
+def test_a_scene_says_where_bodies_are_and_how_they_feel() -> None:
+    down = [[0, 0, 0.08, 0], [0.3, 0, 0.045, 0]]
+
+    def pressed(**how: object) -> float:
+        scene = pp.Scene({"ball": pp.ball(0.05)}, **how)
+        assert pp.Scene.from_json(scene.to_json()) == scene
+        return float(pp.feel(scene, hand=down, duration=0.3).trace.force[-1, 1])
+
+    soft, hard = [pressed(materials={"ball": {"stiffness": np.float64(k)}}) for k in (100, 1000)]
+    assert 0 < soft < hard
+    assert pressed(materials={"ball": "rubber"}) > 0
+    assert pressed(poses={"ball": [0, -0.1, 0]}) == 0
+    assert pressed(tool={"radius": 0.008, "max_force": 0.5}) == pytest.approx(0.5, abs=1e-3)
+    # A guide pulls where no body is.
+    far = pp.Scene(pp.ball(0.05), guides=[{"point": np.array([0.02, 0.08, 0]), "stiffness": 100}])
+    assert pp.feel(far, hand=[0, 0.08, 0], duration=0.2).trace.force[-1, 0] > 0.2
+    # A body that moves comes to the hand.
+    comes = [{"body": "body", "to": {"translation": [0, 0.03, 0]}, "duration": 0.2}]
+    assert pp.feel(pp.Scene(pp.ball(0.05), motions=comes), hand=[0, 0.06, 0], duration=0.3).trace.contact[-1]
+    for how, error, words in [
+        ({"materials": {"cup": "rubber"}}, KeyError, "no body is called 'cup': there are ball"),
+        ({"materials": {"ball": {"hardness": 3}}}, pp.SceneError, "hardness"),
+        ({"poses": {"cup": [0, 0, 0]}}, KeyError, "cup"),
+        ({"tool": {"radius": -1.0}}, pp.SceneError, "tool.radius"),
+        ({"tool": {"radius": object()}}, TypeError, "got a object"),
+        ({"guides": [{"points": 1}]}, pp.SceneError, "guides[0]"),
+    ]:
+        with pytest.raises(error) as caught:
+            pp.Scene({"ball": pp.ball(0.05)}, **how)
+        assert words in str(caught.value)
+
+
+def test_tools_have_points_and_shapes() -> None:
+    fork = pp.Scene(pp.ball(0.05), tool={"points": [[-0.01, 0, 0], [0.01, 0, 0]], "radius": 0.002})
+    felt = pp.feel(fork, hand=[[0, 0, 0.08, 0], [0.3, 0, 0.045, 0]], duration=0.3)
+    assert len(felt.trace) == 600 and set(felt.trace.point) == {0, 1}
+    left, right = [felt.trace.force[felt.trace.point == point][-1] for point in (0, 1)]
+    assert left[1] > 0 and left[1] == pytest.approx(right[1]) and left[0] == pytest.approx(-right[0])
+    # One path for each point leads them as one that carries them.
+    apart = np.array([[[0, x, 0.08, 0], [0.3, x, 0.045, 0]] for x in (-0.01, 0.01)])
+    assert np.array_equal(pp.feel(fork, hand=apart, duration=0.3).trace.force, felt.trace.force)
+    assert len(pp.feel(fork, duration=0.1).trace) == 200
+    peg = {"shape": pp.capsule(0.004, 0.03)}
+    held = pp.feel(pp.Scene(pp.ball(0.05), tool=peg), hand=[[0, 0, 0.08, 0], [0.3, 0, 0.045, 0]], duration=0.3)
+    assert held.trace.force[-1, 1] > 0 and len(held.trace) == 300
+    assert len(pp.feel(pp.Scene(pp.ball(0.05), tool=peg), duration=0.1).trace) == 100
+    # Without a tool, points follow each other.
+    assert set(pp.feel(pp.ball(0.05), points=3, duration=0.1).trace.point) == {0, 1, 2}
+    assert set(pp.feel(pp.ball(0.05), hand=apart, duration=0.1).trace.point) == {0, 1}
+    with pytest.raises(ValueError, match="give one path, which carries the tool, or 2"):
+        pp.feel(fork, hand=apart[:1])
+    with pytest.raises(ValueError, match="points= is about the tour"):
+        pp.feel(pp.ball(0.05), hand=[0, 0.06, 0], points=2)
+    with pytest.raises(ValueError, match="contact point"):
+        pp.feel(pp.ball(0.05), points=0)
+
+
+def test_ticks_are_kept_for_a_duration_or_as_long_as_is_said() -> None:
+    with pp.Servo(SCENE, hand=[0, 0.06, 0], duration=0.05, record=0.02) as servo:
+        servo.wait()
+    assert len(servo.trace) == 20 and servo.trace.lost == 30
+    with pp.Servo(SCENE, hand=[0, 0.06, 0]) as servo:
+        pass
+    with pytest.raises(RuntimeError, match="by record="):
+        _ = servo.trace
+
+
+def test_a_servo_that_is_asked_while_another_thread_reads_it_goes_on() -> None:
+    # The stage was locked while Python ran: a thread that waited for it with the interpreter's lock stopped all.
+    with pp.Servo(SCENE, hand=PATH, duration=0.5) as servo:
+
+        def ask() -> None:
+            while not servo.has_ended:
+                servo.latest()
+                servo.take_events()
+                servo.limit_force(1.0)
+                servo.set_poses({"ball": [0, 0, 0]})
+
+        threads = [threading.Thread(target=ask, daemon=True) for _ in range(4)]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join(60)
+        assert not any(thread.is_alive() for thread in threads)
+
+
+def test_the_last_events_outlive_the_thread() -> None:
+    with pp.Servo(SCENE, hand=[0, 0.049, 0], duration=0.05) as servo:
+        servo.wait()
+        servo.end()
+        assert [event.kind for event in servo.events()][0] == "touch"
+        assert servo.take_events() == []
+    with pytest.raises(RuntimeError, match="does not run"):
+        servo.stop()
+
+
+def test_two_threads_may_end_a_servo() -> None:
+    with pp.Servo(SCENE, hand=[0, 0.06, 0]) as servo:
+        threads = [threading.Thread(target=servo.end) for _ in range(4)]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join(60)
+            assert servo.has_ended and servo.report["ticks"] >= 0
+
+
+def test_devices_are_listed() -> None:
+    for name, profile in pp.device_profiles().items():
+        assert profile["max_force"] >= 0
+        assert len(pp.feel(SCENE, device=name, hand=[0, 0.06, 0], duration=0.002, rate=1000).trace) == 2
 
 
 def test_bodies_move_and_forces_are_limited() -> None:
@@ -128,12 +240,15 @@ def test_what_cannot_be_touched_is_refused() -> None:
     for make, error, words in [
         (lambda: pp.Servo(SCENE, device="omeg"), pp.UnknownNameError, "omeg"),
         (lambda: pp.Servo(SCENE, device=3), TypeError, "the name of a profile or a Mailbox"),
-        (lambda: pp.Servo(SCENE, hand=[0, 0]), ValueError, "hand must have the shape (3,), or (n, 4) with times first"),
+        (lambda: pp.Servo(SCENE, hand=[0, 0]), ValueError, "hand must have the shape (3,), or (n, 4) or (points, n, 4) with times first"),
         (lambda: pp.Servo(SCENE, hand=[0, np.nan, 0]), pp.Error, ""),
-        (lambda: pp.Servo(SCENE, record=-1.0), ValueError, "record must be 0 s to"),
-        (lambda: pp.Servo(SCENE, record=1e9), ValueError, "record must be 0 s to"),
+        (lambda: pp.Servo(SCENE, record=-1.0), ValueError, "are kept for 0 s to 10000 s, got -1 s"),
+        (lambda: pp.Servo(SCENE, record=1e9), ValueError, "ticks of 1 contact points at 1000 Hz are kept"),
+        (lambda: pp.Servo(SCENE, device=pp.Mailbox(), hand=[0, 0, 0]), TypeError, "a Mailbox sets its own positions"),
+        (lambda: pp.Mailbox(points=2**60), ValueError, "points must be 1 to 1000"),
+        (lambda: pp.feel(SCENE, points=10**12), ValueError, "points must be 1 to 1000"),
         (lambda: pp.Servo(SCENE, rate=-5.0), pp.Error, "rate"),
-        (lambda: pp.feel(SCENE, duration=-1.0), (pp.Error, ValueError), ""),
+        (lambda: pp.feel(SCENE, duration=-1.0), ValueError, "duration must be 0.0005 s to 1000000 s at 1000 Hz, got -1 s"),
         (lambda: pp.Servo(pp.Scene(pp.half_space([0, 1, 0], 0.0))), ValueError, "no body has bounds"),
     ]:
         with pytest.raises(error) as caught:

@@ -23,7 +23,12 @@ def asked(_: int) -> float:
     """A call that uses threads."""
     points = np.random.default_rng(1).uniform(-1, 1, (100_000, 3))
     found = pp.separations(S, pp.ball(0.1), points[:50], threads=2)
-    return float(S.distance(points, threads=2).sum() + found.lower.sum())
+    # What bakes and draws shared the threads of all processors, which a child of fork waited for without end.
+    baked = S.baked(cell=0.05, threads=2)
+    again = pp.Shape.from_json(pp.ball(0.3).baked(cell=0.05).to_json())
+    drawn = pp.ball(0.5).render(width=40, height=30, threads=2).pixels.sum()
+    grids = baked.distance(points).sum() + again.distance(points).sum() + drawn
+    return float(S.distance(points, threads=2).sum() + found.lower.sum() + grids)
 
 
 # A process that has threads may deadlock where it forks: that is what is tested.
@@ -43,6 +48,11 @@ CALLS = {
     "overlaps": "pp.overlaps(many, many, np.full((200_000, 3), 1.3), threads=2)",
     "feel": "pp.feel(pp.Scene(many), hand=[0, 0.09, 0], duration=1000.0)",
     "mesh": "many.mesh(cell=0.002)",
+    "tolerance": "many.mesh(tolerance=1e-6)",
+    "baked": "many.baked(cell=0.004)",
+    "mass": "many.mass(tolerance=1e-12, cells=1_000_000_000)",
+    "contacts": "pp.mesh_contacts(many, pp.ball(0.5).mesh(cell=0.01), gap=0.5, tolerance=1e-12, budget=2_000_000_000)",
+    "function": "pp.separation(slow, many, tolerance=1e-9)",
     "render": "many.render(width=6000, height=4000)",
     "events": "[e for s in [pp.Servo(pp.Scene(many), hand=[0, 9, 0]).__enter__()] for e in s.events()]",
 }
@@ -55,6 +65,7 @@ import palpate as pp
 signal.signal(signal.SIGINT, signal.default_int_handler)
 many = pp.union(pp.ball(0.1).translated([0.3 * x, 0.3 * y, 0.3 * z]).twisted(degrees=3)
                 for x in range(6) for y in range(6) for z in range(6))
+slow = pp.from_function(lambda p: (time.sleep(0.01), np.linalg.norm(p, axis=1) - 0.1)[1], lipschitz=1.0, bounds=[[-1] * 3, [1] * 3])
 def interrupt():
     time.sleep(0.5)
     interrupt.at = time.perf_counter()
@@ -105,7 +116,7 @@ VALUES: list[Any] = [
     lambda *_: 0, "omega", "quadratic", "xy", 1e9, 5, 7, np.float32(0.5), np.int8(3),
 ]  # fmt: skip
 
-LEFT_OUT = {"render", "feel", "Servo", "batch", "plot_contacts", "main", "save", "mesh", "sample", "figure", "plot", "mass"}
+LEFT_OUT = {"baked", "render", "feel", "Servo", "batch", "plot_contacts", "main", "save", "mesh", "sample", "figure", "plot", "mass"}
 
 
 def test_no_call_panics() -> None:

@@ -9,6 +9,7 @@ use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
 
+use palpate::devices::DeviceError;
 use palpate::field::{Aabb, LARGEST_LENGTH, Shape, Vector};
 use palpate::local::GradientMethod;
 use palpate::mesh::Opening;
@@ -276,12 +277,9 @@ pub(crate) fn joined(numbers: &[f64]) -> String {
     numbers.iter().map(f64::to_string).collect::<Vec<_>>().join(", ")
 }
 
-/// The error of a scene without bounds where bounds are needed.
-pub(crate) const NO_BOUNDS: &str = "the scene must have a body with bounds";
-
 /// The box around all bounded bodies of a scene.
 pub(crate) fn bounds<const D: usize>(scene: &BuiltScene<D>) -> Result<Aabb<D>, Failure> {
-    scene.bounds().ok_or_else(|| Failure::input(NO_BOUNDS))
+    scene.bounds().ok_or_else(|| Failure::input(DeviceError::NoBounds))
 }
 
 /// The longest edge of a box [m].

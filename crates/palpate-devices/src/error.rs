@@ -59,6 +59,17 @@ pub enum DeviceError {
     /// The box of a tour contains no surface.
     #[error("no surface was found in the box of a hand path over a shape")]
     NothingToTouch,
+    /// No body of a scene has bounds.
+    #[error("the scene must have a body with bounds")]
+    NoBounds,
+    /// A hand swings a tool for no time, or too long.
+    #[error("a hand swings a tool for more than 0 s and at most {longest} s, got {duration} s")]
+    SwingDuration {
+        /// The longest duration [s].
+        longest: f64,
+        /// The duration given [s].
+        duration: f64,
+    },
     /// A device has no contact point.
     #[error("a device needs at least one contact point")]
     NoContactPoint,

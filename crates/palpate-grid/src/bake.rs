@@ -4,6 +4,7 @@
 //! Grids from shapes.
 
 use std::ops::ControlFlow;
+use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use palpate_field::kernel::Cuboid;
@@ -73,6 +74,16 @@ impl<const D: usize> Grid<D> {
     ///
     /// As [`bake`](Self::bake), and if `progress` breaks.
     pub fn bake_with(
+        shape: &Shape<D>,
+        options: &GridOptions,
+        progress: &(dyn Fn(Progress) -> ControlFlow<()> + Sync),
+    ) -> Result<Self, GridError> {
+        let mut grid = Self::made_of(shape, options, progress)?;
+        grid.source = Some(Arc::new((shape.clone(), options.clone())));
+        Ok(grid)
+    }
+
+    fn made_of(
         shape: &Shape<D>,
         options: &GridOptions,
         progress: &(dyn Fn(Progress) -> ControlFlow<()> + Sync),

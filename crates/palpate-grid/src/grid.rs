@@ -3,7 +3,9 @@
 
 //! A grid: its samples, what is certified of them, and how they are interpolated.
 
-use palpate_field::{Aabb, Bounds, Deviation, Point, Promise, Rounding, Vector};
+use std::sync::Arc;
+
+use palpate_field::{Aabb, Bounds, Deviation, Point, Promise, Rounding, Shape, Vector};
 
 use crate::certificate::Certificate;
 use crate::control::{MOST_TAPS, gather};
@@ -11,8 +13,9 @@ use crate::curvature::Curvature;
 use crate::error::GridError;
 use crate::far::Far;
 use crate::lattice::{Lattice, indices, raveled};
+use crate::options::GridOptions;
 use crate::outside::{at_border, outside};
-use crate::samples::{BRICK, Samples, Store, WIDE};
+use crate::samples::{BRICK, Codes, Order, Samples, Store, WIDE};
 use crate::slopes::{SLOPE_BLOCK, Slopes};
 use crate::spline::{Kernel, OfTaps, QUADRATIC, Spline, TRILINEAR};
 
@@ -39,6 +42,7 @@ pub struct Grid<const D: usize> {
     /// From this size on a value may be clamped [m].
     clamped: f64,
     promise: Promise<D>,
+    pub(crate) source: Option<Arc<(Shape<D>, GridOptions)>>,
 }
 
 impl<const D: usize> Grid<D> {
@@ -66,6 +70,32 @@ impl<const D: usize> Grid<D> {
         self.samples.codes.len()
     }
 
+    /// The samples [m], one for each node, the first axis first, where they are all that is known of the grid, as of one
+    /// [of samples](Self::from_samples) in single precision; `None` of others.
+    ///
+    /// ```
+    /// use palpate_field::Vector;
+    /// use palpate_grid::{Grid, Kernel, Lattice, Store};
+    ///
+    /// # fn main() -> Result<(), palpate_grid::GridError> {
+    /// let lattice = Lattice { origin: Vector([-1.0, -1.0]), cell: 1.0, counts: [3, 3] };
+    /// let samples = [0.5, 0.5, 0.5, 0.5, -0.25, 0.5, 0.5, 0.5, 0.5];
+    /// let grid = Grid::from_samples(lattice, &samples, Kernel::Trilinear, Store::F32)?;
+    /// assert_eq!(grid.samples(), Some(samples.to_vec()));
+    /// # Ok(())
+    /// # }
+    /// ```
+    #[must_use]
+    pub fn samples(&self) -> Option<Vec<f64>> {
+        let is_known_by_them = self.promise.deviation.is_none() && self.far.is_none();
+        match (&self.samples.codes, &self.samples.order) {
+            (Codes::F32(codes), Order::Dense { .. }) if is_known_by_them => {
+                Some(codes.iter().map(|code| f64::from(*code)).collect())
+            }
+            _ => None,
+        }
+    }
+
     /// The size to which values are clamped [m]; infinite if they are not.
     #[must_use]
     pub fn band(&self) -> f64 {
@@ -76,6 +106,24 @@ impl<const D: usize> Grid<D> {
     #[must_use]
     pub fn promise(&self) -> &Promise<D> {
         &self.promise
+    }
+
+    /// The shape of which it was baked, and what was asked for; `None` if it was read from a file, made of samples or
+    /// rebuilt.
+    ///
+    /// ```
+    /// use palpate_field::Shape;
+    /// use palpate_grid::{Grid, GridOptions};
+    ///
+    /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+    /// let (ball, options) = (Shape::circle(0.05)?, GridOptions::with_cell(0.01));
+    /// assert_eq!(Grid::bake(&ball, &options)?.source(), Some((&ball, &options)));
+    /// # Ok(())
+    /// # }
+    /// ```
+    #[must_use]
+    pub fn source(&self) -> Option<(&Shape<D>, &GridOptions)> {
+        self.source.as_deref().map(|(shape, options)| (shape, options))
     }
 
     /// How far its values are certified to be off those of its source [m]; infinite if that is not known.
@@ -149,6 +197,7 @@ impl<const D: usize> Grid<D> {
             far,
             clamped,
             promise,
+            source: None,
         };
         let [least, margin] = match kernel {
             Kernel::Quadratic => grid.border::<QUADRATIC>(&bounds),

@@ -40,7 +40,7 @@ mod tree;
 #[cfg(feature = "files")]
 mod write;
 
-pub use contour::{ContourError, ContourOptions};
+pub use contour::{ContourError, ContourOptions, FitProgress, FittedMesh};
 pub use error::MeshError;
 pub use mesh::{Mesh, Outline, TriangleMesh};
 pub use polygon::MOST_CORNERS;

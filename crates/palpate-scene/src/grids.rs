@@ -5,9 +5,9 @@
 
 use std::path::Path;
 
-use palpate_field::Shape;
-use palpate_grid::{Grid, GridError, GridOptions, Kernel, Resolution, Store};
-use serde::Deserialize;
+use palpate_field::{Shape, Vector};
+use palpate_grid::{Grid, GridError, GridOptions, Kernel, Lattice, Resolution, Store};
+use serde::{Deserialize, Serialize};
 
 use crate::beside::{Beside, Kept, Stamp};
 use crate::problem::Problem;
@@ -32,53 +32,153 @@ pub(crate) enum Source<const D: usize> {
 /// The grids that are kept.
 pub(crate) type KeptGrids<const D: usize> = Kept<Source<D>, Shape<D>>;
 
-/// A grid as a file gives it.
-#[derive(Deserialize)]
+/// A grid as a scene gives it: a file, or samples.
+#[derive(Deserialize, Serialize)]
 #[serde(deny_unknown_fields, expecting = "an object")]
 pub(crate) struct WrittenGrid {
-    file: String,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    file: Option<String>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    counts: Option<Vec<usize>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    cell: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    origin: Option<Vec<f64>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    kernel: Option<String>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    samples: Option<Vec<f64>>,
 }
 
 impl WrittenGrid {
-    /// The grid of the file, which is looked for in `folder`.
+    /// What a scene says of a grid of samples; `None` of one that samples alone do not make again.
+    pub(crate) fn of<const D: usize>(grid: &Grid<D>) -> Option<Self> {
+        let lattice = grid.lattice();
+        let has_own_name = grid.kernel() != Kernel::Quadratic;
+        Some(Self {
+            file: None,
+            counts: Some(lattice.counts.to_vec()),
+            cell: Some(lattice.cell),
+            origin: Some(lattice.origin.0.to_vec()),
+            kernel: has_own_name.then(|| grid.kernel().name().to_owned()),
+            samples: Some(grid.samples()?),
+        })
+    }
+
+    /// The grid; a file is looked for in `folder`.
     pub(crate) fn built<const D: usize>(
         &self,
         folder: Option<&Path>,
         kept: &KeptGrids<D>,
     ) -> Result<Shape<D>, Problem> {
-        let in_file = |problem: Problem| problem.under("file");
-        let Beside { path, stamp } =
-            Beside::of("a grid", &self.file, folder).map_err(in_file)?;
-        let source = Source::File(stamp.clone());
-        if let Some(known) = kept.of(&source) {
-            return Ok(known);
+        match self {
+            Self {
+                file: Some(file),
+                counts: None,
+                cell: None,
+                origin: None,
+                kernel: None,
+                samples: None,
+            } => of_file(file, folder, kept),
+            Self {
+                file: None,
+                counts: Some(counts),
+                cell: Some(cell),
+                origin: Some(origin),
+                kernel,
+                samples: Some(samples),
+            } => {
+                let lattice = Lattice {
+                    origin: Vector(along_axes(origin, "origin")?),
+                    cell: *cell,
+                    counts: along_axes(counts, "counts")?,
+                };
+                let kernel = match kernel {
+                    None => Kernel::Quadratic,
+                    Some(name) => named(
+                        name,
+                        "kernel",
+                        Kernel::ALL.map(|kernel| (kernel.name(), kernel)),
+                    )?,
+                };
+                let grid = Grid::from_samples(lattice, samples, kernel, Store::F32);
+                grid.map(Shape::from).map_err(|error| Problem::new(error.to_string()))
+            }
+            _ => Err(Problem::new(
+                "must have `file`, or `samples` with `counts`, `cell` and `origin`",
+            )),
         }
-        let grid =
-            Grid::<D>::open(&path).map_err(|error| in_file(Problem::new(error.to_string())))?;
-        let samples = grid.stored_samples();
-        let shape = grid.into();
-        kept.keep(
-            source,
-            &shape,
-            samples,
-            |known| matches!(known, Source::File(known) if known.is_of_same_file(&stamp)),
-        );
-        Ok(shape)
     }
 }
 
+/// A number for each axis.
+fn along_axes<T: Copy, const D: usize>(given: &[T], key: &str) -> Result<[T; D], Problem> {
+    given.try_into().map_err(|_| {
+        Problem::new(format!("must have {D} numbers, got {}", given.len())).under(key)
+    })
+}
+
+/// The grid of a file.
+fn of_file<const D: usize>(
+    file: &str,
+    folder: Option<&Path>,
+    kept: &KeptGrids<D>,
+) -> Result<Shape<D>, Problem> {
+    let in_file = |problem: Problem| problem.under("file");
+    let Beside { path, stamp } = Beside::of("a grid", file, folder).map_err(in_file)?;
+    let source = Source::File(stamp.clone());
+    if let Some(known) = kept.of(&source) {
+        return Ok(known);
+    }
+    let grid =
+        Grid::<D>::open(&path).map_err(|error| in_file(Problem::new(error.to_string())))?;
+    let samples = grid.stored_samples();
+    let shape = grid.into();
+    kept.keep(
+        source,
+        &shape,
+        samples,
+        |known| matches!(known, Source::File(known) if known.is_of_same_file(&stamp)),
+    );
+    Ok(shape)
+}
+
 /// How a shape is baked, as a file gives it.
-#[derive(Deserialize)]
+#[derive(Deserialize, Serialize)]
 #[serde(deny_unknown_fields, expecting = "an object")]
 pub(crate) struct WrittenBake {
+    #[serde(skip_serializing_if = "Option::is_none")]
     tolerance: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
     cell: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
     kernel: Option<String>,
+    #[serde(skip_serializing_if = "Option::is_none")]
     store: Option<String>,
+    #[serde(skip_serializing_if = "Option::is_none")]
     band: Option<f64>,
 }
 
 impl WrittenBake {
+    /// What a file says of these options.
+    pub(crate) fn of(options: &GridOptions) -> Result<Self, Problem> {
+        let own = GridOptions::with_resolution(options.resolution);
+        if options.certified != own.certified {
+            let message = format!(
+                "files have no word for values certified to {} cells",
+                options.certified
+            );
+            return Err(Problem::new(message));
+        }
+        let (tolerance, cell) = match options.resolution {
+            Resolution::Tolerance(tolerance) => (Some(tolerance), None),
+            Resolution::Cell(cell) => (None, Some(cell)),
+        };
+        let kernel = (options.kernel != own.kernel).then(|| options.kernel.name().to_owned());
+        let store = (options.store != own.store).then(|| options.store.name().to_owned());
+        Ok(Self { tolerance, cell, kernel, store, band: options.band })
+    }
+
     fn options(&self) -> Result<GridOptions, Problem> {
         let resolution = match (self.tolerance, self.cell) {
             (Some(tolerance), None) => Resolution::Tolerance(tolerance),

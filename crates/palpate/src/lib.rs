@@ -45,6 +45,8 @@
 //! literature, without bounds; `mint` and `glam` convert vectors and poses.
 
 mod error;
+#[cfg(feature = "scene")]
+pub mod hands;
 pub mod prelude;
 
 pub use error::{Error, ErrorKind};

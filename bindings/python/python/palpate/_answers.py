@@ -20,10 +20,6 @@ if TYPE_CHECKING:
 
 Floats: TypeAlias = NDArray[np.float64]
 
-#: The reasons to stop, in the order of the numbers in :attr:`Separations.stops`.
-STOPS = ("converged", "sign_known", "budget_spent", "memory_full", "rounding_reached")
-
-
 class _Answer:
     """Equality of fields that may be arrays."""
 
@@ -203,9 +199,10 @@ class Manifold(_Answer):
 
     Fields:
         lower: The separation is at least this [m].
-        upper: The distance of the bodies is at most this [m].
+        upper: The distance of the bodies is at most this [m]: 0 if they overlap, infinite if none is known or it is
+            more than the margin.
         stop: Why the search for more contacts ended.
-        evaluations: How often the fields were evaluated for the separation.
+        evaluations: How often the fields were evaluated, for the separation and the contacts.
         points_a: The points of the first body [m], shape (n, D).
         points_b: The points of the second body [m], shape (n, D).
         normals: The unit vectors from the first to the second, shape (n, D).
@@ -288,12 +285,14 @@ class Mass(_Answer):
         mass: The mass [kg].
         mass_error: How far it may be off [kg].
         volume: The volume [m³], in the plane the area [m²].
-        volume_error: How far it may be off.
+        volume_error: How far it may be off [m³], in the plane [m²].
         density: The density that was given [kg/m³], in the plane [kg/m²].
         centroid: The centroid [m], shape (D,).
         centroid_error: How far it may be off [m].
         second_moments: The integrals of density · x · y about the centroid [kg·m²], shape (D, D).
-        second_moments_error: How far each may be off.
+        second_moments_error: How far each may be off [kg·m²].
+        inertia: In space the inertia tensor about the centroid [kg·m²], shape (3, 3); in the plane the moment of inertia
+            about it.
         cells: How many cells were cut.
     """
 
@@ -306,6 +305,7 @@ class Mass(_Answer):
     centroid_error: float
     second_moments: Floats
     second_moments_error: float
+    inertia: Floats | float
     cells: int
 
 
@@ -347,6 +347,28 @@ class MeshReport(_Answer):
 
     def __str__(self) -> str:
         return self.in_words
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class MeshHits(_Answer):
+    """Which faces of a mesh touch a shape, by :func:`mesh_hits`.
+
+    Fields:
+        hits: The faces that touch, proven.
+        undecided: The faces of which the budget proved neither.
+        lower: The field on each undecided face is at least this [m].
+        upper: The least value of the field on each undecided face is at most this [m].
+        evaluations: How often the field was evaluated.
+    """
+
+    hits: NDArray[np.uint32]
+    undecided: NDArray[np.uint32]
+    lower: Floats
+    upper: Floats
+    evaluations: int
+
+    def __len__(self) -> int:
+        return len(self.hits)
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -453,8 +475,9 @@ class Event(_Answer):
     Fields:
         tick: The tick, from 0.
         point: The contact point.
-        body: The name of the body.
-        kind: "touch", "leave", "slip", "stick" or "pop".
+        body: The name of the body; None of a button.
+        button: The number of the button, from 0; None of what is no button.
+        kind: "touch", "leave", "slip", "stick", "pop", "button_down" or "button_up".
         speed: Of a touch, the speed along the normal, relative to the body [m/s].
         force: Of a pop, the force that broke the layer [N].
     """
@@ -462,6 +485,7 @@ class Event(_Answer):
     tick: int
     point: int
     body: str | None
+    button: int | None
     kind: str
     speed: float | None
     force: float | None
@@ -480,7 +504,7 @@ class Trace(_Answer):
         force: The force that was written [N], shape (n, D).
         normal: The outward unit normal, shape (n, D).
         contact: Whether a body is touched, shape (n,).
-        body: The number of the body, shape (n,); without meaning where none is touched.
+        body: The place of the body in ``scene.names``, shape (n,); without meaning where none is touched.
         is_slipping: Whether the proxy slips, shape (n,).
         evaluations: How often the field was evaluated, shape (n,).
         cost_ns: How long the tick took [ns], shape (n,).
@@ -564,6 +588,19 @@ class FirstTouch(_Answer):
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
+class Impact(FirstTouch):
+    """When two bodies of a world touch first, by :meth:`World.first_impacts`.
+
+    Fields are those of :class:`FirstTouch`, and:
+        a: The name of the first body.
+        b: The name of the second.
+    """
+
+    a: str
+    b: str
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
 class Neighbours(_Answer):
     """Two bodies of a world that are near each other, by :meth:`World.step`.
 
@@ -589,7 +626,7 @@ class Neighbours(_Answer):
         """Why the search for contacts ended.
 
         >>> import palpate as pp
-        >>> [near.stop for near in pp.World(pp.Scene({"a": pp.ball(0.5), "b": pp.ball(0.4)})).step()]
+        >>> [near.stop for near in pp.World({"a": pp.ball(0.5), "b": pp.ball(0.4)}).step()]
         ['converged']
         """
-        return self.manifold.stop if self.manifold else None
+        return None if self.manifold is None else self.manifold.stop

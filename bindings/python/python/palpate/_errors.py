@@ -61,7 +61,7 @@ class ShapeError(Error, ValueError):
 
 
 class QueryError(Error, ValueError):
-    """A question has no answer: neither body is bounded, or a setting is no length."""
+    """A question has no answer: neither body is bounded, a pose is not finite, or a setting is out of range."""
 
 
 class SceneError(Error, ValueError):
@@ -81,7 +81,7 @@ class HapticsError(Error, ValueError):
 
 
 class DeviceError(Error, ValueError):
-    """A device has a profile that cannot be."""
+    """A device, a hand path or a tour has a number that cannot be."""
 
 
 class DeviceLostError(Error, RuntimeError):

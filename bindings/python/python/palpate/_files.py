@@ -5,8 +5,9 @@
 from __future__ import annotations
 
 import os
-import tempfile
+import secrets
 from pathlib import Path
+from typing import IO
 
 
 def replace(file: str | os.PathLike[str], content: bytes) -> None:
@@ -27,27 +28,36 @@ def claim(file: Path, content: bytes) -> bool:
         os.link(name, file)
     except FileExistsError:
         return False
+    except OSError:
+        # Some file systems have no links. A file that is cut off there is told to be damaged.
+        return _created(file, content)
     finally:
         os.unlink(name)
     return True
 
 
+def _created(file: str | os.PathLike[str], content: bytes) -> bool:
+    try:
+        with open(file, "xb") as out:
+            _written(out, content)
+    except FileExistsError:
+        return False
+    return True
+
+
+def _written(out: IO[bytes], content: bytes) -> None:
+    out.write(content)
+    out.flush()
+    os.fsync(out.fileno())
+
+
 def _beside(place: Path, content: bytes) -> str:
     """Writes a file of another name into the folder of a place; gives that name."""
-    handle, name = tempfile.mkstemp(prefix=f".{place.name}.", dir=place.parent)
+    name = place.with_name(f".{place.name}.{secrets.token_hex(8)}")
     try:
-        with os.fdopen(handle, "wb") as out:
-            out.write(content)
-            out.flush()
-            os.fsync(out.fileno())
-        os.chmod(name, 0o666 & ~_umask())
+        with open(name, "xb") as out:
+            _written(out, content)
     except BaseException:
-        os.unlink(name)
+        name.unlink(missing_ok=True)
         raise
-    return name
-
-
-def _umask() -> int:
-    mask = os.umask(0)
-    os.umask(mask)
-    return mask
+    return str(name)

@@ -16,9 +16,11 @@ from palpate._answers import (
     Event,
     Felt,
     FirstTouch,
+    Impact,
     Manifold,
     Mass,
     MeshContacts,
+    MeshHits,
     MeshReport,
     Neighbours,
     Overlap,
@@ -31,7 +33,10 @@ from palpate._answers import (
 )
 from palpate._types import Plane, Profile, Row
 
+STOPS: tuple[str, ...]
+
 __all__ = [
+    "STOPS",
     "Figure",
     "Image",
     "Mailbox",
@@ -44,13 +49,16 @@ __all__ = [
     "cast_ray",
     "catalogue",
     "closest_points",
+    "device_profiles",
     "difference",
     "feel",
     "from_function",
+    "from_samples",
     "intersection",
     "main",
     "manifold",
     "mesh_contacts",
+    "mesh_hits",
     "overlap",
     "overlaps",
     "primitive",
@@ -174,12 +182,28 @@ class Shape:
         tolerance: float | None = None,
         cells: int | None = None,
     ) -> Mass: ...
-    def mesh(self, *, cell: float) -> Mesh: ...
+    def mesh(self, *, cell: float | None = None, tolerance: float | None = None) -> Mesh: ...
+    def baked(
+        self,
+        *,
+        tolerance: float | None = None,
+        cell: float | None = None,
+        kernel: Literal["quadratic", "trilinear"] = "quadratic",
+        store: Literal["f32", "i16", "i8"] = "f32",
+        band: float | None = None,
+        threads: int = 1,
+    ) -> Shape: ...
     def figure(
         self, *, plane: Plane = "xy", at: float = 0.0, title: str | None = None
     ) -> Figure: ...
     def render(
-        self, *, width: int = 640, height: int = 480, yaw: float = 35.0, pitch: float = 25.0
+        self,
+        *,
+        width: int = 640,
+        height: int = 480,
+        yaw: float = 35.0,
+        pitch: float = 25.0,
+        threads: int = 1,
     ) -> Image: ...
     def plot(self, *, plane: Plane = "xy", at: float = 0.0, ax: Any = None) -> Any: ...
     def sample(
@@ -226,7 +250,16 @@ class Mesh:
 
 @final
 class Scene:
-    def __new__(cls, bodies: Shape | Mapping[str, Shape]) -> Scene: ...
+    def __new__(
+        cls,
+        bodies: Shape | Mapping[str, Shape],
+        *,
+        poses: dict[str, Any] | None = None,
+        materials: Mapping[str, Any] | None = None,
+        tool: Mapping[str, Any] | None = None,
+        guides: Sequence[Mapping[str, Any]] | None = None,
+        motions: Sequence[Mapping[str, Any]] | None = None,
+    ) -> Scene: ...
     @staticmethod
     def load(file: str | PathLike[str]) -> Scene: ...
     @staticmethod
@@ -263,8 +296,9 @@ class Servo:
         *,
         device: str | Mailbox | None = None,
         hand: ArrayLike | None = None,
+        points: int = 1,
         duration: float | None = None,
-        record: float = 0.0,
+        record: float | None = None,
         rate: float = 1000.0,
     ) -> Servo: ...
     def __enter__(self) -> Servo: ...
@@ -293,16 +327,33 @@ class Track:
         *,
         a: ArrayLike | None = None,
         b: ArrayLike | None = None,
-        tolerance: float = 0.0001,
-        budget: int = 200000,
+        tolerance: float | None = None,
+        budget: int | None = None,
     ) -> Separation: ...
+    def manifold(
+        self,
+        *,
+        a: ArrayLike | None = None,
+        b: ArrayLike | None = None,
+        margin: float | None = None,
+        spacing: float | None = None,
+        most: int | None = None,
+        tolerance: float | None = None,
+        budget: int | None = None,
+    ) -> Manifold: ...
     def forget(self) -> None: ...
 
 @final
 class World:
-    def __new__(cls, scene: Scene, *, margin: float | None = None) -> World: ...
+    def __new__(
+        cls, scene: Scene | Shape | Mapping[str, Shape], *, margin: float | None = None
+    ) -> World: ...
     def set_poses(self, poses: dict[str, Any]) -> None: ...
+    def pose(self, name: str) -> NDArray[np.float64]: ...
     def step(self, *, threads: int = 1) -> list[Neighbours]: ...
+    def first_impacts(
+        self, ends: dict[str, Any], *, gap: float | None = None, budget: int | None = None
+    ) -> list[Impact]: ...
 
 def sweep(
     a: Shape,
@@ -313,15 +364,18 @@ def sweep(
     a_start: ArrayLike | None = None,
     a_end: ArrayLike | None = None,
     gap: float | None = None,
+    budget: int | None = None,
 ) -> FirstTouch: ...
 def feel(
     scene: Scene | Shape | Mapping[str, Shape],
     *,
     device: str | None = None,
     hand: ArrayLike | None = None,
+    points: int = 1,
     duration: float = 10.0,
     rate: float = 1000.0,
 ) -> Felt: ...
+def device_profiles() -> dict[str, dict[str, Any]]: ...
 def union(*shapes: Shape | Iterable[Shape]) -> Shape: ...
 def intersection(*shapes: Shape | Iterable[Shape]) -> Shape: ...
 def difference(*shapes: Shape | Iterable[Shape]) -> Shape: ...
@@ -377,16 +431,33 @@ def mesh_contacts(
     shape: Shape,
     mesh: Mesh | Any,
     *,
+    pose: ArrayLike | None = None,
     gap: float = 0.0,
     tolerance: float | None = None,
     budget: int | None = None,
 ) -> MeshContacts: ...
+def mesh_hits(
+    shape: Shape,
+    mesh: Mesh | Any,
+    *,
+    pose: ArrayLike | None = None,
+    gap: float = 0.0,
+    tolerance: float | None = None,
+    budget: int | None = None,
+) -> MeshHits: ...
 def from_function(
     function: Callable[[NDArray[np.float64]], ArrayLike],
     *,
-    lipschitz: float = 1.0,
+    lipschitz: float,
     bounds: ArrayLike | None = None,
     dimension: int = 3,
+) -> Shape: ...
+def from_samples(
+    samples: ArrayLike,
+    *,
+    cell: float,
+    origin: ArrayLike | None = None,
+    kernel: Literal["quadratic", "trilinear"] = "quadratic",
 ) -> Shape: ...
 def primitive(name: str, dimension: int, values: Sequence[Any]) -> Shape: ...
 def catalogue() -> list[dict[str, Any]]: ...

@@ -133,11 +133,16 @@ def sample(
     if not 0 <= around < np.inf:
         raise ValueError(f"margin must be zero or more, got {around} m")
     low, high = shape.bounds[0] - around, shape.bounds[1] + around
-    counts = np.ceil((high - low) / spacing - 1e-9).astype(np.int64) + 1
-    if np.prod(counts.astype(float)) > MOST_VALUES:
-        raise ValueError(
-            f"{' × '.join(map(str, counts))} nodes are more than {MOST_VALUES}: take a larger spacing"
-        )
-    sides = [low[k] + spacing * np.arange(counts[k]) for k in range(shape.dimension)]
-    points = np.stack(np.meshgrid(*sides, indexing="ij"), axis=-1)
-    return shape.distance(points, threads=threads), low, spacing
+    with np.errstate(over="ignore"):
+        counts = np.ceil((high - low) / spacing - 1e-9) + 1
+    if not np.prod(counts) <= MOST_VALUES:
+        nodes = " × ".join(f"{count:.0f}" for count in counts)
+        raise ValueError(f"{nodes} nodes are more than {MOST_VALUES}: take a larger spacing")
+    first, *others = [low[k] + spacing * np.arange(int(counts[k])) for k in range(shape.dimension)]
+    values = np.empty([int(count) for count in counts])
+    # Points of all nodes would take several times as much memory as the values.
+    slab = np.stack(np.meshgrid([0.0], *others, indexing="ij"), axis=-1)[0]
+    for place, own in zip(first, values, strict=True):
+        slab[..., 0] = place
+        shape.distance(slab, out=own, threads=threads)
+    return values, low, spacing

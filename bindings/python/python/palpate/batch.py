@@ -51,6 +51,12 @@ SECONDS = 1.0
 #: How many rows the pilot takes to find that out.
 PILOT = 1000
 
+#: A chunk has no more rows: those of a quarter of a second of the cheapest shapes, some 100 MB in all.
+MOST_ROWS = 4_000_000
+
+#: Files that were being written so long ago are of workers that died [s].
+OLD = 3600.0
+
 #: Chunks that wait at each worker, so that none is idle.
 AHEAD = 2
 
@@ -117,8 +123,11 @@ def overlaps(
 ) -> Run:
     """Whether two shapes overlap, with the second at each of many poses; see :func:`palpate.overlaps`.
 
-    ``count`` is how many poses a function gives. ``chunk`` is how many poses a chunk has; left out, a pilot finds how
-    many take a second. ``progress`` gets how many poses are done and how many there are. Columns: ``overlaps``.
+    ``folder`` is made if it is not there; a run that is there goes on. ``count`` is how many poses a function gives.
+    ``executor`` is any of ``concurrent.futures``, left out a ``ThreadPoolExecutor`` of ``workers`` threads; for others
+    ``workers`` says how many work at once. ``chunk`` is how many poses a chunk has; left out, a pilot finds how many take
+    a second, by up to 1000 poses in this process. ``progress`` gets how many poses are done and how many there are.
+    Columns: ``overlaps``, as of :func:`palpate.overlaps`.
 
     >>> import palpate as pp, numpy as np, tempfile
     >>> ball = pp.ball(0.5)
@@ -222,7 +231,12 @@ def _columns(job: dict[str, Any], rows: NDArray[Any]) -> dict[str, NDArray[Any]]
 def _undecided(columns: dict[str, NDArray[Any]]) -> int:
     if "overlaps" in columns:
         return int((columns["overlaps"] == -1).sum())
-    return int((columns["stop"] > 1).sum()) if "stop" in columns else 0
+    from palpate._palpate import STOPS
+
+    if "stop" not in columns:
+        return 0
+    decided = [STOPS.index(name) for name in ("converged", "sign_known")]
+    return int((~np.isin(columns["stop"], decided)).sum())
 
 
 def _name(start: int) -> str:
@@ -239,7 +253,20 @@ def _rows(source: Any, start: int, stop: int) -> NDArray[Any]:
     return rows
 
 
-def _work(folder: str, job: dict[str, Any], source: Any, start: int, stop: int) -> tuple[int, float, int]:
+def _digest(job: dict[str, Any]) -> str:
+    return hashlib.sha256(json.dumps(job, sort_keys=True).encode()).hexdigest()
+
+
+@lru_cache(maxsize=8)
+def _job(folder: str, digest: str) -> dict[str, Any]:
+    """The job of a run, from its manifest: once in each worker."""
+    job = json.loads((Path(folder) / MANIFEST).read_text(encoding="utf-8"))["job"]
+    if _digest(job) != digest:
+        raise ValueError(f"{Path(folder) / MANIFEST} is not that of this run: was the folder replaced meanwhile?")
+    return dict(job)
+
+
+def _work(folder: str, digest: str, source: Any, start: int, stop: int) -> tuple[int, float, int]:
     """Answers a chunk and writes it whole; in a worker."""
     import io
 
@@ -247,20 +274,20 @@ def _work(folder: str, job: dict[str, Any], source: Any, start: int, stop: int) 
     import pyarrow.parquet as pq
 
     begin = time.perf_counter()
-    columns = _columns(job, _rows(source, start, stop))
-    table = pa.table(columns).replace_schema_metadata(_mark(job, start))
+    columns = _columns(_job(folder, digest), _rows(source, start, stop))
+    table = pa.table(columns).replace_schema_metadata(_mark(digest, start))
     out = io.BytesIO()
     pq.write_table(table, out, compression="zstd")
     replace(Path(folder) / _name(start), out.getvalue())
     return stop - start, time.perf_counter() - begin, _undecided(columns)
 
 
-def _mark(job: dict[str, Any], start: int) -> dict[bytes, bytes]:
+def _mark(digest: str, start: int) -> dict[bytes, bytes]:
     """What a part says that it is."""
-    return {b"palpate": json.dumps(job, sort_keys=True).encode(), b"start": str(start).encode()}
+    return {b"palpate": digest.encode(), b"start": str(start).encode()}
 
 
-def _is_there(place: Path, job: dict[str, Any], start: int, rows: int) -> bool:
+def _is_there(place: Path, digest: str, start: int, rows: int) -> bool:
     """Whether a part is there and whole, and of this chunk of this run."""
     import pyarrow.parquet as pq
 
@@ -270,7 +297,7 @@ def _is_there(place: Path, job: dict[str, Any], start: int, rows: int) -> bool:
     except (OSError, ValueError):
         return False
     own = found.metadata or {}
-    return bool(found.num_rows == rows and _mark(job, start).items() <= own.items())
+    return bool(found.num_rows == rows and _mark(digest, start).items() <= own.items())
 
 
 def _source(source: Source, count: int | None) -> tuple[Any, int, dict[str, Any]]:
@@ -279,7 +306,8 @@ def _source(source: Source, count: int | None) -> tuple[Any, int, dict[str, Any]
         if count is None:
             raise TypeError("count= must say how many rows the function gives")
         first = np.ascontiguousarray(source(0, min(count, PILOT)))
-        return source, count, {"rows": count, "first": hashlib.sha256(first.tobytes()).hexdigest()}
+        form = {"rows": count, "dtype": first.dtype.str, "shape": list(first.shape[1:])}
+        return source, count, {**form, "first": hashlib.sha256(first.tobytes()).hexdigest()}
     if isinstance(source, (str, PathLike)):
         file = str(Path(source).resolve())
         rows = np.load(file, mmap_mode="r")
@@ -291,12 +319,12 @@ def _source(source: Source, count: int | None) -> tuple[Any, int, dict[str, Any]
         raise TypeError(f"rows must be an array of numbers with an axis of rows, got {rows.dtype} of {rows.shape}")
     # A copy: what the caller does with the array meanwhile changes nothing.
     whole = np.array(rows, order="C")
-    form: dict[str, Any] = {"rows": len(whole), "dtype": whole.dtype.str, "shape": list(whole.shape)}
-    return whole, len(whole), {**form, "digest": hashlib.sha256(whole.tobytes()).hexdigest()}
+    array = {"rows": len(whole), "dtype": whole.dtype.str, "shape": list(whole.shape)}
+    return whole, len(whole), {**array, "digest": hashlib.sha256(whole.tobytes()).hexdigest()}
 
 
 def _pilot(job: dict[str, Any], source: Any, count: int) -> int:
-    """How many rows take about a second."""
+    """How many rows take about a second, by answering the first ones here."""
     rows = min(PILOT, count)
     if rows == 0:
         return 1
@@ -307,7 +335,7 @@ def _pilot(job: dict[str, Any], source: Any, count: int) -> int:
     # Two digits are enough, and say that no more is known.
     wanted = SECONDS / each
     unit = 10.0 ** max(math.floor(math.log10(max(wanted, 1.0))) - 1, 0)
-    return max(int(wanted / unit) * int(unit), 1)
+    return min(max(int(wanted / unit) * int(unit), 1), MOST_ROWS)
 
 
 def _run(
@@ -330,9 +358,10 @@ def _run(
     if count is not None and count != rows:
         raise ValueError(f"the source has {rows} rows, count is {count}")
     chunk = _agreed(place, job, known, given, rows, chunk)
-    starts = range(0, rows, chunk)
+    _tidy(place)
+    starts, digest = range(0, rows, chunk), _digest(job)
     waiting = [
-        start for start in starts if not _is_there(place, job, start, min(chunk, rows - start))
+        start for start in starts if not _is_there(place, digest, start, min(chunk, rows - start))
     ]
     resumed = len(starts) - len(waiting)
     done, seconds, undecided = rows - sum(min(chunk, rows - start) for start in waiting), 0.0, 0
@@ -341,7 +370,7 @@ def _run(
     assert engine is not None
     many = AHEAD * (workers or _workers(engine))
     try:
-        for size, spent, open_ in _asked(engine, many, str(place), job, given, waiting, chunk, rows):
+        for size, spent, open_ in _asked(engine, many, str(place), digest, given, waiting, chunk, rows):
             done, seconds, undecided = done + size, seconds + spent, undecided + open_
             if progress:
                 progress(done, rows)
@@ -356,6 +385,13 @@ def _run(
     )
 
 
+def _tidy(place: Path) -> None:
+    """Removes what dead workers left half written."""
+    for left in place.glob(".part-*"):
+        if time.time() - left.stat().st_mtime > OLD:
+            left.unlink(missing_ok=True)
+
+
 def _workers(engine: Executor) -> int:
     return int(getattr(engine, "_max_workers", 0) or cpu_count() or 1) if isinstance(
         engine, ThreadPoolExecutor
@@ -366,7 +402,7 @@ def _asked(
     engine: Executor,
     many: int,
     folder: str,
-    job: dict[str, Any],
+    digest: str,
     source: Any,
     waiting: list[int],
     chunk: int,
@@ -383,7 +419,7 @@ def _asked(
                     break
                 stop = min(start + chunk, rows)
                 own = source[start:stop] if isinstance(source, np.ndarray) else source
-                open_.add(engine.submit(_work, folder, job, own, start, stop))
+                open_.add(engine.submit(_work, folder, digest, own, start, stop))
             if not open_:
                 return
             ready, open_ = wait(open_, return_when=FIRST_COMPLETED)

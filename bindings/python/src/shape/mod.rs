@@ -7,15 +7,17 @@ mod methods;
 
 use palpate::field::Shape;
 use palpate::scene::WrittenShape;
-use pyo3::exceptions::PyTypeError;
+use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 
 use crate::answers;
+use crate::call::detached_in;
 use crate::chain::{Boolean, Chain};
 use crate::error::OrRaise;
 use crate::evaluate::{self, Slopes};
 use crate::operators::{Combination, combined, listed};
+use crate::pool;
 use crate::text;
 
 /// A shape in the plane or in space.
@@ -61,7 +63,8 @@ impl AnyShape {
 /// A body in the plane or in space, as a field: the signed distance to its surface, or a bound of it.
 ///
 /// Shapes come from constructors (`ball`, `cuboid`, …), operators and texts. They cannot change; two are equal if
-/// they are made alike, and `repr` is what makes them again. `|`, `&`, `-` and `^` are union, intersection,
+/// they are made alike. `repr` is the expression that makes a shape again; of a mesh or a function it names what it
+/// is. `|`, `&`, `-` and `^` are union, intersection,
 /// difference and symmetric difference.
 ///
 /// >>> import palpate as pp
@@ -221,10 +224,15 @@ impl PyShape {
     #[pyo3(signature = (text, *, dimension = 3))]
     fn from_json(py: Python<'_>, text: &str, dimension: usize) -> PyResult<Self> {
         let written = WrittenShape::from_json(text).or_raise(py)?;
-        Ok(match dimension {
-            2 => written.build::<2>().or_raise(py)?.into(),
-            _ => written.build::<3>().or_raise(py)?.into(),
-        })
+        // Grids of the shape are baked here.
+        let pool = pool::of_at_least_one(1)?;
+        match dimension {
+            2 => Ok(detached_in(py, &pool, || written.build::<2>())?.or_raise(py)?.into()),
+            3 => Ok(detached_in(py, &pool, || written.build::<3>())?.or_raise(py)?.into()),
+            other => {
+                Err(PyValueError::new_err(format!("dimension must be 2 or 3, got {other}")))
+            }
+        }
     }
 
     fn __repr__(&self, py: Python<'_>) -> PyResult<String> {

@@ -6,11 +6,10 @@
 use palpate::devices::HandPath;
 use palpate::devices::{Device, DeviceError, Glove, Hand, RecordedDevice, SimulatedDevice};
 use palpate::field::Vector;
-use palpate::haptics::WorkspaceMap;
+use palpate::haptics::{Tool, WorkspaceMap};
 use palpate::scene::BuiltScene;
 use serde_json::{Value, json};
 
-use super::tool::Held;
 use crate::arguments::DeviceChoice;
 use crate::numbers::rounded;
 use crate::outcome::Failure;
@@ -19,12 +18,11 @@ use crate::outcome::Failure;
 /// holds `bounds`, of the scene or of the places of a tool.
 pub(super) fn map<const D: usize>(
     scene: &BuiltScene<D>,
-    tool: Option<&Held<D>>,
+    tool: Option<&Tool<D>>,
     choice: &DeviceChoice,
 ) -> Result<WorkspaceMap<D>, Failure> {
     match choice {
         DeviceChoice::Simulated(choice) => {
-            let tool = tool.map(|held| &held.tool);
             scene.workspace_of(&choice.profile, tool).map_err(Failure::input)
         }
         DeviceChoice::Recorded | DeviceChoice::Glove => Ok(scene.workspace.unwrap_or_default()),

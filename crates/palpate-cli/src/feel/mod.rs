@@ -22,7 +22,8 @@ use std::io::{self, IsTerminal};
 use std::time::Duration;
 
 use palpate::devices::HandPath;
-use palpate::haptics::{HapticsError, Probe, Progress, SafetyError};
+use palpate::hands::swing;
+use palpate::haptics::{HapticsError, Probe, Progress, SafetyError, Tool};
 use palpate::scene::{AnyScene, BuiltScene, BuiltTool, ServoSettings};
 use palpate::servo_loop::{Ending, Pace, Recorder, RunOptions, RunReport, run as run_servo};
 
@@ -81,7 +82,7 @@ where
     let ticks = limits::ticks(duration, options.rate)?;
     let contacts = paths.len();
     let turns = match &tool {
-        Some(_) if options.path.is_none() => Some(tool::turns(duration)?),
+        Some(_) if options.path.is_none() => Some(swing(duration).map_err(Failure::input)?),
         _ => None,
     };
     let map = held::map(scene, tool.as_ref(), &choice)?;
@@ -185,7 +186,7 @@ where
 fn hands<const D: usize>(
     scene: &BuiltScene<D>,
     options: &FeelOptions,
-    tool: Option<&tool::Held<D>>,
+    tool: Option<&Tool<D>>,
     outputs: &Outputs,
 ) -> Result<Vec<HandPath<D>>, Failure> {
     if let Some(file) = &options.path {
@@ -197,10 +198,7 @@ fn hands<const D: usize>(
     if outputs.keep_ticks() {
         limits::rows::<D>(ticks * points as f64)?;
     }
-    match tool {
-        Some(tool) => Ok(vec![tool.path(duration)?]),
-        None => paths::on_tour(scene, options, duration),
-    }
+    paths::on_tour(scene, options, duration)
 }
 
 /// Whether a page shows what is felt: the built-in gallery, in real time, to a person.

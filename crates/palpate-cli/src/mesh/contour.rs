@@ -10,7 +10,9 @@ use std::ops::ControlFlow;
 use std::path::Path;
 
 use palpate::field::{Quality, Shape};
-use palpate::mesh::{ContourError, ContourOptions, Format, Report, Solid, TriangleMesh};
+use palpate::mesh::{
+    ContourError, ContourOptions, FitProgress, FittedMesh, Format, Report, Solid, TriangleMesh,
+};
 use palpate::scene::AnyScene;
 use serde_json::json;
 
@@ -24,12 +26,6 @@ use crate::progress::Progress;
 
 /// Cells along the longest side of the scene unless the options say another number.
 const CELLS: f64 = 100.0;
-
-/// Cells along the longest side with which a tolerance is tried first.
-const FIRST_TRY: f64 = 30.0;
-
-/// How often cells are made smaller for a tolerance.
-const MOST_TRIES: usize = 12;
 
 /// Steps of the progress.
 const STEPS: f64 = 1000.0;
@@ -150,104 +146,43 @@ struct Work<'a> {
     interrupt: &'a Interrupt,
 }
 
-/// A try with cells of one size.
-enum Try {
-    Made(Made),
-    /// No cell sees the surface.
-    TooCoarse(Failure),
-    Refused(Failure),
-    Stopped,
-}
-
 impl Work<'_> {
     /// The mesh with the cells that the options ask for; `None` if the program is asked to end.
     fn made(&self) -> Result<Option<Made>, Failure> {
+        let refused = |error: &dyn Display| Failure::file(&self.options.file, error);
         let Some(bounds) = self.shape.promise().bounds else {
-            return Err(Failure::file(&self.options.file, ContourError::Unbounded));
+            return Err(refused(&ContourError::Unbounded));
         };
-        let longest = longest_edge(&bounds.aabb);
-        let Some(tolerance) = self.options.tolerance else {
-            let cell = self.options.cell.unwrap_or(longest / CELLS);
-            return match self.with_cells(cell, f64::INFINITY) {
-                Try::Made(made) => Ok(Some(made)),
-                Try::Stopped => Ok(None),
-                Try::Refused(failure) | Try::TooCoarse(failure) => Err(failure),
-            };
-        };
-        let mut cell = (longest / FIRST_TRY).max(tolerance);
-        let (mut last, mut refused) = (None, None);
-        for _ in 0..MOST_TRIES {
-            let off = match self.with_cells(cell, tolerance) {
-                Try::Made(made) if made.error[1] <= tolerance => return Ok(Some(made)),
-                Try::Made(made) => last.insert(made).error[1],
-                Try::Stopped => return Ok(None),
-                Try::TooCoarse(failure) => {
-                    refused = Some(failure);
-                    f64::INFINITY
-                }
-                Try::Refused(failure) => {
-                    refused = Some(failure);
-                    break;
-                }
-            };
-            // Errors go with the square of a cell where a surface is curved, with the cell at edges.
-            cell *= (0.9 * tolerance / off).sqrt().clamp(0.3, 0.9);
-        }
-        // The last mesh is the best. Its error was looked at only until it was above the tolerance.
-        match (last, refused) {
-            (Some(last), _) => {
-                Ok(self.measured(last.mesh, last.cell.unwrap_or(cell), f64::INFINITY))
-            }
-            (None, Some(failure)) => Err(failure),
-            (None, None) => Ok(None),
-        }
-    }
-
-    /// The mesh with cells of a size; its error, as far as it is not above `most` [m].
-    fn with_cells(&self, cell: f64, most: f64) -> Try {
         let shown = Progress::of("making triangles");
-        let mut progress = |share: f64| {
+        let mut progress = |FitProgress { cell, share }: FitProgress| {
             let cells = format_args!("cells of {} m", rounded(cell));
             shown.show((share * STEPS) as usize, STEPS as usize, cells);
-            self.is_going_on()
-        };
-        let options =
-            ContourOptions::with_cell(cell).with_single_precision(self.format.is_single());
-        let mesh = TriangleMesh::of_shape_with(self.shape, &options, &mut progress);
-        drop(shown);
-        let refused = |error: &dyn Display| Failure::file(&self.options.file, error);
-        let mesh = match mesh {
-            Ok(mesh) => mesh.in_format(self.format),
-            Err(ContourError::Stopped) => return Try::Stopped,
-            Err(error @ ContourError::NoSurface { .. }) => {
-                return Try::TooCoarse(refused(&error));
+            if self.interrupt.is_asked() {
+                ControlFlow::Break(())
+            } else {
+                ControlFlow::Continue(())
             }
-            Err(error) => return Try::Refused(refused(&error)),
         };
-        match mesh {
-            Ok(mesh) => self.measured(mesh, cell, most).map_or(Try::Stopped, Try::Made),
-            Err(error) => Try::Refused(refused(&error)),
-        }
-    }
-
-    /// The mesh with its error. An error above `most` [m] is not looked at further: it is then what was found.
-    fn measured(&self, mesh: TriangleMesh, cell: f64, most: f64) -> Option<Made> {
-        let mut known = 0.0;
-        let error = mesh.largest_distance_with(self.shape, &mut |found| {
-            known = found;
-            if found > most { ControlFlow::Break(()) } else { self.is_going_on() }
-        });
-        if error.is_none() && self.interrupt.is_asked() {
-            return None;
-        }
-        Some(Made { mesh, cell: Some(cell), error: error.unwrap_or([known; 2]) })
-    }
-
-    fn is_going_on(&self) -> ControlFlow<()> {
-        if self.interrupt.is_asked() {
-            ControlFlow::Break(())
-        } else {
-            ControlFlow::Continue(())
+        let by = |cell| {
+            ContourOptions::with_cell(cell).with_single_precision(self.format.is_single())
+        };
+        let longest = longest_edge(&bounds.aabb);
+        let fitted = match self.options.tolerance {
+            Some(tolerance) => {
+                FittedMesh::by_tolerance(self.shape, tolerance, &by(longest), &mut progress)
+            }
+            None => {
+                let cell = self.options.cell.unwrap_or(longest / CELLS);
+                FittedMesh::by_cells(self.shape, &by(cell), &mut progress)
+            }
+        };
+        match fitted {
+            Ok(FittedMesh { mesh, cell, error, .. }) => {
+                let mesh = mesh.in_format(self.format).map_err(|error| refused(&error))?;
+                Ok(Some(Made { mesh, cell: Some(cell), error }))
+            }
+            Err(ContourError::Stopped) => Ok(None),
+            Err(error) => Err(refused(&error)),
         }
     }
 }

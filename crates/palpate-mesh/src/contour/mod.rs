@@ -12,6 +12,7 @@ mod cells;
 mod crossings;
 mod deviation;
 mod faces;
+mod fitted;
 mod patches;
 mod vertex;
 
@@ -25,6 +26,7 @@ use crate::mesh::{TriangleMesh, single};
 use crate::solid::crossing_faces;
 use cells::{Cells, Signed};
 use crossings::Crossing;
+pub use fitted::{FitProgress, FittedMesh};
 use patches::{EDGES, NONE, Patches};
 
 /// Cells around the bounds of the shape, on each side.
@@ -85,6 +87,12 @@ pub enum ContourError {
         /// The size given [m].
         cell: f64,
     },
+    /// A tolerance is no length.
+    #[error("the tolerance must be positive and finite, got {tolerance} m")]
+    Tolerance {
+        /// The tolerance given [m].
+        tolerance: f64,
+    },
     /// The shape has no bounds.
     #[error("the shape has no bounds: intersect it with a box first")]
     Unbounded,
@@ -103,6 +111,19 @@ pub enum ContourError {
     NoSurface {
         /// The size of a cell [m].
         cell: f64,
+    },
+    /// No mesh within a tolerance was found.
+    #[error(
+        "no mesh within {tolerance} m was found: with cells of {cell} m the field is up to {proven} m on a triangle; \
+         allow more, or choose the cells"
+    )]
+    NotReached {
+        /// The tolerance [m].
+        tolerance: f64,
+        /// The size of the cells of the last try [m].
+        cell: f64,
+        /// The largest field that a triangle of the last try may have [m].
+        proven: f64,
     },
     /// A value of the shape is no number.
     #[error("the shape's distance is no number at {point:?} [m]")]

@@ -511,7 +511,7 @@ impl<const D: usize> Default for Query<D> {
 }
 
 /// The diameter of a shape's box [m]; `None` if it is unbounded.
-fn size<const D: usize>(shape: &Shape<D>) -> Option<f64> {
+pub(crate) fn size<const D: usize>(shape: &Shape<D>) -> Option<f64> {
     shape.promise().bounds.map(|bounds| diagonal(&bounds.aabb))
 }
 
@@ -528,7 +528,7 @@ fn extent<const N: usize, const D: usize>(element: &Element<N, D>) -> Option<f64
 }
 
 /// The smaller of the sizes that are positive; zero if none is.
-fn smallest(sizes: [Option<f64>; 2]) -> f64 {
+pub(crate) fn smallest(sizes: [Option<f64>; 2]) -> f64 {
     let known = sizes.into_iter().flatten().filter(|size| *size > 0.0);
     known.reduce(f64::min).unwrap_or(0.0)
 }

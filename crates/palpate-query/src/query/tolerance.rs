@@ -24,7 +24,8 @@ pub enum Tolerance {
 
 impl Tolerance {
     /// The tolerance [m] for a smaller body of this size [m].
-    pub(super) fn for_size(self, size: f64) -> f64 {
+    #[must_use]
+    pub fn for_size(self, size: f64) -> f64 {
         match self {
             Self::Relative(share) => share * size,
             Self::Absolute(length) => length,

@@ -17,6 +17,7 @@ use crate::pair::body_pair::BodyPair;
 use crate::pair::distance_bound::DistanceBound;
 use crate::pair::search::{PairSearch, PairWorkspace};
 use crate::placed::Placed;
+use crate::query::{size, smallest};
 use history::History;
 use manifold::Kept;
 use names::Names;
@@ -102,6 +103,26 @@ impl<const D: usize> Track<D> {
     #[must_use]
     pub fn shapes(&self) -> &[Shape<D>; 2] {
         &self.shapes
+    }
+
+    /// The diameter of the smaller body's box [m], of which tolerances and settings are shares; zero if neither is
+    /// bounded.
+    ///
+    /// ```
+    /// use palpate_field::Shape;
+    /// use palpate_query::{ManifoldSettings, Track};
+    ///
+    /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+    /// let track = Track::new(Shape::<2>::half_space([0.0, 1.0], 0.0)?, Shape::rectangle([0.3, 0.4])?);
+    /// assert!((track.size() - 0.5).abs() < 1e-12);
+    /// let settings = ManifoldSettings::of_size(track.size());
+    /// assert!((settings.margin - 0.001).abs() < 1e-12);
+    /// # Ok(())
+    /// # }
+    /// ```
+    #[must_use]
+    pub fn size(&self) -> f64 {
+        smallest(self.shapes.each_ref().map(size))
     }
 
     /// Forgets all bounds: the next search begins anew.

@@ -311,17 +311,33 @@ fn volume() -> Value {
     })
 }
 
-/// The grid of a file.
+/// The grid of a file, or of samples.
 fn grid() -> Value {
+    let numbers = |about: &str| json!({ "description": about, "type": "array", "items": { "type": "number" } });
+    let of_samples = ["samples", "counts", "cell", "origin"];
+    let any_of_samples: Vec<Value> =
+        of_samples.iter().chain(&["kernel"]).map(|key| json!({ "required": [key] })).collect();
     json!({
-        "description": "A grid that was baked before: a file, beside the scene's or in a folder beside it.",
+        "description": "A field of samples: a grid that was baked before, from a file, beside the scene's or in a folder beside it; or samples that stand here.",
         "type": "object",
         "properties": {
             "file": { "description": "A file of `palpate grid`.", "type": "string", "minLength": 1 },
+            "samples": numbers("The values at the nodes [m], along the first axis first; those at the border are positive."),
+            "counts": {
+                "description": "How many nodes there are along each axis.",
+                "type": "array",
+                "items": { "type": "integer", "minimum": 2 },
+            },
+            "cell": { "description": "How far nodes are apart [m].", "type": "number", "exclusiveMinimum": 0 },
+            "origin": numbers("The place of the first node [m]."),
+            "kernel": {
+                "description": "How samples are interpolated; quadratic if left out, to be touched.",
+                "enum": Kernel::ALL.map(Kernel::name),
+            },
         },
         "oneOf": [
-            { "required": ["file"], "not": { "anyOf": [{ "required": ["vertices"] }, { "required": ["faces"] }] } },
-            { "required": ["vertices", "faces"], "not": { "required": ["scale"] } },
+            { "required": ["file"], "not": { "anyOf": any_of_samples } },
+            { "required": of_samples },
         ],
         "additionalProperties": false,
     })
@@ -387,7 +403,10 @@ fn mesh() -> Value {
                 "exclusiveMinimum": 0,
             },
         },
-        "required": ["file"],
+        "oneOf": [
+            { "required": ["file"], "not": { "anyOf": [{ "required": ["vertices"] }, { "required": ["faces"] }] } },
+            { "required": ["vertices", "faces"], "not": { "required": ["scale"] } },
+        ],
         "additionalProperties": false,
     })
 }

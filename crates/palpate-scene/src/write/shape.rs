@@ -9,6 +9,7 @@ use indexmap::IndexMap;
 use palpate_field::kernel::{Argument, ParameterKind};
 use palpate_field::operator::{Boolean, Copies};
 use palpate_field::{Node, Point, Pose, Shape, node};
+use palpate_grid::Grid;
 use palpate_mesh::{Sheet, Solid};
 use serde_json::{Map, Value, json};
 
@@ -16,6 +17,7 @@ use super::{rotation, translation};
 use crate::angle::degrees;
 use crate::build::MOST;
 use crate::catalogue::file_key;
+use crate::grids::{WrittenBake, WrittenGrid};
 use crate::keys;
 use crate::pose;
 use crate::problem::Problem;
@@ -79,6 +81,11 @@ impl Writer {
             | Node::Bent { of, .. }
             | Node::Twisted { of, .. } => self.count(of),
             Node::Extruded { of, .. } | Node::Revolved { of } => self.count(of),
+            Node::Opaque(opaque) => {
+                if let Some((of, _)) = opaque.custom::<Grid<D>>().and_then(Grid::source) {
+                    self.count(of);
+                }
+            }
             _ => {}
         }
     }
@@ -182,7 +189,18 @@ impl Writer {
             Node::Revolved { of } => {
                 return self.with_operand(json!({ keys::REVOLVE: "y" }), of);
             }
-            Node::Opaque(opaque) => return mesh(opaque),
+            Node::Opaque(opaque) => {
+                let Some(grid) = opaque.custom::<Grid<D>>() else { return mesh(opaque) };
+                let Some((of, options)) = grid.source() else {
+                    let written = WrittenGrid::of(grid).ok_or_else(|| {
+                        let message = "a grid of which samples in single precision are not all that is known cannot \
+                                       be written: save it, and name its file";
+                        Problem::new(message)
+                    })?;
+                    return Ok(json!({ keys::GRID: written }));
+                };
+                (json!({ keys::BAKE: WrittenBake::of(options)? }), of)
+            }
             other => return Err(Problem::new(format!("files have no operator for {other:?}"))),
         };
         self.with_operand(object, of)
@@ -210,8 +228,9 @@ fn mesh<const D: usize>(opaque: &node::Opaque<D>) -> Result<Value, Problem> {
         (None, Some(sheet)) => arrays(sheet.mesh().vertices(), sheet.mesh().elements()),
         (None, None) => {
             let kind = opaque.type_name();
-            let message =
-                format!("`{kind}` is opaque: files hold primitives, operators and meshes");
+            let message = format!(
+                "`{kind}` is opaque: files hold primitives, operators, meshes and grids"
+            );
             return Err(Problem::new(message));
         }
     };

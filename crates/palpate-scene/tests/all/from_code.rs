@@ -8,6 +8,7 @@ use palpate_field::kernel::Ball;
 use palpate_field::operator::{Copies, Profile};
 use palpate_field::scalar::{Dual, Scalar};
 use palpate_field::{Kernel, Point, Pose, Promise, Rotation, Shape, ShapeError, Vector};
+use palpate_grid::{Grid, GridOptions, Lattice, Store};
 use palpate_haptics::Material;
 use palpate_scene::{AnyScene, BuiltScene, Dimension, Scene, SceneBody, WrittenShape};
 use palpate_testkit::arbitrary::{PROFILES, Turn, arguments, point, tree};
@@ -332,7 +333,7 @@ fn an_opaque_shape_is_named_with_its_type_and_place() {
     let error = Scene::of_shape("it", &shape).unwrap_err();
     assert_eq!(error.first().path, "bodies[0].shape.difference[1].of");
     let problem =
-        "`all::from_code::Wave` is opaque: files hold primitives, operators and meshes";
+        "`all::from_code::Wave` is opaque: files hold primitives, operators, meshes and grids";
     assert_eq!(error.first().problem, problem);
     assert_eq!((error.first().line, error.first().column), (0, 0));
 
@@ -341,6 +342,68 @@ fn an_opaque_shape_is_named_with_its_type_and_place() {
     let error = Scene::of_shape("it", &solid.unwrap()).unwrap_err();
     assert_eq!(error.first().path, "bodies[0].shape.of.intersection[1].displace[0]");
     assert!(error.first().problem.contains("from_code::an_opaque_shape_is"), "{error}");
+}
+
+#[test]
+fn a_grid_is_written_as_it_was_baked() {
+    let disc = Shape::circle(0.05).unwrap();
+    let bakes = [
+        GridOptions::with_cell(0.01),
+        GridOptions::with_tolerance(1e-3)
+            .with_kernel(palpate_grid::Kernel::Trilinear)
+            .with_store(Store::I16)
+            .with_band(8.0),
+    ];
+    for options in bakes {
+        let grid = Shape::from(Grid::bake(&disc, &options).unwrap());
+        let shape = grid.clone() | grid.clone().translated([0.2, 0.0]).unwrap();
+        let text = Scene::of_shape("it", &shape).unwrap().to_json();
+        let read = Scene::from_json(&text).unwrap().build().unwrap();
+        let AnyScene::Planar(read) = read else { panic!("a planar scene") };
+        assert_eq!(read.bodies[0].shape, shape, "{text}");
+    }
+    // What text cannot make again is refused.
+    let certified = GridOptions::with_cell(0.01).with_certified(2.0);
+    let error = WrittenShape::of(&Grid::bake(&disc, &certified).unwrap().into()).unwrap_err();
+    assert!(error.to_string().contains("certified to 2 cells"), "{error}");
+    let lattice = Lattice { origin: Vector([-1.0; 2]), cell: 0.5, counts: [5, 5] };
+    let samples: Vec<f64> = (0..25).map(|i| if i == 12 { -0.1 } else { 0.4 }).collect();
+    let kernel = palpate_grid::Kernel::Trilinear;
+    let grid = Grid::from_samples(lattice, &samples, kernel, Store::I8).unwrap();
+    let error = WrittenShape::of(&grid.into()).unwrap_err();
+    assert!(error.to_string().contains("save it, and name its file"), "{error}");
+}
+
+#[test]
+fn a_grid_of_samples_is_written_with_them() {
+    let lattice = Lattice { origin: Vector([-1.0; 2]), cell: 0.5, counts: [5, 5] };
+    let samples: Vec<f64> = (0..25).map(|i| if i == 12 { -0.1 } else { 0.4 }).collect();
+    for kernel in palpate_grid::Kernel::ALL {
+        let grid = Grid::from_samples(lattice, &samples, kernel, Store::F32).unwrap();
+        let shape = Shape::from(grid);
+        let text = WrittenShape::of(&shape).unwrap().to_json();
+        assert_eq!(
+            WrittenShape::from_json(&text).unwrap().build::<2>().unwrap(),
+            shape,
+            "{text}"
+        );
+    }
+    for (wrong, said) in [
+        (r#"{ "grid": {} }"#, "must have `file`, or `samples`"),
+        (r#"{ "grid": { "file": "a.grid", "cell": 1 } }"#, "must have `file`, or `samples`"),
+        (
+            r#"{ "grid": { "samples": [1], "counts": [1], "cell": 1, "origin": [0, 0] } }"#,
+            "must have 2 numbers, got 1",
+        ),
+        (
+            r#"{ "grid": { "samples": [1], "counts": [4, 4], "cell": 1, "origin": [0, 0] } }"#,
+            "16",
+        ),
+    ] {
+        let error = WrittenShape::from_json(wrong).and_then(|read| read.build::<2>());
+        let error = error.unwrap_err().to_string();
+        assert!(error.contains(said), "{error}");
+    }
 }
 
 #[test]

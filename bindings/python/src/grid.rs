@@ -1,0 +1,138 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! Shapes sampled on grids.
+
+use palpate::field::{Shape, Vector};
+use palpate::grid::{Grid, GridOptions, Kernel, Lattice, Resolution, Store};
+use pyo3::exceptions::{PyTypeError, PyValueError};
+use pyo3::prelude::*;
+
+use crate::arrays::{misshapen, numbers};
+use crate::call::detached_in;
+use crate::error::OrRaise;
+use crate::interrupt::{interruptible, unless_asked};
+use crate::pool;
+use crate::poses::point;
+use crate::shape::{PyShape, of_either};
+
+#[pymethods]
+impl PyShape {
+    /// This shape sampled on a grid, a shape of its own: a distance and a gradient then take the same short time
+    /// everywhere, whatever this shape costs.
+    ///
+    /// Either `tolerance` says how far values near the surface may be off those of this shape [m], which is certified,
+    /// or `cell` how far samples are apart [m]; `promise.deviation` has what was reached. `kernel` is "quadratic",
+    /// smooth, to be touched, or "trilinear"; `store` "f32", "i16" or "i8"; `band` keeps only what lies within so many
+    /// cells of the surface. `threads` share the work, 0 for all processors; the bits do not depend on how many.
+    ///
+    /// >>> import palpate as pp
+    /// >>> grid = pp.ball(0.05).baked(tolerance=2e-4)
+    /// >>> grid.promise.deviation[0] <= 2e-4, bool(abs(grid.distance([0.06, 0, 0]) - 0.01) <= 2e-4)
+    /// (True, True)
+    #[pyo3(signature = (*, tolerance = None, cell = None, kernel = "quadratic", store = "f32", band = None, threads = 1))]
+    fn baked(
+        &self,
+        py: Python<'_>,
+        tolerance: Option<f64>,
+        cell: Option<f64>,
+        kernel: &str,
+        store: &str,
+        band: Option<f64>,
+        threads: usize,
+    ) -> PyResult<Self> {
+        let resolution = match (tolerance, cell) {
+            (Some(tolerance), None) => Resolution::Tolerance(tolerance),
+            (None, Some(cell)) => Resolution::Cell(cell),
+            _ => {
+                let problem = "one of tolerance= and cell= must be given";
+                return Err(PyTypeError::new_err(problem));
+            }
+        };
+        let mut options = GridOptions::with_resolution(resolution);
+        options.kernel = named("kernel", kernel, Kernel::ALL.map(|own| (own.name(), own)))?;
+        options.store = named("store", store, Store::ALL.map(|own| (own.name(), own)))?;
+        options.band = band;
+        of_either!(self.made(py)?, shape => Ok(baked(py, shape, &options, threads)?.into()))
+    }
+}
+
+/// A shape of samples at the nodes of a lattice: an array with an axis for each dimension [m], negative inside and
+/// positive at the border.
+///
+/// `cell` is how far nodes are apart [m], `origin` the place of the first one, 0 if left out. `kernel` is "quadratic",
+/// smooth, to be touched, or "trilinear". Samples are kept in single precision and taken as they are: the field's
+/// steepness comes from them, how far its values are off distances is not known.
+///
+/// >>> import palpate as pp, numpy as np
+/// >>> x, y, z = np.meshgrid(*[np.linspace(-1, 1, 41)] * 3, indexing="ij")
+/// >>> ball = pp.from_samples(np.sqrt(x * x + y * y + z * z) - 0.5, cell=0.05, origin=[-1, -1, -1])
+/// >>> bool(abs(ball.distance([0.7, 0, 0]) - 0.2) < 0.005), ball.promise.outside
+/// (True, 'lipschitz')
+#[pyfunction]
+#[pyo3(signature = (samples, *, cell, origin = None, kernel = "quadratic"))]
+pub(crate) fn from_samples(
+    samples: &Bound<'_, PyAny>,
+    cell: f64,
+    origin: Option<&Bound<'_, PyAny>>,
+    kernel: &str,
+) -> PyResult<PyShape> {
+    let kernel = named("kernel", kernel, Kernel::ALL.map(|own| (own.name(), own)))?;
+    // The core wants them along the first axis first.
+    let turned = samples.py().import("numpy")?.call_method1("transpose", (samples,))?;
+    let array = numbers(&turned, "samples")?;
+    let values = array.as_doubles()?;
+    match array.shape() {
+        [_, _] => of_samples::<2>(array.shape(), &values, cell, origin, kernel, samples.py()),
+        [_, _, _] => {
+            of_samples::<3>(array.shape(), &values, cell, origin, kernel, samples.py())
+        }
+        shape => Err(misshapen("samples", "(n, m) or (n, m, k)", shape)),
+    }
+}
+
+fn of_samples<const D: usize>(
+    turned: &[usize],
+    values: &[f64],
+    cell: f64,
+    origin: Option<&Bound<'_, PyAny>>,
+    kernel: Kernel,
+    py: Python<'_>,
+) -> PyResult<PyShape>
+where
+    PyShape: From<Shape<D>>,
+{
+    let origin = origin.map_or_else(|| Ok(Vector::ZERO), |origin| point(origin, "origin"))?;
+    let counts = std::array::from_fn(|i| turned[D - 1 - i]);
+    let lattice = Lattice { origin, cell, counts };
+    let pool = pool::of_at_least_one(1)?;
+    let work = || Grid::from_samples(lattice, values, kernel, Store::F32);
+    let grid = detached_in(py, &pool, work)?.or_raise(py)?;
+    Ok(Shape::from(grid).into())
+}
+
+fn baked<const D: usize>(
+    py: Python<'_>,
+    shape: &Shape<D>,
+    options: &GridOptions,
+    threads: usize,
+) -> PyResult<Shape<D>> {
+    let pool = pool::of_at_least_one(threads)?;
+    let made = interruptible(py, &pool, |stop| {
+        Grid::bake_with(shape, options, &|_| unless_asked(stop))
+    })?;
+    Ok(made.or_raise(py)?.into())
+}
+
+/// What a name stands for.
+fn named<T: Copy, const N: usize>(
+    what: &str,
+    name: &str,
+    known: [(&str, T); N],
+) -> PyResult<T> {
+    let found = known.iter().find(|(own, _)| *own == name);
+    found.map(|(_, value)| *value).ok_or_else(|| {
+        let names = known.map(|(own, _)| format!("{own:?}")).join(", ");
+        PyValueError::new_err(format!("{what} must be one of {names}, got {name:?}"))
+    })
+}
