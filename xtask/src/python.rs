@@ -21,7 +21,8 @@ pub(crate) fn test() -> Result<(), Failure> {
     }
     // The profile of the other tests, whose crates are compiled already.
     let mut build = Command::new(&python);
-    build.args(["-m", "maturin", "build", "--profile", "dev", "--locked", "--out"]);
+    build.args(["-m", "maturin", "build", "--profile", "dev", "--features", "as-tested"]);
+    build.args(["--locked", "--out"]);
     run(build.arg(&wheels).current_dir(&package))?;
     let wheel = std::fs::read_dir(&wheels)
         .map_err(|error| failed(&wheels, &error))?

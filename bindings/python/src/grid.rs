@@ -24,13 +24,13 @@ impl PyShape {
     /// Either `tolerance` says how far values near the surface may be off those of this shape [m], which is certified,
     /// or `cell` how far samples are apart [m]; `promise.deviation` has what was reached. `kernel` is "quadratic",
     /// smooth, to be touched, or "trilinear"; `store` "f32", "i16" or "i8"; `band` keeps only what lies within so many
-    /// cells of the surface. `threads` share the work, 0 for all processors; the bits do not depend on how many.
+    /// cells of the surface. More than `most_nodes` samples are refused, 67 108 864 if left out. `threads` share the work, 0 for all processors; the bits do not depend on how many.
     ///
     /// >>> import palpate as pp
     /// >>> grid = pp.ball(0.05).baked(tolerance=2e-4)
     /// >>> grid.promise.deviation[0] <= 2e-4, bool(abs(grid.distance([0.06, 0, 0]) - 0.01) <= 2e-4)
     /// (True, True)
-    #[pyo3(signature = (*, tolerance = None, cell = None, kernel = "quadratic", store = "f32", band = None, threads = 1))]
+    #[pyo3(signature = (*, tolerance = None, cell = None, kernel = "quadratic", store = "f32", band = None, most_nodes = None, threads = 1))]
     fn baked(
         &self,
         py: Python<'_>,
@@ -39,6 +39,7 @@ impl PyShape {
         kernel: &str,
         store: &str,
         band: Option<f64>,
+        most_nodes: Option<usize>,
         threads: usize,
     ) -> PyResult<Self> {
         let resolution = match (tolerance, cell) {
@@ -53,6 +54,7 @@ impl PyShape {
         options.kernel = named("kernel", kernel, Kernel::ALL.map(|own| (own.name(), own)))?;
         options.store = named("store", store, Store::ALL.map(|own| (own.name(), own)))?;
         options.band = band;
+        options.most_nodes = most_nodes.unwrap_or(options.most_nodes);
         of_either!(self.made(py)?, shape => Ok(baked(py, shape, &options, threads)?.into()))
     }
 }

@@ -60,7 +60,8 @@ impl PyShape {
     /// >>> mesh = pp.cuboid([0.3, 0.2, 0.1]).mesh(cell=0.017)
     /// >>> mesh.is_watertight, round(mesh.report().enclosed, 9)
     /// (True, 0.006)
-    /// >>> len(pp.ball(0.5).mesh(tolerance=1e-3)) > len(pp.ball(0.5).mesh(tolerance=1e-2))
+    /// >>> near = pp.ball(0.5).mesh(tolerance=1e-3)
+    /// >>> bool(abs(pp.ball(0.5).distance(near.vertices)).max() <= 1e-3)
     /// True
     #[pyo3(signature = (*, cell = None, tolerance = None))]
     fn mesh(

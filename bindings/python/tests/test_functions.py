@@ -77,7 +77,7 @@ def test_a_function_that_asks_itself_is_stopped() -> None:
     ("make", "error", "words"),
     [
         (lambda: pp.from_function(3, lipschitz=1.0), TypeError, "must be callable"),
-        (lambda: pp.from_function(norm, lipschitz=1.0, lipschitz=0), ValueError, "lipschitz must be positive"),
+        (lambda: pp.from_function(norm, lipschitz=0), ValueError, "lipschitz must be positive"),
         (lambda: pp.from_function(norm, lipschitz=1.0, dimension=4), ValueError, "dimension must be 2 or 3"),
         (lambda: pp.from_function(norm, lipschitz=1.0, bounds=[0, 1]), ValueError, "bounds must have the shape (2, 3), got (2,)"),
         (lambda: pp.from_function(norm, lipschitz=1.0, bounds=[[1] * 3, [0] * 3]), ValueError, "the lower corner"),

@@ -61,9 +61,9 @@ def test_hits_are_those_of_contacts_and_a_pose_moves_the_mesh() -> None:
 @pytest.mark.parametrize(
     "how",
     [
-        {"tolerance": 2e-4},
-        {"cell": 0.004, "kernel": "trilinear", "store": "i16"},
-        {"cell": 0.002, "band": 8.0},
+        {"tolerance": 2e-3},
+        {"cell": 0.005, "kernel": "trilinear", "store": "i16"},
+        {"cell": 0.004, "band": 8.0},
     ],
 )
 def test_a_shape_sampled_on_a_grid_is_a_shape(how: dict[str, Any]) -> None:
@@ -106,7 +106,7 @@ def test_an_array_of_samples_is_a_shape(dimension: int) -> None:
 
 def test_grids_are_of_functions_and_of_the_plane_too() -> None:
     half = [[-1.0, -1.0], [1.0, 1.0]]
-    disc = pp.from_function(lambda p: np.linalg.norm(p, axis=1) - 0.5, lipschitz=1.0, bounds=half)
+    disc = pp.from_function(lambda p: np.linalg.norm(p, axis=1) - 0.5, lipschitz=1.0, bounds=half, dimension=2)
     grid = disc.baked(cell=0.05)
     assert grid.distance([0.7, 0.0]) == pytest.approx(0.2, abs=2e-3)
     assert pp.ball(0.5, dimension=2).baked(cell=0.05).distance([0.7, 0.0]) == pytest.approx(0.2, abs=2e-3)

@@ -63,6 +63,7 @@ def test_a_first_touch_lies_between_its_bounds() -> None:
     found = pp.sweep(BALL, BALL, start=[3, 0, 0], end=[-3, 0, 0], gap=1e-6)
     assert found.touches and found.lower <= 1 / 3 <= found.upper + 1e-6
     assert found.contact is not None and found.contact.point_a[0] == pytest.approx(0.5, abs=1e-3)
+    assert pp.sweep(PLATE, PEG, start=[3, 1, 0], end=[0.1, 0, 0], gap=1e-6, budget=1).stop == "budget_spent"
     apart = pp.sweep(BALL, BALL, start=[3, 2, 0], end=[-3, 2, 0])
     assert apart.touches is False and apart.upper == 1 and apart.contact is None
     # Both come towards each other.
@@ -164,9 +165,11 @@ def test_the_inertia_is_that_of_the_book() -> None:
     mass = pp.cuboid([0.1, 0.2, 0.3]).mass(1000)
     m = 6.0
     for i, (one, two) in enumerate([(0.2, 0.3), (0.1, 0.3), (0.1, 0.2)]):
-        assert mass.inertia[i, i] == pytest.approx(m / 12 * (one**2 + two**2), rel=2e-3)
+        error = 2 * mass.second_moments_error
+        assert mass.inertia[i, i] == pytest.approx(m / 12 * (one**2 + two**2), abs=error)
+    assert error < 0.05 * mass.inertia[0, 0]
     disc = pp.ball(0.1, dimension=2).mass(10)
-    assert disc.inertia == pytest.approx(disc.mass * 0.1**2 / 2, rel=2e-3)
+    assert disc.inertia == pytest.approx(10 * np.pi * 0.1**4 / 2, abs=2 * disc.second_moments_error)
 
 
 def test_answers_are_frozen_and_can_be_pickled() -> None:
@@ -194,7 +197,6 @@ def test_answers_are_frozen_and_can_be_pickled() -> None:
         (lambda: pp.separations(BALL, BALL, [0, 0, 0]), ValueError, "poses must have the shape (n, …)"),
         (lambda: pp.separations(BALL, BALL, np.zeros((2**40, 0))), ValueError, "poses must have the shape (n, …)"),
         (lambda: pp.separations(BALL, BALL, np.zeros((0, 5))), ValueError, "poses must have the shape (n, …)"),
-        (lambda: pp.sweep(BALL, BALL, start=[3, 0, 0], end=[0, 0, 0], budget=0), pp.Error, ""),
         (lambda: pp.separations(BALL, BALL, [[0, 0, 0, 0, 0, 0, 0]]), ValueError, "poses[0]"),
         (lambda: pp.separations(BALL, BALL, np.ones((2, 4, 4))), ValueError, "poses[0]: the last row of a pose"),
         (lambda: pp.cast_ray(BALL, [0, 2, 0], [0, 0, 0]), pp.QueryError, "direction"),

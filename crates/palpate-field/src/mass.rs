@@ -31,14 +31,14 @@ use crate::scalar::Model;
 use crate::shape::Shape;
 use crate::vector::{Point, Vector};
 
-/// The least component of a model's gradient, relative to the largest: smaller ones are
-/// raised to it, so that nothing is divided by zero, and the planes are moved apart to
-/// make up for it.
-const FLATTEST: f64 = 1e-4;
+/// The least component of a model's gradient, relative to the largest: smaller ones are taken for
+/// zero, and the planes are moved apart to make up for it.
+const FLATTEST: f64 = 3e-3;
 
-/// Rounding of the closed form, in parts of the volume of the cell: its terms are up to
-/// [`FLATTEST`]⁻² times as large as their sum.
-const CANCELLATION: f64 = 1e-7;
+/// Rounding of the closed form, in parts of the volume of the cell: the terms of its second moments
+/// are up to [`FLATTEST`]⁻⁴ times as large as their sum. Ten times the largest that thousands of
+/// random planes with two such slopes show.
+const CANCELLATION: f64 = 4e-6;
 
 /// Rounding of the middle of a cell, in units of the farthest coordinate's last place: a sum, and
 /// the halvings before it.
@@ -188,25 +188,30 @@ impl<const D: usize> Moments<D> {
         Self { volume, first: [0.0; D], second }
     }
 
-    /// Those of the corner that a plane cuts off: the simplex of `corner` and the
-    /// points `edges[i]` from it along the axes.
-    fn of_simplex(corner: &[f64; D], edges: &[f64; D]) -> Self {
+    /// Those of the corner that a plane cuts off: the simplex of `corner` and the points `edges[i]`
+    /// from it along some `axes`; along the others nothing is there.
+    fn of_simplex(corner: &[f64; D], edges: &[f64; D], axes: &[usize]) -> Self {
         let mut volume = 1.0;
-        for (i, edge) in edges.iter().enumerate() {
-            volume *= edge / (i + 1) as f64;
+        for (i, axis) in axes.iter().enumerate() {
+            volume *= edges[*axis] / (i + 1) as f64;
         }
-        // Of the corners: D + 1 points, of which one differs from `corner` in axis i.
-        let count = (D + 1) as f64;
+        // Of the corners: one more than axes, of which one differs from `corner` in axis i.
+        let count = (axes.len() + 1) as f64;
         let sum: [f64; D] = std::array::from_fn(|i| count * corner[i] + edges[i]);
-        Self::of_corners(volume, &sum, |i, k| {
+        Self::of_corners(count, volume, &sum, |i, k| {
             let same = if i == k { edges[i] * edges[i] } else { 0.0 };
             count * corner[i] * corner[k] + corner[i] * edges[k] + edges[i] * corner[k] + same
         })
     }
 
-    /// Those of a simplex, from the sums of the coordinates of its corners and of their products.
-    fn of_corners(volume: f64, sum: &[f64; D], products: impl Fn(usize, usize) -> f64) -> Self {
-        let count = (D + 1) as f64;
+    /// Those of a simplex, from the number of its corners, the sums of their coordinates and of the
+    /// products of these.
+    fn of_corners(
+        count: f64,
+        volume: f64,
+        sum: &[f64; D],
+        products: impl Fn(usize, usize) -> f64,
+    ) -> Self {
         Self {
             volume,
             first: std::array::from_fn(|i| volume * sum[i] / count),
@@ -219,8 +224,6 @@ impl<const D: usize> Moments<D> {
     }
 
     /// Those of the part of the cube `[−1, 1]ᴰ` with `slopes·x ≤ limit`.
-    ///
-    /// No slope may be zero.
     fn of_cube_below(slopes: &[f64; D], limit: f64) -> Self {
         let reach: f64 = slopes.iter().map(|slope| slope.abs()).sum();
         if limit <= -reach {
@@ -229,22 +232,40 @@ impl<const D: usize> Moments<D> {
         if limit >= reach {
             return Self::of_cube();
         }
+        // Along an axis without a slope the part goes through the cube.
+        let mut all = [0; D];
+        let mut count = 0;
+        for axis in (0..D).filter(|axis| slopes[*axis] != 0.0) {
+            all[count] = axis;
+            count += 1;
+        }
+        let axes = &all[..count];
+        // The volume to the left of a corner is positive too.
+        let turned: f64 = axes.iter().map(|axis| slopes[*axis].signum()).product();
         let mut below = Self::ZERO;
-        for code in 0..1_usize << D {
+        for code in 0..1_usize << count {
             // From the lowest corner, along the axes whose bits are set.
-            let corner: [f64; D] = std::array::from_fn(|i| {
-                if (code >> i) & 1 == 1 { slopes[i].signum() } else { -slopes[i].signum() }
-            });
-            let room = limit - (0..D).map(|i| slopes[i] * corner[i]).sum::<f64>();
+            let (mut corner, mut room) = ([0.0; D], limit);
+            for (bit, axis) in axes.iter().enumerate() {
+                let side = if (code >> bit) & 1 == 1 { 1.0 } else { -1.0 };
+                corner[*axis] = side * slopes[*axis].signum();
+                room -= side * slopes[*axis].abs();
+            }
             if room > 0.0 {
-                let edges = std::array::from_fn(|i| room / slopes[i]);
+                let mut edges = [0.0; D];
+                for axis in axes {
+                    edges[*axis] = room / slopes[*axis];
+                }
                 let sign = if code.count_ones().is_multiple_of(2) { 1.0 } else { -1.0 };
-                // The volume to the left of a corner is positive too.
-                let turned: f64 = slopes.iter().map(|slope| slope.signum()).product();
-                below.add(&Self::of_simplex(&corner, &edges), sign * turned);
+                below.add(&Self::of_simplex(&corner, &edges, axes), sign * turned);
             }
         }
-        below
+        let mut through = Self::ZERO;
+        through.add(&below, 2.0_f64.powi((D - count) as i32));
+        for i in (0..D).filter(|i| slopes[*i] == 0.0) {
+            through.second[i][i] = through.volume / 3.0;
+        }
+        through
     }
 
     /// These, of points scaled by `half` and moved to `centre`.
@@ -311,15 +332,14 @@ impl<const D: usize> Filling<D> {
     /// The part that is inside, of a field whose values are off by at most `slack` [m].
     fn new(cell: MassCell<D>, model: &Model, slack: f64) -> Self {
         let largest = (0..D).fold(0.0_f64, |most, i| most.max(model.gradient[i].abs()));
-        let flattest = (FLATTEST * largest).max(f64::MIN_POSITIVE);
         let mut moved = 0.0;
         let slopes = std::array::from_fn(|i| {
             let slope = model.gradient[i];
-            if slope.abs() >= flattest {
+            if slope.abs() >= FLATTEST * largest {
                 return slope;
             }
-            moved += flattest + slope.abs();
-            flattest
+            moved += slope.abs();
+            0.0
         });
         // Rounding of the limits: a few units of the numbers in them.
         let limits = 8.0 * f64::EPSILON * (model.value.abs() + D as f64 * largest);

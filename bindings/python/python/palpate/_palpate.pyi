@@ -191,6 +191,7 @@ class Shape:
         kernel: Literal["quadratic", "trilinear"] = "quadratic",
         store: Literal["f32", "i16", "i8"] = "f32",
         band: float | None = None,
+        most_nodes: int | None = None,
         threads: int = 1,
     ) -> Shape: ...
     def figure(

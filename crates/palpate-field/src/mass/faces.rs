@@ -30,7 +30,7 @@ impl<const D: usize> Total<D> {
         }
         let products =
             |i: usize, k: usize| corners.iter().map(|corner| corner[i] * corner[k]).sum();
-        let moments = Moments::of_corners(volume, &sum, products);
+        let moments = Moments::of_corners((D + 1) as f64, volume, &sum, products);
         let longest = face.iter().fold(0.0_f64, |longest, corner| {
             longest.max((*corner - face[0]).norm()).max((*corner - face[D - 1]).norm())
         });
