@@ -109,7 +109,7 @@ def test_grids_are_of_functions_and_of_the_plane_too() -> None:
     disc = pp.from_function(lambda p: np.linalg.norm(p, axis=1) - 0.5, lipschitz=1.0, bounds=half, dimension=2)
     grid = disc.baked(cell=0.05)
     assert grid.distance([0.7, 0.0]) == pytest.approx(0.2, abs=2e-3)
-    assert pp.ball(0.5, dimension=2).baked(cell=0.05).distance([0.7, 0.0]) == pytest.approx(0.2, abs=2e-3)
+    assert pp.ball(0.5, dimension=2).baked(cell=0.05).distance([0.55, 0.0]) == pytest.approx(0.05, abs=2e-3)
     for wrong, error, words in [
         ({}, TypeError, "one of tolerance= and cell="),
         ({"cell": 0.1, "tolerance": 0.1}, TypeError, "one of tolerance= and cell="),

@@ -63,7 +63,6 @@ def test_a_first_touch_lies_between_its_bounds() -> None:
     found = pp.sweep(BALL, BALL, start=[3, 0, 0], end=[-3, 0, 0], gap=1e-6)
     assert found.touches and found.lower <= 1 / 3 <= found.upper + 1e-6
     assert found.contact is not None and found.contact.point_a[0] == pytest.approx(0.5, abs=1e-3)
-    assert pp.sweep(PLATE, PEG, start=[3, 1, 0], end=[0.1, 0, 0], gap=1e-6, budget=1).stop == "budget_spent"
     apart = pp.sweep(BALL, BALL, start=[3, 2, 0], end=[-3, 2, 0])
     assert apart.touches is False and apart.upper == 1 and apart.contact is None
     # Both come towards each other.

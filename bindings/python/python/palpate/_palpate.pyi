@@ -365,7 +365,6 @@ def sweep(
     a_start: ArrayLike | None = None,
     a_end: ArrayLike | None = None,
     gap: float | None = None,
-    budget: int | None = None,
 ) -> FirstTouch: ...
 def feel(
     scene: Scene | Shape | Mapping[str, Shape],
