@@ -337,7 +337,7 @@ fn grid() -> Value {
         },
         "oneOf": [
             { "required": ["file"], "not": { "anyOf": any_of_samples } },
-            { "required": of_samples },
+            { "required": of_samples, "not": { "required": ["file"] } },
         ],
         "additionalProperties": false,
     })
@@ -405,7 +405,10 @@ fn mesh() -> Value {
         },
         "oneOf": [
             { "required": ["file"], "not": { "anyOf": [{ "required": ["vertices"] }, { "required": ["faces"] }] } },
-            { "required": ["vertices", "faces"], "not": { "required": ["scale"] } },
+            {
+                "required": ["vertices", "faces"],
+                "not": { "anyOf": [{ "required": ["file"] }, { "required": ["scale"] }] },
+            },
         ],
         "additionalProperties": false,
     })
