@@ -227,7 +227,7 @@ fn in_chunks<T: Copy + Send + Sync, const K: usize>(
             batch.push((points, outs));
         }
         let start = Instant::now();
-        let call = pool.map_or_else(Call::default, |pool| Call::shared(pool));
+        let call = pool.map_or_else(Call::default, Call::shared);
         let work = |(points, outs)| call.run(|| work(points, outs));
         let done = py.detach(|| match pool {
             Some(pool) if batch.len() > 1 => {
