@@ -108,10 +108,13 @@ def _angle(name: str, radians: float | None, degrees: float | None) -> float:
 
 
 def _columns(points: ArrayLike) -> int:
-    """How many coordinates points have."""
+    """How many coordinates a vector or points have."""
     import numpy
 
-    return int(numpy.shape(points)[-1]) if numpy.ndim(points) else 0
+    shape = numpy.shape(points)
+    if not shape or shape[-1] not in (2, 3):
+        raise ValueError(f"2 coordinates are needed in the plane, 3 in space, got the shape {shape}")
+    return int(shape[-1])
 
 
 def arc(
