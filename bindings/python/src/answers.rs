@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! Answers, as the frozen classes of `palpate._answers`.
+//! Answers, as the frozen classes of the package.
 
 use numpy::IntoPyArray;
 use palpate::field::{Deviation, Promise, Quality, Vector};
@@ -27,7 +27,7 @@ impl<'py> Fields<'py> {
 
     /// An answer of a class with these fields.
     pub(crate) fn of_class(self, class: &str) -> PyResult<Bound<'py, PyAny>> {
-        let class = self.0.py().import("palpate._answers")?.getattr(class)?;
+        let class = self.0.py().import("palpate")?.getattr(class)?;
         class.call((), Some(&self.0))
     }
 }

@@ -7,6 +7,7 @@
 
 mod answers;
 mod arrays;
+mod batch;
 mod call;
 mod chain;
 mod devices;
@@ -46,6 +47,8 @@ mod _palpate {
     use super::answers::{STOPS, stop};
 
     #[pymodule_export]
+    use super::batch::{cast_rays, overlaps, separations};
+    #[pymodule_export]
     use super::devices::device_profiles;
     #[pymodule_export]
     use super::function::from_function;
@@ -67,9 +70,7 @@ mod _palpate {
     #[pymodule_export]
     use super::program::main;
     #[pymodule_export]
-    use super::query::{
-        cast_ray, closest_points, manifold, overlap, overlaps, separation, separations,
-    };
+    use super::query::{cast_ray, closest_points, manifold, overlap, separation};
     #[pymodule_export]
     use super::scene::PyScene;
     #[pymodule_export]

@@ -209,14 +209,14 @@ pub(crate) fn many<P: Posed>(given: &Bound<'_, PyAny>) -> PyResult<Vec<P>> {
     for i in 0..*count {
         let pose =
             P::of(given.py(), &numbers[i * size..(i + 1) * size], each).ok_or_else(wrong)?;
-        poses.push(pose.map_err(|error| at_index(given.py(), i, error))?);
+        poses.push(pose.map_err(|error| at_index(given.py(), "poses", i, error))?);
     }
     Ok(poses)
 }
 
-/// The exception of one of many poses, with its own as the cause.
-fn at_index(py: Python<'_>, index: usize, error: PyErr) -> PyErr {
-    let named = PyValueError::new_err(format!("poses[{index}]: {}", error.value(py)));
+/// The exception of one of many, with its own as the cause.
+pub(crate) fn at_index(py: Python<'_>, all: &str, index: usize, error: PyErr) -> PyErr {
+    let named = PyValueError::new_err(format!("{all}[{index}]: {}", error.value(py)));
     named.set_cause(py, Some(error));
     named
 }
@@ -234,5 +234,21 @@ pub(crate) fn point<const D: usize>(
     match (found, array.shape()) {
         (Ok(point), [_]) => Ok(Vector(point)),
         (_, shape) => Err(misshapen(what, &format!("({D},)"), shape)),
+    }
+}
+
+/// Many points or directions, or one.
+pub(crate) fn points<const D: usize>(
+    given: &Bound<'_, PyAny>,
+    what: &str,
+) -> PyResult<Vec<Vector<f64, D>>> {
+    let array = numbers(given, what)?;
+    match array.shape() {
+        [sides] | [_, sides] if *sides == D => {
+            let numbers = array.as_doubles()?;
+            let (points, _) = numbers.as_chunks::<D>();
+            Ok(points.iter().copied().map(Vector).collect())
+        }
+        shape => Err(misshapen(what, &format!("(n, {D}) or ({D},)"), shape)),
     }
 }

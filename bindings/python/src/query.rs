@@ -3,25 +3,16 @@
 
 //! Where two shapes touch, and how far apart they are.
 
-use std::time::Instant;
-
-use palpate::field::{Pose, Shape};
-use palpate::query::{
-    Certified, Manifold, ManifoldSettings, Nearest, Query, QueryError, Ray, Tolerance,
-};
+use palpate::field::Shape;
+use palpate::query::{Certified, Manifold, ManifoldSettings, Nearest, Query, Ray, Tolerance};
 use pyo3::prelude::*;
 
-use crate::answers::{Fields, certified, contact, stop, stop_number, vector};
+use crate::answers::{Fields, certified, contact, stop, vector};
 use crate::arrays::{row, table};
-use crate::call::{detached, detached_in};
+use crate::call::detached;
 use crate::error::OrRaise;
-use crate::interrupt::A_WHILE;
-use crate::pool;
-use crate::poses::{self, Posed};
+use crate::poses;
 use crate::shape::PyShape;
-
-/// Poses that are asked about from one look at Python to the next, at most.
-const MOST_POSES: usize = 1 << 16;
 
 /// Does the same with two shapes of either dimension.
 macro_rules! of_both {
@@ -243,143 +234,4 @@ fn cast<'py, const D: usize>(
         .with("point", hit.map(|hit| vector(py, hit.point)))?
         .with("normal", hit.and_then(|hit| hit.normal).map(|normal| vector(py, normal)))?
         .of_class("RayHit")
-}
-
-/// What is asked about each of many poses.
-#[derive(Clone, Copy)]
-enum Asked {
-    Separation,
-    Overlap,
-}
-
-type Found<const D: usize> = Option<Certified<Nearest<D>>>;
-
-/// How far apart two bodies are, with the second at each of many poses in the frame of the first.
-///
-/// Poses are an array of shape (n, D) of translations, in space (n, 7) of x, y, z, qx, qy, qz, qw or (n, 4, 4), in the
-/// plane (n, 3) of x, y and angle [rad] or (n, 3, 3). `threads` share the work, 0 for all processors; the bits do not
-/// depend on how many.
-///
-/// `tolerance` is how far apart the bounds may be [m], a ten-thousandth of the smaller body if left out; `budget` how
-/// often the fields are evaluated at most, 200 000 if left out.
-///
-/// >>> import palpate as pp
-/// >>> found = pp.separations(pp.ball(0.5), pp.ball(0.5), [[1.5, 0, 0], [2, 0, 0]])
-/// >>> found.upper.round(3)
-/// array([0.5, 1. ])
-#[pyfunction]
-#[pyo3(signature = (a, b, poses, *, tolerance = None, budget = None, threads = 1))]
-pub(crate) fn separations<'py>(
-    a: &PyShape,
-    b: &PyShape,
-    poses: &Bound<'py, PyAny>,
-    tolerance: Option<f64>,
-    budget: Option<u32>,
-    threads: usize,
-) -> PyResult<Bound<'py, PyAny>> {
-    of_both!(poses.py(), a, b, |a, b| {
-        let query = query(tolerance, budget);
-        told(poses.py(), &each(&query, [a, b], poses, Asked::Separation, threads)?)
-    })
-}
-
-/// Whether two bodies overlap, with the second at each of many poses: 1 yes, 0 no, -1 undecided; see `separations`.
-///
-/// >>> import palpate as pp
-/// >>> pp.overlaps(pp.ball(0.5), pp.ball(0.5), [[0.9, 0, 0], [1.1, 0, 0]])
-/// array([1, 0], dtype=int8)
-#[pyfunction]
-#[pyo3(signature = (a, b, poses, *, budget = None, threads = 1))]
-pub(crate) fn overlaps<'py>(
-    a: &PyShape,
-    b: &PyShape,
-    poses: &Bound<'py, PyAny>,
-    budget: Option<u32>,
-    threads: usize,
-) -> PyResult<Bound<'py, PyAny>> {
-    of_both!(poses.py(), a, b, |a, b| {
-        let found = each(&query(None, budget), [a, b], poses, Asked::Overlap, threads)?;
-        let verdict = |found: &Certified<_>| found.is_hit().map_or(-1_i8, i8::from);
-        Ok(row(poses.py(), found.iter().map(verdict).collect()))
-    })
-}
-
-/// The answers for all poses of the second body in the frame of the first. Python may stop them at any time.
-fn each<const D: usize>(
-    query: &Query<D>,
-    bodies: [&Shape<D>; 2],
-    poses: &Bound<'_, PyAny>,
-    asked: Asked,
-    threads: usize,
-) -> PyResult<Vec<Certified<Nearest<D>>>>
-where
-    Pose<D>: Posed,
-{
-    let py = poses.py();
-    let poses: Vec<Pose<D>> = poses::many(poses)?;
-    let pool = pool::of_at_least_one(threads)?;
-    let mut answers: Vec<Found<D>> = vec![None; poses.len()];
-    for (part, (poses, answers)) in
-        poses.chunks(MOST_POSES).zip(answers.chunks_mut(MOST_POSES)).enumerate()
-    {
-        let mut waiting: Vec<usize> = (0..poses.len()).collect();
-        while !waiting.is_empty() {
-            let asked_now: Vec<_> = waiting.iter().map(|i| poses[*i]).collect();
-            let mut found: Vec<Found<D>> = vec![None; waiting.len()];
-            let run = || {
-                // The time begins when the threads of the pool do.
-                let until = Instant::now() + A_WHILE;
-                let goes_on = || Instant::now() < until;
-                match asked {
-                    Asked::Separation => {
-                        query.separations(bodies, &asked_now, &mut found, goes_on)
-                    }
-                    Asked::Overlap => query.overlaps(bodies, &asked_now, &mut found, goes_on),
-                }
-            };
-            let outcome = detached_in(py, &pool, run)?;
-            outcome
-                .map_err(|error| in_place(error, part * MOST_POSES, &waiting))
-                .or_raise(py)?;
-            py.check_signals()?;
-            waiting = waiting
-                .into_iter()
-                .zip(found)
-                .filter_map(|(i, found)| {
-                    answers[i] = found;
-                    found.is_none().then_some(i)
-                })
-                .collect();
-        }
-    }
-    Ok(answers.into_iter().flatten().collect())
-}
-
-/// The error of a pose with its place among all.
-fn in_place(error: QueryError, before: usize, waiting: &[usize]) -> QueryError {
-    match error {
-        QueryError::Pose { index } => QueryError::Pose { index: before + waiting[index] },
-        other => other,
-    }
-}
-
-fn told<'py, const D: usize>(
-    py: Python<'py>,
-    found: &[Certified<Nearest<D>>],
-) -> PyResult<Bound<'py, PyAny>> {
-    let points = found.iter().flat_map(|found| found.best.point.0).collect();
-    let unknown = [f64::NAN; D];
-    let normals = found
-        .iter()
-        .flat_map(|found| found.best.normal.map_or(unknown, |normal| normal.0))
-        .collect();
-    let stops = found.iter().map(|found| stop_number(found.stop)).collect();
-    Fields::new(py)
-        .with("lower", row(py, found.iter().map(|found| found.lower).collect()))?
-        .with("upper", row(py, found.iter().map(|found| found.upper).collect()))?
-        .with("points", table(py, points, D)?)?
-        .with("normals", table(py, normals, D)?)?
-        .with("stops", row(py, stops))?
-        .with("evaluations", row(py, found.iter().map(|found| found.evaluations).collect()))?
-        .of_class("Separations")
 }

@@ -41,6 +41,32 @@ def test_batches_have_the_bits_of_single_questions() -> None:
     assert np.array_equal(hits == 1, many.upper < 0) or (np.abs(many.upper[(hits == 1) != (many.upper < 0)]) < 2e-4).all()
 
 
+def test_a_batch_of_rays_has_the_bits_of_single_rays() -> None:
+    origins = np.random.default_rng(4).uniform(-1, 1, (60, 3)) + [0, 2, 0]
+    down = np.array([0.0, -1.0, 0.1])
+    many = pp.cast_rays(PLATE, origins, down, 5.0, tolerance=1e-5)
+    assert len(many) == 60 and set(many.hits) == {0, 1}
+    for i, origin in enumerate(origins):
+        one = pp.cast_ray(PLATE, origin, down, 5.0, tolerance=1e-5)
+        assert (one.lower, one.upper) == (many.lower[i], many.upper[i])
+        assert pp.STOPS[many.stops[i]] == one.stop and (one.point is not None) == (many.hits[i] == 1)
+        if one.point is None:
+            assert np.isnan(many.points[i]).all() and one.upper == 5.0
+        else:
+            assert np.array_equal(one.point, many.points[i]) and np.array_equal(one.normal, many.normals[i])
+    assert pp.cast_rays(PLATE, origins, np.tile(down, (60, 1)), 5.0, tolerance=1e-5, threads=2) == many
+    fan = pp.cast_rays(PLATE, [0.25, 2, 0], [[0, -1, 0], [0, 1, 0]])
+    assert fan.hits.tolist() == [1, 0]
+    assert pp.cast_rays(PLATE, origins[:1], down, budget=1).hits.tolist() == [-1]
+    assert len(pp.cast_rays(PLATE, np.empty((0, 3)), down)) == 0
+    assert len(pp.cast_rays(pp.circle(0.5), [[0, 2], [1, 2]], [0, -1])) == 2
+
+
+def test_a_sweep_keeps_to_its_budget() -> None:
+    few = pp.sweep(PLATE, PEG, start=[0, 3, 0], end=[0, 0, 0], budget=3)
+    assert few.stop == "budget_spent" and few.touches is None
+
+
 def test_forms_of_poses_agree() -> None:
     angle, way = 0.3, [0.1, 0.2, 0.3]
     quaternion = [0, 0, math.sin(angle / 2), math.cos(angle / 2)]
@@ -200,6 +226,10 @@ def test_answers_are_frozen_and_can_be_pickled() -> None:
         (lambda: pp.separations(BALL, BALL, np.ones((2, 4, 4))), ValueError, "poses[0]: the last row of a pose"),
         (lambda: pp.cast_ray(BALL, [0, 2, 0], [0, 0, 0]), pp.QueryError, "direction"),
         (lambda: pp.cast_ray(BALL, [0, 2], [0, 0, 1]), ValueError, "origin must have the shape (3,), got (2,)"),
+        (lambda: pp.cast_rays(BALL, [[0, 2, 0]] * 2, [[0, 1, 0]] * 3), ValueError, "got 2 and 3"),
+        (lambda: pp.cast_rays(BALL, [[0, 2, 0]] * 2, [[0, 1, 0], [0, 0, 0]]), ValueError, "rays[1]: "),
+        (lambda: pp.cast_rays(BALL, np.zeros((2, 2)), [0, 1, 0]), ValueError, "shape (n, 3) or (3,), got (2, 2)"),
+        (lambda: pp.cast_rays(BALL, [0, 2, 0], [0, 1, 0], tolerance=-1), pp.QueryError, "-1"),
         (lambda: pp.manifold(BALL, BALL, margin=-1), pp.QueryError, "got -1.0 m"),
         (lambda: bool(pp.overlap(PLATE, PEG, budget=1)), ValueError, "undecided"),
         (lambda: pp.Track(BALL, pp.ball(1, dimension=2)), ValueError, "got 3D and 2D"),

@@ -50,11 +50,11 @@ pub enum QueryError {
     /// Two unbounded bodies.
     #[error("one of two bodies must be bounded, and both have no bounds")]
     Unbounded,
-    /// Not as many places for answers as poses.
-    #[error("{poses} poses need as many places for answers, got {places}")]
+    /// Not as many places for answers as questions.
+    #[error("{questions} questions need as many places for answers, got {places}")]
     Places {
-        /// How many poses there are.
-        poses: usize,
+        /// How many poses or rays there are.
+        questions: usize,
         /// How many places there are.
         places: usize,
     },

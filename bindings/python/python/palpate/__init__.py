@@ -22,8 +22,6 @@ from palpate._answers import (
     Body,
     ClosestPoints,
     Contact,
-    Event,
-    Felt,
     FirstTouch,
     Impact,
     Manifold,
@@ -35,11 +33,9 @@ from palpate._answers import (
     Overlap,
     Promise,
     RayHit,
+    RayHits,
     Separation,
     Separations,
-    Snapshot,
-    Touch,
-    Trace,
 )
 from palpate._errors import (
     DeviceError,
@@ -55,6 +51,7 @@ from palpate._errors import (
     ShapeError,
     UnknownNameError,
 )
+from palpate._felt import Event, Felt, Snapshot, Touch, Trace
 from palpate._palpate import (
     STOPS,
     Figure,
@@ -67,6 +64,7 @@ from palpate._palpate import (
     Track,
     World,
     cast_ray,
+    cast_rays,
     closest_points,
     device_profiles,
     difference,
@@ -125,6 +123,7 @@ __all__ = [
     "Promise",
     "QueryError",
     "RayHit",
+    "RayHits",
     "Scene",
     "SceneError",
     "Separation",
@@ -140,6 +139,7 @@ __all__ = [
     "World",
     "batch",
     "cast_ray",
+    "cast_rays",
     "closest_points",
     "device_profiles",
     "difference",

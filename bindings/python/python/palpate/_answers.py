@@ -10,7 +10,7 @@ question), "budget_spent", "memory_full" or "rounding_reached".
 from __future__ import annotations
 
 from dataclasses import dataclass, fields
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,7 +20,8 @@ if TYPE_CHECKING:
 
 Floats: TypeAlias = NDArray[np.float64]
 
-class _Answer:
+
+class Answer:
     """Equality of fields that may be arrays."""
 
     def __eq__(self, other: object) -> bool:
@@ -41,7 +42,7 @@ def _equal(one: object, two: object) -> bool:
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Promise(_Answer):
+class Promise(Answer):
     """What a field promises of its values.
 
     Fields:
@@ -75,7 +76,7 @@ class Promise(_Answer):
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class AtPoint(_Answer):
+class AtPoint(Answer):
     """What a field says at a point, by :meth:`Shape.at`.
 
     Fields:
@@ -101,7 +102,7 @@ class AtPoint(_Answer):
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Separation(_Answer):
+class Separation(Answer):
     """How far apart two bodies are, by :func:`separation`: negative if they overlap.
 
     Where a field is a bound, this is the separation of the fields, which is at most that of the bodies.
@@ -124,7 +125,7 @@ class Separation(_Answer):
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Overlap(_Answer):
+class Overlap(Answer):
     """Whether two bodies overlap, by :func:`overlap`.
 
     Fields:
@@ -152,7 +153,7 @@ class Overlap(_Answer):
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Contact(_Answer):
+class Contact(Answer):
     """A pair of points at which two bodies touch or are nearest.
 
     Fields:
@@ -175,7 +176,7 @@ class Contact(_Answer):
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class ClosestPoints(_Answer):
+class ClosestPoints(Answer):
     """Where two bodies are nearest to each other, by :func:`closest_points`.
 
     Fields:
@@ -194,7 +195,7 @@ class ClosestPoints(_Answer):
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Manifold(_Answer):
+class Manifold(Answer):
     """Contacts that span where two bodies touch, the deepest first, by :func:`manifold`.
 
     Fields:
@@ -233,12 +234,13 @@ class Manifold(_Answer):
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class RayHit(_Answer):
+class RayHit(Answer):
     """The first surface along a ray, by :func:`cast_ray`.
 
     Fields:
         lower: The way to the surface is at least this [m].
-        upper: The way to the surface is at most this [m]; infinite if the ray ends before.
+        upper: The way to the surface is at most this [m]; the length of a ray that is free, infinite if the search ended
+            before either was known.
         stop: Why the search ended.
         evaluations: How often the field was evaluated.
         point: Where the ray meets the surface [m], shape (D,); None if it does not.
@@ -254,7 +256,34 @@ class RayHit(_Answer):
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Separations(_Answer):
+class RayHits(Answer):
+    """The first surfaces along n rays, by :func:`cast_rays`.
+
+    Fields:
+        lower: The ways to the surface are at least these [m], shape (n,).
+        upper: The ways to the surface are at most these [m], shape (n,); the length of a ray that is free, infinite if a
+            search ended before either was known.
+        stops: Why each search ended, as places in ``STOPS``, shape (n,).
+        evaluations: How often the field was evaluated, shape (n,).
+        hits: Whether each ray meets the surface: 1 yes, 0 no, proven, -1 undecided, shape (n,).
+        points: Where the rays meet the surface [m], shape (n, D); NaN where they do not.
+        normals: The outward unit normals there, shape (n, D); NaN where the gradient vanishes.
+    """
+
+    lower: Floats
+    upper: Floats
+    stops: NDArray[np.uint8]
+    evaluations: NDArray[np.uint32]
+    hits: NDArray[np.int8]
+    points: Floats
+    normals: Floats
+
+    def __len__(self) -> int:
+        return len(self.lower)
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Separations(Answer):
     """How far apart two bodies are at each of n poses, by :func:`separations`.
 
     Fields:
@@ -278,7 +307,7 @@ class Separations(_Answer):
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Mass(_Answer):
+class Mass(Answer):
     """Mass, centroid and moments of a body, with bounds on their errors, by :meth:`Shape.mass`.
 
     Fields:
@@ -310,7 +339,7 @@ class Mass(_Answer):
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class MeshReport(_Answer):
+class MeshReport(Answer):
     """What a mesh is, by :meth:`Mesh.report`.
 
     Fields:
@@ -350,7 +379,7 @@ class MeshReport(_Answer):
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class MeshHits(_Answer):
+class MeshHits(Answer):
     """Which faces of a mesh touch a shape, by :func:`mesh_hits`.
 
     Fields:
@@ -372,7 +401,7 @@ class MeshHits(_Answer):
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class MeshContacts(_Answer):
+class MeshContacts(Answer):
     """Where the faces of a mesh touch a shape, by :func:`mesh_contacts`.
 
     Fields:
@@ -404,7 +433,7 @@ class MeshContacts(_Answer):
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Body(_Answer):
+class Body(Answer):
     """A body of a scene, by ``scene[name]``.
 
     Fields:
@@ -421,151 +450,7 @@ class Body(_Answer):
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Touch(_Answer):
-    """A contact point at an instant, in :attr:`Snapshot.touches`.
-
-    Fields:
-        device: Where the hand is [m], shape (D,).
-        velocity: How fast it moves [m/s], shape (D,).
-        proxy: Where the proxy is, which enters no body [m], shape (D,).
-        wanted: The force that the material wants [N], shape (D,).
-        force: The force that was written, after the safety chain [N], shape (D,).
-        normal: The outward unit normal of the surface that is touched, shape (D,); zero if none is.
-        body: The name of the body that is touched; None if none is.
-        is_slipping: Whether the proxy slips.
-    """
-
-    device: Floats
-    velocity: Floats
-    proxy: Floats
-    wanted: Floats
-    force: Floats
-    normal: Floats
-    body: str | None
-    is_slipping: bool
-
-
-@dataclass(frozen=True, eq=False, kw_only=True)
-class Snapshot(_Answer):
-    """The newest state of a servo, by :meth:`Servo.latest`.
-
-    Fields:
-        time: The time of the servo [s].
-        ticks: How many ticks there were.
-        force: The largest force since the last snapshot [N].
-        depth: The largest depth since the last snapshot [m].
-        touches: The contact points.
-        is_stopped: Whether the emergency stop holds.
-        events_lost: Events that nobody took in time.
-    """
-
-    time: float
-    ticks: int
-    force: float
-    depth: float
-    touches: tuple[Touch, ...]
-    is_stopped: bool
-    events_lost: int
-
-
-@dataclass(frozen=True, eq=False, kw_only=True)
-class Event(_Answer):
-    """What a contact point began or ended, by :meth:`Servo.events`.
-
-    Fields:
-        tick: The tick, from 0.
-        point: The contact point.
-        body: The name of the body; None of a button.
-        button: The number of the button, from 0; None of what is no button.
-        kind: "touch", "leave", "slip", "stick", "pop", "button_down" or "button_up".
-        speed: Of a touch, the speed along the normal, relative to the body [m/s].
-        force: Of a pop, the force that broke the layer [N].
-    """
-
-    tick: int
-    point: int
-    body: str | None
-    button: int | None
-    kind: str
-    speed: float | None
-    force: float | None
-
-
-@dataclass(frozen=True, eq=False, kw_only=True)
-class Trace(_Answer):
-    """Ticks that were recorded: n rows, one for each tick and contact point.
-
-    Fields:
-        time: The time of the tick [s], shape (n,).
-        point: The contact point, shape (n,).
-        device: Where the hand is [m], shape (n, D).
-        proxy: Where the proxy is [m], shape (n, D).
-        wanted: The force that the material wants [N], shape (n, D).
-        force: The force that was written [N], shape (n, D).
-        normal: The outward unit normal, shape (n, D).
-        contact: Whether a body is touched, shape (n,).
-        body: The place of the body in ``scene.names``, shape (n,); without meaning where none is touched.
-        is_slipping: Whether the proxy slips, shape (n,).
-        evaluations: How often the field was evaluated, shape (n,).
-        cost_ns: How long the tick took [ns], shape (n,).
-        lateness_ns: How late it was [ns], shape (n,).
-        lost: Rows that were not kept.
-    """
-
-    time: Floats
-    point: NDArray[np.uint32]
-    device: Floats
-    proxy: Floats
-    wanted: Floats
-    force: Floats
-    normal: Floats
-    contact: NDArray[np.bool_]
-    body: NDArray[np.uint32]
-    is_slipping: NDArray[np.bool_]
-    evaluations: NDArray[np.uint32]
-    cost_ns: NDArray[np.uint64]
-    lateness_ns: NDArray[np.uint64]
-    lost: int
-
-    def __len__(self) -> int:
-        return len(self.time)
-
-    def columns(self) -> dict[str, NDArray[Any]]:
-        """The rows as columns of numbers, for ``pandas.DataFrame``, ``pyarrow.table`` or ``polars.DataFrame``.
-
-        >>> import palpate as pp, pandas
-        >>> felt = pp.feel(pp.Scene(pp.ball(0.05)), hand=[0, 0.049, 0], duration=0.01)
-        >>> pandas.DataFrame(felt.trace.columns()).shape
-        (10, 23)
-        """
-        columns: dict[str, NDArray[Any]] = {}
-        for field in fields(self):
-            value = getattr(self, field.name)
-            if not isinstance(value, np.ndarray):
-                continue
-            if value.ndim == 1:
-                columns[field.name] = value
-            else:
-                for axis, name in zip(range(value.shape[1]), "xyz", strict=False):
-                    columns[f"{field.name}_{name}"] = np.ascontiguousarray(value[:, axis])
-        return columns
-
-
-@dataclass(frozen=True, eq=False, kw_only=True)
-class Felt(_Answer):
-    """What :func:`feel` felt.
-
-    Fields:
-        report: What the run was like: ticks, forces, safety, as a dict.
-        trace: All ticks.
-    """
-
-    report: dict[str, Any]
-    trace: Trace
-
-
-@dataclass(frozen=True, eq=False, kw_only=True)
-class FirstTouch(_Answer):
+class FirstTouch(Answer):
     """When two bodies that move touch first, by :func:`sweep`: times from 0 to 1.
 
     Fields:
@@ -601,7 +486,7 @@ class Impact(FirstTouch):
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Neighbours(_Answer):
+class Neighbours(Answer):
     """Two bodies of a world that are near each other, by :meth:`World.step`.
 
     Fields:

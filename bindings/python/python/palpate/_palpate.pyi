@@ -13,8 +13,6 @@ from palpate._answers import (
     AtPoint,
     Body,
     ClosestPoints,
-    Event,
-    Felt,
     FirstTouch,
     Impact,
     Manifold,
@@ -26,11 +24,11 @@ from palpate._answers import (
     Overlap,
     Promise,
     RayHit,
+    RayHits,
     Separation,
     Separations,
-    Snapshot,
-    Trace,
 )
+from palpate._felt import Event, Felt, Snapshot, Trace
 from palpate._types import Plane, Profile, Row
 
 STOPS: tuple[str, ...]
@@ -47,6 +45,7 @@ __all__ = [
     "Track",
     "World",
     "cast_ray",
+    "cast_rays",
     "catalogue",
     "closest_points",
     "device_profiles",
@@ -365,6 +364,7 @@ def sweep(
     a_start: ArrayLike | None = None,
     a_end: ArrayLike | None = None,
     gap: float | None = None,
+    budget: int | None = None,
 ) -> FirstTouch: ...
 def feel(
     scene: Scene | Shape | Mapping[str, Shape],
@@ -415,6 +415,16 @@ def cast_ray(
     tolerance: float | None = None,
     budget: int | None = None,
 ) -> RayHit: ...
+def cast_rays(
+    shape: Shape,
+    origins: ArrayLike,
+    directions: ArrayLike,
+    length: float = 1000.0,
+    *,
+    tolerance: float | None = None,
+    budget: int | None = None,
+    threads: int = 1,
+) -> RayHits: ...
 def separations(
     a: Shape,
     b: Shape,

@@ -10,7 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 if TYPE_CHECKING:
-    from palpate._answers import Manifold, Trace
+    from palpate._answers import Manifold
+    from palpate._felt import Trace
     from palpate._palpate import Shape
 
 #: The axes of a plane: to the right and up, and the one along which it is placed.

@@ -8,7 +8,7 @@ import time
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from palpate._answers import Event
+from palpate._felt import Event
 
 if TYPE_CHECKING:
     from palpate._palpate import Servo

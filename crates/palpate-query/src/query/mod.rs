@@ -39,8 +39,8 @@ pub use tolerance::Tolerance;
 /// Answers are owned, and may be sent to other threads. Memory is allocated by the first
 /// question that needs it, and kept. Bounds are at most [`Tolerance`] apart, which is a
 /// share of the size of the smaller body unless an absolute one is asked for; a search that would
-/// take more evaluations than the budget stops with [`Stop::BudgetSpent`] and what it has
-/// proven. To allocate nothing, call the functions of this crate that take a workspace.
+/// take more evaluations than the budget, [`Limits::BUDGET`] or that of [`SweepSettings`] unless
+/// another is asked for, stops with [`Stop::BudgetSpent`] and what it has proven. To allocate nothing, call the functions of this crate that take a workspace.
 ///
 /// [`Stop::BudgetSpent`]: crate::Stop::BudgetSpent
 ///
@@ -63,7 +63,8 @@ pub use tolerance::Tolerance;
 #[derive(Debug)]
 pub struct Query<const D: usize> {
     tolerance: Tolerance,
-    budget: u32,
+    /// `None` for that of each kind of search.
+    budget: Option<u32>,
     gap: f64,
     scratch: Scratch<D>,
     /// Memory of batches, one a thread.
@@ -76,7 +77,7 @@ impl<const D: usize> Query<D> {
     pub fn new() -> Self {
         Self {
             tolerance: Tolerance::default(),
-            budget: Limits::BUDGET,
+            budget: None,
             gap: 0.0,
             scratch: Scratch::new(),
             pool: Pool::new(),
@@ -92,7 +93,7 @@ impl<const D: usize> Query<D> {
     /// The same questions with another limit of evaluations for each question.
     #[must_use]
     pub fn with_budget(self, budget: u32) -> Self {
-        Self { budget, ..self }
+        Self { budget: Some(budget), ..self }
     }
 
     /// The same questions with another gap [m] up to which segments, triangles and elements of
@@ -280,7 +281,7 @@ impl<const D: usize> Query<D> {
     }
 
     /// When two bodies that move touch first, of motions over the time from 0 to 1, with the
-    /// tolerance as the gap and [`SweepSettings::of_size`] for the rest; see [`sweep`].
+    /// tolerance as the gap, and [`SweepSettings::of_size`] for the rest; see [`sweep`].
     ///
     /// # Errors
     ///
@@ -292,9 +293,7 @@ impl<const D: usize> Query<D> {
     ) -> Result<FirstTouch<D>, QueryError> {
         let (a, b) = (a.into(), b.into());
         let sizes = sizes(&a.at(0.0), &b.at(0.0));
-        let settings = SweepSettings::of_size(smallest(sizes));
-        let gap = self.limits(sizes).tolerance;
-        sweep(a, b, &settings.with_gap(gap), self.scratch.sweep())
+        sweep(a, b, &self.sweep_settings(sizes), self.scratch.sweep())
     }
 
     /// When a segment or a triangle that moves touches a field first, with settings as in
@@ -314,8 +313,7 @@ impl<const D: usize> Query<D> {
     {
         let field = field.into();
         let sizes = [size(field.shape), extent(element)];
-        let settings = SweepSettings::of_size(smallest(sizes));
-        let settings = settings.with_gap(self.limits(sizes).tolerance);
+        let settings = self.sweep_settings(sizes);
         sweep_element(field, element, motion, &settings, self.moving_elements())
     }
 
@@ -336,8 +334,7 @@ impl<const D: usize> Query<D> {
     {
         let field = field.into();
         let sizes = [size(field.shape), Some(diagonal(&mesh.bounds()))];
-        let settings = SweepSettings::of_size(smallest(sizes));
-        let settings = settings.with_gap(self.limits(sizes).tolerance);
+        let settings = self.sweep_settings(sizes);
         sweep_mesh(field, mesh, motion, &settings, self.moving_elements())
     }
 
@@ -493,6 +490,40 @@ impl<const D: usize> Query<D> {
         self.batch(bodies, Asked::Overlap).run(poses, answers, goes_on)
     }
 
+    /// The first surface along each of many rays; as [`Query::separations`], of [`cast_ray`].
+    ///
+    /// ```
+    /// use palpate_field::Shape;
+    /// use palpate_query::{Query, Ray};
+    ///
+    /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+    /// let ball = Shape::<2>::circle(0.5)?;
+    /// let from_left = |y: f64| Ray::new([-2.0, y], [1.0, 0.0], 5.0);
+    /// let rays = [from_left(0.0)?, from_left(0.3)?];
+    /// let mut answers = [None; 2];
+    /// assert!(Query::new().cast_rays(&ball, &rays, &mut answers, || true)?);
+    /// let distances = answers.map(|answer| answer.map_or(f64::NAN, |found| found.upper));
+    /// assert!((distances[0] - 1.5).abs() < 1e-4 && (distances[1] - 1.6).abs() < 2e-4);
+    /// # Ok(())
+    /// # }
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// If there are not as many places as rays, or the tolerance is negative, NaN or too large. On
+    /// any error no answer is written.
+    pub fn cast_rays(
+        &self,
+        shape: &Shape<D>,
+        rays: &[Ray<D>],
+        answers: &mut [Option<Certified<Option<RayHit<D>>>>],
+        goes_on: impl Fn() -> bool + Sync,
+    ) -> Result<bool, QueryError> {
+        let size = size(shape);
+        let limits = |ray: &Ray<D>| self.limits([size, Some(ray.length())]);
+        batch::cast_rays(shape, rays, answers, limits, goes_on)
+    }
+
     fn batch<'a>(&'a self, bodies: [&'a Shape<D>; 2], asked: Asked) -> Batch<'a, D> {
         let limits = self.limits(bodies.map(size));
         Batch { bodies, asked, limits, pool: &self.pool }
@@ -500,7 +531,15 @@ impl<const D: usize> Query<D> {
 
     /// The limits of a question about bodies of these sizes.
     fn limits(&self, sizes: [Option<f64>; 2]) -> Limits {
-        Limits::new(self.tolerance.for_size(smallest(sizes))).with_budget(self.budget)
+        let limits = Limits::new(self.tolerance.for_size(smallest(sizes)));
+        self.budget.map_or(limits, |budget| limits.with_budget(budget))
+    }
+
+    /// The settings of a sweep of bodies of these sizes.
+    fn sweep_settings(&self, sizes: [Option<f64>; 2]) -> SweepSettings {
+        let size = smallest(sizes);
+        let settings = SweepSettings::of_size(size).with_gap(self.tolerance.for_size(size));
+        self.budget.map_or(settings, |budget| settings.with_budget(budget))
     }
 }
 

@@ -8,11 +8,11 @@ use std::error::Error;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use palpate_field::kernel::{Ball, Cuboid, HalfSpace, Torus};
-use palpate_field::{Pose, Rotation, Shape, Vector};
+use palpate_field::{Pose, Rotation, Screw, Shape, Vector};
 use palpate_mesh::TriangleMesh;
 use palpate_query::{
     BallWorkspace, Certified, Element, ElementContacts, Limits, Manifold, MeshContacts,
-    MeshHits, MeshWorkspace, Nearest, PairWorkspace, Proof, Query, QueryError, Ray,
+    MeshHits, MeshWorkspace, Moving, Nearest, PairWorkspace, Proof, Query, QueryError, Ray,
     SeparatingTranslation, Stop, Tolerance, cast_ray, contact_ball, mesh_contacts, minimum,
     separation, touches,
 };
@@ -141,7 +141,7 @@ fn a_batch_refuses_what_a_question_refuses_and_says_which_pose() -> Test {
     let mut answers = vec![None; 3];
     assert_eq!(
         query.separations([&plate, &ring], &poses, &mut answers, || true),
-        Err(QueryError::Places { poses: 50, places: 3 })
+        Err(QueryError::Places { questions: 50, places: 3 })
     );
     poses[17].translation[1] = f64::NAN;
     let mut answers = vec![None; poses.len()];
@@ -150,6 +150,50 @@ fn a_batch_refuses_what_a_question_refuses_and_says_which_pose() -> Test {
     let floor = Shape::from_kernel(HalfSpace::new(Vector([0.0, 1.0, 0.0]), 0.0)?);
     let asked = query.separations([&floor, &floor], &[], &mut [], || true);
     assert_eq!(asked, Err(QueryError::Unbounded));
+    Ok(())
+}
+
+#[test]
+fn a_batch_of_rays_is_answered_as_each_ray() -> Test {
+    let ring = ring()?;
+    let rays: Vec<_> = (0..50)
+        .map(|i| {
+            let x = 0.02 * f64::from(i) - 0.5;
+            Ray::new(Vector([x, 2.0, 0.1]), Vector([0.1, -1.0, 0.0]), 5.0)
+        })
+        .collect::<Result<_, _>>()?;
+    let mut query = Query::new();
+    let one_by_one: Vec<_> =
+        rays.iter().map(|ray| query.cast_ray(&ring, ray)).collect::<Result<_, _>>()?;
+    assert!(one_by_one.iter().any(|found| found.best.is_some()));
+    assert!(one_by_one.iter().any(|found| found.stop == Stop::SignKnown));
+    for threads in [1, 3] {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build()?;
+        let mut answers = vec![None; rays.len()];
+        assert!(pool.install(|| query.cast_rays(&ring, &rays, &mut answers, || true))?);
+        assert!(answers.iter().flatten().eq(&one_by_one), "{threads} threads");
+    }
+    let mut answers = vec![None; rays.len()];
+    assert!(!query.cast_rays(&ring, &rays, &mut answers, || false)?);
+    assert_eq!(answers.iter().flatten().count(), 0);
+    let short = query.cast_rays(&ring, &rays, &mut answers[..2], || true);
+    assert_eq!(short, Err(QueryError::Places { questions: 50, places: 2 }));
+    let loose = Query::new().with_tolerance(Tolerance::Absolute(-1.0));
+    assert!(loose.cast_rays(&ring, &rays, &mut answers, || true).is_err());
+    Ok(())
+}
+
+/// Sweeps once took no notice of the budget of a query.
+#[test]
+fn a_sweep_keeps_to_the_budget_of_its_query() -> Test {
+    let (plate, ring) = (plate()?, ring()?);
+    let way = |y: f64| Pose::translation(Vector([0.0, y, 0.0]));
+    let moving = Moving::new(&ring, Screw::new(way(3.0), way(0.0), 0)?);
+    let whole = Query::new().cast_shape(&plate, moving)?;
+    assert_eq!(whole.touches(), Some(true));
+    let few = Query::new().with_budget(3).cast_shape(&plate, moving)?;
+    assert_eq!(few.stop, Stop::BudgetSpent);
+    assert!(few.evaluations < whole.evaluations && few.lower <= whole.upper, "{few:?}");
     Ok(())
 }
 

@@ -1,0 +1,157 @@
+# SPDX-FileCopyrightText: The palpate authors
+# SPDX-License-Identifier: MIT OR Apache-2.0
+"""What was felt: frozen objects with names, with a row for each tick where there are many. Lengths are in metres."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from palpate._answers import Answer, Floats
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Touch(Answer):
+    """A contact point at an instant, in :attr:`Snapshot.touches`.
+
+    Fields:
+        device: Where the hand is [m], shape (D,).
+        velocity: How fast it moves [m/s], shape (D,).
+        proxy: Where the proxy is, which enters no body [m], shape (D,).
+        wanted: The force that the material wants [N], shape (D,).
+        force: The force that was written, after the safety chain [N], shape (D,).
+        normal: The outward unit normal of the surface that is touched, shape (D,); zero if none is.
+        body: The name of the body that is touched; None if none is.
+        is_slipping: Whether the proxy slips.
+    """
+
+    device: Floats
+    velocity: Floats
+    proxy: Floats
+    wanted: Floats
+    force: Floats
+    normal: Floats
+    body: str | None
+    is_slipping: bool
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Snapshot(Answer):
+    """The newest state of a servo, by :meth:`Servo.latest`.
+
+    Fields:
+        time: The time of the servo [s].
+        ticks: How many ticks there were.
+        force: The largest force since the last snapshot [N].
+        depth: The largest depth since the last snapshot [m].
+        touches: The contact points.
+        is_stopped: Whether the emergency stop holds.
+        events_lost: Events that nobody took in time.
+    """
+
+    time: float
+    ticks: int
+    force: float
+    depth: float
+    touches: tuple[Touch, ...]
+    is_stopped: bool
+    events_lost: int
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Event(Answer):
+    """What a contact point began or ended, by :meth:`Servo.events`.
+
+    Fields:
+        tick: The tick, from 0.
+        point: The contact point.
+        body: The name of the body; None of a button.
+        button: The number of the button, from 0; None of what is no button.
+        kind: "touch", "leave", "slip", "stick", "pop", "button_down" or "button_up".
+        speed: Of a touch, the speed along the normal, relative to the body [m/s].
+        force: Of a pop, the force that broke the layer [N].
+    """
+
+    tick: int
+    point: int
+    body: str | None
+    button: int | None
+    kind: str
+    speed: float | None
+    force: float | None
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Trace(Answer):
+    """Ticks that were recorded: n rows, one for each tick and contact point.
+
+    Fields:
+        time: The time of the tick [s], shape (n,).
+        point: The contact point, shape (n,).
+        device: Where the hand is [m], shape (n, D).
+        proxy: Where the proxy is [m], shape (n, D).
+        wanted: The force that the material wants [N], shape (n, D).
+        force: The force that was written [N], shape (n, D).
+        normal: The outward unit normal, shape (n, D).
+        contact: Whether a body is touched, shape (n,).
+        body: The place of the body in ``scene.names``, shape (n,); without meaning where none is touched.
+        is_slipping: Whether the proxy slips, shape (n,).
+        evaluations: How often the field was evaluated, shape (n,).
+        cost_ns: How long the tick took [ns], shape (n,).
+        lateness_ns: How late it was [ns], shape (n,).
+        lost: Rows that were not kept.
+    """
+
+    time: Floats
+    point: NDArray[np.uint32]
+    device: Floats
+    proxy: Floats
+    wanted: Floats
+    force: Floats
+    normal: Floats
+    contact: NDArray[np.bool_]
+    body: NDArray[np.uint32]
+    is_slipping: NDArray[np.bool_]
+    evaluations: NDArray[np.uint32]
+    cost_ns: NDArray[np.uint64]
+    lateness_ns: NDArray[np.uint64]
+    lost: int
+
+    def __len__(self) -> int:
+        return len(self.time)
+
+    def columns(self) -> dict[str, NDArray[Any]]:
+        """The rows as columns of numbers, for ``pandas.DataFrame``, ``pyarrow.table`` or ``polars.DataFrame``.
+
+        >>> import palpate as pp, pandas
+        >>> felt = pp.feel(pp.Scene(pp.ball(0.05)), hand=[0, 0.049, 0], duration=0.01)
+        >>> pandas.DataFrame(felt.trace.columns()).shape
+        (10, 23)
+        """
+        columns: dict[str, NDArray[Any]] = {}
+        for field in fields(self):
+            value = getattr(self, field.name)
+            if not isinstance(value, np.ndarray):
+                continue
+            if value.ndim == 1:
+                columns[field.name] = value
+            else:
+                for axis, name in zip(range(value.shape[1]), "xyz", strict=False):
+                    columns[f"{field.name}_{name}"] = np.ascontiguousarray(value[:, axis])
+        return columns
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Felt(Answer):
+    """What :func:`feel` felt.
+
+    Fields:
+        report: What the run was like: ticks, forces, safety, as a dict.
+        trace: All ticks.
+    """
+
+    report: dict[str, Any]
+    trace: Trace
