@@ -32,6 +32,9 @@ const MOST: usize = 1 << 16;
 /// `tolerance` is how far apart the bounds may be [m], a ten-thousandth of the smaller body if left out; `budget` how
 /// often the fields are evaluated at most, 200 000 if left out.
 ///
+/// Raises `QueryError` if neither body has bounds, a pose is not finite or the tolerance is negative, `ValueError` if
+/// `poses` have another shape.
+///
 /// >>> import palpate as pp
 /// >>> found = pp.separations(pp.ball(0.5), pp.ball(0.5), [[1.5, 0, 0], [2, 0, 0]])
 /// >>> found.upper.round(3)
@@ -62,6 +65,8 @@ pub(crate) fn separations<'py>(
 
 /// Whether two bodies overlap, with the second at each of many poses: 1 yes, 0 no, -1 undecided; see `separations`.
 ///
+/// Raises `QueryError` if neither body has bounds or a pose is not finite, `ValueError` if `poses` have another shape.
+///
 /// >>> import palpate as pp
 /// >>> pp.overlaps(pp.ball(0.5), pp.ball(0.5), [[0.9, 0, 0], [1.1, 0, 0]])
 /// array([1, 0], dtype=int8)
@@ -91,6 +96,8 @@ pub(crate) fn overlaps<'py>(
 ///
 /// `tolerance` is how far apart the bounds may be [m], a ten-thousandth of the smaller of shape and ray if left out;
 /// `budget` how often the field is evaluated at most for a ray, 200 000 if left out.
+///
+/// Raises `QueryError` if the tolerance is negative, `ValueError` if arrays do not fit or a direction is zero.
 ///
 /// >>> import palpate as pp
 /// >>> found = pp.cast_rays(pp.ball(0.5), [[0, 2, 0], [0.3, 2, 0], [9, 2, 0]], [0, -1, 0])

@@ -3,13 +3,15 @@
 
 //! Errors of palpate as exceptions of Python, with what they know as attributes.
 
+use std::io;
+
 use palpate::{Error, ErrorKind};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-/// The class of `palpate._errors` for a kind of error.
-const fn class(kind: ErrorKind) -> &'static str {
-    match kind {
+/// The class of `palpate._errors` for an error.
+fn class(error: &Error) -> &'static str {
+    match error.kind() {
         ErrorKind::Shape => "ShapeError",
         ErrorKind::Query => "QueryError",
         ErrorKind::Haptics => "HapticsError",
@@ -20,6 +22,9 @@ const fn class(kind: ErrorKind) -> &'static str {
         ErrorKind::Plot => "PlotError",
         ErrorKind::UnknownName => "UnknownNameError",
         ErrorKind::DeviceLost => "DeviceLostError",
+        ErrorKind::File if error.io_kind() == Some(io::ErrorKind::NotFound) => {
+            "MissingFileError"
+        }
         ErrorKind::File => "FileError",
         _ => "Error",
     }
@@ -29,7 +34,7 @@ const fn class(kind: ErrorKind) -> &'static str {
 pub(crate) fn raised(py: Python<'_>, error: impl Into<Error>) -> PyErr {
     let error = error.into();
     let made = || -> PyResult<PyErr> {
-        let class = py.import("palpate._errors")?.getattr(class(error.kind()))?;
+        let class = py.import("palpate._errors")?.getattr(class(&error))?;
         let known = PyDict::new(py);
         known.set_item("parameter", error.parameter())?;
         known.set_item("rule", error.rule())?;

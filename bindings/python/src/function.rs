@@ -145,6 +145,9 @@ impl<const D: usize> CustomField<D> for Function<D> {
 /// differences over 1e-6 of the size of the box, or 1e-6 m without. Such a shape is opaque: it can be asked, but not
 /// written, pickled or felt. Threads of the core may call the function, one at a time.
 ///
+/// Raises `ValueError` if `lipschitz` is not positive and finite; a question raises what the function raises while it
+/// is asked.
+///
 /// >>> import palpate as pp, numpy as np
 /// >>> waves = pp.from_function(lambda p: p[:, 1] - 0.01 * np.sin(20 * p[:, 0]), lipschitz=1.02)
 /// >>> waves.distance([0, 0.5, 0]), waves.promise.outside

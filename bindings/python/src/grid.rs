@@ -26,6 +26,9 @@ impl PyShape {
     /// smooth, to be touched, or "trilinear"; `store` "f32", "i16" or "i8"; `band` keeps only what lies within so many
     /// cells of the surface. More than `most_nodes` samples are refused, 67 108 864 if left out. `threads` share the work, 0 for all processors; the bits do not depend on how many.
     ///
+    /// Raises `GridError` if the shape has no bounds, a value is not finite or the grid would take too much memory,
+    /// `TypeError` unless one of `tolerance` and `cell` is given.
+    ///
     /// >>> import palpate as pp
     /// >>> grid = pp.ball(0.05).baked(tolerance=2e-4)
     /// >>> grid.promise.deviation[0] <= 2e-4, bool(abs(grid.distance([0.06, 0, 0]) - 0.01) <= 2e-4)
@@ -65,6 +68,9 @@ impl PyShape {
 /// `cell` is how far nodes are apart [m], `origin` the place of the first one, 0 if left out. `kernel` is "quadratic",
 /// smooth, to be touched, or "trilinear". Samples are kept in single precision and taken as they are: the field's
 /// steepness comes from them, how far its values are off distances is not known.
+///
+/// Raises `GridError` if a value at the border is not positive or one is not finite, `ValueError` if there are not two
+/// or three axes.
 ///
 /// >>> import palpate as pp, numpy as np
 /// >>> x, y, z = np.meshgrid(*[np.linspace(-1, 1, 41)] * 3, indexing="ij")

@@ -80,6 +80,8 @@ impl PyMailbox {
 
     /// Sets where the points are, shape (points, D) [m] at the device, at `time` [s] if it is known.
     ///
+    /// Raises `ValueError` if the array has another shape.
+    ///
     /// >>> import palpate as pp
     /// >>> pp.Mailbox().set([[0, 0.1, 0]])
     #[pyo3(signature = (positions, *, time = None))]

@@ -20,6 +20,8 @@ impl PyShape {
     /// Cells are cut until the error of the volume is below `tolerance`, a share of it, 1e-3 if left out, or there are
     /// `cells` of them, 3 000 000 if left out. After Ctrl-C they are cut on in a thread that nobody waits for.
     ///
+    /// Raises `ShapeError` if the shape has no bounds, or the density or the tolerance is not positive.
+    ///
     /// >>> import palpate as pp, math
     /// >>> mass = pp.ball(0.5).mass(density=1000)
     /// >>> abs(mass.volume - math.pi / 6) <= mass.volume_error <= 1e-3 * mass.volume
@@ -55,6 +57,9 @@ impl PyShape {
     /// Either `cell` is the size of the cells [m]: parts thinner than two may be lost. Or `tolerance` is how large the
     /// field on a triangle may be [m], of an exact shape how far a triangle may be from the surface: cells are made
     /// smaller until that is proven.
+    ///
+    /// Raises `MeshError` if the shape has no bounds, no cell sees the surface or the tolerance is not reached,
+    /// `TypeError` unless one of `cell` and `tolerance` is given.
     ///
     /// >>> import palpate as pp
     /// >>> mesh = pp.cuboid([0.3, 0.2, 0.1]).mesh(cell=0.017)

@@ -91,6 +91,8 @@ impl PyMesh {
 
     /// Reads triangles from a file of OBJ, STL, PLY or GLB, with coordinates in metres; `scale` is what others are.
     ///
+    /// Raises `MissingFileError` if there is no such file, `MeshError` if it holds no mesh.
+    ///
     /// >>> import palpate as pp, tempfile, os
     /// >>> file = os.path.join(tempfile.mkdtemp(), "cube.stl")
     /// >>> pp.cuboid([1, 1, 1]).mesh(cell=0.3).save(file)
@@ -106,6 +108,8 @@ impl PyMesh {
 
     /// Writes triangles to a file of OBJ, STL, PLY or GLB, by its ending. A file that is there is replaced when the
     /// new one is whole.
+    ///
+    /// Raises `ValueError` if the ending is none of these, `OSError` if the file cannot be written.
     ///
     /// >>> import palpate as pp, tempfile, os
     /// >>> pp.ball(0.5).mesh(cell=0.1).save(os.path.join(tempfile.mkdtemp(), "ball.ply"))
@@ -185,6 +189,8 @@ impl PyMesh {
     /// What is wrong is mended, and `findings` says in words what was. Faces that bound no solid are refused; with a
     /// `thickness` [m] they are a plate.
     ///
+    /// Raises `MeshError` if the mesh bounds no solid.
+    ///
     /// >>> import palpate as pp
     /// >>> solid = pp.ball(0.5).mesh(cell=0.05).shape()
     /// >>> solid.promise.outside, bool(abs(solid.distance([0, 1, 0]) - 0.5) < 0.01)
@@ -204,6 +210,8 @@ impl PyMesh {
     }
 
     /// What is found and mended where the mesh becomes a solid, in words; nothing if it is one as it is.
+    ///
+    /// Raises `MeshError` if the mesh bounds no solid.
     ///
     /// >>> import palpate as pp
     /// >>> mesh = pp.ball(0.5).mesh(cell=0.1)
@@ -373,6 +381,8 @@ macro_rules! of_shape_and_mesh {
 /// `tolerance` is how far apart the bounds may be [m], a ten-thousandth of the smaller body if left out; `budget` how
 /// often the field is evaluated at most, 200 000 if left out.
 ///
+/// Raises `QueryError` if the gap or the tolerance is negative, `ValueError` if the dimensions differ.
+///
 /// >>> import palpate as pp
 /// >>> found = pp.mesh_contacts(pp.ball(0.5).translated([0, 0.95, 0]), pp.cuboid([1, 1, 1]).mesh(cell=0.3))
 /// >>> len(found) > 0, bool(abs(found.gaps.min() + 0.05) < 1e-3)
@@ -395,6 +405,8 @@ pub(crate) fn mesh_contacts<'py>(
 }
 
 /// Which elements of a mesh touch a shape, without contacts: faster than `mesh_contacts`, whose arguments it has.
+///
+/// Raises `QueryError` if the gap is negative, `ValueError` if the dimensions differ.
 ///
 /// >>> import palpate as pp
 /// >>> mesh = pp.cuboid([1, 1, 1]).mesh(cell=0.3)

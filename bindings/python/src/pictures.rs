@@ -143,6 +143,8 @@ impl PyShape {
     /// Isolines of the distance: in the plane, or on a plane of space, "xy", "xz" or "yz", at a place along the third
     /// axis [m].
     ///
+    /// Raises `PlotError` if a number is out of range, `ValueError` if there is no such plane.
+    ///
     /// >>> import palpate as pp
     /// >>> pp.ball(0.5).figure(plane="xz", at=0.1).to_svg()[:4]
     /// '<svg'
@@ -159,6 +161,9 @@ impl PyShape {
 
     /// A lit view from `yaw` and `pitch` [degrees], by rays that pass over no surface; of shapes in space with bounds.
     /// From a yaw and pitch of 0 it is seen along -z. `threads` share the work, 0 for all processors.
+    ///
+    /// Raises `PlotError` if a number is out of range, `ValueError` if the shape has no bounds, `TypeError` if it is
+    /// one of the plane.
     ///
     /// >>> import palpate as pp
     /// >>> pp.cuboid([1, 1, 1]).render(width=64, height=48).pixels.shape

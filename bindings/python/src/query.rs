@@ -62,6 +62,9 @@ pub(crate) fn nearest<'py, const D: usize>(
 /// `tolerance` is how far apart the bounds may be [m], a ten-thousandth of the smaller body if left out; `budget` how
 /// often the fields are evaluated at most, 200 000 if left out.
 ///
+/// Raises `QueryError` if neither body has bounds or the tolerance is negative, `ValueError` if the shapes' dimensions
+/// differ.
+///
 /// >>> import palpate as pp
 /// >>> found = pp.separation(pp.ball(0.5), pp.ball(0.5).translated([1.5, 0, 0]), tolerance=1e-6)
 /// >>> found.lower <= 0.5 <= found.upper, found.stop
@@ -82,6 +85,8 @@ pub(crate) fn separation<'py>(
 }
 
 /// Whether two bodies overlap, proven. The answer is undecided if `budget` evaluations prove neither.
+///
+/// Raises `QueryError` if neither body has bounds, `ValueError` if the shapes' dimensions differ.
 ///
 /// >>> import palpate as pp
 /// >>> pp.overlap(pp.ball(0.5), pp.ball(0.5).translated([0.9, 0, 0])).overlaps
@@ -104,6 +109,9 @@ pub(crate) fn overlap<'py>(
 ///
 /// `tolerance` is how far apart the bounds may be [m], a ten-thousandth of the smaller body if left out; `budget` how
 /// often the fields are evaluated at most, 200 000 if left out.
+///
+/// Raises `QueryError` if neither body has bounds or the tolerance is negative, `ValueError` if the shapes' dimensions
+/// differ.
 ///
 /// >>> import palpate as pp
 /// >>> found = pp.closest_points(pp.ball(0.5), pp.ball(0.5).translated([1.5, 0, 0]))
@@ -133,6 +141,9 @@ pub(crate) fn closest_points<'py>(
 ///
 /// `tolerance` is how far apart the bounds may be [m], a ten-thousandth of the smaller body if left out; `budget` how
 /// often the fields are evaluated at most, 200 000 if left out.
+///
+/// Raises `QueryError` if neither body has bounds or a length is negative, `ValueError` if the shapes' dimensions
+/// differ.
 ///
 /// >>> import palpate as pp
 /// >>> found = pp.manifold(pp.cuboid([1, 1, 1]), pp.cuboid([1, 1, 1]).translated([0, 0.999, 0]))
@@ -200,6 +211,8 @@ pub(crate) fn manifold_of<'py, const D: usize>(
 ///
 /// `tolerance` is how far apart the bounds may be [m], a ten-thousandth of the smaller of shape and ray if left out;
 /// `budget` how often the field is evaluated at most, 200 000 if left out.
+///
+/// Raises `QueryError` if the direction is zero, or the length or the tolerance is negative.
 ///
 /// >>> import palpate as pp
 /// >>> pp.cast_ray(pp.ball(0.5), [0, 2, 0], [0, -1, 0]).point.round(3)

@@ -155,6 +155,8 @@ impl PyScene {
 
     /// Reads a scene file. Files that it names are read again where the scene is unpickled.
     ///
+    /// Raises `MissingFileError` if there is no such file, `SceneError` with the place in the file if it is no scene.
+    ///
     /// >>> import palpate as pp, tempfile, os
     /// >>> file = os.path.join(tempfile.mkdtemp(), "scene.json")
     /// >>> pp.Scene(pp.ball(0.5)).save(file)
@@ -168,6 +170,8 @@ impl PyScene {
     }
 
     /// The scene of a text; files that it names are looked for in `folder`.
+    ///
+    /// Raises `SceneError` with the place in the text if it is no scene.
     ///
     /// >>> import palpate as pp
     /// >>> pp.Scene.from_json(pp.Scene(pp.ball(0.5)).to_json()).dimension
@@ -197,6 +201,8 @@ impl PyScene {
 
     /// Writes a scene file. One that is there is replaced when the new one is whole. Files that the scene names are
     /// not copied.
+    ///
+    /// Raises `SceneError` if a shape cannot be written, as a function, `OSError` if the file cannot be written.
     ///
     /// >>> import palpate as pp, tempfile, os
     /// >>> pp.Scene(pp.ball(0.5)).save(os.path.join(tempfile.mkdtemp(), "scene.json"))

@@ -189,6 +189,8 @@ impl PyServo {
 
     /// Moves bodies: a dict of their names and poses, as of `Shape.placed`.
     ///
+    /// Raises `KeyError` if no body has a name, `ValueError` if a pose has another shape.
+    ///
     /// >>> import palpate as pp
     /// >>> with pp.Servo(pp.Scene({"ball": pp.ball(0.05)}), hand=[0, 0.1, 0]) as servo:
     /// ...     servo.set_poses({"ball": [0, 0.01, 0]})
@@ -361,6 +363,9 @@ impl Asked<'_, '_> {
 }
 
 /// Feels a scene on a virtual clock, as fast as it goes: the same every time. See `Servo`; `duration` is in seconds.
+///
+/// Raises `DeviceError` or `SceneError` if the hand or the scene cannot be, `ValueError` if more ticks are to be kept
+/// than memory holds.
 ///
 /// >>> import palpate as pp
 /// >>> felt = pp.feel(pp.ball(0.05), hand=[[0, 0, 0.06, 0], [0.1, 0, 0.045, 0]], duration=0.1)

@@ -63,6 +63,8 @@ impl PyTrack {
 
     /// How far apart the bodies are at these poses; see `separation`.
     ///
+    /// Raises `QueryError` if neither body has bounds or a pose is not finite.
+    ///
     /// >>> import palpate as pp
     /// >>> round(pp.Track(pp.ball(0.5), pp.ball(0.5)).separation(b=[1.5, 0, 0]).upper, 3)
     /// 0.5
@@ -87,6 +89,8 @@ impl PyTrack {
 
     /// The contacts of the bodies at these poses; see `manifold`. A contact near one of the last question, on either
     /// body, has its number among `ids` again.
+    ///
+    /// Raises `QueryError` if neither body has bounds or a pose is not finite.
     ///
     /// >>> import palpate as pp
     /// >>> track = pp.Track(pp.cuboid([1, 1, 1]), pp.cuboid([1, 1, 1]))

@@ -29,6 +29,8 @@ use crate::shape::PyShape;
 /// are within `gap` [m], a ten-thousandth of the smaller body if left out; `upper` is 1 if they are apart all the time,
 /// infinite if the search ended first. `budget` is how often the fields are evaluated at most, 5 000 000 if left out.
 ///
+/// Raises `QueryError` if neither body has bounds or the gap is negative, `ShapeError` if a pose is not finite.
+///
 /// >>> import palpate as pp
 /// >>> found = pp.sweep(pp.ball(0.5), pp.ball(0.5), start=[3, 0, 0], end=[0, 0, 0], gap=1e-4)
 /// >>> found.touches, found.lower <= 2 / 3 <= found.upper + 1e-3
@@ -162,6 +164,8 @@ impl PyWorld {
 
     /// Moves bodies: a dict of their names and poses, as of `Shape.placed`.
     ///
+    /// Raises `KeyError` if no body has a name, `QueryError` if a pose is not finite.
+    ///
     /// >>> import palpate as pp
     /// >>> pp.World({"a": pp.ball(0.5)}).set_poses({"a": [0, 1, 0]})
     fn set_poses(&self, poses: &Bound<'_, PyDict>) -> PyResult<()> {
@@ -189,6 +193,8 @@ impl PyWorld {
     /// `gap` is how near is a touch [m], a millionth of the smallest body if left out; `budget` how often the fields of
     /// a pair are evaluated at most, 5 000 000 if left out.
     ///
+    /// Raises `KeyError` if no body has a name, `QueryError` if the gap is negative.
+    ///
     /// >>> import palpate as pp
     /// >>> world = pp.World({"table": pp.cuboid([1, 0.1, 1]), "ball": pp.ball(0.05).translated([0, 0.2, 0])})
     /// >>> [(hit.a, hit.b, round(hit.upper, 3)) for hit in world.first_impacts({"ball": [0, -0.2, 0]})]
@@ -204,6 +210,8 @@ impl PyWorld {
     }
 
     /// Where a body is: a matrix of shape (D + 1, D + 1).
+    ///
+    /// Raises `KeyError` if no body has the name.
     ///
     /// >>> import palpate as pp
     /// >>> pp.World({"a": pp.ball(0.5)}).pose("a")[:3, 3]

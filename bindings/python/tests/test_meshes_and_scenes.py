@@ -258,3 +258,15 @@ def test_contacts_take_a_mesh_of_another_library() -> None:
 def test_a_picture_of_a_shape_without_bounds_is_refused() -> None:
     with pytest.raises(ValueError, match="no bounds: intersect it with a box"):
         pp.half_space([0, 1, 0], 0.0).render(width=32, height=24)
+
+
+def test_a_file_that_is_missing_is_a_missing_file(tmp_path: Path) -> None:
+    file = tmp_path / "folder" / "it.json"
+    for read in (pp.Scene.load, pp.Mesh.load):
+        with pytest.raises(FileNotFoundError, match="it.") as caught:
+            read(file if read is pp.Scene.load else file.with_suffix(".stl"))
+        assert isinstance(caught.value, pp.MissingFileError)
+    # The name of the file beside it, which is written first, helps nobody.
+    with pytest.raises(FileNotFoundError) as unsaved:
+        pp.Scene(pp.ball(0.1)).save(file)
+    assert unsaved.value.filename == str(file)

@@ -3,10 +3,14 @@
 
 //! One error for programs that use several crates of palpate.
 
+use std::io;
+
 use palpate_devices::{DeviceError, DeviceLost, UnknownDevice};
 use palpate_field::ShapeError;
 use palpate_grid::GridError;
 use palpate_haptics::{HapticsError, NumberError, SafetyError, UnknownMaterial};
+#[cfg(feature = "mesh-files")]
+use palpate_mesh::ReadProblem;
 use palpate_mesh::{ContourError, MeshError, SolidError};
 use palpate_query::QueryError;
 #[cfg(feature = "scene")]
@@ -76,7 +80,7 @@ pub enum Error {
     Contour(#[from] ContourError),
     /// A grid cannot be made.
     Grid(#[from] GridError),
-    /// A mesh file cannot be read.
+    /// A file cannot be read, or holds no mesh.
     #[cfg(feature = "mesh-files")]
     MeshFile(#[from] palpate_mesh::ReadError),
     /// A scene cannot be read or built.
@@ -110,7 +114,7 @@ pub enum Error {
     #[cfg(feature = "local")]
     Weights(#[from] palpate_local::WeightsError),
     /// A file cannot be read or written.
-    File(#[from] std::io::Error),
+    File(#[from] io::Error),
 }
 
 /// What an [`Error`] is about: a name for each of its variants, without their data.
@@ -125,7 +129,7 @@ pub enum ErrorKind {
     Haptics,
     /// A hand path, a hand or a device cannot be made.
     Device,
-    /// Vertices and faces are no mesh or bound no solid, a shape has no mesh, or a mesh file cannot be read.
+    /// Vertices and faces are no mesh or bound no solid, a shape has no mesh, or a file holds no mesh.
     Mesh,
     /// A grid cannot be made.
     Grid,
@@ -179,7 +183,10 @@ impl Error {
             Self::Mesh(_) | Self::Solid(_) | Self::Contour(_) => ErrorKind::Mesh,
             Self::Grid(_) => ErrorKind::Grid,
             #[cfg(feature = "mesh-files")]
-            Self::MeshFile(_) => ErrorKind::Mesh,
+            Self::MeshFile(error) => match error.problem {
+                ReadProblem::Unreadable(_) => ErrorKind::File,
+                _ => ErrorKind::Mesh,
+            },
             #[cfg(feature = "scene")]
             Self::Scene(error) => match error.first().cause.as_deref() {
                 Some(SceneCause::File(_)) => ErrorKind::File,
@@ -204,6 +211,36 @@ impl Error {
             #[cfg(feature = "local")]
             Self::Weights(_) => ErrorKind::Query,
             Self::File(_) => ErrorKind::File,
+        }
+    }
+
+    /// Why the system did not read or write a file; `None` if that is not the error.
+    ///
+    /// ```
+    /// use std::io;
+    ///
+    /// # #[cfg(feature = "scene")] {
+    /// let error = palpate::Error::from(palpate::scene::Scene::from_file("none").unwrap_err());
+    /// assert_eq!(error.io_kind(), Some(io::ErrorKind::NotFound));
+    /// # }
+    /// let full = io::Error::from(io::ErrorKind::StorageFull);
+    /// assert_eq!(palpate::Error::from(full).io_kind(), Some(io::ErrorKind::StorageFull));
+    /// ```
+    #[must_use]
+    pub fn io_kind(&self) -> Option<io::ErrorKind> {
+        match self {
+            #[cfg(feature = "mesh-files")]
+            Self::MeshFile(palpate_mesh::ReadError {
+                problem: ReadProblem::Unreadable(error),
+                ..
+            }) => Some(error.kind()),
+            #[cfg(feature = "scene")]
+            Self::Scene(error) => match error.first().cause.as_deref() {
+                Some(SceneCause::File(kind)) => Some(*kind),
+                _ => None,
+            },
+            Self::File(error) => Some(error.kind()),
+            _ => None,
         }
     }
 

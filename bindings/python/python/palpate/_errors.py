@@ -98,3 +98,15 @@ class UnknownNameError(Error, LookupError):
 
 class FileError(Error, OSError):
     """A file cannot be read or written."""
+
+
+class MissingFileError(FileError, FileNotFoundError):
+    """There is no such file.
+
+    >>> import palpate as pp
+    >>> try:
+    ...     pp.Scene.load("no such file.json")
+    ... except FileNotFoundError as error:
+    ...     print(error)
+    cannot read no such file.json: No such file or directory (os error 2)
+    """

@@ -57,6 +57,10 @@ def _beside(place: Path, content: bytes) -> str:
     try:
         with open(name, "xb") as out:
             _written(out, content)
+    except OSError as error:
+        name.unlink(missing_ok=True)
+        # Of the file that was asked for, not of the one beside it.
+        raise OSError(error.errno, error.strerror, str(place)) from error
     except BaseException:
         name.unlink(missing_ok=True)
         raise

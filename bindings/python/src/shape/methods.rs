@@ -125,6 +125,8 @@ impl PyShape {
 
     /// This shape with its surface moved outwards where another field is positive, by `height` [m] at most.
     ///
+    /// Raises `ShapeError` if the height is not finite.
+    ///
     /// >>> import palpate as pp
     /// >>> pp.ball(0.5).displaced(pp.ball(0.1).repeated(x=0.3, y=0.3, z=0.3), height=0.01).bounds[1].round(2)
     /// array([0.51, 0.51, 0.51])
@@ -135,6 +137,8 @@ impl PyShape {
 
     /// A shape on the way from this one to another: this at a `progress` of 0, the other at 1.
     ///
+    /// Raises `ShapeError` if the progress is not between 0 and 1.
+    ///
     /// >>> import palpate as pp
     /// >>> pp.ball(0.5).morphed(pp.ball(0.3), progress=0.5).distance([1, 0, 0])
     /// 0.6
@@ -144,6 +148,8 @@ impl PyShape {
     }
 
     /// This shape moved by `offset` [m], D numbers.
+    ///
+    /// Raises `ShapeError` if a number is not finite, `ValueError` if there are not D of them.
     ///
     /// >>> import palpate as pp
     /// >>> pp.ball(0.5).translated([0, 1, 0]).distance([0, 2, 0])
@@ -160,6 +166,8 @@ impl PyShape {
     ///
     /// In space about an axis, by `degrees` or `radians`; in the plane by `degrees` or `radians` alone, from x to y. Or by
     /// `matrix`, its rows, or in space by `quaternion`, x, y, z, w.
+    ///
+    /// Raises `ShapeError` if the axis is zero or a number is not finite, `TypeError` unless one way is given.
     ///
     /// >>> import palpate as pp
     /// >>> pp.cuboid([2, 1, 1]).rotated([0, 0, 1], degrees=90).distance([0, 1.5, 0])
@@ -204,6 +212,8 @@ impl PyShape {
 
     /// This shape scaled about the origin by a factor.
     ///
+    /// Raises `ShapeError` if the factor is not positive and finite.
+    ///
     /// >>> import palpate as pp
     /// >>> pp.ball(0.5).scaled(2).distance([0, 2, 0])
     /// 1.0
@@ -212,6 +222,8 @@ impl PyShape {
     }
 
     /// This shape scaled by a factor along each axis. Its values are bounds.
+    ///
+    /// Raises `ShapeError` if a factor is not positive and finite.
     ///
     /// >>> import palpate as pp
     /// >>> pp.ball(0.5).stretched([1, 2, 1]).promise.outside
@@ -235,6 +247,8 @@ impl PyShape {
 
     /// A wall of this thickness [m] on the surface of this shape.
     ///
+    /// Raises `ShapeError` if the thickness is not positive.
+    ///
     /// >>> import palpate as pp
     /// >>> pp.ball(0.5).shell(0.02).distance([0, 0, 0])
     /// 0.49
@@ -243,6 +257,8 @@ impl PyShape {
     }
 
     /// This shape cut at the coordinate planes and pulled apart by a length along each axis [m].
+    ///
+    /// Raises `ShapeError` if a length is negative.
     ///
     /// >>> import palpate as pp
     /// >>> pp.ball(0.5).elongated([0, 2, 0]).bounds[1]
@@ -312,6 +328,9 @@ impl PyShape {
 
     /// This shape twisted: turned about y by an angle for each metre of y. In space alone.
     ///
+    /// Raises `ShapeError` if the angle is not finite or the shape has no bounds to twist, `TypeError` if it is one of
+    /// the plane.
+    ///
     /// >>> import palpate as pp
     /// >>> pp.cuboid([0.1, 1, 0.1]).twisted(degrees=90).promise.outside
     /// 'lipschitz'
@@ -328,6 +347,8 @@ impl PyShape {
 
     /// This shape of the plane as a solid: its x and y become x and z, and it gets a height along y [m].
     ///
+    /// Raises `ShapeError` if the height is not positive, `TypeError` if the shape is one of space.
+    ///
     /// >>> import palpate as pp
     /// >>> pp.ball(0.5, dimension=2).extruded(1).distance([0, 1, 0])
     /// 0.5
@@ -336,6 +357,8 @@ impl PyShape {
     }
 
     /// This shape of the plane turned about y: its x becomes the distance from that axis.
+    ///
+    /// Raises `TypeError` if the shape is one of space.
     ///
     /// >>> import palpate as pp
     /// >>> pp.ball(0.1, dimension=2).translated([0.5, 0]).revolved().distance([0, 0, 0.5])

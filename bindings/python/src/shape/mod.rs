@@ -112,6 +112,8 @@ impl PyShape {
     /// answers; it has the shape of the points without their last axis, their dtype, and C order. The work is shared by
     /// `threads` threads, 0 for all processors, without the interpreter's lock.
     ///
+    /// Raises `ValueError` if `points` or `out` have another shape, `TypeError` if they are no real numbers.
+    ///
     /// >>> import palpate as pp
     /// >>> pp.ball(0.5).distance([0.0, 2.0, 0.0])
     /// 1.5
@@ -208,6 +210,8 @@ impl PyShape {
 
     /// The text of the shape, as it stands in scene files.
     ///
+    /// Raises `SceneError` if a part of the shape cannot be written, as a function.
+    ///
     /// >>> import palpate as pp
     /// >>> pp.Shape.from_json(pp.ball(0.5).to_json())
     /// ball(radius=0.5)
@@ -216,6 +220,8 @@ impl PyShape {
     }
 
     /// The shape of a text as it stands in scene files.
+    ///
+    /// Raises `SceneError` with the place in the text if it is no shape.
     ///
     /// >>> import palpate as pp
     /// >>> pp.Shape.from_json('{ "ball": { "radius": 0.5 } }', dimension=2)
