@@ -25,6 +25,14 @@ impl<'py> Fields<'py> {
         Ok(self)
     }
 
+    /// The first of each, where each is an array.
+    pub(crate) fn first(self) -> PyResult<Self> {
+        for (name, values) in self.0.copy()? {
+            self.0.set_item(name, values.get_item(0)?)?;
+        }
+        Ok(self)
+    }
+
     /// An answer of a class with these fields.
     pub(crate) fn of_class(self, class: &str) -> PyResult<Bound<'py, PyAny>> {
         let class = self.0.py().import("palpate")?.getattr(class)?;

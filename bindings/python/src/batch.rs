@@ -47,7 +47,7 @@ pub(crate) fn separations<'py>(
     poses: &Bound<'py, PyAny>,
     tolerance: Option<f64>,
     budget: Option<u32>,
-    threads: usize,
+    threads: isize,
 ) -> PyResult<Bound<'py, PyAny>> {
     of_both!(poses.py(), a, b, |a, b| {
         let (py, query) = (poses.py(), query(tolerance, budget));
@@ -77,7 +77,7 @@ pub(crate) fn overlaps<'py>(
     b: &PyShape,
     poses: &Bound<'py, PyAny>,
     budget: Option<u32>,
-    threads: usize,
+    threads: isize,
 ) -> PyResult<Bound<'py, PyAny>> {
     of_both!(poses.py(), a, b, |a, b| {
         let (py, query) = (poses.py(), query(None, budget));
@@ -113,7 +113,7 @@ pub(crate) fn cast_rays<'py>(
     length: f64,
     tolerance: Option<f64>,
     budget: Option<u32>,
-    threads: usize,
+    threads: isize,
 ) -> PyResult<Bound<'py, PyAny>> {
     of_either!(shape.made(origins.py())?, shape => {
         let (py, query) = (origins.py(), query(tolerance, budget));
@@ -167,7 +167,7 @@ fn rays<const D: usize>(
 fn each<T: Copy + Sync, A: Clone + Send>(
     py: Python<'_>,
     all: &[T],
-    threads: usize,
+    threads: isize,
     ask: impl Fn(&[T], &mut [Option<A>], &(dyn Fn() -> bool + Sync)) -> Result<bool, QueryError>
     + Sync,
 ) -> PyResult<Vec<A>> {

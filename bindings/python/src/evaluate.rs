@@ -30,7 +30,7 @@ pub(crate) fn distance<'py>(
     shape: &AnyShape,
     points: &Bound<'py, PyAny>,
     out: Option<&Bound<'py, PyAny>>,
-    threads: usize,
+    threads: isize,
 ) -> PyResult<Bound<'py, PyAny>> {
     of_either!(shape, shape => distances(shape, points, out, threads))
 }
@@ -39,7 +39,7 @@ fn distances<'py, const D: usize>(
     shape: &Shape<D>,
     points: &Bound<'py, PyAny>,
     out: Option<&Bound<'py, PyAny>>,
-    threads: usize,
+    threads: isize,
 ) -> PyResult<Bound<'py, PyAny>> {
     let py = points.py();
     let one = |point: [f64; D]| {
@@ -70,7 +70,7 @@ fn many<'py, T: Element + Copy + Send + Sync, const D: usize>(
     shape: &Shape<D>,
     points: &PyReadonlyArrayDyn<'py, T>,
     out: Option<&Bound<'py, PyAny>>,
-    threads: usize,
+    threads: isize,
 ) -> PyResult<Bound<'py, PyAny>>
 where
     Shape<D>: Rows<T>,
@@ -93,7 +93,7 @@ pub(crate) fn distance_gradient<'py>(
     shape: &AnyShape,
     points: &Bound<'py, PyAny>,
     outs: [Option<&Bound<'py, PyAny>>; 2],
-    threads: usize,
+    threads: isize,
 ) -> PyResult<Slopes<'py>> {
     of_either!(shape, shape => match numbers(points, "points")? {
         Numbers::Double(array) => slopes(shape, &array, outs, threads),
@@ -105,7 +105,7 @@ fn slopes<'py, T: Element + Copy + Send + Sync, const D: usize>(
     shape: &Shape<D>,
     points: &PyReadonlyArrayDyn<'py, T>,
     [distances, gradients]: [Option<&Bound<'py, PyAny>>; 2],
-    threads: usize,
+    threads: isize,
 ) -> PyResult<Slopes<'py>>
 where
     Shape<D>: Rows<T>,

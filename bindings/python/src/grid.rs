@@ -24,7 +24,8 @@ impl PyShape {
     /// Either `tolerance` says how far values near the surface may be off those of this shape [m], which is certified,
     /// or `cell` how far samples are apart [m]; `promise.deviation` has what was reached. `kernel` is "quadratic",
     /// smooth, to be touched, or "trilinear"; `store` "f32", "i16" or "i8"; `band` keeps only what lies within so many
-    /// cells of the surface. More than `most_nodes` samples are refused, 67 108 864 if left out. `threads` share the work, 0 for all processors; the bits do not depend on how many.
+    /// cells of the surface. More than `most_nodes` samples are refused, 67 108 864 if left out. `threads` share the
+    /// work, 0 for all processors; the bits do not depend on how many.
     ///
     /// Raises `GridError` if the shape has no bounds, a value is not finite or the grid would take too much memory,
     /// `TypeError` unless one of `tolerance` and `cell` is given.
@@ -43,7 +44,7 @@ impl PyShape {
         store: &str,
         band: Option<f64>,
         most_nodes: Option<usize>,
-        threads: usize,
+        threads: isize,
     ) -> PyResult<Self> {
         let resolution = match (tolerance, cell) {
             (Some(tolerance), None) => Resolution::Tolerance(tolerance),
@@ -123,7 +124,7 @@ fn baked<const D: usize>(
     py: Python<'_>,
     shape: &Shape<D>,
     options: &GridOptions,
-    threads: usize,
+    threads: isize,
 ) -> PyResult<Shape<D>> {
     let pool = pool::of_at_least_one(threads)?;
     let made = interruptible(py, &pool, |stop| {

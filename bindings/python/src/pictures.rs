@@ -176,7 +176,7 @@ impl PyShape {
         height: u32,
         yaw: f64,
         pitch: f64,
-        threads: usize,
+        threads: isize,
     ) -> PyResult<PyImage> {
         let shape = self.solid(py, "render")?;
         if shape.promise().bounds.is_none() {
@@ -228,7 +228,7 @@ impl PyShape {
         slf: &Bound<'py, Self>,
         spacing: f64,
         margin: Option<f64>,
-        threads: usize,
+        threads: isize,
     ) -> PyResult<Bound<'py, PyAny>> {
         slf.py()
             .import("palpate._plot")?

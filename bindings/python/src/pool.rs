@@ -24,20 +24,22 @@ static POOLS: Mutex<Option<Pools>> = Mutex::new(None);
 type Pools = HashMap<(u32, usize), Arc<Pool>>;
 
 /// So many threads; those of all processors if that is 0, none but the caller's if it is 1.
-pub(crate) fn of(threads: usize) -> PyResult<Option<Arc<Pool>>> {
-    let threads = match threads {
-        0 => std::thread::available_parallelism().map_or(1, usize::from),
-        threads => threads,
+pub(crate) fn of(threads: isize) -> PyResult<Option<Arc<Pool>>> {
+    let threads = match usize::try_from(threads) {
+        Ok(0) => std::thread::available_parallelism().map_or(1, usize::from),
+        Ok(threads) if threads <= MOST_THREADS => threads,
+        _ => {
+            let problem = format!(
+                "threads must be 0, for all processors, or from 1 to {MOST_THREADS}, got {threads}"
+            );
+            return Err(PyValueError::new_err(problem));
+        }
     };
-    if threads > MOST_THREADS {
-        let problem = format!("threads must be at most {MOST_THREADS}, got {threads}");
-        return Err(PyValueError::new_err(problem));
-    }
     if threads == 1 { Ok(None) } else { shared(threads).map(Some) }
 }
 
 /// The same, with a pool of one thread where one is asked for.
-pub(crate) fn of_at_least_one(threads: usize) -> PyResult<Arc<Pool>> {
+pub(crate) fn of_at_least_one(threads: isize) -> PyResult<Arc<Pool>> {
     match of(threads)? {
         Some(pool) => Ok(pool),
         None => alone(),

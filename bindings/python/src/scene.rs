@@ -314,12 +314,22 @@ pub(crate) fn matrix<'py, const D: usize>(
     py: Python<'py>,
     pose: &Pose<D>,
 ) -> PyResult<Bound<'py, PyAny>> {
-    let mut numbers = Vec::with_capacity((D + 1) * (D + 1));
-    for (turn, way) in pose.rotation.matrix().iter().zip(pose.translation.0) {
-        numbers.extend(turn);
-        numbers.push(way);
+    matrices(py, [pose])?.get_item(0)
+}
+
+/// Poses as an array of matrices.
+pub(crate) fn matrices<'a, 'py, const D: usize>(
+    py: Python<'py>,
+    poses: impl IntoIterator<Item = &'a Pose<D>>,
+) -> PyResult<Bound<'py, PyAny>> {
+    let mut numbers = Vec::new();
+    for pose in poses {
+        for (turn, way) in pose.rotation.matrix().iter().zip(pose.translation.0) {
+            numbers.extend(turn);
+            numbers.push(way);
+        }
+        numbers.extend([0.0; D]);
+        numbers.push(1.0);
     }
-    numbers.extend([0.0; D]);
-    numbers.push(1.0);
-    row(py, numbers).call_method1("reshape", (D + 1, D + 1))
+    row(py, numbers).call_method1("reshape", (-1, D + 1, D + 1))
 }

@@ -4,7 +4,7 @@
 //! What a servo tells: its state, events, report and ticks.
 
 use palpate::field::Vector;
-use palpate::haptics::{Event, EventKind, Snapshot};
+use palpate::haptics::{Event, EventKind, HeldTool, Snapshot};
 use palpate::servo_loop::TraceRow;
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
@@ -12,6 +12,7 @@ use serde::Serialize;
 
 use crate::answers::{Fields, vector};
 use crate::arrays::{row, table};
+use crate::scene::matrices;
 
 pub(crate) fn snapshot<'py, const D: usize>(
     py: Python<'py>,
@@ -31,13 +32,17 @@ pub(crate) fn snapshot<'py, const D: usize>(
             .of_class("Touch")
     };
     let touches: PyResult<Vec<_>> = now.touches.iter().map(touch).collect();
+    let tool = tools(py, now.tool.as_slice())?;
+    let tool = tool.map(|all| all.first()?.of_class("HeldTool")).transpose()?;
     Fields::new(py)
         .with("time", now.progress.time)?
         .with("ticks", now.progress.ticks)?
         .with("force", now.progress.force)?
         .with("depth", now.progress.depth)?
         .with("touches", pyo3::types::PyTuple::new(py, touches?)?)?
+        .with("tool", tool)?
         .with("is_stopped", now.is_stopped)?
+        .with("is_lifted", now.is_lifted)?
         .with("events_lost", now.events_lost)?
         .of_class("Snapshot")
 }
@@ -85,6 +90,8 @@ pub(crate) fn trace<'py, const D: usize>(
     let vectors = |of: fn(&TraceRow<D>) -> Vector<f64, D>| {
         table(py, rows.iter().flat_map(|row| of(row).0).collect(), D)
     };
+    let held: Vec<_> = rows.iter().filter_map(|row| row.tool).collect();
+    let tool = tools(py, &held)?.map(|all| all.of_class("HeldTool")).transpose()?;
     Fields::new(py)
         .with("time", row(py, rows.iter().map(|row| row.time_s).collect()))?
         .with("point", row(py, rows.iter().map(|row| row.point).collect()))?
@@ -96,9 +103,41 @@ pub(crate) fn trace<'py, const D: usize>(
         .with("contact", row(py, rows.iter().map(|row| row.contact).collect()))?
         .with("body", row(py, rows.iter().map(|row| row.body).collect()))?
         .with("is_slipping", row(py, rows.iter().map(|row| row.is_slipping).collect()))?
+        .with("is_lifted", row(py, rows.iter().map(|row| row.is_lifted).collect()))?
+        .with("taken", row(py, rows.iter().map(|row| row.energy.taken).collect()))?
+        .with("given", row(py, rows.iter().map(|row| row.energy.given).collect()))?
+        .with("kept", row(py, rows.iter().map(|row| row.energy.kept).collect()))?
+        .with("tool", tool)?
         .with("evaluations", row(py, rows.iter().map(|row| row.evaluations).collect()))?
         .with("cost_ns", row(py, rows.iter().map(|row| row.cost_ns).collect()))?
         .with("lateness_ns", row(py, rows.iter().map(|row| row.lateness_ns).collect()))?
         .with("lost", lost)?
         .of_class("Trace")
+}
+
+/// Tools as arrays with a row for each; `None` if there are none.
+fn tools<'py, const D: usize>(
+    py: Python<'py>,
+    all: &[HeldTool<D>],
+) -> PyResult<Option<Fields<'py>>> {
+    if all.is_empty() {
+        return Ok(None);
+    }
+    // In the plane, turns and torques are about z alone.
+    let about = |of: fn(&HeldTool<D>) -> Vector<f64, 3>| {
+        if D == 2 {
+            return Ok(row(py, all.iter().map(|tool| of(tool).0[2]).collect()));
+        }
+        table(py, all.iter().flat_map(|tool| of(tool).0).collect(), 3)
+    };
+    Fields::new(py)
+        .with("pose", matrices(py, all.iter().map(|tool| &tool.pose))?)?
+        .with("turn", about(|tool| tool.turn)?)?
+        .with("torque", about(|tool| tool.torque)?)?
+        .with("given_torque", about(|tool| tool.given.unwrap_or(Vector([f64::NAN; 3])))?)?
+        .with("contacts", row(py, all.iter().map(|tool| tool.contacts).collect()))?
+        .with("resolution", row(py, all.iter().map(|tool| tool.resolution).collect()))?
+        .with("is_degraded", row(py, all.iter().map(|tool| tool.is_degraded).collect()))?
+        .with("is_covered", row(py, all.iter().map(|tool| tool.is_covered).collect()))
+        .map(Some)
 }

@@ -182,7 +182,7 @@ impl PyWorld {
     /// >>> len(pp.World({"a": pp.ball(0.5), "b": pp.ball(0.4)}).step())
     /// 1
     #[pyo3(signature = (*, threads = 1))]
-    fn step<'py>(&self, py: Python<'py>, threads: usize) -> PyResult<Vec<Bound<'py, PyAny>>> {
+    fn step<'py>(&self, py: Python<'py>, threads: isize) -> PyResult<Vec<Bound<'py, PyAny>>> {
         let pool = pool::of_at_least_one(threads)?;
         of_either!(&self.0, world => stepped(py, world, &pool))
     }

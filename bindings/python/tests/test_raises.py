@@ -91,6 +91,7 @@ RAISED: list[tuple[Callable[[], Any], type[Exception]]] = [
     (lambda: BALL.rotated([0, 0, 1], degrees=NAN), pp.ShapeError),
     (lambda: BALL.rotated([0, 0, 1]), TypeError),
     (lambda: BALL.scaled(0), pp.ShapeError),
+    (lambda: BALL.scaled([1, 2, 1]), TypeError),  # type: ignore[arg-type]
     (lambda: BALL.stretched([1, 0, 1]), pp.ShapeError),
     (lambda: BALL.shell(thickness=0), pp.ShapeError),
     (lambda: BALL.elongated([0, -1, 0]), pp.ShapeError),

@@ -100,6 +100,12 @@ def test_tools_have_points_and_shapes() -> None:
     peg = {"shape": pp.capsule(0.004, 0.03)}
     held = pp.feel(pp.Scene(pp.ball(0.05), tool=peg), hand=[[0, 0, 0.08, 0], [0.3, 0, 0.045, 0]], duration=0.3)
     assert held.trace.force[-1, 1] > 0 and len(held.trace) == 300
+    tool = held.trace.tool
+    assert tool is not None and tool.pose.shape == (300, 4, 4)
+    # The tool stays on the ball, and its contacts push.
+    assert np.array_equal(tool.pose[:, :3, 3], held.trace.proxy) and np.max(tool.contacts) > 0
+    assert {"torque_z", "given_torque_x", "pose_03", "taken"} <= set(held.trace.columns())
+    assert held.trace.taken[-1] > 0 and not held.trace.is_lifted.any()
     assert len(pp.feel(pp.Scene(pp.ball(0.05), tool=peg), duration=0.1).trace) == 100
     # Without a tool, points follow each other.
     assert set(pp.feel(pp.ball(0.05), points=3, duration=0.1).trace.point) == {0, 1, 2}

@@ -9,7 +9,7 @@ use std::ops::ControlFlow;
 
 use palpate_field::operator::Profile;
 use palpate_field::{Rotation, Shape, Vector};
-use palpate_mesh::{ContourError, ContourOptions, Format, Solid, TriangleMesh};
+use palpate_mesh::{ContourError, ContourOptions, FittedMesh, Format, Solid, TriangleMesh};
 use palpate_testkit::cases;
 
 #[expect(unreachable_pub, reason = "shared with the fuzz target")]
@@ -148,4 +148,73 @@ fn what_has_no_mesh_is_refused() {
             ControlFlow::Break(())
         });
     assert_eq!(stopped.unwrap_err(), ContourError::Stopped);
+}
+
+/// A ball of 3 mm beside one of 1 m, both found as a union and as a cavity, was left out without a word: every triangle
+/// of the rest was near the surface.
+#[test]
+fn a_part_between_the_nodes_is_told_and_found_by_a_tolerance() {
+    let large = Shape::sphere(1.0).unwrap();
+    let small = Shape::sphere(0.003).unwrap();
+    let beside = large.clone() | small.clone().translated([2.0, 0.0, 0.0]).unwrap();
+    let cavity = large.clone() - small.translated([0.2, 0.1, -0.3]).unwrap();
+    let plate = large.clone()
+        | Shape::cuboid([0.5, 0.004, 0.5]).unwrap().translated([0.0, 1.5, 0.0]).unwrap();
+    let go_on = &mut |_| ControlFlow::Continue(());
+    for shape in [beside, cavity, plate] {
+        let coarse =
+            FittedMesh::by_cells(&shape, &ContourOptions::with_cell(0.04), go_on).unwrap();
+        let Vector(point) = coarse.lost.unwrap();
+        // It is on the other side of the surface than the mesh says.
+        let (solid, _) = Solid::from_mesh(&coarse.mesh).unwrap();
+        let said = Shape::from(solid).distance(point);
+        assert!(said * shape.distance(point) < 0.0, "{point:?}: {said}");
+        assert_eq!(coarse.within(1.0).unwrap_err(), ContourError::Lost { point, cell: 0.04 });
+    }
+    let all = large | Shape::sphere(0.02).unwrap().translated([1.5, 0.0, 0.0]).unwrap();
+    let options = ContourOptions::with_cell(1.0);
+    let fine = FittedMesh::by_tolerance(&all, 2e-3, &options, go_on).unwrap();
+    assert_eq!(fine.lost, None);
+    assert!(fine.mesh.bounds().max[0] > 1.51, "{:?}", fine.mesh.bounds());
+    assert!(fine.within(2e-3).is_ok());
+}
+
+#[test]
+fn what_is_whole_is_not_told_to_lack_a_part() {
+    let go_on = &mut |_| ControlFlow::Continue(());
+    for (name, shape) in solids() {
+        for cell in [0.037, 0.0211] {
+            let fitted = FittedMesh::by_cells(&shape, &ContourOptions::with_cell(cell), go_on);
+            assert_eq!(fitted.unwrap().lost, None, "{name}, {cell} m");
+        }
+    }
+}
+
+/// Cells that would see a thin plate are too many: the advice was to choose larger ones, though none had been chosen.
+#[test]
+fn a_plate_that_is_too_thin_for_its_size_is_told_so() {
+    let plate = Shape::cuboid([1.0, 1.0, 1e-7]).unwrap();
+    let mut options = ContourOptions::with_cell(1.0);
+    options.most_cells = 1 << 20;
+    let go_on = &mut |_| ControlFlow::Continue(());
+    let error = FittedMesh::by_tolerance(&plate, 1e-3, &options, go_on).unwrap_err();
+    assert!(matches!(error, ContourError::TooThin { .. }), "{error}");
+}
+
+/// Two cubes that share an edge: rounded to single precision their faces touch there. Vertices were moved half of the way to
+/// the middles of their patches, and no cells were small enough for a tolerance.
+#[test]
+fn faces_that_touch_by_rounding_are_moved_apart_by_little() {
+    let cube = Shape::cuboid([1.0; 3]).unwrap();
+    let both = cube.clone() | cube.translated([1.0, 1.0, 0.0]).unwrap();
+    let options = ContourOptions::with_cell(1.0).with_single_precision(true);
+    let mut least = f64::INFINITY;
+    let fitted = FittedMesh::by_tolerance(&both, 1e-3, &options, &mut |progress| {
+        least = least.min(progress.cell);
+        ControlFlow::Continue(())
+    });
+    let mesh = fitted.unwrap().within(1e-3).unwrap();
+    assert!(least > 0.02, "cells of {least} m");
+    let (_, findings) = Solid::from_mesh(&mesh).unwrap();
+    assert_eq!(findings.crossings + findings.touching, 0, "{findings}");
 }

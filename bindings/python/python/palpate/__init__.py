@@ -52,7 +52,7 @@ from palpate._errors import (
     ShapeError,
     UnknownNameError,
 )
-from palpate._felt import Event, Felt, Snapshot, Touch, Trace
+from palpate._felt import Event, Felt, HeldTool, Snapshot, Touch, Trace
 from palpate._palpate import (
     STOPS,
     Figure,
@@ -109,6 +109,7 @@ __all__ = [
     "Impact",
     "GridError",
     "HapticsError",
+    "HeldTool",
     "Image",
     "Mailbox",
     "Manifold",

@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, fields
 from typing import Any
 
@@ -39,6 +40,33 @@ class Touch(Answer):
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
+class HeldTool(Answer):
+    """A tool with a shape, in :attr:`Snapshot.tool`; in :attr:`Trace.tool` each field has an axis for the n rows first.
+
+    Turns and torques have the shape (3,); in the plane they are about z, and numbers.
+
+    Fields:
+        pose: Where the tool is, which enters no body: a matrix of shape (D + 1, D + 1).
+        turn: How the device is turned relative to the tool, as a rotation vector [rad].
+        torque: The torque that the contacts want about the origin of the tool [N m].
+        given_torque: The torque that was written [N m]; NaN of a device without rotation.
+        contacts: How many contacts push.
+        resolution: How far the surface of the tool may be from the balls that stand for it [m].
+        is_degraded: Whether the time of a tick did not suffice for all balls.
+        is_covered: Whether bodies cover the tool, which then gives no force.
+    """
+
+    pose: Floats
+    turn: Floats | float
+    torque: Floats | float
+    given_torque: Floats | float
+    contacts: NDArray[np.uint32] | int
+    resolution: Floats | float
+    is_degraded: NDArray[np.bool_] | bool
+    is_covered: NDArray[np.bool_] | bool
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
 class Snapshot(Answer):
     """The newest state of a servo, by :meth:`Servo.latest`.
 
@@ -48,7 +76,9 @@ class Snapshot(Answer):
         force: The largest force since the last snapshot [N].
         depth: The largest depth since the last snapshot [m].
         touches: The contact points.
+        tool: The tool; None if contact points touch.
         is_stopped: Whether the emergency stop holds.
+        is_lifted: Whether the hand is lifted off the bodies, and passes through them.
         events_lost: Events that nobody took in time.
     """
 
@@ -57,7 +87,9 @@ class Snapshot(Answer):
     force: float
     depth: float
     touches: tuple[Touch, ...]
+    tool: HeldTool | None
     is_stopped: bool
+    is_lifted: bool
     events_lost: int
 
 
@@ -99,6 +131,11 @@ class Trace(Answer):
         contact: Whether a body is touched, shape (n,).
         body: The place of the body in ``scene.names``, shape (n,); without meaning where none is touched.
         is_slipping: Whether the proxy slips, shape (n,).
+        is_lifted: Whether the hand is lifted off the bodies, and passes through them, shape (n,).
+        taken: What the forces took from the hand so far [J], shape (n,).
+        given: What they gave to it so far [J], shape (n,).
+        kept: What the forces that the material wanted would have given, and the safety chain held back [J], shape (n,).
+        tool: The tool; None if contact points touch.
         evaluations: How often the field was evaluated, shape (n,).
         cost_ns: How long the tick took [ns], shape (n,).
         lateness_ns: How late it was [ns], shape (n,).
@@ -115,6 +152,11 @@ class Trace(Answer):
     contact: NDArray[np.bool_]
     body: NDArray[np.uint32]
     is_slipping: NDArray[np.bool_]
+    is_lifted: NDArray[np.bool_]
+    taken: Floats
+    given: Floats
+    kept: Floats
+    tool: HeldTool | None
     evaluations: NDArray[np.uint32]
     cost_ns: NDArray[np.uint64]
     lateness_ns: NDArray[np.uint64]
@@ -129,19 +171,26 @@ class Trace(Answer):
         >>> import palpate as pp, pandas
         >>> felt = pp.feel(pp.Scene(pp.ball(0.05)), hand=[0, 0.049, 0], duration=0.01)
         >>> pandas.DataFrame(felt.trace.columns()).shape
-        (10, 23)
+        (10, 27)
         """
         columns: dict[str, NDArray[Any]] = {}
-        for field in fields(self):
-            value = getattr(self, field.name)
-            if not isinstance(value, np.ndarray):
-                continue
+        for name, value in (*_arrays(self), *_arrays(self.tool)):
             if value.ndim == 1:
-                columns[field.name] = value
+                columns[name] = value
+            elif value.ndim == 2:
+                for axis, letter in zip(range(value.shape[1]), "xyz", strict=False):
+                    columns[f"{name}_{letter}"] = np.ascontiguousarray(value[:, axis])
             else:
-                for axis, name in zip(range(value.shape[1]), "xyz", strict=False):
-                    columns[f"{field.name}_{name}"] = np.ascontiguousarray(value[:, axis])
+                for i, k in np.ndindex(value.shape[1] - 1, value.shape[2]):
+                    columns[f"{name}_{i}{k}"] = np.ascontiguousarray(value[:, i, k])
         return columns
+
+
+def _arrays(answer: Trace | HeldTool | None) -> Iterator[tuple[str, NDArray[Any]]]:
+    for field in fields(answer) if answer is not None else ():
+        value = getattr(answer, field.name)
+        if isinstance(value, np.ndarray):
+            yield field.name, value
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)

@@ -217,7 +217,12 @@ impl PyShape {
     /// >>> import palpate as pp
     /// >>> pp.ball(0.5).scaled(2).distance([0, 2, 0])
     /// 1.0
-    fn scaled(&self, py: Python<'_>, factor: f64) -> PyResult<Self> {
+    fn scaled(&self, factor: &Bound<'_, PyAny>) -> PyResult<Self> {
+        let py = factor.py();
+        let factor: f64 = factor.extract().map_err(|_| {
+            let problem = "factor must be one number: `stretched` takes one for each axis";
+            PyTypeError::new_err(problem)
+        })?;
         of_either!(self.made(py)?, shape => shape.clone().scaled(factor).or_raise(py).map(Self::from))
     }
 

@@ -124,7 +124,7 @@ impl PyShape {
         &self,
         points: &Bound<'py, PyAny>,
         out: Option<&Bound<'py, PyAny>>,
-        threads: usize,
+        threads: isize,
     ) -> PyResult<Bound<'py, PyAny>> {
         evaluate::distance(self.made(points.py())?, points, out, threads)
     }
@@ -139,7 +139,7 @@ impl PyShape {
         &self,
         points: &Bound<'py, PyAny>,
         out: Option<&Bound<'py, PyAny>>,
-        threads: usize,
+        threads: isize,
     ) -> PyResult<Bound<'py, PyAny>> {
         self.distance(points, out, threads)
     }
@@ -154,7 +154,7 @@ impl PyShape {
         &self,
         points: &Bound<'py, PyAny>,
         out: Option<&Bound<'py, PyAny>>,
-        threads: usize,
+        threads: isize,
     ) -> PyResult<Bound<'py, PyAny>> {
         Ok(evaluate::distance_gradient(self.made(points.py())?, points, [None, out], threads)?
             .1)
@@ -171,7 +171,7 @@ impl PyShape {
         &self,
         points: &Bound<'py, PyAny>,
         out: Option<(Bound<'py, PyAny>, Bound<'py, PyAny>)>,
-        threads: usize,
+        threads: isize,
     ) -> PyResult<Slopes<'py>> {
         let (distances, gradients) = out.unzip();
         let outs = [distances.as_ref(), gradients.as_ref()];

@@ -9,7 +9,7 @@ use std::io::Write;
 use std::ops::ControlFlow;
 use std::path::Path;
 
-use palpate::field::{Quality, Shape};
+use palpate::field::{Point, Quality, Shape};
 use palpate::mesh::{
     ContourError, ContourOptions, FitProgress, FittedMesh, Format, Report, Solid, TriangleMesh,
 };
@@ -37,6 +37,8 @@ struct Made {
     cell: Option<f64>,
     /// The largest size of the field on a triangle [m]: found, and proven.
     error: [f64; 2],
+    /// A point of a part that has no triangle [m].
+    lost: Option<Point<3>>,
 }
 
 /// Writes the mesh; the answer is no if its error is above the tolerance, or it is not good.
@@ -118,7 +120,7 @@ fn mended(
         corners.map(|(from, to)| (to - from).norm())
     });
     let moved = moved.fold(0.0, f64::max) * (1.0 + 1e-12);
-    Ok(Some(Made { mesh, cell: None, error: [moved; 2] }))
+    Ok(Some(Made { mesh, cell: None, error: [moved; 2], lost: None }))
 }
 
 /// The shape of a scene.
@@ -177,9 +179,9 @@ impl Work<'_> {
             }
         };
         match fitted {
-            Ok(FittedMesh { mesh, cell, error, .. }) => {
+            Ok(FittedMesh { mesh, cell, error, lost, .. }) => {
                 let mesh = mesh.in_format(self.format).map_err(|error| refused(&error))?;
-                Ok(Some(Made { mesh, cell: Some(cell), error }))
+                Ok(Some(Made { mesh, cell: Some(cell), error, lost }))
             }
             Err(ContourError::Stopped) => Ok(None),
             Err(error) => Err(refused(&error)),
@@ -194,14 +196,14 @@ fn report(
     made: &Made,
     Judgement { report: mesh_report, crosses, is_good }: &Judgement,
 ) -> Result<Outcome, Failure> {
-    let Made { mesh, cell, error: [found, proven] } = made;
+    let Made { mesh, cell, error: [found, proven], lost } = made;
     let is_reached = options.tolerance.is_none_or(|tolerance| *proven <= tolerance);
-    let is_good = *is_good;
+    let (is_good, is_whole) = (*is_good, lost.is_none());
     let mut out = output::answer();
     let name = output.display().to_string();
     if options.json {
         out.json(&json!({
-            "ok": is_good && is_reached,
+            "ok": is_good && is_reached && is_whole,
             "output": name,
             "cell_m": cell,
             "triangles": mesh.elements().len(),
@@ -212,6 +214,7 @@ fn report(
             "enclosed_m3": mesh_report.enclosed,
             "field_on_triangles_m": { "found": found, "at_most": proven },
             "field_is_distance": is_exact,
+            "lost_at_m": lost.map(|point| point.0),
         }))?;
     } else {
         let closed = if is_good {
@@ -244,6 +247,13 @@ fn report(
                  a bound, so the surface may be farther away"
             )?;
         }
+        if let Some(point) = lost {
+            writeln!(
+                out,
+                "  lost     the part at ({}) m has no triangle: the cells are too large for it, ask for a smaller --cell",
+                point.0.map(rounded).join(", ")
+            )?;
+        }
         if let Some(tolerance) = options.tolerance.filter(|_| !is_reached) {
             writeln!(
                 out,
@@ -252,5 +262,5 @@ fn report(
             )?;
         }
     }
-    Ok(if is_good && is_reached { Outcome::Yes } else { Outcome::No })
+    Ok(if is_good && is_reached && is_whole { Outcome::Yes } else { Outcome::No })
 }

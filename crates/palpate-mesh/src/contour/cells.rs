@@ -3,11 +3,12 @@
 
 //! The lattice of cells, and those that the surface passes.
 
+use std::collections::HashSet;
 use std::ops::ControlFlow;
 
 use palpate_field::{Aabb, BLOCK, Block, Column, Point, Shape, Vector};
 
-use super::{ContourError, ContourOptions};
+use super::{ContourError, ContourOptions, lost};
 
 /// Cells of a block along an axis: a block far from the surface is passed over.
 const SIDE: usize = 8;
@@ -85,63 +86,110 @@ impl Cells {
         Aabb { min: self.node(index), max: self.node(index.map(|i| i + 1)) }
     }
 
-    /// The cells with corners on both sides of the surface.
+    /// The cells with corners on both sides of the surface, and a point of a part that has none.
     pub(super) fn signed(
         &self,
         shape: &Shape<3>,
         progress: &mut dyn FnMut(f64) -> ControlFlow<()>,
-    ) -> Result<Vec<Signed>, ContourError> {
+    ) -> Result<(Vec<Signed>, Option<Point<3>>), ContourError> {
         let blocks = self.counts.map(|count| count.div_ceil(SIDE));
         let all = blocks.into_iter().map(|count| count as f64).product();
         let side = blocks.into_iter().fold(1, usize::max).next_power_of_two();
-        let found = Vec::new();
+        let found = Found { signed: Vec::new(), between: Vec::new() };
         let mut octree =
             Octree { cells: self, shape, progress, blocks, all, passed: 0.0, leaves: 0, found };
         octree.descend([0; 3], side)?;
-        Ok(octree.found)
+        let lost = octree.found.lost();
+        Ok((octree.found.signed, lost))
     }
 
     fn in_block(
         &self,
         shape: &Shape<3>,
         first: [usize; 3],
-        found: &mut Vec<Signed>,
+        found: &mut Found,
     ) -> Result<(), ContourError> {
         let at = |number: usize| {
             let own = [number % NODES, number / NODES % NODES, number / (NODES * NODES)];
             self.node(std::array::from_fn(|i| first[i] + own[i]))
         };
         let mut inside = [false; NODES * NODES * NODES];
+        let mut sizes = [0.0; NODES * NODES * NODES];
         let (mut points, mut values) =
             (Block::<f64, 3, BLOCK>::zero(), Column::<f64, BLOCK>::zero());
-        for (run, inside) in inside.chunks_mut(BLOCK).enumerate() {
+        let runs = inside.chunks_mut(BLOCK).zip(sizes.chunks_mut(BLOCK));
+        for (run, (inside, sizes)) in runs.enumerate() {
             points.fill(inside.len(), |i| at(run * BLOCK + i));
             shape.block_distances(&points, inside.len(), &mut values);
-            for (i, inside) in inside.iter_mut().enumerate() {
+            for (i, (inside, size)) in inside.iter_mut().zip(sizes).enumerate() {
                 let value = values.get(i);
                 if !value.is_finite() {
                     return Err(ContourError::NotFinite { point: at(run * BLOCK + i).0 });
                 }
-                *inside = value < 0.0;
+                (*inside, *size) = (value < 0.0, value.abs());
             }
         }
+        // A point of a cell is at most half of its diagonal from the nearest corner.
+        let reach = 0.5 * 3.0_f64.sqrt() * self.cell * shape.promise().lipschitz;
         for number in 0..SIDE * SIDE * SIDE {
             let own = [number % SIDE, number / SIDE % SIDE, number / (SIDE * SIDE)];
             let cell: [usize; 3] = std::array::from_fn(|i| first[i] + own[i]);
             if (0..3).any(|i| cell[i] >= self.counts[i]) {
                 continue;
             }
-            let mut corners = 0;
+            let (mut corners, mut nearest) = (0, f64::INFINITY);
             for corner in 0..8 {
-                let node: [usize; 3] = std::array::from_fn(|i| own[i] + ((corner >> i) & 1));
-                let place = node[0] + NODES * (node[1] + NODES * node[2]);
-                corners |= u8::from(inside[place]) << corner;
+                let node = place(std::array::from_fn(|i| own[i] + ((corner >> i) & 1)));
+                corners |= u8::from(inside[node]) << corner;
+                nearest = nearest.min(sizes[node]);
             }
+            let cell = cell.map(|i| i as u32);
             if corners != 0 && corners != u8::MAX {
-                found.push(Signed { cell: cell.map(|i| i as u32), inside: corners });
+                found.signed.push(Signed { cell, inside: corners });
+            } else if nearest <= reach && is_alone(&inside, own) {
+                let between = lost::beyond(shape, &self.around(cell), corners != 0);
+                found.between.extend(between.map(|point| (cell, point)));
             }
         }
         Ok(())
+    }
+}
+
+/// The place of a node in a block.
+fn place(node: [usize; 3]) -> usize {
+    node[0] + NODES * (node[1] + NODES * node[2])
+}
+
+/// Whether a cell and those around it, as far as they are of the block, have all corners on one side.
+fn is_alone(inside: &[bool; NODES * NODES * NODES], cell: [usize; 3]) -> bool {
+    let along = |i: usize| cell[i].saturating_sub(1)..(cell[i] + 3).min(NODES);
+    along(2).all(|z| {
+        along(1).all(|y| along(0).all(|x| inside[place([x, y, z])] == inside[place(cell)]))
+    })
+}
+
+/// What was found in all blocks.
+struct Found {
+    signed: Vec<Signed>,
+    /// Cells without a crossing, and points in them beyond the surface.
+    between: Vec<([u32; 3], Point<3>)>,
+}
+
+impl Found {
+    /// A point in a cell that no cell with a crossing is beside.
+    fn lost(&self) -> Option<Point<3>> {
+        if self.between.is_empty() {
+            return None;
+        }
+        let signed: HashSet<_> = self.signed.iter().map(|signed| signed.cell).collect();
+        let is_alone = |cell: &[u32; 3]| {
+            (0..27).all(|code| {
+                let step = [code % 3, code / 3 % 3, code / 9];
+                let beside = std::array::from_fn(|i| (cell[i] + step[i]).wrapping_sub(1));
+                !signed.contains(&beside)
+            })
+        };
+        self.between.iter().find(|(cell, _)| is_alone(cell)).map(|(_, point)| *point)
     }
 }
 
@@ -157,7 +205,7 @@ struct Octree<'a> {
     passed: f64,
     /// Blocks whose cells were looked at.
     leaves: usize,
-    found: Vec<Signed>,
+    found: Found,
 }
 
 impl Octree<'_> {

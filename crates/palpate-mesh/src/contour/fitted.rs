@@ -5,9 +5,9 @@
 
 use std::ops::ControlFlow;
 
-use palpate_field::Shape;
+use palpate_field::{Point, Shape, Vector};
 
-use super::{ContourError, ContourOptions};
+use super::{ContourError, ContourOptions, made};
 use crate::mesh::TriangleMesh;
 
 /// Cells along the longest side with which a tolerance is tried first.
@@ -27,6 +27,9 @@ pub struct FittedMesh {
     /// The largest size of the field on a triangle [m]: one that was found, and one that none exceeds. Of an exact
     /// field it is the largest distance of a triangle from the surface.
     pub error: [f64; 2],
+    /// A point of a part of the shape, or of a cavity, that no triangle is near: it is between the nodes of the cells. `None`
+    /// if no such part was found, by steps from the middles of the cells that the surface may pass.
+    pub lost: Option<Point<3>>,
 }
 
 /// How far a fit is.
@@ -56,8 +59,8 @@ impl FittedMesh {
     }
 
     /// A mesh of which no triangle has a larger field than `tolerance` [m]: cells, at most as large as those of the
-    /// options, are made smaller until that is proven. What a dozen tries do not prove is left open: the error of the
-    /// answer is then larger. `progress` can stop the work.
+    /// options, are made smaller until that is proven and no part is known to be [lost](Self::lost). What a dozen tries do
+    /// not reach is left open: the error of the answer is then larger, or it says what is lost. `progress` can stop the work.
     ///
     /// ```
     /// use std::ops::ControlFlow;
@@ -94,15 +97,26 @@ impl FittedMesh {
         for _ in 0..MOST_TRIES {
             let tried = ContourOptions { cell, ..options.clone() };
             let off = match Self::judged(shape, &tried, tolerance, progress) {
-                Ok(made) if made.error[1] <= tolerance => return Ok(made),
-                Ok(made) => last.insert(made).error[1],
+                Ok(made) if made.error[1] <= tolerance && made.lost.is_none() => {
+                    return Ok(made);
+                }
+                Ok(made) => {
+                    let made = last.insert(made);
+                    if made.lost.is_some() { f64::INFINITY } else { made.error[1] }
+                }
                 Err(error @ ContourError::NoSurface { .. }) => {
                     refused = Some(error);
                     f64::INFINITY
                 }
                 Err(ContourError::Stopped) => return Err(ContourError::Stopped),
                 Err(error) => {
-                    refused = Some(error);
+                    refused = Some(match (error, refused) {
+                        (
+                            ContourError::TooMany { limit, .. },
+                            Some(ContourError::NoSurface { cell }),
+                        ) => ContourError::TooThin { cell, limit },
+                        (error, _) => error,
+                    });
                     break;
                 }
             };
@@ -111,24 +125,25 @@ impl FittedMesh {
         }
         match last {
             // That of the smallest cells. Its error was looked at only until it was above the tolerance.
-            Some(Self { mesh, cell, .. }) => {
-                Self::measured(shape, mesh, cell, f64::INFINITY, progress)
-            }
+            Some(last) => last.measured(shape, f64::INFINITY, progress),
             None => Err(refused.unwrap_or(ContourError::NoSurface { cell })),
         }
     }
 
-    /// The mesh, if no triangle is proven to have a larger field than `tolerance` [m].
+    /// The mesh, if no triangle has a larger field than `tolerance` [m], which is proven, and no part is known to be lost.
     ///
     /// # Errors
     ///
-    /// If its error is larger.
+    /// If its error is larger, or a part is lost.
     pub fn within(self, tolerance: f64) -> Result<TriangleMesh, ContourError> {
-        let Self { mesh, cell, error: [_, proven] } = self;
-        if proven > tolerance {
-            return Err(ContourError::NotReached { tolerance, cell, proven });
+        let Self { mesh, cell, error: [_, proven], lost } = self;
+        match lost {
+            Some(Vector(point)) => Err(ContourError::Lost { point, cell }),
+            None if proven > tolerance => {
+                Err(ContourError::NotReached { tolerance, cell, proven })
+            }
+            None => Ok(mesh),
         }
-        Ok(mesh)
     }
 
     /// The mesh by cells, with its error as far as it is not above `most` [m].
@@ -139,22 +154,20 @@ impl FittedMesh {
         progress: Watch<'_>,
     ) -> Result<Self, ContourError> {
         let cell = options.cell;
-        let mesh = TriangleMesh::of_shape_with(shape, options, &mut |share| {
-            progress(FitProgress { cell, share })
-        })?;
-        Self::measured(shape, mesh, cell, most, progress)
+        let (mesh, lost) =
+            made(shape, options, &mut |share| progress(FitProgress { cell, share }))?;
+        Self { mesh, cell, error: [0.0; 2], lost }.measured(shape, most, progress)
     }
 
-    /// A mesh with its error. One above `most` [m] is not looked at further: it is then what was found.
+    /// The same with its error. One above `most` [m] is not looked at further: it is then what was found.
     fn measured(
+        self,
         shape: &Shape<3>,
-        mesh: TriangleMesh,
-        cell: f64,
         most: f64,
         progress: Watch<'_>,
     ) -> Result<Self, ContourError> {
-        let (mut known, mut is_stopped) = (0.0, false);
-        let error = mesh.largest_distance_with(shape, &mut |found| {
+        let (mut known, mut is_stopped, cell) = (0.0, false, self.cell);
+        let error = self.mesh.largest_distance_with(shape, &mut |found| {
             known = found;
             is_stopped = progress(FitProgress { cell, share: 1.0 }).is_break();
             if found > most || is_stopped {
@@ -166,6 +179,6 @@ impl FittedMesh {
         if is_stopped {
             return Err(ContourError::Stopped);
         }
-        Ok(Self { mesh, cell, error: error.unwrap_or([known; 2]) })
+        Ok(Self { error: error.unwrap_or([known; 2]), ..self })
     }
 }

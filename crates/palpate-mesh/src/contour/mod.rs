@@ -13,6 +13,7 @@ mod crossings;
 mod deviation;
 mod faces;
 mod fitted;
+mod lost;
 mod patches;
 mod vertex;
 
@@ -41,6 +42,9 @@ const A_LOOK: usize = 1024;
 
 /// How often vertices of faces that cross are moved.
 const MOST_MENDS: usize = 8;
+
+/// How far vertices in single precision are moved first, as shares of the way to the middles of their patches.
+const NUDGES: [f64; 2] = [1e-4, 1e-2];
 
 /// What a mesh of a shape is asked for.
 #[derive(Clone, Debug, PartialEq)]
@@ -107,8 +111,31 @@ pub enum ContourError {
         limit: usize,
     },
     /// No edge of a cell crosses the surface.
-    #[error("no surface was found with cells of {cell} m; choose smaller ones")]
+    #[error(
+        "no surface was found with cells of {cell} m; choose smaller ones, if the shape is not empty"
+    )]
     NoSurface {
+        /// The size of a cell [m].
+        cell: f64,
+    },
+    /// Cells that see the surface would be too many.
+    #[error(
+        "no surface was found with cells of {cell} m, and smaller ones would be more than the {limit} allowed: \
+         the shape is too thin for its size"
+    )]
+    TooThin {
+        /// The size of the cells that saw no surface [m].
+        cell: f64,
+        /// How many are allowed.
+        limit: usize,
+    },
+    /// A part of the shape has no triangle.
+    #[error(
+        "the part of the shape at {point:?} [m] has no triangle: cells of {cell} m are too large for it"
+    )]
+    Lost {
+        /// A point of that part, or in a cavity [m].
+        point: [f64; 3],
         /// The size of a cell [m].
         cell: f64,
     },
@@ -174,23 +201,33 @@ impl TriangleMesh {
         options: &ContourOptions,
         progress: &mut dyn FnMut(f64) -> ControlFlow<()>,
     ) -> Result<Self, ContourError> {
-        let cell = options.cell;
-        if !(cell > 0.0 && cell.is_finite()) {
-            return Err(ContourError::Cell { cell });
-        }
-        let bounds = shape.promise().bounds.ok_or(ContourError::Unbounded)?.aabb;
-        let cells = Cells::over(&bounds.grown(AROUND * cell), options)?;
-        let [looking, crossing] = [LOOKING, CROSSING];
-        let signed = cells.signed(shape, &mut |share| progress(share * looking))?;
-        if signed.is_empty() {
-            return Err(ContourError::NoSurface { cell });
-        }
-        let mut found = |share| progress(looking + share * crossing);
-        let contour = Contour::of(shape, &cells, &signed, &mut found)?;
-        contour.mesh(shape, options.is_single, &mut |share| {
-            progress(looking + crossing + share * (1.0 - looking - crossing))
-        })
+        made(shape, options, progress).map(|(mesh, _)| mesh)
     }
+}
+
+/// The mesh, and a point of a part of the shape that it lacks.
+fn made(
+    shape: &Shape<3>,
+    options: &ContourOptions,
+    progress: &mut dyn FnMut(f64) -> ControlFlow<()>,
+) -> Result<(TriangleMesh, Option<Point<3>>), ContourError> {
+    let cell = options.cell;
+    if !(cell > 0.0 && cell.is_finite()) {
+        return Err(ContourError::Cell { cell });
+    }
+    let bounds = shape.promise().bounds.ok_or(ContourError::Unbounded)?.aabb;
+    let cells = Cells::over(&bounds.grown(AROUND * cell), options)?;
+    let [looking, crossing] = [LOOKING, CROSSING];
+    let (signed, lost) = cells.signed(shape, &mut |share| progress(share * looking))?;
+    if signed.is_empty() {
+        return Err(ContourError::NoSurface { cell });
+    }
+    let mut found = |share| progress(looking + share * crossing);
+    let contour = Contour::of(shape, &cells, &signed, &mut found)?;
+    let mesh = contour.mesh(shape, options.is_single, &mut |share| {
+        progress(looking + crossing + share * (1.0 - looking - crossing))
+    })?;
+    Ok((mesh, lost))
 }
 
 /// A vertex, with what it stands for.
@@ -275,9 +312,11 @@ impl Contour {
             if crossing.is_empty() {
                 return Ok(mesh);
             }
+            // Where rounding alone makes faces touch, as at an edge of two parts, little moves them apart.
+            let share = if is_single && mend < NUDGES.len() { NUDGES[mend] } else { 0.5 };
             for vertex in crossing.into_iter().flat_map(|face| mesh.elements()[face]) {
                 let corner = &mut self.corners[vertex as usize];
-                corner.place = (corner.place + corner.middle) * 0.5;
+                corner.place = corner.place + (corner.middle - corner.place) * share;
             }
         }
         unreachable!("the loop returns")
