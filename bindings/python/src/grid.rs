@@ -66,9 +66,10 @@ impl PyShape {
 /// A shape of samples at the nodes of a lattice: an array with an axis for each dimension [m], negative inside and
 /// positive at the border.
 ///
-/// `cell` is how far nodes are apart [m], `origin` the place of the first one, 0 if left out. `kernel` is "quadratic",
-/// smooth, to be touched, or "trilinear". Samples are kept in single precision and taken as they are: the field's
-/// steepness comes from them, how far its values are off distances is not known.
+/// `cell` is how far nodes are apart [m], `origin` the place of the first one, 0 if left out. `kernel` is "trilinear",
+/// which goes through the samples, or "quadratic", a spline with the samples as coefficients: smooth, to be touched, and
+/// it rounds them off. Samples are kept in single precision: the field's steepness comes from them, how far its values
+/// are off distances is not known.
 ///
 /// Raises `GridError` if a value at the border is not positive or one is not finite, `ValueError` if there are not two
 /// or three axes.

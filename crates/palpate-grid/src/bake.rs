@@ -131,7 +131,17 @@ impl<const D: usize> Grid<D> {
                     cell = (cell * coarse.unwrap_or(cell)).sqrt();
                     continue;
                 }
-                Ok(grid) => Some(grid.deviation()),
+                Ok(grid) => {
+                    let reached = grid.deviation();
+                    // No shape's error shrinks faster than with the square of a cell.
+                    let finest = 0.5 * cell * (tolerance / reached).sqrt();
+                    let (limit, nodes) = (options.most_nodes, Lattice::over(&bounds, finest));
+                    if options.band.is_none() && nodes.nodes().is_none_or(|nodes| nodes > limit)
+                    {
+                        return Err(GridError::TooFine { tolerance, limit, cell, reached });
+                    }
+                    Some(reached)
+                }
                 Err(GridError::NoInside { .. }) => None,
                 Err(GridError::TooLarge { cell, nodes, limit }) => {
                     return Err(match last {
@@ -204,11 +214,14 @@ impl<const D: usize> Grid<D> {
         store: Store,
     ) -> Result<Self, GridError> {
         GridOptions::with_cell(lattice.cell).check()?;
-        let nodes = lattice.nodes().unwrap_or(usize::MAX);
-        let is_small = lattice.counts.iter().any(|count| *count < kernel.taps());
-        if nodes != samples.len() || is_small {
-            return Err(GridError::Samples { nodes, samples: samples.len() });
+        let (counts, least) = (lattice.counts.to_vec(), kernel.taps());
+        if counts.iter().any(|count| *count < least) {
+            return Err(GridError::TooFew { counts, least });
         }
+        if lattice.nodes() != Some(samples.len()) {
+            return Err(GridError::Samples { counts, samples: samples.len() });
+        }
+        lattice.check()?;
         if let Some(wrong) = samples.iter().position(|sample| !fits(*sample)) {
             let point = lattice.node(unravelled(wrong, lattice.counts)).0.to_vec();
             return Err(GridError::NotFinite { point });

@@ -96,12 +96,25 @@ pub enum GridError {
     /// The caller stopped the work.
     #[error("stopped before the grid was complete")]
     Stopped,
+    /// The lattice has too few nodes for the kernel.
+    #[error("there must be at least {least} nodes along each axis, got {counts:?}")]
+    TooFew {
+        /// How many nodes there are along each axis.
+        counts: Vec<usize>,
+        /// How many are needed.
+        least: usize,
+    },
     /// As many samples as the lattice has nodes are needed.
-    #[error("{nodes} nodes need as many samples, got {samples}")]
+    #[error("{} nodes need as many samples, got {samples}", times(counts))]
     Samples {
-        /// How many nodes the lattice has.
-        nodes: usize,
+        /// How many nodes the lattice has along each axis.
+        counts: Vec<usize>,
         /// How many samples were given.
         samples: usize,
     },
+}
+
+/// Counts as a product.
+fn times(counts: &[usize]) -> String {
+    counts.iter().map(usize::to_string).collect::<Vec<_>>().join(" × ")
 }

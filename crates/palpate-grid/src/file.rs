@@ -297,9 +297,7 @@ impl<const D: usize> Grid<D> {
             _ => return Err(damaged("its order is unknown")),
         };
         let is_length = |x: &f64| x.abs() <= LARGEST_LENGTH;
-        let places = origin.0.iter().chain(&min.0).chain(&max.0);
-        let is_placed =
-            places.clone().all(is_length) && is_length(&lattice.region().max.norm());
+        let is_placed = min.0.iter().chain(&max.0).all(is_length) && lattice.check().is_ok();
         let is_known = [value, within].iter().all(|x| *x >= 0.0 && is_length(x));
         let is_scaled =
             if store == Store::F32 { scale == 1.0 } else { scale > 0.0 && is_length(&scale) };

@@ -3,7 +3,9 @@
 
 //! Where the nodes of a grid lie.
 
-use palpate_field::{Aabb, Point, Vector};
+use palpate_field::{Aabb, LARGEST_LENGTH, Point, Quantity, ShapeError, Unit, Vector};
+
+use crate::error::GridError;
 
 /// Nodes at `origin + cell·i`, with `counts` of them along each axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -57,6 +59,22 @@ impl<const D: usize> Lattice<D> {
     #[must_use]
     pub fn nodes(&self) -> Option<usize> {
         self.counts.iter().try_fold(1_usize, |product, count| product.checked_mul(*count))
+    }
+
+    /// Refuses nodes that are no places.
+    pub(crate) fn check(&self) -> Result<(), GridError> {
+        let region = self.region();
+        let farthest = [region.min, region.max]
+            .into_iter()
+            .flat_map(|corner| corner.0)
+            .find(|x| x.is_nan() || x.abs() > LARGEST_LENGTH);
+        farthest.map_or(Ok(()), |value| {
+            Err(GridError::Number(ShapeError::Number {
+                parameter: "a coordinate of a node".into(),
+                rule: "at most 1e15 m in size".into(),
+                value: Quantity(value, Unit::Metre),
+            }))
+        })
     }
 
     /// The box between the first and the last node [m].

@@ -316,3 +316,18 @@ fn errors_of_binary_files_name_their_byte() {
          cut off"
     );
 }
+
+/// The words of the parsers for files that are cut off helped nobody.
+#[test]
+fn files_that_end_in_their_head_are_told_in_words() {
+    let folder = std::env::temp_dir();
+    let head = b"ply\nformat binary_little_endian 1.0\nelement vertex 8\nproperty float x\nproperty fl";
+    for (ending, bytes) in [("ply", &head[..]), ("stl", &[7; 60][..])] {
+        let file = folder.join(format!("palpate-cut-head-{}.{ending}", std::process::id()));
+        std::fs::write(&file, bytes).unwrap();
+        let said = palpate_mesh::read_file(&file).unwrap_err().to_string();
+        std::fs::remove_file(&file).unwrap();
+        assert!(!said.contains("ParseError") && !said.contains("buffer"), "{said}");
+        assert!(said.contains(ending.to_uppercase().as_str()), "{said}");
+    }
+}

@@ -229,7 +229,7 @@ fn plain(expected: &dyn Expected) -> String {
     let plain = match expected.as_str() {
         "f64" => "a number",
         "i32" => "a whole number",
-        "u32" => "a whole number, zero or more",
+        "u32" | "usize" => "a whole number, zero or more",
         "a sequence" => "a list",
         "a map" => "an object",
         "an array of length 2" => "a list of 2 numbers",

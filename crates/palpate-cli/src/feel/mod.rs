@@ -77,6 +77,9 @@ where
     let (scene, baked) = baked::scene(exact, options)?;
     let scene = &scene;
     let longest = paths.iter().map(|p| p.start() + p.duration()).fold(0.0, f64::max);
+    if let Some(file) = &options.path {
+        paths::check_times(file, &paths, options.duration)?;
+    }
     let usual = if options.path.is_some() { longest } else { DURATION };
     let duration = options.duration.unwrap_or(usual);
     let ticks = limits::ticks(duration, options.rate)?;

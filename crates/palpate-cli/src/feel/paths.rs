@@ -17,6 +17,9 @@ use crate::outcome::Failure;
 /// The contact points of the built-in hand on the built-in gallery: two hands.
 const FINGERS: usize = 10;
 
+/// The longest time that a hand rests before its path begins, unless a duration is given [s].
+const LONGEST_REST: f64 = 86_400.0;
+
 /// How many contact points follow each other on a tour, if the scene's tool has none.
 fn following(options: &FeelOptions) -> usize {
     options.points.unwrap_or(if options.scene.is_none() { FINGERS } else { 1 })
@@ -88,4 +91,26 @@ pub(super) fn nearest<const D: usize>(scene: &BuiltScene<D>, paths: &[HandPath<D
         path.positions().iter().step_by(step)
     });
     seen.map(|point| scene.whole.distance(*point)).fold(f64::INFINITY, f64::min)
+}
+
+/// Refuses paths along which the hand does not move in the run: their times are of another clock.
+pub(super) fn check_times<const D: usize>(
+    file: &Path,
+    paths: &[HandPath<D>],
+    duration: Option<f64>,
+) -> Result<(), Failure> {
+    let first = paths.iter().map(HandPath::start).fold(f64::INFINITY, f64::min);
+    let last = paths
+        .iter()
+        .map(|path| path.start() + path.duration())
+        .fold(f64::NEG_INFINITY, f64::max);
+    // Without a duration, no one waits so long for a hand that rests.
+    let end = duration.unwrap_or(LONGEST_REST);
+    if last > 0.0 && first < end {
+        return Ok(());
+    }
+    let problem = format!(
+        "the hand moves from {first} s to {last} s, and the run begins at 0 s: times count from the start of the run"
+    );
+    Err(Failure::file(file, problem))
 }

@@ -236,6 +236,25 @@ const GUIDED: &str = r#"{ "palpate": 1, "dimension": 3,
     { "well": { "center": [0.04, 0.06, 0], "reach": 0.02 }, "stiffness": 200, "max_force": 1 },
     { "plane": { "through": [0, 9, 0], "normal": [0, 1, 0] }, "snap_distance": 0.01 } ] }"#;
 
+/// Times of a clock of the system: the run was told to have too many ticks, or none.
+#[test]
+fn a_hand_path_of_another_clock_is_refused_with_its_times() {
+    let folder = Folder::new();
+    let scene = folder.write("guided.json", GUIDED);
+    for (times, said) in [
+        ([-5.0, -4.0], "from -5 s to -4 s"),
+        ([1.7e9, 1.7e9 + 1.0], "from 1700000000 s to 1700000001 s"),
+    ] {
+        let [first, last] = times;
+        let rows = format!("time_s,x_m,y_m,z_m\n{first},0,0.057,0\n{last},0.05,0.057,0\n");
+        let hand = folder.write("hand.csv", &rows);
+        let said = format!(
+            "{hand}: the hand moves {said}, and the run begins at 0 s: times count from the start of the run"
+        );
+        assert_refused(&["feel", &scene, "--path", &hand, "--fast"], &said);
+    }
+}
+
 #[test]
 fn guides_are_named_counted_and_drawn() {
     let folder = Folder::new();

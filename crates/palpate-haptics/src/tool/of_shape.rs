@@ -127,4 +127,17 @@ mod tests {
         assert_eq!(grown.points().len(), 500);
         assert!(grown.points().iter().all(|point| point.radius == 0.002));
     }
+
+    /// The box of a segment has no faces: samples as many as the surface of a box wants were without number.
+    #[test]
+    fn a_segment_is_felt_along_its_length() {
+        let segment = Shape::<3>::segment([0.0; 3], [0.0, 0.1, 0.0], 0.0).unwrap();
+        for radius in [0.0, 0.002] {
+            let shell = Shell::of_shape(&segment, 100, radius).unwrap();
+            assert!(shell.points().iter().all(|point| point.centre[0].abs() < 1e-9));
+            let heights = || shell.points().iter().map(|point| point.centre[1]);
+            assert!(heights().fold(f64::INFINITY, f64::min) < 0.002);
+            assert!(heights().fold(0.0, f64::max) > 0.098);
+        }
+    }
 }

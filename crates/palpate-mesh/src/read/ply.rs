@@ -142,6 +142,12 @@ fn malformed(error: &ParseError, bytes: &[u8], reader: &Reader<&[u8]>) -> ReadPr
         Some((line, problem)) => (format!("line {line}"), problem),
         None => (format!("byte {byte}"), message.as_str()),
     };
+    // The parser tells its own state in the words of Rust.
+    let problem = if problem.contains("ParseError") || problem.contains("fill whole buffer") {
+        "no line or row of PLY begins there, or it is not whole"
+    } else {
+        problem
+    };
     let is_end = error.kind() == std::io::ErrorKind::UnexpectedEof
         || byte == bytes.len() && !bytes.ends_with(b"\n");
     let cut = if is_end { "; the file ends there: it is cut off" } else { "" };

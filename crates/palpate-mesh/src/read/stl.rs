@@ -26,6 +26,12 @@ pub(super) fn read(bytes: &[u8]) -> Result<TriangleMesh, ReadProblem> {
         let mut copy = bytes.to_vec();
         copy[..HEADER].fill(0);
         append(&copy, &mut vertices, |i| format!("byte {}", HEADER + COUNT + i * TRIANGLE))?;
+    } else if bytes.len() < HEADER + COUNT && !begins_as_text(bytes) {
+        let length = bytes.len();
+        return Err(Format::Stl.malformed(format_args!(
+            "it ends at byte {length}: a binary file has {} bytes before its triangles, and a text begins with `solid`",
+            HEADER + COUNT
+        )));
     } else {
         // Some programs write capitals, which stl_io does not read.
         let text = String::from_utf8_lossy(without_mark(bytes)).to_ascii_lowercase();
@@ -91,10 +97,12 @@ pub(super) fn is_likely(bytes: &[u8]) -> bool {
 const SOON: usize = 100;
 
 fn is_binary(bytes: &[u8]) -> bool {
+    binary_length(bytes).is_some_and(|length| bytes.len() == length || !begins_as_text(bytes))
+}
+
+fn begins_as_text(bytes: &[u8]) -> bool {
     let start = without_mark(bytes).trim_ascii_start();
-    let begins_as_text =
-        start.first_chunk::<5>().is_some_and(|word| word.eq_ignore_ascii_case(b"solid"));
-    binary_length(bytes).is_some_and(|length| bytes.len() == length || !begins_as_text)
+    start.first_chunk::<5>().is_some_and(|word| word.eq_ignore_ascii_case(b"solid"))
 }
 
 /// The bytes behind the mark with which some editors begin texts in UTF-8.

@@ -397,7 +397,20 @@ fn a_grid_of_samples_is_written_with_them() {
         ),
         (
             r#"{ "grid": { "samples": [1], "counts": [4, 4], "cell": 1, "origin": [0, 0] } }"#,
-            "16",
+            "4 × 4 nodes need as many samples, got 1",
+        ),
+        (
+            r#"{ "grid": { "samples": [1, 1, 1, 1], "counts": [2, 2], "cell": 1, "origin": [0, 0] } }"#,
+            "at least 3 nodes along each axis, got [2, 2]",
+        ),
+        (
+            r#"{ "grid": { "samples": [1], "counts": [4, -4], "cell": 1, "origin": [0, 0] } }"#,
+            "must be a whole number, zero or more, got -4",
+        ),
+        // Such a grid was good, and its mass no number.
+        (
+            r#"{ "grid": { "kernel": "trilinear", "samples": [1, 1, 1, 1], "counts": [2, 2], "cell": 1, "origin": [0, 1e300] } }"#,
+            "a coordinate of a node must be at most 1e15 m in size, got 1e300 m",
         ),
     ] {
         let error = WrittenShape::from_json(wrong).and_then(|read| read.build::<2>());
