@@ -132,12 +132,11 @@ impl<const D: usize> Grid<D> {
                     continue;
                 }
                 Ok(grid) => {
-                    let reached = grid.deviation();
+                    let (reached, limit) = (grid.deviation(), options.most_nodes);
                     // No shape's error shrinks faster than with the square of a cell.
-                    let finest = 0.5 * cell * (tolerance / reached).sqrt();
-                    let (limit, nodes) = (options.most_nodes, Lattice::over(&bounds, finest));
-                    if options.band.is_none() && nodes.nodes().is_none_or(|nodes| nodes > limit)
-                    {
+                    let finest =
+                        Lattice::over(&bounds, 0.5 * cell * (tolerance / reached).sqrt());
+                    if options.band.is_none() && !finest.has_at_most(limit) {
                         return Err(GridError::TooFine { tolerance, limit, cell, reached });
                     }
                     Some(reached)

@@ -61,6 +61,11 @@ impl<const D: usize> Lattice<D> {
         self.counts.iter().try_fold(1_usize, |product, count| product.checked_mul(*count))
     }
 
+    /// Whether there are at most so many nodes.
+    pub(crate) fn has_at_most(&self, limit: usize) -> bool {
+        self.nodes().is_some_and(|nodes| nodes <= limit)
+    }
+
     /// Refuses nodes that are no places.
     pub(crate) fn check(&self) -> Result<(), GridError> {
         let region = self.region();

@@ -35,7 +35,7 @@ pub(super) fn beyond(shape: &Shape<3>, around: &Aabb<3>, is_inside: bool) -> Opt
                 .map(|step| point + inwards * (side * 0.5_f64.powi(step)))
                 .find(|deep| around.contains(*deep) && sign * shape.distance(*deep) < 0.0);
         }
-        point = point - gradient * (value / square);
+        point -= gradient * (value / square);
         if !around.contains(point) {
             return None;
         }

@@ -313,7 +313,8 @@ impl Contour {
                 return Ok(mesh);
             }
             // Where rounding alone makes faces touch, as at an edge of two parts, little moves them apart.
-            let share = if is_single && mend < NUDGES.len() { NUDGES[mend] } else { 0.5 };
+            let nudge = NUDGES.get(mend).filter(|_| is_single);
+            let share = nudge.copied().unwrap_or(0.5);
             for vertex in crossing.into_iter().flat_map(|face| mesh.elements()[face]) {
                 let corner = &mut self.corners[vertex as usize];
                 corner.place = corner.place + (corner.middle - corner.place) * share;
