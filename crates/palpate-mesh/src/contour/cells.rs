@@ -86,16 +86,19 @@ impl Cells {
         Aabb { min: self.node(index), max: self.node(index.map(|i| i + 1)) }
     }
 
-    /// The cells with corners on both sides of the surface, and a point of a part that has none.
+    /// The cells with corners on both sides of the surface, and a point of a part that has none, if such parts are
+    /// looked for.
     pub(super) fn signed(
         &self,
         shape: &Shape<3>,
+        looks_between: bool,
         progress: &mut dyn FnMut(f64) -> ControlFlow<()>,
     ) -> Result<(Vec<Signed>, Option<Point<3>>), ContourError> {
         let blocks = self.counts.map(|count| count.div_ceil(SIDE));
         let all = blocks.into_iter().map(|count| count as f64).product();
         let side = blocks.into_iter().fold(1, usize::max).next_power_of_two();
-        let found = Found { signed: Vec::new(), between: Vec::new() };
+        let between = looks_between.then(Vec::new);
+        let found = Found { signed: Vec::new(), between };
         let mut octree =
             Octree { cells: self, shape, progress, blocks, all, passed: 0.0, leaves: 0, found };
         octree.descend([0; 3], side)?;
@@ -146,9 +149,12 @@ impl Cells {
             let cell = cell.map(|i| i as u32);
             if corners != 0 && corners != u8::MAX {
                 found.signed.push(Signed { cell, inside: corners });
-            } else if nearest <= reach && is_alone(&inside, own) {
-                let between = lost::beyond(shape, &self.around(cell), corners != 0);
-                found.between.extend(between.map(|point| (cell, point)));
+            } else if let Some(between) = &mut found.between
+                && nearest <= reach
+                && is_alone(&inside, own)
+            {
+                let beyond = lost::beyond(shape, &self.around(cell), corners != 0);
+                between.extend(beyond.map(|point| (cell, point)));
             }
         }
         Ok(())
@@ -171,16 +177,14 @@ fn is_alone(inside: &[bool; NODES * NODES * NODES], cell: [usize; 3]) -> bool {
 /// What was found in all blocks.
 struct Found {
     signed: Vec<Signed>,
-    /// Cells without a crossing, and points in them beyond the surface.
-    between: Vec<([u32; 3], Point<3>)>,
+    /// Cells without a crossing, and points in them beyond the surface, if they are looked for.
+    between: Option<Vec<([u32; 3], Point<3>)>>,
 }
 
 impl Found {
     /// A point in a cell that no cell with a crossing is beside.
     fn lost(&self) -> Option<Point<3>> {
-        if self.between.is_empty() {
-            return None;
-        }
+        let between = self.between.as_ref().filter(|between| !between.is_empty())?;
         let signed: HashSet<_> = self.signed.iter().map(|signed| signed.cell).collect();
         let is_alone = |cell: &[u32; 3]| {
             (0..27).all(|code| {
@@ -189,7 +193,7 @@ impl Found {
                 !signed.contains(&beside)
             })
         };
-        self.between.iter().find(|(cell, _)| is_alone(cell)).map(|(_, point)| *point)
+        between.iter().find(|(cell, _)| is_alone(cell)).map(|(_, point)| *point)
     }
 }
 

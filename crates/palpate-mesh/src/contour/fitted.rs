@@ -155,7 +155,7 @@ impl FittedMesh {
     ) -> Result<Self, ContourError> {
         let cell = options.cell;
         let (mesh, lost) =
-            made(shape, options, &mut |share| progress(FitProgress { cell, share }))?;
+            made(shape, options, true, &mut |share| progress(FitProgress { cell, share }))?;
         Self { mesh, cell, error: [0.0; 2], lost }.measured(shape, most, progress)
     }
 

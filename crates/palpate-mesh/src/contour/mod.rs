@@ -201,14 +201,15 @@ impl TriangleMesh {
         options: &ContourOptions,
         progress: &mut dyn FnMut(f64) -> ControlFlow<()>,
     ) -> Result<Self, ContourError> {
-        made(shape, options, progress).map(|(mesh, _)| mesh)
+        made(shape, options, false, progress).map(|(mesh, _)| mesh)
     }
 }
 
-/// The mesh, and a point of a part of the shape that it lacks.
+/// The mesh, and a point of a part of the shape that it lacks, if such parts are looked for.
 fn made(
     shape: &Shape<3>,
     options: &ContourOptions,
+    looks_between: bool,
     progress: &mut dyn FnMut(f64) -> ControlFlow<()>,
 ) -> Result<(TriangleMesh, Option<Point<3>>), ContourError> {
     let cell = options.cell;
@@ -218,7 +219,8 @@ fn made(
     let bounds = shape.promise().bounds.ok_or(ContourError::Unbounded)?.aabb;
     let cells = Cells::over(&bounds.grown(AROUND * cell), options)?;
     let [looking, crossing] = [LOOKING, CROSSING];
-    let (signed, lost) = cells.signed(shape, &mut |share| progress(share * looking))?;
+    let (signed, lost) =
+        cells.signed(shape, looks_between, &mut |share| progress(share * looking))?;
     if signed.is_empty() {
         return Err(ContourError::NoSurface { cell });
     }
