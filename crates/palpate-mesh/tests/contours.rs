@@ -10,6 +10,7 @@ use std::ops::ControlFlow;
 use palpate_field::operator::Profile;
 use palpate_field::{Rotation, Shape, Vector};
 use palpate_mesh::{ContourError, ContourOptions, FittedMesh, Format, Solid, TriangleMesh};
+use palpate_testkit::arbitrary::tree;
 use palpate_testkit::cases;
 
 #[expect(unreachable_pub, reason = "shared with the fuzz target")]
@@ -128,6 +129,26 @@ fn meshes_of_random_trees_are_closed() {
         Ok(outcome.map(|_| ()))
     });
     assert!(meshed > 20, "{meshed}");
+}
+
+/// A point that is told to be lost is on the other side of the surface than the mesh says.
+#[test]
+fn what_is_told_to_be_lost_is_lost() {
+    let mut lost = 0;
+    cases::check(60, |u| {
+        let Ok(shape) = tree::<3>(u, 3)?.shape() else { return Ok(Ok(())) };
+        let Some(bounds) = shape.promise().bounds else { return Ok(Ok(())) };
+        let longest = bounds.aabb.half_extents().0.into_iter().fold(0.0, f64::max) * 2.0;
+        let options = ContourOptions::with_cell(longest / 6.3);
+        let made = FittedMesh::by_cells(&shape, &options, &mut |_| ControlFlow::Continue(()));
+        let Ok(FittedMesh { mesh, lost: Some(point), .. }) = made else { return Ok(Ok(())) };
+        let Ok((solid, _)) = Solid::from_mesh(&mesh) else { return Ok(Ok(())) };
+        lost += 1;
+        let (said, is) = (Shape::from(solid).distance(point), shape.distance(point));
+        let is_lost = said * is < 0.0;
+        Ok(if is_lost { Ok(()) } else { Err(format!("{point:?}: {said} m, and {is} m")) })
+    });
+    assert!(lost > 2, "{lost}");
 }
 
 #[test]
