@@ -10,7 +10,6 @@ numbers; the last ones are ratios with their bars: how many times as fast as the
 from __future__ import annotations
 
 import argparse
-import json
 import subprocess
 import sys
 import venv
@@ -19,6 +18,7 @@ from pathlib import Path
 import numpy as np
 
 import palpate as pp
+from bars import Table
 
 HERE = Path(__file__).resolve().parent
 
@@ -172,19 +172,15 @@ def main() -> int:
     ours = ask("palpate", sys.executable, asked)
     if ours is None:
         return 1
-    rows: dict[str, float] = {}
-
-    def report(key: str, value: float) -> None:
-        rows[key] = value
-        print(f"{key:48} {value:.6g}", flush=True)
+    table = Table()
 
     def count(key: str) -> int:
         return 1 if key.endswith("one") else counts.get(key.split(".")[0], options.poses)
 
     for key in [key for key in ours if key.endswith(".seconds")]:
         short = key.removesuffix(".seconds")
-        report(f"{short}.palpate.ns", 1e9 * float(ours[key]) / count(short))
-    bars = [("fields.one.palpate.ns", 1e9 * ONE_POINT, False)]
+        table.report(f"{short}.palpate.ns", 1e9 * float(ours[key]) / count(short))
+    table.at_most("fields.one.palpate.ns", 1e9 * ONE_POINT)
     for name in chosen:
         python = environment(name)
         theirs = ask(name, python, asked) if python else None
@@ -194,27 +190,16 @@ def main() -> int:
             if peer != name:
                 continue
             seconds = float(theirs[f"{key}.seconds"])
-            report(f"{key}.{name}.ns", 1e9 * seconds / count(key))
+            table.report(f"{key}.{name}.ns", 1e9 * seconds / count(key))
             if f"{key}.values" in theirs and f"{own}.values" in ours:
                 found = differ(own, ours[f"{own}.values"], theirs[f"{key}.values"])
                 for what, value in found.items():
-                    report(f"{key}.{name}.{what}", value)
+                    table.report(f"{key}.{name}.{what}", value)
             ratio = f"{key}.{name}_over_palpate"
-            report(ratio, seconds / float(ours[f"{own}.seconds"]))
+            table.report(ratio, seconds / float(ours[f"{own}.seconds"]))
             if bar is not None:
-                bars.append((ratio, bar, True))
-    print()
-    missed = 0
-    for key, bar, is_least in bars:
-        is_reached = rows[key] >= bar if is_least else rows[key] <= bar
-        missed += not is_reached
-        word = "at least" if is_least else "at most"
-        state = "reached" if is_reached else "missed"
-        print(f"{key:48} {rows[key]:<12.4g} {word} {bar:.4g}  {state}")
-    print(f"{len(bars) - missed} of {len(bars)} bars reached")
-    if options.json:
-        options.json.write_text(json.dumps(rows, indent=1))
-    return 1 if missed else 0
+                table.at_least(ratio, bar)
+    return table.end(options.json)
 
 
 if __name__ == "__main__":

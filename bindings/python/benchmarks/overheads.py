@@ -10,7 +10,6 @@ ones are held against bars.
 from __future__ import annotations
 
 import argparse
-import json
 import os
 import sys
 import tempfile
@@ -21,6 +20,7 @@ from pathlib import Path
 import numpy as np
 
 import palpate as pp
+from bars import Table
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "tests"))
 from interrupted import CALLS, delay
@@ -92,13 +92,11 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("--json", type=Path, help="writes the numbers to a file")
     options = parser.parse_args()
-    rows: dict[str, float] = {}
-    bars: list[tuple[str, float]] = []
+    table = Table()
 
     def report(key: str, value: float, bar: float) -> None:
-        rows[key] = value
-        bars.append((key, bar))
-        print(f"{key:48} {value:.6g}", flush=True)
+        table.report(key, value)
+        table.at_most(key, bar)
 
     report("one.more_than_in_array.ns", 1e9 * more_for_one(), 1e9 * MORE)
     for name in CALLS:
@@ -110,17 +108,7 @@ def main() -> int:
         report("batch.processes.overhead", overhead(processes, workers), SHARE)
     with dask_client(workers) as client:
         report("batch.dask.overhead", overhead(client.get_executor(retries=3), workers), SHARE)
-
-    print()
-    missed = 0
-    for key, bar in bars:
-        is_reached = rows[key] <= bar
-        missed += not is_reached
-        print(f"{key:48} {rows[key]:<12.4g} at most {bar:.4g}  {'reached' if is_reached else 'missed'}")
-    print(f"{len(bars) - missed} of {len(bars)} bars reached")
-    if options.json:
-        options.json.write_text(json.dumps(rows, indent=1))
-    return 1 if missed else 0
+    return table.end(options.json)
 
 
 if __name__ == "__main__":
