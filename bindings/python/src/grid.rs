@@ -135,7 +135,7 @@ fn baked<const D: usize>(
 }
 
 /// What a name stands for.
-fn named<T: Copy, const N: usize>(
+pub(crate) fn named<T: Copy, const N: usize>(
     what: &str,
     name: &str,
     known: [(&str, T); N],

@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use palpate::field::{Aabb, Point, Pose, Shape, Vector};
+use palpate::grid::{Inside, Volume};
 use palpate::mesh::{
     ContourOptions, FittedMesh, Format, Mesh, Outline, Report, Sheet, Solid, TriangleMesh,
     read_file,
@@ -18,6 +19,7 @@ use pyo3::prelude::*;
 use crate::answers::Fields;
 use crate::arrays::{misshapen, numbers, row, table};
 use crate::error::OrRaise;
+use crate::grid::named;
 use crate::interrupt::{abandonable, interruptible, unless_asked};
 use crate::pool;
 use crate::poses;
@@ -103,6 +105,54 @@ impl PyMesh {
     fn load(py: Python<'_>, file: PathBuf, scale: f64) -> PyResult<Self> {
         let mesh = py.detach(|| read_file(&file)).or_raise(py)?;
         let mesh = if scale == 1.0 { mesh } else { mesh.scaled(scale).or_raise(py)? };
+        Ok(Self(mesh.into()))
+    }
+
+    /// The surface where samples of a scanner have a value, an array of shape (n, m, k); closed, around the samples above
+    /// it, or below it if `inside` is "below". What the array cuts off is closed half a step beyond its border.
+    ///
+    /// `spacing` is how far samples are apart along each axis [m], one number or three; `origin` where the first one is,
+    /// 0 if left out. The values are no distances: of `shape()` the distance to the surface is known, the surface itself
+    /// to about a step. Files of scanners are in `Scene` files, as `volume`.
+    ///
+    /// Raises `GridError` if no surface has the value, a sample is not finite or an axis has fewer than two, `ValueError`
+    /// if an array has another shape.
+    ///
+    /// >>> import palpate as pp, numpy as np
+    /// >>> x, y, z = np.meshgrid(*[np.linspace(-1, 1, 41)] * 3, indexing="ij")
+    /// >>> mesh = pp.Mesh.of_volume(1000 * np.exp(-(x * x + y * y + z * z)), 700, spacing=0.05, origin=[-1, -1, -1])
+    /// >>> bool(abs(np.linalg.norm(mesh.vertices, axis=1) - np.sqrt(-np.log(0.7))).max() < 0.01)
+    /// True
+    #[staticmethod]
+    #[pyo3(signature = (samples, value, *, spacing, origin = None, inside = "above"))]
+    fn of_volume(
+        samples: &Bound<'_, PyAny>,
+        value: f64,
+        spacing: &Bound<'_, PyAny>,
+        origin: Option<&Bound<'_, PyAny>>,
+        inside: &str,
+    ) -> PyResult<Self> {
+        let py = samples.py();
+        let inside = named("inside", inside, Inside::ALL.map(|own| (own.name(), own)))?;
+        let sides: [f64; 3] = match spacing.extract::<f64>() {
+            Ok(side) => [side; 3],
+            Err(_) => poses::point::<3>(spacing, "spacing")?.0,
+        };
+        let steps = std::array::from_fn(|axis| Vector::unit(axis) * sides[axis]);
+        let origin =
+            origin.map_or(Ok(Vector::ZERO), |origin| poses::point(origin, "origin"))?;
+        // The core wants them along the first axis first.
+        let turned = py.import("numpy")?.call_method1("transpose", (samples,))?;
+        let array = numbers(&turned, "samples")?;
+        let [k, m, n] = *array.shape() else {
+            let mut shape = array.shape().to_vec();
+            shape.reverse();
+            return Err(misshapen("samples", "(n, m, k)", &shape));
+        };
+        let values = array.as_doubles()?.iter().map(|sample| *sample as f32).collect();
+        let volume = Volume::new([n, m, k], origin, steps, values).or_raise(py)?;
+        let volume = volume.with_inside(inside);
+        let mesh = abandonable(py, move || volume.surface(value))?.or_raise(py)?;
         Ok(Self(mesh.into()))
     }
 

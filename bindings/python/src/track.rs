@@ -5,14 +5,13 @@
 
 use palpate::field::Shape;
 use palpate::query::{Limits, ManifoldSettings, PairWorkspace, Tolerance, Track};
-use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
 use crate::error::OrRaise;
 use crate::guarded::Guarded;
 use crate::poses;
-use crate::query::{manifold_of, nearest, settings};
-use crate::shape::{AnyShape, PyShape};
+use crate::query::{manifold_of, nearest, of_both, settings};
+use crate::shape::PyShape;
 
 /// What a pair knows from step to step.
 struct Pair<const D: usize> {
@@ -23,6 +22,18 @@ struct Pair<const D: usize> {
 enum AnyPair {
     Planar(Guarded<Box<Pair<2>>>),
     Spatial(Guarded<Box<Pair<3>>>),
+}
+
+impl From<Guarded<Box<Pair<2>>>> for AnyPair {
+    fn from(pair: Guarded<Box<Pair<2>>>) -> Self {
+        Self::Planar(pair)
+    }
+}
+
+impl From<Guarded<Box<Pair<3>>>> for AnyPair {
+    fn from(pair: Guarded<Box<Pair<3>>>) -> Self {
+        Self::Spatial(pair)
+    }
 }
 
 /// Does the same with a pair of either dimension.
@@ -48,17 +59,7 @@ pub(crate) struct PyTrack(AnyPair);
 impl PyTrack {
     #[new]
     fn new(py: Python<'_>, a: &PyShape, b: &PyShape) -> PyResult<Self> {
-        match (a.made(py)?, b.made(py)?) {
-            (AnyShape::Planar(a), AnyShape::Planar(b)) => Ok(Self(AnyPair::Planar(pair(a, b)))),
-            (AnyShape::Spatial(a), AnyShape::Spatial(b)) => {
-                Ok(Self(AnyPair::Spatial(pair(a, b))))
-            }
-            (a, b) => {
-                let (a, b) = (a.dimension(), b.dimension());
-                let problem = format!("both shapes must have one dimension, got {a}D and {b}D");
-                Err(PyValueError::new_err(problem))
-            }
-        }
+        of_both!(py, a, b, |a, b| Ok(Self(pair(a, b).into())))
     }
 
     /// How far apart the bodies are at these poses; see `separation`.

@@ -260,6 +260,29 @@ def test_a_picture_of_a_shape_without_bounds_is_refused() -> None:
         pp.half_space([0, 1, 0], 0.0).render(width=32, height=24)
 
 
+def test_the_surface_in_a_volume() -> None:
+    # A box of samples of a length of its own along each axis, not in the middle: axes may not be mixed up.
+    samples = np.zeros((8, 10, 12), np.float32)
+    samples[2:5, 3:7, 4:9] = 1000
+    mesh = pp.Mesh.of_volume(samples, 500, spacing=[0.001, 0.002, 0.003], origin=[1, 0, 0])
+    low, high = mesh.vertices.min(axis=0), mesh.vertices.max(axis=0)
+    assert np.allclose(low, [1.0015, 0.005, 0.0105], atol=1e-6) and np.allclose(high, [1.0045, 0.013, 0.0255], atol=1e-6)
+    assert mesh.is_watertight and mesh.shape().distance([1.003, 0.009, 0.018]) < 0
+    below = pp.Mesh.of_volume(-samples, -500, spacing=0.001, inside="below")
+    above = pp.Mesh.of_volume(samples, 500, spacing=0.001)
+    assert np.array_equal(below.vertices, above.vertices) and np.array_equal(below.faces, above.faces)
+    for wrong, error in [
+        (lambda: pp.Mesh.of_volume(samples, 5000, spacing=1), pp.GridError),
+        (lambda: pp.Mesh.of_volume(samples, 500, spacing=0), pp.GridError),
+        (lambda: pp.Mesh.of_volume(np.full((3, 3, 3), np.nan), 500, spacing=1), pp.GridError),
+        (lambda: pp.Mesh.of_volume(samples[:1], 500, spacing=1), pp.GridError),
+        (lambda: pp.Mesh.of_volume(samples[0], 500, spacing=1), ValueError),
+        (lambda: pp.Mesh.of_volume(samples, 500, spacing=[1, 2]), ValueError),
+    ]:
+        with pytest.raises(error):
+            wrong()
+
+
 def test_a_file_that_is_missing_is_a_missing_file(tmp_path: Path) -> None:
     file = tmp_path / "folder" / "it.json"
     for read in (pp.Scene.load, pp.Mesh.load):

@@ -8,6 +8,8 @@ use std::io;
 use palpate_devices::{DeviceError, DeviceLost, UnknownDevice};
 use palpate_field::ShapeError;
 use palpate_grid::GridError;
+#[cfg(feature = "grid-files")]
+use palpate_grid::{GridFileError, GridFileProblem, VolumeError, VolumeProblem};
 use palpate_haptics::{HapticsError, NumberError, SafetyError, UnknownMaterial};
 #[cfg(feature = "mesh-files")]
 use palpate_mesh::ReadProblem;
@@ -60,6 +62,16 @@ use palpate_scene::SceneCause;
 /// assert_eq!(Error::from(Scene::from_file("no such file").unwrap_err()).kind().name(), "file");
 /// # }
 /// ```
+///
+/// ```
+/// # #[cfg(feature = "grid-files")] {
+/// use palpate::Error;
+/// use palpate::grid::Volume;
+///
+/// let error = Error::from(Volume::open("head.nii").unwrap_err());
+/// assert_eq!((error.kind().name(), error.io_kind()), ("file", Some(std::io::ErrorKind::NotFound)));
+/// # }
+/// ```
 #[derive(Debug, thiserror::Error)]
 #[error(transparent)]
 #[non_exhaustive]
@@ -83,6 +95,15 @@ pub enum Error {
     /// A file cannot be read, or holds no mesh.
     #[cfg(feature = "mesh-files")]
     MeshFile(#[from] palpate_mesh::ReadError),
+    /// A file cannot be read, or holds no grid.
+    #[cfg(feature = "grid-files")]
+    GridFile(#[from] GridFileError),
+    /// A file cannot be read, or holds no volume.
+    #[cfg(feature = "grid-files")]
+    VolumeFile(#[from] VolumeError),
+    /// Samples make no volume, or it has no surface where it was asked for.
+    #[cfg(feature = "grid-files")]
+    Volume(#[from] VolumeProblem),
     /// A scene cannot be read or built.
     #[cfg(feature = "scene")]
     Scene(#[from] palpate_scene::SceneError),
@@ -131,7 +152,7 @@ pub enum ErrorKind {
     Device,
     /// Vertices and faces are no mesh or bound no solid, a shape has no mesh, or a file holds no mesh.
     Mesh,
-    /// A grid cannot be made.
+    /// A grid or a volume cannot be made, or a file holds none.
     Grid,
     /// A scene cannot be read or built.
     Scene,
@@ -187,6 +208,18 @@ impl Error {
                 ReadProblem::Unreadable(_) => ErrorKind::File,
                 _ => ErrorKind::Mesh,
             },
+            #[cfg(feature = "grid-files")]
+            Self::GridFile(error) => match error.problem {
+                GridFileProblem::System(_) => ErrorKind::File,
+                _ => ErrorKind::Grid,
+            },
+            #[cfg(feature = "grid-files")]
+            Self::VolumeFile(error) => match error.problem {
+                VolumeProblem::Unreadable(_) => ErrorKind::File,
+                _ => ErrorKind::Grid,
+            },
+            #[cfg(feature = "grid-files")]
+            Self::Volume(_) => ErrorKind::Grid,
             #[cfg(feature = "scene")]
             Self::Scene(error) => match error.first().cause.as_deref() {
                 Some(SceneCause::File(_)) => ErrorKind::File,
@@ -233,6 +266,13 @@ impl Error {
             Self::MeshFile(palpate_mesh::ReadError {
                 problem: ReadProblem::Unreadable(error),
                 ..
+            }) => Some(error.kind()),
+            #[cfg(feature = "grid-files")]
+            Self::GridFile(GridFileError {
+                problem: GridFileProblem::System(error), ..
+            })
+            | Self::VolumeFile(VolumeError {
+                problem: VolumeProblem::Unreadable(error), ..
             }) => Some(error.kind()),
             #[cfg(feature = "scene")]
             Self::Scene(error) => match error.first().cause.as_deref() {

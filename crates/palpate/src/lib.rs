@@ -38,10 +38,10 @@
 //!
 //! # Features
 //!
-//! On by default: `mesh-files` reads OBJ, STL, PLY and GLB; `parallel` shares grids, batches and worlds
-//! among threads; `plot` draws; `render` renders; `scene` reads and writes scene files; `serde` implements serde's
-//! traits for plain data; `std-loop` runs servos on the machine's clock and in threads; `vibration`
-//! makes commands for motors and audio. Off by default: `local` has local searches from the
+//! On by default: `mesh-files` reads OBJ, STL, PLY and GLB; `grid-files` reads grids and volumes of scanners; `parallel`
+//! shares grids, batches and worlds among threads; `plot` draws; `render` renders; `scene` reads and writes scene files;
+//! `serde` implements serde's traits for plain data; `std-loop` runs servos on the machine's clock and in threads;
+//! `vibration` makes commands for motors and audio. Off by default: `local` has local searches from the
 //! literature, without bounds; `mint` and `glam` convert vectors and poses.
 
 mod error;
