@@ -133,7 +133,7 @@ impl<const D: usize> Grid<D> {
                 }
                 Ok(grid) => {
                     let (reached, limit) = (grid.deviation(), options.most_nodes);
-                    // No shape's error shrinks faster than with the square of a cell.
+                    // An error shrinks with the square of a cell; a factor of 2 is left for what is not resolved yet.
                     let finest =
                         Lattice::over(&bounds, 0.5 * cell * (tolerance / reached).sqrt());
                     if options.band.is_none() && !finest.has_at_most(limit) {

@@ -66,14 +66,14 @@ impl<const D: usize> Lattice<D> {
         self.nodes().is_some_and(|nodes| nodes <= limit)
     }
 
-    /// Refuses nodes that are no places.
+    /// Refuses nodes that are farther from the origin than [`LARGEST_LENGTH`] along an axis.
     pub(crate) fn check(&self) -> Result<(), GridError> {
         let region = self.region();
-        let farthest = [region.min, region.max]
+        let beyond = [region.min, region.max]
             .into_iter()
             .flat_map(|corner| corner.0)
             .find(|x| x.is_nan() || x.abs() > LARGEST_LENGTH);
-        farthest.map_or(Ok(()), |value| {
+        beyond.map_or(Ok(()), |value| {
             Err(GridError::Number(ShapeError::Number {
                 parameter: "a coordinate of a node".into(),
                 rule: "at most 1e15 m in size".into(),

@@ -171,8 +171,8 @@ fn what_has_no_mesh_is_refused() {
     assert_eq!(stopped.unwrap_err(), ContourError::Stopped);
 }
 
-/// A ball of 3 mm beside one of 1 m, both found as a union and as a cavity, was left out without a word: every triangle
-/// of the rest was near the surface.
+/// A ball of 3 mm beside one of 1 m, or as a cavity in it, was left out without a word: every triangle of the rest was
+/// near the surface.
 #[test]
 fn a_part_between_the_nodes_is_told_and_found_by_a_tolerance() {
     let large = Shape::sphere(1.0).unwrap();

@@ -247,7 +247,7 @@ impl Error {
         }
     }
 
-    /// Why the system did not read or write a file; `None` if that is not the error.
+    /// Why the system could not read or write a file; `None` of other errors.
     ///
     /// ```
     /// use std::io;

@@ -15,7 +15,8 @@ Examples:
   palpate mesh part.stl --scale 0.001 --json
   palpate mesh scenes/cup.json --tolerance 2e-4 --output cup.stl
 
-Status 1 if the mesh is not watertight, or has triangles without area or that cross. A mesh that is
+Status 1 if the mesh is not watertight, or has triangles without area or that cross; of one
+that is written, also if --tolerance is not reached, or a part is known to be lost. A mesh that is
 written is closed, faces outwards and keeps edges sharp; what it says of its error is certified.";
 
 /// The options of `palpate mesh`.

@@ -74,13 +74,12 @@ where
     let exact = &asked(scene, options).at(0.0).map_err(Failure::input)?;
     let tool = tool::of_scene(exact, options)?;
     let paths = hands(exact, options, tool.as_ref(), outputs)?;
-    let (scene, baked) = baked::scene(exact, options)?;
-    let scene = &scene;
-    let longest = paths.iter().map(|p| p.start() + p.duration()).fold(0.0, f64::max);
     if let Some(file) = &options.path {
         paths::check_times(file, &paths, options.duration)?;
     }
-    let usual = if options.path.is_some() { longest } else { DURATION };
+    let (scene, baked) = baked::scene(exact, options)?;
+    let scene = &scene;
+    let usual = if options.path.is_some() { paths::end(&paths) } else { DURATION };
     let duration = options.duration.unwrap_or(usual);
     let ticks = limits::ticks(duration, options.rate)?;
     let contacts = paths.len();

@@ -17,7 +17,7 @@ use crate::outcome::Failure;
 /// The contact points of the built-in hand on the built-in gallery: two hands.
 const FINGERS: usize = 10;
 
-/// The longest time that a hand rests before its path begins, unless a duration is given [s].
+/// The longest time that a hand may rest before its path begins, unless a duration is given [s].
 const LONGEST_REST: f64 = 86_400.0;
 
 /// How many contact points follow each other on a tour, if the scene's tool has none.
@@ -93,24 +93,28 @@ pub(super) fn nearest<const D: usize>(scene: &BuiltScene<D>, paths: &[HandPath<D
     seen.map(|point| scene.whole.distance(*point)).fold(f64::INFINITY, f64::min)
 }
 
-/// Refuses paths along which the hand does not move in the run: their times are of another clock.
+/// When the last path ends [s].
+pub(super) fn end<const D: usize>(paths: &[HandPath<D>]) -> f64 {
+    paths.iter().map(|path| path.start() + path.duration()).fold(f64::NEG_INFINITY, f64::max)
+}
+
+/// Refuses paths along which the hand does not move in the run.
 pub(super) fn check_times<const D: usize>(
     file: &Path,
     paths: &[HandPath<D>],
     duration: Option<f64>,
 ) -> Result<(), Failure> {
     let first = paths.iter().map(HandPath::start).fold(f64::INFINITY, f64::min);
-    let last = paths
-        .iter()
-        .map(|path| path.start() + path.duration())
-        .fold(f64::NEG_INFINITY, f64::max);
-    // Without a duration, no one waits so long for a hand that rests.
-    let end = duration.unwrap_or(LONGEST_REST);
-    if last > 0.0 && first < end {
+    let last = end(paths);
+    if last > 0.0 && first < duration.unwrap_or(LONGEST_REST) {
         return Ok(());
     }
+    let run = match duration {
+        Some(duration) => format!("the run goes from 0 s to {duration} s"),
+        None => "the run begins at 0 s".to_owned(),
+    };
     let problem = format!(
-        "the hand moves from {first} s to {last} s, and the run begins at 0 s: times count from the start of the run"
+        "the hand moves from {first} s to {last} s, and {run}: times count from the start of the run"
     );
     Err(Failure::file(file, problem))
 }

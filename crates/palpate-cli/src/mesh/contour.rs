@@ -250,7 +250,7 @@ fn report(
         if let Some(point) = lost {
             writeln!(
                 out,
-                "  lost     the part at ({}) m has no triangle: the cells are too large for it, ask for a smaller --cell",
+                "  lost     a part or a cavity at ({}) m has no triangle, and others may have none: the cells are too large",
                 point.0.map(rounded).join(", ")
             )?;
         }

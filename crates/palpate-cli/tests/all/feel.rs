@@ -236,7 +236,7 @@ const GUIDED: &str = r#"{ "palpate": 1, "dimension": 3,
     { "well": { "center": [0.04, 0.06, 0], "reach": 0.02 }, "stiffness": 200, "max_force": 1 },
     { "plane": { "through": [0, 9, 0], "normal": [0, 1, 0] }, "snap_distance": 0.01 } ] }"#;
 
-/// Times of a clock of the system: the run was told to have too many ticks, or none.
+/// The times were those of another clock. The error spoke of too many ticks, or of none.
 #[test]
 fn a_hand_path_of_another_clock_is_refused_with_its_times() {
     let folder = Folder::new();

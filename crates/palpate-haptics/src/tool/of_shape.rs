@@ -128,7 +128,7 @@ mod tests {
         assert!(grown.points().iter().all(|point| point.radius == 0.002));
     }
 
-    /// The box of a segment has no faces: samples as many as the surface of a box wants were without number.
+    /// The box of a segment has no faces: the number of samples was infinite.
     #[test]
     fn a_segment_is_felt_along_its_length() {
         let segment = Shape::<3>::segment([0.0; 3], [0.0, 0.1, 0.0], 0.0).unwrap();

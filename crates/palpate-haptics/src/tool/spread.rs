@@ -103,7 +103,7 @@ pub(super) fn of_field<const D: usize>(
         })
         .sum();
     let cell = libm::pow(faces / (CHOICE * count as f64), 1.0 / (D as f64 - 1.0));
-    // Of a curve the box has no faces.
+    // The box of a curve may have no faces.
     let longest = half.0.iter().fold(0.0_f64, |longest, half| longest.max(2.0 * half));
     let cell = cell.max(longest / (CHOICE * count as f64));
     let cells: [usize; D] = half.0.map(|half| (2.0 * half / cell).ceil().max(1.0) as usize);

@@ -27,8 +27,9 @@ pub struct FittedMesh {
     /// The largest size of the field on a triangle [m]: one that was found, and one that none exceeds. Of an exact
     /// field it is the largest distance of a triangle from the surface.
     pub error: [f64; 2],
-    /// A point of a part of the shape, or of a cavity, that no triangle is near: it is between the nodes of the cells. `None`
-    /// if no such part was found, by steps from the middles of the cells that the surface may pass.
+    /// A point of a part of the shape, or of a cavity, that lies between the nodes of the cells and has no triangle. `None`
+    /// if none was found: the middles of cells are followed down the field's slope, and a part in a cell beside one with a
+    /// triangle is not told from it.
     pub lost: Option<Point<3>>,
 }
 

@@ -11,13 +11,13 @@ const STEPS: usize = 12;
 /// A value that counts as the surface, as a share of the side of a cell.
 const NEAR: f64 = 1e-6;
 
-/// A point of a cell on the other side of the surface than all its corners, if a few steps along the gradient from its
-/// middle find one.
+/// Looks for a point of a cell that is inside while all its corners are outside, or the reverse, by a few steps along the
+/// gradient from its middle.
 pub(super) fn beyond(shape: &Shape<3>, around: &Aabb<3>, is_inside: bool) -> Option<Point<3>> {
     let side = around.max[0] - around.min[0];
     let sign = if is_inside { -1.0 } else { 1.0 };
     let mut point = (around.min + around.max) * 0.5;
-    // To the surface first, where it is a distance by one step.
+    // To the surface first: one step, if the field is a distance.
     for _ in 0..STEPS {
         let (value, gradient) = shape.distance_gradient(point);
         let (height, square) = (sign * value, gradient.dot(gradient));

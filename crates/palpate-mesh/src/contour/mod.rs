@@ -112,7 +112,7 @@ pub enum ContourError {
     },
     /// No edge of a cell crosses the surface.
     #[error(
-        "no surface was found with cells of {cell} m; choose smaller ones, if the shape is not empty"
+        "no surface was found with cells of {cell:.3e} m: the shape is empty, or thinner than they are; choose smaller ones"
     )]
     NoSurface {
         /// The size of a cell [m].
@@ -120,8 +120,8 @@ pub enum ContourError {
     },
     /// Cells that see the surface would be too many.
     #[error(
-        "no surface was found with cells of {cell} m, and smaller ones would be more than the {limit} allowed: \
-         the shape is too thin for its size"
+        "no surface was found with cells of {cell:.3e} m, and smaller ones would be more than the {limit} allowed: \
+         the shape is empty, or too thin for its size"
     )]
     TooThin {
         /// The size of the cells that saw no surface [m].
@@ -131,7 +131,7 @@ pub enum ContourError {
     },
     /// A part of the shape has no triangle.
     #[error(
-        "the part of the shape at {point:?} [m] has no triangle: cells of {cell} m are too large for it"
+        "a part or a cavity at {point:?} [m] has no triangle, and others may have none: cells of {cell:.3e} m are too large"
     )]
     Lost {
         /// A point of that part, or in a cavity [m].

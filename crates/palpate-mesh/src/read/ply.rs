@@ -144,7 +144,7 @@ fn malformed(error: &ParseError, bytes: &[u8], reader: &Reader<&[u8]>) -> ReadPr
     };
     // The parser tells its own state in the words of Rust.
     let problem = if problem.contains("ParseError") || problem.contains("fill whole buffer") {
-        "no line or row of PLY begins there, or it is not whole"
+        "what stands there is no line or row of PLY, or only a part of one"
     } else {
         problem
     };

@@ -38,9 +38,10 @@ pub use tolerance::Tolerance;
 ///
 /// Answers are owned, and may be sent to other threads. Memory is allocated by the first
 /// question that needs it, and kept. Bounds are at most [`Tolerance`] apart, which is a
-/// share of the size of the smaller body unless an absolute one is asked for; a search that would
-/// take more evaluations than the budget, [`Limits::BUDGET`] or that of [`SweepSettings`] unless
-/// another is asked for, stops with [`Stop::BudgetSpent`] and what it has proven. To allocate nothing, call the functions of this crate that take a workspace.
+/// share of the size of the smaller body unless an absolute one is asked for. A search that would
+/// take more evaluations than the budget stops with [`Stop::BudgetSpent`] and what it has proven;
+/// the budget is [`Limits::BUDGET`], or that of [`SweepSettings`], unless another is asked for. To
+/// allocate nothing, call the functions of this crate that take a workspace.
 ///
 /// [`Stop::BudgetSpent`]: crate::Stop::BudgetSpent
 ///
@@ -490,7 +491,7 @@ impl<const D: usize> Query<D> {
         self.batch(bodies, Asked::Overlap).run(poses, answers, goes_on)
     }
 
-    /// The first surface along each of many rays; as [`Query::separations`], of [`cast_ray`].
+    /// Casts many rays, as [`Query::separations`] asks about many poses; see [`cast_ray`].
     ///
     /// ```
     /// use palpate_field::Shape;
