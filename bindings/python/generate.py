@@ -33,8 +33,8 @@ __all__ = [
 def _angle(name: str, radians: float | None, degrees: float | None) -> float:
     """The angle [rad], of which one of two units is given."""
     if (radians is None) == (degrees is None):
-        raise TypeError(f"one of {{name}}= [rad] and {{name}}_degrees= must be given")
-    return math.radians(degrees) if degrees is not None else float(radians or 0.0)
+        raise TypeError(f"exactly one of {{name}}= [rad] and {{name}}_degrees= must be given")
+    return math.radians(degrees) if degrees is not None else float(radians)  # type: ignore[arg-type]
 
 
 def _columns(points: ArrayLike) -> int:
@@ -60,6 +60,7 @@ SAYS = ("Vector", "Direction", "Points")
 
 def constructor(entries: list[dict[str, Any]]) -> str:
     """The function for a primitive of one dimension, or of both."""
+    # The example of the solid, where there is one of each dimension.
     first = entries[-1]
     name, parameters = first["name"], first["parameters"]
     dimensions = sorted(entry["dimension"] for entry in entries)
@@ -95,6 +96,10 @@ def constructor(entries: list[dict[str, Any]]) -> str:
     lines = [f"def {name}(", *(f"    {one}," for one in given), ") -> Shape:"]
     lines += [f'    """{sentence(first["about"])}', "", f"    {sentence(first['origin'])} {sentence(of)}", ""]
     lines += ["    Args:", *(f"        {one}" for one in about), ""]
+    raised = ["`ShapeError` if a number is out of range"]
+    if has_angle:
+        raised.append("`TypeError` unless one of an angle in radians and in degrees is given")
+    lines += [f"    Raises {', '.join(raised)}.", ""]
     lines += ["    >>> import palpate as pp", f"    >>> pp.{shown}", f"    {made}", '    """']
     lines += [f'    return primitive("{name}", {dimension}, [{", ".join(values)}])']
     return "\n".join(lines) + "\n"

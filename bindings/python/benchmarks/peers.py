@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: MIT OR Apache-2.0
 """One peer, asked in its own environment: ``python peers.py NAME QUESTION.npz ANSWER.npz``, on one processor.
 
-Every function asks for the same solid S: a cuboid of 0.6 × 0.4 × 0.6 m within a ball of 0.35 m, less a capsule of 0.1 m
-about the y axis. Times are the best of a few rounds [s]; values are given too, so that work can be seen to be equal.
+Fields are those of the same solid: a cuboid of 0.6 × 0.4 × 0.6 m within a ball of 0.35 m, less a capsule of 0.1 m about
+the y axis. Meshes are that of the question, and bodies a box, a plate with a hole and a cylinder. Times are the best of a few rounds [s]; values are given too, so that work can be seen to be equal.
 """
 
 import os

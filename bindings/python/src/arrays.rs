@@ -13,7 +13,7 @@ use numpy::{
 };
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
-use pyo3::types::{PyList, PyTuple};
+use pyo3::types::{PyBool, PyList, PyTuple};
 
 /// Numbers as a caller gave them, in C order and in the precision of the answer.
 pub(crate) enum Numbers<'py> {
@@ -59,7 +59,10 @@ fn said(shape: &[usize]) -> String {
 pub(crate) fn few<const N: usize>(given: &Bound<'_, PyAny>) -> Option<[f64; N]> {
     let is_one =
         given.is_exact_instance_of::<PyList>() || given.is_exact_instance_of::<PyTuple>();
-    is_one.then(|| given.extract().ok()).flatten()
+    let found: [f64; N] = is_one.then(|| given.extract().ok()).flatten()?;
+    // Booleans are numbers of Python, and none of an array.
+    let has_bool = given.try_iter().ok()?.flatten().any(|x| x.is_instance_of::<PyBool>());
+    (!has_bool).then_some(found)
 }
 
 /// An array of real numbers in C order: single precision stays, all else becomes double precision.
@@ -78,10 +81,15 @@ pub(crate) fn numbers<'py>(given: &Bound<'py, PyAny>, what: &str) -> PyResult<Nu
         return Err(PyTypeError::new_err(problem));
     }
     let array = numpy.call_method1("asarray", (given,)).map_err(|error| {
-        PyTypeError::new_err(format!(
-            "{what} must be an array of real numbers: {}",
-            error.value(py)
-        ))
+        // Whatever else is raised, as where an array computes itself, is not about the numbers.
+        if !error.is_instance_of::<PyTypeError>(py) && !error.is_instance_of::<PyValueError>(py)
+        {
+            return error;
+        }
+        let problem = format!("{what} must be an array of real numbers: {}", error.value(py));
+        let named = PyTypeError::new_err(problem);
+        named.set_cause(py, Some(error));
+        named
     })?;
     let array = array.cast_into::<PyUntypedArray>()?;
     let dtype = array.dtype();

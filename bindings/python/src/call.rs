@@ -3,7 +3,7 @@
 
 //! Calls into the core, which functions of Python may be called from: what those raise ends the call.
 
-use std::cell::RefCell;
+use std::cell::{Cell, RefCell};
 use std::sync::{Arc, Mutex, PoisonError};
 
 use pyo3::exceptions::PyRuntimeError;
@@ -14,32 +14,56 @@ use crate::pool::Pool;
 /// The first exception of a function: a search cannot carry it.
 type Slot = Mutex<Option<PyErr>>;
 
-/// That of functions that other threads of a pool call: which call they work for is not known.
-static STRAY: Slot = Mutex::new(None);
-
 thread_local! {
     /// The slot of the call that this thread works for.
     static CURRENT: RefCell<Option<Arc<Slot>>> = const { RefCell::new(None) };
+
+    /// How deep this thread is in functions that ask shapes of functions.
+    static DEPTH: Cell<u32> = const { Cell::new(0) };
+
+    /// That of the pool of which this thread is one, if it works for no other.
+    static OF_POOL: RefCell<Option<Arc<Shared>>> = const { RefCell::new(None) };
+}
+
+/// The call that the threads of a pool work for.
+#[derive(Default)]
+pub(crate) struct Shared(Mutex<Call>);
+
+impl Shared {
+    /// Makes this thread work for whatever call the pool works for.
+    pub(crate) fn serve(own: &Arc<Self>) {
+        OF_POOL.replace(Some(Arc::clone(own)));
+    }
+
+    /// Makes the pool work for a call.
+    pub(crate) fn set(&self, call: &Call) {
+        *self.0.lock().unwrap_or_else(PoisonError::into_inner) = call.clone();
+    }
+
+    fn call(&self) -> Call {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner).clone()
+    }
 }
 
 /// One call.
-#[derive(Clone, Default)]
+#[derive(Clone)]
 pub(crate) struct Call {
     slot: Arc<Slot>,
-    /// Whether threads of a pool share its work.
-    is_shared: bool,
+    /// How deep the thread that calls is in functions.
+    depth: u32,
+}
+
+impl Default for Call {
+    fn default() -> Self {
+        Self { slot: Arc::default(), depth: DEPTH.get() }
+    }
 }
 
 impl Call {
-    /// A call whose work threads of a pool share.
-    pub(crate) fn shared(pool: &Pool) -> Self {
-        Self { is_shared: pool.current_num_threads() > 1, ..Self::default() }
-    }
-
     /// Does work of this call in the thread that asks.
     pub(crate) fn run<T>(&self, work: impl FnOnce() -> T) -> T {
         let before = CURRENT.replace(Some(Arc::clone(&self.slot)));
-        let restored = Restored(before);
+        let restored = Restored(before, DEPTH.replace(self.depth));
         let answer = work();
         drop(restored);
         answer
@@ -53,8 +77,7 @@ impl Call {
 
     /// Raises what a function raised.
     pub(crate) fn ended(self) -> PyResult<()> {
-        let stray = if self.is_shared { taken(&STRAY) } else { None };
-        match taken(&self.slot).or(stray) {
+        match self.slot.lock().unwrap_or_else(PoisonError::into_inner).take() {
             None => Ok(()),
             Some(error) => Err(error),
         }
@@ -62,34 +85,52 @@ impl Call {
 }
 
 /// Puts the call back that a thread worked for before, also after a panic.
-struct Restored(Option<Arc<Slot>>);
+struct Restored(Option<Arc<Slot>>, u32);
 
 impl Drop for Restored {
     fn drop(&mut self) {
         CURRENT.replace(self.0.take());
+        DEPTH.set(self.1);
     }
 }
 
-fn taken(slot: &Slot) -> Option<PyErr> {
-    slot.lock().unwrap_or_else(PoisonError::into_inner).take()
+/// The slot of this thread's call; `None` if it works for none.
+fn slot() -> Option<Arc<Slot>> {
+    let own = CURRENT.with_borrow(Clone::clone);
+    own.or_else(|| OF_POOL.with_borrow(|pool| pool.as_deref().map(|pool| pool.call().slot)))
 }
 
-/// Does something with the slot of this thread's call.
-fn with_slot<T>(work: impl FnOnce(&Slot) -> T) -> T {
-    let own = CURRENT.with_borrow(Clone::clone);
-    work(own.as_deref().unwrap_or(&STRAY))
+/// How deep this thread is in functions that ask shapes of functions, before it goes one deeper.
+pub(crate) fn deeper() -> u32 {
+    let of_pool = OF_POOL.with_borrow(|pool| pool.as_deref().map(|pool| pool.call().depth));
+    let before = DEPTH.get();
+    DEPTH.set(before.max(of_pool.unwrap_or(0)) + 1);
+    before
+}
+
+/// How deep it is now.
+pub(crate) fn depth() -> u32 {
+    DEPTH.get()
+}
+
+/// As deep as it was before.
+pub(crate) fn set_depth(before: u32) {
+    DEPTH.set(before);
 }
 
 /// Keeps an exception for the end of this thread's call, unless there is one.
-pub(crate) fn fail(error: PyErr) {
-    with_slot(|slot| {
-        slot.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(error);
-    });
+pub(crate) fn fail(py: Python<'_>, error: PyErr) {
+    match slot() {
+        Some(slot) => {
+            slot.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(error);
+        }
+        None => error.write_unraisable(py, None),
+    }
 }
 
 /// Whether a function has raised in this thread's call: no function needs to be asked any more.
 pub(crate) fn has_failed() -> bool {
-    with_slot(|slot| slot.lock().unwrap_or_else(PoisonError::into_inner).is_some())
+    slot().is_some_and(|slot| slot.lock().unwrap_or_else(PoisonError::into_inner).is_some())
 }
 
 /// Does work without the interpreter's lock, and raises what functions that it called have raised.
@@ -109,8 +150,8 @@ pub(crate) fn detached_in<T: Send>(
     pool: &Pool,
     work: impl FnOnce() -> T + Send,
 ) -> PyResult<T> {
-    let call = Call::shared(pool);
-    let answer = py.detach(|| pool.install(|| call.run(work)));
+    let call = Call::default();
+    let answer = py.detach(|| pool.run(&call, work));
     call.ended()?;
     Ok(answer)
 }

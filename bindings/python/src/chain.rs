@@ -18,16 +18,13 @@ use crate::shape::{AnyShape, PyShape};
 /// Chains of so many are made at once.
 const SHORT: usize = 64;
 
-/// What joins a shape to those before.
-pub(crate) type Boolean = Combination;
-
 /// A shape, or the end of a chain that makes one.
 #[derive(Clone)]
 pub(crate) struct Chain(Arc<Link>);
 
 struct Link {
     dimension: usize,
-    /// How many joints of one kind come before it.
+    /// How many joints of one kind, or that were made at once, come before it.
     length: usize,
     made: OnceLock<AnyShape>,
     /// What it is made of, until it is made.
@@ -36,7 +33,7 @@ struct Link {
 
 /// A chain and what is joined to it.
 struct Joint {
-    how: Boolean,
+    how: Combination,
     to: Chain,
     item: AnyShape,
 }
@@ -58,7 +55,7 @@ impl Chain {
         &self,
         py: Python<'_>,
         item: &AnyShape,
-        how: Boolean,
+        how: Combination,
     ) -> PyResult<Self> {
         let dimension = self.dimension();
         if item.dimension() != dimension {
@@ -87,7 +84,7 @@ impl Chain {
     }
 
     /// How it is joined to what came before, if it is not made yet.
-    fn waits_for(&self) -> Option<Boolean> {
+    fn waits_for(&self) -> Option<Combination> {
         self.joint(|joint| joint.map(|joint| joint.how))
     }
 

@@ -22,6 +22,9 @@ use crate::shape::{AnyShape, of_either};
 /// Points that a thread takes at once: whole blocks, in memory that stays in its cache.
 const CHUNK: usize = 4096;
 
+/// What a caller calls an array to write to, and the array.
+pub(crate) type Named<'a, 'py> = (&'a str, Option<&'a Bound<'py, PyAny>>);
+
 /// Distances and gradients.
 pub(crate) type Slopes<'py> = (Bound<'py, PyAny>, Bound<'py, PyAny>);
 
@@ -43,6 +46,7 @@ fn distances<'py, const D: usize>(
 ) -> PyResult<Bound<'py, PyAny>> {
     let py = points.py();
     let one = |point: [f64; D]| {
+        pool::check(threads)?;
         let call = Call::default();
         let distance = call.run(|| shape.distance(Vector(point)));
         call.ended()?;
@@ -92,7 +96,7 @@ where
 pub(crate) fn distance_gradient<'py>(
     shape: &AnyShape,
     points: &Bound<'py, PyAny>,
-    outs: [Option<&Bound<'py, PyAny>>; 2],
+    outs: [Named<'_, 'py>; 2],
     threads: isize,
 ) -> PyResult<Slopes<'py>> {
     of_either!(shape, shape => match numbers(points, "points")? {
@@ -104,7 +108,7 @@ pub(crate) fn distance_gradient<'py>(
 fn slopes<'py, T: Element + Copy + Send + Sync, const D: usize>(
     shape: &Shape<D>,
     points: &PyReadonlyArrayDyn<'py, T>,
-    [distances, gradients]: [Option<&Bound<'py, PyAny>>; 2],
+    [(of_distances, distances), (of_gradients, gradients)]: [Named<'_, 'py>; 2],
     threads: isize,
 ) -> PyResult<Slopes<'py>>
 where
@@ -112,9 +116,10 @@ where
 {
     let py = points.py();
     let rows = rows::<D>(points.shape())?;
-    let distances = place::<T>(py, distances, rows, "out[0]")?;
-    let gradients = place::<T>(py, gradients, points.shape(), "out[1]")?;
-    let mut written = [writable(&distances, "out[0]")?, writable(&gradients, "out[1]")?];
+    let distances = place::<T>(py, distances, rows, of_distances)?;
+    let gradients = place::<T>(py, gradients, points.shape(), of_gradients)?;
+    let mut written =
+        [writable(&distances, of_distances)?, writable(&gradients, of_gradients)?];
     let pool = pool::of(threads)?;
     let [to_distances, to_gradients] = &mut written;
     let outs = [(to_distances.as_slice_mut()?, 1), (to_gradients.as_slice_mut()?, D)];
@@ -205,7 +210,7 @@ fn in_chunks<T: Copy + Send + Sync, const K: usize>(
 ) -> PyResult<()> {
     let widths = outs.each_ref().map(|(_, width)| *width);
     let mut left = outs.map(|(out, _)| out);
-    let threads = pool.map_or(1, Pool::current_num_threads);
+    let threads = pool.map_or(1, Pool::count);
     // Chunks from one look at Python to the next.
     let mut chunks = threads;
     while !given.is_empty() {
@@ -227,13 +232,13 @@ fn in_chunks<T: Copy + Send + Sync, const K: usize>(
             batch.push((points, outs));
         }
         let start = Instant::now();
-        let call = pool.map_or_else(Call::default, Call::shared);
-        let work = |(points, outs)| call.run(|| work(points, outs));
+        let call = Call::default();
+        let work = |(points, outs)| work(points, outs);
         let done = py.detach(|| match pool {
             Some(pool) if batch.len() > 1 => {
-                pool.install(|| batch.into_par_iter().try_for_each(work))
+                pool.run(&call, || batch.into_par_iter().try_for_each(work))
             }
-            _ => batch.into_iter().try_for_each(work),
+            _ => call.run(|| batch.into_iter().try_for_each(work)),
         });
         call.ended()?;
         done.or_raise(py)?;

@@ -3,8 +3,6 @@
 
 //! Fields that are functions of Python.
 
-use std::cell::Cell;
-
 use numpy::IntoPyArray;
 use palpate::field::{Aabb, Bounds, CustomField, Point, Promise, Shape, Vector};
 use pyo3::exceptions::{PyRecursionError, PyTypeError, PyValueError};
@@ -20,31 +18,34 @@ const STEP: f64 = 1e-6;
 /// So deep may a function ask shapes of functions: Python's own limit comes after the end of the stack.
 const DEEPEST: u32 = 32;
 
-thread_local! {
-    /// How deep this thread is in functions that ask shapes of functions.
-    static DEPTH: Cell<u32> = const { Cell::new(0) };
-}
-
 /// A field of which only values are known.
-#[derive(Debug)]
-struct Function<const D: usize> {
+pub(crate) struct Function<const D: usize> {
     function: Py<PyAny>,
     promise: Promise<D>,
     step: f64,
 }
 
 impl<const D: usize> Function<D> {
+    /// What Python calls the function.
+    pub(crate) fn name(&self) -> String {
+        Python::attach(|py| {
+            let own = self.function.bind(py);
+            let name =
+                own.getattr("__qualname__").or_else(|_| own.get_type().getattr("__qualname__"));
+            name.map_or_else(|_| "callable".to_owned(), |name| name.to_string())
+        })
+    }
+
     /// The values at points; NaN where the function raises or has raised.
     fn values(&self, points: &[Point<D>], values: &mut [f64]) {
         if call::has_failed() {
             return values.fill(f64::NAN);
         }
-        let depth = DEPTH.get();
-        DEPTH.set(depth + 1);
+        let before = call::deeper();
         let asked = Python::attach(|py| {
             // A search over a function may take long.
             py.check_signals()?;
-            if depth >= DEEPEST {
+            if call::depth() > DEEPEST {
                 let problem = "a function asks a shape of itself, without end";
                 return Err(PyRecursionError::new_err(problem));
             }
@@ -69,21 +70,29 @@ impl<const D: usize> Function<D> {
                 }
             }
             // Bounds of a search cannot hold what is no number.
-            let wrong =
-                points.iter().zip(&*values).find(|(p, value)| p.is_finite() && value.is_nan());
+            let wrong = points
+                .iter()
+                .zip(&*values)
+                .find(|(p, value)| p.is_finite() && !value.is_finite());
             match wrong {
                 None => Ok(()),
-                Some((p, _)) => {
-                    let problem = format!("the function answers NaN at {:?}", p.0);
+                Some((p, value)) => {
+                    let problem = format!("the function answers {value} at {:?}", p.0);
                     Err(PyValueError::new_err(problem))
                 }
             }
         });
-        DEPTH.set(depth);
+        call::set_depth(before);
         if let Err(error) = asked {
             values.fill(f64::NAN);
-            call::fail(error);
+            Python::attach(|py| call::fail(py, error));
         }
+    }
+}
+
+impl<const D: usize> std::fmt::Debug for Function<D> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(&self.name())
     }
 }
 
@@ -142,8 +151,10 @@ impl<const D: usize> CustomField<D> for Function<D> {
 ///
 /// `lipschitz` is the most that values may differ by, over the distance of their points; everything that is proven rests
 /// on it: 1 of a distance. `bounds` are the corners of a box that holds the body, shape (2, D) [m]. Gradients are central
-/// differences over 1e-6 of the size of the box, or 1e-6 m without. Such a shape is opaque: it can be asked, but not
-/// written, pickled or felt. Threads of the core may call the function, one at a time.
+/// differences, with a step of 1e-6 of the box's diagonal to either side, or of 1e-6 m without a box. Such a shape is
+/// opaque: it can be asked, but not written, pickled or felt, so it stands in no `Scene` or `World`. A function that holds
+/// its own shape keeps both alive. Searches ask few points at a time, which is slow
+/// in Python: where that is too slow, sample the function at the nodes of a lattice and take `from_samples`. Threads of the core call the function, one at a time where Python has its lock.
 ///
 /// Raises `ValueError` if `lipschitz` is not positive and finite; a question raises what the function raises while it
 /// is asked.

@@ -8,13 +8,19 @@ use palpate::grid::{Grid, GridOptions, Kernel, Lattice, Resolution, Store};
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 
-use crate::arrays::{misshapen, numbers};
+use crate::arrays::{Numbers, misshapen, numbers};
 use crate::call::detached_in;
 use crate::error::OrRaise;
 use crate::interrupt::{interruptible, unless_asked};
 use crate::pool;
 use crate::poses::point;
 use crate::shape::{PyShape, of_either};
+
+/// The nodes of a grid that scenes bake.
+pub(crate) const MOST_NODES: usize = 1 << 25;
+
+/// More nodes are a mistake.
+const MOST_EVER: usize = 1 << 31;
 
 #[pymethods]
 impl PyShape {
@@ -24,7 +30,8 @@ impl PyShape {
     /// Either `tolerance` says how far values near the surface may be off those of this shape [m], which is certified,
     /// or `cell` how far samples are apart [m]; `promise.deviation` has what was reached. `kernel` is "quadratic",
     /// smooth, to be touched, or "trilinear"; `store` "f32", "i16" or "i8"; `band` keeps only what lies within so many
-    /// cells of the surface. More than `most_nodes` samples are refused, 67 108 864 if left out. `threads` share the
+    /// cells of the surface. More than `most_nodes` samples are refused, 33 554 432 if left out; a grid of more than that
+    /// cannot be pickled, nor stand in a scene file. `threads` share the
     /// work, 0 for all processors; the bits do not depend on how many.
     ///
     /// Raises `GridError` if the shape has no bounds, a value is not finite or the grid would take too much memory,
@@ -58,13 +65,18 @@ impl PyShape {
         options.kernel = named("kernel", kernel, Kernel::ALL.map(|own| (own.name(), own)))?;
         options.store = named("store", store, Store::ALL.map(|own| (own.name(), own)))?;
         options.band = band;
-        options.most_nodes = most_nodes.unwrap_or(options.most_nodes);
+        options.most_nodes = most_nodes.unwrap_or(MOST_NODES);
+        if options.most_nodes > MOST_EVER {
+            let problem =
+                format!("most_nodes must be at most {MOST_EVER}, got {}", options.most_nodes);
+            return Err(PyValueError::new_err(problem));
+        }
         of_either!(self.made(py)?, shape => Ok(baked(py, shape, &options, threads)?.into()))
     }
 }
 
 /// A shape of samples at the nodes of a lattice: an array with an axis for each dimension [m], negative inside and
-/// positive at the border.
+/// positive in the two outer layers.
 ///
 /// `cell` is how far nodes are apart [m], `origin` the place of the first one, 0 if left out. `kernel` is "trilinear",
 /// which goes through the samples, or "quadratic", a spline with the samples as coefficients: smooth, to be touched, and
@@ -88,21 +100,27 @@ pub(crate) fn from_samples(
     kernel: &str,
 ) -> PyResult<PyShape> {
     let kernel = named("kernel", kernel, Kernel::ALL.map(|own| (own.name(), own)))?;
-    // The core wants them along the first axis first.
-    let turned = samples.py().import("numpy")?.call_method1("transpose", (samples,))?;
-    let array = numbers(&turned, "samples")?;
+    let (array, counts) = along_the_first(samples)?;
     let values = array.as_doubles()?;
-    match array.shape() {
-        [_, _] => of_samples::<2>(array.shape(), &values, cell, origin, kernel, samples.py()),
-        [_, _, _] => {
-            of_samples::<3>(array.shape(), &values, cell, origin, kernel, samples.py())
-        }
-        shape => Err(misshapen("samples", "(n, m) or (n, m, k)", shape)),
+    match counts[..] {
+        [n, m] => of_samples([n, m], &values, cell, origin, kernel, samples.py()),
+        [n, m, k] => of_samples([n, m, k], &values, cell, origin, kernel, samples.py()),
+        _ => Err(misshapen("samples", "(n, m) or (n, m, k)", &counts)),
     }
 }
 
+/// The samples of an array along its first axis first, as the core wants them, and its shape.
+pub(crate) fn along_the_first<'py>(
+    samples: &Bound<'py, PyAny>,
+) -> PyResult<(Numbers<'py>, Vec<usize>)> {
+    let turned = samples.py().import("numpy")?.call_method1("transpose", (samples,))?;
+    let array = numbers(&turned, "samples")?;
+    let counts = array.shape().iter().rev().copied().collect();
+    Ok((array, counts))
+}
+
 fn of_samples<const D: usize>(
-    turned: &[usize],
+    counts: [usize; D],
     values: &[f64],
     cell: f64,
     origin: Option<&Bound<'_, PyAny>>,
@@ -113,7 +131,6 @@ where
     PyShape: From<Shape<D>>,
 {
     let origin = origin.map_or_else(|| Ok(Vector::ZERO), |origin| point(origin, "origin"))?;
-    let counts = std::array::from_fn(|i| turned[D - 1 - i]);
     let lattice = Lattice { origin, cell, counts };
     let pool = pool::of_at_least_one(1)?;
     let work = || Grid::from_samples(lattice, values, kernel, Store::F32);

@@ -3,13 +3,18 @@
 
 //! Values that one thread asks at a time.
 
-use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::sync::{Mutex, MutexGuard, PoisonError, TryLockError};
 use std::thread::ThreadId;
+use std::time::{Duration, Instant};
 
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
 
 use crate::call::detached;
+use crate::interrupt::A_WHILE;
+
+/// How long a thread sleeps that waits for the value.
+const PAUSE: Duration = Duration::from_micros(200);
 
 /// A value that one thread asks at a time, without the interpreter's lock: a thread that waited for the value with that
 /// lock would stop the one that has the value.
@@ -36,10 +41,26 @@ impl<T: Send> Guarded<T> {
             return Err(PyRuntimeError::new_err(problem));
         }
         detached(py, || {
-            let mut value = locked(&self.value);
+            let mut value = self.waited()?;
             let _asking = Asking::by(own, &self.asks);
-            question(&mut value)
-        })
+            Ok(question(&mut value))
+        })?
+    }
+
+    /// The value, once no other thread asks. Two functions that wait for each other's objects end by Ctrl-C.
+    fn waited(&self) -> PyResult<MutexGuard<'_, T>> {
+        let mut looked = Instant::now();
+        loop {
+            match self.value.try_lock() {
+                Ok(value) => return Ok(value),
+                Err(TryLockError::Poisoned(value)) => return Ok(value.into_inner()),
+                Err(TryLockError::WouldBlock) => std::thread::sleep(PAUSE),
+            }
+            if looked.elapsed() > A_WHILE {
+                looked = Instant::now();
+                Python::attach(|py| py.check_signals())?;
+            }
+        }
     }
 }
 

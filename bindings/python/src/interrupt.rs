@@ -24,12 +24,13 @@ pub(crate) fn interruptible<T: Send>(
     pool: &Pool,
     work: impl FnOnce(&AtomicBool) -> T + Send,
 ) -> PyResult<T> {
-    let (stop, call) = (AtomicBool::new(false), Call::shared(pool));
+    let (stop, call) = (AtomicBool::new(false), Call::default());
     let answer = py.detach(|| {
         let (done, answer) = mpsc::channel();
         std::thread::scope(|scope| {
             let (stop, own) = (&stop, call.clone());
-            scope.spawn(move || done.send(pool.install(|| own.run(|| work(stop)))));
+            let thread = move || done.send(pool.run(&own, || work(stop)));
+            std::thread::Builder::new().spawn_scoped(scope, thread)?;
             awaited(answer).inspect_err(|_| stop.store(true, Ordering::Relaxed))
         })
     });

@@ -15,9 +15,12 @@ use crate::arrays::{misshapen, numbers, table};
 use crate::error::OrRaise;
 use crate::hand::check_points;
 
+/// A device for a servo.
+pub(crate) type Own<const D: usize> = Box<dyn Device<D> + Send>;
+
 /// Both ends of a mailbox; that of the servo until it takes it.
-struct Post<const D: usize> {
-    device: Mutex<Option<MailboxDevice<D>>>,
+pub(crate) struct Post<const D: usize> {
+    device: Mutex<Option<Own<D>>>,
     mailbox: Mutex<Mailbox<D>>,
 }
 
@@ -25,6 +28,17 @@ impl<const D: usize> Post<D> {
     /// The driver's end: not held while code of Python may run.
     fn locked(&self) -> MutexGuard<'_, Mailbox<D>> {
         self.mailbox.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// The servo's end.
+    pub(crate) fn take(&self) -> PyResult<Own<D>> {
+        let device = self.device.lock().unwrap_or_else(PoisonError::into_inner).take();
+        device.ok_or_else(|| PyRuntimeError::new_err("a mailbox has one servo: make another"))
+    }
+
+    /// Takes the servo's end back, from one that could not be made.
+    pub(crate) fn give_back(&self, device: Own<D>) {
+        *self.device.lock().unwrap_or_else(PoisonError::into_inner) = Some(device);
     }
 }
 
@@ -50,8 +64,13 @@ macro_rules! of_either {
 
 /// A device of your own: its driver sets where the points are, as often as it likes, and takes the newest forces.
 ///
-/// The servo never waits for the driver. If nothing is set for 0.1 s, the device counts as lost. `profile` is the name
-/// of the profile whose limits hold.
+/// The servo never waits for the driver. If nothing more is set for 0.1 s, or after `lose`, the device is lost: forces go to
+/// zero, the servo ends, and its `with` block raises `DeviceLostError`. `profile` is the name of the profile whose limits
+/// hold, `points` how many contact points the device has. Positions and forces are those of the device: unless the tool of
+/// the scene has a `workspace`, the one of the profile is scaled so that it holds the scene; with
+/// `tool={"workspace": {"scale": 1}}` they are those of the world.
+///
+/// Raises `UnknownNameError` if no profile has the name, `ValueError` if `points` or `dimension` is out of range.
 ///
 /// >>> import palpate as pp, time
 /// >>> mailbox = pp.Mailbox("omega")
@@ -80,7 +99,8 @@ impl PyMailbox {
 
     /// Sets where the points are, shape (points, D) [m] at the device, at `time` [s] if it is known.
     ///
-    /// Raises `ValueError` if the array has another shape.
+    /// Raises `ValueError` if the array has another number of columns or a number is not finite, `DeviceError` if it has
+    /// another number of points.
     ///
     /// >>> import palpate as pp
     /// >>> pp.Mailbox().set([[0, 0.1, 0]])
@@ -126,18 +146,18 @@ impl PyMailbox {
 }
 
 impl PyMailbox {
-    /// The servo's end, in the plane.
-    pub(crate) fn planar(&self) -> PyResult<Box<dyn Device<2> + Send>> {
+    /// Both ends, in the plane.
+    pub(crate) fn planar(&self) -> PyResult<&Post<2>> {
         match &self.0 {
-            AnyPost::Planar(post) => taken(post),
+            AnyPost::Planar(post) => Ok(post),
             AnyPost::Spatial(_) => Err(PyTypeError::new_err("the scene is 2D, the mailbox 3D")),
         }
     }
 
-    /// The servo's end, in space.
-    pub(crate) fn spatial(&self) -> PyResult<Box<dyn Device<3> + Send>> {
+    /// Both ends, in space.
+    pub(crate) fn spatial(&self) -> PyResult<&Post<3>> {
         match &self.0 {
-            AnyPost::Spatial(post) => taken(post),
+            AnyPost::Spatial(post) => Ok(post),
             AnyPost::Planar(_) => Err(PyTypeError::new_err("the scene is 3D, the mailbox 2D")),
         }
     }
@@ -147,15 +167,7 @@ fn post<const D: usize>(py: Python<'_>, profile: &str, points: usize) -> PyResul
     check_points(points)?;
     let profile = profile_named(profile).or_raise(py)?;
     let (device, mailbox) = MailboxDevice::new(profile, points).or_raise(py)?;
-    Ok(Post { device: Mutex::new(Some(device)), mailbox: Mutex::new(mailbox) })
-}
-
-fn taken<const D: usize>(post: &Post<D>) -> PyResult<Box<dyn Device<D> + Send>> {
-    let device = post.device.lock().unwrap_or_else(PoisonError::into_inner).take();
-    match device {
-        Some(device) => Ok(Box::new(device)),
-        None => Err(PyRuntimeError::new_err("a mailbox has one servo: make another")),
-    }
+    Ok(Post { device: Mutex::new(Some(Box::new(device))), mailbox: Mutex::new(mailbox) })
 }
 
 fn set<const D: usize>(
@@ -168,6 +180,15 @@ fn set<const D: usize>(
         return Err(misshapen("positions", &format!("(points, {D})"), array.shape()));
     }
     let given = array.as_doubles()?;
+    if let Some(place) = given.iter().position(|x| !x.is_finite()) {
+        let problem = format!(
+            "positions[{}, {}] must be finite, got {} m",
+            place / D,
+            place % D,
+            given[place]
+        );
+        return Err(PyValueError::new_err(problem));
+    }
     let state = |row: &[f64]| PointState::at_rest(Vector(std::array::from_fn(|i| row[i])));
     let states: Vec<PointState<D>> = given.chunks_exact(D).map(state).collect();
     let done = match time {

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! Mass, and what meshes and samples a shape.
+//! Mass, and meshes of shapes.
 
 use palpate::field::{Mass, MassLimits};
 use pyo3::prelude::*;

@@ -19,7 +19,7 @@ use pyo3::prelude::*;
 use crate::answers::Fields;
 use crate::arrays::{misshapen, numbers, row, table};
 use crate::error::OrRaise;
-use crate::grid::named;
+use crate::grid::{along_the_first, named};
 use crate::interrupt::{abandonable, interruptible, unless_asked};
 use crate::pool;
 use crate::poses;
@@ -77,7 +77,9 @@ impl PyMesh {
             let has = |name| vertices.hasattr(name);
             if !(has("vertices")? && has("faces")?) {
                 let kind = vertices.get_type().name()?;
-                let problem = format!("a mesh has vertices and faces, got a {kind}");
+                let problem = format!(
+                    "a mesh has vertices and faces, got a {kind}: files are read by Mesh.load"
+                );
                 return Err(PyTypeError::new_err(problem));
             }
             let (vertices, faces) = (vertices.getattr("vertices")?, vertices.getattr("faces")?);
@@ -91,7 +93,8 @@ impl PyMesh {
         }
     }
 
-    /// Reads triangles from a file of OBJ, STL, PLY or GLB, with coordinates in metres; `scale` is what others are.
+    /// Reads triangles from a file of OBJ, STL, PLY or GLB, with coordinates in metres; `scale` is the length of
+    /// another unit of the file [m], 0.001 for millimetres.
     ///
     /// Raises `MissingFileError` if there is no such file, `MeshError` if it holds no mesh.
     ///
@@ -113,7 +116,7 @@ impl PyMesh {
     ///
     /// `spacing` is how far samples are apart along each axis [m], one number or three; `origin` where the first one is,
     /// 0 if left out. The values are no distances: of `shape()` the distance to the surface is known, the surface itself
-    /// to about a step. Files of scanners are in `Scene` files, as `volume`.
+    /// to about a step. Samples are kept in single precision. Files of scanners are in `Scene` files, as `volume`.
     ///
     /// Raises `GridError` if no surface has the value, a sample is not finite or an axis has fewer than two, `ValueError`
     /// if an array has another shape.
@@ -141,13 +144,14 @@ impl PyMesh {
         let steps = std::array::from_fn(|axis| Vector::unit(axis) * sides[axis]);
         let origin =
             origin.map_or(Ok(Vector::ZERO), |origin| poses::point(origin, "origin"))?;
-        // The core wants them along the first axis first.
-        let turned = py.import("numpy")?.call_method1("transpose", (samples,))?;
-        let array = numbers(&turned, "samples")?;
-        let [k, m, n] = *array.shape() else {
-            let mut shape = array.shape().to_vec();
-            shape.reverse();
-            return Err(misshapen("samples", "(n, m, k)", &shape));
+        if let Some(axis) = sides.iter().position(|side| !(*side > 0.0 && side.is_finite())) {
+            let side = sides[axis];
+            let problem = format!("spacing[{axis}] must be positive and finite, got {side} m");
+            return Err(PyValueError::new_err(problem));
+        }
+        let (array, counts) = along_the_first(samples)?;
+        let [n, m, k] = counts[..] else {
+            return Err(misshapen("samples", "(n, m, k)", &counts));
         };
         let values = array.as_doubles()?.iter().map(|sample| *sample as f32).collect();
         let volume = Volume::new([n, m, k], origin, steps, values).or_raise(py)?;
@@ -173,7 +177,7 @@ impl PyMesh {
             PyValueError::new_err("the name of a mesh must end in .obj, .stl, .ply or .glb")
         })?;
         let mut bytes = Vec::new();
-        mesh.write(format, &mut bytes)?;
+        py.detach(|| mesh.write(format, &mut bytes))?;
         replace(py, &file, &bytes)
     }
 
@@ -247,14 +251,17 @@ impl PyMesh {
     /// ('exact', True)
     #[pyo3(signature = (*, thickness = None))]
     fn shape(&self, py: Python<'_>, thickness: Option<f64>) -> PyResult<PyShape> {
-        of_either!(&self.0, mesh => match thickness {
-            None => {
-                let solid = py.detach(|| Solid::from_mesh(mesh)).or_raise(py)?;
-                Ok(Shape::from(solid.0).into())
-            }
-            Some(thickness) => {
-                let sheet = py.detach(|| Sheet::from_mesh(mesh, thickness)).or_raise(py)?;
-                Ok(Shape::from(sheet).into())
+        of_either!(&self.0, mesh => {
+            let mesh = Arc::clone(mesh);
+            match thickness {
+                None => {
+                    let solid = abandonable(py, move || Solid::from_mesh(&mesh))?.or_raise(py)?;
+                    Ok(Shape::from(solid.0).into())
+                }
+                Some(thickness) => {
+                    let work = move || Sheet::from_mesh(&mesh, thickness);
+                    Ok(Shape::from(abandonable(py, work)?.or_raise(py)?).into())
+                }
             }
         })
     }
@@ -269,7 +276,8 @@ impl PyMesh {
     /// ('', '1 opening')
     fn findings(&self, py: Python<'_>) -> PyResult<String> {
         of_either!(&self.0, mesh => {
-            let solid = py.detach(|| Solid::from_mesh(mesh)).or_raise(py)?;
+            let mesh = Arc::clone(mesh);
+            let solid = abandonable(py, move || Solid::from_mesh(&mesh))?.or_raise(py)?;
             Ok(solid.1.to_string())
         })
     }
@@ -417,8 +425,9 @@ macro_rules! of_shape_and_mesh {
             (AnyShape::Spatial($shape), AnyMesh::Spatial($mesh)) => $done,
             (shape, _) => {
                 let (shape, mesh) = (shape.dimension(), own.get().dimension());
-                let problem =
-                    format!("shape and mesh must have one dimension, got {shape}D and {mesh}D");
+                let problem = format!(
+                    "shape and mesh must have the same dimension, got {shape}D and {mesh}D"
+                );
                 Err(PyValueError::new_err(problem))
             }
         }

@@ -154,6 +154,8 @@ macro_rules! functions {
 functions! {
     /// What is in any of the shapes, as `|`. Shapes one by one, or in one list.
     ///
+    /// Raises `ValueError` if shapes are of both dimensions, `TypeError` if one is no shape.
+    ///
     /// >>> import palpate as pp
     /// >>> row = pp.union(pp.ball(0.1).translated([x, 0, 0]) for x in range(3))
     /// >>> row.distance([2, 0, 0])
@@ -161,11 +163,15 @@ functions! {
     union: Combination::Union;
     /// What is in all of the shapes, as `&`. Shapes one by one, or in one list.
     ///
+    /// Raises `ValueError` if shapes are of both dimensions, `TypeError` if one is no shape.
+    ///
     /// >>> import palpate as pp
     /// >>> pp.intersection(pp.ball(0.5), pp.ball(0.5).translated([0.6, 0, 0])).distance([0.3, 0, 0])
     /// -0.2
     intersection: Combination::Intersection;
     /// What is in the first shape and in none of the others, as `-`. Shapes one by one, or in one list.
+    ///
+    /// Raises `ValueError` if shapes are of both dimensions, `TypeError` if one is no shape.
     ///
     /// >>> import palpate as pp
     /// >>> holes = [pp.cylinder(0.1, 1).translated([x, 0, 0]) for x in (-0.2, 0.2)]
@@ -173,6 +179,8 @@ functions! {
     /// 0.1
     difference: Combination::Difference;
     /// What is in an odd number of the shapes, as `^`. Shapes one by one, or in one list.
+    ///
+    /// Raises `ValueError` if shapes are of both dimensions, `TypeError` if one is no shape.
     ///
     /// >>> import palpate as pp
     /// >>> pp.symmetric_difference(pp.ball(0.5), pp.ball(0.4)).distance([0, 0, 0])
@@ -200,6 +208,9 @@ smooth_functions! {
     /// The union of shapes, its creases filled: where two distances are equal, the surface moves by `width` [m]. `profile` is quadratic, cubic, quartic, circular, root, exponential or
     /// circular_geometrical.
     ///
+    /// Raises `ShapeError` if the width is not positive or there are less than two shapes, `ValueError` if shapes are of both
+    /// dimensions or no profile has the name, `TypeError` if one is no shape.
+    ///
     /// >>> import palpate as pp
     /// >>> pp.smooth_union(pp.ball(0.5), pp.ball(0.5), width=0.01).distance([1, 0, 0])
     /// 0.49
@@ -207,12 +218,18 @@ smooth_functions! {
     /// The intersection of shapes, its edges rounded off: where two distances are equal, the surface moves by `width` [m]. `profile` is quadratic, cubic, quartic, circular, root, exponential or
     /// circular_geometrical.
     ///
+    /// Raises `ShapeError` if the width is not positive or there are less than two shapes, `ValueError` if shapes are of both
+    /// dimensions or no profile has the name, `TypeError` if one is no shape.
+    ///
     /// >>> import palpate as pp
     /// >>> pp.smooth_intersection(pp.ball(0.5), pp.ball(0.5), width=0.01).distance([1, 0, 0])
     /// 0.51
     smooth_intersection: Combination::SmoothIntersection;
     /// The first shape without the others, the edges of the cuts rounded off by `width` [m]. `profile` is quadratic, cubic, quartic, circular, root, exponential or
     /// circular_geometrical.
+    ///
+    /// Raises `ShapeError` if the width is not positive or there are less than two shapes, `ValueError` if shapes are of both
+    /// dimensions or no profile has the name, `TypeError` if one is no shape.
     ///
     /// >>> import palpate as pp
     /// >>> pp.smooth_difference(pp.ball(0.5), pp.ball(0.4), width=0.001).distance([0, 0, 0])

@@ -76,7 +76,7 @@ pub(crate) fn angle(degrees: Option<f64>, radians: Option<f64>) -> PyResult<f64>
     match (degrees, radians) {
         (Some(degrees), None) => Ok(degrees.to_radians()),
         (None, Some(radians)) => Ok(radians),
-        _ => Err(PyTypeError::new_err("one of degrees= and radians= must be given")),
+        _ => Err(PyTypeError::new_err("exactly one of degrees= and radians= must be given")),
     }
 }
 
@@ -157,10 +157,14 @@ impl Posed for Pose<3> {
 
 /// One pose.
 pub(crate) fn one<P: Posed>(given: &Bound<'_, PyAny>) -> PyResult<P> {
-    let array = numbers(given, "pose")?;
+    called(given, "pose")
+}
+
+/// One pose, by the name of its argument.
+fn called<P: Posed>(given: &Bound<'_, PyAny>, what: &str) -> PyResult<P> {
+    let array = numbers(given, what)?;
     let (numbers, shape) = (array.as_doubles()?, array.shape());
-    P::of(given.py(), &numbers, shape)
-        .unwrap_or_else(|| Err(misshapen("pose", P::FORMS, shape)))
+    P::of(given.py(), &numbers, shape).unwrap_or_else(|| Err(misshapen(what, P::FORMS, shape)))
 }
 
 /// One pose, or that of a body that stays where it is.
@@ -179,7 +183,7 @@ pub(crate) fn named<B: Copy, P: Posed>(
     let mut all = Vec::with_capacity(poses.len());
     for (name, pose) in poses {
         let name: String = name.extract()?;
-        all.push((body(&name, bodies)?, one(&pose)?));
+        all.push((body(&name, bodies)?, called(&pose, &format!("poses[{name:?}]"))?));
     }
     Ok(all)
 }
@@ -214,11 +218,17 @@ pub(crate) fn many<P: Posed>(given: &Bound<'_, PyAny>) -> PyResult<Vec<P>> {
     Ok(poses)
 }
 
-/// The exception of one of many, with its own as the cause.
+/// The exception of one of many, which says which one: of the same class, with what it knows.
 pub(crate) fn at_index(py: Python<'_>, all: &str, index: usize, error: PyErr) -> PyErr {
-    let named = PyValueError::new_err(format!("{all}[{index}]: {}", error.value(py)));
-    named.set_cause(py, Some(error));
-    named
+    let named = || -> PyResult<PyErr> {
+        let problem = format!("{all}[{index}]: {}", error.value(py));
+        let named = error.get_type(py).call1((problem,))?;
+        if let Ok(known) = error.value(py).getattr("__dict__") {
+            named.getattr("__dict__")?.call_method1("update", (known,))?;
+        }
+        Ok(PyErr::from_value(named))
+    };
+    named().unwrap_or(error)
 }
 
 /// A point or a direction.

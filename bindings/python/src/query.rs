@@ -25,7 +25,7 @@ macro_rules! of_both {
             (one, two) => {
                 let (one, two) = (one.dimension(), two.dimension());
                 let problem =
-                    format!("both shapes must have one dimension, got {one}D and {two}D");
+                    format!("both shapes must have the same dimension, got {one}D and {two}D");
                 Err(pyo3::exceptions::PyValueError::new_err(problem))
             }
         }
@@ -207,7 +207,8 @@ pub(crate) fn manifold_of<'py, const D: usize>(
         .of_class("Manifold")
 }
 
-/// The first surface along a ray of a length [m], proven: none is passed over. `direction` may have any length but 0.
+/// The first surface along a ray of a length [m]: the first place at which the field is at most the tolerance. Before it
+/// the field is positive, proven: no surface is passed over. `direction` may have any length but 0.
 ///
 /// `tolerance` is how far apart the bounds may be [m], a ten-thousandth of the smaller of shape and ray if left out;
 /// `budget` how often the field is evaluated at most, 200 000 if left out.

@@ -36,6 +36,9 @@ macro_rules! of_either {
 /// `{"stiffness": 800}`. `tool` is a dict, `guides` and `motions` are lists of dicts, with the keys of scene files;
 /// arrays and shapes may stand in them.
 ///
+/// Raises `SceneError` if a body cannot be written, as a function, or a key or number is wrong, `KeyError` if `poses` or
+/// `materials` name no body, `ValueError` if bodies are of both dimensions.
+///
 /// >>> import palpate as pp
 /// >>> scene = pp.Scene({"table": pp.cuboid([1, 0.1, 1]), "ball": pp.ball(0.05).translated([0, 0.1, 0])})
 /// >>> scene.names, scene["ball"].shape.distance([0, 0.2, 0])
@@ -82,7 +85,17 @@ impl PyScene {
             named.push(("body".to_owned(), shape));
         } else if let Ok(dict) = bodies.cast::<PyDict>() {
             for (name, shape) in dict {
-                named.push((name.extract()?, shape.extract()?));
+                let name: String = name.extract()?;
+                let shape = shape.extract().map_err(|_| {
+                    let kind = shape
+                        .get_type()
+                        .name()
+                        .map_or_else(|_| String::new(), |own| own.to_string());
+                    PyTypeError::new_err(format!(
+                        "the body {name:?} must be a Shape, got a {kind}"
+                    ))
+                })?;
+                named.push((name, shape));
             }
         } else {
             let problem = "a scene is made of a shape, or of a dict of names and shapes";
@@ -104,7 +117,7 @@ impl PyScene {
             }
             (flat, solid) => {
                 let problem = format!(
-                    "a scene has one dimension, got {flat} bodies of 2D and {solid} of 3D"
+                    "the bodies of a scene must have the same dimension, got {flat} in 2D and {solid} in 3D"
                 );
                 Err(PyValueError::new_err(problem))
             }
@@ -165,7 +178,7 @@ impl PyScene {
     #[staticmethod]
     fn load(py: Python<'_>, file: PathBuf) -> PyResult<Self> {
         let scene = py.detach(|| Scene::from_file(&file)).or_raise(py)?;
-        let folder = file.parent().map(std::path::absolute).transpose()?;
+        let folder = std::path::absolute(&file)?.parent().map(PathBuf::from);
         Self::of(py, scene, folder)
     }
 
@@ -179,7 +192,9 @@ impl PyScene {
     #[staticmethod]
     #[pyo3(signature = (text, *, folder = None))]
     fn from_json(py: Python<'_>, text: &str, folder: Option<PathBuf>) -> PyResult<Self> {
-        let folder = folder.map(std::path::absolute).transpose()?;
+        // The folder of a bare name is an empty path.
+        let folder = folder.map(|own| std::path::absolute(PathBuf::from(".").join(own)));
+        let folder = folder.transpose()?;
         let scene = match &folder {
             None => Scene::from_json(text),
             Some(folder) => {
@@ -202,7 +217,7 @@ impl PyScene {
     /// Writes a scene file. One that is there is replaced when the new one is whole. Files that the scene names are
     /// not copied.
     ///
-    /// Raises `SceneError` if a shape cannot be written, as a function, `OSError` if the file cannot be written.
+    /// Raises `OSError` if the file cannot be written.
     ///
     /// >>> import palpate as pp, tempfile, os
     /// >>> pp.Scene(pp.ball(0.5)).save(os.path.join(tempfile.mkdtemp(), "scene.json"))
@@ -262,8 +277,10 @@ impl PyScene {
 
     fn __eq__(&self, other: &Bound<'_, PyAny>) -> bool {
         other.cast::<Self>().is_ok_and(|other| {
-            let other = other.get();
-            other.written.to_json() == self.written.to_json() && other.folder == self.folder
+            let (other, text) = (other.get(), self.written.to_json());
+            // Where files are looked for matters to scenes that name some.
+            let same_files = other.folder == self.folder || !text.contains("\"file\"");
+            other.written.to_json() == text && same_files
         })
     }
 

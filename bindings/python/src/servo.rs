@@ -3,18 +3,17 @@
 
 //! Touch: a servo in a thread of its own, which never waits for Python, and runs on a virtual clock.
 
-use palpate::devices::Device;
 use palpate::scene::{AnyScene, BuiltScene, ServoSettings};
-use palpate::servo_loop::{Pace, Recorder, RunOptions, ThreadOptions, run};
+use palpate::servo_loop::{Ending, Pace, Recorder, RunOptions, ThreadOptions, run};
 use pyo3::exceptions::{PyRuntimeError, PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::answers::Fields;
 use crate::error::OrRaise;
-use crate::hand::simulated;
+use crate::hand::{check_points, simulated};
 use crate::interrupt::interruptible;
-use crate::mailbox::PyMailbox;
+use crate::mailbox::{Post, PyMailbox};
 use crate::pool;
 use crate::poses;
 use crate::scene::PyScene;
@@ -59,7 +58,11 @@ macro_rules! of_either {
 /// carry the contact points of the scene's tool; or such rows for each contact point, shape (points, n, D + 1). Left
 /// out, it is a tour over all bodies, of `points` contact points one behind the other, or of the scene's tool.
 /// `duration` [s] ends the servo by itself. `record` is for how long ticks are kept [s], for `trace`: left out, for the
-/// duration, but no longer than 600 s, and without a duration not at all. It runs inside of `with`.
+/// duration, but no longer than 600 s and 10 million rows, and without a duration not at all. `rate` is how many ticks a
+/// second has. It runs inside of `with`, which raises `DeviceLostError` at its end if the device was lost meanwhile.
+///
+/// Raises `UnknownNameError` if no profile has the name, `DeviceError`, `HapticsError` or `SceneError` if the hand, the
+/// tool or a body cannot be, `ValueError` if a number is out of range, `RuntimeError` if another servo has the mailbox.
 ///
 /// >>> import palpate as pp
 /// >>> with pp.Servo(pp.Scene(pp.ball(0.05)), hand=[0, 0.049, 0], duration=0.05) as servo:
@@ -88,16 +91,16 @@ impl PyServo {
         rate: f64,
     ) -> PyResult<Self> {
         let scene = PyScene::given(scene)?;
-        let own = duration.map_or(0.0, |duration| duration.min(RECORDED));
-        let record = record.unwrap_or(own);
         let asked = Asked { device, hand, points, duration, record, rate };
+        let mailbox = device.and_then(|device| device.cast::<PyMailbox>().ok());
+        let mailbox = mailbox.map(Bound::get);
         let servo = match scene.get().built() {
             AnyScene::Planar(scene) => {
-                let own = asked.mailbox(PyMailbox::planar)?;
+                let own = mailbox.map(PyMailbox::planar).transpose()?;
                 AnyServo::Planar(Staged::new(asked.ready(py, scene, own)?))
             }
             AnyScene::Spatial(scene) => {
-                let own = asked.mailbox(PyMailbox::spatial)?;
+                let own = mailbox.map(PyMailbox::spatial).transpose()?;
                 AnyServo::Spatial(Staged::new(asked.ready(py, scene, own)?))
             }
         };
@@ -110,10 +113,20 @@ impl PyServo {
         Ok(slf)
     }
 
-    #[pyo3(signature = (*_exception))]
-    fn __exit__(&self, py: Python<'_>, _exception: &Bound<'_, pyo3::types::PyTuple>) -> bool {
+    #[pyo3(signature = (*exception))]
+    fn __exit__(
+        &self,
+        py: Python<'_>,
+        exception: &Bound<'_, pyo3::types::PyTuple>,
+    ) -> PyResult<()> {
         self.end(py);
-        false
+        let is_raised = exception.iter().any(|part| !part.is_none());
+        // What the block itself raises says more.
+        let broken = of_either!(&self.servo, servo => servo.broken());
+        match broken {
+            Some(ending) if !is_raised => Err(ended_early(py, &ending)),
+            _ => Ok(()),
+        }
     }
 
     /// Ends the servo: forces go to zero, and its thread has ended when this returns.
@@ -165,6 +178,8 @@ impl PyServo {
 
     /// All events from now on, one after the other, in the thread that asks; ends with the servo.
     ///
+    /// Raises `RuntimeError` before the servo runs.
+    ///
     /// >>> import palpate as pp
     /// >>> with pp.Servo(pp.Scene(pp.ball(0.05)), hand=[0, 0.049, 0], duration=0.05) as servo:
     /// ...     [event.kind for event in servo.events()][:1]
@@ -175,6 +190,8 @@ impl PyServo {
     }
 
     /// Waits until the servo ends by itself, as by its `duration`, or until `timeout` [s] is over; whether it has ended.
+    ///
+    /// Raises `RuntimeError` before the servo runs.
     ///
     /// >>> import palpate as pp
     /// >>> with pp.Servo(pp.Scene(pp.ball(0.05)), hand=[0, 0.049, 0], duration=0.05) as servo:
@@ -189,7 +206,8 @@ impl PyServo {
 
     /// Moves bodies: a dict of their names and poses, as of `Shape.placed`.
     ///
-    /// Raises `KeyError` if no body has a name, `ValueError` if a pose has another shape.
+    /// Raises `KeyError` if a name is that of no body, `ValueError` if a pose has another shape or is not finite,
+    /// `RuntimeError` unless the servo runs.
     ///
     /// >>> import palpate as pp
     /// >>> with pp.Servo(pp.Scene({"ball": pp.ball(0.05)}), hand=[0, 0.1, 0]) as servo:
@@ -205,6 +223,8 @@ impl PyServo {
 
     /// Limits the force from the next tick on [N], below what device and safety chain allow.
     ///
+    /// Raises `HapticsError` if the limit is negative or not finite, `RuntimeError` unless the servo runs.
+    ///
     /// >>> import palpate as pp
     /// >>> with pp.Servo(pp.Scene(pp.ball(0.05)), hand=[0, 0.049, 0]) as servo:
     /// ...     servo.limit_force(0.5)
@@ -215,6 +235,8 @@ impl PyServo {
     }
 
     /// Sets all forces to zero from the next tick on, until `release`.
+    ///
+    /// Raises `RuntimeError` unless the servo runs.
     ///
     /// >>> import palpate as pp
     /// >>> with pp.Servo(pp.Scene(pp.ball(0.05)), hand=[0, 0.049, 0]) as servo:
@@ -228,6 +250,8 @@ impl PyServo {
 
     /// Lets forces rise from zero after a `stop`.
     ///
+    /// Raises `RuntimeError` unless the servo runs.
+    ///
     /// >>> import palpate as pp
     /// >>> with pp.Servo(pp.Scene(pp.ball(0.05)), hand=[0, 0.049, 0]) as servo:
     /// ...     servo.release()
@@ -237,7 +261,10 @@ impl PyServo {
         })
     }
 
-    /// What the run was like, of a servo that has ended: ticks, lateness, forces, safety, as `palpate feel --json`.
+    /// What the run was like, of a servo that has ended: why it ended, ticks, lateness, forces, safety, as
+    /// `palpate feel --json`. After a `duration` the servo ends by itself, as `wait` tells.
+    ///
+    /// Raises `RuntimeError` before the end.
     ///
     /// >>> import palpate as pp
     /// >>> with pp.Servo(pp.Scene(pp.ball(0.05)), hand=[0, 0.1, 0], duration=0.02) as servo:
@@ -247,10 +274,12 @@ impl PyServo {
     /// 20
     #[getter]
     fn report<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        of_either!(&self.servo, servo => read(py, &servo.ended()?.report))
+        of_either!(&self.servo, servo => read(py, &servo.ended(py)?.report))
     }
 
-    /// The ticks that were recorded, of a servo that has ended.
+    /// The ticks that were recorded, of a servo that has ended. Each access makes new arrays: keep them.
+    ///
+    /// Raises `RuntimeError` before the end, or if no ticks were to be kept.
     ///
     /// >>> import palpate as pp
     /// >>> with pp.Servo(pp.Scene(pp.ball(0.05)), hand=[0, 0.1, 0], duration=0.02, record=0.01) as servo:
@@ -261,7 +290,7 @@ impl PyServo {
     #[getter]
     fn trace<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         of_either!(&self.servo, servo => {
-            let ended = servo.ended()?;
+            let ended = servo.ended(py)?;
             if ended.rows.is_empty() && ended.lost == 0 {
                 let problem =
                     "no tick was recorded: tell for how long ticks are kept, by record=";
@@ -272,35 +301,42 @@ impl PyServo {
     }
 }
 
+/// The exception of a servo whose device was lost, or whose thread panicked.
+fn ended_early(py: Python<'_>, ending: &Ending) -> PyErr {
+    let Ending::DeviceLost { reason } = ending else {
+        return PyRuntimeError::new_err(format!("the servo ended early: {ending:?}"));
+    };
+    let made = || -> PyResult<PyErr> {
+        let class = py.import("palpate._errors")?.getattr("DeviceLostError")?;
+        let problem =
+            format!("the device was lost: {reason}. The servo has its report and trace");
+        Ok(PyErr::from_value(class.call1((problem,))?))
+    };
+    made().unwrap_or_else(|error| error)
+}
+
 /// What a caller asks of a servo.
 struct Asked<'a, 'py> {
     device: Option<&'a Bound<'py, PyAny>>,
     hand: Option<&'a Bound<'py, PyAny>>,
     points: usize,
     duration: Option<f64>,
-    record: f64,
+    record: Option<f64>,
     rate: f64,
 }
 
 impl Asked<'_, '_> {
-    /// The device of a mailbox, if it is one.
-    fn mailbox<const D: usize>(
-        &self,
-        take: impl FnOnce(&PyMailbox) -> PyResult<Box<dyn Device<D> + Send>>,
-    ) -> PyResult<Option<Box<dyn Device<D> + Send>>> {
-        match self.device.map(|device| device.cast::<PyMailbox>()) {
-            Some(Ok(mailbox)) => take(mailbox.get()).map(Some),
-            _ => Ok(None),
-        }
-    }
-
     /// What is made of the scene, and what it is touched with.
     fn ready<const D: usize>(
         &self,
         py: Python<'_>,
         scene: &BuiltScene<D>,
-        own: Option<Box<dyn Device<D> + Send>>,
+        mailbox: Option<&Post<D>>,
     ) -> PyResult<Ready<D>> {
+        if !(self.rate > 0.0 && self.rate.is_finite()) {
+            let problem = format!("rate must be positive and finite, got {} Hz", self.rate);
+            return Err(PyValueError::new_err(problem));
+        }
         let is_run = |duration: f64| {
             let ticks = (duration * self.rate).round();
             (1.0..=MOST_TICKS).contains(&ticks)
@@ -313,18 +349,22 @@ impl Asked<'_, '_> {
             );
             return Err(PyValueError::new_err(problem));
         }
+        if self.hand.is_none() && mailbox.is_none() {
+            // A tour takes long: its ticks are refused before.
+            check_points(self.points)?;
+            self.rows(self.points)?;
+        }
         let tour = (self.points, self.duration.unwrap_or(TOUR));
-        let device = match (own, self.device) {
+        let device = match (mailbox, self.device) {
             (Some(_), _) if self.hand.is_some() || self.points != 1 => {
                 let problem = "hand= and points= are of a simulated device: a Mailbox sets its own positions";
                 return Err(PyTypeError::new_err(problem));
             }
-            (Some(own), _) => own,
+            (Some(mailbox), _) => mailbox.take()?,
             (None, None) => simulated(scene, DEVICE, self.hand, tour, py)?,
             (None, Some(name)) => {
                 if name.is_instance_of::<PyMailbox>() {
-                    let problem =
-                        "a virtual clock has no device of its own: a Mailbox is for Servo";
+                    let problem = "feel runs on a virtual clock, so its device is simulated: give a Mailbox to Servo";
                     return Err(PyTypeError::new_err(problem));
                 }
                 let name: String = name.extract().map_err(|_| {
@@ -333,9 +373,18 @@ impl Asked<'_, '_> {
                 simulated(scene, &name, self.hand, tour, py)?
             }
         };
-        let rows = self.rows(device.points())?;
         let settings = ServoSettings::default().with_rate(self.rate);
-        let servo = scene.servo_with(device.as_ref(), settings).or_raise(py)?;
+        let made = self.rows(device.points()).and_then(|rows| {
+            Ok((rows, scene.servo_with(device.as_ref(), settings).or_raise(py)?))
+        });
+        let (rows, servo) = match (made, mailbox) {
+            (Ok(made), _) => made,
+            (Err(error), None) => return Err(error),
+            (Err(error), Some(mailbox)) => {
+                mailbox.give_back(device);
+                return Err(error);
+            }
+        };
         let mut options = ThreadOptions::default();
         if let Some(duration) = self.duration {
             options = options.with_duration(duration);
@@ -349,9 +398,11 @@ impl Asked<'_, '_> {
     /// How many rows are kept, of so many contact points.
     fn rows(&self, points: usize) -> PyResult<usize> {
         let a_second = self.rate * points as f64;
-        let rows = self.record * a_second;
+        let most = MOST_ROWS / a_second;
+        let own = self.duration.map_or(0.0, |duration| duration.min(RECORDED).min(most));
+        let given = self.record.unwrap_or(own);
+        let rows = given * a_second;
         if !(0.0..=MOST_ROWS).contains(&rows) {
-            let (most, given) = (MOST_ROWS / a_second, self.record);
             let problem = format!(
                 "ticks of {points} contact points at {} Hz are kept for 0 s to {most} s, got {given} s",
                 self.rate
@@ -364,8 +415,8 @@ impl Asked<'_, '_> {
 
 /// Feels a scene on a virtual clock, as fast as it goes: the same every time. See `Servo`; `duration` is in seconds.
 ///
-/// Raises `DeviceError` or `SceneError` if the hand or the scene cannot be, `ValueError` if more ticks are to be kept
-/// than memory holds.
+/// Raises `UnknownNameError` if no profile has the name, `DeviceError`, `HapticsError` or `SceneError` if the hand, the
+/// tool or a body cannot be, `ValueError` if a number is out of range: at most 10 million rows are kept.
 ///
 /// >>> import palpate as pp
 /// >>> felt = pp.feel(pp.ball(0.05), hand=[[0, 0, 0.06, 0], [0.1, 0, 0.045, 0]], duration=0.1)
@@ -384,7 +435,7 @@ pub(crate) fn feel<'py>(
 ) -> PyResult<Bound<'py, PyAny>> {
     let scene = PyScene::given(scene)?;
     let asked =
-        Asked { device, hand, points, duration: Some(duration), record: duration, rate };
+        Asked { device, hand, points, duration: Some(duration), record: Some(duration), rate };
     match scene.get().built() {
         AnyScene::Planar(scene) => felt(py, asked.ready(py, scene, None)?, &asked),
         AnyScene::Spatial(scene) => felt(py, asked.ready(py, scene, None)?, &asked),

@@ -10,7 +10,7 @@ use palpate::devices::Device;
 use palpate::haptics::{Event, Servo, Snapshot};
 use palpate::scene::BuiltScene;
 use palpate::servo_loop::{
-    EndedThread, Records, RunReport, ServoThread, ThreadOptions, TraceRow,
+    EndedThread, Ending, Records, RunReport, ServoThread, ThreadOptions, TraceRow,
 };
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
@@ -46,22 +46,37 @@ enum Stage<const D: usize> {
     /// A thread waits for its end.
     Ending,
     Ended(Arc<Ended<D>>, Vec<Event>),
-    /// Its thread did not start.
+    /// Its thread did not start, or panicked.
     Failed,
 }
 
 /// A servo that runs once.
 pub(crate) struct Staged<const D: usize> {
+    /// The process in which its thread is: a child of `fork` has a copy without one.
+    process: u32,
     stage: Mutex<Stage<D>>,
     /// Tells those who wait for the end.
     has_ended: Condvar,
 }
 
-const NOT_RUNNING: &str = "the servo does not run: use it in a with statement";
+/// Why a servo cannot be asked.
+fn refused(problem: &'static str) -> PyErr {
+    PyRuntimeError::new_err(problem)
+}
+
+const IS_COPY: &str = "the servo runs in the process that forked this one";
+const NOT_BEGUN: &str = "the servo has not begun: use it in a with statement";
+const HAS_ENDED: &str = "the servo has ended";
+const DID_NOT_START: &str = "the servo did not start";
 
 impl<const D: usize> Staged<D> {
     pub(crate) fn new(ready: Ready<D>) -> Self {
-        Self { stage: Mutex::new(Stage::Ready(Box::new(ready))), has_ended: Condvar::new() }
+        let stage = Mutex::new(Stage::Ready(Box::new(ready)));
+        Self { process: std::process::id(), stage, has_ended: Condvar::new() }
+    }
+
+    fn is_copy(&self) -> bool {
+        self.process != std::process::id()
     }
 
     fn locked(&self) -> MutexGuard<'_, Stage<D>> {
@@ -70,6 +85,9 @@ impl<const D: usize> Staged<D> {
 
     /// Begins to run in a thread.
     pub(crate) fn start(&self, py: Python<'_>) -> PyResult<()> {
+        if self.is_copy() {
+            return Err(refused(IS_COPY));
+        }
         let begun = {
             let mut stage = self.locked();
             match std::mem::replace(&mut *stage, Stage::Failed) {
@@ -96,14 +114,20 @@ impl<const D: usize> Staged<D> {
 
     /// Refuses a servo that does not run yet, whose end nobody should wait for.
     pub(crate) fn begun(&self) -> PyResult<()> {
+        if self.is_copy() {
+            return Err(refused(IS_COPY));
+        }
         match &*self.locked() {
-            Stage::Ready(_) => Err(PyRuntimeError::new_err(NOT_RUNNING)),
+            Stage::Ready(_) => Err(refused(NOT_BEGUN)),
             _ => Ok(()),
         }
     }
 
     /// Whether its thread has ended.
     pub(crate) fn has_ended(&self) -> bool {
+        if self.is_copy() {
+            return true;
+        }
         match &*self.locked() {
             Stage::Ready(_) | Stage::Ending => false,
             Stage::Running(own) => own.thread.has_ended(),
@@ -113,6 +137,9 @@ impl<const D: usize> Staged<D> {
 
     /// Does something with the thread that runs; `None` if none does.
     fn with_running<T>(&self, work: impl FnOnce(&mut Running<D>) -> T) -> Option<T> {
+        if self.is_copy() {
+            return None;
+        }
         match &mut *self.locked() {
             Stage::Running(own) => Some(work(own)),
             _ => None,
@@ -121,16 +148,29 @@ impl<const D: usize> Staged<D> {
 
     /// Does something with the thread that runs.
     pub(crate) fn running<T>(&self, work: impl FnOnce(&mut Running<D>) -> T) -> PyResult<T> {
-        self.with_running(work).ok_or_else(|| PyRuntimeError::new_err(NOT_RUNNING))
+        if self.is_copy() {
+            return Err(refused(IS_COPY));
+        }
+        self.with_running(work).ok_or_else(|| match &*self.locked() {
+            Stage::Ready(_) => refused(NOT_BEGUN),
+            Stage::Failed => refused(DID_NOT_START),
+            _ => refused(HAS_ENDED),
+        })
     }
 
     /// The newest state of a servo that runs.
     pub(crate) fn latest(&self) -> Option<Snapshot<D>> {
-        self.with_running(|own| own.thread.control().latest().cloned()).flatten()
+        let newest = |own: &mut Running<D>| {
+            (!own.thread.has_ended()).then(|| own.thread.control().latest().cloned())
+        };
+        self.with_running(newest).flatten().flatten()
     }
 
     /// The events since the last call.
     pub(crate) fn take_events(&self) -> Vec<Event> {
+        if self.is_copy() {
+            return Vec::new();
+        }
         match &mut *self.locked() {
             Stage::Running(own) => {
                 std::iter::from_fn(|| own.thread.control().next_event()).collect()
@@ -142,6 +182,9 @@ impl<const D: usize> Staged<D> {
 
     /// Ends its thread, and waits for that without the interpreter's lock.
     pub(crate) fn end(&self, py: Python<'_>) {
+        if self.is_copy() {
+            return;
+        }
         py.detach(|| {
             let mut stage = self.locked();
             while matches!(&*stage, Stage::Ending) {
@@ -153,18 +196,67 @@ impl<const D: usize> Staged<D> {
             let taken = std::mem::replace(&mut *stage, Stage::Ending);
             drop(stage);
             if let Stage::Running(own) = taken {
-                *self.locked() = own.ended();
-                self.has_ended.notify_all();
+                let told = Told(self);
+                let ended = own.ended();
+                *self.locked() = ended;
+                drop(told);
             }
         });
     }
 
     /// What has run.
-    pub(crate) fn ended(&self) -> PyResult<Arc<Ended<D>>> {
+    pub(crate) fn ended(&self, py: Python<'_>) -> PyResult<Arc<Ended<D>>> {
+        if self.is_copy() {
+            return Err(refused(IS_COPY));
+        }
+        // A servo that ended by itself may be asked before its block ends.
+        if self.has_ended() {
+            self.end(py);
+        }
         match &*self.locked() {
             Stage::Ended(ended, _) => Ok(Arc::clone(ended)),
-            _ => Err(PyRuntimeError::new_err("the servo has not ended")),
+            Stage::Ready(_) => Err(refused(NOT_BEGUN)),
+            Stage::Failed => Err(refused(DID_NOT_START)),
+            _ => Err(refused("the servo has not ended")),
         }
+    }
+
+    /// Why it ended, if nobody wanted that.
+    pub(crate) fn broken(&self) -> Option<Ending> {
+        if self.is_copy() {
+            return None;
+        }
+        match &*self.locked() {
+            Stage::Ended(ended, _) => match &ended.report.ending {
+                Ending::Finished | Ending::Interrupted => None,
+                ending => Some(ending.clone()),
+            },
+            _ => None,
+        }
+    }
+}
+
+impl<const D: usize> Drop for Staged<D> {
+    fn drop(&mut self) {
+        if self.is_copy() {
+            // Its thread, which would be waited for, is not in this process.
+            let stage = self.stage.get_mut().unwrap_or_else(PoisonError::into_inner);
+            std::mem::forget(std::mem::replace(stage, Stage::Failed));
+        }
+    }
+}
+
+/// Tells those who wait that a servo has ended, also if its thread panicked.
+struct Told<'a, const D: usize>(&'a Staged<D>);
+
+impl<const D: usize> Drop for Told<'_, D> {
+    fn drop(&mut self) {
+        let mut stage = self.0.locked();
+        if matches!(&*stage, Stage::Ending) {
+            *stage = Stage::Failed;
+        }
+        drop(stage);
+        self.0.has_ended.notify_all();
     }
 }
 

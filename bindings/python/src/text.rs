@@ -10,6 +10,9 @@ use palpate::field::{Node, Pose, Rotation, Shape};
 use palpate::grid::{Grid, GridOptions, Resolution};
 use palpate::mesh::Solid;
 
+use crate::function::Function;
+use crate::grid::MOST_NODES;
+
 /// The expression that makes a shape.
 pub(crate) fn of<const D: usize>(shape: &Shape<D>) -> String {
     match shape.node() {
@@ -63,7 +66,10 @@ pub(crate) fn of<const D: usize>(shape: &Shape<D>) -> String {
             match (opaque.custom::<Solid<D, D>>(), opaque.custom::<Grid<D>>()) {
                 (Some(solid), _) => format!("<solid of {} faces>", solid.elements().len()),
                 (None, Some(grid)) => baked(grid),
-                (None, None) => format!("<{}>", opaque.type_name()),
+                (None, None) => match opaque.custom::<Function<D>>() {
+                    Some(function) => format!("<function {}>", function.name()),
+                    None => format!("<{}>", opaque.type_name()),
+                },
             }
         }
         other => format!("<{other:?}>"),
@@ -103,7 +109,8 @@ fn baked<const D: usize>(grid: &Grid<D>) -> String {
     let Some((of, options)) = grid.source() else {
         return format!("<grid with cells of {} m>", grid.lattice().cell);
     };
-    let own = GridOptions::with_resolution(options.resolution);
+    let mut own = GridOptions::with_resolution(options.resolution);
+    own.most_nodes = MOST_NODES;
     let mut given = vec![match options.resolution {
         Resolution::Tolerance(tolerance) => format!("tolerance={tolerance:?}"),
         Resolution::Cell(cell) => format!("cell={cell:?}"),
@@ -116,6 +123,9 @@ fn baked<const D: usize>(grid: &Grid<D>) -> String {
     }
     if let Some(band) = options.band {
         given.push(format!("band={band:?}"));
+    }
+    if options.most_nodes != own.most_nodes {
+        given.push(format!("most_nodes={}", options.most_nodes));
     }
     format!("{}.baked({})", self::of(of), given.join(", "))
 }

@@ -13,6 +13,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::answers::{Fields, contact, stop};
+use crate::call::Call;
 use crate::call::detached;
 use crate::error::OrRaise;
 use crate::guarded::Guarded;
@@ -273,7 +274,8 @@ fn stepped<'py, const D: usize>(
     pool: &Pool,
 ) -> PyResult<Vec<Bound<'py, PyAny>>> {
     let (found, margin): (Vec<Neighbours<D>>, f64) = named.world.ask(py, |world| {
-        let found = pool.install(|| world.step().into_iter().cloned().collect());
+        // Bodies of a scene are no functions of Python, whose exceptions a call would have to raise.
+        let found = pool.run(&Call::default(), || world.step().into_iter().cloned().collect());
         (found, world.settings().manifold.margin)
     })?;
     let told = |near: &Neighbours<D>| {

@@ -16,7 +16,7 @@ CALLS = {
     "feel": "pp.feel(pp.Scene(many), hand=[0, 0.09, 0], duration=1000.0)",
     "mesh": "many.mesh(cell=0.002)",
     "tolerance": "many.mesh(tolerance=1e-6)",
-    "baked": "many.baked(cell=0.01)",
+    "baked": "many.baked(cell=0.01, most_nodes=2**26)",
     "mass": "many.mass(tolerance=1e-12, cells=1_000_000_000)",
     "contacts": "pp.mesh_contacts(many, pp.ball(0.5).mesh(cell=0.01), gap=0.5, tolerance=1e-12, budget=2_000_000_000)",
     "function": "pp.separation(slow, many, tolerance=1e-9)",

@@ -168,3 +168,27 @@ def test_many_threads_of_python_share_a_shape() -> None:
     for thread in threads:
         thread.join()
     assert len(found) == 160 and all(found)
+
+
+def test_booleans_are_no_coordinates() -> None:
+    # Those of a list were read as numbers, those of an array refused.
+    for points in ([True, False, False], np.array([True, False, False])):
+        with pytest.raises(TypeError, match="real numbers"):
+            pp.ball(0.5).distance(points)
+
+
+def test_what_an_array_raises_itself_is_raised() -> None:
+    # An array that computes itself was stopped by Ctrl-C, and a TypeError told.
+    class Stopped:
+        def __array__(self, dtype: object = None, copy: object = None) -> np.ndarray:
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        pp.ball(0.5).distance(Stopped())
+
+
+def test_one_point_takes_no_threads_that_are_none() -> None:
+    with pytest.raises(ValueError, match="threads must be 0"):
+        pp.ball(0.5).distance([0, 0, 0], threads=-5)
+    with pytest.raises(ValueError, match="^out must have the shape"):
+        pp.ball(0.5).gradient(np.zeros((4, 3)), out=np.zeros((3, 3)))

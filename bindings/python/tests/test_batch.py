@@ -125,8 +125,8 @@ def test_a_run_with_anything_different_is_refused(tmp_path: Path) -> None:
         asked: dict[str, Any] = {"a": PLATE, "b": PEG, "poses": poses(0, 100)} | other
         with pytest.raises(ValueError, match=words):
             pp.batch.overlaps(folder, **asked)
-    (folder / "manifest.json").unlink()
-    with pytest.raises(ValueError, match="holds parts without manifest.json"):
+    (folder / "_manifest.json").unlink()
+    with pytest.raises(ValueError, match="holds parts without _manifest.json"):
         pp.batch.overlaps(folder, PLATE, PEG, poses(0, 100))
 
 
@@ -172,7 +172,7 @@ def test_other_questions(tmp_path: Path) -> None:
     run = pp.batch.distances(tmp_path / "d", PLATE, points, chunk=1234)
     assert np.array_equal(run.table().column("distance").to_numpy(), PLATE.distance(points))
     empty = pp.batch.distances(tmp_path / "e", PLATE, np.zeros((0, 3)))
-    assert empty.count == 0 and empty.parts() == []
+    assert empty.count == 0 and len(empty.parts()) == 1
 
 
 def test_what_is_no_batch_is_refused(tmp_path: Path) -> None:
@@ -183,6 +183,9 @@ def test_what_is_no_batch_is_refused(tmp_path: Path) -> None:
         ({"points": poses, "count": 10, "chunk": 0}, ValueError, "chunk must be at least 1"),
         ({"points": poses, "count": 10, "workers": -1}, ValueError, "workers must be at least 1"),
         ({"points": poses, "count": 10, "chunk": 1.5}, TypeError, "float"),
+        ({"points": poses, "count": -5}, ValueError, "count must be at least 0"),
+        ({"points": np.zeros((4, 2, 3))}, ValueError, "1-dimensional"),
+        ({"points": np.ma.masked_greater(np.zeros((4, 3)), 1)}, TypeError, "masked array"),
         ({"points": lambda start, stop: np.zeros((1, 3)), "count": 10}, ValueError, "the source gave 1"),
     ]:
         with pytest.raises(error, match=words):
@@ -200,13 +203,14 @@ def test_what_is_refused_leaves_no_run(tmp_path: Path) -> None:
         tmp_path / "run", ball, ball, poses, chunk=5, tolerance=np.float32(1e-3), budget=np.int64(1000)
     )
     assert good.resumed == 0 and good.table().num_rows == 10
-    (tmp_path / "run" / "manifest.json").write_text("{")
+    (tmp_path / "run" / "_manifest.json").write_text("{")
     with pytest.raises(ValueError, match="manifest.json is damaged"):
         pp.batch.separations(tmp_path / "run", ball, ball, poses)
 
 
 def test_no_rows_are_a_table_without_rows(tmp_path: Path) -> None:
-    assert pp.batch.distances(tmp_path / "run", pp.ball(0.5), np.zeros((0, 3))).table().num_rows == 0
+    table = pp.batch.distances(tmp_path / "run", pp.ball(0.5), np.zeros((0, 3))).table()
+    assert table.num_rows == 0 and table.column_names == ["distance"]
 
 
 def test_an_error_says_that_the_same_call_goes_on(tmp_path: Path) -> None:
@@ -216,3 +220,47 @@ def test_an_error_says_that_the_same_call_goes_on(tmp_path: Path) -> None:
     with pytest.raises(KeyboardInterrupt) as stopped:
         pp.batch.distances(tmp_path / "run", pp.ball(0.5), np.zeros((10, 3)), chunk=5, workers=1, progress=stop)
     assert "keeps 5 of 10 rows" in stopped.value.__notes__[0]
+
+
+def test_a_folder_is_a_table_of_pandas(tmp_path: Path) -> None:
+    # The manifest, which is no parquet file, was read as one.
+    import pandas
+
+    pp.batch.distances(tmp_path / "run", PLATE, poses(0, 100), chunk=30)
+    assert len(pandas.read_parquet(tmp_path / "run")) == 100
+
+
+def test_a_part_that_is_damaged_within_is_told(tmp_path: Path) -> None:
+    run = pp.batch.distances(tmp_path / "run", PLATE, poses(0, 1000), chunk=500)
+    part = run.parts()[1]
+    whole = bytearray(part.read_bytes())
+    whole[100] ^= 0xFF
+    part.write_bytes(whole)
+    with pytest.raises(OSError, match="is damaged: delete it, and make the same call again"):
+        run.table()
+    part.unlink()
+    assert pp.batch.distances(tmp_path / "run", PLATE, poses(0, 1000)).resumed == 1
+
+
+@pytest.mark.parametrize("chunk", ["-5", "0", "true", "10.7", '"10"'])
+def test_a_manifest_with_another_chunk_is_damaged(tmp_path: Path, chunk: str) -> None:
+    # One of -5 had no parts, and was done.
+    pp.batch.distances(tmp_path / "run", PLATE, poses(0, 100), chunk=30)
+    manifest = tmp_path / "run" / "_manifest.json"
+    manifest.write_text(manifest.read_text().replace('"chunk": 30', f'"chunk": {chunk}'))
+    with pytest.raises(ValueError, match="is damaged"):
+        pp.batch.distances(tmp_path / "run", PLATE, poses(0, 100))
+
+
+def test_what_another_worker_renames_meanwhile_is_left(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    # Its file was gone between the list of the folder and the look at it.
+    (tmp_path / ".part-1").write_text("")
+    real = Path.glob
+
+    def glob(self: Path, pattern: str) -> Any:
+        found = list(real(self, pattern))
+        (tmp_path / ".part-1").unlink(missing_ok=True)
+        return found
+
+    monkeypatch.setattr(Path, "glob", glob)
+    assert pp.batch.distances(tmp_path, PLATE, poses(0, 100), chunk=30).count == 100

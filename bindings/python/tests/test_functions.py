@@ -5,6 +5,8 @@
 from __future__ import annotations
 
 import pickle
+import subprocess
+import sys
 import time
 from concurrent.futures import ThreadPoolExecutor
 from typing import Any
@@ -36,7 +38,7 @@ def test_a_function_is_a_shape() -> None:
 
 
 def test_a_function_is_opaque() -> None:
-    assert "Function" in repr(BALL) and BALL == BALL and BALL != pp.from_function(norm, lipschitz=1.0)
+    assert repr(BALL) == "<function norm>" and BALL == BALL and BALL != pp.from_function(norm, lipschitz=1.0)
     for refused in [lambda: pickle.dumps(BALL), lambda: BALL.to_json(), lambda: pp.Scene(BALL)]:
         with pytest.raises(pp.Error):
             refused()
@@ -147,3 +149,70 @@ def test_a_function_that_asks_its_own_track_is_refused() -> None:
     tracks.append(pp.Track(pp.from_function(values, lipschitz=1.0, bounds=[[-1, -1, -1], [1, 1, 1]]), pp.ball(0.1)))
     with pytest.raises(RuntimeError, match="asks the object that asks the function"):
         tracks[0].separation()
+
+
+def test_no_call_has_what_functions_of_another_raise() -> None:
+    # Threads of a pool that calls shared filled the bounds of a good call with NaN, or gave it the exception.
+    bounds = [[-0.6] * 3, [0.6] * 3]
+    good = pp.from_function(norm, lipschitz=1.0, bounds=bounds)
+    bad = pp.from_function(lambda points: 1 / 0, lipschitz=1.0, bounds=bounds)
+    origins = np.random.default_rng(0).normal(size=(16, 3)) * 0.1 + [0, 0, 3]
+    expected = pp.cast_rays(good, origins, [0, 0, -1]).upper
+
+    def ask(number: int) -> bool:
+        if number % 2:
+            with pytest.raises(ZeroDivisionError):
+                pp.cast_rays(bad, origins, [0, 0, -1], threads=2)
+            return True
+        return np.array_equal(pp.cast_rays(good, origins, [0, 0, -1], threads=2).upper, expected)
+
+    with ThreadPoolExecutor(4) as pool:
+        assert all(pool.map(ask, range(60)))
+
+
+def test_a_function_that_answers_infinity_is_refused() -> None:
+    endless = pp.from_function(lambda p: np.full(len(p), np.inf), lipschitz=1.0, bounds=[[-1] * 3, [1] * 3])
+    with pytest.raises(ValueError, match="the function answers inf at"):
+        pp.separation(endless, pp.ball(0.5))
+
+
+@pytest.mark.parametrize("ask", ["mesh(cell=0.1)", "mass()", "baked(cell=0.1)", "render(width=16, height=16)"])
+def test_a_function_that_asks_itself_in_other_threads_is_stopped(ask: str) -> None:
+    # Each of these works in a thread of its own, where nobody counted how deep it is.
+    own: list[pp.Shape] = []
+
+    def values(points: np.ndarray) -> np.ndarray:
+        eval(f"own[0].{ask}", {"own": own})
+        return points[:, 0]
+
+    own.append(pp.from_function(values, lipschitz=1.0, bounds=[[-0.6] * 3, [0.6] * 3]))
+    with pytest.raises(RecursionError):
+        eval(f"own[0].{ask}", {"own": own})
+
+
+def test_two_tracks_that_wait_for_each_other_are_stopped() -> None:
+    # Each waited for the other without looking at Ctrl-C.
+    program = """
+import _thread, threading, numpy as np, palpate as pp
+tracks, both = [None, None], threading.Barrier(2)
+def shape(i):
+    asked = []
+    def values(p):
+        if not asked:
+            asked.append(True)
+            both.wait()
+            tracks[1 - i].separation()
+        return np.linalg.norm(p, axis=1) - 0.5
+    return pp.from_function(values, lipschitz=1, bounds=[[-0.6] * 3, [0.6] * 3])
+for i in range(2):
+    tracks[i] = pp.Track(shape(i), pp.ball(0.5))
+threading.Thread(target=lambda: tracks[1].separation(b=[2, 0, 0]), daemon=True).start()
+threading.Timer(0.5, _thread.interrupt_main).start()
+try:
+    tracks[0].separation(b=[2, 0, 0])
+except KeyboardInterrupt:
+    import os
+    os._exit(7)
+"""
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, timeout=60, check=False)
+    assert done.returncode == 7, done.stderr

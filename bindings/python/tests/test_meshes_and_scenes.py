@@ -209,7 +209,7 @@ def test_a_scene_finds_the_files_beside_it(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("make", "error", "words"),
     [
-        (lambda: pp.Scene({"a": BOX, "b": pp.ball(1, dimension=2)}), ValueError, "got 1 bodies of 2D and 1 of 3D"),
+        (lambda: pp.Scene({"a": BOX, "b": pp.ball(1, dimension=2)}), ValueError, "got 1 in 2D and 1 in 3D"),
         (lambda: pp.Scene(3), TypeError, "a dict of names and shapes"),
         (lambda: pp.Scene.load("no/such.json"), pp.Error, "no/such.json"),
         (lambda: pp.Scene.from_json('{ "palpate": 1, "dimension": 3, "bodys": [] }'), pp.SceneError, "bodys"),
@@ -273,7 +273,8 @@ def test_the_surface_in_a_volume() -> None:
     assert np.array_equal(below.vertices, above.vertices) and np.array_equal(below.faces, above.faces)
     for wrong, error in [
         (lambda: pp.Mesh.of_volume(samples, 5000, spacing=1), pp.GridError),
-        (lambda: pp.Mesh.of_volume(samples, 500, spacing=0), pp.GridError),
+        (lambda: pp.Mesh.of_volume(samples, 500, spacing=0), ValueError),
+        (lambda: pp.Mesh.of_volume(samples, 500, spacing=-1), ValueError),
         (lambda: pp.Mesh.of_volume(np.full((3, 3, 3), np.nan), 500, spacing=1), pp.GridError),
         (lambda: pp.Mesh.of_volume(samples[:1], 500, spacing=1), pp.GridError),
         (lambda: pp.Mesh.of_volume(samples[0], 500, spacing=1), ValueError),
@@ -293,3 +294,38 @@ def test_a_file_that_is_missing_is_a_missing_file(tmp_path: Path) -> None:
     with pytest.raises(FileNotFoundError) as unsaved:
         pp.Scene(pp.ball(0.1)).save(file)
     assert unsaved.value.filename == str(file)
+
+
+def test_a_scene_is_read_by_a_bare_name_and_equals_its_source(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    # The folder of a bare name is an empty path, which was refused; and folders were compared.
+    monkeypatch.chdir(tmp_path)
+    scene = pp.Scene(pp.ball(0.05))
+    scene.save("scene.json")
+    assert pp.Scene.load("scene.json") == scene
+    assert pp.Scene.from_json(scene.to_json(), folder="") == scene
+
+
+def test_what_is_replaced_keeps_its_mode_and_its_link(tmp_path: Path) -> None:
+    mesh = pp.ball(0.5).mesh(cell=0.2)
+    file, link = tmp_path / "it.stl", tmp_path / "link.stl"
+    mesh.save(file)
+    file.chmod(0o600)
+    link.symlink_to(file)
+    size = file.stat().st_size
+    pp.ball(0.5).mesh(cell=0.1).save(link)
+    assert link.is_symlink() and file.stat().st_size > size and file.stat().st_mode & 0o777 == 0o600
+
+
+def test_a_grid_of_many_nodes_is_pickled() -> None:
+    # Grids could have twice as many nodes as those that scenes bake.
+    with pytest.raises(pp.GridError, match="more than the 33554432 allowed"):
+        pp.ball(0.5).baked(cell=0.003)
+    small = pp.ball(0.5).baked(cell=0.1, most_nodes=10_000)
+    assert "most_nodes=10000" in repr(small) and eval(repr(small), vars(pp)) == small
+    with pytest.raises(ValueError, match="most_nodes must be at most"):
+        pp.ball(0.5).baked(cell=1e-6, most_nodes=2**63)
+
+
+def test_samples_of_another_shape_are_told_as_they_are() -> None:
+    with pytest.raises(ValueError, match=r"got \(2, 3, 4, 5\)"):
+        pp.from_samples(np.ones((2, 3, 4, 5)), cell=1)

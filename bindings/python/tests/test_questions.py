@@ -241,3 +241,20 @@ def test_what_cannot_be_asked_is_refused(ask: Any, error: type, words: str) -> N
     with pytest.raises(error) as caught:
         ask()
     assert words in str(caught.value)
+
+
+def test_one_of_many_raises_what_it_raises_alone() -> None:
+    # It was a ValueError that knew neither parameter nor value.
+    ball = pp.ball(0.5)
+    with pytest.raises(pp.QueryError, match=r"^rays\[1\]: ") as caught:
+        pp.cast_rays(ball, [[0, 2, 0]], [[0, -1, 0], [0, 0, 0]])
+    with pytest.raises(pp.QueryError) as alone:
+        pp.cast_ray(ball, [0, 2, 0], [0, 0, 0])
+    assert caught.value.parameter == alone.value.parameter
+    with pytest.raises(ValueError, match=r'^poses\["a"\] must have the shape'):
+        pp.World({"a": ball}).set_poses({"a": [1, 2]})
+
+
+def test_answers_without_an_array_on_one_side_differ() -> None:
+    # Comparing None with an array raised.
+    assert pp.half_space([0, 1, 0], 0).promise != pp.ball(0.5).promise

@@ -118,7 +118,7 @@ def test_operators_are_their_methods_and_functions() -> None:
         (lambda: pp.ball(0.5, dimension=4), ValueError, "dimension must be 2 or 3, got 4"),
         (lambda: pp.cuboid([1, 2, 3, 4]), ValueError, "3 in space, got the shape (4,)"),
         (lambda: pp.cuboid(3), ValueError, "3 in space, got the shape ()"),
-        (lambda: pp.pie(radius=1), TypeError, "one of angle= [rad] and angle_degrees= must be given"),
+        (lambda: pp.pie(radius=1), TypeError, "exactly one of angle= [rad] and angle_degrees= must be given"),
         (lambda: BALL | DISC, ValueError, "both shapes must have the same dimension, got 3D and 2D"),
         (lambda: BALL | 3, TypeError, "unsupported operand"),
         (lambda: pp.union(), ValueError, "at least one shape is needed"),
@@ -175,3 +175,9 @@ def test_python_and_the_program_have_the_same_bits(tmp_path: Path) -> None:
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
     assert json.loads(done.stdout)["distance_m"] == shape.distance(at)
+
+
+def test_shapes_that_are_equal_have_equal_hashes() -> None:
+    # That of the text has the sign of zero.
+    one, two = pp.ball(0.5).translated([-0.0, 1, 0]), pp.ball(0.5).translated([0.0, 1, 0])
+    assert one == two and hash(one) == hash(two) and len({one, two}) == 1

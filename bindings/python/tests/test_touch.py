@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import gc
 import json
+import os
 import subprocess
 import sys
 import threading
@@ -153,7 +154,7 @@ def test_the_last_events_outlive_the_thread() -> None:
         servo.end()
         assert [event.kind for event in servo.events()][0] == "touch"
         assert servo.take_events() == []
-    with pytest.raises(RuntimeError, match="does not run"):
+    with pytest.raises(RuntimeError, match="the servo has ended"):
         servo.stop()
 
 
@@ -253,7 +254,12 @@ def test_what_cannot_be_touched_is_refused() -> None:
         (lambda: pp.Servo(SCENE, device=pp.Mailbox(), hand=[0, 0, 0]), TypeError, "a Mailbox sets its own positions"),
         (lambda: pp.Mailbox(points=2**60), ValueError, "points must be 1 to 1000"),
         (lambda: pp.feel(SCENE, points=10**12), ValueError, "points must be 1 to 1000"),
-        (lambda: pp.Servo(SCENE, rate=-5.0), pp.Error, "rate"),
+        (lambda: pp.Servo(SCENE, rate=-5.0), ValueError, "rate must be positive and finite, got -5 Hz"),
+        (lambda: pp.feel(SCENE, rate=float("nan"), duration=1.0), ValueError, "rate must be positive and finite"),
+        (lambda: pp.feel(SCENE, points=1000, duration=9000.0), ValueError, "ticks of 1000 contact points"),
+        (lambda: pp.Mailbox().set([[0, np.nan, 0]]), ValueError, "positions[0, 1] must be finite, got NaN m"),
+        (lambda: pp.Scene({"a": 5}), TypeError, 'the body "a" must be a Shape, got a int'),
+        (lambda: pp.Scene({"a": pp.ball(1)}, materials="rubber"), TypeError, "a dict of the names of bodies"),
         (lambda: pp.feel(SCENE, duration=-1.0), ValueError, "duration must be 0.0005 s to 1000000 s at 1000 Hz, got -1 s"),
         (lambda: pp.Servo(pp.Scene(pp.half_space([0, 1, 0], 0.0))), ValueError, "no body has bounds"),
     ]:
@@ -265,7 +271,7 @@ def test_what_cannot_be_touched_is_refused() -> None:
 def test_what_does_not_run_is_not_waited_for() -> None:
     servo = pp.Servo(pp.ball(0.05), hand=[0, 0.049, 0], duration=0.05)
     for ask in (servo.events, servo.wait):
-        with pytest.raises(RuntimeError, match="does not run: use it in a with statement"):
+        with pytest.raises(RuntimeError, match="has not begun: use it in a with statement"):
             ask()
     with servo:
         assert servo.wait() and servo.has_ended
@@ -273,5 +279,69 @@ def test_what_does_not_run_is_not_waited_for() -> None:
 
 
 def test_a_virtual_clock_refuses_a_mailbox_in_words() -> None:
-    with pytest.raises(TypeError, match="a Mailbox is for Servo"):
+    with pytest.raises(TypeError, match="give a Mailbox to Servo"):
         pp.feel(pp.ball(0.05), device=pp.Mailbox(), duration=0.01)
+
+
+def test_a_servo_that_is_refused_leaves_the_mailbox() -> None:
+    # It took the mailbox before it looked at the other settings.
+    mailbox = pp.Mailbox()
+    for wrong in ({"rate": 0.0}, {"record": -1.0}, {"duration": -1.0}, {"hand": [0, 0, 0]}):
+        with pytest.raises((TypeError, ValueError)):
+            pp.Servo(SCENE, device=mailbox, **wrong)
+    pp.Servo(SCENE, device=mailbox)
+
+
+def test_a_device_that_is_lost_is_told() -> None:
+    # The block ended as if nothing had happened.
+    mailbox = pp.Mailbox()
+    with pytest.raises(pp.DeviceLostError, match="the device was lost"), pp.Servo(SCENE, device=mailbox, record=1.0) as servo:
+        mailbox.set([[0, 0.06, 0]])
+        mailbox.lose()
+        servo.wait()
+    assert servo.report["ending"]["kind"] == "device_lost"
+    # What the block raises says more.
+    mailbox = pp.Mailbox()
+    with pytest.raises(ZeroDivisionError), pp.Servo(SCENE, device=mailbox) as servo:
+        mailbox.lose()
+        servo.wait()
+        1 / 0
+
+
+def test_a_servo_that_ended_by_itself_has_its_report_in_the_block() -> None:
+    with pp.Servo(SCENE, hand=[0, 0.06, 0], duration=0.02) as servo:
+        with pytest.raises(RuntimeError, match="has not ended"):
+            _ = servo.report
+        servo.wait()
+        assert servo.report["ticks"] == 20 and len(servo.trace) == 20 and servo.latest() is None
+    # Left out, `record` is what fits: 10 million rows.
+    pp.Servo(SCENE, points=20, duration=600.0)
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="there is no fork on this system")
+def test_a_child_has_no_servo() -> None:
+    # It panicked, or waited for a thread that it does not have.
+    program = """
+import os, gc, palpate as pp
+with pp.Servo(pp.ball(0.05), hand=[0, 0.049, 0], duration=0.5) as servo:
+    child = os.fork()
+    if child == 0:
+        said = []
+        for ask in (servo.latest, servo.wait, servo.stop, lambda: servo.report):
+            try:
+                said.append(ask())
+            except RuntimeError as error:
+                said.append(str(error))
+        assert said == [None] + 3 * ["the servo runs in the process that forked this one"], said
+        assert servo.has_ended and servo.take_events() == []
+    else:
+        assert os.waitpid(child, 0)[1] == 0
+        servo.wait()
+if child:
+    assert servo.report["ticks"] == 500
+else:
+    del servo
+    gc.collect()
+"""
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, timeout=60, check=False)
+    assert done.returncode == 0, done.stderr

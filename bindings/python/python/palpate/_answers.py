@@ -38,7 +38,10 @@ class Answer:
 def _equal(one: object, two: object) -> bool:
     if isinstance(one, np.ndarray) and isinstance(two, np.ndarray):
         return bool(np.array_equal(one, two, equal_nan=one.dtype.kind == "f"))
-    return bool(one == two)
+    if isinstance(one, np.ndarray) or isinstance(two, np.ndarray):
+        return False
+    # NaN stands for what is not known.
+    return bool(one == two or (one != one and two != two))
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -235,15 +238,17 @@ class Manifold(Answer):
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class RayHit(Answer):
-    """The first surface along a ray, by :func:`cast_ray`.
+    """The first place of a ray at which the field is at most the tolerance, by :func:`cast_ray`.
+
+    A ray that passes the surface at less than the tolerance is one that meets it.
 
     Fields:
-        lower: The way to the surface is at least this [m].
-        upper: The way to the surface is at most this [m]; the length of a ray that is free, infinite if the search ended
-            before either was known.
+        lower: Up to this way [m] the field is positive, proven.
+        upper: At this way [m] the field is at most the tolerance; the length of a ray that is free, infinite if the search
+            ended before either was known.
         stop: Why the search ended.
         evaluations: How often the field was evaluated.
-        point: Where the ray meets the surface [m], shape (D,); None if it does not.
+        point: The place at ``upper`` [m], shape (D,); None if the ray is free.
         normal: The outward unit normal there, shape (D,); None where the gradient vanishes.
     """
 
@@ -257,16 +262,17 @@ class RayHit(Answer):
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class RayHits(Answer):
-    """The first surfaces along n rays, by :func:`cast_rays`.
+    """The first places of n rays at which the field is at most the tolerance, by :func:`cast_rays`; see :class:`RayHit`.
 
     Fields:
-        lower: The ways to the surface are at least these [m], shape (n,).
-        upper: The ways to the surface are at most these [m], shape (n,); the length of a ray that is free, infinite if a
-            search ended before either was known.
+        lower: Up to these ways [m] the field is positive, proven, shape (n,).
+        upper: At these ways [m] the field is at most the tolerance, shape (n,); the length of a ray that is free, infinite
+            if a search ended before either was known.
         stops: Why each search ended, as places in ``STOPS``, shape (n,).
         evaluations: How often the field was evaluated, shape (n,).
-        hits: Whether each ray meets the surface: 1 yes, 0 no, proven, -1 undecided, shape (n,).
-        points: Where the rays meet the surface [m], shape (n, D); NaN where they do not.
+        hits: 1 where the field is at most the tolerance somewhere along the ray, 0 where it is positive all along, proven,
+            -1 where neither is known, shape (n,).
+        points: The places at ``upper`` [m], shape (n, D); NaN of rays that are free.
         normals: The outward unit normals there, shape (n, D); NaN where the gradient vanishes.
     """
 

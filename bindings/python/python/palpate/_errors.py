@@ -85,7 +85,19 @@ class DeviceError(Error, ValueError):
 
 
 class DeviceLostError(Error, RuntimeError):
-    """A device no longer answers."""
+    """A device was lost while a servo ran: its driver set no positions for 0.1 s, or said so.
+
+    >>> import palpate as pp
+    >>> mailbox = pp.Mailbox()
+    >>> try:
+    ...     with pp.Servo(pp.ball(0.05), device=mailbox) as servo:
+    ...         mailbox.lose()
+    ...         servo.wait()
+    ... except pp.DeviceLostError as error:
+    ...     print(error)
+    True
+    the device was lost: ...
+    """
 
 
 class PlotError(Error, ValueError):
@@ -93,11 +105,11 @@ class PlotError(Error, ValueError):
 
 
 class UnknownNameError(Error, LookupError):
-    """Nothing has this name; the message lists what has."""
+    """No device, figure or preset has this name; the message lists those that are there."""
 
 
 class FileError(Error, OSError):
-    """A file cannot be read or written."""
+    """A file cannot be read."""
 
 
 class MissingFileError(FileError, FileNotFoundError):
@@ -108,5 +120,5 @@ class MissingFileError(FileError, FileNotFoundError):
     ...     pp.Scene.load("no such file.json")
     ... except FileNotFoundError as error:
     ...     print(error)
-    cannot read no such file.json: No such file or directory (os error 2)
+    cannot read no such file.json: ...
     """

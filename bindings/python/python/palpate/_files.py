@@ -6,15 +6,18 @@ from __future__ import annotations
 
 import os
 import secrets
+import shutil
 from pathlib import Path
 from typing import IO
 
 
 def replace(file: str | os.PathLike[str], content: bytes) -> None:
-    """Writes a file beside the one that it then replaces."""
-    place = Path(file)
+    """Writes a file beside the one that it then replaces, of which it keeps the mode; a link stays one."""
+    place = Path(os.path.realpath(file))
     name = _beside(place, content)
     try:
+        if place.exists():
+            shutil.copymode(place, name)
         os.replace(name, place)
     except BaseException:
         os.unlink(name)
@@ -29,7 +32,7 @@ def claim(file: Path, content: bytes) -> bool:
     except FileExistsError:
         return False
     except OSError:
-        # Some file systems have no links. A file that is cut off there is told to be damaged.
+        # Some file systems have no links. A file that is cut off there is reported as damaged.
         return _created(file, content)
     finally:
         os.unlink(name)

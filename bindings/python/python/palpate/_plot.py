@@ -9,9 +9,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from palpate._felt import Felt, Trace
+
 if TYPE_CHECKING:
-    from palpate._answers import Manifold
-    from palpate._felt import Trace
+    from palpate._answers import Manifold, MeshContacts
     from palpate._palpate import Shape
 
 #: The axes of a plane: to the right and up, and the one along which it is placed.
@@ -30,9 +31,13 @@ UNBOUNDED = 1.0
 MOST_VALUES = 1 << 30
 
 
-def _axes(plane: str) -> tuple[int, int, int]:
+def _axes(plane: str, dimension: int, at: float = 0.0) -> tuple[int, int, int]:
     if plane not in AXES:
         raise ValueError(f"plane must be xy, xz or yz, got {plane!r}")
+    if dimension == 2 and (plane != "xy" or at != 0.0):
+        raise ValueError("in 2D there are no planes: leave plane= and at= out")
+    if not np.isfinite(at):
+        raise ValueError(f"at must be finite, got {at} m")
     return AXES[plane]
 
 
@@ -46,7 +51,7 @@ def plot(shape: Shape, plane: str, at: float, ax: Any) -> Any:
     """Draws a cut of a shape with isolines; gives the axes."""
     import matplotlib.pyplot as plt
 
-    right, up, along = _axes(plane) if shape.dimension == 3 else (0, 1, 0)
+    right, up, along = _axes(plane, shape.dimension, at)
     low, high = _box(shape)
     margin = MARGIN * max((high - low)[[right, up]].max(), 1e-12)
     step = ((high - low)[[right, up]].max() + 2 * margin) / SAMPLES
@@ -70,10 +75,12 @@ def _label(ax: Any, right: int, up: int) -> None:
     ax.set(xlabel=f"{names[right]} [m]", ylabel=f"{names[up]} [m]", aspect="equal")
 
 
-def plot_contacts(manifold: Manifold, *, plane: str = "xy", ax: Any = None) -> Any:
+def plot_contacts(manifold: Manifold | MeshContacts, *, plane: str = "xy", ax: Any = None) -> Any:
     """Draws contacts with matplotlib: their points, and normals from the first body to the second; gives the axes.
 
     All contacts are drawn as seen along the third axis, however far they are from a cut.
+
+    Raises ``ValueError`` if ``plane`` is none of xy, xz and yz, or not xy in 2D.
 
     >>> import matplotlib; matplotlib.use("agg")
     >>> import palpate as pp
@@ -82,11 +89,11 @@ def plot_contacts(manifold: Manifold, *, plane: str = "xy", ax: Any = None) -> A
     """
     import matplotlib.pyplot as plt
 
-    right, up, _ = _axes(plane)
+    points, normals = manifold.points_a, manifold.normals
+    right, up, _ = _axes(plane, points.shape[1])
     if ax is None:
         _, ax = plt.subplots()
     _label(ax, right, up)
-    points, normals = manifold.points_a, manifold.normals
     ax.plot(points[:, right], points[:, up], "o", color="#d1495b", markersize=5)
     if len(points):
         arrows = (points[:, right], points[:, up], normals[:, right], normals[:, up])
@@ -94,8 +101,10 @@ def plot_contacts(manifold: Manifold, *, plane: str = "xy", ax: Any = None) -> A
     return ax
 
 
-def plot_trace(trace: Trace, *, axes: Any = None) -> Any:
+def plot_trace(trace: Trace | Felt, *, axes: Any = None) -> Any:
     """Draws what was felt with matplotlib, over time: the size of the force, and how deep the device was; gives two axes.
+
+    ``trace`` is that of a servo, or what :func:`palpate.feel` gives.
 
     >>> import matplotlib; matplotlib.use("agg")
     >>> import palpate as pp
@@ -105,6 +114,8 @@ def plot_trace(trace: Trace, *, axes: Any = None) -> Any:
     """
     import matplotlib.pyplot as plt
 
+    if isinstance(trace, Felt):
+        trace = trace.trace
     if axes is None:
         _, axes = plt.subplots(2, sharex=True, layout="constrained")
     depth = np.linalg.norm(trace.device - trace.proxy, axis=1)

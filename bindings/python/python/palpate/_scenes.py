@@ -16,6 +16,8 @@ def furnished(text: str, materials: Mapping[str, Any], parts: Mapping[str, Any])
     """The text of a scene with materials of its bodies, and further keys."""
     scene = json.loads(text)
     bodies = {body["name"]: body for body in scene["bodies"]}
+    if not isinstance(materials, Mapping):
+        raise TypeError(f"materials must be a dict of the names of bodies, got {materials!r}")
     for name, material in materials.items():
         if name not in bodies:
             raise KeyError(f"no body is called {name!r}: there are {', '.join(bodies)}")

@@ -103,8 +103,8 @@ __all__ = [
 def _angle(name: str, radians: float | None, degrees: float | None) -> float:
     """The angle [rad], of which one of two units is given."""
     if (radians is None) == (degrees is None):
-        raise TypeError(f"one of {name}= [rad] and {name}_degrees= must be given")
-    return math.radians(degrees) if degrees is not None else float(radians or 0.0)
+        raise TypeError(f"exactly one of {name}= [rad] and {name}_degrees= must be given")
+    return math.radians(degrees) if degrees is not None else float(radians)  # type: ignore[arg-type]
 
 
 def _columns(points: ArrayLike) -> int:
@@ -134,6 +134,8 @@ def arc(
         angle_degrees: the same [degrees]; one of the two is given.
         radius: the radius of the tube, zero for a curve without inside [m].
 
+    Raises `ShapeError` if a number is out of range, `TypeError` unless one of an angle in radians and in degrees is given.
+
     >>> import palpate as pp
     >>> pp.arc(ring_radius=0.7, angle=4.0, radius=0.12)
     arc(ring_radius=0.7, angle=4.0, radius=0.12)
@@ -153,6 +155,8 @@ def ball(
     Args:
         radius: the radius [m].
         dimension: 2 in the plane, 3 in space.
+
+    Raises `ShapeError` if a number is out of range.
 
     >>> import palpate as pp
     >>> pp.ball(radius=0.7)
@@ -175,6 +179,8 @@ def bobbly_cross(
         dip: how far the sides are drawn in from the line between two tips [m].
         rounding: the radius of the tips, zero for sharp ones [m].
 
+    Raises `ShapeError` if a number is out of range.
+
     >>> import palpate as pp
     >>> pp.bobbly_cross(width=1.9, dip=0.2, rounding=0.15)
     bobbly_cross(width=1.9, dip=0.2, rounding=0.15)
@@ -191,6 +197,8 @@ def box(
 
     Args:
         size: the edge lengths [m].
+
+    Raises `ShapeError` if a number is out of range.
 
     >>> import palpate as pp
     >>> pp.box(size=[1.2, 0.8, 0.6])
@@ -212,6 +220,8 @@ def capped_cone(
         bottom_radius: the radius at the bottom [m].
         top_radius: the radius at the top [m].
         height: the full height [m].
+
+    Raises `ShapeError` if a number is out of range.
 
     >>> import palpate as pp
     >>> pp.capped_cone(bottom_radius=0.6, top_radius=0.25, height=0.9)
@@ -235,6 +245,8 @@ def capped_cone_between(
         to: the middle of the other end [m].
         from_radius: the radius at one end [m].
         to_radius: the radius at the other end [m].
+
+    Raises `ShapeError` if a number is out of range.
 
     >>> import palpate as pp
     >>> pp.capped_cone_between(from_=[-0.5, -0.4, 0.2], to=[0.6, 0.5, -0.1], from_radius=0.45, to_radius=0.15)
@@ -260,6 +272,8 @@ def capped_torus(
         angle: how much of the circle, about the +z axis [rad].
         angle_degrees: the same [degrees]; one of the two is given.
 
+    Raises `ShapeError` if a number is out of range, `TypeError` unless one of an angle in radians and in degrees is given.
+
     >>> import palpate as pp
     >>> pp.capped_torus(ring_radius=0.7, radius=0.15, angle=4.0)
     capped_torus(ring_radius=0.7, radius=0.15, angle=4.0)
@@ -282,6 +296,8 @@ def capsule(
         height: the length from tip to tip [m].
         dimension: 2 in the plane, 3 in space.
 
+    Raises `ShapeError` if a number is out of range.
+
     >>> import palpate as pp
     >>> pp.capsule(radius=0.3, height=1.4)
     capsule(radius=0.3, height=1.4)
@@ -301,6 +317,8 @@ def chamfered_rectangle(
         size: the edge lengths before cutting [m].
         chamfer: what a cut takes from each edge [m].
 
+    Raises `ShapeError` if a number is out of range.
+
     >>> import palpate as pp
     >>> pp.chamfered_rectangle(size=[1.6, 1.1], chamfer=0.35)
     chamfered_rectangle(size=[1.6, 1.1], chamfer=0.35)
@@ -317,6 +335,8 @@ def circle(
 
     Args:
         radius: the radius [m].
+
+    Raises `ShapeError` if a number is out of range.
 
     >>> import palpate as pp
     >>> pp.circle(radius=0.7)
@@ -342,6 +362,8 @@ def circle_wave(
         angle_degrees: the same [degrees]; one of the two is given.
         radius: the radius of the tube, zero for a curve without inside [m].
 
+    Raises `ShapeError` if a number is out of range, `TypeError` unless one of an angle in radians and in degrees is given.
+
     >>> import palpate as pp
     >>> pp.circle_wave(ring_radius=0.31, angle=4.0, radius=0.08)
     circle_wave(ring_radius=0.31, angle=4.0, radius=0.08)
@@ -360,6 +382,8 @@ def cone(
     Args:
         radius: the radius of the base [m].
         height: the full height [m].
+
+    Raises `ShapeError` if a number is out of range.
 
     >>> import palpate as pp
     >>> pp.cone(radius=0.6, height=1.0)
@@ -380,6 +404,8 @@ def cone_approximation(
         radius: the radius of the base [m].
         height: the full height [m].
 
+    Raises `ShapeError` if a number is out of range.
+
     >>> import palpate as pp
     >>> pp.cone_approximation(radius=0.6, height=1.0)
     cone_approximation(radius=0.6, height=1.0)
@@ -396,6 +422,8 @@ def cool_s(
 
     Args:
         height: the full height [m].
+
+    Raises `ShapeError` if a number is out of range.
 
     >>> import palpate as pp
     >>> pp.cool_s(height=1.8)
@@ -416,6 +444,8 @@ def cross(
         length: the full length of a bar [m].
         width: the full width of a bar [m].
 
+    Raises `ShapeError` if a number is out of range.
+
     >>> import palpate as pp
     >>> pp.cross(length=1.7, width=0.5)
     cross(length=1.7, width=0.5)
@@ -432,6 +462,8 @@ def cube(
 
     Args:
         size: the length of every edge [m].
+
+    Raises `ShapeError` if a number is out of range.
 
     >>> import palpate as pp
     >>> pp.cube(size=1.0)
@@ -450,6 +482,8 @@ def cube_approximation(
     Args:
         side: the edge length [m].
 
+    Raises `ShapeError` if a number is out of range.
+
     >>> import palpate as pp
     >>> pp.cube_approximation(side=0.9)
     cube_approximation(side=0.9)
@@ -466,6 +500,8 @@ def cuboid(
 
     Args:
         size: the edge lengths [m].
+
+    Raises `ShapeError` if a number is out of range.
 
     >>> import palpate as pp
     >>> pp.cuboid(size=[1.2, 0.8, 0.6])
@@ -486,6 +522,8 @@ def cuboid_frame(
         size: the edge lengths [m].
         thickness: the thickness of the bars, less than half the shortest edge [m].
 
+    Raises `ShapeError` if a number is out of range.
+
     >>> import palpate as pp
     >>> pp.cuboid_frame(size=[1.4, 1.1, 0.8], thickness=0.2)
     cuboid_frame(size=[1.4, 1.1, 0.8], thickness=0.2)
@@ -505,6 +543,8 @@ def cut_ball(
         radius: the radius of the ball [m].
         cut_height: where it is cut, between minus and plus the radius [m].
 
+    Raises `ShapeError` if a number is out of range.
+
     >>> import palpate as pp
     >>> pp.cut_ball(radius=0.8, cut_height=-0.3)
     cut_ball(radius=0.8, cut_height=-0.3)
@@ -523,6 +563,8 @@ def cut_disk(
     Args:
         radius: the radius of the disc [m].
         cut_height: how far above the centre the cut is [m].
+
+    Raises `ShapeError` if a number is out of range.
 
     >>> import palpate as pp
     >>> pp.cut_disk(radius=0.9, cut_height=-0.3)
@@ -545,6 +587,8 @@ def cut_hollow_sphere(
         cut_height: where it is cut, between minus and plus the radius [m].
         thickness: the thickness of the wall, zero for a sheet without inside [m].
 
+    Raises `ShapeError` if a number is out of range.
+
     >>> import palpate as pp
     >>> pp.cut_hollow_sphere(radius=0.8, cut_height=0.2, thickness=0.15)
     cut_hollow_sphere(radius=0.8, cut_height=0.2, thickness=0.15)
@@ -564,6 +608,8 @@ def cylinder(
         radius: the radius [m].
         height: the full height [m].
 
+    Raises `ShapeError` if a number is out of range.
+
     >>> import palpate as pp
     >>> pp.cylinder(radius=0.4, height=1.0)
     cylinder(radius=0.4, height=1.0)
@@ -582,6 +628,8 @@ def cylinder_approximation(
     Args:
         radius: the radius [m].
         height: the full height [m].
+
+    Raises `ShapeError` if a number is out of range.
 
     >>> import palpate as pp
     >>> pp.cylinder_approximation(radius=0.4, height=1.0)
@@ -604,6 +652,8 @@ def cylinder_between(
         to: the middle of the other end [m].
         radius: the radius [m].
 
+    Raises `ShapeError` if a number is out of range.
+
     >>> import palpate as pp
     >>> pp.cylinder_between(from_=[-0.5, -0.4, 0.2], to=[0.6, 0.3, -0.1], radius=0.35)
     cylinder_between(from_=[-0.5, -0.4, 0.2], to=[0.6, 0.3, -0.1], radius=0.35)
@@ -625,6 +675,8 @@ def death_star(
         cut_radius: the radius of the bite [m].
         distance: from centre to centre, so that the spheres cross [m].
 
+    Raises `ShapeError` if a number is out of range.
+
     >>> import palpate as pp
     >>> pp.death_star(radius=0.9, cut_radius=0.6, distance=1.1)
     death_star(radius=0.9, cut_radius=0.6, distance=1.1)
@@ -644,6 +696,8 @@ def egg(
         bottom_radius: the radius of the bottom, half the width [m].
         top_radius: the radius of the top, at most that of the bottom [m].
 
+    Raises `ShapeError` if a number is out of range.
+
     >>> import palpate as pp
     >>> pp.egg(bottom_radius=0.7, top_radius=0.25)
     egg(bottom_radius=0.7, top_radius=0.25)
@@ -661,6 +715,8 @@ def ellipse(
     Args:
         radii: the radii along the axes [m].
 
+    Raises `ShapeError` if a number is out of range.
+
     >>> import palpate as pp
     >>> pp.ellipse(radii=[0.9, 0.4])
     ellipse(radii=[0.9, 0.4])
@@ -677,6 +733,8 @@ def ellipsoid(
 
     Args:
         radii: the radii along the axes [m].
+
+    Raises `ShapeError` if a number is out of range.
 
     >>> import palpate as pp
     >>> pp.ellipsoid(radii=[0.9, 0.6, 0.3])
@@ -697,6 +755,8 @@ def half_space(
         normal: the direction out of the half-space, of any length.
         offset: where the plane is along the normal [m].
 
+    Raises `ShapeError` if a number is out of range.
+
     >>> import palpate as pp
     >>> pp.half_space(normal=[0.3, 1.0, -0.2], offset=0.1)
     half_space(normal=[0.3, 1.0, -0.2], offset=0.1)
@@ -713,6 +773,8 @@ def heart(
 
     Args:
         height: the full height [m].
+
+    Raises `ShapeError` if a number is out of range.
 
     >>> import palpate as pp
     >>> pp.heart(height=1.7)
@@ -732,6 +794,8 @@ def hexagonal_prism(
     Args:
         radius: from the axis to a corner of the hexagon [m].
         height: the full height [m].
+
+    Raises `ShapeError` if a number is out of range.
 
     >>> import palpate as pp
     >>> pp.hexagonal_prism(radius=0.6, height=0.5)
@@ -759,6 +823,8 @@ def horseshoe(
         length: the length of each straight leg [m].
         width: the full width of the band [m].
 
+    Raises `ShapeError` if a number is out of range, `TypeError` unless one of an angle in radians and in degrees is given.
+
     >>> import palpate as pp
     >>> pp.horseshoe(ring_radius=0.7, angle=3.7, length=0.55, width=0.3)
     horseshoe(ring_radius=0.7, angle=3.7, length=0.55, width=0.3)
@@ -775,6 +841,8 @@ def hyperbola(
 
     Args:
         radii: the semi-axes along x and y [m].
+
+    Raises `ShapeError` if a number is out of range.
 
     >>> import palpate as pp
     >>> pp.hyperbola(radii=[0.45, 0.31])
@@ -796,6 +864,8 @@ def infinite_cone(
         angle: the opening from side to side, less than half a turn [rad].
         angle_degrees: the same [degrees]; one of the two is given.
 
+    Raises `ShapeError` if a number is out of range, `TypeError` unless one of an angle in radians and in degrees is given.
+
     >>> import palpate as pp
     >>> pp.infinite_cone(angle=0.9)
     infinite_cone(angle=0.9)
@@ -812,6 +882,8 @@ def infinite_cylinder(
 
     Args:
         radius: the radius [m].
+
+    Raises `ShapeError` if a number is out of range.
 
     >>> import palpate as pp
     >>> pp.infinite_cylinder(radius=0.3)
@@ -834,6 +906,8 @@ def isosceles_trapezoid(
         top_width: the full width at the top [m].
         height: the full height [m].
 
+    Raises `ShapeError` if a number is out of range.
+
     >>> import palpate as pp
     >>> pp.isosceles_trapezoid(bottom_width=1.6, top_width=0.7, height=0.9)
     isosceles_trapezoid(bottom_width=1.6, top_width=0.7, height=0.9)
@@ -852,6 +926,8 @@ def isosceles_triangle(
     Args:
         base: the length of the base [m].
         height: the full height [m].
+
+    Raises `ShapeError` if a number is out of range.
 
     >>> import palpate as pp
     >>> pp.isosceles_triangle(base=1.1, height=1.3)
@@ -874,6 +950,8 @@ def link(
         radius: the radius of the tube [m].
         length: the length of the straight sides [m].
 
+    Raises `ShapeError` if a number is out of range.
+
     >>> import palpate as pp
     >>> pp.link(ring_radius=0.4, radius=0.15, length=0.8)
     link(ring_radius=0.4, radius=0.15, length=0.8)
@@ -895,6 +973,8 @@ def moon(
         cut_radius: the radius of the disc that is taken off [m].
         distance: how far above the disc's centre the other's is [m].
 
+    Raises `ShapeError` if a number is out of range.
+
     >>> import palpate as pp
     >>> pp.moon(radius=0.9, cut_radius=0.7, distance=0.45)
     moon(radius=0.9, cut_radius=0.7, distance=0.45)
@@ -911,6 +991,8 @@ def octahedron(
 
     Args:
         radius: from the centre to a corner [m].
+
+    Raises `ShapeError` if a number is out of range.
 
     >>> import palpate as pp
     >>> pp.octahedron(radius=0.8)
@@ -933,6 +1015,8 @@ def oriented_rectangle(
         to: the middle of the other end [m].
         width: the full width across [m].
 
+    Raises `ShapeError` if a number is out of range.
+
     >>> import palpate as pp
     >>> pp.oriented_rectangle(from_=[-0.7, -0.5], to=[0.6, 0.4], width=0.5)
     oriented_rectangle(from_=[-0.7, -0.5], to=[0.6, 0.4], width=0.5)
@@ -954,6 +1038,8 @@ def oriented_vesica(
         to: the other tip [m].
         width: the full width across, at most the distance of the tips [m].
 
+    Raises `ShapeError` if a number is out of range.
+
     >>> import palpate as pp
     >>> pp.oriented_vesica(from_=[-0.7, -0.4], to=[0.6, 0.5], width=0.6)
     oriented_vesica(from_=[-0.7, -0.4], to=[0.6, 0.5], width=0.6)
@@ -970,6 +1056,8 @@ def parabola(
 
     Args:
         focal_length: from the vertex to the focus [m].
+
+    Raises `ShapeError` if a number is out of range.
 
     >>> import palpate as pp
     >>> pp.parabola(focal_length=0.2)
@@ -989,6 +1077,8 @@ def parabola_segment(
     Args:
         width: the length of the chord [m].
         height: the full height [m].
+
+    Raises `ShapeError` if a number is out of range.
 
     >>> import palpate as pp
     >>> pp.parabola_segment(width=1.3, height=1.7)
@@ -1010,6 +1100,8 @@ def parallelogram(
         width: the length of the top and of the bottom [m].
         height: the full height [m].
         skew: how much further right the top is than the bottom [m].
+
+    Raises `ShapeError` if a number is out of range.
 
     >>> import palpate as pp
     >>> pp.parallelogram(width=1.1, height=0.9, skew=0.5)
@@ -1033,6 +1125,8 @@ def pie(
         angle: how much of the disc, about the +y axis [rad].
         angle_degrees: the same [degrees]; one of the two is given.
 
+    Raises `ShapeError` if a number is out of range, `TypeError` unless one of an angle in radians and in degrees is given.
+
     >>> import palpate as pp
     >>> pp.pie(radius=0.9, angle=1.9)
     pie(radius=0.9, angle=1.9)
@@ -1049,6 +1143,8 @@ def polygon(
 
     Args:
         rings: lists of at least 3 points, each closed by itself [m].
+
+    Raises `ShapeError` if a number is out of range.
 
     >>> import palpate as pp
     >>> pp.polygon(rings=[[[-0.8, -0.5], [0.7, -0.6], [0.9, 0.2], [0.2, 0.1], [-0.3, 0.8]], [[-0.4, -0.3], [0.1, -0.4], [-0.2, 0.2]]])
@@ -1072,6 +1168,8 @@ def power_ball(
         exponent: the power that the norm adds up, 4, 6 or 8.
         dimension: 2 in the plane, 3 in space.
 
+    Raises `ShapeError` if a number is out of range.
+
     >>> import palpate as pp
     >>> pp.power_ball(radius=0.8, exponent=4)
     power_ball(radius=0.8, exponent=4)
@@ -1092,6 +1190,8 @@ def power_cuboid(
         size: the edge lengths [m].
         rounding: the radius of the edges along the axes [m].
         exponent: the power that the norm adds up, 4, 6 or 8.
+
+    Raises `ShapeError` if a number is out of range.
 
     >>> import palpate as pp
     >>> pp.power_cuboid(size=[1.4, 1.1, 0.9], rounding=0.4, exponent=6)
@@ -1116,6 +1216,8 @@ def power_torus(
         ring_exponent: the power that the ring's norm adds up, 2, 4, 6 or 8.
         tube_exponent: the power that the tube's norm adds up, 2, 4, 6 or 8.
 
+    Raises `ShapeError` if a number is out of range.
+
     >>> import palpate as pp
     >>> pp.power_torus(ring_radius=0.6, radius=0.25, ring_exponent=4, tube_exponent=8)
     power_torus(ring_radius=0.6, radius=0.25, ring_exponent=4, tube_exponent=8)
@@ -1134,6 +1236,8 @@ def pyramid(
     Args:
         side: the edge of the base [m].
         height: the full height [m].
+
+    Raises `ShapeError` if a number is out of range.
 
     >>> import palpate as pp
     >>> pp.pyramid(side=1.0, height=0.9)
@@ -1154,6 +1258,8 @@ def pyramid_approximation(
         side: the edge of the base [m].
         height: the full height [m].
 
+    Raises `ShapeError` if a number is out of range.
+
     >>> import palpate as pp
     >>> pp.pyramid_approximation(side=1.0, height=0.9)
     pyramid_approximation(side=1.0, height=0.9)
@@ -1172,6 +1278,8 @@ def quad_sheet(
     Args:
         points: the four corners, in their order around it, in one plane [m].
         radius: the radius, zero for a sheet without inside [m].
+
+    Raises `ShapeError` if a number is out of range.
 
     >>> import palpate as pp
     >>> pp.quad_sheet(points=[[-0.7, -0.5, -0.25], [0.8, -0.4, -0.2], [0.6, 0.6, 0.3], [-0.5, 0.4, 0.2]], radius=0.15)
@@ -1196,6 +1304,8 @@ def quadratic_bezier(
         to: the other end [m].
         radius: the radius, zero for a curve without inside [m].
 
+    Raises `ShapeError` if a number is out of range.
+
     >>> import palpate as pp
     >>> pp.quadratic_bezier(from_=[-0.8, -0.6], control=[0.5, 1.1], to=[0.9, -0.4], radius=0.12)
     quadratic_bezier(from_=[-0.8, -0.6], control=[0.5, 1.1], to=[0.9, -0.4], radius=0.12)
@@ -1213,6 +1323,8 @@ def quadratic_circle(
     Args:
         radius: from the centre to where it meets the axes [m].
 
+    Raises `ShapeError` if a number is out of range.
+
     >>> import palpate as pp
     >>> pp.quadratic_circle(radius=0.8)
     quadratic_circle(radius=0.8)
@@ -1229,6 +1341,8 @@ def rectangle(
 
     Args:
         size: the edge lengths [m].
+
+    Raises `ShapeError` if a number is out of range.
 
     >>> import palpate as pp
     >>> pp.rectangle(size=[1.2, 0.8])
@@ -1248,6 +1362,8 @@ def regular_polygon(
     Args:
         sides: how many sides, 3 to 256.
         radius: from the centre to a corner [m].
+
+    Raises `ShapeError` if a number is out of range.
 
     >>> import palpate as pp
     >>> pp.regular_polygon(sides=5, radius=0.8)
@@ -1270,6 +1386,8 @@ def regular_star(
         outer_radius: from the centre to a tip [m].
         inner_radius: from the centre to an inner corner [m].
 
+    Raises `ShapeError` if a number is out of range.
+
     >>> import palpate as pp
     >>> pp.regular_star(branches=7, outer_radius=0.9, inner_radius=0.5)
     regular_star(branches=7, outer_radius=0.9, inner_radius=0.5)
@@ -1286,6 +1404,8 @@ def rhombus(
 
     Args:
         size: the full diagonals along x and y [m].
+
+    Raises `ShapeError` if a number is out of range.
 
     >>> import palpate as pp
     >>> pp.rhombus(size=[1.8, 1.1])
@@ -1306,6 +1426,8 @@ def rhombus_prism(
         size: the diagonal along x, the height along y and the diagonal along z, before rounding [m].
         rounding: the radius of the edges [m].
 
+    Raises `ShapeError` if a number is out of range.
+
     >>> import palpate as pp
     >>> pp.rhombus_prism(size=[1.6, 0.6, 1.0], rounding=0.08)
     rhombus_prism(size=[1.6, 0.6, 1.0], rounding=0.08)
@@ -1324,6 +1446,8 @@ def ring(
     Args:
         inner_radius: the radius of the hole [m].
         outer_radius: the radius of the outer circle [m].
+
+    Raises `ShapeError` if a number is out of range.
 
     >>> import palpate as pp
     >>> pp.ring(inner_radius=0.4, outer_radius=0.8)
@@ -1349,6 +1473,8 @@ def ring_sector(
         angle: how much of the ring, about the +y axis [rad].
         angle_degrees: the same [degrees]; one of the two is given.
 
+    Raises `ShapeError` if a number is out of range, `TypeError` unless one of an angle in radians and in degrees is given.
+
     >>> import palpate as pp
     >>> pp.ring_sector(inner_radius=0.5, outer_radius=0.9, angle=4.2)
     ring_sector(inner_radius=0.5, outer_radius=0.9, angle=4.2)
@@ -1369,6 +1495,8 @@ def round_cone(
         bottom_radius: the radius of the lower ball [m].
         top_radius: the radius of the upper ball [m].
         height: from centre to centre, more than the radii differ [m].
+
+    Raises `ShapeError` if a number is out of range.
 
     >>> import palpate as pp
     >>> pp.round_cone(bottom_radius=0.45, top_radius=0.2, height=0.8)
@@ -1393,6 +1521,8 @@ def round_cone_between(
         from_radius: the radius of one ball [m].
         to_radius: the radius of the other ball [m].
 
+    Raises `ShapeError` if a number is out of range.
+
     >>> import palpate as pp
     >>> pp.round_cone_between(from_=[-0.4, -0.3, 0.2], to=[0.5, 0.4, -0.1], from_radius=0.4, to_radius=0.2)
     round_cone_between(from_=[-0.4, -0.3, 0.2], to=[0.5, 0.4, -0.1], from_radius=0.4, to_radius=0.2)
@@ -1412,6 +1542,8 @@ def rounded_cross(
         size: from tip to tip along x and y [m].
         arc_radius: the radius of the arcs [m].
 
+    Raises `ShapeError` if a number is out of range.
+
     >>> import palpate as pp
     >>> pp.rounded_cross(size=[1.9, 1.5], arc_radius=1.1)
     rounded_cross(size=[1.9, 1.5], arc_radius=1.1)
@@ -1430,6 +1562,8 @@ def rounded_cuboid(
     Args:
         size: the edge lengths [m].
         rounding: the radius of the edges [m].
+
+    Raises `ShapeError` if a number is out of range.
 
     >>> import palpate as pp
     >>> pp.rounded_cuboid(size=[1.2, 0.8, 0.6], rounding=0.15)
@@ -1451,6 +1585,8 @@ def rounded_cylinder(
         radius: the radius [m].
         height: the full height [m].
         rounding: the radius of the rims [m].
+
+    Raises `ShapeError` if a number is out of range.
 
     >>> import palpate as pp
     >>> pp.rounded_cylinder(radius=0.4, height=1.0, rounding=0.1)
@@ -1477,6 +1613,8 @@ def rounded_rectangle(
         bottom_right_radius: the radius at the bottom right [m].
         bottom_left_radius: the radius at the bottom left [m].
 
+    Raises `ShapeError` if a number is out of range.
+
     >>> import palpate as pp
     >>> pp.rounded_rectangle(size=[1.6, 1.0], top_left_radius=0.6, top_right_radius=0.2, bottom_right_radius=0.0, bottom_left_radius=0.35)
     rounded_rectangle(size=[1.6, 1.0], top_left_radius=0.6, top_right_radius=0.2, bottom_right_radius=0.0, bottom_left_radius=0.35)
@@ -1495,6 +1633,8 @@ def rounded_x(
     Args:
         size: the full width and height [m].
         radius: half the width of a stroke [m].
+
+    Raises `ShapeError` if a number is out of range.
 
     >>> import palpate as pp
     >>> pp.rounded_x(size=1.7, radius=0.22)
@@ -1521,6 +1661,8 @@ def screw_thread(
         starts: the number of ridges beside each other, at most 1000.
         profile: the width of a crest, the width of a root, and the depth [m].
 
+    Raises `ShapeError` if a number is out of range.
+
     >>> import palpate as pp
     >>> pp.screw_thread(radius=0.7, height=1.7, pitch=0.5, starts=2, profile=[0.1, 0.17, 0.15])
     screw_thread(radius=0.7, height=1.7, pitch=0.5, starts=2, profile=[0.1, 0.17, 0.15])
@@ -1541,6 +1683,8 @@ def segment(
         from_: one end [m].
         to: the other end [m].
         radius: the radius, zero for a curve without inside [m].
+
+    Raises `ShapeError` if a number is out of range.
 
     >>> import palpate as pp
     >>> pp.segment(from_=[-0.4, -0.3, 0.2], to=[0.5, 0.3, -0.1], radius=0.2)
@@ -1564,6 +1708,8 @@ def solid_angle(
         angle: the opening from side to side, less than a full turn [rad].
         angle_degrees: the same [degrees]; one of the two is given.
 
+    Raises `ShapeError` if a number is out of range, `TypeError` unless one of an angle in radians and in degrees is given.
+
     >>> import palpate as pp
     >>> pp.solid_angle(radius=0.9, angle=1.2)
     solid_angle(radius=0.9, angle=1.2)
@@ -1581,6 +1727,8 @@ def sphere(
     Args:
         radius: the radius [m].
 
+    Raises `ShapeError` if a number is out of range.
+
     >>> import palpate as pp
     >>> pp.sphere(radius=0.7)
     ball(radius=0.7)
@@ -1597,6 +1745,8 @@ def square(
 
     Args:
         size: the length of every edge [m].
+
+    Raises `ShapeError` if a number is out of range.
 
     >>> import palpate as pp
     >>> pp.square(size=1.0)
@@ -1619,6 +1769,8 @@ def stairs(
         step_height: the height of a step [m].
         steps: how many steps, 1 to 256.
 
+    Raises `ShapeError` if a number is out of range.
+
     >>> import palpate as pp
     >>> pp.stairs(step_width=0.42, step_height=0.3, steps=4)
     stairs(step_width=0.42, step_height=0.3, steps=4)
@@ -1635,6 +1787,8 @@ def tetrahedron(
 
     Args:
         points: the four corners [m].
+
+    Raises `ShapeError` if a number is out of range.
 
     >>> import palpate as pp
     >>> pp.tetrahedron(points=[[-0.6, -0.4, -0.3], [0.7, -0.3, -0.4], [0.1, -0.2, 0.6], [0.0, 0.7, 0.1]])
@@ -1655,6 +1809,8 @@ def torus(
         ring_radius: the radius of the circle [m].
         radius: the radius of the tube [m].
 
+    Raises `ShapeError` if a number is out of range.
+
     >>> import palpate as pp
     >>> pp.torus(ring_radius=0.6, radius=0.2)
     torus(ring_radius=0.6, radius=0.2)
@@ -1671,6 +1827,8 @@ def triangle(
 
     Args:
         points: the three corners [m].
+
+    Raises `ShapeError` if a number is out of range.
 
     >>> import palpate as pp
     >>> pp.triangle(points=[[-0.6, -0.4], [0.7, -0.3], [0.1, 0.6]])
@@ -1691,6 +1849,8 @@ def triangle_sheet(
         points: the three corners [m].
         radius: the radius, zero for a sheet without inside [m].
 
+    Raises `ShapeError` if a number is out of range.
+
     >>> import palpate as pp
     >>> pp.triangle_sheet(points=[[-0.8, -0.5, 0.3], [0.7, -0.4, -0.2], [0.1, 0.8, 0.1]], radius=0.15)
     triangle_sheet(points=[[-0.8, -0.5, 0.3], [0.7, -0.4, -0.2], [0.1, 0.8, 0.1]], radius=0.15)
@@ -1710,6 +1870,8 @@ def triangular_prism(
         side: the edge of the triangle [m].
         height: the full height [m].
 
+    Raises `ShapeError` if a number is out of range.
+
     >>> import palpate as pp
     >>> pp.triangular_prism(side=1.0, height=0.6)
     triangular_prism(side=1.0, height=0.6)
@@ -1728,6 +1890,8 @@ def tunnel(
     Args:
         width: the full width [m].
         height: the full height, the half disc included [m].
+
+    Raises `ShapeError` if a number is out of range.
 
     >>> import palpate as pp
     >>> pp.tunnel(width=1.1, height=1.5)
@@ -1750,6 +1914,8 @@ def uneven_capsule(
         top_radius: the radius of the upper disc [m].
         height: between the centres of the discs [m].
 
+    Raises `ShapeError` if a number is out of range.
+
     >>> import palpate as pp
     >>> pp.uneven_capsule(bottom_radius=0.5, top_radius=0.25, height=0.8)
     uneven_capsule(bottom_radius=0.5, top_radius=0.25, height=0.8)
@@ -1768,6 +1934,8 @@ def vesica(
     Args:
         width: the full width [m].
         height: from tip to tip, at least the width [m].
+
+    Raises `ShapeError` if a number is out of range.
 
     >>> import palpate as pp
     >>> pp.vesica(width=0.9, height=1.7)
@@ -1789,6 +1957,8 @@ def vesica_segment(
         from_: one tip [m].
         to: the other tip [m].
         width: the full width in the middle, at most the distance of the tips [m].
+
+    Raises `ShapeError` if a number is out of range.
 
     >>> import palpate as pp
     >>> pp.vesica_segment(from_=[-0.7, -0.5, 0.2], to=[0.8, 0.6, -0.1], width=0.7)

@@ -16,6 +16,7 @@ any ``concurrent.futures.Executor``: threads by default, ``client.get_executor()
 
 from __future__ import annotations
 
+import contextlib
 import hashlib
 import json
 import math
@@ -27,10 +28,10 @@ from dataclasses import dataclass
 from functools import lru_cache
 from os import PathLike, cpu_count
 from pathlib import Path
-from typing import Any, Literal, TypeAlias
+from typing import Any, TypeAlias
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from palpate._files import claim, replace
 
@@ -43,13 +44,13 @@ def __dir__() -> list[str]:
 
 #: Poses or points: an array, the name of a ``.npy`` file that workers can read, or a function of the first number and
 #: the one after the last that gives their rows, the same ones each time.
-Source: TypeAlias = "NDArray[Any] | str | PathLike[str] | Callable[[int, int], NDArray[Any]]"
+Source: TypeAlias = "ArrayLike | str | PathLike[str] | Callable[[int, int], NDArray[Any]]"
 
 #: How long a chunk is to take [s].
 SECONDS = 1.0
 
-#: How many rows the pilot takes to find that out.
-PILOT = 1000
+#: So many rows the pilot takes at most to find that out; it takes no more after so long [s].
+PILOT, PILOT_SECONDS = 1000, 0.2
 
 #: A chunk has no more rows: those of a quarter of a second of the cheapest shapes, some 100 MB in all.
 MOST_ROWS = 4_000_000
@@ -59,6 +60,10 @@ OLD = 3600.0
 
 #: Chunks that wait at each worker, so that none is idle.
 AHEAD = 2
+
+#: What a run is, in its folder.
+# Readers of folders of parquet files leave out names that begin so.
+MANIFEST = "_manifest.json"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -71,7 +76,8 @@ class Run:
         chunk: How many rows a chunk has.
         resumed: How many chunks were there before this call.
         seconds: The time that workers spent on the chunks of this call [s].
-        undecided: How many poses this call left undecided.
+        undecided: How many poses this call left undecided; of separations, how many searches ended before their
+            bounds were as close as was asked.
     """
 
     folder: Path
@@ -90,7 +96,7 @@ class Run:
         >>> [part.name for part in run.parts()]
         ['part-000000000000.parquet']
         """
-        return [self.folder / _name(start) for start in range(0, self.count, self.chunk)]
+        return [self.folder / _name(start) for start in range(0, max(self.count, 1), self.chunk)]
 
     def table(self) -> Any:
         """All answers as a table of pyarrow.
@@ -104,8 +110,13 @@ class Run:
         import pyarrow as pa
         import pyarrow.parquet as pq
 
-        tables = [pq.read_table(part) for part in self.parts()]
-        return pa.concat_tables(tables) if tables else pa.table({})
+        tables = []
+        for part in self.parts():
+            try:
+                tables.append(pq.read_table(part, page_checksum_verification=True))
+            except (OSError, ValueError) as problem:
+                raise OSError(f"{part} is damaged: delete it, and make the same call again") from problem
+        return pa.concat_tables(tables)
 
 
 def overlaps(
@@ -126,8 +137,13 @@ def overlaps(
     ``folder`` is made if it is not there; a run that is there goes on. ``count`` is how many poses a function gives.
     ``executor`` is any of ``concurrent.futures``, left out a ``ThreadPoolExecutor`` of ``workers`` threads; for others
     ``workers`` says how many work at once. ``chunk`` is how many poses a chunk has; left out, a pilot finds how many take
-    a second, by up to 1000 poses in this process. ``progress`` gets how many poses are done and how many there are.
-    Columns: ``overlaps``, as of :func:`palpate.overlaps`.
+    a second. It asks the first poses in this process, up to 1000 for about a second, also where ``chunk`` is given: what is
+    refused is refused before the run begins. ``progress`` gets how many poses are done and how many there are. Columns:
+    ``overlaps``, as of :func:`palpate.overlaps`.
+
+    Raises ``ValueError`` if the folder holds another run or a damaged one, or poses have another shape; ``TypeError`` if
+    they are no numbers; ``SceneError`` if a shape cannot be written, as a function; ``OSError`` if the folder or a file
+    cannot be written or read; and what a worker raises, as the first poses would here.
 
     >>> import palpate as pp, numpy as np, tempfile
     >>> ball = pp.ball(0.5)
@@ -155,7 +171,7 @@ def separations(
 ) -> Run:
     """How far apart two shapes are, with the second at each of many poses; see :func:`palpate.separations`.
 
-    The other arguments are those of :func:`overlaps`. Columns: ``lower``, ``upper``, ``stop``, ``evaluations``.
+    The other arguments and what is raised are those of :func:`overlaps`. Columns: ``lower``, ``upper``, ``stop``, ``evaluations``.
 
     >>> import palpate as pp, tempfile
     >>> ball = pp.ball(0.5)
@@ -184,7 +200,7 @@ def distances(
     chunk: int | None = None,
     progress: Callable[[int, int], None] | None = None,
 ) -> Run:
-    """The distances at many points. The arguments are those of :func:`overlaps`. Columns: ``distance``.
+    """The distances at many points. The arguments and what is raised are those of :func:`overlaps`. Columns: ``distance``.
 
     >>> import palpate as pp, tempfile
     >>> run = pp.batch.distances(tempfile.mkdtemp() + "/run", pp.ball(0.5), [[1.5, 0, 0]])
@@ -195,6 +211,10 @@ def distances(
 
 
 def _shape(shape: Any) -> list[Any]:
+    from palpate._palpate import Shape
+
+    if not isinstance(shape, Shape):
+        raise TypeError(f"a batch asks shapes, got a {type(shape).__name__}")
     return [shape.to_json(), shape.dimension]
 
 
@@ -245,9 +265,9 @@ def _name(start: int) -> str:
 
 def _rows(source: Any, start: int, stop: int) -> NDArray[Any]:
     if isinstance(source, str):
-        return np.array(np.load(source, mmap_mode="r")[start:stop])
-    rows = source(start, stop) if callable(source) else source
-    rows = np.asarray(rows)
+        rows = np.array(np.load(source, mmap_mode="r")[start:stop])
+    else:
+        rows = np.asarray(source(start, stop) if callable(source) else source)
     if len(rows) != stop - start:
         raise ValueError(f"rows {start} to {stop} are {stop - start}, the source gave {len(rows)}")
     return rows
@@ -274,10 +294,14 @@ def _work(folder: str, digest: str, source: Any, start: int, stop: int) -> tuple
     import pyarrow.parquet as pq
 
     begin = time.perf_counter()
-    columns = _columns(_job(folder, digest), _rows(source, start, stop))
+    try:
+        columns = _columns(_job(folder, digest), _rows(source, start, stop))
+    except Exception as error:
+        error.add_note(f"in the chunk of rows {start} to {stop}, which are counted from 0 within it")
+        raise
     table = pa.table(columns).replace_schema_metadata(_mark(digest, start))
     out = io.BytesIO()
-    pq.write_table(table, out, compression="zstd")
+    pq.write_table(table, out, compression="zstd", write_page_checksum=True)
     replace(Path(folder) / _name(start), out.getvalue())
     return stop - start, time.perf_counter() - begin, _undecided(columns)
 
@@ -311,27 +335,40 @@ def _source(source: Source, count: int | None) -> tuple[Any, int, dict[str, Any]
     if isinstance(source, (str, PathLike)):
         file = str(Path(source).resolve())
         rows = np.load(file, mmap_mode="r")
+        _check(rows)
         state = Path(file).stat()
         known = {"rows": len(rows), "size": state.st_size, "changed": state.st_mtime_ns}
         return file, len(rows), known
+    if isinstance(source, np.ma.MaskedArray):
+        raise TypeError("rows must not be a masked array: fill it first, by .filled(…)")
     rows = np.asarray(source)
-    if rows.dtype.kind not in "fiu" or rows.ndim < 2:
-        raise TypeError(f"rows must be an array of numbers with an axis of rows, got {rows.dtype} of {rows.shape}")
+    _check(rows)
     # A copy: what the caller does with the array meanwhile changes nothing.
     whole = np.array(rows, order="C")
     array = {"rows": len(whole), "dtype": whole.dtype.str, "shape": list(whole.shape)}
     return whole, len(whole), {**array, "digest": hashlib.sha256(whole.tobytes()).hexdigest()}
 
 
+def _check(rows: NDArray[Any]) -> None:
+    if rows.dtype.kind not in "fiu" or rows.ndim < 2:
+        raise TypeError(f"rows must be an array of numbers with an axis of rows, got {rows.dtype} of {rows.shape}")
+
+
 def _pilot(job: dict[str, Any], source: Any, count: int) -> int:
-    """How many rows take about a second, by answering the first ones here."""
-    rows = min(PILOT, count)
-    if rows == 0:
-        return 1
-    some = _rows(source if callable(source) or isinstance(source, str) else source[:rows], 0, rows)
-    begin = time.perf_counter()
-    _columns(job, some)
-    each = max((time.perf_counter() - begin) / rows, 1e-9)
+    """How many rows take about a second, by answering the first ones here, more and more."""
+    import pyarrow as pa
+
+    rows = min(1, count)
+    while True:
+        own = source if callable(source) or isinstance(source, str) else source[:rows]
+        some = _rows(own, 0, rows)
+        begin = time.perf_counter()
+        pa.table(_columns(job, some))
+        spent = time.perf_counter() - begin
+        if rows == min(PILOT, count) or spent > PILOT_SECONDS:
+            break
+        rows = min(10 * rows, PILOT, count)
+    each = max(spent / max(rows, 1), 1e-9)
     # Two digits are enough, and say that no more is known.
     wanted = SECONDS / each
     unit = 10.0 ** max(math.floor(math.log10(max(wanted, 1.0))) - 1, 0)
@@ -352,6 +389,14 @@ def _run(
         raise ValueError(f"workers must be at least 1, got {workers}")
     if chunk is not None:
         chunk = operator.index(chunk)
+    if count is not None:
+        count = operator.index(count)
+        if count < 0:
+            raise ValueError(f"count must be at least 0, got {count}")
+    try:
+        import pyarrow  # noqa: F401
+    except ImportError as problem:
+        raise ImportError("batches need pyarrow: pip install 'palpate[batch]'") from problem
     place = Path(folder)
     place.mkdir(parents=True, exist_ok=True)
     given, rows, known = _source(source, count)
@@ -359,14 +404,15 @@ def _run(
         raise ValueError(f"the source has {rows} rows, count is {count}")
     chunk = _agreed(place, job, known, given, rows, chunk)
     _tidy(place)
-    starts, digest = range(0, rows, chunk), _digest(job)
+    # Without rows there is one part, which has the columns.
+    starts, digest = range(0, max(rows, 1), chunk), _digest(job)
     waiting = [
         start for start in starts if not _is_there(place, digest, start, min(chunk, rows - start))
     ]
     resumed = len(starts) - len(waiting)
     done, seconds, undecided = rows - sum(min(chunk, rows - start) for start in waiting), 0.0, 0
     own = ThreadPoolExecutor(workers) if executor is None else None
-    engine = executor or own
+    engine = own if executor is None else executor
     assert engine is not None
     many = AHEAD * (workers or _workers(engine))
     try:
@@ -386,16 +432,19 @@ def _run(
 
 
 def _tidy(place: Path) -> None:
-    """Removes what dead workers left half written."""
-    for left in place.glob(".part-*"):
-        if time.time() - left.stat().st_mtime > OLD:
-            left.unlink(missing_ok=True)
+    """Removes what dead workers and drivers left half written."""
+    for left in [*place.glob(".part-*"), *place.glob(f".{MANIFEST}.*")]:
+        # Workers of another driver that live rename theirs meanwhile.
+        with contextlib.suppress(FileNotFoundError):
+            if time.time() - left.stat().st_mtime > OLD:
+                left.unlink()
 
 
 def _workers(engine: Executor) -> int:
-    return int(getattr(engine, "_max_workers", 0) or cpu_count() or 1) if isinstance(
-        engine, ThreadPoolExecutor
-    ) else max(64, cpu_count() or 1)
+    """How many work at once: of a cluster nobody says it, so that there is work for many."""
+    if isinstance(engine, ThreadPoolExecutor):
+        return engine._max_workers
+    return max(64, cpu_count() or 1)
 
 
 def _asked(
@@ -430,10 +479,6 @@ def _asked(
             future.cancel()
 
 
-#: What a run is, in its folder.
-MANIFEST = "manifest.json"
-
-
 def _agreed(
     place: Path,
     job: dict[str, Any],
@@ -452,7 +497,7 @@ def _agreed(
     if not file.exists():
         if any(place.glob("part-*")):
             raise ValueError(f"{place} holds parts without {MANIFEST}: take another folder")
-        # A setting that is refused must not become what the run is.
+        # Asked also where the caller says the chunk: a setting that is refused must not become what the run is.
         size = _pilot(job, source, rows)
         size = chunk if chunk is not None else size
         # Of several drivers that begin at once, one says what the run is.
@@ -460,8 +505,10 @@ def _agreed(
             return size
     try:
         there = json.loads(file.read_text(encoding="utf-8"))
-        size = int(there["chunk"])
-    except (ValueError, KeyError, TypeError) as problem:
+        size = there["chunk"]
+        if type(size) is not int or size < 1:
+            raise ValueError(f"chunk is {size!r}")
+    except (ValueError, KeyError, TypeError, RecursionError) as problem:
         raise ValueError(f"{file} is damaged ({problem}): delete {place}, or take another folder") from problem
     for key, value in wanted.items():
         if there.get(key) != json.loads(json.dumps(value)):

@@ -9,7 +9,6 @@ use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 
 use super::{AnyShape, PyShape, of_either};
-use crate::chain::Boolean;
 use crate::error::OrRaise;
 use crate::operators::{self, Combination, combined, named};
 use crate::poses::{self, Turn};
@@ -17,22 +16,24 @@ use crate::poses::{self, Turn};
 #[pymethods]
 impl PyShape {
     fn __or__(&self, py: Python<'_>, other: Self) -> PyResult<Self> {
-        self.joined(py, &other, Boolean::Union)
+        self.joined(py, &other, Combination::Union)
     }
 
     fn __and__(&self, py: Python<'_>, other: Self) -> PyResult<Self> {
-        self.joined(py, &other, Boolean::Intersection)
+        self.joined(py, &other, Combination::Intersection)
     }
 
     fn __sub__(&self, py: Python<'_>, other: Self) -> PyResult<Self> {
-        self.joined(py, &other, Boolean::Difference)
+        self.joined(py, &other, Combination::Difference)
     }
 
     fn __xor__(&self, py: Python<'_>, other: Self) -> PyResult<Self> {
-        self.joined(py, &other, Boolean::SymmetricDifference)
+        self.joined(py, &other, Combination::SymmetricDifference)
     }
 
     /// What is in this shape or in any of the others, as `|`.
+    ///
+    /// Raises `ValueError` if shapes are of both dimensions, `TypeError` if one is no shape.
     ///
     /// >>> import palpate as pp
     /// >>> pp.ball(0.5).union(pp.cuboid([1, 1, 1])) == pp.ball(0.5) | pp.cuboid([1, 1, 1])
@@ -44,6 +45,8 @@ impl PyShape {
 
     /// What is in this shape and in all others, as `&`.
     ///
+    /// Raises `ValueError` if shapes are of both dimensions, `TypeError` if one is no shape.
+    ///
     /// >>> import palpate as pp
     /// >>> pp.ball(0.5).intersection(pp.cuboid([1, 1, 1])) == pp.ball(0.5) & pp.cuboid([1, 1, 1])
     /// True
@@ -54,6 +57,8 @@ impl PyShape {
 
     /// What is in this shape and in none of the others, as `-`.
     ///
+    /// Raises `ValueError` if shapes are of both dimensions, `TypeError` if one is no shape.
+    ///
     /// >>> import palpate as pp
     /// >>> pp.ball(0.5).difference(pp.ball(0.4)).distance([0, 0, 0])
     /// 0.4
@@ -63,6 +68,8 @@ impl PyShape {
     }
 
     /// What is in an odd number of the shapes, as `^`.
+    ///
+    /// Raises `ValueError` if shapes are of both dimensions, `TypeError` if one is no shape.
     ///
     /// >>> import palpate as pp
     /// >>> pp.ball(0.5).symmetric_difference(pp.ball(0.4)).distance([0, 0, 0])
@@ -75,6 +82,9 @@ impl PyShape {
     /// The union, its creases filled: where two distances are equal, the surface moves by `width` [m].
     ///
     /// `profile` is quadratic, cubic, quartic, circular, root, exponential or circular_geometrical.
+    ///
+    /// Raises `ShapeError` if the width is not positive or there are less than two shapes, `ValueError` if shapes are of both
+    /// dimensions or no profile has the name, `TypeError` if one is no shape.
     ///
     /// >>> import palpate as pp
     /// >>> pp.ball(0.5).smooth_union(pp.ball(0.4), width=0.01).promise.lipschitz
@@ -93,6 +103,9 @@ impl PyShape {
     ///
     /// `profile` is quadratic, cubic, quartic, circular, root, exponential or circular_geometrical.
     ///
+    /// Raises `ShapeError` if the width is not positive or there are less than two shapes, `ValueError` if shapes are of both
+    /// dimensions or no profile has the name, `TypeError` if one is no shape.
+    ///
     /// >>> import palpate as pp
     /// >>> pp.ball(0.5).smooth_intersection(pp.ball(0.4), width=0.01).promise.lipschitz
     /// 1.0
@@ -109,6 +122,9 @@ impl PyShape {
     /// This shape without the others, the edges of the cuts rounded off: where two distances are equal, the surface moves by `width` [m].
     ///
     /// `profile` is quadratic, cubic, quartic, circular, root, exponential or circular_geometrical.
+    ///
+    /// Raises `ShapeError` if the width is not positive or there are less than two shapes, `ValueError` if shapes are of both
+    /// dimensions or no profile has the name, `TypeError` if one is no shape.
     ///
     /// >>> import palpate as pp
     /// >>> pp.ball(0.5).smooth_difference(pp.ball(0.4), width=0.01).promise.lipschitz
@@ -200,6 +216,8 @@ impl PyShape {
     /// A pose is a translation of D numbers; in space x, y, z, qx, qy, qz, qw or a matrix of shape (4, 4); in the plane x,
     /// y and an angle [rad] or a matrix of shape (3, 3).
     ///
+    /// Raises `ValueError` if the pose has another shape, `ShapeError` if a number is not finite or it is no rotation.
+    ///
     /// >>> import palpate as pp
     /// >>> pp.ball(0.5).placed([0, 1, 0, 0, 0, 0, 1]).distance([0, 2, 0])
     /// 0.5
@@ -243,6 +261,8 @@ impl PyShape {
 
     /// This shape grown by a length [m], or shrunk if it is negative.
     ///
+    /// Raises `ShapeError` if the length is not finite.
+    ///
     /// >>> import palpate as pp
     /// >>> pp.cuboid([1, 1, 1]).offset(0.1).distance([1, 0, 0])
     /// 0.4
@@ -278,6 +298,8 @@ impl PyShape {
 
     /// The part of this shape at positive coordinates of an axis, "x", "y" or "z", and its mirror image.
     ///
+    /// Raises `ValueError` if the axis is none of the shape's.
+    ///
     /// >>> import palpate as pp
     /// >>> pp.ball(0.1).translated([1, 0, 0]).mirrored("x").distance([-1, 0, 0])
     /// -0.1
@@ -287,6 +309,9 @@ impl PyShape {
     }
 
     /// Copies of this shape along axes, each without end at a spacing [m], or counted by a dict as in scene files.
+    ///
+    /// Raises `ShapeError` if a spacing is not positive or the copies would touch where that is not allowed, `TypeError` for z in
+    /// 2D or a row that is neither a number nor such a dict.
     ///
     /// >>> import palpate as pp
     /// >>> row = pp.ball(0.1).repeated(x={"spacing": 1.0, "first": 0, "last": 2})
@@ -316,6 +341,9 @@ impl PyShape {
     }
 
     /// This shape bent: turned in the plane of x and y by an angle for each metre of x.
+    ///
+    /// Raises `ShapeError` if the angle is not finite or the shape has no bounds to bend, `TypeError` unless one of `degrees` and
+    /// `radians` is given.
     ///
     /// >>> import palpate as pp
     /// >>> pp.cuboid([1, 0.1, 0.1]).bent(degrees=90).promise.outside

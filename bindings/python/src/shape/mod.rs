@@ -13,7 +13,7 @@ use pyo3::types::PyTuple;
 
 use crate::answers;
 use crate::call::detached_in;
-use crate::chain::{Boolean, Chain};
+use crate::chain::Chain;
 use crate::error::OrRaise;
 use crate::evaluate::{self, Slopes};
 use crate::operators::{Combination, combined, listed};
@@ -64,8 +64,7 @@ impl AnyShape {
 ///
 /// Shapes come from constructors (`ball`, `cuboid`, …), operators and texts. They cannot change; two are equal if
 /// they are made alike. `repr` is the expression that makes a shape again; of a mesh or a function it names what it
-/// is. `|`, `&`, `-` and `^` are union, intersection,
-/// difference and symmetric difference.
+/// is. `|`, `&`, `-` and `^` are union, intersection, difference and symmetric difference.
 ///
 /// >>> import palpate as pp
 /// >>> cup = pp.cylinder(0.04, 0.09) - pp.cylinder(0.037, 0.08).translated([0, 0.01, 0])
@@ -88,7 +87,7 @@ impl PyShape {
     }
 
     /// This shape with another at the end of its chain.
-    fn joined(&self, py: Python<'_>, other: &Self, how: Boolean) -> PyResult<Self> {
+    fn joined(&self, py: Python<'_>, other: &Self, how: Combination) -> PyResult<Self> {
         Ok(Self(self.0.joined(py, other.made(py)?, how)?))
     }
 }
@@ -156,8 +155,9 @@ impl PyShape {
         out: Option<&Bound<'py, PyAny>>,
         threads: isize,
     ) -> PyResult<Bound<'py, PyAny>> {
-        Ok(evaluate::distance_gradient(self.made(points.py())?, points, [None, out], threads)?
-            .1)
+        let shape = self.made(points.py())?;
+        let outs = [("", None), ("out", out)];
+        Ok(evaluate::distance_gradient(shape, points, outs, threads)?.1)
     }
 
     /// The signed distances at points [m] and their gradients, of which `out` may have two arrays; see `distance`.
@@ -174,11 +174,13 @@ impl PyShape {
         threads: isize,
     ) -> PyResult<Slopes<'py>> {
         let (distances, gradients) = out.unzip();
-        let outs = [distances.as_ref(), gradients.as_ref()];
+        let outs = [("out[0]", distances.as_ref()), ("out[1]", gradients.as_ref())];
         evaluate::distance_gradient(self.made(points.py())?, points, outs, threads)
     }
 
     /// What the field says at a point: value, gradient, the surface near it, and what is promised there.
+    ///
+    /// Raises `QueryError` if the point is not finite, `ValueError` if it has not D numbers.
     ///
     /// >>> import palpate as pp
     /// >>> pp.ball(0.5).at([0.0, 2.0, 0.0]).surface
@@ -254,7 +256,9 @@ impl PyShape {
     }
 
     fn __hash__(&self, py: Python<'_>) -> PyResult<isize> {
-        self.__repr__(py)?.into_pyobject(py)?.hash()
+        // 0.0 and -0.0 are equal, so their hashes must be.
+        let text = self.__repr__(py)?.replace("-0.0,", "0.0,").replace("-0.0]", "0.0]");
+        text.replace("-0.0)", "0.0)").into_pyobject(py)?.hash()
     }
 
     fn __reduce__<'py>(
