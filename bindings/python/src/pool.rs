@@ -57,7 +57,9 @@ pub(crate) struct Lent {
 
 /// Those that no call has, by the process that made them and their threads: a child of `fork` has none of its parent's
 /// threads, so it makes pools of its own.
-static IDLE: Mutex<Option<HashMap<(u32, usize), Vec<Pool>>>> = Mutex::new(None);
+static IDLE: Mutex<Option<Idle>> = Mutex::new(None);
+
+type Idle = HashMap<(u32, usize), Vec<Pool>>;
 
 impl Lent {
     fn new(threads: usize) -> PyResult<Self> {

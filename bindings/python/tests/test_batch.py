@@ -54,6 +54,7 @@ def test_engines_and_chunks_give_the_same_bytes(tmp_path: Path) -> None:
     assert answers(run) == TRUTH
 
 
+@pytest.mark.skipif(sys.platform == "win32", reason="there is no SIGKILL on this system")
 def test_a_worker_of_dask_is_killed(tmp_path: Path) -> None:
     from distributed import Client, LocalCluster
 

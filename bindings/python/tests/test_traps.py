@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import multiprocessing
 import random
+import sys
 import threading
 import time
 from typing import Any
@@ -32,13 +33,14 @@ def asked(_: int) -> float:
 
 # A process that has threads may deadlock where it forks: that is what is tested.
 @pytest.mark.filterwarnings("ignore:.*multi-threaded:DeprecationWarning")
-@pytest.mark.parametrize("way", ["fork", "forkserver", "spawn"])
+@pytest.mark.parametrize("way", multiprocessing.get_all_start_methods())
 def test_processes_after_threads(way: str) -> None:
     here = asked(0)
     with multiprocessing.get_context(way).Pool(2) as pool:
         assert pool.map_async(asked, [0, 1]).get(timeout=120) == [here, here]
 
 
+@pytest.mark.skipif(sys.platform == "win32", reason="a process cannot send itself Ctrl-C there")
 @pytest.mark.parametrize("name", CALLS)
 def test_a_long_call_is_stopped(name: str) -> None:
     # It stops long before its end; `benchmarks/overheads.py` measures how soon.
