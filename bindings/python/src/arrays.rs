@@ -57,12 +57,26 @@ fn said(shape: &[usize]) -> String {
 
 /// A list or a tuple of `N` numbers, which needs no array.
 pub(crate) fn few<const N: usize>(given: &Bound<'_, PyAny>) -> Option<[f64; N]> {
-    let is_one =
-        given.is_exact_instance_of::<PyList>() || given.is_exact_instance_of::<PyTuple>();
-    let found: [f64; N] = is_one.then(|| given.extract().ok()).flatten()?;
-    // Booleans are numbers of Python, and none of an array.
-    let has_bool = given.try_iter().ok()?.flatten().any(|x| x.is_instance_of::<PyBool>());
-    (!has_bool).then_some(found)
+    if let Ok(list) = given.cast_exact::<PyList>() {
+        return each(list.len(), list.iter());
+    }
+    let tuple = given.cast_exact::<PyTuple>().ok()?;
+    each(tuple.len(), tuple.iter())
+}
+
+/// So many numbers, if all are some: booleans are numbers of Python, and none of an array.
+fn each<'py, const N: usize>(
+    count: usize,
+    items: impl Iterator<Item = Bound<'py, PyAny>>,
+) -> Option<[f64; N]> {
+    let mut numbers = [0.0; N];
+    if count != N {
+        return None;
+    }
+    for (number, item) in numbers.iter_mut().zip(items) {
+        *number = if item.is_instance_of::<PyBool>() { None } else { item.extract().ok() }?;
+    }
+    Some(numbers)
 }
 
 /// An array of real numbers in C order: single precision stays, all else becomes double precision.

@@ -261,7 +261,7 @@ class Mesh:
 class Scene:
     def __new__(
         cls,
-        bodies: Shape | Mapping[str, Shape],
+        bodies: Shape | dict[str, Shape],
         *,
         poses: dict[str, Any] | None = None,
         materials: Mapping[str, Any] | None = None,
@@ -301,7 +301,7 @@ class Mailbox:
 class Servo:
     def __new__(
         cls,
-        scene: Scene | Shape | Mapping[str, Shape],
+        scene: Scene | Shape | dict[str, Shape],
         *,
         device: str | Mailbox | None = None,
         hand: ArrayLike | None = None,
@@ -311,7 +311,7 @@ class Servo:
         rate: float = 1000.0,
     ) -> Servo: ...
     def __enter__(self) -> Servo: ...
-    def __exit__(self, *_exception: object) -> bool: ...
+    def __exit__(self, *_exception: object) -> None: ...
     def end(self) -> None: ...
     @property
     def has_ended(self) -> bool: ...
@@ -355,7 +355,7 @@ class Track:
 @final
 class World:
     def __new__(
-        cls, scene: Scene | Shape | Mapping[str, Shape], *, margin: float | None = None
+        cls, scene: Scene | Shape | dict[str, Shape], *, margin: float | None = None
     ) -> World: ...
     def set_poses(self, poses: dict[str, Any]) -> None: ...
     def pose(self, name: str) -> NDArray[np.float64]: ...
@@ -376,7 +376,7 @@ def sweep(
     budget: int | None = None,
 ) -> FirstTouch: ...
 def feel(
-    scene: Scene | Shape | Mapping[str, Shape],
+    scene: Scene | Shape | dict[str, Shape],
     *,
     device: str | None = None,
     hand: ArrayLike | None = None,
