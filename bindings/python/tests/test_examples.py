@@ -41,9 +41,7 @@ def test_the_docstring_has_an_example_that_runs(name: str, value: object) -> Non
     text = inspect.getdoc(value) or ""
     assert text, f"{name} has no docstring"
     examples = doctest.DocTestParser().get_doctest(text, {}, name, None, None)
-    # Exceptions and answers are in the examples of what raises and returns them.
-    if not inspect.isclass(value):
-        assert examples.examples, f"{name} has no example"
+    assert examples.examples, f"{name} has no example"
     report: list[str] = []
     runner = doctest.DocTestRunner(optionflags=doctest.ELLIPSIS)
     failed, _ = runner.run(examples, out=report.append)

@@ -26,9 +26,6 @@ from palpate._answers import (
     Impact,
     Manifold,
     Mass,
-    MeshContacts,
-    MeshHits,
-    MeshReport,
     Neighbours,
     Overlap,
     Promise,
@@ -53,6 +50,7 @@ from palpate._errors import (
     UnknownNameError,
 )
 from palpate._felt import Event, Felt, HeldTool, Snapshot, Touch, Trace
+from palpate._meshes import MeshContacts, MeshHits, MeshReport
 from palpate._palpate import (
     STOPS,
     Figure,

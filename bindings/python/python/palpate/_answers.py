@@ -92,6 +92,11 @@ class AtPoint(Answer):
         safe_radius: The radius of a ball about the point that is sure to hold no surface [m].
         quality: What the value is here: "exact", "bound" or "lipschitz".
         rounding: The largest rounding of the value [m].
+
+    >>> import palpate as pp
+    >>> found = pp.ball(0.5).at([0.0, 2.0, 0.0])
+    >>> found.distance, found.quality, round(found.safe_radius, 3)
+    (1.5, 'exact', 1.5)
     """
 
     point: Floats
@@ -117,6 +122,11 @@ class Separation(Answer):
         evaluations: How often the fields were evaluated.
         point: A point between the bodies, or in both [m], shape (D,).
         normal: The unit vector from the first to the second there, shape (D,); None where the gradients vanish.
+
+    >>> import palpate as pp
+    >>> found = pp.separation(pp.ball(0.5), pp.ball(0.5).translated([2, 0, 0]), tolerance=1e-3)
+    >>> found.lower <= 1.0 <= found.upper, found.stop
+    (True, 'converged')
     """
 
     lower: float
@@ -139,6 +149,11 @@ class Overlap(Answer):
         evaluations: How often the fields were evaluated.
         point: A point between the bodies, or in both [m], shape (D,).
         normal: The unit vector from the first to the second there, shape (D,); None where the gradients vanish.
+
+    >>> import palpate as pp
+    >>> found = pp.overlap(pp.ball(0.5), pp.ball(0.5).translated([2, 0, 0]))
+    >>> found.overlaps, bool(found), found.lower > 0
+    (False, False, True)
     """
 
     overlaps: bool | None
@@ -167,6 +182,11 @@ class Contact(Answer):
         normal_from: What the normal is taken from: "gradients", "thicker body", "history" or "assumed".
         on_surfaces: Whether both points are on surfaces; else they are estimated.
         id: A name that stays while bodies move.
+
+    >>> import palpate as pp
+    >>> touch = pp.closest_points(pp.ball(0.5), pp.ball(0.5).translated([2, 0, 0])).contact
+    >>> touch.point_a.round(3), round(touch.gap, 3), touch.normal_from
+    (array([0.5, 0. , 0. ]), 1.0, 'gradients')
     """
 
     point_a: Floats
@@ -188,6 +208,11 @@ class ClosestPoints(Answer):
         stop: Why the search ended.
         evaluations: How often the fields were evaluated.
         contact: The points; None where no way to the surfaces was found.
+
+    >>> import palpate as pp
+    >>> found = pp.closest_points(pp.ball(0.5), pp.ball(0.5).translated([2, 0, 0]))
+    >>> found.stop, found.contact.point_b.round(3)
+    ('converged', array([1.5, 0. , 0. ]))
     """
 
     lower: float
@@ -216,6 +241,11 @@ class Manifold(Answer):
         separation: The separation with its bounds.
         dropped: How many contacts were left out because there were more than ``most``.
         is_whole: Whether every place where the bodies touch that is larger than the spacing has its contacts.
+
+    >>> import palpate as pp
+    >>> touch = pp.manifold(pp.cuboid([1, 1, 1]), pp.ball(0.5).translated([0, 0.99, 0]))
+    >>> len(touch), touch.normals.round(3), touch.is_whole
+    (1, array([[0., 1., 0.]]), True)
     """
 
     lower: float
@@ -250,6 +280,11 @@ class RayHit(Answer):
         evaluations: How often the field was evaluated.
         point: The place at ``upper`` [m], shape (D,); None if the ray is free.
         normal: The outward unit normal there, shape (D,); None where the gradient vanishes.
+
+    >>> import palpate as pp
+    >>> hit = pp.cast_ray(pp.ball(0.5), [0, 2, 0], [0, -1, 0])
+    >>> hit.stop, round(hit.upper, 3), hit.normal.round(3)
+    ('converged', 1.5, array([0., 1., 0.]))
     """
 
     lower: float
@@ -274,6 +309,11 @@ class RayHits(Answer):
             -1 where neither is known, shape (n,).
         points: The places at ``upper`` [m], shape (n, D); NaN of rays that are free.
         normals: The outward unit normals there, shape (n, D); NaN where the gradient vanishes.
+
+    >>> import palpate as pp
+    >>> hits = pp.cast_rays(pp.ball(0.5), [[0, 2, 0], [1, 2, 0]], [0, -1, 0])
+    >>> hits.hits, hits.upper.round(3)
+    (array([1, 0], dtype=int8), array([   1.5, 1000. ]))
     """
 
     lower: Floats
@@ -299,6 +339,11 @@ class Separations(Answer):
         normals: The unit vectors from the first to the second, shape (n, D); NaN where the gradients vanish.
         stops: Why each search ended, as places in ``STOPS``, shape (n,).
         evaluations: How often the fields were evaluated, shape (n,).
+
+    >>> import palpate as pp
+    >>> found = pp.separations(pp.ball(0.5), pp.ball(0.5), [[2, 0, 0], [3, 0, 0]])
+    >>> found.upper.round(3), [pp.STOPS[number] for number in found.stops]
+    (array([1., 2.]), ['converged', 'converged'])
     """
 
     lower: Floats
@@ -329,6 +374,11 @@ class Mass(Answer):
         inertia: In space the inertia tensor about the centroid [kg·m²], shape (3, 3); in the plane the moment of inertia
             about it.
         cells: How many cells were cut.
+
+    >>> import palpate as pp
+    >>> mass = pp.cuboid([1, 1, 1]).mass(density=1000)
+    >>> round(mass.mass), mass.inertia.diagonal().round(), mass.mass_error < 1
+    (1000, array([167., 167., 167.]), True)
     """
 
     mass: float
@@ -345,100 +395,6 @@ class Mass(Answer):
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class MeshReport(Answer):
-    """What a mesh is, by :meth:`Mesh.report`.
-
-    Fields:
-        elements: How many triangles or segments.
-        vertices: How many vertices.
-        unreferenced: Vertices that no element names.
-        coincident: Vertices equal to another.
-        degenerate: Elements without extent.
-        duplicates: Elements with the vertices of another.
-        boundary: Edges of one triangle, or vertices of one segment.
-        non_manifold: Edges of more than two triangles.
-        inconsistent: Edges whose two triangles disagree on the inside.
-        bounds: The corners of the box around it [m], shape (2, D).
-        surface: The area of the triangles [m²], or the length of the segments [m].
-        enclosed: What it encloses [m³], in the plane [m²]; None if it is not closed.
-        is_watertight: Whether it is closed and agrees on the inside.
-        in_words: The whole in words.
-    """
-
-    elements: int
-    vertices: int
-    unreferenced: int
-    coincident: int
-    degenerate: int
-    duplicates: int
-    boundary: int
-    non_manifold: int
-    inconsistent: int
-    bounds: Floats
-    surface: float
-    enclosed: float | None
-    is_watertight: bool
-    in_words: str
-
-    def __str__(self) -> str:
-        return self.in_words
-
-
-@dataclass(frozen=True, eq=False, kw_only=True)
-class MeshHits(Answer):
-    """Which faces of a mesh touch a shape, by :func:`mesh_hits`.
-
-    Fields:
-        hits: The faces that touch, proven.
-        undecided: The faces of which the budget proved neither.
-        lower: The field on each undecided face is at least this [m].
-        upper: The least value of the field on each undecided face is at most this [m].
-        evaluations: How often the field was evaluated.
-    """
-
-    hits: NDArray[np.uint32]
-    undecided: NDArray[np.uint32]
-    lower: Floats
-    upper: Floats
-    evaluations: int
-
-    def __len__(self) -> int:
-        return len(self.hits)
-
-
-@dataclass(frozen=True, eq=False, kw_only=True)
-class MeshContacts(Answer):
-    """Where the faces of a mesh touch a shape, by :func:`mesh_contacts`.
-
-    Fields:
-        points_a: The points of the shape [m], shape (n, D).
-        points_b: The points of the mesh [m], shape (n, D).
-        normals: The unit vectors from the shape to the mesh, shape (n, D).
-        gaps: How far apart the points are [m], shape (n,): negative where they overlap.
-        faces: The face of each contact, shape (n,).
-        hits: The faces that touch, proven.
-        undecided: The faces of which the budget proved neither.
-        lower: The field on each undecided face is at least this [m].
-        upper: The least value of the field on each undecided face is at most this [m].
-        evaluations: How often the field was evaluated.
-    """
-
-    points_a: Floats
-    points_b: Floats
-    normals: Floats
-    gaps: Floats
-    faces: NDArray[np.uint32]
-    hits: NDArray[np.uint32]
-    undecided: NDArray[np.uint32]
-    lower: Floats
-    upper: Floats
-    evaluations: int
-
-    def __len__(self) -> int:
-        return len(self.gaps)
-
-
-@dataclass(frozen=True, eq=False, kw_only=True)
 class Body(Answer):
     """A body of a scene, by ``scene[name]``.
 
@@ -447,6 +403,11 @@ class Body(Answer):
         shape: Its shape where it is in the scene.
         shape_in_body: Its shape in its own frame.
         pose: Where it is: a matrix of shape (D + 1, D + 1).
+
+    >>> import palpate as pp
+    >>> body = pp.Scene({"ball": pp.ball(0.5)}, poses={"ball": [0, 1, 0]})["ball"]
+    >>> body.shape_in_body, body.pose[:3, 3]
+    (ball(radius=0.5), array([0., 1., 0.]))
     """
 
     name: str
@@ -467,6 +428,11 @@ class FirstTouch(Answer):
         touches: Whether they touch, proven; None if the search ended before that was known.
         contact: Where they touch at ``upper``; None if they do not.
         start: How they move on if they touch at the start: "approaching", "receding", "sliding" or "resting".
+
+    >>> import palpate as pp
+    >>> touch = pp.sweep(pp.ball(0.5), pp.ball(0.5), start=[3, 0, 0], end=[0, 0, 0])
+    >>> touch.touches, round(touch.upper, 3), touch.start
+    (True, 0.667, None)
     """
 
     lower: float
@@ -485,6 +451,12 @@ class Impact(FirstTouch):
     Fields are those of :class:`FirstTouch`, and:
         a: The name of the first body.
         b: The name of the second.
+
+    >>> import palpate as pp
+    >>> world = pp.World({"a": pp.ball(0.5), "b": pp.ball(0.5).translated([3, 0, 0])})
+    >>> [hit] = world.first_impacts({"b": [-3, 0, 0]})
+    >>> hit.a, hit.b, round(hit.upper, 3)
+    ('a', 'b', 0.667)
     """
 
     a: str
@@ -503,6 +475,11 @@ class Neighbours(Answer):
         verdict: "touching" if their distance is proven to be at most the margin, "apart" if it is more, else
             "undecided".
         manifold: Their contacts; None if neither is bounded.
+
+    >>> import palpate as pp
+    >>> [near] = pp.World({"a": pp.ball(0.5), "b": pp.ball(0.4)}).step()
+    >>> near.a, near.b, near.verdict, near.upper < 0
+    ('a', 'b', 'touching', True)
     """
 
     a: str

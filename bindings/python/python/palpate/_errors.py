@@ -57,31 +57,87 @@ def _rebuilt(kind: type[Error], arguments: tuple[str, ...], fields: dict[str, ob
 
 
 class ShapeError(Error, ValueError):
-    """A shape cannot be made of these numbers."""
+    """A shape cannot be made of these numbers.
+
+    >>> import palpate as pp
+    >>> try:
+    ...     pp.ball(-1.0)
+    ... except pp.ShapeError as error:
+    ...     print(error.parameter, error.value)
+    radius -1.0
+    """
 
 
 class QueryError(Error, ValueError):
-    """A question has no answer: neither body is bounded, a pose is not finite, or a setting is out of range."""
+    """A question has no answer: neither body is bounded, a pose is not finite, or a setting is out of range.
+
+    >>> import palpate as pp
+    >>> try:
+    ...     pp.separation(pp.half_space([0, 1, 0], 0), pp.half_space([0, 1, 0], 0))
+    ... except pp.QueryError as error:
+    ...     print("bounded" in str(error))
+    True
+    """
 
 
 class SceneError(Error, ValueError):
-    """A scene file is wrong: ``path``, ``line`` and ``column`` say where."""
+    """A scene file is wrong: ``path``, ``line`` and ``column`` say where.
+
+    >>> import palpate as pp
+    >>> try:
+    ...     pp.Scene.from_json('{ "version": 1, "bodies": 3 }')
+    ... except pp.SceneError as error:
+    ...     print(error.line)
+    1
+    """
 
 
 class MeshError(Error, ValueError):
-    """A mesh is no mesh, or bounds no solid."""
+    """A mesh is no mesh, or bounds no solid.
+
+    >>> import palpate as pp
+    >>> try:
+    ...     pp.Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]]).shape()
+    ... except pp.MeshError as error:
+    ...     print(error)
+    the openings are as large as the surface: it ...
+    """
 
 
 class GridError(Error, ValueError):
-    """A grid cannot be made or read."""
+    """A grid cannot be made or read.
+
+    >>> import palpate as pp
+    >>> try:
+    ...     pp.half_space([0, 1, 0], 0).baked(cell=0.1)
+    ... except pp.GridError as error:
+    ...     print(error)
+    the shape has no bounds: a grid holds what fi...
+    """
 
 
 class HapticsError(Error, ValueError):
-    """A servo cannot be made of these bodies and settings."""
+    """A servo cannot be made of these bodies and settings.
+
+    >>> import palpate as pp
+    >>> try:
+    ...     pp.Servo(pp.ball(0.05), hand=[0, 0.1, 0], rate=1e-9)
+    ... except pp.HapticsError as error:
+    ...     print(error.parameter)
+    rate
+    """
 
 
 class DeviceError(Error, ValueError):
-    """A device, a hand path or a tour has a number that cannot be."""
+    """A device, a hand path or a tour has a number that cannot be.
+
+    >>> import palpate as pp
+    >>> try:
+    ...     pp.Mailbox(points=2).set([[0, 0, 0]])
+    ... except pp.DeviceError as error:
+    ...     print(error)
+    2 contact points need as many states, got 1
+    """
 
 
 class DeviceLostError(Error, RuntimeError):
@@ -101,15 +157,39 @@ class DeviceLostError(Error, RuntimeError):
 
 
 class PlotError(Error, ValueError):
-    """A picture cannot be drawn."""
+    """A picture cannot be drawn.
+
+    >>> import palpate as pp
+    >>> try:
+    ...     pp.ball(0.5).render(width=0)
+    ... except pp.PlotError as error:
+    ...     print(error)
+    the aspect of a picture must be positive and ...
+    """
 
 
 class UnknownNameError(Error, LookupError):
-    """No device, figure or preset has this name; the message lists those that are there."""
+    """No device, figure or preset has this name; the message lists those that are there.
+
+    >>> import palpate as pp
+    >>> try:
+    ...     pp.Mailbox("omeg")
+    ... except pp.UnknownNameError as error:
+    ...     print(error)
+    there is no device "omeg"; there are touch, o...
+    """
 
 
 class FileError(Error, OSError):
-    """A file cannot be read."""
+    """A file cannot be read.
+
+    >>> import palpate as pp
+    >>> try:
+    ...     pp.Scene.load(".")
+    ... except pp.FileError as error:
+    ...     print(isinstance(error, OSError))
+    True
+    """
 
 
 class MissingFileError(FileError, FileNotFoundError):

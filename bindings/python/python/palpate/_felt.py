@@ -27,6 +27,15 @@ class Touch(Answer):
         normal: The outward unit normal of the surface that is touched, shape (D,); zero if none is.
         body: The name of the body that is touched; None if none is.
         is_slipping: Whether the proxy slips.
+
+    >>> import palpate as pp
+    >>> felt = pp.Servo(pp.ball(0.05), hand=[0, 0.049, 0])
+    >>> with felt as servo:
+    ...     while servo.latest() is None:
+    ...         pass
+    ...     [touch] = servo.latest().touches
+    >>> touch.device.shape, touch.body
+    ((3,), 'body')
     """
 
     device: Floats
@@ -54,6 +63,12 @@ class HeldTool(Answer):
         resolution: How far the surface of the tool may be from the balls that stand for it [m].
         is_degraded: Whether the time of a tick did not suffice for all balls.
         is_covered: Whether bodies cover the tool, which then gives no force.
+
+    >>> import palpate as pp
+    >>> scene = pp.Scene(pp.ball(0.05), tool={"shape": pp.capsule(0.004, 0.03)})
+    >>> tool = pp.feel(scene, hand=[0, 0.06, 0], duration=0.02).trace.tool
+    >>> tool.pose.shape, tool.contacts.shape
+    ((20, 4, 4), (20,))
     """
 
     pose: Floats
@@ -80,6 +95,14 @@ class Snapshot(Answer):
         is_stopped: Whether the emergency stop holds.
         is_lifted: Whether the hand is lifted off the bodies, and passes through them.
         events_lost: Events that nobody took in time.
+
+    >>> import palpate as pp
+    >>> with pp.Servo(pp.ball(0.05), hand=[0, 0.049, 0]) as servo:
+    ...     while servo.latest() is None:
+    ...         pass
+    ...     now = servo.latest()
+    >>> now.ticks > 0, len(now.touches), now.is_stopped
+    (True, 1, False)
     """
 
     time: float
@@ -105,6 +128,12 @@ class Event(Answer):
         kind: "touch", "leave", "slip", "stick", "pop", "button_down" or "button_up".
         speed: Of a touch, the speed along the normal, relative to the body [m/s].
         force: Of a pop, the force that broke the layer [N].
+
+    >>> import palpate as pp
+    >>> with pp.Servo(pp.Scene({"ball": pp.ball(0.05)}), hand=[0, 0.049, 0], duration=0.05) as servo:
+    ...     first = next(servo.events())
+    >>> first.kind, first.body, first.point
+    ('touch', 'ball', 0)
     """
 
     tick: int
@@ -140,6 +169,11 @@ class Trace(Answer):
         cost_ns: How long the tick took [ns], shape (n,).
         lateness_ns: How late it was [ns], shape (n,).
         lost: Rows that were not kept.
+
+    >>> import palpate as pp
+    >>> trace = pp.feel(pp.ball(0.05), hand=[0, 0.049, 0], duration=0.05).trace
+    >>> len(trace), trace.force.shape, trace.lost
+    (50, (50, 3), 0)
     """
 
     time: Floats
@@ -200,6 +234,11 @@ class Felt(Answer):
     Fields:
         report: What the run was like: ticks, forces, safety, as a dict.
         trace: All ticks.
+
+    >>> import palpate as pp
+    >>> felt = pp.feel(pp.ball(0.05), hand=[0, 0.049, 0], duration=0.05)
+    >>> felt.report["ticks"], felt.report["ending"]["kind"], len(felt.trace)
+    (50, 'finished', 50)
     """
 
     report: dict[str, Any]

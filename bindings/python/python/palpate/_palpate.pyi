@@ -17,9 +17,6 @@ from palpate._answers import (
     Impact,
     Manifold,
     Mass,
-    MeshContacts,
-    MeshHits,
-    MeshReport,
     Neighbours,
     Overlap,
     Promise,
@@ -29,6 +26,7 @@ from palpate._answers import (
     Separations,
 )
 from palpate._felt import Event, Felt, Snapshot, Trace
+from palpate._meshes import MeshContacts, MeshHits, MeshReport
 from palpate._types import Plane, Profile, Row
 
 STOPS: tuple[str, ...]

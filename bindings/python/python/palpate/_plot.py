@@ -12,7 +12,8 @@ from numpy.typing import NDArray
 from palpate._felt import Felt, Trace
 
 if TYPE_CHECKING:
-    from palpate._answers import Manifold, MeshContacts
+    from palpate._answers import Manifold
+    from palpate._meshes import MeshContacts
     from palpate._palpate import Shape
 
 #: The axes of a plane: to the right and up, and the one along which it is placed.

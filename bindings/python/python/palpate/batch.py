@@ -78,6 +78,11 @@ class Run:
         seconds: The time that workers spent on the chunks of this call [s].
         undecided: How many poses this call left undecided; of separations, how many searches ended before their
             bounds were as close as was asked.
+
+    >>> import palpate as pp, tempfile
+    >>> run = pp.batch.distances(tempfile.mkdtemp() + "/run", pp.ball(0.5), [[1.5, 0, 0]])
+    >>> run.count, run.resumed, run.undecided
+    (1, 0, 0)
     """
 
     folder: Path
