@@ -57,7 +57,37 @@ pub(crate) fn dependencies() -> Result<(), Failure> {
     for (name, other) in WITHOUT {
         wrong.extend(needs(name, &needed(name)?, other));
     }
+    wrong.extend(compiled_again()?);
     Failure::any(wrong)
+}
+
+/// Crates that the wheel would compile again beside those of the tests, since their features differ.
+fn compiled_again() -> Result<Vec<String>, Failure> {
+    let wheel =
+        features(&["-p", "palpate-python", "--features", "as-tested", "-e", "normal,build"])?;
+    let tests = features(&["--workspace", "-e", "normal,build,dev"])?;
+    let own = features(&["-p", "palpate-cli", "-e", "normal,build"])?;
+    Ok(differing(&wheel, &tests, &own))
+}
+
+/// A crate, its version and its features a line.
+fn features(which: &[&str]) -> Result<String, Failure> {
+    let mut tree = cargo_command(&["tree", "--locked", "--prefix", "none", "-f", "{p} |{f}"]);
+    output(tree.args(which))
+}
+
+/// What of a wheel's crates the tests have with other features; crates that `own` lacks are few, and cheap.
+fn differing(wheel: &str, tests: &str, own: &str) -> Vec<String> {
+    let named = |line: &str| line.split(" |").next().unwrap_or_default().to_owned();
+    let own: BTreeSet<String> = crates(own).into_iter().map(named).collect();
+    let tests = crates(tests);
+    let differs = |line: &&str| !tests.contains(line) && own.contains(&named(line));
+    let told = |line: &str| {
+        format!(
+            "the wheel compiles {line} again: name these features in `as-tested` of bindings/python/Cargo.toml"
+        )
+    };
+    crates(wheel).into_iter().filter(differs).map(told).collect()
 }
 
 /// A crate and what it needs without default features, a crate and its version a line.
@@ -96,6 +126,15 @@ mod tests {
         assert_eq!(too_many("a", tree, 3), None);
         let said = too_many("a", tree, 2).unwrap();
         assert_eq!(said, "a is 3 crates with what it needs, 2 at most");
+    }
+
+    #[test]
+    fn a_crate_of_the_wheel_with_other_features_is_told() {
+        let tests = "a v1 |default,std\nb v1 |std\n";
+        let told = differing("a v1 |std\nb v1 |std (*)\nc v1 |\n", tests, "a v1 |\nb v1 |\n");
+        assert_eq!(told.len(), 1);
+        assert!(told[0].starts_with("the wheel compiles a v1 |std again"), "{told:?}");
+        assert_eq!(differing("b v1 |std\n", tests, "b v1 |\n"), [] as [String; 0]);
     }
 
     #[test]
