@@ -193,7 +193,9 @@ def test_a_function_that_asks_itself_in_other_threads_is_stopped(ask: str) -> No
 def test_two_tracks_that_wait_for_each_other_are_stopped() -> None:
     # Each waited for the other without looking at Ctrl-C.
     program = """
-import _thread, threading, numpy as np, palpate as pp
+import _thread, signal, threading, numpy as np, palpate as pp
+# A parent in the background lets its children ignore Ctrl-C.
+signal.signal(signal.SIGINT, signal.default_int_handler)
 tracks, both = [None, None], threading.Barrier(2)
 def shape(i):
     asked = []
