@@ -153,8 +153,9 @@ impl<const D: usize> CustomField<D> for Function<D> {
 /// on it: 1 of a distance. `bounds` are the corners of a box that holds the body, shape (2, D) [m]. Gradients are central
 /// differences, with a step of 1e-6 of the box's diagonal to either side, or of 1e-6 m without a box. Such a shape is
 /// opaque: it can be asked, but not written, pickled or felt, so it stands in no `Scene` or `World`. A function that holds
-/// its own shape keeps both alive. Searches ask few points at a time, which is slow
-/// in Python: where that is too slow, sample the function at the nodes of a lattice and take `from_samples`. Threads of the core call the function, one at a time where Python has its lock.
+/// its own shape keeps both alive. Searches ask few points at a time, which is slow in Python: sample the
+/// function at the nodes of a lattice and take `from_samples` where that matters. Threads of the core call the function,
+/// one at a time where Python has its lock.
 ///
 /// Raises `ValueError` if `lipschitz` is not positive and finite; a question raises what the function raises while it
 /// is asked.

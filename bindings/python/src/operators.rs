@@ -208,8 +208,8 @@ smooth_functions! {
     /// The union of shapes, its creases filled: where two distances are equal, the surface moves by `width` [m]. `profile` is quadratic, cubic, quartic, circular, root, exponential or
     /// circular_geometrical.
     ///
-    /// Raises `ShapeError` if the width is not positive or there are less than two shapes, `ValueError` if shapes are of both
-    /// dimensions or no profile has the name, `TypeError` if one is no shape.
+    /// Raises `ShapeError` if the width is not positive, `ValueError` if shapes are of both dimensions or no profile has the
+    /// name, `TypeError` if one is no shape.
     ///
     /// >>> import palpate as pp
     /// >>> pp.smooth_union(pp.ball(0.5), pp.ball(0.5), width=0.01).distance([1, 0, 0])
@@ -218,8 +218,8 @@ smooth_functions! {
     /// The intersection of shapes, its edges rounded off: where two distances are equal, the surface moves by `width` [m]. `profile` is quadratic, cubic, quartic, circular, root, exponential or
     /// circular_geometrical.
     ///
-    /// Raises `ShapeError` if the width is not positive or there are less than two shapes, `ValueError` if shapes are of both
-    /// dimensions or no profile has the name, `TypeError` if one is no shape.
+    /// Raises `ShapeError` if the width is not positive, `ValueError` if shapes are of both dimensions or no profile has the
+    /// name, `TypeError` if one is no shape.
     ///
     /// >>> import palpate as pp
     /// >>> pp.smooth_intersection(pp.ball(0.5), pp.ball(0.5), width=0.01).distance([1, 0, 0])
@@ -228,8 +228,8 @@ smooth_functions! {
     /// The first shape without the others, the edges of the cuts rounded off by `width` [m]. `profile` is quadratic, cubic, quartic, circular, root, exponential or
     /// circular_geometrical.
     ///
-    /// Raises `ShapeError` if the width is not positive or there are less than two shapes, `ValueError` if shapes are of both
-    /// dimensions or no profile has the name, `TypeError` if one is no shape.
+    /// Raises `ShapeError` if the width is not positive, `ValueError` if shapes are of both dimensions or no profile has the
+    /// name, `TypeError` if one is no shape.
     ///
     /// >>> import palpate as pp
     /// >>> pp.smooth_difference(pp.ball(0.5), pp.ball(0.4), width=0.001).distance([0, 0, 0])

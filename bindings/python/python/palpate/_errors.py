@@ -61,10 +61,10 @@ class ShapeError(Error, ValueError):
 
     >>> import palpate as pp
     >>> try:
-    ...     pp.ball(-1.0)
+    ...     pp.ball(0.5).shell(0.0)
     ... except pp.ShapeError as error:
-    ...     print(error.parameter, error.value)
-    radius -1.0
+    ...     print(error)
+    thickness must be positive, got 0 m
     """
 
 

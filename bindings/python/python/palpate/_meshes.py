@@ -85,20 +85,15 @@ class MeshHits(Answer):
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class MeshContacts(Answer):
+class MeshContacts(MeshHits):
     """Where the faces of a mesh touch a shape, by :func:`mesh_contacts`.
 
-    Fields:
+    Fields are those of :class:`MeshHits`, and:
         points_a: The points of the shape [m], shape (n, D).
         points_b: The points of the mesh [m], shape (n, D).
         normals: The unit vectors from the shape to the mesh, shape (n, D).
         gaps: How far apart the points are [m], shape (n,): negative where they overlap.
         faces: The face of each contact, shape (n,).
-        hits: The faces that touch, proven.
-        undecided: The faces of which the budget proved neither.
-        lower: The field on each undecided face is at least this [m].
-        upper: The least value of the field on each undecided face is at most this [m].
-        evaluations: How often the field was evaluated.
 
     >>> import palpate as pp
     >>> found = pp.mesh_contacts(pp.ball(0.5), pp.cuboid([1, 1, 1]).mesh(cell=0.3), pose=[0, 0.95, 0])
@@ -111,11 +106,6 @@ class MeshContacts(Answer):
     normals: Floats
     gaps: Floats
     faces: NDArray[np.uint32]
-    hits: NDArray[np.uint32]
-    undecided: NDArray[np.uint32]
-    lower: Floats
-    upper: Floats
-    evaluations: int
 
     def __len__(self) -> int:
         return len(self.gaps)

@@ -83,8 +83,8 @@ impl PyShape {
     ///
     /// `profile` is quadratic, cubic, quartic, circular, root, exponential or circular_geometrical.
     ///
-    /// Raises `ShapeError` if the width is not positive or there are less than two shapes, `ValueError` if shapes are of both
-    /// dimensions or no profile has the name, `TypeError` if one is no shape.
+    /// Raises `ShapeError` if the width is not positive, `ValueError` if shapes are of both dimensions or no profile has the
+    /// name, `TypeError` if one is no shape.
     ///
     /// >>> import palpate as pp
     /// >>> pp.ball(0.5).smooth_union(pp.ball(0.4), width=0.01).promise.lipschitz
@@ -103,8 +103,8 @@ impl PyShape {
     ///
     /// `profile` is quadratic, cubic, quartic, circular, root, exponential or circular_geometrical.
     ///
-    /// Raises `ShapeError` if the width is not positive or there are less than two shapes, `ValueError` if shapes are of both
-    /// dimensions or no profile has the name, `TypeError` if one is no shape.
+    /// Raises `ShapeError` if the width is not positive, `ValueError` if shapes are of both dimensions or no profile has the
+    /// name, `TypeError` if one is no shape.
     ///
     /// >>> import palpate as pp
     /// >>> pp.ball(0.5).smooth_intersection(pp.ball(0.4), width=0.01).promise.lipschitz
@@ -123,8 +123,8 @@ impl PyShape {
     ///
     /// `profile` is quadratic, cubic, quartic, circular, root, exponential or circular_geometrical.
     ///
-    /// Raises `ShapeError` if the width is not positive or there are less than two shapes, `ValueError` if shapes are of both
-    /// dimensions or no profile has the name, `TypeError` if one is no shape.
+    /// Raises `ShapeError` if the width is not positive, `ValueError` if shapes are of both dimensions or no profile has the
+    /// name, `TypeError` if one is no shape.
     ///
     /// >>> import palpate as pp
     /// >>> pp.ball(0.5).smooth_difference(pp.ball(0.4), width=0.01).promise.lipschitz
@@ -310,8 +310,8 @@ impl PyShape {
 
     /// Copies of this shape along axes, each without end at a spacing [m], or counted by a dict as in scene files.
     ///
-    /// Raises `ShapeError` if a spacing is not positive or the copies would touch where that is not allowed, `TypeError` for z in
-    /// 2D or a row that is neither a number nor such a dict.
+    /// Raises `ShapeError` if a spacing is less than half the width of the shape, `TypeError` for z in 2D or a row that is neither
+    /// a number nor such a dict.
     ///
     /// >>> import palpate as pp
     /// >>> row = pp.ball(0.1).repeated(x={"spacing": 1.0, "first": 0, "last": 2})
