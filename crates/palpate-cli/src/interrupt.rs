@@ -9,6 +9,8 @@ use std::sync::mpsc::{self, RecvTimeoutError};
 use std::thread;
 use std::time::Duration;
 
+use palpate::haptics::StopSwitch;
+
 /// How often the program looks whether it is asked to end while a thread works.
 const LOOK: Duration = Duration::from_millis(50);
 
@@ -18,11 +20,15 @@ const LOOK: Duration = Duration::from_millis(50);
 /// that flag and [`asked`](Self::asked), and the command ends by itself: it sets forces to zero,
 /// then writes and reports what is done. A handler whose signal may come twice for one reason
 /// looks at [`unheeded`](Self::unheeded) instead, and sets `asked` alone.
+///
+/// A thread that takes the same signals presses the [`stop_switch`](Self::stop_switch) of all servos of
+/// the program, so that forces are zero whatever the command does meanwhile.
 #[derive(Clone, Debug)]
 pub struct Interrupt {
     asked: Arc<AtomicBool>,
     at_once: Arc<AtomicBool>,
     unheeded: Arc<AtomicBool>,
+    stop: StopSwitch,
 }
 
 impl Interrupt {
@@ -36,6 +42,7 @@ impl Interrupt {
             asked: Arc::new(AtomicBool::new(false)),
             at_once: Arc::new(AtomicBool::new(true)),
             unheeded: Arc::new(AtomicBool::new(true)),
+            stop: StopSwitch::new(),
         }
     }
 
@@ -43,6 +50,12 @@ impl Interrupt {
     #[must_use]
     pub fn asked(&self) -> Arc<AtomicBool> {
         Arc::clone(&self.asked)
+    }
+
+    /// The emergency stop of the servos of a page.
+    #[must_use]
+    pub fn stop_switch(&self) -> StopSwitch {
+        self.stop.clone()
     }
 
     /// `true` while a signal should end the process at once, because the command has nothing to

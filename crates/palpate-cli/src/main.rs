@@ -12,6 +12,8 @@ use palpate_cli::{Interrupt, run_until};
 use signal_hook::consts::SIGHUP;
 use signal_hook::consts::{SIGINT, SIGTERM};
 use signal_hook::flag;
+#[cfg(unix)]
+use signal_hook::iterator::Signals;
 
 /// Worlds are many small nodes, which this allocator frees fast: `docs/decisions/allocator.md`.
 #[global_allocator]
@@ -42,6 +44,23 @@ fn listen(interrupt: &Interrupt) -> io::Result<()> {
         flag::register_conditional_shutdown(SIGHUP, status, interrupt.unheeded())?;
         flag::register(SIGHUP, interrupt.asked())?;
     }
+    #[cfg(unix)]
+    stop_forces(interrupt)?;
+    Ok(())
+}
+
+/// Presses the emergency stop for each signal, in a thread that does nothing else.
+#[cfg(unix)]
+fn stop_forces(interrupt: &Interrupt) -> io::Result<()> {
+    let mut signals = vec![SIGINT, SIGTERM];
+    #[cfg(target_os = "linux")]
+    if !is_ignored(SIGHUP) {
+        signals.push(SIGHUP);
+    }
+    let mut signals = Signals::new(signals)?;
+    let switch = interrupt.stop_switch();
+    let work = move || signals.forever().for_each(|_| _ = switch.stop());
+    std::thread::Builder::new().name("palpate signals".to_owned()).spawn(work)?;
     Ok(())
 }
 

@@ -74,7 +74,7 @@ pub use event::{Event, EventCounts, EventKind, Reaction};
 pub use guide::{Curve, Guide, GuideOptions, Slope};
 pub use handoff::{
     Control, HandoffOptions, LatestReader, LatestWriter, ServoEnd, StopSwitch, handoff,
-    latest_value,
+    handoff_with, latest_value,
 };
 pub use live::{Progress, Snapshot};
 pub use nearby::Nearby;

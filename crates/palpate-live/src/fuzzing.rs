@@ -8,8 +8,9 @@ use std::sync::OnceLock;
 use palpate::scene::{AnyScene, Scene};
 use serde_json::Value;
 
+use crate::server;
 use crate::stage::{answer_alone, trace};
-use crate::wire::{Ask, Question};
+use crate::wire::{Ask, Envelope, Question, Unreadable};
 
 /// The longest side of a grid and of a picture that is asked for here: larger ones only take longer.
 const LARGEST: usize = 64;
@@ -17,16 +18,26 @@ const LARGEST: usize = 64;
 const PLANE: &str = include_str!("../../../scenes/memoir_star.json");
 const SPACE: &str = include_str!("../../../scenes/s3.json");
 
-/// Reads a message, or a trace, and answers what can be answered of a scene in the plane and of one in
-/// space; each answer is whole JSON.
+/// Reads a message, the head of a request, or a trace, and answers what can be answered of a scene in
+/// the plane and of one in space; each answer is whole JSON, and a message that can be read has a kind
+/// and the same number before.
 ///
 /// # Panics
 ///
-/// If reading or answering does.
+/// If reading or answering does, or one of these does not hold.
 pub fn hear(text: &str) {
-    // A trace may be anything.
+    // A trace may be anything, and so may a request.
     let _ = (trace::read::<2>(text.as_bytes()), trace::read::<3>(text.as_bytes()));
-    let Ok(Question { ask, .. }) = Question::read(text) else { return };
+    server::take_head(text.as_bytes());
+    let envelope = Envelope::read(text);
+    let Ok(Question { ask, id }) = Question::read(text) else { return };
+    match envelope {
+        Ok(envelope) => assert_eq!(envelope.id, id, "{text}"),
+        // Of two values of a key, a question takes the last.
+        Err(Unreadable { why, .. }) => {
+            assert!(why.contains("duplicate field"), "{why}: {text}")
+        }
+    }
     let is_large = match &ask {
         Ask::Slice { columns, rows, .. } => *columns.max(rows) > LARGEST,
         Ask::Samples { cells, .. } => *cells > LARGEST,

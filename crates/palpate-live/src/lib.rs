@@ -32,4 +32,5 @@ mod stage;
 mod wire;
 
 pub use live::{Live, LiveError, LiveOptions};
+pub use stage::{Unsaved, UnsavedError, Work};
 pub use wire::VERSION;

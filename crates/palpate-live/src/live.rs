@@ -7,16 +7,14 @@ use std::fmt;
 use std::net::{IpAddr, Ipv4Addr, Ipv6Addr, SocketAddr, UdpSocket};
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex};
-use std::thread::JoinHandle;
+use std::time::Duration;
 
 use palpate::devices::profile_named;
-use palpate::haptics::DeviceProfile;
+use palpate::haptics::{DeviceProfile, StopSwitch};
 use palpate::servo_loop::VirtualClock;
-use tokio::net::TcpListener;
-use tokio::sync::oneshot;
 
-use crate::server;
-use crate::stage::{GivenClock, MOST_POINTS, Program, Refusal, Stage};
+use crate::server::{self, Server};
+use crate::stage::{GivenClock, MOST_POINTS, Program, Refusal, Stage, Unsaved, Watch, Work};
 
 /// The device of the page unless another is chosen.
 const DEVICE: &str = "omega";
@@ -39,6 +37,10 @@ pub struct LiveOptions {
     pub points: usize,
     /// The clock of the first servo, for tests; the machine's if there is none.
     clock: GivenClock,
+    /// The emergency stop of the servo.
+    stop: StopSwitch,
+    /// Who watches the threads begin to work, for tests.
+    watch: Watch,
 }
 
 impl Default for LiveOptions {
@@ -52,6 +54,8 @@ impl Default for LiveOptions {
             rate: 1000.0,
             points: 1,
             clock: GivenClock::default(),
+            stop: StopSwitch::new(),
+            watch: Watch::default(),
         }
     }
 }
@@ -92,6 +96,19 @@ impl LiveOptions {
     #[must_use]
     pub fn with_clock(self, clock: VirtualClock) -> Self {
         Self { clock: Arc::new(Mutex::new(Some(clock))), ..self }
+    }
+
+    /// With this emergency stop, which others may press too: the handler of a signal, or a button.
+    #[must_use]
+    pub fn with_stop_switch(self, stop: StopSwitch) -> Self {
+        Self { stop, ..self }
+    }
+
+    /// With a function that each thread of the program calls when it begins to work, beside the servo
+    /// and those that read and write sockets: for tests, which hold them there.
+    #[must_use]
+    pub fn with_watch(self, watch: impl Fn(Work) + Send + Sync + 'static) -> Self {
+        Self { watch: Watch::new(watch), ..self }
     }
 
     /// With so many contact points.
@@ -146,9 +163,9 @@ fn hint(error: &std::io::Error) -> &'static str {
 pub struct Live {
     address: SocketAddr,
     token: String,
+    stop: StopSwitch,
     stage: Arc<Stage>,
-    end: Option<oneshot::Sender<()>>,
-    thread: Option<JoinHandle<()>>,
+    server: Option<Server>,
 }
 
 impl Live {
@@ -164,7 +181,8 @@ impl Live {
         scene: &str,
         options: LiveOptions,
     ) -> Result<Self, LiveError> {
-        let LiveOptions { address, port, token, device, rate, points, clock } = options;
+        let LiveOptions { address, port, token, device, rate, points, clock, stop, watch } =
+            options;
         if points > MOST_POINTS {
             return Err(LiveError::Points(points));
         }
@@ -181,7 +199,17 @@ impl Live {
         let profile = device.map_or_else(|| profile_named(DEVICE), Ok);
         let profile = profile.map_err(|error| system(&error))?;
         let (name, text) = (name.into(), scene.to_owned());
-        let program = Program { name, file, text, profile, rate, points, clock };
+        let program = Program {
+            name,
+            file,
+            text,
+            profile,
+            rate,
+            points,
+            clock,
+            stop: stop.clone(),
+            watch,
+        };
         let stage =
             Stage::new(program).map_err(|Refusal { message, .. }| LiveError::Scene(message))?;
         let stage = Arc::new(stage);
@@ -190,21 +218,9 @@ impl Live {
         let listener = std::net::TcpListener::bind(address).map_err(failed)?;
         listener.set_nonblocking(true).map_err(failed)?;
         let address = listener.local_addr().map_err(failed)?;
-        let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build();
-        let runtime = runtime.map_err(|error| system(&error))?;
-        let (end, ended) = oneshot::channel();
-        let (served, given) = (Arc::clone(&stage), token.clone());
-        let work = move || {
-            runtime.block_on(async move {
-                // Made in the runtime, whose thread it belongs to.
-                let Ok(listener) = TcpListener::from_std(listener) else { return };
-                // It ends when it is told to.
-                server::serve(listener, address, given, served, ended).await;
-            });
-        };
-        let thread = std::thread::Builder::new().name("palpate live".to_owned()).spawn(work);
-        let thread = Some(thread.map_err(|error| system(&error))?);
-        Ok(Self { address, token, stage, end: Some(end), thread })
+        let server = Server::start(listener, address, token.clone(), &stage);
+        let server = Some(server.map_err(|error| system(&error))?);
+        Ok(Self { address, token, stop, stage, server })
     }
 
     /// The address to open, with the token. Of a page that listens at all addresses of this machine, it
@@ -228,6 +244,19 @@ impl Live {
     #[must_use]
     pub fn token(&self) -> &str {
         &self.token
+    }
+
+    /// The emergency stop of whatever servo runs.
+    #[must_use]
+    pub fn stop_switch(&self) -> StopSwitch {
+        self.stop.clone()
+    }
+
+    /// The scene with its edits, if they are not saved. Edits that wait are made first, as far as that
+    /// takes no longer than `patience`.
+    #[must_use]
+    pub fn unsaved(&self, patience: Duration) -> Option<Unsaved> {
+        self.stage.unsaved(patience)
     }
 
     /// The number of pages that are open.
@@ -263,11 +292,9 @@ fn outward(any: IpAddr) -> IpAddr {
 
 impl Drop for Live {
     fn drop(&mut self) {
-        drop(self.end.take());
-        if let Some(thread) = self.thread.take() {
-            // A panic in it was printed when it happened.
-            let _ = thread.join();
-        }
+        // First forces are zero.
+        self.stage.end();
+        drop(self.server.take());
     }
 }
 

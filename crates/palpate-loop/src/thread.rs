@@ -5,7 +5,8 @@
 
 use palpate_field::Pose;
 use palpate_haptics::{
-    Control, Device, HandoffOptions, HapticsError, NumberError, Servo, ServoEnd, handoff,
+    Control, Device, HandoffOptions, HapticsError, NumberError, Servo, ServoEnd, StopSwitch,
+    handoff_with,
 };
 use std::fmt;
 use std::panic::resume_unwind;
@@ -56,8 +57,8 @@ pub struct ThreadOptions<const D: usize> {
     pub motion: Option<ThreadMotion<D>>,
     /// How the loop goes on when the device is lost; `None` to end it.
     pub reconnection: Option<Reconnection>,
-    /// Whether all forces are held at zero until they are released.
-    pub is_stopped: bool,
+    /// The emergency stop, if it is shared with other servos; else the thread has its own.
+    pub stop_switch: Option<StopSwitch>,
     /// Plays the touches on a device that vibrates.
     pub vibration: Option<Vibration<'static>>,
 }
@@ -74,7 +75,7 @@ impl<const D: usize> Default for ThreadOptions<D> {
             handoff: HandoffOptions::default(),
             motion: None,
             reconnection: None,
-            is_stopped: false,
+            stop_switch: None,
             vibration: None,
         }
     }
@@ -157,11 +158,11 @@ impl<const D: usize> ThreadOptions<D> {
         Self { reconnection: Some(reconnection), ..self }
     }
 
-    /// The same options with an emergency stop from the first tick on, or without; a
-    /// [`StopSwitch`](palpate_haptics::StopSwitch) releases it.
+    /// The same options with this emergency stop, which other servos may share: one press stops all
+    /// of them. While it is stopped, the servo begins without forces.
     #[must_use]
-    pub fn with_stop(self, is_stopped: bool) -> Self {
-        Self { is_stopped, ..self }
+    pub fn with_stop_switch(self, switch: StopSwitch) -> Self {
+        Self { stop_switch: Some(switch), ..self }
     }
 
     /// The same options with touches that are played on a device that vibrates. The thread owns
@@ -215,7 +216,7 @@ impl<const D: usize> fmt::Debug for ThreadOptions<D> {
             .field("handoff", &self.handoff)
             .field("motion", &self.motion.is_some())
             .field("reconnection", &self.reconnection)
-            .field("is_stopped", &self.is_stopped)
+            .field("stop_switch", &self.stop_switch)
             .field("vibration", &self.vibration)
             .finish()
     }
@@ -388,10 +389,8 @@ impl<const D: usize> ServoThread<D> {
             options;
         let mut player = vibration.map(|vibration| vibration.start(&servo)).transpose()?;
         let (rows, records) = options.rows.map(queue).unzip();
-        let (control, mut end) = handoff(&servo, options.handoff);
-        if options.is_stopped {
-            control.stop_switch().stop();
-        }
+        let stop = options.stop_switch.unwrap_or_default();
+        let (control, mut end) = handoff_with(&servo, options.handoff, stop);
         let work = move || {
             let priority = if raises_priority { raise_priority() } else { Priority::Normal };
             let mut clock = clock(&priority);

@@ -110,7 +110,8 @@ where
     let mut show = |progress: &Progress| output::live(report::live_line(progress));
     let mut motion = scene.motion();
     interrupt.heed();
-    let live = shows_page(options).then(|| live::beside(&options.page, options.rate));
+    let live =
+        shows_page(options).then(|| live::beside(&options.page, options.rate, interrupt));
     let live = live.transpose()?.flatten();
     if !options.fast {
         output::remark(format_args!(

@@ -24,6 +24,9 @@ const LOOK: Duration = Duration::from_millis(50);
 /// How long a page may be gone, as while it is loaded again.
 const AWAY: Duration = Duration::from_secs(3);
 
+/// How long edits that wait may take when the program ends.
+const SETTLING: Duration = Duration::from_secs(1);
+
 /// The contact points of the hand on the built-in gallery: two hands.
 const FINGERS: usize = 10;
 
@@ -32,8 +35,10 @@ pub(crate) fn run(options: &LiveOptions, interrupt: &Interrupt) -> Result<Outcom
     input::scene(options.scene.as_deref())?;
     let (name, text) = input::scene_text(options.scene.as_deref())?;
     let points = options.points.unwrap_or(if options.scene.is_none() { FINGERS } else { 1 });
-    let mut served =
-        palpate_live::LiveOptions::default().with_points(points).with_rate(options.rate);
+    let mut served = palpate_live::LiveOptions::default()
+        .with_points(points)
+        .with_rate(options.rate)
+        .with_stop_switch(interrupt.stop_switch());
     if let Some(device) = &options.device {
         served = served.with_device(device.profile.clone());
     }
@@ -47,7 +52,36 @@ pub(crate) fn run(options: &LiveOptions, interrupt: &Interrupt) -> Result<Outcom
     while !interrupt.is_asked() {
         thread::sleep(LOOK);
     }
+    Served(Some(live)).end()?;
     Ok(Outcome::Yes)
+}
+
+/// A page that is served, whose edits are kept however the command ends.
+#[derive(Debug)]
+pub(crate) struct Served(Option<Live>);
+
+impl Served {
+    /// Ends all forces, and then keeps the edits that are not saved.
+    fn end(mut self) -> Result<(), Failure> {
+        self.0.take().as_ref().map_or(Ok(()), keep_edits)
+    }
+}
+
+impl Drop for Served {
+    fn drop(&mut self) {
+        if let Some(Err(failure)) = self.0.take().as_ref().map(keep_edits) {
+            output::remark(format_args!("{failure}"));
+        }
+    }
+}
+
+fn keep_edits(live: &Live) -> Result<(), Failure> {
+    live.stop_switch().stop();
+    let Some(unsaved) = live.unsaved(SETTLING) else { return Ok(()) };
+    let kept = unsaved.keep().map_err(|error| Failure::input(shown(&error.to_string())))?;
+    let kept = kept.display().to_string();
+    output::remark(format_args!("edits that were not saved are kept in {}", shown(&kept)));
+    Ok(())
 }
 
 /// What a page shows first.
@@ -99,13 +133,20 @@ impl Page {
 
 /// The page of the built-in gallery, beside a run that feels it; `None` where it cannot be served,
 /// which is said and ends no run.
-pub(crate) fn beside(asked: &PageOptions, rate: f64) -> Result<Option<Live>, Failure> {
+pub(crate) fn beside(
+    asked: &PageOptions,
+    rate: f64,
+    interrupt: &Interrupt,
+) -> Result<Option<Served>, Failure> {
     let (name, text) = input::scene_text(None)?;
-    let options = palpate_live::LiveOptions::default().with_points(FINGERS).with_rate(rate);
+    let options = palpate_live::LiveOptions::default()
+        .with_points(FINGERS)
+        .with_rate(rate)
+        .with_stop_switch(interrupt.stop_switch());
     match (Page { name, file: None, text }).served(asked, options) {
         Ok(live) => {
             output::remark(format_args!("live at {}", live.url()));
-            Ok(Some(live))
+            Ok(Some(Served(Some(live))))
         }
         Err(failure) if *asked == PageOptions::default() => {
             output::remark(format_args!("without a page: {failure}"));
@@ -116,7 +157,8 @@ pub(crate) fn beside(asked: &PageOptions, rate: f64) -> Result<Option<Live>, Fai
 }
 
 /// Waits until all pages are closed, or the program is asked to end.
-pub(crate) fn until_closed(live: &Live, interrupt: &Interrupt) {
+pub(crate) fn until_closed(served: &Served, interrupt: &Interrupt) {
+    let Some(live) = &served.0 else { return };
     if live.pages() > 0 {
         output::remark("a page is open: the program stays until it is closed, or Ctrl-C");
     }

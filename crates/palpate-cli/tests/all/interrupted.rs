@@ -15,19 +15,19 @@ use crate::common::{Folder, program};
 const INTERRUPTED: Option<i32> = Some(130);
 
 /// A run of the program that is talked to.
-struct Run(Child);
+pub(crate) struct Run(pub(crate) Child);
 
 impl Run {
-    fn start(arguments: &[&str]) -> Self {
+    pub(crate) fn start(arguments: &[&str]) -> Self {
         Self::of(program(arguments))
     }
 
-    fn of(mut command: Command) -> Self {
+    pub(crate) fn of(mut command: Command) -> Self {
         command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
         Self(command.spawn().unwrap())
     }
 
-    fn signal(&self, signal: i32) {
+    pub(crate) fn signal(&self, signal: i32) {
         let signal = rustix::process::Signal::from_named_raw(signal).unwrap();
         let child = rustix::process::Pid::from_child(&self.0);
         rustix::process::kill_process(child, signal).unwrap();
@@ -43,14 +43,14 @@ impl Drop for Run {
 }
 
 /// The next line of `pipe`.
-fn line(pipe: &mut impl BufRead) -> String {
+pub(crate) fn line(pipe: &mut impl BufRead) -> String {
     let mut line = String::new();
     pipe.read_line(&mut line).unwrap();
     line
 }
 
 /// `true` if programs that this one starts are told that their terminal ended.
-fn hears_hang_ups() -> bool {
+pub(crate) fn hears_hang_ups() -> bool {
     let status = fs::read_to_string("/proc/self/status").unwrap_or_default();
     let ignored = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
     let signals = ignored.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok());

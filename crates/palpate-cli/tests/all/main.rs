@@ -29,3 +29,4 @@ mod shapes;
 mod sweep;
 mod tables;
 mod touch;
+mod unsaved;

@@ -9,6 +9,7 @@ use std::sync::Arc;
 use palpate_field::Pose;
 
 use super::exchange::{Flag, Reader, Sender};
+use super::stop_switch::StopSwitch;
 use super::{Edits, Flags};
 use crate::accepted_bodies::AcceptedBodies;
 use crate::bodies::{Bodies, is_usable};
@@ -30,6 +31,7 @@ pub struct Control<const D: usize> {
     pub(super) reader: Reader<Snapshot<D>>,
     pub(super) events: rtrb::Consumer<Event>,
     pub(super) flags: Arc<Flags>,
+    pub(super) stop: StopSwitch,
     /// The number of bodies in the newest scene.
     pub(super) bodies: usize,
     pub(super) most_bodies: usize,
@@ -183,7 +185,7 @@ impl<const D: usize> Control<D> {
     /// The emergency stop, for any thread.
     #[must_use]
     pub fn stop_switch(&self) -> StopSwitch {
-        StopSwitch { flags: self.flags.clone() }
+        self.stop.clone()
     }
 
     /// The state of the servo after its last tick; `None` before the first tick.
@@ -222,28 +224,5 @@ impl<const D: usize> fmt::Debug for Control<D> {
             .field("bodies", &self.bodies)
             .field("most_bodies", &self.most_bodies)
             .finish_non_exhaustive()
-    }
-}
-
-/// The emergency stop of a running servo, for any thread: sets all forces to zero and releases
-/// them again.
-#[derive(Clone, Debug)]
-pub struct StopSwitch {
-    flags: Arc<Flags>,
-}
-
-impl StopSwitch {
-    /// From the next tick on, all written forces are zero.
-    ///
-    /// Real-time: allocates nothing, takes no lock, cannot panic.
-    pub fn stop(&self) {
-        self.flags.stop.set(true);
-    }
-
-    /// Ends the emergency stop; forces rise from zero.
-    ///
-    /// Real-time: allocates nothing, takes no lock, cannot panic.
-    pub fn release(&self) {
-        self.flags.stop.set(false);
     }
 }

@@ -9,14 +9,16 @@ mod latest;
 #[cfg(test)]
 mod model;
 mod servo_end;
+mod stop_switch;
 
 use std::sync::Arc;
 
 use palpate_field::Pose;
 
-pub use control::{Control, StopSwitch};
+pub use control::Control;
 pub use latest::{LatestReader, LatestWriter, latest_value};
 pub use servo_end::ServoEnd;
+pub use stop_switch::StopSwitch;
 
 use exchange::{Medium, Native, edit_channel, latest};
 
@@ -104,6 +106,17 @@ pub fn handoff<const D: usize>(
     servo: &impl AnyServo<D>,
     options: HandoffOptions,
 ) -> (Control<D>, ServoEnd<D>) {
+    handoff_with(servo, options, StopSwitch::new())
+}
+
+/// As [`handoff`], with an emergency stop that other servos may share: a servo that begins while the
+/// switch is stopped begins without forces.
+#[must_use]
+pub fn handoff_with<const D: usize>(
+    servo: &impl AnyServo<D>,
+    options: HandoffOptions,
+    stop: StopSwitch,
+) -> (Control<D>, ServoEnd<D>) {
     let protection = servo.any_protection(Key(())).cloned();
     let servo = servo.renderer(Key(()));
     let bodies = servo.bodies().bodies().len();
@@ -131,6 +144,7 @@ pub fn handoff<const D: usize>(
         reader,
         events: consumer,
         flags: flags.clone(),
+        stop: stop.clone(),
         bodies,
         most_bodies,
         points: servo.touches().len(),
@@ -142,6 +156,7 @@ pub fn handoff<const D: usize>(
         writer,
         events: producer,
         flags,
+        stop,
         events_lost: 0,
         is_stopped: false,
         is_foreign: false,
@@ -187,8 +202,6 @@ impl<const D: usize> Default for Edits<D> {
 /// Flags that both ends share.
 #[derive(Debug, Default)]
 struct Flags {
-    /// Emergency stop: all forces are zero.
-    stop: <Native as Medium>::Flag,
     /// A request to end the loop.
     end: <Native as Medium>::Flag,
     /// The loop has ended.

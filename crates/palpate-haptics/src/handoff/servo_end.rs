@@ -9,6 +9,7 @@ use std::fmt;
 use std::sync::Arc;
 
 use super::exchange::{Flag, Receiver, Writer};
+use super::stop_switch::StopSwitch;
 use super::{Edits, Flags};
 use crate::event::Event;
 use crate::live::{Progress, Snapshot};
@@ -21,6 +22,7 @@ pub struct ServoEnd<const D: usize> {
     pub(super) writer: Writer<Snapshot<D>>,
     pub(super) events: rtrb::Producer<Event>,
     pub(super) flags: Arc<Flags>,
+    pub(super) stop: StopSwitch,
     pub(super) events_lost: u64,
     pub(super) is_stopped: bool,
     /// The bodies sent last were accepted for another servo.
@@ -38,7 +40,7 @@ impl<const D: usize> ServoEnd<D> {
     /// Real-time: allocates nothing, frees nothing, takes no lock, cannot panic.
     pub fn receive(&mut self, servo: &mut impl AnyServo<D>) {
         let servo = servo.renderer_mut(Key(()));
-        let is_stopped = self.flags.stop.is_set();
+        let is_stopped = self.stop.is_stopped();
         if is_stopped != self.is_stopped {
             self.is_stopped = is_stopped;
             servo.stop(is_stopped);
@@ -48,7 +50,7 @@ impl<const D: usize> ServoEnd<D> {
         if let Some(bodies) = &mut edits.bodies {
             self.is_foreign = !servo.adopt(bodies);
             if self.is_foreign {
-                self.flags.stop.set(true);
+                self.stop.stop();
                 self.is_stopped = true;
                 servo.stop(true);
             }

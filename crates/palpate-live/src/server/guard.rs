@@ -9,8 +9,8 @@
 
 use std::net::{IpAddr, SocketAddr};
 
-use axum::http::header::{HOST, ORIGIN};
-use axum::http::{HeaderMap, HeaderName, StatusCode};
+use tungstenite::http::header::{HOST, ORIGIN};
+use tungstenite::http::{HeaderMap, HeaderName, StatusCode};
 
 /// The headers of all answers: the page runs its own scripts alone, and nothing embeds it.
 pub(super) const HEADERS: [(&str, &str); 7] = [

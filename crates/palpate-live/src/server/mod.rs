@@ -1,192 +1,127 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! The server: its routes.
+//! The server. One thread reads all connections, one writes to them, two make answers that take time.
+//! `docs/decisions/live-server.md` says why.
 
-mod assets;
+mod answers;
 mod connections;
+mod ears;
+mod files;
 mod guard;
 mod limits;
-mod socket;
-mod whole;
+mod mouth;
+mod request;
 
-use std::net::SocketAddr;
+use std::io::Result;
+use std::net::{SocketAddr, TcpListener};
 use std::sync::Arc;
+use std::sync::mpsc::sync_channel;
+use std::thread::{Builder, JoinHandle};
 
-use axum::Router;
-use axum::body::{Body, HttpBody, to_bytes};
-use axum::extract::ws::WebSocketUpgrade;
-use axum::extract::{Path, Query, Request, State};
-use axum::http::{HeaderMap, HeaderName, HeaderValue, StatusCode, header};
-use axum::middleware::{Next, from_fn_with_state};
-use axum::response::{IntoResponse, Response};
-use axum::routing::{get, post};
-use serde::Deserialize;
-use tokio::net::TcpListener;
+use tokio::runtime::Runtime;
 use tokio::sync::{Semaphore, oneshot};
-use tokio::time::timeout;
-use tower_http::compression::CompressionLayer;
 
 use crate::stage::Stage;
-use guard::{Guard, HEADERS};
+use ears::Ears;
+use guard::Guard;
 pub(crate) use guard::{is_token, new_token};
-use limits::{LARGEST_ANSWER, LARGEST_MESSAGE, LARGEST_TRACE, MOST_TRACES, TRACE_PATIENCE};
-use whole::Whole;
+use limits::{MOST_KNOWN, MOST_REQUESTS, MOST_TRACES};
 
-/// What all requests share.
-#[derive(Clone, Debug)]
-struct Shared {
-    stage: Arc<Stage>,
-    guard: Arc<Guard>,
-    /// The places of traces, which are large.
-    traces: Arc<Semaphore>,
+/// The server, until it is dropped.
+#[derive(Debug)]
+pub(crate) struct Server {
+    /// Those that read end first, so that nothing new is written.
+    _ears: Thread,
+    _mouth: Thread,
 }
 
-/// The token of a request.
-#[derive(Debug, Deserialize)]
-struct Token {
-    token: Option<String>,
+/// A thread that ends when this is dropped.
+#[derive(Debug)]
+struct Thread {
+    end: Option<oneshot::Sender<()>>,
+    thread: Option<JoinHandle<()>>,
 }
 
-/// Serves until `end` is dropped or sent.
-pub(crate) async fn serve(
-    listener: TcpListener,
-    address: SocketAddr,
-    token: String,
-    stage: Arc<Stage>,
-    end: oneshot::Receiver<()>,
-) {
-    let guard = Arc::new(Guard::new(address, token));
-    let shared = Shared { stage, guard, traces: Arc::new(Semaphore::new(MOST_TRACES)) };
-    let router = Router::new()
-        .route("/", get(|| async { assets::answer("index.html") }))
-        .route("/{*path}", get(|Path(path): Path<String>| async move { assets::answer(&path) }))
-        .layer(CompressionLayer::new())
-        .route("/socket", get(socket))
-        .route("/stop", post(stop))
-        .route("/scene.json", get(scene))
-        .route("/trace.csv", get(trace).post(take_trace))
-        .layer(from_fn_with_state(shared.clone(), guarded))
-        .with_state(shared);
-    tokio::select! {
-        never = connections::serve(listener, router) => match never {},
-        _ = end => {}
+impl Server {
+    /// Serves the pages of a stage.
+    ///
+    /// # Errors
+    ///
+    /// If the operating system gives no thread.
+    pub(crate) fn start(
+        listener: TcpListener,
+        address: SocketAddr,
+        token: String,
+        stage: &Arc<Stage>,
+    ) -> Result<Self> {
+        let (ear_runtime, mouth_runtime) = (runtime()?, runtime()?);
+        let mouth = mouth_runtime.handle().clone();
+        let (requests, asked) = sync_channel(MOST_REQUESTS);
+        answers::start(asked, stage, &mouth);
+        let ears = Ears {
+            stage: Arc::clone(stage),
+            guard: Guard::new(address, token),
+            mouth,
+            requests,
+            known: Arc::new(Semaphore::new(MOST_KNOWN)),
+            traces: Arc::new(Semaphore::new(MOST_TRACES)),
+        };
+        let mouth = Thread::start("palpate writes", mouth_runtime, std::future::pending())?;
+        let listen = async move {
+            // Made in the runtime, whose thread it belongs to.
+            let Ok(listener) = tokio::net::TcpListener::from_std(listener) else { return };
+            match ears::listen(listener, ears).await {}
+        };
+        let ears = Thread::start("palpate reads", ear_runtime, listen)?;
+        Ok(Self { _ears: ears, _mouth: mouth })
     }
 }
 
-/// Checks the host of every request, sets the headers of every answer, and says in words what is refused.
-async fn guarded(State(shared): State<Shared>, request: Request, next: Next) -> Response {
-    let mut response = match shared.guard.check_host(request.headers()) {
-        Ok(()) => next.run(request).await,
-        Err(status) => status.into_response(),
-    };
-    if response.body().is_end_stream()
-        && let Some(words) = in_words(response.status())
-    {
-        response = (response.status(), words).into_response();
+/// Reads bytes as the head of a request, of whoever sent it.
+#[cfg(any(test, feature = "fuzzing"))]
+pub(crate) fn take_head(bytes: &[u8]) {
+    let address = SocketAddr::from(([127, 0, 0, 1], 80));
+    let guard = Guard::new(address, "0".repeat(32));
+    if let Ok((head, length)) = request::read(bytes) {
+        assert!(length <= bytes.len());
+        let _ = (request::takes_gzip(&head), request::waits_for_leave(&head));
+        let _ = request::Route::of(&head, &guard);
     }
-    for (name, value) in HEADERS {
-        let name = HeaderName::from_static(name);
-        response.headers_mut().insert(name, HeaderValue::from_static(value));
-    }
-    response
 }
 
-/// Why a request is refused, by the status of its answer.
-fn in_words(status: StatusCode) -> Option<&'static str> {
-    Some(match status {
-        StatusCode::UNAUTHORIZED => {
-            "The token is missing or wrong: open the address that the program printed, to its end.\n"
+/// A runtime of one thread.
+fn runtime() -> Result<Runtime> {
+    tokio::runtime::Builder::new_current_thread().enable_all().build()
+}
+
+impl Thread {
+    fn start(
+        name: &str,
+        runtime: Runtime,
+        work: impl Future<Output = ()> + Send + 'static,
+    ) -> Result<Self> {
+        let (end, ended) = oneshot::channel();
+        let run = move || {
+            runtime.block_on(async {
+                tokio::select! {
+                    () = work => {}
+                    // It is dropped.
+                    _ = ended => {}
+                }
+            });
+        };
+        let thread = Builder::new().name(name.to_owned()).spawn(run)?;
+        Ok(Self { end: Some(end), thread: Some(thread) })
+    }
+}
+
+impl Drop for Thread {
+    fn drop(&mut self) {
+        drop(self.end.take());
+        if let Some(thread) = self.thread.take() {
+            // A panic in it was printed when it happened.
+            let _ = thread.join();
         }
-        StatusCode::FORBIDDEN => "The request comes from the page of another server.\n",
-        StatusCode::MISDIRECTED_REQUEST => {
-            "The host of the request is not one at which this server listens.\n"
-        }
-        StatusCode::NOT_FOUND => "There is nothing at this path.\n",
-        StatusCode::REQUEST_TIMEOUT => "The trace came too slowly.\n",
-        StatusCode::PAYLOAD_TOO_LARGE => "The trace is too large.\n",
-        StatusCode::SERVICE_UNAVAILABLE => "The program is busy: ask again.\n",
-        _ => return None,
-    })
-}
-
-async fn socket(
-    State(shared): State<Shared>,
-    Query(query): Query<Token>,
-    headers: HeaderMap,
-    upgrade: WebSocketUpgrade,
-) -> Result<Response, StatusCode> {
-    shared.guard.check_origin(&headers)?;
-    shared.guard.check_token(query.token.as_deref())?;
-    let upgrade = upgrade
-        .max_message_size(LARGEST_MESSAGE)
-        .max_frame_size(LARGEST_MESSAGE)
-        .max_write_buffer_size(LARGEST_ANSWER)
-        .write_buffer_size(0);
-    Ok(upgrade.on_upgrade(|socket| socket::speak(socket, shared.stage)))
-}
-
-async fn stop(
-    State(shared): State<Shared>,
-    Query(query): Query<Token>,
-    headers: HeaderMap,
-) -> Result<StatusCode, StatusCode> {
-    shared.guard.check_origin(&headers)?;
-    shared.guard.check_token(query.token.as_deref())?;
-    shared.stage.stop.set(true);
-    Ok(StatusCode::NO_CONTENT)
-}
-
-async fn scene(
-    State(shared): State<Shared>,
-    Query(query): Query<Token>,
-) -> Result<Response, StatusCode> {
-    shared.guard.check_token(query.token.as_deref())?;
-    let text = shared.stage.text();
-    Ok(([(header::CONTENT_TYPE, "application/json")], text).into_response())
-}
-
-async fn trace(
-    State(shared): State<Shared>,
-    Query(query): Query<Token>,
-) -> Result<Response, StatusCode> {
-    shared.guard.check_token(query.token.as_deref())?;
-    let place = Arc::clone(&shared.traces).try_acquire_owned();
-    let place = place.map_err(|_| StatusCode::SERVICE_UNAVAILABLE)?;
-    let stage = Arc::clone(&shared.stage);
-    let rows = tokio::task::spawn_blocking(move || {
-        stage.trace().map(|trace| trace.map(|trace| trace()))
-    });
-    let rows = rows.await.ok().flatten().ok_or(StatusCode::SERVICE_UNAVAILABLE)?;
-    let Some(rows) = rows else {
-        let words = "Nothing is recorded yet: send `record` first.\n";
-        return Ok((StatusCode::NOT_FOUND, words).into_response());
-    };
-    let body = Body::new(Whole::new(rows.into(), place));
-    Ok(([(header::CONTENT_TYPE, "text/csv")], body).into_response())
-}
-
-async fn take_trace(
-    State(shared): State<Shared>,
-    Query(query): Query<Token>,
-    headers: HeaderMap,
-    body: Body,
-) -> Result<Response, StatusCode> {
-    shared.guard.check_origin(&headers)?;
-    shared.guard.check_token(query.token.as_deref())?;
-    let place = Arc::clone(&shared.traces).try_acquire_owned();
-    let place = place.map_err(|_| StatusCode::SERVICE_UNAVAILABLE)?;
-    let bytes = timeout(TRACE_PATIENCE, to_bytes(body, LARGEST_TRACE)).await;
-    let bytes = bytes.map_err(|_| StatusCode::REQUEST_TIMEOUT)?;
-    let bytes = bytes.map_err(|_| StatusCode::PAYLOAD_TOO_LARGE)?;
-    let stage = Arc::clone(&shared.stage);
-    let taken = tokio::task::spawn_blocking(move || {
-        let taken = stage.take_trace(&bytes);
-        drop(place);
-        taken
-    });
-    Ok(match taken.await.map_err(|_| StatusCode::INTERNAL_SERVER_ERROR)? {
-        Ok(()) => StatusCode::NO_CONTENT.into_response(),
-        Err(why) => (StatusCode::UNPROCESSABLE_ENTITY, why).into_response(),
-    })
+    }
 }

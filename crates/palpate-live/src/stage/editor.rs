@@ -13,15 +13,18 @@ use palpate::haptics::Material;
 use palpate::scene::{AnyScene, Scene, described_primitive, schema};
 use serde_json::{Value, json};
 
+use super::Shown;
 use super::described::{self, Drawing};
 use super::document::{Document, Refusal};
 use super::file::read_file;
 use super::hand::tour;
+use super::kept::Kept;
+use super::letter::Letter;
 use super::pages::{PageId, Pages};
 use super::performance::{AnyTour, Changed, Order, Showing};
 use super::room::Terms;
-use super::{Shown, Text};
-use crate::wire::{Ask, Change, Question, VERSION};
+use super::work::{Watch, Work};
+use crate::wire::{Ask, Change, Question, Unreadable, VERSION};
 
 /// How often the file of the scene is looked at.
 const LOOK: Duration = Duration::from_millis(500);
@@ -31,6 +34,15 @@ const MISSES_UNTIL_TOLD: u32 = 2;
 
 /// The most tours that are searched at once: of a steep scene one takes minutes.
 const MOST_SEARCHES: usize = 3;
+
+/// What the thread is asked to do.
+#[derive(Debug)]
+pub(super) enum Edit {
+    /// What a page asks for, which is not read yet.
+    Asked(Letter),
+    /// To say when all that came before is done.
+    Settle(SyncSender<()>),
+}
 
 /// The state of the thread.
 #[derive(Debug)]
@@ -48,7 +60,8 @@ pub(super) struct Editor {
     orders: SyncSender<Order>,
     pages: Arc<Pages>,
     shown: Arc<Shown>,
-    text: Arc<Text>,
+    kept: Arc<Kept>,
+    watch: Watch,
     spent: Spent,
     /// The page that edited last.
     editing: Option<PageId>,
@@ -94,7 +107,8 @@ impl Editor {
         terms: Terms,
         orders: SyncSender<Order>,
         pages: Arc<Pages>,
-        (shown, text): (Arc<Shown>, Arc<Text>),
+        (shown, kept): (Arc<Shown>, Arc<Kept>),
+        watch: Watch,
     ) -> Self {
         Self {
             document,
@@ -107,7 +121,8 @@ impl Editor {
             orders,
             pages,
             shown,
-            text,
+            kept,
+            watch,
             spent: Spent::default(),
             editing: None,
             to_tour: None,
@@ -118,15 +133,15 @@ impl Editor {
         }
     }
 
-    pub(super) fn run(mut self, questions: &Receiver<(PageId, Question)>) {
+    pub(super) fn run(mut self, edits: &Receiver<Edit>) {
         loop {
-            match questions.recv_timeout(LOOK) {
-                Ok((page, Question { id, ask })) => match self.obey(page, ask) {
-                    Ok(()) => self.pages.answer(page, id, json!({ "do": "done" })),
-                    Err(Refusal { message, problems }) => {
-                        self.pages.refuse(page, id, &message, &problems);
-                    }
-                },
+            match edits.recv_timeout(LOOK) {
+                Ok(Edit::Asked(letter)) => {
+                    self.watch.begins(Work::Edit);
+                    self.take(&letter);
+                }
+                // Who waited may have gone.
+                Ok(Edit::Settle(done)) => _ = done.try_send(()),
                 Err(RecvTimeoutError::Timeout) => {
                     self.look_at_file();
                     self.look_at_data();
@@ -135,6 +150,21 @@ impl Editor {
                 Err(RecvTimeoutError::Disconnected) => return,
             }
         }
+    }
+
+    fn take(&mut self, letter: &Letter) {
+        let page = letter.page;
+        let Question { id, ask } = match letter.read() {
+            Ok(question) => question,
+            Err(Unreadable { id, why }) => return self.pages.not_read(page, id, &why),
+        };
+        match self.obey(page, ask) {
+            Ok(()) => self.pages.answer(page, id, json!({ "do": "done" })),
+            Err(Refusal { message, problems }) => {
+                self.pages.refuse(page, id, &message, &problems);
+            }
+        }
+        self.kept.set(&self.document);
     }
 
     fn obey(&mut self, page: PageId, ask: Ask) -> Result<(), Refusal> {
@@ -200,9 +230,12 @@ impl Editor {
             }),
         );
         if self.revision == 0 {
-            return self.show("open", false);
+            self.show("open", false)?;
+        } else {
+            self.pages.send(page, &self.message);
         }
-        self.pages.send(page, &self.message);
+        // Who leads the hand knows of the stop that holds.
+        self.orders.send(Order::TellStop(page)).map_err(|_| "the program ends".to_owned())?;
         Ok(())
     }
 
@@ -329,7 +362,7 @@ impl Editor {
         self.data = data_files(&scene, self.document.file.as_deref());
         self.revision = revision;
         self.shown.set(Arc::clone(&scene), revision);
-        self.text.set(self.document.text());
+        self.kept.set(&self.document);
         let mut message = described::described(&self.document, &scene);
         message["by"] = by.into();
         message["revision"] = revision.into();

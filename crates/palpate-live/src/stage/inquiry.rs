@@ -12,10 +12,12 @@ use palpate::render::{Camera, Color, Lens, Settings, Shadows, Subject, render};
 use palpate::scene::{AnyScene, BuiltScene};
 
 use super::Shown;
+use super::letter::Letter;
 use super::pages::{Out, PageId, Pages};
 use super::points::point_of;
 use super::questions::{Answer, CANCELLED, Cancel, answer};
-use crate::wire::{Ask, Question, picture};
+use super::work::{Watch, Work};
+use crate::wire::{Ask, Unreadable, picture};
 
 /// The threads, beside those of the servo, of the hand and of the editor.
 const THREADS: usize = 3;
@@ -35,14 +37,23 @@ pub(super) struct Inquiries {
 
 #[derive(Debug, Default)]
 struct State {
-    waiting: VecDeque<(PageId, Question)>,
-    working: Vec<Work>,
+    waiting: VecDeque<Asked>,
+    working: Vec<Working>,
     has_ended: bool,
+}
+
+/// A question that waits. It is read when its turn comes.
+#[derive(Debug)]
+pub(super) struct Asked {
+    pub(super) letter: Letter,
+    pub(super) id: Option<u32>,
+    /// Whether its answer takes no time that a person notices.
+    pub(super) is_short: bool,
 }
 
 /// A question that is worked on.
 #[derive(Debug)]
-struct Work {
+struct Working {
     page: PageId,
     id: Option<u32>,
     is_short: bool,
@@ -56,22 +67,29 @@ impl Inquiries {
     }
 
     /// Begins to answer.
-    pub(super) fn start(self: &Arc<Self>, pages: &Arc<Pages>, shown: &Arc<Shown>) {
+    pub(super) fn start(
+        self: &Arc<Self>,
+        pages: &Arc<Pages>,
+        shown: &Arc<Shown>,
+        watch: &Watch,
+    ) {
         for _ in 0..THREADS {
             let (inquiries, pages, shown) =
                 (Arc::clone(self), Arc::clone(pages), Arc::clone(shown));
+            let watch = watch.clone();
             // It ends with the stage; nothing waits for what it still does.
-            std::thread::spawn(move || inquiries.run(&pages, &shown));
+            std::thread::spawn(move || inquiries.run(&pages, &shown, &watch));
         }
     }
 
     /// Takes a question; whether there is no room for it.
-    pub(super) fn take(&self, page: PageId, question: Question) -> bool {
+    pub(super) fn take(&self, asked: Asked) -> bool {
         let mut state = self.state();
+        let page = asked.letter.page;
         let is_full =
-            state.waiting.iter().filter(|(other, _)| *other == page).count() >= WAITING;
+            state.waiting.iter().filter(|other| other.letter.page == page).count() >= WAITING;
         if !is_full {
-            state.waiting.push_back((page, question));
+            state.waiting.push_back(asked);
             self.changed.notify_one();
         }
         is_full
@@ -80,8 +98,7 @@ impl Inquiries {
     /// Ends a question, whether it waits or is worked on; whether there is one of this number.
     pub(super) fn cancel(&self, page: PageId, id: u32, pages: &Pages) -> bool {
         let mut state = self.state();
-        let is_it =
-            |(other, question): &(PageId, Question)| *other == page && question.id == Some(id);
+        let is_it = |asked: &Asked| asked.letter.page == page && asked.id == Some(id);
         if let Some(place) = state.waiting.iter().position(is_it) {
             state.waiting.remove(place);
             pages.refuse(page, Some(id), CANCELLED, &[]);
@@ -91,15 +108,12 @@ impl Inquiries {
         work.map(|work| work.cancel.set()).is_some()
     }
 
-    /// Forgets the questions of a page that is closed.
-    pub(super) fn gone(&self, page: PageId) {
+    /// Forgets the questions of pages that are closed.
+    pub(super) fn forget_closed(&self, pages: &Pages) {
         let mut state = self.state();
-        state.waiting.retain(|(other, _)| *other != page);
-        state
-            .working
-            .iter()
-            .filter(|work| work.page == page)
-            .for_each(|work| work.cancel.set());
+        state.waiting.retain(|asked| pages.is_open(asked.letter.page));
+        let closed = state.working.iter().filter(|work| !pages.is_open(work.page));
+        closed.for_each(|work| work.cancel.set());
     }
 
     /// Ends the threads.
@@ -110,31 +124,43 @@ impl Inquiries {
         self.changed.notify_all();
     }
 
-    fn run(&self, pages: &Pages, shown: &Shown) {
-        while let Some((page, question, cancel)) = self.next() {
-            let id = question.id;
+    fn run(&self, pages: &Pages, shown: &Shown, watch: &Watch) {
+        while let Some((Asked { letter, id, .. }, cancel)) = self.next() {
+            let page = letter.page;
             let _done = Done { inquiries: self, cancel: &cancel };
-            match shown.get() {
-                Some((scene, revision)) => match answered(&scene, &question.ask, &cancel) {
-                    Ok(Answer::Text(text)) => pages.answer(page, id, text),
-                    Ok(Answer::Grid(grid)) => {
-                        let bytes = grid.bytes(id.unwrap_or_default(), revision);
-                        pages.send(page, Out::Binary(bytes));
-                    }
-                    Ok(Answer::Picture(png)) => {
-                        let bytes = picture(id.unwrap_or_default(), revision, &png);
-                        pages.send(page, Out::Binary(bytes));
-                    }
-                    Err(why) => pages.refuse(page, id, &why, &[]),
-                },
-                None => pages.refuse(page, id, "there is no scene yet: say hello first", &[]),
+            watch.begins(Work::Question);
+            let question = letter.read();
+            drop(letter);
+            let (question, scene) = match (question, shown.get()) {
+                (Ok(question), Some(scene)) => (question, scene),
+                (Ok(_), None) => {
+                    pages.refuse(page, id, "there is no scene yet: say hello first", &[]);
+                    continue;
+                }
+                (Err(Unreadable { id, why }), _) => {
+                    pages.not_read(page, id, &why);
+                    continue;
+                }
+            };
+            let (scene, revision) = scene;
+            match answered(&scene, &question.ask, &cancel) {
+                Ok(Answer::Text(text)) => pages.answer(page, id, text),
+                Ok(Answer::Grid(grid)) => {
+                    let bytes = grid.bytes(id.unwrap_or_default(), revision);
+                    pages.send(page, Out::Binary(bytes));
+                }
+                Ok(Answer::Picture(png)) => {
+                    let bytes = picture(id.unwrap_or_default(), revision, &png);
+                    pages.send(page, Out::Binary(bytes));
+                }
+                Err(why) => pages.refuse(page, id, &why, &[]),
             }
         }
     }
 
     /// Waits for a question whose page has no other of its kind, short or long, in work; `None` at the
     /// end.
-    fn next(&self) -> Option<(PageId, Question, Cancel)> {
+    fn next(&self) -> Option<(Asked, Cancel)> {
         let mut state = self.state();
         loop {
             if state.has_ended {
@@ -142,21 +168,20 @@ impl Inquiries {
             }
             let State { waiting, working, .. } = &mut *state;
             let long = working.iter().filter(|work| !work.is_short).count();
-            let is_free = |(page, question): &(PageId, Question)| {
-                let is_short = is_short(&question.ask);
+            let is_free = |asked: &Asked| {
                 // One thread is left to short questions.
-                (is_short || long + 1 < THREADS)
-                    && working
-                        .iter()
-                        .all(|work| work.page != *page || work.is_short != is_short)
+                (asked.is_short || long + 1 < THREADS)
+                    && working.iter().all(|work| {
+                        work.page != asked.letter.page || work.is_short != asked.is_short
+                    })
             };
             if let Some(place) = waiting.iter().position(is_free)
-                && let Some((page, question)) = waiting.remove(place)
+                && let Some(asked) = waiting.remove(place)
             {
-                let (id, cancel) = (question.id, Cancel::default());
-                let is_short = is_short(&question.ask);
-                working.push(Work { page, id, is_short, cancel: cancel.clone() });
-                return Some((page, question, cancel));
+                let cancel = Cancel::default();
+                let (page, id, is_short) = (asked.letter.page, asked.id, asked.is_short);
+                working.push(Working { page, id, is_short, cancel: cancel.clone() });
+                return Some((asked, cancel));
             }
             state = self.changed.wait(state).unwrap_or_else(PoisonError::into_inner);
         }
@@ -184,11 +209,6 @@ pub(crate) fn answer_alone(scene: &AnyScene, ask: &Ask) -> Option<String> {
         Ok(Answer::Text(text)) => Some(text.to_string()),
         _ => None,
     }
-}
-
-/// Whether the answer to a question takes no time that a person notices.
-fn is_short(ask: &Ask) -> bool {
-    matches!(ask, Ask::Probe { .. } | Ask::Ball { .. })
 }
 
 fn answered(scene: &AnyScene, ask: &Ask, cancel: &Cancel) -> Result<Answer, String> {

@@ -3,45 +3,65 @@
 
 //! One world: the scene as it is edited, the servo that renders it, and who asks about it.
 //!
-//! Threads work beside the servo, so that none waits for another's work: one leads the hand and
-//! makes frames, one edits and builds scenes, some answer questions. They and the servo share
-//! lock-free buffers alone. A stop goes to the servo from the thread that reads it.
+//! Threads work beside the servo, so that none waits for another's work: one reads messages, one leads
+//! the hand and makes frames, one edits and builds scenes, some answer questions. They and the servo
+//! share lock-free buffers alone. A stop goes to the servo from the thread that reads the socket.
 
+mod clerk;
 mod described;
 mod document;
 mod editor;
 mod file;
 mod hand;
 mod inquiry;
+mod kept;
+mod letter;
+mod life;
 mod pages;
 mod performance;
 mod points;
 mod questions;
 mod recording;
 mod room;
+mod stop;
 pub(crate) mod trace;
+mod work;
 
 use std::path::PathBuf;
-use std::sync::mpsc::{SyncSender, TrySendError, sync_channel};
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::mpsc::{SyncSender, sync_channel};
+use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::JoinHandle;
+use std::time::Duration;
 
-use axum::body::Bytes;
 use palpate::haptics::{DeviceProfile, StopSwitch};
 use palpate::scene::AnyScene;
 use tokio::sync::watch;
+use tungstenite::{Bytes, Utf8Bytes};
 
-use crate::wire::{Ask, Question};
+use crate::wire::is_stop;
+use clerk::Clerk;
 use document::Document;
 pub(crate) use document::Refusal;
+use editor::Edit;
 use inquiry::Inquiries;
 #[cfg(any(test, feature = "fuzzing"))]
 pub(crate) use inquiry::answer_alone;
-pub(crate) use pages::{Out, PageId, Pages};
+use kept::Kept;
+pub use kept::{Unsaved, UnsavedError};
+use letter::Letter;
+pub(crate) use letter::Waiting;
+pub(crate) use pages::{Opened, Out, Outbox, PageId, Pages};
 use performance::Order;
 use recording::{AnyReplay, Trace};
 use room::Terms;
 pub(crate) use room::{GivenClock, MOST_POINTS};
+pub(crate) use stop::{Presser, Stop};
+pub(crate) use work::Watch;
+pub use work::Work;
+
+/// Messages of all pages that may wait to be read: more end their page.
+const LETTERS: usize = 4096;
 
 /// Edits that may wait: more are refused.
 const WAITING: usize = 64;
@@ -59,68 +79,40 @@ pub(crate) struct Program {
     pub(crate) rate: f64,
     pub(crate) points: usize,
     pub(crate) clock: GivenClock,
+    /// The emergency stop, which others may press too.
+    pub(crate) stop: StopSwitch,
+    pub(crate) watch: Watch,
 }
 
 /// The world of all pages.
 #[derive(Debug)]
 pub(crate) struct Stage {
+    letters: SyncSender<Letter>,
     orders: SyncSender<Order>,
-    edits: SyncSender<(PageId, Question)>,
+    edits: SyncSender<Edit>,
     inquiries: Arc<Inquiries>,
     pub(crate) stop: Arc<Stop>,
     pub(crate) frames: watch::Receiver<Bytes>,
     pub(crate) pages: Arc<Pages>,
-    text: Arc<Text>,
+    /// Counts while the thread that reads sockets goes on.
+    pub(crate) pulse: Arc<Pulse>,
+    pub(crate) watch: Watch,
+    kept: Arc<Kept>,
     shown: Arc<Shown>,
-    performance: Option<JoinHandle<()>>,
+    performance: Mutex<Option<JoinHandle<()>>>,
 }
 
-/// The text of the scene as a file.
+/// Counts while a thread goes on.
 #[derive(Debug, Default)]
-struct Text(Mutex<String>);
+pub(crate) struct Pulse(AtomicU64);
 
-impl Text {
-    fn get(&self) -> String {
-        self.0.lock().unwrap_or_else(PoisonError::into_inner).clone()
+impl Pulse {
+    pub(crate) fn beat(&self) {
+        self.0.fetch_add(1, Ordering::Relaxed);
     }
 
-    fn set(&self, text: &str) {
-        text.clone_into(&mut self.0.lock().unwrap_or_else(PoisonError::into_inner));
-    }
-}
-
-/// The emergency stop of whatever servo runs.
-#[derive(Debug, Default)]
-pub(crate) struct Stop(Mutex<(Option<StopSwitch>, bool)>);
-
-impl Stop {
-    fn state(&self) -> MutexGuard<'_, (Option<StopSwitch>, bool)> {
-        self.0.lock().unwrap_or_else(PoisonError::into_inner)
-    }
-
-    /// Sets all forces to zero, or ends that.
-    pub(crate) fn set(&self, is_stopped: bool) {
-        let mut state = self.state();
-        state.1 = is_stopped;
-        if let Some(switch) = &state.0 {
-            if is_stopped { switch.stop() } else { switch.release() }
-        }
-    }
-
-    /// Whether forces are held at zero.
-    fn is_stopped(&self) -> bool {
-        self.state().1
-    }
-
-    /// Goes on with another servo, which is stopped if the last one was.
-    fn take(&self, switch: StopSwitch) {
-        let mut state = self.state();
-        if state.1 {
-            switch.stop()
-        } else {
-            switch.release()
-        }
-        state.0 = Some(switch);
+    fn count(&self) -> u64 {
+        self.0.load(Ordering::Relaxed)
     }
 }
 
@@ -145,103 +137,100 @@ impl Stage {
     ///
     /// If the scene has an error.
     pub(crate) fn new(program: Program) -> Result<Self, Refusal> {
-        let Program { name, file, text, profile, rate, points, clock } = program;
+        let Program { name, file, text, profile, rate, points, clock, stop, watch } = program;
         let document = Document::open(name, file, &text)?;
-        let shared_text = Arc::<Text>::default();
-        shared_text.set(&text);
+        let kept = Arc::new(Kept::of(&document));
         let terms = Terms { profile, rate, points, clock };
-        let (stop, pages, shown) =
-            (Arc::<Stop>::default(), Arc::<Pages>::default(), Arc::<Shown>::default());
+        let (pages, shown, pulse) =
+            (Arc::<Pages>::default(), Arc::<Shown>::default(), Arc::<Pulse>::default());
+        let (stop, stops) = stop::stop(stop);
+        let stop = Arc::new(stop);
+        let (letters, received) = sync_channel(LETTERS);
         let (orders, ordered) = sync_channel(ORDERS);
         let (edits, edited) = sync_channel(WAITING);
         let inquiries = Arc::<Inquiries>::default();
         let (frame_sender, frames) = watch::channel(Bytes::new());
         let performance = performance::Performance::new(
             terms.clone(),
-            Arc::clone(&stop),
+            stops,
             Arc::clone(&pages),
             frame_sender,
+            Arc::clone(&pulse),
+            Arc::clone(&inquiries),
         );
         let editor = editor::Editor::new(
             document,
             terms,
             orders.clone(),
             Arc::clone(&pages),
-            (Arc::clone(&shown), Arc::clone(&shared_text)),
+            (Arc::clone(&shown), Arc::clone(&kept)),
+            watch.clone(),
         );
+        let clerk = Clerk {
+            orders: orders.clone(),
+            edits: edits.clone(),
+            inquiries: Arc::clone(&inquiries),
+            stop: Arc::clone(&stop),
+            pages: Arc::clone(&pages),
+            watch: watch.clone(),
+        };
         let performance = std::thread::spawn(move || performance.run(&ordered));
         // These end when nobody can ask them any more; nothing waits for what they still do.
         std::thread::spawn(move || editor.run(&edited));
-        inquiries.start(&pages, &shown);
-        let performance = Some(performance);
-        let text = shared_text;
-        Ok(Self { orders, edits, inquiries, stop, frames, pages, text, shown, performance })
+        std::thread::spawn(move || clerk.run(&received));
+        inquiries.start(&pages, &shown, &watch);
+        Ok(Self {
+            letters,
+            orders,
+            edits,
+            inquiries,
+            stop,
+            frames,
+            pages,
+            pulse,
+            watch,
+            kept,
+            shown,
+            performance: Mutex::new(Some(performance)),
+        })
     }
 
-    /// Takes a message of a page.
-    pub(crate) fn take(&self, page: PageId, question: Question) {
-        let id = question.id;
-        let is_full = match question.ask {
-            Ask::Stop {} | Ask::Release {} => {
-                self.stop.set(matches!(question.ask, Ask::Stop {}));
-                self.pages.answer(page, id, serde_json::json!({ "do": "done" }));
-                return;
-            }
-            Ask::Hand { target: Some(target), point, from, held: true } => {
-                is_full(self.orders.try_send(Order::Lead { page, id, target, point, from }))
-            }
-            Ask::Hand { held: false, .. } => self.order(page, id, Order::LetGo),
-            Ask::Hand { target: None, .. } => {
-                self.pages.refuse(page, id, "a hand that is held has a target", &[]);
-                return;
-            }
-            Ask::Tour { on } => self.order(page, id, Order::Tour(on)),
-            Ask::Clock { speed, step } => {
-                is_full(self.orders.try_send(Order::Clock { page, id, speed, step }))
-            }
-            Ask::Record { on } => self.order(page, id, Order::Record(on)),
-            Ask::Replay { on } => is_full(self.orders.try_send(Order::Replay { page, id, on })),
-            Ask::Hello { .. }
-            | Ask::Edit { .. }
-            | Ask::Undo {}
-            | Ask::Redo {}
-            | Ask::Open { .. }
-            | Ask::Save { .. } => is_full(self.edits.try_send((page, question))),
-            Ask::Cancel { question } => {
-                if self.inquiries.cancel(page, question, &self.pages) {
-                    self.pages.answer(page, id, serde_json::json!({ "do": "done" }));
-                } else {
-                    let why = format!("no question of number {question} is worked on");
-                    self.pages.refuse(page, id, &why, &[]);
-                }
-                false
-            }
-            _ => self.inquiries.take(page, question),
-        };
-        if is_full {
-            let why = "the program is busy with what was asked before: ask again";
-            self.pages.refuse(page, id, why, &[]);
+    /// Takes a message of a page, of which `waiting` counts what waits. A stop acts at once.
+    ///
+    /// Waits for no other thread.
+    pub(crate) fn take(&self, page: PageId, text: Utf8Bytes, waiting: &Waiting) {
+        if is_stop(&text) {
+            self.stop.press(Presser::Page(page, text));
+            return;
+        }
+        let letter = waiting.letter(page, text);
+        let taken = letter.and_then(|letter| self.letters.try_send(letter).ok());
+        if taken.is_none() {
+            self.pages.close(page, "the page sent more than the program could read".to_owned());
         }
     }
 
-    /// Gives an order that cannot be refused; whether there is no room for it.
-    fn order(&self, page: PageId, id: Option<u32>, order: Order) -> bool {
-        let is_full = is_full(self.orders.try_send(order));
-        if !is_full {
-            self.pages.answer(page, id, serde_json::json!({ "do": "done" }));
+    /// Takes a message of a page that is closed: a stop acts, and nothing else.
+    pub(crate) fn take_last(&self, text: &str) {
+        if is_stop(text) {
+            self.stop.press_unnamed();
         }
-        is_full
-    }
-
-    /// A page is closed.
-    pub(crate) fn gone(&self, page: PageId) {
-        self.pages.remove(page);
-        self.inquiries.gone(page);
     }
 
     /// The text of the scene as a file.
     pub(crate) fn text(&self) -> String {
-        self.text.get()
+        self.kept.text()
+    }
+
+    /// The scene with its edits, if they are not saved; edits that wait are made first, as far as that
+    /// takes no longer than `patience`.
+    pub(crate) fn unsaved(&self, patience: Duration) -> Option<Unsaved> {
+        let (done, made) = sync_channel(1);
+        if self.edits.try_send(Edit::Settle(done)).is_ok() {
+            // An editor that takes longer has its last scene kept.
+            let _ = made.recv_timeout(patience);
+        }
+        self.kept.unsaved()
     }
 
     /// Takes a trace to be replayed in the scene that is shown.
@@ -268,19 +257,23 @@ impl Stage {
     }
 }
 
-fn is_full<T>(sent: Result<(), TrySendError<T>>) -> bool {
-    sent.is_err()
-}
-
-impl Drop for Stage {
-    /// Ends the servo with zero forces.
-    fn drop(&mut self) {
+impl Stage {
+    /// Ends the servo with zero forces, whoever still holds the stage.
+    pub(crate) fn end(&self) {
         self.inquiries.end();
-        // A full queue is emptied within a frame.
-        let _ = self.orders.send(Order::End);
-        if let Some(performance) = self.performance.take() {
+        let performance =
+            self.performance.lock().unwrap_or_else(PoisonError::into_inner).take();
+        if let Some(performance) = performance {
+            // A full queue is emptied within a frame.
+            let _ = self.orders.send(Order::End);
             // A panic in it was printed when it happened.
             let _ = performance.join();
         }
+    }
+}
+
+impl Drop for Stage {
+    fn drop(&mut self) {
+        self.end();
     }
 }

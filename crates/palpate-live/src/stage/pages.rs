@@ -3,13 +3,16 @@
 
 //! The pages that are open, and what waits to be sent to them.
 
-use std::collections::HashMap;
-use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::collections::BTreeMap;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
 
-use axum::body::Bytes;
-use axum::extract::ws::Utf8Bytes;
 use serde_json::{Value, json};
 use tokio::sync::mpsc;
+use tungstenite::{Bytes, Utf8Bytes};
+
+use super::letter::Waiting;
+use crate::wire::Told;
 
 /// Messages that may wait for a page: a page that takes fewer is closed.
 pub(crate) const WAITING: usize = 256;
@@ -17,11 +20,19 @@ pub(crate) const WAITING: usize = 256;
 /// Grids and pictures, of up to 16 MiB each, that may wait for a page.
 const LARGE_WAITING: usize = 8;
 
+/// The most messages of a page that cannot be read.
+const MOST_UNREADABLE: u32 = 10;
+
+/// Why a page is closed that does not take its messages.
+const TOO_SLOW: &str = "the page took its messages too slowly";
+
 /// A message for a page.
 #[derive(Clone, Debug)]
 pub(crate) enum Out {
     Text(Utf8Bytes),
     Binary(Bytes),
+    /// Bytes of the protocol below messages, such as the answer to a ping.
+    Raw(Bytes),
 }
 
 impl From<&Value> for Out {
@@ -30,8 +41,15 @@ impl From<&Value> for Out {
     }
 }
 
-/// An open page.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+impl From<Told> for Out {
+    fn from(told: Told) -> Self {
+        // It holds numbers alone.
+        Self::Text(serde_json::to_string(&told).unwrap_or_default().into())
+    }
+}
+
+/// An open page. Later pages have larger numbers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub(crate) struct PageId(u64);
 
 /// The open pages.
@@ -40,9 +58,47 @@ pub(crate) struct Pages(Mutex<Open>);
 
 #[derive(Debug, Default)]
 struct Open {
-    pages: HashMap<PageId, mpsc::Sender<Out>>,
+    pages: BTreeMap<PageId, Page>,
     /// The pages that ever were.
     ever: u64,
+}
+
+/// What is kept of a page.
+#[derive(Debug)]
+struct Page {
+    sender: mpsc::Sender<Out>,
+    ending: Arc<OnceLock<String>>,
+    is_hidden: Arc<AtomicBool>,
+    unreadable: u32,
+}
+
+/// A page as its connection sees it.
+#[derive(Debug)]
+pub(crate) struct Opened {
+    pub(crate) page: PageId,
+    pub(crate) outbox: Outbox,
+    /// The bytes of its messages that wait.
+    pub(crate) waiting: Waiting,
+}
+
+/// What waits for a page.
+#[derive(Debug)]
+pub(crate) struct Outbox {
+    pub(crate) messages: mpsc::Receiver<Out>,
+    ending: Arc<OnceLock<String>>,
+    is_hidden: Arc<AtomicBool>,
+}
+
+impl Outbox {
+    /// Why the page was closed, once no more messages come.
+    pub(crate) fn why(&self) -> &str {
+        self.ending.get().map_or(TOO_SLOW, String::as_str)
+    }
+
+    /// Whether the page is not seen.
+    pub(crate) fn is_hidden(&self) -> bool {
+        self.is_hidden.load(Ordering::Relaxed)
+    }
 }
 
 impl Pages {
@@ -52,20 +108,31 @@ impl Pages {
     }
 
     /// Adds a page; `None` if there are `most` already.
-    pub(crate) fn add(&self, most: usize) -> Option<(PageId, mpsc::Receiver<Out>)> {
+    pub(crate) fn add(&self, most: usize) -> Option<Opened> {
         let mut open = self.open();
         if open.pages.len() >= most {
             return None;
         }
-        let (sender, receiver) = mpsc::channel(WAITING);
+        let (sender, messages) = mpsc::channel(WAITING);
         let page = PageId(open.ever);
         open.ever += 1;
-        open.pages.insert(page, sender);
-        Some((page, receiver))
+        let (ending, is_hidden) = (Arc::default(), Arc::default());
+        let outbox =
+            Outbox { messages, ending: Arc::clone(&ending), is_hidden: Arc::clone(&is_hidden) };
+        open.pages.insert(page, Page { sender, ending, is_hidden, unreadable: 0 });
+        Some(Opened { page, outbox, waiting: Waiting::default() })
     }
 
     pub(crate) fn remove(&self, page: PageId) {
         self.open().pages.remove(&page);
+    }
+
+    /// Closes a page, and tells it why.
+    pub(crate) fn close(&self, page: PageId, why: String) {
+        if let Some(page) = self.open().pages.remove(&page) {
+            // The first reason counts.
+            let _ = page.ending.set(why);
+        }
     }
 
     pub(crate) fn is_open(&self, page: PageId) -> bool {
@@ -81,10 +148,22 @@ impl Pages {
         self.open().ever
     }
 
+    /// The open pages that came after so many others.
+    pub(crate) fn since(&self, ever: u64) -> Vec<PageId> {
+        self.open().pages.range(PageId(ever)..).map(|(page, _)| *page).collect()
+    }
+
+    /// Sets whether a page is not seen.
+    pub(crate) fn hide(&self, page: PageId, is_hidden: bool) {
+        if let Some(page) = self.open().pages.get(&page) {
+            page.is_hidden.store(is_hidden, Ordering::Relaxed);
+        }
+    }
+
     /// Sends a message to a page; closes it if too many wait.
     pub(crate) fn send(&self, page: PageId, message: impl Into<Out>) {
         let mut open = self.open();
-        let Some(sender) = open.pages.get(&page) else { return };
+        let Some(Page { sender, .. }) = open.pages.get(&page) else { return };
         let message = message.into();
         let waiting = sender.max_capacity() - sender.capacity();
         let is_too_large = matches!(message, Out::Binary(_)) && waiting >= LARGE_WAITING;
@@ -96,7 +175,7 @@ impl Pages {
     /// Sends a message to all pages.
     pub(crate) fn broadcast(&self, message: impl Into<Out>) {
         let message = message.into();
-        self.open().pages.retain(|_, sender| sender.try_send(message.clone()).is_ok());
+        self.open().pages.retain(|_, page| page.sender.try_send(message.clone()).is_ok());
     }
 
     /// Answers a question that has a number.
@@ -118,6 +197,28 @@ impl Pages {
         }
         self.send(page, &refusal);
     }
+
+    /// Refuses a message that cannot be read; closes a page that sends too many of them.
+    pub(crate) fn not_read(&self, page: PageId, id: Option<u32>, why: &str) {
+        let mut open = self.open();
+        let Some(kept) = open.pages.get_mut(&page) else { return };
+        kept.unreadable += 1;
+        let is_last = kept.unreadable >= MOST_UNREADABLE;
+        drop(open);
+        if is_last {
+            self.close(page, format!("{MOST_UNREADABLE} messages could not be read"));
+        } else {
+            self.refuse(page, id, why, &[]);
+        }
+    }
+}
+
+#[cfg(test)]
+impl Opened {
+    /// The page, and what it is sent.
+    pub(crate) fn parts(self) -> (PageId, mpsc::Receiver<Out>) {
+        (self.page, self.outbox.messages)
+    }
 }
 
 #[cfg(test)]
@@ -127,19 +228,34 @@ mod tests {
     #[test]
     fn a_page_that_takes_nothing_is_closed_and_others_stay() {
         let pages = Pages::default();
-        let (slow, mut left) = pages.add(2).unwrap();
-        let (fast, mut taken) = pages.add(2).unwrap();
+        let (slow, mut left) = pages.add(2).unwrap().parts();
+        let (fast, mut taken) = pages.add(2).unwrap().parts();
         assert!(pages.add(2).is_none());
         for _ in 0..=WAITING {
             pages.broadcast(&json!({ "do": "notice" }));
             assert!(taken.try_recv().is_ok());
         }
         assert_eq!((pages.count(), pages.ever()), (1, 2));
+        assert_eq!((pages.since(0), pages.since(2)), (vec![fast], vec![]));
         pages.answer(fast, Some(3), json!({ "do": "done" }));
         let Ok(Out::Text(answer)) = taken.try_recv() else { panic!("an answer") };
         assert_eq!(answer.as_str(), r#"{"do":"done","id":3}"#);
         pages.send(slow, &json!({}));
         assert_eq!((0..).take_while(|_| left.try_recv().is_ok()).count(), WAITING);
         assert!(left.is_closed());
+    }
+
+    #[test]
+    fn a_page_is_told_why_it_is_closed() {
+        let pages = Pages::default();
+        let Opened { page, outbox, .. } = pages.add(1).unwrap();
+        (1..MOST_UNREADABLE).for_each(|_| pages.not_read(page, None, "noise"));
+        assert!(pages.is_open(page));
+        pages.not_read(page, None, "noise");
+        assert!(!pages.is_open(page));
+        assert_eq!(outbox.why(), "10 messages could not be read");
+        let Opened { page, outbox, .. } = pages.add(1).unwrap();
+        pages.remove(page);
+        assert_eq!(outbox.why(), TOO_SLOW);
     }
 }

@@ -7,17 +7,20 @@ use std::sync::Arc;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender};
 use std::time::{Duration, Instant};
 
-use axum::body::Bytes;
 use palpate::devices::HandPath;
 use palpate::haptics::{Event, StageTicks};
 use palpate::scene::{AnyScene, BuiltScene};
 use serde_json::{Value, json};
 use tokio::sync::watch;
+use tungstenite::Bytes;
 
-use super::Stop;
+use super::Pulse;
+use super::inquiry::Inquiries;
+use super::life::Life;
 use super::pages::{PageId, Pages};
 use super::recording::{AnyReplay, MOST_ROWS, Recording, Trace};
 use super::room::{AnyRoom, Room, Terms, of_either};
+use super::stop::Stops;
 use crate::wire::Frame;
 
 /// How often the hand is led on.
@@ -48,6 +51,14 @@ pub(crate) enum Order {
         from: Option<Vec<f64>>,
     },
     LetGo,
+    /// Gives forces again after a stop.
+    Release {
+        page: PageId,
+        id: Option<u32>,
+        number: Option<u64>,
+    },
+    /// Tells a page that came of the stop that holds.
+    TellStop(PageId),
     Tour(bool),
     /// The tour of the scene of a revision.
     TakeTour {
@@ -116,9 +127,15 @@ pub(crate) enum AnyTour {
 #[derive(Debug)]
 pub(super) struct Performance {
     terms: Terms,
-    stop: Arc<Stop>,
+    stops: Stops,
     pages: Arc<Pages>,
+    /// The pages that were open when they were told their number last.
+    clients: usize,
     frames: watch::Sender<Bytes>,
+    life: Life,
+    inquiries: Arc<Inquiries>,
+    /// The last frame, which goes on beating when its servo has ended.
+    frame: Option<Frame>,
     room: Option<AnyRoom>,
     revision: u32,
     /// The revision with which the servo began.
@@ -137,15 +154,21 @@ pub(super) struct Performance {
 impl Performance {
     pub(super) fn new(
         terms: Terms,
-        stop: Arc<Stop>,
+        stops: Stops,
         pages: Arc<Pages>,
         frames: watch::Sender<Bytes>,
+        pulse: Arc<Pulse>,
+        inquiries: Arc<Inquiries>,
     ) -> Self {
         Self {
             terms,
-            stop,
+            stops,
             pages,
+            clients: 0,
             frames,
+            life: Life::new(pulse),
+            inquiries,
+            frame: None,
             room: None,
             revision: 0,
             began: 0,
@@ -169,6 +192,7 @@ impl Performance {
             }
             let now = Instant::now();
             if now >= next {
+                self.stops.go_on(now, &self.pages);
                 // What was missed is not made up for.
                 next = now + STEP;
                 steps = steps.wrapping_add(1);
@@ -191,6 +215,13 @@ impl Performance {
                 self.pages.answer(page, id, json!({ "do": "done" }));
             }
             Order::LetGo => self.let_go(),
+            Order::Release { page, id, number } => {
+                match self.stops.release(page, number, Instant::now(), &self.pages) {
+                    Ok(()) => self.pages.answer(page, id, json!({ "do": "done" })),
+                    Err(why) => self.pages.refuse(page, id, &why, &[]),
+                }
+            }
+            Order::TellStop(page) => self.stops.tell(page, Instant::now(), &self.pages),
             Order::Tour(is_touring) => {
                 if let Some(room) = &mut self.room {
                     of_either!(AnyRoom, room, room => room.set_touring(is_touring));
@@ -293,8 +324,7 @@ impl Performance {
             (AnyScene::Spatial(scene), _) => self.begun(scene, None).map(AnyRoom::Spatial),
         };
         match began {
-            Ok(mut room) => {
-                self.stop.take(of_either!(AnyRoom, &mut room, room => room.stop_switch()));
+            Ok(room) => {
                 let points = of_either!(AnyRoom, &room, room => room.points());
                 self.room = Some(room);
                 if let Some(rows) = self.recording.end() {
@@ -315,7 +345,8 @@ impl Performance {
     ) -> Result<Room<D>, String> {
         let kept =
             self.room.as_ref().map(|room| of_either!(AnyRoom, room, room => room.kept()));
-        Room::begin(Arc::new(scene.clone()), &self.terms, before, kept, self.stop.is_stopped())
+        let stop = self.stops.switch();
+        Room::begin(Arc::new(scene.clone()), &self.terms, before, kept, stop)
     }
 
     /// Tells all pages what a person should read.
@@ -327,19 +358,25 @@ impl Performance {
         if self.leader.is_some_and(|page| !self.pages.is_open(page)) {
             self.let_go();
         }
-        let Some(room) = self.room.take() else { return };
+        let clients = self.pages.count();
+        if std::mem::replace(&mut self.clients, clients) != clients {
+            self.inquiries.forget_closed(&self.pages);
+            self.pages.broadcast(&json!({ "do": "clients", "count": clients }));
+        }
+        let Some(room) = self.room.take() else { return self.rest(is_frame) };
         if of_either!(AnyRoom, &room, room => room.has_ended()) {
             let why = of_either!(AnyRoom, room, room => room.ending());
             self.recording.end();
             self.notice(&format!("the servo has ended: {why}; the next edit begins another"));
-            return;
+            return self.rest(is_frame);
         }
         let room = self.room.insert(room);
-        let is_stopped = self.stop.is_stopped();
+        let is_stopped = self.stops.is_stopped();
         let is_news = std::mem::replace(&mut self.was_stopped, is_stopped) != is_stopped;
         of_either!(AnyRoom, &mut *room, room => room.set_stopped(is_stopped));
         let speed = of_either!(AnyRoom, &*room, room => room.speed());
-        if is_news && speed.get() == 0.0 {
+        let speed_now = speed.get();
+        if is_news && speed_now == 0.0 {
             // A servo whose clock is held takes note by a tick.
             speed.step(1);
         }
@@ -369,9 +406,26 @@ impl Performance {
         self.tell_safety(safety, is_frame);
         if let Some(mut frame) = frame {
             (frame.revision, frame.is_recording) = (self.revision, self.recording.is_on());
-            // Nobody may look.
-            let _ = self.frames.send(frame.bytes());
+            let pace = (!frame.is_held).then(|| self.terms.rate * speed_now);
+            self.life.watch_servo(frame.ticks, pace, Instant::now());
+            self.send(frame);
         }
+    }
+
+    /// Goes on without a servo: the last frame has no forces, and goes on beating.
+    fn rest(&mut self, is_frame: bool) {
+        if let Some(frame) = self.frame.take().filter(|_| is_frame) {
+            self.life.without_servo();
+            self.send(frame.without_forces());
+        }
+    }
+
+    /// Sends a frame to all pages.
+    fn send(&mut self, mut frame: Frame) {
+        frame.beat = self.life.beat(Instant::now());
+        // Nobody may look.
+        let _ = self.frames.send(frame.bytes());
+        self.frame = Some(frame);
     }
 
     /// Tells the pages what the safety chain did, if that is new and not told too often.

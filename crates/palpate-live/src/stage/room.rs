@@ -111,7 +111,7 @@ impl<const D: usize> Room<D> {
         terms: &Terms,
         before: Option<&Self>,
         kept: Option<Kept>,
-        is_stopped: bool,
+        stop: StopSwitch,
     ) -> Result<Self, String> {
         let said = |error: HapticsError| error.to_string();
         let tool = scene.tool.as_ref().map_or(Ok(None), BuiltTool::in_hand).map_err(said)?;
@@ -141,7 +141,7 @@ impl<const D: usize> Room<D> {
         // A clock that is held or slow stays so.
         speed.set(kept.map_or(1.0, |kept| kept.speed)).map_err(|error| error.to_string())?;
         let rows = (KEPT * terms.rate) as usize * lead.targets().len();
-        let mut options = ThreadOptions::default().with_stop(is_stopped).with_recorder(rows);
+        let mut options = ThreadOptions::default().with_stop_switch(stop).with_recorder(rows);
         if !scene.motions.is_empty() {
             let moving = Arc::clone(&scene);
             options =
@@ -184,10 +184,6 @@ impl<const D: usize> Room<D> {
         let targets: Vec<_> = self.lead.targets().iter().map(place).collect();
         // There is a target for each hand, and all are finite.
         let _ = self.steering.steer(&targets);
-    }
-
-    pub(super) fn stop_switch(&mut self) -> StopSwitch {
-        self.thread.control().stop_switch()
     }
 
     pub(super) fn speed(&self) -> &ClockSpeed {

@@ -3,8 +3,123 @@
 
 //! What the page asks for.
 
+use std::borrow::Cow;
+
 use serde::{Deserialize, Deserializer};
 use serde_json::Value;
+
+/// The longest stop that the reading thread takes by itself [bytes].
+const LONGEST_STOP: usize = 256;
+
+/// Whether a message is a short `stop`, without reading it as JSON: it is short, and has the key `do`
+/// with the value `stop`. In JSON, no string holds these bytes, since its quotes would be escaped.
+pub(crate) fn is_stop(text: &str) -> bool {
+    text.len() <= LONGEST_STOP
+        && text.match_indices("\"do\"").any(|(place, key)| {
+            let rest = text.get(place + key.len()..).unwrap_or_default().trim_start();
+            rest.strip_prefix(':')
+                .is_some_and(|value| value.trim_start().starts_with("\"stop\""))
+        })
+}
+
+/// What a message asks for and its number, without the rest: this is read fast, however long the
+/// message is.
+#[derive(Debug)]
+pub(crate) struct Envelope {
+    pub(crate) id: Option<u32>,
+    pub(crate) kind: Kind,
+}
+
+/// Who answers a message.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Kind {
+    /// `stop`.
+    Stop,
+    /// What concerns the hand or the page: done at once.
+    Order,
+    /// What concerns the document of the scene: done by the editor.
+    Edit,
+    /// A question that takes no time that a person notices.
+    Short,
+    /// Any other question.
+    Long,
+}
+
+impl Kind {
+    /// The kind of a message by its `do`; `None` of an unknown one.
+    fn of(what: &str) -> Option<Self> {
+        Some(match what {
+            "stop" => Self::Stop,
+            "release" | "hand" | "tour" | "clock" | "record" | "replay" | "cancel"
+            | "hidden" => Self::Order,
+            "hello" | "edit" | "undo" | "redo" | "open" | "save" => Self::Edit,
+            "probe" | "ball" => Self::Short,
+            "slice" | "samples" | "picture" | "element" | "pair" | "contacts" | "sweep"
+            | "fall" => Self::Long,
+            _ => return None,
+        })
+    }
+
+    /// The longest message of this kind [bytes]. Scenes are long; no other message of the page is.
+    pub(crate) fn longest(self) -> usize {
+        match self {
+            Self::Edit | Self::Stop => usize::MAX,
+            Self::Long => 64 << 10,
+            Self::Order | Self::Short => 4 << 10,
+        }
+    }
+}
+
+impl Envelope {
+    /// Reads what a message asks for, and no more.
+    ///
+    /// # Errors
+    ///
+    /// What is wrong with it, and its number if that can be read.
+    pub(crate) fn read(text: &str) -> Result<Self, Unreadable> {
+        #[derive(Deserialize)]
+        struct Fields<'a> {
+            #[serde(borrow, rename = "do")]
+            what: Option<Cow<'a, str>>,
+            id: Option<Value>,
+        }
+        if !text.trim_start().starts_with('{') {
+            return Err(Unreadable::of("a message is a JSON object"));
+        }
+        let Fields { what, id, .. } = serde_json::from_str(text)
+            .map_err(|error| Unreadable::of(format!("a message is JSON: {error}")))?;
+        let id = id.map(|id| number(&id)).transpose()?;
+        let what = what.unwrap_or_default();
+        match Kind::of(&what) {
+            Some(kind) => Ok(Self { id, kind }),
+            None => Err(Unreadable {
+                id,
+                why: format!("nothing is known of a message whose `do` is {what:?}"),
+            }),
+        }
+    }
+}
+
+/// Why a message cannot be read.
+#[derive(Debug, PartialEq)]
+pub(crate) struct Unreadable {
+    pub(crate) id: Option<u32>,
+    pub(crate) why: String,
+}
+
+impl Unreadable {
+    fn of(why: impl Into<String>) -> Self {
+        Self { id: None, why: why.into() }
+    }
+}
+
+/// The number of a message.
+fn number(id: &Value) -> Result<u32, Unreadable> {
+    let number = id.as_u64().and_then(|id| u32::try_from(id).ok());
+    number.ok_or_else(|| {
+        Unreadable::of(format!("`id` must be a whole number below 2^32, got {id}"))
+    })
+}
 
 /// A message of the page.
 #[derive(Debug)]
@@ -20,22 +135,16 @@ impl Question {
     /// # Errors
     ///
     /// What is wrong with it, and its number if that can be read.
-    pub(crate) fn read(text: &str) -> Result<Self, (Option<u32>, String)> {
+    pub(crate) fn read(text: &str) -> Result<Self, Unreadable> {
         let message: Value = serde_json::from_str(text)
-            .map_err(|error| (None, format!("a message is JSON: {error}")))?;
+            .map_err(|error| Unreadable::of(format!("a message is JSON: {error}")))?;
         let Value::Object(mut fields) = message else {
-            return Err((None, "a message is a JSON object".to_owned()));
+            return Err(Unreadable::of("a message is a JSON object"));
         };
-        let id = match fields.remove("id") {
-            None => None,
-            Some(id) => {
-                let number = id.as_u64().and_then(|id| u32::try_from(id).ok());
-                let wrong = || format!("`id` must be a whole number below 2^32, got {id}");
-                Some(number.ok_or_else(|| (None, wrong()))?)
-            }
-        };
+        let id = fields.remove("id").map(|id| number(&id)).transpose()?;
         let ask = serde_json::from_value(Value::Object(fields));
-        ask.map(|ask| Self { id, ask }).map_err(|error| (id, error.to_string()))
+        ask.map(|ask| Self { id, ask })
+            .map_err(|error| Unreadable { id, why: error.to_string() })
     }
 }
 
@@ -73,8 +182,14 @@ pub(crate) enum Ask {
         #[serde(rename = "as")]
         name: Option<String>,
     },
-    Stop {},
-    Release {},
+    Stop {
+        /// Random digits that one press repeats on the socket and in its `POST /stop`.
+        press: Option<String>,
+    },
+    Release {
+        /// The number of the stop that is released.
+        number: Option<u64>,
+    },
     Clock {
         speed: Option<f64>,
         step: Option<u32>,
@@ -187,12 +302,54 @@ mod tests {
 
     #[test]
     fn what_cannot_be_read_is_named() {
-        let (id, error) = Question::read(r#"{"do":"fly","id":1}"#).unwrap_err();
-        assert!(id == Some(1) && error.contains("unknown variant `fly`"), "{error}");
-        let (_, error) = Question::read(r#"{"do":"tour","on":true,"off":1}"#).unwrap_err();
-        assert!(error.contains("unknown field `off`"), "{error}");
-        let (_, error) = Question::read(r#"{"do":"undo","id":-1}"#).unwrap_err();
-        assert_eq!(error, "`id` must be a whole number below 2^32, got -1");
+        let Unreadable { id, why } = Question::read(r#"{"do":"fly","id":1}"#).unwrap_err();
+        assert!(id == Some(1) && why.contains("unknown variant `fly`"), "{why}");
+        let why = Question::read(r#"{"do":"tour","on":true,"off":1}"#).unwrap_err().why;
+        assert!(why.contains("unknown field `off`"), "{why}");
+        let why = Question::read(r#"{"do":"undo","id":-1}"#).unwrap_err().why;
+        assert_eq!(why, "`id` must be a whole number below 2^32, got -1");
         assert!(Question::read("[1]").is_err() && Question::read("{").is_err());
+    }
+
+    #[test]
+    fn every_message_has_a_kind() {
+        let why = Question::read(r#"{"do":"fly"}"#).unwrap_err().why;
+        let names: Vec<_> = why.split('`').skip(3).step_by(2).collect();
+        assert!(names.len() > 20 && names.contains(&"fall"), "{why}");
+        for name in names {
+            let text = format!(r#"{{"text":"{{\"do\":\"fly\"}}","do":"{name}","id":7}}"#);
+            let Envelope { id, kind } = Envelope::read(&text).unwrap();
+            assert_eq!((id, Some(kind)), (Some(7), Kind::of(name)));
+        }
+        for (text, id) in [
+            ("[1]", None),
+            ("{", None),
+            (r#"{"do":"fly","id":1}"#, Some(1)),
+            (r#"{"id":2}"#, Some(2)),
+        ] {
+            assert_eq!(Envelope::read(text).unwrap_err().id, id, "{text}");
+        }
+    }
+
+    #[test]
+    fn a_stop_is_known_by_its_bytes() {
+        for text in [
+            r#"{"do":"stop"}"#,
+            r#" { "id" : 3, "do" : "stop", "press": "0f" } "#,
+            "{\n\t\"do\"\n:\n\"stop\"}",
+        ] {
+            assert!(is_stop(text), "{text}");
+        }
+        let long = format!(r#"{}{{"do":"stop"}}"#, " ".repeat(LONGEST_STOP));
+        for text in [
+            r#"{"do":"stopped"}"#,
+            r#"{"do":"open","name":"\"do\":\"stop\"","text":""}"#,
+            r#"{"do":"release","of":"stop"}"#,
+            r#"{"do"#,
+            r#"{"do""#,
+            &long,
+        ] {
+            assert!(!is_stop(text), "{text}");
+        }
     }
 }

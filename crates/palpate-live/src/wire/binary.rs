@@ -3,8 +3,8 @@
 
 //! Binary messages: frames, grids, pictures. Little-endian.
 
-use axum::body::Bytes;
 use half::f16;
+use tungstenite::Bytes;
 
 use super::VERSION;
 
@@ -33,6 +33,8 @@ pub(crate) struct Frame {
     pub(crate) energy: [f64; 3],
     pub(crate) evaluations: u32,
     pub(crate) lost: u64,
+    /// Counts while the program is alive, whether the servo's time goes on or not.
+    pub(crate) beat: u16,
     pub(crate) points: Vec<FramePoint>,
 }
 
@@ -49,6 +51,17 @@ pub(crate) struct FramePoint {
 }
 
 impl Frame {
+    /// The same moment after its servo has ended.
+    pub(crate) fn without_forces(mut self) -> Self {
+        (self.force, self.has_acted) = (0.0, false);
+        for point in &mut self.points {
+            let [device, proxy, _, _, normal] = point.vectors;
+            point.vectors = [device, proxy, [0.0; 3], [0.0; 3], normal];
+            (point.largest_force, point.is_in_contact, point.is_slipping) = (0.0, false, false);
+        }
+        self
+    }
+
     pub(crate) fn bytes(&self) -> Bytes {
         let mut out = Vec::with_capacity(64 + 72 * self.points.len());
         let flags = [
@@ -70,7 +83,7 @@ impl Frame {
         floats(&mut out, &[f64::from(self.evaluations)]);
         out.extend(u32::try_from(self.lost).unwrap_or(u32::MAX).to_le_bytes());
         out.extend(short(self.points.len()).to_le_bytes());
-        out.extend([0, 0]);
+        out.extend(self.beat.to_le_bytes());
         for point in &self.points {
             point.vectors.iter().for_each(|vector| floats(&mut out, vector));
             floats(&mut out, &[point.depth, point.largest_force]);
@@ -168,6 +181,7 @@ mod tests {
             time: 1.5,
             force: 2.5,
             lost: 9,
+            beat: 258,
             points: vec![point; 10],
             ..Frame::default()
         };
@@ -177,7 +191,7 @@ mod tests {
         assert_eq!(bytes[8..16], 1000_u64.to_le_bytes());
         assert_eq!(bytes[16..24], 1.5_f64.to_le_bytes());
         assert_eq!(bytes[24..28], 2.5_f32.to_le_bytes());
-        assert_eq!(bytes[56..64], [9, 0, 0, 0, 10, 0, 0, 0]);
+        assert_eq!(bytes[56..64], [9, 0, 0, 0, 10, 0, 2, 1]);
         assert_eq!(bytes[64 + 12..64 + 16], 1.0_f32.to_le_bytes());
         assert_eq!(bytes[64 + 68..64 + 72], [3, 0, 2, 0]);
     }

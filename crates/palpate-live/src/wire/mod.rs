@@ -5,9 +5,11 @@
 
 mod ask;
 mod binary;
+mod told;
 
-pub(crate) use ask::{Ask, Change, Question};
+pub(crate) use ask::{Ask, Change, Envelope, Kind, Question, Unreadable, is_stop};
 pub(crate) use binary::{Frame, FramePoint, Grid, GridPlace, picture};
+pub(crate) use told::Told;
 
 /// The version of the protocol.
 pub const VERSION: u32 = 1;

@@ -255,7 +255,7 @@ fn a_tour_waits_while_forces_are_stopped() {
     // The device comes to where the tour waits.
     while way(&mut page) > 1e-4 {}
     assert!(way(&mut page) < 1e-4, "the tour goes on");
-    page.ask(json!({ "do": "release" }));
+    page.release(1);
     while way(&mut page) < 2e-3 {}
 }
 

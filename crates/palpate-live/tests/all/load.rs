@@ -15,12 +15,12 @@ use crate::talk::{Page, raw};
 
 /// Ground under a hand that rests. Without bounds there is no tour, and the hand is led so near that
 /// it is not lifted: both are led by steps of the machine's clock, which would make runs differ.
-const GROUND: &str = r#"{ "palpate": 1, "dimension": 3,
+pub(crate) const GROUND: &str = r#"{ "palpate": 1, "dimension": 3,
     "bodies": [ { "name": "ground", "shape": { "half_space": { "normal": [0, 1, 0], "offset": -0.01 } },
                   "material": { "stiffness": 300, "damping": 0 } } ] }"#;
 
 /// Where the hand presses into the ground [m].
-const PRESSED: [f64; 3] = [0.0, -0.02, 0.0];
+pub(crate) const PRESSED: [f64; 3] = [0.0, -0.02, 0.0];
 
 /// Clients that misuse the server.
 const CLIENTS: usize = 50;

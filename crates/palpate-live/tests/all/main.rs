@@ -5,8 +5,10 @@
 
 #![expect(clippy::unwrap_used, reason = "tests")]
 
+mod budgets;
 mod guard;
 mod hand;
 mod load;
 mod speech;
+mod stop;
 mod talk;

@@ -107,6 +107,18 @@ impl Page {
 }
 
 impl Page {
+    /// Gives forces again after the stop that was told last, as soon as that may be.
+    pub(crate) fn release(&mut self, number: u64) {
+        loop {
+            let answer = self.ask(json!({ "do": "release", "number": number }));
+            if answer["do"] == "done" {
+                return;
+            }
+            // A page may not ask too often.
+            (0..10).for_each(|_| _ = self.binary(1));
+        }
+    }
+
     /// Waits for a frame after so many ticks: all rows until then are taken.
     pub(crate) fn wait_for_tick(&mut self, tick: u64) {
         loop {

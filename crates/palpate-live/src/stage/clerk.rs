@@ -1,0 +1,120 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! The thread that reads what pages say, and hands it to who does it.
+
+use std::sync::Arc;
+use std::sync::mpsc::{Receiver, SyncSender, TrySendError};
+
+use serde_json::json;
+
+use super::editor::Edit;
+use super::inquiry::{Asked, Inquiries};
+use super::letter::Letter;
+use super::pages::{PageId, Pages};
+use super::performance::Order;
+use super::stop::{Presser, Stop};
+use super::work::{Watch, Work};
+use crate::wire::{Ask, Envelope, Kind, Question, Unreadable};
+
+/// Why a message is refused for which there is no room.
+const BUSY: &str = "the program is busy with what was asked before: ask again";
+
+/// Hands messages on.
+#[derive(Debug)]
+pub(super) struct Clerk {
+    pub(super) orders: SyncSender<Order>,
+    pub(super) edits: SyncSender<Edit>,
+    pub(super) inquiries: Arc<Inquiries>,
+    pub(super) stop: Arc<Stop>,
+    pub(super) pages: Arc<Pages>,
+    pub(super) watch: Watch,
+}
+
+impl Clerk {
+    pub(super) fn run(self, letters: &Receiver<Letter>) {
+        // It ends with the stage.
+        while let Ok(letter) = letters.recv() {
+            self.watch.begins(Work::Message);
+            self.take(letter);
+        }
+    }
+
+    fn take(&self, letter: Letter) {
+        let (page, length) = (letter.page, letter.text.len());
+        let Envelope { id, kind } = match Envelope::read(&letter.text) {
+            Ok(envelope) => envelope,
+            Err(Unreadable { id, why }) => return self.pages.not_read(page, id, &why),
+        };
+        if length > kind.longest() {
+            let why =
+                format!("such a message has at most {} bytes, got {length}", kind.longest());
+            return self.pages.refuse(page, id, &why, &[]);
+        }
+        let is_full = match kind {
+            Kind::Stop => {
+                self.stop.press(Presser::Page(page, letter.text.clone()));
+                false
+            }
+            Kind::Order => match letter.read() {
+                Ok(question) => self.order(page, question),
+                Err(Unreadable { id, why }) => return self.pages.not_read(page, id, &why),
+            },
+            Kind::Edit => is_full(self.edits.try_send(Edit::Asked(letter))),
+            Kind::Short | Kind::Long => {
+                self.inquiries.take(Asked { letter, id, is_short: kind == Kind::Short })
+            }
+        };
+        if is_full {
+            self.pages.refuse(page, id, BUSY, &[]);
+        }
+    }
+
+    /// Does what is done at once; whether there is no room for it.
+    fn order(&self, page: PageId, Question { id, ask }: Question) -> bool {
+        let order = match ask {
+            Ask::Release { number } => Order::Release { page, id, number },
+            Ask::Hand { target: Some(target), point, from, held: true } => {
+                Order::Lead { page, id, target, point, from }
+            }
+            Ask::Hand { held: false, .. } => return self.done(page, id, Order::LetGo),
+            Ask::Hand { target: None, .. } => {
+                self.pages.refuse(page, id, "a hand that is held has a target", &[]);
+                return false;
+            }
+            Ask::Tour { on } => return self.done(page, id, Order::Tour(on)),
+            Ask::Clock { speed, step } => Order::Clock { page, id, speed, step },
+            Ask::Record { on } => return self.done(page, id, Order::Record(on)),
+            Ask::Replay { on } => Order::Replay { page, id, on },
+            Ask::Hidden { is } => {
+                self.pages.hide(page, is);
+                self.pages.answer(page, id, json!({ "do": "done" }));
+                return false;
+            }
+            Ask::Cancel { question } => {
+                if self.inquiries.cancel(page, question, &self.pages) {
+                    self.pages.answer(page, id, json!({ "do": "done" }));
+                } else {
+                    let why = format!("no question of number {question} is worked on");
+                    self.pages.refuse(page, id, &why, &[]);
+                }
+                return false;
+            }
+            _ => return false,
+        };
+        is_full(self.orders.try_send(order))
+    }
+
+    /// Gives an order that cannot be refused; whether there is no room for it.
+    fn done(&self, page: PageId, id: Option<u32>, order: Order) -> bool {
+        let is_full = is_full(self.orders.try_send(order));
+        if !is_full {
+            self.pages.answer(page, id, json!({ "do": "done" }));
+        }
+        is_full
+    }
+}
+
+fn is_full<T>(sent: Result<(), TrySendError<T>>) -> bool {
+    sent.is_err()
+}
