@@ -244,7 +244,7 @@ impl PyServo {
     /// ...     servo.release()
     fn stop(&self) -> PyResult<()> {
         of_either!(&self.servo, servo => {
-            servo.running(|own| own.thread.control().stop_switch().stop())
+            servo.running(|own| _ = own.thread.control().stop_switch().stop())
         })
     }
 

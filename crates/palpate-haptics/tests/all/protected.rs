@@ -108,7 +108,7 @@ fn a_thread_keeps_the_limits_of_its_device_under_new_bodies_and_stops() {
         driver.advance(Duration::from_millis(97));
         match step % 5 {
             0 => drop(thread.control().replace_bodies(floor()).unwrap()),
-            2 => switch.stop(),
+            2 => _ = switch.stop(),
             3 => switch.release(),
             _ => {}
         }
@@ -126,7 +126,7 @@ fn a_loop_of_ones_own_keeps_the_limits_and_stops() {
     let switch = control.stop_switch();
     for tick in 0..3000 {
         match tick {
-            1000 => switch.stop(),
+            1000 => _ = switch.stop(),
             1100 => switch.release(),
             _ => {}
         }
