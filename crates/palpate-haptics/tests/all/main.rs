@@ -24,6 +24,7 @@ mod golden;
 mod guides;
 mod handoff;
 mod happenings;
+mod late;
 mod lifted;
 mod moving;
 mod places;
