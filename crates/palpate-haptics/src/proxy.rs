@@ -177,6 +177,8 @@ pub struct Proxy<const D: usize> {
     at: Option<Sample<D>>,
     /// Whether the sample in `at` was taken from a field that has changed since.
     is_stale: bool,
+    /// Whether there was no place in any tick so far, or since the proxy was lifted.
+    begins: bool,
     /// Whether bodies were replaced since the last tick.
     is_edited: bool,
     /// Where an edit since the last tick carries the proxy.
@@ -205,6 +207,7 @@ impl<const D: usize> Proxy<D> {
             probe,
             at: None,
             is_stale: false,
+            begins: true,
             is_edited: false,
             carried_out: None,
             device: Vector::ZERO,
@@ -260,12 +263,12 @@ impl<const D: usize> Proxy<D> {
     pub fn lift(&mut self) {
         self.forget_bodies();
         (self.at, self.contact, self.hold) = (None, false, Hold::None);
-        (self.held, self.is_edited) = (Vector::ZERO, false);
+        (self.held, self.begins, self.is_edited) = (Vector::ZERO, true, false);
     }
 
-    /// Whether the next tick is the first, or that of a hand that is set down.
+    /// Whether the proxy has had no place since the first tick, or since it was lifted.
     pub(crate) fn begins(&self) -> bool {
-        self.at.is_none()
+        self.begins
     }
 
     /// Punctures the layer of a body that constrains the proxy; `false` if no more bodies can
@@ -365,9 +368,12 @@ impl<const D: usize> Proxy<D> {
         let goal = sampler.within_region(device);
         self.pursue(&mut sampler, Goal { device: goal, motion: moved });
         let proxy = self.at.as_ref().map_or(device, |at| at.point);
+        // A proxy without a place is placed in a later tick.
+        let is_lost = self.at.is_none();
+        self.begins &= is_lost;
         let edited = match out {
             Some(out) => Some(Edited::Carried { distance: out.distance }),
-            None => (was_edited && placed).then_some(Edited::Placed),
+            None => (was_edited && (placed || is_lost)).then_some(Edited::Placed),
         };
         Following { edited, ..self.following(proxy, placed, sampler.evaluations()) }
     }

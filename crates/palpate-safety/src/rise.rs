@@ -67,13 +67,16 @@ pub(crate) struct Rise {
     limit: f64,
     /// Whether the limit waits until the hand is out.
     is_waiting: bool,
+    /// Whether the hand begins in this tick: whether it is out shows in the next.
+    has_begun: bool,
 }
 
 impl Rise {
     /// A rise from zero by `rise_rate` [N/s], at `rate` [Hz].
     pub(crate) fn new(rise_rate: f64, recovery: Recovery, rate: f64) -> Self {
         let is_waiting = recovery == Recovery::OnceOut;
-        Self { step: rise_rate / rate, recovery, limit: 0.0, is_waiting }
+        let step = rise_rate / rate;
+        Self { step, recovery, limit: 0.0, is_waiting, has_begun: false }
     }
 
     /// Rises by so many times the step.
@@ -97,6 +100,7 @@ impl Rise {
     pub(crate) fn begin(&mut self) {
         self.restart(0.0);
         self.is_waiting = self.recovery == Recovery::OnceOut;
+        self.has_begun = self.is_waiting;
     }
 
     /// One tick: the part, in [0, 1], of the sum of a force `wanted` by bodies and a `free` one
@@ -114,13 +118,16 @@ impl Rise {
 
     #[cold]
     fn rise<const D: usize>(&mut self, wanted: Vector<f64, D>, free: Vector<f64, D>) -> f64 {
-        self.is_waiting &= wanted != Vector::ZERO;
+        let has_begun = std::mem::take(&mut self.has_begun);
+        self.is_waiting &= has_begun || wanted != Vector::ZERO;
+        let force = (wanted + free).norm();
         if !self.is_waiting {
             self.limit += self.step;
+            if force <= self.limit {
+                self.limit = f64::INFINITY;
+            }
         }
-        let force = (wanted + free).norm();
         if force <= self.limit {
-            self.limit = f64::INFINITY;
             return 1.0;
         }
         self.limit / force
@@ -153,6 +160,8 @@ mod tests {
         let mut rise = Rise::new(20.0, Recovery::OnceOut, 10.0);
         assert_eq!(steps(&mut rise, &[8.0, 8.0, 0.0, 8.0]), [0.0, 0.0, 0.0, 8.0]);
         rise.begin();
+        // A body that covers the hand may push it in the next tick.
+        assert_eq!(steps(&mut rise, &[0.0, 8.0]), [0.0, 0.0]);
         assert_eq!(rise.step(Vector::ZERO, Vector([0.0, 4.0])), Some(0.5));
         assert_eq!(steps(&mut rise, &[16.0, 4.0]), [4.0, 4.0]);
     }

@@ -17,14 +17,17 @@ use crate::sampler::{Sample, Sampler};
 /// of a slider would end a touch.
 pub(crate) const MOST_OF_POINT: f64 = 0.005;
 
-/// The bodies before and those after may each use one of so many parts of the probe's budget.
-const PARTS: u32 = 2;
+/// The bodies before may use one of so many parts of the probe's budget, those after the rest.
+const PARTS: u32 = 3;
 
 /// A way that meets the surface with a cosine below this is not extrapolated.
 const LEAST_COSINE: f64 = 0.1;
 
 /// A way out counts as the shortest if it is longer than the proven least one by at most this part.
 const SHORTEST: f64 = 1e-6;
+
+/// The most slides from an exit to the nearest place.
+const SLIDES: u32 = 3;
 
 /// Where an edit carries a proxy.
 #[derive(Clone, Copy, Debug)]
@@ -97,12 +100,12 @@ impl<const D: usize> Proxy<D> {
         let place = last.map_or(at.point, |last| last.sample.point);
         let radius = self.probe.radius;
         let extent = place.norm() + 2.0 * radius + most_of_point;
-        let budget = self.probe.budget / PARTS;
-        let sampler = |nearby, punctured: Punctured| {
+        let budget = self.probe.budget;
+        let sampler = |nearby, punctured: Punctured, budget| {
             Sampler::new(nearby, punctured, radius, budget, extent)
         };
-        let mut before = sampler(before, punctured);
-        let mut after = sampler(after, self.punctured);
+        let mut before = sampler(before, punctured, budget / PARTS);
+        let mut after = sampler(after, self.punctured, budget - budget / PARTS);
         let gap = match last {
             Some(last) => last.sample.gap,
             None if is_stale => before.distance(place)?.gap,
@@ -127,6 +130,7 @@ impl<const D: usize> Proxy<D> {
             way_out.over(up, at.body);
         }
         self.carried_out = way_out.best;
+        if std::env::var_os("DBG").is_some() && way_out.is_covered() { eprintln!("DBG evals {} {} covered {covered:?} up {up:?} best {:?}", way_out.before.evaluations(), way_out.after.evaluations(), way_out.best); }
         self.carried_out.map(|out| out.distance)
     }
 
@@ -249,9 +253,17 @@ impl<const D: usize> WayOut<'_, D> {
     fn try_near(&mut self, exit: Sample<D>, up: Vector<f64, D>) {
         let (mut near, mut normal) = (exit, up);
         let device = self.covered.point;
-        let goal = Goal { device, motion: (exit.point - device).norm() };
-        let place = Place { here: &mut near, normal: &mut normal };
-        slide(&mut self.after, place, goal, &mut LocalSurface::new());
+        // A slide along a crease ends near the nearest place: another one begins there.
+        for _ in 0..SLIDES {
+            let before = near.point;
+            let motion = (before - device).norm();
+            let place = Place { here: &mut near, normal: &mut normal };
+            slide(&mut self.after, place, Goal { device, motion }, &mut LocalSurface::new());
+            if (near.point - before).norm() <= SHORTEST * motion {
+                break;
+            }
+        }
+        if std::env::var_os("DBG").is_some() { eprintln!("DBG exit {:?} near {:?}", exit.point, near); }
         if !self.take(near, up) {
             self.take(exit, up);
         }

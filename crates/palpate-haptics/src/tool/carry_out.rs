@@ -50,7 +50,8 @@ impl<const D: usize> Tool<D> {
         start: &Pose<D>,
         lengths: Lengths,
     ) -> Covering<D> {
-        let most = if self.radius > 0.0 { self.radius } else { self.most_of_point };
+        let is_ball = self.radius >= lengths.skin;
+        let most = if is_ball { self.radius } else { self.most_of_point };
         let surroundings = Surroundings { shell: &self.shell, nearby };
         let linear = Vector(std::array::from_fn(|axis| if axis == 0 { most } else { 0.0 }));
         let reach = Twist { linear, angular: Vector::ZERO };

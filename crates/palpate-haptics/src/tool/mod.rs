@@ -380,10 +380,11 @@ impl<const D: usize> Tool<D> {
         if !rest.is_outside || self.edited == Some(Edited::Placed) {
             self.rise = 0.0;
         }
-        self.begins = self.is_beginning && self.rise == 0.0;
+        let is_in = is_placed || !rest.is_outside || self.rise == 0.0;
+        self.begins = self.is_beginning && is_in;
         self.is_beginning &= !rest.is_outside;
-        let is_placed = self.begins || self.edited == Some(Edited::Placed);
-        if is_placed && rest.is_outside && self.is_protected {
+        let is_zero = self.begins || self.edited == Some(Edited::Placed);
+        if is_zero && rest.is_outside && self.is_protected {
             self.rise = 1.0;
         }
         let before = self.pose.unwrap_or(rest.pose);

@@ -7,10 +7,10 @@
 
 use crate::common::tools::smooth;
 use crate::common::{body, half_space};
-use palpate_devices::{PROFILES, profile_named};
+use palpate_devices::profile_named;
 use palpate_field::{Pose, Vector};
 use palpate_haptics::{
-    Bodies, DeviceProfile, Material, PointState, Probe, Protection, Reading, Recovery, Servo,
+    Bodies, Material, PointState, Probe, Protection, Reading, Recovery, Servo,
     ServoOptions, Shell, Surface, Tool, ToolOptions, TurnState, UnprotectedServo,
 };
 
@@ -36,19 +36,12 @@ enum Held {
 
 const ALL: [Held; 3] = [Held::Point, Held::Tool, Held::Turning];
 
-fn turning_device() -> DeviceProfile {
-    let gives = |profile: &DeviceProfile| {
-        profile.turning.as_ref().is_some_and(|turning| turning.max_torque > 0.0)
-    };
-    PROFILES.iter().find(|(_, profile)| gives(profile)).unwrap().1.clone()
-}
-
 fn servo(held: Held, stiffness: f64, recovery: Recovery) -> Servo<3> {
     let options = ServoOptions::default()
         .with_probe(Probe::new(0.002).unwrap())
         .with_max_force(f64::INFINITY);
     let profile = match held {
-        Held::Turning => turning_device(),
+        Held::Turning => profile_named("sigma7").unwrap(),
         Held::Point | Held::Tool => profile_named("omega").unwrap(),
     };
     let plain = match held {
@@ -115,6 +108,7 @@ impl Press {
         }
         let forces = press.go(HOLDS, PERIOD);
         assert!((forces.written - forces.wanted).abs() < 1e-9, "{held:?}: {forces:?}");
+        assert!(forces.wanted > 2.0, "{held:?}: {forces:?}");
         press
     }
 
@@ -327,7 +321,9 @@ fn a_stop_and_all_that_begins_wait_until_the_hand_is_out() {
             }
             press.waits(motion, &told("device that was lost"));
 
-            Press::at(servo(held, 900.0, Recovery::OnceOut), 0.001).waits(motion, &told("start"));
+            let mut press = Press::at(servo(held, 900.0, Recovery::OnceOut), 0.001);
+            press.go(HOLDS, PERIOD);
+            press.waits(motion, &told("start"));
 
             let mut press = pressed();
             press.servo.lift(true);

@@ -15,6 +15,7 @@ mod corners;
 mod creases;
 mod degenerate;
 mod devices;
+mod edited;
 mod effects;
 mod energy;
 mod forces;
