@@ -5,6 +5,8 @@
 
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
+use std::f64::consts::FRAC_1_SQRT_2;
+
 use palpate_field::{Point, Vector};
 
 use super::Proxy;
@@ -25,6 +27,14 @@ const LEAST_COSINE: f64 = 0.1;
 
 /// A way out counts as the shortest if it is longer than the proven least one by at most this part.
 const SHORTEST: f64 = 1e-6;
+
+/// A step along a free way is this multiple of the one before: on a way that leaves a flat surface at
+/// 30 degrees or more it is provable.
+const GROWTH: f64 = 2.0;
+
+/// The most steps of a way out from one tangent plane to the next: more are needed only where it leads
+/// to and fro between two bodies.
+const MOST_PLANES: u32 = 8;
 
 /// The most slides from an exit to the nearest place.
 const SLIDES: u32 = 3;
@@ -119,9 +129,16 @@ impl<const D: usize> Proxy<D> {
         if way_out.is_covered() {
             let side = if self.contact { self.normal } else { way_out.outwards() };
             let up = if self.contact { up } else { side };
-            let (out, _) = way_out.after.tangent(&covered, up);
-            for along in [out, up, side] {
-                way_out.leave(along, up);
+            if let Some(exit) = way_out.from_plane_to_plane(up) {
+                way_out.try_near(exit, up);
+            }
+            way_out.leave(up, up);
+            way_out.leave(side, up);
+            for axis in 0..D {
+                let across = Vector::unit(axis) - up * up.dot(Vector::unit(axis));
+                for across in across.normalized().into_iter().flat_map(|way| [way, -way]) {
+                    way_out.leave((up + across) * FRAC_1_SQRT_2, up);
+                }
             }
         } else if last.is_some() {
             way_out.take(covered, up);
@@ -130,7 +147,6 @@ impl<const D: usize> Proxy<D> {
             way_out.over(up, at.body);
         }
         self.carried_out = way_out.best;
-        if std::env::var_os("DBG").is_some() && way_out.is_covered() { eprintln!("DBG evals {} {} covered {covered:?} up {up:?} best {:?}", way_out.before.evaluations(), way_out.after.evaluations(), way_out.best); }
         self.carried_out.map(|out| out.distance)
     }
 
@@ -184,6 +200,20 @@ impl<const D: usize> WayOut<'_, D> {
     fn outwards(&mut self) -> Vector<f64, D> {
         let sample = self.before.gradient(self.covered.point);
         sample.map_or(Vector::ZERO, |sample| self.before.tangent(&sample, Vector::ZERO).0)
+    }
+
+    /// The first sample outside on a way that leads straight to each tangent plane; `None` if there is
+    /// none soon.
+    fn from_plane_to_plane(&mut self, up: Vector<f64, D>) -> Option<Sample<D>> {
+        let mut here = self.covered;
+        for _ in 0..MOST_PLANES {
+            let (normal, gap) = self.after.tangent(&here, up);
+            here = self.after.gradient(here.point - normal * gap)?;
+            if here.gap >= -self.after.tolerance() {
+                return Some(here);
+            }
+        }
+        None
     }
 
     /// Looks for a way out that begins along a unit vector, unless the shortest is known; `up` is
@@ -263,7 +293,6 @@ impl<const D: usize> WayOut<'_, D> {
                 break;
             }
         }
-        if std::env::var_os("DBG").is_some() { eprintln!("DBG exit {:?} near {:?}", exit.point, near); }
         if !self.take(near, up) {
             self.take(exit, up);
         }
@@ -284,16 +313,18 @@ impl<const D: usize> WayOut<'_, D> {
     }
 
     /// Whether the way from the proxy to a point was free in the bodies before: straight, or over a
-    /// point above the middle.
+    /// point above the middle. That is cheap where the straight way grazes a surface.
     fn was_free(&mut self, to: Point<D>, up: Vector<f64, D>) -> bool {
         let from = (self.covered.point, self.gap);
         let Some(end) = self.known(to) else { return false };
-        if self.is_free(from, end) {
+        let length = (to - from.0).norm();
+        if self.is_proven([from, end], length) {
             return true;
         }
-        let above = (from.0 + to) * 0.5 + up * (to - from.0).norm();
-        let Some(above) = self.known(above) else { return false };
-        self.is_free(from, above) && self.is_free(above, end)
+        let middle = (from.0 + to) * 0.5;
+        let above = self.known(middle + up * length);
+        above.is_some_and(|above| self.is_free(from, above) && self.is_free(end, above))
+            || self.is_free(from, end)
     }
 
     /// A point with its gap in the bodies before; `None` inside them, or if it is not known.
@@ -302,30 +333,34 @@ impl<const D: usize> WayOut<'_, D> {
         (sample.gap >= -0.5 * self.before.skin()).then_some((point, sample.gap))
     }
 
-    /// Whether the bodies before leave a straight way free, but for dips of half a skin.
+    /// Whether the gaps at both ends prove that the bodies before leave a straight way free, but for
+    /// dips of half a skin.
     ///
     /// With the gaps `a` and `b` at its ends and the Lipschitz constant `L`, no point of a way of
     /// length `l` has a gap below `(a + b − L l) / 2`.
-    fn is_free(&mut self, (from, mut gap): Known<D>, to: Known<D>) -> bool {
-        let (way, skin) = (to.0 - from, self.before.skin());
+    fn is_proven(&self, [(_, a), (_, b)]: [Known<D>; 2], length: f64) -> bool {
+        (a + b + self.before.skin()) * self.before.per_slope() >= length
+    }
+
+    /// Whether the bodies before leave a straight way free, but for dips of half a skin.
+    ///
+    /// Away from a surface, provable steps grow in proportion to the way that is done.
+    fn is_free(&mut self, from: Known<D>, to: Known<D>) -> bool {
+        let way = to.0 - from.0;
         let length = way.norm();
-        let (mut done, mut step) = (0.0, length);
-        // Each turn evaluates but for the last, so that the budget ends the loop.
-        while done < length {
-            let is_last = done + step >= length;
-            let next = if is_last { length } else { done + step };
-            let (_, next_gap) = match is_last {
-                true => to,
-                false => match self.known(from + way * (next / length)) {
-                    Some(known) => known,
-                    None => return false,
-                },
+        let (mut done, mut here) = (0.0, from);
+        let mut step = (here.1 + self.before.skin()) * self.before.per_slope();
+        // Each turn evaluates, so that the budget ends the loop.
+        while !self.is_proven([here, to], length - done) {
+            step = step.min(length - done);
+            let Some(next) = self.known(from.0 + way * ((done + step) / length)) else {
+                return false;
             };
-            if (gap + next_gap + skin) * self.before.per_slope() >= next - done {
-                step = 2.0 * (next - done);
-                (done, gap) = (next, next_gap);
+            if self.is_proven([here, next], step) {
+                (done, here) = (done + step, next);
+                step *= GROWTH;
             } else {
-                step = 0.5 * (next - done);
+                step *= 0.5;
             }
         }
         true
