@@ -62,7 +62,11 @@ impl<const D: usize> ContactPoint<D> {
         let FreeForce { force: free, placed, change } = free;
         let Setting { options, map, rise_step, arrival, .. } = setting;
         let has_start = placed || self.of_others < f64::INFINITY;
-        let start = if has_start { self.start([placed, change == Change::Carried], touch.wanted) } else { 1.0 };
+        let start = if has_start {
+            self.start([placed, change == Change::Carried], touch.wanted)
+        } else {
+            1.0
+        };
         if let Some(port) = &mut self.port {
             let wanted = map.force_to_device(touch.wanted);
             let PointState { position, velocity } = at_device;

@@ -32,6 +32,10 @@ const SHORTEST: f64 = 1e-6;
 /// 30 degrees or more it is provable.
 const GROWTH: f64 = 2.0;
 
+/// The most steps along a way: ten at twice the length lead from a skin to a thousand of them. A way
+/// that grazes a surface needs too many.
+const MOST_STEPS: u32 = 11;
+
 /// The most steps of a way out from one tangent plane to the next: more are needed only where it leads
 /// to and fro between two bodies.
 const MOST_PLANES: u32 = 8;
@@ -129,7 +133,7 @@ impl<const D: usize> Proxy<D> {
         if way_out.is_covered() {
             let side = if self.contact { self.normal } else { way_out.outwards() };
             let up = if self.contact { up } else { side };
-            if let Some(exit) = way_out.from_plane_to_plane(up) {
+            if let Some(exit) = way_out.over_planes(up) {
                 way_out.try_near(exit, up);
             }
             way_out.leave(up, up);
@@ -204,7 +208,7 @@ impl<const D: usize> WayOut<'_, D> {
 
     /// The first sample outside on a way that leads straight to each tangent plane; `None` if there is
     /// none soon.
-    fn from_plane_to_plane(&mut self, up: Vector<f64, D>) -> Option<Sample<D>> {
+    fn over_planes(&mut self, up: Vector<f64, D>) -> Option<Sample<D>> {
         let mut here = self.covered;
         for _ in 0..MOST_PLANES {
             let (normal, gap) = self.after.tangent(&here, up);
@@ -321,10 +325,11 @@ impl<const D: usize> WayOut<'_, D> {
         if self.is_proven([from, end], length) {
             return true;
         }
-        let middle = (from.0 + to) * 0.5;
-        let above = self.known(middle + up * length);
+        if self.is_free(from, end) {
+            return true;
+        }
+        let above = self.known((from.0 + to) * 0.5 + up * length);
         above.is_some_and(|above| self.is_free(from, above) && self.is_free(end, above))
-            || self.is_free(from, end)
     }
 
     /// A point with its gap in the bodies before; `None` inside them, or if it is not known.
@@ -344,14 +349,17 @@ impl<const D: usize> WayOut<'_, D> {
 
     /// Whether the bodies before leave a straight way free, but for dips of half a skin.
     ///
-    /// Away from a surface, provable steps grow in proportion to the way that is done.
+    /// Away from a surface, provable steps grow in proportion to the way that is done. `false` after
+    /// [`MOST_STEPS`].
     fn is_free(&mut self, from: Known<D>, to: Known<D>) -> bool {
         let way = to.0 - from.0;
         let length = way.norm();
         let (mut done, mut here) = (0.0, from);
         let mut step = (here.1 + self.before.skin()) * self.before.per_slope();
-        // Each turn evaluates, so that the budget ends the loop.
-        while !self.is_proven([here, to], length - done) {
+        for _ in 0..MOST_STEPS {
+            if self.is_proven([here, to], length - done) {
+                return true;
+            }
             step = step.min(length - done);
             let Some(next) = self.known(from.0 + way * ((done + step) / length)) else {
                 return false;
@@ -363,6 +371,6 @@ impl<const D: usize> WayOut<'_, D> {
                 step *= 0.5;
             }
         }
-        true
+        false
     }
 }

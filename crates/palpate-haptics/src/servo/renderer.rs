@@ -341,7 +341,8 @@ impl<const D: usize> Renderer<D> {
     /// Swaps the rendered bodies with `bodies`; the next tick renders the new ones. `false`, and
     /// nothing changes, if `bodies` were accepted for another servo.
     ///
-    /// Real-time: allocates nothing, frees nothing, takes no lock, cannot panic.
+    /// Real-time: allocates nothing, frees nothing, takes no lock, cannot panic unless a custom field
+    /// does.
     #[must_use]
     pub(crate) fn adopt(&mut self, bodies: &mut AcceptedBodies<D>) -> bool {
         let is_own = self.accepted.is_for_servo_of(bodies);

@@ -81,7 +81,8 @@ impl<const D: usize> Tool<D> {
                         Some(up) if seen.gap < 0.0 => up,
                         _ => normal,
                     };
-                    let along = stacked_along(seen.centre - pose.translation, normal, lengths.unit);
+                    let along =
+                        stacked_along(seen.centre - pose.translation, normal, lengths.unit);
                     rows.push(Row { along, least: -seen.gap / slope });
                 }
             }

@@ -10,8 +10,8 @@ use crate::common::{body, half_space};
 use palpate_devices::profile_named;
 use palpate_field::{Pose, Vector};
 use palpate_haptics::{
-    Bodies, Material, PointState, Probe, Protection, Reading, Recovery, Servo,
-    ServoOptions, Shell, Surface, Tool, ToolOptions, TurnState, UnprotectedServo,
+    Bodies, Material, PointState, Probe, Protection, Reading, Recovery, Servo, ServoOptions,
+    Shell, Surface, Tool, ToolOptions, TurnState, UnprotectedServo,
 };
 
 const PERIOD: f64 = 1e-3;
@@ -20,7 +20,8 @@ const PERIOD: f64 = 1e-3;
 const RISE: f64 = 20.0;
 
 fn ground(stiffness: f64, height: f64) -> Bodies<3> {
-    let material = Material { stiffness, static_friction: 0.4, dynamic_friction: 0.3, ..smooth() };
+    let material =
+        Material { stiffness, static_friction: 0.4, dynamic_friction: 0.3, ..smooth() };
     body(&half_space([0.0, 1.0, 0.0], height), Surface::new(&material).unwrap())
 }
 
