@@ -58,9 +58,15 @@ pub(crate) fn event<'py>(
         EventKind::Slip => ("slip", None, None, None),
         EventKind::Stick => ("stick", None, None, None),
         EventKind::Pop { force } => ("pop", None, Some(force), None),
+        EventKind::Carried { .. } => ("carried", None, None, None),
+        EventKind::Placed => ("placed", None, None, None),
         EventKind::ButtonDown { button } => ("button_down", None, None, Some(button)),
         EventKind::ButtonUp { button } => ("button_up", None, None, Some(button)),
         _ => ("other", None, None, None),
+    };
+    let distance = match found.kind {
+        EventKind::Carried { distance } => Some(distance),
+        _ => None,
     };
     // Buttons are of no body.
     let body = names.get(found.body as usize).filter(|_| button.is_none());
@@ -72,6 +78,7 @@ pub(crate) fn event<'py>(
         .with("kind", kind)?
         .with("speed", speed)?
         .with("force", force)?
+        .with("distance", distance)?
         .of_class("Event")
 }
 

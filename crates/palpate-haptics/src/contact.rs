@@ -111,6 +111,11 @@ impl<const D: usize> LocalSurface<D> {
         Self { planes: Planes::new(), curvature: Curvature::FLAT }
     }
 
+    /// The unit vector away from all planes of the last slide; `None` if they face each other.
+    pub(crate) fn up(&self) -> Option<Vector<f64, D>> {
+        self.planes.up()
+    }
+
     /// Forgets the curvature, because the surface may have changed; each slide starts without
     /// planes.
     pub(crate) fn forget(&mut self) {

@@ -5,6 +5,7 @@
 
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
+mod given;
 mod guided;
 
 use palpate_field::{Point, Vector};
@@ -17,10 +18,11 @@ use crate::guide::Guide;
 use crate::nearby::Nearby;
 use crate::options::ServoOptions;
 use crate::ports::Port;
-use crate::proxy::{Probe, Proxy};
+use crate::proxy::{Edited, Probe, Proxy};
 use crate::surface::{Press, Ringing};
-use palpate_safety::internal::{limited, shortening};
-use palpate_safety::{Arrival, PointState, PortState, WorkspaceMap};
+pub(crate) use given::FreeForce;
+use palpate_safety::internal::{Approach, shortening};
+use palpate_safety::{Arrival, Change, PointState, WorkspaceMap};
 
 /// One contact point after a tick. World coordinates.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -73,8 +75,8 @@ impl<const D: usize> Touch<D> {
 }
 
 /// The most events of a contact point in a tick: a leave, a touch and a layer that gives way for
-/// each of the bodies that can hold it.
-pub(crate) const MOST_EVENTS: usize = 3 * CAPACITY;
+/// each of the bodies that can hold it, and what an edit did.
+pub(crate) const MOST_EVENTS: usize = 3 * CAPACITY + 1;
 
 /// A contact point of the hand, with its state from tick to tick.
 #[derive(Clone, Debug)]
@@ -85,6 +87,8 @@ pub(crate) struct ContactPoint<const D: usize> {
     /// The force of the replaced bodies in the tick before [N]; infinite if the bodies are the
     /// same.
     of_others: f64,
+    /// The force after an edit that carried the proxy; with a port, the safety chain does this.
+    approach: Approach<D>,
     ringing: Ringing,
     /// The bodies that touch the proxy.
     crease: Crease<D>,
@@ -145,15 +149,6 @@ impl<'a, const D: usize> Tick<'a, D> {
     }
 }
 
-/// The force in free space, of guides and magnets.
-#[derive(Clone, Copy)]
-pub(crate) struct FreeForce<const D: usize> {
-    /// The force [N].
-    pub(crate) force: Vector<f64, D>,
-    /// Whether the proxy was placed anew: then all forces rise from zero.
-    pub(crate) placed: bool,
-}
-
 /// How the force of a body is asked for.
 #[derive(Clone, Copy)]
 struct Pressing {
@@ -178,13 +173,35 @@ impl Before {
     }
 }
 
+/// Tells what an edit did to the proxy at a body.
+#[cold]
+fn tell_edited<const D: usize>(tick: &mut Tick<'_, D>, body: u32, edited: Edited) -> Change {
+    let (kind, change) = match edited {
+        Edited::Carried { distance } => (EventKind::Carried { distance }, Change::Carried),
+        Edited::Placed => (EventKind::Placed, Change::None),
+    };
+    tick.tell(body, kind);
+    change
+}
+
 impl<const D: usize> ContactPoint<D> {
     pub(crate) fn new(probe: Probe) -> Self {
         let (proxy, guides) = (Proxy::new(probe), Vec::new());
         let (rise, of_others, ringing) = (1.0, f64::INFINITY, Ringing::SILENT);
         let (crease, stiffness) = (Crease::NONE, f64::INFINITY);
-        let guided = 1.0;
-        Self { proxy, rise, of_others, ringing, crease, stiffness, guides, guided, port: None }
+        let (guided, approach, port) = (1.0, Approach::new(1.0), None);
+        Self {
+            proxy,
+            rise,
+            of_others,
+            approach,
+            ringing,
+            crease,
+            stiffness,
+            guides,
+            guided,
+            port,
+        }
     }
 
     /// A copy that rehearses a tick. It has no guides, because copying guides would allocate.
@@ -192,25 +209,20 @@ impl<const D: usize> ContactPoint<D> {
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     pub(crate) fn double(&self) -> Self {
         let (proxy, port) = (self.proxy.clone(), self.port.clone());
-        let Self { rise, of_others, ringing, crease, stiffness, guided, .. } = *self;
+        let Self { rise, of_others, approach, ringing, crease, stiffness, guided, .. } = *self;
         let guides = Vec::new();
-        Self { proxy, rise, of_others, ringing, crease, stiffness, guides, guided, port }
-    }
-
-    /// Forgets the bodies, which are replaced before the next tick; `wanted` is their last
-    /// force [N].
-    ///
-    /// Real-time: allocates nothing, takes no lock, cannot panic.
-    pub(crate) fn forget_bodies(&mut self, wanted: Vector<f64, D>) {
-        self.proxy.forget_bodies();
-        self.of_others = wanted.norm();
-    }
-
-    /// Lets the force rise from zero; with a port, the safety chain does this.
-    ///
-    /// Real-time: allocates nothing, takes no lock, cannot panic.
-    pub(crate) fn rise_anew(&mut self) {
-        self.rise = 0.0;
+        Self {
+            proxy,
+            rise,
+            of_others,
+            approach,
+            ringing,
+            crease,
+            stiffness,
+            guides,
+            guided,
+            port,
+        }
     }
 
     /// One tick, from the state of the device to the force to write [N], both in device
@@ -233,41 +245,6 @@ impl<const D: usize> ContactPoint<D> {
         self.give(tick.setting, at_device, touch, free)
     }
 
-    /// Sets the rendered force of `touch` from its wanted force and the force in free space.
-    /// Returns the force to write [N], in device coordinates. If `placed`, the force rises from
-    /// zero.
-    ///
-    /// Real-time: allocates nothing, takes no lock, cannot panic.
-    #[inline(always)]
-    pub(crate) fn give(
-        &mut self,
-        setting: &Setting<D>,
-        at_device: PointState<D>,
-        touch: &mut Touch<D>,
-        free: FreeForce<D>,
-    ) -> Vector<f64, D> {
-        let FreeForce { force: free, placed } = free;
-        let Setting { options, map, rise_step, arrival, .. } = setting;
-        let has_start = placed || self.of_others < f64::INFINITY;
-        let start = if has_start { self.start(placed, touch.wanted) } else { 1.0 };
-        if let Some(port) = &mut self.port {
-            let wanted = map.force_to_device(touch.wanted);
-            let PointState { position, velocity } = at_device;
-            let free_force = map.force_to_device(free);
-            let Arrival { late, elapsed, .. } = *arrival;
-            let stiffness = self.stiffness * map.scale();
-            let state =
-                PortState { position, velocity, free_force, late, elapsed, start, stiffness };
-            let force = port.write(wanted, options.max_force, &state);
-            touch.force = map.force_to_world(force);
-            force
-        } else {
-            let rise = self.rise(start, touch.contact, *rise_step);
-            touch.force = limited(touch.wanted + free, options.max_force) * rise;
-            map.force_to_device(touch.force)
-        }
-    }
-
     /// Updates `touch` but for its rendered force. Returns the force of guides and magnets, and
     /// whether the force must rise from zero.
     fn feel(
@@ -280,8 +257,14 @@ impl<const D: usize> ContactPoint<D> {
         if tick.setting.is_lifted {
             return self.hover(tick, state, touch);
         }
+        let begins = self.proxy.begins();
         // The proxy stays where it is if the device point is not finite.
         let following = self.proxy.follow(tick.nearby, device);
+        let placed = following.placed;
+        let mut change = if begins && placed { Change::Begins } else { Change::None };
+        if let Some(edited) = following.edited {
+            change = tell_edited(tick, following.body, edited);
+        }
         let before = Before::of(touch);
         let body = tick.nearby.body(following.body);
         // Field by field, because copying the whole struct would stall on store forwarding.
@@ -298,7 +281,7 @@ impl<const D: usize> ContactPoint<D> {
         let Some(body) = body.filter(|_| state.is_finite()) else {
             touch.velocity = Vector::ZERO;
             self.fall_silent(tick, before);
-            return FreeForce { force: Vector::ZERO, placed: following.placed };
+            return FreeForce { force: Vector::ZERO, placed, change };
         };
         let mut free = self.guided(device, state.velocity, tick.setting.rise_step);
         if following.contact {
@@ -307,7 +290,7 @@ impl<const D: usize> ContactPoint<D> {
             self.fall_silent(tick, before);
         }
         free += self.pull(tick, touch);
-        FreeForce { force: free, placed: following.placed }
+        FreeForce { force: free, placed, change }
     }
 
     /// A tick of a hand that is lifted: the proxy is at the device, and nothing is touched.
@@ -335,16 +318,7 @@ impl<const D: usize> ContactPoint<D> {
             evaluations: 0,
             ..*touch
         };
-        FreeForce { force: Vector::ZERO, placed: false }
-    }
-
-    /// The part of the force at which the rise begins: zero after a placement; after bodies
-    /// were replaced, the part that equals the force of the old bodies.
-    #[cold]
-    #[inline(never)]
-    fn start(&mut self, placed: bool, wanted: Vector<f64, D>) -> f64 {
-        let others = std::mem::replace(&mut self.of_others, f64::INFINITY);
-        if placed { 0.0 } else { shortening(wanted.norm(), others) }
+        FreeForce { force: Vector::ZERO, placed: false, change: Change::None }
     }
 
     /// Ends the contact of the tick before and its ringing.
@@ -380,16 +354,6 @@ impl<const D: usize> ContactPoint<D> {
         for wall in self.crease.walls().filter(|wall| !now.has(wall.body)) {
             tick.tell(wall.body, EventKind::Leave);
         }
-    }
-
-    /// The rendered part of the force, which rises from `start`.
-    fn rise(&mut self, start: f64, contact: bool, step: f64) -> f64 {
-        self.rise = match (start < 1.0, contact) {
-            (true, _) => self.rise * start,
-            (false, true) => (self.rise + step).min(1.0),
-            (false, false) => 1.0,
-        };
-        self.rise
     }
 
     /// The force of the bodies that hold the proxy [N], of which `body` has the least field.

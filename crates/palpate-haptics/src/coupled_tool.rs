@@ -12,9 +12,10 @@ use crate::accepted_bodies::AcceptedBodies;
 use crate::bodies::Bodies;
 use crate::contact_point::{ContactPoint, FreeForce, Setting, Touch};
 use crate::ports::{Port, TurningPort};
+use crate::proxy::Edited;
 use crate::tool::{Coupling, HeldTool, Tool, ToolState};
 use palpate_safety::internal::limited;
-use palpate_safety::{PointState, SpatialVector, TurnState, WrenchChain, WrenchState};
+use palpate_safety::{Change, PointState, SpatialVector, TurnState, WrenchChain, WrenchState};
 
 /// The two sides of a tool: the contact point that holds it, and the bodies that stop it.
 pub(crate) struct Sides<'a, const D: usize> {
@@ -59,11 +60,13 @@ impl<const D: usize> CoupledTool<D> {
         self.port.as_mut().and_then(|port| port.chain.as_mut())
     }
 
-    /// Touches other bodies from the next tick on, with their accepted coupling.
+    /// Touches other bodies from the next tick on, with their accepted coupling; they carry a
+    /// point without a radius by `most_of_point` [m] at most.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
-    pub(crate) fn adopt(&mut self, bodies: &AcceptedBodies<D>) {
+    pub(crate) fn adopt(&mut self, bodies: &AcceptedBodies<D>, most_of_point: f64) {
         self.tool.forget_bodies();
+        self.tool.most_of_point = most_of_point;
         if let Some(coupling) = bodies.coupling {
             self.tool.coupling = coupling;
         }
@@ -147,6 +150,7 @@ impl<const D: usize> CoupledTool<D> {
         let pose = Pose::new(rotation, position);
         let state = ToolState { pose, velocity, angular_velocity };
         let mut free = Vector::ZERO;
+        self.tool.is_protected = point.port.is_some();
         if *is_lifted {
             bodies.settle();
             self.tool.hover(&state);
@@ -171,6 +175,8 @@ impl<const D: usize> CoupledTool<D> {
         let torque = turn.map_or(Vector::ZERO, |_| map.torque_to_device(felt.torque));
         point.stiffness = self.tool.secant();
         let stiffness = point.stiffness * map.scale();
+        let (start, change) = self.change();
+        let change = if arrival.is_ready { change } else { Change::Begins };
         let force = if let Some(chain) = self.chain() {
             let force = map.force_to_device(touch.wanted);
             let spin = turn.map_or(Vector::ZERO, |turn| turn.angular_velocity);
@@ -180,6 +186,8 @@ impl<const D: usize> CoupledTool<D> {
                 free_force: map.force_to_device(free),
                 late: point.port.as_ref().map_or(arrival.late, |port| port.late(arrival.late)),
                 elapsed,
+                start,
+                change,
                 stiffness,
             };
             let wanted = SpatialVector { along: force, about: torque };
@@ -191,10 +199,22 @@ impl<const D: usize> CoupledTool<D> {
             // A port without a safety chain belongs to a device that gives no torque.
             let most = if self.port.is_some() { 0.0 } else { self.max_torque };
             self.torque = limited(torque, most);
-            let free = FreeForce { force: free, placed: false };
+            // Without protection the tool's own rise is that of a placement.
+            let placed = point.port.is_some() && start == 0.0;
+            let free = FreeForce { force: free, placed, change };
             point.give(setting, at_device, touch, free)
         };
         self.given = turn.map(|_| map.torque_to_world(self.torque));
         force
+    }
+
+    /// What happened to the tool in this tick, and the part of its force to render.
+    fn change(&self) -> (f64, Change) {
+        match self.tool.edited {
+            Some(Edited::Carried { .. }) => (1.0, Change::Carried),
+            Some(Edited::Placed) => (0.0, Change::None),
+            None if self.tool.begins => (1.0, Change::Begins),
+            None => (1.0, Change::None),
+        }
     }
 }

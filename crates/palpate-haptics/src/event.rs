@@ -47,6 +47,14 @@ pub enum EventKind {
         /// The force that broke the layer [N].
         force: f64,
     },
+    /// An edit of the bodies covered the proxy, or the tool, which was carried out of them.
+    Carried {
+        /// How far it was carried, the shortest way [m].
+        distance: f64,
+    },
+    /// An edit of the bodies covered the proxy, or the tool, by more than it may be carried: it was
+    /// placed anew, and the force rises from zero.
+    Placed,
     /// A button of the device was pressed. Contact point and body are 0.
     ButtonDown {
         /// The index of the button.
@@ -74,6 +82,10 @@ pub struct EventCounts {
     pub sticks: u64,
     /// A layer of a material gave way.
     pub pops: u64,
+    /// Edits that carried a proxy or a tool.
+    pub carries: u64,
+    /// Edits after which a proxy or a tool was placed anew.
+    pub placements: u64,
     /// Buttons that were pressed.
     pub presses: u64,
     /// Buttons that were released.
@@ -91,6 +103,8 @@ impl EventCounts {
             EventKind::Slip => &mut self.slips,
             EventKind::Stick => &mut self.sticks,
             EventKind::Pop { .. } => &mut self.pops,
+            EventKind::Carried { .. } => &mut self.carries,
+            EventKind::Placed => &mut self.placements,
             EventKind::ButtonDown { .. } => &mut self.presses,
             EventKind::ButtonUp { .. } => &mut self.releases,
         } += 1;
@@ -99,8 +113,15 @@ impl EventCounts {
 
 impl fmt::Display for EventCounts {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { touches, leaves: _, slips, sticks, pops, presses, releases: _ } = self;
+        let Self { touches, leaves: _, slips, sticks, pops, presses, releases: _, .. } = self;
+        let Self { carries, placements, .. } = self;
         write!(f, "{touches} touches, {slips} slips, {sticks} sticks, {pops} pops")?;
+        if *carries > 0 {
+            write!(f, ", {carries} carried by edits")?;
+        }
+        if *placements > 0 {
+            write!(f, ", {placements} placed anew after edits")?;
+        }
         if *presses > 0 { write!(f, ", {presses} presses of buttons") } else { Ok(()) }
     }
 }
@@ -148,6 +169,9 @@ mod tests {
         assert_eq!(counts.to_string(), "5 touches, 3 slips, 2 sticks, 1 pops");
         let said = EventCounts { presses: 7, ..counts }.to_string();
         assert_eq!(said, "5 touches, 3 slips, 2 sticks, 1 pops, 7 presses of buttons");
+        let said = EventCounts { carries: 8, placements: 6, ..counts }.to_string();
+        let edits = ", 8 carried by edits, 6 placed anew after edits";
+        assert_eq!(said, format!("5 touches, 3 slips, 2 sticks, 1 pops{edits}"));
     }
 
     /// The sum of finite forces may overflow. Found by fuzzing.

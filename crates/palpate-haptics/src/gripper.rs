@@ -9,7 +9,7 @@ use palpate_field::Vector;
 
 use crate::error::HapticsError;
 use crate::protection::Protection;
-use palpate_safety::{Arrival, GripperState, Impedance, PortState, SafetyChain};
+use palpate_safety::{Arrival, Change, GripperState, Impedance, PortState, SafetyChain};
 
 /// A gripper with the force that is wanted of it. Without a device that has one the force is zero.
 #[derive(Clone, Debug, Default)]
@@ -40,6 +40,7 @@ impl GripperPort {
             velocity: Vector([velocity]),
             late,
             elapsed: arrival.elapsed,
+            change: if arrival.is_ready { Change::None } else { Change::Begins },
             ..PortState::at_rest()
         };
         let Vector([force]) = chain.step(Vector([self.wanted]), &state);

@@ -83,7 +83,7 @@ pub use palpate_material::{
     Impact, Layer, Magnet, Material, PopThrough, Texture, TextureKind, UnknownMaterial,
 };
 pub use palpate_safety::{
-    Acceptance, Accepted, Arrivals, Buttons, ContinuousReport, Device, DeviceLost,
+    Acceptance, Accepted, Arrivals, Buttons, Change, ContinuousReport, Device, DeviceLost,
     DeviceProfile, Effect, FreeForceReport, GripperProfile, GripperState, Impedance,
     LimitCycleReport, NumberError, PassivityReport, PointState, PortState, Reading,
     ReadingsReport, Recovery, Refused, Requester, Rule, SafetyChain, SafetyError,
@@ -91,7 +91,7 @@ pub use palpate_safety::{
     TurningReport, VelocityEstimator, WatchdogReport, WorkspaceMap,
 };
 pub use protection::Protection;
-pub use proxy::{DEFAULT_BUDGET, Following, Probe, Proxy};
+pub use proxy::{DEFAULT_BUDGET, Edited, Following, Probe, Proxy};
 pub use servo::{AnyServo, Renderer, Servo, UnprotectedServo};
 pub use surface::{Passing, Surface};
 pub use tool::{

@@ -41,7 +41,7 @@ pub struct Protection<const D: usize> {
     pub is_strict: bool,
     /// Whether the passivity controller acts; the passivity observer always runs.
     pub has_passivity_control: bool,
-    /// How a force comes back after it was zeroed.
+    /// How a force comes back after a beginning in a body, or an emergency stop.
     pub recovery: Recovery,
     /// How fast a force rises after it was zeroed [N/s]: after the start, after a proxy is placed
     /// anew, after late ticks, lost readings and emergency stops.

@@ -14,6 +14,8 @@
 
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
+mod carry_out;
+
 use palpate_field::{LARGEST_LENGTH, Point, Vector};
 
 use crate::bodies::Body;
@@ -24,6 +26,8 @@ use crate::friction::{Held, Hold, drag};
 use crate::nearby::{Nearby, Punctured};
 use crate::sampler::{Sample, Sampler};
 use crate::surface::Friction;
+use carry_out::CarriedOut;
+pub(crate) use carry_out::MOST_OF_POINT;
 use palpate_safety::NumberError;
 
 /// The default budget of evaluations in a tick. Sliding takes one to three, a corner up to
@@ -126,8 +130,22 @@ pub struct Following<const D: usize> {
     /// `true` if the force must rise gently, because the proxy was placed anew: a body covered
     /// the proxy (in the first tick or after bodies were replaced) or moved onto it.
     pub placed: bool,
+    /// What became of a proxy that an edit covered since the tick before; `None` if none did.
+    pub edited: Option<Edited>,
     /// Evaluations of the field in this tick.
     pub evaluations: u32,
+}
+
+/// What became of a proxy that an edit of the bodies covered.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Edited {
+    /// It was [carried out](Proxy::carry_out).
+    Carried {
+        /// How far, the shortest way [m].
+        distance: f64,
+    },
+    /// It was placed anew.
+    Placed,
 }
 
 /// The constrained point that follows one device point.
@@ -159,6 +177,12 @@ pub struct Proxy<const D: usize> {
     at: Option<Sample<D>>,
     /// Whether the sample in `at` was taken from a field that has changed since.
     is_stale: bool,
+    /// Whether there was no place in any tick so far, or since the proxy was lifted.
+    begins: bool,
+    /// Whether bodies were replaced since the last tick.
+    is_edited: bool,
+    /// Where an edit since the last tick carries the proxy.
+    carried_out: Option<CarriedOut<D>>,
     /// The device point of the last tick [m].
     device: Point<D>,
     normal: Vector<f64, D>,
@@ -183,6 +207,9 @@ impl<const D: usize> Proxy<D> {
             probe,
             at: None,
             is_stale: false,
+            begins: true,
+            is_edited: false,
+            carried_out: None,
             device: Vector::ZERO,
             normal,
             contact: false,
@@ -221,11 +248,11 @@ impl<const D: usize> Proxy<D> {
     /// Forgets the bodies, because they were replaced.
     ///
     /// The next tick evaluates the new bodies at the proxy, and places the proxy anew if a body
-    /// covers it.
+    /// covers it; [`carry_out`](Self::carry_out) keeps its touch instead.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     pub fn forget_bodies(&mut self) {
-        self.is_stale = true;
+        (self.is_stale, self.is_edited, self.carried_out) = (true, true, None);
         self.punctured = Punctured::default();
         self.shared_friction = None;
     }
@@ -236,7 +263,12 @@ impl<const D: usize> Proxy<D> {
     pub fn lift(&mut self) {
         self.forget_bodies();
         (self.at, self.contact, self.hold) = (None, false, Hold::None);
-        self.held = Vector::ZERO;
+        (self.held, self.begins, self.is_edited) = (Vector::ZERO, true, false);
+    }
+
+    /// Whether the proxy has had no place since the first tick, or since it was lifted.
+    pub(crate) fn begins(&self) -> bool {
+        self.begins
     }
 
     /// Punctures the layer of a body that constrains the proxy; `false` if no more bodies can
@@ -280,13 +312,21 @@ impl<const D: usize> Proxy<D> {
         let last = self.at.as_ref().map_or(device, |at| at.point);
         // Written so that NaN fails.
         if !device.0.iter().all(|x| x.abs() <= LARGEST_LENGTH) {
-            // Bodies that move in this tick make the sample stale.
-            self.is_stale |= nearby.has_moved();
+            // Bodies that move in this tick make the samples stale.
+            if nearby.has_moved() {
+                (self.is_stale, self.carried_out) = (true, None);
+            }
             let following = self.following(last, false, 0);
             // After a replacement the body index may be out of range.
             let body = nearby.body(following.body).map_or(0, |_| following.body);
             return Following { contact: false, body, ..following };
         }
+        let (was_edited, out) = (std::mem::take(&mut self.is_edited), self.take_out(nearby));
+        if was_edited && nearby.has_moved() {
+            let has_moved = |body| nearby.body(body).is_none_or(Body::has_moved);
+            self.punctured.restore(|body, _| has_moved(body));
+        }
+        let last = out.map_or(last, |out| out.sample.point);
         let carried =
             if nearby.has_moved() { self.carried(nearby, [last, device]) } else { last };
         let farther = carried.dot(carried).max(device.dot(device)).sqrt();
@@ -295,6 +335,7 @@ impl<const D: usize> Proxy<D> {
         let moved = if self.at.is_some() { squared(device - self.device) } else { 0.0 };
         self.device = device;
         let moved = moved.max(squared(carried - last)).sqrt();
+        let moved = out.map_or(moved, |out| moved.max(out.distance));
         let Probe { radius, budget } = self.probe;
         let mut sampler = Sampler::new(nearby, self.punctured, radius, budget, extent);
 
@@ -314,7 +355,9 @@ impl<const D: usize> Proxy<D> {
             self.local.forget();
         }
         self.is_stale = false;
-        let is_known = self.at.as_ref().is_some_and(|at| at.gap >= -sampler.tolerance());
+        // The tolerance of an edit may be that of other lengths.
+        let tolerance = if out.is_some() { 2.0 } else { 1.0 } * sampler.tolerance();
+        let is_known = self.at.as_ref().is_some_and(|at| at.gap >= -tolerance);
         let mut placed = is_pushed;
         if !is_known {
             let from = self.at.as_ref().map_or(device, |at| at.point);
@@ -325,7 +368,14 @@ impl<const D: usize> Proxy<D> {
         let goal = sampler.within_region(device);
         self.pursue(&mut sampler, Goal { device: goal, motion: moved });
         let proxy = self.at.as_ref().map_or(device, |at| at.point);
-        self.following(proxy, placed, sampler.evaluations())
+        // A proxy without a place is placed in a later tick.
+        let is_lost = self.at.is_none();
+        self.begins &= is_lost;
+        let edited = match out {
+            Some(out) => Some(Edited::Carried { distance: out.distance }),
+            None => (was_edited && (placed || is_lost)).then_some(Edited::Placed),
+        };
+        Following { edited, ..self.following(proxy, placed, sampler.evaluations()) }
     }
 
     fn following(&self, proxy: Point<D>, placed: bool, evaluations: u32) -> Following<D> {
@@ -336,6 +386,7 @@ impl<const D: usize> Proxy<D> {
             body: self.at.as_ref().map_or(0, |at| at.body),
             is_slipping: self.hold == Hold::Slip,
             placed,
+            edited: None,
             evaluations,
         }
     }

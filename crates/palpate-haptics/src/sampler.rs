@@ -138,6 +138,16 @@ impl<'a, const D: usize> Sampler<'a, D> {
         self.radius
     }
 
+    /// Whether the probe is so small that it moves as a point.
+    pub(crate) fn is_point(&self) -> bool {
+        self.radius < self.skin
+    }
+
+    /// The least way from a point at this gap to one of another, per metre of the difference.
+    pub(crate) fn per_slope(&self) -> f64 {
+        self.per_slope
+    }
+
     /// How deep below the offset surface a point may rest [m].
     pub(crate) fn tolerance(&self) -> f64 {
         self.tolerance

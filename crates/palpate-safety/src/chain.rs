@@ -8,7 +8,7 @@
 use palpate_field::{Point, Vector};
 
 use crate::acceptance::{Acceptance, Accepted};
-use crate::channel::{Channel, Given, TickInput};
+use crate::channel::{Channel, Given, Risen, TickInput};
 use crate::device::DeviceProfile;
 use crate::error::{NumberError, SafetyError};
 use crate::finite;
@@ -19,7 +19,7 @@ use crate::limit_cycle::{CycleInput, LimitCycle, LimitCycleOptions};
 use crate::limits::DeviceLimits;
 use crate::passivity::{Passivity, PassivityOptions, PassivityReport, PortMotion};
 use crate::report::SafetyReport;
-use crate::rise::Recovery;
+use crate::rise::{Change, Recovery};
 use crate::stage_ticks::StageTicks;
 
 /// The input of a contact point's safety chain in a tick, beside the wanted force. In device
@@ -45,9 +45,11 @@ pub struct PortState<const D: usize> {
     /// The time between the last two positions [s]; `None` for a period and what the tick is late.
     pub elapsed: Option<f64>,
     /// The part of the force to render in this tick, from which the force
-    /// [rises](SafetyOptions::rise_rate) again. Normally 1; 0 after the proxy was placed anew or a
-    /// body moved onto it; between 0 and 1 after a body was replaced by a stiffer one.
+    /// [rises](SafetyOptions::rise_rate) again, at once. Normally 1; 0 after the proxy was placed
+    /// anew or a body moved onto it; between 0 and 1 after a body was replaced by a stiffer one.
     pub start: f64,
+    /// What happened to the contact point in this tick beside the motion of the hand.
+    pub change: Change,
     /// The stiffness behind the wanted force [N/m]: force over depth. That of the accepted impedance
     /// counts if this is more, or infinite.
     pub stiffness: f64,
@@ -65,6 +67,7 @@ impl<const D: usize> PortState<D> {
             late: 0.0,
             elapsed: None,
             start: 1.0,
+            change: Change::None,
             stiffness: f64::INFINITY,
         }
     }
@@ -99,7 +102,8 @@ pub struct SafetyOptions {
     pub reserve: f64,
     /// The time constant with which the motors cool [s]. Makers do not state it.
     pub cooling_time: f64,
-    /// How a force comes back after it was zeroed.
+    /// How a force comes back after a beginning in a body: the start, an emergency stop, a hand
+    /// that is set down, a device that was not ready. After all else it comes back at once.
     pub recovery: Recovery,
     /// How fast a force rises after it was zeroed [N/s]: after the start, a placement, late ticks,
     /// an input that is not finite, or an emergency stop. A torque rises as fast in the units of
@@ -386,20 +390,19 @@ impl<const D: usize> SafetyChain<D> {
         // Stages with a state never see numbers that are not finite; the guard then writes
         // zero.
         let is_sound = finite::is_sound(wanted, state);
-        let PortState { position, velocity, free_force, late, elapsed, start, stiffness } =
-            *state;
-        let input = TickInput { is_sound, late, start, cut };
-        let risen = self.channel.risen(wanted, free_force, &input);
-        let rise = risen.unwrap_or(1.0);
-        let (wanted, rising) =
-            if rise < 1.0 { (wanted * rise, free_force * rise) } else { (wanted, free_force) };
+        let PortState { position, velocity, free_force, late, elapsed, stiffness, .. } = *state;
+        let PortState { start, change, .. } = *state;
+        let input = TickInput { is_sound, late, start, change, cut };
+        let Risen { wanted, part: rise, is_rising } =
+            self.channel.risen(wanted, free_force, &input);
+        let rising = if rise < 1.0 { free_force * rise } else { free_force };
         let elapsed = finite::elapsed(elapsed, self.period() + late.max(0.0));
         let options = self.passivity.options();
         let stiffness = options.stiffness_of(stiffness);
         let seen = CycleInput::of([wanted, rising], effort, position, stiffness);
-        let is_disturbed = self.channel.is_late() || risen.is_some();
+        let is_disturbed = self.channel.is_late() || is_rising;
         let softness = self.cycle.observed(&seen.disturbed(is_disturbed), is_sound);
-        let is_rising = risen.is_some() || self.cycle.is_returning();
+        let is_rising = is_rising || self.cycle.is_returning();
         let scale = rise * softness;
         let Passed { force: free_force, spent } =
             self.free.step([free_force, position], [scale, elapsed], options, is_sound);
@@ -440,7 +443,7 @@ impl<const D: usize> SafetyChain<D> {
         self.channel.stop();
     }
 
-    /// Ends an emergency stop; the force rises from nothing.
+    /// Ends an emergency stop; the force begins at zero, as [`SafetyOptions::recovery`] says.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     pub fn release(&mut self) {

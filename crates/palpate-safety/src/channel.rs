@@ -8,13 +8,14 @@
 use palpate_field::Vector;
 
 use crate::SafetyOptions;
+use crate::approach::Approach;
 use crate::continuous::ContinuousLimit;
 use crate::error::{NumberError, SafetyError};
 use crate::finite;
 use crate::force_limit::ForceLimit;
 use crate::limits::DeviceLimits;
 use crate::report::{ContinuousReport, Effects, WatchdogReport};
-use crate::rise::Rise;
+use crate::rise::{Change, Rise};
 use crate::slew::SlewLimit;
 use crate::watchdog::Watchdog;
 
@@ -27,12 +28,25 @@ pub(crate) struct TickInput {
     pub(crate) late: f64,
     /// As [`PortState::start`](super::PortState::start).
     pub(crate) start: f64,
+    /// As [`PortState::change`](super::PortState::change).
+    pub(crate) change: Change,
     /// How much a limit took from the wanted force before the stages.
     pub(crate) cut: f64,
 }
 
 /// The slew limit acts if the force differs by more than this share from what the other limits leave.
 const HELD: f64 = 1e-9;
+
+/// What is left of a wanted force after it was zeroed, or after an edit.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Risen<const D: usize> {
+    /// The force of the bodies.
+    pub(crate) wanted: Vector<f64, D>,
+    /// The part, in [0, 1], that may pass while the force rises after it was zeroed.
+    pub(crate) part: f64,
+    /// Whether the force rises, or follows an edit.
+    pub(crate) is_rising: bool,
+}
 
 /// What a [`Channel`] gives in a tick.
 #[derive(Clone, Copy, Debug)]
@@ -54,6 +68,7 @@ pub(crate) struct Channel<const D: usize> {
     force_limit: ForceLimit,
     continuous: ContinuousLimit,
     rise: Rise,
+    approach: Approach<D>,
     watchdog: Watchdog,
     is_stopped: bool,
     /// Whether the last force is of bodies in part.
@@ -90,6 +105,7 @@ impl<const D: usize> Channel<D> {
             force_limit: ForceLimit::new(limits.max_force.positive()?),
             continuous: ContinuousLimit::new(continuous_force, cooling_time, rate),
             rise: Rise::new(rise_rate * unit, options.recovery, rate),
+            approach: Approach::new(unit),
             watchdog: Watchdog::new(late_time, fall_time, rate),
             is_stopped: false,
             has_bodies: false,
@@ -98,11 +114,35 @@ impl<const D: usize> Channel<D> {
         })
     }
 
-    /// The part of `wanted` and `free`, in [0, 1], that may pass in this tick while the force rises
-    /// after it was zeroed; `None` if it has risen before.
+    /// What may pass of `wanted` and `free` in this tick, after the force was zeroed or the bodies
+    /// were edited.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     pub(crate) fn risen(
+        &mut self,
+        wanted: Vector<f64, D>,
+        free: Vector<f64, D>,
+        input: &TickInput,
+    ) -> Risen<D> {
+        if input.change == Change::Carried {
+            self.approach.begin();
+        }
+        let near = if input.is_sound { self.approach.step(wanted) } else { None };
+        let (aim, follows) = (wanted, near.is_some());
+        let wanted = near.unwrap_or(aim);
+        let part = self.risen_part(wanted, free, input);
+        if wanted != aim && part.is_none() {
+            self.effects.ramp.count_size((aim - wanted).norm());
+        }
+        let is_rising = part.is_some() || follows;
+        let part = part.unwrap_or(1.0);
+        let wanted = if part < 1.0 { wanted * part } else { wanted };
+        Risen { wanted, part, is_rising }
+    }
+
+    /// The part of `wanted` and `free`, in [0, 1], that may pass in this tick while the force rises
+    /// after it was zeroed; `None` if it has risen before.
+    fn risen_part(
         &mut self,
         wanted: Vector<f64, D>,
         free: Vector<f64, D>,
@@ -111,6 +151,9 @@ impl<const D: usize> Channel<D> {
         if self.watchdog.step(input.late) {
             // The hand may have sunk in while no tick came.
             self.rise.restart(self.closing.last().norm());
+        }
+        if input.change == Change::Begins {
+            self.rise.begin();
         }
         if input.start < 1.0 || input.start.is_nan() {
             self.rise.restart((wanted + free).norm() * input.start.max(0.0));
@@ -150,7 +193,9 @@ impl<const D: usize> Channel<D> {
         }
         let force = self.effects.slew.count(force, self.closing.limit(force));
         self.continuous.written(force);
-        if self.is_stopped || !is_sound || self.watchdog.factor() < 1.0 {
+        if self.is_stopped {
+            self.rise.begin();
+        } else if !is_sound || self.watchdog.factor() < 1.0 {
             self.rise.restart(force.norm());
         }
         // What the slew limit holds beyond that share comes from the bodies, as long as they gave
@@ -174,6 +219,7 @@ impl<const D: usize> Channel<D> {
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     pub(crate) fn in_units(&mut self, longer: f64) {
         self.rise.in_units(longer);
+        self.approach.in_units(longer);
     }
 
     /// Lowers the force limit; never raises it.
@@ -191,12 +237,12 @@ impl<const D: usize> Channel<D> {
         self.is_stopped = true;
     }
 
-    /// Ends an emergency stop; the force rises from zero.
+    /// Ends an emergency stop; the force begins at zero.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     pub(crate) fn release(&mut self) {
         if self.is_stopped {
-            self.rise.restart(0.0);
+            self.rise.begin();
         }
         self.is_stopped = false;
     }

@@ -16,6 +16,7 @@
 #![cfg_attr(test, allow(clippy::float_cmp, reason = "tests compare exact numbers"))]
 
 mod acceptance;
+mod approach;
 mod arrivals;
 mod chain;
 mod channel;
@@ -64,7 +65,7 @@ pub use passivity::PassivityReport;
 pub use readings::{Readings, ReadingsReport};
 pub use refused::{Refused, Requester};
 pub use report::{ContinuousReport, SafetyReport, TurningReport, WatchdogReport};
-pub use rise::Recovery;
+pub use rise::{Change, Recovery};
 pub use stage_ticks::StageTicks;
 pub use turn_readings::TurnReadings;
 pub use velocity::VelocityEstimator;

@@ -13,7 +13,7 @@ use std::ops::{Add, Mul, Sub};
 
 use palpate_field::Vector;
 
-use crate::channel::{Channel, Given, TickInput};
+use crate::channel::{Channel, Given, Risen, TickInput};
 use crate::error::{NumberError, SafetyError};
 use crate::finite;
 use crate::free_energy::{FreeEnergy, Passed};
@@ -22,7 +22,7 @@ use crate::limit_cycle::{CycleInput, LimitCycle, LimitCycleOptions};
 use crate::limits::DeviceLimits;
 use crate::passivity::{InnerProduct, Passivity, PassivityOptions, PortMotion};
 use crate::{
-    Accepted, PassivityReport, SafetyOptions, SafetyReport, StageTicks, TurningReport,
+    Accepted, Change, PassivityReport, SafetyOptions, SafetyReport, StageTicks, TurningReport,
 };
 
 /// A translational and a rotational vector: force [N] and torque [N·m], position [m] and angle
@@ -95,6 +95,10 @@ pub struct WrenchState<const D: usize> {
     pub late: f64,
     /// As [`PortState::elapsed`](crate::PortState::elapsed).
     pub elapsed: Option<f64>,
+    /// As [`PortState::start`](crate::PortState::start).
+    pub start: f64,
+    /// As [`PortState::change`](crate::PortState::change), for force and torque.
+    pub change: Change,
     /// As [`PortState::stiffness`](crate::PortState::stiffness), with an angle as a length.
     pub stiffness: f64,
 }
@@ -280,19 +284,21 @@ impl<const D: usize> WrenchChain<D> {
         [effort, cut]: [f64; 2],
         state: &WrenchState<D>,
     ) -> SpatialVector<D> {
-        let WrenchState { position, velocity, free_force, late, elapsed, stiffness } = *state;
+        let WrenchState { position, velocity, free_force, late, elapsed, stiffness, .. } =
+            *state;
+        let WrenchState { start, change, .. } = *state;
         // Stages with a state never see numbers that are not finite; the guards then write
         // zero.
         let is_sound = [wanted, position, velocity].iter().all(SpatialVector::is_finite)
             && free_force.is_finite();
         let unit = self.unit;
         let (position, velocity) = (position.turning(unit), velocity.turning(unit));
-        let input = TickInput { is_sound, late, start: 1.0, cut };
+        let input = TickInput { is_sound, late, start, change, cut };
         let along = self.force.risen(wanted.along, free_force, &input);
         let about = self.torque.risen(wanted.about, Vector::ZERO, &input);
-        let has_risen = along.is_none() && about.is_none();
-        let (rise, about) = (along.unwrap_or(1.0), about.unwrap_or(1.0));
-        let wanted = SpatialVector { along: wanted.along * rise, about: wanted.about * about };
+        let has_risen = !along.is_rising && !about.is_rising;
+        let Risen { part: rise, .. } = along;
+        let wanted = SpatialVector { along: along.wanted, about: about.wanted };
         let options = *self.passivity.options();
         let elapsed = finite::elapsed(elapsed, options.period + late.max(0.0));
         let as_lengths = wanted.turning(1.0 / unit);

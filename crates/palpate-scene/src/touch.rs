@@ -27,7 +27,7 @@ pub struct ServoSettings {
     pub acceptance: Option<Acceptance>,
     /// Whether materials are refused of which the device renders less than all.
     pub is_strict: bool,
-    /// How a force comes back after it was zeroed.
+    /// How a force comes back after a beginning in a body, or an emergency stop.
     pub recovery: Recovery,
 }
 
@@ -58,7 +58,7 @@ impl ServoSettings {
         Self { is_strict, ..self }
     }
 
-    /// With another way in which a force comes back after it was zeroed.
+    /// With another way in which a force comes back after a beginning in a body.
     #[must_use]
     pub fn with_recovery(self, recovery: Recovery) -> Self {
         Self { recovery, ..self }

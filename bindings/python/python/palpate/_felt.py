@@ -125,9 +125,11 @@ class Event(Answer):
         point: The contact point.
         body: The name of the body; None of a button.
         button: The number of the button, from 0; None of what is no button.
-        kind: "touch", "leave", "slip", "stick", "pop", "button_down" or "button_up".
+        kind: "touch", "leave", "slip", "stick", "pop", "carried", "placed", "button_down" or
+            "button_up". An edit carries what it covers, or places it anew.
         speed: Of a touch, the speed along the normal, relative to the body [m/s].
         force: Of a pop, the force that broke the layer [N].
+        distance: Of what is carried, how far [m].
 
     >>> import palpate as pp
     >>> with pp.Servo(pp.Scene({"ball": pp.ball(0.05)}), hand=[0, 0.049, 0], duration=0.05) as servo:
@@ -143,6 +145,7 @@ class Event(Answer):
     kind: str
     speed: float | None
     force: float | None
+    distance: float | None
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)

@@ -58,8 +58,8 @@ pub(crate) struct FeelOptions {
     /// out.
     #[arg(long, value_enum)]
     pub(crate) acceptance: Option<AcceptanceChoice>,
-    /// How a force comes back after it was zeroed, by late ticks or at the start: rise, by 20 N/s, or
-    /// once-out, when no body pushes the hand any more.
+    /// How a force comes back after a start in a body, or after the device was lost: rise, by 20 N/s,
+    /// or once-out, when no body pushes the hand any more. After late ticks it always rises.
     #[arg(long, value_enum, default_value_t = RecoveryChoice::Rise, hide_default_value = true)]
     pub(crate) recovery: RecoveryChoice,
     /// Refuse bodies, a tool and guides of which a simulated device renders less than all. A glove,
@@ -200,7 +200,7 @@ impl From<AcceptanceChoice> for Acceptance {
     }
 }
 
-/// How a force comes back after it was zeroed.
+/// How a force comes back after a beginning in a body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum RecoveryChoice {
     /// By 20 N/s, at once.

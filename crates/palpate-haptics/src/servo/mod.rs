@@ -192,11 +192,23 @@ impl<const D: usize> Servo<D> {
     /// Replaces the bodies from the next tick on. `bodies` holds the old ones then, to be dropped
     /// on a thread that may free memory, or to be given back later.
     ///
-    /// If the new bodies cover a contact point, its proxy is placed anew and its force rises
-    /// from zero. If they push a contact point harder than the old ones, its force rises from
-    /// the old force.
+    /// What a hand feels:
     ///
-    /// Real-time: allocates nothing, frees nothing, takes no lock, cannot panic.
+    /// - If the new bodies cover a proxy by at most the probe's radius, or by 5 mm at the device for
+    ///   a point, they [carry it out](crate::Proxy::carry_out) the shortest way. The touch goes on:
+    ///   the wanted force follows at once, and the written force changes by at most 0.3 N a tick until
+    ///   it is there. The event is [`Carried`](crate::EventKind::Carried).
+    /// - If they cover it by more, it is placed anew and its force rises from zero. The event is
+    ///   [`Placed`](crate::EventKind::Placed).
+    /// - If they do not cover it and push harder, the force rises from the old force. If they push
+    ///   less, or are not there, it falls at once: what lingered would push a hand that nothing
+    ///   touches.
+    ///
+    /// The same holds for a tool with the least radius of its points; its torque follows as its force.
+    /// Bodies that move before the next tick carry nothing out.
+    ///
+    /// Real-time: allocates nothing, frees nothing, takes no lock, cannot panic unless a custom field
+    /// does; evaluates the fields at most [`Probe::budget`](crate::Probe::budget) times a point.
     ///
     /// # Errors
     ///

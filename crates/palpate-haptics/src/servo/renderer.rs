@@ -25,7 +25,7 @@ use crate::gripper::GripperPort;
 use crate::nearby::Nearby;
 use crate::options::ServoOptions;
 use crate::ports::{Port, TurningPort};
-use crate::proxy::Probe;
+use crate::proxy::{MOST_OF_POINT, Probe};
 use crate::tool::{Coupling, HeldTool, Tool};
 use palpate_safety::{
     Arrival, Arrivals, Buttons, GripperState, NumberError, PointState, Reading, TurnState,
@@ -38,6 +38,10 @@ const FEW: usize = 5;
 /// The largest motion of proxies in a tick, in device motions and probe radii: so large that
 /// the horizon never constrains a proxy.
 const WAYS: f64 = 32.0;
+
+/// The bodies near a proxy that an edit carries, in probe radii and longest ways: so far away that
+/// no other body is in reach.
+const REACHES: f64 = 4.0;
 
 /// Renders bodies to contact points or to a tool, and holds the results of the last tick.
 ///
@@ -337,7 +341,8 @@ impl<const D: usize> Renderer<D> {
     /// Swaps the rendered bodies with `bodies`; the next tick renders the new ones. `false`, and
     /// nothing changes, if `bodies` were accepted for another servo.
     ///
-    /// Real-time: allocates nothing, frees nothing, takes no lock, cannot panic.
+    /// Real-time: allocates nothing, frees nothing, takes no lock, cannot panic unless a custom field
+    /// does.
     #[must_use]
     pub(crate) fn adopt(&mut self, bodies: &mut AcceptedBodies<D>) -> bool {
         let is_own = self.accepted.is_for_servo_of(bodies);
@@ -347,20 +352,33 @@ impl<const D: usize> Renderer<D> {
         is_own
     }
 
-    /// Swaps the rendered bodies with `bodies`, whichever servo they were accepted for.
+    /// Swaps the rendered bodies with `bodies`, whichever servo they were accepted for. The new ones
+    /// carry out the proxies that they cover.
     ///
-    /// Real-time: allocates nothing, frees nothing, takes no lock, cannot panic.
+    /// Real-time: allocates nothing, frees nothing, takes no lock, cannot panic unless a custom field
+    /// does; evaluates the fields at most [`Probe::budget`] times a point.
     pub(super) fn exchange(&mut self, bodies: &mut AcceptedBodies<D>) {
-        swap(&mut self.accepted, bodies);
-        let Self { accepted, contacts, rendered, .. } = self;
+        let most_of_point = MOST_OF_POINT * self.setting.map.scale();
+        let Self { accepted, contacts, rendered, setting, .. } = self;
+        let around = REACHES * (setting.options.probe.radius() + most_of_point);
+        let (before, after) = (&mut accepted.bodies, &mut bodies.bodies);
+        let (mut old, mut new) = (before.take_scratch(), after.take_scratch());
         for (point, touch) in contacts.points.iter_mut().zip(&contacts.touches) {
-            point.forget_bodies(touch.wanted);
+            let near = || (touch.proxy, around);
+            let before = nearby(before, near, &mut old.0);
+            let after = nearby(after, near, &mut new.0);
+            point.replace_bodies([&before, &after], touch.wanted, most_of_point);
+        }
+        before.put_back(old.0, old.1);
+        after.put_back(new.0, new.1);
+        swap(accepted, bodies);
+        for point in &mut contacts.points {
             if let Some((port, accepted)) = point.port.as_mut().zip(accepted.along()) {
                 port.renew(accepted);
             }
         }
         if let Rendered::Tool(coupled) = rendered {
-            coupled.adopt(accepted);
+            coupled.adopt(accepted, most_of_point);
         }
     }
 

@@ -151,6 +151,13 @@ impl Strata {
         }
     }
 
+    /// The number of layers.
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    pub(crate) fn count(&self) -> usize {
+        1 + self.deeper.len()
+    }
+
     /// The layer whose top constrains the proxy after `level` layers were punctured; `None`
     /// after the last one.
     ///

@@ -15,6 +15,7 @@ use super::{Coupling, Tool};
 use crate::event::{Event, EventKind, Reaction};
 use crate::guide::limit::{Motion, damped};
 use crate::nearby::Nearby;
+use crate::proxy::Edited;
 use palpate_safety::internal::shortening;
 
 /// The response of the pushing bodies to the coupling.
@@ -133,7 +134,7 @@ impl<const D: usize> Tool<D> {
         let torque = and_damper(not_pulling(torque), body_response.torque);
         self.touch.force = damped(&force, options.force_limit()) * self.rise;
         self.touch.torque = damped(&torque, options.max_torque) * self.rise;
-        if has_new_bodies {
+        if has_new_bodies && self.edited.is_none() {
             let start = shortening(self.effort(), before);
             self.rise *= start;
             self.touch.force = self.touch.force * start;
@@ -235,6 +236,17 @@ impl<const D: usize> Tool<D> {
                 body.into_iter().for_each(|body| tell(body, EventKind::Touch { speed }));
             }
         }
+    }
+
+    /// Tells what new bodies did to the tool.
+    pub(super) fn tell_edited(&mut self) {
+        let kind = match self.edited {
+            None => return,
+            Some(Edited::Carried { distance }) => EventKind::Carried { distance },
+            Some(Edited::Placed) => EventKind::Placed,
+        };
+        let body = self.touch.body.unwrap_or(0);
+        self.events.push(Event { tick: self.tick, point: 0, body, kind });
     }
 
     /// The stiffness of coupling and bodies in the last contact: force over depth [N/m].

@@ -173,8 +173,14 @@ impl<const D: usize> RestSearch<D> {
     /// Records the pushes on a tool that sticks.
     fn list_pushes(&mut self, found: &Closest) {
         for held in found.held() {
-            let cone = held.row.checked_sub(self.plain).map(|row| row / around::<D>());
-            if let Some(cone) = cone.and_then(|index| self.cones.get_mut(index)) {
+            // Against a hand that presses straight in, the tangent plane itself holds.
+            let index = match held.row.checked_sub(self.plain) {
+                Some(row) => Some(row / around::<D>()),
+                None => self.numbers.get(held.row).and_then(|point| {
+                    self.cones.iter().position(|cone| cone.push.point == *point)
+                }),
+            };
+            if let Some(cone) = index.and_then(|index| self.cones.get_mut(index)) {
                 cone.push.push += held.push;
             }
         }

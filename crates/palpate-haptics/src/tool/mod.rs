@@ -13,6 +13,7 @@
 
 mod batch;
 mod carry;
+mod carry_out;
 mod closest;
 mod coupling;
 mod felt;
@@ -36,7 +37,9 @@ use crate::bodies::Bodies;
 use crate::error::HapticsError;
 use crate::event::{Event, Reaction};
 use crate::nearby::{Nearby, Punctured};
+use crate::proxy::{Edited, MOST_OF_POINT};
 use crate::sampler::Sampler;
+use carry_out::Covering;
 pub use coupling::Coupling;
 use felt::Before;
 use fixed_list::FixedList;
@@ -69,8 +72,9 @@ const AT_REST: f64 = 1e-3;
 /// slides, but the tool crosses walls thinner than two skins.
 const SKIN: f64 = 1e-3;
 
-/// The most events of a tool in a tick: a leave and a touch, or a slip or stick.
-const MOST_EVENTS: usize = 2;
+/// The most events of a tool in a tick: a leave and a touch, or a slip or stick; and what an edit
+/// did.
+const MOST_EVENTS: usize = 3;
 
 /// A rigid tool that is coupled to the hand and stopped by bodies: a god-object with six
 /// degrees of freedom.
@@ -167,6 +171,17 @@ pub struct Tool<const D: usize> {
     part: f64,
     /// Whether the bodies were replaced since the last tick.
     has_new_bodies: bool,
+    /// What new bodies did to the tool in this tick; `None` if they did not cover it.
+    pub(crate) edited: Option<Edited>,
+    /// Whether the tool began in bodies, in the first tick or set down, and its force from zero.
+    pub(crate) begins: bool,
+    /// Whether it was in bodies since then.
+    is_beginning: bool,
+    /// Whether a safety chain lets the force rise after a beginning or a placement, in place of
+    /// [`ToolOptions::rise_time`].
+    pub(crate) is_protected: bool,
+    /// How far new bodies carry points without a radius [m].
+    pub(crate) most_of_point: f64,
     touch: ToolTouch<D>,
     /// The velocity of the device relative to the body that pushes hardest [m/s].
     pub(crate) hand_velocity: Vector<f64, D>,
@@ -196,6 +211,11 @@ impl<const D: usize> Tool<D> {
             rise: 1.0,
             part: 1.0,
             has_new_bodies: false,
+            edited: None,
+            begins: false,
+            is_beginning: false,
+            is_protected: false,
+            most_of_point: MOST_OF_POINT,
             touch: ToolTouch::new(shell.points().len()),
             hand_velocity: Vector::ZERO,
             carrier: None,
@@ -248,8 +268,12 @@ impl<const D: usize> Tool<D> {
         &self.events
     }
 
-    /// Forgets the bodies, which are replaced before the next tick. If the new bodies push
-    /// harder, the force rises from the old force over [`ToolOptions::rise_time`].
+    /// Forgets the bodies, which are replaced before the next tick.
+    ///
+    /// If the new bodies cover the tool by at most the least radius of its points, or by 5 mm where
+    /// that is zero, they carry it out the shortest way in the metric of the coupling, and the touch
+    /// goes on. If they cover it by more, its force rises from zero over
+    /// [`ToolOptions::rise_time`]; if they push harder without covering it, from the old force.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     pub fn forget_bodies(&mut self) {
@@ -263,6 +287,7 @@ impl<const D: usize> Tool<D> {
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     pub fn hover(&mut self, device: &ToolState<D>) {
         self.events.clear();
+        (self.edited, self.begins, self.is_beginning) = (None, false, false);
         self.lose_bodies();
         let was = Before::of(&self.touch);
         self.touch.lose();
@@ -295,6 +320,7 @@ impl<const D: usize> Tool<D> {
     /// most [`ToolOptions::budget`] evaluations.
     pub fn step(&mut self, bodies: &mut Bodies<D>, device: &ToolState<D>) -> &ToolTouch<D> {
         self.events.clear();
+        (self.edited, self.begins) = (None, false);
         let (mut list, mut reactions) = bodies.take_scratch();
         reactions.fill(Reaction::NONE);
         if device.is_usable() {
@@ -340,21 +366,55 @@ impl<const D: usize> Tool<D> {
         let lengths = self.lengths(&nearby, &start, &motion, moved);
         self.scan.begin(&self.shell, self.options.budget);
         let start = carry.map_or(start, |carry| self.carried(&nearby, start, &carry, lengths));
+        let start = self.edited_start(&nearby, start, lengths);
         let surroundings = Surroundings { shell: &self.shell, nearby: &nearby };
         let ends = Ends { start, goal: device.pose };
         self.rest_search.settle(&mut self.scan, surroundings, ends, lengths);
         let rest = &self.rest_search.rest;
-        if self.pose.is_none() && rest.pose != device.pose {
+        self.is_beginning |= self.pose.is_none();
+        let is_placed = self.pose.is_none() && rest.pose != device.pose;
+        if is_placed {
             // The tool was placed anew.
             self.rise = if rest.pushes.is_empty() { 1.0 } else { 0.0 };
         }
-        if !rest.is_outside {
+        if !rest.is_outside || self.edited == Some(Edited::Placed) {
             self.rise = 0.0;
+        }
+        let is_in = is_placed || !rest.is_outside || self.rise == 0.0;
+        self.begins = self.is_beginning && is_in;
+        self.is_beginning &= !rest.is_outside;
+        let is_zero = self.begins || self.edited == Some(Edited::Placed);
+        if is_zero && rest.is_outside && self.is_protected {
+            self.rise = 1.0;
         }
         let before = self.pose.unwrap_or(rest.pose);
         self.pose = Some(rest.pose);
         self.write_touch(&nearby, device, &before);
+        self.tell_edited();
         self.react(&nearby, reactions);
+    }
+
+    /// The pose from which a tool at `start` goes on: new bodies may carry it.
+    fn edited_start(
+        &mut self,
+        nearby: &Nearby<'_, D>,
+        start: Pose<D>,
+        lengths: Lengths,
+    ) -> Pose<D> {
+        if !self.has_new_bodies || self.pose.is_none() || nearby.has_moved() {
+            return start;
+        }
+        match self.carry_out(nearby, &start, lengths) {
+            Covering::None => start,
+            Covering::Deep => {
+                self.edited = Some(Edited::Placed);
+                start
+            }
+            Covering::Carried(pose, distance) => {
+                self.edited = Some(Edited::Carried { distance });
+                pose
+            }
+        }
     }
 
     /// The lengths that follow from bodies, tool and motion.

@@ -143,7 +143,7 @@ struct Candidate<'a, const D: usize> {
 pub(super) struct RestSearch<const D: usize> {
     pub(super) rows: FixedList<Row>,
     /// The points of the first rows; the later rows belong to friction cones.
-    numbers: FixedList<u32>,
+    pub(super) numbers: FixedList<u32>,
     /// The number of rows before those of friction.
     pub(super) plain: usize,
     /// Points that pushed in the last tick.

@@ -223,3 +223,17 @@ fn the_friction_is_that_of_the_layer_at_the_depth_of_the_hand() {
         assert_eq!((touch.contact, touch.is_slipping), (true, is_slipping), "{depth}");
     }
 }
+
+/// Once it lost the body in every other tick: the tangent plane alone held it, and counted as none of
+/// its contacts.
+#[test]
+fn a_tool_that_sticks_under_a_hand_straight_above_keeps_its_contact() {
+    let material = Material { static_friction: 0.4, dynamic_friction: 0.3, ..smooth() };
+    let mut bodies = body(&half_space([0.0, 1.0, 0.0], 0.0), Surface::new(&material).unwrap());
+    let mut tool = Tool::new(Shell::ball(0.01).unwrap(), springs()).unwrap();
+    tool.step(&mut bodies, &at([0.0, 0.02, 0.0]));
+    for tick in 0..10 {
+        let touch = tool.step(&mut bodies, &at([0.0, 0.008, 0.0]));
+        assert!(touch.contact && touch.force[1] > 0.0, "{tick}: {touch:?}");
+    }
+}

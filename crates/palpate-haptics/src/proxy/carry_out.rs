@@ -1,0 +1,376 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! Bodies that changed under a proxy carry it out of them.
+
+#![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+use std::f64::consts::FRAC_1_SQRT_2;
+
+use palpate_field::{Point, Vector};
+
+use super::Proxy;
+use crate::contact::{Goal, LocalSurface, Place, slide};
+use crate::nearby::{Nearby, Punctured};
+use crate::sampler::{Sample, Sampler};
+
+/// How far an edit carries a probe that moves as a point [m], where the hand holds it. With more,
+/// edits would push the hand over ways that it does not take for one touch; with less, a large step
+/// of a slider would end a touch.
+pub(crate) const MOST_OF_POINT: f64 = 0.005;
+
+/// The bodies before may use one of so many parts of the probe's budget, those after the rest.
+const PARTS: u32 = 3;
+
+/// A way that meets the surface with a cosine below this is not extrapolated.
+const LEAST_COSINE: f64 = 0.1;
+
+/// A way out counts as the shortest if it is longer than the proven least one by at most this part.
+const SHORTEST: f64 = 1e-6;
+
+/// A step along a free way is this multiple of the one before: on a way that leaves a flat surface at
+/// 30 degrees or more it is provable.
+const GROWTH: f64 = 2.0;
+
+/// The most steps along a way: ten at twice the length lead from a skin to a thousand of them. A way
+/// that grazes a surface needs too many.
+const MOST_STEPS: u32 = 11;
+
+/// The most steps of a way out from one tangent plane to the next: more are needed only where it leads
+/// to and fro between two bodies.
+const MOST_PLANES: u32 = 8;
+
+/// The most slides from an exit to the nearest place.
+const SLIDES: u32 = 3;
+
+/// Where an edit carries a proxy.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct CarriedOut<const D: usize> {
+    /// The place, evaluated in the bodies after the edit.
+    pub(super) sample: Sample<D>,
+    /// The unit normal of the surface there.
+    normal: Vector<f64, D>,
+    /// Where the proxy was in the last tick [m].
+    from: Point<D>,
+    /// How far the place is from there [m].
+    pub(super) distance: f64,
+}
+
+impl<const D: usize> Proxy<D> {
+    /// Forgets the bodies `before`, which changed to those of `after`. If these cover the proxy, they
+    /// carry it out in the next tick, the shortest way. Returns how far [m]; `None` if they do not
+    /// cover it, or if the way is longer than the probe's radius. For a probe that moves as a
+    /// [point](super::Probe::new) the way may be as long as `most_of_point` [m].
+    ///
+    /// The place is on or outside the offset surface of all bodies, and on the side where the hand
+    /// was: the way to it was free in the bodies before. So a plate that is thinner than the way
+    /// carries a proxy out on the old side, also if it passed over the proxy as a whole. Of several
+    /// ways out the shortest found is taken; where the distance inside is exact, it is proven to be the
+    /// shortest.
+    ///
+    /// Friction holds on as it did. Layers stay punctured in a body of the same index with as many
+    /// layers. A body that [moves](crate::Bodies::set_pose) before the next tick does neither: it does
+    /// what a motion does.
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic; evaluates the fields at most
+    /// [`Probe::budget`](super::Probe::budget) times.
+    ///
+    /// # Examples
+    ///
+    /// A point is pressed 2 mm into the ground, which then rises by 1 mm:
+    ///
+    /// ```
+    /// use palpate_field::{Shape, Vector, kernel::HalfSpace};
+    /// use palpate_haptics::{Bodies, Probe, Proxy};
+    ///
+    /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+    /// let ground = |y| HalfSpace::new(Vector([0.0, 1.0]), y).map(Shape::from_kernel);
+    /// let (before, after) = (Bodies::from(ground(0.0)?), Bodies::from(ground(0.001)?));
+    /// let mut proxy = Proxy::new(Probe::new(0.0)?);
+    /// proxy.follow(&before.everything(), Vector([0.0, 0.1]));
+    /// let device = Vector([0.0, -0.002]);
+    /// proxy.follow(&before.everything(), device);
+    ///
+    /// let way = proxy.carry_out(&before.everything(), &after.everything(), 0.005);
+    /// assert!(way.is_some_and(|way| (way - 0.001).abs() < 1e-9));
+    /// let following = proxy.follow(&after.everything(), device);
+    /// assert!(following.contact && !following.placed);
+    /// assert!((following.proxy - Vector([0.0, 0.001])).norm() < 1e-9);
+    /// # Ok(())
+    /// # }
+    /// ```
+    pub fn carry_out(
+        &mut self,
+        before: &Nearby<'_, D>,
+        after: &Nearby<'_, D>,
+        most_of_point: f64,
+    ) -> Option<f64> {
+        let (at, is_stale, last) = (self.at, self.is_stale, self.carried_out);
+        let punctured = self.punctured;
+        self.forget_bodies();
+        self.punctured = punctured;
+        self.punctured.restore(|body, _| layers(before, body) != layers(after, body));
+        let at = at?;
+        let place = last.map_or(at.point, |last| last.sample.point);
+        let radius = self.probe.radius;
+        let extent = place.norm() + 2.0 * radius + most_of_point;
+        let budget = self.probe.budget;
+        let sampler = |nearby, punctured: Punctured, budget| {
+            Sampler::new(nearby, punctured, radius, budget, extent)
+        };
+        let mut before = sampler(before, punctured, budget / PARTS);
+        let mut after = sampler(after, self.punctured, budget - budget / PARTS);
+        let gap = match last {
+            Some(last) => last.sample.gap,
+            None if is_stale => before.distance(place)?.gap,
+            None => at.gap,
+        };
+        let origin = last.map_or(at.point, |last| last.from);
+        let covered = after.gradient(place)?;
+        let most = if after.is_point() { most_of_point } else { radius };
+        let mut way_out = WayOut { before, after, gap, covered, origin, most, best: None };
+        let up = self.local.up().unwrap_or(self.normal);
+        if way_out.is_covered() {
+            let side = if self.contact { self.normal } else { way_out.outwards() };
+            let up = if self.contact { up } else { side };
+            if let Some(exit) = way_out.over_planes(up) {
+                way_out.try_near(exit, up);
+            }
+            way_out.leave(up, up);
+            way_out.leave(side, up);
+            for axis in 0..D {
+                let across = Vector::unit(axis) - up * up.dot(Vector::unit(axis));
+                for across in across.normalized().into_iter().flat_map(|way| [way, -way]) {
+                    way_out.leave((up + across) * FRAC_1_SQRT_2, up);
+                }
+            }
+        } else if last.is_some() {
+            way_out.take(covered, up);
+        } else if self.contact && covered.gap > way_out.after.skin() {
+            // A thin body may have passed over the proxy that it held.
+            way_out.over(up, at.body);
+        }
+        self.carried_out = way_out.best;
+        self.carried_out.map(|out| out.distance)
+    }
+
+    /// Takes the proxy to where an edit carries it; `None` if none does, or if the body that does
+    /// moves in this tick.
+    pub(super) fn take_out(&mut self, nearby: &Nearby<'_, D>) -> Option<CarriedOut<D>> {
+        let out = self.carried_out.take()?;
+        nearby.body(out.sample.body).filter(|body| !body.has_moved())?;
+        (self.at, self.normal) = (Some(out.sample), out.normal);
+        self.is_stale = false;
+        self.local.forget();
+        Some(out)
+    }
+}
+
+/// The number of layers of a body.
+fn layers<const D: usize>(nearby: &Nearby<'_, D>, body: u32) -> Option<usize> {
+    nearby.body(body).map(|body| body.surface().strata.count())
+}
+
+/// A point with its gap in the bodies before.
+type Known<const D: usize> = (Point<D>, f64);
+
+/// The search for the shortest way out.
+struct WayOut<'a, const D: usize> {
+    /// The bodies before and after.
+    before: Sampler<'a, D>,
+    after: Sampler<'a, D>,
+    /// The proxy's gap in the bodies before [m].
+    gap: f64,
+    /// The proxy in the bodies after.
+    covered: Sample<D>,
+    /// From where the way counts [m].
+    origin: Point<D>,
+    /// The longest way [m].
+    most: f64,
+    best: Option<CarriedOut<D>>,
+}
+
+impl<const D: usize> WayOut<'_, D> {
+    fn is_covered(&self) -> bool {
+        self.covered.gap < -self.after.tolerance()
+    }
+
+    /// The length below which no way leads out [m].
+    fn least(&self) -> f64 {
+        -self.covered.gap * self.after.per_slope()
+    }
+
+    /// The direction away from the bodies before; zero if there is none.
+    fn outwards(&mut self) -> Vector<f64, D> {
+        let sample = self.before.gradient(self.covered.point);
+        sample.map_or(Vector::ZERO, |sample| self.before.tangent(&sample, Vector::ZERO).0)
+    }
+
+    /// The first sample outside on a way that leads straight to each tangent plane; `None` if there is
+    /// none soon.
+    fn over_planes(&mut self, up: Vector<f64, D>) -> Option<Sample<D>> {
+        let mut here = self.covered;
+        for _ in 0..MOST_PLANES {
+            let (normal, gap) = self.after.tangent(&here, up);
+            here = self.after.gradient(here.point - normal * gap)?;
+            if here.gap >= -self.after.tolerance() {
+                return Some(here);
+            }
+        }
+        None
+    }
+
+    /// Looks for a way out that begins along a unit vector, unless the shortest is known; `up` is
+    /// away from the bodies before.
+    fn leave(&mut self, along: Vector<f64, D>, up: Vector<f64, D>) {
+        let proven = self.least() * (1.0 + SHORTEST) + 2.0 * self.after.tolerance();
+        let is_shortest = self.best.is_some_and(|best| best.distance <= proven);
+        if along == Vector::ZERO || is_shortest {
+            return;
+        }
+        if let Some(exit) = self.exit(along, self.covered, 0.0) {
+            self.try_near(exit, up);
+        }
+    }
+
+    /// Looks beyond the body `touched` for the place of a proxy that it passed over, along a unit
+    /// vector.
+    fn over(&mut self, along: Vector<f64, D>, touched: u32) {
+        let (place, mut here, mut way) = (self.covered.point, self.covered, 0.0);
+        // Conservative advancement to the body (Mirtich 1996).
+        while here.gap >= -self.after.tolerance() {
+            way += (here.gap * self.after.per_slope()).max(self.after.near());
+            if way > self.most {
+                return;
+            }
+            let Some(next) = self.after.gradient(place + along * way) else { return };
+            here = next;
+        }
+        if here.body == touched
+            && let Some(exit) = self.exit(along, here, way)
+        {
+            self.try_near(exit, along);
+        }
+    }
+
+    /// The first sample outside on a way along a unit vector that is inside at its length `way` [m];
+    /// `None` if the way becomes too long.
+    ///
+    /// No surface is within `−f / L` of a point inside. A step to the tangent plane goes farther.
+    fn exit(
+        &mut self,
+        along: Vector<f64, D>,
+        mut here: Sample<D>,
+        mut way: f64,
+    ) -> Option<Sample<D>> {
+        let (place, tolerance) = (self.covered.point, self.after.tolerance());
+        loop {
+            let sure = -here.gap * self.after.per_slope();
+            let (normal, gap) = self.after.tangent(&here, Vector::ZERO);
+            let cosine = normal.dot(along);
+            let likely = if cosine > LEAST_COSINE { -gap / cosine } else { 0.0 };
+            let likely = if way + likely <= self.most { likely } else { 0.0 };
+            way += sure.max(likely).max(tolerance);
+            // Written so that NaN ends the way.
+            let is_near = way <= self.most + tolerance;
+            if !is_near {
+                return None;
+            }
+            here = self.after.gradient(place + along * way)?;
+            if here.gap >= -tolerance {
+                return Some(here);
+            }
+        }
+    }
+
+    /// Takes the place nearest to the proxy to which the surface leads from `exit`; or `exit` itself.
+    fn try_near(&mut self, exit: Sample<D>, up: Vector<f64, D>) {
+        let (mut near, mut normal) = (exit, up);
+        let device = self.covered.point;
+        // A slide along a crease ends near the nearest place: another one begins there.
+        for _ in 0..SLIDES {
+            let before = near.point;
+            let motion = (before - device).norm();
+            let place = Place { here: &mut near, normal: &mut normal };
+            slide(&mut self.after, place, Goal { device, motion }, &mut LocalSurface::new());
+            if (near.point - before).norm() <= SHORTEST * motion {
+                break;
+            }
+        }
+        if !self.take(near, up) {
+            self.take(exit, up);
+        }
+    }
+
+    /// Takes a sample if it is the best so far, and the way to it was free.
+    fn take(&mut self, sample: Sample<D>, up: Vector<f64, D>) -> bool {
+        let (distance, tolerance) =
+            ((sample.point - self.origin).norm(), self.after.tolerance());
+        let most = self.best.map_or(self.most + tolerance, |best| best.distance);
+        let is_better = distance <= most && sample.gap >= -tolerance;
+        if !is_better || !self.was_free(sample.point, up) {
+            return false;
+        }
+        let (normal, _) = self.after.tangent(&sample, up);
+        self.best = Some(CarriedOut { sample, normal, from: self.origin, distance });
+        true
+    }
+
+    /// Whether the way from the proxy to a point was free in the bodies before: straight, or over a
+    /// point above the middle. That is cheap where the straight way grazes a surface.
+    fn was_free(&mut self, to: Point<D>, up: Vector<f64, D>) -> bool {
+        let from = (self.covered.point, self.gap);
+        let Some(end) = self.known(to) else { return false };
+        let length = (to - from.0).norm();
+        if self.is_proven([from, end], length) {
+            return true;
+        }
+        if self.is_free(from, end) {
+            return true;
+        }
+        let above = self.known((from.0 + to) * 0.5 + up * length);
+        above.is_some_and(|above| self.is_free(from, above) && self.is_free(end, above))
+    }
+
+    /// A point with its gap in the bodies before; `None` inside them, or if it is not known.
+    fn known(&mut self, point: Point<D>) -> Option<Known<D>> {
+        let sample = self.before.distance(point)?;
+        (sample.gap >= -0.5 * self.before.skin()).then_some((point, sample.gap))
+    }
+
+    /// Whether the gaps at both ends prove that the bodies before leave a straight way free, but for
+    /// dips of half a skin.
+    ///
+    /// With the gaps `a` and `b` at its ends and the Lipschitz constant `L`, no point of a way of
+    /// length `l` has a gap below `(a + b − L l) / 2`.
+    fn is_proven(&self, [(_, a), (_, b)]: [Known<D>; 2], length: f64) -> bool {
+        (a + b + self.before.skin()) * self.before.per_slope() >= length
+    }
+
+    /// Whether the bodies before leave a straight way free, but for dips of half a skin.
+    ///
+    /// Away from a surface, provable steps grow in proportion to the way that is done. `false` after
+    /// [`MOST_STEPS`].
+    fn is_free(&mut self, from: Known<D>, to: Known<D>) -> bool {
+        let way = to.0 - from.0;
+        let length = way.norm();
+        let (mut done, mut here) = (0.0, from);
+        let mut step = (here.1 + self.before.skin()) * self.before.per_slope();
+        for _ in 0..MOST_STEPS {
+            if self.is_proven([here, to], length - done) {
+                return true;
+            }
+            step = step.min(length - done);
+            let Some(next) = self.known(from.0 + way * ((done + step) / length)) else {
+                return false;
+            };
+            if self.is_proven([here, next], step) {
+                (done, here) = (done + step, next);
+                step *= GROWTH;
+            } else {
+                step *= 0.5;
+            }
+        }
+        false
+    }
+}
