@@ -21,6 +21,8 @@ import { parts, schemaAt, schemaOf, valueAt, within, withoutUnit } from './schem
 
 /** What a scale that is typed keeps: its digits, and places over the size of the scene. */
 const DIGITS = 9;
+/** A material of its own where no preset was chosen before. */
+const OWN = { stiffness: 500, damping: 1 };
 const FINE = 1e-6;
 
 export function Selected() {
@@ -103,7 +105,7 @@ function Body({ pointer, body }) {
   const take = (/** @type {string} */ to) => {
     const at = within(pointer, 'material');
     if (to === 'default') edit([{ at }]);
-    else edit([{ at, to: to === 'own' ? { stiffness: 500, damping: 1 } : to }]);
+    else edit([{ at, to: to === 'own' ? { ...OWN, ...state.welcome?.presets?.[material] } : to }]);
   };
   return html`
     <p class="promise">promise: <b>${known?.promise ?? '–'}</b></p>

@@ -6,8 +6,8 @@
 
 import { html, useEffect, useState } from '../vendor/htm-preact.js';
 
-/** The width from which all panels have room; style.css and panels.css have it too. */
-const WIDE = matchMedia('(min-width: 960px)');
+/** The size from which all panels have room; style.css and panels.css have it too. */
+const WIDE = matchMedia('(min-width: 960px) and (min-height: 481px)');
 
 /** @param {{ main: HTMLElement }} given */
 export function Tabs({ main }) {
