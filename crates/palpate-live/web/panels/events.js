@@ -72,7 +72,7 @@ export function operations() {
 
 /** The line at the foot: what the safety chain does, in words. */
 export function Status() {
-  useTopics(['newest', 'scene', 'safety', 'connection', 'heard', 'stop'], 200);
+  useTopics(['newest', 'scene', 'safety', 'connection', 'heard', 'stop'], 100);
   useClock();
   const { scene, connection, newest } = state;
   const limit = scene?.device?.max_force;

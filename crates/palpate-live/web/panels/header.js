@@ -4,7 +4,7 @@
 
 /** The line at the top: the scene, the device, and the connection. */
 
-import { html, useEffect, useRef, useState } from '../vendor/htm-preact.js';
+import { html, useLayoutEffect, useRef, useState } from '../vendor/htm-preact.js';
 import { unheardInWords } from '../heard.js';
 import { isDark } from '../scene/colors.js';
 import { changed, state } from '../state.js';
@@ -101,7 +101,8 @@ function Menu({ help }) {
   const box = useRef(/** @type {HTMLElement | null} */ (null));
   const file = useRef(/** @type {HTMLInputElement | null} */ (null));
   const { scene, welcome } = state;
-  useEffect(() => {
+  // At once: a key that is pressed before the next picture closes it too.
+  useLayoutEffect(() => {
     if (!isOpen) return undefined;
     const close = (/** @type {Event} */ event) => {
       const isWithin = event.target instanceof Element && box.current?.contains(event.target);

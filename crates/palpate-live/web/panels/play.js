@@ -48,7 +48,7 @@ export function Time() {
 }
 
 function PlayBar() {
-  useTopics(['newest', 'playback', 'scene'], INTERVAL);
+  useTopics(['newest', 'playback', 'scene', 'connection', 'heard'], INTERVAL);
   const { history, lookingAt, frame, newest } = state;
   const last = Math.max(history.length - 1, 0);
   const at = lookingAt ?? last;
@@ -57,6 +57,7 @@ function PlayBar() {
   const rate = state.welcome?.rate;
   const ago = servoTime(newest && frame ? newest.time - frame.time : 0, rate);
   const words = !isFollowing ? `looking back ${ago}`
+    : state.connection !== 'live' ? 'not connected' : state.unheard !== null ? 'not heard'
     : newest?.stopped ? (newest.replaying ? 'replaying without forces' : 'stopped: forces are zero')
     : isHeld ? 'time is held' : newest?.replaying ? 'replaying' : 'following';
   return html`<div class="play">

@@ -123,6 +123,9 @@ export function isStopped() {
   return state.connection === 'live' && (state.newest?.stopped ?? false) && !isOver;
 }
 
+/** The last STOP, as the program tells of it. */
+export const lastStop = () => told;
+
 /** Whether another page pressed STOP last, or this page before its connection was lost. */
 export const isOthers = () => told !== null && !told.isMine;
 
