@@ -141,8 +141,8 @@ export const ask = (page, message) => page.evaluate(async (message) => {
 }, message);
 
 export async function violations(page) {
-  await page.evaluate(axe);
-  const found = await page.evaluate(() => window.axe.run());
+  if (!(await page.evaluate(() => 'axe' in window))) await page.evaluate(axe);
+  const found = await page.evaluate(() => window.axe.run({ resultTypes: ['violations'] }));
   return found.violations.map((one) => `${one.id}: ${one.nodes.map((node) => node.target).join(' ')}`);
 }
 
