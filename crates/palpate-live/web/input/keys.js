@@ -93,6 +93,7 @@ function leaveField(target) {
 export function listenKeys(actions) {
   /** Keys that are down, and since when. @type {Map<string, number>} */
   const held = new Map();
+  let isEscapeDown = false;
   let isSlow = false;
   let isRunning = false;
 
@@ -112,6 +113,7 @@ export function listenKeys(actions) {
   // In the capturing phase, so that nothing can keep Escape to itself.
   addEventListener('keydown', (event) => {
     isSlow = event.shiftKey;
+    isEscapeDown ||= event.key === 'Escape';
     const isControl = event.ctrlKey || event.metaKey;
     const isSaveAs = isControl && event.shiftKey && event.key.toLowerCase() === 's';
     const isRedo = isControl && event.shiftKey && event.key.toLowerCase() === 'z';
@@ -150,8 +152,17 @@ export function listenKeys(actions) {
   addEventListener('keydown', ({ key, target }) => key === 'Escape' && leaveField(target));
   addEventListener('keyup', (event) => {
     isSlow = event.shiftKey;
+    // The open list of a choice, and windows of the system, keep the press and leave the release.
+    if (event.key === 'Escape' && !isEscapeDown) {
+      actions.stop?.(event);
+      leaveField(event.target);
+    }
+    if (event.key === 'Escape') isEscapeDown = false;
     held.delete(event.key);
     if (event.key in MOVES) endKeys();
   }, { capture: true });
-  addEventListener('blur', () => held.clear());
+  addEventListener('blur', () => {
+    held.clear();
+    isEscapeDown = false;
+  });
 }

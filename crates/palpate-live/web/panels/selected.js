@@ -34,7 +34,7 @@ export function Selected() {
   if (!part || value === undefined || part.kind === 'group') return html`<${WholeScene} />`;
   const name = part.pointer.startsWith('/shapes/') ? parts(part.pointer)[1] : value.name;
   return html`
-    <div class="panel-head"><h2 title=${part.pointer}>${part.kind === 'other' ? heading(part.pointer) : part.label}</h2></div>
+    <div class="panel-head"><h2>${part.kind === 'other' ? heading(part.pointer) : part.label}</h2></div>
     <div class="scroll" tabindex="0" role="region" aria-label="Fields">
       ${state.problems.has(part.pointer) && html`<p class="problem">${state.problems.get(part.pointer)}</p>`}
       ${hasName(part.pointer) && html`<${TextField} label="name" value=${name}

@@ -35,7 +35,7 @@ export function Waiting() {
   }, []);
   const now = performance.now();
   return html`${slow.map(({ id, what, since }) => html`<div key=${id} class="toast working">
-    <span>The program ${WORK[what] ?? `works on ${what}`}
+    <span>The program ${WORK[what] ?? 'works'}
       <span aria-hidden="true">: ${Math.floor((now - since) / 1000)} s</span></span>
     ${!WHOLE.includes(what) && html`<button class="small" onClick=${() => page.wire?.cancel(id)}>cancel</button>`}
   </div>`)}`;
