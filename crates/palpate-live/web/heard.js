@@ -4,8 +4,8 @@
 
 /**
  * Whether the program is heard. A connection that is open says nothing: a program that is stopped
- * or hangs keeps it. A frame whose beat or tick went on is a sign of life; one that is repeated
- * is none.
+ * or hangs keeps it. A frame whose beat went on is a sign of life; one that is repeated is none, nor
+ * is one whose servo ticks on while the program reads no connection, and so no STOP.
  */
 
 import { changed, state } from './state.js';
@@ -24,7 +24,6 @@ let wasLate = false;
 /** Whether this connection's frames have a beat. A program without one is heard by each frame. */
 let hasBeat = false;
 let beat = 0;
-let tick = 0;
 
 function show() {
   document.documentElement.classList.toggle('old', state.unheard !== null || state.connection !== 'live');
@@ -42,8 +41,8 @@ function takeSign() {
 /** Takes a frame, which may be a sign of life. @param {import('./wire.js').Frame} frame */
 export function hear(frame) {
   hasBeat ||= frame.beat !== 0;
-  const isNew = !hasBeat || frame.beat !== beat || frame.tick !== tick;
-  ({ beat, tick } = frame);
+  const isNew = !hasBeat || frame.beat !== beat;
+  ({ beat } = frame);
   if (isNew) takeSign();
 }
 

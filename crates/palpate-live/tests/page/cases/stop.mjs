@@ -48,8 +48,11 @@ export default [
       page.on('request', (request) => request.method() === 'POST' && posts.push(request.url()));
     });
     const stops = () => sent.filter((text) => text.startsWith('{"do":"stop"'));
-    await page.locator('#stop').click();
+    // A press stops before it ends.
+    await page.locator('#stop').hover();
+    await page.mouse.down();
     await until('a stop', () => state(page, 'frame.stopped'));
+    await page.mouse.up();
     await says(page, '#stop', /^STOP forces are zero$/);
     check(stops().length === 1 && stops()[0].length < 256, `sent ${stops()}`);
     const { press } = JSON.parse(stops()[0]);
@@ -57,10 +60,14 @@ export default [
     check(posts.length === 1 && posts[0].endsWith(`&press=${press}`), `posted ${posts}`);
     const first = await told(page);
     check(first.isMine && (await said(page, '.stopped')).startsWith('Stopped. All forces are zero.'), 'not stopped by this page');
+    await page.locator('#stop').focus();
+    await page.keyboard.press('Enter');
+    await page.keyboard.press('Space');
+    await until('two more', async () => (await told(page)).number === first.number + 2);
     // A double click presses twice more; the second from the last one counts.
     await page.locator('#stop').dblclick();
     const begun = Date.now();
-    await until('three stops', async () => (await told(page)).number === first.number + 2);
+    await until('two more', async () => (await told(page)).number === first.number + 4);
     check(await page.locator('#release').isDisabled(), 'a release at once');
     check(/release in [01]\.\d s/.test(await said(page, '#release')), await said(page, '#release'));
     await page.keyboard.press('r');
@@ -75,7 +82,7 @@ export default [
     await page.locator('#release').click();
     await until('forces again', async () => !(await state(page, 'frame.stopped')));
     const [release] = sent.filter((text) => text.includes('"release"')).map((text) => JSON.parse(text));
-    check(release.number === first.number + 2, `released ${release.number}`);
+    check(release.number === first.number + 4, `released ${release.number}`);
     await page.locator('#release').waitFor({ state: 'detached' });
     await says(page, '#stop', /^STOP$/);
   })],
