@@ -105,7 +105,7 @@ function Body({ pointer, body }) {
   const take = (/** @type {string} */ to) => {
     const at = within(pointer, 'material');
     if (to === 'default') edit([{ at }]);
-    else edit([{ at, to: to === 'own' ? { ...OWN, ...state.welcome?.presets?.[material] } : to }]);
+    else edit([{ at, to: to === 'own' ? state.welcome?.presets?.[material] ?? OWN : to }]);
   };
   return html`
     <p class="promise">promise: <b>${known?.promise ?? '–'}</b></p>

@@ -6,29 +6,35 @@
 import { execFileSync } from 'node:child_process';
 import { join } from 'node:path';
 import { check, until } from '../harness.mjs';
-import { opened, serving, ask, pictures, scenes, program } from '../shared.mjs';
+import { ask, between, opened, pictures, program, scenes, serving } from '../shared.mjs';
 
 export default [
   ["the memoir's triangle has the core's verdict along a way", () => {
     const file = join(scenes, 'memoir_star.json');
     return serving([file], async ({ url }) => {
-      const { page, context } = await opened(url);
+      // What was asked about a triangle, and the answers, by their numbers.
+      const questions = new Map();
+      const answers = new Map();
+      const { page, context } = await opened(url, {}, undefined, async (page) => void await between(page, {
+        toProgram: (data) => {
+          const { do: what, corners, id } = JSON.parse(String(data));
+          return what === 'element' && void questions.set(JSON.stringify(corners), id);
+        },
+        toPage: (data) => {
+          const answer = typeof data === 'string' ? JSON.parse(data) : {};
+          return answer.do === 'element' && void answers.set(answer.id, answer);
+        },
+      }));
       await page.evaluate(async () => {
         const { setToys } = await import('/plane/toys.js');
         setToys({ shown: { element: true, ball: false, pair: false, sweep: false } });
       });
       for (let step = 0; step <= 4; step += 1) {
         const corners = [[1.0 + 0.1 * step, 1.1], [1.4 + 0.1 * step, 0.5], [0.8 + 0.1 * step, 0.9]];
-        const found = await page.evaluate(async (corners) => {
-          const { setToys, toys } = await import('/plane/toys.js');
-          setToys({ corners, method: 'naive' });
-          // An answer to what was asked before may still come: the last of them counts.
-          for (let last = null, since = 0; since < 30; since += 1) {
-            if (toys.results.element !== last) [last, since] = [toys.results.element, 0];
-            await new Promise((resolve) => setTimeout(resolve, 10));
-          }
-          return toys.results.element;
-        }, corners);
+        await page.evaluate(async (corners) => (await import('/plane/toys.js')).setToys({ corners, method: 'naive' }), corners);
+        const found = await until('an answer about this triangle', () => answers.get(questions.get(JSON.stringify(corners))));
+        await until('the answer on the page', () => page.evaluate(async (lower) =>
+          (await import('/plane/toys.js')).toys.results.element?.certified.lower === lower, found.certified.lower));
         const words = ['descend', file, '--json', '--method', 'naive', '--triangle', ...corners.map((corner) => corner.join(','))];
         const core = JSON.parse(execFileSync(program, words, { encoding: 'utf8' }));
         const { lower_m: lower, upper_m: upper } = core.certified;

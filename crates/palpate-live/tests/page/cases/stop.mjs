@@ -63,11 +63,12 @@ export default [
     await page.locator('#stop').focus();
     await page.keyboard.press('Enter');
     await page.keyboard.press('Space');
-    await until('two more', async () => (await told(page)).number === first.number + 2);
+    await until('two more', () => stops().length === 3);
     // A double click presses twice more; the second from the last one counts.
     await page.locator('#stop').dblclick();
     const begun = Date.now();
-    await until('two more', async () => (await told(page)).number === first.number + 4);
+    await until('two more', () => stops().length === 5);
+    await until('a later number', async () => (await told(page)).number > first.number);
     check(await page.locator('#release').isDisabled(), 'a release at once');
     check(/release in [01]\.\d s/.test(await said(page, '#release')), await said(page, '#release'));
     await page.keyboard.press('r');
@@ -79,10 +80,11 @@ export default [
     });
     check(!sent.some((text) => text.includes('"release"')), 'a script released');
     check(await state(page, 'frame.stopped'), 'not stopped any more');
+    const { number } = await told(page);
     await page.locator('#release').click();
     await until('forces again', async () => !(await state(page, 'frame.stopped')));
     const [release] = sent.filter((text) => text.includes('"release"')).map((text) => JSON.parse(text));
-    check(release.number === first.number + 4, `released ${release.number}`);
+    check(release.number === number, `released ${release.number}`);
     await page.locator('#release').waitFor({ state: 'detached' });
     await says(page, '#stop', /^STOP$/);
   })],
@@ -105,7 +107,7 @@ export default [
     await one.reload();
     await live(one);
     await says(one, '.stopped', /^Stopped by another page\. /);
-    check((await told(one)).number === number, 'another number after a reload');
+    check((await told(one)).number >= number, 'an earlier STOP after a reload');
     await one.locator('#release:enabled').click();
     await until('forces again', async () => !(await state(two, 'frame.stopped')));
   })],
