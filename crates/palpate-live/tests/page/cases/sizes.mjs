@@ -1,7 +1,10 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-/** STOP is on the screen at every size and in every state, and the page fits. */
+/**
+ * STOP is on the screen at every size and in every state, and the page fits. With PALPATE_PAGE_PICTURES
+ * set, each is kept as a picture.
+ */
 
 import { join } from 'node:path';
 import { check, until } from '../harness.mjs';
