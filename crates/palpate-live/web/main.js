@@ -4,6 +4,7 @@
 
 /** Puts the page together: the token, the socket, the panels, the picture, and the keys. */
 
+import { countAnew, hear, startHearing } from './heard.js';
 import { startGamepad } from './input/gamepad.js';
 import { listenKeys } from './input/keys.js';
 import { nextKind } from './input/placing.js';
@@ -26,7 +27,9 @@ import { takeRecording, watchRecording } from './panels/recording.js';
 import { takeSafety, watchSafety } from './panels/safety.js';
 import { baseName, save, saveAs } from './panels/saving.js';
 import { Selected } from './panels/selected.js';
-import { FORCES_COME_BACK, stop } from './panels/stop.js';
+import { Release } from './panels/release.js';
+import { StopButton } from './panels/stop.js';
+import { FORCES_COME_BACK, forgetStopped, release, sendAgain, startStopping, stop, takeReleased, takeStopped } from './panels/stopping.js';
 import { Tabs } from './panels/tabs.js';
 import { Toasts, Words } from './panels/toasts.js';
 import { Touch } from './panels/touch.js';
@@ -55,6 +58,8 @@ function takeMessage(message) {
   if (message.do === 'events') takeEvents(message.events);
   if (message.do === 'safety') takeSafety(message.stages);
   if (message.do === 'recording') takeRecording(/** @type {any} */ (message));
+  if (message.do === 'stopped') takeStopped(message);
+  if (message.do === 'released') takeReleased(message);
   if (message.do === 'clients') {
     state.clients = message.count;
     changed('clients');
@@ -113,6 +118,7 @@ function connect(token) {
   page.wire = new Wire(token, {
     frame: (frame) => {
       const start = performance.now();
+      hear(frame);
       takeFrame(frame);
       watchRecording(frame);
       watchSafety(frame);
@@ -123,6 +129,9 @@ function connect(token) {
       state.connection = connection;
       state.why = why ?? '';
       changed('connection');
+      countAnew();
+      if (connection === 'live') sendAgain();
+      else forgetStopped();
       if (connection === 'live' && document.hidden) page.wire?.send({ do: 'hidden', is: true });
     },
   });
@@ -153,6 +162,9 @@ function takeDrops() {
 
 const { token, given } = takeAddress();
 startTheme();
+startHearing();
+startStopping();
+render(html`<${StopButton} id="stop" />`, place('stop-place'));
 startProfile();
 render(html`<${Header} help=${toggleHelp} />`, place('header'));
 render(html`<${Tabs} main=${place('main')} />`, place('tabs'));
@@ -166,6 +178,7 @@ render(html`<${Time} />`, place('time'));
 render(html`<${Status} />`, place('status'));
 render(html`<${Toasts} />`, place('toasts'));
 render(html`<${Words} start=${connect} />`, place('words'));
+render(html`<${Release} />`, place('release-place'));
 listen(['scene'], suitView);
 listen(['scene'], watchFar);
 takeDrops();
@@ -173,6 +186,10 @@ startGamepad();
 startSteering();
 listenKeys({
   stop,
+  // A window lies over what says who stopped.
+  release: (event) => {
+    if (!isDialogOpen()) void release(event);
+  },
   hold: actions.hold,
   slow: actions.slow,
   step: actions.step,
@@ -189,7 +206,7 @@ listenKeys({
   undo: actions.undo,
   redo: actions.redo,
   save: () => void save(),
-  saveAs,
+  saveAs: () => saveAs(),
   help: toggleHelp,
   useKeys: () => setTouch({ input: 'keys' }),
 });

@@ -8,7 +8,7 @@
  * @typedef {import('./wire.js').Frame} Frame
  * @typedef {import('./wire.js').Message} Message
  * @typedef {'connection' | 'welcome' | 'scene' | 'frame' | 'newest' | 'selection' | 'view' |
- *   'events' | 'safety' | 'theme' | 'playback' | 'touch' | 'clients' | 'problems'} Topic
+ *   'events' | 'safety' | 'theme' | 'playback' | 'touch' | 'clients' | 'problems' | 'heard' | 'stop'} Topic
  * @typedef {'space' | 'slice' | 'plane' | 'compare'} ViewMode
  */
 
@@ -21,6 +21,8 @@ const RESTING = 1e-3;
 export const state = {
   /** @type {'connecting' | 'live' | 'lost' | 'closed'} */
   connection: 'connecting',
+  /** For how long a connected program was not heard [ms]; null while it is. @type {number | null} */
+  unheard: null,
   /** Why the connection was lost. */
   why: '',
   /** @type {Message | null} the answer to `hello` */

@@ -12,7 +12,7 @@
  * @typedef {{ dimension: number, stopped: boolean, held: boolean, acted: boolean,
  *   recording: boolean, touring: boolean, replaying: boolean, lifted: boolean, revision: number,
  *   tick: number, time: number, force: number, depth: number, cost: number, lateness: number, taken: number,
- *   given: number, kept: number, evaluations: number, lost: number, points: Point[] }} Frame
+ *   given: number, kept: number, evaluations: number, lost: number, beat: number, points: Point[] }} Frame
  * @typedef {{ dimension: number, id: number, revision: number, counts: number[],
  *   first: number[], last: number[], half: boolean, values: Uint16Array | Float32Array }} Grid
  * @typedef {{ id: number, revision: number, png: Blob }} Picture
@@ -74,6 +74,7 @@ export function decodeFrame(data) {
     kept: float(48),
     evaluations: float(52),
     lost: data.getUint32(56, true),
+    beat: data.getUint16(62, true),
     points,
   };
 }
@@ -229,9 +230,14 @@ export class Wire {
     asker?.resolve(message);
   }
 
+  /** Whether what is sent can arrive. */
+  isOpen() {
+    return this.socket?.readyState === WebSocket.OPEN;
+  }
+
   /** Sends what needs no answer. @param {Message} message */
   send(message) {
-    if (this.socket?.readyState === WebSocket.OPEN) this.socket.send(JSON.stringify(message));
+    if (this.isOpen()) this.socket?.send(JSON.stringify(message));
   }
 
   /** The questions without an answer for longer than a time [ms], oldest first.
@@ -255,7 +261,7 @@ export class Wire {
 
   /** Asks, and gives the answer. @param {Message} message @returns {Promise<any>} */
   ask(message, id = this.newId()) {
-    if (this.socket?.readyState !== WebSocket.OPEN) {
+    if (!this.isOpen()) {
       return Promise.reject(new Error('the program is not connected'));
     }
     return new Promise((resolve, reject) => {

@@ -34,6 +34,10 @@ export function browser(more = []) {
 /** A folder that is gone with the machine's temporary files. */
 export const scratch = () => mkdtempSync(join(tmpdir(), 'palpate-page-'));
 
+/** Programs that run: none outlives the tests, also if a case takes too long. */
+const running = new Set();
+process.on('exit', () => running.forEach((child) => child.kill('SIGKILL')));
+
 /**
  * Starts the program; gives the address of its page.
  * @param {string} program @param {string[]} words @param {string} folder for what it remembers
@@ -43,6 +47,8 @@ export async function start(program, words, folder) {
     env: { ...process.env, XDG_RUNTIME_DIR: folder },
     stdio: ['ignore', 'pipe', 'pipe'],
   });
+  running.add(child);
+  child.on('exit', () => running.delete(child));
   const lines = createInterface({ input: child.stderr });
   const url = await new Promise((resolve, reject) => {
     const said = [];

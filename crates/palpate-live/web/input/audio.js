@@ -101,7 +101,7 @@ export function setSound(on) {
   if (on && !sound) {
     sound = build();
     let heard = state.events[state.events.length - 1]?.number ?? 0;
-    listen(['frame'], follow);
+    listen(['frame', 'heard', 'connection'], follow);
     listen(['events'], () => {
       const fresh = state.events.filter((event) => event.number > heard);
       heard = fresh[fresh.length - 1]?.number ?? heard;

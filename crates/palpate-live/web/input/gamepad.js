@@ -28,8 +28,9 @@ function alive(value) {
   return size < DEAD ? 0 : (Math.sign(value) * (size - DEAD)) / (1 - DEAD);
 }
 
-/** The force as a part of the largest. */
+/** The force as a part of the largest; of a program that is not heard nothing is felt. */
 export function level() {
+  if (state.connection !== 'live' || state.unheard !== null) return 0;
   const largest = state.scene?.device?.max_force ?? 10;
   return Math.min((state.frame?.force ?? 0) / largest, 1);
 }

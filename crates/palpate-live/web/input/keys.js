@@ -17,6 +17,7 @@
  *   control?: boolean }} Key
  */
 
+import { TYPED, isDraft, watchDraft } from './draft.js';
 import { endKeys, takeKey } from './placing.js';
 import { deepen, isLeading } from './pointer.js';
 import { axesSeen, letGo, nudge, push } from './steer.js';
@@ -24,7 +25,8 @@ import { state } from '../state.js';
 
 /** @type {Key[]} */
 export const KEYS = [
-  { keys: ['Escape'], shown: 'Esc', text: 'stop all forces, wherever the focus is', where: 'anywhere', does: 'stop' },
+  { keys: ['Escape'], shown: 'Esc', text: 'stop all forces, wherever the focus is; a field drops what was typed, a window closes', where: 'anywhere', does: 'stop' },
+  { keys: ['r', 'R'], shown: 'R', text: 'release: forces again after a stop', where: 'outside', does: 'release' },
   { keys: ['p', 'P'], shown: 'P', text: 'hold the time, or go on', where: 'outside', does: 'hold' },
   { keys: [' '], shown: 'Space', text: 'the same, when no control has the focus', where: 'free', does: 'hold' },
   { keys: ['s', 'S'], shown: 'S', text: 'slow motion, 0.25×', where: 'outside', does: 'slow' },
@@ -38,7 +40,7 @@ export const KEYS = [
   { keys: ['f', 'F'], shown: 'F', text: 'show the whole scene', where: 'outside', does: 'fit' },
   { keys: ['m', 'M'], shown: 'M', text: 'the arrow and Page keys move the selected body or shape; again: turn it, scale it, move the hand', where: 'outside', does: 'place' },
   { keys: ['l', 'L'], shown: 'L', text: 'let go of the hand, which keys hold where they led it', where: 'outside', does: 'letGo' },
-  { keys: ['z', 'Z'], shown: 'Ctrl Z', text: 'undo', where: 'untyped', does: 'undo', control: true },
+  { keys: ['z', 'Z'], shown: 'Ctrl Z', text: 'undo; in a field only drop what was typed', where: 'untyped', does: 'undo', control: true },
   { keys: ['y', 'Y'], shown: 'Ctrl Y', text: 'redo', where: 'untyped', does: 'redo', control: true },
   { keys: ['s', 'S'], shown: 'Ctrl S', text: 'save the scene; with Shift as another file', where: 'anywhere', does: 'save', control: true },
   { keys: ['?', 'F1'], shown: '? or F1', text: 'this help', where: 'outside', does: 'help' },
@@ -57,7 +59,6 @@ export const MOVE_HELP = [
   { shown: 'Shift', text: 'with these: a quarter of the speed; a fifth of a step of what is selected' },
 ];
 
-const TYPED = 'input:not([type=checkbox], [type=range], [type=file]), textarea';
 const CHOSEN = `${TYPED}, select`;
 const WITH_ARROWS = `${CHOSEN}, input[type=range], [role=tree], [role=tablist]`;
 /** In what a key of each kind does not count. @type {Record<Where, string>} */
@@ -69,27 +70,11 @@ const ELSEWHERE = {
   free: `${WITH_ARROWS}, input, button, a, summary`,
 };
 
-/** The text field with what was typed and not entered yet. @type {EventTarget | null} */
-let draft = null;
-
-/** Takes note of what is typed, until it is entered. */
-function watchDraft() {
-  addEventListener('input', ({ target }) => {
-    draft = target instanceof Element && target.matches(TYPED) ? target : null;
-  });
-  addEventListener('focusout', () => {
-    draft = null;
-  });
-  addEventListener('keydown', ({ key, target }) => {
-    if (key === 'Enter' && target instanceof HTMLInputElement) draft = null;
-  });
-}
-
 /** @param {EventTarget | null} target @param {Where} where */
 function counts(target, where) {
   if (!(target instanceof Element)) return true;
   // A field marked invalid keeps Ctrl Z for itself.
-  if (where === 'untyped' && (target === draft || target.matches('[aria-invalid=true]'))) return false;
+  if (where === 'untyped' && (isDraft(target) || target.matches('[aria-invalid=true]'))) return false;
   return !target.closest(ELSEWHERE[where]);
 }
 
@@ -98,10 +83,17 @@ const SLOW = 0.25;
 /** How long a key is down before the hand moves on after its first step [ms]. */
 const REPEAT_AFTER = 250;
 
-/** Listens for keys. @param {Record<string, () => void>} actions one for each `does` */
+/** Leaves a field, so that the key that releases is not typed into it. In a window, which closes, focus
+ * goes back to where it was. @param {EventTarget | null} target */
+function leaveField(target) {
+  if (target instanceof HTMLElement && target.matches(CHOSEN) && !target.closest('dialog')) target.blur();
+}
+
+/** Listens for keys. @param {Record<string, (event: KeyboardEvent) => void>} actions one for each `does` */
 export function listenKeys(actions) {
   /** Keys that are down, and since when. @type {Map<string, number>} */
   const held = new Map();
+  let isEscapeDown = false;
   let isSlow = false;
   let isRunning = false;
 
@@ -121,6 +113,7 @@ export function listenKeys(actions) {
   // In the capturing phase, so that nothing can keep Escape to itself.
   addEventListener('keydown', (event) => {
     isSlow = event.shiftKey;
+    isEscapeDown ||= event.key === 'Escape';
     const isControl = event.ctrlKey || event.metaKey;
     const isSaveAs = isControl && event.shiftKey && event.key.toLowerCase() === 's';
     const isRedo = isControl && event.shiftKey && event.key.toLowerCase() === 'z';
@@ -128,15 +121,15 @@ export function listenKeys(actions) {
       one.keys.includes(event.key) && Boolean(one.control) === isControl && counts(event.target, one.where));
     if (key && !event.altKey) {
       if (key.does !== 'stop') event.preventDefault();
-      actions[isRedo ? 'redo' : isSaveAs ? 'saveAs' : key.does]?.();
+      actions[isRedo ? 'redo' : isSaveAs ? 'saveAs' : key.does]?.(event);
       return;
     }
     if (!(event.key in MOVES) || isControl || event.altKey) return;
     if (!counts(event.target, 'moveless')) return;
     event.preventDefault();
     if (state.lookingAt !== null) {
-      if (event.key === 'ArrowLeft') actions.back?.();
-      if (event.key === 'ArrowRight') actions.forth?.();
+      if (event.key === 'ArrowLeft') actions.back?.(event);
+      if (event.key === 'ArrowRight') actions.forth?.(event);
       return;
     }
     // A hand that the pointer leads is moved by keys in depth alone.
@@ -146,7 +139,7 @@ export function listenKeys(actions) {
       return;
     }
     if (takeKey(MOVES[event.key], event)) return;
-    if (state.touch.input !== 'keys') actions.useKeys?.();
+    if (state.touch.input !== 'keys') actions.useKeys?.(event);
     if (held.has(event.key)) return;
     held.set(event.key, performance.now());
     nudge(MOVES[event.key].map((way) => way * (isSlow ? SLOW : 1)), axesSeen());
@@ -155,10 +148,21 @@ export function listenKeys(actions) {
       requestAnimationFrame(run);
     }
   }, { capture: true });
+  // After all others: the field has dropped what was typed.
+  addEventListener('keydown', ({ key, target }) => key === 'Escape' && leaveField(target));
   addEventListener('keyup', (event) => {
     isSlow = event.shiftKey;
+    // The open list of a choice, and windows of the system, keep the press and leave the release.
+    if (event.key === 'Escape' && !isEscapeDown) {
+      actions.stop?.(event);
+      leaveField(event.target);
+    }
+    if (event.key === 'Escape') isEscapeDown = false;
     held.delete(event.key);
     if (event.key in MOVES) endKeys();
   }, { capture: true });
-  addEventListener('blur', () => held.clear());
+  addEventListener('blur', () => {
+    held.clear();
+    isEscapeDown = false;
+  });
 }

@@ -24,18 +24,20 @@ export function isDialogOpen() {
   return overlay().childElementCount > 0;
 }
 
-/** The window itself: Esc, its button and a press beside it close it.
- * @param {{ title: string, children?: any }} given */
-export function Dialog({ title, children }) {
+/** The window itself: Esc, its button and a press beside it close it. One that is only read has the focus
+ * itself, so that STOP is the next.
+ * @param {{ title: string, isRead?: boolean, children?: any }} given */
+export function Dialog({ title, isRead = false, children }) {
   const dialog = useRef(/** @type {HTMLDialogElement | null} */ (null));
   useEffect(() => {
     dialog.current?.showModal();
   }, []);
-  return html`<dialog class="dialog" ref=${dialog} aria-labelledby="dialog-title" onClose=${closeDialog}
+  return html`<dialog class="dialog" ref=${dialog} autofocus=${isRead} tabindex=${isRead ? -1 : undefined} aria-labelledby="dialog-title" onClose=${closeDialog}
     onClick=${(/** @type {any} */ event) => event.target === dialog.current && dialog.current?.close()}>
+    <${StopButton} />
     <div class="dialog-body">
       <div class="panel-head"><h2 id="dialog-title">${title}</h2><span class="gap"></span>
-        <button onClick=${() => dialog.current?.close()}>close</button><${StopButton} /></div>
+        <button type="button" onClick=${() => dialog.current?.close()}>close</button></div>
       ${children}
     </div>
   </dialog>`;

@@ -23,6 +23,7 @@
  * @property {boolean} [own] whether the page alone keeps the number, so that no program checks it
  */
 
+import { DROP_HELP, forgetDraft, isDraft, isDrop } from '../input/draft.js';
 import { html, useEffect, useRef, useState } from '../vendor/htm-preact.js';
 import { short, typed } from './numbers.js';
 import { read } from './units.js';
@@ -105,13 +106,17 @@ export function NumberField(given) {
     setDraft(kept);
     change(kept, moving);
   };
+  /** What was dropped is not entered when the focus goes. */
+  const isDropped = useRef(false);
   const giveUp = () => {
+    isDropped.current = true;
+    forgetDraft();
     setTyped(null);
     setDraft(null);
     given.forget?.();
   };
   const finish = () => {
-    if (text === null || text === typed(shown)) {
+    if (isDropped.current || text === null || text === typed(shown)) {
       setTyped(null);
       return;
     }
@@ -131,6 +136,10 @@ export function NumberField(given) {
   const key = (/** @type {KeyboardEvent} */ event) => {
     if (event.key === 'Enter') finish();
     if (event.key === 'Escape') giveUp();
+    if (isDrop(event) && (isDraft(event.target) || problem)) {
+      event.preventDefault();
+      giveUp();
+    }
     const turn = { ArrowUp: 1, ArrowDown: -1 }[event.key];
     if (turn === undefined) return;
     event.preventDefault();
@@ -176,10 +185,13 @@ export function NumberField(given) {
   return html`<div class=${problem ? 'field wrong' : 'field'}>
     <label for=${`f${id}`} title=${help}>${label}${unit && isNamed && html` <span class="unit">[${unit}]</span>`}</label>
     <input id=${`f${id}`} class="number" type="text" inputmode="decimal" autocomplete="off"
-      value=${text ?? short(shown, 6)} title=${`${help ?? label}: drag sideways, or type${unit && ', also with another unit'}`}
+      value=${text ?? short(shown, 6)} title=${`${help ?? label}: drag sideways, or type${unit && ', also with another unit'}. ${DROP_HELP}`}
       aria-invalid=${problem ? 'true' : undefined} aria-describedby=${problem ? `p${id}` : undefined}
       onFocus=${focus}
-      onInput=${(/** @type {any} */ event) => setTyped(event.currentTarget.value)}
+      onInput=${(/** @type {any} */ event) => {
+        isDropped.current = false;
+        setTyped(event.currentTarget.value);
+      }}
       onBlur=${finish} onKeyDown=${key} onPointerDown=${press} />
     ${slider && html`<input type="range" class="slider" min=${low} max=${high}
       step=${given.whole ? 1 : step((high - low) / SLIDER_STEPS)} value=${shown} aria-label=${label}
@@ -238,10 +250,17 @@ export function TextField({ label, value, change, long, help, problem }) {
   const end = (/** @type {any} */ event) => {
     if (event.currentTarget.value !== value) change(event.currentTarget.value);
   };
+  const key = (/** @type {any} */ event) => {
+    const isDropped = isDrop(event) && isDraft(event.target);
+    if (isDropped) event.preventDefault();
+    else if (event.key !== 'Escape') return;
+    event.currentTarget.value = value;
+    forgetDraft();
+  };
   const Tag = long ? 'textarea' : 'input';
   return html`<div class=${problem ? 'field text wrong' : 'field text'}>
     <label for=${`f${id}`} title=${help}>${label}</label>
-    <${Tag} id=${`f${id}`} rows=${long ? 3 : undefined} value=${value} onChange=${end} />
+    <${Tag} id=${`f${id}`} rows=${long ? 3 : undefined} value=${value} title=${DROP_HELP} onChange=${end} onKeyDown=${key} />
     ${problem && html`<p class="problem">${problem}</p>`}
   </div>`;
 }

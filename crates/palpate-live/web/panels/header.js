@@ -2,9 +2,10 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 // @ts-check
 
-/** The line at the top: the scene, the device, the connection, and the stop button. */
+/** The line at the top: the scene, the device, and the connection. */
 
-import { html, useEffect, useRef, useState } from '../vendor/htm-preact.js';
+import { html, useLayoutEffect, useRef, useState } from '../vendor/htm-preact.js';
+import { unheardInWords } from '../heard.js';
 import { isDark } from '../scene/colors.js';
 import { changed, state } from '../state.js';
 import * as actions from './actions.js';
@@ -13,7 +14,6 @@ import { GALLERY } from './gallery.js';
 import { copyLink } from './link.js';
 import { page, tellError, useTopics } from './page.js';
 import { baseName, save, saveAs } from './saving.js';
-import { StopButton } from './stop.js';
 
 const THEME = 'palpate-theme';
 
@@ -36,21 +36,20 @@ export function Header({ help }) {
   useTopics(['connection', 'scene', 'theme', 'welcome']);
   const { scene, welcome } = state;
   return html`
-    <h1 class="brand"><img src="favicon.svg" alt="" width="20" height="20" />palpate</h1>
-    <${Menu} />
+    <h1 class="brand"><img src="favicon.svg" alt="" width="20" height="20" /><span>palpate</span></h1>
+    <${Menu} help=${help} />
     <${Steps} />
     <span class="device" title="The device that the hand holds, and how often its force is computed">
       ${scene?.device ? deviceInWords(scene.device) : ''}${welcome?.rate ? ` · ${rateInWords(welcome.rate)}` : ''}
     </span>
     <${Connection} />
     <span class="gap"></span>
-    <button class="plain" onClick=${toggleTheme} aria-label=${isDark() ? 'Light theme' : 'Dark theme'}
+    <button class="plain roomy" onClick=${toggleTheme} aria-label=${isDark() ? 'Light theme' : 'Dark theme'}
       title=${isDark() ? 'Light theme' : 'Dark theme'}>
       <svg viewBox="0 0 16 16" width="16" height="16" aria-hidden="true"><circle cx="8" cy="8" r="6.5" fill="none"
         stroke="currentColor" stroke-width="1.5" /><path d="M8 1.5a6.5 6.5 0 0 1 0 13z" fill="currentColor" /></svg>
     </button>
-    <button class="plain" onClick=${help} aria-label="Help" title="Help: ? or F1">?</button>
-    <${StopButton} id="stop" />`;
+    <button class="plain roomy" onClick=${help} aria-label="Help" title="Help: ? or F1">?</button>`;
 }
 
 /** @param {any} device */
@@ -64,10 +63,18 @@ function rateInWords(rate) {
   return rate >= 1000 ? `${rate / 1000} kHz` : `${rate} Hz`;
 }
 
+/** Whether the program is connected and heard. The seconds are not read out. */
 function Connection() {
+  useTopics(['heard']);
+  const { connection } = state;
+  if (connection === 'live' && state.unheard !== null) {
+    const [, word, seconds] = /^(.*?)( for .*)$/.exec(unheardInWords()) ?? [];
+    return html`<span class="connection unheard" role="status" title="The connection is open, but the program says nothing">
+      <span class="dot" aria-hidden="true"></span><span>${word}<span aria-hidden="true">${seconds}</span></span></span>`;
+  }
   const words = { connecting: 'connecting', live: 'live', lost: 'lost', closed: 'not connected' };
-  return html`<span class=${`connection ${state.connection}`} role="status">
-    <span class="dot" aria-hidden="true"></span>${words[state.connection]}</span>`;
+  return html`<span class=${`connection ${connection}`} role="status">
+    <span class="dot" aria-hidden="true"></span><span>${words[connection]}</span></span>`;
 }
 
 /** One edit back, and forth again. */
@@ -78,7 +85,7 @@ function Steps() {
     { name: 'redo', help: 'Make the edit again', key: 'Y', isPossible: scene?.can_redo, run: actions.redo,
       turn: 'matrix(-1 0 0 1 16 0)' },
   ];
-  return html`<span class="steps" role="group" aria-label="Steps of editing">
+  return html`<span class="steps roomy" role="group" aria-label="Steps of editing">
     ${steps.map(({ name, help, key, isPossible, run, turn }) => html`<button key=${name} class="step" onClick=${run}
       disabled=${!isPossible} title=${`${help}: Ctrl ${key}`} aria-label=${name} aria-keyshortcuts=${`Control+${key}`}>
       <svg viewBox="0 0 16 16" width="14" height="14" aria-hidden="true"><path transform=${turn} fill="none" stroke="currentColor"
@@ -86,14 +93,16 @@ function Steps() {
   </span>`;
 }
 
-/** The scene's name, and what can be done with its file. */
-function Menu() {
+/** The scene's name, and what can be done with its file; on a slim page also what has no room beside it.
+ * @param {{ help: () => void }} given */
+function Menu({ help }) {
   useTopics(['scene']);
   const [isOpen, setIsOpen] = useState(false);
   const box = useRef(/** @type {HTMLElement | null} */ (null));
   const file = useRef(/** @type {HTMLInputElement | null} */ (null));
   const { scene, welcome } = state;
-  useEffect(() => {
+  // At once: a key that is pressed before the next picture closes it too.
+  useLayoutEffect(() => {
     if (!isOpen) return undefined;
     const close = (/** @type {Event} */ event) => {
       const isWithin = event.target instanceof Element && box.current?.contains(event.target);
@@ -107,8 +116,8 @@ function Menu() {
     };
   }, [isOpen]);
   const before = isOpen ? openedBefore() : [];
-  const item = (/** @type {string} */ name, /** @type {() => unknown} */ run, disabled = false, key = '') => html`
-    <li><button disabled=${disabled} onClick=${() => {
+  const item = (/** @type {string} */ name, /** @type {() => unknown} */ run, disabled = false, key = '', kind = '') => html`
+    <li class=${kind}><button disabled=${disabled} onClick=${() => {
       setIsOpen(false);
       void Promise.resolve(run()).catch(tellError);
     }}>${name}${key && html` <kbd>${key}</kbd>`}</button></li>`;
@@ -125,6 +134,10 @@ function Menu() {
         if (chosen) void actions.openFile(chosen);
       }} />
     ${isOpen && html`<ul class="menu-list">
+      ${item('Undo', actions.undo, !scene?.can_undo, 'Ctrl Z', 'slim')}
+      ${item('Redo', actions.redo, !scene?.can_redo, 'Ctrl Y', 'slim')}
+      ${item('Help', help, false, '?', 'slim')}
+      ${item(isDark() ? 'Light theme' : 'Dark theme', toggleTheme, false, '', 'slim')}
       ${item('Open a scene or a trace…', () => file.current?.click())}
       ${item('Save', () => save(), !scene, 'Ctrl S')}
       ${item('Save as…', saveAs, !scene, 'Ctrl Shift S')}

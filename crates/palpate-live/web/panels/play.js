@@ -15,6 +15,7 @@ import { page, useTopics } from './page.js';
 import { Profile } from './profile.js';
 import { downloadTrace, record, recorded, replay } from './recording.js';
 import { Safety } from './safety.js';
+import { useWide } from './tabs.js';
 
 /** Between two updates [ms]. */
 const INTERVAL = 100;
@@ -35,8 +36,10 @@ const TABS = {
 export function Time() {
   const [tab, setTab] = useState('charts');
   const Body = TABS[tab][1];
+  // On a narrow page what is looked at comes first.
+  const isWide = useWide();
   return html`
-    <${PlayBar} />
+    ${isWide && html`<${PlayBar} />`}
     <div class="time-tabs" role="group" aria-label="Below the play bar">
       ${Object.entries(TABS).map(([key, [name]]) => html`<button key=${key} class="small" aria-pressed=${String(tab === key)}
         onClick=${() => setTab(key)}>${name}</button>`)}
@@ -44,11 +47,12 @@ export function Time() {
     </div>
     <div class="time-body">
       <${Body} key=${tab} />
-    </div>`;
+    </div>
+    ${!isWide && html`<${PlayBar} />`}`;
 }
 
 function PlayBar() {
-  useTopics(['newest', 'playback', 'scene'], INTERVAL);
+  useTopics(['newest', 'playback', 'scene', 'connection', 'heard'], INTERVAL);
   const { history, lookingAt, frame, newest } = state;
   const last = Math.max(history.length - 1, 0);
   const at = lookingAt ?? last;
@@ -57,6 +61,7 @@ function PlayBar() {
   const rate = state.welcome?.rate;
   const ago = servoTime(newest && frame ? newest.time - frame.time : 0, rate);
   const words = !isFollowing ? `looking back ${ago}`
+    : state.connection !== 'live' ? 'not connected' : state.unheard !== null ? 'not heard'
     : newest?.stopped ? (newest.replaying ? 'replaying without forces' : 'stopped: forces are zero')
     : isHeld ? 'time is held' : newest?.replaying ? 'replaying' : 'following';
   return html`<div class="play">

@@ -55,12 +55,15 @@ export function replay(on) {
   return ask({ do: 'replay', on });
 }
 
-const address = () => `trace.csv?token=${encodeURIComponent(page.token)}`;
+/** Asks for the trace, or gives one. @param {RequestInit} [request] */
+const answerTo = (request) => fetch(`trace.csv?token=${encodeURIComponent(page.token)}`, request).catch(() => {
+  throw new Error('The program is not connected.');
+});
 
 /** Gives what was recorded as a CSV file. */
 export async function downloadTrace() {
   try {
-    const answer = await fetch(address());
+    const answer = await answerTo();
     if (!answer.ok) throw new Error(await reason(answer, 'the program gives no trace'));
     const trace = await answer.blob();
     // A trace begins with the names of its columns.
@@ -74,7 +77,7 @@ export async function downloadTrace() {
 
 /** Gives a trace to the program, to be replayed. @param {File} file */
 export async function openTrace(file) {
-  const answer = await fetch(address(), { method: 'POST', body: file, headers: { 'Content-Type': 'text/csv' } });
+  const answer = await answerTo({ method: 'POST', body: file, headers: { 'Content-Type': 'text/csv' } });
   if (!answer.ok) throw new Error(`${file.name}: ${await reason(answer, 'the program does not take it')}`);
   dismiss(offer);
   offer = tell(`${file.name} is ready to be replayed.`, 'word', [{ name: 'Replay', run: () => void replay(true) }]);

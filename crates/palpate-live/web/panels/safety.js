@@ -8,6 +8,7 @@
  * @typedef {{ name: string, ticks: number }} Stage
  */
 
+import { norm } from '../scene/vectors.js';
 import { changed, state } from '../state.js';
 import { html, useEffect, useReducer } from '../vendor/htm-preact.js';
 import { count, short } from './numbers.js';
@@ -31,7 +32,7 @@ const WORDS = {
   'largest force': ['force limited', 'The force is shortened to the largest that is allowed; its direction stays.'],
   'lasting force': ['lasting force lowered', 'A large force that lasts is lowered before the motors grow hot.'],
   'not a number': ['force zero: not a number', 'A force or a reading that is no finite number makes the force zero.'],
-  'rise from zero': ['force rises from zero', 'A force that was zero at the start or after a stop comes back once the hand is out of the bodies, and slowly.'],
+  'rise from zero': ['force rises from zero', 'A force that was zero, at the start, after a stop or where an edit covered the hand, waits until the hand is out of the bodies where that is needed, and then rises slowly.'],
   watchdog: ['force lowered: late ticks', 'While ticks are late the force falls to zero, since an old force is a wrong one.'],
   'emergency stop': ['stopped', 'STOP, Esc or the device’s own switch makes all forces zero.'],
   'torque rate': ['torque rate limited', 'The torque changes by no more in a tick than the device follows.'],
@@ -59,9 +60,31 @@ export function watchSafety(frame) {
 /** @param {number} time on the clock of `performance.now()` */
 export const isNow = (time) => performance.now() - time < NOW;
 
+/** The stage that brings a force back from zero. */
+const RISE = 'rise from zero';
+
+/** Whether a body is touched of which no force is felt. @param {import('../wire.js').Frame | null} frame */
+const isWithheld = (frame) =>
+  frame?.points.some(({ contact, wanted, force }) => contact && norm(wanted) > 0 && norm(force) === 0) ?? false;
+
+/** What a person does who touches a body and feels no force after a stop; empty where there is one.
+ * @param {import('../wire.js').Frame | null} frame */
+export function withheldInWords(frame) {
+  const isActing = state.safety.some((stage) => stage.name === RISE && isNow(stage.acted));
+  return isWithheld(frame) && isActing ? 'no force until the hand is out of the bodies: draw it out by the mouse or the arrow keys' : '';
+}
+
+/** What a stage does, for the foot line: a force rises where there is one, and else waits.
+ * @param {string} name */
+function inWords(name) {
+  if (name !== RISE) return WORDS[name]?.[0] ?? `${name} acts`;
+  if (isWithheld(state.newest)) return 'force waits until the hand is out of the bodies';
+  return state.newest?.points.some(({ force }) => norm(force) > 0) ? WORDS[name][0] : '';
+}
+
 /** What the stages do now, for the foot line; empty if none acts. */
 export function actingStages() {
-  const names = state.safety.filter(({ acted }) => isNow(acted)).map(({ name }) => WORDS[name]?.[0] ?? `${name} acts`);
+  const names = state.safety.filter(({ acted }) => isNow(acted)).map(({ name }) => inWords(name)).filter(Boolean);
   return names.join(', ') || (isNow(actedAt) ? 'a stage changes the force' : '');
 }
 
@@ -86,8 +109,9 @@ export function Safety() {
     ${state.safety.length === 0 && html`<p class="quiet">No stage has changed a force since this page came.</p>`}
     <ol>${state.safety.map(({ name, ticks, acted }) => {
       const isActing = isNow(acted);
+      const acts = name === RISE && isWithheld(state.newest) ? 'waits' : 'acts';
       return html`<li key=${name} class=${isActing ? 'acting' : ''}>
-        <b>${name}</b> <span class="quiet">${WORDS[name]?.[1] ?? ''}</span> <span class="stage-ticks">· ${isActing ? 'acts: ' : ''}${ticks === 0 ? 'never' : `${count(ticks)} ${ticks === 1 ? 'tick' : 'ticks'}, ${short(ticks / rate)} s`}</span>
+        <b>${name}</b> <span class="quiet">${WORDS[name]?.[1] ?? ''}</span> <span class="stage-ticks">· ${isActing ? `${acts}: ` : ''}${ticks === 0 ? 'never' : `${count(ticks)} ${ticks === 1 ? 'tick' : 'ticks'}, ${short(ticks / rate)} s`}</span>
       </li>`;
     })}</ol>
   </div>`;

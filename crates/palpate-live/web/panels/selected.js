@@ -21,6 +21,8 @@ import { parts, schemaAt, schemaOf, valueAt, within, withoutUnit } from './schem
 
 /** What a scale that is typed keeps: its digits, and places over the size of the scene. */
 const DIGITS = 9;
+/** A material of its own where no preset was chosen before. */
+const OWN = { stiffness: 500, damping: 1 };
 const FINE = 1e-6;
 
 export function Selected() {
@@ -32,7 +34,7 @@ export function Selected() {
   if (!part || value === undefined || part.kind === 'group') return html`<${WholeScene} />`;
   const name = part.pointer.startsWith('/shapes/') ? parts(part.pointer)[1] : value.name;
   return html`
-    <div class="panel-head"><h2 title=${part.pointer}>${part.kind === 'other' ? heading(part.pointer) : part.label}</h2></div>
+    <div class="panel-head"><h2>${part.kind === 'other' ? heading(part.pointer) : part.label}</h2></div>
     <div class="scroll" tabindex="0" role="region" aria-label="Fields">
       ${state.problems.has(part.pointer) && html`<p class="problem">${state.problems.get(part.pointer)}</p>`}
       ${hasName(part.pointer) && html`<${TextField} label="name" value=${name}
@@ -103,7 +105,7 @@ function Body({ pointer, body }) {
   const take = (/** @type {string} */ to) => {
     const at = within(pointer, 'material');
     if (to === 'default') edit([{ at }]);
-    else edit([{ at, to: to === 'own' ? { stiffness: 500, damping: 1 } : to }]);
+    else edit([{ at, to: to === 'own' ? state.welcome?.presets?.[material] ?? OWN : to }]);
   };
   return html`
     <p class="promise">promise: <b>${known?.promise ?? '–'}</b></p>

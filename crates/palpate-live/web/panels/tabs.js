@@ -6,18 +6,24 @@
 
 import { html, useEffect, useState } from '../vendor/htm-preact.js';
 
-/** The width from which all panels have room; style.css and panels.css have it too. */
-const WIDE = matchMedia('(min-width: 960px)');
+/** The size from which all panels have room; style.css and panels.css have it too. */
+const WIDE = matchMedia('(min-width: 960px) and (min-height: 481px)');
 
-/** @param {{ main: HTMLElement }} given */
-export function Tabs({ main }) {
-  const [chosen, setChosen] = useState('shapes');
+/** Whether all panels have room; draws a component anew when that changes. */
+export function useWide() {
   const [isWide, setIsWide] = useState(WIDE.matches);
   useEffect(() => {
     const turn = () => setIsWide(WIDE.matches);
     WIDE.addEventListener('change', turn);
     return () => WIDE.removeEventListener('change', turn);
   }, []);
+  return isWide;
+}
+
+/** @param {{ main: HTMLElement }} given */
+export function Tabs({ main }) {
+  const [chosen, setChosen] = useState('shapes');
+  const isWide = useWide();
   // All panels but these two are always seen on a wide page.
   const shown = isWide && chosen !== 'checks' ? 'selected' : chosen;
   useEffect(() => {

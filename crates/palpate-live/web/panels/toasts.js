@@ -59,7 +59,8 @@ function NoToken({ start }) {
     <p>A program that moves a hand obeys only who knows its token. <code>palpate live</code> prints an address
       such as <code>${location.origin}/#…</code> where it was started: open that one, or paste it here.</p>
     <label>Address or token <input value=${text} autocomplete="off" spellcheck=${false}
-      onInput=${(/** @type {any} */ event) => setText(event.currentTarget.value)} /></label>
+      onInput=${(/** @type {any} */ event) => setText(event.currentTarget.value)}
+      onKeyDown=${(/** @type {KeyboardEvent} */ event) => event.key === 'Escape' && setText('')} /></label>
     <button>Connect</button>
   </form>`;
 }

@@ -12,7 +12,7 @@ import { pullInWords } from '../scene/guides.js';
 import { setTouch, state } from '../state.js';
 import { ChoiceField, Switch } from './fields.js';
 import { page, useTopics } from './page.js';
-import { withheldInWords } from './stop.js';
+import { withheldInWords } from './safety.js';
 
 /** Between two updates of the numbers [ms]: faster ones cannot be read. */
 const INTERVAL = 100;
@@ -79,7 +79,7 @@ function TourSwitch() {
 
 /** Force, depth and body in large numbers. */
 function Readout() {
-  useTopics(['frame', 'scene', 'connection'], INTERVAL);
+  useTopics(['frame', 'scene', 'connection', 'heard'], INTERVAL);
   const { scene } = state;
   // What was felt last is no longer felt.
   const frame = state.connection === 'live' ? state.frame : null;
@@ -90,10 +90,11 @@ function Readout() {
   const isSlipping = touched.some((point) => point.slipping);
   const withheld = withheldInWords(frame);
   const pull = frame?.points.map(pullInWords).find(Boolean) ?? '';
+  const age = state.unheard === null ? '' : ', last heard';
   return html`<dl class="readout">
-    <div title="The largest of all contact points"><dt>force</dt><dd><span class="large">${(frame?.force ?? 0).toFixed(2)}</span> N</dd></div>
-    <div title="The largest of all contact points"><dt>depth</dt><dd><span class="large">${(1000 * (frame?.depth ?? 0)).toFixed(2)}</span> mm</dd></div>
-    <div class="touched" title=${lifted ? 'It passes through bodies, and feels them again where it is set down' : names.join(', ')}><dt>touches</dt>
+    <div title="The largest of all contact points"><dt>force${age}</dt><dd><span class="large">${(frame?.force ?? 0).toFixed(2)}</span> N</dd></div>
+    <div title="The largest of all contact points"><dt>depth${age}</dt><dd><span class="large">${(1000 * (frame?.depth ?? 0)).toFixed(2)}</span> mm</dd></div>
+    <div class="touched" title=${lifted ? 'It passes through bodies, and feels them again where it is set down' : names.join(', ')}><dt>touches${age}</dt>
       <dd>${names.length > 0 ? `${names.slice(0, NAMED).join(', ')}${others}${isSlipping ? ', slipping' : ''}` : `nothing${lifted}`}${pull && `, ${pull}`}${withheld && `: ${withheld}`}</dd></div>
   </dl>`;
 }

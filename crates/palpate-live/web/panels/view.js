@@ -49,7 +49,6 @@ function isPossible(mode) {
 export function ViewBar() {
   useTopics(['view', 'scene']);
   const { view, scene } = state;
-  const views = scene?.scene?.views ?? [];
   const bodies = scene?.bodies ?? [];
   const tabKeys = (/** @type {KeyboardEvent} */ event) => {
     const way = { ArrowRight: 1, ArrowLeft: -1 }[event.key];
@@ -73,12 +72,17 @@ export function ViewBar() {
       ${bodies.map((/** @type {any} */ body, /** @type {number} */ index) => html`<option key=${index} value=${index}
         selected=${view.compared[side] === index}>${'AB'[side]}: ${body.name}</option>`)}
     </select>`)}
-    <select class="small" aria-label="Map" value=${view.map} title="What the colours of the field mean"
-      onChange=${(/** @type {any} */ event) => setView({ map: event.currentTarget.value })}>
-      ${MAPS.map(([key, name]) => html`<option key=${key} value=${key} selected=${key === view.map}>${name}</option>`)}
-    </select>
+    <${MapChoice} />
     <${Display} />
     <span class="gap"></span>
+    <${Cameras} />`;
+}
+
+/** From where the scene is seen. */
+function Cameras() {
+  const { scene } = state;
+  const views = scene?.scene?.views ?? [];
+  return html`<span class="cameras-all">
     ${views.length > 0 && html`<select class="small" aria-label="Views of the scene" value=""
       onChange=${(/** @type {any} */ event) => {
         const chosen = views[Number(event.currentTarget.value)];
@@ -99,7 +103,17 @@ export function ViewBar() {
       ${[['out', '−', 'Zoom out'], ['in', '+', 'Zoom in']].map(([name, sign, help]) => html`<button key=${name}
         class="small" aria-label=${help} title=${help} onClick=${() => page.stage?.setCamera(name)}>${sign}</button>`)}
     </span>
-    <button class="small" title="Show the whole scene: F" onClick=${() => page.stage?.setCamera('reset')}>whole</button>`;
+    <button class="small" title="Show the whole scene: F" onClick=${() => page.stage?.setCamera('reset')}>whole</button>
+  </span>`;
+}
+
+/** What the colours of the field mean. */
+function MapChoice() {
+  const { view } = state;
+  return html`<select class="small map" aria-label="Map" value=${view.map} title="What the colours of the field mean"
+    onChange=${(/** @type {any} */ event) => setView({ map: event.currentTarget.value })}>
+    ${MAPS.map(([key, name]) => html`<option key=${key} value=${key} selected=${key === view.map}>${name}</option>`)}
+  </select>`;
 }
 
 /** Folds the legend in the corner of the picture. */
@@ -138,6 +152,7 @@ function Display() {
   return html`<details class="popover" ref=${box}>
     <summary class="small">display</summary>
     <div class="sheet" role="group" aria-label="Display">
+      <fieldset class="folded"><legend>Seen</legend><${MapChoice} /><${Cameras} /></fieldset>
       ${view.mode === 'slice' && html`<${Cut} />`}
       <fieldset><legend>Lines</legend>
         <${Switch} label="isolines" value=${view.isolines} change=${(/** @type {boolean} */ isolines) => setView({ isolines })} />

@@ -19,6 +19,8 @@ const WORK = {
   slice: 'samples a slice', probe: 'looks at the field', replay: 'begins a replay', clock: 'sets the clock', picture: 'draws the picture', edit: 'builds the scene', open: 'opens the scene', undo: 'builds the scene',
   redo: 'builds the scene', save: 'saves the scene',
 };
+/** What the button of STOP and that of release tell of themselves. */
+const TOLD = ['stop', 'release'];
 /** Orders, which are not ended halfway. */
 const WHOLE = ['edit', 'open', 'undo', 'redo', 'save', 'replay', 'clock'];
 
@@ -26,14 +28,14 @@ export function Waiting() {
   const [slow, setSlow] = useState(/** @type {{ id: number, what: string, since: number }[]} */ ([]));
   useEffect(() => {
     const timer = setInterval(() => setSlow((last) => {
-      const next = page.wire?.slow(LONG) ?? [];
+      const next = (page.wire?.slow(LONG) ?? []).filter(({ what }) => !TOLD.includes(what));
       return next.length === 0 && last.length === 0 ? last : next;
     }), INTERVAL);
     return () => clearInterval(timer);
   }, []);
   const now = performance.now();
   return html`${slow.map(({ id, what, since }) => html`<div key=${id} class="toast working">
-    <span>The program ${WORK[what] ?? `works on ${what}`}
+    <span>The program ${WORK[what] ?? 'works'}
       <span aria-hidden="true">: ${Math.floor((now - since) / 1000)} s</span></span>
     ${!WHOLE.includes(what) && html`<button class="small" onClick=${() => page.wire?.cancel(id)}>cancel</button>`}
   </div>`)}`;
