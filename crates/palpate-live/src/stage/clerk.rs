@@ -8,13 +8,14 @@ use std::sync::mpsc::{Receiver, SyncSender, TrySendError};
 
 use serde_json::json;
 
+use super::Shared;
 use super::editor::Edit;
-use super::inquiry::{Asked, Inquiries};
+use super::inquiry::Asked;
 use super::letter::Letter;
-use super::pages::{PageId, Pages};
+use super::pages::PageId;
 use super::performance::Order;
 use super::stop::{Presser, Stop};
-use super::work::{Watch, Work};
+use super::work::Work;
 use crate::wire::{Ask, Envelope, Kind, Question, Unreadable};
 
 /// Why a message is refused for which there is no room.
@@ -25,17 +26,15 @@ const BUSY: &str = "the program is busy with what was asked before: ask again";
 pub(super) struct Clerk {
     pub(super) orders: SyncSender<Order>,
     pub(super) edits: SyncSender<Edit>,
-    pub(super) inquiries: Arc<Inquiries>,
     pub(super) stop: Arc<Stop>,
-    pub(super) pages: Arc<Pages>,
-    pub(super) watch: Watch,
+    pub(super) shared: Shared,
 }
 
 impl Clerk {
     pub(super) fn run(self, letters: &Receiver<Letter>) {
         // It ends with the stage.
         while let Ok(letter) = letters.recv() {
-            self.watch.begins(Work::Message);
+            self.shared.watch.begins(Work::Message);
             self.take(letter);
         }
     }
@@ -44,12 +43,12 @@ impl Clerk {
         let (page, length) = (letter.page, letter.text.len());
         let Envelope { id, kind } = match Envelope::read(&letter.text) {
             Ok(envelope) => envelope,
-            Err(Unreadable { id, why }) => return self.pages.not_read(page, id, &why),
+            Err(Unreadable { id, why }) => return self.shared.pages.not_read(page, id, &why),
         };
         if length > kind.longest() {
             let why =
                 format!("such a message has at most {} bytes, got {length}", kind.longest());
-            return self.pages.refuse(page, id, &why, &[]);
+            return self.shared.pages.refuse(page, id, &why, &[]);
         }
         let is_full = match kind {
             Kind::Stop => {
@@ -58,15 +57,17 @@ impl Clerk {
             }
             Kind::Order => match letter.read() {
                 Ok(question) => self.order(page, question),
-                Err(Unreadable { id, why }) => return self.pages.not_read(page, id, &why),
+                Err(Unreadable { id, why }) => {
+                    return self.shared.pages.not_read(page, id, &why);
+                }
             },
             Kind::Edit => is_full(self.edits.try_send(Edit::Asked(letter))),
             Kind::Short | Kind::Long => {
-                self.inquiries.take(Asked { letter, id, is_short: kind == Kind::Short })
+                self.shared.inquiries.take(Asked { letter, id, is_short: kind == Kind::Short })
             }
         };
         if is_full {
-            self.pages.refuse(page, id, BUSY, &[]);
+            self.shared.pages.refuse(page, id, BUSY, &[]);
         }
     }
 
@@ -79,7 +80,7 @@ impl Clerk {
             }
             Ask::Hand { held: false, .. } => return self.done(page, id, Order::LetGo),
             Ask::Hand { target: None, .. } => {
-                self.pages.refuse(page, id, "a hand that is held has a target", &[]);
+                self.shared.pages.refuse(page, id, "a hand that is held has a target", &[]);
                 return false;
             }
             Ask::Tour { on } => return self.done(page, id, Order::Tour(on)),
@@ -87,16 +88,16 @@ impl Clerk {
             Ask::Record { on } => return self.done(page, id, Order::Record(on)),
             Ask::Replay { on } => Order::Replay { page, id, on },
             Ask::Hidden { is } => {
-                self.pages.hide(page, is);
-                self.pages.answer(page, id, json!({ "do": "done" }));
+                self.shared.pages.hide(page, is);
+                self.shared.pages.answer(page, id, json!({ "do": "done" }));
                 return false;
             }
             Ask::Cancel { question } => {
-                if self.inquiries.cancel(page, question, &self.pages) {
-                    self.pages.answer(page, id, json!({ "do": "done" }));
+                if self.shared.inquiries.cancel(page, question, &self.shared.pages) {
+                    self.shared.pages.answer(page, id, json!({ "do": "done" }));
                 } else {
                     let why = format!("no question of number {question} is worked on");
-                    self.pages.refuse(page, id, &why, &[]);
+                    self.shared.pages.refuse(page, id, &why, &[]);
                 }
                 return false;
             }
@@ -109,7 +110,7 @@ impl Clerk {
     fn done(&self, page: PageId, id: Option<u32>, order: Order) -> bool {
         let is_full = is_full(self.orders.try_send(order));
         if !is_full {
-            self.pages.answer(page, id, json!({ "do": "done" }));
+            self.shared.pages.answer(page, id, json!({ "do": "done" }));
         }
         is_full
     }

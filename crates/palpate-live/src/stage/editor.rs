@@ -13,7 +13,6 @@ use palpate::haptics::Material;
 use palpate::scene::{AnyScene, Scene, described_primitive, schema};
 use serde_json::{Value, json};
 
-use super::Shown;
 use super::described::{self, Drawing};
 use super::document::{Document, Refusal};
 use super::file::read_file;
@@ -24,6 +23,7 @@ use super::pages::{PageId, Pages};
 use super::performance::{AnyTour, Changed, Order, Showing};
 use super::room::Terms;
 use super::work::{Watch, Work};
+use super::{Shared, Shown};
 use crate::wire::{Ask, Change, Question, Unreadable, VERSION};
 
 /// How often the file of the scene is looked at.
@@ -106,10 +106,9 @@ impl Editor {
         document: Document,
         terms: Terms,
         orders: SyncSender<Order>,
-        pages: Arc<Pages>,
-        (shown, kept): (Arc<Shown>, Arc<Kept>),
-        watch: Watch,
+        shared: &Shared,
     ) -> Self {
+        let Shared { pages, shown, kept, watch, .. } = shared.clone();
         Self {
             document,
             drawing: Drawing::default(),

@@ -11,12 +11,12 @@ use palpate::field::Vector;
 use palpate::render::{Camera, Color, Lens, Settings, Shadows, Subject, render};
 use palpate::scene::{AnyScene, BuiltScene};
 
-use super::Shown;
+use super::Shared;
 use super::letter::Letter;
 use super::pages::{Out, PageId, Pages};
 use super::points::point_of;
 use super::questions::{Answer, CANCELLED, Cancel, answer};
-use super::work::{Watch, Work};
+use super::work::Work;
 use crate::wire::{Ask, Unreadable, picture};
 
 /// The threads, beside those of the servo, of the hand and of the editor.
@@ -67,18 +67,11 @@ impl Inquiries {
     }
 
     /// Begins to answer.
-    pub(super) fn start(
-        self: &Arc<Self>,
-        pages: &Arc<Pages>,
-        shown: &Arc<Shown>,
-        watch: &Watch,
-    ) {
+    pub(super) fn start(self: &Arc<Self>, shared: &Shared) {
         for _ in 0..THREADS {
-            let (inquiries, pages, shown) =
-                (Arc::clone(self), Arc::clone(pages), Arc::clone(shown));
-            let watch = watch.clone();
+            let (inquiries, shared) = (Arc::clone(self), shared.clone());
             // It ends with the stage; nothing waits for what it still does.
-            std::thread::spawn(move || inquiries.run(&pages, &shown, &watch));
+            std::thread::spawn(move || inquiries.run(&shared));
         }
     }
 
@@ -124,7 +117,7 @@ impl Inquiries {
         self.changed.notify_all();
     }
 
-    fn run(&self, pages: &Pages, shown: &Shown, watch: &Watch) {
+    fn run(&self, Shared { pages, shown, watch, .. }: &Shared) {
         while let Some((Asked { letter, id, .. }, cancel)) = self.next() {
             let page = letter.page;
             let _done = Done { inquiries: self, cancel: &cancel };

@@ -102,6 +102,18 @@ pub(crate) struct Stage {
     performance: Mutex<Option<JoinHandle<()>>>,
 }
 
+/// What the threads of a stage share.
+#[derive(Clone, Debug)]
+struct Shared {
+    pages: Arc<Pages>,
+    shown: Arc<Shown>,
+    kept: Arc<Kept>,
+    inquiries: Arc<Inquiries>,
+    /// Counts while the thread that reads sockets goes on.
+    pulse: Arc<Pulse>,
+    watch: Watch,
+}
+
 /// Counts while a thread goes on.
 #[derive(Debug, Default)]
 pub(crate) struct Pulse(AtomicU64);
@@ -139,46 +151,36 @@ impl Stage {
     pub(crate) fn new(program: Program) -> Result<Self, Refusal> {
         let Program { name, file, text, profile, rate, points, clock, stop, watch } = program;
         let document = Document::open(name, file, &text)?;
-        let kept = Arc::new(Kept::of(&document));
+        let shared = Shared {
+            pages: Arc::default(),
+            shown: Arc::default(),
+            kept: Arc::new(Kept::of(&document)),
+            inquiries: Arc::default(),
+            pulse: Arc::default(),
+            watch,
+        };
         let terms = Terms { profile, rate, points, clock };
-        let (pages, shown, pulse) =
-            (Arc::<Pages>::default(), Arc::<Shown>::default(), Arc::<Pulse>::default());
         let (stop, stops) = stop::stop(stop);
         let stop = Arc::new(stop);
         let (letters, received) = sync_channel(LETTERS);
         let (orders, ordered) = sync_channel(ORDERS);
         let (edits, edited) = sync_channel(WAITING);
-        let inquiries = Arc::<Inquiries>::default();
         let (frame_sender, frames) = watch::channel(Bytes::new());
-        let performance = performance::Performance::new(
-            terms.clone(),
-            stops,
-            Arc::clone(&pages),
-            frame_sender,
-            Arc::clone(&pulse),
-            Arc::clone(&inquiries),
-        );
-        let editor = editor::Editor::new(
-            document,
-            terms,
-            orders.clone(),
-            Arc::clone(&pages),
-            (Arc::clone(&shown), Arc::clone(&kept)),
-            watch.clone(),
-        );
+        let performance =
+            performance::Performance::new(terms.clone(), stops, frame_sender, &shared);
+        let editor = editor::Editor::new(document, terms, orders.clone(), &shared);
         let clerk = Clerk {
             orders: orders.clone(),
             edits: edits.clone(),
-            inquiries: Arc::clone(&inquiries),
             stop: Arc::clone(&stop),
-            pages: Arc::clone(&pages),
-            watch: watch.clone(),
+            shared: shared.clone(),
         };
         let performance = std::thread::spawn(move || performance.run(&ordered));
         // These end when nobody can ask them any more; nothing waits for what they still do.
         std::thread::spawn(move || editor.run(&edited));
         std::thread::spawn(move || clerk.run(&received));
-        inquiries.start(&pages, &shown, &watch);
+        shared.inquiries.start(&shared);
+        let Shared { pages, shown, kept, inquiries, pulse, watch } = shared;
         Ok(Self {
             letters,
             orders,

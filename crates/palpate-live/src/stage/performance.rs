@@ -14,7 +14,7 @@ use serde_json::{Value, json};
 use tokio::sync::watch;
 use tungstenite::Bytes;
 
-use super::Pulse;
+use super::Shared;
 use super::inquiry::Inquiries;
 use super::life::Life;
 use super::pages::{PageId, Pages};
@@ -155,11 +155,10 @@ impl Performance {
     pub(super) fn new(
         terms: Terms,
         stops: Stops,
-        pages: Arc<Pages>,
         frames: watch::Sender<Bytes>,
-        pulse: Arc<Pulse>,
-        inquiries: Arc<Inquiries>,
+        shared: &Shared,
     ) -> Self {
+        let Shared { pages, inquiries, pulse, .. } = shared.clone();
         Self {
             terms,
             stops,
@@ -406,7 +405,7 @@ impl Performance {
         self.tell_safety(safety, is_frame);
         if let Some(mut frame) = frame {
             (frame.revision, frame.is_recording) = (self.revision, self.recording.is_on());
-            let pace = (!frame.is_held).then(|| self.terms.rate * speed_now);
+            let pace = (!frame.is_held).then_some(self.terms.rate * speed_now);
             self.life.watch_servo(frame.ticks, pace, Instant::now());
             self.send(frame);
         }
