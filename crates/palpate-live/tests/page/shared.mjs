@@ -168,3 +168,13 @@ export async function between(page, { toPage = (_data) => false, toProgram = (_d
   });
   return seen;
 }
+
+/** Holds the page's clock, while the program is heard. */
+export async function pause(page) {
+  await page.clock.pauseAt(await page.evaluate(() => Date.now() + 10000));
+  await page.evaluate(async () => {
+    const { listen, state } = await import('/state.js');
+    const { beat } = state.newest;
+    await new Promise((resolve) => listen(['newest'], () => state.newest.beat !== beat && resolve(undefined)));
+  });
+}

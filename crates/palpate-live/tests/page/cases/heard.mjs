@@ -4,7 +4,7 @@
 /** Whether the program is heard. */
 
 import { check, until } from '../harness.mjs';
-import { BALL, between, opened, said, says, serving, state, written } from '../shared.mjs';
+import { BALL, between, opened, pause, said, says, serving, state, written } from '../shared.mjs';
 
 /** Waits until nothing comes from a program any more. */
 async function quiet(page) {
@@ -17,16 +17,6 @@ async function quiet(page) {
     const isQuiet = now === last;
     last = now;
     return isQuiet;
-  });
-}
-
-/** Holds the page's clock, while the program is heard. */
-async function pause(page) {
-  await page.clock.pauseAt(await page.evaluate(() => Date.now() + 10000));
-  await page.evaluate(async () => {
-    const { listen, state } = await import('/state.js');
-    const { beat } = state.newest;
-    await new Promise((resolve) => listen(['newest'], () => state.newest.beat !== beat && resolve(undefined)));
   });
 }
 
