@@ -20,7 +20,7 @@ use crate::sampler::{Sample, Sampler};
 pub(crate) const MOST_OF_POINT: f64 = 0.005;
 
 /// The bodies before may use one of so many parts of the probe's budget, those after the rest.
-const PARTS: u32 = 3;
+const PARTS: u32 = 2;
 
 /// A way that meets the surface with a cosine below this is not extrapolated.
 const LEAST_COSINE: f64 = 0.1;
@@ -33,7 +33,7 @@ const SHORTEST: f64 = 1e-6;
 const GROWTH: f64 = 2.0;
 
 /// The most steps along a way: ten at twice the length lead from a skin to a thousand of them. A way
-/// that grazes a surface needs too many.
+/// that grazes a surface needs more, and would use up the budget of the others.
 const MOST_STEPS: u32 = 11;
 
 /// The most steps of a way out from one tangent plane to the next: more are needed only where it leads
@@ -133,11 +133,15 @@ impl<const D: usize> Proxy<D> {
         if way_out.is_covered() {
             let side = if self.contact { self.normal } else { way_out.outwards() };
             let up = if self.contact { up } else { side };
-            if let Some(exit) = way_out.over_planes(up) {
-                way_out.try_near(exit, up);
-            }
+            // The way up is likely to be one that was free, so it comes before all that may use up
+            // the budget.
             way_out.leave(up, up);
             way_out.leave(side, up);
+            if !way_out.is_shortest()
+                && let Some(exit) = way_out.over_planes(up)
+            {
+                way_out.try_near(exit, up);
+            }
             for axis in 0..D {
                 let across = Vector::unit(axis) - up * up.dot(Vector::unit(axis));
                 for across in across.normalized().into_iter().flat_map(|way| [way, -way]) {
@@ -220,12 +224,16 @@ impl<const D: usize> WayOut<'_, D> {
         None
     }
 
+    /// Whether the best way out is proven to be the shortest.
+    fn is_shortest(&self) -> bool {
+        let proven = self.least() * (1.0 + SHORTEST) + 2.0 * self.after.tolerance();
+        self.best.is_some_and(|best| best.distance <= proven)
+    }
+
     /// Looks for a way out that begins along a unit vector, unless the shortest is known; `up` is
     /// away from the bodies before.
     fn leave(&mut self, along: Vector<f64, D>, up: Vector<f64, D>) {
-        let proven = self.least() * (1.0 + SHORTEST) + 2.0 * self.after.tolerance();
-        let is_shortest = self.best.is_some_and(|best| best.distance <= proven);
-        if along == Vector::ZERO || is_shortest {
+        if along == Vector::ZERO || self.is_shortest() {
             return;
         }
         if let Some(exit) = self.exit(along, self.covered, 0.0) {
@@ -254,7 +262,7 @@ impl<const D: usize> WayOut<'_, D> {
     }
 
     /// The first sample outside on a way along a unit vector that is inside at its length `way` [m];
-    /// `None` if the way becomes too long.
+    /// `None` if the way becomes too long, or after [`MOST_STEPS`].
     ///
     /// No surface is within `−f / L` of a point inside. A step to the tangent plane goes farther.
     fn exit(
@@ -264,7 +272,7 @@ impl<const D: usize> WayOut<'_, D> {
         mut way: f64,
     ) -> Option<Sample<D>> {
         let (place, tolerance) = (self.covered.point, self.after.tolerance());
-        loop {
+        for _ in 0..MOST_STEPS {
             let sure = -here.gap * self.after.per_slope();
             let (normal, gap) = self.after.tangent(&here, Vector::ZERO);
             let cosine = normal.dot(along);
@@ -281,6 +289,7 @@ impl<const D: usize> WayOut<'_, D> {
                 return Some(here);
             }
         }
+        None
     }
 
     /// Takes the place nearest to the proxy to which the surface leads from `exit`; or `exit` itself.
