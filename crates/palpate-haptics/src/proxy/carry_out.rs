@@ -28,12 +28,12 @@ const LEAST_COSINE: f64 = 0.1;
 /// A way out counts as the shortest if it is longer than the proven least one by at most this part.
 const SHORTEST: f64 = 1e-6;
 
-/// A step along a free way is this multiple of the one before: on a way that leaves a flat surface at
-/// 30 degrees or more it is provable.
+/// A step along a free way is this multiple of the way that is done: where that leaves a flat surface
+/// at 30 degrees or more, the step is provable.
 const GROWTH: f64 = 2.0;
 
-/// The most steps along a way: ten at twice the length lead from a skin to a thousand of them. A way
-/// that grazes a surface needs more, and would use up the budget of the others.
+/// The most steps along a way: eight that each lead three times as far reach some thousand skins. A
+/// way that grazes a surface needs more, and would use up the budget of the others.
 const MOST_STEPS: u32 = 11;
 
 /// The most steps of a way out from one tangent plane to the next: more are needed only where it leads
@@ -129,7 +129,10 @@ impl<const D: usize> Proxy<D> {
         let covered = after.gradient(place)?;
         let most = if after.is_point() { most_of_point } else { radius };
         let mut way_out = WayOut { before, after, gap, covered, origin, most, best: None };
-        let up = self.local.up().unwrap_or(self.normal);
+        // The known planes may lack a wall of a crease; the pull of the hand is between all of them.
+        let pull = (at.point - self.device).normalized().unwrap_or(Vector::ZERO);
+        let up = self.local.up().unwrap_or(self.normal) + pull;
+        let up = up.normalized().unwrap_or(self.normal);
         if way_out.is_covered() {
             let side = if self.contact { self.normal } else { way_out.outwards() };
             let up = if self.contact { up } else { side };
@@ -375,7 +378,8 @@ impl<const D: usize> WayOut<'_, D> {
             };
             if self.is_proven([here, next], step) {
                 (done, here) = (done + step, next);
-                step *= GROWTH;
+                let sure = (here.1 + self.before.skin()) * self.before.per_slope();
+                step = sure.max(GROWTH * done);
             } else {
                 step *= 0.5;
             }
