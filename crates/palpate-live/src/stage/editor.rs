@@ -11,7 +11,7 @@ use std::time::{Duration, Instant, SystemTime};
 use palpate::field::catalogue::Entry;
 use palpate::haptics::Material;
 use palpate::scene::{AnyScene, Scene, described_primitive, schema};
-use serde_json::{Value, json};
+use serde_json::{Map, Value, json};
 
 use super::described::{self, Drawing};
 use super::document::{Document, Refusal};
@@ -225,6 +225,7 @@ impl Editor {
                 "rate": self.terms.rate,
                 "catalogue": catalogue()?,
                 "materials": Material::preset_names().collect::<Vec<_>>(),
+                "presets": presets()?,
                 "schema": schema(),
             }),
         );
@@ -477,6 +478,16 @@ fn changed(old: &Scene, new: &Scene) -> Changed {
         true if old.guides == new.guides => Changed::Bodies,
         true => Changed::Guides,
     }
+}
+
+/// The numbers of each material that has a name.
+fn presets() -> Result<Map<String, Value>, Refusal> {
+    let named = Material::preset_names().map(|name| {
+        let material = Material::preset(name).map_err(|error| error.to_string())?;
+        let numbers = serde_json::to_value(material).map_err(|error| error.to_string())?;
+        Ok::<_, String>((name.to_owned(), numbers))
+    });
+    Ok(named.collect::<Result<_, _>>()?)
 }
 
 fn catalogue() -> Result<Vec<Value>, Refusal> {

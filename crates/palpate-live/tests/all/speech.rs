@@ -21,7 +21,11 @@ fn hello_is_answered_by_what_there_is() {
     page.say(&json!({ "do": "hello", "version": 1, "id": 0 }));
     let welcome = page.text(|message| message["do"] == "welcome");
     assert!(welcome["catalogue"].as_array().unwrap().len() > 80);
-    assert!(welcome["schema"].is_object() && welcome["materials"].is_array());
+    assert!(welcome["schema"].is_object());
+    let rubber = palpate::haptics::Material::preset("rubber").unwrap();
+    assert_eq!(number(&welcome["presets"]["rubber"]["stiffness"]), rubber.stiffness);
+    let names = welcome["materials"].as_array().unwrap();
+    assert_eq!(names.len(), welcome["presets"].as_object().unwrap().len());
     let scene = page.text(|message| message["do"] == "scene");
     assert_eq!(scene["bodies"][0]["name"], "ball");
     assert_eq!(scene["bodies"][0]["promise"], "exact outside, exact inside");
