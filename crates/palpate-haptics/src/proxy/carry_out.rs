@@ -29,10 +29,10 @@ const LEAST_COSINE: f64 = 0.1;
 const SHORTEST: f64 = 1e-6;
 
 /// A step along a free way is this multiple of the way that is done: where that leaves a flat surface
-/// at 30 degrees or more, the step is provable.
-const GROWTH: f64 = 2.0;
+/// at 26 degrees or more, the step is provable.
+const GROWTH: f64 = 1.5;
 
-/// The most steps along a way: eight that each lead three times as far reach some thousand skins. A
+/// The most steps along a way: nine that each lead 2.5 times as far reach some thousand skins. A
 /// way that grazes a surface needs more, and would use up the budget of the others.
 const MOST_STEPS: u32 = 11;
 
