@@ -118,13 +118,13 @@ impl fmt::Debug for Asked {
     }
 }
 
-/// Starts the threads; `mouth` writes what they answer. They end when nobody can ask them any more;
+/// Starts the threads; `writer` writes what they answer. They end when nobody can ask them any more;
 /// nothing waits for what they still do.
-pub(super) fn start(requests: Receiver<Asked>, stage: &Arc<Stage>, mouth: &Handle) {
+pub(super) fn start(requests: Receiver<Asked>, stage: &Arc<Stage>, writer: &Handle) {
     let requests = Arc::new(Mutex::new(requests));
     for _ in 0..THREADS {
-        let (requests, stage, mouth) =
-            (Arc::clone(&requests), Arc::downgrade(stage), mouth.clone());
+        let (requests, stage, writer) =
+            (Arc::clone(&requests), Arc::downgrade(stage), writer.clone());
         std::thread::spawn(move || {
             loop {
                 // One of the threads waits, and takes what comes.
@@ -134,7 +134,7 @@ pub(super) fn start(requests: Receiver<Asked>, stage: &Arc<Stage>, mouth: &Handl
                 let Asked { connection, what, is_head, place } = asked;
                 let answer = what.answer(&stage);
                 drop(stage);
-                mouth.spawn(super::mouth::say(connection, answer, is_head, place));
+                writer.spawn(super::writer::say(connection, answer, is_head, place));
             }
         });
     }

@@ -6,12 +6,12 @@
 
 mod answers;
 mod connections;
-mod ears;
 mod files;
 mod guard;
 mod limits;
-mod mouth;
+mod reader;
 mod request;
+mod writer;
 
 use std::io::Result;
 use std::net::{SocketAddr, TcpListener};
@@ -23,17 +23,17 @@ use tokio::runtime::Runtime;
 use tokio::sync::{Semaphore, oneshot};
 
 use crate::stage::Stage;
-use ears::Ears;
 use guard::Guard;
 pub(crate) use guard::{is_token, new_token};
 use limits::{MOST_KNOWN, MOST_REQUESTS, MOST_TRACES};
+use reader::Reader;
 
 /// The server, until it is dropped.
 #[derive(Debug)]
 pub(crate) struct Server {
     /// Those that read end first, so that nothing new is written.
-    _ears: Thread,
-    _mouth: Thread,
+    _reader: Thread,
+    _writer: Thread,
 }
 
 /// A thread that ends when this is dropped.
@@ -55,26 +55,26 @@ impl Server {
         token: String,
         stage: &Arc<Stage>,
     ) -> Result<Self> {
-        let (ear_runtime, mouth_runtime) = (runtime()?, runtime()?);
-        let mouth = mouth_runtime.handle().clone();
+        let (reader_runtime, writer_runtime) = (runtime()?, runtime()?);
+        let writer = writer_runtime.handle().clone();
         let (requests, asked) = sync_channel(MOST_REQUESTS);
-        answers::start(asked, stage, &mouth);
-        let ears = Ears {
+        answers::start(asked, stage, &writer);
+        let reader = Reader {
             stage: Arc::clone(stage),
             guard: Guard::new(address, token),
-            mouth,
+            writer,
             requests,
             known: Arc::new(Semaphore::new(MOST_KNOWN)),
             traces: Arc::new(Semaphore::new(MOST_TRACES)),
         };
-        let mouth = Thread::start("palpate writes", mouth_runtime, std::future::pending())?;
+        let writer = Thread::start("palpate writes", writer_runtime, std::future::pending())?;
         let listen = async move {
             // Made in the runtime, whose thread it belongs to.
             let Ok(listener) = tokio::net::TcpListener::from_std(listener) else { return };
-            match ears::listen(listener, ears).await {}
+            match reader::listen(listener, reader).await {}
         };
-        let ears = Thread::start("palpate reads", ear_runtime, listen)?;
-        Ok(Self { _ears: ears, _mouth: mouth })
+        let reader = Thread::start("palpate reads", reader_runtime, listen)?;
+        Ok(Self { _reader: reader, _writer: writer })
     }
 }
 

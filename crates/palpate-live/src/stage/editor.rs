@@ -17,11 +17,11 @@ use super::described::{self, Drawing};
 use super::document::{Document, Refusal};
 use super::file::read_file;
 use super::hand::tour;
-use super::kept::Kept;
-use super::letter::Letter;
+use super::message::Received;
 use super::pages::{PageId, Pages};
 use super::performance::{AnyTour, Changed, Order, Showing};
 use super::room::Terms;
+use super::unsaved::LatestScene;
 use super::work::{Watch, Work};
 use super::{Shared, Shown};
 use crate::wire::{Ask, Change, Question, Unreadable, VERSION};
@@ -39,7 +39,7 @@ const MOST_SEARCHES: usize = 3;
 #[derive(Debug)]
 pub(super) enum Edit {
     /// What a page asks for, which is not read yet.
-    Asked(Letter),
+    Asked(Received),
     /// To say when all that came before is done.
     Settle(SyncSender<()>),
 }
@@ -60,7 +60,7 @@ pub(super) struct Editor {
     orders: SyncSender<Order>,
     pages: Arc<Pages>,
     shown: Arc<Shown>,
-    kept: Arc<Kept>,
+    latest: Arc<LatestScene>,
     watch: Watch,
     spent: Spent,
     /// The page that edited last.
@@ -108,7 +108,7 @@ impl Editor {
         orders: SyncSender<Order>,
         shared: &Shared,
     ) -> Self {
-        let Shared { pages, shown, kept, watch, .. } = shared.clone();
+        let Shared { pages, shown, latest, watch, .. } = shared.clone();
         Self {
             document,
             drawing: Drawing::default(),
@@ -120,7 +120,7 @@ impl Editor {
             orders,
             pages,
             shown,
-            kept,
+            latest,
             watch,
             spent: Spent::default(),
             editing: None,
@@ -135,9 +135,9 @@ impl Editor {
     pub(super) fn run(mut self, edits: &Receiver<Edit>) {
         loop {
             match edits.recv_timeout(LOOK) {
-                Ok(Edit::Asked(letter)) => {
+                Ok(Edit::Asked(message)) => {
                     self.watch.begins(Work::Edit);
-                    self.take(&letter);
+                    self.take(&message);
                 }
                 // Who waited may have gone.
                 Ok(Edit::Settle(done)) => _ = done.try_send(()),
@@ -151,9 +151,9 @@ impl Editor {
         }
     }
 
-    fn take(&mut self, letter: &Letter) {
-        let page = letter.page;
-        let Question { id, ask } = match letter.read() {
+    fn take(&mut self, message: &Received) {
+        let page = message.page;
+        let Question { id, ask } = match message.read() {
             Ok(question) => question,
             Err(Unreadable { id, why }) => return self.pages.not_read(page, id, &why),
         };
@@ -163,7 +163,7 @@ impl Editor {
                 self.pages.refuse(page, id, &message, &problems);
             }
         }
-        self.kept.set(&self.document);
+        self.latest.set(&self.document);
     }
 
     fn obey(&mut self, page: PageId, ask: Ask) -> Result<(), Refusal> {
@@ -362,7 +362,7 @@ impl Editor {
         self.data = data_files(&scene, self.document.file.as_deref());
         self.revision = revision;
         self.shown.set(Arc::clone(&scene), revision);
-        self.kept.set(&self.document);
+        self.latest.set(&self.document);
         let mut message = described::described(&self.document, &scene);
         message["by"] = by.into();
         message["revision"] = revision.into();

@@ -12,7 +12,7 @@ use palpate::render::{Camera, Color, Lens, Settings, Shadows, Subject, render};
 use palpate::scene::{AnyScene, BuiltScene};
 
 use super::Shared;
-use super::letter::Letter;
+use super::message::Received;
 use super::pages::{Out, PageId, Pages};
 use super::points::point_of;
 use super::questions::{Answer, CANCELLED, Cancel, answer};
@@ -45,7 +45,7 @@ struct State {
 /// A question that waits. It is read when its turn comes.
 #[derive(Debug)]
 pub(super) struct Asked {
-    pub(super) letter: Letter,
+    pub(super) message: Received,
     pub(super) id: Option<u32>,
     /// Whether its answer takes no time that a person notices.
     pub(super) is_short: bool,
@@ -78,9 +78,9 @@ impl Inquiries {
     /// Takes a question; whether there is no room for it.
     pub(super) fn take(&self, asked: Asked) -> bool {
         let mut state = self.state();
-        let page = asked.letter.page;
+        let page = asked.message.page;
         let is_full =
-            state.waiting.iter().filter(|other| other.letter.page == page).count() >= WAITING;
+            state.waiting.iter().filter(|other| other.message.page == page).count() >= WAITING;
         if !is_full {
             state.waiting.push_back(asked);
             self.changed.notify_one();
@@ -91,7 +91,7 @@ impl Inquiries {
     /// Ends a question, whether it waits or is worked on; whether there is one of this number.
     pub(super) fn cancel(&self, page: PageId, id: u32, pages: &Pages) -> bool {
         let mut state = self.state();
-        let is_it = |asked: &Asked| asked.letter.page == page && asked.id == Some(id);
+        let is_it = |asked: &Asked| asked.message.page == page && asked.id == Some(id);
         if let Some(place) = state.waiting.iter().position(is_it) {
             state.waiting.remove(place);
             pages.refuse(page, Some(id), CANCELLED, &[]);
@@ -104,7 +104,7 @@ impl Inquiries {
     /// Forgets the questions of pages that are closed.
     pub(super) fn forget_closed(&self, pages: &Pages) {
         let mut state = self.state();
-        state.waiting.retain(|asked| pages.is_open(asked.letter.page));
+        state.waiting.retain(|asked| pages.is_open(asked.message.page));
         let closed = state.working.iter().filter(|work| !pages.is_open(work.page));
         closed.for_each(|work| work.cancel.set());
     }
@@ -118,12 +118,12 @@ impl Inquiries {
     }
 
     fn run(&self, Shared { pages, shown, watch, .. }: &Shared) {
-        while let Some((Asked { letter, id, .. }, cancel)) = self.next() {
-            let page = letter.page;
+        while let Some((Asked { message, id, .. }, cancel)) = self.next() {
+            let page = message.page;
             let _done = Done { inquiries: self, cancel: &cancel };
             watch.begins(Work::Question);
-            let question = letter.read();
-            drop(letter);
+            let question = message.read();
+            drop(message);
             let (question, scene) = match (question, shown.get()) {
                 (Ok(question), Some(scene)) => (question, scene),
                 (Ok(_), None) => {
@@ -165,14 +165,14 @@ impl Inquiries {
                 // One thread is left to short questions.
                 (asked.is_short || long + 1 < THREADS)
                     && working.iter().all(|work| {
-                        work.page != asked.letter.page || work.is_short != asked.is_short
+                        work.page != asked.message.page || work.is_short != asked.is_short
                     })
             };
             if let Some(place) = waiting.iter().position(is_free)
                 && let Some(asked) = waiting.remove(place)
             {
                 let cancel = Cancel::default();
-                let (page, id, is_short) = (asked.letter.page, asked.id, asked.is_short);
+                let (page, id, is_short) = (asked.message.page, asked.id, asked.is_short);
                 working.push(Working { page, id, is_short, cancel: cancel.clone() });
                 return Some((asked, cancel));
             }

@@ -7,16 +7,15 @@
 //! the hand and makes frames, one edits and builds scenes, some answer questions. They and the servo
 //! share lock-free buffers alone. A stop goes to the servo from the thread that reads the socket.
 
-mod clerk;
 mod described;
+mod dispatcher;
 mod document;
 mod editor;
 mod file;
 mod hand;
+mod heartbeat;
 mod inquiry;
-mod kept;
-mod letter;
-mod life;
+mod message;
 mod pages;
 mod performance;
 mod points;
@@ -25,6 +24,7 @@ mod recording;
 mod room;
 mod stop;
 pub(crate) mod trace;
+mod unsaved;
 mod work;
 
 use std::path::PathBuf;
@@ -40,28 +40,28 @@ use tokio::sync::watch;
 use tungstenite::{Bytes, Utf8Bytes};
 
 use crate::wire::is_stop;
-use clerk::Clerk;
+use dispatcher::Dispatcher;
 use document::Document;
 pub(crate) use document::Refusal;
 use editor::Edit;
 use inquiry::Inquiries;
 #[cfg(any(test, feature = "fuzzing"))]
 pub(crate) use inquiry::answer_alone;
-use kept::Kept;
-pub use kept::{Unsaved, UnsavedError};
-use letter::Letter;
-pub(crate) use letter::Waiting;
+use message::Received;
+pub(crate) use message::Waiting;
 pub(crate) use pages::{Opened, Out, Outbox, PageId, Pages};
 use performance::Order;
 use recording::{AnyReplay, Trace};
 use room::Terms;
 pub(crate) use room::{GivenClock, MOST_POINTS};
 pub(crate) use stop::{Presser, Stop};
+use unsaved::LatestScene;
+pub use unsaved::{Unsaved, UnsavedError};
 pub(crate) use work::Watch;
 pub use work::Work;
 
 /// Messages of all pages that may wait to be read: more end their page.
-const LETTERS: usize = 4096;
+const MESSAGES: usize = 4096;
 
 /// Edits that may wait: more are refused.
 const WAITING: usize = 64;
@@ -87,7 +87,7 @@ pub(crate) struct Program {
 /// The world of all pages.
 #[derive(Debug)]
 pub(crate) struct Stage {
-    letters: SyncSender<Letter>,
+    messages: SyncSender<Received>,
     orders: SyncSender<Order>,
     edits: SyncSender<Edit>,
     inquiries: Arc<Inquiries>,
@@ -97,7 +97,7 @@ pub(crate) struct Stage {
     /// Counts while the thread that reads sockets goes on.
     pub(crate) pulse: Arc<Pulse>,
     pub(crate) watch: Watch,
-    kept: Arc<Kept>,
+    latest: Arc<LatestScene>,
     shown: Arc<Shown>,
     performance: Mutex<Option<JoinHandle<()>>>,
 }
@@ -107,7 +107,7 @@ pub(crate) struct Stage {
 struct Shared {
     pages: Arc<Pages>,
     shown: Arc<Shown>,
-    kept: Arc<Kept>,
+    latest: Arc<LatestScene>,
     inquiries: Arc<Inquiries>,
     /// Counts while the thread that reads sockets goes on.
     pulse: Arc<Pulse>,
@@ -154,7 +154,7 @@ impl Stage {
         let shared = Shared {
             pages: Arc::default(),
             shown: Arc::default(),
-            kept: Arc::new(Kept::of(&document)),
+            latest: Arc::new(LatestScene::of(&document)),
             inquiries: Arc::default(),
             pulse: Arc::default(),
             watch,
@@ -162,14 +162,14 @@ impl Stage {
         let terms = Terms { profile, rate, points, clock };
         let (stop, stops) = stop::stop(stop);
         let stop = Arc::new(stop);
-        let (letters, received) = sync_channel(LETTERS);
+        let (messages, received) = sync_channel(MESSAGES);
         let (orders, ordered) = sync_channel(ORDERS);
         let (edits, edited) = sync_channel(WAITING);
         let (frame_sender, frames) = watch::channel(Bytes::new());
         let performance =
             performance::Performance::new(terms.clone(), stops, frame_sender, &shared);
         let editor = editor::Editor::new(document, terms, orders.clone(), &shared);
-        let clerk = Clerk {
+        let dispatcher = Dispatcher {
             orders: orders.clone(),
             edits: edits.clone(),
             stop: Arc::clone(&stop),
@@ -178,11 +178,11 @@ impl Stage {
         let performance = std::thread::spawn(move || performance.run(&ordered));
         // These end when nobody can ask them any more; nothing waits for what they still do.
         std::thread::spawn(move || editor.run(&edited));
-        std::thread::spawn(move || clerk.run(&received));
+        std::thread::spawn(move || dispatcher.run(&received));
         shared.inquiries.start(&shared);
-        let Shared { pages, shown, kept, inquiries, pulse, watch } = shared;
+        let Shared { pages, shown, latest, inquiries, pulse, watch } = shared;
         Ok(Self {
-            letters,
+            messages,
             orders,
             edits,
             inquiries,
@@ -191,7 +191,7 @@ impl Stage {
             pages,
             pulse,
             watch,
-            kept,
+            latest,
             shown,
             performance: Mutex::new(Some(performance)),
         })
@@ -205,8 +205,8 @@ impl Stage {
             self.stop.press(Presser::Page(page, text));
             return;
         }
-        let letter = waiting.letter(page, text);
-        let taken = letter.and_then(|letter| self.letters.try_send(letter).ok());
+        let message = waiting.message(page, text);
+        let taken = message.and_then(|message| self.messages.try_send(message).ok());
         if taken.is_none() {
             self.pages.close(page, "the page sent more than the program could read".to_owned());
         }
@@ -221,7 +221,7 @@ impl Stage {
 
     /// The text of the scene as a file.
     pub(crate) fn text(&self) -> String {
-        self.kept.text()
+        self.latest.text()
     }
 
     /// The scene with its edits, if they are not saved; edits that wait are made first, as far as that
@@ -232,7 +232,7 @@ impl Stage {
             // An editor that takes longer has its last scene kept.
             let _ = made.recv_timeout(patience);
         }
-        self.kept.unsaved()
+        self.latest.unsaved()
     }
 
     /// Takes a trace to be replayed in the scene that is shown.

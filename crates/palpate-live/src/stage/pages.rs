@@ -11,7 +11,7 @@ use serde_json::{Value, json};
 use tokio::sync::mpsc;
 use tungstenite::{Bytes, Utf8Bytes};
 
-use super::letter::Waiting;
+use super::message::Waiting;
 use crate::wire::Told;
 
 /// Messages that may wait for a page: a page that takes fewer is closed.

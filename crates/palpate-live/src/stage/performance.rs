@@ -15,8 +15,8 @@ use tokio::sync::watch;
 use tungstenite::Bytes;
 
 use super::Shared;
+use super::heartbeat::Heartbeat;
 use super::inquiry::Inquiries;
-use super::life::Life;
 use super::pages::{PageId, Pages};
 use super::recording::{AnyReplay, MOST_ROWS, Recording, Trace};
 use super::room::{AnyRoom, Room, Terms, of_either};
@@ -132,7 +132,7 @@ pub(super) struct Performance {
     /// The pages that were open when they were told their number last.
     clients: usize,
     frames: watch::Sender<Bytes>,
-    life: Life,
+    heartbeat: Heartbeat,
     inquiries: Arc<Inquiries>,
     /// The last frame, which goes on beating when its servo has ended.
     frame: Option<Frame>,
@@ -165,7 +165,7 @@ impl Performance {
             pages,
             clients: 0,
             frames,
-            life: Life::new(pulse),
+            heartbeat: Heartbeat::new(pulse),
             inquiries,
             frame: None,
             room: None,
@@ -406,7 +406,7 @@ impl Performance {
         if let Some(mut frame) = frame {
             (frame.revision, frame.is_recording) = (self.revision, self.recording.is_on());
             let pace = (!frame.is_held).then_some(self.terms.rate * speed_now);
-            self.life.watch_servo(frame.ticks, pace, Instant::now());
+            self.heartbeat.watch_servo(frame.ticks, pace, Instant::now());
             self.send(frame);
         }
     }
@@ -414,14 +414,14 @@ impl Performance {
     /// Goes on without a servo: the last frame has no forces, and goes on beating.
     fn rest(&mut self, is_frame: bool) {
         if let Some(frame) = self.frame.take().filter(|_| is_frame) {
-            self.life.without_servo();
+            self.heartbeat.without_servo();
             self.send(frame.without_forces());
         }
     }
 
     /// Sends a frame to all pages.
     fn send(&mut self, mut frame: Frame) {
-        frame.beat = self.life.beat(Instant::now());
+        frame.beat = self.heartbeat.beat(Instant::now());
         // Nobody may look.
         let _ = self.frames.send(frame.bytes());
         self.frame = Some(frame);

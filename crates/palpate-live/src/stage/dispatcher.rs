@@ -11,7 +11,7 @@ use serde_json::json;
 use super::Shared;
 use super::editor::Edit;
 use super::inquiry::Asked;
-use super::letter::Letter;
+use super::message::Received;
 use super::pages::PageId;
 use super::performance::Order;
 use super::stop::{Presser, Stop};
@@ -23,25 +23,25 @@ const BUSY: &str = "the program is busy with what was asked before: ask again";
 
 /// Hands messages on.
 #[derive(Debug)]
-pub(super) struct Clerk {
+pub(super) struct Dispatcher {
     pub(super) orders: SyncSender<Order>,
     pub(super) edits: SyncSender<Edit>,
     pub(super) stop: Arc<Stop>,
     pub(super) shared: Shared,
 }
 
-impl Clerk {
-    pub(super) fn run(self, letters: &Receiver<Letter>) {
+impl Dispatcher {
+    pub(super) fn run(self, messages: &Receiver<Received>) {
         // It ends with the stage.
-        while let Ok(letter) = letters.recv() {
+        while let Ok(message) = messages.recv() {
             self.shared.watch.begins(Work::Message);
-            self.take(letter);
+            self.take(message);
         }
     }
 
-    fn take(&self, letter: Letter) {
-        let (page, length) = (letter.page, letter.text.len());
-        let Envelope { id, kind } = match Envelope::read(&letter.text) {
+    fn take(&self, message: Received) {
+        let (page, length) = (message.page, message.text.len());
+        let Envelope { id, kind } = match Envelope::read(&message.text) {
             Ok(envelope) => envelope,
             Err(Unreadable { id, why }) => return self.shared.pages.not_read(page, id, &why),
         };
@@ -52,18 +52,18 @@ impl Clerk {
         }
         let is_full = match kind {
             Kind::Stop => {
-                self.stop.press(Presser::Page(page, letter.text.clone()));
+                self.stop.press(Presser::Page(page, message.text.clone()));
                 false
             }
-            Kind::Order => match letter.read() {
+            Kind::Order => match message.read() {
                 Ok(question) => self.order(page, question),
                 Err(Unreadable { id, why }) => {
                     return self.shared.pages.not_read(page, id, &why);
                 }
             },
-            Kind::Edit => is_full(self.edits.try_send(Edit::Asked(letter))),
+            Kind::Edit => is_full(self.edits.try_send(Edit::Asked(message))),
             Kind::Short | Kind::Long => {
-                self.shared.inquiries.take(Asked { letter, id, is_short: kind == Kind::Short })
+                self.shared.inquiries.take(Asked { message, id, is_short: kind == Kind::Short })
             }
         };
         if is_full {

@@ -20,7 +20,7 @@ const LATE_TICKS: f64 = 5.0;
 /// Counts while the thread that reads sockets goes on, and the servo as its clock says: if one of them
 /// hangs, a frame still comes, but its count stays.
 #[derive(Debug)]
-pub(super) struct Life {
+pub(super) struct Heartbeat {
     pulse: Arc<Pulse>,
     count: u16,
     beaten: Option<Instant>,
@@ -32,7 +32,7 @@ pub(super) struct Life {
     patience: Option<Duration>,
 }
 
-impl Life {
+impl Heartbeat {
     pub(super) fn new(pulse: Arc<Pulse>) -> Self {
         Self { pulse, count: 0, beaten: None, reading: None, servo: None, patience: None }
     }
@@ -82,24 +82,24 @@ mod tests {
     /// The beats in a second of frames: `reads` and `ticks` say what goes on.
     fn beats(reads: bool, ticks: bool, pace: Option<f64>) -> u16 {
         let pulse = Arc::<Pulse>::default();
-        let mut life = Life::new(Arc::clone(&pulse));
+        let mut heartbeat = Heartbeat::new(Arc::clone(&pulse));
         let mut now = Instant::now();
         let mut tick = 7;
-        life.watch_servo(tick, pace, now);
-        life.beat(now);
+        heartbeat.watch_servo(tick, pace, now);
+        heartbeat.beat(now);
         // What stood still before this second began counts as frozen.
         now += SILENCE + FRAME;
-        let before = life.beat(now);
+        let before = heartbeat.beat(now);
         for _ in 0..63 {
             now += FRAME;
             if reads {
                 pulse.beat();
             }
             tick += u64::from(ticks);
-            life.watch_servo(tick, pace, now);
-            life.beat(now);
+            heartbeat.watch_servo(tick, pace, now);
+            heartbeat.beat(now);
         }
-        life.count - before
+        heartbeat.count - before
     }
 
     #[test]

@@ -30,8 +30,8 @@ use super::guard::Guard;
 use super::limits::{
     Budget, LARGEST_MESSAGE, LONGEST_HEAD, MOST_PAGES, PATIENCE, RECOVERY, TRACE_PATIENCE, TURN,
 };
-use super::mouth;
 use super::request::{Head, Route, is_whole, read, takes_gzip, waits_for_leave};
+use super::writer;
 use crate::stage::{Opened, Out, PageId, Presser, Stage, Waiting};
 
 /// How often the thread shows that it goes on.
@@ -39,11 +39,11 @@ const PULSE: Duration = Duration::from_millis(50);
 
 /// What all connections share.
 #[derive(Debug)]
-pub(super) struct Ears {
+pub(super) struct Reader {
     pub(super) stage: Arc<Stage>,
     pub(super) guard: Guard,
     /// The runtime of the thread that writes.
-    pub(super) mouth: Handle,
+    pub(super) writer: Handle,
     pub(super) requests: SyncSender<Asked>,
     /// The places of connections that named the token, and of traces among them, which are large.
     pub(super) known: Arc<Semaphore>,
@@ -51,10 +51,10 @@ pub(super) struct Ears {
 }
 
 /// Accepts connections until it is dropped.
-pub(super) async fn listen(listener: TcpListener, ears: Ears) -> Infallible {
-    let ears = Arc::new(ears);
+pub(super) async fn listen(listener: TcpListener, reader: Reader) -> Infallible {
+    let reader = Arc::new(reader);
     let mut strangers = Strangers::default();
-    let stage = Arc::clone(&ears.stage);
+    let stage = Arc::clone(&reader.stage);
     tokio::spawn(async move {
         let mut pulse = interval(PULSE);
         loop {
@@ -71,14 +71,14 @@ pub(super) async fn listen(listener: TcpListener, ears: Ears) -> Infallible {
         };
         let connection = Connection::new(stream);
         strangers.add(&connection);
-        let ears = Arc::clone(&ears);
-        tokio::spawn(async move { ears.attend(connection).await });
+        let reader = Arc::clone(&reader);
+        tokio::spawn(async move { reader.attend(connection).await });
         // What came first is read first.
         yield_now().await;
     }
 }
 
-impl Ears {
+impl Reader {
     /// Reads the request of a connection.
     async fn attend(&self, connection: Arc<Connection>) {
         let mut bytes = Vec::new();
@@ -150,7 +150,7 @@ impl Ears {
             Route::Trace => What::Trace,
             Route::TakeTrace(length) => {
                 if waits_for_leave(head) {
-                    self.mouth.spawn(mouth::give_leave(Arc::clone(connection)));
+                    self.writer.spawn(writer::give_leave(Arc::clone(connection)));
                 }
                 match timeout(TRACE_PATIENCE, body(connection, rest, length)).await {
                     Ok(Some(bytes)) => What::Taken(bytes),
@@ -184,7 +184,7 @@ impl Ears {
 
     /// Has an answer written that takes no time to make.
     fn say(&self, connection: &Arc<Connection>, answer: Answer, is_head: bool) {
-        self.mouth.spawn(mouth::say(Arc::clone(connection), answer, is_head, None));
+        self.writer.spawn(writer::say(Arc::clone(connection), answer, is_head, None));
     }
 
     /// Reads the messages of a page until it ends.
@@ -196,11 +196,11 @@ impl Ears {
     ) {
         let stage = &self.stage;
         let Some(Opened { page, outbox, waiting }) = stage.pages.add(MOST_PAGES) else {
-            self.mouth.spawn(mouth::turn_away(Arc::clone(connection), opening));
+            self.writer.spawn(writer::turn_away(Arc::clone(connection), opening));
             return;
         };
         let frames = stage.frames.clone();
-        self.mouth.spawn(mouth::speak(Arc::clone(connection), opening, outbox, frames));
+        self.writer.spawn(writer::speak(Arc::clone(connection), opening, outbox, frames));
         let mut talk = Talk::new(page, waiting, stage);
         talk.feed.incoming = rest;
         self.follow(connection, &mut talk).await;

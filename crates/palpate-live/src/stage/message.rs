@@ -20,10 +20,10 @@ pub(crate) struct Waiting(Arc<AtomicUsize>);
 
 impl Waiting {
     /// A message of the page that waits from now on; `None` if there is no room for it.
-    pub(crate) fn letter(&self, page: PageId, text: Utf8Bytes) -> Option<Letter> {
+    pub(crate) fn message(&self, page: PageId, text: Utf8Bytes) -> Option<Received> {
         let before = self.0.fetch_add(text.len(), Ordering::Relaxed);
-        let letter = Letter { page, text, waiting: self.clone() };
-        (before + letter.text.len() <= MOST_WAITING).then_some(letter)
+        let message = Received { page, text, waiting: self.clone() };
+        (before + message.text.len() <= MOST_WAITING).then_some(message)
     }
 }
 
@@ -31,13 +31,13 @@ impl Waiting {
 ///
 /// It waits as its text, which is a part of what it would take in memory once it is read.
 #[derive(Debug)]
-pub(crate) struct Letter {
+pub(crate) struct Received {
     pub(super) page: PageId,
     pub(super) text: Utf8Bytes,
     waiting: Waiting,
 }
 
-impl Letter {
+impl Received {
     /// Reads it.
     ///
     /// # Errors
@@ -48,7 +48,7 @@ impl Letter {
     }
 }
 
-impl Drop for Letter {
+impl Drop for Received {
     fn drop(&mut self) {
         self.waiting.0.fetch_sub(self.text.len(), Ordering::Relaxed);
     }
@@ -63,11 +63,11 @@ mod tests {
     fn so_many_bytes_wait_and_no_more() {
         let opened = Pages::default().add(1).unwrap();
         let (page, waiting) = (opened.page, opened.waiting);
-        let letter = |length: usize| waiting.letter(page, "x".repeat(length).into());
-        let half = letter(MOST_WAITING / 2).unwrap();
-        assert!(letter(MOST_WAITING / 2 + 1).is_none(), "there is no room");
-        let other = letter(MOST_WAITING / 2).unwrap();
-        assert!(letter(1).is_none());
+        let message = |length: usize| waiting.message(page, "x".repeat(length).into());
+        let half = message(MOST_WAITING / 2).unwrap();
+        assert!(message(MOST_WAITING / 2 + 1).is_none(), "there is no room");
+        let other = message(MOST_WAITING / 2).unwrap();
+        assert!(message(1).is_none());
         drop((half, other));
         assert_eq!(waiting.0.load(Ordering::Relaxed), 0);
     }

@@ -18,7 +18,7 @@ const MOST_NUMBERS: u32 = 1000;
 
 /// The scene as it was edited last.
 #[derive(Debug)]
-pub(super) struct Kept(Mutex<Scene>);
+pub(super) struct LatestScene(Mutex<Scene>);
 
 #[derive(Debug)]
 struct Scene {
@@ -39,7 +39,7 @@ impl From<&Document> for Scene {
     }
 }
 
-impl Kept {
+impl LatestScene {
     pub(super) fn of(document: &Document) -> Self {
         Self(Mutex::new(document.into()))
     }
