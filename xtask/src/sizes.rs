@@ -18,7 +18,7 @@ const LARGER: &[(&str, usize)] = &[
     // A folder a command, and no command knows another: what would be parted is parted already.
     ("palpate-cli", 16_000),
     // Proxy, creases, tools and their servo share one tick; guides alone could leave it.
-    ("palpate-haptics", 13_500),
+    ("palpate-haptics", 14_200),
     // All searches share one engine, one pair of bodies and their cells.
     ("palpate-query", 14_000),
 ];
