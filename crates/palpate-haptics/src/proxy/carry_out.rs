@@ -246,13 +246,15 @@ impl<const D: usize> WayOut<'_, D> {
         }
         if here.body == touched
             && let Some(exit) = self.exit(along, here, way)
+            && exit.gap >= -self.after.tolerance()
         {
             self.try_near(exit, along);
         }
     }
 
     /// The first sample outside on a way along a unit vector that is inside at its length `way` [m];
-    /// `None` if the way becomes too long, or after [`MOST_STEPS`].
+    /// the last one inside if the way becomes too long, or after [`MOST_STEPS`]. `None` if that is not
+    /// known.
     ///
     /// No surface is within `−f / L` of a point inside. A step to the tangent plane goes farther.
     fn exit(
@@ -272,17 +274,17 @@ impl<const D: usize> WayOut<'_, D> {
             // Written so that NaN ends the way.
             let is_near = way <= self.most + tolerance;
             if !is_near {
-                return None;
+                break;
             }
             here = self.after.gradient(place + along * way)?;
             if here.gap >= -tolerance {
                 return Some(here);
             }
         }
-        None
+        Some(here)
     }
 
-    /// Takes the place nearest to the proxy near `exit`, or `exit` itself.
+    /// Takes the place nearest to the proxy near `exit`, or `exit` itself if it is outside.
     fn try_near(&mut self, exit: Sample<D>, up: Vector<f64, D>) {
         let near = self.nearest(exit, up);
         if !near.is_some_and(|near| self.take(near, up))
