@@ -143,7 +143,7 @@ impl<'a, const D: usize> Sampler<'a, D> {
         self.radius < self.skin
     }
 
-    /// The least way from a point at this gap to one of another, per metre of the difference.
+    /// The inverse of the Lipschitz constant: the least way along which a gap changes by a metre.
     pub(crate) fn per_slope(&self) -> f64 {
         self.per_slope
     }

@@ -8,10 +8,11 @@
 use std::f64::consts::FRAC_1_SQRT_2;
 
 use palpate_field::{Point, Vector};
+use palpate_query::internal::HalfSpace;
 
 use super::Proxy;
-use crate::contact::{Goal, LocalSurface, Place, slide};
 use crate::nearby::{Nearby, Punctured};
+use crate::planes::Planes;
 use crate::sampler::{Sample, Sampler};
 
 /// How far an edit carries a probe that moves as a point [m], where the hand holds it. With more,
@@ -32,16 +33,16 @@ const SHORTEST: f64 = 1e-6;
 /// at 26 degrees or more, the step is provable.
 const GROWTH: f64 = 1.5;
 
+/// A way grazes a surface if its middle is nearer to it than this part of its length.
+const GRAZING: f64 = 0.25;
+
 /// The most steps along a way: nine that each lead 2.5 times as far reach some thousand skins. A
 /// way that grazes a surface needs more, and would use up the budget of the others.
 const MOST_STEPS: u32 = 11;
 
-/// The most steps of a way out from one tangent plane to the next: more are needed only where it leads
-/// to and fro between two bodies.
+/// The most samples from a place outside to the nearest one: a flat wall takes one, a corner three, a
+/// curved surface a few more.
 const MOST_PLANES: u32 = 8;
-
-/// The most slides from an exit to the nearest place.
-const SLIDES: u32 = 3;
 
 /// Where an edit carries a proxy.
 #[derive(Clone, Copy, Debug)]
@@ -141,9 +142,9 @@ impl<const D: usize> Proxy<D> {
             way_out.leave(up, up);
             way_out.leave(side, up);
             if !way_out.is_shortest()
-                && let Some(exit) = way_out.over_planes(up)
+                && let Some(near) = way_out.nearest(covered, up)
             {
-                way_out.try_near(exit, up);
+                way_out.take(near, up);
             }
             for axis in 0..D {
                 let across = Vector::unit(axis) - up * up.dot(Vector::unit(axis));
@@ -213,20 +214,6 @@ impl<const D: usize> WayOut<'_, D> {
         sample.map_or(Vector::ZERO, |sample| self.before.tangent(&sample, Vector::ZERO).0)
     }
 
-    /// The first sample outside on a way that leads straight to each tangent plane; `None` if there is
-    /// none soon.
-    fn over_planes(&mut self, up: Vector<f64, D>) -> Option<Sample<D>> {
-        let mut here = self.covered;
-        for _ in 0..MOST_PLANES {
-            let (normal, gap) = self.after.tangent(&here, up);
-            here = self.after.gradient(here.point - normal * gap)?;
-            if here.gap >= -self.after.tolerance() {
-                return Some(here);
-            }
-        }
-        None
-    }
-
     /// Whether the best way out is proven to be the shortest.
     fn is_shortest(&self) -> bool {
         let proven = self.least() * (1.0 + SHORTEST) + 2.0 * self.after.tolerance();
@@ -259,13 +246,15 @@ impl<const D: usize> WayOut<'_, D> {
         }
         if here.body == touched
             && let Some(exit) = self.exit(along, here, way)
+            && exit.gap >= -self.after.tolerance()
         {
             self.try_near(exit, along);
         }
     }
 
     /// The first sample outside on a way along a unit vector that is inside at its length `way` [m];
-    /// `None` if the way becomes too long, or after [`MOST_STEPS`].
+    /// the last one inside if the way becomes too long, or after [`MOST_STEPS`]. `None` if that is not
+    /// known.
     ///
     /// No surface is within `−f / L` of a point inside. A step to the tangent plane goes farther.
     fn exit(
@@ -285,40 +274,67 @@ impl<const D: usize> WayOut<'_, D> {
             // Written so that NaN ends the way.
             let is_near = way <= self.most + tolerance;
             if !is_near {
-                return None;
+                break;
             }
             here = self.after.gradient(place + along * way)?;
             if here.gap >= -tolerance {
                 return Some(here);
             }
         }
-        None
+        Some(here)
     }
 
-    /// Takes the place nearest to the proxy to which the surface leads from `exit`; or `exit` itself.
+    /// Takes the place nearest to the proxy near `exit`, or `exit` itself if it is outside.
     fn try_near(&mut self, exit: Sample<D>, up: Vector<f64, D>) {
-        let (mut near, mut normal) = (exit, up);
-        let device = self.covered.point;
-        // A slide along a crease ends near the nearest place: another one begins there.
-        for _ in 0..SLIDES {
-            let before = near.point;
-            let motion = (before - device).norm();
-            let place = Place { here: &mut near, normal: &mut normal };
-            slide(&mut self.after, place, Goal { device, motion }, &mut LocalSurface::new());
-            if (near.point - before).norm() <= SHORTEST * motion {
-                break;
-            }
-        }
-        if !self.take(near, up) {
+        let near = self.nearest(exit, up);
+        if !near.is_some_and(|near| self.take(near, up))
+            && near.is_none_or(|near| near.point != exit.point)
+        {
             self.take(exit, up);
         }
+    }
+
+    /// The place nearest to the proxy near a sample; `None` if none is found soon.
+    ///
+    /// As in a [slide](crate::contact), each sample is the point nearest to the proxy above the
+    /// tangent planes of those before. Here the way between them need not be free: whether that
+    /// to the place was, [`was_free`](Self::was_free) tells.
+    fn nearest(&mut self, start: Sample<D>, up: Vector<f64, D>) -> Option<Sample<D>> {
+        let (place, tolerance) = (self.covered.point, self.after.tolerance());
+        let (mut planes, mut here, mut best) = (Planes::new(), start, None::<Sample<D>>);
+        for _ in 0..MOST_PLANES {
+            let (normal, gap) = self.after.tangent(&here, up);
+            let wall = HalfSpace { point: here.point - normal * gap, normal };
+            if planes.is_empty() {
+                planes.add(wall);
+            } else {
+                planes.learn(here.point, wall, gap);
+            }
+            let Some(next) = planes.closest(place) else { break };
+            let way = (next - here.point).norm();
+            let is_there = here.gap >= -tolerance && way <= SHORTEST * (next - place).norm();
+            if is_there {
+                return Some(here);
+            }
+            let Some(next) = self.after.gradient(next) else { break };
+            here = next;
+            let distance = |sample: &Sample<D>| (sample.point - place).norm();
+            let is_better = best.is_none_or(|best| distance(&here) < distance(&best));
+            if here.gap >= -tolerance && is_better {
+                best = Some(here);
+            }
+        }
+        best
     }
 
     /// Takes a sample if it is the best so far, and the way to it was free.
     fn take(&mut self, sample: Sample<D>, up: Vector<f64, D>) -> bool {
         let (distance, tolerance) =
             ((sample.point - self.origin).norm(), self.after.tolerance());
-        let most = self.best.map_or(self.most + tolerance, |best| best.distance);
+        // What is as good is likely to be the same place, whose proof would cost once more.
+        let most = self
+            .best
+            .map_or(self.most + tolerance, |best| best.distance * (1.0 - SHORTEST) - tolerance);
         let is_better = distance <= most && sample.gap >= -tolerance;
         if !is_better || !self.was_free(sample.point, up) {
             return false;
@@ -328,8 +344,8 @@ impl<const D: usize> WayOut<'_, D> {
         true
     }
 
-    /// Whether the way from the proxy to a point was free in the bodies before: straight, or over a
-    /// point above the middle. That is cheap where the straight way grazes a surface.
+    /// Whether the way from the proxy to a point was free in the bodies before: straight, or where that
+    /// grazes a surface over a point beside its middle, which takes fewer steps to prove.
     fn was_free(&mut self, to: Point<D>, up: Vector<f64, D>) -> bool {
         let from = (self.covered.point, self.gap);
         let Some(end) = self.known(to) else { return false };
@@ -337,10 +353,15 @@ impl<const D: usize> WayOut<'_, D> {
         if self.is_proven([from, end], length) {
             return true;
         }
-        if self.is_free(from, end) {
-            return true;
+        let middle = (from.0 + to) * 0.5;
+        let Some(beside) = self.before.gradient(middle) else { return false };
+        if beside.gap > GRAZING * length {
+            return self.is_free(from, end);
         }
-        let above = self.known((from.0 + to) * 0.5 + up * length);
+        // Beyond an edge the surface leads the way along, and at a crease it is up that may do so.
+        let (away, _) = self.before.tangent(&beside, up);
+        let away = (away + up).normalized().unwrap_or(away);
+        let above = self.known(middle + away * length);
         above.is_some_and(|above| self.is_free(from, above) && self.is_free(end, above))
     }
 
