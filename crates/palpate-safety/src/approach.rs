@@ -14,7 +14,7 @@ use crate::limit::shortened;
 /// the hand meanwhile.
 const STEP: f64 = 0.3;
 
-/// Follows a wanted force by [`STEP`] a tick, from an edit on until it has caught up.
+/// Follows a wanted force by 0.3 N a tick, from an edit on until it has caught up.
 ///
 /// A force of zero is followed at once: then nothing pushes, and what lingered would push a hand
 /// that nothing touches.
