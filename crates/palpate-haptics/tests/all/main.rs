@@ -30,7 +30,6 @@ mod lifted;
 mod moving;
 mod places;
 mod protected;
-mod random_edits;
 mod real_time;
 mod records;
 mod reports;

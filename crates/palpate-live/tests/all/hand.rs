@@ -174,6 +174,44 @@ fn guides_are_handed_to_the_servo() {
     while moment(&mut page).push[0] > 0.0 {}
 }
 
+/// A plate that grew by 10 µm once dropped its force to zero, and let the hand sink in.
+#[test]
+fn an_edit_under_the_hand_keeps_the_touch() {
+    let plate = |height: f64| json!({ "cuboid": { "size": [0.1, height] } });
+    let scene = json!({
+        "palpate": 1, "dimension": 2,
+        "bodies": [{ "name": "plate", "shape": plate(0.02), "pose": { "translation": [0, -0.01] },
+                     "material": { "stiffness": 300, "damping": 0 } }],
+    });
+    let (_live, mut page) = opened(&scene.to_string());
+    press(&mut page, json!([0.0, 0.01]));
+    while !moment(&mut page).is_at([0.0, 0.01]) {}
+    press(&mut page, json!([0.0, -0.01]));
+    let rests = |page: &mut Page| {
+        let mut before = moment(page);
+        loop {
+            (0..10).for_each(|_| _ = moment(page));
+            let now = moment(page);
+            if now.push[1] > 0.5 && (now.push[1] - before.push[1]).abs() < 1e-3 {
+                return now;
+            }
+            before = now;
+        }
+    };
+    let before = rests(&mut page);
+    page.say(&json!({
+        "do": "edit", "base": 1,
+        "changes": [{ "at": "/bodies/0/shape", "to": plate(0.02002) }],
+    }));
+    let carried = page.text(|message| message["events"][0]["kind"] == "carried");
+    let distance = carried["events"][0]["distance"].as_f64().unwrap();
+    assert!((distance - 1e-5).abs() < 1e-7, "{carried}");
+    for _ in 0..30 {
+        let now = moment(&mut page);
+        assert!((now.push[1] - before.push[1]).abs() < 0.05, "{now:?} after {before:?}");
+    }
+}
+
 /// A trace of a hand that was held in a body once led it there through the body.
 #[test]
 fn a_replay_that_begins_in_a_body_presses_as_it_did() {

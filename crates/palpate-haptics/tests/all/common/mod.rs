@@ -4,6 +4,7 @@
 //! Shapes and hands that several tests use.
 #![expect(clippy::unwrap_used, reason = "a test that cannot be set up fails")]
 
+pub(crate) mod nearest;
 pub(crate) mod tools;
 pub(crate) mod wild;
 
