@@ -118,7 +118,7 @@ fn edits_of_the_gallery_are_kept_in_the_current_folder() {
     let mut served = Served::start(&folder, None, None);
     served.edit("first");
     let (_, said) = served.end(SIGINT);
-    let (_, file) = said.trim_end().rsplit_once(' ').unwrap();
+    let (_, file) = said.trim_end().split_once(" are kept in ").unwrap();
     assert!(file.ends_with("gallery.unsaved.json"), "{said}");
     assert!(fs::read_to_string(file).unwrap().contains("\"first\""));
 }

@@ -82,7 +82,7 @@ pub(super) async fn speak(
     loop {
         let message = tokio::select! {
             biased;
-            message = outbox.messages.recv() => match message {
+            message = outbox.next() => match message {
                 Some(message) => message,
                 None => return end(&connection, outbox.why()).await,
             },

@@ -4,7 +4,7 @@
 //! The pages that are open, and what waits to be sent to them.
 
 use std::collections::BTreeMap;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
 
 use serde_json::{Value, json};
@@ -17,8 +17,8 @@ use crate::wire::Told;
 /// Messages that may wait for a page: a page that takes fewer is closed.
 pub(crate) const WAITING: usize = 256;
 
-/// Grids and pictures, of up to 16 MiB each, that may wait for a page.
-const LARGE_WAITING: usize = 8;
+/// The bytes that may wait for a page, beside one message: grids and pictures have up to 16 MiB.
+const MOST_BYTES: usize = 32 << 20;
 
 /// The most messages of a page that cannot be read.
 const MOST_UNREADABLE: u32 = 10;
@@ -33,6 +33,15 @@ pub(crate) enum Out {
     Binary(Bytes),
     /// Bytes of the protocol below messages, such as the answer to a ping.
     Raw(Bytes),
+}
+
+impl Out {
+    fn length(&self) -> usize {
+        match self {
+            Self::Text(text) => text.len(),
+            Self::Binary(bytes) | Self::Raw(bytes) => bytes.len(),
+        }
+    }
 }
 
 impl From<&Value> for Out {
@@ -67,9 +76,20 @@ struct Open {
 #[derive(Debug)]
 struct Page {
     sender: mpsc::Sender<Out>,
+    /// The bytes that wait.
+    bytes: Arc<AtomicUsize>,
     ending: Arc<OnceLock<String>>,
     is_hidden: Arc<AtomicBool>,
     unreadable: u32,
+}
+
+impl Page {
+    /// Lets a message wait; whether there is room for it.
+    fn send(&self, message: Out) -> bool {
+        let length = message.length();
+        let before = self.bytes.fetch_add(length, Ordering::Relaxed);
+        (before == 0 || before + length <= MOST_BYTES) && self.sender.try_send(message).is_ok()
+    }
 }
 
 /// A page as its connection sees it.
@@ -84,12 +104,20 @@ pub(crate) struct Opened {
 /// What waits for a page.
 #[derive(Debug)]
 pub(crate) struct Outbox {
-    pub(crate) messages: mpsc::Receiver<Out>,
+    messages: mpsc::Receiver<Out>,
+    bytes: Arc<AtomicUsize>,
     ending: Arc<OnceLock<String>>,
     is_hidden: Arc<AtomicBool>,
 }
 
 impl Outbox {
+    /// The next message; `None` once the page is closed.
+    pub(crate) async fn next(&mut self) -> Option<Out> {
+        let message = self.messages.recv().await?;
+        self.bytes.fetch_sub(message.length(), Ordering::Relaxed);
+        Some(message)
+    }
+
     /// Why the page was closed, once no more messages come.
     pub(crate) fn why(&self) -> &str {
         self.ending.get().map_or(TOO_SLOW, String::as_str)
@@ -116,10 +144,14 @@ impl Pages {
         let (sender, messages) = mpsc::channel(WAITING);
         let page = PageId(open.ever);
         open.ever += 1;
-        let (ending, is_hidden) = (Arc::default(), Arc::default());
-        let outbox =
-            Outbox { messages, ending: Arc::clone(&ending), is_hidden: Arc::clone(&is_hidden) };
-        open.pages.insert(page, Page { sender, ending, is_hidden, unreadable: 0 });
+        let (bytes, ending, is_hidden) = (Arc::default(), Arc::default(), Arc::default());
+        let outbox = Outbox {
+            messages,
+            bytes: Arc::clone(&bytes),
+            ending: Arc::clone(&ending),
+            is_hidden: Arc::clone(&is_hidden),
+        };
+        open.pages.insert(page, Page { sender, bytes, ending, is_hidden, unreadable: 0 });
         Some(Opened { page, outbox, waiting: Waiting::default() })
     }
 
@@ -163,11 +195,8 @@ impl Pages {
     /// Sends a message to a page; closes it if too many wait.
     pub(crate) fn send(&self, page: PageId, message: impl Into<Out>) {
         let mut open = self.open();
-        let Some(Page { sender, .. }) = open.pages.get(&page) else { return };
-        let message = message.into();
-        let waiting = sender.max_capacity() - sender.capacity();
-        let is_too_large = matches!(message, Out::Binary(_)) && waiting >= LARGE_WAITING;
-        if is_too_large || sender.try_send(message).is_err() {
+        let Some(kept) = open.pages.get(&page) else { return };
+        if !kept.send(message.into()) {
             open.pages.remove(&page);
         }
     }
@@ -175,7 +204,7 @@ impl Pages {
     /// Sends a message to all pages.
     pub(crate) fn broadcast(&self, message: impl Into<Out>) {
         let message = message.into();
-        self.open().pages.retain(|_, page| page.sender.try_send(message.clone()).is_ok());
+        self.open().pages.retain(|_, page| page.send(message.clone()));
     }
 
     /// Answers a question that has a number.
@@ -257,5 +286,25 @@ mod tests {
         let Opened { page, outbox, .. } = pages.add(1).unwrap();
         pages.remove(page);
         assert_eq!(outbox.why(), TOO_SLOW);
+    }
+
+    /// Pages that read nothing once held a gigabyte of scenes.
+    #[test]
+    fn so_many_bytes_wait_for_a_page_and_no_more() {
+        let pages = Pages::default();
+        let Opened { page, .. } = pages.add(1).unwrap();
+        let bytes = |length: usize| Out::Binary(vec![0; length].into());
+        // One message is always taken, however long it is.
+        pages.send(page, bytes(MOST_BYTES + 1));
+        assert!(pages.is_open(page));
+        pages.send(page, bytes(1));
+        assert!(!pages.is_open(page));
+        let Opened { page, mut outbox, .. } = pages.add(1).unwrap();
+        for _ in 0..3 {
+            pages.send(page, bytes(MOST_BYTES));
+            let taken = outbox.messages.try_recv().map(|message| message.length());
+            outbox.bytes.fetch_sub(taken.unwrap(), Ordering::Relaxed);
+        }
+        assert!(pages.is_open(page));
     }
 }
