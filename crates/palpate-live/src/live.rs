@@ -215,8 +215,7 @@ impl Live {
         let stage = Arc::new(stage);
         let address = SocketAddr::new(address, port);
         let failed = |error| LiveError::Address { address, error };
-        let listener = std::net::TcpListener::bind(address).map_err(failed)?;
-        listener.set_nonblocking(true).map_err(failed)?;
+        let listener = server::listener(address).map_err(failed)?;
         let address = listener.local_addr().map_err(failed)?;
         let server = Server::start(listener, address, token.clone(), &stage);
         let server = Some(server.map_err(|error| system(&error))?);

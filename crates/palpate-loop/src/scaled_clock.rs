@@ -7,7 +7,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Duration;
 
-use palpate_haptics::NumberError;
+use palpate_haptics::{NumberError, StopSwitch};
 
 use crate::clock::{Clock, WallClock};
 use crate::priority::Priority;
@@ -53,7 +53,12 @@ pub struct ScaledClock {
     time: Duration,
     since: Duration,
     speed: f64,
+    /// The emergency stop that lets a tick come, and its state at the last look.
+    stop: Option<(StopSwitch, StopState)>,
 }
+
+/// The number of stops, and whether the last one holds.
+type StopState = (u64, bool);
 
 /// What clock and handle share.
 #[derive(Debug)]
@@ -85,8 +90,43 @@ impl ScaledClock {
             time: Duration::ZERO,
             since: Duration::ZERO,
             speed: 1.0,
+            stop: None,
         };
         (clock, ClockSpeed { shared })
+    }
+
+    /// The same clock, which lets a tick come when this switch is pressed or released, however slow it
+    /// is: a servo heeds its emergency stop in a tick alone.
+    ///
+    /// ```
+    /// use std::time::Duration;
+    ///
+    /// use palpate_haptics::StopSwitch;
+    /// use palpate_loop::{Clock, Priority, ScaledClock};
+    ///
+    /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+    /// let switch = StopSwitch::new();
+    /// let (clock, speed) = ScaledClock::new(&Priority::Normal);
+    /// let mut clock = clock.heeding(switch.clone());
+    /// speed.set(0.0)?; // held
+    /// let next = clock.now() + Duration::from_secs(60);
+    /// switch.stop();
+    /// clock.wait_until(next); // does not wait
+    /// assert_eq!(clock.now(), next);
+    /// # Ok(())
+    /// # }
+    /// ```
+    #[must_use]
+    pub fn heeding(self, stop: StopSwitch) -> Self {
+        let state = state_of(&stop);
+        Self { stop: Some((stop, state)), ..self }
+    }
+
+    /// Whether the emergency stop was pressed or released since the last look.
+    fn has_new_stop(&mut self) -> bool {
+        let Some((stop, seen)) = &mut self.stop else { return false };
+        let now = state_of(stop);
+        std::mem::replace(seen, now) != now
     }
 
     /// Goes on to the present with the speed until now, and takes the new one.
@@ -104,6 +144,10 @@ impl ScaledClock {
     }
 }
 
+fn state_of(stop: &StopSwitch) -> StopState {
+    (stop.stops(), stop.is_stopped())
+}
+
 impl Clock for ScaledClock {
     fn now(&mut self) -> Duration {
         self.catch_up();
@@ -114,6 +158,10 @@ impl Clock for ScaledClock {
         loop {
             self.catch_up();
             if self.time >= deadline {
+                return;
+            }
+            if self.has_new_stop() {
+                self.time = deadline;
                 return;
             }
             if self.speed == 0.0 {
@@ -194,6 +242,26 @@ mod tests {
         });
         drop(speed);
         assert!(waits.join().unwrap() > held);
+    }
+
+    /// A stop under a slow clock once waited for the next tick: up to a second.
+    #[test]
+    fn a_stop_lets_a_tick_come_and_so_does_its_release() {
+        let switch = StopSwitch::new();
+        let (clock, speed) = ScaledClock::new(&Priority::Normal);
+        let mut clock = clock.heeding(switch.clone());
+        for slow in [0.001, 0.0] {
+            speed.set(slow).unwrap();
+            for _ in 0..2 {
+                let (number, next) = (switch.stop(), clock.now() + Duration::from_secs(600));
+                // What takes steps back does not take this one.
+                speed.set(slow).unwrap();
+                clock.wait_until(next);
+                assert!(switch.release_of(number) && clock.now() >= next);
+                let next = clock.now() + Duration::from_secs(600);
+                clock.wait_until(next);
+            }
+        }
     }
 
     #[test]

@@ -63,21 +63,24 @@ pub(crate) struct Served(Option<Live>);
 impl Served {
     /// Ends all forces, and then keeps the edits that are not saved.
     fn end(mut self) -> Result<(), Failure> {
-        self.0.take().as_ref().map_or(Ok(()), keep_edits)
+        self.0.take().map_or(Ok(()), keep_edits)
     }
 }
 
 impl Drop for Served {
     fn drop(&mut self) {
-        if let Some(Err(failure)) = self.0.take().as_ref().map(keep_edits) {
+        if let Some(Err(failure)) = self.0.take().map(keep_edits) {
             output::remark(format_args!("{failure}"));
         }
     }
 }
 
-fn keep_edits(live: &Live) -> Result<(), Failure> {
+fn keep_edits(live: Live) -> Result<(), Failure> {
     live.stop_switch().stop();
-    let Some(unsaved) = live.unsaved(SETTLING) else { return Ok(()) };
+    let unsaved = live.unsaved(SETTLING);
+    // Its connections may hold all file descriptors that there are.
+    drop(live);
+    let Some(unsaved) = unsaved else { return Ok(()) };
     let kept = unsaved.keep().map_err(|error| Failure::input(shown(&error.to_string())))?;
     let kept = kept.display().to_string();
     output::remark(format_args!("edits that were not saved are kept in {}", shown(&kept)));

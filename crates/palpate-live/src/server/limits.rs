@@ -8,17 +8,24 @@ use std::time::{Duration, Instant};
 /// The most pages at once.
 pub(super) const MOST_PAGES: usize = 64;
 
-/// The most connections at once that have not named the token.
-pub(super) const MOST_STRANGERS: usize = 256;
+/// The most connections at once that have not named the token. With pages and the known ones they
+/// need fewer than 256 file descriptors, which is what some systems allow.
+pub(super) const MOST_STRANGERS: usize = 96;
 
 /// The most connections at once that have named it, beside pages.
-pub(super) const MOST_KNOWN: usize = 64;
+pub(super) const MOST_KNOWN: usize = 32;
 
 /// How long the server waits where the operating system gives it no more sockets.
-pub(super) const RECOVERY: Duration = Duration::from_millis(5);
+pub(super) const RECOVERY: Duration = Duration::from_millis(1);
 
-/// The bytes that are read of a connection in a turn.
-pub(super) const TURN: usize = 16 << 10;
+/// The bytes that are read of a connection in a turn: at most so many frames of a socket come at once.
+pub(super) const TURN: usize = 4 << 10;
+
+/// The connections that may wait to be accepted: one that finds no room tries again after a second.
+pub(super) const BACKLOG: i32 = 4096;
+
+/// The connections that are accepted in a turn.
+pub(super) const ACCEPTED: usize = 64;
 
 /// The longest head of a request [bytes].
 pub(super) const LONGEST_HEAD: usize = 16 << 10;

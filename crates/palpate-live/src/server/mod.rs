@@ -19,13 +19,14 @@ use std::sync::Arc;
 use std::sync::mpsc::sync_channel;
 use std::thread::{Builder, JoinHandle};
 
+use socket2::{Domain, Socket, Type};
 use tokio::runtime::Runtime;
 use tokio::sync::{Semaphore, oneshot};
 
 use crate::stage::Stage;
 use guard::Guard;
 pub(crate) use guard::{is_token, new_token};
-use limits::{MOST_KNOWN, MOST_REQUESTS, MOST_TRACES};
+use limits::{BACKLOG, MOST_KNOWN, MOST_REQUESTS, MOST_TRACES};
 use reader::Reader;
 
 /// The server, until it is dropped.
@@ -88,6 +89,22 @@ pub(crate) fn take_head(bytes: &[u8]) {
         let _ = (request::takes_gzip(&head), request::waits_for_leave(&head));
         let _ = request::Route::of(&head, &guard);
     }
+}
+
+/// A socket at which connections may wait.
+///
+/// # Errors
+///
+/// If the address cannot be listened at.
+pub(crate) fn listener(address: SocketAddr) -> Result<TcpListener> {
+    let socket = Socket::new(Domain::for_address(address), Type::STREAM, None)?;
+    // As the standard library does: a program that starts again takes its port.
+    #[cfg(unix)]
+    socket.set_reuse_address(true)?;
+    socket.bind(&address.into())?;
+    socket.listen(BACKLOG)?;
+    socket.set_nonblocking(true)?;
+    Ok(socket.into())
 }
 
 /// A runtime of one thread.

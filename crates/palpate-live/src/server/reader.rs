@@ -28,7 +28,8 @@ use super::answers::{Answer, Asked, What, refused, words};
 use super::connections::{Connection, Strangers};
 use super::guard::Guard;
 use super::limits::{
-    Budget, LARGEST_MESSAGE, LONGEST_HEAD, MOST_PAGES, PATIENCE, RECOVERY, TRACE_PATIENCE, TURN,
+    ACCEPTED, Budget, LARGEST_MESSAGE, LONGEST_HEAD, MOST_PAGES, PATIENCE, RECOVERY,
+    TRACE_PATIENCE, TURN,
 };
 use super::request::{Head, Route, is_whole, read, takes_gzip, waits_for_leave};
 use super::writer;
@@ -62,6 +63,7 @@ pub(super) async fn listen(listener: TcpListener, reader: Reader) -> Infallible 
             stage.pulse.beat();
         }
     });
+    let mut accepted = 0_usize;
     loop {
         let Ok((stream, _)) = listener.accept().await else {
             // No file descriptors are left: the oldest stranger is closed.
@@ -73,8 +75,11 @@ pub(super) async fn listen(listener: TcpListener, reader: Reader) -> Infallible 
         strangers.add(&connection);
         let reader = Arc::clone(&reader);
         tokio::spawn(async move { reader.attend(connection).await });
-        // What came first is read first.
-        yield_now().await;
+        accepted += 1;
+        if accepted.is_multiple_of(ACCEPTED) {
+            // Those that came first are read.
+            yield_now().await;
+        }
     }
 }
 
@@ -122,18 +127,23 @@ impl Reader {
     ) {
         let is_head = head.method() == Method::HEAD;
         let busy = || refused(StatusCode::SERVICE_UNAVAILABLE, "");
-        if let Route::Stop(press) = route {
-            connection.know();
-            self.stage.stop.press(Presser::Request(press));
-            return self.say(connection, words(StatusCode::NO_CONTENT, ""), false);
+        let is_stop = matches!(route, Route::Stop(_));
+        if let Route::Stop(press) = &route {
+            // It acts before there is a place for its connection.
+            self.stage.stop.press(Presser::Request(press.clone()));
         }
         let mut held = None;
         if route.is_known() {
-            let Ok(place) = Arc::clone(&self.known).try_acquire_owned() else {
-                return self.say(connection, busy(), is_head);
-            };
+            held = Arc::clone(&self.known).try_acquire_owned().ok();
+            if held.is_none() {
+                return connection.shut();
+            }
             connection.know();
-            held = Some(place);
+        }
+        if is_stop {
+            self.say(connection, words(StatusCode::NO_CONTENT, ""), false);
+            discard(connection).await;
+            return drop(held);
         }
         let place = match route {
             Route::Trace | Route::TakeTrace(_) => {
@@ -197,7 +207,9 @@ impl Reader {
         let stage = &self.stage;
         let Some(Opened { page, outbox, waiting }) = stage.pages.add(MOST_PAGES) else {
             self.writer.spawn(writer::turn_away(Arc::clone(connection), opening));
-            return;
+            let mut talk = Talk::new(PageId::NONE, Waiting::default(), stage);
+            talk.feed.incoming = rest;
+            return self.hear_last(connection, &mut talk).await;
         };
         let frames = stage.frames.clone();
         self.writer.spawn(writer::speak(Arc::clone(connection), opening, outbox, frames));
@@ -205,9 +217,18 @@ impl Reader {
         talk.feed.incoming = rest;
         self.follow(connection, &mut talk).await;
         stage.pages.remove(page);
-        // What a page still sends that is closed may be a stop.
+        self.hear_last(connection, &mut talk).await;
+    }
+
+    /// Reads the messages of a page that is closed, of which a stop counts, as long as there is a place
+    /// for its connection.
+    async fn hear_last(&self, connection: &Arc<Connection>, talk: &mut Talk<'_>) {
         talk.is_closed = true;
-        let _ = timeout(PATIENCE, self.follow(connection, &mut talk)).await;
+        match Arc::clone(&self.known).try_acquire_owned() {
+            // It takes too long, or has ended.
+            Ok(_place) => _ = timeout(PATIENCE, self.follow(connection, talk)).await,
+            Err(_) => connection.shut(),
+        }
     }
 
     /// Reads the messages of a page until its connection ends, or the page is closed meanwhile.

@@ -32,7 +32,7 @@ pub(super) fn replace(file: &Path, text: &str, is_new: bool) -> Result<()> {
     beside.as_file().sync_all()?;
     match &before {
         // A rename would cut the file off from its other hard links.
-        Some(before) if has_other_names(before) => {
+        Some(before) if has_other_names(before) && !is_new => {
             std::fs::write(&file, text)?;
             return beside.close();
         }

@@ -18,7 +18,7 @@ const SILENCE: Duration = Duration::from_millis(300);
 const LATE_TICKS: f64 = 5.0;
 
 /// Counts while the thread that reads sockets goes on, and the servo as its clock says: if one of them
-/// hangs, a frame still comes, but its count stays.
+/// hangs, or the servo takes no stop, a frame still comes, but its count stays.
 #[derive(Debug)]
 pub(super) struct Heartbeat {
     pulse: Arc<Pulse>,
@@ -30,11 +30,21 @@ pub(super) struct Heartbeat {
     servo: Option<(u64, Instant)>,
     /// How long the servo may take for its next tick; `None` while its clock is held.
     patience: Option<Duration>,
+    /// When the servo last had heeded the emergency stop; `None` before it was watched.
+    heeded: Option<Instant>,
 }
 
 impl Heartbeat {
     pub(super) fn new(pulse: Arc<Pulse>) -> Self {
-        Self { pulse, count: 0, beaten: None, reading: None, servo: None, patience: None }
+        Self {
+            pulse,
+            count: 0,
+            beaten: None,
+            reading: None,
+            servo: None,
+            patience: None,
+            heeded: None,
+        }
     }
 
     /// Takes note of the servo's ticks, which should come at `pace` [Hz]; `None` while its clock is held.
@@ -44,9 +54,16 @@ impl Heartbeat {
         self.patience = pace.map(|pace| late(pace).unwrap_or(Duration::MAX).max(SILENCE));
     }
 
+    /// Takes note of whether the servo has heeded the emergency stop.
+    pub(super) fn watch_stop(&mut self, is_heeded: bool, now: Instant) {
+        if is_heeded || self.heeded.is_none() {
+            self.heeded = Some(now);
+        }
+    }
+
     /// Takes note that there is no servo.
     pub(super) fn without_servo(&mut self) {
-        (self.servo, self.patience) = (None, None);
+        (self.servo, self.patience, self.heeded) = (None, None, None);
     }
 
     /// The count for a frame that is sent now.
@@ -57,8 +74,9 @@ impl Heartbeat {
             (Some((_, at)), Some(patience)) => now - at <= patience,
             _ => true,
         };
+        let is_heeded = self.heeded.is_none_or(|at| now - at <= SILENCE);
         let is_due = self.beaten.is_none_or(|at| now - at >= BEAT);
-        if is_reading && is_ticking && is_due {
+        if is_reading && is_ticking && is_heeded && is_due {
             self.count = self.count.wrapping_add(1);
             self.beaten = Some(now);
         }
@@ -109,6 +127,17 @@ mod tests {
         assert_eq!(beats(true, false, Some(1000.0)), 0, "the servo is frozen");
         // A clock that is held has no ticks; a slow one has few.
         assert!(beats(true, false, None) >= 8);
+        // A servo that does not take a stop is frozen, also where its clock is held.
+        let (pulse, now) = (Arc::<Pulse>::default(), Instant::now());
+        let mut heartbeat = Heartbeat::new(Arc::clone(&pulse));
+        heartbeat.watch_stop(true, now);
+        let before = heartbeat.beat(now);
+        for frame in 1..63 {
+            pulse.beat();
+            heartbeat.watch_stop(false, now + frame * FRAME);
+            heartbeat.beat(now + frame * FRAME);
+        }
+        assert!(heartbeat.count - before <= 3, "it beats for {SILENCE:?} and no longer");
         assert!(beats(true, false, Some(1.0)) >= 8);
     }
 }

@@ -61,6 +61,11 @@ impl From<Told> for Out {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub(crate) struct PageId(u64);
 
+impl PageId {
+    /// No page that ever is open.
+    pub(crate) const NONE: Self = Self(u64::MAX);
+}
+
 /// The open pages.
 #[derive(Debug, Default)]
 pub(crate) struct Pages(Mutex<Open>);

@@ -37,6 +37,9 @@ const NO_SERVO: &str = "no servo runs: the next edit of the scene begins one";
 const SAFETY_FRAMES: u32 = 15;
 const AGAIN_FRAMES: u32 = 120;
 
+/// How long a replay goes on at least before another begins: it may be read from 64 MiB.
+const AGAIN: Duration = Duration::from_millis(250);
+
 /// The most events that are told at once.
 const MOST_EVENTS: usize = 100;
 
@@ -140,8 +143,8 @@ pub(super) struct Performance {
     revision: u32,
     /// The revision with which the servo began.
     began: u32,
-    /// Whether forces were stopped in the last step.
-    was_stopped: bool,
+    /// When a replay began last.
+    replayed: Option<Instant>,
     recording: Recording,
     /// Ticks that a clock that is held still has to go.
     ticks: u64,
@@ -171,7 +174,7 @@ impl Performance {
             room: None,
             revision: 0,
             began: 0,
-            was_stopped: false,
+            replayed: None,
             recording: Recording::default(),
             ticks: 0,
             safety: (StageTicks::default(), 0),
@@ -278,7 +281,12 @@ impl Performance {
         if !is_on {
             return of_either!(AnyRoom, room, room => room.replay(None));
         }
+        let now = Instant::now();
+        if self.replayed.is_some_and(|at| now - at < AGAIN) {
+            return Err("a replay began just now".to_owned());
+        }
         self.recording.replay(room)?;
+        self.replayed = Some(now);
         self.leader = None;
         Ok(())
     }
@@ -371,14 +379,8 @@ impl Performance {
         }
         let room = self.room.insert(room);
         let is_stopped = self.stops.is_stopped();
-        let is_news = std::mem::replace(&mut self.was_stopped, is_stopped) != is_stopped;
         of_either!(AnyRoom, &mut *room, room => room.set_stopped(is_stopped));
-        let speed = of_either!(AnyRoom, &*room, room => room.speed());
-        let speed_now = speed.get();
-        if is_news && speed_now == 0.0 {
-            // A servo whose clock is held takes note by a tick.
-            speed.step(1);
-        }
+        let speed = of_either!(AnyRoom, &*room, room => room.speed().get());
         // At most the ticks of a step are released, so that the hand is led as often as in real time.
         let ticks = self.ticks.min((self.terms.rate * STEP.as_secs_f64()).ceil() as u64);
         self.ticks -= ticks;
@@ -405,8 +407,10 @@ impl Performance {
         self.tell_safety(safety, is_frame);
         if let Some(mut frame) = frame {
             (frame.revision, frame.is_recording) = (self.revision, self.recording.is_on());
-            let pace = (!frame.is_held).then_some(self.terms.rate * speed_now);
-            self.heartbeat.watch_servo(frame.ticks, pace, Instant::now());
+            let pace = (!frame.is_held).then_some(self.terms.rate * speed);
+            let now = Instant::now();
+            self.heartbeat.watch_servo(frame.ticks, pace, now);
+            self.heartbeat.watch_stop(!is_stopped || frame.is_stopped, now);
             self.send(frame);
         }
     }

@@ -138,6 +138,7 @@ impl<const D: usize> Room<D> {
         let settings = ServoSettings::default().with_rate(terms.rate).with_recovery(recovery);
         let servo = scene.servo_with(&device, settings).map_err(said)?;
         let (clock, speed) = ScaledClock::new(&Priority::Normal);
+        let clock = clock.heeding(stop.clone());
         // A clock that is held or slow stays so.
         speed.set(kept.map_or(1.0, |kept| kept.speed)).map_err(|error| error.to_string())?;
         let rows = (KEPT * terms.rate) as usize * lead.targets().len();

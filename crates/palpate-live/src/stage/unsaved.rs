@@ -16,6 +16,9 @@ use super::file::replace;
 /// The most files of one name that are tried, before another folder is.
 const MOST_NUMBERS: u32 = 1000;
 
+/// The longest name of a file without its endings [bytes]: file systems take 255 with them.
+const LONGEST_STEM: usize = 200;
+
 /// The scene as it was edited last.
 #[derive(Debug)]
 pub(super) struct LatestScene(Mutex<Scene>);
@@ -113,6 +116,10 @@ impl Unsaved {
             let text = self.text_in(&folder);
             let files = (1..=MOST_NUMBERS).map(|number| folder.join(self.file_name(number)));
             for file in files {
+                // A link counts too, wherever it leads.
+                if file.symlink_metadata().is_ok() {
+                    continue;
+                }
                 match replace(&file, &text, true) {
                     Ok(()) => return Ok(file),
                     Err(error) if error.kind() == ErrorKind::AlreadyExists => {}
@@ -132,6 +139,7 @@ impl Unsaved {
         let stem = name.strip_suffix(".json").unwrap_or(&name);
         let is_plain = |c: char| c.is_alphanumeric() || "-_. ".contains(c);
         let stem: String = stem.chars().map(|c| if is_plain(c) { c } else { '_' }).collect();
+        let stem = stem.get(..stem.floor_char_boundary(LONGEST_STEM)).unwrap_or_default();
         match number {
             1 => format!("{stem}.unsaved.json"),
             _ => format!("{stem}.unsaved.{number}.json"),
@@ -240,5 +248,22 @@ mod tests {
             let kept = unsaved(name, None).keep_in([folder.path().to_owned()].into_iter());
             assert_eq!(kept.unwrap(), folder.path().join(file));
         }
+    }
+
+    /// Edits once were written into a file with two names, and through a link to nothing.
+    #[cfg(unix)]
+    #[test]
+    fn no_name_of_a_file_and_no_link_is_written_over() {
+        let folder = tempfile::tempdir().unwrap();
+        let [first, backup, link, victim] =
+            ["cup.unsaved.json", "backup", "cup.unsaved.2.json", "victim"]
+                .map(|name| folder.path().join(name));
+        std::fs::write(&first, "of another run").unwrap();
+        std::fs::hard_link(&first, &backup).unwrap();
+        std::os::unix::fs::symlink(&victim, &link).unwrap();
+        let scene = unsaved("cup.json", Some(folder.path().join("cup.json")));
+        assert_eq!(scene.keep().unwrap(), folder.path().join("cup.unsaved.3.json"));
+        assert_eq!(std::fs::read_to_string(&backup).unwrap(), "of another run");
+        assert!(link.is_symlink() && !victim.exists());
     }
 }
