@@ -21,8 +21,8 @@ const LOOK: Duration = Duration::from_millis(50);
 /// then writes and reports what is done. A handler whose signal may come twice for one reason
 /// looks at [`unheeded`](Self::unheeded) instead, and sets `asked` alone.
 ///
-/// A thread that takes the same signals presses the [`stop_switch`](Self::stop_switch) of all servos of
-/// the program, so that forces are zero whatever the command does meanwhile.
+/// A thread that takes the same signals presses the [`stop_switch`](Self::stop_switch) of the servo of a
+/// live page, so that forces are zero whatever the command does meanwhile.
 #[derive(Clone, Debug)]
 pub struct Interrupt {
     asked: Arc<AtomicBool>,
@@ -52,7 +52,7 @@ impl Interrupt {
         Arc::clone(&self.asked)
     }
 
-    /// The emergency stop of the servos of a page.
+    /// The emergency stop of the servo of a live page.
     #[must_use]
     pub fn stop_switch(&self) -> StopSwitch {
         self.stop.clone()

@@ -128,7 +128,7 @@ pub struct Following<const D: usize> {
     /// `true` if the proxy slips; `false` if it sticks, or if there is no friction.
     pub is_slipping: bool,
     /// `true` if the force must rise gently, because the proxy was placed anew: a body covered
-    /// the proxy (in the first tick or after bodies were replaced) or moved onto it.
+    /// the proxy in the first tick, or deeper than an edit may carry it, or moved onto it.
     pub placed: bool,
     /// What became of a proxy that an edit covered since the tick before; `None` if none did.
     pub edited: Option<Edited>,

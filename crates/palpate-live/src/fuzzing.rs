@@ -19,8 +19,8 @@ const PLANE: &str = include_str!("../../../scenes/memoir_star.json");
 const SPACE: &str = include_str!("../../../scenes/s3.json");
 
 /// Reads a message, the head of a request, or a trace, and answers what can be answered of a scene in
-/// the plane and of one in space; each answer is whole JSON, and a message that can be read has a kind
-/// and the same number before.
+/// the plane and of one in space; each answer is whole JSON, and the envelope of a message that
+/// can be read has the same number.
 ///
 /// # Panics
 ///

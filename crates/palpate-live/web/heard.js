@@ -10,7 +10,7 @@
 
 import { changed, state } from './state.js';
 
-/** The longest time without a sign of life [ms]: frames come at least every 250 ms. A longer one
+/** The longest time without a sign of life [ms]: the beat goes on about every 100 ms. A longer one
  * shows old numbers as new ones. */
 const LONGEST = 500;
 /** The same while the page is hidden and gets one frame a second [ms]. */

@@ -70,8 +70,8 @@ impl<const D: usize> Proxy<D> {
     /// shortest.
     ///
     /// Friction holds on as it did. Layers stay punctured in a body of the same index with as many
-    /// layers. A body that [moves](crate::Bodies::set_pose) before the next tick does neither: it does
-    /// what a motion does.
+    /// layers. If a body also [moves](crate::Bodies::set_pose) before the next tick, the motion alone
+    /// counts.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic; evaluates the fields at most
     /// [`Probe::budget`](super::Probe::budget) times.

@@ -39,8 +39,8 @@ impl<const D: usize> Tool<D> {
     /// tool's points, or the longest way of a point without a radius.
     ///
     /// Each iteration moves the tool to the pose nearest to `start` that is above the tangent planes
-    /// of all points in reach. A body that pushed the tool before keeps its side: where a point is
-    /// past the middle of a thin one, it goes back against the old pushes.
+    /// of all points in reach. A thin body keeps the tool on the side where it was:
+    /// a point beyond the body's middle goes back along the normals of the last pushes.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic; at most the evaluations that
     /// the budget has left.

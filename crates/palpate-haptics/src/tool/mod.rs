@@ -271,7 +271,7 @@ impl<const D: usize> Tool<D> {
     /// Forgets the bodies, which are replaced before the next tick.
     ///
     /// If the new bodies cover the tool by at most the least radius of its points, or by 5 mm where
-    /// that is zero, they carry it out the shortest way in the metric of the coupling, and the touch
+    /// that is less than a skin, they carry it out the shortest way in the metric of the coupling, and the touch
     /// goes on. If they cover it by more, its force rises from zero over
     /// [`ToolOptions::rise_time`]; if they push harder without covering it, from the old force.
     ///

@@ -50,7 +50,7 @@ pub(super) fn refused(status: StatusCode, path: &str) -> Answer {
             "The host of the request is not one at which this server listens.\n"
         }
         StatusCode::NOT_FOUND => "There is nothing at this path.\n",
-        StatusCode::METHOD_NOT_ALLOWED => "This path is not asked for by this method.\n",
+        StatusCode::METHOD_NOT_ALLOWED => "This path does not allow this method.\n",
         StatusCode::REQUEST_TIMEOUT => "The request came too slowly.\n",
         StatusCode::LENGTH_REQUIRED => "The request does not say how long the trace is.\n",
         StatusCode::PAYLOAD_TOO_LARGE => "The trace is too large: it has at most 64 MiB.\n",
@@ -96,7 +96,7 @@ pub(super) struct Asked {
     pub(super) what: What,
     /// Whether only the head of the answer is wanted.
     pub(super) is_head: bool,
-    /// The place of a trace, which it holds until it has come or gone.
+    /// The permit of a trace, held until its transfer ends.
     pub(super) place: Option<OwnedSemaphorePermit>,
 }
 

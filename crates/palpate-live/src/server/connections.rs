@@ -13,7 +13,7 @@ use socket2::SockRef;
 use tokio::net::TcpStream;
 use tokio::time::timeout;
 
-use super::limits::{MOST_STRANGERS, PART, PATIENCE, TURN};
+use super::limits::{CHUNK, MOST_STRANGERS, PATIENCE, TURN};
 
 /// A connection of a client, which carries one request, or the socket of a page.
 #[derive(Debug)]
@@ -25,7 +25,7 @@ pub(super) struct Connection {
 
 impl Connection {
     pub(super) fn new(stream: TcpStream) -> Arc<Self> {
-        // A frame goes out at once. Without this it only waits.
+        // A frame goes out at once. A failure only delays frames.
         let _ = stream.set_nodelay(true);
         Arc::new(Self { stream, is_known: AtomicBool::new(false) })
     }
@@ -53,9 +53,9 @@ impl Connection {
         Ok(read)
     }
 
-    /// Writes all of `bytes`, part by part; a client that takes no part in time is given up.
+    /// Writes all of `bytes`, chunk by chunk. It fails if the client leaves a chunk unread for too long.
     pub(super) async fn write(&self, bytes: &[u8]) -> Result<()> {
-        for part in bytes.chunks(PART) {
+        for part in bytes.chunks(CHUNK) {
             let written = timeout(PATIENCE, self.write_part(part)).await;
             written.map_err(|_| std::io::Error::from(ErrorKind::TimedOut))??;
         }

@@ -16,7 +16,7 @@ pub(super) const MOST_STRANGERS: usize = 96;
 pub(super) const MOST_KNOWN: usize = 32;
 
 /// How long the server waits where the operating system gives it no more sockets.
-pub(super) const RECOVERY: Duration = Duration::from_millis(1);
+pub(super) const ACCEPT_RETRY: Duration = Duration::from_millis(1);
 
 /// The bytes that are read of a connection in a turn: at most so many frames of a socket come at once.
 pub(super) const TURN: usize = 4 << 10;
@@ -44,9 +44,10 @@ pub(super) const TRACE_PATIENCE: Duration = Duration::from_secs(60);
 pub(super) const LARGEST_MESSAGE: usize = 1 << 20;
 
 /// The bytes that are written to a connection at a time.
-pub(super) const PART: usize = 1 << 16;
+pub(super) const CHUNK: usize = 1 << 16;
 
-/// How long a client may take no part, send no request, or go on sending what is not read.
+/// How long a client may leave what is written unread, send no request, or go on sending what counts
+/// for nothing.
 pub(super) const PATIENCE: Duration = Duration::from_secs(5);
 
 /// Messages of a page a second, and how many may come at once.

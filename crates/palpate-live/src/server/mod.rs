@@ -123,7 +123,7 @@ impl Thread {
             runtime.block_on(async {
                 tokio::select! {
                     () = work => {}
-                    // It is dropped.
+                    // `end` is dropped.
                     _ = ended => {}
                 }
             });

@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! The thread that accepts and reads all connections, and does nothing else: it answers nothing, reads
-//! no JSON, and waits for no other thread. So a stop that was sent is read at once, whatever the rest
-//! of the program does.
+//! The thread that accepts and reads all connections. It makes no answers and reads no JSON. It waits
+//! for no other thread, but for a short lock on the list of pages; a stop takes no lock. So a stop that
+//! was sent acts at once, whatever the rest of the program does.
 //!
 //! A turn reads at most [`TURN`](super::limits::TURN) bytes of a connection; then the others have
 //! theirs.
@@ -28,7 +28,7 @@ use super::answers::{Answer, Asked, What, refused, words};
 use super::connections::{Connection, Strangers};
 use super::guard::Guard;
 use super::limits::{
-    ACCEPTED, Budget, LARGEST_MESSAGE, LONGEST_HEAD, MOST_PAGES, PATIENCE, RECOVERY,
+    ACCEPT_RETRY, ACCEPTED, Budget, LARGEST_MESSAGE, LONGEST_HEAD, MOST_PAGES, PATIENCE,
     TRACE_PATIENCE, TURN,
 };
 use super::request::{Head, Route, is_whole, read, takes_gzip, waits_for_leave};
@@ -66,9 +66,9 @@ pub(super) async fn listen(listener: TcpListener, reader: Reader) -> Infallible 
     let mut accepted = 0_usize;
     loop {
         let Ok((stream, _)) = listener.accept().await else {
-            // No file descriptors are left: the oldest stranger is closed.
+            // Probably no file descriptors are left: the oldest stranger is closed.
             strangers.close_oldest();
-            sleep(RECOVERY).await;
+            sleep(ACCEPT_RETRY).await;
             continue;
         };
         let connection = Connection::new(stream);
@@ -77,7 +77,7 @@ pub(super) async fn listen(listener: TcpListener, reader: Reader) -> Infallible 
         tokio::spawn(async move { reader.attend(connection).await });
         accepted += 1;
         if accepted.is_multiple_of(ACCEPTED) {
-            // Those that came first are read.
+            // Connections that were accepted before have their turn.
             yield_now().await;
         }
     }
@@ -336,11 +336,11 @@ impl<'a> Talk<'a> {
         }
     }
 
-    /// Takes the messages that have come; whether more can.
+    /// Takes the messages that have come. `true` if more may come.
     fn hear(&mut self) -> bool {
         while !self.has_ended {
             match self.protocol.read(&mut self.feed) {
-                // What is no text is refused as what is no JSON.
+                // A binary message is refused as text that is no JSON.
                 Ok(Message::Binary(_)) => self.take(Utf8Bytes::from_static("")),
                 Ok(Message::Text(text)) => self.take(text),
                 // The protocol answers them, and tells the end at the next read.

@@ -11,7 +11,7 @@ use super::Pulse;
 /// Between two beats: several come before a page says that it hears nothing.
 const BEAT: Duration = Duration::from_millis(100);
 
-/// How long the thread that reads sockets, or a servo, may do nothing.
+/// How long the thread that reads sockets, or a servo, may stand still.
 const SILENCE: Duration = Duration::from_millis(300);
 
 /// The ticks that a servo may be late before it counts as frozen.

@@ -29,7 +29,7 @@ impl Waiting {
 
 /// A message of a page.
 ///
-/// It waits as its text, which is a part of what it would take in memory once it is read.
+/// It waits as its text, which takes less memory than the message that is read.
 #[derive(Debug)]
 pub(crate) struct Received {
     pub(super) page: PageId,

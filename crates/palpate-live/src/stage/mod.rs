@@ -229,7 +229,7 @@ impl Stage {
     pub(crate) fn unsaved(&self, patience: Duration) -> Option<Unsaved> {
         let (done, made) = sync_channel(1);
         if self.edits.try_send(Edit::Settle(done)).is_ok() {
-            // An editor that takes longer has its last scene kept.
+            // If that takes longer, the last finished scene is kept.
             let _ = made.recv_timeout(patience);
         }
         self.latest.unsaved()

@@ -89,7 +89,7 @@ struct Page {
 }
 
 impl Page {
-    /// Lets a message wait; whether there is room for it.
+    /// Lets a message wait. `false` if there is no room for it.
     fn send(&self, message: Out) -> bool {
         let length = message.length();
         let before = self.bytes.fetch_add(length, Ordering::Relaxed);
@@ -185,7 +185,7 @@ impl Pages {
         self.open().ever
     }
 
-    /// The open pages that came after so many others.
+    /// The open pages that came after the first `ever`.
     pub(crate) fn since(&self, ever: u64) -> Vec<PageId> {
         self.open().pages.range(PageId(ever)..).map(|(page, _)| *page).collect()
     }

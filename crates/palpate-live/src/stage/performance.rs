@@ -60,7 +60,7 @@ pub(crate) enum Order {
         id: Option<u32>,
         number: Option<u64>,
     },
-    /// Tells a page that came of the stop that holds.
+    /// Tells a new page of the stop that holds.
     TellStop(PageId),
     Tour(bool),
     /// The tour of the scene of a revision.
@@ -132,7 +132,7 @@ pub(super) struct Performance {
     terms: Terms,
     stops: Stops,
     pages: Arc<Pages>,
-    /// The pages that were open when they were told their number last.
+    /// The number of open pages that the pages were told last.
     clients: usize,
     frames: watch::Sender<Bytes>,
     heartbeat: Heartbeat,
@@ -426,7 +426,7 @@ impl Performance {
     /// Sends a frame to all pages.
     fn send(&mut self, mut frame: Frame) {
         frame.beat = self.heartbeat.beat(Instant::now());
-        // Nobody may look.
+        // There may be no receiver.
         let _ = self.frames.send(frame.bytes());
         self.frame = Some(frame);
     }

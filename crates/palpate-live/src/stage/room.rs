@@ -132,10 +132,9 @@ impl<const D: usize> Room<D> {
         let (device, steering) =
             device(&lead, &map, terms).map_err(|error| error.to_string())?;
         // A hand that goes into a body while forces are zero would be thrown out by them. A body that
-        // moves onto a hand has to push it out.
-        let recovery =
-            if scene.motions.is_empty() { Recovery::OnceOut } else { Recovery::Rise };
-        let settings = ServoSettings::default().with_rate(terms.rate).with_recovery(recovery);
+        // moves onto a hand pushes it out at once all the same.
+        let settings =
+            ServoSettings::default().with_rate(terms.rate).with_recovery(Recovery::OnceOut);
         let servo = scene.servo_with(&device, settings).map_err(said)?;
         let (clock, speed) = ScaledClock::new(&Priority::Normal);
         let clock = clock.heeding(stop.clone());

@@ -19,7 +19,7 @@ use crate::wire::{Ask, Question, Told, Unreadable};
 /// How long the page that pressed waits before it may release: a second tap is no release.
 const OWN_WAIT: Duration = Duration::from_secs(1);
 
-/// How long another page waits: a person reads who stopped, and why, before.
+/// How long another page waits: a person first reads who stopped.
 const OTHERS_WAIT: Duration = Duration::from_secs(2);
 
 /// The emergency stop, for the threads that press it.
@@ -62,7 +62,7 @@ pub(super) struct Stops {
     switch: StopSwitch,
     presses: Receiver<Press>,
     last: Option<Last>,
-    /// The pages that were open when they were told last.
+    /// How many pages had ever been open when they were told last.
     told: u64,
 }
 
@@ -197,11 +197,9 @@ impl Stops {
         }
         let left = last.wait(page).saturating_sub(now - last.at);
         if !left.is_zero() {
-            let who = if last.page == Some(page) { "this page" } else { "another page" };
-            let (wait, left) = (last.wait(page).as_secs_f64(), left.as_secs_f64());
-            return Err(format!(
-                "STOP was pressed by {who}: it is released {wait} s after that at the earliest, in {left:.1} s"
-            ));
+            let who = if last.page == Some(page) { "on this page" } else { "elsewhere" };
+            let left = left.as_secs_f64();
+            return Err(format!("STOP was pressed {who}: it can be released in {left:.1} s"));
         }
         let number = last.number;
         if !self.switch.release_of(number) {
@@ -319,7 +317,7 @@ mod tests {
     }
 
     #[test]
-    fn a_page_that_is_gone_pressed_as_another_one() {
+    fn a_stop_of_a_closed_page_makes_all_pages_wait_two_seconds() {
         let mut scene = Scene::new();
         let (own, _told) = scene.pages.add(2).unwrap().parts();
         let (other, mut told) = scene.pages.add(2).unwrap().parts();

@@ -11,8 +11,8 @@ use serde_json::Value;
 /// The longest stop that the reading thread takes by itself [bytes].
 const LONGEST_STOP: usize = 256;
 
-/// Whether a message is a short `stop`, without reading it as JSON: it is short, and has the key `do`
-/// with the value `stop`. In JSON, no string holds these bytes, since its quotes would be escaped.
+/// Whether a short message holds the key `do` with the value `stop`, at any depth. It is not read as
+/// JSON: no string of JSON holds these bytes, since its quotes would be escaped.
 pub(crate) fn is_stop(text: &str) -> bool {
     text.len() <= LONGEST_STOP
         && text.match_indices("\"do\"").any(|(place, key)| {
@@ -22,8 +22,7 @@ pub(crate) fn is_stop(text: &str) -> bool {
         })
 }
 
-/// What a message asks for and its number, without the rest: this is read fast, however long the
-/// message is.
+/// What a message asks for and its number. The rest is skipped without building values.
 #[derive(Debug)]
 pub(crate) struct Envelope {
     pub(crate) id: Option<u32>,

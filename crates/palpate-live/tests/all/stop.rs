@@ -182,7 +182,7 @@ fn another_page_lifts_no_stop_at_once() {
     for (number, said) in [
         (Value::Null, "STOP was pressed again meanwhile"),
         (json!(1), "STOP was pressed again meanwhile"),
-        (json!(2), "STOP was pressed by another page"),
+        (json!(2), "STOP was pressed elsewhere"),
     ] {
         let refused = release(&mut other, number);
         assert!(refused["message"].as_str().unwrap().starts_with(said), "{refused}");

@@ -35,7 +35,7 @@ export function takeEvents(events) {
 
 /** Kinds whose names say too little. @type {Record<string, string>} */
 const KINDS = {
-  carried: 'an edit moved the body over the hand, which still touches it',
+  carried: 'an edit covered the hand, which was moved out to the surface',
   placed: 'an edit covered the hand; the force rises from zero',
 };
 

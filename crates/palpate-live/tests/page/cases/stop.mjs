@@ -184,6 +184,6 @@ export default [
     await says(page, '#toasts', /An edit has covered the hand with ball: the force rises from zero\./);
     await page.getByRole('button', { name: 'Events' }).click();
     await says(page, '.events', /an edit covered the hand; the force rises from zero · ball/);
-    await says(page, '.events', /an edit moved the body over the hand, which still touches it · ball · by 3.2 mm/);
+    await says(page, '.events', /an edit covered the hand, which was moved out to the surface · ball · by 3.2 mm/);
   })],
 ];
