@@ -46,7 +46,7 @@ pub struct Control<const D: usize> {
 
 impl<const D: usize> Control<D> {
     /// Replaces all bodies from the next tick on. Poses that were set before belong to the old
-    /// bodies and are dropped. What a hand feels that touches them:
+    /// bodies and are dropped. For what a hand feels that touches them see
     /// [`Servo::replace_bodies`](crate::Servo::replace_bodies).
     ///
     /// For a [`Servo`](crate::Servo), the bodies and the tool's coupling are scaled to what its

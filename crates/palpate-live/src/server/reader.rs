@@ -220,8 +220,8 @@ impl Reader {
         self.hear_last(connection, &mut talk).await;
     }
 
-    /// Reads the messages of a page that is closed, of which a stop counts, as long as there is a place
-    /// for its connection.
+    /// Reads the messages of a closed page, as long as there is a place for its connection. Stops alone
+    /// count.
     async fn hear_last(&self, connection: &Arc<Connection>, talk: &mut Talk<'_>) {
         talk.is_closed = true;
         match Arc::clone(&self.known).try_acquire_owned() {
@@ -277,7 +277,7 @@ async fn whole_head(
     }
 }
 
-/// Reads a body, of which `bytes` came with its head; `None` if the connection ended.
+/// Reads a body. `bytes` came with its head. `None` if the connection ended.
 async fn body(connection: &Connection, mut bytes: Vec<u8>, length: usize) -> Option<Vec<u8>> {
     while bytes.len() < length {
         if !matches!(connection.read(&mut bytes).await, Ok(1..)) {

@@ -16,7 +16,7 @@ const MOST_HEADERS: usize = 64;
 /// A request without its body.
 pub(super) type Head = Request<()>;
 
-/// Whether bytes hold a whole head, of which `read` were looked at before.
+/// Whether bytes hold a whole head. The first `read` bytes were looked at before.
 pub(super) fn is_whole(bytes: &[u8], read: usize) -> bool {
     let new = bytes.get(read.saturating_sub(3)..).unwrap_or_default();
     new.windows(4).any(|end| end == b"\r\n\r\n") || new.windows(2).any(|end| end == b"\n\n")

@@ -197,7 +197,7 @@ impl Stage {
         })
     }
 
-    /// Takes a message of a page, of which `waiting` counts what waits. A stop acts at once.
+    /// Takes a message of a page. `waiting` counts the bytes of the page that wait. A stop acts at once.
     ///
     /// Waits for no other thread.
     pub(crate) fn take(&self, page: PageId, text: Utf8Bytes, waiting: &Waiting) {

@@ -325,7 +325,7 @@ mod tests {
         scene.pages.remove(own);
         scene.count();
         assert!(scene.release(other, 1, 1.5).is_err());
-        // It is told who presses, that it is gone, and, when it comes later, what holds.
+        // The other page is told of the press, and that its page has gone; a late page, of what holds.
         let (late, mut seen) = scene.pages.add(2).unwrap().parts();
         scene.count();
         let count = |told: &mut tokio::sync::mpsc::Receiver<Out>| {

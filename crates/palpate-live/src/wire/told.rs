@@ -13,9 +13,9 @@ pub(crate) enum Told {
     Stopped {
         /// The number of the last stop, which a release repeats.
         number: u64,
-        /// Whether the page that is told pressed it.
+        /// Whether this page pressed it.
         mine: bool,
-        /// The time until the page that is told may release it [s].
+        /// The time until this page may release it [s].
         release_after: f64,
     },
     /// A stop was released.
