@@ -136,7 +136,10 @@ export default [
       const { material } = await state(page, 'scene.scene.bodies.0');
       return typeof material === 'object' && material;
     });
-    for (const [key, value] of Object.entries(rubber)) check(own[key] === value, `${key} is ${own[key]}, of rubber ${value}`);
+    for (const [key, value] of Object.entries(rubber)) {
+      const [found, wanted] = [own[key], value].map((one) => JSON.stringify(one));
+      check(found === wanted, `${key} is ${found}, of rubber ${wanted}`);
+    }
   })],
 
   ['a notice covers no card, at any size', () => serving([written(BALL)], async ({ url, kill }) => {
