@@ -244,8 +244,8 @@ impl Stage {
         let (scene, _) =
             self.shown.get().ok_or("there is no scene yet: open the page first")?;
         let replay = match &*scene {
-            AnyScene::Planar(_) => AnyReplay::Planar(trace::read(bytes)?),
-            AnyScene::Spatial(_) => AnyReplay::Spatial(trace::read(bytes)?),
+            AnyScene::Planar(_) => AnyReplay::Planar(Arc::new(trace::read(bytes)?)),
+            AnyScene::Spatial(_) => AnyReplay::Spatial(Arc::new(trace::read(bytes)?)),
         };
         let sent = self.orders.try_send(Order::TakeReplay(replay));
         sent.map_err(|_| "the program is busy: send the trace again".to_owned())

@@ -297,7 +297,7 @@ mod tests {
     #[test]
     fn so_many_bytes_wait_for_a_page_and_no_more() {
         let pages = Pages::default();
-        let Opened { page, .. } = pages.add(1).unwrap();
+        let Opened { page, outbox: _outbox, .. } = pages.add(1).unwrap();
         let bytes = |length: usize| Out::Binary(vec![0; length].into());
         // One message is always taken, however long it is.
         pages.send(page, bytes(MOST_BYTES + 1));

@@ -37,9 +37,6 @@ const NO_SERVO: &str = "no servo runs: the next edit of the scene begins one";
 const SAFETY_FRAMES: u32 = 15;
 const AGAIN_FRAMES: u32 = 120;
 
-/// How long a replay goes on at least before another begins: it may be read from 64 MiB.
-const AGAIN: Duration = Duration::from_millis(250);
-
 /// The most events that are told at once.
 const MOST_EVENTS: usize = 100;
 
@@ -143,8 +140,6 @@ pub(super) struct Performance {
     revision: u32,
     /// The revision with which the servo began.
     began: u32,
-    /// When a replay began last.
-    replayed: Option<Instant>,
     recording: Recording,
     /// Ticks that a clock that is held still has to go.
     ticks: u64,
@@ -174,7 +169,6 @@ impl Performance {
             room: None,
             revision: 0,
             began: 0,
-            replayed: None,
             recording: Recording::default(),
             ticks: 0,
             safety: (StageTicks::default(), 0),
@@ -281,12 +275,7 @@ impl Performance {
         if !is_on {
             return of_either!(AnyRoom, room, room => room.replay(None));
         }
-        let now = Instant::now();
-        if self.replayed.is_some_and(|at| now - at < AGAIN) {
-            return Err("a replay began just now".to_owned());
-        }
         self.recording.replay(room)?;
-        self.replayed = Some(now);
         self.leader = None;
         Ok(())
     }

@@ -3,6 +3,8 @@
 
 //! What is recorded of a servo, and replayed.
 
+use std::sync::Arc;
+
 use palpate::servo_loop::TraceRow;
 use serde_json::{Value, json};
 
@@ -18,8 +20,8 @@ const FRAMES: u32 = 15;
 /// What is replayed, of either dimension.
 #[derive(Debug)]
 pub(crate) enum AnyReplay {
-    Planar(Replay<2>),
-    Spatial(Replay<3>),
+    Planar(Arc<Replay<2>>),
+    Spatial(Arc<Replay<3>>),
 }
 
 /// Rows as text, made where there is time for it.
@@ -39,6 +41,8 @@ pub(super) struct Recording {
     is_on: bool,
     /// What was read, to be replayed instead of the rows.
     read: Option<AnyReplay>,
+    /// The rows as they are replayed, once they were.
+    made: Option<AnyReplay>,
     /// What the pages were told last: whether it is on, the rows; and how many frames ago.
     told: (bool, usize, u32),
 }
@@ -49,6 +53,7 @@ impl Default for Recording {
             rows: AnyRows::Planar(Vec::new()),
             is_on: false,
             read: None,
+            made: None,
             told: (false, 0, 0),
         }
     }
@@ -62,6 +67,7 @@ impl Recording {
     /// Starts or ends the recording. Both discard what was read from a file before.
     pub(super) fn switch(&mut self, is_on: bool, room: &AnyRoom) {
         if is_on && !self.is_on {
+            self.made = None;
             self.rows = match room {
                 AnyRoom::Planar(_) => AnyRows::Planar(Vec::new()),
                 AnyRoom::Spatial(_) => AnyRows::Spatial(Vec::new()),
@@ -85,20 +91,23 @@ impl Recording {
 
     /// Leads the hand of a room along what was taken or recorded last; a recording ends.
     pub(super) fn replay(&mut self, room: &mut AnyRoom) -> Result<(), String> {
-        match (room, &self.read, &self.rows) {
-            (AnyRoom::Planar(room), Some(AnyReplay::Planar(read)), _) => {
-                room.replay(Some(read.clone()))
+        if self.read.is_none() && self.len() == 0 {
+            return Err(trace::NOTHING.to_owned());
+        }
+        // Rows that are still recorded are made anew.
+        if self.is_on || self.read.is_none() && self.made.is_none() {
+            self.made = Some(match &self.rows {
+                AnyRows::Planar(rows) => AnyReplay::Planar(Arc::new(trace::replay(rows)?)),
+                AnyRows::Spatial(rows) => AnyReplay::Spatial(Arc::new(trace::replay(rows)?)),
+            });
+        }
+        match (room, self.read.as_ref().or(self.made.as_ref())) {
+            (AnyRoom::Planar(room), Some(AnyReplay::Planar(replay))) => {
+                room.replay(Some(Arc::clone(replay)))
             }
-            (AnyRoom::Spatial(room), Some(AnyReplay::Spatial(read)), _) => {
-                room.replay(Some(read.clone()))
+            (AnyRoom::Spatial(room), Some(AnyReplay::Spatial(replay))) => {
+                room.replay(Some(Arc::clone(replay)))
             }
-            (AnyRoom::Planar(room), None, AnyRows::Planar(rows)) => {
-                room.replay(Some(trace::replay(rows)?))
-            }
-            (AnyRoom::Spatial(room), None, AnyRows::Spatial(rows)) => {
-                room.replay(Some(trace::replay(rows)?))
-            }
-            (_, None, _) if self.len() == 0 => Err(trace::NOTHING.to_owned()),
             _ => Err("the trace is of a scene of another dimension".to_owned()),
         }?;
         self.is_on = false;

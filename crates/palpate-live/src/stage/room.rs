@@ -245,7 +245,7 @@ impl<const D: usize> Room<D> {
     }
 
     /// Starts to lead the hand along a path of each contact point, or ends it.
-    pub(super) fn replay(&mut self, replay: Option<Replay<D>>) -> Result<(), String> {
+    pub(super) fn replay(&mut self, replay: Option<Arc<Replay<D>>>) -> Result<(), String> {
         self.lead.replay(replay)
     }
 

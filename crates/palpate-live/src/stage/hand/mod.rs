@@ -68,7 +68,7 @@ pub(super) struct Lead<const D: usize> {
     /// The time on the tour [s]; `None` if the hand is not on it yet.
     tour_time: Option<f64>,
     /// What is replayed, and the time on it [s], `None` before it begins.
-    replay: Option<(Replay<D>, Option<f64>)>,
+    replay: Option<(Arc<Replay<D>>, Option<f64>)>,
     /// The hand is brought to another place.
     lift: Option<Lift<D>>,
     /// Where a hand is led once it is set down [m].
@@ -159,7 +159,7 @@ impl<const D: usize> Lead<D> {
     }
 
     /// Starts to follow what was recorded or read, or ends it.
-    pub(super) fn replay(&mut self, replay: Option<Replay<D>>) -> Result<(), String> {
+    pub(super) fn replay(&mut self, replay: Option<Arc<Replay<D>>>) -> Result<(), String> {
         if let Some(replay) = &replay
             && replay.paths.len() != self.arms.len()
         {
