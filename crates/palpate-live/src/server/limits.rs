@@ -8,9 +8,9 @@ use std::time::{Duration, Instant};
 /// The most pages at once.
 pub(super) const MOST_PAGES: usize = 64;
 
-/// The most connections at once that have not named the token. With pages and the known ones they
-/// need fewer than 256 file descriptors, which is what some systems allow.
-pub(super) const MOST_STRANGERS: usize = 96;
+/// The most connections at once that have not named the token. A connection is closed for room only
+/// after so many later ones: with fewer, a flood would close it before its request comes.
+pub(super) const MOST_STRANGERS: usize = 256;
 
 /// The most connections at once that have named it, beside pages.
 pub(super) const MOST_KNOWN: usize = 32;
@@ -25,7 +25,7 @@ pub(super) const TURN: usize = 4 << 10;
 pub(super) const BACKLOG: i32 = 4096;
 
 /// The connections that are accepted in a turn.
-pub(super) const ACCEPTED: usize = 64;
+pub(super) const ACCEPTED: usize = 16;
 
 /// The longest head of a request [bytes].
 pub(super) const LONGEST_HEAD: usize = 16 << 10;

@@ -66,8 +66,8 @@ pub(super) async fn listen(listener: TcpListener, reader: Reader) -> Infallible 
     let mut accepted = 0_usize;
     loop {
         let Ok((stream, _)) = listener.accept().await else {
-            // Probably no file descriptors are left: the oldest stranger is closed.
-            strangers.close_oldest();
+            // Probably no file descriptors are left: the oldest strangers are closed.
+            (0..ACCEPTED).for_each(|_| strangers.close_oldest());
             sleep(ACCEPT_RETRY).await;
             continue;
         };
