@@ -152,7 +152,7 @@ def test_the_last_events_outlive_the_thread() -> None:
     with pp.Servo(SCENE, hand=[0, 0.049, 0], duration=0.05) as servo:
         servo.wait()
         servo.end()
-        assert [event.kind for event in servo.events()][0] == "touch"
+        assert "touch" in [event.kind for event in servo.events()]
         assert servo.take_events() == []
     with pytest.raises(RuntimeError, match="the servo has ended"):
         servo.stop()

@@ -252,7 +252,8 @@ impl<const D: usize> Proxy<D> {
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     pub fn forget_bodies(&mut self) {
-        (self.is_stale, self.is_edited, self.carried_out) = (true, true, None);
+        // Where the proxy has no place yet, an edit changes none.
+        (self.is_stale, self.is_edited, self.carried_out) = (true, !self.begins, None);
         self.punctured = Punctured::default();
         self.shared_friction = None;
     }
