@@ -325,7 +325,7 @@ mod tests {
         scene.pages.remove(own);
         scene.count();
         assert!(scene.release(other, 1, 1.5).is_err());
-        // The other page is told of the press, and that its page has gone; a late page, of what holds.
+        // The other page hears of the press, then that the pressing page has gone. A late page hears of the stop that holds.
         let (late, mut seen) = scene.pages.add(2).unwrap().parts();
         scene.count();
         let count = |told: &mut tokio::sync::mpsc::Receiver<Out>| {

@@ -191,7 +191,7 @@ fn another_page_lifts_no_stop_at_once() {
     let released = other.text(|message| message["do"] == "released");
     assert_eq!(released["number"], 2);
     assert!(!live.stop_switch().is_stopped());
-    // A page that comes later is told of the stop that holds.
+    // A page that opens later hears of the stop that still holds.
     assert!(post_stop(&live, "").starts_with("HTTP/1.1 204"));
     let told = Page::silent(&live).text(|message| message["do"] == "stopped");
     assert_eq!((&told["number"], &told["mine"]), (&json!(3), &json!(false)));
