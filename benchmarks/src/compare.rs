@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! A suite of this program beside that of another revision, in turns on the same machine.
+//! Suites of this program beside those of another revision, in turns on the same machine.
 //!
 //! The revision is built in a work tree of its own under `target/`. In each round both programs
 //! run the suite. A key got slower if two ratios of this program to the other say so: the median
@@ -10,13 +10,14 @@
 //! where both revisions print them: they do not depend on how busy the machine is. The reference
 //! itself is a row, so that it cannot get slower unseen.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::error::Error;
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode, Stdio};
 
 use clap::{Args, ValueEnum};
 
+use crate::Instructions;
 use crate::fields::Rows;
 use crate::reference;
 use crate::rounds::median;
@@ -26,14 +27,19 @@ use crate::rounds::median;
 pub(crate) struct Comparison {
     /// The revision to compare with, as git names it.
     revision: String,
-    /// The suite.
-    suite: SuiteName,
-    /// Keys, or how they begin; all times if left out, but for the largest and those of peers.
+    /// The suites, one after the other.
+    #[arg(required = true)]
+    suites: Vec<SuiteName>,
+    /// A key, or how keys begin; all times if left out, but for the largest and those of peers.
+    #[arg(long = "key", value_name = "KEY")]
     keys: Vec<String>,
     /// The largest ratio that is not slower.
     #[arg(long, default_value_t = 1.05)]
     at_most: f64,
-    /// How often both programs run.
+    /// Another largest ratio for the keys that begin with a prefix. The longest prefix counts.
+    #[arg(long, value_name = "PREFIX=RATIO")]
+    allow: Vec<Exception>,
+    /// How often both programs run each suite.
     #[arg(long, default_value_t = 5, value_parser = clap::value_parser!(u32).range(1..))]
     rounds: u32,
     /// One part of the suite `collide` alone.
@@ -46,6 +52,37 @@ enum SuiteName {
     Fields,
     Collide,
     Haptics,
+}
+
+impl SuiteName {
+    fn name(self) -> &'static str {
+        match self {
+            Self::Fields => "fields",
+            Self::Collide => "collide",
+            Self::Haptics => "haptics",
+        }
+    }
+}
+
+/// The largest ratio of the keys that begin with a prefix.
+#[derive(Clone, Debug, PartialEq)]
+struct Exception {
+    prefix: String,
+    at_most: f64,
+}
+
+impl std::str::FromStr for Exception {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let wrong = || format!("`{text}` is not PREFIX=RATIO, as in S3.distance=1.1");
+        let (prefix, ratio) = text.rsplit_once('=').ok_or_else(wrong)?;
+        let at_most = ratio.parse().map_err(|_| wrong())?;
+        if prefix.is_empty() || !(at_most > 0.0 && f64::is_finite(at_most)) {
+            return Err(wrong());
+        }
+        Ok(Self { prefix: prefix.to_owned(), at_most })
+    }
 }
 
 /// A key and how this program stands to the other.
@@ -62,53 +99,77 @@ struct Compared {
 
 impl Comparison {
     /// Runs both programs in turns, and prints how they stand; fails if a key got slower.
-    pub(crate) fn run(&self) -> Result<ExitCode, Box<dyn Error>> {
-        if self.only.is_some() && self.suite != SuiteName::Collide {
+    pub(crate) fn run(
+        &self,
+        instructions: Option<Instructions>,
+    ) -> Result<ExitCode, Box<dyn Error>> {
+        if self.only.is_some() && self.suites != [SuiteName::Collide] {
             return Err("--only is for collide".into());
         }
         let other = build(&self.revision)?;
         let this = std::env::current_exe()?;
-        let mut rounds = Vec::new();
-        for round in 1..=self.rounds {
-            eprintln!("round {round} of {} …", self.rounds);
-            // The first of a round is not always the same.
-            rounds.push(if round % 2 == 0 {
-                let this = self.measure(&this)?;
-                (this, self.measure(&other)?)
-            } else {
-                let other = self.measure(&other)?;
-                (self.measure(&this)?, other)
-            });
+        let mut unused: BTreeSet<&str> =
+            self.allow.iter().map(|exception| exception.prefix.as_str()).collect();
+        let (mut slower, mut count) = (0, 0);
+        for suite in &self.suites {
+            let mut rounds = Vec::new();
+            for round in 1..=self.rounds {
+                eprintln!("{}: round {round} of {} …", suite.name(), self.rounds);
+                let measure = |program| self.measure(program, *suite, instructions);
+                // The first of a round is not always the same.
+                rounds.push(if round % 2 == 0 {
+                    let this = measure(&this)?;
+                    (this, measure(&other)?)
+                } else {
+                    let other = measure(&other)?;
+                    (measure(&this)?, other)
+                });
+            }
+            let compared = compare(&rounds, &self.keys);
+            count += compared.len();
+            println!(
+                "{:<60}  median  [least, largest]  of least",
+                format!("{}: ratios of all rounds", suite.name())
+            );
+            for row in &compared {
+                let exception = exception(&self.allow, &row.key);
+                if let Some(exception) = exception {
+                    unused.remove(exception.prefix.as_str());
+                }
+                let at_most = exception.map_or(self.at_most, |exception| exception.at_most);
+                slower += usize::from(row.print(at_most));
+            }
+            for key in missing(&rounds, &self.keys) {
+                println!("{key:<60} printed by {} alone", self.revision);
+            }
         }
-        let compared = compare(&rounds, &self.keys);
-        if compared.is_empty() {
+        if count == 0 {
             return Err("both revisions print none of these keys".into());
         }
-        println!("{:<60}  median  [least, largest]  of least", "ratios of all rounds");
-        let mut slower = 0;
-        for Compared { key, median, least, largest, of_least } in &compared {
-            let is_slower = median.min(*of_least) > self.at_most;
-            slower += usize::from(is_slower);
-            let verdict = if is_slower { "slower" } else { "" };
-            println!(
-                "{key:<60} {median:>7.3}  [{least:.3}, {largest:.3}]  {of_least:>7.3}  {verdict}"
-            );
+        for prefix in unused {
+            eprintln!("palpate-bench: no key begins with `{prefix}`, which --allow names");
         }
-        println!("{slower} of {} keys slower than {}", compared.len(), self.at_most);
+        println!("{slower} of {count} keys slower than {} or --allow", self.at_most);
         Ok(if slower > 0 { ExitCode::FAILURE } else { ExitCode::SUCCESS })
     }
 
     /// The rows that a program prints.
-    fn measure(&self, program: &Path) -> Result<Rows, Box<dyn Error>> {
+    fn measure(
+        &self,
+        program: &Path,
+        suite: SuiteName,
+        instructions: Option<Instructions>,
+    ) -> Result<Rows, Box<dyn Error>> {
         let mut command = Command::new(program);
-        command.stderr(Stdio::null());
-        match self.suite {
-            SuiteName::Fields => command.arg("fields"),
-            SuiteName::Collide => command.args(["collide", "--runs", "1"]),
-            SuiteName::Haptics => command.args(["haptics", "--runs", "1"]),
-        };
+        command.stderr(Stdio::null()).arg(suite.name());
+        if suite != SuiteName::Fields {
+            command.args(["--runs", "1"]);
+        }
         if let Some(part) = &self.only {
             command.args(["--only", part]);
+        }
+        if let Some(set) = instructions.and_then(|set| set.to_possible_value()) {
+            command.args(["--instructions", set.get_name()]);
         }
         let rows: BTreeMap<String, Option<f64>> =
             serde_json::from_str(&printed(command.arg("--json"))?)?;
@@ -117,20 +178,50 @@ impl Comparison {
     }
 }
 
+impl Compared {
+    /// Prints the row; `true` if it is slower.
+    fn print(&self, at_most: f64) -> bool {
+        let Self { key, median, least, largest, of_least } = self;
+        let is_slower = median.min(*of_least) > at_most;
+        let verdict = if is_slower { format!("slower than {at_most}") } else { String::new() };
+        println!(
+            "{key:<60} {median:>7.3}  [{least:.3}, {largest:.3}]  {of_least:>7.3}  {verdict}"
+        );
+        is_slower
+    }
+}
+
+/// The exception for a key: that of the longest prefix.
+fn exception<'e>(all: &'e [Exception], key: &str) -> Option<&'e Exception> {
+    let fitting = all.iter().filter(|exception| key.starts_with(&exception.prefix));
+    fitting.max_by_key(|exception| exception.prefix.len())
+}
+
+/// `true` if a key was asked for.
+fn is_asked(key: &str, asked: &[String]) -> bool {
+    match asked {
+        [] => is_ours(key),
+        _ => asked.iter().any(|asked| key.starts_with(asked.as_str())),
+    }
+}
+
+/// The keys that the second program of each round prints alone.
+fn missing(rounds: &[(Rows, Rows)], asked: &[String]) -> Vec<String> {
+    let Some((this, other)) = rounds.first() else { return Vec::new() };
+    let is_missing = |key: &&String| !this.contains_key(*key) && is_asked(key, asked);
+    other.keys().filter(is_missing).cloned().collect()
+}
+
 /// How the first program of each round stands to the second, for each key that both print.
 fn compare(rounds: &[(Rows, Rows)], asked: &[String]) -> Vec<Compared> {
     let Some((this, other)) = rounds.first() else { return Vec::new() };
     let both = |key: &str| this.contains_key(key) && other.contains_key(key);
-    let is_asked = |key: &&String| match asked {
-        [] => is_ours(key),
-        _ => asked.iter().any(|asked| key.starts_with(asked.as_str())),
-    };
     // Of a time that both divide by the reference, the ratio.
     let is_best = |key: &&String| match reference::over(key) {
         Some(over) => !both(&over),
         None => key.ends_with(reference::OVER),
     };
-    let keys = this.keys().filter(|key| both(key)).filter(is_asked).filter(is_best);
+    let keys = this.keys().filter(|key| both(key) && is_asked(key, asked)).filter(is_best);
     keys.map(|key| {
         let ratios =
             rounds.iter().filter_map(|(this, other)| Some(this.get(key)? / other.get(key)?));
@@ -253,5 +344,25 @@ mod tests {
         assert_eq!(keys(&[]), [reference::KEY, "tick.S3.p50_ns"]);
         assert_eq!(keys(&["tick"]), ["tick.S3.max_ns", "tick.S3.p50_ns"]);
         assert_eq!(keys(&["nothing"]), [""; 0]);
+    }
+
+    #[test]
+    fn keys_that_are_gone_are_named() {
+        let rounds = [(rows(&[("a.ns", 1.0)]), rows(&[("a.ns", 1.0), ("b.ns", 1.0)]))];
+        assert_eq!(missing(&rounds, &[]), ["b.ns"]);
+        assert_eq!(missing(&rounds, &["a".to_owned()]), [""; 0]);
+    }
+
+    #[test]
+    fn the_longest_prefix_counts() {
+        let all: Vec<Exception> =
+            ["S=2", "S3.distance=1.1"].iter().map(|text| text.parse().unwrap()).collect();
+        let at_most = |key| exception(&all, key).map(|exception| exception.at_most);
+        assert_eq!(at_most("S3.distance.64.ns"), Some(1.1));
+        assert_eq!(at_most("S3.model.64.ns"), Some(2.0));
+        assert_eq!(at_most("tick.S3"), None);
+        for wrong in ["S3", "=1", "S3=", "S3=x", "S3=-1", "S3=inf"] {
+            assert!(wrong.parse::<Exception>().unwrap_err().contains(wrong));
+        }
     }
 }

@@ -90,7 +90,7 @@ enum Suite {
         #[arg(long)]
         json: bool,
     },
-    /// A suite of this program beside that of another revision; status 1 if a key got slower.
+    /// Suites of this program beside those of another revision; status 1 if a key got slower.
     Compare(compare::Comparison),
     /// Ticks of the servo.
     Haptics {
@@ -129,7 +129,7 @@ fn main() -> ExitCode {
         eprintln!("palpate-bench: {error}");
         return ExitCode::FAILURE;
     }
-    match measure(suite) {
+    match measure(suite, instructions) {
         Ok(status) => status,
         Err(error) => {
             eprintln!("palpate-bench: {error}");
@@ -139,7 +139,10 @@ fn main() -> ExitCode {
 }
 
 /// Measures what is asked, and prints it.
-fn measure(suite: Suite) -> Result<ExitCode, Box<dyn Error>> {
+fn measure(
+    suite: Suite,
+    instructions: Option<Instructions>,
+) -> Result<ExitCode, Box<dyn Error>> {
     let (rows, bars, is_part, json) = match suite {
         Suite::Fields { json } => (fields::measure()?, bars::FIELDS, false, json),
         Suite::Collide { json, only, runs: Runs { runs } } => {
@@ -162,7 +165,7 @@ fn measure(suite: Suite) -> Result<ExitCode, Box<dyn Error>> {
             }
             return Ok(ExitCode::SUCCESS);
         }
-        Suite::Compare(comparison) => return comparison.run(),
+        Suite::Compare(comparison) => return comparison.run(instructions),
     };
     bars::print(&rows, bars, is_part, json);
     Ok(ExitCode::SUCCESS)
