@@ -4,7 +4,6 @@
 //! The catalogue: every primitive by its name.
 
 use std::any::{Any, TypeId};
-use std::sync::Arc as Shared;
 
 use crate::error::ShapeError;
 use crate::field::{Leaf, SharedField};
@@ -41,7 +40,7 @@ impl<const D: usize> Entry<D> {
             origin: K::ORIGIN,
             parameters: K::PARAMETERS,
             kernel: TypeId::of::<K>(),
-            build: |arguments| Ok(Shared::new(Leaf::new(K::from_arguments(arguments)?))),
+            build: |arguments| Ok(SharedField::new(Leaf::new(K::from_arguments(arguments)?))),
             arguments: |kernel| kernel.downcast_ref::<K>().map(K::arguments),
             marks: |arguments| Ok(K::from_arguments(arguments)?.marks()),
             example: || K::example().map(|kernel| kernel.arguments()),

@@ -59,8 +59,8 @@ pub use field::CustomField;
 pub use field::MAX_DEPTH;
 pub use kernel::Kernel;
 pub use machine::{
-    BLOCK, Block, Column, Gradients, InstructionSet, Lane, LaneArray, Lanes, ModelLanes, SHORT,
-    Wide, wide,
+    BLOCK, Block, Column, Gradients, InstructionSet, Lane, LaneArray, Lanes, ModelLanes, Wide,
+    wide,
 };
 pub use mass::{Mass, MassLimits};
 pub use node::Node;

@@ -25,7 +25,6 @@ use std::fmt;
 
 use crate::bounds::Aabb;
 use crate::error::{ShapeError, Unit, positive};
-use crate::field::{EvaluateBlock, Field};
 use crate::machine::{BLOCK, Block, Column};
 use crate::scalar::Model;
 use crate::shape::Shape;
@@ -368,8 +367,6 @@ fn filled<const D: usize>(
     slack: f64,
     cells: &[MassCell<D>],
 ) -> Vec<Filling<D>>
-where
-    dyn Field<D>: EvaluateBlock<Model, D, BLOCK>,
 {
     let mut fillings = Vec::with_capacity(cells.len());
     let mut block = Block::<Model, D, BLOCK>::zero();

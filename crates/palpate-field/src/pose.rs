@@ -338,20 +338,11 @@ impl<const D: usize> Mul for Pose<D> {
 pub struct Placement<const D: usize> {
     /// The pose it was made from.
     pub world_from_body: Pose<D>,
-    /// The same numbers in single precision.
-    single: Single<D>,
-}
-
-/// A pose in single precision.
-#[derive(Clone, Copy, Debug)]
-struct Single<const D: usize> {
-    translation: [f32; D],
-    rows: [[f32; D]; D],
 }
 
 /// A column of a matrix, of its rows.
 #[inline(always)]
-fn column<S: Float, const D: usize>(rows: &[[S; D]; D], k: usize) -> [S; D] {
+fn column<const D: usize>(rows: &[[f64; D]; D], k: usize) -> [f64; D] {
     array!(i < D => rows[i][k])
 }
 
@@ -359,29 +350,21 @@ impl<const D: usize> Placement<D> {
     /// The change of coordinates to a body at `world_from_body`.
     #[must_use]
     pub fn new(world_from_body: Pose<D>) -> Self {
-        let mut rows = [[0.0; D]; D];
-        for (single, row) in rows.iter_mut().zip(world_from_body.rotation.matrix()) {
-            *single = array!(i < D => row[i] as f32);
-        }
-        let translation = array!(i < D => world_from_body.translation[i] as f32);
-        Self { world_from_body, single: Single { translation, rows } }
+        Self { world_from_body }
     }
 
     /// `Rᵀ(p − t)`: subtracting first keeps points near the body precise.
     #[inline(always)]
     pub fn to_body<S: Scalar>(&self, p: Vector<S, D>) -> Vector<S, D> {
         let Pose { rotation, translation } = &self.world_from_body;
-        let single = &self.single;
-        let q = array!(i < D => p.0[i].minus_stored(translation[i], single.translation[i]));
-        Vector(array!(k < D => {
-            S::stored_sum(q, &column(rotation.matrix(), k), &column(&single.rows, k))
-        }))
+        let q = array!(i < D => p.0[i].minus(translation[i]));
+        Vector(array!(k < D => S::weighted_sum(q, &column(rotation.matrix(), k))))
     }
 
     /// `R·v`: a gradient in the body's frame, back in the world's.
     #[inline(always)]
     pub fn gradient_to_world<T: Float>(&self, v: Vector<T, D>) -> Vector<T, D> {
         let rows = self.world_from_body.rotation.matrix();
-        Vector(array!(i < D => T::stored_sum(v.0, &rows[i], &self.single.rows[i])))
+        Vector(array!(i < D => T::weighted_sum(v.0, &rows[i])))
     }
 }

@@ -4,21 +4,20 @@
 //! Fields that fold an operation over their children's answers.
 
 use std::fmt::Debug;
-use std::sync::Arc;
 
-use super::{
-    DifferentiateBlock, EvaluateBlock, EvaluatePoint, Field, Moved, RecordFormula, SharedField,
-    depth_over, placed,
-};
+use super::{Evaluate, Field, SharedField, depth_over, placed};
 use crate::error::ShapeError;
-use crate::machine::{Block, Column, Gradients, Job, Lane, run};
+use crate::machine::{Block, Column, Gradients, Job, Lane, run, run_wide};
 use crate::pose::Pose;
 use crate::promise::Promise;
-use crate::scalar::{Dual, Float, Recorded, Scalar};
+use crate::scalar::{Dual, Model, Recorded, Scalar};
 use crate::vector::Vector;
 
 /// An operation on two answers.
 pub(crate) trait Combine: Debug + Send + Sync + 'static {
+    /// Whether its loops are compiled for machines without AVX2 too.
+    const IS_EVERYWHERE: bool = false;
+
     /// The answer for `a` and `b`.
     fn combine<S: Scalar>(&self, a: S, b: S) -> S;
 }
@@ -28,6 +27,9 @@ pub(crate) trait Combine: Debug + Send + Sync + 'static {
 pub(crate) struct Minimum;
 
 impl Combine for Minimum {
+    // Unions of many members are on no tape.
+    const IS_EVERYWHERE: bool = true;
+
     #[inline(always)]
     fn combine<S: Scalar>(&self, a: S, b: S) -> S {
         a.min(b)
@@ -55,16 +57,18 @@ impl<O: Combine + Clone, const D: usize> Combined<O, D> {
         promise: Promise<D>,
     ) -> Result<SharedField<D>, ShapeError> {
         let depth = depth_over(&children)?;
-        Ok(Arc::new(Self { operation, children, promise, depth }))
+        Ok(SharedField::new(Self { operation, children, promise, depth }))
     }
 }
 
 #[inline(always)]
-fn differentiate<T: Float, O: Combine, const D: usize>(
+fn differentiate<O: Combine, const D: usize>(
     operation: &O,
-    a: Dual<T, D>,
-    b: Dual<T, D>,
-) -> (T, Vector<T, D>) {
+    (a, by_a): (f64, Vector<f64, D>),
+    (b, by_b): (f64, Vector<f64, D>),
+) -> (f64, Vector<f64, D>) {
+    let a = Dual { value: a, gradient: by_a.0 };
+    let b = Dual { value: b, gradient: by_b.0 };
     let result = operation.combine(a, b);
     (result.value, Vector(result.gradient))
 }
@@ -80,40 +84,17 @@ impl<S: Lane, O: Combine> Job<S, S, S> for Values<'_, O> {
 
 struct ValuesAndGradients<'a, O>(&'a O);
 
-impl<T: Float, O: Combine, const D: usize>
-    Job<(T, Vector<T, D>), (T, Vector<T, D>), (T, Vector<T, D>)> for ValuesAndGradients<'_, O>
+impl<O: Combine, const D: usize>
+    Job<(f64, Vector<f64, D>), (f64, Vector<f64, D>), (f64, Vector<f64, D>)>
+    for ValuesAndGradients<'_, O>
 {
     #[inline(always)]
-    fn lane(&self, a: (T, Vector<T, D>), b: (T, Vector<T, D>)) -> (T, Vector<T, D>) {
-        let dual = |(value, gradient): (T, Vector<T, D>)| Dual { value, gradient: gradient.0 };
-        differentiate(self.0, dual(a), dual(b))
-    }
-}
-
-impl<T: Float, O: Combine, const D: usize> EvaluatePoint<T, D> for Combined<O, D>
-where
-    dyn Field<D>: EvaluatePoint<T, D>,
-{
-    fn distance(&self, x: T, y: T, z: T) -> T {
-        let mut distance = self.children[0].distance(x, y, z);
-        for child in &self.children[1..] {
-            distance = self.operation.combine(distance, child.distance(x, y, z));
-        }
-        distance
-    }
-
-    fn distance_gradient(&self, x: T, y: T, z: T, gradient: &mut Vector<T, D>) -> T {
-        let mut distance = self.children[0].distance_gradient(x, y, z, gradient);
-        let mut other = Vector([T::constant(0.0); D]);
-        for child in &self.children[1..] {
-            let value = child.distance_gradient(x, y, z, &mut other);
-            (distance, *gradient) = differentiate(
-                &self.operation,
-                Dual { value: distance, gradient: gradient.0 },
-                Dual { value, gradient: other.0 },
-            );
-        }
-        distance
+    fn lane(
+        &self,
+        a: (f64, Vector<f64, D>),
+        b: (f64, Vector<f64, D>),
+    ) -> (f64, Vector<f64, D>) {
+        differentiate(self.0, a, b)
     }
 }
 
@@ -122,20 +103,20 @@ where
 /// The results alternate between the output and a scratch block: a select that
 /// writes where it reads becomes a masked store, which is microcoded on some
 /// machines.
-pub(super) struct ValueFold<'a, S: Lane, O, const W: usize> {
+pub(super) struct ValueFold<'a, S: Lane, O> {
     operation: &'a O,
-    out: &'a mut Column<S, W>,
-    scratch: Column<S, W>,
-    next: Column<S, W>,
+    out: &'a mut Column<S>,
+    scratch: Column<S>,
+    next: Column<S>,
     empty: bool,
     /// The result so far is in `out`, else in `scratch`.
     in_out: bool,
 }
 
-impl<'a, S: Lane, O: Combine, const W: usize> ValueFold<'a, S, O, W> {
+impl<'a, S: Evaluate, O: Combine> ValueFold<'a, S, O> {
     /// For `expected` children; if there are others, the result may have to be
     /// copied.
-    pub(super) fn new(operation: &'a O, expected: usize, out: &'a mut Column<S, W>) -> Self {
+    pub(super) fn new(operation: &'a O, expected: usize, out: &'a mut Column<S>) -> Self {
         let in_out = expected % 2 == 1;
         let (scratch, next) = (Column::scratch(), Column::scratch());
         Self { operation, out, scratch, next, empty: true, in_out }
@@ -144,110 +125,81 @@ impl<'a, S: Lane, O: Combine, const W: usize> ValueFold<'a, S, O, W> {
     pub(super) fn push<const D: usize>(
         &mut self,
         child: &SharedField<D>,
-        p: &Block<S, D, W>,
+        p: &Block<S, D>,
         count: usize,
-    ) where
-        dyn Field<D>: EvaluateBlock<S, D, W>,
-    {
+    ) {
         if self.empty {
             let first = if self.in_out { &mut *self.out } else { &mut self.scratch };
-            child.distances(p, count, first);
+            child.evaluate(p, count, first);
             self.empty = false;
-        } else {
-            child.distances(p, count, &mut self.next);
-            let job = Values(self.operation);
-            if self.in_out {
-                run(&job, &*self.out, &self.next, count, &mut self.scratch);
-            } else {
-                run(&job, &self.scratch, &self.next, count, self.out);
-            }
-            self.in_out = !self.in_out;
+            return;
         }
+        child.evaluate(p, count, &mut self.next);
+        let (from, to) = if self.in_out {
+            (&*self.out, &mut self.scratch)
+        } else {
+            (&self.scratch, &mut *self.out)
+        };
+        let job = Values(self.operation);
+        if const { O::IS_EVERYWHERE } {
+            run(&job, from, &self.next, count, to);
+        } else {
+            run_wide(&job, from, &self.next, count, to);
+        }
+        self.in_out = !self.in_out;
     }
 
     pub(super) fn finish(self) {
         if !self.in_out {
-            self.out.clone_from(&self.scratch);
+            self.out.copy_from(&self.scratch);
         }
     }
 }
 
 /// The same with gradients.
-pub(super) struct GradientFold<'a, T: Float + Lane, O, const D: usize, const W: usize> {
+pub(super) struct GradientFold<'a, O, const D: usize> {
     operation: &'a O,
-    out: &'a mut Gradients<T, D, W>,
-    scratch: Gradients<T, D, W>,
-    next: Gradients<T, D, W>,
+    out: &'a mut Gradients<f64, D>,
+    scratch: Gradients<f64, D>,
+    next: Gradients<f64, D>,
     empty: bool,
     /// The result so far is in `out`, else in `scratch`.
     in_out: bool,
 }
 
-impl<'a, T: Float + Lane, O: Combine, const D: usize, const W: usize>
-    GradientFold<'a, T, O, D, W>
-where
-    dyn Field<D>: DifferentiateBlock<T, D, W>,
-{
-    pub(super) fn new(
-        operation: &'a O,
-        expected: usize,
-        out: &'a mut Gradients<T, D, W>,
-    ) -> Self {
+impl<'a, O: Combine, const D: usize> GradientFold<'a, O, D> {
+    pub(super) fn new(operation: &'a O, expected: usize, out: &'a mut Gradients<f64, D>) -> Self {
         let in_out = expected % 2 == 1;
         let (scratch, next) = (Gradients::scratch(), Gradients::scratch());
         Self { operation, out, scratch, next, empty: true, in_out }
     }
 
-    pub(super) fn push(&mut self, child: &SharedField<D>, p: &Block<T, D, W>, count: usize) {
+    pub(super) fn push(&mut self, child: &SharedField<D>, p: &Block<f64, D>, count: usize) {
         if self.empty {
             let first = if self.in_out { &mut *self.out } else { &mut self.scratch };
-            child.distances_gradients(p, count, first);
+            child.gradients(p, count, first);
             self.empty = false;
-        } else {
-            child.distances_gradients(p, count, &mut self.next);
-            let job = ValuesAndGradients(self.operation);
-            if self.in_out {
-                run(&job, &*self.out, &self.next, count, &mut self.scratch);
-            } else {
-                run(&job, &self.scratch, &self.next, count, self.out);
-            }
-            self.in_out = !self.in_out;
+            return;
         }
+        child.gradients(p, count, &mut self.next);
+        let (from, to) = if self.in_out {
+            (&*self.out, &mut self.scratch)
+        } else {
+            (&self.scratch, &mut *self.out)
+        };
+        let job = ValuesAndGradients(self.operation);
+        if const { O::IS_EVERYWHERE } {
+            run(&job, from, &self.next, count, to);
+        } else {
+            run_wide(&job, from, &self.next, count, to);
+        }
+        self.in_out = !self.in_out;
     }
 
     pub(super) fn finish(self) {
         if !self.in_out {
-            self.out.clone_from(&self.scratch);
+            self.out.copy_from(&self.scratch);
         }
-    }
-}
-
-impl<S: Lane, O: Combine, const D: usize, const W: usize> EvaluateBlock<S, D, W>
-    for Combined<O, D>
-where
-    dyn Field<D>: EvaluateBlock<S, D, W>,
-{
-    fn distances(&self, p: &Block<S, D, W>, count: usize, out: &mut Column<S, W>) {
-        let mut fold = ValueFold::new(&self.operation, self.children.len(), out);
-        self.children.iter().for_each(|child| fold.push(child, p, count));
-        fold.finish();
-    }
-}
-
-impl<T: Float + Lane, O: Combine, const D: usize, const W: usize> DifferentiateBlock<T, D, W>
-    for Combined<O, D>
-where
-    dyn Field<D>: DifferentiateBlock<T, D, W>,
-{
-    fn distances_gradients(
-        &self,
-        p: &Block<T, D, W>,
-        count: usize,
-        out: &mut Gradients<T, D, W>,
-    ) {
-        let mut fold = GradientFold::new(&self.operation, self.children.len(), out);
-        self.children.iter().for_each(|child| fold.push(child, p, count));
-        fold.finish();
     }
 }
 
@@ -263,11 +215,54 @@ pub(super) fn placed_children<const D: usize>(
     children.iter().map(|child| placed(child, pose).ok()).collect()
 }
 
-impl<T: Float, O: Combine, const D: usize> RecordFormula<T, D> for Combined<O, D>
-where
-    dyn Field<D>: RecordFormula<T, D>,
-{
-    fn record(&self, p: Vector<Recorded<T>, D>) -> Option<Recorded<T>> {
+impl<O: Combine + Clone, const D: usize> Combined<O, D> {
+    fn fold<S: Evaluate>(&self, p: &Block<S, D>, count: usize, out: &mut Column<S>) {
+        let mut fold = ValueFold::new(&self.operation, self.children.len(), out);
+        self.children.iter().for_each(|child| fold.push(child, p, count));
+        fold.finish();
+    }
+}
+
+impl<O: Combine + Clone, const D: usize> Field<D> for Combined<O, D> {
+    fn distance(&self, x: f64, y: f64, z: f64) -> f64 {
+        let mut distance = self.children[0].distance(x, y, z);
+        for child in &self.children[1..] {
+            distance = self.operation.combine(distance, child.distance(x, y, z));
+        }
+        distance
+    }
+
+    fn distance_gradient(&self, x: f64, y: f64, z: f64, gradient: &mut Vector<f64, D>) -> f64 {
+        let mut distance = self.children[0].distance_gradient(x, y, z, gradient);
+        let mut other = Vector::ZERO;
+        for child in &self.children[1..] {
+            let value = child.distance_gradient(x, y, z, &mut other);
+            (distance, *gradient) =
+                differentiate(&self.operation, (distance, *gradient), (value, other));
+        }
+        distance
+    }
+
+    fn distances(&self, p: &Block<f64, D>, count: usize, out: &mut Column<f64>) {
+        self.fold(p, count, out);
+    }
+
+    fn distances_gradients(
+        &self,
+        p: &Block<f64, D>,
+        count: usize,
+        out: &mut Gradients<f64, D>,
+    ) {
+        let mut fold = GradientFold::new(&self.operation, self.children.len(), out);
+        self.children.iter().for_each(|child| fold.push(child, p, count));
+        fold.finish();
+    }
+
+    fn models(&self, p: &Block<Model, D>, count: usize, out: &mut Column<Model>) {
+        self.fold(p, count, out);
+    }
+
+    fn record(&self, p: Vector<Recorded, D>) -> Option<Recorded> {
         let (first, others) = self.children.split_first()?;
         let mut distance = first.record(p)?;
         for child in others {
@@ -275,9 +270,7 @@ where
         }
         Some(distance)
     }
-}
 
-impl<O: Combine + Clone, const D: usize> Field<D> for Combined<O, D> {
     fn promise(&self) -> &Promise<D> {
         &self.promise
     }
@@ -290,9 +283,8 @@ impl<O: Combine + Clone, const D: usize> Field<D> for Combined<O, D> {
         self.children.iter().map(|child| child.unplaced()).sum()
     }
 
-    fn placed(self: Arc<Self>, pose: &Pose<D>) -> Moved<D> {
-        let Some(children) = placed_children(&self.children, pose) else { return Err(self) };
-        let promise = self.promise.placed(pose);
-        Self::shared(self.operation.clone(), children, promise).map_err(|_| self as _)
+    fn placed(&self, pose: &Pose<D>) -> Option<SharedField<D>> {
+        let children = placed_children(&self.children, pose)?;
+        Self::shared(self.operation.clone(), children, self.promise.placed(pose)).ok()
     }
 }

@@ -3,13 +3,13 @@
 
 //! Fields of users that are not kernels.
 
-use std::sync::Arc;
+use std::any::Any;
 
-use super::{DifferentiateBlock, EvaluateBlock, EvaluatePoint, Field, Moved, RecordFormula};
-use crate::machine::{Block, Column, Gradients, Lane};
+use super::{Field, OwnModels, SharedField};
+use crate::machine::{BLOCK, Block, Column, Gradients};
 use crate::pose::Pose;
 use crate::promise::Promise;
-use crate::scalar::{AffineModel, Dual, Float, Recorded};
+use crate::scalar::{AffineModel, Dual, Model, Recorded, SpaceTimeModel};
 use crate::vector::{Point, Vector};
 
 /// A field of a user, evaluated in double precision.
@@ -140,83 +140,87 @@ where
 #[derive(Debug)]
 pub(crate) struct Custom<F>(pub(crate) F);
 
-fn widened<T: Float, const D: usize>(x: T, y: T, z: T) -> Point<D> {
-    Vector::of_coordinates(x.to_f64(), y.to_f64(), z.to_f64())
-}
-
 /// The first `count` points of a block.
 #[inline(always)]
-fn listed<T: Float + Lane, const D: usize, const W: usize>(
-    p: &Block<T, D, W>,
-    count: usize,
-) -> [Point<D>; W] {
-    let mut points = [Vector::ZERO; W];
+fn listed<const D: usize>(p: &Block<f64, D>, count: usize) -> [Point<D>; BLOCK] {
+    let mut points = [Vector::ZERO; BLOCK];
     for (i, point) in points[..count].iter_mut().enumerate() {
-        let (x, y, z) = p.get(i).coordinates();
-        *point = widened(x, y, z);
+        *point = p.get(i);
     }
     points
 }
 
-impl<T: Float, F: CustomField<D>, const D: usize> EvaluatePoint<T, D> for Custom<F> {
-    fn distance(&self, x: T, y: T, z: T) -> T {
-        T::constant(self.0.distance(widened(x, y, z)))
-    }
-
-    fn distance_gradient(&self, x: T, y: T, z: T, gradient: &mut Vector<T, D>) -> T {
-        let (distance, slope) = self.0.distance_gradient(widened(x, y, z));
-        *gradient = Vector::of(&slope.0);
-        T::constant(distance)
-    }
+/// The models of a custom field, one by one.
+fn each_model<const N: usize, const D: usize>(
+    field: &impl CustomField<D>,
+    p: &Block<AffineModel<N>, D>,
+    count: usize,
+    out: &mut Column<AffineModel<N>>,
+) {
+    out.fill(count, |i| field.model(&p.get(i).0));
 }
 
-impl<T: Float + Lane, F: CustomField<D>, const D: usize, const W: usize> EvaluateBlock<T, D, W>
-    for Custom<F>
-{
-    fn distances(&self, p: &Block<T, D, W>, count: usize, out: &mut Column<T, W>) {
-        let (points, mut distances) = (listed(p, count), [0.0; W]);
-        self.0.distances(&points[..count], &mut distances[..count]);
-        out.fill(count, |i| T::constant(distances[i]));
+impl<F: CustomField<D>, const D: usize> OwnModels<D> for Custom<F> {
+    fn models(&self, p: &Block<Model, D>, count: usize, out: &mut Column<Model>) {
+        each_model(&self.0, p, count, out);
     }
-}
 
-impl<F: CustomField<D>, const N: usize, const D: usize, const W: usize>
-    EvaluateBlock<AffineModel<N>, D, W> for Custom<F>
-{
-    fn distances(
+    fn space_time_models(
         &self,
-        p: &Block<AffineModel<N>, D, W>,
+        p: &Block<SpaceTimeModel, D>,
         count: usize,
-        out: &mut Column<AffineModel<N>, W>,
+        out: &mut Column<SpaceTimeModel>,
     ) {
-        out.fill(count, |i| self.0.model(&p.get(i).0));
-    }
-}
-
-impl<T: Float + Lane, F: CustomField<D>, const D: usize, const W: usize>
-    DifferentiateBlock<T, D, W> for Custom<F>
-{
-    fn distances_gradients(
-        &self,
-        p: &Block<T, D, W>,
-        count: usize,
-        out: &mut Gradients<T, D, W>,
-    ) {
-        let (points, mut distances) = (listed(p, count), [0.0; W]);
-        let mut gradients = [Vector::ZERO; W];
-        let (distances, gradients) = (&mut distances[..count], &mut gradients[..count]);
-        self.0.distances_gradients(&points[..count], distances, gradients);
-        out.fill(count, |i| (T::constant(distances[i]), Vector::of(&gradients[i].0)));
-    }
-}
-
-impl<T: Float, F: CustomField<D>, const D: usize> RecordFormula<T, D> for Custom<F> {
-    fn record(&self, _p: Vector<Recorded<T>, D>) -> Option<Recorded<T>> {
-        None
+        each_model(&self.0, p, count, out);
     }
 }
 
 impl<F: CustomField<D>, const D: usize> Field<D> for Custom<F> {
+    fn distance(&self, x: f64, y: f64, z: f64) -> f64 {
+        self.0.distance(Vector::of_coordinates(x, y, z))
+    }
+
+    fn distance_gradient(&self, x: f64, y: f64, z: f64, gradient: &mut Vector<f64, D>) -> f64 {
+        let distance;
+        (distance, *gradient) = self.0.distance_gradient(Vector::of_coordinates(x, y, z));
+        distance
+    }
+
+    fn distances(&self, p: &Block<f64, D>, count: usize, out: &mut Column<f64>) {
+        let (points, mut distances) = (listed(p, count), [0.0; BLOCK]);
+        self.0.distances(&points[..count], &mut distances[..count]);
+        out.fill(count, |i| distances[i]);
+    }
+
+    fn distances_gradients(
+        &self,
+        p: &Block<f64, D>,
+        count: usize,
+        out: &mut Gradients<f64, D>,
+    ) {
+        let (points, mut distances) = (listed(p, count), [0.0; BLOCK]);
+        let mut gradients = [Vector::ZERO; BLOCK];
+        let (distances, gradients) = (&mut distances[..count], &mut gradients[..count]);
+        self.0.distances_gradients(&points[..count], distances, gradients);
+        out.fill(count, |i| (distances[i], gradients[i]));
+    }
+
+    fn models(&self, p: &Block<Model, D>, count: usize, out: &mut Column<Model>) {
+        each_model(&self.0, p, count, out);
+    }
+
+    fn record(&self, _p: Vector<Recorded, D>) -> Option<Recorded> {
+        None
+    }
+
+    fn has_formula(&self) -> bool {
+        false
+    }
+
+    fn own_models(&self) -> Option<&dyn OwnModels<D>> {
+        Some(self)
+    }
+
     fn promise(&self) -> &Promise<D> {
         self.0.promise()
     }
@@ -225,8 +229,12 @@ impl<F: CustomField<D>, const D: usize> Field<D> for Custom<F> {
         1
     }
 
-    fn placed(self: Arc<Self>, _pose: &Pose<D>) -> Moved<D> {
-        Err(self)
+    fn placed(&self, _pose: &Pose<D>) -> Option<SharedField<D>> {
+        None
+    }
+
+    fn custom(&self) -> Option<&dyn Any> {
+        Some(&self.0)
     }
 
     fn content(&self, sink: &mut dyn FnMut(&[u8])) -> bool {

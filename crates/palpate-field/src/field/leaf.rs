@@ -3,16 +3,14 @@
 
 //! Leaves: a kernel, perhaps in a frame of its own.
 
-use std::sync::Arc;
-
-use super::{DifferentiateBlock, EvaluateBlock, EvaluatePoint, Field, Moved, RecordFormula};
+use super::{Field, OwnModels, SharedField};
 use crate::kernel::Kernel;
 use crate::machine::{
-    Block, Boxes, Column, Gradients, Job, Lane, PointJob, SHORT, run, run_point,
+    Block, Boxes, Column, Gradients, Job, Lane, PointJob, run, run_point, run_wide,
 };
 use crate::pose::{Placement, Pose};
 use crate::promise::Promise;
-use crate::scalar::{Float, Model, Recorded, SpaceTimeModel, TurnedBoxes};
+use crate::scalar::{AffineModel, Model, Recorded, SpaceTimeModel, TurnedBoxes};
 use crate::vector::Vector;
 
 /// A kernel as a field.
@@ -30,65 +28,53 @@ impl<K: Kernel<D>, const D: usize> Leaf<K, D> {
     }
 }
 
-/// A number with which leaves are evaluated, by the best rule that a kernel has for it.
-trait Evaluate: Lane {
-    /// `kernel` at `p`.
-    fn evaluate<K: Kernel<D>, const D: usize>(kernel: &K, p: Vector<Self, D>) -> Self;
-}
-
-macro_rules! evaluate {
-    ($($number:ty, $rule:ident;)*) => {
-        $(impl Evaluate for $number {
-            #[inline(always)]
-            fn evaluate<K: Kernel<D>, const D: usize>(kernel: &K, p: Vector<Self, D>) -> Self {
-                kernel.$rule(p)
-            }
-        })*
-    };
-}
-
-evaluate! {
-    f64, distance;
-    f32, distance;
-    Model, model;
-    SpaceTimeModel, model;
-}
-
+/// The distances of a kernel.
 struct Values<'a, K>(&'a K);
 
-impl<S: Evaluate, K: Kernel<D>, const D: usize> Job<Vector<S, D>, (), S> for Values<'_, K> {
+impl<K: Kernel<D>, const D: usize> Job<Vector<f64, D>, (), f64> for Values<'_, K> {
     #[inline(always)]
-    fn lane(&self, p: Vector<S, D>, (): ()) -> S {
-        S::evaluate(self.0, p)
+    fn lane(&self, p: Vector<f64, D>, (): ()) -> f64 {
+        self.0.distance(p)
     }
 }
 
-struct ValuesAndGradients<'a, K>(&'a K);
-
-impl<T: Float, K: Kernel<D>, const D: usize> Job<Vector<T, D>, (), (T, Vector<T, D>)>
-    for ValuesAndGradients<'_, K>
+impl<K: Kernel<D>, const D: usize> Job<Vector<f64, D>, (), (f64, Vector<f64, D>)>
+    for Values<'_, K>
 {
     #[inline(always)]
-    fn lane(&self, p: Vector<T, D>, (): ()) -> (T, Vector<T, D>) {
+    fn lane(&self, p: Vector<f64, D>, (): ()) -> (f64, Vector<f64, D>) {
         self.0.distance_gradient(p)
     }
 }
 
-/// A kernel where it is placed.
-struct Placed<'a, K, const D: usize>(&'a K, &'a Placement<D>);
+/// The models of a kernel.
+struct Models<'a, K>(&'a K);
 
-impl<S: Evaluate, K: Kernel<D>, const D: usize> Job<Vector<S, D>, (), S> for Placed<'_, K, D> {
+impl<const N: usize, K: Kernel<D>, const D: usize>
+    Job<Vector<AffineModel<N>, D>, (), AffineModel<N>> for Models<'_, K>
+{
     #[inline(always)]
-    fn lane(&self, p: Vector<S, D>, (): ()) -> S {
-        S::evaluate(self.0, self.1.to_body(p))
+    fn lane(&self, p: Vector<AffineModel<N>, D>, (): ()) -> AffineModel<N> {
+        self.0.model(p)
     }
 }
 
-impl<T: Float, K: Kernel<D>, const D: usize> Job<Vector<T, D>, (), (T, Vector<T, D>)>
+/// The distances of a kernel where it is placed: the motion of the next point fills the latency of the
+/// roots of this one.
+struct Placed<'a, K, const D: usize>(&'a K, &'a Placement<D>);
+
+impl<K: Kernel<D>, const D: usize> Job<Vector<f64, D>, (), f64> for Placed<'_, K, D> {
+    #[inline(always)]
+    fn lane(&self, p: Vector<f64, D>, (): ()) -> f64 {
+        self.0.distance(self.1.to_body(p))
+    }
+}
+
+impl<K: Kernel<D>, const D: usize> Job<Vector<f64, D>, (), (f64, Vector<f64, D>)>
     for Placed<'_, K, D>
 {
     #[inline(always)]
-    fn lane(&self, p: Vector<T, D>, (): ()) -> (T, Vector<T, D>) {
+    fn lane(&self, p: Vector<f64, D>, (): ()) -> (f64, Vector<f64, D>) {
         let (distance, gradient) = self.0.distance_gradient(self.1.to_body(p));
         (distance, self.1.gradient_to_world(gradient))
     }
@@ -124,23 +110,9 @@ impl<S: Lane, const D: usize> Job<Vector<S, D>, (), Vector<S, D>> for TurnedToBo
     }
 }
 
-impl<T: Float, K: Kernel<D>, const D: usize> EvaluatePoint<T, D> for Leaf<K, D> {
-    fn distance(&self, x: T, y: T, z: T) -> T {
-        let p = Vector::of_coordinates(x, y, z);
-        match &self.placement {
-            None => self.kernel.distance(p),
-            Some(placement) => self.kernel.distance(placement.to_body(p)),
-        }
-    }
-
-    fn distance_gradient(&self, x: T, y: T, z: T, gradient: &mut Vector<T, D>) -> T {
-        run_point(self, (x, y, z), gradient)
-    }
-}
-
-impl<T: Float, K: Kernel<D>, const D: usize> PointJob<T, Vector<T, D>> for Leaf<K, D> {
+impl<K: Kernel<D>, const D: usize> PointJob<f64, Vector<f64, D>> for Leaf<K, D> {
     #[inline(always)]
-    fn at(&self, x: T, y: T, z: T, gradient: &mut Vector<T, D>) -> T {
+    fn at(&self, x: f64, y: f64, z: f64, gradient: &mut Vector<f64, D>) -> f64 {
         let p = Vector::of_coordinates(x, y, z);
         let distance;
         match &self.placement {
@@ -155,57 +127,112 @@ impl<T: Float, K: Kernel<D>, const D: usize> PointJob<T, Vector<T, D>> for Leaf<
     }
 }
 
-impl<S: Evaluate, K: Kernel<D>, const D: usize, const W: usize> EvaluateBlock<S, D, W>
-    for Leaf<K, D>
+/// The cells of a block in the body's frame.
+fn cells_to_body<const N: usize, const D: usize>(
+    placement: &Placement<D>,
+    p: &Block<AffineModel<N>, D>,
+    count: usize,
+) -> Block<AffineModel<N>, D>
+where
+    AffineModel<N>: Lane,
 {
-    fn distances(&self, p: &Block<S, D, W>, count: usize, out: &mut Column<S, W>) {
-        match &self.placement {
-            None => run(&Values(&self.kernel), p, &(), count, out),
-            // In short blocks a second call takes as long as the numbers.
-            Some(placement) if S::MOVED_IN_LOOP || W == SHORT => {
-                run(&Placed(&self.kernel, placement), p, &(), count, out);
-            }
-            Some(placement) => {
-                let mut q = Block::<S, D, W>::scratch();
-                match p.boxes() {
-                    Boxes::No => run(&ToBody(placement), p, &(), count, &mut q),
-                    Boxes::Straight => run(&BoxesToBody(placement), p, &(), count, &mut q),
-                    Boxes::Turned(rows) => {
-                        let body = placement.world_from_body.rotation.matrix();
-                        let job = TurnedToBody(placement, TurnedBoxes::new(rows, body));
-                        run(&job, p, &(), count, &mut q);
-                    }
-                }
-                run(&Values(&self.kernel), &q, &(), count, out);
-            }
+    let mut q = Block::scratch();
+    match p.boxes() {
+        Boxes::No => run(&ToBody(placement), p, &(), count, &mut q),
+        Boxes::Straight => run(&BoxesToBody(placement), p, &(), count, &mut q),
+        Boxes::Turned(rows) => {
+            let body = placement.world_from_body.rotation.matrix();
+            let job = TurnedToBody(placement, TurnedBoxes::new(rows, body));
+            run(&job, p, &(), count, &mut q);
         }
     }
+    q
 }
 
-impl<T: Float + Lane, K: Kernel<D>, const D: usize, const W: usize> DifferentiateBlock<T, D, W>
-    for Leaf<K, D>
-{
-    fn distances_gradients(
+impl<K: Kernel<D>, const D: usize> Leaf<K, D> {
+    /// Models by a loop that no vector instructions speed up.
+    fn each_model<const N: usize>(
         &self,
-        p: &Block<T, D, W>,
+        p: &Block<AffineModel<N>, D>,
         count: usize,
-        out: &mut Gradients<T, D, W>,
+        out: &mut Column<AffineModel<N>>,
     ) {
-        match &self.placement {
-            None => run(&ValuesAndGradients(&self.kernel), p, &(), count, out),
-            Some(placement) => run(&Placed(&self.kernel, placement), p, &(), count, out),
-        }
+        let moved = self.placement.as_ref().map(|placement| cells_to_body(placement, p, count));
+        let p = moved.as_ref().unwrap_or(p);
+        out.fill(count, |i| self.kernel.model(p.get(i)));
     }
 }
 
-impl<T: Float, K: Kernel<D>, const D: usize> RecordFormula<T, D> for Leaf<K, D> {
-    fn record(&self, p: Vector<Recorded<T>, D>) -> Option<Recorded<T>> {
-        let p = self.placement.as_ref().map_or(p, |placement| placement.to_body(p));
-        Some(self.kernel.distance(p))
+impl<K: Kernel<D>, const D: usize> OwnModels<D> for Leaf<K, D> {
+    fn models(&self, p: &Block<Model, D>, count: usize, out: &mut Column<Model>) {
+        self.each_model(p, count, out);
+    }
+
+    fn space_time_models(
+        &self,
+        p: &Block<SpaceTimeModel, D>,
+        count: usize,
+        out: &mut Column<SpaceTimeModel>,
+    ) {
+        self.each_model(p, count, out);
     }
 }
 
 impl<K: Kernel<D>, const D: usize> Field<D> for Leaf<K, D> {
+    fn distance(&self, x: f64, y: f64, z: f64) -> f64 {
+        let p = Vector::of_coordinates(x, y, z);
+        match &self.placement {
+            None => self.kernel.distance(p),
+            Some(placement) => self.kernel.distance(placement.to_body(p)),
+        }
+    }
+
+    fn distance_gradient(&self, x: f64, y: f64, z: f64, gradient: &mut Vector<f64, D>) -> f64 {
+        run_point(self, (x, y, z), gradient)
+    }
+
+    fn distances(&self, p: &Block<f64, D>, count: usize, out: &mut Column<f64>) {
+        match &self.placement {
+            None => run_wide(&Values(&self.kernel), p, &(), count, out),
+            Some(placement) => run_wide(&Placed(&self.kernel, placement), p, &(), count, out),
+        }
+    }
+
+    fn distances_gradients(
+        &self,
+        p: &Block<f64, D>,
+        count: usize,
+        out: &mut Gradients<f64, D>,
+    ) {
+        match &self.placement {
+            None => run_wide(&Values(&self.kernel), p, &(), count, out),
+            Some(placement) => run_wide(&Placed(&self.kernel, placement), p, &(), count, out),
+        }
+    }
+
+    fn models(&self, p: &Block<Model, D>, count: usize, out: &mut Column<Model>) {
+        if const { K::HAS_OWN_MODEL } {
+            self.each_model(p, count, out);
+        } else {
+            let moved =
+                self.placement.as_ref().map(|placement| cells_to_body(placement, p, count));
+            run_wide(&Models(&self.kernel), moved.as_ref().unwrap_or(p), &(), count, out);
+        }
+    }
+
+    fn record(&self, p: Vector<Recorded, D>) -> Option<Recorded> {
+        let p = self.placement.as_ref().map_or(p, |placement| placement.to_body(p));
+        let formula = self.kernel.distance(p);
+        Some(match self.kernel.bounded_by_steepness() {
+            Some(evaluations) => formula.or_by_steepness(p, evaluations),
+            None => formula,
+        })
+    }
+
+    fn own_models(&self) -> Option<&dyn OwnModels<D>> {
+        if const { K::HAS_OWN_MODEL } { Some(self) } else { None }
+    }
+
     fn promise(&self) -> &Promise<D> {
         &self.promise
     }
@@ -218,7 +245,7 @@ impl<K: Kernel<D>, const D: usize> Field<D> for Leaf<K, D> {
         usize::from(self.placement.is_none())
     }
 
-    fn placed(self: Arc<Self>, pose: &Pose<D>) -> Moved<D> {
+    fn placed(&self, pose: &Pose<D>) -> Option<SharedField<D>> {
         let world_from_body = match &self.placement {
             None => *pose,
             Some(placement) => *pose * placement.world_from_body,
@@ -227,6 +254,6 @@ impl<K: Kernel<D>, const D: usize> Field<D> for Leaf<K, D> {
         // From the kernel's promise, so that boxes do not grow twice.
         let promise = kernel.promise().placed(&world_from_body);
         let placement = Some(Placement::new(world_from_body));
-        Ok(Arc::new(Self { kernel, placement, promise }))
+        Some(SharedField::new(Self { kernel, placement, promise }))
     }
 }

@@ -6,7 +6,23 @@
 //! A [`Field`] answers for one point, for a block of points with and without
 //! gradients, and for a block of cells. Leaves hold a
 //! [`Kernel`](crate::kernel::Kernel); operators loop over their children's
-//! blocks. Nothing here allocates.
+//! blocks. Nothing here allocates, once a field was [`prepare`](SharedField::prepare)d.
+//!
+//! # Roads
+//!
+//! [`SharedField`] chooses how a block is answered:
+//!
+//! | block of | with AVX2 or AVX-512 | without |
+//! |---|---|---|
+//! | points, `f64` | compiled loops | a tape |
+//! | points with gradients | compiled loops | point by point |
+//! | cells of three parameters | compiled loops | a tape |
+//! | cells of four parameters | a tape | a tape |
+//!
+//! A tape is recorded from the formula when it is first asked. Fields that no tape has the operations
+//! of answer themselves on each road: a [`CustomField`], a union of more than 16 members, which
+//! skips most of them, and for cells a kernel with the tangent rule. Points in single precision are
+//! answered by `f64`, rounded once.
 
 mod combine;
 mod custom;
@@ -14,18 +30,19 @@ mod leaf;
 mod nearby;
 mod placed;
 mod remap;
+mod shared;
 mod union;
 mod union_cells;
 mod warp;
 
+use std::any::Any;
 use std::fmt::Debug;
-use std::sync::Arc;
 
 use crate::error::ShapeError;
-use crate::machine::{BLOCK, Block, Column, Gradients, Lane, SHORT};
+use crate::machine::{Block, Column, Gradients};
 use crate::pose::Pose;
 use crate::promise::Promise;
-use crate::scalar::{Float, Model, Recorded, SpaceTimeModel};
+use crate::scalar::{Model, Recorded, SpaceTimeModel};
 use crate::vector::{Point, Vector};
 
 pub use crate::pose::Placement;
@@ -35,6 +52,8 @@ pub(crate) use custom::{Custom, FromClosure};
 pub(crate) use leaf::Leaf;
 pub(crate) use placed::placed;
 pub(crate) use remap::{Remap, Remapped};
+pub(crate) use shared::Asked;
+pub use shared::{Evaluate, SharedField};
 pub(crate) use union::Union;
 pub(crate) use warp::{Warp, Warped};
 
@@ -42,9 +61,6 @@ pub(crate) use warp::{Warp, Warped};
 ///
 /// Each level of a block's evaluation needs at most 25 kB of stack.
 pub const MAX_DEPTH: usize = 64;
-
-/// A field that several shapes and fields may hold.
-pub type SharedField<const D: usize> = Arc<dyn Field<D>>;
 
 /// The depth of an operator over `children`.
 ///
@@ -62,71 +78,51 @@ pub(crate) fn depth_over<'a, const D: usize>(
     Ok(depth)
 }
 
-/// Answers for one point.
-///
-/// Coordinates are three arguments, in the plane the last one zero: they travel
-/// in registers, where an array would be written and read again at every node,
-/// which doubles the latency of a tree.
-pub trait EvaluatePoint<T: Float, const D: usize> {
-    /// The signed distance at a point [m].
-    fn distance(&self, x: T, y: T, z: T) -> T;
-
-    /// The signed distance at a point [m]; puts its gradient into `gradient`.
-    fn distance_gradient(&self, x: T, y: T, z: T, gradient: &mut Vector<T, D>) -> T;
-}
-
-/// Answers for a block of points or cells.
-pub trait EvaluateBlock<S: Lane, const D: usize, const W: usize> {
-    /// The signed distances in the first `count` lanes [m].
-    ///
-    /// The lanes of `out` past `count` are unspecified.
-    fn distances(&self, p: &Block<S, D, W>, count: usize, out: &mut Column<S, W>);
-}
-
-/// Answers for a block of points, with gradients.
-pub trait DifferentiateBlock<T: Float + Lane, const D: usize, const W: usize> {
-    /// The signed distances [m] and gradients in the first `count` lanes.
-    ///
-    /// The lanes of `out` past `count` are unspecified.
-    fn distances_gradients(
-        &self,
-        p: &Block<T, D, W>,
-        count: usize,
-        out: &mut Gradients<T, D, W>,
-    );
-}
-
-/// Gives the formula, for numbers of the precision of `T`.
-pub trait RecordFormula<T: Float, const D: usize> {
-    /// The formula of the field at `p`; `None` where a [`CustomField`] is part of it.
-    fn record(&self, p: Vector<Recorded<T>, D>) -> Option<Recorded<T>>;
-}
-
-/// A field after a motion that went into it, or the same field, if it takes none.
-pub type Moved<const D: usize> = Result<SharedField<D>, SharedField<D>>;
-
 /// A signed distance field as an object.
 ///
 /// Implemented by this crate alone; users write a
-/// [`Kernel`](crate::kernel::Kernel) or a [`CustomField`]. Scalar calls, blocks
-/// and instruction sets agree bit for bit within a number type.
-pub trait Field<const D: usize>:
-    EvaluatePoint<f64, D>
-    + EvaluatePoint<f32, D>
-    + EvaluateBlock<f64, D, BLOCK>
-    + EvaluateBlock<f64, D, SHORT>
-    + EvaluateBlock<f32, D, BLOCK>
-    + EvaluateBlock<Model, D, BLOCK>
-    + EvaluateBlock<SpaceTimeModel, D, BLOCK>
-    + DifferentiateBlock<f64, D, BLOCK>
-    + DifferentiateBlock<f64, D, SHORT>
-    + DifferentiateBlock<f32, D, BLOCK>
-    + RecordFormula<f64, D>
-    + RecordFormula<f32, D>
-    + Debug
-    + Send
-    + Sync
-{
+/// [`Kernel`](crate::kernel::Kernel) or a [`CustomField`]. Its loops over blocks are compiled for AVX2
+/// and wider alone: a [`SharedField`] answers on every machine.
+pub trait Field<const D: usize>: Debug + Send + Sync {
+    /// The signed distance at a point [m].
+    ///
+    /// Coordinates are three arguments, in the plane the last one zero: they travel
+    /// in registers, where an array would be written and read again at every node,
+    /// which doubles the latency of a tree.
+    fn distance(&self, x: f64, y: f64, z: f64) -> f64;
+
+    /// The signed distance at a point [m]; puts its gradient into `gradient`.
+    fn distance_gradient(&self, x: f64, y: f64, z: f64, gradient: &mut Vector<f64, D>) -> f64;
+
+    /// The signed distances in the first `count` lanes [m].
+    ///
+    /// The lanes of `out` past `count` are unspecified, here and below.
+    fn distances(&self, p: &Block<f64, D>, count: usize, out: &mut Column<f64>);
+
+    /// The signed distances [m] and gradients in the first `count` lanes.
+    fn distances_gradients(
+        &self,
+        p: &Block<f64, D>,
+        count: usize,
+        out: &mut Gradients<f64, D>,
+    );
+
+    /// Bounds over the cells in the first `count` lanes.
+    fn models(&self, p: &Block<Model, D>, count: usize, out: &mut Column<Model>);
+
+    /// The formula of the field at `p`; `None` where a [`CustomField`] is part of it.
+    fn record(&self, p: Vector<Recorded, D>) -> Option<Recorded>;
+
+    /// `true` if a tape has all operations of the distances.
+    fn has_formula(&self) -> bool {
+        true
+    }
+
+    /// The models, if no tape has all their operations.
+    fn own_models(&self) -> Option<&dyn OwnModels<D>> {
+        None
+    }
+
     /// The promise of the values.
     fn promise(&self) -> &Promise<D>;
 
@@ -135,11 +131,7 @@ pub trait Field<const D: usize>:
     fn depth(&self) -> usize;
 
     /// The field moved by `pose`, if the motion can go into it at no cost.
-    ///
-    /// # Errors
-    ///
-    /// The same field, if it takes no motion.
-    fn placed(self: Arc<Self>, pose: &Pose<D>) -> Moved<D>;
+    fn placed(&self, pose: &Pose<D>) -> Option<SharedField<D>>;
 
     /// How many transforms more an evaluation has if a motion is pushed into the field
     /// instead of wrapped around it.
@@ -155,6 +147,11 @@ pub trait Field<const D: usize>:
         None
     }
 
+    /// The [`CustomField`] that this is.
+    fn custom(&self) -> Option<&dyn Any> {
+        None
+    }
+
     /// As [`CustomField::faces`].
     fn faces(&self, _visit: &mut dyn FnMut([Point<D>; D])) -> bool {
         false
@@ -164,4 +161,18 @@ pub trait Field<const D: usize>:
     fn content(&self, _sink: &mut dyn FnMut(&[u8])) -> bool {
         false
     }
+}
+
+/// Models of a field that no tape has the operations of: they are the same on every machine.
+pub trait OwnModels<const D: usize> {
+    /// Bounds over boxes in space or in the plane.
+    fn models(&self, p: &Block<Model, D>, count: usize, out: &mut Column<Model>);
+
+    /// Bounds over boxes in space and time.
+    fn space_time_models(
+        &self,
+        p: &Block<SpaceTimeModel, D>,
+        count: usize,
+        out: &mut Column<SpaceTimeModel>,
+    );
 }

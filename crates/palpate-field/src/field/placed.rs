@@ -3,8 +3,6 @@
 
 //! Rigid motions of fields.
 
-use std::sync::Arc;
-
 use super::{SharedField, Warp, Warped};
 use crate::error::ShapeError;
 use crate::pose::{Placement, Pose};
@@ -44,10 +42,13 @@ pub(crate) fn placed<const D: usize>(
     pose: &Pose<D>,
 ) -> Result<SharedField<D>, ShapeError> {
     if pose.is_identity() {
-        return Ok(Arc::clone(field));
+        return Ok(field.clone());
     }
-    Arc::clone(field).placed(pose).or_else(|field| {
-        let promise = field.promise().placed(pose);
-        Warped::shared(Placement::new(*pose), field, promise)
-    })
+    match field.placed(pose) {
+        Some(moved) => Ok(moved),
+        None => {
+            let promise = field.promise().placed(pose);
+            Warped::shared(Placement::new(*pose), field.clone(), promise)
+        }
+    }
 }

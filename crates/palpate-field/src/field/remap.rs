@@ -4,17 +4,13 @@
 //! Fields that change their child's answer at the same point: offset, shell, guard.
 
 use std::fmt::Debug;
-use std::sync::Arc;
 
-use super::{
-    DifferentiateBlock, EvaluateBlock, EvaluatePoint, Field, Moved, RecordFormula, SharedField,
-    depth_over,
-};
+use super::{Evaluate, Field, SharedField, depth_over};
 use crate::error::ShapeError;
-use crate::machine::{Block, Column, Gradients, Job, Lane, run};
+use crate::machine::{Block, Column, Gradients, Job, Lane, run_wide};
 use crate::pose::Pose;
 use crate::promise::Promise;
-use crate::scalar::{Dual, Float, Recorded, Scalar};
+use crate::scalar::{Dual, Model, Recorded, Scalar};
 use crate::vector::Vector;
 
 /// A function of the point and the child's answer there.
@@ -44,17 +40,17 @@ impl<M: Remap<D>, const D: usize> Remapped<M, D> {
         promise: Promise<D>,
     ) -> Result<SharedField<D>, ShapeError> {
         let depth = depth_over([&child])?;
-        Ok(Arc::new(Self { map, child, promise, depth }))
+        Ok(SharedField::new(Self { map, child, promise, depth }))
     }
 }
 
 #[inline(always)]
-fn differentiate<T: Float, M: Remap<D>, const D: usize>(
+fn differentiate<M: Remap<D>, const D: usize>(
     map: &M,
-    p: Vector<T, D>,
-    child: T,
-    gradient: Vector<T, D>,
-) -> (T, Vector<T, D>) {
+    p: Vector<f64, D>,
+    child: f64,
+    gradient: Vector<f64, D>,
+) -> (f64, Vector<f64, D>) {
     let child = Dual { value: child, gradient: gradient.0 };
     let result = map.value(Vector(Dual::variables(p.0)), child);
     (result.value, Vector(result.gradient))
@@ -71,72 +67,65 @@ impl<S: Lane, M: Remap<D>, const D: usize> Job<Vector<S, D>, S, S> for Values<'_
 
 struct ValuesAndGradients<'a, M>(&'a M);
 
-impl<T: Float, M: Remap<D>, const D: usize>
-    Job<Vector<T, D>, (T, Vector<T, D>), (T, Vector<T, D>)> for ValuesAndGradients<'_, M>
+impl<M: Remap<D>, const D: usize>
+    Job<Vector<f64, D>, (f64, Vector<f64, D>), (f64, Vector<f64, D>)>
+    for ValuesAndGradients<'_, M>
 {
     #[inline(always)]
-    fn lane(&self, p: Vector<T, D>, (child, gradient): (T, Vector<T, D>)) -> (T, Vector<T, D>) {
+    fn lane(
+        &self,
+        p: Vector<f64, D>,
+        (child, gradient): (f64, Vector<f64, D>),
+    ) -> (f64, Vector<f64, D>) {
         differentiate(self.0, p, child, gradient)
     }
 }
 
-impl<T: Float, M: Remap<D>, const D: usize> EvaluatePoint<T, D> for Remapped<M, D>
-where
-    dyn Field<D>: EvaluatePoint<T, D>,
-{
-    fn distance(&self, x: T, y: T, z: T) -> T {
+impl<M: Remap<D>, const D: usize> Remapped<M, D> {
+    fn map<S: Evaluate>(&self, p: &Block<S, D>, count: usize, out: &mut Column<S>) {
+        let mut child = Column::scratch();
+        self.child.evaluate(p, count, &mut child);
+        run_wide(&Values(&self.map), p, &child, count, out);
+    }
+}
+
+impl<M: Remap<D>, const D: usize> Field<D> for Remapped<M, D> {
+    fn distance(&self, x: f64, y: f64, z: f64) -> f64 {
         let p = Vector::of_coordinates(x, y, z);
         self.map.value(p, self.child.distance(x, y, z))
     }
 
-    fn distance_gradient(&self, x: T, y: T, z: T, gradient: &mut Vector<T, D>) -> T {
+    fn distance_gradient(&self, x: f64, y: f64, z: f64, gradient: &mut Vector<f64, D>) -> f64 {
         let p = Vector::of_coordinates(x, y, z);
         let child = self.child.distance_gradient(x, y, z, gradient);
         let distance;
         (distance, *gradient) = differentiate(&self.map, p, child, *gradient);
         distance
     }
-}
 
-impl<S: Lane, M: Remap<D>, const D: usize, const W: usize> EvaluateBlock<S, D, W>
-    for Remapped<M, D>
-where
-    dyn Field<D>: EvaluateBlock<S, D, W>,
-{
-    fn distances(&self, p: &Block<S, D, W>, count: usize, out: &mut Column<S, W>) {
-        let mut child = Column::scratch();
-        self.child.distances(p, count, &mut child);
-        run(&Values(&self.map), p, &child, count, out);
+    fn distances(&self, p: &Block<f64, D>, count: usize, out: &mut Column<f64>) {
+        self.map(p, count, out);
     }
-}
 
-impl<T: Float + Lane, M: Remap<D>, const D: usize, const W: usize> DifferentiateBlock<T, D, W>
-    for Remapped<M, D>
-where
-    dyn Field<D>: DifferentiateBlock<T, D, W>,
-{
     fn distances_gradients(
         &self,
-        p: &Block<T, D, W>,
+        p: &Block<f64, D>,
         count: usize,
-        out: &mut Gradients<T, D, W>,
+        out: &mut Gradients<f64, D>,
     ) {
         let mut child = Gradients::scratch();
-        self.child.distances_gradients(p, count, &mut child);
-        run(&ValuesAndGradients(&self.map), p, &child, count, out);
+        self.child.gradients(p, count, &mut child);
+        run_wide(&ValuesAndGradients(&self.map), p, &child, count, out);
     }
-}
 
-impl<T: Float, M: Remap<D>, const D: usize> RecordFormula<T, D> for Remapped<M, D>
-where
-    dyn Field<D>: RecordFormula<T, D>,
-{
-    fn record(&self, p: Vector<Recorded<T>, D>) -> Option<Recorded<T>> {
+    fn models(&self, p: &Block<Model, D>, count: usize, out: &mut Column<Model>) {
+        self.map(p, count, out);
+    }
+
+    fn record(&self, p: Vector<Recorded, D>) -> Option<Recorded> {
         Some(self.map.value(p, self.child.record(p)?))
     }
-}
 
-impl<M: Remap<D>, const D: usize> Field<D> for Remapped<M, D> {
     fn promise(&self) -> &Promise<D> {
         &self.promise
     }
@@ -145,7 +134,7 @@ impl<M: Remap<D>, const D: usize> Field<D> for Remapped<M, D> {
         self.depth
     }
 
-    fn placed(self: Arc<Self>, _pose: &Pose<D>) -> Moved<D> {
-        Err(self)
+    fn placed(&self, _pose: &Pose<D>) -> Option<SharedField<D>> {
+        None
     }
 }

@@ -7,21 +7,19 @@
 //! A member is skipped only where its value is sure to be larger than the
 //! smallest, rounding included, so skipping changes no bit of the result.
 
-use std::sync::Arc;
-
 use super::combine::{Combine, GradientFold, Minimum, ValueFold, placed_children};
 use super::nearby::Nearby;
-use super::{
-    DifferentiateBlock, EvaluateBlock, EvaluatePoint, Field, Moved, RecordFormula, SharedField,
-    depth_over,
-};
+use super::{Field, OwnModels, SharedField, depth_over};
 use crate::bounds::BoundingBall;
 use crate::error::ShapeError;
 use crate::machine::{Block, Column, Gradients, Lane};
 use crate::pose::Pose;
 use crate::promise::Promise;
-use crate::scalar::{Float, Recorded, Scalar};
+use crate::scalar::{Model, Recorded, Scalar, SpaceTimeModel};
 use crate::vector::Vector;
+
+/// A union of more members is on no tape, which would evaluate all: it skips most of them.
+pub(crate) const FEW: usize = 16;
 
 /// Beyond this distance from the origin [m], squares of lengths near the limits of single
 /// precision: every member is asked, as at a place that is no number.
@@ -70,7 +68,7 @@ impl<const D: usize> Union<D> {
             constant: rounding.constant + balls * extent,
             per_metre: rounding.per_metre + balls,
         };
-        Ok(Arc::new(Self { members, nearby, slack, promise, depth }))
+        Ok(SharedField::new(Self { members, nearby, slack, promise, depth }))
     }
 
     /// How far rounding may bring a value below the distance to its ball, so far from the
@@ -117,10 +115,7 @@ impl<const D: usize> Union<D> {
 
     /// The smallest value at a point, and which member has it.
     #[inline(always)]
-    pub(super) fn winner<T: Float>(&self, x: T, y: T, z: T) -> (T, usize)
-    where
-        dyn Field<D>: EvaluatePoint<T, D>,
-    {
+    pub(super) fn winner(&self, x: f64, y: f64, z: f64) -> (f64, usize) {
         let ask = |i: usize| self.members[i].distance(x, y, z);
         let Some(nearby) = &self.nearby else {
             // Selects, since which of two members is nearer is hard to predict.
@@ -132,14 +127,14 @@ impl<const D: usize> Union<D> {
             }
             return (smallest, winner);
         };
-        let mut best: Option<(T, usize)> = None;
-        let centre = Vector::of_coordinates(x.to_f64(), y.to_f64(), z.to_f64());
+        let mut best: Option<(f64, usize)> = None;
+        let centre = Vector::of_coordinates(x, y, z);
         let query = BoundingBall { centre, radius: 0.0 };
-        let first = std::cell::Cell::new((usize::MAX, T::default()));
+        let first = std::cell::Cell::new((usize::MAX, 0.0));
         let bound = |i| {
             let value = ask(i);
             first.set((i, value));
-            value.to_f64()
+            value
         };
         self.for_each_near(nearby, query, bound, |i| {
             let known = first.get();
@@ -147,15 +142,15 @@ impl<const D: usize> Union<D> {
             if best.is_none_or(|(smallest, _)| value < smallest) {
                 best = Some((value, i));
             }
-            value.to_f64()
+            value
         });
-        best.unwrap_or((T::constant(f64::INFINITY), 0))
+        best.unwrap_or((f64::INFINITY, 0))
     }
 
     /// Calls `near` with the numbers of the members that matter in a block.
-    pub(super) fn near_block<S: Lane, const W: usize>(
+    pub(super) fn near_block<S: Lane>(
         &self,
-        p: &Block<S, D, W>,
+        p: &Block<S, D>,
         count: usize,
         mut near: impl FnMut(usize),
     ) {
@@ -173,8 +168,7 @@ impl<const D: usize> Union<D> {
                 match promise.region {
                     None => {
                         let (x, y, z) = query.centre.coordinates();
-                        let value: f64 = member.distance(x, y, z);
-                        value + promise.lipschitz * query.radius
+                        member.distance(x, y, z) + promise.lipschitz * query.radius
                     }
                     Some(_) => f64::INFINITY,
                 }
@@ -187,61 +181,53 @@ impl<const D: usize> Union<D> {
     }
 }
 
-impl<T: Float, const D: usize> EvaluatePoint<T, D> for Union<D>
-where
-    dyn Field<D>: EvaluatePoint<T, D>,
-{
-    fn distance(&self, x: T, y: T, z: T) -> T {
+impl<const D: usize> Field<D> for Union<D> {
+    fn distance(&self, x: f64, y: f64, z: f64) -> f64 {
         self.winner(x, y, z).0
     }
 
     /// All values first, then the gradient of the one member that is smallest.
-    fn distance_gradient(&self, x: T, y: T, z: T, gradient: &mut Vector<T, D>) -> T {
+    fn distance_gradient(&self, x: f64, y: f64, z: f64, gradient: &mut Vector<f64, D>) -> f64 {
         let (_, winner) = self.winner(x, y, z);
         self.members[winner].distance_gradient(x, y, z, gradient)
     }
-}
 
-impl<T: Float + Lane, const D: usize, const W: usize> EvaluateBlock<T, D, W> for Union<D>
-where
-    dyn Field<D>: EvaluateBlock<T, D, W>,
-{
-    fn distances(&self, p: &Block<T, D, W>, count: usize, out: &mut Column<T, W>) {
+    fn distances(&self, p: &Block<f64, D>, count: usize, out: &mut Column<f64>) {
         let mut fold = ValueFold::new(&Minimum, self.expected(), out);
         self.near_block(p, count, |i| fold.push(&self.members[i], p, count));
         fold.finish();
     }
-}
 
-impl<T: Float + Lane, const D: usize, const W: usize> DifferentiateBlock<T, D, W> for Union<D>
-where
-    dyn Field<D>: DifferentiateBlock<T, D, W>,
-{
     fn distances_gradients(
         &self,
-        p: &Block<T, D, W>,
+        p: &Block<f64, D>,
         count: usize,
-        out: &mut Gradients<T, D, W>,
+        out: &mut Gradients<f64, D>,
     ) {
         let mut fold = GradientFold::new(&Minimum, self.expected(), out);
         self.near_block(p, count, |i| fold.push(&self.members[i], p, count));
         fold.finish();
     }
-}
 
-impl<T: Float, const D: usize> RecordFormula<T, D> for Union<D>
-where
-    dyn Field<D>: RecordFormula<T, D>,
-{
-    fn record(&self, p: Vector<Recorded<T>, D>) -> Option<Recorded<T>> {
+    fn models(&self, p: &Block<Model, D>, count: usize, out: &mut Column<Model>) {
+        self.bound(p, count, out);
+    }
+
+    fn record(&self, p: Vector<Recorded, D>) -> Option<Recorded> {
         let (first, others) = self.members.split_first()?;
         others.iter().try_fold(first.record(p)?, |least, member| {
             Some(Minimum.combine(least, member.record(p)?))
         })
     }
-}
 
-impl<const D: usize> Field<D> for Union<D> {
+    fn has_formula(&self) -> bool {
+        self.members.len() <= FEW
+    }
+
+    fn own_models(&self) -> Option<&dyn OwnModels<D>> {
+        if self.members.len() > FEW { Some(self) } else { None }
+    }
+
     fn promise(&self) -> &Promise<D> {
         &self.promise
     }
@@ -254,12 +240,27 @@ impl<const D: usize> Field<D> for Union<D> {
         self.members.iter().map(|member| member.unplaced()).sum()
     }
 
-    fn placed(self: Arc<Self>, pose: &Pose<D>) -> Moved<D> {
-        let Some(members) = placed_children(&self.members, pose) else { return Err(self) };
-        Self::shared(members, self.promise.placed(pose)).map_err(|_| self as _)
+    fn placed(&self, pose: &Pose<D>) -> Option<SharedField<D>> {
+        let members = placed_children(&self.members, pose)?;
+        Self::shared(members, self.promise.placed(pose)).ok()
     }
 
     fn members(&self) -> Option<&[SharedField<D>]> {
         Some(&self.members)
+    }
+}
+
+impl<const D: usize> OwnModels<D> for Union<D> {
+    fn models(&self, p: &Block<Model, D>, count: usize, out: &mut Column<Model>) {
+        self.bound(p, count, out);
+    }
+
+    fn space_time_models(
+        &self,
+        p: &Block<SpaceTimeModel, D>,
+        count: usize,
+        out: &mut Column<SpaceTimeModel>,
+    ) {
+        self.bound(p, count, out);
     }
 }

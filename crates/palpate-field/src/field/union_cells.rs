@@ -18,17 +18,13 @@
 //! In a large cell many members are below the lower plane of the first. The one that is
 //! farthest below is asked next, for once it has lowered the plane, most others are above.
 
+use super::Evaluate;
 use super::combine::{Minimum, ValueFold};
 use super::nearby::{Balls, Floor, Foremost, LINE, Nearby};
-use super::union::{FAR, Union};
-use super::{EvaluateBlock, Field};
+use super::union::{FAR, FEW, Union};
 use crate::machine::{BLOCK, Block, Column};
 use crate::scalar::{AffineModel, Scalar};
 use crate::vector::{Vector, array};
-
-/// So many members at most are asked by all cells of a block: to find out which cell needs which
-/// would take longer.
-const FEW: usize = 16;
 
 /// Roundings in single precision of the clearance of a ball, relative to the largest number
 /// in it.
@@ -38,17 +34,17 @@ const ROUNDINGS: f64 = 64.0;
 /// the distance to a ball.
 const SLACKS: f64 = 4.0;
 
-impl<const N: usize, const D: usize, const W: usize> EvaluateBlock<AffineModel<N>, D, W>
-    for Union<D>
-where
-    dyn Field<D>: EvaluateBlock<AffineModel<N>, D, W>,
-{
-    fn distances(
+impl<const D: usize> Union<D> {
+    /// Models of the union.
+    pub(super) fn bound<const N: usize>(
         &self,
-        p: &Block<AffineModel<N>, D, W>,
+        p: &Block<AffineModel<N>, D>,
         count: usize,
-        out: &mut Column<AffineModel<N>, W>,
-    ) {
+        out: &mut Column<AffineModel<N>>,
+    ) where
+        AffineModel<N>: Evaluate,
+    {
+        // To find out which cell needs which of a few members would take longer than to ask them.
         let (mut near, mut many) = ([0; FEW], 0);
         self.near_block(p, count, |i| {
             if let Some(place) = near.get_mut(many) {
@@ -58,25 +54,23 @@ where
         });
         match &self.nearby {
             Some(nearby) if many > FEW => {
-                let first = [[0; 2]; W];
+                let first = [[0; 2]; BLOCK];
                 Cells { union: self, nearby, p, count, out, first }.bound();
             }
             _ => self.ask_all(&near[..many], p, count, out),
         }
     }
-}
 
-impl<const D: usize> Union<D> {
     /// All cells ask the same members. Not inlined: others need not its memory.
     #[inline(never)]
-    fn ask_all<const N: usize, const W: usize>(
+    fn ask_all<const N: usize>(
         &self,
         members: &[usize],
-        p: &Block<AffineModel<N>, D, W>,
+        p: &Block<AffineModel<N>, D>,
         count: usize,
-        out: &mut Column<AffineModel<N>, W>,
+        out: &mut Column<AffineModel<N>>,
     ) where
-        dyn Field<D>: EvaluateBlock<AffineModel<N>, D, W>,
+        AffineModel<N>: Evaluate,
     {
         let mut fold = ValueFold::new(&Minimum, members.len(), out);
         for i in members {
@@ -87,14 +81,14 @@ impl<const D: usize> Union<D> {
 }
 
 /// Cells that ask each for itself.
-struct Cells<'a, const N: usize, const D: usize, const W: usize> {
+struct Cells<'a, const N: usize, const D: usize> {
     union: &'a Union<D>,
     nearby: &'a Nearby<D>,
-    p: &'a Block<AffineModel<N>, D, W>,
+    p: &'a Block<AffineModel<N>, D>,
     count: usize,
-    out: &'a mut Column<AffineModel<N>, W>,
+    out: &'a mut Column<AffineModel<N>>,
     /// The members that each cell asks first; twice the same if it is one.
-    first: [[usize; 2]; W],
+    first: [[usize; 2]; BLOCK],
 }
 
 /// The places of the bits that are set.
@@ -106,15 +100,15 @@ fn ones(mut bits: u64) -> impl Iterator<Item = usize> {
     })
 }
 
-impl<const N: usize, const D: usize, const W: usize> Cells<'_, N, D, W>
+impl<const N: usize, const D: usize> Cells<'_, N, D>
 where
-    dyn Field<D>: EvaluateBlock<AffineModel<N>, D, W>,
+    AffineModel<N>: Evaluate,
 {
     fn bound(mut self) {
-        const { assert!(W <= BLOCK, "a bit for each cell") };
+        const { assert!(BLOCK <= u64::BITS as usize, "a bit for each cell") };
         for i in 0..self.count {
             let (x, y, z) = self.centre(i).coordinates();
-            self.first[i] = [self.union.winner::<f64>(x, y, z).1; 2];
+            self.first[i] = [self.union.winner(x, y, z).1; 2];
         }
         self.out.fill(self.count, |_| AffineModel::constant(0.0));
         self.ask_first(self.all(), 0, |_, model| model);
@@ -241,11 +235,11 @@ where
         }
         let mut models = Column::scratch();
         if count == self.count {
-            member.distances(self.p, count, &mut models);
+            member.evaluate(self.p, count, &mut models);
         } else {
             let mut cells = Block::scratch();
             cells.gather(self.p, &lanes[..count]);
-            member.distances(&cells, count, &mut models);
+            member.evaluate(&cells, count, &mut models);
         }
         self.out.join(&lanes[..count], &models, join);
     }

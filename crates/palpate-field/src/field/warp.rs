@@ -3,18 +3,15 @@
 
 //! Fields that evaluate their child at another point: transforms, mirrors, extrusion.
 
-use super::{
-    DifferentiateBlock, EvaluateBlock, EvaluatePoint, Field, Moved, RecordFormula, SharedField,
-    depth_over,
-};
+use std::fmt::Debug;
+
+use super::{Evaluate, Field, SharedField, depth_over};
 use crate::error::ShapeError;
-use crate::machine::{Block, Column, Gradients, Job, Lane, run};
+use crate::machine::{Block, Column, Gradients, Job, Lane, run_wide};
 use crate::pose::Pose;
 use crate::promise::Promise;
-use crate::scalar::{Dual, Float, Recorded, Scalar};
+use crate::scalar::{Dual, Float, Model, Recorded, Scalar};
 use crate::vector::{Vector, unrolled};
-use std::fmt::Debug;
-use std::sync::Arc;
 
 /// A map from the node's `D` coordinates to its child's `E`.
 pub(crate) trait Warp<const D: usize, const E: usize>:
@@ -81,7 +78,7 @@ impl<M: Warp<D, E>, const D: usize, const E: usize> Warped<M, D, E> {
         promise: Promise<D>,
     ) -> Result<SharedField<D>, ShapeError> {
         let depth = depth_over([&child])?;
-        Ok(Arc::new(Self { map, child, promise, depth }))
+        Ok(SharedField::new(Self { map, child, promise, depth }))
     }
 }
 
@@ -109,89 +106,71 @@ impl<S: Lane, M: Warp<D, E>, const D: usize, const E: usize> Job<Vector<S, D>, S
 
 struct PulledBack<'a, M>(&'a M);
 
-impl<T, M, const D: usize, const E: usize>
-    Job<Vector<T, D>, (T, Vector<T, E>), (T, Vector<T, D>)> for PulledBack<'_, M>
-where
-    T: Float + Lane,
-    M: Warp<D, E>,
+impl<M: Warp<D, E>, const D: usize, const E: usize>
+    Job<Vector<f64, D>, (f64, Vector<f64, E>), (f64, Vector<f64, D>)> for PulledBack<'_, M>
 {
     #[inline(always)]
-    fn lane(&self, p: Vector<T, D>, (child, gradient): (T, Vector<T, E>)) -> (T, Vector<T, D>) {
+    fn lane(
+        &self,
+        p: Vector<f64, D>,
+        (child, gradient): (f64, Vector<f64, E>),
+    ) -> (f64, Vector<f64, D>) {
         self.0.gradient(p, child, gradient)
     }
 }
 
-impl<T, M, const D: usize, const E: usize> EvaluatePoint<T, D> for Warped<M, D, E>
-where
-    T: Float,
-    M: Warp<D, E>,
-    dyn Field<E>: EvaluatePoint<T, E>,
-{
-    fn distance(&self, x: T, y: T, z: T) -> T {
+impl<M: Warp<D, E>, const D: usize, const E: usize> Warped<M, D, E> {
+    fn map<S: Evaluate>(&self, p: &Block<S, D>, count: usize, out: &mut Column<S>) {
+        let mut q = Block::<S, E>::scratch();
+        let mut child = Column::scratch();
+        run_wide(&Points(&self.map), p, &(), count, &mut q);
+        self.child.evaluate(&q, count, &mut child);
+        run_wide(&Values::<M, E>(&self.map), p, &child, count, out);
+    }
+}
+
+impl<M: Warp<D, E>, const D: usize, const E: usize> Field<D> for Warped<M, D, E> {
+    fn distance(&self, x: f64, y: f64, z: f64) -> f64 {
         let p = Vector::of_coordinates(x, y, z);
         let (u, v, w) = self.map.point(p).coordinates();
         self.map.value(p, self.child.distance(u, v, w))
     }
 
-    fn distance_gradient(&self, x: T, y: T, z: T, gradient: &mut Vector<T, D>) -> T {
+    fn distance_gradient(&self, x: f64, y: f64, z: f64, gradient: &mut Vector<f64, D>) -> f64 {
         let p = Vector::of_coordinates(x, y, z);
         let (u, v, w) = self.map.point(p).coordinates();
-        let mut child_gradient = Vector([T::constant(0.0); E]);
+        let mut child_gradient = Vector::ZERO;
         let child = self.child.distance_gradient(u, v, w, &mut child_gradient);
         let distance;
         (distance, *gradient) = self.map.gradient(p, child, child_gradient);
         distance
     }
-}
 
-impl<S, M, const D: usize, const E: usize, const W: usize> EvaluateBlock<S, D, W>
-    for Warped<M, D, E>
-where
-    S: Lane,
-    M: Warp<D, E>,
-    dyn Field<E>: EvaluateBlock<S, E, W>,
-{
-    fn distances(&self, p: &Block<S, D, W>, count: usize, out: &mut Column<S, W>) {
-        let mut q = Block::<S, E, W>::scratch();
-        let mut child = Column::scratch();
-        run(&Points(&self.map), p, &(), count, &mut q);
-        self.child.distances(&q, count, &mut child);
-        run(&Values::<M, E>(&self.map), p, &child, count, out);
+    fn distances(&self, p: &Block<f64, D>, count: usize, out: &mut Column<f64>) {
+        self.map(p, count, out);
     }
-}
 
-impl<T, M, const D: usize, const E: usize, const W: usize> DifferentiateBlock<T, D, W>
-    for Warped<M, D, E>
-where
-    T: Float + Lane,
-    M: Warp<D, E>,
-    dyn Field<E>: DifferentiateBlock<T, E, W>,
-{
     fn distances_gradients(
         &self,
-        p: &Block<T, D, W>,
+        p: &Block<f64, D>,
         count: usize,
-        out: &mut Gradients<T, D, W>,
+        out: &mut Gradients<f64, D>,
     ) {
-        let mut q = Block::<T, E, W>::scratch();
-        let mut child = Gradients::<T, E, W>::scratch();
-        run(&Points(&self.map), p, &(), count, &mut q);
-        self.child.distances_gradients(&q, count, &mut child);
-        run(&PulledBack(&self.map), p, &child, count, out);
+        let mut q = Block::<f64, E>::scratch();
+        let mut child = Gradients::<f64, E>::scratch();
+        run_wide(&Points(&self.map), p, &(), count, &mut q);
+        self.child.gradients(&q, count, &mut child);
+        run_wide(&PulledBack(&self.map), p, &child, count, out);
     }
-}
 
-impl<T: Float, M: Warp<D, E>, const D: usize, const E: usize> RecordFormula<T, D>
-    for Warped<M, D, E>
-where
-    dyn Field<E>: RecordFormula<T, E>,
-{
-    fn record(&self, p: Vector<Recorded<T>, D>) -> Option<Recorded<T>> {
+    fn models(&self, p: &Block<Model, D>, count: usize, out: &mut Column<Model>) {
+        self.map(p, count, out);
+    }
+
+    fn record(&self, p: Vector<Recorded, D>) -> Option<Recorded> {
         Some(self.map.value(p, self.child.record(self.map.point(p))?))
     }
-}
 
-impl<M: Warp<D, E>, const D: usize, const E: usize> Field<D> for Warped<M, D, E> {
     fn promise(&self) -> &Promise<D> {
         &self.promise
     }
@@ -204,9 +183,9 @@ impl<M: Warp<D, E>, const D: usize, const E: usize> Field<D> for Warped<M, D, E>
         usize::from(!M::IS_MOTION)
     }
 
-    fn placed(self: Arc<Self>, pose: &Pose<D>) -> Moved<D> {
-        let Some(map) = self.map.placed(pose) else { return Err(self) };
-        let (child, promise) = (Arc::clone(&self.child), self.promise.placed(pose));
-        Ok(Arc::new(Self { map, child, promise, depth: self.depth }))
+    fn placed(&self, pose: &Pose<D>) -> Option<SharedField<D>> {
+        let map = self.map.placed(pose)?;
+        let (child, promise) = (self.child.clone(), self.promise.placed(pose));
+        Some(SharedField::new(Self { map, child, promise, depth: self.depth }))
     }
 }

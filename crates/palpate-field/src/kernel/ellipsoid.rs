@@ -86,7 +86,7 @@ impl<const D: usize> Ellipsoid<D> {
     #[inline(always)]
     fn solve<S: Scalar>(&self, y: Vector<S, D>) -> (S, Vector<S, D>) {
         let excess = |i: usize| S::constant(self.excess[i]);
-        let tiny = S::constant(self.smallest * S::EPSILON);
+        let tiny = S::constant(self.smallest * S::epsilon());
         let scaled: [S; D] = array!(i < D => {
             let thin = self.excess[i] == 0.0;
             let y = if thin { y.0[i].max(tiny) } else { y.0[i] };
@@ -146,6 +146,8 @@ impl<const D: usize> Kernel<D> for Ellipsoid<D> {
         let signed = |i: usize| T::select_less(p.0[i], zero, -normal.0[i], normal.0[i]);
         (distance, Vector(array!(i < D => signed(i))))
     }
+
+    const HAS_OWN_MODEL: bool = true;
 
     #[inline(always)]
     fn model<const N: usize>(&self, cell: Vector<AffineModel<N>, D>) -> AffineModel<N> {

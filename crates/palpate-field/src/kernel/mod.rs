@@ -85,12 +85,27 @@ pub trait Kernel<const D: usize>: Clone + Debug + Send + Sync + 'static {
         (result.value, Vector(result.gradient))
     }
 
+    /// `true` if [`model`](Self::model) is no evaluation of the formula, and gains nothing from vector
+    /// instructions: it is then compiled once, where a formula's is compiled for each instruction set.
+    const HAS_OWN_MODEL: bool = false;
+
+    /// How distances are rounded, if models are also bounded by the value at the centre of a cell and
+    /// the steepness 1, wherever that says more than the formula.
+    #[inline(always)]
+    fn bounded_by_steepness(&self) -> Option<Evaluations> {
+        None
+    }
+
     /// Bounds over the cell whose coordinates are `cell`. The default evaluates the formula in
-    /// models; override it where [`AffineModel`] lacks an operation or another bound is
-    /// tighter.
+    /// models. Override it, with [`HAS_OWN_MODEL`](Self::HAS_OWN_MODEL), where [`AffineModel`] lacks an
+    /// operation or another bound is tighter.
     #[inline(always)]
     fn model<const N: usize>(&self, cell: Vector<AffineModel<N>, D>) -> AffineModel<N> {
-        self.distance(cell)
+        let formula = self.distance(cell);
+        match self.bounded_by_steepness() {
+            Some(evaluations) => evaluations.or_by_steepness(formula, &cell),
+            None => formula,
+        }
     }
 
     /// The promise of the distance.
@@ -99,11 +114,18 @@ pub trait Kernel<const D: usize>: Clone + Debug + Send + Sync + 'static {
 
 /// Implements [`Kernel`] for a type by the kernel in its field; only their parameters differ.
 macro_rules! answered_by_inner {
-    ($kernel:ident.$field:tt, $dimension:literal) => {
+    ($kernel:ident.$field:tt, $inner:ty, $dimension:literal) => {
         impl Kernel<$dimension> for $kernel {
             #[inline(always)]
             fn distance<S: Scalar>(&self, p: Vector<S, $dimension>) -> S {
                 self.$field.distance(p)
+            }
+
+            const HAS_OWN_MODEL: bool = <$inner as Kernel<$dimension>>::HAS_OWN_MODEL;
+
+            #[inline(always)]
+            fn bounded_by_steepness(&self) -> Option<$crate::kernel::Evaluations> {
+                Kernel::<$dimension>::bounded_by_steepness(&self.$field)
             }
 
             #[inline(always)]
@@ -131,7 +153,7 @@ pub(crate) use answered_by_inner;
 /// shape.
 #[inline(always)]
 pub(crate) fn face_if_on_it<S: Scalar>(outside: S, face: S, size: f64) -> S {
-    S::select_less(outside, S::constant(4.0 * S::EPSILON * size), face, outside)
+    S::select_less(outside, S::constant(4.0 * S::epsilon() * size), face, outside)
 }
 
 /// The distance, not inlined: eight copies of a formula in a loop over lanes, for each
@@ -233,17 +255,41 @@ pub(crate) fn tangent_model<K: Kernel<D>, const D: usize, const N: usize>(
     AffineModel::tangent(distance, normal.0, distance_at, &cell.0, rounding)
 }
 
-/// A cell's bound by its `value` at the centre and the Lipschitz constant.
-#[inline(always)]
-fn by_steepness<const D: usize, const N: usize>(
-    value: f64,
-    cell: &Vector<AffineModel<N>, D>,
-    operations: f64,
-    size: f64,
-) -> AffineModel<N> {
-    let centre = Vector(array!(i < D => cell.0[i].value));
-    let far = size + centre.norm() + AffineModel::radius(&cell.0);
-    AffineModel::lipschitz(value, 1.0, &cell.0, operations * f64::EPSILON * far)
+/// How the distances of a kernel are rounded: `operations` and `size` as for
+/// [`Rounding::of_operations`](crate::Rounding::of_operations).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Evaluations {
+    /// How many roundings, of numbers as large as the kernel and its point.
+    pub operations: f64,
+    /// The size of the kernel [m].
+    pub size: f64,
+}
+
+impl Evaluations {
+    /// A cell's bound by the `value` at its centre and the Lipschitz constant 1.
+    #[inline(always)]
+    fn by_steepness<const D: usize, const N: usize>(
+        self,
+        value: f64,
+        cell: &Vector<AffineModel<N>, D>,
+    ) -> AffineModel<N> {
+        let centre = Vector(array!(i < D => cell.0[i].value));
+        let far = self.size + centre.norm() + AffineModel::radius(&cell.0);
+        AffineModel::lipschitz(value, 1.0, &cell.0, self.operations * f64::EPSILON * far)
+    }
+
+    /// The model of a `formula`, or the cell's bound by the steepness where that says more: over cells
+    /// that are large or hold parts of the medial axis, a choice between distant values has wide
+    /// remainders.
+    #[inline(always)]
+    pub(crate) fn or_by_steepness<const D: usize, const N: usize>(
+        self,
+        formula: AffineModel<N>,
+        cell: &Vector<AffineModel<N>, D>,
+    ) -> AffineModel<N> {
+        let constant = self.by_steepness(formula.value, cell);
+        if says_more(&formula, &constant) { formula } else { constant }
+    }
 }
 
 /// A model with a slope says more than a constant that is as wide, and more than one that is
@@ -263,18 +309,4 @@ pub(crate) fn says_more<const N: usize>(
     let remainders = |model: &AffineModel<N>| model.lower + model.upper;
     let is_nearly_a_plane = remainders(model) <= SLIGHTLY * remainders(constant);
     is_nearly_a_plane || width(model) <= width(constant)
-}
-
-/// Bounds an exact kernel that is not convex over a cell by its formula or, where that bound is
-/// wider, by its value at the centre; `operations` and `size` as for [`tangent_model`].
-#[inline(always)]
-pub(crate) fn formula_model<K: Kernel<D>, const D: usize, const N: usize>(
-    kernel: &K,
-    cell: Vector<AffineModel<N>, D>,
-    operations: f64,
-    size: f64,
-) -> AffineModel<N> {
-    let formula = kernel.distance(cell);
-    let constant = by_steepness(formula.value, &cell, operations, size);
-    if says_more(&formula, &constant) { formula } else { constant }
 }

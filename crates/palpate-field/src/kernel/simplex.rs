@@ -125,7 +125,7 @@ impl<const D: usize> Face<D> {
     /// face, with another gradient, would be taken for the nearest.
     #[inline(always)]
     fn border<S: Scalar>(&self) -> S {
-        S::constant(-self.coordinate_ulp * S::EPSILON)
+        S::constant(-self.coordinate_ulp * S::epsilon())
     }
 
     /// Not negative if all other corners lie behind the face, seen from a point at the offset
@@ -221,6 +221,8 @@ impl<const D: usize> Kernel<D> for Simplex<D> {
         let outside = face_if_on_it(outside, inside, self.size);
         S::select_less(inside, zero, inside, outside)
     }
+
+    const HAS_OWN_MODEL: bool = true;
 
     fn model<const N: usize>(&self, cell: Vector<AffineModel<N>, D>) -> AffineModel<N> {
         tangent_model(self, cell, OPERATIONS, self.size)

@@ -13,9 +13,6 @@ use crate::vector::{Point, Vector, array, unrolled};
 /// The most points that a block holds.
 pub const BLOCK: usize = 64;
 
-/// The points of the short block, for searches that look at a few at a time.
-pub const SHORT: usize = 8;
-
 /// Per-lane storage, initialised up to `written()`.
 pub(crate) trait Rows {
     type Item: Copy;
@@ -75,7 +72,7 @@ impl Rows for () {
 
 /// Up to `W` numbers, one a point.
 #[derive(Clone)]
-pub struct Column<S: Lane, const W: usize> {
+pub struct Column<S: Lane, const W: usize = BLOCK> {
     lanes: S::Lanes<W>,
     written: usize,
 }
@@ -119,6 +116,13 @@ impl<S: Lane, const W: usize> Column<S, W> {
         self.lanes.write(i, number);
     }
 
+    /// `number` in the first `count` lanes.
+    pub(crate) fn all(count: usize, number: S) -> Self {
+        let mut column = Self::scratch();
+        column.fill(count, |_| number);
+        column
+    }
+
     /// Joins what is in the given lanes with the numbers of the first lanes of another column, in
     /// their order.
     #[inline(always)]
@@ -127,6 +131,15 @@ impl<S: Lane, const W: usize> Column<S, W> {
             let lane = usize::from(*lane);
             self.set(lane, join(self.get(lane), with.get(k)));
         }
+    }
+
+    /// Copies the lanes that are written in another column.
+    pub(crate) fn copy_from(&mut self, from: &Self) {
+        for i in 0..from.written {
+            // SAFETY: lane `i` is written.
+            self.lanes.write(i, unsafe { from.lanes.read(i) });
+        }
+        self.written = from.written;
     }
 
     /// Writes the first `count` lanes, and what completes their line with the
@@ -204,7 +217,7 @@ impl<S: Lane + fmt::Debug, const W: usize> fmt::Debug for Column<S, W> {
 /// assert_eq!(points.get(3), Vector([1.0, 2.0]));
 /// ```
 #[derive(Clone)]
-pub struct Block<S: Lane, const D: usize, const W: usize> {
+pub struct Block<S: Lane, const D: usize, const W: usize = BLOCK> {
     columns: [Column<S, W>; D],
     boxes: Boxes<D>,
 }
@@ -291,6 +304,11 @@ impl<S: Lane, const D: usize, const W: usize> Block<S, D, W> {
             self.boxes = Boxes::No;
         }
         unrolled!(k < D => self.columns[k].set(i, point.0[k]));
+    }
+
+    /// One column for each coordinate.
+    pub(crate) fn columns(&self) -> [&Column<S, W>; D] {
+        self.columns.each_ref()
     }
 
     /// The shape that all points are known to have.
@@ -382,7 +400,7 @@ impl<S: Lane + fmt::Debug, const D: usize, const W: usize> fmt::Debug for Block<
 
 /// The distances at up to `W` points, and their gradients.
 #[derive(Clone, Debug)]
-pub struct Gradients<T: Lane + fmt::Debug, const D: usize, const W: usize> {
+pub struct Gradients<T: Lane + fmt::Debug, const D: usize, const W: usize = BLOCK> {
     /// The distances [m].
     pub distance: Column<T, W>,
     /// The gradients.
@@ -400,6 +418,13 @@ impl<T: Lane + fmt::Debug, const D: usize, const W: usize> Gradients<T, D, W> {
     #[inline(always)]
     pub(crate) fn scratch() -> Self {
         Self { distance: Column::scratch(), gradient: Block::scratch() }
+    }
+
+    /// Copies the lanes that are written in others.
+    pub(crate) fn copy_from(&mut self, from: &Self) {
+        self.distance.copy_from(&from.distance);
+        unrolled!(k < D => self.gradient.columns[k].copy_from(&from.gradient.columns[k]));
+        self.gradient.boxes = from.gradient.boxes;
     }
 
     /// Writes the first `count` lanes, and what completes their line with the

@@ -3,10 +3,10 @@
 
 //! Runs the loops over blocks with the best instruction set of the machine.
 //!
-//! A loop over lanes is compiled three times, with the instructions that every
-//! x86-64 machine has, with AVX2 and with AVX-512, and the copy to run is chosen
-//! once at run time; LLVM vectorises each. Other architectures have one copy. All
-//! copies give the same bits, since no formula uses a fused multiply-add.
+//! The loops of kernels and operators are compiled twice, with AVX2 and with AVX-512, and the copy to
+//! run is chosen at run time; LLVM vectorises each. Machines without AVX2 have no such loops: their
+//! blocks go through a [`Tape`](super::Tape), or point by point. All ways give the same bits, since no
+//! formula uses a fused multiply-add.
 
 use std::sync::atomic::{AtomicU8, Ordering};
 
@@ -52,8 +52,7 @@ impl InstructionSet {
     }
 
     /// The instruction set that evaluates blocks: the widest available, unless
-    /// [`select`](Self::select) chose another. Short blocks use AVX2 at most: a division of
-    /// 8 numbers takes longer with AVX-512 on some machines, and no less on others.
+    /// [`select`](Self::select) chose another.
     #[inline(always)]
     #[must_use]
     pub fn in_use() -> Self {
@@ -63,6 +62,12 @@ impl InstructionSet {
             3 => Self::Avx512,
             _ => Self::detect(),
         }
+    }
+
+    /// `true` if the loops of kernels and operators are compiled for it.
+    #[inline(always)]
+    pub(crate) fn has_loops(self) -> bool {
+        self >= Self::Avx2
     }
 
     /// Evaluates all blocks of this process with `self` from now on, to compare
@@ -117,7 +122,36 @@ where
     unsafe { out.set_written(lanes) };
 }
 
-/// Runs `job` on the lanes of `a` and `b` with the instruction set in use.
+/// Runs `job` on the lanes of `a` and `b` with AVX2 or AVX-512.
+///
+/// # Panics
+///
+/// On machines without AVX2, for which it is not compiled.
+#[inline(always)]
+pub(crate) fn run_wide<A, B, Out, J>(job: &J, a: &A, b: &B, count: usize, out: &mut Out)
+where
+    A: Rows,
+    B: Rows,
+    Out: RowsMut,
+    J: Job<A::Item, B::Item, Out::Item>,
+{
+    #[cfg(target_arch = "x86_64")]
+    {
+        if InstructionSet::in_use() == InstructionSet::Avx512 {
+            // SAFETY: in_use() returns only sets for which is_available() found
+            // every feature that the function is compiled with.
+            return unsafe { with_avx512(job, a, b, count, out) };
+        }
+        // Whoever selects another set meanwhile changes no bit of the answer.
+        if InstructionSet::in_use() == InstructionSet::Avx2 || InstructionSet::Avx2.is_available() {
+            // SAFETY: as above.
+            return unsafe { with_avx2(job, a, b, count, out) };
+        }
+    }
+    panic!("loops of kernels are compiled for AVX2 alone");
+}
+
+/// Runs `job` on the lanes of `a` and `b` with the instruction set in use, on every machine.
 #[inline(always)]
 pub(crate) fn run<A, B, Out, J>(job: &J, a: &A, b: &B, count: usize, out: &mut Out)
 where

@@ -60,11 +60,6 @@ pub trait Lane: Scalar + Send + Sync + 'static {
     /// The lanes of a line: loops run over whole lines.
     const LINE: usize;
 
-    /// `true` if a placed leaf moves each point in the loop that evaluates its kernel: the
-    /// motion of the next point then fills the latency of the roots of this one. `false`
-    /// where the registers cannot hold the numbers of both.
-    const MOVED_IN_LOOP: bool;
-
     /// The smallest and the largest value that the number stands for.
     fn range(&self) -> (f64, f64);
 
@@ -159,7 +154,6 @@ macro_rules! float_lane {
         impl Lane for $t {
             type Lanes<const W: usize> = Lanes<$t, W>;
             const LINE: usize = <$t as Float>::LINE;
-            const MOVED_IN_LOOP: bool = true;
 
             #[inline(always)]
             fn range(&self) -> (f64, f64) {
@@ -175,7 +169,6 @@ float_lane!(f64);
 impl<const N: usize> Lane for AffineModel<N> {
     type Lanes<const W: usize> = ModelLanes<N, W>;
     const LINE: usize = 8;
-    const MOVED_IN_LOOP: bool = false;
 
     #[inline(always)]
     fn range(&self) -> (f64, f64) {

@@ -17,9 +17,11 @@ mod block;
 mod extent;
 mod instruction_set;
 mod lanes;
+mod tape;
 
 pub(crate) use block::Boxes;
-pub use block::{BLOCK, Block, Column, Gradients, SHORT};
+pub use block::{BLOCK, Block, Column, Gradients};
 pub use instruction_set::{InstructionSet, Wide, wide};
-pub(crate) use instruction_set::{Job, PointJob, run, run_point};
+pub(crate) use instruction_set::{Job, PointJob, run, run_point, run_wide};
 pub use lanes::{Lane, LaneArray, Lanes, ModelLanes};
+pub(crate) use tape::{OnTape, Tape};

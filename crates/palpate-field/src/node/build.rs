@@ -9,7 +9,6 @@
 //! not generic, one for the plane and one for space.
 
 use std::any::Any;
-use std::sync::Arc;
 
 use super::Node;
 use crate::error::ShapeError;
@@ -190,7 +189,7 @@ fn moved<const D: usize>(pose: Pose<D>, of: Shape<D>) -> Result<Normal<D>, Shape
 }
 
 fn own<const D: usize>(shape: &Shape<D>) -> SharedField<D> {
-    Arc::clone(shape.field())
+    shape.field().clone()
 }
 
 fn all<const D: usize>(shapes: &[Shape<D>]) -> Vec<SharedField<D>> {
@@ -226,6 +225,6 @@ fn field<S: Dimension<D>, const D: usize>(
         Node::Twisted { rate, of } => S::twisted(own(of), *rate),
         Node::Extruded { height, of } => S::extruded(own(of), *height),
         Node::Revolved { of } => S::revolved(own(of)),
-        Node::Opaque(opaque) => Ok(Arc::clone(&opaque.field)),
+        Node::Opaque(opaque) => Ok(opaque.field.clone()),
     }
 }

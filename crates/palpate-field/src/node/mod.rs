@@ -9,11 +9,10 @@ mod faces;
 mod primitive;
 mod text;
 
-use std::any::Any;
 use std::fmt;
 use std::sync::Arc;
 
-use crate::field::{Custom, CustomField, SharedField};
+use crate::field::{CustomField, SharedField};
 use crate::operator::Copies;
 use crate::pose::Pose;
 use crate::shape::Shape;
@@ -191,23 +190,11 @@ pub enum Node<const D: usize> {
 pub struct Opaque<const D: usize> {
     kind: &'static str,
     field: SharedField<D>,
-    /// The same as `Custom<F>`, if it is a field.
-    custom: Option<Arc<dyn Any + Send + Sync>>,
 }
 
 impl<const D: usize> Opaque<D> {
     pub(crate) fn new(kind: &'static str, field: SharedField<D>) -> Self {
-        Self { kind, field, custom: None }
-    }
-
-    /// Of a field.
-    pub(crate) fn of_custom<F: CustomField<D>>(field: &Arc<Custom<F>>) -> Self {
-        let kind = std::any::type_name::<F>();
-        Self {
-            kind,
-            field: Arc::<Custom<F>>::clone(field),
-            custom: Some(Arc::<Custom<F>>::clone(field)),
-        }
+        Self { kind, field }
     }
 
     /// The name of the Rust type of the kernel, field or closure.
@@ -242,7 +229,7 @@ impl<const D: usize> Opaque<D> {
     /// ```
     #[must_use]
     pub fn custom<F: CustomField<D>>(&self) -> Option<&F> {
-        self.custom.as_ref()?.downcast_ref::<Custom<F>>().map(|custom| &custom.0)
+        self.field.custom()?.downcast_ref()
     }
 
     /// What determines its values, if that is known.
@@ -254,8 +241,7 @@ impl<const D: usize> Opaque<D> {
 
 impl<const D: usize> PartialEq for Opaque<D> {
     fn eq(&self, other: &Self) -> bool {
-        let is_copy = std::ptr::addr_eq(Arc::as_ptr(&self.field), Arc::as_ptr(&other.field));
-        is_copy
+        self.field.is_same(&other.field)
             || self.kind == other.kind
                 && self.content().is_some_and(|content| Some(content) == other.content())
     }

@@ -18,7 +18,6 @@
 //! taken. It equals the field on the wall, and both vary by at most the Lipschitz
 //! constant, so it is wrong by twice that times the depth beyond the wall at most.
 
-use std::sync::Arc;
 
 use super::guard::guarded;
 use crate::bounds::{Aabb, Bounds};
@@ -345,7 +344,7 @@ fn with_neighbours<const D: usize>(
         .into_iter()
         .map(|beside| {
             let map = Tile { grid, beside, alone: false };
-            Warped::shared(map, Arc::clone(&child), promise)
+            Warped::shared(map, child.clone(), promise)
         })
         .collect();
     let nearest = Combined::shared(Minimum, tiles?, promise)?;

@@ -123,7 +123,10 @@ impl<T: Float, const D: usize> Neg for Dual<T, D> {
 }
 
 impl<T: Float, const D: usize> Scalar for Dual<T, D> {
-    const EPSILON: f64 = T::EPSILON;
+    #[inline(always)]
+    fn epsilon() -> f64 {
+        T::epsilon()
+    }
 
     #[inline(always)]
     fn constant(value: f64) -> Self {

@@ -3,12 +3,9 @@
 
 //! Formulas as data.
 
-use std::collections::HashMap;
-use std::collections::hash_map::Entry;
 use std::fmt;
-use std::mem::{Discriminant, discriminant};
 
-use super::{Circular, Cubic, Exponential, Quadratic, Quartic, Root, Scalar};
+use crate::machine::Tape;
 
 /// What a step of an [`Expression`] does with its arguments: the operations of [`Scalar`].
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -93,8 +90,8 @@ impl Step {
 /// [`Shape::distance`](crate::Shape::distance).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Expression {
-    steps: Vec<Step>,
-    result: usize,
+    pub(super) steps: Vec<Step>,
+    pub(super) result: usize,
 }
 
 impl Expression {
@@ -117,14 +114,7 @@ impl Expression {
     /// If the point has fewer coordinates than the expression uses.
     #[must_use]
     pub fn evaluate(&self, point: &[f64]) -> f64 {
-        let mut values: Vec<f64> = Vec::with_capacity(self.steps.len());
-        let mut x = Vec::new();
-        for step in &self.steps {
-            x.clear();
-            x.extend(step.arguments.iter().map(|argument| values[*argument]));
-            values.push(step.operation.apply(&x, point));
-        }
-        values[self.result]
+        Tape::of_expression(self).at(point)
     }
 
     /// How often the result uses each step.
@@ -141,45 +131,8 @@ impl Expression {
 }
 
 impl Operation {
-    fn apply(self, x: &[f64], point: &[f64]) -> f64 {
-        match self {
-            Self::Coordinate(axis) => point[axis],
-            Self::Constant(value) => value,
-            Self::Add => x[0] + x[1],
-            Self::Sub => x[0] - x[1],
-            Self::Mul => x[0] * x[1],
-            Self::Div => x[0] / x[1],
-            Self::Neg => -x[0],
-            Self::Abs => x[0].abs(),
-            Self::Squared => x[0].squared(),
-            Self::Sqrt => Scalar::sqrt(x[0]),
-            Self::Min => Scalar::min(x[0], x[1]),
-            Self::Max => Scalar::max(x[0], x[1]),
-            Self::SelectLess => f64::select_less(x[0], x[1], x[2], x[3]),
-            Self::Sin => Scalar::sin(x[0]),
-            Self::Cos => Scalar::cos(x[0]),
-            Self::Turn => Scalar::turn(x[0], x[1]),
-            Self::Norm => match *x {
-                [a] => f64::norm([a]),
-                [a, b] => f64::norm([a, b]),
-                [a, b, c] => f64::norm([a, b, c]),
-                _ => unreachable!("the norm of {} numbers", x.len()),
-            },
-            Self::Orthant => match *x {
-                [a] => f64::orthant([a]),
-                [a, b] => f64::orthant([a, b]),
-                [a, b, c] => f64::orthant([a, b, c]),
-                _ => unreachable!("the orthant of {} numbers", x.len()),
-            },
-            Self::SmoothMin { profile, unit } => smooth_min(profile, x[0], x[1], unit),
-            Self::NearestMultiple { spacing, low, high } => {
-                x[0].nearest_multiple(spacing, low, high)
-            }
-        }
-    }
-
     /// Whether it holds numbers of a shape.
-    fn has_numbers(self) -> bool {
+    pub(super) fn has_numbers(self) -> bool {
         matches!(
             self,
             Self::Constant(_) | Self::SmoothMin { .. } | Self::NearestMultiple { .. }
@@ -187,7 +140,7 @@ impl Operation {
     }
 
     /// What tells operations of one kind apart: a negative zero is not a zero.
-    fn parameters(self) -> (&'static str, [u64; 3]) {
+    pub(super) fn parameters(self) -> (&'static str, [u64; 3]) {
         match self {
             Self::Coordinate(axis) => ("", [axis as u64, 0, 0]),
             Self::Constant(value) => ("", [value.to_bits(), 0, 0]),
@@ -197,61 +150,6 @@ impl Operation {
             }
             _ => ("", [0; 3]),
         }
-    }
-}
-
-/// The smooth minimum by the name of its profile.
-fn smooth_min(profile: &str, a: f64, b: f64, unit: f64) -> f64 {
-    use super::Blend;
-    match profile {
-        Quadratic::NAME => a.smooth_min::<Quadratic>(b, unit),
-        Cubic::NAME => a.smooth_min::<Cubic>(b, unit),
-        Quartic::NAME => a.smooth_min::<Quartic>(b, unit),
-        Circular::NAME => a.smooth_min::<Circular>(b, unit),
-        Root::NAME => a.smooth_min::<Root>(b, unit),
-        Exponential::NAME => a.smooth_min::<Exponential>(b, unit),
-        _ => unreachable!("no profile {profile}"),
-    }
-}
-
-/// What makes two steps the same.
-type Key = (Discriminant<Operation>, (&'static str, [u64; 3]), Vec<usize>);
-
-/// The steps recorded so far.
-#[derive(Debug, Default)]
-pub(super) struct Graph {
-    steps: Vec<Step>,
-    known: HashMap<Key, usize>,
-    /// Whether equal constants are steps of their own.
-    has_slots: bool,
-}
-
-impl Graph {
-    /// A graph in which each constant is a step of its own, and each operation with numbers of
-    /// its own too.
-    pub(super) fn with_slots() -> Self {
-        Self { has_slots: true, ..Self::default() }
-    }
-
-    /// The number of the step that does this, a new one if there is none.
-    pub(super) fn place(&mut self, operation: Operation, arguments: Vec<usize>) -> usize {
-        if self.has_slots && operation.has_numbers() {
-            self.steps.push(Step { operation, arguments });
-            return self.steps.len() - 1;
-        }
-        let key = (discriminant(&operation), operation.parameters(), arguments.clone());
-        match self.known.entry(key) {
-            Entry::Occupied(known) => *known.get(),
-            Entry::Vacant(place) => {
-                self.steps.push(Step { operation, arguments });
-                *place.insert(self.steps.len() - 1)
-            }
-        }
-    }
-
-    /// The expression whose value is that of step `result`.
-    pub(super) fn finish(self, result: usize) -> Expression {
-        Expression { steps: self.steps, result }
     }
 }
 

@@ -19,7 +19,7 @@ pub trait Float:
 }
 
 macro_rules! float {
-    ($t:ident, $line:literal, $double:ident, $single:ident, $stored:ident) => {
+    ($t:ident, $line:literal) => {
         impl Float for $t {
             const LINE: usize = $line;
 
@@ -30,7 +30,10 @@ macro_rules! float {
         }
 
         impl Scalar for $t {
-            const EPSILON: f64 = $t::EPSILON as f64;
+            #[inline(always)]
+            fn epsilon() -> f64 {
+                f64::from($t::EPSILON)
+            }
 
             #[inline(always)]
             fn constant(value: f64) -> Self {
@@ -40,24 +43,6 @@ macro_rules! float {
             #[inline(always)]
             fn scale(self, factor: f64) -> Self {
                 self * factor as $t
-            }
-
-            #[inline(always)]
-            fn minus_stored(self, $double: f64, $single: f32) -> Self {
-                self - $stored
-            }
-
-            #[inline(always)]
-            fn stored_sum<const N: usize>(
-                x: [Self; N],
-                $double: &[f64; N],
-                $single: &[f32; N],
-            ) -> Self {
-                let mut sum = x[0] * $stored[0];
-                unrolled!(i < N => if i > 0 {
-                    sum += x[i] * $stored[i];
-                });
-                sum
             }
 
             #[inline(always)]
@@ -147,5 +132,5 @@ macro_rules! float {
     };
 }
 
-float!(f32, 16, _double, single, single);
-float!(f64, 8, double, _single, double);
+float!(f32, 16);
+float!(f64, 8);

@@ -18,6 +18,7 @@ mod dual;
 pub(crate) mod exponential;
 mod expression;
 mod float;
+mod graph;
 mod model;
 pub(crate) mod power;
 mod recorded;
@@ -29,11 +30,12 @@ pub use blend::{Blend, Circular, Cubic, Exponential, Quadratic, Quartic, Root};
 pub use dual::Dual;
 pub use expression::{Expression, Operation, Step};
 pub use float::Float;
+pub(crate) use graph::{Graph, Purpose, Recipe};
 pub(crate) use model::TurnedBoxes;
 pub use model::{AffineModel, Model, SpaceTimeModel};
 pub use recorded::Recorded;
 
-use crate::vector::{array, unrolled};
+use crate::vector::unrolled;
 
 /// A number that the formulas of this crate can be evaluated with.
 ///
@@ -51,7 +53,7 @@ pub trait Scalar:
     + Neg<Output = Self>
 {
     /// Spacing of the numbers just above one.
-    const EPSILON: f64;
+    fn epsilon() -> f64;
 
     /// The number `value`, rounded to what `Self` can hold.
     fn constant(value: f64) -> Self;
@@ -72,18 +74,10 @@ pub trait Scalar:
         sum
     }
 
-    /// `self` less `double`, or less `single` where that is what `Self` holds: constants
-    /// kept in both precisions spare a conversion in every evaluation.
+    /// `self` less a constant: in a [`Model`] only the value is rounded.
     #[inline(always)]
-    fn minus_stored(self, double: f64, _single: f32) -> Self {
-        self - Self::constant(double)
-    }
-
-    /// As [`weighted_sum`](Self::weighted_sum), with weights kept in both
-    /// precisions.
-    #[inline(always)]
-    fn stored_sum<const N: usize>(x: [Self; N], double: &[f64; N], _single: &[f32; N]) -> Self {
-        Self::weighted_sum(x, double)
+    fn minus(self, constant: f64) -> Self {
+        self - Self::constant(constant)
     }
 
     /// `self²`.
@@ -143,8 +137,7 @@ pub trait Scalar:
     /// ```
     #[inline(always)]
     fn power_norm<const P: u32, const N: usize>(x: [Self; N]) -> Self {
-        let split = power::split::<Self, P, N>(x);
-        split.largest * split.root
+        power::norm::<Self, P, N>(x)
     }
 
     /// The signed distance from `q` to the orthant `qᵢ ≤ 0`:
@@ -157,14 +150,7 @@ pub trait Scalar:
     /// corners: `‖max(q, 0)‖_P + min(max qᵢ, 0)`, no more than the distance.
     #[inline(always)]
     fn power_orthant<const P: u32, const N: usize>(q: [Self; N]) -> Self {
-        // Zero first in one and last in the other, so that on a face just one of the
-        // two has a slope.
-        let zero = Self::constant(0.0);
-        let mut largest = q[0];
-        for component in &q[1..] {
-            largest = largest.max(*component);
-        }
-        Self::power_norm::<P, N>(array!(i < N => zero.max(q[i]))) + largest.min(zero)
+        power::orthant::<Self, P, N>(q)
     }
 
     /// The smaller of the two, the crease between them filled by `B`, whose length

@@ -44,6 +44,26 @@ pub(super) fn split<S: Scalar, const P: u32, const N: usize>(x: [S; N]) -> Split
     Split { largest, root, shares }
 }
 
+/// The norm of the powers `P`: [`Scalar::power_norm`].
+#[inline(always)]
+pub(super) fn norm<S: Scalar, const P: u32, const N: usize>(x: [S; N]) -> S {
+    let split = split::<S, P, N>(x);
+    split.largest * split.root
+}
+
+/// The orthant with the norm of the powers `P`: [`Scalar::power_orthant`].
+#[inline(always)]
+pub(super) fn orthant<S: Scalar, const P: u32, const N: usize>(q: [S; N]) -> S {
+    // Zero first in one and last in the other, so that on a face just one of the
+    // two has a slope.
+    let zero = S::constant(0.0);
+    let mut largest = q[0];
+    for component in &q[1..] {
+        largest = largest.max(*component);
+    }
+    S::power_norm::<P, N>(array!(i < N => zero.max(q[i]))) + largest.min(zero)
+}
+
 impl<T: Float, const N: usize> Split<T, N> {
     /// The gradient `sign(xᵢ)·(|xᵢ|/n)^(P−1)`; at zero the first unit vector.
     ///

@@ -4,11 +4,14 @@
 //! A number that records its own formula.
 
 use std::cell::RefCell;
-use std::marker::PhantomData;
 use std::ops::{Add, Div, Mul, Neg, Sub};
+use std::sync::Arc;
 
-use super::expression::{Graph, Operation};
-use super::{Blend, Expression, Float, Scalar};
+use super::expression::Operation;
+use super::graph::{Graph, Purpose, Recipe};
+use super::{Blend, Expression, Scalar, power};
+use crate::field::Asked;
+use crate::kernel::Evaluations;
 use crate::vector::Vector;
 
 thread_local! {
@@ -18,19 +21,64 @@ thread_local! {
 
 /// A number of which only its formula is known: operations on it are recorded.
 ///
-/// It has a meaning within the call of [`Expression::record`] that made it alone. Thresholds
-/// of rounding in the formula are those of `T`, in which it will be evaluated.
+/// It has a meaning within the call of [`Expression::record`] that made it alone.
 #[derive(Clone, Copy, Debug)]
-pub struct Recorded<T = f64> {
+pub struct Recorded {
     step: usize,
-    precision: PhantomData<T>,
 }
 
-impl<T> Recorded<T> {
+impl Recorded {
     fn new<const N: usize>(operation: Operation, arguments: [Self; N]) -> Self {
+        Self::place(operation, &arguments)
+    }
+
+    /// Not inlined, nor are the operations: each kernel has its own code that calls them.
+    #[inline(never)]
+    fn place(operation: Operation, arguments: &[Self]) -> Self {
         let arguments = arguments.iter().map(|x| x.step).collect();
-        let step = GRAPH.with_borrow_mut(|graph| graph.place(operation, arguments));
-        Self { step, precision: PhantomData }
+        Self { step: GRAPH.with_borrow_mut(|graph| graph.place(operation, arguments)) }
+    }
+
+    #[inline(never)]
+    fn add_recipe(recipe: Recipe, arguments: &[Self]) -> Self {
+        let arguments = arguments.iter().map(|x| x.step).collect();
+        Self { step: GRAPH.with_borrow_mut(|graph| graph.add(recipe, arguments)) }
+    }
+
+    /// What is being recorded.
+    pub(crate) fn purpose() -> Purpose {
+        GRAPH.with_borrow(|graph| graph.purpose)
+    }
+
+    /// The answer of a field that no tape has the operations of.
+    pub(crate) fn asked<const D: usize>(field: Arc<dyn Asked>, p: Vector<Self, D>) -> Self {
+        Self::add_recipe(Recipe::Ask(field), &p.0)
+    }
+
+    /// In a tape of models, the formula or its bound by the steepness at `p`, whichever says more.
+    pub(crate) fn or_by_steepness<const D: usize>(
+        self,
+        p: Vector<Self, D>,
+        evaluations: Evaluations,
+    ) -> Self {
+        if Self::purpose() != Purpose::Models {
+            return self;
+        }
+        let recipe = Recipe::OrBySteepness(evaluations);
+        Self::add_recipe(recipe, &[&[self], p.0.as_slice()].concat())
+    }
+
+    /// The graph of a formula in `D` coordinates, and the number of the step that is the result.
+    pub(crate) fn graph<const D: usize>(
+        purpose: Purpose,
+        formula: impl FnOnce(Vector<Self, D>) -> Option<Self>,
+    ) -> Option<(Graph, usize)> {
+        // A formula may record another: the graph around it waits.
+        let around = GRAPH.replace(Graph::new(purpose));
+        let coordinate = |axis| Self::new(Operation::Coordinate(axis), []);
+        let result = formula(Vector(std::array::from_fn(coordinate)));
+        let graph = GRAPH.replace(around);
+        Some((graph, result?.step))
     }
 }
 
@@ -47,35 +95,25 @@ impl Expression {
     pub fn record<const D: usize>(
         formula: impl FnOnce(Vector<Recorded, D>) -> Option<Recorded>,
     ) -> Option<Self> {
-        Self::record_with(Graph::default(), formula)
+        Self::record_for(Purpose::Formula, formula)
     }
 
-    /// As [`record`](Self::record), for single precision, and with each constant as a step of its
-    /// own.
-    pub(crate) fn record_with_slots<const D: usize>(
-        formula: impl FnOnce(Vector<Recorded<f32>, D>) -> Option<Recorded<f32>>,
+    /// As [`record`](Self::record), for some purpose.
+    pub(crate) fn record_for<const D: usize>(
+        purpose: Purpose,
+        formula: impl FnOnce(Vector<Recorded, D>) -> Option<Recorded>,
     ) -> Option<Self> {
-        Self::record_with(Graph::with_slots(), formula)
-    }
-
-    fn record_with<T: Float, const D: usize>(
-        graph: Graph,
-        formula: impl FnOnce(Vector<Recorded<T>, D>) -> Option<Recorded<T>>,
-    ) -> Option<Self> {
-        // A formula may record another: the graph around it waits.
-        let around = GRAPH.replace(graph);
-        let coordinate = |axis| Recorded::new(Operation::Coordinate(axis), []);
-        let result = formula(Vector(std::array::from_fn(coordinate)));
-        let graph = GRAPH.replace(around);
-        Some(graph.finish(result?.step))
+        let (graph, result) = Recorded::graph(purpose, formula)?;
+        graph.finish(result)
     }
 }
 
 macro_rules! arithmetic {
     ($($operator:ident $method:ident),*) => {
-        $(impl<T> $operator for Recorded<T> {
+        $(impl $operator for Recorded {
             type Output = Self;
 
+            #[inline(never)]
             fn $method(self, other: Self) -> Self {
                 Self::new(Operation::$operator, [self, other])
             }
@@ -85,57 +123,86 @@ macro_rules! arithmetic {
 
 arithmetic!(Add add, Sub sub, Mul mul, Div div);
 
-impl<T> Neg for Recorded<T> {
+impl Neg for Recorded {
     type Output = Self;
 
+    #[inline(never)]
     fn neg(self) -> Self {
         Self::new(Operation::Neg, [self])
     }
 }
 
-impl<T: Float> Scalar for Recorded<T> {
-    const EPSILON: f64 = T::EPSILON;
+impl Scalar for Recorded {
+    /// That of the numbers in which the formula will be evaluated.
+    #[inline(never)]
+    fn epsilon() -> f64 {
+        match Self::purpose() {
+            Purpose::Shader => f64::from(f32::EPSILON),
+            _ => f64::EPSILON,
+        }
+    }
 
+    #[inline(never)]
     fn constant(value: f64) -> Self {
         Self::new(Operation::Constant(value), [])
     }
 
+    #[inline(never)]
     fn scale(self, factor: f64) -> Self {
         self * Self::constant(factor)
     }
 
+    #[inline(never)]
     fn abs(self) -> Self {
         Self::new(Operation::Abs, [self])
     }
 
+    fn weighted_sum<const N: usize>(x: [Self; N], weights: &[f64; N]) -> Self {
+        if Self::purpose().is_tape() && N <= 3 {
+            let mut all = [0.0; 3];
+            all[..N].copy_from_slice(weights);
+            return Self::add_recipe(Recipe::WeightedSum(all), &x);
+        }
+        let terms = x.into_iter().zip(weights).map(|(x, weight)| x.scale(*weight));
+        terms.reduce(Add::add).unwrap_or_else(|| Self::constant(0.0))
+    }
+
+    #[inline(never)]
     fn squared(self) -> Self {
         Self::new(Operation::Squared, [self])
     }
 
+    #[inline(never)]
     fn sqrt(self) -> Self {
         Self::new(Operation::Sqrt, [self])
     }
 
+    #[inline(never)]
     fn min(self, other: Self) -> Self {
         Self::new(Operation::Min, [self, other])
     }
 
+    #[inline(never)]
     fn max(self, other: Self) -> Self {
         Self::new(Operation::Max, [self, other])
     }
 
+    #[inline(never)]
     fn select_less(a: Self, b: Self, if_less: Self, otherwise: Self) -> Self {
         Self::new(Operation::SelectLess, [a, b, if_less, otherwise])
     }
 
+    #[inline(never)]
     fn sin(self) -> Self {
         Self::new(Operation::Sin, [self])
     }
 
+    #[inline(never)]
     fn cos(self) -> Self {
         Self::new(Operation::Cos, [self])
     }
 
+    #[inline(never)]
     fn turn(x: Self, y: Self) -> Self {
         Self::new(Operation::Turn, [x, y])
     }
@@ -144,12 +211,33 @@ impl<T: Float> Scalar for Recorded<T> {
         Self::new(Operation::Norm, x)
     }
 
+    fn power_norm<const P: u32, const N: usize>(x: [Self; N]) -> Self {
+        if Self::purpose() == Purpose::Models {
+            return Self::add_recipe(Recipe::PowerNorm(P), &x);
+        }
+        power::norm::<Self, P, N>(x)
+    }
+
     fn orthant<const N: usize>(q: [Self; N]) -> Self {
         Self::new(Operation::Orthant, q)
     }
 
+    fn power_orthant<const P: u32, const N: usize>(q: [Self; N]) -> Self {
+        if Self::purpose() == Purpose::Models {
+            return Self::add_recipe(Recipe::PowerOrthant(P), &q);
+        }
+        power::orthant::<Self, P, N>(q)
+    }
+
     fn nearest_multiple(self, spacing: f64, low: f64, high: f64) -> Self {
         Self::new(Operation::NearestMultiple { spacing, low, high }, [self])
+    }
+
+    fn give_or_take(self, by: Self) -> Self {
+        match Self::purpose() {
+            Purpose::Models => Self::add_recipe(Recipe::GiveOrTake, &[self, by]),
+            _ => self,
+        }
     }
 
     fn smooth_min<B: Blend>(self, other: Self, unit: f64) -> Self {

@@ -123,7 +123,7 @@ fn turned<T: Float>(angle: T, quarters: u32) -> T {
 /// first ones are `spared` in single precision.
 #[inline(always)]
 fn polynomial<T: Float, const N: usize>(y: T, coefficients: &[f64; N], spared: usize) -> T {
-    let first = if T::EPSILON > f64::EPSILON { spared } else { 0 };
+    let first = if T::epsilon() > f64::EPSILON { spared } else { 0 };
     let mut sum = T::constant(coefficients[first]);
     for coefficient in &coefficients[first + 1..] {
         sum = sum * y + T::constant(*coefficient);

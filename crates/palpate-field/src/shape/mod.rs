@@ -13,16 +13,13 @@ mod transform;
 use std::sync::Arc;
 
 use crate::error::ShapeError;
-use crate::field::{
-    Custom, CustomField, DifferentiateBlock, EvaluateBlock, Field, FromClosure, Leaf,
-    SharedField,
-};
+use crate::field::{Custom, CustomField, Evaluate, FromClosure, Leaf, SharedField};
 use crate::kernel::Kernel;
-use crate::machine::{Block, Column, Gradients, Lane};
+use crate::machine::{Block, Column, Gradients};
 use crate::node::{self, Node, Opaque, Primitive};
 use crate::pose::Pose;
 use crate::promise::Promise;
-use crate::scalar::{Dual, Expression, Float};
+use crate::scalar::{Dual, Expression, Purpose};
 use crate::vector::{Point, Vector};
 
 /// A signed distance field in `D` dimensions, cheap to clone.
@@ -60,8 +57,8 @@ impl<const D: usize> Shape<D> {
     pub fn from_kernel(kernel: impl Kernel<D>) -> Self {
         let primitive = Primitive::of_kernel(&kernel);
         let kind = std::any::type_name_of_val(&kernel);
-        let field: SharedField<D> = Arc::new(Leaf::new(kernel));
-        let opaque = || Node::Opaque(Opaque::new(kind, Arc::clone(&field)));
+        let field = SharedField::new(Leaf::new(kernel));
+        let opaque = || Node::Opaque(Opaque::new(kind, field.clone()));
         let node = primitive.map_or_else(opaque, Node::Primitive);
         Self::of_parts(field, node)
     }
@@ -92,8 +89,9 @@ impl<const D: usize> Shape<D> {
 
     /// A [`CustomField`] as a shape.
     pub fn custom(field: impl CustomField<D>) -> Self {
-        let field = Arc::new(Custom(field));
-        let node = Node::Opaque(Opaque::of_custom(&field));
+        let kind = std::any::type_name_of_val(&field);
+        let field = SharedField::new(Custom(field));
+        let node = Node::Opaque(Opaque::new(kind, field.clone()));
         Self::of_parts(field, node)
     }
 
@@ -121,8 +119,8 @@ impl<const D: usize> Shape<D> {
         closure: impl Fn(Vector<Dual<f64, D>, D>) -> Dual<f64, D> + Send + Sync + 'static,
     ) -> Self {
         let kind = std::any::type_name_of_val(&closure);
-        let field: SharedField<D> = Arc::new(Custom(FromClosure { closure, promise }));
-        let node = Node::Opaque(Opaque::new(kind, Arc::clone(&field)));
+        let field = SharedField::new(Custom(FromClosure { closure, promise }));
+        let node = Node::Opaque(Opaque::new(kind, field.clone()));
         Self::of_parts(field, node)
     }
 
@@ -198,7 +196,7 @@ impl<const D: usize> Shape<D> {
     /// ```
     #[must_use]
     pub fn shader_formula(&self) -> Option<Expression> {
-        Expression::record_with_slots(|p| self.field.record(p))
+        Expression::record_for(Purpose::Shader, |p| self.field.record(p))
     }
 
     /// How many operators are nested in the shape, with the leaf; at most
@@ -232,53 +230,53 @@ impl<const D: usize> Shape<D> {
         (distance, gradient)
     }
 
-    /// The distances in the first `count` lanes of a block [m]; the other lanes
+    /// The distances [m], or bounds of them, in the first `count` lanes of a block; the other lanes
     /// of `out` are unspecified.
     ///
-    /// Blocks hold [`BLOCK`] or [`SHORT`](crate::SHORT) points of `f64`, [`BLOCK`] of `f32`,
-    /// and [`BLOCK`] cells of [`Model`](crate::scalar::Model).
+    /// Blocks hold points in `f64`, or cells as [`Model`](crate::scalar::Model) or
+    /// [`SpaceTimeModel`](crate::scalar::SpaceTimeModel).
     #[inline]
-    pub fn block_distances<S: Lane, const W: usize>(
+    pub fn block_distances<S: Evaluate>(
         &self,
-        points: &Block<S, D, W>,
+        points: &Block<S, D>,
         count: usize,
-        out: &mut Column<S, W>,
-    ) where
-        dyn Field<D>: EvaluateBlock<S, D, W>,
-    {
-        self.field.distances(points, count, out);
+        out: &mut Column<S>,
+    ) {
+        self.field.evaluate(points, count, out);
     }
 
     /// The distances and gradients in the first `count` lanes of a block; the
     /// other lanes of `out` are unspecified.
     #[inline]
-    pub fn block_gradients<T: Float + Lane, const W: usize>(
+    pub fn block_gradients(
         &self,
-        points: &Block<T, D, W>,
+        points: &Block<f64, D>,
         count: usize,
-        out: &mut Gradients<T, D, W>,
-    ) where
-        dyn Field<D>: DifferentiateBlock<T, D, W>,
-    {
-        self.field.distances_gradients(points, count, out);
+        out: &mut Gradients<f64, D>,
+    ) {
+        self.field.gradients(points, count, out);
     }
 
-    /// The distance in single precision at a point in single precision.
+    /// Makes ready what the first answers of blocks would allocate. A servo, which may not allocate, is
+    /// handed shapes that are prepared. On machines with AVX2 there is nothing to do.
+    pub fn prepare(&self) {
+        self.field.prepare();
+    }
+
+    /// The [`distance`](Self::distance) at a point in single precision, rounded once.
     #[inline]
     #[must_use]
     pub fn distance_f32(&self, p: impl Into<Vector<f32, D>>) -> f32 {
-        let (x, y, z) = p.into().coordinates();
-        self.field.distance(x, y, z)
+        self.distance(Vector(p.into().0.map(f64::from))) as f32
     }
 
-    /// The distance and its gradient in single precision.
+    /// The [`distance_gradient`](Self::distance_gradient) at a point in single precision, each number
+    /// rounded once.
     #[inline]
     #[must_use]
     pub fn distance_gradient_f32(&self, p: impl Into<Vector<f32, D>>) -> (f32, Vector<f32, D>) {
-        let mut gradient = Vector([0.0; D]);
-        let (x, y, z) = p.into().coordinates();
-        let distance = self.field.distance_gradient(x, y, z, &mut gradient);
-        (distance, gradient)
+        let (distance, gradient) = self.distance_gradient(Vector(p.into().0.map(f64::from)));
+        (distance as f32, Vector(gradient.0.map(|slope| slope as f32)))
     }
 
     /// The radius of a ball about `p` that is sure to hold no surface [m],

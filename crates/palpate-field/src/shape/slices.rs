@@ -4,11 +4,10 @@
 //! Many points at once: slices and arrays with strides, through whole blocks.
 
 use super::Shape;
-use crate::field::{DifferentiateBlock, EvaluateBlock, Field};
-use crate::machine::{BLOCK, Block, Column, Gradients, Lane};
+use crate::machine::{BLOCK, Block, Column, Gradients};
 use crate::scalar::Float;
 use crate::strided::{Strided, StridedMut};
-use crate::vector::{Point, Vector};
+use crate::vector::{Point, Vector, array};
 
 impl<const D: usize> Shape<D> {
     /// The signed distances at `points` [m].
@@ -117,13 +116,11 @@ impl<const D: usize> Shape<D> {
     /// # Panics
     ///
     /// If `distances` has not as many rows as `points`.
-    pub fn distances_strided<T: Float + Lane>(
+    pub fn distances_strided<T: Float>(
         &self,
         points: Strided<'_, T, D>,
         mut distances: StridedMut<'_, T, 1>,
-    ) where
-        dyn Field<D>: EvaluateBlock<T, D, BLOCK>,
-    {
+    ) {
         assert_eq!(points.rows(), distances.rows(), "one distance for each point");
         self.each(
             points.rows(),
@@ -138,14 +135,12 @@ impl<const D: usize> Shape<D> {
     /// # Panics
     ///
     /// If `distances` or `gradients` has not as many rows as `points`.
-    pub fn distances_gradients_strided<T: Float + Lane>(
+    pub fn distances_gradients_strided<T: Float>(
         &self,
         points: Strided<'_, T, D>,
         mut distances: StridedMut<'_, T, 1>,
         mut gradients: StridedMut<'_, T, D>,
-    ) where
-        dyn Field<D>: DifferentiateBlock<T, D, BLOCK>,
-    {
+    ) {
         assert_eq!(points.rows(), distances.rows(), "one distance for each point");
         assert_eq!(points.rows(), gradients.rows(), "one gradient for each point");
         let point = |i| Vector(points.row(i));
@@ -157,43 +152,46 @@ impl<const D: usize> Shape<D> {
 
     /// Gives `put` the distance at each of `count` points, block by block.
     #[inline(always)]
-    fn each<T: Float + Lane>(
+    fn each<T: Float>(
         &self,
         count: usize,
         point: impl Fn(usize) -> Vector<T, D>,
         mut put: impl FnMut(usize, T),
-    ) where
-        dyn Field<D>: EvaluateBlock<T, D, BLOCK>,
-    {
-        let mut block = Block::<T, D, BLOCK>::scratch();
-        let mut column = Column::<T, BLOCK>::scratch();
+    ) {
+        let mut block = Block::scratch();
+        let mut column = Column::scratch();
         for first in (0..count).step_by(BLOCK) {
             let lanes = BLOCK.min(count - first);
-            block.fill(lanes, |lane| point(first + lane));
+            block.fill(lanes, |lane| in_double(point(first + lane)));
             self.block_distances(&block, lanes, &mut column);
-            (0..lanes).for_each(|lane| put(first + lane, column.get(lane)));
+            (0..lanes).for_each(|lane| put(first + lane, T::constant(column.get(lane))));
         }
     }
 
     /// As [`each`](Self::each), with gradients.
     #[inline(always)]
-    fn each_gradient<T: Float + Lane>(
+    fn each_gradient<T: Float>(
         &self,
         count: usize,
         point: impl Fn(usize) -> Vector<T, D>,
         mut put: impl FnMut(usize, T, Vector<T, D>),
-    ) where
-        dyn Field<D>: DifferentiateBlock<T, D, BLOCK>,
-    {
-        let mut block = Block::<T, D, BLOCK>::scratch();
-        let mut answers = Gradients::<T, D, BLOCK>::scratch();
+    ) {
+        let mut block = Block::scratch();
+        let mut answers = Gradients::scratch();
         for first in (0..count).step_by(BLOCK) {
             let lanes = BLOCK.min(count - first);
-            block.fill(lanes, |lane| point(first + lane));
+            block.fill(lanes, |lane| in_double(point(first + lane)));
             self.block_gradients(&block, lanes, &mut answers);
             for lane in 0..lanes {
-                put(first + lane, answers.distance.get(lane), answers.gradient.get(lane));
+                let gradient = Vector::of(&answers.gradient.get(lane).0);
+                put(first + lane, T::constant(answers.distance.get(lane)), gradient);
             }
         }
     }
+}
+
+/// A point in double precision.
+#[inline(always)]
+fn in_double<T: Float, const D: usize>(p: Vector<T, D>) -> Point<D> {
+    Vector(array!(k < D => p.0[k].to_f64()))
 }

@@ -7,9 +7,9 @@ use crate::bounds::{Aabb, Bounds};
 use crate::error::ShapeError;
 use crate::kernel::mark::sets;
 use crate::kernel::profile::Curve;
-use crate::kernel::{Kernel, formula_model, primitive};
+use crate::kernel::{Evaluations, Kernel, primitive};
 use crate::promise::{Promise, Quality};
-use crate::scalar::{AffineModel, Scalar};
+use crate::scalar::Scalar;
 use crate::vector::Vector;
 
 /// The largest number of rounded operations of the distance.
@@ -63,8 +63,8 @@ impl Kernel<2> for Arc {
     }
 
     #[inline(always)]
-    fn model<const N: usize>(&self, cell: Vector<AffineModel<N>, 2>) -> AffineModel<N> {
-        formula_model(self, cell, OPERATIONS, self.ring_radius + self.radius)
+    fn bounded_by_steepness(&self) -> Option<Evaluations> {
+        Some(Evaluations { operations: OPERATIONS, size: self.ring_radius + self.radius })
     }
 
     fn promise(&self) -> Promise<2> {

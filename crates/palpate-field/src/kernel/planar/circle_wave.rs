@@ -7,9 +7,9 @@ use std::f64::consts::{FRAC_PI_2, PI};
 
 use crate::error::{ShapeError, Unit, not_negative, positive};
 use crate::kernel::mark::{at, sets};
-use crate::kernel::{Kernel, primitive, says_more};
+use crate::kernel::{Evaluations, Kernel, primitive};
 use crate::promise::{Promise, Quality};
-use crate::scalar::{AffineModel, Scalar};
+use crate::scalar::Scalar;
 use crate::vector::Vector;
 
 /// Folds of the x axis: as many as a double has digits. Farther out than they reach, the
@@ -120,16 +120,10 @@ impl Kernel<2> for CircleWave {
         crest.min(trough) - S::constant(self.radius)
     }
 
-    /// By the formula or, over cells of many waves, by the Lipschitz constant.
     #[inline(always)]
-    fn model<const N: usize>(&self, cell: Vector<AffineModel<N>, 2>) -> AffineModel<N> {
-        let formula = self.distance(cell);
-        let reach = AffineModel::radius(&cell.0);
-        let far = self.ring_radius + self.radius + reach;
-        let centre = Vector([cell.0[0].value, cell.0[1].value]);
-        let rounding = OPERATIONS * f64::EPSILON * (far + centre.norm());
-        let rough = AffineModel::lipschitz(formula.value, 1.0, &cell.0, rounding);
-        if says_more(&formula, &rough) { formula } else { rough }
+    fn bounded_by_steepness(&self) -> Option<Evaluations> {
+        let size = self.ring_radius + self.radius;
+        Some(Evaluations { operations: OPERATIONS, size })
     }
 
     fn promise(&self) -> Promise<2> {

@@ -7,9 +7,9 @@ use super::line::Edge;
 use crate::bounds::Bounds;
 use crate::error::{ShapeError, Unit, positive};
 use crate::kernel::mark::Mark;
-use crate::kernel::{Kernel, formula_model, primitive};
+use crate::kernel::{Evaluations, Kernel, primitive};
 use crate::promise::Promise;
-use crate::scalar::{AffineModel, Scalar};
+use crate::scalar::Scalar;
 use crate::vector::Vector;
 
 /// The largest number of rounded operations of the distance.
@@ -93,8 +93,8 @@ impl Kernel<2> for CoolS {
     }
 
     #[inline(always)]
-    fn model<const N: usize>(&self, cell: Vector<AffineModel<N>, 2>) -> AffineModel<N> {
-        formula_model(self, cell, OPERATIONS, self.half_height)
+    fn bounded_by_steepness(&self) -> Option<Evaluations> {
+        Some(Evaluations { operations: OPERATIONS, size: self.half_height })
     }
 
     fn promise(&self) -> Promise<2> {

@@ -8,7 +8,7 @@ use crate::bounds::Aabb;
 use crate::error::{ShapeError, Unit, finite, positive};
 use crate::kernel::mark::sets;
 use crate::kernel::profile::{self, CutDiskProfile};
-use crate::kernel::{Kernel, formula_model, primitive, tangent_model};
+use crate::kernel::{Evaluations, Kernel, primitive, tangent_model};
 use crate::promise::Promise;
 use crate::scalar::{AffineModel, Scalar};
 use crate::vector::Vector;
@@ -62,6 +62,8 @@ impl Kernel<2> for CutDisk {
     fn distance<S: Scalar>(&self, p: Vector<S, 2>) -> S {
         self.half.distance([p.0[0].abs(), p.0[1]])
     }
+
+    const HAS_OWN_MODEL: bool = true;
 
     #[inline(always)]
     fn model<const N: usize>(&self, cell: Vector<AffineModel<N>, 2>) -> AffineModel<N> {
@@ -154,8 +156,8 @@ impl Kernel<2> for Moon {
     }
 
     #[inline(always)]
-    fn model<const N: usize>(&self, cell: Vector<AffineModel<N>, 2>) -> AffineModel<N> {
-        formula_model(self, cell, MOON_OPERATIONS, self.half.size())
+    fn bounded_by_steepness(&self) -> Option<Evaluations> {
+        Some(Evaluations { operations: MOON_OPERATIONS, size: self.half.size() })
     }
 
     fn promise(&self) -> Promise<2> {

@@ -85,6 +85,8 @@ impl Kernel<2> for Egg {
         S::select_less(y, S::constant(0.0), bottom, above)
     }
 
+    const HAS_OWN_MODEL: bool = true;
+
     #[inline(always)]
     fn model<const N: usize>(&self, cell: Vector<AffineModel<N>, 2>) -> AffineModel<N> {
         tangent_model(self, cell, OPERATIONS, 2.0 * self.bottom_radius)

@@ -8,9 +8,9 @@ use std::f64::consts::{FRAC_1_SQRT_2, SQRT_2};
 use crate::bounds::{Aabb, Bounds};
 use crate::error::{ShapeError, Unit, positive};
 use crate::kernel::mark::Mark;
-use crate::kernel::{Kernel, formula_model, primitive};
+use crate::kernel::{Evaluations, Kernel, primitive};
 use crate::promise::Promise;
-use crate::scalar::{AffineModel, Scalar};
+use crate::scalar::Scalar;
 use crate::vector::Vector;
 
 /// The height of a heart whose square has edges of one.
@@ -84,8 +84,8 @@ impl Kernel<2> for Heart {
     }
 
     #[inline(always)]
-    fn model<const N: usize>(&self, cell: Vector<AffineModel<N>, 2>) -> AffineModel<N> {
-        formula_model(self, cell, OPERATIONS, self.height)
+    fn bounded_by_steepness(&self) -> Option<Evaluations> {
+        Some(Evaluations { operations: OPERATIONS, size: self.height })
     }
 
     fn promise(&self) -> Promise<2> {

@@ -10,9 +10,9 @@ use crate::bounds::Aabb;
 use crate::error::{ShapeError, Unit, not_negative, positive};
 use crate::kernel::mark::{Mark, turned};
 use crate::kernel::profile::half_of_less_than_a_turn;
-use crate::kernel::{Kernel, formula_model, primitive};
+use crate::kernel::{Evaluations, Kernel, primitive};
 use crate::promise::Promise;
-use crate::scalar::{AffineModel, Scalar};
+use crate::scalar::Scalar;
 use crate::vector::Vector;
 
 /// The largest number of rounded operations of the distance.
@@ -107,8 +107,8 @@ impl Kernel<2> for Horseshoe {
     }
 
     #[inline(always)]
-    fn model<const N: usize>(&self, cell: Vector<AffineModel<N>, 2>) -> AffineModel<N> {
-        formula_model(self, cell, OPERATIONS, self.size())
+    fn bounded_by_steepness(&self) -> Option<Evaluations> {
+        Some(Evaluations { operations: OPERATIONS, size: self.size() })
     }
 
     fn promise(&self) -> Promise<2> {

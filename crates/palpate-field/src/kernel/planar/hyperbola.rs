@@ -95,7 +95,7 @@ impl Hyperbola {
         let (zero, one) = (S::constant(0.0), S::constant(1.0));
         let [a, b] = self.radii;
         let kappa = y.scale(self.shares[1]);
-        let tiny = S::EPSILON * a * self.shares[0];
+        let tiny = S::epsilon() * a * self.shares[0];
         let xi = x.scale(self.shares[0]).max(S::constant(tiny));
         let norm = |s: S| S::norm([one, s]);
         let sum = xi + kappa;
@@ -145,6 +145,8 @@ impl Kernel<2> for Hyperbola {
         let across = T::select_less(p.0[0], T::constant(0.0), -across, across);
         (distance, Vector([across, up]))
     }
+
+    const HAS_OWN_MODEL: bool = true;
 
     #[inline(always)]
     fn model<const N: usize>(&self, cell: Vector<AffineModel<N>, 2>) -> AffineModel<N> {

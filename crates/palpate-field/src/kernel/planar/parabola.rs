@@ -71,6 +71,8 @@ impl Kernel<2> for Parabola {
         (nearest.below, unfolded(p.0[0], nearest.normal))
     }
 
+    const HAS_OWN_MODEL: bool = true;
+
     #[inline(always)]
     fn model<const N: usize>(&self, cell: Vector<AffineModel<N>, 2>) -> AffineModel<N> {
         tangent_model(self, cell, OPERATIONS, self.focal_length)
@@ -159,7 +161,7 @@ impl ParabolaSegment {
 
         let past = x - S::constant(self.half_width);
         let corner = S::norm([past, chord]);
-        let on_it = S::constant(4.0 * S::EPSILON * self.size());
+        let on_it = S::constant(4.0 * S::epsilon() * self.size());
         // At the corner the offset has no direction; there the chord's normal is the gradient.
         let right = S::select_less(zero, past, S::select_less(corner, on_it, zero, one), zero);
         let inverse = one / S::select_less(corner, on_it, one, corner);
@@ -184,6 +186,8 @@ impl Kernel<2> for ParabolaSegment {
         let (distance, gradient) = self.solve(p);
         (distance, unfolded(p.0[0], gradient))
     }
+
+    const HAS_OWN_MODEL: bool = true;
 
     #[inline(always)]
     fn model<const N: usize>(&self, cell: Vector<AffineModel<N>, 2>) -> AffineModel<N> {

@@ -118,6 +118,8 @@ impl Kernel<2> for QuadraticCircle {
         (distance, unfolded(p, gradient))
     }
 
+    const HAS_OWN_MODEL: bool = true;
+
     #[inline(always)]
     fn model<const N: usize>(&self, cell: Vector<AffineModel<N>, 2>) -> AffineModel<N> {
         tangent_model(self, cell, CIRCLE_OPERATIONS, self.radius)
@@ -245,6 +247,8 @@ impl Kernel<2> for BobblyCross {
         let (distance, gradient) = self.solve(p);
         (distance, unfolded(p, gradient))
     }
+
+    const HAS_OWN_MODEL: bool = true;
 
     /// By the pieces of the arcs that are nearest in the cell, each as a straight edge: the
     /// zero of a cubic is no better known than the coefficients, which in a cell move.

@@ -208,7 +208,7 @@ impl Kernel<2> for Polygon {
         let one = T::constant(1.0);
         let inside = self.side_of(p) < zero;
         let signed = if inside { -distance } else { distance };
-        let on_edge = ON_EDGE * T::EPSILON * self.bounds.radius_about_origin();
+        let on_edge = ON_EDGE * T::epsilon() * self.bounds.radius_about_origin();
         let normal = Vector::of(&nearest.edge.across());
         let [_, past] = nearest.edge.offsets(p);
         let gradient = if distance.to_f64() <= on_edge && past == zero {
@@ -220,6 +220,8 @@ impl Kernel<2> for Polygon {
         };
         (signed, gradient)
     }
+
+    const HAS_OWN_MODEL: bool = true;
 
     fn model<const N: usize>(&self, cell: Vector<AffineModel<N>, 2>) -> AffineModel<N> {
         let centre = Vector(cell.0.map(|x| x.value));

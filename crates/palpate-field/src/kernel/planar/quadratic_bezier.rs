@@ -200,7 +200,7 @@ impl QuadraticBezier {
     #[inline(always)]
     fn candidates<S: Scalar>(&self, p: Vector<S, 2>, from: Vector<S, 2>) -> [S; 2] {
         let bend = self.bend[0].abs().max(self.bend[1].abs());
-        if bend <= STRAIGHT * S::EPSILON * self.length {
+        if bend <= STRAIGHT * S::epsilon() * self.length {
             let t = from.dot_constant(&self.along);
             return [t, t];
         }
@@ -217,7 +217,7 @@ impl QuadraticBezier {
     #[inline(always)]
     fn polished<S: Scalar>(&self, from: Vector<S, 2>, candidate: S) -> S {
         let (zero, one) = (S::constant(0.0), S::constant(1.0));
-        let off = OFF * S::EPSILON.max(f64::EPSILON) * (1.0 + self.start.abs());
+        let off = OFF * S::epsilon().max(f64::EPSILON) * (1.0 + self.start.abs());
         let most = off.min(MOST_OFF);
         let mut t = candidate.clamp(0.0, 1.0);
         for _ in 0..POLISH {
@@ -271,7 +271,7 @@ impl Kernel<2> for QuadraticBezier {
         // Compares the length with the radius of curvature, both times the turning, which is
         // known to a few roundings: the radius of curvature times the turning is 2|B'/2|³.
         let bend = self.bend[0].abs().max(self.bend[1].abs());
-        let rounding = STRAIGHT * T::EPSILON * self.length * bend;
+        let rounding = STRAIGHT * T::epsilon() * self.length * bend;
         let turning = self.turning.max(rounding);
         let curved = length.scale(turning) - (speed.dot(speed) * speed.norm()).scale(2.0);
         let gradient = array!(i < 2 => {
@@ -281,6 +281,8 @@ impl Kernel<2> for QuadraticBezier {
         });
         (length - T::constant(self.radius), Vector(gradient))
     }
+
+    const HAS_OWN_MODEL: bool = true;
 
     /// By the pieces of the curve that are nearest in the cell, each as a straight edge: the
     /// zeros of a cubic are no better known than the coefficients, which in a cell move. Next

@@ -60,6 +60,8 @@ impl Kernel<2> for Rhombus {
         self.0.distance(p.abs().0)
     }
 
+    const HAS_OWN_MODEL: bool = true;
+
     #[inline(always)]
     fn model<const N: usize>(&self, cell: Vector<AffineModel<N>, 2>) -> AffineModel<N> {
         tangent_model(self, cell, OPERATIONS, self.radius())
@@ -160,6 +162,8 @@ impl Kernel<2> for Parallelogram {
         intersection(sides, pieces, self.radius)
     }
 
+    const HAS_OWN_MODEL: bool = true;
+
     #[inline(always)]
     fn model<const N: usize>(&self, cell: Vector<AffineModel<N>, 2>) -> AffineModel<N> {
         tangent_model(self, cell, OPERATIONS, self.radius)
@@ -255,6 +259,8 @@ impl Kernel<2> for IsoscelesTrapezoid {
         intersection(side[0].max(cap), pieces, self.size())
     }
 
+    const HAS_OWN_MODEL: bool = true;
+
     #[inline(always)]
     fn model<const N: usize>(&self, cell: Vector<AffineModel<N>, 2>) -> AffineModel<N> {
         tangent_model(self, cell, OPERATIONS, self.size())
@@ -328,7 +334,7 @@ impl IsoscelesTriangle {
     }
 }
 
-answered_by_inner!(IsoscelesTriangle.0, 2);
+answered_by_inner!(IsoscelesTriangle.0, IsoscelesTrapezoid, 2);
 
 primitive! {
     IsoscelesTriangle, isosceles_triangle, 2,

@@ -228,6 +228,8 @@ impl Kernel<2> for ChamferedRectangle {
         intersection(a.max(cut), beside(a, past_face, by_cut), self.radius())
     }
 
+    const HAS_OWN_MODEL: bool = true;
+
     #[inline(always)]
     fn model<const N: usize>(&self, cell: Vector<AffineModel<N>, 2>) -> AffineModel<N> {
         tangent_model(self, cell, CHAMFERED_OPERATIONS, self.radius())

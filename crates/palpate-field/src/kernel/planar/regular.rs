@@ -9,7 +9,7 @@ use std::f64::consts::PI;
 use crate::bounds::Bounds;
 use crate::error::{ShapeError, Unit, positive};
 use crate::kernel::mark::{Mark, at, turned};
-use crate::kernel::{Kernel, face_if_on_it, formula_model, primitive, tangent_model};
+use crate::kernel::{Evaluations, Kernel, face_if_on_it, primitive, tangent_model};
 use crate::promise::Promise;
 use crate::scalar::{AffineModel, Scalar};
 use crate::vector::{Vector, array};
@@ -125,6 +125,8 @@ impl Kernel<2> for RegularPolygon {
         let corner = face_if_on_it(S::norm([out, along]), out, self.radius);
         S::select_less(along, zero, corner, out)
     }
+
+    const HAS_OWN_MODEL: bool = true;
 
     #[inline(always)]
     fn model<const N: usize>(&self, cell: Vector<AffineModel<N>, 2>) -> AffineModel<N> {
@@ -264,8 +266,8 @@ impl Kernel<2> for RegularStar {
     }
 
     #[inline(always)]
-    fn model<const N: usize>(&self, cell: Vector<AffineModel<N>, 2>) -> AffineModel<N> {
-        formula_model(self, cell, STAR_OPERATIONS, self.outer_radius)
+    fn bounded_by_steepness(&self) -> Option<Evaluations> {
+        Some(Evaluations { operations: STAR_OPERATIONS, size: self.outer_radius })
     }
 
     fn promise(&self) -> Promise<2> {

@@ -8,7 +8,7 @@ use crate::bounds::{Aabb, Bounds};
 use crate::error::{ShapeError, Unit, positive};
 use crate::kernel::mark::{Mark, sets, turned};
 use crate::kernel::profile::Wedge;
-use crate::kernel::{Kernel, formula_model, primitive, tangent_model};
+use crate::kernel::{Evaluations, Kernel, primitive, tangent_model};
 use crate::promise::Promise;
 use crate::scalar::{AffineModel, Scalar};
 use crate::vector::Vector;
@@ -72,12 +72,15 @@ impl Kernel<2> for Pie {
         self.0.sector([p.0[0].abs(), p.0[1]])
     }
 
+    const HAS_OWN_MODEL: bool = true;
+
     #[inline(always)]
     fn model<const N: usize>(&self, cell: Vector<AffineModel<N>, 2>) -> AffineModel<N> {
         if self.0.is_convex() {
             tangent_model(self, cell, OPERATIONS, self.0.outer())
         } else {
-            formula_model(self, cell, OPERATIONS, self.0.outer())
+            let evaluations = Evaluations { operations: OPERATIONS, size: self.0.outer() };
+            evaluations.or_by_steepness(self.distance(cell), &cell)
         }
     }
 
@@ -161,8 +164,8 @@ impl Kernel<2> for RingSector {
     }
 
     #[inline(always)]
-    fn model<const N: usize>(&self, cell: Vector<AffineModel<N>, 2>) -> AffineModel<N> {
-        formula_model(self, cell, OPERATIONS, self.wedge.outer())
+    fn bounded_by_steepness(&self) -> Option<Evaluations> {
+        Some(Evaluations { operations: OPERATIONS, size: self.wedge.outer() })
     }
 
     fn promise(&self) -> Promise<2> {

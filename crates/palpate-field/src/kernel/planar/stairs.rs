@@ -189,6 +189,8 @@ impl Kernel<2> for Stairs {
         S::select_less(sides, zero, -nearest, nearest)
     }
 
+    const HAS_OWN_MODEL: bool = true;
+
     /// By the edges near the cell: the formula chooses a strip, of which a cell may hold many.
     fn model<const N: usize>(&self, cell: Vector<AffineModel<N>, 2>) -> AffineModel<N> {
         let centre = Vector(cell.0.map(|x| x.value));

@@ -149,6 +149,8 @@ impl Kernel<2> for UnevenCapsule {
         self.half.distance([p.0[0].abs(), p.0[1]])
     }
 
+    const HAS_OWN_MODEL: bool = true;
+
     #[inline(always)]
     fn model<const N: usize>(&self, cell: Vector<AffineModel<N>, 2>) -> AffineModel<N> {
         tangent_model(self, cell, CAPSULE_OPERATIONS, self.size())

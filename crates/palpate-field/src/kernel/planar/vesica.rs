@@ -64,6 +64,8 @@ impl Kernel<2> for Vesica {
         self.half.distance([p.0[0].abs(), p.0[1]])
     }
 
+    const HAS_OWN_MODEL: bool = true;
+
     #[inline(always)]
     fn model<const N: usize>(&self, cell: Vector<AffineModel<N>, 2>) -> AffineModel<N> {
         tangent_model(self, cell, OPERATIONS, self.half.half_height())
@@ -134,6 +136,8 @@ impl Kernel<2> for OrientedVesica {
     fn distance<S: Scalar>(&self, p: Vector<S, 2>) -> S {
         self.lens.distance(self.placement.to_body(p))
     }
+
+    const HAS_OWN_MODEL: bool = true;
 
     #[inline(always)]
     fn model<const N: usize>(&self, cell: Vector<AffineModel<N>, 2>) -> AffineModel<N> {

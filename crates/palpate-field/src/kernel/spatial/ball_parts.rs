@@ -8,7 +8,7 @@ use crate::bounds::{Aabb, BoundingBall, Bounds};
 use crate::error::{ShapeError, Unit, finite, not_negative, positive};
 use crate::kernel::mark::{Mark, at, sets};
 use crate::kernel::profile::{Curve, CutDiskProfile, Moon, Wedge, bounds_of_zone};
-use crate::kernel::{Kernel, formula_model, primitive, tangent_model};
+use crate::kernel::{Evaluations, Kernel, primitive, tangent_model};
 use crate::promise::Promise;
 use crate::scalar::{AffineModel, Scalar};
 use crate::vector::Vector;
@@ -56,12 +56,15 @@ impl Kernel<3> for SolidAngle {
         self.0.sector(in_profile(p))
     }
 
+    const HAS_OWN_MODEL: bool = true;
+
     #[inline(always)]
     fn model<const N: usize>(&self, cell: Vector<AffineModel<N>, 3>) -> AffineModel<N> {
         if self.0.is_convex() {
             tangent_model(self, cell, OPERATIONS, self.0.outer())
         } else {
-            formula_model(self, cell, OPERATIONS, self.0.outer())
+            let evaluations = Evaluations { operations: OPERATIONS, size: self.0.outer() };
+            evaluations.or_by_steepness(self.distance(cell), &cell)
         }
     }
 
@@ -156,6 +159,8 @@ impl Kernel<3> for CutBall {
         self.disc.distance(in_profile(p))
     }
 
+    const HAS_OWN_MODEL: bool = true;
+
     #[inline(always)]
     fn model<const N: usize>(&self, cell: Vector<AffineModel<N>, 3>) -> AffineModel<N> {
         tangent_model(self, cell, OPERATIONS, self.radius)
@@ -239,8 +244,8 @@ impl Kernel<3> for CutHollowSphere {
     }
 
     #[inline(always)]
-    fn model<const N: usize>(&self, cell: Vector<AffineModel<N>, 3>) -> AffineModel<N> {
-        formula_model(self, cell, OPERATIONS, self.radius + self.half_thickness)
+    fn bounded_by_steepness(&self) -> Option<Evaluations> {
+        Some(Evaluations { operations: OPERATIONS, size: self.radius + self.half_thickness })
     }
 
     fn promise(&self) -> Promise<3> {
@@ -328,8 +333,8 @@ impl Kernel<3> for DeathStar {
     }
 
     #[inline(always)]
-    fn model<const N: usize>(&self, cell: Vector<AffineModel<N>, 3>) -> AffineModel<N> {
-        formula_model(self, cell, OPERATIONS, self.0.size())
+    fn bounded_by_steepness(&self) -> Option<Evaluations> {
+        Some(Evaluations { operations: OPERATIONS, size: self.0.size() })
     }
 
     fn promise(&self) -> Promise<3> {

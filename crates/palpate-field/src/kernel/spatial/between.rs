@@ -151,6 +151,8 @@ impl Kernel<3> for CappedConeBetween {
         self.cone.distance(self.between.to_body(p))
     }
 
+    const HAS_OWN_MODEL: bool = true;
+
     #[inline(always)]
     fn model<const N: usize>(&self, cell: Vector<AffineModel<N>, 3>) -> AffineModel<N> {
         self.cone.model(self.between.to_body(cell))

@@ -101,6 +101,8 @@ impl Kernel<3> for CappedCone {
         intersection(inside, pieces, self.size())
     }
 
+    const HAS_OWN_MODEL: bool = true;
+
     #[inline(always)]
     fn model<const N: usize>(&self, cell: Vector<AffineModel<N>, 3>) -> AffineModel<N> {
         tangent_model(self, cell, OPERATIONS, self.size())
@@ -167,7 +169,7 @@ impl Cone {
     }
 }
 
-answered_by_inner!(Cone.0, 3);
+answered_by_inner!(Cone.0, CappedCone, 3);
 
 primitive! {
     Cone, cone, 3,
@@ -234,6 +236,8 @@ impl Kernel<3> for InfiniteCone {
         let along = S::weighted_sum(profile, &[sin, -cos]);
         S::select_less(along, S::constant(0.0), p.norm(), out)
     }
+
+    const HAS_OWN_MODEL: bool = true;
 
     #[inline(always)]
     fn model<const N: usize>(&self, cell: Vector<AffineModel<N>, 3>) -> AffineModel<N> {

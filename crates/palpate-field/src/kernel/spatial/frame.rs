@@ -6,9 +6,9 @@
 use crate::bounds::Bounds;
 use crate::error::{ShapeError, Unit, positive};
 use crate::kernel::mark::{Mark, at};
-use crate::kernel::{Kernel, formula_model, primitive};
+use crate::kernel::{Evaluations, Kernel, primitive};
 use crate::promise::Promise;
-use crate::scalar::{AffineModel, Scalar};
+use crate::scalar::Scalar;
 use crate::vector::{Vector, array};
 
 /// The largest number of rounded operations of the distance.
@@ -89,8 +89,8 @@ impl Kernel<3> for CuboidFrame {
     }
 
     #[inline(always)]
-    fn model<const N: usize>(&self, cell: Vector<AffineModel<N>, 3>) -> AffineModel<N> {
-        formula_model(self, cell, OPERATIONS, Vector(self.half_extents).norm())
+    fn bounded_by_steepness(&self) -> Option<Evaluations> {
+        Some(Evaluations { operations: OPERATIONS, size: Vector(self.half_extents).norm() })
     }
 
     fn promise(&self) -> Promise<3> {

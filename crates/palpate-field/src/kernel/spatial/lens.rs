@@ -66,6 +66,8 @@ impl Kernel<3> for VesicaSegment {
         self.spindle.distance(self.between.to_body(p))
     }
 
+    const HAS_OWN_MODEL: bool = true;
+
     #[inline(always)]
     fn model<const N: usize>(&self, cell: Vector<AffineModel<N>, 3>) -> AffineModel<N> {
         self.spindle.model(self.between.to_body(cell))
@@ -88,6 +90,8 @@ impl Kernel<3> for Spindle {
     fn distance<S: Scalar>(&self, p: Vector<S, 3>) -> S {
         self.0.distance(in_profile(p))
     }
+
+    const HAS_OWN_MODEL: bool = true;
 
     #[inline(always)]
     fn model<const N: usize>(&self, cell: Vector<AffineModel<N>, 3>) -> AffineModel<N> {

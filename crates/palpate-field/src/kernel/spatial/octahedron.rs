@@ -70,6 +70,8 @@ impl Kernel<3> for Octahedron {
         S::select_less(foot, zero, outside, face)
     }
 
+    const HAS_OWN_MODEL: bool = true;
+
     #[inline(always)]
     fn model<const N: usize>(&self, cell: Vector<AffineModel<N>, 3>) -> AffineModel<N> {
         tangent_model(self, cell, OPERATIONS, self.radius)

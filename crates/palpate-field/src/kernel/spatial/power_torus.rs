@@ -8,9 +8,9 @@ use crate::bounds::Bounds;
 use crate::error::ShapeError;
 use crate::kernel::exponent::{Exponent, in_another_norm};
 use crate::kernel::mark::sets;
-use crate::kernel::{Kernel, formula_model, primitive};
+use crate::kernel::{Evaluations, Kernel, primitive};
 use crate::promise::Promise;
-use crate::scalar::{AffineModel, Scalar};
+use crate::scalar::Scalar;
 use crate::vector::Vector;
 
 /// Rounded operations of the formula.
@@ -89,8 +89,8 @@ impl Kernel<3> for PowerTorus {
     }
 
     #[inline(always)]
-    fn model<const N: usize>(&self, cell: Vector<AffineModel<N>, 3>) -> AffineModel<N> {
-        formula_model(self, cell, OPERATIONS, self.round.ring_radius + self.round.radius)
+    fn bounded_by_steepness(&self) -> Option<Evaluations> {
+        Some(Evaluations { operations: OPERATIONS, size: self.round.ring_radius + self.round.radius })
     }
 
     fn promise(&self) -> Promise<3> {

@@ -43,6 +43,8 @@ impl Kernel<3> for Prism {
         ])
     }
 
+    const HAS_OWN_MODEL: bool = true;
+
     #[inline(always)]
     fn model<const N: usize>(&self, cell: Vector<AffineModel<N>, 3>) -> AffineModel<N> {
         tangent_model(self, cell, OPERATIONS, self.size())
@@ -87,7 +89,7 @@ impl HexagonalPrism {
     }
 }
 
-answered_by_inner!(HexagonalPrism.0, 3);
+answered_by_inner!(HexagonalPrism.0, Prism, 3);
 
 primitive! {
     HexagonalPrism, hexagonal_prism, 3,
@@ -141,7 +143,7 @@ impl TriangularPrism {
     }
 }
 
-answered_by_inner!(TriangularPrism.prism, 3);
+answered_by_inner!(TriangularPrism.prism, Prism, 3);
 
 primitive! {
     TriangularPrism, triangular_prism, 3,

@@ -106,6 +106,8 @@ impl Kernel<3> for Pyramid {
         intersection(inside, pieces, self.ridge_length)
     }
 
+    const HAS_OWN_MODEL: bool = true;
+
     #[inline(always)]
     fn model<const N: usize>(&self, cell: Vector<AffineModel<N>, 3>) -> AffineModel<N> {
         tangent_model(self, cell, OPERATIONS, self.ridge_length + self.half_side)

@@ -85,6 +85,8 @@ impl Kernel<3> for RhombusPrism {
             - S::constant(self.rounding)
     }
 
+    const HAS_OWN_MODEL: bool = true;
+
     #[inline(always)]
     fn model<const N: usize>(&self, cell: Vector<AffineModel<N>, 3>) -> AffineModel<N> {
         tangent_model(self, cell, OPERATIONS, self.reach())

@@ -84,6 +84,8 @@ impl Kernel<3> for RoundCone {
         self.0.distance(in_profile(p))
     }
 
+    const HAS_OWN_MODEL: bool = true;
+
     #[inline(always)]
     fn model<const N: usize>(&self, cell: Vector<AffineModel<N>, 3>) -> AffineModel<N> {
         tangent_model(self, cell, OPERATIONS, self.0.size())
@@ -170,6 +172,8 @@ impl Kernel<3> for RoundConeBetween {
     fn distance<S: Scalar>(&self, p: Vector<S, 3>) -> S {
         self.cone.distance(self.between.to_body(p))
     }
+
+    const HAS_OWN_MODEL: bool = true;
 
     #[inline(always)]
     fn model<const N: usize>(&self, cell: Vector<AffineModel<N>, 3>) -> AffineModel<N> {

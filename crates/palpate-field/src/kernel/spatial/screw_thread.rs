@@ -8,7 +8,7 @@ use std::f64::consts::TAU;
 use super::cylinder::{from_axis, turned_bounds};
 use crate::error::{ShapeError, Unit, finite, not_negative, positive};
 use crate::kernel::mark::Mark;
-use crate::kernel::{Kernel, by_steepness, primitive};
+use crate::kernel::{Evaluations, Kernel, primitive};
 use crate::promise::Promise;
 use crate::scalar::{AffineModel, Dual, Scalar};
 use crate::vector::Vector;
@@ -237,13 +237,16 @@ impl Kernel<3> for ScrewThread {
         self.beside_wedge(from_axis, p.0[1], wedge)
     }
 
+    const HAS_OWN_MODEL: bool = true;
+
     /// By the formula or, over cells of half a pitch or where that is wider, by the Lipschitz
     /// constant. A cell that crosses the middle of a root is folded there too.
     #[inline(always)]
     fn model<const N: usize>(&self, cell: Vector<AffineModel<N>, 3>) -> AffineModel<N> {
         let y = cell.0[1];
         let value = self.distance(Vector(cell.0.map(|x| x.value)));
-        let rough = by_steepness(value, &cell, OPERATIONS, self.size());
+        let evaluations = Evaluations { operations: OPERATIONS, size: self.size() };
+        let rough = evaluations.by_steepness(value, &cell);
         let half_pitch = 0.5 * self.pitch.abs();
         let along = self.along(cell);
         if along.deviation() >= half_pitch {

@@ -204,7 +204,7 @@ impl<const N: usize> Kernel<3> for Sheet<N> {
         // It is one of those that the point is not behind. Next to a corner two are as near to
         // within a rounding, but their directions differ: the one that the point is beside goes
         // first.
-        let farther = 1.0 + 8.0 * S::EPSILON;
+        let farther = 1.0 + 8.0 * S::epsilon();
         let of = |edge: &Edge| {
             let [across, past] = edge.offsets(q);
             let distance = S::norm([across, past]);
@@ -222,6 +222,8 @@ impl<const N: usize> Kernel<3> for Sheet<N> {
         let beside = face_if_on_it(S::norm([y, beside]), above, self.size);
         S::select_less(behind, zero, above, beside) - S::constant(self.radius)
     }
+
+    const HAS_OWN_MODEL: bool = true;
 
     #[inline(always)]
     fn model<const M: usize>(&self, cell: Vector<AffineModel<M>, 3>) -> AffineModel<M> {

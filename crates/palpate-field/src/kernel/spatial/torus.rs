@@ -8,9 +8,9 @@ use crate::bounds::{Aabb, BoundingBall, Bounds};
 use crate::error::{ShapeError, Unit, not_negative, positive};
 use crate::kernel::mark::{Mark, at, sets, turned};
 use crate::kernel::profile::Curve;
-use crate::kernel::{Kernel, formula_model, primitive};
+use crate::kernel::{Evaluations, Kernel, primitive};
 use crate::promise::{Promise, Quality};
-use crate::scalar::{AffineModel, Scalar};
+use crate::scalar::Scalar;
 use crate::vector::Vector;
 
 /// The largest number of rounded operations of the distance of a capped torus.
@@ -134,8 +134,8 @@ impl Kernel<3> for CappedTorus {
     }
 
     #[inline(always)]
-    fn model<const N: usize>(&self, cell: Vector<AffineModel<N>, 3>) -> AffineModel<N> {
-        formula_model(self, cell, CAPPED_OPERATIONS, self.ring_radius + self.radius)
+    fn bounded_by_steepness(&self) -> Option<Evaluations> {
+        Some(Evaluations { operations: CAPPED_OPERATIONS, size: self.ring_radius + self.radius })
     }
 
     fn promise(&self) -> Promise<3> {
@@ -237,13 +237,8 @@ impl Kernel<3> for Link {
     }
 
     #[inline(always)]
-    fn model<const N: usize>(&self, cell: Vector<AffineModel<N>, 3>) -> AffineModel<N> {
-        formula_model(
-            self,
-            cell,
-            LINK_OPERATIONS,
-            self.half_length + self.ring_radius + self.radius,
-        )
+    fn bounded_by_steepness(&self) -> Option<Evaluations> {
+        Some(Evaluations { operations: LINK_OPERATIONS, size: self.half_length + self.ring_radius + self.radius })
     }
 
     fn promise(&self) -> Promise<3> {
