@@ -92,7 +92,13 @@ fn measure_build(reference: &Reference, rows: &mut Rows) -> Result<(), Box<dyn E
     Ok(())
 }
 
-/// Ours over each peer, and f64 over f32.
+/// The key of our blocks in double precision, from that of a slice.
+fn in_double(key: &str) -> String {
+    let (question, case) = key.rsplit_once('.').unwrap_or((key, ""));
+    format!("{question}_f64.{case}")
+}
+
+/// Ours over each peer.
 fn derive_ratios(rows: &mut Rows) {
     let times = rows.clone();
     for (key, time) in &times {
@@ -100,18 +106,10 @@ fn derive_ratios(rows: &mut Rows) {
         if let Some((ours, peer)) = key.rsplit_once('.')
             && theirs::PEERS.contains(&peer)
         {
-            // Peers have one number type: every way we have of doing the same is
-            // compared with it.
-            for ours in [ours.to_owned(), ours.replace(".point", ".point_f32")] {
-                if let Some(own) = times.get(&format!("{ours}.ns")) {
-                    rows.insert(format!("{ours}.ours_over_{peer}"), own / time);
-                }
-            }
-        }
-        if let Some((single, case)) = key.split_once("_f64.") {
-            let single = format!("{single}.{case}");
-            if let Some(single_time) = times.get(&format!("{single}.ns")) {
-                rows.insert(format!("{single}.f64_over_f32"), time / single_time);
+            // A point, or a slice in double precision, which is all that our blocks have.
+            let ours = if ours.ends_with(".point") { ours.to_owned() } else { in_double(ours) };
+            if let Some(own) = times.get(&format!("{ours}.ns")) {
+                rows.insert(format!("{ours}.ours_over_{peer}"), own / time);
             }
         }
     }
@@ -130,10 +128,10 @@ fn best_of_clustered(rows: &mut Rows) {
         .collect();
     for (work, time) in simplified {
         let plain = rows.get(&format!("{work}.clustered.fidget_jit.ns")).copied();
-        let ours = rows.get(&format!("{work}.clustered.ns")).copied();
+        let ours = rows.get(&format!("{work}_f64.clustered.ns")).copied();
         if let (Some(plain), Some(ours)) = (plain, ours) {
             let ratio = ours / plain.min(time);
-            rows.insert(format!("{work}.clustered.ours_over_fidget_jit"), ratio);
+            rows.insert(format!("{work}_f64.clustered.ours_over_fidget_jit"), ratio);
         }
     }
 }

@@ -10,7 +10,7 @@ use palpate::field::operator::Copies;
 use palpate::field::{BLOCK, Column, Shape, ShapeError};
 
 use super::Rows;
-use super::ours::{Ours, blocks};
+use super::ours::{Ours, in_double, in_single};
 use super::points::{Points, SINGLE};
 use crate::reference::Reference;
 use crate::rounds::{self, Subject};
@@ -83,8 +83,8 @@ pub(super) fn beside_child(
     let mut subjects: Vec<Subject<'_>> = Vec::new();
     for (name, shape) in &shapes {
         let name = format!("{}_{name}", work.name);
-        blocks::<f32, 3, BLOCK>(&name, ("", "1024"), (shape, scattered), &mut subjects);
-        blocks::<f64, 3, BLOCK>(&name, ("_f64", "1024"), (shape, scattered), &mut subjects);
+        in_single(&name, "1024", (shape, scattered), &mut subjects);
+        in_double(&name, "1024", (shape, scattered), &mut subjects);
     }
     let times = rounds::measure(&mut subjects, reference);
     let (of_child, of_others) = times.split_at(times.len() / shapes.len());

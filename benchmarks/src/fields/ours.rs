@@ -4,7 +4,7 @@
 //! Our own subjects.
 
 use palpate::field::scalar::Float;
-use palpate::field::{BLOCK, Block, Column, Gradients, Lane, SHORT, Shape, Vector};
+use palpate::field::{BLOCK, Block, Column, Gradients, Shape, Vector};
 
 use super::points::{Points, SINGLE};
 use crate::rounds::Subject;
@@ -72,31 +72,13 @@ macro_rules! ours {
                     },
                 ));
                 for count in [64, 1024, 65_536] {
-                    let points = &self.scattered[..count];
-                    let case = count.to_string();
-                    blocks::<f32, $dimension, BLOCK>(
-                        work,
-                        ("", &case),
-                        (shape, points),
-                        subjects,
-                    );
-                    blocks::<f64, $dimension, BLOCK>(
-                        work,
-                        ("_f64", &case),
-                        (shape, points),
-                        subjects,
-                    );
+                    let asked = (shape, &self.scattered[..count]);
+                    in_single(work, &count.to_string(), asked, subjects);
+                    in_double(work, &count.to_string(), asked, subjects);
                 }
                 let clustered = (shape, &self.clustered[..]);
-                blocks::<f32, $dimension, BLOCK>(work, ("", "clustered"), clustered, subjects);
-                blocks::<f64, $dimension, BLOCK>(
-                    work,
-                    ("_f64", "clustered"),
-                    clustered,
-                    subjects,
-                );
-                let single = (shape, single);
-                blocks::<f64, $dimension, SHORT>(work, ("_f64", "8"), single, subjects);
+                in_single(work, "clustered", clustered, subjects);
+                in_double(work, "clustered", clustered, subjects);
 
                 let cells = Self::cells(&self.scattered[..SINGLE]);
                 subjects.push(Subject::new(format!("{work}.model.64"), SINGLE, move || {
@@ -121,33 +103,49 @@ fn waiting<T: Float, const D: usize>(p: Vector<T, D>, last: T) -> Vector<T, D> {
     p
 }
 
-/// Adds a slice of points, in blocks of `W`.
-pub(super) fn blocks<'a, T, const D: usize, const W: usize>(
+/// Adds a slice of points in single precision.
+pub(super) fn in_single<'a, const D: usize>(
     work: &str,
-    (suffix, case): (&str, &str),
+    case: &str,
+    (shape, points): (&'a Shape<D>, &'a [Vector<f32, D>]),
+    subjects: &mut Vec<Subject<'a>>,
+) {
+    let count = points.len();
+    let mut out = vec![0.0; count];
+    subjects.push(Subject::new(format!("{work}.distance.{case}"), count, move || {
+        shape.distances_f32(points, &mut out);
+        f64::from(out[0])
+    }));
+    let (mut out, mut slopes) = (vec![0.0; count], vec![Vector([0.0; D]); count]);
+    subjects.push(Subject::new(format!("{work}.distance_gradient.{case}"), count, move || {
+        shape.distances_gradients_f32(points, &mut out, &mut slopes);
+        f64::from(out[0])
+    }));
+}
+
+/// Adds a slice of points in double precision, in blocks.
+pub(super) fn in_double<'a, const D: usize>(
+    work: &str,
+    case: &str,
     (shape, points): (&'a Shape<D>, &[Vector<f32, D>]),
     subjects: &mut Vec<Subject<'a>>,
-) where
-    T: Float + Lane,
-    dyn palpate::field::field::Field<D>: palpate::field::field::EvaluateBlock<T, D, W>
-        + palpate::field::field::DifferentiateBlock<T, D, W>,
-{
+) {
     let units = points.len();
-    let blocks: std::rc::Rc<Vec<Block<T, D, W>>> = Points::<D>::blocks(points).into();
+    let blocks: std::rc::Rc<Vec<Block<f64, D>>> = Points::<D>::blocks(points).into();
     let again = std::rc::Rc::clone(&blocks);
-    subjects.push(Subject::new(format!("{work}.distance{suffix}.{case}"), units, move || {
+    subjects.push(Subject::new(format!("{work}.distance_f64.{case}"), units, move || {
         let mut out = Column::zero();
         for block in blocks.iter() {
-            shape.block_distances(block, W, &mut out);
+            shape.block_distances(block, BLOCK, &mut out);
         }
-        out.get(0).to_f64()
+        out.get(0)
     }));
-    let key = format!("{work}.distance_gradient{suffix}.{case}");
+    let key = format!("{work}.distance_gradient_f64.{case}");
     subjects.push(Subject::new(key, units, move || {
         let mut out = Gradients::zero();
         for block in again.iter() {
-            shape.block_gradients(block, W, &mut out);
+            shape.block_gradients(block, BLOCK, &mut out);
         }
-        out.distance.get(0).to_f64()
+        out.distance.get(0)
     }));
 }

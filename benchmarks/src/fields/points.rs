@@ -3,8 +3,8 @@
 
 //! The points at which fields are asked, in every shape they are asked in.
 
-use palpate::field::scalar::{Float, Model};
-use palpate::field::{BLOCK, Block, Lane, Shape, Vector};
+use palpate::field::scalar::Model;
+use palpate::field::{BLOCK, Block, Shape, Vector};
 
 use crate::random::Random;
 
@@ -48,16 +48,14 @@ impl<const D: usize> Points<D> {
         Self { scattered, clustered }
     }
 
-    /// Blocks of `W` of `points`.
-    pub(crate) fn blocks<T: Float + Lane, const W: usize>(
-        points: &[Vector<f32, D>],
-    ) -> Vec<Block<T, D, W>> {
+    /// Blocks of `points`.
+    pub(crate) fn blocks(points: &[Vector<f32, D>]) -> Vec<Block<f64, D>> {
         points
-            .chunks(W)
+            .chunks(BLOCK)
             .map(|points| {
                 let mut block = Block::zero();
                 for (i, p) in points.iter().enumerate() {
-                    block.set(i, Vector(p.0.map(|x| T::constant(f64::from(x)))));
+                    block.set(i, Vector(p.0.map(f64::from)));
                 }
                 block
             })

@@ -71,7 +71,9 @@ impl Neg for Expression {
 }
 
 impl Scalar for Expression {
-    const EPSILON: f64 = f32::EPSILON as f64;
+    fn epsilon() -> f64 {
+        f64::from(f32::EPSILON)
+    }
 
     fn constant(value: f64) -> Self {
         Self::of(Tree::constant(value as f32))

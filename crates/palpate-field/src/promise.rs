@@ -402,7 +402,7 @@ impl<const D: usize> Promise<D> {
 
     /// The promise after a rigid motion, which keeps everything but symmetry.
     #[must_use]
-    #[inline(always)]
+    #[inline(never)]
     pub fn placed(&self, pose: &Pose<D>) -> Self {
         let offset = pose.translation.norm();
         // Subtract, then D products and sums a coordinate.

@@ -14,8 +14,8 @@ use palpate_field::kernel::{Ball, Cuboid, Cylinder, RegularStar, Torus};
 use palpate_field::operator::Profile;
 use palpate_field::scalar::{Model, Scalar};
 use palpate_field::{
-    BLOCK, Block, Column, Gradients, Point, Pose, Promise, Rotation, SHORT, Shape, ShapeError,
-    Vector,
+    BLOCK, Block, Column, Gradients, InstructionSet, Point, Pose, Promise, Rotation, Shape,
+    ShapeError, Vector,
 };
 
 /// The system's allocator, with the calls of each thread counted.
@@ -76,22 +76,14 @@ fn evaluate<const D: usize>(shape: &Shape<D>, points: &[Point<D>]) {
         black_box(shape.distance_gradient_f32(single));
     }
 
-    let mut long = Block::<f64, D, BLOCK>::zero();
-    let mut short = Block::<f64, D, SHORT>::zero();
-    let mut single = Block::<f32, D, BLOCK>::zero();
-    let mut cells = Block::<Model, D, BLOCK>::zero();
+    let mut block = Block::<f64, D>::zero();
+    let mut cells = Block::<Model, D>::zero();
     for (i, p) in points.iter().enumerate() {
-        long.set(i, *p);
-        short.set(i % SHORT, *p);
-        single.set(i, Vector(p.0.map(|x| x as f32)));
+        block.set(i, *p);
         cells.set(i, Vector(Model::cell(p.0, [0.1; D])));
     }
-    shape.block_distances(&long, count, black_box(&mut Column::zero()));
-    shape.block_gradients(&long, count, black_box(&mut Gradients::zero()));
-    shape.block_distances(&short, count.min(SHORT), black_box(&mut Column::zero()));
-    shape.block_gradients(&short, count.min(SHORT), black_box(&mut Gradients::zero()));
-    shape.block_distances(&single, count, black_box(&mut Column::zero()));
-    shape.block_gradients(&single, count, black_box(&mut Gradients::zero()));
+    shape.block_distances(&block, count, black_box(&mut Column::zero()));
+    shape.block_gradients(&block, count, black_box(&mut Gradients::zero()));
     shape.block_distances(&cells, count, black_box(&mut Column::zero()));
 }
 
@@ -108,11 +100,12 @@ fn points<const D: usize>() -> Vec<Point<D>> {
 
 fn assert_no_allocation<const D: usize>(what: &str, shape: &Shape<D>) {
     let points = points::<D>();
-    // Which instruction set the machine has is asked for once.
-    evaluate(shape, &points[..1]);
-    for count in [1, 7, SHORT, 33, BLOCK] {
-        let calls = calls(|| evaluate(shape, &points[..count]));
-        assert_eq!(calls, 0, "calls of the allocator for {count} points of {what}");
+    for set in InstructionSet::ALL.into_iter().filter(|set| set.select()) {
+        shape.prepare();
+        for count in [1, 7, 33, BLOCK] {
+            let calls = calls(|| evaluate(shape, &points[..count]));
+            assert_eq!(calls, 0, "calls of the allocator for {count} points of {what}, {set:?}");
+        }
     }
 }
 
@@ -157,7 +150,13 @@ fn the_counter_counts() {
     assert!(calls(|| drop(black_box(Box::new(1)))) >= 2);
 }
 
+// One test, since the choice of the instruction set is the process's.
 #[test]
+fn no_evaluation_allocates() -> Result<(), ShapeError> {
+    no_operator_allocates()?;
+    no_primitive_allocates()
+}
+
 fn no_operator_allocates() -> Result<(), ShapeError> {
     let star = Shape::from_kernel(RegularStar::new(5, 1.0, 0.5)?);
     let ball = Shape::from_kernel(Ball::new(0.7)?);
@@ -179,7 +178,6 @@ fn no_operator_allocates() -> Result<(), ShapeError> {
     Ok(())
 }
 
-#[test]
 fn no_primitive_allocates() -> Result<(), ShapeError> {
     for entry in Entry::<2>::ALL {
         assert_no_allocation(entry.name, &entry.example()?);

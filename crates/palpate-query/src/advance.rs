@@ -8,14 +8,14 @@
 //! There the search samples points lifted off the line along the gradient: the balls about them
 //! that are proven empty are larger, and the moving ball leaves them later.
 
-use palpate_field::{Point, SHORT, Vector};
+use palpate_field::{Point, Vector};
 
 use crate::certified::{Limits, Stop};
 use crate::ray::Ray;
-use crate::sampler::{Sampler, unit};
+use crate::sampler::{AT_ONCE, Sampler, unit};
 
 /// Heights of lifted points, as shares of the height that gave the longest step before.
-const HEIGHTS: [f64; SHORT - 1] = [8.0, 3.0, 1.5, 0.7, 0.3, 0.1, 0.03];
+const HEIGHTS: [f64; AT_ONCE - 1] = [8.0, 3.0, 1.5, 0.7, 0.3, 0.1, 0.03];
 
 /// The first height, as a share of the line.
 const FIRST_HEIGHT: f64 = 0.25;
@@ -134,7 +134,7 @@ impl<'a, const D: usize> Advance<'a, D> {
     ) -> f64 {
         let p = self.ray.at(free);
         let heights = HEIGHTS.map(|share| share * self.height);
-        let mut points = [p; SHORT];
+        let mut points = [p; AT_ONCE];
         for (point, height) in points.iter_mut().zip(heights) {
             *point += direction * height;
         }
@@ -143,9 +143,9 @@ impl<'a, const D: usize> Advance<'a, D> {
         let latest = self.witness.unwrap_or(self.ray.length());
         let there = free + clear / towards.max(1e-3) + 0.5 * limits.tolerance;
         let there = if there < latest { there } else { 0.5 * (free + latest) };
-        points[SHORT - 1] = self.ray.at(there);
+        points[AT_ONCE - 1] = self.ray.at(there);
         let values = self.sampler.values(&points);
-        if values[SHORT - 1] - self.radius <= limits.tolerance && self.is_told_by_values() {
+        if values[AT_ONCE - 1] - self.radius <= limits.tolerance && self.is_told_by_values() {
             self.witness = Some(there);
         }
         let mut ahead = free;

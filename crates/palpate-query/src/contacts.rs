@@ -7,7 +7,7 @@
 //! divided into [patches](crate::patches), each with a minimum of its own, and each is
 //! searched by itself.
 
-use palpate_field::{LARGEST_LENGTH, Point, SHORT, Shape, Vector};
+use palpate_field::{LARGEST_LENGTH, Point, Shape, Vector};
 
 use crate::certified::{Certified, Limits, Stop};
 use crate::contact::{Contact, NormalSource};
@@ -17,13 +17,13 @@ use crate::engine::{self, Frontier};
 use crate::error::QueryError;
 use crate::goal::Goal;
 use crate::patches::{MOST_CELLS, Patches};
-use crate::sampler::{arbitrary, normal as direction, unit};
+use crate::sampler::{AT_ONCE, arbitrary, normal as direction, unit};
 
 /// Heights over and under the centre of an element, in radii, from which [`is_plain`] proves
 /// that the element has one minimum: half a block each.
 ///
 /// [`is_plain`]: ElementSearch::is_plain
-const HEIGHTS: [f64; SHORT / 2] = [1.5, 4.0, 12.0, 40.0];
+const HEIGHTS: [f64; AT_ONCE / 2] = [1.5, 4.0, 12.0, 40.0];
 
 /// An element that is not plain is divided into at least this many cells: 8 along the edge of
 /// a triangle. Narrower bumps may hide between the centres of cells.
@@ -223,7 +223,7 @@ impl<const N: usize, const D: usize> ElementSearch<'_, N, D> {
         {
             let Patches { cells, halves, .. } = &mut *patches;
             halves.clear();
-            for parents in cells.chunks(SHORT / parts) {
+            for parents in cells.chunks(AT_ONCE / parts) {
                 round.clear();
                 for parent in parents {
                     parent.halve_into(parts, round);
@@ -252,7 +252,7 @@ impl<const N: usize, const D: usize> ElementSearch<'_, N, D> {
     /// climbs by no more in the field. Their difference is convex, and largest at a vertex.
     fn is_plain(&mut self, cell: &ElementCell<N, D>, tolerance: f64) -> bool {
         let centre = cell.element.at(&self.weights);
-        let mut points = [centre; SHORT];
+        let mut points = [centre; AT_ONCE];
         for (k, height) in HEIGHTS.iter().enumerate() {
             let offset = cell.direction * (height * self.radius_of(cell));
             (points[2 * k], points[2 * k + 1]) = (centre + offset, centre - offset);

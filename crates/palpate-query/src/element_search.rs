@@ -23,7 +23,7 @@
 //! Cells are halves of halves of the element, all similar to it, so that one set of
 //! weights gives all their centres, and each level halves the radius.
 
-use palpate_field::{Point, SHORT, Shape, Vector};
+use palpate_field::{Point, Shape, Vector};
 
 use crate::certified::{Certified, Limits, Stop};
 use crate::contacts::ElementContacts;
@@ -33,7 +33,7 @@ use crate::error::QueryError;
 use crate::goal::Goal;
 use crate::larger::larger;
 use crate::patches::{MOST_CELLS, Patches};
-use crate::sampler::{Sampler, Samples, unit};
+use crate::sampler::{AT_ONCE, Sampler, Samples, unit};
 
 /// The first heights over the centre, in radii.
 pub(crate) const FIRST_HEIGHTS: [f64; 5] = [0.75, 1.5, 3.0, 6.0, 12.0];
@@ -109,7 +109,7 @@ impl<const N: usize, const D: usize> ElementWorkspace<N, D> {
             frontier: Frontier {
                 queue: Vec::with_capacity(ROOM),
                 pending: Vec::new(),
-                round: Vec::with_capacity(SHORT),
+                round: Vec::with_capacity(AT_ONCE),
             },
             samples: Samples::new(),
             patches: Patches::new(),
@@ -348,7 +348,7 @@ impl<'a, const N: usize, const D: usize> ElementSearch<'a, N, D> {
     #[inline(always)]
     fn look_around(&mut self, cell: &mut ElementCell<N, D>, centre: Point<D>) -> [f64; N] {
         let heights = FIRST_HEIGHTS.map(|height| height * self.radius);
-        let points: [Point<D>; SHORT] = std::array::from_fn(|i| match i.checked_sub(N) {
+        let points: [Point<D>; AT_ONCE] = std::array::from_fn(|i| match i.checked_sub(N) {
             None => cell.element.vertices[i],
             Some(k) => centre + cell.direction * heights[k.min(heights.len() - 1)],
         });
@@ -383,7 +383,7 @@ impl<'a, const N: usize, const D: usize> ElementSearch<'a, N, D> {
         let value = self.upper - self.sampler.steepness.slack;
         let gradient = if lowest == centre { gradient } else { self.sampler.slope(lowest).1 };
         let direction = unit(gradient);
-        let points: [Point<D>; SHORT] = std::array::from_fn(|i| match i.checked_sub(N) {
+        let points: [Point<D>; AT_ONCE] = std::array::from_fn(|i| match i.checked_sub(N) {
             None => {
                 let way = cell.element.vertices[i] - lowest;
                 let descent = larger(0.0, -gradient.dot(way));
@@ -412,12 +412,12 @@ impl<'a, const N: usize, const D: usize> ElementSearch<'a, N, D> {
         self.sampler.steepness.bound(p, value, cell.element.farthest(p))
     }
 
-    /// Bounds parts of one size, at most [`SHORT`]: by their centres, and by points lifted
+    /// Bounds parts of one size, at most [`AT_ONCE`]: by their centres, and by points lifted
     /// off them.
     #[inline]
     pub(crate) fn bound_parts(&mut self, parts: &mut [ElementCell<N, D>]) {
         let count = parts.len();
-        let mut points: [Point<D>; SHORT] =
+        let mut points: [Point<D>; AT_ONCE] =
             std::array::from_fn(|i| parts[i.min(count - 1)].element.at(&self.weights));
         if parts[0].level.is_multiple_of(2) {
             let (values, directions) = self.sampler.slopes(&points);
@@ -425,21 +425,21 @@ impl<'a, const N: usize, const D: usize> ElementSearch<'a, N, D> {
                 part.direction = direction;
             }
             self.settle(parts, &points, &values);
-            if count <= SHORT / 2 {
+            if count <= AT_ONCE / 2 {
                 self.lift(parts, &points, &values, &[1.0, LOWER]);
             } else {
                 self.lift(parts, &points, &values, &[1.0]);
                 self.lift(parts, &points, &values, &[LOWER]);
             }
-        } else if count <= SHORT / 2 {
+        } else if count <= AT_ONCE / 2 {
             // The block has room for the lifted points too.
-            let (centres, lifted) = points.split_at_mut(SHORT / 2);
+            let (centres, lifted) = points.split_at_mut(AT_ONCE / 2);
             for ((part, centre), point) in parts.iter().zip(&*centres).zip(lifted) {
                 *point = *centre + part.direction * part.height;
             }
             let values = self.sampler.values(&points);
-            let (centres, lifted) = points.split_at(SHORT / 2);
-            let (values, lifted_values) = values.split_at(SHORT / 2);
+            let (centres, lifted) = points.split_at(AT_ONCE / 2);
+            let (values, lifted_values) = values.split_at(AT_ONCE / 2);
             self.settle(parts, centres, values);
             let centres = ValuesAt { points: centres, values };
             let lifted = ValuesAt { points: lifted, values: lifted_values };
@@ -473,8 +473,8 @@ impl<'a, const N: usize, const D: usize> ElementSearch<'a, N, D> {
     fn lift(
         &mut self,
         parts: &mut [ElementCell<N, D>],
-        centres: &[Point<D>; SHORT],
-        values: &[f64; SHORT],
+        centres: &[Point<D>; AT_ONCE],
+        values: &[f64; AT_ONCE],
         shares: &[f64],
     ) {
         let threshold = self.threshold();
@@ -483,7 +483,7 @@ impl<'a, const N: usize, const D: usize> ElementSearch<'a, N, D> {
             return;
         }
         let mut points = *centres;
-        let lanes = SHORT / shares.len();
+        let lanes = AT_ONCE / shares.len();
         for (points, share) in points.chunks_exact_mut(lanes).zip(shares) {
             for ((point, part), centre) in points.iter_mut().zip(&*parts).zip(centres) {
                 *point = *centre + part.direction * (share * part.height);
@@ -529,7 +529,7 @@ impl<const N: usize, const D: usize> Problem for ElementSearch<'_, N, D> {
 
     #[inline]
     fn round_and_parts(&self) -> (usize, usize) {
-        (SHORT, self.parts)
+        (AT_ONCE, self.parts)
     }
 
     #[inline]
@@ -539,7 +539,7 @@ impl<const N: usize, const D: usize> Problem for ElementSearch<'_, N, D> {
 
     #[inline]
     fn has_room(&self, frontier: &Frontier<Self::Queue>) -> bool {
-        frontier.queue.len() + SHORT <= frontier.queue.capacity()
+        frontier.queue.len() + AT_ONCE <= frontier.queue.capacity()
     }
 
     #[inline]

@@ -4,19 +4,22 @@
 //! A field as searches see it: values with their rounding.
 
 use palpate_field::{
-    Block, BoundingBall, Column, Gradients, Point, Quality, SHORT, Shape, Vector,
+    BLOCK, Block, BoundingBall, Column, Gradients, Point, Quality, Shape, Vector,
 };
 
 /// Roundings of a distance between points, and of the points themselves, which move by
 /// one each time that an element is halved; relative to the largest coordinate.
 const GEOMETRY_ROUNDINGS: f64 = 64.0;
 
+/// The points that searches ask at once.
+pub(crate) const AT_ONCE: usize = 8;
+
 /// Memory of samples.
 #[derive(Debug)]
 pub(crate) struct Samples<const D: usize> {
-    block: Block<f64, D, SHORT>,
-    values: Column<f64, SHORT>,
-    slopes: Gradients<f64, D, SHORT>,
+    block: Block<f64, D, BLOCK>,
+    values: Column<f64, BLOCK>,
+    slopes: Gradients<f64, D, BLOCK>,
 }
 
 impl<const D: usize> Samples<D> {
@@ -120,12 +123,12 @@ impl<'a, const D: usize> Sampler<'a, D> {
 
     /// The values at points.
     #[inline]
-    pub(crate) fn values(&mut self, points: &[Point<D>; SHORT]) -> [f64; SHORT] {
-        self.evaluations += SHORT as u32;
+    pub(crate) fn values(&mut self, points: &[Point<D>; AT_ONCE]) -> [f64; AT_ONCE] {
+        self.evaluations += AT_ONCE as u32;
         let samples = &mut *self.samples;
-        samples.block.fill(SHORT, |i| points[i]);
-        self.shape.block_distances(&samples.block, SHORT, &mut samples.values);
-        let mut values = [0.0; SHORT];
+        samples.block.fill(AT_ONCE, |i| points[i]);
+        self.shape.block_distances(&samples.block, AT_ONCE, &mut samples.values);
+        let mut values = [0.0; AT_ONCE];
         for (value, found) in values.iter_mut().zip(samples.values.as_slice()) {
             *value = found - self.level;
         }
@@ -136,14 +139,14 @@ impl<'a, const D: usize> Sampler<'a, D> {
     #[inline]
     pub(crate) fn slopes(
         &mut self,
-        points: &[Point<D>; SHORT],
-    ) -> ([f64; SHORT], [Vector<f64, D>; SHORT]) {
-        self.evaluations += 2 * SHORT as u32;
+        points: &[Point<D>; AT_ONCE],
+    ) -> ([f64; AT_ONCE], [Vector<f64, D>; AT_ONCE]) {
+        self.evaluations += 2 * AT_ONCE as u32;
         let samples = &mut *self.samples;
-        samples.block.fill(SHORT, |i| points[i]);
-        self.shape.block_gradients(&samples.block, SHORT, &mut samples.slopes);
-        let (mut values, mut directions) = ([0.0; SHORT], [Vector::ZERO; SHORT]);
-        for i in 0..SHORT {
+        samples.block.fill(AT_ONCE, |i| points[i]);
+        self.shape.block_gradients(&samples.block, AT_ONCE, &mut samples.slopes);
+        let (mut values, mut directions) = ([0.0; AT_ONCE], [Vector::ZERO; AT_ONCE]);
+        for i in 0..AT_ONCE {
             values[i] = samples.slopes.distance.get(i) - self.level;
             directions[i] = unit(samples.slopes.gradient.get(i));
         }

@@ -124,7 +124,9 @@ impl Div for Double {
 }
 
 impl Scalar for Double {
-    const EPSILON: f64 = f64::EPSILON * f64::EPSILON;
+    fn epsilon() -> f64 {
+        f64::EPSILON * f64::EPSILON
+    }
 
     fn constant(value: f64) -> Self {
         Self { high: value, low: 0.0 }

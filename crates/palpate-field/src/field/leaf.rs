@@ -158,9 +158,18 @@ impl<K: Kernel<D>, const D: usize> Leaf<K, D> {
         out: &mut Column<AffineModel<N>>,
     ) {
         let moved = self.placement.as_ref().map(|placement| cells_to_body(placement, p, count));
-        let p = moved.as_ref().unwrap_or(p);
-        out.fill(count, |i| self.kernel.model(p.get(i)));
+        one_by_one(&|cell| self.kernel.model(cell), moved.as_ref().unwrap_or(p), count, out);
     }
+}
+
+/// The models of cells, one by one: one function for all kernels.
+fn one_by_one<const N: usize, const D: usize>(
+    model: &dyn Fn(Vector<AffineModel<N>, D>) -> AffineModel<N>,
+    p: &Block<AffineModel<N>, D>,
+    count: usize,
+    out: &mut Column<AffineModel<N>>,
+) {
+    out.fill(count, |i| model(p.get(i)));
 }
 
 impl<K: Kernel<D>, const D: usize> OwnModels<D> for Leaf<K, D> {

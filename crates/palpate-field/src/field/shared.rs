@@ -78,10 +78,10 @@ impl<const D: usize> SharedField<D> {
             return;
         }
         if self.has_formula() {
-            self.tape(Purpose::Values);
+            self.tape(Purpose::Values).prepare();
         }
         if self.own_models().is_none() {
-            self.tape(Purpose::Models);
+            self.tape(Purpose::Models).prepare();
         }
         self.members().unwrap_or_default().iter().for_each(Self::prepare);
     }
@@ -178,6 +178,9 @@ impl Evaluate for SpaceTimeModel {
 /// A field of a tape, whatever its dimension. `coordinate` gives each coordinate, by the number of its
 /// axis, in each lane.
 pub trait Asked: std::fmt::Debug + Send + Sync {
+    /// As [`SharedField::prepare`].
+    fn prepare_it(&self);
+
     /// The distances in the first `count` lanes.
     fn distances_at(
         &self,
@@ -217,6 +220,10 @@ impl<const D: usize> SharedField<D> {
 }
 
 impl<const D: usize> Asked for SharedField<D> {
+    fn prepare_it(&self) {
+        self.prepare();
+    }
+
     fn distances_at(
         &self,
         count: usize,

@@ -156,20 +156,21 @@ pub(crate) fn face_if_on_it<S: Scalar>(outside: S, face: S, size: f64) -> S {
     S::select_less(outside, S::constant(4.0 * S::epsilon() * size), face, outside)
 }
 
-/// The distance, not inlined: eight copies of a formula in a loop over lanes, for each
-/// instruction set, would take minutes to compile.
-#[inline(never)]
-fn distance_apart<K: Kernel<D>, const D: usize>(kernel: &K, p: Point<D>) -> f64 {
-    kernel.distance(p)
+/// A kernel at single points: what all kernels share is compiled once.
+trait AtPoint<const D: usize> {
+    fn distance_at(&self, p: Point<D>) -> f64;
+
+    fn gradient_at(&self, p: Point<D>) -> (f64, Vector<f64, D>);
 }
 
-/// As [`distance_apart`], with the gradient.
-#[inline(never)]
-fn gradient_apart<K: Kernel<D>, const D: usize>(
-    kernel: &K,
-    p: Point<D>,
-) -> (f64, Vector<f64, D>) {
-    kernel.distance_gradient(p)
+impl<K: Kernel<D>, const D: usize> AtPoint<D> for K {
+    fn distance_at(&self, p: Point<D>) -> f64 {
+        self.distance(p)
+    }
+
+    fn gradient_at(&self, p: Point<D>) -> (f64, Vector<f64, D>) {
+        self.distance_gradient(p)
+    }
 }
 
 /// Directions that differ by less count as equal: over a length `t`, distances along them
@@ -199,9 +200,8 @@ struct Steps {
 /// is less than a rounding. If not, steps grow from t to `t²/ρ`, with ρ the `unit` of rounding:
 /// after a step t the error τ is `ρ/t`, so each step loses about `ρ/2`, and few are needed. The
 /// distances at the steps give the whole loss.
-#[inline(never)]
-fn sure_normal<K: Kernel<D>, const D: usize>(
-    kernel: &K,
+fn sure_normal<const D: usize>(
+    kernel: &dyn AtPoint<D>,
     centre: Point<D>,
     distance: f64,
     direction: Vector<f64, D>,
@@ -209,7 +209,7 @@ fn sure_normal<K: Kernel<D>, const D: usize>(
 ) -> (Vector<f64, D>, f64) {
     // The normal a step out, and how far its plane is below the distance at the centre.
     let out = |step: f64, direction: Vector<f64, D>| {
-        let (f, normal) = gradient_apart(kernel, centre + direction * step);
+        let (f, normal) = kernel.gradient_at(centre + direction * step);
         (normal, distance + step * normal.dot(direction) - f)
     };
     let (normal, lost) = out(far, direction);
@@ -230,14 +230,25 @@ fn sure_normal<K: Kernel<D>, const D: usize>(
 /// the corners of the cell; `operations` and `size` as for
 /// [`Rounding::of_operations`](crate::Rounding::of_operations).
 #[inline(always)]
-pub(crate) fn tangent_model<K: Kernel<D>, const D: usize, const N: usize>(
-    kernel: &K,
+pub(crate) fn tangent_model<const D: usize, const N: usize>(
+    kernel: &impl Kernel<D>,
     cell: Vector<AffineModel<N>, D>,
     operations: f64,
     size: f64,
 ) -> AffineModel<N> {
+    tangent_model_of(kernel, &cell, operations, size)
+}
+
+/// [`tangent_model`], once for all kernels.
+#[inline(never)]
+fn tangent_model_of<const D: usize, const N: usize>(
+    kernel: &dyn AtPoint<D>,
+    cell: &Vector<AffineModel<N>, D>,
+    operations: f64,
+    size: f64,
+) -> AffineModel<N> {
     let centre = Vector(array!(i < D => cell.0[i].value));
-    let (distance, mut normal) = gradient_apart(kernel, centre);
+    let (distance, mut normal) = kernel.gradient_at(centre);
     let mut rounding = operations * f64::EPSILON * (size + centre.norm());
     let radius = AffineModel::radius(&cell.0);
     // Otherwise the nearest point is so far away that its direction is precise over the cell.
@@ -251,7 +262,7 @@ pub(crate) fn tangent_model<K: Kernel<D>, const D: usize, const N: usize>(
         // plane moves accordingly at the ends of the cell.
         rounding += lost + (0.25 * operations + 2.0) * f64::EPSILON * radius;
     }
-    let distance_at = |corner: [f64; D]| distance_apart(kernel, Vector(corner));
+    let distance_at = |corner: [f64; D]| kernel.distance_at(Vector(corner));
     AffineModel::tangent(distance, normal.0, distance_at, &cell.0, rounding)
 }
 

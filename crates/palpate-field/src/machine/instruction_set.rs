@@ -135,20 +135,29 @@ where
     Out: RowsMut,
     J: Job<A::Item, B::Item, Out::Item>,
 {
-    #[cfg(target_arch = "x86_64")]
-    {
-        if InstructionSet::in_use() == InstructionSet::Avx512 {
-            // SAFETY: in_use() returns only sets for which is_available() found
-            // every feature that the function is compiled with.
-            return unsafe { with_avx512(job, a, b, count, out) };
-        }
-        // Whoever selects another set meanwhile changes no bit of the answer.
-        if InstructionSet::in_use() == InstructionSet::Avx2 || InstructionSet::Avx2.is_available() {
-            // SAFETY: as above.
-            return unsafe { with_avx2(job, a, b, count, out) };
-        }
+    let set = InstructionSet::in_use();
+    if set == InstructionSet::Baseline {
+        require_loops();
     }
-    panic!("loops of kernels are compiled for AVX2 alone");
+    #[cfg(target_arch = "x86_64")]
+    if set == InstructionSet::Avx512 {
+        // SAFETY: in_use() returns only sets for which is_available() found
+        // every feature that the function is compiled with.
+        unsafe { with_avx512(job, a, b, count, out) }
+    } else {
+        // SAFETY: as above, or require_loops() found AVX2.
+        unsafe { with_avx2(job, a, b, count, out) }
+    }
+    #[cfg(not(target_arch = "x86_64"))]
+    let _ = (job, a, b, count, out);
+}
+
+/// Panics if this machine has no AVX2. If it has, another thread selected the baseline meanwhile: the
+/// answer has the same bits.
+#[cold]
+#[inline(never)]
+fn require_loops() {
+    assert!(InstructionSet::Avx2.is_available(), "loops of kernels are compiled for AVX2 alone");
 }
 
 /// Runs `job` on the lanes of `a` and `b` with the instruction set in use, on every machine.

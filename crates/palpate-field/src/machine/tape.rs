@@ -16,9 +16,9 @@ use crate::field::Asked;
 use crate::kernel::Evaluations;
 use crate::scalar::{
     Blend, Circular, Cubic, Exponential, Expression, Graph, Operation, Quadratic, Quartic,
-    Model, Recipe, Root, Scalar, SpaceTimeModel,
+    Model, PowerForm, Recipe, Root, Scalar, SpaceTimeModel,
 };
-use crate::vector::Vector;
+use crate::vector::{Vector, array};
 
 /// The number of a register; before registers are assigned, that of a step.
 type Register = u32;
@@ -61,12 +61,8 @@ enum Instruction {
     WeightedSum3([Register; 3], [f64; 3]),
     SmoothMin([Register; 2], Profile, f64),
     NearestMultiple([Register; 1], [f64; 3]),
-    PowerNorm1([Register; 1], Power),
-    PowerNorm2([Register; 2], Power),
-    PowerNorm3([Register; 3], Power),
-    PowerOrthant1([Register; 1], Power),
-    PowerOrthant2([Register; 2], Power),
-    PowerOrthant3([Register; 3], Power),
+    PlanarPower([Register; 2], PowerForm, Power),
+    SpatialPower([Register; 3], PowerForm, Power),
     GiveOrTake([Register; 2]),
     PlanarOrBySteepness([Register; 3], Evaluations),
     SpatialOrBySteepness([Register; 4], Evaluations),
@@ -133,8 +129,7 @@ macro_rules! registers_of {
             | Instruction::Orthant2($registers)
             | Instruction::WeightedSum2($registers, _)
             | Instruction::SmoothMin($registers, _, _)
-            | Instruction::PowerNorm2($registers, _)
-            | Instruction::PowerOrthant2($registers, _)
+            | Instruction::PlanarPower($registers, _, _)
             | Instruction::GiveOrTake($registers)
             | Instruction::AskPlanar($registers, _) => $then,
             Instruction::Minus($registers, _)
@@ -152,14 +147,11 @@ macro_rules! registers_of {
             | Instruction::Norm1($registers)
             | Instruction::Orthant1($registers)
             | Instruction::WeightedSum1($registers, _)
-            | Instruction::NearestMultiple($registers, _)
-            | Instruction::PowerNorm1($registers, _)
-            | Instruction::PowerOrthant1($registers, _) => $then,
+            | Instruction::NearestMultiple($registers, _) => $then,
             Instruction::Norm3($registers)
             | Instruction::Orthant3($registers)
             | Instruction::WeightedSum3($registers, _)
-            | Instruction::PowerNorm3($registers, _)
-            | Instruction::PowerOrthant3($registers, _)
+            | Instruction::SpatialPower($registers, _, _)
             | Instruction::PlanarOrBySteepness($registers, _)
             | Instruction::AskSpatial($registers, _) => $then,
             Instruction::SelectLess($registers)
@@ -217,6 +209,11 @@ impl Tape {
         let mut out = Column::scratch();
         self.run(&coordinates.iter().collect::<Vec<_>>(), 1, &mut out);
         out.get(0)
+    }
+
+    /// Prepares the fields that it asks.
+    pub(crate) fn prepare(&self) {
+        self.asked.iter().for_each(|field| field.prepare_it());
     }
 
     /// Whether the registers for numbers `S` fit in memory that is not allocated.
@@ -424,15 +421,9 @@ impl Unassigned {
                 2 => Instruction::WeightedSum2(self.all(arguments), [a, b]),
                 _ => Instruction::WeightedSum3(self.all(arguments), [a, b, c]),
             },
-            Recipe::PowerNorm(power) => match count {
-                1 => Instruction::PowerNorm1(self.all(arguments), Power::of(power)),
-                2 => Instruction::PowerNorm2(self.all(arguments), Power::of(power)),
-                _ => Instruction::PowerNorm3(self.all(arguments), Power::of(power)),
-            },
-            Recipe::PowerOrthant(power) => match count {
-                1 => Instruction::PowerOrthant1(self.all(arguments), Power::of(power)),
-                2 => Instruction::PowerOrthant2(self.all(arguments), Power::of(power)),
-                _ => Instruction::PowerOrthant3(self.all(arguments), Power::of(power)),
+            Recipe::Power(form, power) => match count {
+                2 => Instruction::PlanarPower(self.all(arguments), form, Power::of(power)),
+                _ => Instruction::SpatialPower(self.all(arguments), form, Power::of(power)),
             },
             Recipe::GiveOrTake => Instruction::GiveOrTake(self.all(arguments)),
             Recipe::OrBySteepness(evaluations) => match count {
@@ -701,59 +692,11 @@ fn interpret<S: OnTape, const W: usize>(
                 I::NearestMultiple([a], [spacing, low, high]) => {
                     each_lane!(r, n, o, [a], a.nearest_multiple(spacing, low, high));
                 }
-                I::PowerNorm1([a], Power::Four) => {
-                    each_lane!(r, n, o, [a], S::power_norm::<4, 1>([a]));
+                I::PlanarPower(of, form, power) => {
+                    powers::<S, W, 2>(&mut r, o, of, (form, power), n);
                 }
-                I::PowerNorm1([a], Power::Six) => {
-                    each_lane!(r, n, o, [a], S::power_norm::<6, 1>([a]));
-                }
-                I::PowerNorm1([a], Power::Eight) => {
-                    each_lane!(r, n, o, [a], S::power_norm::<8, 1>([a]));
-                }
-                I::PowerNorm2([a, b], Power::Four) => {
-                    each_lane!(r, n, o, [a, b], S::power_norm::<4, 2>([a, b]));
-                }
-                I::PowerNorm2([a, b], Power::Six) => {
-                    each_lane!(r, n, o, [a, b], S::power_norm::<6, 2>([a, b]));
-                }
-                I::PowerNorm2([a, b], Power::Eight) => {
-                    each_lane!(r, n, o, [a, b], S::power_norm::<8, 2>([a, b]));
-                }
-                I::PowerNorm3([a, b, c], Power::Four) => {
-                    each_lane!(r, n, o, [a, b, c], S::power_norm::<4, 3>([a, b, c]));
-                }
-                I::PowerNorm3([a, b, c], Power::Six) => {
-                    each_lane!(r, n, o, [a, b, c], S::power_norm::<6, 3>([a, b, c]));
-                }
-                I::PowerNorm3([a, b, c], Power::Eight) => {
-                    each_lane!(r, n, o, [a, b, c], S::power_norm::<8, 3>([a, b, c]));
-                }
-                I::PowerOrthant1([a], Power::Four) => {
-                    each_lane!(r, n, o, [a], S::power_orthant::<4, 1>([a]));
-                }
-                I::PowerOrthant1([a], Power::Six) => {
-                    each_lane!(r, n, o, [a], S::power_orthant::<6, 1>([a]));
-                }
-                I::PowerOrthant1([a], Power::Eight) => {
-                    each_lane!(r, n, o, [a], S::power_orthant::<8, 1>([a]));
-                }
-                I::PowerOrthant2([a, b], Power::Four) => {
-                    each_lane!(r, n, o, [a, b], S::power_orthant::<4, 2>([a, b]));
-                }
-                I::PowerOrthant2([a, b], Power::Six) => {
-                    each_lane!(r, n, o, [a, b], S::power_orthant::<6, 2>([a, b]));
-                }
-                I::PowerOrthant2([a, b], Power::Eight) => {
-                    each_lane!(r, n, o, [a, b], S::power_orthant::<8, 2>([a, b]));
-                }
-                I::PowerOrthant3([a, b, c], Power::Four) => {
-                    each_lane!(r, n, o, [a, b, c], S::power_orthant::<4, 3>([a, b, c]));
-                }
-                I::PowerOrthant3([a, b, c], Power::Six) => {
-                    each_lane!(r, n, o, [a, b, c], S::power_orthant::<6, 3>([a, b, c]));
-                }
-                I::PowerOrthant3([a, b, c], Power::Eight) => {
-                    each_lane!(r, n, o, [a, b, c], S::power_orthant::<8, 3>([a, b, c]));
+                I::SpatialPower(of, form, power) => {
+                    powers::<S, W, 3>(&mut r, o, of, (form, power), n);
                 }
                 I::GiveOrTake([a, b]) => each_lane!(r, n, o, [a, b], a.give_or_take(b)),
                 I::PlanarOrBySteepness([a, b, c], evaluations) => {
@@ -770,6 +713,31 @@ fn interpret<S: OnTape, const W: usize>(
             // SAFETY: it wrote so many lanes.
             out.write(first + i, unsafe { result.read(i) });
         }
+    }
+}
+
+/// Norms of powers. Not inlined: they are rare and long.
+#[inline(never)]
+fn powers<S: OnTape, const W: usize, const N: usize>(
+    r: &mut Registers<'_, S::Lanes<W>>,
+    out: Register,
+    of: [Register; N],
+    (form, power): (PowerForm, Power),
+    n: usize,
+) {
+    for i in 0..n {
+        // SAFETY: the registers are some of the tape's, and steps before wrote `n` lanes of them.
+        let x = array!(k < N => unsafe { r.argument(of[k]).read(i) });
+        let number = match (form, power) {
+            (PowerForm::Norm, Power::Four) => S::power_norm::<4, N>(x),
+            (PowerForm::Norm, Power::Six) => S::power_norm::<6, N>(x),
+            (PowerForm::Norm, Power::Eight) => S::power_norm::<8, N>(x),
+            (PowerForm::Orthant, Power::Four) => S::power_orthant::<4, N>(x),
+            (PowerForm::Orthant, Power::Six) => S::power_orthant::<6, N>(x),
+            (PowerForm::Orthant, Power::Eight) => S::power_orthant::<8, N>(x),
+        };
+        // SAFETY: the register is one of the tape's, and none of the arguments'.
+        unsafe { r.out(out) }.write(i, number);
     }
 }
 

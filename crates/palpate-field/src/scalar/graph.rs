@@ -38,16 +38,23 @@ pub(crate) enum Recipe {
     Operation(Operation),
     /// [`Scalar::weighted_sum`](super::Scalar::weighted_sum) of up to three numbers.
     WeightedSum([f64; 3]),
-    /// [`Scalar::power_norm`](super::Scalar::power_norm) of this power.
-    PowerNorm(u32),
-    /// [`Scalar::power_orthant`](super::Scalar::power_orthant) of this power.
-    PowerOrthant(u32),
+    /// A norm of this power, of two or three numbers.
+    Power(PowerForm, u32),
     /// [`Scalar::give_or_take`](super::Scalar::give_or_take).
     GiveOrTake,
     /// The first number, or its bound by the steepness at the point of the others.
     OrBySteepness(Evaluations),
     /// The answer of a field at the point.
     Ask(Arc<dyn Asked>),
+}
+
+/// What is made of a norm of powers.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum PowerForm {
+    /// [`Scalar::power_norm`](super::Scalar::power_norm).
+    Norm,
+    /// [`Scalar::power_orthant`](super::Scalar::power_orthant).
+    Orthant,
 }
 
 /// A step of a tape that is being recorded.

@@ -30,7 +30,7 @@ pub use blend::{Blend, Circular, Cubic, Exponential, Quadratic, Quartic, Root};
 pub use dual::Dual;
 pub use expression::{Expression, Operation, Step};
 pub use float::Float;
-pub(crate) use graph::{Graph, Purpose, Recipe};
+pub(crate) use graph::{Graph, PowerForm, Purpose, Recipe};
 pub(crate) use model::TurnedBoxes;
 pub use model::{AffineModel, Model, SpaceTimeModel};
 pub use recorded::Recorded;

@@ -28,9 +28,6 @@ const NONE: f64 = -0.0;
 /// Stands for "no bound": larger than every length, and its products stay finite.
 const UNBOUNDED: f64 = 1e60;
 
-/// The corners of a cell of four parameters.
-const MOST_CORNERS: usize = 16;
-
 /// An affine function with remainders, which encloses a formula over a cell.
 ///
 /// The cell is the image of the cube `|uₖ| ≤ 1` of `N` parameters, at most four: three for
@@ -154,34 +151,6 @@ impl<const N: usize> AffineModel<N> {
         cell: &[Self; D],
         rounding: f64,
     ) -> Self {
-        let mut distances = [0.0; MOST_CORNERS];
-        for (corner, distance) in distances[..1 << N].iter_mut().enumerate() {
-            *distance = distance_at(Self::corner(cell, corner));
-        }
-        Self::tangent_below(value, normal, &distances, cell, rounding)
-    }
-
-    /// The point of a corner of a cell; the bits of its number are the sides.
-    #[inline(never)]
-    fn corner<const D: usize>(cell: &[Self; D], corner: usize) -> [f64; D] {
-        let mut point = array!(i < D => cell[i].value);
-        unrolled!(k < N => {
-            let side = choose((corner >> k) & 1 == 0, -1.0, 1.0);
-            unrolled!(i < D => point[i] += cell[i].gradient[k] * side);
-        });
-        point
-    }
-
-    /// The bound by the tangent plane and the `distances` at the corners. Not inlined: it is one
-    /// function for all kernels.
-    #[inline(never)]
-    fn tangent_below<const D: usize>(
-        value: f64,
-        normal: [f64; D],
-        distances: &[f64; MOST_CORNERS],
-        cell: &[Self; D],
-        rounding: f64,
-    ) -> Self {
         let mut gradient = [0.0; N];
         let (mut lower, mut upper, mut remainders) = (0.0, 0.0, 0.0);
         unrolled!(i < D => {
@@ -194,12 +163,16 @@ impl<const N: usize> AffineModel<N> {
             unrolled!(k < N => gradient[k] += normal[i] * cell[i].gradient[k]);
         });
         let mut above = 0.0;
-        for (corner, distance) in distances[..1 << N].iter().enumerate() {
+        for corner in 0..1_usize << N {
+            let side: [f64; N] =
+                array!(k < N => if (corner >> k) & 1 == 0 { -1.0 } else { 1.0 });
             let mut plane = value;
+            let mut point = array!(i < D => cell[i].value);
             unrolled!(k < N => {
-                plane += gradient[k] * choose((corner >> k) & 1 == 0, -1.0, 1.0);
+                plane += gradient[k] * side[k];
+                unrolled!(i < D => point[i] += cell[i].gradient[k] * side[k]);
             });
-            above = (distance - plane).max_of(above);
+            above = (distance_at(point) - plane).max_of(above);
         }
         let radius = Self::radius(cell);
         let error = rounding + 8.0 * UNIT * (f64::abs(value) + radius);

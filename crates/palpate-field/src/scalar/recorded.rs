@@ -8,7 +8,7 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 use std::sync::Arc;
 
 use super::expression::Operation;
-use super::graph::{Graph, Purpose, Recipe};
+use super::graph::{Graph, PowerForm, Purpose, Recipe};
 use super::{Blend, Expression, Scalar, power};
 use crate::field::Asked;
 use crate::kernel::Evaluations;
@@ -212,8 +212,8 @@ impl Scalar for Recorded {
     }
 
     fn power_norm<const P: u32, const N: usize>(x: [Self; N]) -> Self {
-        if Self::purpose() == Purpose::Models {
-            return Self::add_recipe(Recipe::PowerNorm(P), &x);
+        if Self::purpose() == Purpose::Models && N > 1 {
+            return Self::add_recipe(Recipe::Power(PowerForm::Norm, P), &x);
         }
         power::norm::<Self, P, N>(x)
     }
@@ -223,8 +223,8 @@ impl Scalar for Recorded {
     }
 
     fn power_orthant<const P: u32, const N: usize>(q: [Self; N]) -> Self {
-        if Self::purpose() == Purpose::Models {
-            return Self::add_recipe(Recipe::PowerOrthant(P), &q);
+        if Self::purpose() == Purpose::Models && N > 1 {
+            return Self::add_recipe(Recipe::Power(PowerForm::Orthant, P), &q);
         }
         power::orthant::<Self, P, N>(q)
     }

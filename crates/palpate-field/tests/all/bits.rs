@@ -5,11 +5,16 @@
 //!
 //! One test, since the choice of the instruction set is the process's.
 
+use palpate_field::scalar::Model;
 use palpate_field::{BLOCK, InstructionSet, Point, Shape, Vector};
 use palpate_testkit::arbitrary::{self as draw, Turn};
 use palpate_testkit::kernels::Space;
 use palpate_testkit::tree::{Solid, Tree};
+use palpate_testkit::laws::Cell;
 use palpate_testkit::{cases, laws};
+
+/// Roundings by which models on two roads may differ, beside those of the promise.
+const WIDTH_ROUNDINGS: f64 = 32.0;
 
 /// Checks random trees; `spread` puts the points of a block near each other or
 /// all over the scene.
@@ -71,15 +76,6 @@ where
             if by_hand.map(f64::to_bits) != Some(culled.to_bits()) {
                 return Ok(Err(format!("{culled:e} culled, {by_hand:?} by hand, at {p:?}")));
             }
-            let q = Vector(p.0.map(|x| x as f32));
-            let fold = |a: f32, b: f32| if b < a { b } else { a };
-            let by_hand = shapes.iter().map(|s| s.distance_f32(q)).reduce(fold);
-            let culled = union.distance_f32(q);
-            if by_hand.map(f32::to_bits) != Some(culled.to_bits()) {
-                return Ok(Err(format!(
-                    "{culled:e} culled f32, {by_hand:?} by hand, at {p:?}"
-                )));
-            }
         }
         Ok(laws::bits_agree(&union, &points))
     });
@@ -105,8 +101,47 @@ where
     });
 }
 
+/// Models on the road of the instruction set in use: they enclose the field, and are no wider than those
+/// of `others`, the models on another road of the same cells. Gives the models.
+fn models_of_trees<const D: usize>(count: u64, others: &[Model]) -> Vec<Model>
+where
+    Space: Solid<D> + Turn<D>,
+{
+    let mut all = Vec::new();
+    cases::on_trees(count, 6, |u, _, shape| {
+        let samples: Vec<[f64; D]> =
+            (0..16).map(|_| draw::vector(u).map(|v| v.0)).collect::<arbitrary::Result<_>>()?;
+        let samples: Vec<[f64; D]> =
+            samples.into_iter().map(|u| u.map(|x| x.clamp(-1.0, 1.0))).collect();
+        let mut cells = Vec::new();
+        for _ in 0..u.int_in_range(1..=BLOCK)? {
+            let half = draw::size(shape) * 10.0_f64.powf(draw::within(u, -4.0, 0.0)?);
+            cells.push(Cell { centre: draw::point(u, shape)?, half: Vector::constant(half) });
+        }
+        if let Err(complaint) = laws::model_encloses(shape, None, &cells, &samples) {
+            return Ok(Err(complaint));
+        }
+        let models = laws::models(shape, None, &cells);
+        for (cell, model) in cells.iter().zip(&models) {
+            if let Some(other) = others.get(all.len()) {
+                let reach = cell.centre.norm() + cell.half.norm();
+                let rounding = shape.promise().rounding.within(reach) + f64::EPSILON * reach;
+                let width = |model: &Model| model.maximum() - model.minimum();
+                let (here, there) = (width(model), width(other));
+                if here > there * (1.0 + 1e-12) + WIDTH_ROUNDINGS * rounding {
+                    return Ok(Err(format!("{here:e} wide, {there:e} on another road: {cell:?}")));
+                }
+            }
+            all.push(*model);
+        }
+        Ok(Ok(()))
+    });
+    all
+}
+
 #[test]
 fn every_way_to_evaluate_gives_the_same_bits() {
+    let mut models: Option<(Vec<Model>, Vec<Model>)> = None;
     for set in InstructionSet::ALL {
         if !set.select() {
             println!("skipped: this machine has no {set:?}");
@@ -118,5 +153,9 @@ fn every_way_to_evaluate_gives_the_same_bits() {
         partial_blocks::<3>();
         unions_are_folds::<2>(60);
         unions_are_folds::<3>(60);
+        let (planar, spatial) = models.take().unwrap_or_default();
+        let (planar, spatial) =
+            (models_of_trees::<2>(300, &planar), models_of_trees::<3>(300, &spatial));
+        models = Some((planar, spatial));
     }
 }

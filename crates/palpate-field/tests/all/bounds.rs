@@ -4,7 +4,9 @@
 //! Balls around points and balls; lengths of vectors.
 
 use palpate_field::scalar::Model;
-use palpate_field::{Block, BoundingBall, SHORT, Vector};
+use palpate_field::{Block, BoundingBall, Vector};
+
+const FEW: usize = 8;
 
 /// Points along a spiral, of which no two are alike.
 fn spiral(i: usize) -> Vector<f64, 2> {
@@ -14,8 +16,8 @@ fn spiral(i: usize) -> Vector<f64, 2> {
 
 #[test]
 fn the_ball_touches_the_farthest_of_any_number_of_points() {
-    for count in 1..=SHORT {
-        let mut points = Block::<f64, 2, SHORT>::zero();
+    for count in 1..=FEW {
+        let mut points = Block::<f64, 2, FEW>::zero();
         points.fill(count, spiral);
         let ball = points.ball_around(count);
         let distances = (0..count).map(|i| (spiral(i) - ball.centre).norm());
@@ -27,7 +29,7 @@ fn the_ball_touches_the_farthest_of_any_number_of_points() {
 
 #[test]
 fn points_past_the_count_do_not_matter() {
-    let mut points = Block::<f64, 2, SHORT>::zero();
+    let mut points = Block::<f64, 2, FEW>::zero();
     points.set(0, Vector([3.0, 4.0]));
     let ball = points.ball_around(1);
     assert_eq!((ball.centre, ball.radius), (Vector([3.0, 4.0]), 0.0));
@@ -35,7 +37,7 @@ fn points_past_the_count_do_not_matter() {
 
 #[test]
 fn cells_lie_in_it_whole() {
-    let mut cells = Block::<Model, 2, SHORT>::zero();
+    let mut cells = Block::<Model, 2, FEW>::zero();
     cells.fill(5, |i| Vector(Model::cell(spiral(i).0, [0.5, 0.25])));
     let ball = cells.ball_around(5);
     for i in 0..5 {

@@ -57,7 +57,7 @@ fn is_the_norm<T: Float>(x: [f64; 3]) -> std::result::Result<f64, String> {
     let x = x.map(T::constant);
     let exact = x.map(Float::to_f64);
     let largest = exact.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
-    let room = 1.0 + ULP * T::EPSILON;
+    let room = 1.0 + ULP * T::epsilon();
     let mut above = exact[0].hypot(exact[1]).hypot(exact[2]);
     let mut worst = 0.0_f64;
     for (norm, power) in norms(x).into_iter().zip([4, 6, 8]) {
@@ -66,7 +66,7 @@ fn is_the_norm<T: Float>(x: [f64; 3]) -> std::result::Result<f64, String> {
             return Err(format!("{norm:e} of {exact:?} to {power}, above {above:e}"));
         }
         let apart = (Double::constant(norm) - definition(exact, power)).to_f64().abs();
-        let ulp = apart / (T::EPSILON * largest.max(f64::MIN_POSITIVE));
+        let ulp = apart / (T::epsilon() * largest.max(f64::MIN_POSITIVE));
         if ulp > ULP {
             return Err(format!("{norm:e} of {exact:?} to {power}, off by {ulp:.2} ulp"));
         }

@@ -71,7 +71,7 @@ const isWithheld = (frame) =>
  * @param {import('../wire.js').Frame | null} frame */
 export function withheldInWords(frame) {
   const isActing = state.safety.some((stage) => stage.name === RISE && isNow(stage.acted));
-  return isWithheld(frame) && isActing ? 'no force until the hand is out of the bodies: draw it out by the mouse or the arrow keys' : '';
+  return isWithheld(frame) && isActing ? `no force until the hand is out of the bodies: ${state.newest?.stopped ? 'release, then draw it out' : 'draw it out'}` : '';
 }
 
 /** What a stage does, for the foot line: a force rises where there is one, and else waits.

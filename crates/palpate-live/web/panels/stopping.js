@@ -9,7 +9,7 @@
  */
 
 import { changed, listen, state } from '../state.js';
-import { page, tell, tellError } from './page.js';
+import { dismiss, page, tell, tellError } from './page.js';
 
 /** From this page's last press to a release by this page, at least [ms]: a double click, or a key
  * that is held, never releases. */
@@ -75,6 +75,7 @@ async function sendByPost(press) {
 
 /** Stops all forces, on both ways at once. @param {Event} [event] */
 export function stop(event) {
+  dismiss(notice);
   const now = performance.now();
   const isRepeated = event instanceof KeyboardEvent && event.repeat;
   if (isRepeated && now - pressedAt < REPEAT) return;
@@ -148,7 +149,10 @@ export function canRelease() {
 }
 
 /** How forces come back after a release and after the servo starts. */
-export const FORCES_COME_BACK = 'Forces come back once the hand is out of the bodies, rising from zero: draw it out by the mouse or the arrow keys.';
+export const FORCES_COME_BACK = 'Forces come back once the hand is out of the bodies, rising from zero: draw it out.';
+
+/** The notice of a release, while it is true. */
+let notice = 0;
 
 /** Gives forces again, by a person's press alone. @param {Event} event */
 export async function release(event) {
@@ -156,7 +160,9 @@ export async function release(event) {
   if (!event.isTrusted || isRepeated || !canRelease()) return;
   try {
     await page.wire?.ask({ do: 'release', number: told?.number });
-    tell(state.newest?.touring ? 'Forces rise from zero once the hand is out of the bodies; the tour goes on.' : FORCES_COME_BACK);
+    const isInside = state.newest?.points.some(({ contact }) => contact) ?? false;
+    const goesOn = state.newest?.touring ? ' The tour goes on.' : '';
+    notice = tell(isInside ? `${FORCES_COME_BACK}${goesOn}` : `Forces are on again.${goesOn}`);
   } catch (error) {
     tellError(error);
   }

@@ -18,7 +18,7 @@
 //! that gains time.
 
 use palpate_field::scalar::Model;
-use palpate_field::{BLOCK, Block, Column, Point, SHORT, Shape, Vector};
+use palpate_field::{BLOCK, Block, Column, Point, Shape, Vector};
 use palpate_mesh::Mesh;
 use palpate_mesh::internal::FAN;
 
@@ -34,11 +34,11 @@ use crate::contact::Contact;
 use crate::element::parts_of_one;
 use crate::engine::{self, Frontier, Problem};
 use crate::error::QueryError;
-use crate::sampler::{Sampler, Samples, normal};
+use crate::sampler::{AT_ONCE, Sampler, Samples, normal};
 
 /// Heights of the lifted samples, as shares of the part's height: the first ones, where a part has few
 /// samples.
-const SHARES: [f64; SHORT] = [1.0, 0.35, 3.0, 0.1, 8.0, 0.03, 20.0, 0.01];
+const SHARES: [f64; AT_ONCE] = [1.0, 0.35, 3.0, 0.1, 8.0, 0.03, 20.0, 0.01];
 
 /// A height shrinks to this where no sample over the centre helps, and grows by this where the
 /// first does.
@@ -242,13 +242,13 @@ impl<const N: usize, const D: usize> ElementSearch<'_, '_, N, D> {
     /// Advances the parts of a round.
     fn advance(&mut self, parts: &mut [Part<N, D>]) {
         let count = parts.len();
-        let ways: [Way<N, D>; SHORT] = std::array::from_fn(|i| {
+        let ways: [Way<N, D>; AT_ONCE] = std::array::from_fn(|i| {
             let part = &parts[i.min(count - 1)];
             part.way(&self.path, self.places.at(&self.path, part.free))
         });
         let centres = ways.map(|way| way.centre);
         let (values, directions) = self.sampler.slopes(&centres);
-        let mut stays = [Stay::default(); SHORT];
+        let mut stays = [Stay::default(); AT_ONCE];
         for i in 0..count {
             let part = &parts[i];
             if values[i] <= self.settings.touch_level() {
@@ -270,11 +270,11 @@ impl<const N: usize, const D: usize> ElementSearch<'_, '_, N, D> {
     fn model(
         &mut self,
         parts: &[Part<N, D>],
-        ways: &[Way<N, D>; SHORT],
-        stays: &mut [Stay; SHORT],
+        ways: &[Way<N, D>; AT_ONCE],
+        stays: &mut [Stay; AT_ONCE],
     ) {
         let latest = self.upper.min(1.0);
-        let (mut open, mut spans, mut count) = ([0; SHORT], [0.0; SHORT], 0);
+        let (mut open, mut spans, mut count) = ([0; AT_ONCE], [0.0; AT_ONCE], 0);
         for (i, part) in parts.iter().enumerate() {
             let span = stays[i].centre.max(SHORTEST).min(latest - part.free);
             let way = &ways[i];
@@ -337,17 +337,17 @@ impl<const N: usize, const D: usize> ElementSearch<'_, '_, N, D> {
     fn lift(
         &mut self,
         parts: &mut [Part<N, D>],
-        ways: &[Way<N, D>; SHORT],
-        directions: &[Vector<f64, D>; SHORT],
-        stays: &mut [Stay; SHORT],
+        ways: &[Way<N, D>; AT_ONCE],
+        directions: &[Vector<f64, D>; AT_ONCE],
+        stays: &mut [Stay; AT_ONCE],
     ) {
         let count = parts.len();
-        let mut best = [0.0; SHORT];
-        let rounds = if count > SHORT / 2 { 2 } else { 1 };
-        let of_each = SHORT / count;
+        let mut best = [0.0; AT_ONCE];
+        let rounds = if count > AT_ONCE / 2 { 2 } else { 1 };
+        let of_each = AT_ONCE / count;
         for round in 0..rounds {
             let share = |lane: usize| SHARES[lane % of_each + round];
-            let points: [Point<D>; SHORT] = std::array::from_fn(|lane| {
+            let points: [Point<D>; AT_ONCE] = std::array::from_fn(|lane| {
                 let i = (lane / of_each).min(count - 1);
                 ways[i].centre + directions[i] * (share(lane) * parts[i].height)
             });
@@ -376,15 +376,15 @@ impl<const N: usize, const D: usize> ElementSearch<'_, '_, N, D> {
     fn look(
         &mut self,
         parts: &[Part<N, D>],
-        ways: &[Way<N, D>; SHORT],
-        values: &[f64; SHORT],
-        directions: &[Vector<f64, D>; SHORT],
+        ways: &[Way<N, D>; AT_ONCE],
+        values: &[f64; AT_ONCE],
+        directions: &[Vector<f64, D>; AT_ONCE],
     ) {
         let level = self.settings.touch_level();
         for of_centre in [false, true] {
             let latest = self.upper.min(1.0);
-            let mut points = [ways[0].centre; SHORT];
-            let (mut times, mut lowest) = ([f64::INFINITY; SHORT], [0; SHORT]);
+            let mut points = [ways[0].centre; AT_ONCE];
+            let (mut times, mut lowest) = ([f64::INFINITY; AT_ONCE], [0; AT_ONCE]);
             for (i, part) in parts.iter().enumerate() {
                 let (way, direction) = (&ways[i], directions[i]);
                 let after = |q: Point<D>, v: Vector<f64, D>| {
@@ -461,7 +461,7 @@ impl<const N: usize, const D: usize> Problem for ElementSearch<'_, '_, N, D> {
     type Queue = Vec<Part<N, D>>;
 
     fn round_and_parts(&self) -> (usize, usize) {
-        if self.mesh.is_some() { (ROUND, FAN) } else { (SHORT, parts_of_one::<N>()) }
+        if self.mesh.is_some() { (ROUND, FAN) } else { (AT_ONCE, parts_of_one::<N>()) }
     }
 
     fn decided(&self, lower: f64) -> Option<Stop> {
@@ -489,7 +489,7 @@ impl<const N: usize, const D: usize> Problem for ElementSearch<'_, '_, N, D> {
     }
 
     fn bound(&mut self, frontier: &mut Frontier<Self::Queue>) {
-        frontier.round.chunks_mut(SHORT).for_each(|parts| self.advance(parts));
+        frontier.round.chunks_mut(AT_ONCE).for_each(|parts| self.advance(parts));
     }
 
     fn is_open(&self, part: &Part<N, D>) -> bool {

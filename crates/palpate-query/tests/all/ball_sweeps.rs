@@ -4,9 +4,8 @@
 //! Balls that move along lines: never late, and early by the tolerance at most.
 #![expect(clippy::unwrap_used, reason = "these are tests")]
 
-use palpate_field::field::{DifferentiateBlock, EvaluateBlock, Field};
 use palpate_field::kernel::{Ball, Cuboid, HalfSpace};
-use palpate_field::{Point, SHORT, Shape, Vector};
+use palpate_field::{Point, Shape, Vector};
 use palpate_query::{BallWorkspace, Limits, QueryError, Ray, Stop, cast_ball, contact_ball};
 use palpate_testkit::arbitrary::{self as draw, Turn};
 use palpate_testkit::cases;
@@ -20,7 +19,6 @@ const POINTS: u32 = 40;
 fn on_trees<const D: usize>(count: u64)
 where
     Space: Solid<D> + Turn<D>,
-    dyn Field<D>: EvaluateBlock<f64, D, SHORT> + DifferentiateBlock<f64, D, SHORT>,
 {
     let (mut ran, mut spent, mut touched) = (0, 0, 0);
     let mut workspace = BallWorkspace::new();

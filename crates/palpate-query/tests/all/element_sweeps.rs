@@ -4,8 +4,7 @@
 //! Segments and triangles that move: never late, and early by the tolerance at most.
 #![expect(clippy::unwrap_used, reason = "these are tests")]
 
-use palpate_field::field::{DifferentiateBlock, EvaluateBlock, Field};
-use palpate_field::{Pose, SHORT, Shape, Vector};
+use palpate_field::{Pose, Shape, Vector};
 use palpate_query::{
     Element, ElementSweep, ElementWorkspace, Limits, Moving, Stop, SweepSettings, minimum,
     sweep_element,
@@ -22,7 +21,6 @@ const POINTS: u32 = 20;
 fn on_trees<const N: usize, const D: usize>(count: u64, is_carried: bool)
 where
     Space: Solid<D> + Turn<D>,
-    dyn Field<D>: EvaluateBlock<f64, D, SHORT> + DifferentiateBlock<f64, D, SHORT>,
 {
     let (mut ran, mut spent, mut touched) = (0, 0, 0);
     let (mut workspace, mut still) = (ElementSweep::new(), ElementWorkspace::new());

@@ -5,9 +5,8 @@
 #![expect(clippy::unwrap_used, reason = "these are tests")]
 
 use arbitrary::Unstructured;
-use palpate_field::field::{DifferentiateBlock, EvaluateBlock, Field};
 use palpate_field::kernel::{Ball, Cuboid};
-use palpate_field::{Aabb, Point, SHORT, Shape, ShapeError, Vector};
+use palpate_field::{Aabb, Point, Shape, ShapeError, Vector};
 use palpate_query::{
     Certified, Element, ElementWorkspace, Limits, QueryError, Stop, minimum, touches,
 };
@@ -95,7 +94,6 @@ where
 fn on_trees<const N: usize, const D: usize>(count: u64)
 where
     Space: Solid<D> + Turn<D>,
-    dyn Field<D>: EvaluateBlock<f64, D, SHORT> + DifferentiateBlock<f64, D, SHORT>,
 {
     let mut workspace = ElementWorkspace::new();
     let mut spent = 0;

@@ -4,8 +4,7 @@
 //! Meshes that move touch when the first of their elements does.
 #![expect(clippy::unwrap_used, reason = "these are tests")]
 
-use palpate_field::field::{DifferentiateBlock, EvaluateBlock, Field};
-use palpate_field::{Point, Pose, SHORT, Screw, Shape, Vector};
+use palpate_field::{Point, Pose, Screw, Shape, Vector};
 use palpate_mesh::{Mesh, Outline, TriangleMesh};
 use palpate_query::{
     Element, ElementSweep, Moving, Query, Stop, SweepSettings, sweep_element, sweep_mesh,
@@ -46,7 +45,6 @@ fn as_its_first_element<const N: usize, const D: usize>(
     is_carried: bool,
 ) where
     Space: Solid<D> + Turn<D>,
-    dyn Field<D>: EvaluateBlock<f64, D, SHORT> + DifferentiateBlock<f64, D, SHORT>,
 {
     let mut workspace = ElementSweep::new();
     let (mut touched, mut ran) = (0, 0);

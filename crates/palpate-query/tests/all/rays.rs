@@ -4,9 +4,8 @@
 //! Rays on random trees: nothing is skipped, and what is hit is there.
 #![expect(clippy::unwrap_used, reason = "these are tests")]
 
-use palpate_field::field::{DifferentiateBlock, EvaluateBlock, Field};
 use palpate_field::kernel::{Ball, Cuboid, HalfSpace};
-use palpate_field::{Point, SHORT, Shape, ShapeError, Vector};
+use palpate_field::{Point, Shape, ShapeError, Vector};
 use palpate_query::{Limits, QueryError, Ray, Stop, cast_ray};
 use palpate_testkit::arbitrary::{self as draw, Turn};
 use palpate_testkit::cases;
@@ -19,7 +18,6 @@ const SAMPLES: u32 = 400;
 fn on_trees<const D: usize>(count: u64)
 where
     Space: Solid<D> + Turn<D>,
-    dyn Field<D>: EvaluateBlock<f64, D, SHORT> + DifferentiateBlock<f64, D, SHORT>,
 {
     let mut spent = 0;
     cases::on_trees(count, 4, |u, _, shape| {

@@ -207,7 +207,7 @@ impl ScrewThread {
 
     /// The model of [`wedge`](Self::wedge), which is convex and falls with neither argument:
     /// below, a tangent plane is a bound, and above, it is farthest off at a corner.
-    #[inline(always)]
+    #[inline(never)]
     fn wedge_model<const N: usize>(
         &self,
         from_axis: AffineModel<N>,
