@@ -6,7 +6,7 @@
 use std::time::Instant;
 
 use crate::command::{Failure, cargo, cargo_with, metadata, root};
-use crate::{api, builds, layers, licences, links, sizes, sources, words};
+use crate::{api, builds, code, layers, licences, links, sizes, sources, words};
 
 type Stage = (&'static str, fn() -> Result<(), Failure>);
 
@@ -26,6 +26,7 @@ const STAGES: &[Stage] = &[
     ("wasm", builds::wasm),
     ("docs", document),
     ("api", || document().and_then(|()| api::check())),
+    ("code", code::check),
 ];
 
 /// Makes the documentation of every crate.

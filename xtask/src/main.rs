@@ -6,6 +6,7 @@
 mod api;
 mod builds;
 mod check;
+mod code;
 mod command;
 mod layers;
 mod licences;
@@ -34,7 +35,11 @@ struct Arguments {
 #[derive(Debug, Subcommand)]
 enum Chore {
     /// Run every test of every language in the repository.
-    Test,
+    Test {
+        /// Take every seed of the property tests, ten times as many as usual.
+        #[arg(long)]
+        thorough: bool,
+    },
     /// Build the wheel for Python and run its tests, as `test` does at its end.
     Python,
     /// Check formatting, sources, words, links, sizes, layers, licences, lints, documentation,
@@ -52,7 +57,7 @@ enum Chore {
 
 fn main() -> ExitCode {
     let result = match Arguments::parse().chore {
-        Chore::Test => test(),
+        Chore::Test { thorough } => test(thorough),
         Chore::Python => python::test(),
         Chore::Check { stages } => check::run(&stages),
         Chore::Api => check::document().and_then(|()| api::renew()),
@@ -68,9 +73,13 @@ fn main() -> ExitCode {
 }
 
 /// All tests, those of the live page in a browser and of the Python package among them.
-fn test() -> Result<(), Failure> {
+fn test(is_thorough: bool) -> Result<(), Failure> {
     let tools = page::prepare()?;
-    let environment = [(page::VARIABLE, &*tools.to_string_lossy())];
+    let tools = tools.to_string_lossy();
+    let mut environment = vec![(page::VARIABLE, &*tools)];
+    if is_thorough {
+        environment.push(("PALPATE_SEEDS", "1"));
+    }
     cargo_with(&["test", "--workspace", "--locked"], &environment)?;
     python::test()
 }

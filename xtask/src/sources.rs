@@ -19,7 +19,7 @@ const HEADER: &str = "// SPDX-FileCopyrightText: The palpate authors\n\
 const UNSAFE_MODULES: &[(&str, &str)] = &[
     ("crates/palpate-field/src/machine", "instruction sets and unwritten scratch memory"),
     (
-        "crates/palpate-field/tests/allocation.rs",
+        "crates/palpate-field/tests/all/allocation.rs",
         "an allocator that counts, to prove that none happens",
     ),
 ];

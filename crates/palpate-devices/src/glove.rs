@@ -65,6 +65,7 @@ struct Finger<const D: usize> {
 
 impl<const D: usize> Finger<D> {
     /// A finger without force feedback and actuator.
+    #[inline(never)]
     fn new(path: HandPath<D>, offset: Vector<f64, D>) -> Self {
         Self { path, offset, limit: 0.0, force: Vector::ZERO, actuator: None }
     }
@@ -87,6 +88,7 @@ impl<const D: usize> Glove<D> {
     ///
     /// [`DeviceError::NoContactPoint`] if there are no offsets, [`DeviceError::Number`] if one
     /// is not finite.
+    #[inline(never)]
     pub fn from_hand(
         hand: &HandPath<D>,
         offsets: &[Vector<f64, D>],

@@ -64,6 +64,7 @@ impl<const D: usize> HandPath<D> {
     ///
     /// If there are fewer than two samples, not as many times as positions, a number is not
     /// finite or exceeds 1e15, or the times do not increase.
+    #[inline(never)]
     pub fn new(
         times: Vec<f64>,
         positions: Vec<Point<D>>,
@@ -133,6 +134,7 @@ impl<const D: usize> HandPath<D> {
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic; a binary search.
     #[must_use]
+    #[inline(never)]
     pub fn state_at(&self, time: f64) -> PointState<D> {
         let last = self.times.len() - 1;
         let after = self.times.partition_point(|t| *t <= time);

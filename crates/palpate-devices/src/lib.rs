@@ -54,6 +54,7 @@ mod glove;
 mod hand;
 mod hand_path;
 mod identify;
+mod instances;
 mod mailbox;
 mod motion;
 mod oscillator;
@@ -78,6 +79,8 @@ pub use identify::{
     DeviceAxis, EncoderStep, Estimate, Identified, IdentifiedAxis, IdentifyError,
     IdentifyOptions, IdentifyProgress, identify,
 };
+#[doc(hidden)]
+pub use instances::instances;
 pub use mailbox::{Mailbox, MailboxDevice};
 pub use motion::Energies;
 pub use palpate_haptics::{

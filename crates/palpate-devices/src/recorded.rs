@@ -51,6 +51,7 @@ impl<const D: usize> RecordedDevice<D> {
     /// # Errors
     ///
     /// [`DeviceError::NoContactPoint`] if there are no paths.
+    #[inline(never)]
     pub fn new(paths: Vec<HandPath<D>>) -> Result<Self, DeviceError> {
         if paths.is_empty() {
             return Err(DeviceError::NoContactPoint);

@@ -114,6 +114,7 @@ impl<const D: usize> SimulatedDevice<D> {
     /// largest force is negative or NaN, neither device nor hand has a mass, or `c / M + √(k /
     /// M)` of both together, with the damping `c`, stiffness `k` and mass `M`, is more than 1e4
     /// / s; the same rules hold for rotation.
+    #[inline(never)]
     pub fn new(profile: DeviceProfile, hands: Vec<Hand<D>>) -> Result<Self, DeviceError> {
         if hands.is_empty() {
             return Err(DeviceError::NoContactPoint);
@@ -368,6 +369,7 @@ impl<const D: usize> Device<D> for SimulatedDevice<D> {
     /// nanosecond later than the last, or not finite, repeats the last reading. After a gap of
     /// more than a tenth of a second, a device with a stiff hand may have stood still for a part
     /// of it.
+    #[inline(never)]
     fn read(&mut self, time: f64, points: &mut [PointState<D>]) -> Result<Reading, DeviceLost> {
         let encoder_step = self.profile.encoder_step;
         let mut is_new = true;

@@ -131,6 +131,7 @@ impl<const D: usize> SteeredDevice<D> {
     /// # Errors
     ///
     /// [`DeviceError::Number`] if the speed is not positive.
+    #[inline(never)]
     pub fn new(
         mut device: SimulatedDevice<D>,
         max_speed: f64,
@@ -173,6 +174,7 @@ impl<const D: usize> Device<D> for SteeredDevice<D> {
     }
 
     /// Real-time: allocates nothing, takes no lock, cannot panic.
+    #[inline(never)]
     fn read(&mut self, time: f64, points: &mut [PointState<D>]) -> Result<Reading, DeviceLost> {
         let last = self.time.replace(time).unwrap_or(time);
         if let Some(targets) = self.targets.latest() {

@@ -156,6 +156,7 @@ impl<const D: usize> Tour<D> {
     ///
     /// [`DeviceError::Number`] if the duration or the size of the box is not positive and
     /// finite.
+    #[inline(never)]
     pub fn new(bounds: Aabb<D>, duration: f64) -> Result<Self, DeviceError> {
         let edges = bounds.half_extents() * 2.0;
         let size = NumberError::check_positive(
@@ -219,6 +220,7 @@ impl<const D: usize> Tour<D> {
     /// # Errors
     ///
     /// [`DeviceError::NothingToTouch`] if no ray meets a surface.
+    #[inline(never)]
     pub fn over(&self, shape: &Shape<D>) -> Result<HandPath<D>, DeviceError> {
         // The hand is nearer to the shape than its orbit, so its path is shorter; the second
         // orbit is longer by the same factor.

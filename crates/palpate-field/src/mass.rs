@@ -366,8 +366,7 @@ fn filled<const D: usize>(
     middle: &[f64; D],
     slack: f64,
     cells: &[MassCell<D>],
-) -> Vec<Filling<D>>
-{
+) -> Vec<Filling<D>> {
     let mut fillings = Vec::with_capacity(cells.len());
     let mut block = Block::<Model, D, BLOCK>::zero();
     let mut values = Column::<Model, BLOCK>::zero();

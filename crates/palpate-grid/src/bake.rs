@@ -73,6 +73,7 @@ impl<const D: usize> Grid<D> {
     /// # Errors
     ///
     /// As [`bake`](Self::bake), and if `progress` breaks.
+    #[inline(never)]
     pub fn bake_with(
         shape: &Shape<D>,
         options: &GridOptions,
@@ -206,6 +207,7 @@ impl<const D: usize> Grid<D> {
     /// # Errors
     ///
     /// If there are not as many samples as nodes, one is not finite, none is inside, or one at the border is.
+    #[inline(never)]
     pub fn from_samples(
         lattice: Lattice<D>,
         samples: &[f64],
@@ -256,6 +258,7 @@ impl<const D: usize> Grid<D> {
     ///
     /// As [`bake`](Self::bake); if the grid has no band, for then every value may change; if the shape has grown out
     /// of the lattice. The grid is then as before.
+    #[inline(never)]
     pub fn rebuild(&mut self, shape: &Shape<D>, region: &Aabb<D>) -> Result<(), GridError> {
         let bounds = shape.promise().bounds.ok_or(GridError::Unbounded)?.aabb;
         let band = self.samples.band;

@@ -86,6 +86,7 @@ impl GridCache {
     /// # Errors
     ///
     /// As [`Grid::bake_with`]. That a file cannot be written is none: the [answer](Found::NotKept) says so.
+    #[inline(never)]
     pub fn bake<const D: usize>(
         &self,
         shape: &Shape<D>,

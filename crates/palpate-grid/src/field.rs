@@ -94,6 +94,7 @@ impl std::io::Write for Sink<'_> {
 }
 
 impl<const D: usize> From<Grid<D>> for Shape<D> {
+    #[inline(never)]
     fn from(grid: Grid<D>) -> Self {
         Self::custom(grid)
     }

@@ -124,7 +124,11 @@ impl<const D: usize> Grid<D> {
     ///
     /// If the file cannot be written.
     pub fn save(&self, path: impl AsRef<Path>) -> Result<(), GridFileError> {
-        let path = path.as_ref();
+        self.save_at(path.as_ref())
+    }
+
+    #[inline(never)]
+    pub(crate) fn save_at(&self, path: &Path) -> Result<(), GridFileError> {
         let written = || -> Result<(), GridFileProblem> {
             let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
             let file = as_any_file().tempfile_in(folder.unwrap_or(Path::new(".")))?;
@@ -142,7 +146,11 @@ impl<const D: usize> Grid<D> {
     ///
     /// If the file cannot be read, is no grid of this dimension, or is damaged.
     pub fn open(path: impl AsRef<Path>) -> Result<Self, GridFileError> {
-        let path = path.as_ref();
+        Self::open_at(path.as_ref())
+    }
+
+    #[inline(never)]
+    pub(crate) fn open_at(path: &Path) -> Result<Self, GridFileError> {
         let read = || -> Result<Self, GridFileProblem> {
             if !std::fs::metadata(path)?.is_file() {
                 return Err(GridFileProblem::NoFile);
@@ -249,6 +257,7 @@ impl<const D: usize> Grid<D> {
     /// # Errors
     ///
     /// As of [`open`](Self::open).
+    #[inline(never)]
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, GridFileProblem> {
         let Some(rest) = bytes.strip_prefix(&MAGIC) else {
             return Err(GridFileProblem::OtherFormat);

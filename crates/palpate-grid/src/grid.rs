@@ -86,6 +86,7 @@ impl<const D: usize> Grid<D> {
     /// # }
     /// ```
     #[must_use]
+    #[inline(never)]
     pub fn samples(&self) -> Option<Vec<f64>> {
         let is_known_by_them = self.promise.deviation.is_none() && self.far.is_none();
         match (&self.samples.codes, &self.samples.order) {

@@ -37,6 +37,7 @@ mod field;
 #[cfg(feature = "files")]
 mod file;
 mod grid;
+mod instances;
 mod lattice;
 mod options;
 mod outside;
@@ -54,6 +55,8 @@ pub use error::GridError;
 #[cfg(feature = "files")]
 pub use file::{GridFileError, GridFileProblem, LARGEST_FILE};
 pub use grid::Grid;
+#[doc(hidden)]
+pub use instances::instances;
 pub use lattice::Lattice;
 pub use options::{GridOptions, Resolution};
 pub use samples::Store;

@@ -88,6 +88,7 @@ impl<const D: usize> AcceptedBodies<D> {
 impl<const D: usize> Protection<D> {
     /// Accepts everything that a servo renders: its bodies, and with a tool the requested
     /// virtual coupling. A device that gives no force takes bodies as they are.
+    #[inline(never)]
     pub(crate) fn accepted_bodies(
         self: &Arc<Self>,
         bodies: Bodies<D>,

@@ -87,6 +87,7 @@ impl<const D: usize> Body<D> {
     /// # Errors
     ///
     /// [`HapticsError::Pose`] if a number of the pose is not finite or beyond 1e15.
+    #[inline(never)]
     pub fn at(mut self, world_from_body: Pose<D>) -> Result<Self, HapticsError> {
         if !is_usable(&world_from_body) {
             return Err(HapticsError::Pose);
@@ -142,6 +143,7 @@ impl<const D: usize> Body<D> {
     /// # }
     /// ```
     #[must_use]
+    #[inline(never)]
     pub fn passing(
         &self,
         velocity: Vector<f64, D>,
@@ -350,6 +352,7 @@ impl<const D: usize> Bodies<D> {
     /// # Errors
     ///
     /// [`HapticsError::NoBody`] if there is none.
+    #[inline(never)]
     pub fn new(bodies: Vec<Body<D>>) -> Result<Self, HapticsError> {
         let first = bodies.first().ok_or(HapticsError::NoBody)?;
         let mut bounds = first.ball;

@@ -53,6 +53,7 @@ mod friction;
 mod gripper;
 mod guide;
 mod handoff;
+mod instances;
 mod live;
 mod nearby;
 mod options;
@@ -76,6 +77,8 @@ pub use handoff::{
     Control, HandoffOptions, LatestReader, LatestWriter, ServoEnd, StopSwitch, handoff,
     handoff_with, latest_value,
 };
+#[doc(hidden)]
+pub use instances::instances;
 pub use live::{Progress, Snapshot};
 pub use nearby::Nearby;
 pub use options::ServoOptions;

@@ -130,6 +130,7 @@ impl<'a, const D: usize> Nearby<'a, D> {
 
     /// The field at a point and its gradient.
     #[must_use]
+    #[inline(never)]
     pub fn look(&self, p: Point<D>) -> (f64, Vector<f64, D>) {
         let seen = self.gradient(p, &Punctured::default());
         (seen.distance, seen.gradient)
@@ -151,6 +152,7 @@ impl<'a, const D: usize> Nearby<'a, D> {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     #[must_use]
+    #[inline(never)]
     pub fn nearest(&self, p: Point<D>) -> (f64, u32) {
         self.distance(p, &Punctured::default())
     }
@@ -212,7 +214,7 @@ impl<'a, const D: usize> Nearby<'a, D> {
     }
 
     /// The field and its gradient at a point, and the body whose field is least there.
-    #[inline]
+    #[inline(never)]
     pub(crate) fn gradient(&self, p: Point<D>, punctured: &Punctured) -> FieldValue<D> {
         if let ([body], true) = (self.bodies.bodies(), punctured.is_empty()) {
             let (distance, gradient) = body.distance_gradient(p);

@@ -109,6 +109,7 @@ impl<const D: usize> Protection<D> {
     ///
     /// As [`Accepted::new`]; [`SafetyError::MaterialRefused`](palpate_safety::SafetyError) of strict
     /// protection, with everything that is refused.
+    #[inline(never)]
     pub fn accept(
         &self,
         mut bodies: Bodies<D>,
@@ -135,6 +136,7 @@ impl<const D: usize> Protection<D> {
     /// # Errors
     ///
     /// As [`accept`](Self::accept).
+    #[inline(never)]
     pub fn accept_guides(
         &self,
         guides: &[Guide<D>],

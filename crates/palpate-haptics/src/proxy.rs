@@ -200,6 +200,7 @@ pub struct Proxy<const D: usize> {
 impl<const D: usize> Proxy<D> {
     /// A proxy that starts at the first device point.
     #[must_use]
+    #[inline(never)]
     pub fn new(probe: Probe) -> Self {
         // Up: y in the plane and in space.
         let normal = Vector(std::array::from_fn(|axis| f64::from(u8::from(axis == 1))));
@@ -251,6 +252,7 @@ impl<const D: usize> Proxy<D> {
     /// covers it; [`carry_out`](Self::carry_out) keeps its touch instead.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
+    #[inline(never)]
     pub fn forget_bodies(&mut self) {
         // Where the proxy has no place yet, an edit changes none.
         (self.is_stale, self.is_edited, self.carried_out) = (true, !self.begins, None);
@@ -309,6 +311,7 @@ impl<const D: usize> Proxy<D> {
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic; evaluates the field at most
     /// [`Probe::budget`] times.
+    #[inline(never)]
     pub fn follow(&mut self, nearby: &Nearby<'_, D>, device: Point<D>) -> Following<D> {
         let last = self.at.as_ref().map_or(device, |at| at.point);
         // Written so that NaN fails.

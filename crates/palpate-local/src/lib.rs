@@ -59,6 +59,7 @@ mod frank_wolfe;
 mod golden_section;
 mod gradient;
 mod halton;
+mod instances;
 mod macklin;
 mod minimax_proximal;
 mod naive;
@@ -83,6 +84,8 @@ pub use gradient::{
     central_differences, closest_vector, dichotomy,
 };
 pub use halton::halton_starts;
+#[doc(hidden)]
+pub use instances::instances;
 pub use macklin::MacklinDescent;
 pub use minimax_proximal::MinimaxProximal;
 pub use naive::NaiveDescent;
@@ -173,6 +176,7 @@ named!(ElementMethod:
 impl ElementMethod {
     /// The search with its default constants.
     #[must_use]
+    #[inline(never)]
     pub fn descend<const N: usize, const D: usize>(
         self,
         shape: &Shape<D>,
@@ -189,6 +193,7 @@ impl ElementMethod {
 
     /// The same search from another point of the element than its usual start.
     #[must_use]
+    #[inline(never)]
     pub fn descend_from<const N: usize, const D: usize>(
         self,
         shape: &Shape<D>,

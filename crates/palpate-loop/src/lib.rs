@@ -47,6 +47,7 @@ mod clock;
 mod connection;
 mod display;
 mod guide_report;
+mod instances;
 mod lines;
 mod pacer;
 mod priority;
@@ -67,6 +68,8 @@ mod vibration;
 pub use clock::{Clock, ClockDriver, VirtualClock, WallClock};
 pub use connection::{ConnectionReport, Reconnection};
 pub use guide_report::GuideReport;
+#[doc(hidden)]
+pub use instances::instances;
 pub use pacer::{Lateness, Pace};
 pub use priority::{Priority, raise_priority};
 pub use recorder::{Recorder, TraceRow};

@@ -402,6 +402,7 @@ pub fn run<const D: usize>(
 /// # Errors
 ///
 /// As [`run`].
+#[inline(never)]
 pub fn run_on<const D: usize>(
     clock: &mut dyn Clock,
     servo: &mut Servo<D>,

@@ -70,6 +70,7 @@ pub(crate) struct Schedule {
 
 impl<'a, 'v, const D: usize> ServoLoop<'a, 'v, D> {
     /// A loop with a device that was [checked](Servo::check_device).
+    #[inline(never)]
     pub(crate) fn new(servo: &'a mut Servo<D>, device: &'a mut dyn Device<D>) -> Self {
         let points = device.points();
         let has_gripper = servo.protection().profile.gripper.is_some();
@@ -132,6 +133,7 @@ impl<'a, 'v, const D: usize> ServoLoop<'a, 'v, D> {
     /// Runs the loop. However it ends, the last that it writes are zero forces and a zero torque,
     /// it closes the device, and it silences the one that vibrates; the report says whether the
     /// devices took that.
+    #[inline(never)]
     pub(crate) fn run(mut self, clock: &mut dyn Clock, schedule: &Schedule) -> RunReport {
         let ticks = AssertUnwindSafe(|| self.ticks(clock, schedule));
         let ending = match catch_unwind(ticks) {

@@ -347,6 +347,7 @@ impl<const D: usize> ServoThread<D> {
     /// # Errors
     ///
     /// [`StartError::Haptics`] as [`run`](crate::run()); [`StartError::ThreadNotStarted`].
+    #[inline(never)]
     pub fn start(
         servo: Servo<D>,
         device: Box<dyn Device<D> + Send>,
@@ -471,6 +472,7 @@ impl<const D: usize> ServoThread<D> {
 
     /// Ends the loop before its next tick; see [`join`](Self::join).
     #[must_use]
+    #[inline(never)]
     pub fn end(self) -> EndedThread<D> {
         self.control.end();
         self.join()
@@ -485,6 +487,7 @@ impl<const D: usize> ServoThread<D> {
         clippy::missing_panics_doc,
         reason = "only this method takes the thread, and it consumes the handle"
     )]
+    #[inline(never)]
     pub fn join(self) -> EndedThread<D> {
         let Self { control, mut thread, records } = self;
         let thread = thread.0.take().expect("a thread that was not joined");

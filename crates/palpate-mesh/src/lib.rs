@@ -28,6 +28,7 @@
 mod ball;
 mod contour;
 mod error;
+mod instances;
 #[doc(hidden)]
 pub mod internal;
 mod mesh;
@@ -42,6 +43,8 @@ mod write;
 
 pub use contour::{ContourError, ContourOptions, FitProgress, FittedMesh};
 pub use error::MeshError;
+#[doc(hidden)]
+pub use instances::instances;
 pub use mesh::{Mesh, Outline, TriangleMesh};
 pub use polygon::MOST_CORNERS;
 #[cfg(feature = "files")]

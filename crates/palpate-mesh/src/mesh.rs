@@ -48,6 +48,7 @@ impl<const N: usize, const D: usize> Mesh<N, D> {
     ///
     /// If there are no elements, a coordinate is not finite or beyond 1e15 m, an element
     /// names a vertex that does not exist, or there are more vertices or elements than `u32::MAX`.
+    #[inline(never)]
     pub fn new(vertices: Vec<Point<D>>, elements: Vec<[u32; N]>) -> Result<Self, MeshError> {
         for (what, count) in [("vertices", vertices.len()), ("faces", elements.len())] {
             if u32::try_from(count).is_err() {
@@ -105,6 +106,7 @@ impl<const N: usize, const D: usize> Mesh<N, D> {
 
     /// The smallest box around the elements [m]; unused vertices do not count.
     #[must_use]
+    #[inline(never)]
     pub fn bounds(&self) -> Aabb<D> {
         self.bounds
     }
@@ -112,6 +114,7 @@ impl<const N: usize, const D: usize> Mesh<N, D> {
     /// The tree of balls around the elements.
     #[doc(hidden)]
     #[must_use]
+    #[inline(never)]
     pub fn tree(&self) -> &BallTree<D> {
         &self.tree
     }
@@ -121,6 +124,7 @@ impl<const N: usize, const D: usize> Mesh<N, D> {
     /// # Errors
     ///
     /// If the factor is not positive and finite, or makes a coordinate too large.
+    #[inline(never)]
     pub fn scaled(self, factor: f64) -> Result<Self, MeshError> {
         if !(factor > 0.0 && factor.is_finite()) {
             return Err(MeshError::Scale { value: factor });
@@ -131,6 +135,7 @@ impl<const N: usize, const D: usize> Mesh<N, D> {
 
     /// The mesh with equal vertices merged into one, in the order in which they first appear.
     #[must_use]
+    #[inline(never)]
     pub fn welded(self) -> Self {
         let (vertices, names) = weld(&self.vertices);
         let mut elements = self.elements;

@@ -94,6 +94,7 @@ impl<const D: usize> fmt::Display for Report<D> {
 impl<const N: usize, const D: usize> Mesh<N, D> {
     /// Measures all elements, and counts their defects.
     #[must_use]
+    #[inline(never)]
     pub fn report(&self) -> Report<D> {
         let mut named = vec![false; self.vertices().len()];
         for &index in self.elements().iter().flatten() {

@@ -104,6 +104,7 @@ pub struct BallTree<const D: usize> {
 }
 
 impl<const D: usize> BallTree<D> {
+    #[inline(never)]
     pub(crate) fn new<const N: usize>(vertices: &[Point<D>], elements: &[[u32; N]]) -> Self {
         let corners =
             |element: u32| elements[element as usize].map(|index| vertices[index as usize]);

@@ -38,6 +38,7 @@ const GROWN: f64 = 1e-3;
 /// # Errors
 ///
 /// If the shape is not bounded, or the tolerance is NaN or out of range.
+#[inline(never)]
 pub fn any_point<const D: usize>(
     shape: &Shape<D>,
     limits: &Limits,

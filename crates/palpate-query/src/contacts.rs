@@ -129,6 +129,7 @@ pub(crate) fn level<const D: usize>(shape: &Shape<D>, gap: f64) -> Result<f64, Q
 }
 
 /// Finds the contacts on an element, and writes them into the workspace.
+#[inline(never)]
 pub(crate) fn find<const N: usize, const D: usize>(
     shape: &Shape<D>,
     element: &Element<N, D>,
@@ -272,6 +273,7 @@ impl<const N: usize, const D: usize> ElementSearch<'_, N, D> {
 }
 
 /// The contact of a shape with a point `p` of an element; the caller gives the id.
+#[inline(never)]
 pub(crate) fn at<const D: usize>(shape: &Shape<D>, p: Point<D>) -> Contact<D> {
     let (value, gradient) = shape.distance_gradient(p);
     let sign = if value < 0.0 { -1.0 } else { 1.0 };

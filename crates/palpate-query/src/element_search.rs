@@ -104,6 +104,7 @@ pub struct ElementWorkspace<const N: usize, const D: usize> {
 impl<const N: usize, const D: usize> ElementWorkspace<N, D> {
     /// Room for searches over elements of `N` points in `D` dimensions.
     #[must_use]
+    #[inline(never)]
     pub fn new() -> Self {
         Self {
             frontier: Frontier {
@@ -185,7 +186,7 @@ impl Terms {
     }
 }
 
-#[inline]
+#[inline(never)]
 pub(crate) fn search<const N: usize, const D: usize>(
     shape: &Shape<D>,
     element: &Element<N, D>,

@@ -64,6 +64,7 @@ mod engine;
 mod error;
 mod goal;
 mod half_spaces;
+mod instances;
 #[doc(hidden)]
 pub mod internal;
 mod larger;
@@ -91,6 +92,8 @@ pub use contacts::{ElementContacts, contacts};
 pub use element::Element;
 pub use element_search::{ElementWorkspace, minimum, touches};
 pub use error::QueryError;
+#[doc(hidden)]
+pub use instances::instances;
 pub use manifold::{Manifold, ManifoldSettings, manifold};
 pub use mesh::{
     MeshContact, MeshContacts, MeshHits, MeshWorkspace, PlacedMesh, Undecided, mesh_contacts,

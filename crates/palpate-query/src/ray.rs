@@ -103,6 +103,7 @@ pub struct RayHit<const D: usize> {
 /// # Errors
 ///
 /// If the tolerance is negative, NaN or too large.
+#[inline(never)]
 pub fn cast_ray<const D: usize>(
     shape: &Shape<D>,
     ray: &Ray<D>,

@@ -84,6 +84,7 @@ pub(crate) fn file_key(parameter: &Parameter) -> Cow<'static, str> {
 /// # Ok(())
 /// # }
 /// ```
+#[inline(never)]
 pub fn described_primitive<const D: usize>(entry: &Entry<D>) -> Result<Value, SceneError> {
     let example = entry.example().map_err(|error| Problem::new(error.to_string()))?;
     let promise = example.promise();

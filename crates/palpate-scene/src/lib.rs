@@ -50,6 +50,7 @@ mod encoding;
 mod error;
 mod grids;
 mod guide;
+mod instances;
 mod json;
 mod keys;
 mod material;
@@ -77,6 +78,8 @@ pub use device_file::{device_from_json, device_to_json};
 pub use encoding::{NotUtf8, utf8};
 pub use error::{SceneCause, SceneError, SceneProblem};
 pub use guide::{GuideCurve, GuideLine, GuidePlane, GuideSegment, GuideWell, WrittenGuide};
+#[doc(hidden)]
+pub use instances::instances;
 pub use mesh_file::{BuiltMesh, Samples};
 pub use meshes_baked::{BakedBody, BakedGrid, MeshesBaked};
 pub use motion::{Motion, Repeat};

@@ -175,7 +175,12 @@ impl Scene {
         text: &str,
         resources: impl Into<Resources>,
     ) -> Result<Self, SceneError> {
-        let (source, resources) = (Source::of(text), resources.into());
+        Self::parsed(text, &resources.into())
+    }
+
+    // Not generic, so that it is compiled once.
+    fn parsed(text: &str, resources: &Resources) -> Result<Self, SceneError> {
+        let source = Source::of(text);
         let with = |scene: Self| Self { resources: resources.clone(), ..scene };
         let read = Document::parse(&source)?
             .read(|scene: &Self| build::world(&with(scene.clone())).map(drop))?;

@@ -74,6 +74,7 @@ impl<const D: usize> BuiltTool<D> {
     /// # Errors
     ///
     /// As [`Shell::of_shape`] and [`Tool::new`].
+    #[inline(never)]
     pub fn in_hand(&self) -> Result<Option<Tool<D>>, HapticsError> {
         let Some(shape) = &self.shape else { return Ok(None) };
         let shell = Shell::of_shape(shape, POINTS, self.radius)?;
@@ -84,6 +85,7 @@ impl<const D: usize> BuiltTool<D> {
 impl<const D: usize> BuiltScene<D> {
     /// The box around all bodies that have bounds; `None` if none has.
     #[must_use]
+    #[inline(never)]
     pub fn bounds(&self) -> Option<Aabb<D>> {
         let boxes = self.bodies.iter().filter_map(|body| body.shape.promise().bounds);
         boxes.map(|bounds| bounds.aabb).reduce(|a, b| a.union(&b))
@@ -92,6 +94,7 @@ impl<const D: usize> BuiltScene<D> {
     /// The box around all bodies that have bounds and the places from which `tool` touches
     /// them: where its origin can be.
     #[must_use]
+    #[inline(never)]
     pub fn bounds_with(&self, tool: &Tool<D>) -> Option<Aabb<D>> {
         let bodies = self.bounds()?;
         let rotation = self.device_rotation();
@@ -103,6 +106,7 @@ impl<const D: usize> BuiltScene<D> {
 
     /// How the device's axes lie in the world.
     #[must_use]
+    #[inline(never)]
     pub fn device_rotation(&self) -> Rotation<D> {
         self.workspace.map_or_else(Rotation::identity, |map| map.rotation())
     }
@@ -144,6 +148,7 @@ impl<const D: usize> BuiltScene<D> {
     /// # Errors
     ///
     /// As [`WorkspaceMap::fitting`].
+    #[inline(never)]
     pub fn workspace_of(
         &self,
         device: &DeviceProfile,
@@ -166,6 +171,7 @@ impl<const D: usize> BuiltScene<D> {
     /// # Errors
     ///
     /// As [`Surface::new`], [`Body::new`] and [`Bodies::new`].
+    #[inline(never)]
     pub fn bodies(&self) -> Result<Bodies<D>, HapticsError> {
         let body = |body: &crate::BuiltBody<D>| {
             Body::new(body.shape_in_body.clone(), Surface::new(&body.material)?)?
@@ -197,6 +203,7 @@ impl<const D: usize> BuiltScene<D> {
     /// # Errors
     ///
     /// As [`World::new`] and [`World::add`].
+    #[inline(never)]
     pub fn world_with(&self, settings: WorldSettings) -> Result<World<D>, QueryError> {
         let mut world = World::new(settings)?;
         for body in &self.bodies {
@@ -208,6 +215,7 @@ impl<const D: usize> BuiltScene<D> {
     /// The largest edge of the box of the body for which that is least [m]; `None` if no body
     /// has bounds.
     #[must_use]
+    #[inline(never)]
     pub fn smallest_size(&self) -> Option<f64> {
         let sizes = self.bodies.iter().filter_map(|body| {
             let half = body.shape_in_body.promise().bounds?.aabb.half_extents();
@@ -265,16 +273,25 @@ impl<const D: usize> BuiltScene<D> {
         device: &(impl Device<D> + ?Sized),
         settings: ServoSettings,
     ) -> Result<Servo<D>, HapticsError> {
-        let profile = device.profile();
+        self.servo_for(device.profile(), device.points(), settings)
+    }
+
+    #[inline(never)]
+    pub(crate) fn servo_for(
+        &self,
+        profile: &DeviceProfile,
+        device_points: usize,
+        settings: ServoSettings,
+    ) -> Result<Servo<D>, HapticsError> {
         let points = self.contact_points().count();
-        if points > 0 && points != device.points() {
-            return Err(HapticsError::ContactPoints { servo: points, device: device.points() });
+        if points > 0 && points != device_points {
+            return Err(HapticsError::ContactPoints { servo: points, device: device_points });
         }
         let tool = self.tool.as_ref().map_or(Ok(None), BuiltTool::in_hand)?;
         let map = self.workspace_of(profile, tool.as_ref())?;
         let options = self.servo_options(profile, settings.rate)?;
         let servo = match tool {
-            None => UnprotectedServo::new(self.bodies()?, device.points(), options)?,
+            None => UnprotectedServo::new(self.bodies()?, device_points, options)?,
             Some(tool) => {
                 let tool = match &profile.turning {
                     // Torques in the world are so many times those at the device.

@@ -3,6 +3,8 @@
 
 //! Runs a property a fixed number of times.
 
+use std::str::FromStr;
+
 use arbitrary::Unstructured;
 use palpate_field::Shape;
 
@@ -13,11 +15,16 @@ use crate::tree::{Solid, Tree};
 /// Bytes of entropy a case may draw.
 const ENTROPY: usize = 1 << 16;
 
+/// The share of the seeds that run unless `PALPATE_SEEDS` says otherwise; `cargo xtask test --thorough`
+/// runs all.
+pub const USUAL: f64 = 0.1;
+
 /// The most complaints shown; complaints that differ only in numbers count as one.
 const SHOWN: usize = 12;
 
 /// Checks `property` for `count` seeds. Two variables of the environment ask for others:
-/// `PALPATE_FIRST_SEED` is the first seed, 0 if unset; `PALPATE_SEEDS` multiplies their number.
+/// `PALPATE_FIRST_SEED` is the first seed, 0 if unset; `PALPATE_SEEDS` multiplies their number, by
+/// [`USUAL`] if unset. There is one seed at least.
 ///
 /// A property draws its input from [`Unstructured`] and returns what is wrong
 /// with it. The same seed draws the same input on every machine.
@@ -44,7 +51,7 @@ pub fn numbered(
 ) {
     let mut failures = Vec::new();
     let first = number_in("PALPATE_FIRST_SEED").unwrap_or(0);
-    let count = count * number_in("PALPATE_SEEDS").unwrap_or(1);
+    let count = multiplied(count, number_in("PALPATE_SEEDS").unwrap_or(USUAL));
     for seed in first..first + count {
         let bytes = entropy(seed);
         let guard = Seed(seed);
@@ -139,12 +146,17 @@ pub fn each(
     assert!(2 * drawn > tried, "only {drawn} of {tried} cases could be drawn");
 }
 
-/// The whole number in a variable of the environment; `None` if it is not set.
+fn multiplied(count: u64, factor: f64) -> u64 {
+    assert!(factor > 0.0 && factor.is_finite(), "PALPATE_SEEDS must be positive, got {factor}");
+    ((count as f64 * factor).round() as u64).max(1)
+}
+
+/// The number in a variable of the environment; `None` if it is not set.
 ///
 /// # Panics
 ///
 /// If the variable holds anything else.
-fn number_in(variable: &str) -> Option<u64> {
+fn number_in<T: FromStr>(variable: &str) -> Option<T> {
     let text = std::env::var(variable).ok()?;
     Some(text.parse().unwrap_or_else(|_| panic!("{variable} must be a number, got {text}")))
 }

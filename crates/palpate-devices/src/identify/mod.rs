@@ -113,6 +113,7 @@ pub struct IdentifyProgress {
 /// # Ok(())
 /// # }
 /// ```
+#[inline(never)]
 pub fn identify<const D: usize>(
     device: &mut dyn Device<D>,
     options: IdentifyOptions,

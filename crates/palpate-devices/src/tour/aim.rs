@@ -115,6 +115,7 @@ impl<const D: usize> Tour<D> {
     /// # Ok(())
     /// # }
     /// ```
+    #[inline(never)]
     pub fn over_each(
         &self,
         whole: &Shape<D>,

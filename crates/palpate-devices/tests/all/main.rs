@@ -10,6 +10,7 @@ mod faults;
 mod guides;
 mod identify;
 mod integration;
+mod real_time;
 mod recovery;
 mod stability;
 mod turning;

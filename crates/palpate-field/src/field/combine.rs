@@ -168,7 +168,11 @@ pub(super) struct GradientFold<'a, O, const D: usize> {
 }
 
 impl<'a, O: Combine, const D: usize> GradientFold<'a, O, D> {
-    pub(super) fn new(operation: &'a O, expected: usize, out: &'a mut Gradients<f64, D>) -> Self {
+    pub(super) fn new(
+        operation: &'a O,
+        expected: usize,
+        out: &'a mut Gradients<f64, D>,
+    ) -> Self {
         let in_out = expected % 2 == 1;
         let (scratch, next) = (Gradients::scratch(), Gradients::scratch());
         Self { operation, out, scratch, next, empty: true, in_out }

@@ -127,26 +127,22 @@ impl<K: Kernel<D>, const D: usize> PointJob<f64, Vector<f64, D>> for Leaf<K, D> 
     }
 }
 
-/// The cells of a block in the body's frame.
+/// Puts the cells of a block into `q`, in the body's frame.
 fn cells_to_body<const N: usize, const D: usize>(
     placement: &Placement<D>,
     p: &Block<AffineModel<N>, D>,
     count: usize,
-) -> Block<AffineModel<N>, D>
-where
-    AffineModel<N>: Lane,
-{
-    let mut q = Block::scratch();
+    q: &mut Block<AffineModel<N>, D>,
+) {
     match p.boxes() {
-        Boxes::No => run(&ToBody(placement), p, &(), count, &mut q),
-        Boxes::Straight => run(&BoxesToBody(placement), p, &(), count, &mut q),
+        Boxes::No => run(&ToBody(placement), p, &(), count, q),
+        Boxes::Straight => run(&BoxesToBody(placement), p, &(), count, q),
         Boxes::Turned(rows) => {
             let body = placement.world_from_body.rotation.matrix();
             let job = TurnedToBody(placement, TurnedBoxes::new(rows, body));
-            run(&job, p, &(), count, &mut q);
+            run(&job, p, &(), count, q);
         }
     }
-    q
 }
 
 impl<K: Kernel<D>, const D: usize> Leaf<K, D> {
@@ -157,8 +153,15 @@ impl<K: Kernel<D>, const D: usize> Leaf<K, D> {
         count: usize,
         out: &mut Column<AffineModel<N>>,
     ) {
-        let moved = self.placement.as_ref().map(|placement| cells_to_body(placement, p, count));
-        one_by_one(&|cell| self.kernel.model(cell), moved.as_ref().unwrap_or(p), count, out);
+        let model = |cell| self.kernel.model(cell);
+        match &self.placement {
+            None => one_by_one(&model, p, count, out),
+            Some(placement) => {
+                let mut q = Block::scratch();
+                cells_to_body(placement, p, count, &mut q);
+                one_by_one(&model, &q, count, out);
+            }
+        }
     }
 }
 
@@ -223,9 +226,14 @@ impl<K: Kernel<D>, const D: usize> Field<D> for Leaf<K, D> {
         if const { K::HAS_OWN_MODEL } {
             self.each_model(p, count, out);
         } else {
-            let moved =
-                self.placement.as_ref().map(|placement| cells_to_body(placement, p, count));
-            run_wide(&Models(&self.kernel), moved.as_ref().unwrap_or(p), &(), count, out);
+            match &self.placement {
+                None => run_wide(&Models(&self.kernel), p, &(), count, out),
+                Some(placement) => {
+                    let mut q = Block::scratch();
+                    cells_to_body(placement, p, count, &mut q);
+                    run_wide(&Models(&self.kernel), &q, &(), count, out);
+                }
+            }
         }
     }
 

@@ -100,12 +100,7 @@ pub trait Field<const D: usize>: Debug + Send + Sync {
     fn distances(&self, p: &Block<f64, D>, count: usize, out: &mut Column<f64>);
 
     /// The signed distances [m] and gradients in the first `count` lanes.
-    fn distances_gradients(
-        &self,
-        p: &Block<f64, D>,
-        count: usize,
-        out: &mut Gradients<f64, D>,
-    );
+    fn distances_gradients(&self, p: &Block<f64, D>, count: usize, out: &mut Gradients<f64, D>);
 
     /// Bounds over the cells in the first `count` lanes.
     fn models(&self, p: &Block<Model, D>, count: usize, out: &mut Column<Model>);

@@ -268,10 +268,15 @@ impl<S: Lane, const D: usize, const W: usize> Block<S, D, W> {
         assert!(count <= W, "{count} points in {W} lanes");
         let lanes = filled::<Column<S, W>>(count);
         let mut are_boxes = true;
-        for i in 0..lanes {
-            let point = point(i.min(count.max(1) - 1));
+        let mut put = |i: usize, point: Vector<S, D>| {
             are_boxes = are_boxes && S::is_box(&point.0);
             unrolled!(k < D => self.columns[k].lanes.write(i, point.0[k]));
+        };
+        for i in 0..count {
+            put(i, point(i));
+        }
+        for i in count..lanes {
+            put(i, point(count.max(1) - 1));
         }
         self.boxes = if are_boxes { Boxes::Straight } else { Boxes::No };
         for column in &mut self.columns {

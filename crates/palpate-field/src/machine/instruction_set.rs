@@ -157,7 +157,10 @@ where
 #[cold]
 #[inline(never)]
 fn require_loops() {
-    assert!(InstructionSet::Avx2.is_available(), "loops of kernels are compiled for AVX2 alone");
+    assert!(
+        InstructionSet::Avx2.is_available(),
+        "loops of kernels are compiled for AVX2 alone"
+    );
 }
 
 /// Runs `job` on the lanes of `a` and `b` with the instruction set in use, on every machine.

@@ -15,8 +15,8 @@ use super::lanes::{Lane, LaneArray};
 use crate::field::Asked;
 use crate::kernel::Evaluations;
 use crate::scalar::{
-    Blend, Circular, Cubic, Exponential, Expression, Graph, Operation, Quadratic, Quartic,
-    Model, PowerForm, Recipe, Root, Scalar, SpaceTimeModel,
+    Blend, Circular, Cubic, Exponential, Expression, Graph, Model, Operation, PowerForm,
+    Quadratic, Quartic, Recipe, Root, Scalar, SpaceTimeModel,
 };
 use crate::vector::{Vector, array};
 
@@ -297,7 +297,12 @@ pub trait OnTape: Lane {
     const TAPE_REGISTERS: usize;
 
     /// Runs a tape over the first `lanes` points.
-    fn run_tape(tape: &Tape, coordinates: &[&Column<Self>], lanes: usize, out: &mut Column<Self>);
+    fn run_tape(
+        tape: &Tape,
+        coordinates: &[&Column<Self>],
+        lanes: usize,
+        out: &mut Column<Self>,
+    );
 
     /// Asks a field of a tape.
     fn ask(
@@ -703,7 +708,13 @@ fn interpret<S: OnTape, const W: usize>(
                     each_lane!(r, n, o, [a, b, c], a.or_by_steepness([b, c], evaluations));
                 }
                 I::SpatialOrBySteepness([a, b, c, d], evaluations) => {
-                    each_lane!(r, n, o, [a, b, c, d], a.or_by_steepness([b, c, d], evaluations));
+                    each_lane!(
+                        r,
+                        n,
+                        o,
+                        [a, b, c, d],
+                        a.or_by_steepness([b, c, d], evaluations)
+                    );
                 }
             }
         }

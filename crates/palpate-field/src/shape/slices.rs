@@ -4,7 +4,7 @@
 //! Many points at once: slices and arrays with strides, through whole blocks.
 
 use super::Shape;
-use crate::machine::{BLOCK, Block, Column, Gradients};
+use crate::machine::{BLOCK, Block, Column, Gradients, Wide, wide};
 use crate::scalar::Float;
 use crate::strided::{Strided, StridedMut};
 use crate::vector::{Point, Vector, array};
@@ -20,7 +20,7 @@ impl<const D: usize> Shape<D> {
     /// If `distances` is not as long as `points`.
     pub fn distances(&self, points: &[Point<D>], distances: &mut [f64]) {
         assert_eq!(points.len(), distances.len(), "one distance for each point");
-        self.each(points.len(), |i| points[i], |i, distance: f64| distances[i] = distance);
+        self.in_chunks(points, distances);
     }
 
     /// The signed distances at `points` [m] and their gradients.
@@ -51,28 +51,22 @@ impl<const D: usize> Shape<D> {
     ) {
         assert_eq!(points.len(), distances.len(), "one distance for each point");
         assert_eq!(points.len(), gradients.len(), "one gradient for each point");
-        self.each_gradient(
-            points.len(),
-            |i| points[i],
-            |i, distance: f64, gradient| {
-                (distances[i], gradients[i]) = (distance, gradient);
-            },
-        );
+        self.gradients_in_chunks(points, distances, gradients);
     }
 
-    /// As [`distances`](Self::distances) in single precision, with the bits of
-    /// [`distance_f32`](Self::distance_f32).
+    /// As [`distances`](Self::distances) at points in single precision, each number rounded once: the
+    /// bits of [`distance_f32`](Self::distance_f32).
     ///
     /// # Panics
     ///
     /// If `distances` is not as long as `points`.
     pub fn distances_f32(&self, points: &[Vector<f32, D>], distances: &mut [f32]) {
         assert_eq!(points.len(), distances.len(), "one distance for each point");
-        self.each(points.len(), |i| points[i], |i, distance: f32| distances[i] = distance);
+        self.in_chunks(points, distances);
     }
 
-    /// As [`distances_gradients`](Self::distances_gradients) in single precision, with the
-    /// bits of [`distance_gradient_f32`](Self::distance_gradient_f32).
+    /// As [`distances_gradients`](Self::distances_gradients) at points in single precision, each number
+    /// rounded once: the bits of [`distance_gradient_f32`](Self::distance_gradient_f32).
     ///
     /// # Panics
     ///
@@ -85,13 +79,7 @@ impl<const D: usize> Shape<D> {
     ) {
         assert_eq!(points.len(), distances.len(), "one distance for each point");
         assert_eq!(points.len(), gradients.len(), "one gradient for each point");
-        self.each_gradient(
-            points.len(),
-            |i| points[i],
-            |i, distance: f32, gradient| {
-                (distances[i], gradients[i]) = (distance, gradient);
-            },
-        );
+        self.gradients_in_chunks(points, distances, gradients);
     }
 
     /// The signed distances at points in an array with strides [m], in `f64` or `f32`, with
@@ -150,6 +138,36 @@ impl<const D: usize> Shape<D> {
         });
     }
 
+    /// The distances at points, as many in each number type.
+    fn in_chunks<T: Float>(&self, points: &[Vector<T, D>], distances: &mut [T]) {
+        let (mut block, mut column) = (Block::scratch(), Column::scratch());
+        let chunks = points.chunks(BLOCK).zip(distances.chunks_mut(BLOCK));
+        for (points, distances) in chunks {
+            wide(Gather { points, block: &mut block });
+            self.block_distances(&block, points.len(), &mut column);
+            wide(Scatter { column: &column, numbers: distances });
+        }
+    }
+
+    /// As [`in_chunks`](Self::in_chunks), with gradients.
+    fn gradients_in_chunks<T: Float>(
+        &self,
+        points: &[Vector<T, D>],
+        distances: &mut [T],
+        gradients: &mut [Vector<T, D>],
+    ) {
+        let (mut block, mut answers) = (Block::scratch(), Gradients::scratch());
+        let out = distances.chunks_mut(BLOCK).zip(gradients.chunks_mut(BLOCK));
+        for (points, (distances, gradients)) in points.chunks(BLOCK).zip(out) {
+            wide(Gather { points, block: &mut block });
+            self.block_gradients(&block, points.len(), &mut answers);
+            wide(Scatter { column: &answers.distance, numbers: distances });
+            for (k, column) in answers.gradient.columns().into_iter().enumerate() {
+                wide(ScatterAlong { column, axis: k, vectors: &mut *gradients });
+            }
+        }
+    }
+
     /// Gives `put` the distance at each of `count` points, block by block.
     #[inline(always)]
     fn each<T: Float>(
@@ -186,6 +204,56 @@ impl<const D: usize> Shape<D> {
                 let gradient = Vector::of(&answers.gradient.get(lane).0);
                 put(first + lane, T::constant(answers.distance.get(lane)), gradient);
             }
+        }
+    }
+}
+
+/// Puts points into a block.
+struct Gather<'a, T, const D: usize> {
+    points: &'a [Vector<T, D>],
+    block: &'a mut Block<f64, D>,
+}
+
+impl<T: Float, const D: usize> Wide for Gather<'_, T, D> {
+    type Out = ();
+
+    #[inline(always)]
+    fn run(self) {
+        self.block.fill(self.points.len(), |i| in_double(self.points[i]));
+    }
+}
+
+/// Takes the numbers of a column.
+struct Scatter<'a, T> {
+    column: &'a Column<f64>,
+    numbers: &'a mut [T],
+}
+
+impl<T: Float> Wide for Scatter<'_, T> {
+    type Out = ();
+
+    #[inline(always)]
+    fn run(self) {
+        for (number, answer) in self.numbers.iter_mut().zip(self.column.as_slice()) {
+            *number = T::constant(*answer);
+        }
+    }
+}
+
+/// Takes the numbers of a column as one component of vectors.
+struct ScatterAlong<'a, T, const D: usize> {
+    column: &'a Column<f64>,
+    axis: usize,
+    vectors: &'a mut [Vector<T, D>],
+}
+
+impl<T: Float, const D: usize> Wide for ScatterAlong<'_, T, D> {
+    type Out = ();
+
+    #[inline(always)]
+    fn run(self) {
+        for (vector, answer) in self.vectors.iter_mut().zip(self.column.as_slice()) {
+            vector.0[self.axis] = T::constant(*answer);
         }
     }
 }

@@ -9,8 +9,8 @@ use palpate_field::scalar::Model;
 use palpate_field::{BLOCK, InstructionSet, Point, Shape, Vector};
 use palpate_testkit::arbitrary::{self as draw, Turn};
 use palpate_testkit::kernels::Space;
-use palpate_testkit::tree::{Solid, Tree};
 use palpate_testkit::laws::Cell;
+use palpate_testkit::tree::{Solid, Tree};
 use palpate_testkit::{cases, laws};
 
 /// Roundings by which models on two roads may differ, beside those of the promise.
@@ -129,7 +129,9 @@ where
                 let width = |model: &Model| model.maximum() - model.minimum();
                 let (here, there) = (width(model), width(other));
                 if here > there * (1.0 + 1e-12) + WIDTH_ROUNDINGS * rounding {
-                    return Ok(Err(format!("{here:e} wide, {there:e} on another road: {cell:?}")));
+                    return Ok(Err(format!(
+                        "{here:e} wide, {there:e} on another road: {cell:?}"
+                    )));
                 }
             }
             all.push(*model);

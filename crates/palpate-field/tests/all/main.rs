@@ -4,6 +4,7 @@
 //! All tests of the crate but those that count allocations in one program, which links faster
 //! than many.
 
+mod allocation;
 mod bad_input;
 mod bits;
 mod bounds;

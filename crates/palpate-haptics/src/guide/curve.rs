@@ -62,6 +62,7 @@ impl<const D: usize> Curve<D> {
     ///
     /// [`HapticsError::NoCurve`] without two different points;
     /// [`HapticsError::Number`] with more than 1025, or if a coordinate is not finite.
+    #[inline(never)]
     pub fn polyline(points: &[Point<D>]) -> Result<Self, HapticsError> {
         if points.len() > MOST_SEGMENTS + 1 {
             return Err(too_many(points.len(), "at most 1025"));
@@ -93,6 +94,7 @@ impl<const D: usize> Curve<D> {
     /// # Errors
     ///
     /// As [`polyline`](Self::polyline), with more than 65 points.
+    #[inline(never)]
     pub fn smooth(points: &[Point<D>]) -> Result<Self, HapticsError> {
         if points.len() > MOST_SEGMENTS / PIECES + 1 {
             return Err(too_many(points.len(), "at most 65"));

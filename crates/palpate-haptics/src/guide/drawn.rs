@@ -54,6 +54,7 @@ impl<const D: usize> Guide<D> {
     /// # Ok::<(), palpate_haptics::HapticsError>(())
     /// ```
     #[must_use]
+    #[inline(never)]
     pub fn lines_within(&self, within: &Aabb<D>) -> Vec<Vec<Point<D>>> {
         match &self.kind {
             Kind::Target(Target::Point(point)) => {

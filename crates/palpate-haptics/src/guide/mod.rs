@@ -258,6 +258,7 @@ impl<const D: usize> Guide<D> {
     /// # Errors
     ///
     /// As [`to_point`](Self::to_point).
+    #[inline(never)]
     pub fn along_curve(curve: Curve<D>, options: GuideOptions) -> Result<Self, HapticsError> {
         Self::of(Kind::Target(Target::Curve(curve)), options)
     }
@@ -305,6 +306,7 @@ impl<const D: usize> Guide<D> {
     /// # Errors
     ///
     /// As [`to_point`](Self::to_point).
+    #[inline(never)]
     pub fn down(slope: Slope<D>, options: GuideOptions) -> Result<Self, HapticsError> {
         Self::of(Kind::Slope(slope), options)
     }
@@ -364,6 +366,7 @@ impl<const D: usize> Guide<D> {
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic unless a custom field does. A
     /// curve costs at most 1024 segments, a slope one evaluation of its shape.
+    #[inline(never)]
     pub fn force(&mut self, position: Point<D>, velocity: Vector<f64, D>) -> Vector<f64, D> {
         let motion = self.motion(position, velocity);
         self.engaged = motion.is_some();

@@ -89,6 +89,7 @@ impl<const D: usize> Control<D> {
     /// # Errors
     ///
     /// [`HapticsError::NoSuchBody`] or [`HapticsError::Pose`]; then no body moves.
+    #[inline(never)]
     pub fn set_poses(&mut self, poses: &[(usize, Pose<D>)]) -> Result<(), HapticsError> {
         for (body, pose) in poses {
             if *body >= self.bodies {
@@ -157,6 +158,7 @@ impl<const D: usize> Control<D> {
     /// # Errors
     ///
     /// As [`Protection::accept_guides`].
+    #[inline(never)]
     pub fn replace_guides(
         &mut self,
         guides: &[Guide<D>],
@@ -191,6 +193,7 @@ impl<const D: usize> Control<D> {
 
     /// The state of the servo after its last tick; `None` before the first tick.
     #[must_use]
+    #[inline(never)]
     pub fn latest(&mut self) -> Option<&Snapshot<D>> {
         self.reader.latest()
     }

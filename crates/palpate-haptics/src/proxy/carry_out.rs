@@ -100,6 +100,7 @@ impl<const D: usize> Proxy<D> {
     /// # Ok(())
     /// # }
     /// ```
+    #[inline(never)]
     pub fn carry_out(
         &mut self,
         before: &Nearby<'_, D>,

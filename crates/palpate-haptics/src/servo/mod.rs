@@ -158,6 +158,7 @@ impl<const D: usize> Servo<D> {
     /// # Ok(())
     /// # }
     /// ```
+    #[inline(never)]
     pub fn guide(&mut self, guides: &[Guide<D>]) -> Result<(), HapticsError> {
         let (guides, accepted) = self.protection.accept_guides(guides, self.options().rate)?;
         self.renderer.guide(&guides);

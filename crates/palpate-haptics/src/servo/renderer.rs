@@ -98,7 +98,8 @@ impl<const D: usize> Contacts<D> {
 
 impl<const D: usize> Renderer<D> {
     /// A renderer of `bodies` to `points` contact points.
-    pub(super) fn of_points(
+    #[inline(never)]
+    pub(crate) fn of_points(
         bodies: Bodies<D>,
         points: usize,
         options: ServoOptions,
@@ -130,7 +131,8 @@ impl<const D: usize> Renderer<D> {
     }
 
     /// A renderer of `bodies` to a tool.
-    pub(super) fn of_tool(
+    #[inline(never)]
+    pub(crate) fn of_tool(
         bodies: Bodies<D>,
         tool: Tool<D>,
         options: ServoOptions,
@@ -267,18 +269,21 @@ impl<const D: usize> Renderer<D> {
     }
 
     /// The requested coupling of the tool, before device limits; `None` for contact points.
+    #[inline(never)]
     pub(crate) fn requested_coupling(&self) -> Option<Coupling> {
         self.coupled_tool().map(|coupled| coupled.requested)
     }
 
     /// Sets the map between device and world coordinates.
-    pub(super) fn set_map(&mut self, map: WorkspaceMap<D>) {
+    #[inline(never)]
+    pub(crate) fn set_map(&mut self, map: WorkspaceMap<D>) {
         self.setting.map = map;
     }
 
     /// Sets the port of every contact point, and for a tool the rotational port `turning`. What
     /// was limited or stopped before stays so.
-    pub(super) fn set_ports(&mut self, port: &Port<D>, turning: Option<TurningPort<D>>) {
+    #[inline(never)]
+    pub(crate) fn set_ports(&mut self, port: &Port<D>, turning: Option<TurningPort<D>>) {
         self.contacts.points.iter_mut().for_each(|point| point.port = Some(port.clone()));
         if let Some(coupled) = self.coupled_tool_mut() {
             coupled.port = turning;
@@ -321,6 +326,7 @@ impl<const D: usize> Renderer<D> {
         self.gripper.stop(self.is_stopped);
     }
 
+    #[inline(never)]
     pub(crate) fn stop(&mut self, is_stopped: bool) {
         self.is_stopped = is_stopped;
         self.ports().for_each(|port| port.stop(is_stopped));
@@ -334,6 +340,7 @@ impl<const D: usize> Renderer<D> {
         self.contacts.points.iter_mut().filter_map(|point| point.port.as_mut())
     }
 
+    #[inline(never)]
     pub(crate) fn set_pose(&mut self, body: usize, world_from_body: Pose<D>) {
         self.accepted.bodies.set_pose(body, world_from_body);
     }
@@ -344,6 +351,7 @@ impl<const D: usize> Renderer<D> {
     /// Real-time: allocates nothing, frees nothing, takes no lock, cannot panic unless a custom field
     /// does.
     #[must_use]
+    #[inline(never)]
     pub(crate) fn adopt(&mut self, bodies: &mut AcceptedBodies<D>) -> bool {
         let is_own = self.accepted.is_for_servo_of(bodies);
         if is_own {
@@ -357,7 +365,8 @@ impl<const D: usize> Renderer<D> {
     ///
     /// Real-time: allocates nothing, frees nothing, takes no lock, cannot panic unless a custom field
     /// does; evaluates the fields at most [`Probe::budget`] times a point.
-    pub(super) fn exchange(&mut self, bodies: &mut AcceptedBodies<D>) {
+    #[inline(never)]
+    pub(crate) fn exchange(&mut self, bodies: &mut AcceptedBodies<D>) {
         let most_of_point = MOST_OF_POINT * self.setting.map.scale();
         let Self { accepted, contacts, rendered, setting, .. } = self;
         let around = REACHES * (setting.options.probe.radius() + most_of_point);
@@ -382,6 +391,7 @@ impl<const D: usize> Renderer<D> {
         }
     }
 
+    #[inline(never)]
     pub(crate) fn limit_force(&mut self, max_force: f64) {
         // `min` ignores NaN.
         self.setting.options.max_force = self.setting.options.max_force.min(max_force).max(0.0);
@@ -392,12 +402,14 @@ impl<const D: usize> Renderer<D> {
         self.ports().for_each(|port| port.limit_force(limit));
     }
 
+    #[inline(never)]
     pub(crate) fn limit_torque(&mut self, max_torque: f64) {
         if let Some(coupled) = self.coupled_tool_mut() {
             coupled.limit_torque(max_torque.max(0.0));
         }
     }
 
+    #[inline(never)]
     pub(crate) fn step(&mut self, states: &[PointState<D>]) -> &[Touch<D>] {
         let arrival = self.arrivals.arrive();
         self.setting.arrival = arrival;
@@ -496,6 +508,7 @@ impl<const D: usize> Renderer<D> {
     /// allocate: its rehearsal only evaluates the bodies at the tool.
     ///
     /// Real-time: as [`Servo::step`](crate::Servo::step).
+    #[inline(never)]
     pub(crate) fn rehearse(&mut self, states: &[PointState<D>]) {
         match &mut self.rendered {
             Rendered::Tool(coupled) => {

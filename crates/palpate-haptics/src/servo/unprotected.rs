@@ -177,6 +177,7 @@ impl<const D: usize> UnprotectedServo<D> {
     /// # Ok(())
     /// # }
     /// ```
+    #[inline(never)]
     pub fn protected(self, protection: &Protection<D>) -> Result<Servo<D>, HapticsError> {
         let max_force = protection.profile.max_force;
         NumberError::check_zero_or_more("max_force", max_force, "N")?;

@@ -126,6 +126,7 @@ impl<const D: usize> Surface<D> {
     /// # Errors
     ///
     /// [`HapticsError::Number`] if a number of the material breaks its rule.
+    #[inline(never)]
     pub fn new(material: &Material) -> Result<Self, HapticsError> {
         let (mut ripples, mut relief) = (None, None);
         if let Some(texture) = &material.texture {
@@ -210,6 +211,7 @@ impl<const D: usize> Surface<D> {
 
     /// This surface with the stiffness and the damping of all layers multiplied by these factors.
     #[must_use]
+    #[inline(never)]
     pub fn scaled(&self, stiffness: f64, damping: f64) -> Self {
         Self { strata: self.strata.scaled(stiffness, damping), ..self.clone() }
     }

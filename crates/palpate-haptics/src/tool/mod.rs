@@ -199,6 +199,7 @@ impl<const D: usize> Tool<D> {
     /// # Errors
     ///
     /// [`HapticsError::Number`] if a number of the options breaks its rule.
+    #[inline(never)]
     pub fn new(shell: Shell<D>, options: ToolOptions) -> Result<Self, HapticsError> {
         let coupling = Coupling::new(&options, shell.reach())?;
         options.check()?;
@@ -285,6 +286,7 @@ impl<const D: usize> Tool<D> {
     /// next [`step`](Self::step) places it anew, as the first one did.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
+    #[inline(never)]
     pub fn hover(&mut self, device: &ToolState<D>) {
         self.events.clear();
         (self.edited, self.begins, self.is_beginning) = (None, false, false);
@@ -318,6 +320,7 @@ impl<const D: usize> Tool<D> {
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic unless a custom field does; at
     /// most [`ToolOptions::budget`] evaluations.
+    #[inline(never)]
     pub fn step(&mut self, bodies: &mut Bodies<D>, device: &ToolState<D>) -> &ToolTouch<D> {
         self.events.clear();
         (self.edited, self.begins) = (None, false);

@@ -40,6 +40,7 @@ impl<const D: usize> Shell<D> {
     /// # Ok(())
     /// # }
     /// ```
+    #[inline(never)]
     pub fn of_shape(
         shape: &Shape<D>,
         points: usize,

@@ -121,6 +121,7 @@ impl<const D: usize> Shell<D> {
     /// assert!((stylus.resolution(11) - 0.001).abs() < 1e-15); // √(4² + 3²) − 4
     /// # Ok::<(), palpate_haptics::HapticsError>(())
     /// ```
+    #[inline(never)]
     pub fn capsule(
         ends: [Point<D>; 2],
         radius: f64,
@@ -146,6 +147,7 @@ impl<const D: usize> Shell<D> {
     ///
     /// [`HapticsError::Number`] if the radius is negative or not finite, or the count not in 1
     /// to 8192.
+    #[inline(never)]
     pub fn from_mesh<const N: usize>(
         mesh: &Mesh<N, D>,
         count: usize,
@@ -166,6 +168,7 @@ impl<const D: usize> Shell<D> {
     /// [`HapticsError::Number`] if the radius is negative or not finite, or the count not in 1
     /// to 8192; [`HapticsError::NothingToTouchWith`] if the field is unbounded or no surface
     /// was found.
+    #[inline(never)]
     pub fn from_field(
         shape: &Shape<D>,
         count: usize,

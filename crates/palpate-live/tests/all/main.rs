@@ -9,6 +9,8 @@ mod budgets;
 mod guard;
 mod hand;
 mod load;
+mod shaders;
 mod speech;
 mod stop;
 mod talk;
+mod types;

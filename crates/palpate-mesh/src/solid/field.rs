@@ -210,6 +210,7 @@ pub(super) fn content<const N: usize, const D: usize>(
 }
 
 impl<const N: usize, const D: usize> From<Solid<N, D>> for Shape<D> {
+    #[inline(never)]
     fn from(solid: Solid<N, D>) -> Self {
         Self::custom(solid)
     }

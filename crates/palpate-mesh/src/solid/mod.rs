@@ -101,6 +101,7 @@ impl<const N: usize, const D: usize> Solid<N, D> {
     ///
     /// If no face is left, or the faces bound no solid: a piece is not orientable, or the caps are as large as the
     /// faces, as of a sheet.
+    #[inline(never)]
     pub fn from_mesh(mesh: &Mesh<N, D>) -> Result<(Self, Findings<D>), SolidError> {
         let repair = Repair::of(mesh);
         check(mesh, &repair)?;

@@ -50,6 +50,7 @@ impl<const N: usize, const D: usize> Sheet<N, D> {
     /// # Errors
     ///
     /// If the mesh or the thickness is too small or too large.
+    #[inline(never)]
     pub fn from_mesh(mesh: &Mesh<N, D>, thickness: f64) -> Result<Self, SolidError> {
         let lengths = SMALLEST_LENGTH..=LARGEST_LENGTH;
         if !lengths.contains(&thickness) {
@@ -150,6 +151,7 @@ impl<const N: usize, const D: usize> CustomField<D> for Sheet<N, D> {
 }
 
 impl<const N: usize, const D: usize> From<Sheet<N, D>> for Shape<D> {
+    #[inline(never)]
     fn from(sheet: Sheet<N, D>) -> Self {
         Self::custom(sheet)
     }

@@ -60,6 +60,7 @@ struct Memory<const D: usize> {
 impl<const D: usize> BallWorkspace<D> {
     /// Room for searches in `D` dimensions.
     #[must_use]
+    #[inline(never)]
     pub fn new() -> Self {
         Self {
             frontier: Frontier {
@@ -163,7 +164,8 @@ pub fn touches_ball<const D: usize>(
     )
 }
 
-fn search<const D: usize>(
+#[inline(never)]
+pub(crate) fn search<const D: usize>(
     shape: &Shape<D>,
     BoundingBall { centre, radius }: BoundingBall<D>,
     goal: Goal,

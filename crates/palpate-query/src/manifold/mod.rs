@@ -170,6 +170,7 @@ pub fn manifold<'a, const D: usize>(
 
 /// The deepest contact of two bodies, as a manifold has it, from where their separation is found; and
 /// how often fields were evaluated.
+#[inline(never)]
 pub(crate) fn deepest<const D: usize>(
     a: Placed<'_, D>,
     b: Placed<'_, D>,
@@ -192,6 +193,7 @@ pub(crate) struct SeparatedPair<'a, const D: usize> {
 }
 
 /// The manifold of a pair.
+#[inline(never)]
 pub(crate) fn spanning<const D: usize>(
     mut separated: SeparatedPair<'_, D>,
     settings: &ManifoldSettings,

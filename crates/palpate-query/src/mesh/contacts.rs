@@ -77,7 +77,17 @@ pub fn mesh_contacts<'a, 'w, const N: usize, const D: usize>(
     limits: &Limits,
     workspace: &'w mut MeshWorkspace<N, D>,
 ) -> Result<&'w MeshContacts<D>, QueryError> {
-    let (field, placed) = (field.into(), mesh.into());
+    contacts_of(field.into(), mesh.into(), gap, limits, workspace)
+}
+
+#[inline(never)]
+pub(crate) fn contacts_of<'w, const N: usize, const D: usize>(
+    field: Placed<'_, D>,
+    placed: PlacedMesh<'_, N, D>,
+    gap: f64,
+    limits: &Limits,
+    workspace: &'w mut MeshWorkspace<N, D>,
+) -> Result<&'w MeshContacts<D>, QueryError> {
     find(&field, &placed, gap, limits, workspace)?;
     let mut evaluations = workspace.hits.evaluations;
     let view = placed.seen_from(&field)?;

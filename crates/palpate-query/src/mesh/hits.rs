@@ -66,6 +66,7 @@ struct Part<const N: usize, const D: usize> {
 impl<const N: usize, const D: usize> MeshWorkspace<N, D> {
     /// Room for searches over elements of `N` points in `D` dimensions.
     #[must_use]
+    #[inline(never)]
     pub fn new() -> Self {
         Self {
             block: Block::zero(),
@@ -161,7 +162,8 @@ pub fn mesh_hits<'a, 'w, const N: usize, const D: usize>(
 }
 
 /// Finds the hits of a mesh, and writes them into the workspace.
-pub(super) fn find<const N: usize, const D: usize>(
+#[inline(never)]
+pub(crate) fn find<const N: usize, const D: usize>(
     field: &Placed<'_, D>,
     placed: &PlacedMesh<'_, N, D>,
     gap: f64,

@@ -71,6 +71,7 @@ pub(crate) struct BodyPair<'a, const D: usize> {
 }
 
 impl<'a, const D: usize> BodyPair<'a, D> {
+    #[inline(never)]
     pub(crate) fn new(a: Placed<'a, D>, b: Placed<'a, D>) -> Result<Self, QueryError> {
         check_pose(0, &a.world_from_body)?;
         check_pose(1, &b.world_from_body)?;

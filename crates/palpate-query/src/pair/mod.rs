@@ -27,15 +27,18 @@ use crate::certified::{Certified, Limits};
 use crate::error::QueryError;
 use crate::goal::Goal;
 use crate::placed::Placed;
-use body_pair::BodyPair;
-use search::PairSearch;
+pub(crate) use body_pair::BodyPair;
+pub(crate) use search::PairSearch;
 
 pub use descent::minimax_step;
 pub use distance_bound::DistanceBound;
 pub use nearest::Nearest;
+pub(crate) use proof::prove;
 pub use proof::{Proof, ProofBox, proof};
+pub(crate) use rates::rates_of;
 pub use rates::{PoseDerivative, Rates, rates};
 pub use search::PairWorkspace;
+pub(crate) use separating_translation::part;
 pub use separating_translation::{SeparatingTranslation, separating_translation};
 
 /// The separation of two bodies [m], between bounds, to `limits.tolerance`.

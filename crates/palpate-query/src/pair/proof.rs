@@ -52,7 +52,16 @@ pub fn proof<'a, const D: usize>(
     limits: &Limits,
     workspace: &mut PairWorkspace<D>,
 ) -> Result<Proof<D>, QueryError> {
-    let pair = BodyPair::new(a.into(), b.into())?;
+    prove([a.into(), b.into()], limits, workspace)
+}
+
+#[inline(never)]
+pub(crate) fn prove<const D: usize>(
+    [a, b]: [Placed<'_, D>; 2],
+    limits: &Limits,
+    workspace: &mut PairWorkspace<D>,
+) -> Result<Proof<D>, QueryError> {
+    let pair = BodyPair::new(a, b)?;
     let mut search = PairSearch::new(pair, Goal::least(0.5 * limits.tolerance), limits)?;
     search.keeps_all = true;
     let (answer, _) = search.run_from(None, workspace);

@@ -105,7 +105,15 @@ pub fn rates<'a, const D: usize>(
     b: impl Into<Placed<'a, D>>,
     nearest: &Nearest<D>,
 ) -> Result<Rates<D>, QueryError> {
-    let mut pair = BodyPair::new(a.into(), b.into())?;
+    rates_of([a.into(), b.into()], nearest)
+}
+
+#[inline(never)]
+pub(crate) fn rates_of<const D: usize>(
+    [a, b]: [Placed<'_, D>; 2],
+    nearest: &Nearest<D>,
+) -> Result<Rates<D>, QueryError> {
+    let mut pair = BodyPair::new(a, b)?;
     let pose = pair.world_from_frame;
     let centre = pose.inverse().transform_point(nearest.point);
     let size = pair.root(0.0).half_extents().norm();

@@ -64,6 +64,7 @@ pub struct PairWorkspace<const D: usize> {
 impl<const D: usize> PairWorkspace<D> {
     /// Room for searches in `D` dimensions, of 65 536 waiting boxes.
     #[must_use]
+    #[inline(never)]
     pub fn new() -> Self {
         Self::with_room(ROOM)
     }
@@ -142,6 +143,7 @@ struct Enough {
 }
 
 impl<'a, const D: usize> PairSearch<'a, D> {
+    #[inline(never)]
     pub(crate) fn new(
         pair: BodyPair<'a, D>,
         goal: Goal,
@@ -163,6 +165,7 @@ impl<'a, const D: usize> PairSearch<'a, D> {
     }
 
     /// Searches all places that matter.
+    #[inline(never)]
     pub(crate) fn run(&mut self, workspace: &mut PairWorkspace<D>) -> Certified<Nearest<D>> {
         match self.told_by_boxes() {
             Some(answer) => answer,
@@ -204,6 +207,7 @@ impl<'a, const D: usize> PairSearch<'a, D> {
 
     /// Searches all places that matter; `start` may be a value and the point that has it. Also returns
     /// the box that it searched.
+    #[inline(never)]
     pub(crate) fn run_from(
         &mut self,
         start: Option<(f64, Point<D>)>,

@@ -89,7 +89,15 @@ pub fn separating_translation<'a, const D: usize>(
     limits: &Limits,
     workspace: &mut PairWorkspace<D>,
 ) -> Result<Option<SeparatingTranslation<D>>, QueryError> {
-    let (a, b) = (a.into(), b.into());
+    part([a.into(), b.into()], limits, workspace)
+}
+
+#[inline(never)]
+pub(crate) fn part<const D: usize>(
+    [a, b]: [Placed<'_, D>; 2],
+    limits: &Limits,
+    workspace: &mut PairWorkspace<D>,
+) -> Result<Option<SeparatingTranslation<D>>, QueryError> {
     let size = |body: &Placed<'_, D>| {
         let bounds = body.shape.promise().bounds;
         bounds.map_or(0.0, |bounds| 2.0 * bounds.aabb.half_extents().norm())

@@ -56,6 +56,7 @@ const COARSER: f64 = 8.0;
 /// # Errors
 ///
 /// If the radius or the tolerance is negative, NaN or too large.
+#[inline(never)]
 pub fn cast_ball<const D: usize>(
     shape: &Shape<D>,
     ray: &Ray<D>,

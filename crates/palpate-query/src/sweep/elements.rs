@@ -76,6 +76,7 @@ pub struct ElementSweep<const N: usize, const D: usize> {
 impl<const N: usize, const D: usize> ElementSweep<N, D> {
     /// Room for sweeps of elements of `N` points in `D` dimensions.
     #[must_use]
+    #[inline(never)]
     pub fn new() -> Self {
         Self {
             frontier: Frontier {
@@ -95,7 +96,8 @@ impl<const N: usize, const D: usize> ElementSweep<N, D> {
     /// # Errors
     ///
     /// If a pose is NaN or out of range, or a setting is not positive.
-    pub(super) fn run(
+    #[inline(never)]
+    pub(crate) fn run(
         &mut self,
         field: Moving<'_, D>,
         whole: &Whole<'_, N, D>,
@@ -141,7 +143,7 @@ impl<const N: usize, const D: usize> Default for ElementSweep<N, D> {
 }
 
 /// What moves, in its own coordinates.
-pub(super) struct Whole<'a, const N: usize, const D: usize> {
+pub(crate) struct Whole<'a, const N: usize, const D: usize> {
     pub(super) part: Part<N, D>,
     pub(super) mesh: Option<&'a Mesh<N, D>>,
     /// Points whose convex hull holds it [m].

@@ -28,6 +28,7 @@ pub use motion::Motion;
 pub use moving::Moving;
 #[cfg(feature = "world")]
 pub(crate) use moving::corners;
+pub(crate) use pair::swept;
 pub use pair::{SweepWorkspace, sweep};
 pub use proof::{FreeBox, SweepProof, sweep_proof};
 pub use settings::SweepSettings;

@@ -75,7 +75,8 @@ pub fn sweep<'a, const D: usize>(
 }
 
 /// The first touch, and the body in whose coordinates the boxes are, which are added to `boxes`.
-pub(super) fn swept<const D: usize>(
+#[inline(never)]
+pub(crate) fn swept<const D: usize>(
     bodies: [Moving<'_, D>; 2],
     settings: &SweepSettings,
     workspace: &mut SweepWorkspace<D>,
@@ -260,6 +261,7 @@ pub struct SweepWorkspace<const D: usize> {
 impl<const D: usize> SweepWorkspace<D> {
     /// Room for sweeps in `D` dimensions.
     #[must_use]
+    #[inline(never)]
     pub fn new() -> Self {
         Self { frontier: frontier(), memory: BoxMemory::new(), pair: PairWorkspace::new() }
     }

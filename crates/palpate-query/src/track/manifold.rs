@@ -60,6 +60,7 @@ impl<const D: usize> Track<D> {
     /// # Errors
     ///
     /// As of [`manifold`](crate::manifold).
+    #[inline(never)]
     pub fn manifold(
         &mut self,
         poses: [Pose<D>; 2],

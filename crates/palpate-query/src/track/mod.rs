@@ -93,6 +93,7 @@ struct Known<const D: usize> {
 impl<const D: usize> Track<D> {
     /// A track of these shapes that knows nothing yet.
     #[must_use]
+    #[inline(never)]
     pub fn new(a: Shape<D>, b: Shape<D>) -> Self {
         let (alone, next_alone) = (0, ALONE);
         let (known, kept, history) = (None, None, History::default());
@@ -136,6 +137,7 @@ impl<const D: usize> Track<D> {
     /// # Errors
     ///
     /// If neither body is bounded, or a pose or the tolerance is NaN or out of range.
+    #[inline(never)]
     pub fn separation(
         &mut self,
         poses: [Pose<D>; 2],

@@ -48,6 +48,7 @@ impl<const D: usize> World<D> {
     /// # Errors
     ///
     /// If there is no such body, a pose is NaN or out of range, or a setting is not positive.
+    #[inline(never)]
     pub fn first_impact(
         &self,
         motions: &[(BodyId, Motion<D>)],

@@ -166,6 +166,7 @@ impl<const D: usize> World<D> {
     ///
     /// If a setting is not finite or beyond 1e15 m, the margin or the tolerance negative,
     /// or the spacing not positive.
+    #[inline(never)]
     pub fn new(settings: WorldSettings) -> Result<Self, QueryError> {
         settings.manifold.check()?;
         settings.limits.check()?;
@@ -189,6 +190,7 @@ impl<const D: usize> World<D> {
     /// # Errors
     ///
     /// If the pose is not finite.
+    #[inline(never)]
     pub fn add(
         &mut self,
         shape: Shape<D>,
@@ -219,6 +221,7 @@ impl<const D: usize> World<D> {
     /// # Errors
     ///
     /// If there is no such body.
+    #[inline(never)]
     pub fn remove(&mut self, body: BodyId) -> Result<(), QueryError> {
         self.body(body)?;
         self.bodies[body.0] = None;
@@ -241,6 +244,7 @@ impl<const D: usize> World<D> {
     /// # Errors
     ///
     /// If a pose is not finite or beyond 1e15 m, or there is no such body.
+    #[inline(never)]
     pub fn set_poses(&mut self, poses: &[(BodyId, Pose<D>)]) -> Result<(), QueryError> {
         for (body, pose) in poses {
             self.body(*body)?;
@@ -289,6 +293,7 @@ impl<const D: usize> World<D> {
     ///
     /// With the feature `parallel` rayon's threads share the pairs; the bits do not depend on
     /// how many there are.
+    #[inline(never)]
     pub fn step(&mut self) -> Vec<&Neighbours<D>> {
         self.find_near();
         let (bodies, settings, pool) = (&self.bodies, &self.settings, &self.pool);
@@ -323,6 +328,7 @@ impl<const D: usize> World<D> {
     /// # Errors
     ///
     /// If there is no such body.
+    #[inline(never)]
     pub fn lower_bound(&self, one: BodyId, other: BodyId) -> Result<f64, QueryError> {
         let found = |body: BodyId| {
             let body_at = self.bodies.get(body.0).and_then(Option::as_ref);

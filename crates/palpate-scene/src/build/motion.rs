@@ -50,6 +50,7 @@ pub struct BuiltMotion<const D: usize> {
 impl<const D: usize> BuiltMotion<D> {
     /// The pose of the body at a time [s]; `None` before the motion begins.
     #[must_use]
+    #[inline(never)]
     pub fn pose(&self, time: f64) -> Option<Pose<D>> {
         let passed = (time - self.start) / self.duration;
         if passed.is_nan() || passed < 0.0 {
@@ -115,6 +116,7 @@ impl<const D: usize> BuiltScene<D> {
     ///
     /// If there is no such body.
     #[must_use]
+    #[inline(never)]
     pub fn pose_at(&self, body: usize, time: f64) -> Pose<D> {
         let moved = self.motions.iter().filter(|motion| motion.body == body);
         let begun = moved.filter_map(|motion| Some((motion.start, motion.pose(time)?)));
@@ -145,6 +147,7 @@ impl<const D: usize> BuiltScene<D> {
     /// # }
     /// ```
     #[must_use]
+    #[inline(never)]
     pub fn times_of_motion(&self, until: f64) -> Vec<f64> {
         let mut times = vec![0.0, until];
         for motion in &self.motions {
@@ -170,6 +173,7 @@ impl<const D: usize> BuiltScene<D> {
     /// # Panics
     ///
     /// If there is no such body.
+    #[inline(never)]
     pub fn way(&self, body: usize, from: f64, to: f64) -> Result<Option<Screw<D>>, ShapeError> {
         let moved = self.motions.iter().filter(|motion| motion.body == body);
         let begun = moved.filter(|motion| motion.start <= from);
@@ -242,6 +246,7 @@ impl<const D: usize> BuiltScene<D> {
     /// # Errors
     ///
     /// If a body cannot be placed there, as its shape says.
+    #[inline(never)]
     pub fn at(&self, time: f64) -> Result<Self, ShapeError> {
         let mut scene = self.clone();
         for number in self.moving() {

@@ -104,17 +104,24 @@ impl Scene {
     /// # }
     /// ```
     pub fn with_bodies<const D: usize>(
-        mut self,
+        self,
         bodies: impl IntoIterator<Item = SceneBody<D>>,
     ) -> Result<Self, SceneError> {
-        let bodies: Vec<_> = bodies.into_iter().collect();
+        self.with_all(&bodies.into_iter().collect::<Vec<_>>())
+    }
+
+    #[inline(never)]
+    pub(crate) fn with_all<const D: usize>(
+        mut self,
+        bodies: &[SceneBody<D>],
+    ) -> Result<Self, SceneError> {
         if self.dimension().count() != D {
             let message = format!("the scene is {}, its bodies are {D}D", self.dimension());
             return Err(Problem::new(message).under("bodies").into());
         }
         let mut writer = Writer::new(std::mem::take(&mut self.shapes));
         bodies.iter().for_each(|body| writer.count(&body.shape));
-        for body in &bodies {
+        for body in bodies {
             let place = self.bodies.len();
             let written = written(&mut writer, body)
                 .map_err(|problem| problem.at(place).under("bodies"))?;

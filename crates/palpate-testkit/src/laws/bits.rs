@@ -42,7 +42,12 @@ pub fn bits_agree<const D: usize>(shape: &Shape<D>, points: &[Point<D>]) -> Resu
         same("single value", *p, rounded(f), shape.distance_f32(singles[i]).into())?;
         same("single value with gradient", *p, rounded(f), with.into())?;
         same("value in a single slice", *p, rounded(f), single_values[i].into())?;
-        same("value with gradient in a single slice", *p, rounded(f), single_slopes.0[i].into())?;
+        same(
+            "value with gradient in a single slice",
+            *p,
+            rounded(f),
+            single_slopes.0[i].into(),
+        )?;
         for k in 0..D {
             same("single gradient", *p, rounded(g[k]), slope[k].into())?;
             let slope = single_slopes.1[i][k];

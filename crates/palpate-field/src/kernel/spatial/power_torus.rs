@@ -90,7 +90,10 @@ impl Kernel<3> for PowerTorus {
 
     #[inline(always)]
     fn bounded_by_steepness(&self) -> Option<Evaluations> {
-        Some(Evaluations { operations: OPERATIONS, size: self.round.ring_radius + self.round.radius })
+        Some(Evaluations {
+            operations: OPERATIONS,
+            size: self.round.ring_radius + self.round.radius,
+        })
     }
 
     fn promise(&self) -> Promise<3> {

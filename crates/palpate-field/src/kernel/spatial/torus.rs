@@ -135,7 +135,10 @@ impl Kernel<3> for CappedTorus {
 
     #[inline(always)]
     fn bounded_by_steepness(&self) -> Option<Evaluations> {
-        Some(Evaluations { operations: CAPPED_OPERATIONS, size: self.ring_radius + self.radius })
+        Some(Evaluations {
+            operations: CAPPED_OPERATIONS,
+            size: self.ring_radius + self.radius,
+        })
     }
 
     fn promise(&self) -> Promise<3> {
@@ -238,7 +241,10 @@ impl Kernel<3> for Link {
 
     #[inline(always)]
     fn bounded_by_steepness(&self) -> Option<Evaluations> {
-        Some(Evaluations { operations: LINK_OPERATIONS, size: self.half_length + self.ring_radius + self.radius })
+        Some(Evaluations {
+            operations: LINK_OPERATIONS,
+            size: self.half_length + self.ring_radius + self.radius,
+        })
     }
 
     fn promise(&self) -> Promise<3> {

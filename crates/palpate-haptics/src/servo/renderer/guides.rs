@@ -30,7 +30,8 @@ impl<const D: usize> Renderer<D> {
     }
 
     /// Sets the guides of every contact point.
-    pub(in crate::servo) fn guide(&mut self, guides: &[Guide<D>]) {
+    #[inline(never)]
+    pub(crate) fn guide(&mut self, guides: &[Guide<D>]) {
         for point in &mut self.contacts.points {
             point.guides = guides.to_vec();
         }
@@ -39,6 +40,7 @@ impl<const D: usize> Renderer<D> {
     /// Swaps the guides of each contact point with those of a list.
     ///
     /// Real-time: allocates nothing, frees nothing, takes no lock, cannot panic.
+    #[inline(never)]
     pub(crate) fn exchange_guides(&mut self, guides: &mut [Vec<Guide<D>>]) {
         let points = self.contacts.points.iter_mut();
         points.zip(guides).for_each(|(point, new)| swap(&mut point.guides, new));

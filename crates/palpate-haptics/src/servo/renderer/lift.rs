@@ -17,6 +17,7 @@ impl<const D: usize> Renderer<D> {
     /// Lifts the hand off the bodies, or sets it down.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
+    #[inline(never)]
     pub(crate) fn lift(&mut self, is_lifted: bool) {
         self.setting.is_lifted = is_lifted;
     }

@@ -12,6 +12,7 @@ impl<const D: usize> Renderer<D> {
     /// The report of every contact point's safety chain so far; empty for an
     /// [`UnprotectedServo`](crate::UnprotectedServo).
     #[must_use]
+    #[inline(never)]
     pub fn safety(&self) -> Vec<SafetyReport> {
         self.with_ports(Port::report, WrenchChain::report)
             .map(|(report, readings)| report.with_readings(readings))
@@ -40,6 +41,7 @@ impl<const D: usize> Renderer<D> {
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     #[must_use]
+    #[inline(never)]
     pub fn stage_ticks(&self) -> StageTicks {
         self.with_ports(Port::stage_ticks, WrenchChain::stage_ticks)
             .map(|(ticks, readings)| ticks.with_readings(&readings))

@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
 //! Simulated devices and gloves in a tick: nothing is allocated, whatever they are told.
-#![expect(clippy::unwrap_used, reason = "a test that cannot be set up fails")]
-
 use assert_no_alloc::{AllocDisabler, assert_no_alloc};
 use palpate_devices::Interpolation;
 use palpate_devices::{

@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
 //! Every example runs, says something, and stays short.
-#![expect(clippy::unwrap_used, reason = "a test that cannot be set up fails")]
-
 use std::path::{Path, PathBuf};
 use std::process::Command;
 

@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
 //! Meshes of shapes: closed, without faces that cross, near the surface, sharp.
-#![expect(clippy::unwrap_used, reason = "tests")]
-
 use std::f64::consts::TAU;
 use std::ops::ControlFlow;
 
@@ -14,7 +12,7 @@ use palpate_testkit::arbitrary::tree;
 use palpate_testkit::cases;
 
 #[expect(unreachable_pub, reason = "shared with the fuzz target")]
-#[path = "../../../fuzz/contour_answers.rs"]
+#[path = "../../../../fuzz/contour_answers.rs"]
 mod contour_answers;
 
 fn mesh(shape: &Shape<3>, cell: f64) -> TriangleMesh {

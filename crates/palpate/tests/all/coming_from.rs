@@ -204,7 +204,7 @@ fn cells(page: &str) -> impl Iterator<Item = String> {
 
 /// The page up to this heading, and from it on.
 fn parts() -> (&'static str, &'static str) {
-    let page = include_str!("../../../docs/guide/coming-from.md");
+    let page = include_str!("../../../../docs/guide/coming-from.md");
     let proofs = "## What palpate does beside";
     let others = "## parry and rapier";
     let (start, rest) = page.split_once(proofs).unwrap_or_default();

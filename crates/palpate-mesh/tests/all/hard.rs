@@ -3,8 +3,6 @@
 
 //! Solids of hard meshes: signs by the exact winding number, distances face by face, findings counted, and what was
 //! mended needs no mending.
-#![expect(clippy::unwrap_used, reason = "tests")]
-
 use std::path::Path;
 
 use palpate_field::{CustomField, Point, Quality, Vector};

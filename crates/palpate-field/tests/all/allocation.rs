@@ -104,7 +104,10 @@ fn assert_no_allocation<const D: usize>(what: &str, shape: &Shape<D>) {
         shape.prepare();
         for count in [1, 7, 33, BLOCK] {
             let calls = calls(|| evaluate(shape, &points[..count]));
-            assert_eq!(calls, 0, "calls of the allocator for {count} points of {what}, {set:?}");
+            assert_eq!(
+                calls, 0,
+                "calls of the allocator for {count} points of {what}, {set:?}"
+            );
         }
     }
 }

@@ -3,8 +3,6 @@
 
 //! Grids of shapes: what they promise, against the shapes, and the numbers of their splines.
 
-#![expect(clippy::unwrap_used, reason = "tests")]
-
 use std::ops::ControlFlow;
 
 use palpate_field::operator::Profile;

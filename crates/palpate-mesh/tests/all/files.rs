@@ -5,15 +5,14 @@
 //! cut off, altered or made of noise.
 
 #[expect(unreachable_pub, reason = "shared with the fuzz target")]
-#[path = "../../../fuzz/mesh_bytes.rs"]
+#[path = "../../../../fuzz/mesh_bytes.rs"]
 mod mesh_bytes;
-mod samples;
 
 use palpate_field::Vector;
 use palpate_mesh::{Format, MeshError, ReadProblem, TriangleMesh, read, read_file};
 use palpate_testkit::cases;
 
-use samples::{all, glb, of_nodes};
+use crate::samples::{all, glb, of_nodes};
 
 /// The corners of a mesh's triangles, whatever its vertices are called.
 fn corners(mesh: &TriangleMesh) -> Vec<[[f64; 3]; 3]> {

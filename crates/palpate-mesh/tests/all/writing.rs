@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
 //! What is written is read again.
-#![cfg(feature = "files")]
 
 use palpate_field::Shape;
 use palpate_mesh::{ContourOptions, Format, TriangleMesh, read};

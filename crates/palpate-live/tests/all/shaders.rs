@@ -4,8 +4,6 @@
 //! Shaders against the core: every primitive and every scene that is drawn by its formula, at 4096
 //! points, in a browser.
 
-#![expect(clippy::unwrap_used, reason = "tests")]
-
 use std::collections::BTreeSet;
 use std::path::Path;
 use std::process::Command;

@@ -2,9 +2,6 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
 //! Grids as files: what was saved is read, and what is damaged is refused.
-#![cfg(feature = "files")]
-#![expect(clippy::unwrap_used, reason = "tests")]
-
 use palpate_field::{CustomField, Shape, Vector};
 use palpate_grid::{Grid, GridFileProblem, GridOptions, Kernel, Store};
 use palpate_testkit::arbitrary::within;

@@ -2,10 +2,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
 //! Volumes: the same ball from every format, and what is damaged.
-#![cfg(feature = "volumes")]
-#![expect(clippy::unwrap_used, reason = "tests")]
-
-#[path = "../../../fuzz/volume_bytes.rs"]
+#[path = "../../../../fuzz/volume_bytes.rs"]
 #[expect(unreachable_pub, reason = "shared with the fuzz target")]
 mod volume_bytes;
 

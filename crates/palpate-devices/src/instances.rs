@@ -1,0 +1,45 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! Compiles devices and hands in this crate, for the plane and for space.
+//!
+//! A generic function is compiled again in every crate that calls it. One that is marked
+//! `#[inline(never)]` is not, if a crate below has compiled it for the same numbers.
+
+use std::hint::black_box;
+
+use palpate_haptics::Device;
+
+use crate::{Glove, HandPath, RecordedDevice, SimulatedDevice, SteeredDevice, Tour, identify};
+
+macro_rules! compile {
+    ($($function:expr),* $(,)?) => {
+        $(black_box($function as *const ());)*
+    };
+}
+
+fn in_dimension<const D: usize>() {
+    compile![
+        HandPath::<D>::new,
+        HandPath::<D>::state_at,
+        Tour::<D>::new,
+        Tour::<D>::over,
+        Tour::<D>::over_each,
+        SimulatedDevice::<D>::new,
+        <SimulatedDevice<D> as Device<D>>::read,
+        SteeredDevice::<D>::new,
+        <SteeredDevice<D> as Device<D>>::read,
+        RecordedDevice::<D>::new,
+        Glove::<D>::new,
+        Glove::<D>::from_hand,
+        identify::<D>,
+    ];
+}
+
+/// Never called: what it names is compiled.
+#[doc(hidden)]
+#[inline(never)]
+pub fn instances() {
+    in_dimension::<2>();
+    in_dimension::<3>();
+}

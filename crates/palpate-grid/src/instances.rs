@@ -1,0 +1,44 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! Compiles grids in this crate, for the plane and for space.
+//!
+//! A generic function is compiled again in every crate that calls it. One that is marked
+//! `#[inline(never)]` is not, if a crate below has compiled it for the same numbers.
+
+use std::hint::black_box;
+
+use palpate_field::Shape;
+
+use crate::Grid;
+
+macro_rules! compile {
+    ($($function:expr),* $(,)?) => {
+        $(black_box($function as *const ());)*
+    };
+}
+
+fn in_dimension<const D: usize>() {
+    compile![
+        Grid::<D>::bake_with,
+        Grid::<D>::from_samples,
+        Grid::<D>::rebuild,
+        Grid::<D>::samples,
+        <Shape<D> as From<Grid<D>>>::from,
+    ];
+    #[cfg(feature = "files")]
+    compile![
+        Grid::<D>::from_bytes,
+        Grid::<D>::open_at,
+        Grid::<D>::save_at,
+        crate::GridCache::bake::<D>,
+    ];
+}
+
+/// Never called: what it names is compiled.
+#[doc(hidden)]
+#[inline(never)]
+pub fn instances() {
+    in_dimension::<2>();
+    in_dimension::<3>();
+}

@@ -1,0 +1,37 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! Compiles servo loops in this crate, for the plane and for space.
+//!
+//! A generic function is compiled again in every crate that calls it. One that is marked
+//! `#[inline(never)]` is not, if a crate below has compiled it for the same numbers.
+
+use std::hint::black_box;
+
+use crate::servo_loop::ServoLoop;
+use crate::{ServoThread, run_on};
+
+macro_rules! compile {
+    ($($function:expr),* $(,)?) => {
+        $(black_box($function as *const ());)*
+    };
+}
+
+fn in_dimension<const D: usize>() {
+    compile![
+        ServoLoop::<D>::new,
+        ServoLoop::<D>::run,
+        run_on::<D>,
+        ServoThread::<D>::start,
+        ServoThread::<D>::end,
+        ServoThread::<D>::join,
+    ];
+}
+
+/// Never called: what it names is compiled.
+#[doc(hidden)]
+#[inline(never)]
+pub fn instances() {
+    in_dimension::<2>();
+    in_dimension::<3>();
+}

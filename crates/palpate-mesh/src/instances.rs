@@ -1,0 +1,43 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! Compiles meshes in this crate, for the plane and for space.
+//!
+//! A generic function is compiled again in every crate that calls it. One that is marked
+//! `#[inline(never)]` is not, if a crate below has compiled it for the same numbers.
+
+use std::hint::black_box;
+
+use palpate_field::Shape;
+
+use crate::{Mesh, Sheet, Solid};
+
+macro_rules! compile {
+    ($($function:expr),* $(,)?) => {
+        $(black_box($function as *const ());)*
+    };
+}
+
+/// Compiles meshes of elements with `N` corners in `D` dimensions.
+fn of_elements<const N: usize, const D: usize>() {
+    compile![
+        Mesh::<N, D>::new,
+        Mesh::<N, D>::tree,
+        Mesh::<N, D>::bounds,
+        Mesh::<N, D>::scaled,
+        Mesh::<N, D>::welded,
+        Mesh::<N, D>::report,
+        Sheet::<N, D>::from_mesh,
+        <Shape<D> as From<Sheet<N, D>>>::from,
+        Solid::<N, D>::from_mesh,
+        <Shape<D> as From<Solid<N, D>>>::from,
+    ];
+}
+
+/// Never called: what it names is compiled.
+#[doc(hidden)]
+#[inline(never)]
+pub fn instances() {
+    of_elements::<2, 2>();
+    of_elements::<3, 3>();
+}

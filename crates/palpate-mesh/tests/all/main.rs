@@ -1,0 +1,14 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! Tests of meshes.
+
+#![expect(clippy::unwrap_used, reason = "tests")]
+
+mod contours;
+mod files;
+mod hard;
+mod samples;
+mod solids;
+#[cfg(feature = "files")]
+mod writing;

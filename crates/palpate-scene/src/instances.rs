@@ -1,0 +1,48 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! Compiles scenes in this crate, for the plane and for space.
+//!
+//! A generic function is compiled again in every crate that calls it. One that is marked
+//! `#[inline(never)]` is not, if a crate below has compiled it for the same numbers.
+
+use std::hint::black_box;
+
+use crate::build::{BuiltMotion, BuiltScene, BuiltTool};
+use crate::catalogue::described_primitive;
+use crate::scene::Scene;
+
+macro_rules! compile {
+    ($($function:expr),* $(,)?) => {
+        $(black_box($function as *const ());)*
+    };
+}
+
+fn in_dimension<const D: usize>() {
+    compile![
+        Scene::with_all::<D>,
+        described_primitive::<D>,
+        BuiltTool::<D>::in_hand,
+        BuiltMotion::<D>::pose,
+        BuiltScene::<D>::bounds,
+        BuiltScene::<D>::bounds_with,
+        BuiltScene::<D>::device_rotation,
+        BuiltScene::<D>::workspace_of,
+        BuiltScene::<D>::bodies,
+        BuiltScene::<D>::world_with,
+        BuiltScene::<D>::smallest_size,
+        BuiltScene::<D>::servo_for,
+        BuiltScene::<D>::pose_at,
+        BuiltScene::<D>::times_of_motion,
+        BuiltScene::<D>::way,
+        BuiltScene::<D>::at,
+    ];
+}
+
+/// Never called: what it names is compiled.
+#[doc(hidden)]
+#[inline(never)]
+pub fn instances() {
+    in_dimension::<2>();
+    in_dimension::<3>();
+}
