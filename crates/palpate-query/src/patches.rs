@@ -36,11 +36,28 @@ pub(crate) struct Patches<const N: usize, const D: usize> {
     centres: Vec<Point<D>>,
     /// Cells in the order of flooding; at the end the deepest cell of each patch.
     order: Vec<u32>,
+    /// What cells are sorted by.
+    keys: Vec<f64>,
     is_wet: Vec<bool>,
     /// For each cell, another of the same pool, and another of the same patch (union-find):
     /// both chains end at the deepest.
     water: Vec<u32>,
     patch: Vec<u32>,
+}
+
+/// Puts the number of each key into `order`, as [`sort_by_keys`] sorts them.
+fn sort_all(order: &mut Vec<u32>, keys: &[f64]) {
+    order.clear();
+    order.extend(0..keys.len() as u32);
+    sort_by_keys(order, keys);
+}
+
+/// Sorts numbers by their keys; of equal keys the lower number is first. One function for all
+/// elements: a sort is much machine code.
+fn sort_by_keys(order: &mut [u32], keys: &[f64]) {
+    order.sort_unstable_by(|&a, &b| {
+        keys[a as usize].total_cmp(&keys[b as usize]).then(a.cmp(&b))
+    });
 }
 
 impl<const N: usize, const D: usize> Patches<N, D> {
@@ -53,6 +70,7 @@ impl<const N: usize, const D: usize> Patches<N, D> {
             places: Vec::with_capacity(room),
             centres: Vec::with_capacity(room),
             order: Vec::with_capacity(room),
+            keys: Vec::with_capacity(room),
             is_wet: Vec::with_capacity(room),
             water: Vec::with_capacity(room),
             patch: Vec::with_capacity(room),
@@ -68,13 +86,10 @@ impl<const N: usize, const D: usize> Patches<N, D> {
         shore: impl Fn(&ElementCell<N, D>) -> f64,
     ) -> usize {
         self.sort_along_element(weights);
-        let Self { cells, order, .. } = self;
-        order.clear();
-        order.extend(0..cells.len() as u32);
-        order.sort_unstable_by(|&a, &b| {
-            let shore = |i: u32| shore(&cells[i as usize]);
-            shore(a).total_cmp(&shore(b)).then(a.cmp(&b))
-        });
+        let Self { cells, order, keys, .. } = self;
+        keys.clear();
+        keys.extend(cells.iter().map(&shore));
+        sort_all(order, keys);
         self.is_wet.clear();
         self.is_wet.resize(self.cells.len(), false);
         for names in [&mut self.water, &mut self.patch] {
@@ -85,25 +100,29 @@ impl<const N: usize, const D: usize> Patches<N, D> {
             let cell = self.order[i];
             self.flood(cell, shore(&self.cells[cell as usize]) - tolerance);
         }
-        let Self { cells, order, patch, .. } = self;
+        let Self { cells, order, keys, patch, .. } = self;
         order.retain(|&i| patch[i as usize] == i);
-        order.sort_unstable_by(|&a, &b| {
-            let floor = |i: u32| cells[i as usize].upper;
-            floor(a).total_cmp(&floor(b)).then(a.cmp(&b))
-        });
+        keys.clear();
+        keys.extend(cells.iter().map(|cell| cell.upper));
+        sort_by_keys(order, keys);
         order.len()
     }
 
     /// Sorts the cells along the longest edge: touching cells are near in this order.
     fn sort_along_element(&mut self, weights: &[f64; N]) {
-        let Self { cells, places, centres, .. } = self;
+        let Self { cells, halves, places, centres, order, keys, .. } = self;
         let Some(first) = cells.first() else { return };
         let edge = |i: usize| first.element.vertices[(i + 1) % N] - first.element.vertices[i];
         let longest =
             (1..N).fold(edge(0), |l, i| if edge(i).norm() > l.norm() { edge(i) } else { l });
         let direction = unit(longest);
         let place = |cell: &ElementCell<N, D>| cell.element.at(weights).dot(direction);
-        cells.sort_unstable_by(|a, b| place(a).total_cmp(&place(b)));
+        keys.clear();
+        keys.extend(cells.iter().map(place));
+        sort_all(order, keys);
+        halves.clear();
+        halves.extend(order.iter().map(|&i| cells[i as usize]));
+        std::mem::swap(cells, halves);
         places.clear();
         places.extend(cells.iter().map(place));
         centres.clear();
