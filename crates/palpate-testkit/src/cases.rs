@@ -47,11 +47,29 @@ pub fn check(
 /// As [`check`].
 pub fn numbered(
     count: u64,
+    property: impl FnMut(usize, &mut Unstructured<'_>) -> arbitrary::Result<Result<(), String>>,
+) {
+    run(self::count(count), property);
+}
+
+/// As [`check`], with no fewer seeds than `count`: for a test of how often something happens.
+///
+/// # Panics
+///
+/// As [`check`].
+pub fn in_full(
+    count: u64,
+    mut property: impl FnMut(&mut Unstructured<'_>) -> arbitrary::Result<Result<(), String>>,
+) {
+    run(self::count(count).max(count), |_, u| property(u));
+}
+
+fn run(
+    count: u64,
     mut property: impl FnMut(usize, &mut Unstructured<'_>) -> arbitrary::Result<Result<(), String>>,
 ) {
     let mut failures = Vec::new();
     let first = number_in("PALPATE_FIRST_SEED").unwrap_or(0);
-    let count = multiplied(count, number_in("PALPATE_SEEDS").unwrap_or(USUAL));
     for seed in first..first + count {
         let bytes = entropy(seed);
         let guard = Seed(seed);
@@ -144,6 +162,16 @@ pub fn each(
         Ok(Ok(()))
     });
     assert!(2 * drawn > tried, "only {drawn} of {tried} cases could be drawn");
+}
+
+/// How many seeds [`check`] takes where `usual` are asked for: what a test counts is compared with that.
+///
+/// # Panics
+///
+/// If `PALPATE_SEEDS` holds no positive number.
+#[must_use]
+pub fn count(usual: u64) -> u64 {
+    multiplied(usual, number_in("PALPATE_SEEDS").unwrap_or(USUAL))
 }
 
 fn multiplied(count: u64, factor: f64) -> u64 {

@@ -154,7 +154,8 @@ where
         let shape = entry.example().unwrap_or_else(|error| panic!("{}: {error}", entry.name));
         let half = SMALL * draw::size(&shape);
         let (mut asked, mut close) = (0, 0);
-        cases::check(200, |u| {
+        // A share of few cases says little.
+        cases::in_full(200, |u| {
             let mut p = draw::point(u, &shape)?;
             for _ in 0..4 {
                 let (f, g) = shape.distance_gradient(p);

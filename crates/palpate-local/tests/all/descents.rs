@@ -131,6 +131,7 @@ where
         }
         Ok(Ok(()))
     });
+    let count = cases::count(count);
     assert!(asked * 3 > count, "{asked} of {count} pairs were bounded");
 }
 

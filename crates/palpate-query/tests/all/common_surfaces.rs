@@ -117,6 +117,7 @@ where
             Err(format!("{answer:?} and {blind:?}: {first:?} {second:?} at {there:?}"))
         })
     });
+    let count = cases::count(count);
     assert!(asked * 3 > count && long * 20 > asked as usize, "{long} of {asked} were long");
 }
 

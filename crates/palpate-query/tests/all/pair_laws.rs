@@ -91,6 +91,7 @@ fn on_trees<const D: usize>(
         asked += 1;
         law(&mut Case { bodies, size, limits, answer, workspace: &mut workspace }, u)
     });
+    let count = cases::count(count);
     assert!(asked * 2 > count, "{asked} of {count} pairs were bounded");
 }
 

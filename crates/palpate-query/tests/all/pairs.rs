@@ -28,6 +28,7 @@ where
             spent += u64::from(stop.is_some_and(Stop::is_early));
         }))
     });
+    let count = cases::count(count);
     assert!(asked * 2 > count, "{asked} of {count} pairs were bounded");
     assert!(spent * 20 <= asked, "{spent} of {asked} searches spent their budget");
 }

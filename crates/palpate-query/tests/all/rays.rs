@@ -138,6 +138,7 @@ where
         let complaint = || format!("{answer:?} of {asked:?} should be {truth:?}: {shape:?}");
         Ok(if is_right { Ok(()) } else { Err(complaint()) })
     });
+    let count = cases::count(count);
     assert!(hits * 5 > count && free * 10 > count, "{hits} hits, {free} free of {count}");
 }
 

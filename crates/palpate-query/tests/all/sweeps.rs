@@ -202,6 +202,7 @@ where
             spent += u64::from(stop.is_some_and(Stop::is_early));
         }))
     });
+    let count = cases::count(count);
     assert!(asked * 2 > count, "{asked} of {count} pairs were bounded");
     assert!(spent * 12 <= asked, "{spent} of {asked} sweeps spent their budget");
 }
