@@ -32,8 +32,19 @@ pub(crate) fn test() -> Result<(), Failure> {
     run(pip(&python).arg(with_tests))?;
     // The version stays the same, so pip would keep the wheel of the last run.
     run(pip(&python).args(["--force-reinstall", "--no-deps"]).arg(&wheel))?;
+    check_workflows(&python)?;
     let mut pytest = Command::new(&python);
     run(pytest.args(["-m", "pytest", "-q"]).current_dir(&package))
+}
+
+/// Checks the workflows against the schema of their format.
+fn check_workflows(python: &Path) -> Result<(), Failure> {
+    run(pip(python).arg("check-jsonschema>=0.33,<1"))?;
+    let folder = root().join(".github").join("workflows");
+    let files = std::fs::read_dir(&folder).map_err(|error| failed(&folder, &error))?;
+    let mut check = Command::new(python);
+    check.args(["-m", "check_jsonschema", "--builtin-schema", "vendor.github-workflows"]);
+    run(check.args(files.filter_map(|entry| entry.ok().map(|entry| entry.path()))))
 }
 
 /// The interpreter of an environment with what builds wheels, made if it is not there.
@@ -43,7 +54,7 @@ fn environment() -> Result<PathBuf, Failure> {
     if !python.exists() {
         let own = ["python3", "python"].into_iter().find(|name| is_there(name));
         let own = own.ok_or_else(|| {
-            let by_hand = "the tests of the Python package need Python 3.11 or later: sudo apt-get install python3 python3-venv";
+            let by_hand = "the tests of the Python package need Python 3.10 or later: sudo apt-get install python3 python3-venv";
             Failure(by_hand.to_owned())
         })?;
         run(Command::new(own).args(["-m", "venv"]).arg(&folder))?;

@@ -61,6 +61,8 @@ impl<const D: usize> Body<D> {
 
     /// A body whose shape already includes the texture.
     fn of(shape: Shape<D>, surface: Surface<D>) -> Self {
+        // A tick allocates nothing.
+        shape.prepare();
         let identity = Pose::identity();
         let is_below_ball = !shape.promise().above_bounds;
         let rounding = shape.promise().rounding;

@@ -3,9 +3,11 @@
 
 //! The value of `rotation`: a quaternion, or the rows of a matrix.
 
+#[cfg(test)]
 use std::borrow::Cow;
 use std::fmt;
 
+#[cfg(test)]
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::{Deserializer, Error, SeqAccess, Visitor};
 use serde::{Deserialize, Serialize, Serializer};
@@ -17,6 +19,7 @@ pub(crate) enum Attitude {
     Rows(Vec<Vec<f64>>),
 }
 
+#[cfg(test)]
 impl JsonSchema for Attitude {
     fn schema_name() -> Cow<'static, str> {
         "Rotation".into()

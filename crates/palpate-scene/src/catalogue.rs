@@ -20,6 +20,7 @@ use crate::shape::WrittenShape;
 pub(crate) struct Signature {
     pub(crate) dimension: Dimension,
     pub(crate) name: &'static str,
+    #[cfg(test)]
     pub(crate) about: &'static str,
     pub(crate) parameters: &'static [Parameter],
     /// The other name of which this is.
@@ -28,8 +29,15 @@ pub(crate) struct Signature {
 
 impl Signature {
     fn of<const D: usize>(dimension: Dimension, entry: &Entry<D>) -> Self {
-        let Entry { name, about, parameters, .. } = *entry;
-        Self { dimension, name, about, parameters, alias: None }
+        let Entry { name, parameters, .. } = *entry;
+        Self {
+            dimension,
+            name,
+            #[cfg(test)]
+            about: entry.about,
+            parameters,
+            alias: None,
+        }
     }
 
     /// The parameter whose key in files is `key`: for an angle that with `_degrees`, or the

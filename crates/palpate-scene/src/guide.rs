@@ -5,6 +5,7 @@
 
 use palpate_field::{LARGEST_LENGTH, Point, Vector};
 use palpate_haptics::{Curve, Guide, GuideOptions, HapticsError, NumberError};
+#[cfg(test)]
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -13,6 +14,7 @@ use crate::error::SceneError;
 use crate::pose::{direction, position};
 use crate::problem::Problem;
 use crate::problems::Problems;
+#[cfg(test)]
 use crate::schema::VectorSchema;
 
 /// A force that guides the hand: towards a point, a line, a plane or a curve, or into a well.
@@ -30,13 +32,14 @@ use crate::schema::VectorSchema;
 /// # Ok(())
 /// # }
 /// ```
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(JsonSchema))]
 #[serde(deny_unknown_fields, default, expecting = "an object")]
-#[schemars(rename = "Guide")]
-#[schemars(extend("oneOf" = [
+#[cfg_attr(test, schemars(rename = "Guide"))]
+#[cfg_attr(test, schemars(extend("oneOf" = [
     { "required": ["point"] }, { "required": ["line"] }, { "required": ["segment"] },
     { "required": ["plane"] }, { "required": ["curve"] }, { "required": ["well"] },
-]))]
+])))]
 #[non_exhaustive]
 pub struct WrittenGuide {
     /// A note for readers of the file.
@@ -44,7 +47,7 @@ pub struct WrittenGuide {
     pub description: Option<String>,
     /// The point that attracts the hand [m].
     #[serde(skip_serializing_if = "Option::is_none")]
-    #[schemars(with = "Option<VectorSchema>")]
+    #[cfg_attr(test, schemars(with = "Option<VectorSchema>"))]
     pub point: Option<Vec<f64>>,
     /// The endless line that attracts the hand.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -62,22 +65,22 @@ pub struct WrittenGuide {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub well: Option<GuideWell>,
     /// Force for each metre off the guide [N/m]; 300 if left out.
-    #[schemars(extend("exclusiveMinimum" = 0))]
+    #[cfg_attr(test, schemars(extend("exclusiveMinimum" = 0)))]
     pub stiffness: f64,
     /// Force for each metre per second off the guide [N·s/m]; 1 if left out.
-    #[schemars(range(min = 0.0))]
+    #[cfg_attr(test, schemars(range(min = 0.0)))]
     pub damping: f64,
     /// How near the hand must come before the guide takes hold [m]; any distance if left out.
     #[serde(skip_serializing_if = "Option::is_none")]
-    #[schemars(extend("exclusiveMinimum" = 0))]
+    #[cfg_attr(test, schemars(extend("exclusiveMinimum" = 0)))]
     pub snap_distance: Option<f64>,
     /// How far the hand must be pulled before the guide lets go [m], at least the snap
     /// distance; that if left out.
     #[serde(skip_serializing_if = "Option::is_none")]
-    #[schemars(extend("exclusiveMinimum" = 0))]
+    #[cfg_attr(test, schemars(extend("exclusiveMinimum" = 0)))]
     pub release_distance: Option<f64>,
     /// The greatest force [N]; 2 if left out.
-    #[schemars(extend("exclusiveMinimum" = 0))]
+    #[cfg_attr(test, schemars(extend("exclusiveMinimum" = 0)))]
     pub max_force: f64,
 }
 
@@ -101,59 +104,63 @@ impl Default for WrittenGuide {
 }
 
 /// An endless line.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(JsonSchema))]
 #[serde(deny_unknown_fields, expecting = "an object")]
 pub struct GuideLine {
     /// A note for readers of the file.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub description: Option<String>,
     /// A point on it [m].
-    #[schemars(with = "VectorSchema")]
+    #[cfg_attr(test, schemars(with = "VectorSchema"))]
     pub through: Vec<f64>,
     /// Its direction, of any length but zero.
-    #[schemars(with = "VectorSchema")]
+    #[cfg_attr(test, schemars(with = "VectorSchema"))]
     pub direction: Vec<f64>,
 }
 
 /// A segment between two points.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(JsonSchema))]
 #[serde(deny_unknown_fields, expecting = "an object")]
 pub struct GuideSegment {
     /// A note for readers of the file.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub description: Option<String>,
     /// Where it begins [m].
-    #[schemars(with = "VectorSchema")]
+    #[cfg_attr(test, schemars(with = "VectorSchema"))]
     pub from: Vec<f64>,
     /// Where it ends [m].
-    #[schemars(with = "VectorSchema")]
+    #[cfg_attr(test, schemars(with = "VectorSchema"))]
     pub to: Vec<f64>,
 }
 
 /// A plane; in 2D a line.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(JsonSchema))]
 #[serde(deny_unknown_fields, expecting = "an object")]
 pub struct GuidePlane {
     /// A note for readers of the file.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub description: Option<String>,
     /// A point on it [m].
-    #[schemars(with = "VectorSchema")]
+    #[cfg_attr(test, schemars(with = "VectorSchema"))]
     pub through: Vec<f64>,
     /// Its normal, of any length but zero.
-    #[schemars(with = "VectorSchema")]
+    #[cfg_attr(test, schemars(with = "VectorSchema"))]
     pub normal: Vec<f64>,
 }
 
 /// A curve through points.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(JsonSchema))]
 #[serde(deny_unknown_fields, expecting = "an object")]
 pub struct GuideCurve {
     /// A note for readers of the file.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub description: Option<String>,
     /// The points, in order [m]; each unlike the one before, at most 1025, or 65 if smooth.
-    #[schemars(with = "Vec<VectorSchema>", length(min = 2, max = 1025))]
+    #[cfg_attr(test, schemars(with = "Vec<VectorSchema>", length(min = 2, max = 1025)))]
     pub points: Vec<Vec<f64>>,
     /// Smooth through the points (Catmull and Rom 1974) instead of straight between them.
     #[serde(default, skip_serializing_if = "crate::check::is_default")]
@@ -161,17 +168,18 @@ pub struct GuideCurve {
 }
 
 /// A pull towards a centre that rises to the greatest force and falls to nothing.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(JsonSchema))]
 #[serde(deny_unknown_fields, expecting = "an object")]
 pub struct GuideWell {
     /// A note for readers of the file.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub description: Option<String>,
     /// Its centre [m].
-    #[schemars(with = "VectorSchema")]
+    #[cfg_attr(test, schemars(with = "VectorSchema"))]
     pub center: Vec<f64>,
     /// How far it reaches [m]: farther than `max_force / stiffness`.
-    #[schemars(extend("exclusiveMinimum" = 0))]
+    #[cfg_attr(test, schemars(extend("exclusiveMinimum" = 0)))]
     pub reach: f64,
 }
 

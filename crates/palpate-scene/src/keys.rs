@@ -139,6 +139,7 @@ pub(crate) const AXES: [&str; 3] = ["x", "y", "z"];
 pub(crate) const SMOOTH: [&str; 3] = [SMOOTH_UNION, SMOOTH_INTERSECTION, SMOOTH_DIFFERENCE];
 
 /// The lists of two.
+#[cfg(test)]
 pub(crate) const PAIRS: [&str; 2] = [DISPLACE, MORPH];
 
 /// The keys of numbers that go with lists: which, whether the lists need them, and what

@@ -3,6 +3,7 @@
 
 //! Motions of bodies.
 
+#[cfg(test)]
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -26,7 +27,8 @@ use crate::problems::Problems;
 /// # Ok(())
 /// # }
 /// ```
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(JsonSchema))]
 #[serde(deny_unknown_fields, expecting = "an object")]
 #[non_exhaustive]
 pub struct Motion {
@@ -42,11 +44,11 @@ pub struct Motion {
     pub to: WrittenPose,
     /// When it begins [s]; 0 if left out.
     #[serde(default, skip_serializing_if = "crate::check::is_default")]
-    #[schemars(range(min = 0.0))]
+    #[cfg_attr(test, schemars(range(min = 0.0)))]
     pub start: f64,
     /// How long it takes [s]; 1 if left out.
     #[serde(default = "one_second")]
-    #[schemars(extend("exclusiveMinimum" = 0))]
+    #[cfg_attr(test, schemars(extend("exclusiveMinimum" = 0)))]
     pub duration: f64,
     /// Whole turns added to the rotation in its direction, against it if negative; 0 if left out.
     #[serde(default, skip_serializing_if = "crate::check::is_default")]
@@ -78,11 +80,10 @@ fn one_second() -> f64 {
 }
 
 /// What happens at the end of a motion.
-#[derive(
-    Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema,
-)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[cfg_attr(test, derive(JsonSchema))]
 #[serde(rename_all = "snake_case")]
-#[schemars(inline)]
+#[cfg_attr(test, schemars(inline))]
 pub enum Repeat {
     /// The body stays there.
     #[default]

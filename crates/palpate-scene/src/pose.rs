@@ -6,6 +6,7 @@
 use std::fmt;
 
 use palpate_field::{Pose, Rotation, ShapeError, Unit, Vector};
+#[cfg(test)]
 use schemars::JsonSchema;
 use serde::de::value::MapAccessDeserializer;
 use serde::de::{Deserializer, MapAccess, Visitor};
@@ -14,6 +15,7 @@ use serde::{Deserialize, Serialize, Serializer};
 pub(crate) use crate::attitude::Attitude;
 use crate::problem::Problem;
 use crate::problems::Problems;
+#[cfg(test)]
 use crate::schema::{TurnSchema, VectorSchema};
 
 /// A rotation and then a translation, as a file gives them.
@@ -56,7 +58,8 @@ pub enum WrittenRotation {
 }
 
 /// A rotation about an axis.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(JsonSchema))]
 #[serde(deny_unknown_fields, expecting = "an object")]
 pub struct AxisAngle {
     /// A note for readers of the file.
@@ -77,17 +80,18 @@ impl AxisAngle {
 }
 
 /// A rotation and then a translation.
-#[derive(Serialize, Deserialize, JsonSchema)]
+#[derive(Serialize, Deserialize)]
+#[cfg_attr(test, derive(JsonSchema))]
 #[serde(deny_unknown_fields, expecting = "an object")]
-#[schemars(rename = "Pose")]
-#[schemars(extend("not" = { "required": ["rotate_degrees", "rotation"] }))]
+#[cfg_attr(test, schemars(rename = "Pose"))]
+#[cfg_attr(test, schemars(extend("not" = { "required": ["rotate_degrees", "rotation"] })))]
 struct PoseFile {
     /// A note for readers of the file.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     description: Option<String>,
     /// The translation, applied second [m].
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schemars(with = "Option<VectorSchema>")]
+    #[cfg_attr(test, schemars(with = "Option<VectorSchema>"))]
     translation: Option<Vec<f64>>,
     /// The rotation, applied first: degrees in the plane, axis and angle in
     /// space.
@@ -99,6 +103,7 @@ struct PoseFile {
     rotation: Option<Attitude>,
 }
 
+#[cfg(test)]
 impl JsonSchema for WrittenPose {
     fn schema_name() -> std::borrow::Cow<'static, str> {
         PoseFile::schema_name()
@@ -116,6 +121,7 @@ pub(crate) enum Turn {
     AxisAngle(AxisAngle),
 }
 
+#[cfg(test)]
 impl JsonSchema for Turn {
     fn schema_name() -> std::borrow::Cow<'static, str> {
         TurnSchema::schema_name()

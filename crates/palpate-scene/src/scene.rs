@@ -7,6 +7,7 @@ use std::fmt;
 use std::path::Path;
 
 use indexmap::IndexMap;
+#[cfg(test)]
 use schemars::JsonSchema;
 use serde::de::{Deserializer, Unexpected, Visitor};
 use serde::{Deserialize, Serialize, Serializer};
@@ -71,24 +72,25 @@ impl fmt::Display for Dimension {
 /// # Ok(())
 /// # }
 /// ```
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(JsonSchema))]
 #[serde(deny_unknown_fields, expecting = "an object")]
 #[non_exhaustive]
 pub struct Scene {
     /// The version of the format: 1.
     palpate: Version,
     /// 2 for the plane, 3 for space.
-    #[schemars(schema_with = "crate::schema::dimension")]
+    #[cfg_attr(test, schemars(schema_with = "crate::schema::dimension"))]
     dimension: Dimension,
     /// A note for readers of the file.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub description: Option<String>,
     /// Shapes that have a name, which any shape may refer to.
     #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
-    #[schemars(schema_with = "crate::schema::named_shapes")]
+    #[cfg_attr(test, schemars(schema_with = "crate::schema::named_shapes"))]
     pub shapes: IndexMap<String, WrittenShape>,
     /// The bodies to be touched; at least one.
-    #[schemars(length(min = 1))]
+    #[cfg_attr(test, schemars(length(min = 1)))]
     pub bodies: Vec<WrittenBody>,
     /// The tool that touches them: the tip of a stylus, fingers, or a shape held in the hand.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -104,18 +106,19 @@ pub struct Scene {
     pub views: Vec<View>,
     /// What it uses beside its text.
     #[serde(skip)]
-    #[schemars(skip)]
+    #[cfg_attr(test, schemars(skip))]
     pub resources: Resources,
 }
 
 /// A body: a shape with its pose in the world and its material.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(JsonSchema))]
 #[serde(deny_unknown_fields, expecting = "an object")]
-#[schemars(rename = "Body")]
+#[cfg_attr(test, schemars(rename = "Body"))]
 #[non_exhaustive]
 pub struct WrittenBody {
     /// The name, unlike that of any other body.
-    #[schemars(length(min = 1))]
+    #[cfg_attr(test, schemars(length(min = 1)))]
     pub name: String,
     /// A note for readers of the file.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -127,7 +130,7 @@ pub struct WrittenBody {
     pub pose: Option<WrittenPose>,
     /// The material, in numbers or as the name of a preset; the default material if left out.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schemars(schema_with = "crate::schema::material")]
+    #[cfg_attr(test, schemars(schema_with = "crate::schema::material"))]
     pub material: Option<WrittenMaterial>,
 }
 
@@ -265,6 +268,7 @@ impl Scene {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Version;
 
+#[cfg(test)]
 impl JsonSchema for Version {
     fn schema_name() -> std::borrow::Cow<'static, str> {
         "Version".into()

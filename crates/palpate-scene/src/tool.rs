@@ -6,6 +6,7 @@
 use palpate_field::LARGEST_LENGTH;
 use palpate_haptics::{Acceptance, Probe, ToolOptions};
 use palpate_vibration::{ACTUATORS, Actuator, actuator_named};
+#[cfg(test)]
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -14,6 +15,7 @@ use crate::names::unknown as unknown_name;
 use crate::pose::WrittenPose;
 use crate::problem::Problem;
 use crate::problems::Problems;
+#[cfg(test)]
 use crate::schema::{ActuatorSchema, VectorSchema};
 use crate::shape::WrittenShape;
 
@@ -33,9 +35,10 @@ use crate::shape::WrittenShape;
 /// # Ok(())
 /// # }
 /// ```
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(JsonSchema))]
 #[serde(deny_unknown_fields, default, expecting = "an object")]
-#[schemars(rename = "Tool")]
+#[cfg_attr(test, schemars(rename = "Tool"))]
 #[non_exhaustive]
 pub struct WrittenTool {
     /// A note for readers of the file.
@@ -44,12 +47,12 @@ pub struct WrittenTool {
     /// The radius of each contact point [m]; if left out, 0 with `points` or a `shape`, else that of
     /// a hand without a tool, 2 mm.
     #[serde(skip_serializing_if = "Option::is_none")]
-    #[schemars(range(min = 0.0))]
+    #[cfg_attr(test, schemars(range(min = 0.0)))]
     pub radius: Option<f64>,
     /// The contact points in the tool's own coordinates [m]; one at its origin
     /// if left out.
     #[serde(skip_serializing_if = "Vec::is_empty")]
-    #[schemars(with = "Vec<VectorSchema>")]
+    #[cfg_attr(test, schemars(with = "Vec<VectorSchema>"))]
     pub points: Vec<Vec<f64>>,
     /// The shape of the tool in its own coordinates, instead of points.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -62,7 +65,7 @@ pub struct WrittenTool {
     pub workspace: Option<WrittenWorkspace>,
     /// The greatest force on the hand [N]; the device's own limit if left out.
     #[serde(skip_serializing_if = "Option::is_none")]
-    #[schemars(extend("exclusiveMinimum" = 0))]
+    #[cfg_attr(test, schemars(extend("exclusiveMinimum" = 0)))]
     pub max_force: Option<f64>,
     /// What a device renders of materials; `device` if left out.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -70,15 +73,16 @@ pub struct WrittenTool {
     /// What shakes each contact point, by its name in `palpate devices --actuators`; an actuator
     /// that plays every frequency if left out.
     #[serde(skip_serializing_if = "Option::is_none")]
-    #[schemars(with = "ActuatorSchema")]
+    #[cfg_attr(test, schemars(with = "ActuatorSchema"))]
     pub actuator: Option<String>,
 }
 
 /// What a device renders of materials, as
 /// [`Acceptance`](palpate_haptics::Acceptance) says.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(JsonSchema))]
 #[serde(rename_all = "snake_case")]
-#[schemars(rename = "Acceptance", inline)]
+#[cfg_attr(test, schemars(rename = "Acceptance", inline))]
 pub enum WrittenAcceptance {
     /// What needs no passivity controller in any hand.
     Passive,
@@ -100,9 +104,10 @@ impl From<WrittenAcceptance> for Acceptance {
 
 /// A virtual coupling: the spring and damper between the hand and a tool with a
 /// shape (Colgate, Stanley and Brown 1995). The engine derives missing values from the device.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(JsonSchema))]
 #[serde(deny_unknown_fields, default, expecting = "an object")]
-#[schemars(rename = "Coupling")]
+#[cfg_attr(test, schemars(rename = "Coupling"))]
 #[non_exhaustive]
 pub struct WrittenCoupling {
     /// A note for readers of the file.
@@ -110,33 +115,34 @@ pub struct WrittenCoupling {
     pub description: Option<String>,
     /// Force for each metre apart [N/m].
     #[serde(skip_serializing_if = "Option::is_none")]
-    #[schemars(extend("exclusiveMinimum" = 0))]
+    #[cfg_attr(test, schemars(extend("exclusiveMinimum" = 0)))]
     pub stiffness: Option<f64>,
     /// Force for each metre per second [N·s/m].
     #[serde(skip_serializing_if = "Option::is_none")]
-    #[schemars(range(min = 0.0))]
+    #[cfg_attr(test, schemars(range(min = 0.0)))]
     pub damping: Option<f64>,
     /// Torque for each radian apart [N·m/rad].
     #[serde(skip_serializing_if = "Option::is_none")]
-    #[schemars(extend("exclusiveMinimum" = 0))]
+    #[cfg_attr(test, schemars(extend("exclusiveMinimum" = 0)))]
     pub angular_stiffness: Option<f64>,
     /// Torque for each radian per second [N·m·s/rad].
     #[serde(skip_serializing_if = "Option::is_none")]
-    #[schemars(range(min = 0.0))]
+    #[cfg_attr(test, schemars(range(min = 0.0)))]
     pub angular_damping: Option<f64>,
 }
 
 /// The map from the device's space to the world: scaled, rotated, then translated.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(JsonSchema))]
 #[serde(deny_unknown_fields, default, expecting = "an object")]
-#[schemars(rename = "Workspace")]
+#[cfg_attr(test, schemars(rename = "Workspace"))]
 #[non_exhaustive]
 pub struct WrittenWorkspace {
     /// A note for readers of the file.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub description: Option<String>,
     /// Metres in the world for each metre of the device; 1 if left out.
-    #[schemars(extend("exclusiveMinimum" = 0))]
+    #[cfg_attr(test, schemars(extend("exclusiveMinimum" = 0)))]
     pub scale: f64,
     /// The device's axes and origin in the world, `world_from_device`; those of
     /// the world if left out.

@@ -6,6 +6,7 @@
 use std::fmt;
 
 use palpate_field::{LARGEST_LENGTH, Vector};
+#[cfg(test)]
 use schemars::JsonSchema;
 use serde::de::value::{MapAccessDeserializer, StrDeserializer};
 use serde::de::{Deserializer, Error, IntoDeserializer, MapAccess, Visitor};
@@ -28,19 +29,20 @@ use crate::problems::Problems;
 /// # Ok(())
 /// # }
 /// ```
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(JsonSchema))]
 #[serde(deny_unknown_fields, expecting = "an object")]
 #[non_exhaustive]
 pub struct View {
     /// The name, unlike that of any other view.
-    #[schemars(length(min = 1))]
+    #[cfg_attr(test, schemars(length(min = 1)))]
     pub name: String,
     /// A note for readers of the file.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub description: Option<String>,
     /// The plane, in space alone; `"xy"` if left out.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schemars(schema_with = "crate::schema::plane")]
+    #[cfg_attr(test, schemars(schema_with = "crate::schema::plane"))]
     pub plane: Option<ViewPlane>,
     /// The third coordinate of a plane along two axes [m]; 0 if left out.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -50,15 +52,15 @@ pub struct View {
     pub center: Option<[f64; 2]>,
     /// The width of the window [m].
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schemars(extend("exclusiveMinimum" = 0))]
+    #[cfg_attr(test, schemars(extend("exclusiveMinimum" = 0)))]
     pub width: Option<f64>,
     /// The height of the window [m].
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schemars(extend("exclusiveMinimum" = 0))]
+    #[cfg_attr(test, schemars(extend("exclusiveMinimum" = 0)))]
     pub height: Option<f64>,
     /// The distance from isoline to isoline [m].
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schemars(extend("exclusiveMinimum" = 0))]
+    #[cfg_attr(test, schemars(extend("exclusiveMinimum" = 0)))]
     pub spacing: Option<f64>,
 }
 
@@ -94,9 +96,10 @@ pub enum ViewPlane {
 
 /// A plane by a point and two directions, made square to each other by turning
 /// the second.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(JsonSchema))]
 #[serde(deny_unknown_fields, expecting = "an object")]
-#[schemars(inline)]
+#[cfg_attr(test, schemars(inline))]
 pub struct FreePlane {
     /// A note for readers of the file.
     #[serde(default, skip_serializing_if = "Option::is_none")]

@@ -21,7 +21,9 @@ import hashlib
 import json
 import math
 import operator
+import sys
 import time
+import warnings
 from collections.abc import Callable, Iterator
 from concurrent.futures import FIRST_COMPLETED, Executor, Future, ThreadPoolExecutor, wait
 from dataclasses import dataclass
@@ -291,6 +293,14 @@ def _job(folder: str, digest: str) -> dict[str, Any]:
     return dict(job)
 
 
+def _note(error: BaseException, text: str) -> None:
+    """Adds a note, which Python 3.10 shows as a warning."""
+    if sys.version_info >= (3, 11):
+        error.add_note(text)
+    else:
+        warnings.warn(text, stacklevel=3)
+
+
 def _work(folder: str, digest: str, source: Any, start: int, stop: int) -> tuple[int, float, int]:
     """Answers a chunk and writes it whole; in a worker."""
     import io
@@ -302,7 +312,7 @@ def _work(folder: str, digest: str, source: Any, start: int, stop: int) -> tuple
     try:
         columns = _columns(_job(folder, digest), _rows(source, start, stop))
     except Exception as error:
-        error.add_note(f"in the chunk of rows {start} to {stop}, which are counted from 0 within it")
+        _note(error, f"in the chunk of rows {start} to {stop}, which are counted from 0 within it")
         raise
     table = pa.table(columns).replace_schema_metadata(_mark(digest, start))
     out = io.BytesIO()
@@ -426,7 +436,7 @@ def _run(
             if progress:
                 progress(done, rows)
     except BaseException as stopped:
-        stopped.add_note(f"{place} keeps {done} of {rows} rows: the same call goes on from there")
+        _note(stopped, f"{place} keeps {done} of {rows} rows: the same call goes on from there")
         raise
     finally:
         if own:

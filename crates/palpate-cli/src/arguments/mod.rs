@@ -62,7 +62,7 @@ Exit status: 0 if the answer is yes, 1 if it is no, 2 if the input cannot be use
 
 /// Signed distance functions that can be touched.
 #[derive(Debug, Parser)]
-#[command(name = "palpate", version, after_help = EXAMPLES)]
+#[command(name = "palpate", version = env!("PALPATE_VERSION"), after_help = EXAMPLES)]
 pub(crate) struct Arguments {
     #[command(subcommand)]
     pub(crate) command: Option<Command>,

@@ -20,20 +20,8 @@ use crate::pose::AxisAngle;
 use crate::scene::{Dimension, Scene};
 use crate::shape::WrittenShape;
 
-/// The JSON Schema of scene files, in draft 2020-12: for editors, and for
-/// programs that write scenes.
-///
-/// A file that the schema refuses is refused by [`Scene::from_json`] too. Rules
-/// that a schema cannot express are checked there alone: cycles of references, names that must
-/// be known or unique, and rules that compare two numbers.
-///
-/// ```
-/// let schema = palpate_scene::schema();
-/// assert_eq!(schema["properties"]["palpate"]["const"], 1);
-/// assert!(schema["$defs"]["space"]["Shape"]["properties"]["ball"].is_object());
-/// ```
-#[must_use]
-pub fn schema() -> Value {
+/// The schema, generated.
+pub(super) fn schema() -> Value {
     let mut definitions = Map::new();
     for dimension in [Dimension::Two, Dimension::Three] {
         definitions.insert(place(dimension).to_owned(), definitions_of(dimension));
@@ -57,17 +45,6 @@ pub fn schema() -> Value {
         "else": scene(Dimension::Three),
         "$defs": definitions,
     })
-}
-
-/// The text of [`schema`], as it is kept in `schema/scene.schema.json`.
-///
-/// ```
-/// let text = palpate_scene::schema_text();
-/// assert!(text.starts_with("{\n  \"$schema\": \"https://json-schema.org/draft/2020-12/schema\""));
-/// ```
-#[must_use]
-pub fn schema_text() -> String {
-    crate::json::write(&schema())
 }
 
 /// What the definitions of a dimension are under.
@@ -224,4 +201,21 @@ pub(crate) fn material(generator: &mut SchemaGenerator) -> Schema {
     let own = generator.subschema_for::<palpate_haptics::Material>();
     let names: Vec<_> = palpate_haptics::Material::preset_names().collect();
     json_schema!({ "anyOf": [{ "enum": names }, own] })
+}
+
+/// Set to write the schema instead of comparing it.
+const UPDATE: &str = "PALPATE_UPDATE_SCHEMA";
+
+#[test]
+fn the_committed_schema_is_the_generated_one() {
+    let text = crate::json::write(&schema());
+    if std::env::var_os(UPDATE).is_some() {
+        let path = concat!(env!("CARGO_MANIFEST_DIR"), "/schema/scene.schema.json");
+        std::fs::write(path, text).unwrap();
+        return;
+    }
+    assert!(
+        text == super::schema_text(),
+        "schema/scene.schema.json is stale; run the test again with {UPDATE}=1"
+    );
 }

@@ -1,0 +1,42 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! Tells the program its version, with the commit where it is known: from `PALPATE_COMMIT`, or in a
+//! release build from git.
+
+use std::env::var;
+use std::path::Path;
+use std::process::Command;
+
+fn main() {
+    println!("cargo::rerun-if-env-changed=PALPATE_COMMIT");
+    // Other builds are not made again after each commit.
+    let is_release = var("PROFILE").is_ok_and(|profile| profile == "release");
+    let of_git = || is_release.then(commit).flatten();
+    let mut version = env!("CARGO_PKG_VERSION").to_owned();
+    if let Some(commit) = var("PALPATE_COMMIT").ok().or_else(of_git) {
+        version += &format!(" ({commit})");
+    }
+    println!("cargo::rustc-env=PALPATE_VERSION={version}");
+}
+
+/// The commit that is checked out, if this file is one of its files.
+fn commit() -> Option<String> {
+    // A copy of this package may be in the repository of another project.
+    git(&["ls-files", "--error-unmatch", "build.rs"])?;
+    let folder = git(&["rev-parse", "--absolute-git-dir"])?;
+    for file in ["HEAD", "logs/HEAD"] {
+        let path = Path::new(&folder).join(file);
+        if path.exists() {
+            println!("cargo::rerun-if-changed={}", path.display());
+        }
+    }
+    git(&["rev-parse", "--short=12", "HEAD"])
+}
+
+fn git(arguments: &[&str]) -> Option<String> {
+    let output = Command::new("git").args(arguments).output().ok()?;
+    let said =
+        output.status.success().then(|| String::from_utf8(output.stdout).ok()).flatten()?;
+    Some(said.trim().to_owned())
+}
