@@ -42,8 +42,7 @@ const MOST_REFINED: f64 = 4.0;
 /// Tries end when cells this many times as large fail.
 const MOST_APART: f64 = 1.5;
 
-/// A deviation of so much of a cell is not looked at more closely where the size of the cells is given: to halve it takes
-/// twice as long as all else.
+/// Where the size of cells is given, a deviation of so much of a cell is not looked at more closely: that takes long.
 const ENOUGH: f64 = 0.25;
 
 /// How far a grid is made.
@@ -68,11 +67,11 @@ impl<const D: usize> Grid<D> {
         Self::bake_with(shape, options, &|_| ControlFlow::Continue(()))
     }
 
-    /// The grid of a shape. `progress` is called by the threads that work, and can stop them.
+    /// As [`bake`](Self::bake). `progress` is called by the threads that work, and can stop them.
     ///
     /// # Errors
     ///
-    /// As [`bake`](Self::bake), and if `progress` breaks.
+    /// Also if `progress` breaks.
     #[inline(never)]
     pub fn bake_with(
         shape: &Shape<D>,
@@ -104,8 +103,7 @@ impl<const D: usize> Grid<D> {
             Resolution::Cell(cell) => return bake_as(cell, options),
             Resolution::Tolerance(tolerance) => tolerance,
         };
-        // Samples far from the surface change no deviation in single precision, so tries use a band. The steps of
-        // whole numbers grow with the largest sample, so tries keep all.
+        // Far samples change no deviation in f32, so tries use a band; steps of whole numbers grow with the largest.
         let tried = match options.store {
             Store::F32 => options.with_narrow_band::<D>(source.promise().lipschitz),
             Store::I16 | Store::I8 => options.clone(),
@@ -585,8 +583,7 @@ fn distances<const D: usize>(
     at: impl Fn(usize) -> Point<D>,
 ) -> Result<Vec<f64>, GridError> {
     let mut samples = Vec::with_capacity(count);
-    let (mut points, mut values) =
-        (Block::<f64, D, BLOCK>::zero(), Column::<f64, BLOCK>::zero());
+    let (mut points, mut values) = (Block::zero(), Column::zero());
     for first in (0..count).step_by(BLOCK) {
         let lanes = BLOCK.min(count - first);
         points.fill(lanes, |i| at(first + i));
