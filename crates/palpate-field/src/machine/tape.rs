@@ -14,6 +14,7 @@ mod interpreter;
 use std::sync::Arc;
 
 use super::block::{Column, Rows, RowsMut, filled};
+#[cfg(target_arch = "x86_64")]
 use super::instruction_set::InstructionSet;
 use super::lanes::{Lane, LaneArray};
 use crate::field::Asked;
