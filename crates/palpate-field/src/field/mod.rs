@@ -19,10 +19,10 @@
 //! | cells of three parameters | compiled loops | a tape |
 //! | cells of four parameters | a tape | a tape |
 //!
-//! A tape is recorded from the formula when it is first asked. Fields that no tape has the operations
-//! of answer themselves on each road: a [`CustomField`], a union of more than 16 members, which
-//! skips most of them, and for cells a kernel with the tangent rule. Points in single precision are
-//! answered by `f64`, rounded once.
+//! The first question that needs a tape records it. Some fields answer themselves on each road, since
+//! their operations are on no tape: a [`CustomField`], and a union of more than 16 members, which skips
+//! most of them. A kernel with the tangent rule answers cells itself. An answer in single precision is
+//! that in double precision, rounded once.
 
 mod combine;
 mod custom;
@@ -158,7 +158,7 @@ pub trait Field<const D: usize>: Debug + Send + Sync {
     }
 }
 
-/// Models of a field that no tape has the operations of: they are the same on every machine.
+/// The models of a field whose operations are on no tape. They are the same on every machine.
 pub trait OwnModels<const D: usize> {
     /// Bounds over boxes in space or in the plane.
     fn models(&self, p: &Block<Model, D>, count: usize, out: &mut Column<Model>);

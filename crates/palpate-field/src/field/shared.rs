@@ -71,8 +71,8 @@ impl<const D: usize> SharedField<D> {
         Arc::ptr_eq(&self.0, &other.0)
     }
 
-    /// Records the tapes that blocks of this machine need, which their first evaluation would
-    /// otherwise do: a servo may not allocate.
+    /// Records the tapes that blocks need on this machine. Otherwise the first evaluation records them,
+    /// and a servo may not allocate.
     pub fn prepare(&self) {
         if InstructionSet::in_use().has_loops() {
             return;
@@ -86,7 +86,7 @@ impl<const D: usize> SharedField<D> {
         self.members().unwrap_or_default().iter().for_each(Self::prepare);
     }
 
-    /// The formula of the field at `p`. A tape asks a field itself that it has not the operations of.
+    /// The formula of the field at `p`. A tape asks a field whose operations it does not have.
     pub(crate) fn record(&self, p: Vector<Recorded, D>) -> Option<Recorded> {
         let field = &**self;
         let answers_itself = match Recorded::purpose() {

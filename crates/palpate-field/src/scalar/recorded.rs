@@ -50,12 +50,12 @@ impl Recorded {
         GRAPH.with_borrow(|graph| graph.purpose)
     }
 
-    /// The answer of a field that no tape has the operations of.
+    /// The answer of a field whose operations are on no tape.
     pub(crate) fn asked<const D: usize>(field: Arc<dyn Asked>, p: Vector<Self, D>) -> Self {
         Self::add_recipe(Recipe::Ask(field), &p.0)
     }
 
-    /// In a tape of models, the formula or its bound by the steepness at `p`, whichever says more.
+    /// For a tape of models, records the choice between the formula and its bound by the steepness at `p`.
     pub(crate) fn or_by_steepness<const D: usize>(
         self,
         p: Vector<Self, D>,
@@ -133,7 +133,7 @@ impl Neg for Recorded {
 }
 
 impl Scalar for Recorded {
-    /// That of the numbers in which the formula will be evaluated.
+    /// The epsilon of single precision for a shader, else that of double precision.
     #[inline(never)]
     fn epsilon() -> f64 {
         match Self::purpose() {

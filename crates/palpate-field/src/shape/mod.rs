@@ -257,8 +257,8 @@ impl<const D: usize> Shape<D> {
         self.field.gradients(points, count, out);
     }
 
-    /// Makes ready what the first answers of blocks would allocate. A servo, which may not allocate, is
-    /// handed shapes that are prepared. On machines with AVX2 there is nothing to do.
+    /// Allocates now what the first answers of blocks would allocate. A servo may not allocate, so its
+    /// bodies prepare their shapes. On machines with AVX2 there is nothing to do.
     pub fn prepare(&self) {
         self.field.prepare();
     }
