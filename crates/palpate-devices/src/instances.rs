@@ -2,21 +2,12 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
 //! Compiles devices and hands in this crate, for the plane and for space.
-//!
-//! A generic function is compiled again in every crate that calls it. One that is marked
-//! `#[inline(never)]` is not, if a crate below has compiled it for the same numbers.
+//! [`compile`] says why.
 
-use std::hint::black_box;
-
+use palpate_field::compile;
 use palpate_haptics::Device;
 
 use crate::{Glove, HandPath, RecordedDevice, SimulatedDevice, SteeredDevice, Tour, identify};
-
-macro_rules! compile {
-    ($($function:expr),* $(,)?) => {
-        $(black_box($function as *const ());)*
-    };
-}
 
 fn in_dimension<const D: usize>() {
     compile![

@@ -34,6 +34,7 @@
 
 mod bounds;
 pub mod catalogue;
+mod compile;
 mod convert;
 mod error;
 pub mod field;

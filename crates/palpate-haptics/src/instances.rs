@@ -2,23 +2,15 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
 //! Compiles servos, proxies and tools in this crate, for the plane and for space.
-//!
-//! A generic function is compiled again in every crate that calls it. One that is marked
-//! `#[inline(never)]` is not, if a crate below has compiled it for the same numbers.
+//! [`compile`] says why.
 
-use std::hint::black_box;
+use palpate_field::compile;
 
 use crate::servo::Renderer;
 use crate::{
     Bodies, Body, Control, Curve, Guide, Nearby, Protection, Proxy, Servo, Shell, Tool,
     UnprotectedServo,
 };
-
-macro_rules! compile {
-    ($($function:expr),* $(,)?) => {
-        $(black_box($function as *const ());)*
-    };
-}
 
 fn in_dimension<const D: usize>() {
     compile![

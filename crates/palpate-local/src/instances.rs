@@ -2,19 +2,11 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
 //! Compiles local methods in this crate, for the plane and for space.
-//!
-//! A generic function is compiled again in every crate that calls it. One that is marked
-//! `#[inline(never)]` is not, if a crate below has compiled it for the same numbers.
+//! [`compile`] says why.
 
-use std::hint::black_box;
+use palpate_field::compile;
 
 use crate::ElementMethod;
-
-macro_rules! compile {
-    ($($function:expr),* $(,)?) => {
-        $(black_box($function as *const ());)*
-    };
-}
 
 /// Compiles methods for elements with `N` corners in `D` dimensions.
 fn of_elements<const N: usize, const D: usize>() {

@@ -2,21 +2,12 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
 //! Compiles meshes in this crate, for the plane and for space.
-//!
-//! A generic function is compiled again in every crate that calls it. One that is marked
-//! `#[inline(never)]` is not, if a crate below has compiled it for the same numbers.
-
-use std::hint::black_box;
+//! [`compile`] says why.
 
 use palpate_field::Shape;
+use palpate_field::compile;
 
 use crate::{Mesh, Sheet, Solid};
-
-macro_rules! compile {
-    ($($function:expr),* $(,)?) => {
-        $(black_box($function as *const ());)*
-    };
-}
 
 /// Compiles meshes of elements with `N` corners in `D` dimensions.
 fn of_elements<const N: usize, const D: usize>() {

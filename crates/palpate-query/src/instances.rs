@@ -2,12 +2,9 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
 //! Compiles the searches in this crate.
-//!
-//! A generic function is compiled again in every crate that calls it. One that is marked
-//! `#[inline(never)]` is not, if a crate below has compiled it for the same numbers. So the large
-//! functions are marked, and compiled here for the plane and for space.
+//! [`compile`] says why.
 
-use std::hint::black_box;
+use palpate_field::compile;
 
 use crate::ball;
 use crate::contacts;
@@ -17,12 +14,6 @@ use crate::mesh::{MeshWorkspace, contacts_of, find};
 use crate::pair::{BodyPair, PairSearch, PairWorkspace, part, prove, rates_of};
 use crate::sweep::{ElementSweep, SweepWorkspace, swept};
 use crate::{BallWorkspace, Track, any_point, cast_ball, cast_ray};
-
-macro_rules! compile {
-    ($($function:expr),* $(,)?) => {
-        $(black_box($function as *const ());)*
-    };
-}
 
 /// Compiles the searches of `D` dimensions.
 fn in_dimension<const D: usize>() {
