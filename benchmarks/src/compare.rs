@@ -30,13 +30,13 @@ pub(crate) struct Comparison {
     /// The suites, one after the other.
     #[arg(required = true)]
     suites: Vec<SuiteName>,
-    /// A key, or how keys begin; all times if left out, but for the largest and those of peers.
+    /// The beginning of keys. Default: all times except maxima and those of peers.
     #[arg(long = "key", value_name = "KEY")]
     keys: Vec<String>,
     /// The largest ratio that is not slower.
     #[arg(long, default_value_t = 1.05)]
     at_most: f64,
-    /// Another largest ratio for the keys that begin with a prefix. The longest prefix counts.
+    /// Another limit for keys that begin with PREFIX. The longest matching prefix applies.
     #[arg(long, value_name = "PREFIX=RATIO")]
     allow: Vec<Exception>,
     /// How often both programs run each suite.
@@ -116,7 +116,7 @@ impl Comparison {
             for round in 1..=self.rounds {
                 eprintln!("{}: round {round} of {} …", suite.name(), self.rounds);
                 let measure = |program| self.measure(program, *suite, instructions);
-                // The first of a round is not always the same.
+                // The two programs take turns to run first.
                 rounds.push(if round % 2 == 0 {
                     let this = measure(&this)?;
                     (this, measure(&other)?)
@@ -149,7 +149,10 @@ impl Comparison {
         for prefix in unused {
             eprintln!("palpate-bench: no key begins with `{prefix}`, which --allow names");
         }
-        println!("{slower} of {count} keys slower than {} or --allow", self.at_most);
+        println!(
+            "{slower} of {count} keys got slower: above {} or above their --allow limit",
+            self.at_most
+        );
         Ok(if slower > 0 { ExitCode::FAILURE } else { ExitCode::SUCCESS })
     }
 

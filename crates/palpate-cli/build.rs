@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! Tells the program its version, with the commit where it is known: from `PALPATE_COMMIT`, or in a
-//! release build from git.
+//! Sets the version that the program prints. It includes the commit if that is known: from
+//! `PALPATE_COMMIT`, or in a release build from git.
 
 use std::env::var;
 use std::path::Path;

@@ -6,7 +6,7 @@
 use std::time::Instant;
 
 use crate::command::{Failure, cargo, cargo_with, metadata, root};
-use crate::{api, builds, code, layers, licences, links, sizes, sources, words};
+use crate::{api, builds, code, layers, licences, links, packages, sizes, sources, words};
 
 type Stage = (&'static str, fn() -> Result<(), Failure>);
 
@@ -20,14 +20,18 @@ const STAGES: &[Stage] = &[
     ("layers", || layers::check(&metadata()?, &architecture()?)),
     ("dependencies", builds::dependencies),
     ("licences", || licences::check(&metadata()?)),
+    ("packages", || packages::check(&metadata()?)),
     ("clippy", || {
         cargo(&["clippy", "--workspace", "--all-targets", "--locked", "--", "-D", "warnings"])
     }),
     ("wasm", builds::wasm),
     ("docs", document),
     ("api", || document().and_then(|()| api::check())),
-    ("code", code::check),
+    (THOROUGH, code::check),
 ];
+
+/// This stage makes a release build, so it runs only if asked for.
+const THOROUGH: &str = "code";
 
 /// Makes the documentation of every crate.
 pub(crate) fn document() -> Result<(), Failure> {
@@ -51,11 +55,14 @@ pub(crate) fn stages() -> impl Iterator<Item = &'static str> {
     STAGES.iter().map(|(name, _)| *name)
 }
 
-/// Runs the stages of these names, or every stage if there are none; all of them even if one
-/// fails.
-pub(crate) fn run(names: &[String]) -> Result<(), Failure> {
+/// Runs the stages of these names. If there are none, it runs all, the thorough one only if
+/// `is_thorough`. It goes on after a failure.
+pub(crate) fn run(names: &[String], is_thorough: bool) -> Result<(), Failure> {
     let mut failures = Vec::new();
-    let asked = |name: &str| names.is_empty() || names.iter().any(|asked| asked == name);
+    let asked = |name: &str| match names {
+        [] => is_thorough || name != THOROUGH,
+        _ => names.iter().any(|asked| asked == name),
+    };
     for (name, stage) in STAGES.iter().filter(|(name, _)| asked(name)) {
         let start = Instant::now();
         let result = stage();

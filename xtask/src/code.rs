@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! A rule on machine code: how much of it a crate may be, since that is what a build takes time for.
-//! Bytes do not depend on how busy a machine is.
+//! Limits the machine code of a crate, since generating it takes most of a build's time. Bytes do
+//! not depend on how busy a machine is.
 
 use std::path::{Path, PathBuf};
 

@@ -11,6 +11,7 @@ mod command;
 mod layers;
 mod licences;
 mod links;
+mod packages;
 mod page;
 mod python;
 mod sizes;
@@ -42,12 +43,15 @@ enum Chore {
     },
     /// Build the wheel for Python and run its tests, as `test` does at its end.
     Python,
-    /// Check formatting, sources, words, links, sizes, layers, licences, lints, documentation,
-    /// the list of public items, and that the core compiles without a system.
+    /// Check formatting, sources, words, links, sizes, layers, licences, packages, lints,
+    /// documentation, the list of public items, and that the core compiles without a system.
     Check {
-        /// The stages to run; all if none is named.
+        /// The stages to run; all but `code` if none is named.
         #[arg(value_parser = clap::builder::PossibleValuesParser::new(check::stages()))]
         stages: Vec<String>,
+        /// Run every stage, also `code`, which makes a release build.
+        #[arg(long, conflicts_with = "stages")]
+        thorough: bool,
     },
     /// Renew the lists of public items in docs/public-api.
     Api,
@@ -59,7 +63,7 @@ fn main() -> ExitCode {
     let result = match Arguments::parse().chore {
         Chore::Test { thorough } => test(thorough),
         Chore::Python => python::test(),
-        Chore::Check { stages } => check::run(&stages),
+        Chore::Check { stages, thorough } => check::run(&stages, thorough),
         Chore::Api => check::document().and_then(|()| api::renew()),
         Chore::Oracle => oracle(),
     };

@@ -106,7 +106,8 @@ fn derive_ratios(rows: &mut Rows) {
         if let Some((ours, peer)) = key.rsplit_once('.')
             && theirs::PEERS.contains(&peer)
         {
-            // A point, or a slice in double precision, which is all that our blocks have.
+            // Our key for a point is the peer's. For a slice it is the key in double precision,
+            // since our blocks hold only `f64`.
             let ours = if ours.ends_with(".point") { ours.to_owned() } else { in_double(ours) };
             if let Some(own) = times.get(&format!("{ours}.ns")) {
                 rows.insert(format!("{ours}.ours_over_{peer}"), own / time);

@@ -21,7 +21,7 @@ use crate::output::{self, Files, shown};
 use crate::picture::{self, Colours, Dimensions, Drawable, Picture};
 
 /// A scene with one body for each operator.
-const OPERATORS: &str = include_str!("../../../scenes/sampler_operators.json");
+const OPERATORS: &str = include_str!("../scenes/sampler_operators.json");
 /// Tiles in a row: with six, the longest names of the catalogue would not fit.
 const COLUMNS: usize = 5;
 /// Cells along a tile, about one to a pixel of the figure, and cells whose values are compared

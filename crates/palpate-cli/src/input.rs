@@ -24,7 +24,7 @@ use crate::output::{self, counted};
 use crate::progress::Progress;
 
 /// The built-in gallery, which `palpate feel` feels if no scene is named.
-const GALLERY: &str = include_str!("../../../scenes/article_gallery.json");
+const GALLERY: &str = include_str!("../scenes/article_gallery.json");
 
 /// The names of the axes.
 pub(crate) const AXES: [&str; 3] = ["x", "y", "z"];

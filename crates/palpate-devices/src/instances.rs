@@ -27,7 +27,7 @@ fn in_dimension<const D: usize>() {
     ];
 }
 
-/// Never called: what it names is compiled.
+/// Never called. It names functions so that this crate compiles them.
 #[doc(hidden)]
 #[inline(never)]
 pub fn instances() {

@@ -42,7 +42,8 @@ const MOST_REFINED: f64 = 4.0;
 /// Tries end when cells this many times as large fail.
 const MOST_APART: f64 = 1.5;
 
-/// Where the size of cells is given, a deviation of so much of a cell is not looked at more closely: that takes long.
+/// If the size of cells is given, a deviation below this share of a cell is not bounded more
+/// closely, which would take long.
 const ENOUGH: f64 = 0.25;
 
 /// How far a grid is made.
@@ -103,7 +104,8 @@ impl<const D: usize> Grid<D> {
             Resolution::Cell(cell) => return bake_as(cell, options),
             Resolution::Tolerance(tolerance) => tolerance,
         };
-        // Far samples change no deviation in f32, so tries use a band; steps of whole numbers grow with the largest.
+        // In f32, samples far from the surface do not change the deviation, so tries use a band.
+        // The steps of whole numbers grow with the largest sample, so tries keep all samples.
         let tried = match options.store {
             Store::F32 => options.with_narrow_band::<D>(source.promise().lipschitz),
             Store::I16 | Store::I8 => options.clone(),

@@ -61,7 +61,7 @@ impl<const D: usize> Body<D> {
 
     /// A body whose shape already includes the texture.
     fn of(shape: Shape<D>, surface: Surface<D>) -> Self {
-        // A tick allocates nothing.
+        // A tick must not allocate, so tapes are recorded here.
         shape.prepare();
         let identity = Pose::identity();
         let is_below_ball = !shape.promise().above_bounds;

@@ -69,7 +69,7 @@ fn of_elements<const N: usize, const D: usize>() {
     ];
 }
 
-/// Never called: what it names is compiled.
+/// Never called. It names functions so that this crate compiles them.
 #[doc(hidden)]
 #[inline(never)]
 pub fn instances() {

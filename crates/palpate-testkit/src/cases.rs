@@ -22,9 +22,9 @@ pub const USUAL: f64 = 0.1;
 /// The most complaints shown; complaints that differ only in numbers count as one.
 const SHOWN: usize = 12;
 
-/// Checks `property` for `count` seeds. Two variables of the environment ask for others:
-/// `PALPATE_FIRST_SEED` is the first seed, 0 if unset; `PALPATE_SEEDS` multiplies their number, by
-/// [`USUAL`] if unset. There is one seed at least.
+/// Checks `property` for `count` seeds. Two environment variables change this. `PALPATE_FIRST_SEED`
+/// is the first seed; the default is 0. `PALPATE_SEEDS` multiplies the count; the default is
+/// [`USUAL`]. At least one seed runs.
 ///
 /// A property draws its input from [`Unstructured`] and returns what is wrong
 /// with it. The same seed draws the same input on every machine.
@@ -164,7 +164,8 @@ pub fn each(
     assert!(2 * drawn > tried, "only {drawn} of {tried} cases could be drawn");
 }
 
-/// How many seeds [`check`] takes where `usual` are asked for: what a test counts is compared with that.
+/// The number of seeds that [`check`] runs for a count of `usual`. A test that counts cases
+/// compares its count with this number.
 ///
 /// # Panics
 ///

@@ -15,7 +15,7 @@ use crate::vector::Vector;
 
 /// An operation on two answers.
 pub(crate) trait Combine: Debug + Send + Sync + 'static {
-    /// Whether its loops are compiled for machines without AVX2 too.
+    /// `true` if its loops are also compiled for machines without AVX2.
     const IS_EVERYWHERE: bool = false;
 
     /// The answer for `a` and `b`.
@@ -27,7 +27,7 @@ pub(crate) trait Combine: Debug + Send + Sync + 'static {
 pub(crate) struct Minimum;
 
 impl Combine for Minimum {
-    // Unions of many members are on no tape.
+    // A union of many members has no tape, so its loops must run on every machine.
     const IS_EVERYWHERE: bool = true;
 
     #[inline(always)]

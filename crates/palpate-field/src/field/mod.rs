@@ -3,14 +3,14 @@
 
 //! Fields as the searches and the servo evaluate them.
 //!
-//! A [`Field`] answers for one point, for a block of points with and without
-//! gradients, and for a block of cells. Leaves hold a
-//! [`Kernel`](crate::kernel::Kernel); operators loop over their children's
-//! blocks. Nothing here allocates, once a field was [`prepare`](SharedField::prepare)d.
+//! A [`Field`] answers for one point, for a block of points with and without gradients, and for a
+//! block of cells. Leaves hold a [`Kernel`](crate::kernel::Kernel); operators loop over their
+//! children's blocks. After [`prepare`](SharedField::prepare), only a long tape of models
+//! allocates.
 //!
-//! # Roads
+//! # How a block is evaluated
 //!
-//! [`SharedField`] chooses how a block is answered:
+//! [`SharedField`] chooses:
 //!
 //! | block of | with AVX2 or AVX-512 | without |
 //! |---|---|---|
@@ -19,10 +19,10 @@
 //! | cells of three parameters | compiled loops | a tape |
 //! | cells of four parameters | a tape | a tape |
 //!
-//! The first question that needs a tape records it. Some fields answer themselves on each road, since
-//! their operations are on no tape: a [`CustomField`], and a union of more than 16 members, which skips
-//! most of them. A kernel with the tangent rule answers cells itself. An answer in single precision is
-//! that in double precision, rounded once.
+//! The first evaluation that needs a tape records it. No tape has the operations of a
+//! [`CustomField`] or of a union of more than 16 members, which skips most of its members. Both
+//! evaluate every block themselves. A kernel with the tangent rule bounds cells itself. An answer
+//! in single precision is the answer in double precision, rounded once.
 
 mod combine;
 mod custom;
@@ -80,9 +80,9 @@ pub(crate) fn depth_over<'a, const D: usize>(
 
 /// A signed distance field as an object.
 ///
-/// Implemented by this crate alone; users write a
-/// [`Kernel`](crate::kernel::Kernel) or a [`CustomField`]. Its loops over blocks are compiled for AVX2
-/// and wider alone: a [`SharedField`] answers on every machine.
+/// Implemented by this crate alone; users write a [`Kernel`](crate::kernel::Kernel) or a
+/// [`CustomField`]. Its loops over blocks are compiled only for AVX2 and AVX-512. A [`SharedField`]
+/// answers on every machine.
 pub trait Field<const D: usize>: Debug + Send + Sync {
     /// The signed distance at a point [m].
     ///
@@ -108,12 +108,12 @@ pub trait Field<const D: usize>: Debug + Send + Sync {
     /// The formula of the field at `p`; `None` where a [`CustomField`] is part of it.
     fn record(&self, p: Vector<Recorded, D>) -> Option<Recorded>;
 
-    /// `true` if a tape has all operations of the distances.
+    /// `true` if a tape can evaluate the distances.
     fn has_formula(&self) -> bool {
         true
     }
 
-    /// The models, if no tape has all their operations.
+    /// The field's own models, if a tape cannot evaluate them.
     fn own_models(&self) -> Option<&dyn OwnModels<D>> {
         None
     }

@@ -17,9 +17,9 @@ pub struct SharedField<const D: usize>(Arc<Held<dyn Field<D>>>);
 
 #[derive(Debug)]
 struct Held<F: ?Sized> {
-    /// Of distances, once they were asked.
+    /// The tape of the distances, once recorded.
     values: OnceLock<Tape>,
-    /// Of models.
+    /// The tape of the models, once recorded.
     models: OnceLock<Tape>,
     field: F,
 }
@@ -71,8 +71,8 @@ impl<const D: usize> SharedField<D> {
         Arc::ptr_eq(&self.0, &other.0)
     }
 
-    /// Records the tapes that blocks need on this machine. Otherwise the first evaluation records them,
-    /// and a servo may not allocate.
+    /// Records the tapes that blocks need on this machine. Without this the first evaluation would
+    /// record them and allocate, which a servo may not.
     pub fn prepare(&self) {
         if InstructionSet::in_use().has_loops() {
             return;
@@ -86,7 +86,8 @@ impl<const D: usize> SharedField<D> {
         self.members().unwrap_or_default().iter().for_each(Self::prepare);
     }
 
-    /// The formula of the field at `p`. A tape asks a field whose operations it does not have.
+    /// The formula of the field at `p`. While a tape is recorded, a field without tape operations
+    /// becomes one instruction that calls it.
     pub(crate) fn record(&self, p: Vector<Recorded, D>) -> Option<Recorded> {
         let field = &**self;
         let answers_itself = match Recorded::purpose() {
@@ -106,7 +107,7 @@ impl<const D: usize> SharedField<D> {
         let tape = if purpose == Purpose::Models { &held.models } else { &held.values };
         tape.get_or_init(|| {
             let recorded = Recorded::graph(purpose, |p| held.field.record(p));
-            let (graph, result) = recorded.expect("what has no formula answers itself");
+            let (graph, result) = recorded.expect("a field without a formula has no tape");
             Tape::new(graph, result)
         })
     }
@@ -175,8 +176,8 @@ impl Evaluate for SpaceTimeModel {
     }
 }
 
-/// A field of a tape, whatever its dimension. `coordinate` gives each coordinate, by the number of its
-/// axis, in each lane.
+/// A field that a tape calls, of any dimension. `coordinate(axis, lane)` gives one coordinate of
+/// one point.
 pub trait Asked: std::fmt::Debug + Send + Sync {
     /// As [`SharedField::prepare`].
     fn prepare_it(&self);

@@ -18,7 +18,8 @@ use crate::promise::Promise;
 use crate::scalar::{Model, Recorded, Scalar, SpaceTimeModel};
 use crate::vector::Vector;
 
-/// A union of more members is on no tape, which would evaluate all: it skips most of them.
+/// The most members of a union on a tape. A tape evaluates all members; a larger union skips most
+/// of them, so it is evaluated without a tape.
 pub(crate) const FEW: usize = 16;
 
 /// Beyond this distance from the origin [m], squares of lengths near the limits of single

@@ -44,7 +44,7 @@ impl<const D: usize> Union<D> {
     ) where
         AffineModel<N>: Evaluate,
     {
-        // To find out which cell needs which of a few members would take longer than to ask them.
+        // With few members, asking all takes less time than finding out which cell needs which.
         let (mut near, mut many) = ([0; FEW], 0);
         self.near_block(p, count, |i| {
             if let Some(place) = near.get_mut(many) {
@@ -61,7 +61,8 @@ impl<const D: usize> Union<D> {
         }
     }
 
-    /// All cells ask the same members. Not inlined: others need not its memory.
+    /// All cells ask the same members. Not inlined, so that the other branch does not reserve its
+    /// stack memory.
     #[inline(never)]
     fn ask_all<const N: usize>(
         &self,

@@ -85,20 +85,21 @@ pub trait Kernel<const D: usize>: Clone + Debug + Send + Sync + 'static {
         (result.value, Vector(result.gradient))
     }
 
-    /// `true` if [`model`](Self::model) is no evaluation of the formula, and gains nothing from vector
-    /// instructions: it is then compiled once, where a formula's is compiled for each instruction set.
+    /// `true` if [`model`](Self::model) does not evaluate the formula and does not gain from vector
+    /// instructions. Such a model is compiled once; a model that evaluates the formula is compiled
+    /// for each instruction set.
     const HAS_OWN_MODEL: bool = false;
 
-    /// How distances are rounded, if models are also bounded by the value at the centre of a cell and
-    /// the steepness 1, wherever that says more than the formula.
+    /// `Some` if a model may also be bounded by the value at the cell's centre and the Lipschitz
+    /// constant 1, where that bound says more than the formula. It tells how distances are rounded.
     #[inline(always)]
     fn bounded_by_steepness(&self) -> Option<Evaluations> {
         None
     }
 
     /// Bounds over the cell whose coordinates are `cell`. The default evaluates the formula in
-    /// models. Override it, with [`HAS_OWN_MODEL`](Self::HAS_OWN_MODEL), where [`AffineModel`] lacks an
-    /// operation or another bound is tighter.
+    /// models. Override it, and set [`HAS_OWN_MODEL`](Self::HAS_OWN_MODEL) to `true`, where
+    /// [`AffineModel`] lacks an operation or another bound is tighter.
     #[inline(always)]
     fn model<const N: usize>(&self, cell: Vector<AffineModel<N>, D>) -> AffineModel<N> {
         let formula = self.distance(cell);
@@ -239,7 +240,7 @@ pub(crate) fn tangent_model<const D: usize, const N: usize>(
     tangent_model_of(kernel, &cell, operations, size)
 }
 
-/// [`tangent_model`], once for all kernels.
+/// [`tangent_model`], compiled once for all kernels.
 #[inline(never)]
 fn tangent_model_of<const D: usize, const N: usize>(
     kernel: &dyn AtPoint<D>,

@@ -133,7 +133,7 @@ impl<S: Lane, const W: usize> Column<S, W> {
         }
     }
 
-    /// Copies the lanes that are written in another column.
+    /// Copies the written lanes of another column.
     pub(crate) fn copy_from(&mut self, from: &Self) {
         for i in 0..from.written {
             // SAFETY: lane `i` is written.
@@ -425,7 +425,7 @@ impl<T: Lane + fmt::Debug, const D: usize, const W: usize> Gradients<T, D, W> {
         Self { distance: Column::scratch(), gradient: Block::scratch() }
     }
 
-    /// Copies the lanes that are written in others.
+    /// Copies the written lanes of `from`.
     pub(crate) fn copy_from(&mut self, from: &Self) {
         self.distance.copy_from(&from.distance);
         unrolled!(k < D => self.gradient.columns[k].copy_from(&from.gradient.columns[k]));

@@ -3,10 +3,10 @@
 
 //! Runs the loops over blocks with the best instruction set of the machine.
 //!
-//! The loops of kernels and operators are compiled twice, with AVX2 and with AVX-512, and the copy to
-//! run is chosen at run time; LLVM vectorises each. Machines without AVX2 have no such loops: their
-//! blocks go through a [`Tape`](super::Tape), or point by point. All ways give the same bits, since no
-//! formula uses a fused multiply-add.
+//! The loops of kernels and operators are compiled twice, with AVX2 and with AVX-512, and one copy
+//! is chosen at run time. LLVM vectorises both. On machines without AVX2, blocks go through a
+//! [`Tape`](super::Tape), or point by point. All of these give the same bits, since no formula uses
+//! a fused multiply-add.
 
 use std::sync::atomic::{AtomicU8, Ordering};
 
@@ -152,15 +152,12 @@ where
     let _ = (job, a, b, count, out);
 }
 
-/// Panics if this machine has no AVX2. If it has, another thread selected the baseline meanwhile: the
-/// answer has the same bits.
+/// Panics if this machine has no AVX2. If it has AVX2, another thread has just selected the
+/// baseline; the AVX2 loop still gives the same bits.
 #[cold]
 #[inline(never)]
 fn require_loops() {
-    assert!(
-        InstructionSet::Avx2.is_available(),
-        "loops of kernels are compiled for AVX2 alone"
-    );
+    assert!(InstructionSet::Avx2.is_available(), "the loops of kernels need AVX2");
 }
 
 /// Runs `job` on the lanes of `a` and `b` with the instruction set in use, on every machine.

@@ -3,9 +3,9 @@
 
 //! Formulas as tapes: lists of instructions over registers, each of which works through many lanes.
 //!
-//! A compiled loop costs each kernel its own machine code. A tape is one loop for all kernels: slower
-//! where both exist, and what remains where no loop is compiled. Its instructions are the operations
-//! of [`Scalar`], so distances have the bits of the compiled loops.
+//! A compiled loop costs each kernel its own machine code. All tapes run in one interpreter. A tape
+//! is slower than a compiled loop, and is used where no loop is compiled. Its instructions are the
+//! operations of [`Scalar`], so distances have the bits of the compiled loops.
 
 mod assembly;
 mod instruction;
@@ -27,7 +27,7 @@ use interpreter::everywhere;
 #[cfg(target_arch = "x86_64")]
 use interpreter::{with_avx2, with_avx512};
 
-/// An instruction and the register of its result, which is none of its arguments.
+/// An instruction and the register of its result, which differs from its argument registers.
 #[derive(Clone, Copy, Debug)]
 struct Step {
     out: Register,
@@ -36,7 +36,8 @@ struct Step {
 
 /// A formula that is ready to run.
 ///
-/// Each register of an argument was written by a step before: [`Tape::new`] alone makes tapes.
+/// Every argument register was written by an earlier step: `Unassigned::assign` sees to that, and
+/// nothing else makes tapes.
 #[derive(Debug)]
 pub struct Tape {
     steps: Vec<Step>,
@@ -83,7 +84,7 @@ impl Tape {
         self.asked.iter().for_each(|field| field.prepare_it());
     }
 
-    /// Whether the registers for numbers `S` fit in memory that is not allocated.
+    /// `true` if the registers for numbers `S` fit on the stack.
     pub(crate) fn is_short<S: OnTape>(&self) -> bool {
         self.registers <= S::TAPE_REGISTERS
     }
@@ -129,7 +130,7 @@ impl Tape {
         }
     }
 
-    /// Runs the tape with the instruction set in use, if numbers `S` gain from it.
+    /// Runs the tape with the instruction set in use, if the type `S` gains from it.
     #[inline(always)]
     fn choose<S: OnTape, const W: usize>(
         &self,
@@ -160,7 +161,7 @@ pub trait OnTape: Lane {
     /// Whether tapes are compiled for each instruction set.
     const HAS_WIDE_TAPE: bool;
 
-    /// The registers for which no memory is allocated.
+    /// How many registers fit on the stack.
     const TAPE_REGISTERS: usize;
 
     /// Runs a tape over the first `lanes` points.

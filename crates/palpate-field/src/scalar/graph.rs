@@ -15,14 +15,14 @@ use crate::kernel::Evaluations;
 /// What a formula is recorded for.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) enum Purpose {
-    /// To be read: operations of [`Operation`] alone.
+    /// For reading: only operations of [`Operation`].
     #[default]
     Formula,
     /// For a shader in single precision: each constant is a step of its own.
     Shader,
     /// For a tape of distances.
     Values,
-    /// For a tape of models: with what bounds alone need.
+    /// For a tape of models: with the operations that only bounds need.
     Models,
 }
 
@@ -32,7 +32,7 @@ impl Purpose {
     }
 }
 
-/// What a step does: an operation, or what tapes alone have.
+/// What a step does: an operation, or one that only tapes have.
 #[derive(Clone, Debug)]
 pub(crate) enum Recipe {
     Operation(Operation),
@@ -42,7 +42,8 @@ pub(crate) enum Recipe {
     Power(PowerForm, u32),
     /// [`Scalar::give_or_take`](super::Scalar::give_or_take).
     GiveOrTake,
-    /// The first number, or its bound by the steepness at the point of the others.
+    /// The first argument, or its bound by the steepness at the point that the other arguments
+    /// give, whichever says more.
     OrBySteepness(Evaluations),
     /// The answer of a field at the point.
     Ask(Arc<dyn Asked>),
@@ -101,7 +102,7 @@ impl Graph {
         self.steps.len() - 1
     }
 
-    /// The expression whose value is that of step `result`; `None` if a step is of tapes alone.
+    /// The expression whose value is that of step `result`; `None` if a step exists only on tapes.
     pub(super) fn finish(self, result: usize) -> Option<Expression> {
         let step = |Recorded { recipe, arguments }| match recipe {
             Recipe::Operation(operation) => Some(Step { operation, arguments }),

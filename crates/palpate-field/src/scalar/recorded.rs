@@ -21,7 +21,7 @@ thread_local! {
 
 /// A number of which only its formula is known: operations on it are recorded.
 ///
-/// It has a meaning within the call of [`Expression::record`] that made it alone.
+/// It is valid only during the recording that made it.
 #[derive(Clone, Copy, Debug)]
 pub struct Recorded {
     step: usize,

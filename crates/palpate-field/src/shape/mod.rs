@@ -257,8 +257,9 @@ impl<const D: usize> Shape<D> {
         self.field.gradients(points, count, out);
     }
 
-    /// Allocates now what the first answers of blocks would allocate. A servo may not allocate, so its
-    /// bodies prepare their shapes. On machines with AVX2 there is nothing to do.
+    /// Records the tapes that the first evaluations of blocks would record, for which they would
+    /// allocate. A servo may not allocate, so its bodies call this. On machines with AVX2 only
+    /// blocks in space and time use tapes; these are not prepared.
     pub fn prepare(&self) {
         self.field.prepare();
     }

@@ -7,7 +7,7 @@ use super::Shape;
 use crate::machine::{BLOCK, Block, Column, Gradients, Wide, wide};
 use crate::scalar::Float;
 use crate::strided::{Strided, StridedMut};
-use crate::vector::{Point, Vector, array};
+use crate::vector::{Point, Vector, array, unrolled};
 
 impl<const D: usize> Shape<D> {
     /// The signed distances at `points` [m].
@@ -162,9 +162,8 @@ impl<const D: usize> Shape<D> {
             wide(Gather { points, block: &mut block });
             self.block_gradients(&block, points.len(), &mut answers);
             wide(Scatter { column: &answers.distance, numbers: distances });
-            for (k, column) in answers.gradient.columns().into_iter().enumerate() {
-                wide(ScatterAlong { column, axis: k, vectors: &mut *gradients });
-            }
+            let columns = answers.gradient.columns().map(Column::<f64>::as_slice);
+            wide(ScatterVectors { columns, vectors: gradients });
         }
     }
 
@@ -219,8 +218,23 @@ impl<T: Float, const D: usize> Wide for Gather<'_, T, D> {
 
     #[inline(always)]
     fn run(self) {
-        self.block.fill(self.points.len(), |i| in_double(self.points[i]));
+        let Self { points, block } = self;
+        // The compiler makes better code where it knows the count.
+        match points.len() {
+            BLOCK => gather(BLOCK, points, block),
+            count => gather(count, points, block),
+        }
     }
+}
+
+#[inline(always)]
+fn gather<T: Float, const D: usize>(
+    count: usize,
+    points: &[Vector<T, D>],
+    block: &mut Block<f64, D>,
+) {
+    let points = &points[..count];
+    block.fill(count, |i| in_double(points[i]));
 }
 
 /// Takes the numbers of a column.
@@ -240,21 +254,34 @@ impl<T: Float> Wide for Scatter<'_, T> {
     }
 }
 
-/// Takes the numbers of a column as one component of vectors.
-struct ScatterAlong<'a, T, const D: usize> {
-    column: &'a Column<f64>,
-    axis: usize,
+/// Takes vectors whose components are columns.
+struct ScatterVectors<'a, T, const D: usize> {
+    columns: [&'a [f64]; D],
     vectors: &'a mut [Vector<T, D>],
 }
 
-impl<T: Float, const D: usize> Wide for ScatterAlong<'_, T, D> {
+impl<T: Float, const D: usize> Wide for ScatterVectors<'_, T, D> {
     type Out = ();
 
     #[inline(always)]
     fn run(self) {
-        for (vector, answer) in self.vectors.iter_mut().zip(self.column.as_slice()) {
-            vector.0[self.axis] = T::constant(*answer);
+        let Self { columns, vectors } = self;
+        match vectors.len() {
+            BLOCK => scatter(BLOCK, columns, vectors),
+            count => scatter(count, columns, vectors),
         }
+    }
+}
+
+#[inline(always)]
+fn scatter<T: Float, const D: usize>(
+    count: usize,
+    columns: [&[f64]; D],
+    vectors: &mut [Vector<T, D>],
+) {
+    let (columns, vectors) = (columns.map(|column| &column[..count]), &mut vectors[..count]);
+    for i in 0..count {
+        unrolled!(k < D => vectors[i].0[k] = T::constant(columns[k][i]));
     }
 }
 

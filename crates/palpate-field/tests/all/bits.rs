@@ -13,7 +13,7 @@ use palpate_testkit::laws::Cell;
 use palpate_testkit::tree::{Solid, Tree};
 use palpate_testkit::{cases, laws};
 
-/// Roundings by which models on two roads may differ, beside those of the promise.
+/// Roundings by which models evaluated in two ways may differ, beside those of the promise.
 const WIDTH_ROUNDINGS: f64 = 32.0;
 
 /// Checks random trees; `spread` puts the points of a block near each other or
@@ -101,8 +101,8 @@ where
     });
 }
 
-/// Models on the road of the instruction set in use: they enclose the field, and are no wider than those
-/// of `others`, the models on another road of the same cells. Gives the models.
+/// Models evaluated with the instruction set in use. They enclose the field, and are no wider than
+/// `others`, models of the same cells evaluated in another way. Gives the models.
 fn models_of_trees<const D: usize>(count: u64, others: &[Model]) -> Vec<Model>
 where
     Space: Solid<D> + Turn<D>,
@@ -130,7 +130,7 @@ where
                 let (here, there) = (width(model), width(other));
                 if here > there * (1.0 + 1e-12) + WIDTH_ROUNDINGS * rounding {
                     return Ok(Err(format!(
-                        "{here:e} wide, {there:e} on another road: {cell:?}"
+                        "{here:e} wide, {there:e} in another way: {cell:?}"
                     )));
                 }
             }

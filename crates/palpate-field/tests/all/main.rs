@@ -1,8 +1,7 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! All tests of the crate but those that count allocations in one program, which links faster
-//! than many.
+//! All tests of the crate in one program, which links faster than many.
 
 mod allocation;
 mod bad_input;

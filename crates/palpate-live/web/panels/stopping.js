@@ -149,9 +149,9 @@ export function canRelease() {
 }
 
 /** How forces come back after a release and after the servo starts. */
-export const FORCES_COME_BACK = 'Forces come back once the hand is out of the bodies, rising from zero: draw it out.';
+export const FORCES_COME_BACK = 'Draw the hand out of the bodies: forces then rise from zero.';
 
-/** The notice of a release, while it is true. */
+/** The number of the notice of a release, which goes once it is no longer true. */
 let notice = 0;
 
 /** Gives forces again, by a person's press alone. @param {Event} event */

@@ -15,7 +15,7 @@ use crate::scalar::{Operation, Recipe};
 #[derive(Debug, Default)]
 pub(super) struct Unassigned {
     steps: Vec<Instruction>,
-    /// For each step of the formula that of the tape; of constants, only their values are known.
+    /// For each step of the formula, the step of the tape; for a constant, its value.
     known: Vec<Known>,
     dimension: usize,
     asked: Vec<Arc<dyn Asked>>,
@@ -34,7 +34,7 @@ impl Unassigned {
         (self.steps.len() - 1) as Register
     }
 
-    /// The step of an argument: a constant becomes one.
+    /// The step of an argument. A constant becomes a step here.
     fn step(&mut self, argument: usize) -> Register {
         match self.known[argument] {
             Known::Constant(value) => self.push(Instruction::Constant(value)),
@@ -156,10 +156,11 @@ impl Unassigned {
         }
     }
 
-    /// Gives each step that is needed a register, which is free again after its last use.
+    /// Assigns a register to each step that is needed. The register is free again after the step's
+    /// last use.
     pub(super) fn assign(mut self, result: usize) -> Tape {
         let result = self.step(result);
-        // The last step that uses each; zero where none does.
+        // For each step, the last step that uses it; zero if none does.
         let mut last_use = vec![0; self.steps.len()];
         last_use[result as usize] = usize::MAX;
         for (i, step) in self.steps.iter().enumerate().rev() {
@@ -177,8 +178,9 @@ impl Unassigned {
             if last_use[i] == 0 {
                 continue;
             }
-            // Before those of the arguments are free: a select that writes where it reads
-            // becomes a masked store, which is microcoded on some machines.
+            // The result's register is taken before the arguments' registers are freed, so that
+            // they differ: a select that writes where it reads becomes a masked store, which is
+            // microcoded on some machines.
             let out = free.pop().unwrap_or_else(|| {
                 registers += 1;
                 registers - 1
@@ -189,7 +191,7 @@ impl Unassigned {
                 *argument = register_of[step];
                 if last_use[step] == i {
                     free.push(register_of[step]);
-                    // An argument that is there twice is free once.
+                    // A register that is an argument twice is freed once.
                     last_use[step] = usize::MAX;
                 }
             });

@@ -9,7 +9,7 @@ use crate::scalar::{Blend, Circular, Cubic, Exponential, PowerForm, Quartic, Roo
 /// The number of a register; before registers are assigned, that of a step.
 pub(super) type Register = u32;
 
-/// What a step does. Of a list of registers that may be shorter, the last are not used.
+/// What a step does.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Instruction {
     Coordinate(usize),

@@ -42,18 +42,19 @@ impl<L> Registers<'_, L> {
     }
 }
 
-/// Works through all lanes of one instruction: a number from those in the registers of its arguments.
+/// Works through all lanes of one instruction: `$number` is computed in each lane from the argument
+/// registers.
 macro_rules! each_lane {
     ($registers:ident, $lanes:ident, $out:ident, [$($x:ident),*], $number:expr) => {{
-        // SAFETY: a tape's registers are fewer than there are, and the result of a step is none of
-        // its arguments.
+        // SAFETY: the slice holds all the tape's registers, and the register of a step's result
+        // differs from its argument registers.
         let out = unsafe { $registers.out($out) };
         $(
             // SAFETY: as above.
             let $x = unsafe { $registers.argument($x) };
         )*
         for i in 0..$lanes {
-            // SAFETY: a step before this one wrote as many lanes of each argument.
+            // SAFETY: an earlier step wrote the first `$lanes` lanes of each argument.
             $(let $x = unsafe { $x.read(i) };)*
             out.write(i, $number);
         }
@@ -81,7 +82,7 @@ fn interpret<S: OnTape, const W: usize>(
                     // SAFETY: the register is one of the tape's.
                     let out = unsafe { r.out(o) };
                     for i in 0..n {
-                        // SAFETY: `run` found so many lanes of each coordinate written.
+                        // SAFETY: `run` checked that these lanes of each coordinate are written.
                         out.write(i, unsafe { coordinates[axis].read(first + i) });
                     }
                 }
@@ -176,7 +177,7 @@ fn interpret<S: OnTape, const W: usize>(
         // SAFETY: the last step wrote this register of the tape.
         let result = unsafe { r.argument(tape.result) };
         for i in 0..n {
-            // SAFETY: it wrote so many lanes.
+            // SAFETY: that step wrote its first `n` lanes.
             out.write(first + i, unsafe { result.read(i) });
         }
     }
