@@ -116,6 +116,7 @@ pub(super) struct ValueFold<'a, S: Lane, O> {
 impl<'a, S: Evaluate, O: Combine> ValueFold<'a, S, O> {
     /// For `expected` children; if there are others, the result may have to be
     /// copied.
+    #[inline(always)]
     pub(super) fn new(operation: &'a O, expected: usize, out: &'a mut Column<S>) -> Self {
         let in_out = expected % 2 == 1;
         let (scratch, next) = (Column::scratch(), Column::scratch());
@@ -149,7 +150,7 @@ impl<'a, S: Evaluate, O: Combine> ValueFold<'a, S, O> {
         self.in_out = !self.in_out;
     }
 
-    pub(super) fn finish(self) {
+    pub(super) fn finish(&mut self) {
         if !self.in_out {
             self.out.copy_from(&self.scratch);
         }
@@ -168,6 +169,7 @@ pub(super) struct GradientFold<'a, O, const D: usize> {
 }
 
 impl<'a, O: Combine, const D: usize> GradientFold<'a, O, D> {
+    #[inline(always)]
     pub(super) fn new(
         operation: &'a O,
         expected: usize,
@@ -200,7 +202,7 @@ impl<'a, O: Combine, const D: usize> GradientFold<'a, O, D> {
         self.in_out = !self.in_out;
     }
 
-    pub(super) fn finish(self) {
+    pub(super) fn finish(&mut self) {
         if !self.in_out {
             self.out.copy_from(&self.scratch);
         }

@@ -4,6 +4,7 @@
 //! Blocks: many points evaluated together, one array a coordinate.
 
 use std::fmt;
+use std::mem::MaybeUninit;
 
 use super::lanes::{Lane, LaneArray};
 use crate::pose::Rotation;
@@ -71,7 +72,7 @@ impl Rows for () {
 }
 
 /// Up to `W` numbers, one a point.
-#[derive(Clone)]
+#[derive(Clone, Copy)]
 pub struct Column<S: Lane, const W: usize = BLOCK> {
     lanes: S::Lanes<W>,
     written: usize,
@@ -87,9 +88,19 @@ impl<S: Lane, const W: usize> Column<S, W> {
     }
 
     /// Memory for an output.
+    ///
+    /// It is written through pointers. The compiler would make a constant of a literal, and copy all
+    /// of its lanes.
     #[inline(always)]
     pub(crate) fn scratch() -> Self {
-        Self { lanes: S::Lanes::unwritten(), written: 0 }
+        let mut column = MaybeUninit::<Self>::uninit();
+        let place = column.as_mut_ptr();
+        // SAFETY: `place` is valid for writes, and both fields are written.
+        unsafe {
+            (&raw mut (*place).lanes).write(S::Lanes::unwritten());
+            (&raw mut (*place).written).write(0);
+            column.assume_init()
+        }
     }
 
     /// The number in lane `i`.
@@ -243,7 +254,7 @@ impl<S: Lane, const D: usize, const W: usize> Block<S, D, W> {
     /// Memory for an output.
     #[inline(always)]
     pub(crate) fn scratch() -> Self {
-        Self { columns: std::array::from_fn(|_| Column::scratch()), boxes: Boxes::No }
+        Self { columns: [Column::scratch(); D], boxes: Boxes::No }
     }
 
     /// The point in lane `i`.
