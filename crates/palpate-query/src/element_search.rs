@@ -335,7 +335,7 @@ impl<'a, const N: usize, const D: usize> ElementSearch<'a, N, D> {
     }
 
     /// Searches the waiting cells until enough is known.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn finish(
         &mut self,
         frontier: &mut Frontier<Vec<ElementCell<N, D>>>,
@@ -372,7 +372,7 @@ impl<'a, const N: usize, const D: usize> ElementSearch<'a, N, D> {
 
     /// Samples around the lowest known point: towards each vertex, at the minimum of the
     /// parabola through both values with the slope at the lowest, and points over the lowest.
-    #[inline]
+    #[inline(always)]
     fn look_from_lowest(
         &mut self,
         cell: &mut ElementCell<N, D>,
@@ -500,7 +500,7 @@ impl<'a, const N: usize, const D: usize> ElementSearch<'a, N, D> {
 
     /// Bounds parts by values over their centres, at `share` of their heights, and adapts the
     /// heights.
-    #[inline]
+    #[inline(always)]
     fn learn(
         &mut self,
         parts: &mut [ElementCell<N, D>],

@@ -23,8 +23,14 @@ pub(crate) struct Samples<const D: usize> {
 }
 
 impl<const D: usize> Samples<D> {
+    /// Searches of a ball's way make these for each question, so nothing is written here.
+    #[inline(always)]
     pub(crate) fn new() -> Self {
-        Self { block: Block::zero(), values: Column::zero(), slopes: Gradients::zero() }
+        Self {
+            block: Block::scratch(),
+            values: Column::scratch(),
+            slopes: Gradients::scratch(),
+        }
     }
 }
 
@@ -107,14 +113,14 @@ impl<'a, const D: usize> Sampler<'a, D> {
     }
 
     /// The value at a point.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn value(&mut self, p: Point<D>) -> f64 {
         self.evaluations += 1;
         self.shape.distance(p) - self.level
     }
 
     /// The value at a point and its gradient.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn slope(&mut self, p: Point<D>) -> (f64, Vector<f64, D>) {
         self.evaluations += 2;
         let (value, gradient) = self.shape.distance_gradient(p);
@@ -122,7 +128,7 @@ impl<'a, const D: usize> Sampler<'a, D> {
     }
 
     /// The values at points.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn values(&mut self, points: &[Point<D>; AT_ONCE]) -> [f64; AT_ONCE] {
         self.evaluations += AT_ONCE as u32;
         let samples = &mut *self.samples;
@@ -136,7 +142,7 @@ impl<'a, const D: usize> Sampler<'a, D> {
     }
 
     /// The values at points, and the unit vectors in which they grow.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn slopes(
         &mut self,
         points: &[Point<D>; AT_ONCE],

@@ -18,9 +18,9 @@ pub struct SharedField<const D: usize>(Arc<Held<dyn Field<D>>>);
 #[derive(Debug)]
 struct Held<F: ?Sized> {
     /// The tape of the distances, once recorded.
-    values: OnceLock<Tape>,
+    values: OnceLock<Box<Tape>>,
     /// The tape of the models, once recorded.
-    models: OnceLock<Tape>,
+    models: OnceLock<Box<Tape>>,
     field: F,
 }
 
@@ -53,17 +53,50 @@ impl<const D: usize> SharedField<D> {
 
     /// The distances and gradients in the first `count` lanes of a block; those of `out` past them are
     /// unspecified.
+    #[inline]
     pub fn gradients(&self, p: &Block<f64, D>, count: usize, out: &mut Gradients<f64, D>) {
-        let field = &**self;
-        if InstructionSet::in_use().has_loops() || !field.has_formula() {
-            return field.distances_gradients(p, count, out);
+        if InstructionSet::in_use().has_loops() || !self.has_formula() {
+            self.distances_gradients(p, count, out);
+        } else {
+            self.gradients_point_by_point(p, count, out);
         }
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn gradients_point_by_point(
+        &self,
+        p: &Block<f64, D>,
+        count: usize,
+        out: &mut Gradients<f64, D>,
+    ) {
         out.fill(count, |i| {
             let (x, y, z) = p.get(i).coordinates();
             let mut gradient = Vector::ZERO;
-            let distance = field.distance_gradient(x, y, z, &mut gradient);
+            let distance = self.distance_gradient(x, y, z, &mut gradient);
             (distance, gradient)
         });
+    }
+
+    /// The distances on a machine without loops: by the tape, or point by point if it is long.
+    #[cold]
+    #[inline(never)]
+    fn distances_without_loops(&self, p: &Block<f64, D>, count: usize, out: &mut Column<f64>) {
+        let tape = self.tape(Purpose::Values);
+        if tape.is_short::<f64>() {
+            return tape.run(&p.columns(), count, out);
+        }
+        out.fill(count, |i| {
+            let (x, y, z) = p.get(i).coordinates();
+            self.distance(x, y, z)
+        });
+    }
+
+    /// The models by the tape.
+    #[cold]
+    #[inline(never)]
+    fn models_by_tape(&self, p: &Block<Model, D>, count: usize, out: &mut Column<Model>) {
+        self.tape(Purpose::Models).run(&p.columns(), count, out);
     }
 
     /// `true` if both are one field.
@@ -108,7 +141,7 @@ impl<const D: usize> SharedField<D> {
         tape.get_or_init(|| {
             let recorded = Recorded::graph(purpose, |p| held.field.record(p));
             let (graph, result) = recorded.expect("a field without a formula has no tape");
-            Tape::new(graph, result)
+            Box::new(Tape::new(graph, result))
         })
     }
 }
@@ -133,16 +166,10 @@ impl Evaluate for f64 {
         out: &mut Column<Self>,
     ) {
         if InstructionSet::in_use().has_loops() || !field.has_formula() {
-            return field.distances(p, count, out);
+            field.distances(p, count, out);
+        } else {
+            field.distances_without_loops(p, count, out);
         }
-        let tape = field.tape(Purpose::Values);
-        if tape.is_short::<Self>() {
-            return tape.run(&p.columns(), count, out);
-        }
-        out.fill(count, |i| {
-            let (x, y, z) = p.get(i).coordinates();
-            field.distance(x, y, z)
-        });
     }
 }
 
@@ -155,9 +182,10 @@ impl Evaluate for Model {
         out: &mut Column<Self>,
     ) {
         if InstructionSet::in_use().has_loops() || field.own_models().is_some() {
-            return field.models(p, count, out);
+            field.models(p, count, out);
+        } else {
+            field.models_by_tape(p, count, out);
         }
-        field.tape(Purpose::Models).run(&p.columns(), count, out);
     }
 }
 

@@ -87,12 +87,12 @@ impl<S: Lane, const W: usize> Column<S, W> {
         column
     }
 
-    /// Memory for an output.
-    ///
-    /// It is written through pointers. The compiler would make a constant of a literal, and copy all
-    /// of its lanes.
+    /// Memory for answers. No lane is written yet; [`zero`](Self::zero) would write all of them.
     #[inline(always)]
-    pub(crate) fn scratch() -> Self {
+    #[must_use]
+    pub fn scratch() -> Self {
+        // Written through pointers: of a literal the compiler would make a constant, and copy all of
+        // its lanes.
         let mut column = MaybeUninit::<Self>::uninit();
         let place = column.as_mut_ptr();
         // SAFETY: `place` is valid for writes, and both fields are written.
@@ -251,9 +251,10 @@ impl<S: Lane, const D: usize, const W: usize> Block<S, D, W> {
         Self { columns: std::array::from_fn(|_| Column::zero()), boxes: Boxes::Straight }
     }
 
-    /// Memory for an output.
+    /// Memory for answers. No lane is written yet; [`zero`](Self::zero) would write all of them.
     #[inline(always)]
-    pub(crate) fn scratch() -> Self {
+    #[must_use]
+    pub fn scratch() -> Self {
         Self { columns: [Column::scratch(); D], boxes: Boxes::No }
     }
 
@@ -430,9 +431,10 @@ impl<T: Lane + fmt::Debug, const D: usize, const W: usize> Gradients<T, D, W> {
         Self { distance: Column::zero(), gradient: Block::zero() }
     }
 
-    /// Memory for an output.
+    /// Memory for answers. No lane is written yet; [`zero`](Self::zero) would write all of them.
     #[inline(always)]
-    pub(crate) fn scratch() -> Self {
+    #[must_use]
+    pub fn scratch() -> Self {
         Self { distance: Column::scratch(), gradient: Block::scratch() }
     }
 
