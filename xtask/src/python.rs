@@ -51,13 +51,15 @@ fn check_workflows(python: &Path) -> Result<(), Failure> {
 fn environment() -> Result<PathBuf, Failure> {
     let folder = target().join("python").join("environment");
     let python = folder.join(if cfg!(windows) { "Scripts/python.exe" } else { "bin/python" });
-    if !python.exists() {
+    // What was interrupted has no pip.
+    let pip_version = Command::new(&python).args(["-m", "pip", "--version"]).output();
+    if !pip_version.is_ok_and(|output| output.status.success()) {
         let own = ["python3", "python"].into_iter().find(|name| is_there(name));
         let own = own.ok_or_else(|| {
             let by_hand = "the tests of the Python package need Python 3.10 or later: sudo apt-get install python3 python3-venv";
             Failure(by_hand.to_owned())
         })?;
-        run(Command::new(own).args(["-m", "venv"]).arg(&folder))?;
+        run(Command::new(own).args(["-m", "venv", "--clear"]).arg(&folder))?;
     }
     run(pip(&python).args(["maturin>=1.16,<2"]))?;
     Ok(python)

@@ -8,6 +8,7 @@ import importlib.metadata
 import shutil
 import subprocess
 import sys
+import sysconfig
 from pathlib import Path
 
 import pytest
@@ -34,7 +35,7 @@ def test_the_program_has_its_exit_status(tmp_path: Path) -> None:
     assert good.returncode == 0 and "cuboid" in good.stdout
     bad = subprocess.run([*program, "check", "no/such.json"], capture_output=True, text=True, check=False)
     assert bad.returncode == 2 and "no/such.json" in bad.stderr
-    script = shutil.which("palpate", path=str(Path(sys.executable).parent))
+    script = shutil.which("palpate", path=sysconfig.get_path("scripts"))
     assert script
     assert subprocess.run([script, "--version"], capture_output=True, check=False).returncode == 0
 

@@ -42,8 +42,7 @@ const MOST_REFINED: f64 = 4.0;
 /// Tries end when cells this many times as large fail.
 const MOST_APART: f64 = 1.5;
 
-/// If the size of cells is given, a deviation below this share of a cell is not bounded more
-/// closely, which would take long.
+/// If the cell is given, a deviation below this share of it is not bounded more closely.
 const ENOUGH: f64 = 0.25;
 
 /// How far a grid is made.
@@ -104,8 +103,7 @@ impl<const D: usize> Grid<D> {
             Resolution::Cell(cell) => return bake_as(cell, options),
             Resolution::Tolerance(tolerance) => tolerance,
         };
-        // In f32, samples far from the surface do not change the deviation, so tries use a band.
-        // The steps of whole numbers grow with the largest sample, so tries keep all samples.
+        // Far f32 samples do not change the deviation; the steps of whole numbers depend on all.
         let tried = match options.store {
             Store::F32 => options.with_narrow_band::<D>(source.promise().lipschitz),
             Store::I16 | Store::I8 => options.clone(),

@@ -12,7 +12,7 @@ use super::numbers::{count, length};
 
 pub(super) const EXAMPLES: &str = "\
 Examples:
-  palpate grid scenes/cup.json --tolerance 1e-4 --output cup.grid
+  palpate grid scenes/cup.json --tolerance 5e-4 --output cup.grid
   palpate grid scenes/cup.json --cell 0.001 --band 5 --store i16 --output cup.grid --json
 
 A scene uses the file as { \"grid\": { \"file\": \"cup.grid\" } }. The deviation is certified:
