@@ -13,8 +13,7 @@ use serde_json::Value;
 use crate::command::{Failure, cargo_command, failed, output, root};
 
 /// Files that cargo adds to each package.
-const ADDED: [&str; 4] =
-    [".cargo_vcs_info.json", "Cargo.lock", "Cargo.toml.orig", "README.md"];
+const ADDED: [&str; 4] = [".cargo_vcs_info.json", "Cargo.lock", "Cargo.toml.orig", "README.md"];
 
 /// Sources that no package compiles: a source for a fuzz target, which includes scenes of this
 /// repository.

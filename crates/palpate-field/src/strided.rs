@@ -30,14 +30,15 @@ impl Layout {
     /// Checks that every number of `columns` columns is among `length` of them.
     fn check(&self, columns: usize, length: usize) -> Result<(), ShapeError> {
         let last = |count: usize, stride: isize| {
-            i128::try_from(count.saturating_sub(1)).map(|last| last * stride as i128)
+            i128::try_from(count.saturating_sub(1))
+                .map(|last| last.saturating_mul(stride as i128))
         };
         let inside = || {
             let start = i128::try_from(self.start).ok()?;
             let row = last(self.rows, self.row_stride).ok()?;
             let column = last(columns, self.column_stride).ok()?;
-            let least = start + row.min(0) + column.min(0);
-            let most = start + row.max(0) + column.max(0);
+            let least = start.saturating_add(row.min(0)).saturating_add(column.min(0));
+            let most = start.saturating_add(row.max(0)).saturating_add(column.max(0));
             Some(least >= 0 && most < length as i128)
         };
         if self.rows == 0 || inside() == Some(true) {

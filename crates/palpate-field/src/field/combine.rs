@@ -209,6 +209,11 @@ impl<'a, O: Combine, const D: usize> GradientFold<'a, O, D> {
     }
 }
 
+/// How many leaves the tapes of these have together.
+pub(super) fn leaves_on_tape<const D: usize>(children: &[SharedField<D>]) -> usize {
+    children.iter().fold(0, |sum, child| sum.saturating_add(child.leaves_on_tape()))
+}
+
 /// The children moved by `pose`, if a motion may go into their operator.
 pub(super) fn placed_children<const D: usize>(
     children: &[SharedField<D>],
@@ -287,6 +292,10 @@ impl<O: Combine + Clone, const D: usize> Field<D> for Combined<O, D> {
 
     fn unplaced(&self) -> usize {
         self.children.iter().map(|child| child.unplaced()).sum()
+    }
+
+    fn leaves_on_tape(&self) -> usize {
+        leaves_on_tape(&self.children)
     }
 
     fn placed(&self, pose: &Pose<D>) -> Option<SharedField<D>> {

@@ -137,6 +137,11 @@ pub trait Field<const D: usize>: Debug + Send + Sync {
         1
     }
 
+    /// How many leaves its tape has. A shared leaf counts each time.
+    fn leaves_on_tape(&self) -> usize {
+        1
+    }
+
     /// The members, if this is a sharp union: a union of unions has them all.
     fn members(&self) -> Option<&[SharedField<D>]> {
         None

@@ -134,6 +134,10 @@ impl<M: Remap<D>, const D: usize> Field<D> for Remapped<M, D> {
         self.depth
     }
 
+    fn leaves_on_tape(&self) -> usize {
+        self.child.leaves_on_tape()
+    }
+
     fn placed(&self, _pose: &Pose<D>) -> Option<SharedField<D>> {
         None
     }

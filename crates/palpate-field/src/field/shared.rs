@@ -21,6 +21,8 @@ struct Held<F: ?Sized> {
     values: OnceLock<Box<Tape>>,
     /// The tape of the models, once recorded.
     models: OnceLock<Box<Tape>>,
+    /// Whether all tapes are recorded, also those of fields that they call.
+    prepared: OnceLock<()>,
     field: F,
 }
 
@@ -41,8 +43,8 @@ impl<const D: usize> Deref for SharedField<D> {
 impl<const D: usize> SharedField<D> {
     /// A field to be shared.
     pub(crate) fn new(field: impl Field<D> + 'static) -> Self {
-        let (values, models) = (OnceLock::new(), OnceLock::new());
-        Self(Arc::new(Held { values, models, field }))
+        let (values, models, prepared) = (OnceLock::new(), OnceLock::new(), OnceLock::new());
+        Self(Arc::new(Held { values, models, prepared, field }))
     }
 
     /// The answers in the first `count` lanes of a block; those of `out` past them are unspecified.
@@ -110,13 +112,15 @@ impl<const D: usize> SharedField<D> {
         if InstructionSet::in_use().has_loops() {
             return;
         }
-        if self.has_formula() {
-            self.tape(Purpose::Values).prepare();
-        }
-        if self.own_models().is_none() {
-            self.tape(Purpose::Models).prepare();
-        }
-        self.members().unwrap_or_default().iter().for_each(Self::prepare);
+        self.0.prepared.get_or_init(|| {
+            if self.has_formula() {
+                self.tape(Purpose::Values).prepare();
+            }
+            if self.own_models().is_none() {
+                self.tape(Purpose::Models).prepare();
+            }
+            self.members().unwrap_or_default().iter().for_each(Self::prepare);
+        });
     }
 
     /// The formula of the field at `p`. While a tape is recorded, a field without tape operations

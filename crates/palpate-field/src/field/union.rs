@@ -7,7 +7,9 @@
 //! A member is skipped only where its value is sure to be larger than the
 //! smallest, rounding included, so skipping changes no bit of the result.
 
-use super::combine::{Combine, GradientFold, Minimum, ValueFold, placed_children};
+use super::combine::{
+    Combine, GradientFold, Minimum, ValueFold, leaves_on_tape, placed_children,
+};
 use super::nearby::Nearby;
 use super::{Field, OwnModels, SharedField, depth_over};
 use crate::bounds::BoundingBall;
@@ -22,6 +24,9 @@ use crate::vector::Vector;
 /// of them, so it is evaluated without a tape.
 pub(crate) const FEW: usize = 16;
 
+/// The most leaves below a union on a tape: unions of few members within unions may have very many.
+const MOST_LEAVES: usize = 256;
+
 /// Beyond this distance from the origin [m], squares of lengths near the limits of single
 /// precision: every member is asked, as at a place that is no number.
 pub(super) const FAR: f64 = 1e15;
@@ -35,6 +40,8 @@ pub(crate) struct Union<const D: usize> {
     slack: Slack,
     promise: Promise<D>,
     depth: usize,
+    /// How many leaves its tape has; `None` if it is evaluated without a tape.
+    leaves_on_tape: Option<usize>,
 }
 
 /// How far rounding may bring a member's value below the distance to its ball: that of
@@ -69,7 +76,10 @@ impl<const D: usize> Union<D> {
             constant: rounding.constant + balls * extent,
             per_metre: rounding.per_metre + balls,
         };
-        Ok(SharedField::new(Self { members, nearby, slack, promise, depth }))
+        let leaves = leaves_on_tape(&members);
+        let is_on_tape = members.len() <= FEW && leaves <= MOST_LEAVES;
+        let leaves_on_tape = is_on_tape.then_some(leaves);
+        Ok(SharedField::new(Self { members, nearby, slack, promise, depth, leaves_on_tape }))
     }
 
     /// How far rounding may bring a value below the distance to its ball, so far from the
@@ -124,7 +134,7 @@ impl<const D: usize> Union<D> {
             for i in 1..self.members.len() {
                 let value = ask(i);
                 winner = if value < smallest { i } else { winner };
-                smallest = smallest.min(value);
+                smallest = Scalar::min(smallest, value);
             }
             return (smallest, winner);
         };
@@ -222,11 +232,15 @@ impl<const D: usize> Field<D> for Union<D> {
     }
 
     fn has_formula(&self) -> bool {
-        self.members.len() <= FEW
+        self.leaves_on_tape.is_some()
+    }
+
+    fn leaves_on_tape(&self) -> usize {
+        self.leaves_on_tape.unwrap_or(1)
     }
 
     fn own_models(&self) -> Option<&dyn OwnModels<D>> {
-        if self.members.len() > FEW { Some(self) } else { None }
+        if self.leaves_on_tape.is_none() { Some(self) } else { None }
     }
 
     fn promise(&self) -> &Promise<D> {

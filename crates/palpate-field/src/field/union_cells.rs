@@ -132,7 +132,7 @@ where
 
     /// All cells, one bit each.
     fn all(&self) -> u64 {
-        u64::MAX >> (u64::BITS as usize - self.count)
+        u64::MAX.checked_shr(u64::BITS - self.count as u32).unwrap_or(0)
     }
 
     #[inline(always)]

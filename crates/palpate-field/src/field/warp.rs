@@ -183,6 +183,10 @@ impl<M: Warp<D, E>, const D: usize, const E: usize> Field<D> for Warped<M, D, E>
         usize::from(!M::IS_MOTION)
     }
 
+    fn leaves_on_tape(&self) -> usize {
+        self.child.leaves_on_tape()
+    }
+
     fn placed(&self, pose: &Pose<D>) -> Option<SharedField<D>> {
         let map = self.map.placed(pose)?;
         let (child, promise) = (self.child.clone(), self.promise.placed(pose));

@@ -120,7 +120,7 @@ impl<S: Lane, const W: usize> Column<S, W> {
     ///
     /// # Panics
     ///
-    /// If there is no lane `i`.
+    /// If there is no lane `i`, or nothing was written to it before.
     #[inline(always)]
     pub fn set(&mut self, i: usize, number: S) {
         assert!(i < self.written, "lane {i} of {} is not written", self.written);
@@ -278,7 +278,9 @@ impl<S: Lane, const D: usize, const W: usize> Block<S, D, W> {
     #[inline(always)]
     pub fn fill(&mut self, count: usize, mut point: impl FnMut(usize) -> Vector<S, D>) {
         assert!(count <= W, "{count} points in {W} lanes");
-        let lanes = filled::<Column<S, W>>(count);
+        let lanes = if count == 0 { 0 } else { filled::<Column<S, W>>(count) };
+        // Also if `point` panics.
+        self.boxes = Boxes::No;
         let mut are_boxes = true;
         let mut put = |i: usize, point: Vector<S, D>| {
             are_boxes = are_boxes && S::is_box(&point.0);
@@ -288,7 +290,7 @@ impl<S: Lane, const D: usize, const W: usize> Block<S, D, W> {
             put(i, point(i));
         }
         for i in count..lanes {
-            put(i, point(count.max(1) - 1));
+            put(i, point(count - 1));
         }
         self.boxes = if are_boxes { Boxes::Straight } else { Boxes::No };
         for column in &mut self.columns {

@@ -15,7 +15,9 @@ use super::exponential::{log2_of_one_plus, power_of_half};
 /// two gradients.
 ///
 /// Reference: Quilez, "Smooth minimum", <https://iquilezles.org/articles/smin/>.
-pub trait Blend: Copy + Send + Sync + 'static {
+///
+/// The trait is sealed: tapes and shaders have an operation for each profile.
+pub trait Blend: sealed::Sealed + Copy + Send + Sync + 'static {
     /// The name in scene files.
     const NAME: &'static str;
 
@@ -33,6 +35,16 @@ pub trait Blend: Copy + Send + Sync + 'static {
 
     /// An upper bound of `φ''` on `[t, ∞)`.
     fn curvature(t: f64) -> f64;
+}
+
+mod sealed {
+    pub trait Sealed {}
+    impl Sealed for super::Quadratic {}
+    impl Sealed for super::Cubic {}
+    impl Sealed for super::Quartic {}
+    impl Sealed for super::Circular {}
+    impl Sealed for super::Root {}
+    impl Sealed for super::Exponential {}
 }
 
 /// The part of the reach that is left: `max(1 − t, 0)`.

@@ -19,6 +19,9 @@ thread_local! {
     static GRAPH: RefCell<Graph> = RefCell::new(Graph::default());
 }
 
+/// The most numbers that one step of a tape makes a norm of.
+const MOST_IN_A_STEP: usize = 3;
+
 /// A number of which only its formula is known: operations on it are recorded.
 ///
 /// It is valid only during the recording that made it.
@@ -208,22 +211,35 @@ impl Scalar for Recorded {
     }
 
     fn norm<const N: usize>(x: [Self; N]) -> Self {
+        if Self::purpose().is_tape() && N > MOST_IN_A_STEP {
+            // As for a float, to the bit.
+            let squares = x.map(Scalar::squared);
+            let sum = squares.into_iter().reduce(|sum, square| sum + square);
+            return sum.map_or(Self::constant(0.0), Scalar::sqrt);
+        }
         Self::new(Operation::Norm, x)
     }
 
     fn power_norm<const P: u32, const N: usize>(x: [Self; N]) -> Self {
-        if Self::purpose() == Purpose::Models && N > 1 {
+        if Self::purpose() == Purpose::Models && (2..=MOST_IN_A_STEP).contains(&N) {
             return Self::add_recipe(Recipe::Power(PowerForm::Norm, P), &x);
         }
         power::norm::<Self, P, N>(x)
     }
 
     fn orthant<const N: usize>(q: [Self; N]) -> Self {
+        if Self::purpose().is_tape() && N > MOST_IN_A_STEP {
+            // As for a float, to the bit.
+            let zero = Self::constant(0.0);
+            let largest = q.into_iter().reduce(Scalar::max).unwrap_or(zero);
+            let outside = Self::norm(q.map(|component| component.max(zero)));
+            return outside + largest.min(zero);
+        }
         Self::new(Operation::Orthant, q)
     }
 
     fn power_orthant<const P: u32, const N: usize>(q: [Self; N]) -> Self {
-        if Self::purpose() == Purpose::Models && N > 1 {
+        if Self::purpose() == Purpose::Models && (2..=MOST_IN_A_STEP).contains(&N) {
             return Self::add_recipe(Recipe::Power(PowerForm::Orthant, P), &q);
         }
         power::orthant::<Self, P, N>(q)

@@ -15,7 +15,7 @@ use std::sync::Arc;
 use crate::error::ShapeError;
 use crate::field::{Custom, CustomField, Evaluate, FromClosure, Leaf, SharedField};
 use crate::kernel::Kernel;
-use crate::machine::{Block, Column, Gradients};
+use crate::machine::{BLOCK, Block, Column, Gradients};
 use crate::node::{self, Node, Opaque, Primitive};
 use crate::pose::Pose;
 use crate::promise::Promise;
@@ -235,6 +235,10 @@ impl<const D: usize> Shape<D> {
     ///
     /// Blocks hold points in `f64`, or cells as [`Model`](crate::scalar::Model) or
     /// [`SpaceTimeModel`](crate::scalar::SpaceTimeModel).
+    ///
+    /// # Panics
+    ///
+    /// If a block has not so many lanes, or `points` has not so many that are written.
     #[inline]
     pub fn block_distances<S: Evaluate>(
         &self,
@@ -242,11 +246,16 @@ impl<const D: usize> Shape<D> {
         count: usize,
         out: &mut Column<S>,
     ) {
+        assert!(count <= BLOCK, "{count} points in {BLOCK} lanes");
         self.field.evaluate(points, count, out);
     }
 
     /// The distances and gradients in the first `count` lanes of a block; the
     /// other lanes of `out` are unspecified.
+    ///
+    /// # Panics
+    ///
+    /// As [`block_distances`](Self::block_distances).
     #[inline]
     pub fn block_gradients(
         &self,
@@ -254,6 +263,7 @@ impl<const D: usize> Shape<D> {
         count: usize,
         out: &mut Gradients<f64, D>,
     ) {
+        assert!(count <= BLOCK, "{count} points in {BLOCK} lanes");
         self.field.gradients(points, count, out);
     }
 

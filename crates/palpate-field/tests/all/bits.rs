@@ -155,6 +155,7 @@ fn every_way_to_evaluate_gives_the_same_bits() {
         partial_blocks::<3>();
         unions_are_folds::<2>(60);
         unions_are_folds::<3>(60);
+        crate::tapes::norms_have_the_bits_of_points();
         let (planar, spatial) = models.take().unwrap_or_default();
         let (planar, spatial) =
             (models_of_trees::<2>(300, &planar), models_of_trees::<3>(300, &spatial));

@@ -34,5 +34,6 @@ mod singular;
 mod slices;
 mod space_time;
 mod special_cases;
+mod tapes;
 mod threads;
 mod unions;

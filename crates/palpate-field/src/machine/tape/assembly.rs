@@ -140,12 +140,14 @@ impl Unassigned {
             Operation::Norm => match arguments.len() {
                 1 => Instruction::Norm1(self.all(arguments)),
                 2 => Instruction::Norm2(self.all(arguments)),
-                _ => Instruction::Norm3(self.all(arguments)),
+                3 => Instruction::Norm3(self.all(arguments)),
+                count => unreachable!("the norm of {count} numbers is several steps"),
             },
             Operation::Orthant => match arguments.len() {
                 1 => Instruction::Orthant1(self.all(arguments)),
                 2 => Instruction::Orthant2(self.all(arguments)),
-                _ => Instruction::Orthant3(self.all(arguments)),
+                3 => Instruction::Orthant3(self.all(arguments)),
+                count => unreachable!("an orthant of {count} numbers is several steps"),
             },
             Operation::SmoothMin { profile, unit } => {
                 Instruction::SmoothMin(self.all(arguments), Profile::of_name(profile), unit)

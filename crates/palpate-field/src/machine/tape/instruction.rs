@@ -4,7 +4,7 @@
 //! What the steps of a tape do.
 
 use crate::kernel::Evaluations;
-use crate::scalar::{Blend, Circular, Cubic, Exponential, PowerForm, Quartic, Root};
+use crate::scalar::{Blend, Circular, Cubic, Exponential, PowerForm, Quadratic, Quartic, Root};
 
 /// The number of a register; before registers are assigned, that of a step.
 pub(super) type Register = u32;
@@ -76,7 +76,8 @@ impl Profile {
             Circular::NAME => Self::Circular,
             Root::NAME => Self::Root,
             Exponential::NAME => Self::Exponential,
-            _ => Self::Quadratic,
+            Quadratic::NAME => Self::Quadratic,
+            other => unreachable!("the profile {other}"),
         }
     }
 }
