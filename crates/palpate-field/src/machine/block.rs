@@ -413,7 +413,7 @@ impl<S: Lane, const D: usize, const W: usize> RowsMut for Block<S, D, W> {
 
 impl<S: Lane + fmt::Debug, const D: usize, const W: usize> fmt::Debug for Block<S, D, W> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_list().entries(&self.columns).finish()
+        f.debug_list().entries(self.columns).finish()
     }
 }
 
