@@ -43,6 +43,7 @@ pub(crate) struct Combined<O, const D: usize> {
     children: Vec<SharedField<D>>,
     promise: Promise<D>,
     depth: usize,
+    leaves_on_tape: usize,
 }
 
 impl<O: Combine + Clone, const D: usize> Combined<O, D> {
@@ -57,7 +58,8 @@ impl<O: Combine + Clone, const D: usize> Combined<O, D> {
         promise: Promise<D>,
     ) -> Result<SharedField<D>, ShapeError> {
         let depth = depth_over(&children)?;
-        Ok(SharedField::new(Self { operation, children, promise, depth }))
+        let leaves_on_tape = leaves_on_tape(&children);
+        Ok(SharedField::new(Self { operation, children, promise, depth, leaves_on_tape }))
     }
 }
 
@@ -295,7 +297,7 @@ impl<O: Combine + Clone, const D: usize> Field<D> for Combined<O, D> {
     }
 
     fn leaves_on_tape(&self) -> usize {
-        leaves_on_tape(&self.children)
+        self.leaves_on_tape
     }
 
     fn placed(&self, pose: &Pose<D>) -> Option<SharedField<D>> {

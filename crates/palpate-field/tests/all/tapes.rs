@@ -6,6 +6,7 @@
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
+use palpate_field::operator::Profile;
 use palpate_field::scalar::{AffineModel, Model, Scalar, SpaceTimeModel};
 use palpate_field::{
     BLOCK, Block, Column, InstructionSet, Kernel, Layout, Promise, Shape, ShapeError, Strided,
@@ -97,6 +98,21 @@ fn unions_of_few_members_within_unions_are_bounded_without_a_long_tape()
     let value = shape.distance([0.0, 0.0, 1.0]);
     assert!(model.minimum() <= value && value <= model.maximum());
     Ok(())
+}
+
+/// How long a tape would be is known without counting a shared shape each time.
+#[test]
+fn intersections_of_a_shape_with_itself_are_built_at_once() -> Result<(), ShapeError> {
+    let mut shape = Shape::<3>::ball(0.5)?;
+    for level in 0..60 {
+        let other = shape.clone();
+        shape = if level % 2 == 0 {
+            Shape::intersection([shape, other])?
+        } else {
+            Shape::smooth_union([shape, other], Profile::Quadratic, 0.01)?
+        };
+    }
+    Shape::union([shape, Shape::ball(0.1)?]).map(drop)
 }
 
 /// Each field is prepared once, however many tapes call it.
