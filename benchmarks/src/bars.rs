@@ -227,4 +227,18 @@ mod tests {
             assert!(key.ends_with(".missed.ours") && *bar == 0.0, "{key}");
         }
     }
+
+    #[test]
+    fn the_document_has_every_bar() {
+        let document = include_str!("../README.md");
+        // Rows of sampled data share a cell of the document's table.
+        let bars = FIELDS.iter().chain(COLLIDE).chain(HAPTICS);
+        for (key, most) in bars.filter(|(key, _)| !key.starts_with("sampled.")) {
+            let row = document.lines().find(|line| line.starts_with(&format!("| `{key}` |")));
+            let row = row.unwrap_or_else(|| panic!("no row for {key}"));
+            let cells = row.split('|').map(|cell| cell.replace([' ', '\u{a0}'], ""));
+            let is_bar = |cell: String| cell.parse() == Ok(*most);
+            assert!(cells.into_iter().any(is_bar), "{key} is at most {most}: {row}");
+        }
+    }
 }

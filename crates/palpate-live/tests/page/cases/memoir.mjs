@@ -42,8 +42,12 @@ export default [
           `proven ${found.certified.lower} to ${found.certified.upper}, by the core ${lower} to ${upper}`);
       }
       await page.locator('.tab-checks').click();
-      await page.evaluate(async () => (await import('/plane/toys.js')).setToys({ corners: [[1.2, 0.85], [1.5, 0.4], [1.22, 0.62]] }));
-      await page.waitForTimeout(2000);
+      const shown = [[1.2, 0.85], [1.5, 0.4], [1.22, 0.62]];
+      await page.evaluate(async (corners) => (await import('/plane/toys.js')).setToys({ corners }), shown);
+      const last = await until('an answer about the triangle of the picture', () => answers.get(questions.get(JSON.stringify(shown))));
+      await until('the answer on the page', () => page.evaluate(async (lower) =>
+        (await import('/plane/toys.js')).toys.results.element?.certified.lower === lower, last.certified.lower));
+      await until('a whole picture', () => page.evaluate(async () => (await import('/panels/page.js')).page.stage.stats().isStill));
       await page.screenshot({ path: join(pictures, 'memoir.png') });
       await context.close();
     });
