@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! The project's own chores: `cargo xtask test`, `python`, `check`, `api` and `oracle`.
+//! The project's own chores: `cargo xtask test`, `python`, `check`, `api`, `lines` and `oracle`.
 
 mod api;
 mod builds;
@@ -10,6 +10,8 @@ mod code;
 mod command;
 mod layers;
 mod licences;
+#[cfg(feature = "lines")]
+mod lines;
 mod links;
 mod packages;
 mod page;
@@ -55,6 +57,11 @@ enum Chore {
     },
     /// Renew the lists of public items in docs/public-api.
     Api,
+    /// Count lines of code, without tests, comments and documentation.
+    Lines {
+        /// Another revision to count beside this one.
+        revision: Option<String>,
+    },
     /// Make testdata/recall: separations that a plain search proves; takes minutes.
     Oracle,
 }
@@ -65,6 +72,7 @@ fn main() -> ExitCode {
         Chore::Python => python::test(),
         Chore::Check { stages, thorough } => check::run(&stages, thorough),
         Chore::Api => check::document().and_then(|()| api::renew()),
+        Chore::Lines { revision } => lines(revision.as_deref()),
         Chore::Oracle => oracle(),
     };
     match result {
@@ -92,4 +100,27 @@ fn test(is_thorough: bool) -> Result<(), Failure> {
 /// other chores need not wait for the fields to be compiled.
 fn oracle() -> Result<(), Failure> {
     cargo(&["run", "--release", "--locked", "-p", "palpate-testkit", "--example", "oracle"])
+}
+
+/// Lines of code, by this program with the crates that count them.
+#[cfg(not(feature = "lines"))]
+fn lines(revision: Option<&str>) -> Result<(), Failure> {
+    let mut arguments = vec![
+        "run",
+        "--quiet",
+        "--locked",
+        "--package",
+        "xtask",
+        "--features",
+        "lines",
+        "--",
+        "lines",
+    ];
+    arguments.extend(revision);
+    cargo(&arguments)
+}
+
+#[cfg(feature = "lines")]
+fn lines(revision: Option<&str>) -> Result<(), Failure> {
+    lines::print(revision)
 }
