@@ -85,11 +85,12 @@ export function near(value, wanted, by, what) {
   check(Math.abs(value - wanted) <= by, `${what}: ${value}, wanted ${wanted} ± ${by}`);
 }
 
-/** Runs cases one after the other, and ends with 1 if one fails.
+/** Runs cases one after the other, and ends with 1 if one fails. Names the failures last, where a
+ * reader of a shortened log looks.
  * @param {[string, () => Promise<void>][]} cases */
 export async function run(cases) {
   const only = process.env.PALPATE_PAGE_ONLY;
-  let failed = 0;
+  const failures = [];
   for (const [name, work] of cases.filter(([name]) => !only || name.includes(only))) {
     const begin = Date.now();
     const late = new Promise((_, reject) => setTimeout(() => reject(new Error('took more than two minutes')), 120000).unref());
@@ -97,9 +98,10 @@ export async function run(cases) {
       await Promise.race([work(), late]);
       console.log(`ok      ${name} (${((Date.now() - begin) / 1000).toFixed(1)} s)`);
     } catch (error) {
-      failed += 1;
-      console.log(`FAILED  ${name}: ${error instanceof Error ? error.stack : error}`);
+      failures.push(`FAILED  ${name}: ${error instanceof Error ? error.stack : error}`);
+      console.log(failures.at(-1));
     }
   }
-  process.exit(failed > 0 ? 1 : 0);
+  for (const failure of failures) console.error(failure);
+  process.exit(failures.length > 0 ? 1 : 0);
 }
