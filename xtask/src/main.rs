@@ -89,10 +89,12 @@ fn test(is_thorough: bool) -> Result<(), Failure> {
     let tools = page::prepare()?;
     let tools = tools.to_string_lossy();
     let mut environment = vec![(page::VARIABLE, &*tools)];
+    let mut arguments = vec!["test", "--workspace", "--locked"];
     if is_thorough {
         environment.push(("PALPATE_SEEDS", "1"));
+        arguments.extend(["--", "--include-ignored"]);
     }
-    cargo_with(&["test", "--workspace", "--locked"], &environment)?;
+    cargo_with(&arguments, &environment)?;
     python::test()
 }
 

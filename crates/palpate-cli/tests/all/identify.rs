@@ -90,6 +90,7 @@ fn what_is_found_is_a_profile_that_devices_feel_and_identify_read() {
 }
 
 #[test]
+#[ignore = "slow: cargo xtask test --thorough"]
 fn a_number_that_cannot_be_told_is_said_and_the_status_is_1() {
     let output = palpate(&[
         "identify",

@@ -29,6 +29,7 @@ fn root() -> Folder {
 
 /// A command ends with a yes, unless a comment says "no"; each picture is new, and a PNG.
 #[test]
+#[ignore = "slow: cargo xtask test --thorough"]
 fn every_command_of_the_page_runs_and_draws_what_it_names() {
     let folder = root();
     let commands: Vec<&str> =

@@ -305,6 +305,7 @@ fn plot_without_an_answer_leaves_no_picture() {
 }
 
 #[test]
+#[ignore = "slow: cargo xtask test --thorough"]
 fn the_gallery_shows_every_primitive_on_every_plane() {
     let folder = Folder::new();
     for (map, plane) in [("distance", "yz"), ("gradient", "xy"), ("promise", "xz")] {

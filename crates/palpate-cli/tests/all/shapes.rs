@@ -109,6 +109,7 @@ fn marked<const D: usize>() -> Vec<(&'static str, Vec<String>)> {
 }
 
 #[test]
+#[ignore = "slow: cargo xtask test --thorough"]
 fn every_picture_shows_every_parameter() {
     let folder = Folder::new();
     for (name, marks) in [marked::<2>(), marked::<3>()].concat() {

@@ -351,6 +351,7 @@ fn a_wrist_without_torque_is_said_to_be_unknown() {
 }
 
 #[test]
+#[ignore = "slow: cargo xtask test --thorough"]
 fn a_hand_that_holds_the_handle_is_noticed() {
     let grips = [
         (0.1, 300.0, 5.0),

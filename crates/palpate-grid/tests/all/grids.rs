@@ -75,6 +75,7 @@ fn blocks_have_the_bits_of_points() {
 }
 
 #[test]
+#[ignore = "slow: cargo xtask test --thorough"]
 fn a_grid_is_no_steeper_than_it_promises_and_deviates_no_more() {
     for (name, shape) in solids() {
         for (kernel, store, band) in [
@@ -316,6 +317,7 @@ fn a_tolerance_chooses_the_cell() {
 }
 
 #[test]
+#[ignore = "slow: cargo xtask test --thorough"]
 fn a_grid_with_a_band_has_the_values_of_one_without_near_the_surface() {
     let shape = Shape::sphere(0.4).unwrap();
     for kernel in KERNELS {
@@ -350,6 +352,7 @@ fn notched(notch: f64) -> Shape<2> {
 }
 
 #[test]
+#[ignore = "slow: cargo xtask test --thorough"]
 fn a_region_made_again_has_the_samples_of_a_new_grid() {
     let ball = Shape::sphere(0.1).unwrap();
     let cuboid = Shape::cuboid([0.8, 0.5, 0.5]).unwrap();

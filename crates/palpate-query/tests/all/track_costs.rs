@@ -147,6 +147,7 @@ fn table<const D: usize>(pairs: &[Pair<D>], pose: impl Fn(f64, f64) -> Pose<D>) 
 }
 
 #[test]
+#[ignore = "slow: cargo xtask test --thorough"]
 fn following_a_pair_costs_at_most_what_a_search_anew_costs() -> Result<(), ShapeError> {
     let mut wrong = table(&in_space()?, |way, turn| {
         let rotation = Rotation::from_axis_angle([0.6, 0.8, 0.0], turn).unwrap();

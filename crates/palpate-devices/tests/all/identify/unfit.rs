@@ -38,6 +38,7 @@ fn a_hand_too_soft_to_be_noticed_leaves_no_number_that_is_seen() {
 /// Once no numbers fitted for this seed: the first fit ended at a friction of zero, of which the next
 /// took its steps.
 #[test]
+#[ignore = "slow: cargo xtask test --thorough"]
 fn a_device_without_friction_is_identified() {
     let profile = profile_named("omega").unwrap().with_friction(0.0);
     let options = IdentifyOptions::new(1000.0).with_seed(1);
