@@ -39,7 +39,7 @@ struct Arguments {
 enum Chore {
     /// Run every test of every language in the repository.
     Test {
-        /// Take every seed of the property tests, ten times as many as usual.
+        /// Take every seed of the property tests, ten times as many as usual, and run the slow tests.
         #[arg(long)]
         thorough: bool,
     },
