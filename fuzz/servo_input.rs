@@ -4,13 +4,15 @@
 //! What must hold for a servo, whatever a device, a physics engine and a user send it.
 
 use arbitrary::{Result, Unstructured};
+use palpate_device::{DeviceProfile, PointState};
 use palpate_field::kernel::{Ball, Cuboid, HalfSpace};
 use palpate_field::{Point, Pose, Rotation, Shape, Vector};
 use palpate_haptics::{
-    Bodies, Body, DeviceProfile, Guide, GuideOptions, Material, PointState, Probe, Protection,
-    Recovery, Renderer, Servo, ServoOptions, Surface, Touch, UnprotectedServo,
+    Bodies, Body, Guide, GuideOptions, Material, Probe, Protection, Renderer, Servo,
+    ServoOptions, Surface, Touch, Unprotected,
 };
 use palpate_haptics::{Impact, Layer, Magnet, PopThrough, Texture, TextureKind};
+use palpate_safety::Recovery;
 
 /// Numbers that break what is not ready for them.
 const JUNK: [f64; 16] = [
@@ -196,7 +198,7 @@ where
 /// A servo with or without a safety chain.
 enum AnyServo<const D: usize> {
     Protected(Box<Servo<D>>),
-    Unprotected(Box<UnprotectedServo<D>>),
+    Unprotected(Box<Servo<D, Unprotected>>),
 }
 
 /// Does the same with either kind of servo.
@@ -239,7 +241,7 @@ where
         .with_rise_time(*u.choose(&[1e-9, 0.1])?)
         .with_rate(*u.choose(&[1000.0, 10.0, 1e5])?);
     let points = *u.choose(&[1, 2, 5, 24])?;
-    let mut servo = UnprotectedServo::new(bodies(u, pops)?, points, options).expect("options");
+    let mut servo = Servo::new(bodies(u, pops)?, points, options).expect("options");
     if u.ratio(1, 3)? {
         let options = GuideOptions::default();
         if let Ok(guide) = Guide::to_point(vector(u)? * 0.05, options) {
@@ -256,7 +258,7 @@ where
             .with_friction(0.2)
             .with_encoder_step(*u.choose(&[0.0, 2e-5])?);
         let recovery = *u.choose(&[Recovery::Rise, Recovery::OnceOut])?;
-        let protection = Protection::new(profile).with_recovery(recovery);
+        let protection = Protection::new(profile).with(|s| s.recovery = recovery);
         let servo = servo.protected(&protection).expect("a profile");
         return Ok(AnyServo::Protected(Box::new(servo)));
     }

@@ -6,7 +6,7 @@
 //!
 //! The list is taken from the pages that rustdoc made: those name what a user can reach.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
@@ -16,24 +16,26 @@ use crate::command::{Failure, root};
 const CRATES: &[&str] = &[
     "palpate",
     "palpate-cli",
-    "palpate-devices",
+    "palpate-device",
     "palpate-field",
     "palpate-grid",
     "palpate-haptics",
     "palpate-local",
-    "palpate-loop",
-    "palpate-material",
     "palpate-mesh",
     "palpate-plot",
     "palpate-query",
     "palpate-render",
     "palpate-safety",
     "palpate-scene",
+    "palpate-sim",
     "palpate-vibration",
 ];
 
 /// Where a page stops to show what the item itself declares.
 const END_OF_OWN: &str = "id=\"trait-implementations\"";
+
+/// The kinds of items that are types.
+const TYPES: &[&str] = &["struct", "enum", "union", "trait", "type"];
 
 /// What the ids of members begin with.
 const MEMBERS: &[&str] = &[
@@ -48,8 +50,13 @@ const MEMBERS: &[&str] = &[
 /// Fails if the documentation of a crate names other items than its list.
 pub(crate) fn check() -> Result<(), Failure> {
     let mut failures = Vec::new();
+    let mut types = BTreeMap::new();
     for name in CRATES {
         let (now, path) = (listing(&pages(name))?, list(name));
+        // The facade exports the types of the others.
+        if *name != "palpate" {
+            failures.extend(shared_names(&mut types, name, &now));
+        }
         let kept = std::fs::read_to_string(&path).unwrap_or_default();
         failures.extend(difference(&kept, &now).map(|difference| {
             Failure(format!(
@@ -59,6 +66,28 @@ pub(crate) fn check() -> Result<(), Failure> {
         }));
     }
     Failure::any(failures)
+}
+
+/// The types of a crate that have the name of a type in `types`, where those of the other crates are
+/// with their crate. Adds the types of the crate.
+fn shared_names(
+    types: &mut BTreeMap<String, &'static str>,
+    name: &'static str,
+    list: &str,
+) -> Vec<String> {
+    let mut shared = Vec::new();
+    for line in list.lines() {
+        let Some((kind, path)) = line.split_once(' ') else { continue };
+        if !TYPES.contains(&kind) {
+            continue;
+        }
+        let last = path.rsplit("::").next().unwrap_or(path);
+        if let Some(other) = types.get(last).filter(|other| **other != name) {
+            shared.push(format!("{name} and {other} both have a public type {last}"));
+        }
+        types.insert(last.to_owned(), name);
+    }
+    shared
 }
 
 /// Writes the lists.
@@ -239,6 +268,17 @@ mod tests {
         let gone = difference(added, kept);
         let said = "has `method radius` of `struct Ball`, which is gone";
         assert_eq!(gone.as_deref(), Some(said));
+    }
+
+    #[test]
+    fn two_types_of_one_name_are_refused() {
+        let mut types = BTreeMap::new();
+        assert!(
+            shared_names(&mut types, "palpate-plot", "struct Body\n    method new\n")
+                .is_empty()
+        );
+        let shared = shared_names(&mut types, "palpate-render", "use Body\nenum cut::Body\n");
+        assert_eq!(shared, ["palpate-render and palpate-plot both have a public type Body"]);
     }
 
     #[test]

@@ -6,7 +6,7 @@
 use std::time::Instant;
 
 use crate::command::{Failure, cargo, cargo_with, metadata, root};
-use crate::{api, builds, code, layers, licences, links, packages, sizes, sources, words};
+use crate::{api, builds, code, layers, licences, links, packages, sources, words};
 
 type Stage = (&'static str, fn() -> Result<(), Failure>);
 
@@ -16,7 +16,6 @@ const STAGES: &[Stage] = &[
     ("sources", sources::check),
     ("words", words::check),
     ("links", links::check),
-    ("sizes", sizes::check),
     ("layers", || layers::check(&metadata()?, &architecture()?)),
     ("dependencies", builds::dependencies),
     ("licences", || licences::check(&metadata()?)),

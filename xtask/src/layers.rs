@@ -8,18 +8,17 @@ use serde_json::Value;
 use crate::command::Failure;
 
 /// The crates from the lowest layer to the highest.
-const LAYERS: [&str; 20] = [
+const LAYERS: [&str; 19] = [
     "palpate-field",
     "palpate-mesh",
     "palpate-grid",
     "palpate-query",
     "palpate-local",
-    "palpate-safety",
-    "palpate-material",
-    "palpate-haptics",
+    "palpate-device",
     "palpate-vibration",
-    "palpate-loop",
-    "palpate-devices",
+    "palpate-sim",
+    "palpate-safety",
+    "palpate-haptics",
     "palpate-scene",
     "palpate-plot",
     "palpate-render",

@@ -16,7 +16,6 @@ mod links;
 mod packages;
 mod page;
 mod python;
-mod sizes;
 mod sources;
 mod tree;
 mod words;
@@ -45,7 +44,7 @@ enum Chore {
     },
     /// Build the wheel for Python and run its tests, as `test` does at its end.
     Python,
-    /// Check formatting, sources, words, links, sizes, layers, licences, packages, lints,
+    /// Check formatting, sources, words, links, layers, licences, packages, lints,
     /// documentation, the list of public items, and that the core compiles without a system.
     Check {
         /// The stages to run; all but `code` if none is named.

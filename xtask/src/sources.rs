@@ -1,15 +1,12 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! Rules on Rust files: their length, how they begin, and where `unsafe` may be.
+//! Rules on Rust files: how they begin, and where `unsafe` may be.
 
 use std::path::Path;
 
 use crate::command::Failure;
 use crate::tree::{self, Text};
-
-/// The longest a source file may be.
-const MOST_LINES: usize = 600;
 
 /// How every Rust file begins.
 const HEADER: &str = "// SPDX-FileCopyrightText: The palpate authors\n\
@@ -55,10 +52,6 @@ pub(crate) fn check() -> Result<(), Failure> {
 fn problems(path: &Path, text: &str) -> Vec<String> {
     let shown = path.display();
     let mut wrong = Vec::new();
-    let lines = text.lines().count();
-    if lines > MOST_LINES {
-        wrong.push(format!("{shown} has {lines} lines, {MOST_LINES} at most"));
-    }
     if !text.starts_with(HEADER) {
         wrong.push(format!("{shown} does not begin with the two SPDX lines"));
     }
@@ -110,13 +103,6 @@ mod tests {
     fn a_good_file_has_no_problem() {
         let body = "//! Unsafe is a word.\nfn f() {} // unsafe { } is not here\n";
         assert_eq!(of("crates/a/src/lib.rs", body), [""; 0]);
-        assert_eq!(of("a.rs", &"\n".repeat(MOST_LINES - 2)), [""; 0]);
-    }
-
-    #[test]
-    fn a_long_file_is_refused() {
-        let wrong = of("a.rs", &"\n".repeat(MOST_LINES - 1));
-        assert_eq!(wrong, ["a.rs has 601 lines, 600 at most"]);
     }
 
     #[test]

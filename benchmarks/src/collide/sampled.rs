@@ -6,7 +6,7 @@
 use std::error::Error;
 
 use palpate::field::Shape;
-use palpate::grid::{Grid, GridOptions, Kernel};
+use palpate::grid::{Grid, GridKernel, GridOptions};
 use palpate::mesh::{ContourOptions, Solid, TriangleMesh};
 use palpate::query::separation;
 
@@ -35,8 +35,8 @@ pub(super) fn measure(rows: &mut TimedRows) -> Result<(), Box<dyn Error>> {
     let mesh = TriangleMesh::of_shape(&s3, &ContourOptions::with_cell(2.0 * cell))?;
     let bodies: [(&str, Shape<3>); 4] = [
         ("S3", s3.clone()),
-        ("trilinear", baked(Kernel::Trilinear)?.into()),
-        ("quadratic", baked(Kernel::Quadratic)?.into()),
+        ("trilinear", baked(GridKernel::Trilinear)?.into()),
+        ("quadratic", baked(GridKernel::Quadratic)?.into()),
         ("mesh", Solid::from_mesh(&mesh)?.0.into()),
     ];
     // A grid and a mesh of S3 are where S3 is, nearly.

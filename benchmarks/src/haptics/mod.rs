@@ -16,10 +16,11 @@ mod tool;
 use std::error::Error;
 use std::hint::black_box;
 
+use palpate::device::PointState;
 use palpate::field::{Point, Shape, Vector, kernel::Ball};
 use palpate::grid::{Grid, GridOptions};
 use palpate::haptics::{
-    Bodies, Body, Material, PointState, Probe, ServoOptions, Surface, UnprotectedServo,
+    Bodies, Body, Material, Probe, Servo, ServoOptions, Surface, Unprotected,
 };
 
 use crate::fields::Rows;
@@ -127,7 +128,7 @@ fn state(path: &[Point<3>], tick: usize) -> PointState<3> {
 }
 
 /// A servo of one body with friction.
-fn servo(shape: &Shape<3>, points: usize) -> Result<UnprotectedServo<3>, Box<dyn Error>> {
+fn servo(shape: &Shape<3>, points: usize) -> Result<Servo<3, Unprotected>, Box<dyn Error>> {
     let material = Material {
         stiffness: 1000.0,
         static_friction: 0.5,
@@ -137,5 +138,5 @@ fn servo(shape: &Shape<3>, points: usize) -> Result<UnprotectedServo<3>, Box<dyn
     let body = Body::new(shape.clone(), Surface::new(&material)?)?;
     let probe = Probe::new(PROBE)?;
     let options = ServoOptions::default().with_probe(probe).with_max_force(f64::INFINITY);
-    Ok(UnprotectedServo::new(Bodies::new(vec![body])?, points, options)?)
+    Ok(Servo::new(Bodies::new(vec![body])?, points, options)?)
 }

@@ -9,7 +9,7 @@ use std::time::Instant;
 
 use palpate::field::kernel::Ball;
 use palpate::field::{BLOCK, Block, Column, CustomField as _, Point, Shape, Vector};
-use palpate::grid::{Grid, GridOptions, Kernel};
+use palpate::grid::{Grid, GridKernel, GridOptions};
 use palpate::mesh::{Solid, TriangleMesh};
 use rayon::iter::{IntoParallelRefIterator as _, ParallelIterator as _};
 
@@ -33,7 +33,7 @@ pub(super) fn measure(
     let (solid, _) = Solid::from_mesh(mesh)?;
     let solid: Shape<3> = solid.into();
     let options = GridOptions::with_cell(longest(mesh) / CELLS);
-    let trilinear = Grid::bake(&solid, &options.clone().with_kernel(Kernel::Trilinear))?;
+    let trilinear = Grid::bake(&solid, &options.clone().with_kernel(GridKernel::Trilinear))?;
     let plain = Plain::of(&trilinear);
     let quadratic: Shape<3> = Grid::bake(&solid, &options)?.into();
     let trilinear: Shape<3> = trilinear.into();

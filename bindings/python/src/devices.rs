@@ -3,7 +3,7 @@
 
 //! The profiles of devices.
 
-use palpate::devices::PROFILES;
+use palpate::device::PROFILES;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 

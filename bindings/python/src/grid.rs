@@ -4,7 +4,7 @@
 //! Shapes sampled on grids.
 
 use palpate::field::{Shape, Vector};
-use palpate::grid::{Grid, GridOptions, Kernel, Lattice, Resolution, Store};
+use palpate::grid::{Grid, GridKernel, GridOptions, Lattice, Resolution, Store};
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 
@@ -62,7 +62,7 @@ impl PyShape {
             }
         };
         let mut options = GridOptions::with_resolution(resolution);
-        options.kernel = named("kernel", kernel, Kernel::ALL.map(|own| (own.name(), own)))?;
+        options.kernel = named("kernel", kernel, GridKernel::ALL.map(|own| (own.name(), own)))?;
         options.store = named("store", store, Store::ALL.map(|own| (own.name(), own)))?;
         options.band = band;
         options.most_nodes = most_nodes.unwrap_or(MOST_NODES);
@@ -99,7 +99,7 @@ pub(crate) fn from_samples(
     origin: Option<&Bound<'_, PyAny>>,
     kernel: &str,
 ) -> PyResult<PyShape> {
-    let kernel = named("kernel", kernel, Kernel::ALL.map(|own| (own.name(), own)))?;
+    let kernel = named("kernel", kernel, GridKernel::ALL.map(|own| (own.name(), own)))?;
     let (array, counts) = along_the_first(samples)?;
     let values = array.as_doubles()?;
     match counts[..] {
@@ -124,7 +124,7 @@ fn of_samples<const D: usize>(
     values: &[f64],
     cell: f64,
     origin: Option<&Bound<'_, PyAny>>,
-    kernel: Kernel,
+    kernel: GridKernel,
     py: Python<'_>,
 ) -> PyResult<PyShape>
 where

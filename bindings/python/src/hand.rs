@@ -3,10 +3,11 @@
 
 //! Simulated devices in hands, as the program makes them.
 
-use palpate::devices::{Device, Hand, HandPath, Interpolation, SimulatedDevice, profile_named};
+use palpate::device::{Device, profile_named};
 use palpate::field::Vector;
 use palpate::hands::{HandWay, swing};
 use palpate::scene::{BuiltScene, BuiltTool};
+use palpate::sim::{Hand, HandPath, Interpolation, SimulatedDevice};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 

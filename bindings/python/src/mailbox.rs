@@ -5,9 +5,9 @@
 
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-use palpate::devices::{Device, Mailbox, MailboxDevice, profile_named};
+use palpate::device::PointState;
+use palpate::device::{Device, Mailbox, MailboxDevice, profile_named};
 use palpate::field::Vector;
-use palpate::haptics::PointState;
 use pyo3::exceptions::{PyRuntimeError, PyTypeError, PyValueError};
 use pyo3::prelude::*;
 

@@ -9,7 +9,7 @@ use std::sync::Arc;
 use palpate::field::{Aabb, Point, Pose, Shape, Vector};
 use palpate::grid::{Inside, Volume};
 use palpate::mesh::{
-    ContourOptions, FittedMesh, Format, Mesh, Outline, Report, Sheet, Solid, TriangleMesh,
+    ContourOptions, FittedMesh, Format, Mesh, MeshSheet, Outline, Report, Solid, TriangleMesh,
     read_file,
 };
 use palpate::query::{ElementMemory, PlacedMesh, Query, Undecided};
@@ -259,7 +259,7 @@ impl PyMesh {
                     Ok(Shape::from(solid.0).into())
                 }
                 Some(thickness) => {
-                    let work = move || Sheet::from_mesh(&mesh, thickness);
+                    let work = move || MeshSheet::from_mesh(&mesh, thickness);
                     Ok(Shape::from(abandonable(py, work)?.or_raise(py)?).into())
                 }
             }

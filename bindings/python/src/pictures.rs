@@ -7,7 +7,7 @@ use std::path::PathBuf;
 use std::sync::atomic::Ordering;
 
 use palpate::field::{Aabb, Shape, Vector};
-use palpate::plot::{Figure, Isolines, Sampling, Slice, View};
+use palpate::plot::{Figure, Isolines, PlaneView, Sampling, Slice};
 use palpate::render::{Camera, Image, Lens, Settings, Sight, Subject, render};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -260,7 +260,7 @@ fn figure(
         AnyShape::Planar(shape) => {
             let Aabb { min, max } = shown(shape);
             let slice = Slice::planar();
-            let view = View::from_bounds(min.0, max.0, MARGIN).or_raise(py)?;
+            let view = PlaneView::from_bounds(min.0, max.0, MARGIN).or_raise(py)?;
             detached(py, || isolines(shape, &slice, &view, samples, |st| st))?.or_raise(py)?
         }
         AnyShape::Spatial(shape) => {
@@ -275,7 +275,7 @@ fn figure(
                 }
             };
             let slice = slice.or_raise(py)?;
-            let view = View::of_box(&slice, min.0, max.0, MARGIN).or_raise(py)?;
+            let view = PlaneView::of_box(&slice, min.0, max.0, MARGIN).or_raise(py)?;
             detached(py, || isolines(shape, &slice, &view, samples, |st| slice.point(st)))?
                 .or_raise(py)?
         }
@@ -292,7 +292,7 @@ fn shown<const D: usize>(shape: &Shape<D>) -> Aabb<D> {
 fn isolines<const D: usize>(
     shape: &Shape<D>,
     slice: &Slice,
-    view: &View,
+    view: &PlaneView,
     samples: usize,
     place: impl Fn([f64; 2]) -> [f64; D],
 ) -> Result<Isolines, palpate::plot::PlotError> {

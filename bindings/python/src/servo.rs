@@ -373,7 +373,7 @@ impl Asked<'_, '_> {
                 simulated(scene, &name, self.hand, tour, py)?
             }
         };
-        let settings = ServoSettings::default().with_rate(self.rate);
+        let settings = ServoSettings { rate: self.rate, ..ServoSettings::default() };
         let made = self.rows(device.points()).and_then(|rows| {
             Ok((rows, scene.servo_with(device.as_ref(), settings).or_raise(py)?))
         });

@@ -6,7 +6,7 @@
 
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 
-use palpate::devices::Device;
+use palpate::device::Device;
 use palpate::haptics::{Event, Servo, Snapshot};
 use palpate::scene::BuiltScene;
 use palpate::servo_loop::{

@@ -5,8 +5,8 @@
 
 use palpate::field::{Pose, Screw, Shape};
 use palpate::query::{
-    BodyId, FirstTouch, Impact, Motion, Moving, Neighbours, Query, Start, SweepSettings, World,
-    WorldSettings,
+    BodyId, BodyImpact, FirstTouch, Motion, Moving, Neighbours, Query, Start, SweepSettings,
+    World, WorldSettings,
 };
 use palpate::scene::{AnyScene, BuiltScene};
 use pyo3::prelude::*;
@@ -259,11 +259,11 @@ where
         Ok::<_, palpate::Error>(world.first_impact(&motions, &settings)?)
     })?;
     let found = found.or_raise(py)?;
-    let told = |Impact { bodies: [a, b], touch, .. }: &Impact<D>| {
+    let told = |BodyImpact { bodies: [a, b], touch, .. }: &BodyImpact<D>| {
         first_touch(py, touch)?
             .with("a", named.name(*a))?
             .with("b", named.name(*b))?
-            .of_class("Impact")
+            .of_class("BodyImpact")
     };
     found.iter().map(told).collect()
 }

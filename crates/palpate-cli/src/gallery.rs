@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 use indicatif::{ProgressBar, ProgressStyle};
 use palpate::field::catalogue::Entry;
 use palpate::field::{Aabb, Shape, Vector};
-use palpate::plot::{Figure, Isolines, PlotError, Sampling, Slice, View};
+use palpate::plot::{Figure, Isolines, PlaneView, PlotError, Sampling, Slice};
 use palpate::scene::{AnyScene, Scene};
 use rayon::prelude::*;
 use serde_json::json;
@@ -220,7 +220,7 @@ impl<const D: usize> Specimen<D> {
         let view = Dimensions::view(&plane, &bounds, picture::MARGIN)?;
         let longest = bounds.half_extents().0.into_iter().fold(0.0, f64::max);
         let side = 2.0 * (1.0 + 2.0 * MARGIN) * longest;
-        let view = View::new(view.center(), side, side)?;
+        let view = PlaneView::new(view.center(), side, side)?;
         let isolines = picture::isolines(&self.shape, &plane, &view, sampling)?;
         let watch = || !work.interrupt.is_asked();
         let colours = Colours { map: work.options.map, grid, watch: &watch };

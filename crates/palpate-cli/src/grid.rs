@@ -7,7 +7,7 @@ use std::io::Write;
 use std::ops::ControlFlow;
 
 use palpate::field::Shape;
-use palpate::grid::{Grid, GridError, GridFileProblem, Progress};
+use palpate::grid::{Grid, GridError, GridFileProblem, GridProgress};
 use palpate::scene::{AnyScene, BuiltScene};
 use serde_json::json;
 
@@ -60,7 +60,7 @@ fn grid<const D: usize>(
     interrupt: &Interrupt,
 ) -> Result<Option<Grid<D>>, Failure> {
     let shown = progress::Progress::of("sampling");
-    let progress = |Progress { done, of, cell }: Progress| {
+    let progress = |GridProgress { done, of, cell }: GridProgress| {
         shown.show(done, of, format_args!("cells of {} m", rounded(cell)));
         if interrupt.is_asked() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     };

@@ -5,8 +5,8 @@
 
 use std::path::Path;
 
-use palpate::devices::{HandPath, Interpolation};
 use palpate::field::Vector;
+use palpate::sim::{HandPath, Interpolation};
 
 use crate::outcome::Failure;
 use crate::table::{Table, coordinates};

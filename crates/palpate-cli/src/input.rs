@@ -9,13 +9,13 @@ use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
 
-use palpate::devices::DeviceError;
 use palpate::field::{Aabb, LARGEST_LENGTH, Shape, Vector};
 use palpate::local::GradientMethod;
 use palpate::mesh::Opening;
 use palpate::scene::{
     AnyScene, BuiltMesh, BuiltScene, Resources, Scene, SceneError, unknown_name, utf8,
 };
+use palpate::sim::SimulationError;
 
 use crate::kind::Kind;
 use crate::numbers::rounded;
@@ -279,7 +279,7 @@ pub(crate) fn joined(numbers: &[f64]) -> String {
 
 /// The box around all bounded bodies of a scene.
 pub(crate) fn bounds<const D: usize>(scene: &BuiltScene<D>) -> Result<Aabb<D>, Failure> {
-    scene.bounds().ok_or_else(|| Failure::input(DeviceError::NoBounds))
+    scene.bounds().ok_or_else(|| Failure::input(SimulationError::NoBounds))
 }
 
 /// The longest edge of a box [m].

@@ -7,8 +7,8 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use palpate::field::{Aabb, Vector};
-use palpate::plot::{Figure, Isolines, Measured, PlotError, Sampling, Slice, View};
-use palpate::scene::{AnyScene, BuiltScene, View as SceneView};
+use palpate::plot::{Figure, Isolines, Measured, PlaneView, PlotError, Sampling, Slice};
+use palpate::scene::{AnyScene, BuiltScene, WrittenView};
 use serde_json::{Value, json};
 
 use crate::arguments::{PlotMap, PlotOptions};
@@ -100,7 +100,7 @@ struct Plot<'a, const D: usize> {
     scene: &'a BuiltScene<D>,
     window: Window<D>,
     /// The view of the scene that was asked for.
-    named: Option<&'a SceneView>,
+    named: Option<&'a WrittenView>,
     touched: Option<Touched<D>>,
     compared: Compared<'a, D>,
 }
@@ -132,14 +132,14 @@ where
     }
 
     /// The window of the picture; what a view of the scene leaves out shows the whole scene.
-    fn view(&self, plane: &Slice) -> Result<View, Failure> {
+    fn view(&self, plane: &Slice) -> Result<PlaneView, Failure> {
         let whole = Dimensions::view(plane, &self.window.bounds, self.window.margin);
         let whole = whole.map_err(Failure::input)?;
         let Some(named) = self.named else { return Ok(whole) };
         let centre = named.center.unwrap_or(whole.center());
         let width = named.width.unwrap_or(whole.width());
         let height = named.height.unwrap_or(whole.height());
-        View::new(centre, width, height).map_err(Failure::input)
+        PlaneView::new(centre, width, height).map_err(Failure::input)
     }
 
     /// The distance between isolines, if one is asked for [m].
@@ -183,7 +183,7 @@ where
     fn isolines(
         &self,
         plane: &Slice,
-        view: &View,
+        view: &PlaneView,
         interrupt: &Interrupt,
     ) -> Result<Option<Isolines>, PlotError> {
         let isolines = picture::scene(self.scene, plane, view)?;

@@ -4,7 +4,7 @@
 //! Scenes at a time, and their views.
 
 use palpate::plot::Slice;
-use palpate::scene::{BuiltScene, View, ViewPlane};
+use palpate::scene::{BuiltScene, ViewPlane, WrittenView};
 
 use crate::outcome::Failure;
 use crate::output;
@@ -24,7 +24,7 @@ pub(crate) fn at<const D: usize>(
 pub(crate) fn named<'a, const D: usize>(
     scene: &'a BuiltScene<D>,
     name: &str,
-) -> Result<&'a View, Failure> {
+) -> Result<&'a WrittenView, Failure> {
     scene.views.iter().find(|view| view.name == name).ok_or_else(|| {
         let names: Vec<_> = scene.views.iter().map(|view| format!("{:?}", view.name)).collect();
         Failure::input(if names.is_empty() {
@@ -36,7 +36,7 @@ pub(crate) fn named<'a, const D: usize>(
 }
 
 /// The plane of a view, in a scene in space.
-pub(crate) fn plane(view: &View) -> Result<Slice, Failure> {
+pub(crate) fn plane(view: &WrittenView) -> Result<Slice, Failure> {
     let at = view.at.unwrap_or(0.0);
     match &view.plane {
         None | Some(ViewPlane::Xy) => Slice::xy(at),

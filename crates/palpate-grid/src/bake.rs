@@ -21,7 +21,7 @@ use crate::options::{GridOptions, Resolution};
 use crate::samples::{
     BRICK, Brick, Codes, Order, Samples, Store, WIDE, strides, wide_brick, wide_node,
 };
-use crate::spline::{Kernel, OfTaps, QUADRATIC, Spline, TRILINEAR};
+use crate::spline::{GridKernel, OfTaps, QUADRATIC, Spline, TRILINEAR};
 use crate::threads::each;
 
 /// Nodes that one thread samples in a row.
@@ -47,7 +47,7 @@ const ENOUGH: f64 = 0.25;
 
 /// How far a grid is made.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Progress {
+pub struct GridProgress {
     /// The size of a cell of the grid that is made now [m]; for a tolerance, cells grow smaller from try to try.
     pub cell: f64,
     /// Pieces of work done.
@@ -76,7 +76,7 @@ impl<const D: usize> Grid<D> {
     pub fn bake_with(
         shape: &Shape<D>,
         options: &GridOptions,
-        progress: &(dyn Fn(Progress) -> ControlFlow<()> + Sync),
+        progress: &(dyn Fn(GridProgress) -> ControlFlow<()> + Sync),
     ) -> Result<Self, GridError> {
         let mut grid = Self::made_of(shape, options, progress)?;
         grid.source = Some(Arc::new((shape.clone(), options.clone())));
@@ -86,7 +86,7 @@ impl<const D: usize> Grid<D> {
     fn made_of(
         shape: &Shape<D>,
         options: &GridOptions,
-        progress: &(dyn Fn(Progress) -> ControlFlow<()> + Sync),
+        progress: &(dyn Fn(GridProgress) -> ControlFlow<()> + Sync),
     ) -> Result<Self, GridError> {
         options.check()?;
         let bounds = shape.promise().bounds.ok_or(GridError::Unbounded)?.aabb;
@@ -183,7 +183,7 @@ impl<const D: usize> Grid<D> {
     ///
     /// ```
     /// use palpate_field::{CustomField, Vector};
-    /// use palpate_grid::{Grid, Kernel, Lattice, Store};
+    /// use palpate_grid::{Grid, GridKernel, Lattice, Store};
     ///
     /// # fn main() -> Result<(), palpate_grid::GridError> {
     /// // |x| + |y| − 1, which is √2 times as steep as a distance.
@@ -195,7 +195,7 @@ impl<const D: usize> Grid<D> {
     ///         samples.push(p[0].abs() + p[1].abs() - 1.0);
     ///     }
     /// }
-    /// let grid = Grid::from_samples(lattice, &samples, Kernel::Trilinear, Store::F32)?;
+    /// let grid = Grid::from_samples(lattice, &samples, GridKernel::Trilinear, Store::F32)?;
     /// assert_eq!(grid.distance(Vector([0.75, 1.0])), 0.75);
     /// assert!((grid.promise().lipschitz - 2.0_f64.sqrt()).abs() < 1e-9);
     /// # Ok(())
@@ -209,7 +209,7 @@ impl<const D: usize> Grid<D> {
     pub fn from_samples(
         lattice: Lattice<D>,
         samples: &[f64],
-        kernel: Kernel,
+        kernel: GridKernel,
         store: Store,
     ) -> Result<Self, GridError> {
         GridOptions::with_cell(lattice.cell).check()?;
@@ -238,8 +238,8 @@ impl<const D: usize> Grid<D> {
         let certificates = each(samples.bricks.iter().product(), |number| {
             let brick = unravelled(number, samples.bricks);
             Ok(match kernel {
-                Kernel::Quadratic => cells.of_brick::<QUADRATIC>(&samples, brick),
-                Kernel::Trilinear => cells.of_brick::<TRILINEAR>(&samples, brick),
+                GridKernel::Quadratic => cells.of_brick::<QUADRATIC>(&samples, brick),
+                GridKernel::Trilinear => cells.of_brick::<TRILINEAR>(&samples, brick),
             })
         })?;
         Self::assemble(lattice, kernel, samples, certificates, Known::default())
@@ -286,8 +286,8 @@ impl<const D: usize> Grid<D> {
             progress: &|_| ControlFlow::Continue(()),
         };
         *self = match self.kernel() {
-            Kernel::Quadratic => bake.again::<QUADRATIC>(self, region)?,
-            Kernel::Trilinear => bake.again::<TRILINEAR>(self, region)?,
+            GridKernel::Quadratic => bake.again::<QUADRATIC>(self, region)?,
+            GridKernel::Trilinear => bake.again::<TRILINEAR>(self, region)?,
         };
         Ok(())
     }
@@ -311,14 +311,14 @@ struct Bake<'a, const D: usize> {
     cell: f64,
     /// Cells around the bounds on each side.
     around: f64,
-    progress: &'a (dyn Fn(Progress) -> ControlFlow<()> + Sync),
+    progress: &'a (dyn Fn(GridProgress) -> ControlFlow<()> + Sync),
 }
 
 impl<const D: usize> Bake<'_, D> {
     fn grid(&self) -> Result<Grid<D>, GridError> {
         match self.options.kernel {
-            Kernel::Quadratic => self.grid_of::<QUADRATIC>(),
-            Kernel::Trilinear => self.grid_of::<TRILINEAR>(),
+            GridKernel::Quadratic => self.grid_of::<QUADRATIC>(),
+            GridKernel::Trilinear => self.grid_of::<TRILINEAR>(),
         }
     }
 
@@ -336,7 +336,11 @@ impl<const D: usize> Bake<'_, D> {
         };
         let step = || {
             let done = done.fetch_add(1, Ordering::Relaxed) + 1;
-            match (self.progress)(Progress { cell: self.cell, done, of: pieces + 2 * count }) {
+            match (self.progress)(GridProgress {
+                cell: self.cell,
+                done,
+                of: pieces + 2 * count,
+            }) {
                 ControlFlow::Continue(()) => Ok(()),
                 ControlFlow::Break(()) => Err(GridError::Stopped),
             }

@@ -10,7 +10,7 @@ use palpate_field::{Aabb, Point, Vector, Wide, wide};
 use crate::grid::Grid;
 use crate::samples::{Code, Codes, Window, row_place};
 use crate::spline::{
-    Kernel, MOST_ROWS, Number, OfTaps, QUADRATIC, Spline, TRILINEAR, value, value_slope,
+    GridKernel, MOST_ROWS, Number, OfTaps, QUADRATIC, Spline, TRILINEAR, value, value_slope,
 };
 
 /// Points whose samples are gathered together, and as many numbers as go side by side.
@@ -85,8 +85,8 @@ impl<const D: usize> Grid<D> {
     fn values_of<T: Code>(&self, codes: &[T], points: &[Point<D>], values: &mut [f64]) {
         let job = Job { grid: self, codes, points };
         match self.kernel() {
-            Kernel::Quadratic => wide(Values::<T, QUADRATIC, D> { job, values }),
-            Kernel::Trilinear => wide(Values::<T, TRILINEAR, D> { job, values }),
+            GridKernel::Quadratic => wide(Values::<T, QUADRATIC, D> { job, values }),
+            GridKernel::Trilinear => wide(Values::<T, TRILINEAR, D> { job, values }),
         }
     }
 
@@ -113,8 +113,8 @@ impl<const D: usize> Grid<D> {
     ) {
         let job = Job { grid: self, codes, points };
         match self.kernel() {
-            Kernel::Quadratic => wide(Slopes::<T, QUADRATIC, D> { job, values, slopes }),
-            Kernel::Trilinear => wide(Slopes::<T, TRILINEAR, D> { job, values, slopes }),
+            GridKernel::Quadratic => wide(Slopes::<T, QUADRATIC, D> { job, values, slopes }),
+            GridKernel::Trilinear => wide(Slopes::<T, TRILINEAR, D> { job, values, slopes }),
         }
     }
 }

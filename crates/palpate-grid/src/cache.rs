@@ -10,7 +10,7 @@ use std::time::SystemTime;
 
 use palpate_field::Shape;
 
-use crate::bake::Progress;
+use crate::bake::GridProgress;
 use crate::error::GridError;
 use crate::file::{GridFileError, MAGIC};
 use crate::grid::Grid;
@@ -91,7 +91,7 @@ impl GridCache {
         &self,
         shape: &Shape<D>,
         options: &GridOptions,
-        progress: &(dyn Fn(Progress) -> ControlFlow<()> + Sync),
+        progress: &(dyn Fn(GridProgress) -> ControlFlow<()> + Sync),
     ) -> Result<(Grid<D>, Found), GridError> {
         let Some(path) = self.path(shape, options) else {
             return Ok((Grid::bake_with(shape, options, progress)?, Found::Unknown));

@@ -24,7 +24,7 @@ use crate::samples::{
     BRICK, Codes, FAR_INSIDE, Order, Samples, Store, WIDE, Window, strides, wide_brick,
     wide_node,
 };
-use crate::spline::{Kernel, QUADRATIC, TRILINEAR};
+use crate::spline::{GridKernel, QUADRATIC, TRILINEAR};
 use crate::threads::each;
 
 /// What a file begins with: the name, and the version of the format.
@@ -206,8 +206,8 @@ impl<const D: usize> Grid<D> {
         out.write_all(&[
             D as u8 | u8::from(compared.is_some()) << 7,
             match self.kernel() {
-                Kernel::Quadratic => 0,
-                Kernel::Trilinear => 1,
+                GridKernel::Quadratic => 0,
+                GridKernel::Trilinear => 1,
             },
             match codes.store() {
                 Store::F32 => 0,
@@ -276,8 +276,8 @@ impl<const D: usize> Grid<D> {
         }
         let is_compared = head[0] & 0x80 != 0;
         let kernel = match head[1] {
-            0 => Kernel::Quadratic,
-            1 => Kernel::Trilinear,
+            0 => GridKernel::Quadratic,
+            1 => GridKernel::Trilinear,
             _ => return Err(damaged("its kernel is unknown")),
         };
         let (store, width) = match head[2] {
@@ -374,7 +374,7 @@ impl<const D: usize> Grid<D> {
 
     fn from_samples_of_file(
         lattice: Lattice<D>,
-        kernel: Kernel,
+        kernel: GridKernel,
         samples: Samples<D>,
         (deviations, known): (&[f64], Known<D>),
     ) -> Result<Self, GridError> {
@@ -382,8 +382,8 @@ impl<const D: usize> Grid<D> {
         let certificates = each(deviations.len(), |number| {
             let brick = unravelled(number, samples.bricks);
             let mut certificate = match kernel {
-                Kernel::Quadratic => cells.of_brick::<QUADRATIC>(&samples, brick),
-                Kernel::Trilinear => cells.of_brick::<TRILINEAR>(&samples, brick),
+                GridKernel::Quadratic => cells.of_brick::<QUADRATIC>(&samples, brick),
+                GridKernel::Trilinear => cells.of_brick::<TRILINEAR>(&samples, brick),
             };
             certificate.deviation = deviations[number];
             Ok(certificate)

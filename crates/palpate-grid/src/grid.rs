@@ -17,7 +17,7 @@ use crate::options::GridOptions;
 use crate::outside::{at_border, outside};
 use crate::samples::{BRICK, Codes, Order, Samples, Store, WIDE};
 use crate::slopes::{SLOPE_BLOCK, Slopes};
-use crate::spline::{Kernel, OfTaps, QUADRATIC, Spline, TRILINEAR};
+use crate::spline::{GridKernel, OfTaps, QUADRATIC, Spline, TRILINEAR};
 
 /// Rounded operations of an interpolated value on numbers up to `|p| + size`.
 const OPERATIONS: f64 = 96.0;
@@ -30,7 +30,7 @@ const OPERATIONS: f64 = 96.0;
 #[derive(Clone, Debug)]
 pub struct Grid<const D: usize> {
     lattice: Lattice<D>,
-    kernel: Kernel,
+    kernel: GridKernel,
     pub(crate) samples: Samples<D>,
     pub(crate) certificates: Vec<Certificate<D>>,
     slopes: Slopes<D>,
@@ -54,7 +54,7 @@ impl<const D: usize> Grid<D> {
 
     /// How it interpolates.
     #[must_use]
-    pub fn kernel(&self) -> Kernel {
+    pub fn kernel(&self) -> GridKernel {
         self.kernel
     }
 
@@ -75,12 +75,12 @@ impl<const D: usize> Grid<D> {
     ///
     /// ```
     /// use palpate_field::Vector;
-    /// use palpate_grid::{Grid, Kernel, Lattice, Store};
+    /// use palpate_grid::{Grid, GridKernel, Lattice, Store};
     ///
     /// # fn main() -> Result<(), palpate_grid::GridError> {
     /// let lattice = Lattice { origin: Vector([-1.0, -1.0]), cell: 1.0, counts: [3, 3] };
     /// let samples = [0.5, 0.5, 0.5, 0.5, -0.25, 0.5, 0.5, 0.5, 0.5];
-    /// let grid = Grid::from_samples(lattice, &samples, Kernel::Trilinear, Store::F32)?;
+    /// let grid = Grid::from_samples(lattice, &samples, GridKernel::Trilinear, Store::F32)?;
     /// assert_eq!(grid.samples(), Some(samples.to_vec()));
     /// # Ok(())
     /// # }
@@ -137,7 +137,7 @@ impl<const D: usize> Grid<D> {
     /// Puts certified samples together.
     pub(crate) fn assemble(
         lattice: Lattice<D>,
-        kernel: Kernel,
+        kernel: GridKernel,
         samples: Samples<D>,
         certificates: Vec<Certificate<D>>,
         known: Known<D>,
@@ -201,8 +201,8 @@ impl<const D: usize> Grid<D> {
             source: None,
         };
         let [least, margin] = match kernel {
-            Kernel::Quadratic => grid.border::<QUADRATIC>(&bounds),
-            Kernel::Trilinear => grid.border::<TRILINEAR>(&bounds),
+            GridKernel::Quadratic => grid.border::<QUADRATIC>(&bounds),
+            GridKernel::Trilinear => grid.border::<TRILINEAR>(&bounds),
         };
         // What is beyond the band may be as steep along the box as the grid at all.
         grid.margin = if grid.far.is_some() { 0.0 } else { margin };
@@ -272,11 +272,11 @@ impl<const D: usize> Grid<D> {
     #[inline]
     fn inner_gradient(&self, p: Point<D>) -> (f64, Vector<f64, D>) {
         let (value, slope) = match self.kernel {
-            Kernel::Quadratic => {
+            GridKernel::Quadratic => {
                 let (first, local) = self.lattice.locate::<QUADRATIC>(p);
                 self.samples.value_slope::<QUADRATIC>(first, local)
             }
-            Kernel::Trilinear => {
+            GridKernel::Trilinear => {
                 let (first, local) = self.lattice.locate::<TRILINEAR>(p);
                 self.samples.value_slope::<TRILINEAR>(first, local)
             }
@@ -291,11 +291,11 @@ impl<const D: usize> Grid<D> {
     #[inline]
     fn inner(&self, p: Point<D>) -> f64 {
         let value = match self.kernel {
-            Kernel::Quadratic => {
+            GridKernel::Quadratic => {
                 let (first, local) = self.lattice.locate::<QUADRATIC>(p);
                 self.samples.value::<QUADRATIC>(first, local)
             }
-            Kernel::Trilinear => {
+            GridKernel::Trilinear => {
                 let (first, local) = self.lattice.locate::<TRILINEAR>(p);
                 self.samples.value::<TRILINEAR>(first, local)
             }
@@ -360,8 +360,8 @@ impl<const D: usize> Grid<D> {
             return None;
         }
         let curvature = match self.kernel {
-            Kernel::Quadratic => self.curvature::<QUADRATIC>(around),
-            Kernel::Trilinear => self.curvature::<TRILINEAR>(around),
+            GridKernel::Quadratic => self.curvature::<QUADRATIC>(around),
+            GridKernel::Trilinear => self.curvature::<TRILINEAR>(around),
         }?;
         let at = self.at(centre);
         let reach = self.promise.lipschitz * half.norm();
@@ -386,8 +386,8 @@ impl<const D: usize> Grid<D> {
             return None;
         }
         let mut slopes = match self.kernel {
-            Kernel::Quadratic => self.slopes.of_box::<QUADRATIC>(&self.lattice, around),
-            Kernel::Trilinear => self.slopes.of_box::<TRILINEAR>(&self.lattice, around),
+            GridKernel::Quadratic => self.slopes.of_box::<QUADRATIC>(&self.lattice, around),
+            GridKernel::Trilinear => self.slopes.of_box::<TRILINEAR>(&self.lattice, around),
         };
         let reach = self.promise.lipschitz * around.half_extents().norm();
         if let Some(far) = self.far.as_ref().filter(|_| size + reach >= self.clamped) {
@@ -427,7 +427,7 @@ pub(crate) struct Known<const D: usize> {
 }
 
 /// The box of the cells: every point of it has all the samples that its value takes.
-pub(crate) fn region<const D: usize>(lattice: &Lattice<D>, kernel: Kernel) -> Aabb<D> {
+pub(crate) fn region<const D: usize>(lattice: &Lattice<D>, kernel: GridKernel) -> Aabb<D> {
     let start = 0.5 * kernel.taps() as f64 - 1.0;
     Aabb {
         min: lattice.at(Vector([start; D])),

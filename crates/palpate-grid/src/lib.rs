@@ -48,7 +48,7 @@ mod threads;
 #[cfg(feature = "volumes")]
 mod volume;
 
-pub use bake::Progress;
+pub use bake::GridProgress;
 #[cfg(feature = "files")]
 pub use cache::{Found, GridCache};
 pub use error::GridError;
@@ -60,6 +60,6 @@ pub use instances::instances;
 pub use lattice::Lattice;
 pub use options::{GridOptions, Resolution};
 pub use samples::Store;
-pub use spline::Kernel;
+pub use spline::GridKernel;
 #[cfg(feature = "volumes")]
 pub use volume::{Inside, LARGEST_VOLUME, Volume, VolumeError, VolumeProblem};

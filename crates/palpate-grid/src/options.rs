@@ -7,7 +7,7 @@ use palpate_field::{LARGEST_LENGTH, Quantity, SMALLEST_LENGTH, ShapeError, Unit}
 
 use crate::error::GridError;
 use crate::samples::Store;
-use crate::spline::Kernel;
+use crate::spline::GridKernel;
 
 /// How fine a grid is.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -25,7 +25,7 @@ pub struct GridOptions {
     /// How fine it is.
     pub resolution: Resolution,
     /// How samples are interpolated.
-    pub kernel: Kernel,
+    pub kernel: GridKernel,
     /// How samples are stored.
     pub store: Store,
     /// `None` keeps every sample. With `Some`, values are clamped to so many cells on both sides of the surface,
@@ -60,7 +60,7 @@ impl GridOptions {
     pub const fn with_resolution(resolution: Resolution) -> Self {
         Self {
             resolution,
-            kernel: Kernel::Quadratic,
+            kernel: GridKernel::Quadratic,
             store: Store::F32,
             band: None,
             certified: 1.0,
@@ -70,7 +70,7 @@ impl GridOptions {
 
     /// The same with another interpolation.
     #[must_use]
-    pub const fn with_kernel(self, kernel: Kernel) -> Self {
+    pub const fn with_kernel(self, kernel: GridKernel) -> Self {
         Self { kernel, ..self }
     }
 

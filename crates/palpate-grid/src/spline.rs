@@ -9,7 +9,7 @@ use palpate_field::Vector;
 
 /// How a grid's samples are interpolated.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-pub enum Kernel {
+pub enum GridKernel {
     /// Quadratic B-splines, with samples as coefficients: the gradient is continuous, so a force does not
     /// step where a hand crosses a cell's side. To be felt.
     #[default]
@@ -18,7 +18,7 @@ pub enum Kernel {
     Trilinear,
 }
 
-impl Kernel {
+impl GridKernel {
     /// Every kernel.
     pub const ALL: [Self; 2] = [Self::Quadratic, Self::Trilinear];
 

@@ -11,9 +11,8 @@ use crate::bodies::Bodies;
 use crate::error::HapticsError;
 use crate::protection::{Protection, Refusals};
 use crate::tool::Coupling;
-use palpate_safety::{
-    Acceptance, Accepted, DeviceLimits, Impedance, Requester, TurningProfile,
-};
+use palpate_device::TurningProfile;
+use palpate_safety::{Acceptance, Accepted, DeviceLimits, Impedance, Requester};
 
 /// Bodies, and the virtual coupling of a tool, with stiffness and damping that a device can
 /// render.
@@ -124,7 +123,7 @@ impl<const D: usize> Protection<D> {
         let mut refusals = self.refusals();
         self.accept_magnets(&mut bodies, rate, &mut refusals)?;
         self.stiffen(&mut bodies, rate)?;
-        if self.is_strict {
+        if self.settings.is_strict {
             self.refuse_tool(&bodies, &coupling, rate, &mut refusals)?;
             refusals.end()?;
         }
@@ -180,14 +179,14 @@ impl<const D: usize> Protection<D> {
         rate: f64,
     ) -> Result<Accepted, HapticsError> {
         let (part, damping) = coupling.borne(layers);
-        if self.is_strict {
+        if self.settings.is_strict {
             // Strict protection has refused a coupling of which less than all is rendered.
             return self.turned(coupling.turning_on(part, damping)?, turning, rate);
         }
         let accepted = self.turned(coupling.turning_on(part, 0.0)?, turning, rate)?;
         let (stiffness, own_damping) = (accepted.stiffness_factor, accepted.damping_factor);
         *coupling = coupling.softened_about_axes(stiffness, own_damping);
-        if self.acceptance != Acceptance::AsIs {
+        if self.settings.acceptance != Acceptance::AsIs {
             let taken = 0.5 * accepted.device_stiffness / rate + accepted.device_damping;
             let left = (turning.least_damping - taken)
                 .min(turning.max_damping - accepted.device_damping)
@@ -208,7 +207,7 @@ impl<const D: usize> Protection<D> {
         let limits = DeviceLimits::about(turning);
         // A torque at the device is this multiple of the torque in the world.
         let scale = 1.0 / self.map.scale();
-        Ok(Accepted::of(asked, scale, &limits, self.acceptance, rate)?)
+        Ok(Accepted::of(asked, scale, &limits, self.settings.acceptance, rate)?)
     }
 }
 

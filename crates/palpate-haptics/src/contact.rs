@@ -14,7 +14,7 @@
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use palpate_field::{Point, Vector};
-use palpate_query::internal::HalfSpace;
+use palpate_query::constraints::PlaneConstraint;
 
 use crate::curvature::Curvature;
 use crate::planes::Planes;
@@ -260,7 +260,7 @@ impl<const D: usize> Slide<'_, D> {
         *self.normal = normal;
         let foot = here - normal * gap;
         self.learn_curvature(sampler, foot, normal);
-        let wall = HalfSpace { point: foot, normal };
+        let wall = PlaneConstraint { point: foot, normal };
         // The first plane is stored even if the search ends here.
         let is_only = self.planes.is_empty();
         if !is_only {

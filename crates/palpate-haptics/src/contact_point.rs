@@ -9,7 +9,7 @@ mod given;
 mod guided;
 
 use palpate_field::{Point, Vector};
-use palpate_query::internal::CAPACITY;
+use palpate_query::constraints::CAPACITY;
 
 use crate::bodies::Body;
 use crate::crease::{Crease, Place, Shared};
@@ -21,8 +21,10 @@ use crate::ports::Port;
 use crate::proxy::{Edited, Probe, Proxy};
 use crate::surface::{Press, Ringing};
 pub(crate) use given::FreeForce;
-use palpate_safety::internal::{Approach, shortening};
-use palpate_safety::{Arrival, Change, PointState, WorkspaceMap};
+use palpate_device::PointState;
+use palpate_device::shortening;
+use palpate_safety::Approach;
+use palpate_safety::{Arrival, Change, WorkspaceMap};
 
 /// One contact point after a tick. World coordinates.
 #[derive(Clone, Copy, Debug, PartialEq)]

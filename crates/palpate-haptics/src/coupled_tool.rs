@@ -14,8 +14,9 @@ use crate::contact_point::{ContactPoint, FreeForce, Setting, Touch};
 use crate::ports::{Port, TurningPort};
 use crate::proxy::Edited;
 use crate::tool::{Coupling, HeldTool, Tool, ToolState};
-use palpate_safety::internal::limited;
-use palpate_safety::{Change, PointState, SpatialVector, TurnState, WrenchChain, WrenchState};
+use palpate_device::limited;
+use palpate_device::{PointState, TurnState};
+use palpate_safety::{Change, SpatialVector, WrenchChain, WrenchState};
 
 /// The two sides of a tool: the contact point that holds it, and the bodies that stop it.
 pub(crate) struct Sides<'a, const D: usize> {

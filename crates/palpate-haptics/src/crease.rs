@@ -6,7 +6,7 @@
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use palpate_field::{Point, Vector};
-use palpate_query::internal::{CAPACITY, pushes};
+use palpate_query::constraints::{CAPACITY, pushes};
 
 use crate::nearby::{FieldValue, Nearby, Punctured};
 use crate::surface::{Friction, Stratum};

@@ -5,7 +5,8 @@
 
 use std::convert::Infallible;
 
-use palpate_safety::{NumberError, SafetyError};
+use palpate_device::{DeviceError, NumberError};
+use palpate_safety::SafetyError;
 
 /// Why a material, tool or servo is refused. Every variant carries the offending numbers.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -17,9 +18,9 @@ pub enum HapticsError {
     /// A device cannot be protected as asked.
     #[error(transparent)]
     Safety(SafetyError),
-    /// There must be at least one contact point, or one actuator or channel in its place.
-    #[error("there must be at least one contact point, actuator or channel")]
-    NoContactPoint,
+    /// A device is refused: it has no contact point.
+    #[error(transparent)]
+    Device(DeviceError),
     /// The servo and the device disagree about the number of contact points.
     #[error("the servo has {servo} contact points, the device {device}")]
     ContactPoints {
@@ -86,6 +87,15 @@ pub enum HapticsError {
     /// The shape of a tool has no bounded surface.
     #[error("a tool needs a bounded surface, and none was found")]
     NothingToTouchWith,
+}
+
+impl From<DeviceError> for HapticsError {
+    fn from(error: DeviceError) -> Self {
+        match error {
+            DeviceError::Number(number) => Self::Number(number),
+            error => Self::Device(error),
+        }
+    }
 }
 
 impl From<SafetyError> for HapticsError {

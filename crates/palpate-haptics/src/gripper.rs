@@ -9,7 +9,8 @@ use palpate_field::Vector;
 
 use crate::error::HapticsError;
 use crate::protection::Protection;
-use palpate_safety::{Arrival, Change, GripperState, Impedance, PortState, SafetyChain};
+use palpate_device::GripperState;
+use palpate_safety::{Arrival, Change, Impedance, PortState, SafetyChain};
 
 /// A gripper with the force that is wanted of it. Without a device that has one the force is zero.
 #[derive(Clone, Debug, Default)]
@@ -63,8 +64,9 @@ impl<const D: usize> Protection<D> {
         let gripper = self.profile.gripper.as_ref().filter(|gripper| gripper.max_force > 0.0);
         let chain = gripper.map(|gripper| {
             // What pushes is the caller's, and no spring that could be observed.
-            let options =
-                self.safety_options(Impedance::default()).with_passivity_control(false);
+            let options = self
+                .safety_options(Impedance::default())
+                .with(|settings| settings.has_passivity_control = false);
             SafetyChain::new(&gripper.force_profile(), rate, options)
         });
         Ok(GripperPort { chain: chain.transpose()?, ..GripperPort::default() })

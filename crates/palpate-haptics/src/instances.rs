@@ -8,8 +8,8 @@ use palpate_field::compile;
 
 use crate::servo::Renderer;
 use crate::{
-    Bodies, Body, Control, Curve, Guide, Nearby, Protection, Proxy, Servo, Shell, Tool,
-    UnprotectedServo,
+    Bodies, Body, Control, Curve, Guide, Nearby, Protected, Protection, Proxy, Servo, Shell,
+    Tool, Unprotected,
 };
 
 fn in_dimension<const D: usize>() {
@@ -58,11 +58,24 @@ fn in_dimension<const D: usize>() {
         Renderer::<D>::rehearse,
         Renderer::<D>::safety,
         Renderer::<D>::stage_ticks,
-        UnprotectedServo::<D>::protected,
-        Servo::<D>::guide,
+        Servo::<D, Unprotected>::protected,
+        Servo::<D, Protected<D>>::guide,
         Control::<D>::set_poses,
         Control::<D>::replace_guides,
         Control::<D>::latest,
+    ];
+}
+
+#[cfg(feature = "loop")]
+fn loops_in_dimension<const D: usize>() {
+    use crate::servo_loop::{ServoThread, run_on, ticks::ServoLoop};
+    compile![
+        ServoLoop::<D>::new,
+        ServoLoop::<D>::run,
+        run_on::<D>,
+        ServoThread::<D>::start,
+        ServoThread::<D>::end,
+        ServoThread::<D>::join,
     ];
 }
 
@@ -72,4 +85,9 @@ fn in_dimension<const D: usize>() {
 pub fn instances() {
     in_dimension::<2>();
     in_dimension::<3>();
+    #[cfg(feature = "loop")]
+    {
+        loops_in_dimension::<2>();
+        loops_in_dimension::<3>();
+    }
 }

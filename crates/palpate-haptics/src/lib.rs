@@ -10,7 +10,7 @@
 //! Through a [`handoff`](handoff()), another thread replaces bodies and reads snapshots without
 //! ever making the servo wait.
 //!
-//! The crate `palpate-loop` runs a servo: it paces, counts, records and reports.
+//! The [`servo_loop`] runs a servo: it paces, counts, records and reports.
 //!
 //! A rigid [`Tool`] renders contact of a whole shape, with force and torque: a virtual coupling
 //! connects it to the hand, and bodies stop it. A servo made by [`Servo::for_tool`] renders a tool
@@ -20,8 +20,9 @@
 //! In free space, a [`Guide`] holds the hand to a point, line, plane or curve, or pulls it into
 //! a well or along a field's negative gradient.
 //!
-//! Simulated and recorded devices are in `palpate-devices`; vibration for devices that shake
-//! instead of push is in `palpate-vibration`.
+//! A [`Device`](palpate_device::Device) is what the servo drives; simulated and recorded ones are in
+//! `palpate-sim`. `palpate-vibration` turns [touches](Touch::cue) into vibration for devices that
+//! shake instead of push.
 //!
 //! # What is promised
 //!
@@ -45,6 +46,7 @@ mod contact;
 mod contact_point;
 mod coupled_tool;
 mod crease;
+mod cues;
 mod curvature;
 mod energy;
 mod error;
@@ -55,6 +57,7 @@ mod guide;
 mod handoff;
 mod instances;
 mod live;
+mod material;
 mod nearby;
 mod options;
 mod planes;
@@ -63,6 +66,8 @@ mod protection;
 mod proxy;
 mod sampler;
 mod servo;
+#[cfg(feature = "loop")]
+pub mod servo_loop;
 mod surface;
 mod tool;
 
@@ -73,29 +78,18 @@ pub use energy::Energy;
 pub use error::HapticsError;
 pub use event::{Event, EventCounts, EventKind, Reaction};
 pub use guide::{Curve, Guide, GuideOptions, Slope};
-pub use handoff::{
-    Control, HandoffOptions, LatestReader, LatestWriter, ServoEnd, StopSwitch, handoff,
-    handoff_with, latest_value,
-};
+pub use handoff::{Control, HandoffOptions, ServoEnd, StopSwitch, handoff, handoff_with};
 #[doc(hidden)]
 pub use instances::instances;
 pub use live::{Progress, Snapshot};
-pub use nearby::Nearby;
-pub use options::ServoOptions;
-pub use palpate_material::{
+pub use material::{
     Impact, Layer, Magnet, Material, PopThrough, Texture, TextureKind, UnknownMaterial,
 };
-pub use palpate_safety::{
-    Acceptance, Accepted, Arrivals, Buttons, Change, ContinuousReport, Device, DeviceLost,
-    DeviceProfile, Effect, FreeForceReport, GripperProfile, GripperState, Impedance,
-    LimitCycleReport, NumberError, PassivityReport, PointState, PortState, Reading,
-    ReadingsReport, Recovery, Refused, Requester, Rule, SafetyChain, SafetyError,
-    SafetyOptions, SafetyReport, StageTicks, TurnReadings, TurnState, TurningProfile,
-    TurningReport, VelocityEstimator, WatchdogReport, WorkspaceMap,
-};
+pub use nearby::Nearby;
+pub use options::ServoOptions;
 pub use protection::Protection;
 pub use proxy::{DEFAULT_BUDGET, Edited, Following, Probe, Proxy};
-pub use servo::{AnyServo, Renderer, Servo, UnprotectedServo};
+pub use servo::{Kind, Protected, Renderer, Servo, Unprotected};
 pub use surface::{Passing, Surface};
 pub use tool::{
     Coupling, Handle, HeldTool, MOST_POINTS, Shell, ShellPoint, Tool, ToolOptions, ToolState,

@@ -6,7 +6,8 @@
 use crate::contact_point::Touch;
 use crate::event::Reaction;
 use crate::tool::HeldTool;
-use palpate_safety::{Buttons, GripperState, StageTicks};
+use palpate_device::{Buttons, GripperState};
+use palpate_safety::StageTicks;
 
 /// The progress of a running servo, as of a recent tick.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

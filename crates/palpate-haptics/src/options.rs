@@ -4,7 +4,7 @@
 //! Rate, probe and force limit of a servo.
 
 use crate::proxy::Probe;
-use palpate_safety::{Device, DeviceProfile};
+use palpate_device::{Device, DeviceProfile};
 
 /// Rate, probe and force limit of a servo.
 ///
@@ -40,7 +40,8 @@ impl ServoOptions {
     /// The defaults, with the force limit of `device` if it has one.
     ///
     /// ```
-    /// use palpate_haptics::{DeviceProfile, ServoOptions};
+    /// use palpate_device::DeviceProfile;
+    /// use palpate_haptics::ServoOptions;
     ///
     /// let device = DeviceProfile::unlimited("example").with_max_force(7.5);
     /// assert_eq!(ServoOptions::of_device(&device).max_force, 7.5);
@@ -59,13 +60,13 @@ impl ServoOptions {
     /// The same options at the rate of a device that measures more seldom, or that sets the pace.
     ///
     /// ```
-    /// use palpate_devices::{Device, DeviceProfile, MailboxDevice};
+    /// use palpate_device::{Device, DeviceProfile, MailboxDevice};
     /// use palpate_haptics::ServoOptions;
     ///
     /// let (slow, _driver) = MailboxDevice::<3>::new(DeviceProfile::unlimited("slow"), 1)?;
     /// let options = ServoOptions::default().at_rate_of(&slow.with_rate(250.0));
     /// assert_eq!(options.rate, 250.0);
-    /// # Ok::<(), palpate_devices::DeviceError>(())
+    /// # Ok::<(), palpate_device::DeviceError>(())
     /// ```
     #[must_use]
     pub fn at_rate_of<const D: usize>(self, device: &(impl Device<D> + ?Sized)) -> Self {

@@ -6,7 +6,7 @@
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use palpate_field::{Point, Vector};
-use palpate_query::internal::{CAPACITY, HalfSpace, closest_point};
+use palpate_query::constraints::{CAPACITY, PlaneConstraint, closest_point};
 
 /// Normals closer than this [rad] count as one plane: rounding would decide where two such
 /// planes meet.
@@ -20,7 +20,7 @@ const LEFT_BEHIND: f64 = 0.25;
 /// A plane and the point of the surface at which it was tangent.
 #[derive(Clone, Copy, Debug)]
 struct Wall<const D: usize> {
-    half_space: HalfSpace<D>,
+    half_space: PlaneConstraint<D>,
     foot: Point<D>,
     /// How far the plane was lowered since it was learnt [m].
     lowered: f64,
@@ -39,7 +39,7 @@ pub(crate) struct Planes<const D: usize> {
 
 impl<const D: usize> Planes<D> {
     pub(crate) fn new() -> Self {
-        let half_space = HalfSpace { point: Vector::ZERO, normal: Vector::ZERO };
+        let half_space = PlaneConstraint { point: Vector::ZERO, normal: Vector::ZERO };
         let none = Wall { half_space, foot: Vector::ZERO, lowered: 0.0 };
         Self { walls: [none; CAPACITY], count: 0 }
     }
@@ -100,8 +100,13 @@ impl<const D: usize> Planes<D> {
     /// is dropped, or its wall is rounded, and the plane is lowered by the contradiction. The
     /// angle between the normals decides (see [`LEFT_BEHIND`]).
     #[inline(always)]
-    pub(crate) fn learn(&mut self, seen_from: Point<D>, half_space: HalfSpace<D>, gap: f64) {
-        let HalfSpace { point: foot, normal } = half_space;
+    pub(crate) fn learn(
+        &mut self,
+        seen_from: Point<D>,
+        half_space: PlaneConstraint<D>,
+        gap: f64,
+    ) {
+        let PlaneConstraint { point: foot, normal } = half_space;
         self.retain(|wall| {
             let (way, turn) = (wall.foot - foot, wall.half_space.normal - normal);
             let excess = gap - wall.half_space.height(seen_from);
@@ -124,7 +129,10 @@ impl<const D: usize> Planes<D> {
 
     /// Adds a plane without revising the older ones; `false` if there is no room.
     #[inline(always)]
-    pub(crate) fn add(&mut self, HalfSpace { point: foot, normal }: HalfSpace<D>) -> bool {
+    pub(crate) fn add(
+        &mut self,
+        PlaneConstraint { point: foot, normal }: PlaneConstraint<D>,
+    ) -> bool {
         let Some(place) = self.walls.get_mut(self.count) else { return false };
         // Field by field, because copying the whole struct would stall on store forwarding.
         place.half_space.point = foot;
@@ -169,7 +177,7 @@ impl<const D: usize> Planes<D> {
 
     /// The point closest to `x` above all planes; `None` if the planes have no common point.
     pub(crate) fn closest(&self, x: Point<D>) -> Option<Point<D>> {
-        let none = HalfSpace { point: Vector::ZERO, normal: Vector::ZERO };
+        let none = PlaneConstraint { point: Vector::ZERO, normal: Vector::ZERO };
         let mut half_spaces = [none; CAPACITY];
         for (place, wall) in half_spaces.iter_mut().zip(self.known()) {
             *place = wall.half_space;

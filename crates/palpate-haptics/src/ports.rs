@@ -9,10 +9,11 @@ use crate::accepted_bodies::AcceptedBodies;
 use crate::energy::Energy;
 use crate::error::HapticsError;
 use crate::protection::Protection;
+use palpate_device::{PointState, TurnState};
 use palpate_safety::{
     Acceptance, Accepted, Arrival, DeviceLimits, Impedance, PassivityReport, PerMotion,
-    PointState, PortState, Readings, ReadingsReport, SafetyChain, SafetyOptions, SafetyReport,
-    StageTicks, TurnReadings, TurnState, VelocityEstimator, WrenchChain,
+    PortState, Readings, ReadingsReport, SafetyChain, SafetyOptions, SafetyReport,
+    SafetySettings, StageTicks, TurnReadings, VelocityEstimator, WrenchChain,
 };
 
 impl<const D: usize> Protection<D> {
@@ -49,7 +50,7 @@ impl<const D: usize> Protection<D> {
             let limits = PerMotion { along: &along_limits, about: &about_limits };
             let options = self.safety_options(along.impedance);
             let accepted = PerMotion { along: along.clone(), about: about.clone() };
-            Some(WrenchChain::new(limits, accepted, &options, rate)?)
+            Some(WrenchChain::new(limits, accepted, &options.settings, rate)?)
         } else {
             None
         };
@@ -65,12 +66,9 @@ impl<const D: usize> Protection<D> {
 
     /// The options of a safety chain for an impedance that was already accepted.
     pub(crate) fn safety_options(&self, impedance: Impedance) -> SafetyOptions {
-        SafetyOptions::new(impedance)
-            .with_scale(self.map.scale())
-            .with_acceptance(Acceptance::AsIs)
-            .with_passivity_control(self.has_passivity_control)
-            .with_recovery(self.recovery)
-            .with_rise_rate(self.rise_rate)
+        let settings =
+            SafetySettings { acceptance: Acceptance::AsIs, is_strict: false, ..self.settings };
+        SafetyOptions { impedance, scale: self.map.scale(), settings }
     }
 }
 

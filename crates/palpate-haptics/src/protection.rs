@@ -6,9 +6,10 @@
 use crate::bodies::{Bodies, Body};
 use crate::error::HapticsError;
 use crate::guide::Guide;
+use palpate_device::DeviceProfile;
 use palpate_safety::{
-    Acceptance, Accepted, DeviceLimits, DeviceProfile, Impedance, Recovery, Refused, Requester,
-    SafetyError, WorkspaceMap,
+    Accepted, DeviceLimits, Impedance, Refused, Requester, SafetyError, SafetySettings,
+    WorkspaceMap,
 };
 
 /// How a servo protects a device and the hand that holds it.
@@ -17,89 +18,47 @@ use palpate_safety::{
 ///
 /// ```
 /// use palpate_field::{Shape, kernel::Ball};
-/// use palpate_haptics::{DeviceProfile, Protection, ServoOptions, UnprotectedServo};
+/// use palpate_device::DeviceProfile;
+/// use palpate_haptics::{Protection, ServoOptions, Servo};
 ///
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
 /// let ball = Shape::<3>::from_kernel(Ball::new(0.05)?);
 /// let device = DeviceProfile::unlimited("example").with_max_force(2.0);
-/// let protection = Protection::new(device).with_passivity_control(false);
-/// let servo = UnprotectedServo::new(ball, 1, ServoOptions::default())?.protected(&protection)?;
+/// let protection = Protection::new(device).with(|s| s.has_passivity_control = false);
+/// let servo = Servo::new(ball, 1, ServoOptions::default())?.protected(&protection)?;
 /// assert_eq!(servo.options().max_force, 2.0);
 /// # Ok(())
 /// # }
 /// ```
 #[derive(Clone, Debug)]
-#[non_exhaustive]
 pub struct Protection<const D: usize> {
     /// The limits and properties of the device.
     pub profile: DeviceProfile,
     /// The map between device and world coordinates.
     pub map: WorkspaceMap<D>,
-    /// What the device renders of the bodies.
-    pub acceptance: Acceptance,
-    /// Whether bodies, a tool and guides are refused of which the device renders less than all.
-    pub is_strict: bool,
-    /// Whether the passivity controller acts; the passivity observer always runs.
-    pub has_passivity_control: bool,
-    /// How a force comes back after a beginning in a body, or an emergency stop.
-    pub recovery: Recovery,
-    /// How fast a force rises after it was zeroed [N/s]: after the start, after a proxy is placed
-    /// anew, after late ticks, lost readings and emergency stops.
-    pub rise_rate: f64,
+    /// How the safety chains protect.
+    pub settings: SafetySettings,
 }
 
 impl<const D: usize> Protection<D> {
-    /// Protection with every stage on and the identity map. The device renders what it can of the
-    /// bodies ([`Acceptance::Device`]); forces rise by 20 N/s.
+    /// Protection with the identity map and the [default settings](SafetySettings::default): every
+    /// stage acts.
     #[must_use]
     pub fn new(profile: DeviceProfile) -> Self {
-        Self {
-            profile,
-            map: WorkspaceMap::default(),
-            acceptance: Acceptance::Device,
-            is_strict: false,
-            has_passivity_control: true,
-            recovery: Recovery::Rise,
-            rise_rate: 20.0,
-        }
+        Self { profile, map: WorkspaceMap::default(), settings: SafetySettings::default() }
     }
 
-    /// The same protection with another map between device and world coordinates.
+    /// This protection with changed settings.
+    #[must_use]
+    pub fn with(mut self, change: impl FnOnce(&mut SafetySettings)) -> Self {
+        change(&mut self.settings);
+        self
+    }
+
+    /// This protection with another map between device and world coordinates.
     #[must_use]
     pub fn with_map(self, map: WorkspaceMap<D>) -> Self {
         Self { map, ..self }
-    }
-
-    /// The same protection with another choice of what the device renders of the bodies.
-    #[must_use]
-    pub fn with_acceptance(self, acceptance: Acceptance) -> Self {
-        Self { acceptance, ..self }
-    }
-
-    /// The same protection, refusing bodies, a tool and guides of which the device renders less than
-    /// all, or not.
-    #[must_use]
-    pub fn with_strictness(self, is_strict: bool) -> Self {
-        Self { is_strict, ..self }
-    }
-
-    /// The same protection with the passivity controller on or off.
-    #[must_use]
-    pub fn with_passivity_control(self, is_on: bool) -> Self {
-        Self { has_passivity_control: is_on, ..self }
-    }
-
-    /// The same protection with another way in which a force comes back.
-    #[must_use]
-    pub fn with_recovery(self, recovery: Recovery) -> Self {
-        Self { recovery, ..self }
-    }
-
-    /// The same protection with another rate at which a zeroed force rises [N/s]; infinite for at
-    /// once.
-    #[must_use]
-    pub fn with_rise_rate(self, rise_rate: f64) -> Self {
-        Self { rise_rate, ..self }
     }
 
     /// The bodies as the device renders them at `rate` [Hz]: all layers of a body have the share of
@@ -184,7 +143,11 @@ impl<const D: usize> Protection<D> {
         // Where nothing is relative, the device need not have a largest stiffness.
         let is_relative = |body: &Body<D>| body.surface().is_relative();
         if bodies.bodies().iter().any(is_relative) {
-            let most = self.profile.most_stiffness(self.acceptance, rate)? / self.map.scale();
+            let most = Accepted::most_stiffness(
+                &DeviceLimits::along(&self.profile),
+                self.settings.acceptance,
+                rate,
+            )? / self.map.scale();
             bodies.bodies_mut().iter_mut().for_each(|body| body.stiffen(most));
         }
         Ok(())
@@ -198,12 +161,12 @@ impl<const D: usize> Protection<D> {
     ) -> Result<Accepted, HapticsError> {
         let scale = self.map.scale();
         let limits = DeviceLimits::along(&self.profile);
-        Ok(Accepted::of_layers(layers, scale, &limits, self.acceptance, rate)?)
+        Ok(Accepted::of_layers(layers, scale, &limits, self.settings.acceptance, rate)?)
     }
 
     /// Where strict protection collects what it refuses.
     pub(crate) fn refusals(&self) -> Refusals {
-        Refusals { is_strict: self.is_strict, all: Vec::new() }
+        Refusals { is_strict: self.settings.is_strict, all: Vec::new() }
     }
 }
 

@@ -28,7 +28,7 @@ use crate::sampler::{Sample, Sampler};
 use crate::surface::Friction;
 use carry_out::CarriedOut;
 pub(crate) use carry_out::MOST_OF_POINT;
-use palpate_safety::NumberError;
+use palpate_device::NumberError;
 
 /// The default budget of evaluations in a tick. Sliding takes one to three, a corner up to
 /// eight, an impact about ten; the rest is for grazing motions, slots and fast hands.

@@ -9,8 +9,9 @@ use std::path::PathBuf;
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
-use palpate::devices::profile_named;
-use palpate::haptics::{DeviceProfile, StopSwitch};
+use palpate::device::DeviceProfile;
+use palpate::device::profile_named;
+use palpate::haptics::StopSwitch;
 use palpate::servo_loop::VirtualClock;
 
 use crate::server::{self, Server};

@@ -4,7 +4,7 @@
 //! Steps that lower the larger of two fields, by both their gradients.
 
 use palpate_field::Point;
-use palpate_query::internal::minimax_step;
+use palpate_query::minimax_step;
 use palpate_query::{DistanceBound, Placed, QueryError};
 
 use crate::{Descent, check_start};

@@ -16,7 +16,7 @@ const ROUNDINGS: f64 = 16.0 * f64::EPSILON;
 ///
 /// ```
 /// use palpate_field::Vector;
-/// use palpate_mesh::internal::centre_weights;
+/// use palpate_mesh::centre_weights;
 ///
 /// let right = [Vector([0.0, 0.0]), Vector([3.0, 0.0]), Vector([0.0, 4.0])];
 /// assert_eq!(centre_weights(&right), [0.0, 0.5, 0.5]);
@@ -58,7 +58,7 @@ pub fn smallest_ball<const N: usize, const D: usize>(
 ///
 /// ```
 /// use palpate_field::Vector;
-/// use palpate_mesh::internal::{circumscribed_ball, smallest_ball};
+/// use palpate_mesh::{circumscribed_ball, smallest_ball};
 ///
 /// // 1 m long and 1 cm high: R = abc/4A.
 /// let sliver = [Vector([0.0, 0.0]), Vector([1.0, 0.0]), Vector([0.5, 0.01])];

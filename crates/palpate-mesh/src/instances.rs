@@ -7,7 +7,7 @@
 use palpate_field::Shape;
 use palpate_field::compile;
 
-use crate::{Mesh, Sheet, Solid};
+use crate::{Mesh, MeshSheet, Solid};
 
 /// Compiles meshes of elements with `N` corners in `D` dimensions.
 fn of_elements<const N: usize, const D: usize>() {
@@ -18,8 +18,8 @@ fn of_elements<const N: usize, const D: usize>() {
         Mesh::<N, D>::scaled,
         Mesh::<N, D>::welded,
         Mesh::<N, D>::report,
-        Sheet::<N, D>::from_mesh,
-        <Shape<D> as From<Sheet<N, D>>>::from,
+        MeshSheet::<N, D>::from_mesh,
+        <Shape<D> as From<MeshSheet<N, D>>>::from,
         Solid::<N, D>::from_mesh,
         <Shape<D> as From<Solid<N, D>>>::from,
     ];

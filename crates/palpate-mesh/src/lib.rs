@@ -29,8 +29,6 @@ mod ball;
 mod contour;
 mod error;
 mod instances;
-#[doc(hidden)]
-pub mod internal;
 mod mesh;
 mod polygon;
 #[cfg(feature = "files")]
@@ -41,6 +39,7 @@ mod tree;
 #[cfg(feature = "files")]
 mod write;
 
+pub use ball::{centre_weights, circumscribed_ball, smallest_ball};
 pub use contour::{ContourError, ContourOptions, FitProgress, FittedMesh};
 pub use error::MeshError;
 #[doc(hidden)]
@@ -50,4 +49,5 @@ pub use polygon::MOST_CORNERS;
 #[cfg(feature = "files")]
 pub use read::{Format, LARGEST_FILE, ReadError, ReadProblem, read, read_file};
 pub use report::Report;
-pub use solid::{Findings, Opening, Sheet, Solid, SolidError};
+pub use solid::{Findings, MeshSheet, Opening, Solid, SolidError};
+pub use tree::{BallTree, FAN, Level};

@@ -7,8 +7,8 @@
 use std::path::Path;
 
 use palpate_plot::{
-    Arrow, Arrows, Chart, Color, Dash, Figure, Isolines, Markers, PlotError, Polyline,
-    Quantity, Sampling, Series, Slice, View,
+    Arrow, Arrows, Chart, ChartQuantity, Color, Dash, Figure, Isolines, Markers, PlaneView,
+    PlotError, Polyline, Sampling, Series, Slice,
 };
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -43,7 +43,7 @@ fn each(distance: impl Fn([f64; 2]) -> f64) -> impl FnMut(&[[f64; 2]], &mut [f64
 
 /// A disc and a rectangle in the plane, with contacts and normals.
 fn union() -> Result<Figure, PlotError> {
-    let view = View::new([0.02, 0.0], 0.36, 0.24)?;
+    let view = PlaneView::new([0.02, 0.0], 0.36, 0.24)?;
     let field =
         each(|p| disc(p, [-0.05, 0.02], 0.05).min(rectangle(p, [0.07, -0.02], [0.06, 0.035])));
     let contacts = [[-0.05, 0.07], [0.13, -0.02], [0.01, 0.015]];
@@ -64,7 +64,7 @@ fn union() -> Result<Figure, PlotError> {
 /// A cup cut through its axis: a hollow cylinder with a floor.
 fn cup() -> Result<Figure, PlotError> {
     let slice = Slice::free([0.0, 0.045, 0.0], [1.0, 0.0, 1.0], [0.0, 1.0, 0.0])?;
-    let view = View::of_box(&slice, [-0.04, 0.0, -0.04], [0.04, 0.09, 0.04], 0.25)?;
+    let view = PlaneView::of_box(&slice, [-0.04, 0.0, -0.04], [0.04, 0.09, 0.04], 0.25)?;
     let field = each(|p| {
         let [x, y, z] = slice.point(p);
         let profile = [x.hypot(z), y];
@@ -81,7 +81,7 @@ fn cup() -> Result<Figure, PlotError> {
 /// A hand that presses on a sphere and slides off: path, proxy and force, seen from above.
 fn press() -> Result<Figure, PlotError> {
     let slice = Slice::xz(0.0)?;
-    let view = View::new([0.0, 0.01], 0.2, 0.12)?;
+    let view = PlaneView::new([0.0, 0.01], 0.2, 0.12)?;
     let radius = 0.05;
     let field = each(|p| {
         let [x, y, z] = slice.point(p);
@@ -119,7 +119,7 @@ fn press() -> Result<Figure, PlotError> {
     let component = |axis: usize| {
         hand.iter().enumerate().map(move |(i, &p)| [i as f64 * 1e-3, force(p)[axis]])
     };
-    let chart = Chart::new(Quantity::new("time", "s"), Quantity::new("force", "N"))
+    let chart = Chart::new(ChartQuantity::new("time", "s"), ChartQuantity::new("force", "N"))
         .with_series(Series::new("x", component(0))?.with_color(Color::VERMILION))
         .with_series(Series::new("z", component(2))?.with_color(Color::NAVY));
     Ok(Figure::new("Press on a sphere, and slide off")

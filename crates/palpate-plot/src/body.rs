@@ -3,29 +3,29 @@
 
 //! The bodies of a scene in a picture.
 
-use crate::outline::Outline;
+use crate::outline::SurfaceLines;
 
 /// A body with its surface, to be drawn in a colour of its own.
 ///
 /// # Examples
 ///
 /// ```
-/// use palpate_plot::{Body, Outline};
+/// use palpate_plot::{DrawnBody, SurfaceLines};
 ///
-/// # let outline = Outline::default();
-/// let cup = Body::new("cup", outline).with_note("glass");
+/// # let outline = SurfaceLines::default();
+/// let cup = DrawnBody::new("cup", outline).with_note("glass");
 /// ```
 #[derive(Debug, Clone, PartialEq)]
-pub struct Body {
+pub struct DrawnBody {
     pub(crate) name: String,
     pub(crate) note: String,
-    pub(crate) outline: Outline,
+    pub(crate) outline: SurfaceLines,
 }
 
-impl Body {
+impl DrawnBody {
     /// The body `name`, with its surface in the window of the picture.
     #[must_use]
-    pub fn new(name: impl Into<String>, outline: Outline) -> Self {
+    pub fn new(name: impl Into<String>, outline: SurfaceLines) -> Self {
         Self { name: name.into(), note: String::new(), outline }
     }
 

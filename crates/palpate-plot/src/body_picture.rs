@@ -3,7 +3,7 @@
 
 //! Draws the bodies of a scene.
 
-use crate::body::Body;
+use crate::body::DrawnBody;
 use crate::drawing::{Drawing, Path, Stroke, TextPaint};
 use crate::frame::Frame;
 use crate::geometry::{Point, Rect, is_within};
@@ -54,7 +54,7 @@ pub(crate) struct Bodies<'a> {
 /// A body in view.
 #[derive(Debug)]
 struct Seen<'a> {
-    body: &'a Body,
+    body: &'a DrawnBody,
     stroke: Stroke,
     /// The surface, the rings around the inside and around parts that are surface [px].
     lines: Vec<Vec<Point>>,
@@ -66,7 +66,7 @@ struct Seen<'a> {
 
 impl<'a> Bodies<'a> {
     /// The bodies of which `frame` shows some surface, in colours of their own or in ink.
-    pub(crate) fn new(frame: &Frame, bodies: &'a [Body], are_coloured: bool) -> Self {
+    pub(crate) fn new(frame: &Frame, bodies: &'a [DrawnBody], are_coloured: bool) -> Self {
         let seen = bodies.iter().enumerate().filter_map(|(number, body)| {
             let bounds = frame.rect(&body.outline.bounds(&frame.window())?);
             let color = if are_coloured { Color::numbered(number) } else { Color::INK };
@@ -166,7 +166,7 @@ impl<'a> Bodies<'a> {
         let mut inside: Vec<Point> = places(&seen.bounds);
         inside.retain(|p| is_within(*p, &seen.rings));
         inside.sort_by_key(|p| is_others(*p));
-        let Body { name, note, .. } = seen.body;
+        let DrawnBody { name, note, .. } = seen.body;
         Name::ways(name, note, seen.bounds.width()).into_iter().find_map(|name| {
             let beside = name.beside(&seen.bounds).into_iter().filter(|p| !is_others(*p));
             let mut places = inside.iter().copied().chain(beside).map(|place| name.at(place));
@@ -218,7 +218,7 @@ fn coloured_entries(bodies: &[Seen<'_>], has_insides: bool) -> Vec<Entry> {
             let alike = bodies.iter().filter(|other| other.stroke.color == stroke.color);
             let names: Vec<_> = alike.map(|other| other.body.in_words()).collect();
             let key = if has_insides {
-                Key::Body(stroke.clone(), Color::WHITE.below(stroke.color, TINT))
+                Key::DrawnBody(stroke.clone(), Color::WHITE.below(stroke.color, TINT))
             } else {
                 Key::Line(stroke.clone())
             };

@@ -26,18 +26,18 @@ const LINE: f64 = 1.9;
 /// # Examples
 ///
 /// ```
-/// use palpate_plot::Quantity;
+/// use palpate_plot::ChartQuantity;
 ///
-/// assert_eq!(Quantity::new("force", "N").label(), "force [N]");
-/// assert_eq!(Quantity::new("friction", "").label(), "friction");
+/// assert_eq!(ChartQuantity::new("force", "N").label(), "force [N]");
+/// assert_eq!(ChartQuantity::new("friction", "").label(), "friction");
 /// ```
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Quantity {
+pub struct ChartQuantity {
     name: String,
     unit: String,
 }
 
-impl Quantity {
+impl ChartQuantity {
     /// The quantity `name` measured in `unit`; an empty unit for pure numbers.
     #[must_use]
     pub fn new(name: impl Into<String>, unit: impl Into<String>) -> Self {
@@ -107,20 +107,20 @@ impl Series {
 /// # Examples
 ///
 /// ```
-/// use palpate_plot::{Chart, Figure, Quantity, Series};
+/// use palpate_plot::{Chart, Figure, ChartQuantity, Series};
 ///
 /// let force = Series::new("normal", (0..1000).map(|i| {
 ///     let time = f64::from(i) * 1e-3;
 ///     [time, (6.0 * time).sin().max(0.0)]
 /// }))?;
-/// let chart = Chart::new(Quantity::new("time", "s"), Quantity::new("force", "N")).with_series(force);
+/// let chart = Chart::new(ChartQuantity::new("time", "s"), ChartQuantity::new("force", "N")).with_series(force);
 /// let png = Figure::new("Press").with_chart(chart).to_png(800)?;
 /// # Ok::<(), palpate_plot::PlotError>(())
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Chart {
-    x: Quantity,
-    y: Quantity,
+    x: ChartQuantity,
+    y: ChartQuantity,
     title: String,
     series: Vec<Series>,
 }
@@ -128,7 +128,7 @@ pub struct Chart {
 impl Chart {
     /// An empty chart of `y` over `x`.
     #[must_use]
-    pub fn new(x: Quantity, y: Quantity) -> Self {
+    pub fn new(x: ChartQuantity, y: ChartQuantity) -> Self {
         Self { x, y, title: String::new(), series: Vec::new() }
     }
 

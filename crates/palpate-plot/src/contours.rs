@@ -29,10 +29,10 @@ pub(crate) fn rings(samples: &Samples, level: f64) -> Vec<Vec<Point>> {
 mod tests {
     use super::*;
     use crate::sampling::Sampling;
-    use crate::view::View;
+    use crate::view::PlaneView;
 
     fn disc(radius: f64, scale: f64) -> (Samples, Vec<Vec<Point>>) {
-        let view = View::new([0.1 * scale, 0.0], 3.0 * scale, 2.5 * scale).unwrap();
+        let view = PlaneView::new([0.1 * scale, 0.0], 3.0 * scale, 2.5 * scale).unwrap();
         let samples = Samples::new(&view, Sampling::new(100).unwrap(), |points, out| {
             for (p, v) in points.iter().zip(out) {
                 *v = p[0].hypot(p[1]) - radius * scale;
@@ -62,7 +62,7 @@ mod tests {
 
     #[test]
     fn a_field_of_one_sign_has_no_ring_within_the_window() {
-        let view = View::new([0.0, 0.0], 1.0, 1.0).unwrap();
+        let view = PlaneView::new([0.0, 0.0], 1.0, 1.0).unwrap();
         let samples =
             Samples::new(&view, Sampling::new(10).unwrap(), |_, out| out.fill(0.25)).unwrap();
         assert!(rings(&samples, 0.5).is_empty());

@@ -29,9 +29,9 @@ const BETWEEN: f64 = 26.0;
 /// # Examples
 ///
 /// ```
-/// use palpate_plot::{Chart, Figure, Quantity};
+/// use palpate_plot::{Chart, Figure, ChartQuantity};
 ///
-/// let chart = Chart::new(Quantity::new("time", "s"), Quantity::new("force", "N"));
+/// let chart = Chart::new(ChartQuantity::new("time", "s"), ChartQuantity::new("force", "N"));
 /// let figure = Figure::new("Nothing felt").with_caption("no samples yet").with_chart(chart);
 /// assert!(figure.to_svg().contains("<title>Nothing felt</title>"));
 /// ```
@@ -111,11 +111,11 @@ impl Figure {
     /// # Examples
     ///
     /// ```
-    /// use palpate_plot::{Chart, Color, Figure, Quantity, Series};
+    /// use palpate_plot::{Chart, Color, Figure, ChartQuantity, Series};
     ///
     /// let finger = |number: usize| {
     ///     let force = Series::new("force", [[0.0, 0.0], [1.0, 0.2 * number as f64]])?;
-    ///     let chart = Chart::new(Quantity::new("time", "s"), Quantity::new("force", "N"));
+    ///     let chart = Chart::new(ChartQuantity::new("time", "s"), ChartQuantity::new("force", "N"));
     ///     let chart = chart.with_series(force.with_color(Color::numbered(number)));
     ///     Ok(chart.with_title(format!("finger {number}")))
     /// };
@@ -201,7 +201,9 @@ impl Figure {
 mod tests {
     use super::*;
     use crate::drawing::{Item, Verb};
-    use crate::{Arrow, Arrows, Markers, Polyline, Quantity, Sampling, Series, Slice, View};
+    use crate::{
+        Arrow, Arrows, ChartQuantity, Markers, PlaneView, Polyline, Sampling, Series, Slice,
+    };
 
     /// Checks that every coordinate lies in the figure, and so is finite.
     fn check(figure: &Figure) {
@@ -228,7 +230,8 @@ mod tests {
     }
 
     fn figure(scale: f64, field: impl Fn([f64; 2]) -> f64) -> Figure {
-        let view = View::new([0.3 * scale, -0.1 * scale], 2.0 * scale, 1.5 * scale).unwrap();
+        let view =
+            PlaneView::new([0.3 * scale, -0.1 * scale], 2.0 * scale, 1.5 * scale).unwrap();
         let sample = |points: &[[f64; 2]], values: &mut [f64]| {
             for (&p, value) in points.iter().zip(values) {
                 *value = field(p);
@@ -246,8 +249,9 @@ mod tests {
                 .with_arrows(Arrows::new("force", "N", arrows).unwrap())
                 .with_arrows(Arrows::directions("normal", arrows).unwrap())
                 .with_markers(Markers::new("point", far).unwrap().with_labels(["a", "b", "c"]));
-        let chart = Chart::new(Quantity::new("time", "s"), Quantity::new("force", "N"))
-            .with_series(Series::new("f", [[0.0, scale], [scale, 2.0 * scale]]).unwrap());
+        let chart =
+            Chart::new(ChartQuantity::new("time", "s"), ChartQuantity::new("force", "N"))
+                .with_series(Series::new("f", [[0.0, scale], [scale, 2.0 * scale]]).unwrap());
         Figure::new("Test").with_isolines(isolines).with_chart(chart)
     }
 
@@ -290,7 +294,7 @@ mod tests {
         for points in series {
             let name = "a name that is much too long for one line of the legend ".repeat(4);
             let series = Series::new(name, points.iter().copied()).unwrap();
-            let chart = Chart::new(Quantity::new("x", ""), Quantity::new("y", ""));
+            let chart = Chart::new(ChartQuantity::new("x", ""), ChartQuantity::new("y", ""));
             let chart = chart.with_series(series).with_title("a title ".repeat(20));
             check(&Figure::new("").with_chart(chart.clone()));
             for count in [0, 1, 2, 5] {
@@ -305,7 +309,7 @@ mod tests {
     fn views_are_drawn() {
         check(&Figure::new("None").with_views([]));
         for scale in [1e-9, 1.0, 1e8] {
-            let view = View::new([0.0, 0.0], scale, 1.5 * scale).unwrap();
+            let view = PlaneView::new([0.0, 0.0], scale, 1.5 * scale).unwrap();
             let sample = |points: &[[f64; 2]], values: &mut [f64]| {
                 points.iter().zip(values).for_each(|(p, v)| *v = p[0] - 0.3 * p[1]);
             };
@@ -321,7 +325,7 @@ mod tests {
     #[test]
     fn slivers_are_drawn() {
         for (width, height) in [(1.0, 0.05), (0.05, 1.0)] {
-            let view = View::new([0.0, 0.0], width, height).unwrap();
+            let view = PlaneView::new([0.0, 0.0], width, height).unwrap();
             let field = |points: &[[f64; 2]], values: &mut [f64]| {
                 points.iter().zip(values).for_each(|(p, v)| *v = p[0] + p[1]);
             };

@@ -5,7 +5,7 @@
 
 use crate::drawing::Path;
 use crate::geometry::{Point, Rect, clip_line, clip_ring, simplify};
-use crate::view::View;
+use crate::view::PlaneView;
 
 /// The largest error of a drawn line [px]: invisible, and straight lines keep every grey level
 /// of a PNG.
@@ -17,14 +17,14 @@ const DOT: f64 = 0.05;
 /// A window drawn into a rectangle of the same shape.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Frame {
-    view: View,
+    view: PlaneView,
     /// [px].
     pub(crate) plot: Rect,
 }
 
 impl Frame {
     /// Draws `view` into `plot`.
-    pub(crate) fn new(view: View, plot: Rect) -> Self {
+    pub(crate) fn new(view: PlaneView, plot: Rect) -> Self {
         Self { view, plot }
     }
 

@@ -23,9 +23,9 @@ const BORDER: f64 = 14.0;
 /// # Examples
 ///
 /// ```
-/// use palpate_plot::{Color, Layer};
+/// use palpate_plot::{Color, PixelLayer};
 ///
-/// let layer = Layer::new(320, 240).with_entry(Color::GREEN, "ball");
+/// let layer = PixelLayer::new(320, 240).with_entry(Color::GREEN, "ball");
 /// let pixels = layer.pixels()?;
 /// assert_eq!(pixels.len(), 320 * 240);
 /// assert_eq!(pixels[0], [0, 0, 0, 0]); // nothing is drawn here
@@ -35,7 +35,7 @@ const BORDER: f64 = 14.0;
 /// # Ok::<(), palpate_plot::PlotError>(())
 /// ```
 #[derive(Debug, Clone)]
-pub struct Layer {
+pub struct PixelLayer {
     size: [u32; 2],
     band: Option<Color>,
     entries: Vec<Entry>,
@@ -43,7 +43,7 @@ pub struct Layer {
     arrows: Vec<([[f64; 2]; 2], Color)>,
 }
 
-impl Layer {
+impl PixelLayer {
     /// Nothing yet, over a picture of this size [px].
     #[must_use]
     pub fn new(width: u32, height: u32) -> Self {

@@ -41,7 +41,7 @@ pub(crate) enum Key {
     /// The colours of a measurement, between two numbers.
     Scale(Promised, [f64; 2]),
     /// The outline and the tint of a body.
-    Body(Stroke, Color),
+    DrawnBody(Stroke, Color),
     /// The hatching of what bodies share.
     Shared,
     /// The colours of other numbers.
@@ -90,7 +90,7 @@ impl Key {
             | Self::Line(_)
             | Self::Swatch(_)
             | Self::Promised(_)
-            | Self::Body(..)
+            | Self::DrawnBody(..)
             | Self::Shared => KEY,
             Self::Arrow(_, length) => length.max(12.0),
             Self::Point(..) => 12.0,
@@ -129,7 +129,7 @@ impl Key {
             Self::Scale(promised, ends) => {
                 trust::draw_scale(drawing, [x, y], *promised, *ends);
             }
-            Self::Body(stroke, tint) => {
+            Self::DrawnBody(stroke, tint) => {
                 let rect = Rect::new(x + 1.0, y - 6.0, KEY - 2.0, 12.0);
                 drawing.fill(Path::rect(&rect), *tint);
                 drawing.stroke(Path::rect(&rect), stroke.clone());

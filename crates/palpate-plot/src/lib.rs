@@ -21,7 +21,7 @@
 //! A sphere of 4 cm cut 1 cm above its centre, and a hand that slides over it:
 //!
 //! ```
-//! use palpate_plot::{Figure, Isolines, Polyline, Sampling, Slice, View};
+//! use palpate_plot::{Figure, Isolines, Polyline, Sampling, Slice, PlaneView};
 //!
 //! let slice = Slice::xz(0.01)?;
 //! let view = View::of_box(&slice, [-0.04; 3], [0.04; 3], 0.25)?;
@@ -84,21 +84,21 @@ mod view;
 mod views;
 mod wheel;
 
-pub use body::Body;
-pub use chart::{Chart, Quantity, Series};
+pub use body::DrawnBody;
+pub use chart::{Chart, ChartQuantity, Series};
 pub use dimension::DimensionLine;
 pub use error::PlotError;
 pub use figure::Figure;
 pub use follow::{BoundedField, Cell};
 pub use isolines::Isolines;
-pub use layer::Layer;
+pub use layer::PixelLayer;
 pub use measured::Measured;
-pub use outline::Outline;
+pub use outline::SurfaceLines;
 pub use overlay::{Arrow, Arrows, Dash, Markers, Polyline};
 pub use palette::Color;
 pub use sampling::Sampling;
 pub use scale::Scale;
 pub use slice::Slice;
-pub use slope::Slope;
+pub use slope::SampledSlope;
 pub use trust::{Comparison, Promised};
-pub use view::View;
+pub use view::PlaneView;

@@ -13,7 +13,7 @@ use crate::sampling::Samples;
 /// [`Isolines::sample`](crate::Isolines::sample) finds that of any field as far as its samples
 /// show it.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub struct Outline {
+pub struct SurfaceLines {
     /// Closed lines around the inside, which the even-odd rule fills. They run along the edge of
     /// what was searched, which lies outside the window [m].
     pub(crate) rings: Vec<Vec<Point>>,
@@ -23,7 +23,7 @@ pub struct Outline {
     pub(crate) solids: Vec<Vec<Point>>,
 }
 
-impl Outline {
+impl SurfaceLines {
     /// The zero isolines of `samples`. Where the field is nowhere negative, the points within a
     /// cell of zero belong to the surface.
     pub(crate) fn of_samples(samples: &Samples) -> Self {

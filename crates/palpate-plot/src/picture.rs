@@ -11,7 +11,7 @@ use crate::geometry::{Point, Rect};
 use crate::labels::{self, Occupied};
 use crate::levels::Levels;
 use crate::numbers::{round_down, write, write_length};
-use crate::outline::Outline;
+use crate::outline::SurfaceLines;
 use crate::palette::{self, Color, Side};
 use crate::sampling::Samples;
 use crate::text::Anchor;
@@ -38,7 +38,7 @@ pub(crate) fn isoline_stroke(side: Side) -> Stroke {
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Picture<'a> {
     pub(crate) samples: &'a Samples,
-    pub(crate) outline: &'a Outline,
+    pub(crate) outline: &'a SurfaceLines,
     /// The colours of the inside.
     pub(crate) inside: Side,
     pub(crate) levels: &'a Levels,
@@ -93,7 +93,7 @@ impl Picture<'_> {
     /// Finds the isolines.
     pub(crate) fn lines(&self) -> Lines {
         let levels = self.levels.values.iter().filter(|level| **level != 0.0);
-        let Outline { lines, solids, .. } = self.outline;
+        let SurfaceLines { lines, solids, .. } = self.outline;
         Lines {
             surface: self.frame.shown(&self.pixels(lines)),
             solids: self.pixels(solids),

@@ -5,7 +5,7 @@
 
 use crate::error::PlotError;
 use crate::geometry::Point;
-use crate::view::View;
+use crate::view::PlaneView;
 
 /// How finely a field is sampled for a picture.
 ///
@@ -78,7 +78,7 @@ impl Samples {
     ///
     /// [`PlotError::Sample`] for the first value that is not a length.
     pub(crate) fn new(
-        view: &View,
+        view: &PlaneView,
         sampling: Sampling,
         mut field: impl FnMut(&[[f64; 2]], &mut [f64]),
     ) -> Result<Self, PlotError> {
@@ -131,7 +131,7 @@ mod tests {
 
     #[test]
     fn cells_cover_the_window() {
-        let view = View::new([1.0, 2.0], 0.4, 0.3).unwrap();
+        let view = PlaneView::new([1.0, 2.0], 0.4, 0.3).unwrap();
         let samples = Samples::new(&view, Sampling::new(40).unwrap(), |points, out| {
             for (p, v) in points.iter().zip(out) {
                 *v = p[0] + 100.0 * p[1];
@@ -146,7 +146,7 @@ mod tests {
 
     #[test]
     fn names_the_place_of_a_bad_sample() {
-        let view = View::new([0.0, 0.0], 8.0, 8.0).unwrap();
+        let view = PlaneView::new([0.0, 0.0], 8.0, 8.0).unwrap();
         let sampling = Sampling::new(8).unwrap();
         let error = Samples::new(&view, sampling, |points, out| {
             for (p, v) in points.iter().zip(out) {

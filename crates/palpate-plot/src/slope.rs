@@ -8,11 +8,11 @@ use crate::error::{LARGEST, PlotError};
 use crate::geometry::Point;
 use crate::palette::Color;
 use crate::sampling::Sampling;
-use crate::view::View;
+use crate::view::PlaneView;
 
 /// The value of a field at a point of a plane, and its gradient there.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct Slope {
+pub struct SampledSlope {
     /// The value \[m\].
     pub value: f64,
     /// The gradient's parts to the right, up, and towards the viewer
@@ -20,7 +20,7 @@ pub struct Slope {
     pub gradient: [f64; 3],
 }
 
-impl Slope {
+impl SampledSlope {
     /// Refuses a slope at the point `at` that is not a number, or beyond all numbers drawn.
     ///
     /// # Errors
@@ -51,12 +51,12 @@ pub(crate) struct Pixels {
 impl Pixels {
     /// The pixels of `view` for colours that follow a gradient: [`FINER`] pixels for each cell of
     /// `sampling`.
-    pub(crate) fn of(view: &View, sampling: Sampling) -> Self {
+    pub(crate) fn of(view: &PlaneView, sampling: Sampling) -> Self {
         Self::along(view, (FINER * sampling.cells() as f64).round())
     }
 
     /// The pixels of `view`, `count` along its longer side.
-    pub(crate) fn along(view: &View, count: f64) -> Self {
+    pub(crate) fn along(view: &PlaneView, count: f64) -> Self {
         let edge = view.width().max(view.height()) / count;
         let sides = [view.width(), view.height()];
         let count = sides.map(|side| (side / edge).round().max(1.0) as usize);
@@ -93,8 +93,8 @@ impl Pixels {
     /// for the first gradient without a finite length.
     pub(crate) fn paint(
         &self,
-        field: impl FnMut(&[[f64; 2]], &mut [Slope]),
-        color: impl Fn(&Slope) -> Color,
+        field: impl FnMut(&[[f64; 2]], &mut [SampledSlope]),
+        color: impl Fn(&SampledSlope) -> Color,
     ) -> Result<Image, PlotError> {
         let mut pixels = Vec::with_capacity(self.number());
         self.visit(field, |at, slope| {
@@ -129,7 +129,7 @@ mod tests {
 
     #[test]
     fn pixels_cover_the_window_from_its_top_left_corner() {
-        let view = View::new([1.0, 2.0], 0.4, 0.2).unwrap();
+        let view = PlaneView::new([1.0, 2.0], 0.4, 0.2).unwrap();
         let pixels = Pixels::of(&view, Sampling::new(8).unwrap());
         let places: Vec<Point> = pixels.rows().flatten().collect();
         let image = pixels.paint(|_, _| {}, |_| Color::WHITE).unwrap();
@@ -141,10 +141,10 @@ mod tests {
 
     #[test]
     fn names_the_place_of_a_bad_gradient() {
-        let view = View::new([0.0, 0.0], 20.0, 20.0).unwrap();
+        let view = PlaneView::new([0.0, 0.0], 20.0, 20.0).unwrap();
         let pixels = Pixels::of(&view, Sampling::new(8).unwrap());
-        let field = |_: &[[f64; 2]], slopes: &mut [Slope]| {
-            slopes.fill(Slope { value: 1.0, gradient: [1.0, f64::NAN, 0.0] });
+        let field = |_: &[[f64; 2]], slopes: &mut [SampledSlope]| {
+            slopes.fill(SampledSlope { value: 1.0, gradient: [1.0, f64::NAN, 0.0] });
         };
         let error = pixels.paint(field, |_| Color::WHITE).unwrap_err();
         assert_eq!(

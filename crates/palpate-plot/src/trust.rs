@@ -260,7 +260,7 @@ mod tests {
 
     #[test]
     fn what_is_open_is_counted_and_shown() {
-        let view = crate::View::new([0.0, 0.0], 4.0, 1.0).unwrap();
+        let view = crate::PlaneView::new([0.0, 0.0], 4.0, 1.0).unwrap();
         let pixels = Pixels::along(&view, 4.0);
         let distances = [[1.0, 1.0], [4.0, 4.0], [0.5, f64::INFINITY], [0.8, 0.8]];
         let comparisons = distances.map(|distance| Comparison { value: 1.0, distance });

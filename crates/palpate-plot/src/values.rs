@@ -66,9 +66,9 @@ impl Isolines {
     /// By how much a square's distance exceeds that of the disc in it:
     ///
     /// ```
-    /// use palpate_plot::{Isolines, Sampling, Scale, Slice, View};
+    /// use palpate_plot::{Isolines, Sampling, Scale, Slice, PlaneView};
     ///
-    /// let view = View::new([0.0, 0.0], 0.2, 0.15)?;
+    /// let view = PlaneView::new([0.0, 0.0], 0.2, 0.15)?;
     /// let disc = |p: &[f64; 2]| p[0].hypot(p[1]) - 0.03;
     /// let square = |p: &[f64; 2]| p[0].abs().max(p[1].abs()) - 0.03; // a bound
     /// fn all(f: impl Fn(&[f64; 2]) -> f64) -> impl Fn(&[[f64; 2]], &mut [f64]) {
@@ -98,10 +98,10 @@ impl Isolines {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Figure, Sampling, Slice, View};
+    use crate::{Figure, PlaneView, Sampling, Slice};
 
     fn disc() -> Isolines {
-        let view = View::new([0.0, 0.0], 4.0, 4.0).unwrap();
+        let view = PlaneView::new([0.0, 0.0], 4.0, 4.0).unwrap();
         let values = |points: &[[f64; 2]], values: &mut [f64]| {
             points.iter().zip(values).for_each(|(p, value)| *value = p[0].hypot(p[1]) - 1.0);
         };

@@ -21,22 +21,22 @@ const MAX_DISTANCE: f64 = 1e9;
 /// # Examples
 ///
 /// ```
-/// use palpate_plot::View;
+/// use palpate_plot::PlaneView;
 ///
-/// let view = View::new([0.1, 0.0], 0.4, 0.3)?;
+/// let view = PlaneView::new([0.1, 0.0], 0.4, 0.3)?;
 /// assert_eq!((view.min(), view.max()), ([-0.1, -0.15], [0.30000000000000004, 0.15]));
 ///
-/// let error = View::new([0.0, 0.0], -0.2, 0.3).unwrap_err();
+/// let error = PlaneView::new([0.0, 0.0], -0.2, 0.3).unwrap_err();
 /// assert_eq!(error.to_string(), "view width must be between 1e-9 m and 1e9 m, got -0.2 m");
 /// # Ok::<(), palpate_plot::PlotError>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct View {
+pub struct PlaneView {
     center: [f64; 2],
     size: [f64; 2],
 }
 
-impl View {
+impl PlaneView {
     /// The window of `width` by `height` \[m\] around `center`.
     ///
     /// # Errors
@@ -76,9 +76,9 @@ impl View {
     /// # Examples
     ///
     /// ```
-    /// use palpate_plot::View;
+    /// use palpate_plot::PlaneView;
     ///
-    /// let view = View::from_bounds([0.0, 0.0], [2.0, 1.0], 0.25)?;
+    /// let view = PlaneView::from_bounds([0.0, 0.0], [2.0, 1.0], 0.25)?;
     /// assert_eq!((view.center(), view.width(), view.height()), ([1.0, 0.5], 3.0, 2.0));
     /// # Ok::<(), palpate_plot::PlotError>(())
     /// ```
@@ -102,9 +102,9 @@ impl View {
     /// # Examples
     ///
     /// ```
-    /// use palpate_plot::{Slice, View};
+    /// use palpate_plot::{Slice, PlaneView};
     ///
-    /// let view = View::of_box(&Slice::xz(0.0)?, [0.0; 3], [2.0, 9.0, 1.0], 0.0)?;
+    /// let view = PlaneView::of_box(&Slice::xz(0.0)?, [0.0; 3], [2.0, 9.0, 1.0], 0.0)?;
     /// assert_eq!(view.center(), [1.0, -0.5]); // seen from above, z runs down the page
     /// # Ok::<(), palpate_plot::PlotError>(())
     /// ```
@@ -168,19 +168,19 @@ mod tests {
     #[test]
     fn refuses_windows_without_extent() {
         for size in [0.0, -1.0, f64::NAN, f64::INFINITY, 1e-10, 1e10] {
-            assert!(View::new([0.0; 2], size, 1.0).is_err(), "{size}");
-            assert!(View::new([0.0; 2], 1.0, size).is_err(), "{size}");
+            assert!(PlaneView::new([0.0; 2], size, 1.0).is_err(), "{size}");
+            assert!(PlaneView::new([0.0; 2], 1.0, size).is_err(), "{size}");
         }
-        assert!(View::new([f64::NAN, 0.0], 1.0, 1.0).is_err());
-        assert!(View::new([1e12, 0.0], 1.0, 1.0).is_err());
-        assert!(View::new([0.0; 2], 1.0, 30.0).is_err());
-        assert!(View::from_bounds([1.0; 2], [0.0; 2], 0.1).is_err());
-        assert!(View::from_bounds([1.0; 2], [1.0; 2], 0.1).is_err());
+        assert!(PlaneView::new([f64::NAN, 0.0], 1.0, 1.0).is_err());
+        assert!(PlaneView::new([1e12, 0.0], 1.0, 1.0).is_err());
+        assert!(PlaneView::new([0.0; 2], 1.0, 30.0).is_err());
+        assert!(PlaneView::from_bounds([1.0; 2], [0.0; 2], 0.1).is_err());
+        assert!(PlaneView::from_bounds([1.0; 2], [1.0; 2], 0.1).is_err());
     }
 
     #[test]
     fn widens_flat_boxes() {
-        let view = View::from_bounds([0.0, 1.0], [2.0, 1.0], 0.0).unwrap();
+        let view = PlaneView::from_bounds([0.0, 1.0], [2.0, 1.0], 0.0).unwrap();
         assert_eq!((view.width(), view.height()), (2.0, 0.5));
     }
 }

@@ -4,8 +4,9 @@
 //! Whole figures: their bytes, their pixels, their words.
 
 use palpate_plot::{
-    Body, BoundedField, Cell, Chart, Color, Dash, Figure, Isolines, Markers, Outline,
-    PlotError, Polyline, Quantity, Sampling, Series, Slice, Slope, View,
+    BoundedField, Cell, Chart, ChartQuantity, Color, Dash, DrawnBody, Figure, Isolines,
+    Markers, PlaneView, PlotError, Polyline, SampledSlope, Sampling, Series, Slice,
+    SurfaceLines,
 };
 
 fn disc(points: &[[f64; 2]], values: &mut [f64]) {
@@ -15,7 +16,7 @@ fn disc(points: &[[f64; 2]], values: &mut [f64]) {
 }
 
 fn isolines(cells: usize) -> Result<Isolines, PlotError> {
-    let view = View::new([0.0, 0.0], 0.12, 0.08)?;
+    let view = PlaneView::new([0.0, 0.0], 0.12, 0.08)?;
     Isolines::sample(&Slice::planar(), &view, Sampling::new(cells)?, disc)
 }
 
@@ -25,7 +26,7 @@ fn full_figure() -> Result<Figure, PlotError> {
         .with_polyline(Polyline::new("hand <1>", path)?)
         .with_markers(Markers::new("contact", [[0.03, 0.0]])?.with_labels(["A & B"]));
     let force = Series::new("normal", [[0.0, 0.0], [1.0, 2.0], [2.0, 0.0]])?;
-    let chart = Chart::new(Quantity::new("time", "s"), Quantity::new("force", "N"));
+    let chart = Chart::new(ChartQuantity::new("time", "s"), ChartQuantity::new("force", "N"));
     Ok(Figure::new("Disc \"of\" 3 cm")
         .with_caption("exact")
         .with_isolines(isolines)
@@ -106,7 +107,7 @@ fn figures_say_what_they_show() {
 
 #[test]
 fn a_figure_without_surface_says_so() {
-    let view = View::new([1.0, 0.0], 0.1, 0.1).unwrap();
+    let view = PlaneView::new([1.0, 0.0], 0.1, 0.1).unwrap();
     let isolines =
         Isolines::sample(&Slice::planar(), &view, Sampling::default(), disc).unwrap();
     let svg = Figure::new("").with_isolines(isolines).to_svg();
@@ -116,7 +117,7 @@ fn a_figure_without_surface_says_so() {
 
 #[test]
 fn a_curve_without_interior_has_a_surface_line() {
-    let view = View::new([0.0, 0.0], 0.1, 0.1).unwrap();
+    let view = PlaneView::new([0.0, 0.0], 0.1, 0.1).unwrap();
     let circle = |points: &[[f64; 2]], values: &mut [f64]| {
         disc(points, values);
         values.iter_mut().for_each(|value| *value = value.abs());
@@ -144,11 +145,11 @@ impl BoundedField for Disc {
         points.iter().zip(values).for_each(|(p, value)| *value = self.value(p));
     }
 
-    fn slopes(&mut self, points: &[[f64; 2]], slopes: &mut [Slope]) {
+    fn slopes(&mut self, points: &[[f64; 2]], slopes: &mut [SampledSlope]) {
         for (p, slope) in points.iter().zip(slopes) {
             let value = self.value(p);
             let gradient = [p[0] - self.0, p[1], 0.0].map(|x| x / (value + Self::RADIUS));
-            *slope = Slope { value, gradient };
+            *slope = SampledSlope { value, gradient };
         }
     }
 
@@ -167,16 +168,17 @@ impl BoundedField for Disc {
 
 /// Discs about these points of the x axis, called disc 0, disc 1 and so on.
 fn discs(places: &[f64]) -> Result<Figure, PlotError> {
-    let view = View::new([0.0, 0.0], 0.3, 0.1)?;
+    let view = PlaneView::new([0.0, 0.0], 0.3, 0.1)?;
     let whole = |points: &[[f64; 2]], values: &mut [f64]| {
         let value = |p| places.iter().map(|x| Disc(*x).value(p)).fold(f64::INFINITY, f64::min);
         points.iter().zip(values).for_each(|(p, v)| *v = value(p));
     };
     let body = |(number, x): (usize, &f64)| {
-        let outline = Outline::follow(&view, Sampling::new(100)?, Disc(*x))?;
-        Ok(Body::new(format!("disc {number}"), outline).with_note("wood"))
+        let outline = SurfaceLines::follow(&view, Sampling::new(100)?, Disc(*x))?;
+        Ok(DrawnBody::new(format!("disc {number}"), outline).with_note("wood"))
     };
-    let bodies: Vec<Body> = places.iter().enumerate().map(body).collect::<Result<_, _>>()?;
+    let bodies: Vec<DrawnBody> =
+        places.iter().enumerate().map(body).collect::<Result<_, _>>()?;
     let isolines = Isolines::sample(&Slice::planar(), &view, Sampling::new(100)?, whole)?;
     Ok(Figure::new("Discs").with_isolines(isolines.with_bodies(bodies)))
 }
@@ -254,10 +256,10 @@ fn svg_and_png_are_the_same_picture() {
 }
 
 /// A disc with its gradients.
-fn slopes(points: &[[f64; 2]], slopes: &mut [Slope]) {
+fn slopes(points: &[[f64; 2]], slopes: &mut [SampledSlope]) {
     for (p, slope) in points.iter().zip(slopes) {
         let r = p[0].hypot(p[1]);
-        *slope = Slope { value: r - 0.03, gradient: [p[0] / r, p[1] / r, 0.0] };
+        *slope = SampledSlope { value: r - 0.03, gradient: [p[0] / r, p[1] / r, 0.0] };
     }
 }
 
@@ -304,7 +306,8 @@ fn panels_share_axes_and_a_legend() -> Result<(), PlotError> {
     let finger = |number: usize| {
         let force = Series::new("force", [[0.0, 0.0], [4.0, 1.0 + number as f64]])?;
         let force = force.with_color(Color::numbered(number)).with_dash(Dash::Solid);
-        let chart = Chart::new(Quantity::new("time", "s"), Quantity::new("force", "N"));
+        let chart =
+            Chart::new(ChartQuantity::new("time", "s"), ChartQuantity::new("force", "N"));
         Ok(chart.with_series(force).with_title(format!("finger {number}")))
     };
     let fingers = (0..5).map(finger).collect::<Result<Vec<_>, PlotError>>()?;
@@ -332,7 +335,7 @@ fn pictures_of_impossible_size_are_refused() {
 
 #[test]
 fn bad_samples_are_named() {
-    let view = View::new([0.0, 0.0], 0.12, 0.08).unwrap();
+    let view = PlaneView::new([0.0, 0.0], 0.12, 0.08).unwrap();
     let nan = |_: &[[f64; 2]], values: &mut [f64]| values.fill(f64::NAN);
     let error =
         Isolines::sample(&Slice::planar(), &view, Sampling::default(), nan).unwrap_err();

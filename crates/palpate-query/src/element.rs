@@ -63,20 +63,20 @@ impl<const N: usize, const D: usize> Element<N, D> {
     /// ```
     #[must_use]
     pub fn smallest_ball(&self) -> BoundingBall<D> {
-        palpate_mesh::internal::smallest_ball(&self.vertices)
+        palpate_mesh::smallest_ball(&self.vertices)
     }
 
     /// The ball about the circumcentre of a triangle that its vertices lie on, its radius rounded
     /// up; the smallest ball of a segment. `None` if the vertices of a triangle lie on a line.
     #[must_use]
     pub fn circumscribed_ball(&self) -> Option<BoundingBall<D>> {
-        palpate_mesh::internal::circumscribed_ball(&self.vertices)
+        palpate_mesh::circumscribed_ball(&self.vertices)
     }
 
     /// The barycentric weights of the centre of the smallest ball around the element.
     #[inline]
     pub(crate) fn centre_weights(&self) -> [f64; N] {
-        palpate_mesh::internal::centre_weights(&self.vertices)
+        palpate_mesh::centre_weights(&self.vertices)
     }
 
     /// A triangle without area as its longest edge with the second end doubled, so that its

@@ -3,7 +3,7 @@
 
 //! What a search is for, and when it may stop.
 
-use crate::certified::Stop;
+use crate::certified::{Limits, Stop};
 
 /// The question about a least value.
 #[derive(Clone, Copy, Debug)]
@@ -37,6 +37,22 @@ impl Goal {
     /// Whether anything is at most zero.
     pub(crate) fn sign(tolerance: f64) -> Self {
         Self { tolerance, apart: 0.0, finest: tolerance, is_sign: true }
+    }
+
+    /// The separation of two bodies, which is twice the least value of the larger of their fields:
+    /// bounds of that value are half as far apart.
+    pub(crate) fn separation(limits: &Limits) -> Self {
+        Self::least(0.5 * limits.tolerance)
+    }
+
+    /// The separation, if it is at most `margin`, which is to be decided.
+    pub(crate) fn separation_within(margin: f64, limits: &Limits) -> Self {
+        Self::least_within(0.5 * margin, 0.5 * limits.tolerance)
+    }
+
+    /// Whether two bodies overlap.
+    pub(crate) fn overlap(limits: &Limits) -> Self {
+        Self::sign(0.5 * limits.tolerance)
     }
 
     /// The same question, with bounds that are so much closer, as a share.

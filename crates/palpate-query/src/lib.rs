@@ -54,6 +54,7 @@ mod advance;
 mod any_point;
 mod ball;
 mod certified;
+pub mod constraints;
 mod contact;
 mod contacts;
 mod cut_box;
@@ -63,10 +64,7 @@ mod element_search;
 mod engine;
 mod error;
 mod goal;
-mod half_spaces;
 mod instances;
-#[doc(hidden)]
-pub mod internal;
 mod larger;
 mod manifold;
 mod mesh;
@@ -89,7 +87,7 @@ pub use ball::{BallWorkspace, contact_ball, touches_ball};
 pub use certified::{Certified, Limits, Stop};
 pub use contact::{Contact, NormalSource};
 pub use contacts::{ElementContacts, contacts};
-pub use element::Element;
+pub use element::{Element, parts_of_one};
 pub use element_search::{ElementWorkspace, minimum, touches};
 pub use error::QueryError;
 #[doc(hidden)]
@@ -101,7 +99,8 @@ pub use mesh::{
 };
 pub use pair::{
     DistanceBound, Nearest, PairWorkspace, PoseDerivative, Proof, ProofBox, Rates,
-    SeparatingTranslation, overlap, proof, rates, separating_translation, separation,
+    SeparatingTranslation, minimax_step, overlap, proof, rates, separating_translation,
+    separation,
 };
 pub use placed::Placed;
 pub use point::{AtPoint, evaluate_point};
@@ -115,4 +114,4 @@ pub use sweep::{
 pub use track::Track;
 pub use verdict::Verdict;
 #[cfg(feature = "world")]
-pub use world::{BodyId, Impact, Neighbours, World, WorldSettings};
+pub use world::{BodyId, BodyImpact, Neighbours, World, WorldSettings};

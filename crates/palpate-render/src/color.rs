@@ -7,9 +7,9 @@ use std::ops::{Add, AddAssign, Mul};
 
 /// A colour of sRGB (IEC 61966-2-1): red, green, blue.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Color(pub [u8; 3]);
+pub struct SrgbColor(pub [u8; 3]);
 
-impl Color {
+impl SrgbColor {
     /// The colours of bodies, in their order; a thirteenth body has the first again.
     ///
     /// The first eight are those of Okabe and Ito ("Color Universal Design", 2008), ordered so that
@@ -66,8 +66,8 @@ impl Light {
     }
 
     /// The colour; light brighter than a file holds is as bright as it holds.
-    pub(crate) fn color(self) -> Color {
-        Color(self.encoded().map(|c| (255.0 * c).round() as u8))
+    pub(crate) fn color(self) -> SrgbColor {
+        SrgbColor(self.encoded().map(|c| (255.0 * c).round() as u8))
     }
 
     /// The numbers of sRGB, from 0 to 1.
@@ -114,9 +114,9 @@ mod tests {
     #[test]
     fn every_colour_is_light_and_back() {
         for c in 0..=255 {
-            let color = Color([c, 255 - c, c / 2]);
+            let color = SrgbColor([c, 255 - c, c / 2]);
             assert_eq!(color.light().color(), color);
         }
-        assert_eq!(Light([2.0, -1.0, 0.0]).color(), Color([255, 0, 0]));
+        assert_eq!(Light([2.0, -1.0, 0.0]).color(), SrgbColor([255, 0, 0]));
     }
 }

@@ -7,19 +7,19 @@ use std::io::Write;
 
 use png::{BitDepth, ColorType, Compression, Encoder, EncodingError};
 
-use crate::color::Color;
+use crate::color::SrgbColor;
 use crate::error::RenderError;
 
 /// A picture of pixels, row by row from the upper left.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Image {
     width: u32,
-    pixels: Vec<Color>,
+    pixels: Vec<SrgbColor>,
 }
 
 impl Image {
     /// Rows of `width` pixels.
-    pub(crate) fn new(width: u32, pixels: Vec<Color>) -> Self {
+    pub(crate) fn new(width: u32, pixels: Vec<SrgbColor>) -> Self {
         Self { width, pixels }
     }
 
@@ -42,7 +42,7 @@ impl Image {
 
     /// The pixels.
     #[must_use]
-    pub fn pixels(&self) -> &[Color] {
+    pub fn pixels(&self) -> &[SrgbColor] {
         &self.pixels
     }
 
@@ -51,7 +51,7 @@ impl Image {
     ///
     /// ```
     /// use palpate_field::Shape;
-    /// use palpate_render::{Camera, Color, Lens, Settings, Sight, Subject, render};
+    /// use palpate_render::{Camera, SrgbColor, Lens, Settings, Sight, Subject, render};
     ///
     /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
     /// let subject = Subject::of_shapes([Shape::ball(0.05)?])?;
@@ -60,12 +60,13 @@ impl Image {
     /// let drawn = render(&subject, &camera, &Settings::new(8, 8), &|_| true)?;
     /// let mut image = drawn.ok_or("the watch ended it")?.image;
     /// image.lay_over(&[[255, 0, 0, 255]]);
-    /// assert_eq!(image.pixels()[0], Color([255, 0, 0]));
+    /// assert_eq!(image.pixels()[0], SrgbColor([255, 0, 0]));
     /// # Ok(())
     /// # }
     /// ```
     pub fn lay_over(&mut self, layer: &[[u8; 4]]) {
-        for (Color(below), [red, green, blue, opacity]) in self.pixels.iter_mut().zip(layer) {
+        for (SrgbColor(below), [red, green, blue, opacity]) in self.pixels.iter_mut().zip(layer)
+        {
             let share = f64::from(*opacity) / 255.0;
             for (below, above) in below.iter_mut().zip([red, green, blue]) {
                 let mixed = f64::from(*below) * (1.0 - share) + f64::from(*above) * share;

@@ -54,10 +54,10 @@ mod surfaces;
 mod trace;
 
 pub use camera::{Camera, Lens, Sight};
-pub use color::Color;
+pub use color::SrgbColor;
 pub use error::RenderError;
 pub use image::{Image, write_animation};
 pub use render::{Rendering, render};
 pub use settings::{Settings, Shadows};
-pub use subject::{Body, Cut, Subject};
+pub use subject::{Cut, LitBody, Subject};
 pub use trace::Work;

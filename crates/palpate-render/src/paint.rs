@@ -6,7 +6,7 @@
 use palpate_field::{BLOCK, Block, Gradients, Point, Vector};
 
 use crate::beam::{Beam, Extent};
-use crate::color::{Color, Light};
+use crate::color::{Light, SrgbColor};
 use crate::cut_face;
 use crate::light::Lit;
 use crate::shadow::{Part, Place, Shadow};
@@ -29,7 +29,7 @@ pub(crate) struct Dab {
 /// What a ray of sight meets.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Matter {
-    Body(usize),
+    LitBody(usize),
     CutFace(usize),
     Ground,
 }
@@ -117,7 +117,7 @@ impl<'a> Painter<'a> {
         dabs.clear();
         dabs.extend(self.met.iter().map(|met| Dab {
             light: if met.end == End::Undecided {
-                Color::UNDECIDED.light()
+                SrgbColor::UNDECIDED.light()
             } else {
                 *background
             },
@@ -150,7 +150,7 @@ impl<'a> Painter<'a> {
             let matter = if studio.surfaces.is_cut_face(body, *point) {
                 Matter::CutFace(body)
             } else {
-                Matter::Body(body)
+                Matter::LitBody(body)
             };
             let view = -beams[ray].direction;
             // Where a field is flat, as between two bodies, no direction is right.
@@ -198,7 +198,7 @@ impl Studio {
     /// The light that a spot sends to the viewer.
     fn light(&self, spot: &Spot, lit: &Lit) -> Light {
         match spot.matter {
-            Matter::Body(body) => lit.sent(self.surfaces.bodies[body].light, self.key),
+            Matter::LitBody(body) => lit.sent(self.surfaces.bodies[body].light, self.key),
             Matter::CutFace(body) => {
                 let body = &self.surfaces.bodies[body];
                 let (depth, slope) = body.uncut.distance_gradient(spot.place.point);

@@ -41,7 +41,7 @@ pub struct Rendering {
     /// The distance between the isolines of a cut face [m].
     pub spacing: f64,
     /// Rays of sight. The pixels of those that are undecided have the colour
-    /// [`Color::UNDECIDED`](crate::Color::UNDECIDED), or a share of it.
+    /// [`SrgbColor::UNDECIDED`](crate::SrgbColor::UNDECIDED), or a share of it.
     pub sight: Work,
     /// Rays to the key light. Those that are undecided count as blocked.
     pub light: Work,

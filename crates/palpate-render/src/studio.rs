@@ -7,7 +7,7 @@ use palpate_field::Vector;
 
 use crate::beam::Beam;
 use crate::camera::Camera;
-use crate::color::{Color, Light};
+use crate::color::{Light, SrgbColor};
 use crate::error::RenderError;
 use crate::light::key_direction;
 use crate::settings::Settings;
@@ -62,7 +62,7 @@ impl Studio {
             camera: *camera,
             settings: *settings,
             key: key_direction(camera.sight()),
-            background: Color::BACKGROUND.light(),
+            background: SrgbColor::BACKGROUND.light(),
             reach: REACH * size,
             spacing: settings.spacing.unwrap_or_else(|| round(SPACING * size)),
             thin,

@@ -6,7 +6,7 @@
 use palpate_field::{Aabb, BoundingBall, Point, Shape, Vector};
 use palpate_query::QueryError;
 
-use crate::color::Color;
+use crate::color::SrgbColor;
 use crate::error::RenderError;
 
 /// How far bodies without bounds are drawn, in radii of the ball around those that have bounds.
@@ -17,11 +17,11 @@ const HALF_SIDE: f64 = 0.5;
 
 /// A shape in the world, and its colour.
 #[derive(Clone, Debug)]
-pub struct Body {
+pub struct LitBody {
     /// The shape.
     pub shape: Shape<3>,
     /// The colour.
-    pub color: Color,
+    pub color: SrgbColor,
 }
 
 /// A plane through bodies: what lies on the side to which the normal points is cut away.
@@ -68,7 +68,7 @@ impl Cut {
 /// The bodies of a picture.
 #[derive(Clone, Debug)]
 pub struct Subject {
-    bodies: Vec<Body>,
+    bodies: Vec<LitBody>,
 }
 
 impl Subject {
@@ -77,23 +77,23 @@ impl Subject {
     /// # Errors
     ///
     /// [`RenderError::NoBody`].
-    pub fn new(bodies: Vec<Body>) -> Result<Self, RenderError> {
+    pub fn new(bodies: Vec<LitBody>) -> Result<Self, RenderError> {
         if bodies.is_empty() { Err(RenderError::NoBody) } else { Ok(Self { bodies }) }
     }
 
-    /// Shapes in the colours of [`Color::BODIES`].
+    /// Shapes in the colours of [`SrgbColor::BODIES`].
     ///
     /// # Errors
     ///
     /// [`RenderError::NoBody`].
     pub fn of_shapes(shapes: impl IntoIterator<Item = Shape<3>>) -> Result<Self, RenderError> {
-        let body = |(i, shape)| Body { shape, color: Color::of_body(i) };
+        let body = |(i, shape)| LitBody { shape, color: SrgbColor::of_body(i) };
         Self::new(shapes.into_iter().enumerate().map(body).collect())
     }
 
     /// The bodies.
     #[must_use]
-    pub fn bodies(&self) -> &[Body] {
+    pub fn bodies(&self) -> &[LitBody] {
         &self.bodies
     }
 

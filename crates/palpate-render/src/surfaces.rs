@@ -8,7 +8,7 @@ use palpate_field::{Aabb, BLOCK, Block, BoundingBall, Column, Node, Point, Shape
 use crate::beam::{Beam, Extent};
 use crate::bundle::Bundle;
 use crate::color::Light;
-use crate::subject::{Body, Cut, Subject};
+use crate::subject::{Cut, LitBody, Subject};
 
 /// The bodies as rays meet them.
 #[derive(Debug)]
@@ -62,7 +62,7 @@ impl Surfaces {
         thin: f64,
     ) -> Result<Self, ShapeError> {
         let mut parts = Vec::new();
-        let mut surface = |body: &Body| {
+        let mut surface = |body: &LitBody| {
             let mut uncut = Vec::new();
             take_apart(&body.shape, thin, &mut uncut)?;
             let shapes = uncut.iter().map(|part| kept(part, cut));

@@ -8,8 +8,8 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use palpate_field::{Shape, Vector};
 use palpate_render::{
-    Camera, Color, Cut, Image, Lens, RenderError, Rendering, Settings, Shadows, Sight, Subject,
-    render, write_animation,
+    Camera, Cut, Image, Lens, RenderError, Rendering, Settings, Shadows, Sight, SrgbColor,
+    Subject, render, write_animation,
 };
 
 /// A ball on a plate with a hole, and a ring around it.
@@ -47,8 +47,8 @@ fn a_picture_has_the_same_bits_on_any_number_of_threads() {
 
 /// Each pixel as a letter for its hue and one for its lightness.
 fn letters(image: &Image) -> String {
-    let letter = |color: &Color| {
-        let Color([red, green, blue]) = *color;
+    let letter = |color: &SrgbColor| {
+        let SrgbColor([red, green, blue]) = *color;
         let (most, least) = (red.max(green).max(blue), red.min(green).min(blue));
         let hue = match () {
             () if most - least < 24 => '.',
@@ -59,7 +59,7 @@ fn letters(image: &Image) -> String {
         format!("{hue}{:x}", most / 16)
     };
     let rows = image.pixels().chunks(image.width() as usize);
-    let row = |row: &[Color]| row.iter().map(letter).collect::<String>() + "\n";
+    let row = |row: &[SrgbColor]| row.iter().map(letter).collect::<String>() + "\n";
     rows.map(row).collect()
 }
 
@@ -75,7 +75,7 @@ fn a_small_picture_is_as_it_was() {
 /// The shares of the colours of the first three bodies and of the background.
 fn shares(image: &Image) -> [f64; 4] {
     let mut counts = [0; 4];
-    for Color([red, green, blue]) in image.pixels().iter().copied() {
+    for SrgbColor([red, green, blue]) in image.pixels().iter().copied() {
         let (red, green, blue) = (i32::from(red), i32::from(green), i32::from(blue));
         let body = match () {
             () if blue - red > 40 => 0,
@@ -113,7 +113,7 @@ fn a_wire_of_no_radius_is_an_unbroken_line() {
     let rendering = render(&subject, &camera, &settings, &|_| true).unwrap().unwrap();
     assert!((rendering.thin - 0.6 / 60.0).abs() < 1e-15);
     let rows = rendering.image.pixels().chunks(80);
-    let is_wire = |color: &Color| *color != Color::BACKGROUND;
+    let is_wire = |color: &SrgbColor| *color != SrgbColor::BACKGROUND;
     let columns = (0..80).filter(|x| rows.clone().any(|row| is_wire(&row[*x]))).count();
     assert_eq!(columns, 80);
 }
@@ -150,10 +150,10 @@ fn endless_bodies_fade_before_the_horizon() {
         render(&subject, &camera, &Settings::new(40, 30), &|_| true).unwrap().unwrap();
     assert_eq!(rendering.sight.undecided, 0);
     let row = |y: usize| &rendering.image.pixels()[y * 40..(y + 1) * 40];
-    assert!(row(0).iter().all(|color| *color == Color::BACKGROUND));
+    assert!(row(0).iter().all(|color| *color == SrgbColor::BACKGROUND));
     // Just below the horizon the floor is as far as it is drawn, below it has its colour.
-    let difference = |color: Color| {
-        let pairs = color.0.into_iter().zip(Color::BACKGROUND.0);
+    let difference = |color: SrgbColor| {
+        let pairs = color.0.into_iter().zip(SrgbColor::BACKGROUND.0);
         pairs.map(|(a, b)| a.abs_diff(b)).max().unwrap()
     };
     assert!(difference(row(15)[0]) < 8, "{:?}", row(15)[0]);

@@ -14,11 +14,12 @@
 
 use std::sync::Arc;
 
-use crate::device::DeviceProfile;
-use crate::error::{NumberError, SafetyError};
+use crate::error::SafetyError;
 use crate::impedance::Impedance;
 use crate::limits::DeviceLimits;
 use crate::refused::{Refused, Requester};
+use palpate_device::DeviceProfile;
+use palpate_device::NumberError;
 
 /// The rate for which profiles state the largest stiffness and damping [Hz].
 const STATED_RATE: f64 = 1000.0;
@@ -93,7 +94,7 @@ impl Rule {
 impl Rule {
     /// The numbers of the profile that the rule uses, by the names of
     /// [`DeviceProfile::NUMBERS`]; of a rule about rotation, by those of
-    /// [`TurningProfile::NUMBERS`](crate::TurningProfile::NUMBERS).
+    /// [`TurningProfile::NUMBERS`](palpate_device::TurningProfile::NUMBERS).
     ///
     /// ```
     /// use palpate_safety::Rule;
@@ -145,13 +146,14 @@ impl Rule {
 /// [`assumed`](Self::assumed).
 ///
 /// Rotation follows the same rules, with the numbers of the
-/// [`TurningProfile`](crate::TurningProfile), the angular stiffness `κ` [N·m/rad] for `K` and
+/// [`TurningProfile`](palpate_device::TurningProfile), the angular stiffness `κ` [N·m/rad] for `K` and
 /// the angular damping `β` [N·m·s/rad] for `B`.
 ///
 /// # Examples
 ///
 /// ```
-/// use palpate_safety::{Accepted, DeviceProfile, Impedance, Rule};
+/// use palpate_device::DeviceProfile;
+/// use palpate_safety::{Accepted, Impedance, Rule};
 ///
 /// # fn main() -> Result<(), palpate_safety::SafetyError> {
 /// let device =
@@ -304,7 +306,8 @@ impl Accepted {
     /// needs is not positive.
     ///
     /// ```
-    /// use palpate_safety::{Acceptance, Accepted, DeviceLimits, DeviceProfile};
+    /// use palpate_device::DeviceProfile;
+    /// use palpate_safety::{Acceptance, Accepted, DeviceLimits};
     ///
     /// # fn main() -> Result<(), palpate_safety::SafetyError> {
     /// let device = DeviceProfile::unlimited("example").with_max_stiffness(1500.0);
@@ -337,7 +340,8 @@ impl Accepted {
     /// [`SafetyError::MaterialRefused`].
     ///
     /// ```
-    /// use palpate_safety::{Accepted, DeviceProfile, Impedance};
+    /// use palpate_device::DeviceProfile;
+    /// use palpate_safety::{Accepted, Impedance};
     ///
     /// # fn main() -> Result<(), palpate_safety::SafetyError> {
     /// let device = DeviceProfile::unlimited("example").with_max_stiffness(1000.0);

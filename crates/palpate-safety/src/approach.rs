@@ -7,7 +7,7 @@
 
 use palpate_field::Vector;
 
-use crate::limit::shortened;
+use palpate_device::shortened;
 
 /// The most by which a force changes in a tick after an edit [N]: a hand does not feel it as a kick.
 /// With more, an edit of a few millimetres would be a blow; with less, a wall would give way under

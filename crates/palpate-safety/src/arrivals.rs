@@ -5,8 +5,9 @@
 
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-use crate::device::Reading;
-use crate::error::{NumberError, SafetyError};
+use crate::error::SafetyError;
+use palpate_device::NumberError;
+use palpate_device::Reading;
 
 /// How far from a period the time between two readings still counts as one, as a part of it: times
 /// are differences of sums, which rounding must not change.
@@ -27,7 +28,8 @@ pub struct Arrival {
 /// Times the states of ticks by what a loop tells of the next one.
 ///
 /// ```
-/// use palpate_safety::{Arrivals, Reading};
+/// use palpate_device::Reading;
+/// use palpate_safety::Arrivals;
 ///
 /// # fn main() -> Result<(), palpate_safety::SafetyError> {
 /// let mut arrivals = Arrivals::new(1000.0)?;

@@ -7,20 +7,22 @@
 
 use palpate_field::{Point, Vector};
 
-use crate::acceptance::{Acceptance, Accepted};
+use crate::acceptance::Accepted;
 use crate::channel::{Channel, Given, Risen, TickInput};
-use crate::device::DeviceProfile;
-use crate::error::{NumberError, SafetyError};
+use crate::error::SafetyError;
 use crate::finite;
-use crate::free_energy::{FreeEnergy, Passed};
+use crate::free_energy::{FreeEnergy, FreeInput, Passed};
 use crate::impedance::Impedance;
-use crate::limit::cut;
-use crate::limit_cycle::{CycleInput, LimitCycle, LimitCycleOptions};
+use crate::limit::{Wanted, cut};
+use crate::limit_cycle::{CycleInput, ForcesOf, LimitCycle, LimitCycleOptions};
 use crate::limits::DeviceLimits;
 use crate::passivity::{Passivity, PassivityOptions, PassivityReport, PortMotion};
 use crate::report::SafetyReport;
-use crate::rise::{Change, Recovery};
-use crate::stage_ticks::StageTicks;
+use crate::rise::Change;
+use crate::settings::SafetySettings;
+use crate::stage_ticks::{BeforeLimits, StageTicks};
+use palpate_device::DeviceProfile;
+use palpate_device::NumberError;
 
 /// The input of a contact point's safety chain in a tick, beside the wanted force. In device
 /// coordinates ([`WorkspaceMap`](crate::WorkspaceMap)), because the limits are the device's.
@@ -73,137 +75,37 @@ impl<const D: usize> PortState<D> {
     }
 }
 
-/// Options of a safety chain, beside the limits of the device.
+/// What a safety chain is to render, and how it protects.
 ///
 /// ```
 /// use palpate_safety::{Impedance, SafetyOptions};
 ///
-/// let options = SafetyOptions::new(Impedance::default()).with_reserve(0.0).with_rise_rate(10.0);
-/// assert_eq!((options.reserve, options.rise_rate), (0.0, 10.0));
+/// let options = SafetyOptions::new(Impedance::default()).with(|s| s.rise_rate = 10.0);
+/// assert_eq!((options.scale, options.settings.rise_rate), (1.0, 10.0));
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[non_exhaustive]
 pub struct SafetyOptions {
     /// The stiffness and damping to render, in the world.
     pub impedance: Impedance,
     /// Lengths in the world over lengths at the device:
     /// [`WorkspaceMap::scale`](crate::WorkspaceMap::scale).
     pub scale: f64,
-    /// What the device renders of the material.
-    pub acceptance: Acceptance,
-    /// Whether a material is refused of which the device renders less than all.
-    pub is_strict: bool,
-    /// Whether the passivity controllers, of walls and of [free
-    /// forces](PortState::free_force), and the stage of limit cycles act; the observers always
-    /// run. A wanted force that must do work on the hand is incompatible with the controller. On a
-    /// device of infinite damping, neither the controllers nor that stage act.
-    pub has_passivity_control: bool,
-    /// Energy that each controller lets out before the hand has put any in [J].
-    pub reserve: f64,
-    /// The time constant with which the motors cool [s]. Makers do not state it.
-    pub cooling_time: f64,
-    /// How a force comes back after a beginning in a body: the start, an emergency stop, a hand
-    /// that is set down, a device that was not ready. After all else it comes back at once.
-    pub recovery: Recovery,
-    /// How fast a force rises after it was zeroed [N/s]: after the start, a placement, late ticks,
-    /// an input that is not finite, or an emergency stop. A torque rises as fast in the units of
-    /// its coupling, `√(κ/K)` metres a radian.
-    pub rise_rate: f64,
-    /// The time by which ticks are late together when the force falls to zero [s]. Each tick in
-    /// time takes a period from that sum, and two once the force falls; when the sum is zero, the
-    /// force rises again.
-    pub late_time: f64,
-    /// The time over which late ticks lower the force to zero [s].
-    pub fall_time: f64,
+    /// How the chain protects.
+    pub settings: SafetySettings,
 }
 
 impl SafetyOptions {
-    /// Options for `impedance` in a world of the device's scale. The device renders what it can of
-    /// it ([`Acceptance::Device`]); passivity is controlled with a reserve of 0.1 mJ, which a hand does not
-    /// feel; motors cool within 2 s; forces rise by 20 N/s, and fall within 0.02 s when ticks are late
-    /// by 5 ms.
+    /// Options for `impedance` in a world of the device's scale, with the default settings.
     #[must_use]
     pub fn new(impedance: Impedance) -> Self {
-        Self {
-            impedance,
-            scale: 1.0,
-            acceptance: Acceptance::Device,
-            is_strict: false,
-            has_passivity_control: true,
-            reserve: 1e-4,
-            cooling_time: 2.0,
-            recovery: Recovery::Rise,
-            rise_rate: 20.0,
-            late_time: 0.005,
-            fall_time: 0.02,
-        }
+        Self { impedance, scale: 1.0, settings: SafetySettings::default() }
     }
 
-    /// The same options with another stiffness and damping.
+    /// These options with changed settings.
     #[must_use]
-    pub const fn with_impedance(self, impedance: Impedance) -> Self {
-        Self { impedance, ..self }
-    }
-
-    /// The same options with another scale of the world.
-    #[must_use]
-    pub const fn with_scale(self, scale: f64) -> Self {
-        Self { scale, ..self }
-    }
-
-    /// The same options with another choice of what the device renders.
-    #[must_use]
-    pub const fn with_acceptance(self, acceptance: Acceptance) -> Self {
-        Self { acceptance, ..self }
-    }
-
-    /// The same options, refusing a material of which the device renders less than all, or not.
-    #[must_use]
-    pub const fn with_strictness(self, is_strict: bool) -> Self {
-        Self { is_strict, ..self }
-    }
-
-    /// The same options with the passivity controller on or off.
-    #[must_use]
-    pub const fn with_passivity_control(self, is_on: bool) -> Self {
-        Self { has_passivity_control: is_on, ..self }
-    }
-
-    /// The same options with another reserve of energy [J].
-    #[must_use]
-    pub const fn with_reserve(self, reserve: f64) -> Self {
-        Self { reserve, ..self }
-    }
-
-    /// The same options with another time constant of the motors [s].
-    #[must_use]
-    pub const fn with_cooling_time(self, cooling_time: f64) -> Self {
-        Self { cooling_time, ..self }
-    }
-
-    /// The same options with another way in which a force comes back.
-    #[must_use]
-    pub const fn with_recovery(self, recovery: Recovery) -> Self {
-        Self { recovery, ..self }
-    }
-
-    /// The same options with another rate at which a zeroed force rises [N/s]; infinite for at
-    /// once.
-    #[must_use]
-    pub const fn with_rise_rate(self, rise_rate: f64) -> Self {
-        Self { rise_rate, ..self }
-    }
-
-    /// The same options with another time by which ticks may be late together [s].
-    #[must_use]
-    pub const fn with_late_time(self, late_time: f64) -> Self {
-        Self { late_time, ..self }
-    }
-
-    /// The same options with another time over which late ticks lower the force [s].
-    #[must_use]
-    pub const fn with_fall_time(self, fall_time: f64) -> Self {
-        Self { fall_time, ..self }
+    pub fn with(mut self, change: impl FnOnce(&mut SafetySettings)) -> Self {
+        change(&mut self.settings);
+        self
     }
 }
 
@@ -241,11 +143,12 @@ impl SafetyOptions {
 ///
 /// ```
 /// use palpate_field::Vector;
-/// use palpate_safety::{DeviceProfile, Impedance, PortState, SafetyChain, SafetyOptions};
+/// use palpate_device::DeviceProfile;
+/// use palpate_safety::{Impedance, PortState, SafetyChain, SafetyOptions};
 ///
 /// # fn main() -> Result<(), palpate_safety::SafetyError> {
 /// let device = DeviceProfile::unlimited("example").with_max_force(2.5);
-/// let options = SafetyOptions::new(Impedance::default()).with_rise_rate(f64::INFINITY);
+/// let options = SafetyOptions::new(Impedance::default()).with(|s| s.rise_rate = f64::INFINITY);
 /// let mut chain = SafetyChain::new(&device, 1000.0, options)?;
 /// let state = PortState::at_rest();
 /// assert_eq!(chain.step(Vector([0.0, 1.0]), &state), Vector([0.0, 1.0]));
@@ -283,21 +186,21 @@ impl<const D: usize> SafetyChain<D> {
         options: SafetyOptions,
     ) -> Result<Self, SafetyError> {
         let rate = NumberError::check_rate(rate)?;
-        let SafetyOptions { impedance, scale, .. } = options;
+        let SafetyOptions { impedance, scale, settings } = options;
         let limits = DeviceLimits::along(device);
-        let accepted = Accepted::of(impedance, scale, &limits, options.acceptance, rate)?;
-        let accepted = if options.is_strict { accepted.unchanged()? } else { accepted };
+        let accepted = Accepted::of(impedance, scale, &limits, settings.acceptance, rate)?;
+        let accepted = if settings.is_strict { accepted.unchanged()? } else { accepted };
         let damping = limits.least_damping.zero_or_more()?;
         let passivity = PassivityOptions {
             // A device with infinite damping is passive whatever it renders.
-            is_on: options.has_passivity_control && damping < f64::INFINITY,
+            is_on: settings.has_passivity_control && damping < f64::INFINITY,
             stiffness: accepted.device_stiffness,
             max_force: limits.max_force.positive()?,
             damping,
             mass: limits.mass.not_negative()?,
             max_rate: limits.max_force_rate.positive()?,
-            reserve: NumberError::check_not_negative("reserve", options.reserve, "J")?,
-            rise_rate: options.rise_rate,
+            reserve: NumberError::check_not_negative("reserve", settings.reserve, "J")?,
+            rise_rate: settings.rise_rate,
             period: 1.0 / rate,
         };
         let encoder_step = limits.encoder_step.not_negative()?;
@@ -307,7 +210,7 @@ impl<const D: usize> SafetyChain<D> {
             cycle: LimitCycle::new(cycle),
             free: FreeEnergy::new(passivity.reserve, passivity.max_force),
             passivity: Passivity::new(passivity),
-            channel: Channel::new(&limits, &options, 1.0, rate)?,
+            channel: Channel::new(&limits, &settings, 1.0, rate)?,
         })
     }
 
@@ -343,7 +246,7 @@ impl<const D: usize> SafetyChain<D> {
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     #[must_use]
     pub fn step(&mut self, wanted: Vector<f64, D>, state: &PortState<D>) -> Vector<f64, D> {
-        self.tick(wanted, [wanted.norm(), 0.0], state)
+        self.tick(Wanted { force: wanted, effort: wanted.norm(), cut: 0.0 }, state)
     }
 
     /// As [`step`](Self::step), for a wanted force that is first shortened to `max_force` [N],
@@ -353,11 +256,12 @@ impl<const D: usize> SafetyChain<D> {
     ///
     /// ```
     /// use palpate_field::Vector;
-    /// use palpate_safety::{DeviceProfile, Impedance, PortState, SafetyChain, SafetyOptions};
+    /// use palpate_device::DeviceProfile;
+    /// use palpate_safety::{Impedance, PortState, SafetyChain, SafetyOptions};
     ///
     /// # fn main() -> Result<(), palpate_safety::SafetyError> {
     /// let device = DeviceProfile::unlimited("example");
-    /// let options = SafetyOptions::new(Impedance::default()).with_rise_rate(f64::INFINITY);
+    /// let options = SafetyOptions::new(Impedance::default()).with(|s| s.rise_rate = f64::INFINITY);
     /// let mut chain = SafetyChain::new(&device, 1000.0, options)?;
     /// let force = chain.step_within(Vector([3.0, 4.0]), 1.0, &PortState::at_rest());
     /// assert_eq!(force, Vector([0.6, 0.8]));
@@ -374,19 +278,14 @@ impl<const D: usize> SafetyChain<D> {
         state: &PortState<D>,
     ) -> Vector<f64, D> {
         let effort = wanted.norm();
-        // What is no number is for the guard, which must see it.
-        let (wanted, cut) =
+        // Leave NaN unclamped: the guard stage detects it and zeroes the force.
+        let (force, cut) =
             if wanted.is_finite() { cut(wanted, max_force) } else { (wanted, 0.0) };
-        self.tick(wanted, [effort, cut], state)
+        self.tick(Wanted { force, effort, cut }, state)
     }
 
-    /// One tick for a force `wanted` of the size `effort` before `cut` was taken from it [N].
-    fn tick(
-        &mut self,
-        wanted: Vector<f64, D>,
-        [effort, cut]: [f64; 2],
-        state: &PortState<D>,
-    ) -> Vector<f64, D> {
+    fn tick(&mut self, wanted: Wanted<Vector<f64, D>>, state: &PortState<D>) -> Vector<f64, D> {
+        let Wanted { force: wanted, effort, cut } = wanted;
         // Stages with a state never see numbers that are not finite; the guard then writes
         // zero.
         let is_sound = finite::is_sound(wanted, state);
@@ -399,13 +298,15 @@ impl<const D: usize> SafetyChain<D> {
         let elapsed = finite::elapsed(elapsed, self.period() + late.max(0.0));
         let options = self.passivity.options();
         let stiffness = options.stiffness_of(stiffness);
-        let seen = CycleInput::of([wanted, rising], effort, position, stiffness);
+        let forces = ForcesOf { bodies: wanted, guides: rising };
+        let seen = CycleInput::of(forces, effort, position, stiffness);
         let is_disturbed = self.channel.is_late() || is_rising;
         let softness = self.cycle.observed(&seen.disturbed(is_disturbed), is_sound);
         let is_rising = is_rising || self.cycle.is_returning();
         let scale = rise * softness;
-        let Passed { force: free_force, spent } =
-            self.free.step([free_force, position], [scale, elapsed], options, is_sound);
+        let Passed { force: free_force, spent } = self
+            .free
+            .step(FreeInput { force: free_force, position, scale, elapsed, is_sound }, options);
         let seen = PortMotion {
             position,
             velocity,
@@ -469,11 +370,11 @@ impl<const D: usize> SafetyChain<D> {
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     #[must_use]
     pub fn stage_ticks(&self) -> StageTicks {
-        let first = [
-            self.cycle.report().effect,
-            self.free.report().effect,
-            self.passivity.report().effect,
-        ];
+        let first = BeforeLimits {
+            cycles: self.cycle.report().effect,
+            guides: self.free.report().effect,
+            passivity: self.passivity.report().effect,
+        };
         StageTicks::of(first, &self.channel.effects, None)
     }
 

@@ -7,17 +7,18 @@
 
 use palpate_field::Vector;
 
-use crate::SafetyOptions;
 use crate::approach::Approach;
 use crate::continuous::ContinuousLimit;
-use crate::error::{NumberError, SafetyError};
+use crate::error::SafetyError;
 use crate::finite;
 use crate::force_limit::ForceLimit;
 use crate::limits::DeviceLimits;
 use crate::report::{ContinuousReport, Effects, WatchdogReport};
 use crate::rise::{Change, Rise};
+use crate::settings::SafetySettings;
 use crate::slew::SlewLimit;
 use crate::watchdog::Watchdog;
+use palpate_device::NumberError;
 
 /// Properties of a tick that every stage sees.
 #[derive(Clone, Copy, Debug)]
@@ -88,23 +89,23 @@ impl<const D: usize> Channel<D> {
     /// not finite.
     pub(crate) fn new(
         limits: &DeviceLimits,
-        options: &SafetyOptions,
+        settings: &SafetySettings,
         unit: f64,
         rate: f64,
     ) -> Result<Self, SafetyError> {
         let slew = SlewLimit::new(limits.max_force_rate.positive()?, rate);
         let continuous_force = limits.continuous_force.positive()?;
         let cooling_time =
-            NumberError::check_positive("cooling_time", options.cooling_time, "s")?;
+            NumberError::check_positive("cooling_time", settings.cooling_time, "s")?;
         let rise_rate =
-            NumberError::check_positive_or_infinite("rise_rate", options.rise_rate, "N/s")?;
-        let late_time = NumberError::check_positive("late_time", options.late_time, "s")?;
-        let fall_time = NumberError::check_not_negative("fall_time", options.fall_time, "s")?;
+            NumberError::check_positive_or_infinite("rise_rate", settings.rise_rate, "N/s")?;
+        let late_time = NumberError::check_positive("late_time", settings.late_time, "s")?;
+        let fall_time = NumberError::check_not_negative("fall_time", settings.fall_time, "s")?;
         Ok(Self {
             slew,
             force_limit: ForceLimit::new(limits.max_force.positive()?),
             continuous: ContinuousLimit::new(continuous_force, cooling_time, rate),
-            rise: Rise::new(rise_rate * unit, options.recovery, rate),
+            rise: Rise::new(rise_rate * unit, settings.recovery, rate),
             approach: Approach::new(unit),
             watchdog: Watchdog::new(late_time, fall_time, rate),
             is_stopped: false,

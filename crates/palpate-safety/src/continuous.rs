@@ -7,7 +7,7 @@
 
 use palpate_field::Vector;
 
-use crate::limit::shortened;
+use palpate_device::shortened;
 
 /// The part of the continuous force at which the limit begins to act. Nearer to one, it acts
 /// later and more abruptly.

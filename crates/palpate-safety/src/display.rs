@@ -63,9 +63,10 @@ mod tests {
     use palpate_field::Vector;
 
     use crate::{
-        Accepted, DeviceProfile, Impedance, PassivityReport, PortState, SafetyChain,
-        SafetyError, SafetyOptions,
+        Accepted, Impedance, PassivityReport, PortState, SafetyChain, SafetyError,
+        SafetyOptions,
     };
+    use palpate_device::DeviceProfile;
 
     #[test]
     fn an_accepted_material_says_which_rule_made_it_softer()
@@ -87,7 +88,8 @@ mod tests {
     fn a_report_names_the_stages_that_changed_a_force() -> std::result::Result<(), SafetyError>
     {
         let device = DeviceProfile::unlimited("example").with_max_force(1.0);
-        let options = SafetyOptions::new(Impedance::default()).with_rise_rate(f64::INFINITY);
+        let options =
+            SafetyOptions::new(Impedance::default()).with(|s| s.rise_rate = f64::INFINITY);
         let mut chain = SafetyChain::<2>::new(&device, 1000.0, options)?;
         let mut step = |force| chain.step(Vector([force, 0.0]), &PortState::at_rest());
         step(0.5);

@@ -7,7 +7,7 @@
 
 use palpate_field::Vector;
 
-use crate::limit::shortened;
+use palpate_device::shortened;
 
 /// Shortens a force to a largest length, keeping its direction.
 #[derive(Clone, Copy, Debug)]

@@ -103,7 +103,23 @@ struct Last<V> {
     share: f64,
 }
 
-/// A tick of a [`FreeEnergy`].
+/// What a [`FreeEnergy`] is given in a tick.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct FreeInput<V> {
+    /// The whole force of guides and magnets [N].
+    pub(crate) force: V,
+    /// The position of the device [m].
+    pub(crate) position: V,
+    /// The part of the force that is wanted: less than the whole while it rises after it was zeroed,
+    /// or is made softer.
+    pub(crate) scale: f64,
+    /// The time since the tick before [s].
+    pub(crate) elapsed: f64,
+    /// Whether all inputs are finite.
+    pub(crate) is_sound: bool,
+}
+
+/// What a [`FreeEnergy`] gives in a tick.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Passed<V> {
     /// The force that passes.
@@ -128,18 +144,16 @@ impl<V: InnerProduct> FreeEnergy<V> {
         }
     }
 
-    /// One tick of `elapsed` [s], with the options of the stage for walls, of which `scale` times the
-    /// force is wanted: less than the whole while it rises after it was zeroed, or is made softer. If
-    /// an input is not finite, the wanted force is returned and the motion so far is forgotten.
+    /// One tick, with the options of the stage for walls. If an input is not finite, the wanted force
+    /// is returned and the motion so far is forgotten.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     pub(crate) fn step(
         &mut self,
-        [force, position]: [V; 2],
-        [scale, elapsed]: [f64; 2],
+        input: FreeInput<V>,
         options: &PassivityOptions,
-        is_sound: bool,
     ) -> Passed<V> {
+        let FreeInput { force, position, scale, elapsed, is_sound } = input;
         let wanted = if scale < 1.0 { force * scale } else { force };
         // A device of infinite damping is passive whatever it renders.
         if !is_sound || options.damping == f64::INFINITY {
@@ -280,6 +294,11 @@ mod tests {
     use super::*;
     use palpate_field::Vector;
 
+    /// A whole force at a position, a tick of 1 ms after the one before.
+    fn input(force: Vector<f64, 2>, position: Vector<f64, 2>) -> FreeInput<Vector<f64, 2>> {
+        FreeInput { force, position, scale: 1.0, elapsed: 1e-3, is_sound: true }
+    }
+
     fn options(damping: f64) -> PassivityOptions {
         PassivityOptions {
             is_on: true,
@@ -304,8 +323,7 @@ mod tests {
         let (mut x, mut v, mut most, mut energy) = (start, 0.0, 0.0_f64, 0.0);
         for _ in 0..60_000 {
             let at = Vector([x, 0.0]);
-            let Passed { force, .. } =
-                free.step([at * -stiffness, at], [1.0, period], &options, true);
+            let Passed { force, .. } = free.step(input(at * -stiffness, at), &options);
             let force = force[0].clamp(-max_force, max_force);
             // m v' = F − b v, exactly.
             let (rate, steady) = (damping / mass, force / damping);
@@ -368,8 +386,8 @@ mod tests {
         let options = options(0.0);
         let mut free = FreeEnergy::new(options.reserve, f64::INFINITY);
         let mut at = |x: f64| {
-            let input = [Vector([-1000.0 * x, 0.0]), Vector([x, 0.0])];
-            free.step(input, [1.0, 1e-3], &options, true).force[0]
+            let force = Vector([-1000.0 * x, 0.0]);
+            free.step(input(force, Vector([x, 0.0])), &options).force[0]
         };
         let shaken: Vec<_> =
             (0..200).map(|tick| at(if tick % 2 == 0 { 2e-3 } else { 1e-3 })).collect();
@@ -389,7 +407,7 @@ mod tests {
         let mut free = FreeEnergy::new(options.reserve, f64::INFINITY);
         for x in [0.0, 0.0, 0.01, -0.02] {
             let force = Vector([-1e4 * x - 1.0, 0.0]);
-            let passed = free.step([force, Vector([x, 0.0])], [1.0, 1e-3], &options, true);
+            let passed = free.step(input(force, Vector([x, 0.0])), &options);
             assert_eq!((passed.force, passed.spent), (force, 0.0));
         }
         assert_eq!(free.report(), FreeForceReport::default());
@@ -400,8 +418,7 @@ mod tests {
         let options = options(0.0);
         let mut free = FreeEnergy::new(options.reserve, f64::INFINITY);
         let mut at = |x: f64, force: f64| {
-            let input = [Vector([force, 0.0]), Vector([x, 0.0])];
-            free.step(input, [1.0, 1e-3], &options, true).force[0]
+            free.step(input(Vector([force, 0.0]), Vector([x, 0.0])), &options).force[0]
         };
         // Pulled in by a steady 2 N: the potential falls by what is given out.
         assert!((0..100).all(|k| at(1e-4 * f64::from(k), 2.0) == 2.0));
@@ -429,8 +446,7 @@ mod tests {
                 let at = Vector([x, 0.0]);
                 // 20 kN/m in the middle, and nothing beyond the reach.
                 let full = if x.abs() < reach { (-2e4 * x).clamp(-pull, pull) } else { 0.0 };
-                let input = [Vector([full, 0.0]), at];
-                let force = free.step(input, [1.0, period], &options, true).force[0];
+                let force = free.step(input(Vector([full, 0.0]), at), &options).force[0];
                 for _ in 0..10 {
                     let pushed = force - spring * x - damping * v;
                     v += pushed / mass * 0.1 * period;
@@ -456,8 +472,7 @@ mod tests {
         let (mut x, mut v, mut written) = (0.01, 0.0, 0.0_f64);
         for _ in 0..60_000 {
             let at = Vector([x, 0.0]);
-            let wanted =
-                free.step([at * -stiffness, at], [1.0, period], &options, true).force[0];
+            let wanted = free.step(input(at * -stiffness, at), &options).force[0];
             written += (wanted - written).clamp(-0.2, 0.2);
             free.written(Vector([written, 0.0]), 1.0);
             let (rate, steady) = (damping / mass, written / damping);
@@ -476,9 +491,9 @@ mod tests {
         let mut free = FreeEnergy::new(0.0, f64::INFINITY);
         for tick in 0..5000 {
             let x = 1e-3 * (0.05 * f64::from(tick)).sin();
-            let input = [Vector([-2000.0 * x, 0.0]), Vector([x, 0.0])];
-            let passed = free.step(input, [1.0, 1e-3], &options, true);
-            assert_eq!(passed.force, input[0], "{tick}");
+            let force = Vector([-2000.0 * x, 0.0]);
+            let passed = free.step(input(force, Vector([x, 0.0])), &options);
+            assert_eq!(passed.force, force, "{tick}");
         }
     }
 }

@@ -3,7 +3,8 @@
 
 //! Stiffness and damping of a virtual wall, which decide whether a device stays passive.
 
-use crate::error::{NumberError, SafetyError};
+use crate::error::SafetyError;
+use palpate_device::NumberError;
 
 /// A stiffness and a damping.
 ///

@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! What stands between a wanted force and a hand: profiles of devices, and the safety chain.
+//! The safety chain between a wanted force and a hand.
 //!
 //! The wanted force is that of materials, guides or a tool, before any limit. A
-//! [`DeviceProfile`] says what a device can do, a transport implements [`Device`], and a
+//! [`DeviceProfile`](palpate_device::DeviceProfile) says what a device can do, and a
 //! [`WorkspaceMap`] places it in the world. [`Accepted`] says how stiff a material may be on it,
 //! a [`VelocityEstimator`] how fast the hand moves, and a [`SafetyChain`] gives the force to
 //! write in each tick: no larger, changing no faster and lasting no longer than the device bears;
@@ -18,10 +18,10 @@
 mod acceptance;
 mod approach;
 mod arrivals;
+mod bears;
 mod chain;
 mod channel;
 mod continuous;
-mod device;
 mod display;
 mod effect;
 mod error;
@@ -29,8 +29,6 @@ mod finite;
 mod force_limit;
 mod free_energy;
 mod impedance;
-#[doc(hidden)]
-pub mod internal;
 mod lift;
 mod limit;
 mod limit_cycle;
@@ -40,6 +38,7 @@ mod readings;
 mod refused;
 mod report;
 mod rise;
+mod settings;
 mod slew;
 mod stage_ticks;
 mod turn_readings;
@@ -49,14 +48,12 @@ mod workspace;
 mod wrench;
 
 pub use acceptance::{Acceptance, Accepted, Rule};
+pub use approach::Approach;
 pub use arrivals::{Arrival, Arrivals};
+pub use bears::check_bears;
 pub use chain::{PortState, SafetyChain, SafetyOptions};
-pub use device::{
-    Buttons, Device, DeviceLost, DeviceProfile, GripperProfile, GripperState, PointState,
-    Reading, TurnState, TurningProfile,
-};
 pub use effect::Effect;
-pub use error::{NumberError, SafetyError};
+pub use error::SafetyError;
 pub use free_energy::FreeForceReport;
 pub use impedance::Impedance;
 pub use limit_cycle::LimitCycleReport;
@@ -66,6 +63,7 @@ pub use readings::{Readings, ReadingsReport};
 pub use refused::{Refused, Requester};
 pub use report::{ContinuousReport, SafetyReport, TurningReport, WatchdogReport};
 pub use rise::{Change, Recovery};
+pub use settings::SafetySettings;
 pub use stage_ticks::StageTicks;
 pub use turn_readings::TurnReadings;
 pub use velocity::VelocityEstimator;

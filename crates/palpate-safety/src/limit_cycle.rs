@@ -15,6 +15,8 @@ use std::f64::consts::TAU;
 use crate::effect::Effect;
 use crate::passivity::{InnerProduct, PassivityOptions};
 
+// Which motions are counted, and when they make a limit cycle.
+
 /// Half cycles that are kept; so many make a limit cycle if they do not decay. The way of a half cycle is
 /// the distance between its two extremes, along the force.
 const KEPT: usize = 8;
@@ -41,10 +43,10 @@ const LONGEST: f64 = 0.2;
 /// A mass of the hand that moves with the device [kg].
 const HAND: f64 = 0.1;
 
-/// How far a position goes to and fro at least in an oscillation that a hand feels [m].
+/// Smallest peak-to-peak position amplitude that counts as felt [m].
 const FELT_WAY: f64 = 5e-5;
 
-/// How far a force goes to and fro at least in it [N].
+/// Smallest peak-to-peak force amplitude that counts as felt [N].
 const FELT_FORCE: f64 = 0.15;
 
 /// Readings of a device at rest may go to and fro by so many encoder steps.
@@ -61,6 +63,8 @@ const ALONG: f64 = 1.25;
 /// The cosine of the largest angle by which a force turns that keeps its direction.
 const FLAT: f64 = 0.995;
 
+// How soft a wall becomes, and when its stiffness comes back.
+
 /// A wall that is stable with this part of the device's damping, and with a delay of so many ticks,
 /// makes no limit cycle.
 const WEAK: f64 = 0.1;
@@ -75,6 +79,17 @@ const LEAST: f64 = 1.0 / 32.0;
 
 /// The most by which a force changes in a tick because its wall becomes softer [N].
 const STEP: f64 = 0.3;
+
+/// How fast the force of a wall comes back to a hand that trembles [N/s].
+const RETURN: f64 = 20.0;
+
+/// The time in which the stiffness comes back by a factor of e [s].
+const RECOVERY: f64 = 20.0;
+
+/// A hand is calm in a guide if no quick half cycle ended for so long [s].
+const CALM: f64 = 1.0;
+
+// Whether the hand drives the oscillation, and how long that is believed.
 
 /// A hand drives an oscillation that keeps its frequency while the stiffness is halved so many times.
 const UNMOVED_HALVINGS: usize = 2;
@@ -95,15 +110,6 @@ const KEPT_WAY: f64 = 0.5;
 const HAND_MARGIN: f64 = 1.5;
 const HAND_TIME: f64 = 10.0;
 const LONGEST_HAND_TIME: f64 = 160.0;
-
-/// How fast the force of a wall comes back to a hand that trembles [N/s].
-const RETURN: f64 = 20.0;
-
-/// The time in which the stiffness comes back by a factor of e [s].
-const RECOVERY: f64 = 20.0;
-
-/// A hand is calm in a guide if no quick half cycle ended for so long [s].
-const CALM: f64 = 1.0;
 
 /// Options of the stage.
 #[derive(Clone, Copy, Debug)]
@@ -136,6 +142,14 @@ impl LimitCycleOptions {
     }
 }
 
+/// The wanted forces by what gives them [N].
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct ForcesOf<V> {
+    pub(crate) bodies: V,
+    /// Those of guides and magnets.
+    pub(crate) guides: V,
+}
+
 /// What the stage sees in a tick.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct CycleInput<V> {
@@ -156,10 +170,10 @@ pub(crate) struct CycleInput<V> {
 }
 
 impl<V: InnerProduct> CycleInput<V> {
-    /// The input of a force by bodies of this `stiffness` [N/m], which was of size `effort` before the
-    /// force limit [N], and a force by guides.
+    /// The input of forces by bodies of this `stiffness` [N/m], which were of size `effort` before the
+    /// force limit [N], and by guides.
     pub(crate) fn of(
-        [bodies, guides]: [V; 2],
+        ForcesOf { bodies, guides }: ForcesOf<V>,
         effort: f64,
         position: V,
         stiffness: f64,
@@ -203,6 +217,19 @@ impl Default for LimitCycleReport {
     fn default() -> Self {
         Self { effect: Effect::default(), found: 0, least_part: 1.0 }
     }
+}
+
+/// A motion from one extreme to the next.
+#[derive(Clone, Copy, Debug)]
+struct HalfCycle {
+    /// Its way [m].
+    way: f64,
+    /// Its time [s].
+    time: f64,
+}
+
+impl HalfCycle {
+    const UNKNOWN: Self = Self { way: 0.0, time: 0.0 };
 }
 
 /// An extreme of the motion along the force.
@@ -275,17 +302,18 @@ pub(crate) struct LimitCycle<V> {
     quick: usize,
     /// How many of the last ones left the body at neither end.
     pressed: usize,
-    /// The mean way and time of the half cycles for which the stiffness was halved, after each number
-    /// of halvings before [m, s]; zero where none is known, or where they left the body.
-    seen: [[f64; 2]; HALVINGS + 1],
+    /// The mean half cycle for which the stiffness was halved, by the number of halvings before; unknown
+    /// also where the cycles left the body.
+    seen: [HalfCycle; HALVINGS + 1],
     /// The direction of the force at the start of the present way, and the cosine of the largest angle
     /// to it since.
     start: V,
     bent: f64,
-    /// The largest way that is ignored as the hand's [m], for how long still [s], and for how long the next
-    /// time [s].
+    /// Oscillations up to this amplitude are attributed to the hand [m].
     hand_way: f64,
+    /// The time left in which they are ignored [s].
     hand_time: f64,
+    /// The length of the next such period [s].
     next_hand_time: f64,
     /// The time since a quick half cycle [s].
     calm: f64,
@@ -313,7 +341,7 @@ impl<V: InnerProduct> LimitCycle<V> {
             counted: 0,
             quick: 0,
             pressed: 0,
-            seen: [[0.0; 2]; HALVINGS + 1],
+            seen: [HalfCycle::UNKNOWN; HALVINGS + 1],
             start: V::ZERO,
             bent: 1.0,
             hand_way: 0.0,
@@ -483,7 +511,7 @@ impl<V: InnerProduct> LimitCycle<V> {
     /// Halves a stiffness, or gives it back to a hand that drives the oscillation.
     fn found(&mut self, stiffness: f64) {
         let mean = |of: &[f64; KEPT]| of.iter().sum::<f64>() / KEPT as f64;
-        let now = [mean(&self.ways), mean(&self.times)];
+        let now = HalfCycle { way: mean(&self.ways), time: mean(&self.times) };
         // What follows is the motion in another wall.
         (self.counted, self.quick) = (0, 0);
         if self.is_of_hand(now, stiffness) {
@@ -497,12 +525,12 @@ impl<V: InnerProduct> LimitCycle<V> {
         }
     }
 
-    /// Whether a hand drives half cycles of this mean way and time [m, s] in a wall that had this
-    /// stiffness before it was halved [N/m].
-    fn is_of_hand(&mut self, now: [f64; 2], stiffness: f64) -> bool {
+    /// Whether a hand drives half cycles like this mean one in a wall that had this stiffness before
+    /// it was halved [N/m].
+    fn is_of_hand(&mut self, now: HalfCycle, stiffness: f64) -> bool {
         let halvings = (-self.target.log2()).round() as usize;
         let (stiffer, softer) = self.seen.split_at_mut(halvings.min(HALVINGS));
-        softer.fill([0.0; 2]);
+        softer.fill(HalfCycle::UNKNOWN);
         // How often a mass bounces on a wall is hardly a matter of its stiffness.
         let is_pressed = self.pressed >= GROWING;
         if let [here, ..] = softer
@@ -510,10 +538,9 @@ impl<V: InnerProduct> LimitCycle<V> {
         {
             *here = now;
         }
-        let is_kept = |[way, time]: &[f64; 2]| {
-            let [now_way, now_time] = now;
-            let is_way_kept = *way > 0.0 && now_way >= KEPT_WAY * way;
-            is_way_kept && time.min(now_time) >= KEPT_TIME * time.max(now_time)
+        let is_kept = |HalfCycle { way, time }: &HalfCycle| {
+            let is_way_kept = *way > 0.0 && now.way >= KEPT_WAY * way;
+            is_way_kept && time.min(now.time) >= KEPT_TIME * time.max(now.time)
         };
         let is_unmoved = stiffer.iter().rev().skip(UNMOVED_HALVINGS - 1).any(is_kept);
         let is_soft = self.options.is_soft(stiffness * self.target, HAND_DAMPING);

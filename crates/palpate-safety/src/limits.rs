@@ -7,8 +7,9 @@
 use std::sync::Arc;
 
 use crate::Rule;
-use crate::device::{DeviceProfile, TurningProfile};
-use crate::error::{NumberError, SafetyError};
+use crate::error::SafetyError;
+use palpate_device::NumberError;
+use palpate_device::{DeviceProfile, TurningProfile};
 
 /// A limit with its name and its unit.
 #[derive(Clone, Copy, Debug)]

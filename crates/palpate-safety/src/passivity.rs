@@ -71,6 +71,24 @@ impl<const D: usize> InnerProduct for Vector<f64, D> {
     }
 }
 
+/// The parts of a force that may pass.
+#[derive(Clone, Copy, Debug)]
+struct Parts {
+    /// The part that is approached smoothly.
+    soft: f64,
+    /// The largest part, which spends what is spare.
+    hard: f64,
+}
+
+/// What happened in the last tick.
+#[derive(Clone, Copy, Debug)]
+struct Moved<V> {
+    /// The force that was held [N].
+    held: V,
+    /// How far the device moved [m].
+    way: V,
+}
+
 /// Position and velocity of a device in a tick.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PortMotion<V> {
@@ -292,11 +310,12 @@ impl<V: InnerProduct> Passivity<V> {
         let softened = state.softened(wanted.norm());
         let force = if softened < 1.0 { wanted * softened } else { wanted };
         let may_act = self.options.is_on && force != V::ZERO;
-        let part = |spare| self.part(force, [held, way], state, spare);
+        let moved = Moved { held, way };
+        let part = |spare| self.part(force, moved, state, spare);
         let soft = if may_act { part(0.0) } else { 1.0 };
         let hard = if soft < 1.0 { part(SPARE) } else { 1.0 };
         let back = if is_lifted { self.options.rise_rate * state.elapsed } else { STEP };
-        let part = self.smoothed([soft, hard], force.norm(), back);
+        let part = self.smoothed(Parts { soft, hard }, force.norm(), back);
         let changed = (part < 1.0).then(|| force * part);
         let allowed = self.report.effect.count(force, changed);
         let PortMotion { position, effort, .. } = *state;
@@ -304,9 +323,9 @@ impl<V: InnerProduct> Passivity<V> {
         allowed
     }
 
-    /// The part of a force of size `force` [N] that passes: `soft`, approached by [`STEP`] a tick,
-    /// or by `back` [N] if more is to pass than before; and at most `hard`.
-    fn smoothed(&mut self, [soft, hard]: [f64; 2], force: f64, back: f64) -> f64 {
+    /// The part of a force of size `force` [N] that passes: the soft one, approached by [`STEP`] a
+    /// tick, or by `back` [N] if more is to pass than before; and at most the hard one.
+    fn smoothed(&mut self, Parts { soft, hard }: Parts, force: f64, back: f64) -> f64 {
         if soft >= 1.0 && self.taken == 0.0 || force == 0.0 {
             self.taken = 0.0;
             return 1.0;
@@ -402,9 +421,9 @@ impl<V: InnerProduct> Passivity<V> {
         self.leaks <= self.losses
     }
 
-    /// The part of `wanted` that gives out no more than the balance, the reserve and `spare` [J],
-    /// where the force `held` moved the device by `way` in the last tick.
-    fn part(&self, wanted: V, [held, way]: [V; 2], state: &PortMotion<V>, spare: f64) -> f64 {
+    /// The part of `wanted` that gives out no more than the balance, the reserve and `spare` [J].
+    fn part(&self, wanted: V, moved: Moved<V>, state: &PortMotion<V>, spare: f64) -> f64 {
+        let Moved { held, way } = moved;
         let PassivityOptions { damping, max_rate, reserve, period, .. } = self.options;
         let available = (self.balance + reserve + spare).max(0.0);
         let compliance = self.compliance;

@@ -7,9 +7,10 @@
 
 use palpate_field::{Point, Vector};
 
-use crate::device::DeviceProfile;
-use crate::error::{NumberError, SafetyError};
+use crate::error::SafetyError;
 use crate::turn_readings::TurnReadings;
+use palpate_device::DeviceProfile;
+use palpate_device::NumberError;
 
 /// The way between two readings may be off by so many encoder steps: half a step an axis in each,
 /// `√3` in space together; and rotation vectors differ by up to `π/2` times as much.
@@ -58,6 +59,27 @@ impl Held {
     }
 }
 
+/// The largest speed and acceleration of a hand, along axes [m/s, m/s²] or about them [rad/s, rad/s²];
+/// both are positive.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct HandLimits {
+    pub(crate) max_speed: f64,
+    pub(crate) max_acceleration: f64,
+}
+
+/// A motion since the last reading that counted.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Moved {
+    /// How far the hand went [m] or turned [rad].
+    pub(crate) way: f64,
+    /// How far that is from where the last velocity would have led it.
+    pub(crate) change: f64,
+    /// The time since then [s].
+    pub(crate) time: f64,
+    /// The time over which the last velocity was measured [s]; infinite if it is not known.
+    pub(crate) over: f64,
+}
+
 /// How far a hand can move, along axes [m] or about them [rad].
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Reach {
@@ -69,10 +91,9 @@ pub(crate) struct Reach {
 }
 
 impl Reach {
-    /// Of a largest speed and a largest acceleration that are positive, read in encoder steps; `lag`
-    /// as in [`Reach`].
-    pub(crate) fn new(limits: [f64; 2], encoder_step: f64, lag: f64) -> Self {
-        let [max_speed, max_acceleration] = limits;
+    /// For a hand with these limits, read in encoder steps; `lag` as in [`Reach`].
+    pub(crate) fn new(limits: HandLimits, encoder_step: f64, lag: f64) -> Self {
+        let HandLimits { max_speed, max_acceleration } = limits;
         Self { max_speed, max_acceleration, slack: STEPS * encoder_step, lag }
     }
 
@@ -86,11 +107,11 @@ impl Reach {
         self.max_speed * time
     }
 
-    /// Whether a hand can have moved by `way` in `time`, and by `change` beside the way at its last
-    /// velocity, which was measured over the time `over`.
+    /// Whether a hand can have moved so.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
-    pub(crate) fn has(&self, way: f64, change: f64, [time, over]: [f64; 2]) -> bool {
+    pub(crate) fn has(&self, moved: Moved) -> bool {
+        let Moved { way, change, time, over } = moved;
         let is_fast = self.max_speed < f64::INFINITY && way > self.way_in(time) + self.slack;
         // Infinite numbers are no limits, at a time of zero too.
         if is_fast || over == f64::INFINITY || self.max_acceleration == f64::INFINITY {
@@ -121,7 +142,8 @@ impl Reach {
 ///
 /// ```
 /// use palpate_field::Vector;
-/// use palpate_safety::{DeviceProfile, Readings};
+/// use palpate_device::DeviceProfile;
+/// use palpate_safety::Readings;
 ///
 /// # fn main() -> Result<(), palpate_safety::SafetyError> {
 /// let device = DeviceProfile::unlimited("example").with_max_speed(5.0);
@@ -169,9 +191,11 @@ impl<const D: usize> Readings<D> {
     pub fn new(device: &DeviceProfile) -> Result<Self, SafetyError> {
         let positive = NumberError::check_positive_or_infinite;
         let step = NumberError::check_not_negative("encoder_step", device.encoder_step, "m")?;
-        let speed = positive("max_speed", device.max_speed, "m/s")?;
-        let acceleration = positive("max_acceleration", device.max_acceleration, "m/s²")?;
-        let reach = Reach::new([speed, acceleration], step, 1.0);
+        let limits = HandLimits {
+            max_speed: positive("max_speed", device.max_speed, "m/s")?,
+            max_acceleration: positive("max_acceleration", device.max_acceleration, "m/s²")?,
+        };
+        let reach = Reach::new(limits, step, 1.0);
         Ok(Self { reach, last: None, held: Held::default() })
     }
 
@@ -195,7 +219,8 @@ impl<const D: usize> Readings<D> {
         let time = last.since;
         let way = position - last.position;
         let change = (way - last.velocity * time).norm();
-        if self.reach.has(way.norm(), change, [time, last.over]) {
+        let moved = Moved { way: way.norm(), change, time, over: last.over };
+        if self.reach.has(moved) {
             // Two readings at one time say nothing of the velocity.
             last.position = position;
             if time > 0.0 {

@@ -6,7 +6,7 @@
 use std::fmt;
 
 use crate::acceptance::{Accepted, Rule};
-use crate::error::Short;
+use palpate_device::Short;
 
 /// What asks a device for a stiffness and a damping. Numbers are places among the bodies, or among
 /// the guides.
@@ -59,7 +59,8 @@ impl Refused {
     /// The refusal as a sentence, with the names that `name` gives to bodies.
     ///
     /// ```
-    /// use palpate_safety::{Accepted, DeviceProfile, Impedance, Requester};
+    /// use palpate_device::DeviceProfile;
+    /// use palpate_safety::{Accepted, Impedance, Requester};
     ///
     /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
     /// let device = DeviceProfile::unlimited("example").with_max_stiffness(1000.0);
@@ -143,7 +144,8 @@ fn distinct(pair: [f64; 2]) -> [Short; 2] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{DeviceProfile, Impedance};
+    use crate::Impedance;
+    use palpate_device::DeviceProfile;
 
     /// Once 199.99999999999983 N/m and 967.6131805918325 N/m were told.
     #[test]

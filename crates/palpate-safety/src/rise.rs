@@ -34,7 +34,7 @@ use palpate_field::Vector;
 #[cfg_attr(feature = "serde", derive(serde::Serialize), serde(rename_all = "snake_case"))]
 #[non_exhaustive]
 pub enum Recovery {
-    /// It rises at once, by [`SafetyOptions::rise_rate`](crate::SafetyOptions::rise_rate): a hand
+    /// It rises at once, by [`SafetySettings::rise_rate`](crate::SafetySettings::rise_rate): a hand
     /// that sank into a wall is lifted out gently.
     #[default]
     Rise,

@@ -7,7 +7,7 @@
 
 use palpate_field::Vector;
 
-use crate::limit::shortened;
+use palpate_device::shortened;
 
 /// Follows a force on a straight line, by at most a fixed step a tick.
 #[derive(Clone, Copy, Debug)]

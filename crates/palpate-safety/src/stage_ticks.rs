@@ -41,17 +41,24 @@ const STAGES: [&str; 14] = [
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct StageTicks([u64; STAGES.len()]);
 
+/// What the stages before the limits have done.
+pub(crate) struct BeforeLimits {
+    pub(crate) cycles: Effect,
+    pub(crate) guides: Effect,
+    pub(crate) passivity: Effect,
+}
+
 impl StageTicks {
     /// Each stage in words with its ticks, in the order in which the stages act.
     pub fn named(&self) -> impl Iterator<Item = (&'static str, u64)> + '_ {
         STAGES.into_iter().zip(self.0)
     }
 
-    /// Those of a chain: of the stages before its limits, of its force, and of its torque.
+    /// The ticks of a chain: of the stages before its limits, of its force, and of its torque.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     pub(crate) fn of(
-        [cycles, guides, passivity]: [Effect; 3],
+        BeforeLimits { cycles, guides, passivity }: BeforeLimits,
         force: &Effects,
         torque: Option<&Effects>,
     ) -> Self {
@@ -103,8 +110,11 @@ impl From<&SafetyReport> for StageTicks {
             continuous: turning.continuous.effect,
             ..Effects::default()
         });
-        let first =
-            [report.limit_cycles.effect, report.free_forces.effect, report.passivity.effect];
+        let first = BeforeLimits {
+            cycles: report.limit_cycles.effect,
+            guides: report.free_forces.effect,
+            passivity: report.passivity.effect,
+        };
         Self::of(first, &force, torque.as_ref()).with_readings(&report.readings)
     }
 }

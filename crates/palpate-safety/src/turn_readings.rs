@@ -9,9 +9,10 @@ use std::f64::consts::PI;
 
 use palpate_field::{Rotation, Vector};
 
-use crate::device::TurningProfile;
-use crate::error::{NumberError, SafetyError};
-use crate::readings::{Held, Reach};
+use crate::error::SafetyError;
+use crate::readings::{HandLimits, Held, Moved, Reach};
+use palpate_device::NumberError;
+use palpate_device::TurningProfile;
 
 /// Holds back the readings of an orientation that a hand cannot have made, as
 /// [`Readings`](crate::Readings) does those of a position.
@@ -43,7 +44,8 @@ use crate::readings::{Held, Reach};
 ///
 /// ```
 /// use palpate_field::{Rotation, Vector};
-/// use palpate_safety::{ReadingsReport, TurnReadings, TurningProfile};
+/// use palpate_device::TurningProfile;
+/// use palpate_safety::{ReadingsReport, TurnReadings};
 ///
 /// # fn main() -> Result<(), palpate_safety::SafetyError> {
 /// let device = TurningProfile::unlimited().with_max_speed(50.0);
@@ -87,10 +89,12 @@ impl<const D: usize> TurnReadings<D> {
         let positive = NumberError::check_positive_or_infinite;
         let step = device.encoder_step;
         let step = NumberError::check_not_negative("angular_encoder_step", step, "rad")?;
-        let speed = positive("angular_max_speed", device.max_speed, "rad/s")?;
         let acceleration = device.max_acceleration;
-        let acceleration = positive("angular_max_acceleration", acceleration, "rad/s²")?;
-        let reach = Reach::new([speed, acceleration], step, 2.0);
+        let limits = HandLimits {
+            max_speed: positive("angular_max_speed", device.max_speed, "rad/s")?,
+            max_acceleration: positive("angular_max_acceleration", acceleration, "rad/s²")?,
+        };
+        let reach = Reach::new(limits, step, 2.0);
         Ok(Self { reach, last: None, held: Held::default() })
     }
 
@@ -116,7 +120,8 @@ impl<const D: usize> TurnReadings<D> {
         let way = last.orientation.turn_to(&orientation);
         let kept_on = last.orientation.turned(last.angular_velocity * time);
         let change = kept_on.turn_to(&orientation).norm();
-        if !self.reach.has(way.norm(), change, [time, last.over]) {
+        let moved = Moved { way: way.norm(), change, time, over: last.over };
+        if !self.reach.has(moved) {
             self.held.add(way.norm());
             return false;
         }

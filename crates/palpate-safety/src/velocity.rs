@@ -10,7 +10,8 @@
 
 use palpate_field::{Point, Vector};
 
-use crate::error::{NumberError, SafetyError};
+use crate::error::SafetyError;
+use palpate_device::NumberError;
 
 /// The longest window, in readings. A longer window would reduce noise at constant speed only.
 const LONGEST: usize = 16;

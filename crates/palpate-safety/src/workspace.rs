@@ -7,8 +7,9 @@
 
 use palpate_field::{Aabb, Point, Pose, Rotation, Vector};
 
-use crate::device::PointState;
-use crate::error::{NumberError, SafetyError};
+use crate::error::SafetyError;
+use palpate_device::NumberError;
+use palpate_device::PointState;
 
 /// From device to world coordinates and back: `world = s R device + t`.
 ///

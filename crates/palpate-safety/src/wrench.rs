@@ -14,16 +14,18 @@ use std::ops::{Add, Mul, Sub};
 use palpate_field::Vector;
 
 use crate::channel::{Channel, Given, Risen, TickInput};
-use crate::error::{NumberError, SafetyError};
+use crate::error::SafetyError;
 use crate::finite;
-use crate::free_energy::{FreeEnergy, Passed};
-use crate::limit::cut;
-use crate::limit_cycle::{CycleInput, LimitCycle, LimitCycleOptions};
+use crate::free_energy::{FreeEnergy, FreeInput, Passed};
+use crate::limit::{Wanted, cut};
+use crate::limit_cycle::{CycleInput, ForcesOf, LimitCycle, LimitCycleOptions};
 use crate::limits::DeviceLimits;
 use crate::passivity::{InnerProduct, Passivity, PassivityOptions, PortMotion};
+use crate::stage_ticks::BeforeLimits;
 use crate::{
-    Accepted, Change, PassivityReport, SafetyOptions, SafetyReport, StageTicks, TurningReport,
+    Accepted, Change, PassivityReport, SafetyReport, SafetySettings, StageTicks, TurningReport,
 };
+use palpate_device::NumberError;
 
 /// A translational and a rotational vector: force [N] and torque [N·m], position [m] and angle
 /// [rad], or their velocities.
@@ -187,7 +189,7 @@ impl<const D: usize> WrenchChain<D> {
     pub fn new(
         limits: PerMotion<&DeviceLimits>,
         accepted: PerMotion<Accepted>,
-        options: &SafetyOptions,
+        settings: &SafetySettings,
         rate: f64,
     ) -> Result<Self, SafetyError> {
         let rate = NumberError::check_rate(rate)?;
@@ -199,15 +201,15 @@ impl<const D: usize> WrenchChain<D> {
         let AxisLimits { damping, mass, max_rate, encoder_step } =
             sides.along.with(&sides.about, unit);
         let passivity = PassivityOptions {
-            is_on: options.has_passivity_control && damping < f64::INFINITY,
+            is_on: settings.has_passivity_control && damping < f64::INFINITY,
             stiffness,
             // Force and torque have limits of their own, which a tool applies before.
             max_force: f64::INFINITY,
             damping,
             mass,
             max_rate,
-            reserve: NumberError::check_not_negative("reserve", options.reserve, "J")?,
-            rise_rate: options.rise_rate,
+            reserve: NumberError::check_not_negative("reserve", settings.reserve, "J")?,
+            rise_rate: settings.rise_rate,
             period: 1.0 / rate,
         };
         let cycle = LimitCycleOptions::of(&passivity, encoder_step);
@@ -218,8 +220,8 @@ impl<const D: usize> WrenchChain<D> {
             cycle: LimitCycle::new(cycle),
             free: FreeEnergy::new(passivity.reserve, along.max_force.positive()?),
             passivity: Passivity::new(passivity),
-            force: Channel::new(along, options, 1.0, rate)?,
-            torque: Channel::new(about, options, unit, rate)?,
+            force: Channel::new(along, settings, 1.0, rate)?,
+            torque: Channel::new(about, settings, unit, rate)?,
             largest_torque: 0.0,
         })
     }
@@ -252,7 +254,7 @@ impl<const D: usize> WrenchChain<D> {
         wanted: SpatialVector<D>,
         state: &WrenchState<D>,
     ) -> SpatialVector<D> {
-        self.tick(wanted, [self.effort(wanted), 0.0], state)
+        self.tick(Wanted { force: wanted, effort: self.effort(wanted), cut: 0.0 }, state)
     }
 
     /// As [`step`](Self::step), for a wanted force that is first shortened to `max_force` [N],
@@ -266,11 +268,11 @@ impl<const D: usize> WrenchChain<D> {
         state: &WrenchState<D>,
     ) -> SpatialVector<D> {
         let effort = self.effort(wanted);
-        // What is no number is for the guard, which must see it.
+        // Leave NaN unclamped: the guard stage detects it and zeroes the force.
         let is_number = wanted.along.is_finite();
         let (along, cut) =
             if is_number { cut(wanted.along, max_force) } else { (wanted.along, 0.0) };
-        self.tick(SpatialVector { along, ..wanted }, [effort, cut], state)
+        self.tick(Wanted { force: SpatialVector { along, ..wanted }, effort, cut }, state)
     }
 
     /// The size of a wrench, where an angle counts as a length [N].
@@ -280,10 +282,10 @@ impl<const D: usize> WrenchChain<D> {
 
     fn tick(
         &mut self,
-        wanted: SpatialVector<D>,
-        [effort, cut]: [f64; 2],
+        wanted: Wanted<SpatialVector<D>>,
         state: &WrenchState<D>,
     ) -> SpatialVector<D> {
+        let Wanted { force: wanted, effort, cut } = wanted;
         let WrenchState { position, velocity, free_force, late, elapsed, stiffness, .. } =
             *state;
         let WrenchState { start, change, .. } = *state;
@@ -304,18 +306,16 @@ impl<const D: usize> WrenchChain<D> {
         let as_lengths = wanted.turning(1.0 / unit);
         let free = SpatialVector { along: free_force * rise, about: Vector::ZERO };
         let stiffness = options.stiffness_of(stiffness);
-        let seen = CycleInput::of([as_lengths, free], effort, position, stiffness);
+        let forces = ForcesOf { bodies: as_lengths, guides: free };
+        let seen = CycleInput::of(forces, effort, position, stiffness);
         let is_disturbed = self.force.is_late() || !has_risen;
         let softness = self.cycle.observed(&seen.disturbed(is_disturbed), is_sound);
         let is_rising = !has_risen || self.cycle.is_returning();
         let of_guides = PassivityOptions { damping: self.sides.along.damping, ..options };
         let scale = rise * softness;
-        let Passed { force: free_force, spent } = self.free.step(
-            [free_force, position.along],
-            [scale, elapsed],
-            &of_guides,
-            is_sound,
-        );
+        let of_free =
+            FreeInput { force: free_force, position: position.along, scale, elapsed, is_sound };
+        let Passed { force: free_force, spent } = self.free.step(of_free, &of_guides);
         // The walls' damping may be less: the same part of it is spent.
         let spent = if spent > 0.0 { spent * options.damping / of_guides.damping } else { 0.0 };
         let seen = PortMotion {
@@ -384,11 +384,11 @@ impl<const D: usize> WrenchChain<D> {
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     #[must_use]
     pub fn stage_ticks(&self) -> StageTicks {
-        let first = [
-            self.cycle.report().effect,
-            self.free.report().effect,
-            self.passivity.report().effect,
-        ];
+        let first = BeforeLimits {
+            cycles: self.cycle.report().effect,
+            guides: self.free.report().effect,
+            passivity: self.passivity.report().effect,
+        };
         let torque = Some(&self.torque.effects);
         StageTicks::of(first, &self.force.effects, torque)
     }

@@ -3,7 +3,7 @@
 
 //! Profiles of devices as files.
 
-use palpate_haptics::{Buttons, DeviceProfile, GripperProfile, TurningProfile};
+use palpate_device::{Buttons, DeviceProfile, GripperProfile, TurningProfile};
 use serde::{Deserialize, Serialize};
 
 use crate::check::{at_least, positive, version};
@@ -99,7 +99,7 @@ struct WrittenTurning {
 /// # Examples
 ///
 /// ```
-/// use palpate_devices::profile_named;
+/// use palpate_device::profile_named;
 /// use palpate_scene::{device_from_json, device_to_json};
 ///
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {

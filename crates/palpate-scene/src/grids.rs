@@ -6,7 +6,7 @@
 use std::path::Path;
 
 use palpate_field::{Shape, Vector};
-use palpate_grid::{Grid, GridError, GridOptions, Kernel, Lattice, Resolution, Store};
+use palpate_grid::{Grid, GridError, GridKernel, GridOptions, Lattice, Resolution, Store};
 use serde::{Deserialize, Serialize};
 
 use crate::beside::{Beside, Kept, Stamp};
@@ -54,7 +54,7 @@ impl WrittenGrid {
     /// What a scene says of a grid of samples; `None` of one that samples alone do not make again.
     pub(crate) fn of<const D: usize>(grid: &Grid<D>) -> Option<Self> {
         let lattice = grid.lattice();
-        let has_own_name = grid.kernel() != Kernel::Quadratic;
+        let has_own_name = grid.kernel() != GridKernel::Quadratic;
         Some(Self {
             file: None,
             counts: Some(lattice.counts.to_vec()),
@@ -94,11 +94,11 @@ impl WrittenGrid {
                     counts: along_axes(counts, "counts")?,
                 };
                 let kernel = match kernel {
-                    None => Kernel::Quadratic,
+                    None => GridKernel::Quadratic,
                     Some(name) => named(
                         name,
                         "kernel",
-                        Kernel::ALL.map(|kernel| (kernel.name(), kernel)),
+                        GridKernel::ALL.map(|kernel| (kernel.name(), kernel)),
                     )?,
                 };
                 let grid = Grid::from_samples(lattice, samples, kernel, Store::F32);
@@ -191,7 +191,7 @@ impl WrittenBake {
         let mut options = GridOptions::with_resolution(resolution).with_most_nodes(MOST_NODES);
         if let Some(name) = &self.kernel {
             options.kernel =
-                named(name, "kernel", Kernel::ALL.map(|kernel| (kernel.name(), kernel)))?;
+                named(name, "kernel", GridKernel::ALL.map(|kernel| (kernel.name(), kernel)))?;
         }
         if let Some(name) = &self.store {
             options.store =

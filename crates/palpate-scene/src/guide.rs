@@ -3,8 +3,9 @@
 
 //! Guides of the hand in free space, as files give them.
 
+use palpate_device::NumberError;
 use palpate_field::{LARGEST_LENGTH, Point, Vector};
-use palpate_haptics::{Curve, Guide, GuideOptions, HapticsError, NumberError};
+use palpate_haptics::{Curve, Guide, GuideOptions, HapticsError};
 #[cfg(test)]
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};

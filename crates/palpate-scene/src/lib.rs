@@ -82,7 +82,7 @@ pub use guide::{GuideCurve, GuideLine, GuidePlane, GuideSegment, GuideWell, Writ
 pub use instances::instances;
 pub use mesh_file::{BuiltMesh, Samples};
 pub use meshes_baked::{BakedBody, BakedGrid, MeshesBaked};
-pub use motion::{Motion, Repeat};
+pub use motion::{Repeat, WrittenMotion};
 pub use names::{near as near_names, shortened, unknown as unknown_name};
 pub use pose::{AxisAngle, WrittenPose, WrittenRotation};
 pub use resources::{BakeProgress, Resources};
@@ -91,6 +91,6 @@ pub use schema::{schema, schema_text};
 pub use shape::WrittenShape;
 pub use tool::{WrittenCoupling, WrittenTool, WrittenWorkspace};
 pub use touch::ServoSettings;
-pub use view::{FreePlane, View, ViewPlane};
+pub use view::{FreePlane, ViewPlane, WrittenView};
 pub use write::SceneBody;
 pub use written_material::WrittenMaterial;

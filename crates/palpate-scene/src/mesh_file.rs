@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 
 use palpate_field::{LARGEST_LENGTH, Point, SMALLEST_LENGTH, Shape, Vector};
 use palpate_grid::{Inside, Volume};
-use palpate_mesh::{Findings, Sheet, Solid, SolidError, TriangleMesh, read_file};
+use palpate_mesh::{Findings, MeshSheet, Solid, SolidError, TriangleMesh, read_file};
 use serde::Deserialize;
 
 use crate::beside::{Beside, Kept, Stamp};
@@ -201,7 +201,7 @@ fn solid(
         return Solid::from_mesh(mesh).map(|(solid, found)| (solid.into(), found));
     };
     let faces = mesh.elements().len();
-    Sheet::from_mesh(mesh, thickness).map(|sheet| {
+    MeshSheet::from_mesh(mesh, thickness).map(|sheet| {
         let mut found = Findings::default();
         (found.faces, found.own) = (faces, faces);
         (sheet.into(), found)

@@ -5,7 +5,7 @@
 
 use palpate_field::Shape;
 use palpate_grid::{GridError, GridOptions};
-use palpate_mesh::{Sheet, Solid};
+use palpate_mesh::{MeshSheet, Solid};
 
 use crate::build::BuiltScene;
 use crate::resources::Resources;
@@ -59,8 +59,10 @@ impl<const D: usize> BuiltScene<D> {
     ) -> Result<MeshesBaked<D>, GridError> {
         let (mut scene, mut bodies) = (self.clone(), Vec::new());
         for body in &mut scene.bodies {
-            let kinds =
-                [std::any::type_name::<Solid<3, 3>>(), std::any::type_name::<Sheet<3, 3>>()];
+            let kinds = [
+                std::any::type_name::<Solid<3, 3>>(),
+                std::any::type_name::<MeshSheet<3, 3>>(),
+            ];
             if !kinds.iter().any(|kind| body.shape_in_body.holds(kind)) {
                 continue;
             }

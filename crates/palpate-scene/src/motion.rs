@@ -17,10 +17,10 @@ use crate::problems::Problems;
 /// whole ones.
 ///
 /// ```
-/// use palpate_scene::Motion;
+/// use palpate_scene::WrittenMotion;
 ///
 /// # fn main() -> Result<(), serde_json::Error> {
-/// let drop: Motion = serde_json::from_str(
+/// let drop: WrittenMotion = serde_json::from_str(
 ///     r#"{ "body": "peg", "to": { "translation": [0, -0.1, 0] }, "duration": 0.2 }"#,
 /// )?;
 /// assert_eq!((drop.start, drop.turns), (0.0, 0));
@@ -31,7 +31,7 @@ use crate::problems::Problems;
 #[cfg_attr(test, derive(JsonSchema))]
 #[serde(deny_unknown_fields, expecting = "an object")]
 #[non_exhaustive]
-pub struct Motion {
+pub struct WrittenMotion {
     /// A note for readers of the file.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub description: Option<String>,
@@ -58,7 +58,7 @@ pub struct Motion {
     pub repeat: Repeat,
 }
 
-impl Motion {
+impl WrittenMotion {
     /// A motion of the body of this name from its own pose, which takes one second.
     #[must_use]
     pub fn new(body: impl Into<String>, to: WrittenPose) -> Self {
@@ -94,7 +94,7 @@ pub enum Repeat {
     BackAndForth,
 }
 
-impl Motion {
+impl WrittenMotion {
     /// Checks the numbers; body and poses are checked by the scene.
     pub(crate) fn check(&self) -> Result<(), Problems> {
         let start = at_least("start", self.start, 0.0, "s");

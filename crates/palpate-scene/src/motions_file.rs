@@ -10,7 +10,7 @@ use crate::check::version;
 use crate::encoding::utf8;
 use crate::error::SceneError;
 use crate::json::{Document, Source};
-use crate::motion::Motion;
+use crate::motion::WrittenMotion;
 use crate::problem::Problem;
 use crate::problems::Problems;
 use crate::scene::Scene;
@@ -25,7 +25,7 @@ struct WrittenMotions {
     palpate_motions: u64,
     #[serde(default, rename = "description")]
     _description: Option<String>,
-    motions: Vec<Motion>,
+    motions: Vec<WrittenMotion>,
 }
 
 impl Scene {

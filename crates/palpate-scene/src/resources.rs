@@ -9,10 +9,10 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use palpate_field::Shape;
-use palpate_grid::{Grid, GridCache, GridError, GridOptions, Progress};
+use palpate_grid::{Grid, GridCache, GridError, GridOptions, GridProgress};
 
 /// Who is told how a grid is made, and can stop it.
-pub type BakeProgress = Arc<dyn Fn(Progress) -> ControlFlow<()> + Send + Sync>;
+pub type BakeProgress = Arc<dyn Fn(GridProgress) -> ControlFlow<()> + Send + Sync>;
 
 /// What a scene uses beside its text: the folder of its files, a folder of grids that were baked before, and who is
 /// told how a grid is made. A folder alone [becomes](From) resources.
@@ -68,7 +68,7 @@ impl Resources {
         options: &GridOptions,
     ) -> Result<Grid<D>, GridError> {
         let silent = |_| ControlFlow::Continue(());
-        let progress: &(dyn Fn(Progress) -> ControlFlow<()> + Sync) = match &self.progress {
+        let progress: &(dyn Fn(GridProgress) -> ControlFlow<()> + Sync) = match &self.progress {
             Some(progress) => &**progress,
             None => &silent,
         };

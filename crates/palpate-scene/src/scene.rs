@@ -17,13 +17,13 @@ use crate::encoding::utf8;
 use crate::error::{SceneCause, SceneError, SceneProblem};
 use crate::guide::WrittenGuide;
 use crate::json::{self, Document, Source};
-use crate::motion::Motion;
+use crate::motion::WrittenMotion;
 use crate::pose::WrittenPose;
 use crate::problem::Problem;
 use crate::resources::Resources;
 use crate::shape::WrittenShape;
 use crate::tool::WrittenTool;
-use crate::view::View;
+use crate::view::WrittenView;
 use crate::written_material::WrittenMaterial;
 
 /// The number of dimensions of a scene.
@@ -100,10 +100,10 @@ pub struct Scene {
     pub guides: Vec<WrittenGuide>,
     /// Motions of bodies.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub motions: Vec<Motion>,
+    pub motions: Vec<WrittenMotion>,
     /// Pictures worth making of the scene.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub views: Vec<View>,
+    pub views: Vec<WrittenView>,
     /// What it uses beside its text.
     #[serde(skip)]
     #[cfg_attr(test, schemars(skip))]

@@ -4,7 +4,8 @@
 //! The tool of a scene, as a file gives it.
 
 use palpate_field::LARGEST_LENGTH;
-use palpate_haptics::{Acceptance, Probe, ToolOptions};
+use palpate_haptics::{Probe, ToolOptions};
+use palpate_safety::Acceptance;
 use palpate_vibration::{ACTUATORS, Actuator, actuator_named};
 #[cfg(test)]
 use schemars::JsonSchema;
@@ -78,7 +79,7 @@ pub struct WrittenTool {
 }
 
 /// What a device renders of materials, as
-/// [`Acceptance`](palpate_haptics::Acceptance) says.
+/// [`Acceptance`](palpate_safety::Acceptance) says.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(JsonSchema))]
 #[serde(rename_all = "snake_case")]

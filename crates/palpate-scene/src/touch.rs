@@ -3,12 +3,13 @@
 
 //! From a built scene to what can be touched: bodies, a world, a servo.
 
+use palpate_device::{Device, DeviceProfile};
 use palpate_field::{Aabb, Rotation, Vector};
 use palpate_haptics::{
-    Acceptance, Bodies, Body, Device, DeviceProfile, HapticsError, Probe, Protection, Recovery,
-    SafetyError, Servo, ServoOptions, Shell, Surface, Tool, UnprotectedServo, WorkspaceMap,
+    Bodies, Body, HapticsError, Probe, Protection, Servo, ServoOptions, Shell, Surface, Tool,
 };
 use palpate_query::{QueryError, World, WorldSettings};
+use palpate_safety::{Acceptance, SafetyError, SafetySettings, WorkspaceMap};
 
 use crate::build::{BuiltScene, BuiltTool};
 
@@ -18,50 +19,21 @@ const POINTS: usize = 500;
 
 /// Settings of a servo that scene files do not hold.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[non_exhaustive]
 pub struct ServoSettings {
     /// Ticks a second [Hz].
     pub rate: f64,
-    /// What the device renders of materials; what the scene says, or else
-    /// [`Acceptance::Device`], if `None`.
+    /// What the device renders of materials; `None` for what the scene says, or else the
+    /// [acceptance](SafetySettings::acceptance) of `safety`.
     pub acceptance: Option<Acceptance>,
-    /// Whether materials are refused of which the device renders less than all.
-    pub is_strict: bool,
-    /// How a force comes back after a beginning in a body, or an emergency stop.
-    pub recovery: Recovery,
+    /// How the safety chains protect.
+    pub safety: SafetySettings,
 }
 
 impl Default for ServoSettings {
     /// 1 kHz; the device renders of materials what the scene says.
     fn default() -> Self {
         let rate = ServoOptions::default().rate;
-        Self { rate, acceptance: None, is_strict: false, recovery: Recovery::Rise }
-    }
-}
-
-impl ServoSettings {
-    /// At `rate` [Hz].
-    #[must_use]
-    pub fn with_rate(self, rate: f64) -> Self {
-        Self { rate, ..self }
-    }
-
-    /// With another choice of what the device renders of materials.
-    #[must_use]
-    pub fn with_acceptance(self, acceptance: Acceptance) -> Self {
-        Self { acceptance: Some(acceptance), ..self }
-    }
-
-    /// Refusing materials of which the device renders less than all, or not.
-    #[must_use]
-    pub fn with_strictness(self, is_strict: bool) -> Self {
-        Self { is_strict, ..self }
-    }
-
-    /// With another way in which a force comes back after a beginning in a body.
-    #[must_use]
-    pub fn with_recovery(self, recovery: Recovery) -> Self {
-        Self { recovery, ..self }
+        Self { rate, acceptance: None, safety: SafetySettings::default() }
     }
 }
 
@@ -119,7 +91,7 @@ impl<const D: usize> BuiltScene<D> {
     /// The hands of a device, one for each contact point, around a hand at 0.1 m:
     ///
     /// ```
-    /// use palpate_devices::Hand;
+    /// use palpate_sim::Hand;
     /// use palpate_scene::{AnyScene, Scene};
     ///
     /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -240,8 +212,9 @@ impl<const D: usize> BuiltScene<D> {
     /// A scene file, felt by a hand that rests in the workspace of a device:
     ///
     /// ```
-    /// use palpate_devices::{Hand, SimulatedDevice, profile_named};
-    /// use palpate_loop::{Pace, RunOptions, run};
+    /// use palpate_device::profile_named;
+    /// use palpate_sim::{Hand, SimulatedDevice};
+    /// use palpate_haptics::servo_loop::{Pace, RunOptions, run};
     /// use palpate_scene::{AnyScene, Scene};
     ///
     /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -291,7 +264,7 @@ impl<const D: usize> BuiltScene<D> {
         let map = self.workspace_of(profile, tool.as_ref())?;
         let options = self.servo_options(profile, settings.rate)?;
         let servo = match tool {
-            None => UnprotectedServo::new(self.bodies()?, device_points, options)?,
+            None => Servo::new(self.bodies()?, device_points, options)?,
             Some(tool) => {
                 let tool = match &profile.turning {
                     // Torques in the world are so many times those at the device.
@@ -300,16 +273,14 @@ impl<const D: usize> BuiltScene<D> {
                     }
                     _ => tool,
                 };
-                UnprotectedServo::with_tool(self.bodies()?, tool, options)?
+                Servo::with_tool(self.bodies()?, tool, options)?
             }
         };
         let of_scene = || self.tool.as_ref().and_then(|tool| tool.acceptance);
-        let acceptance = settings.acceptance.or_else(of_scene).unwrap_or_default();
-        let protection = Protection::new(profile.clone())
-            .with_map(map)
-            .with_acceptance(acceptance)
-            .with_recovery(settings.recovery)
-            .with_strictness(settings.is_strict);
+        let acceptance = settings.acceptance.or_else(of_scene);
+        let mut protection = Protection::new(profile.clone()).with_map(map);
+        protection.settings = settings.safety;
+        protection.settings.acceptance = acceptance.unwrap_or(settings.safety.acceptance);
         let guided = || protection.accept_guides(&self.guides, settings.rate).err();
         let servo = servo.protected(&protection);
         let mut servo = servo.map_err(|error| all_refused(error, guided()))?;

@@ -21,10 +21,10 @@ use crate::problems::Problems;
 /// What is left out is chosen so that the scene fills the picture.
 ///
 /// ```
-/// use palpate_scene::{View, ViewPlane};
+/// use palpate_scene::{WrittenView, ViewPlane};
 ///
 /// # fn main() -> Result<(), serde_json::Error> {
-/// let view: View = serde_json::from_str(r#"{ "name": "top", "plane": "xz", "at": 0.02 }"#)?;
+/// let view: WrittenView = serde_json::from_str(r#"{ "name": "top", "plane": "xz", "at": 0.02 }"#)?;
 /// assert_eq!(view.plane, Some(ViewPlane::Xz));
 /// # Ok(())
 /// # }
@@ -33,7 +33,7 @@ use crate::problems::Problems;
 #[cfg_attr(test, derive(JsonSchema))]
 #[serde(deny_unknown_fields, expecting = "an object")]
 #[non_exhaustive]
-pub struct View {
+pub struct WrittenView {
     /// The name, unlike that of any other view.
     #[cfg_attr(test, schemars(length(min = 1)))]
     pub name: String,
@@ -64,7 +64,7 @@ pub struct View {
     pub spacing: Option<f64>,
 }
 
-impl View {
+impl WrittenView {
     /// A view whose plane and window are chosen so that the scene fills the picture.
     #[must_use]
     pub fn new(name: impl Into<String>) -> Self {
@@ -160,7 +160,7 @@ impl<'de> Visitor<'de> for PlaneVisitor {
     }
 }
 
-impl View {
+impl WrittenView {
     /// Checks the numbers, in a scene of `dimension`.
     pub(crate) fn check(&self, dimension: usize) -> Result<(), Problems> {
         let center = self.center.as_ref().map_or(Ok(()), |center| {

@@ -15,7 +15,7 @@ use super::cue::{Mapping, MappingOptions, Sensation, Tap, Tone};
 use super::limiter::{Limiter, Limiting, delay};
 use super::ringing::Ringing;
 use super::strength::{Strengths, amplitude, hold_strength, slide_strength, tap_strength};
-use palpate_haptics::HapticsError;
+use palpate_device::DeviceError;
 
 /// The time over which an amplitude rises from zero to one [s]: a jump would click, a slower
 /// rise would blur a texture.
@@ -103,7 +103,7 @@ struct Player {
 ///     Mapping, MappingOptions, Sensation, Synthesiser, Tap,
 /// };
 ///
-/// # fn main() -> Result<(), palpate_haptics::HapticsError> {
+/// # fn main() -> Result<(), palpate_device::DeviceError> {
 /// let mapping = Mapping::new(MappingOptions::default())?;
 /// let mut synthesiser = Synthesiser::new(&mapping, 8000.0, 1)?;
 /// let tap = Tap { amplitude: 0.5, frequency: 250.0, decay: 100.0 };
@@ -169,14 +169,14 @@ impl Synthesiser {
     ///
     /// # Errors
     ///
-    /// [`HapticsError::NoContactPoint`] without a point; [`HapticsError::Number`] if the sample
+    /// [`DeviceError::NoContactPoint`] without a point; [`DeviceError::Number`] if the sample
     /// rate is less than twice the mapping's highest frequency, which would alias, or more than
     /// 1 MHz.
     pub fn new(
         mapping: &Mapping,
         sample_rate: f64,
         points: usize,
-    ) -> Result<Self, HapticsError> {
+    ) -> Result<Self, DeviceError> {
         Self::of(mapping, None, sample_rate, points)
     }
 
@@ -188,14 +188,14 @@ impl Synthesiser {
     ///
     /// # Errors
     ///
-    /// Those of [`new`](Self::new); [`HapticsError::Number`] also if a figure of the actuator
+    /// Those of [`new`](Self::new); [`DeviceError::Number`] also if a figure of the actuator
     /// breaks its rule, or if the sample rate is less than twice the actuator's resonance.
     pub fn for_actuator(
         mapping: &Mapping,
         actuator: &Actuator,
         sample_rate: f64,
         points: usize,
-    ) -> Result<Self, HapticsError> {
+    ) -> Result<Self, DeviceError> {
         Self::of(mapping, Some(&actuator.mechanism), sample_rate, points)
     }
 
@@ -204,9 +204,9 @@ impl Synthesiser {
         mechanism: Option<&Mechanism>,
         sample_rate: f64,
         points: usize,
-    ) -> Result<Self, HapticsError> {
+    ) -> Result<Self, DeviceError> {
         if points == 0 {
-            return Err(HapticsError::NoContactPoint);
+            return Err(DeviceError::NoContactPoint);
         }
         mechanism.map(Mechanism::check).transpose()?;
         let options = mapping.options();

@@ -11,7 +11,7 @@ use palpate_field::Point;
 
 use super::cue::{Tone, level};
 use super::ringing::Tones;
-use palpate_haptics::{HapticsError, NumberError};
+use palpate_device::{DeviceError, NumberError};
 
 /// Combines tones for an actuator that plays one at a time: the frequency of the strongest
 /// tone, and the amplitude `√(Σ a²)` of all, at most one.
@@ -113,7 +113,7 @@ const NEAREST: usize = 3;
 /// use palpate_field::Vector;
 /// use palpate_vibration::ActuatorArray;
 ///
-/// # fn main() -> Result<(), palpate_haptics::HapticsError> {
+/// # fn main() -> Result<(), palpate_device::DeviceError> {
 /// let places = [0.0, 0.25, 0.5, 0.75].map(|x| Vector([x, 0.0]));
 /// let vest = ActuatorArray::new(places.to_vec(), 0.5)?;
 /// let mut amplitudes = [0.0; 4];
@@ -133,18 +133,16 @@ impl<const D: usize> ActuatorArray<D> {
     ///
     /// # Errors
     ///
-    /// [`HapticsError::NoContactPoint`] without a place; [`HapticsError::Number`] if the reach
+    /// [`DeviceError::NoContactPoint`] without a place; [`DeviceError::Number`] if the reach
     /// is not positive, or a coordinate not finite.
-    pub fn new(places: Vec<Point<D>>, reach: f64) -> Result<Self, HapticsError> {
+    pub fn new(places: Vec<Point<D>>, reach: f64) -> Result<Self, DeviceError> {
         if places.is_empty() {
-            return Err(HapticsError::NoContactPoint);
+            return Err(DeviceError::NoContactPoint);
         }
         for value in places.iter().flat_map(|place| place.0) {
             if !value.is_finite() {
                 let (parameter, rule, unit) = ("place", "finite", "m");
-                return Err(HapticsError::Number(NumberError::new(
-                    parameter, rule, value, unit,
-                )));
+                return Err(NumberError::new(parameter, rule, value, unit).into());
             }
         }
         Ok(Self { places, reach: NumberError::check_positive("reach", reach, "m")? })
@@ -180,7 +178,7 @@ impl<const D: usize> ActuatorArray<D> {
     /// use palpate_field::Vector;
     /// use palpate_vibration::ActuatorArray;
     ///
-    /// # fn main() -> Result<(), palpate_haptics::HapticsError> {
+    /// # fn main() -> Result<(), palpate_device::DeviceError> {
     /// let places = [0.0, 0.25, 0.5].map(|x| Vector([x, 0.0]));
     /// let sleeve = ActuatorArray::new(places.to_vec(), 0.5)?;
     /// let mut amplitudes = [0.0; 3];

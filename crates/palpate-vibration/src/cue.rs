@@ -10,7 +10,7 @@
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use super::threshold::perceptual_weight;
-use palpate_haptics::{HapticsError, Impact, NumberError, Touch};
+use palpate_device::NumberError;
 
 /// A decaying sinusoid: `a exp(−d t) sin(2π f t)`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -22,14 +22,6 @@ pub struct Tap {
     pub frequency: f64,
     /// The rate of decay d [1/s].
     pub decay: f64,
-}
-
-impl From<&Impact> for Tap {
-    /// The ringing of a tap on a material.
-    fn from(impact: &Impact) -> Self {
-        let Impact { amplitude, frequency, decay, .. } = *impact;
-        Self { amplitude, frequency, decay }
-    }
 }
 
 /// The touch of a contact point in a tick, as vibration needs it.
@@ -49,30 +41,6 @@ pub struct Cue {
     pub impact: Option<Tap>,
     /// `true` in the tick in which contact begins.
     pub began: bool,
-}
-
-impl Cue {
-    /// The cue of a touch on a smooth and mute surface; it does not depend on the force that
-    /// the device gives. Set `began` if there was no contact in the tick before.
-    ///
-    /// Real-time: allocates nothing, takes no lock, cannot panic.
-    #[must_use]
-    pub fn of_touch<const D: usize>(touch: &Touch<D>, began: bool) -> Self {
-        if !touch.contact {
-            return Self::default();
-        }
-        let velocity = touch.velocity;
-        let outward = velocity.dot(touch.normal);
-        Self {
-            depth: touch.depth(),
-            normal_force: touch.wanted.dot(touch.normal),
-            normal_speed: -outward,
-            slide_speed: (velocity - touch.normal * outward).norm(),
-            wavelength: None,
-            impact: None,
-            began,
-        }
-    }
 }
 
 /// A vibration at an instant.
@@ -261,7 +229,7 @@ impl MappingOptions {
 /// ```
 /// use palpate_vibration::{Cue, Mapping, MappingOptions, Tone};
 ///
-/// # fn main() -> Result<(), palpate_haptics::HapticsError> {
+/// # fn main() -> Result<(), palpate_device::NumberError> {
 /// let options = MappingOptions::default()
 ///     .with_hold_floor(0.25)
 ///     .with_full_depth(0.004)
@@ -295,8 +263,8 @@ impl Mapping {
     ///
     /// # Errors
     ///
-    /// [`HapticsError::Number`] if one is outside its range.
-    pub fn new(options: MappingOptions) -> Result<Self, HapticsError> {
+    /// [`NumberError`] if one is outside its range.
+    pub fn new(options: MappingOptions) -> Result<Self, NumberError> {
         let o = &options;
         for (parameter, part) in
             [("hold_floor", o.hold_floor), ("hold_fraction", o.hold_fraction)]
@@ -324,9 +292,8 @@ impl Mapping {
         ] {
             NumberError::check_positive(parameter, value, unit)?;
         }
-        let refuse = |parameter, rule, value| {
-            Err(HapticsError::Number(NumberError::new(parameter, rule, value, "Hz")))
-        };
+        let refuse =
+            |parameter, rule, value| Err(NumberError::new(parameter, rule, value, "Hz"));
         if o.highest_frequency < o.lowest_frequency {
             let rule = "at least the lowest frequency";
             return refuse("highest_frequency", rule, o.highest_frequency);
@@ -401,11 +368,11 @@ fn at_most(
     value: f64,
     most: f64,
     rule: &'static str,
-) -> Result<(), HapticsError> {
+) -> Result<(), NumberError> {
     if value <= most {
         return Ok(());
     }
-    Err(HapticsError::Number(NumberError::new(parameter, rule, value, "")))
+    Err(NumberError::new(parameter, rule, value, ""))
 }
 
 #[cfg(test)]
@@ -415,7 +382,7 @@ mod tests {
 
     const STEEL: Tap = Tap { amplitude: 4.0, frequency: 300.0, decay: 90.0 };
 
-    fn mapping(change: impl FnOnce(&mut MappingOptions)) -> Result<Mapping, HapticsError> {
+    fn mapping(change: impl FnOnce(&mut MappingOptions)) -> Result<Mapping, NumberError> {
         let mut options = MappingOptions::default();
         change(&mut options);
         Mapping::new(options)

@@ -6,7 +6,7 @@
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use super::cue::{Tone, level};
-use palpate_haptics::{HapticsError, NumberError};
+use palpate_device::{DeviceError, NumberError};
 
 /// A command to a device: what to play on a channel.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -29,7 +29,7 @@ const PERIODS: f64 = 2.5;
 /// ```
 /// use palpate_vibration::{Publisher, Tone};
 ///
-/// # fn main() -> Result<(), palpate_haptics::HapticsError> {
+/// # fn main() -> Result<(), palpate_device::DeviceError> {
 /// let mut publisher = Publisher::new(1, 1000.0, 50.0)?;
 /// let tap = Tone { frequency: 200.0, amplitude: 0.75 };
 /// for tick in 1..20 {
@@ -57,22 +57,22 @@ impl Publisher {
     ///
     /// # Errors
     ///
-    /// [`HapticsError::NoContactPoint`] without a channel; [`HapticsError::Number`] if a rate
+    /// [`DeviceError::NoContactPoint`] without a channel; [`DeviceError::Number`] if a rate
     /// is not positive, or the publish rate exceeds the servo rate.
     pub fn new(
         channels: usize,
         servo_rate: f64,
         publish_rate: f64,
-    ) -> Result<Self, HapticsError> {
+    ) -> Result<Self, DeviceError> {
         if channels == 0 {
-            return Err(HapticsError::NoContactPoint);
+            return Err(DeviceError::NoContactPoint);
         }
         NumberError::check_positive("servo_rate", servo_rate, "Hz")?;
         NumberError::check_positive("publish_rate", publish_rate, "Hz")?;
         if publish_rate > servo_rate {
             let (parameter, rule) = ("publish_rate", "at most the servo's rate");
             let (value, unit) = (publish_rate, "Hz");
-            return Err(HapticsError::Number(NumberError::new(parameter, rule, value, unit)));
+            return Err(NumberError::new(parameter, rule, value, unit).into());
         }
         let (held, commands) =
             (vec![Tone::default(); channels], vec![Command::default(); channels]);

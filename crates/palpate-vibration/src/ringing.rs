@@ -7,7 +7,7 @@
 
 use super::adaptation::Adaptation;
 use super::cue::{Mapping, Sensation, Tap, Tone};
-use palpate_haptics::{HapticsError, NumberError};
+use palpate_device::NumberError;
 
 /// The amplitude below which a tap ends: a tenth of the threshold at 250 Hz, where the skin is
 /// most sensitive. The end of a louder tap could be felt; a quieter one cannot be felt at all.
@@ -79,7 +79,7 @@ pub struct Tones {
 /// ```
 /// use palpate_vibration::{Mapping, MappingOptions, Sensation, Tap, Voice};
 ///
-/// # fn main() -> Result<(), palpate_haptics::HapticsError> {
+/// # fn main() -> Result<(), palpate_device::NumberError> {
 /// let mapping = Mapping::new(MappingOptions::default())?;
 /// let mut voice = Voice::new(&mapping, 1000.0)?;
 /// let tap = Tap { amplitude: 0.5, frequency: 200.0, decay: 100.0 };
@@ -106,8 +106,8 @@ impl Voice {
     ///
     /// # Errors
     ///
-    /// [`HapticsError::Number`] if the rate is not positive.
-    pub fn new(mapping: &Mapping, rate: f64) -> Result<Self, HapticsError> {
+    /// [`NumberError`] if the rate is not positive.
+    pub fn new(mapping: &Mapping, rate: f64) -> Result<Self, NumberError> {
         let ringing = Ringing::new(NumberError::check_positive("rate", rate, "Hz")?);
         let adaptation = Adaptation::new(mapping.options());
         Ok(Self { ringing, adaptation, period: 1.0 / rate })

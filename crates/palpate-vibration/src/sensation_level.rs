@@ -7,7 +7,7 @@ use std::f64::consts::TAU;
 
 use crate::actuator::check_sample_rate;
 use crate::threshold::threshold_db;
-use palpate_haptics::HapticsError;
+use palpate_device::NumberError;
 
 /// The time over which the skin sums up a vibration here [s]. The threshold falls with the duration
 /// of a vibration up to some tenths of a second (Verrillo, "Temporal summation in vibrotactile
@@ -32,12 +32,12 @@ const COUNT: usize = 137;
 ///
 /// # Errors
 ///
-/// [`HapticsError::Number`] if the sample rate [Hz] is less than 1400 Hz.
+/// [`NumberError`] if the sample rate [Hz] is less than 1400 Hz.
 ///
 /// ```
 /// use palpate_vibration::{sensation_level, threshold_db};
 ///
-/// # fn main() -> Result<(), palpate_haptics::HapticsError> {
+/// # fn main() -> Result<(), palpate_device::NumberError> {
 /// let turn = |i: u32| std::f64::consts::TAU * 250.0 * f64::from(i) / 8000.0;
 /// let sine: Vec<f64> = (0..800).map(|i| 0.5 * turn(i).sin()).collect();
 /// // Half the amplitude is 6.02 dB less.
@@ -47,7 +47,7 @@ const COUNT: usize = 137;
 /// # Ok(())
 /// # }
 /// ```
-pub fn sensation_level(samples: &[f64], sample_rate: f64) -> Result<Option<f64>, HapticsError> {
+pub fn sensation_level(samples: &[f64], sample_rate: f64) -> Result<Option<f64>, NumberError> {
     let frequencies: [f64; COUNT] = std::array::from_fn(|i| LOWEST + STEP * i as f64);
     let [.., highest] = frequencies;
     check_sample_rate(sample_rate, highest)?;

@@ -4,7 +4,7 @@
 //! The interface of a device that shakes.
 
 use crate::publisher::Command;
-use palpate_haptics::DeviceLost;
+use palpate_device::DeviceLost;
 
 /// A device with actuators that play commands: a glove, a vest, a controller with a motor.
 ///
@@ -16,7 +16,7 @@ use palpate_haptics::DeviceLost;
 /// A motor with one byte for its level:
 ///
 /// ```
-/// use palpate_haptics::DeviceLost;
+/// use palpate_device::DeviceLost;
 /// use palpate_vibration::{Command, Tone, Vibrates};
 ///
 /// struct Motor {

@@ -4,7 +4,7 @@
 //! A device of one's own: a plotter's carriage in the plane, driven by two voltages.
 //! The safety chain keeps every force within the limits that the device states.
 
-use palpate::devices::{DeviceLost, DeviceProfile, PointState, Reading};
+use palpate::device::{DeviceLost, DeviceProfile, PointState, Reading};
 use palpate::prelude::*;
 
 /// A carriage that a motor draws around a circle of 48 mm in two seconds.

@@ -6,10 +6,11 @@
 
 use std::time::Duration;
 
-use palpate::devices::{Hand, SimulatedDevice, Tour, profile_named};
+use palpate::device::profile_named;
 use palpate::prelude::*;
 use palpate::scene::AnyScene;
 use palpate::servo_loop::{ServoThread, ThreadOptions, TraceWriter};
+use palpate::sim::{Hand, SimulatedDevice, Tour};
 
 const SECONDS: f64 = 2.0;
 

@@ -5,18 +5,20 @@
 
 use std::io;
 
-use palpate_devices::{DeviceError, DeviceLost, UnknownDevice};
+use palpate_device::{DeviceError, DeviceLost, NumberError, UnknownDevice};
 use palpate_field::ShapeError;
 use palpate_grid::GridError;
 #[cfg(feature = "grid-files")]
 use palpate_grid::{GridFileError, GridFileProblem, VolumeError, VolumeProblem};
-use palpate_haptics::{HapticsError, NumberError, SafetyError, UnknownMaterial};
+use palpate_haptics::{HapticsError, UnknownMaterial};
 #[cfg(feature = "mesh-files")]
 use palpate_mesh::ReadProblem;
 use palpate_mesh::{ContourError, MeshError, SolidError};
 use palpate_query::QueryError;
+use palpate_safety::SafetyError;
 #[cfg(feature = "scene")]
 use palpate_scene::SceneCause;
+use palpate_sim::SimulationError;
 
 /// What went wrong in any crate of palpate.
 ///
@@ -39,7 +41,7 @@ use palpate_scene::SceneCause;
 ///
 /// ```
 /// use palpate::Error;
-/// use palpate::devices::Hand;
+/// use palpate::sim::Hand;
 ///
 /// let hand = Hand::resting([0.0, 0.1]).and_then(|hand| hand.with_mass(-0.1));
 /// let error = Error::from(hand.unwrap_err());
@@ -82,8 +84,10 @@ pub enum Error {
     Query(#[from] QueryError),
     /// Something cannot be touched as asked.
     Haptics(#[from] HapticsError),
-    /// A hand path, a hand or a device cannot be made.
+    /// A device cannot be made.
     Device(#[from] DeviceError),
+    /// A hand path, a hand or a simulated device cannot be made.
+    Simulation(#[from] SimulationError),
     /// Vertices and faces are no mesh.
     Mesh(#[from] MeshError),
     /// A mesh bounds no solid.
@@ -118,16 +122,15 @@ pub enum Error {
     /// There is no material of that name.
     UnknownMaterial(#[from] UnknownMaterial),
     /// There is no actuator of that name.
-    #[cfg(feature = "vibration")]
     UnknownActuator(#[from] palpate_vibration::UnknownActuator),
     /// A device no longer answers.
     DeviceLost(#[from] DeviceLost),
     /// A thread for a servo did not start.
     #[cfg(feature = "std-loop")]
-    Start(palpate_loop::StartError),
+    Start(palpate_haptics::servo_loop::StartError),
     /// A run of a servo did not end as asked.
     #[cfg(feature = "std-loop")]
-    Run(#[from] palpate_loop::RunError),
+    Run(#[from] palpate_haptics::servo_loop::RunError),
     /// There is no local search of that name.
     #[cfg(feature = "local")]
     UnknownMethod(#[from] palpate_local::UnknownMethod),
@@ -200,7 +203,7 @@ impl Error {
             Self::Shape(_) => ErrorKind::Shape,
             Self::Query(_) => ErrorKind::Query,
             Self::Haptics(_) => ErrorKind::Haptics,
-            Self::Device(_) => ErrorKind::Device,
+            Self::Device(_) | Self::Simulation(_) => ErrorKind::Device,
             Self::Mesh(_) | Self::Solid(_) | Self::Contour(_) => ErrorKind::Mesh,
             Self::Grid(_) => ErrorKind::Grid,
             #[cfg(feature = "mesh-files")]
@@ -229,14 +232,16 @@ impl Error {
             Self::Plot(_) => ErrorKind::Plot,
             #[cfg(feature = "render")]
             Self::Render(_) => ErrorKind::Plot,
-            Self::UnknownDevice(_) | Self::UnknownMaterial(_) => ErrorKind::UnknownName,
-            #[cfg(feature = "vibration")]
-            Self::UnknownActuator(_) => ErrorKind::UnknownName,
+            Self::UnknownDevice(_) | Self::UnknownMaterial(_) | Self::UnknownActuator(_) => {
+                ErrorKind::UnknownName
+            }
             Self::DeviceLost(_) => ErrorKind::DeviceLost,
             #[cfg(feature = "std-loop")]
             Self::Start(_) => ErrorKind::Thread,
             #[cfg(feature = "std-loop")]
-            Self::Run(palpate_loop::RunError::DeviceLost(_)) => ErrorKind::DeviceLost,
+            Self::Run(palpate_haptics::servo_loop::RunError::DeviceLost(_)) => {
+                ErrorKind::DeviceLost
+            }
             #[cfg(feature = "std-loop")]
             Self::Run(_) => ErrorKind::Panicked,
             #[cfg(feature = "local")]
@@ -292,8 +297,7 @@ impl Error {
                 ShapeError::Number { parameter, .. } | ShapeError::Count { parameter, .. },
             ) => Some(parameter),
             _ => match self {
-                Self::Haptics(HapticsError::Number(error))
-                | Self::Device(DeviceError::Number(error)) => Some(error.parameter),
+                _ if self.number().is_some() => self.number().map(|error| error.parameter),
                 Self::Haptics(HapticsError::Safety(SafetyError::OtherDevice {
                     limit, ..
                 })) => Some(limit),
@@ -312,11 +316,7 @@ impl Error {
             Some(ShapeError::Number { rule, .. } | ShapeError::Count { rule, .. }) => {
                 Some(rule)
             }
-            _ => match self {
-                Self::Haptics(HapticsError::Number(error))
-                | Self::Device(DeviceError::Number(error)) => Some(error.rule),
-                _ => None,
-            },
+            _ => self.number().map(|error| error.rule),
         }
     }
 
@@ -327,8 +327,7 @@ impl Error {
             Some(ShapeError::Number { value, .. }) => Some(value.0),
             Some(ShapeError::Count { count, .. }) => Some(*count as f64),
             _ => match self {
-                Self::Haptics(HapticsError::Number(error))
-                | Self::Device(DeviceError::Number(error)) => Some(error.value),
+                _ if self.number().is_some() => self.number().map(|error| error.value),
                 Self::Haptics(HapticsError::Safety(SafetyError::OtherDevice {
                     device,
                     ..
@@ -350,8 +349,7 @@ impl Error {
             Some(ShapeError::Number { value, .. }) => Some(value.1.symbol()),
             Some(ShapeError::Count { .. }) => Some(""),
             _ => match self {
-                Self::Haptics(HapticsError::Number(error))
-                | Self::Device(DeviceError::Number(error)) => Some(error.unit),
+                _ if self.number().is_some() => self.number().map(|error| error.unit),
                 Self::Haptics(HapticsError::Safety(SafetyError::OtherDevice {
                     unit, ..
                 })) => Some(unit),
@@ -395,6 +393,15 @@ impl Error {
         }
     }
 
+    fn number(&self) -> Option<&NumberError> {
+        match self {
+            Self::Haptics(HapticsError::Number(error))
+            | Self::Device(DeviceError::Number(error))
+            | Self::Simulation(SimulationError::Number(error)) => Some(error),
+            _ => None,
+        }
+    }
+
     fn shape_error(&self) -> Option<&ShapeError> {
         match self {
             Self::Shape(error) | Self::Haptics(HapticsError::Shape(error)) => Some(error),
@@ -415,10 +422,10 @@ impl From<SafetyError> for Error {
 }
 
 #[cfg(feature = "std-loop")]
-impl From<palpate_loop::StartError> for Error {
-    fn from(error: palpate_loop::StartError) -> Self {
+impl From<palpate_haptics::servo_loop::StartError> for Error {
+    fn from(error: palpate_haptics::servo_loop::StartError) -> Self {
         match error {
-            palpate_loop::StartError::Haptics(error) => Self::Haptics(error),
+            palpate_haptics::servo_loop::StartError::Haptics(error) => Self::Haptics(error),
             error => Self::Start(error),
         }
     }

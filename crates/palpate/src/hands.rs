@@ -5,10 +5,10 @@
 
 use std::f64::consts::TAU;
 
-use palpate_devices::{DeviceError, HandPath, Interpolation, Tour};
 use palpate_field::{Shape, Vector};
 use palpate_haptics::{Probe, Tool};
 use palpate_scene::{BuiltScene, BuiltTool};
+use palpate_sim::{HandPath, Interpolation, SimulationError, Tour};
 
 use crate::Error;
 
@@ -67,7 +67,7 @@ impl<const D: usize> HandWay<D> {
         if let Some(tool) = tool {
             return Ok(Self::along(scene, with_tool(scene, &tool, duration)?));
         }
-        let bounds = scene.bounds().ok_or(DeviceError::NoBounds)?;
+        let bounds = scene.bounds().ok_or(SimulationError::NoBounds)?;
         let arms: Vec<_> = scene.contact_points().collect();
         let points: Vec<_> = if arms.is_empty() {
             (0..points).map(|point| (LAG * point as f64, Vector::ZERO)).collect()
@@ -131,7 +131,7 @@ fn with_tool<const D: usize>(
     let obstacle = around(&scene.whole)?;
     let obstacles = scene.bodies.iter().map(|body| around(&body.shape));
     let obstacles = obstacles.collect::<Result<Vec<_>, _>>()?;
-    let bounds = scene.bounds_with(tool).ok_or(DeviceError::NoBounds)?;
+    let bounds = scene.bounds_with(tool).ok_or(SimulationError::NoBounds)?;
     let radius = tool.shell().points().first().map_or(0.0, |point| point.radius);
     let tour = Tour::new(bounds, duration)?.with_probe_radius(radius)?;
     Ok(tour.over_each(&obstacle, &obstacles)?)
@@ -151,7 +151,7 @@ fn with_tool<const D: usize>(
 pub fn swing(duration: f64) -> Result<HandPath<3>, Error> {
     let is_good = duration > 0.0 && duration <= LONGEST_SWING;
     if !is_good {
-        return Err(DeviceError::SwingDuration { longest: LONGEST_SWING, duration }.into());
+        return Err(SimulationError::SwingDuration { longest: LONGEST_SWING, duration }.into());
     }
     let steps = (SWING_POINTS * duration).ceil() as usize;
     let times: Vec<_> = (0..=steps).map(|i| i as f64 / SWING_POINTS).collect();

@@ -5,14 +5,15 @@
 //!
 //! This crate re-exports the crates of palpate: the [`field`]s and their
 //! promises, [`query`] for where things touch, [`local`] searches of the literature, [`mesh`]es,
-//! the [`haptics`] proxy and servo with its safety chain, the [`servo_loop`] that runs it
-//! (`palpate-loop`), [`devices`] to touch with, [`vibration`], [`scene`] files, [`plot`]s
+//! the [`haptics`] proxy and servo with its [`safety`] chain, the [`servo_loop`] that runs it, the
+//! [`device`] trait for drivers, [simulated devices](sim), [`vibration`], [`scene`] files, [`plot`]s
 //! and lit pictures ([`render`]). The [`prelude`] has what most programs need.
 //!
 //! # Examples
 //!
 //! ```
-//! use palpate::devices::{Hand, SimulatedDevice, profile_named};
+//! use palpate::device::profile_named;
+//! use palpate::sim::{Hand, SimulatedDevice};
 //! use palpate::prelude::*;
 //!
 //! # fn main() -> Result<(), Error> {
@@ -40,33 +41,35 @@
 //!
 //! On by default: `mesh-files` reads OBJ, STL, PLY and GLB; `grid-files` reads grids and volumes of scanners; `parallel`
 //! shares grids, batches and worlds among threads; `plot` draws; `render` renders; `scene` reads and writes scene files;
-//! `serde` implements serde's traits for plain data; `std-loop` runs servos on the machine's clock and in threads;
-//! `vibration` makes commands for motors and audio. Off by default: `local` has local searches from the
+//! `serde` implements serde's traits for plain data; `std-loop` runs servos on the machine's clock and in threads.
+//! Off by default: `local` has local searches from the
 //! literature, without bounds; `mint` and `glam` convert vectors and poses.
 
 mod error;
 #[cfg(feature = "scene")]
 pub mod hands;
 pub mod prelude;
+pub mod stability;
 
 pub use error::{Error, ErrorKind};
-pub use palpate_devices as devices;
+pub use palpate_device as device;
 pub use palpate_field as field;
 pub use palpate_grid as grid;
 pub use palpate_haptics as haptics;
+#[cfg(feature = "std-loop")]
+pub use palpate_haptics::servo_loop;
 #[cfg(feature = "local")]
 pub use palpate_local as local;
-#[cfg(feature = "std-loop")]
-pub use palpate_loop as servo_loop;
 pub use palpate_mesh as mesh;
 #[cfg(feature = "plot")]
 pub use palpate_plot as plot;
 pub use palpate_query as query;
 #[cfg(feature = "render")]
 pub use palpate_render as render;
+pub use palpate_safety as safety;
 #[cfg(feature = "scene")]
 pub use palpate_scene as scene;
-#[cfg(feature = "vibration")]
+pub use palpate_sim as sim;
 pub use palpate_vibration as vibration;
 
 /// The examples of README.md and of three pages of the guide, as tests.

@@ -7,8 +7,8 @@ use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
 use clap::{Args, Parser, ValueEnum};
-use palpate::devices::PROFILES;
-use palpate::haptics::{Acceptance, Recovery};
+use palpate::device::PROFILES;
+use palpate::safety::{Acceptance, Recovery};
 use palpate::scene::unknown_name;
 use palpate::vibration::{ACTUATORS, Actuator, actuator_named};
 

@@ -6,7 +6,7 @@
 use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
-use palpate::grid::{GridOptions as Options, Kernel, Resolution, Store};
+use palpate::grid::{GridKernel, GridOptions as Options, Resolution, Store};
 
 use super::numbers::{count, length};
 
@@ -86,8 +86,8 @@ impl GridOptions {
         };
         let mut options = Options::with_resolution(resolution)
             .with_kernel(match self.kernel {
-                KernelChoice::Quadratic => Kernel::Quadratic,
-                KernelChoice::Trilinear => Kernel::Trilinear,
+                KernelChoice::Quadratic => GridKernel::Quadratic,
+                KernelChoice::Trilinear => GridKernel::Trilinear,
             })
             .with_store(match self.store {
                 StoreChoice::F32 => Store::F32,

@@ -6,7 +6,7 @@
 use std::path::PathBuf;
 use std::str::FromStr;
 
-use palpate::devices::{DeviceProfile, PROFILES, profile_named};
+use palpate::device::{DeviceProfile, PROFILES, profile_named};
 use palpate::scene::{device_from_json, unknown_name};
 
 use crate::output::shown_lines;

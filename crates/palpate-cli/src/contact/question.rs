@@ -85,7 +85,8 @@ impl Question {
         let margin = asked.margin.unwrap_or(usual.margin);
         let spacing = asked.spacing.unwrap_or(usual.spacing);
         let precise = if margin > 0.0 { margin } else { usual.margin };
-        let tolerance = asked.tolerance.unwrap_or(0.5 * precise);
+        let tolerance = usual.with_margin(precise).usual_tolerance();
+        let tolerance = asked.tolerance.unwrap_or(tolerance);
         let manifold = usual.with_margin(margin).with_spacing(spacing);
         let limits = Limits::new(tolerance).with_budget(asked.budget.unwrap_or(Limits::BUDGET));
         Self { settings: WorldSettings::new(manifold, limits), empty: emptiness::warn(scene) }

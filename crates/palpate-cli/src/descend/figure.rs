@@ -8,7 +8,7 @@ use std::path::Path;
 
 use palpate::field::{Point, Shape};
 use palpate::plot::{
-    Dash, Figure, Isolines, Markers, PlotError, Polyline, Sampling, Slice, View,
+    Dash, Figure, Isolines, Markers, PlaneView, PlotError, Polyline, Sampling, Slice,
 };
 use palpate::query::Element;
 
@@ -40,7 +40,7 @@ where
             high[k] = high[k].max(corner[k]);
         }
     }
-    let view = View::from_bounds(low, high, MARGIN)?;
+    let view = PlaneView::from_bounds(low, high, MARGIN)?;
     let mut isolines = picture::isolines(shape, &plane, &view, Sampling::default())?;
     let outline = corners.into_iter().chain([corners[0]]);
     isolines = isolines.with_polyline(Polyline::new(name_of::<N>(), outline)?.faint());

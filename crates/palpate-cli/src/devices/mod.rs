@@ -9,7 +9,7 @@ mod stability;
 
 use std::io::Write;
 
-use palpate::devices::{DeviceProfile, GripperProfile, PROFILES, TurningProfile};
+use palpate::device::{DeviceProfile, GripperProfile, PROFILES, TurningProfile};
 use serde_json::{Map, Value, json};
 
 use crate::arguments::DevicesOptions;

@@ -5,9 +5,10 @@
 
 use std::io::Write;
 
-use palpate::devices::DeviceProfile;
+use palpate::device::DeviceProfile;
 use palpate::field::Shape;
-use palpate::haptics::{Accepted, Bodies, Body, Material, Protection, Surface};
+use palpate::haptics::{Bodies, Body, Material, Protection, Surface};
+use palpate::safety::Accepted;
 use serde_json::{Value, json};
 
 use super::with_forces;

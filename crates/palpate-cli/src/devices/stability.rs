@@ -6,9 +6,9 @@
 use std::io::Write;
 
 use indicatif::{ProgressBar, ProgressStyle};
-use palpate::devices::DeviceProfile;
-use palpate::devices::stability::{Plant, Press, Rest};
+use palpate::device::DeviceProfile;
 use palpate::haptics::Material;
+use palpate::stability::{Plant, Press, Rest};
 use rayon::prelude::*;
 use serde_json::{Value, json};
 

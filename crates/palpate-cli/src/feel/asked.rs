@@ -3,7 +3,9 @@
 
 //! The stiffness that materials ask for.
 
-use palpate::haptics::{Acceptance, DeviceProfile, Material};
+use palpate::device::DeviceProfile;
+use palpate::haptics::Material;
+use palpate::safety::{Acceptance, Accepted, DeviceLimits};
 
 use crate::numbers::rounded;
 
@@ -11,7 +13,8 @@ use crate::numbers::rounded;
 /// in N/m, or the device has no largest.
 pub(super) fn part(material: &Material, device: &DeviceProfile) -> Option<f64> {
     // Whether there is a largest depends on no rate.
-    let most = device.most_stiffness(Acceptance::Device, 1000.0);
+    let most =
+        Accepted::most_stiffness(&DeviceLimits::along(device), Acceptance::Device, 1000.0);
     let is_limited = device.max_force > 0.0 && most.is_ok_and(f64::is_finite);
     material.relative_stiffness.filter(|_| is_limited)
 }

@@ -3,11 +3,13 @@
 
 //! The device that the hand holds, and its workspace.
 
-use palpate::devices::HandPath;
-use palpate::devices::{Device, DeviceError, Glove, Hand, RecordedDevice, SimulatedDevice};
+use palpate::device::Device;
 use palpate::field::Vector;
-use palpate::haptics::{Tool, WorkspaceMap};
+use palpate::haptics::Tool;
+use palpate::safety::WorkspaceMap;
 use palpate::scene::BuiltScene;
+use palpate::sim::HandPath;
+use palpate::sim::{Glove, Hand, RecordedDevice, SimulatedDevice, SimulationError};
 use serde_json::{Value, json};
 
 use crate::arguments::DeviceChoice;
@@ -114,7 +116,7 @@ pub(super) fn device<const D: usize>(
     paths: &[HandPath<D>],
     turns: Option<&HandPath<3>>,
     map: &WorkspaceMap<D>,
-) -> Result<Box<dyn Device<D> + Send>, DeviceError> {
+) -> Result<Box<dyn Device<D> + Send>, SimulationError> {
     let paths = paths.iter().map(|path| path.mapped(|point| map.point_to_device(point)));
     let paths = paths.collect::<Result<Vec<_>, _>>()?;
     Ok(match choice {

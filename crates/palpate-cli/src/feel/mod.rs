@@ -21,11 +21,13 @@ mod vibration;
 use std::io::{self, IsTerminal};
 use std::time::Duration;
 
-use palpate::devices::HandPath;
 use palpate::hands::swing;
-use palpate::haptics::{HapticsError, Probe, Progress, SafetyError, Tool};
+use palpate::haptics::{HapticsError, Probe, Progress, Tool};
+use palpate::safety::SafetyError;
+use palpate::safety::SafetySettings;
 use palpate::scene::{AnyScene, BuiltScene, BuiltTool, ServoSettings};
 use palpate::servo_loop::{Ending, Pace, Recorder, RunOptions, RunReport, run as run_servo};
+use palpate::sim::HandPath;
 
 use crate::arguments::{DeviceChoice, FeelOptions, PageOptions, ProfileChoice, RecoveryChoice};
 use crate::emptiness;
@@ -94,11 +96,13 @@ where
     }
     let device = held::device(&choice, &paths, turns.as_ref(), &map);
     let mut device = device.map_err(Failure::input)?;
-    let mut settings = ServoSettings::default()
-        .with_rate(options.rate)
-        .with_strictness(options.strict)
-        .with_recovery(options.recovery.into());
-    settings.acceptance = options.acceptance.map(Into::into);
+    let safety = SafetySettings {
+        is_strict: options.strict,
+        recovery: options.recovery.into(),
+        ..SafetySettings::default()
+    };
+    let acceptance = options.acceptance.map(Into::into);
+    let settings = ServoSettings { rate: options.rate, acceptance, safety };
     let servo = scene.servo_with(device.as_ref(), settings);
     let mut servo = servo.map_err(|error| refused(error, scene))?;
     let accepted = servo.accepted().to_vec();

@@ -5,7 +5,7 @@
 //! where it ends and between.
 
 use palpate::field::Aabb;
-use palpate::plot::{Color, Dash, Isolines, PlotError, Polyline, Sampling, Slice, View};
+use palpate::plot::{Color, Dash, Isolines, PlaneView, PlotError, Polyline, Sampling, Slice};
 use palpate::scene::BuiltScene;
 
 use crate::picture::{self, Dimensions, Drawable};
@@ -32,7 +32,7 @@ pub(super) fn drawn_over<const D: usize>(
     isolines: Isolines,
     scene: &BuiltScene<D>,
     plane: &Slice,
-    view: &View,
+    view: &PlaneView,
     end: f64,
 ) -> Result<Isolines, PlotError>
 where
@@ -56,7 +56,7 @@ where
 fn outlines<const D: usize>(
     scene: &BuiltScene<D>,
     plane: &Slice,
-    view: &View,
+    view: &PlaneView,
     time: f64,
 ) -> Result<Vec<Vec<[f64; 2]>>, PlotError>
 where

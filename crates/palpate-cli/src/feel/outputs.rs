@@ -3,7 +3,7 @@
 
 //! The files that a run leaves: trace, vibration, picture.
 
-use palpate::haptics::DeviceProfile;
+use palpate::device::DeviceProfile;
 use palpate::scene::BuiltScene;
 use palpate::servo_loop::{Recorder, Sink, TraceRow, TraceWriter};
 use palpate::vibration::Actuator;

@@ -5,9 +5,9 @@
 
 use std::path::Path;
 
-use palpate::devices::HandPath;
 use palpate::hands::HandWay;
 use palpate::scene::BuiltScene;
+use palpate::sim::HandPath;
 
 use super::limits;
 use crate::arguments::FeelOptions;

@@ -7,10 +7,10 @@ use std::fmt::Write;
 use std::io::Write as _;
 use std::path::Path;
 
-use palpate::haptics::{
-    Acceptance, Accepted, Body, DeviceProfile, Progress, Rule, Servo, Surface, Texture,
-    TextureKind,
-};
+use palpate::device::DeviceProfile;
+use palpate::haptics::{Body, Progress, Servo, Surface, Texture, TextureKind};
+use palpate::safety::DeviceLimits;
+use palpate::safety::{Acceptance, Accepted, Rule};
 use palpate::scene::{BakedBody, BuiltScene};
 use palpate::servo_loop::RunReport;
 use serde_json::Value;
@@ -369,7 +369,11 @@ fn write_beyond(
     device: &DeviceProfile,
     rate: f64,
 ) -> std::fmt::Result {
-    let Ok(most) = device.most_stiffness(Acceptance::Device, rate) else { return Ok(()) };
+    let Ok(most) =
+        Accepted::most_stiffness(&DeviceLimits::along(device), Acceptance::Device, rate)
+    else {
+        return Ok(());
+    };
     let stiffest = accepted.iter().map(|a| a.device_stiffness).fold(0.0, f64::max);
     // What rounding adds to the most is no more.
     if stiffest <= most * (1.0 + 1e-12) {

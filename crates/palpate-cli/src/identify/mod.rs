@@ -8,12 +8,13 @@ mod report;
 use std::io::{self, IsTerminal};
 use std::time::{Duration, Instant};
 
-use palpate::devices::{
-    DeviceError, DeviceProfile, Hand, Identified, IdentifyError, IdentifyOptions as Motions,
-    IdentifyProgress, SimulatedDevice, identify,
-};
+use palpate::device::DeviceProfile;
 use palpate::field::Vector;
 use palpate::scene::device_to_json;
+use palpate::sim::{
+    Hand, Identified, IdentifyError, IdentifyOptions as Motions, IdentifyProgress,
+    SimulatedDevice, SimulationError, identify,
+};
 
 use crate::arguments::IdentifyOptions;
 use crate::interrupt::Interrupt;
@@ -70,7 +71,7 @@ pub(crate) fn run(
     let printed = report.print();
     // The numbers are told even if the file cannot be written.
     written.and(printed)?;
-    let is_seen = found.axes.iter().all(palpate::devices::IdentifiedAxis::is_seen);
+    let is_seen = found.axes.iter().all(palpate::sim::IdentifiedAxis::is_seen);
     Ok(if is_seen { Outcome::Yes } else { Outcome::No })
 }
 
@@ -116,7 +117,7 @@ fn plant(options: &IdentifyOptions) -> DeviceProfile {
 fn simulated(
     plant: &DeviceProfile,
     grip: Option<f64>,
-) -> Result<SimulatedDevice<3>, DeviceError> {
+) -> Result<SimulatedDevice<3>, SimulationError> {
     let hand = Hand::free(Vector::ZERO)?;
     let hand = match grip {
         Some(stiffness) => hand.with_mass(HAND.0)?.with_spring(stiffness, HAND.1)?,

@@ -5,9 +5,8 @@
 
 use std::io::{self, Write};
 
-use palpate::devices::{
-    DeviceAxis, DeviceProfile, EncoderStep, Estimate, Identified, IdentifiedAxis,
-};
+use palpate::device::DeviceProfile;
+use palpate::sim::{DeviceAxis, EncoderStep, Estimate, Identified, IdentifiedAxis};
 use serde_json::{Value, json};
 
 use crate::arguments::IdentifyOptions;

@@ -9,7 +9,8 @@ use std::fmt::Write as _;
 use std::io::Write as _;
 use std::time::Duration;
 
-use palpate::haptics::{HapticsError, NumberError};
+use palpate::device::NumberError;
+use palpate::haptics::HapticsError;
 use palpate::servo_loop::{Lateness, Priority, WallClock, raise_priority};
 use serde_json::{Value, json};
 

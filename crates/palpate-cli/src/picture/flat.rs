@@ -6,7 +6,8 @@
 use palpate::field::scalar::Model;
 use palpate::field::{BLOCK, Block, Column, Gradients, Rotation, Shape, Vector};
 use palpate::plot::{
-    Body, BoundedField, Cell, Isolines, Outline, PlotError, Sampling, Slice, Slope, View,
+    BoundedField, Cell, DrawnBody, Isolines, PlaneView, PlotError, SampledSlope, Sampling,
+    Slice, SurfaceLines,
 };
 use palpate::scene::{BuiltBody, BuiltScene};
 
@@ -16,7 +17,7 @@ use super::{Dimensions, Drawable};
 pub(crate) fn isolines<const D: usize>(
     shape: &Shape<D>,
     plane: &Slice,
-    view: &View,
+    view: &PlaneView,
     sampling: Sampling,
 ) -> Result<Isolines, PlotError>
 where
@@ -46,7 +47,7 @@ where
 pub(crate) fn slopes<const D: usize>(
     shape: &Shape<D>,
     plane: &Slice,
-) -> impl FnMut(&[[f64; 2]], &mut [Slope])
+) -> impl FnMut(&[[f64; 2]], &mut [SampledSlope])
 where
     Dimensions: Drawable<D>,
 {
@@ -60,7 +61,7 @@ where
             shape.block_gradients(&block, points.len(), &mut found);
             for (i, slope) in slopes.iter_mut().enumerate() {
                 let gradient = Dimensions::gradient(plane, found.gradient.get(i));
-                *slope = Slope { value: found.distance.get(i), gradient };
+                *slope = SampledSlope { value: found.distance.get(i), gradient };
             }
         }
     }
@@ -70,9 +71,9 @@ where
 pub(crate) fn outline<const D: usize>(
     shape: &Shape<D>,
     plane: &Slice,
-    view: &View,
+    view: &PlaneView,
     sampling: Sampling,
-) -> Result<Outline, PlotError>
+) -> Result<SurfaceLines, PlotError>
 where
     Dimensions: Drawable<D>,
 {
@@ -87,14 +88,14 @@ where
         cells: Block::zero(),
         models: Column::zero(),
     };
-    Outline::follow(view, sampling, flat)
+    SurfaceLines::follow(view, sampling, flat)
 }
 
 /// The isolines of a scene on `plane`, with its bodies.
 pub(crate) fn scene<const D: usize>(
     scene: &BuiltScene<D>,
     plane: &Slice,
-    view: &View,
+    view: &PlaneView,
 ) -> Result<Isolines, PlotError>
 where
     Dimensions: Drawable<D>,
@@ -107,7 +108,7 @@ where
 pub(crate) fn noted<const D: usize>(
     scene: &BuiltScene<D>,
     plane: &Slice,
-    view: &View,
+    view: &PlaneView,
     note: impl Fn(usize) -> String,
 ) -> Result<Isolines, PlotError>
 where
@@ -116,7 +117,7 @@ where
     let sampling = Sampling::default();
     let body = |(number, body): (usize, &BuiltBody<D>)| {
         let outline = outline(&body.shape, plane, view, sampling)?;
-        Ok(Body::new(&body.name, outline).with_note(note(number)))
+        Ok(DrawnBody::new(&body.name, outline).with_note(note(number)))
     };
     let bodies = scene.bodies.iter().enumerate().map(body).collect::<Result<Vec<_>, _>>()?;
     let isolines = Isolines::sample(plane, view, sampling, values(&scene.whole, plane))?;
@@ -139,14 +140,14 @@ struct Flat<'a, V, S, const D: usize> {
 impl<V, S, const D: usize> BoundedField for Flat<'_, V, S, D>
 where
     V: FnMut(&[[f64; 2]], &mut [f64]),
-    S: FnMut(&[[f64; 2]], &mut [Slope]),
+    S: FnMut(&[[f64; 2]], &mut [SampledSlope]),
     Dimensions: Drawable<D>,
 {
     fn values(&mut self, points: &[[f64; 2]], values: &mut [f64]) {
         (self.values)(points, values);
     }
 
-    fn slopes(&mut self, points: &[[f64; 2]], slopes: &mut [Slope]) {
+    fn slopes(&mut self, points: &[[f64; 2]], slopes: &mut [SampledSlope]) {
         (self.slopes)(points, slopes);
     }
 

@@ -6,7 +6,7 @@
 use std::collections::HashMap;
 
 use palpate::field::{Aabb, Rotation, Shape, Vector};
-use palpate::plot::{Outline, Sampling, Slice, View};
+use palpate::plot::{PlaneView, Sampling, Slice, SurfaceLines};
 use palpate::query::BallWorkspace;
 use palpate_testkit::cases::on_trees;
 
@@ -21,8 +21,8 @@ const PIXEL: f64 = 2.0;
 
 /// A window of a shape, with its surface.
 struct Drawn {
-    view: View,
-    outline: Outline,
+    view: PlaneView,
+    outline: SurfaceLines,
     /// Of a finest cell [m].
     edge: f64,
 }

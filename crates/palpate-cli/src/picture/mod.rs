@@ -11,7 +11,7 @@ mod truth;
 use std::path::Path;
 
 use palpate::field::{Aabb, Pose, Rotation, Shape, Vector};
-use palpate::plot::{Figure, Isolines, PlotError, Sampling, Slice, View};
+use palpate::plot::{Figure, Isolines, PlaneView, PlotError, Sampling, Slice};
 use palpate::scene::{AnyScene, BuiltScene};
 
 use crate::arguments::{Format, Map};
@@ -41,7 +41,7 @@ pub(crate) const WIDTH: u32 = 1200;
 pub(crate) trait Drawable<const D: usize> {
     /// The window that shows `bounds` on `plane`, with a margin of `margin` times its longer
     /// side.
-    fn view(plane: &Slice, bounds: &Aabb<D>, margin: f64) -> Result<View, PlotError>;
+    fn view(plane: &Slice, bounds: &Aabb<D>, margin: f64) -> Result<PlaneView, PlotError>;
 
     /// The point of space at plane coordinates.
     fn point(plane: &Slice, st: [f64; 2]) -> Vector<f64, D>;
@@ -65,8 +65,8 @@ pub(crate) trait Drawable<const D: usize> {
 pub(crate) struct Dimensions;
 
 impl Drawable<2> for Dimensions {
-    fn view(_: &Slice, bounds: &Aabb<2>, margin: f64) -> Result<View, PlotError> {
-        View::from_bounds(bounds.min.0, bounds.max.0, margin)
+    fn view(_: &Slice, bounds: &Aabb<2>, margin: f64) -> Result<PlaneView, PlotError> {
+        PlaneView::from_bounds(bounds.min.0, bounds.max.0, margin)
     }
 
     fn point(_: &Slice, st: [f64; 2]) -> Vector<f64, 2> {
@@ -92,8 +92,8 @@ impl Drawable<2> for Dimensions {
 }
 
 impl Drawable<3> for Dimensions {
-    fn view(plane: &Slice, bounds: &Aabb<3>, margin: f64) -> Result<View, PlotError> {
-        View::of_box(plane, bounds.min.0, bounds.max.0, margin)
+    fn view(plane: &Slice, bounds: &Aabb<3>, margin: f64) -> Result<PlaneView, PlotError> {
+        PlaneView::of_box(plane, bounds.min.0, bounds.max.0, margin)
     }
 
     fn point(plane: &Slice, st: [f64; 2]) -> Vector<f64, 3> {

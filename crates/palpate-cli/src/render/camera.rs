@@ -6,9 +6,9 @@
 use std::f64::consts::TAU;
 
 use palpate::field::{Aabb, Point, Rotation, Vector};
-use palpate::plot::View as Window;
+use palpate::plot::PlaneView as Window;
 use palpate::render::{Camera, Lens, Sight, Subject};
-use palpate::scene::View;
+use palpate::scene::WrittenView;
 
 use crate::arguments::RenderOptions;
 use crate::input;
@@ -54,7 +54,7 @@ pub(super) fn of(
 pub(super) fn of_view(
     options: &RenderOptions,
     subject: &Subject,
-    view: &View,
+    view: &WrittenView,
     legend: f64,
 ) -> Result<Camera, Failure> {
     let plane = views::plane(view)?;

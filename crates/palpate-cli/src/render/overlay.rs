@@ -3,8 +3,8 @@
 
 //! What is drawn over a picture: the names of bodies, and contacts.
 
-use palpate::plot::{Color, Layer};
-use palpate::render::{Body, Camera, Color as BodyColor, Settings};
+use palpate::plot::{Color, PixelLayer};
+use palpate::render::{Camera, LitBody, Settings, SrgbColor as BodyColor};
 
 use super::stage::Stage;
 use crate::outcome::Failure;
@@ -16,8 +16,8 @@ const MOST_NAMES: usize = 12;
 const NORMAL: f64 = 0.06;
 
 /// The legend of a picture: the names of bodies.
-pub(super) fn legend(settings: &Settings, names: &[String], bodies: &[Body]) -> Layer {
-    let mut layer = Layer::new(settings.width, settings.height);
+pub(super) fn legend(settings: &Settings, names: &[String], bodies: &[LitBody]) -> PixelLayer {
+    let mut layer = PixelLayer::new(settings.width, settings.height);
     for (name, body) in names.iter().zip(bodies).take(MOST_NAMES) {
         let BodyColor([red, green, blue]) = body.color;
         layer = layer.with_entry(Color::rgb(red, green, blue), name);
@@ -41,7 +41,7 @@ impl Stage<'_> {
     }
 
     /// Contacts of bodies that touch, with their normals.
-    fn with_contacts(&self, layer: Layer, camera: &Camera) -> Result<Layer, Failure> {
+    fn with_contacts(&self, layer: PixelLayer, camera: &Camera) -> Result<PixelLayer, Failure> {
         let Some(touched) = &self.touched else { return Ok(layer) };
         let size = [self.settings.width, self.settings.height];
         let length = NORMAL * f64::from(self.settings.height) * camera.pixel(size[1]);

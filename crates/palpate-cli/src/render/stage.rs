@@ -4,8 +4,8 @@
 //! From the command line to what is rendered: bodies, camera, settings.
 
 use palpate::field::Vector;
-use palpate::render::{Body, Camera, Color, Cut, Settings, Shadows, Subject};
-use palpate::scene::{BuiltBody, BuiltScene, View};
+use palpate::render::{Camera, Cut, LitBody, Settings, Shadows, SrgbColor, Subject};
+use palpate::scene::{BuiltBody, BuiltScene, WrittenView};
 
 use super::{camera, overlay};
 use crate::arguments::{RenderOptions, ShadowChoice};
@@ -31,9 +31,9 @@ impl<'a> Stage<'a> {
     ) -> Result<Self, Failure> {
         let scene = &views::at(scene, options.time)?;
         let view = options.view.as_deref().map(|name| views::named(scene, name)).transpose()?;
-        let body = |(i, body): (usize, &BuiltBody<3>)| Body {
+        let body = |(i, body): (usize, &BuiltBody<3>)| LitBody {
             shape: body.shape.clone(),
-            color: Color::of_body(i),
+            color: SrgbColor::of_body(i),
         };
         let bodies = scene.bodies.iter().enumerate().map(body).collect();
         let subject = Subject::new(bodies).map_err(Failure::input)?;
@@ -58,7 +58,7 @@ impl<'a> Stage<'a> {
     }
 
     /// The plane of `--slice`, with what lies on the camera's side cut away.
-    fn cut(&self, view: Option<&View>) -> Result<Option<Cut>, Failure> {
+    fn cut(&self, view: Option<&WrittenView>) -> Result<Option<Cut>, Failure> {
         let Some(text) = &self.options.slice else { return Ok(None) };
         let plane = match (text.as_str(), view, self.options.slice_at) {
             ("view", Some(view), None) => views::plane(view)?,

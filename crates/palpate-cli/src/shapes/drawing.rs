@@ -7,7 +7,7 @@ use palpate::field::catalogue::Entry;
 use palpate::field::kernel::{Argument, Mark, MarkKind, Parameter};
 use palpate::field::{Aabb, Shape, Vector};
 use palpate::plot::{
-    Color, DimensionLine, Figure, Isolines, Markers, PlotError, Sampling, Slice, View,
+    Color, DimensionLine, Figure, Isolines, Markers, PlaneView, PlotError, Sampling, Slice,
 };
 
 use super::planes::{self, Named};
@@ -146,7 +146,7 @@ struct Line<'a, const D: usize> {
 struct Sheet<'a, const D: usize> {
     slice: &'a Slice,
     /// What is around the primitive.
-    window: View,
+    window: PlaneView,
     /// From the primitive to a line beside it [m].
     step: f64,
     lines: Vec<Line<'a, D>>,
@@ -186,7 +186,7 @@ impl<'a, const D: usize> Sheet<'a, D> {
     }
 
     /// The window of the primitive and its lines, with `room` around them [m].
-    fn view(&self, positions: &[&Mark<D>], room: f64) -> Result<View, PlotError> {
+    fn view(&self, positions: &[&Mark<D>], room: f64) -> Result<PlaneView, PlotError> {
         let lines = self.lines.iter().flat_map(|line| line.points.iter().copied());
         let positions = positions.iter().flat_map(|mark| &mark.points);
         let positions = positions.map(|point| self.slice.project(point.in_space().0));
@@ -197,7 +197,7 @@ impl<'a, const D: usize> Sheet<'a, D> {
                 max[k] = max[k].max(point[k]);
             }
         }
-        View::from_bounds(min.map(|x| x - room), max.map(|x| x + room), 0.0)
+        PlaneView::from_bounds(min.map(|x| x - room), max.map(|x| x + room), 0.0)
     }
 }
 

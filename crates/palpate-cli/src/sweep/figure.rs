@@ -6,8 +6,8 @@
 
 use palpate::field::{Aabb, Point, Vector};
 use palpate::plot::{
-    Arrow, Arrows, Chart, Dash, Figure, Isolines, Markers, PlotError, Polyline, Quantity,
-    Sampling, Series, Slice, View,
+    Arrow, Arrows, Chart, ChartQuantity, Dash, Figure, Isolines, Markers, PlaneView, PlotError,
+    Polyline, Sampling, Series, Slice,
 };
 use palpate::query::{Limits, PairWorkspace, Placed, SweepProof, SweepWorkspace, sweep_proof};
 use palpate::scene::BuiltScene;
@@ -221,7 +221,7 @@ where
         &self,
         isolines: Isolines,
         plane: &Slice,
-        view: &View,
+        view: &PlaneView,
         body: usize,
     ) -> Result<Isolines, PlotError> {
         let BuiltScene { bodies, .. } = self.scene;
@@ -276,7 +276,7 @@ where
         };
         let are_open = lower.iter().zip(&upper).any(is_open);
         let mut chart =
-            Chart::new(Quantity::new("time", "s"), Quantity::new("separation", "m"));
+            Chart::new(ChartQuantity::new("time", "s"), ChartQuantity::new("separation", "m"));
         let name = if are_open { "separation at most" } else { "separation" };
         chart = chart.with_series(Series::new(name, upper).map_err(Failure::input)?);
         if are_open {

@@ -164,7 +164,7 @@ fn options_without_effect_are_refused() {
 #[test]
 fn a_device_without_forces_has_no_table_of_materials_either() {
     let folder = Folder::new();
-    let profile = palpate::devices::profile_named("omega").unwrap();
+    let profile = palpate::device::profile_named("omega").unwrap();
     let profile = profile.with_max_force(0.0).with_continuous_force(0.0);
     let profile = palpate::scene::device_to_json(&profile).unwrap();
     let profile = folder.write("weak.json", &profile);

@@ -82,7 +82,7 @@ fn runs() -> (Names, Names) {
         .write("flat.json", &flat.replace(", 0] }", "] }").replace(", 0.1, 0]", ", 0.1]"));
     let rows = "time_s,x_m,y_m,z_m\n0,0,0.049,0\n0.1,0,0.06,0\n0.2,0,0.3,0\n";
     let hand = folder.write("hand.csv", rows);
-    let omega = palpate::devices::profile_named("omega").unwrap();
+    let omega = palpate::device::profile_named("omega").unwrap();
     let omega = folder.write("omega.json", &palpate::scene::device_to_json(&omega).unwrap());
     let omega = format!("simulated:{omega}");
     let [trace, wav] = ["trace.csv", "touch.wav"].map(|name| folder.name(name));
@@ -113,8 +113,8 @@ fn the_keys_and_columns_of_feel_are_documented() {
 #[test]
 fn the_keys_of_devices_identify_and_jitter_are_documented() {
     let folder = Folder::new();
-    let profile = palpate::devices::profile_named("omega7").unwrap();
-    let gripper = palpate::devices::GripperProfile::new(0.025, 8.0).with_max_force_rate(2000.0);
+    let profile = palpate::device::profile_named("omega7").unwrap();
+    let gripper = palpate::device::GripperProfile::new(0.025, 8.0).with_max_force_rate(2000.0);
     let profile = profile.with_gripper(gripper).with_buttons(["front"]);
     let profile = palpate::scene::device_to_json(&profile).unwrap();
     let profile = folder.write("omega.json", &profile);

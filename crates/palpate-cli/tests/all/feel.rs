@@ -184,7 +184,7 @@ fn the_scale_that_the_program_chose_is_told() {
     let omega = [&feel[..], &["--device", "simulated:omega"]].concat();
     let scale = json(&[&omega[..], &["--json"]].concat())["workspace_scale"].as_f64().unwrap();
     // Half the diagonal of the ball's box over the radius of the workspace.
-    let radius = palpate::devices::profile_named("omega").unwrap().workspace_radius;
+    let radius = palpate::device::profile_named("omega").unwrap().workspace_radius;
     assert!((scale - 0.75_f64.sqrt() / radius).abs() < 1e-12, "{scale}");
     let said = "  workspace      11.55 m of the scene for each metre of the device\n";
     assert!(text(&palpate(&omega)).contains(said), "{}", text(&palpate(&omega)));

@@ -13,7 +13,7 @@ const BALL: &str = r#"{ "palpate": 1, "dimension": 3,
 fn devices_lists_limits_with_units_sources_and_what_is_assumed() {
     let all = json(&["devices", "--json"]);
     let all = all.as_array().unwrap();
-    assert_eq!(all.len(), palpate::devices::PROFILES.len());
+    assert_eq!(all.len(), palpate::device::PROFILES.len());
     let omega = all.iter().find(|device| device["name"] == "omega").unwrap();
     let force = serde_json::json!({ "value": 12.0, "unit": "N", "assumed": false });
     assert_eq!(omega["max_force"], force);

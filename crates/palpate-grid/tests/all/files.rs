@@ -3,14 +3,14 @@
 
 //! Grids as files: what was saved is read, and what is damaged is refused.
 use palpate_field::{CustomField, Shape, Vector};
-use palpate_grid::{Grid, GridFileProblem, GridOptions, Kernel, Store};
+use palpate_grid::{Grid, GridFileProblem, GridKernel, GridOptions, Store};
 use palpate_testkit::arbitrary::within;
 use palpate_testkit::cases;
 
 fn grids() -> Vec<Grid<3>> {
     let shape = Shape::torus(0.3, 0.1).unwrap();
     let mut grids = Vec::new();
-    for kernel in [Kernel::Quadratic, Kernel::Trilinear] {
+    for kernel in [GridKernel::Quadratic, GridKernel::Trilinear] {
         for store in [Store::F32, Store::I16, Store::I8] {
             for band in [None, Some(5.0)] {
                 let mut options =

@@ -8,15 +8,15 @@ use std::ops::ControlFlow;
 use palpate_field::operator::Profile;
 use palpate_field::scalar::Model;
 use palpate_field::{Aabb, CustomField, Point, Rotation, Shape, Vector};
-use palpate_grid::{Grid, GridError, GridOptions, Kernel, Lattice, Store};
+use palpate_grid::{Grid, GridError, GridKernel, GridOptions, Lattice, Store};
 use palpate_testkit::arbitrary::{coordinate, direction, within};
 use palpate_testkit::cases;
 use palpate_testkit::laws::bits_agree;
 
-const KERNELS: [Kernel; 2] = [Kernel::Quadratic, Kernel::Trilinear];
+const KERNELS: [GridKernel; 2] = [GridKernel::Quadratic, GridKernel::Trilinear];
 const STORES: [Store; 3] = [Store::F32, Store::I16, Store::I8];
 
-fn options(cell: f64, kernel: Kernel) -> GridOptions {
+fn options(cell: f64, kernel: GridKernel) -> GridOptions {
     GridOptions::with_cell(cell).with_kernel(kernel)
 }
 
@@ -79,10 +79,10 @@ fn blocks_have_the_bits_of_points() {
 fn a_grid_is_no_steeper_than_it_promises_and_deviates_no_more() {
     for (name, shape) in solids() {
         for (kernel, store, band) in [
-            (Kernel::Quadratic, Store::F32, None),
-            (Kernel::Quadratic, Store::I16, Some(5.0)),
-            (Kernel::Trilinear, Store::F32, Some(5.0)),
-            (Kernel::Trilinear, Store::I8, None),
+            (GridKernel::Quadratic, Store::F32, None),
+            (GridKernel::Quadratic, Store::I16, Some(5.0)),
+            (GridKernel::Trilinear, Store::F32, Some(5.0)),
+            (GridKernel::Trilinear, Store::I8, None),
         ] {
             let mut options = options(0.03, kernel).with_store(store);
             options.band = band;
@@ -223,7 +223,7 @@ fn gradients_are_those_of_the_values() {
                 let change =
                     (grid.distance(p + d * step) - grid.distance(p - d * step)) / (2.0 * step);
                 // The slope of linear pieces steps at the sides of cells.
-                let room = if kernel == Kernel::Quadratic { 1e-5 } else { 2.0 };
+                let room = if kernel == GridKernel::Quadratic { 1e-5 } else { 2.0 };
                 assert!((change - gradient.dot(d)).abs() <= room, "{change} at {p:?}");
                 Ok(Ok(()))
             });
@@ -245,7 +245,7 @@ fn the_tip_of_a_cone_deviates_by_half_the_diagonal_of_a_cell() {
         let half_diagonal = 0.75_f64.sqrt() * cell;
         // A quadratic takes farther samples too: Σw|x| is less than √Σw|x|².
         assert!(apart <= half_diagonal * (1.0 + 1e-6), "{apart}");
-        if kernel == Kernel::Trilinear {
+        if kernel == GridKernel::Trilinear {
             assert!((apart - half_diagonal).abs() < 1e-6, "{apart} of {half_diagonal}");
         } else {
             assert!(apart > 0.97 * half_diagonal, "{apart} of {half_diagonal}");
@@ -274,10 +274,10 @@ fn a_peak_is_as_steep_as_the_diagonal() {
     let peak = lattice.node([4; 3]);
     let samples = samples(&lattice, |p| (p - peak).norm() - 0.3);
     let trilinear =
-        Grid::from_samples(lattice, &samples, Kernel::Trilinear, Store::F32).unwrap();
+        Grid::from_samples(lattice, &samples, GridKernel::Trilinear, Store::F32).unwrap();
     assert!((trilinear.promise().lipschitz - 3.0_f64.sqrt()).abs() < 1e-6);
     let quadratic =
-        Grid::from_samples(lattice, &samples, Kernel::Quadratic, Store::F32).unwrap();
+        Grid::from_samples(lattice, &samples, GridKernel::Quadratic, Store::F32).unwrap();
     assert!(quadratic.promise().lipschitz < 1.1, "{}", quadratic.promise().lipschitz);
 }
 
@@ -286,7 +286,8 @@ fn a_peak_is_as_steep_as_the_diagonal() {
 fn a_ball_is_smaller_by_the_curvature_of_a_cell() {
     let (radius, cell) = (0.5, 0.02);
     let grid =
-        Grid::bake(&Shape::sphere(radius).unwrap(), &options(cell, Kernel::Quadratic)).unwrap();
+        Grid::bake(&Shape::sphere(radius).unwrap(), &options(cell, GridKernel::Quadratic))
+            .unwrap();
     let theory = cell * cell / (4.0 * radius);
     cases::check(200, |u| {
         let p = direction::<3>(u)? * radius;
@@ -448,7 +449,7 @@ fn what_cannot_be_a_grid_is_refused() {
     let lattice = Lattice { origin: Vector([-0.5; 3]), cell: 0.1, counts: [11; 3] };
     let inside = vec![-1.0; 11 * 11 * 11];
     assert!(matches!(
-        Grid::from_samples(lattice, &inside, Kernel::Quadratic, Store::F32).unwrap_err(),
+        Grid::from_samples(lattice, &inside, GridKernel::Quadratic, Store::F32).unwrap_err(),
         GridError::AtBorder { .. }
     ));
     let mut grid = Grid::bake(&ball, &GridOptions::with_cell(0.05)).unwrap();

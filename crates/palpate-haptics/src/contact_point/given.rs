@@ -9,8 +9,9 @@ use palpate_field::Vector;
 
 use super::{ContactPoint, Setting, Touch};
 use crate::nearby::Nearby;
-use palpate_safety::internal::{limited, shortening};
-use palpate_safety::{Arrival, Change, PointState, PortState};
+use palpate_device::PointState;
+use palpate_device::{limited, shortening};
+use palpate_safety::{Arrival, Change, PortState};
 
 /// The force in free space, of guides and magnets.
 #[derive(Clone, Copy)]

@@ -5,8 +5,8 @@
 
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
+use palpate_device::NumberError;
 use palpate_field::{Point, Vector};
-use palpate_safety::NumberError;
 
 use super::finite;
 use super::target::Closest;

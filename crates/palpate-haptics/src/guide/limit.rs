@@ -7,7 +7,7 @@
 
 use palpate_field::Vector;
 
-use palpate_safety::internal::limited;
+use palpate_device::limited;
 
 /// The two parts of a force [N].
 #[derive(Clone, Copy, Debug)]

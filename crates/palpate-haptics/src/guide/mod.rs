@@ -21,7 +21,8 @@ use palpate_field::{Point, Vector};
 use crate::error::HapticsError;
 pub use curve::Curve;
 use limit::{Motion, damped};
-use palpate_safety::{Impedance, NumberError};
+use palpate_device::NumberError;
+use palpate_safety::Impedance;
 pub use slope::Slope;
 use target::Target;
 

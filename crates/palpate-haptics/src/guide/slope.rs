@@ -9,7 +9,7 @@ use palpate_field::{Point, Shape, Vector};
 
 use super::limit::Motion;
 use crate::error::HapticsError;
-use palpate_safety::NumberError;
+use palpate_device::NumberError;
 
 /// A force down the gradient of a field, within a band of its values.
 ///

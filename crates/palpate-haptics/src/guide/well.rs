@@ -9,7 +9,7 @@ use palpate_field::{Point, Vector};
 
 use super::{GuideOptions, finite};
 use crate::error::HapticsError;
-use palpate_safety::NumberError;
+use palpate_device::NumberError;
 
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Well<const D: usize> {

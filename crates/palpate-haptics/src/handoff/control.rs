@@ -5,10 +5,10 @@
 
 use std::fmt;
 use std::sync::Arc;
+use std::sync::atomic::Ordering;
 
 use palpate_field::Pose;
 
-use super::exchange::{Flag, Reader, Sender};
 use super::stop_switch::StopSwitch;
 use super::{Edits, Flags};
 use crate::accepted_bodies::AcceptedBodies;
@@ -19,16 +19,17 @@ use crate::guide::Guide;
 use crate::live::Snapshot;
 use crate::protection::Protection;
 use crate::tool::Coupling;
-use palpate_safety::{Accepted, NumberError};
+use palpate_device::{EditSender, LatestReader, NumberError};
+use palpate_safety::Accepted;
 
 /// The end of a hand-off for an ordinary thread: edits what a running servo renders, and reads
-/// its state. Made by [`handoff`](crate::handoff) or a `ServoThread` of `palpate-loop`.
+/// its state. Made by [`handoff`](crate::handoff) or a [`ServoThread`](crate::servo_loop::ServoThread).
 ///
 /// Edits that the servo has not received yet are merged: before its next tick the servo
 /// receives all of them or none. Replaced bodies are dropped on this thread, by the next call.
 pub struct Control<const D: usize> {
-    pub(super) sender: Sender<Edits<D>>,
-    pub(super) reader: Reader<Snapshot<D>>,
+    pub(super) sender: EditSender<Edits<D>>,
+    pub(super) reader: LatestReader<Snapshot<D>>,
     pub(super) events: rtrb::Consumer<Event>,
     pub(super) flags: Arc<Flags>,
     pub(super) stop: StopSwitch,
@@ -38,7 +39,7 @@ pub struct Control<const D: usize> {
     /// The number of contact points.
     pub(super) points: usize,
     /// The protection of a [`Servo`](crate::Servo) and its rate [Hz]; `None` for an
-    /// [`UnprotectedServo`](crate::UnprotectedServo).
+    /// [unprotected](crate::Unprotected) servo.
     pub(super) protection: Option<(Arc<Protection<D>>, f64)>,
     /// The requested virtual coupling of the tool; `None` for contact points.
     pub(super) requested_coupling: Option<Coupling>,
@@ -52,7 +53,7 @@ impl<const D: usize> Control<D> {
     /// For a [`Servo`](crate::Servo), the bodies and the tool's coupling are scaled to what its
     /// device can render; the result is returned as in
     /// [`Servo::accepted`](crate::Servo::accepted). For an
-    /// [`UnprotectedServo`](crate::UnprotectedServo) the bodies stay unchanged and the list is
+    /// [unprotected](crate::Unprotected) servo the bodies stay unchanged and the list is
     /// empty.
     ///
     /// # Errors
@@ -153,7 +154,7 @@ impl<const D: usize> Control<D> {
     /// Replaces the guides of every contact point from the next tick on. For a
     /// [`Servo`](crate::Servo), they are as soft as its device requires; the result is returned as in
     /// [`Servo::accepted_guides`](crate::Servo::accepted_guides). For an
-    /// [`UnprotectedServo`](crate::UnprotectedServo) they stay unchanged and the list is empty.
+    /// [unprotected](crate::Unprotected) servo they stay unchanged and the list is empty.
     ///
     /// # Errors
     ///
@@ -207,13 +208,13 @@ impl<const D: usize> Control<D> {
 
     /// Asks the loop to end before its next tick, with zero force.
     pub fn end(&self) {
-        self.flags.end.set(true);
+        self.flags.end.store(true, Ordering::Release);
     }
 
     /// Whether the loop has ended.
     #[must_use]
     pub fn has_ended(&self) -> bool {
-        self.flags.ended.is_set()
+        self.flags.ended.load(Ordering::Acquire)
     }
 
     fn edit(&mut self, edit: impl FnOnce(&mut Edits<D>)) {

@@ -4,28 +4,23 @@
 //! The hand-off between an ordinary thread and the servo, which never makes the servo wait.
 
 mod control;
-mod exchange;
-mod latest;
-#[cfg(test)]
-mod model;
 mod servo_end;
 mod stop_switch;
 
 use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
 
+use palpate_device::{edit_channel, latest_value};
 use palpate_field::Pose;
 
 pub use control::Control;
-pub use latest::{LatestReader, LatestWriter, latest_value};
 pub use servo_end::ServoEnd;
 pub use stop_switch::StopSwitch;
-
-use exchange::{Medium, Native, edit_channel, latest};
 
 use crate::accepted_bodies::AcceptedBodies;
 use crate::guide::Guide;
 use crate::live::{Progress, Snapshot};
-use crate::servo::{AnyServo, Key};
+use crate::servo::{Kind, Servo};
 
 /// Capacities of a hand-off, allocated when it is made; the servo allocates nothing later.
 ///
@@ -66,10 +61,10 @@ impl HandoffOptions {
 }
 
 /// The two ends of a hand-off: the first for an ordinary thread, the second for the thread of
-/// `servo`, a [`Servo`](crate::Servo) or an [`UnprotectedServo`](crate::UnprotectedServo). The
+/// `servo`. The
 /// capacity for bodies is at least the number of bodies that the servo has.
 ///
-/// The `ServoThread` of `palpate-loop` makes its own hand-off. A custom loop, for example the
+/// A [`ServoThread`](crate::servo_loop::ServoThread) makes its own hand-off. A custom loop, for example the
 /// callback of a device driver, first [checks the device](crate::Servo::check_device);
 /// [receives](ServoEnd::receive) before each [step](crate::Servo::step) and
 /// [publishes](ServoEnd::publish) after it; and writes zero force and zero torque last, however it
@@ -79,13 +74,12 @@ impl HandoffOptions {
 ///
 /// ```
 /// use palpate_field::{Pose, Shape, Vector, kernel::Ball};
-/// use palpate_haptics::{
-///     HandoffOptions, PointState, Progress, ServoOptions, UnprotectedServo, handoff,
-/// };
+/// use palpate_device::PointState;
+/// use palpate_haptics::{HandoffOptions, Progress, ServoOptions, Servo, handoff};
 ///
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
 /// let ball = Shape::from_kernel(Ball::new(0.5)?);
-/// let mut servo = UnprotectedServo::new(ball, 1, ServoOptions::default())?;
+/// let mut servo = Servo::new(ball, 1, ServoOptions::default())?;
 /// let (mut control, mut end) = handoff(&servo, HandoffOptions::default());
 ///
 /// control.set_poses(&[(0, Pose::translation(Vector([0.0, -1.0])))])?;
@@ -103,7 +97,7 @@ impl HandoffOptions {
 /// ```
 #[must_use]
 pub fn handoff<const D: usize>(
-    servo: &impl AnyServo<D>,
+    servo: &Servo<D, impl Kind<D>>,
     options: HandoffOptions,
 ) -> (Control<D>, ServoEnd<D>) {
     handoff_with(servo, options, StopSwitch::new())
@@ -113,12 +107,12 @@ pub fn handoff<const D: usize>(
 /// switch is stopped begins without forces.
 #[must_use]
 pub fn handoff_with<const D: usize>(
-    servo: &impl AnyServo<D>,
+    servo: &Servo<D, impl Kind<D>>,
     options: HandoffOptions,
     stop: StopSwitch,
 ) -> (Control<D>, ServoEnd<D>) {
-    let protection = servo.any_protection(Key(())).cloned();
-    let servo = servo.renderer(Key(()));
+    let protection = servo.protection_of_any().cloned();
+    let servo = servo.renderer();
     let bodies = servo.bodies().bodies().len();
     let most_bodies = options.bodies.max(bodies);
     let (sender, receiver) = edit_channel();
@@ -135,7 +129,7 @@ pub fn handoff_with<const D: usize>(
         reactions: vec![crate::Reaction::NONE; most_bodies],
         events_lost: 0,
     };
-    let (writer, reader) = latest(snapshot);
+    let (writer, reader) = latest_value(snapshot);
     let (producer, consumer) = rtrb::RingBuffer::new(options.events);
     let flags = Arc::new(Flags::default());
     let rate = servo.options().rate;
@@ -199,11 +193,12 @@ impl<const D: usize> Default for Edits<D> {
     }
 }
 
-/// Flags that both ends share.
+/// Flags that both ends share. Everything a thread did before it set one, with
+/// [`Release`](std::sync::atomic::Ordering::Release), is visible to a thread that sees it set.
 #[derive(Debug, Default)]
 struct Flags {
     /// A request to end the loop.
-    end: <Native as Medium>::Flag,
+    end: AtomicBool,
     /// The loop has ended.
-    ended: <Native as Medium>::Flag,
+    ended: AtomicBool,
 }

@@ -7,19 +7,21 @@
 
 use std::fmt;
 use std::sync::Arc;
+use std::sync::atomic::Ordering;
 
-use super::exchange::{Flag, Receiver, Writer};
+use palpate_device::{EditReceiver, LatestWriter};
+
 use super::stop_switch::StopSwitch;
 use super::{Edits, Flags};
 use crate::event::Event;
 use crate::live::{Progress, Snapshot};
-use crate::servo::{AnyServo, Key};
+use crate::servo::{Kind, Servo};
 
 /// The servo's end of a hand-off: receives edits and publishes the state of the servo. Made by
 /// [`handoff`](crate::handoff).
 pub struct ServoEnd<const D: usize> {
-    pub(super) receiver: Receiver<Edits<D>>,
-    pub(super) writer: Writer<Snapshot<D>>,
+    pub(super) receiver: EditReceiver<Edits<D>>,
+    pub(super) writer: LatestWriter<Snapshot<D>>,
     pub(super) events: rtrb::Producer<Event>,
     pub(super) flags: Arc<Flags>,
     pub(super) stop: StopSwitch,
@@ -30,16 +32,15 @@ pub struct ServoEnd<const D: usize> {
 }
 
 impl<const D: usize> ServoEnd<D> {
-    /// Applies the edits of the other end to `servo`, a [`Servo`](crate::Servo) or an
-    /// [`UnprotectedServo`](crate::UnprotectedServo); call it before each tick.
+    /// Applies the edits of the other end to `servo`; call it before each tick.
     ///
     /// Bodies that were accepted for another servo are not taken, nor their poses. The servo stops as
     /// by [`stop`](crate::StopSwitch::stop), until [`release`](crate::StopSwitch::release). An
     /// unprotected servo takes the bodies of any.
     ///
     /// Real-time: allocates nothing, frees nothing, takes no lock, cannot panic.
-    pub fn receive(&mut self, servo: &mut impl AnyServo<D>) {
-        let servo = servo.renderer_mut(Key(()));
+    pub fn receive(&mut self, servo: &mut Servo<D, impl Kind<D>>) {
+        let servo = servo.renderer_mut();
         let is_stopped = self.stop.is_stopped();
         if is_stopped != self.is_stopped {
             self.is_stopped = is_stopped;
@@ -81,19 +82,19 @@ impl<const D: usize> ServoEnd<D> {
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     #[must_use]
     pub fn is_to_end(&self) -> bool {
-        self.flags.end.is_set() || self.events.is_abandoned()
+        self.flags.end.load(Ordering::Acquire) || self.events.is_abandoned()
     }
 
     /// Publishes the state of `servo` to the other end; call it after each tick.
     ///
     /// Real-time: allocates nothing, frees nothing, takes no lock, cannot panic.
-    pub fn publish(&mut self, servo: &impl AnyServo<D>, progress: &Progress) {
-        let servo = servo.renderer(Key(()));
+    pub fn publish(&mut self, servo: &Servo<D, impl Kind<D>>, progress: &Progress) {
+        let servo = servo.renderer();
         for event in servo.events() {
             self.events_lost += u64::from(self.events.push(*event).is_err());
         }
         let events_lost = self.events_lost;
-        self.writer.publish(|snapshot| {
+        self.writer.set(|snapshot| {
             snapshot.progress = *progress;
             snapshot.events_lost = events_lost;
             snapshot.tool = servo.held_tool();
@@ -112,7 +113,7 @@ impl<const D: usize> ServoEnd<D> {
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     pub fn finish(&self) {
-        self.flags.ended.set(true);
+        self.flags.ended.store(true, Ordering::Release);
     }
 }
 

@@ -8,7 +8,7 @@
 use std::f64::consts::FRAC_1_SQRT_2;
 
 use palpate_field::{Point, Vector};
-use palpate_query::internal::HalfSpace;
+use palpate_query::constraints::PlaneConstraint;
 
 use super::Proxy;
 use crate::nearby::{Nearby, Punctured};
@@ -305,7 +305,7 @@ impl<const D: usize> WayOut<'_, D> {
         let (mut planes, mut here, mut best) = (Planes::new(), start, None::<Sample<D>>);
         for _ in 0..MOST_PLANES {
             let (normal, gap) = self.after.tangent(&here, up);
-            let wall = HalfSpace { point: here.point - normal * gap, normal };
+            let wall = PlaneConstraint { point: here.point - normal * gap, normal };
             if planes.is_empty() {
                 planes.add(wall);
             } else {

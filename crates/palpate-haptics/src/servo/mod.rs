@@ -2,35 +2,32 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
 //! The servo: from device points to forces, once a tick.
-//!
-//! A [`Servo`] is made for a device, and a safety chain stands between every force and the
-//! hand; the loops of `palpate-loop` run no other kind. An [`UnprotectedServo`] has no safety
-//! chain: it is for tests, and for setting up a servo before its device is known.
 
-mod any;
-mod both;
+#![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+mod protected;
 mod renderer;
 mod unprotected;
 
 use std::ops::Deref;
 use std::sync::Arc;
 
-pub use any::AnyServo;
-pub(crate) use any::Key;
+use palpate_device::{Buttons, GripperState, PointState, Reading, TurnState};
+use palpate_field::Pose;
+use palpate_safety::Accepted;
+
 pub use renderer::Renderer;
-pub use unprotected::UnprotectedServo;
 
-use crate::accepted_bodies::AcceptedBodies;
-use crate::bodies::Bodies;
-use crate::error::HapticsError;
-use crate::guide::Guide;
-use crate::options::ServoOptions;
+use crate::contact_point::Touch;
 use crate::protection::Protection;
-use crate::tool::Tool;
-use palpate_safety::{Accepted, Device, PointState};
 
-/// Renders bodies to the contact points of a device, or to a tool, with a safety chain that
-/// keeps every force within the limits of the device.
+/// Renders bodies to the contact points of a device, or to a tool.
+///
+/// A servo made by [`for_device`](Self::for_device) or [`for_tool`](Self::for_tool) is
+/// [`Protected`]: a safety chain keeps every force within the limits of its device. The loops of
+/// [`servo_loop`](crate::servo_loop) run no other kind. A servo made by [`new`](Self::new) or
+/// [`with_tool`](Self::with_tool) is [`Unprotected`] and only limits its force: it is for tests, for
+/// measurements, and for settings that are made before the servo is [protected](Self::protected).
 ///
 /// The results of the last tick are methods of [`Renderer`], to which a servo dereferences.
 ///
@@ -40,18 +37,16 @@ use palpate_safety::{Accepted, Device, PointState};
 ///
 /// ```
 /// use palpate_field::{Shape, Vector, kernel::Ball};
-/// use palpate_haptics::{
-///     Bodies, Body, DeviceProfile, PointState, Probe, Protection, ServoOptions, Surface,
-///     UnprotectedServo,
-/// };
+/// use palpate_device::{DeviceProfile, PointState};
+/// use palpate_haptics::{Bodies, Body, Probe, Protection, Servo, ServoOptions, Surface};
 ///
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
 /// let ball = Shape::from_kernel(Ball::new(0.5)?);
 /// let bodies = Bodies::new(vec![Body::new(ball, Surface::smooth(512.0, 0.0)?)?])?;
 /// let profile = DeviceProfile::unlimited("example").with_max_force(1.0);
 /// let options = ServoOptions::default().with_probe(Probe::new(0.0)?);
-/// let mut servo = UnprotectedServo::new(bodies, 1, options)?
-///     .protected(&Protection::new(profile).with_rise_rate(f64::INFINITY))?;
+/// let mut servo = Servo::new(bodies, 1, options)?
+///     .protected(&Protection::new(profile).with(|s| s.rise_rate = f64::INFINITY))?;
 /// servo.step(&[PointState::at_rest(Vector([0.0, 1.0]))]);
 /// servo.step(&[PointState::at_rest(Vector([0.0, 0.5 - 1.0 / 256.0]))]);
 /// assert!((servo.touches()[0].wanted - Vector([0.0, 2.0])).norm() < 1e-4); // 2 N are wanted
@@ -59,209 +54,200 @@ use palpate_safety::{Accepted, Device, PointState};
 /// # Ok(())
 /// # }
 /// ```
+///
+/// No device can be given to a servo without protection:
+///
+/// ```compile_fail,E0308
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// use palpate_field::{Shape, Vector};
+/// use palpate_haptics::Servo;
+/// use palpate_haptics::servo_loop::{Pace, RunOptions, run};
+/// use palpate_sim::{Hand, SimulatedDevice};
+///
+/// let hand = Hand::resting(Vector([0.0, 0.1]))?;
+/// let mut device = SimulatedDevice::new(palpate_device::profile_named("omega")?, vec![hand])?;
+/// let mut servo = Servo::new(Shape::circle(0.05)?, 1, Default::default())?;
+/// run(&mut servo, &mut device, RunOptions::new(1.0).with_pace(Pace::AsFastAsPossible))?;
+/// # Ok(())
+/// # }
+/// ```
 #[derive(Clone, Debug)]
-pub struct Servo<const D: usize> {
+pub struct Servo<const D: usize, P = Protected<D>> {
     renderer: Renderer<D>,
+    kind: P,
+}
+
+/// The kind of a [`Servo`] that protects a device and the hand that holds it.
+#[derive(Clone, Debug)]
+pub struct Protected<const D: usize> {
     protection: Arc<Protection<D>>,
     accepted_guides: Vec<Accepted>,
 }
 
-impl<const D: usize> Servo<D> {
-    /// A servo that renders `bodies` to every contact point of `device`, protected by
-    /// [`Protection::new`], with [`ServoOptions::of_device`]: 1 kHz, or
-    /// the rate of a device that measures more seldom or sets the pace; a ball of 2 mm; forces up to
-    /// the device's largest.
-    ///
-    /// A plain shape becomes one body with the default surface. For other settings, make an
-    /// [`UnprotectedServo`] and call [`protected`](UnprotectedServo::protected).
-    ///
-    /// # Errors
-    ///
-    /// As [`UnprotectedServo::protected`]; [`HapticsError::NoContactPoint`] if the device has
-    /// none.
-    ///
-    /// # Examples
-    ///
-    /// ```
-    /// use palpate_field::{Shape, kernel::Ball};
-    /// use palpate_devices::{HandPath, Interpolation, RecordedDevice};
-    /// use palpate_haptics::Servo;
-    /// use palpate_loop::{Pace, RunOptions, run};
-    ///
-    /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
-    /// let ends = vec![[0.0, 0.08, 0.0].into(), [0.0, 0.05, 0.0].into()];
-    /// let press = HandPath::new(vec![0.0, 1.0], ends, Interpolation::Smooth)?;
-    /// let mut device = RecordedDevice::new(vec![press])?;
-    /// let mut servo = Servo::for_device(Shape::from_kernel(Ball::new(0.05)?), &device)?;
-    /// let options = RunOptions::new(1.0).with_pace(Pace::AsFastAsPossible);
-    /// assert_eq!(run(&mut servo, &mut device, options)?.ticks, 1000);
-    /// # Ok(())
-    /// # }
-    /// ```
-    pub fn for_device(
-        bodies: impl TryInto<Bodies<D>, Error: Into<HapticsError>>,
-        device: &(impl Device<D> + ?Sized),
-    ) -> Result<Self, HapticsError> {
-        let options = ServoOptions::of_device(device.profile()).at_rate_of(device);
-        UnprotectedServo::new(bodies, device.points(), options)?.protected_for(device.profile())
+/// The kind of a [`Servo`] that protects no device: it limits forces and does nothing else.
+#[derive(Clone, Copy, Debug)]
+pub struct Unprotected;
+
+/// The two kinds of a [`Servo`]: [`Protected`] and [`Unprotected`]. No other type can be one.
+pub trait Kind<const D: usize>: sealed::Sealed<D> {}
+
+impl<const D: usize> Kind<D> for Protected<D> {}
+
+impl<const D: usize> Kind<D> for Unprotected {}
+
+mod sealed {
+    use std::sync::Arc;
+
+    use crate::protection::Protection;
+
+    pub trait Sealed<const D: usize> {
+        fn protection(&self) -> Option<&Arc<Protection<D>>>;
     }
 
-    /// A servo that renders `bodies` to a tool held by `device`; otherwise as
-    /// [`for_device`](Self::for_device). A tool with a smaller force limit than the device's, or
-    /// a longer rise time than the servo's, keeps it.
-    ///
-    /// # Errors
-    ///
-    /// As [`for_device`](Self::for_device).
-    pub fn for_tool(
-        bodies: impl TryInto<Bodies<D>, Error: Into<HapticsError>>,
-        tool: Tool<D>,
-        device: &(impl Device<D> + ?Sized),
-    ) -> Result<Self, HapticsError> {
-        let options = ServoOptions::of_device(device.profile()).at_rate_of(device);
-        UnprotectedServo::with_tool(bodies, tool, options)?.protected_for(device.profile())
-    }
-
-    /// The protection of the device.
-    #[must_use]
-    pub fn protection(&self) -> &Protection<D> {
-        &self.protection
-    }
-
-    /// The accepted stiffness and damping of each body. With a tool: first the translational
-    /// entry, in series with the coupling, and second, if the device gives a torque, the
-    /// rotational entry. Empty for a device that gives no force.
-    #[must_use]
-    pub fn accepted(&self) -> &[Accepted] {
-        self.renderer.accepted().accepted()
-    }
-
-    /// Sets the guides of every contact point, as soft as the device requires.
-    ///
-    /// # Errors
-    ///
-    /// As [`Protection::accept_guides`].
-    ///
-    /// ```
-    /// use palpate_field::{Shape, Vector};
-    /// use palpate_haptics::{DeviceProfile, Guide, GuideOptions, Protection, UnprotectedServo};
-    ///
-    /// # fn main() -> Result<(), palpate_haptics::HapticsError> {
-    /// let disc = Shape::circle(0.05)?;
-    /// let device = DeviceProfile::unlimited("example").with_max_stiffness(1000.0);
-    /// let servo = UnprotectedServo::new(disc, 1, Default::default())?;
-    /// let mut servo = servo.protected(&Protection::new(device))?;
-    /// let options = GuideOptions::default().with_stiffness(4000.0);
-    /// servo.guide(&[Guide::to_point(Vector([0.0, 0.1]), options)?])?;
-    /// assert_eq!(servo.accepted_guides()[0].stiffness_factor, 0.25);
-    /// assert_eq!(servo.guides(0)[0].options().stiffness, 1000.0);
-    /// # Ok(())
-    /// # }
-    /// ```
-    #[inline(never)]
-    pub fn guide(&mut self, guides: &[Guide<D>]) -> Result<(), HapticsError> {
-        let (guides, accepted) = self.protection.accept_guides(guides, self.options().rate)?;
-        self.renderer.guide(&guides);
-        self.accepted_guides = accepted;
-        Ok(())
-    }
-
-    /// The accepted stiffness and damping of each guide; empty for a device that gives no force.
-    #[must_use]
-    pub fn accepted_guides(&self) -> &[Accepted] {
-        &self.accepted_guides
-    }
-
-    /// Scales bodies to what the servo's device renders, for
-    /// [`replace_bodies`](Self::replace_bodies).
-    ///
-    /// # Errors
-    ///
-    /// As [`Protection::accept`].
-    pub fn accept(
-        &self,
-        bodies: impl TryInto<Bodies<D>, Error: Into<HapticsError>>,
-    ) -> Result<AcceptedBodies<D>, HapticsError> {
-        let coupling = self.renderer.requested_coupling();
-        self.protection.accepted_bodies(
-            bodies.try_into().map_err(Into::into)?,
-            coupling,
-            self.options().rate,
-        )
-    }
-
-    /// Replaces the bodies from the next tick on. `bodies` holds the old ones then, to be dropped
-    /// on a thread that may free memory, or to be given back later.
-    ///
-    /// What a hand feels:
-    ///
-    /// - If the new bodies cover a proxy by at most the probe's radius, or by 5 mm at the device for
-    ///   a point, they [carry it out](crate::Proxy::carry_out) the shortest way. The touch goes on:
-    ///   the wanted force follows at once, and the written force changes by at most 0.3 N a tick until
-    ///   it is there. The event is [`Carried`](crate::EventKind::Carried).
-    /// - If they cover it by more, it is placed anew and its force rises from zero. The event is
-    ///   [`Placed`](crate::EventKind::Placed).
-    /// - If they do not cover it and push harder, the force rises from the old force. If they push
-    ///   less, or are not there, it falls at once: what lingered would push a hand that nothing
-    ///   touches.
-    ///
-    /// The same holds for a tool with the least radius of its points; its torque follows as its force.
-    /// Bodies that move before the next tick carry nothing out.
-    ///
-    /// Real-time: allocates nothing, frees nothing, takes no lock, cannot panic unless a custom field
-    /// does; evaluates the fields at most [`Probe::budget`](crate::Probe::budget) times a point.
-    ///
-    /// # Errors
-    ///
-    /// [`HapticsError::OtherServo`] if the bodies were accepted for a servo of which this is no
-    /// clone; then nothing changes.
-    pub fn replace_bodies(
-        &mut self,
-        bodies: &mut AcceptedBodies<D>,
-    ) -> Result<(), HapticsError> {
-        if self.renderer.adopt(bodies) { Ok(()) } else { Err(HapticsError::OtherServo) }
-    }
-
-    /// Refuses a device with tighter limits than the one that the servo was made for, with another
-    /// number of contact points, that measures more seldom than the servo ticks, or that sets the pace
-    /// and measures more often. A loop calls this before its first tick.
-    ///
-    /// # Errors
-    ///
-    /// [`SafetyError::OtherDevice`](crate::SafetyError), [`HapticsError::ContactPoints`],
-    /// [`HapticsError::Rate`].
-    pub fn check_device(&self, device: &(impl Device<D> + ?Sized)) -> Result<(), HapticsError> {
-        self.protection.profile.check_bears(device.profile())?;
-        if let Some(of_device) = device.rate() {
-            let servo = self.options().rate;
-            // A device that paces gives its rate to the servo, whose limits of change in a tick would
-            // be more in a second at a faster one. Written so that NaN is refused.
-            let fits = servo <= of_device && !(device.paces() && servo < of_device);
-            if !fits {
-                return Err(HapticsError::Rate { servo, device: of_device });
-            }
-        }
-        let (servo, device) = (self.touches().len(), device.points());
-        if servo == device {
-            Ok(())
-        } else {
-            Err(HapticsError::ContactPoints { servo, device })
+    impl<const D: usize> Sealed<D> for super::Protected<D> {
+        fn protection(&self) -> Option<&Arc<Protection<D>>> {
+            Some(&self.protection)
         }
     }
 
-    /// Runs [`step`](Self::step) with `states` on copies, only to load the code and data of the
-    /// next tick into the caches. A loop that sleeps between ticks may call it until the next
-    /// tick begins.
-    ///
-    /// Each call evaluates the fields once more, custom fields included.
-    ///
-    /// Real-time: as [`step`](Self::step).
-    pub fn rehearse(&mut self, states: &[PointState<D>]) {
-        self.renderer.rehearse(states);
+    impl<const D: usize> Sealed<D> for super::Unprotected {
+        fn protection(&self) -> Option<&Arc<Protection<D>>> {
+            None
+        }
     }
 }
 
-impl<const D: usize> Deref for Servo<D> {
+impl<const D: usize, P: Kind<D>> Servo<D, P> {
+    /// One tick: for each contact point, takes its state, moves its proxy and computes
+    /// its force.
+    ///
+    /// A point whose state is missing or not finite touches nothing: its force is zero,
+    /// and its proxy stays in place.
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic unless a custom field
+    /// does; evaluates the field at most [`Probe::budget`](crate::Probe::budget) times a
+    /// point, once more for each magnet in reach, and once for each dimension of a
+    /// textured surface; for a tool,
+    /// [`ToolOptions::budget`](crate::ToolOptions::budget) times.
+    pub fn step(&mut self, states: &[PointState<D>]) -> &[Touch<D>] {
+        self.renderer.step(states)
+    }
+
+    /// Sets orientation and angular velocity of the device for the next ticks; a tool
+    /// turns with them. `None`, the initial value, is for a device without rotation:
+    /// the tool keeps the device's axes.
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    pub fn set_turn(&mut self, turn: Option<TurnState<D>>) {
+        self.renderer.set_turn(turn);
+    }
+
+    /// Sets by how much the next tick starts too late [s]; zero in time. A servo loop calls
+    /// this before each tick that starts more than a period after its time.
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    pub fn set_late(&mut self, late: f64) {
+        self.renderer.set_late(late);
+    }
+
+    /// Sets what the device gave for the next tick alone. Without it the states of a tick
+    /// were measured a period, and what the tick is [late](Self::set_late), after those
+    /// before.
+    ///
+    /// The time between two fresh readings gives velocities, and the energies of the
+    /// passivity observer. In a tick with a stale reading the states of
+    /// [`step`](Self::step) are not looked at: the last ones hold on, and the force with
+    /// them, until the watchdog of the safety chain has had enough. A device that is not
+    /// ready has no state, as if each point were NaN.
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    pub fn set_reading(&mut self, reading: Reading) {
+        self.renderer.set_reading(reading);
+    }
+
+    /// Sets the buttons that are held down from the next tick on; each change is an
+    /// [event](crate::EventKind::ButtonDown).
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    pub fn set_buttons(&mut self, buttons: Buttons) {
+        self.renderer.set_buttons(buttons);
+    }
+
+    /// Sets the gripper from the next tick on; `None`, the initial value, is for a device
+    /// without one.
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    pub fn set_gripper(&mut self, state: Option<GripperState>) {
+        self.renderer.set_gripper(state);
+    }
+
+    /// Sets the force wanted on the fingers in the gripper [N] from the next tick on;
+    /// positive opens the jaws. [`gripper_force`](crate::Renderer::gripper_force) is what to write
+    /// of it, after the limits of the [gripper's
+    /// profile](palpate_device::GripperProfile): zero for a device without one, and without
+    /// protection.
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    pub fn set_gripper_force(&mut self, wanted: f64) {
+        self.renderer.set_gripper_force(wanted);
+    }
+
+    /// Stops all forces and torques from the next tick on, or releases them: they then
+    /// rise from zero.
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    pub fn stop(&mut self, is_stopped: bool) {
+        self.renderer.stop(is_stopped);
+    }
+
+    /// Lifts the hand off the bodies from the next tick on, as a clutch does, or sets it down.
+    /// A hand that is lifted feels neither bodies nor guides: proxy and tool are where the
+    /// device is, through bodies too. Where it is set down they are placed anew, as in the
+    /// first tick; in a body, the force rises from zero.
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    pub fn lift(&mut self, is_lifted: bool) {
+        self.renderer.lift(is_lifted);
+    }
+
+    /// Moves a body before the next tick; see [`Bodies::set_pose`](crate::Bodies::set_pose).
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    pub fn set_pose(&mut self, body: usize, world_from_body: Pose<D>) {
+        self.renderer.set_pose(body, world_from_body);
+    }
+
+    /// Lowers the force limit of every contact point to `max_force` [N]; never raises
+    /// it. With a safety chain, a larger force falls to the limit at the device's
+    /// largest rate.
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    pub fn limit_force(&mut self, max_force: f64) {
+        self.renderer.limit_force(max_force);
+    }
+
+    /// Lowers the torque limit of a tool to `max_torque` [N·m]; never raises it. With a
+    /// safety chain, a larger torque falls to the limit at the device's largest rate.
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    pub fn limit_torque(&mut self, max_torque: f64) {
+        self.renderer.limit_torque(max_torque);
+    }
+
+    pub(crate) fn renderer(&self) -> &Renderer<D> {
+        &self.renderer
+    }
+
+    pub(crate) fn renderer_mut(&mut self) -> &mut Renderer<D> {
+        &mut self.renderer
+    }
+
+    pub(crate) fn protection_of_any(&self) -> Option<&Arc<Protection<D>>> {
+        self.kind.protection()
+    }
+}
+
+impl<const D: usize, P> Deref for Servo<D, P> {
     type Target = Renderer<D>;
 
     fn deref(&self) -> &Renderer<D> {

@@ -27,10 +27,10 @@ use crate::options::ServoOptions;
 use crate::ports::{Port, TurningPort};
 use crate::proxy::{MOST_OF_POINT, Probe};
 use crate::tool::{Coupling, HeldTool, Tool};
-use palpate_safety::{
-    Arrival, Arrivals, Buttons, GripperState, NumberError, PointState, Reading, TurnState,
-    WorkspaceMap,
+use palpate_device::{
+    Buttons, DeviceError, GripperState, NumberError, PointState, Reading, TurnState,
 };
+use palpate_safety::{Arrival, Arrivals, WorkspaceMap};
 
 /// Fewer bodies than this all count as near: selecting would cost more than it saves.
 const FEW: usize = 5;
@@ -45,8 +45,8 @@ const REACHES: f64 = 4.0;
 
 /// Renders bodies to contact points or to a tool, and holds the results of the last tick.
 ///
-/// A [`Servo`](crate::Servo) and an [`UnprotectedServo`](crate::UnprotectedServo) dereference
-/// to a renderer: the renderer has the methods that read, the servos those that change.
+/// A [`Servo`](crate::Servo) dereferences to its renderer, which has the methods that read; the
+/// servo has those that change.
 #[derive(Clone, Debug)]
 pub struct Renderer<const D: usize> {
     accepted: AcceptedBodies<D>,
@@ -105,7 +105,7 @@ impl<const D: usize> Renderer<D> {
         options: ServoOptions,
     ) -> Result<Self, HapticsError> {
         if points == 0 {
-            return Err(HapticsError::NoContactPoint);
+            return Err(DeviceError::NoContactPoint.into());
         }
         let rate = NumberError::check_rate(options.rate)?;
         let rise_time = NumberError::check_positive("rise_time", options.rise_time, "s")?;
@@ -254,7 +254,7 @@ impl<const D: usize> Renderer<D> {
     }
 
     /// The energy at a contact point since the start; zero for an
-    /// [`UnprotectedServo`](crate::UnprotectedServo).
+    /// [unprotected](crate::Unprotected) servo.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     #[must_use]

@@ -3,10 +3,11 @@
 
 //! A servo without a safety chain.
 
-use std::ops::Deref;
 use std::sync::Arc;
 
-use super::{Renderer, Servo};
+use palpate_device::{DeviceProfile, NumberError};
+
+use super::{Protected, Renderer, Servo, Unprotected};
 use crate::accepted_bodies::AcceptedBodies;
 use crate::bodies::Bodies;
 use crate::error::HapticsError;
@@ -14,68 +15,25 @@ use crate::guide::Guide;
 use crate::options::ServoOptions;
 use crate::protection::Protection;
 use crate::tool::Tool;
-use palpate_safety::{DeviceProfile, NumberError};
 
-/// Renders bodies to contact points or to a tool, **without protection of a device or a hand**
-/// except a force limit.
-///
-/// An unprotected servo is for tests, for measurements, and for loops without a hand. The loops
-/// of `palpate-loop` do not run it: [`protected`](Self::protected) turns it into a [`Servo`],
-/// which they run.
-///
-/// The results of the last tick are methods of [`Renderer`], to which a servo dereferences.
-///
-/// # Examples
-///
-/// A wall pressed to a depth of 1/256 m:
-///
-/// ```
-/// use palpate_field::{Shape, Vector, kernel::Ball};
-/// use palpate_haptics::{
-///     Bodies, Body, PointState, Probe, ServoOptions, Surface, UnprotectedServo,
-/// };
-///
-/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
-/// let options = ServoOptions::default().with_probe(Probe::new(0.0)?);
-/// let ball = Shape::from_kernel(Ball::new(0.5)?);
-/// let bodies = Bodies::new(vec![Body::new(ball, Surface::smooth(512.0, 0.0)?)?])?;
-/// let mut servo = UnprotectedServo::new(bodies, 1, options)?;
-/// servo.step(&[PointState::at_rest(Vector([0.0, 1.0]))]);
-/// let touches = servo.step(&[PointState::at_rest(Vector([0.0, 0.5 - 1.0 / 256.0]))]);
-///
-/// assert!(touches[0].contact);
-/// assert!((touches[0].force - Vector([0.0, 2.0])).norm() < 1e-4);
-/// # Ok(())
-/// # }
-/// ```
-#[derive(Clone, Debug)]
-pub struct UnprotectedServo<const D: usize> {
-    pub(super) renderer: Renderer<D>,
-}
-
-impl<const D: usize> UnprotectedServo<D> {
-    /// A servo that renders `bodies` to `points` contact points. A plain shape becomes one body
+impl<const D: usize> Servo<D, Unprotected> {
+    /// A servo without protection that renders `bodies` to `points` contact points. A plain shape becomes one body
     /// with the default surface.
     ///
     /// # Errors
     ///
-    /// [`HapticsError::NoContactPoint`] if there are none; [`HapticsError::Number`] if the
+    /// [`HapticsError::Device`] if there are none; [`HapticsError::Number`] if the
     /// rate, the rise time or the largest force is not positive.
     pub fn new(
         bodies: impl TryInto<Bodies<D>, Error: Into<HapticsError>>,
         points: usize,
         options: ServoOptions,
     ) -> Result<Self, HapticsError> {
-        Ok(Self {
-            renderer: Renderer::of_points(
-                bodies.try_into().map_err(Into::into)?,
-                points,
-                options,
-            )?,
-        })
+        let bodies = bodies.try_into().map_err(Into::into)?;
+        Ok(Self { renderer: Renderer::of_points(bodies, points, options)?, kind: Unprotected })
     }
 
-    /// A servo that renders `bodies` to a rigid tool, coupled to the one contact point of a
+    /// A servo without protection that renders `bodies` to a rigid tool, coupled to the one contact point of a
     /// device. The tool's origin is at the device point. Its axes are the handle's if the
     /// device [turns](Self::set_turn), and the device's otherwise.
     ///
@@ -95,15 +53,14 @@ impl<const D: usize> UnprotectedServo<D> {
     ///
     /// ```
     /// use palpate_field::{Shape, Vector, kernel::HalfSpace};
-    /// use palpate_haptics::{
-    ///     PointState, ServoOptions, Shell, Tool, ToolOptions, UnprotectedServo,
-    /// };
+    /// use palpate_device::PointState;
+    /// use palpate_haptics::{Servo, ServoOptions, Shell, Tool, ToolOptions};
     ///
     /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
     /// let ground = Shape::from_kernel(HalfSpace::new(Vector([0.0, 1.0, 0.0]), 0.0)?);
     /// let coupling = ToolOptions::default().with_stiffness(500.0).with_damping(0.0);
     /// let tool = Tool::new(Shell::ball(0.0625)?, coupling)?;
-    /// let mut servo = UnprotectedServo::with_tool(ground, tool, ServoOptions::default())?;
+    /// let mut servo = Servo::with_tool(ground, tool, ServoOptions::default())?;
     /// servo.step(&[PointState::at_rest(Vector([0.0, 0.1, 0.0]))]);
     /// servo.step(&[PointState::at_rest(Vector([0.0, 0.0605, 0.0]))]);
     /// assert!((servo.forces()[0] - Vector([0.0, 1.0, 0.0])).norm() < 1e-9);
@@ -117,16 +74,15 @@ impl<const D: usize> UnprotectedServo<D> {
     ///
     /// ```
     /// use palpate_field::{Rotation, Shape, Vector, kernel::HalfSpace};
-    /// use palpate_haptics::{
-    ///     PointState, ServoOptions, Shell, Tool, ToolOptions, TurnState, UnprotectedServo,
-    /// };
+    /// use palpate_device::{PointState, TurnState};
+    /// use palpate_haptics::{Servo, ServoOptions, Shell, Tool, ToolOptions};
     ///
     /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
     /// let ground = Shape::from_kernel(HalfSpace::new(Vector([0.0, 1.0]), 0.0)?);
     /// let rod = Shell::capsule([Vector([-0.05, 0.0]), Vector([0.05, 0.0])], 0.001, 101)?;
     /// let coupling = ToolOptions::default().with_angular_stiffness(1.0);
     /// let tool = Tool::new(rod, coupling)?;
-    /// let mut servo = UnprotectedServo::with_tool(ground, tool, ServoOptions::default())?;
+    /// let mut servo = Servo::with_tool(ground, tool, ServoOptions::default())?;
     /// servo.step(&[PointState::at_rest(Vector([0.0, 0.01]))]);
     /// for tick in 1..=100 {
     ///     let orientation = Rotation::from_angle(0.001 * f64::from(tick))?;
@@ -142,9 +98,8 @@ impl<const D: usize> UnprotectedServo<D> {
         tool: Tool<D>,
         options: ServoOptions,
     ) -> Result<Self, HapticsError> {
-        Ok(Self {
-            renderer: Renderer::of_tool(bodies.try_into().map_err(Into::into)?, tool, options)?,
-        })
+        let bodies = bodies.try_into().map_err(Into::into)?;
+        Ok(Self { renderer: Renderer::of_tool(bodies, tool, options)?, kind: Unprotected })
     }
 
     /// This servo with a safety chain between every contact point and a device. States and
@@ -164,13 +119,14 @@ impl<const D: usize> UnprotectedServo<D> {
     ///
     /// ```
     /// use palpate_field::{Shape, kernel::Ball};
-    /// use palpate_haptics::{Bodies, Body, DeviceProfile, Protection, Surface, UnprotectedServo};
+    /// use palpate_device::DeviceProfile;
+    /// use palpate_haptics::{Bodies, Body, Protection, Servo, Surface};
     ///
     /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
     /// let ball = Shape::<3>::from_kernel(Ball::new(0.05)?);
     /// let bodies = Bodies::new(vec![Body::new(ball, Surface::smooth(2000.0, 0.0)?)?])?;
     /// let device = DeviceProfile::unlimited("example").with_max_stiffness(1000.0);
-    /// let servo = UnprotectedServo::new(bodies, 1, Default::default())?
+    /// let servo = Servo::new(bodies, 1, Default::default())?
     ///     .protected(&Protection::new(device))?;
     /// assert_eq!(servo.accepted()[0].stiffness_factor, 0.5);
     /// assert_eq!(servo.bodies().bodies()[0].surface().stiffness(), 1000.0);
@@ -203,7 +159,8 @@ impl<const D: usize> UnprotectedServo<D> {
         renderer.set_gripper_port(protection.gripper(rate)?);
         renderer.exchange(&mut bodies);
         let guides = renderer.guides(0).to_vec();
-        let mut servo = Servo { renderer, protection, accepted_guides: Vec::new() };
+        let kind = Protected { protection, accepted_guides: Vec::new() };
+        let mut servo = Servo { renderer, kind };
         servo.guide(&guides)?;
         Ok(servo)
     }
@@ -246,13 +203,5 @@ impl<const D: usize> UnprotectedServo<D> {
         let mut bodies = AcceptedBodies::unchanged(bodies);
         self.renderer.exchange(&mut bodies);
         bodies.bodies
-    }
-}
-
-impl<const D: usize> Deref for UnprotectedServo<D> {
-    type Target = Renderer<D>;
-
-    fn deref(&self) -> &Renderer<D> {
-        &self.renderer
     }
 }

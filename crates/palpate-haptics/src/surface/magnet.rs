@@ -5,10 +5,10 @@
 
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-use palpate_material::Magnet;
+use crate::Magnet;
 
 use crate::error::HapticsError;
-use palpate_safety::NumberError;
+use palpate_device::NumberError;
 
 /// The height of the largest pull, as a part of the reach.
 const PEAK: f64 = 0.25;

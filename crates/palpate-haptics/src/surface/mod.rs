@@ -10,13 +10,14 @@ mod ring;
 mod ripples;
 mod strata;
 
+use crate::{Material, TextureKind};
 use palpate_field::{Point, Shape, Vector};
-use palpate_material::{Material, TextureKind};
 
 use crate::curvature::surface_displacement;
 use crate::error::HapticsError;
-use palpate_safety::internal::limited;
-use palpate_safety::{Impedance, NumberError};
+use palpate_device::NumberError;
+use palpate_device::limited;
+use palpate_safety::Impedance;
 
 pub(crate) use magnet::Pull;
 pub(crate) use ring::{Ring, Ringing};

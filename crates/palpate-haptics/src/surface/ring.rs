@@ -5,10 +5,10 @@
 
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-use palpate_material::Impact;
+use crate::Impact;
 
 use crate::error::HapticsError;
-use palpate_safety::NumberError;
+use palpate_device::NumberError;
 
 /// Ringing ends below this part of its first amplitude.
 const SILENCE: f64 = 1e-4;

@@ -5,12 +5,12 @@
 
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
+use crate::Texture;
 use palpate_field::scalar::Scalar;
 use palpate_field::{Kernel, Point, Promise, Vector};
-use palpate_material::Texture;
 
 use crate::error::HapticsError;
-use palpate_safety::NumberError;
+use palpate_device::NumberError;
 
 /// Rounding errors of a wave, from the products of the phase, their sum and the sine.
 const ROUNDINGS: f64 = 16.0;
@@ -172,8 +172,8 @@ impl<const D: usize> Kernel<D> for Ripples<D> {
 
 #[cfg(test)]
 mod tests {
+    use crate::TextureKind;
     use palpate_field::Shape;
-    use palpate_material::TextureKind;
 
     use super::*;
     use palpate_testkit::cases::each as cases;

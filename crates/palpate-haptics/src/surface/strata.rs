@@ -5,10 +5,11 @@
 
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-use palpate_material::Material;
+use crate::Material;
 
 use crate::error::HapticsError;
-use palpate_safety::{Impedance, NumberError};
+use palpate_device::NumberError;
+use palpate_safety::Impedance;
 
 /// The stiffness used for a layer without a spring [N/m]: too small for a hand to feel.
 const LEAST_STIFFNESS: f64 = 1e-9;
@@ -79,7 +80,7 @@ impl Strata {
     /// The layers of a material, unchecked. A property that a layer omits is inherited from the
     /// layer above.
     pub(crate) fn of(material: &Material) -> Self {
-        let pop_through = |pop: &Option<palpate_material::PopThrough>| {
+        let pop_through = |pop: &Option<crate::PopThrough>| {
             pop.as_ref().map(|pop| PopThrough { force: pop.force, distance: pop.distance })
         };
         let outermost = Stratum {
@@ -222,7 +223,7 @@ impl Strata {
 
 #[cfg(test)]
 mod tests {
-    use palpate_material::Layer;
+    use crate::Layer;
 
     use super::*;
 

@@ -5,7 +5,8 @@
 
 use super::state::ToolOptions;
 use crate::error::HapticsError;
-use palpate_safety::{Impedance, NumberError};
+use palpate_device::NumberError;
+use palpate_safety::Impedance;
 
 /// The rendered spring and damper between hand and tool: as requested in the
 /// [options](ToolOptions), or softer if the device of a [`Servo`](crate::Servo) requires it.

@@ -16,7 +16,7 @@ use crate::event::{Event, EventKind, Reaction};
 use crate::guide::limit::{Motion, damped};
 use crate::nearby::Nearby;
 use crate::proxy::Edited;
-use palpate_safety::internal::shortening;
+use palpate_device::shortening;
 
 /// The response of the pushing bodies to the coupling.
 struct BodyResponse<const D: usize> {

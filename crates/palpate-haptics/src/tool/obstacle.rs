@@ -20,7 +20,7 @@ impl<const D: usize> Shell<D> {
     /// g(x) = min f(x + R c)
     /// ```
     ///
-    /// A `Tour` of `palpate-devices` over the obstacle, with the points' radius as probe radius, is a
+    /// A `Tour` of `palpate-sim` over the obstacle, with the points' radius as probe radius, is a
     /// tour of the tool over `shape`, as deep as that of a probe.
     ///
     /// # Errors

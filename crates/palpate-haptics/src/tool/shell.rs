@@ -15,7 +15,7 @@ use palpate_mesh::Mesh;
 
 use super::spread::{Samples, farthest_first, of_field, of_mesh};
 use crate::error::HapticsError;
-use palpate_safety::NumberError;
+use palpate_device::NumberError;
 
 /// The most points of a shell.
 pub const MOST_POINTS: usize = 8192;

@@ -11,7 +11,7 @@ use palpate_query::Contact;
 use super::closest::FREEDOMS;
 use super::shell::FIRST_LEVEL;
 use crate::error::HapticsError;
-use palpate_safety::NumberError;
+use palpate_device::NumberError;
 
 /// The requested virtual coupling of a tool, its limits, and the budget of a tick.
 ///

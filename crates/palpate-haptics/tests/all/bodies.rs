@@ -5,10 +5,11 @@
 #![expect(clippy::unwrap_used, reason = "a test that cannot be set up fails")]
 
 use crate::common::{ball, body, cases, cuboid, half_space, unit, vector};
+use palpate_device::{DeviceProfile, PointState};
 use palpate_field::{Pose, Rotation, Shape, Vector};
 use palpate_haptics::{
-    Bodies, Body, DeviceProfile, EventKind, Material, PointState, Probe, Protection,
-    ServoOptions, Surface, Touch, UnprotectedServo,
+    Bodies, Body, EventKind, Material, Probe, Protection, Servo, ServoOptions, Surface, Touch,
+    Unprotected,
 };
 
 fn options(radius: f64) -> ServoOptions {
@@ -17,7 +18,7 @@ fn options(radius: f64) -> ServoOptions {
         .with_max_force(f64::INFINITY)
 }
 
-fn touch(servo: &mut UnprotectedServo<3>, device: Vector<f64, 3>) -> Touch<3> {
+fn touch(servo: &mut Servo<3, Unprotected>, device: Vector<f64, 3>) -> Touch<3> {
     servo.step(&[PointState::at_rest(device)])[0]
 }
 
@@ -35,8 +36,7 @@ fn rough(stiffness: f64) -> Surface<3> {
 
 #[test]
 fn a_body_that_moves_carries_the_hand_by_friction() {
-    let mut servo =
-        UnprotectedServo::new(body(&cuboid([1.0, 0.125, 1.0]), rough(512.0)), 1, options(0.0));
+    let mut servo = Servo::new(body(&cuboid([1.0, 0.125, 1.0]), rough(512.0)), 1, options(0.0));
     let servo = servo.as_mut().unwrap();
     let device = Vector([0.0, 0.0625 - 0.0078125, 0.0]);
     touch(servo, Vector([0.0, 0.5, 0.0]));
@@ -59,8 +59,7 @@ fn a_body_that_moves_carries_the_hand_by_friction() {
 
 #[test]
 fn a_body_that_turns_takes_the_hand_round() {
-    let mut servo =
-        UnprotectedServo::new(body(&ball(0.05), rough(512.0)), 1, options(0.0)).unwrap();
+    let mut servo = Servo::new(body(&ball(0.05), rough(512.0)), 1, options(0.0)).unwrap();
     touch(&mut servo, Vector([0.1, 0.0, 0.0]));
     let mut held = touch(&mut servo, Vector([0.049, 0.0, 0.0]));
     for tick in 1..=100 {
@@ -80,8 +79,7 @@ fn a_plate_that_strikes_the_hand_does_not_pass_it() {
     cases(300, |u| {
         let thickness = 1e-4;
         let plate = cuboid([0.2, thickness, 0.2]);
-        let mut servo =
-            UnprotectedServo::new(body(&plate, rough(512.0)), 1, options(0.001)).unwrap();
+        let mut servo = Servo::new(body(&plate, rough(512.0)), 1, options(0.001)).unwrap();
         let quaternion = [unit(u)?, unit(u)?, unit(u)?, unit(u)?];
         let turn = Rotation::from_quaternion(quaternion);
         let turn = turn.map_err(|_| arbitrary::Error::IncorrectFormat)?;
@@ -108,8 +106,7 @@ fn a_plate_that_strikes_the_hand_does_not_pass_it() {
 
 #[test]
 fn a_body_that_moves_onto_the_hand_presses_gently() {
-    let mut servo =
-        UnprotectedServo::new(body(&cuboid([0.1; 3]), rough(512.0)), 1, options(0.0)).unwrap();
+    let mut servo = Servo::new(body(&cuboid([0.1; 3]), rough(512.0)), 1, options(0.0)).unwrap();
     let hand = Vector([0.0, 0.0625, 0.0]);
     assert!(!touch(&mut servo, hand).contact);
     servo.set_pose(0, Pose::translation(Vector([0.0, 0.02, 0.0])));
@@ -134,9 +131,8 @@ fn many_bodies_feel_like_their_union() {
             bodies.push(body.at(Pose::translation(place)).unwrap());
         }
         let union = body(&Shape::union(shapes).unwrap(), rough(512.0));
-        let mut many =
-            UnprotectedServo::new(Bodies::new(bodies).unwrap(), 2, options(0.002)).unwrap();
-        let mut one = UnprotectedServo::new(union, 2, options(0.002)).unwrap();
+        let mut many = Servo::new(Bodies::new(bodies).unwrap(), 2, options(0.002)).unwrap();
+        let mut one = Servo::new(union, 2, options(0.002)).unwrap();
         let from: Vector<f64, 3> = vector(u)?;
         let way: Vector<f64, 3> = vector(u)?;
         // A proxy that slips off an edge jumps. In which of two ticks, rounding decides.
@@ -167,7 +163,7 @@ fn a_body_far_away_is_not_in_the_way() {
     let bodies = (1..=20).map(|i| Body::new(ball(0.04), rough(512.0))?.at(place(i)));
     let bodies = Bodies::new(bodies.collect::<Result<_, _>>().unwrap()).unwrap();
     // A clone once had no room for the numbers of what is near, and felt nothing.
-    let mut servo = UnprotectedServo::new(bodies.clone(), 1, options(0.001)).unwrap().clone();
+    let mut servo = Servo::new(bodies.clone(), 1, options(0.001)).unwrap().clone();
     touch(&mut servo, Vector([-5.0, 0.0, 0.0]));
     // 7 m in a tick, through all twenty: the first one stops the proxy.
     let held = touch(&mut servo, Vector([2.5, 0.0, 0.0]));
@@ -184,7 +180,7 @@ fn a_membrane_pops_and_holds_again() {
         Material { stiffness: 1000.0, damping: 0.0, pop_through, ..Material::default() };
     let surface = Surface::new(&material).unwrap();
     let membrane = cuboid([0.2, 0.002, 0.2]);
-    let mut servo = UnprotectedServo::new(body(&membrane, surface), 1, options(0.001)).unwrap();
+    let mut servo = Servo::new(body(&membrane, surface), 1, options(0.001)).unwrap();
     let at = |y: f64| Vector([0.0, y, 0.0]);
     touch(&mut servo, at(0.01));
     // The proxy rests at 2 mm; 1.9 mm deeper is 1.9 N.
@@ -213,7 +209,7 @@ fn a_magnet_pulls_from_outside_alone() {
     let material = Material { stiffness: 1000.0, damping: 0.0, magnet, ..Material::default() };
     let surface = Surface::new(&material).unwrap();
     let floor = half_space([0.0, 1.0, 0.0], 0.0);
-    let mut servo = UnprotectedServo::new(body(&floor, surface), 1, options(0.0)).unwrap();
+    let mut servo = Servo::new(body(&floor, surface), 1, options(0.0)).unwrap();
     let mut pull = |y: f64| touch(&mut servo, Vector([0.0, y, 0.0])).force[1];
     let pulls = [0.01, 0.008, 0.005, 0.002, 0.001].map(&mut pull);
     for (pull, expected) in pulls.iter().zip([0.0, 0.0, -0.5, -1.0, -0.5]) {
@@ -228,7 +224,7 @@ fn touches_and_leaves_come_in_pairs() {
     let place = |x: f64| Pose::translation(Vector([x, 0.0, 0.0]));
     let bodies = [0.0, 0.1].map(|x| Body::new(ball(0.05), rough(512.0)).unwrap().at(place(x)));
     let bodies = Bodies::new(bodies.into_iter().collect::<Result<_, _>>().unwrap()).unwrap();
-    let mut servo = UnprotectedServo::new(bodies, 1, options(0.001)).unwrap();
+    let mut servo = Servo::new(bodies, 1, options(0.001)).unwrap();
     let (mut touches, mut leaves) = (0, 0);
     for tick in 0..4000 {
         let x = 0.05 + 0.08 * (0.01 * f64::from(tick)).sin();
@@ -260,7 +256,7 @@ fn a_stiff_body_elsewhere_changes_nothing() {
             Body::new(ball, Surface::smooth(*stiffness, 0.0).unwrap()).unwrap()
         });
         let bodies = Bodies::new(bodies.collect()).unwrap();
-        let servo = UnprotectedServo::new(bodies, 1, options(0.0)).unwrap();
+        let servo = Servo::new(bodies, 1, options(0.0)).unwrap();
         let mut servo = servo.protected(&Protection::new(profile.clone())).unwrap();
         let mut forces = Vec::new();
         for tick in 0..4000 {

@@ -5,9 +5,10 @@
 #![expect(clippy::unwrap_used, reason = "a test that cannot be set up fails")]
 
 use crate::common::{ball, body, cases, cuboid, direction, torus, unit, vector};
+use palpate_device::PointState;
 use palpate_field::operator::Profile;
 use palpate_field::{Shape, Vector};
-use palpate_haptics::{PointState, Probe, ServoOptions, Surface, UnprotectedServo};
+use palpate_haptics::{Probe, Servo, ServoOptions, Surface};
 
 const STIFFNESS: f64 = 1000.0;
 
@@ -24,7 +25,7 @@ fn is_continuous<const D: usize>(name: &str, shape: &Shape<D>, (radius, bend): (
     let probe = Probe::new(radius).unwrap();
     let options = ServoOptions::default().with_probe(probe).with_max_force(f64::INFINITY);
     cases(20, |u| {
-        let mut servo = UnprotectedServo::new(bodies.clone(), 1, options).unwrap();
+        let mut servo = Servo::new(bodies.clone(), 1, options).unwrap();
         let mut device: Vector<f64, D> = direction(u)? * 0.1;
         let mut velocity = Vector::ZERO;
         let mut last = servo.step(&[PointState::at_rest(device)])[0];
@@ -73,7 +74,7 @@ fn a_free_tick_costs_one_evaluation_and_a_sliding_one_at_most_four() {
     let cup = cuboid([0.08; 3]).difference([ball(0.03)]).unwrap();
     for shape in [ball(0.05), torus(0.04, 0.015), cuboid([0.06; 3]), cup] {
         let bodies = body(&shape, Surface::smooth(STIFFNESS, 0.0).unwrap());
-        let mut servo = UnprotectedServo::new(bodies, 1, ServoOptions::default()).unwrap();
+        let mut servo = Servo::new(bodies, 1, ServoOptions::default()).unwrap();
         let (mut free, mut sliding) = ((0, 0), (0, 0));
         for tick in 0..8000 {
             // Round the shape at 0.2 m/s, in and out of it.

@@ -6,8 +6,9 @@
 
 use crate::common::{body, cases, cuboid, direction, unit};
 use arbitrary::Unstructured;
+use palpate_device::PointState;
 use palpate_field::{Point, Shape, Vector};
-use palpate_haptics::{Material, PointState, Probe, ServoOptions, Surface, UnprotectedServo};
+use palpate_haptics::{Material, Probe, Servo, ServoOptions, Surface};
 
 /// The radius of the scene [m].
 const SIZE: f64 = 0.1;
@@ -31,7 +32,7 @@ fn miss<const D: usize>(
     let bodies = body(&walls(normals), Surface::new(&material).unwrap());
     let probe = Probe::new(radius).unwrap();
     let options = ServoOptions::default().with_probe(probe);
-    let mut servo = UnprotectedServo::new(bodies, 1, options).unwrap();
+    let mut servo = Servo::new(bodies, 1, options).unwrap();
     let up = normals.iter().fold(Vector::ZERO, |sum, n| sum + *n).normalized().unwrap();
     let mut press = Vector::ZERO;
     for n in normals {

@@ -3,11 +3,11 @@
 
 //! Creases of bodies of several materials: each gives the force of its own, and the sum is smooth.
 
+use palpate_device::PointState;
 use palpate_field::kernel::{Cuboid, HalfSpace};
 use palpate_field::{Pose, Shape, Vector};
 use palpate_haptics::{
-    Bodies, Body, Event, EventKind, Material, PointState, Probe, ServoOptions, Surface,
-    UnprotectedServo,
+    Bodies, Body, Event, EventKind, Material, Probe, Servo, ServoOptions, Surface, Unprotected,
 };
 use palpate_testkit::arbitrary as draw;
 use palpate_testkit::cases;
@@ -34,20 +34,20 @@ fn walls<const D: usize>(walls: &[([f64; D], f64, f64)]) -> Bodies<D> {
 }
 
 #[expect(clippy::unwrap_used, reason = "a test that cannot be set up fails")]
-fn servo<const D: usize>(bodies: Bodies<D>) -> UnprotectedServo<D> {
+fn servo<const D: usize>(bodies: Bodies<D>) -> Servo<D, Unprotected> {
     let options = ServoOptions::default()
         .with_probe(Probe::new(RADIUS).unwrap())
         .with_max_force(f64::INFINITY)
         .with_rise_time(1e-9);
-    UnprotectedServo::new(bodies, 1, options).unwrap()
+    Servo::new(bodies, 1, options).unwrap()
 }
 
 /// The largest change of the wanted force in a tick [N], and all events, of a device point on a path.
 fn felt<const D: usize>(
-    servo: &mut UnprotectedServo<D>,
+    servo: &mut Servo<D, Unprotected>,
     ticks: u32,
     path: impl Fn(f64) -> Vector<f64, D>,
-    mut motion: impl FnMut(&mut UnprotectedServo<D>, f64),
+    mut motion: impl FnMut(&mut Servo<D, Unprotected>, f64),
 ) -> (f64, Vec<Event>) {
     let (mut last, mut step, mut events) = (None::<Vector<f64, D>>, 0.0_f64, Vec::new());
     for tick in 0..ticks {
@@ -108,7 +108,7 @@ fn a_trembling_hand_in_a_corner_of_two_materials_feels_smooth() {
             * (50.0 * time).min(1.0)
             + Vector([0.001, 0.001, 0.0]) * (1.0 - 50.0 * time).max(0.0)
     };
-    let still = |_: &mut UnprotectedServo<3>, _| {};
+    let still = |_: &mut Servo<3, Unprotected>, _| {};
     let pairs = [(1000.0, 200.0), (800.0, 300.0), (2000.0, 100.0)];
     for (a, b) in pairs {
         for friction in [0.0, 0.4] {
@@ -134,7 +134,7 @@ fn a_box_on_a_table_of_other_material_is_felt_as_smoothly() {
         let swing = 2e-4 * (30.0 * time).sin();
         Vector([0.004 - 0.007 * gone + swing, 0.004 - 0.006 * gone, 3e-4 * (50.0 * time).sin()])
     };
-    let still = |_: &mut UnprotectedServo<3>, _| {};
+    let still = |_: &mut Servo<3, Unprotected>, _| {};
     let pairs = [
         (Material::rubber(), Material::glass()),
         (Material::skin(), Material::glass()),
@@ -195,7 +195,7 @@ fn wedges_of_several_materials_are_smooth() {
                 + Vector([0.0, 0.02, 0.02]) * (1.0 - gone)
                 + Vector(sway)
         };
-        let motion = |servo: &mut UnprotectedServo<3>, time: f64| {
+        let motion = |servo: &mut Servo<3, Unprotected>, time: f64| {
             if moves > 0.0 {
                 let pose = Pose::translation(carry(time));
                 (0..of.len()).for_each(|body| servo.set_pose(body, pose));
@@ -233,7 +233,7 @@ fn a_point_finds_no_crack_between_bodies_that_touch() {
         .with_rise_time(1e-9);
     for below in [1e-5, 1e-3, 5e-3] {
         let bodies = Bodies::new(bodies.clone()).unwrap();
-        let mut servo = UnprotectedServo::new(bodies, 1, options).unwrap();
+        let mut servo = Servo::new(bodies, 1, options).unwrap();
         for tick in 0..2000 {
             let gone = f64::from(tick) / 2000.0;
             let device = Vector([0.06 - 0.04 * gone, 0.002 - (0.002 + below) * gone, 0.01]);

@@ -6,10 +6,9 @@
 
 use crate::common::wild::wave;
 use crate::common::{Scaled, ball, cuboid, half_space};
+use palpate_device::PointState;
 use palpate_field::{BoundingBall, Pose, Promise, Shape, Vector};
-use palpate_haptics::{
-    Bodies, Body, Material, PointState, Probe, ServoOptions, Surface, UnprotectedServo,
-};
+use palpate_haptics::{Bodies, Body, Material, Probe, Servo, ServoOptions, Surface};
 use palpate_haptics::{Layer, Magnet, Texture, TextureKind};
 
 /// Two springs of nothing, a wall of honey, glue, and other things.
@@ -52,7 +51,7 @@ fn plays<const D: usize>(name: &str, material: &Material, radius: f64) {
     let bodies = shapes.into_iter().map(body).collect::<Result<_, _>>().unwrap();
     let probe = Probe::new(radius).unwrap();
     let options = ServoOptions::default().with_probe(probe);
-    let mut servo = UnprotectedServo::new(Bodies::new(bodies).unwrap(), 1, options).unwrap();
+    let mut servo = Servo::new(Bodies::new(bodies).unwrap(), 1, options).unwrap();
     let mut contacts = 0;
     for tick in 0..3000 {
         let time = f64::from(tick) / 1500.0;
@@ -91,7 +90,7 @@ fn a_floor_without_bounds_is_felt_among_many_bodies() {
     }
     let probe = Probe::new(0.002).unwrap();
     let options = ServoOptions::default().with_probe(probe);
-    let mut servo = UnprotectedServo::new(Bodies::new(bodies).unwrap(), 1, options).unwrap();
+    let mut servo = Servo::new(Bodies::new(bodies).unwrap(), 1, options).unwrap();
     for x in [-100.0, 0.0, 0.3, 100.0] {
         servo.step(&[PointState::at_rest(Vector([x, 0.05, 0.0]))]);
         let touch = servo.step(&[PointState::at_rest(Vector([x, 0.001, 0.0]))])[0];
@@ -112,7 +111,7 @@ fn twisted_and_bent_bodies_are_felt_among_many() {
     });
     let bodies = Bodies::new(bodies.collect::<Result<_, _>>().unwrap()).unwrap();
     let options = ServoOptions::default().with_probe(Probe::new(0.002).unwrap());
-    let mut servo = UnprotectedServo::new(bodies, 1, options).unwrap();
+    let mut servo = Servo::new(bodies, 1, options).unwrap();
     for i in 0..12 {
         let x = 0.15 * f64::from(i);
         servo.step(&[PointState::at_rest(Vector([x, 0.3, 0.0]))]);
@@ -140,7 +139,7 @@ fn bodies_known_in_regions_apart_touch_nothing_and_enter_nothing() {
         Body::new(shape, Surface::default()).unwrap().at(at).unwrap()
     };
     let bodies = Bodies::new(vec![known(-0.1), known(0.1)]).unwrap();
-    let mut servo = UnprotectedServo::new(bodies, 1, ServoOptions::default()).unwrap();
+    let mut servo = Servo::new(bodies, 1, ServoOptions::default()).unwrap();
     for tick in 0..1000 {
         let x = 0.2 * wave(f64::from(tick) / 500.0);
         let touch = servo.step(&[PointState::at_rest(Vector([x, 0.01, 0.0]))])[0];

@@ -7,18 +7,20 @@
 
 use std::time::Duration;
 
-use palpate_devices::{
-    Calls, Fault, FaultKind, Hand, HandPath, Interpolation, MailboxDevice, RecordedDevice,
-    SimulatedDevice, SimulatedTransport,
+use palpate_device::MailboxDevice;
+use palpate_device::{
+    Buttons, Device, DeviceLost, DeviceProfile, GripperProfile, GripperState, PointState,
+    Reading,
 };
 use palpate_field::{Shape, Vector};
-use palpate_haptics::{
-    Buttons, Device, DeviceLost, DeviceProfile, EventKind, GripperProfile, GripperState,
-    HapticsError, PointState, Reading, Servo, UnprotectedServo,
-};
-use palpate_loop::{
+use palpate_haptics::servo_loop::{
     Ending, Pace, Reconnection, RunOptions, ServoThread, ThreadOptions, VirtualClock, run,
     run_on,
+};
+use palpate_haptics::{EventKind, HapticsError, Servo};
+use palpate_sim::{
+    Calls, Fault, FaultKind, Hand, HandPath, Interpolation, RecordedDevice, SimulatedDevice,
+    SimulatedTransport,
 };
 
 /// A device that keeps the names of the calls, and fails or panics in one of them.
@@ -287,7 +289,7 @@ fn a_pacing_device_gives_the_time_and_the_lateness() {
     let mut servo = Servo::for_device(wall(), &device).unwrap();
     assert_eq!(servo.options().rate, 500.0);
     let mut times = Vec::new();
-    let mut sink = |row: &palpate_loop::TraceRow<2>| times.push(row.time_s);
+    let mut sink = |row: &palpate_haptics::servo_loop::TraceRow<2>| times.push(row.time_s);
     let options = RunOptions::new(1.0).with_pace(Pace::Device).with_sink(&mut sink);
     let report = run_on(&mut VirtualClock::new(), &mut servo, &mut device, options).unwrap();
     assert_eq!((report.ticks, report.connection.stale_ticks), (500, 6));
@@ -362,7 +364,7 @@ fn a_pace_or_a_rate_that_does_not_fit_is_refused() {
 
     for rate in [400.0, 600.0] {
         let options = palpate_haptics::ServoOptions::default().with_rate(rate);
-        let servo = UnprotectedServo::new(wall(), 1, options).unwrap();
+        let servo = Servo::new(wall(), 1, options).unwrap();
         let protection = palpate_haptics::Protection::new(pacing.profile().clone());
         let error = servo.protected(&protection).unwrap().check_device(&pacing).unwrap_err();
         assert_eq!(error, HapticsError::Rate { servo: rate, device: 500.0 });

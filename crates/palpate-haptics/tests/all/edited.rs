@@ -9,12 +9,14 @@ use crate::common::tools::smooth;
 use crate::common::{AnyServo, ball, body, cases, cuboid, direction, unit};
 use arbitrary::Unstructured;
 use assert_no_alloc::assert_no_alloc;
-use palpate_devices::profile_named;
+use palpate_device::PointState;
+use palpate_device::profile_named;
 use palpate_field::{Point, Pose, Shape, Vector};
 use palpate_haptics::{
-    Bodies, Body, Event, EventKind, Layer, Material, PointState, PopThrough, Probe, Protection,
-    Recovery, Servo, ServoOptions, Shell, Surface, Tool, ToolOptions, UnprotectedServo,
+    Bodies, Body, Event, EventKind, Layer, Material, PopThrough, Probe, Protection, Servo,
+    ServoOptions, Shell, Surface, Tool, ToolOptions,
 };
+use palpate_safety::Recovery;
 
 /// The most by which a force changes in a tick after an edit [N].
 const STEP: f64 = 0.3;
@@ -50,11 +52,11 @@ fn options(radius: f64) -> ServoOptions {
 }
 
 fn protection(recovery: Recovery) -> Protection<3> {
-    Protection::new(profile_named("omega").unwrap()).with_recovery(recovery)
+    Protection::new(profile_named("omega").unwrap()).with(|s| s.recovery = recovery)
 }
 
 fn point(bodies: Bodies<3>, radius: f64, recovery: Recovery) -> Servo<3> {
-    let plain = UnprotectedServo::new(bodies, 1, options(radius)).unwrap();
+    let plain = Servo::new(bodies, 1, options(radius)).unwrap();
     plain.protected(&protection(recovery)).unwrap()
 }
 
@@ -388,7 +390,7 @@ fn a_random_edit<const D: usize>(u: &mut Unstructured<'_>) -> arbitrary::Result<
     let after = || bodies_of(grown::<D>(sort, size, growth), motion);
     let depth = 0.0015 + 0.001 * unit(u)?;
     let (inwards, aim) = (-direction::<D>(u)?, direction::<D>(u)? * (0.5 * size));
-    let servo = UnprotectedServo::new(before(), 1, options(radius).with_rate(1000.0));
+    let servo = Servo::new(before(), 1, options(radius).with_rate(1000.0));
     let mut plain = servo.unwrap();
     let (mut place, mut pressed) = (aim - inwards * 0.08, false);
     for _ in 0..160 {
@@ -530,7 +532,7 @@ fn a_tool_is_carried_likewise() {
             for part in [0.005, 0.5, 0.99, 1.2] {
                 let coupling = ToolOptions::default().with_stiffness(1000.0).with_damping(0.0);
                 let tool = Tool::new(shell.clone(), coupling).unwrap();
-                let plain = UnprotectedServo::with_tool(plate(0.02), tool, options(0.002));
+                let plain = Servo::with_tool(plate(0.02), tool, options(0.002));
                 let mut servo = plain.unwrap().protected(&protection(recovery)).unwrap();
                 let place = press(&mut servo, 0.0014, 0.002);
                 let mut last = servo.forces()[0];

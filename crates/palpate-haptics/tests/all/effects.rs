@@ -6,10 +6,9 @@
 
 use crate::common::ball;
 use assert_no_alloc::assert_no_alloc;
+use palpate_device::PointState;
 use palpate_field::{Shape, Vector};
-use palpate_haptics::{
-    Curve, Guide, GuideOptions, Material, PointState, ServoOptions, UnprotectedServo,
-};
+use palpate_haptics::{Curve, Guide, GuideOptions, Material, Servo, ServoOptions};
 use palpate_vibration::{
     ACTUATORS, ActuatorArray, Cue, Mapping, MappingOptions, Publisher, Synthesiser, Tap, Voice,
     one_channel, two_channels,
@@ -46,7 +45,7 @@ fn a_tick_with_guides_and_vibration_allocates_nothing() {
     let wood = Material::preset("wood").unwrap();
     let impact = wood.impact.as_ref().map(Tap::from);
     let mut guides = guides();
-    let mut servo = UnprotectedServo::new(ball(0.05), 1, ServoOptions::default()).unwrap();
+    let mut servo = Servo::new(ball(0.05), 1, ServoOptions::default()).unwrap();
     let mapping = Mapping::new(MappingOptions::default()).unwrap();
     let mut voice = Voice::new(&mapping, 1000.0).unwrap();
     let mut synthesiser = Synthesiser::new(&mapping, 8000.0, 1).unwrap();
@@ -64,7 +63,7 @@ fn a_tick_with_guides_and_vibration_allocates_nothing() {
             let [touch] = servo.step(&[state]) else { return };
             let began = touch.contact && !touching;
             touching = touch.contact;
-            let cue = Cue::of_touch(touch, began);
+            let cue = touch.cue(began);
             let felt = mapping.feel(&Cue { wavelength: Some(1e-3), impact, ..cue });
             taps += u32::from(felt.tap.is_some());
             let tones = voice.step(&felt);
@@ -97,17 +96,17 @@ fn a_tick_with_guides_and_vibration_allocates_nothing() {
 #[test]
 fn a_cue_is_what_the_touch_is() {
     let shape: Shape<2> = ball(0.5);
-    let mut servo = UnprotectedServo::new(shape, 1, ServoOptions::default()).unwrap();
+    let mut servo = Servo::new(shape, 1, ServoOptions::default()).unwrap();
     servo.step(&[PointState::at_rest(Vector([0.0, 0.6]))]);
     // The probe has a radius of 2 mm: 1 mm below where it rests.
     let state = PointState { position: Vector([0.0, 0.501]), velocity: Vector([0.25, -0.125]) };
     let [touch] = servo.step(&[state]) else { panic!("one point") };
-    let cue = Cue::of_touch(touch, true);
+    let cue = touch.cue(true);
     assert!((cue.depth - 1e-3).abs() < 1e-7);
     // 500 N/m and 1 N·s/m.
     assert!((cue.normal_force - 0.625).abs() < 1e-4);
     assert!((cue.normal_speed - 0.125).abs() < 1e-4 && (cue.slide_speed - 0.25).abs() < 1e-4);
     assert!(cue.began);
     let [free] = servo.step(&[PointState::at_rest(Vector([0.0, 0.6]))]) else { panic!() };
-    assert_eq!(Cue::of_touch(free, false), Cue::default());
+    assert_eq!(free.cue(false), Cue::default());
 }

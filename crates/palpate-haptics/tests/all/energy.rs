@@ -5,11 +5,10 @@
 #![expect(clippy::unwrap_used, reason = "a test that cannot be set up fails")]
 
 use crate::common::{ball, body, cases, cuboid, half_space, scaled, torus, vector};
+use palpate_device::PointState;
 use palpate_field::operator::Profile;
 use palpate_field::{Point, Shape, Vector};
-use palpate_haptics::{
-    Bodies, Material, PointState, Probe, ServoOptions, Surface, UnprotectedServo,
-};
+use palpate_haptics::{Bodies, Material, Probe, Servo, ServoOptions, Surface, Unprotected};
 use palpate_haptics::{Layer, Magnet, Texture, TextureKind};
 
 /// The most that may be gained over a closed path [J].
@@ -37,10 +36,10 @@ fn surface<const D: usize>(material: &Material) -> Surface<D> {
     Surface::new(material).unwrap()
 }
 
-fn servo<const D: usize>(bodies: Bodies<D>, radius: f64) -> UnprotectedServo<D> {
+fn servo<const D: usize>(bodies: Bodies<D>, radius: f64) -> Servo<D, Unprotected> {
     let probe = Probe::new(radius).unwrap();
     let options = ServoOptions::default().with_probe(probe).with_max_force(f64::INFINITY);
-    UnprotectedServo::new(bodies, 1, options).unwrap()
+    Servo::new(bodies, 1, options).unwrap()
 }
 
 /// The work that the force does on the hand in one turn of a closed path [J], by the
@@ -48,7 +47,7 @@ fn servo<const D: usize>(bodies: Bodies<D>, radius: f64) -> UnprotectedServo<D> 
 ///
 /// The rule errs by about `K Δ² / 12` wherever the stiffness sets in, for steps of `Δ`.
 fn work<const D: usize>(
-    servo: &mut UnprotectedServo<D>,
+    servo: &mut Servo<D, Unprotected>,
     path: impl Fn(f64) -> Point<D>,
 ) -> f64 {
     let mut last = None;

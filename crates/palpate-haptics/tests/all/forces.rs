@@ -5,11 +5,13 @@
 #![expect(clippy::unwrap_used, reason = "a test that cannot be set up fails")]
 
 use crate::common::{ball, body, cuboid, half_space};
+use palpate_device::{DeviceError, DeviceProfile, PointState};
 use palpate_field::{Point, Pose, Shape, Vector};
 use palpate_haptics::{
-    Acceptance, DeviceProfile, HapticsError, Layer, Material, PointState, Probe, Protection,
-    ServoOptions, Surface, Touch, UnprotectedServo, WorkspaceMap,
+    HapticsError, Layer, Material, Probe, Protection, Servo, ServoOptions, Surface, Touch,
+    Unprotected,
 };
+use palpate_safety::{Acceptance, WorkspaceMap};
 
 const STIFFNESS: f64 = 1000.0;
 
@@ -18,17 +20,17 @@ fn servo<const D: usize>(
     shape: &Shape<D>,
     radius: f64,
     (stiffness, options): (f64, ServoOptions),
-) -> UnprotectedServo<D> {
+) -> Servo<D, Unprotected> {
     let options = options.with_probe(Probe::new(radius).unwrap());
     let surface = Surface::smooth(stiffness, 0.0).unwrap();
-    UnprotectedServo::new(body(shape, surface), 1, options).unwrap()
+    Servo::new(body(shape, surface), 1, options).unwrap()
 }
 
 fn spring_alone(stiffness: f64) -> (f64, ServoOptions) {
     (stiffness, ServoOptions::default().with_max_force(f64::INFINITY))
 }
 
-fn touch<const D: usize>(servo: &mut UnprotectedServo<D>, device: Point<D>) -> Touch<D> {
+fn touch<const D: usize>(servo: &mut Servo<D, Unprotected>, device: Point<D>) -> Touch<D> {
     servo.step(&[PointState::at_rest(device)])[0]
 }
 
@@ -121,7 +123,7 @@ fn the_damper_resists_the_approach_alone() {
     let floor = half_space([0.0, 1.0, 0.0], 0.0);
     let surface = Surface::smooth(512.0, 4.0).unwrap();
     let options = ServoOptions::default().with_probe(Probe::new(0.0).unwrap());
-    let mut servo = UnprotectedServo::new(body(&floor, surface), 1, options).unwrap();
+    let mut servo = Servo::new(body(&floor, surface), 1, options).unwrap();
     let position = Vector([0.0, -0.001953125, 0.0]);
     touch(&mut servo, Vector([0.0, 0.5, 0.0]));
     let mut force_at = |velocity| servo.step(&[PointState { position, velocity }])[0].force;
@@ -252,7 +254,7 @@ fn numbers_that_are_not_finite_give_no_force_and_are_survived() {
 #[test]
 fn every_point_of_a_servo_is_its_own() {
     let options = spring_alone(500.0).1.with_probe(Probe::new(0.0).unwrap());
-    let mut servo = UnprotectedServo::new(half_space([0.0, 1.0], 0.0), 3, options).unwrap();
+    let mut servo = Servo::new(half_space([0.0, 1.0], 0.0), 3, options).unwrap();
     let at = |y: f64| PointState::at_rest(Vector([0.0, y]));
     servo.step(&[at(1.0), at(1.0), at(1.0)]);
     let touches = servo.step(&[at(-0.5), at(1.0), at(-0.25)]);
@@ -263,9 +265,9 @@ fn every_point_of_a_servo_is_its_own() {
 #[test]
 fn wrong_options_are_refused_with_their_numbers() {
     let shape = ball::<2>(1.0);
-    let with = |options| UnprotectedServo::new(shape.clone(), 1, options).map(|_| ());
-    let none = UnprotectedServo::new(shape.clone(), 0, ServoOptions::default()).map(|_| ());
-    assert_eq!(none, Err(HapticsError::NoContactPoint));
+    let with = |options| Servo::new(shape.clone(), 1, options).map(|_| ());
+    let none = Servo::new(shape.clone(), 0, ServoOptions::default()).map(|_| ());
+    assert_eq!(none, Err(HapticsError::Device(DeviceError::NoContactPoint)));
     let error = with(ServoOptions::default().with_rate(0.0)).unwrap_err();
     assert_eq!(error.to_string(), "rate must be from 1e-6 to 1e9, got 0 Hz");
     assert!(with(ServoOptions::default().with_max_force(f64::NAN)).is_err());
@@ -296,7 +298,7 @@ fn a_relative_stiffness_is_a_part_of_what_the_device_renders() {
     let accepted = |device: DeviceProfile, rate: f64, scale: f64| {
         let bodies = body(&ball::<3>(0.05), Surface::new(&half).unwrap());
         let options = ServoOptions::default().with_rate(rate);
-        let servo = UnprotectedServo::new(bodies, 1, options).unwrap();
+        let servo = Servo::new(bodies, 1, options).unwrap();
         let map = WorkspaceMap::new(Pose::identity(), scale).unwrap();
         let servo = servo.protected(&Protection::new(device).with_map(map)).unwrap();
         (servo.accepted()[0].clone(), servo.bodies().bodies()[0].surface().stiffness())
@@ -327,8 +329,8 @@ fn a_device_without_damping_takes_a_material_as_it_is() {
     let accepted = |relative_stiffness, acceptance| {
         let material = Material { relative_stiffness, ..Material::default() };
         let bodies = body(&ball::<3>(0.05), Surface::new(&material).unwrap());
-        let servo = UnprotectedServo::new(bodies, 1, ServoOptions::default()).unwrap();
-        let protection = Protection::new(device.clone()).with_acceptance(acceptance);
+        let servo = Servo::new(bodies, 1, ServoOptions::default()).unwrap();
+        let protection = Protection::new(device.clone()).with(|s| s.acceptance = acceptance);
         servo.protected(&protection).map(|servo| servo.accepted()[0].stiffness_factor)
     };
     assert_eq!(accepted(None, Acceptance::AsIs).unwrap(), 1.0);

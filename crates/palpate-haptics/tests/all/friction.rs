@@ -5,9 +5,10 @@
 #![expect(clippy::unwrap_used, reason = "a test that cannot be set up fails")]
 
 use crate::common::{ball, body, cuboid, half_space, torus};
+use palpate_device::PointState;
 use palpate_field::{Point, Shape, Vector};
 use palpate_haptics::{
-    EventKind, Material, PointState, Probe, ServoOptions, Surface, Touch, UnprotectedServo,
+    EventKind, Material, Probe, Servo, ServoOptions, Surface, Touch, Unprotected,
 };
 
 const STIFFNESS: f64 = 512.0;
@@ -16,7 +17,7 @@ fn rough<const D: usize>(
     shape: &Shape<D>,
     friction: [f64; 2],
     radius: f64,
-) -> UnprotectedServo<D> {
+) -> Servo<D, Unprotected> {
     let material = Material {
         stiffness: STIFFNESS,
         damping: 0.0,
@@ -27,10 +28,10 @@ fn rough<const D: usize>(
     let options = ServoOptions::default()
         .with_probe(Probe::new(radius).unwrap())
         .with_max_force(f64::INFINITY);
-    UnprotectedServo::new(body(shape, Surface::new(&material).unwrap()), 1, options).unwrap()
+    Servo::new(body(shape, Surface::new(&material).unwrap()), 1, options).unwrap()
 }
 
-fn touch<const D: usize>(servo: &mut UnprotectedServo<D>, device: Point<D>) -> Touch<D> {
+fn touch<const D: usize>(servo: &mut Servo<D, Unprotected>, device: Point<D>) -> Touch<D> {
     servo.step(&[PointState::at_rest(device)])[0]
 }
 
@@ -68,7 +69,7 @@ fn a_hand_sticks_within_the_cone_and_slips_beyond_it() {
 /// The work that the force does on a hand over a closed path [J], and what is taken of it as
 /// heat if there is friction. The force is held over a tick, as a device holds it.
 fn work<const D: usize>(
-    servo: &mut UnprotectedServo<D>,
+    servo: &mut Servo<D, Unprotected>,
     path: impl Fn(f64) -> Point<D>,
 ) -> f64 {
     const TICKS: u32 = 40_000;

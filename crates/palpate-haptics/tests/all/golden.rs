@@ -5,8 +5,8 @@
 
 use crate::common::wild::{bodies, servo, step};
 use crate::common::{AnyServo, protected};
+use palpate_device::PointState;
 use palpate_field::Vector;
-use palpate_haptics::PointState;
 
 const TICKS: u32 = 6000;
 

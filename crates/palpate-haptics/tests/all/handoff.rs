@@ -8,15 +8,16 @@ use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
 use crate::common::{ball, body, half_space, without_limits};
+use palpate_device::{Device, DeviceLost, DeviceProfile, PointState, Reading};
 use palpate_field::{CustomField, Point, Pose, Promise, Shape, Vector};
-use palpate_haptics::{
-    Acceptance, Bodies, Body, Device, DeviceLost, DeviceProfile, EventKind, HandoffOptions,
-    HapticsError, PointState, Probe, Protection, Reading, Servo, ServoOptions, Surface,
-    UnprotectedServo, handoff,
-};
-use palpate_loop::{
+use palpate_haptics::servo_loop::{
     ClockDriver, Ending, Priority, ServoThread, StartError, ThreadOptions, VirtualClock,
 };
+use palpate_haptics::{
+    Bodies, Body, EventKind, HandoffOptions, HapticsError, Probe, Protection, Servo,
+    ServoOptions, Surface, Unprotected, handoff,
+};
+use palpate_safety::Acceptance;
 
 const TICK: Duration = Duration::from_millis(1);
 
@@ -71,11 +72,11 @@ impl Device<2> for Hand {
     }
 }
 
-fn unprotected(bodies: impl Into<Bodies<2>>, points: usize) -> UnprotectedServo<2> {
+fn unprotected(bodies: impl Into<Bodies<2>>, points: usize) -> Servo<2, Unprotected> {
     let options = ServoOptions::default()
         .with_probe(Probe::new(0.0).unwrap())
         .with_max_force(f64::INFINITY);
-    UnprotectedServo::new(bodies, points, options).unwrap()
+    Servo::new(bodies, points, options).unwrap()
 }
 
 fn servo(bodies: impl Into<Bodies<2>>, points: usize) -> Servo<2> {
@@ -116,9 +117,10 @@ fn bodies_handed_to_a_protected_servo_are_as_soft_as_its_device_needs() {
             body(&half_space([0.0, 1.0], 0.0), Surface::smooth(64.0, 0.0).unwrap()),
             1,
         );
-        let protection = Protection::new(profile.clone())
-            .with_acceptance(Acceptance::Passive)
-            .with_strictness(is_strict);
+        let protection = Protection::new(profile.clone()).with(|s| {
+            s.acceptance = Acceptance::Passive;
+            s.is_strict = is_strict
+        });
         let mut servo = servo.protected(&protection).unwrap();
         let (mut control, mut end) = handoff(&servo, HandoffOptions::default());
         // 2 b / T is 128 N/m.
@@ -312,7 +314,7 @@ fn ten_kilohertz_have_ten_times_the_ticks() {
     let run = |rate| {
         let hand = Hand::at(&[[0.0, -0.001]]);
         let options = ServoOptions::default().with_rate(rate);
-        let servo = UnprotectedServo::new(half_space([0.0, 1.0], 0.0), 1, options).unwrap();
+        let servo = Servo::new(half_space([0.0, 1.0], 0.0), 1, options).unwrap();
         let servo = without_limits(servo);
         let options = plain().with_duration(0.5);
         let hand_of_thread = Box::new(hand.clone());

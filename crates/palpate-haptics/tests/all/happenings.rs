@@ -6,11 +6,9 @@
 
 use crate::common::wild::{servo, step};
 use crate::common::{ball, half_space};
+use palpate_device::PointState;
 use palpate_field::{Pose, Vector};
-use palpate_haptics::{
-    Bodies, Body, EventKind, Material, PointState, Probe, ServoOptions, Surface,
-    UnprotectedServo,
-};
+use palpate_haptics::{Bodies, Body, EventKind, Material, Probe, Servo, ServoOptions, Surface};
 use palpate_haptics::{Layer, PopThrough};
 
 /// Plays a wild scene, and checks every event against the state before it.
@@ -82,8 +80,7 @@ fn a_reaction_is_the_wanted_force_turned_round_and_its_torque() {
     let surface = Surface::smooth(512.0, 0.0).unwrap();
     let at = Pose::translation(Vector([1.0, 0.25, 0.5]));
     let floor = Body::new(half_space([0.0, 1.0, 0.0], -0.25), surface).unwrap().at(at).unwrap();
-    let mut servo =
-        UnprotectedServo::new(Bodies::new(vec![floor]).unwrap(), 2, options()).unwrap();
+    let mut servo = Servo::new(Bodies::new(vec![floor]).unwrap(), 2, options()).unwrap();
     let state = |y: f64| PointState::at_rest(Vector([0.5, y, 0.125]));
     servo.step(&[state(0.5), state(0.5)]);
     let touches = servo.step(&[state(-0.0078125), state(0.5)]).to_vec();
@@ -105,8 +102,7 @@ fn a_reaction_is_the_wanted_force_turned_round_and_its_torque() {
 fn in_the_plane_a_torque_is_about_z() {
     let surface = Surface::smooth(512.0, 0.0).unwrap();
     let floor = Body::new(half_space([0.0, 1.0], 0.0), surface).unwrap();
-    let mut servo =
-        UnprotectedServo::new(Bodies::new(vec![floor]).unwrap(), 1, options()).unwrap();
+    let mut servo = Servo::new(Bodies::new(vec![floor]).unwrap(), 1, options()).unwrap();
     servo.step(&[PointState::at_rest(Vector([0.5, 0.5]))]);
     servo.step(&[PointState::at_rest(Vector([0.5, -0.0078125]))]);
     let off = servo.reactions()[0].torque - Vector([0.0, 0.0, -2.0]);
@@ -137,8 +133,7 @@ fn every_layer_pops_once() {
     };
     let body = Body::new(ball::<3>(0.05), Surface::new(&material).unwrap()).unwrap();
     let options = options().with_max_force(f64::INFINITY);
-    let mut servo =
-        UnprotectedServo::new(Bodies::new(vec![body]).unwrap(), 1, options).unwrap();
+    let mut servo = Servo::new(Bodies::new(vec![body]).unwrap(), 1, options).unwrap();
     for _ in 0..3 {
         let mut popped = Vec::new();
         for tick in 0..200 {

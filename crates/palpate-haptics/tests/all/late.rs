@@ -7,12 +7,13 @@
 
 use crate::common::tools::smooth;
 use crate::common::{body, half_space};
-use palpate_devices::profile_named;
+use palpate_device::profile_named;
+use palpate_device::{PointState, Reading, TurnState};
 use palpate_field::{Pose, Vector};
 use palpate_haptics::{
-    Bodies, Material, PointState, Probe, Protection, Reading, Recovery, Servo, ServoOptions,
-    Shell, Surface, Tool, ToolOptions, TurnState, UnprotectedServo,
+    Bodies, Material, Probe, Protection, Servo, ServoOptions, Shell, Surface, Tool, ToolOptions,
 };
+use palpate_safety::Recovery;
 
 const PERIOD: f64 = 1e-3;
 
@@ -46,17 +47,17 @@ fn servo(held: Held, stiffness: f64, recovery: Recovery) -> Servo<3> {
         Held::Point | Held::Tool => profile_named("omega").unwrap(),
     };
     let plain = match held {
-        Held::Point => UnprotectedServo::new(ground(stiffness, 0.0), 1, options),
+        Held::Point => Servo::new(ground(stiffness, 0.0), 1, options),
         Held::Tool | Held::Turning => {
             let coupling = ToolOptions::default()
                 .with_stiffness(stiffness)
                 .with_damping(0.0)
                 .with_rise_time(1e-9);
             let tool = Tool::new(Shell::ball(0.002).unwrap(), coupling).unwrap();
-            UnprotectedServo::with_tool(ground(stiffness, 0.0), tool, options)
+            Servo::with_tool(ground(stiffness, 0.0), tool, options)
         }
     };
-    let protection = Protection::new(profile).with_recovery(recovery);
+    let protection = Protection::new(profile).with(|s| s.recovery = recovery);
     let mut servo = plain.unwrap().protected(&protection).unwrap();
     if held == Held::Turning {
         let orientation = Pose::identity().rotation;

@@ -6,12 +6,13 @@
 
 use crate::common::tools::smooth;
 use crate::common::{body, cuboid, without_limits};
+use palpate_device::{DeviceProfile, PointState};
 use palpate_field::{Point, Vector};
 use palpate_haptics::{
-    Acceptance, Bodies, DeviceProfile, EventKind, Guide, GuideOptions, HandoffOptions,
-    PointState, Progress, Protection, Recovery, Servo, ServoOptions, Shell, Surface, Tool,
-    ToolOptions, UnprotectedServo, handoff,
+    Bodies, EventKind, Guide, GuideOptions, HandoffOptions, Progress, Protection, Servo,
+    ServoOptions, Shell, Surface, Tool, ToolOptions, Unprotected, handoff,
 };
+use palpate_safety::{Acceptance, Recovery};
 
 /// A slab of ±1 cm around y = 0.
 fn slab() -> Bodies<3> {
@@ -22,14 +23,14 @@ fn options() -> ServoOptions {
     ServoOptions::default().with_max_force(f64::INFINITY)
 }
 
-fn with_points() -> UnprotectedServo<3> {
-    UnprotectedServo::new(slab(), 2, options()).unwrap()
+fn with_points() -> Servo<3, Unprotected> {
+    Servo::new(slab(), 2, options()).unwrap()
 }
 
-fn with_tool() -> UnprotectedServo<3> {
+fn with_tool() -> Servo<3, Unprotected> {
     let ends = [Vector([-0.04, 0.0, 0.0]), Vector([0.04, 0.0, 0.0])];
     let tool = Tool::new(Shell::capsule(ends, 0.01, 41).unwrap(), ToolOptions::default());
-    UnprotectedServo::with_tool(slab(), tool.unwrap(), options()).unwrap()
+    Servo::with_tool(slab(), tool.unwrap(), options()).unwrap()
 }
 
 fn at(y: f64) -> [PointState<3>; 2] {
@@ -79,7 +80,10 @@ fn a_lifted_hand_goes_through_a_wall_and_feels_nothing() {
 fn a_hand_that_is_set_down_in_a_body_is_pushed_out_gently_or_not_at_all() {
     let largest = |recovery| {
         let device = DeviceProfile::unlimited("gentle").with_max_force(12.0);
-        let protection = Protection::new(device).with_recovery(recovery).with_rise_rate(10.0);
+        let protection = Protection::new(device).with(|s| {
+            s.recovery = recovery;
+            s.rise_rate = 10.0
+        });
         let mut servo = with_points().protected(&protection).unwrap();
         servo.lift(true);
         servo.step(&at(0.005));
@@ -137,7 +141,7 @@ fn a_state_that_is_not_finite_leaves_a_lifted_proxy_where_it_was() {
 #[test]
 fn lift_and_guides_are_handed_off() {
     let device = DeviceProfile::unlimited("gentle").with_least_damping(0.064);
-    let protection = Protection::new(device).with_acceptance(Acceptance::Passive);
+    let protection = Protection::new(device).with(|s| s.acceptance = Acceptance::Passive);
     let mut servo: Servo<3> = with_points().protected(&protection).unwrap();
     let guide = Guide::to_point(
         Vector([0.0, 0.1, 0.0]),

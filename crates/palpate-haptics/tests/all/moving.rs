@@ -5,14 +5,13 @@
 #![expect(clippy::unwrap_used, reason = "a test that cannot be set up fails")]
 
 use crate::common::{ball, body, cuboid};
+use palpate_device::PointState;
 use palpate_field::{Point, Pose, Rotation, Shape, Vector};
-use palpate_haptics::{
-    Bodies, Body, PointState, Probe, ServoOptions, Surface, Touch, UnprotectedServo,
-};
+use palpate_haptics::{Bodies, Body, Probe, Servo, ServoOptions, Surface, Touch, Unprotected};
 
 const STIFFNESS: f64 = 512.0;
 
-fn servo(shapes: Vec<(Shape<3>, Point<3>)>, radius: f64) -> UnprotectedServo<3> {
+fn servo(shapes: Vec<(Shape<3>, Point<3>)>, radius: f64) -> Servo<3, Unprotected> {
     let surface = || Surface::smooth(STIFFNESS, 0.0).unwrap();
     let bodies = shapes
         .into_iter()
@@ -20,10 +19,10 @@ fn servo(shapes: Vec<(Shape<3>, Point<3>)>, radius: f64) -> UnprotectedServo<3> 
     let bodies = Bodies::new(bodies.collect::<Result<_, _>>().unwrap()).unwrap();
     let probe = Probe::new(radius).unwrap();
     let options = ServoOptions::default().with_probe(probe).with_max_force(f64::INFINITY);
-    UnprotectedServo::new(bodies, 1, options).unwrap()
+    Servo::new(bodies, 1, options).unwrap()
 }
 
-fn touch(servo: &mut UnprotectedServo<3>, device: Point<3>) -> Touch<3> {
+fn touch(servo: &mut Servo<3, Unprotected>, device: Point<3>) -> Touch<3> {
     servo.step(&[PointState::at_rest(device)])[0]
 }
 
@@ -148,8 +147,7 @@ fn between_two_jaws_the_hand_is_in_neither() {
 fn a_propeller_at_a_hundred_radians_a_second_does_not_pass_the_hand() {
     // 0.1 rad a tick: its tip goes 10 mm a tick, and is 1 mm thick.
     let blade = cuboid([0.2, 0.001, 0.02]);
-    let mut servo =
-        UnprotectedServo::new(body(&blade, Surface::default()), 1, ServoOptions::default());
+    let mut servo = Servo::new(body(&blade, Surface::default()), 1, ServoOptions::default());
     let servo = servo.as_mut().unwrap();
     let hand = Vector([0.08, 0.02, 0.0]);
     touch(servo, hand);

@@ -7,14 +7,17 @@
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
+use palpate_device::{Device, DeviceLost, DeviceProfile, PointState, Reading};
 use palpate_field::kernel::HalfSpace;
 use palpate_field::{Point, Shape, Vector};
-use palpate_haptics::{
-    Bodies, Body, Device, DeviceLost, DeviceProfile, HandoffOptions, HapticsError, Magnet,
-    Material, PointState, Protection, Reading, SafetyError, Servo, ServoOptions, Surface,
-    UnprotectedServo, handoff,
+use palpate_haptics::servo_loop::{
+    Pace, RunOptions, ServoThread, ThreadOptions, VirtualClock, run,
 };
-use palpate_loop::{Pace, RunOptions, ServoThread, ThreadOptions, VirtualClock, run};
+use palpate_haptics::{
+    Bodies, Body, HandoffOptions, HapticsError, Magnet, Material, Protection, Servo,
+    ServoOptions, Surface, handoff,
+};
+use palpate_safety::SafetyError;
 
 use crate::common::{body, half_space};
 
@@ -143,7 +146,7 @@ fn a_loop_of_ones_own_keeps_the_limits_and_stops() {
 #[test]
 fn a_stop_holds_without_a_safety_chain_too() {
     // Once a stop went over the safety chains, and did nothing where there were none.
-    let mut servo = UnprotectedServo::new(floor(), 1, ServoOptions::default()).unwrap();
+    let mut servo = Servo::new(floor(), 1, ServoOptions::default()).unwrap();
     let inside = [PointState::at_rest(Vector([0.0, -0.001]))];
     servo.step(&[PointState::at_rest(Vector([0.0, 0.1]))]);
     servo.step(&inside);
@@ -202,7 +205,7 @@ fn a_thread_that_is_dropped_writes_its_zero_forces_first() {
 fn a_profile_whose_largest_force_is_none_is_refused() {
     for max_force in [f64::NAN, -1.0, f64::NEG_INFINITY] {
         let profile = Fragile::new().profile.with_max_force(max_force);
-        let servo = UnprotectedServo::new(floor(), 1, ServoOptions::default()).unwrap();
+        let servo = Servo::new(floor(), 1, ServoOptions::default()).unwrap();
         let refused = servo.protected(&Protection::new(profile)).unwrap_err();
         assert!(refused.to_string().starts_with("max_force must be"), "{refused}");
     }
@@ -211,7 +214,7 @@ fn a_profile_whose_largest_force_is_none_is_refused() {
 /// A servo that was stopped before it was protected gave its force at the release at once.
 #[test]
 fn what_was_stopped_before_it_was_protected_is_released_gently() {
-    let mut servo = UnprotectedServo::new(floor(), 1, ServoOptions::default()).unwrap();
+    let mut servo = Servo::new(floor(), 1, ServoOptions::default()).unwrap();
     servo.stop(true);
     let profile = Fragile::new().profile;
     let rate = profile.max_force_rate;
@@ -245,8 +248,8 @@ fn a_magnet_pulls_no_steeper_than_the_device_renders() {
     let body = Body::new(shape, Surface::new(&material).unwrap()).unwrap();
     let bodies = Bodies::new(vec![body]).unwrap();
     let device = DeviceProfile::unlimited("example").with_max_stiffness(1000.0);
-    let servo = UnprotectedServo::new(bodies, 1, ServoOptions::default()).unwrap();
-    let protection = Protection::new(device).with_rise_rate(f64::INFINITY);
+    let servo = Servo::new(bodies, 1, ServoOptions::default()).unwrap();
+    let protection = Protection::new(device).with(|s| s.rise_rate = f64::INFINITY);
     let mut servo = servo.protected(&protection).unwrap();
     servo.step(&[PointState::at_rest(Vector([0.0, 0.00025]))]);
     assert!((servo.forces()[0] - Vector([0.0, -0.25])).norm() < 1e-9, "{:?}", servo.forces());

@@ -6,13 +6,13 @@
 use crate::common::wild::{bodies, servo, step};
 use crate::common::{ball, cuboid, protected, torus};
 use assert_no_alloc::assert_no_alloc;
-use palpate_devices::Tour;
+use palpate_device::{Buttons, DeviceProfile, PointState, Reading};
 use palpate_field::{Pose, Rotation, Shape, Vector};
 use palpate_haptics::{
-    Bodies, Body, Buttons, DeviceProfile, EventKind, Guide, GuideOptions, HandoffOptions,
-    Material, PointState, Progress, Protection, Reading, ServoOptions, Shell, Surface, Tool,
-    ToolOptions, ToolState, UnprotectedServo, handoff,
+    Bodies, Body, EventKind, Guide, GuideOptions, HandoffOptions, Material, Progress,
+    Protection, Servo, ServoOptions, Shell, Surface, Tool, ToolOptions, ToolState, handoff,
 };
+use palpate_sim::Tour;
 
 #[test]
 fn a_step_allocates_and_frees_nothing() {
@@ -24,7 +24,7 @@ fn a_step_allocates_and_frees_nothing() {
     let shape = Shape::union(bodies).unwrap();
     let bounds = shape.promise().bounds.unwrap().aabb;
     let path = Tour::new(bounds, 10.0).unwrap().over(&shape).unwrap();
-    let mut servo = UnprotectedServo::new(shape.clone(), 3, ServoOptions::default()).unwrap();
+    let mut servo = Servo::new(shape.clone(), 3, ServoOptions::default()).unwrap();
     let budget = servo.options().probe.budget();
     let mut next = Some(Bodies::from(shape));
     for tick in 0..10_000 {
@@ -52,7 +52,7 @@ fn a_tick_with_its_hand_off_allocates_and_frees_nothing() {
         let body = |_| Body::new(ball::<3>(0.04), Surface::default());
         Bodies::new((0..count).map(body).collect::<Result<_, _>>().unwrap()).unwrap()
     };
-    let mut servo = UnprotectedServo::new(scene(1), 2, ServoOptions::default()).unwrap();
+    let mut servo = Servo::new(scene(1), 2, ServoOptions::default()).unwrap();
     let room = HandoffOptions::default().with_events(10).with_bodies(100);
     let (mut control, mut end) = handoff(&servo, room);
     let switch = control.stop_switch();
@@ -135,7 +135,7 @@ fn a_servo_with_a_tool_allocates_and_frees_nothing() {
     };
     let shell = Shell::from_field(&torus(0.03, 0.01), 500, 0.0).unwrap();
     let tool = Tool::new(shell, ToolOptions::default()).unwrap();
-    let servo = UnprotectedServo::with_tool(scene(6), tool, ServoOptions::default()).unwrap();
+    let servo = Servo::with_tool(scene(6), tool, ServoOptions::default()).unwrap();
     let profile = DeviceProfile::unlimited("example")
         .with_least_damping(0.3)
         .with_encoder_step(1e-5)

@@ -8,13 +8,14 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
 use crate::common::ball;
-use palpate_devices::{HandPath, Interpolation, RecordedDevice};
+use palpate_device::{Device, DeviceLost, DeviceProfile, PointState, Reading};
 use palpate_field::{Point, Vector};
-use palpate_haptics::{Device, DeviceLost, DeviceProfile, PointState, Reading, Servo};
-use palpate_loop::{
+use palpate_haptics::Servo;
+use palpate_haptics::servo_loop::{
     Ending, Pace, Recorder, RunOptions, ServoThread, ThreadOptions, TraceRow, VirtualClock,
     run, run_on,
 };
+use palpate_sim::{HandPath, Interpolation, RecordedDevice};
 
 /// Two contact points on their way into a ball, for a second.
 fn device() -> RecordedDevice<3> {

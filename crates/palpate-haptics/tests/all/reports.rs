@@ -5,10 +5,10 @@
 #![expect(clippy::unwrap_used, reason = "a test that cannot be set up fails")]
 
 use crate::common::{ball, body, half_space, without_limits};
-use palpate_devices::{HandPath, Interpolation, RecordedDevice};
 use palpate_field::{CustomField, Point, Promise, Shape, Vector};
-use palpate_haptics::{Bodies, Body, Guide, GuideOptions, Servo, Surface, UnprotectedServo};
-use palpate_loop::{Pace, RunOptions, RunReport, run};
+use palpate_haptics::servo_loop::{Pace, RunOptions, RunReport, run};
+use palpate_haptics::{Bodies, Body, Guide, GuideOptions, Servo, Surface};
+use palpate_sim::{HandPath, Interpolation, RecordedDevice};
 
 fn hand(times: &[f64], heights: &[f64]) -> HandPath<2> {
     let positions = heights.iter().map(|y| Vector([0.0, *y])).collect();
@@ -51,8 +51,7 @@ fn a_point_that_begins_inside_is_told_with_its_depth_and_its_time_without_force(
         Body::new(flat, Surface::default()).unwrap(),
     ];
     let bodies = Bodies::new(bodies).unwrap();
-    let mut servo =
-        without_limits(UnprotectedServo::new(bodies, 3, Default::default()).unwrap());
+    let mut servo = without_limits(Servo::new(bodies, 3, Default::default()).unwrap());
     // From the middle out in half a second; one that stays; one that was never inside.
     let leaves = hand(&[0.0, 0.5, 1.0], &[0.0, 0.5, 1.0]);
     let stays = hand(&[0.0, 1.0], &[0.01, 0.01]);
@@ -73,7 +72,7 @@ fn a_point_that_begins_inside_is_told_with_its_depth_and_its_time_without_force(
 fn a_point_that_is_led_out_is_felt() {
     let surface = Surface::smooth(500.0, 0.0).unwrap();
     let bodies = body(&ball::<2>(0.5), surface);
-    let servo = || UnprotectedServo::new(bodies.clone(), 1, Default::default()).unwrap();
+    let servo = || Servo::new(bodies.clone(), 1, Default::default()).unwrap();
     let still = || vec![hand(&[0.0, 1.0], &[0.4988, 0.4988])];
     let report = told(&mut without_limits(servo()), still(), 0.1);
     let [start] = &report.starts_inside[..] else { panic!("{report:?}") };
@@ -97,8 +96,7 @@ fn guides_tell_their_time_force_and_work() {
         Guide::to_point([0.0, -5.0], options.with_snap_distance(0.01)).unwrap(),
     ];
     let ground = half_space([0.0, 1.0], 0.0);
-    let mut servo =
-        without_limits(UnprotectedServo::new(ground, 1, Default::default()).unwrap());
+    let mut servo = without_limits(Servo::new(ground, 1, Default::default()).unwrap());
     servo.guide(&guides).unwrap();
     // 10 mm down and back up onto the plane at 0.1 m/s.
     let hand = hand(&[0.0, 0.1, 0.2], &[1.0, 0.99, 1.0]);

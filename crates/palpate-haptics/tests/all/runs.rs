@@ -8,14 +8,17 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
 use crate::common::{ball, cuboid, half_space, protected, without_limits};
-use palpate_devices::{HandPath, Interpolation, RecordedDevice, Tour};
+use palpate_device::Reading;
+use palpate_device::{Device, DeviceLost, DeviceProfile, PointState};
 use palpate_field::{CustomField, Point, Pose, Promise, Shape, Vector};
-use palpate_haptics::{
-    Bodies, Body, Device, DeviceLost, DeviceProfile, HapticsError, Material, PointState, Probe,
-    Protection, Servo, ServoOptions, Surface, UnprotectedServo,
+use palpate_haptics::servo_loop::{
+    Clock, Ending, Pace, Recorder, RunOptions, VirtualClock, run, run_on,
 };
-use palpate_haptics::{Impact, Layer, PopThrough, Reading};
-use palpate_loop::{Clock, Ending, Pace, Recorder, RunOptions, VirtualClock, run, run_on};
+use palpate_haptics::{
+    Bodies, Body, HapticsError, Material, Probe, Protection, Servo, ServoOptions, Surface,
+};
+use palpate_haptics::{Impact, Layer, PopThrough};
+use palpate_sim::{HandPath, Interpolation, RecordedDevice, Tour};
 
 /// A clock on which looking costs a microsecond and waiting nothing more.
 #[derive(Default)]
@@ -53,7 +56,7 @@ fn press() -> HandPath<2> {
 fn wall_servo(options: ServoOptions) -> Servo<2> {
     let options = options.with_probe(Probe::new(0.0).unwrap());
     let wall = half_space([0.0, 1.0], 0.0);
-    without_limits(UnprotectedServo::new(wall, 1, options).unwrap())
+    without_limits(Servo::new(wall, 1, options).unwrap())
 }
 
 fn fast<'a, const D: usize>(duration: f64) -> RunOptions<'a, D> {
@@ -107,7 +110,7 @@ fn a_body_that_moves_pushes_a_hand_at_rest_with_its_speed() {
         .with_max_force(f64::INFINITY)
         .with_probe(Probe::new(0.0).unwrap());
     let bodies = Bodies::new(vec![wall]).unwrap();
-    let mut servo = without_limits(UnprotectedServo::new(bodies, 1, options).unwrap());
+    let mut servo = without_limits(Servo::new(bodies, 1, options).unwrap());
     let mut recorder = Recorder::new(64);
     let mut rise = |time: f64, set_pose: &mut dyn FnMut(usize, Pose<2>)| {
         set_pose(0, Pose::translation(Vector([0.0, 0.125 * time.min(0.25)])));
@@ -131,7 +134,7 @@ fn a_body_that_slides_past_drags_a_hand_at_rest() {
     let floor = Body::new(cuboid([2.0, 0.5]), material).unwrap();
     let options = ServoOptions::default().with_probe(Probe::new(0.0).unwrap());
     let bodies = Bodies::new(vec![floor]).unwrap();
-    let mut servo = without_limits(UnprotectedServo::new(bodies, 1, options).unwrap());
+    let mut servo = without_limits(Servo::new(bodies, 1, options).unwrap());
     let mut recorder = Recorder::new(1000);
     let mut slide = |time: f64, set_pose: &mut dyn FnMut(usize, Pose<2>)| {
         set_pose(
@@ -207,7 +210,7 @@ fn lively_servo() -> Servo<3> {
     };
     let body = Body::new(shape, Surface::new(&material).unwrap()).unwrap();
     let bodies = Bodies::new(vec![body]).unwrap();
-    protected(UnprotectedServo::new(bodies, 1, ServoOptions::default()).unwrap())
+    protected(Servo::new(bodies, 1, ServoOptions::default()).unwrap())
 }
 
 /// Every bit of a run: FNV-1a.
@@ -405,8 +408,8 @@ fn an_interrupted_run_ends_before_its_next_tick_with_no_force() {
     let mut device = Leaving { device: Watched::new(), left: &left };
     let protection = Protection::new(device.profile().clone());
     let options = ServoOptions::default().with_probe(Probe::new(0.0).unwrap());
-    let servo = UnprotectedServo::new(half_space([0.0, 1.0], 0.0), 1, options).unwrap();
-    let mut servo = servo.protected(&protection.with_rise_rate(f64::INFINITY)).unwrap();
+    let servo = Servo::new(half_space([0.0, 1.0], 0.0), 1, options).unwrap();
+    let mut servo = servo.protected(&protection.with(|s| s.rise_rate = f64::INFINITY)).unwrap();
     let options = fast(4.0).with_interrupt(&left);
     let report = run(&mut servo, &mut device, options).unwrap();
     assert_eq!(report.ending, Ending::Interrupted);

@@ -4,8 +4,9 @@
 //! Whole runs at other scales: lengths and forces scale alike, and nothing else changes.
 
 use crate::common::wild::{servo, step};
+use palpate_device::PointState;
 use palpate_field::Vector;
-use palpate_haptics::{EventKind, PointState, Touch};
+use palpate_haptics::{EventKind, Touch};
 
 const TICKS: u32 = 8000;
 const POINTS: usize = 5;

@@ -6,10 +6,9 @@
 
 use crate::common::{ball, body, cases, cuboid, direction, rotation, unit, vector};
 use arbitrary::Unstructured;
+use palpate_device::PointState;
 use palpate_field::{Pose, Shape, Vector};
-use palpate_haptics::{
-    Material, PointState, Probe, ServoOptions, Surface, Touch, UnprotectedServo,
-};
+use palpate_haptics::{Material, Probe, Servo, ServoOptions, Surface, Touch};
 
 /// Directions that every plate is struck from.
 const DIRECTIONS: u64 = 1000;
@@ -34,8 +33,7 @@ fn strike(
     let radius = [0.0, 1e-4, 0.002][u.choose_index(3)?];
     let probe = Probe::new(radius).unwrap();
     let options = ServoOptions::default().with_probe(probe);
-    let mut servo =
-        UnprotectedServo::new(body(&shape, Surface::new(&material).unwrap()), 1, options);
+    let mut servo = Servo::new(body(&shape, Surface::new(&material).unwrap()), 1, options);
     let servo = servo.as_mut().unwrap();
 
     let mut way: Vector<f64, 3> = direction(u)?;
@@ -111,7 +109,7 @@ fn beyond(friction: f64, budget: u32, step: f64) -> Vec<Touch<3>> {
     let probe = Probe::new(0.0).unwrap().with_budget(budget).unwrap();
     let options = ServoOptions::default().with_probe(probe);
     let bodies = body(&plate, Surface::new(&material).unwrap());
-    let mut servo = UnprotectedServo::new(bodies, 1, options).unwrap();
+    let mut servo = Servo::new(bodies, 1, options).unwrap();
     let mut at = |x: f64, y: f64| servo.step(&[PointState::at_rest(Vector([x, y, 0.0]))])[0];
     for tick in 0..=200 {
         at(0.0, 0.006 - 1e-4 * f64::from(tick));

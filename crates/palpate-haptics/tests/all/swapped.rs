@@ -7,11 +7,11 @@
 
 use crate::common::tools::smooth;
 use crate::common::{AnyServo, body, half_space};
+use palpate_device::{DeviceProfile, PointState, TurnState, TurningProfile};
 use palpate_field::{Pose, Vector};
 use palpate_haptics::{
-    Bodies, DeviceProfile, HandoffOptions, HapticsError, Material, PointState, Probe,
-    Protection, Servo, ServoOptions, Shell, Surface, Tool, ToolOptions, ToolState, TurnState,
-    TurningProfile, UnprotectedServo, handoff,
+    Bodies, HandoffOptions, HapticsError, Material, Probe, Protection, Servo, ServoOptions,
+    Shell, Surface, Tool, ToolOptions, ToolState, handoff,
 };
 
 const DEPTH: f64 = 1.0 / 256.0;
@@ -59,13 +59,13 @@ fn servos() -> Vec<(&'static str, Box<dyn AnyServo<3>>)> {
     let options = ServoOptions::default()
         .with_probe(Probe::new(0.0).unwrap())
         .with_max_force(f64::INFINITY);
-    let plain = UnprotectedServo::new(of_stiffness(100.0), 1, options).unwrap();
+    let plain = Servo::new(of_stiffness(100.0), 1, options).unwrap();
     let protection = Protection::new(DeviceProfile::unlimited("example"))
-        .with_rise_rate(10.0 * 800.0 * DEPTH);
+        .with(|s| s.rise_rate = 10.0 * 800.0 * DEPTH);
     let protected = plain.clone().protected(&protection).unwrap();
     let tool = coupling().with_stiffness(1000.0).with_damping(0.0);
     let tool = Tool::new(Shell::ball(1e-6).unwrap(), tool).unwrap();
-    let tool = UnprotectedServo::with_tool(of_stiffness(100.0), tool, options).unwrap();
+    let tool = Servo::with_tool(of_stiffness(100.0), tool, options).unwrap();
     vec![
         ("plain", Box::new(plain)),
         ("protected", Box::new(protected)),
@@ -113,7 +113,7 @@ fn device() -> DeviceProfile {
 }
 
 fn with_rod(bodies: Bodies<3>) -> Servo<3> {
-    let servo = UnprotectedServo::with_tool(bodies, rod(), ServoOptions::default()).unwrap();
+    let servo = Servo::with_tool(bodies, rod(), ServoOptions::default()).unwrap();
     servo.protected(&Protection::new(device())).unwrap()
 }
 
@@ -181,8 +181,7 @@ fn bodies_that_are_given_back_are_rendered_as_they_were() {
 #[test]
 fn bodies_that_were_accepted_for_another_servo_are_refused() {
     let unlimited = Protection::new(DeviceProfile::unlimited("strong"));
-    let tool =
-        |bodies| UnprotectedServo::with_tool(bodies, rod(), ServoOptions::default()).unwrap();
+    let tool = |bodies| Servo::with_tool(bodies, rod(), ServoOptions::default()).unwrap();
     let strong = tool(damped(0.0)).protected(&unlimited).unwrap();
     let mut weak = with_rod(damped(0.0));
     let accepted = weak.accepted().to_vec();

@@ -9,14 +9,17 @@ use std::time::Duration;
 
 use crate::common::tools::smooth;
 use crate::common::{ball, body, half_space, without_limits};
-use palpate_devices::{HandPath, Interpolation, RecordedDevice};
+use palpate_device::{DeviceProfile, PointState};
 use palpate_field::{Pose, Rotation, Vector};
-use palpate_haptics::{
-    Acceptance, Bodies, DeviceProfile, EventKind, Guide, GuideOptions, HapticsError, Material,
-    PointState, Protection, Requester, SafetyError, Servo, ServoOptions, Shell, Surface, Tool,
-    ToolOptions, ToolState, UnprotectedServo, WorkspaceMap,
+use palpate_haptics::servo_loop::{
+    Pace, Recorder, RunOptions, ServoThread, ThreadOptions, VirtualClock, run,
 };
-use palpate_loop::{Pace, Recorder, RunOptions, ServoThread, ThreadOptions, VirtualClock, run};
+use palpate_haptics::{
+    Bodies, EventKind, Guide, GuideOptions, HapticsError, Material, Protection, Servo,
+    ServoOptions, Shell, Surface, Tool, ToolOptions, ToolState,
+};
+use palpate_safety::{Acceptance, Requester, SafetyError, WorkspaceMap};
+use palpate_sim::{HandPath, Interpolation, RecordedDevice};
 
 const STIFFNESS: f64 = 500.0;
 
@@ -52,8 +55,7 @@ fn press(positions: Vec<[f64; 3]>) -> RecordedDevice<3> {
 #[test]
 fn a_servo_feels_what_the_tool_alone_feels() {
     let options = ServoOptions::default().with_max_force(f64::INFINITY);
-    let mut servo =
-        UnprotectedServo::with_tool(ground(Material::default()), rod(), options).unwrap();
+    let mut servo = Servo::with_tool(ground(Material::default()), rod(), options).unwrap();
     let (mut bodies, mut tool) = (ground(Material::default()), rod());
     let mut slips = 0;
     for tick in 0..500 {
@@ -85,8 +87,7 @@ fn the_device_turns_and_scales_the_tool_with_its_axes() {
         Rotation::from_axis_angle(Vector([0.0, 0.0, 1.0]), std::f64::consts::FRAC_PI_2);
     let pose = Pose::new(rotation.unwrap(), Vector::ZERO);
     let map = WorkspaceMap::new(pose, 2.0).unwrap();
-    let servo =
-        UnprotectedServo::with_tool(ground(smooth()), rod(), ServoOptions::default()).unwrap();
+    let servo = Servo::with_tool(ground(smooth()), rod(), ServoOptions::default()).unwrap();
     let profile = DeviceProfile::unlimited("example");
     let mut servo = servo.protected(&Protection::new(profile).with_map(map)).unwrap();
     // The rod stands on its end: its tip is 5 cm below its origin.
@@ -103,9 +104,8 @@ fn the_device_turns_and_scales_the_tool_with_its_axes() {
 #[test]
 fn a_coupling_is_made_as_soft_as_the_device_needs() {
     let device = DeviceProfile::unlimited("example").with_least_damping(0.2);
-    let protection = Protection::new(device).with_acceptance(Acceptance::Passive);
-    let servo =
-        UnprotectedServo::with_tool(ground(smooth()), rod(), ServoOptions::default()).unwrap();
+    let protection = Protection::new(device).with(|s| s.acceptance = Acceptance::Passive);
+    let servo = Servo::with_tool(ground(smooth()), rod(), ServoOptions::default()).unwrap();
     let mut servo = servo.protected(&protection).unwrap();
     let accepted = servo.accepted().to_vec();
     // b / (K T / 2) = 0.2 / 0.25
@@ -118,15 +118,13 @@ fn a_coupling_is_made_as_soft_as_the_device_needs() {
     assert!((servo.forces()[0] - Vector([0.0, 0.8, 0.0])).norm() < 1e-6);
     // A body that is soft enough leaves the coupling as it is.
     let soft = Material { stiffness: 300.0, ..smooth() };
-    let servo =
-        UnprotectedServo::with_tool(ground(soft), rod(), ServoOptions::default()).unwrap();
+    let servo = Servo::with_tool(ground(soft), rod(), ServoOptions::default()).unwrap();
     let servo = servo.protected(&protection).unwrap();
     assert_eq!(servo.accepted()[0].stiffness_factor, 1.0);
     // Coupling and body damp together.
     let damped = Material { damping: 0.3, ..smooth() };
-    let strict = protection.with_strictness(true);
-    let servo =
-        UnprotectedServo::with_tool(ground(damped), rod(), ServoOptions::default()).unwrap();
+    let strict = protection.with(|s| s.is_strict = true);
+    let servo = Servo::with_tool(ground(damped), rod(), ServoOptions::default()).unwrap();
     let refused = servo.protected(&strict).unwrap_err();
     let HapticsError::Safety(SafetyError::MaterialRefused(refused)) = refused else {
         panic!("{refused}");
@@ -137,8 +135,7 @@ fn a_coupling_is_made_as_soft_as_the_device_needs() {
 
 #[test]
 fn a_tool_is_guided_and_limited() {
-    let mut servo =
-        UnprotectedServo::with_tool(ground(smooth()), rod(), ServoOptions::default()).unwrap();
+    let mut servo = Servo::with_tool(ground(smooth()), rod(), ServoOptions::default()).unwrap();
     let options = GuideOptions::default().with_stiffness(100.0).with_damping(0.0);
     servo.guide(&[Guide::to_point(Vector([0.0, 0.1, 0.0]), options).unwrap()]);
     let force = servo.step(&[at(0.0, 0.09)])[0].force;
@@ -170,13 +167,12 @@ fn of_the_force_limits_of_tool_and_servo_the_smaller_holds() {
     for (tool, most) in [(limited(1.0), 1.0), (rod(), 5.0), (limited(6.0), 5.0)] {
         let options = ServoOptions::of_device(&profile);
         let bodies = ground(smooth());
-        let mut free =
-            UnprotectedServo::with_tool(bodies.clone(), tool.clone(), options).unwrap();
+        let mut free = Servo::with_tool(bodies.clone(), tool.clone(), options).unwrap();
         free.step(&[at(0.0, 0.02)]);
         free.step(&[at(0.0, -0.005)]);
         assert!((free.forces()[0].norm() - most).abs() < 1e-12);
         assert_eq!(free.options().max_force, most);
-        let servo = UnprotectedServo::with_tool(bodies, tool, options).unwrap();
+        let servo = Servo::with_tool(bodies, tool, options).unwrap();
         let mut servo = servo.protected(&Protection::new(profile.clone())).unwrap();
         servo.step(&[at(0.0, 0.02)]);
         assert!((hardest(&mut servo) - most).abs() < 1e-12);
@@ -199,7 +195,7 @@ fn a_tool_takes_the_servos_rate_and_the_longer_rise_time() {
     let options = ServoOptions::default().with_rate(4000.0).with_rise_time(0.2);
     for (own, holds) in [(0.1, 0.2), (0.3, 0.3)] {
         let tool = rod_with(ToolOptions::default().with_rate(100.0).with_rise_time(own));
-        let servo = UnprotectedServo::with_tool(ground(smooth()), tool, options).unwrap();
+        let servo = Servo::with_tool(ground(smooth()), tool, options).unwrap();
         let tool = servo.tool().unwrap().options();
         assert_eq!((tool.rate, tool.rise_time), (4000.0, holds));
     }
@@ -209,7 +205,7 @@ fn a_tool_takes_the_servos_rate_and_the_longer_rise_time() {
 fn a_force_limit_that_is_no_number_is_refused_with_a_tool_too() {
     let refused = |max_force| {
         let options = ServoOptions::default().with_max_force(max_force);
-        UnprotectedServo::with_tool(ground(smooth()), rod(), options).unwrap_err().to_string()
+        Servo::with_tool(ground(smooth()), rod(), options).unwrap_err().to_string()
     };
     assert_eq!(refused(f64::NAN), "max_force must be positive, got NaN N");
     assert_eq!(refused(-1.0), "max_force must be positive, got -1 N");
@@ -219,8 +215,7 @@ fn a_force_limit_that_is_no_number_is_refused_with_a_tool_too() {
 
 #[test]
 fn a_run_reports_what_the_tool_felt() {
-    let servo =
-        UnprotectedServo::with_tool(ground(smooth()), rod(), ServoOptions::default()).unwrap();
+    let servo = Servo::with_tool(ground(smooth()), rod(), ServoOptions::default()).unwrap();
     let mut servo = without_limits(servo);
     let mut device = press(vec![[0.0, 0.02, 0.0], [0.0, 0.007, 0.0]]);
     let mut recorder = Recorder::new(1000);
@@ -246,8 +241,7 @@ fn a_tool_with_too_small_a_budget_says_so() {
     let shell = Shell::from_field(&ball(0.02), 600, 0.0).unwrap();
     let options = ToolOptions::default().with_budget(100);
     let tool = Tool::new(shell, options).unwrap();
-    let servo =
-        UnprotectedServo::with_tool(ground(smooth()), tool, ServoOptions::default()).unwrap();
+    let servo = Servo::with_tool(ground(smooth()), tool, ServoOptions::default()).unwrap();
     let mut servo = without_limits(servo);
     let mut device = press(vec![[0.0, 0.03, 0.0], [0.03, 0.015, 0.0]]);
     let options = RunOptions::new(1.0).with_pace(Pace::AsFastAsPossible);
@@ -259,8 +253,7 @@ fn a_tool_with_too_small_a_budget_says_so() {
 
 #[test]
 fn a_thread_hands_off_what_the_tool_does() {
-    let servo =
-        UnprotectedServo::with_tool(ground(smooth()), rod(), ServoOptions::default()).unwrap();
+    let servo = Servo::with_tool(ground(smooth()), rod(), ServoOptions::default()).unwrap();
     let servo = without_limits(servo);
     let device = Box::new(press(vec![[0.0, 0.02, 0.0]; 2]));
     let (clock, mut driver) = VirtualClock::driven();

@@ -5,12 +5,12 @@
 #![expect(clippy::unwrap_used, reason = "a test that cannot be set up fails")]
 
 use crate::common::{ball, cuboid, half_space, torus, without_limits};
-use palpate_devices::{DeviceError, HandPath, RecordedDevice, Tour};
 use palpate_field::kernel::{Cone, Cylinder, Polygon, RegularStar};
 use palpate_field::operator::Profile;
 use palpate_field::{Aabb, Rotation, Shape, Vector};
-use palpate_haptics::{Bodies, Body, Material, Probe, ServoOptions, Surface, UnprotectedServo};
-use palpate_loop::{Pace, RunOptions, RunReport, run};
+use palpate_haptics::servo_loop::{Pace, RunOptions, RunReport, run};
+use palpate_haptics::{Bodies, Body, Material, Probe, Servo, ServoOptions, Surface};
+use palpate_sim::{HandPath, RecordedDevice, SimulationError, Tour};
 
 const DURATION: f64 = 20.0;
 
@@ -28,7 +28,7 @@ fn toured_as<const D: usize>(shape: &Shape<D>, material: &Material) -> RunReport
     let options = ServoOptions::default().with_max_force(f64::INFINITY);
     let body = Body::new(shape.clone(), Surface::new(material).unwrap()).unwrap();
     let bodies = Bodies::new(vec![body]).unwrap();
-    let mut servo = without_limits(UnprotectedServo::new(bodies, 1, options).unwrap());
+    let mut servo = without_limits(Servo::new(bodies, 1, options).unwrap());
     let options = RunOptions::new(DURATION).with_pace(Pace::AsFastAsPossible);
     run(&mut servo, &mut device, options).unwrap()
 }
@@ -163,8 +163,7 @@ fn a_tour_presses_a_tiny_probe_as_deep_as_a_point() {
         let mut device = RecordedDevice::new(vec![tour.over(shape).unwrap()]).unwrap();
         let probe = Probe::new(radius).unwrap();
         let options = ServoOptions::default().with_max_force(f64::INFINITY).with_probe(probe);
-        let mut servo =
-            without_limits(UnprotectedServo::new(shape.clone(), 1, options).unwrap());
+        let mut servo = without_limits(Servo::new(shape.clone(), 1, options).unwrap());
         let options = RunOptions::new(5.0).with_pace(Pace::AsFastAsPossible);
         let report = run(&mut servo, &mut device, options).unwrap();
         assert_eq!(report.evaluations.budget_spent, 0, "{radius}");
@@ -207,7 +206,7 @@ fn visited<const D: usize>(bodies: &[Shape<D>], bounds: Aabb<D>, duration: f64) 
         Body::new(shape.clone(), Surface::new(&Material::default()).unwrap()).unwrap()
     });
     let scene = Bodies::new(parts.collect()).unwrap();
-    let servo = UnprotectedServo::new(scene, 1, ServoOptions::default()).unwrap();
+    let servo = Servo::new(scene, 1, ServoOptions::default()).unwrap();
     let mut device = RecordedDevice::new(vec![path.clone()]).unwrap();
     let options = RunOptions::new(duration).with_pace(Pace::AsFastAsPossible);
     let report = run(&mut without_limits(servo), &mut device, options).unwrap();
@@ -363,7 +362,12 @@ fn nothing_to_touch_is_an_error() {
     let far = Aabb::centred(Vector([0.1; 3]));
     let shape = ball::<3>(0.05).translated(Vector([10.0, 0.0, 0.0])).unwrap();
     let tour = Tour::new(far, 1.0).unwrap();
-    assert_eq!(tour.over(&shape), Err(DeviceError::NothingToTouch));
+    assert_eq!(tour.over(&shape), Err(SimulationError::NothingToTouch));
     assert!(Tour::new(far, 0.0).is_err());
     assert!(Tour::new(Aabb::centred(Vector([0.0; 3])), 1.0).is_err());
+}
+
+#[test]
+fn a_tour_is_made_for_the_default_probe() {
+    assert_eq!(Tour::<3>::PROBE_RADIUS, palpate_haptics::Probe::default().radius());
 }

@@ -6,12 +6,11 @@
 
 use arbitrary::{Result, Unstructured};
 use assert_no_alloc::assert_no_alloc;
-use palpate_devices::PROFILES;
+use palpate_device::PROFILES;
+use palpate_device::{DeviceProfile, PointState, Reading, TurnState, TurningProfile};
 use palpate_field::{Rotation, Vector};
-use palpate_haptics::{
-    DeviceProfile, PointState, Protection, Reading, Servo, ServoOptions, Shell, Surface, Tool,
-    ToolOptions, TurnReadings, TurnState, TurningProfile, UnprotectedServo,
-};
+use palpate_haptics::{Protection, Servo, ServoOptions, Shell, Surface, Tool, ToolOptions};
+use palpate_safety::TurnReadings;
 use palpate_testkit::arbitrary as draw;
 use palpate_testkit::cases;
 
@@ -40,7 +39,7 @@ struct Held {
 impl Held {
     /// Whose torque rises as fast as the device lets it.
     fn new(profile: &DeviceProfile) -> Self {
-        Self::with(Protection::new(profile.clone()).with_rise_rate(f64::INFINITY))
+        Self::with(Protection::new(profile.clone()).with(|s| s.rise_rate = f64::INFINITY))
     }
 
     fn with(protection: Protection<3>) -> Self {
@@ -54,7 +53,7 @@ impl Held {
             .with_max_torque(f64::INFINITY);
         let rod = Tool::new(Shell::capsule([-end, end], 1e-4, 2).unwrap(), options).unwrap();
         let free = ServoOptions::default().with_max_force(f64::INFINITY);
-        let servo = UnprotectedServo::with_tool(ground, rod, free).unwrap();
+        let servo = Servo::with_tool(ground, rod, free).unwrap();
         let servo = servo.protected(&protection).unwrap();
         let about = servo.accepted().get(1);
         let stiffness = about.map_or(0.0, |accepted| accepted.device_stiffness);

@@ -9,16 +9,19 @@ use std::time::Duration;
 
 use crate::common::tools::smooth;
 use crate::common::{AnyServo, body, cases, half_space};
-use palpate_devices::{HandPath, Interpolation, RecordedDevice};
-use palpate_field::{Pose, Rotation, Vector};
-use palpate_haptics::{
-    Acceptance, Accepted, Bodies, Device, DeviceLost, DeviceProfile, HapticsError, Material,
-    PointState, Protection, Reading, Rule, SafetyError, Servo, ServoOptions, Shell, Surface,
-    Tool, ToolOptions, TurnState, TurningProfile, UnprotectedServo, WorkspaceMap,
+use palpate_device::{
+    Device, DeviceLost, DeviceProfile, PointState, Reading, TurnState, TurningProfile,
 };
-use palpate_loop::{
+use palpate_field::{Pose, Rotation, Vector};
+use palpate_haptics::servo_loop::{
     Ending, Pace, Recorder, RunOptions, ServoThread, ThreadOptions, VirtualClock, run,
 };
+use palpate_haptics::{
+    Bodies, HapticsError, Material, Protection, Servo, ServoOptions, Shell, Surface, Tool,
+    ToolOptions, Unprotected,
+};
+use palpate_safety::{Acceptance, Accepted, Rule, SafetyError, WorkspaceMap};
+use palpate_sim::{HandPath, Interpolation, RecordedDevice};
 
 const STIFFNESS: f64 = 500.0;
 
@@ -55,9 +58,9 @@ fn rigid() -> Material {
     Material { stiffness: 1e6, ..smooth() }
 }
 
-fn servo<const D: usize>(material: Material, options: ToolOptions) -> UnprotectedServo<D> {
+fn servo<const D: usize>(material: Material, options: ToolOptions) -> Servo<D, Unprotected> {
     let free = ServoOptions::default().with_max_force(f64::INFINITY);
-    UnprotectedServo::with_tool(ground(material), rod(options), free).unwrap()
+    Servo::with_tool(ground(material), rod(options), free).unwrap()
 }
 
 /// Moves the device to a place and an orientation, in small ticks; the force and the torque there.
@@ -138,7 +141,8 @@ fn the_workspace_turns_what_turns_and_shortens_arms() {
     let map = WorkspaceMap::new(Pose::rotation(rotation), 2.0).unwrap();
     let profile = device(TurningProfile::unlimited());
     let servo = servo::<3>(rigid(), coupling());
-    let protection = Protection::new(profile).with_map(map).with_rise_rate(f64::INFINITY);
+    let protection =
+        Protection::new(profile).with_map(map).with(|s| s.rise_rate = f64::INFINITY);
     let mut servo = servo.protected(&protection).unwrap();
     let at_device = |height: f64| map.point_to_device(up(height));
     // In the world turned by −0.3, so by −0.8 against the device's axes.
@@ -161,18 +165,19 @@ fn device(turning: TurningProfile) -> DeviceProfile {
 }
 
 /// The same servo for a device that it moves from the first tick on.
-fn for_device(servo: UnprotectedServo<3>, device: &dyn Device<3>) -> Servo<3> {
+fn for_device(servo: Servo<3, Unprotected>, device: &dyn Device<3>) -> Servo<3> {
     let protection = Protection::new(device.profile().clone());
-    servo.protected(&protection.with_rise_rate(f64::INFINITY)).unwrap()
+    servo.protected(&protection.with(|s| s.rise_rate = f64::INFINITY)).unwrap()
 }
 
 #[test]
 fn what_turns_is_accepted_by_the_same_law() {
     let accept = |turning: TurningProfile, options: ToolOptions, is_strict| {
         let servo = servo::<3>(rigid(), options);
-        let protection = Protection::new(device(turning))
-            .with_acceptance(Acceptance::Passive)
-            .with_strictness(is_strict);
+        let protection = Protection::new(device(turning)).with(|s| {
+            s.acceptance = Acceptance::Passive;
+            s.is_strict = is_strict
+        });
         let servo = servo.protected(&protection)?;
         Ok((servo.accepted()[0].stiffness_factor, servo.accepted()[1].clone()))
     };
@@ -213,9 +218,10 @@ fn a_softer_coupling_turns_the_hand_less() {
     // κ T / 2 = 1e-3 [N·m·s/rad].
     let turning = TurningProfile::unlimited().with_least_damping(2.5e-4);
     let servo = servo::<3>(rigid(), coupling());
-    let protection = Protection::new(device(turning))
-        .with_acceptance(Acceptance::Passive)
-        .with_rise_rate(f64::INFINITY);
+    let protection = Protection::new(device(turning)).with(|s| {
+        s.acceptance = Acceptance::Passive;
+        s.rise_rate = f64::INFINITY
+    });
     let mut servo = servo.protected(&protection).unwrap();
     assert_eq!(servo.accepted()[1].stiffness_factor, 0.25);
     // Pressed flat by so much that the rod stays level: κ/4 times the angle.
@@ -286,14 +292,14 @@ fn torques_keep_the_limits_of_the_device_in_any_motion() {
 fn the_largest_torque_keeps_its_direction() {
     let turning = TurningProfile::unlimited().with_max_torque(0.125);
     let servo = servo::<3>(rigid(), coupling());
-    let protection = Protection::new(device(turning)).with_rise_rate(f64::INFINITY);
+    let protection = Protection::new(device(turning)).with(|s| s.rise_rate = f64::INFINITY);
     let mut servo = servo.protected(&protection).unwrap();
     let (_, torque) = brought(&mut servo, (up(0.1), up(-0.02)), Vector([0.0, 0.0, -0.2]));
     assert!((torque - Vector([0.0, 0.0, 0.125])).norm() < 1e-9, "{torque:?}");
     let planar = self::servo::<2>(rigid(), coupling());
     let turning = TurningProfile::unlimited().with_max_torque(0.125);
     let mut planar = planar
-        .protected(&Protection::new(device(turning)).with_rise_rate(f64::INFINITY))
+        .protected(&Protection::new(device(turning)).with(|s| s.rise_rate = f64::INFINITY))
         .unwrap();
     let (_, flat) = brought(&mut planar, (up(0.1), up(-0.02)), Vector([0.0, 0.0, -0.2]));
     assert!((flat - torque).norm() < 1e-9, "{flat:?}");
@@ -312,7 +318,7 @@ fn the_energy_of_force_and_torque_is_counted_together() {
     let turning = TurningProfile::unlimited().with_least_damping(2e-3).with_inertia(1e-3);
     let profile = device(turning).with_least_damping(0.5).with_mass(0.1);
     let servo = servo::<3>(rigid(), coupling());
-    let protection = Protection::new(profile).with_rise_rate(f64::INFINITY);
+    let protection = Protection::new(profile).with(|s| s.rise_rate = f64::INFINITY);
     let mut servo = servo.protected(&protection).unwrap();
     assert!(servo.accepted().iter().all(|a| a.stiffness_factor == 1.0));
     let mut given = 0.0;
@@ -346,7 +352,7 @@ fn dampers_of_bodies_turn_the_hand_no_harder_than_the_device_bears() {
     let turning = TurningProfile::unlimited().with_least_damping(2e-3);
     let material = Material { damping: 2.0, viscosity: 0.0, ..rigid() };
     let servo = servo::<3>(material, coupling());
-    let protection = Protection::new(device(turning)).with_rise_rate(f64::INFINITY);
+    let protection = Protection::new(device(turning)).with(|s| s.rise_rate = f64::INFINITY);
     let mut servo = servo.protected(&protection).unwrap();
     let (_, still) = brought(&mut servo, (up(0.1), up(0.01)), Vector([0.0, 0.0, -0.3]));
     let state = PointState::at_rest(up(0.01));
@@ -453,7 +459,7 @@ fn a_device_that_is_lost_or_panics_gets_no_force_and_no_torque_last() {
 fn a_device_that_senses_turns_alone_gets_none_of_the_torque() {
     let turning = TurningProfile::unlimited().with_max_torque(0.0).with_encoder_step(UNHURRIED);
     let servo = servo::<3>(rigid(), coupling());
-    let protection = Protection::new(device(turning)).with_rise_rate(f64::INFINITY);
+    let protection = Protection::new(device(turning)).with(|s| s.rise_rate = f64::INFINITY);
     let mut servo = servo.protected(&protection).unwrap();
     assert_eq!(servo.accepted().len(), 1);
     let (force, torque) = brought(&mut servo, (up(0.1), up(0.01)), Vector([0.0, 0.0, -0.3]));
@@ -535,8 +541,9 @@ fn another_thread_limits_and_stops_the_torque() {
 fn a_device_that_no_longer_says_how_it_is_turned_gets_no_torque() {
     let servo = servo::<3>(rigid(), coupling());
     let profile = device(limits()).with_max_force_rate(50.0);
-    let mut servo =
-        servo.protected(&Protection::new(profile).with_rise_rate(f64::INFINITY)).unwrap();
+    let mut servo = servo
+        .protected(&Protection::new(profile).with(|s| s.rise_rate = f64::INFINITY))
+        .unwrap();
     brought(&mut servo, (up(0.1), up(0.01)), Vector([0.0, 0.0, -0.3]));
     let (mut force, mut torque) = (servo.forces()[0], servo.torque());
     assert!(torque.norm() > 0.01);

@@ -7,15 +7,16 @@
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
-use palpate_devices::{
-    Fault, FaultKind, HandPath, Interpolation, RecordedDevice, SimulatedTransport,
-    VibrationRecorder,
-};
+use palpate_device::DeviceLost;
 use palpate_field::{Shape, Vector};
-use palpate_haptics::{Bodies, Body, DeviceLost, HapticsError, Material, Servo, Surface};
-use palpate_loop::{
+use palpate_haptics::servo_loop::{
     Ending, Pace, RunOptions, ServoThread, StartError, ThreadOptions, Vibration, VirtualClock,
     run,
+};
+use palpate_haptics::{Bodies, Body, HapticsError, Material, Servo, Surface};
+use palpate_sim::{
+    Fault, FaultKind, HandPath, Interpolation, RecordedDevice, SimulatedTransport,
+    VibrationRecorder,
 };
 use palpate_vibration::{Command, Mapping, MappingOptions, Vibrates};
 

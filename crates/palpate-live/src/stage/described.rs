@@ -6,7 +6,7 @@
 use std::collections::BTreeSet;
 
 use palpate::field::Shape;
-use palpate::render::Color;
+use palpate::render::SrgbColor;
 use palpate::scene::{AnyScene, BuiltScene};
 use serde_json::{Value, json};
 
@@ -92,7 +92,7 @@ fn of_scene<const D: usize>(scene: &BuiltScene<D>) -> Value {
     let body = |(number, body): (usize, &palpate::scene::BuiltBody<D>)| {
         json!({
             "name": body.name,
-            "color": Color::of_body(number).0,
+            "color": SrgbColor::of_body(number).0,
             "promise": body.shape.promise().in_words(),
             "bounds": bounds(&body.shape),
         })

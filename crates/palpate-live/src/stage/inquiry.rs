@@ -8,7 +8,7 @@ use std::collections::VecDeque;
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 
 use palpate::field::Vector;
-use palpate::render::{Camera, Color, Lens, Settings, Shadows, Subject, render};
+use palpate::render::{Camera, Lens, Settings, Shadows, SrgbColor, Subject, render};
 use palpate::scene::{AnyScene, BuiltScene};
 
 use super::Shared;
@@ -230,10 +230,11 @@ fn drawn(scene: &BuiltScene<3>, ask: &Ask, cancel: &Cancel) -> Result<Answer, St
         ));
     }
     let said = |error: palpate::render::RenderError| error.to_string();
-    let body = |(number, body): (usize, &palpate::scene::BuiltBody<3>)| palpate::render::Body {
-        shape: body.shape.clone(),
-        color: Color::of_body(number),
-    };
+    let body =
+        |(number, body): (usize, &palpate::scene::BuiltBody<3>)| palpate::render::LitBody {
+            shape: body.shape.clone(),
+            color: SrgbColor::of_body(number),
+        };
     let subject = Subject::new(scene.bodies.iter().enumerate().map(body).collect());
     let subject = subject.map_err(said)?;
     let (eye, target): (Vector<f64, 3>, _) = (point_of(eye)?, point_of(target)?);

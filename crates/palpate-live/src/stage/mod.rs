@@ -34,7 +34,8 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::JoinHandle;
 use std::time::Duration;
 
-use palpate::haptics::{DeviceProfile, StopSwitch};
+use palpate::device::DeviceProfile;
+use palpate::haptics::StopSwitch;
 use palpate::scene::AnyScene;
 use tokio::sync::watch;
 use tungstenite::{Bytes, Utf8Bytes};

@@ -7,9 +7,10 @@ use std::sync::Arc;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender};
 use std::time::{Duration, Instant};
 
-use palpate::devices::HandPath;
-use palpate::haptics::{Event, StageTicks};
+use palpate::haptics::Event;
+use palpate::safety::StageTicks;
 use palpate::scene::{AnyScene, BuiltScene};
+use palpate::sim::HandPath;
 use serde_json::{Value, json};
 use tokio::sync::watch;
 use tungstenite::Bytes;

@@ -5,11 +5,11 @@
 
 use std::sync::{Arc, Mutex, PoisonError};
 
-use palpate::devices::{Hand, HandPath, SimulatedDevice, SteeredDevice, Steering};
+use palpate::device::DeviceProfile;
 use palpate::field::Point;
-use palpate::haptics::{
-    DeviceProfile, Event, HapticsError, Recovery, StageTicks, StopSwitch, WorkspaceMap,
-};
+use palpate::haptics::{Event, HapticsError, StopSwitch};
+use palpate::safety::{Recovery, SafetySettings, StageTicks, WorkspaceMap};
+use palpate::sim::{Hand, HandPath, SimulatedDevice, SteeredDevice, Steering};
 
 use palpate::scene::{BuiltScene, BuiltTool, ServoSettings};
 use palpate::servo_loop::{
@@ -133,8 +133,9 @@ impl<const D: usize> Room<D> {
             device(&lead, &map, terms).map_err(|error| error.to_string())?;
         // A hand that goes into a body while forces are zero would be thrown out by them. A body that
         // moves onto a hand pushes it out at once all the same.
-        let settings =
-            ServoSettings::default().with_rate(terms.rate).with_recovery(Recovery::OnceOut);
+        let safety =
+            SafetySettings { recovery: Recovery::OnceOut, ..SafetySettings::default() };
+        let settings = ServoSettings { rate: terms.rate, safety, ..ServoSettings::default() };
         let servo = scene.servo_with(&device, settings).map_err(said)?;
         let (clock, speed) = ScaledClock::new(&Priority::Normal);
         let clock = clock.heeding(stop.clone());
@@ -379,7 +380,7 @@ fn device<const D: usize>(
     lead: &Lead<D>,
     map: &WorkspaceMap<D>,
     terms: &Terms,
-) -> Result<Steered<D>, palpate::devices::DeviceError> {
+) -> Result<Steered<D>, palpate::sim::SimulationError> {
     let hand = |place: &Point<D>| Hand::resting(map.point_to_device(*place));
     let hands = lead.targets().iter().map(hand).collect::<Result<_, _>>()?;
     SteeredDevice::new(SimulatedDevice::new(terms.profile.clone(), hands)?, FASTEST)

@@ -3,9 +3,9 @@
 
 //! Recordings, as files.
 
-use palpate::devices::{HandPath, Interpolation};
 use palpate::field::{Point, Vector};
 use palpate::servo_loop::{TraceRow, TraceWriter};
+use palpate::sim::{HandPath, Interpolation};
 
 use super::MOST_POINTS;
 

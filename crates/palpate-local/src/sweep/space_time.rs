@@ -6,7 +6,7 @@
 
 use palpate_field::Point;
 use palpate_mesh::Mesh;
-use palpate_query::internal::parts_of_one;
+use palpate_query::parts_of_one;
 use palpate_query::{Element, Motion, Moving, QueryError};
 
 use super::approach::approach;

@@ -37,7 +37,7 @@ pub enum SolidError {
     /// A piece is not orientable.
     #[error(
         "pieces that are not orientable (like a Möbius strip): {pieces}; they bound no solid; with a thickness \
-         (\"thickness\": METRES in a scene, `Sheet` in Rust) it is a plate"
+         (\"thickness\": METRES in a scene, `MeshSheet` in Rust) it is a plate"
     )]
     OneSided {
         /// The number of such pieces.
@@ -46,7 +46,7 @@ pub enum SolidError {
     /// The mesh is a sheet.
     #[error(
         "the openings are as large as the surface: it is a sheet, and bounds no solid; with a thickness \
-         (\"thickness\": METRES in a scene, `Sheet` in Rust) it is a plate"
+         (\"thickness\": METRES in a scene, `MeshSheet` in Rust) it is a plate"
     )]
     Sheet,
 }

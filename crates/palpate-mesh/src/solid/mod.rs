@@ -31,7 +31,7 @@ use normals::Normals;
 pub use repair::Opening;
 pub(crate) use repair::crossing_faces;
 use repair::{Crossings, Known, Repair, by_rim, sides};
-pub use sheet::Sheet;
+pub use sheet::MeshSheet;
 use surface::Surface;
 use walls::Walls;
 use winding::WindingTree;

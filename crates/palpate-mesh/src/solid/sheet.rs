@@ -22,12 +22,12 @@ use crate::mesh::Mesh;
 ///
 /// ```
 /// use palpate_field::{Shape, Vector};
-/// use palpate_mesh::{Sheet, TriangleMesh};
+/// use palpate_mesh::{MeshSheet, TriangleMesh};
 ///
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
 /// let corners = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]];
 /// let mesh = TriangleMesh::new(corners.map(Vector).to_vec(), vec![[0, 1, 2]])?;
-/// let plate: Shape<3> = Sheet::from_mesh(&mesh, 0.002)?.into(); // 2 mm
+/// let plate: Shape<3> = MeshSheet::from_mesh(&mesh, 0.002)?.into(); // 2 mm
 /// assert_eq!(plate.promise().in_words(), "exact outside, bound inside");
 /// assert_eq!(plate.distance([0.2, 0.5, 0.2]), 0.499);
 /// assert_eq!(plate.distance([0.2, -0.0005, 0.2]), -0.0005);
@@ -35,7 +35,7 @@ use crate::mesh::Mesh;
 /// # }
 /// ```
 #[derive(Clone, Debug)]
-pub struct Sheet<const N: usize, const D: usize> {
+pub struct MeshSheet<const N: usize, const D: usize> {
     /// The vertices and faces as they came.
     mesh: Mesh<N, D>,
     surface: Surface<N, D>,
@@ -44,7 +44,7 @@ pub struct Sheet<const N: usize, const D: usize> {
     promise: Promise<D>,
 }
 
-impl<const N: usize, const D: usize> Sheet<N, D> {
+impl<const N: usize, const D: usize> MeshSheet<N, D> {
     /// The plate of a thickness [m] about the faces of a mesh.
     ///
     /// # Errors
@@ -111,7 +111,7 @@ fn promise<const D: usize>(aabb: Aabb<D>) -> Promise<D> {
     promise
 }
 
-impl<const N: usize, const D: usize> CustomField<D> for Sheet<N, D> {
+impl<const N: usize, const D: usize> CustomField<D> for MeshSheet<N, D> {
     fn distance(&self, p: Point<D>) -> f64 {
         self.at(p).0
     }
@@ -150,9 +150,9 @@ impl<const N: usize, const D: usize> CustomField<D> for Sheet<N, D> {
     }
 }
 
-impl<const N: usize, const D: usize> From<Sheet<N, D>> for Shape<D> {
+impl<const N: usize, const D: usize> From<MeshSheet<N, D>> for Shape<D> {
     #[inline(never)]
-    fn from(sheet: Sheet<N, D>) -> Self {
+    fn from(sheet: MeshSheet<N, D>) -> Self {
         Self::custom(sheet)
     }
 }

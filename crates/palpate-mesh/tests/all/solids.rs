@@ -8,7 +8,7 @@ use std::path::Path;
 
 use palpate_field::{CustomField, MassLimits, Quality, Rotation, Shape, Vector};
 use palpate_mesh::{
-    Findings, Mesh, Outline, Sheet, Solid, SolidError, TriangleMesh, read_file,
+    Findings, Mesh, MeshSheet, Outline, Solid, SolidError, TriangleMesh, read_file,
 };
 use palpate_testkit::soup::{Soup, points};
 use palpate_testkit::{cases, hard, models};
@@ -377,7 +377,7 @@ fn faces_without_an_inside_are_a_plate() {
     let turn = Rotation::from_axis_angle([0.3, 1.0, 0.2], 0.7).unwrap();
     let crossing = Soup::cuboid([0.1, 0.2, 0.0], [0.5, 0.6, 0.7]).turned(&turn);
     let soup = hard::sheet(6, 1.0).and(crossing.without(|face| face % 3 == 0));
-    let sheet = Sheet::from_mesh(&mesh(&soup), 0.02).unwrap();
+    let sheet = MeshSheet::from_mesh(&mesh(&soup), 0.02).unwrap();
     let size = soup.reach();
     for (i, p) in points(300, 1.5 * size).enumerate() {
         let (f, gradient) = CustomField::distance_gradient(&sheet, p);
@@ -387,7 +387,7 @@ fn faces_without_an_inside_are_a_plate() {
         models::bounding(&sheet, p, [half, 0.5 * half, half], 40).unwrap();
     }
     for thickness in [0.0, -1.0, f64::NAN, f64::INFINITY] {
-        assert!(Sheet::from_mesh(&mesh(&soup), thickness).is_err());
+        assert!(MeshSheet::from_mesh(&mesh(&soup), thickness).is_err());
     }
 }
 

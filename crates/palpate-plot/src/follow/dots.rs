@@ -9,7 +9,7 @@ use super::lattice::{Lattice, Spot};
 use super::{Asked, BoundedField, Cell};
 use crate::error::PlotError;
 use crate::geometry::Point;
-use crate::slope::Slope;
+use crate::slope::SampledSlope;
 
 /// How often a cell is split.
 const SPLITS: u32 = 3;
@@ -73,7 +73,7 @@ pub(super) fn find(
 impl Search {
     /// Steps to the zero of the tangent plane; `false` if it lies in another cell, where another
     /// search finds it.
-    fn step(&mut self, slope: &Slope) -> bool {
+    fn step(&mut self, slope: &SampledSlope) -> bool {
         let [x, y, _] = slope.gradient;
         let share = slope.value / (x * x + y * y);
         self.place = [self.place[0] - share * x, self.place[1] - share * y];

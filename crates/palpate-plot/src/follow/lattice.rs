@@ -6,7 +6,7 @@
 use super::Cell;
 use crate::geometry::Point;
 use crate::sampling::Sampling;
-use crate::view::View;
+use crate::view::PlaneView;
 
 /// Finest cells along a cell of the sampling, as a power of two.
 const FINER: u32 = 2;
@@ -40,7 +40,7 @@ pub(super) struct Spot {
 
 impl Lattice {
     /// The lattice over `view` and a border.
-    pub(super) fn over(view: &View, sampling: Sampling) -> Self {
+    pub(super) fn over(view: &PlaneView, sampling: Sampling) -> Self {
         let longer = view.width().max(view.height());
         let edge = longer / (sampling.cells() << FINER) as f64;
         let count = |size: f64, shift: f64| (size / edge + 2.0 * shift).ceil() as usize;

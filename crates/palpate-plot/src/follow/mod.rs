@@ -22,10 +22,10 @@ use std::f64::consts::SQRT_2;
 
 use crate::error::{LARGEST, PlotError};
 use crate::geometry::Point;
-use crate::outline::Outline;
+use crate::outline::SurfaceLines;
 use crate::sampling::Sampling;
-use crate::slope::Slope;
-use crate::view::View;
+use crate::slope::SampledSlope;
+use crate::view::PlaneView;
 use lattice::Lattice;
 
 /// A square cell of a plane, in plane coordinates.
@@ -44,7 +44,7 @@ pub struct Cell {
 /// A wire around a disc is the zero set of a field without a negative value:
 ///
 /// ```
-/// use palpate_plot::{BoundedField, Cell, Outline, Sampling, Slope, View};
+/// use palpate_plot::{BoundedField, Cell, SurfaceLines, Sampling, SampledSlope, PlaneView};
 ///
 /// struct Wire;
 ///
@@ -55,12 +55,12 @@ pub struct Cell {
 ///         }
 ///     }
 ///
-///     fn slopes(&mut self, points: &[[f64; 2]], slopes: &mut [Slope]) {
+///     fn slopes(&mut self, points: &[[f64; 2]], slopes: &mut [SampledSlope]) {
 ///         for (p, slope) in points.iter().zip(slopes) {
 ///             let radius = p[0].hypot(p[1]);
 ///             let way = (radius - 0.03).signum() / radius;
 ///             let gradient = [way * p[0], way * p[1], 0.0];
-///             *slope = Slope { value: (radius - 0.03).abs(), gradient };
+///             *slope = SampledSlope { value: (radius - 0.03).abs(), gradient };
 ///         }
 ///     }
 ///
@@ -77,8 +77,8 @@ pub struct Cell {
 ///     }
 /// }
 ///
-/// let view = View::new([0.0, 0.0], 0.1, 0.1)?;
-/// let wire = Outline::follow(&view, Sampling::default(), Wire)?;
+/// let view = PlaneView::new([0.0, 0.0], 0.1, 0.1)?;
+/// let wire = SurfaceLines::follow(&view, Sampling::default(), Wire)?;
 /// assert!(wire.lines().iter().any(|line| line.len() > 300));
 /// assert!(wire.lines().iter().flatten().all(|p| (p[0].hypot(p[1]) - 0.03).abs() < 1e-6));
 /// # Ok::<(), palpate_plot::PlotError>(())
@@ -88,7 +88,7 @@ pub trait BoundedField {
     fn values(&mut self, points: &[[f64; 2]], values: &mut [f64]);
 
     /// Writes the value and the gradient at each of `points` \[m\], as many as `slopes`.
-    fn slopes(&mut self, points: &[[f64; 2]], slopes: &mut [Slope]);
+    fn slopes(&mut self, points: &[[f64; 2]], slopes: &mut [SampledSlope]);
 
     /// Writes for each of `points` \[m\] the radius of a disc about it that is sure to hold no zero
     /// \[m\]; zero where none is known.
@@ -98,7 +98,7 @@ pub trait BoundedField {
     fn bounds(&mut self, cells: &[Cell], bounds: &mut [[f64; 2]]);
 }
 
-impl Outline {
+impl SurfaceLines {
     /// Follows the surface of `field` in the window `view`.
     ///
     /// The finest cells are a quarter of those of `sampling`: less than half a pixel of a
@@ -120,7 +120,7 @@ impl Outline {
     /// [`PlotError::Sample`] for the first value that is NaN, infinite or over 1e150,
     /// [`PlotError::Gradient`] for the first such gradient.
     pub fn follow(
-        view: &View,
+        view: &PlaneView,
         sampling: Sampling,
         field: impl BoundedField,
     ) -> Result<Self, PlotError> {
@@ -176,8 +176,8 @@ impl<F: BoundedField> Asked<F> {
     }
 
     /// The slopes at `points`.
-    fn slopes(&mut self, points: &[Point]) -> Result<Vec<Slope>, PlotError> {
-        let mut slopes = vec![Slope::default(); points.len()];
+    fn slopes(&mut self, points: &[Point]) -> Result<Vec<SampledSlope>, PlotError> {
+        let mut slopes = vec![SampledSlope::default(); points.len()];
         for (points, slopes) in points.chunks(BLOCK).zip(slopes.chunks_mut(BLOCK)) {
             self.field.slopes(points, slopes);
             for (&at, slope) in points.iter().zip(&*slopes) {
@@ -231,10 +231,10 @@ mod tests {
             points.iter().zip(values).for_each(|(&p, value)| *value = self.value(p));
         }
 
-        fn slopes(&mut self, points: &[Point], slopes: &mut [Slope]) {
+        fn slopes(&mut self, points: &[Point], slopes: &mut [SampledSlope]) {
             for (&p, slope) in points.iter().zip(slopes) {
                 let [x, y] = [0, 1].map(|k| (p[k] - self.centre[k]).signum() / SQRT_2);
-                *slope = Slope { value: self.value(p), gradient: [x, y, 0.0] };
+                *slope = SampledSlope { value: self.value(p), gradient: [x, y, 0.0] };
             }
         }
 
@@ -264,13 +264,13 @@ mod tests {
         rings.iter().map(|ring| 0.5 * twice(ring).abs()).sum()
     }
 
-    fn outline(centre: Point, loose: bool) -> Outline {
-        let view = View::new([0.0, 0.0], 4.0, 3.0).unwrap();
-        Outline::follow(&view, Sampling::default(), Square { centre, loose }).unwrap()
+    fn outline(centre: Point, loose: bool) -> SurfaceLines {
+        let view = PlaneView::new([0.0, 0.0], 4.0, 3.0).unwrap();
+        SurfaceLines::follow(&view, Sampling::default(), Square { centre, loose }).unwrap()
     }
 
     /// The only long line. Where a corner of the square is cut off, its tip may be a dot.
-    fn line(outline: &Outline) -> &[Point] {
+    fn line(outline: &SurfaceLines) -> &[Point] {
         let mut long = outline.lines.iter().filter(|line| line.len() > 3);
         let (line, other) = (long.next().unwrap(), long.next());
         assert!(other.is_none() && outline.lines.len() <= 5, "{}", outline.lines.len());
@@ -299,10 +299,10 @@ mod tests {
 
     #[test]
     fn a_window_inside_or_outside_has_no_line() {
-        let view = View::new([0.0, 0.0], 0.8, 0.6).unwrap();
+        let view = PlaneView::new([0.0, 0.0], 0.8, 0.6).unwrap();
         for (centre, inside) in [([0.0, 0.0], 0.8 * 0.6), ([3.0, 0.0], 0.0)] {
             let square = Square { centre, loose: false };
-            let found = Outline::follow(&view, Sampling::default(), square).unwrap();
+            let found = SurfaceLines::follow(&view, Sampling::default(), square).unwrap();
             assert!(found.lines.is_empty());
             assert!((area(&found.rings) - inside).abs() < 0.01);
         }
@@ -320,9 +320,9 @@ mod tests {
 
     #[test]
     fn a_value_that_is_no_number_is_refused() {
-        let view = View::new([0.0, 0.0], 4.0, 3.0).unwrap();
+        let view = PlaneView::new([0.0, 0.0], 4.0, 3.0).unwrap();
         let square = Square { centre: [f64::NAN, 0.0], loose: true };
-        let error = Outline::follow(&view, Sampling::default(), square).unwrap_err();
+        let error = SurfaceLines::follow(&view, Sampling::default(), square).unwrap_err();
         assert!(matches!(error, PlotError::Sample { .. }), "{error}");
     }
 }

@@ -7,7 +7,7 @@ use super::edges::{Corner, Corners, Edge, Zeros, sorted_edges};
 use super::lattice::Lattice;
 use super::{Asked, BoundedField};
 use crate::error::PlotError;
-use crate::slope::Slope;
+use crate::slope::SampledSlope;
 
 /// Probes of an edge at most.
 const PROBES: usize = 5;
@@ -74,7 +74,7 @@ pub(super) fn find(
 }
 
 impl Edge {
-    fn end(self, lattice: &Lattice, share: f64, slope: Slope) -> End {
+    fn end(self, lattice: &Lattice, share: f64, slope: SampledSlope) -> End {
         End { share, value: slope.value, along: slope.gradient[self.axis] * lattice.edge }
     }
 }

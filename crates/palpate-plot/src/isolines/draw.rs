@@ -13,7 +13,7 @@ use crate::labels::Occupied;
 use crate::legend::{self, Entry, Key};
 use crate::levels::Levels;
 use crate::numbers::write;
-use crate::outline::Outline;
+use crate::outline::SurfaceLines;
 use crate::overlay_picture::Overlays;
 use crate::palette::{self, Color, Side};
 use crate::picture::{Picture, isoline_stroke, surface_stroke};
@@ -159,7 +159,7 @@ impl Isolines {
 
     /// Rings around the inside, of the union or of each body [px].
     fn insides(&self, frame: &Frame) -> Vec<Vec<Vec<Point>>> {
-        let pixels = |outline: &Outline| -> Vec<_> {
+        let pixels = |outline: &SurfaceLines| -> Vec<_> {
             outline.rings.iter().map(|ring| frame.pixels(ring)).collect()
         };
         match self.bodies[..] {

@@ -5,20 +5,20 @@
 
 mod draw;
 
-use crate::body::Body;
+use crate::body::DrawnBody;
 use crate::drawing::Image;
 use crate::error::PlotError;
 use crate::levels::Levels;
 use crate::measured::Measured;
-use crate::outline::Outline;
+use crate::outline::SurfaceLines;
 use crate::overlay::{Arrows, Markers, Overlay, Polyline};
 use crate::palette::Color;
 use crate::sampling::{Samples, Sampling};
 use crate::slice::Slice;
-use crate::slope::{Pixels, Slope};
+use crate::slope::{Pixels, SampledSlope};
 use crate::trust::{Comparison, Promised, Trust};
 use crate::values::Values;
-use crate::view::View;
+use crate::view::PlaneView;
 use crate::wheel;
 
 pub(crate) use draw::{ABOVE_LEGEND, MOST_HEIGHT};
@@ -36,9 +36,9 @@ pub(crate) use draw::{ABOVE_LEGEND, MOST_HEIGHT};
 /// A disc of 3 cm, with a point on it:
 ///
 /// ```
-/// use palpate_plot::{Figure, Isolines, Markers, Sampling, Slice, View};
+/// use palpate_plot::{Figure, Isolines, Markers, Sampling, Slice, PlaneView};
 ///
-/// let view = View::new([0.0, 0.0], 0.2, 0.15)?;
+/// let view = PlaneView::new([0.0, 0.0], 0.2, 0.15)?;
 /// let disc = |points: &[[f64; 2]], values: &mut [f64]| {
 ///     for (p, value) in points.iter().zip(values) {
 ///         *value = p[0].hypot(p[1]) - 0.03;
@@ -54,10 +54,10 @@ pub(crate) use draw::{ABOVE_LEGEND, MOST_HEIGHT};
 #[derive(Debug, Clone)]
 pub struct Isolines {
     slice: Slice,
-    pub(crate) view: View,
+    pub(crate) view: PlaneView,
     samples: Samples,
-    outline: Outline,
-    bodies: Vec<Body>,
+    outline: SurfaceLines,
+    bodies: Vec<DrawnBody>,
     is_in_ink: bool,
     levels: Levels,
     pub(crate) pixels: Pixels,
@@ -91,7 +91,7 @@ impl Isolines {
     /// [`PlotError::Sample`] for the first value that is NaN, infinite or over 1e150.
     pub fn sample(
         slice: &Slice,
-        view: &View,
+        view: &PlaneView,
         sampling: Sampling,
         field: impl FnMut(&[[f64; 2]], &mut [f64]),
     ) -> Result<Self, PlotError> {
@@ -101,7 +101,7 @@ impl Isolines {
             slice: slice.clone(),
             view: *view,
             levels: Levels::choose(low, high, view.width().min(view.height())),
-            outline: Outline::of_samples(&samples),
+            outline: SurfaceLines::of_samples(&samples),
             bodies: Vec::new(),
             is_in_ink: false,
             samples,
@@ -112,22 +112,22 @@ impl Isolines {
         })
     }
 
-    /// With this surface, [followed](Outline::follow) in the same window, instead of the one that
+    /// With this surface, [followed](SurfaceLines::follow) in the same window, instead of the one that
     /// the samples show.
     #[must_use]
-    pub fn with_outline(self, outline: Outline) -> Self {
+    pub fn with_outline(self, outline: SurfaceLines) -> Self {
         Self { outline, ..self }
     }
 
     /// With the bodies of which this is the union. If there are several, each has a colour, and
     /// what lies in more than one is hatched; one alone is drawn as without it, and named. Their
-    /// surfaces, [followed](Outline::follow) in the same window, are drawn instead of that of the
+    /// surfaces, [followed](SurfaceLines::follow) in the same window, are drawn instead of that of the
     /// union.
     ///
     /// The first twelve bodies have colours of their own; the thirteenth has that of the first,
     /// and so on. Outlines that run together differ in width and dash too.
     #[must_use]
-    pub fn with_bodies(self, bodies: impl IntoIterator<Item = Body>) -> Self {
+    pub fn with_bodies(self, bodies: impl IntoIterator<Item = DrawnBody>) -> Self {
         Self { bodies: bodies.into_iter().collect(), ..self }
     }
 
@@ -156,7 +156,7 @@ impl Isolines {
     /// darken where it is longer.
     ///
     /// `field` is called with the plane coordinates of some points \[m\] and a slice of the
-    /// same length for their [`Slope`]s.
+    /// same length for their [`SampledSlope`]s.
     ///
     /// # Errors
     ///
@@ -166,17 +166,17 @@ impl Isolines {
     /// # Examples
     ///
     /// ```
-    /// use palpate_plot::{Figure, Isolines, Sampling, Slice, Slope, View};
+    /// use palpate_plot::{Figure, Isolines, Sampling, Slice, SampledSlope, PlaneView};
     ///
-    /// let view = View::new([0.0, 0.0], 0.2, 0.15)?;
+    /// let view = PlaneView::new([0.0, 0.0], 0.2, 0.15)?;
     /// let disc = |p: [f64; 2]| {
     ///     let r = p[0].hypot(p[1]);
-    ///     Slope { value: r - 0.03, gradient: [p[0] / r, p[1] / r, 0.0] }
+    ///     SampledSlope { value: r - 0.03, gradient: [p[0] / r, p[1] / r, 0.0] }
     /// };
     /// let values = |points: &[[f64; 2]], values: &mut [f64]| {
     ///     points.iter().zip(values).for_each(|(p, value)| *value = disc(*p).value);
     /// };
-    /// let slopes = |points: &[[f64; 2]], slopes: &mut [Slope]| {
+    /// let slopes = |points: &[[f64; 2]], slopes: &mut [SampledSlope]| {
     ///     points.iter().zip(slopes).for_each(|(p, slope)| *slope = disc(*p));
     /// };
     /// let picture = Isolines::sample(&Slice::planar(), &view, Sampling::default(), values)?
@@ -187,7 +187,7 @@ impl Isolines {
     /// ```
     pub fn with_gradient(
         self,
-        field: impl FnMut(&[[f64; 2]], &mut [Slope]),
+        field: impl FnMut(&[[f64; 2]], &mut [SampledSlope]),
     ) -> Result<Self, PlotError> {
         let image = self.pixels.paint(field, wheel_color)?;
         Ok(Self { ground: Ground::Gradient(image, None), ..self })
@@ -203,7 +203,7 @@ impl Isolines {
     pub fn with_directions(
         self,
         method: impl Into<String>,
-        field: impl FnMut(&[[f64; 2]], &mut [Slope]),
+        field: impl FnMut(&[[f64; 2]], &mut [SampledSlope]),
     ) -> Result<Self, PlotError> {
         let image = self.pixels.paint(field, wheel_color)?;
         Ok(Self { ground: Ground::Gradient(image, Some(method.into())), ..self })
@@ -249,9 +249,9 @@ impl Isolines {
     /// Half the distance to a disc is a bound of it:
     ///
     /// ```
-    /// use palpate_plot::{Comparison, Isolines, Promised, Sampling, Slice, View};
+    /// use palpate_plot::{Comparison, Isolines, Promised, Sampling, Slice, PlaneView};
     ///
-    /// let view = View::new([0.0, 0.0], 0.2, 0.15)?;
+    /// let view = PlaneView::new([0.0, 0.0], 0.2, 0.15)?;
     /// let distance = |p: &[f64; 2]| p[0].hypot(p[1]) - 0.03;
     /// let values = |points: &[[f64; 2]], values: &mut [f64]| {
     ///     points.iter().zip(values).for_each(|(p, value)| *value = 0.5 * distance(p));
@@ -324,7 +324,7 @@ impl Isolines {
 
     /// The window.
     #[must_use]
-    pub fn view(&self) -> View {
+    pub fn view(&self) -> PlaneView {
         self.view
     }
 
@@ -348,6 +348,6 @@ impl Isolines {
 }
 
 /// The direction of a gradient in the plane, as a colour.
-fn wheel_color(slope: &Slope) -> Color {
+fn wheel_color(slope: &SampledSlope) -> Color {
     wheel::color([slope.gradient[0], slope.gradient[1]])
 }

@@ -382,9 +382,22 @@ impl<const D: usize> Manifold<D> {
 }
 
 impl ManifoldSettings {
+    /// The tolerance of the separation that serves these settings [m]: half of the margin.
+    ///
+    /// ```
+    /// use palpate_query::ManifoldSettings;
+    ///
+    /// let settings = ManifoldSettings::of_size(0.1).with_margin(1e-3);
+    /// assert_eq!(settings.usual_tolerance(), 5e-4);
+    /// ```
+    #[must_use]
+    pub fn usual_tolerance(&self) -> f64 {
+        0.5 * self.margin
+    }
+
     /// The separation, if it is within the margin.
     pub(crate) fn goal(&self, limits: &Limits) -> Goal {
-        Goal::least_within(0.5 * self.margin, 0.5 * limits.tolerance)
+        Goal::separation_within(self.margin, limits)
     }
 
     pub(crate) fn check(&self) -> Result<(), QueryError> {

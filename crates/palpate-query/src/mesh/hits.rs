@@ -17,7 +17,7 @@
 //! and bounded again; the few that stay open are searched one by one.
 
 use palpate_field::{BLOCK, Block, Column, Gradients, Point, Shape};
-use palpate_mesh::internal::FAN;
+use palpate_mesh::FAN;
 
 use super::contacts::MeshContacts;
 use super::placed::{PlacedMesh, View};

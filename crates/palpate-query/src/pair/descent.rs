@@ -25,7 +25,7 @@ const SHRINK: f64 = 0.25;
 ///
 /// ```
 /// use palpate_field::Vector;
-/// use palpate_query::internal::minimax_step;
+/// use palpate_query::minimax_step;
 ///
 /// // Two planes that rise towards each other meet in the middle.
 /// let slopes = [Vector([1.0, 0.0]), Vector([-1.0, 0.0])];

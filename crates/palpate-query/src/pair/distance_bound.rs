@@ -7,8 +7,8 @@
 use palpate_field::scalar::Model;
 use palpate_field::{Aabb, BoundingBall, Point, Pose, Quality, Rotation, Shape, Vector};
 
+use crate::constraints::{CAPACITY, PlaneConstraint, closest_point};
 use crate::error::QueryError;
-use crate::half_spaces::{CAPACITY, HalfSpace, closest_point};
 use crate::larger::larger;
 use crate::placed::{Placed, check_pose};
 
@@ -123,7 +123,7 @@ impl<'a, const D: usize> DistanceBound<'a, D> {
     /// at the last point, and goes to the point nearest to the start in the last few half-spaces. Steps
     /// behind one face at a time converge slowly at a sharp edge.
     fn behind_faces(&self, start: Point<D>) -> Option<Point<D>> {
-        let none = HalfSpace { point: start, normal: Vector::ZERO };
+        let none = PlaneConstraint { point: start, normal: Vector::ZERO };
         let mut faces = [none; CAPACITY];
         let mut p = start;
         for step in 0..STEPS_WITHIN {
@@ -135,7 +135,7 @@ impl<'a, const D: usize> DistanceBound<'a, D> {
             let normal = (-slope).normalized()?;
             let point = p + normal * ((value + DEPTH_WITHIN * rounding) / slope.norm());
             faces.rotate_right(1);
-            faces[0] = HalfSpace { point, normal };
+            faces[0] = PlaneConstraint { point, normal };
             let met = CAPACITY.min(step + 1);
             // Without a common point the shape is not convex there, and the faces met last count.
             p = (1..=met).rev().find_map(|count| closest_point(start, &faces[..count]))?;

@@ -85,7 +85,7 @@ pub fn separation<'a, const D: usize>(
     limits: &Limits,
     workspace: &mut PairWorkspace<D>,
 ) -> Result<Certified<Nearest<D>>, QueryError> {
-    let goal = Goal::least(0.5 * limits.tolerance);
+    let goal = Goal::separation(limits);
     Ok(PairSearch::new(BodyPair::new(a.into(), b.into())?, goal, limits)?.run(workspace))
 }
 
@@ -103,6 +103,6 @@ pub fn overlap<'a, const D: usize>(
     limits: &Limits,
     workspace: &mut PairWorkspace<D>,
 ) -> Result<Certified<Nearest<D>>, QueryError> {
-    let goal = Goal::sign(0.5 * limits.tolerance);
+    let goal = Goal::overlap(limits);
     Ok(PairSearch::new(BodyPair::new(a.into(), b.into())?, goal, limits)?.run(workspace))
 }

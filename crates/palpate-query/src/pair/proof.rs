@@ -62,7 +62,7 @@ pub(crate) fn prove<const D: usize>(
     workspace: &mut PairWorkspace<D>,
 ) -> Result<Proof<D>, QueryError> {
     let pair = BodyPair::new(a, b)?;
-    let mut search = PairSearch::new(pair, Goal::least(0.5 * limits.tolerance), limits)?;
+    let mut search = PairSearch::new(pair, Goal::separation(limits), limits)?;
     search.keeps_all = true;
     let (answer, _) = search.run_from(None, workspace);
     let Frontier { queue, pending, .. } = &mut workspace.frontier;

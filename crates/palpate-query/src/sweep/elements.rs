@@ -19,8 +19,8 @@
 
 use palpate_field::scalar::Model;
 use palpate_field::{BLOCK, Block, Column, Point, Shape, Vector};
+use palpate_mesh::FAN;
 use palpate_mesh::Mesh;
-use palpate_mesh::internal::FAN;
 
 use super::first_touch::{FirstTouch, Start};
 use super::motion::Motion;

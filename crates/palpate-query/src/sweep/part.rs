@@ -4,8 +4,8 @@
 //! Parts of elements and of meshes on their way.
 
 use palpate_field::{Point, Vector};
+use palpate_mesh::FAN;
 use palpate_mesh::Mesh;
-use palpate_mesh::internal::FAN;
 
 use super::path::{Path, Place};
 use super::stay::{Stay, bend, exit};

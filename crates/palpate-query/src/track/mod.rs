@@ -144,7 +144,7 @@ impl<const D: usize> Track<D> {
         limits: &Limits,
         workspace: &mut PairWorkspace<D>,
     ) -> Result<Certified<Nearest<D>>, QueryError> {
-        let goal = Goal::least(0.5 * limits.tolerance);
+        let goal = Goal::separation(limits);
         Ok(self.search(poses, goal, limits, workspace)?.0)
     }
 

@@ -13,7 +13,7 @@ use crate::sweep::{FirstTouch, Motion, Moving, SweepSettings, SweepWorkspace, co
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct Impact<const D: usize> {
+pub struct BodyImpact<const D: usize> {
     /// The bodies; the first was added before the second.
     pub bodies: [BodyId; 2],
     /// When they touch.
@@ -53,7 +53,7 @@ impl<const D: usize> World<D> {
         &self,
         motions: &[(BodyId, Motion<D>)],
         settings: &SweepSettings,
-    ) -> Result<Vec<Impact<D>>, QueryError> {
+    ) -> Result<Vec<BodyImpact<D>>, QueryError> {
         settings.check()?;
         let mut ways: Vec<Option<(Body<D>, Motion<D>)>> = self
             .bodies
@@ -87,11 +87,11 @@ impl<const D: usize> World<D> {
                 found => found?,
             };
             if touch.touches() != Some(false) {
-                impacts.push(Impact { bodies: [BodyId(one), BodyId(other)], touch });
+                impacts.push(BodyImpact { bodies: [BodyId(one), BodyId(other)], touch });
             }
         }
         impacts.sort_by(|a, b| {
-            let time = |it: &Impact<D>| it.touch.lower;
+            let time = |it: &BodyImpact<D>| it.touch.lower;
             time(a).total_cmp(&time(b)).then(a.bodies.cmp(&b.bodies))
         });
         Ok(impacts)

@@ -26,7 +26,7 @@ use crate::track::Track;
 use crate::verdict::Verdict;
 use near::pairs_near;
 
-pub use impact::Impact;
+pub use impact::BodyImpact;
 
 /// Roundings of a placed box, relative to its largest coordinate.
 const ROUNDINGS: f64 = 16.0;
@@ -66,7 +66,7 @@ impl WorldSettings {
     #[must_use]
     pub fn of_size(size: f64) -> Self {
         let manifold = ManifoldSettings::of_size(size);
-        let limits = Limits::new(0.5 * manifold.margin);
+        let limits = Limits::new(manifold.usual_tolerance());
         Self { manifold, limits }
     }
 }

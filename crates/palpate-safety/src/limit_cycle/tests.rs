@@ -28,7 +28,12 @@ fn moved(stage: &mut LimitCycle<Vector<f64, 2>>, stiff: f64, depth: impl Fn(f64)
         let depth = depth(f64::from(tick) * PERIOD);
         let force = Vector([0.0, stiff * depth.max(0.0)]);
         let position = Vector([0.0, -depth]);
-        let input = CycleInput::of([force, Vector::ZERO], force.norm(), position, 1000.0);
+        let input = CycleInput::of(
+            ForcesOf { bodies: force, guides: Vector::ZERO },
+            force.norm(),
+            position,
+            1000.0,
+        );
         let _ = stage.step(&input);
     }
 }
@@ -66,7 +71,7 @@ fn a_trembling_hand_gets_its_wall_back() {
             let force = Vector([0.0, 1000.0 * depth]);
             let position = Vector([0.0, -depth]);
             let part = stage.step(&CycleInput::of(
-                [force, Vector::ZERO],
+                ForcesOf { bodies: force, guides: Vector::ZERO },
                 force.norm(),
                 position,
                 1000.0,
@@ -102,7 +107,12 @@ fn a_wall_beyond_the_force_limit_is_halved_smoothly_too() {
         let depth = 5e-3 + 1e-3 * (TAU * 20.0 * f64::from(tick) * PERIOD).sin();
         let (effort, position) = (1000.0 * depth, Vector([0.0, -depth]));
         let force = Vector([0.0, effort.min(limit)]);
-        let part = stage.step(&CycleInput::of([force, Vector::ZERO], effort, position, 1000.0));
+        let part = stage.step(&CycleInput::of(
+            ForcesOf { bodies: force, guides: Vector::ZERO },
+            effort,
+            position,
+            1000.0,
+        ));
         let left = (part * effort).min(limit);
         assert!((left - last).abs() <= STEP + 0.13, "{tick}: {left}"); // the wave's 0.13 N
         last = left;
@@ -119,8 +129,12 @@ fn a_wall_is_halved_smoothly_and_comes_back_when_nothing_touches() {
         let depth = 2e-3 + 1e-3 * (TAU * 20.0 * f64::from(tick) * PERIOD).sin();
         let force = Vector([0.0, 1000.0 * depth]);
         let position = Vector([0.0, -depth]);
-        let part =
-            stage.step(&CycleInput::of([force, Vector::ZERO], force.norm(), position, 1000.0));
+        let part = stage.step(&CycleInput::of(
+            ForcesOf { bodies: force, guides: Vector::ZERO },
+            force.norm(),
+            position,
+            1000.0,
+        ));
         assert!((part - last).abs() * force.norm() <= STEP * (1.0 + 1e-9));
         last = part;
         least = least.min(part);

@@ -16,7 +16,8 @@ use std::collections::hash_map::Entry;
 
 use palpate_field::{Point, Pose, Shape};
 
-use palpate_haptics::{Acceptance, Guide, Material, ToolOptions, WorkspaceMap};
+use palpate_haptics::{Guide, Material, ToolOptions};
+use palpate_safety::{Acceptance, WorkspaceMap};
 use palpate_vibration::Actuator;
 
 use crate::mesh_file::BuiltMesh;
@@ -26,7 +27,7 @@ use crate::problem::Problem;
 use crate::problems::Problems;
 use crate::scene::{Dimension, Scene, WrittenBody};
 use crate::shape::WrittenShape;
-use crate::view::View;
+use crate::view::WrittenView;
 use builder::{Builder, Space};
 pub use motion::BuiltMotion;
 pub(crate) use size::MOST;
@@ -55,7 +56,7 @@ pub struct BuiltScene<const D: usize> {
     /// The motions of its bodies, in the order of the scene.
     pub motions: Vec<BuiltMotion<D>>,
     /// The pictures worth making of it.
-    pub views: Vec<View>,
+    pub views: Vec<WrittenView>,
     /// The map from the device's space to the world; `None` if the scene gives none.
     pub workspace: Option<WorkspaceMap<D>>,
     /// The mesh files that its shapes are made of, and what was found in each.

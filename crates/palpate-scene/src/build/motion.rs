@@ -6,7 +6,7 @@
 use palpate_field::{Pose, Screw, Shape, ShapeError};
 
 use super::{BuiltBody, BuiltScene};
-use crate::motion::{Motion, Repeat};
+use crate::motion::{Repeat, WrittenMotion};
 use crate::names::unknown;
 use crate::pose::{Turning, Turns};
 use crate::problem::Problem;
@@ -209,7 +209,7 @@ impl<const D: usize> BuiltScene<D> {
     }
 
     /// Moves the bodies of a servo as the scene says: a closure for
-    /// `palpate_loop::RunOptions::with_motion`, which gets the time of a tick [s] and a function
+    /// `palpate_haptics::servo_loop::RunOptions::with_motion`, which gets the time of a tick [s] and a function
     /// that sets the pose of a body by its number.
     ///
     /// # Examples
@@ -283,7 +283,7 @@ where
 }
 
 fn built<const D: usize>(
-    motion: &Motion,
+    motion: &WrittenMotion,
     scene: &Scene,
     bodies: Option<&[BuiltBody<D>]>,
 ) -> Result<BuiltMotion<D>, Problems>
@@ -308,7 +308,7 @@ where
     // Both poses are checked: what is refused are the turns.
     let screw = Screw::new(from, to, motion.turns)
         .map_err(|error| Problem::of_shape(error).under("turns"))?;
-    let Motion { start, duration, repeat, .. } = *motion;
+    let WrittenMotion { start, duration, repeat, .. } = *motion;
     let built = BuiltMotion { body, screw, start, duration, repeat };
     if built.parts().0 < LEAST_PART * start {
         // Rounded up, so that what is told is accepted.

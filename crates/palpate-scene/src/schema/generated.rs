@@ -112,7 +112,7 @@ fn definitions_of(dimension: Dimension) -> Value {
 fn forbid_in_the_plane(definitions: &mut Map<String, Value>) {
     for key in ["plane", "at"] {
         let properties = definitions
-            .get_mut("View")
+            .get_mut("WrittenView")
             .and_then(|definition| definition.get_mut("properties"))
             .and_then(Value::as_object_mut);
         if let Some(properties) = properties {

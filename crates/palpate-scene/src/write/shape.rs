@@ -10,7 +10,7 @@ use palpate_field::kernel::{Argument, ParameterKind};
 use palpate_field::operator::{Boolean, Copies};
 use palpate_field::{Node, Point, Pose, Shape, node};
 use palpate_grid::Grid;
-use palpate_mesh::{Sheet, Solid};
+use palpate_mesh::{MeshSheet, Solid};
 use serde_json::{Map, Value, json};
 
 use super::{rotation, translation};
@@ -222,7 +222,7 @@ fn mesh<const D: usize>(opaque: &node::Opaque<D>) -> Result<Value, Problem> {
     // Scenes have meshes in space alone.
     let in_space = (D == 3).then_some(opaque);
     let solid = in_space.and_then(|opaque| opaque.custom::<Solid<3, D>>());
-    let sheet = in_space.and_then(|opaque| opaque.custom::<Sheet<3, D>>());
+    let sheet = in_space.and_then(|opaque| opaque.custom::<MeshSheet<3, D>>());
     let mut object = match (solid, sheet) {
         (Some(solid), _) => arrays(solid.vertices(), solid.elements()),
         (None, Some(sheet)) => arrays(sheet.mesh().vertices(), sheet.mesh().elements()),

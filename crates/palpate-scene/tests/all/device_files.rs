@@ -3,16 +3,16 @@
 
 //! Profiles of devices as files: what they keep, and what is told of wrong ones.
 
-use palpate_haptics::{Buttons, DeviceProfile, GripperProfile};
+use palpate_device::{Buttons, DeviceProfile, GripperProfile};
 use palpate_scene::{device_from_json, device_to_json};
 
 fn text(name: &str) -> String {
-    device_to_json(&palpate_devices::profile_named(name).unwrap()).unwrap()
+    device_to_json(&palpate_device::profile_named(name).unwrap()).unwrap()
 }
 
 #[test]
 fn every_profile_is_read_as_it_was_written() {
-    for (name, profile) in &palpate_devices::PROFILES {
+    for (name, profile) in &palpate_device::PROFILES {
         assert_eq!(&device_from_json(text(name).as_bytes()).unwrap(), profile, "{name}");
     }
 }
@@ -21,7 +21,7 @@ fn every_profile_is_read_as_it_was_written() {
 #[test]
 fn grippers_and_buttons_are_kept() {
     let gripper = GripperProfile::new(0.025, 8.0).with_max_force_rate(2000.0);
-    let omega = palpate_devices::profile_named("omega7").unwrap();
+    let omega = palpate_device::profile_named("omega7").unwrap();
     let device = omega.with_gripper(gripper).with_buttons(["front", "rear"]);
     let text = device_to_json(&device).unwrap();
     assert_eq!(device_from_json(text.as_bytes()).unwrap(), device);

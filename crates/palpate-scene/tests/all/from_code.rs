@@ -350,7 +350,7 @@ fn a_grid_is_written_as_it_was_baked() {
     let bakes = [
         GridOptions::with_cell(0.01),
         GridOptions::with_tolerance(1e-3)
-            .with_kernel(palpate_grid::Kernel::Trilinear)
+            .with_kernel(palpate_grid::GridKernel::Trilinear)
             .with_store(Store::I16)
             .with_band(8.0),
     ];
@@ -368,7 +368,7 @@ fn a_grid_is_written_as_it_was_baked() {
     assert!(error.to_string().contains("certified to 2 cells"), "{error}");
     let lattice = Lattice { origin: Vector([-1.0; 2]), cell: 0.5, counts: [5, 5] };
     let samples: Vec<f64> = (0..25).map(|i| if i == 12 { -0.1 } else { 0.4 }).collect();
-    let kernel = palpate_grid::Kernel::Trilinear;
+    let kernel = palpate_grid::GridKernel::Trilinear;
     let grid = Grid::from_samples(lattice, &samples, kernel, Store::I8).unwrap();
     let error = WrittenShape::of(&grid.into()).unwrap_err();
     assert!(error.to_string().contains("save it, and name its file"), "{error}");
@@ -378,7 +378,7 @@ fn a_grid_is_written_as_it_was_baked() {
 fn a_grid_of_samples_is_written_with_them() {
     let lattice = Lattice { origin: Vector([-1.0; 2]), cell: 0.5, counts: [5, 5] };
     let samples: Vec<f64> = (0..25).map(|i| if i == 12 { -0.1 } else { 0.4 }).collect();
-    for kernel in palpate_grid::Kernel::ALL {
+    for kernel in palpate_grid::GridKernel::ALL {
         let grid = Grid::from_samples(lattice, &samples, kernel, Store::F32).unwrap();
         let shape = Shape::from(grid);
         let text = WrittenShape::of(&shape).unwrap().to_json();

@@ -4,7 +4,7 @@
 //! Shapes of meshes, in files and in scenes.
 
 use palpate_field::{Shape, Vector};
-use palpate_mesh::{Sheet, Solid, TriangleMesh};
+use palpate_mesh::{MeshSheet, Solid, TriangleMesh};
 use palpate_scene::{AnyScene, BuiltScene, Scene, WrittenShape};
 
 /// A tetrahedron of 1, 2 and 3 m.
@@ -28,7 +28,7 @@ fn mesh() -> TriangleMesh {
 #[test]
 fn a_mesh_made_in_code_is_written_and_read_back_to_the_bit() {
     let solid: Shape<3> = Solid::from_mesh(&mesh()).unwrap().0.into();
-    let sheet: Shape<3> = Sheet::from_mesh(&mesh(), 0.01).unwrap().into();
+    let sheet: Shape<3> = MeshSheet::from_mesh(&mesh(), 0.01).unwrap().into();
     for shape in
         [solid.clone(), sheet, solid.clone().scaled(0.1).unwrap() - Shape::ball(0.1).unwrap()]
     {

@@ -9,9 +9,9 @@ use palpate_field::kernel::{Argument, Parameter, ParameterKind};
 use palpate_haptics::{Impact, Layer, Magnet, Material, PopThrough, Texture, TextureKind};
 use palpate_scene::{
     AxisAngle, Dimension, FreePlane, GuideCurve, GuideLine, GuidePlane, GuideSegment,
-    GuideWell, Motion, Repeat, Scene, View, ViewPlane, WrittenBody, WrittenCoupling,
-    WrittenGuide, WrittenMaterial, WrittenPose, WrittenRotation, WrittenShape, WrittenTool,
-    WrittenWorkspace,
+    GuideWell, Repeat, Scene, ViewPlane, WrittenBody, WrittenCoupling, WrittenGuide,
+    WrittenMaterial, WrittenMotion, WrittenPose, WrittenRotation, WrittenShape, WrittenTool,
+    WrittenView, WrittenWorkspace,
 };
 use serde_json::{Map, Value, json};
 
@@ -455,8 +455,8 @@ fn guide(u: Random, d: usize) -> Result<WrittenGuide> {
     Ok(guide)
 }
 
-fn motion(u: Random, d: usize) -> Result<Motion> {
-    let mut motion = Motion::new("body 0", pose(u, d)?);
+fn motion(u: Random, d: usize) -> Result<WrittenMotion> {
+    let mut motion = WrittenMotion::new("body 0", pose(u, d)?);
     motion.description = text(u)?;
     motion.from = maybe(u, |u| pose(u, d))?;
     motion.start = if u.arbitrary()? { 0.0 } else { length(u)? };
@@ -466,7 +466,7 @@ fn motion(u: Random, d: usize) -> Result<Motion> {
     Ok(motion)
 }
 
-fn view(u: Random, d: usize, i: usize) -> Result<View> {
+fn view(u: Random, d: usize, i: usize) -> Result<WrittenView> {
     let plane = if d == 2 {
         None
     } else {
@@ -480,7 +480,7 @@ fn view(u: Random, d: usize, i: usize) -> Result<View> {
         maybe(u, |u| Ok(u.choose(&planes)?.clone()))?
     };
     let is_free = matches!(plane, Some(ViewPlane::Free(_)));
-    let mut view = View::new(format!("view {i}"));
+    let mut view = WrittenView::new(format!("view {i}"));
     view.description = text(u)?;
     view.at = if d == 2 || is_free { None } else { maybe(u, number)? };
     view.plane = plane;

@@ -12,7 +12,7 @@ mod rotor;
 
 use std::borrow::Cow;
 
-use palpate_haptics::{HapticsError, NumberError};
+use palpate_device::NumberError;
 
 use crate::cue::MappingOptions;
 
@@ -93,7 +93,7 @@ impl Actuator {
     ///
     /// # Errors
     ///
-    /// [`HapticsError::Number`] if a figure is not positive and finite, a start level is above
+    /// [`NumberError`] if a figure is not positive and finite, a start level is above
     /// the rated level, an overdrive below it, or a band ends below its beginning.
     ///
     /// ```
@@ -107,7 +107,7 @@ impl Actuator {
         name: impl Into<Cow<'static, str>>,
         source: impl Into<Cow<'static, str>>,
         mechanism: Mechanism,
-    ) -> Result<Self, HapticsError> {
+    ) -> Result<Self, NumberError> {
         mechanism.check()?;
         Ok(Self {
             name: name.into(),
@@ -199,7 +199,7 @@ impl Mechanism {
         }
     }
 
-    pub(crate) fn check(&self) -> Result<(), HapticsError> {
+    pub(crate) fn check(&self) -> Result<(), NumberError> {
         for (parameter, value, unit) in self.figures() {
             NumberError::check_positive(parameter, value, unit)?;
         }
@@ -227,7 +227,7 @@ impl Mechanism {
 const HIGHEST_SAMPLE_RATE: f64 = 1e6;
 
 /// Checks that `sample_rate` [Hz] is at least twice the `highest` frequency [Hz] that it carries.
-pub(crate) fn check_sample_rate(sample_rate: f64, highest: f64) -> Result<f64, HapticsError> {
+pub(crate) fn check_sample_rate(sample_rate: f64, highest: f64) -> Result<f64, NumberError> {
     NumberError::check_positive("sample_rate", sample_rate, "Hz")?;
     let wrong = |rule| Err(NumberError::new("sample_rate", rule, sample_rate, "Hz").into());
     if sample_rate < 2.0 * highest {

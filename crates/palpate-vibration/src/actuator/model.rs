@@ -9,7 +9,7 @@ use std::f64::consts::{FRAC_1_SQRT_2, PI, TAU};
 
 use super::rotor::Rotor;
 use super::{Actuator, Mechanism, check_sample_rate};
-use palpate_haptics::HapticsError;
+use palpate_device::NumberError;
 
 /// A second-order high pass, `g s² / (s² + s ω₀ / Q + ω₀²)`, by the bilinear transform: exact at
 /// ω₀.
@@ -113,9 +113,9 @@ impl ActuatorModel {
     ///
     /// # Errors
     ///
-    /// [`HapticsError::Number`] if a figure of the actuator breaks its rule, or if the sample rate
+    /// [`NumberError`] if a figure of the actuator breaks its rule, or if the sample rate
     /// is less than twice the actuator's highest frequency.
-    pub fn new(actuator: &Actuator, sample_rate: f64) -> Result<Self, HapticsError> {
+    pub fn new(actuator: &Actuator, sample_rate: f64) -> Result<Self, NumberError> {
         let mechanism = &actuator.mechanism;
         mechanism.check()?;
         check_sample_rate(sample_rate, mechanism.highest_frequency())?;

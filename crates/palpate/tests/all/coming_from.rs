@@ -3,9 +3,10 @@
 
 //! The code of `docs/guide/coming-from.md`, by its sections: it compiles, and it runs.
 
-use palpate::devices::{Hand, SimulatedDevice, profile_named};
+use palpate::device::profile_named;
 use palpate::field::{Promise, scalar::Scalar};
 use palpate::prelude::*;
+use palpate::sim::{Hand, SimulatedDevice};
 
 type Outcome = Result<(), Error>;
 
@@ -24,9 +25,9 @@ fn none() -> std::io::Error {
 
 #[test]
 fn chai3d() -> Outcome {
-    use palpate::haptics::{
-        Bodies, Guide, GuideOptions, Probe, Protection, Proxy, Recovery, ServoOptions,
-        WorkspaceMap,
+    use palpate::{
+        haptics::{Bodies, Guide, GuideOptions, Probe, Protection, Proxy, ServoOptions},
+        safety::{Recovery, WorkspaceMap},
     };
     let (plate, mut device) = (plate()?, device()?);
     let bounds = plate.promise().bounds.ok_or_else(none)?.aabb;
@@ -36,14 +37,15 @@ fn chai3d() -> Outcome {
     let _ = ServoOptions::default().with_probe(Probe::new(0.002)?);
     let _ = Material { stiffness: 800.0, static_friction: 0.5, ..Material::wood() };
     let _ = (Material::magnet(), Material::sandpaper());
-    let _: Protection<3> = Protection::new(profile.clone()).with_recovery(Recovery::OnceOut);
-    let _: Protection<3> = Protection::new(profile.clone()).with_rise_rate(20.0);
+    let mut protection = Protection::<3>::new(profile.clone());
+    protection.settings.recovery = Recovery::OnceOut;
+    protection.settings.rise_rate = 20.0;
     let _ = Protection::new(profile).with_map(WorkspaceMap::fitting(bounds, 0.075)?);
     let _ = Shape::sphere(0.05)?;
     let _ = Guide::on_plane([0.0; 3], [0.0, 1.0, 0.0], GuideOptions::default())?;
     assert!(device.profile().max_force > 0.0);
     let mut servo = Servo::for_device(bodies, &device)?;
-    let mut states = [palpate::devices::PointState::at_rest(Vector::ZERO)];
+    let mut states = [palpate::device::PointState::at_rest(Vector::ZERO)];
     device.read(0.0, &mut states)?;
     servo.step(&states);
     device.write(servo.forces())?;
@@ -58,7 +60,8 @@ fn chai3d() -> Outcome {
 #[test]
 fn openhaptics() -> Outcome {
     use palpate::{
-        haptics::{Guide, GuideOptions, WorkspaceMap},
+        haptics::{Guide, GuideOptions},
+        safety::WorkspaceMap,
         servo_loop::{Reconnection, ServoThread, ThreadOptions},
     };
     let mut device = device()?;
@@ -66,7 +69,7 @@ fn openhaptics() -> Outcome {
     let plate = plate()?;
     let bounds = plate.promise().bounds.ok_or_else(none)?.aabb;
     let mut servo = Servo::for_device(plate, &device)?;
-    let mut states = [palpate::devices::PointState::at_rest(Vector::ZERO)];
+    let mut states = [palpate::device::PointState::at_rest(Vector::ZERO)];
     device.read(0.0, &mut states)?;
     assert_eq!(states[0].position, Vector([0.0, 0.05, 0.0]));
     servo.step(&states);
@@ -91,8 +94,8 @@ fn openhaptics() -> Outcome {
 #[test]
 fn haply() -> Outcome {
     use palpate::{
-        devices::{DeviceProfile, MailboxDevice, PointState},
-        haptics::WorkspaceMap,
+        device::{DeviceProfile, MailboxDevice, PointState},
+        safety::WorkspaceMap,
     };
     let profile = DeviceProfile::unlimited("my stylus").with_max_force(3.0);
     let (mut device, mut mailbox) = MailboxDevice::new(profile, 1)?;

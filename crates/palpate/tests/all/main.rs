@@ -7,3 +7,4 @@
 
 mod coming_from;
 mod examples;
+mod wrong_plants;

@@ -5,7 +5,7 @@
 
 use palpate::field::Vector;
 use palpate::haptics::{Energy, HeldTool};
-use palpate::plot::{Chart, Color, Dash, Figure, PlotError, Quantity, Series};
+use palpate::plot::{Chart, ChartQuantity, Color, Dash, Figure, PlotError, Series};
 use palpate::servo_loop::TraceRow;
 use palpate::vibration::Tones;
 
@@ -21,7 +21,7 @@ const MOST_PANELS: usize = 24;
 
 /// A chart of a quantity over time.
 fn over_time(name: &str, unit: &str) -> Chart {
-    Chart::new(Quantity::new("time", "s"), Quantity::new(name, unit))
+    Chart::new(ChartQuantity::new("time", "s"), ChartQuantity::new(name, unit))
 }
 
 /// `figure` with the forces of all contact points.

@@ -10,8 +10,9 @@ mod overlays;
 mod points;
 mod tools;
 
+use palpate::device::DeviceProfile;
 use palpate::field::{Aabb, Vector};
-use palpate::haptics::{DeviceProfile, Material};
+use palpate::haptics::Material;
 use palpate::plot::{Figure, Isolines};
 use palpate::scene::{BuiltBody, BuiltScene};
 use palpate::servo_loop::Recorder;

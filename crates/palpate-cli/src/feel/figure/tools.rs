@@ -4,7 +4,7 @@
 //! The tool where it was: at its first touch, where it was deepest, at its last touch.
 
 use palpate::field::{Aabb, Shape};
-use palpate::plot::{Color, Dash, Isolines, PlotError, Polyline, Sampling, View};
+use palpate::plot::{Color, Dash, Isolines, PlaneView, PlotError, Polyline, Sampling};
 use palpate::scene::BuiltTool;
 use palpate::servo_loop::TraceRow;
 
@@ -63,7 +63,7 @@ pub(super) fn around<const D: usize>(bounds: Aabb<D>, tools: &[Placed<'_, D>]) -
 pub(super) fn drawn<const D: usize>(
     mut isolines: Isolines,
     slice: &FeltSlice,
-    view: &View,
+    view: &PlaneView,
     tools: &[Placed<'_, D>],
 ) -> Result<Isolines, PlotError>
 where

@@ -16,8 +16,9 @@ impl<const D: usize> Renderer<D> {
     ///
     /// ```
     /// use palpate_field::{Shape, Vector};
-    /// use palpate_haptics::{Guide, GuideOptions, PointState, UnprotectedServo};
-    /// let mut servo = UnprotectedServo::new(Shape::circle(0.05)?, 1, Default::default())?;
+    /// use palpate_device::PointState;
+    /// use palpate_haptics::{Guide, GuideOptions, Servo};
+    /// let mut servo = Servo::new(Shape::circle(0.05)?, 1, Default::default())?;
     /// servo.guide(&[Guide::to_point([0.0, 0.1], GuideOptions::default())?]);
     /// servo.step(&[PointState::at_rest(Vector([0.0, 0.103]))]);
     /// assert!(servo.guides(0)[0].is_engaged());

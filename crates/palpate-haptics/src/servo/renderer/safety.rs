@@ -10,7 +10,7 @@ use crate::ports::Port;
 
 impl<const D: usize> Renderer<D> {
     /// The report of every contact point's safety chain so far; empty for an
-    /// [`UnprotectedServo`](crate::UnprotectedServo).
+    /// [unprotected](crate::Unprotected) servo.
     #[must_use]
     #[inline(never)]
     pub fn safety(&self) -> Vec<SafetyReport> {
@@ -37,7 +37,7 @@ impl<const D: usize> Renderer<D> {
     }
 
     /// In how many ticks each stage of the safety chains of all contact points has acted; zero for an
-    /// [`UnprotectedServo`](crate::UnprotectedServo).
+    /// [unprotected](crate::Unprotected) servo.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     #[must_use]

@@ -11,11 +11,11 @@ pub(crate) mod wild;
 use std::ops::Deref;
 
 use arbitrary::Unstructured;
+use palpate_device::{DeviceProfile, PointState, TurnState};
 use palpate_field::kernel::{Ball, Cuboid, HalfSpace, Torus};
 use palpate_field::{CustomField, Point, Pose, Promise, Rotation, Shape, Vector};
 use palpate_haptics::{
-    Bodies, Body, DeviceProfile, Following, PointState, Probe, Protection, Proxy, Renderer,
-    Servo, Surface, TurnState, UnprotectedServo,
+    Bodies, Body, Following, Probe, Protection, Proxy, Renderer, Servo, Surface, Unprotected,
 };
 pub(crate) use palpate_testkit::cases::each as cases;
 
@@ -72,7 +72,7 @@ pub(crate) fn scaled<const D: usize>(
 }
 
 /// The same servo behind a device that sees steps, with a safety chain.
-pub(crate) fn protected<const D: usize>(servo: UnprotectedServo<D>) -> Servo<D> {
+pub(crate) fn protected<const D: usize>(servo: Servo<D, Unprotected>) -> Servo<D> {
     let profile = DeviceProfile::unlimited("protected")
         .with_max_force(4.0)
         .with_continuous_force(1.5)
@@ -108,7 +108,7 @@ impl<const D: usize> AnyServo<D> for Servo<D> {
     }
 }
 
-impl<const D: usize> AnyServo<D> for UnprotectedServo<D> {
+impl<const D: usize> AnyServo<D> for Servo<D, Unprotected> {
     fn step(&mut self, states: &[PointState<D>]) {
         self.step(states);
     }
@@ -124,9 +124,9 @@ impl<const D: usize> AnyServo<D> for UnprotectedServo<D> {
 }
 
 /// The same servo for a device without limits: what it wants is given, from the first tick on.
-pub(crate) fn without_limits<const D: usize>(servo: UnprotectedServo<D>) -> Servo<D> {
+pub(crate) fn without_limits<const D: usize>(servo: Servo<D, Unprotected>) -> Servo<D> {
     let protection = Protection::new(DeviceProfile::unlimited("without limits"));
-    servo.protected(&protection.with_rise_rate(f64::INFINITY)).unwrap()
+    servo.protected(&protection.with(|s| s.rise_rate = f64::INFINITY)).unwrap()
 }
 
 pub(crate) fn proxy<const D: usize>(radius: f64) -> Proxy<D> {

@@ -4,10 +4,11 @@
 //! A scene with everything in it at once, at any scale, and hands that play with it.
 
 use super::AnyServo;
+use palpate_device::PointState;
 use palpate_field::{Point, Pose, Shape, Vector};
 use palpate_haptics::{
-    Bodies, Body, Guide, GuideOptions, Material, PointState, Probe, ServoOptions, Surface,
-    UnprotectedServo,
+    Bodies, Body, Guide, GuideOptions, Material, Probe, Servo, ServoOptions, Surface,
+    Unprotected,
 };
 use palpate_haptics::{Impact, Layer, Magnet, PopThrough, Texture, TextureKind};
 
@@ -120,12 +121,12 @@ pub(crate) fn servo<const D: usize>(
     count: usize,
     points: usize,
     scale: f64,
-) -> UnprotectedServo<D> {
+) -> Servo<D, Unprotected> {
     let options = ServoOptions::default()
         .with_rate(RATE)
         .with_probe(Probe::new(0.002 * scale).unwrap())
         .with_max_force(5.0 * scale);
-    let mut servo = UnprotectedServo::new(bodies(count, scale), points, options).unwrap();
+    let mut servo = Servo::new(bodies(count, scale), points, options).unwrap();
     let options = GuideOptions::default()
         .with_stiffness(50.0)
         .with_max_force(0.2 * scale)

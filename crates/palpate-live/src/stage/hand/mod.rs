@@ -10,9 +10,9 @@ use std::f64::consts::TAU;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use palpate::devices::HandPath;
 use palpate::field::{Aabb, Point, Vector};
 use palpate::scene::BuiltScene;
+use palpate::sim::HandPath;
 
 use super::points::size;
 use super::trace::Replay;

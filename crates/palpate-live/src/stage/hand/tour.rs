@@ -3,9 +3,9 @@
 
 //! The tour of a scene.
 
-use palpate::devices::{DeviceError, HandPath, Tour};
 use palpate::haptics::Probe;
 use palpate::scene::BuiltScene;
+use palpate::sim::{HandPath, SimulationError, Tour};
 
 /// How long each contact point takes for a tour of a scene [s].
 const TOUR: f64 = 20.0;
@@ -18,7 +18,7 @@ pub(super) const LAG: f64 = 0.5;
 pub(in crate::stage) fn tour<const D: usize>(
     scene: &BuiltScene<D>,
     count: usize,
-) -> Option<Result<HandPath<D>, DeviceError>> {
+) -> Option<Result<HandPath<D>, SimulationError>> {
     let bounds = scene.bounds()?;
     let shapes: Vec<_> = scene.bodies.iter().map(|body| body.shape.clone()).collect();
     let duration = TOUR + LAG * count as f64;

@@ -5,7 +5,7 @@
 
 use palpate_field::kernel::{Parameter, ParameterKind};
 use palpate_field::operator::Profile;
-use palpate_grid::{GridOptions, Inside, Kernel, Store};
+use palpate_grid::{GridKernel, GridOptions, Inside, Store};
 use serde_json::{Map, Value, json};
 
 use super::{place, reference};
@@ -332,7 +332,7 @@ fn grid() -> Value {
             "origin": numbers("The place of the first node [m]."),
             "kernel": {
                 "description": "How samples are interpolated; quadratic if left out, to be touched.",
-                "enum": Kernel::ALL.map(Kernel::name),
+                "enum": GridKernel::ALL.map(GridKernel::name),
             },
         },
         "oneOf": [
@@ -354,7 +354,7 @@ fn bake() -> Value {
             "cell": length("The size of a cell [m], instead of a tolerance."),
             "kernel": {
                 "description": "How samples are interpolated; quadratic if left out, to be touched.",
-                "enum": Kernel::ALL.map(Kernel::name),
+                "enum": GridKernel::ALL.map(GridKernel::name),
             },
             "store": {
                 "description": "How samples are stored; f32 if left out.",

@@ -1,8 +1,0 @@
-// SPDX-FileCopyrightText: The palpate authors
-// SPDX-License-Identifier: MIT OR Apache-2.0
-
-//! What other crates of palpate use. It is no part of the interface and may change at any time.
-
-pub use crate::element::parts_of_one;
-pub use crate::half_spaces::{CAPACITY, HalfSpace, closest_point, pushes};
-pub use crate::pair::minimax_step;
