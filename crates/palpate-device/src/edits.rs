@@ -124,6 +124,7 @@ impl<T: Send> fmt::Debug for EditReceiver<T> {
 }
 
 #[cfg(test)]
+#[expect(clippy::indexing_slicing, reason = "an index is within its list")]
 mod tests {
     use loom::sync::atomic::{AtomicUsize, Ordering};
     use loom::thread;

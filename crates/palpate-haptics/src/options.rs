@@ -25,7 +25,7 @@ pub struct ServoOptions {
     pub max_force: f64,
     /// The time over which the force of a contact rises from zero after a body covered the
     /// device point or moved onto it [s]. The contact points of a protected servo rise by
-    /// [`Protection::rise_rate`](crate::Protection::rise_rate) instead.
+    /// [`SafetySettings::rise_rate`](palpate_safety::SafetySettings::rise_rate) instead.
     pub rise_time: f64,
 }
 

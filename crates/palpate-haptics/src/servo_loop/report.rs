@@ -230,10 +230,12 @@ impl<const D: usize> Tally<D> {
         servo.events().iter().for_each(|event| self.events.count(event));
         self.ticks += 1;
         self.cost.record(times.cost_ns);
-        let mut progress = Progress::default();
-        progress.ticks = self.ticks;
-        progress.time = times.time_s;
-        progress.cost_ns = times.cost_ns;
+        let mut progress = Progress {
+            ticks: self.ticks,
+            time: times.time_s,
+            cost_ns: times.cost_ns,
+            ..Progress::default()
+        };
         let mut is_spent = false;
         for touch in touches {
             progress.contacts += u64::from(touch.contact);

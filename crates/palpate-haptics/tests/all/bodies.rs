@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
 //! Bodies that move, and many of them.
-#![expect(clippy::unwrap_used, reason = "a test that cannot be set up fails")]
 
 use crate::common::{ball, body, cases, cuboid, half_space, unit, vector};
 use palpate_device::{DeviceProfile, PointState};

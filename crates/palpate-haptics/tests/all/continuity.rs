@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
 //! The force is continuous on smooth shapes, in every direction and in the plane too.
-#![expect(clippy::unwrap_used, reason = "a test that cannot be set up fails")]
 
 use crate::common::{ball, body, cases, cuboid, direction, torus, unit, vector};
 use palpate_device::PointState;

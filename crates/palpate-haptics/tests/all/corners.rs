@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
 //! Concave corners of two and three walls hold the proxy where they meet, to 1e-6 of the scene.
-#![expect(clippy::unwrap_used, reason = "a test that cannot be set up fails")]
 
 use crate::common::{body, cases, cuboid, direction, unit};
 use arbitrary::Unstructured;

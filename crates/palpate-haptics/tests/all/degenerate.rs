@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
 //! Materials and scenes at the edge of what makes sense: nothing hangs, nothing is not finite.
-#![expect(clippy::unwrap_used, reason = "a test that cannot be set up fails")]
 
 use crate::common::wild::wave;
 use crate::common::{Scaled, ball, cuboid, half_space};

@@ -3,7 +3,6 @@
 
 //! What loops do around a device: opened, watched, paced, lost, found, closed; and what else than
 //! contact points a device has.
-#![expect(clippy::unwrap_used, reason = "a test that cannot be set up fails")]
 
 use std::time::Duration;
 

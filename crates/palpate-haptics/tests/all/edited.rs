@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
 //! Bodies that are edited under the hand keep the touch, or say that they do not.
-#![expect(clippy::unwrap_used, reason = "a test that cannot be set up fails")]
 
 use crate::common::nearest::nearest;
 use crate::common::tools::smooth;

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
 //! Over a closed path a scene at rest gives no energy, and with friction takes some.
-#![expect(clippy::unwrap_used, reason = "a test that cannot be set up fails")]
 
 use crate::common::{ball, body, cases, cuboid, half_space, scaled, torus, vector};
 use palpate_device::PointState;

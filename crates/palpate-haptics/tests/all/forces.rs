@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
 //! The force of a servo on shapes whose force is known.
-#![expect(clippy::unwrap_used, reason = "a test that cannot be set up fails")]
 
 use crate::common::{ball, body, cuboid, half_space};
 use palpate_device::{DeviceError, DeviceProfile, PointState};

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
 //! Friction: how it holds a hand, and that it only takes energy.
-#![expect(clippy::unwrap_used, reason = "a test that cannot be set up fails")]
 
 use crate::common::{ball, body, cuboid, half_space, torus};
 use palpate_device::PointState;

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
 //! Guides: laws of their forces, exact forces, and wrong numbers.
-#![expect(clippy::unwrap_used, reason = "a test that cannot be set up fails")]
 
 use arbitrary::Unstructured;
 use palpate_field::{Aabb, Point, Shape, Vector, kernel::Ball};

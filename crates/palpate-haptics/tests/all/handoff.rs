@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
 //! A servo thread and what goes to and from it, on a clock that tests move.
-#![expect(clippy::unwrap_used, reason = "a test that cannot be set up fails")]
 
 use std::sync::{Arc, Mutex};
 use std::time::Duration;

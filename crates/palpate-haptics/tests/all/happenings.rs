@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
 //! Events tell what happened, once; reactions are what the hand does to a body.
-#![expect(clippy::unwrap_used, reason = "a test that cannot be set up fails")]
 
 use crate::common::wild::{servo, step};
 use crate::common::{ball, half_space};

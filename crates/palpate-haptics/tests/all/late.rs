@@ -3,7 +3,6 @@
 
 //! What zeroes a force under a hand that presses on: which of it lets the force rise at once, and
 //! after which it waits until the hand is out.
-#![expect(clippy::unwrap_used, reason = "a test that cannot be set up fails")]
 
 use crate::common::tools::smooth;
 use crate::common::{body, half_space};

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
 //! A hand that is lifted off the bodies, and set down elsewhere; guides that are replaced.
-#![expect(clippy::unwrap_used, reason = "these are tests")]
 
 use crate::common::tools::smooth;
 use crate::common::{body, cuboid, without_limits};

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
 //! All tests of the crate in one program, which links faster than many.
+#![expect(clippy::unwrap_used, reason = "a test that cannot be set up fails")]
+#![expect(clippy::float_cmp, reason = "tests compare exact numbers")]
 
 use assert_no_alloc::AllocDisabler;
 

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
 //! Bodies that move far, fast, many at a time, or while nobody looks.
-#![expect(clippy::unwrap_used, reason = "a test that cannot be set up fails")]
 
 use crate::common::{ball, body, cuboid};
 use palpate_device::PointState;

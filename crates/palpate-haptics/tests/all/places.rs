@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
 //! Where a proxy rests: on creases, in corners, at every scale, never inside.
-#![expect(clippy::unwrap_used, reason = "a test that cannot be set up fails")]
 
 use crate::common::{
     FollowShape as _, ball, cases, cuboid, half_space, proxy, scaled, stroke, torus, unit,

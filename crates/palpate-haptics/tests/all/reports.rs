@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
 //! What the report of a run tells of its beginning and of guides.
-#![expect(clippy::unwrap_used, reason = "a test that cannot be set up fails")]
 
 use crate::common::{ball, body, half_space, without_limits};
 use palpate_field::{CustomField, Point, Promise, Shape, Vector};

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
 //! Whole runs of the servo, on clocks that tests move.
-#![expect(clippy::unwrap_used, reason = "a test that cannot be set up fails")]
 
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;

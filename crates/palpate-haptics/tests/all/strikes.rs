@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
 //! Strikes on plates down to 0.1 mm, from 1000 directions, with and without friction.
-#![expect(clippy::unwrap_used, reason = "a test that cannot be set up fails")]
 
 use crate::common::{ball, body, cases, cuboid, direction, rotation, unit, vector};
 use arbitrary::Unstructured;

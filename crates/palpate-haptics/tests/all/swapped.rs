@@ -3,7 +3,6 @@
 
 //! Scenes swapped under the hand: forces rise gently, and what protects the device is made anew
 //! for what it renders.
-#![expect(clippy::unwrap_used, reason = "a test that cannot be set up fails")]
 
 use crate::common::tools::smooth;
 use crate::common::{AnyServo, body, half_space};

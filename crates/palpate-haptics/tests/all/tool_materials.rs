@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
 //! What a tool with a shape feels of materials and of bodies that move, and what it tells.
-#![expect(clippy::unwrap_used, reason = "a test that cannot be set up fails")]
 
 use crate::common::tools::{STIFFNESS, at, box_mesh, on_a_loop, rest, rough, smooth, springs};
 use crate::common::{ball, body, cuboid, half_space};

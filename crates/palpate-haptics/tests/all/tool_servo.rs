@@ -3,7 +3,6 @@
 
 //! A tool with a shape as what a servo renders: the same loop, safety chain and hand-off as for
 //! contact points.
-#![expect(clippy::unwrap_used, reason = "a test that cannot be set up fails")]
 
 use std::time::Duration;
 

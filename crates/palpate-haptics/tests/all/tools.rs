@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
 //! Tools with a shape: where they rest, what they give, what they do not cross.
-#![expect(clippy::unwrap_used, reason = "a test that cannot be set up fails")]
 
 use crate::common::tools::{STIFFNESS, at, box_mesh, on_a_loop, rest, rough, springs, turned};
 use crate::common::{ball, body, cuboid, half_space};

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
 //! The paths made up for shapes.
-#![expect(clippy::unwrap_used, reason = "a test that cannot be set up fails")]
 
 use crate::common::{ball, cuboid, half_space, torus, without_limits};
 use palpate_field::kernel::{Cone, Cylinder, Polygon, RegularStar};

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
 //! Orientations that no hand can have made: held back, counted, without a kick.
-#![expect(clippy::unwrap_used, reason = "a test that cannot be set up fails")]
 
 use arbitrary::{Result, Unstructured};
 use assert_no_alloc::assert_no_alloc;

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
 //! Touches that loops play on a device that vibrates.
-#![expect(clippy::unwrap_used, reason = "a test that cannot be set up fails")]
 
 use std::sync::{Arc, Mutex};
 use std::time::Duration;

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
 //! Nothing is crossed, at any speed.
-#![expect(clippy::unwrap_used, reason = "a test that cannot be set up fails")]
 
 use crate::common::{
     FollowShape as _, Scaled, cases, cuboid, direction, proxy, rotation, scaled, stroke, unit,

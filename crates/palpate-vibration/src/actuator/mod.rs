@@ -203,9 +203,8 @@ impl Mechanism {
         for (parameter, value, unit) in self.figures() {
             NumberError::check_positive(parameter, value, unit)?;
         }
-        let wrong = |parameter, rule, value, unit| {
-            Err(NumberError::new(parameter, rule, value, unit).into())
-        };
+        let wrong =
+            |parameter, rule, value, unit| Err(NumberError::new(parameter, rule, value, unit));
         match *self {
             Self::RotatingMass { start_level, .. } if start_level > 1.0 => {
                 wrong("start_level", "at most 1", start_level, "")
@@ -229,7 +228,7 @@ const HIGHEST_SAMPLE_RATE: f64 = 1e6;
 /// Checks that `sample_rate` [Hz] is at least twice the `highest` frequency [Hz] that it carries.
 pub(crate) fn check_sample_rate(sample_rate: f64, highest: f64) -> Result<f64, NumberError> {
     NumberError::check_positive("sample_rate", sample_rate, "Hz")?;
-    let wrong = |rule| Err(NumberError::new("sample_rate", rule, sample_rate, "Hz").into());
+    let wrong = |rule| Err(NumberError::new("sample_rate", rule, sample_rate, "Hz"));
     if sample_rate < 2.0 * highest {
         return wrong("at least twice the highest frequency");
     }

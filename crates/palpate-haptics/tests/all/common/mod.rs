@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
 //! Shapes and hands that several tests use.
-#![expect(clippy::unwrap_used, reason = "a test that cannot be set up fails")]
 
 pub(crate) mod nearest;
 pub(crate) mod tools;
