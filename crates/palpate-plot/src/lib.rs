@@ -24,7 +24,7 @@
 //! use palpate_plot::{Figure, Isolines, Polyline, Sampling, Slice, PlaneView};
 //!
 //! let slice = Slice::xz(0.01)?;
-//! let view = View::of_box(&slice, [-0.04; 3], [0.04; 3], 0.25)?;
+//! let view = PlaneView::of_box(&slice, [-0.04; 3], [0.04; 3], 0.25)?;
 //! let sphere = |points: &[[f64; 2]], values: &mut [f64]| {
 //!     for (&p, value) in points.iter().zip(values) {
 //!         let [x, y, z] = slice.point(p);

@@ -34,12 +34,12 @@ pub struct PortState<const D: usize> {
     /// [`VelocityEstimator`](crate::VelocityEstimator).
     pub velocity: Vector<f64, D>,
     /// A force on the hand that is added to the wanted force [N]: that of guides and magnets. It may
-    /// give out its potential. Beyond that and what the device's damping dissipates, it gives out
-    /// the [reserve](SafetyOptions::reserve), a quarter of a millijoule while it is taken away
-    /// smoothly, and what one tick adds; and what is [counted](crate::FreeForceReport::credited) when
-    /// it comes back to a hand at rest, or rises again. A delay of the transport is not known here.
-    /// Read in encoder steps, motions seem to dissipate more than they do: guides up to `2 b / T` and
-    /// `2 f_c / Δ` give out no more for it.
+    /// release its potential energy. Any further energy that it releases is bounded by what the
+    /// device's damping dissipates, plus the [reserve](crate::SafetySettings::reserve), plus 0.25 mJ
+    /// during a smooth cut, plus one tick. Energy that it releases on purpose, when it comes back to a
+    /// hand at rest or rises again, is [reported](crate::FreeForceReport::credited). The chain does
+    /// not know a delay of the transport. Encoder steps make motions seem to dissipate more than they
+    /// do; guides up to `2 b / T` and `2 f_c / Δ` release no more for it.
     pub free_force: Vector<f64, D>,
     /// By how much the tick began too late [s]; zero in time. A tick without a new reading is as
     /// good as late.
@@ -47,7 +47,7 @@ pub struct PortState<const D: usize> {
     /// The time between the last two positions [s]; `None` for a period and what the tick is late.
     pub elapsed: Option<f64>,
     /// The part of the force to render in this tick, from which the force
-    /// [rises](SafetyOptions::rise_rate) again, at once. Normally 1; 0 after the proxy was placed
+    /// [rises](crate::SafetySettings::rise_rate) again, at once. Normally 1; 0 after the proxy was placed
     /// anew or a body moved onto it; between 0 and 1 after a body was replaced by a stiffer one.
     pub start: f64,
     /// What happened to the contact point in this tick beside the motion of the hand.
@@ -177,7 +177,7 @@ impl<const D: usize> SafetyChain<D> {
     /// # Errors
     ///
     /// As [`Accepted::new`], or [`SafetyError::MaterialRefused`] of a
-    /// [strict](SafetyOptions::is_strict) chain.
+    /// [strict](crate::SafetySettings::is_strict) chain.
     /// [`SafetyError::Number`] if a limit of the device is not positive, its mass or least damping
     /// is negative, or an energy or a time of the options is negative or not finite.
     pub fn new(
@@ -344,7 +344,8 @@ impl<const D: usize> SafetyChain<D> {
         self.channel.stop();
     }
 
-    /// Ends an emergency stop; the force begins at zero, as [`SafetyOptions::recovery`] says.
+    /// Ends an emergency stop; the force begins at zero, as [`recovery`](crate::SafetySettings::recovery)
+    /// says.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     pub fn release(&mut self) {
