@@ -3,7 +3,7 @@
 
 //! Figures of signed distance fields, as SVG and PNG.
 //!
-//! A picture is made in three steps. A [`Slice`] is a plane in space and a [`View`] a window of
+//! A picture is made in three steps. A [`Slice`] is a plane in space and a [`PlaneView`] a window of
 //! it. [`Isolines::sample`] evaluates a field there through a closure, a row of points at a
 //! time. A [`Figure`] stacks isolines, [views](Figure::with_views) of one scene and [`Chart`]s
 //! and writes them with [`to_svg`](Figure::to_svg) or [`to_png`](Figure::to_png).

@@ -445,7 +445,7 @@ class FirstTouch(Answer):
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Impact(FirstTouch):
+class BodyImpact(FirstTouch):
     """When two bodies of a world touch first, by :meth:`World.first_impacts`.
 
     Fields are those of :class:`FirstTouch`, and:

@@ -14,7 +14,7 @@ from palpate._answers import (
     Body,
     ClosestPoints,
     FirstTouch,
-    Impact,
+    BodyImpact,
     Manifold,
     Mass,
     Neighbours,
@@ -360,7 +360,7 @@ class World:
     def step(self, *, threads: int = 1) -> list[Neighbours]: ...
     def first_impacts(
         self, ends: dict[str, Any], *, gap: float | None = None, budget: int | None = None
-    ) -> list[Impact]: ...
+    ) -> list[BodyImpact]: ...
 
 def sweep(
     a: Shape,
