@@ -26,6 +26,9 @@ use clap::{Parser, Subcommand};
 
 use command::{Failure, cargo, cargo_with};
 
+/// The variable for which tests write what they generate instead of comparing it.
+const RENEW: &str = "PALPATE_RENEW";
+
 /// The project's own chores.
 #[derive(Debug, Parser)]
 #[command(bin_name = "cargo xtask")]
@@ -54,6 +57,13 @@ enum Chore {
         #[arg(long, conflicts_with = "stages")]
         thorough: bool,
     },
+    /// Renew every generated file: schema, tables in docs, generated scenes, snapshots, the constructors
+    /// of the Python package, and the lists of public items.
+    Renew {
+        /// Also those that take minutes: pictures of the live page, and testdata/recall.
+        #[arg(long)]
+        all: bool,
+    },
     /// Renew the lists of public items in docs/public-api.
     Api,
     /// Count lines of code, without tests, comments and documentation.
@@ -70,7 +80,8 @@ fn main() -> ExitCode {
         Chore::Test { thorough } => test(thorough),
         Chore::Python => python::test(),
         Chore::Check { stages, thorough } => check::run(&stages, thorough),
-        Chore::Api => check::document().and_then(|()| api::renew()),
+        Chore::Renew { all } => renew(all),
+        Chore::Api => public_items(),
         Chore::Lines { revision } => lines(revision.as_deref()),
         Chore::Oracle => oracle(),
     };
@@ -95,6 +106,33 @@ fn test(is_thorough: bool) -> Result<(), Failure> {
     }
     cargo_with(&arguments, &environment)?;
     python::test()
+}
+
+/// The lists of public items.
+fn public_items() -> Result<(), Failure> {
+    check::document().and_then(|()| api::renew())
+}
+
+/// Every generated file, in the order in which they need each other.
+fn renew(is_all: bool) -> Result<(), Failure> {
+    let renewing = [(RENEW, "1"), ("INSTA_UPDATE", "always")];
+    let crates = ["-p", "palpate-field", "-p", "palpate-plot", "-p", "palpate-scene"];
+    cargo_with(
+        &[&["test", "--locked"][..], &crates, &["--lib", "--tests"]].concat(),
+        &renewing,
+    )?;
+    let guide = ["test", "--locked", "-p", "palpate-cli", "--test", "all", "documented"];
+    cargo_with(&guide, &renewing)?;
+    python::renew()?;
+    public_items()?;
+    if is_all {
+        oracle()?;
+        let tools = page::prepare()?;
+        let tools = tools.to_string_lossy();
+        let pictures = [(page::VARIABLE, &*tools), ("PALPATE_UPDATE_PICTURES", "1")];
+        cargo_with(&["test", "--locked", "-p", "palpate-cli", "--test", "page"], &pictures)?;
+    }
+    Ok(())
 }
 
 /// The truths that recall tests replay. The program is an example of the testkit, so that

@@ -13,6 +13,20 @@ const PACKAGE: &str = "bindings/python";
 
 /// Builds the wheel, installs it with what its tests need, and runs them.
 pub(crate) fn test() -> Result<(), Failure> {
+    let python = installed()?;
+    check_workflows(&python)?;
+    let mut pytest = Command::new(&python);
+    run(pytest.args(["-m", "pytest", "-q"]).current_dir(root().join(PACKAGE)))
+}
+
+/// Writes the constructors of all primitives, from the catalogue of a wheel that is made for it.
+pub(crate) fn renew() -> Result<(), Failure> {
+    let python = installed()?;
+    run(Command::new(python).arg("generate.py").current_dir(root().join(PACKAGE)))
+}
+
+/// The interpreter of an environment where the wheel is installed with what its tests need.
+fn installed() -> Result<PathBuf, Failure> {
     let python = environment()?;
     let package = root().join(PACKAGE);
     let wheels = target().join("python").join("wheels");
@@ -32,9 +46,7 @@ pub(crate) fn test() -> Result<(), Failure> {
     run(pip(&python).arg(with_tests))?;
     // The version stays the same, so pip would keep the wheel of the last run.
     run(pip(&python).args(["--force-reinstall", "--no-deps"]).arg(&wheel))?;
-    check_workflows(&python)?;
-    let mut pytest = Command::new(&python);
-    run(pytest.args(["-m", "pytest", "-q"]).current_dir(&package))
+    Ok(python)
 }
 
 /// Checks the workflows against the schema of their format.

@@ -95,7 +95,7 @@ def test_the_constructors_are_those_of_the_catalogue() -> None:
         import generate
     finally:
         sys.path.pop(0)
-    assert generate.PLACE.read_text(encoding="utf-8") == generate.text(), "run: python generate.py"
+    assert generate.PLACE.read_text(encoding="utf-8") == generate.text(), "run: cargo xtask renew"
 
 
 def test_operators_are_their_methods_and_functions() -> None:

@@ -150,7 +150,7 @@ fn the_table_of_devices_that_differ_from_their_profiles_is_current() {
     assert!(written.contains(row.lines().last().unwrap()), "{row}");
 }
 
-/// `PALPATE_UPDATE_GUIDE=1` writes the table of materials on devices anew.
+/// `cargo xtask renew` writes the table of materials on devices anew.
 #[test]
 fn the_table_of_materials_on_devices_is_current() {
     let page =
@@ -161,10 +161,13 @@ fn the_table_of_materials_on_devices_is_current() {
     let (_, after) = rest.split_once(end).unwrap();
     let table = text(&palpate(&["devices", "--materials"]));
     let current = format!("{before}{begin}\n{table}\n{end}{after}");
-    if std::env::var_os("PALPATE_UPDATE_GUIDE").is_some() {
+    if std::env::var_os("PALPATE_RENEW").is_some() {
         std::fs::write(&page, &current).unwrap();
     }
-    assert!(std::fs::read_to_string(&page).unwrap() == current, "renew it");
+    assert!(
+        std::fs::read_to_string(&page).unwrap() == current,
+        "the table is stale; `cargo xtask renew` renews it"
+    );
     let faster = json(&["devices", "--materials", "--rate", "4000", "--json"]);
     let of = |rows: &Value, device: &str, material: &str| {
         let rows = rows.as_array().unwrap();

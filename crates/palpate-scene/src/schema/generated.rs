@@ -204,18 +204,18 @@ pub(crate) fn material(generator: &mut SchemaGenerator) -> Schema {
 }
 
 /// Set to write the schema instead of comparing it.
-const UPDATE: &str = "PALPATE_UPDATE_SCHEMA";
+const RENEW: &str = "PALPATE_RENEW";
 
 #[test]
 fn the_committed_schema_is_the_generated_one() {
     let text = crate::json::write(&schema());
-    if std::env::var_os(UPDATE).is_some() {
+    if std::env::var_os(RENEW).is_some() {
         let path = concat!(env!("CARGO_MANIFEST_DIR"), "/schema/scene.schema.json");
         std::fs::write(path, text).unwrap();
         return;
     }
     assert!(
         text == super::schema_text(),
-        "schema/scene.schema.json is stale; run the test again with {UPDATE}=1"
+        "schema/scene.schema.json is stale; `cargo xtask renew` renews it"
     );
 }

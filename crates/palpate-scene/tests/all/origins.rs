@@ -6,7 +6,7 @@
 use palpate_field::catalogue::Entry;
 
 /// Set to write the table instead of comparing it.
-const UPDATE: &str = "PALPATE_UPDATE_FORMATS";
+const RENEW: &str = "PALPATE_RENEW";
 
 /// The lines around the table.
 const AROUND: [&str; 2] = ["<!-- origins -->\n", "<!-- end of origins -->\n"];
@@ -34,14 +34,14 @@ fn the_documented_origins_are_those_of_the_catalogue() {
         AROUND.map(|line| text.find(line).expect("the lines around the table"));
     let (head, rest) = text.split_at(before + AROUND[0].len());
     let written = &rest[..after - head.len()];
-    if std::env::var_os(UPDATE).is_some() {
+    if std::env::var_os(RENEW).is_some() {
         let renewed = [head, &table(), &text[after..]].concat();
         std::fs::write(&path, renewed).unwrap();
         return;
     }
     assert!(
         written == table(),
-        "the table of origins in docs/formats.md is stale; run the test again with {UPDATE}=1"
+        "the table of origins in docs/formats.md is stale; `cargo xtask renew` renews it"
     );
 }
 

@@ -10,14 +10,14 @@ use palpate_field::catalogue::Entry;
 use palpate_scene::{AnyScene, Dimension, Scene, SceneError, WrittenBody, schema};
 
 /// Set to write the scenes as they should be instead of comparing them.
-const UPDATE: &str = "PALPATE_UPDATE_SCENES";
+const RENEW: &str = "PALPATE_RENEW";
 
 #[test]
 fn every_scene_of_the_repository_is_written_as_it_is() {
     for (name, text) in crate::common::files("scenes") {
         let scene = Scene::from_json(&text).unwrap_or_else(|error| panic!("{name}: {error}"));
         assert!(scene.description.is_some(), "{name} does not say what it shows");
-        if std::env::var_os(UPDATE).is_some() {
+        if std::env::var_os(RENEW).is_some() {
             std::fs::write(
                 crate::common::repository().join("scenes").join(name),
                 scene.to_json(),
@@ -27,7 +27,7 @@ fn every_scene_of_the_repository_is_written_as_it_is() {
         }
         assert!(
             scene.to_json() == text,
-            "{name} is not as `Scene::to_json` writes it; run the test again with {UPDATE}=1"
+            "{name} is not as `Scene::to_json` writes it; `cargo xtask renew` renews it"
         );
     }
 }

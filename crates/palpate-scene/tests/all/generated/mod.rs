@@ -14,19 +14,19 @@ use palpate_field::catalogue::Entry;
 use palpate_scene::{AnyScene, Scene, schema};
 
 /// Set to write the scenes instead of comparing them.
-const UPDATE: &str = "PALPATE_UPDATE_SCENES";
+const RENEW: &str = "PALPATE_RENEW";
 
 /// Compares the scene `name` of the repository with the generated `text`.
 fn assert_current(name: &str, text: &str) {
     let scene = Scene::from_json(text).unwrap_or_else(|error| panic!("{name}: {error}"));
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes").join(name);
-    if std::env::var_os(UPDATE).is_some() {
+    if std::env::var_os(RENEW).is_some() {
         std::fs::write(&path, scene.to_json()).unwrap();
     }
     let committed = std::fs::read_to_string(&path).unwrap_or_default();
     assert!(
         committed == scene.to_json(),
-        "scenes/{name} is stale; run the test again with {UPDATE}=1"
+        "scenes/{name} is stale; `cargo xtask renew` renews it"
     );
 }
 
