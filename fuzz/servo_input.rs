@@ -235,11 +235,12 @@ where
     let probe = Probe::new(*u.choose(&[0.0, 1e-9, 0.0005, 0.002, 0.01])?);
     let probe =
         probe.and_then(|probe| probe.with_budget([4, 9, 64][u.choose_index(3).unwrap_or(0)]));
-    let options = ServoOptions::default()
-        .with_probe(probe.expect("a radius and a budget"))
-        .with_max_force(*u.choose(&[3.3, 1e-3, f64::INFINITY])?)
-        .with_rise_time(*u.choose(&[1e-9, 0.1])?)
-        .with_rate(*u.choose(&[1000.0, 10.0, 1e5])?);
+    let options = ServoOptions {
+        probe: probe.expect("a radius and a budget"),
+        max_force: *u.choose(&[3.3, 1e-3, f64::INFINITY])?,
+        rise_time: *u.choose(&[1e-9, 0.1])?,
+        rate: *u.choose(&[1000.0, 10.0, 1e5])?,
+    };
     let points = *u.choose(&[1, 2, 5, 24])?;
     let mut servo = Servo::new(bodies(u, pops)?, points, options).expect("options");
     if u.ratio(1, 3)? {
@@ -249,14 +250,16 @@ where
         }
     }
     if u.arbitrary()? {
-        let profile = DeviceProfile::unlimited("any")
-            .with_max_force(*u.choose(&[3.3, 12.0])?)
-            .with_continuous_force(1.0)
-            .with_max_force_rate(*u.choose(&[f64::INFINITY, 500.0])?)
-            .with_mass(0.05)
-            .with_least_damping(0.5)
-            .with_friction(0.2)
-            .with_encoder_step(*u.choose(&[0.0, 2e-5])?);
+        let profile = DeviceProfile {
+            max_force: *u.choose(&[3.3, 12.0])?,
+            continuous_force: 1.0,
+            max_force_rate: *u.choose(&[f64::INFINITY, 500.0])?,
+            mass: 0.05,
+            least_damping: 0.5,
+            friction: 0.2,
+            encoder_step: *u.choose(&[0.0, 2e-5])?,
+            ..DeviceProfile::unlimited("any")
+        };
         let recovery = *u.choose(&[Recovery::Rise, Recovery::OnceOut])?;
         let protection = Protection::new(profile).with(|s| s.recovery = recovery);
         let servo = servo.protected(&protection).expect("a profile");

@@ -31,7 +31,8 @@ where
     let size = draw::size(&a).max(draw::size(&b));
     let (of_a, of_b) = (draw::screw(u, size, 0)?, draw::screw(u, size, 2)?);
     let moving = [Moving::new(&a, of_a), Moving::new(&b, of_b)];
-    let settings = SweepSettings::of_size(size).with_gap(1e-4 * size).with_budget(100_000);
+    let settings =
+        SweepSettings { gap: 1e-4 * size, budget: 100_000, ..SweepSettings::of_size(size) };
     let Ok(found) = sweep(moving[0], moving[1], &settings, workspace) else {
         return Ok(Err("bounded bodies are refused".into()));
     };

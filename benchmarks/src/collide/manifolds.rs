@@ -55,7 +55,7 @@ fn ask<const D: usize>(cases: &[Case<D>], rows: &mut TimedRows) -> Result<(), Bo
     let limits = Limits::new(1e-3);
     let mut workspace = PairWorkspace::new();
     for (name, a, b, place, margin) in cases {
-        let settings = ManifoldSettings::of_size(1.0).with_margin(*margin);
+        let settings = ManifoldSettings { margin: *margin, ..ManifoldSettings::of_size(1.0) };
         let there = Placed::new(b, Pose::translation(Vector(*place)));
         let found = manifold(a, there, &settings, &limits, &mut workspace)?;
         let time = fastest(|| {

@@ -31,7 +31,8 @@ pub(super) fn measure(rows: &mut TimedRows) -> Result<(), Box<dyn Error>> {
     let s3 = scenes::s3()?.shape;
     let bounds = s3.promise().bounds.ok_or("S3 has no bounds")?.aabb;
     let cell = bounds.half_extents().0.into_iter().fold(0.0, f64::max) * 2.0 / CELLS;
-    let baked = |kernel| Grid::bake(&s3, &GridOptions::with_cell(cell).with_kernel(kernel));
+    let baked =
+        |kernel| Grid::bake(&s3, &GridOptions { kernel, ..GridOptions::with_cell(cell) });
     let mesh = TriangleMesh::of_shape(&s3, &ContourOptions::with_cell(2.0 * cell))?;
     let bodies: [(&str, Shape<3>); 4] = [
         ("S3", s3.clone()),

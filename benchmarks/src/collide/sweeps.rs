@@ -127,7 +127,8 @@ fn triangles(
     rows: &mut TimedRows,
 ) -> Result<(), Box<dyn Error>> {
     let mut random = Random::new(14);
-    let settings = SweepSettings::of_size(1.0).with_gap(1e-4).with_time_tolerance(1e-3);
+    let settings =
+        SweepSettings { gap: 1e-4, time_tolerance: 1e-3, ..SweepSettings::of_size(1.0) };
     let mut workspace = ElementSweep::new();
     let mut times = Vec::new();
     let (mut evaluations, mut undecided) = (0, 0);
@@ -161,7 +162,8 @@ fn triangles(
 /// A sphere of 888 triangles that begins free, moves by a metre and turns by up to 1.5 rad, any way.
 fn mesh(key: &str, shape: &Shape<3>, rows: &mut TimedRows) -> Result<(), Box<dyn Error>> {
     let mut random = Random::new(16);
-    let settings = SweepSettings::of_size(1.0).with_gap(1e-4).with_time_tolerance(1e-3);
+    let settings =
+        SweepSettings { gap: 1e-4, time_tolerance: 1e-3, ..SweepSettings::of_size(1.0) };
     let sphere = meshes::sphere(37, 13)?;
     let mut workspace = ElementSweep::new();
     let mut times = Vec::new();
@@ -192,7 +194,8 @@ fn mesh(key: &str, shape: &Shape<3>, rows: &mut TimedRows) -> Result<(), Box<dyn
 /// Bodies 50 mm apart, of which one moves by 0.3 m and turns by a radian, any way.
 fn pairs(key: &str, shape: &Shape<3>, rows: &mut TimedRows) -> Result<(), Box<dyn Error>> {
     let mut random = Random::new(13);
-    let settings = SweepSettings::of_size(1.0).with_gap(1e-4).with_time_tolerance(1e-3);
+    let settings =
+        SweepSettings { gap: 1e-4, time_tolerance: 1e-3, ..SweepSettings::of_size(1.0) };
     let mut workspace = SweepWorkspace::new();
     let mut times = Vec::new();
     let (mut evaluations, mut undecided) = (0, 0);

@@ -137,6 +137,6 @@ fn servo(shape: &Shape<3>, points: usize) -> Result<Servo<3, Unprotected>, Box<d
     };
     let body = Body::new(shape.clone(), Surface::new(&material)?)?;
     let probe = Probe::new(PROBE)?;
-    let options = ServoOptions::default().with_probe(probe).with_max_force(f64::INFINITY);
+    let options = ServoOptions { probe, max_force: f64::INFINITY, ..ServoOptions::default() };
     Ok(Servo::new(Bodies::new(vec![body])?, points, options)?)
 }

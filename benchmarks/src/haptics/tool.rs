@@ -101,10 +101,12 @@ fn landing_depth(tick: usize) -> f64 {
 }
 
 fn options() -> ToolOptions {
-    ToolOptions::default()
-        .with_stiffness(1000.0)
-        .with_max_force(f64::INFINITY)
-        .with_max_torque(f64::INFINITY)
+    ToolOptions {
+        stiffness: 1000.0,
+        max_force: Some(f64::INFINITY),
+        max_torque: f64::INFINITY,
+        ..ToolOptions::default()
+    }
 }
 
 /// One body with friction.

@@ -146,8 +146,10 @@ impl Beside<'_> {
             solid.distances(&places, &mut values);
             values[0]
         };
-        let options =
-            GridOptions::with_cell(lattice.cell).with_band(GridOptions::SMALLEST_BAND);
+        let options = GridOptions {
+            band: Some(GridOptions::SMALLEST_BAND),
+            ..GridOptions::with_cell(lattice.cell)
+        };
         let bake = || Grid::bake(&ours, &options).map_or(0.0, |grid| grid.deviation());
         for (key, time) in [
             ("near.all", asked(&ours) / count),

@@ -33,7 +33,8 @@ pub(super) fn measure(
     let (solid, _) = Solid::from_mesh(mesh)?;
     let solid: Shape<3> = solid.into();
     let options = GridOptions::with_cell(longest(mesh) / CELLS);
-    let trilinear = Grid::bake(&solid, &options.clone().with_kernel(GridKernel::Trilinear))?;
+    let trilinear =
+        Grid::bake(&solid, &GridOptions { kernel: GridKernel::Trilinear, ..options.clone() })?;
     let plain = Plain::of(&trilinear);
     let quadratic: Shape<3> = Grid::bake(&solid, &options)?.into();
     let trilinear: Shape<3> = trilinear.into();
@@ -81,7 +82,8 @@ pub(super) fn measure(
         compare(rows, [&ours, &other], &format!("grid.{key}.{beside}"));
     }
     let start = Instant::now();
-    let banded = Grid::bake(&solid, &options.with_band(GridOptions::SMALLEST_BAND))?;
+    let banded =
+        Grid::bake(&solid, &GridOptions { band: Some(GridOptions::SMALLEST_BAND), ..options })?;
     let baked = start.elapsed().as_nanos() as f64;
     // What is baked without what is certified: the samples within the band, with as many threads.
     let near: Vec<_> = plain.near(GridOptions::SMALLEST_BAND).collect();

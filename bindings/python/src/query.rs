@@ -177,9 +177,11 @@ pub(crate) fn settings(
     spacing: Option<f64>,
     most: Option<usize>,
 ) -> ManifoldSettings {
-    let own = margin.map_or(own, |margin| own.with_margin(margin));
-    let own = spacing.map_or(own, |spacing| own.with_spacing(spacing));
-    most.map_or(own, |most| own.with_most(most))
+    ManifoldSettings {
+        margin: margin.unwrap_or(own.margin),
+        spacing: spacing.unwrap_or(own.spacing),
+        most: most.unwrap_or(own.most),
+    }
 }
 
 pub(crate) fn manifold_of<'py, const D: usize>(

@@ -5,8 +5,8 @@
 
 use palpate::field::{Pose, Screw, Shape};
 use palpate::query::{
-    BodyId, BodyImpact, FirstTouch, Motion, Moving, Neighbours, Query, Start, SweepSettings,
-    World, WorldSettings,
+    BodyId, BodyImpact, FirstTouch, ManifoldSettings, Motion, Moving, Neighbours, Query, Start,
+    SweepSettings, World, WorldSettings,
 };
 use palpate::scene::{AnyScene, BuiltScene};
 use pyo3::prelude::*;
@@ -149,7 +149,9 @@ impl PyWorld {
         let (py, scene) = (scene.py(), PyScene::given(scene)?);
         let settings = |own: WorldSettings| match margin {
             None => own,
-            Some(margin) => WorldSettings::new(own.manifold.with_margin(margin), own.limits),
+            Some(margin) => {
+                WorldSettings::new(ManifoldSettings { margin, ..own.manifold }, own.limits)
+            }
         };
         Ok(Self(match scene.get().built() {
             AnyScene::Planar(scene) => {
@@ -248,9 +250,12 @@ where
 {
     let py = ends.py();
     let ends = poses::named(ends, &named.bodies)?;
-    let settings = SweepSettings::of_size(named.size);
-    let settings = gap.map_or(settings, |gap| settings.with_gap(gap));
-    let settings = budget.map_or(settings, |budget| settings.with_budget(budget));
+    let usual = SweepSettings::of_size(named.size);
+    let settings = SweepSettings {
+        gap: gap.unwrap_or(usual.gap),
+        budget: budget.unwrap_or(usual.budget),
+        ..usual
+    };
     let found = named.world.ask(py, |world| {
         let mut motions: Vec<(BodyId, Motion<D>)> = Vec::new();
         for (body, end) in ends {

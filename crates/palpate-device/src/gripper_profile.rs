@@ -11,7 +11,10 @@ use crate::profile::DeviceProfile;
 /// use palpate_device::{DeviceProfile, GripperProfile};
 ///
 /// let gripper = GripperProfile::new(0.025, 8.0).with_max_force_rate(2000.0);
-/// let device = DeviceProfile::unlimited("with a gripper").with_gripper(gripper);
+/// let device = DeviceProfile {
+///     gripper: Some(gripper),
+///     ..DeviceProfile::unlimited("with a gripper")
+/// };
 /// assert_eq!(device.gripper.map(|gripper| gripper.max_force), Some(8.0));
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -42,8 +45,10 @@ impl GripperProfile {
     /// The limits of the force on the fingers, for a safety chain of its own.
     #[must_use]
     pub fn force_profile(&self) -> DeviceProfile {
-        DeviceProfile::unlimited("gripper")
-            .with_max_force(self.max_force)
-            .with_max_force_rate(self.max_force_rate)
+        DeviceProfile {
+            max_force: self.max_force,
+            max_force_rate: self.max_force_rate,
+            ..DeviceProfile::unlimited("gripper")
+        }
     }
 }

@@ -34,7 +34,7 @@ use std::time::Duration;
 /// use palpate_field::Vector;
 ///
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
-/// let profile = DeviceProfile::unlimited("of my own").with_max_force(4.0);
+/// let profile = DeviceProfile { max_force: 4.0, ..DeviceProfile::unlimited("of my own") };
 /// let (mut device, mut mailbox) = MailboxDevice::new(profile, 1)?;
 /// let mut points = [PointState::at_rest(Vector::ZERO)];
 /// assert_eq!(device.read(0.0, &mut points)?, Reading::NotReady); // in the servo's thread

@@ -19,19 +19,21 @@ use crate::turning_profile::TurningProfile;
 /// ```
 /// use palpate_device::DeviceProfile;
 ///
-/// let device = DeviceProfile::unlimited("example")
-///     .with_max_force(2.5)
-///     .with_continuous_force(0.8)
-///     .with_max_force_rate(1500.0)
-///     .with_max_stiffness(1000.0)
-///     .with_max_damping(5.0)
-///     .with_workspace_radius(0.08)
-///     .with_mass(0.05)
-///     .with_least_damping(0.2)
-///     .with_friction(0.1)
-///     .with_encoder_step(30e-6)
-///     .with_max_speed(5.0)
-///     .with_max_acceleration(500.0);
+/// let device = DeviceProfile {
+///     max_force: 2.5,
+///     continuous_force: 0.8,
+///     max_force_rate: 1500.0,
+///     max_stiffness: 1000.0,
+///     max_damping: 5.0,
+///     workspace_radius: 0.08,
+///     mass: 0.05,
+///     least_damping: 0.2,
+///     friction: 0.1,
+///     encoder_step: 30e-6,
+///     max_speed: 5.0,
+///     max_acceleration: 500.0,
+///     ..DeviceProfile::unlimited("example")
+/// };
 /// assert_eq!((device.max_force, device.mass), (2.5, 0.05));
 /// ```
 #[derive(Clone, Debug, PartialEq)]
@@ -108,30 +110,8 @@ impl DeviceProfile {
     /// ```
     #[must_use]
     pub fn unlimited(name: impl Into<Cow<'static, str>>) -> Self {
-        Self { name: name.into(), ..Self::of_source("", "", &[], None) }
-    }
-
-    /// An ideal device with the source of its numbers, the names of those that are assumed, and
-    /// rotational properties. In a constant, setters then replace the ideal numbers.
-    ///
-    /// ```
-    /// use palpate_device::DeviceProfile;
-    ///
-    /// const STYLUS: DeviceProfile =
-    ///     DeviceProfile::of_source("stylus", "its data sheet", &["mass"], None)
-    ///         .with_max_force(3.0)
-    ///         .with_mass(0.05);
-    /// assert_eq!((STYLUS.max_force, STYLUS.mass), (3.0, 0.05));
-    /// ```
-    #[must_use]
-    pub const fn of_source(
-        name: &'static str,
-        source: &'static str,
-        assumed: &'static [&'static str],
-        turning: Option<TurningProfile>,
-    ) -> Self {
         Self {
-            name: Cow::Borrowed(name),
+            name: name.into(),
             max_force: f64::INFINITY,
             continuous_force: f64::INFINITY,
             max_force_rate: f64::INFINITY,
@@ -144,115 +124,12 @@ impl DeviceProfile {
             encoder_step: 0.0,
             max_speed: f64::INFINITY,
             max_acceleration: f64::INFINITY,
-            turning,
+            turning: None,
             gripper: None,
             buttons: Cow::Borrowed(&[]),
-            source: Cow::Borrowed(source),
-            assumed: Cow::Borrowed(assumed),
+            source: Cow::Borrowed(""),
+            assumed: Cow::Borrowed(&[]),
         }
-    }
-
-    /// The same profile with another name.
-    #[must_use]
-    pub fn with_name(self, name: impl Into<Cow<'static, str>>) -> Self {
-        Self { name: name.into(), ..self }
-    }
-
-    /// The same profile with another force limit [N].
-    #[must_use]
-    pub const fn with_max_force(mut self, max_force: f64) -> Self {
-        self.max_force = max_force;
-        self
-    }
-
-    /// The same profile with another continuous limit [N].
-    #[must_use]
-    pub const fn with_continuous_force(mut self, continuous_force: f64) -> Self {
-        self.continuous_force = continuous_force;
-        self
-    }
-
-    /// The same profile with another slew limit [N/s].
-    #[must_use]
-    pub const fn with_max_force_rate(mut self, max_force_rate: f64) -> Self {
-        self.max_force_rate = max_force_rate;
-        self
-    }
-
-    /// The same profile with another largest stiffness [N/m].
-    #[must_use]
-    pub const fn with_max_stiffness(mut self, max_stiffness: f64) -> Self {
-        self.max_stiffness = max_stiffness;
-        self
-    }
-
-    /// The same profile with another largest damping [N·s/m].
-    #[must_use]
-    pub const fn with_max_damping(mut self, max_damping: f64) -> Self {
-        self.max_damping = max_damping;
-        self
-    }
-
-    /// The same profile with another radius of its workspace [m].
-    #[must_use]
-    pub const fn with_workspace_radius(mut self, workspace_radius: f64) -> Self {
-        self.workspace_radius = workspace_radius;
-        self
-    }
-
-    /// The same profile with another apparent mass [kg].
-    #[must_use]
-    pub const fn with_mass(mut self, mass: f64) -> Self {
-        self.mass = mass;
-        self
-    }
-
-    /// The same profile with another least physical damping [N·s/m].
-    #[must_use]
-    pub const fn with_least_damping(mut self, least_damping: f64) -> Self {
-        self.least_damping = least_damping;
-        self
-    }
-
-    /// The same profile with another Coulomb friction [N].
-    #[must_use]
-    pub const fn with_friction(mut self, friction: f64) -> Self {
-        self.friction = friction;
-        self
-    }
-
-    /// The same profile with another resolution of the encoders [m].
-    #[must_use]
-    pub const fn with_encoder_step(mut self, encoder_step: f64) -> Self {
-        self.encoder_step = encoder_step;
-        self
-    }
-
-    /// The same profile with another largest speed of the hand [m/s].
-    #[must_use]
-    pub const fn with_max_speed(mut self, max_speed: f64) -> Self {
-        self.max_speed = max_speed;
-        self
-    }
-
-    /// The same profile with another largest acceleration of the hand [m/s²].
-    #[must_use]
-    pub const fn with_max_acceleration(mut self, max_acceleration: f64) -> Self {
-        self.max_acceleration = max_acceleration;
-        self
-    }
-
-    /// The same profile with rotational properties.
-    #[must_use]
-    pub fn with_turning(self, turning: TurningProfile) -> Self {
-        Self { turning: Some(turning), ..self }
-    }
-
-    /// The same profile with a gripper.
-    #[must_use]
-    pub const fn with_gripper(mut self, gripper: GripperProfile) -> Self {
-        self.gripper = Some(gripper);
-        self
     }
 
     /// The same profile with buttons of these names.
@@ -262,17 +139,5 @@ impl DeviceProfile {
         N: Into<Cow<'static, str>>,
     {
         Self { buttons: buttons.into_iter().map(Into::into).collect(), ..self }
-    }
-
-    /// The same profile with another source of the numbers.
-    #[must_use]
-    pub fn with_source(self, source: impl Into<Cow<'static, str>>) -> Self {
-        Self { source: source.into(), ..self }
-    }
-
-    /// The same profile with other names of fields that are assumed.
-    #[must_use]
-    pub fn with_assumed(self, assumed: impl Into<Cow<'static, [&'static str]>>) -> Self {
-        Self { assumed: assumed.into(), ..self }
     }
 }

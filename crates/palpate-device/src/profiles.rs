@@ -13,6 +13,8 @@
 //! numbers follow the same rules, for the worst axis, with at most 50 rad/s and 10 000 rad/s² of a
 //! hand; each profile names its sources.
 
+use std::borrow::Cow;
+
 use crate::profile::DeviceProfile;
 use crate::turning_profile::TurningProfile;
 use crate::wrists::{OMEGA, PREMIUM, SIGMA, VIRTUOSE_6D, turning};
@@ -86,19 +88,26 @@ const fn turning_profile(
     assumed: Assumed,
     turning: Option<TurningProfile>,
 ) -> DeviceProfile {
-    DeviceProfile::of_source(name, origin.source, origin.assumed, turning)
-        .with_max_force(published.force)
-        .with_continuous_force(assumed.continuous_force)
-        .with_max_force_rate(published.force * FORCE_RISES)
-        .with_max_stiffness(published.stiffness)
-        .with_max_damping(published.damping)
-        .with_workspace_radius(published.workspace)
-        .with_mass(assumed.mass)
-        .with_least_damping(assumed.least_damping)
-        .with_friction(assumed.friction)
-        .with_encoder_step(assumed.encoder_step)
-        .with_max_speed(MAX_SPEED)
-        .with_max_acceleration(MAX_ACCELERATION)
+    DeviceProfile {
+        name: Cow::Borrowed(name),
+        max_force: published.force,
+        continuous_force: assumed.continuous_force,
+        max_force_rate: published.force * FORCE_RISES,
+        max_stiffness: published.stiffness,
+        max_damping: published.damping,
+        workspace_radius: published.workspace,
+        mass: assumed.mass,
+        least_damping: assumed.least_damping,
+        friction: assumed.friction,
+        encoder_step: assumed.encoder_step,
+        max_speed: MAX_SPEED,
+        max_acceleration: MAX_ACCELERATION,
+        turning,
+        gripper: None,
+        buttons: Cow::Borrowed(&[]),
+        source: Cow::Borrowed(origin.source),
+        assumed: Cow::Borrowed(origin.assumed),
+    }
 }
 
 /// All known devices, by their names on the command line.

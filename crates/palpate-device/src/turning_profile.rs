@@ -61,19 +61,15 @@ impl TurningProfile {
     /// ```
     /// use palpate_device::{DeviceProfile, TurningProfile};
     ///
-    /// let turning = TurningProfile::unlimited().with_max_torque(0.2);
-    /// let device = DeviceProfile::unlimited("six degrees of freedom").with_turning(turning);
+    /// let turning = TurningProfile { max_torque: 0.2, ..TurningProfile::unlimited() };
+    /// let device = DeviceProfile {
+    ///     turning: Some(turning),
+    ///     ..DeviceProfile::unlimited("six degrees of freedom")
+    /// };
     /// assert!(device.turning.is_some_and(|turning| turning.max_stiffness == f64::INFINITY));
     /// ```
     #[must_use]
     pub const fn unlimited() -> Self {
-        Self::of_source("", &[])
-    }
-
-    /// An ideal device with the source of its numbers and the names of those that are assumed. In
-    /// a constant, setters then replace the ideal numbers.
-    #[must_use]
-    pub const fn of_source(source: &'static str, assumed: &'static [&'static str]) -> Self {
         Self {
             max_torque: f64::INFINITY,
             continuous_torque: f64::INFINITY,
@@ -86,97 +82,8 @@ impl TurningProfile {
             encoder_step: 0.0,
             max_speed: f64::INFINITY,
             max_acceleration: f64::INFINITY,
-            source: Cow::Borrowed(source),
-            assumed: Cow::Borrowed(assumed),
+            source: Cow::Borrowed(""),
+            assumed: Cow::Borrowed(&[]),
         }
-    }
-
-    /// The same profile with another torque limit [N·m].
-    #[must_use]
-    pub const fn with_max_torque(mut self, max_torque: f64) -> Self {
-        self.max_torque = max_torque;
-        self
-    }
-
-    /// The same profile with another continuous limit [N·m].
-    #[must_use]
-    pub const fn with_continuous_torque(mut self, continuous_torque: f64) -> Self {
-        self.continuous_torque = continuous_torque;
-        self
-    }
-
-    /// The same profile with another slew limit [N·m/s].
-    #[must_use]
-    pub const fn with_max_torque_rate(mut self, max_torque_rate: f64) -> Self {
-        self.max_torque_rate = max_torque_rate;
-        self
-    }
-
-    /// The same profile with another largest angular stiffness [N·m/rad].
-    #[must_use]
-    pub const fn with_max_stiffness(mut self, max_stiffness: f64) -> Self {
-        self.max_stiffness = max_stiffness;
-        self
-    }
-
-    /// The same profile with another largest angular damping [N·m·s/rad].
-    #[must_use]
-    pub const fn with_max_damping(mut self, max_damping: f64) -> Self {
-        self.max_damping = max_damping;
-        self
-    }
-
-    /// The same profile with another apparent moment of inertia [kg·m²].
-    #[must_use]
-    pub const fn with_inertia(mut self, inertia: f64) -> Self {
-        self.inertia = inertia;
-        self
-    }
-
-    /// The same profile with another least physical angular damping [N·m·s/rad].
-    #[must_use]
-    pub const fn with_least_damping(mut self, least_damping: f64) -> Self {
-        self.least_damping = least_damping;
-        self
-    }
-
-    /// The same profile with another Coulomb friction [N·m].
-    #[must_use]
-    pub const fn with_friction(mut self, friction: f64) -> Self {
-        self.friction = friction;
-        self
-    }
-
-    /// The same profile with another resolution of the encoders [rad].
-    #[must_use]
-    pub const fn with_encoder_step(mut self, encoder_step: f64) -> Self {
-        self.encoder_step = encoder_step;
-        self
-    }
-
-    /// The same profile with another largest angular speed of the hand [rad/s].
-    #[must_use]
-    pub const fn with_max_speed(mut self, max_speed: f64) -> Self {
-        self.max_speed = max_speed;
-        self
-    }
-
-    /// The same profile with another largest angular acceleration of the hand [rad/s²].
-    #[must_use]
-    pub const fn with_max_acceleration(mut self, max_acceleration: f64) -> Self {
-        self.max_acceleration = max_acceleration;
-        self
-    }
-
-    /// The same profile with another source of the numbers.
-    #[must_use]
-    pub fn with_source(self, source: impl Into<Cow<'static, str>>) -> Self {
-        Self { source: source.into(), ..self }
-    }
-
-    /// The same profile with other names of fields that are assumed.
-    #[must_use]
-    pub fn with_assumed(self, assumed: impl Into<Cow<'static, [&'static str]>>) -> Self {
-        Self { assumed: assumed.into(), ..self }
     }
 }

@@ -3,6 +3,8 @@
 
 //! Rotational profiles of known devices: the numbers of the worst axis of each.
 
+use std::borrow::Cow;
+
 use crate::profiles::{FORCE_RISES, Origin};
 use crate::turning_profile::TurningProfile;
 
@@ -116,16 +118,19 @@ pub(crate) const fn turning(torques: &Torques) -> TurningProfile {
     // K T / 2 at 1 kHz.
     let least_damping =
         if torques.torque > 0.0 { 0.5e-3 * torques.stiffness } else { FREE_WRIST };
-    TurningProfile::of_source(torques.origin.source, torques.origin.assumed)
-        .with_max_torque(torques.torque)
-        .with_continuous_torque(torques.continuous_torque)
-        .with_max_torque_rate(torques.torque * FORCE_RISES)
-        .with_max_stiffness(torques.stiffness)
-        .with_max_damping(torques.damping)
-        .with_inertia(torques.inertia)
-        .with_least_damping(least_damping)
-        .with_friction(torques.friction)
-        .with_encoder_step(torques.encoder_step)
-        .with_max_speed(MAX_SPEED)
-        .with_max_acceleration(MAX_ACCELERATION)
+    TurningProfile {
+        max_torque: torques.torque,
+        continuous_torque: torques.continuous_torque,
+        max_torque_rate: torques.torque * FORCE_RISES,
+        max_stiffness: torques.stiffness,
+        max_damping: torques.damping,
+        inertia: torques.inertia,
+        least_damping,
+        friction: torques.friction,
+        encoder_step: torques.encoder_step,
+        max_speed: MAX_SPEED,
+        max_acceleration: MAX_ACCELERATION,
+        source: Cow::Borrowed(torques.origin.source),
+        assumed: Cow::Borrowed(torques.origin.assumed),
+    }
 }

@@ -485,8 +485,11 @@ mod tests {
         let ball = Shape::<3>::ball(0.05).unwrap();
         for options in [
             GridOptions::with_cell(0.005),
-            GridOptions::with_cell(0.005).with_store(Store::I16),
-            GridOptions::with_cell(0.003).with_band(GridOptions::SMALLEST_BAND),
+            GridOptions { store: Store::I16, ..GridOptions::with_cell(0.005) },
+            GridOptions {
+                band: Some(GridOptions::SMALLEST_BAND),
+                ..GridOptions::with_cell(0.003)
+            },
         ] {
             let grid = Grid::bake(&ball, &options).unwrap();
             let mut bytes = Vec::new();

@@ -20,7 +20,6 @@ pub enum Resolution {
 
 /// What a grid is asked for.
 #[derive(Clone, Debug, PartialEq)]
-#[non_exhaustive]
 pub struct GridOptions {
     /// How fine it is.
     pub resolution: Resolution,
@@ -66,36 +65,6 @@ impl GridOptions {
             certified: 1.0,
             most_nodes: 1 << 26,
         }
-    }
-
-    /// The same with another interpolation.
-    #[must_use]
-    pub const fn with_kernel(self, kernel: GridKernel) -> Self {
-        Self { kernel, ..self }
-    }
-
-    /// The same with another store.
-    #[must_use]
-    pub const fn with_store(self, store: Store) -> Self {
-        Self { store, ..self }
-    }
-
-    /// The same with only the samples near the surface, within a band of so many cells.
-    #[must_use]
-    pub const fn with_band(self, cells: f64) -> Self {
-        Self { band: Some(cells), ..self }
-    }
-
-    /// The same with the values compared with the source up to so many cells.
-    #[must_use]
-    pub const fn with_certified(self, cells: f64) -> Self {
-        Self { certified: cells, ..self }
-    }
-
-    /// The same with another limit of nodes.
-    #[must_use]
-    pub const fn with_most_nodes(self, most_nodes: usize) -> Self {
-        Self { most_nodes, ..self }
     }
 
     /// The same with a band, if there is none: wider than what is certified by half the diagonal of three cells for

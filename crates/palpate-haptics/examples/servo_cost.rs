@@ -38,7 +38,7 @@ fn measure(
     let bounds = shape.promise().bounds.ok_or("the shape has no bounds")?;
     let path = Tour::new(bounds.aabb, DURATION)?.with_probe_radius(radius)?.over(shape)?;
     let mut device = RecordedDevice::new(vec![path; points])?;
-    let options = ServoOptions::default().with_probe(Probe::new(radius)?);
+    let options = ServoOptions { probe: Probe::new(radius)?, ..ServoOptions::default() };
     let mut servo = Servo::new(shape.clone(), points, options)?
         .protected(&Protection::new(device.profile().clone()))?;
     let pace = Pace::AsFastAsPossible;

@@ -11,11 +11,10 @@ use palpate_device::{Device, DeviceProfile};
 /// ```
 /// use palpate_haptics::ServoOptions;
 ///
-/// let options = ServoOptions::default().with_rate(4000.0).with_max_force(7.5);
+/// let options = ServoOptions { rate: 4000.0, max_force: 7.5, ..ServoOptions::default() };
 /// assert_eq!((options.rate, options.max_force), (4000.0, 7.5));
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[non_exhaustive]
 pub struct ServoOptions {
     /// Ticks a second [Hz].
     pub rate: f64,
@@ -43,7 +42,7 @@ impl ServoOptions {
     /// use palpate_device::DeviceProfile;
     /// use palpate_haptics::ServoOptions;
     ///
-    /// let device = DeviceProfile::unlimited("example").with_max_force(7.5);
+    /// let device = DeviceProfile { max_force: 7.5, ..DeviceProfile::unlimited("example") };
     /// assert_eq!(ServoOptions::of_device(&device).max_force, 7.5);
     /// ```
     #[must_use]
@@ -72,29 +71,5 @@ impl ServoOptions {
     pub fn at_rate_of<const D: usize>(self, device: &(impl Device<D> + ?Sized)) -> Self {
         let is_own = |rate: &f64| *rate < self.rate || device.paces();
         Self { rate: device.rate().filter(is_own).unwrap_or(self.rate), ..self }
-    }
-
-    /// The same options with another rate [Hz].
-    #[must_use]
-    pub const fn with_rate(self, rate: f64) -> Self {
-        Self { rate, ..self }
-    }
-
-    /// The same options with another ball that touches.
-    #[must_use]
-    pub const fn with_probe(self, probe: Probe) -> Self {
-        Self { probe, ..self }
-    }
-
-    /// The same options with another force limit [N].
-    #[must_use]
-    pub const fn with_max_force(self, max_force: f64) -> Self {
-        Self { max_force, ..self }
-    }
-
-    /// The same options with another time over which forces rise [s].
-    #[must_use]
-    pub const fn with_rise_time(self, rise_time: f64) -> Self {
-        Self { rise_time, ..self }
     }
 }

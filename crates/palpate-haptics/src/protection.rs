@@ -23,7 +23,7 @@ use palpate_safety::{
 ///
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
 /// let ball = Shape::<3>::from_kernel(Ball::new(0.05)?);
-/// let device = DeviceProfile::unlimited("example").with_max_force(2.0);
+/// let device = DeviceProfile { max_force: 2.0, ..DeviceProfile::unlimited("example") };
 /// let protection = Protection::new(device).with(|s| s.has_passivity_control = false);
 /// let servo = Servo::new(ball, 1, ServoOptions::default())?.protected(&protection)?;
 /// assert_eq!(servo.options().max_force, 2.0);

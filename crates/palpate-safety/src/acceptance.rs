@@ -157,7 +157,11 @@ impl Rule {
 ///
 /// # fn main() -> Result<(), palpate_safety::SafetyError> {
 /// let device =
-///     DeviceProfile::unlimited("example").with_max_stiffness(1500.0).with_least_damping(1.0);
+///     DeviceProfile {
+///         max_stiffness: 1500.0,
+///         least_damping: 1.0,
+///         ..DeviceProfile::unlimited("example")
+///     };
 /// let asked = Impedance::new(3000.0, 0.5)?;
 /// let accepted = Accepted::new(asked, 1.0, &device, 1000.0)?;
 /// // b − K T / 2 = 1 − 0.75
@@ -310,7 +314,10 @@ impl Accepted {
     /// use palpate_safety::{Acceptance, Accepted, DeviceLimits};
     ///
     /// # fn main() -> Result<(), palpate_safety::SafetyError> {
-    /// let device = DeviceProfile::unlimited("example").with_max_stiffness(1500.0);
+    /// let device = DeviceProfile {
+    ///     max_stiffness: 1500.0,
+    ///     ..DeviceProfile::unlimited("example")
+    /// };
     /// let limits = DeviceLimits::along(&device);
     /// let most = |rate| Accepted::most_stiffness(&limits, Acceptance::Device, rate);
     /// assert_eq!((most(1000.0)?, most(2000.0)?), (1500.0, 3000.0));
@@ -344,7 +351,10 @@ impl Accepted {
     /// use palpate_safety::{Accepted, Impedance};
     ///
     /// # fn main() -> Result<(), palpate_safety::SafetyError> {
-    /// let device = DeviceProfile::unlimited("example").with_max_stiffness(1000.0);
+    /// let device = DeviceProfile {
+    ///     max_stiffness: 1000.0,
+    ///     ..DeviceProfile::unlimited("example")
+    /// };
     /// let accepted = Accepted::new(Impedance::new(2000.0, 0.0)?, 1.0, &device, 1000.0)?;
     /// assert_eq!(
     ///     accepted.unchanged().unwrap_err().to_string(),

@@ -18,8 +18,8 @@ use crate::error::SafetyError;
 /// use palpate_device::DeviceProfile;
 /// use palpate_safety::check_bears;
 ///
-/// let strong = DeviceProfile::unlimited("strong").with_max_force(8.0);
-/// let weak = DeviceProfile::unlimited("weak").with_max_force(3.0);
+/// let strong = DeviceProfile { max_force: 8.0, ..DeviceProfile::unlimited("strong") };
+/// let weak = DeviceProfile { max_force: 3.0, ..DeviceProfile::unlimited("weak") };
 /// assert!(check_bears(&weak, &strong).is_ok());
 /// assert!(check_bears(&strong, &weak).unwrap_err().to_string().contains("max_force of 8 N"));
 /// ```

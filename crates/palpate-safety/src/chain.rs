@@ -147,7 +147,7 @@ impl SafetyOptions {
 /// use palpate_safety::{Impedance, PortState, SafetyChain, SafetyOptions};
 ///
 /// # fn main() -> Result<(), palpate_safety::SafetyError> {
-/// let device = DeviceProfile::unlimited("example").with_max_force(2.5);
+/// let device = DeviceProfile { max_force: 2.5, ..DeviceProfile::unlimited("example") };
 /// let options = SafetyOptions::new(Impedance::default()).with(|s| s.rise_rate = f64::INFINITY);
 /// let mut chain = SafetyChain::new(&device, 1000.0, options)?;
 /// let state = PortState::at_rest();

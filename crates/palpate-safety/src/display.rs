@@ -71,9 +71,11 @@ mod tests {
     #[test]
     fn an_accepted_material_says_which_rule_made_it_softer()
     -> std::result::Result<(), SafetyError> {
-        let device = DeviceProfile::unlimited("example")
-            .with_max_stiffness(1500.0)
-            .with_least_damping(1.0);
+        let device = DeviceProfile {
+            max_stiffness: 1500.0,
+            least_damping: 1.0,
+            ..DeviceProfile::unlimited("example")
+        };
         let of = |stiffness, damping| {
             Accepted::new(Impedance::new(stiffness, damping)?, 1.0, &device, 1000.0)
         };
@@ -87,7 +89,7 @@ mod tests {
     #[test]
     fn a_report_names_the_stages_that_changed_a_force() -> std::result::Result<(), SafetyError>
     {
-        let device = DeviceProfile::unlimited("example").with_max_force(1.0);
+        let device = DeviceProfile { max_force: 1.0, ..DeviceProfile::unlimited("example") };
         let options =
             SafetyOptions::new(Impedance::default()).with(|s| s.rise_rate = f64::INFINITY);
         let mut chain = SafetyChain::<2>::new(&device, 1000.0, options)?;

@@ -146,7 +146,7 @@ impl Reach {
 /// use palpate_safety::Readings;
 ///
 /// # fn main() -> Result<(), palpate_safety::SafetyError> {
-/// let device = DeviceProfile::unlimited("example").with_max_speed(5.0);
+/// let device = DeviceProfile { max_speed: 5.0, ..DeviceProfile::unlimited("example") };
 /// let mut readings = Readings::new(&device)?;
 /// assert!(readings.counts(Vector([0.0, 0.0]), 1e-3));
 /// assert!(!readings.counts(Vector([0.05, 0.0]), 1e-3)); // 50 m/s
@@ -261,8 +261,11 @@ mod tests {
     const PERIOD: f64 = 1e-3;
 
     fn readings() -> Readings<2> {
-        let device =
-            DeviceProfile::unlimited("").with_max_speed(5.0).with_max_acceleration(500.0);
+        let device = DeviceProfile {
+            max_speed: 5.0,
+            max_acceleration: 500.0,
+            ..DeviceProfile::unlimited("")
+        };
         Readings::new(&device).unwrap()
     }
 
@@ -317,10 +320,12 @@ mod tests {
     #[test]
     fn readings_in_steps_count_in_ticks_that_are_uneven() {
         let step = 5e-5;
-        let device = DeviceProfile::unlimited("")
-            .with_max_speed(5.0)
-            .with_max_acceleration(100.0)
-            .with_encoder_step(step);
+        let device = DeviceProfile {
+            max_speed: 5.0,
+            max_acceleration: 100.0,
+            encoder_step: step,
+            ..DeviceProfile::unlimited("")
+        };
         let mut readings = Readings::new(&device).unwrap();
         let mut time = 0.0_f64;
         for tick in 0..10_000 {
@@ -338,9 +343,11 @@ mod tests {
         for (speed, acceleration) in
             [(5.0, f64::INFINITY), (f64::INFINITY, 500.0), (5.0, 500.0)]
         {
-            let device = DeviceProfile::unlimited("")
-                .with_max_speed(speed)
-                .with_max_acceleration(acceleration);
+            let device = DeviceProfile {
+                max_speed: speed,
+                max_acceleration: acceleration,
+                ..DeviceProfile::unlimited("")
+            };
             let mut readings = Readings::new(&device).unwrap();
             for elapsed in [0.0, 0.0, PERIOD, 0.0] {
                 assert!(
@@ -366,7 +373,7 @@ mod tests {
     /// rest was held back.
     #[test]
     fn of_two_readings_at_one_time_the_later_is_the_last() {
-        let device = DeviceProfile::unlimited("").with_max_acceleration(500.0);
+        let device = DeviceProfile { max_acceleration: 500.0, ..DeviceProfile::unlimited("") };
         let mut readings = Readings::new(&device).unwrap();
         assert!(readings.counts(Vector([0.0, 0.0]), PERIOD));
         let there = Vector([0.1, 0.0]);

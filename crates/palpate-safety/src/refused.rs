@@ -63,7 +63,10 @@ impl Refused {
     /// use palpate_safety::{Accepted, Impedance, Requester};
     ///
     /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
-    /// let device = DeviceProfile::unlimited("example").with_max_stiffness(1000.0);
+    /// let device = DeviceProfile {
+    ///     max_stiffness: 1000.0,
+    ///     ..DeviceProfile::unlimited("example")
+    /// };
     /// // Lengths in the world are twice those at the device.
     /// let accepted = Accepted::new(Impedance::new(2000.0, 0.0)?, 2.0, &device, 1000.0)?;
     /// let refused = accepted.refusal(Requester::Body(0)).ok_or("it is softer")?;
@@ -159,7 +162,8 @@ mod tests {
 
     #[test]
     fn every_refusal_says_what_asks() {
-        let device = DeviceProfile::unlimited("example").with_max_stiffness(100.0);
+        let device =
+            DeviceProfile { max_stiffness: 100.0, ..DeviceProfile::unlimited("example") };
         let of = |requester| {
             let asked = Impedance::new(200.0, 0.0).unwrap();
             let accepted = Accepted::new(asked, 1.0, &device, 1000.0).unwrap();

@@ -48,7 +48,7 @@ use palpate_device::TurningProfile;
 /// use palpate_safety::{ReadingsReport, TurnReadings};
 ///
 /// # fn main() -> Result<(), palpate_safety::SafetyError> {
-/// let device = TurningProfile::unlimited().with_max_speed(50.0);
+/// let device = TurningProfile { max_speed: 50.0, ..TurningProfile::unlimited() };
 /// let mut readings = TurnReadings::<3>::new(&device)?;
 /// let about_x = |angle: f64| Rotation::identity().turned(Vector([angle, 0.0, 0.0]));
 /// assert!(readings.counts(about_x(0.25), 1e-3));
@@ -175,8 +175,11 @@ mod tests {
     const PERIOD: f64 = 1e-3;
 
     fn readings() -> TurnReadings<3> {
-        let device =
-            TurningProfile::unlimited().with_max_speed(50.0).with_max_acceleration(1e4);
+        let device = TurningProfile {
+            max_speed: 50.0,
+            max_acceleration: 1e4,
+            ..TurningProfile::unlimited()
+        };
         TurnReadings::new(&device).unwrap()
     }
 
@@ -227,8 +230,11 @@ mod tests {
     /// 20 ms would look like 124 rad/s back.
     #[test]
     fn a_hand_that_made_more_than_half_a_turn_unseen_is_not_held_back() {
-        let device =
-            TurningProfile::unlimited().with_max_speed(200.0).with_max_acceleration(1e4);
+        let device = TurningProfile {
+            max_speed: 200.0,
+            max_acceleration: 1e4,
+            ..TurningProfile::unlimited()
+        };
         let mut readings = TurnReadings::<3>::new(&device).unwrap();
         let mut time = 0.0_f64;
         for elapsed in [0.001, 0.001, 0.02, 0.001, 0.001, 0.02, 0.001] {
@@ -241,10 +247,12 @@ mod tests {
     #[test]
     fn orientations_count_in_steps_and_in_ticks_that_are_uneven() {
         let step = 1e-3;
-        let device = TurningProfile::unlimited()
-            .with_max_speed(50.0)
-            .with_max_acceleration(300.0)
-            .with_encoder_step(step);
+        let device = TurningProfile {
+            max_speed: 50.0,
+            max_acceleration: 300.0,
+            encoder_step: step,
+            ..TurningProfile::unlimited()
+        };
         let mut readings = TurnReadings::<3>::new(&device).unwrap();
         let mut time = 0.0_f64;
         for tick in 0..10_000 {
@@ -262,11 +270,11 @@ mod tests {
         let refused =
             |device: &TurningProfile| TurnReadings::<2>::new(device).unwrap_err().to_string();
         assert_eq!(
-            refused(&base().with_max_speed(0.0)),
+            refused(&TurningProfile { max_speed: 0.0, ..base() }),
             "angular_max_speed must be positive, got 0 rad/s"
         );
         assert_eq!(
-            refused(&base().with_max_acceleration(f64::NAN)),
+            refused(&TurningProfile { max_acceleration: f64::NAN, ..base() }),
             "angular_max_acceleration must be positive, got NaN rad/s²"
         );
     }

@@ -347,50 +347,56 @@ fn names(assumed: &[String], known: &[&'static str]) -> Vec<&'static str> {
 }
 
 fn profile(written: WrittenDevice) -> DeviceProfile {
-    let profile = DeviceProfile::unlimited(written.device)
-        .with_max_force(written.max_force)
-        .with_continuous_force(written.continuous_force)
-        .with_max_force_rate(written.max_force_rate)
-        .with_max_stiffness(written.max_stiffness)
-        .with_max_damping(written.max_damping)
-        .with_workspace_radius(written.workspace_radius)
-        .with_mass(written.mass)
-        .with_least_damping(written.least_damping)
-        .with_friction(written.friction)
-        .with_encoder_step(written.encoder_step)
-        .with_max_speed(written.max_speed)
-        .with_max_acceleration(written.max_acceleration)
-        .with_source(written.source)
-        .with_assumed(names(&written.assumed, DeviceProfile::NUMBERS))
-        .with_buttons(written.buttons);
+    let profile = (DeviceProfile {
+        max_force: written.max_force,
+        continuous_force: written.continuous_force,
+        max_force_rate: written.max_force_rate,
+        max_stiffness: written.max_stiffness,
+        max_damping: written.max_damping,
+        workspace_radius: written.workspace_radius,
+        mass: written.mass,
+        least_damping: written.least_damping,
+        friction: written.friction,
+        encoder_step: written.encoder_step,
+        max_speed: written.max_speed,
+        max_acceleration: written.max_acceleration,
+        source: written.source.into(),
+        assumed: names(&written.assumed, DeviceProfile::NUMBERS).into(),
+        ..DeviceProfile::unlimited(written.device)
+    })
+    .with_buttons(written.buttons);
     let profile = match written.turning {
-        Some(turning) => profile.with_turning(turning_profile(turning)),
+        Some(turning) => DeviceProfile { turning: Some(turning_profile(turning)), ..profile },
         None => profile,
     };
     match written.gripper {
         Some(WrittenGripper { max_opening, max_force, max_force_rate }) => {
             let gripper = GripperProfile::new(max_opening, max_force);
-            profile.with_gripper(gripper.with_max_force_rate(max_force_rate))
+            DeviceProfile {
+                gripper: Some(gripper.with_max_force_rate(max_force_rate)),
+                ..profile
+            }
         }
         None => profile,
     }
 }
 
 fn turning_profile(written: WrittenTurning) -> TurningProfile {
-    TurningProfile::unlimited()
-        .with_max_torque(written.max_torque)
-        .with_continuous_torque(written.continuous_torque)
-        .with_max_torque_rate(written.max_torque_rate)
-        .with_max_stiffness(written.max_stiffness)
-        .with_max_damping(written.max_damping)
-        .with_inertia(written.inertia)
-        .with_least_damping(written.least_damping)
-        .with_friction(written.friction)
-        .with_encoder_step(written.encoder_step)
-        .with_max_speed(written.max_speed)
-        .with_max_acceleration(written.max_acceleration)
-        .with_assumed(names(&written.assumed, TurningProfile::NUMBERS))
-        .with_source(written.source)
+    TurningProfile {
+        max_torque: written.max_torque,
+        continuous_torque: written.continuous_torque,
+        max_torque_rate: written.max_torque_rate,
+        max_stiffness: written.max_stiffness,
+        max_damping: written.max_damping,
+        inertia: written.inertia,
+        least_damping: written.least_damping,
+        friction: written.friction,
+        encoder_step: written.encoder_step,
+        max_speed: written.max_speed,
+        max_acceleration: written.max_acceleration,
+        assumed: names(&written.assumed, TurningProfile::NUMBERS).into(),
+        source: written.source.into(),
+    }
 }
 
 fn written(profile: &DeviceProfile) -> WrittenDevice {

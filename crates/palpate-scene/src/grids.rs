@@ -188,7 +188,8 @@ impl WrittenBake {
                 return Err(Problem::new(message));
             }
         };
-        let mut options = GridOptions::with_resolution(resolution).with_most_nodes(MOST_NODES);
+        let mut options =
+            GridOptions { most_nodes: MOST_NODES, ..GridOptions::with_resolution(resolution) };
         if let Some(name) = &self.kernel {
             options.kernel =
                 named(name, "kernel", GridKernel::ALL.map(|kernel| (kernel.name(), kernel)))?;

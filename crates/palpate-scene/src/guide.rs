@@ -358,13 +358,15 @@ impl WrittenGuide {
 
     /// The guide with these numbers.
     pub(crate) fn built<const D: usize>(&self) -> Result<Guide<D>, Problem> {
-        let options = GuideOptions::default()
-            .with_stiffness(self.stiffness)
-            .with_damping(self.damping)
-            .with_snap_distance(self.snap_distance.unwrap_or(f64::INFINITY))
-            .with_max_force(self.max_force);
+        let options = GuideOptions {
+            stiffness: self.stiffness,
+            damping: self.damping,
+            snap_distance: self.snap_distance.unwrap_or(f64::INFINITY),
+            max_force: self.max_force,
+            ..GuideOptions::default()
+        };
         let options = match self.release_distance {
-            Some(distance) => options.with_release_distance(distance),
+            Some(distance) => GuideOptions { release_distance: Some(distance), ..options },
             None => options,
         };
         let point =

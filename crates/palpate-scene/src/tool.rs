@@ -220,13 +220,13 @@ impl WrittenTool {
     pub fn options(&self) -> ToolOptions {
         let default = ToolOptions::default();
         let coupling = self.coupling.clone().unwrap_or_default();
-        let options = default
-            .with_stiffness(coupling.stiffness.unwrap_or(default.stiffness))
-            .with_damping(coupling.damping.unwrap_or(default.damping))
-            .with_angular_damping(coupling.angular_damping.unwrap_or(default.angular_damping));
-        let stiffness = coupling.angular_stiffness;
-        let options =
-            stiffness.map_or(options, |stiffness| options.with_angular_stiffness(stiffness));
-        self.max_force.map_or(options, |max_force| options.with_max_force(max_force))
+        ToolOptions {
+            stiffness: coupling.stiffness.unwrap_or(default.stiffness),
+            damping: coupling.damping.unwrap_or(default.damping),
+            angular_stiffness: coupling.angular_stiffness.or(default.angular_stiffness),
+            angular_damping: coupling.angular_damping.unwrap_or(default.angular_damping),
+            max_force: self.max_force.or(default.max_force),
+            ..default
+        }
     }
 }

@@ -295,7 +295,7 @@ impl<const D: usize> BuiltScene<D> {
         device: &DeviceProfile,
         rate: f64,
     ) -> Result<ServoOptions, HapticsError> {
-        let mut options = ServoOptions::of_device(device).with_rate(rate);
+        let mut options = ServoOptions { rate, ..ServoOptions::of_device(device) };
         if let Some(tool) = &self.tool {
             options.probe = Probe::new(tool.radius)?;
             options.max_force = tool.options.max_force.unwrap_or(options.max_force);

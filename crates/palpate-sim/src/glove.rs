@@ -104,7 +104,7 @@ impl<const D: usize> Glove<D> {
         if fingers.is_empty() {
             return Err(DeviceError::NoContactPoint.into());
         }
-        let profile = DeviceProfile::unlimited("glove").with_max_force(0.0);
+        let profile = DeviceProfile { max_force: 0.0, ..DeviceProfile::unlimited("glove") };
         Ok(Self { fingers, profile })
     }
 

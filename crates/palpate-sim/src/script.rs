@@ -114,8 +114,9 @@ mod tests {
             Interpolation::Linear,
         );
         let limits = GripperProfile::new(0.025, 8.0);
-        let profile = DeviceProfile::unlimited("test").with_mass(0.1).with_least_damping(0.5);
-        let profile = profile.with_friction(0.0).with_gripper(limits);
+        let profile =
+            DeviceProfile { mass: 0.1, least_damping: 0.5, ..DeviceProfile::unlimited("test") };
+        let profile = DeviceProfile { friction: 0.0, gripper: Some(limits), ..profile };
         let hand = Hand::resting(Vector([0.0, 0.0])).unwrap();
         let device = SimulatedDevice::<2>::new(profile, vec![hand]).unwrap();
         let device = device.with_gripper(gripper.unwrap());

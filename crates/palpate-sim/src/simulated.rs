@@ -59,10 +59,12 @@ const SHORTEST: f64 = 1e-9;
 /// use palpate_field::Vector;
 ///
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
-/// let ideal = DeviceProfile::unlimited("ideal")
-///     .with_mass(0.5)
-///     .with_least_damping(0.0)
-///     .with_friction(0.0);
+/// let ideal = DeviceProfile {
+///     mass: 0.5,
+///     least_damping: 0.0,
+///     friction: 0.0,
+///     ..DeviceProfile::unlimited("ideal")
+/// };
 /// let hand = Hand::resting(Vector([0.0, 3.0]))?.with_mass(0.0)?.with_spring(0.0, 0.0)?;
 /// let hand = hand.with_push(Vector([0.0, -1.0]))?;
 /// let mut device = SimulatedDevice::new(ideal, vec![hand])?;
@@ -467,12 +469,14 @@ mod tests {
     use super::*;
 
     fn resting(encoder_step: f64) -> SimulatedDevice<2> {
-        let profile = DeviceProfile::unlimited("test")
-            .with_mass(0.1)
-            .with_least_damping(0.5)
-            .with_friction(0.0)
-            .with_max_force(2.5)
-            .with_encoder_step(encoder_step);
+        let profile = DeviceProfile {
+            mass: 0.1,
+            least_damping: 0.5,
+            friction: 0.0,
+            max_force: 2.5,
+            encoder_step,
+            ..DeviceProfile::unlimited("test")
+        };
         let hand = Hand::resting(Vector([0.010_4, -0.003])).unwrap();
         SimulatedDevice::new(profile, vec![hand]).unwrap()
     }
@@ -542,20 +546,23 @@ mod tests {
         assert_eq!(none.unwrap_err(), DeviceError::NoContactPoint.into());
         let unlimited = error(DeviceProfile::unlimited("x"));
         assert_eq!(unlimited, "least_damping must be zero or more and finite, got inf N·s/m");
-        let negative = error(profile.clone().with_friction(-1.0));
+        let negative = error(DeviceProfile { friction: -1.0, ..profile.clone() });
         assert_eq!(negative, "friction must be zero or more and finite, got -1 N");
-        assert!(error(profile.clone().with_max_force(f64::NAN)).contains("NaN"));
-        let fast = error(profile.with_least_damping(1e5));
+        assert!(
+            error(DeviceProfile { max_force: f64::NAN, ..profile.clone() }).contains("NaN")
+        );
+        let fast = error(DeviceProfile { least_damping: 1e5, ..profile });
         assert!(fast.contains("must be at most 1e4, got"), "{fast}");
     }
 
     #[test]
     fn a_force_that_is_not_renewed_ends_with_the_watchdog() {
         // A force of 1 N against a push of 1 N, on 0.1 kg without damping.
-        let profile = DeviceProfile::unlimited("test").with_mass(0.1).with_least_damping(0.0);
+        let profile =
+            DeviceProfile { mass: 0.1, least_damping: 0.0, ..DeviceProfile::unlimited("test") };
         let hand = Hand::resting(Vector([0.0, 0.0])).unwrap().with_spring(0.0, 0.0).unwrap();
         let hand = hand.with_mass(0.0).unwrap().with_push(Vector([0.0, -1.0])).unwrap();
-        let profile = profile.with_friction(0.0);
+        let profile = DeviceProfile { friction: 0.0, ..profile };
         let mut device = SimulatedDevice::new(profile, vec![hand]).unwrap();
         let asked = Duration::from_millis(30);
         assert_eq!(device.set_watchdog(asked).unwrap(), Some(asked));

@@ -235,8 +235,8 @@ mod tests {
     use crate::hand::Hand;
 
     fn steered(max_speed: f64) -> (SteeredDevice<2>, Steering<2>) {
-        let profile = DeviceProfile::unlimited("ideal").with_friction(0.0);
-        let profile = profile.with_mass(0.1).with_least_damping(1.0);
+        let profile = DeviceProfile { friction: 0.0, ..DeviceProfile::unlimited("ideal") };
+        let profile = DeviceProfile { mass: 0.1, least_damping: 1.0, ..profile };
         let hand = Hand::resting(Vector([1.0, 0.0])).unwrap();
         let device = SimulatedDevice::new(profile, vec![hand]).unwrap();
         SteeredDevice::new(device, max_speed).unwrap()

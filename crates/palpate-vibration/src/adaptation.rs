@@ -22,7 +22,11 @@ use crate::cue::{MappingOptions, Tone};
 /// ```
 /// use palpate_vibration::{Adaptation, MappingOptions, Tone};
 ///
-/// let options = MappingOptions::default().with_hold_fraction(0.25).with_hold_time(2.0);
+/// let options = MappingOptions {
+///     hold_fraction: 0.25,
+///     hold_time: 2.0,
+///     ..MappingOptions::default()
+/// };
 /// let mut adaptation = Adaptation::new(&options);
 /// let hold = Tone { frequency: 60.0, amplitude: 0.5 };
 /// adaptation.step(hold, 0.0);

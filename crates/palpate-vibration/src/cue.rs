@@ -69,11 +69,14 @@ pub struct Sensation {
 /// ```
 /// use palpate_vibration::MappingOptions;
 ///
-/// let options = MappingOptions::default().with_full_depth(0.004).with_full_impact(3.0);
+/// let options = MappingOptions {
+///     full_depth: 0.004,
+///     full_impact: 3.0,
+///     ..MappingOptions::default()
+/// };
 /// assert_eq!((options.full_depth, options.full_impact), (0.004, 3.0));
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[non_exhaustive]
 pub struct MappingOptions {
     /// The level of the lightest pressure, a_min, in [0, 1]: where the actuator starts to move.
     pub hold_floor: f64,
@@ -131,92 +134,6 @@ impl Default for MappingOptions {
     }
 }
 
-impl MappingOptions {
-    /// The same options with another level of the lightest pressure.
-    #[must_use]
-    pub const fn with_hold_floor(self, hold_floor: f64) -> Self {
-        Self { hold_floor, ..self }
-    }
-
-    /// The same options with another depth of full pressure [m].
-    #[must_use]
-    pub const fn with_full_depth(self, full_depth: f64) -> Self {
-        Self { full_depth, ..self }
-    }
-
-    /// The same options with another exponent of depth.
-    #[must_use]
-    pub const fn with_hold_exponent(self, hold_exponent: f64) -> Self {
-        Self { hold_exponent, ..self }
-    }
-
-    /// The same options with another frequency of pressure [Hz].
-    #[must_use]
-    pub const fn with_hold_frequency(self, hold_frequency: f64) -> Self {
-        Self { hold_frequency, ..self }
-    }
-
-    /// The same options with another part that is left of a pressure that does not change.
-    #[must_use]
-    pub const fn with_hold_fraction(self, hold_fraction: f64) -> Self {
-        Self { hold_fraction, ..self }
-    }
-
-    /// The same options with another time constant of a pressure that does not change [s].
-    #[must_use]
-    pub const fn with_hold_time(self, hold_time: f64) -> Self {
-        Self { hold_time, ..self }
-    }
-
-    /// The same options with another change of level that brings pressure back.
-    #[must_use]
-    pub const fn with_hold_revival(self, hold_revival: f64) -> Self {
-        Self { hold_revival, ..self }
-    }
-
-    /// The same options with another force of a full tap [N].
-    #[must_use]
-    pub const fn with_full_impact(self, full_impact: f64) -> Self {
-        Self { full_impact, ..self }
-    }
-
-    /// The same options with another speed of a full slide [m/s].
-    #[must_use]
-    pub const fn with_full_slide_speed(self, full_slide_speed: f64) -> Self {
-        Self { full_slide_speed, ..self }
-    }
-
-    /// The same options with another normal force of a full slide [N].
-    #[must_use]
-    pub const fn with_full_slide_force(self, full_slide_force: f64) -> Self {
-        Self { full_slide_force, ..self }
-    }
-
-    /// The same options with another exponent of speed and force.
-    #[must_use]
-    pub const fn with_slide_exponent(self, slide_exponent: f64) -> Self {
-        Self { slide_exponent, ..self }
-    }
-
-    /// The same options with another lowest frequency [Hz].
-    #[must_use]
-    pub const fn with_lowest_frequency(self, lowest_frequency: f64) -> Self {
-        Self { lowest_frequency, ..self }
-    }
-
-    /// The same options with another highest frequency [Hz].
-    #[must_use]
-    pub const fn with_highest_frequency(self, highest_frequency: f64) -> Self {
-        Self { highest_frequency, ..self }
-    }
-
-    /// The same options with levels that feel alike at all frequencies, or without.
-    #[must_use]
-    pub const fn with_equal_levels(self, equalise: bool) -> Self {
-        Self { equalise, ..self }
-    }
-}
-
 /// Turns cues into sensations.
 ///
 /// Pressure holds at `a_min + (1 − a_min) (depth / d_max)^γ`; a tap at normal speed v begins at
@@ -230,11 +147,13 @@ impl MappingOptions {
 /// use palpate_vibration::{Cue, Mapping, MappingOptions, Tone};
 ///
 /// # fn main() -> Result<(), palpate_device::NumberError> {
-/// let options = MappingOptions::default()
-///     .with_hold_floor(0.25)
-///     .with_full_depth(0.004)
-///     .with_hold_exponent(1.0)
-///     .with_full_slide_speed(0.5);
+/// let options = MappingOptions {
+///     hold_floor: 0.25,
+///     full_depth: 0.004,
+///     hold_exponent: 1.0,
+///     full_slide_speed: 0.5,
+///     ..MappingOptions::default()
+/// };
 /// let cue = Cue {
 ///     depth: 0.001,
 ///     normal_force: 2.0,

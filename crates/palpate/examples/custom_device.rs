@@ -42,15 +42,17 @@ impl Device<2> for Carriage {
 }
 
 fn main() -> Result<(), Error> {
-    let profile = DeviceProfile::unlimited("carriage")
-        .with_max_force(1.5)
-        .with_continuous_force(0.5)
-        .with_max_force_rate(3000.0)
-        .with_max_stiffness(1500.0)
-        .with_mass(0.1)
-        .with_least_damping(0.5)
-        .with_friction(0.2)
-        .with_encoder_step(20e-6);
+    let profile = DeviceProfile {
+        max_force: 1.5,
+        continuous_force: 0.5,
+        max_force_rate: 3000.0,
+        max_stiffness: 1500.0,
+        mass: 0.1,
+        least_damping: 0.5,
+        friction: 0.2,
+        encoder_step: 20e-6,
+        ..DeviceProfile::unlimited("carriage")
+    };
     let mut device = Carriage { profile, volts: [0.0; 2] };
     let disc = Shape::circle(0.02)?.translated([0.06, 0.0])?;
     let mut servo = Servo::for_device(disc, &device)?;

@@ -110,11 +110,12 @@ impl Plant {
 
     /// The device with a profile.
     fn of(&self, profile: &DeviceProfile) -> DeviceProfile {
-        profile
-            .clone()
-            .with_least_damping(profile.least_damping * self.damping)
-            .with_friction(profile.friction * self.friction)
-            .with_encoder_step(profile.encoder_step * self.encoder_step)
+        DeviceProfile {
+            least_damping: profile.least_damping * self.damping,
+            friction: profile.friction * self.friction,
+            encoder_step: profile.encoder_step * self.encoder_step,
+            ..profile.clone()
+        }
     }
 }
 
@@ -191,10 +192,12 @@ impl Press {
         }
         let wall = Shape::half_space([0.0, 1.0], -PROBE)?;
         let body = Body::new(wall, Surface::new(material)?)?;
-        let options = ServoOptions::default()
-            .with_rate(RATE)
-            .with_probe(Probe::new(PROBE)?)
-            .with_max_force(f64::INFINITY);
+        let options = ServoOptions {
+            rate: RATE,
+            probe: Probe::new(PROBE)?,
+            max_force: f64::INFINITY,
+            ..ServoOptions::default()
+        };
         let servo = Servo::new(Bodies::new(vec![body])?, 1, options)?;
         let servo = servo.protected(&Protection::new(profile.clone()))?;
         Ok(Self { servo, profile: profile.clone(), force: 0.5 * lasting })
@@ -308,7 +311,7 @@ mod tests {
 
     #[test]
     fn a_device_without_force_presses_nothing() {
-        let glove = DeviceProfile::unlimited("glove").with_max_force(0.0);
+        let glove = DeviceProfile { max_force: 0.0, ..DeviceProfile::unlimited("glove") };
         let error = Press::new(&glove, &Material::default()).unwrap_err();
         assert_eq!(
             error.to_string(),

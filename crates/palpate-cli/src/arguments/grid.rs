@@ -84,18 +84,19 @@ impl GridOptions {
             (Some(tolerance), _) => Resolution::Tolerance(tolerance),
             (None, cell) => Resolution::Cell(cell.unwrap_or_default()),
         };
-        let mut options = Options::with_resolution(resolution)
-            .with_kernel(match self.kernel {
+        Options {
+            kernel: match self.kernel {
                 KernelChoice::Quadratic => GridKernel::Quadratic,
                 KernelChoice::Trilinear => GridKernel::Trilinear,
-            })
-            .with_store(match self.store {
+            },
+            store: match self.store {
                 StoreChoice::F32 => Store::F32,
                 StoreChoice::I16 => Store::I16,
                 StoreChoice::I8 => Store::I8,
-            })
-            .with_most_nodes(self.nodes);
-        options.band = self.band;
-        options
+            },
+            most_nodes: self.nodes,
+            band: self.band,
+            ..Options::with_resolution(resolution)
+        }
     }
 }

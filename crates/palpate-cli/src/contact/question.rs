@@ -6,8 +6,8 @@
 use std::collections::BTreeSet;
 
 use palpate::query::{
-    Certified, Contact, Limits, Nearest, Neighbours, PairWorkspace, Placed, Proof, Stop,
-    Verdict, WorldSettings, proof, separation,
+    Certified, Contact, Limits, ManifoldSettings, Nearest, Neighbours, PairWorkspace, Placed,
+    Proof, Stop, Verdict, WorldSettings, proof, separation,
 };
 use palpate::scene::{BuiltBody, BuiltScene};
 
@@ -85,9 +85,9 @@ impl Question {
         let margin = asked.margin.unwrap_or(usual.margin);
         let spacing = asked.spacing.unwrap_or(usual.spacing);
         let precise = if margin > 0.0 { margin } else { usual.margin };
-        let tolerance = usual.with_margin(precise).usual_tolerance();
+        let tolerance = (ManifoldSettings { margin: precise, ..usual }).usual_tolerance();
         let tolerance = asked.tolerance.unwrap_or(tolerance);
-        let manifold = usual.with_margin(margin).with_spacing(spacing);
+        let manifold = ManifoldSettings { margin, spacing, ..usual };
         let limits = Limits::new(tolerance).with_budget(asked.budget.unwrap_or(Limits::BUDGET));
         Self { settings: WorldSettings::new(manifold, limits), empty: emptiness::warn(scene) }
     }

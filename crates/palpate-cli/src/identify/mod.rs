@@ -8,7 +8,7 @@ mod report;
 use std::io::{self, IsTerminal};
 use std::time::{Duration, Instant};
 
-use palpate::device::DeviceProfile;
+use palpate::device::{DeviceProfile, TurningProfile};
 use palpate::field::Vector;
 use palpate::scene::device_to_json;
 use palpate::sim::{
@@ -44,10 +44,12 @@ pub(crate) fn run(
     let profile = &options.device.profile;
     let plant = plant(options);
     let mut device = simulated(&plant, options.grip).map_err(Failure::input)?;
-    let motions = Motions::new(options.rate)
-        .with_travel(options.travel)
-        .with_force_part(options.force_part)
-        .with_seed(options.seed);
+    let motions = Motions {
+        travel: options.travel,
+        force_part: options.force_part,
+        seed: options.seed,
+        ..Motions::new(options.rate)
+    };
     interrupt.heed();
     let found = identified(&mut device, profile, motions, interrupt);
     let found = match found {
@@ -96,22 +98,25 @@ fn warn(profile: &DeviceProfile, motions: &Motions) {
 fn plant(options: &IdentifyOptions) -> DeviceProfile {
     let profile = &options.device.profile;
     let made = options.plant.as_ref().map_or(profile, |choice| &choice.profile);
-    let plant = profile
-        .clone()
-        .with_mass(made.mass * options.plant_mass)
-        .with_least_damping(made.least_damping * options.plant_damping)
-        .with_friction(made.friction * options.plant_friction)
-        .with_encoder_step(made.encoder_step * options.plant_encoder_step);
+    let plant = DeviceProfile {
+        mass: made.mass * options.plant_mass,
+        least_damping: made.least_damping * options.plant_damping,
+        friction: made.friction * options.plant_friction,
+        encoder_step: made.encoder_step * options.plant_encoder_step,
+        ..profile.clone()
+    };
     let Some(turning) = &profile.turning else { return plant };
     let made = made.turning.as_ref().unwrap_or(turning);
-    plant.with_turning(
-        turning
-            .clone()
-            .with_inertia(made.inertia * options.plant_mass)
-            .with_least_damping(made.least_damping * options.plant_damping)
-            .with_friction(made.friction * options.plant_friction)
-            .with_encoder_step(made.encoder_step * options.plant_encoder_step),
-    )
+    DeviceProfile {
+        turning: Some(TurningProfile {
+            inertia: made.inertia * options.plant_mass,
+            least_damping: made.least_damping * options.plant_damping,
+            friction: made.friction * options.plant_friction,
+            encoder_step: made.encoder_step * options.plant_encoder_step,
+            ..turning.clone()
+        }),
+        ..plant
+    }
 }
 
 fn simulated(

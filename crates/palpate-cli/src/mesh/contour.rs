@@ -165,8 +165,9 @@ impl Work<'_> {
                 ControlFlow::Continue(())
             }
         };
-        let by = |cell| {
-            ContourOptions::with_cell(cell).with_single_precision(self.format.is_single())
+        let by = |cell| ContourOptions {
+            is_single: self.format.is_single(),
+            ..ContourOptions::with_cell(cell)
         };
         let longest = longest_edge(&bounds.aabb);
         let fitted = match self.options.tolerance {

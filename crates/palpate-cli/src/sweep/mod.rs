@@ -176,9 +176,11 @@ fn asked_of<const D: usize>(
     let smallest = scene.bodies.iter().map(size).fold(f64::INFINITY, f64::min);
     let gap =
         options.gap.unwrap_or(if smallest < f64::INFINITY { GAP * smallest } else { GAP });
-    let settings = SweepSettings::of_size(1.0)
-        .with_gap(gap)
-        .with_budget(options.budget.unwrap_or(SweepSettings::BUDGET));
+    let settings = SweepSettings {
+        gap,
+        budget: options.budget.unwrap_or(SweepSettings::BUDGET),
+        ..SweepSettings::of_size(1.0)
+    };
     let local = LocalSearch::of(options, gap)?;
     Ok(Question { until, tolerance: options.tolerance, settings, local })
 }
@@ -191,7 +193,10 @@ impl Question {
 
     /// The settings of a search between two times [s].
     fn settings_over(&self, part @ [from, to]: [f64; 2]) -> SweepSettings {
-        self.settings.with_time_tolerance((self.tolerance_in(part) / (to - from)).min(1.0))
+        SweepSettings {
+            time_tolerance: (self.tolerance_in(part) / (to - from)).min(1.0),
+            ..self.settings
+        }
     }
 }
 

@@ -165,7 +165,8 @@ fn options_without_effect_are_refused() {
 fn a_device_without_forces_has_no_table_of_materials_either() {
     let folder = Folder::new();
     let profile = palpate::device::profile_named("omega").unwrap();
-    let profile = profile.with_max_force(0.0).with_continuous_force(0.0);
+    let profile =
+        palpate::device::DeviceProfile { max_force: 0.0, continuous_force: 0.0, ..profile };
     let profile = palpate::scene::device_to_json(&profile).unwrap();
     let profile = folder.write("weak.json", &profile);
     for table in ["--materials", "--stability"] {

@@ -115,7 +115,8 @@ fn the_keys_of_devices_identify_and_jitter_are_documented() {
     let folder = Folder::new();
     let profile = palpate::device::profile_named("omega7").unwrap();
     let gripper = palpate::device::GripperProfile::new(0.025, 8.0).with_max_force_rate(2000.0);
-    let profile = profile.with_gripper(gripper).with_buttons(["front"]);
+    let profile = (palpate::device::DeviceProfile { gripper: Some(gripper), ..profile })
+        .with_buttons(["front"]);
     let profile = palpate::scene::device_to_json(&profile).unwrap();
     let profile = folder.write("omega.json", &profile);
     let fall = folder.write("fall.json", crate::sweep::FALL);

@@ -161,8 +161,11 @@ fn an_interrupted_run_writes_no_profile() {
 #[test]
 fn devices_without_forces_and_options_that_do_not_go_together_are_refused() {
     let folder = Folder::new();
-    let profile = palpate::device::profile_named("omega").unwrap().with_max_force(0.0);
-    let profile = profile.with_continuous_force(0.0);
+    let profile = palpate::device::DeviceProfile {
+        max_force: 0.0,
+        ..palpate::device::profile_named("omega").unwrap()
+    };
+    let profile = palpate::device::DeviceProfile { continuous_force: 0.0, ..profile };
     let profile = palpate::scene::device_to_json(&profile).unwrap();
     let file = folder.write("senses.json", &profile);
     let refused = |arguments: &[&str], rule: &str| {
@@ -221,7 +224,10 @@ fn the_gripper_and_the_buttons_of_a_file_are_listed() {
     let folder = Folder::new();
     let gripper = palpate::device::GripperProfile::new(0.025, 8.0);
     let profile = palpate::device::profile_named("omega7").unwrap();
-    let profile = profile.with_gripper(gripper.with_max_force_rate(2000.0));
+    let profile = palpate::device::DeviceProfile {
+        gripper: Some(gripper.with_max_force_rate(2000.0)),
+        ..profile
+    };
     let profile = profile.with_buttons(["front", "rear"]);
     let file = palpate::scene::device_to_json(&profile).unwrap();
     let file = folder.write("omega.json", &file);

@@ -16,9 +16,15 @@ fn rules(options: &[&str]) -> Vec<String> {
 #[test]
 fn a_rule_names_the_numbers_that_it_uses_and_that_are_assumed() {
     let folder = Folder::new();
-    let omega = palpate::device::profile_named("omega").unwrap().with_friction(1.35e-6);
+    let omega = palpate::device::DeviceProfile {
+        friction: 1.35e-6,
+        ..palpate::device::profile_named("omega").unwrap()
+    };
     let ends = |assumed: &'static [&'static str], options: &[&str]| {
-        let profile = palpate::scene::device_to_json(&omega.clone().with_assumed(assumed));
+        let profile = palpate::scene::device_to_json(&palpate::device::DeviceProfile {
+            assumed: assumed.into(),
+            ..omega.clone()
+        });
         let file = folder.write("omega.json", &profile.unwrap());
         let device = format!("simulated:{file}");
         let rules = rules(&[&["--device", &device], options].concat());

@@ -44,7 +44,8 @@ impl Volume {
                 Above::new(self.counts, samples, -value, -f64::from(largest))
             }
         };
-        let options = ContourOptions::with_cell(1.0).with_node(Vector::ZERO);
+        let options =
+            ContourOptions { node: Some(Vector::ZERO), ..ContourOptions::with_cell(1.0) };
         let mesh = TriangleMesh::of_shape(&Shape::custom(above), &options).map_err(refused)?;
         let [x, y, z] = self.steps;
         let place = |at: &Point<3>| self.origin + x * at[0] + y * at[1] + z * at[2];

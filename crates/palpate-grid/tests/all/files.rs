@@ -13,8 +13,7 @@ fn grids() -> Vec<Grid<3>> {
     for kernel in [GridKernel::Quadratic, GridKernel::Trilinear] {
         for store in [Store::F32, Store::I16, Store::I8] {
             for band in [None, Some(5.0)] {
-                let mut options =
-                    GridOptions::with_cell(0.04).with_kernel(kernel).with_store(store);
+                let mut options = GridOptions { kernel, store, ..GridOptions::with_cell(0.04) };
                 options.band = band;
                 grids.push(Grid::bake(&shape, &options).unwrap());
             }

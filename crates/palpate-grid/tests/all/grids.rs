@@ -17,7 +17,7 @@ const KERNELS: [GridKernel; 2] = [GridKernel::Quadratic, GridKernel::Trilinear];
 const STORES: [Store; 3] = [Store::F32, Store::I16, Store::I8];
 
 fn options(cell: f64, kernel: GridKernel) -> GridOptions {
-    GridOptions::with_cell(cell).with_kernel(kernel)
+    GridOptions { kernel, ..GridOptions::with_cell(cell) }
 }
 
 /// Solids with edges, a thin wall, a crease, holes.
@@ -56,7 +56,7 @@ fn blocks_have_the_bits_of_points() {
     let torus = Shape::torus(0.3, 0.1).unwrap();
     for kernel in KERNELS {
         for (store, band) in STORES.into_iter().flat_map(|s| [(s, None), (s, Some(5.0))]) {
-            let mut options = options(0.03, kernel).with_store(store);
+            let mut options = GridOptions { store, ..options(0.03, kernel) };
             options.band = band;
             let planar = Grid::bake(&disc, &options).unwrap();
             let spatial = Grid::bake(&torus, &options).unwrap();
@@ -84,7 +84,7 @@ fn a_grid_is_no_steeper_than_it_promises_and_deviates_no_more() {
             (GridKernel::Trilinear, Store::F32, Some(5.0)),
             (GridKernel::Trilinear, Store::I8, None),
         ] {
-            let mut options = options(0.03, kernel).with_store(store);
+            let mut options = GridOptions { store, ..options(0.03, kernel) };
             options.band = band;
             let grid = Grid::bake(&shape, &options).unwrap();
             let promise = *grid.promise();
@@ -302,7 +302,7 @@ fn a_tolerance_chooses_the_cell() {
     for (name, shape) in solids() {
         for kernel in KERNELS {
             let asked = 1.5e-2;
-            let asked_for = GridOptions::with_tolerance(asked).with_kernel(kernel);
+            let asked_for = GridOptions { kernel, ..GridOptions::with_tolerance(asked) };
             let grid = Grid::bake(&shape, &asked_for).unwrap();
             assert!(grid.deviation() <= asked, "{name}");
             // Not finer by much than it takes.
@@ -323,9 +323,9 @@ fn a_grid_with_a_band_has_the_values_of_one_without_near_the_surface() {
     let shape = Shape::sphere(0.4).unwrap();
     for kernel in KERNELS {
         let cell = 0.008;
-        let all = options(cell, kernel).with_certified(5.0);
+        let all = GridOptions { certified: 5.0, ..options(cell, kernel) };
         let all = Grid::bake(&shape, &all).unwrap();
-        let near = options(cell, kernel).with_band(5.0);
+        let near = GridOptions { band: Some(5.0), ..options(cell, kernel) };
         let near = Grid::bake(&shape, &near).unwrap();
         assert_eq!(all.lattice(), near.lattice());
         assert!(near.stored_samples() < all.stored_samples());
@@ -361,7 +361,7 @@ fn a_region_made_again_has_the_samples_of_a_new_grid() {
     let after = cuboid - ball.clone().translated([0.3, 0.24, 0.02]).unwrap();
     for kernel in KERNELS {
         for store in STORES {
-            let options = options(0.03, kernel).with_store(store).with_band(5.0);
+            let options = GridOptions { store, band: Some(5.0), ..options(0.03, kernel) };
             // Bounds, of which all is made again.
             let mut again = Grid::bake(&before, &options).unwrap();
             let region =
@@ -386,7 +386,9 @@ fn a_region_made_again_has_the_samples_of_a_new_grid() {
             });
         }
     }
-    let mut grid = Grid::bake(&before, &options(0.02, KERNELS[0]).with_band(5.0)).unwrap();
+    let mut grid =
+        Grid::bake(&before, &GridOptions { band: Some(5.0), ..options(0.02, KERNELS[0]) })
+            .unwrap();
     let grown = before | ball.translated([2.0, 0.0, 0.0]).unwrap();
     let region = Aabb { min: Vector([1.8, -0.2, -0.2]), max: Vector([2.2, 0.2, 0.2]) };
     assert_eq!(grid.rebuild(&grown, &region), Err(GridError::Outgrown));

@@ -31,11 +31,14 @@ use target::Target;
 /// ```
 /// use palpate_haptics::GuideOptions;
 ///
-/// let options = GuideOptions::default().with_snap_distance(0.01).with_release_distance(0.02);
+/// let options = GuideOptions {
+///     snap_distance: 0.01,
+///     release_distance: Some(0.02),
+///     ..GuideOptions::default()
+/// };
 /// assert_eq!((options.snap_distance, options.release_distance), (0.01, Some(0.02)));
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[non_exhaustive]
 pub struct GuideOptions {
     /// Force per metre of distance from the guide [N/m]; positive.
     pub stiffness: f64,
@@ -65,36 +68,6 @@ impl Default for GuideOptions {
 }
 
 impl GuideOptions {
-    /// The same options with another stiffness [N/m].
-    #[must_use]
-    pub const fn with_stiffness(self, stiffness: f64) -> Self {
-        Self { stiffness, ..self }
-    }
-
-    /// The same options with another damping [N·s/m].
-    #[must_use]
-    pub const fn with_damping(self, damping: f64) -> Self {
-        Self { damping, ..self }
-    }
-
-    /// The same options with another distance at which the guide engages [m].
-    #[must_use]
-    pub const fn with_snap_distance(self, snap_distance: f64) -> Self {
-        Self { snap_distance, ..self }
-    }
-
-    /// The same options with a distance of its own at which the guide releases the hand [m].
-    #[must_use]
-    pub const fn with_release_distance(self, distance: f64) -> Self {
-        Self { release_distance: Some(distance), ..self }
-    }
-
-    /// The same options with another force limit [N].
-    #[must_use]
-    pub const fn with_max_force(self, max_force: f64) -> Self {
-        Self { max_force, ..self }
-    }
-
     fn checked(self) -> Result<Self, HapticsError> {
         NumberError::check_positive("stiffness", self.stiffness, "N/m")?;
         NumberError::check_not_negative("damping", self.damping, "N·s/m")?;
@@ -167,7 +140,7 @@ fn unit<const D: usize>(
 /// use palpate_haptics::{Guide, GuideOptions};
 ///
 /// # fn main() -> Result<(), palpate_haptics::HapticsError> {
-/// let options = GuideOptions::default().with_stiffness(256.0).with_damping(2.0);
+/// let options = GuideOptions { stiffness: 256.0, damping: 2.0, ..GuideOptions::default() };
 /// let ruler = Vector([1.0, 0.0]);
 /// let mut guide = Guide::along_line(Vector::ZERO, ruler, options)?;
 ///
@@ -281,7 +254,7 @@ impl<const D: usize> Guide<D> {
     /// use palpate_haptics::{Guide, GuideOptions};
     ///
     /// # fn main() -> Result<(), palpate_haptics::HapticsError> {
-    /// let options = GuideOptions::default().with_stiffness(128.0);
+    /// let options = GuideOptions { stiffness: 128.0, ..GuideOptions::default() };
     /// let mut well = Guide::well(Vector::ZERO, 0.046875, options)?;
     /// let mut pull = |x: f64| well.force(Vector([x, 0.0]), Vector::ZERO)[0];
     /// assert_eq!(pull(0.0078125), -1.0); // half way to 1/64 m

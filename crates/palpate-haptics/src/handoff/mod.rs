@@ -27,11 +27,10 @@ use crate::servo::{Kind, Servo};
 /// ```
 /// use palpate_haptics::HandoffOptions;
 ///
-/// let options = HandoffOptions::default().with_events(64);
+/// let options = HandoffOptions { events: 64, ..HandoffOptions::default() };
 /// assert_eq!((options.events, options.bodies), (64, 1024));
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[non_exhaustive]
 pub struct HandoffOptions {
     /// The most events in the queue.
     pub events: usize,
@@ -43,20 +42,6 @@ impl Default for HandoffOptions {
     /// 4096 events, 1024 bodies.
     fn default() -> Self {
         Self { events: 4096, bodies: 1024 }
-    }
-}
-
-impl HandoffOptions {
-    /// The same options with room for another number of events.
-    #[must_use]
-    pub const fn with_events(self, events: usize) -> Self {
-        Self { events, ..self }
-    }
-
-    /// The same options with room for another number of bodies.
-    #[must_use]
-    pub const fn with_bodies(self, bodies: usize) -> Self {
-        Self { bodies, ..self }
     }
 }
 

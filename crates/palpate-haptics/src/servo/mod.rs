@@ -43,8 +43,8 @@ use crate::protection::Protection;
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
 /// let ball = Shape::from_kernel(Ball::new(0.5)?);
 /// let bodies = Bodies::new(vec![Body::new(ball, Surface::smooth(512.0, 0.0)?)?])?;
-/// let profile = DeviceProfile::unlimited("example").with_max_force(1.0);
-/// let options = ServoOptions::default().with_probe(Probe::new(0.0)?);
+/// let profile = DeviceProfile { max_force: 1.0, ..DeviceProfile::unlimited("example") };
+/// let options = ServoOptions { probe: Probe::new(0.0)?, ..ServoOptions::default() };
 /// let mut servo = Servo::new(bodies, 1, options)?
 ///     .protected(&Protection::new(profile).with(|s| s.rise_rate = f64::INFINITY))?;
 /// servo.step(&[PointState::at_rest(Vector([0.0, 1.0]))]);

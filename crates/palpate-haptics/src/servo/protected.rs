@@ -98,10 +98,13 @@ impl<const D: usize> Servo<D, Protected<D>> {
     ///
     /// # fn main() -> Result<(), palpate_haptics::HapticsError> {
     /// let disc = Shape::circle(0.05)?;
-    /// let device = DeviceProfile::unlimited("example").with_max_stiffness(1000.0);
+    /// let device = DeviceProfile {
+    ///     max_stiffness: 1000.0,
+    ///     ..DeviceProfile::unlimited("example")
+    /// };
     /// let servo = Servo::new(disc, 1, Default::default())?;
     /// let mut servo = servo.protected(&Protection::new(device))?;
-    /// let options = GuideOptions::default().with_stiffness(4000.0);
+    /// let options = GuideOptions { stiffness: 4000.0, ..GuideOptions::default() };
     /// servo.guide(&[Guide::to_point(Vector([0.0, 0.1]), options)?])?;
     /// assert_eq!(servo.accepted_guides()[0].stiffness_factor, 0.25);
     /// assert_eq!(servo.guides(0)[0].options().stiffness, 1000.0);

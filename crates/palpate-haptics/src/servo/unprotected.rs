@@ -58,7 +58,7 @@ impl<const D: usize> Servo<D, Unprotected> {
     ///
     /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
     /// let ground = Shape::from_kernel(HalfSpace::new(Vector([0.0, 1.0, 0.0]), 0.0)?);
-    /// let coupling = ToolOptions::default().with_stiffness(500.0).with_damping(0.0);
+    /// let coupling = ToolOptions { stiffness: 500.0, damping: 0.0, ..ToolOptions::default() };
     /// let tool = Tool::new(Shell::ball(0.0625)?, coupling)?;
     /// let mut servo = Servo::with_tool(ground, tool, ServoOptions::default())?;
     /// servo.step(&[PointState::at_rest(Vector([0.0, 0.1, 0.0]))]);
@@ -80,7 +80,7 @@ impl<const D: usize> Servo<D, Unprotected> {
     /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
     /// let ground = Shape::from_kernel(HalfSpace::new(Vector([0.0, 1.0]), 0.0)?);
     /// let rod = Shell::capsule([Vector([-0.05, 0.0]), Vector([0.05, 0.0])], 0.001, 101)?;
-    /// let coupling = ToolOptions::default().with_angular_stiffness(1.0);
+    /// let coupling = ToolOptions { angular_stiffness: Some(1.0), ..ToolOptions::default() };
     /// let tool = Tool::new(rod, coupling)?;
     /// let mut servo = Servo::with_tool(ground, tool, ServoOptions::default())?;
     /// servo.step(&[PointState::at_rest(Vector([0.0, 0.01]))]);
@@ -125,7 +125,10 @@ impl<const D: usize> Servo<D, Unprotected> {
     /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
     /// let ball = Shape::<3>::from_kernel(Ball::new(0.05)?);
     /// let bodies = Bodies::new(vec![Body::new(ball, Surface::smooth(2000.0, 0.0)?)?])?;
-    /// let device = DeviceProfile::unlimited("example").with_max_stiffness(1000.0);
+    /// let device = DeviceProfile {
+    ///     max_stiffness: 1000.0,
+    ///     ..DeviceProfile::unlimited("example")
+    /// };
     /// let servo = Servo::new(bodies, 1, Default::default())?
     ///     .protected(&Protection::new(device))?;
     /// assert_eq!(servo.accepted()[0].stiffness_factor, 0.5);
@@ -150,7 +153,7 @@ impl<const D: usize> Servo<D, Unprotected> {
         let bodies = renderer.bodies().clone();
         let mut bodies = protection.accepted_bodies(bodies, coupling, rate)?;
         if limit > 0.0 {
-            let profile = protection.profile.clone().with_max_force(limit);
+            let profile = DeviceProfile { max_force: limit, ..protection.profile.clone() };
             let limited = Protection { profile, ..Protection::clone(&protection) };
             renderer.set_ports(&limited.port(&bodies, rate)?, limited.turning(&bodies, rate)?);
         } else {

@@ -418,7 +418,7 @@ pub fn run_on<const D: usize>(
         pace: options.pace,
         rehearses: options.rehearses,
     };
-    let room = HandoffOptions::default().with_events(0).with_bodies(0);
+    let room = HandoffOptions { events: 0, bodies: 0 };
     let (control, mut end) = options.watch.is_some().then(|| handoff(&*servo, room)).unzip();
     servo.check_device(device)?;
     options.pace.check(device)?;

@@ -145,7 +145,7 @@ const MOST_EVENTS: usize = 3;
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
 /// let ground = Shape::from_kernel(HalfSpace::new(Vector([0.0, 1.0, 0.0]), 0.0)?);
 /// let mut bodies = Bodies::from(ground);
-/// let options = ToolOptions::default().with_stiffness(500.0).with_damping(0.0);
+/// let options = ToolOptions { stiffness: 500.0, damping: 0.0, ..ToolOptions::default() };
 /// let mut tool = Tool::new(Shell::ball(0.0625)?, options)?;
 /// let at = |y| ToolState::at_rest(Pose::translation(Vector([0.0, y, 0.0])));
 /// tool.step(&mut bodies, &at(0.1));

@@ -21,11 +21,14 @@ use palpate_device::NumberError;
 /// ```
 /// use palpate_haptics::ToolOptions;
 ///
-/// let options = ToolOptions::default().with_stiffness(400.0).with_angular_stiffness(2.0);
+/// let options = ToolOptions {
+///     stiffness: 400.0,
+///     angular_stiffness: Some(2.0),
+///     ..ToolOptions::default()
+/// };
 /// assert_eq!((options.stiffness, options.angular_stiffness), (400.0, Some(2.0)));
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[non_exhaustive]
 pub struct ToolOptions {
     /// Ticks a second [Hz].
     pub rate: f64,
@@ -62,60 +65,6 @@ pub struct Handle {
 }
 
 impl ToolOptions {
-    /// The same options with another rate [Hz].
-    #[must_use]
-    pub const fn with_rate(self, rate: f64) -> Self {
-        Self { rate, ..self }
-    }
-
-    /// The same options with another stiffness [N/m].
-    #[must_use]
-    pub const fn with_stiffness(self, stiffness: f64) -> Self {
-        Self { stiffness, ..self }
-    }
-
-    /// The same options with a given angular stiffness [N·m/rad].
-    #[must_use]
-    pub const fn with_angular_stiffness(self, stiffness: f64) -> Self {
-        Self { angular_stiffness: Some(stiffness), ..self }
-    }
-
-    /// The same options with another damping [N·s/m].
-    #[must_use]
-    pub const fn with_damping(self, damping: f64) -> Self {
-        Self { damping, ..self }
-    }
-
-    /// The same options with another angular damping [N·m·s/rad].
-    #[must_use]
-    pub const fn with_angular_damping(self, damping: f64) -> Self {
-        Self { angular_damping: damping, ..self }
-    }
-
-    /// The same options with another force limit [N].
-    #[must_use]
-    pub const fn with_max_force(self, max_force: f64) -> Self {
-        Self { max_force: Some(max_force), ..self }
-    }
-
-    /// The same options with another torque limit [N·m].
-    #[must_use]
-    pub const fn with_max_torque(self, max_torque: f64) -> Self {
-        Self { max_torque, ..self }
-    }
-
-    /// The same options with another budget.
-    #[must_use]
-    pub const fn with_budget(self, budget: u32) -> Self {
-        Self { budget, ..self }
-    }
-
-    /// The same options with another time over which the force rises [s].
-    #[must_use]
-    pub const fn with_rise_time(self, rise_time: f64) -> Self {
-        Self { rise_time, ..self }
-    }
-
     /// These options with the damping ratio `ratio` (ζ) for a `handle`: `2 ζ √(K m)` and
     /// `2 ζ √(κ I)`, with the stiffnesses `K` and `κ` of a tool with this `reach` [m]. A ratio
     /// of 1 is critical damping.
@@ -126,7 +75,7 @@ impl ToolOptions {
     /// # fn main() -> Result<(), palpate_haptics::HapticsError> {
     /// let shell = Shell::<3>::ball(0.5)?;
     /// let handle = Handle { mass: 0.01, inertia: 0.02 };
-    /// let options = ToolOptions::default().with_stiffness(400.0);
+    /// let options = ToolOptions { stiffness: 400.0, ..ToolOptions::default() };
     /// let critical = options.with_damping_ratio(1.0, handle, shell.reach());
     /// assert_eq!(critical.damping, 4.0); // 2 √(400 · 0.01)
     /// assert_eq!(critical.angular_damping, 2.0); // 2 √(50 · 0.02), of K ρ² / 2 = 50 N·m/rad

@@ -12,9 +12,11 @@ use palpate_haptics::{
 };
 
 fn options(radius: f64) -> ServoOptions {
-    ServoOptions::default()
-        .with_probe(Probe::new(radius).unwrap())
-        .with_max_force(f64::INFINITY)
+    ServoOptions {
+        probe: Probe::new(radius).unwrap(),
+        max_force: f64::INFINITY,
+        ..ServoOptions::default()
+    }
 }
 
 fn touch(servo: &mut Servo<3, Unprotected>, device: Vector<f64, 3>) -> Touch<3> {
@@ -244,10 +246,12 @@ fn touches_and_leaves_come_in_pairs() {
 /// nothing was to be done: a hand that pressed foam gave back more than steel would have stored.
 #[test]
 fn a_stiff_body_elsewhere_changes_nothing() {
-    let profile = DeviceProfile::unlimited("example")
-        .with_least_damping(2.5)
-        .with_mass(0.25)
-        .with_max_stiffness(5000.0);
+    let profile = DeviceProfile {
+        least_damping: 2.5,
+        mass: 0.25,
+        max_stiffness: 5000.0,
+        ..DeviceProfile::unlimited("example")
+    };
     let forces = |stiffnesses: &[f64]| {
         let bodies = stiffnesses.iter().enumerate().map(|(number, stiffness)| {
             let at = Vector([number as f64, 0.0, 0.0]);

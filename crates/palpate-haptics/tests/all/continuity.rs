@@ -22,7 +22,7 @@ fn is_continuous<const D: usize>(name: &str, shape: &Shape<D>, (radius, bend): (
     let surface = Surface::smooth(STIFFNESS, 0.0).unwrap();
     let bodies = body(shape, surface);
     let probe = Probe::new(radius).unwrap();
-    let options = ServoOptions::default().with_probe(probe).with_max_force(f64::INFINITY);
+    let options = ServoOptions { probe, max_force: f64::INFINITY, ..ServoOptions::default() };
     cases(20, |u| {
         let mut servo = Servo::new(bodies.clone(), 1, options).unwrap();
         let mut device: Vector<f64, D> = direction(u)? * 0.1;

@@ -30,7 +30,7 @@ fn miss<const D: usize>(
     let material = Material { static_friction, dynamic_friction, ..Material::default() };
     let bodies = body(&walls(normals), Surface::new(&material).unwrap());
     let probe = Probe::new(radius).unwrap();
-    let options = ServoOptions::default().with_probe(probe);
+    let options = ServoOptions { probe, ..ServoOptions::default() };
     let mut servo = Servo::new(bodies, 1, options).unwrap();
     let up = normals.iter().fold(Vector::ZERO, |sum, n| sum + *n).normalized().unwrap();
     let mut press = Vector::ZERO;

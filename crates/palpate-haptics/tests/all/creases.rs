@@ -35,10 +35,12 @@ fn walls<const D: usize>(walls: &[([f64; D], f64, f64)]) -> Bodies<D> {
 
 #[expect(clippy::unwrap_used, reason = "a test that cannot be set up fails")]
 fn servo<const D: usize>(bodies: Bodies<D>) -> Servo<D, Unprotected> {
-    let options = ServoOptions::default()
-        .with_probe(Probe::new(RADIUS).unwrap())
-        .with_max_force(f64::INFINITY)
-        .with_rise_time(1e-9);
+    let options = ServoOptions {
+        probe: Probe::new(RADIUS).unwrap(),
+        max_force: f64::INFINITY,
+        rise_time: 1e-9,
+        ..ServoOptions::default()
+    };
     Servo::new(bodies, 1, options).unwrap()
 }
 
@@ -227,10 +229,12 @@ fn a_point_finds_no_crack_between_bodies_that_touch() {
     let boxed = Body::new(boxed, surface()).unwrap();
     let boxed = boxed.at(Pose::translation(Vector([0.0, 0.05, 0.0]))).unwrap();
     let bodies = vec![Body::new(table, surface()).unwrap(), boxed];
-    let options = ServoOptions::default()
-        .with_probe(Probe::new(0.0).unwrap())
-        .with_max_force(f64::INFINITY)
-        .with_rise_time(1e-9);
+    let options = ServoOptions {
+        probe: Probe::new(0.0).unwrap(),
+        max_force: f64::INFINITY,
+        rise_time: 1e-9,
+        ..ServoOptions::default()
+    };
     for below in [1e-5, 1e-3, 5e-3] {
         let bodies = Bodies::new(bodies.clone()).unwrap();
         let mut servo = Servo::new(bodies, 1, options).unwrap();

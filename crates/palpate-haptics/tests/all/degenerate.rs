@@ -49,7 +49,7 @@ fn plays<const D: usize>(name: &str, material: &Material, radius: f64) {
     };
     let bodies = shapes.into_iter().map(body).collect::<Result<_, _>>().unwrap();
     let probe = Probe::new(radius).unwrap();
-    let options = ServoOptions::default().with_probe(probe);
+    let options = ServoOptions { probe, ..ServoOptions::default() };
     let mut servo = Servo::new(Bodies::new(bodies).unwrap(), 1, options).unwrap();
     let mut contacts = 0;
     for tick in 0..3000 {
@@ -88,7 +88,7 @@ fn a_floor_without_bounds_is_felt_among_many_bodies() {
         bodies.push(Body::new(ball(0.02), surface()).unwrap().at(at).unwrap());
     }
     let probe = Probe::new(0.002).unwrap();
-    let options = ServoOptions::default().with_probe(probe);
+    let options = ServoOptions { probe, ..ServoOptions::default() };
     let mut servo = Servo::new(Bodies::new(bodies).unwrap(), 1, options).unwrap();
     for x in [-100.0, 0.0, 0.3, 100.0] {
         servo.step(&[PointState::at_rest(Vector([x, 0.05, 0.0]))]);
@@ -109,7 +109,7 @@ fn twisted_and_bent_bodies_are_felt_among_many() {
         Body::new(shape, surface())?.at(at)
     });
     let bodies = Bodies::new(bodies.collect::<Result<_, _>>().unwrap()).unwrap();
-    let options = ServoOptions::default().with_probe(Probe::new(0.002).unwrap());
+    let options = ServoOptions { probe: Probe::new(0.002).unwrap(), ..ServoOptions::default() };
     let mut servo = Servo::new(bodies, 1, options).unwrap();
     for i in 0..12 {
         let x = 0.15 * f64::from(i);

@@ -4,6 +4,7 @@
 //! What loops do around a device: opened, watched, paced, lost, found, closed; and what else than
 //! contact points a device has.
 
+use palpate_haptics::ServoOptions;
 use std::time::Duration;
 
 use palpate_device::MailboxDevice;
@@ -34,8 +35,12 @@ struct Called {
 impl Called {
     fn new(fails: Option<(&'static str, bool)>) -> Self {
         let gripper = GripperProfile::new(0.03, 5.0);
-        let profile = DeviceProfile::unlimited("called").with_max_force(2.0);
-        Self { profile: profile.with_gripper(gripper), calls: Vec::new(), fails }
+        let profile = DeviceProfile { max_force: 2.0, ..DeviceProfile::unlimited("called") };
+        Self {
+            profile: DeviceProfile { gripper: Some(gripper), ..profile },
+            calls: Vec::new(),
+            fails,
+        }
     }
 
     fn call(&mut self, name: &'static str) -> Result<(), DeviceLost> {
@@ -242,7 +247,7 @@ impl Device<2> for Swapped {
 #[test]
 fn another_device_that_bears_less_is_no_reconnection() {
     let device = pressing(vec![fault(0.2, 0.0, FaultKind::Lost { attempts: 1 })]);
-    let profile = DeviceProfile::unlimited("swapped").with_max_force(3.0);
+    let profile = DeviceProfile { max_force: 3.0, ..DeviceProfile::unlimited("swapped") };
     let mut device = Swapped { device, profile };
     let mut servo = Servo::for_device(wall(), &device).unwrap();
     let options = fast(1.0).with_reconnection(Reconnection::every(0.01).unwrap());
@@ -257,7 +262,7 @@ fn another_device_that_bears_less_is_no_reconnection() {
 #[test]
 fn another_device_does_not_renew_the_patience() {
     let device = pressing(vec![fault(0.2, 0.0, FaultKind::Lost { attempts: 1 })]);
-    let profile = DeviceProfile::unlimited("swapped").with_max_force(3.0);
+    let profile = DeviceProfile { max_force: 3.0, ..DeviceProfile::unlimited("swapped") };
     let mut device = Swapped { device, profile };
     let mut servo = Servo::for_device(wall(), &device).unwrap();
     let patient = Reconnection::every(0.01).unwrap().with_patience(0.05).unwrap();
@@ -362,7 +367,7 @@ fn a_pace_or_a_rate_that_does_not_fit_is_refused() {
     assert!(error.to_string().starts_with("the device sets no pace"), "{error}");
 
     for rate in [400.0, 600.0] {
-        let options = palpate_haptics::ServoOptions::default().with_rate(rate);
+        let options = ServoOptions { rate, ..palpate_haptics::ServoOptions::default() };
         let servo = Servo::new(wall(), 1, options).unwrap();
         let protection = palpate_haptics::Protection::new(pacing.profile().clone());
         let error = servo.protected(&protection).unwrap().check_device(&pacing).unwrap_err();
@@ -375,13 +380,15 @@ fn a_pace_or_a_rate_that_does_not_fit_is_refused() {
 }
 
 fn gripping() -> SimulatedDevice<2> {
-    let profile = DeviceProfile::unlimited("gripping")
-        .with_mass(0.1)
-        .with_least_damping(1.0)
-        .with_friction(0.0)
-        .with_max_force(3.0)
-        .with_gripper(GripperProfile::new(0.03, 5.0).with_max_force_rate(1000.0))
-        .with_buttons(["front", "rear"]);
+    let profile = (DeviceProfile {
+        mass: 0.1,
+        least_damping: 1.0,
+        friction: 0.0,
+        max_force: 3.0,
+        gripper: Some(GripperProfile::new(0.03, 5.0).with_max_force_rate(1000.0)),
+        ..DeviceProfile::unlimited("gripping")
+    })
+    .with_buttons(["front", "rear"]);
     let jaws = vec![Vector([0.0]), Vector([0.02])];
     let jaws = HandPath::new(vec![0.0, 1.0], jaws, Interpolation::Linear).unwrap();
     let device =
@@ -463,7 +470,7 @@ fn without_a_state_a_gripper_has_no_force() {
         servo.step(&states);
     }
     assert_eq!(servo.gripper_force(), 0.0);
-    let other = DeviceProfile::unlimited("none").with_max_force(3.0);
+    let other = DeviceProfile { max_force: 3.0, ..DeviceProfile::unlimited("none") };
     let (other, _driver) = MailboxDevice::<2>::new(other, 1).unwrap();
     let error = servo.check_device(&other).unwrap_err();
     assert!(error.to_string().contains("gripper_max_force of 5 N"), "{error}");
@@ -471,7 +478,7 @@ fn without_a_state_a_gripper_has_no_force() {
 
 #[test]
 fn a_driver_that_is_not_ready_is_waited_for_and_its_repeats_are_counted() {
-    let profile = DeviceProfile::unlimited("mail").with_max_force(3.0);
+    let profile = DeviceProfile { max_force: 3.0, ..DeviceProfile::unlimited("mail") };
     let (device, mut mailbox) = MailboxDevice::<2>::new(profile, 1).unwrap();
     let mut device = device.with_watchdog(Duration::from_millis(20));
     let mut servo = Servo::for_device(wall(), &device).unwrap();

@@ -45,9 +45,11 @@ fn plate(height: f64) -> Bodies<3> {
 }
 
 fn options(radius: f64) -> ServoOptions {
-    ServoOptions::default()
-        .with_probe(Probe::new(radius).unwrap())
-        .with_max_force(f64::INFINITY)
+    ServoOptions {
+        probe: Probe::new(radius).unwrap(),
+        max_force: f64::INFINITY,
+        ..ServoOptions::default()
+    }
 }
 
 fn protection(recovery: Recovery) -> Protection<3> {
@@ -389,7 +391,7 @@ fn a_random_edit<const D: usize>(u: &mut Unstructured<'_>) -> arbitrary::Result<
     let after = || bodies_of(grown::<D>(sort, size, growth), motion);
     let depth = 0.0015 + 0.001 * unit(u)?;
     let (inwards, aim) = (-direction::<D>(u)?, direction::<D>(u)? * (0.5 * size));
-    let servo = Servo::new(before(), 1, options(radius).with_rate(1000.0));
+    let servo = Servo::new(before(), 1, ServoOptions { rate: 1000.0, ..options(radius) });
     let mut plain = servo.unwrap();
     let (mut place, mut pressed) = (aim - inwards * 0.08, false);
     for _ in 0..160 {
@@ -529,7 +531,8 @@ fn a_tool_is_carried_likewise() {
     for recovery in RECOVERIES {
         for shell in shells() {
             for part in [0.005, 0.5, 0.99, 1.2] {
-                let coupling = ToolOptions::default().with_stiffness(1000.0).with_damping(0.0);
+                let coupling =
+                    ToolOptions { stiffness: 1000.0, damping: 0.0, ..ToolOptions::default() };
                 let tool = Tool::new(shell.clone(), coupling).unwrap();
                 let plain = Servo::with_tool(plate(0.02), tool, options(0.002));
                 let mut servo = plain.unwrap().protected(&protection(recovery)).unwrap();

@@ -18,7 +18,11 @@ fn guides() -> Vec<Guide<3>> {
     let place = Vector([0.0, 0.06, 0.0]);
     let bends = [place, Vector([0.05, 0.07, 0.0]), Vector([0.1, 0.05, 0.0])];
     let options = GuideOptions::default();
-    let point = GuideOptions::default().with_snap_distance(0.01).with_release_distance(0.02);
+    let point = GuideOptions {
+        snap_distance: 0.01,
+        release_distance: Some(0.02),
+        ..GuideOptions::default()
+    };
     vec![
         Guide::to_point(place, point).unwrap(),
         Guide::along_line(place, Vector([1.0, 0.0, 1.0]), options).unwrap(),

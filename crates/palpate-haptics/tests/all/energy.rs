@@ -37,7 +37,7 @@ fn surface<const D: usize>(material: &Material) -> Surface<D> {
 
 fn servo<const D: usize>(bodies: Bodies<D>, radius: f64) -> Servo<D, Unprotected> {
     let probe = Probe::new(radius).unwrap();
-    let options = ServoOptions::default().with_probe(probe).with_max_force(f64::INFINITY);
+    let options = ServoOptions { probe, max_force: f64::INFINITY, ..ServoOptions::default() };
     Servo::new(bodies, 1, options).unwrap()
 }
 

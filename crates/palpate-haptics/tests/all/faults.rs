@@ -100,10 +100,12 @@ impl Held {
         let radius = 0.002;
         let wall = Shape::from_kernel(HalfSpace::new(Vector([0.0, 1.0]), -radius).unwrap());
         let wall = Body::new(wall, Surface::smooth(1e5, 0.0).unwrap()).unwrap();
-        let options = ServoOptions::default()
-            .with_rate(RATE)
-            .with_probe(Probe::new(radius).unwrap())
-            .with_max_force(f64::INFINITY);
+        let options = ServoOptions {
+            rate: RATE,
+            probe: Probe::new(radius).unwrap(),
+            max_force: f64::INFINITY,
+            ..ServoOptions::default()
+        };
         let bodies = Bodies::new(vec![wall]).unwrap();
         let servo = Servo::new(bodies, 1, options).unwrap();
         let servo = servo.protected(&Protection::new(profile.clone())).unwrap();

@@ -20,13 +20,13 @@ fn servo<const D: usize>(
     radius: f64,
     (stiffness, options): (f64, ServoOptions),
 ) -> Servo<D, Unprotected> {
-    let options = options.with_probe(Probe::new(radius).unwrap());
+    let options = ServoOptions { probe: Probe::new(radius).unwrap(), ..options };
     let surface = Surface::smooth(stiffness, 0.0).unwrap();
     Servo::new(body(shape, surface), 1, options).unwrap()
 }
 
 fn spring_alone(stiffness: f64) -> (f64, ServoOptions) {
-    (stiffness, ServoOptions::default().with_max_force(f64::INFINITY))
+    (stiffness, ServoOptions { max_force: f64::INFINITY, ..ServoOptions::default() })
 }
 
 fn touch<const D: usize>(servo: &mut Servo<D, Unprotected>, device: Point<D>) -> Touch<D> {
@@ -121,7 +121,7 @@ fn over_a_convex_edge_the_force_is_continuous_if_the_probe_is_wider_than_the_dep
 fn the_damper_resists_the_approach_alone() {
     let floor = half_space([0.0, 1.0, 0.0], 0.0);
     let surface = Surface::smooth(512.0, 4.0).unwrap();
-    let options = ServoOptions::default().with_probe(Probe::new(0.0).unwrap());
+    let options = ServoOptions { probe: Probe::new(0.0).unwrap(), ..ServoOptions::default() };
     let mut servo = Servo::new(body(&floor, surface), 1, options).unwrap();
     let position = Vector([0.0, -0.001953125, 0.0]);
     touch(&mut servo, Vector([0.0, 0.5, 0.0]));
@@ -134,7 +134,7 @@ fn the_damper_resists_the_approach_alone() {
 #[test]
 fn the_largest_force_bounds_the_force_and_keeps_its_direction() {
     let floor = half_space([0.0, 1.0, 0.0], 0.0);
-    let options = ServoOptions::default().with_max_force(2.0);
+    let options = ServoOptions { max_force: 2.0, ..ServoOptions::default() };
     let mut servo = servo(&floor, 0.0, (512.0, options));
     touch(&mut servo, Vector([0.0, 0.5, 0.0]));
     assert_eq!(touch(&mut servo, Vector([0.0, -0.5, 0.0])).force, Vector([0.0, 2.0, 0.0]));
@@ -147,7 +147,7 @@ fn the_largest_force_bounds_the_force_and_keeps_its_direction() {
 #[test]
 fn a_hand_that_starts_inside_is_led_out_gently() {
     // 8 ticks of 1/8 each.
-    let options = spring_alone(512.0).1.with_rate(64.0).with_rise_time(0.125);
+    let options = ServoOptions { rate: 64.0, rise_time: 0.125, ..spring_alone(512.0).1 };
     let mut servo = servo(&cuboid([0.5, 0.5, 0.5]), 0.0, (512.0, options));
     let device = Vector([0.0, 0.2421875, 0.125]);
     for tick in 0..12 {
@@ -252,7 +252,7 @@ fn numbers_that_are_not_finite_give_no_force_and_are_survived() {
 
 #[test]
 fn every_point_of_a_servo_is_its_own() {
-    let options = spring_alone(500.0).1.with_probe(Probe::new(0.0).unwrap());
+    let options = ServoOptions { probe: Probe::new(0.0).unwrap(), ..spring_alone(500.0).1 };
     let mut servo = Servo::new(half_space([0.0, 1.0], 0.0), 3, options).unwrap();
     let at = |y: f64| PointState::at_rest(Vector([0.0, y]));
     servo.step(&[at(1.0), at(1.0), at(1.0)]);
@@ -267,10 +267,10 @@ fn wrong_options_are_refused_with_their_numbers() {
     let with = |options| Servo::new(shape.clone(), 1, options).map(|_| ());
     let none = Servo::new(shape.clone(), 0, ServoOptions::default()).map(|_| ());
     assert_eq!(none, Err(HapticsError::Device(DeviceError::NoContactPoint)));
-    let error = with(ServoOptions::default().with_rate(0.0)).unwrap_err();
+    let error = with(ServoOptions { rate: 0.0, ..ServoOptions::default() }).unwrap_err();
     assert_eq!(error.to_string(), "rate must be from 1e-6 to 1e9, got 0 Hz");
-    assert!(with(ServoOptions::default().with_max_force(f64::NAN)).is_err());
-    assert!(with(ServoOptions::default().with_rise_time(-1.0)).is_err());
+    assert!(with(ServoOptions { max_force: f64::NAN, ..ServoOptions::default() }).is_err());
+    assert!(with(ServoOptions { rise_time: -1.0, ..ServoOptions::default() }).is_err());
     assert!(Probe::new(-0.1).is_err() && Probe::new(f64::NAN).is_err());
     assert!(Probe::new(0.1).and_then(|p| p.with_budget(3)).is_err());
 }
@@ -296,13 +296,13 @@ fn a_relative_stiffness_is_a_part_of_what_the_device_renders() {
     };
     let accepted = |device: DeviceProfile, rate: f64, scale: f64| {
         let bodies = body(&ball::<3>(0.05), Surface::new(&half).unwrap());
-        let options = ServoOptions::default().with_rate(rate);
+        let options = ServoOptions { rate, ..ServoOptions::default() };
         let servo = Servo::new(bodies, 1, options).unwrap();
         let map = WorkspaceMap::new(Pose::identity(), scale).unwrap();
         let servo = servo.protected(&Protection::new(device).with_map(map)).unwrap();
         (servo.accepted()[0].clone(), servo.bodies().bodies()[0].surface().stiffness())
     };
-    let device = DeviceProfile::unlimited("example").with_max_stiffness(1800.0);
+    let device = DeviceProfile { max_stiffness: 1800.0, ..DeviceProfile::unlimited("example") };
     for (rate, scale) in [(1000.0, 1.0), (4000.0, 1.0), (1000.0, 3.0)] {
         let (accepted, outermost) = accepted(device.clone(), rate, scale);
         assert!((accepted.device_stiffness - 0.9 * rate).abs() < 1e-9, "{accepted:?}");
@@ -324,7 +324,7 @@ fn a_relative_stiffness_is_a_part_of_what_the_device_renders() {
 /// Once the largest stiffness was asked of every device, also where nothing depended on it.
 #[test]
 fn a_device_without_damping_takes_a_material_as_it_is() {
-    let device = DeviceProfile::unlimited("bare").with_least_damping(0.0);
+    let device = DeviceProfile { least_damping: 0.0, ..DeviceProfile::unlimited("bare") };
     let accepted = |relative_stiffness, acceptance| {
         let material = Material { relative_stiffness, ..Material::default() };
         let bodies = body(&ball::<3>(0.05), Surface::new(&material).unwrap());

@@ -24,9 +24,11 @@ fn rough<const D: usize>(
         dynamic_friction: friction[1],
         ..Material::default()
     };
-    let options = ServoOptions::default()
-        .with_probe(Probe::new(radius).unwrap())
-        .with_max_force(f64::INFINITY);
+    let options = ServoOptions {
+        probe: Probe::new(radius).unwrap(),
+        max_force: f64::INFINITY,
+        ..ServoOptions::default()
+    };
     Servo::new(body(shape, Surface::new(&material).unwrap()), 1, options).unwrap()
 }
 

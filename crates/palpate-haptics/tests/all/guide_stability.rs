@@ -45,13 +45,11 @@ fn guided(profile: &DeviceProfile, case: &Case) -> Guided {
         s.acceptance = Acceptance::AsIs;
         s.rise_rate = f64::INFINITY
     });
-    let options = ServoOptions::default().with_max_force(f64::INFINITY);
+    let options = ServoOptions { max_force: f64::INFINITY, ..ServoOptions::default() };
     let servo = Servo::new(far, 1, options).unwrap();
     let mut servo = servo.protected(&protection).unwrap();
-    let options = GuideOptions::default()
-        .with_stiffness(stiffness)
-        .with_damping(0.0)
-        .with_max_force(max_force);
+    let options =
+        GuideOptions { stiffness, damping: 0.0, max_force, ..GuideOptions::default() };
     servo.guide(&[Guide::to_point(Vector::ZERO, options).unwrap()]).unwrap();
     let elastic = start.min(max_force / stiffness);
     let stored = (start - 0.5 * elastic) * stiffness * elastic;
@@ -80,10 +78,12 @@ fn guided(profile: &DeviceProfile, case: &Case) -> Guided {
 
 #[test]
 fn a_stiff_guide_gives_out_its_reserve_beyond_its_potential_at_most() {
-    let device = DeviceProfile::unlimited("light")
-        .with_mass(0.05)
-        .with_least_damping(0.5)
-        .with_friction(0.0);
+    let device = DeviceProfile {
+        mass: 0.05,
+        least_damping: 0.5,
+        friction: 0.0,
+        ..DeviceProfile::unlimited("light")
+    };
     for times in [0.9, 2.0, 3.0] {
         for max_force in [0.5, f64::INFINITY] {
             for grip in [0.0, 0.1, 1.0] {

@@ -20,7 +20,7 @@ fn vector(u: Random, most: f64) -> arbitrary::Result<Vector<f64, 3>> {
 
 /// A guide of any kind without a snap distance, with the given damping.
 fn any_guide(u: Random, damping: f64) -> arbitrary::Result<Guide<3>> {
-    let options = GuideOptions::default().with_stiffness(200.0).with_damping(damping);
+    let options = GuideOptions { stiffness: 200.0, damping, ..GuideOptions::default() };
     let ball = || Shape::from_kernel(Ball::new(0.02).unwrap());
     let (a, b) = (vector(u, 0.05)?, vector(u, 0.05)? + Vector([0.1, 0.0, 0.0]));
     let guide = match u.int_in_range(0..=7)? {
@@ -89,7 +89,7 @@ fn a_closed_path_costs_nothing() {
 #[test]
 fn wells_and_slopes_are_continuous() {
     cases(500, |u| {
-        let options = GuideOptions::default().with_stiffness(200.0);
+        let options = GuideOptions { stiffness: 200.0, ..GuideOptions::default() };
         let ball = Shape::from_kernel(Ball::new(0.02).unwrap());
         let slope = Slope::new(ball, 1.2, [-0.01, 0.05]).unwrap();
         let guides = [Guide::well(Vector::ZERO, 0.04, options), Guide::down(slope, options)];
@@ -108,11 +108,13 @@ fn wells_and_slopes_are_continuous() {
 
 #[test]
 fn a_guide_that_snaps_lets_go_farther_out() {
-    let options = GuideOptions::default()
-        .with_stiffness(256.0)
-        .with_snap_distance(0.0078125)
-        .with_release_distance(0.015625)
-        .with_max_force(3.0);
+    let options = GuideOptions {
+        stiffness: 256.0,
+        snap_distance: 0.0078125,
+        release_distance: Some(0.015625),
+        max_force: 3.0,
+        ..GuideOptions::default()
+    };
     let mut guide = Guide::to_point(Vector::ZERO, options).unwrap();
     let mut at = |x: f64| guide.force(Vector([x, 0.0]), Vector::ZERO)[0];
     assert_eq!(at(0.01), 0.0);
@@ -145,7 +147,7 @@ fn numbers_that_are_none_let_go() {
 
 #[test]
 fn along_a_curve_nothing_is_damped_and_at_its_ends_everything() {
-    let options = GuideOptions::default().with_damping(2.0);
+    let options = GuideOptions { damping: 2.0, ..GuideOptions::default() };
     let (from, to) = (Vector([0.0, 0.0]), Vector([1.0, 0.0]));
     let mut guide = Guide::along_segment(from, to, options).unwrap();
     let speed = Vector([0.25, 0.0]);
@@ -158,7 +160,7 @@ fn along_a_curve_nothing_is_damped_and_at_its_ends_everything() {
 #[test]
 fn wrong_numbers_are_named() {
     let at = |change: fn(&mut GuideOptions)| {
-        let mut options = GuideOptions::default().with_snap_distance(0.01);
+        let mut options = GuideOptions { snap_distance: 0.01, ..GuideOptions::default() };
         change(&mut options);
         Guide::to_point(Vector([0.0, 0.0]), options).map(|_| ()).map_err(|e| e.to_string())
     };

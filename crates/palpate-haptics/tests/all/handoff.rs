@@ -72,9 +72,11 @@ impl Device<2> for Hand {
 }
 
 fn unprotected(bodies: impl Into<Bodies<2>>, points: usize) -> Servo<2, Unprotected> {
-    let options = ServoOptions::default()
-        .with_probe(Probe::new(0.0).unwrap())
-        .with_max_force(f64::INFINITY);
+    let options = ServoOptions {
+        probe: Probe::new(0.0).unwrap(),
+        max_force: f64::INFINITY,
+        ..ServoOptions::default()
+    };
     Servo::new(bodies, points, options).unwrap()
 }
 
@@ -110,7 +112,7 @@ fn up(way: f64) -> Pose<2> {
 #[test]
 fn bodies_handed_to_a_protected_servo_are_as_soft_as_its_device_needs() {
     // Once they went as they were, whatever the device could render.
-    let profile = DeviceProfile::unlimited("gentle").with_least_damping(0.064);
+    let profile = DeviceProfile { least_damping: 0.064, ..DeviceProfile::unlimited("gentle") };
     for is_strict in [false, true] {
         let servo = unprotected(
             body(&half_space([0.0, 1.0], 0.0), Surface::smooth(64.0, 0.0).unwrap()),
@@ -255,7 +257,7 @@ fn scenes_come_back_and_are_dropped_by_the_next_call() {
 #[test]
 fn events_come_in_order_with_their_ticks_and_are_counted_where_there_is_no_room() {
     let hand = Hand::at(&[[0.0, 0.25]]);
-    let handoff = HandoffOptions::default().with_events(3);
+    let handoff = HandoffOptions { events: 3, ..HandoffOptions::default() };
     let options = plain().with_handoff(handoff);
     let (mut thread, mut driver) = start(servo(floor(0.0), 1), &hand, options);
     let mut tap = |times: u64| {
@@ -312,7 +314,7 @@ fn an_emergency_stop_takes_all_forces_until_it_is_released() {
 fn ten_kilohertz_have_ten_times_the_ticks() {
     let run = |rate| {
         let hand = Hand::at(&[[0.0, -0.001]]);
-        let options = ServoOptions::default().with_rate(rate);
+        let options = ServoOptions { rate, ..ServoOptions::default() };
         let servo = Servo::new(half_space([0.0, 1.0], 0.0), 1, options).unwrap();
         let servo = without_limits(servo);
         let options = plain().with_duration(0.5);

@@ -70,7 +70,7 @@ fn in_space_events_are_in_order() {
 
 fn options() -> ServoOptions {
     let probe = Probe::new(0.0).unwrap();
-    ServoOptions::default().with_probe(probe).with_max_force(1.0)
+    ServoOptions { probe, max_force: 1.0, ..ServoOptions::default() }
 }
 
 #[test]
@@ -131,7 +131,7 @@ fn every_layer_pops_once() {
         ..Material::default()
     };
     let body = Body::new(ball::<3>(0.05), Surface::new(&material).unwrap()).unwrap();
-    let options = options().with_max_force(f64::INFINITY);
+    let options = ServoOptions { max_force: f64::INFINITY, ..options() };
     let mut servo = Servo::new(Bodies::new(vec![body]).unwrap(), 1, options).unwrap();
     for _ in 0..3 {
         let mut popped = Vec::new();

@@ -38,9 +38,11 @@ enum Held {
 const ALL: [Held; 3] = [Held::Point, Held::Tool, Held::Turning];
 
 fn servo(held: Held, stiffness: f64, recovery: Recovery) -> Servo<3> {
-    let options = ServoOptions::default()
-        .with_probe(Probe::new(0.002).unwrap())
-        .with_max_force(f64::INFINITY);
+    let options = ServoOptions {
+        probe: Probe::new(0.002).unwrap(),
+        max_force: f64::INFINITY,
+        ..ServoOptions::default()
+    };
     let profile = match held {
         Held::Turning => profile_named("sigma7").unwrap(),
         Held::Point | Held::Tool => profile_named("omega").unwrap(),
@@ -48,10 +50,12 @@ fn servo(held: Held, stiffness: f64, recovery: Recovery) -> Servo<3> {
     let plain = match held {
         Held::Point => Servo::new(ground(stiffness, 0.0), 1, options),
         Held::Tool | Held::Turning => {
-            let coupling = ToolOptions::default()
-                .with_stiffness(stiffness)
-                .with_damping(0.0)
-                .with_rise_time(1e-9);
+            let coupling = ToolOptions {
+                stiffness,
+                damping: 0.0,
+                rise_time: 1e-9,
+                ..ToolOptions::default()
+            };
             let tool = Tool::new(Shell::ball(0.002).unwrap(), coupling).unwrap();
             Servo::with_tool(ground(stiffness, 0.0), tool, options)
         }

@@ -19,7 +19,7 @@ fn slab() -> Bodies<3> {
 }
 
 fn options() -> ServoOptions {
-    ServoOptions::default().with_max_force(f64::INFINITY)
+    ServoOptions { max_force: f64::INFINITY, ..ServoOptions::default() }
 }
 
 fn with_points() -> Servo<3, Unprotected> {
@@ -78,7 +78,7 @@ fn a_lifted_hand_goes_through_a_wall_and_feels_nothing() {
 #[test]
 fn a_hand_that_is_set_down_in_a_body_is_pushed_out_gently_or_not_at_all() {
     let largest = |recovery| {
-        let device = DeviceProfile::unlimited("gentle").with_max_force(12.0);
+        let device = DeviceProfile { max_force: 12.0, ..DeviceProfile::unlimited("gentle") };
         let protection = Protection::new(device).with(|s| {
             s.recovery = recovery;
             s.rise_rate = 10.0
@@ -139,12 +139,12 @@ fn a_state_that_is_not_finite_leaves_a_lifted_proxy_where_it_was() {
 
 #[test]
 fn lift_and_guides_are_handed_off() {
-    let device = DeviceProfile::unlimited("gentle").with_least_damping(0.064);
+    let device = DeviceProfile { least_damping: 0.064, ..DeviceProfile::unlimited("gentle") };
     let protection = Protection::new(device).with(|s| s.acceptance = Acceptance::Passive);
     let mut servo: Servo<3> = with_points().protected(&protection).unwrap();
     let guide = Guide::to_point(
         Vector([0.0, 0.1, 0.0]),
-        GuideOptions::default().with_stiffness(1000.0).with_damping(0.0),
+        GuideOptions { stiffness: 1000.0, damping: 0.0, ..GuideOptions::default() },
     );
     let guides = [guide.unwrap()];
     let (mut control, mut end) = handoff(&servo, HandoffOptions::default());

@@ -17,7 +17,7 @@ fn servo(shapes: Vec<(Shape<3>, Point<3>)>, radius: f64) -> Servo<3, Unprotected
         .map(|(shape, place)| Body::new(shape, surface())?.at(Pose::translation(place)));
     let bodies = Bodies::new(bodies.collect::<Result<_, _>>().unwrap()).unwrap();
     let probe = Probe::new(radius).unwrap();
-    let options = ServoOptions::default().with_probe(probe).with_max_force(f64::INFINITY);
+    let options = ServoOptions { probe, max_force: f64::INFINITY, ..ServoOptions::default() };
     Servo::new(bodies, 1, options).unwrap()
 }
 

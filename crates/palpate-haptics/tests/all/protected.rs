@@ -32,11 +32,13 @@ struct Fragile {
 
 impl Fragile {
     fn new() -> Self {
-        let profile = DeviceProfile::unlimited("fragile")
-            .with_max_force(4.0)
-            .with_max_force_rate(3000.0)
-            .with_mass(0.05)
-            .with_least_damping(0.5);
+        let profile = DeviceProfile {
+            max_force: 4.0,
+            max_force_rate: 3000.0,
+            mass: 0.05,
+            least_damping: 0.5,
+            ..DeviceProfile::unlimited("fragile")
+        };
         Self { profile, written: Arc::default() }
     }
 
@@ -169,17 +171,20 @@ fn a_servo_does_not_run_with_a_device_that_bears_less_than_its_own() {
     };
     let own = Fragile::new().profile;
     assert_eq!(run_with(own.clone()), Ok(10));
-    assert_eq!(run_with(own.clone().with_max_force(5.0)), Ok(10));
+    assert_eq!(run_with(DeviceProfile { max_force: 5.0, ..own.clone() }), Ok(10));
     let refused = |profile: DeviceProfile| match run_with(profile) {
         Err(HapticsError::Safety(SafetyError::OtherDevice { limit, .. })) => limit,
         other => panic!("{other:?}"),
     };
-    assert_eq!(refused(own.clone().with_max_force(3.9)), "max_force");
-    assert_eq!(refused(own.clone().with_max_force_rate(1.0)), "max_force_rate");
-    assert_eq!(refused(own.clone().with_continuous_force(1.0)), "continuous_force");
-    assert_eq!(refused(own.clone().with_least_damping(0.4)), "least_damping");
-    assert_eq!(refused(own.clone().with_friction(0.1)), "friction");
-    assert_eq!(refused(own.with_encoder_step(1e-5)), "encoder_step");
+    assert_eq!(refused(DeviceProfile { max_force: 3.9, ..own.clone() }), "max_force");
+    assert_eq!(refused(DeviceProfile { max_force_rate: 1.0, ..own.clone() }), "max_force_rate");
+    assert_eq!(
+        refused(DeviceProfile { continuous_force: 1.0, ..own.clone() }),
+        "continuous_force"
+    );
+    assert_eq!(refused(DeviceProfile { least_damping: 0.4, ..own.clone() }), "least_damping");
+    assert_eq!(refused(DeviceProfile { friction: 0.1, ..own.clone() }), "friction");
+    assert_eq!(refused(DeviceProfile { encoder_step: 1e-5, ..own }), "encoder_step");
 }
 
 /// The end of the process came before the zero forces: the motors kept the last ones.
@@ -203,7 +208,7 @@ fn a_thread_that_is_dropped_writes_its_zero_forces_first() {
 #[test]
 fn a_profile_whose_largest_force_is_none_is_refused() {
     for max_force in [f64::NAN, -1.0, f64::NEG_INFINITY] {
-        let profile = Fragile::new().profile.with_max_force(max_force);
+        let profile = DeviceProfile { max_force, ..Fragile::new().profile };
         let servo = Servo::new(floor(), 1, ServoOptions::default()).unwrap();
         let refused = servo.protected(&Protection::new(profile)).unwrap_err();
         assert!(refused.to_string().starts_with("max_force must be"), "{refused}");
@@ -246,7 +251,7 @@ fn a_magnet_pulls_no_steeper_than_the_device_renders() {
     let shape = Shape::from_kernel(HalfSpace::new(Vector([0.0, 1.0]), -0.002).unwrap());
     let body = Body::new(shape, Surface::new(&material).unwrap()).unwrap();
     let bodies = Bodies::new(vec![body]).unwrap();
-    let device = DeviceProfile::unlimited("example").with_max_stiffness(1000.0);
+    let device = DeviceProfile { max_stiffness: 1000.0, ..DeviceProfile::unlimited("example") };
     let servo = Servo::new(bodies, 1, ServoOptions::default()).unwrap();
     let protection = Protection::new(device).with(|s| s.rise_rate = f64::INFINITY);
     let mut servo = servo.protected(&protection).unwrap();

@@ -53,7 +53,7 @@ fn a_tick_with_its_hand_off_allocates_and_frees_nothing() {
         Bodies::new((0..count).map(body).collect::<Result<_, _>>().unwrap()).unwrap()
     };
     let mut servo = Servo::new(scene(1), 2, ServoOptions::default()).unwrap();
-    let room = HandoffOptions::default().with_events(10).with_bodies(100);
+    let room = HandoffOptions { events: 10, bodies: 100 };
     let (mut control, mut end) = handoff(&servo, room);
     let switch = control.stop_switch();
     for tick in 0..2000_usize {
@@ -103,7 +103,7 @@ fn a_step_of_a_tool_allocates_and_frees_nothing() {
     });
     let mut bodies = Bodies::new(bodies.collect()).unwrap();
     let shell = Shell::from_field(&torus(0.03, 0.01), 700, 0.0).unwrap();
-    let options = ToolOptions::default().with_budget(4000);
+    let options = ToolOptions { budget: 4000, ..ToolOptions::default() };
     let mut tool = Tool::new(shell, options).unwrap();
     let mut touched = 0;
     for tick in 0..3000 {
@@ -136,12 +136,14 @@ fn a_servo_with_a_tool_allocates_and_frees_nothing() {
     let shell = Shell::from_field(&torus(0.03, 0.01), 500, 0.0).unwrap();
     let tool = Tool::new(shell, ToolOptions::default()).unwrap();
     let servo = Servo::with_tool(scene(6), tool, ServoOptions::default()).unwrap();
-    let profile = DeviceProfile::unlimited("example")
-        .with_least_damping(0.3)
-        .with_encoder_step(1e-5)
-        .with_max_force(3.0);
+    let profile = DeviceProfile {
+        least_damping: 0.3,
+        encoder_step: 1e-5,
+        max_force: 3.0,
+        ..DeviceProfile::unlimited("example")
+    };
     let mut servo = servo.protected(&Protection::new(profile)).unwrap();
-    let room = HandoffOptions::default().with_events(10).with_bodies(10);
+    let room = HandoffOptions { events: 10, bodies: 10 };
     let (mut control, mut end) = handoff(&servo, room);
     let (mut contacts, mut events) = (0, 0);
     for tick in 0..2000_usize {

@@ -79,10 +79,12 @@ impl Held {
     /// A wall at height zero, and a hand with a `grip` [N/m] that wants to be so far below it that the
     /// wall gives `part` of the force that the device bears for long when both rest.
     fn new(profile: &DeviceProfile, protection: Protection<2>, grip: f64, part: f64) -> Self {
-        let options = ServoOptions::default()
-            .with_rate(RATE)
-            .with_probe(Probe::new(0.002).unwrap())
-            .with_max_force(f64::INFINITY);
+        let options = ServoOptions {
+            rate: RATE,
+            probe: Probe::new(0.002).unwrap(),
+            max_force: f64::INFINITY,
+            ..ServoOptions::default()
+        };
         let servo = Servo::new(wall(WANTED, 0.0), 1, options).unwrap();
         let servo = servo.protected(&protection).unwrap();
         let stiffness = servo.bodies().bodies()[0].surface().stiffness();

@@ -88,11 +88,11 @@ fn a_point_that_is_led_out_is_felt() {
 
 #[test]
 fn guides_tell_their_time_force_and_work() {
-    let options = GuideOptions::default().with_stiffness(100.0).with_damping(0.0);
-    let near = options.with_snap_distance(0.0105);
+    let options = GuideOptions { stiffness: 100.0, damping: 0.0, ..GuideOptions::default() };
+    let near = GuideOptions { snap_distance: 0.0105, ..options };
     let guides = [
         Guide::on_plane([0.0, 1.0], [0.0, 1.0], near).unwrap(),
-        Guide::to_point([0.0, -5.0], options.with_snap_distance(0.01)).unwrap(),
+        Guide::to_point([0.0, -5.0], GuideOptions { snap_distance: 0.01, ..options }).unwrap(),
     ];
     let ground = half_space([0.0, 1.0], 0.0);
     let mut servo = without_limits(Servo::new(ground, 1, Default::default()).unwrap());

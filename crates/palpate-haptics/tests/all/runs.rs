@@ -53,7 +53,7 @@ fn press() -> HandPath<2> {
 }
 
 fn wall_servo(options: ServoOptions) -> Servo<2> {
-    let options = options.with_probe(Probe::new(0.0).unwrap());
+    let options = ServoOptions { probe: Probe::new(0.0).unwrap(), ..options };
     let wall = half_space([0.0, 1.0], 0.0);
     without_limits(Servo::new(wall, 1, options).unwrap())
 }
@@ -66,7 +66,7 @@ fn fast<'a, const D: usize>(duration: f64) -> RunOptions<'a, D> {
 fn a_report_counts_what_happened() {
     let max_force = f64::INFINITY;
     let mut servo =
-        wall_servo(ServoOptions::default().with_rate(128.0).with_max_force(max_force));
+        wall_servo(ServoOptions { rate: 128.0, max_force, ..ServoOptions::default() });
     let mut device = RecordedDevice::new(vec![press()]).unwrap();
     let mut recorder = Recorder::new(4 * 128);
     let options = fast(4.0).with_recorder(&mut recorder);
@@ -104,10 +104,12 @@ fn a_body_that_moves_pushes_a_hand_at_rest_with_its_speed() {
     // 128 ticks a second, in each of which the wall rises by 1/1024 m: at 1/8 m/s.
     let material = Surface::smooth(512.0, 4.0).unwrap();
     let wall = Body::new(half_space([0.0, 1.0], 0.0), material).unwrap();
-    let options = ServoOptions::default()
-        .with_rate(128.0)
-        .with_max_force(f64::INFINITY)
-        .with_probe(Probe::new(0.0).unwrap());
+    let options = ServoOptions {
+        rate: 128.0,
+        max_force: f64::INFINITY,
+        probe: Probe::new(0.0).unwrap(),
+        ..ServoOptions::default()
+    };
     let bodies = Bodies::new(vec![wall]).unwrap();
     let mut servo = without_limits(Servo::new(bodies, 1, options).unwrap());
     let mut recorder = Recorder::new(64);
@@ -131,7 +133,7 @@ fn a_body_that_slides_past_drags_a_hand_at_rest() {
     let material = Material::default();
     let friction = material.dynamic_friction;
     let floor = Body::new(cuboid([2.0, 0.5]), material).unwrap();
-    let options = ServoOptions::default().with_probe(Probe::new(0.0).unwrap());
+    let options = ServoOptions { probe: Probe::new(0.0).unwrap(), ..ServoOptions::default() };
     let bodies = Bodies::new(vec![floor]).unwrap();
     let mut servo = without_limits(Servo::new(bodies, 1, options).unwrap());
     let mut recorder = Recorder::new(1000);
@@ -175,7 +177,7 @@ fn a_full_recorder_drops_rows_and_says_so() {
 
 #[test]
 fn a_paced_run_waits_for_every_tick_and_does_not_hurry_after_lost_time() {
-    let mut servo = wall_servo(ServoOptions::default().with_rate(1000.0));
+    let mut servo = wall_servo(ServoOptions { rate: 1000.0, ..ServoOptions::default() });
     let mut device = RecordedDevice::new(vec![press()]).unwrap();
     // In a rehearsal a tenth of a second is lost.
     let busy = vec![(1000, Duration::from_millis(100))];
@@ -289,7 +291,7 @@ struct Watched {
 
 impl Watched {
     fn new() -> Self {
-        let profile = DeviceProfile::unlimited("watched").with_max_force(3.3);
+        let profile = DeviceProfile { max_force: 3.3, ..DeviceProfile::unlimited("watched") };
         Self { profile, written: None }
     }
 }
@@ -406,7 +408,7 @@ fn an_interrupted_run_ends_before_its_next_tick_with_no_force() {
     let left = AtomicBool::new(false);
     let mut device = Leaving { device: Watched::new(), left: &left };
     let protection = Protection::new(device.profile().clone());
-    let options = ServoOptions::default().with_probe(Probe::new(0.0).unwrap());
+    let options = ServoOptions { probe: Probe::new(0.0).unwrap(), ..ServoOptions::default() };
     let servo = Servo::new(half_space([0.0, 1.0], 0.0), 1, options).unwrap();
     let mut servo = servo.protected(&protection.with(|s| s.rise_rate = f64::INFINITY)).unwrap();
     let options = fast(4.0).with_interrupt(&left);

@@ -19,12 +19,12 @@ const DAMPING_PER_TICK: f64 = 0.02;
 
 /// A device of this damping, without friction and encoder steps.
 fn smooth(profile: &DeviceProfile) -> DeviceProfile {
-    profile
-        .clone()
-        .with_max_force(f64::INFINITY)
-        .with_mass(profile.least_damping * PERIOD / DAMPING_PER_TICK)
-        .with_friction(0.0)
-        .with_encoder_step(0.0)
+    DeviceProfile {
+        mass: profile.least_damping * PERIOD / DAMPING_PER_TICK,
+        friction: 0.0,
+        encoder_step: 0.0,
+        ..DeviceProfile { max_force: f64::INFINITY, ..profile.clone() }
+    }
 }
 
 /// Pushed with 1 N onto a wall of `stiffness`, from rest `height` [m] above where the wall bears
@@ -39,11 +39,12 @@ impl Pressed {
     fn new(profile: &DeviceProfile, stiffness: f64, height: f64) -> Self {
         let radius = 0.002;
         let wall = HalfSpace::new(Vector([0.0, 1.0]), -radius).unwrap();
-        let options = ServoOptions::default()
-            .with_rate(1.0 / PERIOD)
-            .with_probe(Probe::new(radius).unwrap())
-            .with_max_force(f64::INFINITY)
-            .with_rise_time(1e-9);
+        let options = ServoOptions {
+            rate: 1.0 / PERIOD,
+            probe: Probe::new(radius).unwrap(),
+            max_force: f64::INFINITY,
+            rise_time: 1e-9,
+        };
         let surface = Surface::smooth(stiffness, 0.0).unwrap();
         let wall = Body::new(Shape::from_kernel(wall), surface).unwrap();
         let bodies = Bodies::new(vec![wall]).unwrap();
@@ -127,10 +128,12 @@ fn above_the_threshold_a_limit_cycle_sustains_itself_on_energy_given() {
 #[test]
 fn one_percent_beyond_the_threshold_the_mass_just_leaves_the_wall() {
     // 0.05 kg, 0.5 N·s/m, 1 kHz, 1 N: 2b/T is 1000 N/m, where the wall bears 1 N at 1 mm.
-    let profile = DeviceProfile::unlimited("wall")
-        .with_mass(0.05)
-        .with_least_damping(0.5)
-        .with_friction(0.0);
+    let profile = DeviceProfile {
+        mass: 0.05,
+        least_damping: 0.5,
+        friction: 0.0,
+        ..DeviceProfile::unlimited("wall")
+    };
     let span_at = |stiffness: f64| {
         let mut pressed = Pressed::new(&profile, stiffness, 0.01);
         pressed.span(60_000);
@@ -196,12 +199,14 @@ fn given_by_a_stiff_wall(profile: &DeviceProfile, grip: f64, height: f64) -> (f6
 
 #[test]
 fn a_wall_thrice_as_stiff_gives_out_less_than_a_millijoule_under_control() {
-    let wall = DeviceProfile::unlimited("wall")
-        .with_mass(0.05)
-        .with_least_damping(0.5)
-        .with_friction(0.0);
+    let wall = DeviceProfile {
+        mass: 0.05,
+        least_damping: 0.5,
+        friction: 0.0,
+        ..DeviceProfile::unlimited("wall")
+    };
     let mut worst = 0.0_f64;
-    for profile in [wall.clone(), wall.with_mass(0.1)] {
+    for profile in [wall.clone(), DeviceProfile { mass: 0.1, ..wall }] {
         for grip in [0.0, 0.1, 0.3, 1.0, 3.0, 10.0] {
             for height in [0.0, 0.001, 0.01] {
                 let (given, depth) = given_by_a_stiff_wall(&profile, grip, height);

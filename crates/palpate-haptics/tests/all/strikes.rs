@@ -31,7 +31,7 @@ fn strike(
     let shape = plate.clone().placed(&pose).unwrap();
     let radius = [0.0, 1e-4, 0.002][u.choose_index(3)?];
     let probe = Probe::new(radius).unwrap();
-    let options = ServoOptions::default().with_probe(probe);
+    let options = ServoOptions { probe, ..ServoOptions::default() };
     let mut servo = Servo::new(body(&shape, Surface::new(&material).unwrap()), 1, options);
     let servo = servo.as_mut().unwrap();
 
@@ -106,7 +106,7 @@ fn beyond(friction: f64, budget: u32, step: f64) -> Vec<Touch<3>> {
     };
     let plate = cuboid([0.4, THINNEST, 0.4]);
     let probe = Probe::new(0.0).unwrap().with_budget(budget).unwrap();
-    let options = ServoOptions::default().with_probe(probe);
+    let options = ServoOptions { probe, ..ServoOptions::default() };
     let bodies = body(&plate, Surface::new(&material).unwrap());
     let mut servo = Servo::new(bodies, 1, options).unwrap();
     let mut at = |x: f64, y: f64| servo.step(&[PointState::at_rest(Vector([x, y, 0.0]))])[0];

@@ -24,11 +24,13 @@ fn of_stiffness(stiffness: f64) -> Bodies<3> {
 }
 
 fn coupling() -> ToolOptions {
-    ToolOptions::default()
-        .with_stiffness(500.0)
-        .with_angular_stiffness(2.0)
-        .with_damping(0.5)
-        .with_angular_damping(2e-4)
+    ToolOptions {
+        stiffness: 500.0,
+        angular_stiffness: Some(2.0),
+        damping: 0.5,
+        angular_damping: 2e-4,
+        ..ToolOptions::default()
+    }
 }
 
 fn rod() -> Tool<3> {
@@ -55,14 +57,16 @@ fn forces(mut servo: Box<dyn AnyServo<3>>, soft: f64, stiff: f64) -> Vec<f64> {
 
 /// All that renders forces: points with and without a safety chain, and a tool.
 fn servos() -> Vec<(&'static str, Box<dyn AnyServo<3>>)> {
-    let options = ServoOptions::default()
-        .with_probe(Probe::new(0.0).unwrap())
-        .with_max_force(f64::INFINITY);
+    let options = ServoOptions {
+        probe: Probe::new(0.0).unwrap(),
+        max_force: f64::INFINITY,
+        ..ServoOptions::default()
+    };
     let plain = Servo::new(of_stiffness(100.0), 1, options).unwrap();
     let protection = Protection::new(DeviceProfile::unlimited("example"))
         .with(|s| s.rise_rate = 10.0 * 800.0 * DEPTH);
     let protected = plain.clone().protected(&protection).unwrap();
-    let tool = coupling().with_stiffness(1000.0).with_damping(0.0);
+    let tool = ToolOptions { stiffness: 1000.0, damping: 0.0, ..coupling() };
     let tool = Tool::new(Shell::ball(1e-6).unwrap(), tool).unwrap();
     let tool = Servo::with_tool(of_stiffness(100.0), tool, options).unwrap();
     vec![
@@ -104,11 +108,13 @@ fn a_softer_material_and_the_same_one_are_felt_at_once() {
 
 /// It bears a coupling alone, hardly, and not with bodies that damp.
 fn device() -> DeviceProfile {
-    let turning = TurningProfile::unlimited().with_least_damping(1.2e-3);
-    DeviceProfile::unlimited("example")
-        .with_max_stiffness(300.0)
-        .with_least_damping(0.7)
-        .with_turning(turning)
+    let turning = TurningProfile { least_damping: 1.2e-3, ..TurningProfile::unlimited() };
+    DeviceProfile {
+        max_stiffness: 300.0,
+        least_damping: 0.7,
+        turning: Some(turning),
+        ..DeviceProfile::unlimited("example")
+    }
 }
 
 fn with_rod(bodies: Bodies<3>) -> Servo<3> {

@@ -7,6 +7,7 @@ use crate::common::tools::{STIFFNESS, at, box_mesh, on_a_loop, rest, rough, smoo
 use crate::common::{ball, body, cuboid, half_space};
 use palpate_field::{Pose, Rotation, Vector};
 use palpate_haptics::Layer;
+use palpate_haptics::ToolOptions;
 use palpate_haptics::{
     Bodies, Body, EventKind, Material, Shell, Surface, Tool, ToolState, ToolTouch,
 };
@@ -114,7 +115,7 @@ fn what_is_dragged_below_the_hand_turns_it() {
     // A ball 0.1 m below the origin is dragged through what it touches.
     let ends = [Vector([0.0, -0.1, 0.0]); 2];
     let shell = Shell::capsule(ends, 0.01, 2).unwrap();
-    let options = springs().with_angular_stiffness(50.0);
+    let options = ToolOptions { angular_stiffness: Some(50.0), ..springs() };
     let mut tool = Tool::new(shell, options).unwrap();
     let viscous = Material { viscosity: 2.0, ..smooth() };
     let mut bodies = body(&half_space([0.0, 1.0, 0.0], 0.0), Surface::new(&viscous).unwrap());

@@ -33,7 +33,7 @@ fn rod_with(options: ToolOptions) -> Tool<3> {
 }
 
 fn options() -> ToolOptions {
-    ToolOptions::default().with_stiffness(STIFFNESS).with_damping(0.0)
+    ToolOptions { stiffness: STIFFNESS, damping: 0.0, ..ToolOptions::default() }
 }
 
 fn ground(material: Material) -> Bodies<3> {
@@ -53,7 +53,7 @@ fn press(positions: Vec<[f64; 3]>) -> RecordedDevice<3> {
 
 #[test]
 fn a_servo_feels_what_the_tool_alone_feels() {
-    let options = ServoOptions::default().with_max_force(f64::INFINITY);
+    let options = ServoOptions { max_force: f64::INFINITY, ..ServoOptions::default() };
     let mut servo = Servo::with_tool(ground(Material::default()), rod(), options).unwrap();
     let (mut bodies, mut tool) = (ground(Material::default()), rod());
     let mut slips = 0;
@@ -102,7 +102,7 @@ fn the_device_turns_and_scales_the_tool_with_its_axes() {
 
 #[test]
 fn a_coupling_is_made_as_soft_as_the_device_needs() {
-    let device = DeviceProfile::unlimited("example").with_least_damping(0.2);
+    let device = DeviceProfile { least_damping: 0.2, ..DeviceProfile::unlimited("example") };
     let protection = Protection::new(device).with(|s| s.acceptance = Acceptance::Passive);
     let servo = Servo::with_tool(ground(smooth()), rod(), ServoOptions::default()).unwrap();
     let mut servo = servo.protected(&protection).unwrap();
@@ -135,7 +135,7 @@ fn a_coupling_is_made_as_soft_as_the_device_needs() {
 #[test]
 fn a_tool_is_guided_and_limited() {
     let mut servo = Servo::with_tool(ground(smooth()), rod(), ServoOptions::default()).unwrap();
-    let options = GuideOptions::default().with_stiffness(100.0).with_damping(0.0);
+    let options = GuideOptions { stiffness: 100.0, damping: 0.0, ..GuideOptions::default() };
     servo.guide(&[Guide::to_point(Vector([0.0, 0.1, 0.0]), options).unwrap()]);
     let force = servo.step(&[at(0.0, 0.09)])[0].force;
     assert!((force - Vector([0.0, 1.0, 0.0])).norm() < 1e-9, "{force:?}");
@@ -161,8 +161,8 @@ fn hardest(servo: &mut Servo<3>) -> f64 {
 
 #[test]
 fn of_the_force_limits_of_tool_and_servo_the_smaller_holds() {
-    let profile = DeviceProfile::unlimited("example").with_max_force(5.0);
-    let limited = |max_force| rod_with(options().with_max_force(max_force));
+    let profile = DeviceProfile { max_force: 5.0, ..DeviceProfile::unlimited("example") };
+    let limited = |max_force| rod_with(ToolOptions { max_force: Some(max_force), ..options() });
     for (tool, most) in [(limited(1.0), 1.0), (rod(), 5.0), (limited(6.0), 5.0)] {
         let options = ServoOptions::of_device(&profile);
         let bodies = ground(smooth());
@@ -181,9 +181,9 @@ fn of_the_force_limits_of_tool_and_servo_the_smaller_holds() {
 #[test]
 fn a_servo_made_for_a_tool_keeps_the_tools_force_limit_and_its_guides_share_it() {
     let device = press(vec![[0.0, 0.02, 0.0], [0.0, -0.005, 0.0]]);
-    let tool = rod_with(options().with_max_force(0.5));
+    let tool = rod_with(ToolOptions { max_force: Some(0.5), ..options() });
     let mut servo = Servo::for_tool(ground(smooth()), tool, &device).unwrap();
-    let pull = GuideOptions::default().with_stiffness(100.0).with_damping(0.0);
+    let pull = GuideOptions { stiffness: 100.0, damping: 0.0, ..GuideOptions::default() };
     servo.guide(&[Guide::to_point(Vector([0.0, 0.5, 0.0]), pull).unwrap()]).unwrap();
     servo.step(&[at(0.0, 0.02)]);
     assert!((hardest(&mut servo) - 0.5).abs() < 1e-12);
@@ -191,9 +191,10 @@ fn a_servo_made_for_a_tool_keeps_the_tools_force_limit_and_its_guides_share_it()
 
 #[test]
 fn a_tool_takes_the_servos_rate_and_the_longer_rise_time() {
-    let options = ServoOptions::default().with_rate(4000.0).with_rise_time(0.2);
+    let options = ServoOptions { rate: 4000.0, rise_time: 0.2, ..ServoOptions::default() };
     for (own, holds) in [(0.1, 0.2), (0.3, 0.3)] {
-        let tool = rod_with(ToolOptions::default().with_rate(100.0).with_rise_time(own));
+        let tool =
+            rod_with(ToolOptions { rate: 100.0, rise_time: own, ..ToolOptions::default() });
         let servo = Servo::with_tool(ground(smooth()), tool, options).unwrap();
         let tool = servo.tool().unwrap().options();
         assert_eq!((tool.rate, tool.rise_time), (4000.0, holds));
@@ -203,12 +204,15 @@ fn a_tool_takes_the_servos_rate_and_the_longer_rise_time() {
 #[test]
 fn a_force_limit_that_is_no_number_is_refused_with_a_tool_too() {
     let refused = |max_force| {
-        let options = ServoOptions::default().with_max_force(max_force);
+        let options = ServoOptions { max_force, ..ServoOptions::default() };
         Servo::with_tool(ground(smooth()), rod(), options).unwrap_err().to_string()
     };
     assert_eq!(refused(f64::NAN), "max_force must be positive, got NaN N");
     assert_eq!(refused(-1.0), "max_force must be positive, got -1 N");
-    let tool = Tool::new(Shell::<3>::ball(0.01).unwrap(), options().with_max_force(0.0));
+    let tool = Tool::new(
+        Shell::<3>::ball(0.01).unwrap(),
+        ToolOptions { max_force: Some(0.0), ..options() },
+    );
     assert_eq!(tool.unwrap_err().to_string(), "max_force must be positive, got 0 N");
 }
 
@@ -238,7 +242,7 @@ fn a_run_reports_what_the_tool_felt() {
 #[test]
 fn a_tool_with_too_small_a_budget_says_so() {
     let shell = Shell::from_field(&ball(0.02), 600, 0.0).unwrap();
-    let options = ToolOptions::default().with_budget(100);
+    let options = ToolOptions { budget: 100, ..ToolOptions::default() };
     let tool = Tool::new(shell, options).unwrap();
     let servo = Servo::with_tool(ground(smooth()), tool, ServoOptions::default()).unwrap();
     let mut servo = without_limits(servo);

@@ -6,6 +6,7 @@
 use crate::common::tools::{STIFFNESS, at, box_mesh, on_a_loop, rest, rough, springs, turned};
 use crate::common::{ball, body, cuboid, half_space};
 use palpate_field::{Point, Pose, Rotation, Shape, Vector};
+use palpate_haptics::ToolOptions;
 use palpate_haptics::{Bodies, EventKind, Shell, Surface, Tool, ToolState};
 use palpate_mesh::Outline;
 
@@ -24,7 +25,7 @@ fn a_ball_off_its_handle_gives_force_and_torque() {
     // A ball 0.1 m beside the origin would turn the tool: it is held by a stiff wrist alone.
     let ends = [Vector([0.1, 0.0, 0.0]), Vector([0.1, 0.0, 0.0])];
     let shell = Shell::capsule(ends, 0.01, 2).unwrap();
-    let options = springs().with_angular_stiffness(5.0);
+    let options = ToolOptions { angular_stiffness: Some(5.0), ..springs() };
     let mut tool = Tool::new(shell, options).unwrap();
     tool.step(&mut bodies, &at([0.0, 0.05, 0.0]));
     let touch = rest(&mut tool, &mut bodies, &at([0.0, 0.008, 0.0]));
@@ -142,8 +143,8 @@ fn path(size: f64) -> Vec<(Vector<f64, 3>, Vector<f64, 3>, bool)> {
     let mut bodies = body(&shape, surface);
     let edges = [0.03 * size, 0.02 * size, 0.04 * size];
     let shell = Shell::from_mesh(&box_mesh(edges), 300, 0.0005 * size).unwrap();
-    let options = springs().with_stiffness(STIFFNESS / size);
-    let options = options.with_angular_stiffness(0.1 * size);
+    let options = ToolOptions { stiffness: STIFFNESS / size, ..springs() };
+    let options = ToolOptions { angular_stiffness: Some(0.1 * size), ..options };
     let mut tool = Tool::new(shell, options).unwrap();
     let mut felt = Vec::new();
     for tick in 0..400 {
@@ -176,7 +177,7 @@ fn out_of_budget_a_tool_gets_coarser_and_says_so() {
     let ground = half_space([0.0, 1.0, 0.0], 0.0);
     let mut bodies = Bodies::from(ground.clone());
     let shell = Shell::from_mesh(&box_mesh([0.06, 0.04, 0.05]), 1000, 0.001).unwrap();
-    let options = springs().with_budget(50);
+    let options = ToolOptions { budget: 50, ..springs() };
     let mut tool = Tool::new(shell.clone(), options).unwrap();
     let mut degraded = 0;
     for tick in 0..300 {

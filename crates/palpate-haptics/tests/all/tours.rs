@@ -24,7 +24,7 @@ fn toured<const D: usize>(shape: &Shape<D>) -> RunReport {
 
 fn toured_as<const D: usize>(shape: &Shape<D>, material: &Material) -> RunReport {
     let mut device = RecordedDevice::new(vec![tour(shape)]).unwrap();
-    let options = ServoOptions::default().with_max_force(f64::INFINITY);
+    let options = ServoOptions { max_force: f64::INFINITY, ..ServoOptions::default() };
     let body = Body::new(shape.clone(), Surface::new(material).unwrap()).unwrap();
     let bodies = Bodies::new(vec![body]).unwrap();
     let mut servo = without_limits(Servo::new(bodies, 1, options).unwrap());
@@ -161,7 +161,8 @@ fn a_tour_presses_a_tiny_probe_as_deep_as_a_point() {
         let tour = Tour::new(bounds, 5.0).unwrap().with_probe_radius(radius).unwrap();
         let mut device = RecordedDevice::new(vec![tour.over(shape).unwrap()]).unwrap();
         let probe = Probe::new(radius).unwrap();
-        let options = ServoOptions::default().with_max_force(f64::INFINITY).with_probe(probe);
+        let options =
+            ServoOptions { max_force: f64::INFINITY, probe, ..ServoOptions::default() };
         let mut servo = without_limits(Servo::new(shape.clone(), 1, options).unwrap());
         let options = RunOptions::new(5.0).with_pace(Pace::AsFastAsPossible);
         let report = run(&mut servo, &mut device, options).unwrap();

@@ -44,14 +44,16 @@ impl Held {
     fn with(protection: Protection<3>) -> Self {
         let ground = body(&half_space([0.0, 1.0, 0.0], 0.0), Surface::new(&smooth()).unwrap());
         let end = Vector::unit(0) * HALF;
-        let options = ToolOptions::default()
-            .with_stiffness(500.0)
-            .with_angular_stiffness(0.3)
-            .with_damping(0.0)
-            .with_max_force(f64::INFINITY)
-            .with_max_torque(f64::INFINITY);
+        let options = ToolOptions {
+            stiffness: 500.0,
+            angular_stiffness: Some(0.3),
+            damping: 0.0,
+            max_force: Some(f64::INFINITY),
+            max_torque: f64::INFINITY,
+            ..ToolOptions::default()
+        };
         let rod = Tool::new(Shell::capsule([-end, end], 1e-4, 2).unwrap(), options).unwrap();
-        let free = ServoOptions::default().with_max_force(f64::INFINITY);
+        let free = ServoOptions { max_force: f64::INFINITY, ..ServoOptions::default() };
         let servo = Servo::with_tool(ground, rod, free).unwrap();
         let servo = servo.protected(&protection).unwrap();
         let about = servo.accepted().get(1);
@@ -201,9 +203,8 @@ fn no_rotation_within_the_limits_is_held_back() {
     cases::check(300, |u| {
         let max_speed = draw::within(u, 5.0, 200.0)?;
         let max_acceleration = 10.0_f64.powf(draw::within(u, 2.0, 5.0)?);
-        let profile = TurningProfile::unlimited()
-            .with_max_speed(max_speed)
-            .with_max_acceleration(max_acceleration);
+        let profile =
+            TurningProfile { max_speed, max_acceleration, ..TurningProfile::unlimited() };
         let mut readings = TurnReadings::<3>::new(&profile).unwrap();
         let mut swing = Swing {
             orientation: Rotation::identity(),

@@ -33,12 +33,14 @@ const HALF: f64 = 0.05;
 const UNHURRIED: f64 = 1e-3;
 
 fn coupling() -> ToolOptions {
-    ToolOptions::default()
-        .with_stiffness(STIFFNESS)
-        .with_angular_stiffness(ANGULAR)
-        .with_damping(0.0)
-        .with_max_force(f64::INFINITY)
-        .with_max_torque(f64::INFINITY)
+    ToolOptions {
+        stiffness: STIFFNESS,
+        angular_stiffness: Some(ANGULAR),
+        damping: 0.0,
+        max_force: Some(f64::INFINITY),
+        max_torque: f64::INFINITY,
+        ..ToolOptions::default()
+    }
 }
 
 /// A rod along x of two points at its ends, without a radius.
@@ -58,7 +60,7 @@ fn rigid() -> Material {
 }
 
 fn servo<const D: usize>(material: Material, options: ToolOptions) -> Servo<D, Unprotected> {
-    let free = ServoOptions::default().with_max_force(f64::INFINITY);
+    let free = ServoOptions { max_force: f64::INFINITY, ..ServoOptions::default() };
     Servo::with_tool(ground(material), rod(options), free).unwrap()
 }
 
@@ -160,7 +162,7 @@ fn the_workspace_turns_what_turns_and_shortens_arms() {
 
 /// What a device that turns needs to say, and no limits beside.
 fn device(turning: TurningProfile) -> DeviceProfile {
-    DeviceProfile::unlimited("example").with_turning(turning)
+    DeviceProfile { turning: Some(turning), ..DeviceProfile::unlimited("example") }
 }
 
 /// The same servo for a device that it moves from the first tick on.
@@ -182,23 +184,23 @@ fn what_turns_is_accepted_by_the_same_law() {
     };
     let scaled = |turning, options| accept(turning, options, false).unwrap();
     let base = TurningProfile::unlimited();
-    let damped = coupling().with_angular_damping(0.001);
+    let damped = ToolOptions { angular_damping: 0.001, ..coupling() };
     let of_stiffness = |about: &Accepted| (about.stiffness_factor, about.stiffness_rule);
     // 2 b / (κ T) = 0.001 / 0.002, which leaves no damping.
-    let passive = base.clone().with_least_damping(5e-4);
+    let passive = TurningProfile { least_damping: 5e-4, ..base.clone() };
     let (along, about) = scaled(passive.clone(), damped);
     assert_eq!(along, 1.0);
     assert_eq!(of_stiffness(&about), (0.5, Some(Rule::AngularPassivity)));
     assert_eq!(about.damping_rule, Some(Rule::AngularDampingLeft));
     assert_eq!((about.device_stiffness, about.device_damping), (1.0, 0.0));
     // 2 f_c / (Δ κ) = 2 · 1e-3 / (2e-3 · 2)
-    let seen = base.clone().with_friction(1e-3).with_encoder_step(2e-3);
+    let seen = TurningProfile { friction: 1e-3, encoder_step: 2e-3, ..base.clone() };
     let (_, about) = scaled(seen, coupling());
     assert_eq!(of_stiffness(&about), (0.5, Some(Rule::AngularQuantisation)));
-    let soft = base.clone().with_max_stiffness(0.25);
+    let soft = TurningProfile { max_stiffness: 0.25, ..base.clone() };
     let (_, about) = scaled(soft, coupling());
     assert_eq!(of_stiffness(&about), (0.125, Some(Rule::MaxAngularStiffness)));
-    let thin = base.with_max_damping(5e-4);
+    let thin = TurningProfile { max_damping: 5e-4, ..base };
     let (_, about) = scaled(thin, damped);
     assert_eq!(of_stiffness(&about), (1.0, None));
     let of_damping = (about.damping_factor, about.damping_rule);
@@ -215,7 +217,7 @@ fn what_turns_is_accepted_by_the_same_law() {
 #[test]
 fn a_softer_coupling_turns_the_hand_less() {
     // κ T / 2 = 1e-3 [N·m·s/rad].
-    let turning = TurningProfile::unlimited().with_least_damping(2.5e-4);
+    let turning = TurningProfile { least_damping: 2.5e-4, ..TurningProfile::unlimited() };
     let servo = servo::<3>(rigid(), coupling());
     let protection = Protection::new(device(turning)).with(|s| {
         s.acceptance = Acceptance::Passive;
@@ -230,12 +232,14 @@ fn a_softer_coupling_turns_the_hand_less() {
 
 /// Limits that all have to act.
 fn limits() -> TurningProfile {
-    TurningProfile::unlimited()
-        .with_max_torque(0.2)
-        .with_continuous_torque(0.05)
-        .with_max_torque_rate(20.0)
-        .with_inertia(1e-4)
-        .with_least_damping(2e-3)
+    TurningProfile {
+        max_torque: 0.2,
+        continuous_torque: 0.05,
+        max_torque_rate: 20.0,
+        inertia: 1e-4,
+        least_damping: 2e-3,
+        ..TurningProfile::unlimited()
+    }
 }
 
 #[test]
@@ -243,8 +247,11 @@ fn torques_keep_the_limits_of_the_device_in_any_motion() {
     let mut reports = Vec::new();
     cases(20, |u| {
         let servo = servo::<3>(rigid(), coupling());
-        let profile =
-            device(limits()).with_max_force(3.0).with_mass(0.05).with_least_damping(0.5);
+        let profile = DeviceProfile {
+            mass: 0.05,
+            least_damping: 0.5,
+            ..DeviceProfile { max_force: 3.0, ..device(limits()) }
+        };
         let mut servo = servo.protected(&Protection::new(profile)).unwrap();
         let mut draw = || u.int_in_range(-1000..=1000).map(|x| f64::from(x) * 1e-3);
         let (axis, height) = (Vector([draw()?, draw()?, draw()?]), 0.01 * draw()?);
@@ -289,14 +296,14 @@ fn torques_keep_the_limits_of_the_device_in_any_motion() {
 
 #[test]
 fn the_largest_torque_keeps_its_direction() {
-    let turning = TurningProfile::unlimited().with_max_torque(0.125);
+    let turning = TurningProfile { max_torque: 0.125, ..TurningProfile::unlimited() };
     let servo = servo::<3>(rigid(), coupling());
     let protection = Protection::new(device(turning)).with(|s| s.rise_rate = f64::INFINITY);
     let mut servo = servo.protected(&protection).unwrap();
     let (_, torque) = brought(&mut servo, (up(0.1), up(-0.02)), Vector([0.0, 0.0, -0.2]));
     assert!((torque - Vector([0.0, 0.0, 0.125])).norm() < 1e-9, "{torque:?}");
     let planar = self::servo::<2>(rigid(), coupling());
-    let turning = TurningProfile::unlimited().with_max_torque(0.125);
+    let turning = TurningProfile { max_torque: 0.125, ..TurningProfile::unlimited() };
     let mut planar = planar
         .protected(&Protection::new(device(turning)).with(|s| s.rise_rate = f64::INFINITY))
         .unwrap();
@@ -314,8 +321,9 @@ fn the_largest_torque_keeps_its_direction() {
 #[test]
 fn the_energy_of_force_and_torque_is_counted_together() {
     // Turned into the ground, then lifted off it: torque takes what force gives.
-    let turning = TurningProfile::unlimited().with_least_damping(2e-3).with_inertia(1e-3);
-    let profile = device(turning).with_least_damping(0.5).with_mass(0.1);
+    let turning =
+        TurningProfile { least_damping: 2e-3, inertia: 1e-3, ..TurningProfile::unlimited() };
+    let profile = DeviceProfile { least_damping: 0.5, mass: 0.1, ..device(turning) };
     let servo = servo::<3>(rigid(), coupling());
     let protection = Protection::new(profile).with(|s| s.rise_rate = f64::INFINITY);
     let mut servo = servo.protected(&protection).unwrap();
@@ -348,7 +356,7 @@ fn the_energy_of_force_and_torque_is_counted_together() {
 #[test]
 fn dampers_of_bodies_turn_the_hand_no_harder_than_the_device_bears() {
     // 2 N·s/m on 5 cm are 5e-3 N·m·s/rad, and the coupling takes 1e-3 of the device's 2e-3.
-    let turning = TurningProfile::unlimited().with_least_damping(2e-3);
+    let turning = TurningProfile { least_damping: 2e-3, ..TurningProfile::unlimited() };
     let material = Material { damping: 2.0, viscosity: 0.0, ..rigid() };
     let servo = servo::<3>(material, coupling());
     let protection = Protection::new(device(turning)).with(|s| s.rise_rate = f64::INFINITY);
@@ -377,7 +385,7 @@ fn swing() -> HandPath<3> {
 
 #[test]
 fn a_run_turns_the_tool_and_reports_the_torque() {
-    let turning = TurningProfile::unlimited().with_max_torque(0.1);
+    let turning = TurningProfile { max_torque: 0.1, ..TurningProfile::unlimited() };
     let mut device = RecordedDevice::new(vec![resting(0.005)]).unwrap().with_turns(swing());
     device = device.with_profile(self::device(turning));
     let mut servo = for_device(servo::<3>(rigid(), coupling()), &device);
@@ -456,7 +464,11 @@ fn a_device_that_is_lost_or_panics_gets_no_force_and_no_torque_last() {
 
 #[test]
 fn a_device_that_senses_turns_alone_gets_none_of_the_torque() {
-    let turning = TurningProfile::unlimited().with_max_torque(0.0).with_encoder_step(UNHURRIED);
+    let turning = TurningProfile {
+        max_torque: 0.0,
+        encoder_step: UNHURRIED,
+        ..TurningProfile::unlimited()
+    };
     let servo = servo::<3>(rigid(), coupling());
     let protection = Protection::new(device(turning)).with(|s| s.rise_rate = f64::INFINITY);
     let mut servo = servo.protected(&protection).unwrap();
@@ -539,7 +551,7 @@ fn another_thread_limits_and_stops_the_torque() {
 #[test]
 fn a_device_that_no_longer_says_how_it_is_turned_gets_no_torque() {
     let servo = servo::<3>(rigid(), coupling());
-    let profile = device(limits()).with_max_force_rate(50.0);
+    let profile = DeviceProfile { max_force_rate: 50.0, ..device(limits()) };
     let mut servo = servo
         .protected(&Protection::new(profile).with(|s| s.rise_rate = f64::INFINITY))
         .unwrap();

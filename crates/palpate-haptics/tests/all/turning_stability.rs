@@ -25,22 +25,24 @@ const DAMPING: f64 = 1e-3;
 
 /// A device without friction and steps, that moves and turns.
 fn profile() -> DeviceProfile {
-    DeviceProfile::unlimited("smooth")
-        .with_mass(0.05)
-        .with_least_damping(1.0)
-        .with_friction(0.0)
-        .with_turning(
-            TurningProfile::unlimited()
-                .with_inertia(DAMPING * PERIOD / DAMPING_PER_TICK)
-                .with_least_damping(DAMPING)
-                .with_friction(0.0),
-        )
+    DeviceProfile {
+        mass: 0.05,
+        least_damping: 1.0,
+        friction: 0.0,
+        turning: Some(TurningProfile {
+            inertia: DAMPING * PERIOD / DAMPING_PER_TICK,
+            least_damping: DAMPING,
+            friction: 0.0,
+            ..TurningProfile::unlimited()
+        }),
+        ..DeviceProfile::unlimited("smooth")
+    }
 }
 
 fn with_turning(change: impl FnOnce(&mut TurningProfile)) -> DeviceProfile {
     let mut turning = profile().turning.unwrap();
     change(&mut turning);
-    profile().with_turning(turning)
+    DeviceProfile { turning: Some(turning), ..profile() }
 }
 
 /// A hand that lets go of the device: nothing but what is said.
@@ -92,14 +94,16 @@ fn what_turns_in_the_plane_moves_as_what_goes_along_an_axis() {
         samples.map(|x| Vector([x, 0.0])).to_vec(),
         Interpolation::Smooth,
     );
-    let profile = with_turning(|turning| {
-        turning.inertia = 2e-3;
-        turning.least_damping = 3e-3;
-        turning.friction = 0.015;
-    })
-    .with_mass(2e-3)
-    .with_least_damping(3e-3)
-    .with_friction(0.015);
+    let profile = DeviceProfile {
+        mass: 2e-3,
+        least_damping: 3e-3,
+        friction: 0.015,
+        ..with_turning(|turning| {
+            turning.inertia = 2e-3;
+            turning.least_damping = 3e-3;
+            turning.friction = 0.015;
+        })
+    };
     let hand = Hand::new(along.unwrap()).with_turns(path(|x| Vector([0.0, 0.0, x])));
     let hand = hand.with_mass(1e-3).unwrap().with_inertia(1e-3).unwrap();
     let hand = hand.with_spring(2.0, 0.05).unwrap().with_angular_spring(2.0, 0.05).unwrap();
@@ -192,17 +196,23 @@ fn wrong_wrists_are_refused_and_several_hands_turn_nothing() {
 /// A rod along x of two points, 5 cm to each side, on a coupling.
 fn on_ground<const D: usize>(stiffness: f64, angular: f64) -> Servo<D, Unprotected> {
     let end = Vector::unit(0) * 0.05;
-    let options = ToolOptions::default()
-        .with_stiffness(stiffness)
-        .with_angular_stiffness(angular)
-        .with_damping(0.0)
-        .with_max_force(f64::INFINITY)
-        .with_max_torque(f64::INFINITY)
-        .with_rise_time(1e-9);
+    let options = ToolOptions {
+        stiffness,
+        angular_stiffness: Some(angular),
+        damping: 0.0,
+        max_force: Some(f64::INFINITY),
+        max_torque: f64::INFINITY,
+        rise_time: 1e-9,
+        ..ToolOptions::default()
+    };
     let tool = Tool::new(Shell::capsule([-end, end], 1e-4, 2).unwrap(), options).unwrap();
     let wall = Shape::from_kernel(HalfSpace::new(Vector::<f64, D>::unit(1), -1e-4).unwrap());
     let body = Body::new(wall, Surface::smooth(1e6, 0.0).unwrap()).unwrap();
-    let options = ServoOptions::default().with_rate(1.0 / PERIOD).with_max_force(f64::INFINITY);
+    let options = ServoOptions {
+        rate: 1.0 / PERIOD,
+        max_force: f64::INFINITY,
+        ..ServoOptions::default()
+    };
     let mut servo = Servo::with_tool(Bodies::new(vec![body]).unwrap(), tool, options).unwrap();
     servo.step(&[PointState::at_rest(Vector::unit(1) * 0.01)]);
     servo

@@ -291,7 +291,7 @@ fn flights() -> Result<Table, Box<dyn Error>> {
     let mut ours = Row::new("`sweep` (palpate)");
     let mut rows: Vec<Row> =
         PairMethod::ALL.iter().map(|m| Row::new(format!("`{m}`, {SAMPLES} samples"))).collect();
-    let settings = SweepSettings::of_size(1.0).with_gap(1e-5);
+    let settings = SweepSettings { gap: 1e-5, ..SweepSettings::of_size(1.0) };
     let mut workspace = SweepWorkspace::new();
     for (k, [a, b]) in couples(&bodies()?).into_iter().enumerate() {
         for case in 0..FLIGHTS {

@@ -41,7 +41,7 @@ where
         }
         let element = Element::new(vertices).unwrap();
         let (screw, field) = (draw::screw(u, size, 0)?, draw::screw(u, size, 0)?);
-        let settings = SweepSettings::of_size(size).with_budget(20_000);
+        let settings = SweepSettings { budget: 20_000, ..SweepSettings::of_size(size) };
         let moving = Moving::new(shape, field);
         let proven = sweep_element(moving, &element, screw, &settings, &mut workspace).unwrap();
         let gap = 0.5 * settings.gap;

@@ -48,7 +48,6 @@ const NUDGES: [f64; 2] = [1e-4, 1e-2];
 
 /// What a mesh of a shape is asked for.
 #[derive(Clone, Debug, PartialEq)]
-#[non_exhaustive]
 pub struct ContourOptions {
     /// The side of a cell [m]: parts thinner than two may be lost or get holes.
     pub cell: f64,
@@ -66,18 +65,6 @@ impl ContourOptions {
     #[must_use]
     pub const fn with_cell(cell: f64) -> Self {
         Self { cell, node: None, most_cells: 1 << 26, is_single: false }
-    }
-
-    /// The same with a node of the lattice at a place [m].
-    #[must_use]
-    pub const fn with_node(self, node: Point<3>) -> Self {
-        Self { node: Some(node), ..self }
-    }
-
-    /// The same with vertices in single precision, or not.
-    #[must_use]
-    pub const fn with_single_precision(self, is_single: bool) -> Self {
-        Self { is_single, ..self }
     }
 }
 

@@ -108,7 +108,7 @@ fn rounding_to_single_precision_makes_no_faces_touch() {
     let gear = Shape::<2>::polygon([outline]).unwrap().extruded(0.01).unwrap();
     let options = ContourOptions::with_cell(4.4e-4);
     let touching = |is_single| {
-        let options = options.clone().with_single_precision(is_single);
+        let options = ContourOptions { is_single, ..options.clone() };
         let mesh = TriangleMesh::of_shape(&gear, &options).unwrap();
         let (_, findings) = Solid::from_mesh(&mesh.in_format(Format::Stl).unwrap()).unwrap();
         findings.touching + findings.crossings
@@ -226,7 +226,7 @@ fn a_plate_that_is_too_thin_for_its_size_is_told_so() {
 fn faces_that_touch_by_rounding_are_moved_apart_by_little() {
     let cube = Shape::cuboid([1.0; 3]).unwrap();
     let both = cube.clone() | cube.translated([1.0, 1.0, 0.0]).unwrap();
-    let options = ContourOptions::with_cell(1.0).with_single_precision(true);
+    let options = ContourOptions { is_single: true, ..ContourOptions::with_cell(1.0) };
     let mut least = f64::INFINITY;
     let fitted = FittedMesh::by_tolerance(&both, 1e-3, &options, &mut |progress| {
         least = least.min(progress.cell);

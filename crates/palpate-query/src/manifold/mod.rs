@@ -52,7 +52,6 @@ const SHALLOW: f64 = 1e-3;
 
 /// Which contacts a [`manifold`] has.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[non_exhaustive]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ManifoldSettings {
     /// The largest gap of a contact [m]. The deepest contact is kept even if its gap exceeds this: by the
@@ -72,24 +71,6 @@ impl ManifoldSettings {
     #[must_use]
     pub const fn of_size(size: f64) -> Self {
         Self { margin: 0.002 * size, spacing: 0.04 * size, most: 32 }
-    }
-
-    /// The same settings with another margin [m].
-    #[must_use]
-    pub const fn with_margin(self, margin: f64) -> Self {
-        Self { margin, ..self }
-    }
-
-    /// The same settings with another spacing [m].
-    #[must_use]
-    pub const fn with_spacing(self, spacing: f64) -> Self {
-        Self { spacing, ..self }
-    }
-
-    /// The same settings with another number of contacts at most.
-    #[must_use]
-    pub const fn with_most(self, most: usize) -> Self {
-        Self { most, ..self }
     }
 }
 
@@ -178,7 +159,8 @@ pub(crate) fn deepest<const D: usize>(
     margin: f64,
 ) -> Result<(Contact<D>, u32), QueryError> {
     let mut pair = BodyPair::new(a, b)?;
-    let settings = ManifoldSettings::of_size(pair.smaller_size()).with_margin(margin);
+    let settings =
+        ManifoldSettings { margin, ..ManifoldSettings::of_size(pair.smaller_size()) };
     let there = pair.world_from_frame.inverse().transform_point(nearest.point);
     let touch = Touch::at(&mut pair, there);
     let touch = touch.along_surface(&mut pair, &settings).unwrap_or(touch);
@@ -247,7 +229,7 @@ impl<const D: usize> Spanned<D> {
         workspace: &mut PairWorkspace<D>,
     ) -> Self {
         let found = Self::find(separated, settings, budget, workspace);
-        let wider = settings.with_margin(farther * settings.margin);
+        let wider = ManifoldSettings { margin: farther * settings.margin, ..*settings };
         let SeparatedPair { pair, best, .. } = separated;
         let first = Touch::at(pair, *best);
         let Region { mut candidates, mut middles, stop } =
@@ -387,7 +369,7 @@ impl ManifoldSettings {
     /// ```
     /// use palpate_query::ManifoldSettings;
     ///
-    /// let settings = ManifoldSettings::of_size(0.1).with_margin(1e-3);
+    /// let settings = ManifoldSettings { margin: 1e-3, ..ManifoldSettings::of_size(0.1) };
     /// assert_eq!(settings.usual_tolerance(), 5e-4);
     /// ```
     #[must_use]

@@ -171,7 +171,10 @@ impl<const D: usize> Query<D> {
     /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
     /// let ball = Shape::from_kernel(Ball::new(0.5)?);
     /// let beside = ball.clone().translated([1.01, 0.0, 0.0])?;
-    /// let near = Query::new().manifold_with(&ball, &beside, |own| own.with_margin(0.02))?;
+    /// let near = Query::new().manifold_with(&ball, &beside, |own| ManifoldSettings {
+    ///     margin: 0.02,
+    ///     ..own
+    /// })?;
     /// assert!((near.contacts[0].gap - 0.01).abs() < 1e-3);
     /// # Ok(())
     /// # }
@@ -539,8 +542,11 @@ impl<const D: usize> Query<D> {
     /// The settings of a sweep of bodies of these sizes.
     fn sweep_settings(&self, sizes: [Option<f64>; 2]) -> SweepSettings {
         let size = smallest(sizes);
-        let settings = SweepSettings::of_size(size).with_gap(self.tolerance.for_size(size));
-        self.budget.map_or(settings, |budget| settings.with_budget(budget))
+        SweepSettings {
+            gap: self.tolerance.for_size(size),
+            budget: self.budget.unwrap_or(SweepSettings::BUDGET),
+            ..SweepSettings::of_size(size)
+        }
     }
 }
 

@@ -18,11 +18,10 @@ pub(super) const HALVES: u32 = 8;
 /// ```
 /// use palpate_query::SweepSettings;
 ///
-/// let settings = SweepSettings::of_size(0.2).with_time_tolerance(1e-6);
+/// let settings = SweepSettings { time_tolerance: 1e-6, ..SweepSettings::of_size(0.2) };
 /// assert_eq!((settings.gap, settings.time_tolerance), (2e-7, 1e-6));
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[non_exhaustive]
 pub struct SweepSettings {
     /// Bodies whose separation is at most this touch [m]; those more than half of it apart may be called
     /// apart.
@@ -43,24 +42,6 @@ impl SweepSettings {
     #[must_use]
     pub const fn of_size(size: f64) -> Self {
         Self { gap: 1e-6 * size, time_tolerance: 1e-4, budget: Self::BUDGET }
-    }
-
-    /// The same settings with another gap [m].
-    #[must_use]
-    pub const fn with_gap(self, gap: f64) -> Self {
-        Self { gap, ..self }
-    }
-
-    /// The same settings with another tolerance of times.
-    #[must_use]
-    pub const fn with_time_tolerance(self, time_tolerance: f64) -> Self {
-        Self { time_tolerance, ..self }
-    }
-
-    /// The same settings with another budget.
-    #[must_use]
-    pub const fn with_budget(self, budget: u32) -> Self {
-        Self { budget, ..self }
     }
 
     /// A field that is at most this at a point of an element touches it [m].

@@ -78,7 +78,8 @@ fn a_cube_that_slides_and_spins() -> Result<(), ShapeError> {
 #[test]
 fn a_margin_above_the_spacing() -> Result<(), ShapeError> {
     let (cube, [table, _]) = (Shape::<3>::cuboid([1.0; 3])?, grounds()?);
-    let settings = ManifoldSettings::of_size(1.0).with_margin(0.1).with_spacing(0.02);
+    let settings =
+        ManifoldSettings { margin: 0.1, spacing: 0.02, ..ManifoldSettings::of_size(1.0) };
     let mut track = Track::new(table, cube);
     let mut workspace = PairWorkspace::new();
     for step in 0..100 {

@@ -36,7 +36,8 @@ where
         }
         let element = Element::new(vertices).unwrap();
         let moving = field.map_or(Moving::from(shape), |screw| Moving::new(shape, screw));
-        let settings = SweepSettings::of_size(size).with_gap(1e-4 * size).with_budget(500_000);
+        let settings =
+            SweepSettings { gap: 1e-4 * size, budget: 500_000, ..SweepSettings::of_size(size) };
         let answer = sweep_element(moving, &element, screw, &settings, &mut workspace).unwrap();
         let wrong =
             |what: String| Ok(Err(format!("{what}: {answer:?} of {element:?} on {screw:?}")));

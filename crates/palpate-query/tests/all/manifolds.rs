@@ -28,7 +28,7 @@ fn touching<const D: usize>(
 }
 
 fn settings(margin: f64) -> ManifoldSettings {
-    ManifoldSettings::of_size(1.0).with_margin(margin).with_most(64)
+    ManifoldSettings { margin, most: 64, ..ManifoldSettings::of_size(1.0) }
 }
 
 /// What holds of every manifold.
@@ -185,7 +185,7 @@ fn a_cap_keeps_the_deepest_and_the_spread() -> Result<(), ShapeError> {
     let pose = Pose::new(tilt, Vector([0.1, 0.0, 0.499]));
     let all = touching(&large, &small, pose, &settings(2e-3));
     for most in 1..all.contacts.len() {
-        let settings = settings(2e-3).with_most(most);
+        let settings = ManifoldSettings { most, ..settings(2e-3) };
         let some = touching(&large, &small, pose, &settings);
         assert_eq!(some.contacts.len(), most);
         assert_eq!(some.dropped, all.contacts.len() - most);
@@ -236,8 +236,10 @@ fn what_cannot_be_asked_is_refused_and_what_is_apart_has_no_contacts() -> Result
     let ball = Shape::from_kernel(Ball::new(0.3)?);
     let mut workspace = PairWorkspace::new();
     for wrong in [f64::NAN, -1.0, f64::INFINITY] {
-        for settings in [settings(1e-3).with_margin(wrong), settings(1e-3).with_spacing(wrong)]
-        {
+        for settings in [
+            ManifoldSettings { margin: wrong, ..settings(1e-3) },
+            ManifoldSettings { spacing: wrong, ..settings(1e-3) },
+        ] {
             let asked = manifold(&ball, &ball, &settings, &LIMITS, &mut workspace);
             assert!(asked.is_err(), "{settings:?}");
         }
@@ -288,7 +290,8 @@ fn a_ball_in_a_hollow_one_touches_it_all_around() -> Result<(), ShapeError> {
     let cavity = Shape::<3>::from_kernel(Ball::new(0.301)?);
     let hollow = Shape::from_kernel(Ball::new(0.9)?).difference([cavity])?;
     let ball = Shape::from_kernel(Ball::new(0.3)?);
-    let settings = ManifoldSettings::of_size(0.5).with_margin(0.1).with_most(200);
+    let settings =
+        ManifoldSettings { margin: 0.1, most: 200, ..ManifoldSettings::of_size(0.5) };
     let there = Pose::translation(Vector([1e-4, 0.0, 0.0]));
     let found = touching(&hollow, &ball, there, &settings);
     laws(&found, &settings);
@@ -329,7 +332,7 @@ fn a_hexagon_touches_at_all_its_corners() -> Result<(), ShapeError> {
         [0.1 * sin, 0.1, 0.1 * cos]
     });
     for spacing in [0.001, 0.008] {
-        let settings = settings(4e-4).with_spacing(spacing);
+        let settings = ManifoldSettings { spacing, ..settings(4e-4) };
         let pose = Pose::translation(Vector([0.0, 0.15, 0.0]));
         let found = touching(&table, &nut, pose, &settings);
         laws(&found, &settings);
@@ -375,7 +378,8 @@ fn the_normal_of_an_edge_on_a_face_is_that_of_the_face() -> Result<(), ShapeErro
 fn bounds_hold_at_margins_that_are_larger_than_the_gap() -> Result<(), ShapeError> {
     fn hold<const D: usize>(bodies: [&Shape<D>; 2], there: Pose<D>, truth: f64) {
         for margin in [1e-3, 1.1, 1.5, 2.0, 3.0, 10.0] {
-            let settings = ManifoldSettings::of_size(2.0).with_margin(margin * truth);
+            let settings =
+                ManifoldSettings { margin: margin * truth, ..ManifoldSettings::of_size(2.0) };
             let limits = Limits::new(0.5 * settings.margin);
             let there = Placed::new(bodies[1], there);
             let mut workspace = PairWorkspace::new();

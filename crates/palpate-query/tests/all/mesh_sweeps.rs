@@ -53,10 +53,11 @@ fn as_its_first_element<const N: usize, const D: usize>(
         let screw = draw::screw(u, size + 1.0, 0)?;
         let field = if is_carried { Some(draw::screw(u, 0.3 * size, 0)?) } else { None };
         let moving = field.map_or(Moving::from(shape), |screw| Moving::new(shape, screw));
-        let settings = SweepSettings::of_size(size).with_gap(1e-4 * size);
+        let settings = SweepSettings { gap: 1e-4 * size, ..SweepSettings::of_size(size) };
         let all = sweep_mesh(moving, mesh, screw, &settings, &mut workspace).unwrap();
         // Free is more than half of the gap, and a touch is at most the gap.
-        let [nearer, farther] = [0.5, 2.0].map(|share| settings.with_gap(share * settings.gap));
+        let [nearer, farther] =
+            [0.5, 2.0].map(|share| SweepSettings { gap: share * settings.gap, ..settings });
         let (mut lower, mut upper) = (1.0_f64, f64::INFINITY);
         for name in 0..mesh.elements().len() {
             let element = Element::new(mesh.corners(name)).unwrap();

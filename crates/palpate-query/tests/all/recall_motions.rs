@@ -53,7 +53,7 @@ where
     let Some(screw) = motion(row)? else { return Ok(Report::default()) };
     let [a, b] = &pair.bodies;
     let moving = Moving::new(b, screw);
-    let settings = SweepSettings::of_size(1.0).with_gap(GAP).with_budget(BUDGET);
+    let settings = SweepSettings { gap: GAP, budget: BUDGET, ..SweepSettings::of_size(1.0) };
     let found = match sweep(a, moving, &settings, &mut SweepWorkspace::new()) {
         Ok(found) => found,
         Err(error) => {

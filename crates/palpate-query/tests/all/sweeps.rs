@@ -31,7 +31,7 @@ fn moves<'a, const D: usize>(shape: &'a Shape<D>, from: Pose<D>, to: Pose<D>) ->
 }
 
 fn first<const D: usize>(a: Moving<'_, D>, b: Moving<'_, D>) -> FirstTouch<D> {
-    let settings = SweepSettings::of_size(1.0).with_time_tolerance(1e-7);
+    let settings = SweepSettings { time_tolerance: 1e-7, ..SweepSettings::of_size(1.0) };
     sweep(a, b, &settings, &mut SweepWorkspace::new()).unwrap()
 }
 
@@ -131,7 +131,8 @@ fn the_contact_of_a_touch_is_as_deep_as_that_of_a_manifold() {
         let mut workspace = SweepWorkspace::new();
         let touch = sweep(still, moving, &settings, &mut workspace).unwrap();
         let contact = touch.contact.unwrap();
-        let margin = ManifoldSettings::of_size(0.1).with_margin(settings.gap);
+        let margin =
+            ManifoldSettings { margin: settings.gap, ..ManifoldSettings::of_size(0.1) };
         let spanned = manifold(
             still,
             moving.at(touch.upper),
@@ -150,7 +151,7 @@ fn the_contact_of_a_touch_is_as_deep_as_that_of_a_manifold() {
 #[test]
 fn plates_that_slide_closely_past_each_other_advance_in_time() {
     let plate = Shape::<3>::cuboid([1.0, 0.1, 1.0]).unwrap();
-    let settings = SweepSettings::of_size(1.0).with_budget(400_000);
+    let settings = SweepSettings { budget: 400_000, ..SweepSettings::of_size(1.0) };
     let slide = |to: [f64; 3]| {
         let turned = Rotation::identity().turned([0.0, 0.02, 0.0]);
         let to = Pose::new(turned, Vector(to));
@@ -229,9 +230,10 @@ fn bodies_without_bounds_and_settings_that_are_none_are_refused() {
     assert_eq!(two.unwrap_err(), QueryError::Unbounded);
     let settings = SweepSettings::of_size(1.0);
     for wrong in [0.0, -1.0, f64::NAN] {
-        let error = refused((&floor).into(), settings.with_gap(wrong));
+        let error = refused((&floor).into(), SweepSettings { gap: wrong, ..settings });
         assert!(matches!(error, QueryError::Setting { what: "gap", .. }), "{error}");
-        let error = refused((&floor).into(), settings.with_time_tolerance(wrong));
+        let error =
+            refused((&floor).into(), SweepSettings { time_tolerance: wrong, ..settings });
         assert!(matches!(error, QueryError::Setting { what: "time_tolerance", .. }), "{error}");
     }
 }

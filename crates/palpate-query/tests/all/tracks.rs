@@ -239,10 +239,7 @@ where
         }
         let size = draw::size(&a).min(draw::size(&b));
         let limits = Limits::new(0.02 * size).with_budget(5_000);
-        let settings = ManifoldSettings::of_size(size)
-            .with_margin(0.02 * size)
-            .with_spacing(0.15 * size)
-            .with_most(16);
+        let settings = ManifoldSettings { margin: 0.02 * size, spacing: 0.15 * size, most: 16 };
         let mut track = Track::new(a.clone(), b.clone());
         let start = [Pose::identity(), draw::pose(u)?];
         let mut poses = start;

@@ -18,12 +18,14 @@ const PERIOD: f64 = 1e-3;
 
 /// A device with limits that a chain can be made to meet.
 fn device() -> DeviceProfile {
-    DeviceProfile::unlimited("example")
-        .with_max_force(8.0)
-        .with_continuous_force(2.0)
-        .with_max_force_rate(2000.0)
-        .with_mass(0.05)
-        .with_least_damping(0.5)
+    DeviceProfile {
+        max_force: 8.0,
+        continuous_force: 2.0,
+        max_force_rate: 2000.0,
+        mass: 0.05,
+        least_damping: 0.5,
+        ..DeviceProfile::unlimited("example")
+    }
 }
 
 fn at_once(stiffness: f64) -> SafetyOptions {
@@ -99,11 +101,13 @@ struct Outcome {
 impl Wall {
     /// Ten seconds under a push of 1 N.
     fn press(&self) -> Outcome {
-        let device = DeviceProfile::unlimited("wall")
-            .with_mass(self.mass)
-            .with_least_damping(0.5)
-            .with_encoder_step(self.encoder_step)
-            .with_max_force_rate(self.max_force_rate);
+        let device = DeviceProfile {
+            mass: self.mass,
+            least_damping: 0.5,
+            encoder_step: self.encoder_step,
+            max_force_rate: self.max_force_rate,
+            ..DeviceProfile::unlimited("wall")
+        };
         let options =
             at_once(self.stiffness).with(|s| s.has_passivity_control = self.has_control);
         let mut chain = chain::<2>(&device, options);
@@ -214,10 +218,12 @@ fn a_passive_wall_is_never_touched() {
 fn a_material_that_was_accepted_is_never_touched() {
     for (stiffness, damping) in [(500.0, 1.0), (1000.0, 0.2), (3000.0, 0.5), (100.0, 5.0)] {
         for encoder_step in [0.0, 1e-5, 3e-5] {
-            let device = DeviceProfile::unlimited("wall")
-                .with_mass(0.05)
-                .with_least_damping(0.5)
-                .with_encoder_step(encoder_step);
+            let device = DeviceProfile {
+                mass: 0.05,
+                least_damping: 0.5,
+                encoder_step,
+                ..DeviceProfile::unlimited("wall")
+            };
             let wanted = SafetyOptions::new(Impedance::new(stiffness, damping).unwrap());
             let mut chain = chain::<2>(&device, wanted.with(|s| s.rise_rate = f64::INFINITY));
             let impedance = chain.accepted().impedance;
@@ -244,7 +250,8 @@ fn a_material_that_was_accepted_is_never_touched() {
 
 #[test]
 fn a_stiff_wall_still_feels_like_one() {
-    let device = DeviceProfile::unlimited("").with_mass(0.05).with_least_damping(0.5);
+    let device =
+        DeviceProfile { mass: 0.05, least_damping: 0.5, ..DeviceProfile::unlimited("") };
     let mut chain = chain::<2>(&device, at_once(3000.0));
     let mut least = f64::INFINITY;
     for tick in 0..=2000 {
@@ -262,7 +269,8 @@ fn a_stiff_wall_still_feels_like_one() {
 
 #[test]
 fn a_long_rub_does_not_pay_for_an_oscillation() {
-    let device = DeviceProfile::unlimited("").with_mass(0.05).with_least_damping(0.5);
+    let device =
+        DeviceProfile { mass: 0.05, least_damping: 0.5, ..DeviceProfile::unlimited("") };
     let mut chain = chain::<2>(&device, at_once(1000.0));
     // Ten metres against 1 N take 10 J.
     for tick in 0..10_000 {
@@ -283,7 +291,8 @@ fn a_long_rub_does_not_pay_for_an_oscillation() {
 
 #[test]
 fn what_is_placed_inside_a_passive_shape_is_pushed_out_in_full() {
-    let device = DeviceProfile::unlimited("").with_mass(0.05).with_least_damping(0.5);
+    let device =
+        DeviceProfile { mass: 0.05, least_damping: 0.5, ..DeviceProfile::unlimited("") };
     let pushed_out = |is_placed: bool| {
         let mut chain = chain::<2>(&device, at_once(500.0));
         let mut plant = Plant { mass: 0.05, damping: 0.5, x: -0.002, v: 0.0 };
@@ -459,16 +468,16 @@ fn wrong_numbers_are_named() {
     };
     let fine = DeviceProfile::unlimited("fine");
     assert_eq!(
-        refuses(fine.clone().with_max_force(0.0), options),
+        refuses(DeviceProfile { max_force: 0.0, ..fine.clone() }, options),
         "max_force must be positive, got 0 N"
     );
     assert_eq!(
         refuses(fine.clone(), options.with(|s| s.reserve = f64::NAN)),
         "reserve must be zero or more and finite, got NaN J"
     );
-    let weak = fine.clone().with_least_damping(0.1);
+    let weak = DeviceProfile { least_damping: 0.1, ..fine.clone() };
     let strict = options.with(|s| s.is_strict = true);
-    let stated = weak.clone().with_max_stiffness(1000.0);
+    let stated = DeviceProfile { max_stiffness: 1000.0, ..weak.clone() };
     assert!(refuses(stated, strict).ends_with("B ≤ b − K T / 2"));
     assert!(
         refuses(weak, strict.with(|s| s.acceptance = Acceptance::Passive))

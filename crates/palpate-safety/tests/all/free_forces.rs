@@ -15,7 +15,7 @@ const RATE: f64 = 1000.0;
 const GUIDE: f64 = 200.0;
 
 fn device() -> DeviceProfile {
-    DeviceProfile::unlimited("test").with_least_damping(0.5).with_mass(0.2)
+    DeviceProfile { least_damping: 0.5, mass: 0.2, ..DeviceProfile::unlimited("test") }
 }
 
 fn chain(device: &DeviceProfile) -> SafetyChain<2> {
@@ -37,7 +37,7 @@ fn guided(chain: &mut SafetyChain<2>, wall: f64, y: f64) -> f64 {
 /// the limit took, and the guide faded to nothing.
 #[test]
 fn a_guide_at_the_continuous_limit_keeps_it() {
-    let device = device().with_max_force(12.0).with_continuous_force(4.0);
+    let device = DeviceProfile { max_force: 12.0, continuous_force: 4.0, ..device() };
     let mut chain = chain(&device);
     for tick in 0..60_000_u32 {
         let time = f64::from(tick) / RATE;
@@ -51,7 +51,7 @@ fn a_guide_at_the_continuous_limit_keeps_it() {
 /// Likewise beside a wall that takes what the device gives.
 #[test]
 fn a_guide_beside_a_wall_at_the_force_limit_keeps_its_share() {
-    let mut chain = chain(&device().with_max_force(12.0));
+    let mut chain = chain(&DeviceProfile { max_force: 12.0, ..device() });
     for tick in 0..60_000_u32 {
         let time = f64::from(tick) / RATE;
         let y = 0.02 * (0.25 * TAU * time).sin();
@@ -68,7 +68,8 @@ fn a_guide_beside_a_wall_at_the_force_limit_keeps_its_share() {
 /// Once it was one where damping is zero, which made a bound of the losses no number, and a panic.
 #[test]
 fn a_jump_whose_square_overflows_is_no_panic() {
-    let mut chain = chain(&device().with_least_damping(0.0).with_max_stiffness(1000.0));
+    let mut chain =
+        chain(&DeviceProfile { least_damping: 0.0, max_stiffness: 1000.0, ..device() });
     for y in [0.0, 1e200, -1e200, 0.0] {
         let state = PortState {
             position: Vector([0.0, y]),
@@ -84,7 +85,10 @@ fn a_jump_whose_square_overflows_is_no_panic() {
 #[test]
 fn a_guide_at_the_force_limit_is_no_body_after_a_touch() {
     let energy = |touched: f64| {
-        let device = device().with_max_force(3.0).with_max_force_rate(1000.0);
+        let device = DeviceProfile {
+            max_force_rate: 1000.0,
+            ..DeviceProfile { max_force: 3.0, ..device() }
+        };
         let mut chain = chain(&device);
         let mut step = |wanted: [f64; 2], free: [f64; 2], y: f64| {
             let state = PortState {
@@ -105,7 +109,8 @@ fn a_guide_at_the_force_limit_is_no_body_after_a_touch() {
 /// Once each lift waited twice as long as the one before for the rest of a session.
 #[test]
 fn a_guide_comes_back_as_soon_after_many_disturbances() {
-    let mut chain = chain(&device().with_least_damping(0.0).with_max_stiffness(1000.0));
+    let mut chain =
+        chain(&DeviceProfile { least_damping: 0.0, max_stiffness: 1000.0, ..device() });
     let waits: Vec<_> = (0..6)
         .map(|_| {
             // A force that turns with the motion takes it away.

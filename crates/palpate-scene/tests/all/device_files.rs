@@ -22,7 +22,8 @@ fn every_profile_is_read_as_it_was_written() {
 fn grippers_and_buttons_are_kept() {
     let gripper = GripperProfile::new(0.025, 8.0).with_max_force_rate(2000.0);
     let omega = palpate_device::profile_named("omega7").unwrap();
-    let device = omega.with_gripper(gripper).with_buttons(["front", "rear"]);
+    let device =
+        (DeviceProfile { gripper: Some(gripper), ..omega }).with_buttons(["front", "rear"]);
     let text = device_to_json(&device).unwrap();
     assert_eq!(device_from_json(text.as_bytes()).unwrap(), device);
     let wrong = text

@@ -349,10 +349,12 @@ fn a_grid_is_written_as_it_was_baked() {
     let disc = Shape::circle(0.05).unwrap();
     let bakes = [
         GridOptions::with_cell(0.01),
-        GridOptions::with_tolerance(1e-3)
-            .with_kernel(palpate_grid::GridKernel::Trilinear)
-            .with_store(Store::I16)
-            .with_band(8.0),
+        GridOptions {
+            kernel: palpate_grid::GridKernel::Trilinear,
+            store: Store::I16,
+            band: Some(8.0),
+            ..GridOptions::with_tolerance(1e-3)
+        },
     ];
     for options in bakes {
         let grid = Shape::from(Grid::bake(&disc, &options).unwrap());
@@ -363,7 +365,7 @@ fn a_grid_is_written_as_it_was_baked() {
         assert_eq!(read.bodies[0].shape, shape, "{text}");
     }
     // What text cannot make again is refused.
-    let certified = GridOptions::with_cell(0.01).with_certified(2.0);
+    let certified = GridOptions { certified: 2.0, ..GridOptions::with_cell(0.01) };
     let error = WrittenShape::of(&Grid::bake(&disc, &certified).unwrap().into()).unwrap_err();
     assert!(error.to_string().contains("certified to 2 cells"), "{error}");
     let lattice = Lattice { origin: Vector([-1.0; 2]), cell: 0.5, counts: [5, 5] };

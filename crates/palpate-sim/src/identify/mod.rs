@@ -92,7 +92,7 @@ pub struct IdentifyProgress {
 ///
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
 /// let profile = profile_named("omega")?;
-/// let built = profile.clone().with_mass(0.3).with_least_damping(1.2).with_friction(0.15);
+/// let built = DeviceProfile { mass: 0.3, least_damping: 1.2, friction: 0.15, ..profile.clone() };
 /// let free = Hand::free(Vector([0.0, 0.0]))?;
 /// let mut device = SimulatedDevice::new(built, vec![free])?;
 ///

@@ -14,11 +14,10 @@ use palpate_device::{DeviceProfile, NumberError, TurningProfile};
 /// ```
 /// use palpate_sim::IdentifyOptions;
 ///
-/// let options = IdentifyOptions::new(4000.0).with_travel(0.003).with_seed(7);
+/// let options = IdentifyOptions { travel: 0.003, seed: 7, ..IdentifyOptions::new(4000.0) };
 /// assert_eq!((options.rate, options.travel, options.force_part), (4000.0, 0.003, 0.3));
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[non_exhaustive]
 pub struct IdentifyOptions {
     /// Ticks a second [Hz].
     pub rate: f64,
@@ -40,30 +39,6 @@ impl IdentifyOptions {
     #[must_use]
     pub const fn new(rate: f64) -> Self {
         Self { rate, travel: 0.005, angle: 0.15, force_part: 0.3, seed: 0 }
-    }
-
-    /// The same options with another travel [m].
-    #[must_use]
-    pub const fn with_travel(self, travel: f64) -> Self {
-        Self { travel, ..self }
-    }
-
-    /// The same options with another angle [rad].
-    #[must_use]
-    pub const fn with_angle(self, angle: f64) -> Self {
-        Self { angle, ..self }
-    }
-
-    /// The same options with another part of the largest force.
-    #[must_use]
-    pub const fn with_force_part(self, force_part: f64) -> Self {
-        Self { force_part, ..self }
-    }
-
-    /// The same options with another seed.
-    #[must_use]
-    pub const fn with_seed(self, seed: u64) -> Self {
-        Self { seed, ..self }
     }
 
     /// # Errors

@@ -288,26 +288,28 @@ impl Identified {
         let mut found = profile.clone();
         if let Some(worst) = self.worst(|axis| matches!(axis, DeviceAxis::Along(_))) {
             let seen = worst.seen(&ALONG, profile.encoder_step);
-            found = found
-                .with_mass(worst.beside(worst.mass, profile.mass))
-                .with_least_damping(worst.beside(worst.damping, profile.least_damping))
-                .with_friction(worst.friction_beside(profile.friction))
-                .with_encoder_step(worst.step_beside(profile.encoder_step))
-                .with_assumed(assumed(&profile.assumed, &ALONG, &seen))
-                .with_source(both(source, &seen, &profile.source));
+            found = DeviceProfile {
+                mass: worst.beside(worst.mass, profile.mass),
+                least_damping: worst.beside(worst.damping, profile.least_damping),
+                friction: worst.friction_beside(profile.friction),
+                encoder_step: worst.step_beside(profile.encoder_step),
+                assumed: assumed(&profile.assumed, &ALONG, &seen).into(),
+                source: both(source, &seen, &profile.source).into(),
+                ..found
+            };
         }
         let about = self.worst(|axis| matches!(axis, DeviceAxis::About(_)));
         if let (Some(worst), Some(turning)) = (about, &profile.turning) {
             let seen = worst.seen(&ABOUT, turning.encoder_step);
-            let turning: TurningProfile = turning
-                .clone()
-                .with_inertia(worst.beside(worst.mass, turning.inertia))
-                .with_least_damping(worst.beside(worst.damping, turning.least_damping))
-                .with_friction(worst.friction_beside(turning.friction))
-                .with_encoder_step(worst.step_beside(turning.encoder_step))
-                .with_assumed(assumed(&turning.assumed, &ABOUT, &seen))
-                .with_source(both(source, &seen, &turning.source));
-            found = found.with_turning(turning);
+            found.turning = Some(TurningProfile {
+                inertia: worst.beside(worst.mass, turning.inertia),
+                least_damping: worst.beside(worst.damping, turning.least_damping),
+                friction: worst.friction_beside(turning.friction),
+                encoder_step: worst.step_beside(turning.encoder_step),
+                assumed: assumed(&turning.assumed, &ABOUT, &seen).into(),
+                source: both(source, &seen, &turning.source).into(),
+                ..turning.clone()
+            });
         }
         found
     }

@@ -6,7 +6,8 @@
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use palpate_device::{
-    Device, DeviceLost, DeviceProfile, PROFILES, PointState, Reading, TurnState, profile_named,
+    Device, DeviceLost, DeviceProfile, PROFILES, PointState, Reading, TurnState,
+    TurningProfile, profile_named,
 };
 use palpate_field::Vector;
 use palpate_sim::{
@@ -42,23 +43,27 @@ type Factors = [f64; 4];
 
 /// `profile` with other numbers, along and about its axes.
 fn scaled(profile: &DeviceProfile, [mass, damping, friction, step]: Factors) -> DeviceProfile {
-    let plant = profile
-        .clone()
-        .with_mass(profile.mass * mass)
-        .with_least_damping(profile.least_damping * damping)
-        .with_friction(profile.friction * friction)
-        .with_encoder_step(profile.encoder_step * step);
+    let plant = DeviceProfile {
+        mass: profile.mass * mass,
+        least_damping: profile.least_damping * damping,
+        friction: profile.friction * friction,
+        encoder_step: profile.encoder_step * step,
+        ..profile.clone()
+    };
     let Some(turning) = profile.turning.clone() else { return plant };
     let (inertia, least, coulomb) =
         (turning.inertia * mass, turning.least_damping * damping, turning.friction * friction);
     let encoder = turning.encoder_step * step;
-    plant.with_turning(
-        turning
-            .with_inertia(inertia)
-            .with_least_damping(least)
-            .with_friction(coulomb)
-            .with_encoder_step(encoder),
-    )
+    DeviceProfile {
+        turning: Some(TurningProfile {
+            inertia,
+            least_damping: least,
+            friction: coulomb,
+            encoder_step: encoder,
+            ..turning
+        }),
+        ..plant
+    }
 }
 
 /// Mass, damping, friction and encoder step of an axis of a profile.
@@ -209,7 +214,7 @@ fn every_profile_is_found_at_two_rates() {
     let (mut count, mut not_seen) = (0, 0);
     for (seed, (name, profile)) in (0..).zip(&PROFILES) {
         for rate in [1000.0, 4000.0] {
-            let options = IdentifyOptions::new(rate).with_seed(seed);
+            let options = IdentifyOptions { seed, ..IdentifyOptions::new(rate) };
             let (numbers, unseen) = found(profile, options, name);
             (count, not_seen) = (count + numbers, not_seen + unseen);
         }
@@ -239,7 +244,7 @@ fn devices_that_differ_from_their_profiles_are_found() {
         let factors = [MASSES[next(2)], DAMPINGS[next(3)], FRICTIONS[next(3)], STEPS[next(2)]];
         let (name, profile) = &PROFILES[next(16)];
         let name = format!("{name} × {factors:?} at {rate} Hz, seed {seed}");
-        let options = IdentifyOptions::new(rate).with_seed(seed as u64);
+        let options = IdentifyOptions { seed: seed as u64, ..IdentifyOptions::new(rate) };
         let (_, not_seen) = found(&scaled(profile, factors), options, &name);
         // A damping that is small beside friction or mass hides behind encoder steps, coarse ones
         // hide more.
@@ -271,7 +276,7 @@ fn six_axes_of_a_device_in_space_are_found() {
         let profile = profile_named(name).unwrap();
         let hand = Hand::free(Vector::ZERO).unwrap();
         let mut device = SimulatedDevice::<3>::new(profile.clone(), vec![hand]).unwrap();
-        let options = IdentifyOptions::new(1000.0).with_seed(seed);
+        let options = IdentifyOptions { seed, ..IdentifyOptions::new(1000.0) };
         for axis in &identify(&mut device, options).unwrap().axes {
             let [mass, damping, ..] = truth(&profile, axis.axis);
             for (found, truth) in [(axis.mass, mass), (axis.damping, damping)] {
@@ -325,7 +330,8 @@ fn a_friction_that_may_be_zero_stays_that_of_the_profile_within_its_error() {
     let mut found = identify(&mut free(profile.clone()), IdentifyOptions::new(1000.0)).unwrap();
     found.axes[1].friction = Estimate { value: 0.2, error: 0.3 };
     let friction = |stated: f64| {
-        let better = found.profile(&profile.clone().with_friction(stated), "strokes");
+        let better =
+            found.profile(&DeviceProfile { friction: stated, ..profile.clone() }, "strokes");
         assert!(better.assumed.contains(&"friction"), "{better:?}");
         better.friction
     };
@@ -338,7 +344,8 @@ fn a_friction_that_may_be_zero_stays_that_of_the_profile_within_its_error() {
     // A friction that is known to a half is the least of it, however it compares with the profile's.
     found.axes[1].friction = Estimate { value: 0.05, error: 0.01 };
     for stated in [0.0, 0.01, 1.0] {
-        let better = found.profile(&profile.clone().with_friction(stated), "strokes");
+        let better =
+            found.profile(&DeviceProfile { friction: stated, ..profile.clone() }, "strokes");
         assert!((better.friction / 0.04 - 1.0).abs() <= 5e-5, "{stated}");
     }
 }
@@ -495,7 +502,7 @@ fn uneven_ticks_are_known_by_their_times() {
 #[test]
 fn the_same_seed_gives_the_same_bits_and_another_other_strokes() {
     let run = |seed| {
-        let options = IdentifyOptions::new(1000.0).with_seed(seed);
+        let options = IdentifyOptions { seed, ..IdentifyOptions::new(1000.0) };
         identify(&mut free(profile_named("desktop").unwrap()), options).unwrap()
     };
     assert_eq!(run(1), run(1));
@@ -504,7 +511,7 @@ fn the_same_seed_gives_the_same_bits_and_another_other_strokes() {
 
 #[test]
 fn an_encoder_without_steps_is_said_to_have_none() {
-    let profile = profile_named("omega").unwrap().with_encoder_step(0.0);
+    let profile = DeviceProfile { encoder_step: 0.0, ..profile_named("omega").unwrap() };
     let found = identify(&mut free(profile.clone()), IdentifyOptions::new(1000.0)).unwrap();
     let axis = &found.axes[0];
     assert_eq!(axis.encoder_step, EncoderStep::Unseen(1e-5 * 0.005));
@@ -542,7 +549,7 @@ impl Device<2> for Jointed {
 
 #[test]
 fn steps_of_a_joint_are_uneven_and_the_largest_counts() {
-    let profile = profile_named("omega").unwrap().with_encoder_step(0.0);
+    let profile = DeviceProfile { encoder_step: 0.0, ..profile_named("omega").unwrap() };
     let found = identify(&mut Jointed(free(profile.clone())), IdentifyOptions::new(1000.0));
     let found = found.unwrap();
     let EncoderStep::Uneven(step) = found.axes[0].encoder_step else {
@@ -568,17 +575,23 @@ fn wrong_options_and_devices_without_force_are_refused() {
     let omega = || profile_named("omega").unwrap();
     let options = IdentifyOptions::new(1000.0);
     for (options, said) in [
-        (options.with_travel(0.0), "travel must be positive and finite, got 0 m"),
+        (
+            IdentifyOptions { travel: 0.0, ..options },
+            "travel must be positive and finite, got 0 m",
+        ),
         (
             // A handle was moved by 50 mm in a workspace of 40 mm.
-            options.with_travel(1.0),
+            IdentifyOptions { travel: 1.0, ..options },
             "travel must be at most the radius of the device's workspace, 0.075 m, got 1 m",
         ),
         (
-            options.with_angle(2.0),
+            IdentifyOptions { angle: 2.0, ..options },
             "angle must be at most 1, where rotation vectors add, got 2 rad",
         ),
-        (options.with_force_part(1.5), "force_part must be more than 0 and at most 1, got 1.5"),
+        (
+            IdentifyOptions { force_part: 1.5, ..options },
+            "force_part must be more than 0 and at most 1, got 1.5",
+        ),
         (
             IdentifyOptions::new(100.0),
             "rate must be at least 500, so that strokes of some milliseconds are seen, got 100 Hz",
@@ -586,10 +599,10 @@ fn wrong_options_and_devices_without_force_are_refused() {
     ] {
         assert_eq!(refusal(omega(), options), said);
     }
-    let said = refusal(omega().with_max_force(0.0), options);
+    let said = refusal(DeviceProfile { max_force: 0.0, ..omega() }, options);
     let no_force = "the device \"Force Dimension omega\" gives no forces, so nothing moves it \
                     but a hand";
     assert_eq!(said, no_force);
-    let said = refusal(omega().with_max_force(f64::INFINITY), options);
+    let said = refusal(DeviceProfile { max_force: f64::INFINITY, ..omega() }, options);
     assert_eq!(said, "max_force must be positive and finite, got inf N");
 }

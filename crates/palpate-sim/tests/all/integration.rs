@@ -34,10 +34,12 @@ fn force(tick: usize) -> f64 {
 
 /// The device of a case in the plane, at rest along y.
 fn device(case: &Case) -> SimulatedDevice<2> {
-    let profile = DeviceProfile::unlimited("case")
-        .with_mass(case.mass)
-        .with_least_damping(case.damping)
-        .with_friction(case.friction);
+    let profile = DeviceProfile {
+        mass: case.mass,
+        least_damping: case.damping,
+        friction: case.friction,
+        ..DeviceProfile::unlimited("case")
+    };
     let times = (0..=TICKS).map(|tick| tick as f64 * TICK).collect();
     let places = (0..=TICKS).map(|tick| Vector([target(tick), 0.0])).collect();
     let path = HandPath::new(times, places, Interpolation::Linear).unwrap();
@@ -212,10 +214,12 @@ fn energies_balance_to_twelve_digits() {
 #[test]
 fn a_sliding_mass_stops_where_friction_has_taken_its_energy() {
     // 1 N on 0.5 kg for 0.1 s against 0.5 N: 0.1 m/s after 5 mm; then 0.5 N stops it in 5 mm.
-    let profile = DeviceProfile::unlimited("slider")
-        .with_mass(0.5)
-        .with_least_damping(0.0)
-        .with_friction(0.5);
+    let profile = DeviceProfile {
+        mass: 0.5,
+        least_damping: 0.0,
+        friction: 0.5,
+        ..DeviceProfile::unlimited("slider")
+    };
     let hand = Hand::resting(Vector([0.0, 0.0])).unwrap().with_mass(0.0).unwrap();
     let hand = hand.with_spring(0.0, 0.0).unwrap();
     let mut device = SimulatedDevice::new(profile, vec![hand]).unwrap();

@@ -137,14 +137,18 @@ impl Actuator {
     pub fn options(&self, base: MappingOptions) -> MappingOptions {
         match self.mechanism {
             Mechanism::RotatingMass { .. } => base,
-            Mechanism::Resonant { .. } => {
-                base.with_lowest_frequency(base.lowest_frequency.min(SLOWEST_CRESTS))
-            }
+            Mechanism::Resonant { .. } => MappingOptions {
+                lowest_frequency: base.lowest_frequency.min(SLOWEST_CRESTS),
+                ..base
+            },
             Mechanism::VoiceCoil { lowest, highest } => {
                 let within = |frequency: f64| frequency.max(lowest).min(highest);
-                base.with_lowest_frequency(within(base.lowest_frequency))
-                    .with_highest_frequency(within(base.highest_frequency))
-                    .with_hold_frequency(within(base.hold_frequency))
+                MappingOptions {
+                    lowest_frequency: within(base.lowest_frequency),
+                    highest_frequency: within(base.highest_frequency),
+                    hold_frequency: within(base.hold_frequency),
+                    ..base
+                }
             }
         }
     }

@@ -34,7 +34,7 @@ fn chai3d() -> Outcome {
     let bodies = Bodies::new(vec![Body::new(plate, Material::wood())?])?;
     let profile = device.profile().clone();
     let _ = Proxy::<3>::new(Probe::default());
-    let _ = ServoOptions::default().with_probe(Probe::new(0.002)?);
+    let _ = ServoOptions { probe: Probe::new(0.002)?, ..ServoOptions::default() };
     let _ = Material { stiffness: 800.0, static_friction: 0.5, ..Material::wood() };
     let _ = (Material::magnet(), Material::sandpaper());
     let mut protection = Protection::<3>::new(profile.clone());
@@ -79,7 +79,7 @@ fn openhaptics() -> Outcome {
     assert!(servo.accepted()[0].stiffness_factor <= 1.0);
     assert_eq!(servo.safety().len(), 1);
     let _ = WorkspaceMap::fitting(bounds, profile.workspace_radius)?;
-    let _ = GuideOptions::default().with_snap_distance(0.01);
+    let _ = GuideOptions { snap_distance: 0.01, ..GuideOptions::default() };
     let _ = Guide::to_point([0.0; 3], GuideOptions::default())?;
     assert!(servo.events().is_empty());
     let _ = servo.buttons();
@@ -97,7 +97,7 @@ fn haply() -> Outcome {
         device::{DeviceProfile, MailboxDevice, PointState},
         safety::WorkspaceMap,
     };
-    let profile = DeviceProfile::unlimited("my stylus").with_max_force(3.0);
+    let profile = DeviceProfile { max_force: 3.0, ..DeviceProfile::unlimited("my stylus") };
     let (mut device, mut mailbox) = MailboxDevice::new(profile, 1)?;
     mailbox.set(&[PointState::at_rest([0.0, 0.049, 0.0])])?;
     let _ = WorkspaceMap::new(Pose::translation([0.0, 0.1, 0.0]), 2.0)?;
@@ -121,7 +121,7 @@ fn parry_and_rapier() -> Outcome {
     let mut query = Query::new();
     assert!(query.separation(a, b)?.lower < 0.0);
     assert_eq!(query.overlap(a, b)?.is_hit(), Some(true));
-    let _ = ManifoldSettings::of_size(0.1).with_margin(0.001);
+    let _ = ManifoldSettings { margin: 0.001, ..ManifoldSettings::of_size(0.1) };
     let contact = query.manifold(a, b)?.contacts[0];
     assert_eq!(contact.id, 0);
     let (shape, ray) = (ball.clone(), Ray::new([0.0, 1.0, 0.0], [0.0, -1.0, 0.0], 2.0)?);
@@ -177,7 +177,7 @@ fn mujoco() -> Outcome {
     assert_eq!(answer.stop, Stop::Converged);
     let contact = answer.best.contact(&a, &b).ok_or_else(none)?;
     assert!(contact.normal[1] > 0.9);
-    let _ = ManifoldSettings::of_size(0.1).with_margin(0.001);
+    let _ = ManifoldSettings { margin: 0.001, ..ManifoldSettings::of_size(0.1) };
     Ok(())
 }
 

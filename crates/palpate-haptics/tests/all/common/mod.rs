@@ -72,14 +72,16 @@ pub(crate) fn scaled<const D: usize>(
 
 /// The same servo behind a device that sees steps, with a safety chain.
 pub(crate) fn protected<const D: usize>(servo: Servo<D, Unprotected>) -> Servo<D> {
-    let profile = DeviceProfile::unlimited("protected")
-        .with_max_force(4.0)
-        .with_continuous_force(1.5)
-        .with_max_force_rate(2000.0)
-        .with_mass(0.05)
-        .with_least_damping(0.3)
-        .with_friction(0.1)
-        .with_encoder_step(1e-5);
+    let profile = DeviceProfile {
+        max_force: 4.0,
+        continuous_force: 1.5,
+        max_force_rate: 2000.0,
+        mass: 0.05,
+        least_damping: 0.3,
+        friction: 0.1,
+        encoder_step: 1e-5,
+        ..DeviceProfile::unlimited("protected")
+    };
     servo.protected(&Protection::new(profile)).unwrap()
 }
 

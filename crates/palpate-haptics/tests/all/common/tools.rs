@@ -16,11 +16,13 @@ pub(crate) const STIFFNESS: f64 = 500.0;
 
 /// Springs alone, without limits.
 pub(crate) fn springs() -> ToolOptions {
-    ToolOptions::default()
-        .with_stiffness(STIFFNESS)
-        .with_damping(0.0)
-        .with_max_force(f64::INFINITY)
-        .with_max_torque(f64::INFINITY)
+    ToolOptions {
+        stiffness: STIFFNESS,
+        damping: 0.0,
+        max_force: Some(f64::INFINITY),
+        max_torque: f64::INFINITY,
+        ..ToolOptions::default()
+    }
 }
 
 /// A box of full edge lengths as a mesh.
@@ -83,5 +85,8 @@ pub(crate) fn rough(shape: &Shape<3>) -> (Bodies<3>, Tool<3>) {
     };
     let bodies = body(shape, Surface::new(&material).unwrap());
     let shell = Shell::from_mesh(&box_mesh([0.06, 0.04, 0.05]), 600, 0.0).unwrap();
-    (bodies, Tool::new(shell, springs().with_angular_stiffness(5.0)).unwrap())
+    (
+        bodies,
+        Tool::new(shell, ToolOptions { angular_stiffness: Some(5.0), ..springs() }).unwrap(),
+    )
 }

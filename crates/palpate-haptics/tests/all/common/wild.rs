@@ -122,16 +122,20 @@ pub(crate) fn servo<const D: usize>(
     points: usize,
     scale: f64,
 ) -> Servo<D, Unprotected> {
-    let options = ServoOptions::default()
-        .with_rate(RATE)
-        .with_probe(Probe::new(0.002 * scale).unwrap())
-        .with_max_force(5.0 * scale);
+    let options = ServoOptions {
+        rate: RATE,
+        probe: Probe::new(0.002 * scale).unwrap(),
+        max_force: 5.0 * scale,
+        ..ServoOptions::default()
+    };
     let mut servo = Servo::new(bodies(count, scale), points, options).unwrap();
-    let options = GuideOptions::default()
-        .with_stiffness(50.0)
-        .with_max_force(0.2 * scale)
-        .with_snap_distance(0.03 * scale)
-        .with_release_distance(0.04 * scale);
+    let options = GuideOptions {
+        stiffness: 50.0,
+        max_force: 0.2 * scale,
+        snap_distance: 0.03 * scale,
+        release_distance: Some(0.04 * scale),
+        ..GuideOptions::default()
+    };
     servo.guide(&[Guide::to_point(Vector::ZERO, options).unwrap()]);
     servo
 }

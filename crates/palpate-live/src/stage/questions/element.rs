@@ -161,7 +161,8 @@ pub(super) fn swept<const N: usize, const D: usize>(
     // What is large and far away makes no gap near what moves.
     let moved = Aabb::around(element.vertices().iter().flat_map(|p| [*p, *p + by]));
     let reach = moved.map_or(0.0, |moved| 2.0 * moved.half_extents().norm());
-    let settings = SweepSettings::of_size(size(scene).min(reach)).with_budget(BUDGET);
+    let settings =
+        SweepSettings { budget: BUDGET, ..SweepSettings::of_size(size(scene).min(reach)) };
     let begin = Instant::now();
     let mut workspace = ElementSweep::new();
     let found = sweep_element(&scene.whole, &element, motion, &settings, &mut workspace)

@@ -109,7 +109,8 @@ fn devices_are_opened_watched_enabled_and_closed() {
 #[test]
 fn a_torque_without_a_limit_is_refused_before_the_device_is_opened() {
     let mut device = counted(true);
-    device.profile = device.profile.with_turning(TurningProfile::unlimited());
+    device.profile =
+        DeviceProfile { turning: Some(TurningProfile::unlimited()), ..device.profile };
     let refused = identify(&mut device, IdentifyOptions::new(1000.0)).unwrap_err();
     assert_eq!(refused.to_string(), "max_torque must be positive and finite, got inf N·m");
     assert_eq!((device.calls.len(), device.torques), (0, 0));

@@ -3,6 +3,7 @@
 
 //! Devices that the model fits badly, and one without friction.
 
+use palpate_device::DeviceProfile;
 use palpate_device::profile_named;
 use palpate_sim::{Hand, IdentifyOptions, SimulatedDevice};
 
@@ -16,7 +17,7 @@ fn a_hand_too_soft_to_be_noticed_leaves_no_number_that_is_seen() {
         let hand = Hand::free(START).unwrap().with_mass(0.1).unwrap();
         let hand = hand.with_spring(3.9, 5.0).unwrap();
         let mut device = SimulatedDevice::new(profile.clone(), vec![hand]).unwrap();
-        let options = IdentifyOptions::new(1000.0).with_seed(seed);
+        let options = IdentifyOptions { seed, ..IdentifyOptions::new(1000.0) };
         let found = identify(&mut device, options).unwrap();
         for axis in &found.axes {
             assert!(axis.damping.is_seen() && !axis.is_fitted() && !axis.is_seen(), "{axis:?}");
@@ -31,7 +32,7 @@ fn a_hand_too_soft_to_be_noticed_leaves_no_number_that_is_seen() {
             (better.mass, better.least_damping, better.friction),
             (profile.mass, profile.least_damping, profile.friction.min(better.friction))
         );
-        let soft = profile.clone().with_least_damping(99.0);
+        let soft = DeviceProfile { least_damping: 99.0, ..profile.clone() };
         assert!(found.profile(&soft, "strokes").least_damping < 10.0);
     }
 }
@@ -41,8 +42,8 @@ fn a_hand_too_soft_to_be_noticed_leaves_no_number_that_is_seen() {
 #[test]
 #[ignore = "slow: cargo xtask test --thorough"]
 fn a_device_without_friction_is_identified() {
-    let profile = profile_named("omega").unwrap().with_friction(0.0);
-    let options = IdentifyOptions::new(1000.0).with_seed(1);
+    let profile = DeviceProfile { friction: 0.0, ..profile_named("omega").unwrap() };
+    let options = IdentifyOptions { seed: 1, ..IdentifyOptions::new(1000.0) };
     let found = identify(&mut free(profile.clone()), options).unwrap();
     for axis in &found.axes {
         // A friction of zero is never known to a part of it.
