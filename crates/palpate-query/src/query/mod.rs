@@ -166,7 +166,7 @@ impl<const D: usize> Query<D> {
     ///
     /// ```
     /// use palpate_field::{Shape, kernel::Ball};
-    /// use palpate_query::Query;
+    /// use palpate_query::{ManifoldSettings, Query};
     ///
     /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
     /// let ball = Shape::from_kernel(Ball::new(0.5)?);
