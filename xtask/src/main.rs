@@ -99,7 +99,7 @@ fn test(is_thorough: bool) -> Result<(), Failure> {
     let tools = page::prepare()?;
     let tools = tools.to_string_lossy();
     let mut environment = vec![(page::VARIABLE, &*tools)];
-    let mut arguments = vec!["test", "--workspace", "--locked"];
+    let mut arguments = vec!["test", "--workspace", "--locked", "--no-fail-fast"];
     if is_thorough {
         environment.push(("PALPATE_SEEDS", "1"));
         arguments.extend(["--", "--include-ignored"]);
