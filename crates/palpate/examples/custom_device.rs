@@ -34,9 +34,7 @@ impl Device<2> for Carriage {
     }
 
     fn write(&mut self, forces: &[Vector<f64, 2>]) -> Result<(), DeviceLost> {
-        for force in forces {
-            self.volts = [0.5 * force[0], 0.5 * force[1]];
-        }
+        self.volts = [0.5 * forces[0][0], 0.5 * forces[0][1]];
         Ok(())
     }
 }
