@@ -76,7 +76,8 @@ fn features(which: &[&str]) -> Result<String, Failure> {
     output(tree.args(which))
 }
 
-/// What of a wheel's crates the tests have with other features; crates that `own` lacks are few, and cheap.
+/// Lists crates that the wheel and the tests build with different features. Crates outside `own` are
+/// ignored: they are few and cheap to build.
 fn differing(wheel: &str, tests: &str, own: &str) -> Vec<String> {
     let named = |line: &str| line.split(" |").next().unwrap_or_default().to_owned();
     let own: BTreeSet<String> = crates(own).into_iter().map(named).collect();

@@ -21,7 +21,7 @@ thread_local! {
     /// How deep this thread is in functions that ask shapes of functions.
     static DEPTH: Cell<u32> = const { Cell::new(0) };
 
-    /// That of the pool of which this thread is one, if it works for no other.
+    /// The pool that owns this worker thread; used when the thread runs no other call.
     static OF_POOL: RefCell<Option<Arc<Shared>>> = const { RefCell::new(None) };
 }
 

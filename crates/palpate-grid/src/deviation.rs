@@ -113,8 +113,8 @@ impl<const D: usize> Cells<'_, D> {
     /// How far the interpolated values may be from the source's [m].
     ///
     /// Cells are halved where their bound is largest and more than [`enough`](Cells::enough), until none that can be
-    /// halved has a larger bound than one that cannot. A part's bound is at most that of what it is a half of: so the result does not depend on which is
-    /// halved first. `step` is called for each brick with such cells.
+    /// halved has a larger bound than one that cannot. Bounds never grow when a cell is split, so the result does not
+    /// depend on the order of splitting. `step` is called for each brick with such cells.
     pub(crate) fn deviation<const K: usize>(
         &self,
         samples: &Samples<D>,

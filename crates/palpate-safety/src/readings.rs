@@ -358,7 +358,8 @@ mod tests {
         }
     }
 
-    /// Once two readings at one time made the velocity no number, and nothing counted again.
+    /// Regression: two readings with the same timestamp made the velocity NaN, and every later reading was
+    /// rejected.
     #[test]
     fn readings_at_one_time_leave_the_velocity_as_it_was() {
         let mut readings = readings();

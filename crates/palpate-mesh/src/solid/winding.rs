@@ -196,7 +196,7 @@ impl<const N: usize, const D: usize> Wide for Sum<'_, N, D> {
     }
 }
 
-/// Groups that wait at most: seven of each level, of which eleven hold all elements that 32 bits can number, and one.
+/// Stack depth: 11 levels, enough for 2^32 elements, with 7 siblings each, plus 1.
 const MOST_WAITING: usize = 7 * 11 + 1;
 
 /// The winding number of at most eight elements: the unit complex numbers of their angles are multiplied, and whole

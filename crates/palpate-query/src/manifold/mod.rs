@@ -83,9 +83,10 @@ pub struct Manifold<const D: usize> {
     pub contacts: Vec<Contact<D>>,
     /// The number of contacts in each group. A group is one patch with like normals.
     pub groups: Vec<usize>,
-    /// The separation and where it is found: at the deepest contact, unless the separation exceeds the
-    /// margin, or that contact was moved to an edge or has its normal from a thicker body or from history.
-    /// Its evaluations are those of both searches; steps to points of surfaces are not counted.
+    /// The separation. Its point is the deepest contact, except when (a) the separation exceeds the
+    /// margin, (b) the contact was moved to an edge, or (c) [`normal_from`](Contact::normal_from) is not
+    /// the gradients. Its evaluations are those of both searches; steps to points of surfaces do not
+    /// count.
     pub separation: Certified<Nearest<D>>,
     /// The distance of the bodies is at most this [m]: zero if they overlap, the separation where both
     /// fields are exact outside, else that of two points found in the bodies. Infinite where none of

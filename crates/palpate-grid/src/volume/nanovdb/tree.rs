@@ -98,7 +98,7 @@ impl Kind {
         matches!(self, Self::Double)
     }
 
-    /// The root's bytes before its list; the value of what it does not list; in an entry, the value.
+    /// Byte offsets in the root: of the tile list, of the background value, of the value within a tile.
     const fn root(self) -> [usize; 3] {
         if self.is_double() { [96, 32, 24] } else { [64, 28, 20] }
     }
