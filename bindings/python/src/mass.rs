@@ -34,9 +34,11 @@ impl PyShape {
         tolerance: Option<f64>,
         cells: Option<usize>,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let limits = MassLimits::default();
-        let limits = tolerance.map_or(limits, |tolerance| limits.with_tolerance(tolerance));
-        let limits = cells.map_or(limits, |cells| limits.with_cells(cells));
+        let usual = MassLimits::default();
+        let limits = MassLimits {
+            tolerance: tolerance.unwrap_or(usual.tolerance),
+            cells: cells.unwrap_or(usual.cells),
+        };
         match self.made(py)?.clone() {
             AnyShape::Planar(shape) => {
                 let found =

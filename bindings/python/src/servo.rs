@@ -385,13 +385,11 @@ impl Asked<'_, '_> {
                 return Err(error);
             }
         };
-        let mut options = ThreadOptions::default();
-        if let Some(duration) = self.duration {
-            options = options.with_duration(duration);
-        }
-        if rows > 0 {
-            options = options.with_recorder(rows);
-        }
+        let options = ThreadOptions {
+            duration: self.duration,
+            rows: (rows > 0).then_some(rows),
+            ..ThreadOptions::default()
+        };
         Ok(Ready { servo, device, options, scene: scene.clone() })
     }
 
@@ -452,12 +450,14 @@ fn felt<'py, const D: usize>(
     let mut recorder = Recorder::new(asked.rows(device.points())?);
     let mut motion = scene.motion();
     let report = interruptible(py, &*pool::of_at_least_one(1)?, |stop| {
-        let mut options = RunOptions::new(seconds)
-            .with_pace(Pace::AsFastAsPossible)
-            .with_interrupt(stop)
-            .with_recorder(&mut recorder);
+        let mut options = RunOptions {
+            pace: Pace::AsFastAsPossible,
+            interrupt: Some(stop),
+            recorder: Some(&mut recorder),
+            ..RunOptions::new(seconds)
+        };
         if !scene.motions.is_empty() {
-            options = options.with_motion(&mut motion);
+            options = RunOptions { motion: Some(&mut motion), ..options };
         }
         run(&mut servo, device.as_mut(), options)
     })?;

@@ -33,8 +33,7 @@ fn report<const D: usize>(
     units: [&str; 3],
     interrupt: &Interrupt,
 ) -> Result<Outcome, Failure> {
-    let limits =
-        MassLimits::default().with_tolerance(options.tolerance).with_cells(options.cells);
+    let limits = MassLimits { tolerance: options.tolerance, cells: options.cells };
     let mut out = output::answer();
     let mut bodies = Vec::new();
     let mut outcome = Outcome::Yes;

@@ -3,8 +3,6 @@
 
 //! The buttons of a device.
 
-#![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
-
 /// The buttons of a device that are held down, by their index. The names, where a device has some,
 /// are in [`DeviceProfile::buttons`](crate::DeviceProfile::buttons).
 ///

@@ -3,8 +3,6 @@
 
 //! Edits that arrive together, from one thread to another that frees nothing.
 
-#![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
-
 use std::fmt;
 use std::sync::Arc;
 

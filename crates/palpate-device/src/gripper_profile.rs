@@ -10,7 +10,7 @@ use crate::profile::DeviceProfile;
 /// ```
 /// use palpate_device::{DeviceProfile, GripperProfile};
 ///
-/// let gripper = GripperProfile::new(0.025, 8.0).with_max_force_rate(2000.0);
+/// let gripper = GripperProfile { max_force_rate: 2000.0, ..GripperProfile::new(0.025, 8.0) };
 /// let device = DeviceProfile {
 ///     gripper: Some(gripper),
 ///     ..DeviceProfile::unlimited("with a gripper")
@@ -34,12 +34,6 @@ impl GripperProfile {
     #[must_use]
     pub const fn new(max_opening: f64, max_force: f64) -> Self {
         Self { max_opening, max_force, max_force_rate: f64::INFINITY }
-    }
-
-    /// The same profile with another slew limit [N/s].
-    #[must_use]
-    pub const fn with_max_force_rate(self, max_force_rate: f64) -> Self {
-        Self { max_force_rate, ..self }
     }
 
     /// The limits of the force on the fingers, for a safety chain of its own.

@@ -3,8 +3,6 @@
 
 //! A value of which the newest counts, from one thread to another.
 
-#![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
-
 use std::fmt;
 use std::sync::Arc;
 

@@ -13,6 +13,8 @@
 //!
 //! Simulated devices are in `palpate-sim`, the safety chain in `palpate-safety`, the servo in
 //! `palpate-haptics`.
+// Every tick runs through this crate: it must not panic.
+#![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 #![cfg_attr(test, allow(clippy::float_cmp, reason = "tests compare exact numbers"))]
 
 mod buttons;
@@ -41,6 +43,6 @@ pub use limit::{limited, shortened, shortening};
 pub use mailbox::{Mailbox, MailboxDevice};
 pub use number::{NumberError, Short};
 pub use profile::DeviceProfile;
-pub use profiles::{PROFILES, UnknownDevice, profile_named};
+pub use profiles::{PROFILES, profile_named};
 pub use state::{GripperState, PointState, Reading, TurnState};
 pub use turning_profile::TurningProfile;

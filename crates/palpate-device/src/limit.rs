@@ -3,8 +3,6 @@
 
 //! Limits on the length of a force.
 
-#![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
-
 use palpate_field::Vector;
 
 /// Shortens `force` to `max_force` [N], keeping its direction; zero if it is not finite, whatever

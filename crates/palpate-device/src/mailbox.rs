@@ -3,8 +3,6 @@
 
 //! A device whose positions another thread sets, and whose forces it takes.
 
-#![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
-
 use crate::error::DeviceError;
 use crate::latest::{LatestReader, LatestWriter, latest_value};
 use crate::{

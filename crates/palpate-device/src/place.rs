@@ -3,8 +3,6 @@
 
 //! The one primitive of the exchanges between threads.
 
-#![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
-
 /// An optional box that threads exchange atomically. Everything a thread did before it put a
 /// box there is visible to the thread that takes the box.
 ///

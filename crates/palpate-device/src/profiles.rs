@@ -15,6 +15,8 @@
 
 use std::borrow::Cow;
 
+use palpate_field::UnknownName;
+
 use crate::profile::DeviceProfile;
 use crate::turning_profile::TurningProfile;
 use crate::wrists::{OMEGA, PREMIUM, SIGMA, VIRTUOSE_6D, turning};
@@ -372,7 +374,7 @@ pub static PROFILES: [(&str, DeviceProfile); 16] = [
 ///
 /// # Errors
 ///
-/// [`UnknownDevice`], which lists the known names.
+/// [`UnknownName`], which lists the known names.
 ///
 /// # Examples
 ///
@@ -385,21 +387,12 @@ pub static PROFILES: [(&str, DeviceProfile); 16] = [
 /// let error = profile_named("omga").unwrap_err().to_string();
 /// assert!(error.starts_with("there is no device \"omga\"; there are touch, omni, desktop,"));
 /// ```
-pub fn profile_named(name: &str) -> Result<DeviceProfile, UnknownDevice> {
+pub fn profile_named(name: &str) -> Result<DeviceProfile, UnknownName> {
     let found = PROFILES.iter().find(|(known, _)| *known == name);
-    found.map(|(_, profile)| profile.clone()).ok_or_else(|| UnknownDevice(name.to_owned()))
-}
-
-/// No device has this name.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("there is no device {0:?}; there are {list}", list = names())]
-pub struct UnknownDevice(
-    /// The name that was asked for.
-    pub String,
-);
-
-fn names() -> String {
-    PROFILES.iter().map(|(name, _)| *name).collect::<Vec<_>>().join(", ")
+    let known = || PROFILES.iter().map(|(known, _)| *known);
+    found
+        .map(|(_, profile)| profile.clone())
+        .ok_or_else(|| UnknownName::new("device", name, known()))
 }
 
 #[cfg(test)]

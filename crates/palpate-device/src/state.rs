@@ -3,8 +3,6 @@
 
 //! What is read of a device in a tick.
 
-#![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
-
 use palpate_field::{Point, Rotation, Vector};
 
 /// What a [`Device::read`](crate::Device::read) brought.

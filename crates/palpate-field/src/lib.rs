@@ -52,6 +52,7 @@ pub mod scalar;
 mod screw;
 mod shape;
 mod strided;
+mod unknown_name;
 mod vector;
 
 pub use bounds::{Aabb, BoundingBall, Bounds};
@@ -70,4 +71,5 @@ pub use promise::{Deviation, Promise, Quality, Rounding};
 pub use screw::Screw;
 pub use shape::Shape;
 pub use strided::{Layout, Strided, StridedMut};
+pub use unknown_name::UnknownName;
 pub use vector::{Point, Vector};

@@ -48,11 +48,10 @@ const MIDDLE_ROUNDINGS: f64 = 4.0;
 /// ```
 /// use palpate_field::MassLimits;
 ///
-/// let limits = MassLimits::default().with_tolerance(1e-2);
+/// let limits = MassLimits { tolerance: 1e-2, ..MassLimits::default() };
 /// assert_eq!((limits.tolerance, limits.cells), (1e-2, 3_000_000));
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[non_exhaustive]
 pub struct MassLimits {
     /// The relative error of the volume at which to stop.
     pub tolerance: f64,
@@ -64,20 +63,6 @@ impl Default for MassLimits {
     /// A tolerance of 1e-3, three million cells, which take half a gigabyte.
     fn default() -> Self {
         Self { tolerance: 1e-3, cells: 3_000_000 }
-    }
-}
-
-impl MassLimits {
-    /// The same limits with another relative error of the volume.
-    #[must_use]
-    pub const fn with_tolerance(self, tolerance: f64) -> Self {
-        Self { tolerance, ..self }
-    }
-
-    /// The same limits with another number of cells at most.
-    #[must_use]
-    pub const fn with_cells(self, cells: usize) -> Self {
-        Self { cells, ..self }
     }
 }
 

@@ -42,7 +42,8 @@ fn measure(
     let mut servo = Servo::new(shape.clone(), points, options)?
         .protected(&Protection::new(device.profile().clone()))?;
     let pace = Pace::AsFastAsPossible;
-    let report = run(&mut servo, &mut device, RunOptions::new(DURATION).with_pace(pace))?;
+    let report =
+        run(&mut servo, &mut device, RunOptions { pace, ..RunOptions::new(DURATION) })?;
     let cost = report.cost.ok_or("there was no tick")?;
     println!(
         "{name:<8} {points:>6} {:>7.0}% {:>16.2} {:>4} {:>10} {:>4} {:>6}",

@@ -82,9 +82,7 @@ pub use handoff::{Control, HandoffOptions, ServoEnd, StopSwitch, handoff, handof
 #[doc(hidden)]
 pub use instances::instances;
 pub use live::{Progress, Snapshot};
-pub use material::{
-    Impact, Layer, Magnet, Material, PopThrough, Texture, TextureKind, UnknownMaterial,
-};
+pub use material::{Impact, Layer, Magnet, Material, PopThrough, Texture, TextureKind};
 pub use nearby::Nearby;
 pub use options::ServoOptions;
 pub use protection::Protection;

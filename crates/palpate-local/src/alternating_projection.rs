@@ -52,7 +52,6 @@ const PAST: f64 = 4.0;
 /// # }
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[non_exhaustive]
 pub struct AlternatingProjection {
     /// Steps along the gradient of the second body at most; 64.
     pub steps: u32,
@@ -61,14 +60,6 @@ pub struct AlternatingProjection {
 impl Default for AlternatingProjection {
     fn default() -> Self {
         Self { steps: 64 }
-    }
-}
-
-impl AlternatingProjection {
-    /// The same method with another number of steps at most.
-    #[must_use]
-    pub const fn with_steps(self, steps: u32) -> Self {
-        Self { steps, ..self }
     }
 }
 

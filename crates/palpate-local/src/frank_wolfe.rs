@@ -32,13 +32,12 @@ use crate::{Descent, Weights, least_vertex, support};
 /// let found = FrankWolfe::default().descend(&balls, &segment);
 /// let certified = minimum(&balls, &segment, &Limits::new(1e-4), &mut ElementWorkspace::new())?;
 /// assert!(certified.upper < -0.032 && found.value > 0.02);
-/// let first = FrankWolfe::default().with_steps(1).descend(&balls, &segment);
+/// let first = (FrankWolfe { steps: 1, ..FrankWolfe::default() }).descend(&balls, &segment);
 /// assert_eq!(first.steps, 1);
 /// # Ok(())
 /// # }
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[non_exhaustive]
 pub struct FrankWolfe {
     /// Steps at most; 16.
     pub steps: u32,
@@ -50,20 +49,6 @@ pub struct FrankWolfe {
 impl Default for FrankWolfe {
     fn default() -> Self {
         Self { steps: 16, tolerance: 1e-6 }
-    }
-}
-
-impl FrankWolfe {
-    /// The same method with another number of steps at most.
-    #[must_use]
-    pub const fn with_steps(self, steps: u32) -> Self {
-        Self { steps, ..self }
-    }
-
-    /// The same method with another tolerance.
-    #[must_use]
-    pub const fn with_tolerance(self, tolerance: f64) -> Self {
-        Self { tolerance, ..self }
     }
 }
 

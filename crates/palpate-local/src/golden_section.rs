@@ -35,13 +35,15 @@ use crate::{Descent, Weights, least_vertex, support};
 /// let found = GoldenSection::default().descend(&scene, &segment);
 /// let certified = minimum(&scene, &segment, &Limits::new(1e-4), &mut ElementWorkspace::new())?;
 /// assert!(found.value == 0.125 && certified.upper < -0.0499);
-/// let coarse = GoldenSection::default().with_sections(2).descend(&scene, &segment);
+/// let coarse = (GoldenSection {
+///     sections: 2,
+///     ..GoldenSection::default()
+/// }).descend(&scene, &segment);
 /// assert!(coarse.evaluations < found.evaluations);
 /// # Ok(())
 /// # }
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[non_exhaustive]
 pub struct GoldenSection {
     /// Lines at most; 16.
     pub steps: u32,
@@ -55,26 +57,6 @@ pub struct GoldenSection {
 impl Default for GoldenSection {
     fn default() -> Self {
         Self { steps: 16, sections: 16, tolerance: 1e-6 }
-    }
-}
-
-impl GoldenSection {
-    /// The same method with another number of lines at most.
-    #[must_use]
-    pub const fn with_steps(self, steps: u32) -> Self {
-        Self { steps, ..self }
-    }
-
-    /// The same method with another number of sections of a line.
-    #[must_use]
-    pub const fn with_sections(self, sections: u32) -> Self {
-        Self { sections, ..self }
-    }
-
-    /// The same method with another tolerance.
-    #[must_use]
-    pub const fn with_tolerance(self, tolerance: f64) -> Self {
-        Self { tolerance, ..self }
     }
 }
 

@@ -89,7 +89,6 @@ pub use instances::instances;
 pub use macklin::MacklinDescent;
 pub use minimax_proximal::MinimaxProximal;
 pub use naive::NaiveDescent;
-pub use named::UnknownMethod;
 pub use projected_gradient::ProjectedGradient;
 pub use sum_descent::SumDescent;
 pub use sweep::{LocalSweep, LocalTouch, SampledSweep, SpaceTimeGoldenSection};

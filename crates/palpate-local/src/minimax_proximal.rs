@@ -38,13 +38,12 @@ const SHRINK: f64 = 0.25;
 /// let limits = Limits::new(1e-4);
 /// let proven = separation(&below, &above, &limits, &mut PairWorkspace::new())?;
 /// assert!((proven.upper + 0.1).abs() < 1e-4);
-/// let short = MinimaxProximal::default().with_steps(1);
+/// let short = MinimaxProximal { steps: 1, ..MinimaxProximal::default() };
 /// assert_eq!(short.descend(&below, &above, Vector([-1.8, 0.4]), 1e-9)?.steps, 1);
 /// # Ok(())
 /// # }
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[non_exhaustive]
 pub struct MinimaxProximal {
     /// Steps at most; 40.
     pub steps: u32,
@@ -53,14 +52,6 @@ pub struct MinimaxProximal {
 impl Default for MinimaxProximal {
     fn default() -> Self {
         Self { steps: 40 }
-    }
-}
-
-impl MinimaxProximal {
-    /// The same method with another number of steps at most.
-    #[must_use]
-    pub const fn with_steps(self, steps: u32) -> Self {
-        Self { steps, ..self }
     }
 }
 

@@ -3,17 +3,6 @@
 
 //! Names of methods on command lines.
 
-/// A name that no method has.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("there is no method {name:?}; there are {known}")]
-#[non_exhaustive]
-pub struct UnknownMethod {
-    /// The name.
-    pub name: String,
-    /// The names of the methods, separated by commas.
-    pub known: String,
-}
-
 /// Writes the names of methods, and reads them.
 macro_rules! named {
     ($method:ident: $($variant:ident = $name:literal),+) => {
@@ -35,14 +24,13 @@ macro_rules! named {
         }
 
         impl std::str::FromStr for $method {
-            type Err = $crate::UnknownMethod;
+            type Err = palpate_field::UnknownName;
 
-            fn from_str(name: &str) -> Result<Self, $crate::UnknownMethod> {
+            fn from_str(name: &str) -> Result<Self, palpate_field::UnknownName> {
                 let is_meant = |method: &&Self| method.name() == name;
-                Self::ALL.iter().find(is_meant).copied().ok_or_else(|| {
-                    let known: Vec<_> = Self::ALL.iter().map(|method| method.name()).collect();
-                    $crate::UnknownMethod { name: name.to_owned(), known: known.join(", ") }
-                })
+                let known = || Self::ALL.iter().map(|method| method.name());
+                let found = Self::ALL.iter().find(is_meant).copied();
+                found.ok_or_else(|| palpate_field::UnknownName::new("method", name, known()))
             }
         }
     };

@@ -40,13 +40,15 @@ const KEPT: f64 = 0.5;
 /// let found = ProjectedGradient::default().descend(&balls, &triangle);
 /// let certified = minimum(&balls, &triangle, &Limits::new(1e-4), &mut ElementWorkspace::new())?;
 /// assert!(found.value == -0.1 && certified.upper < -0.199);
-/// let first = ProjectedGradient::default().with_steps(1).descend(&balls, &triangle);
+/// let first = (ProjectedGradient {
+///     steps: 1,
+///     ..ProjectedGradient::default()
+/// }).descend(&balls, &triangle);
 /// assert_eq!(first.steps, 1);
 /// # Ok(())
 /// # }
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[non_exhaustive]
 pub struct ProjectedGradient {
     /// Steps at most; 64, as in the memoir.
     pub steps: u32,
@@ -60,26 +62,6 @@ pub struct ProjectedGradient {
 impl Default for ProjectedGradient {
     fn default() -> Self {
         Self { steps: 64, decay: 0.8, tolerance: 1e-3 }
-    }
-}
-
-impl ProjectedGradient {
-    /// The same method with another number of steps at most.
-    #[must_use]
-    pub const fn with_steps(self, steps: u32) -> Self {
-        Self { steps, ..self }
-    }
-
-    /// The same method with another factor of t.
-    #[must_use]
-    pub const fn with_decay(self, decay: f64) -> Self {
-        Self { decay, ..self }
-    }
-
-    /// The same method with another tolerance.
-    #[must_use]
-    pub const fn with_tolerance(self, tolerance: f64) -> Self {
-        Self { tolerance, ..self }
     }
 }
 

@@ -49,7 +49,6 @@ const KEPT: f64 = 0.1;
 /// # }
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[non_exhaustive]
 pub struct SumDescent {
     /// Steps at most; 10, as `MuJoCo`'s `sdf_iterations`.
     pub steps: u32,
@@ -78,12 +77,6 @@ impl<const D: usize> Descent<D> {
 impl SumDescent {
     /// How many starts `MuJoCo` tries, its `sdf_initpoints`.
     pub const STARTS: u32 = 40;
-
-    /// The same method with another number of steps at most.
-    #[must_use]
-    pub const fn with_steps(self, steps: u32) -> Self {
-        Self { steps, ..self }
-    }
 
     /// The descent from `start` [m], until a step is shorter than `tolerance` [m] or leads up.
     ///

@@ -29,11 +29,14 @@ pub enum Shadows {
 /// ```
 /// use palpate_render::{Settings, Shadows};
 ///
-/// let settings = Settings::new(320, 240).with_shadows(Shadows::Hard).with_ground(Some(0.0));
+/// let settings = Settings {
+///     shadows: Shadows::Hard,
+///     ground: Some(0.0),
+///     ..Settings::new(320, 240)
+/// };
 /// assert_eq!((settings.width, settings.ground), (320, Some(0.0)));
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[non_exhaustive]
 pub struct Settings {
     /// The width [pixels].
     pub width: u32,
@@ -71,42 +74,6 @@ impl Settings {
             spacing: None,
             budget: Self::BUDGET,
         }
-    }
-
-    /// With so many samples along the side of a pixel at an edge; with one, edges are jagged.
-    #[must_use]
-    pub const fn with_samples(self, samples: u32) -> Self {
-        Self { samples, ..self }
-    }
-
-    /// With other shadows.
-    #[must_use]
-    pub const fn with_shadows(self, shadows: Shadows) -> Self {
-        Self { shadows, ..self }
-    }
-
-    /// With a ground at this height [m], or none.
-    #[must_use]
-    pub const fn with_ground(self, ground: Option<f64>) -> Self {
-        Self { ground, ..self }
-    }
-
-    /// With bodies cut at a plane.
-    #[must_use]
-    pub const fn with_cut(self, cut: Option<Cut>) -> Self {
-        Self { cut, ..self }
-    }
-
-    /// With isolines of a cut face at this distance [m].
-    #[must_use]
-    pub const fn with_spacing(self, spacing: Option<f64>) -> Self {
-        Self { spacing, ..self }
-    }
-
-    /// With another budget for each ray.
-    #[must_use]
-    pub const fn with_budget(self, budget: u32) -> Self {
-        Self { budget, ..self }
     }
 
     /// Refuses what cannot be rendered, as [`render`](crate::render) does.

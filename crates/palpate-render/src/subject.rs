@@ -40,7 +40,7 @@ impl Cut {
     /// use palpate_render::{Cut, Settings};
     ///
     /// let cut = Cut::new([0.0, 0.0, 0.01], [0.0, 0.0, 2.0])?;
-    /// let settings = Settings::new(64, 48).with_cut(Some(cut));
+    /// let settings = Settings { cut: Some(cut), ..Settings::new(64, 48) };
     /// assert!(Cut::new([0.0; 3], [0.0; 3]).is_err());
     /// # Ok::<(), palpate_render::RenderError>(())
     /// ```

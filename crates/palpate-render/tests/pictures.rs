@@ -33,7 +33,7 @@ fn rendered(settings: &Settings) -> Rendering {
 
 #[test]
 fn a_picture_has_the_same_bits_on_any_number_of_threads() {
-    let settings = Settings::new(61, 43).with_ground(Some(-0.01));
+    let settings = Settings { ground: Some(-0.01), ..Settings::new(61, 43) };
     let on = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         pool.install(|| rendered(&settings))
@@ -65,10 +65,10 @@ fn letters(image: &Image) -> String {
 
 #[test]
 fn a_small_picture_is_as_it_was() {
-    let settings = Settings::new(32, 24).with_ground(Some(-0.01));
+    let settings = Settings { ground: Some(-0.01), ..Settings::new(32, 24) };
     insta::assert_snapshot!("whole", letters(&rendered(&settings).image));
     let cut = Cut::new([0.0, 0.0, 0.01], [0.0, 0.0, 1.0]).unwrap();
-    let settings = settings.with_cut(Some(cut)).with_shadows(Shadows::None);
+    let settings = Settings { cut: Some(cut), shadows: Shadows::None, ..settings };
     insta::assert_snapshot!("cut", letters(&rendered(&settings).image));
 }
 
@@ -109,7 +109,7 @@ fn a_wire_of_no_radius_is_an_unbroken_line() {
     let subject = Subject::of_shapes([wire]).unwrap();
     let camera =
         Camera::facing(Sight::from_angles(0.0, 0.0).unwrap(), Vector::ZERO, 1.0, 2.0).unwrap();
-    let settings = Settings::new(80, 60).with_samples(1);
+    let settings = Settings { samples: 1, ..Settings::new(80, 60) };
     let rendering = render(&subject, &camera, &settings, &|_| true).unwrap().unwrap();
     assert!((rendering.thin - 0.6 / 60.0).abs() < 1e-15);
     let rows = rendering.image.pixels().chunks(80);
@@ -125,14 +125,15 @@ fn a_cut_shows_what_is_behind_it() {
     let subject = Subject::of_shapes([shell, inner]).unwrap();
     let camera =
         Camera::facing(Sight::from_angles(0.0, 0.0).unwrap(), Vector::ZERO, 2.4, 3.0).unwrap();
-    let settings = Settings::new(96, 72).with_shadows(Shadows::None).with_spacing(Some(1.0));
+    let settings =
+        Settings { shadows: Shadows::None, spacing: Some(1.0), ..Settings::new(96, 72) };
     let image = |settings: &Settings| {
         render(&subject, &camera, settings, &|_| true).unwrap().unwrap().image
     };
     let [whole, none, ..] = shares(&image(&settings));
     assert!(whole > 0.3 && none == 0.0, "{whole} {none}");
     let cut = Cut::new([0.0, 0.0, 0.2], [0.0, 0.0, 1.0]).unwrap();
-    let [_, inner, ..] = shares(&image(&settings.with_cut(Some(cut))));
+    let [_, inner, ..] = shares(&image(&Settings { cut: Some(cut), ..settings }));
     // A disc of √(0.5² − 0.2²) m in a picture of 3.2 m by 2.4 m, pale, but for its outline.
     let expected = std::f64::consts::PI * (0.25 - 0.04) / (3.2 * 2.4);
     assert!((inner - expected).abs() < 0.03, "{inner} {expected}");
@@ -162,10 +163,10 @@ fn endless_bodies_fade_before_the_horizon() {
 
 #[test]
 fn shadows_are_hard_soft_or_none() {
-    let settings = Settings::new(64, 48).with_ground(Some(-0.01));
-    let none = rendered(&settings.with_shadows(Shadows::None));
+    let settings = Settings { ground: Some(-0.01), ..Settings::new(64, 48) };
+    let none = rendered(&Settings { shadows: Shadows::None, ..settings });
     let [hard, soft] = [Shadows::Hard, Shadows::Soft].map(|shadows| {
-        let rendering = rendered(&settings.with_shadows(shadows));
+        let rendering = rendered(&Settings { shadows, ..settings });
         let darker = rendering.image.pixels().iter().zip(none.image.pixels());
         let darker = darker.filter(|(a, b)| a.0[1] + 4 < b.0[1]).count();
         assert!(darker > 150, "{shadows:?}: {darker}");
@@ -204,15 +205,15 @@ fn wrong_input_says_what_is_wrong() {
         "a picture must have 1 to 40000000 pixels, got 100000 x 100000"
     );
     assert_eq!(
-        said(&camera, &settings.with_samples(9)),
+        said(&camera, &Settings { samples: 9, ..settings }),
         "an edge must have 1 to 8 samples along a pixel's side, got 9"
     );
     assert_eq!(
-        said(&camera, &settings.with_spacing(Some(0.0))),
+        said(&camera, &Settings { spacing: Some(0.0), ..settings }),
         "the spacing of isolines must be positive and at most 1e15, got 0.0 m"
     );
     assert_eq!(
-        said(&camera, &settings.with_ground(Some(f64::NAN))),
+        said(&camera, &Settings { ground: Some(f64::NAN), ..settings }),
         "the height of the ground must be finite, got NaN m"
     );
     let inside = Camera::looking(Vector([0.0, 0.0, 0.05]), Vector::ZERO, Lens::USUAL).unwrap();
@@ -249,10 +250,10 @@ fn wrong_input_says_what_is_wrong() {
 
 #[test]
 fn pictures_and_animations_are_read_back() {
-    let small = rendered(&Settings::new(24, 18).with_samples(1)).image;
+    let small = rendered(&Settings { samples: 1, ..Settings::new(24, 18) }).image;
     let subject = subject();
     let turned = camera(&subject).turned(1.0, Vector::ZERO);
-    let settings = Settings::new(24, 18).with_samples(1);
+    let settings = Settings { samples: 1, ..Settings::new(24, 18) };
     let other = render(&subject, &turned, &settings, &|_| true).unwrap().unwrap().image;
     assert_ne!(small, other);
     let mut file = Vec::new();
@@ -268,7 +269,7 @@ fn pictures_and_animations_are_read_back() {
         let delay = reader.info().frame_control.unwrap();
         assert_eq!((delay.delay_num, delay.delay_den), (125, 1000));
     }
-    let wrong = rendered(&Settings::new(12, 18).with_samples(1)).image;
+    let wrong = rendered(&Settings { samples: 1, ..Settings::new(12, 18) }).image;
     let refused = write_animation(&[small, wrong], 125, &mut Vec::new()).unwrap_err();
     assert_eq!(
         refused.to_string(),

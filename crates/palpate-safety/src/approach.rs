@@ -3,8 +3,6 @@
 
 //! How a force follows an edit of the bodies.
 
-#![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
-
 use palpate_field::Vector;
 
 use palpate_device::shortened;

@@ -3,8 +3,6 @@
 
 //! How the states of ticks come: late, after a time, or not at all.
 
-#![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
-
 use crate::error::SafetyError;
 use palpate_device::NumberError;
 use palpate_device::Reading;

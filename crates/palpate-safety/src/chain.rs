@@ -3,8 +3,6 @@
 
 //! The safety chain between a wanted force and a hand.
 
-#![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
-
 use palpate_field::{Point, Vector};
 
 use crate::acceptance::Accepted;

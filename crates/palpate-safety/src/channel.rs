@@ -3,8 +3,6 @@
 
 //! The stages that forces and torques share; each has a channel of its own.
 
-#![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
-
 use palpate_field::Vector;
 
 use crate::approach::Approach;

@@ -3,8 +3,6 @@
 
 //! How often a stage acted, and how much.
 
-#![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
-
 use crate::passivity::InnerProduct;
 
 /// What a stage of the safety chain did.

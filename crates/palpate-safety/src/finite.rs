@@ -3,8 +3,6 @@
 
 //! The guard against numbers that are not finite.
 
-#![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
-
 use palpate_field::Vector;
 
 use crate::PortState;

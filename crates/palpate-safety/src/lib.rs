@@ -13,6 +13,8 @@
 //! force and torque together.
 //!
 //! This crate knows nothing of shapes, so that it can be reviewed alone.
+// Every tick runs through this crate: it must not panic.
+#![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 #![cfg_attr(test, allow(clippy::float_cmp, reason = "tests compare exact numbers"))]
 
 mod acceptance;

@@ -3,8 +3,6 @@
 
 //! When a force that the passivity controller took comes back to a hand at rest.
 
-#![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
-
 use crate::passivity::InnerProduct;
 
 /// A hand rests while it stays within this way [m].

@@ -3,8 +3,6 @@
 
 //! What a limit takes from a force.
 
-#![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
-
 use palpate_device::shortened;
 use palpate_field::Vector;
 

@@ -8,8 +8,6 @@
 //! walls that its profile allows. The observer of energy cannot see all of that: a delayed force
 //! does other work than it counts.
 
-#![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
-
 use std::f64::consts::TAU;
 
 use crate::effect::Effect;

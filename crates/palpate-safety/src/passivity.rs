@@ -9,8 +9,6 @@
 //! Kim, J. Ryu, "Robustly stable haptic interaction control using an energy-bounding algorithm"
 //! (2010): a sampled spring may leak as much energy as the device's own damping dissipates.
 
-#![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
-
 use std::ops::{Add, Mul, Sub};
 
 use palpate_field::Vector;

@@ -3,8 +3,6 @@
 
 //! Readings that a hand cannot have made.
 
-#![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
-
 use palpate_field::{Point, Vector};
 
 use crate::error::SafetyError;

@@ -97,7 +97,11 @@ impl Refused {
             ("", ["N/m", "N·s/m"])
         };
         let numbers = |scale: f64| {
-            [0, 1].map(|k| distinct([scale * self.rendered[k], scale * self.asked[k]]))
+            let ([stiffness, damping], [asked, asked_damping]) = (self.rendered, self.asked);
+            [
+                distinct([scale * stiffness, scale * asked]),
+                distinct([scale * damping, scale * asked_damping]),
+            ]
         };
         let [[stiffness, asked], [damping, asked_damping]] = numbers(1.0);
         let at_device = if self.scale == 1.0 {

@@ -21,8 +21,6 @@
 //! would let it through. Neither of them ends a wait that goes on. An edit that carries a proxy out
 //! of a body restarts no rise: see [`Change::Carried`].
 
-#![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
-
 use palpate_field::Vector;
 
 /// What lets a force rise after a beginning in a body: of a servo, after an emergency stop, where a

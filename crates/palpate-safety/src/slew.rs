@@ -3,8 +3,6 @@
 
 //! The slew limit: how fast a force may change.
 
-#![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
-
 use palpate_field::Vector;
 
 use palpate_device::shortened;

@@ -3,8 +3,6 @@
 
 //! How often each stage of a safety chain acted, as numbers that are cheap to read in every tick.
 
-#![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
-
 use std::iter::Sum;
 
 use crate::effect::Effect;

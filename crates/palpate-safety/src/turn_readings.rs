@@ -3,8 +3,6 @@
 
 //! Orientations that a hand cannot have made.
 
-#![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
-
 use std::f64::consts::PI;
 
 use palpate_field::{Rotation, Vector};

@@ -6,8 +6,6 @@
 //! F. Janabi-Sharifi, V. Hayward, C.-S. J. Chen, "Discrete-time adaptive windowing for velocity
 //! estimation" (2000): the first-order adaptive window, fitted to its ends.
 
-#![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
-
 use palpate_field::{Point, Vector};
 
 use crate::error::SafetyError;

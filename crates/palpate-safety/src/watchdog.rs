@@ -3,8 +3,6 @@
 
 //! The deadline watchdog.
 
-#![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
-
 /// Lowers the force to zero while ticks are late.
 ///
 /// A force that is held for too long is stale. The time by which ticks are late adds up, and each

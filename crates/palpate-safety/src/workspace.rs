@@ -3,8 +3,6 @@
 
 //! The workspace map: between device and world coordinates.
 
-#![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
-
 use palpate_field::{Aabb, Point, Pose, Rotation, Vector};
 
 use crate::error::SafetyError;

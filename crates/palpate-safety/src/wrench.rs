@@ -7,8 +7,6 @@
 //! return the energy by a force. So one observer measures `F·v + τ·ω`; the force and the torque
 //! that it allows then pass the other stages separately.
 
-#![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
-
 use std::ops::{Add, Mul, Sub};
 
 use palpate_field::Vector;

@@ -373,7 +373,7 @@ fn profile(written: WrittenDevice) -> DeviceProfile {
         Some(WrittenGripper { max_opening, max_force, max_force_rate }) => {
             let gripper = GripperProfile::new(max_opening, max_force);
             DeviceProfile {
-                gripper: Some(gripper.with_max_force_rate(max_force_rate)),
+                gripper: Some(GripperProfile { max_force_rate, ..gripper }),
                 ..profile
             }
         }

@@ -226,8 +226,11 @@ impl<const D: usize> BuiltScene<D> {
     ///     SimulatedDevice::new(profile_named("omega")?, vec![Hand::resting([0.0; 3])?])?;
     /// let mut servo = scene.servo(&device)?;
     /// let mut motion = scene.motion();
-    /// let options = RunOptions::new(0.5).with_pace(Pace::AsFastAsPossible);
-    /// let report = run(&mut servo, &mut device, options.with_motion(&mut motion))?;
+    /// let options = RunOptions { pace: Pace::AsFastAsPossible, ..RunOptions::new(0.5) };
+    /// let report = run(&mut servo, &mut device, RunOptions {
+    ///     motion: Some(&mut motion),
+    ///     ..options
+    /// })?;
     /// assert_eq!(report.ticks, 500);
     /// # Ok(())
     /// # }

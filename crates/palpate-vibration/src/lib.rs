@@ -35,9 +35,7 @@ mod threshold;
 mod vibrates;
 mod wav;
 
-pub use actuator::{
-    ACTUATORS, Actuator, ActuatorModel, Mechanism, UnknownActuator, actuator_named,
-};
+pub use actuator::{ACTUATORS, Actuator, ActuatorModel, Mechanism, actuator_named};
 pub use adaptation::{Adaptation, Faded};
 pub use audio::Synthesiser;
 pub use channels::{ActuatorArray, TwoChannels, one_channel, phantom, two_channels};

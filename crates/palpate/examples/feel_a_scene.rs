@@ -36,10 +36,9 @@ fn main() -> Result<(), Error> {
 
     // The servo never waits for the file: rows wait for it, for up to half a second.
     let moved = scene.clone();
-    let options = ThreadOptions::default()
-        .with_duration(SECONDS)
-        .with_recorder(500)
-        .with_motion(move |time, set_pose| moved.motion()(time, set_pose));
+    let options =
+        ThreadOptions { duration: Some(SECONDS), rows: Some(500), ..ThreadOptions::default() }
+            .with_motion(move |time, set_pose| moved.motion()(time, set_pose));
     let mut thread = ServoThread::start(servo, Box::new(device), options)?;
     let records = thread.take_records();
     let mut records =

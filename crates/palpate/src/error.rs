@@ -5,12 +5,12 @@
 
 use std::io;
 
-use palpate_device::{DeviceError, DeviceLost, NumberError, UnknownDevice};
-use palpate_field::ShapeError;
+use palpate_device::{DeviceError, DeviceLost, NumberError};
+use palpate_field::{ShapeError, UnknownName};
 use palpate_grid::GridError;
 #[cfg(feature = "grid-files")]
 use palpate_grid::{GridFileError, GridFileProblem, VolumeError, VolumeProblem};
-use palpate_haptics::{HapticsError, UnknownMaterial};
+use palpate_haptics::HapticsError;
 #[cfg(feature = "mesh-files")]
 use palpate_mesh::ReadProblem;
 use palpate_mesh::{ContourError, MeshError, SolidError};
@@ -117,12 +117,8 @@ pub enum Error {
     /// A picture cannot be rendered.
     #[cfg(feature = "render")]
     Render(#[from] palpate_render::RenderError),
-    /// There is no device of that name.
-    UnknownDevice(#[from] UnknownDevice),
-    /// There is no material of that name.
-    UnknownMaterial(#[from] UnknownMaterial),
-    /// There is no actuator of that name.
-    UnknownActuator(#[from] palpate_vibration::UnknownActuator),
+    /// There is no device, material, actuator or local search of that name.
+    UnknownName(#[from] UnknownName),
     /// A device no longer answers.
     DeviceLost(#[from] DeviceLost),
     /// A thread for a servo did not start.
@@ -131,9 +127,6 @@ pub enum Error {
     /// A run of a servo did not end as asked.
     #[cfg(feature = "std-loop")]
     Run(#[from] palpate_haptics::servo_loop::RunError),
-    /// There is no local search of that name.
-    #[cfg(feature = "local")]
-    UnknownMethod(#[from] palpate_local::UnknownMethod),
     /// Numbers are no barycentric weights.
     #[cfg(feature = "local")]
     Weights(#[from] palpate_local::WeightsError),
@@ -161,7 +154,7 @@ pub enum ErrorKind {
     Scene,
     /// A picture cannot be drawn.
     Plot,
-    /// There is no device, material or local search of that name.
+    /// There is no device, material, actuator or local search of that name.
     UnknownName,
     /// A device no longer answers.
     DeviceLost,
@@ -232,9 +225,7 @@ impl Error {
             Self::Plot(_) => ErrorKind::Plot,
             #[cfg(feature = "render")]
             Self::Render(_) => ErrorKind::Plot,
-            Self::UnknownDevice(_) | Self::UnknownMaterial(_) | Self::UnknownActuator(_) => {
-                ErrorKind::UnknownName
-            }
+            Self::UnknownName(_) => ErrorKind::UnknownName,
             Self::DeviceLost(_) => ErrorKind::DeviceLost,
             #[cfg(feature = "std-loop")]
             Self::Start(_) => ErrorKind::Thread,
@@ -244,8 +235,6 @@ impl Error {
             }
             #[cfg(feature = "std-loop")]
             Self::Run(_) => ErrorKind::Panicked,
-            #[cfg(feature = "local")]
-            Self::UnknownMethod(_) => ErrorKind::UnknownName,
             #[cfg(feature = "local")]
             Self::Weights(_) => ErrorKind::Query,
             Self::File(_) => ErrorKind::File,

@@ -14,8 +14,9 @@ mod search;
 use std::path::Path;
 use std::str::FromStr;
 
+use palpate::field::UnknownName;
 use palpate::field::{Aabb, Vector};
-use palpate::local::{Descent, UnknownMethod};
+use palpate::local::Descent;
 use palpate::query::Limits;
 use palpate::scene::{AnyScene, BuiltScene};
 use serde_json::{Value, json};
@@ -82,7 +83,7 @@ fn nothing_asked<const D: usize>(scene: &BuiltScene<D>, path: &Path) -> Failure 
 /// The requested method, or `first`. A method of the `Other` kind is named with what it needs.
 fn method<T, Other>(options: &DescendOptions, first: T, needs: &str) -> Result<T, Failure>
 where
-    T: FromStr<Err = UnknownMethod>,
+    T: FromStr<Err = UnknownName>,
     Other: FromStr,
 {
     let Some(name) = options.method.as_deref() else { return Ok(first) };

@@ -123,18 +123,20 @@ where
         ));
     }
     let (outcome, traced) = outputs.traced(scene, |sink| {
-        let mut run_options = RunOptions::new(duration)
-            .with_pace(if options.fast { Pace::AsFastAsPossible } else { Pace::RealTime })
-            .with_rehearsals(true)
-            .with_interrupt(interrupt.flag());
+        let mut run_options = RunOptions {
+            pace: if options.fast { Pace::AsFastAsPossible } else { Pace::RealTime },
+            rehearses: true,
+            interrupt: Some(interrupt.flag()),
+            ..RunOptions::new(duration)
+        };
         if let Some(sink) = sink {
-            run_options = run_options.with_sink(sink);
+            run_options = RunOptions { sink: Some(sink), ..run_options };
         }
         if keeps_rows {
-            run_options = run_options.with_recorder(&mut recorder);
+            run_options = RunOptions { recorder: Some(&mut recorder), ..run_options };
         }
         if !scene.motions.is_empty() {
-            run_options = run_options.with_motion(&mut motion);
+            run_options = RunOptions { motion: Some(&mut motion), ..run_options };
         }
         if shows_line {
             run_options = run_options.with_watch(LIVE_EVERY, &mut show);

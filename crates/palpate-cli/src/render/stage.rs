@@ -51,7 +51,7 @@ impl<'a> Stage<'a> {
         if touched.is_none() {
             emptiness::warn(scene);
         }
-        let settings = settings.with_ground(ground(options, &subject, &camera));
+        let settings = Settings { ground: ground(options, &subject, &camera), ..settings };
         let mut stage = Self { options, names, subject, camera, settings, touched };
         stage.settings.cut = stage.cut(view)?;
         Ok(stage)
@@ -90,11 +90,13 @@ fn settings(options: &RenderOptions) -> Settings {
         ShadowChoice::Hard => Shadows::Hard,
         ShadowChoice::None => Shadows::None,
     };
-    Settings::new(options.width, options.height)
-        .with_samples(options.samples)
-        .with_shadows(shadows)
-        .with_spacing(options.step)
-        .with_budget(options.ray_budget)
+    Settings {
+        samples: options.samples,
+        shadows,
+        spacing: options.step,
+        budget: options.ray_budget,
+        ..Settings::new(options.width, options.height)
+    }
 }
 
 /// The height of the ground, if there is one.

@@ -114,7 +114,10 @@ fn the_keys_and_columns_of_feel_are_documented() {
 fn the_keys_of_devices_identify_and_jitter_are_documented() {
     let folder = Folder::new();
     let profile = palpate::device::profile_named("omega7").unwrap();
-    let gripper = palpate::device::GripperProfile::new(0.025, 8.0).with_max_force_rate(2000.0);
+    let gripper = palpate::device::GripperProfile {
+        max_force_rate: 2000.0,
+        ..palpate::device::GripperProfile::new(0.025, 8.0)
+    };
     let profile = (palpate::device::DeviceProfile { gripper: Some(gripper), ..profile })
         .with_buttons(["front"]);
     let profile = palpate::scene::device_to_json(&profile).unwrap();

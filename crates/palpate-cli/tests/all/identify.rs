@@ -225,7 +225,7 @@ fn the_gripper_and_the_buttons_of_a_file_are_listed() {
     let gripper = palpate::device::GripperProfile::new(0.025, 8.0);
     let profile = palpate::device::profile_named("omega7").unwrap();
     let profile = palpate::device::DeviceProfile {
-        gripper: Some(gripper.with_max_force_rate(2000.0)),
+        gripper: Some(palpate::device::GripperProfile { max_force_rate: 2000.0, ..gripper }),
         ..profile
     };
     let profile = profile.with_buttons(["front", "rear"]);

@@ -15,7 +15,7 @@ use palpate_field::{Mass, MassLimits, Point, Pose, Rotation, Shape, ShapeError, 
 const TOLERANCE: f64 = 2e-3;
 
 fn mass<const D: usize>(shape: &Shape<D>, density: f64) -> Mass<D> {
-    let limits = MassLimits::default().with_tolerance(TOLERANCE);
+    let limits = MassLimits { tolerance: TOLERANCE, ..MassLimits::default() };
     shape.mass(density, limits).expect("a mass")
 }
 
@@ -147,7 +147,7 @@ fn an_empty_shape_weighs_nothing_and_is_proven_to() -> Result<(), ShapeError> {
 /// rounds to whole decimetres.
 #[test]
 fn what_is_smaller_than_rounding_is_not_proven_to_be_empty() -> Result<(), ShapeError> {
-    let limits = MassLimits::default().with_cells(10_000);
+    let limits = MassLimits { cells: 10_000, ..MassLimits::default() };
     let ball = Shape::sphere(0.01)?;
     for far in [1e9, 1e12, 1e15] {
         let mass = ball.clone().translated(Vector([far, -far, 0.0]))?.mass(1.0, limits)?;
@@ -161,7 +161,7 @@ fn what_is_smaller_than_rounding_is_not_proven_to_be_empty() -> Result<(), Shape
 #[test]
 fn a_curve_weighs_nothing() -> Result<(), ShapeError> {
     let curve = Segment::<2>::new(Vector([0.0, 0.0]), Vector([1.0, 0.5]), 0.0)?;
-    let limits = MassLimits::default().with_tolerance(1e-3).with_cells(20_000);
+    let limits = MassLimits { tolerance: 1e-3, cells: 20_000 };
     let mass = Shape::from_kernel(curve).mass(1.0, limits)?;
     assert!(mass.volume <= mass.volume_error && mass.volume_error < 0.01, "{mass:?}");
     assert!(mass.centroid_error.is_infinite());
@@ -176,7 +176,7 @@ fn what_has_no_bounds_has_no_mass() -> Result<(), ShapeError> {
     assert_eq!(error.to_string(), "mass needs a shape with bounds");
     let ball = Shape::<3>::from_kernel(Ball::new(0.5)?);
     assert!(ball.mass(-1.0, MassLimits::default()).is_err());
-    let limits = MassLimits::default().with_tolerance(f64::NAN).with_cells(10);
+    let limits = MassLimits { tolerance: f64::NAN, cells: 10 };
     assert!(ball.mass(1.0, limits).is_err());
     Ok(())
 }
@@ -234,7 +234,8 @@ fn the_moments_of_cuboids_along_the_axes_are_within_their_errors() -> Result<(),
         let cuboid = Shape::from_kernel(Cuboid::new(Vector(size))?).rotated(turn)?;
         let (rows, volume) = (turn.matrix(), size.iter().product::<f64>());
         for tolerance in [1e-2, 1e-3, 1e-4] {
-            let mass = cuboid.mass(1000.0, MassLimits::default().with_tolerance(tolerance))?;
+            let mass =
+                cuboid.mass(1000.0, MassLimits { tolerance, ..MassLimits::default() })?;
             assert!((mass.volume - volume).abs() <= mass.volume_error, "{mass:?}");
             for i in 0..3 {
                 assert!(mass.centroid[i].abs() <= mass.centroid_error, "{angle}: {mass:?}");
@@ -258,7 +259,7 @@ fn the_moments_of_a_rectangle_along_the_axes_are_within_their_errors() -> Result
 {
     let rectangle = Shape::rectangle([0.2, 0.5])?.translated([3.0, -1.0])?;
     for tolerance in [1e-2, 1e-3, 1e-5] {
-        let mass = rectangle.mass(1.0, MassLimits::default().with_tolerance(tolerance))?;
+        let mass = rectangle.mass(1.0, MassLimits { tolerance, ..MassLimits::default() })?;
         for (i, size) in [0.2_f64, 0.5].into_iter().enumerate() {
             let error = (mass.second_moments[i][i] - 0.1 * size * size / 12.0).abs();
             assert!(error <= mass.second_moments_error, "{mass:?}");

@@ -7,8 +7,6 @@
 
 mod presets;
 
-pub use presets::UnknownMaterial;
-
 /// What a surface feels like.
 ///
 /// Stiffness and damping are requested; a device that cannot render them stably accepts less.

@@ -9,6 +9,8 @@
 //! judge hardness through a tool (Okamura, Cutkosky and Dennerlein 2001; Kuchenbecker, Fiene
 //! and Niemeyer 2006).
 
+use palpate_field::UnknownName;
+
 use crate::{Impact, Layer, Magnet, Material, PopThrough, Texture, TextureKind};
 
 /// A material with a name.
@@ -93,19 +95,6 @@ presets! {
     },
 }
 
-/// No preset has this name.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("unknown material `{name}`; known are {}", quoted_names())]
-pub struct UnknownMaterial {
-    /// The name that was asked for.
-    pub name: String,
-}
-
-fn quoted_names() -> String {
-    let names: Vec<_> = Material::preset_names().map(|name| format!("`{name}`")).collect();
-    names.join(", ")
-}
-
 impl Material {
     /// The names of the presets.
     ///
@@ -123,20 +112,21 @@ impl Material {
     ///
     /// # Errors
     ///
-    /// [`UnknownMaterial`], which lists the known names.
+    /// [`UnknownName`], which lists the known names.
     ///
     /// ```
     /// use palpate_haptics::Material;
     ///
-    /// # fn main() -> Result<(), palpate_haptics::UnknownMaterial> {
+    /// # fn main() -> Result<(), palpate_field::UnknownName> {
     /// assert_eq!(Material::preset("wood")?, Material::wood());
     /// assert!(Material::preset("glas").is_err());
     /// # Ok(())
     /// # }
     /// ```
-    pub fn preset(name: &str) -> Result<Self, UnknownMaterial> {
+    pub fn preset(name: &str) -> Result<Self, UnknownName> {
         let preset = PRESETS.iter().find(|preset| preset.name == name);
-        let preset = preset.ok_or_else(|| UnknownMaterial { name: name.to_owned() })?;
+        let preset =
+            preset.ok_or_else(|| UnknownName::new("material", name, Self::preset_names()))?;
         Ok((preset.material)())
     }
 }
@@ -197,7 +187,7 @@ mod tests {
     #[test]
     fn a_name_that_is_none_is_answered_with_those_there_are() {
         let error = Material::preset("plasma").unwrap_err().to_string();
-        assert!(error.starts_with("unknown material `plasma`; known are `rubber`, `wood`"));
+        assert!(error.starts_with("there is no material \"plasma\"; there are rubber, wood"));
         assert!(error.ends_with("`layered_tissue`"), "{error}");
     }
 }

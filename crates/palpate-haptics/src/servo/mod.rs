@@ -67,7 +67,10 @@ use crate::protection::Protection;
 /// let hand = Hand::resting(Vector([0.0, 0.1]))?;
 /// let mut device = SimulatedDevice::new(palpate_device::profile_named("omega")?, vec![hand])?;
 /// let mut servo = Servo::new(Shape::circle(0.05)?, 1, Default::default())?;
-/// run(&mut servo, &mut device, RunOptions::new(1.0).with_pace(Pace::AsFastAsPossible))?;
+/// run(&mut servo, &mut device, RunOptions {
+///     pace: Pace::AsFastAsPossible,
+///     ..RunOptions::new(1.0)
+/// })?;
 /// # Ok(())
 /// # }
 /// ```

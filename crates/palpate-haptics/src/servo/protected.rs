@@ -42,7 +42,7 @@ impl<const D: usize> Servo<D, Protected<D>> {
     /// let press = HandPath::new(vec![0.0, 1.0], ends, Interpolation::Smooth)?;
     /// let mut device = RecordedDevice::new(vec![press])?;
     /// let mut servo = Servo::for_device(Shape::from_kernel(Ball::new(0.05)?), &device)?;
-    /// let options = RunOptions::new(1.0).with_pace(Pace::AsFastAsPossible);
+    /// let options = RunOptions { pace: Pace::AsFastAsPossible, ..RunOptions::new(1.0) };
     /// assert_eq!(run(&mut servo, &mut device, options)?.ticks, 1000);
     /// # Ok(())
     /// # }

@@ -34,7 +34,7 @@
 //! let mut device = RecordedDevice::new(vec![hand])?;
 //! let mut servo = Servo::for_device(ball, &device)?;
 //!
-//! let options = RunOptions::new(5.0).with_pace(Pace::AsFastAsPossible);
+//! let options = RunOptions { pace: Pace::AsFastAsPossible, ..RunOptions::new(5.0) };
 //! let report = run(&mut servo, &mut device, options)?;
 //! assert!(report.contact_time > 2.5 && report.largest_force < 1.0);
 //! assert!(report.evaluations.mean < 4.0);

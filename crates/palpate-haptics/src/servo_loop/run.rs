@@ -64,10 +64,9 @@ pub type Sink<'a, const D: usize> = &'a mut (dyn FnMut(&TraceRow<D>) + Send);
 /// ```
 /// use palpate_haptics::servo_loop::{Pace, RunOptions};
 ///
-/// let options = RunOptions::<3>::new(2.0).with_pace(Pace::AsFastAsPossible);
+/// let options = RunOptions { pace: Pace::AsFastAsPossible, ..RunOptions::<3>::new(2.0) };
 /// assert_eq!((options.duration, options.pace), (2.0, Pace::AsFastAsPossible));
 /// ```
-#[non_exhaustive]
 pub struct RunOptions<'a, const D: usize> {
     /// The time the servo runs [s].
     pub duration: f64,
@@ -112,62 +111,6 @@ impl<'a, const D: usize> RunOptions<'a, D> {
         }
     }
 
-    /// The same options with another pace.
-    #[must_use]
-    pub fn with_pace(self, pace: Pace) -> Self {
-        Self { pace, ..self }
-    }
-
-    /// The same options with rehearsals or without.
-    #[must_use]
-    pub fn with_rehearsals(self, rehearses: bool) -> Self {
-        Self { rehearses, ..self }
-    }
-
-    /// The same options with a recorder.
-    #[must_use]
-    pub fn with_recorder(self, recorder: &'a mut Recorder<D>) -> Self {
-        Self { recorder: Some(recorder), ..self }
-    }
-
-    /// The same options with a closure that receives the rows of all ticks while the servo runs.
-    ///
-    /// # Examples
-    ///
-    /// A trace of a run, as `palpate feel --trace` writes it:
-    ///
-    /// ```
-    /// use palpate_sim::{HandPath, Interpolation, RecordedDevice};
-    /// use palpate_field::Shape;
-    /// use palpate_haptics::Servo;
-    /// use palpate_haptics::servo_loop::{RunOptions, TraceRow, TraceWriter, run};
-    ///
-    /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
-    /// let ends = vec![[0.0, 0.08].into(), [0.0, 0.05].into()];
-    /// let press = HandPath::new(vec![0.0, 0.05], ends, Interpolation::Smooth)?;
-    /// let mut device = RecordedDevice::new(vec![press])?;
-    /// let mut servo = Servo::for_device(Shape::circle(0.05)?, &device)?;
-    ///
-    /// let mut trace = TraceWriter::new(Vec::new());
-    /// let mut written = Ok(());
-    /// let mut sink = |row: &TraceRow<2>| {
-    ///     if written.is_ok() {
-    ///         written = trace.write(row);
-    ///     }
-    /// };
-    /// let report = run(&mut servo, &mut device, RunOptions::new(0.05).with_sink(&mut sink))?;
-    /// written?;
-    /// let csv = String::from_utf8(trace.finish()?)?;
-    /// assert_eq!(report.rows_dropped, 0);
-    /// assert_eq!(csv.lines().count(), 1 + 50); // the names of the columns, and 50 ticks
-    /// # Ok(())
-    /// # }
-    /// ```
-    #[must_use]
-    pub fn with_sink(self, sink: Sink<'a, D>) -> Self {
-        Self { sink: Some(sink), ..self }
-    }
-
     /// The same options with a closure that a separate thread calls at `interval`.
     #[must_use]
     pub fn with_watch(
@@ -176,86 +119,6 @@ impl<'a, const D: usize> RunOptions<'a, D> {
         show: &'a mut (dyn FnMut(&Progress) + Send),
     ) -> Self {
         Self { watch: Some(Watch { interval, show }), ..self }
-    }
-
-    /// The same options with a closure that moves bodies before each tick.
-    ///
-    /// # Examples
-    ///
-    /// A floor that rises by 1 m/s reaches a hand at rest 3 mm above it, and pushes:
-    ///
-    /// ```
-    /// use palpate_sim::{HandPath, Interpolation, RecordedDevice};
-    /// use palpate_field::{Pose, Shape, Vector};
-    /// use palpate_haptics::Servo;
-    /// use palpate_haptics::servo_loop::{Pace, RunOptions, run};
-    ///
-    /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
-    /// let rest = vec![Vector([0.0, 0.005]); 2];
-    /// let hand = HandPath::new(vec![0.0, 0.01], rest, Interpolation::Smooth)?;
-    /// let mut device = RecordedDevice::new(vec![hand])?;
-    /// let floor = Shape::half_space([0.0, 1.0], 0.0)?;
-    /// let mut servo = Servo::for_device(floor, &device)?; // with a probe of 2 mm
-    /// let mut rise = |time: f64, set_pose: &mut dyn FnMut(usize, Pose<2>)| {
-    ///     set_pose(0, Pose::translation(Vector([0.0, time])));
-    /// };
-    /// let options = RunOptions::new(0.01).with_pace(Pace::AsFastAsPossible);
-    /// let report = run(&mut servo, &mut device, options.with_motion(&mut rise))?;
-    /// assert!((report.largest_depth - 0.006).abs() < 1e-9); // after 9 ms
-    /// # Ok(())
-    /// # }
-    /// ```
-    #[must_use]
-    pub fn with_motion(self, motion: BodyMotion<'a, D>) -> Self {
-        Self { motion: Some(motion), ..self }
-    }
-
-    /// The same options with a flag that ends the run.
-    #[must_use]
-    pub fn with_interrupt(self, flag: &'a AtomicBool) -> Self {
-        Self { interrupt: Some(flag), ..self }
-    }
-
-    /// The same options, going on when the device is lost.
-    ///
-    /// # Examples
-    ///
-    /// A device that can be opened again at the fifth attempt:
-    ///
-    /// ```
-    /// use palpate_sim::{Fault, FaultKind, HandPath, Interpolation, RecordedDevice};
-    /// use palpate_sim::SimulatedTransport;
-    /// use palpate_field::Shape;
-    /// use palpate_haptics::Servo;
-    /// use palpate_haptics::servo_loop::{Ending, Pace, Reconnection, RunOptions, run};
-    ///
-    /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
-    /// let ends = vec![[0.0, 0.08].into(), [0.0, 0.05].into()];
-    /// let press = HandPath::new(vec![0.0, 1.0], ends, Interpolation::Smooth)?;
-    /// let away = FaultKind::Lost { attempts: 5 };
-    /// let away = Fault { start: 0.3, duration: 0.0, kind: away };
-    /// let device = RecordedDevice::new(vec![press])?;
-    /// let mut device = SimulatedTransport::new(device, vec![away])?;
-    /// let mut servo = Servo::for_device(Shape::circle(0.05)?, &device)?;
-    ///
-    /// let options = RunOptions::new(1.0).with_pace(Pace::AsFastAsPossible);
-    /// let options = options.with_reconnection(Reconnection::every(0.02)?);
-    /// let report = run(&mut servo, &mut device, options)?;
-    /// assert_eq!((report.ending, report.ticks), (Ending::Finished, 1000));
-    /// assert_eq!((report.connection.losses, report.connection.reconnections), (1, 1));
-    /// assert!((report.connection.lost_time - 5.0 * 0.02).abs() < 1e-9);
-    /// # Ok(())
-    /// # }
-    /// ```
-    #[must_use]
-    pub fn with_reconnection(self, reconnection: Reconnection) -> Self {
-        Self { reconnection: Some(reconnection), ..self }
-    }
-
-    /// The same options with touches that are played on a device that vibrates.
-    #[must_use]
-    pub fn with_vibration(self, vibration: Vibration<'a>) -> Self {
-        Self { vibration: Some(vibration), ..self }
     }
 }
 
@@ -367,7 +230,7 @@ impl<const D: usize> std::fmt::Debug for RunOptions<'_, D> {
 /// let ball = Shape::from_kernel(Ball::new(0.05)?);
 /// let mut servo = Servo::for_device(ball, &device)?;
 ///
-/// let options = RunOptions::new(1.0).with_pace(Pace::AsFastAsPossible);
+/// let options = RunOptions { pace: Pace::AsFastAsPossible, ..RunOptions::new(1.0) };
 /// let report = run(&mut servo, &mut device, options)?;
 /// assert_eq!(report.ticks, 1000);
 /// assert!((report.largest_depth - 0.002).abs() < 1e-5); // the probe's radius

@@ -35,10 +35,13 @@ pub type ThreadMotion<const D: usize> =
 /// ```
 /// use palpate_haptics::servo_loop::ThreadOptions;
 ///
-/// let options = ThreadOptions::<3>::default().with_duration(2.0).with_recorder(2000);
+/// let options = ThreadOptions {
+///     duration: Some(2.0),
+///     rows: Some(2000),
+///     ..ThreadOptions::<3>::default()
+/// };
 /// assert_eq!((options.duration, options.rows), (Some(2.0), Some(2000)));
 /// ```
-#[non_exhaustive]
 pub struct ThreadOptions<const D: usize> {
     /// The time for which the servo runs [s]; `None` means until [`ServoThread::end`].
     pub duration: Option<f64>,
@@ -80,38 +83,6 @@ impl<const D: usize> Default for ThreadOptions<D> {
 }
 
 impl<const D: usize> ThreadOptions<D> {
-    /// The same options with an end after `duration` [s].
-    #[must_use]
-    pub fn with_duration(self, duration: f64) -> Self {
-        Self { duration: Some(duration), ..self }
-    }
-
-    /// The same options with a request for a raised priority or without.
-    #[must_use]
-    pub fn with_raised_priority(self, is_raised: bool) -> Self {
-        Self { raises_priority: is_raised, ..self }
-    }
-
-    /// The same options with rehearsals or without.
-    #[must_use]
-    pub fn with_rehearsals(self, rehearses: bool) -> Self {
-        Self { rehearses, ..self }
-    }
-
-    /// The same options with a recorder in which so many rows wait to be
-    /// [taken](ServoThread::take_records). Rows that find it full are
-    /// [counted](RunReport::rows_dropped).
-    #[must_use]
-    pub fn with_recorder(self, rows: usize) -> Self {
-        Self { rows: Some(rows), ..self }
-    }
-
-    /// The same options with other capacities of the hand-off.
-    #[must_use]
-    pub fn with_handoff(self, handoff: HandoffOptions) -> Self {
-        Self { handoff, ..self }
-    }
-
     /// The same options with a closure that moves bodies before each tick, as [`BodyMotion`] does in a
     /// call. That of a built scene of `palpate-scene` is `move |time, set_pose|
     /// scene.motion()(time, set_pose)`.
@@ -132,10 +103,12 @@ impl<const D: usize> ThreadOptions<D> {
     /// let device = Box::new(RecordedDevice::new(vec![hand])?);
     /// let floor = Shape::half_space([0.0, 1.0], 0.0)?;
     /// let servo = Servo::for_device(floor, &*device)?; // with a probe of 2 mm
-    /// let options = ThreadOptions::default()
-    ///     .with_raised_priority(false)
-    ///     .with_duration(0.01)
-    ///     .with_motion(|time, set_pose| set_pose(0, Pose::translation([0.0, time])));
+    /// let options = ThreadOptions {
+    ///     raises_priority: false,
+    ///     duration: Some(0.01),
+    ///     ..ThreadOptions::default()
+    /// }
+    /// .with_motion(|time, set_pose| set_pose(0, Pose::translation([0.0, time])));
     /// let thread = ServoThread::start_on(VirtualClock::new(), servo, device, options)?;
     /// let report = thread.join().report;
     /// assert!((report.largest_depth - 0.006).abs() < 1e-9); // after 9 ms
@@ -148,59 +121,6 @@ impl<const D: usize> ThreadOptions<D> {
         motion: impl FnMut(f64, &mut dyn FnMut(usize, Pose<D>)) + Send + 'static,
     ) -> Self {
         Self { motion: Some(Box::new(motion)), ..self }
-    }
-
-    /// The same options, going on when the device is lost.
-    #[must_use]
-    pub fn with_reconnection(self, reconnection: Reconnection) -> Self {
-        Self { reconnection: Some(reconnection), ..self }
-    }
-
-    /// The same options with this emergency stop, which other servos may share: one press stops all
-    /// of them. While it is stopped, the servo begins without forces.
-    #[must_use]
-    pub fn with_stop_switch(self, switch: StopSwitch) -> Self {
-        Self { stop_switch: Some(switch), ..self }
-    }
-
-    /// The same options with touches that are played on a device that vibrates. The thread owns
-    /// that device, silences it however it ends, and gives it [back](EndedThread::vibration).
-    ///
-    /// # Examples
-    ///
-    /// A finger that presses on a floor for a second:
-    ///
-    /// ```
-    /// use palpate_sim::{Glove, HandPath, Interpolation, VibrationRecorder};
-    /// use palpate_field::Shape;
-    /// use palpate_haptics::Servo;
-    /// use palpate_haptics::servo_loop::{ServoThread, ThreadOptions, Vibration, VirtualClock};
-    /// use palpate_vibration::{Mapping, MappingOptions};
-    ///
-    /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
-    /// let ends = vec![[0.0, 0.03].into(), [0.0, -0.001].into()];
-    /// let press = HandPath::new(vec![0.0, 0.5], ends, Interpolation::Smooth)?;
-    /// let glove = Box::new(Glove::new(vec![press])?);
-    /// let servo = Servo::for_device(Shape::half_space([0.0, 1.0], 0.0)?, &*glove)?;
-    ///
-    /// let vest = VibrationRecorder::new(1);
-    /// let vibration = Vibration::new(Mapping::new(MappingOptions::default())?, vest);
-    /// let options = ThreadOptions::default()
-    ///     .with_raised_priority(false)
-    ///     .with_duration(1.0)
-    ///     .with_vibration(vibration);
-    /// let thread = ServoThread::start_on(VirtualClock::new(), servo, glove, options)?;
-    /// let ended = thread.join();
-    /// let played = ended.report.vibration.ok_or("touches were played")?;
-    /// assert!(played.commands == 50 && played.strongest > 0.1);
-    /// let vest = ended.vibration.ok_or("the device comes back")?.into_device();
-    /// assert_eq!(vest.channels(), 1);
-    /// # Ok(())
-    /// # }
-    /// ```
-    #[must_use]
-    pub fn with_vibration(self, vibration: Vibration<'static>) -> Self {
-        Self { vibration: Some(vibration), ..self }
     }
 }
 
@@ -269,7 +189,7 @@ impl From<NumberError> for StartError {
 /// let servo = Servo::for_device(ball, &*device)?;
 ///
 /// let (clock, mut driver) = VirtualClock::driven();
-/// let options = ThreadOptions::default().with_raised_priority(false);
+/// let options = ThreadOptions { raises_priority: false, ..ThreadOptions::default() };
 /// let mut thread = ServoThread::start_on(clock, servo, device, options)?;
 /// driver.advance(Duration::ZERO);
 /// let snapshot = thread.control().latest().ok_or("tick 0 is over")?;
@@ -439,10 +359,12 @@ impl<const D: usize> ServoThread<D> {
     /// let servo = Servo::for_device(Shape::circle(0.05)?, &*device)?;
     ///
     /// let (clock, mut driver) = VirtualClock::driven();
-    /// let options = ThreadOptions::default()
-    ///     .with_raised_priority(false)
-    ///     .with_duration(0.25)
-    ///     .with_recorder(100);
+    /// let options = ThreadOptions {
+    ///     raises_priority: false,
+    ///     duration: Some(0.25),
+    ///     rows: Some(100),
+    ///     ..ThreadOptions::default()
+    /// };
     /// let mut thread = ServoThread::start_on(clock, servo, device, options)?;
     /// let mut records = thread.take_records().ok_or("a recorder was requested")?;
     /// let mut rows = Vec::new();

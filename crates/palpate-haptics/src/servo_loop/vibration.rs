@@ -39,7 +39,7 @@ const COMMAND_RATE: f64 = 50.0;
 /// let mut vest = VibrationRecorder::new(1);
 /// let mapping = Mapping::new(MappingOptions::default())?;
 /// let vibration = Vibration::new(mapping, &mut vest).with_materials(&[wood]);
-/// let options = RunOptions::new(1.0).with_pace(Pace::AsFastAsPossible);
+/// let options = RunOptions { pace: Pace::AsFastAsPossible, ..RunOptions::new(1.0) };
 /// let report = run(&mut servo, &mut glove, options.with_vibration(vibration))?;
 /// assert_eq!(report.vibration.map(|played| played.commands), Some(50));
 /// let amplitudes = vest.played().map(|commands| commands[0].tone.amplitude);

@@ -103,7 +103,7 @@ fn wall() -> Shape<2> {
 }
 
 fn fast<'a>(duration: f64) -> RunOptions<'a, 2> {
-    RunOptions::new(duration).with_pace(Pace::AsFastAsPossible)
+    RunOptions { pace: Pace::AsFastAsPossible, ..RunOptions::new(duration) }
 }
 
 #[test]
@@ -149,7 +149,8 @@ fn what_cannot_be_opened_gets_no_forces_and_what_opens_in_part_is_closed() {
     ] {
         let mut device = Called::new(Some((fails, false)));
         let mut servo = Servo::for_device(wall(), &device).unwrap();
-        let options = fast(0.01).with_reconnection(Reconnection::every(1.0).unwrap());
+        let options =
+            RunOptions { reconnection: Some(Reconnection::every(1.0).unwrap()), ..fast(0.01) };
         let report = run(&mut servo, &mut device, options).unwrap();
         assert_eq!(device.calls, calls);
         assert_eq!((report.ending, report.ticks), (Ending::Finished, 10));
@@ -190,7 +191,9 @@ fn a_device_that_stays_away_ends_the_run_after_the_patience() {
     let mut device = pressing(vec![fault(0.2, 0.0, FaultKind::Lost { attempts: 1000 })]);
     let mut servo = Servo::for_device(wall(), &device).unwrap();
     let patient = Reconnection::every(0.01).unwrap().with_patience(0.1).unwrap();
-    let report = run(&mut servo, &mut device, fast(1.0).with_reconnection(patient)).unwrap();
+    let report =
+        run(&mut servo, &mut device, RunOptions { reconnection: Some(patient), ..fast(1.0) })
+            .unwrap();
     assert!(matches!(report.ending, Ending::DeviceLost { .. }), "{report}");
     assert!((report.duration - 0.31).abs() < 1e-9 && !report.is_released, "{report}");
     assert!((report.connection.lost_time - 0.11).abs() < 1e-9);
@@ -201,10 +204,12 @@ fn a_device_that_stays_away_ends_the_run_after_the_patience() {
 fn a_thread_finds_its_device_again() {
     let device = pressing(vec![fault(0.2, 0.0, FaultKind::Lost { attempts: 3 })]);
     let servo = Servo::for_device(wall(), &device).unwrap();
-    let options = ThreadOptions::default()
-        .with_raised_priority(false)
-        .with_duration(1.0)
-        .with_reconnection(Reconnection::every(0.05).unwrap());
+    let options = ThreadOptions {
+        raises_priority: false,
+        duration: Some(1.0),
+        reconnection: Some(Reconnection::every(0.05).unwrap()),
+        ..ThreadOptions::default()
+    };
     let thread = ServoThread::start_on(VirtualClock::new(), servo, Box::new(device), options);
     let report = thread.unwrap().join().report;
     assert_eq!((&report.ending, report.ticks), (&Ending::Finished, 1000));
@@ -250,7 +255,8 @@ fn another_device_that_bears_less_is_no_reconnection() {
     let profile = DeviceProfile { max_force: 3.0, ..DeviceProfile::unlimited("swapped") };
     let mut device = Swapped { device, profile };
     let mut servo = Servo::for_device(wall(), &device).unwrap();
-    let options = fast(1.0).with_reconnection(Reconnection::every(0.01).unwrap());
+    let options =
+        RunOptions { reconnection: Some(Reconnection::every(0.01).unwrap()), ..fast(1.0) };
     let report = run(&mut servo, &mut device, options).unwrap();
     let reason = report.connection.last_loss.unwrap();
     assert!(reason.contains("max_force of 3 N, but this device has 0.5 N"), "{reason}");
@@ -266,7 +272,9 @@ fn another_device_does_not_renew_the_patience() {
     let mut device = Swapped { device, profile };
     let mut servo = Servo::for_device(wall(), &device).unwrap();
     let patient = Reconnection::every(0.01).unwrap().with_patience(0.05).unwrap();
-    let report = run(&mut servo, &mut device, fast(1.0).with_reconnection(patient)).unwrap();
+    let report =
+        run(&mut servo, &mut device, RunOptions { reconnection: Some(patient), ..fast(1.0) })
+            .unwrap();
     assert!(matches!(report.ending, Ending::DeviceLost { .. }), "{:?}", report.ending);
     assert!((report.connection.lost_time - 0.06).abs() < 1e-9, "{:?}", report.connection);
 }
@@ -278,7 +286,7 @@ fn a_measurement_at_no_time_is_a_stale_one() {
         let mut device = pressing(Vec::new()).pacing_at(1000.0).unwrap();
         let mut servo = Servo::for_device(wall(), &device).unwrap();
         let mut jumping = Jumping { device: &mut device, ticks: 0, jump, is_once: true };
-        let options = RunOptions::new(0.2).with_pace(Pace::Device);
+        let options = RunOptions { pace: Pace::Device, ..RunOptions::new(0.2) };
         let report = run_on(&mut VirtualClock::new(), &mut servo, &mut jumping, options);
         let report = report.unwrap();
         assert_eq!(report.connection.stale_ticks, 1);
@@ -294,7 +302,8 @@ fn a_pacing_device_gives_the_time_and_the_lateness() {
     assert_eq!(servo.options().rate, 500.0);
     let mut times = Vec::new();
     let mut sink = |row: &palpate_haptics::servo_loop::TraceRow<2>| times.push(row.time_s);
-    let options = RunOptions::new(1.0).with_pace(Pace::Device).with_sink(&mut sink);
+    let options =
+        RunOptions { pace: Pace::Device, sink: Some(&mut sink), ..RunOptions::new(1.0) };
     let report = run_on(&mut VirtualClock::new(), &mut servo, &mut device, options).unwrap();
     assert_eq!((report.ticks, report.connection.stale_ticks), (500, 6));
     for (tick, time) in times.iter().enumerate() {
@@ -312,7 +321,7 @@ fn a_measurement_that_comes_late_is_a_late_tick() {
     let mut servo = Servo::for_device(wall(), &device).unwrap();
     // A clock that stands still for a device whose times jump.
     let mut jumping = Jumping { device: &mut device, ticks: 0, jump: 0.007, is_once: false };
-    let options = RunOptions::new(0.1).with_pace(Pace::Device);
+    let options = RunOptions { pace: Pace::Device, ..RunOptions::new(0.1) };
     let report = run_on(&mut VirtualClock::new(), &mut servo, &mut jumping, options).unwrap();
     assert_eq!(report.missed_deadlines, 1);
     assert_eq!(report.safety[0].watchdog.trips, 1);
@@ -362,7 +371,7 @@ fn a_pace_or_a_rate_that_does_not_fit_is_refused() {
     assert_eq!(error, HapticsError::Pace { is_device: true });
     let said = "the device sets the pace itself: run it with `Pace::Device`";
     assert_eq!(error.to_string(), said);
-    let options = RunOptions::new(1.0).with_pace(Pace::Device);
+    let options = RunOptions { pace: Pace::Device, ..RunOptions::new(1.0) };
     let error = run(&mut servo, &mut pressing(Vec::new()), options).unwrap_err();
     assert!(error.to_string().starts_with("the device sets no pace"), "{error}");
 
@@ -385,7 +394,10 @@ fn gripping() -> SimulatedDevice<2> {
         least_damping: 1.0,
         friction: 0.0,
         max_force: 3.0,
-        gripper: Some(GripperProfile::new(0.03, 5.0).with_max_force_rate(1000.0)),
+        gripper: Some(GripperProfile {
+            max_force_rate: 1000.0,
+            ..GripperProfile::new(0.03, 5.0)
+        }),
         ..DeviceProfile::unlimited("gripping")
     })
     .with_buttons(["front", "rear"]);
@@ -403,7 +415,11 @@ fn buttons_are_events_and_part_of_the_snapshot() {
     let device = gripping();
     let servo = Servo::for_device(wall(), &device).unwrap();
     let (clock, mut driver) = VirtualClock::driven();
-    let options = ThreadOptions::default().with_raised_priority(false).with_duration(0.5);
+    let options = ThreadOptions {
+        raises_priority: false,
+        duration: Some(0.5),
+        ..ThreadOptions::default()
+    };
     let mut thread = ServoThread::start_on(clock, servo, Box::new(device), options).unwrap();
     driver.advance(Duration::from_millis(250));
     let snapshot = thread.control().latest().unwrap();
@@ -425,7 +441,11 @@ fn a_gripper_gets_a_limited_force_that_stops_and_rises() {
     let device = gripping();
     let servo = Servo::for_device(wall(), &device).unwrap();
     let (clock, mut driver) = VirtualClock::driven();
-    let options = ThreadOptions::default().with_raised_priority(false).with_duration(2.0);
+    let options = ThreadOptions {
+        raises_priority: false,
+        duration: Some(2.0),
+        ..ThreadOptions::default()
+    };
     let mut thread = ServoThread::start_on(clock, servo, Box::new(device), options).unwrap();
     driver.advance(Duration::ZERO);
     let control = thread.control();
@@ -490,7 +510,7 @@ fn a_driver_that_is_not_ready_is_waited_for_and_its_repeats_are_counted() {
             mailbox.set_at(time, &[PointState::at_rest(Vector([0.0, y]))]).unwrap();
         }
     };
-    let options = fast(0.04).with_motion(&mut sets);
+    let options = RunOptions { motion: Some(&mut sets), ..fast(0.04) };
     let report = run(&mut servo, &mut device, options).unwrap();
     // What is set in a tick is read in the next.
     let connection = &report.connection;
@@ -505,7 +525,8 @@ fn a_driver_that_is_not_ready_is_waited_for_and_its_repeats_are_counted() {
 fn a_transport_counts_the_calls_around_a_run() {
     let mut device = pressing(vec![fault(0.1, 0.0, FaultKind::Lost { attempts: 2 })]);
     let mut servo = Servo::for_device(wall(), &device).unwrap();
-    let options = fast(0.2).with_reconnection(Reconnection::every(0.01).unwrap());
+    let options =
+        RunOptions { reconnection: Some(Reconnection::every(0.01).unwrap()), ..fast(0.2) };
     run(&mut servo, &mut device, options).unwrap();
     let Calls { opened, failed, enabled, closed, .. } = device.calls();
     assert_eq!((opened, failed, enabled, closed), (2, 1, 2, 2));

@@ -128,10 +128,12 @@ impl Held {
     fn run(&mut self, duration: f64) -> Felt {
         let mut recorder = Recorder::new((duration * RATE) as usize + 1);
         let pace = if self.device.paces() { Pace::Device } else { Pace::RealTime };
-        let options = RunOptions::new(duration)
-            .with_pace(pace)
-            .with_recorder(&mut recorder)
-            .with_reconnection(Reconnection::every(0.02).unwrap());
+        let options = RunOptions {
+            pace,
+            recorder: Some(&mut recorder),
+            reconnection: Some(Reconnection::every(0.02).unwrap()),
+            ..RunOptions::new(duration)
+        };
         let clock = &mut VirtualClock::new();
         let report = run_on(clock, &mut self.servo, &mut self.device, options).unwrap();
         Felt { report, rows: recorder.rows().to_vec() }

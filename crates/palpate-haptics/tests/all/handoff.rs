@@ -102,7 +102,7 @@ fn start(
 }
 
 fn plain() -> ThreadOptions<2> {
-    ThreadOptions::default().with_raised_priority(false)
+    ThreadOptions { raises_priority: false, ..ThreadOptions::default() }
 }
 
 fn up(way: f64) -> Pose<2> {
@@ -258,7 +258,7 @@ fn scenes_come_back_and_are_dropped_by_the_next_call() {
 fn events_come_in_order_with_their_ticks_and_are_counted_where_there_is_no_room() {
     let hand = Hand::at(&[[0.0, 0.25]]);
     let handoff = HandoffOptions { events: 3, ..HandoffOptions::default() };
-    let options = plain().with_handoff(handoff);
+    let options = ThreadOptions { handoff, ..plain() };
     let (mut thread, mut driver) = start(servo(floor(0.0), 1), &hand, options);
     let mut tap = |times: u64| {
         for _ in 0..times {
@@ -317,7 +317,7 @@ fn ten_kilohertz_have_ten_times_the_ticks() {
         let options = ServoOptions { rate, ..ServoOptions::default() };
         let servo = Servo::new(half_space([0.0, 1.0], 0.0), 1, options).unwrap();
         let servo = without_limits(servo);
-        let options = plain().with_duration(0.5);
+        let options = ThreadOptions { duration: Some(0.5), ..plain() };
         let hand_of_thread = Box::new(hand.clone());
         let clock = VirtualClock::new();
         let ended =
@@ -382,7 +382,7 @@ fn what_cannot_run_is_refused() {
     let refused = HapticsError::ContactPoints { servo: 1, device: 2 };
     assert_eq!(error, StartError::Haptics(refused));
     let one = Box::new(Hand::at(&[[0.0, 0.0]]));
-    let options = plain().with_duration(-1.0);
+    let options = ThreadOptions { duration: Some(-1.0), ..plain() };
     let error = ServoThread::start(servo(floor(0.0), 1), one, options).unwrap_err();
     assert_eq!(error.to_string(), "duration must be zero or more and finite, got -1 s");
 }

@@ -67,7 +67,7 @@ fn every_known_device_rests_on_a_ball() {
         let protection = Protection::new(profile.clone()).with(|s| s.rise_rate = f64::INFINITY);
         let servo = Servo::new(ball, 1, ServoOptions::of_device(profile)).unwrap();
         let mut servo = servo.protected(&protection).unwrap();
-        let options = RunOptions::new(1.5).with_pace(Pace::AsFastAsPossible);
+        let options = RunOptions { pace: Pace::AsFastAsPossible, ..RunOptions::new(1.5) };
         let report = run(&mut servo, &mut device, options).unwrap();
         assert!(report.contact_time > 1.0, "{name}: {report:?}");
         assert!(
@@ -85,7 +85,7 @@ fn two_gloves_feel_with_24_points() {
     assert_eq!(gloves.points(), 24);
     let ball = Shape::from_kernel(Ball::new(0.05).unwrap());
     let mut servo = Servo::for_device(ball, &gloves).unwrap();
-    let options = RunOptions::new(1.5).with_pace(Pace::AsFastAsPossible);
+    let options = RunOptions { pace: Pace::AsFastAsPossible, ..RunOptions::new(1.5) };
     let report = run(&mut servo, &mut gloves, options).unwrap();
     assert_eq!((report.points, report.ticks), (24, 1500));
     assert!(report.largest_depth > 0.005, "{report:?}");

@@ -94,7 +94,7 @@ fn floor() -> Bodies<2> {
 fn a_run_keeps_the_limits_of_its_device() {
     let mut device = Fragile::new();
     let mut servo = Servo::for_device(floor(), &device).unwrap();
-    let options = RunOptions::new(3.0).with_pace(Pace::AsFastAsPossible);
+    let options = RunOptions { pace: Pace::AsFastAsPossible, ..RunOptions::new(3.0) };
     run(&mut servo, &mut device, options).unwrap();
     device.check("run");
 }
@@ -104,7 +104,7 @@ fn a_thread_keeps_the_limits_of_its_device_under_new_bodies_and_stops() {
     let device = Fragile::new();
     let servo = Servo::for_device(half_space([0.0, 1.0], 0.0), &device).unwrap();
     let (clock, mut driver) = VirtualClock::driven();
-    let options = ThreadOptions::default().with_raised_priority(false);
+    let options = ThreadOptions { raises_priority: false, ..ThreadOptions::default() };
     let mut thread =
         ServoThread::start_on(clock, servo, Box::new(device.clone()), options).unwrap();
     let switch = thread.control().stop_switch();
@@ -166,7 +166,7 @@ fn a_servo_does_not_run_with_a_device_that_bears_less_than_its_own() {
     let servo = Servo::for_device(floor(), &Fragile::new()).unwrap();
     let run_with = |profile: DeviceProfile| {
         let mut weak = Fragile { profile, ..Fragile::new() };
-        let options = RunOptions::new(0.01).with_pace(Pace::AsFastAsPossible);
+        let options = RunOptions { pace: Pace::AsFastAsPossible, ..RunOptions::new(0.01) };
         run(&mut servo.clone(), &mut weak, options).map(|report| report.ticks)
     };
     let own = Fragile::new().profile;
@@ -193,7 +193,7 @@ fn a_thread_that_is_dropped_writes_its_zero_forces_first() {
     let device = Fragile::new();
     let servo = Servo::for_device(floor(), &device).unwrap();
     let (clock, mut driver) = VirtualClock::driven();
-    let options = ThreadOptions::default().with_raised_priority(false);
+    let options = ThreadOptions { raises_priority: false, ..ThreadOptions::default() };
     let thread =
         ServoThread::start_on(clock, servo, Box::new(device.clone()), options).unwrap();
     driver.advance(Duration::from_millis(250));

@@ -42,10 +42,12 @@ fn a_sink_gets_every_row_in_order_at_either_pace() {
         let mut recorder = Recorder::new(2000);
         let mut rows = Vec::new();
         let mut sink = |row: &TraceRow<3>| rows.push(*row);
-        let options = RunOptions::new(1.0)
-            .with_pace(pace)
-            .with_recorder(&mut recorder)
-            .with_sink(&mut sink);
+        let options = RunOptions {
+            pace,
+            recorder: Some(&mut recorder),
+            sink: Some(&mut sink),
+            ..RunOptions::new(1.0)
+        };
         // On a virtual clock the run is faster than the thread of the sink, whose queue has room
         // for a second.
         let mut clock = VirtualClock::new();
@@ -66,10 +68,12 @@ fn an_interrupted_run_keeps_what_it_has() {
         rows.push(*row);
         left.store(row.time_s >= 0.25, Ordering::Relaxed);
     };
-    let options = RunOptions::new(1.0)
-        .with_pace(Pace::AsFastAsPossible)
-        .with_interrupt(&left)
-        .with_sink(&mut sink);
+    let options = RunOptions {
+        pace: Pace::AsFastAsPossible,
+        interrupt: Some(&left),
+        sink: Some(&mut sink),
+        ..RunOptions::new(1.0)
+    };
     let report = run(&mut servo, &mut device, options).unwrap();
     assert_eq!((report.ending, report.ticks), (Ending::Interrupted, 251));
     assert_eq!(rows.len(), 502);
@@ -99,7 +103,8 @@ impl Device<3> for Unplugged {
 #[test]
 fn a_thread_keeps_the_rows_before_its_device_was_lost() {
     let device = Box::new(Unplugged(device()));
-    let options = ThreadOptions::default().with_raised_priority(false).with_recorder(1000);
+    let options =
+        ThreadOptions { raises_priority: false, rows: Some(1000), ..ThreadOptions::default() };
     let servo = servo(&*device);
     let thread = ServoThread::start_on(VirtualClock::new(), servo, device, options).unwrap();
     let ended = thread.join();
@@ -114,17 +119,22 @@ fn a_thread_keeps_the_rows_before_its_device_was_lost() {
 fn a_thread_whose_rows_are_taken_meanwhile_loses_none() {
     let mut in_call = device();
     let mut recorder = Recorder::new(2000);
-    let options =
-        RunOptions::new(1.0).with_pace(Pace::AsFastAsPossible).with_recorder(&mut recorder);
+    let options = RunOptions {
+        pace: Pace::AsFastAsPossible,
+        recorder: Some(&mut recorder),
+        ..RunOptions::new(1.0)
+    };
     run(&mut servo(&in_call), &mut in_call, options).unwrap();
 
     let device = Box::new(device());
     let servo = servo(&*device);
     let (clock, mut driver) = VirtualClock::driven();
-    let options = ThreadOptions::default()
-        .with_raised_priority(false)
-        .with_duration(1.0)
-        .with_recorder(64);
+    let options = ThreadOptions {
+        raises_priority: false,
+        duration: Some(1.0),
+        rows: Some(64),
+        ..ThreadOptions::default()
+    };
     let mut thread = ServoThread::start_on(clock, servo, device, options).unwrap();
     let mut records = thread.take_records().unwrap();
     assert!(thread.take_records().is_none());
@@ -145,10 +155,12 @@ fn a_thread_whose_rows_are_taken_meanwhile_loses_none() {
 fn a_thread_says_how_many_rows_nobody_took() {
     let device = Box::new(device());
     let servo = servo(&*device);
-    let options = ThreadOptions::default()
-        .with_raised_priority(false)
-        .with_duration(1.0)
-        .with_recorder(64);
+    let options = ThreadOptions {
+        raises_priority: false,
+        duration: Some(1.0),
+        rows: Some(64),
+        ..ThreadOptions::default()
+    };
     let thread = ServoThread::start_on(VirtualClock::new(), servo, device, options).unwrap();
     let ended = thread.join();
     let mut records = ended.records.unwrap();

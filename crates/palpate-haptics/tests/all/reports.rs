@@ -16,7 +16,7 @@ fn hand(times: &[f64], heights: &[f64]) -> HandPath<2> {
 
 fn told(servo: &mut Servo<2>, hands: Vec<HandPath<2>>, duration: f64) -> RunReport {
     let mut device = RecordedDevice::new(hands).unwrap();
-    let options = RunOptions::new(duration).with_pace(Pace::AsFastAsPossible);
+    let options = RunOptions { pace: Pace::AsFastAsPossible, ..RunOptions::new(duration) };
     run(servo, &mut device, options).unwrap()
 }
 

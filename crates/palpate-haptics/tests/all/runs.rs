@@ -59,7 +59,7 @@ fn wall_servo(options: ServoOptions) -> Servo<2> {
 }
 
 fn fast<'a, const D: usize>(duration: f64) -> RunOptions<'a, D> {
-    RunOptions::new(duration).with_pace(Pace::AsFastAsPossible)
+    RunOptions { pace: Pace::AsFastAsPossible, ..RunOptions::new(duration) }
 }
 
 #[test]
@@ -69,7 +69,7 @@ fn a_report_counts_what_happened() {
         wall_servo(ServoOptions { rate: 128.0, max_force, ..ServoOptions::default() });
     let mut device = RecordedDevice::new(vec![press()]).unwrap();
     let mut recorder = Recorder::new(4 * 128);
-    let options = fast(4.0).with_recorder(&mut recorder);
+    let options = RunOptions { recorder: Some(&mut recorder), ..fast(4.0) };
     let report = run_on(&mut TestClock::default(), &mut servo, &mut device, options).unwrap();
 
     assert_eq!(report.ending, Ending::Finished);
@@ -116,7 +116,8 @@ fn a_body_that_moves_pushes_a_hand_at_rest_with_its_speed() {
     let mut rise = |time: f64, set_pose: &mut dyn FnMut(usize, Pose<2>)| {
         set_pose(0, Pose::translation(Vector([0.0, 0.125 * time.min(0.25)])));
     };
-    let options = fast(0.5).with_recorder(&mut recorder).with_motion(&mut rise);
+    let options =
+        RunOptions { recorder: Some(&mut recorder), motion: Some(&mut rise), ..fast(0.5) };
     run(&mut servo, &mut still(0.015625, 0.5), options).unwrap();
     let row = |tick: usize| recorder.rows()[tick];
     assert!(!row(15).contact);
@@ -143,7 +144,8 @@ fn a_body_that_slides_past_drags_a_hand_at_rest() {
             Pose::translation(Vector([0.2 * time, if time > 0.0 { 0.0 } else { -0.1 }])),
         );
     };
-    let options = fast(1.0).with_recorder(&mut recorder).with_motion(&mut slide);
+    let options =
+        RunOptions { recorder: Some(&mut recorder), motion: Some(&mut slide), ..fast(1.0) };
     run(&mut servo, &mut still(0.249, 1.0), options).unwrap();
     let last = recorder.rows()[999];
     assert!(last.contact && last.is_slipping);
@@ -157,7 +159,9 @@ fn a_panic_of_a_motion_ends_the_run_with_zero_forces() {
     let mut device = still(-0.001, 0.1);
     let mut bad =
         |time: f64, _: &mut dyn FnMut(usize, Pose<2>)| assert!(time < 0.05, "too late");
-    let report = run(&mut servo, &mut device, fast(0.1).with_motion(&mut bad)).unwrap();
+    let report =
+        run(&mut servo, &mut device, RunOptions { motion: Some(&mut bad), ..fast(0.1) })
+            .unwrap();
     assert_eq!(report.ending, Ending::Panicked { message: "too late".to_owned() });
     assert_eq!((report.ticks, device.forces()), (50, &[Vector::ZERO][..]));
 }
@@ -167,7 +171,7 @@ fn a_full_recorder_drops_rows_and_says_so() {
     let mut servo = wall_servo(ServoOptions::default());
     let mut device = RecordedDevice::new(vec![press()]).unwrap();
     let mut recorder = Recorder::new(100);
-    let options = fast(1.0).with_recorder(&mut recorder);
+    let options = RunOptions { recorder: Some(&mut recorder), ..fast(1.0) };
     let report = run(&mut servo, &mut device, options).unwrap();
     assert_eq!(
         (report.rows_dropped, recorder.dropped(), recorder.rows().len()),
@@ -182,7 +186,7 @@ fn a_paced_run_waits_for_every_tick_and_does_not_hurry_after_lost_time() {
     // In a rehearsal a tenth of a second is lost.
     let busy = vec![(1000, Duration::from_millis(100))];
     let mut clock = TestClock { busy, ..TestClock::default() };
-    let options = RunOptions::new(1.0).with_rehearsals(true);
+    let options = RunOptions { rehearses: true, ..RunOptions::new(1.0) };
     let report = run_on(&mut clock, &mut servo, &mut device, options).unwrap();
     let lateness = report.lateness.unwrap();
     // Two waits a tick: for the rehearsals and for the tick.
@@ -222,8 +226,12 @@ fn hash(pace: Pace) -> u64 {
     let path = Tour::new(bounds, 2.0).unwrap().over(&shape).unwrap();
     let mut device = RecordedDevice::new(vec![path]).unwrap();
     let mut recorder = Recorder::new(2000);
-    let options =
-        RunOptions::new(2.0).with_pace(pace).with_rehearsals(true).with_recorder(&mut recorder);
+    let options = RunOptions {
+        pace,
+        rehearses: true,
+        recorder: Some(&mut recorder),
+        ..RunOptions::new(2.0)
+    };
     run_on(&mut VirtualClock::new(), &mut servo, &mut device, options).unwrap();
     let numbers = recorder.rows().iter().flat_map(|row| [row.proxy.0, row.force.0].concat());
     numbers.fold(0xcbf2_9ce4_8422_2325, |hash, number| {
@@ -411,7 +419,7 @@ fn an_interrupted_run_ends_before_its_next_tick_with_no_force() {
     let options = ServoOptions { probe: Probe::new(0.0).unwrap(), ..ServoOptions::default() };
     let servo = Servo::new(half_space([0.0, 1.0], 0.0), 1, options).unwrap();
     let mut servo = servo.protected(&protection.with(|s| s.rise_rate = f64::INFINITY)).unwrap();
-    let options = fast(4.0).with_interrupt(&left);
+    let options = RunOptions { interrupt: Some(&left), ..fast(4.0) };
     let report = run(&mut servo, &mut device, options).unwrap();
     assert_eq!(report.ending, Ending::Interrupted);
     // The hand is at the wall after half a second, and below it in the tick after.

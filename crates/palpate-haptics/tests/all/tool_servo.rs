@@ -222,8 +222,11 @@ fn a_run_reports_what_the_tool_felt() {
     let mut servo = without_limits(servo);
     let mut device = press(vec![[0.0, 0.02, 0.0], [0.0, 0.007, 0.0]]);
     let mut recorder = Recorder::new(1000);
-    let options =
-        RunOptions::new(1.0).with_pace(Pace::AsFastAsPossible).with_recorder(&mut recorder);
+    let options = RunOptions {
+        pace: Pace::AsFastAsPossible,
+        recorder: Some(&mut recorder),
+        ..RunOptions::new(1.0)
+    };
     let report = run(&mut servo, &mut device, options).unwrap();
     let tool = report.tool.unwrap();
     assert_eq!((report.points, tool.points), (1, 41));
@@ -247,7 +250,7 @@ fn a_tool_with_too_small_a_budget_says_so() {
     let servo = Servo::with_tool(ground(smooth()), tool, ServoOptions::default()).unwrap();
     let mut servo = without_limits(servo);
     let mut device = press(vec![[0.0, 0.03, 0.0], [0.03, 0.015, 0.0]]);
-    let options = RunOptions::new(1.0).with_pace(Pace::AsFastAsPossible);
+    let options = RunOptions { pace: Pace::AsFastAsPossible, ..RunOptions::new(1.0) };
     let report = run(&mut servo, &mut device, options).unwrap();
     let tool = report.tool.unwrap();
     assert!(report.evaluations.max <= 100 && tool.degraded_ticks > 0, "{report:?}");
@@ -260,7 +263,7 @@ fn a_thread_hands_off_what_the_tool_does() {
     let servo = without_limits(servo);
     let device = Box::new(press(vec![[0.0, 0.02, 0.0]; 2]));
     let (clock, mut driver) = VirtualClock::driven();
-    let options = ThreadOptions::default().with_raised_priority(false);
+    let options = ThreadOptions { raises_priority: false, ..ThreadOptions::default() };
     let mut thread = ServoThread::start_on(clock, servo, device, options).unwrap();
     driver.advance(Duration::ZERO);
     let held = thread.control().latest().unwrap().tool.unwrap();

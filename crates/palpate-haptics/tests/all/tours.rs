@@ -28,7 +28,7 @@ fn toured_as<const D: usize>(shape: &Shape<D>, material: &Material) -> RunReport
     let body = Body::new(shape.clone(), Surface::new(material).unwrap()).unwrap();
     let bodies = Bodies::new(vec![body]).unwrap();
     let mut servo = without_limits(Servo::new(bodies, 1, options).unwrap());
-    let options = RunOptions::new(DURATION).with_pace(Pace::AsFastAsPossible);
+    let options = RunOptions { pace: Pace::AsFastAsPossible, ..RunOptions::new(DURATION) };
     run(&mut servo, &mut device, options).unwrap()
 }
 
@@ -164,7 +164,7 @@ fn a_tour_presses_a_tiny_probe_as_deep_as_a_point() {
         let options =
             ServoOptions { max_force: f64::INFINITY, probe, ..ServoOptions::default() };
         let mut servo = without_limits(Servo::new(shape.clone(), 1, options).unwrap());
-        let options = RunOptions::new(5.0).with_pace(Pace::AsFastAsPossible);
+        let options = RunOptions { pace: Pace::AsFastAsPossible, ..RunOptions::new(5.0) };
         let report = run(&mut servo, &mut device, options).unwrap();
         assert_eq!(report.evaluations.budget_spent, 0, "{radius}");
         (report.largest_force, report.contact_time)
@@ -208,7 +208,7 @@ fn visited<const D: usize>(bodies: &[Shape<D>], bounds: Aabb<D>, duration: f64) 
     let scene = Bodies::new(parts.collect()).unwrap();
     let servo = Servo::new(scene, 1, ServoOptions::default()).unwrap();
     let mut device = RecordedDevice::new(vec![path.clone()]).unwrap();
-    let options = RunOptions::new(duration).with_pace(Pace::AsFastAsPossible);
+    let options = RunOptions { pace: Pace::AsFastAsPossible, ..RunOptions::new(duration) };
     let report = run(&mut without_limits(servo), &mut device, options).unwrap();
     let is_visit = tour.over(&whole).as_ref() != Ok(&path);
     let deep = report.largest_depth;

@@ -390,8 +390,11 @@ fn a_run_turns_the_tool_and_reports_the_torque() {
     device = device.with_profile(self::device(turning));
     let mut servo = for_device(servo::<3>(rigid(), coupling()), &device);
     let mut recorder = Recorder::new(1001);
-    let options =
-        RunOptions::new(1.001).with_pace(Pace::AsFastAsPossible).with_recorder(&mut recorder);
+    let options = RunOptions {
+        pace: Pace::AsFastAsPossible,
+        recorder: Some(&mut recorder),
+        ..RunOptions::new(1.001)
+    };
     let report = run(&mut servo, &mut device, options).unwrap();
     let tool = report.tool.unwrap();
     assert!(tool.largest_torque > 0.15, "{tool:?}");
@@ -451,7 +454,7 @@ fn a_device_that_is_lost_or_panics_gets_no_force_and_no_torque_last() {
         let inner = inner.with_profile(device(TurningProfile::unlimited()));
         let mut device = Fragile { inner, ticks: 0, panics, largest: 0.0 };
         let mut servo = for_device(servo::<3>(rigid(), coupling()), &device);
-        let options = RunOptions::new(2.0).with_pace(Pace::AsFastAsPossible);
+        let options = RunOptions { pace: Pace::AsFastAsPossible, ..RunOptions::new(2.0) };
         let report = run(&mut servo, &mut device, options).unwrap();
         assert_eq!(matches!(report.ending, Ending::Panicked { .. }), panics);
         assert_eq!(matches!(report.ending, Ending::DeviceLost { .. }), !panics);
@@ -525,7 +528,7 @@ fn another_thread_limits_and_stops_the_torque() {
     let device = Box::new(Shown(recorded.with_turns(turns.unwrap()), written.clone()));
     let servo = for_device(servo::<3>(rigid(), coupling()), &*device);
     let (clock, mut driver) = VirtualClock::driven();
-    let options = ThreadOptions::default().with_raised_priority(false);
+    let options = ThreadOptions { raises_priority: false, ..ThreadOptions::default() };
     let mut thread = ServoThread::start_on(clock, servo, device, options).unwrap();
     let mut torque_after = |milliseconds| {
         driver.advance(Duration::from_millis(milliseconds));

@@ -42,11 +42,11 @@ fn mapping() -> Mapping {
 }
 
 fn fast<'a>(duration: f64) -> RunOptions<'a, 2> {
-    RunOptions::new(duration).with_pace(Pace::AsFastAsPossible)
+    RunOptions { pace: Pace::AsFastAsPossible, ..RunOptions::new(duration) }
 }
 
 fn plain() -> ThreadOptions<2> {
-    ThreadOptions::default().with_raised_priority(false)
+    ThreadOptions { raises_priority: false, ..ThreadOptions::default() }
 }
 
 /// A motor whose commands the test sees, and that panics once, at the command of this number.
@@ -101,7 +101,9 @@ fn touches_are_played_and_a_device_that_shakes_no_more_ends_nothing() {
     let mut glove = VibrationRecorder::new(1);
     let (mut device, mut servo) = (hand(Vec::new()), servo(&Material::default()));
     let vibration = Vibration::new(mapping(), &mut glove).with_command_rate(100.0);
-    let report = run(&mut servo, &mut device, fast(1.0).with_vibration(vibration)).unwrap();
+    let report =
+        run(&mut servo, &mut device, RunOptions { vibration: Some(vibration), ..fast(1.0) })
+            .unwrap();
     let played = report.vibration.unwrap();
     assert_eq!((played.commands, played.lost), (100, None));
     let amplitudes: Vec<_> =
@@ -112,7 +114,9 @@ fn touches_are_played_and_a_device_that_shakes_no_more_ends_nothing() {
     assert_eq!(amplitudes.iter().copied().fold(0.0, f64::max), played.strongest);
 
     let vibration = Vibration::new(mapping(), Pulled(10));
-    let report = run(&mut servo, &mut device, fast(1.0).with_vibration(vibration)).unwrap();
+    let report =
+        run(&mut servo, &mut device, RunOptions { vibration: Some(vibration), ..fast(1.0) })
+            .unwrap();
     assert_eq!(report.ending, Ending::Finished);
     let played = report.vibration.unwrap();
     assert_eq!((played.commands, played.lost.as_deref()), (11, Some("pulled out")));
@@ -122,11 +126,11 @@ fn touches_are_played_and_a_device_that_shakes_no_more_ends_nothing() {
 fn another_number_of_channels_than_contact_points_is_refused() {
     let refused = HapticsError::ContactPoints { servo: 1, device: 2 };
     let two = || Vibration::new(mapping(), VibrationRecorder::new(2));
-    let options = fast(1.0).with_vibration(two());
+    let options = RunOptions { vibration: Some(two()), ..fast(1.0) };
     let error = run(&mut servo(&wood()), &mut hand(Vec::new()), options).unwrap_err();
     assert_eq!(error, refused);
 
-    let options = plain().with_vibration(two());
+    let options = ThreadOptions { vibration: Some(two()), ..plain() };
     let device = Box::new(hand(Vec::new()));
     let error = ServoThread::start(servo(&wood()), device, options).unwrap_err();
     assert_eq!(error, StartError::Haptics(refused));
@@ -139,11 +143,12 @@ fn a_thread_plays_what_a_run_plays_and_what_it_gives_back_plays_again() {
         vibration.with_materials(&[wood()]).with_command_rate(80.0)
     };
     let in_run = Motor::default();
-    let options = fast(1.0).with_vibration(vibration(&in_run));
+    let options = RunOptions { vibration: Some(vibration(&in_run)), ..fast(1.0) };
     let report = run(&mut servo(&wood()), &mut hand(Vec::new()), options).unwrap();
 
     let motor = Motor::default();
-    let options = plain().with_duration(1.0).with_vibration(vibration(&motor));
+    let options =
+        ThreadOptions { duration: Some(1.0), vibration: Some(vibration(&motor)), ..plain() };
     let (clock, device) = (VirtualClock::new(), Box::new(hand(Vec::new())));
     let ended = ServoThread::start_on(clock, servo(&wood()), device, options).unwrap().join();
     assert_eq!(motor.played(), in_run.played());
@@ -152,7 +157,11 @@ fn a_thread_plays_what_a_run_plays_and_what_it_gives_back_plays_again() {
     assert!(played.commands == 80 && played.strongest > 0.1, "{played:?}");
 
     // A second thread begins with the hand above the floor, as the first did.
-    let options = plain().with_duration(0.2).with_vibration(ended.vibration.unwrap());
+    let options = ThreadOptions {
+        duration: Some(0.2),
+        vibration: Some(ended.vibration.unwrap()),
+        ..plain()
+    };
     let (servo, device) = (ended.servo, ended.device);
     let thread = ServoThread::start_on(VirtualClock::new(), servo, device, options).unwrap();
     let ended = thread.join();
@@ -168,7 +177,12 @@ fn a_thread_that_ends_by_itself_leaves_the_motor_silent() {
     let trapped = plain().with_motion(|time, _| assert!(time < 0.6, "the motion is trapped"));
     let panicked = |message: &str| Ending::Panicked { message: message.to_owned() };
     for (motor, faults, options, ending) in [
-        (Motor::default(), vec![], plain().with_duration(0.6), Ending::Finished),
+        (
+            Motor::default(),
+            vec![],
+            ThreadOptions { duration: Some(0.6), ..plain() },
+            Ending::Finished,
+        ),
         (
             Motor::default(),
             vec![lost],
@@ -178,7 +192,10 @@ fn a_thread_that_ends_by_itself_leaves_the_motor_silent() {
         (Motor::default(), vec![], trapped, panicked("the motion is trapped")),
         (stuck, vec![], plain(), panicked("the motor is stuck")),
     ] {
-        let options = options.with_vibration(Vibration::new(mapping(), motor.clone()));
+        let options = ThreadOptions {
+            vibration: Some(Vibration::new(mapping(), motor.clone())),
+            ..options
+        };
         let (clock, device) = (VirtualClock::new(), Box::new(hand(faults)));
         let mut thread = ServoThread::start_on(clock, servo(&wood()), device, options).unwrap();
         while !thread.control().has_ended() {
@@ -200,7 +217,10 @@ fn a_thread_that_ends_by_itself_leaves_the_motor_silent() {
 fn a_thread_that_is_ended_or_dropped_leaves_the_motor_silent() {
     for is_dropped in [false, true] {
         let motor = Motor::default();
-        let options = plain().with_vibration(Vibration::new(mapping(), motor.clone()));
+        let options = ThreadOptions {
+            vibration: Some(Vibration::new(mapping(), motor.clone())),
+            ..plain()
+        };
         let (clock, mut driver) = VirtualClock::driven();
         let device = Box::new(hand(Vec::new()));
         let thread = ServoThread::start_on(clock, servo(&wood()), device, options).unwrap();

@@ -240,7 +240,8 @@ fn drawn(scene: &BuiltScene<3>, ask: &Ask, cancel: &Cancel) -> Result<Answer, St
     let (eye, target): (Vector<f64, 3>, _) = (point_of(eye)?, point_of(target)?);
     let camera = Camera::looking(eye, target, Lens::Perspective(*field_of_view));
     let camera = camera.map_err(said)?;
-    let settings = Settings::new(*width, *height).with_samples(2).with_shadows(Shadows::None);
+    let settings =
+        Settings { samples: 2, shadows: Shadows::None, ..Settings::new(*width, *height) };
     let drawn = render(&subject, &camera, &settings, &|_| !cancel.is_set()).map_err(said)?;
     let drawn = drawn.ok_or(CANCELLED)?;
     let mut png = Vec::new();

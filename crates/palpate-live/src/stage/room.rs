@@ -142,7 +142,11 @@ impl<const D: usize> Room<D> {
         // A clock that is held or slow stays so.
         speed.set(kept.map_or(1.0, |kept| kept.speed)).map_err(|error| error.to_string())?;
         let rows = (KEPT * terms.rate) as usize * lead.targets().len();
-        let mut options = ThreadOptions::default().with_stop_switch(stop).with_recorder(rows);
+        let mut options = ThreadOptions {
+            stop_switch: Some(stop),
+            rows: Some(rows),
+            ..ThreadOptions::default()
+        };
         if !scene.motions.is_empty() {
             let moving = Arc::clone(&scene);
             options =

@@ -356,7 +356,7 @@ fn the_mass_of_a_mesh_is_that_of_its_faces() {
     let [one, two] = [0.0, 0.5].map(|x| Soup::cuboid([x, 0.01 * x, 0.0], [1.0; 3]));
     let (both, findings) = solid(&one.and(two));
     assert!(findings.crossings > 0);
-    let mass = both.mass(1.0, MassLimits::default().with_tolerance(1e-2)).unwrap();
+    let mass = both.mass(1.0, MassLimits { tolerance: 1e-2, ..MassLimits::default() }).unwrap();
     let volume = 2.0 - 0.5 * 0.995;
     assert!(mass.cells > 0 && (mass.volume - volume).abs() <= mass.volume_error, "{mass:?}");
 }

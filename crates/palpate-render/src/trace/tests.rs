@@ -204,7 +204,7 @@ fn a_ray_along_a_wall_is_decided_by_few_models() {
 
 #[test]
 fn a_ray_without_budget_is_undecided() {
-    let settings = Settings::new(SIZE[0], SIZE[1]).with_budget(2);
+    let settings = Settings { budget: 2, ..Settings::new(SIZE[0], SIZE[1]) };
     let shape = Shape::torus(1.0, 0.3).unwrap();
     let studio = studio(shape, &settings);
     let mut tracer = studio.tracer();

@@ -20,7 +20,7 @@ fn every_profile_is_read_as_it_was_written() {
 /// Once they were left out.
 #[test]
 fn grippers_and_buttons_are_kept() {
-    let gripper = GripperProfile::new(0.025, 8.0).with_max_force_rate(2000.0);
+    let gripper = GripperProfile { max_force_rate: 2000.0, ..GripperProfile::new(0.025, 8.0) };
     let omega = palpate_device::profile_named("omega7").unwrap();
     let device =
         (DeviceProfile { gripper: Some(gripper), ..omega }).with_buttons(["front", "rear"]);

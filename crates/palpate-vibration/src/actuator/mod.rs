@@ -18,7 +18,7 @@ use crate::cue::MappingOptions;
 
 pub(crate) use drive::{CarrierDrive, Motor, MotorDrive};
 pub use model::ActuatorModel;
-pub use profiles::{ACTUATORS, UnknownActuator, actuator_named};
+pub use profiles::{ACTUATORS, actuator_named};
 
 /// The lowest frequency of a slide over a resonant actuator [Hz], whose carrier follows crests of
 /// any slowness: far below one crest a second nothing passes.

@@ -8,6 +8,8 @@
 //! counts as its start level, and the highest as its overdrive. What is not published is assumed: of the order of
 //! the rise and stop times in makers' data sheets of parts of that size, and listed as such.
 
+use palpate_field::UnknownName;
+
 use std::borrow::Cow;
 
 use super::{Actuator, Mechanism};
@@ -100,7 +102,7 @@ pub static ACTUATORS: [(&str, Actuator); 4] = [
 ///
 /// # Errors
 ///
-/// [`UnknownActuator`], which lists the known names.
+/// [`UnknownName`], which lists the known names.
 ///
 /// ```
 /// use palpate_vibration::actuator_named;
@@ -111,21 +113,12 @@ pub static ACTUATORS: [(&str, Actuator); 4] = [
 ///     "there is no actuator \"lar\"; there are erm, coin, lra, voice_coil"
 /// );
 /// ```
-pub fn actuator_named(name: &str) -> Result<Actuator, UnknownActuator> {
+pub fn actuator_named(name: &str) -> Result<Actuator, UnknownName> {
     let found = ACTUATORS.iter().find(|(known, _)| *known == name);
-    found.map(|(_, actuator)| actuator.clone()).ok_or_else(|| UnknownActuator(name.to_owned()))
-}
-
-/// No actuator has this name.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("there is no actuator {0:?}; there are {list}", list = names())]
-pub struct UnknownActuator(
-    /// The name that was asked for.
-    pub String,
-);
-
-fn names() -> String {
-    ACTUATORS.iter().map(|(name, _)| *name).collect::<Vec<_>>().join(", ")
+    let known = || ACTUATORS.iter().map(|(known, _)| *known);
+    found
+        .map(|(_, actuator)| actuator.clone())
+        .ok_or_else(|| UnknownName::new("actuator", name, known()))
 }
 
 #[cfg(test)]

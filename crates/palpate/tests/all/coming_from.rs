@@ -83,8 +83,10 @@ fn openhaptics() -> Outcome {
     let _ = Guide::to_point([0.0; 3], GuideOptions::default())?;
     assert!(servo.events().is_empty());
     let _ = servo.buttons();
-    let _: ThreadOptions<3> =
-        ThreadOptions::default().with_reconnection(Reconnection::every(0.5)?);
+    let _: ThreadOptions<3> = ThreadOptions {
+        reconnection: Some(Reconnection::every(0.5)?),
+        ..ThreadOptions::default()
+    };
     let mut thread = ServoThread::start(servo, Box::new(device), ThreadOptions::default())?;
     let _ = thread.control().latest();
     thread.end().report.unless_failed()?;
