@@ -46,7 +46,8 @@ const PAST: f64 = 4.0;
 /// let found = method.descend(&a, &far, Vector([-1.8, 0.4]), 1e-6)?;
 /// let proven = overlap(&a, &far, &Limits::new(1e-4), &mut PairWorkspace::new())?;
 /// assert!(found.value > 0.0 && proven.is_hit() == Some(true));
-/// let first = method.with_steps(1).descend(&a, &far, Vector([-1.8, 0.4]), 1e-6)?;
+/// let once = AlternatingProjection { steps: 1, ..method };
+/// let first = once.descend(&a, &far, Vector([-1.8, 0.4]), 1e-6)?;
 /// assert_eq!(first.steps, 1);
 /// # Ok(())
 /// # }

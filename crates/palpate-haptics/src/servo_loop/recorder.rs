@@ -80,7 +80,7 @@ pub(crate) struct TickTimes {
 
 /// Keeps the rows of a run, up to a fixed number.
 ///
-/// A run whose rows are more than memory holds goes to a [sink](super::RunOptions::with_sink);
+/// A run whose rows are more than memory holds goes to a [sink](super::RunOptions::sink);
 /// those of a [`ServoThread`](super::ServoThread) are taken while it runs, as [`Records`].
 #[derive(Clone, Debug)]
 pub struct Recorder<const D: usize> {

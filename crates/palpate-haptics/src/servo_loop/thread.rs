@@ -336,7 +336,7 @@ impl<const D: usize> ServoThread<D> {
         &mut self.control
     }
 
-    /// The recorded rows, if a [recorder](ThreadOptions::with_recorder) was requested; `None` from
+    /// The recorded rows, if a [recorder](ThreadOptions::rows) was requested; `None` from
     /// the second call on. Any thread may take rows from them while the servo runs, and after;
     /// rows that nobody takes are in [`EndedThread::records`].
     ///

@@ -21,7 +21,7 @@ const AXES: [&str; 3] = ["x", "y", "z"];
 ///
 /// Numbers are written so that reading them gives the same bits. Writing to a file is slower than
 /// ticks may be: write rows in another thread, taken from [`Records`](super::Records), or in a
-/// [sink](super::RunOptions::with_sink).
+/// [sink](super::RunOptions::sink).
 ///
 /// # Examples
 ///

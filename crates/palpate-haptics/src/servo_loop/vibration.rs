@@ -15,8 +15,8 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 const COMMAND_RATE: f64 = 50.0;
 
 /// Plays the touches of each contact point on an actuator of a device, in a
-/// [run](super::RunOptions::with_vibration) or in a
-/// [thread](super::ThreadOptions::with_vibration).
+/// [run](super::RunOptions::vibration) or in a
+/// [thread](super::ThreadOptions::vibration).
 ///
 /// # Examples
 ///
@@ -39,8 +39,12 @@ const COMMAND_RATE: f64 = 50.0;
 /// let mut vest = VibrationRecorder::new(1);
 /// let mapping = Mapping::new(MappingOptions::default())?;
 /// let vibration = Vibration::new(mapping, &mut vest).with_materials(&[wood]);
-/// let options = RunOptions { pace: Pace::AsFastAsPossible, ..RunOptions::new(1.0) };
-/// let report = run(&mut servo, &mut glove, options.with_vibration(vibration))?;
+/// let options = RunOptions {
+///     pace: Pace::AsFastAsPossible,
+///     vibration: Some(vibration),
+///     ..RunOptions::new(1.0)
+/// };
+/// let report = run(&mut servo, &mut glove, options)?;
 /// assert_eq!(report.vibration.map(|played| played.commands), Some(50));
 /// let amplitudes = vest.played().map(|commands| commands[0].tone.amplitude);
 /// assert!(amplitudes.clone().next() == Some(0.0) && amplitudes.fold(0.0, f64::max) > 0.1);
