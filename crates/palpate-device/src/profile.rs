@@ -84,8 +84,8 @@ pub struct DeviceProfile {
 }
 
 impl DeviceProfile {
-    /// The names of its numbers, of which [`assumed`](Self::assumed) has those that its source does
-    /// not tell.
+    /// The names of the numbers of a profile. [`assumed`](Self::assumed) lists those that the source
+    /// does not state.
     pub const NUMBERS: &'static [&'static str] = &[
         "max_force",
         "continuous_force",

@@ -40,8 +40,8 @@ pub struct TurningProfile {
 }
 
 impl TurningProfile {
-    /// The names of its numbers, of which [`assumed`](Self::assumed) has those that its source does
-    /// not tell.
+    /// The names of the numbers of a profile. [`assumed`](Self::assumed) lists those that the source
+    /// does not state.
     pub const NUMBERS: &'static [&'static str] = &[
         "max_torque",
         "continuous_torque",

@@ -140,11 +140,12 @@ impl LimitCycleOptions {
     }
 }
 
-/// The wanted forces by what gives them [N].
+/// The wanted force in parts, by its cause [N].
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ForcesOf<V> {
+    /// The force of bodies.
     pub(crate) bodies: V,
-    /// Those of guides and magnets.
+    /// The force of guides and magnets.
     pub(crate) guides: V,
 }
 

@@ -188,8 +188,8 @@ impl Synthesiser {
     ///
     /// # Errors
     ///
-    /// Those of [`new`](Self::new); [`DeviceError::Number`] also if a figure of the actuator
-    /// breaks its rule, or if the sample rate is less than twice the actuator's resonance.
+    /// As [`new`](Self::new); and [`DeviceError::Number`] if a figure of the actuator breaks its rule,
+    /// or if the sample rate is less than twice the actuator's resonance.
     pub fn for_actuator(
         mapping: &Mapping,
         actuator: &Actuator,

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! Simulated devices and gloves in a tick: nothing is allocated, whatever they are told.
+//! A tick of simulated devices and gloves allocates nothing, for any force and any time.
 use assert_no_alloc::{AllocDisabler, assert_no_alloc};
 use palpate_device::{Device, PointState, profile_named};
 use palpate_field::Vector;
