@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
 //! Checks that each package for crates.io ships exactly the files of its crate that git tracks, and
-//! every file that its sources include.
+//! every file that its sources include, and that its licences are links to those of the repository.
 
 use std::collections::BTreeSet;
 use std::path::{Component, Path, PathBuf};
@@ -40,6 +40,9 @@ pub(crate) fn check(metadata: &Value) -> Result<(), Failure> {
         ]))?);
         let tracked = lines(&output(Command::new("git").arg("ls-files").current_dir(folder))?);
         problems.extend(differences(name, &shipped, &tracked));
+        let modes = ["ls-files", "--stage", "LICENSE-*"];
+        let licences = output(Command::new("git").args(modes).current_dir(folder))?;
+        problems.extend(copies(name, &licences));
         for source in shipped.iter().filter(|path| path.ends_with(".rs")) {
             let path = folder.join(source);
             let is_compiled = !NOT_COMPILED.iter().any(|other| path == root().join(other));
@@ -51,6 +54,17 @@ pub(crate) fn check(metadata: &Value) -> Result<(), Failure> {
         }
     }
     Failure::any(problems)
+}
+
+/// How git marks a symbolic link.
+const LINK: &str = "120000 ";
+
+/// The licences of a package that are no links, in a list of files with their modes: an edit of a link
+/// by a program that writes a new file makes it a copy.
+fn copies(name: &str, licences: &str) -> Vec<String> {
+    let copies = licences.lines().filter(|line| !line.starts_with(LINK));
+    let path = |line: &str| line.rsplit('\t').next().unwrap_or(line).to_owned();
+    copies.map(|line| format!("{name}: {} must be a link to ../../", path(line))).collect()
 }
 
 fn lines(text: &str) -> BTreeSet<String> {
@@ -111,6 +125,14 @@ mod tests {
 
     fn set(paths: &[&str]) -> BTreeSet<String> {
         paths.iter().map(|path| (*path).to_owned()).collect()
+    }
+
+    #[test]
+    fn a_licence_that_is_a_copy_is_refused() {
+        let link = "120000 965b606f331b5f8b1e9d 0\tLICENSE-APACHE\n";
+        assert_eq!(copies("a", link), [""; 0]);
+        let wrong = copies("a", &link.replace("120000", "100644"));
+        assert_eq!(wrong, ["a: LICENSE-APACHE must be a link to ../../"]);
     }
 
     #[test]
