@@ -8,10 +8,10 @@ use palpate_device::{DeviceProfile, PointState};
 use palpate_field::kernel::{Ball, Cuboid, HalfSpace};
 use palpate_field::{Point, Pose, Rotation, Shape, Vector};
 use palpate_haptics::{
-    Bodies, Body, Guide, GuideOptions, Material, Probe, Protection, Renderer, Servo,
-    ServoOptions, Surface, Touch, Unprotected,
+    Bodies, Body, Guide, GuideOptions, Impact, Layer, Magnet, Material, PopThrough, Probe,
+    Protection, Renderer, Servo, ServoOptions, Surface, Texture, TextureKind, Touch,
+    Unprotected,
 };
-use palpate_haptics::{Impact, Layer, Magnet, PopThrough, Texture, TextureKind};
 use palpate_safety::Recovery;
 
 /// Numbers that break what is not ready for them.

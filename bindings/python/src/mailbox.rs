@@ -5,8 +5,7 @@
 
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-use palpate::device::PointState;
-use palpate::device::{Device, Mailbox, MailboxDevice, profile_named};
+use palpate::device::{Device, Mailbox, MailboxDevice, PointState, profile_named};
 use palpate::field::Vector;
 use pyo3::exceptions::{PyRuntimeError, PyTypeError, PyValueError};
 use pyo3::prelude::*;

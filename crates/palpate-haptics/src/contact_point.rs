@@ -21,10 +21,8 @@ use crate::ports::Port;
 use crate::proxy::{Edited, Probe, Proxy};
 use crate::surface::{Press, Ringing};
 pub(crate) use given::FreeForce;
-use palpate_device::PointState;
-use palpate_device::shortening;
-use palpate_safety::Approach;
-use palpate_safety::{Arrival, Change, WorkspaceMap};
+use palpate_device::{PointState, shortening};
+use palpate_safety::{Approach, Arrival, Change, WorkspaceMap};
 
 /// One contact point after a tick. World coordinates.
 #[derive(Clone, Copy, Debug, PartialEq)]

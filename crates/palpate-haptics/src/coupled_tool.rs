@@ -14,8 +14,7 @@ use crate::contact_point::{ContactPoint, FreeForce, Setting, Touch};
 use crate::ports::{Port, TurningPort};
 use crate::proxy::Edited;
 use crate::tool::{Coupling, HeldTool, Tool, ToolState};
-use palpate_device::limited;
-use palpate_device::{PointState, TurnState};
+use palpate_device::{PointState, TurnState, limited};
 use palpate_safety::{Change, SpatialVector, WrenchChain, WrenchState};
 
 /// The two sides of a tool: the contact point that holds it, and the bodies that stop it.

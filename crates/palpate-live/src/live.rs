@@ -9,8 +9,7 @@ use std::path::PathBuf;
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
-use palpate::device::DeviceProfile;
-use palpate::device::profile_named;
+use palpate::device::{DeviceProfile, profile_named};
 use palpate::haptics::StopSwitch;
 use palpate::servo_loop::VirtualClock;
 

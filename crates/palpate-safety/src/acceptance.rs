@@ -18,8 +18,7 @@ use crate::error::SafetyError;
 use crate::impedance::Impedance;
 use crate::limits::DeviceLimits;
 use crate::refused::{Refused, Requester};
-use palpate_device::DeviceProfile;
-use palpate_device::NumberError;
+use palpate_device::{DeviceProfile, NumberError};
 
 /// The rate for which profiles state the largest stiffness and damping [Hz].
 const STATED_RATE: f64 = 1000.0;

@@ -4,8 +4,7 @@
 //! How the states of ticks come: late, after a time, or not at all.
 
 use crate::error::SafetyError;
-use palpate_device::NumberError;
-use palpate_device::Reading;
+use palpate_device::{NumberError, Reading};
 
 /// How far from a period the time between two readings still counts as one, as a part of it: times
 /// are differences of sums, which rounding must not change.

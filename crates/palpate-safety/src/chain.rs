@@ -19,8 +19,7 @@ use crate::report::SafetyReport;
 use crate::rise::Change;
 use crate::settings::SafetySettings;
 use crate::stage_ticks::{BeforeLimits, StageTicks};
-use palpate_device::DeviceProfile;
-use palpate_device::NumberError;
+use palpate_device::{DeviceProfile, NumberError};
 
 /// The input of a contact point's safety chain in a tick, beside the wanted force. In device
 /// coordinates ([`WorkspaceMap`](crate::WorkspaceMap)), because the limits are the device's.

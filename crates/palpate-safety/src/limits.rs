@@ -8,8 +8,7 @@ use std::sync::Arc;
 
 use crate::Rule;
 use crate::error::SafetyError;
-use palpate_device::NumberError;
-use palpate_device::{DeviceProfile, TurningProfile};
+use palpate_device::{DeviceProfile, NumberError, TurningProfile};
 
 /// A limit with its name and its unit.
 #[derive(Clone, Copy, Debug)]

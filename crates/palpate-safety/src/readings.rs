@@ -7,8 +7,7 @@ use palpate_field::{Point, Vector};
 
 use crate::error::SafetyError;
 use crate::turn_readings::TurnReadings;
-use palpate_device::DeviceProfile;
-use palpate_device::NumberError;
+use palpate_device::{DeviceProfile, NumberError};
 
 /// The way between two readings may be off by so many encoder steps: half a step an axis in each,
 /// `√3` in space together; and rotation vectors differ by up to `π/2` times as much.

@@ -9,8 +9,7 @@ use palpate_field::{Rotation, Vector};
 
 use crate::error::SafetyError;
 use crate::readings::{HandLimits, Held, Moved, Reach};
-use palpate_device::NumberError;
-use palpate_device::TurningProfile;
+use palpate_device::{NumberError, TurningProfile};
 
 /// Holds back the readings of an orientation that a hand cannot have made, as
 /// [`Readings`](crate::Readings) does those of a position.

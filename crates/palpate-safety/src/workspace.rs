@@ -6,8 +6,7 @@
 use palpate_field::{Aabb, Point, Pose, Rotation, Vector};
 
 use crate::error::SafetyError;
-use palpate_device::NumberError;
-use palpate_device::PointState;
+use palpate_device::{NumberError, PointState};
 
 /// From device to world coordinates and back: `world = s R device + t`.
 ///

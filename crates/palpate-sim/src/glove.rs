@@ -7,8 +7,9 @@
 
 use crate::error::SimulationError;
 use crate::hand_path::HandPath;
-use palpate_device::{Device, DeviceLost, DeviceProfile, NumberError, PointState, Reading};
-use palpate_device::{DeviceError, limited};
+use palpate_device::{
+    Device, DeviceError, DeviceLost, DeviceProfile, NumberError, PointState, Reading, limited,
+};
 use palpate_field::Vector;
 use palpate_vibration::Actuator;
 

@@ -7,10 +7,9 @@
 
 use crate::error::SimulationError;
 use palpate_device::{
-    Buttons, Device, DeviceLost, DeviceProfile, GripperState, NumberError, PointState, Reading,
-    TurnState,
+    Buttons, Device, DeviceError, DeviceLost, DeviceProfile, GripperState, NumberError,
+    PointState, Reading, TurnState, limited,
 };
-use palpate_device::{DeviceError, limited};
 use palpate_field::{Point, Vector};
 use std::time::Duration;
 

@@ -12,8 +12,7 @@
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use crate::error::SimulationError;
-use palpate_device::limited;
-use palpate_device::{NumberError, TurnState, TurningProfile};
+use palpate_device::{NumberError, TurnState, TurningProfile, limited};
 use palpate_field::{Rotation, Vector};
 
 use crate::hand::{Hand, Wrist};

@@ -8,8 +8,7 @@ use palpate::field::Vector;
 use palpate::haptics::Tool;
 use palpate::safety::WorkspaceMap;
 use palpate::scene::BuiltScene;
-use palpate::sim::HandPath;
-use palpate::sim::{Glove, Hand, RecordedDevice, SimulatedDevice, SimulationError};
+use palpate::sim::{Glove, Hand, HandPath, RecordedDevice, SimulatedDevice, SimulationError};
 use serde_json::{Value, json};
 
 use crate::arguments::DeviceChoice;

@@ -23,8 +23,7 @@ use std::time::Duration;
 
 use palpate::hands::swing;
 use palpate::haptics::{HapticsError, Probe, Progress, Tool};
-use palpate::safety::SafetyError;
-use palpate::safety::SafetySettings;
+use palpate::safety::{SafetyError, SafetySettings};
 use palpate::scene::{AnyScene, BuiltScene, BuiltTool, ServoSettings};
 use palpate::servo_loop::{Ending, Pace, Recorder, RunOptions, RunReport, run as run_servo};
 use palpate::sim::HandPath;

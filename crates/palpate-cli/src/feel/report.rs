@@ -9,8 +9,7 @@ use std::path::Path;
 
 use palpate::device::DeviceProfile;
 use palpate::haptics::{Body, Progress, Servo, Surface, Texture, TextureKind};
-use palpate::safety::DeviceLimits;
-use palpate::safety::{Acceptance, Accepted, Rule};
+use palpate::safety::{Acceptance, Accepted, DeviceLimits, Rule};
 use palpate::scene::{BakedBody, BuiltScene};
 use palpate::servo_loop::RunReport;
 use serde_json::Value;

@@ -9,8 +9,7 @@ use palpate_field::Vector;
 
 use super::{ContactPoint, Setting, Touch};
 use crate::nearby::Nearby;
-use palpate_device::PointState;
-use palpate_device::{limited, shortening};
+use palpate_device::{PointState, limited, shortening};
 use palpate_safety::{Arrival, Change, PortState};
 
 /// The force in free space, of guides and magnets.

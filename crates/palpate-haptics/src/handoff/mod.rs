@@ -46,11 +46,10 @@ impl Default for HandoffOptions {
 }
 
 /// The two ends of a hand-off: the first for an ordinary thread, the second for the thread of
-/// `servo`. The
-/// capacity for bodies is at least the number of bodies that the servo has.
+/// `servo`. The capacity for bodies is at least the number of bodies that the servo has.
 ///
-/// A [`ServoThread`](crate::servo_loop::ServoThread) makes its own hand-off. A custom loop, for example the
-/// callback of a device driver, first [checks the device](crate::Servo::check_device);
+/// A [`ServoThread`](crate::servo_loop::ServoThread) makes its own hand-off. A custom loop, for
+/// example the callback of a device driver, first [checks the device](crate::Servo::check_device);
 /// [receives](ServoEnd::receive) before each [step](crate::Servo::step) and
 /// [publishes](ServoEnd::publish) after it; and writes zero force and zero torque last, however it
 /// ends.

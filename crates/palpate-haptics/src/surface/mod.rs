@@ -15,8 +15,7 @@ use palpate_field::{Point, Shape, Vector};
 
 use crate::curvature::surface_displacement;
 use crate::error::HapticsError;
-use palpate_device::NumberError;
-use palpate_device::limited;
+use palpate_device::{NumberError, limited};
 use palpate_safety::Impedance;
 
 pub(crate) use magnet::Pull;

@@ -7,8 +7,10 @@ use crate::common::wild::wave;
 use crate::common::{Scaled, ball, cuboid, half_space};
 use palpate_device::PointState;
 use palpate_field::{BoundingBall, Pose, Promise, Shape, Vector};
-use palpate_haptics::{Bodies, Body, Material, Probe, Servo, ServoOptions, Surface};
-use palpate_haptics::{Layer, Magnet, Texture, TextureKind};
+use palpate_haptics::{
+    Bodies, Body, Layer, Magnet, Material, Probe, Servo, ServoOptions, Surface, Texture,
+    TextureKind,
+};
 
 /// Two springs of nothing, a wall of honey, glue, and other things.
 fn materials() -> Vec<(&'static str, Material)> {

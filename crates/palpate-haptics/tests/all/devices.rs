@@ -4,20 +4,18 @@
 //! What loops do around a device: opened, watched, paced, lost, found, closed; and what else than
 //! contact points a device has.
 
-use palpate_haptics::ServoOptions;
+use palpate_haptics::{EventKind, HapticsError, Servo, ServoOptions};
 use std::time::Duration;
 
-use palpate_device::MailboxDevice;
 use palpate_device::{
-    Buttons, Device, DeviceLost, DeviceProfile, GripperProfile, GripperState, PointState,
-    Reading,
+    Buttons, Device, DeviceLost, DeviceProfile, GripperProfile, GripperState, MailboxDevice,
+    PointState, Reading,
 };
 use palpate_field::{Shape, Vector};
 use palpate_haptics::servo_loop::{
     Ending, Pace, Reconnection, RunOptions, ServoThread, ThreadOptions, VirtualClock, run,
     run_on,
 };
-use palpate_haptics::{EventKind, HapticsError, Servo};
 use palpate_sim::{
     Calls, Fault, FaultKind, Hand, HandPath, Interpolation, RecordedDevice, SimulatedDevice,
     SimulatedTransport,

@@ -8,8 +8,7 @@ use crate::common::tools::smooth;
 use crate::common::{AnyServo, ball, body, cases, cuboid, direction, unit};
 use arbitrary::Unstructured;
 use assert_no_alloc::assert_no_alloc;
-use palpate_device::PointState;
-use palpate_device::profile_named;
+use palpate_device::{PointState, profile_named};
 use palpate_field::{Point, Pose, Shape, Vector};
 use palpate_haptics::{
     Bodies, Body, Event, EventKind, Layer, Material, PopThrough, Probe, Protection, Servo,

@@ -7,8 +7,10 @@ use crate::common::{ball, body, cases, cuboid, half_space, scaled, torus, vector
 use palpate_device::PointState;
 use palpate_field::operator::Profile;
 use palpate_field::{Point, Shape, Vector};
-use palpate_haptics::{Bodies, Material, Probe, Servo, ServoOptions, Surface, Unprotected};
-use palpate_haptics::{Layer, Magnet, Texture, TextureKind};
+use palpate_haptics::{
+    Bodies, Layer, Magnet, Material, Probe, Servo, ServoOptions, Surface, Texture, TextureKind,
+    Unprotected,
+};
 
 /// The most that may be gained over a closed path [J].
 const MOST: f64 = 1e-9;

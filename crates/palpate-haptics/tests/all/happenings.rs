@@ -7,8 +7,9 @@ use crate::common::wild::{servo, step};
 use crate::common::{ball, half_space};
 use palpate_device::PointState;
 use palpate_field::{Pose, Vector};
-use palpate_haptics::{Bodies, Body, EventKind, Material, Probe, Servo, ServoOptions, Surface};
-use palpate_haptics::{Layer, PopThrough};
+use palpate_haptics::{
+    Bodies, Body, EventKind, Layer, Material, PopThrough, Probe, Servo, ServoOptions, Surface,
+};
 
 /// Plays a wild scene, and checks every event against the state before it.
 fn events_are_in_order<const D: usize>(count: usize) {

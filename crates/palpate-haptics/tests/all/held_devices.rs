@@ -8,8 +8,7 @@ use palpate_field::kernel::Ball;
 use palpate_field::{Shape, Vector};
 use palpate_haptics::servo_loop::{Pace, RunOptions, run};
 use palpate_haptics::{Protection, Servo, ServoOptions, Shell, Tool, ToolOptions};
-use palpate_sim::Interpolation;
-use palpate_sim::{Glove, Hand, HandPath, SimulatedDevice};
+use palpate_sim::{Glove, Hand, HandPath, Interpolation, SimulatedDevice};
 
 fn stroke() -> HandPath<3> {
     let places =

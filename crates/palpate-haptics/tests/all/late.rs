@@ -6,8 +6,7 @@
 
 use crate::common::tools::smooth;
 use crate::common::{body, half_space};
-use palpate_device::profile_named;
-use palpate_device::{PointState, Reading, TurnState};
+use palpate_device::{PointState, Reading, TurnState, profile_named};
 use palpate_field::{Pose, Vector};
 use palpate_haptics::{
     Bodies, Material, Probe, Protection, Servo, ServoOptions, Shell, Surface, Tool, ToolOptions,

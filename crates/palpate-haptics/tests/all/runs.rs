@@ -7,16 +7,15 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
 use crate::common::{ball, cuboid, half_space, protected, without_limits};
-use palpate_device::Reading;
-use palpate_device::{Device, DeviceLost, DeviceProfile, PointState};
+use palpate_device::{Device, DeviceLost, DeviceProfile, PointState, Reading};
 use palpate_field::{CustomField, Point, Pose, Promise, Shape, Vector};
 use palpate_haptics::servo_loop::{
     Clock, Ending, Pace, Recorder, RunOptions, VirtualClock, run, run_on,
 };
 use palpate_haptics::{
-    Bodies, Body, HapticsError, Material, Probe, Protection, Servo, ServoOptions, Surface,
+    Bodies, Body, HapticsError, Impact, Layer, Material, PopThrough, Probe, Protection, Servo,
+    ServoOptions, Surface,
 };
-use palpate_haptics::{Impact, Layer, PopThrough};
 use palpate_sim::{HandPath, Interpolation, RecordedDevice, Tour};
 
 /// A clock on which looking costs a microsecond and waiting nothing more.

@@ -6,10 +6,9 @@
 use crate::common::tools::{STIFFNESS, at, box_mesh, on_a_loop, rest, rough, smooth, springs};
 use crate::common::{ball, body, cuboid, half_space};
 use palpate_field::{Pose, Rotation, Vector};
-use palpate_haptics::Layer;
-use palpate_haptics::ToolOptions;
 use palpate_haptics::{
-    Bodies, Body, EventKind, Material, Shell, Surface, Tool, ToolState, ToolTouch,
+    Bodies, Body, EventKind, Layer, Material, Shell, Surface, Tool, ToolOptions, ToolState,
+    ToolTouch,
 };
 
 #[test]

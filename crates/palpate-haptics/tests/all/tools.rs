@@ -6,8 +6,7 @@
 use crate::common::tools::{STIFFNESS, at, box_mesh, on_a_loop, rest, rough, springs, turned};
 use crate::common::{ball, body, cuboid, half_space};
 use palpate_field::{Point, Pose, Rotation, Shape, Vector};
-use palpate_haptics::ToolOptions;
-use palpate_haptics::{Bodies, EventKind, Shell, Surface, Tool, ToolState};
+use palpate_haptics::{Bodies, EventKind, Shell, Surface, Tool, ToolOptions, ToolState};
 use palpate_mesh::Outline;
 
 /// The least of the field less the radius over all points of the shell.

@@ -5,8 +5,7 @@
 
 use arbitrary::{Result, Unstructured};
 use assert_no_alloc::assert_no_alloc;
-use palpate_device::PROFILES;
-use palpate_device::{DeviceProfile, PointState, Reading, TurnState, TurningProfile};
+use palpate_device::{DeviceProfile, PROFILES, PointState, Reading, TurnState, TurningProfile};
 use palpate_field::{Rotation, Vector};
 use palpate_haptics::{Protection, Servo, ServoOptions, Shell, Surface, Tool, ToolOptions};
 use palpate_safety::TurnReadings;

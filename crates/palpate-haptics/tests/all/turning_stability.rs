@@ -12,8 +12,7 @@ use palpate_haptics::{
     Unprotected,
 };
 use palpate_safety::Acceptance;
-use palpate_sim::{Hand, SimulatedDevice};
-use palpate_sim::{HandPath, Interpolation};
+use palpate_sim::{Hand, HandPath, Interpolation, SimulatedDevice};
 
 const PERIOD: f64 = 1e-3;
 

@@ -5,8 +5,7 @@
 
 use palpate_device::{Device, DeviceProfile, PointState};
 use palpate_field::Vector;
-use palpate_sim::{Energies, Hand, SimulatedDevice};
-use palpate_sim::{HandPath, Interpolation};
+use palpate_sim::{Energies, Hand, HandPath, Interpolation, SimulatedDevice};
 
 /// One axis: device, hand, a path in straight pieces of a tick, and a force for each tick.
 #[derive(Clone, Copy, Debug)]

@@ -5,8 +5,7 @@
 use assert_no_alloc::{AllocDisabler, assert_no_alloc};
 use palpate_device::{Device, PointState, profile_named};
 use palpate_field::Vector;
-use palpate_sim::Interpolation;
-use palpate_sim::{Glove, Hand, HandPath, SimulatedDevice};
+use palpate_sim::{Glove, Hand, HandPath, Interpolation, SimulatedDevice};
 
 /// Aborts on an allocation where none is allowed.
 #[global_allocator]

@@ -7,10 +7,9 @@ use super::AnyServo;
 use palpate_device::PointState;
 use palpate_field::{Point, Pose, Shape, Vector};
 use palpate_haptics::{
-    Bodies, Body, Guide, GuideOptions, Material, Probe, Servo, ServoOptions, Surface,
-    Unprotected,
+    Bodies, Body, Guide, GuideOptions, Impact, Layer, Magnet, Material, PopThrough, Probe,
+    Servo, ServoOptions, Surface, Texture, TextureKind, Unprotected,
 };
-use palpate_haptics::{Impact, Layer, Magnet, PopThrough, Texture, TextureKind};
 
 use super::{ball, cuboid};
 

@@ -45,8 +45,8 @@ pub(in crate::solid) fn by_rim(sides: &[Side]) -> impl Iterator<Item = &[Side]> 
 /// The pieces of a mesh: of each element the number of its piece, and how many pieces there are.
 ///
 /// If exactly two elements meet at a rim, they belong to one piece. If more meet, first join those already joined
-/// at other rims, then each pair that encloses solid, so that cubes which share an edge are two pieces. Where as many elements pass each rim in one direction as in the other, no piece has
-/// a boundary, and on each of its sides the winding number is the same all over, unless something crosses it: what
+/// at other rims, then each pair that encloses solid, so that cubes which share an edge are two pieces. Where as
+/// many elements pass each rim in one direction as in the other, no piece has a boundary, and on each of its sides the winding number is the same all over, unless something crosses it: what
 /// lies between two that are paired cancels.
 pub(super) fn pieces<const N: usize, const D: usize>(
     vertices: &[Point<D>],

@@ -3,8 +3,7 @@
 
 //! Devices that the model fits badly, and one without friction.
 
-use palpate_device::DeviceProfile;
-use palpate_device::profile_named;
+use palpate_device::{DeviceProfile, profile_named};
 use palpate_sim::{Hand, IdentifyOptions, SimulatedDevice};
 
 use super::{START, check, free, identify};
