@@ -4,9 +4,11 @@
 //! Operators that fold or stretch space: mirror, elongation, extrusion,
 //! revolution.
 
+use super::catalogue::{Declared, Operator};
 use crate::bounds::{Aabb, BoundingBall, Bounds};
 use crate::error::{ShapeError, Unit, not_negative, positive};
 use crate::field::{SharedField, Warp, Warped};
+use crate::kernel::{Argument, ParameterKind};
 use crate::promise::{Promise, Rounding};
 use crate::scalar::Scalar;
 use crate::vector::{Vector, array, unrolled};
@@ -127,8 +129,33 @@ pub(crate) fn mirrored<const D: usize>(
     Warped::shared(Mirror { axis }, child, promise)
 }
 
+/// Pulls a shape apart.
+pub(crate) struct Elongate;
+
+impl Declared for Elongate {
+    const OPERATOR: Operator = Operator {
+        name: "elongate",
+        method: "elongated",
+        about: "Pulls the shape apart at the coordinate planes [m].",
+        kind: ParameterKind::LengthOrZero,
+        is_per_axis: true,
+        first: [0.05, 0.0, 0.0],
+    };
+
+    fn field<const D: usize>(
+        child: SharedField<D>,
+        argument: &Argument,
+    ) -> Result<SharedField<D>, ShapeError> {
+        let Argument::Vector(lengths) = argument else { return Self::OPERATOR.unsuitable() };
+        match lengths[..].try_into() {
+            Ok(lengths) => elongated(child, lengths),
+            Err(_) => Self::OPERATOR.unsuitable(),
+        }
+    }
+}
+
 /// The `child` cut at the coordinate planes and pulled apart by `lengths`.
-pub(crate) fn elongated<const D: usize>(
+fn elongated<const D: usize>(
     child: SharedField<D>,
     lengths: [f64; D],
 ) -> Result<SharedField<D>, ShapeError> {

@@ -3,9 +3,11 @@
 
 //! Operators that move the surface: offset and shell.
 
+use super::catalogue::{Declared, Operator};
 use super::guard::guarded;
 use crate::error::{ShapeError, Unit, finite, positive};
 use crate::field::{Remap, Remapped, SharedField};
+use crate::kernel::{Argument, ParameterKind};
 use crate::promise::{Promise, Quality, Rounding};
 use crate::scalar::Scalar;
 use crate::vector::Vector;
@@ -78,8 +80,29 @@ pub(crate) fn offset<const D: usize>(
     Remapped::shared(Offset { distance }, child, promise)
 }
 
+impl Declared for Shell {
+    const OPERATOR: Operator = Operator {
+        name: "shell",
+        method: "shell",
+        about: "Makes a wall of this thickness on the surface of the shape [m].",
+        kind: ParameterKind::Length,
+        is_per_axis: false,
+        first: [0.01; 3],
+    };
+
+    fn field<const D: usize>(
+        child: SharedField<D>,
+        argument: &Argument,
+    ) -> Result<SharedField<D>, ShapeError> {
+        match argument {
+            Argument::Number(thickness) => shell(child, *thickness),
+            _ => Self::OPERATOR.unsuitable(),
+        }
+    }
+}
+
 /// `|child| − thickness/2`.
-pub(crate) fn shell<const D: usize>(
+fn shell<const D: usize>(
     child: SharedField<D>,
     thickness: f64,
 ) -> Result<SharedField<D>, ShapeError> {

@@ -6,8 +6,9 @@
 
 use super::Shape;
 use crate::error::ShapeError;
+use crate::kernel::Argument;
 use crate::node::Node;
-use crate::operator::Copies;
+use crate::operator::{self, Copies};
 use crate::vector::Vector;
 
 impl<const D: usize> Shape<D> {
@@ -35,7 +36,8 @@ impl<const D: usize> Shape<D> {
     ///
     /// If a length is negative, or shapes are nested too deeply.
     pub fn elongated(self, lengths: impl Into<Vector<f64, D>>) -> Result<Self, ShapeError> {
-        Self::from_node(Node::Elongated { lengths: lengths.into().0, of: self })
+        let lengths = Argument::Vector(lengths.into().0.to_vec());
+        Self::from_node(Node::operated::<operator::domain::Elongate>(lengths, self))
     }
 }
 

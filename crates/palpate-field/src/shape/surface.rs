@@ -5,7 +5,9 @@
 
 use super::Shape;
 use crate::error::ShapeError;
+use crate::kernel::Argument;
 use crate::node::Node;
+use crate::operator;
 
 impl<const D: usize> Shape<D> {
     /// The shape grown by `distance` [m], or shrunk by it if negative: `f − r`.
@@ -32,7 +34,10 @@ impl<const D: usize> Shape<D> {
     ///
     /// If the thickness is not positive.
     pub fn shell(self, thickness: f64) -> Result<Self, ShapeError> {
-        Self::from_node(Node::Shell { thickness, of: self })
+        Self::from_node(Node::operated::<operator::surface::Shell>(
+            Argument::Number(thickness),
+            self,
+        ))
     }
 }
 

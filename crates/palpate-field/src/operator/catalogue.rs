@@ -1,0 +1,78 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! The catalogue of operators on one shape with one argument; each is declared beside its
+//! formula.
+
+use super::{domain, surface};
+use crate::error::ShapeError;
+use crate::field::SharedField;
+use crate::kernel::{Argument, ParameterKind};
+
+/// An operator of the catalogue.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Operator {
+    /// The key in scene files.
+    pub name: &'static str,
+    /// The method of [`Shape`](crate::Shape), in Rust and Python.
+    pub method: &'static str,
+    /// What it does, in one sentence.
+    pub about: &'static str,
+    /// The kind of its numbers.
+    pub kind: ParameterKind,
+    /// `true` if it has a number for each axis.
+    pub is_per_axis: bool,
+    /// The numbers to begin with, on a shape 1 m wide; the first one if it has one number.
+    pub first: [f64; 3],
+}
+
+impl Operator {
+    /// The operator called `name` in scene files.
+    #[must_use]
+    pub fn find(name: &str) -> Option<Self> {
+        Self::ALL.iter().find(|operator| operator.name == name).copied()
+    }
+
+    /// The error for an argument of another form.
+    pub(crate) fn unsuitable<T>(&self) -> Result<T, ShapeError> {
+        let needs = if self.is_per_axis { "a number for each axis" } else { "a number" };
+        Err(ShapeError::Unsuitable { operator: self.name, needs: needs.into() })
+    }
+}
+
+/// A declared operator.
+pub(crate) trait Declared {
+    const OPERATOR: Operator;
+
+    /// The field, after the argument is checked.
+    fn field<const D: usize>(
+        child: SharedField<D>,
+        argument: &Argument,
+    ) -> Result<SharedField<D>, ShapeError>;
+}
+
+macro_rules! catalogue {
+    ($($declared:ty),* $(,)?) => {
+        impl Operator {
+            /// All operators of the catalogue.
+            pub const ALL: &'static [Self] = &[$(<$declared>::OPERATOR),*];
+        }
+
+        /// The field that an operator makes of a child.
+        pub(crate) fn field<const D: usize>(
+            operator: &Operator,
+            child: SharedField<D>,
+            argument: &Argument,
+        ) -> Result<SharedField<D>, ShapeError> {
+            match operator.name {
+                $(name if name == <$declared>::OPERATOR.name => {
+                    <$declared>::field(child, argument)
+                })*
+                _ => operator.unsuitable(),
+            }
+        }
+    };
+}
+
+catalogue! { surface::Shell, domain::Elongate }
