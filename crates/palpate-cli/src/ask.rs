@@ -12,7 +12,18 @@ use crate::interrupt::Interrupt;
 use crate::outcome::Failure;
 use crate::output;
 
-/// The answer to a question; `None` if the program is asked to end before anything is known.
+/// The answer to a question; `None` if the program is asked to end before it is known whole.
+pub(crate) fn unless_asked<const D: usize>(
+    scene: &BuiltScene<D>,
+    question: Question,
+    interrupt: &Interrupt,
+) -> Result<Option<Answer<D>>, Failure> {
+    let scene = scene.clone();
+    interrupt.unless_asked(move || scene.ask(&question)).transpose().map_err(failure)
+}
+
+/// The answer to a question, or what is known of it when the program is asked to end; `None` if
+/// nothing is.
 pub(crate) fn ask<const D: usize>(
     scene: &BuiltScene<D>,
     question: Question,

@@ -90,7 +90,7 @@ impl Interrupt {
         &self,
         work: impl FnOnce() -> T + Send + 'static,
     ) -> Option<T> {
-        self.within(Duration::ZERO, move |_| work())
+        self.within("interruptible", Duration::ZERO, move |_| work())
     }
 
     /// The result of work that ends early, with what it has, when the flag is set; `None` if it
@@ -99,19 +99,20 @@ impl Interrupt {
         &self,
         work: impl FnOnce(&AtomicBool) -> T + Send + 'static,
     ) -> Option<T> {
-        self.within(SOON, work)
+        self.within("question", SOON, work)
     }
 
     /// The result of work, for which the program waits so long after it was asked to end.
     fn within<T: Send + 'static>(
         &self,
+        name: &str,
         grace: Duration,
         work: impl FnOnce(&AtomicBool) -> T + Send + 'static,
     ) -> Option<T> {
         self.heed();
         let (sender, done) = mpsc::channel();
         let asked = self.asked();
-        let named = thread::Builder::new().name("interruptible".to_owned());
+        let named = thread::Builder::new().name(name.to_owned());
         let worker = named.spawn(move || sender.send(work(&asked)));
         // As `thread::spawn`, which gives no name: a system without threads is no interrupt.
         let worker = worker.unwrap_or_else(|error| panic!("no thread can be started: {error}"));

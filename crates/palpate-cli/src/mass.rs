@@ -3,7 +3,7 @@
 
 //! `palpate mass`: computes volume, mass and moments of the bodies of a scene.
 
-use palpate::scene::{AnyScene, BuiltScene, MassQuestion, Question};
+use palpate::scene::{Answer, AnyScene, BuiltScene, MassAnswer, MassQuestion, Question};
 
 use crate::arguments::MassOptions;
 use crate::ask;
@@ -28,18 +28,30 @@ fn report<const D: usize>(
     interrupt: &Interrupt,
 ) -> Result<Outcome, Failure> {
     let MassOptions { density, tolerance, cells, .. } = *options;
-    let question = Question::Mass(MassQuestion { density, tolerance, cells });
-    let answer = ask::ask(scene, question, interrupt)?;
-    let bodies = answer.as_ref().map_or(&[][..], |answer| &ask::mass(answer).bodies);
-    if let Some(answer) = &answer {
-        ask::print(answer, options.json)?;
+    let mut all = MassAnswer { density, tolerance, bodies: Vec::new(), is_whole: true };
+    // One body at a time, so that a reader sees each as soon as it is known.
+    for (done, body) in scene.bodies.iter().enumerate() {
+        let bodies = vec![body.name.clone()];
+        let question = Question::Mass(MassQuestion { bodies, density, tolerance, cells });
+        let Some(answer) = ask::unless_asked(scene, question, interrupt)? else {
+            let count = output::counted(scene.bodies.len(), "body", "bodies");
+            output::remark(format_args!("interrupted after {done} of {count}"));
+            all.is_whole = false;
+            break;
+        };
+        if !options.json {
+            ask::print(&answer, false)?;
+        }
+        all.bodies.extend(ask::mass(&answer).bodies.iter().cloned());
     }
-    if bodies.len() < scene.bodies.len() {
-        let (done, all) = (bodies.len(), scene.bodies.len());
-        let all = output::counted(all, "body", "bodies");
-        output::remark(format_args!("interrupted after {done} of {all}"));
-        return Ok(Outcome::Interrupted);
+    let is_good = all.bodies.iter().all(|body| body.weighed.is_some_and(|mass| !mass.open));
+    let is_whole = all.is_whole;
+    if options.json {
+        ask::print(&Answer::Mass(all), true)?;
     }
-    let is_good = bodies.iter().all(|body| body.weighed.is_some_and(|mass| !mass.open));
-    Ok(if is_good { Outcome::Yes } else { Outcome::No })
+    Ok(match (is_whole, is_good) {
+        (false, _) => Outcome::Interrupted,
+        (true, true) => Outcome::Yes,
+        (true, false) => Outcome::No,
+    })
 }

@@ -18,9 +18,11 @@ use crate::text::{counted, measured, shown};
 const WATER: f64 = 1000.0;
 
 /// What are the masses of the bodies?
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct MassQuestion {
+    /// The bodies that are asked about; all if there are none.
+    pub bodies: Vec<String>,
     /// The density of all bodies [kg/m³].
     pub density: f64,
     /// The relative error of a volume at which its search stops.
@@ -33,13 +35,12 @@ impl Default for MassQuestion {
     /// Water; the limits of [`MassLimits::default`].
     fn default() -> Self {
         let MassLimits { tolerance, cells } = MassLimits::default();
-        Self { density: WATER, tolerance, cells }
+        Self { bodies: Vec::new(), density: WATER, tolerance, cells }
     }
 }
 
 /// Volume, mass and moments of each body.
 #[derive(Clone, Debug, Serialize)]
-#[non_exhaustive]
 pub struct MassAnswer<const D: usize> {
     /// The density of all bodies [kg/m³].
     pub density: f64,
@@ -47,8 +48,6 @@ pub struct MassAnswer<const D: usize> {
     pub tolerance: f64,
     /// The bodies, in the order of the scene.
     pub bodies: Vec<BodyMass<D>>,
-    /// How many bodies the scene has.
-    pub count: usize,
     /// Whether no body is missing; `false` if the search was stopped.
     pub is_whole: bool,
 }
@@ -113,13 +112,17 @@ impl MassQuestion {
         scene: &BuiltScene<D>,
         stop: &AtomicBool,
     ) -> Result<MassAnswer<D>, AskError> {
-        let unless_stopped = scene.bodies.iter().take_while(|_| !is_set(stop));
-        let bodies: Vec<_> = unless_stopped.map(|body| self.weigh(body)).collect();
+        let mut asked = scene.numbers_of(&self.bodies)?;
+        if asked.is_empty() {
+            asked = (0..scene.bodies.len()).collect();
+        }
+        let unless_stopped = asked.iter().take_while(|_| !is_set(stop));
+        let bodies: Vec<_> =
+            unless_stopped.map(|body| self.weigh(&scene.bodies[*body])).collect();
         Ok(MassAnswer {
             density: self.density,
             tolerance: self.tolerance,
-            count: scene.bodies.len(),
-            is_whole: bodies.len() == scene.bodies.len(),
+            is_whole: bodies.len() == asked.len(),
             bodies,
         })
     }
