@@ -194,8 +194,7 @@ impl SweepQuestion {
         };
         let until = self.until.unwrap_or(end);
         let parts: f64 = scene.motions.iter().map(|motion| motion.parts_until(until)).sum();
-        // Written so that NaN is refused.
-        if !(parts <= MOST_PARTS) {
+        if parts.is_nan() || parts > MOST_PARTS {
             return Err(AskError::Refused(format!(
                 "until {until} s the motions have {parts:e} parts (repetitions, and turns of less \
                  than a half), of which {MOST_PARTS:e} are looked at; lower --until"
@@ -344,7 +343,6 @@ impl<const D: usize> SweepAnswer<D> {
             gap: self.gap,
             budget: self.budget,
             time_tolerance: (pair.tolerance / (pair.part.to - pair.part.from)).min(1.0),
-            ..SweepSettings::of_size(1.0)
         }
     }
 
