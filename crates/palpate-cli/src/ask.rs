@@ -5,7 +5,6 @@
 
 use palpate::scene::{
     Answer, AskError, BuiltScene, ContactsAnswer, MassAnswer, PointAnswer, Question,
-    SweepAnswer,
 };
 
 use crate::interrupt::Interrupt;
