@@ -77,7 +77,7 @@ mod written_material;
 
 pub use ask::{
     ANSWER_VERSION, Answer, AskError, BallAnswer, Balls, BodyMass, ContactsAnswer,
-    ContactsQuestion, FEW_PAIRS, LocalTouch, MassAnswer, MassQuestion, PairContacts,
+    ContactsQuestion, FEW_PAIRS, LocalFinding, MassAnswer, MassQuestion, PairContacts,
     PointAnswer, PointQuestion, Question, Separation, SweepAnswer, SweepPair, SweepQuestion,
     SweptPart, Versioned, Weighed,
 };

@@ -9,7 +9,7 @@ use palpate::local::{
 };
 use palpate::mesh::{Mesh, Outline, TriangleMesh};
 use palpate::query::{Motion, Moving};
-use palpate::scene::{BuiltScene, LocalTouch, SweptPart};
+use palpate::scene::{BuiltScene, LocalFinding, SweptPart};
 
 use super::surface;
 use crate::arguments::SweepOptions;
@@ -78,7 +78,7 @@ impl LocalSearch {
         indices: [usize; 2],
         times: &[f64],
         gap: f64,
-    ) -> Result<Option<LocalTouch>, Failure>
+    ) -> Result<Option<LocalFinding>, Failure>
     where
         Dimensions: Surfaced<D>,
     {
@@ -93,7 +93,8 @@ impl LocalSearch {
             ));
             return Ok(None);
         };
-        let mut all = LocalTouch { method: self.name().to_owned(), ..LocalTouch::default() };
+        let mut all =
+            LocalFinding { method: self.name().to_owned(), ..LocalFinding::default() };
         for part in times.windows(2) {
             let &[from, to] = part else { continue };
             let ways = scene.ways(indices, SweptPart { from, to }).map_err(ask::failure)?;

@@ -49,7 +49,7 @@ pub use ball::{BallAnswer, Balls};
 pub use contacts::{ContactsAnswer, ContactsQuestion, PairContacts, Separation};
 pub use mass::{BodyMass, MassAnswer, MassQuestion, Weighed};
 pub use point::{PointAnswer, PointQuestion};
-pub use sweep::{LocalTouch, SweepAnswer, SweepPair, SweepQuestion, SweptPart};
+pub use sweep::{LocalFinding, SweepAnswer, SweepPair, SweepQuestion, SweptPart};
 
 /// The version of answers, questions and the live protocol. A change of a key raises it.
 pub const ANSWER_VERSION: u32 = 2;

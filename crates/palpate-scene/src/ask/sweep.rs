@@ -98,7 +98,7 @@ pub struct SweepPair<const D: usize> {
     pub part: SweptPart,
     /// What a local search found, if one ran beside.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub local: Option<LocalTouch>,
+    pub local: Option<LocalFinding>,
 }
 
 /// A part of motions between two times.
@@ -112,7 +112,7 @@ pub struct SweptPart {
 
 /// The first touch that a local search of the literature found, which proves nothing.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
-pub struct LocalTouch {
+pub struct LocalFinding {
     /// The name of the method.
     pub method: String,
     /// When it found a touch [s]; `None` if it found none.
