@@ -29,11 +29,7 @@ pub(crate) fn ask<const D: usize>(
     interrupt: &Interrupt,
 ) -> Result<Option<Answer<D>>, Failure> {
     let scene = scene.clone();
-    let found = interrupt.soon(move |stop| scene.ask_until(&question, stop));
-    match found {
-        None | Some(Err(AskError::Stopped)) => Ok(None),
-        Some(found) => found.map(Some).map_err(failure),
-    }
+    interrupt.soon(move |stop| scene.ask_until(&question, stop)).transpose().map_err(failure)
 }
 
 /// Why a question of the command line has no answer.
@@ -70,5 +66,4 @@ macro_rules! kinds {
 }
 kinds! {
     contacts: Contacts(ContactsAnswer), mass: Mass(MassAnswer), point: Point(PointAnswer)
-
 }

@@ -148,9 +148,6 @@ pub enum AskError {
     /// The question asks too much, or does not fit the scene.
     #[error("{0}")]
     Refused(String),
-    /// The question was stopped before anything was known.
-    #[error("stopped before anything was known")]
-    Stopped,
 }
 
 impl AnyScene {
@@ -187,7 +184,7 @@ impl<const D: usize> BuiltScene<D> {
     ///
     /// # Errors
     ///
-    /// As [`ask`](Self::ask), and [`AskError::Stopped`].
+    /// As [`ask`](Self::ask).
     #[inline(never)]
     pub fn ask_until(
         &self,

@@ -350,7 +350,7 @@ impl<const D: usize> SweepAnswer<D> {
     ///
     /// # Errors
     ///
-    /// Those of the writer.
+    /// [`fmt::Error`] if `f` refuses the text.
     pub fn write_pair(&self, f: &mut impl fmt::Write, pair: &SweepPair<D>) -> fmt::Result {
         let [a, b] = pair.bodies.each_ref().map(|name| shown(name));
         let touch = &pair.touch;
