@@ -277,3 +277,70 @@ fn write_bound_fields<'a>(
         said.join(", ")
     )
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Scene;
+
+    /// Two discs of radius 0.5, 1 m apart; the first falls on the second in 1 s.
+    const DISCS: &str = r#"{ "palpate": 1, "dimension": 2,
+        "bodies": [
+          { "name": "upper", "shape": { "ball": { "radius": 0.5 } },
+            "pose": { "translation": [0, 2] } },
+          { "name": "lower", "shape": { "ball": { "radius": 0.5 } } } ],
+        "motions": [ { "body": "upper", "to": { "translation": [0, 0] } } ] }"#;
+
+    fn asked(question: &str) -> Result<serde_json::Value, String> {
+        let scene = Scene::from_json(DISCS).unwrap().build().unwrap();
+        let answer = scene.ask_json(question).map_err(|error| error.to_string())?;
+        assert!(answer.starts_with(r#"{"palpate":2,"answer":""#), "{answer}");
+        Ok(serde_json::from_str(&answer).unwrap())
+    }
+
+    #[test]
+    fn every_kind_of_question_is_answered() {
+        let answer = asked(r#"{ "question": "point", "at": [0, 1], "radius": 0.6 }"#).unwrap();
+        assert_eq!(
+            (&answer["distance"], &answer["ball"]["touches"]),
+            (&0.5.into(), &true.into())
+        );
+        let answer = asked(r#"{ "question": "contacts", "proof": true }"#).unwrap();
+        let pair = &answer["pairs"][0];
+        assert_eq!((&answer["apart"], &pair["verdict"]), (&1.into(), &"apart".into()));
+        assert!(pair["separation"]["lower"].as_f64().unwrap() <= 1.0);
+        assert!(!pair["proof"]["boxes"].as_array().unwrap().is_empty());
+        // Half of the way is gone after half of the time.
+        let answer = asked(r#"{ "question": "sweep" }"#).unwrap();
+        let touch = answer["pairs"][0]["upper"].as_f64().unwrap();
+        assert!((touch - 0.5).abs() < 1e-3, "{answer}");
+        let answer = asked(r#"{ "question": "mass", "bodies": ["lower"] }"#).unwrap();
+        let area = answer["bodies"][0]["volume"].as_f64().unwrap();
+        assert!((area - std::f64::consts::FRAC_PI_4).abs() < 1e-3, "{answer}");
+    }
+
+    #[test]
+    fn what_does_not_fit_is_refused_with_its_name() {
+        for (question, why) in [
+            (r#"{ "question": "point", "at": [0, 1, 2] }"#, "a point has 2 numbers, got 3"),
+            (r#"{ "question": "contacts", "margin_m": 1 }"#, "unknown field `margin_m`"),
+            (r#"{ "question": "contacts", "bodies": ["uper"] }"#, "upper"),
+            (r#"{ "question": "fly" }"#, "unknown variant `fly`"),
+            (r#"{ "question": "point", "at": [0, 1], "radius": -1 }"#, "the radius must be"),
+        ] {
+            let refused = asked(question).unwrap_err();
+            assert!(refused.contains(why), "{question}: {refused}");
+        }
+    }
+
+    #[test]
+    fn a_search_that_is_stopped_says_that_it_is_not_whole() {
+        let AnyScene::Planar(scene) = Scene::from_json(DISCS).unwrap().build().unwrap() else {
+            unreachable!("the dimension is 2")
+        };
+        let stop = AtomicBool::new(true);
+        let question = Question::Sweep(SweepQuestion::default());
+        let answer = scene.ask_until(&question, &stop).unwrap().to_json();
+        assert_eq!((&answer["is_whole"], &answer["pairs"][0]), (&false.into(), &().into()));
+    }
+}
