@@ -6,6 +6,7 @@
 //! [`run`] runs a command line as `palpate` does, on the standard output and error of the
 //! process. The caller chooses the allocator and handles signals.
 
+mod answers;
 mod arguments;
 mod bound_fields;
 mod check;

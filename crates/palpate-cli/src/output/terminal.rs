@@ -6,7 +6,7 @@
 use std::fmt;
 use std::io::{self, Write};
 
-use serde_json::Value;
+use serde::Serialize;
 
 use super::escape::{shown, shown_json, shown_lines};
 use crate::outcome::{Failure, Outcome};
@@ -18,15 +18,38 @@ pub(crate) struct Answer {
     out: io::StdoutLock<'static>,
 }
 
+/// The version of answers in JSON. A program that reads them refuses a version that it does not
+/// know, so the number rises when a key changes its name or its meaning. Answers of version 1 had
+/// units in their keys, and no number.
+pub(crate) const VERSION: u8 = 2;
+
+/// An answer with its version.
+#[derive(Serialize)]
+struct Versioned<'a, T> {
+    palpate: u8,
+    #[serde(flatten)]
+    answer: &'a T,
+}
+
 /// The standard output, for the answer of a command.
 pub(crate) fn answer() -> Answer {
     Answer { out: io::stdout().lock() }
 }
 
 impl Answer {
-    /// Writes an object, and ends the line.
-    pub(crate) fn json(&mut self, value: &Value) -> io::Result<()> {
-        writeln!(self.out, "{}", shown_json(&format!("{value:#}")))
+    /// Writes an answer as an object that begins with its version, and ends the line.
+    pub(crate) fn json(&mut self, answer: &impl Serialize) -> io::Result<()> {
+        let json = serde_json::to_string_pretty(&Versioned { palpate: VERSION, answer })?;
+        writeln!(self.out, "{}", shown_json(&json))
+    }
+
+    /// Writes an answer, as JSON or in words.
+    pub(crate) fn print(
+        &mut self,
+        answer: &(impl Serialize + fmt::Display),
+        as_json: bool,
+    ) -> io::Result<()> {
+        if as_json { self.json(answer) } else { write!(self, "{answer}") }
     }
 }
 
