@@ -28,3 +28,135 @@ impl<const D: usize> From<Aabb<D>> for Bounds {
         Self { min: aabb.min.0.to_vec(), max: aabb.max.0.to_vec() }
     }
 }
+
+#[cfg(test)]
+pub(crate) use tests::{CertifiedSchema, NearestSchema};
+
+#[cfg(test)]
+mod tests {
+    use std::fmt::Write;
+
+    use schemars::generate::SchemaSettings;
+    use schemars::{JsonSchema, SchemaGenerator};
+    use serde_json::{Map, Value};
+
+    use crate::descend::{element, pair};
+    use crate::devices::{self, actuators, rendered, stability};
+    use crate::output::VERSION;
+    use crate::renamed::RENAMED;
+    use crate::{
+        check, feel, gallery, gradients, grid, identify, jitter, mesh, plot, render, shapes,
+    };
+
+    /// Set to write what is generated instead of comparing it.
+    const RENEW: &str = "PALPATE_RENEW";
+
+    /// The schema of [`Certified`](palpate::query::Certified).
+    #[derive(JsonSchema)]
+    #[schemars(rename = "Certified")]
+    #[expect(dead_code, reason = "the schema alone is used")]
+    pub(crate) struct CertifiedSchema<T> {
+        /// The best point that was found.
+        best: T,
+        /// Proven lower bound [m].
+        lower: f64,
+        /// Upper bound, attained at `best` [m].
+        upper: f64,
+        /// Why the search stopped: `converged`, `sign_known`, `budget_spent`, `memory_full` or
+        /// `rounding_reached`.
+        stop: String,
+        /// How often fields were evaluated; a gradient counts twice.
+        evaluations: u32,
+    }
+
+    /// The schema of [`Nearest`](palpate::query::Nearest).
+    #[derive(JsonSchema)]
+    #[schemars(rename = "Nearest")]
+    #[expect(dead_code, reason = "the schema alone is used")]
+    pub(crate) struct NearestSchema {
+        /// The point between the bodies, or in both [m].
+        point: Vec<f64>,
+        /// The unit vector from the first body to the second; `null` where there is none.
+        normal: Option<Vec<f64>>,
+    }
+
+    /// The schema of each answer, by the command that prints it.
+    fn answers(generator: &mut SchemaGenerator) -> Vec<(&'static str, schemars::Schema)> {
+        fn of<T: JsonSchema>(generator: &mut SchemaGenerator) -> schemars::Schema {
+            T::json_schema(generator)
+        }
+        vec![
+            ("check", of::<check::Answer>(generator)),
+            ("check: a bad scene", of::<check::Refused>(generator)),
+            ("descend: between bodies", of::<pair::Report<3>>(generator)),
+            ("descend: over an element", of::<element::Report<'_, 3>>(generator)),
+            ("devices", of::<devices::Answer>(generator)),
+            ("devices --actuators", of::<actuators::Answer>(generator)),
+            ("devices --materials", of::<rendered::Answer>(generator)),
+            ("devices --stability", of::<stability::Answer>(generator)),
+            ("feel", of::<feel::report::Answer<'_>>(generator)),
+            ("gallery", of::<gallery::Answer>(generator)),
+            ("gradients", of::<gradients::Answer>(generator)),
+            ("grid", of::<grid::Answer>(generator)),
+            ("identify", of::<identify::report::Answer>(generator)),
+            ("jitter", of::<jitter::Answer>(generator)),
+            ("mesh", of::<mesh::Checked>(generator)),
+            ("mesh --output", of::<mesh::contour::Answer>(generator)),
+            ("plot", of::<plot::Answer>(generator)),
+            ("render", of::<render::report::Answer>(generator)),
+            ("shapes", of::<shapes::Answer>(generator)),
+        ]
+    }
+
+    /// The schema of all answers: `properties` has one for each command.
+    fn schema() -> Value {
+        let mut generator = SchemaSettings::draft2020_12().into_generator();
+        let mut commands = Map::new();
+        for (command, schema) in answers(&mut generator) {
+            let mut schema = schema.to_value();
+            schema["properties"]["palpate"] = serde_json::json!({
+                "const": VERSION,
+                "description": "The version of the vocabulary.",
+            });
+            if let Some(required) = schema["required"].as_array_mut() {
+                required.insert(0, "palpate".into());
+            }
+            commands.insert(command.to_owned(), schema);
+        }
+        serde_json::json!({
+            "$schema": "https://json-schema.org/draft/2020-12/schema",
+            "title": "answers of palpate",
+            "description": "What `palpate COMMAND --json` prints, in SI units. Generated.",
+            "properties": commands,
+            "$defs": generator.take_definitions(true),
+        })
+    }
+
+    /// Writes a generated text if that is asked for, and else compares it.
+    fn compare(file: &str, current: &str) {
+        let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join(file);
+        if std::env::var_os(RENEW).is_some() {
+            std::fs::write(&path, current).unwrap();
+        }
+        let written = std::fs::read_to_string(&path).unwrap_or_default();
+        assert!(written == current, "{file} is stale; `cargo xtask renew` renews it");
+    }
+
+    #[test]
+    fn the_committed_schema_is_the_generated_one() {
+        compare("schema/answers.schema.json", &format!("{:#}\n", schema()));
+    }
+
+    #[test]
+    fn the_changelog_lists_the_renamed_keys() {
+        let page = include_str!("../../../CHANGELOG.md");
+        let (begin, end) = ("<!-- renamed keys -->\n", "<!-- end -->\n");
+        let (before, rest) = page.split_once(begin).unwrap();
+        let (_, after) = rest.split_once(end).unwrap();
+        let mut table = "\n| command | old | new |\n|---|---|---|\n".to_owned();
+        for row in RENAMED {
+            writeln!(table, "| `{}` | `{}` | `{}` |", row.command, row.old, row.new).unwrap();
+        }
+        compare("../../CHANGELOG.md", &format!("{before}{begin}{table}\n{end}{after}"));
+    }
+}

@@ -36,6 +36,8 @@ mod picture;
 mod plane;
 mod plot;
 mod progress;
+#[cfg(test)]
+mod renamed;
 mod render;
 mod schema;
 mod shapes;

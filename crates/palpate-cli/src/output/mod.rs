@@ -23,6 +23,8 @@ use crate::outcome::Failure;
 
 pub(crate) use escape::{shown, shown_lines};
 pub(crate) use files::{Files, ending};
+#[cfg(test)]
+pub(crate) use terminal::VERSION;
 pub(crate) use terminal::{answer, complain, ended, live, remark, usage};
 
 /// A count with its noun: "1 body", "2 bodies".
