@@ -174,7 +174,7 @@ fn the_table_of_materials_on_devices_is_current() {
     );
     let faster = json(&["devices", "--materials", "--rate", "4000", "--json"]);
     let of = |rows: &Value, device: &str, material: &str| {
-        let rows = rows.as_array().unwrap();
+        let rows = rows["devices"].as_array().unwrap();
         let row = rows.iter().find(|row| row["device"] == device).unwrap().clone();
         let materials = row["materials"].as_array().unwrap();
         let found = materials.iter().find(|found| found["name"] == material).unwrap();

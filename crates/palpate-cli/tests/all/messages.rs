@@ -182,7 +182,7 @@ fn a_body_without_any_point_is_told_of() {
     );
     let answer = folder.run(&["check", "hollow.json", "--json"]);
     let answer: Value = serde_json::from_slice(&answer.stdout).unwrap();
-    let empty: Vec<_> = (0..3).map(|i| answer["bodies"][i]["empty"].clone()).collect();
+    let empty: Vec<_> = (0..3).map(|i| answer["bodies"][i]["is_empty"].clone()).collect();
     assert_eq!(empty, [json!(true), Value::Null, json!(false)]);
     let mass = folder.run(&["mass", "hollow.json", "--cells", "1000"]);
     assert_eq!(status(&mass), 1);
