@@ -188,12 +188,12 @@ fn the_scale_that_the_program_chose_is_told() {
     assert!((scale - 0.75_f64.sqrt() / radius).abs() < 1e-12, "{scale}");
     let said = "  workspace      11.55 m of the scene for each metre of the device\n";
     assert!(text(&palpate(&omega)).contains(said), "{}", text(&palpate(&omega)));
-    assert!(json(&[&feel[..], &["--json"]].concat()).get("workspace_scale").is_none());
+    assert!(json(&[&feel[..], &["--json"]].concat())["workspace_scale"].is_null());
     let given =
         BALL.replace("\"bodies\"", r#""tool": { "workspace": { "scale": 9 } }, "bodies""#);
     let given = folder.write("given.json", &given);
     let omega = ["feel", &given, "--fast", "--duration", "0.1", "--device", "simulated:omega"];
-    assert!(json(&[&omega[..], &["--json"]].concat()).get("workspace_scale").is_none());
+    assert!(json(&[&omega[..], &["--json"]].concat())["workspace_scale"].is_null());
 }
 
 /// A path led the first point alone, and the others were not there.

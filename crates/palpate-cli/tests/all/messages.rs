@@ -45,7 +45,8 @@ fn every_problem_of_a_scene_is_told() {
     let name = problem("bodies[0].name", 17, "name must not be empty");
     let radius = "radius must be positive, got -0.5 m";
     let radius = problem("bodies[0].shape.ball.radius", 50, radius);
-    let expected = json!({ "ok": false, "problems": [name, radius], "maybe_more": false });
+    let expected =
+        json!({ "palpate": 2, "ok": false, "problems": [name, radius], "maybe_more": false });
     assert_eq!(answer, expected);
     let plot = folder.run(&["plot", "bad.json"]);
     assert_eq!(status(&plot), 2);
@@ -182,7 +183,7 @@ fn a_body_without_any_point_is_told_of() {
     );
     let answer = folder.run(&["check", "hollow.json", "--json"]);
     let answer: Value = serde_json::from_slice(&answer.stdout).unwrap();
-    let empty: Vec<_> = (0..3).map(|i| answer["bodies"][i]["empty"].clone()).collect();
+    let empty: Vec<_> = (0..3).map(|i| answer["bodies"][i]["is_empty"].clone()).collect();
     assert_eq!(empty, [json!(true), Value::Null, json!(false)]);
     let mass = folder.run(&["mass", "hollow.json", "--cells", "1000"]);
     assert_eq!(status(&mass), 1);
@@ -198,7 +199,7 @@ fn a_body_without_any_point_is_told_of() {
         (&none["empty"], &none["volume"], &none["volume_error"]),
         (&json!(true), &json!(0.0), &json!(0.0))
     );
-    assert_eq!(none["centroid_m"], Value::Null);
+    assert_eq!(none["centroid"], Value::Null);
     let warning = "warning: body \"none\" is empty: no point is in it, which is proven\n";
     for arguments in [&["plot"][..], &["contact"], &["feel", "--fast", "--duration", "0.01"]] {
         let command = [&arguments[..1], &["hollow.json"], &arguments[1..]].concat();

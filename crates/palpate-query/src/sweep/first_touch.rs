@@ -3,6 +3,8 @@
 
 //! The first touch of what moves.
 
+use std::fmt;
+
 use palpate_field::Vector;
 
 use crate::certified::Stop;
@@ -14,6 +16,8 @@ const SLIDES: f64 = 1e-3;
 /// How bodies that touch at the start move on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "serde", serde(rename_all = "snake_case"))]
 pub enum Start {
     /// Into each other.
     Approaching,
@@ -38,10 +42,22 @@ impl Start {
     }
 }
 
+impl fmt::Display for Start {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Approaching => "approaching",
+            Self::Receding => "receding",
+            Self::Sliding => "sliding",
+            Self::Resting => "resting",
+        })
+    }
+}
+
 /// When two bodies touch first, of a motion over the time from 0 to 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct FirstTouch<const D: usize> {
     /// Before this time the bodies are proven apart, rounding included: two bodies by more than half
     /// of the gap; and of an element or a mesh, the field is more than half of the gap at every point.
