@@ -8,6 +8,8 @@ use super::{domain, surface};
 use crate::error::ShapeError;
 use crate::field::SharedField;
 use crate::kernel::{Argument, ParameterKind};
+#[cfg(feature = "oracle")]
+use crate::{scalar::Scalar, vector::Vector};
 
 /// An operator of the catalogue.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -52,6 +54,28 @@ pub(crate) trait Declared {
     ) -> Result<SharedField<D>, ShapeError>;
 }
 
+/// The values of a child at any point.
+#[cfg(feature = "oracle")]
+#[allow(missing_debug_implementations, reason = "it holds closures")]
+pub struct Child<'a, S, const D: usize> {
+    /// Its value.
+    pub value: &'a dyn Fn(Vector<S, D>) -> S,
+    /// The same, but at least the distance to its box where its promise says that the value may
+    /// be less: what operators that grow a child take.
+    pub guarded: &'a dyn Fn(Vector<S, D>) -> S,
+}
+
+/// What tests need of a declared operator.
+#[cfg(feature = "oracle")]
+pub(crate) trait Evidence: Declared {
+    /// The value at `p` by the definition.
+    fn definition<S: Scalar, const D: usize>(
+        child: &Child<'_, S, D>,
+        argument: &Argument,
+        p: Vector<S, D>,
+    ) -> S;
+}
+
 macro_rules! catalogue {
     ($($declared:ty),* $(,)?) => {
         impl Operator {
@@ -70,6 +94,28 @@ macro_rules! catalogue {
                     <$declared>::field(child, argument)
                 })*
                 _ => operator.unsuitable(),
+            }
+        }
+
+        #[cfg(feature = "oracle")]
+        impl Operator {
+            /// The value at `p` by the definition, for tests.
+            ///
+            /// # Panics
+            ///
+            /// If the argument is of another form.
+            pub fn definition<S: Scalar, const D: usize>(
+                &self,
+                child: &Child<'_, S, D>,
+                argument: &Argument,
+                p: Vector<S, D>,
+            ) -> S {
+                match self.name {
+                    $(name if name == <$declared>::OPERATOR.name => {
+                        <$declared as Evidence>::definition(child, argument, p)
+                    })*
+                    _ => unreachable!("an operator of the catalogue"),
+                }
             }
         }
     };

@@ -1,9 +1,10 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! The tables of primitives in the documents are those of the catalogue.
+//! The tables of primitives and operators in the documents are those of the catalogue.
 
 use palpate_field::catalogue::Entry;
+use palpate_field::operator::Operator;
 use palpate_testkit::kernels::{Dimension, Space};
 use palpate_testkit::oracle::Row;
 
@@ -39,6 +40,21 @@ where
     std::iter::once(head).chain(rows.map(row)).collect()
 }
 
+/// The operators of the catalogue, with the argument of their example.
+fn operators() -> String {
+    let row = |operator: &Operator| {
+        let [x, y, z] = operator.first;
+        let argument =
+            if operator.is_per_axis { format!("[{x}, {y}, {z}]") } else { x.to_string() };
+        format!(
+            "| `{{ \"{}\": {argument}, \"of\": a }}` | {} |\n",
+            operator.name, operator.about
+        )
+    };
+    let head = "| | |\n|---|---|\n".to_owned();
+    std::iter::once(head).chain(Operator::ALL.iter().map(row)).collect()
+}
+
 /// Compares the table `name` in a document, or writes it.
 fn assert_current(document: &str, name: &str, table: &str) {
     let path = crate::common::repository().join(document);
@@ -59,8 +75,9 @@ fn assert_current(document: &str, name: &str, table: &str) {
 }
 
 #[test]
-fn the_documented_primitives_are_those_of_the_catalogue() {
+fn the_documented_primitives_and_operators_are_those_of_the_catalogue() {
     assert_current("docs/formats.md", "origins", &table());
+    assert_current("docs/formats.md", "operators", &operators());
     assert_current("docs/guide/shapes.md", "primitives of the plane", &guide::<2>());
     assert_current("docs/guide/shapes.md", "primitives of space", &guide::<3>());
 }

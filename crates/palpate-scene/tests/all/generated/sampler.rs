@@ -4,6 +4,7 @@
 //! Every primitive, and every operator, on a grid.
 
 use palpate_field::catalogue::Entry;
+use palpate_field::operator::Operator;
 use palpate_testkit::kernels::{Dimension, Sample, Space};
 
 /// From one body to the next [m].
@@ -12,8 +13,9 @@ const SPACING: f64 = 0.15;
 /// Bodies in a row.
 const COLUMNS: usize = 7;
 
-/// The operators on shapes of space, each by name and as JSON; `bar`, `bead` and `flat` are shapes.
-pub(crate) const OPERATORS: &[(&str, &str)] = &[
+/// The operators on shapes of space that are in no catalogue, each by name and as JSON; `bar`,
+/// `bead` and `flat` are shapes.
+const OPERATORS: &[(&str, &str)] = &[
     ("union", r#"{ "union": ["bar", "bead"] }"#),
     ("intersection", r#"{ "intersection": ["bar", "bead"] }"#),
     ("difference", r#"{ "difference": ["bar", "bead"] }"#),
@@ -42,8 +44,6 @@ pub(crate) const OPERATORS: &[(&str, &str)] = &[
     ("rotation", r#"{ "rotation": [0, 0, 1, 1], "of": "bar" }"#),
     ("scale", r#"{ "scale": [1, 2, 1], "of": "bar" }"#),
     ("offset", r#"{ "offset": 0.01, "of": "bar" }"#),
-    ("shell", r#"{ "shell": 0.006, "of": "bar" }"#),
-    ("elongate", r#"{ "elongate": [0.03, 0, 0.02], "of": "bead" }"#),
     (
         "mirror",
         r#"{ "mirror": "x", "of": { "translate": [0.025, 0, 0],
@@ -91,9 +91,25 @@ where
     )
 }
 
+/// Every operator on a shape of space, by name and as JSON.
+pub(crate) fn operator_samples() -> Vec<(&'static str, String)> {
+    let others = OPERATORS.iter().map(|&(name, of)| (name, of.to_owned()));
+    others
+        .chain(Operator::ALL.iter().map(|operator| (operator.name, sample(operator))))
+        .collect()
+}
+
+/// An operator of the catalogue, on a bead.
+fn sample(operator: &Operator) -> String {
+    let [x, y, z] = operator.first;
+    let argument =
+        if operator.is_per_axis { format!("[{x}, {y}, {z}]") } else { x.to_string() };
+    format!(r#"{{ "{}": {argument}, "of": "bead" }}"#, operator.name)
+}
+
 /// Every operator.
 pub(crate) fn operators() -> String {
-    let samples: Vec<_> = OPERATORS.iter().map(|&(name, of)| (name, of.to_owned())).collect();
+    let samples = operator_samples();
     format!(
         r#"{{ "palpate": 1, "dimension": 3,
         "description": "Every operator, most of them on a bar and a bead.",
