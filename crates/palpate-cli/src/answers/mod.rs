@@ -95,11 +95,23 @@ mod tests {
                 commands.insert(command.to_owned(), schema);
                 continue;
             }
-            schema["properties"]["palpate"] = serde_json::json!({
-                "const": ANSWER_VERSION,
-                "description": "The version of the vocabulary.",
-            });
-            if let Some(required) = schema["required"].as_array_mut() {
+            let mut keys = Map::new();
+            keys.insert(
+                "palpate".to_owned(),
+                serde_json::json!({
+                    "const": ANSWER_VERSION,
+                    "description": "The version of the vocabulary.",
+                }),
+            );
+            keys.extend(
+                schema
+                    .get("properties")
+                    .and_then(Value::as_object)
+                    .cloned()
+                    .unwrap_or_default(),
+            );
+            schema["properties"] = keys.into();
+            if let Some(required) = schema.get_mut("required").and_then(Value::as_array_mut) {
                 required.insert(0, "palpate".into());
             }
             commands.insert(command.to_owned(), schema);

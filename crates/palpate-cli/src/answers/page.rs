@@ -20,6 +20,9 @@ The commands `eval`, `contact`, `sweep` and `mass` ask a [question](#question) a
 `eval --points` prints an object a line.
 ";
 
+/// The keys of an alternative that are told in a line.
+const MOST_IN_A_LINE: usize = 2;
+
 /// The page, as far as it is written.
 ///
 /// The schema is that of [`schemars`]: definitions in `$defs`, lists of alternatives in `oneOf` or
@@ -67,12 +70,24 @@ impl Page<'_> {
         }
     }
 
+    /// A line for each alternative, and a table of its keys where they do not fit in the line.
     fn alternatives(&mut self, alternatives: &[Value]) {
-        self.text.push_str("\n| | |\n|---|---|\n");
         for alternative in alternatives {
-            let row = format!("| {} | {} |\n", self.kind(alternative), described(alternative));
-            self.text.push_str(&row);
+            let keys = entries(&alternative["properties"]).count();
+            let (kind, described) = (self.kind(alternative), described(alternative));
+            if keys > MOST_IN_A_LINE {
+                let tags = entries(&alternative["properties"]);
+                let mut tags = tags.filter(|(_, value)| value.get("const").is_some());
+                let tag = tags
+                    .next()
+                    .map_or(kind, |(key, value)| format!("`{key}` {}", self.kind(value)));
+                self.text.push_str(&format!("\n{tag}: {described}\n"));
+                self.keys(alternative);
+            } else {
+                self.text.push_str(&format!("\n- {kind}: {described}"));
+            }
         }
+        self.text.push('\n');
     }
 
     /// What a value may be, in words.
@@ -112,7 +127,10 @@ impl Page<'_> {
                 listed(kinds.iter().map(of))
             }
             Value::String(kind) => match kind.as_str() {
-                "array" => format!("list of {}", self.kind(&schema["items"])),
+                "array" => match self.kind(&schema["items"]).as_str() {
+                    one @ ("number" | "integer" | "text") => format!("list of {one}s"),
+                    other => format!("list of {other}"),
+                },
                 "boolean" => "`true` or `false`".to_owned(),
                 "object" if !tags.is_empty() => tags.join(", "),
                 "string" => "text".to_owned(),
@@ -133,7 +151,13 @@ fn entries(value: &Value) -> impl Iterator<Item = (&String, &Value)> {
 fn described(schema: &Value) -> String {
     let text = schema["description"].as_str().unwrap_or_default();
     let line = text.split_whitespace().collect::<Vec<_>>().join(" ");
-    line.replace("`None`", "`null`").replace("[`", "`").replace("`]", "`").replace('|', "\\|")
+    let mut parts = line.split("`](");
+    let mut plain = parts.next().unwrap_or_default().to_owned();
+    for part in parts {
+        plain.push('`');
+        plain.push_str(part.split_once(')').map_or("", |(_, after)| after));
+    }
+    plain.replace("`None`", "`null`").replace("[`", "`").replace("`]", "`").replace('|', "\\|")
 }
 
 /// Alternatives in a sentence.

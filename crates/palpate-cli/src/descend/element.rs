@@ -14,7 +14,7 @@ use palpate::scene::text::joined;
 use serde::Serialize;
 
 use super::circles::Circles;
-use super::ending::Ending;
+use super::ending::EndOfPath;
 use super::search::Search;
 use super::{Found, figure, limits};
 use crate::arguments::DescendOptions;
@@ -30,7 +30,7 @@ pub(super) struct Answer<const N: usize, const D: usize> {
     pub(super) search: Search<N>,
     pub(super) found: Timed<Descent<D>>,
     pub(super) certified: Timed<Certified<Point<D>>>,
-    pub(super) ending: Ending<D>,
+    pub(super) ending: EndOfPath<D>,
     pub(super) circles: Circles<D>,
 }
 
@@ -87,7 +87,7 @@ where
     let certified = Timed { result: proof.result.map_err(Failure::input)?, time: proof.time };
     let found = Timed::of(|| search.run(shape, &element));
     let answer = Answer {
-        ending: Ending::of(shape, &found.result, &certified.result, size),
+        ending: EndOfPath::of(shape, &found.result, &certified.result, size),
         circles: Circles::of(shape, &element),
         certified,
         element,
@@ -147,7 +147,7 @@ impl<const N: usize, const D: usize> Answer<N, D> {
             missed_by: self.missed_by(),
             ending: &self.ending,
             circles: &self.circles,
-            certified: Proof {
+            certified: ProvenMinimum {
                 minimum: certified.result.map(|best| best.0.to_vec()),
                 time: certified.time,
             },
@@ -173,11 +173,11 @@ pub(crate) struct Report<'a, const D: usize> {
     /// How far the value is above one that is proven to be taken [m].
     missed_by: f64,
     /// The end of the path.
-    ending: &'a Ending<D>,
+    ending: &'a EndOfPath<D>,
     /// The circles around the element, and whether they exclude it.
     circles: &'a Circles<D>,
     /// The search with a proof.
-    certified: Proof,
+    certified: ProvenMinimum,
     /// The method, with its constants.
     #[serde(skip)]
     search: String,
@@ -203,7 +203,7 @@ struct Naive {
 /// The proven minimum.
 #[derive(Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
-struct Proof {
+struct ProvenMinimum {
     #[serde(flatten)]
     minimum: Certified<Vec<f64>>,
     /// The time that the search takes [s].
@@ -212,7 +212,7 @@ struct Proof {
 
 impl<const D: usize> fmt::Display for Report<'_, D> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { found, certified: Proof { minimum, time: proof_time }, .. } = self;
+        let Self { found, certified: ProvenMinimum { minimum, time: proof_time }, .. } = self;
         let [time, proof_time] = [self.time, *proof_time].map(microseconds);
         let metres = |length: f64| format!("{length} m");
         writeln!(f, "method       {}", self.search)?;

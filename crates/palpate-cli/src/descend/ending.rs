@@ -15,7 +15,7 @@ const NEAR: f64 = 10.0 * super::TOLERANCE;
 /// The end of a path.
 #[derive(Debug, Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
-pub(crate) struct Ending<const D: usize> {
+pub(crate) struct EndOfPath<const D: usize> {
     /// What the last point is.
     at: Place,
     /// The last point [m].
@@ -41,7 +41,7 @@ enum Place {
     Elsewhere,
 }
 
-impl<const D: usize> Ending<D> {
+impl<const D: usize> EndOfPath<D> {
     /// The end of `found` over an element of this size [m].
     pub(super) fn of(
         shape: &Shape<D>,

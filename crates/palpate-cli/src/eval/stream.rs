@@ -191,6 +191,7 @@ impl<const D: usize> Job<'_, D> {
 pub(crate) struct Line<const D: usize> {
     #[serde(flatten)]
     at: AtPoint<D>,
+    /// What is known of the ball, if one was asked about.
     ball: Option<BallAnswer<D>>,
 }
 

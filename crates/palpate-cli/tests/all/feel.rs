@@ -81,7 +81,8 @@ fn a_path_that_starts_inside_a_body_is_said() {
     let soft = [&feel[..], &["--stiffness", "0", "--damping", "0"]].concat();
     let report = json(&[&soft[..], &["--json"]].concat());
     let start = &report["starts_inside"][0];
-    assert_eq!(start["name"], "ball");
+    assert_eq!(report["bodies"][0]["name"], "ball");
+    assert_eq!(start["body"], 0);
     let ticks = start["ticks_without_force"].as_u64().unwrap();
     assert!((405..=415).contains(&ticks), "{start}");
     let time = start["time_without_force"].as_f64().unwrap();

@@ -75,7 +75,10 @@ fn what_is_found_is_a_profile_that_devices_feel_and_identify_read() {
     let [found, usual] = [felt(&device), felt("simulated:omega")];
     assert_eq!(found["device"], usual["device"]);
     // Once nothing told a profile of a file from the one of that name in the list.
-    assert_eq!((&found["device_file"], &usual["device_file"]), (&file.into(), &serde_json::Value::Null));
+    assert_eq!(
+        (&found["device_file"], &usual["device_file"]),
+        (&file.into(), &serde_json::Value::Null)
+    );
     let device = ["feel", "--fast", "--duration", "0.1", "--device", &device];
     let said = text(&palpate(&device));
     assert!(
