@@ -219,23 +219,15 @@ fn answered(
         (AnyScene::Planar(_), Ask::Picture { .. }) => {
             Err("a scene in the plane is drawn from samples".to_owned())
         }
-        (AnyScene::Planar(scene), ask) => {
-            answer(scene, ask, id, cancel).unwrap_or_else(unknown)
-        }
-        (AnyScene::Spatial(scene), ask) => {
-            answer(scene, ask, id, cancel).unwrap_or_else(unknown)
-        }
+        (AnyScene::Planar(scene), ask) => answer(scene, ask, id, cancel),
+        (AnyScene::Spatial(scene), ask) => answer(scene, ask, id, cancel),
     }
-}
-
-fn unknown() -> Result<Answer, String> {
-    Err("nothing is known of such a question".to_owned())
 }
 
 /// The scene as `palpate render` draws it, without shadows.
 fn drawn(scene: &BuiltScene<3>, ask: &Ask, cancel: &Cancel) -> Result<Answer, String> {
     let Ask::Picture { eye, target, field_of_view, width, height } = ask else {
-        return unknown();
+        return Err("not about a picture".to_owned());
     };
     if !(1..=LARGEST).contains(width) || !(1..=LARGEST).contains(height) {
         return Err(format!(

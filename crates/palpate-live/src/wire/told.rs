@@ -32,37 +32,16 @@ pub(crate) enum Told<'a> {
     Scene(&'a SceneTold),
     /// What was asked for is done, and has no other answer.
     Done,
-    /// What was asked for is not done.
-    Refused {
-        /// Why, in words.
-        message: &'a str,
-        /// What is wrong with the scene.
-        problems: &'a [Problem],
-    },
-    /// What the servo did.
-    Events {
-        /// The oldest first.
-        events: &'a [Event],
-    },
-    /// What the safety chain did since the servo began.
-    Safety {
-        /// In the order in which they act.
-        stages: Vec<StageTold>,
-    },
-    /// What is recorded.
-    Recording {
-        /// Whether every tick is.
-        is_on: bool,
-        /// The rows so far.
-        rows: usize,
-        /// The rows at most.
-        most: usize,
-    },
+    /// Why what was asked for is not done, and what is wrong with the scene.
+    Refused { message: &'a str, problems: &'a [Problem] },
+    /// What the servo did, the oldest first.
+    Events { events: &'a [Event] },
+    /// What the stages of the safety chain did since the servo began, in the order in which they act.
+    Safety { stages: Vec<StageTold> },
+    /// Whether every tick is recorded, the rows so far, and the rows at most.
+    Recording { is_on: bool, rows: usize, most: usize },
     /// How many pages are open.
-    Clients {
-        /// All of them.
-        count: usize,
-    },
+    Clients { count: usize },
     /// Forces are held at zero.
     Stopped {
         /// The number of the last stop, which a release repeats.
@@ -72,23 +51,12 @@ pub(crate) enum Told<'a> {
         /// The time until this page may release it [s].
         release_after: f64,
     },
-    /// A stop was released.
-    Released {
-        /// Its number.
-        number: u64,
-    },
+    /// The stop of this number was released.
+    Released { number: u64 },
     /// What a person should read.
-    Notice {
-        /// The words.
-        message: &'a str,
-        /// What it is about, if that is one thing.
-        about: Option<About>,
-    },
-    /// The last message before the program closes a socket.
-    Bye {
-        /// Why.
-        why: &'a str,
-    },
+    Notice { message: &'a str, about: Option<About> },
+    /// Why the program closes the socket: the last message.
+    Bye { why: &'a str },
 }
 
 /// What a notice is about.

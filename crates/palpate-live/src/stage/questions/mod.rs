@@ -71,13 +71,13 @@ pub(super) enum Answer {
     Picture(Vec<u8>),
 }
 
-/// Answers the question with this number about a scene; `None` if it is about something else.
+/// Answers the question with this number about a scene.
 pub(super) fn answer<const D: usize>(
     scene: &BuiltScene<D>,
     ask: &Ask,
     id: Option<u32>,
     cancel: &Cancel,
-) -> Option<Result<Answer, String>> {
+) -> Result<Answer, String> {
     let answered = match ask {
         Ask::Question { question } => answer_to(scene, question, cancel),
         Ask::Element { corners, .. } => match corners.len() {
@@ -100,19 +100,20 @@ pub(super) fn answer<const D: usize>(
                 [*radius, gravity.unwrap_or(GRAVITY), restitution.unwrap_or(RESTITUTION)];
             fall::fall(scene, centre, numbers, cancel)
         }
-        Ask::Slice { .. } => return Some(grid::slice(scene, ask, cancel).map(Answer::Grid)),
+        Ask::Slice { .. } => return grid::slice(scene, ask, cancel).map(Answer::Grid),
         Ask::Samples { cells, body } => {
-            return Some(grid::samples(scene, *cells, *body, cancel).map(Answer::Grid));
+            return grid::samples(scene, *cells, *body, cancel).map(Answer::Grid);
         }
-        _ => return None,
+        _ => Err("nothing is known of such a question".to_owned()),
     };
-    let text = answered.map(|answered| written(&answered, id));
-    Some(text.and_then(|text| match text.len() {
-        ..=LONGEST => Ok(Answer::Text(text)),
-        length => Err(format!(
+    let text = written(&answered?, id);
+    let length = text.len();
+    if length > LONGEST {
+        return Err(format!(
             "the answer has {length} bytes, of at most {LONGEST}: ask about fewer bodies"
-        )),
-    }))
+        ));
+    }
+    Ok(Answer::Text(text))
 }
 
 /// Answers a question that every door takes.
@@ -168,4 +169,34 @@ fn named<const D: usize>(
 
 fn limits<const D: usize>(scene: &BuiltScene<D>) -> Limits {
     Limits::new(TOLERANCE * size(scene))
+}
+
+#[cfg(test)]
+mod tests {
+    use palpate::scene::{AnyScene, Scene};
+
+    use super::*;
+
+    #[test]
+    fn boxes_that_are_left_out_are_counted() {
+        let text = r#"{ "palpate": 1, "dimension": 2, "bodies": [
+            { "name": "a", "shape": { "circle": { "radius": 0.5 } } },
+            { "name": "b", "shape": { "circle": { "radius": 0.5 } },
+              "pose": { "translation": [2, 0] } } ] }"#;
+        let AnyScene::Planar(scene) = Scene::from_json(text).unwrap().build().unwrap() else {
+            panic!("in the plane")
+        };
+        let question = r#"{ "question": "contacts", "proof": true, "tolerance": 1e-6 }"#;
+        let mut answer = scene.ask(&serde_json::from_str(question).unwrap()).unwrap();
+        let boxes = |answer: &scene::Answer<2>| match answer {
+            scene::Answer::Contacts(found) => {
+                found.pairs[0].proof.as_ref().map_or(0, |proof| proof.boxes.len())
+            }
+            other => panic!("{other:?}"),
+        };
+        let (all, left_out) = (boxes(&answer), leave_out_boxes(&mut answer));
+        assert_eq!(boxes(&answer), all.min(MOST_BOXES));
+        assert_eq!((left_out, leave_out_boxes(&mut answer)), (all - boxes(&answer), 0));
+        assert!(left_out > 0, "{all} boxes");
+    }
 }
