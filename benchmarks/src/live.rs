@@ -36,7 +36,7 @@ pub(crate) fn measure() -> Result<Rows, Box<dyn Error>> {
         eprintln!("measuring the page, {name} …");
         let live = Live::start("s3", None, SCENE, LiveOptions::default())?;
         let mut page = connect(&live)?;
-        page.send(Message::Text(r#"{"do":"hello","version":1}"#.into()))?;
+        page.send(Message::Text(r#"{"do":"hello","version":2}"#.into()))?;
         let ends = AtomicBool::new(false);
         let frames = std::thread::scope(|scope| {
             if is_under_load {
@@ -102,15 +102,16 @@ fn connect(live: &Live) -> Result<WebSocket<TcpStream>, Box<dyn Error>> {
 
 /// A third floods, a third reads nothing, a third sends garbage: until `ends`.
 fn misuse(live: &Live, client: usize, ends: &AtomicBool) {
-    let probe = Message::Text(r#"{"do":"probe","at":[0,0.06,0],"id":1}"#.into());
+    let question = r#"{"do":"ask","question":{"question":"point","at":[0,0.06,0]},"id":1}"#;
+    let question = Message::Text(question.into());
     while !ends.load(Ordering::Relaxed) {
         let Ok(mut page) = connect(live) else { continue };
         for round in 0..200_usize {
             let message = match client % 3 {
-                0 => probe.clone(),
+                0 => question.clone(),
                 1 => {
                     std::thread::sleep(Duration::from_millis(5));
-                    probe.clone()
+                    question.clone()
                 }
                 _ => {
                     Message::Binary(Bytes::from(vec![round as u8; 1 + 7919 * round % 100_000]))

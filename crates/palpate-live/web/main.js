@@ -57,7 +57,7 @@ function takeMessage(message) {
   }
   if (message.do === 'events') takeEvents(message.events);
   if (message.do === 'safety') takeSafety(message.stages);
-  if (message.do === 'recording') takeRecording(/** @type {any} */ (message));
+  if (message.do === 'recording') takeRecording(message);
   if (message.do === 'stopped') takeStopped(message);
   if (message.do === 'released') takeReleased(message);
   if (message.do === 'clients') {
@@ -100,7 +100,7 @@ function suitView() {
     setView({ compared: view.compared.map((body) => Math.max(0, Math.min(body, last))) });
   }
   if ((state.touch.point ?? 0) >= scene.device.points) setTouch({ point: null });
-  if (scene.restarted) tell(`${scene.why[0].toUpperCase()}${scene.why.slice(1)}. ${FORCES_COME_BACK}`);
+  if (scene.restarted) tell(`${scene.restarted[0].toUpperCase()}${scene.restarted.slice(1)}. ${FORCES_COME_BACK}`);
   if (scene.by === 'file') {
     dismiss(aboutFile);
     tell('The file was changed elsewhere; the page shows it as it is now.');

@@ -19,7 +19,7 @@
  * @typedef {Record<string, any>} Message
  */
 
-export const VERSION = 1;
+export const VERSION = 2;
 
 const HEADER = 64;
 const POINT = 72;
@@ -115,8 +115,8 @@ export class Refused extends Error {
   /** @param {Message} message */
   constructor(message) {
     super(message.message);
-    /** @type {{ at: string, path: string, line: number, message: string }[]} */
-    this.problems = message.problems ?? [];
+    /** @type {{ at: string, path: string, line: number, problem: string }[]} */
+    this.problems = message.problems;
   }
 }
 
@@ -265,7 +265,7 @@ export class Wire {
       return Promise.reject(new Error('the program is not connected'));
     }
     return new Promise((resolve, reject) => {
-      this.waiting.set(id, { resolve, reject, what: message.do, since: performance.now() });
+      this.waiting.set(id, { resolve, reject, what: message.question?.question ?? message.do, since: performance.now() });
       this.send({ ...message, id });
     });
   }

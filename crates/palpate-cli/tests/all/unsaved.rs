@@ -48,7 +48,7 @@ impl Served {
         request.headers_mut().insert("origin", origin);
         let stream = TcpStream::connect(host).unwrap();
         let (mut page, _) = tungstenite::client(request, stream).unwrap();
-        say(&mut page, &json!({ "do": "hello", "version": 1 }));
+        say(&mut page, &json!({ "do": "hello", "version": 2 }));
         heard(&mut page, |message| message["do"] == "scene");
         Self { run, errors, host: host.to_owned(), page }
     }

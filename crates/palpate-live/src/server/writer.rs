@@ -6,7 +6,6 @@
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use serde_json::json;
 use tokio::sync::{OwnedSemaphorePermit, watch};
 use tokio::time::{MissedTickBehavior, interval, sleep};
 use tungstenite::Bytes;
@@ -19,6 +18,7 @@ use super::answers::{Answer, head};
 use super::connections::Connection;
 use super::limits::{MOST_PAGES, PATIENCE};
 use crate::stage::{Out, Outbox};
+use crate::wire::Told;
 
 /// How often a page that is seen gets a frame: 60 times a second.
 const FRAME: Duration = Duration::from_micros(16_666);
@@ -125,7 +125,6 @@ async fn write(connection: &Connection, message: Out) -> std::io::Result<()> {
 
 /// Tells a page why it is closed, and closes it.
 async fn end(connection: &Connection, why: &str) {
-    let bye = json!({ "do": "bye", "why": why }).to_string();
     let end = why.floor_char_boundary(LONGEST_REASON);
     let reason = why.get(..end).unwrap_or_default().to_owned();
     let close =
@@ -133,7 +132,7 @@ async fn end(connection: &Connection, why: &str) {
     let mut bytes = Vec::new();
     let _ = close.format(&mut bytes);
     let told = async {
-        write(connection, Out::Text(bye.into())).await?;
+        write(connection, Told::Bye { why }.into()).await?;
         connection.write(&bytes).await
     };
     if told.await.is_ok() {

@@ -52,7 +52,7 @@ pub struct Formulas {
 }
 
 /// A formula as GLSL ES 3.00, with the values of its uniforms.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, serde::Serialize)]
 #[non_exhaustive]
 pub struct Shader {
     /// Defines `vec2 field(vec3 p, int only)`, in the plane with a `vec2 p`: the distance [m] and

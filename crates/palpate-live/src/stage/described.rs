@@ -1,18 +1,17 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! What the page is told of a scene: its data, its bodies, how it is drawn.
+//! What the page is told of a scene that is built: its bodies, how it is drawn.
 
 use std::collections::BTreeSet;
 
-use palpate::field::Shape;
+use palpate::field::{Aabb, Vector};
 use palpate::render::SrgbColor;
-use palpate::scene::{AnyScene, BuiltScene};
-use serde_json::{Value, json};
+use palpate::scene::{AnyScene, BuiltBody, BuiltScene};
 
-use super::document::Document;
 use super::points::in_space;
 use crate::shader::{Formulas, MOST_OPERATIONS, Slot};
+use crate::wire::{BodyTold, BuiltTold, Way};
 
 /// Fields that are steeper are drawn from samples: rays would take too many steps.
 const STEEPEST: f64 = 4.0;
@@ -27,7 +26,7 @@ pub(super) struct Drawing {
 
 impl Drawing {
     /// The way to draw a scene of either dimension.
-    pub(super) fn of(&mut self, scene: &AnyScene, is_moving: bool) -> Value {
+    pub(super) fn of(&mut self, scene: &AnyScene, is_moving: bool) -> Way {
         match scene {
             AnyScene::Planar(scene) => self.way(scene, is_moving),
             AnyScene::Spatial(scene) => self.way(scene, is_moving),
@@ -36,7 +35,7 @@ impl Drawing {
 
     /// The way to draw a scene. While a control is dragged, the numbers that change are uniforms:
     /// then the text of the shader stays the same.
-    fn way<const D: usize>(&mut self, scene: &BuiltScene<D>, is_moving: bool) -> Value {
+    fn way<const D: usize>(&mut self, scene: &BuiltScene<D>, is_moving: bool) -> Way {
         let steepest = scene.whole.promise().lipschitz;
         let formulas = Formulas::of(scene.bodies.iter().map(|body| &body.shape));
         let Some(formulas) = formulas else {
@@ -50,65 +49,44 @@ impl Drawing {
         let shader = formulas.shader(&self.moving);
         self.formulas = Some(formulas);
         if steepest > STEEPEST {
-            return samples(&format!(
-                "the field is steep: its Lipschitz constant is {steepest:.3}"
-            ));
+            samples(format!("the field is steep: its Lipschitz constant is {steepest:.3}"))
+        } else if shader.operations > MOST_OPERATIONS {
+            samples(format!("the formula has {} operations", shader.operations))
+        } else {
+            Way::Formula(shader)
         }
-        if shader.operations > MOST_OPERATIONS {
-            let count = shader.operations;
-            return samples(&format!("the formula has {count} operations"));
-        }
-        json!({
-            "kind": "formula",
-            "glsl": shader.glsl,
-            "uniforms": shader.uniforms,
-            "operations": shader.operations,
-        })
     }
 }
 
-fn samples(why: &str) -> Value {
-    json!({ "kind": "samples", "why": why })
+fn samples(why: impl Into<String>) -> Way {
+    Way::Samples { why: why.into() }
 }
 
-/// What the page is told of an edited scene.
-pub(super) fn described(document: &Document, scene: &AnyScene) -> Value {
-    let mut message = match scene {
+/// What the page is told of a scene that is built.
+pub(super) fn described(scene: &AnyScene) -> BuiltTold {
+    match scene {
         AnyScene::Planar(scene) => of_scene(scene),
         AnyScene::Spatial(scene) => of_scene(scene),
-    };
-    message["do"] = "scene".into();
-    message["name"] = document.name.as_str().into();
-    message["file"] = json!(document.shown_file());
-    message["is_saved"] = document.is_saved().into();
-    message["can_undo"] = document.can_undo().into();
-    message["can_redo"] = document.can_redo().into();
-    message["scene"] = serde_json::to_value(document.scene()).unwrap_or_default();
-    message["text"] = document.text().into();
-    message
+    }
 }
 
-fn of_scene<const D: usize>(scene: &BuiltScene<D>) -> Value {
-    let body = |(number, body): (usize, &palpate::scene::BuiltBody<D>)| {
-        json!({
-            "name": body.name,
-            "color": SrgbColor::of_body(number).0,
-            "promise": body.shape.promise().in_words(),
-            "bounds": bounds(&body.shape),
-        })
+fn of_scene<const D: usize>(scene: &BuiltScene<D>) -> BuiltTold {
+    let promise = scene.whole.promise();
+    let body = |(number, BuiltBody { name, shape, .. }): (usize, &BuiltBody<D>)| BodyTold {
+        name: name.clone(),
+        color: SrgbColor::of_body(number).0,
+        promise: shape.promise().in_words(),
+        bounds: shape.promise().bounds.map(|bounds| box_in_space(bounds.aabb)),
     };
-    json!({
-        "dimension": D,
-        "bodies": scene.bodies.iter().enumerate().map(body).collect::<Vec<_>>(),
-        "bounds": scene.bounds().map(|bounds| [in_space(bounds.min), in_space(bounds.max)]),
-        "lipschitz": scene.whole.promise().lipschitz,
-        "promise": scene.whole.promise().in_words(),
-    })
+    BuiltTold {
+        dimension: D,
+        bodies: scene.bodies.iter().enumerate().map(body).collect(),
+        bounds: scene.bounds().map(box_in_space),
+        lipschitz: promise.lipschitz,
+        promise: promise.in_words(),
+    }
 }
 
-fn bounds<const D: usize>(shape: &Shape<D>) -> Value {
-    json!(shape.promise().bounds.map(|bounds| {
-        let aabb = bounds.aabb;
-        [in_space(aabb.min), in_space(aabb.max)]
-    }))
+fn box_in_space<const D: usize>(Aabb { min, max }: Aabb<D>) -> Aabb<3> {
+    Aabb { min: Vector(in_space(min)), max: Vector(in_space(max)) }
 }

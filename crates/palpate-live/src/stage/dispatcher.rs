@@ -6,8 +6,6 @@
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, SyncSender, TrySendError};
 
-use serde_json::json;
-
 use super::Shared;
 use super::editor::Edit;
 use super::inquiry::Asked;
@@ -89,12 +87,12 @@ impl Dispatcher {
             Ask::Replay { on } => Order::Replay { page, id, on },
             Ask::Hidden { is } => {
                 self.shared.pages.hide(page, is);
-                self.shared.pages.answer(page, id, json!({ "do": "done" }));
+                self.shared.pages.done(page, id);
                 return false;
             }
             Ask::Cancel { question } => {
                 if self.shared.inquiries.cancel(page, question, &self.shared.pages) {
-                    self.shared.pages.answer(page, id, json!({ "do": "done" }));
+                    self.shared.pages.done(page, id);
                 } else {
                     let why = format!("no question of number {question} is worked on");
                     self.shared.pages.refuse(page, id, &why, &[]);
@@ -110,7 +108,7 @@ impl Dispatcher {
     fn done(&self, page: PageId, id: Option<u32>, order: Order) -> bool {
         let is_full = is_full(self.orders.try_send(order));
         if !is_full {
-            self.shared.pages.answer(page, id, json!({ "do": "done" }));
+            self.shared.pages.done(page, id);
         }
         is_full
     }

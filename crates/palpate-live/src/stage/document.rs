@@ -8,10 +8,10 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use palpate::scene::{AnyScene, Scene, SceneError, SceneProblem};
-use serde_json::{Value, json};
+use serde_json::Value;
 
 use super::file::{LARGEST, read_file, replace};
-use crate::wire::Change;
+use crate::wire::{Change, DocumentTold, Problem};
 
 /// The deepest that a part of a scene may be nested: more than any scene is.
 const DEEPEST: usize = 200;
@@ -64,7 +64,7 @@ impl Version {
 #[derive(Debug)]
 pub(crate) struct Refusal {
     pub(crate) message: String,
-    pub(crate) problems: Vec<Value>,
+    pub(crate) problems: Vec<Problem>,
 }
 
 impl From<String> for Refusal {
@@ -80,13 +80,8 @@ impl From<SceneError> for Refusal {
     }
 }
 
-fn described(problem: &SceneProblem) -> Value {
-    json!({
-        "at": pointer(&problem.path),
-        "path": problem.path,
-        "line": problem.line,
-        "message": problem.problem,
-    })
+fn described(SceneProblem { path, line, problem, .. }: &SceneProblem) -> Problem {
+    Problem { at: pointer(path), path: path.clone(), line: *line, problem: problem.clone() }
 }
 
 /// The JSON pointer of a path such as `bodies[0].shape."a.b"`.
@@ -138,9 +133,15 @@ impl Document {
         !self.forth.is_empty()
     }
 
-    /// The path of its file, as text.
-    pub(super) fn shown_file(&self) -> Option<String> {
-        self.file.as_ref().map(|file| file.display().to_string())
+    /// What the pages are told of its file and its steps.
+    pub(super) fn told(&self) -> DocumentTold {
+        DocumentTold {
+            name: self.name.clone(),
+            file: self.file.as_ref().map(|file| file.display().to_string()),
+            is_saved: self.is_saved(),
+            can_undo: self.can_undo(),
+            can_redo: self.can_redo(),
+        }
     }
 
     pub(super) fn is_saved(&self) -> bool {
@@ -343,6 +344,8 @@ fn apply(data: &mut Value, change: &Change) -> Result<(), Refusal> {
 
 #[cfg(test)]
 mod tests {
+    use serde_json::json;
+
     use super::*;
 
     const SCENE: &str = r#"{ "palpate": 1, "dimension": 2,
@@ -382,8 +385,8 @@ mod tests {
         let mut document = coin();
         let refusal = document.edit(&to(RADIUS, (-1.0).into()), false).unwrap_err();
         assert!(refusal.message.contains("radius must be positive, got -1 m"), "{refusal:?}");
-        assert_eq!(refusal.problems[0]["at"], RADIUS);
-        assert!(refusal.problems[0]["line"].as_u64() > Some(1));
+        assert_eq!(refusal.problems[0].at, RADIUS);
+        assert!(refusal.problems[0].line > 1);
         let refusal = document.edit(&to("/bodies/7/name", "x".into()), false).unwrap_err();
         assert_eq!(refusal.message, "the scene has nothing at \"/bodies/7/name\"");
         assert!(document.edit(&to("bodies", "x".into()), false).is_err());

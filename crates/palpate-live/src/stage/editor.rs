@@ -12,9 +12,9 @@ use palpate::field::catalogue::Entry;
 use palpate::field::operator::Operator;
 use palpate::haptics::Material;
 use palpate::scene::{AnyScene, Scene, described_primitive, schema};
-use serde_json::{Map, Value, json};
+use serde_json::{Map, Value};
 
-use super::described::{self, Drawing};
+use super::described::{Drawing, described};
 use super::document::{Document, Refusal};
 use super::file::read_file;
 use super::hand::tour;
@@ -25,7 +25,10 @@ use super::room::Terms;
 use super::unsaved::LatestScene;
 use super::work::{Watch, Work};
 use super::{Shared, Shown};
-use crate::wire::{Ask, Change, Question, Unreadable, VERSION};
+use crate::wire::{
+    About, Ask, By, Change, DeviceTold, First, OperatorTold, Part, Question, SceneTold, Told,
+    Unreadable, VERSION,
+};
 
 /// How often the file of the scene is looked at.
 const LOOK: Duration = Duration::from_millis(500);
@@ -52,10 +55,8 @@ pub(super) struct Editor {
     drawing: Drawing,
     /// 0 until a page is there.
     revision: u32,
-    /// The scene as the pages were told it last.
-    message: Value,
-    /// What the servo renders: its scene decides whether the next one needs another servo.
-    rendered: Option<Scene>,
+    /// The scene as it is rendered, and as the pages were told it last.
+    told: Option<SceneTold>,
     points: usize,
     terms: Terms,
     orders: SyncSender<Order>,
@@ -82,7 +83,7 @@ pub(super) struct Editor {
 #[derive(Debug, Default)]
 struct Spent {
     since: Option<Instant>,
-    parts: Vec<Value>,
+    parts: Vec<Part>,
 }
 
 impl Spent {
@@ -91,14 +92,10 @@ impl Spent {
     }
 
     /// Ends a part; the next one begins.
-    fn end(&mut self, name: &str) {
-        let ns =
-            self.since.replace(Instant::now()).map_or(0, |since| since.elapsed().as_nanos());
-        self.parts.push(json!({ "name": name, "ns": ns as u64 }));
-    }
-
-    fn take(&mut self) -> Value {
-        std::mem::take(&mut self.parts).into()
+    fn end(&mut self, name: &'static str) {
+        let since = self.since.replace(Instant::now());
+        let time = since.map_or(0.0, |since| since.elapsed().as_secs_f64());
+        self.parts.push(Part { name, time });
     }
 }
 
@@ -114,8 +111,7 @@ impl Editor {
             document,
             drawing: Drawing::default(),
             revision: 0,
-            message: Value::Null,
-            rendered: None,
+            told: None,
             points: 0,
             terms,
             orders,
@@ -159,7 +155,7 @@ impl Editor {
             Err(Unreadable { id, why }) => return self.pages.not_read(page, id, &why),
         };
         match self.obey(page, ask) {
-            Ok(()) => self.pages.answer(page, id, json!({ "do": "done" })),
+            Ok(()) => self.pages.done(page, id),
             Err(Refusal { message, problems }) => {
                 self.pages.refuse(page, id, &message, &problems);
             }
@@ -181,7 +177,7 @@ impl Editor {
                 if !self.document.undo() {
                     return Err("there is nothing to undo".to_owned().into());
                 }
-                self.show("undo", false).inspect_err(|_| {
+                self.show(By::Undo, false).inspect_err(|_| {
                     self.document.redo();
                 })
             }
@@ -189,7 +185,7 @@ impl Editor {
                 if !self.document.redo() {
                     return Err("there is nothing to do again".to_owned().into());
                 }
-                self.show("redo", false).inspect_err(|_| {
+                self.show(By::Redo, false).inspect_err(|_| {
                     self.document.undo();
                 })
             }
@@ -197,7 +193,7 @@ impl Editor {
                 let opened = Document::open(name, None, &text)?;
                 let before = std::mem::replace(&mut self.document, opened);
                 self.misses = 0;
-                self.show("open", false).inspect_err(|_| self.document = before)
+                self.show(By::Open, false).inspect_err(|_| self.document = before)
             }
             Ask::Save { force, name } => {
                 match name {
@@ -218,23 +214,18 @@ impl Editor {
             )
             .into());
         }
-        self.pages.send(
-            page,
-            &json!({
-                "do": "welcome",
-                "version": VERSION,
-                "rate": self.terms.rate,
-                "catalogue": catalogue()?,
-                "operators": operators(),
-                "materials": Material::preset_names().collect::<Vec<_>>(),
-                "presets": presets()?,
-                "schema": schema(),
-            }),
-        );
-        if self.revision == 0 {
-            self.show("open", false)?;
-        } else {
-            self.pages.send(page, &self.message);
+        let welcome = Told::Welcome {
+            version: VERSION,
+            rate: self.terms.rate,
+            catalogue: catalogue()?,
+            operators: operators(),
+            presets: presets()?,
+            schema: schema(),
+        };
+        self.pages.send(page, welcome);
+        match &self.told {
+            None => self.show(By::Open, false)?,
+            Some(told) => self.pages.send(page, Told::Scene(told)),
         }
         // Who leads the hand knows of the stop that holds.
         self.orders.send(Order::TellStop(page)).map_err(|_| "the program ends".to_owned())?;
@@ -253,15 +244,15 @@ impl Editor {
         self.spent.begin();
         self.document.edit(changes, is_moving)?;
         self.spent.end("read");
-        self.show("edit", is_moving).inspect_err(|_| self.document = before)
+        self.show(By::Edit, is_moving).inspect_err(|_| self.document = before)
     }
 
     /// Tells the pages the file of the scene, and whether the scene is saved there.
     fn tell_saved(&mut self) {
-        self.message["is_saved"] = self.document.is_saved().into();
-        self.message["name"] = self.document.name.as_str().into();
-        self.message["file"] = json!(self.document.shown_file());
-        self.pages.broadcast(&self.message);
+        if let Some(told) = &mut self.told {
+            told.document = self.document.told();
+            self.pages.broadcast(Told::Scene(told));
+        }
     }
 
     /// Takes the text of the file, if that was changed elsewhere.
@@ -286,7 +277,7 @@ impl Editor {
                 }
                 return;
             }
-            Some(taken) => taken.and_then(|()| self.show("file", false)),
+            Some(taken) => taken.and_then(|()| self.show(By::File, false)),
         };
         self.is_file_wrong = taken.is_err();
         if let Err(Refusal { message, .. }) = taken {
@@ -304,7 +295,7 @@ impl Editor {
             return;
         }
         // Which one it was, the error says.
-        if let Err(Refusal { message, .. }) = self.show("file", false) {
+        if let Err(Refusal { message, .. }) = self.show(By::File, false) {
             self.data.iter_mut().for_each(|file| _ = file.has_changed());
             let message =
                 format!("a file of the scene was changed, and has an error: {message}");
@@ -325,17 +316,17 @@ impl Editor {
     }
 
     fn tell_of_file(&self, message: &str) {
-        self.pages.broadcast(&json!({ "do": "notice", "about": "file", "message": message }));
+        self.pages.broadcast(Told::Notice { message, about: Some(About::File) });
     }
 
     /// Renders the scene, and tells the pages.
-    fn show(&mut self, by: &str, is_moving: bool) -> Result<(), Refusal> {
+    fn show(&mut self, by: By, is_moving: bool) -> Result<(), Refusal> {
         self.spent.begin();
         let scene = Arc::new(self.document.built()?);
         self.spent.end("build");
         let new = self.document.scene();
-        let change = match &self.rendered {
-            Some(old) if by != "open" => changed(old, new),
+        let change = match &self.told {
+            Some(old) if by != By::Open => changed(&old.scene, new),
             _ => Changed::Scene,
         };
         let revision = self.revision + 1;
@@ -343,10 +334,9 @@ impl Editor {
         let order = Order::Show { scene: Arc::clone(&scene), revision, change, reply };
         let gone = |_| Refusal::from("the program ends".to_owned());
         self.orders.send(order).map_err(|_| gone(()))?;
-        let was_rendered = self.rendered.is_some();
         let shown = showing.recv().map_err(|_| gone(()))?;
         self.spent.end("hand over");
-        let (why, has_begun) = match shown {
+        let (restarted, has_begun) = match shown {
             Showing::Replaced => (None, false),
             Showing::Began { points } => {
                 self.points = points;
@@ -356,31 +346,36 @@ impl Editor {
                     Changed::Bodies | Changed::Guides => "the last one had ended",
                 };
                 let why = format!("another servo began: {why}");
-                (was_rendered.then_some(why), true)
+                (self.told.is_some().then_some(why), true)
             }
             Showing::Refused(why) => return Err(why.into()),
         };
-        self.rendered = Some(self.document.scene().clone());
         self.data = data_files(&scene, self.document.file.as_deref());
         self.revision = revision;
         self.shown.set(Arc::clone(&scene), revision);
         self.latest.set(&self.document);
-        let mut message = described::described(&self.document, &scene);
-        message["by"] = by.into();
-        message["revision"] = revision.into();
+        let built = described(&scene);
         self.spent.end("describe");
-        message["way"] = self.drawing.of(&scene, is_moving);
+        let way = self.drawing.of(&scene, is_moving);
         self.spent.end("formula");
-        message["spent"] = self.spent.take();
-        message["restarted"] = why.is_some().into();
-        message["why"] = json!(why);
-        let profile = &self.terms.profile;
-        message["device"] = json!({
-            "name": profile.name, "points": self.points, "max_force": profile.max_force,
-            "rate": self.terms.rate,
+        let told = self.told.insert(SceneTold {
+            revision,
+            by,
+            document: self.document.told(),
+            scene: self.document.scene().clone(),
+            text: self.document.text().to_owned(),
+            built,
+            way,
+            spent: std::mem::take(&mut self.spent.parts),
+            device: DeviceTold {
+                name: self.terms.profile.name.to_string(),
+                points: self.points,
+                max_force: self.terms.profile.max_force,
+                rate: self.terms.rate,
+            },
+            restarted,
         });
-        self.pages.broadcast(&message);
-        self.message = message;
+        self.pages.broadcast(Told::Scene(told));
         if has_begun {
             self.to_tour = Some((scene, revision));
             self.find_tour();
@@ -422,7 +417,7 @@ fn send_tour(
         }
         Some(Err(error)) => {
             let message = format!("the hand has no tour of this scene: {error}");
-            pages.broadcast(&json!({ "do": "notice", "message": message }));
+            pages.broadcast(Told::Notice { message: &message, about: None });
         }
         None => {}
     }
@@ -493,13 +488,16 @@ fn presets() -> Result<Map<String, Value>, Refusal> {
 }
 
 /// The operators on one shape with the numbers to begin with, on a shape 1 m wide.
-fn operators() -> Vec<Value> {
-    let described = |operator: &Operator| {
-        let first = operator.first;
-        let first = if operator.is_per_axis { json!(first) } else { json!(first[0]) };
-        json!({ "name": operator.name, "first": first })
+fn operators() -> Vec<OperatorTold> {
+    let told = |operator: &Operator| {
+        let first = if operator.is_per_axis {
+            First::PerAxis(operator.first)
+        } else {
+            First::One(operator.first[0])
+        };
+        OperatorTold { name: operator.name, first }
     };
-    Operator::ALL.iter().map(described).collect()
+    Operator::ALL.iter().map(told).collect()
 }
 
 fn catalogue() -> Result<Vec<Value>, Refusal> {

@@ -136,8 +136,12 @@ impl Inquiries {
                 }
             };
             let (scene, revision) = scene;
-            match answered(&scene, &question.ask, &cancel) {
-                Ok(Answer::Text(text)) => pages.answer(page, id, text),
+            match answered(&scene, &question.ask, id, &cancel) {
+                // Nobody knows an answer without a number.
+                Ok(Answer::Text(text)) if id.is_some() => {
+                    pages.send(page, Out::Text(text.into()));
+                }
+                Ok(Answer::Text(_)) => {}
                 Ok(Answer::Grid(grid)) => {
                     let bytes = grid.bytes(id.unwrap_or_default(), revision);
                     pages.send(page, Out::Binary(bytes));
@@ -198,31 +202,32 @@ impl Drop for Done<'_> {
 /// The answer to a question, without the servo, if it is one in text.
 #[cfg(any(test, feature = "fuzzing"))]
 pub(crate) fn answer_alone(scene: &AnyScene, ask: &Ask) -> Option<String> {
-    match answered(scene, ask, &Cancel::default()) {
-        Ok(Answer::Text(text)) => Some(text.to_string()),
+    match answered(scene, ask, None, &Cancel::default()) {
+        Ok(Answer::Text(text)) => Some(text),
         _ => None,
     }
 }
 
-fn answered(scene: &AnyScene, ask: &Ask, cancel: &Cancel) -> Result<Answer, String> {
+fn answered(
+    scene: &AnyScene,
+    ask: &Ask,
+    id: Option<u32>,
+    cancel: &Cancel,
+) -> Result<Answer, String> {
     match (scene, ask) {
         (AnyScene::Spatial(scene), Ask::Picture { .. }) => drawn(scene, ask, cancel),
         (AnyScene::Planar(_), Ask::Picture { .. }) => {
             Err("a scene in the plane is drawn from samples".to_owned())
         }
-        (AnyScene::Planar(scene), ask) => answer(scene, ask, cancel).unwrap_or_else(unknown),
-        (AnyScene::Spatial(scene), ask) => answer(scene, ask, cancel).unwrap_or_else(unknown),
+        (AnyScene::Planar(scene), ask) => answer(scene, ask, id, cancel),
+        (AnyScene::Spatial(scene), ask) => answer(scene, ask, id, cancel),
     }
-}
-
-fn unknown() -> Result<Answer, String> {
-    Err("nothing is known of such a question".to_owned())
 }
 
 /// The scene as `palpate render` draws it, without shadows.
 fn drawn(scene: &BuiltScene<3>, ask: &Ask, cancel: &Cancel) -> Result<Answer, String> {
     let Ask::Picture { eye, target, field_of_view, width, height } = ask else {
-        return unknown();
+        return Err("not about a picture".to_owned());
     };
     if !(1..=LARGEST).contains(width) || !(1..=LARGEST).contains(height) {
         return Err(format!(

@@ -7,12 +7,11 @@ use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
 
-use serde_json::{Value, json};
 use tokio::sync::mpsc;
 use tungstenite::{Bytes, Utf8Bytes};
 
 use super::message::Waiting;
-use crate::wire::Told;
+use crate::wire::{Problem, Told, written};
 
 /// Messages that may wait for a page: a page that takes fewer is closed.
 pub(crate) const WAITING: usize = 256;
@@ -44,16 +43,9 @@ impl Out {
     }
 }
 
-impl From<&Value> for Out {
-    fn from(message: &Value) -> Self {
-        Self::Text(message.to_string().into())
-    }
-}
-
-impl From<Told> for Out {
-    fn from(told: Told) -> Self {
-        // It holds numbers alone.
-        Self::Text(serde_json::to_string(&told).unwrap_or_default().into())
+impl From<Told<'_>> for Out {
+    fn from(told: Told<'_>) -> Self {
+        Self::Text(written(&told, None).into())
     }
 }
 
@@ -212,24 +204,23 @@ impl Pages {
         self.open().pages.retain(|_, page| page.send(message.clone()));
     }
 
-    /// Answers a question that has a number.
-    pub(crate) fn answer(&self, page: PageId, id: Option<u32>, mut answer: Value) {
-        if let Some(id) = id {
-            answer["id"] = id.into();
-            self.send(page, &answer);
+    /// Says that what a message with a number asks for is done.
+    pub(crate) fn done(&self, page: PageId, id: Option<u32>) {
+        if id.is_some() {
+            self.send(page, Out::Text(written(&Told::Done, id).into()));
         }
     }
 
     /// Refuses a message, whether it has a number or not.
-    pub(crate) fn refuse(&self, page: PageId, id: Option<u32>, why: &str, problems: &[Value]) {
-        let mut refusal = json!({ "do": "refused", "message": why });
-        if !problems.is_empty() {
-            refusal["problems"] = problems.into();
-        }
-        if let Some(id) = id {
-            refusal["id"] = id.into();
-        }
-        self.send(page, &refusal);
+    pub(crate) fn refuse(
+        &self,
+        page: PageId,
+        id: Option<u32>,
+        why: &str,
+        problems: &[Problem],
+    ) {
+        let refused = Told::Refused { message: why, problems };
+        self.send(page, Out::Text(written(&refused, id).into()));
     }
 
     /// Refuses a message that cannot be read; closes a page that sends too many of them.
@@ -266,15 +257,15 @@ mod tests {
         let (fast, mut taken) = pages.add(2).unwrap().parts();
         assert!(pages.add(2).is_none());
         for _ in 0..=WAITING {
-            pages.broadcast(&json!({ "do": "notice" }));
+            pages.broadcast(Told::Clients { count: 2 });
             assert!(taken.try_recv().is_ok());
         }
         assert_eq!((pages.count(), pages.ever()), (1, 2));
         assert_eq!((pages.since(0), pages.since(2)), (vec![fast], vec![]));
-        pages.answer(fast, Some(3), json!({ "do": "done" }));
+        pages.done(fast, Some(3));
         let Ok(Out::Text(answer)) = taken.try_recv() else { panic!("an answer") };
         assert_eq!(answer.as_str(), r#"{"do":"done","id":3}"#);
-        pages.send(slow, &json!({}));
+        pages.send(slow, Told::Done);
         assert_eq!((0..).take_while(|_| left.try_recv().is_ok()).count(), WAITING);
         assert!(left.is_closed());
     }

@@ -11,7 +11,6 @@ use palpate::haptics::Event;
 use palpate::safety::StageTicks;
 use palpate::scene::{AnyScene, BuiltScene};
 use palpate::sim::HandPath;
-use serde_json::{Value, json};
 use tokio::sync::watch;
 use tungstenite::Bytes;
 
@@ -22,7 +21,7 @@ use super::pages::{PageId, Pages};
 use super::recording::{AnyReplay, MOST_ROWS, Recording, Trace};
 use super::room::{AnyRoom, Room, Terms, of_either};
 use super::stop::Stops;
-use crate::wire::Frame;
+use crate::wire::{Frame, StageTold, Told};
 
 /// How often the hand is led on.
 const STEP: Duration = Duration::from_millis(8);
@@ -209,12 +208,12 @@ impl Performance {
                     Ok(()) => self.leader = Some(page),
                     Err(why) => return self.pages.refuse(page, id, &why, &[]),
                 }
-                self.pages.answer(page, id, json!({ "do": "done" }));
+                self.pages.done(page, id);
             }
             Order::LetGo => self.let_go(),
             Order::Release { page, id, number } => {
                 match self.stops.release(page, number, Instant::now(), &self.pages) {
-                    Ok(()) => self.pages.answer(page, id, json!({ "do": "done" })),
+                    Ok(()) => self.pages.done(page, id),
                     Err(why) => self.pages.refuse(page, id, &why, &[]),
                 }
             }
@@ -238,7 +237,7 @@ impl Performance {
                 match speed.map_or(Ok(()), |speed| clock.set(speed)) {
                     Ok(()) => {
                         self.ticks = u64::from(step.unwrap_or_default());
-                        self.pages.answer(page, id, json!({ "do": "done" }));
+                        self.pages.done(page, id);
                     }
                     Err(why) => self.pages.refuse(page, id, &why.to_string(), &[]),
                 }
@@ -249,7 +248,7 @@ impl Performance {
                 }
             }
             Order::Replay { page, id, on } => match self.replay(on) {
-                Ok(()) => self.pages.answer(page, id, json!({ "do": "done" })),
+                Ok(()) => self.pages.done(page, id),
                 Err(why) => self.pages.refuse(page, id, &why, &[]),
             },
             Order::TakeReplay(replay) => self.recording.take(replay),
@@ -348,7 +347,7 @@ impl Performance {
 
     /// Tells all pages what a person should read.
     fn notice(&self, message: &str) {
-        self.pages.broadcast(&json!({ "do": "notice", "message": message }));
+        self.pages.broadcast(Told::Notice { message, about: None });
     }
 
     fn go_on(&mut self, is_frame: bool) {
@@ -358,7 +357,7 @@ impl Performance {
         let clients = self.pages.count();
         if std::mem::replace(&mut self.clients, clients) != clients {
             self.inquiries.forget_closed(&self.pages);
-            self.pages.broadcast(&json!({ "do": "clients", "count": clients }));
+            self.pages.broadcast(Told::Clients { count: clients });
         }
         let Some(room) = self.room.take() else { return self.rest(is_frame) };
         if of_either!(AnyRoom, &room, room => room.has_ended()) {
@@ -389,10 +388,10 @@ impl Performance {
             self.notice(&format!("the recording is full: {MOST_ROWS} rows"));
         }
         if let Some(message) = self.recording.message(is_frame) {
-            self.pages.broadcast(&message);
+            self.pages.broadcast(message);
         }
         if !events.is_empty() {
-            self.pages.broadcast(&json!({ "do": "events", "events": events }));
+            self.pages.broadcast(Told::Events { events: &events });
         }
         self.tell_safety(safety, is_frame);
         if let Some(mut frame) = frame {
@@ -429,12 +428,7 @@ impl Performance {
             return;
         }
         self.safety = (now, 0);
-        self.pages.broadcast(&safety_message(&now));
+        let stage = |(name, ticks)| StageTold { name, ticks };
+        self.pages.broadcast(Told::Safety { stages: now.named().map(stage).collect() });
     }
-}
-
-/// What the safety chain did.
-fn safety_message(ticks: &StageTicks) -> Value {
-    let stage = |(name, ticks)| json!({ "name": name, "ticks": ticks });
-    json!({ "do": "safety", "stages": ticks.named().map(stage).collect::<Vec<_>>() })
 }

@@ -6,10 +6,10 @@
 use std::sync::Arc;
 
 use palpate::servo_loop::TraceRow;
-use serde_json::{Value, json};
 
 use super::room::{AnyRoom, of_either};
 use super::trace::{self, Replay};
+use crate::wire::Told;
 
 /// The most rows that are recorded: 20 s of ten points at 1 kHz.
 pub(super) const MOST_ROWS: usize = 200_000;
@@ -142,7 +142,7 @@ impl Recording {
     }
 
     /// What the pages are told: a few times a second while it is on, and when it ends.
-    pub(super) fn message(&mut self, is_frame: bool) -> Option<Value> {
+    pub(super) fn message(&mut self, is_frame: bool) -> Option<Told<'static>> {
         let (was_on, rows, frames) = &mut self.told;
         *frames = frames.saturating_add(u32::from(is_frame));
         let now = of_either!(AnyRows, &self.rows, rows => rows.len());
@@ -150,7 +150,7 @@ impl Recording {
             return None;
         }
         self.told = (self.is_on, now, 0);
-        Some(json!({ "do": "recording", "on": self.is_on, "rows": now, "most": MOST_ROWS }))
+        Some(Told::Recording { is_on: self.is_on, rows: now, most: MOST_ROWS })
     }
 }
 

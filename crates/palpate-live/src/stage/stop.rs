@@ -10,7 +10,6 @@ use std::sync::mpsc::{Receiver, Sender, channel};
 use std::time::{Duration, Instant};
 
 use palpate::haptics::StopSwitch;
-use serde_json::json;
 use tungstenite::Utf8Bytes;
 
 use super::pages::{PageId, Pages};
@@ -135,7 +134,7 @@ impl Stops {
             Presser::Page(page, text) => {
                 let digits = match Question::read(&text) {
                     Ok(Question { id, ask: Ask::Stop { press } }) => {
-                        pages.answer(page, id, json!({ "do": "done" }));
+                        pages.done(page, id);
                         press
                     }
                     Ok(_) => None,
@@ -159,7 +158,7 @@ impl Stops {
         if let Some(last) = self.last.as_ref().filter(|_| self.is_stopped()) {
             let told = Told::Stopped {
                 number: last.number,
-                mine: last.page == Some(page),
+                is_mine: last.page == Some(page),
                 release_after: last.wait(page).saturating_sub(now - last.at).as_secs_f64(),
             };
             pages.send(page, told);
@@ -274,7 +273,7 @@ mod tests {
         scene.release(other, 2, 2.0).unwrap();
         let Ok(Out::Text(first)) = told.try_recv() else { panic!("it is told") };
         assert!(
-            first.contains(r#""do":"stopped","number":1,"mine":false,"release_after":"#),
+            first.contains(r#""do":"stopped","number":1,"is_mine":false,"release_after":"#),
             "{first}"
         );
         let Ok(Out::Text(next)) = told.try_recv() else { panic!("it is told") };

@@ -52,9 +52,9 @@ impl Kind {
             "release" | "hand" | "tour" | "clock" | "record" | "replay" | "cancel"
             | "hidden" => Self::Order,
             "hello" | "edit" | "undo" | "redo" | "open" | "save" => Self::Edit,
-            "probe" | "ball" => Self::Short,
-            "slice" | "samples" | "picture" | "element" | "pair" | "contacts" | "sweep"
-            | "fall" => Self::Long,
+            "ask" | "slice" | "samples" | "picture" | "element" | "pair" | "sweep" | "fall" => {
+                Self::Long
+            }
             _ => return None,
         })
     }
@@ -90,13 +90,41 @@ impl Envelope {
         let id = id.map(|id| number(&id)).transpose()?;
         let what = what.unwrap_or_default();
         match Kind::of(&what) {
+            Some(Kind::Long) if what == "ask" && is_about_a_point(text) => {
+                Ok(Self { id, kind: Kind::Short })
+            }
             Some(kind) => Ok(Self { id, kind }),
-            None => Err(Unreadable {
-                id,
-                why: format!("nothing is known of a message whose `do` is {what:?}"),
-            }),
+            None => Err(Unreadable { id, why: unknown(&what) }),
         }
     }
+}
+
+/// Whether the question of an `ask` is about a point, which takes no time that a person notices.
+fn is_about_a_point(text: &str) -> bool {
+    #[derive(Deserialize)]
+    struct Asked<'a> {
+        #[serde(borrow)]
+        question: Named<'a>,
+    }
+    #[derive(Deserialize)]
+    struct Named<'a> {
+        #[serde(borrow)]
+        question: Cow<'a, str>,
+    }
+    serde_json::from_str(text).is_ok_and(|Asked { question }| question.question == "point")
+}
+
+/// Why a message is refused that is unknown, or was another one in version 1.
+fn unknown(what: &str) -> String {
+    let question = match what {
+        "probe" => r#"{ "question": "point", "at": [0, 1], "body": "cup" }"#,
+        "ball" => r#"{ "question": "point", "at": [0, 1], "radius": 0.1 }"#,
+        "contacts" => r#"{ "question": "contacts", "proof": true }"#,
+        _ => return format!("nothing is known of a message whose `do` is {what:?}"),
+    };
+    format!(
+        "`{what}` is `ask` now, as in {{ \"do\": \"ask\", \"id\": 7, \"question\": {question} }}"
+    )
 }
 
 /// Why a message cannot be read.
@@ -199,9 +227,10 @@ pub(crate) enum Ask {
     Replay {
         on: bool,
     },
-    Probe {
-        at: Vec<f64>,
-        body: Option<usize>,
+    /// A question that every door takes.
+    #[serde(rename = "ask")]
+    Question {
+        question: palpate::scene::Question,
     },
     Slice {
         origin: Vec<f64>,
@@ -233,20 +262,12 @@ pub(crate) enum Ask {
         iterations: Option<u32>,
         start: Option<Vec<f64>>,
     },
-    Ball {
-        centre: Vec<f64>,
-        radius: f64,
-    },
     Pair {
         a: usize,
         b: usize,
         #[serde(default)]
         starts: Vec<Vec<f64>>,
         method: Option<String>,
-    },
-    Contacts {
-        #[serde(default)]
-        proof: bool,
     },
     Sweep {
         corners: Vec<Vec<f64>>,
@@ -284,13 +305,18 @@ fn given<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<Value>, D:
 
 #[cfg(test)]
 mod tests {
+    use palpate::scene::{PointQuestion, Question as Asked};
+
     use super::*;
 
     #[test]
     fn messages_are_read_with_their_numbers() {
-        let question = Question::read(r#"{"do":"probe","id":7,"at":[0,1]}"#).unwrap();
+        let text = r#"{"do":"ask","id":7,"question":{"question":"point","at":[0,1]}}"#;
+        let question = Question::read(text).unwrap();
         assert_eq!(question.id, Some(7));
-        assert!(matches!(question.ask, Ask::Probe { at, body: None } if at == [0.0, 1.0]));
+        let about = PointQuestion { at: vec![0.0, 1.0], ..PointQuestion::default() };
+        let about = Asked::Point(about);
+        assert!(matches!(question.ask, Ask::Question { question } if question == about));
         let text = r#"{"do":"edit","base":3,"changes":[{"at":"/a","to":null},{"at":"/b"}]}"#;
         let Ask::Edit { changes, moving: false, base: 3 } = Question::read(text).unwrap().ask
         else {
@@ -305,6 +331,9 @@ mod tests {
         assert!(id == Some(1) && why.contains("unknown variant `fly`"), "{why}");
         let why = Question::read(r#"{"do":"tour","on":true,"off":1}"#).unwrap_err().why;
         assert!(why.contains("unknown field `off`"), "{why}");
+        let text = r#"{"do":"ask","question":{"question":"point","at":[0,1],"body_number":1}}"#;
+        let why = Question::read(text).unwrap_err().why;
+        assert!(why.contains("unknown field `body_number`"), "{why}");
         let why = Question::read(r#"{"do":"undo","id":-1}"#).unwrap_err().why;
         assert_eq!(why, "`id` must be a whole number below 2^32, got -1");
         assert!(Question::read("[1]").is_err() && Question::read("{").is_err());
@@ -328,6 +357,35 @@ mod tests {
         ] {
             assert_eq!(Envelope::read(text).unwrap_err().id, id, "{text}");
         }
+    }
+
+    #[test]
+    fn a_question_about_a_point_is_short() {
+        for (question, kind) in [("point", Kind::Short), ("contacts", Kind::Long)] {
+            let text =
+                format!(r#"{{"question":{{"at":[0,1],"question":"{question}"}},"do":"ask"}}"#);
+            assert_eq!(Envelope::read(&text).unwrap().kind, kind, "{text}");
+        }
+        let text = r#"{"do":"cancel","question":7}"#;
+        assert_eq!(Envelope::read(text).unwrap().kind, Kind::Order);
+    }
+
+    #[test]
+    fn messages_of_version_1_are_refused_with_the_new_one() {
+        let asked = ["probe", "ball", "contacts"].map(|old| {
+            let text = format!(r#"{{"do":"{old}","id":3,"at":[0,1]}}"#);
+            let Unreadable { id, why } = Envelope::read(&text).unwrap_err();
+            let (words, example) = why.split_once(", as in ").unwrap();
+            assert_eq!((id, words), (Some(3), &*format!("`{old}` is `ask` now")));
+            match Question::read(example).unwrap().ask {
+                Ask::Question { question } => question,
+                other => panic!("{other:?} is no question"),
+            }
+        });
+        let [Asked::Point(probe), Asked::Point(ball), Asked::Contacts(contacts)] = asked else {
+            panic!("{asked:?}")
+        };
+        assert!(probe.radius.is_none() && ball.radius.is_some() && contacts.proof);
     }
 
     #[test]

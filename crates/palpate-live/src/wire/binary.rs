@@ -187,7 +187,7 @@ mod tests {
         };
         let bytes = frame.bytes();
         assert_eq!(bytes.len(), 784);
-        assert_eq!(bytes[..8], [1, 1, 3, 0b1_0010, 7, 0, 0, 0]);
+        assert_eq!(bytes[..8], [1, 2, 3, 0b1_0010, 7, 0, 0, 0]);
         assert_eq!(bytes[8..16], 1000_u64.to_le_bytes());
         assert_eq!(bytes[16..24], 1.5_f64.to_le_bytes());
         assert_eq!(bytes[24..28], 2.5_f32.to_le_bytes());
@@ -203,7 +203,7 @@ mod tests {
         let grid = Grid { place, values: vec![1.0, -2.0], is_half: true };
         let bytes = grid.bytes(5, 6);
         assert_eq!(bytes.len(), 48 + 4);
-        assert_eq!(bytes[..12], [2, 1, 2, 2, 5, 0, 0, 0, 6, 0, 0, 0]);
+        assert_eq!(bytes[..12], [2, 2, 2, 2, 5, 0, 0, 0, 6, 0, 0, 0]);
         assert_eq!(bytes[48..], [0, 0x3c, 0, 0xc0]);
         assert_eq!(picture(1, 2, b"png")[12..], [3, 0, 0, 0, b'p', b'n', b'g']);
     }

@@ -40,8 +40,14 @@ fn bytes_that_wait_are_bounded() {
 fn long_messages_are_for_scenes_alone() {
     let live = served(LiveOptions::default());
     let mut page = Page::open(&live);
-    for (what, longest) in [("hand", 4096), ("probe", 4096), ("element", 65536)] {
-        let refused = page.ask(json!({ "do": what, "numbers": vec![0; longest] }));
+    for (what, about, longest) in [
+        ("hand", "", 4096),
+        ("ask", "point", 4096),
+        ("ask", "contacts", 65536),
+        ("element", "", 65536),
+    ] {
+        let question = json!({ "question": about, "numbers": vec![0; longest] });
+        let refused = page.ask(json!({ "do": what, "question": question }));
         let said = refused["message"].as_str().unwrap();
         assert!(said.contains(&format!("at most {longest} bytes")), "{what}: {said}");
     }

@@ -146,8 +146,9 @@ fn floods_and_huge_messages_close_the_socket() {
     page.try_send(Message::Text("x".repeat(2 << 20).into()));
     while page.next().is_some() {}
     // The server goes on.
-    let probed = Page::open(&live).ask(json!({ "do": "probe", "at": [0, 0.06, 0] }));
-    assert!((probed["value"].as_f64().unwrap() - 0.01).abs() < 1e-12, "{probed}");
+    let answer =
+        Page::open(&live).answer_to(json!({ "question": "point", "at": [0, 0.06, 0] }));
+    assert!((answer["distance"].as_f64().unwrap() - 0.01).abs() < 1e-12, "{answer}");
 }
 
 #[test]

@@ -76,16 +76,17 @@ fn rows(is_under_load: bool) -> Vec<String> {
 fn misuse(live: &Live, client: usize, ends: &AtomicBool) {
     while !ends.load(Ordering::Relaxed) {
         let mut page = Page::silent(live);
-        let probe = Message::Text(r#"{"do":"probe","at":[0,0.06,0],"id":1}"#.into());
+        let question = r#"{"do":"ask","question":{"question":"point","at":[0,0.06,0]},"id":1}"#;
+        let question = Message::Text(question.into());
         for round in 0..200_usize {
             if ends.load(Ordering::Relaxed) {
                 return;
             }
             let is_open = match client % 3 {
-                0 => page.try_send(probe.clone()),
+                0 => page.try_send(question.clone()),
                 1 => {
                     std::thread::sleep(Duration::from_millis(5));
-                    page.try_send(probe.clone())
+                    page.try_send(question.clone())
                 }
                 _ => {
                     let noise = vec![round as u8; 1 + 7919 * round % 100_000];

@@ -106,7 +106,8 @@ fn a_stop_waits_for_no_other_thread() {
         }
         for other in &mut others {
             other.say(&json!({ "do": "samples", "cells": 64, "id": 9 }));
-            other.say(&json!({ "do": "probe", "at": [0, 0, 0], "id": 10 }));
+            let question = json!({ "question": "point", "at": [0, 0, 0] });
+            other.say(&json!({ "do": "ask", "question": question, "id": 10 }));
         }
         gates.wait_for(Work::Question, 3);
         others[0].say(&json!({ "do": "undo" }));
@@ -129,7 +130,7 @@ fn a_stop_waits_for_no_other_thread() {
             std::thread::yield_now();
         }
         let stopped = page.text(|message| message["do"] == "stopped");
-        assert_eq!(stopped["mine"], matches!(way, Way::Socket), "{stopped}");
+        assert_eq!(stopped["is_mine"], matches!(way, Way::Socket), "{stopped}");
         driver.advance(Duration::from_millis(2));
         page.wait_for_tick(403);
         let frame = page.binary(1);
@@ -175,9 +176,9 @@ fn another_page_lifts_no_stop_at_once() {
     let is_second = |told: &Value| told["do"] == "stopped" && told["number"] == 2;
     // A press that comes both ways is one press of this page.
     let told = own.text(is_second);
-    assert_eq!(told["mine"], true, "{told}");
+    assert_eq!(told["is_mine"], true, "{told}");
     let told = other.text(is_second);
-    assert_eq!(told["mine"], false, "{told}");
+    assert_eq!(told["is_mine"], false, "{told}");
     assert!(told["release_after"].as_f64().unwrap() > 1.0, "{told}");
     for (number, said) in [
         (Value::Null, "STOP was pressed again meanwhile"),
@@ -194,7 +195,7 @@ fn another_page_lifts_no_stop_at_once() {
     // A page that opens later hears of the stop that still holds.
     assert!(post_stop(&live, "").starts_with("HTTP/1.1 204"));
     let told = Page::silent(&live).text(|message| message["do"] == "stopped");
-    assert_eq!((&told["number"], &told["mine"]), (&json!(3), &json!(false)));
+    assert_eq!((&told["number"], &told["is_mine"]), (&json!(3), &json!(false)));
 }
 
 /// A stop in the longest message, and one whose letters are escaped, stop too.

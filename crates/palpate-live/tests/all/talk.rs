@@ -37,7 +37,7 @@ impl Page {
     /// A page that has said hello.
     pub(crate) fn open(live: &Live) -> Self {
         let mut page = Self::silent(live);
-        page.say(&json!({ "do": "hello", "version": 1, "id": 0 }));
+        page.say(&json!({ "do": "hello", "version": 2, "id": 0 }));
         page.answer(0);
         page
     }
@@ -93,6 +93,11 @@ impl Page {
         message["id"] = 1.into();
         self.say(&message);
         self.answer(1)
+    }
+
+    /// What the program answers to a question that every door takes.
+    pub(crate) fn answer_to(&mut self, question: Value) -> Value {
+        self.ask(json!({ "do": "ask", "question": question }))["answer"].take()
     }
 
     /// The next binary message of a kind.

@@ -39,9 +39,9 @@ function useToys() {
   useEffect(() => {
     const stop = listenToys(() => {
       for (const [toy] of TOYS) {
-        const { certified, local, ns } = toys.results[toy] ?? {};
-        if (ns ?? certified?.ns) tookTime(`${toy}, proven`, ns ?? certified.ns);
-        const spent = [local ?? []].flat().reduce((sum, one) => sum + (one.ns ?? 0), 0);
+        const { certified, local, time } = toys.results[toy] ?? {};
+        if (time ?? certified?.time) tookTime(`${toy}, proven`, time ?? certified.time);
+        const spent = [local ?? []].flat().reduce((sum, one) => sum + one.time, 0);
         if (spent > 0) tookTime(`${toy}, local`, spent);
       }
       redraw(undefined);

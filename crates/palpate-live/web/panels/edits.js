@@ -64,17 +64,17 @@ async function sendOne(order) {
     const text = reasonOf(error);
     const [first] = problems;
     if (order.do === 'edit') {
-      setProblems(first ? problems : [{ at: order.changes[0].at, message: text }]);
+      setProblems(first ? problems : [{ at: order.changes[0].at, problem: text }]);
       if (order.moving) return;
     }
-    tell(first ? `${first.path}: ${first.message}` : text, 'bad');
+    tell(first ? `${first.path}: ${first.problem}` : text, 'bad');
   }
 }
 
-/** @param {{ at: string, message: string }[]} problems */
+/** @param {{ at: string, problem: string }[]} problems */
 function setProblems(problems) {
   if (problems.length === 0 && state.problems.size === 0) return;
-  state.problems = new Map(problems.map(({ at, message }) => [at, message]));
+  state.problems = new Map(problems.map(({ at, problem }) => [at, problem]));
   changed('problems');
 }
 

@@ -88,5 +88,5 @@ export function Status() {
     <span class="gap"></span>
     ${scene && html`<span>${operations()}</span>`}
     ${scene && html`<span>revision ${scene.revision}</span>`}
-    ${scene?.restarted && html`<span title=${scene.why}>the servo began again</span>`}`;
+    ${scene?.restarted && html`<span title=${scene.restarted}>the servo began again</span>`}`;
 }

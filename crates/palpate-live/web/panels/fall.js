@@ -119,7 +119,7 @@ export function FallingBall() {
           <b>${outcome()}</b>
           <table><tbody>
             <tr><th scope="row">evaluations</th><td>${count(answer.evaluations)}</td></tr>
-            <tr><th scope="row">computed in</th><td>${time(answer.ns / 1e9)}</td></tr>
+            <tr><th scope="row">computed in</th><td>${time(answer.time)}</td></tr>
           </tbody></table>
         </div>`}
     </div>

@@ -31,9 +31,9 @@ function Asked() {
   const [refused, setRefused] = useState('');
   useEffect(() => {
     let isOld = false;
-    page.wire?.ask({ do: 'probe', at }).then((found) => {
+    page.wire?.ask({ do: 'ask', question: { question: 'point', at } }).then((told) => {
       if (isOld) return;
-      setAnswer(found);
+      setAnswer(told.answer);
       setRefused('');
     }, (error) => !isOld && setRefused(reasonOf(error)));
     return () => {
@@ -41,9 +41,9 @@ function Asked() {
     };
   }, [at.join(' '), scene?.revision]);
   const rows = answer ? [
-    ['distance', `${short(answer.value, 5)} m`], ['gradient', inWords(answer.gradient)],
-    ['nearest surface', answer.nearest ? `${inWords(answer.nearest)} m` : '–'], ['no surface within', `${short(answer.safe, 4)} m`],
-    ['body', scene?.bodies?.[answer.body]?.name ?? '–'], ['promise', answer.promise],
+    ['distance', `${short(answer.distance, 5)} m`], ['gradient', inWords(answer.gradient)],
+    ['nearest surface', answer.surface ? `${inWords(answer.surface)} m` : '–'], ['no surface within', `${short(answer.safe_radius, 4)} m`],
+    ['body', answer.body ?? '–'], ['promise', answer.promise],
   ] : [];
   return html`<${VectorField} label="point" unit="m" own value=${at} scale=${extent(scene?.bounds)} change=${setAt} />
     ${refused && html`<p class="problem">${refused}</p>`}

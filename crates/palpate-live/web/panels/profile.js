@@ -35,9 +35,9 @@ export function startProfile() {
   }).observe({ type: 'measure' });
 }
 
-/** Keeps the time that the program took for an answer. @param {string} name @param {number} ns */
-export function tookTime(name, ns) {
-  answers.set(name, ns / 1e9);
+/** Keeps the time that the program took for an answer. @param {string} name @param {number} seconds */
+export function tookTime(name, seconds) {
+  answers.set(name, seconds);
 }
 
 /** @returns {{ name: string, mean: number, largest: number, count: number }[]} in seconds */
@@ -87,15 +87,15 @@ export function Profile() {
 /** What the program did to build the newest revision: the whole above its parts, each as wide as
  * the time that it took. */
 function Flame() {
-  const parts = /** @type {{ name: string, ns: number }[]} */ (state.scene?.spent ?? []);
-  const whole = parts.reduce((sum, { ns }) => sum + ns, 0);
+  const parts = /** @type {{ name: string, time: number }[]} */ (state.scene?.spent ?? []);
+  const whole = parts.reduce((sum, part) => sum + part.time, 0);
   if (whole === 0) return null;
   return html`<div class="flame">
     <b>Revision ${state.scene?.revision}, in the program</b>
-    <div class="flame-row"><span class="flame-bar whole">the whole edit ${time(whole / 1e9)}</span></div>
-    <ul class="flame-row">${parts.map(({ name, ns }) => html`<li key=${name} class="flame-bar" style=${{ flexGrow: ns / whole }}
-      title=${`${name}: ${time(ns / 1e9)}`}>${name} ${time(ns / 1e9)}</li>`)}</ul>
-    <p class="quiet">${parts.map(({ name, ns }) => `${name} ${time(ns / 1e9)}`).join(' · ')}</p>
+    <div class="flame-row"><span class="flame-bar whole">the whole edit ${time(whole)}</span></div>
+    <ul class="flame-row">${parts.map(({ name, time: taken }) => html`<li key=${name} class="flame-bar" style=${{ flexGrow: taken / whole }}
+      title=${`${name}: ${time(taken)}`}>${name} ${time(taken)}</li>`)}</ul>
+    <p class="quiet">${parts.map(({ name, time: taken }) => `${name} ${time(taken)}`).join(' · ')}</p>
   </div>`;
 }
 

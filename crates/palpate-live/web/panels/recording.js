@@ -11,7 +11,7 @@ import { ask, dismiss, download, fileName, page, tell, tellError } from './page.
 /** More bytes than the header and one row have. */
 const LONGEST_LINES = 4096;
 
-/** What the program told of the newest recording. @type {{ on: boolean, rows: number, most: number } | null} */
+/** What the program told of the newest recording. @type {{ isOn: boolean, rows: number, most: number } | null} */
 let told = null;
 let isRecording = false;
 let isReplaying = false;
@@ -24,15 +24,15 @@ export function recorded() {
 }
 
 /** Takes what the program tells of its recording.
- * @param {{ on: boolean, rows: number, most: number }} message */
-export function takeRecording({ on, rows, most }) {
-  if (told?.on && !on) {
+ * @param {import('../wire.js').Message} message */
+export function takeRecording({ is_on: isOn, rows, most }) {
+  if (told?.isOn && !isOn) {
     offer = tell(`Recorded ${count(rows)} rows.`, 'word', [
       { name: 'Replay', run: () => void replay(true) }, { name: 'Export CSV', run: () => void downloadTrace() },
     ]);
   }
-  if (on) dismiss(offer);
-  told = { on, rows, most };
+  if (isOn) dismiss(offer);
+  told = { isOn, rows, most };
   changed('playback');
 }
 

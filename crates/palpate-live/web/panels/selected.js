@@ -98,9 +98,7 @@ function Body({ pointer, body }) {
   const index = Number(parts(pointer)[1]);
   const known = state.scene?.bodies?.[index];
   const node = schemaAt(pointer);
-  const presets = state.welcome?.materials;
-  const names = (Array.isArray(presets) ? presets : Object.keys(presets ?? {}))
-    .map((/** @type {any} */ one) => (typeof one === 'string' ? one : one.name));
+  const names = Object.keys(state.welcome?.presets ?? {});
   const material = typeof body.material === 'string' ? body.material : body.material ? 'own' : 'default';
   const take = (/** @type {string} */ to) => {
     const at = within(pointer, 'material');

@@ -97,10 +97,10 @@ export function sendAgain() {
 }
 
 /** @param {import('../wire.js').Message} message */
-export function takeStopped({ number, mine, release_after: seconds }) {
-  told = { number, isMine: mine, from: performance.now() + 1000 * seconds };
+export function takeStopped({ number, is_mine: isMine, release_after: seconds }) {
+  told = { number, isMine, from: performance.now() + 1000 * seconds };
   releasedAt = -Infinity;
-  if (mine && inFlight <= 1 && pending) confirmed(pending.press);
+  if (isMine && inFlight <= 1 && pending) confirmed(pending.press);
   changed('stop');
 }
 

@@ -10,10 +10,10 @@ import { html } from '../vendor/htm-preact.js';
 import { count, short, time } from './numbers.js';
 
 /** What has no place in a table of numbers. */
-const DRAWN = ['id', 'do', 'path', 'points', 'boxes'];
+const DRAWN = ['id', 'do', 'path'];
 
 const LENGTHS = ['value', 'lower', 'upper', 'radius'];
-const POINTS = ['point', 'centre', 'contact', 'start'];
+const POINTS = ['best', 'point', 'centre', 'contact'];
 
 /** The names of methods. @type {Record<string, string>} */
 const NAMES = { ...METHODS, ...PAIR_METHODS };
@@ -25,7 +25,7 @@ function written(key, value) {
   if (key === 'method') return NAMES[value] ?? value;
   if (typeof value === 'string') return value.replace(/_/g, ' ');
   if (typeof value === 'number') {
-    if (key === 'ns') return time(value / 1e9);
+    if (key === 'time') return time(value);
     if (LENGTHS.includes(key)) return `${short(value, 5)} m`;
     return Number.isInteger(value) ? count(value) : short(value, 4);
   }
@@ -33,11 +33,18 @@ function written(key, value) {
   return POINTS.includes(key) ? `${numbers} m` : numbers;
 }
 
+/** Numbers of a table: of a contact its point, of the best between two bodies its point and its normal.
+ * @param {[string, any]} entry @returns {[string, any][]} */
+function numbersOf([key, value]) {
+  if (key === 'contact') return [[key, value && value.point_a]];
+  return key === 'best' && !Array.isArray(value) ? Object.entries(value) : [[key, value]];
+}
+
 /** @param {{ title: string, answer: any }} given */
 function Table({ title, answer }) {
   if (typeof answer !== 'object' || !answer) return null;
-  const rows = Object.entries(answer).filter(([key]) => !DRAWN.includes(key))
-    .map(([key, value]) => [key === 'ns' ? 'time' : key, written(key, value)]);
+  const rows = Object.entries(answer).filter(([key]) => !DRAWN.includes(key)).flatMap(numbersOf)
+    .map(([key, value]) => [key.replace(/_/g, ' '), written(key, value)]);
   if (rows.length === 0) return null;
   return html`<table><caption>${title}</caption><tbody>
     ${rows.map(([key, text]) => html`<tr key=${key}><th scope="row">${key}</th><td>${text}</td></tr>`)}
@@ -75,7 +82,7 @@ function sentences(toy, result) {
       : `the enclosing circle excludes a touch${isRight ? ', rightly' : ', wrongly'}` });
   }
   if (toy === 'ball') {
-    const { touches, memoir } = result;
+    const { touches, memoir_test: memoir } = result;
     const isRight = memoir === touches;
     said.push({ isRight, text: `${touchOf(touches).word}; the memoir’s test says ${
       isRight ? 'the same' : touches === null ? touchOf(memoir).word : 'otherwise'}` });
@@ -118,6 +125,7 @@ export function Verdict({ toy, result }) {
   const { certified, local, enclosing, ...rest } = result;
   // Bounds of a time, which the sentence tells.
   if (toy === 'sweep') ['lower', 'upper', 'touches'].forEach((key) => delete rest[key]);
+  if (toy === 'pair') delete rest.contact;
   const said = sentences(toy, result);
   const locals = [local ?? []].flat();
   const state = said.length === 0 ? '' : said.every(({ isRight }) => isRight) ? 'right' : 'wrong';

@@ -14,9 +14,9 @@ const INTERVAL = 250;
 
 /** What the program does for a question. @type {Record<string, string>} */
 const WORK = {
-  element: 'searches for the least distance', ball: 'decides whether the circle touches', pair: 'proves the separation of two bodies',
+  element: 'searches for the least distance', pair: 'proves the separation of two bodies',
   contacts: 'searches for all contacts', sweep: 'searches for the first touch', fall: 'lets the ball fall', samples: 'samples the field',
-  slice: 'samples a slice', probe: 'looks at the field', replay: 'begins a replay', clock: 'sets the clock', picture: 'draws the picture', edit: 'builds the scene', open: 'opens the scene', undo: 'builds the scene',
+  slice: 'samples a slice', point: 'looks at the field', replay: 'begins a replay', clock: 'sets the clock', picture: 'draws the picture', edit: 'builds the scene', open: 'opens the scene', undo: 'builds the scene',
   redo: 'builds the scene', save: 'saves the scene',
 };
 /** What the button of STOP and that of release tell of themselves. */

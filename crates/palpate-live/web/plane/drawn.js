@@ -86,7 +86,7 @@ function paintElement(context, lens, texts, inks) {
   polyline(context, shown, PATH, 1, 'transparent');
   for (const place of shown) dot(context, place, 2.5, PATH, 'transparent');
   dot(context, shown[shown.length - 1] ?? null, 5, PATH, inks.halo);
-  if (certified?.point) dot(context, project(certified.point), 5, color, inks.halo);
+  if (certified) dot(context, project(certified.best), 5, color, inks.halo);
   const low = Math.max(...toys.corners.map((corner) => project(corner)?.y ?? 0));
   const middle = project(middleOfElement());
   toys.corners.forEach((corner, index) => {
@@ -132,7 +132,7 @@ function paintBall(context, lens, texts, inks) {
 /** @param {Context} context @param {Lens} lens @param {Texts} texts @param {Inks} inks */
 function paintPair(context, lens, texts, inks) {
   const project = (/** @type {number[]} */ point) => lens.project(inSpace(point));
-  const { certified, local } = toys.results.pair ?? {};
+  const { certified, contact, local } = toys.results.pair ?? {};
   const colors = toys.pair.starts.map((_, number) => {
     const one = local?.[number];
     if (!certified || typeof one?.value !== 'number') return OPEN;
@@ -140,12 +140,12 @@ function paintPair(context, lens, texts, inks) {
     mark(found ? 'found' : 'missed');
     return found ? FREE : PATH;
   });
-  (local ?? []).forEach((/** @type {any} */ { path, point }, /** @type {number} */ number) => {
-    const places = (path ?? []).map(project);
+  (local ?? []).forEach((/** @type {any} */ { path, best }, /** @type {number} */ number) => {
+    const places = path.map(project);
     if (places.length > 1) mark('path');
     polyline(context, places, colors[number] ?? PATH, 1.5, inks.halo);
     for (const place of places) dot(context, place, 2.5, colors[number] ?? PATH, 'transparent');
-    if (point) dot(context, project(point), 6, colors[number] ?? PATH, inks.halo);
+    dot(context, project(best), 6, colors[number] ?? PATH, inks.halo);
   });
   toys.pair.starts.forEach((start, number) => {
     const place = project(start);
@@ -153,7 +153,7 @@ function paintPair(context, lens, texts, inks) {
     if (place) texts.add(String(number + 1), place.x + 14, place.y, { rank: VERDICT + 0.5, color: colors[number] });
   });
   const { color, word } = verdictOf(certified);
-  const [a, b] = (certified?.points ?? []).map(project);
+  const [a, b] = contact ? [contact.point_a, contact.point_b].map(project) : [];
   if (a && b) {
     mark('witness');
     polyline(context, [a, b], color, 2, inks.halo);
@@ -182,7 +182,7 @@ function paintSweep(context, lens, texts, inks) {
   if (touches) outline(context, lens, moved(upper), color, inks, true);
   if (contact) {
     mark('touch');
-    dot(context, lens.project(inSpace(contact)), 5, color, inks.halo);
+    dot(context, lens.project(inSpace(contact.point_a)), 5, color, inks.halo);
   }
   const text = touches ? `${word} at ${short(upper, 5)} s` : word;
   texts.add(text, places[1].x, places[1].y + 18, { rank: VERDICT, color });

@@ -10,7 +10,7 @@
  * @typedef {import('../wire.js').Wire} Wire
  * @typedef {import('../scene/setting.js').Setting} Setting
  * @typedef {{ step: number, path: number[][], bounces: { time: number, centre: number[],
- *   normal: number[], speed: number }[], end: string, evaluations: number, ns: number }} Fall
+ *   normal: number[], speed: number }[], end: string, evaluations: number, time: number }} Fall
  */
 
 import { reasonOf } from '../panels/page.js';

@@ -108,22 +108,25 @@ export function layToys(centre, size) {
   });
 }
 
-/** @param {Toy} toy @returns {Record<string, any>} */
+/** @param {Toy} toy @returns {import('../wire.js').Message} */
 function question(toy) {
   const { corners, ball, pair, by, method, alpha, mu, gradient, iterations, start } = toys;
-  if (toy === 'ball') return ball;
-  if (toy === 'pair') return pair;
-  if (toy === 'sweep') return { corners, by };
+  if (toy === 'ball') {
+    return { do: 'ask', question: { question: 'point', at: ball.centre, radius: ball.radius } };
+  }
+  if (toy === 'pair') return { do: toy, ...pair };
+  if (toy === 'sweep') return { do: toy, corners, by };
   const chosen = Object.entries({ alpha, mu, start }).filter(([, value]) => value !== null);
   const found = method === 'naive' ? { gradient } : {};
-  return { corners, method, iterations, ...found, ...Object.fromEntries(chosen) };
+  return { do: toy, corners, method, iterations, ...found, ...Object.fromEntries(chosen) };
 }
 
 /** Asks about a toy. @param {Toy} toy */
 async function ask(toy) {
   if (!questions[toy] || state.connection !== 'live') return;
   try {
-    toys.results[toy] = await questions[toy].ask({ do: toy, ...question(toy) });
+    const told = await questions[toy].ask(question(toy));
+    toys.results[toy] = toy === 'ball' ? { ...told.answer.ball, time: told.time } : told;
     toys.refused[toy] = '';
   } catch (error) {
     toys.results[toy] = null;

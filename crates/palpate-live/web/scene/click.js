@@ -15,9 +15,10 @@
 import { fall, placeAbove, setFall } from '../plane/fall.js';
 import { addStart } from '../plane/handles.js';
 import { toys } from '../plane/toys.js';
-import { select, state } from '../state.js';
-import { setting } from './setting.js';
-import { add, rounded } from './vectors.js';
+import { select } from '../state.js';
+import { askPoint } from './probe.js';
+import { numberOf, setting } from './setting.js';
+import { rounded } from './vectors.js';
 
 /** How near a surface counts as touched where the card does not know the body: over the size of the
  * scene on what it drew, and else in pixels. */
@@ -31,10 +32,8 @@ export function createClick(wire, pick, seenAt) {
   /** The number of the body at a point of the picture; −1 beside all. @param {View} view
    * @param {Vector} point @param {number} near how near a surface counts as touched [m] */
   async function bodyAt(view, point, near) {
-    const dimension = state.scene?.dimension ?? 3;
-    const only = view.isWhole ? {} : { body: view.only };
-    const { value, body } = await wire.ask({ do: 'probe', at: add(point, view.shift).slice(0, dimension), ...only });
-    return value <= near ? body ?? view.only : -1;
+    const { distance, body } = await askPoint(wire, view, point);
+    return distance <= near ? numberOf(body) : -1;
   }
 
   return async (view, place) => {

@@ -25,9 +25,10 @@ export async function askContacts(wire, take) {
   questions ??= asking(wire);
   questions.giveUp();
   try {
-    const answer = isWanted ? await questions.ask({ do: 'contacts', proof }) : null;
+    const question = { question: 'contacts', proof };
+    const told = isWanted ? await questions.ask({ do: 'ask', question }) : null;
     // A newer question was asked meanwhile.
-    if (key === asked) take(answer);
+    if (key === asked) take(told?.answer ?? null);
   } catch {
     if (key === asked) asked = '';
   }

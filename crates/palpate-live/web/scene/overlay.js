@@ -20,11 +20,11 @@ import { state } from '../state.js';
 import { pullInWords } from './guides.js';
 import { arrow, dot, numbered, polyline, ring, spring } from './ink.js';
 import { COLORS, LIFTED, mark, veiled } from './marks.js';
-import { centreOf, cornersOf } from './setting.js';
+import { centreOf, cornersOf, numberOf } from './setting.js';
 import { slice } from './slice.js';
 import { widthOf } from './texts.js';
 import { level, roundUp } from './units.js';
-import { along, dot as product, inSpace, norm, subtract } from './vectors.js';
+import { along, dot as product, inSpace, norm, placedBy, subtract } from './vectors.js';
 
 /** The length of the arrow of the largest force in pixels. */
 const LONGEST = 130;
@@ -44,12 +44,12 @@ const BRACKET = 0.18;
 const EDGES = [[0, 1], [1, 2], [2, 3], [3, 0], [4, 5], [5, 6], [6, 7], [7, 4],
   [0, 4], [1, 5], [2, 6], [3, 7]];
 
-/** @param {Context} context @param {View} view @param {Box} box @param {string} color
- * @param {string} halo */
-function paintBox(context, { lens }, box, color, halo) {
-  const places = cornersOf(box).map(lens.project);
+/** The edges of a box, whose corners `place` moves. @param {Context} context @param {View} view @param {Box} box
+ * @param {string} color @param {(point: Vector) => Vector} [place] */
+function paintBox(context, { lens }, box, color, place = (point) => point) {
+  const places = cornersOf(box).map((corner) => lens.project(place(corner)));
   for (const [from, to] of EDGES) {
-    if (to < places.length) polyline(context, [places[from], places[to]], color, 1, halo);
+    if (to < places.length) polyline(context, [places[from], places[to]], color, 1, 'transparent');
   }
 }
 
@@ -94,7 +94,7 @@ export function paintBodies(context, view, setting, texts, inks, { outlined, hov
     const place = view.lens.project(centreOf(box));
     if (shown.bounds) {
       mark('bounds');
-      paintBox(context, view, box, inks.muted, 'transparent');
+      paintBox(context, view, box, inks.muted);
       ring(context, place, size / 2, inks.muted, 1, 'transparent');
     }
     if (body === selected) mark('selected');
@@ -107,25 +107,14 @@ export function paintBodies(context, view, setting, texts, inks, { outlined, hov
   });
 }
 
-/** The edges of a box that may be turned: corners whose numbers differ in one bit share one.
- * @param {Context} context @param {View} view @param {number[][]} corners @param {string} color */
-function paintCorners(context, { lens }, corners, color) {
-  const seen = corners.map((corner) => lens.project(inSpace(corner)));
-  for (let bit = 1; bit < corners.length; bit *= 2) {
-    seen.forEach((from, number) => {
-      if ((number & bit) === 0) polyline(context, [from, seen[number | bit]], color, 1, 'transparent');
-    });
-  }
-}
-
 /** The keys of the hand's middle and contact points, and of contacts of bodies, for what bodies hide. */
 export const MIDDLE = 'middle';
 export const keyOfPoint = (/** @type {number} */ number) => `point ${number}`;
 const keyOfContact = (/** @type {number} */ number) => `contact ${number}`;
 
 /** The contacts of bodies, each with the points on both. @param {any} answer */
-const contactsOf = (answer) => (answer?.pairs ?? []).flatMap((/** @type {any} */ pair) => pair.contacts ?? [])
-  .map((/** @type {any} */ { point_a: a, point_b: b, normal }) => ({ a: inSpace(a), b: inSpace(b ?? a), normal }));
+const contactsOf = (answer) => (answer?.pairs ?? []).flatMap((/** @type {any} */ pair) => pair.contacts)
+  .map((/** @type {any} */ { point_a: a, point_b: b, normal }) => ({ a: inSpace(a), b: inSpace(b), normal }));
 
 /** What bodies may hide. Of a contact point in a body, the proxy tells whether it is seen.
  * @param {any} answer the contacts of bodies @returns {import('./veil.js').Mark[]} */
@@ -144,9 +133,13 @@ export function marksOf(answer) {
 export function paintContacts(context, view, answer, inks, hides) {
   const { project, pixel } = view.lens;
   const { shown } = state.view;
-  for (const corners of shown.proof ? (answer?.pairs ?? []).flatMap((/** @type {any} */ pair) => pair.boxes ?? []) : []) {
+  for (const { proof } of shown.proof ? answer?.pairs ?? [] : []) {
+    if (!proof) continue;
     mark('proof');
-    paintCorners(context, view, corners, COLORS.proof);
+    const place = placedBy(proof.world_from_boxes);
+    for (const { aabb } of proof.boxes) {
+      paintBox(context, view, { low: inSpace(aabb.min), high: inSpace(aabb.max) }, COLORS.proof, place);
+    }
   }
   if (!shown.contacts) return;
   contactsOf(answer).forEach((/** @type {any} */ { a, b, normal }, /** @type {number} */ number) => {
@@ -154,7 +147,7 @@ export function paintContacts(context, view, answer, inks, hides) {
       mark('contact');
       polyline(context, [project(a), project(b)], CONTACT, 2, inks.halo);
       dot(context, project(a), 4, CONTACT, inks.halo);
-      if (normal && shown.normals) {
+      if (shown.normals) {
         mark('contactNormal');
         const tip = along(a, inSpace(normal), 34 * pixel(a));
         arrow(context, project(a), project(tip), CONTACT, 1.5, inks.halo);
@@ -306,5 +299,5 @@ export function paintProbe(context, view, probe, texts, inks) {
 /** The number of the body that the probe is on; −1 where it is beside all. @param {View} view
  * @param {import('./probe.js').Probed | null} probe */
 export function hoveredBody({ lens }, probe) {
-  return probe && probe.value < 2 * lens.pixel(probe.at) ? probe.body : -1;
+  return probe && probe.value < 2 * lens.pixel(probe.at) ? numberOf(probe.body) : -1;
 }

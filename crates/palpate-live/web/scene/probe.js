@@ -10,7 +10,7 @@
  * @typedef {import('./panels.js').View} View
  * @typedef {import('./vectors.js').Vector} Vector
  * @typedef {{ at: Vector, value: number, gradient: Vector, nearest: Vector | null, safe: number,
- *   promise: string, body: number, view: number }} Probed
+ *   promise: string, body: string | null, view: number }} Probed
  */
 
 import { state } from '../state.js';
@@ -20,6 +20,15 @@ import { add, inSpace, norm, subtract } from './vectors.js';
 
 /** The least time between two questions [ms]; where the core follows the line of sight too, twice that. */
 const PAUSE = 50;
+
+/** What the field of a view says at a point of it. @param {Wire} wire @param {View} view
+ * @param {Vector} at */
+export async function askPoint(wire, { isWhole, only, shift }, at) {
+  const { dimension = 3, bodies = [] } = state.scene ?? {};
+  const body = isWhole ? null : bodies[only]?.name;
+  const question = { question: 'point', at: add(at, shift).slice(0, dimension), body };
+  return (await wire.ask({ do: 'ask', question })).answer;
+}
 
 export class Probe {
   /** @param {Wire} wire @param {() => void} changed */
@@ -49,19 +58,16 @@ export class Probe {
   async fetch({ find, view, number, place }) {
     const at = await find();
     if (at) {
-      const dimension = state.scene?.dimension ?? 3;
-      const body = view.isWhole ? {} : { body: view.only };
-      const point = add(at, view.shift).slice(0, dimension);
-      const answer = await this.wire.ask({ do: 'probe', at: point, ...body });
+      const answer = await askPoint(this.wire, view, at);
       if (place !== this.place && !this.probed) return;
       this.probed = {
         at,
-        value: answer.value,
-        gradient: inSpace(answer.gradient ?? [0, 0, 0]),
-        nearest: answer.nearest ? subtract(inSpace(answer.nearest), view.shift) : null,
-        safe: answer.safe ?? 0,
-        promise: answer.promise ?? '',
-        body: answer.body ?? -1,
+        value: answer.distance,
+        gradient: inSpace(answer.gradient),
+        nearest: answer.surface ? subtract(inSpace(answer.surface), view.shift) : null,
+        safe: answer.safe_radius ?? 0,
+        promise: answer.promise,
+        body: answer.body,
         view: number,
       };
     } else if (place === this.place) {
@@ -77,12 +83,11 @@ export class Probe {
     const { at, value, gradient, safe, promise, body } = this.probed;
     const dimension = state.scene?.dimension ?? 3;
     const sign = state.view.positiveInside ? -1 : 1;
-    const name = state.scene?.bodies?.[body]?.name;
     const direction = gradient.slice(0, dimension).map((part) => (sign * part).toFixed(2)).join(', ');
     return [
-      `at (${at.slice(0, dimension).map(length).join(', ')})${name ? ` of ${name}` : ''}`,
+      `at (${at.slice(0, dimension).map(length).join(', ')})${body ? ` of ${body}` : ''}`,
       `f ${length(sign * value)}   ∇f (${direction})   |∇f| ${norm(gradient).toFixed(2)}`,
-      `safe ball ${length(safe)}${promise ? `   ${promise}` : ''}`,
+      `safe ball ${length(safe)}   ${promise}`,
     ].join('\n').replaceAll('-', '−');
   }
 }

@@ -24,8 +24,12 @@ const ENDLESS = 1;
 const ALIKE = 0.02;
 
 /** A box as the program sends it: its least and its greatest corner.
- * @param {number[][] | null | undefined} bounds @returns {Box | null} */
-export const boxOf = (bounds) => (bounds ? { low: inSpace(bounds[0]), high: inSpace(bounds[1]) } : null);
+ * @param {{ min: number[], max: number[] } | null | undefined} bounds @returns {Box | null} */
+export const boxOf = (bounds) => (bounds ? { low: inSpace(bounds.min), high: inSpace(bounds.max) } : null);
+
+/** The number of a body by its name; −1 of none. @param {string | null} name @returns {number} */
+export const numberOf = (name) =>
+  (state.scene?.bodies ?? []).findIndex((/** @type {Body} */ body) => body.name === name);
 
 /** @param {string} words such as “exact outside, bound inside” @returns {Promises} */
 function promisesOf(words) {

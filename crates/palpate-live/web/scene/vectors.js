@@ -56,6 +56,11 @@ export function turn(a, axis, angle) {
 /** A point with three coordinates. @param {number[]} point @returns {Vector} */
 export const inSpace = (point) => [point[0], point[1], point[2] ?? 0];
 
+/** The function that moves points as a pose does. @param {{ rotation: number[][], translation: number[] }} pose
+ * @returns {(point: Vector) => Vector} */
+export const placedBy = ({ rotation, translation }) => (point) =>
+  add(inSpace(rotation.map((row) => dot(inSpace(row), point))), inSpace(translation));
+
 /** A number to so many decimal places; zero has no sign. @param {number} value @param {number} decimals */
 export const toDecimals = (value, decimals) => Number(value.toFixed(decimals)) + 0;
 

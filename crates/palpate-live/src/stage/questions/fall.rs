@@ -10,10 +10,10 @@ use std::time::{Duration, Instant};
 use palpate::field::{Aabb, LARGEST_LENGTH, Point, Shape, Vector};
 use palpate::query::{BallWorkspace, Limits, Ray, Stop, cast_ball};
 use palpate::scene::BuiltScene;
-use serde_json::{Value, json};
 
-use super::{Cancel, TOLERANCE, nanoseconds};
+use super::{Cancel, TOLERANCE};
 use crate::stage::points::{point_of, size};
+use crate::wire::{Answered, Bounce, FallEnd, Fell, Timed};
 
 /// Steps in the time in which the ball would fall by the size of the scene, and of a way at most.
 const STEPS_A_FALL: f64 = 200.0;
@@ -60,7 +60,8 @@ struct Fall<'a, const D: usize> {
     centre: Point<D>,
     velocity: Vector<f64, D>,
     evaluations: u32,
-    bounces: Vec<Value>,
+    path: Vec<Point<D>>,
+    bounces: Vec<Bounce<D>>,
 }
 
 /// The way of a ball.
@@ -69,8 +70,7 @@ pub(super) fn fall<const D: usize>(
     centre: &[f64],
     [radius, gravity, restitution]: [f64; 3],
     cancel: &Cancel,
-) -> Result<Value, String> {
-    let begin = Instant::now();
+) -> Result<Answered<D>, String> {
     let centre = point_of::<D>(centre)?;
     // Written so that NaN is refused.
     if !(radius > 0.0 && radius <= LARGEST_LENGTH) {
@@ -97,28 +97,25 @@ pub(super) fn fall<const D: usize>(
         centre,
         velocity: Vector::ZERO,
         evaluations: 0,
+        path: vec![centre],
         bounces: Vec::new(),
     };
-    let (path, end) = fall.run(begin, cancel)?;
-    Ok(json!({
-        "do": "fall", "step": fall.step, "path": path, "bounces": fall.bounces, "end": end,
-        "evaluations": fall.evaluations, "ns": nanoseconds(begin),
-    }))
+    let fell = Timed::of(|| {
+        let end = fall.run(Instant::now(), cancel)?;
+        let Fall { step, path, bounces, evaluations, .. } = fall;
+        Ok::<_, String>(Fell { step, path, bounces, end, evaluations })
+    });
+    fell.map(Answered::Fall)
 }
 
 impl<const D: usize> Fall<'_, D> {
-    /// The centres, and how the way ends.
-    fn run(
-        &mut self,
-        begin: Instant,
-        cancel: &Cancel,
-    ) -> Result<(Vec<Vec<f64>>, &'static str), String> {
-        let mut path = vec![self.centre.0.to_vec()];
+    /// Falls until the way ends.
+    fn run(&mut self, begin: Instant, cancel: &Cancel) -> Result<FallEnd, String> {
         if self.shape.distance(self.centre) <= self.radius {
             let mut down = Vector::ZERO;
             down[1] = -1.0;
             if self.touch(down, self.size)?.is_some_and(|(free, _)| free <= 0.0) {
-                return Ok((path, "inside"));
+                return Ok(FallEnd::Inside);
             }
         }
         let fall_speed = (2.0 * self.size * self.gravity).sqrt();
@@ -126,23 +123,23 @@ impl<const D: usize> Fall<'_, D> {
         for step in 0..MOST_STEPS {
             cancel.check()?;
             let touches = self.go_on(step as f64 * self.step)?;
-            path.push(self.centre.0.to_vec());
+            self.path.push(self.centre);
             slow = if touches && self.velocity.norm() < REST_SPEED * fall_speed {
                 slow + 1
             } else {
                 0
             };
             if slow == REST_STEPS {
-                return Ok((path, "rests"));
+                return Ok(FallEnd::Rests);
             }
             if self.has_left() {
-                return Ok((path, "leaves"));
+                return Ok(FallEnd::Leaves);
             }
             if self.evaluations >= BUDGET || begin.elapsed() > PATIENCE {
-                return Ok((path, "budget"));
+                return Ok(FallEnd::Budget);
             }
         }
-        Ok((path, "time"))
+        Ok(FallEnd::Time)
     }
 
     /// Goes on by a step that begins at `time` [s]; whether the ball touched.
@@ -170,10 +167,12 @@ impl<const D: usize> Fall<'_, D> {
                 if self.velocity[1] > 0.0 {
                     self.fly(normal[1] * SKIN * self.radius, 0.0);
                 }
-                self.bounces.push(json!({
-                    "time": time + self.step - left, "centre": self.centre.0.to_vec(),
-                    "normal": normal.0.to_vec(), "speed": closing,
-                }));
+                self.bounces.push(Bounce {
+                    time: time + self.step - left,
+                    centre: self.centre,
+                    normal,
+                    speed: closing,
+                });
             } else {
                 slides = true;
                 self.velocity += normal * closing.max(0.0);
@@ -243,26 +242,31 @@ mod tests {
         }
     }
 
+    /// The way of a ball onto the floor, or why there is none.
+    fn fell(centre: [f64; 2], numbers: [f64; 3], cancel: &Cancel) -> Result<Fell<2>, String> {
+        match fall(&floor(), &centre, numbers, cancel)? {
+            Answered::Fall(fell) => Ok(fell.result),
+            other => panic!("{other:?} is no fall"),
+        }
+    }
+
     #[test]
     fn a_ball_falls_bounces_and_rests_on_a_floor() {
-        let fell = fall(&floor(), &[0.0, 0.7], [0.1, 9.81, 0.5], &Cancel::default()).unwrap();
-        assert_eq!(fell["end"], "rests");
-        let bounces = fell["bounces"].as_array().unwrap();
-        let number = |value: &Value| value.as_f64().unwrap();
+        let Fell { step, path, bounces, end, .. } =
+            fell([0.0, 0.7], [0.1, 9.81, 0.5], &Cancel::default()).unwrap();
+        assert_eq!(end, FallEnd::Rests);
         // By 0.5 m: √(2 h / g), and √(2 g h).
-        let step = number(&fell["step"]);
-        assert!((number(&bounces[0]["time"]) - (1.0 / 9.81_f64).sqrt()).abs() < 2.0 * step);
-        assert!((number(&bounces[0]["speed"]) - 9.81_f64.sqrt()).abs() < 9.81 * 2.0 * step);
-        assert_eq!(bounces[0]["normal"], json!([0.0, 1.0]));
-        let path = fell["path"].as_array().unwrap();
-        for place in path {
-            assert!(number(&place[1]) >= 0.2 - 1e-9, "{place}");
+        assert!((bounces[0].time - (1.0 / 9.81_f64).sqrt()).abs() < 2.0 * step);
+        assert!((bounces[0].speed - 9.81_f64.sqrt()).abs() < 9.81 * 2.0 * step);
+        assert_eq!(bounces[0].normal, Vector([0.0, 1.0]));
+        for place in &path {
+            assert!(place[1] >= 0.2 - 1e-9, "{place:?}");
         }
-        let lowest = number(&path.last().unwrap()[1]);
+        let lowest = path.last().unwrap()[1];
         assert!((0.2..0.201).contains(&lowest), "{lowest}");
         // Half of the speed each time: a quarter of the height.
-        let heights = path.iter().skip((number(&bounces[0]["time"]) / step) as usize + 2);
-        let highest = heights.map(|place| number(&place[1]) - 0.2).fold(0.0, f64::max);
+        let heights = path.iter().skip((bounces[0].time / step) as usize + 2);
+        let highest = heights.map(|place| place[1] - 0.2).fold(0.0, f64::max);
         assert!((highest - 0.125).abs() < 0.01, "{highest}");
     }
 
@@ -270,22 +274,17 @@ mod tests {
     fn a_ball_that_loses_nothing_comes_up_again_and_again() {
         for (height, gravity) in [(0.1, 9.81), (0.5, 9.81), (0.5, 1.62)] {
             let at = [0.0, 0.2 + height];
-            let fell = fall(&floor(), &at, [0.1, gravity, 1.0], &Cancel::default()).unwrap();
-            let number = |value: &Value| value.as_f64().unwrap();
-            let bounces = fell["bounces"].as_array().unwrap();
+            let Fell { step, path, bounces, .. } =
+                fell(at, [0.1, gravity, 1.0], &Cancel::default()).unwrap();
             let (speed, time) =
                 ((2.0 * gravity * height).sqrt(), (2.0 * height / gravity).sqrt());
-            for (number_of, bounce) in bounces.iter().enumerate() {
-                let error = number(&bounce["speed"]) / speed - 1.0;
+            for (number, bounce) in bounces.iter().enumerate() {
+                let error = bounce.speed / speed - 1.0;
                 assert!(error.abs() < 2e-3, "{error}");
-                let due = (1.0 + 2.0 * number_of as f64) * time;
-                assert!(
-                    (number(&bounce["time"]) / due - 1.0).abs() < 5e-3,
-                    "{bounce}, {due} s"
-                );
+                let due = (1.0 + 2.0 * number as f64) * time;
+                assert!((bounce.time / due - 1.0).abs() < 5e-3, "{bounce:?}, {due} s");
             }
-            let steps = fell["path"].as_array().unwrap().len() - 1;
-            let whole = number(&fell["step"]) * steps as f64;
+            let whole = step * (path.len() - 1) as f64;
             let expected = ((whole / time + 1.0) / 2.0).floor();
             assert!((bounces.len() as f64 - expected).abs() <= 1.0, "{expected}");
         }
@@ -293,18 +292,18 @@ mod tests {
 
     #[test]
     fn a_ball_far_above_comes_down() {
-        let fell = fall(&floor(), &[0.0, 9.0], [0.1, 9.81, 0.0], &Cancel::default()).unwrap();
-        assert_eq!(fell["end"], "rests");
+        let fell = fell([0.0, 9.0], [0.1, 9.81, 0.0], &Cancel::default()).unwrap();
+        assert_eq!(fell.end, FallEnd::Rests);
     }
 
     #[test]
     fn a_ball_beside_the_floor_leaves_and_one_in_it_stays() {
-        let ask = |at: [f64; 2]| fall(&floor(), &at, [0.1, 9.81, 0.5], &Cancel::default());
-        assert_eq!(ask([1.5, 0.5]).unwrap()["end"], "leaves");
-        assert_eq!(ask([0.0, 0.0]).unwrap()["end"], "inside");
-        assert!(fall(&floor(), &[0.0, 1.0], [0.1, 9.81, 1.5], &Cancel::default()).is_err());
+        let ask = |at: [f64; 2]| fell(at, [0.1, 9.81, 0.5], &Cancel::default());
+        assert_eq!(ask([1.5, 0.5]).unwrap().end, FallEnd::Leaves);
+        assert_eq!(ask([0.0, 0.0]).unwrap().end, FallEnd::Inside);
+        assert!(fell([0.0, 1.0], [0.1, 9.81, 1.5], &Cancel::default()).is_err());
         let cancel = Cancel::default();
         cancel.set();
-        assert!(fall(&floor(), &[0.0, 1.0], [0.1, 9.81, 0.5], &cancel).is_err());
+        assert!(fell([0.0, 1.0], [0.1, 9.81, 0.5], &cancel).is_err());
     }
 }

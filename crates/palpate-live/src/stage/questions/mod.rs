@@ -10,17 +10,13 @@ mod pair;
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::time::Instant;
 
-use palpate::field::{Aabb, Pose, Shape, Vector};
-use palpate::query::{
-    BallWorkspace, Limits, PairWorkspace, Placed, evaluate_point, proof, touches_ball,
-};
-use palpate::scene::{BuiltBody, BuiltScene};
-use serde_json::{Value, json};
+use palpate::field::Shape;
+use palpate::query::Limits;
+use palpate::scene::{self, BuiltBody, BuiltScene, Question, Versioned};
 
-use super::points::{point_of, size};
-use crate::wire::{Ask, Grid};
+use super::points::size;
+use crate::wire::{Answered, Ask, Grid, Timed, ToQuestion, written};
 
 /// How near bounds are brought to each other, as a share of the scene.
 const TOLERANCE: f64 = 1e-6;
@@ -32,6 +28,13 @@ const RESTITUTION: f64 = 0.5;
 
 /// The most boxes of a proof that are told.
 const MOST_BOXES: usize = 4000;
+
+/// The most evaluations for a pair, and the most cells of a body, that a page may ask for: a search
+/// is cancelled between pairs and bodies alone.
+const LARGEST_BUDGET: usize = 5_000_000;
+
+/// The longest answer in text [bytes]: of more pairs of bodies, a page asks for some.
+const LONGEST: usize = 32 << 20;
 
 /// Why a question that was cancelled is refused.
 pub(super) const CANCELLED: &str = "cancelled";
@@ -63,49 +66,89 @@ impl Cancel {
 /// An answer for the page.
 #[derive(Debug)]
 pub(super) enum Answer {
-    Text(Value),
+    Text(String),
     Grid(Grid),
     Picture(Vec<u8>),
 }
 
-/// Answers a question about a scene; `None` if it is about something else.
+/// Answers the question with this number about a scene.
 pub(super) fn answer<const D: usize>(
     scene: &BuiltScene<D>,
     ask: &Ask,
+    id: Option<u32>,
     cancel: &Cancel,
-) -> Option<Result<Answer, String>> {
-    Some(match ask {
-        Ask::Probe { at, body } => probe(scene, at, *body).map(Answer::Text),
+) -> Result<Answer, String> {
+    let answered = match ask {
+        Ask::Question { question } => answer_to(scene, question, cancel),
         Ask::Element { corners, .. } => match corners.len() {
             1 => element::at_point(scene, &corners[0]),
             2 => element::over::<2, D>(scene, ask),
             3 => element::over::<3, D>(scene, ask),
             count => Err(format!("an element has 1 to 3 corners, got {count}")),
-        }
-        .map(Answer::Text),
-        Ask::Ball { centre, radius } => ball(scene, centre, *radius).map(Answer::Text),
+        },
         Ask::Pair { a, b, starts, method } => {
-            pair::between(scene, [*a, *b], starts, method.as_deref()).map(Answer::Text)
+            pair::between(scene, [*a, *b], starts, method.as_deref())
         }
-        Ask::Contacts { proof } => contacts(scene, *proof).map(Answer::Text),
         Ask::Sweep { corners, by } => match corners.len() {
             1 => element::swept_point(scene, &corners[0], by),
             2 => element::swept::<2, D>(scene, corners, by),
             3 => element::swept::<3, D>(scene, corners, by),
             count => Err(format!("an element that moves has 1 to 3 corners, got {count}")),
-        }
-        .map(Answer::Text),
+        },
         Ask::Fall { centre, radius, gravity, restitution } => {
             let numbers =
                 [*radius, gravity.unwrap_or(GRAVITY), restitution.unwrap_or(RESTITUTION)];
-            fall::fall(scene, centre, numbers, cancel).map(Answer::Text)
+            fall::fall(scene, centre, numbers, cancel)
         }
-        Ask::Slice { .. } => grid::slice(scene, ask, cancel).map(Answer::Grid),
+        Ask::Slice { .. } => return grid::slice(scene, ask, cancel).map(Answer::Grid),
         Ask::Samples { cells, body } => {
-            grid::samples(scene, *cells, *body, cancel).map(Answer::Grid)
+            return grid::samples(scene, *cells, *body, cancel).map(Answer::Grid);
         }
-        _ => return None,
-    })
+        _ => Err("nothing is known of such a question".to_owned()),
+    };
+    let text = written(&answered?, id);
+    let length = text.len();
+    if length > LONGEST {
+        return Err(format!(
+            "the answer has {length} bytes, of at most {LONGEST}: ask about fewer bodies"
+        ));
+    }
+    Ok(Answer::Text(text))
+}
+
+/// Answers a question that every door takes.
+fn answer_to<const D: usize>(
+    scene: &BuiltScene<D>,
+    question: &Question,
+    cancel: &Cancel,
+) -> Result<Answered<D>, String> {
+    let budget = match question {
+        Question::Point(_) => 0,
+        Question::Contacts(question) => question.budget.unwrap_or(0) as usize,
+        Question::Sweep(question) => question.budget.unwrap_or(0) as usize,
+        Question::Mass(question) => question.cells,
+    };
+    if budget > LARGEST_BUDGET {
+        return Err(format!(
+            "a page may ask for at most {LARGEST_BUDGET} evaluations or cells, got {budget}"
+        ));
+    }
+    let answer = Timed::of(|| {
+        let mut answer = scene.ask_until(question, &cancel.0)?;
+        let boxes_left_out = leave_out_boxes(&mut answer, MOST_BOXES);
+        Ok(ToQuestion { answer: Versioned::new(answer), boxes_left_out })
+    });
+    let answer = answer.map_err(|error: scene::AskError| error.to_string())?;
+    cancel.check()?;
+    Ok(Answered::Answer(answer))
+}
+
+/// Leaves boxes out of proofs that have more than `most`; how many.
+fn leave_out_boxes<const D: usize>(answer: &mut scene::Answer<D>, most: usize) -> usize {
+    let scene::Answer::Contacts(contacts) = answer else { return 0 };
+    let proofs = contacts.pairs.iter_mut().filter_map(|pair| pair.proof.as_mut());
+    let boxes = proofs.map(|proof| &mut proof.boxes);
+    boxes.map(|boxes| boxes.drain(boxes.len().min(most)..).count()).sum()
 }
 
 /// The shape that is asked about: a body, or the union of all.
@@ -128,97 +171,32 @@ fn limits<const D: usize>(scene: &BuiltScene<D>) -> Limits {
     Limits::new(TOLERANCE * size(scene))
 }
 
-fn nanoseconds(start: Instant) -> u64 {
-    u64::try_from(start.elapsed().as_nanos()).unwrap_or(u64::MAX)
-}
+#[cfg(test)]
+mod tests {
+    use palpate::scene::{AnyScene, Scene};
 
-fn probe<const D: usize>(
-    scene: &BuiltScene<D>,
-    at: &[f64],
-    body: Option<usize>,
-) -> Result<Value, String> {
-    let (point, shape) = (point_of::<D>(at)?, shape(scene, body)?);
-    let found = evaluate_point(shape, point).map_err(|error| error.to_string())?;
-    let nearest = |a: &f64, b: &f64| a.total_cmp(b);
-    let distances = scene.bodies.iter().map(|body| body.shape.distance(point)).enumerate();
-    let body = body.or(distances.min_by(|a, b| nearest(&a.1, &b.1)).map(|(body, _)| body));
-    Ok(json!({
-        "do": "probed",
-        "value": found.distance,
-        "gradient": found.gradient.0.to_vec(),
-        "normal": found.normal.map(|normal| normal.0.to_vec()),
-        "nearest": found.surface.map(|surface| surface.0.to_vec()),
-        "safe": found.safe_radius,
-        "rounding": found.rounding,
-        "body": body,
-        "promise": shape.promise().in_words(),
-    }))
-}
+    use super::*;
 
-fn ball<const D: usize>(
-    scene: &BuiltScene<D>,
-    centre: &[f64],
-    radius: f64,
-) -> Result<Value, String> {
-    let centre = point_of::<D>(centre)?;
-    let start = Instant::now();
-    let mut workspace = BallWorkspace::new();
-    let limits = Limits::new(0.0);
-    let found = touches_ball(&scene.whole, centre, radius, &limits, &mut workspace)
-        .map_err(|error| error.to_string())?;
-    let ns = nanoseconds(start);
-    let value = scene.whole.distance(centre);
-    Ok(json!({
-        "do": "ball", "touches": found.is_hit(), "lower": found.lower, "upper": found.upper,
-        "value": value, "memoir": value < radius, "evaluations": found.evaluations, "ns": ns,
-    }))
-}
-
-fn contacts<const D: usize>(scene: &BuiltScene<D>, with_proof: bool) -> Result<Value, String> {
-    let begin = Instant::now();
-    let settings = scene.world_settings();
-    let margin = settings.manifold.margin;
-    let mut world = scene.world().map_err(|error| error.to_string())?;
-    let mut pairs = Vec::new();
-    for near in world.step() {
-        let bodies = near.bodies.map(|body| body.index());
-        let found = near.manifold.as_ref().map(|manifold| manifold.separation);
-        let contact = |contact: &palpate::query::Contact<D>| {
-            json!({
-                "point_a": contact.point_a.0.to_vec(), "point_b": contact.point_b.0.to_vec(),
-                "normal": contact.normal.0.to_vec(), "gap": contact.gap,
-            })
+    #[test]
+    fn boxes_that_are_left_out_are_counted() {
+        let text = r#"{ "palpate": 1, "dimension": 2, "bodies": [
+            { "name": "a", "shape": { "circle": { "radius": 0.5 } } },
+            { "name": "b", "shape": { "circle": { "radius": 0.5 } },
+              "pose": { "translation": [2, 0] } } ] }"#;
+        let AnyScene::Planar(scene) = Scene::from_json(text).unwrap().build().unwrap() else {
+            panic!("in the plane")
         };
-        let mut answer = json!({
-            "a": bodies[0], "b": bodies[1],
-            "verdict": format!("{:?}", near.verdict(margin)).to_lowercase(),
-            "lower": found.map(|found| found.lower), "upper": found.map(|found| found.upper),
-            "contacts": near.contacts().iter().map(contact).collect::<Vec<_>>(),
-        });
-        if with_proof {
-            let [a, b] = bodies.map(|body| placed(&scene.bodies[body]));
-            let proof = proof(a, b, &settings.limits, &mut PairWorkspace::new())
-                .map_err(|error| error.to_string())?;
-            let boxes = proof.boxes.iter().take(MOST_BOXES);
-            let boxes = boxes.map(|cell| corners(&cell.aabb, &proof.world_from_boxes));
-            answer["boxes"] = boxes.collect::<Vec<_>>().into();
-            answer["boxes_left_out"] = proof.boxes.len().saturating_sub(MOST_BOXES).into();
-        }
-        pairs.push(answer);
+        let question = r#"{ "question": "contacts", "proof": true }"#;
+        let mut answer = scene.ask(&serde_json::from_str(question).unwrap()).unwrap();
+        let boxes = |answer: &scene::Answer<2>| match answer {
+            scene::Answer::Contacts(found) => {
+                found.pairs[0].proof.as_ref().map_or(0, |proof| proof.boxes.len())
+            }
+            other => panic!("{other:?}"),
+        };
+        let all = boxes(&answer);
+        assert!(all > 4, "{all} boxes");
+        assert_eq!((leave_out_boxes(&mut answer, 4), boxes(&answer)), (all - 4, 4));
+        assert_eq!(leave_out_boxes(&mut answer, 4), 0);
     }
-    Ok(json!({ "do": "contacts", "pairs": pairs, "ns": nanoseconds(begin) }))
-}
-
-fn placed<const D: usize>(body: &BuiltBody<D>) -> Placed<'_, D> {
-    Placed::new(&body.shape_in_body, body.world_from_body)
-}
-
-/// The corners of a box that is placed by `pose`.
-fn corners<const D: usize>(aabb: &Aabb<D>, pose: &Pose<D>) -> Vec<Vec<f64>> {
-    let corner = |number: usize| {
-        let upper = |axis: usize| number >> axis & 1 == 1;
-        let corner = |axis| if upper(axis) { aabb.max[axis] } else { aabb.min[axis] };
-        pose.transform_point(Vector(std::array::from_fn(corner))).0.to_vec()
-    };
-    (0..1 << D).map(corner).collect()
 }

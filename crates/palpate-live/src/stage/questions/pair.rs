@@ -3,15 +3,13 @@
 
 //! Two bodies: their separation.
 
-use std::time::Instant;
-
 use palpate::local::PairMethod;
-use palpate::query::{PairWorkspace, separation};
-use palpate::scene::BuiltScene;
-use serde_json::{Value, json};
+use palpate::query::{PairWorkspace, Placed, separation};
+use palpate::scene::{BuiltBody, BuiltScene};
 
-use super::{limits, named, nanoseconds, placed};
+use super::{limits, named};
 use crate::stage::points::point_of;
+use crate::wire::{Answered, Local, Timed};
 
 /// The most starts of local descents.
 const MOST_STARTS: usize = 1000;
@@ -22,38 +20,33 @@ pub(super) fn between<const D: usize>(
     bodies: [usize; 2],
     starts: &[Vec<f64>],
     method: Option<&str>,
-) -> Result<Value, String> {
+) -> Result<Answered<D>, String> {
     let [a, b] = [named(scene, bodies[0])?, named(scene, bodies[1])?];
     let limits = limits(scene);
-    let begin = Instant::now();
-    let found = separation(placed(a), placed(b), &limits, &mut PairWorkspace::new())
-        .map_err(|error| error.to_string())?;
-    let contact = found.best.contact(placed(a), placed(b));
-    let certified = json!({
-        "lower": found.lower, "upper": found.upper, "evaluations": found.evaluations,
-        "stop": found.stop.to_string(), "ns": nanoseconds(begin),
-        "point": found.best.point.0.to_vec(),
-        "points": contact.map(|contact| [contact.point_a.0.to_vec(), contact.point_b.0.to_vec()]),
-        "normal": contact.map(|contact| contact.normal.0.to_vec()),
-    });
+    let certified = Timed::of(|| {
+        separation(placed(a), placed(b), &limits, &mut PairWorkspace::new())
+            .map_err(|error| error.to_string())
+    })?;
+    let contact = certified.result.best.contact(placed(a), placed(b));
     let method = method.unwrap_or(PairMethod::AlternatingProjection.name());
     let method: PairMethod = method.parse().map_err(|error| format!("{error}"))?;
-    let descent = |start: &Vec<f64>| {
-        let begin = Instant::now();
-        let local = method
-            .descend(&a.shape, &b.shape, point_of(start)?, limits.tolerance)
-            .map_err(|error| error.to_string())?;
-        Ok(json!({
-            "method": method.name(), "start": start, "value": local.value,
-            "point": local.best.0.to_vec(), "evaluations": local.evaluations,
-            "path": local.path.iter().map(|point| point.0.to_vec()).collect::<Vec<_>>(),
-            "ns": nanoseconds(begin),
-        }))
-    };
     if starts.len() > MOST_STARTS {
         let count = starts.len();
         return Err(format!("a pair has at most {MOST_STARTS} starts, got {count}"));
     }
-    let local = starts.iter().map(descent).collect::<Result<Vec<_>, String>>()?;
-    Ok(json!({ "do": "pair", "certified": certified, "local": local }))
+    let descent = |start: &Vec<f64>| {
+        let start = point_of(start)?;
+        Timed::of(|| {
+            let found = method.descend(&a.shape, &b.shape, start, limits.tolerance);
+            found
+                .map(|found| Local::new(method.name(), found))
+                .map_err(|error| error.to_string())
+        })
+    };
+    let local = starts.iter().map(descent).collect::<Result<_, String>>()?;
+    Ok(Answered::Pair { certified, contact, local })
+}
+
+fn placed<const D: usize>(body: &BuiltBody<D>) -> Placed<'_, D> {
+    Placed::new(&body.shape_in_body, body.world_from_body)
 }

@@ -37,7 +37,7 @@ export default [
           (await import('/plane/toys.js')).toys.results.element?.certified.lower === lower, found.certified.lower));
         const words = ['descend', file, '--json', '--method', 'naive', '--triangle', ...corners.map((corner) => corner.join(','))];
         const core = JSON.parse(execFileSync(program, words, { encoding: 'utf8' }));
-        const { lower_m: lower, upper_m: upper } = core.certified;
+        const { lower, upper } = core.certified;
         check(found.certified.lower <= upper && lower <= found.certified.upper,
           `proven ${found.certified.lower} to ${found.certified.upper}, by the core ${lower} to ${upper}`);
       }
@@ -66,7 +66,8 @@ export default [
     check(fell.path.length > 50, `a path of ${fell.path.length} places`);
     for (const at of fell.path.filter((_, step) => step % 40 === 0)) {
       // The star's values are bounds: whether a ball touches is searched for.
-      const { touches } = await ask(page, { do: 'ball', centre: at, radius: 0.99 * fell.radius });
+      const question = { question: 'point', at, radius: 0.99 * fell.radius };
+      const { touches } = (await ask(page, { do: 'ask', question })).answer.ball;
       check(touches === false, `the ball at ${at}, ${fell.radius} m, is in the star: ${touches}`);
     }
     await context.close();
