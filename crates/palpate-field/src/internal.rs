@@ -7,5 +7,4 @@
 
 pub use crate::kernel::between::turn_y_towards;
 pub use crate::kernel::planar::parabola_foot::{Nearest, Quadratic};
-pub use crate::scalar::exponential::{log2_of_one_plus, power_of_half};
-pub use crate::scalar::power::cube_root;
+pub use crate::scalar::power::{cube_root, log2_of_one_plus, power_of_half};

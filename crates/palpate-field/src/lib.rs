@@ -50,9 +50,7 @@ pub mod operator;
 pub mod oracle;
 mod pose;
 mod promise;
-mod rotation_vector;
 pub mod scalar;
-mod screw;
 mod shape;
 mod strided;
 mod unknown_name;
@@ -60,8 +58,7 @@ mod vector;
 
 pub use bounds::{Aabb, BoundingBall, Bounds};
 pub use error::{LARGEST_LENGTH, Quantity, SMALLEST_LENGTH, ShapeError, ShapeErrorKind, Unit};
-pub use field::CustomField;
-pub use field::MAX_DEPTH;
+pub use field::{CustomField, MAX_DEPTH};
 pub use kernel::Kernel;
 pub use machine::{
     BLOCK, Block, Column, Gradients, InstructionSet, Lane, LaneArray, Lanes, ModelLanes, Wide,
@@ -69,9 +66,8 @@ pub use machine::{
 };
 pub use mass::{Mass, MassLimits};
 pub use node::Node;
-pub use pose::{Pose, Rotation};
+pub use pose::{Pose, Rotation, Screw};
 pub use promise::{Deviation, Promise, Quality, Rounding};
-pub use screw::Screw;
 pub use shape::Shape;
 pub use strided::{Layout, Strided, StridedMut};
 pub use unknown_name::UnknownName;

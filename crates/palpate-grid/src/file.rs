@@ -14,18 +14,15 @@ use std::path::{Path, PathBuf};
 
 use palpate_field::{Aabb, Deviation, LARGEST_LENGTH, Vector};
 
+use crate::bake::{GridOptions, each};
 use crate::certificate::Cells;
 use crate::error::GridError;
-use crate::far::Far;
-use crate::grid::{Compared, Grid, Known};
-use crate::lattice::{Lattice, indices, unravelled};
-use crate::options::GridOptions;
+use crate::grid::{Compared, Far, Grid, Known, Lattice, indices, unravelled};
 use crate::samples::{
     BRICK, Codes, FAR_INSIDE, Order, Samples, Store, WIDE, Window, strides, wide_brick,
     wide_node,
 };
 use crate::spline::{GridKernel, QUADRATIC, TRILINEAR};
-use crate::threads::each;
 
 /// What a file begins with: the name, and the version of the format.
 pub(crate) const MAGIC: [u8; 8] = *b"palpate\x01";

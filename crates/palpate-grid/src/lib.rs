@@ -25,40 +25,29 @@
 
 mod bake;
 mod blocks;
-#[cfg(feature = "files")]
-mod cache;
 mod certificate;
-mod control;
-mod curvature;
-mod deviation;
 mod error;
-mod far;
-mod field;
 #[cfg(feature = "files")]
 mod file;
 mod grid;
 mod instances;
-mod lattice;
-mod options;
-mod outside;
 mod samples;
 mod slopes;
 mod spline;
-mod threads;
 #[cfg(feature = "volumes")]
 mod volume;
 
 pub use bake::GridProgress;
+pub use bake::{GridOptions, Resolution};
 #[cfg(feature = "files")]
-pub use cache::{Found, GridCache};
+pub use blocks::{Found, GridCache};
 pub use error::GridError;
 #[cfg(feature = "files")]
 pub use file::{GridFileError, GridFileProblem, LARGEST_FILE};
 pub use grid::Grid;
+pub use grid::Lattice;
 #[doc(hidden)]
 pub use instances::instances;
-pub use lattice::Lattice;
-pub use options::{GridOptions, Resolution};
 pub use samples::Store;
 pub use spline::GridKernel;
 #[cfg(feature = "volumes")]

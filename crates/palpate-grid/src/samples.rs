@@ -5,7 +5,7 @@
 
 use palpate_field::Vector;
 
-use crate::lattice::{indices, raveled};
+use crate::grid::{indices, raveled};
 use crate::spline::{OfTaps, Spline, value, value_slope};
 
 /// Cells of a brick along an axis.

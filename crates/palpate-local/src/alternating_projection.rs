@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! Projections on two bodies in turns: memoir 3.3, after Liu et al. (2024).
+//! Local searches between two bodies.
 
-use palpate_field::Point;
-use palpate_query::{DistanceBound, Placed, QueryError};
+use palpate_field::{Point, Vector};
+use palpate_query::{DistanceBound, Element, Placed, QueryError, minimax_step};
 
 use crate::{Descent, check_start};
 
@@ -136,4 +136,295 @@ fn project<const D: usize>(
         }
     }
     here
+}
+
+/// What steps are multiplied by after one that leads down, and after one that does not.
+const GROW: f64 = 1.5;
+const SHRINK: f64 = 0.25;
+
+/// Goes where the larger of both tangent planes, plus a parabola, is least: along the
+/// gradient of the farther body, and between both where they are equally far.
+///
+/// One gradient at a time, as in the memoir's loop, leads to and fro across the ridge on
+/// which both values are equal, and on that ridge the minimum lies. Ends inside both
+/// bodies at their widest overlap, not at the first point in both.
+///
+/// An upper bound, without a proof: it finds the overlap next to its start, or none. As
+/// [`AlternatingProjection`](crate::AlternatingProjection)'s example, of two dents in
+/// which balls lie it finds the one it starts in:
+///
+/// ```
+/// use palpate_field::{Shape, Vector, kernel::Ball};
+/// use palpate_local::MinimaxProximal;
+/// use palpate_query::{Limits, PairWorkspace, separation};
+///
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let ball = |x: f64, y: f64| Shape::from_kernel(Ball::new(0.5)?).translated(Vector([x, y]));
+/// let below = Shape::union([ball(-2.0, 0.0)?, ball(2.0, 0.0)?])?;
+/// let above = Shape::union([ball(-2.0, 1.1)?, ball(2.0, 0.9)?])?;
+/// let found = MinimaxProximal::default().descend(&below, &above, Vector([-1.8, 0.4]), 1e-9)?;
+/// assert!((found.value - 0.05).abs() < 1e-8);
+/// let limits = Limits::new(1e-4);
+/// let proven = separation(&below, &above, &limits, &mut PairWorkspace::new())?;
+/// assert!((proven.upper + 0.1).abs() < 1e-4);
+/// let short = MinimaxProximal { steps: 1, ..MinimaxProximal::default() };
+/// assert_eq!(short.descend(&below, &above, Vector([-1.8, 0.4]), 1e-9)?.steps, 1);
+/// # Ok(())
+/// # }
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct MinimaxProximal {
+    /// Steps at most; 40.
+    pub steps: u32,
+}
+
+impl Default for MinimaxProximal {
+    fn default() -> Self {
+        Self { steps: 40 }
+    }
+}
+
+impl MinimaxProximal {
+    /// The search for the least of `max(g_a, g_b)` from `start` [m], until steps are
+    /// smaller than `tolerance` [m].
+    ///
+    /// # Errors
+    ///
+    /// If a coordinate is not finite or beyond 1e15 m, a pose is not finite, or the
+    /// tolerance is negative.
+    pub fn descend<'a, const D: usize>(
+        &self,
+        a: impl Into<Placed<'a, D>>,
+        b: impl Into<Placed<'a, D>>,
+        start: Point<D>,
+        tolerance: f64,
+    ) -> Result<Descent<D>, QueryError> {
+        check_start(start, tolerance)?;
+        let bodies = DistanceBound::of_both(a, b)?;
+        let slopes = |p: Point<D>| bodies.map(|body| body.distance_gradient(p));
+        let mut here = slopes(start);
+        let mut descent = Descent::from_start(start, here[0].0.max(here[1].0), 4);
+        let mut size = descent.value.abs().max(tolerance);
+        while descent.steps < self.steps && size >= tolerance && size > 0.0 {
+            descent.steps += 1;
+            let [(a, slope_a), (b, slope_b)] = here;
+            let next = descent.best - minimax_step([a, b], [slope_a, slope_b], size);
+            let there = slopes(next);
+            descent.evaluations += 4;
+            let value = there[0].0.max(there[1].0);
+            if value < descent.value {
+                descent.visit(next, value);
+                here = there;
+                size *= GROW;
+            } else {
+                size *= SHRINK;
+            }
+        }
+        Ok(descent)
+    }
+}
+
+/// Both values at a point, with their gradients.
+type Slopes<const D: usize> = [(f64, Vector<f64, D>); 2];
+
+/// The share of the promised descent that a step must keep (Armijo 1966).
+const KEPT: f64 = 0.1;
+
+/// Goes down the gradient of `A + B + |max(A, B)|` of the values A, B of both fields, with steps that
+/// are halved until they lead down by a tenth of what the gradient promises.
+///
+/// Where the bodies overlap, the sum is `min(A, B)`: how deep the surface of one body lies in the other,
+/// whose least value is on the surface of the overlap and not where both are deepest. So a last
+/// step leads down the larger of both values. The answer, as published, is that value at the last point,
+/// which need not be the lowest on the way.
+///
+/// Factors of a gradient, whose length is up to 3, begin at 1 m and end at 0.1 mm: whatever the size of the
+/// bodies, the first steps that are tried are metres long, and places are known to a tenth of a millimetre.
+///
+/// `MuJoCo` starts 40 descents at the points of [`halton_starts`](crate::halton_starts) and keeps those
+/// that end in both bodies.
+///
+/// An upper bound, without a proof, as [`MinimaxProximal`](crate::MinimaxProximal):
+///
+/// ```
+/// use palpate_field::{Pose, Shape, Vector};
+/// use palpate_local::{SumDescent, halton_starts};
+/// use palpate_query::Placed;
+///
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let ball = Shape::<3>::ball(0.5)?;
+/// let there = Placed::new(&ball, Pose::translation([0.9, 0.0, 0.0]));
+/// let descents = halton_starts(&ball, there, 40)
+///     .into_iter()
+///     .map(|start| SumDescent::default().descend(&ball, there, start, 0.0));
+/// let values = descents.map(|found| found.map(|found| found.value));
+/// let least = values.collect::<Result<Vec<_>, _>>()?.into_iter().fold(f64::INFINITY, f64::min);
+/// // A point in both, but not the deepest: in the middle both are 0.05 m deep.
+/// assert!(least < 0.0 && least > -0.049);
+/// # Ok(())
+/// # }
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SumDescent {
+    /// Steps at most; 10, as `MuJoCo`'s `sdf_iterations`.
+    pub steps: u32,
+    /// The first factor of a gradient that is tried; 1.
+    pub largest: f64,
+    /// Factors are halved until they are at most this; 1e-4.
+    pub smallest: f64,
+}
+
+impl Default for SumDescent {
+    fn default() -> Self {
+        Self { steps: 10, largest: 1.0, smallest: 1e-4 }
+    }
+}
+
+impl<const D: usize> Descent<D> {
+    /// Goes on to a point, which is the answer so far.
+    fn take(&mut self, p: Point<D>, value: f64, evaluations: u32) {
+        self.path.push(p);
+        (self.best, self.value) = (p, value);
+        self.evaluations += evaluations;
+        self.steps += 1;
+    }
+}
+
+impl SumDescent {
+    /// How many starts `MuJoCo` tries, its `sdf_initpoints`.
+    pub const STARTS: u32 = 40;
+
+    /// The descent from `start` [m], until a step is shorter than `tolerance` [m] or leads up.
+    ///
+    /// # Errors
+    ///
+    /// If a coordinate is not finite or beyond 1e15 m, a pose is not finite, or the tolerance is
+    /// negative.
+    pub fn descend<'a, const D: usize>(
+        &self,
+        a: impl Into<Placed<'a, D>>,
+        b: impl Into<Placed<'a, D>>,
+        start: Point<D>,
+        tolerance: f64,
+    ) -> Result<Descent<D>, QueryError> {
+        check_start(start, tolerance)?;
+        let bodies = DistanceBound::of_both(a, b)?;
+        let slopes = |p: Point<D>| bodies.map(|body| body.distance_gradient(p));
+        let larger = |[(a, _), (b, _)]: [(f64, _); 2]| a.max(b);
+        let sum = |[(a, _), (b, _)]: [(f64, _); 2]| a + b + a.max(b).abs();
+        let mut p = start;
+        let mut here = slopes(p);
+        let mut descent = Descent::from_start(start, larger(here), 4);
+        // Halved until it leads down; at last it may lead up.
+        let step = |p: Point<D>,
+                    gradient: Vector<f64, D>,
+                    promised: &dyn Fn(Slopes<D>, f64) -> bool| {
+            let (mut factor, mut evaluations) = (self.largest, 0);
+            loop {
+                let next = p - gradient * factor;
+                let there = slopes(next);
+                evaluations += 4;
+                if promised(there, factor) || factor <= self.smallest {
+                    return (next, there, factor, evaluations);
+                }
+                factor *= 0.5;
+            }
+        };
+        while descent.steps < self.steps {
+            let [(a, slope_a), (b, slope_b)] = here;
+            let (greater, its_slope) = if a > b { (a, slope_a) } else { (b, slope_b) };
+            let gradient = slope_a + slope_b + its_slope * greater.signum();
+            let squared = gradient.dot(gradient);
+            let before = sum(here);
+            let leads_down =
+                |there, factor: f64| sum(there) - before <= -KEPT * factor * squared;
+            let (next, there, factor, evaluations) = step(p, gradient, &leads_down);
+            (p, here) = (next, there);
+            descent.take(p, larger(here), evaluations);
+            if sum(here) >= before || factor * squared.sqrt() <= tolerance {
+                break;
+            }
+        }
+        let before = larger(here);
+        let [(a, slope_a), (b, slope_b)] = here;
+        let gradient = if a > b { slope_a } else { slope_b };
+        let squared = gradient.dot(gradient);
+        let leads_down =
+            |there, factor: f64| larger(there) - before <= -KEPT * factor * squared;
+        let (next, there, _, evaluations) = step(p, gradient, &leads_down);
+        descent.take(next, larger(there), evaluations);
+        Ok(descent)
+    }
+}
+
+/// The point of the element that is nearest to `p` [m].
+///
+/// Of a triangle, the foot of the perpendicular on its plane, whose weights v and w of the edges
+/// e₁, e₂ from the first vertex solve `eᵢ·(v·e₁ + w·e₂) = eᵢ·(p − a)`; where a weight is
+/// negative, or the triangle has no area, the nearest point of its edges.
+pub(crate) fn nearest<const N: usize, const D: usize>(
+    element: &Element<N, D>,
+    p: Point<D>,
+) -> Point<D> {
+    let vertices = element.vertices();
+    if N == 3
+        && let Some(foot) = foot(vertices[0], [vertices[1], vertices[N - 1]], p)
+    {
+        return foot;
+    }
+    let mut nearest = vertices[0];
+    for i in 0..N {
+        let on_edge = on_segment(vertices[i], vertices[(i + 1) % N], p);
+        if (on_edge - p).norm() < (nearest - p).norm() {
+            nearest = on_edge;
+        }
+    }
+    nearest
+}
+
+/// The foot of the perpendicular from `p`, if it lies in the triangle.
+fn foot<const D: usize>(a: Point<D>, ends: [Point<D>; 2], p: Point<D>) -> Option<Point<D>> {
+    let [first, second] = ends.map(|end| end - a);
+    let (side, away) = (first.dot(second), p - a);
+    let [squared, other] = [first.dot(first), second.dot(second)];
+    let [along, across] = [first.dot(away), second.dot(away)];
+    let area = squared * other - side * side;
+    let v = (other * along - side * across) / area;
+    let w = (squared * across - side * along) / area;
+    // Written so that NaN, of a triangle without area, is refused.
+    (v >= 0.0 && w >= 0.0 && v + w <= 1.0).then(|| a + first * v + second * w)
+}
+
+fn on_segment<const D: usize>(a: Point<D>, b: Point<D>, p: Point<D>) -> Point<D> {
+    let along: Vector<f64, D> = b - a;
+    let squared = along.dot(along);
+    let share = if squared > 0.0 { along.dot(p - a) / squared } else { 0.0 };
+    a + along * share.clamp(0.0, 1.0)
+}
+
+#[cfg(test)]
+mod nearest_tests {
+    use super::*;
+
+    #[test]
+    fn points_come_to_the_face_an_edge_or_a_corner() -> Result<(), Box<dyn std::error::Error>> {
+        // In the plane z = 2, with a right angle at its first corner.
+        let corners =
+            [Vector([1.0, 1.0, 2.0]), Vector([5.0, 1.0, 2.0]), Vector([1.0, 3.0, 2.0])];
+        let triangle = Element::new(corners)?;
+        for (p, expected) in [
+            ([2.0, 1.5, -7.0], [2.0, 1.5, 2.0]), // above the face
+            ([3.0, -1.0, 2.0], [3.0, 1.0, 2.0]), // beside an edge
+            ([0.0, -9.0, 4.0], [1.0, 1.0, 2.0]), // past a corner
+            ([4.0, 4.0, 2.0], [3.0, 2.0, 2.0]),  // beside the longest edge
+        ] {
+            assert!((nearest(&triangle, Vector(p)) - Vector(expected)).norm() < 1e-15, "{p:?}");
+        }
+        let line = Element::new([corners[0], corners[1], corners[1]])?;
+        assert_eq!(nearest(&line, Vector([2.0, 9.0, 9.0])), Vector([2.0, 1.0, 2.0]));
+        let segment = Element::new([Vector([0.0, 0.0]), Vector([4.0, 0.0])])?;
+        assert_eq!(nearest(&segment, Vector([3.0, 2.0])), Vector([3.0, 0.0]));
+        assert_eq!(nearest(&segment, Vector([-3.0, 2.0])), Vector([0.0, 0.0]));
+        Ok(())
+    }
 }

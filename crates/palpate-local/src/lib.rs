@@ -55,19 +55,10 @@
 mod named;
 
 mod alternating_projection;
-mod frank_wolfe;
-mod golden_section;
 mod gradient;
-mod halton;
 mod instances;
-mod macklin;
-mod minimax_proximal;
 mod naive;
-mod nearest;
-mod oscillation;
 mod projected_gradient;
-mod section;
-mod sum_descent;
 mod sweep;
 mod weights;
 
@@ -77,21 +68,18 @@ use palpate_field::{Point, Shape};
 use palpate_query::{Element, Placed, QueryError};
 
 pub use alternating_projection::AlternatingProjection;
-pub use frank_wolfe::FrankWolfe;
-pub use golden_section::GoldenSection;
+pub use alternating_projection::{MinimaxProximal, SumDescent};
 pub use gradient::{
     FoundDirection, GradientMethod, GradientSampler, adaptive_offset, angle_between,
     central_differences, closest_vector, dichotomy,
 };
-pub use halton::halton_starts;
 #[doc(hidden)]
 pub use instances::instances;
-pub use macklin::MacklinDescent;
-pub use minimax_proximal::MinimaxProximal;
 pub use naive::NaiveDescent;
-pub use projected_gradient::ProjectedGradient;
-pub use sum_descent::SumDescent;
+pub use projected_gradient::{FrankWolfe, GoldenSection};
+pub use projected_gradient::{MacklinDescent, ProjectedGradient};
 pub use sweep::{LocalSweep, LocalTouch, SampledSweep, SpaceTimeGoldenSection};
+pub use weights::halton_starts;
 pub use weights::{Weights, WeightsError};
 
 /// What a local search found, and how it came there.

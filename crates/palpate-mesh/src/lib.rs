@@ -25,12 +25,9 @@
 //! ```
 #![cfg_attr(test, allow(clippy::float_cmp, reason = "tests compare exact numbers"))]
 
-mod ball;
 mod contour;
-mod error;
 mod instances;
 mod mesh;
-mod polygon;
 #[cfg(feature = "files")]
 mod read;
 mod report;
@@ -39,15 +36,14 @@ mod tree;
 #[cfg(feature = "files")]
 mod write;
 
-pub use ball::{centre_weights, circumscribed_ball, smallest_ball};
 pub use contour::{ContourError, ContourOptions, FitProgress, FittedMesh};
-pub use error::MeshError;
 #[doc(hidden)]
 pub use instances::instances;
-pub use mesh::{Mesh, Outline, TriangleMesh};
-pub use polygon::MOST_CORNERS;
+pub use mesh::MeshError;
+pub use mesh::{MOST_CORNERS, Mesh, Outline, TriangleMesh};
 #[cfg(feature = "files")]
 pub use read::{Format, LARGEST_FILE, ReadError, ReadProblem, read, read_file};
 pub use report::Report;
 pub use solid::{Findings, MeshSheet, Opening, Solid, SolidError};
 pub use tree::{BallTree, FAN, Level};
+pub use tree::{centre_weights, circumscribed_ball, smallest_ball};

@@ -9,8 +9,7 @@ use std::io::{self, Write};
 use gltf::binary::{Glb, Header};
 use palpate_field::{Point, Vector};
 
-use crate::error::MeshError;
-use crate::mesh::{TriangleMesh, single};
+use crate::mesh::{MeshError, TriangleMesh, single};
 use crate::read::Format;
 
 impl TriangleMesh {

@@ -1,18 +1,15 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! Draws the bodies of a scene.
+//! Bodies of a picture.
 
-use crate::body::DrawnBody;
 use crate::drawing::{Drawing, Path, Stroke, TextPaint};
-use crate::frame::Frame;
 use crate::geometry::{Point, Rect, is_within};
-use crate::hatch::Hatching;
-use crate::labels::Occupied;
-use crate::legend::{Entry, Key};
+use crate::labels::{Hatching, Occupied};
+use crate::legend::{Entry, Frame, Key};
 use crate::names::Name;
-use crate::nearest::Nearest;
-use crate::overlay::Dash;
+use crate::outline::SurfaceLines;
+use crate::overlay::{Dash, Nearest};
 use crate::palette::{Color, Side};
 use crate::picture::surface_stroke;
 
@@ -291,4 +288,41 @@ fn listed(names: &[String]) -> String {
         return names.join(", ");
     }
     format!("{} and {} more", names[..LISTED].join(", "), count - LISTED)
+}
+
+/// A body with its surface, to be drawn in a colour of its own.
+///
+/// # Examples
+///
+/// ```
+/// use palpate_plot::{DrawnBody, SurfaceLines};
+///
+/// # let outline = SurfaceLines::default();
+/// let cup = DrawnBody::new("cup", outline).with_note("glass");
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+pub struct DrawnBody {
+    pub(crate) name: String,
+    pub(crate) note: String,
+    pub(crate) outline: SurfaceLines,
+}
+
+impl DrawnBody {
+    /// The body `name`, with its surface in the window of the picture.
+    #[must_use]
+    pub fn new(name: impl Into<String>, outline: SurfaceLines) -> Self {
+        Self { name: name.into(), note: String::new(), outline }
+    }
+
+    /// With a few words that stand below its name, such as its material.
+    #[must_use]
+    pub fn with_note(self, note: impl Into<String>) -> Self {
+        Self { note: note.into(), ..self }
+    }
+
+    /// Its name, with the note.
+    pub(crate) fn in_words(&self) -> String {
+        let Self { name, note, .. } = self;
+        if note.is_empty() { name.clone() } else { format!("{name} ({note})") }
+    }
 }

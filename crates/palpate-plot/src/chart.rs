@@ -1,16 +1,17 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! Line charts: a quantity over time, or over any other quantity.
+//! Charts: axes and layers.
 
-use crate::axis::{Axis, BELOW};
-use crate::drawing::{Drawing, Path, Stroke, TextStyle};
+use crate::drawing::{Drawing, Path, Stroke, TextPaint, TextStyle};
 use crate::error::{PlotError, finite_points};
 use crate::geometry::{Point, Rect, distance};
-use crate::legend::{self, Entry, Key};
+use crate::legend::{self, Entry, Key, Symbol, draw_arrow};
 use crate::overlay::Dash;
 use crate::palette::Color;
-use crate::text::{Anchor, CAP_HEIGHT, shorten};
+use crate::png;
+use crate::scale::{multiples, round_up, write};
+use crate::text::{Anchor, CAP_HEIGHT, Text, Weight, shorten};
 
 /// Height of a chart's plot [px].
 const HEIGHT: f64 = 210.0;
@@ -278,6 +279,257 @@ fn thin(pixels: &[Point]) -> Vec<Point> {
     thinned
 }
 
+/// Length of a tick [px].
+const TICK: f64 = 4.0;
+/// The least distance of labels from the edge of the picture [px]; closer ones are left out.
+const EDGE: f64 = 4.0;
+/// Space between tick, label and axis name [px].
+const GAP: f64 = 6.0;
+/// Height below a plot taken by ticks, tick labels and the axis name [px].
+pub(crate) const BELOW: f64 = TICK + GAP + 12.0 + 6.0 + 13.0;
+
+/// An axis of a plot: a range of numbers along one side of a rectangle.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Axis {
+    pub(crate) name: String,
+    /// Number at the left or lower end.
+    pub(crate) start: f64,
+    /// Number at the right or upper end; below `start` if the axis runs backwards.
+    pub(crate) end: f64,
+    step: f64,
+    /// Ticks, within the range.
+    pub(crate) ticks: Vec<f64>,
+}
+
+impl Axis {
+    /// An axis with round ticks about `spacing` apart on a side of `length`, both [px].
+    pub(crate) fn new(name: &str, [start, end]: [f64; 2], length: f64, spacing: f64) -> Self {
+        let (low, high) = (start.min(end), start.max(end));
+        let step = round_up((high - low) / (length / spacing).max(1.5));
+        let ticks = multiples(low, high, step, 100);
+        Self { name: name.to_owned(), start, end, step, ticks }
+    }
+
+    /// The same axis with another name.
+    pub(crate) fn named(&self, name: &str) -> Self {
+        Self { name: name.to_owned(), ..self.clone() }
+    }
+
+    /// The place of `value` between start (0) and end (1).
+    pub(crate) fn fraction(&self, value: f64) -> f64 {
+        (value - self.start) / (self.end - self.start)
+    }
+
+    fn label(&self, tick: f64) -> String {
+        write(tick, self.step)
+    }
+
+    fn widest_label(&self) -> f64 {
+        let widths = self.ticks.iter().map(|&t| TextStyle::TICK.width(&self.label(t)));
+        widths.fold(0.0, f64::max)
+    }
+
+    /// Room that the axis needs at the left of a plot [px].
+    pub(crate) fn gutter(&self) -> f64 {
+        TextStyle::AXIS.size + GAP + self.widest_label() + GAP + TICK
+    }
+
+    /// Draws ticks, labels and name below `plot`.
+    pub(crate) fn draw_below(&self, drawing: &mut Drawing, plot: &Rect) {
+        let mut ticks = Path::default();
+        let style = TextStyle::TICK;
+        let baseline = plot.max[1] + TICK + GAP + CAP_HEIGHT * style.size;
+        let room = plot.width() / (self.ticks.len().max(2) - 1) as f64;
+        // Labels that would touch are thinned, keeping the first.
+        let every = ((self.widest_label() + 8.0) / room).ceil().max(1.0) as usize;
+        for (i, &tick) in self.ticks.iter().enumerate() {
+            let x = plot.min[0] + self.fraction(tick) * plot.width();
+            ticks.add_line(&[[x, plot.max[1]], [x, plot.max[1] + TICK]]);
+            let label = self.label(tick);
+            let half = style.width(&label) / 2.0 + EDGE;
+            let is_inside = half <= x && x <= drawing.width - half;
+            if i % every == 0 && is_inside {
+                drawing.label(&label, [x, baseline], Anchor::Middle, style);
+            }
+        }
+        drawing.stroke(ticks, Stroke::new(Color::MUTED, 1.0));
+        let at = [(plot.min[0] + plot.max[0]) / 2.0, plot.max[1] + BELOW];
+        drawing.label(&self.name, at, Anchor::Middle, TextStyle::AXIS);
+    }
+
+    /// Draws ticks, labels and name at the left of `plot`, the name at `left` [px].
+    pub(crate) fn draw_left(&self, drawing: &mut Drawing, plot: &Rect, left: f64) {
+        let mut ticks = Path::default();
+        let style = TextStyle::TICK;
+        for &tick in &self.ticks {
+            let y = plot.max[1] - self.fraction(tick) * plot.height();
+            ticks.add_line(&[[plot.min[0] - TICK, y], [plot.min[0], y]]);
+            let at = [plot.min[0] - TICK - GAP, y + CAP_HEIGHT * style.size / 2.0];
+            drawing.label(&self.label(tick), at, Anchor::End, style);
+        }
+        drawing.stroke(ticks, Stroke::new(Color::MUTED, 1.0));
+        let TextStyle { size, color, .. } = TextStyle::AXIS;
+        let text = Text {
+            text: &self.name,
+            at: [left + CAP_HEIGHT * size, (plot.min[1] + plot.max[1]) / 2.0],
+            size,
+            weight: Weight::Regular,
+            anchor: Anchor::Middle,
+            angle: -std::f64::consts::FRAC_PI_2,
+        };
+        drawing.text(&text, TextPaint { color, halo: None });
+    }
+}
+
+/// The height of a picture in whose pixels texts have their usual size.
+const USUAL_HEIGHT: f64 = 700.0;
+
+/// Between legend and border, at the usual height [px].
+const BORDER: f64 = 14.0;
+
+/// A legend, points and arrows, to be laid over a picture of pixels that was made elsewhere.
+///
+/// Places are in pixels from the left and upper edge of the picture.
+///
+/// # Examples
+///
+/// ```
+/// use palpate_plot::{Color, PixelLayer};
+///
+/// let layer = PixelLayer::new(320, 240).with_entry(Color::GREEN, "ball");
+/// let pixels = layer.pixels()?;
+/// assert_eq!(pixels.len(), 320 * 240);
+/// assert_eq!(pixels[0], [0, 0, 0, 0]); // nothing is drawn here
+/// assert_eq!(layer.legend_height(), 240.0 / 700.0 * 50.0);
+/// let pixels = layer.with_band(Color::rgb(255, 255, 255)).pixels()?;
+/// assert_eq!((pixels[0], pixels[320 * 239]), ([0, 0, 0, 0], [255, 255, 255, 255]));
+/// # Ok::<(), palpate_plot::PlotError>(())
+/// ```
+#[derive(Debug, Clone)]
+pub struct PixelLayer {
+    size: [u32; 2],
+    band: Option<Color>,
+    entries: Vec<Entry>,
+    points: Vec<([f64; 2], Color)>,
+    arrows: Vec<([[f64; 2]; 2], Color)>,
+}
+
+impl PixelLayer {
+    /// Nothing yet, over a picture of this size [px].
+    #[must_use]
+    pub fn new(width: u32, height: u32) -> Self {
+        let size = [width, height];
+        let (entries, points, arrows) = (Vec::new(), Vec::new(), Vec::new());
+        Self { size, band: None, entries, points, arrows }
+    }
+
+    /// With an entry of the legend: a colour and what has it.
+    #[must_use]
+    pub fn with_entry(mut self, color: Color, text: impl Into<String>) -> Self {
+        self.entries.push(Entry::new(Key::Swatch(color), text));
+        self
+    }
+
+    /// With the legend on a band of this colour, as wide as the picture, which hides what is below.
+    #[must_use]
+    pub fn with_band(self, color: Color) -> Self {
+        Self { band: Some(color), ..self }
+    }
+
+    /// With words in the legend.
+    #[must_use]
+    pub fn with_words(mut self, text: impl Into<String>) -> Self {
+        self.entries.push(Entry::new(Key::None, text));
+        self
+    }
+
+    /// With points, which the legend calls `name`.
+    ///
+    /// # Errors
+    ///
+    /// [`PlotError::Point`].
+    pub fn with_points(
+        mut self,
+        name: &str,
+        color: Color,
+        points: Vec<[f64; 2]>,
+    ) -> Result<Self, PlotError> {
+        finite_points(name, &points)?;
+        self.entries.push(Entry::new(Key::Point(Symbol::Disc, color), name));
+        self.points.extend(points.into_iter().map(|point| (point, color)));
+        Ok(self)
+    }
+
+    /// With arrows from tails to tips, which the legend calls `name`.
+    ///
+    /// # Errors
+    ///
+    /// [`PlotError::Point`].
+    pub fn with_arrows(
+        mut self,
+        name: &str,
+        color: Color,
+        arrows: Vec<[[f64; 2]; 2]>,
+    ) -> Result<Self, PlotError> {
+        finite_points(name, arrows.as_flattened())?;
+        self.entries.push(Entry::new(Key::Arrow(color, 24.0), name));
+        self.arrows.extend(arrows.into_iter().map(|arrow| (arrow, color)));
+        Ok(self)
+    }
+
+    /// The height of the legend below a picture, with borders [px].
+    #[must_use]
+    pub fn legend_height(&self) -> f64 {
+        if self.entries.is_empty() { 0.0 } else { self.scale() * (self.rows() + 2.0 * BORDER) }
+    }
+
+    /// Pixels for each of the drawing.
+    fn scale(&self) -> f64 {
+        f64::from(self.size[1]) / USUAL_HEIGHT
+    }
+
+    /// The width of the legend, in the drawing.
+    fn room(&self) -> f64 {
+        f64::from(self.size[0]) / self.scale() - 2.0 * BORDER
+    }
+
+    /// The height of the rows of the legend, in the drawing.
+    fn rows(&self) -> f64 {
+        legend::draw(&mut Drawing::default(), &self.entries, [0.0; 2], self.room())
+    }
+
+    /// Red, green, blue and opacity of each pixel, row by row from the upper left.
+    ///
+    /// # Errors
+    ///
+    /// [`PlotError::PictureSize`] if there are no pixels.
+    pub fn pixels(&self) -> Result<Vec<[u8; 4]>, PlotError> {
+        let scale = self.scale();
+        let [width, height] = self.size.map(|side| f64::from(side) / scale);
+        let mut drawing = Drawing { width, height, ..Drawing::default() };
+        let place = |point: [f64; 2]| point.map(|x| x / scale);
+        for ([tail, tip], color) in &self.arrows {
+            draw_arrow(&mut drawing, place(*tail), place(*tip), *color);
+        }
+        for (point, color) in &self.points {
+            Symbol::Disc.draw(&mut drawing, place(*point), *color);
+        }
+        let below = self.legend_height() / scale;
+        if let Some(color) = self.band {
+            let band = Rect::new(0.0, height - below, width, below);
+            drawing.fill(Path::rect(&band), color);
+        }
+        let corner = [BORDER, height - BORDER - self.rows()];
+        legend::draw(&mut drawing, &self.entries, corner, self.room());
+        png::transparent(&drawing, self.size, scale).ok_or(PlotError::PictureSize {
+            width: self.size[0],
+            height: f64::from(self.size[1]),
+            min: 1,
+            max: png::MAX_SIDE,
+        })
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -299,5 +551,19 @@ mod tests {
         assert_eq!(widened(0.0, 0.0, 0.1), [-1.0, 1.0]);
         assert_eq!(widened(-4.0, -4.0, 0.1), [-6.0, -2.0]);
         assert_eq!(widened(0.0, 10.0, 0.5), [-5.0, 15.0]);
+    }
+}
+
+#[cfg(test)]
+mod axis_tests {
+    use super::*;
+
+    #[test]
+    fn ticks_are_round_and_within_the_range() {
+        let axis = Axis::new("x [m]", [-0.13, 0.21], 700.0, 90.0);
+        assert_eq!(axis.ticks, [-0.1, -0.05, 0.0, 0.05, 0.1, 0.15, 0.2]);
+        let backwards = Axis::new("z [m]", [1.0, -1.0], 300.0, 90.0);
+        assert_eq!(backwards.ticks, [-1.0, 0.0, 1.0]);
+        assert_eq!(backwards.fraction(1.0), 0.0);
     }
 }

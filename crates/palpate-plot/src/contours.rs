@@ -6,7 +6,7 @@
 use contour::ContourBuilder;
 
 use crate::geometry::Point;
-use crate::sampling::Samples;
+use crate::slice::Samples;
 
 /// Closed rings around the points where a field is at least `level` [m].
 ///
@@ -28,8 +28,7 @@ pub(crate) fn rings(samples: &Samples, level: f64) -> Vec<Vec<Point>> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::sampling::Sampling;
-    use crate::view::PlaneView;
+    use crate::slice::{PlaneView, Sampling};
 
     fn disc(radius: f64, scale: f64) -> (Samples, Vec<Vec<Point>>) {
         let view = PlaneView::new([0.1 * scale, 0.0], 3.0 * scale, 2.5 * scale).unwrap();

@@ -5,10 +5,10 @@
 
 use crate::drawing::{Drawing, Path, Stroke};
 use crate::error::{PlotError, finite_points};
-use crate::frame::Frame;
 use crate::geometry::{Point, clip_line, clip_segment, distance};
 use crate::isolines::Isolines;
 use crate::labels::{Occupied, place_along, place_at_point};
+use crate::legend::Frame;
 use crate::overlay::Overlay;
 use crate::palette::Color;
 use crate::text::Text;

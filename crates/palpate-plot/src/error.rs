@@ -3,7 +3,7 @@
 
 //! The errors of figures.
 
-use crate::view::{MAX_ASPECT, MAX_SIZE, MIN_SIZE};
+use crate::slice::{MAX_ASPECT, MAX_SIZE, MIN_SIZE};
 
 /// Why a figure cannot be made. Every variant carries the offending numbers.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]

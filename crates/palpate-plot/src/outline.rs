@@ -5,7 +5,7 @@
 
 use crate::contours::rings;
 use crate::geometry::{Point, Rect, clip_ring};
-use crate::sampling::Samples;
+use crate::slice::Samples;
 
 /// The surface of a field in a window, as lines in plane coordinates.
 ///

@@ -5,13 +5,12 @@
 
 use crate::dimension::DimensionLine;
 use crate::drawing::{Drawing, Path, Stroke, TextPaint};
-use crate::frame::{Frame, TOLERANCE};
 use crate::geometry::{Point, clip_line, clip_segment, distance, simplify};
 use crate::labels::{Occupied, place_at_point};
-use crate::legend::{Entry, Key, Symbol, draw_arrow};
-use crate::numbers::{round_down, write};
+use crate::legend::{Entry, Frame, Key, Symbol, TOLERANCE, draw_arrow};
 use crate::overlay::{Arrows, Dash, Markers, Overlay, Polyline};
 use crate::palette::Color;
+use crate::scale::{round_down, write};
 use crate::text::Text;
 
 /// Longest arrow of a figure [px].

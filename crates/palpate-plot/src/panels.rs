@@ -3,8 +3,7 @@
 
 //! Small charts beside each other, with shared axes.
 
-use crate::axis::{Axis, BELOW};
-use crate::chart::{Chart, axis_of};
+use crate::chart::{Axis, BELOW, Chart, axis_of};
 use crate::drawing::{Drawing, TextPaint, TextStyle};
 use crate::geometry::{Point, Rect};
 use crate::legend::{self, Entry, Key};

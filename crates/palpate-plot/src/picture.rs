@@ -6,14 +6,13 @@
 use crate::body_picture::Bodies;
 use crate::contours::rings;
 use crate::drawing::{Drawing, Path, Stroke, TextPaint, TextStyle};
-use crate::frame::Frame;
 use crate::geometry::{Point, Rect};
 use crate::labels::{self, Occupied};
-use crate::levels::Levels;
-use crate::numbers::{round_down, write, write_length};
+use crate::legend::Frame;
 use crate::outline::SurfaceLines;
 use crate::palette::{self, Color, Side};
-use crate::sampling::Samples;
+use crate::scale::{Levels, round_down, write, write_length};
+use crate::slice::Samples;
 use crate::text::Anchor;
 
 /// Rings smaller than this are not drawn [px]: specks where a field just reaches a level. The

@@ -7,8 +7,8 @@ use crate::drawing::{Drawing, Path, Stroke, TextStyle};
 use crate::geometry::Rect;
 use crate::isolines::{ABOVE_LEGEND, Isolines};
 use crate::legend::{self, Entry, Key};
-use crate::numbers::{round_down, write_length};
 use crate::palette::Color;
+use crate::scale::{round_down, write_length};
 use crate::text::{Anchor, CAP_HEIGHT, shorten};
 
 /// Above the first names [px].

@@ -1,9 +1,10 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! Planes in space, and the way a picture looks at them.
+//! Slices of space, and their samples.
 
 use crate::error::{PlotError, finite};
+use crate::geometry::Point;
 
 /// A plane in space with coordinates `(s, t)` \[m\]: `s` to the right, `t` up in the picture.
 ///
@@ -333,6 +334,279 @@ fn unit(v: [f64; 3]) -> Option<[f64; 3]> {
     Some(v.map(|x| x / length))
 }
 
+/// Shortest side of a window [m]. Below a nanometre there is nothing to touch.
+pub(crate) const MIN_SIZE: f64 = 1e-9;
+/// Longest side of a window [m].
+pub(crate) const MAX_SIZE: f64 = 1e9;
+/// Largest ratio of the sides: a sliver has no room for its labels.
+pub(crate) const MAX_ASPECT: f64 = 20.0;
+/// Largest ratio of a window's distance from the origin to its size: neighbours of 400 cells
+/// then still differ by thousands of roundings.
+const MAX_DISTANCE: f64 = 1e9;
+
+/// A window of a [`Slice`]: centre, width and height in plane coordinates \[m\].
+///
+/// # Examples
+///
+/// ```
+/// use palpate_plot::PlaneView;
+///
+/// let view = PlaneView::new([0.1, 0.0], 0.4, 0.3)?;
+/// assert_eq!((view.min(), view.max()), ([-0.1, -0.15], [0.30000000000000004, 0.15]));
+///
+/// let error = PlaneView::new([0.0, 0.0], -0.2, 0.3).unwrap_err();
+/// assert_eq!(error.to_string(), "view width must be between 1e-9 m and 1e9 m, got -0.2 m");
+/// # Ok::<(), palpate_plot::PlotError>(())
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PlaneView {
+    center: [f64; 2],
+    size: [f64; 2],
+}
+
+impl PlaneView {
+    /// The window of `width` by `height` \[m\] around `center`.
+    ///
+    /// # Errors
+    ///
+    /// [`PlotError::NotFinite`] for the centre, [`PlotError::ViewSize`] for a side outside
+    /// 1e-9 m to 1e9 m, [`PlotError::ViewAspect`] for sides that differ more than 20 times,
+    /// [`PlotError::ViewFar`] for a centre over 1e9 times the shorter side away.
+    pub fn new(center: [f64; 2], width: f64, height: f64) -> Result<Self, PlotError> {
+        for x in center {
+            finite("the centre of a view", x)?;
+        }
+        for (side, size) in [("width", width), ("height", height)] {
+            if !(MIN_SIZE..=MAX_SIZE).contains(&size) {
+                return Err(PlotError::ViewSize { side, size });
+            }
+        }
+        let shorter = width.min(height);
+        if width.max(height) > MAX_ASPECT * shorter {
+            return Err(PlotError::ViewAspect { width, height });
+        }
+        if center.iter().any(|x| x.abs() > MAX_DISTANCE * shorter) {
+            return Err(PlotError::ViewFar { center, size: shorter });
+        }
+        Ok(Self { center, size: [width, height] })
+    }
+
+    /// The window around the box from `min` to `max` in plane coordinates \[m\], with `margin`
+    /// times its longer side added on each side.
+    ///
+    /// A flat box is widened to a quarter of its length.
+    ///
+    /// # Errors
+    ///
+    /// As [`new`](Self::new), of the window with its margin. A box whose `max` is below its
+    /// `min`, or a single point, is [`PlotError::ViewSize`].
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use palpate_plot::PlaneView;
+    ///
+    /// let view = PlaneView::from_bounds([0.0, 0.0], [2.0, 1.0], 0.25)?;
+    /// assert_eq!((view.center(), view.width(), view.height()), ([1.0, 0.5], 3.0, 2.0));
+    /// # Ok::<(), palpate_plot::PlotError>(())
+    /// ```
+    pub fn from_bounds(min: [f64; 2], max: [f64; 2], margin: f64) -> Result<Self, PlotError> {
+        let [width, height] = [max[0] - min[0], max[1] - min[1]];
+        let longer = width.max(height);
+        let side = |size: f64| {
+            if size >= 0.0 { size.max(longer / 4.0) + 2.0 * margin * longer } else { size }
+        };
+        let center = [0, 1].map(|i| min[i] / 2.0 + max[i] / 2.0);
+        Self::new(center, side(width), side(height))
+    }
+
+    /// The window of `slice` that shows the projection of the box from `min` to `max` in space
+    /// \[m\], with `margin` times its longer side added on each side.
+    ///
+    /// # Errors
+    ///
+    /// As [`from_bounds`](Self::from_bounds).
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use palpate_plot::{Slice, PlaneView};
+    ///
+    /// let view = PlaneView::of_box(&Slice::xz(0.0)?, [0.0; 3], [2.0, 9.0, 1.0], 0.0)?;
+    /// assert_eq!(view.center(), [1.0, -0.5]); // seen from above, z runs down the page
+    /// # Ok::<(), palpate_plot::PlotError>(())
+    /// ```
+    pub fn of_box(
+        slice: &Slice,
+        min: [f64; 3],
+        max: [f64; 3],
+        margin: f64,
+    ) -> Result<Self, PlotError> {
+        for x in min.into_iter().chain(max) {
+            finite("a corner of a box", x)?;
+        }
+        let mut low = [f64::INFINITY; 2];
+        let mut high = [f64::NEG_INFINITY; 2];
+        for corner in 0..8 {
+            let at = |i: usize| if corner >> i & 1 == 0 { min[i] } else { max[i] };
+            let p = slice.project([at(0), at(1), at(2)]);
+            for i in 0..2 {
+                low[i] = low[i].min(p[i]);
+                high[i] = high[i].max(p[i]);
+            }
+        }
+        Self::from_bounds(low, high, margin)
+    }
+
+    /// Centre, in plane coordinates \[m\].
+    #[must_use]
+    pub fn center(&self) -> [f64; 2] {
+        self.center
+    }
+
+    /// Width \[m\].
+    #[must_use]
+    pub fn width(&self) -> f64 {
+        self.size[0]
+    }
+
+    /// Height \[m\].
+    #[must_use]
+    pub fn height(&self) -> f64 {
+        self.size[1]
+    }
+
+    /// Lower left corner, in plane coordinates \[m\].
+    #[must_use]
+    pub fn min(&self) -> [f64; 2] {
+        [0, 1].map(|i| self.center[i] - self.size[i] / 2.0)
+    }
+
+    /// Upper right corner, in plane coordinates \[m\].
+    #[must_use]
+    pub fn max(&self) -> [f64; 2] {
+        [0, 1].map(|i| self.center[i] + self.size[i] / 2.0)
+    }
+}
+
+/// How finely a field is sampled for a picture.
+///
+/// # Examples
+///
+/// ```
+/// use palpate_plot::Sampling;
+///
+/// let fine = Sampling::new(1200)?;
+/// let error = Sampling::new(2).unwrap_err().to_string();
+/// assert_eq!(error, "a picture is sampled with 8 to 4096 cells a side, got 2");
+/// # Ok::<(), palpate_plot::PlotError>(())
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Sampling {
+    cells: usize,
+}
+
+impl Sampling {
+    /// Fewest cells: what a golden test can print.
+    const MIN: usize = 8;
+    /// Most cells: 16 million samples.
+    const MAX: usize = 4096;
+
+    /// Samples with `cells` cells along the longer side of the window.
+    ///
+    /// # Errors
+    ///
+    /// [`PlotError::Cells`] outside 8 to 4096.
+    pub fn new(cells: usize) -> Result<Self, PlotError> {
+        if (Self::MIN..=Self::MAX).contains(&cells) {
+            Ok(Self { cells })
+        } else {
+            Err(PlotError::Cells { cells, min: Self::MIN, max: Self::MAX })
+        }
+    }
+}
+
+impl Sampling {
+    /// Cells along the longer side.
+    pub(crate) fn cells(self) -> usize {
+        self.cells
+    }
+}
+
+impl Default for Sampling {
+    /// 420 cells: two pixels each at 800 px, and isolines off by well under one.
+    fn default() -> Self {
+        Self { cells: 420 }
+    }
+}
+
+/// Values at the centres of square cells that cover a window and one cell around it.
+#[derive(Debug, Clone)]
+pub(crate) struct Samples {
+    pub(crate) columns: usize,
+    pub(crate) rows: usize,
+    /// Edge of a cell [m].
+    pub(crate) cell: f64,
+    /// Lower left corner of the grid, a cell outside the window [m].
+    pub(crate) origin: Point,
+    /// Row by row from the bottom, left to right [m].
+    pub(crate) values: Vec<f64>,
+}
+
+impl Samples {
+    /// Samples `field`, row by row.
+    ///
+    /// # Errors
+    ///
+    /// [`PlotError::Sample`] for the first value that is not a length.
+    pub(crate) fn new(
+        view: &PlaneView,
+        sampling: Sampling,
+        mut field: impl FnMut(&[[f64; 2]], &mut [f64]),
+    ) -> Result<Self, PlotError> {
+        let cell = view.width().max(view.height()) / sampling.cells as f64;
+        // At least the window, and a border whose contours are clipped away.
+        let count = |size: f64| (size / cell - 1e-6).ceil().max(1.0) as usize + 2;
+        let (columns, rows) = (count(view.width()), count(view.height()));
+        let origin = view.min().map(|x| x - cell);
+        let mut values = vec![0.0; columns * rows];
+        let mut points = vec![[0.0; 2]; columns];
+        for (row, out) in values.chunks_exact_mut(columns).enumerate() {
+            for (column, p) in points.iter_mut().enumerate() {
+                *p = [
+                    origin[0] + (column as f64 + 0.5) * cell,
+                    origin[1] + (row as f64 + 0.5) * cell,
+                ];
+            }
+            field(&points, out);
+            for (&at, &value) in points.iter().zip(&*out) {
+                PlotError::check_sample(at, value)?;
+            }
+        }
+        Ok(Self { columns, rows, cell, origin, values })
+    }
+
+    /// The samples of the field with the other sign.
+    pub(crate) fn negated(&self) -> Self {
+        Self { values: self.values.iter().map(|value| -value).collect(), ..*self }
+    }
+
+    /// Whether the field is nowhere negative, but zero somewhere as far as samples can tell.
+    ///
+    /// Where a distance is zero, the nearest sample is at most half a cell's diagonal away.
+    pub(crate) fn has_thin_surface(&self) -> bool {
+        let low = self.range().0;
+        low >= 0.0 && low <= std::f64::consts::FRAC_1_SQRT_2 * self.cell
+    }
+
+    /// Smallest and largest value [m].
+    pub(crate) fn range(&self) -> (f64, f64) {
+        self.values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &v| {
+            (low.min(v), high.max(v))
+        })
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -386,5 +660,68 @@ mod tests {
         let error = Slice::xy(f64::NAN).unwrap_err().to_string();
         assert_eq!(error, "z of an XY slice must be finite, got NaN");
         assert!(Slice::free([0.0; 3], [f64::INFINITY, 0.0, 0.0], [0.0, 1.0, 0.0]).is_err());
+    }
+}
+
+#[cfg(test)]
+mod view_tests {
+    use super::*;
+
+    #[test]
+    fn refuses_windows_without_extent() {
+        for size in [0.0, -1.0, f64::NAN, f64::INFINITY, 1e-10, 1e10] {
+            assert!(PlaneView::new([0.0; 2], size, 1.0).is_err(), "{size}");
+            assert!(PlaneView::new([0.0; 2], 1.0, size).is_err(), "{size}");
+        }
+        assert!(PlaneView::new([f64::NAN, 0.0], 1.0, 1.0).is_err());
+        assert!(PlaneView::new([1e12, 0.0], 1.0, 1.0).is_err());
+        assert!(PlaneView::new([0.0; 2], 1.0, 30.0).is_err());
+        assert!(PlaneView::from_bounds([1.0; 2], [0.0; 2], 0.1).is_err());
+        assert!(PlaneView::from_bounds([1.0; 2], [1.0; 2], 0.1).is_err());
+    }
+
+    #[test]
+    fn widens_flat_boxes() {
+        let view = PlaneView::from_bounds([0.0, 1.0], [2.0, 1.0], 0.0).unwrap();
+        assert_eq!((view.width(), view.height()), (2.0, 0.5));
+    }
+}
+
+#[cfg(test)]
+mod sampling_tests {
+    use super::*;
+
+    #[test]
+    fn cells_cover_the_window() {
+        let view = PlaneView::new([1.0, 2.0], 0.4, 0.3).unwrap();
+        let samples = Samples::new(&view, Sampling::new(40).unwrap(), |points, out| {
+            for (p, v) in points.iter().zip(out) {
+                *v = p[0] + 100.0 * p[1];
+            }
+        })
+        .unwrap();
+        assert_eq!((samples.columns, samples.rows), (42, 32));
+        let first = 0.795 + 100.0 * 1.845;
+        assert!((samples.values[0] - first).abs() < 1e-12);
+        assert!((samples.range().1 - (1.205 + 100.0 * 2.155)).abs() < 1e-9);
+    }
+
+    #[test]
+    fn names_the_place_of_a_bad_sample() {
+        let view = PlaneView::new([0.0, 0.0], 8.0, 8.0).unwrap();
+        let sampling = Sampling::new(8).unwrap();
+        let error = Samples::new(&view, sampling, |points, out| {
+            for (p, v) in points.iter().zip(out) {
+                *v = if p[0] > 2.0 && p[1] > 1.0 { f64::NAN } else { 0.0 };
+            }
+        })
+        .unwrap_err();
+        assert_eq!(
+            error.to_string(),
+            "the field is NaN at (2.5, 1.5) m of the plane; it must be finite"
+        );
+        for value in [f64::INFINITY, -1e200] {
+            assert!(Samples::new(&view, sampling, |_, out| out.fill(value)).is_err());
+        }
     }
 }

@@ -7,8 +7,7 @@ use crate::drawing::Image;
 use crate::error::{LARGEST, PlotError};
 use crate::geometry::Point;
 use crate::palette::Color;
-use crate::sampling::Sampling;
-use crate::view::PlaneView;
+use crate::slice::{PlaneView, Sampling};
 
 /// The value of a field at a point of a plane, and its gradient there.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]

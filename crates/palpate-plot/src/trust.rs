@@ -6,12 +6,11 @@
 use crate::drawing::{Drawing, Image, Stroke};
 use crate::error::PlotError;
 use crate::geometry::{Point, Rect};
-use crate::hatch::Hatching;
+use crate::labels::Hatching;
 use crate::legend::{Entry, Key};
-use crate::measured::Measured;
-use crate::numbers::write;
+use crate::overlay::Measured;
 use crate::palette::Color;
-use crate::scale::draw_bar;
+use crate::scale::{draw_bar, write};
 use crate::slope::Pixels;
 
 /// The promise of a field's values f on one side of the surface, at the distance d from it.

@@ -7,7 +7,7 @@ use crate::drawing::Image;
 use crate::error::PlotError;
 use crate::isolines::{Ground, Isolines};
 use crate::legend::{Entry, Key};
-use crate::measured::Measured;
+use crate::overlay::Measured;
 use crate::scale::{self, Ramp, Scale};
 use crate::slope::Pixels;
 

@@ -1,6 +1,8 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
+//! Elements, and the search for the least value over one.
+//!
 //! The least value of a field over a segment or a triangle.
 //!
 //! Best-first branch and bound, with bounds from points that need not lie on the
@@ -23,17 +25,14 @@
 //! Cells are halves of halves of the element, all similar to it, so that one set of
 //! weights gives all their centres, and each level halves the radius.
 
-use palpate_field::{Point, Shape, Vector};
+use palpate_field::{BoundingBall, Point, Shape, Vector};
 
-use crate::certified::{Certified, Limits, Stop};
-use crate::contacts::ElementContacts;
-use crate::element::{Element, parts_of_one};
+use crate::certified::{Certified, Goal, Limits, Stop};
+use crate::contacts::{ElementContacts, MOST_CELLS, Patches};
 use crate::engine::{self, Bounded, Frontier, Problem};
 use crate::error::QueryError;
-use crate::goal::Goal;
-use crate::larger::larger;
-use crate::patches::{MOST_CELLS, Patches};
-use crate::sampler::{AT_ONCE, Sampler, Samples, unit};
+use crate::pair::search::ROUNDINGS;
+use crate::sampler::{AT_ONCE, Sampler, Samples, larger, unit};
 
 /// The first heights over the centre, in radii.
 pub(crate) const FIRST_HEIGHTS: [f64; 5] = [0.75, 1.5, 3.0, 6.0, 12.0];
@@ -577,5 +576,232 @@ impl<const N: usize, const D: usize> Problem for ElementSearch<'_, N, D> {
     #[inline]
     fn closed(&self) -> f64 {
         self.dropped
+    }
+}
+
+/// A lower bound of the distance from the origin to the part of a box with these corners
+/// in which `n·y ≤ −d`, with `n` of length one and `d` positive.
+///
+/// For each λ ≥ 0 the least value of `|y|² + 2λ(n·y + d)` over the box bounds its square.
+/// The largest is where `n·y = −d`, and Newton's method finds it, from the λ of a box that
+/// does not matter.
+pub(crate) fn distance_to_cut_box<const D: usize>(
+    [low, high]: [Vector<f64, D>; 2],
+    n: Vector<f64, D>,
+    d: f64,
+) -> f64 {
+    /// Each makes one more coordinate free or fixed.
+    const STEPS: usize = 8;
+    let (mut multiplier, mut best) = (d, 0.0_f64);
+    for _ in 0..STEPS {
+        let (mut squared, mut along, mut size, mut free) = (0.0, d, d, 0.0);
+        for k in 0..D {
+            let wanted = -multiplier * n[k];
+            let y = wanted.max(low[k]).min(high[k]);
+            squared += y * y;
+            along += n[k] * y;
+            size += (n[k] * y).abs();
+            free += if y == wanted { n[k] * n[k] } else { 0.0 };
+        }
+        let rounding = ROUNDINGS * (squared + 2.0 * multiplier * size);
+        best = best.max(squared + 2.0 * multiplier * along - rounding);
+        // Where no coordinate is free: all of the box is beyond the plane, or a longer way
+        // makes one free, or nothing of it is.
+        let next = if free > 0.0 {
+            (multiplier + along / free).max(0.0)
+        } else if along < 0.0 {
+            0.0
+        } else {
+            2.0 * multiplier
+        };
+        if next == multiplier {
+            break;
+        }
+        multiplier = next;
+    }
+    best.sqrt()
+}
+
+/// A triangle counts as without area if its height is at most this many roundings of its
+/// largest coordinate: fewer than searches allow for.
+const FLAT_ROUNDINGS: f64 = 4.0;
+
+/// The convex hull of `N` points: a segment of 2 or a triangle of 3, in `D` dimensions.
+/// Points may coincide.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Element<const N: usize, const D: usize> {
+    pub(crate) vertices: [Point<D>; N],
+}
+
+impl<const N: usize, const D: usize> Element<N, D> {
+    /// The segment or triangle with these `vertices` [m].
+    ///
+    /// # Errors
+    ///
+    /// If a coordinate is not finite or beyond 1e15 m.
+    pub fn new(vertices: [impl Into<Point<D>>; N]) -> Result<Self, QueryError> {
+        const { assert!(N == 2 || N == 3, "segments and triangles") };
+        let vertices = vertices.map(Into::into);
+        for vertex in vertices {
+            QueryError::check_point("vertex", vertex)?;
+        }
+        Ok(Self { vertices })
+    }
+
+    /// The vertices [m].
+    #[must_use]
+    pub fn vertices(&self) -> &[Point<D>; N] {
+        &self.vertices
+    }
+
+    /// The length of the longest edge [m].
+    #[must_use]
+    pub fn longest_edge(&self) -> f64 {
+        self.vertices.iter().map(|vertex| self.farthest(*vertex)).fold(0.0, f64::max)
+    }
+
+    /// The smallest ball around the element, its radius rounded up. A field of steepness 1 that
+    /// is greater at the centre than the radius is positive on the whole element.
+    ///
+    /// ```
+    /// use palpate_field::Vector;
+    /// use palpate_query::Element;
+    ///
+    /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+    /// let sliver = [Vector([0.0, 0.0]), Vector([1.0, 0.0]), Vector([0.5, 0.01])];
+    /// let element = Element::new(sliver)?;
+    /// assert_eq!(element.smallest_ball().centre, Vector([0.5, 0.0]));
+    /// let around = element.circumscribed_ball().ok_or("the corners lie on a line")?;
+    /// assert!(around.radius > 12.0);
+    /// # Ok(())
+    /// # }
+    /// ```
+    #[must_use]
+    pub fn smallest_ball(&self) -> BoundingBall<D> {
+        palpate_mesh::smallest_ball(&self.vertices)
+    }
+
+    /// The ball about the circumcentre of a triangle that its vertices lie on, its radius rounded
+    /// up; the smallest ball of a segment. `None` if the vertices of a triangle lie on a line.
+    #[must_use]
+    pub fn circumscribed_ball(&self) -> Option<BoundingBall<D>> {
+        palpate_mesh::circumscribed_ball(&self.vertices)
+    }
+
+    /// The barycentric weights of the centre of the smallest ball around the element.
+    #[inline]
+    pub(crate) fn centre_weights(&self) -> [f64; N] {
+        palpate_mesh::centre_weights(&self.vertices)
+    }
+
+    /// A triangle without area as its longest edge with the second end doubled, so that its
+    /// first two halves are all of it; `weights` are those of the triangle's centre.
+    pub(crate) fn flattened(&self, weights: &[f64; N]) -> Option<Self> {
+        let middle = (0..N).find(|&k| N == 3 && weights[k] == 0.0)?;
+        let v = |k: usize| self.vertices[(middle + k) % N];
+        let (edge, side) = (v(2) - v(1), v(0) - v(1));
+        let squared = edge.dot(edge);
+        let share = if squared > 0.0 { side.dot(edge) / squared } else { 0.0 };
+        let off = side - edge * share;
+        let largest = self.vertices.iter().fold(0.0_f64, |m, v| m.max(v.dot(*v)));
+        let rounding = FLAT_ROUNDINGS * f64::EPSILON;
+        let is_flat = off.dot(off) <= rounding * rounding * largest;
+        let mut vertices = [v(2); N];
+        vertices[0] = v(1);
+        is_flat.then_some(Self { vertices })
+    }
+
+    /// The point with these barycentric weights of the vertices [m].
+    #[must_use]
+    #[inline]
+    pub fn at(&self, weights: &[f64; N]) -> Point<D> {
+        let mut point = Vector::ZERO;
+        for (vertex, weight) in self.vertices.iter().zip(weights) {
+            point += *vertex * *weight;
+        }
+        point
+    }
+
+    /// The vertex that is lowest along `way`.
+    #[inline]
+    pub(crate) fn lowest_along(&self, way: Vector<f64, D>) -> Point<D> {
+        let (mut lowest, mut least) = (self.vertices[0], f64::INFINITY);
+        for vertex in &self.vertices {
+            let along = way.dot(*vertex);
+            (lowest, least) = if along < least { (*vertex, along) } else { (lowest, least) };
+        }
+        lowest
+    }
+
+    /// The distance of `p` from the farthest point of the element, a vertex [m].
+    #[must_use]
+    #[inline]
+    pub fn farthest(&self, p: Point<D>) -> f64 {
+        let mut farthest = 0.0;
+        for vertex in &self.vertices {
+            let apart = *vertex - p;
+            let squared = apart.dot(apart);
+            farthest = if squared > farthest { squared } else { farthest };
+        }
+        farthest.sqrt()
+    }
+
+    /// The parts of half the size that make up the element, all similar to it: two of a
+    /// segment, four of a triangle. Unused places hold the last. Of a triangle with two
+    /// equal last vertices, the first two are all of it.
+    #[doc(hidden)]
+    #[must_use]
+    #[inline]
+    pub fn halves(&self) -> [Self; 4] {
+        let v = &self.vertices;
+        let middle = |i: usize, k: usize| (v[i] + v[k]) * 0.5;
+        let part = |points: [Point<D>; 3]| {
+            let mut vertices = *v;
+            vertices.copy_from_slice(&points[..N]);
+            Self { vertices }
+        };
+        if N == 2 {
+            let centre = middle(0, 1);
+            let last = part([centre, v[1], centre]);
+            return [part([v[0], centre, centre]), last, last, last];
+        }
+        // The middle one is turned by half a turn: each vertex is across from its own.
+        let across = [middle(1, 2), middle(2, 0), middle(0, 1)];
+        [
+            part([v[0], across[2], across[1]]),
+            part([across[2], v[1], across[0]]),
+            part([across[1], across[0], v[2]]),
+            part(across),
+        ]
+    }
+}
+
+/// How many [halves](Element::halves) an element has.
+#[must_use]
+pub const fn parts_of_one<const N: usize>() -> usize {
+    if N == 2 { 2 } else { 4 }
+}
+
+#[cfg(test)]
+mod cut_box_tests {
+    use super::*;
+
+    #[test]
+    fn a_cut_box_is_as_far_as_its_part() {
+        let n = Vector([-0.6, -0.8]);
+        let distance = |low: [f64; 2], high: [f64; 2], d: f64| {
+            distance_to_cut_box([Vector(low), Vector(high)], n, d)
+        };
+        let is = |found: f64, truth: f64| truth - 1e-12 < found && found <= truth;
+        // The line alone, from which (0.6, 0.8)·d is nearest.
+        assert!(is(distance([-9.0, -9.0], [9.0, 9.0], 0.5), 0.5));
+        // A side that cuts off that point: (2, y) with 1.2 + 0.8·y = 2.
+        assert!(is(distance([2.0, -9.0], [5.0, 9.0], 2.0), 5.0_f64.sqrt()));
+        // A corner alone.
+        assert!(is(distance([-1.0, -1.0], [2.0, 1.0], 2.0), 5.0_f64.sqrt()));
+        // The box is farther than the line.
+        assert!(is(distance([3.0, 4.0], [5.0, 9.0], 2.0), 5.0));
+        // No part of the box is beyond the line: farther than any.
+        assert!(distance([-1.0, -1.0], [1.0, 1.0], 2.0) > 10.0);
     }
 }

@@ -6,14 +6,11 @@
 
 use palpate_field::compile;
 
-use crate::ball;
-use crate::contacts;
 use crate::element_search::{self, ElementWorkspace};
-use crate::manifold;
 use crate::mesh::{MeshWorkspace, contacts_of, find};
 use crate::pair::{BodyPair, PairSearch, PairWorkspace, part, prove, rates_of};
 use crate::sweep::{ElementSweep, SweepWorkspace, swept};
-use crate::{BallWorkspace, Track, any_point, cast_ball, cast_ray};
+use crate::{BallWorkspace, Track, any_point, ball, cast_ball, cast_ray, contacts, manifold};
 
 /// Compiles the searches of `D` dimensions.
 fn in_dimension<const D: usize>() {

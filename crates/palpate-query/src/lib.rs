@@ -50,45 +50,32 @@
 //! Features, both on by default: `parallel` shares batches and worlds among threads; `world`
 //! adds [`World`].
 
-mod advance;
-mod any_point;
 mod ball;
 mod certified;
 pub mod constraints;
 mod contact;
 mod contacts;
-mod cut_box;
-mod display;
-mod element;
 mod element_search;
 mod engine;
 mod error;
-mod goal;
 mod instances;
-mod larger;
 mod manifold;
 mod mesh;
 mod pair;
-mod patches;
-mod placed;
 mod point;
-mod pool;
 mod query;
 mod ray;
 mod sampler;
 mod sweep;
 mod track;
-mod verdict;
 #[cfg(feature = "world")]
 mod world;
 
-pub use any_point::any_point;
 pub use ball::{BallWorkspace, contact_ball, touches_ball};
-pub use certified::{Certified, Limits, Stop};
+pub use certified::{Certified, Limits, Stop, Verdict};
 pub use contact::{Contact, NormalSource};
 pub use contacts::{ElementContacts, contacts};
-pub use element::{Element, parts_of_one};
-pub use element_search::{ElementWorkspace, minimum, touches};
+pub use element_search::{Element, ElementWorkspace, minimum, parts_of_one, touches};
 pub use error::QueryError;
 #[doc(hidden)]
 pub use instances::instances;
@@ -102,16 +89,14 @@ pub use pair::{
     SeparatingTranslation, minimax_step, overlap, proof, rates, separating_translation,
     separation,
 };
-pub use placed::Placed;
-pub use point::{AtPoint, evaluate_point};
+pub use point::{AtPoint, any_point, evaluate_point};
 pub use query::{ElementMemory, Query, Tolerance};
 pub use ray::{Ray, RayHit, cast_ray};
-pub use sampler::free_radius;
+pub use sampler::{Placed, free_radius};
 pub use sweep::{
     ElementSweep, FirstTouch, FreeBox, Motion, Moving, Start, SweepProof, SweepSettings,
     SweepWorkspace, cast_ball, sweep, sweep_element, sweep_mesh, sweep_proof,
 };
 pub use track::Track;
-pub use verdict::Verdict;
 #[cfg(feature = "world")]
 pub use world::{BodyId, BodyImpact, Neighbours, World, WorldSettings};

@@ -9,7 +9,7 @@ use palpate_field::{Aabb, Point, Rotation, Vector};
 use palpate_query::QueryError;
 
 use crate::beam::{Beam, COVER};
-use crate::error::RenderError;
+use crate::render::RenderError;
 
 /// Room around what a camera fits into a picture, as a share of the picture's sides.
 const MARGIN: f64 = 0.06;

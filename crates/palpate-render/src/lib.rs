@@ -36,28 +36,16 @@
 #![cfg_attr(test, allow(clippy::unwrap_used, reason = "a test that cannot be set up fails"))]
 
 mod beam;
-mod bundle;
 mod camera;
-mod color;
-mod cut_face;
-mod error;
 mod image;
 mod light;
 mod paint;
 mod render;
-mod settings;
-mod shadow;
-mod sky;
-mod studio;
 mod subject;
-mod surfaces;
 mod trace;
 
 pub use camera::{Camera, Lens, Sight};
-pub use color::SrgbColor;
-pub use error::RenderError;
-pub use image::{Image, write_animation};
-pub use render::{Rendering, render};
-pub use settings::{Settings, Shadows};
+pub use image::{Image, SrgbColor, write_animation};
+pub use render::{RenderError, Rendering, Settings, Shadows, render};
 pub use subject::{Cut, LitBody, Subject};
 pub use trace::Work;

@@ -6,13 +6,9 @@
 use palpate_field::{BLOCK, Block, Gradients, Point, Vector};
 
 use crate::beam::{Beam, Extent};
-use crate::color::{Light, SrgbColor};
-use crate::cut_face;
-use crate::light::Lit;
-use crate::shadow::{Part, Place, Shadow};
-use crate::sky::Sky;
-use crate::studio::Studio;
-use crate::surfaces::Owners;
+use crate::image::{Light, SrgbColor};
+use crate::light::{Lit, Part, Place, Shadow, Sky};
+use crate::subject::{self, Owners, Studio};
 use crate::trace::{End, Goal, Met, Tracer, Work};
 
 /// Where bodies without bounds begin to fade, and are gone, as shares of how far they are drawn.
@@ -204,7 +200,7 @@ impl Studio {
                 let (depth, slope) = body.uncut.distance_gradient(spot.place.point);
                 let across = slope - spot.place.normal * slope.dot(spot.place.normal);
                 let width = spot.pixel * across.norm();
-                cut_face::light(body.light, depth / self.spacing, width / self.spacing)
+                subject::light(body.light, depth / self.spacing, width / self.spacing)
             }
             Matter::Ground => self.background * lit.share(self.key),
         }

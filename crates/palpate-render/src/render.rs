@@ -1,22 +1,19 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! From a subject to a picture: a ray through each pixel, then more through those at edges.
+//! Lit pictures.
 
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};
 
-use palpate_field::BLOCK;
+use palpate_field::{BLOCK, ShapeError};
+use palpate_query::QueryError;
 use rayon::prelude::*;
 
 use crate::camera::Camera;
-use crate::color::Light;
-use crate::error::RenderError;
-use crate::image::Image;
+use crate::image::{Image, Light};
 use crate::paint::{Dab, Painter};
-use crate::settings::Settings;
-use crate::studio::Studio;
-use crate::subject::Subject;
+use crate::subject::{Cut, Studio, Subject};
 use crate::trace::Work;
 
 /// The side of a tile [pixels]: a tile is a block, and its rays go alike.
@@ -216,6 +213,206 @@ fn offsets(samples: u32) -> Vec<[f64; 2]> {
     let along = |i: u32, j: u32| (f64::from(i) + (f64::from(j) + 0.5) / side) / side;
     let row = |i| (0..samples).map(move |j| [along(i, j), along(j, i)]);
     (0..samples).flat_map(row).collect()
+}
+
+/// The most pixels of a picture: their light fills a gigabyte of memory.
+pub(crate) const MOST_PIXELS: u64 = 40_000_000;
+
+/// The most samples along a pixel's side: those of a pixel are painted together, so they must fit
+/// into a block of 64.
+pub(crate) const MOST_SAMPLES: u32 = 8;
+
+/// The shadows of the key light.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Shadows {
+    /// None.
+    None,
+    /// Of a light as small as a point.
+    Hard,
+    /// Of a disc of 6°.
+    Soft,
+}
+
+/// How a picture is rendered.
+///
+/// ```
+/// use palpate_render::{Settings, Shadows};
+///
+/// let settings = Settings {
+///     shadows: Shadows::Hard,
+///     ground: Some(0.0),
+///     ..Settings::new(320, 240)
+/// };
+/// assert_eq!((settings.width, settings.ground), (320, Some(0.0)));
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Settings {
+    /// The width [pixels].
+    pub width: u32,
+    /// The height [pixels].
+    pub height: u32,
+    /// Samples along the side of a pixel at an edge.
+    pub samples: u32,
+    /// The shadows.
+    pub shadows: Shadows,
+    /// The height of a level ground on which shadows fall [m]; none if left out.
+    pub ground: Option<f64>,
+    /// A plane that cuts bodies.
+    pub cut: Option<Cut>,
+    /// The distance between the isolines of a cut face [m]; chosen if left out.
+    pub spacing: Option<f64>,
+    /// The most evaluations for each ray.
+    pub budget: u32,
+}
+
+impl Settings {
+    /// The budget unless another is given: hundreds of times what a grazing ray needs.
+    pub const BUDGET: u32 = 50_000;
+
+    /// A picture of this size [pixels], with soft shadows and edges of 4 × 4 samples, without
+    /// ground.
+    #[must_use]
+    pub const fn new(width: u32, height: u32) -> Self {
+        Self {
+            width,
+            height,
+            samples: 4,
+            shadows: Shadows::Soft,
+            ground: None,
+            cut: None,
+            spacing: None,
+            budget: Self::BUDGET,
+        }
+    }
+
+    /// Refuses what cannot be rendered, as [`render`](crate::render) does.
+    ///
+    /// # Errors
+    ///
+    /// If the picture has no pixels or too many, the samples are not from 1 to 8, the spacing is
+    /// not positive, or the ground not finite.
+    pub fn check(&self) -> Result<(), RenderError> {
+        let Self { width, height, samples, .. } = *self;
+        let pixels = u64::from(width) * u64::from(height);
+        if pixels == 0 || pixels > MOST_PIXELS {
+            return Err(RenderError::Size { width, height });
+        }
+        if samples == 0 || samples > MOST_SAMPLES {
+            return Err(RenderError::Samples { samples });
+        }
+        if let Some(spacing) = self.spacing {
+            RenderError::check_positive("the spacing of isolines", spacing, " m")?;
+        }
+        match self.ground {
+            Some(value) if !value.is_finite() => {
+                let (what, rule) = ("the height of the ground", "finite");
+                Err(RenderError::Number { what, rule, value, unit: " m" })
+            }
+            _ => Ok(()),
+        }
+    }
+}
+
+/// Why a picture cannot be rendered.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum RenderError {
+    /// There is nothing to draw.
+    #[error("a picture must show at least 1 body, got 0")]
+    NoBody,
+    /// A number breaks its rule.
+    #[error("{what} must be {rule}, got {value:?}{unit}")]
+    Number {
+        /// What the number was for.
+        what: &'static str,
+        /// The rule.
+        rule: &'static str,
+        /// The number.
+        value: f64,
+        /// A space and the symbol of the unit; empty for a plain number.
+        unit: &'static str,
+    },
+    /// A camera that looks from a point at the same point.
+    #[error("a camera must look at another point than its own, got {at:?} m for both")]
+    NoSight {
+        /// The point [m].
+        at: [f64; 3],
+    },
+    /// A direction that has no length, or two that lie on one line.
+    #[error("{what} must have a direction, got {got:?}")]
+    NoPlane {
+        /// What the direction was for.
+        what: &'static str,
+        /// The direction.
+        got: [f64; 3],
+    },
+    /// A camera within a body, which sees nothing else.
+    #[error("the camera at {from:?} m is inside body {body}: move it out")]
+    Inside {
+        /// The number of the body.
+        body: usize,
+        /// Where the camera is [m].
+        from: [f64; 3],
+    },
+    /// A picture without pixels, or with too many.
+    #[error("a picture must have 1 to {MOST_PIXELS} pixels, got {width} x {height}")]
+    Size {
+        /// The width [pixels].
+        width: u32,
+        /// The height [pixels].
+        height: u32,
+    },
+    /// Too few or too many samples.
+    #[error(
+        "an edge must have 1 to {MOST_SAMPLES} samples along a pixel's side, got {samples}"
+    )]
+    Samples {
+        /// The number that was asked for.
+        samples: u32,
+    },
+    /// An animation without pictures.
+    #[error("an animation must have at least 1 picture, got 0")]
+    NoPicture,
+    /// Pictures of an animation that differ in size.
+    #[error(
+        "the pictures of an animation must be alike in size, got {} x {} and {} x {} pixels",
+        first[0], first[1], other[0], other[1]
+    )]
+    OtherSize {
+        /// The size of the first [pixels].
+        first: [u32; 2],
+        /// The size of another [pixels].
+        other: [u32; 2],
+    },
+    /// A body cannot be cut or thickened.
+    #[error(transparent)]
+    Shape(#[from] ShapeError),
+    /// A point or length cannot be computed with.
+    #[error(transparent)]
+    Query(#[from] QueryError),
+    /// A picture cannot be written as PNG.
+    #[error("the picture cannot be written as PNG: {reason}")]
+    Png {
+        /// What the encoder said.
+        reason: String,
+    },
+}
+
+impl RenderError {
+    /// Refuses a number that is not more than zero, or too large to compute with.
+    pub(crate) fn check_positive(
+        what: &'static str,
+        value: f64,
+        unit: &'static str,
+    ) -> Result<f64, Self> {
+        let rule = "positive and at most 1e15";
+        // Written so that NaN is refused.
+        if value > 0.0 && value <= palpate_field::LARGEST_LENGTH {
+            Ok(value)
+        } else {
+            Err(Self::Number { what, rule, value, unit })
+        }
+    }
 }
 
 #[cfg(test)]

@@ -32,7 +32,6 @@ mod placed;
 mod remap;
 mod shared;
 mod union;
-mod union_cells;
 mod warp;
 
 use std::any::Any;

@@ -14,7 +14,6 @@
 )]
 
 mod block;
-mod extent;
 mod instruction_set;
 mod lanes;
 mod tape;

@@ -1,10 +1,16 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! What determines the values of a shape, as bytes.
+//! What a node holds: its operands, faces and text.
 
-use super::{Node, Opaque};
+use std::cell::Cell;
+use std::fmt::{self, Debug, Display, Formatter};
+
+use super::{Boolean, Node, Opaque, Primitive};
+use crate::kernel::Argument;
+use crate::pose::{Pose, Rotation};
 use crate::shape::Shape;
+use crate::vector::Point;
 
 impl<const D: usize> Shape<D> {
     /// Feeds `sink` with all that determines the values, as bytes: the text that builds the shape, and what its
@@ -97,5 +103,216 @@ impl<const D: usize> Part for Opaque<D> {
 
     fn content(&self, sink: &mut dyn FnMut(&[u8])) -> bool {
         self.field.content(sink)
+    }
+}
+
+impl<const D: usize> Shape<D> {
+    /// Calls `visit` with each face of a field of faces that was moved and scaled at most; `false` if the shape is
+    /// something else.
+    pub(crate) fn faces(&self, visit: &mut dyn FnMut([Point<D>; D])) -> bool {
+        match self.node() {
+            Node::Opaque(opaque) => opaque.field.faces(visit),
+            Node::Placed { pose, of } => {
+                of.faces(&mut |face| visit(face.map(|p| pose.transform_point(p))))
+            }
+            Node::Scaled { factor, of } => {
+                of.faces(&mut |face| visit(face.map(|p| p * *factor)))
+            }
+            _ => false,
+        }
+    }
+}
+
+/// How many shapes `Debug` shows before it counts the others.
+const MOST_SHOWN: usize = 64;
+
+/// How tightly an expression holds together, as the operators of Rust do.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum Tightness {
+    Union,
+    SymmetricDifference,
+    Intersection,
+    Difference,
+    Call,
+}
+
+/// A shape to be written, of which as many parts are shown as there is room.
+struct Text<'a, const D: usize> {
+    shape: &'a Shape<D>,
+    /// The operator around it: the shape is put in brackets if it is no tighter.
+    within: Option<Tightness>,
+    room: &'a Cell<usize>,
+}
+
+impl<const D: usize> Display for Shape<D> {
+    /// Writes what builds the shape. Numbers read back to the same bits; a rotation is
+    /// written as the rows of its matrix.
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        write!(f, "{}", Text { shape: self, within: None, room: &Cell::new(usize::MAX) })
+    }
+}
+
+impl<const D: usize> Debug for Shape<D> {
+    /// As `Display`; of a large shape the first parts, and how many more there are.
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        write!(f, "{}", Text { shape: self, within: None, room: &Cell::new(MOST_SHOWN) })
+    }
+}
+
+fn tightness<const D: usize>(node: &Node<D>) -> Tightness {
+    match node {
+        Node::Union(_) => Tightness::Union,
+        Node::SymmetricDifference(_) => Tightness::SymmetricDifference,
+        Node::Intersection(_) => Tightness::Intersection,
+        Node::Difference(_) => Tightness::Difference,
+        _ => Tightness::Call,
+    }
+}
+
+impl<const D: usize> Display for Text<'_, D> {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        let room = self.room.get();
+        if room == 0 {
+            return f.write_str("…");
+        }
+        self.room.set(room - 1);
+        let own = tightness(self.shape.node());
+        let brackets = self.within.is_some_and(|within| own <= within);
+        f.write_str(if brackets { "(" } else { "" })?;
+        self.node(f)?;
+        f.write_str(if brackets { ")" } else { "" })
+    }
+}
+
+impl<const D: usize> Text<'_, D> {
+    fn node(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        // Before a method all operators need brackets.
+        let before = |of| Text { shape: of, within: Some(Tightness::Difference), ..*self };
+        let inside = |of| Text { shape: of, within: None, ..*self };
+        match self.shape.node() {
+            Node::Primitive(primitive) => write!(f, "{primitive}"),
+            Node::Union(of) => self.chain(f, of, " | ", Tightness::Union),
+            Node::SymmetricDifference(of) => {
+                self.chain(f, of, " ^ ", Tightness::SymmetricDifference)
+            }
+            Node::Intersection(of) => self.chain(f, of, " & ", Tightness::Intersection),
+            Node::Difference(of) => self.chain(f, of, " - ", Tightness::Difference),
+            Node::Smooth { boolean, profile, width, of } => {
+                self.smooth(f, *boolean, of)?;
+                write!(f, ", {profile:?}, {width:?})")
+            }
+            Node::Displaced { of, by, height } => {
+                write!(f, "{}.displaced({}, {height:?})", before(of), inside(by))
+            }
+            Node::Morphed { from, into, progress } => {
+                write!(f, "{}.morphed({}, {progress:?})", before(from), inside(into))
+            }
+            Node::Placed { pose, of } => write!(f, "{}{}", before(of), Motion(pose)),
+            Node::Scaled { factor, of } => write!(f, "{}.scaled({factor:?})", before(of)),
+            Node::Stretched { factors, of } => {
+                write!(f, "{}.stretched({factors:?})", before(of))
+            }
+            Node::Offset { distance, of } => write!(f, "{}.offset({distance:?})", before(of)),
+            Node::Operated { operator, argument, of } => {
+                write!(f, "{}.{}({argument})", before(of), operator.method)
+            }
+            Node::Mirrored { axis, of } => write!(f, "{}.mirrored({axis})", before(of)),
+            Node::Repeated { copies, of } => write!(f, "{}.repeated({copies:?})", before(of)),
+            Node::Bent { rate, of } => write!(f, "{}.bent({rate:?})", before(of)),
+            Node::Twisted { rate, of } => write!(f, "{}.twisted({rate:?})", before(of)),
+            Node::Extruded { height, of } => {
+                write!(f, "{}.extruded({height:?})", self.profile(of))
+            }
+            Node::Revolved { of } => write!(f, "{}.revolved()", self.profile(of)),
+            Node::Opaque(opaque) => write!(f, "{opaque:?}"),
+        }
+    }
+
+    /// The profile of a solid, before a method.
+    fn profile<'a>(&'a self, of: &'a Shape<2>) -> Text<'a, 2> {
+        Text { shape: of, within: Some(Tightness::Difference), room: self.room }
+    }
+
+    /// Shapes with an operator between them.
+    fn chain(
+        &self,
+        f: &mut Formatter<'_>,
+        of: &[Shape<D>],
+        operator: &str,
+        own: Tightness,
+    ) -> fmt::Result {
+        for (i, shape) in of.iter().enumerate() {
+            f.write_str(if i == 0 { "" } else { operator })?;
+            if self.room.get() == 0 {
+                return write!(f, "… {} more", of.len() - i);
+            }
+            write!(f, "{}", Text { shape, within: Some(own), ..*self })?;
+        }
+        Ok(())
+    }
+
+    /// A smooth boolean up to the last of its shapes.
+    fn smooth(&self, f: &mut Formatter<'_>, boolean: Boolean, of: &[Shape<D>]) -> fmt::Result {
+        let name = match boolean {
+            Boolean::Union => "smooth_union([",
+            Boolean::Intersection => "smooth_intersection([",
+            Boolean::Difference => ".smooth_difference([",
+        };
+        let mut of = of;
+        if let (Boolean::Difference, Some((shape, others))) = (boolean, of.split_first()) {
+            write!(f, "{}", Text { shape, within: Some(Tightness::Difference), ..*self })?;
+            of = others;
+        }
+        f.write_str(name)?;
+        for (i, shape) in of.iter().enumerate() {
+            f.write_str(if i == 0 { "" } else { ", " })?;
+            if self.room.get() == 0 {
+                write!(f, "… {} more", of.len() - i)?;
+                break;
+            }
+            write!(f, "{}", Text { shape, within: None, ..*self })?;
+        }
+        f.write_str("]")
+    }
+}
+
+impl<const D: usize> Display for Primitive<D> {
+    /// Writes the call of the constructor.
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        write!(f, "{}(", self.name())?;
+        for (i, argument) in self.arguments().iter().enumerate() {
+            f.write_str(if i == 0 { "" } else { ", " })?;
+            write!(f, "{argument}")?;
+        }
+        f.write_str(")")
+    }
+}
+
+impl Display for Argument {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Number(number) => write!(f, "{number:?}"),
+            Self::Count(count) => write!(f, "{count}"),
+            Self::Vector(vector) => write!(f, "{vector:?}"),
+            Self::Points(points) => write!(f, "{points:?}"),
+            Self::Rings(rings) => write!(f, "{rings:?}"),
+        }
+    }
+}
+
+/// A motion as the methods that make it.
+struct Motion<'a, const D: usize>(&'a Pose<D>);
+
+impl<const D: usize> Display for Motion<'_, D> {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        let Pose { rotation, translation } = self.0;
+        let turned = *rotation != Rotation::identity();
+        if turned {
+            write!(f, ".rotated({:?})", rotation.matrix())?;
+        }
+        if !turned || translation.0.iter().any(|x| *x != 0.0) {
+            write!(f, ".translated({:?})", translation.0)?;
+        }
+        Ok(())
     }
 }

@@ -4,7 +4,7 @@
 //! Sums of two fields: displacement and morphing.
 
 use super::boolean::{combined, joined, promise_of_union};
-use super::guard::guarded;
+use super::surface::guarded;
 use crate::error::{ShapeError, Unit, positive};
 use crate::field::{Combine, SharedField};
 use crate::promise::{Deviation, Promise, Quality, Rounding};

@@ -11,7 +11,6 @@ pub(crate) mod boolean;
 pub(crate) mod catalogue;
 pub(crate) mod distortion;
 pub(crate) mod domain;
-mod guard;
 pub(crate) mod mixture;
 pub(crate) mod repetition;
 pub(crate) mod smooth;
@@ -19,7 +18,6 @@ pub(crate) mod surface;
 pub(crate) mod transform;
 
 #[cfg(feature = "oracle")]
-pub use catalogue::Child;
-pub use catalogue::Operator;
+pub use catalogue::{Child, Operator};
 pub use repetition::Copies;
 pub use smooth::{Boolean, Profile};

@@ -18,7 +18,7 @@
 //! taken. It equals the field on the wall, and both vary by at most the Lipschitz
 //! constant, so it is wrong by twice that times the depth beyond the wall at most.
 
-use super::guard::guarded;
+use super::surface::guarded;
 use crate::bounds::{Aabb, Bounds};
 use crate::error::{LARGEST_LENGTH, ShapeError, Unit, positive};
 use crate::field::{Combined, Minimum, Remap, Remapped, SharedField, Warp, Warped};

@@ -9,7 +9,7 @@ use std::marker::PhantomData;
 use super::boolean::{
     combined, promise_of_difference, promise_of_intersection, promise_of_union,
 };
-use super::guard;
+use super::surface;
 use crate::error::{ShapeError, Unit, positive};
 use crate::field::{Combine, SharedField};
 use crate::promise::{Deviation, Promise, Quality, Rounding};
@@ -268,7 +268,7 @@ impl Boolean {
 fn guarded<const D: usize>(
     children: Vec<SharedField<D>>,
 ) -> Result<Vec<SharedField<D>>, ShapeError> {
-    children.into_iter().map(guard::guarded).collect()
+    children.into_iter().map(surface::guarded).collect()
 }
 
 /// The `boolean` of `children` with its creases of `width` filled or cut off.

@@ -1,27 +1,26 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
+//! Definitions of primitives, for tests.
+//!
 //! What tests and documents need of a primitive besides its formula; no part of the interface.
 //!
 //! A shape is defined by a test whether it contains a point, and by a parametrised boundary,
 //! without any formula of the library. The distance to the boundary is found by sampling: coarse
 //! where the boundary is far, down to a spacing where it may be nearest.
 
-pub mod kernels;
-mod patch;
-mod planar;
-mod power;
-mod spatial;
-
-pub use patch::Patch;
-
-pub(crate) use planar::*;
-pub(crate) use power::*;
-pub(crate) use spatial::*;
-
 use crate::error::ShapeError;
 use crate::kernel::NamedKernel;
 use crate::vector::Point;
+
+pub use patch::Patch;
+pub(crate) use planar::*;
+pub(crate) use spatial::*;
+
+pub mod kernels;
+mod patch;
+mod planar;
+mod spatial;
 
 /// What stands beside the declaration of a primitive, for tests and documents.
 pub trait Evidence<const D: usize>: NamedKernel<D> {
@@ -112,4 +111,28 @@ impl<const D: usize> Definition<D> {
         let (lower, upper) = patch::distance(&self.boundary, p, spacing);
         Enclosure { lower, upper, inside: (self.contains)(p) }
     }
+}
+
+/// `(Σ|xᵢ|^e)^(1/e)`, computed as written.
+pub(crate) fn norm<const D: usize>(x: Point<D>, exponent: f64) -> f64 {
+    x.0.iter().map(|x| x.abs().powf(exponent)).sum::<f64>().powf(1.0 / exponent)
+}
+
+/// The point of the unit ball's surface in a direction of length one.
+pub(crate) fn on_ball<const D: usize>(direction: Point<D>, exponent: f64) -> Point<D> {
+    direction * (1.0 / norm(direction, exponent))
+}
+
+/// The largest ratio of the motion of the point on the ball to that of its direction.
+///
+/// With the norm `n` of the direction, the point moves `1/n` times as far across the direction.
+/// Along it the ratio is `√(1 − n²)/n²`, because the gradient of the norm is at most one long
+/// and its part along the direction is `n`. Together this is `1/n²`, which is largest where all
+/// components are equal.
+pub(crate) fn speed<const D: usize>(exponent: f64) -> f64 {
+    (D as f64).powf(1.0 - 2.0 / exponent)
+}
+
+pub(crate) fn bound<const D: usize>(definition: Definition<D>) -> Definition<D> {
+    Definition { outside: Outside::Bound, ..definition }
 }

@@ -4,7 +4,7 @@
 //! Profiles that fill the crease of a smooth union.
 
 use super::Float;
-use super::exponential::{log2_of_one_plus, power_of_half};
+use super::power::{log2_of_one_plus, power_of_half};
 
 /// How a smooth union fills the crease between two fields.
 ///

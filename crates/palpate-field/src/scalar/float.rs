@@ -3,8 +3,7 @@
 
 //! Plain floating-point numbers.
 
-use super::trigonometry;
-use super::{Blend, Scalar};
+use super::{Blend, Scalar, power};
 use crate::vector::unrolled;
 
 /// A floating-point number: [`f32`] or [`f64`].
@@ -79,17 +78,17 @@ macro_rules! float {
 
             #[inline(always)]
             fn sin(self) -> Self {
-                trigonometry::sin(self)
+                power::sin(self)
             }
 
             #[inline(always)]
             fn cos(self) -> Self {
-                trigonometry::cos(self)
+                power::cos(self)
             }
 
             #[inline(always)]
             fn turn(x: Self, y: Self) -> Self {
-                trigonometry::turn(x, y)
+                power::turn(x, y)
             }
 
             #[inline(always)]

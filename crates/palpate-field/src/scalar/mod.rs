@@ -15,14 +15,12 @@
 
 mod blend;
 mod dual;
-pub(crate) mod exponential;
 mod expression;
 mod float;
 mod graph;
 mod model;
 pub(crate) mod power;
 mod recorded;
-mod trigonometry;
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 

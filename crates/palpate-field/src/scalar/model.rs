@@ -5,8 +5,6 @@
 
 mod boxes;
 mod norms;
-mod smooth;
-mod turns;
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
@@ -535,7 +533,7 @@ impl<const N: usize> Scalar for AffineModel<N> {
 
     #[inline(always)]
     fn turn(x: Self, y: Self) -> Self {
-        turns::turn(x, y)
+        norms::turn(x, y)
     }
 
     #[inline(always)]
@@ -573,6 +571,6 @@ impl<const N: usize> Scalar for AffineModel<N> {
 
     #[inline(always)]
     fn smooth_min<B: Blend>(self, other: Self, unit: f64) -> Self {
-        smooth::minimum::<B, N>(self, other, unit)
+        norms::minimum::<B, N>(self, other, unit)
     }
 }

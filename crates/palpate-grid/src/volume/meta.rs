@@ -9,8 +9,9 @@ use std::path::Path;
 
 use palpate_field::Vector;
 
-use super::numbers::{Kind, Packing, Stored, list};
-use super::{LEFT_POSTERIOR, LONGEST_HEAD, Volume, VolumeProblem, beside};
+use super::{
+    Kind, LEFT_POSTERIOR, LONGEST_HEAD, Packing, Stored, Volume, VolumeProblem, beside, list,
+};
 
 const FORMAT: &str = "MetaImage";
 

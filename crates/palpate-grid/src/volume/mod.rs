@@ -1,28 +1,28 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
+//! Volumes of scanners.
+//!
 //! Volumes of a scanner, and the surfaces in them.
 //!
 //! Samples of a scan are densities, not distances: a value makes a surface, which becomes a mesh.
-
-mod error;
-mod meta;
-mod nanovdb;
-mod nifti;
-mod npy;
-mod nrrd;
-mod numbers;
-mod surface;
 
 use std::fs::File;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
+use flate2::read::{MultiGzDecoder, ZlibDecoder};
 use palpate_field::{Point, Vector};
+use palpate_mesh::ContourError;
 
-pub use error::{VolumeError, VolumeProblem};
+use crate::grid::unravelled;
 
-use crate::lattice::unravelled;
+mod meta;
+mod nanovdb;
+mod nifti;
+mod npy;
+mod nrrd;
+mod surface;
 
 /// The size of the largest file that is read, in bytes: 1 GiB.
 pub const LARGEST_VOLUME: u64 = 1 << 30;
@@ -400,4 +400,261 @@ fn beside(folder: &Path, name: &str) -> Result<Vec<u8>, VolumeProblem> {
         return Err(VolumeProblem::Elsewhere { name: name.to_owned() });
     }
     bytes(&path)
+}
+
+/// Why a file is no volume.
+#[derive(Debug, thiserror::Error)]
+#[error("{}: {problem}", path.display())]
+pub struct VolumeError {
+    /// The file.
+    pub path: PathBuf,
+    /// What is wrong.
+    pub problem: VolumeProblem,
+}
+
+/// What is wrong with a volume.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum VolumeProblem {
+    /// Reading failed.
+    #[error("it cannot be read: {0}")]
+    Unreadable(#[from] std::io::Error),
+    /// It is a folder, a pipe or a device.
+    #[error("it is no file")]
+    NoFile,
+    /// It is larger than [`LARGEST_VOLUME`].
+    #[error(
+        "it has {bytes} bytes, {LARGEST_VOLUME} at most: cut the volume, or sample it coarser"
+    )]
+    TooLarge {
+        /// Its size.
+        bytes: u64,
+    },
+    /// Its name ends in nothing known.
+    #[error(
+        "{name}: a volume ends in .nrrd, .nhdr, .mha, .mhd, .nii, .nii.gz, .npy or .nvdb; dcm2niix makes .nii.gz of DICOM"
+    )]
+    Ending {
+        /// The name.
+        name: String,
+    },
+    /// It is a file of OpenVDB.
+    #[error(
+        "it is a file of OpenVDB, which is not read: `nanovdb_convert in.vdb out.nvdb` of OpenVDB's tools makes of it one that is"
+    )]
+    OpenVdb,
+    /// A grid was asked for by its name, of a file that has none.
+    #[error("there is no grid {name:?} in it: only a file of NanoVDB has grids with names")]
+    NoGrids {
+        /// The name.
+        name: String,
+    },
+    /// The active voxels of a sparse grid, and one around them, are too many for a volume.
+    #[error(
+        "its active voxels span {spans:?} nodes, at most {allowed} in all are made of a file of its size: cut it, or resample it coarser"
+    )]
+    TooWide {
+        /// The nodes along each axis.
+        spans: [u64; 3],
+        /// How many there may be.
+        allowed: u64,
+    },
+    /// Its head names a file elsewhere.
+    #[error("its head names the file {name:?}: the samples must lie in the folder of the head")]
+    Elsewhere {
+        /// The name.
+        name: String,
+    },
+    /// It breaks the rules of its format.
+    #[error("it is no good {format}: {problem}")]
+    Malformed {
+        /// The name of the format.
+        format: &'static str,
+        /// What is wrong.
+        problem: String,
+    },
+    /// It has not as many samples as nodes, or an axis of one node.
+    #[error(
+        "{} × {} × {} nodes need as many samples, got {samples}; each axis needs at least 2 nodes",
+        counts[0], counts[1], counts[2]
+    )]
+    Counts {
+        /// The nodes along each axis.
+        counts: [usize; 3],
+        /// The samples.
+        samples: usize,
+    },
+    /// A step is zero or no number.
+    #[error("the spacing must be positive and finite, got {steps:?} m")]
+    Spacing {
+        /// The lengths of the steps [m].
+        steps: [f64; 3],
+    },
+    /// The axes are not square to each other.
+    #[error(
+        "its axes are sheared (the cosine between two is {cosine:.4}): resample it on square axes"
+    )]
+    Shear {
+        /// The cosine of the angle between two axes.
+        cosine: f64,
+    },
+    /// A sample is no number.
+    #[error(
+        "the sample at node {node:?} is NaN or beyond single precision: replace it by the value of what is around the body"
+    )]
+    NotFinite {
+        /// The node's number along each axis, from 0.
+        node: [usize; 3],
+    },
+    /// The value makes no surface.
+    #[error("the samples are from {least} to {largest}: no surface lies at {value}")]
+    NoSurface {
+        /// The value asked for.
+        value: f64,
+        /// The least sample.
+        least: f32,
+        /// The largest sample.
+        largest: f32,
+    },
+    /// The surface takes too many triangles.
+    #[error(
+        "the surface passes more than {limit} cells: resample the volume coarser, or cut it"
+    )]
+    TooFine {
+        /// How many cells it may pass.
+        limit: usize,
+    },
+    /// The surface cannot be meshed.
+    #[error(transparent)]
+    Contour(ContourError),
+}
+
+/// Deflate makes at most so many bytes of one.
+const MOST_INFLATED: usize = 1040;
+
+/// The most samples of a volume: a gigabyte in memory.
+const MOST_SAMPLES: usize = 1 << 28;
+
+/// How a number is stored.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Kind {
+    I8,
+    U8,
+    I16,
+    U16,
+    I32,
+    U32,
+    F32,
+    F64,
+}
+
+/// How bytes are packed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Packing {
+    Raw,
+    Gzip,
+    Zlib,
+}
+
+impl Kind {
+    const fn bytes(self) -> usize {
+        match self {
+            Self::I8 | Self::U8 => 1,
+            Self::I16 | Self::U16 => 2,
+            Self::I32 | Self::U32 | Self::F32 => 4,
+            Self::F64 => 8,
+        }
+    }
+}
+
+/// A number's samples of a format.
+#[derive(Clone, Copy, Debug)]
+struct Stored {
+    format: &'static str,
+    kind: Kind,
+    is_big: bool,
+    packing: Packing,
+    count: usize,
+}
+
+impl Stored {
+    /// The samples at the beginning of `bytes`.
+    fn read(&self, bytes: &[u8]) -> Result<Vec<f32>, VolumeProblem> {
+        let wrong = |problem: String| VolumeProblem::Malformed { format: self.format, problem };
+        let length = self
+            .count
+            .checked_mul(self.kind.bytes())
+            .ok_or_else(|| wrong("it has too many samples".to_owned()))?;
+        let short =
+            |found: usize| wrong(format!("its samples take {length} bytes, it has {found}"));
+        if self.count > MOST_SAMPLES {
+            return Err(wrong(format!(
+                "it has {} samples, {MOST_SAMPLES} at most: cut it, or resample it coarser",
+                self.count
+            )));
+        }
+        let unpacked = match self.packing {
+            Packing::Raw => None,
+            _ if length > bytes.len().saturating_mul(MOST_INFLATED) => {
+                return Err(short(bytes.len()));
+            }
+            Packing::Gzip => Some(inflated(MultiGzDecoder::new(bytes), length)),
+            Packing::Zlib => Some(inflated(ZlibDecoder::new(bytes), length)),
+        };
+        let unpacked = unpacked.transpose().map_err(|error| wrong(error.to_string()))?;
+        let bytes = unpacked.as_deref().unwrap_or(bytes);
+        if bytes.len() > length {
+            return Err(wrong(format!("its samples take {length} bytes, and more follow")));
+        }
+        let bytes = bytes.get(..length).ok_or_else(|| short(bytes.len()))?;
+        Ok(self.numbers(bytes))
+    }
+
+    fn numbers(&self, bytes: &[u8]) -> Vec<f32> {
+        macro_rules! all {
+            ($t:ty) => {
+                bytes
+                    .as_chunks()
+                    .0
+                    .iter()
+                    .map(|b| {
+                        if self.is_big {
+                            <$t>::from_be_bytes(*b)
+                        } else {
+                            <$t>::from_le_bytes(*b)
+                        }
+                    })
+                    .map(|number| number as f32)
+                    .collect()
+            };
+        }
+        match self.kind {
+            Kind::I8 => all!(i8),
+            Kind::U8 => all!(u8),
+            Kind::I16 => all!(i16),
+            Kind::U16 => all!(u16),
+            Kind::I32 => all!(i32),
+            Kind::U32 => all!(u32),
+            Kind::F32 => all!(f32),
+            Kind::F64 => all!(f64),
+        }
+    }
+}
+
+/// The unpacked bytes, at most `length + 1`: one byte more shows that they are more than is said, and reading to the end
+/// compares the checksum.
+fn inflated(from: impl Read, length: usize) -> std::io::Result<Vec<u8>> {
+    let mut bytes = Vec::new();
+    from.take(length as u64 + 1).read_to_end(&mut bytes)?;
+    Ok(bytes)
+}
+
+/// The numbers of a text, `N` of them.
+fn list<T: std::str::FromStr, const N: usize>(text: &str) -> Option<[T; N]> {
+    let parsed: Option<Vec<T>> = text
+        .split(|c: char| c.is_whitespace() || c == ',')
+        .filter(|part| !part.is_empty())
+        .map(|part| part.parse().ok())
+        .collect();
+    parsed?.try_into().ok()
 }

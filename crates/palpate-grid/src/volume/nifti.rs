@@ -9,8 +9,7 @@ use std::io::Read;
 use flate2::read::MultiGzDecoder;
 use palpate_field::Vector;
 
-use super::numbers::{Kind, Packing, Stored, inflated};
-use super::{LARGEST_VOLUME, Volume, VolumeProblem};
+use super::{Kind, LARGEST_VOLUME, Packing, Stored, Volume, VolumeProblem, inflated};
 
 const FORMAT: &str = "NIfTI";
 

@@ -6,9 +6,8 @@
 
 use palpate_field::Vector;
 
-use super::numbers::{Kind, Packing, Stored, list};
-use super::{Volume, VolumeProblem};
-use crate::lattice::{indices, raveled};
+use super::{Kind, Packing, Stored, Volume, VolumeProblem, list};
+use crate::grid::{indices, raveled};
 
 const FORMAT: &str = ".npy";
 

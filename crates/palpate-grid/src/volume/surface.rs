@@ -7,7 +7,7 @@ use palpate_field::{Aabb, Bounds, CustomField, Point, Promise, Rounding, Shape, 
 use palpate_mesh::{ContourError, ContourOptions, TriangleMesh};
 
 use super::{Inside, Volume, VolumeProblem};
-use crate::lattice::raveled;
+use crate::grid::raveled;
 
 /// The value less what a volume has at a place, interpolated linearly between its nodes: with the sign of distances,
 /// negative where samples are larger. A step beyond its nodes and farther it is the value less the least sample.

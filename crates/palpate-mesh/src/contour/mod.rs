@@ -9,12 +9,7 @@
 //! four cells make two triangles.
 
 mod cells;
-mod crossings;
 mod deviation;
-mod faces;
-mod fitted;
-mod lost;
-mod patches;
 mod vertex;
 
 use std::collections::HashMap;
@@ -22,13 +17,10 @@ use std::ops::ControlFlow;
 
 use palpate_field::{Point, Shape};
 
-use crate::error::MeshError;
-use crate::mesh::{TriangleMesh, single};
+use crate::mesh::{MeshError, TriangleMesh, single};
 use crate::solid::crossing_faces;
-use cells::{Cells, Signed};
-use crossings::Crossing;
-pub use fitted::{FitProgress, FittedMesh};
-use patches::{EDGES, NONE, Patches};
+use cells::{Cells, Crossing, EDGES, NONE, Patches, Signed};
+pub use vertex::{FitProgress, FittedMesh};
 
 /// Cells around the bounds of the shape, on each side.
 const AROUND: f64 = 1.5;
@@ -274,7 +266,7 @@ impl Contour {
                 patch => first + u32::from(patch),
             }));
         }
-        let quads = faces::quads(signed, &of_edges);
+        let quads = cells::quads(signed, &of_edges);
         Ok(Self { corners, quads })
     }
 
@@ -292,7 +284,7 @@ impl Contour {
             let place =
                 |corner: &Corner| if is_single { single(corner.place) } else { corner.place };
             let places: Vec<_> = self.corners.iter().map(place).collect();
-            let triangles = faces::triangles(shape, &places, &self.quads);
+            let triangles = cells::triangles(shape, &places, &self.quads);
             let mesh = TriangleMesh::new(places, triangles)?;
             if mend == MOST_MENDS {
                 return Ok(mesh);

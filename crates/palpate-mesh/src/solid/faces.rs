@@ -1,12 +1,16 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! The faces of a solid by eights. Distances to all eight in single precision tell which may be the nearest; of these
-//! the [`foot`] is taken.
+//! Faces of a solid, their boxes and normals.
+//!
+//! Boxes around groups of eight elements, around eight of those groups, and so on.
+//!
+//! The groups are those of [`BallTree`](crate::tree::BallTree): runs of elements in its order.
 
-use palpate_field::{Point, Vector, Wide, wide};
+use palpate_field::{Aabb, Point, Vector, Wide, wide};
 
-use super::foot::{Foot, foot};
+use super::field::{Foot, Part, across, foot};
+use super::repair::{by_rim, sides};
 use crate::tree::FAN;
 
 /// The rounding of a distance in single precision, as a share of the distance of the point from the group's middle plus
@@ -315,12 +319,261 @@ fn direction<const D: usize>(v: Vector<f64, D>) -> (Vector<f64, D>, f64) {
     v.normalized().map_or((Vector::unit(0), 0.0), |direction| (direction, v.norm()))
 }
 
+/// The normals of a mesh, out of the solid.
+#[derive(Clone, Debug)]
+pub(super) struct Normals<const N: usize, const D: usize> {
+    /// Of each face: of its own, of its edges, and the numbers of its corners.
+    faces: Vec<FaceNormals<N, D>>,
+    /// Of each vertex: the sum of the normals of its faces, each times the angle that it has there.
+    corners: Vec<Vector<f64, D>>,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct FaceNormals<const N: usize, const D: usize> {
+    face: Vector<f64, D>,
+    /// A bound of the error of the face's own; 2 if it has no area, and no direction is known.
+    error: f64,
+    edges: [Vector<f64, D>; N],
+    corners: [u32; N],
+}
+
+impl<const N: usize, const D: usize> Normals<N, D> {
+    pub(super) fn new(vertices: usize, elements: &[[u32; N]], faces: &[[Point<D>; N]]) -> Self {
+        let own: Vec<_> = faces
+            .iter()
+            .map(|corners| across(corners).normalized().unwrap_or(Vector::ZERO))
+            .collect();
+        let errors = faces.iter().map(error);
+        let mut normals = Self {
+            faces: elements
+                .iter()
+                .zip(&own)
+                .zip(errors)
+                .map(|((element, face), error)| FaceNormals {
+                    face: *face,
+                    error,
+                    edges: [*face; N],
+                    corners: *element,
+                })
+                .collect(),
+            corners: vec![Vector::ZERO; vertices],
+        };
+        for ((element, corners), normal) in elements.iter().zip(faces).zip(&own) {
+            for (i, vertex) in element.iter().enumerate() {
+                normals.corners[*vertex as usize] += *normal * angle(corners, i);
+            }
+        }
+        for corner in &mut normals.corners {
+            *corner = corner.normalized().unwrap_or(Vector::ZERO);
+        }
+        if N == 3 {
+            for at_rim in by_rim(&sides(elements)) {
+                let sum = at_rim
+                    .iter()
+                    .fold(Vector::ZERO, |sum, side| sum + own[side.element as usize]);
+                let edge = sum.normalized().unwrap_or(Vector::ZERO);
+                for side in at_rim {
+                    normals.faces[side.element as usize].edges[side.number as usize] = edge;
+                }
+            }
+        }
+        normals
+    }
+
+    /// The normal of a face, and a bound of its error.
+    #[inline]
+    pub(super) fn of_face(&self, face: usize) -> (Vector<f64, D>, f64) {
+        let FaceNormals { face, error, .. } = &self.faces[face];
+        (*face, *error)
+    }
+
+    /// The normal at a part of a face.
+    pub(super) fn at(&self, face: usize, part: Part) -> Vector<f64, D> {
+        let normals = &self.faces[face];
+        match part {
+            Part::Face => normals.face,
+            Part::Edge(i) => normals.edges[i],
+            Part::Corner(i) => self.corners[normals.corners[i] as usize],
+        }
+    }
+}
+
+/// A bound of the error of a unit normal.
+fn error<const N: usize, const D: usize>(corners: &[Point<D>; N]) -> f64 {
+    let longest = corners.iter().fold(0.0_f64, |longest, corner| {
+        longest.max((*corner - corners[0]).norm()).max((*corner - corners[N - 1]).norm())
+    });
+    // Each component of a product of two sides is rounded thrice; the product of one side is exact.
+    let error = 16.0 * f64::EPSILON * longest.powi(N as i32 - 1) / across(corners).norm();
+    if error < 1.0 { error } else { 2.0 }
+}
+
+/// The angle of a triangle at a corner [rad]; 1 at the end of a segment.
+fn angle<const N: usize, const D: usize>(corners: &[Point<D>; N], i: usize) -> f64 {
+    if N == 2 {
+        return 1.0;
+    }
+    let [to, from] = [1, 2].map(|step| corners[(i + step) % N] - corners[i]);
+    to.in_space().cross(from.in_space()).norm().atan2(to.dot(from))
+}
+
+/// The most levels: eight boxes around eight each, up to `u32::MAX` elements.
+const MOST_LEVELS: usize = 11;
+
+/// The bits of a key that tell the number of its box.
+const BOX_NUMBER: u64 = FAN as u64 - 1;
+
+/// The key of a box that was visited, or of padding: `f64::MAX` without the bits of the number. All others are less.
+const DONE: f64 = f64::from_bits(f64::MAX.to_bits() & !BOX_NUMBER);
+
+/// The boxes of one level, padded to whole groups of eight.
+#[derive(Clone, Debug)]
+struct Level<const D: usize> {
+    min: [Vec<f64>; D],
+    max: [Vec<f64>; D],
+}
+
+/// Boxes on the implicit order of the elements of a mesh.
+#[derive(Clone, Debug)]
+pub(crate) struct Boxes<const D: usize> {
+    /// The first level has boxes around eight elements each, the last at most eight boxes.
+    levels: Vec<Level<D>>,
+}
+
+impl<const D: usize> Boxes<D> {
+    /// The boxes around elements, which are in the order of the tree.
+    pub(crate) fn new<const N: usize>(elements: &[[Point<D>; N]]) -> Self {
+        let around = |group: &[[Point<D>; N]]| Aabb::around(group.iter().flatten().copied());
+        let mut boxes: Vec<_> = elements.chunks(FAN).filter_map(around).collect();
+        let mut levels = vec![Level::new(&boxes)];
+        while boxes.len() > FAN {
+            let union = |group: &[Aabb<D>]| group.iter().copied().reduce(|a, b| a.union(&b));
+            boxes = boxes.chunks(FAN).filter_map(union).collect();
+            levels.push(Level::new(&boxes));
+        }
+        Self { levels }
+    }
+
+    /// The groups of eight elements as seen from a point.
+    #[inline(always)]
+    pub(crate) fn from(&self, p: Point<D>) -> Walk<'_, D> {
+        let level = self.levels.len() - 1;
+        let mut keys = [[DONE; FAN]; MOST_LEVELS];
+        keys[level] = self.levels[level].keys(p, 0);
+        Walk { boxes: self, p, level, groups: [0; MOST_LEVELS], keys }
+    }
+
+    /// Calls `visit` with the groups of eight elements, by number, whose boxes share a point with a box.
+    pub(crate) fn overlapping(&self, around: &Aabb<D>, mut visit: impl FnMut(usize)) {
+        let mut waiting = vec![(self.levels.len() - 1, 0)];
+        while let Some((level, group)) = waiting.pop() {
+            for i in self.levels[level].overlapping(around, group) {
+                let node = group * FAN + i;
+                if level == 0 {
+                    visit(node);
+                } else {
+                    waiting.push((level - 1, node));
+                }
+            }
+        }
+    }
+}
+
+/// A walk over groups, the nearest first as far as boxes tell.
+pub(crate) struct Walk<'a, const D: usize> {
+    boxes: &'a Boxes<D>,
+    p: Point<D>,
+    level: usize,
+    /// Of each level, the group that is looked into, and the keys of its boxes.
+    groups: [usize; MOST_LEVELS],
+    keys: [[f64; FAN]; MOST_LEVELS],
+}
+
+impl<const D: usize> Walk<'_, D> {
+    /// The number of the next group of eight elements whose box is nearer than the square of a distance [m²]; none
+    /// from a point that is not finite.
+    #[inline(always)]
+    pub(crate) fn next(&mut self, least: f64) -> Option<usize> {
+        loop {
+            let keys = &mut self.keys[self.level];
+            let mut nearest = DONE;
+            for key in *keys {
+                nearest = if key < nearest { key } else { nearest };
+            }
+            let matters = nearest < least && nearest < DONE;
+            if !matters {
+                if self.level + 1 == self.boxes.levels.len() {
+                    return None;
+                }
+                self.level += 1;
+                continue;
+            }
+            let number = (nearest.to_bits() & BOX_NUMBER) as usize;
+            keys[number] = DONE;
+            let node = self.groups[self.level] * FAN + number;
+            if self.level == 0 {
+                return Some(node);
+            }
+            self.level -= 1;
+            self.groups[self.level] = node;
+            self.keys[self.level] = self.boxes.levels[self.level].keys(self.p, node);
+        }
+    }
+}
+
+impl<const D: usize> Level<D> {
+    fn new(boxes: &[Aabb<D>]) -> Self {
+        let padded = boxes.len().div_ceil(FAN) * FAN;
+        // Padding boxes are at infinity.
+        let mut level = Self {
+            min: std::array::from_fn(|_| vec![f64::INFINITY; padded]),
+            max: std::array::from_fn(|_| vec![f64::INFINITY; padded]),
+        };
+        for (i, aabb) in boxes.iter().enumerate() {
+            for k in 0..D {
+                (level.min[k][i], level.max[k][i]) = (aabb.min[k], aabb.max[k]);
+            }
+        }
+        level
+    }
+
+    /// The squares of the distances to the boxes of a group [m²], each with the box's number in its last three bits, so
+    /// that the least tells which box it is without a branch.
+    #[inline(always)]
+    fn keys(&self, p: Point<D>, group: usize) -> [f64; FAN] {
+        let mut squared = [0.0; FAN];
+        for k in 0..D {
+            let min = &self.min[k][group * FAN..][..FAN];
+            let max = &self.max[k][group * FAN..][..FAN];
+            for i in 0..FAN {
+                let away = (min[i] - p[k]).max(p[k] - max[i]).max(0.0);
+                squared[i] += away * away;
+            }
+        }
+        for (i, squared) in squared.iter_mut().enumerate() {
+            // Padding is at infinity; what is not a number is passed over.
+            let far = if *squared < DONE { *squared } else { DONE };
+            *squared = f64::from_bits(far.to_bits() & !BOX_NUMBER | i as u64);
+        }
+        squared
+    }
+
+    /// Which boxes of a group share a point with a box.
+    fn overlapping(&self, around: &Aabb<D>, group: usize) -> impl Iterator<Item = usize> {
+        let is_apart = move |i: usize| {
+            let i = group * FAN + i;
+            (0..D).any(|k| self.min[k][i] > around.max[k] || self.max[k][i] < around.min[k])
+        };
+        (0..FAN).filter(move |i| !is_apart(*i))
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use palpate_testkit::cases;
 
+    use super::super::field::Part;
     use super::*;
-    use crate::solid::foot::Part;
 
     /// The nearest of all faces by their feet, and by groups.
     fn same<const N: usize, const D: usize>() {

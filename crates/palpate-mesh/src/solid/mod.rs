@@ -1,40 +1,33 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! Meshes as solids: the distance to their surface, with a sign by normals or winding numbers.
+//! The solid that a mesh bounds.
 
-mod boxes;
-mod error;
+use faces::{Boxes, Normals};
+use field::{Foot, Part, Walls, foot};
+use palpate_field::scalar::AffineModel;
+use palpate_field::{
+    Aabb, LARGEST_LENGTH, Point, Promise, Quality, SMALLEST_LENGTH, Vector, Wide, wide,
+};
+use repair::{Crossings, Known, Repair, by_rim, sides};
+use winding::WindingTree;
+
+use crate::mesh::{Mesh, MeshError};
+use crate::report::is_flat;
+use crate::solid::faces::Faces;
+use crate::tree::BallTree;
+
+pub use field::MeshSheet;
+pub(crate) use field::across;
+pub use findings::Findings;
+pub use repair::Opening;
+pub(crate) use repair::crossing_faces;
+
 mod faces;
 mod field;
 mod findings;
-mod foot;
-mod normals;
 mod repair;
-mod sheet;
-mod surface;
-mod walls;
 mod winding;
-
-use palpate_field::{Aabb, LARGEST_LENGTH, Point, Promise, Quality, SMALLEST_LENGTH, Vector};
-
-use crate::error::MeshError;
-use crate::mesh::Mesh;
-use crate::report::is_flat;
-use crate::tree::BallTree;
-use boxes::Boxes;
-pub use error::SolidError;
-pub use findings::Findings;
-pub(crate) use foot::across;
-use foot::{Foot, Part};
-use normals::Normals;
-pub use repair::Opening;
-pub(crate) use repair::crossing_faces;
-use repair::{Crossings, Known, Repair, by_rim, sides};
-pub use sheet::MeshSheet;
-use surface::Surface;
-use walls::Walls;
-use winding::WindingTree;
 
 /// Rounded operations of a distance on numbers up to `|p| + size`.
 const OPERATIONS: f64 = 64.0;
@@ -287,7 +280,7 @@ fn examine<const N: usize, const D: usize>(
         return (crossings, Walls::none(faces.len()), None);
     }
     let tree = WindingTree::new(faces);
-    let walls = walls::find(faces, &tree, &of_piece, &crossings.is_met);
+    let walls = field::find(faces, &tree, &of_piece, &crossings.is_met);
     (crossings, walls, Some(tree))
 }
 
@@ -336,4 +329,148 @@ fn promise<const N: usize, const D: usize>(
     let mut promise = Promise::exact(Some(bounds), OPERATIONS, size);
     (promise.outside, promise.inside) = (outside, inside);
     promise
+}
+
+/// Why a mesh bounds no solid.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum SolidError {
+    /// All faces were dropped.
+    #[error(
+        "none of the {given} faces is left: each has a vertex twice, is cancelled by its copy, or has the same side \
+         on both sides"
+    )]
+    NoFaces {
+        /// The faces of the mesh.
+        given: usize,
+    },
+    /// The mesh is too small or too large for its distances.
+    #[error(
+        "it is {size:e} units across, and must be from {SMALLEST_LENGTH:e} to {LARGEST_LENGTH:e}: export it in other units"
+    )]
+    Size {
+        /// The longest side of the box around it, in its units.
+        size: f64,
+    },
+    /// The thickness of a sheet is too small or too large.
+    #[error(
+        "thickness must be from {SMALLEST_LENGTH:e} to {LARGEST_LENGTH:e} of its units, got {thickness:e}"
+    )]
+    Thickness {
+        /// The thickness, in the units of the mesh.
+        thickness: f64,
+    },
+    /// A piece is not orientable.
+    #[error(
+        "pieces that are not orientable (like a Möbius strip): {pieces}; they bound no solid; with a thickness \
+         (\"thickness\": METRES in a scene, `MeshSheet` in Rust) it is a plate"
+    )]
+    OneSided {
+        /// The number of such pieces.
+        pieces: usize,
+    },
+    /// The mesh is a sheet.
+    #[error(
+        "the openings are as large as the surface: it is a sheet, and bounds no solid; with a thickness \
+         (\"thickness\": METRES in a scene, `MeshSheet` in Rust) it is a plate"
+    )]
+    Sheet,
+}
+
+/// The rounding of a nearest point and of its distance, as a share of coordinates and of the size of all faces.
+const ROUNDING: f64 = 64.0 * f64::EPSILON;
+
+/// A model looks at so many groups of eight faces at most: a cell near more is large.
+const MOST_GROUPS: usize = 32;
+
+/// Faces in the order of their boxes.
+#[derive(Clone, Debug)]
+struct Surface<const N: usize, const D: usize> {
+    faces: Faces<N, D>,
+    boxes: Boxes<D>,
+}
+
+impl<const N: usize, const D: usize> Surface<N, D> {
+    /// Of faces in the order of the tree.
+    fn new(faces: &[[Point<D>; N]]) -> Self {
+        Self { faces: Faces::new(faces), boxes: Boxes::new(faces) }
+    }
+
+    /// The face nearest to a point, in the order of the boxes, and its nearest point.
+    ///
+    /// `known` is a point of the surface, if there is one: its distance bounds the search, and the nearer it is, the
+    /// shorter is the search.
+    fn nearest(&self, p: Point<D>, known: Option<Point<D>>) -> (usize, Foot<D>) {
+        let least = known.map_or(f64::INFINITY, |known| {
+            // Its face must still be found, whose nearest point is rounded too.
+            let rounding = ROUNDING * (p.norm() + known.norm() + self.faces.size());
+            ((p - known).norm() * (1.0 + ROUNDING) + rounding).powi(2)
+        });
+        wide(Nearest { surface: self, p, least })
+    }
+
+    /// A model of the distance to the nearest face over a cell that no face meets, from the face nearest to its centre,
+    /// the distance there, and the unit vector away from the nearest point; `None` if too many faces may be nearest
+    /// somewhere in it.
+    ///
+    /// The distance to each face is convex. So it is at least its tangent plane, and the nearest face's is
+    /// largest, above a plane, at a corner of the cell.
+    fn model_of_distance<const M: usize>(
+        &self,
+        cell: &[AffineModel<M>; D],
+        (face, distance, away): (usize, f64, Vector<f64, D>),
+        radius: f64,
+        rounding: f64,
+    ) -> Option<AffineModel<M>> {
+        let centre = Vector(cell.map(|x| x.value));
+        let nearest = self.faces.corners(face);
+        let to_nearest = |p: [f64; D]| foot(nearest, Vector(p)).squared.sqrt();
+        let mut model = AffineModel::tangent(distance, away.0, to_nearest, cell, rounding);
+        let own = model.lower;
+        // How far the cell's own remainders move the planes apart.
+        let remainders: f64 = cell.iter().map(|x| x.lower.max(x.upper)).sum();
+        let farthest = distance + 2.0 * radius + rounding;
+        let mut groups = 0;
+        let mut walk = self.boxes.from(centre);
+        while let Some(group) = walk.next(farthest * farthest) {
+            groups += 1;
+            // A model no narrower than that of the Lipschitz constant is not worth the search.
+            if groups > MOST_GROUPS || model.lower + model.upper > 2.0 * radius {
+                return None;
+            }
+            self.faces.within(group, centre, farthest, |found, far| {
+                let between = away - (centre - found.point) * (1.0 / far);
+                let apart: f64 = (0..M)
+                    .map(|k| {
+                        (0..D).map(|i| between[i] * cell[i].gradient[k]).sum::<f64>().abs()
+                    })
+                    .sum();
+                model.lower = model.lower.max(own + distance - far + apart + 2.0 * remainders);
+            });
+        }
+        Some(model)
+    }
+}
+
+/// The search of the nearest face.
+struct Nearest<'a, const N: usize, const D: usize> {
+    surface: &'a Surface<N, D>,
+    p: Point<D>,
+    /// The square of the distance is known to be less [m²].
+    least: f64,
+}
+
+impl<const N: usize, const D: usize> Wide for Nearest<'_, N, D> {
+    type Out = (usize, Foot<D>);
+
+    #[inline(always)]
+    fn run(self) -> (usize, Foot<D>) {
+        let Self { surface: Surface { faces, boxes }, p, least } = self;
+        let mut nearest = (0, Foot { point: p, part: Part::Corner(0), squared: least });
+        let mut walk = boxes.from(p);
+        while let Some(group) = walk.next(nearest.1.squared) {
+            faces.nearer(group, p, &mut nearest);
+        }
+        if nearest.1.squared < least { nearest } else { (0, foot(faces.corners(0), p)) }
+    }
 }

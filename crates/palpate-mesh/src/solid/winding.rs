@@ -24,7 +24,7 @@ use std::f64::consts::{PI, TAU};
 
 use palpate_field::{Point, Vector, Wide, wide};
 
-use super::foot::across;
+use super::field::across;
 use crate::tree::{BallTree, FAN};
 
 /// Error bounds of a group, tried in this order until the question is settled; with 0 every element is summed.
@@ -69,7 +69,7 @@ impl Winding {
 /// What winding numbers of a mesh are made of.
 #[derive(Clone, Debug)]
 pub(crate) struct WindingTree<const N: usize, const D: usize> {
-    /// As [`Boxes`](super::boxes::Boxes): of eight elements each, of eight of those, and so on.
+    /// As [`Boxes`](super::faces::Boxes): of eight elements each, of eight of those, and so on.
     levels: Vec<Level<D>>,
 }
 

@@ -3,10 +3,7 @@
 
 //! Zeros within cells that have none on their edges.
 
-use super::cells::{kept, may_hold_zero};
-use super::edges::Corner;
-use super::lattice::{Lattice, Spot};
-use super::{Asked, BoundedField, Cell};
+use super::{Asked, BoundedField, Cell, Corner, Lattice, Spot, kept, may_hold_zero};
 use crate::error::PlotError;
 use crate::geometry::Point;
 use crate::slope::SampledSlope;

@@ -3,8 +3,7 @@
 
 //! The border of the inside, closed along the edge of the lattice.
 
-use super::edges::Zeros;
-use super::lattice::Lattice;
+use super::{Lattice, Zeros};
 use crate::chain::chains;
 use crate::geometry::Point;
 

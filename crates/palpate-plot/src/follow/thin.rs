@@ -3,9 +3,7 @@
 
 //! Zeros on edges with one sign at both ends: wires, and gaps and walls thinner than a cell.
 
-use super::edges::{Corner, Corners, Edge, Zeros, sorted_edges};
-use super::lattice::Lattice;
-use super::{Asked, BoundedField};
+use super::{Asked, BoundedField, Corner, Corners, Edge, Lattice, Zeros, sorted_edges};
 use crate::error::PlotError;
 use crate::slope::SampledSlope;
 

@@ -3,9 +3,7 @@
 
 //! Zeros on edges along which the sign changes.
 
-use super::edges::{Corner, Corners, Edge, Zeros, sorted_edges};
-use super::lattice::Lattice;
-use super::{Asked, BoundedField};
+use super::{Asked, BoundedField, Corner, Corners, Edge, Lattice, Zeros, sorted_edges};
 use crate::error::PlotError;
 
 /// Probes of an edge at most.

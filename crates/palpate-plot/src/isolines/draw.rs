@@ -4,19 +4,17 @@
 //! Draws isolines with their axes and their legend.
 
 use super::{Ground, Isolines};
-use crate::axis::{Axis, BELOW};
 use crate::body_picture::{self, Bodies};
+use crate::chart::{Axis, BELOW};
 use crate::drawing::{Drawing, Path, Stroke, TextStyle};
-use crate::frame::Frame;
 use crate::geometry::{Point, Rect};
 use crate::labels::Occupied;
-use crate::legend::{self, Entry, Key};
-use crate::levels::Levels;
-use crate::numbers::write;
+use crate::legend::{self, Entry, Frame, Key};
 use crate::outline::SurfaceLines;
 use crate::overlay_picture::Overlays;
 use crate::palette::{self, Color, Side};
 use crate::picture::{Picture, isoline_stroke, surface_stroke};
+use crate::scale::{Levels, write};
 use crate::slice::SliceAxis;
 use crate::text::{Anchor, CAP_HEIGHT};
 use crate::wheel::{self, AxisArrow};

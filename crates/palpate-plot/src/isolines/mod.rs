@@ -5,20 +5,17 @@
 
 mod draw;
 
-use crate::body::DrawnBody;
+use crate::body_picture::DrawnBody;
 use crate::drawing::Image;
 use crate::error::PlotError;
-use crate::levels::Levels;
-use crate::measured::Measured;
 use crate::outline::SurfaceLines;
-use crate::overlay::{Arrows, Markers, Overlay, Polyline};
+use crate::overlay::{Arrows, Markers, Measured, Overlay, Polyline};
 use crate::palette::Color;
-use crate::sampling::{Samples, Sampling};
-use crate::slice::Slice;
+use crate::scale::Levels;
+use crate::slice::{PlaneView, Samples, Sampling, Slice};
 use crate::slope::{Pixels, SampledSlope};
 use crate::trust::{Comparison, Promised, Trust};
 use crate::values::Values;
-use crate::view::PlaneView;
 use crate::wheel;
 
 pub(crate) use draw::{ABOVE_LEGEND, MOST_HEIGHT};

@@ -1,6 +1,8 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
+//! Branch and bound: the loop of every search, and its frontiers.
+//!
 //! Best-first branch and bound: the one loop that elements, balls, pairs and manifolds
 //! share.
 //!
@@ -15,12 +17,9 @@
 //! of cells ([`Heap`]), and a list where a scan of a few is cheaper (`Vec`); a cell in
 //! [`Frontier::pending`] is bounded as it is, before others are split.
 
-mod heap;
-mod list;
+use std::collections::BinaryHeap;
 
 use crate::certified::Stop;
-
-pub(crate) use heap::{Heap, Rebound};
 
 /// A part of what is searched.
 pub(crate) trait Bounded {
@@ -193,4 +192,179 @@ pub(crate) fn keep<P: Problem>(
         }
     }
     round.clear();
+}
+
+/// A cell whose bound can be replaced.
+pub(crate) trait Rebound: Bounded + Copy {
+    /// The same cell with another lower bound [m].
+    fn with_lower(&self, lower: f64) -> Self;
+}
+
+/// Cells in a heap. The heap moves bounds and places alone: cells are four times as large.
+#[derive(Clone, Debug)]
+pub(crate) struct Heap<C> {
+    heap: BinaryHeap<Key>,
+    cells: Vec<C>,
+    /// Places in `cells` that are free.
+    free: Vec<u32>,
+    room: usize,
+}
+
+/// A cell's lower bound, in the upper half, and its place. All bits are inverted, so that the
+/// least bound, and of equal bounds the first place, is the largest key. One number, since a
+/// heap that compares numbers needs no branches.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+struct Key(u128);
+
+/// The sign of a double.
+const SIGN: u64 = 1 << 63;
+
+impl Key {
+    #[inline]
+    fn new(lower: f64, place: u32) -> Self {
+        // As [`f64::total_cmp`] orders: negative numbers backwards, before the others.
+        let bits = lower.to_bits();
+        let ordered = bits ^ if bits & SIGN == 0 { SIGN } else { u64::MAX };
+        Self(!(u128::from(ordered) << 64 | u128::from(place)))
+    }
+
+    #[inline]
+    fn lower(self) -> f64 {
+        let ordered = (!self.0 >> 64) as u64;
+        f64::from_bits(ordered ^ if ordered & SIGN == 0 { u64::MAX } else { SIGN })
+    }
+
+    #[inline]
+    fn place(self) -> u32 {
+        !self.0 as u32
+    }
+}
+
+impl<C: Rebound> Heap<C> {
+    /// Room for `room` cells, of which `now` are allocated.
+    pub(crate) fn new(room: usize, now: usize) -> Self {
+        Self {
+            heap: BinaryHeap::with_capacity(now),
+            cells: Vec::with_capacity(now),
+            free: Vec::with_capacity(now),
+            room,
+        }
+    }
+
+    pub(crate) fn clear(&mut self) {
+        self.heap.clear();
+        self.cells.clear();
+        self.free.clear();
+    }
+
+    pub(crate) fn len(&self) -> usize {
+        self.heap.len()
+    }
+
+    /// `true` if there is room for `more` cells.
+    pub(crate) fn has_room(&self, more: usize) -> bool {
+        self.len() + more <= self.room
+    }
+
+    /// All cells, in no order.
+    pub(crate) fn cells(&self) -> impl Iterator<Item = C> {
+        let cell = |key: &Key| self.cells[key.place() as usize].with_lower(key.lower());
+        self.heap.iter().map(cell)
+    }
+}
+
+impl<C: Rebound> Queue for Heap<C> {
+    type Cell = C;
+
+    #[inline]
+    fn least(&self) -> f64 {
+        self.heap.peek().map_or(f64::INFINITY, |key| key.lower())
+    }
+
+    #[inline]
+    fn take_least(&mut self, then: impl FnOnce(&C)) -> bool {
+        let Some(key) = self.heap.pop() else { return false };
+        self.free.push(key.place());
+        then(&self.cells[key.place() as usize].with_lower(key.lower()));
+        true
+    }
+
+    #[inline]
+    fn push(&mut self, cell: &C) {
+        let place = match self.free.pop() {
+            Some(place) => {
+                self.cells[place as usize] = *cell;
+                place
+            }
+            None => {
+                self.cells.push(*cell);
+                self.cells.len() as u32 - 1
+            }
+        };
+        self.heap.push(Key::new(cell.lower(), place));
+    }
+}
+
+impl<C: Bounded + Copy> Queue for Vec<C> {
+    type Cell = C;
+
+    #[inline]
+    fn least(&self) -> f64 {
+        self.iter().fold(f64::INFINITY, |least, cell| smaller(least, cell.lower()))
+    }
+
+    #[inline]
+    fn take_least(&mut self, then: impl FnOnce(&C)) -> bool {
+        let Some(last) = self.len().checked_sub(1) else { return false };
+        let least = (0..last)
+            .fold(last, |low, i| if self[i].lower() < self[low].lower() { i } else { low });
+        self.swap(least, last);
+        then(&self[last]);
+        self.truncate(last);
+        true
+    }
+
+    #[inline]
+    fn push(&mut self, cell: &C) {
+        self.push(*cell);
+    }
+}
+
+#[cfg(test)]
+mod heap_tests {
+    use super::*;
+
+    #[test]
+    fn the_least_bound_comes_first_and_of_equal_ones_the_first_place() {
+        let bounds = [2.0, -1.5, f64::INFINITY, 0.0, -0.0, f64::NEG_INFINITY, -1.5, 1e-300];
+        let mut keys: Vec<Key> = (0..8).map(|i| Key::new(bounds[i], i as u32)).collect();
+        keys.sort_by(|a, b| b.cmp(a));
+        let mut expected: Vec<usize> = (0..8).collect();
+        expected.sort_by(|&a, &b| bounds[a].total_cmp(&bounds[b]).then(a.cmp(&b)));
+        for (key, place) in keys.into_iter().zip(expected) {
+            assert_eq!(key.place() as usize, place);
+            assert_eq!(key.lower().to_bits(), bounds[place].to_bits());
+        }
+    }
+}
+
+#[cfg(test)]
+mod list_tests {
+    use super::*;
+
+    impl Bounded for f64 {
+        fn lower(&self) -> f64 {
+            *self
+        }
+    }
+
+    #[test]
+    fn the_least_cell_is_taken_and_the_last_of_equal_ones() {
+        let mut list = vec![3.0, -0.0, 2.0, 0.0];
+        let mut taken = Vec::new();
+        assert_eq!(list.least(), 0.0);
+        while list.take_least(|cell: &f64| taken.push(cell.to_bits())) {}
+        assert_eq!(taken, [0.0_f64, -0.0, 2.0, 3.0].map(f64::to_bits));
+        assert_eq!(list.least(), f64::INFINITY);
+    }
 }

@@ -14,30 +14,22 @@
 //! otherwise, `patch` and `fill` choose the contacts, `moved` carries them with the bodies; the
 //! separation and its bounds come from `pair/search.rs`.
 
-mod deep;
-mod fill;
-pub(crate) mod grid;
-mod moved;
 mod patch;
 mod region;
 
 use palpate_field::{LARGEST_LENGTH, Point, Vector};
 
-use crate::certified::{Certified, Limits, Stop};
+use crate::certified::{Certified, Goal, Limits, Stop, Verdict};
 use crate::contact::{Contact, NormalSource};
 use crate::error::QueryError;
-use crate::goal::Goal;
-use crate::pair::body_pair::BodyPair;
-use crate::pair::facing::Face;
+use crate::pair::body_pair::{BodyPair, Face};
 use crate::pair::search::PairSearch;
 use crate::pair::{Nearest, PairWorkspace};
-use crate::placed::Placed;
-use crate::sampler::arbitrary;
-use crate::verdict::Verdict;
-pub(crate) use deep::followed;
-use grid::distance;
+use crate::sampler::{Placed, arbitrary};
 use patch::Patches;
+pub(crate) use patch::followed;
 use region::Region;
+pub(crate) use region::distance;
 
 /// Contacts closer than this many spacings, with normals within 37°, are copies.
 const COPIES: f64 = 1.5;
@@ -437,7 +429,7 @@ impl<const D: usize> Touch<D> {
         pair: &mut BodyPair<'_, D>,
         settings: &ManifoldSettings,
     ) -> Option<Self> {
-        deep::pushed(pair, self, settings).or_else(|| self.on_face(pair, settings))
+        patch::pushed(pair, self, settings).or_else(|| self.on_face(pair, settings))
     }
 
     /// The touch at a face of one body where the other has an edge: along the face's normal, and where
@@ -451,7 +443,7 @@ impl<const D: usize> Touch<D> {
         let turned = Self { normal, ..*self };
         if self.gap <= 0.0 {
             // The edge is deeper along the normal than the widest ball in the overlap is wide.
-            let deepest = deep::in_host(pair, body, self.point, settings);
+            let deepest = patch::in_host(pair, body, self.point, settings);
             let deepest = deepest.filter(|found| found.gap <= self.gap);
             return Some(deepest.map_or(turned, |Self { point, gap, .. }| Self {
                 point,

@@ -1,16 +1,25 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! Patches of contact, and the few points that span each.
+//! Patches of contact and the points that span them; contacts of deep and of moved bodies.
+//!
+//! Contacts of bodies that overlap by more than one of them is thick.
+//!
+//! Deep in a wall, its gradient leads out of its next side, through its thickness, and says nothing of
+//! where it came from. The gradient of the thicker body does, which is the *host* here: a normal out of
+//! the host, and the point of the other body, the *guest*, that lies deepest in it.
 
-use palpate_field::{Point, Vector};
+use palpate_field::{Point, Pose, Vector};
 
-use super::grid::{Grid, distance};
-use super::region::{Towards, towards};
-use super::{ManifoldSettings, Member, Touch};
-use crate::goal::Goal;
+use super::region::{Grid, Towards, distance, towards};
+use super::{
+    COPIES, LIKE, ManifoldSettings, Member, SAME_DEPTH, SeparatedPair, Spanned, Touch,
+    drop_copies, is_copy,
+};
+use crate::certified::Goal;
+use crate::contact::NormalSource;
 use crate::pair::body_pair::BodyPair;
-use crate::pair::descent::descend;
+use crate::pair::distance_bound::descend;
 
 /// Candidates nearer than this many spacings are neighbours.
 const NEIGHBOURS: f64 = 2.0;
@@ -227,4 +236,271 @@ pub(super) fn settled<const D: usize>(
 /// A vector square to both, in space; in the plane there is none.
 fn square_to<const D: usize>(a: Vector<f64, D>, b: Vector<f64, D>) -> Option<Vector<f64, D>> {
     (D == 3).then(|| a.in_space().cross(b.in_space()).truncated())
+}
+
+/// A body is thick if, over a way against its gradient, its value falls by more than this share of it.
+const THICK: f64 = 0.5;
+
+/// Steps to the deepest point at most.
+const STEPS: usize = 32;
+
+/// A step leads down if it does by this share of the last step's length.
+const DOWN: f64 = 0.5;
+
+/// What a step is multiplied by after one that leads down and stays in the guest, and after another.
+const GROW: f64 = 1.5;
+const SHRINK: f64 = 0.5;
+
+/// The last step, as a share of [`ManifoldSettings::precision_length`].
+const DEEP_PRECISE: f64 = 0.05;
+
+/// The host of a touch: the body that is thick where the other is thin; `None` if both are the one or
+/// the other.
+pub(super) fn host<const D: usize>(
+    pair: &mut BodyPair<'_, D>,
+    touch: &Touch<D>,
+) -> Option<usize> {
+    let slopes = pair.slopes(touch.point);
+    let way = touch.gap.abs();
+    let mut is_thick = |body: usize| {
+        let (value, slope) = slopes[body];
+        let inwards = slope.normalized()? * -way;
+        let deeper = pair.slopes(touch.point + inwards)[body].0;
+        Some(value - deeper > THICK * way)
+    };
+    match [is_thick(0)?, is_thick(1)?] {
+        [true, false] => Some(0),
+        [false, true] => Some(1),
+        _ => None,
+    }
+}
+
+/// The touch along the gradient of the host, at the point of the guest that lies deepest in it, from a
+/// point of the guest on down. `None` where the host has no gradient, or the point is not in it.
+pub(super) fn in_host<const D: usize>(
+    pair: &mut BodyPair<'_, D>,
+    host: usize,
+    from: Point<D>,
+    settings: &ManifoldSettings,
+) -> Option<Touch<D>> {
+    let guest = 1 - host;
+    let precise = DEEP_PRECISE * settings.precision_length();
+    let mut here = from;
+    let mut slopes = pair.slopes(here);
+    let mut step = slopes[host].0.abs().max(settings.spacing);
+    for _ in 0..STEPS {
+        if step < precise {
+            break;
+        }
+        let Some(outwards) = slopes[host].1.normalized() else { break };
+        let mut next = here - outwards * step;
+        let mut there = pair.slopes(next);
+        // Back into the guest, where the step has left it.
+        for _ in 0..2 {
+            let (value, slope) = there[guest];
+            let squared = slope.dot(slope);
+            if value > 0.0 && squared > 0.0 {
+                next -= slope * (value / squared);
+                there = pair.slopes(next);
+            }
+        }
+        let is_deeper = there[host].0 < slopes[host].0 - DOWN * precise;
+        if is_deeper && there[guest].0 <= precise {
+            (here, slopes) = (next, there);
+            step *= GROW;
+        } else {
+            step *= SHRINK;
+        }
+    }
+    let gap = slopes[host].0;
+    let outwards = slopes[host].1.normalized().filter(|_| gap < 0.0)?;
+    let normal = if host == 0 { outwards } else { -outwards };
+    let point = here - outwards * (0.5 * gap);
+    Some(Touch { point, normal, gap, source: NormalSource::ThickerBody })
+}
+
+/// The touch along the host's gradient, where a touch is deeper than the margin and one of the bodies is
+/// too thin to say where it came from.
+pub(super) fn pushed<const D: usize>(
+    pair: &mut BodyPair<'_, D>,
+    touch: &Touch<D>,
+    settings: &ManifoldSettings,
+) -> Option<Touch<D>> {
+    if touch.gap >= -settings.margin {
+        return None;
+    }
+    let host = host(pair, touch)?;
+    in_host(pair, host, touch.point, settings).filter(|found| found.gap <= touch.gap)
+}
+
+/// The touch of bodies that were followed to where they overlap: along `normals`, those of the first
+/// touch carried with the first body and with the second, from the `points` of that touch, carried
+/// likewise. All are in the pair's frame.
+///
+/// A body whose gradient still leads along its own normal is the host. Where neither's does, both are
+/// thin: the gap is what the points have moved past each other.
+pub(crate) fn followed<const D: usize>(
+    pair: &mut BodyPair<'_, D>,
+    points: [Point<D>; 2],
+    normals: [Vector<f64, D>; 2],
+    settings: &ManifoldSettings,
+) -> Option<Touch<D>> {
+    for host in 0..2 {
+        let guest = points[1 - host];
+        let side = if host == 0 { 1.0 } else { -1.0 };
+        let Some(outwards) = pair.slopes(guest)[host].1.normalized() else { continue };
+        if (outwards * side).dot(normals[host]) > super::LIKE
+            && let Some(found) = in_host(pair, host, guest, settings)
+            && found.normal.dot(normals[host]) > super::LIKE
+        {
+            return Some(Touch { source: NormalSource::History, ..found });
+        }
+    }
+    let normal = (normals[0] + normals[1]).normalized()?;
+    let gap = (points[1] - points[0]).dot(normal);
+    let point = points[1] - normal * (0.5 * gap);
+    (gap < 0.0).then_some(Touch { point, normal, gap, source: NormalSource::History })
+}
+
+/// A point is drawn to where the gap is this share of the margin, in so many steps at most.
+const WITHIN: f64 = 0.9;
+const DRAWN: usize = 4;
+
+/// Where the bodies face each other no longer at a point of a rim, they may so many spacings farther
+/// inwards.
+const INWARDS: [f64; 3] = [1.0 / 16.0, 1.0 / 4.0, 1.0];
+
+impl<const D: usize> Spanned<D> {
+    /// These points, found when the second body was at `found_at` in the pair's frame, on the surface
+    /// between the bodies as they are now, with the best point of the search. `None` where the bodies do
+    /// not face each other any more at a point as they did: what spans the region now must be found anew.
+    pub(crate) fn moved(
+        &self,
+        separated: &mut SeparatedPair<'_, D>,
+        found_at: &Pose<D>,
+        settings: &ManifoldSettings,
+    ) -> Option<Self> {
+        let SeparatedPair { pair, best, .. } = separated;
+        let second_to_frame = pair.second_from_frame.inverse();
+        let with_second =
+            |p: Point<D>| second_to_frame.transform_point(found_at.transform_point(p));
+        let mut carry = |member: &Member<D>| {
+            let Touch { point, normal, .. } = member.touch;
+            let touch = carried(pair, [point, with_second(point)], normal, settings)?;
+            Some(Member { touch, ..*member })
+        };
+        let mut members: Vec<_> = self.members.iter().map(&mut carry).collect::<Option<_>>()?;
+        let beyond: Vec<_> = self.beyond.iter().filter_map(&mut carry).collect();
+        for member in &mut members {
+            if member.touch.gap > settings.margin
+                && let Some(touch) = drawn_within(pair, &member.touch, settings)
+            {
+                member.touch = touch;
+            }
+        }
+        members.extend(beyond);
+        members.retain(|member| member.touch.gap <= settings.margin);
+        let deepest = Touch::at(pair, *best);
+        add_deepest(&mut members, deepest, settings);
+        // Those that have come nearer to each other than the spacing.
+        drop_copies(&mut members, settings.spacing / COPIES);
+        Some(Self { members, beyond: Vec::new(), stop: self.stop })
+    }
+}
+
+/// The deepest touch with a normal like `normal` next to the places to which the bodies carried a point;
+/// or farther inwards, where the bodies face each other likewise at none of them.
+fn carried<const D: usize>(
+    pair: &mut BodyPair<'_, D>,
+    places: [Point<D>; 2],
+    normal: Vector<f64, D>,
+    settings: &ManifoldSettings,
+) -> Option<Touch<D>> {
+    let found = places.map(|place| like(pair, place, normal, settings));
+    let deeper = found.into_iter().flatten().min_by(|one, other| one.gap.total_cmp(&other.gap));
+    deeper.or_else(|| {
+        places.into_iter().find_map(|place| {
+            let inwards = inwards(pair, place, normal)?;
+            let mut ways =
+                INWARDS.into_iter().map(|share| inwards * (share * settings.spacing));
+            ways.find_map(|way| like(pair, place + way, normal, settings))
+        })
+    })
+}
+
+/// The way inwards from a point at the rim of a region where the gradient of a body leads out of a side of
+/// it: along the region, against that gradient.
+fn inwards<const D: usize>(
+    pair: &mut BodyPair<'_, D>,
+    p: Point<D>,
+    normal: Vector<f64, D>,
+) -> Option<Vector<f64, D>> {
+    let [(_, slope_a), (_, slope_b)] = pair.slopes(p);
+    let sum = slope_a + slope_b;
+    (normal * sum.dot(normal) - sum).normalized()
+}
+
+/// The touch next to a point, if it has a normal like `normal`.
+fn like<const D: usize>(
+    pair: &mut BodyPair<'_, D>,
+    p: Point<D>,
+    normal: Vector<f64, D>,
+    settings: &ManifoldSettings,
+) -> Option<Touch<D>> {
+    settled(pair, p, settings.spacing, settings).filter(|touch| touch.normal.dot(normal) > LIKE)
+}
+
+/// A touch whose gap is within the margin, by steps of Newton's method along the surface between the
+/// bodies from a touch whose gap is larger.
+fn drawn_within<const D: usize>(
+    pair: &mut BodyPair<'_, D>,
+    from: &Touch<D>,
+    settings: &ManifoldSettings,
+) -> Option<Touch<D>> {
+    let mut here = from.point;
+    for _ in 0..DRAWN {
+        let [(a, slope_a), (b, slope_b)] = pair.slopes(here);
+        // On the surface between, the gap is the sum of both values.
+        let (across, sum) = (slope_a - slope_b, slope_a + slope_b);
+        let along = sum - across * (sum.dot(across) / across.dot(across));
+        let next = here - along * ((a + b - WITHIN * settings.margin) / along.dot(along));
+        let touch = like(pair, next, from.normal, settings)?;
+        if touch.gap <= settings.margin {
+            return Some(touch);
+        }
+        here = touch.point;
+    }
+    None
+}
+
+/// Adds the certified deepest touch, unless one of the members is as deep.
+fn add_deepest<const D: usize>(
+    members: &mut Vec<Member<D>>,
+    deepest: Touch<D>,
+    settings: &ManifoldSettings,
+) {
+    let is_as_deep =
+        |touch: &Touch<D>| touch.gap - deepest.gap <= SAME_DEPTH * settings.precision_length();
+    if let Some(member) = members.iter_mut().find(|member| is_as_deep(&member.touch)) {
+        // No less deep than what is certified.
+        member.touch.gap = member.touch.gap.min(deepest.gap);
+        return;
+    }
+    let is_like = |member: &&mut Member<D>| member.touch.normal.dot(deepest.normal) > LIKE;
+    let apart = |member: &Member<D>| distance(member.touch.point, deepest.point);
+    let nearest = members
+        .iter_mut()
+        .filter(is_like)
+        .min_by(|one, other| apart(one).total_cmp(&apart(other)));
+    match nearest {
+        Some(member) if is_copy(&member.touch, &deepest, settings.spacing) => {
+            member.touch = deepest;
+        }
+        nearest => {
+            let group = nearest.map(|member| member.group);
+            let new = || members.iter().map(|member| member.group + 1).max().unwrap_or(0);
+            let group = group.unwrap_or_else(new);
+            members.push(Member { touch: deepest, group });
+        }
+    }
 }

@@ -1,6 +1,8 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
+//! The separation of two bodies, with its proof.
+//!
 //! How far two fields are apart.
 //!
 //! The search for the separation, as [`separation`] defines it, is best-first over boxes, 64
@@ -11,35 +13,28 @@
 //! order. Minimax proximal steps improve the best point: the maximum of the two tangent
 //! planes plus a parabola is least at a step along a mean of both gradients.
 
-pub(crate) mod body_pair;
-pub(crate) mod cell;
-mod common_surface;
-pub(crate) mod descent;
-pub(crate) mod distance_bound;
-pub(crate) mod facing;
-mod nearest;
-mod proof;
-mod rates;
-pub(crate) mod search;
-mod separating_translation;
+use palpate_field::{Aabb, Point, Pose, Vector};
 
-use crate::certified::{Certified, Limits};
+use crate::certified::{Certified, Goal, Limits};
+use crate::contact::Contact;
+use crate::engine::Frontier;
 use crate::error::QueryError;
-use crate::goal::Goal;
-use crate::placed::Placed;
-pub(crate) use body_pair::BodyPair;
-pub(crate) use search::PairSearch;
+use crate::sampler::Placed;
 
-pub use descent::minimax_step;
-pub use distance_bound::DistanceBound;
-pub use nearest::Nearest;
-pub(crate) use proof::prove;
-pub use proof::{Proof, ProofBox, proof};
+pub(crate) use body_pair::BodyPair;
+pub use distance_bound::{DistanceBound, minimax_step};
 pub(crate) use rates::rates_of;
 pub use rates::{PoseDerivative, Rates, rates};
+pub(crate) use search::PairSearch;
 pub use search::PairWorkspace;
 pub(crate) use separating_translation::part;
 pub use separating_translation::{SeparatingTranslation, separating_translation};
+
+pub(crate) mod body_pair;
+pub(crate) mod distance_bound;
+mod rates;
+pub(crate) mod search;
+mod separating_translation;
 
 /// The separation of two bodies [m], between bounds, to `limits.tolerance`.
 ///
@@ -105,4 +100,112 @@ pub fn overlap<'a, const D: usize>(
 ) -> Result<Certified<Nearest<D>>, QueryError> {
     let goal = Goal::overlap(limits);
     Ok(PairSearch::new(BodyPair::new(a.into(), b.into())?, goal, limits)?.run(workspace))
+}
+
+/// Where two bodies are nearest, or overlap most, in world coordinates.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct Nearest<const D: usize> {
+    /// The point between the bodies, or in both [m].
+    pub point: Point<D>,
+    /// The unit vector from the first body to the second; `None` where the gradients of both
+    /// are equal or vanish.
+    pub normal: Option<Vector<f64, D>>,
+}
+
+impl<const D: usize> Nearest<D> {
+    /// The answer at a point of the pair's frame.
+    fn at(pair: &mut BodyPair<'_, D>, p: Point<D>) -> Self {
+        let (normal, _) = pair.normal(p);
+        let pose = &pair.world_from_frame;
+        Self {
+            point: pose.transform_point(p),
+            normal: normal.map(|normal| pose.transform_vector(normal)),
+        }
+    }
+
+    /// The points of both surfaces next to [`Nearest::point`], found along the gradients.
+    ///
+    /// Where the bodies are apart, the distance of these points is an upper bound of the
+    /// bodies' distance, and the separation a lower bound. `None` if there is no normal, or
+    /// no surface was found.
+    #[must_use]
+    pub fn contact<'a>(
+        &self,
+        a: impl Into<Placed<'a, D>>,
+        b: impl Into<Placed<'a, D>>,
+    ) -> Option<Contact<D>> {
+        let normal = self.normal?;
+        let surface = |placed: Placed<'_, D>| {
+            let pose = placed.world_from_body;
+            let local = pose.inverse().transform_point(self.point);
+            Some(pose.transform_point(placed.shape.surface_point(local)?))
+        };
+        let (point_a, point_b) = (surface(a.into())?, surface(b.into())?);
+        Some(Contact::new(point_a, point_b, normal))
+    }
+}
+
+/// The separation of two bodies, and the boxes that prove it.
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct Proof<const D: usize> {
+    /// The answer, as [`separation`](crate::separation) gives it.
+    pub answer: Certified<Nearest<D>>,
+    /// From the coordinates of the boxes, which are the first body's, to the world's.
+    pub world_from_boxes: Pose<D>,
+    /// Boxes that cover the searched region without gaps: in them, as outside, twice the larger
+    /// `g` is at least the answer's lower bound.
+    pub boxes: Vec<ProofBox<D>>,
+}
+
+/// A box and its proven bound.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct ProofBox<const D: usize> {
+    /// The box, in the first body's coordinates.
+    pub aabb: Aabb<D>,
+    /// Proven lower bound of twice the larger `g` in the box [m].
+    pub lower: f64,
+}
+
+/// The [`separation`](crate::separation) of two bodies with its proof: the searched box in
+/// parts, each with its own bound. Outside of this box, the larger `g` exceeds that of the
+/// best point.
+///
+/// # Errors
+///
+/// If neither body is bounded, or a pose or the tolerance is NaN or out of range.
+pub fn proof<'a, const D: usize>(
+    a: impl Into<Placed<'a, D>>,
+    b: impl Into<Placed<'a, D>>,
+    limits: &Limits,
+    workspace: &mut PairWorkspace<D>,
+) -> Result<Proof<D>, QueryError> {
+    prove([a.into(), b.into()], limits, workspace)
+}
+
+#[inline(never)]
+pub(crate) fn prove<const D: usize>(
+    [a, b]: [Placed<'_, D>; 2],
+    limits: &Limits,
+    workspace: &mut PairWorkspace<D>,
+) -> Result<Proof<D>, QueryError> {
+    let pair = BodyPair::new(a, b)?;
+    let mut search = PairSearch::new(pair, Goal::separation(limits), limits)?;
+    search.keeps_all = true;
+    let (answer, _) = search.run_from(None, workspace);
+    let Frontier { queue, pending, .. } = &mut workspace.frontier;
+    let known = pending.drain(..).chain(queue.cells());
+    let boxes = known.map(|cell| ProofBox {
+        aabb: Aabb { min: cell.centre - cell.half, max: cell.centre + cell.half },
+        lower: 2.0 * cell.lower,
+    });
+    Ok(Proof { answer, world_from_boxes: pair.world_from_frame, boxes: boxes.collect() })
 }

@@ -8,7 +8,7 @@ use palpate_field::{Point, Vector};
 use super::Nearest;
 use super::body_pair::BodyPair;
 use crate::error::QueryError;
-use crate::placed::Placed;
+use crate::sampler::Placed;
 
 /// How far about the point gradients are taken, as shares of the size of what both boxes
 /// have in common, until their mean vanishes.

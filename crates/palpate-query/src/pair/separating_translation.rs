@@ -9,8 +9,7 @@ use palpate_field::scalar::Scalar;
 use super::{Nearest, PairWorkspace, separation};
 use crate::certified::{Certified, Limits};
 use crate::error::QueryError;
-use crate::placed::Placed;
-use crate::sampler::arbitrary;
+use crate::sampler::{Placed, arbitrary};
 
 /// Directions that are tried all around.
 const AROUND: usize = 48;

@@ -1,38 +1,33 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! Questions about shapes, with memory and tolerances of their own.
-
-mod batch;
-mod scratch;
-mod tolerance;
+//! One door to all questions about shapes.
 
 use palpate_field::{Aabb, Point, Pose, Shape};
 use palpate_mesh::Mesh;
+#[cfg(feature = "parallel")]
+use rayon::prelude::*;
 
-use crate::ball::{contact_ball, touches_ball};
+use crate::ball::{BallWorkspace, contact_ball, touches_ball};
 use crate::certified::{Certified, Limits};
 use crate::contact::Contact;
 use crate::contacts::{ElementContacts, contacts};
-use crate::element::Element;
-use crate::element_search::{minimum, touches};
+use crate::element_search::{Element, minimum, touches};
 use crate::error::QueryError;
 use crate::manifold::{Manifold, ManifoldSettings, manifold};
-use crate::mesh::{MeshContacts, MeshHits, PlacedMesh, mesh_contacts, mesh_hits};
+use crate::mesh::{
+    MeshContacts, MeshHits, MeshWorkspace, PlacedMesh, mesh_contacts, mesh_hits,
+};
 use crate::pair::{
-    Nearest, Proof, SeparatingTranslation, overlap, proof, separating_translation, separation,
+    Nearest, PairWorkspace, Proof, SeparatingTranslation, overlap, proof,
+    separating_translation, separation,
 };
-use crate::placed::Placed;
-use crate::pool::Pool;
 use crate::ray::{Ray, RayHit, cast_ray};
+use crate::sampler::{Placed, Pool, check_pose};
 use crate::sweep::{
-    FirstTouch, Motion, Moving, SweepSettings, cast_ball, sweep, sweep_element, sweep_mesh,
+    ElementSweep, FirstTouch, Motion, Moving, SweepSettings, SweepWorkspace, cast_ball, sweep,
+    sweep_element, sweep_mesh,
 };
-use batch::{Asked, Batch};
-use scratch::Scratch;
-
-pub use scratch::ElementMemory;
-pub use tolerance::Tolerance;
 
 /// Questions about shapes, with the memory that they need.
 ///
@@ -525,7 +520,7 @@ impl<const D: usize> Query<D> {
     ) -> Result<bool, QueryError> {
         let size = size(shape);
         let limits = |ray: &Ray<D>| self.limits([size, Some(ray.length())]);
-        batch::cast_rays(shape, rays, answers, limits, goes_on)
+        cast_rays(shape, rays, answers, limits, goes_on)
     }
 
     fn batch<'a>(&'a self, bodies: [&'a Shape<D>; 2], asked: Asked) -> Batch<'a, D> {
@@ -577,4 +572,215 @@ fn extent<const N: usize, const D: usize>(element: &Element<N, D>) -> Option<f64
 pub(crate) fn smallest(sizes: [Option<f64>; 2]) -> f64 {
     let known = sizes.into_iter().flatten().filter(|size| *size > 0.0);
     known.reduce(f64::min).unwrap_or(0.0)
+}
+
+/// Questions that one thread takes at a time: enough that fetching a workspace costs nothing
+/// beside them, few enough that threads end together.
+const CHUNK: usize = 16;
+
+/// The question about each pose.
+#[derive(Clone, Copy, Debug)]
+enum Asked {
+    Separation,
+    Overlap,
+}
+
+/// A question about a pair of bodies at many poses.
+#[derive(Debug)]
+struct Batch<'a, const D: usize> {
+    bodies: [&'a Shape<D>; 2],
+    asked: Asked,
+    limits: Limits,
+    pool: &'a Pool<D>,
+}
+
+impl<const D: usize> Batch<'_, D> {
+    /// Writes the answers for `poses`; `true` if `goes_on` let all be asked.
+    fn run(
+        &self,
+        poses: &[Pose<D>],
+        answers: &mut [Option<Certified<Nearest<D>>>],
+        goes_on: impl Fn() -> bool + Sync,
+    ) -> Result<bool, QueryError> {
+        self.check(poses, answers.len())?;
+        Ok(share(poses, answers, |poses, answers| {
+            self.pool.with(|workspace| {
+                fill(poses, answers, &goes_on, |pose| self.ask(pose, workspace));
+            });
+        }))
+    }
+
+    /// Refuses all that a single question would refuse.
+    fn check(&self, poses: &[Pose<D>], places: usize) -> Result<(), QueryError> {
+        check_places(poses.len(), places)?;
+        self.limits.check()?;
+        if self.bodies.iter().all(|body| body.promise().bounds.is_none()) {
+            return Err(QueryError::Unbounded);
+        }
+        poses.iter().enumerate().try_for_each(|(i, pose)| check_pose(i, pose))
+    }
+
+    fn ask(
+        &self,
+        pose: &Pose<D>,
+        workspace: &mut PairWorkspace<D>,
+    ) -> Option<Certified<Nearest<D>>> {
+        let [a, b] = self.bodies;
+        let b = Placed::new(b, *pose);
+        match self.asked {
+            Asked::Separation => separation(a, b, &self.limits, workspace),
+            Asked::Overlap => overlap(a, b, &self.limits, workspace),
+        }
+        .ok()
+    }
+}
+
+/// The first surface along each of many rays; `true` if `goes_on` let all be asked.
+fn cast_rays<const D: usize>(
+    shape: &Shape<D>,
+    rays: &[Ray<D>],
+    answers: &mut [Option<Certified<Option<RayHit<D>>>>],
+    limits: impl Fn(&Ray<D>) -> Limits + Sync,
+    goes_on: impl Fn() -> bool + Sync,
+) -> Result<bool, QueryError> {
+    check_places(rays.len(), answers.len())?;
+    rays.iter().try_for_each(|ray| limits(ray).check())?;
+    Ok(share(rays, answers, |rays, answers| {
+        fill(rays, answers, &goes_on, |ray| cast_ray(shape, ray, &limits(ray)).ok());
+    }))
+}
+
+fn check_places(questions: usize, places: usize) -> Result<(), QueryError> {
+    if questions == places { Ok(()) } else { Err(QueryError::Places { questions, places }) }
+}
+
+/// Asks parts of all questions, on rayon's threads if there are; `true` if all were answered.
+fn share<T: Sync, A: Send>(
+    all: &[T],
+    answers: &mut [Option<A>],
+    ask: impl Fn(&[T], &mut [Option<A>]) + Sync,
+) -> bool {
+    #[cfg(feature = "parallel")]
+    let parts = all.par_chunks(CHUNK).zip(answers.par_chunks_mut(CHUNK));
+    #[cfg(not(feature = "parallel"))]
+    let parts = all.chunks(CHUNK).zip(answers.chunks_mut(CHUNK));
+    parts.for_each(|(all, answers)| ask(all, answers));
+    answers.iter().all(Option::is_some)
+}
+
+/// Asks one question after the other, while `goes_on` says so.
+fn fill<T, A>(
+    all: &[T],
+    answers: &mut [Option<A>],
+    goes_on: &impl Fn() -> bool,
+    mut ask: impl FnMut(&T) -> Option<A>,
+) {
+    for (one, answer) in all.iter().zip(answers) {
+        *answer = if goes_on() { ask(one) } else { None };
+    }
+}
+
+/// The workspaces of a query.
+#[derive(Debug)]
+struct Scratch<const D: usize> {
+    pair: Option<Box<PairWorkspace<D>>>,
+    sweep: Option<Box<SweepWorkspace<D>>>,
+    ball: Option<Box<BallWorkspace<D>>>,
+    segments: Option<Box<MeshWorkspace<2, D>>>,
+    triangles: Option<Box<MeshWorkspace<3, D>>>,
+    moving_segments: Option<Box<ElementSweep<2, D>>>,
+    moving_triangles: Option<Box<ElementSweep<3, D>>>,
+}
+
+impl<const D: usize> Scratch<D> {
+    fn new() -> Self {
+        Self {
+            pair: None,
+            sweep: None,
+            ball: None,
+            segments: None,
+            triangles: None,
+            moving_segments: None,
+            moving_triangles: None,
+        }
+    }
+
+    fn pair(&mut self) -> &mut PairWorkspace<D> {
+        self.pair.get_or_insert_default()
+    }
+
+    fn sweep(&mut self) -> &mut SweepWorkspace<D> {
+        self.sweep.get_or_insert_default()
+    }
+
+    fn ball(&mut self) -> &mut BallWorkspace<D> {
+        self.ball.get_or_insert_default()
+    }
+}
+
+/// Memory for elements of `N` points: there are segments (2) and triangles (3). A bound of
+/// the methods of [`Query`], to be named where code is generic in `N`.
+pub trait ElementMemory<const N: usize, const D: usize> {
+    /// The memory for these elements and for meshes of them.
+    fn elements(&mut self) -> &mut MeshWorkspace<N, D>;
+
+    /// The memory for these elements and for meshes of them while they move.
+    fn moving_elements(&mut self) -> &mut ElementSweep<N, D>;
+}
+
+impl<const D: usize> ElementMemory<2, D> for Query<D> {
+    fn elements(&mut self) -> &mut MeshWorkspace<2, D> {
+        self.scratch.segments.get_or_insert_default()
+    }
+
+    fn moving_elements(&mut self) -> &mut ElementSweep<2, D> {
+        self.scratch.moving_segments.get_or_insert_default()
+    }
+}
+
+impl<const D: usize> ElementMemory<3, D> for Query<D> {
+    fn elements(&mut self) -> &mut MeshWorkspace<3, D> {
+        self.scratch.triangles.get_or_insert_default()
+    }
+
+    fn moving_elements(&mut self) -> &mut ElementSweep<3, D> {
+        self.scratch.moving_triangles.get_or_insert_default()
+    }
+}
+
+/// How far apart the bounds of an answer may be.
+///
+/// ```
+/// use palpate_query::Tolerance;
+///
+/// assert_eq!(Tolerance::default(), Tolerance::Relative(1e-4));
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub enum Tolerance {
+    /// As a share of the size of the smaller body: the diagonal of its box, the length of a
+    /// ray, the diameter of a ball. Unbounded bodies have no size; where neither body has
+    /// one, the tolerance is zero.
+    Relative(f64),
+    /// As a length [m].
+    Absolute(f64),
+}
+
+impl Tolerance {
+    /// The tolerance [m] for a smaller body of this size [m].
+    #[must_use]
+    pub fn for_size(self, size: f64) -> f64 {
+        match self {
+            Self::Relative(share) => share * size,
+            Self::Absolute(length) => length,
+        }
+    }
+}
+
+impl Default for Tolerance {
+    /// A ten-thousandth of the smaller body: below what is seen or felt of it.
+    fn default() -> Self {
+        Self::Relative(1e-4)
+    }
 }

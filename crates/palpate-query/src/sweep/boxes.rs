@@ -14,18 +14,13 @@
 use palpate_field::scalar::{Model, SpaceTimeModel};
 use palpate_field::{Aabb, BLOCK, Block, Column, Point, Vector};
 
-use super::moving::Moving;
-use super::path::{Path, Places, WayBounds};
-use super::proof::FreeBox;
-use super::settings::{HALVES, SweepSettings};
-use super::stay::{Stay, later};
-use crate::certified::Stop;
+use super::first_touch::{FreeBox, HALVES, SweepSettings};
+use super::motion::{Moving, Path, Places, Stay, WayBounds, later};
+use crate::certified::{Goal, Stop};
 use crate::engine::{Bounded, Frontier, Heap, Problem, Queue, Rebound};
-use crate::goal::Goal;
 use crate::pair::body_pair::BodyPair;
-use crate::pair::cell::{BoxCell, least};
-use crate::pair::descent::descend;
-use crate::pair::distance_bound::DistanceBound;
+use crate::pair::distance_bound::{DistanceBound, descend};
+use crate::pair::search::{BoxCell, least};
 
 /// After a step as long as its model's span, the next span is so many times as long.
 const LONGER: f64 = 3.0;

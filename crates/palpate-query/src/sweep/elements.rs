@@ -1,6 +1,8 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
+//! Sweeps of elements, meshes and balls.
+//!
 //! The first touch of segments and triangles that move, alone or in a mesh, and a field.
 //!
 //! Best-first branch and bound over parts of the elements, where the bound of a part is the time
@@ -19,21 +21,18 @@
 
 use palpate_field::scalar::Model;
 use palpate_field::{BLOCK, Block, Column, Point, Shape, Vector};
-use palpate_mesh::FAN;
-use palpate_mesh::Mesh;
+use palpate_mesh::{FAN, Mesh};
 
-use super::first_touch::{FirstTouch, Start};
-use super::motion::Motion;
-use super::moving::Moving;
-use super::part::{Of, Part, Way};
-use super::path::{Path, Places, WayBounds};
-use super::settings::{FREE, HALVES, SweepSettings};
-use super::stay::{Stay, later};
-use crate::certified::Stop;
+use super::first_touch::{FREE, FirstTouch, HALVES, Start, SweepSettings};
+use super::motion::{Motion, Moving, Path, Places, Stay, WayBounds, corners, later};
+use super::pair::{Of, Part, Way};
+use crate::ball::{BallWorkspace, contact_ball};
+use crate::certified::{Certified, Limits, Stop};
 use crate::contact::Contact;
-use crate::element::parts_of_one;
+use crate::element_search::{Element, parts_of_one};
 use crate::engine::{self, Frontier, Problem};
 use crate::error::QueryError;
+use crate::ray::{Advance, FreeWay, Gap, Ray};
 use crate::sampler::{AT_ONCE, Sampler, Samples, normal};
 
 /// Heights of the lifted samples, as shares of the part's height: the first ones, where a part has few
@@ -504,5 +503,194 @@ impl<const N: usize, const D: usize> Problem for ElementSearch<'_, '_, N, D> {
 
     fn closed(&self) -> f64 {
         self.dropped
+    }
+}
+
+/// When an element that moves touches a field first, which may move too: the first time at which the
+/// field is at most `settings.gap` anywhere on the element. In the contact, the field is body `a`.
+///
+/// Each part of the element advances through time on its own, by points that are lifted off it as
+/// in [`minimum`](crate::minimum). So no motion is too fast and no body too thin.
+///
+/// ```
+/// use palpate_field::{Pose, Screw, Shape, Vector};
+/// use palpate_query::{Element, ElementSweep, SweepSettings, sweep_element};
+///
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// // It falls by 4 m on a ball, which it meets with its middle at a height of 1 m.
+/// let ball = Shape::<3>::ball(1.0)?;
+/// let corners = [[0.3, 0.0, 0.0], [-0.2, 0.0, 0.2], [-0.1, 0.0, -0.2]].map(Vector);
+/// let [from, to] = [3.0, -1.0].map(|y| Pose::translation([0.0, y, 0.0]));
+/// let falls = Screw::new(from, to, 0)?;
+/// let settings = SweepSettings::of_size(1.0);
+/// let triangle = Element::new(corners)?;
+/// let touch = sweep_element(&ball, &triangle, falls, &settings, &mut ElementSweep::new())?;
+/// assert!(touch.lower <= 0.5 && touch.upper > 0.5 - 1e-6 && touch.upper <= touch.lower + 1e-4);
+/// # Ok(())
+/// # }
+/// ```
+///
+/// # Errors
+///
+/// If a pose is NaN or out of range, or a setting is not positive.
+pub fn sweep_element<'a, const N: usize, const D: usize>(
+    field: impl Into<Moving<'a, D>>,
+    element: &Element<N, D>,
+    motion: impl Into<Motion<D>>,
+    settings: &SweepSettings,
+    workspace: &mut ElementSweep<N, D>,
+) -> Result<FirstTouch<D>, QueryError> {
+    let part = Part::whole(element, 0, 0.0);
+    let whole = Whole { part, mesh: None, corners: &element.vertices };
+    workspace.run(field.into(), &whole, motion.into(), settings)
+}
+
+/// When a mesh that moves touches a field first, which may move too: the first time at which the
+/// field is at most `settings.gap` anywhere on an element of the mesh. In the contact, the field is
+/// body `a`, and the id is the index of the element.
+///
+/// As [`sweep_element`](crate::sweep_element), from the root of the mesh's tree on: most elements
+/// are never looked at.
+///
+/// ```
+/// use palpate_field::{Pose, Screw, Shape, Vector};
+/// use palpate_mesh::Outline;
+/// use palpate_query::{ElementSweep, SweepSettings, sweep_mesh};
+///
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// // A square of 2 m falls by 4 m, and its lower side meets the disc at a height of 1 m.
+/// let disc = Shape::<2>::ball(1.0)?;
+/// let corners = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]].map(Vector).to_vec();
+/// let square = Outline::new(corners, vec![[0, 1], [1, 2], [2, 3], [3, 0]])?;
+/// let [from, to] = [4.0, 0.0].map(|y| Pose::translation([0.0, y]));
+/// let falls = Screw::new(from, to, 0)?;
+/// let settings = SweepSettings::of_size(1.0);
+/// let touch = sweep_mesh(&disc, &square, falls, &settings, &mut ElementSweep::new())?;
+/// assert!(touch.lower <= 0.5 && touch.upper > 0.5 - 1e-6 && touch.upper <= touch.lower + 1e-4);
+/// assert_eq!(touch.contact.ok_or("it touches")?.id, 0);
+/// # Ok(())
+/// # }
+/// ```
+///
+/// # Errors
+///
+/// If a pose is NaN or out of range, or a setting is not positive.
+pub fn sweep_mesh<'a, const N: usize, const D: usize>(
+    field: impl Into<Moving<'a, D>>,
+    mesh: &Mesh<N, D>,
+    motion: impl Into<Motion<D>>,
+    settings: &SweepSettings,
+    workspace: &mut ElementSweep<N, D>,
+) -> Result<FirstTouch<D>, QueryError> {
+    let corners: Vec<_> = corners(&mesh.bounds()).collect();
+    let whole = Whole { part: Part::root(mesh), mesh: Some(mesh), corners: &corners };
+    workspace.run(field.into(), &whole, motion.into(), settings)
+}
+
+/// A gap is searched to this share of the tolerance in the end: then it is within the tolerance, or
+/// a step of the rest is free.
+const FINEST: f64 = 0.5;
+
+/// A gap is first searched to so many times the last step that was free, and then always this much
+/// finer: a coarse search is cheap, and a long step needs no more.
+const COARSER: f64 = 8.0;
+
+/// The first place of a ball of a `radius` [m] whose centre moves along `ray` at which the gap
+/// between ball and shape, as [`contact_ball`] defines it, is at most `limits.tolerance`.
+///
+/// The bounds are distances of the centre from the ray's origin [m]: before `lower` the ball is
+/// free, which is proven, rounding included; at `upper` it touches, by the contact, of which the
+/// shape is body `a`. They are at most the tolerance apart, if the search converged. A ball that is
+/// proven free has no contact, both bounds at the ray's end, and [`Stop::SignKnown`]. A ball that
+/// touches at first does so at 0. A budget that is spent leaves `upper` infinite, or where the ball
+/// is known to touch.
+///
+/// Where the field is exact outside, the ball advances by lifted samples, as [`cast_ray`] does;
+/// where it is a bound, its values say that the ball is free, and a search about the centre that it
+/// touches.
+///
+/// [`cast_ray`]: crate::cast_ray
+///
+/// ```
+/// use palpate_field::{Shape, Vector, kernel::Cuboid};
+/// use palpate_query::{BallWorkspace, Limits, Ray, cast_ball};
+///
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let plate = Shape::from_kernel(Cuboid::new(Vector([2.0, 0.001, 2.0]))?);
+/// let down = Ray::new([0.0, 1.0, 0.0], [0.0, -1.0, 0.0], 5.0)?;
+/// let limits = Limits::new(1e-6);
+/// let touch = cast_ball(&plate, &down, 0.25, &limits, &mut BallWorkspace::new())?;
+/// assert!(touch.lower <= 0.7495 && (touch.upper - 0.7495).abs() <= 1e-6);
+/// let contact = touch.best.ok_or("it touches")?;
+/// assert!((contact.normal - Vector([0.0, 1.0, 0.0])).norm() < 1e-12);
+/// # Ok(())
+/// # }
+/// ```
+///
+/// # Errors
+///
+/// If the radius or the tolerance is negative, NaN or too large.
+#[inline(never)]
+pub fn cast_ball<const D: usize>(
+    shape: &Shape<D>,
+    ray: &Ray<D>,
+    radius: f64,
+    limits: &Limits,
+    workspace: &mut BallWorkspace<D>,
+) -> Result<Certified<Option<Contact<D>>>, QueryError> {
+    limits.check()?;
+    QueryError::check_length(radius)?;
+    let mut samples = Samples::new();
+    let sampler = Sampler::new(shape, &mut samples, ray.at(0.0).norm(), 0.0);
+    let mut advance = Advance::new(sampler, ray, radius);
+    let finest = FINEST * limits.tolerance;
+    let mut gaps = Gaps { shape, radius, coarse: ray.length(), finest, workspace };
+    let way = advance.run(limits, |centre, budget| gaps.at(centre, budget));
+    let FreeWay { lower, upper, stop } = way;
+    let mut evaluations = advance.sampler.evaluations;
+    let best = if stop != Stop::SignKnown && upper.is_finite() {
+        let near = limits.with_tolerance(finest);
+        let found = contact_ball(shape, ray.at(upper), radius, &near, gaps.workspace)?;
+        evaluations += found.evaluations;
+        found.best
+    } else {
+        None
+    };
+    Ok(Certified { best, lower, upper, stop, evaluations })
+}
+
+/// The gaps of a ball at places of its way, where values do not tell them.
+struct Gaps<'a, const D: usize> {
+    shape: &'a Shape<D>,
+    radius: f64,
+    /// The tolerance to which a gap is searched first, and at last [m].
+    coarse: f64,
+    finest: f64,
+    workspace: &'a mut BallWorkspace<D>,
+}
+
+impl<const D: usize> Gaps<'_, D> {
+    /// The gap about a centre, to the first tolerance at which it is known to be positive, or to the
+    /// finest.
+    fn at(&mut self, centre: Point<D>, budget: u32) -> Gap {
+        let (mut tolerance, mut gap) = (self.coarse.max(self.finest), Gap::UNKNOWN);
+        loop {
+            let left = budget.saturating_sub(gap.evaluations);
+            let limits = Limits::new(tolerance).with_budget(left);
+            let found = contact_ball(self.shape, centre, self.radius, &limits, self.workspace);
+            // A point of a ray is in range.
+            let Ok(found) = found else { return gap };
+            gap = Gap {
+                lower: gap.lower.max(found.lower),
+                upper: gap.upper.min(found.upper),
+                evaluations: gap.evaluations + found.evaluations,
+            };
+            let is_known = gap.lower >= self.finest || gap.upper <= self.finest;
+            if is_known || tolerance <= self.finest || found.stop.is_early() {
+                self.coarse = COARSER * gap.lower.max(0.0);
+                return gap;
+            }
+            tolerance = (tolerance / COARSER).max(self.finest);
+        }
     }
 }

@@ -1,14 +1,17 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! The first touch of what moves.
+//! The first touch of what moves: how exactly it is asked for, the answer, its proof.
 
 use std::fmt;
 
-use palpate_field::Vector;
+use palpate_field::{Aabb, Pose, Vector};
 
+use super::motion::Moving;
+use super::pair::{SweepWorkspace, swept};
 use crate::certified::Stop;
 use crate::contact::Contact;
+use crate::error::QueryError;
 
 /// A relative velocity slides if less than this share of it is along the normal.
 const SLIDES: f64 = 1e-3;
@@ -99,4 +102,129 @@ impl<const D: usize> FirstTouch<D> {
             _ => self.upper.is_finite().then_some(true),
         }
     }
+}
+
+/// Bodies that are apart by more than this share of the gap are free. It is less than one: a separation
+/// that is known to a quarter of the gap proves a touch, or a step without one.
+pub(super) const FREE: f64 = 0.5;
+
+/// How often the time between the bounds is halved in the end, to find an earlier touch.
+pub(super) const HALVES: u32 = 8;
+
+/// How exactly a first touch is asked for.
+///
+/// ```
+/// use palpate_query::SweepSettings;
+///
+/// let settings = SweepSettings { time_tolerance: 1e-6, ..SweepSettings::of_size(0.2) };
+/// assert_eq!((settings.gap, settings.time_tolerance), (2e-7, 1e-6));
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SweepSettings {
+    /// Bodies whose separation is at most this touch [m]; those more than half of it apart may be called
+    /// apart.
+    pub gap: f64,
+    /// How far apart the bounds of the time may be, as a share of the motion, which takes the time from 0
+    /// to 1.
+    pub time_tolerance: f64,
+    /// How often the search in boxes evaluates fields at most; a round may exceed it. Conservative
+    /// advancement and samples after an early end, and the contact, may use about as many again.
+    pub budget: u32,
+}
+
+impl SweepSettings {
+    /// The budget unless another is given.
+    pub const BUDGET: u32 = 5_000_000;
+
+    /// For bodies of a size [m]: a gap of a millionth of it, times to 1e-4 of the motion.
+    #[must_use]
+    pub const fn of_size(size: f64) -> Self {
+        Self { gap: 1e-6 * size, time_tolerance: 1e-4, budget: Self::BUDGET }
+    }
+
+    /// A field that is at most this at a point of an element touches it [m].
+    pub(super) fn touch_level(&self) -> f64 {
+        (1.0 - FREE) * self.gap
+    }
+
+    /// Why a search ends that knows these bounds of the time; `None` if it goes on.
+    pub(super) fn decided(&self, lower: f64, upper: f64) -> Option<Stop> {
+        if upper < f64::INFINITY && lower >= upper - self.time_tolerance {
+            return Some(Stop::Converged);
+        }
+        (lower >= 1.0).then_some(Stop::SignKnown)
+    }
+
+    pub(crate) fn check(&self) -> Result<(), QueryError> {
+        for (what, value) in [("gap", self.gap), ("time_tolerance", self.time_tolerance)] {
+            let limit = palpate_field::LARGEST_LENGTH;
+            // Written so that NaN is refused.
+            if !(value > 0.0 && value <= limit) {
+                return Err(QueryError::Setting { what, value });
+            }
+        }
+        Ok(())
+    }
+}
+
+/// A box that is free before a time: no point of it is in both bodies, nor within a quarter of the gap
+/// of both.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct FreeBox<const D: usize> {
+    /// The box, in the coordinates of a body.
+    pub aabb: Aabb<D>,
+    /// Before this time it is free; 1 if it is all the time.
+    pub until: f64,
+}
+
+/// When two bodies touch first, and the boxes that prove it.
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub struct SweepProof<const D: usize> {
+    /// The answer, as [`sweep`](crate::sweep) gives it.
+    pub answer: FirstTouch<D>,
+    /// The body in whose coordinates the boxes are: 0 or 1.
+    pub body: usize,
+    /// From the coordinates of that body to the world's, at the answer's upper time.
+    pub world_from_boxes: Pose<D>,
+    /// Boxes that hold the body but for what its own field proves free. Each is free before its own time.
+    /// That is at least the answer's lower one, unless the search went on by conservative advancement:
+    /// the answer's lower time is then proven by separations.
+    pub boxes: Vec<FreeBox<D>>,
+}
+
+/// When two bodies that move touch first, as [`sweep`](crate::sweep), with its proof.
+///
+/// ```
+/// use palpate_field::{Pose, Screw, Shape};
+/// use palpate_query::{Moving, SweepSettings, SweepWorkspace, sweep_proof};
+///
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let block = Shape::<2>::cuboid([1.0, 1.0])?;
+/// let [from, to] = [3.0, 0.0].map(|y| Pose::translation([0.0, y]));
+/// let falling = Moving::new(&block, Screw::new(from, to, 0)?);
+/// let settings = SweepSettings::of_size(1.0);
+/// let proof = sweep_proof(&block, falling, &settings, &mut SweepWorkspace::new())?;
+/// let lower = proof.answer.lower;
+/// assert!(!proof.boxes.is_empty() && proof.boxes.iter().all(|part| part.until >= lower));
+/// # Ok(())
+/// # }
+/// ```
+///
+/// # Errors
+///
+/// As of [`sweep`](crate::sweep).
+pub fn sweep_proof<'a, const D: usize>(
+    a: impl Into<Moving<'a, D>>,
+    b: impl Into<Moving<'a, D>>,
+    settings: &SweepSettings,
+    workspace: &mut SweepWorkspace<D>,
+) -> Result<SweepProof<D>, QueryError> {
+    let bodies = [a.into(), b.into()];
+    let mut boxes = Vec::new();
+    let (answer, body) = swept(bodies, settings, workspace, Some(&mut boxes))?;
+    let world_from_boxes = bodies[body].motion.pose(answer.upper.min(1.0));
+    Ok(SweepProof { answer, body, world_from_boxes, boxes })
 }

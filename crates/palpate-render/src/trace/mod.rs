@@ -8,7 +8,6 @@
 //! from there for the ray itself. Rays that are still under way after many rounds are cast one by
 //! one, with a budget.
 
-mod balls;
 mod models;
 mod pieces;
 #[cfg(test)]
@@ -18,7 +17,7 @@ use palpate_field::{BLOCK, Block, Column, Shape};
 use palpate_query::{Limits, Ray, Stop, cast_ray};
 
 use crate::beam::Beam;
-use crate::surfaces::Surfaces;
+use crate::subject::Surfaces;
 use pieces::{Cells, Pieces, Places, is_steep};
 
 /// Rounds by balls: a ray that needs more grazes a surface, which models pass in longer steps.

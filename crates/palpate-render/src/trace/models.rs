@@ -1,6 +1,8 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
+//! Models of fields along rays.
+//!
 //! Steps by models: an affine function with remainders bounds the field over a part of a ray.
 //!
 //! A cell holds the next part of the ray with its cone, with one parameter along the ray and two
@@ -8,9 +10,16 @@
 //! is longer. Else it advances to where the model's lower bound, which is linear along the ray,
 //! comes to zero: Newton's method with a proof. Near a surface whole steps follow the slope that
 //! the field has there, however steep it is elsewhere, and along a surface they follow its curve.
+//!
+//! Steps by balls: a value of the field proves a ball free of surfaces, and a ray advances through
+//! it (Hart 1996, as [`cast_ray`](palpate_query::cast_ray) does).
+//!
+//! As long as the ball is wider than the ray's cone, the step is so short that the ball holds the
+//! cone too.
 
 use palpate_field::scalar::Model;
-use palpate_field::{BLOCK, Vector};
+use palpate_field::{BLOCK, Shape, Vector};
+use palpate_query::free_radius;
 
 use super::pieces::{Cells, Pieces};
 use super::{Lane, Look};
@@ -100,5 +109,27 @@ impl Lane {
         }
         self.distance += share * length;
         (self.step, self.too_long) = (SHRINKAGE * length, length);
+    }
+}
+
+impl Lane {
+    /// Advances by what the positive value of the field where the ray is proves.
+    pub(super) fn advance_by_ball(&mut self, shape: &Shape<3>, beam: &Beam, value: f64) {
+        let ball = free_radius(shape, beam.at(self.distance), value);
+        let cone = beam.radius(self.distance);
+        // Written so that NaN counts as near.
+        let step = if ball > cone {
+            // The ray leaves a surface that was in its cone.
+            self.is_beside |= self.is_near && ball > 2.0 * cone;
+            beam.step_through(cone, ball)
+        } else {
+            (self.is_near, self.is_thin) = (true, true);
+            ball
+        };
+        // A ray that rounding or a promise's region holds is left to the models.
+        if step > 0.0 {
+            self.distance += step;
+            self.step = step;
+        }
     }
 }

@@ -5,14 +5,12 @@
 //! its equation.
 
 use palpate_field::{Shape, Vector};
-use palpate_testkit::arbitrary as draw;
-use palpate_testkit::cases;
+use palpate_testkit::{arbitrary as draw, cases};
 
 use super::*;
 use crate::camera::{Camera, Lens, Sight};
-use crate::settings::Settings;
-use crate::studio::Studio;
-use crate::subject::Subject;
+use crate::render::Settings;
+use crate::subject::{Studio, Subject};
 
 const SIZE: [u32; 2] = [12, 9];
 

@@ -1,12 +1,13 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! Models of norms, and of distances to an orthant in them: convex, so that below
-//! they are bounded by a tangent plane, and above by their curvature.
+//! Norms, smooth minima and turns of models.
 
+use std::f64::consts::TAU;
+
+use super::super::power::{self, TINY};
+use super::super::{Blend, Scalar};
 use super::{AffineModel, INFLATE, MaxOf, NONE, UNBOUNDED, UNIT, choose};
-use crate::scalar::power;
-use crate::scalar::{Scalar, power::TINY};
 use crate::vector::{array, unrolled};
 
 /// How far the arguments of a function move over a cell.
@@ -219,4 +220,77 @@ fn to_orthant<const M: usize, const N: usize>(
     let size = n + f64::abs(largest) + TINY / UNIT;
     let above = Above { moves: moves.sum, plane: above };
     convex(n + Scalar::min(largest, 0.0), gradient, q, above, roundings.of_size(size))
+}
+
+/// Concave in `(a, b)`: above, the tangent plane is a bound; below, the
+/// second derivative of the fill over the range of `a − b`, or all of the fill.
+#[inline(always)]
+pub(super) fn minimum<B: Blend, const N: usize>(
+    a: AffineModel<N>,
+    b: AffineModel<N>,
+    unit: f64,
+) -> AffineModel<N> {
+    let apart = f64::abs(a.value - b.value);
+    let t = apart / unit;
+    let larger = B::weight(t);
+    let weight = choose(b.value < a.value, larger, 1.0 - larger);
+    let rest = 1.0 - weight;
+    let spread =
+        (a.slope_between(&b) + (a.lower + b.upper).max_of(a.upper + b.lower)) * INFLATE;
+    let nearest = ((apart - spread) / unit * (1.0 - 4.0 * UNIT)).max_of(0.0);
+    let below = 0.5 * B::curvature(nearest) / unit * spread * spread * INFLATE;
+    let lower = weight * a.lower + rest * b.lower + below;
+    // At least the smaller of both less the whole fill: else nested unions with
+    // cells larger than their reach would square the remainder again and again.
+    let coarse =
+        (apart + a.slope_between(&b) + unit * B::fill(0.0) + a.lower.max_of(b.lower)) * INFLATE;
+    AffineModel {
+        value: <f64 as Scalar>::smooth_min::<B>(a.value, b.value, unit),
+        gradient: array!(k < N => {
+            weight * a.gradient[k] + rest * b.gradient[k]
+        }),
+        lower: Scalar::min(lower, coarse),
+        upper: weight * a.upper + rest * b.upper,
+    }
+    // The operands and the fill, whose argument is rounded, may cancel in the value.
+    .rounded_with(8.0, spread + f64::abs(a.value) + f64::abs(b.value) + 2.0 * larger * unit)
+}
+
+/// Roundings of the value, which is at most a half, and of each slope, relatively.
+const ROUNDINGS: f64 = 8.0;
+
+/// The angle is the imaginary part of a logarithm: with the cell's centre as the complex
+/// number `z` and a point of the cell as `z(1 + w)`, it grows by that of
+/// `ln(1 + w) = w − w²/2 + …`, of which all but the first term is at most
+/// `|w|²/2(1 − |w|)`. A cell that reaches the origin has all angles.
+#[inline(always)]
+pub(super) fn turn<const N: usize>(x: AffineModel<N>, y: AffineModel<N>) -> AffineModel<N> {
+    let value = f64::turn(x.value, y.value);
+    let radius = f64::norm([x.value, y.value]);
+    let moved = f64::norm([x.deviation(), y.deviation()]) * INFLATE;
+    let nearest = radius * (1.0 - 8.0 * UNIT) - moved;
+    let bounded = nearest > 0.0;
+    let inverse = 1.0 / choose(bounded, radius, 1.0);
+    let curved = moved * moved * inverse / (2.0 * TAU * choose(bounded, nearest, 1.0));
+    let by_x = -(y.value * inverse) * inverse / TAU;
+    let by_y = x.value * inverse * inverse / TAU;
+    let (size_x, size_y) = (f64::abs(by_x), f64::abs(by_y));
+    let tangent = AffineModel {
+        value,
+        gradient: array!(k < N => by_x * x.gradient[k] + by_y * y.gradient[k]),
+        lower: size_x * choose(by_x > 0.0, x.lower, x.upper)
+            + size_y * choose(by_y > 0.0, y.lower, y.upper)
+            + curved * INFLATE,
+        upper: size_x * choose(by_x > 0.0, x.upper, x.lower)
+            + size_y * choose(by_y > 0.0, y.upper, y.lower)
+            + curved * INFLATE,
+    }
+    .rounded_with(ROUNDINGS, 1.0 + size_x * x.slope() + size_y * y.slope());
+    let any = AffineModel {
+        value,
+        gradient: [0.0; N],
+        lower: (0.5 + value).max_of(0.0) + UNIT,
+        upper: (0.5 - value).max_of(0.0) + UNIT,
+    };
+    AffineModel::choose(bounded, tangent, any)
 }

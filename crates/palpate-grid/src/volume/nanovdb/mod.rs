@@ -12,8 +12,7 @@ use std::borrow::Cow;
 
 use flate2::read::ZlibDecoder;
 
-use super::numbers::inflated;
-use super::{LARGEST_VOLUME, Volume, VolumeProblem};
+use super::{LARGEST_VOLUME, Volume, VolumeProblem, inflated};
 
 const FORMAT: &str = "NanoVDB";
 

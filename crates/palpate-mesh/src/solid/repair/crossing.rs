@@ -9,10 +9,10 @@ use std::ops::ControlFlow;
 use palpate_field::{Aabb, Point, Vector};
 use robust::{Coord, Coord3D, orient2d, orient3d};
 
-use super::hubs::Hubs;
+use super::super::faces::Boxes;
+use super::super::field::across;
+use super::rims::Hubs;
 use crate::mesh::Mesh;
-use crate::solid::boxes::Boxes;
-use crate::solid::foot::across;
 use crate::tree::{BallTree, FAN};
 
 /// How two faces meet.

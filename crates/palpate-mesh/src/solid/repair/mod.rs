@@ -5,13 +5,8 @@
 
 mod cap;
 mod crossing;
-mod doubled;
-mod ears;
-mod hubs;
-mod junctions;
 mod orient;
 mod rims;
-mod sheets;
 
 use palpate_field::Point;
 
@@ -21,7 +16,7 @@ pub(super) use crossing::{Crossings, Known};
 pub(super) use orient::Pieces;
 pub(super) use rims::{by_rim, sides};
 
-use doubled::{Doubled, Patch};
+use orient::{Doubled, Patch};
 
 use super::findings::Findings;
 use crate::mesh::{Mesh, weld};
@@ -65,7 +60,7 @@ impl<const N: usize, const D: usize> Repair<N, D> {
         repair.drop_duplicates();
         (repair.findings.turned, repair.findings.one_sided) =
             orient::agree(&mut repair.elements);
-        repair.findings.parted = junctions::part(&repair.vertices, &mut repair.elements);
+        repair.findings.parted = rims::part(&repair.vertices, &mut repair.elements);
         repair.caps = vec![None; repair.elements.len()];
         let caps = cap::close(&repair.vertices, &mut repair.elements);
         repair.caps.extend(caps.of_element.into_iter().map(Some));
@@ -83,7 +78,7 @@ impl<const N: usize, const D: usize> Repair<N, D> {
 
     /// Drops the sheets within the solid, and what closes them; none if the mesh as a whole is a sheet.
     fn drop_membranes(&mut self) {
-        let found = sheets::membranes(&self.vertices, &self.elements, &self.caps);
+        let found = orient::membranes(&self.vertices, &self.elements, &self.caps);
         let Some(is_of_one) = found else {
             self.is_sheet = true;
             return;

@@ -1,18 +1,20 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! Elements that agree on the inside, and pieces whose inside is within.
+//! Faces turned outwards; doubled faces and sheets.
 
 use std::cell::OnceCell;
+use std::collections::HashMap;
 
 use palpate_field::{Aabb, Point, Vector};
 
+use super::super::across;
+use super::super::faces::Boxes;
+use super::super::winding::{Groups, share};
 use super::crossing::PiecesThatCross;
-use super::rims::{Side, by_rim, pieces, sides};
+use super::has_same_direction;
+use super::rims::{Side, by_rim, pieces, root, sides};
 use crate::report::signed_volume;
-use crate::solid::across;
-use crate::solid::boxes::Boxes;
-use crate::solid::winding::{Groups, share};
 use crate::tree::{BallTree, FAN};
 
 /// Turns elements so that the two at each rim of two agree on the inside. A piece keeps the direction that
@@ -242,4 +244,161 @@ fn lies_in<const D: usize>(inner: &Aabb<D>, outer: &Aabb<D>) -> bool {
 
 fn middle<const N: usize, const D: usize>(corners: &[Point<D>; N]) -> Point<D> {
     corners.iter().fold(Vector::ZERO, |sum, corner| sum + *corner * (1.0 / N as f64))
+}
+
+/// What a patch of doubled elements is, by the other elements at its border.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Patch {
+    /// An even number at each rim of its border: a wall between two volumes.
+    Wall,
+    /// None at all, and it is not closed: a sheet with two sides.
+    Free,
+    /// Else: a surface that is there twice.
+    Surface,
+}
+
+/// The doubled elements.
+pub(super) struct Doubled {
+    /// The elements with the same vertices.
+    pub(super) groups: Vec<Vec<usize>>,
+    /// Whether all elements are doubled.
+    pub(super) are_all: bool,
+    /// Of each group, the first group of its patch, and of that, what the patch is.
+    first: Vec<usize>,
+    patches: Vec<Patch>,
+}
+
+impl Doubled {
+    pub(super) fn of<const N: usize>(elements: &[[u32; N]]) -> Self {
+        let mut copies: HashMap<[u32; N], Vec<usize>> = HashMap::new();
+        for (i, element) in elements.iter().enumerate() {
+            let mut key = *element;
+            key.sort_unstable();
+            copies.entry(key).or_default().push(i);
+        }
+        let mut groups: Vec<_> = copies.into_values().filter(|same| same.len() > 1).collect();
+        groups.sort_unstable();
+        let mut of_element = vec![None; elements.len()];
+        for (group, same) in groups.iter().enumerate() {
+            same.iter().for_each(|element| of_element[*element] = Some(group));
+        }
+        let mut first: Vec<usize> = (0..groups.len()).collect();
+        // Of each rim of a group: the group, how many others it has, and whether it is the only group there.
+        let mut rims = Vec::new();
+        for at_rim in by_rim(&sides(elements)) {
+            let all = at_rim.iter().map(|side| of_element[side.element as usize]);
+            let mut here: Vec<usize> = all.flatten().collect();
+            let others = at_rim.len() - here.len();
+            here.sort_unstable();
+            here.dedup();
+            let Some(group) = here.first() else { continue };
+            for other in &here[1..] {
+                let [a, b] = [*group, *other].map(|group| root(&mut first, group));
+                first[a.max(b)] = a.min(b);
+            }
+            rims.push((*group, others, here.len() == 1));
+        }
+        let first: Vec<usize> = (0..groups.len()).map(|i| root(&mut first, i)).collect();
+        let mut borders = vec![Border::default(); groups.len()];
+        for (group, others, is_alone) in rims {
+            let border = &mut borders[first[group]];
+            border.is_odd |= !others.is_multiple_of(2);
+            border.has_others |= others > 0;
+            border.is_open |= others == 0 && is_alone;
+        }
+        let patches = borders.iter().map(Border::patch).collect();
+        let are_all = of_element.iter().all(Option::is_some);
+        Self { groups, are_all, first, patches }
+    }
+
+    /// What the patch of a group is.
+    pub(super) fn patch_of(&self, group: usize) -> Patch {
+        self.patches[self.first[group]]
+    }
+}
+
+/// The border of a patch.
+#[derive(Clone, Copy, Debug, Default)]
+struct Border {
+    /// Whether a rim has an odd number of other elements.
+    is_odd: bool,
+    /// Whether a rim has other elements.
+    has_others: bool,
+    /// Whether a rim has nothing but one group.
+    is_open: bool,
+}
+
+impl Border {
+    fn patch(&self) -> Patch {
+        match self {
+            Self { is_odd: false, has_others: true, .. } => Patch::Wall,
+            Self { has_others: false, is_open: true, .. } => Patch::Free,
+            _ => Patch::Surface,
+        }
+    }
+}
+
+/// What has caps larger than this share of its faces is a sheet.
+const SHEET: f64 = 0.9;
+
+/// Of each element of a closed mesh, whether it is of a membrane: a sheet within the solid of all that are none, or a
+/// face and the cap that mirrors it; `None` if the whole is a sheet. `caps` tells of each element the opening that it closes.
+///
+/// A sheet that lies elsewhere stays, and what closes it: it may be all there is of a wing.
+pub(super) fn membranes<const N: usize, const D: usize>(
+    vertices: &[Point<D>],
+    elements: &[[u32; N]],
+    caps: &[Option<usize>],
+) -> Option<Vec<bool>> {
+    let corners = |element: &[u32; N]| element.map(|index| vertices[index as usize]);
+    let (of_element, count) = pieces(vertices, elements);
+    // Of each piece, the area of its faces and of its caps [m²], twice; in the plane the lengths [m].
+    let mut areas = vec![[0.0; 2]; count];
+    for ((element, piece), cap) in elements.iter().zip(&of_element).zip(caps) {
+        areas[*piece][usize::from(cap.is_some())] += across(&corners(element)).norm();
+    }
+    let is_sheet = |[own, caps]: &[f64; 2]| *caps > SHEET * own;
+    if is_sheet(&areas.iter().fold([0.0; 2], |[a, b], [c, d]| [a + c, b + d])) {
+        return None;
+    }
+    let mut is_membrane: Vec<bool> = areas.iter().map(is_sheet).collect();
+    if is_membrane.contains(&true) {
+        let with_pieces = || elements.iter().zip(&of_element).zip(caps);
+        let rest: Vec<_> = with_pieces()
+            .filter(|((_, piece), _)| !is_membrane[**piece])
+            .map(|((element, _), _)| corners(element))
+            .collect();
+        let rest = Groups::new(&rest);
+        for ((element, piece), cap) in with_pieces() {
+            if is_membrane[*piece] && cap.is_none() {
+                let middle = corners(element)
+                    .iter()
+                    .fold(Vector::ZERO, |sum, corner| sum + *corner * (1.0 / N as f64));
+                is_membrane[*piece] = rest.goes_around(middle);
+            }
+        }
+    }
+    let is_mirrored = mirrored(elements);
+    let with_pieces = of_element.iter().zip(is_mirrored);
+    Some(with_pieces.map(|(piece, is_mirrored)| is_mirrored || is_membrane[*piece]).collect())
+}
+
+/// Of each element, whether another with the same vertices faces it, as a cap the one face that it closes: between
+/// the two is nothing.
+fn mirrored<const N: usize>(elements: &[[u32; N]]) -> Vec<bool> {
+    // Of each set of vertices, those elements that pass them in either direction and have found none that faces them.
+    let mut waiting: HashMap<[u32; N], [Vec<usize>; 2]> = HashMap::new();
+    let mut is_mirrored = vec![false; elements.len()];
+    for (i, element) in elements.iter().enumerate() {
+        let mut key = *element;
+        key.sort_unstable();
+        let way = usize::from(has_same_direction(element, key));
+        let waiting = waiting.entry(key).or_default();
+        if let Some(other) = waiting[1 - way].pop() {
+            (is_mirrored[i], is_mirrored[other]) = (true, true);
+        } else {
+            waiting[way].push(i);
+        }
+    }
+    is_mirrored
 }

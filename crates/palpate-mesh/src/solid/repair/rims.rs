@@ -1,11 +1,27 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! Rims: the edges at which triangles meet, the end points at which segments do.
+//! Rims, and vertices and edges where several of them meet.
+//!
+//! Pairs of elements at vertices at which many meet.
+//!
+//! The boxes of all elements at such a vertex overlap. But two of them that share another point than the vertex are
+//! seen from it in a common direction: pairs are looked for among the arcs of directions instead, whose boxes are
+//! small.
+//!
+//! T-junctions: edges on which corners of other faces lie.
+//!
+//! Between the edge and those corners is a gap without area, which no cap can close. Instead the face of the edge is
+//! parted at the corners. What lies exactly on an edge changes no face when it becomes a corner.
 
+use std::collections::HashMap;
 use std::f64::consts::TAU;
 
-use palpate_field::{Point, Vector};
+use palpate_field::{Aabb, Point, Vector};
+use robust::{Coord, orient2d};
+
+use super::super::faces::Boxes;
+use crate::tree::{BallTree, FAN};
 
 /// A rim of an element.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -193,4 +209,297 @@ pub(super) fn root(parents: &mut [usize], mut i: usize) -> usize {
         i = parents[i];
     }
     i
+}
+
+/// A vertex of more elements is a hub. Of fewer, comparing all pairs is as fast.
+const MANY: usize = 64;
+
+/// Room for the rounding of directions.
+const ROOM: f64 = 1e-12;
+
+/// The vertices of many elements.
+pub(super) struct Hubs<const N: usize> {
+    /// The elements of each hub.
+    elements: Vec<(u32, Vec<usize>)>,
+    /// Of each element its hubs, the lowest first, and [`NONE`] for its other vertices.
+    of_element: Vec<[u32; N]>,
+}
+
+/// No vertex.
+const NONE: u32 = u32::MAX;
+
+impl<const N: usize> Hubs<N> {
+    pub(super) fn of(vertices: usize, elements: &[[u32; N]]) -> Self {
+        let mut counts = vec![0; vertices];
+        for index in elements.iter().flatten() {
+            counts[*index as usize] += 1;
+        }
+        let mut of_hub: HashMap<u32, Vec<usize>> = HashMap::new();
+        let mut of_element = Vec::with_capacity(elements.len());
+        for (i, element) in elements.iter().enumerate() {
+            let hub = |index: u32| if counts[index as usize] > MANY { index } else { NONE };
+            let mut hubs = element.map(hub);
+            hubs.sort_unstable();
+            for hub in hubs.iter().filter(|hub| **hub != NONE) {
+                of_hub.entry(*hub).or_default().push(i);
+            }
+            of_element.push(hubs);
+        }
+        let mut elements: Vec<_> = of_hub.into_iter().collect();
+        elements.sort_unstable();
+        Self { elements, of_element }
+    }
+
+    /// The lowest hub that two elements share.
+    #[inline]
+    pub(super) fn common(&self, [i, k]: [usize; 2]) -> Option<u32> {
+        let [a, b] = [i, k].map(|element| &self.of_element[element]);
+        match () {
+            () if a[0] == NONE || b[0] == NONE => None,
+            () if a[1] == NONE && b[1] == NONE => (a[0] == b[0]).then_some(a[0]),
+            () => a.iter().find(|hub| **hub != NONE && b.contains(hub)).copied(),
+        }
+    }
+
+    /// Calls `visit` once with each pair of elements that share a hub and may share another point.
+    pub(super) fn each_pair<const D: usize>(
+        &self,
+        vertices: &[Point<D>],
+        elements: &[[u32; N]],
+        mut visit: impl FnMut([usize; 2]),
+    ) {
+        for (hub, at_hub) in &self.elements {
+            let arc = |i: &usize| {
+                let others = elements[*i].iter().filter(|index| *index != hub);
+                arc(vertices[*hub as usize], others.map(|index| vertices[*index as usize]))
+            };
+            // The ends of the box around each arc, and between them an element.
+            let ends: Vec<Point<D>> =
+                at_hub.iter().map(arc).flat_map(|box_| [box_.min, box_.max]).collect();
+            let lines: Vec<[u32; 2]> =
+                (0..at_hub.len() as u32).map(|i| [2 * i, 2 * i + 1]).collect();
+            let order = BallTree::new(&ends, &lines).order().to_vec();
+            let arcs: Vec<[Point<D>; 2]> = order
+                .iter()
+                .map(|i| lines[*i as usize].map(|end| ends[end as usize]))
+                .collect();
+            let boxes = Boxes::new(&arcs);
+            let element = |i: usize| at_hub[order[i] as usize];
+            for (i, [min, max]) in arcs.iter().enumerate() {
+                boxes.overlapping(&Aabb { min: *min, max: *max }, |group| {
+                    for k in (group * FAN).max(i + 1)..arcs.len().min((group + 1) * FAN) {
+                        let (a, b) = (element(i), element(k));
+                        let pair = [a.min(b), a.max(b)];
+                        if share_a_point(&arcs[i], &arcs[k]) && self.common(pair) == Some(*hub)
+                        {
+                            visit(pair);
+                        }
+                    }
+                });
+            }
+        }
+    }
+}
+
+/// Whether two boxes share a point.
+fn share_a_point<const D: usize>([a, b]: &[Point<D>; 2], [c, d]: &[Point<D>; 2]) -> bool {
+    (0..D).all(|k| a[k] <= d[k] && c[k] <= b[k])
+}
+
+/// The box around the directions in which an element with these other corners is seen from a corner.
+fn arc<const D: usize>(hub: Point<D>, others: impl Iterator<Item = Point<D>>) -> Aabb<D> {
+    let whole = Aabb { min: Vector([-2.0; D]), max: Vector([2.0; D]) };
+    let directions: Option<Vec<_>> = others.map(|p| (p - hub).normalized()).collect();
+    let Some(directions) = directions else { return whole };
+    let Some(around) = Aabb::around(directions.iter().copied()) else { return whole };
+    // An arc is this far from its chord at most.
+    let cosine = match directions[..] {
+        [a, b] => a.dot(b).clamp(-1.0, 1.0),
+        _ => 1.0,
+    };
+    around.grown(1.0 - (0.5 * (1.0 + cosine)).sqrt() + ROOM)
+}
+
+/// Parts the faces on an edge of which corners of others lie exactly, if edges of those lead back along it from corner
+/// to corner; returns how many edges were parted.
+pub(super) fn part<const N: usize, const D: usize>(
+    vertices: &[Point<D>],
+    elements: &mut Vec<[u32; N]>,
+) -> usize {
+    if N == 2 {
+        return 0;
+    }
+    let sides = sides(elements);
+    let alone: Vec<&Side> =
+        by_rim(&sides).filter(|at_rim| at_rim.len() == 1).map(|at_rim| &at_rim[0]).collect();
+    let chains = chains(vertices, &alone);
+    if chains.is_empty() {
+        return 0;
+    }
+    // The element at each edge of one.
+    let mut at_edge: HashMap<[u32; 2], usize> =
+        alone.iter().map(|side| (side.rim, side.element as usize)).collect();
+    let key = |a: u32, b: u32| [a.min(b), a.max(b)];
+    let parted = chains.len();
+    for mut chain in chains {
+        let (first, last) = (chain[0], chain[chain.len() - 1]);
+        let Some(face) = at_edge.get(&key(first, last)).copied() else { continue };
+        let Some(at) = elements[face].iter().position(|i| *i != first && *i != last) else {
+            continue;
+        };
+        let corner = |step: usize| elements[face][(at + step) % N];
+        let (from, to, opposite) = (corner(1), corner(2), corner(0));
+        if from != first {
+            chain.reverse();
+        }
+        let part = |ends: &[u32]| {
+            let part = [ends[0], ends[1], opposite];
+            std::array::from_fn(|k| part[k])
+        };
+        let mut parts = chain.windows(2).map(part);
+        if let Some(part) = parts.next() {
+            elements[face] = part;
+        }
+        elements.extend(parts);
+        // The last part has the edge from the end of the chain on.
+        if let Some(element) = at_edge.get_mut(&key(to, opposite)) {
+            *element = elements.len() - 1;
+        }
+    }
+    parted
+}
+
+/// The edges of one element along which other such edges lead back: their ends, and the corners between them.
+fn chains<const D: usize>(vertices: &[Point<D>], alone: &[&Side]) -> Vec<Vec<u32>> {
+    let edges: Vec<[u32; 2]> = alone.iter().map(|side| side.rim).collect();
+    if edges.is_empty() {
+        return Vec::new();
+    }
+    let at = |i: u32| vertices[i as usize];
+    let order = BallTree::new(vertices, &edges).order().to_vec();
+    let in_order: Vec<_> = order.iter().map(|i| edges[*i as usize].map(at)).collect();
+    let boxes = Boxes::new(&in_order);
+    let mut ends: Vec<u32> = edges.iter().flatten().copied().collect();
+    ends.sort_unstable();
+    ends.dedup();
+    let mut between = vec![Vec::new(); edges.len()];
+    for end in ends {
+        let p = at(end);
+        boxes.overlapping(&Aabb { min: p, max: p }, |group| {
+            for edge in order.iter().skip(group * FAN).take(FAN).map(|i| *i as usize) {
+                if is_between(edges[edge].map(at), p) {
+                    between[edge].push(end);
+                }
+            }
+        });
+    }
+    // Whether the element of an edge passes it from the lower corner to the higher.
+    let is_forward: HashMap<[u32; 2], bool> =
+        alone.iter().map(|side| (side.rim, side.is_forward)).collect();
+    let chain = |([first, last], mut between): ([u32; 2], Vec<u32>)| {
+        let way = at(last) - at(first);
+        let along = |i: &u32| (at(*i) - at(first)).dot(way);
+        between.sort_by(|a, b| along(a).total_cmp(&along(b)));
+        std::iter::once(first).chain(between).chain(std::iter::once(last)).collect()
+    };
+    let leads_back = |chain: &Vec<u32>| {
+        let passes = |from: u32, to: u32| {
+            is_forward
+                .get(&[from.min(to), from.max(to)])
+                .map(|is_forward| *is_forward == (from < to))
+        };
+        let whole = passes(chain[0], chain[chain.len() - 1]);
+        chain.windows(2).all(|step| passes(step[1], step[0]) == whole)
+    };
+    let on_edges =
+        edges.iter().copied().zip(between).filter(|(_, between)| !between.is_empty());
+    on_edges.map(chain).filter(leads_back).collect()
+}
+
+/// Whether a point lies exactly on the line between two others, and between them.
+fn is_between<const D: usize>(ends: [Point<D>; 2], p: Point<D>) -> bool {
+    let around = Aabb::around(ends).is_some_and(|aabb| aabb.contains(p));
+    let [a, b] = ends.map(|end| end.in_space());
+    let p = p.in_space();
+    around && p != a && p != b && (0..3).all(|k| turn([a, b, p], [k, (k + 1) % 3]) == 0.0)
+}
+
+/// The sign of the turn at three points, as seen along an axis.
+fn turn(points: [Point<3>; 3], [x, y]: [usize; 2]) -> f64 {
+    let [a, b, c] = points.map(|Vector(p)| Coord { x: p[x], y: p[y] });
+    orient2d(a, b, c)
+}
+
+#[cfg(test)]
+mod hubs_tests {
+    use super::*;
+
+    #[test]
+    fn pairs_that_overlap_as_seen_from_a_hub_are_found_and_few_others() {
+        // A fan around the whole turn, and one face across it.
+        let count = 500_u32;
+        let at = |i: f64| {
+            let angle = std::f64::consts::TAU * i / f64::from(count);
+            Vector([angle.cos(), 0.1, angle.sin()])
+        };
+        let mut vertices: Vec<Point<3>> = vec![Vector::ZERO];
+        vertices.extend((0..count).map(|i| at(f64::from(i))));
+        vertices.extend([at(10.2) * 0.5, at(12.7) * 2.0]);
+        let mut elements: Vec<[u32; 3]> =
+            (0..count).map(|i| [0, 1 + i, 1 + (i + 1) % count]).collect();
+        elements.push([0, count + 1, count + 2]);
+        let hubs = Hubs::of(vertices.len(), &elements);
+        let mut pairs = Vec::new();
+        hubs.each_pair(&vertices, &elements, |pair| pairs.push(pair));
+        pairs.sort_unstable();
+        let all = pairs.len();
+        pairs.dedup();
+        assert_eq!(all, pairs.len());
+        for face in [10, 11, 12] {
+            assert!(pairs.contains(&[face, 500]), "{face}");
+        }
+        assert!(pairs.len() < 2000, "{}", pairs.len());
+    }
+}
+
+#[cfg(test)]
+mod junctions_tests {
+    use super::*;
+
+    /// Corners on two edges of one face, two of them on one.
+    #[test]
+    fn a_face_is_parted_at_all_corners_on_its_edges() {
+        let vertices: Vec<Point<3>> = [
+            [0.0, 0.0, 0.0],
+            [3.0, 0.0, 0.0],
+            [0.0, 4.0, 0.0],
+            [1.0, 0.0, 0.0],
+            [2.0, 0.0, 0.0],
+            [1.5, 2.0, 0.0],
+            [1.0, 1.0, 2.0],
+        ]
+        .map(Vector)
+        .to_vec();
+        // The face below, and those of a pyramid above it.
+        let mut elements: Vec<[u32; 3]> =
+            vec![[0, 2, 1], [0, 3, 6], [3, 4, 6], [4, 1, 6], [1, 5, 6], [5, 2, 6], [2, 0, 6]];
+        assert_eq!(part(&vertices, &mut elements), 2);
+        assert_eq!(elements.len(), 10);
+        assert!(by_rim(&sides(&elements)).all(|at_rim| at_rim.len() == 2));
+    }
+
+    /// Faces were parted along loops of edges. Of a fine lid on a coarse box no edge is of both, so that lid and box had
+    /// a loop each, which were closed by caps.
+    #[test]
+    fn a_lid_of_which_no_edge_is_of_the_box_is_joined_to_it() {
+        // A square of two faces below a pyramid whose eight faces have half its sides each.
+        let vertices: Vec<Point<3>> = (0..9)
+            .map(|i| Vector([f64::from(i % 3), f64::from(i / 3), f64::from(u8::from(i == 4))]))
+            .collect();
+        let mut elements: Vec<[u32; 3]> = vec![[0, 8, 2], [0, 6, 8]];
+        let around = [0, 1, 2, 5, 8, 7, 6, 3];
+        elements.extend((0..8).map(|i| [around[i], around[(i + 1) % 8], 4]));
+        assert_eq!(part(&vertices, &mut elements), 4);
+        assert!(by_rim(&sides(&elements)).all(|at_rim| at_rim.len() == 2));
+    }
 }
