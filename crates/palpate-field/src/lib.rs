@@ -69,7 +69,7 @@ pub use node::Node;
 pub use pose::{Pose, Rotation};
 pub use promise::{Deviation, Promise, Quality, Rounding};
 pub use screw::Screw;
-pub use shape::Shape;
+pub use shape::{Shape, SpaceShape};
 pub use strided::{Layout, Strided, StridedMut};
 pub use unknown_name::UnknownName;
 pub use vector::{Point, Vector};

@@ -159,6 +159,13 @@ impl Rotation<2> {
     pub fn angle(&self) -> f64 {
         libm::atan2(self.matrix[1][0], self.matrix[0][0])
     }
+
+    /// This rotation in space, about the z axis.
+    #[must_use]
+    pub fn in_space(&self) -> Rotation<3> {
+        let [[a, b], [c, d]] = self.matrix;
+        Rotation { matrix: [[a, b, 0.0], [c, d, 0.0], [0.0, 0.0, 1.0]] }
+    }
 }
 
 impl Rotation<3> {
@@ -321,6 +328,35 @@ impl<const D: usize> Pose<D> {
     pub fn is_finite(&self) -> bool {
         self.translation.is_finite()
             && self.rotation.matrix.iter().flatten().all(|x| x.is_finite())
+    }
+}
+
+impl Pose<2> {
+    /// This motion of the plane z = 0 in space.
+    ///
+    /// ```
+    /// use palpate_field::{Pose, Rotation, Vector};
+    ///
+    /// # fn main() -> Result<(), palpate_field::ShapeError> {
+    /// let flat = Pose::new(Rotation::from_angle(0.5)?, [1.0, 2.0]);
+    /// let point = flat.in_space().transform_point(Vector([3.0, 4.0, 5.0]));
+    /// assert_eq!(point.truncated(), flat.transform_point(Vector([3.0, 4.0])));
+    /// assert_eq!((point[2], flat.in_space().in_plane()), (5.0, flat));
+    /// # Ok(())
+    /// # }
+    /// ```
+    #[must_use]
+    pub fn in_space(&self) -> Pose<3> {
+        Pose::new(self.rotation.in_space(), self.translation.in_space())
+    }
+}
+
+impl Pose<3> {
+    /// The part of this motion in the plane z = 0, for a motion that keeps that plane.
+    #[must_use]
+    pub fn in_plane(&self) -> Pose<2> {
+        let [[a, b, _], [c, d, _], _] = self.rotation.matrix;
+        Pose::new(Rotation { matrix: [[a, b], [c, d]] }, self.translation.truncated::<2>())
     }
 }
 

@@ -20,25 +20,25 @@ const SOLVED: f64 = 1e-4;
 /// change of the normal. The estimate is kept between ticks, because the curvature under a
 /// proxy changes little in a tick.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Curvature<const D: usize> {
+pub(crate) struct Curvature {
     /// The rows of the symmetric matrix [1/m].
-    rows: [Vector<f64, D>; D],
+    rows: [Vector<f64, 3>; 3],
 }
 
-impl<const D: usize> Curvature<D> {
+impl Curvature {
     /// The curvature of a plane: zero.
-    pub(crate) const FLAT: Self = Self { rows: [Vector::ZERO; D] };
+    pub(crate) const FLAT: Self = Self { rows: [Vector::ZERO; 3] };
 
     /// The change of the normal along a displacement.
     #[inline]
-    fn turn(&self, way: Vector<f64, D>) -> Vector<f64, D> {
+    fn turn(&self, way: Vector<f64, 3>) -> Vector<f64, 3> {
         Vector(self.rows.map(|row| row.dot(way)))
     }
 
     /// The residual: the part of the observed `turn` of the normal that this estimate does not
     /// predict.
     #[inline]
-    pub(crate) fn residual(&self, way: Vector<f64, D>, turn: Vector<f64, D>) -> Vector<f64, D> {
+    pub(crate) fn residual(&self, way: Vector<f64, 3>, turn: Vector<f64, 3>) -> Vector<f64, 3> {
         turn - self.turn(way)
     }
 
@@ -49,8 +49,8 @@ impl<const D: usize> Curvature<D> {
     #[inline]
     pub(crate) fn learn(
         &mut self,
-        way: Vector<f64, D>,
-        residual: Vector<f64, D>,
+        way: Vector<f64, 3>,
+        residual: Vector<f64, 3>,
         squared: f64,
     ) {
         let per_squared = 1.0 / squared;
@@ -74,7 +74,7 @@ impl<const D: usize> Curvature<D> {
     /// the surface; on the tangent plane this displacement would be `along`. `None` if the
     /// closest point is not near.
     #[inline]
-    pub(crate) fn way(&self, along: Vector<f64, D>, depth: f64) -> Option<Vector<f64, D>> {
+    pub(crate) fn way(&self, along: Vector<f64, 3>, depth: f64) -> Option<Vector<f64, 3>> {
         surface_displacement(|way| self.turn(way), along, depth, SOLVED)
     }
 }
@@ -89,16 +89,16 @@ impl<const D: usize> Curvature<D> {
 /// stop where the matrix is not positive definite: beyond a centre of curvature there is no
 /// closest point.
 #[inline]
-pub(crate) fn surface_displacement<const D: usize>(
-    mut turn: impl FnMut(Vector<f64, D>) -> Vector<f64, D>,
-    along: Vector<f64, D>,
+pub(crate) fn surface_displacement(
+    mut turn: impl FnMut(Vector<f64, 3>) -> Vector<f64, 3>,
+    along: Vector<f64, 3>,
     depth: f64,
     solved: f64,
-) -> Option<Vector<f64, D>> {
+) -> Option<Vector<f64, 3>> {
     let (mut way, mut rest, mut step) = (Vector::ZERO, along, along);
     let mut left = rest.dot(rest);
     let solved = solved * solved * left;
-    for _ in 1..D {
+    for _ in 1..3 {
         let seen = step - turn(step) * depth;
         let steepness = step.dot(seen);
         // A zero residual needs no step.
@@ -123,7 +123,7 @@ mod tests {
     use super::*;
 
     /// The curvature of a cylinder of radius 1/4 m along the third axis.
-    fn cylinder() -> Curvature<3> {
+    fn cylinder() -> Curvature {
         let mut curvature = Curvature::FLAT;
         let way = Vector([0.125, 0.0, 0.0]);
         curvature.learn(way, curvature.residual(way, way * 4.0), way.dot(way));

@@ -34,13 +34,13 @@ use palpate_device::{
 /// # }
 /// ```
 #[derive(Clone, Debug)]
-pub struct RecordedDevice<const D: usize> {
-    paths: Vec<HandPath<D>>,
-    forces: Vec<Vector<f64, D>>,
+pub struct RecordedDevice {
+    paths: Vec<HandPath>,
+    forces: Vec<Vector<f64, 3>>,
     profile: DeviceProfile,
     /// The path of orientations; `None` for a device without rotation.
-    turns: Option<HandPath<3>>,
-    turn: Option<TurnState<D>>,
+    turns: Option<HandPath>,
+    turn: Option<TurnState>,
     torque: Vector<f64, 3>,
 }
 
@@ -48,14 +48,14 @@ pub struct RecordedDevice<const D: usize> {
 /// that rounding does not matter.
 const INSTANT: f64 = 1e-6;
 
-impl<const D: usize> RecordedDevice<D> {
+impl RecordedDevice {
     /// A device with one contact point for each path.
     ///
     /// # Errors
     ///
     /// [`DeviceError::NoContactPoint`] if there are no paths.
     #[inline(never)]
-    pub fn new(paths: Vec<HandPath<D>>) -> Result<Self, SimulationError> {
+    pub fn new(paths: Vec<HandPath>) -> Result<Self, SimulationError> {
         if paths.is_empty() {
             return Err(DeviceError::NoContactPoint.into());
         }
@@ -74,7 +74,7 @@ impl<const D: usize> RecordedDevice<D> {
     /// use palpate_sim::{HandPath, Interpolation, RecordedDevice};
     ///
     /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
-    /// let rest = HandPath::new(vec![0.0, 2.0], vec![Vector([0.0, 0.0]); 2], Interpolation::Linear)?;
+    /// let rest = HandPath::new(vec![0.0, 2.0], vec![Vector([0.0, 0.0, 0.0]); 2], Interpolation::Linear)?;
     /// let turns = vec![Vector([0.0; 3]), Vector([0.0, 0.0, 1.0])];
     /// let turns = HandPath::new(vec![0.0, 2.0], turns, Interpolation::Linear)?;
     /// let mut device = RecordedDevice::new(vec![rest])?.with_turns(turns);
@@ -86,7 +86,7 @@ impl<const D: usize> RecordedDevice<D> {
     /// # }
     /// ```
     #[must_use]
-    pub fn with_turns(self, turns: HandPath<3>) -> Self {
+    pub fn with_turns(self, turns: HandPath) -> Self {
         Self { turns: Some(turns), ..self }
     }
 
@@ -98,7 +98,7 @@ impl<const D: usize> RecordedDevice<D> {
 
     /// The forces written last [N].
     #[must_use]
-    pub fn forces(&self) -> &[Vector<f64, D>] {
+    pub fn forces(&self) -> &[Vector<f64, 3>] {
         &self.forces
     }
 
@@ -115,7 +115,7 @@ impl<const D: usize> RecordedDevice<D> {
     }
 }
 
-impl<const D: usize> Device<D> for RecordedDevice<D> {
+impl Device for RecordedDevice {
     fn points(&self) -> usize {
         self.paths.len()
     }
@@ -124,7 +124,7 @@ impl<const D: usize> Device<D> for RecordedDevice<D> {
         &self.profile
     }
 
-    fn read(&mut self, time: f64, points: &mut [PointState<D>]) -> Result<Reading, DeviceLost> {
+    fn read(&mut self, time: f64, points: &mut [PointState]) -> Result<Reading, DeviceLost> {
         for (point, path) in points.iter_mut().zip(&self.paths) {
             *point = path.state_at(time);
         }
@@ -137,14 +137,14 @@ impl<const D: usize> Device<D> for RecordedDevice<D> {
         Ok(Reading::Fresh { time })
     }
 
-    fn write(&mut self, forces: &[Vector<f64, D>]) -> Result<(), DeviceLost> {
+    fn write(&mut self, forces: &[Vector<f64, 3>]) -> Result<(), DeviceLost> {
         for (kept, force) in self.forces.iter_mut().zip(forces) {
             *kept = *force;
         }
         Ok(())
     }
 
-    fn read_turn(&mut self) -> Result<Option<TurnState<D>>, DeviceLost> {
+    fn read_turn(&mut self) -> Result<Option<TurnState>, DeviceLost> {
         Ok(self.turn)
     }
 

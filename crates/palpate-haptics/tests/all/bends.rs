@@ -19,7 +19,7 @@ struct Seen {
 /// Follows a hand over a shape at 0.1 mm a tick; `closest` is where the proxy should be.
 fn slides<const D: usize>(
     shape: &Shape<D>,
-    mut proxy: Proxy<D>,
+    mut proxy: Proxy,
     hand: impl Fn(f64) -> Point<D>,
     closest: impl Fn(Point<D>) -> Point<D>,
 ) -> Seen {
@@ -85,12 +85,13 @@ fn a_hollow_much_sharper_than_the_probe_is_followed() {
     // taken for a crease, whose planes left no room: all the budget, and no way out.
     let gutter = || {
         let block = cuboid([0.02, 0.02]);
-        block.difference([ball(0.00225).translated(Vector([0.0, 0.01])).unwrap()]).unwrap()
+        block.difference([ball(0.00225).translated(Vector([0.0, 0.01, 0.0])).unwrap()]).unwrap()
     };
-    let hand =
-        |way: f64| Vector([0.002 * (40.0 * way).sin(), 0.0095 - 0.003 * (way / 1e-3).min(1.0)]);
-    let closest = |device: Point<2>| {
-        let centre = Vector([0.0, 0.01]);
+    let hand = |way: f64| {
+        Vector([0.002 * (40.0 * way).sin(), 0.0095 - 0.003 * (way / 1e-3).min(1.0), 0.0])
+    };
+    let closest = |device: Point<3>| {
+        let centre = Vector([0.0, 0.01, 0.0]);
         centre + (device - centre).normalized().unwrap() * 0.00025
     };
     let seen = slides(&gutter(), proxy(0.002), hand, closest);
@@ -136,9 +137,9 @@ fn a_hand_that_spends_its_budget_in_a_body_stays_in_contact() {
     let rough = Shape::union([floor, wave]).unwrap();
     let bodies = Bodies::from(rough);
     let mut proxy = Proxy::new(Probe::new(0.0).unwrap().with_budget(8).unwrap());
-    proxy.follow(&bodies.everything(), Vector([0.0, 0.01]));
+    proxy.follow(&bodies.everything(), Vector([0.0, 0.01, 0.0]));
     for tick in 0..300 {
-        let device = Vector([3e-4 * f64::from(tick), -0.002]);
+        let device = Vector([3e-4 * f64::from(tick), -0.002, 0.0]);
         assert!(proxy.follow(&bodies.everything(), device).contact, "{tick}");
     }
 }

@@ -19,11 +19,11 @@ fn options(radius: f64) -> ServoOptions {
     }
 }
 
-fn touch(servo: &mut Servo<3, Unprotected>, device: Vector<f64, 3>) -> Touch<3> {
+fn touch(servo: &mut Servo<Unprotected>, device: Vector<f64, 3>) -> Touch {
     servo.step(&[PointState::at_rest(device)])[0]
 }
 
-fn rough(stiffness: f64) -> Surface<3> {
+fn rough(stiffness: f64) -> Surface {
     let (static_friction, dynamic_friction) = (0.8, 0.6);
     let material = Material {
         stiffness,

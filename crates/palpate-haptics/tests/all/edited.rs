@@ -25,7 +25,7 @@ const LONGER: f64 = 1.2;
 
 const RECOVERIES: [Recovery; 2] = [Recovery::Rise, Recovery::OnceOut];
 
-fn rough(stiffness: f64) -> Surface<3> {
+fn rough(stiffness: f64) -> Surface {
     let material = Material {
         stiffness,
         damping: 1.0,
@@ -37,7 +37,7 @@ fn rough(stiffness: f64) -> Surface<3> {
 }
 
 /// A plate of so many metres, with its lower side at y = −0.02.
-fn plate(height: f64) -> Bodies<3> {
+fn plate(height: f64) -> Bodies {
     let lower = Pose::translation(Vector([0.0, 0.5 * height - 0.02, 0.0]));
     let shape = cuboid([0.1, height, 0.1]);
     Bodies::new(vec![Body::new(shape, rough(1000.0)).unwrap().at(lower).unwrap()]).unwrap()
@@ -51,25 +51,25 @@ fn options(radius: f64) -> ServoOptions {
     }
 }
 
-fn protection(recovery: Recovery) -> Protection<3> {
+fn protection(recovery: Recovery) -> Protection {
     Protection::new(profile_named("omega").unwrap()).with(|s| s.recovery = recovery)
 }
 
-fn point(bodies: Bodies<3>, radius: f64, recovery: Recovery) -> Servo<3> {
+fn point(bodies: Bodies, radius: f64, recovery: Recovery) -> Servo {
     let plain = Servo::new(bodies, 1, options(radius)).unwrap();
     plain.protected(&protection(recovery)).unwrap()
 }
 
-fn stiffness(servo: &Servo<3>) -> f64 {
+fn stiffness(servo: &Servo) -> f64 {
     servo.bodies().bodies()[0].surface().stiffness()
 }
 
-fn at<const D: usize>(place: Point<D>) -> [PointState<D>; 1] {
+fn at<const D: usize>(place: Point<D>) -> [PointState; 1] {
     [PointState::at_rest(place)]
 }
 
 /// Lets a hand come down along y and rest so deep in what is at y = 0 [m].
-fn press(servo: &mut Servo<3>, depth: f64, radius: f64) -> Point<3> {
+fn press(servo: &mut Servo, depth: f64, radius: f64) -> Point<3> {
     for tick in 0..=1000 {
         let part = f64::from(tick) / 1000.0;
         let y = 0.03 + (radius - depth - 0.03) * part;
@@ -82,7 +82,7 @@ fn press(servo: &mut Servo<3>, depth: f64, radius: f64) -> Point<3> {
     place
 }
 
-fn edit(servo: &mut Servo<3>, bodies: Bodies<3>) {
+fn edit(servo: &mut Servo, bodies: Bodies) {
     let mut bodies = servo.accept(bodies).unwrap();
     assert_no_alloc(|| servo.replace_bodies(&mut bodies)).unwrap();
 }
@@ -368,7 +368,7 @@ fn grown<const D: usize>(sort: u8, size: f64, growth: f64) -> Shape<D> {
     }
 }
 
-fn bodies_of<const D: usize>(shape: Shape<D>, place: Point<D>) -> Bodies<D> {
+fn bodies_of<const D: usize>(shape: Shape<D>, place: Point<D>) -> Bodies {
     let surface = Surface::smooth(500.0, 0.0).unwrap();
     let body = Body::new(shape, surface).unwrap().at(Pose::translation(place)).unwrap();
     Bodies::new(vec![body]).unwrap()

@@ -33,11 +33,11 @@ fn spring() -> Material {
     }
 }
 
-fn surface<const D: usize>(material: &Material) -> Surface<D> {
+fn surface<const D: usize>(material: &Material) -> Surface {
     Surface::new(material).unwrap()
 }
 
-fn servo<const D: usize>(bodies: Bodies<D>, radius: f64) -> Servo<D, Unprotected> {
+fn servo<const D: usize>(bodies: Bodies, radius: f64) -> Servo<Unprotected> {
     let probe = Probe::new(radius).unwrap();
     let options = ServoOptions { probe, max_force: f64::INFINITY, ..ServoOptions::default() };
     Servo::new(bodies, 1, options).unwrap()
@@ -47,10 +47,7 @@ fn servo<const D: usize>(bodies: Bodies<D>, radius: f64) -> Servo<D, Unprotected
 /// trapezoidal rule, after one turn that nobody counts: it may begin inside.
 ///
 /// The rule errs by about `K Δ² / 12` wherever the stiffness sets in, for steps of `Δ`.
-fn work<const D: usize>(
-    servo: &mut Servo<D, Unprotected>,
-    path: impl Fn(f64) -> Point<D>,
-) -> f64 {
+fn work<const D: usize>(servo: &mut Servo<Unprotected>, path: impl Fn(f64) -> Point<D>) -> f64 {
     let mut last = None;
     let mut work = 0.0;
     for tick in 0..=2 * TICKS {
@@ -96,7 +93,7 @@ fn turns<const D: usize>(
 /// Plays loops at the surface of some bodies, and checks what they gain.
 fn gains_nothing<const D: usize>(
     name: &str,
-    bodies: &Bodies<D>,
+    bodies: &Bodies,
     (radius, width): (f64, f64),
     loops: u64,
 ) {
@@ -139,7 +136,7 @@ fn shapes_of_space() -> Vec<(&'static str, Shape<3>)> {
 }
 
 fn shapes_of_the_plane() -> Vec<(&'static str, Shape<2>)> {
-    let bite = ball(0.02).translated(Vector([0.03, 0.03])).unwrap();
+    let bite = ball(0.02).translated(Vector([0.03, 0.03, 0.0])).unwrap();
     vec![
         ("a disc", ball(0.05)),
         ("a rectangle", cuboid([0.06, 0.08])),

@@ -19,7 +19,7 @@ fn servo<const D: usize>(
     shape: &Shape<D>,
     radius: f64,
     (stiffness, options): (f64, ServoOptions),
-) -> Servo<D, Unprotected> {
+) -> Servo<Unprotected> {
     let options = ServoOptions { probe: Probe::new(radius).unwrap(), ..options };
     let surface = Surface::smooth(stiffness, 0.0).unwrap();
     Servo::new(body(shape, surface), 1, options).unwrap()
@@ -29,7 +29,7 @@ fn spring_alone(stiffness: f64) -> (f64, ServoOptions) {
     (stiffness, ServoOptions { max_force: f64::INFINITY, ..ServoOptions::default() })
 }
 
-fn touch<const D: usize>(servo: &mut Servo<D, Unprotected>, device: Point<D>) -> Touch<D> {
+fn touch<const D: usize>(servo: &mut Servo<Unprotected>, device: Point<D>) -> Touch {
     servo.step(&[PointState::at_rest(device)])[0]
 }
 
@@ -170,17 +170,17 @@ fn a_hand_at_a_centre_without_gradient_is_led_out_too() {
 #[test]
 fn a_shape_that_moves_over_the_hand_pushes_gently() {
     let mut servo = servo(&half_space([0.0, 1.0], 0.0), 0.0, spring_alone(512.0));
-    let device = Vector([0.0, 0.0625]);
+    let device = Vector([0.0, 0.0625, 0.0]);
     assert!(!touch(&mut servo, device).contact);
     let surface = Surface::smooth(512.0, 0.0).unwrap();
     let old = servo.replace_bodies(body(&half_space([0.0, 1.0], 0.125), surface));
     assert_eq!(old.everything().look(device).0, 0.0625);
     let first = touch(&mut servo, device);
-    assert_eq!((first.proxy, first.force), (Vector([0.0, 0.125]), Vector::ZERO));
+    assert_eq!((first.proxy, first.force), (Vector([0.0, 0.125, 0.0]), Vector::ZERO));
     for _ in 0..100 {
         touch(&mut servo, device);
     }
-    assert_eq!(touch(&mut servo, device).force, Vector([0.0, 32.0]));
+    assert_eq!(touch(&mut servo, device).force, Vector([0.0, 32.0, 0.0]));
 }
 
 /// A skin of 1e-7 m allowed only tiny steps: a probe that slid at 1 m/s over a ball spent its budget
@@ -254,7 +254,7 @@ fn numbers_that_are_not_finite_give_no_force_and_are_survived() {
 fn every_point_of_a_servo_is_its_own() {
     let options = ServoOptions { probe: Probe::new(0.0).unwrap(), ..spring_alone(500.0).1 };
     let mut servo = Servo::new(half_space([0.0, 1.0], 0.0), 3, options).unwrap();
-    let at = |y: f64| PointState::at_rest(Vector([0.0, y]));
+    let at = |y: f64| PointState::at_rest(Vector([0.0, y, 0.0]));
     servo.step(&[at(1.0), at(1.0), at(1.0)]);
     let touches = servo.step(&[at(-0.5), at(1.0), at(-0.25)]);
     let forces: Vec<_> = touches.iter().map(|t| t.force[1]).collect();
@@ -278,8 +278,8 @@ fn wrong_options_are_refused_with_their_numbers() {
 #[test]
 fn every_preset_can_be_felt() {
     for name in Material::preset_names() {
-        Surface::<3>::new(&Material::preset(name).unwrap()).unwrap();
-        Surface::<2>::new(&Material::preset(name).unwrap()).unwrap();
+        Surface::new(&Material::preset(name).unwrap()).unwrap();
+        Surface::new(&Material::preset(name).unwrap()).unwrap();
     }
 }
 
@@ -314,7 +314,7 @@ fn a_relative_stiffness_is_a_part_of_what_the_device_renders() {
     assert_eq!((accepted.device_stiffness, outermost), (900.0, 300.0));
     for part in [0.0, -0.5, 1.5, f64::NAN] {
         let wrong = Material { relative_stiffness: Some(part), ..Material::default() };
-        let said = Surface::<3>::new(&wrong).unwrap_err().to_string();
+        let said = Surface::new(&wrong).unwrap_err().to_string();
         let expected =
             format!("relative_stiffness must be more than 0 and at most 1, got {part}");
         assert_eq!(said, expected);

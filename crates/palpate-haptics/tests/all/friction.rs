@@ -16,7 +16,7 @@ fn rough<const D: usize>(
     shape: &Shape<D>,
     friction: [f64; 2],
     radius: f64,
-) -> Servo<D, Unprotected> {
+) -> Servo<Unprotected> {
     let material = Material {
         stiffness: STIFFNESS,
         damping: 0.0,
@@ -32,7 +32,7 @@ fn rough<const D: usize>(
     Servo::new(body(shape, Surface::new(&material).unwrap()), 1, options).unwrap()
 }
 
-fn touch<const D: usize>(servo: &mut Servo<D, Unprotected>, device: Point<D>) -> Touch<D> {
+fn touch<const D: usize>(servo: &mut Servo<Unprotected>, device: Point<D>) -> Touch {
     servo.step(&[PointState::at_rest(device)])[0]
 }
 
@@ -69,12 +69,9 @@ fn a_hand_sticks_within_the_cone_and_slips_beyond_it() {
 
 /// The work that the force does on a hand over a closed path [J], and what is taken of it as
 /// heat if there is friction. The force is held over a tick, as a device holds it.
-fn work<const D: usize>(
-    servo: &mut Servo<D, Unprotected>,
-    path: impl Fn(f64) -> Point<D>,
-) -> f64 {
+fn work<const D: usize>(servo: &mut Servo<Unprotected>, path: impl Fn(f64) -> Point<D>) -> f64 {
     const TICKS: u32 = 40_000;
-    let mut last: Option<Touch<D>> = None;
+    let mut last: Option<Touch> = None;
     let mut work = 0.0;
     for tick in 0..=3 * TICKS {
         let touch = touch(servo, path(f64::from(tick) / f64::from(TICKS)));

@@ -23,8 +23,8 @@ const TICK: Duration = Duration::from_millis(1);
 /// A device whose points are moved by the test, and that keeps what is written.
 #[derive(Clone)]
 struct Hand {
-    at: Arc<Mutex<Vec<Point<2>>>>,
-    written: Arc<Mutex<Vec<Vec<Vector<f64, 2>>>>>,
+    at: Arc<Mutex<Vec<Point<3>>>>,
+    written: Arc<Mutex<Vec<Vec<Vector<f64, 3>>>>>,
     profile: DeviceProfile,
     /// When it is unplugged [s].
     until: f64,
@@ -44,19 +44,19 @@ impl Hand {
         self.at.lock().unwrap()[0] = Vector(point);
     }
 
-    fn last_forces(&self) -> Vec<Vector<f64, 2>> {
+    fn last_forces(&self) -> Vec<Vector<f64, 3>> {
         self.written.lock().unwrap().last().unwrap().clone()
     }
 }
 
-impl Device<2> for Hand {
+impl Device for Hand {
     fn points(&self) -> usize {
         self.at.lock().unwrap().len()
     }
     fn profile(&self) -> &DeviceProfile {
         &self.profile
     }
-    fn read(&mut self, time: f64, points: &mut [PointState<2>]) -> Result<Reading, DeviceLost> {
+    fn read(&mut self, time: f64, points: &mut [PointState]) -> Result<Reading, DeviceLost> {
         if time >= self.until {
             return Err(DeviceLost { reason: "unplugged".to_owned() });
         }
@@ -65,13 +65,13 @@ impl Device<2> for Hand {
         }
         Ok(Reading::Fresh { time })
     }
-    fn write(&mut self, forces: &[Vector<f64, 2>]) -> Result<(), DeviceLost> {
+    fn write(&mut self, forces: &[Vector<f64, 3>]) -> Result<(), DeviceLost> {
         self.written.lock().unwrap().push(forces.to_vec());
         Ok(())
     }
 }
 
-fn unprotected(bodies: impl Into<Bodies<2>>, points: usize) -> Servo<2, Unprotected> {
+fn unprotected(bodies: impl Into<Bodies>, points: usize) -> Servo<Unprotected> {
     let options = ServoOptions {
         probe: Probe::new(0.0).unwrap(),
         max_force: f64::INFINITY,
@@ -80,20 +80,16 @@ fn unprotected(bodies: impl Into<Bodies<2>>, points: usize) -> Servo<2, Unprotec
     Servo::new(bodies, points, options).unwrap()
 }
 
-fn servo(bodies: impl Into<Bodies<2>>, points: usize) -> Servo<2> {
+fn servo(bodies: impl Into<Bodies>, points: usize) -> Servo {
     without_limits(unprotected(bodies, points))
 }
 
 /// All points with y ≤ `height`, at 512 N/m.
-fn floor(height: f64) -> Bodies<2> {
+fn floor(height: f64) -> Bodies {
     body(&half_space([0.0, 1.0], height), Surface::smooth(512.0, 0.0).unwrap())
 }
 
-fn start(
-    servo: Servo<2>,
-    hand: &Hand,
-    options: ThreadOptions<2>,
-) -> (ServoThread<2>, ClockDriver) {
+fn start(servo: Servo, hand: &Hand, options: ThreadOptions) -> (ServoThread, ClockDriver) {
     let (clock, mut driver) = VirtualClock::driven();
     let thread = ServoThread::start_on(clock, servo, Box::new(hand.clone()), options).unwrap();
     // Tick 0 is over.
@@ -101,12 +97,12 @@ fn start(
     (thread, driver)
 }
 
-fn plain() -> ThreadOptions<2> {
+fn plain() -> ThreadOptions {
     ThreadOptions { raises_priority: false, ..ThreadOptions::default() }
 }
 
-fn up(way: f64) -> Pose<2> {
-    Pose::translation(Vector([0.0, way]))
+fn up(way: f64) -> Pose<3> {
+    Pose::translation(Vector([0.0, way, 0.0]))
 }
 
 #[test]
@@ -142,7 +138,7 @@ fn edits_are_seen_in_the_next_tick() {
     let (mut thread, mut driver) = start(servo(floor(0.0), 1), &hand, plain());
     hand.move_to([0.0, -0.0078125]);
     driver.advance(TICK);
-    assert!((hand.last_forces()[0] - Vector([0.0, 4.0])).norm() < 1e-6);
+    assert!((hand.last_forces()[0] - Vector([0.0, 4.0, 0.0])).norm() < 1e-6);
 
     thread.control().set_poses(&[(0, up(-1.0))]).unwrap();
     driver.advance(TICK);
@@ -160,13 +156,13 @@ fn edits_are_seen_in_the_next_tick() {
     assert_eq!(hand.last_forces(), [Vector::ZERO]);
     hand.move_to([0.0, -0.25 - 2.0 * 0.0078125]);
     driver.advance(TICK);
-    assert!((hand.last_forces()[0] - Vector([0.0, 4.0])).norm() < 1e-6);
+    assert!((hand.last_forces()[0] - Vector([0.0, 4.0, 0.0])).norm() < 1e-6);
     let snapshot = thread.control().latest().unwrap();
-    assert!((snapshot.reactions[0].force - Vector([0.0, -4.0])).norm() < 1e-6);
+    assert!((snapshot.reactions[0].force - Vector([0.0, -4.0, 0.0])).norm() < 1e-6);
 
     thread.control().limit_force(1.0).unwrap();
     driver.advance(TICK);
-    assert!((hand.last_forces()[0] - Vector([0.0, 1.0])).norm() < 1e-9);
+    assert!((hand.last_forces()[0] - Vector([0.0, 1.0, 0.0])).norm() < 1e-9);
     drop(driver);
     let ended = thread.end();
     assert_eq!((ended.report.ending, ended.priority), (Ending::Finished, Priority::Normal));
@@ -212,10 +208,10 @@ struct Counted {
 }
 
 impl CustomField<2> for Counted {
-    fn distance(&self, p: Point<2>) -> f64 {
+    fn distance(&self, p: Point<3>) -> f64 {
         p.norm() - 0.5
     }
-    fn distance_gradient(&self, p: Point<2>) -> (f64, Vector<f64, 2>) {
+    fn distance_gradient(&self, p: Point<3>) -> (f64, Vector<f64, 3>) {
         (p.norm() - 0.5, p.normalized().unwrap_or(Vector::ZERO))
     }
     fn promise(&self) -> &Promise<2> {
@@ -337,12 +333,12 @@ fn ten_kilohertz_have_ten_times_the_ticks() {
 struct Trap(Promise<2>);
 
 impl CustomField<2> for Trap {
-    fn distance(&self, p: Point<2>) -> f64 {
+    fn distance(&self, p: Point<3>) -> f64 {
         self.distance_gradient(p).0
     }
-    fn distance_gradient(&self, p: Point<2>) -> (f64, Vector<f64, 2>) {
+    fn distance_gradient(&self, p: Point<3>) -> (f64, Vector<f64, 3>) {
         assert!(p[1] > 0.1, "the trap snapped");
-        (p[1], Vector([0.0, 1.0]))
+        (p[1], Vector([0.0, 1.0, 0.0]))
     }
     fn promise(&self) -> &Promise<2> {
         &self.0

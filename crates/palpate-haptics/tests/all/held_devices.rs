@@ -10,7 +10,7 @@ use palpate_haptics::servo_loop::{Pace, RunOptions, run};
 use palpate_haptics::{Protection, Servo, ServoOptions, Shell, Tool, ToolOptions};
 use palpate_sim::{Glove, Hand, HandPath, Interpolation, SimulatedDevice};
 
-fn stroke() -> HandPath<3> {
+fn stroke() -> HandPath {
     let places =
         vec![Vector([0.02, 0.08, 0.01]), Vector([0.0, 0.03, 0.0]), Vector([-0.03, 0.06, 0.0])];
     HandPath::new(vec![0.0, 0.7, 1.5], places, Interpolation::Smooth).unwrap()
@@ -22,7 +22,7 @@ fn fingers(side: f64) -> Vec<Vector<f64, 3>> {
     (0..12).map(place).collect()
 }
 
-fn both_hands() -> Glove<3> {
+fn both_hands() -> Glove {
     let [left, right] =
         [-0.03, 0.03].map(|x| Glove::from_hand(&stroke(), &fingers(x)).unwrap());
     left.joined(right)

@@ -50,11 +50,11 @@ fn a_vanishing_gradient_keeps_the_last_normal() {
     #[derive(Debug)]
     struct Flat(palpate_field::Promise<2>);
     impl palpate_field::CustomField<2> for Flat {
-        fn distance(&self, p: palpate_field::Point<2>) -> f64 {
+        fn distance(&self, p: palpate_field::Point<3>) -> f64 {
             p[1].clamp(-1.0, 1.0).powi(3)
         }
-        fn distance_gradient(&self, p: palpate_field::Point<2>) -> (f64, Vector<f64, 2>) {
-            (self.distance(p), Vector([0.0, 3.0 * p[1].clamp(-1.0, 1.0).powi(2)]))
+        fn distance_gradient(&self, p: palpate_field::Point<3>) -> (f64, Vector<f64, 3>) {
+            (self.distance(p), Vector([0.0, 3.0 * p[1].clamp(-1.0, 1.0).powi(2), 0.0]))
         }
         fn promise(&self) -> &palpate_field::Promise<2> {
             &self.0
@@ -63,8 +63,9 @@ fn a_vanishing_gradient_keeps_the_last_normal() {
     let bounds = ball::<2>(1.0).promise().bounds;
     let flat = Shape::custom(Flat(palpate_field::Promise::lipschitz(bounds, 3.0)));
     let mut proxy = proxy(0.0);
-    let last = stroke(&mut proxy, &flat, (Vector([0.0, 0.9]), Vector([0.3, -0.1])), 100);
-    assert_eq!(last.normal, Vector([0.0, 1.0]));
+    let last =
+        stroke(&mut proxy, &flat, (Vector([0.0, 0.9, 0.0]), Vector([0.3, -0.1, 0.0])), 100);
+    assert_eq!(last.normal, Vector([0.0, 1.0, 0.0]));
     assert!(flat.distance(last.proxy) >= -1e-9);
     assert!(last.proxy.is_finite());
 }
@@ -184,9 +185,9 @@ fn a_field_of_other_slope_holds_the_proxy_on_its_own_level() {
     for factor in [0.5, 2.0] {
         let shape = scaled(&cuboid([0.5, 0.5]), factor, factor.max(1.0));
         let mut proxy = proxy(0.0078125);
-        let way = (Vector([0.0625, 0.5]), Vector([0.0625, 0.1875]));
+        let way = (Vector([0.0625, 0.5, 0.0]), Vector([0.0625, 0.1875, 0.0]));
         let last = stroke(&mut proxy, &shape, way, 64);
         let level = 0.25 + 0.0078125 / factor;
-        assert!((last.proxy - Vector([0.0625, level])).norm() < 1e-9, "{last:?}");
+        assert!((last.proxy - Vector([0.0625, level, 0.0])).norm() < 1e-9, "{last:?}");
     }
 }

@@ -9,12 +9,12 @@ use palpate_haptics::servo_loop::{Pace, RunOptions, RunReport, run};
 use palpate_haptics::{Bodies, Body, Guide, GuideOptions, Servo, Surface};
 use palpate_sim::{HandPath, Interpolation, RecordedDevice};
 
-fn hand(times: &[f64], heights: &[f64]) -> HandPath<2> {
-    let positions = heights.iter().map(|y| Vector([0.0, *y])).collect();
+fn hand(times: &[f64], heights: &[f64]) -> HandPath {
+    let positions = heights.iter().map(|y| Vector([0.0, *y, 0.0])).collect();
     HandPath::new(times.to_vec(), positions, Interpolation::Linear).unwrap()
 }
 
-fn told(servo: &mut Servo<2>, hands: Vec<HandPath<2>>, duration: f64) -> RunReport {
+fn told(servo: &mut Servo, hands: Vec<HandPath>, duration: f64) -> RunReport {
     let mut device = RecordedDevice::new(hands).unwrap();
     let options = RunOptions { pace: Pace::AsFastAsPossible, ..RunOptions::new(duration) };
     run(servo, &mut device, options).unwrap()
@@ -28,10 +28,10 @@ struct Flat {
 }
 
 impl CustomField<2> for Flat {
-    fn distance(&self, p: Point<2>) -> f64 {
+    fn distance(&self, p: Point<3>) -> f64 {
         self.ball.distance(p).max(-0.001)
     }
-    fn distance_gradient(&self, p: Point<2>) -> (f64, Vector<f64, 2>) {
+    fn distance_gradient(&self, p: Point<3>) -> (f64, Vector<f64, 3>) {
         let (distance, gradient) = self.ball.distance_gradient(p);
         if distance < -0.001 { (-0.001, Vector::ZERO) } else { (distance, gradient) }
     }

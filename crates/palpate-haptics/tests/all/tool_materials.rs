@@ -15,7 +15,7 @@ use palpate_haptics::{
 fn a_box_tells_where_it_slips_and_where_it_sticks_again() {
     let (mut bodies, mut tool) = rough(&half_space([0.0, 1.0, 0.0], 0.0));
     let mut told = Vec::new();
-    let mut go = |tool: &mut Tool<3>, x: f64, y: f64| {
+    let mut go = |tool: &mut Tool, x: f64, y: f64| {
         tool.step(&mut bodies, &at([x, y, 0.0]));
         told.extend(tool.events().iter().map(|event| (event.tick, event.body, event.kind)));
     };
@@ -38,7 +38,7 @@ fn a_box_tells_where_it_slips_and_where_it_sticks_again() {
 }
 
 /// A tool on ground of a material, after it was pressed to `depth` there.
-fn pressed(material: &Material, depth: f64, velocity: [f64; 3]) -> ToolTouch<3> {
+fn pressed(material: &Material, depth: f64, velocity: [f64; 3]) -> ToolTouch {
     let surface = Surface::new(material).unwrap();
     let mut bodies = body(&half_space([0.0, 1.0, 0.0], 0.0), surface);
     let shell = Shell::from_mesh(&box_mesh([0.06, 0.04, 0.05]), 600, 0.0).unwrap();

@@ -13,7 +13,7 @@ use palpate_sim::{HandPath, RecordedDevice, SimulationError, Tour};
 
 const DURATION: f64 = 20.0;
 
-fn tour<const D: usize>(shape: &Shape<D>) -> HandPath<D> {
+fn tour<const D: usize>(shape: &Shape<D>) -> HandPath {
     let bounds = shape.promise().bounds.unwrap().aabb;
     Tour::new(bounds, DURATION).unwrap().over(shape).unwrap()
 }
@@ -43,7 +43,7 @@ fn row_of_bodies() -> Shape<3> {
 /// A star of 12 branches with notches as deep as its tips, grown together with a ball.
 fn star() -> Shape<2> {
     let star = Shape::from_kernel(RegularStar::new(12, 0.3, 0.212).unwrap());
-    let disc = ball(0.2).translated(Vector([-0.25, 0.15])).unwrap();
+    let disc = ball(0.2).translated(Vector([-0.25, 0.15, 0.0])).unwrap();
     Shape::smooth_union([star, disc], Profile::Quadratic, 0.00025).unwrap()
 }
 
@@ -249,13 +249,13 @@ fn a_tour_visits_every_body_on_a_table() {
 
 #[test]
 fn a_tour_visits_bodies_in_the_plane() {
-    let floor = cuboid([1.0, 0.02]).translated(Vector([0.0, -0.01])).unwrap();
-    let disc = |x: f64| ball::<2>(0.01).translated(Vector([x, 0.01])).unwrap();
+    let floor = cuboid([1.0, 0.02]).translated(Vector([0.0, -0.01, 0.0])).unwrap();
+    let disc = |x: f64| ball::<2>(0.01).translated(Vector([x, 0.01, 0.0])).unwrap();
     let bodies = vec![disc(-0.37), floor, disc(0.21)];
     assert_eq!(visited(&bodies, bounds(&bodies), 10.0), [true; 3]);
     // Between floor and roof, the disc is seen from the side alone.
     let mut bodies = bodies;
-    bodies.push(cuboid([1.0, 0.02]).translated(Vector([0.0, 0.1])).unwrap());
+    bodies.push(cuboid([1.0, 0.02]).translated(Vector([0.0, 0.1, 0.0])).unwrap());
     assert_eq!(visited(&bodies, bounds(&bodies), 10.0), [true; 4]);
 }
 
@@ -369,5 +369,5 @@ fn nothing_to_touch_is_an_error() {
 
 #[test]
 fn a_tour_is_made_for_the_default_probe() {
-    assert_eq!(Tour::<3>::PROBE_RADIUS, palpate_haptics::Probe::default().radius());
+    assert_eq!(Tour::PROBE_RADIUS, palpate_haptics::Probe::default().radius());
 }

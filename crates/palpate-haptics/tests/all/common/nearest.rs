@@ -9,11 +9,11 @@ use palpate_haptics::Bodies;
 /// The nearest of many points outside to which the straight way was free before, in many
 /// directions; `None` within `most`.
 pub(crate) fn nearest<const D: usize>(
-    [before, after]: [&Bodies<D>; 2],
+    [before, after]: [&Bodies; 2],
     (from, radius): (Point<D>, f64),
     most: f64,
 ) -> Option<f64> {
-    let gap = |bodies: &Bodies<D>, p| bodies.everything().look(p).0 - radius;
+    let gap = |bodies: &Bodies, p| bodies.everything().look(p).0 - radius;
     let mut best = None;
     for way in directions::<D>() {
         let mut length = 0.0;

@@ -107,7 +107,7 @@ pub(crate) fn pose<const D: usize>(i: usize, tick: u32, scale: f64) -> Pose<D> {
     Pose::translation(at * scale)
 }
 
-pub(crate) fn bodies<const D: usize>(count: usize, scale: f64) -> Bodies<D> {
+pub(crate) fn bodies<const D: usize>(count: usize, scale: f64) -> Bodies {
     let body = |i: usize| {
         let surface = Surface::new(&material(i, scale)).unwrap();
         Body::new(shape(i, scale), surface).unwrap().at(pose(i, 0, scale)).unwrap()
@@ -120,7 +120,7 @@ pub(crate) fn servo<const D: usize>(
     count: usize,
     points: usize,
     scale: f64,
-) -> Servo<D, Unprotected> {
+) -> Servo<Unprotected> {
     let options = ServoOptions {
         rate: RATE,
         probe: Probe::new(0.002 * scale).unwrap(),
@@ -140,7 +140,7 @@ pub(crate) fn servo<const D: usize>(
 }
 
 /// The hands at a tick: each on a path of its own through the scene.
-pub(crate) fn hands<const D: usize>(tick: u32, states: &mut [PointState<D>], scale: f64) {
+pub(crate) fn hands<const D: usize>(tick: u32, states: &mut [PointState], scale: f64) {
     for (i, state) in states.iter_mut().enumerate() {
         let at = |tick: f64| {
             Vector(std::array::from_fn(|axis| {
@@ -157,8 +157,8 @@ pub(crate) fn hands<const D: usize>(tick: u32, states: &mut [PointState<D>], sca
 
 /// Moves what moves and takes a step.
 pub(crate) fn step<const D: usize>(
-    servo: &mut impl AnyServo<D>,
-    states: &mut [PointState<D>],
+    servo: &mut impl AnyServo,
+    states: &mut [PointState],
     (tick, scale): (u32, f64),
 ) {
     for i in (0..servo.bodies().bodies().len()).step_by(2) {
