@@ -238,7 +238,7 @@ mod tests {
 
     #[test]
     fn a_wall_that_only_stands_by_does_not_push() {
-        let mut alone = crease([-1.0, 2.0], &[[1.0, 0.0], [0.0, 1.0]]);
+        let mut alone = crease([-1.0, 2.0, 0.0], &[[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]);
         assert_eq!(alone.walls().map(|wall| wall.push).collect::<Vec<_>>(), [0.0, 2.0]);
         alone.retain(|_| false);
         assert!(alone.has(1) && !alone.has(0));

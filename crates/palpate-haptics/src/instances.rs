@@ -27,7 +27,7 @@ fn touch() {
         Shell::capsule,
         Shell::from_field::<3>,
         Shell::from_mesh::<3, 3>,
-        Shell::of_shape::<palpate_field::SpaceShape>,
+        Shell::from_field::<2>,
         Tool::new,
         Tool::hover,
         Tool::step,

@@ -267,6 +267,7 @@ mod tests {
 
     fn written(
         trace: impl FnOnce(&mut TraceWriter<'_, Vec<u8>>),
+        is_flat: bool,
         poses: &[(usize, Pose<3>)],
     ) -> Vec<String> {
         let pose_at = |body, time: f64| {
@@ -275,6 +276,9 @@ mod tests {
         };
         let mut writer = TraceWriter::new(Vec::new())
             .with_poses(poses.iter().map(|(body, _)| *body), pose_at);
+        if is_flat {
+            writer = writer.in_plane();
+        }
         trace(&mut writer);
         let text = String::from_utf8(writer.finish().unwrap()).unwrap();
         text.lines().map(str::to_owned).collect()
@@ -293,9 +297,9 @@ mod tests {
             evaluations: 11,
             cost_ns: 12,
             lateness_ns: 13,
-            ..TraceRow::free(0.1, 6, Point::from([-0.1, 1e-20]))
+            ..TraceRow::free(0.1, 6, Point::from([-0.1, 1e-20, 0.0]))
         };
-        let lines = written(|trace| trace.write(&row).unwrap(), &[]);
+        let lines = written(|trace| trace.write(&row).unwrap(), true, &[]);
         let names = "time_s,point,device_x_m,device_y_m,proxy_x_m,proxy_y_m,wanted_x_n,wanted_y_n,\
                      force_x_n,force_y_n,normal_x,normal_y,contact,body,slipping,lifted,taken_j,given_j,\
                      kept_j,evaluations,cost_ns,lateness_ns";
@@ -306,7 +310,7 @@ mod tests {
 
     #[test]
     fn a_trace_without_rows_has_the_names_of_columns() {
-        let lines = written::<3>(|_| {}, &[]);
+        let lines = written(|_| {}, false, &[]);
         assert_eq!(lines.len(), 1);
         assert!(lines[0].starts_with("time_s,point,device_x_m,device_y_m,device_z_m,"));
         assert!(lines[0].ends_with(",lateness_ns"));
@@ -315,11 +319,11 @@ mod tests {
     #[test]
     fn bodies_that_move_come_last_at_the_time_of_the_row() {
         let pose = Pose {
-            rotation: Rotation::from_angle(0.5).unwrap(),
+            rotation: Rotation::from_angle(0.5).unwrap().in_space(),
             ..Pose::translation(Vector([2.0, -4.0, 0.0]))
         };
         let row = TraceRow::free(0.5, 0, Vector([0.0, 0.0, 0.0]));
-        let lines = written(|trace| trace.write(&row).unwrap(), &[(3, pose)]);
+        let lines = written(|trace| trace.write(&row).unwrap(), true, &[(3, pose)]);
         assert!(lines[0].ends_with(",lateness_ns,body_3_x_m,body_3_y_m,body_3_turn_z_rad"));
         assert!(lines[1].ends_with(",0,1,-2,0.5"), "{}", lines[1]);
     }

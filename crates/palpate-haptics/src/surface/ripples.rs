@@ -212,15 +212,15 @@ mod tests {
         let plane = Ripples::new(&texture(Some(vec![0.0, 3.0, 0.0]))).unwrap();
         let (height, slope) = plane.at(Vector([7.0, 2.0, 9.0]));
         assert!((height - 0.5).abs() < 1e-15 && slope.norm() < 1e-15);
-        let product = Ripples::new(&texture(None)).unwrap();
+        let product = Ripples::new(&texture(None)).unwrap().on_body(2).unwrap();
         assert!((product.at(Vector([2.0, -2.0, 0.0])).0 + 0.5).abs() < 1e-15);
-        assert!(Ripples::new(&texture(Some(vec![0.0, 3.0, 0.0]))).is_err());
+        assert!(plane.on_body(2).is_err());
     }
 
     #[test]
     fn no_wave_is_steeper_than_promised() {
         let product = Ripples::new(&texture(None)).unwrap();
-        let promised = Shape::from_kernel(product.clone()).promise().lipschitz;
+        let promised = Shape::<3>::from_kernel(product.clone()).promise().lipschitz;
         cases(500, |u| {
             let mut unit = || u.int_in_range(-1000..=1000).map(|i: i32| f64::from(i) * 0.02);
             let p = Vector([unit()?, unit()?, unit()?]);

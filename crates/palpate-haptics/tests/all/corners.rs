@@ -6,7 +6,7 @@
 use crate::common::{body, cases, cuboid, direction, unit};
 use arbitrary::Unstructured;
 use palpate_device::PointState;
-use palpate_field::{Point, Shape, Vector};
+use palpate_field::{Point, Shape, SpaceShape, Vector};
 use palpate_haptics::{Material, Probe, Servo, ServoOptions, Surface};
 
 /// The radius of the scene [m].
@@ -25,17 +25,21 @@ fn miss<const D: usize>(
     normals: &[Vector<f64, D>],
     (corner, friction): (Point<D>, f64),
     radius: f64,
-) -> arbitrary::Result<f64> {
+) -> arbitrary::Result<f64>
+where
+    SpaceShape: From<Shape<D>>,
+{
     let (static_friction, dynamic_friction) = (friction, friction);
     let material = Material { static_friction, dynamic_friction, ..Material::default() };
     let bodies = body(&walls(normals), Surface::new(&material).unwrap());
     let probe = Probe::new(radius).unwrap();
     let options = ServoOptions { probe, ..ServoOptions::default() };
     let mut servo = Servo::new(bodies, 1, options).unwrap();
-    let up = normals.iter().fold(Vector::ZERO, |sum, n| sum + *n).normalized().unwrap();
+    let (normals, corner) = (normals.iter().map(|n| n.in_space()), corner.in_space());
+    let up = normals.clone().fold(Vector::ZERO, |sum, n| sum + n).normalized().unwrap();
     let mut press = Vector::ZERO;
     for n in normals {
-        press -= *n * (0.004 + 0.002 * unit(u)?.abs());
+        press -= n * (0.004 + 0.002 * unit(u)?.abs());
     }
     let from = corner + up * 0.02;
     let mut last = corner;
@@ -74,7 +78,10 @@ fn corner<const D: usize>(normals: &[Vector<f64, D>], radius: f64) -> Point<D> {
     point
 }
 
-fn corners_are_exact<const D: usize>(count: usize, friction: f64) {
+fn corners_are_exact<const D: usize>(count: usize, friction: f64)
+where
+    SpaceShape: From<Shape<D>>,
+{
     let mut checked = 0;
     cases(60, |u| {
         // Most of what is drawn is too flat.

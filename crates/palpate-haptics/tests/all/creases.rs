@@ -5,7 +5,7 @@
 
 use palpate_device::PointState;
 use palpate_field::kernel::{Cuboid, HalfSpace};
-use palpate_field::{Pose, Shape, Vector};
+use palpate_field::{Pose, Shape, SpaceShape, Vector};
 use palpate_haptics::{
     Bodies, Body, Event, EventKind, Material, Probe, Servo, ServoOptions, Surface, Unprotected,
 };
@@ -17,7 +17,10 @@ const RADIUS: f64 = 0.002;
 /// Walls through the origin for the probe's centre, with these inner normals, stiffnesses [N/m] and
 /// frictions.
 #[expect(clippy::unwrap_used, reason = "a test that cannot be set up fails")]
-fn walls<const D: usize>(walls: &[([f64; D], f64, f64)]) -> Bodies {
+fn walls<const D: usize>(walls: &[([f64; D], f64, f64)]) -> Bodies
+where
+    SpaceShape: From<Shape<D>>,
+{
     let bodies = walls.iter().map(|(normal, stiffness, friction)| {
         let normal = Vector(*normal).normalized().unwrap();
         let shape = Shape::from_kernel(HalfSpace::new(normal, -RADIUS).unwrap());
@@ -34,7 +37,7 @@ fn walls<const D: usize>(walls: &[([f64; D], f64, f64)]) -> Bodies {
 }
 
 #[expect(clippy::unwrap_used, reason = "a test that cannot be set up fails")]
-fn servo<const D: usize>(bodies: Bodies) -> Servo<Unprotected> {
+fn servo(bodies: Bodies) -> Servo<Unprotected> {
     let options = ServoOptions {
         probe: Probe::new(RADIUS).unwrap(),
         max_force: f64::INFINITY,
@@ -45,13 +48,13 @@ fn servo<const D: usize>(bodies: Bodies) -> Servo<Unprotected> {
 }
 
 /// The largest change of the wanted force in a tick [N], and all events, of a device point on a path.
-fn felt<const D: usize>(
+fn felt(
     servo: &mut Servo<Unprotected>,
     ticks: u32,
-    path: impl Fn(f64) -> Vector<f64, D>,
+    path: impl Fn(f64) -> Vector<f64, 3>,
     mut motion: impl FnMut(&mut Servo<Unprotected>, f64),
 ) -> (f64, Vec<Event>) {
-    let (mut last, mut step, mut events) = (None::<Vector<f64, D>>, 0.0_f64, Vec::new());
+    let (mut last, mut step, mut events) = (None::<Vector<f64, 3>>, 0.0_f64, Vec::new());
     for tick in 0..ticks {
         let time = 1e-3 * f64::from(tick);
         motion(servo, time);
@@ -90,7 +93,7 @@ fn each_body_pushes_with_its_own_stiffness() {
 fn the_force_is_the_sum_over_oblique_walls() {
     // λ₁ = 3 mm and λ₂ = 1 mm.
     let second = Vector([0.6, 0.8, 0.0]);
-    let mut servo = servo(walls(&[([0.0, 1.0], 500.0, 0.0), (second.0, 300.0, 0.0)]));
+    let mut servo = servo(walls(&[([0.0, 1.0], 500.0, 0.0), ([0.6, 0.8], 300.0, 0.0)]));
     servo.step(&[PointState::at_rest(Vector([0.01, 0.01, 0.0]))]);
     let device = -(Vector([0.0, 1.0, 0.0]) * 0.003 + second * 0.001);
     for _ in 0..3 {

@@ -399,7 +399,7 @@ fn gripping() -> SimulatedDevice {
         ..DeviceProfile::unlimited("gripping")
     })
     .with_buttons(["front", "rear"]);
-    let jaws = vec![Vector([0.0]), Vector([0.02])];
+    let jaws = vec![Vector::ZERO, Vector([0.02, 0.0, 0.0])];
     let jaws = HandPath::new(vec![0.0, 1.0], jaws, Interpolation::Linear).unwrap();
     let device =
         SimulatedDevice::new(profile, vec![Hand::resting(Vector([0.0, 0.1, 0.0])).unwrap()]);

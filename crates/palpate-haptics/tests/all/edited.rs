@@ -9,7 +9,7 @@ use crate::common::{AnyServo, ball, body, cases, cuboid, direction, unit};
 use arbitrary::Unstructured;
 use assert_no_alloc::assert_no_alloc;
 use palpate_device::{PointState, profile_named};
-use palpate_field::{Point, Pose, Shape, Vector};
+use palpate_field::{Point, Pose, Shape, SpaceShape, Vector};
 use palpate_haptics::{
     Bodies, Body, Event, EventKind, Layer, Material, PopThrough, Probe, Protection, Servo,
     ServoOptions, Shell, Surface, Tool, ToolOptions,
@@ -64,7 +64,7 @@ fn stiffness(servo: &Servo) -> f64 {
     servo.bodies().bodies()[0].surface().stiffness()
 }
 
-fn at<const D: usize>(place: Point<D>) -> [PointState; 1] {
+fn at(place: Point<3>) -> [PointState; 1] {
     [PointState::at_rest(place)]
 }
 
@@ -368,14 +368,18 @@ fn grown<const D: usize>(sort: u8, size: f64, growth: f64) -> Shape<D> {
     }
 }
 
-fn bodies_of<const D: usize>(shape: Shape<D>, place: Point<D>) -> Bodies {
+fn bodies_of(shape: impl Into<SpaceShape>, place: Point<3>) -> Bodies {
+    let shape: SpaceShape = shape.into();
     let surface = Surface::smooth(500.0, 0.0).unwrap();
     let body = Body::new(shape, surface).unwrap().at(Pose::translation(place)).unwrap();
     Bodies::new(vec![body]).unwrap()
 }
 
 /// What became of a hand in a random shape that was edited: whether it was carried.
-fn a_random_edit<const D: usize>(u: &mut Unstructured<'_>) -> arbitrary::Result<Option<bool>> {
+fn a_random_edit<const D: usize>(u: &mut Unstructured<'_>) -> arbitrary::Result<Option<bool>>
+where
+    SpaceShape: From<Shape<D>>,
+{
     let sort = u.int_in_range(0..=4)?;
     let radius = *u.choose(&[0.0, 0.001, 0.003])?;
     let longest: f64 = if radius > 0.0 { radius } else { 0.005 };
@@ -385,11 +389,11 @@ fn a_random_edit<const D: usize>(u: &mut Unstructured<'_>) -> arbitrary::Result<
     let way = 1.3 * longest * unit(u)?;
     let (growth, motion) = match u.arbitrary()? {
         true => (way.abs(), Vector::ZERO),
-        false => (0.0, direction::<D>(u)? * way),
+        false => (0.0, direction::<D>(u)?.in_space() * way),
     };
     let after = || bodies_of(grown::<D>(sort, size, growth), motion);
     let depth = 0.0015 + 0.001 * unit(u)?;
-    let (inwards, aim) = (-direction::<D>(u)?, direction::<D>(u)? * (0.5 * size));
+    let (inwards, aim) = (-direction::<D>(u)?.in_space(), direction::<D>(u)?.in_space() * (0.5 * size));
     let servo = Servo::new(before(), 1, ServoOptions { rate: 1000.0, ..options(radius) });
     let mut plain = servo.unwrap();
     let (mut place, mut pressed) = (aim - inwards * 0.08, false);
@@ -416,7 +420,7 @@ fn a_random_edit<const D: usize>(u: &mut Unstructured<'_>) -> arbitrary::Result<
             "sort {sort}, radius {radius}, grown {growth}, moved {motion:?}, {proxy:?}, {touch:?}"
         )
     };
-    let most = nearest([&before(), &after()], (proxy, radius), 1.5 * longest);
+    let most = nearest::<D>([&before(), &after()], (proxy, radius), 1.5 * longest);
     if gap(proxy) >= -1e-9 {
         let is_over = kinds.iter().any(|kind| matches!(kind, EventKind::Carried { .. }));
         // Only a point can be passed over.
@@ -458,7 +462,10 @@ fn a_random_edit<const D: usize>(u: &mut Unstructured<'_>) -> arbitrary::Result<
     Ok(Some(true))
 }
 
-fn random_edits<const D: usize>(count: u64) {
+fn random_edits<const D: usize>(count: u64)
+where
+    SpaceShape: From<Shape<D>>,
+{
     let mut seen = [0, 0];
     cases(count, |u| {
         if let Some(is_carried) = a_random_edit::<D>(u)? {

@@ -48,7 +48,7 @@ fn a_tick_with_guides_and_vibration_allocates_nothing() {
     let wood = Material::preset("wood").unwrap();
     let impact = wood.impact.as_ref().map(Tap::from);
     let mut guides = guides();
-    let mut servo = Servo::new(ball(0.05), 1, ServoOptions::default()).unwrap();
+    let mut servo = Servo::new(ball::<3>(0.05), 1, ServoOptions::default()).unwrap();
     let mapping = Mapping::new(MappingOptions::default()).unwrap();
     let mut voice = Voice::new(&mapping, 1000.0).unwrap();
     let mut synthesiser = Synthesiser::new(&mapping, 8000.0, 1).unwrap();

@@ -5,7 +5,7 @@
 
 use crate::common::{ball, body, cuboid, half_space};
 use palpate_device::{DeviceError, DeviceProfile, PointState};
-use palpate_field::{Point, Pose, Shape, Vector};
+use palpate_field::{Point, Pose, SpaceShape, Vector};
 use palpate_haptics::{
     HapticsError, Layer, Material, Probe, Protection, Servo, ServoOptions, Surface, Touch,
     Unprotected,
@@ -15,11 +15,12 @@ use palpate_safety::{Acceptance, WorkspaceMap};
 const STIFFNESS: f64 = 1000.0;
 
 /// A servo of one body that is a spring alone.
-fn servo<const D: usize>(
-    shape: &Shape<D>,
+fn servo(
+    shape: impl Into<SpaceShape>,
     radius: f64,
     (stiffness, options): (f64, ServoOptions),
 ) -> Servo<Unprotected> {
+    let shape: SpaceShape = shape.into();
     let options = ServoOptions { probe: Probe::new(radius).unwrap(), ..options };
     let surface = Surface::smooth(stiffness, 0.0).unwrap();
     Servo::new(body(shape, surface), 1, options).unwrap()
@@ -29,7 +30,7 @@ fn spring_alone(stiffness: f64) -> (f64, ServoOptions) {
     (stiffness, ServoOptions { max_force: f64::INFINITY, ..ServoOptions::default() })
 }
 
-fn touch<const D: usize>(servo: &mut Servo<Unprotected>, device: Point<D>) -> Touch {
+fn touch(servo: &mut Servo<Unprotected>, device: Point<3>) -> Touch {
     servo.step(&[PointState::at_rest(device)])[0]
 }
 
@@ -66,7 +67,7 @@ fn on_a_sphere_the_force_is_radial_and_steady() {
     // turn 3 N by 0.0039 N a tick.
     const STEADIEST: f64 = 0.0039;
     for probe in [0.0, 0.002] {
-        let mut servo = servo(&ball(RADIUS), probe, spring_alone(STIFFNESS));
+        let mut servo = servo(&ball::<3>(RADIUS), probe, spring_alone(STIFFNESS));
         touch(&mut servo, orbit(0, 2.0 * RADIUS));
         let mut last: Option<Vector<f64, 3>> = None;
         for tick in 0..20_000 {
@@ -187,11 +188,12 @@ fn a_shape_that_moves_over_the_hand_pushes_gently() {
 /// and was left behind.
 #[test]
 fn a_tiny_probe_is_felt_as_a_point() {
-    fn forces<const D: usize>(
-        shape: &Shape<D>,
+    fn forces(
+        shape: impl Into<SpaceShape>,
         radius: f64,
-        hand: impl Fn(f64) -> Point<D>,
+        hand: impl Fn(f64) -> Point<3>,
     ) -> Vec<f64> {
+    let shape: SpaceShape = shape.into();
         let mut servo = servo(shape, radius, spring_alone(512.0));
         let force = |tick: i32| {
             let touch = touch(&mut servo, hand(0.001 * f64::from(tick)));
@@ -200,11 +202,12 @@ fn a_tiny_probe_is_felt_as_a_point() {
         };
         (0..150).map(force).collect()
     }
-    fn check<const D: usize>(shape: &Shape<D>, hand: impl Fn(f64) -> Point<D> + Copy) {
-        let points = forces(shape, 0.0, hand);
+    fn check(shape: impl Into<SpaceShape>, hand: impl Fn(f64) -> Point<3> + Copy) {
+    let shape: SpaceShape = shape.into();
+        let points = forces(shape.clone(), 0.0, hand);
         assert!(points.iter().fold(0.0_f64, |most, force| most.max(*force)) > 0.4);
         for radius in [1e-7, 1e-6, 5e-6] {
-            for (force, point) in forces(shape, radius, hand).into_iter().zip(&points) {
+            for (force, point) in forces(shape.clone(), radius, hand).into_iter().zip(&points) {
                 // Besides 1 %, the radius, by which the probe touches before the point.
                 let most = 0.01 * point + 1.01 * 512.0 * radius;
                 assert!(

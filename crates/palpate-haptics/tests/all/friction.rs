@@ -5,18 +5,19 @@
 
 use crate::common::{ball, body, cuboid, half_space, torus};
 use palpate_device::PointState;
-use palpate_field::{Point, Shape, Vector};
+use palpate_field::{Point, Shape, SpaceShape, Vector};
 use palpate_haptics::{
     EventKind, Material, Probe, Servo, ServoOptions, Surface, Touch, Unprotected,
 };
 
 const STIFFNESS: f64 = 512.0;
 
-fn rough<const D: usize>(
-    shape: &Shape<D>,
+fn rough(
+    shape: impl Into<SpaceShape>,
     friction: [f64; 2],
     radius: f64,
 ) -> Servo<Unprotected> {
+    let shape: SpaceShape = shape.into();
     let material = Material {
         stiffness: STIFFNESS,
         damping: 0.0,
@@ -32,7 +33,7 @@ fn rough<const D: usize>(
     Servo::new(body(shape, Surface::new(&material).unwrap()), 1, options).unwrap()
 }
 
-fn touch<const D: usize>(servo: &mut Servo<Unprotected>, device: Point<D>) -> Touch {
+fn touch(servo: &mut Servo<Unprotected>, device: Point<3>) -> Touch {
     servo.step(&[PointState::at_rest(device)])[0]
 }
 
@@ -69,7 +70,7 @@ fn a_hand_sticks_within_the_cone_and_slips_beyond_it() {
 
 /// The work that the force does on a hand over a closed path [J], and what is taken of it as
 /// heat if there is friction. The force is held over a tick, as a device holds it.
-fn work<const D: usize>(servo: &mut Servo<Unprotected>, path: impl Fn(f64) -> Point<D>) -> f64 {
+fn work(servo: &mut Servo<Unprotected>, path: impl Fn(f64) -> Point<3>) -> f64 {
     const TICKS: u32 = 40_000;
     let mut last: Option<Touch> = None;
     let mut work = 0.0;
@@ -101,7 +102,7 @@ fn loops(seed: u32) -> impl Fn(f64) -> Point<3> {
 #[test]
 fn without_friction_a_closed_path_gives_no_energy() {
     for seed in 0..4 {
-        let mut servo = rough(&ball(0.05), [0.0, 0.0], 0.002);
+        let mut servo = rough(&ball::<3>(0.05), [0.0, 0.0], 0.002);
         let work = work(&mut servo, loops(seed));
         assert!(work.abs() < 1e-9, "{work:e} J");
     }

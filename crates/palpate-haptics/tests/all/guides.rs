@@ -183,7 +183,7 @@ fn wrong_numbers_are_named() {
     assert!(Curve::polyline(&[Vector([1.0, 0.0, 0.0]); 3]).is_err());
     assert!(Curve::polyline(&[]).is_err());
     assert!(Curve::smooth(&vec![Vector([1.0, 0.0, 0.0]); 66]).is_err());
-    let ball = || Shape::<2>::from_kernel(Ball::new(1.0).unwrap());
+    let ball = || Shape::<3>::from_kernel(Ball::new(1.0).unwrap());
     assert!(Slope::new(ball(), 1.0, [1.0, 1.0]).is_err());
     assert!(Slope::new(ball(), f64::NAN, [0.0, 1.0]).is_err());
     assert!(Slope::new(ball(), 1.0, [0.0, 1.0]).unwrap().with_edge(0.6).is_err());
@@ -215,8 +215,8 @@ fn a_plane_is_two_lines_in_it() {
         assert!((line[1] - line[0]).dot(normal).abs() < 1e-14);
         assert!((line[0] - Vector([0.1, 1.5, 0.2])).dot(normal).abs() < 1e-14);
     }
-    let flat = Guide::on_plane([0.0, 0.0], [0.0, 1.0], GuideOptions::default()).unwrap();
-    assert_eq!(flat.lines_within(&Aabb::centred(Vector([1.0; 2]))).len(), 1);
+    let flat = Guide::on_plane([0.0; 3], [0.0, 1.0, 0.0], GuideOptions::default()).unwrap();
+    assert_eq!(flat.lines_within(&Aabb::centred(Vector([1.0, 1.0, 0.0]))).len(), 1);
 }
 
 #[test]
@@ -225,9 +225,9 @@ fn points_curves_and_wells_are_drawn_where_they_are() {
     let point = Guide::to_point([0.5, 1.0, 0.0], options).unwrap();
     let cross = point.lines_within(&within());
     assert_eq!((cross.len(), cross[1][0][0]), (3, 0.5));
-    let corners = [[0.0, 1.0], [0.0, 0.0], [1.0, 0.0]].map(Vector);
+    let corners = [[0.0, 1.0, 0.0], [0.0, 0.0, 0.0], [1.0, 0.0, 0.0]].map(Vector);
     let curve = Guide::along_curve(Curve::polyline(&corners).unwrap(), options).unwrap();
-    let flat = Aabb::centred(Vector([1.0; 2]));
+    let flat = Aabb::centred(Vector([1.0, 1.0, 0.0]));
     assert_eq!(
         (curve.kind_name(), curve.lines_within(&flat)),
         ("curve", vec![corners.to_vec()])

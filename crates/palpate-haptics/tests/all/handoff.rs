@@ -33,7 +33,7 @@ struct Hand {
 impl Hand {
     fn at(points: &[[f64; 2]]) -> Self {
         Self {
-            at: Arc::new(Mutex::new(points.iter().copied().map(Vector).collect())),
+            at: Arc::new(Mutex::new(points.iter().map(|point| Vector(*point).in_space()).collect())),
             written: Arc::default(),
             profile: DeviceProfile::unlimited("hand"),
             until: f64::INFINITY,
@@ -41,7 +41,7 @@ impl Hand {
     }
 
     fn move_to(&self, point: [f64; 2]) {
-        self.at.lock().unwrap()[0] = Vector(point);
+        self.at.lock().unwrap()[0] = Vector(point).in_space();
     }
 
     fn last_forces(&self) -> Vec<Vector<f64, 3>> {
@@ -208,10 +208,10 @@ struct Counted {
 }
 
 impl CustomField<2> for Counted {
-    fn distance(&self, p: Point<3>) -> f64 {
+    fn distance(&self, p: Point<2>) -> f64 {
         p.norm() - 0.5
     }
-    fn distance_gradient(&self, p: Point<3>) -> (f64, Vector<f64, 3>) {
+    fn distance_gradient(&self, p: Point<2>) -> (f64, Vector<f64, 2>) {
         (p.norm() - 0.5, p.normalized().unwrap_or(Vector::ZERO))
     }
     fn promise(&self) -> &Promise<2> {
@@ -242,7 +242,7 @@ fn scenes_come_back_and_are_dropped_by_the_next_call() {
         driver.advance(TICK);
         assert!(Arc::strong_count(&count) <= 4);
     }
-    let many = || (0..1025).map(|_| Body::new(ball(0.1), Surface::default()).unwrap());
+    let many = || (0..1025).map(|_| Body::new(ball::<2>(0.1), Surface::default()).unwrap());
     let error = thread.control().replace_bodies(Bodies::new(many().collect()).unwrap());
     assert_eq!(error, Err(HapticsError::TooManyBodies { bodies: 1025, most: 1024 }));
     drop(driver);
@@ -333,12 +333,12 @@ fn ten_kilohertz_have_ten_times_the_ticks() {
 struct Trap(Promise<2>);
 
 impl CustomField<2> for Trap {
-    fn distance(&self, p: Point<3>) -> f64 {
+    fn distance(&self, p: Point<2>) -> f64 {
         self.distance_gradient(p).0
     }
-    fn distance_gradient(&self, p: Point<3>) -> (f64, Vector<f64, 3>) {
+    fn distance_gradient(&self, p: Point<2>) -> (f64, Vector<f64, 2>) {
         assert!(p[1] > 0.1, "the trap snapped");
-        (p[1], Vector([0.0, 1.0, 0.0]))
+        (p[1], Vector([0.0, 1.0]))
     }
     fn promise(&self) -> &Promise<2> {
         &self.0

@@ -6,13 +6,16 @@
 use crate::common::wild::{servo, step};
 use crate::common::{ball, half_space};
 use palpate_device::PointState;
-use palpate_field::{Pose, Vector};
+use palpate_field::{Pose, Shape, SpaceShape, Vector};
 use palpate_haptics::{
     Bodies, Body, EventKind, Layer, Material, PopThrough, Probe, Servo, ServoOptions, Surface,
 };
 
 /// Plays a wild scene, and checks every event against the state before it.
-fn events_are_in_order<const D: usize>(count: usize) {
+fn events_are_in_order<const D: usize>(count: usize)
+where
+    SpaceShape: From<Shape<D>>,
+{
     const POINTS: usize = 4;
     let mut servo = servo::<D>(count, POINTS, 1.0);
     let mut states = [PointState::at_rest(Vector::ZERO); POINTS];
@@ -20,7 +23,7 @@ fn events_are_in_order<const D: usize>(count: usize) {
     let mut told = [(None, false); POINTS];
     let mut counts = [0; 5];
     for tick in 0..12_000 {
-        step(&mut servo, &mut states, (tick, 1.0));
+        step::<D>(&mut servo, &mut states, (tick, 1.0));
         for event in servo.events() {
             assert_eq!(event.tick, u64::from(tick));
             let (touched, slips) = &mut told[event.point as usize];

@@ -278,7 +278,7 @@ fn a_body_that_an_edit_or_a_motion_places_over_the_hand_lets_the_force_rise_at_o
         press.rises(motion, 1.0, "stiffer");
     }
     for (held, motion) in [(Held::Point, HOLDS), (Held::Point, DEEPER)] {
-        let ball = crate::common::ball(0.05);
+        let ball = crate::common::ball::<3>(0.05);
         let surface = Surface::smooth(300.0, 0.0).unwrap();
         let mut press = Press::new(held, 300.0, Recovery::OnceOut);
         let mut bodies = press.servo.accept(body(&ball, surface)).unwrap();

@@ -26,7 +26,7 @@ fn device() -> RecordedDevice {
 }
 
 fn servo(device: &impl Device) -> Servo {
-    Servo::for_device(ball(0.05), device).unwrap()
+    Servo::for_device(ball::<2>(0.05), device).unwrap()
 }
 
 /// Time, contact point and forces: what two runs have in common, whatever they cost.

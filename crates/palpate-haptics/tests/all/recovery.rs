@@ -117,7 +117,7 @@ impl Held {
         self.device.read(f64::from(self.tick) * PERIOD, &mut points).unwrap();
         points[0].position[1] -= self.off;
         if self.is_lost {
-            points[0].position = Vector([f64::NAN; 2]);
+            points[0].position = Vector([f64::NAN; 3]);
         }
         let touch = self.servo.step(&points)[0];
         self.device.write(self.servo.forces()).unwrap();

@@ -28,10 +28,10 @@ struct Flat {
 }
 
 impl CustomField<2> for Flat {
-    fn distance(&self, p: Point<3>) -> f64 {
+    fn distance(&self, p: Point<2>) -> f64 {
         self.ball.distance(p).max(-0.001)
     }
-    fn distance_gradient(&self, p: Point<3>) -> (f64, Vector<f64, 3>) {
+    fn distance_gradient(&self, p: Point<2>) -> (f64, Vector<f64, 2>) {
         let (distance, gradient) = self.ball.distance_gradient(p);
         if distance < -0.001 { (-0.001, Vector::ZERO) } else { (distance, gradient) }
     }
@@ -91,8 +91,8 @@ fn guides_tell_their_time_force_and_work() {
     let options = GuideOptions { stiffness: 100.0, damping: 0.0, ..GuideOptions::default() };
     let near = GuideOptions { snap_distance: 0.0105, ..options };
     let guides = [
-        Guide::on_plane([0.0, 1.0], [0.0, 1.0], near).unwrap(),
-        Guide::to_point([0.0, -5.0], GuideOptions { snap_distance: 0.01, ..options }).unwrap(),
+        Guide::on_plane([0.0, 1.0, 0.0], [0.0, 1.0, 0.0], near).unwrap(),
+        Guide::to_point([0.0, -5.0, 0.0], GuideOptions { snap_distance: 0.01, ..options }).unwrap(),
     ];
     let ground = half_space([0.0, 1.0], 0.0);
     let mut servo = without_limits(Servo::new(ground, 1, Default::default()).unwrap());

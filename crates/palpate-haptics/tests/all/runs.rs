@@ -57,7 +57,7 @@ fn wall_servo(options: ServoOptions) -> Servo {
     without_limits(Servo::new(wall, 1, options).unwrap())
 }
 
-fn fast<'a, const D: usize>(duration: f64) -> RunOptions<'a> {
+fn fast<'a>(duration: f64) -> RunOptions<'a> {
     RunOptions { pace: Pace::AsFastAsPossible, ..RunOptions::new(duration) }
 }
 
@@ -274,12 +274,12 @@ fn a_watch_sees_the_end() {
 struct Trap(Promise<2>);
 
 impl CustomField<2> for Trap {
-    fn distance(&self, p: Point<3>) -> f64 {
+    fn distance(&self, p: Point<2>) -> f64 {
         p[1]
     }
-    fn distance_gradient(&self, p: Point<3>) -> (f64, Vector<f64, 3>) {
+    fn distance_gradient(&self, p: Point<2>) -> (f64, Vector<f64, 2>) {
         assert!(p[1] > 0.1, "the trap snapped");
-        (p[1], Vector([0.0, 1.0, 0.0]))
+        (p[1], Vector([0.0, 1.0]))
     }
     fn promise(&self) -> &Promise<2> {
         &self.0

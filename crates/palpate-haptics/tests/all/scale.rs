@@ -5,19 +5,22 @@
 
 use crate::common::wild::{servo, step};
 use palpate_device::PointState;
-use palpate_field::Vector;
+use palpate_field::{Shape, SpaceShape, Vector};
 use palpate_haptics::{EventKind, Touch};
 
 const TICKS: u32 = 8000;
 const POINTS: usize = 5;
 
 /// Every touch of a run, and how many events of each kind there were.
-fn run<const D: usize>(scale: f64) -> (Vec<Touch>, [u32; 5]) {
+fn run<const D: usize>(scale: f64) -> (Vec<Touch>, [u32; 5])
+where
+    SpaceShape: From<Shape<D>>,
+{
     let mut servo = servo::<D>(if D == 2 { 9 } else { 20 }, POINTS, scale);
     let mut states = [PointState::at_rest(Vector::ZERO); POINTS];
     let (mut touches, mut events) = (Vec::new(), [0; 5]);
     for tick in 0..TICKS {
-        step(&mut servo, &mut states, (tick, scale));
+        step::<D>(&mut servo, &mut states, (tick, scale));
         touches.extend_from_slice(servo.touches());
         for event in servo.events() {
             let kind = match event.kind {
@@ -35,7 +38,10 @@ fn run<const D: usize>(scale: f64) -> (Vec<Touch>, [u32; 5]) {
 }
 
 /// The part of all touches that differ by more than rounding explains.
-fn apart<const D: usize>(scale: f64, tolerance: f64) -> f64 {
+fn apart<const D: usize>(scale: f64, tolerance: f64) -> f64
+where
+    SpaceShape: From<Shape<D>>,
+{
     let ((ours, events), (others, _)) = (run::<D>(1.0), run::<D>(scale));
     // Everything happens.
     assert!(events.iter().all(|count| *count > 0), "{events:?}");

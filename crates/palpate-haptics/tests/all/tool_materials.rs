@@ -77,7 +77,7 @@ fn the_layers_of_a_body_are_felt_as_far_as_the_coupling_bears_them() {
 fn a_closed_path_over_a_soft_layered_body_gives_no_energy() {
     let layer = Layer { depth: 0.003, stiffness: Some(400.0), ..Layer::default() };
     let material = Material { stiffness: 150.0, layers: vec![layer], ..smooth() };
-    let mut bodies = body(&ball(0.05), Surface::new(&material).unwrap());
+    let mut bodies = body(&ball::<3>(0.05), Surface::new(&material).unwrap());
     let shell = Shell::from_mesh(&box_mesh([0.03, 0.02, 0.04]), 300, 0.001).unwrap();
     let mut tool = Tool::new(shell, springs()).unwrap();
     let ticks = 20_000;
@@ -191,7 +191,7 @@ fn a_body_that_moves_while_the_device_is_nowhere_is_touched_after() {
 /// A tool that lost its device in contact touched again later without ever having left.
 #[test]
 fn a_device_that_gets_lost_leaves() {
-    let mut bodies = Bodies::from(ball(0.05));
+    let mut bodies = Bodies::from(ball::<3>(0.05));
     let mut tool = Tool::new(Shell::ball(0.01).unwrap(), springs()).unwrap();
     let mut told = Vec::new();
     for height in [0.2, 0.05, f64::NAN, 0.05] {

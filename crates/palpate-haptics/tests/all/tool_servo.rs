@@ -244,7 +244,7 @@ fn a_run_reports_what_the_tool_felt() {
 
 #[test]
 fn a_tool_with_too_small_a_budget_says_so() {
-    let shell = Shell::from_field(&ball(0.02), 600, 0.0).unwrap();
+    let shell = Shell::from_field(&ball::<3>(0.02), 600, 0.0).unwrap();
     let options = ToolOptions { budget: 100, ..ToolOptions::default() };
     let tool = Tool::new(shell, options).unwrap();
     let servo = Servo::with_tool(ground(smooth()), tool, ServoOptions::default()).unwrap();

@@ -11,7 +11,7 @@ use crate::common::{AnyServo, body, cases, half_space};
 use palpate_device::{
     Device, DeviceLost, DeviceProfile, PointState, Reading, TurnState, TurningProfile,
 };
-use palpate_field::{Pose, Rotation, Vector};
+use palpate_field::{Shape, SpaceShape, Pose, Rotation, Vector};
 use palpate_haptics::servo_loop::{
     Ending, Pace, Recorder, RunOptions, ServoThread, ThreadOptions, VirtualClock, run,
 };
@@ -44,14 +44,18 @@ fn coupling() -> ToolOptions {
 }
 
 /// A rod along x of two points at its ends, without a radius.
-fn rod<const D: usize>(options: ToolOptions) -> Tool {
+fn rod(options: ToolOptions, is_flat: bool) -> Tool {
     let end = Vector::unit(0) * HALF;
-    Tool::new(Shell::capsule([-end, end], 1e-4, 2).unwrap(), options).unwrap()
+    let shell = Shell::capsule([-end, end], 1e-4, 2).unwrap();
+    Tool::new(if is_flat { shell.in_plane() } else { shell }, options).unwrap()
 }
 
 /// What is below a wall of unit normal (0, 1, 0…) at y = 0.
-fn ground<const D: usize>(material: Material) -> Bodies {
-    body(&half_space(Vector::<f64, D>::unit(1).0, 0.0), Surface::new(&material).unwrap())
+fn ground<const D: usize>(material: Material) -> Bodies
+where
+    SpaceShape: From<Shape<D>>,
+{
+    body(half_space(Vector::<f64, D>::unit(1).0, 0.0), Surface::new(&material).unwrap())
 }
 
 /// Stiffer than every coupling.
@@ -59,17 +63,21 @@ fn rigid() -> Material {
     Material { stiffness: 1e6, ..smooth() }
 }
 
-fn servo<const D: usize>(material: Material, options: ToolOptions) -> Servo<Unprotected> {
+fn servo<const D: usize>(material: Material, options: ToolOptions) -> Servo<Unprotected>
+where
+    SpaceShape: From<Shape<D>>,
+{
     let free = ServoOptions { max_force: f64::INFINITY, ..ServoOptions::default() };
-    Servo::with_tool(ground(material), rod(options), free).unwrap()
+    let tool = rod(options, D == 2);
+    Servo::with_tool(ground::<D>(material), tool, free).unwrap()
 }
 
 /// Moves the device to a place and an orientation, in small ticks; the force and the torque there.
-fn brought<const D: usize>(
+fn brought(
     servo: &mut impl AnyServo,
-    (from, to): (Vector<f64, D>, Vector<f64, D>),
+    (from, to): (Vector<f64, 3>, Vector<f64, 3>),
     turn: Vector<f64, 3>,
-) -> (Vector<f64, D>, Vector<f64, 3>) {
+) -> (Vector<f64, 3>, Vector<f64, 3>) {
     for tick in 0..=400 {
         let part = (f64::from(tick) / 200.0).min(1.0);
         let orientation = Rotation::identity().turned(turn * part);
@@ -79,7 +87,7 @@ fn brought<const D: usize>(
     (servo.forces()[0], servo.torque())
 }
 
-fn up<const D: usize>(height: f64) -> Vector<f64, D> {
+fn up(height: f64) -> Vector<f64, 3> {
     Vector::unit(1) * height
 }
 

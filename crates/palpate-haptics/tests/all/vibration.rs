@@ -21,7 +21,7 @@ use palpate_vibration::{Command, Mapping, MappingOptions, Vibrates};
 
 /// A hand that comes to a floor after 0.31 s, presses it and slides along it for ever.
 fn hand(faults: Vec<Fault>) -> SimulatedTransport<RecordedDevice> {
-    let places = [[0.0, 0.01], [0.0, -0.003], [5.0, -0.003]].map(Vector);
+    let places = [[0.0, 0.01, 0.0], [0.0, -0.003, 0.0], [5.0, -0.003, 0.0]].map(Vector);
     let times = vec![0.0, 0.5, 100.0];
     let path = HandPath::new(times, places.to_vec(), Interpolation::Linear).unwrap();
     SimulatedTransport::new(RecordedDevice::new(vec![path]).unwrap(), faults).unwrap()

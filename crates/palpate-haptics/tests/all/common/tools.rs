@@ -37,7 +37,7 @@ pub(crate) fn box_mesh(edges: [f64; 3]) -> TriangleMesh {
     Mesh::new((0..8).map(corner).collect(), triangles).unwrap()
 }
 
-pub(crate) fn at<const D: usize>(place: [f64; D]) -> ToolState {
+pub(crate) fn at(place: [f64; 3]) -> ToolState {
     ToolState::at_rest(Pose::translation(Vector(place)))
 }
 
@@ -47,7 +47,7 @@ pub(crate) fn turned(axis: [f64; 3], angle: f64, place: [f64; 3]) -> ToolState {
 }
 
 /// Stays at a state until the tool rests.
-pub(crate) fn rest<const D: usize>(
+pub(crate) fn rest(
     tool: &mut Tool,
     bodies: &mut Bodies,
     state: &ToolState,
