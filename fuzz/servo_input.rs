@@ -314,11 +314,7 @@ where
 }
 
 /// What else may happen between two ticks.
-fn act<const D: usize>(
-    u: &mut Unstructured<'_>,
-    any: &mut AnyServo,
-    pops: bool,
-) -> Result<()>
+fn act<const D: usize>(u: &mut Unstructured<'_>, any: &mut AnyServo, pops: bool) -> Result<()>
 where
     Here: Dimension<D>,
     SpaceShape: From<Shape<D>>,
@@ -399,14 +395,13 @@ fn promises_hold(servo: &Renderer, farthest: f64, pops: bool) {
 
 /// No body holds the proxy's ball.
 fn is_outside(servo: &Renderer, touch: &Touch, farthest: f64) {
-    let size = |body: &Body| body.shape().promise().bounds.map_or(0.0, |b| b.ball.radius);
+    let size = |body: &Body| body.bounds().map_or(0.0, |b| b.ball.radius);
     let bodies = servo.bodies().bodies();
     let tolerance = INSIDE * bodies.iter().map(size).fold(farthest, f64::max);
     for (index, body) in bodies.iter().enumerate() {
         let in_body = body.world_from_body().inverse().transform_point(touch.proxy);
-        let promise = body.shape().promise();
         // What has bounds is not closer than its ball is, whatever its field says.
-        let above = promise.bounds.map_or(f64::NEG_INFINITY, |bounds| {
+        let above = body.bounds().map_or(f64::NEG_INFINITY, |bounds| {
             (in_body - bounds.ball.centre).norm() - bounds.ball.radius
         });
         let gap = body.shape().distance(in_body).max(above) - servo.options().probe.radius();

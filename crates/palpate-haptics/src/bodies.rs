@@ -6,7 +6,8 @@
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use palpate_field::{
-    BoundingBall, LARGEST_LENGTH, Point, Pose, Quality, Rounding, Shape, SpaceShape, Vector,
+    BoundingBall, Bounds, LARGEST_LENGTH, Point, Pose, Quality, Rounding, Shape, SpaceShape,
+    Vector,
 };
 
 use crate::error::HapticsError;
@@ -110,6 +111,12 @@ impl Body {
     #[must_use]
     pub fn shape(&self) -> &Shape<3> {
         self.shape.shape()
+    }
+
+    /// Bounds of the shape in the body's coordinates, as [`SpaceShape::bounds`].
+    #[must_use]
+    pub fn bounds(&self) -> Option<Bounds<3>> {
+        self.shape.bounds()
     }
 
     /// Whether the shape is a planar one.
@@ -223,7 +230,7 @@ impl Body {
     ) -> Option<[Point<3>; 2]> {
         let from = self.world_from_before.inverse().transform_point(from);
         let to = self.body_from_world.transform_point(to);
-        let Some(bounds) = self.shape.bounds() else { return Some([from, to]) };
+        let Some(bounds) = self.bounds() else { return Some([from, to]) };
         let across = |v: Vector<f64, 3>| {
             if self.is_endless() { v - Vector::unit(2) * v[2] } else { v }
         };
@@ -312,7 +319,7 @@ impl Body {
             centre: self.world_from_body.transform_point(ball.centre),
             radius: ball.radius,
         };
-        self.ball = self.shape.bounds().map(|bounds| placed(bounds.ball));
+        self.ball = self.bounds().map(|bounds| placed(bounds.ball));
         let off_origin = |ball: BoundingBall<3>| self.across(ball.centre).norm() - ball.radius;
         self.off_origin = self.ball.map_or(f64::NEG_INFINITY, off_origin);
         // Distances that are exact or bounds need no constant.

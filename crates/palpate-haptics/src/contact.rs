@@ -289,7 +289,7 @@ impl Slide<'_> {
             || is_to_go(2.0)
             || is_to_go(MOST_GAIN) && !self.curvature.at_most_doubles(stretch)
         {
-            goal = self.along_the_curvature(foot, normal, goal, sampler.tolerance());
+            goal = self.along_the_curvature(sampler, [foot, goal], normal);
         }
         let is_at_rest = is_outside && squared(goal - here) <= at_rest;
         if is_only {
@@ -391,19 +391,19 @@ impl Slide<'_> {
     /// The goal on a tangent plane, corrected along and below the plane for the curvature.
     fn along_the_curvature(
         &self,
-        foot: Point<3>,
+        sampler: &Sampler<'_>,
+        [foot, goal]: [Point<3>; 2],
         normal: Vector<f64, 3>,
-        goal: Point<3>,
-        tolerance: f64,
     ) -> Point<3> {
         let depth = normal.dot(foot - self.device);
         let side = goal - foot;
         let length = squared(side);
         let is_on_plane = normal.dot(side).powi(2) <= AT_REST * AT_REST * length;
-        if !is_on_plane || depth <= tolerance || depth.is_nan() {
+        if !is_on_plane || depth <= sampler.tolerance() || depth.is_nan() {
             return goal;
         }
-        match self.curvature.way(side, depth) {
+        let dimensions = if sampler.nearby().is_flat() { 1 } else { 2 };
+        match self.curvature.way(side, depth, dimensions) {
             Some(way) if squared(way) <= MOST_GAIN * MOST_GAIN * length => {
                 // wᵀ S w / 2, because the displacement solves (1 − d S) w = side.
                 let fall = 0.5 * way.dot(way - side) / depth;

@@ -221,7 +221,8 @@ mod tests {
 
     #[test]
     fn a_smooth_curve_passes_its_points_and_says_how_far_off_it_is() {
-        let points = [[0.0, 0.0, 0.0], [1.0, 2.0, 0.0], [3.0, 2.0, 0.0], [4.0, -1.0, 0.0]].map(Vector);
+        let points =
+            [[0.0, 0.0, 0.0], [1.0, 2.0, 0.0], [3.0, 2.0, 0.0], [4.0, -1.0, 0.0]].map(Vector);
         let curve = Curve::smooth(&points).unwrap();
         for point in points {
             assert!((curve.closest(point).point - point).norm() < 1e-15);

@@ -63,7 +63,7 @@ mod tests {
             kind: TextureKind::Height,
             amplitude: 1e-5,
             wavelength: 1e-3,
-            direction: Some(vec![1.0, 0.0]),
+            direction: Some(vec![1.0, 0.0, 0.0]),
         };
         let grooved = Material { texture: Some(texture), ..Material::default() };
         let floor = Shape::from_kernel(HalfSpace::new(Vector([0.0, 1.0, 0.0]), 0.0).unwrap());

@@ -13,7 +13,7 @@ mod strata;
 use crate::{Material, TextureKind};
 use palpate_field::{Point, Shape, SpaceShape, Vector};
 
-use crate::curvature::surface_displacement;
+use crate::curvature::{Solver, surface_displacement};
 use crate::error::HapticsError;
 use palpate_device::{NumberError, limited};
 use palpate_safety::Impedance;
@@ -280,7 +280,9 @@ impl Surface {
             let along = gradient - normal * gradient.dot(normal);
             // Below a curved surface the proxy moves farther than the hand, or less far.
             let far = FAR * ripples.wavelength();
-            let seen = surface_displacement(|way| turn(way, far), along, depth, SOLVED);
+            let dimensions = ripples.dimension() - 1;
+            let solver = Solver { solved: SOLVED, dimensions };
+            let seen = surface_displacement(|way| turn(way, far), along, depth, solver);
             slope = limited(seen.unwrap_or(along), STEEPER * along.norm()) * part;
         }
         let spring = self.strata.force(level, push);

@@ -116,6 +116,14 @@ impl Ripples {
         self.amplitude
     }
 
+    /// The number of dimensions of the body that has the waves.
+    pub(crate) fn dimension(&self) -> usize {
+        match self.waves {
+            Waves::Plane { dimension, .. } => dimension,
+            Waves::Product { axes, .. } => axes,
+        }
+    }
+
     /// The distance between crests [m].
     pub(crate) fn wavelength(&self) -> f64 {
         self.wavelength

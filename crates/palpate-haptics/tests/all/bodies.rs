@@ -223,7 +223,8 @@ fn a_magnet_pulls_from_outside_alone() {
 fn touches_and_leaves_come_in_pairs() {
     // From one body to the next in one tick, and a reading that is lost, once left no leave.
     let place = |x: f64| Pose::translation(Vector([x, 0.0, 0.0]));
-    let bodies = [0.0, 0.1].map(|x| Body::new(ball::<3>(0.05), rough(512.0)).unwrap().at(place(x)));
+    let bodies =
+        [0.0, 0.1].map(|x| Body::new(ball::<3>(0.05), rough(512.0)).unwrap().at(place(x)));
     let bodies = Bodies::new(bodies.into_iter().collect::<Result<_, _>>().unwrap()).unwrap();
     let mut servo = Servo::new(bodies, 1, options(0.001)).unwrap();
     let (mut touches, mut leaves) = (0, 0);

@@ -393,7 +393,8 @@ where
     };
     let after = || bodies_of(grown::<D>(sort, size, growth), motion);
     let depth = 0.0015 + 0.001 * unit(u)?;
-    let (inwards, aim) = (-direction::<D>(u)?.in_space(), direction::<D>(u)?.in_space() * (0.5 * size));
+    let (inwards, aim) =
+        (-direction::<D>(u)?.in_space(), direction::<D>(u)?.in_space() * (0.5 * size));
     let servo = Servo::new(before(), 1, ServoOptions { rate: 1000.0, ..options(radius) });
     let mut plain = servo.unwrap();
     let (mut place, mut pressed) = (aim - inwards * 0.08, false);

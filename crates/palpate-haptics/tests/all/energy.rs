@@ -84,19 +84,12 @@ fn closed(
     }
 }
 
-fn turns(
-    u: &mut arbitrary::Unstructured<'_>,
-) -> arbitrary::Result<[[Vector<f64, 3>; 2]; 2]> {
+fn turns(u: &mut arbitrary::Unstructured<'_>) -> arbitrary::Result<[[Vector<f64, 3>; 2]; 2]> {
     Ok([[vector(u)?, vector(u)?], [vector(u)?, vector(u)?]])
 }
 
 /// Plays loops at the surface of some bodies, and checks what they gain.
-fn gains_nothing(
-    name: &str,
-    bodies: &Bodies,
-    (radius, width): (f64, f64),
-    loops: u64,
-) {
+fn gains_nothing(name: &str, bodies: &Bodies, (radius, width): (f64, f64), loops: u64) {
     cases(2 * loops, |u| {
         let mut servo = servo(bodies.clone(), radius);
         // Down the field to the surface.

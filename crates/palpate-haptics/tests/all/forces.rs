@@ -193,7 +193,7 @@ fn a_tiny_probe_is_felt_as_a_point() {
         radius: f64,
         hand: impl Fn(f64) -> Point<3>,
     ) -> Vec<f64> {
-    let shape: SpaceShape = shape.into();
+        let shape: SpaceShape = shape.into();
         let mut servo = servo(shape, radius, spring_alone(512.0));
         let force = |tick: i32| {
             let touch = touch(&mut servo, hand(0.001 * f64::from(tick)));
@@ -203,7 +203,7 @@ fn a_tiny_probe_is_felt_as_a_point() {
         (0..150).map(force).collect()
     }
     fn check(shape: impl Into<SpaceShape>, hand: impl Fn(f64) -> Point<3> + Copy) {
-    let shape: SpaceShape = shape.into();
+        let shape: SpaceShape = shape.into();
         let points = forces(shape.clone(), 0.0, hand);
         assert!(points.iter().fold(0.0_f64, |most, force| most.max(*force)) > 0.4);
         for radius in [1e-7, 1e-6, 5e-6] {

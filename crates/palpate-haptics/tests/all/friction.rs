@@ -12,11 +12,7 @@ use palpate_haptics::{
 
 const STIFFNESS: f64 = 512.0;
 
-fn rough(
-    shape: impl Into<SpaceShape>,
-    friction: [f64; 2],
-    radius: f64,
-) -> Servo<Unprotected> {
+fn rough(shape: impl Into<SpaceShape>, friction: [f64; 2], radius: f64) -> Servo<Unprotected> {
     let shape: SpaceShape = shape.into();
     let material = Material {
         stiffness: STIFFNESS,

@@ -44,8 +44,10 @@ fn is_as_it_was<const N: usize>(hashes: [u64; N], stored: [u64; N]) {
 
 #[test]
 fn in_the_plane_every_bit_is_as_it_was() {
-    let hashes =
-        [hash::<2>(&mut servo::<2>(9, 3, 1.0)), hash::<2>(&mut protected(servo::<2>(9, 3, 1.0)))];
+    let hashes = [
+        hash::<2>(&mut servo::<2>(9, 3, 1.0)),
+        hash::<2>(&mut protected(servo::<2>(9, 3, 1.0))),
+    ];
     is_as_it_was(hashes, [0xdf7c_0975_dc7b_3b8c, 0x2081_2887_ed9a_f10d]);
 }
 

@@ -33,7 +33,9 @@ struct Hand {
 impl Hand {
     fn at(points: &[[f64; 2]]) -> Self {
         Self {
-            at: Arc::new(Mutex::new(points.iter().map(|point| Vector(*point).in_space()).collect())),
+            at: Arc::new(Mutex::new(
+                points.iter().map(|point| Vector(*point).in_space()).collect(),
+            )),
             written: Arc::default(),
             profile: DeviceProfile::unlimited("hand"),
             until: f64::INFINITY,

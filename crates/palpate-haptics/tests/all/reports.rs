@@ -92,7 +92,8 @@ fn guides_tell_their_time_force_and_work() {
     let near = GuideOptions { snap_distance: 0.0105, ..options };
     let guides = [
         Guide::on_plane([0.0, 1.0, 0.0], [0.0, 1.0, 0.0], near).unwrap(),
-        Guide::to_point([0.0, -5.0, 0.0], GuideOptions { snap_distance: 0.01, ..options }).unwrap(),
+        Guide::to_point([0.0, -5.0, 0.0], GuideOptions { snap_distance: 0.01, ..options })
+            .unwrap(),
     ];
     let ground = half_space([0.0, 1.0], 0.0);
     let mut servo = without_limits(Servo::new(ground, 1, Default::default()).unwrap());

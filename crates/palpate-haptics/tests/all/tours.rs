@@ -111,7 +111,7 @@ fn friction_leaves_no_proxy_behind_at_edges() {
 #[test]
 fn the_hand_of_a_tour_is_nowhere_much_deeper_than_asked() {
     fn check(name: &str, shape: impl Into<SpaceShape>) {
-    let shape: SpaceShape = shape.into();
+        let shape: SpaceShape = shape.into();
         let bounds = shape.bounds().unwrap().aabb;
         let size = bounds.half_extents().0.into_iter().fold(0.0, f64::max) * 2.0;
         for radius in [0.002, 0.003] {
@@ -207,8 +207,15 @@ where
     SpaceShape: From<Shape<D>>,
 {
     let space = SpaceShape::from(Shape::union(shapes.iter().cloned()).unwrap());
-    let (tour, whole) = (tour_of(&space, duration), space.shape());
-    let bodies = each(shapes);
+    let (bodies, whole) = (each(shapes), space.shape());
+    let bounds = bounds(&bodies);
+    let tour = if space.is_endless() {
+        let [min, max] = [bounds.min, bounds.max].map(|corner| corner.truncated());
+        Tour::in_plane(Aabb { min, max }, duration)
+    } else {
+        Tour::new(bounds, duration)
+    };
+    let tour = tour.unwrap();
     let path = tour.over_each(whole, &bodies).unwrap();
     assert_eq!((path.start(), path.duration()), (0.0, duration));
     // Pressed to 1.5 mm of the probe's 2 mm, and between two points a little more.
@@ -228,9 +235,8 @@ where
     let is_visit = tour.over(whole).as_ref() != Ok(&path);
     let deep = report.largest_depth;
     assert!(deep < 0.003 || !is_visit, "{deep} m deep in {duration} s");
-    let touches = |body: &SpaceShape| {
-        path.positions().iter().any(|p| body.shape().distance(*p) < 0.0019)
-    };
+    let touches =
+        |body: &SpaceShape| path.positions().iter().any(|p| body.shape().distance(*p) < 0.0019);
     bodies.iter().map(touches).collect()
 }
 
@@ -241,8 +247,8 @@ where
     shapes.iter().map(|shape| SpaceShape::from(shape.clone())).collect()
 }
 
-fn bounds(bodies: &[Shape<3>]) -> Aabb<3> {
-    let boxes = bodies.iter().filter_map(|body| body.promise().bounds);
+fn bounds(bodies: &[SpaceShape]) -> Aabb<3> {
+    let boxes = bodies.iter().filter_map(SpaceShape::bounds);
     boxes.map(|bounds| bounds.aabb).reduce(|a, b| a.union(&b)).unwrap()
 }
 
@@ -320,13 +326,13 @@ fn a_tour_of_what_is_touched_on_the_way_round_is_that_way() {
     let bodies: Vec<_> =
         (0..3).map(|i| at(ball(0.05), [0.12 * f64::from(i), 0.0, 0.0])).collect();
     let whole = Shape::union(bodies.iter().cloned()).unwrap();
-    let tour = Tour::new(bounds(&bodies), DURATION).unwrap();
+    let tour = Tour::new(bounds(&each(&bodies)), DURATION).unwrap();
     assert_eq!(tour.over_each(&whole, &each(&bodies)), tour.over(&whole));
     // A hundred visits in a second are none.
     let mut many = vec![table()];
     many.extend((0..99).map(|i| at(ball(0.001), [0.009 * f64::from(i) - 0.45, 0.001, 0.0])));
     let whole = Shape::union(many.iter().cloned()).unwrap();
-    let tour = Tour::new(bounds(&many), 1.0).unwrap();
+    let tour = Tour::new(bounds(&each(&many)), 1.0).unwrap();
     assert_eq!(tour.over_each(&whole, &each(&many)), tour.over(&whole));
 }
 

@@ -11,7 +11,7 @@ use crate::common::{AnyServo, body, cases, half_space};
 use palpate_device::{
     Device, DeviceLost, DeviceProfile, PointState, Reading, TurnState, TurningProfile,
 };
-use palpate_field::{Shape, SpaceShape, Pose, Rotation, Vector};
+use palpate_field::{Pose, Rotation, Shape, SpaceShape, Vector};
 use palpate_haptics::servo_loop::{
     Ending, Pace, Recorder, RunOptions, ServoThread, ThreadOptions, VirtualClock, run,
 };

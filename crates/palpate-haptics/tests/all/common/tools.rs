@@ -47,11 +47,7 @@ pub(crate) fn turned(axis: [f64; 3], angle: f64, place: [f64; 3]) -> ToolState {
 }
 
 /// Stays at a state until the tool rests.
-pub(crate) fn rest(
-    tool: &mut Tool,
-    bodies: &mut Bodies,
-    state: &ToolState,
-) -> ToolTouch {
+pub(crate) fn rest(tool: &mut Tool, bodies: &mut Bodies, state: &ToolState) -> ToolTouch {
     for _ in 0..200 {
         tool.step(bodies, state);
     }
