@@ -174,7 +174,7 @@ def test_python_and_the_program_have_the_same_bits(tmp_path: Path) -> None:
     command = [sys.executable, "-m", "palpate", "eval", str(file), "--at", ",".join(map(str, at)), "--json"]
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
-    assert json.loads(done.stdout)["distance_m"] == shape.distance(at)
+    assert json.loads(done.stdout)["distance"] == shape.distance(at)
 
 
 def test_shapes_that_are_equal_have_equal_hashes() -> None:

@@ -7,16 +7,15 @@ use std::io::{self, Write};
 
 use palpate::field::{Shape, Vector};
 use palpate::mesh::Findings;
-use palpate::scene::{AnyScene, BuiltMesh, Samples, Scene, SceneProblem};
+use palpate::scene::{AnyScene, BuiltMesh, Samples, Scene, SceneProblem, is_empty};
 use serde_json::{Value, json};
 
 use crate::arguments::CheckOptions;
-use crate::emptiness::is_empty;
 use crate::input::{Bakes, bytes, folder, longest_edge, other_than_scene};
-use crate::numbers::rounded;
 use crate::outcome::{Failure, Outcome};
 use crate::output::{self, counted, shown};
 use crate::units::hint;
+use palpate::scene::text::rounded;
 
 pub(crate) fn run(options: &CheckOptions) -> Result<Outcome, Failure> {
     let bytes = bytes(&options.scene)?;

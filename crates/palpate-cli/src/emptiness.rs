@@ -1,41 +1,23 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! Bodies without any point, such as a small ball minus a large one.
+//! Remarks on bodies without any point, such as a small ball minus a large one.
 
-use palpate::field::Shape;
-use palpate::query::{Limits, PairWorkspace, any_point};
-use palpate::scene::BuiltScene;
+use palpate::scene::{BuiltScene, is_empty};
 
 use crate::output;
 
-/// Evaluations for each body: a point is found with a few, and most proofs take hundreds.
-const BUDGET: u32 = 20_000;
-
-/// The smallest part that counts as a point, as a share of the body's size.
-const TOLERANCE: f64 = 1e-9;
-
-/// Whether a shape is proven to have no point; `None` if none was found, and none is not proven.
-/// Shapes without bounds, or without an inside, count as not empty.
-pub(crate) fn is_empty<const D: usize>(shape: &Shape<D>) -> Option<bool> {
-    let promise = shape.promise();
-    let Some(bounds) = promise.bounds.filter(|_| promise.has_interior) else {
-        return Some(false);
-    };
-    let limits = Limits::new(TOLERANCE * bounds.aabb.half_extents().norm()).with_budget(BUDGET);
-    let answer = any_point(shape, &limits, &mut PairWorkspace::new());
-    answer.map_or(Some(false), |answer| answer.is_hit().map(|has_points| !has_points))
+/// Warns of each body that is proven to be empty.
+pub(crate) fn warn<const D: usize>(scene: &BuiltScene<D>) {
+    let empty = scene.bodies.iter().filter(|body| is_empty(&body.shape_in_body) == Some(true));
+    warn_of(empty.map(|body| &body.name));
 }
 
-/// Warns of each body that is proven to be empty; returns which are.
-pub(crate) fn warn<const D: usize>(scene: &BuiltScene<D>) -> Vec<bool> {
-    let empty: Vec<_> =
-        scene.bodies.iter().map(|body| is_empty(&body.shape_in_body) == Some(true)).collect();
-    for (body, _) in scene.bodies.iter().zip(&empty).filter(|(_, is_empty)| **is_empty) {
+/// Warns of bodies that are proven to be empty, by their names.
+pub(crate) fn warn_of<'a>(names: impl IntoIterator<Item = &'a String>) {
+    for name in names {
         output::remark(format_args!(
-            "warning: body {:?} is empty: no point is in it, which is proven",
-            body.name
+            "warning: body {name:?} is empty: no point is in it, which is proven"
         ));
     }
-    empty
 }

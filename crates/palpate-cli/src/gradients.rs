@@ -11,12 +11,13 @@ use palpate::local::{
 };
 use palpate::plot::{Figure, Markers, PlotError, Sampling, Slice};
 use palpate::query::{self, AtPoint};
+use palpate::scene::text::joined;
 use palpate::scene::{AnyScene, BuiltScene};
 use serde_json::{Value, json};
 
 use crate::arguments::GradientsOptions;
 use crate::error_map::{Gradient, sampler};
-use crate::input::{self, joined, longest_edge};
+use crate::input::{self, longest_edge};
 use crate::outcome::{Failure, Outcome};
 use crate::output::{self, Files};
 use crate::picture::{self, Dimensions, Drawable, Picture, in_space};

@@ -14,10 +14,10 @@ use serde_json::json;
 use crate::arguments::GridOptions;
 use crate::input;
 use crate::interrupt::Interrupt;
-use crate::numbers::rounded;
 use crate::outcome::{Failure, Outcome};
 use crate::output::{self, Files, shown};
 use crate::{progress, threads};
+use palpate::scene::text::rounded;
 
 /// Bakes the scene, or one of its bodies; the answer is no if the deviation is not known.
 pub(crate) fn run(options: &GridOptions, interrupt: &Interrupt) -> Result<Outcome, Failure> {

@@ -18,10 +18,10 @@ use palpate::scene::{
 use palpate::sim::SimulationError;
 
 use crate::kind::Kind;
-use crate::numbers::rounded;
 use crate::outcome::Failure;
 use crate::output::{self, counted};
 use crate::progress::Progress;
+use palpate::scene::text::rounded;
 
 /// The built-in gallery, which `palpate feel` feels if no scene is named.
 const GALLERY: &str = include_str!("../scenes/article_gallery.json");
@@ -270,11 +270,6 @@ pub(crate) fn gradient<const D: usize>(name: &str) -> Result<GradientMethod, Fai
         )));
     }
     Ok(method)
-}
-
-/// Numbers as one text, joined by commas.
-pub(crate) fn joined(numbers: &[f64]) -> String {
-    numbers.iter().map(f64::to_string).collect::<Vec<_>>().join(", ")
 }
 
 /// The box around all bounded bodies of a scene.

@@ -14,6 +14,9 @@ use palpate::haptics::StopSwitch;
 /// How often the program looks whether it is asked to end while a thread works.
 const LOOK: Duration = Duration::from_millis(50);
 
+/// How long the program waits for what is known when it is asked to end.
+const SOON: Duration = Duration::from_secs(1);
+
 /// A request to end a run early.
 ///
 /// A signal handler ends the process if [`at_once`](Self::at_once) is set. Otherwise it sets
@@ -87,16 +90,39 @@ impl Interrupt {
         &self,
         work: impl FnOnce() -> T + Send + 'static,
     ) -> Option<T> {
+        self.within("interruptible", Duration::ZERO, move |_| work())
+    }
+
+    /// The result of work that ends early, with what it has, when the flag is set; `None` if it
+    /// does not end soon after.
+    pub(crate) fn soon<T: Send + 'static>(
+        &self,
+        work: impl FnOnce(&AtomicBool) -> T + Send + 'static,
+    ) -> Option<T> {
+        self.within("question", SOON, work)
+    }
+
+    /// The result of work, for which the program waits so long after it was asked to end.
+    fn within<T: Send + 'static>(
+        &self,
+        name: &str,
+        grace: Duration,
+        work: impl FnOnce(&AtomicBool) -> T + Send + 'static,
+    ) -> Option<T> {
         self.heed();
         let (sender, done) = mpsc::channel();
-        let named = thread::Builder::new().name("interruptible".to_owned());
-        let worker = named.spawn(move || sender.send(work()));
+        let asked = self.asked();
+        let named = thread::Builder::new().name(name.to_owned());
+        let worker = named.spawn(move || sender.send(work(&asked)));
         // As `thread::spawn`, which gives no name: a system without threads is no interrupt.
         let worker = worker.unwrap_or_else(|error| panic!("no thread can be started: {error}"));
         loop {
             match done.recv_timeout(LOOK) {
-                _ if self.is_asked() => return None,
+                Ok(_) if grace.is_zero() && self.is_asked() => return None,
                 Ok(result) => return Some(result),
+                Err(RecvTimeoutError::Timeout) if self.is_asked() => {
+                    return done.recv_timeout(grace).ok();
+                }
                 Err(RecvTimeoutError::Timeout) => {}
                 // The worker panicked, and so does the program.
                 Err(RecvTimeoutError::Disconnected) => match worker.join() {

@@ -7,7 +7,7 @@
 //! process. The caller chooses the allocator and handles signals.
 
 mod arguments;
-mod bound_fields;
+mod ask;
 mod check;
 mod contact;
 mod descend;
@@ -28,7 +28,6 @@ mod kind;
 mod live;
 mod mass;
 mod mesh;
-mod numbers;
 mod outcome;
 mod output;
 mod picture;

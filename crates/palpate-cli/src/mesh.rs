@@ -17,10 +17,10 @@ use crate::arguments::MeshOptions;
 use crate::input::longest_edge;
 use crate::interrupt::Interrupt;
 use crate::kind::Kind;
-use crate::numbers::rounded;
 use crate::outcome::{Failure, Outcome};
 use crate::output::{self, shown};
 use crate::units::hint;
+use palpate::scene::text::rounded;
 
 /// Reports on a mesh; the answer is no if it is not watertight or has degenerate triangles.
 pub(crate) fn run(options: &MeshOptions, interrupt: &Interrupt) -> Result<Outcome, Failure> {

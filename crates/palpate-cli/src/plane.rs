@@ -7,8 +7,8 @@ use palpate::field::Point;
 use palpate::plot::Slice;
 
 use crate::input;
-use crate::numbers::rounded;
 use crate::outcome::Failure;
+use palpate::scene::text::rounded;
 
 /// The plane that `text` names: one along two axes goes through the third coordinate `at`, or
 /// else through `middle` [m]. `option` is the option that names the plane.

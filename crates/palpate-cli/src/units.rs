@@ -3,7 +3,7 @@
 
 //! Sizes that are those of another unit.
 
-use crate::numbers::rounded;
+use palpate::scene::text::rounded;
 
 /// Meshes larger than this are rarely touched, and often in millimetres [m].
 const LARGE: f64 = 2.0;

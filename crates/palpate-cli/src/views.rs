@@ -14,10 +14,15 @@ pub(crate) fn at<const D: usize>(
     scene: &BuiltScene<D>,
     time: f64,
 ) -> Result<BuiltScene<D>, Failure> {
+    remark_if_still(scene, time);
+    scene.at(time).map_err(Failure::input)
+}
+
+/// Remarks that no body moves, if that is so at a time [s] after the start.
+pub(crate) fn remark_if_still<const D: usize>(scene: &BuiltScene<D>, time: f64) {
     if time > 0.0 && scene.motions.is_empty() {
         output::remark("no body moves: --time changes nothing");
     }
-    scene.at(time).map_err(Failure::input)
 }
 
 /// The view of this name.

@@ -14,6 +14,7 @@ use palpate_field::{Point, Pose, Vector};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "snake_case"))]
 pub enum NormalSource {
     /// The gradients of both fields at the contact.
     #[default]
@@ -33,7 +34,7 @@ impl fmt::Display for NormalSource {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             Self::Gradients => "gradients",
-            Self::ThickerBody => "thicker body",
+            Self::ThickerBody => "thicker_body",
             Self::History => "history",
             Self::Assumed => "assumed",
         })

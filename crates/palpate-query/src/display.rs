@@ -17,10 +17,10 @@ impl Display for Stop {
     fn fmt(&self, f: &mut Formatter<'_>) -> Result {
         f.write_str(match self {
             Self::Converged => "converged",
-            Self::SignKnown => "sign known",
-            Self::BudgetSpent => "budget spent",
-            Self::MemoryFull => "memory full",
-            Self::RoundingReached => "rounding reached",
+            Self::SignKnown => "sign_known",
+            Self::BudgetSpent => "budget_spent",
+            Self::MemoryFull => "memory_full",
+            Self::RoundingReached => "rounding_reached",
         })
     }
 }

@@ -40,12 +40,14 @@
 
 mod advice;
 mod angle;
+mod ask;
 mod attitude;
 mod beside;
 mod build;
 mod catalogue;
 mod check;
 mod device_file;
+mod emptiness;
 mod encoding;
 mod error;
 mod grids;
@@ -66,15 +68,23 @@ mod resources;
 mod scene;
 mod schema;
 mod shape;
+pub mod text;
 mod tool;
 mod touch;
 mod view;
 mod write;
 mod written_material;
 
+pub use ask::{
+    ANSWER_VERSION, Answer, AskError, BallAnswer, Balls, BodyMass, ContactsAnswer,
+    ContactsQuestion, FEW_PAIRS, LocalFinding, MassAnswer, MassQuestion, PairContacts,
+    PointAnswer, PointQuestion, Question, Separation, SweepAnswer, SweepPair, SweepQuestion,
+    SweptPart, Versioned, Weighed,
+};
 pub use build::{AnyScene, BuiltBody, BuiltMotion, BuiltScene, BuiltTool};
 pub use catalogue::described_primitive;
 pub use device_file::{device_from_json, device_to_json};
+pub use emptiness::is_empty;
 pub use encoding::{NotUtf8, utf8};
 pub use error::{SceneCause, SceneError, SceneProblem};
 pub use guide::{GuideCurve, GuideLine, GuidePlane, GuideSegment, GuideWell, WrittenGuide};

@@ -179,7 +179,7 @@ class Contact(Answer):
         point_b: The point of the second body [m], shape (D,).
         normal: The unit vector from the first to the second, shape (D,).
         gap: How far apart they are along the normal [m]: negative if they overlap.
-        normal_from: What the normal is taken from: "gradients", "thicker body", "history" or "assumed".
+        normal_from: What the normal is taken from: "gradients", "thicker_body", "history" or "assumed".
         on_surfaces: Whether both points are on surfaces; else they are estimated.
         id: A name that stays while bodies move.
 

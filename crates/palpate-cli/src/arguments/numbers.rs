@@ -8,7 +8,7 @@ use std::str::FromStr;
 
 use palpate::field::LARGEST_LENGTH;
 
-use crate::numbers::plain;
+use palpate::scene::text::plain;
 
 /// A positive number in `unit`.
 pub(super) fn positive(

@@ -7,7 +7,7 @@ use palpate::field::{BoundingBall, Shape};
 use palpate::query::Element;
 use serde_json::{Value, json};
 
-use crate::input::joined;
+use palpate::scene::text::joined;
 
 /// The smallest ball around an element and the one through its corners; circles in the plane.
 #[derive(Debug)]

@@ -16,8 +16,10 @@ use super::circles::Circles;
 use super::ending::Ending;
 use super::search::Search;
 use super::{described, figure, limits};
+use palpate::scene::text::joined;
+
 use crate::arguments::DescendOptions;
-use crate::input::{self, joined, longest_edge};
+use crate::input::{self, longest_edge};
 use crate::outcome::{Failure, Outcome};
 use crate::output;
 use crate::picture::{self, Dimensions, Drawable, Picture};

@@ -15,8 +15,10 @@ use serde_json::json;
 
 use super::search::refuse_naive;
 use super::{described, limits, method, written};
+use palpate::scene::text::joined;
+
 use crate::arguments::DescendOptions;
-use crate::input::{self, joined, longest_edge};
+use crate::input::{self, longest_edge};
 use crate::outcome::{Failure, Outcome};
 use crate::output;
 use crate::picture::{self, Dimensions, Drawable, Picture, in_space};

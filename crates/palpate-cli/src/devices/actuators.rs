@@ -8,9 +8,9 @@ use std::io::Write;
 use palpate::vibration::{ACTUATORS, Actuator};
 use serde_json::{Map, Value, json};
 
-use crate::numbers::rounded;
 use crate::outcome::{Failure, Outcome};
 use crate::output;
+use palpate::scene::text::rounded;
 
 /// Prints a line for each actuator, or JSON.
 pub(super) fn report(as_json: bool) -> Result<Outcome, Failure> {

@@ -13,9 +13,9 @@ use serde_json::{Value, json};
 
 use super::with_forces;
 use crate::arguments::DevicesOptions;
-use crate::numbers::rounded;
 use crate::outcome::{Failure, Outcome};
 use crate::output;
+use palpate::scene::text::rounded;
 
 /// Prints a table, of which a page can be made, or JSON.
 pub(super) fn report(options: &DevicesOptions) -> Result<Outcome, Failure> {

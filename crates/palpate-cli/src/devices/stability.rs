@@ -14,9 +14,9 @@ use serde_json::{Value, json};
 
 use super::with_forces;
 use crate::arguments::DevicesOptions;
-use crate::numbers::rounded;
 use crate::outcome::{Failure, Outcome};
 use crate::output;
+use palpate::scene::text::rounded;
 
 /// The delays of the columns [ticks].
 const DELAYS: [usize; 3] = [0, 1, 2];

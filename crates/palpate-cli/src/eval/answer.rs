@@ -1,23 +1,12 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! The answer for one point, as JSON and as a row.
+//! The answer for one point as a row.
 
 use palpate::query::AtPoint;
-use serde_json::{Value, json};
+use palpate::scene::BallAnswer;
 
 use crate::input::AXES;
-
-pub(crate) fn to_json<const D: usize>(answer: &AtPoint<D>) -> Value {
-    json!({
-        "point_m": answer.point.0.to_vec(),
-        "distance_m": answer.distance,
-        "gradient": answer.gradient.0.to_vec(),
-        "surface_point_m": answer.surface.map(|p| p.0.to_vec()),
-        "inside": answer.is_inside,
-        "safe_radius_m": answer.safe_radius,
-    })
-}
 
 /// The columns of a row.
 pub(crate) fn header<const D: usize>() -> Vec<String> {
@@ -40,5 +29,37 @@ pub(crate) fn row<const D: usize>(answer: &AtPoint<D>) -> Vec<String> {
         None => row.extend(vec![String::new(); D]),
     }
     row.extend([answer.is_inside.to_string(), answer.safe_radius.to_string()]);
+    row
+}
+
+/// The columns of a ball.
+pub(super) fn header_of_ball<const D: usize>() -> Vec<String> {
+    let axes = &AXES[..D];
+    let mut header =
+        ["radius_m", "meets", "gap_lower_m", "gap_upper_m"].map(str::to_owned).to_vec();
+    header.extend(axes.iter().map(|axis| format!("nearest_{axis}_m")));
+    header.extend(axes.iter().map(|axis| format!("ball_{axis}_m")));
+    header.extend(["memoir_test", "memoir_test_is_right"].map(str::to_owned));
+    header
+}
+
+/// The row of a ball; what is not known is empty, and `meets` is `undecided`.
+pub(super) fn row_of_ball<const D: usize>(ball: &BallAnswer<D>) -> Vec<String> {
+    let meets = match ball.touches {
+        Some(true) => "yes",
+        Some(false) => "no",
+        None => "undecided",
+    };
+    let mut row = vec![ball.radius.to_string(), meets.to_owned()];
+    row.extend([ball.lower, ball.upper].map(|gap| gap.to_string()));
+    match ball.contact {
+        Some(contact) => {
+            row.extend(contact.point_a.0.iter().map(f64::to_string));
+            row.extend(contact.point_b.0.iter().map(f64::to_string));
+        }
+        None => row.extend(vec![String::new(); 2 * D]),
+    }
+    row.push(ball.memoir_test.to_string());
+    row.push(ball.memoir_test_is_right.map_or_else(String::new, |right| right.to_string()));
     row
 }

@@ -4,20 +4,16 @@
 //! `palpate eval`: evaluates a scene at points.
 
 mod answer;
-mod ball;
 mod stream;
 
-use std::io::Write;
-
-use palpate::query::{self, BallWorkspace};
-use palpate::scene::{AnyScene, BuiltScene};
+use palpate::scene::{AnyScene, Balls, BuiltScene, PointQuestion, Question};
 
 use crate::arguments::EvalOptions;
+use crate::ask;
 use crate::input;
 use crate::interrupt::Interrupt;
 use crate::outcome::{Failure, Outcome};
-use crate::output::{self, Destination, Files};
-use ball::Balls;
+use crate::output::{Destination, Files};
 
 pub(crate) fn run(options: &EvalOptions, interrupt: &Interrupt) -> Result<Outcome, Failure> {
     let inputs = [Some(options.scene.as_path()), options.points.as_deref()];
@@ -44,8 +40,9 @@ fn evaluate<const D: usize>(
     destination: &Destination,
     interrupt: &Interrupt,
 ) -> Result<Outcome, Failure> {
-    let balls = options.radius.map(|radius| Balls::of(scene, radius)).transpose()?;
     if let Some(points) = &options.points {
+        let balls = options.radius.map(|radius| Balls::new(scene, radius)).transpose();
+        let balls = balls.map_err(ask::failure)?;
         let job = stream::Job { shape: &scene.whole, points, balls };
         return job.run(options, destination, interrupt);
     }
@@ -55,36 +52,16 @@ fn evaluate<const D: usize>(
             "eval needs a point, as with --at {example}, or many with --points FILE"
         )));
     };
-    let point = input::point::<D>(at)?;
-    let answer = query::evaluate_point(&scene.whole, point).map_err(Failure::input)?;
-    let ball = balls.map(|balls| balls.ask(&answer, &mut BallWorkspace::new())).transpose()?;
-    let mut out = output::answer();
-    let promise = scene.whole.promise().in_words();
-    if options.json {
-        let mut object = answer::to_json(&answer);
-        object["promise"] = promise.into();
-        object["lipschitz"] = scene.whole.promise().lipschitz.into();
-        if let Some(ball) = &ball {
-            object["ball"] = ball.to_json();
-        }
-        out.json(&object)?;
-    } else {
-        writeln!(out, "distance       {} m", answer.distance)?;
-        writeln!(out, "gradient       {}", input::joined(&answer.gradient.0))?;
-        let proven = ball.as_ref().and_then(|ball| ball.surface_point());
-        match answer.surface.or(proven) {
-            Some(surface) => writeln!(out, "surface point  {} m", input::joined(&surface.0))?,
-            None => writeln!(out, "surface point  none found")?,
-        }
-        writeln!(out, "inside         {}", if answer.is_inside { "yes" } else { "no" })?;
-        writeln!(out, "safe radius    {} m", answer.safe_radius)?;
-        writeln!(out, "promise        {promise}")?;
-        if let Some(ball) = &ball {
-            ball.print(&mut out)?;
-        }
-    }
-    Ok(match ball.map(|ball| ball.meets()) {
-        None | Some(Some(true)) => Outcome::Yes,
-        Some(_) => Outcome::No,
+    let at = input::point::<D>(at)?.0.to_vec();
+    let question = Question::Point(PointQuestion {
+        at,
+        radius: options.radius,
+        ..PointQuestion::default()
+    });
+    let answer = scene.ask(&question).map_err(ask::failure)?;
+    ask::print(&answer, options.json)?;
+    Ok(match &ask::point(&answer).ball {
+        Some(ball) if ball.touches != Some(true) => Outcome::No,
+        _ => Outcome::Yes,
     })
 }

@@ -9,11 +9,13 @@ use std::path::Path;
 use indicatif::{ProgressBar, ProgressStyle};
 use palpate::field::{BLOCK, Block, Gradients, Point, Shape, Vector};
 use palpate::query::{AtPoint, BallWorkspace};
+use palpate::scene::{BallAnswer, Balls, Versioned};
 use rayon::prelude::*;
+use serde::Serialize;
 
 use super::answer;
-use super::ball::{Ball, Balls};
 use crate::arguments::EvalOptions;
+use crate::ask;
 use crate::interrupt::Interrupt;
 use crate::outcome::{Failure, Outcome};
 use crate::output::{self, Destination};
@@ -83,7 +85,7 @@ impl<const D: usize> Stream<'_, D> {
         if !self.as_json {
             let mut header = answer::header::<D>();
             if self.job.balls.is_some() {
-                header.extend(Ball::<D>::header());
+                header.extend(answer::header_of_ball::<D>());
             }
             writeln!(out, "{}", header.join(","))?;
         }
@@ -171,10 +173,12 @@ impl<const D: usize> Job<'_, D> {
             let (distance, gradient) = (found.distance.get(i), found.gradient.get(i));
             let answer = AtPoint::of_slope(self.shape, *point, distance, gradient);
             let ball = match (&self.balls, workspace.as_deref_mut()) {
-                (Some(balls), Some(workspace)) => Some(balls.ask(&answer, workspace)?),
+                (Some(balls), Some(workspace)) => {
+                    Some(balls.ask(&answer, workspace).map_err(ask::failure)?)
+                }
                 _ => None,
             };
-            text.push_str(&line(&answer, ball.as_ref(), as_json));
+            text.push_str(&Line { at: answer, ball }.text(as_json)?);
             text.push('\n');
         }
         Ok(text)
@@ -182,15 +186,21 @@ impl<const D: usize> Job<'_, D> {
 }
 
 /// The answer for a point, and for the ball around it if that is asked about.
-fn line<const D: usize>(answer: &AtPoint<D>, ball: Option<&Ball<D>>, as_json: bool) -> String {
-    if as_json {
-        let mut object = answer::to_json(answer);
-        if let Some(ball) = ball {
-            object["ball"] = ball.to_json();
+#[derive(Serialize)]
+struct Line<const D: usize> {
+    #[serde(flatten)]
+    at: AtPoint<D>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    ball: Option<BallAnswer<D>>,
+}
+
+impl<const D: usize> Line<D> {
+    fn text(&self, as_json: bool) -> Result<String, Failure> {
+        if as_json {
+            return serde_json::to_string(&Versioned::new(self)).map_err(Failure::input);
         }
-        return object.to_string();
+        let mut row = answer::row(&self.at);
+        row.extend(self.ball.as_ref().map(answer::row_of_ball).unwrap_or_default());
+        Ok(row.join(","))
     }
-    let mut row = answer::row(answer);
-    row.extend(ball.map(Ball::row).unwrap_or_default());
-    row.join(",")
 }

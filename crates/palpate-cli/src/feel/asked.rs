@@ -7,7 +7,7 @@ use palpate::device::DeviceProfile;
 use palpate::haptics::Material;
 use palpate::safety::{Acceptance, Accepted, DeviceLimits};
 
-use crate::numbers::rounded;
+use palpate::scene::text::rounded;
 
 /// The part of what the device renders that a material asks for; `None` if it asks for a stiffness
 /// in N/m, or the device has no largest.

@@ -11,9 +11,9 @@ use serde_json::{Value, json};
 use crate::arguments::FeelOptions;
 use crate::check::unit_hint;
 use crate::input::Bakes;
-use crate::numbers::rounded;
 use crate::outcome::Failure;
 use crate::output::{self, shown};
+use palpate::scene::text::rounded;
 
 /// The scene as it is touched, and its bodies of meshes; none with `--exact`.
 pub(super) fn scene<const D: usize>(

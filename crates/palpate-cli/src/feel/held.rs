@@ -12,8 +12,8 @@ use palpate::sim::{Glove, Hand, HandPath, RecordedDevice, SimulatedDevice, Simul
 use serde_json::{Value, json};
 
 use crate::arguments::DeviceChoice;
-use crate::numbers::rounded;
 use crate::outcome::Failure;
+use palpate::scene::text::rounded;
 
 /// The workspace map: that of the scene; else, for a simulated device, one whose workspace
 /// holds `bounds`, of the scene or of the places of a tool.

@@ -8,8 +8,8 @@ use std::fmt::Write;
 use palpate::servo_loop::StartInside;
 
 use super::report::Felt;
-use crate::numbers::rounded;
 use crate::output::shown;
+use palpate::scene::text::rounded;
 
 /// So many points have a line each; of more, the number is told.
 const MOST_LINES: usize = 5;

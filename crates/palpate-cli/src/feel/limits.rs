@@ -5,8 +5,8 @@
 
 use palpate::servo_loop::TraceRow;
 
-use crate::numbers::plain;
 use crate::outcome::Failure;
+use palpate::scene::text::plain;
 
 /// The most rows that a run keeps: an hour of one contact point at 1 kHz.
 const MOST_ROWS: f64 = 3.6e6;

@@ -14,9 +14,9 @@ use palpate::scene::{BakedBody, BuiltScene};
 use palpate::servo_loop::RunReport;
 use serde_json::Value;
 
-use crate::numbers::rounded;
 use crate::outcome::Failure;
 use crate::output::{self, counted, shown};
+use palpate::scene::text::rounded;
 
 use super::asked::{self, range};
 use super::baked;

@@ -18,9 +18,9 @@ use palpate::sim::{
 
 use crate::arguments::IdentifyOptions;
 use crate::interrupt::Interrupt;
-use crate::numbers::rounded;
 use crate::outcome::{Failure, Outcome};
 use crate::output::{self, Destination, Files};
+use palpate::scene::text::rounded;
 use report::Report;
 
 /// How often the live line is renewed.

@@ -10,9 +10,9 @@ use palpate::sim::{DeviceAxis, EncoderStep, Estimate, Identified, IdentifiedAxis
 use serde_json::{Value, json};
 
 use crate::arguments::IdentifyOptions;
-use crate::numbers::{measured, rounded};
 use crate::outcome::Failure;
 use crate::output::{self, Destination};
+use palpate::scene::text::{measured, rounded};
 
 /// What was found, beside what was assumed and what the simulated device is made of.
 pub(super) struct Report<'a> {

@@ -15,9 +15,9 @@ use palpate::servo_loop::{Lateness, Priority, WallClock, raise_priority};
 use serde_json::{Value, json};
 
 use crate::arguments::JitterOptions;
-use crate::numbers::plain;
 use crate::outcome::{Failure, Outcome};
 use crate::output;
+use palpate::scene::text::plain;
 
 /// The highest rate [Hz], which is that of the fastest servo.
 const MOST_RATE: f64 = 10_000.0;

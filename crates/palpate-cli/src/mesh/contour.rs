@@ -19,10 +19,10 @@ use serde_json::json;
 use crate::arguments::MeshOptions;
 use crate::input::{self, longest_edge};
 use crate::interrupt::Interrupt;
-use crate::numbers::rounded;
 use crate::outcome::{Failure, Outcome};
 use crate::output::{self, Files, counted, shown};
 use crate::progress::Progress;
+use palpate::scene::text::rounded;
 
 /// Cells along the longest side of the scene unless the options say another number.
 const CELLS: f64 = 100.0;

@@ -8,11 +8,9 @@
 //! temporary file in the same folder and renamed when complete, so a failed run leaves the old
 //! file.
 
-mod escape;
 mod files;
 mod terminal;
 
-use std::fmt;
 use std::fs::{self, OpenOptions};
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
@@ -21,18 +19,9 @@ use tempfile::NamedTempFile;
 
 use crate::outcome::Failure;
 
-pub(crate) use escape::{shown, shown_lines};
 pub(crate) use files::{Files, ending};
+pub(crate) use palpate::scene::text::{counted, shown, shown_lines};
 pub(crate) use terminal::{answer, complain, ended, live, remark, usage};
-
-/// A count with its noun: "1 body", "2 bodies".
-pub(crate) fn counted<N>(count: N, one: &str, many: &str) -> String
-where
-    N: fmt::Display + PartialEq + From<u8>,
-{
-    let noun = if count == N::from(1) { one } else { many };
-    format!("{count} {noun}")
-}
 
 /// Where an output goes.
 #[derive(Debug)]

@@ -8,7 +8,8 @@ use std::io::{self, Write};
 
 use serde_json::Value;
 
-use super::escape::{shown, shown_json, shown_lines};
+use palpate::scene::text::{shown, shown_json, shown_lines};
+
 use crate::outcome::{Failure, Outcome};
 
 /// Standard output for an answer in words or JSON. It escapes characters that a terminal would

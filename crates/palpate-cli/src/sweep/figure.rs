@@ -10,12 +10,10 @@ use palpate::plot::{
     Polyline, Sampling, Series, Slice,
 };
 use palpate::query::{Limits, PairWorkspace, Placed, SweepProof, SweepWorkspace, sweep_proof};
-use palpate::scene::BuiltScene;
+use palpate::scene::{BuiltScene, SweepAnswer, SweepPair, SweptPart};
 
-use super::report::Report;
-use super::{Pair, Question, ways};
 use crate::arguments::SweepOptions;
-use crate::bound_fields::BoundFields;
+use crate::ask;
 use crate::outcome::Failure;
 use crate::picture::{self, Dimensions, Drawable, cut, in_space};
 use crate::plane;
@@ -39,14 +37,14 @@ const OPEN: f64 = 0.01;
 /// The first touch of a pair of a scene.
 struct Drawn<'a, const D: usize> {
     scene: &'a BuiltScene<D>,
-    pair: &'a Pair<D>,
+    pair: &'a SweepPair<D>,
     /// When the bodies touch; the end of the time that is looked at if they are apart [s].
     time: f64,
     /// The bodies then.
     then: BuiltScene<D>,
     /// The times that are shown [s]: all that is looked at; of motions of many parts, the part in which
     /// the bodies touch.
-    part: [f64; 2],
+    part: SweptPart,
     proof: SweepProof<D>,
     /// What is shown of the scene.
     bounds: Aabb<D>,
@@ -55,25 +53,18 @@ struct Drawn<'a, const D: usize> {
 /// The figure of a pair.
 pub(super) fn of<const D: usize>(
     options: &SweepOptions,
-    question: &Question,
     scene: &BuiltScene<D>,
-    pair: &Pair<D>,
+    answer: &SweepAnswer<D>,
+    pair: &SweepPair<D>,
 ) -> Result<Figure, Failure>
 where
     Dimensions: Drawable<D>,
 {
-    let drawn = Drawn::new(question, scene, pair)?;
+    let drawn = Drawn::new(scene, answer, pair)?;
     let plane = drawn.plane(options.plane.as_deref())?;
-    let names: Vec<&str> = scene.bodies.iter().map(|body| body.name.as_str()).collect();
-    let report = Report {
-        question,
-        names: &names,
-        bounds: &BoundFields::of(scene),
-        pairs: std::slice::from_ref(pair),
-        apart: 0,
-        unbounded: 0,
-    };
-    let mut caption = report.in_words(pair);
+    let mut caption = String::new();
+    answer.write_pair(&mut caption, pair).map_err(Failure::input)?;
+    caption.truncate(caption.trim_end().len());
     if D == 3 {
         caption = format!("{}; {caption}", plane::in_words(&plane));
     }
@@ -88,20 +79,19 @@ where
     Dimensions: Drawable<D>,
 {
     fn new(
-        question: &Question,
         scene: &'a BuiltScene<D>,
-        pair: &'a Pair<D>,
+        answer: &SweepAnswer<D>,
+        pair: &'a SweepPair<D>,
     ) -> Result<Self, Failure> {
-        let [a, b] = ways(scene, pair.bodies, pair.part)?;
-        let settings = question.settings_over(pair.part);
+        let SweptPart { from, to } = pair.part;
+        let [a, b] = scene.ways(pair.indices, pair.part).map_err(ask::failure)?;
+        let settings = answer.settings(pair);
         let proof = sweep_proof(a, b, &settings, &mut SweepWorkspace::new());
         let proof = proof.map_err(Failure::input)?;
-        let [_, end] = pair.part;
-        let time = if pair.found.upper < f64::INFINITY { pair.found.upper } else { end };
+        let time = if pair.touch.upper < f64::INFINITY { pair.touch.upper } else { to };
         let then = scene.at(time).map_err(Failure::input)?;
-        let [from, to] = pair.part;
-        let is_short = (to - from) * f64::from(TIMES) < f64::from(PARTS) * question.until;
-        let part = if is_short { pair.part } else { [0.0, question.until] };
+        let is_short = (to - from) * f64::from(TIMES) < f64::from(PARTS) * answer.until;
+        let part = if is_short { pair.part } else { SweptPart { from: 0.0, to: answer.until } };
         let bounds = Aabb::centred(Vector::ZERO);
         let mut drawn = Self { scene, pair, time, then, part, proof, bounds };
         drawn.bounds = drawn.shown()?;
@@ -110,20 +100,20 @@ where
 
     /// A time before that of the touch [s], the `i`-th of `count`.
     fn before(&self, i: u32, count: u32) -> f64 {
-        let [from, _] = self.part;
+        let from = self.part.from;
         from + (self.time - from) * f64::from(i) / f64::from(count)
     }
 
     /// The bodies of the pair that have motions.
     fn movers(&self) -> impl Iterator<Item = usize> {
         let moving: Vec<usize> = self.scene.moving().collect();
-        self.pair.bodies.into_iter().filter(move |body| moving.contains(body))
+        self.pair.indices.into_iter().filter(move |body| moving.contains(body))
     }
 
     /// What holds both bodies until the touch; of a body without bounds, nothing.
     fn shown(&self) -> Result<Aabb<D>, Failure> {
         let mut shown: Option<Aabb<D>> = None;
-        for body in self.pair.bodies {
+        for body in self.pair.indices {
             let Some(bounds) = self.scene.bodies[body].shape_in_body.promise().bounds else {
                 continue;
             };
@@ -138,7 +128,7 @@ where
 
     /// Where the bodies touch; the middle of what is shown if they do not.
     fn middle(&self) -> Point<D> {
-        self.pair.found.contact.map_or(self.bounds.centre(), |contact| contact.point_a)
+        self.pair.touch.contact.map_or(self.bounds.centre(), |contact| contact.point_a)
     }
 
     /// The plane of an option; or along the normal of the touch and the motion there.
@@ -150,9 +140,9 @@ where
         if let Some(asked) = asked {
             return plane::named("--plane", asked, None, Vector(middle));
         }
-        let along = self.pair.found.contact.and_then(|contact| {
+        let along = self.pair.touch.contact.and_then(|contact| {
             let way = self.movers().find_map(|body| {
-                let before = self.time - 1e-3 * (self.time - self.part[0]);
+                let before = self.time - 1e-3 * (self.time - self.part.from);
                 let way = self.carried(body, self.time) - self.carried(body, before);
                 way.normalized()
             })?;
@@ -187,7 +177,7 @@ where
         for body in self.movers() {
             isolines = self.with_way(isolines, plane, &view, body)?;
         }
-        let Some(contact) = &self.pair.found.contact else { return Ok(isolines) };
+        let Some(contact) = &self.pair.touch.contact else { return Ok(isolines) };
         let at = plane.project(in_space(contact.point_a));
         let vector = plane.project_vector(in_space(contact.normal));
         Ok(isolines
@@ -235,7 +225,7 @@ where
         let name = &bodies[body].name;
         let earlier = Polyline::of_pieces(format!("{name} before"), lines)?;
         let isolines = isolines.with_polyline(earlier.with_dash(Dash::Dashed));
-        if self.pair.found.contact.is_none() {
+        if self.pair.touch.contact.is_none() {
             return Ok(isolines);
         }
         let carried = |i| plane.project(in_space(self.carried(body, self.before(i, TIMES))));
@@ -246,7 +236,7 @@ where
 
     /// The separation over the times that are shown.
     fn separations(&self) -> Result<Chart, Failure> {
-        let [from, to] = self.part;
+        let SweptPart { from, to } = self.part;
         let mut times: Vec<f64> = (0..=TIMES)
             .map(|i| from + (to - from) * f64::from(i) / f64::from(TIMES))
             .chain([self.time])
@@ -257,7 +247,7 @@ where
         let mut workspace = PairWorkspace::new();
         let (mut lower, mut upper) = (Vec::new(), Vec::new());
         for time in times {
-            let [a, b] = self.pair.bodies.map(|body| {
+            let [a, b] = self.pair.indices.map(|body| {
                 Placed::new(
                     &self.scene.bodies[body].shape_in_body,
                     self.scene.pose_at(body, time),
@@ -285,7 +275,7 @@ where
                 .map_err(Failure::input)?;
             chart = chart.with_series(lower.with_dash(Dash::Dotted));
         }
-        if self.pair.found.upper < f64::INFINITY && self.pair.found.contact.is_some() {
+        if self.pair.touch.upper < f64::INFINITY && self.pair.touch.contact.is_some() {
             let touch = [[self.time, least], [self.time, most]];
             let touch = Series::new("first touch", touch).map_err(Failure::input)?;
             chart = chart.with_series(touch.with_dash(Dash::Dashed));

@@ -9,10 +9,13 @@ use palpate::local::{
 };
 use palpate::mesh::{Mesh, Outline, TriangleMesh};
 use palpate::query::{Motion, Moving};
+use palpate::scene::{BuiltScene, LocalFinding, SweptPart};
 
 use super::surface;
 use crate::arguments::SweepOptions;
+use crate::ask;
 use crate::outcome::Failure;
+use crate::output::{self, shown};
 use crate::picture::Dimensions;
 
 /// Steps of time.
@@ -37,8 +40,8 @@ enum Method {
 }
 
 impl LocalSearch {
-    /// `None` if no method is asked for. A touch is half of the gap near, which no proof calls apart.
-    pub(super) fn of(options: &SweepOptions, gap: f64) -> Result<Option<Self>, Failure> {
+    /// `None` if no method is asked for.
+    pub(super) fn of(options: &SweepOptions) -> Result<Option<Self>, Failure> {
         let Some(name) = options.method.as_deref() else { return Ok(None) };
         let method = match name.parse() {
             Ok(ElementMethod::GoldenSection) => Method::SpaceTime,
@@ -53,7 +56,8 @@ impl LocalSearch {
                 return Err(Failure::input(format!("{option} is not for --method {name}")));
             }
         }
-        let sampled = SampledSweep::new(options.samples.unwrap_or(SAMPLES), 0.5 * gap);
+        // The gap of the proven search is known later.
+        let sampled = SampledSweep::new(options.samples.unwrap_or(SAMPLES), 0.0);
         Ok(Some(Self { method, cells: options.cells.unwrap_or(CELLS), sampled }))
     }
 
@@ -64,6 +68,47 @@ impl LocalSearch {
             Method::Element(method) => method.name(),
             Method::Pair(method) => method.name(),
         }
+    }
+
+    /// What the search finds of two bodies, beside a proven search for this gap [m]. A touch is
+    /// half of the gap near, which no proof calls apart.
+    pub(super) fn beside<const D: usize>(
+        mut self,
+        scene: &BuiltScene<D>,
+        indices: [usize; 2],
+        times: &[f64],
+        gap: f64,
+    ) -> Result<Option<LocalFinding>, Failure>
+    where
+        Dimensions: Surfaced<D>,
+    {
+        self.sampled.gap = 0.5 * gap;
+        let of = indices.map(|body| &scene.bodies[body]);
+        let Some(prepared) = self.prepared(of.map(|body| &body.shape_in_body)) else {
+            let [a, b] = of.map(|body| shown(&body.name));
+            output::remark(format!(
+                "--method {} needs the surface of {a} or {b}, and the grid shows none of either: \
+                 raise --cells, or take a method between fields, as sum_descent",
+                self.name()
+            ));
+            return Ok(None);
+        };
+        let mut all =
+            LocalFinding { method: self.name().to_owned(), ..LocalFinding::default() };
+        for part in times.windows(2) {
+            let &[from, to] = part else { continue };
+            let ways = scene.ways(indices, SweptPart { from, to }).map_err(ask::failure)?;
+            let found = self.first_touch(ways, &prepared)?;
+            all.evaluations = all.evaluations.saturating_add(found.evaluations);
+            all.searched = all.searched.saturating_add(found.searched);
+            if let Some(touch) = found.touch {
+                all.time = Some(from + (to - from) * touch.time);
+                all.point = Some(touch.point.0.to_vec());
+                all.value = Some(touch.value);
+                break;
+            }
+        }
+        Ok(Some(all))
     }
 
     /// What of two bodies is needed: the surface of the smaller one that has one, and its index. `None`

@@ -23,24 +23,24 @@ fn a_ball_meets_a_disc_if_it_reaches_it() {
     {
         let (status, answer) = ask(&scene, "0,2", radius);
         let ball = &answer["ball"];
-        assert_eq!((status, &ball["meets"]), (i32::from(!meets), &meets.into()), "{ball}");
+        assert_eq!((status, &ball["touches"]), (i32::from(!meets), &meets.into()), "{ball}");
         assert_eq!(ball["memoir_test"], meets);
         assert_eq!(
             (&ball["memoir_test_is_right"], &ball["quality"]),
             (&true.into(), &"exact".into())
         );
-        assert!(number(&ball["gap_lower_m"]) <= gap && gap <= number(&ball["gap_upper_m"]));
-        assert!((number(&ball["gap_upper_m"]) - gap).abs() < 1e-12);
-        assert_eq!(ball["surface_point_m"], serde_json::json!([0.0, 0.5]));
+        assert!(number(&ball["lower"]) <= gap && gap <= number(&ball["upper"]));
+        assert!((number(&ball["upper"]) - gap).abs() < 1e-12);
+        assert_eq!(ball["contact"]["point_a"], serde_json::json!([0.0, 0.5]));
         assert_eq!(
-            ball["ball_point_m"],
-            serde_json::json!([0.0, 2.0 - number(&ball["radius_m"])])
+            ball["contact"]["point_b"],
+            serde_json::json!([0.0, 2.0 - number(&ball["radius"])])
         );
-        assert_eq!(answer["distance_m"], 1.5);
+        assert_eq!(answer["distance"], 1.5);
     }
     // Where they only touch, rounding decides nothing.
     let (status, answer) = ask(&scene, "0,2", "1.5");
-    assert_eq!((status, &answer["ball"]["meets"]), (1, &Value::Null));
+    assert_eq!((status, &answer["ball"]["touches"]), (1, &Value::Null));
     assert_eq!(answer["ball"]["memoir_test_is_right"], Value::Null);
 }
 
@@ -65,7 +65,7 @@ fn the_memoirs_test_is_wrong_where_a_bound_is_too_small() {
         (&ball["memoir_test"], &ball["memoir_test_is_right"]),
         (&true.into(), &false.into())
     );
-    assert!((number(&ball["gap_lower_m"]) - 0.05).abs() < 2e-4, "{ball}");
+    assert!((number(&ball["lower"]) - 0.05).abs() < 2e-4, "{ball}");
     // Above the radius, the value proves that the ball is apart; inside, that it meets the scene.
     for (at, radius, line) in [
         (
@@ -116,8 +116,8 @@ fn many_balls_are_rows() {
         let object: Value = serde_json::from_str(object).unwrap();
         let (_, alone) = ask(scene, &columns[..2].join(","), "0.05");
         assert_eq!(object["ball"], alone["ball"]);
-        assert_eq!(columns[11].parse::<f64>().unwrap(), number(&object["ball"]["gap_lower_m"]));
-        let meets = match &object["ball"]["meets"] {
+        assert_eq!(columns[11].parse::<f64>().unwrap(), number(&object["ball"]["lower"]));
+        let meets = match &object["ball"]["touches"] {
             Value::Bool(true) => "yes",
             Value::Bool(false) => "no",
             _ => "undecided",
@@ -129,7 +129,7 @@ fn many_balls_are_rows() {
 #[test]
 fn a_radius_is_a_length() {
     for (radius, got) in [("-1", "-1.0"), ("nan", "NaN"), ("1e16", "1e16"), ("inf", "inf")] {
-        let said = format!("--radius must be from 0 m to 1e15 m, got {got} m");
+        let said = format!("the radius must be from 0 m to 1e15 m, got {got} m");
         assert_refused(&["eval", "scenes/s1.json", "--at", "1,0,0", "--radius", radius], &said);
     }
 }
@@ -147,9 +147,9 @@ fn a_scene_without_bounds_is_asked_about_too() {
     for (radius, meets) in [("0", false), ("1.2", false), ("1.5", true)] {
         let (_, answer) = ask(&scene, "1,1", radius);
         let ball = &answer["ball"];
-        assert_eq!(ball["meets"], meets, "{ball}");
-        let gap = 2.0_f64.sqrt() - number(&ball["radius_m"]);
-        let [lower, upper] = ["gap_lower_m", "gap_upper_m"].map(|key| number(&ball[key]));
+        assert_eq!(ball["touches"], meets, "{ball}");
+        let gap = 2.0_f64.sqrt() - number(&ball["radius"]);
+        let [lower, upper] = ["lower", "upper"].map(|key| number(&ball[key]));
         assert!(lower <= gap && gap <= upper && upper - lower < 1e-3, "{ball}");
         assert!(number(&ball["evaluations"]) < 1000.0, "{ball}");
     }

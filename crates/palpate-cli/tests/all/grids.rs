@@ -41,7 +41,7 @@ fn a_grid_is_made_and_used() {
     let said = text(&palpate(&["check", &used]));
     assert!(said.contains("off its source's by at most"), "{said}");
     let at = json(&["eval", &used, "--at", "0,0.06,0", "--json"]);
-    assert!((number(&at["distance_m"]) - 0.01).abs() <= 1e-3, "{at}");
+    assert!((number(&at["distance"]) - 0.01).abs() <= 1e-3, "{at}");
     let felt = palpate(&["feel", &used, "--fast", "--duration", "1"]);
     assert_eq!(status(&felt), 0, "{}", text(&felt));
     // A grid of both bodies takes a band.

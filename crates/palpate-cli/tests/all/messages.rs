@@ -198,7 +198,7 @@ fn a_body_without_any_point_is_told_of() {
         (&none["empty"], &none["volume"], &none["volume_error"]),
         (&json!(true), &json!(0.0), &json!(0.0))
     );
-    assert_eq!(none["centroid_m"], Value::Null);
+    assert_eq!(none["centroid"], Value::Null);
     let warning = "warning: body \"none\" is empty: no point is in it, which is proven\n";
     for arguments in [&["plot"][..], &["contact"], &["feel", "--fast", "--duration", "0.01"]] {
         let command = [&arguments[..1], &["hollow.json"], &arguments[1..]].concat();

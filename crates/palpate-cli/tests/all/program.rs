@@ -15,12 +15,12 @@ fn eval_answers_at_one_point() {
     let folder = Folder::new();
     let scene = folder.write("ball.json", BALL);
     let answer = json(&["eval", &scene, "--at", "0,2,0", "--json"]);
-    assert_eq!(answer["distance_m"], 1.5);
+    assert_eq!(answer["distance"], 1.5);
     assert_eq!(answer["gradient"], serde_json::json!([0.0, 1.0, 0.0]));
-    assert_eq!(answer["surface_point_m"], serde_json::json!([0.0, 0.5, 0.0]));
-    assert_eq!(answer["inside"], false);
+    assert_eq!(answer["surface"], serde_json::json!([0.0, 0.5, 0.0]));
+    assert_eq!(answer["is_inside"], false);
     assert_eq!(answer["promise"], "exact outside, exact inside");
-    let radius = answer["safe_radius_m"].as_f64().unwrap();
+    let radius = answer["safe_radius"].as_f64().unwrap();
     assert!((1.5 - 1e-14..=1.5).contains(&radius));
 }
 
@@ -85,7 +85,7 @@ fn eval_streams_the_same_bytes_for_any_number_of_threads() {
     let row: Vec<_> = lines[66_000].split(',').collect();
     let at = row[..3].join(",");
     let single = json(&["eval", "scenes/s3.json", "--at", &at, "--json"]);
-    assert_eq!(row[3].parse::<f64>().unwrap(), single["distance_m"].as_f64().unwrap());
+    assert_eq!(row[3].parse::<f64>().unwrap(), single["distance"].as_f64().unwrap());
 }
 
 #[test]

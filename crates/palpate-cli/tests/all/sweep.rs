@@ -30,7 +30,7 @@ fn a_ball_that_falls_touches_the_floor_and_passes_the_wall() {
     assert!(said.contains("\n3 bodies until 1 s: 1 pair touches (separation up to "), "{said}");
     let found = json(&["sweep", &scene, "--tolerance", "1e-7", "--json"]);
     let pair = &found["pairs"][0];
-    let [lower, upper] = ["lower_s", "upper_s"].map(|key| pair[key].as_f64().unwrap());
+    let [lower, upper] = ["lower", "upper"].map(|key| pair[key].as_f64().unwrap());
     assert!(lower <= 0.49 && upper - lower <= 1e-7 && (upper - 0.49).abs() <= 2e-7, "{pair}");
     assert_eq!((&pair["verdict"], &pair["start"]), (&"touching".into(), &().into()));
     assert!((pair["contact"]["normal"][1].as_f64().unwrap() - 1.0).abs() < 1e-9);
@@ -59,7 +59,7 @@ fn motions_of_many_turns_and_those_that_repeat_are_looked_at_part_by_part() {
     let near = folder.write("near.json", &scene("once", 0.45));
     let found = json(&["sweep", &near, "--json"]);
     // The bar's end reaches the stop's lower right corner, at (0.05, 0.4).
-    let upper = found["pairs"][0]["upper_s"].as_f64().unwrap();
+    let upper = found["pairs"][0]["upper"].as_f64().unwrap();
     let corner = 0.4_f64.atan2(0.05) - (0.01 / 0.05_f64.hypot(0.4)).asin();
     let truth = corner / std::f64::consts::TAU;
     assert!((upper - truth).abs() < 1e-3, "{upper} s, {truth} s");
@@ -112,7 +112,7 @@ fn what_cannot_be_swept_is_refused() {
     // 0.04 m of 0.2 m in 2 s, and the floor from the first.
     let pair =
         found["pairs"].as_array().unwrap().iter().find(|pair| pair["bodies"][0] == "ball");
-    let upper = pair.unwrap()["upper_s"].as_f64().unwrap();
+    let upper = pair.unwrap()["upper"].as_f64().unwrap();
     assert!((upper - 0.4).abs() < 1e-3, "{upper}");
     let wrong = folder.write("wrong.json", &rises.replace("wall", "well"));
     let told = errors(&palpate(&["sweep", &still, "--motion", &wrong]));
@@ -149,9 +149,9 @@ fn local_searches_stand_beside_the_proven_answer() {
         let local = &found["pairs"][0]["local"];
         assert_eq!(local["method"], method);
         // A floor has no surface for triangles, the ball has; steps are a sixtieth of a second.
-        let time = local["time_s"].as_f64().unwrap();
+        let time = local["time"].as_f64().unwrap();
         assert!((0.4899..0.51).contains(&time), "{method}: {time}");
-        assert!(found["pairs"][1]["local"]["time_s"].is_null(), "{method}: {found}");
+        assert!(found["pairs"][1]["local"]["time"].is_null(), "{method}: {found}");
     }
     let said = text(&palpate(&["sweep", &scene, "--method", "golden_section"]));
     assert!(said.contains("\n    golden_section finds a touch at 0.49000"), "{said}");

@@ -3,6 +3,8 @@
 
 //! The first touch of what moves.
 
+use std::fmt;
+
 use palpate_field::Vector;
 
 use crate::certified::Stop;
@@ -14,6 +16,7 @@ const SLIDES: f64 = 1e-3;
 /// How bodies that touch at the start move on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "snake_case"))]
 pub enum Start {
     /// Into each other.
     Approaching,
@@ -35,6 +38,17 @@ impl Start {
             () if along < 0.0 => Self::Approaching,
             () => Self::Receding,
         }
+    }
+}
+
+impl fmt::Display for Start {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Approaching => "approaching",
+            Self::Receding => "receding",
+            Self::Sliding => "sliding",
+            Self::Resting => "resting",
+        })
     }
 }
 

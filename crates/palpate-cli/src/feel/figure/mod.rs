@@ -22,9 +22,9 @@ use super::moved;
 use super::slices::{FeltSlice, felt_slices};
 use super::vibration::Vibration;
 use crate::input;
-use crate::numbers::rounded;
 use crate::outcome::Failure;
 use crate::picture::{self, Dimensions, Drawable, Picture};
+use palpate::scene::text::rounded;
 use points::Points;
 
 /// A run to be drawn.
