@@ -103,6 +103,21 @@ impl<const D: usize> Rotation<D> {
         Self { matrix }
     }
 
+    /// The same rotation in space: that of a plane is about the z axis.
+    #[must_use]
+    pub fn in_space(&self) -> Rotation<3> {
+        self.resized()
+    }
+
+    /// The first rows and columns; those that this rotation lacks are of the identity.
+    fn resized<const N: usize>(&self) -> Rotation<N> {
+        let entry = |i: usize, k: usize| {
+            let entry = self.matrix.get(i).and_then(|row| row.get(k));
+            entry.copied().unwrap_or(f64::from(u8::from(i == k)))
+        };
+        Rotation { matrix: std::array::from_fn(|i| std::array::from_fn(|k| entry(i, k))) }
+    }
+
     /// Applies the rotation.
     #[inline]
     #[must_use]
@@ -158,13 +173,6 @@ impl Rotation<2> {
     #[must_use]
     pub fn angle(&self) -> f64 {
         libm::atan2(self.matrix[1][0], self.matrix[0][0])
-    }
-
-    /// This rotation in space, about the z axis.
-    #[must_use]
-    pub fn in_space(&self) -> Rotation<3> {
-        let [[a, b], [c, d]] = self.matrix;
-        Rotation { matrix: [[a, b, 0.0], [c, d, 0.0], [0.0, 0.0, 1.0]] }
     }
 }
 
@@ -329,10 +337,8 @@ impl<const D: usize> Pose<D> {
         self.translation.is_finite()
             && self.rotation.matrix.iter().flatten().all(|x| x.is_finite())
     }
-}
 
-impl Pose<2> {
-    /// This motion of the plane z = 0 in space.
+    /// The same motion in space: that of the plane is one of the plane z = 0.
     ///
     /// ```
     /// use palpate_field::{Pose, Rotation, Vector};
@@ -341,7 +347,7 @@ impl Pose<2> {
     /// let flat = Pose::new(Rotation::from_angle(0.5)?, [1.0, 2.0]);
     /// let point = flat.in_space().transform_point(Vector([3.0, 4.0, 5.0]));
     /// assert_eq!(point.truncated(), flat.transform_point(Vector([3.0, 4.0])));
-    /// assert_eq!((point[2], flat.in_space().in_plane()), (5.0, flat));
+    /// assert_eq!((point[2], flat.in_space().truncated()), (5.0, flat));
     /// # Ok(())
     /// # }
     /// ```
@@ -352,11 +358,11 @@ impl Pose<2> {
 }
 
 impl Pose<3> {
-    /// The part of this motion in the plane z = 0, for a motion that keeps that plane.
+    /// The part of this motion in the first coordinates, as [`Vector::truncated`]: of a motion that keeps the
+    /// plane z = 0, that in this plane.
     #[must_use]
-    pub fn in_plane(&self) -> Pose<2> {
-        let [[a, b, _], [c, d, _], _] = self.rotation.matrix;
-        Pose::new(Rotation { matrix: [[a, b], [c, d]] }, self.translation.truncated::<2>())
+    pub fn truncated<const D: usize>(&self) -> Pose<D> {
+        Pose::new(self.rotation.resized(), self.translation.truncated::<D>())
     }
 }
 

@@ -16,7 +16,8 @@ pub fn instances() {
     compile![
         HandPath::new,
         HandPath::state_at,
-        Tour::new,
+        Tour::new::<2>,
+        Tour::new::<3>,
         Tour::over,
         Tour::over_each,
         SimulatedDevice::new,

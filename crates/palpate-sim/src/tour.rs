@@ -157,12 +157,17 @@ impl Tour {
     /// radius, so that the force is continuous over every edge. A probe with a radius of at
     /// most 2e-5 of half the diagonal of the box is a point, which is pressed `0.01 s` deep.
     ///
+    /// Over planar bodies, whose box is planar, the hand stays in the plane z = 0.
+    ///
     /// # Errors
     ///
     /// [`SimulationError::Number`] if the duration or the size of the box is not positive and
     /// finite.
     #[inline(never)]
-    pub fn new(bounds: Aabb<3>, duration: f64) -> Result<Self, SimulationError> {
+    pub fn new<const D: usize>(
+        bounds: Aabb<D>,
+        duration: f64,
+    ) -> Result<Self, SimulationError> {
         let edges = bounds.half_extents() * 2.0;
         let size = NumberError::check_positive(
             "size of the box",
@@ -172,18 +177,9 @@ impl Tour {
         let duration = NumberError::check_positive("duration", duration, "s")?;
         let probe_radius = Self::PROBE_RADIUS;
         let speed = 0.3 * size.sqrt();
-        let (is_flat, depth, lag) = (false, None, LAG);
+        let (bounds, is_flat) = (bounds.in_space(), D == 2);
+        let (depth, lag) = (None, LAG);
         Ok(Self { bounds, is_flat, duration, size, probe_radius, depth, speed, lag })
-    }
-
-    /// As [`new`](Self::new), in the plane z = 0: of planar shapes, which are
-    /// [endless](palpate_field::Shape::endless) along z.
-    ///
-    /// # Errors
-    ///
-    /// As [`new`](Self::new).
-    pub fn in_plane(bounds: Aabb<2>, duration: f64) -> Result<Self, SimulationError> {
-        Ok(Self { is_flat: true, ..Self::new(bounds.in_space(), duration)? })
     }
 
     /// This tour with another probe radius [m]; depths are below the surface offset by it.

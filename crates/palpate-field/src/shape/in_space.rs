@@ -3,6 +3,8 @@
 
 //! Planar shapes in space, where they are endless along z.
 
+use std::any::Any;
+
 use super::Shape;
 use crate::bounds::{Aabb, BoundingBall, Bounds};
 use crate::field::CustomField;
@@ -29,41 +31,45 @@ impl Shape<2> {
     /// ```
     #[must_use]
     pub fn endless(self) -> Shape<3> {
-        let flat = *self.promise();
-        let [x, y] = flat.symmetric;
-        let promise = Promise {
-            outside: flat.outside,
-            inside: flat.inside,
-            lipschitz: flat.lipschitz,
-            // The steepness is known in a cylinder, of which this is a part.
-            region: flat.region.map(|ball| ball_in_space(&ball)),
-            bounds: None,
-            above_bounds: flat.above_bounds,
-            convex: flat.convex,
-            symmetric: [x, y, true],
-            has_interior: flat.has_interior,
-            reach: flat.reach,
-            rounding: flat.rounding,
-            deviation: flat.deviation,
-        };
-        Shape::custom(Endless { flat: self, promise })
+        endless(self)
     }
 }
 
-/// A planar shape, endless along z.
+/// The shape in space, endless along the axes that it lacks.
+fn endless<const D: usize>(flat: Shape<D>) -> Shape<3> {
+    let of = *flat.promise();
+    let promise = Promise {
+        outside: of.outside,
+        inside: of.inside,
+        lipschitz: of.lipschitz,
+        // The steepness is known in a cylinder, of which this is a part.
+        region: of.region.map(|ball| ball_in_space(&ball)),
+        bounds: None,
+        above_bounds: of.above_bounds,
+        convex: of.convex,
+        symmetric: std::array::from_fn(|axis| of.symmetric.get(axis).copied().unwrap_or(true)),
+        has_interior: of.has_interior,
+        reach: of.reach,
+        rounding: of.rounding,
+        deviation: of.deviation,
+    };
+    Shape::custom(Endless { flat, promise })
+}
+
+/// A shape of fewer dimensions, endless along those that it lacks.
 #[derive(Debug)]
-struct Endless {
-    flat: Shape<2>,
+struct Endless<const D: usize> {
+    flat: Shape<D>,
     promise: Promise<3>,
 }
 
-impl CustomField<3> for Endless {
+impl<const D: usize> CustomField<3> for Endless<D> {
     fn distance(&self, p: Point<3>) -> f64 {
-        self.flat.distance(p.truncated::<2>())
+        self.flat.distance(p.truncated::<D>())
     }
 
     fn distance_gradient(&self, p: Point<3>) -> (f64, Vector<f64, 3>) {
-        let (distance, gradient) = self.flat.distance_gradient(p.truncated::<2>());
+        let (distance, gradient) = self.flat.distance_gradient(p.truncated::<D>());
         (distance, gradient.in_space())
     }
 
@@ -100,15 +106,18 @@ impl CustomField<3> for Endless {
     }
 }
 
-/// The points' x and y, in `flat`.
-fn flattened<'a>(points: &[Point<3>], flat: &'a mut [Point<2>; BLOCK]) -> &'a [Point<2>] {
+/// The first coordinates of the points, in `flat`.
+fn flattened<'a, const D: usize>(
+    points: &[Point<3>],
+    flat: &'a mut [Point<D>; BLOCK],
+) -> &'a [Point<D>] {
     for (flat, point) in flat.iter_mut().zip(points) {
         *flat = point.truncated();
     }
     &flat[..points.len()]
 }
 
-fn ball_in_space(ball: &BoundingBall<2>) -> BoundingBall<3> {
+fn ball_in_space<const D: usize>(ball: &BoundingBall<D>) -> BoundingBall<3> {
     BoundingBall { centre: ball.centre.in_space(), radius: ball.radius }
 }
 
@@ -168,30 +177,26 @@ impl SpaceShape {
     }
 }
 
-impl Aabb<2> {
-    /// This box in the plane z = 0 of space.
+impl<const D: usize> Aabb<D> {
+    /// The same box in space: one of the plane lies in the plane z = 0.
     #[must_use]
     pub fn in_space(&self) -> Aabb<3> {
         Aabb { min: self.min.in_space(), max: self.max.in_space() }
     }
 }
 
-impl From<Shape<2>> for SpaceShape {
-    fn from(flat: Shape<2>) -> Self {
-        Self { shape: flat.clone().endless(), flat: Some(flat) }
+impl<const D: usize> From<Shape<D>> for SpaceShape {
+    fn from(shape: Shape<D>) -> Self {
+        let any: &dyn Any = &shape;
+        if let Some(shape) = any.downcast_ref::<Shape<3>>() {
+            return Self { shape: shape.clone(), flat: None };
+        }
+        let flat = any.downcast_ref::<Shape<2>>().cloned();
+        Self { shape: endless(shape), flat }
     }
 }
 
-impl From<Shape<3>> for SpaceShape {
-    fn from(shape: Shape<3>) -> Self {
-        Self { shape, flat: None }
-    }
-}
-
-impl<const D: usize> From<&Shape<D>> for SpaceShape
-where
-    Self: From<Shape<D>>,
-{
+impl<const D: usize> From<&Shape<D>> for SpaceShape {
     fn from(shape: &Shape<D>) -> Self {
         shape.clone().into()
     }

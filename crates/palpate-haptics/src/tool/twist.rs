@@ -103,7 +103,7 @@ mod tests {
         let twist = Twist::between(&Pose::identity(), &to);
         assert!((twist.angular - Vector([0.0, 0.0, 0.25])).norm() < 1e-15);
         let moved = twist.moved(&Pose::identity());
-        assert!((moved.in_plane().rotation.angle() - 0.25).abs() < 1e-15);
+        assert!((moved.truncated::<2>().rotation.angle() - 0.25).abs() < 1e-15);
     }
 
     #[test]

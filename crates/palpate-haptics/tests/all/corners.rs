@@ -6,7 +6,7 @@
 use crate::common::{body, cases, cuboid, direction, unit};
 use arbitrary::Unstructured;
 use palpate_device::PointState;
-use palpate_field::{Point, Shape, SpaceShape, Vector};
+use palpate_field::{Point, Shape, Vector};
 use palpate_haptics::{Material, Probe, Servo, ServoOptions, Surface};
 
 /// The radius of the scene [m].
@@ -25,10 +25,7 @@ fn miss<const D: usize>(
     normals: &[Vector<f64, D>],
     (corner, friction): (Point<D>, f64),
     radius: f64,
-) -> arbitrary::Result<f64>
-where
-    SpaceShape: From<Shape<D>>,
-{
+) -> arbitrary::Result<f64> {
     let (static_friction, dynamic_friction) = (friction, friction);
     let material = Material { static_friction, dynamic_friction, ..Material::default() };
     let bodies = body(&walls(normals), Surface::new(&material).unwrap());
@@ -78,10 +75,7 @@ fn corner<const D: usize>(normals: &[Vector<f64, D>], radius: f64) -> Point<D> {
     point
 }
 
-fn corners_are_exact<const D: usize>(count: usize, friction: f64)
-where
-    SpaceShape: From<Shape<D>>,
-{
+fn corners_are_exact<const D: usize>(count: usize, friction: f64) {
     let mut checked = 0;
     cases(60, |u| {
         // Most of what is drawn is too flat.

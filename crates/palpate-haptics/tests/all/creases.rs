@@ -5,7 +5,7 @@
 
 use palpate_device::PointState;
 use palpate_field::kernel::{Cuboid, HalfSpace};
-use palpate_field::{Pose, Shape, SpaceShape, Vector};
+use palpate_field::{Pose, Shape, Vector};
 use palpate_haptics::{
     Bodies, Body, Event, EventKind, Material, Probe, Servo, ServoOptions, Surface, Unprotected,
 };
@@ -17,10 +17,7 @@ const RADIUS: f64 = 0.002;
 /// Walls through the origin for the probe's centre, with these inner normals, stiffnesses [N/m] and
 /// frictions.
 #[expect(clippy::unwrap_used, reason = "a test that cannot be set up fails")]
-fn walls<const D: usize>(walls: &[([f64; D], f64, f64)]) -> Bodies
-where
-    SpaceShape: From<Shape<D>>,
-{
+fn walls<const D: usize>(walls: &[([f64; D], f64, f64)]) -> Bodies {
     let bodies = walls.iter().map(|(normal, stiffness, friction)| {
         let normal = Vector(*normal).normalized().unwrap();
         let shape = Shape::from_kernel(HalfSpace::new(normal, -RADIUS).unwrap());

@@ -6,7 +6,7 @@
 use crate::common::wild::wave;
 use crate::common::{Scaled, ball, cuboid, half_space};
 use palpate_device::PointState;
-use palpate_field::{BoundingBall, Pose, Promise, Shape, SpaceShape, Vector};
+use palpate_field::{BoundingBall, Pose, Promise, Shape, Vector};
 use palpate_haptics::{
     Bodies, Body, Layer, Magnet, Material, Probe, Servo, ServoOptions, Surface, Texture,
     TextureKind,
@@ -43,10 +43,7 @@ fn materials() -> Vec<(&'static str, Material)> {
 }
 
 /// Plays over three bodies that touch each other; every proxy in contact stays out of all.
-fn plays<const D: usize>(name: &str, material: &Material, radius: f64)
-where
-    SpaceShape: From<Shape<D>>,
-{
+fn plays<const D: usize>(name: &str, material: &Material, radius: f64) {
     let at = |x: f64| Pose::translation(Vector::unit(0) * x);
     let shapes = [(cuboid([0.04; D]), -0.04), (cuboid([0.04; D]), 0.0), (ball(0.02), 0.04)];
     let body = |(shape, x): (Shape<D>, f64)| {

@@ -376,10 +376,7 @@ fn bodies_of(shape: impl Into<SpaceShape>, place: Point<3>) -> Bodies {
 }
 
 /// What became of a hand in a random shape that was edited: whether it was carried.
-fn a_random_edit<const D: usize>(u: &mut Unstructured<'_>) -> arbitrary::Result<Option<bool>>
-where
-    SpaceShape: From<Shape<D>>,
-{
+fn a_random_edit<const D: usize>(u: &mut Unstructured<'_>) -> arbitrary::Result<Option<bool>> {
     let sort = u.int_in_range(0..=4)?;
     let radius = *u.choose(&[0.0, 0.001, 0.003])?;
     let longest: f64 = if radius > 0.0 { radius } else { 0.005 };
@@ -463,10 +460,7 @@ where
     Ok(Some(true))
 }
 
-fn random_edits<const D: usize>(count: u64)
-where
-    SpaceShape: From<Shape<D>>,
-{
+fn random_edits<const D: usize>(count: u64) {
     let mut seen = [0, 0];
     cases(count, |u| {
         if let Some(is_carried) = a_random_edit::<D>(u)? {

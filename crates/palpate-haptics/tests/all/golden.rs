@@ -6,15 +6,12 @@
 use crate::common::wild::{bodies, servo, step};
 use crate::common::{AnyServo, protected};
 use palpate_device::PointState;
-use palpate_field::{Shape, SpaceShape, Vector};
+use palpate_field::Vector;
 
 const TICKS: u32 = 6000;
 
 /// FNV-1a of every proxy, force and evaluation of a run.
-fn hash<const D: usize>(servo: &mut impl AnyServo) -> u64
-where
-    SpaceShape: From<Shape<D>>,
-{
+fn hash<const D: usize>(servo: &mut impl AnyServo) -> u64 {
     let mut states = vec![PointState::at_rest(Vector::ZERO); servo.touches().len()];
     let mut hash = 0xcbf2_9ce4_8422_2325_u64;
     let mut add = |number: u64| hash = (hash ^ number).wrapping_mul(0x0100_0000_01b3);

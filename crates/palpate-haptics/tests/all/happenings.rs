@@ -6,16 +6,13 @@
 use crate::common::wild::{servo, step};
 use crate::common::{ball, half_space};
 use palpate_device::PointState;
-use palpate_field::{Pose, Shape, SpaceShape, Vector};
+use palpate_field::{Pose, Vector};
 use palpate_haptics::{
     Bodies, Body, EventKind, Layer, Material, PopThrough, Probe, Servo, ServoOptions, Surface,
 };
 
 /// Plays a wild scene, and checks every event against the state before it.
-fn events_are_in_order<const D: usize>(count: usize)
-where
-    SpaceShape: From<Shape<D>>,
-{
+fn events_are_in_order<const D: usize>(count: usize) {
     const POINTS: usize = 4;
     let mut servo = servo::<D>(count, POINTS, 1.0);
     let mut states = [PointState::at_rest(Vector::ZERO); POINTS];

@@ -5,17 +5,14 @@
 
 use crate::common::wild::{servo, step};
 use palpate_device::PointState;
-use palpate_field::{Shape, SpaceShape, Vector};
+use palpate_field::Vector;
 use palpate_haptics::{EventKind, Touch};
 
 const TICKS: u32 = 8000;
 const POINTS: usize = 5;
 
 /// Every touch of a run, and how many events of each kind there were.
-fn run<const D: usize>(scale: f64) -> (Vec<Touch>, [u32; 5])
-where
-    SpaceShape: From<Shape<D>>,
-{
+fn run<const D: usize>(scale: f64) -> (Vec<Touch>, [u32; 5]) {
     let mut servo = servo::<D>(if D == 2 { 9 } else { 20 }, POINTS, scale);
     let mut states = [PointState::at_rest(Vector::ZERO); POINTS];
     let (mut touches, mut events) = (Vec::new(), [0; 5]);
@@ -38,10 +35,7 @@ where
 }
 
 /// The part of all touches that differ by more than rounding explains.
-fn apart<const D: usize>(scale: f64, tolerance: f64) -> f64
-where
-    SpaceShape: From<Shape<D>>,
-{
+fn apart<const D: usize>(scale: f64, tolerance: f64) -> f64 {
     let ((ours, events), (others, _)) = (run::<D>(1.0), run::<D>(scale));
     // Everything happens.
     assert!(events.iter().all(|count| *count > 0), "{events:?}");

@@ -15,11 +15,11 @@ const DURATION: f64 = 20.0;
 
 /// A tour of a shape, in the plane if it is planar.
 fn tour_of(shape: &SpaceShape, duration: f64) -> Tour {
-    let bounds = shape.bounds().unwrap().aabb;
-    match shape.flat() {
-        Some(flat) => Tour::in_plane(flat.promise().bounds.unwrap().aabb, duration).unwrap(),
-        None => Tour::new(bounds, duration).unwrap(),
-    }
+    let tour = match shape.flat() {
+        Some(flat) => Tour::new(flat.promise().bounds.unwrap().aabb, duration),
+        None => Tour::new(shape.bounds().unwrap().aabb, duration),
+    };
+    tour.unwrap()
 }
 
 fn tour(shape: impl Into<SpaceShape>) -> HandPath {
@@ -202,20 +202,12 @@ fn at(shape: Shape<3>, place: [f64; 3]) -> Shape<3> {
 }
 
 /// Which of the bodies a tour touches that visits each.
-fn visited<const D: usize>(shapes: &[Shape<D>], duration: f64) -> Vec<bool>
-where
-    SpaceShape: From<Shape<D>>,
-{
+fn visited<const D: usize>(shapes: &[Shape<D>], duration: f64) -> Vec<bool> {
     let space = SpaceShape::from(Shape::union(shapes.iter().cloned()).unwrap());
     let (bodies, whole) = (each(shapes), space.shape());
-    let bounds = bounds(&bodies);
-    let tour = if space.is_endless() {
-        let [min, max] = [bounds.min, bounds.max].map(|corner| corner.truncated());
-        Tour::in_plane(Aabb { min, max }, duration)
-    } else {
-        Tour::new(bounds, duration)
-    };
-    let tour = tour.unwrap();
+    let Aabb { min, max } = bounds(&bodies);
+    let bounds = Aabb { min: min.truncated::<D>(), max: max.truncated() };
+    let tour = Tour::new(bounds, duration).unwrap();
     let path = tour.over_each(whole, &bodies).unwrap();
     assert_eq!((path.start(), path.duration()), (0.0, duration));
     // Pressed to 1.5 mm of the probe's 2 mm, and between two points a little more.
@@ -240,10 +232,7 @@ where
     bodies.iter().map(touches).collect()
 }
 
-fn each<const D: usize>(shapes: &[Shape<D>]) -> Vec<SpaceShape>
-where
-    SpaceShape: From<Shape<D>>,
-{
+fn each<const D: usize>(shapes: &[Shape<D>]) -> Vec<SpaceShape> {
     shapes.iter().map(|shape| SpaceShape::from(shape.clone())).collect()
 }
 

@@ -11,7 +11,7 @@ use crate::common::{AnyServo, body, cases, half_space};
 use palpate_device::{
     Device, DeviceLost, DeviceProfile, PointState, Reading, TurnState, TurningProfile,
 };
-use palpate_field::{Pose, Rotation, Shape, SpaceShape, Vector};
+use palpate_field::{Pose, Rotation, Vector};
 use palpate_haptics::servo_loop::{
     Ending, Pace, Recorder, RunOptions, ServoThread, ThreadOptions, VirtualClock, run,
 };
@@ -51,10 +51,7 @@ fn rod(options: ToolOptions, is_flat: bool) -> Tool {
 }
 
 /// What is below a wall of unit normal (0, 1, 0…) at y = 0.
-fn ground<const D: usize>(material: Material) -> Bodies
-where
-    SpaceShape: From<Shape<D>>,
-{
+fn ground<const D: usize>(material: Material) -> Bodies {
     body(half_space(Vector::<f64, D>::unit(1).0, 0.0), Surface::new(&material).unwrap())
 }
 
@@ -63,10 +60,7 @@ fn rigid() -> Material {
     Material { stiffness: 1e6, ..smooth() }
 }
 
-fn servo<const D: usize>(material: Material, options: ToolOptions) -> Servo<Unprotected>
-where
-    SpaceShape: From<Shape<D>>,
-{
+fn servo<const D: usize>(material: Material, options: ToolOptions) -> Servo<Unprotected> {
     let free = ServoOptions { max_force: f64::INFINITY, ..ServoOptions::default() };
     let tool = rod(options, D == 2);
     Servo::with_tool(ground::<D>(material), tool, free).unwrap()

@@ -5,7 +5,7 @@
 
 use super::AnyServo;
 use palpate_device::PointState;
-use palpate_field::{Point, Pose, Shape, SpaceShape, Vector};
+use palpate_field::{Point, Pose, Shape, Vector};
 use palpate_haptics::{
     Bodies, Body, Guide, GuideOptions, Impact, Layer, Magnet, Material, PopThrough, Probe,
     Servo, ServoOptions, Surface, Texture, TextureKind, Unprotected,
@@ -107,10 +107,7 @@ pub(crate) fn pose<const D: usize>(i: usize, tick: u32, scale: f64) -> Pose<3> {
     Pose::translation((at * scale).in_space())
 }
 
-pub(crate) fn bodies<const D: usize>(count: usize, scale: f64) -> Bodies
-where
-    SpaceShape: From<Shape<D>>,
-{
+pub(crate) fn bodies<const D: usize>(count: usize, scale: f64) -> Bodies {
     let body = |i: usize| {
         let surface = Surface::new(&material(i, scale)).unwrap();
         Body::new(shape::<D>(i, scale), surface).unwrap().at(pose::<D>(i, 0, scale)).unwrap()
@@ -123,10 +120,7 @@ pub(crate) fn servo<const D: usize>(
     count: usize,
     points: usize,
     scale: f64,
-) -> Servo<Unprotected>
-where
-    SpaceShape: From<Shape<D>>,
-{
+) -> Servo<Unprotected> {
     let options = ServoOptions {
         rate: RATE,
         probe: Probe::new(0.002 * scale).unwrap(),
