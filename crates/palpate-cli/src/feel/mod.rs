@@ -107,7 +107,7 @@ where
     let accepted = servo.accepted().to_vec();
 
     let keeps_rows = outputs.keep_ticks();
-    let rows = if keeps_rows { limits::rows::<D>(ticks * contacts as f64)? } else { 0 };
+    let rows = if keeps_rows { limits::rows(ticks * contacts as f64)? } else { 0 };
     let mut recorder = Recorder::new(rows);
     let shows_line = io::stderr().is_terminal();
     let mut show = |progress: &Progress| output::live(report::live_line(progress));
@@ -194,9 +194,9 @@ where
 fn hands<const D: usize>(
     scene: &BuiltScene<D>,
     options: &FeelOptions,
-    tool: Option<&Tool<D>>,
+    tool: Option<&Tool>,
     outputs: &Outputs,
-) -> Result<Vec<HandPath<D>>, Failure> {
+) -> Result<Vec<HandPath>, Failure> {
     if let Some(file) = &options.path {
         return paths::in_file(scene, options, file);
     }
@@ -204,7 +204,7 @@ fn hands<const D: usize>(
     let ticks = limits::ticks(duration, options.rate)?;
     let points = if tool.is_some() { 1 } else { paths::count(scene, options) };
     if outputs.keep_ticks() {
-        limits::rows::<D>(ticks * points as f64)?;
+        limits::rows(ticks * points as f64)?;
     }
     paths::on_tour(scene, options, duration)
 }

@@ -11,7 +11,6 @@ use palpate::scene::{AnyScene, BuiltScene};
 use serde_json::{Value, json};
 
 use super::document::Document;
-use super::points::in_space;
 use crate::shader::{Formulas, MOST_OPERATIONS, Slot};
 
 /// Fields that are steeper are drawn from samples: rays would take too many steps.
@@ -100,7 +99,7 @@ fn of_scene<const D: usize>(scene: &BuiltScene<D>) -> Value {
     json!({
         "dimension": D,
         "bodies": scene.bodies.iter().enumerate().map(body).collect::<Vec<_>>(),
-        "bounds": scene.bounds().map(|bounds| [in_space(bounds.min), in_space(bounds.max)]),
+        "bounds": scene.bounds().map(|bounds| [bounds.min, bounds.max].map(|p| p.in_space().0)),
         "lipschitz": scene.whole.promise().lipschitz,
         "promise": scene.whole.promise().in_words(),
     })
@@ -109,6 +108,6 @@ fn of_scene<const D: usize>(scene: &BuiltScene<D>) -> Value {
 fn bounds<const D: usize>(shape: &Shape<D>) -> Value {
     json!(shape.promise().bounds.map(|bounds| {
         let aabb = bounds.aabb;
-        [in_space(aabb.min), in_space(aabb.max)]
+        [aabb.min, aabb.max].map(|p| p.in_space().0)
     }))
 }
