@@ -39,7 +39,7 @@ pub(crate) fn simulated<const D: usize>(
         }
         None => {
             let way = py.detach(|| HandWay::tour(scene, duration, points)).or_raise(py)?;
-            let turns = tool.is_some().then(|| swing(duration)).transpose();
+            let turns = tool.is_some().then(|| swing::<D>(duration)).transpose();
             (way.paths().or_raise(py)?, turns.or_raise(py)?)
         }
     };

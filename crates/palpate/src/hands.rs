@@ -142,25 +142,29 @@ fn with_tool<const D: usize>(
     Ok(tour.over_each(obstacle.shape(), &obstacles)?)
 }
 
-/// How a hand turns a tool for `duration` [s], as rotation vectors [rad]: it swings about each axis.
+/// How a hand turns a tool for `duration` [s] in a scene of `D` dimensions, as rotation vectors [rad]: it swings about
+/// each axis, in the plane about z alone.
 ///
 /// # Errors
 ///
 /// If the duration is not positive or is longer than half a day.
 ///
 /// ```
-/// let turns = palpate::hands::swing(2.0)?;
+/// let turns = palpate::hands::swing::<3>(2.0)?;
 /// assert!(turns.positions().iter().all(|turn| turn.norm() < 0.3));
 /// # Ok::<(), palpate::Error>(())
 /// ```
-pub fn swing(duration: f64) -> Result<HandPath, Error> {
+pub fn swing<const D: usize>(duration: f64) -> Result<HandPath, Error> {
     let is_good = duration > 0.0 && duration <= LONGEST_SWING;
     if !is_good {
         return Err(SimulationError::SwingDuration { longest: LONGEST_SWING, duration }.into());
     }
     let steps = (SWING_POINTS * duration).ceil() as usize;
     let times: Vec<_> = (0..=steps).map(|i| i as f64 / SWING_POINTS).collect();
-    let turn = |time: &f64| Vector(SWINGS.map(|period| SWING * (TAU * time / period).sin()));
+    let turn = |time: &f64| {
+        let turn = SWINGS.map(|period| SWING * (TAU * time / period).sin());
+        Vector(if D == 2 { [0.0, 0.0, turn[2]] } else { turn })
+    };
     let turns = times.iter().map(turn).collect();
     Ok(HandPath::new(times, turns, Interpolation::Smooth)?)
 }
