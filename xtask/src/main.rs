@@ -123,6 +123,8 @@ fn renew(is_all: bool) -> Result<(), Failure> {
     )?;
     let guide = ["test", "--locked", "-p", "palpate-cli", "--test", "all", "documented"];
     cargo_with(&guide, &renewing)?;
+    let answers = ["test", "--locked", "-p", "palpate-cli", "--lib", "answers"];
+    cargo_with(&answers, &renewing)?;
     python::renew()?;
     public_items()?;
     if is_all {

@@ -138,7 +138,7 @@ fn listed<const D: usize>(all: &Bound<'_, PyList>) -> PyResult<()> {
         told.set_item("about", entry.about)?;
         told.set_item("origin", entry.origin)?;
         told.set_item("parameters", parameters.collect::<Vec<_>>())?;
-        told.set_item("example", given.iter().map(text::argument).collect::<Vec<_>>())?;
+        told.set_item("example", given.iter().map(Argument::to_string).collect::<Vec<_>>())?;
         told.set_item("made", text::of(&made))?;
         all.append(told)?;
     }

@@ -20,7 +20,7 @@ pub(crate) fn of<const D: usize>(shape: &Shape<D>) -> String {
             let named = |(parameter, value): (&'static Parameter, &Argument)| {
                 // The one name that is a word of Python.
                 let end = if parameter.name == "from" { "_" } else { "" };
-                format!("{}{end}={}", parameter.name, argument(value))
+                format!("{}{end}={}", parameter.name, value)
             };
             let mut given: Vec<String> = primitive.named().map(named).collect();
             if D == 2 && is_of_both(primitive.name()) {
@@ -54,8 +54,9 @@ pub(crate) fn of<const D: usize>(shape: &Shape<D>) -> String {
         Node::Scaled { factor, of } => format!("{}.scaled({factor:?})", self::of(of)),
         Node::Stretched { factors, of } => format!("{}.stretched({factors:?})", self::of(of)),
         Node::Offset { distance, of } => format!("{}.offset({distance:?})", self::of(of)),
-        Node::Shell { thickness, of } => format!("{}.shell({thickness:?})", self::of(of)),
-        Node::Elongated { lengths, of } => format!("{}.elongated({lengths:?})", self::of(of)),
+        Node::Operated { operator, argument, of } => {
+            format!("{}.{}({argument})", self::of(of), operator.method)
+        }
         Node::Mirrored { axis, of } => format!("{}.mirrored('{}')", self::of(of), AXES[*axis]),
         Node::Repeated { copies, of } => format!("{}.repeated({})", self::of(of), rows(copies)),
         Node::Bent { rate, of } => format!("{}.bent(radians={rate:?})", self::of(of)),
@@ -91,17 +92,6 @@ fn is_of_both(name: &str) -> bool {
 fn call<const D: usize>(name: &str, of: &[Shape<D>], numbers: &[String]) -> String {
     let given: Vec<String> = of.iter().map(self::of).chain(numbers.iter().cloned()).collect();
     format!("{name}({})", given.join(", "))
-}
-
-/// An argument as Python writes it.
-pub(crate) fn argument(argument: &Argument) -> String {
-    match argument {
-        Argument::Number(number) => format!("{number:?}"),
-        Argument::Count(count) => count.to_string(),
-        Argument::Vector(vector) => format!("{vector:?}"),
-        Argument::Points(points) => format!("{points:?}"),
-        Argument::Rings(rings) => format!("{rings:?}"),
-    }
 }
 
 /// A grid as the method that makes it.

@@ -9,7 +9,6 @@ use palpate::scene::{
 
 use crate::interrupt::Interrupt;
 use crate::outcome::Failure;
-use crate::output;
 
 /// The answer to a question; `None` if the program is asked to end before it is known whole.
 pub(crate) fn unless_asked<const D: usize>(
@@ -38,19 +37,6 @@ pub(crate) fn failure(error: AskError) -> Failure {
         AskError::UnknownBody(error) => Failure::input(format!("--body: {error}")),
         error => Failure::input(error),
     }
-}
-
-/// Prints an answer, as JSON or in words.
-pub(crate) fn print<const D: usize>(answer: &Answer<D>, as_json: bool) -> Result<(), Failure> {
-    use std::io::Write;
-
-    let mut out = output::answer();
-    if as_json {
-        out.json(&answer.to_json())?;
-    } else {
-        write!(out, "{answer}")?;
-    }
-    Ok(())
 }
 
 /// An answer of the kind that was asked for.

@@ -3,13 +3,16 @@
 
 //! `palpate check`: checks a scene file.
 
-use std::io::{self, Write};
+use std::fmt;
 
-use palpate::field::{Shape, Vector};
+use palpate::field::Vector;
 use palpate::mesh::Findings;
-use palpate::scene::{AnyScene, BuiltMesh, Samples, Scene, SceneProblem, is_empty};
-use serde_json::{Value, json};
+use palpate::scene::{
+    AnyScene, BuiltMesh, BuiltScene, Samples, Scene, SceneError, SceneProblem, is_empty,
+};
+use serde::Serialize;
 
+use crate::answers::Bounds;
 use crate::arguments::CheckOptions;
 use crate::input::{Bakes, bytes, folder, longest_edge, other_than_scene};
 use crate::outcome::{Failure, Outcome};
@@ -21,116 +24,349 @@ pub(crate) fn run(options: &CheckOptions) -> Result<Outcome, Failure> {
     let bytes = bytes(&options.scene)?;
     let mut out = output::answer();
     let name = options.scene.display().to_string();
-    let name = shown(&name);
     let bakes = Bakes::new(Some(folder(&options.scene)));
     let built = Scene::from_bytes_in(&bytes, bakes.resources.clone());
     match built.and_then(|scene| scene.build()) {
         Err(error) => {
             let other = other_than_scene(&options.scene, &bytes);
-            if options.json {
-                let problems: Vec<_> = match &other {
-                    Some(other) => {
-                        vec![json!({ "path": "", "line": 0, "column": 0, "problem": other })]
-                    }
-                    None => error.problems().map(told).collect(),
-                };
-                let more = other.is_none() && !error.is_all();
-                out.json(&json!({ "ok": false, "problems": problems, "maybe_more": more }))?;
-            } else {
-                writeln!(out, "{name}: {}", other.unwrap_or_else(|| error.to_string()))?;
-            }
+            out.print(&Refused::of(name, other, &error), options.json)?;
             Ok(Outcome::No)
         }
         Ok(world) => {
-            let (dimension, bodies) = match &world {
-                AnyScene::Planar(scene) => (2, described(&scene.bodies)),
-                AnyScene::Spatial(scene) => (3, described(&scene.bodies)),
+            let answer = match &world {
+                AnyScene::Planar(scene) => Answer::of(name, scene),
+                AnyScene::Spatial(scene) => Answer::of(name, scene),
             };
-            let meshes = match &world {
-                AnyScene::Planar(scene) => &scene.meshes,
-                AnyScene::Spatial(scene) => &scene.meshes,
-            };
-            if options.json {
-                let meshes: Vec<_> = meshes.iter().map(of_mesh).collect();
-                let answer = json!({
-                    "ok": true, "dimension": dimension, "bodies": bodies, "meshes": meshes,
-                });
-                out.json(&answer)?;
-            } else {
-                let is_mended =
-                    |mesh: &&BuiltMesh| mesh.thickness.is_none() && !mesh.findings.is_clean();
-                let mended = match meshes.iter().filter(is_mended).count() {
-                    0 => String::new(),
-                    count => {
-                        let files = counted(count, "mesh is", "meshes are");
-                        format!("; {files} used as mended, and not good alone")
-                    }
-                };
-                writeln!(
-                    out,
-                    "{name}: good, {dimension}D, {}{mended}",
-                    counted(bodies.len(), "body", "bodies")
-                )?;
-                for body in &bodies {
-                    let text = |key: &str| body[key].as_str().unwrap_or_default().to_owned();
-                    let empty = match body["empty"].as_bool() {
-                        Some(false) => "",
-                        Some(true) => "; empty: no point is in it, which is proven",
-                        None => "; may be empty: no point was found in it",
-                    };
-                    writeln!(out, "  {}: {}{empty}", shown(&text("name")), text("promise"))?;
-                }
-                for mesh in meshes {
-                    write_mesh(&mut out, mesh)?;
-                }
-            }
+            out.print(&answer, options.json)?;
             Ok(Outcome::Yes)
         }
     }
 }
 
-/// Says what a file of a mesh or of a volume holds.
-fn write_mesh(out: &mut impl Write, mesh: &BuiltMesh) -> io::Result<()> {
-    let found = match mesh.thickness {
-        Some(thickness) => format!("a plate {thickness} m thick"),
-        None if mesh.findings.is_clean() => "closed, and no faces cross".to_owned(),
-        None => mesh.findings.to_string(),
-    };
-    let grid = mesh.grid.as_ref().map_or_else(String::new, |grid| format!(", {}", shown(grid)));
-    let at = mesh.value.map_or_else(String::new, |value| format!(" at {value}"));
-    let faces = counted(mesh.findings.faces, "face", "faces");
-    let bounds = mesh.shape.promise().bounds.map(|bounds| bounds.aabb);
-    let size = bounds.map_or([0.0; 3], |aabb| (aabb.half_extents() * 2.0).0);
-    let size = size.map(rounded).join(" × ");
-    let name = mesh.file.as_deref().map_or("a mesh".into(), shown);
-    writeln!(out, "  {name}{grid}{at}: {faces}, {size} m: {found}")?;
-    if let Some(samples) = &mesh.samples {
-        let Samples { counts, range: [least, largest], .. } = samples;
-        let steps = samples.steps.map(|step| rounded(step.norm() * mesh.scale)).join(" × ");
+/// The answer of `palpate check` about a scene that cannot be used.
+#[derive(Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub(crate) struct Refused {
+    #[serde(skip)]
+    name: String,
+    /// `false`.
+    pub(crate) ok: bool,
+    /// What is wrong.
+    pub(crate) problems: Vec<Problem>,
+    /// `true` if there may be further problems.
+    pub(crate) maybe_more: bool,
+    /// All of it in words.
+    #[serde(skip)]
+    said: String,
+}
+
+/// One thing that is wrong with a scene.
+#[derive(Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub(crate) struct Problem {
+    /// Where in the scene: keys joined by dots, places in lists in brackets; empty for the whole.
+    pub(crate) path: String,
+    /// The line, from 1; 0 for the whole.
+    pub(crate) line: usize,
+    /// The column in characters, from 1; 0 for the whole.
+    pub(crate) column: usize,
+    /// What is wrong there, in words.
+    pub(crate) problem: String,
+}
+
+impl Refused {
+    /// `other` says what the file is instead of a scene.
+    fn of(name: String, other: Option<String>, error: &SceneError) -> Self {
+        let told = |SceneProblem { path, line, column, problem, .. }: &SceneProblem| Problem {
+            path: path.clone(),
+            line: *line,
+            column: *column,
+            problem: problem.clone(),
+        };
+        let maybe_more = other.is_none() && !error.is_all();
+        let said = other.clone().unwrap_or_else(|| error.to_string());
+        let problems = match other {
+            Some(problem) => vec![Problem { path: String::new(), line: 0, column: 0, problem }],
+            None => error.problems().map(told).collect(),
+        };
+        Self { name, ok: false, problems, maybe_more, said }
+    }
+}
+
+impl fmt::Display for Refused {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(f, "{}: {}", shown(&self.name), self.said)
+    }
+}
+
+/// The answer of `palpate check` about a good scene.
+#[derive(Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub(crate) struct Answer {
+    #[serde(skip)]
+    name: String,
+    /// `true`.
+    pub(crate) ok: bool,
+    /// 2 for the plane, 3 for space.
+    pub(crate) dimension: usize,
+    /// The bodies.
+    pub(crate) bodies: Vec<Body>,
+    /// The meshes and volumes.
+    pub(crate) meshes: Vec<Mesh>,
+}
+
+/// A body of a scene.
+#[derive(Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub(crate) struct Body {
+    /// Its name.
+    pub(crate) name: String,
+    /// What its distance promises, in words.
+    pub(crate) promise: String,
+    /// The steepest slope of its distance.
+    pub(crate) lipschitz: f64,
+    /// The box around it; `null` if it has none.
+    pub(crate) bounds: Option<Bounds>,
+    /// How deep its operators are nested.
+    pub(crate) depth: usize,
+    /// `true` if it is proven that no point is in the body, `null` if none was found.
+    pub(crate) is_empty: Option<bool>,
+}
+
+/// A mesh or a volume of a scene.
+#[derive(Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub(crate) struct Mesh {
+    /// The file; `null` of a mesh whose vertices and faces stand in the scene.
+    pub(crate) file: Option<String>,
+    /// Metres for a unit of the file; of a volume, whose head tells lengths, a factor.
+    pub(crate) scale: f64,
+    /// The grid of the file that is the volume, where the scene names it.
+    pub(crate) grid: Option<String>,
+    /// The value of the surface in a volume.
+    pub(crate) value: Option<f64>,
+    /// The thickness of the plate that a sheet makes [m]; `null` of a solid.
+    pub(crate) thickness: Option<f64>,
+    /// The box around it; `null` if it has none.
+    pub(crate) bounds: Option<Bounds>,
+    /// The faces of the mesh.
+    pub(crate) faces: usize,
+    /// Vertices equal to another, merged with it.
+    pub(crate) welded: usize,
+    /// Faces with a vertex twice, dropped.
+    pub(crate) degenerate: usize,
+    /// Faces with the vertices of another, dropped.
+    pub(crate) duplicates: usize,
+    /// Faces whose inside was not that of their neighbours, turned.
+    pub(crate) turned: usize,
+    /// Pieces that were inside out, turned.
+    pub(crate) inside_out: usize,
+    /// Pieces that lie inside another piece and have the same orientation.
+    pub(crate) nested: usize,
+    /// Faces on an edge of which corners of others lie, parted there.
+    pub(crate) parted: usize,
+    /// Faces with the solid on both sides, or on neither, dropped.
+    pub(crate) inner: usize,
+    /// Openings, closed by flat caps.
+    pub(crate) openings: Vec<Opening>,
+    /// Edges of more than two faces.
+    pub(crate) crowded_rims: usize,
+    /// Pairs of faces that cross each other.
+    pub(crate) crossings: usize,
+    /// Pairs of faces that touch without a common corner, or lie on each other.
+    pub(crate) touching: usize,
+    /// Where the first faces that cross are [m]; if none do, the first that touch.
+    pub(crate) crossing_at: Option<[f64; 3]>,
+    /// What was found and mended, in words.
+    pub(crate) findings: String,
+    #[serde(skip)]
+    is_clean: bool,
+    /// The samples of a volume.
+    pub(crate) samples: Option<Sampled>,
+    /// What to do if the file seems to be in another unit than metres.
+    pub(crate) hint: Option<String>,
+}
+
+/// An opening of a mesh.
+#[derive(Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub(crate) struct Opening {
+    /// The middle of its corners [m].
+    pub(crate) place: [f64; 3],
+    /// The longest side of the box around it [m].
+    pub(crate) size: f64,
+    /// How many edges it has.
+    pub(crate) edges: usize,
+    /// How far from its cap the sign may be a guess [m].
+    pub(crate) doubtful: f64,
+}
+
+/// The samples of a volume, in metres before `scale`.
+#[derive(Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub(crate) struct Sampled {
+    /// How many there are along each axis.
+    pub(crate) counts: [usize; 3],
+    /// The place of the first [m].
+    pub(crate) origin: [f64; 3],
+    /// The way from one to the next along each axis [m].
+    pub(crate) steps: [[f64; 3]; 3],
+    /// The least and the largest.
+    pub(crate) range: [f32; 2],
+    /// `true` if their border cuts off what lies within the surface, which is then closed half a step
+    /// beyond it.
+    pub(crate) cut_off: bool,
+}
+
+impl Answer {
+    fn of<const D: usize>(name: String, scene: &BuiltScene<D>) -> Self {
+        let bodies = scene.bodies.iter().map(|body| {
+            let promise = body.shape.promise();
+            Body {
+                name: body.name.clone(),
+                promise: promise.in_words(),
+                lipschitz: promise.lipschitz,
+                bounds: promise.bounds.map(|bounds| bounds.aabb.into()),
+                depth: body.shape.depth(),
+                is_empty: is_empty(&body.shape_in_body),
+            }
+        });
+        let bodies = bodies.collect();
+        Self {
+            name,
+            ok: true,
+            dimension: D,
+            bodies,
+            meshes: scene.meshes.iter().map(Mesh::of).collect(),
+        }
+    }
+}
+
+impl Mesh {
+    fn of(mesh: &BuiltMesh) -> Self {
+        let found = &mesh.findings;
+        let sampled = |samples: &Samples| Sampled {
+            counts: samples.counts,
+            origin: samples.origin.0,
+            steps: samples.steps.map(|step| step.0),
+            range: samples.range,
+            cut_off: samples.cut_off,
+        };
+        Self {
+            file: mesh.file.clone(),
+            scale: mesh.scale,
+            grid: mesh.grid.clone(),
+            value: mesh.value,
+            thickness: mesh.thickness,
+            bounds: mesh.shape.promise().bounds.map(|bounds| bounds.aabb.into()),
+            faces: found.faces,
+            welded: found.welded,
+            degenerate: found.degenerate,
+            duplicates: found.duplicates,
+            turned: found.turned,
+            inside_out: found.inside_out,
+            nested: found.nested,
+            parted: found.parted,
+            inner: found.inner,
+            openings: openings(found),
+            crowded_rims: found.crowded_rims,
+            crossings: found.crossings,
+            touching: found.touching,
+            crossing_at: found.crossing_at.map(|at| at.0),
+            findings: found.to_string(),
+            is_clean: found.is_clean(),
+            samples: mesh.samples.as_ref().map(sampled),
+            hint: unit_hint(mesh),
+        }
+    }
+}
+
+fn openings(found: &Findings<3>) -> Vec<Opening> {
+    let openings = found.openings.iter().map(|opening| Opening {
+        place: opening.place.0,
+        size: opening.size,
+        edges: opening.edges,
+        doubtful: opening.doubtful,
+    });
+    openings.collect()
+}
+
+impl fmt::Display for Answer {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let is_mended = |mesh: &&Mesh| mesh.thickness.is_none() && !mesh.is_clean;
+        let mended = match self.meshes.iter().filter(is_mended).count() {
+            0 => String::new(),
+            count => {
+                let files = counted(count, "mesh is", "meshes are");
+                format!("; {files} used as mended, and not good alone")
+            }
+        };
         writeln!(
-            out,
-            "    samples  {} from {least} to {largest}, {steps} m apart along {}",
-            counts.map(|count| count.to_string()).join(" × "),
-            samples.steps.map(direction).join(", "),
+            f,
+            "{}: good, {}D, {}{mended}",
+            shown(&self.name),
+            self.dimension,
+            counted(self.bodies.len(), "body", "bodies")
         )?;
-        if samples.cut_off {
-            let cut = "their border cuts the body off: it is closed half a sample beyond";
-            writeln!(out, "    border   {cut}")?;
+        for Body { name, promise, is_empty, .. } in &self.bodies {
+            let empty = match is_empty {
+                Some(false) => "",
+                Some(true) => "; empty: no point is in it, which is proven",
+                None => "; may be empty: no point was found in it",
+            };
+            writeln!(f, "  {}: {promise}{empty}", shown(name))?;
         }
-        if let Some(aabb) = bounds {
-            let [min, max] = [aabb.min, aabb.max].map(|p| p.0.map(rounded).join(", "));
-            writeln!(out, "    surface  from ({min}) to ({max}) m")?;
+        self.meshes.iter().try_for_each(|mesh| mesh.fmt(f))
+    }
+}
+
+impl fmt::Display for Mesh {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let found = match self.thickness {
+            Some(thickness) => format!("a plate {thickness} m thick"),
+            None if self.is_clean => "closed, and no faces cross".to_owned(),
+            None => self.findings.clone(),
+        };
+        let name = self.file.as_deref().map_or("a mesh".into(), shown);
+        let grid =
+            self.grid.as_ref().map_or_else(String::new, |grid| format!(", {}", shown(grid)));
+        let at = self.value.map_or_else(String::new, |value| format!(" at {value}"));
+        let faces = counted(self.faces, "face", "faces");
+        let list = |numbers: &[f64], between: &str| {
+            numbers.iter().map(|x| rounded(*x)).collect::<Vec<_>>().join(between)
+        };
+        let size = self.bounds.as_ref().map_or(vec![0.0; 3], Bounds::size);
+        writeln!(f, "  {name}{grid}{at}: {faces}, {} m: {found}", list(&size, " × "))?;
+        if let Some(Sampled { counts, range: [least, largest], steps, cut_off, .. }) =
+            &self.samples
+        {
+            let lengths = steps.map(|step| Vector(step).norm() * self.scale);
+            writeln!(
+                f,
+                "    samples  {} from {least} to {largest}, {} m apart along {}",
+                counts.map(|count| count.to_string()).join(" × "),
+                list(&lengths, " × "),
+                steps.map(direction).join(", "),
+            )?;
+            if *cut_off {
+                let cut = "their border cuts the body off: it is closed half a sample beyond";
+                writeln!(f, "    border   {cut}")?;
+            }
+            if let Some(Bounds { min, max }) = &self.bounds {
+                let [min, max] = [min, max].map(|corner| list(corner, ", "));
+                writeln!(f, "    surface  from ({min}) to ({max}) m")?;
+            }
+        }
+        match &self.hint {
+            Some(hint) => writeln!(f, "    hint     {hint}"),
+            None => Ok(()),
         }
     }
-    if let Some(hint) = unit_hint(mesh) {
-        writeln!(out, "    hint     {hint}")?;
-    }
-    Ok(())
 }
 
 /// The direction of an axis of a volume.
-fn direction(step: Vector<f64, 3>) -> String {
-    let along = step * (1.0 / step.norm());
+fn direction(step: [f64; 3]) -> String {
+    let along = Vector(step) * (1.0 / Vector(step).norm());
     let axis = (0..3).find(|i| along[*i].abs() > 1.0 - 1e-6);
     match axis {
         Some(i) => format!("{}{}", if along[i] < 0.0 { "-" } else { "" }, ["x", "y", "z"][i]),
@@ -146,80 +382,4 @@ pub(crate) fn unit_hint(mesh: &BuiltMesh) -> Option<String> {
     let file = mesh.file.as_ref()?;
     let is_without_unit = mesh.samples.is_none() || file.to_ascii_lowercase().ends_with(".npy");
     is_without_unit.then(|| hint(longest_edge(&aabb), "\"scale\":", scale)).flatten()
-}
-
-/// A mesh of the scene.
-fn of_mesh(mesh: &BuiltMesh) -> Value {
-    let Findings { faces, welded, degenerate, duplicates, turned, inside_out, .. } =
-        mesh.findings;
-    let findings = &mesh.findings;
-    let openings: Vec<_> = findings
-        .openings
-        .iter()
-        .map(|opening| json!({ "place_m": opening.place.0, "size_m": opening.size, "doubtful_m": opening.doubtful, "edges": opening.edges }))
-        .collect();
-    json!({
-        "file": mesh.file,
-        "scale": mesh.scale,
-        "grid": mesh.grid,
-        "value": mesh.value,
-        "thickness_m": mesh.thickness,
-        "faces": faces,
-        "welded": welded,
-        "degenerate": degenerate,
-        "duplicates": duplicates,
-        "turned": turned,
-        "inside_out": inside_out,
-        "nested": findings.nested,
-        "parted": findings.parted,
-        "inner": findings.inner,
-        "openings": openings,
-        "crowded_edges": findings.crowded_rims,
-        "crossing_pairs": findings.crossings,
-        "touching_pairs": findings.touching,
-        "first_crossing_m": findings.crossing_at.map(|at| at.0),
-        "samples": mesh.samples.map(|samples| json!({
-            "counts": samples.counts,
-            "range": samples.range,
-            "cut_off": samples.cut_off,
-            "origin_m": samples.origin.0,
-            "steps_m": samples.steps.map(|step| step.0),
-        })),
-        "hint": unit_hint(mesh),
-    })
-}
-
-fn told(problem: &SceneProblem) -> Value {
-    json!({
-        "path": problem.path,
-        "line": problem.line,
-        "column": problem.column,
-        "problem": problem.problem,
-    })
-}
-
-fn described<const D: usize>(bodies: &[palpate::scene::BuiltBody<D>]) -> Vec<Value> {
-    bodies
-        .iter()
-        .map(|body| {
-            json!({
-                "name": body.name,
-                "promise": body.shape.promise().in_words(),
-                "lipschitz": body.shape.promise().lipschitz,
-                "bounds": bounds(&body.shape),
-                "depth": body.shape.depth(),
-                "empty": is_empty(&body.shape_in_body),
-            })
-        })
-        .collect()
-}
-
-fn bounds<const D: usize>(shape: &Shape<D>) -> Value {
-    match shape.promise().bounds {
-        None => Value::Null,
-        Some(bounds) => json!({
-            "min_m": bounds.aabb.min.0.to_vec(),
-            "max_m": bounds.aabb.max.0.to_vec(),
-        }),
-    }
 }

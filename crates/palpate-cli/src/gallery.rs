@@ -3,8 +3,9 @@
 
 //! `palpate gallery`: draws every primitive and operator in small pictures.
 
+use std::fmt;
 use std::io::Write;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use indicatif::{ProgressBar, ProgressStyle};
 use palpate::field::catalogue::Entry;
@@ -12,7 +13,7 @@ use palpate::field::{Aabb, Shape, Vector};
 use palpate::plot::{Figure, Isolines, PlaneView, PlotError, Sampling, Slice};
 use palpate::scene::{AnyScene, Scene};
 use rayon::prelude::*;
-use serde_json::json;
+use serde::Serialize;
 
 use crate::arguments::{GalleryOptions, Map, Plane};
 use crate::interrupt::Interrupt;
@@ -72,13 +73,7 @@ pub(crate) fn run(options: &GalleryOptions, interrupt: &Interrupt) -> Result<Out
     }
     work.bar.finish_and_clear();
     if options.json {
-        let pictures = written
-            .iter()
-            .map(|picture| json!({ "output": picture.path, "shapes": picture.shapes }));
-        let answer = json!({
-            "map": options.map.name(),
-            "pictures": pictures.collect::<Vec<_>>(),
-        });
+        let answer = Answer { map: options.map.name(), pictures: written };
         output::answer().json(&answer)?;
     }
     Ok(if interrupt.is_asked() {
@@ -89,23 +84,40 @@ pub(crate) fn run(options: &GalleryOptions, interrupt: &Interrupt) -> Result<Out
     })
 }
 
+/// The answer of `palpate gallery`.
+#[derive(Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub(crate) struct Answer {
+    /// What the pictures show: `distance`, `gradient` or `promise`.
+    pub(crate) map: &'static str,
+    /// The pictures.
+    pub(crate) pictures: Vec<Written>,
+}
+
 /// A picture that was written.
-struct Written {
-    path: PathBuf,
-    shapes: Vec<String>,
+#[derive(Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub(crate) struct Written {
+    /// The file.
+    pub(crate) output: String,
+    /// The names of the shapes in it.
+    pub(crate) shapes: Vec<String>,
+}
+
+impl fmt::Display for Written {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let output = shown(&self.output);
+        match &self.shapes[..] {
+            [name] => writeln!(f, "{output}: {name}"),
+            names => writeln!(f, "{output}: {} pictures", names.len()),
+        }
+    }
 }
 
 /// Prints a line for each picture.
 fn say(written: &[Written]) -> Result<(), Failure> {
     let mut out = output::answer();
-    for picture in written {
-        let path = picture.path.display().to_string();
-        match &picture.shapes[..] {
-            [name] => writeln!(out, "{}: {name}", shown(&path))?,
-            names => writeln!(out, "{}: {} pictures", shown(&path), names.len())?,
-        }
-    }
-    Ok(())
+    Ok(written.iter().try_for_each(|picture| write!(out, "{picture}"))?)
 }
 
 impl Work<'_> {
@@ -199,7 +211,7 @@ impl Work<'_> {
         shapes: Vec<String>,
     ) -> Result<Written, Failure> {
         picture.save(figure, self.options.width.unwrap_or(picture::WIDTH))?;
-        Ok(Written { path: picture.path().to_owned(), shapes })
+        Ok(Written { output: picture.path().display().to_string(), shapes })
     }
 }
 

@@ -3,9 +3,9 @@
 
 //! `palpate gradients`: the memoir's ways to a gradient (section 2.3), beside the exact one.
 
-use std::io::Write;
+use std::fmt;
 
-use palpate::field::{Aabb, Point, Shape, Vector};
+use palpate::field::{Aabb, Point, Shape};
 use palpate::local::{
     FoundDirection, GradientMethod, GradientSampler, adaptive_offset, angle_between,
 };
@@ -13,7 +13,7 @@ use palpate::plot::{Figure, Markers, PlotError, Sampling, Slice};
 use palpate::query::{self, AtPoint};
 use palpate::scene::text::joined;
 use palpate::scene::{AnyScene, BuiltScene};
-use serde_json::{Value, json};
+use serde::Serialize;
 
 use crate::arguments::GradientsOptions;
 use crate::error_map::{Gradient, sampler};
@@ -57,11 +57,7 @@ where
     let ways = ways.collect();
     let jumps = jumps(&scene.whole, &at, sampler.offset());
     let comparison = Comparison { options, sampler, at, jumps, ways };
-    if options.json {
-        comparison.print_json()?;
-    } else {
-        comparison.print_text()?;
-    }
+    output::answer().print(&comparison.answer(), options.json)?;
     if let (Some(picture), Some(window)) = (picture, window) {
         picture.save(&comparison.figure(scene, &window)?, picture::WIDTH)?;
     }
@@ -147,80 +143,28 @@ impl<const D: usize> Comparison<'_, D>
 where
     Dimensions: Drawable<D>,
 {
-    /// The offset where the value is that at the point [m].
-    fn adaptive_offset(&self) -> f64 {
-        adaptive_offset(self.at.distance, self.sampler.offset())
-    }
-
     fn precision(&self) -> &'static str {
         if self.options.single { "single" } else { "double" }
     }
 
-    fn print_json(&self) -> Result<(), Failure> {
-        let ways: Vec<Value> = self
-            .ways
-            .iter()
-            .map(|way| {
-                json!({
-                    "method": way.method.name(),
-                    "direction": way.found.direction.map(|d| d.0.to_vec()),
-                    "error_degrees": way.error(&self.at),
-                    "evaluations": way.found.evaluations,
-                    "obstacle": way.obstacle(),
-                })
-            })
-            .collect();
-        let answer = json!({
-            "point_m": self.at.point.0.to_vec(),
-            "distance_m": self.at.distance,
-            "gradient": self.at.gradient.0.to_vec(),
-            "offset_m": self.sampler.offset(),
-            "gradient_jumps": self.jumps,
-            "adaptive_offset_m": self.adaptive_offset(),
-            "precision": self.precision(),
-            "methods": ways,
-        });
-        output::answer().json(&answer)?;
-        Ok(())
-    }
-
-    fn print_text(&self) -> Result<(), Failure> {
-        let Self { at, sampler, .. } = self;
-        let mut out = output::answer();
-        writeln!(out, "distance             {} m", at.distance)?;
-        writeln!(out, "gradient             {}", joined(&at.gradient.0))?;
-        let (offset, adaptive) = (sampler.offset(), self.adaptive_offset());
-        writeln!(out, "offset               {offset:.3e} m, adaptive {adaptive:.3e} m")?;
-        writeln!(out, "values               in {} precision", self.precision())?;
-        if self.jumps {
-            writeln!(
-                out,
-                "note                 the gradient jumps here: there is none, and `exact` is that of \
-                 one side"
-            )?;
+    fn answer(&self) -> Answer {
+        let way = |way: &Way<D>| Method {
+            method: way.method.name(),
+            direction: way.found.direction.map(|d| d.0.to_vec()),
+            error_degrees: way.error(&self.at),
+            evaluations: way.found.evaluations,
+            obstacle: way.obstacle(),
+        };
+        Answer {
+            point: self.at.point.0.to_vec(),
+            distance: self.at.distance,
+            gradient: self.at.gradient.0.to_vec(),
+            gradient_jumps: self.jumps,
+            offset: self.sampler.offset(),
+            adaptive_offset: adaptive_offset(self.at.distance, self.sampler.offset()),
+            precision: self.precision(),
+            methods: self.ways.iter().map(way).collect(),
         }
-        for way in &self.ways {
-            write!(out, "{:<20} ", way.method.name())?;
-            match way.obstacle() {
-                Some(obstacle) => writeln!(out, "{obstacle}")?,
-                None => writeln!(out, "{}", self.in_words(way))?,
-            }
-        }
-        Ok(())
-    }
-
-    fn in_words(&self, way: &Way<D>) -> String {
-        /// Decimals of a direction and of an angle in degrees.
-        const DIGITS: usize = 6;
-        let direction = way.found.direction.unwrap_or(Vector::ZERO);
-        // Adding zero turns −0 into 0, also that of rounding.
-        let rounded = |x: f64| (x * 1e6).round() / 1e6 + 0.0;
-        let direction = direction.0.map(|x| format!("{:>9.DIGITS$}", rounded(x))).join(", ");
-        let error = way.error(&self.at).map_or_else(
-            || "no exact direction".to_owned(),
-            |degrees| format!("{degrees:>10.DIGITS$}° off"),
-        );
-        format!("{direction}   {error}   {:>3} evaluations", way.found.evaluations)
     }
 
     /// The errors over a window, a panel a method.
@@ -252,5 +196,83 @@ where
         );
         let title = format!("Gradients: {}", title(&self.options.scene));
         Ok(Figure::new(title).with_caption(caption).with_sheet(COLUMNS, panels))
+    }
+}
+
+/// The answer of `palpate gradients`.
+#[derive(Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub(crate) struct Answer {
+    /// The point [m].
+    pub(crate) point: Vec<f64>,
+    /// The field's value [m].
+    pub(crate) distance: f64,
+    /// The exact gradient; where it jumps, that of one side.
+    pub(crate) gradient: Vec<f64>,
+    /// `true` if the gradient jumps at the point.
+    pub(crate) gradient_jumps: bool,
+    /// From the point to the places that are compared [m].
+    pub(crate) offset: f64,
+    /// The offset of the adaptive dichotomy [m].
+    pub(crate) adaptive_offset: f64,
+    /// What the values are rounded to: `double` or `single`.
+    pub(crate) precision: &'static str,
+    /// The ways to a gradient.
+    pub(crate) methods: Vec<Method>,
+}
+
+/// What a way to a gradient found.
+#[derive(Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub(crate) struct Method {
+    /// The name of the way.
+    pub(crate) method: &'static str,
+    /// The unit vector that was found; `null` if there is none.
+    pub(crate) direction: Option<Vec<f64>>,
+    /// The angle from the exact gradient [degrees], where both have a direction.
+    pub(crate) error_degrees: Option<f64>,
+    /// How often the field was evaluated.
+    pub(crate) evaluations: u32,
+    /// Why there is no direction, in words.
+    pub(crate) obstacle: Option<&'static str>,
+}
+
+impl fmt::Display for Answer {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { distance, offset, adaptive_offset, precision, .. } = self;
+        writeln!(f, "distance             {distance} m")?;
+        writeln!(f, "gradient             {}", joined(&self.gradient))?;
+        writeln!(f, "offset               {offset:.3e} m, adaptive {adaptive_offset:.3e} m")?;
+        writeln!(f, "values               in {precision} precision")?;
+        if self.gradient_jumps {
+            writeln!(
+                f,
+                "note                 the gradient jumps here: there is none, and `exact` is that of \
+                 one side"
+            )?;
+        }
+        self.methods.iter().try_for_each(|method| writeln!(f, "{method}"))
+    }
+}
+
+impl fmt::Display for Method {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        /// Decimals of a direction and of an angle in degrees.
+        const DIGITS: usize = 6;
+        write!(f, "{:<20} ", self.method)?;
+        if let Some(obstacle) = self.obstacle {
+            return f.write_str(obstacle);
+        }
+        // Adding zero turns −0 into 0, also that of rounding.
+        let rounded = |x: f64| (x * 1e6).round() / 1e6 + 0.0;
+        let direction = self.direction.iter().flatten();
+        let direction: Vec<_> =
+            direction.map(|x| format!("{:>9.DIGITS$}", rounded(*x))).collect();
+        write!(f, "{}   ", direction.join(", "))?;
+        match self.error_degrees {
+            Some(degrees) => write!(f, "{degrees:>10.DIGITS$}° off")?,
+            None => write!(f, "no exact direction")?,
+        }
+        write!(f, "   {:>3} evaluations", self.evaluations)
     }
 }

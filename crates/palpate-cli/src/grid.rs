@@ -3,13 +3,14 @@
 
 //! `palpate grid`: samples a scene on a grid.
 
-use std::io::Write;
+use std::fmt;
 use std::ops::ControlFlow;
+use std::path::Path;
 
 use palpate::field::Shape;
 use palpate::grid::{Grid, GridError, GridFileProblem, GridProgress};
 use palpate::scene::{AnyScene, BuiltScene};
-use serde_json::json;
+use serde::Serialize;
 
 use crate::arguments::GridOptions;
 use crate::input;
@@ -49,8 +50,9 @@ fn bake<const D: usize>(
             problem => Failure::file(&options.output, problem),
         })
     })?;
-    report(options, shape, &grid)?;
-    Ok(if grid.deviation().is_finite() { Outcome::Yes } else { Outcome::No })
+    let answer = Answer::of(&options.output, shape, &grid);
+    output::answer().print(&answer, options.json)?;
+    Ok(if answer.deviation.is_some() { Outcome::Yes } else { Outcome::No })
 }
 
 /// The grid of a shape; `None` if the program is asked to end.
@@ -73,64 +75,87 @@ fn grid<const D: usize>(
     }
 }
 
-fn report<const D: usize>(
-    options: &GridOptions,
-    shape: &Shape<D>,
-    grid: &Grid<D>,
-) -> Result<(), Failure> {
-    let mut out = output::answer();
-    let (lattice, promise) = (grid.lattice(), grid.promise());
-    let name = options.output.display().to_string();
-    let is_exact = shape.promise().is_exact();
-    let deviation = Some(grid.deviation()).filter(|deviation| deviation.is_finite());
-    if options.json {
-        out.json(&json!({
-            "output": name,
-            "cell_m": lattice.cell,
-            "nodes": lattice.counts.to_vec(),
-            "origin_m": lattice.origin.0.to_vec(),
-            "stored_samples": grid.stored_samples(),
-            "kernel": grid.kernel().name(),
-            "store": grid.store().name(),
-            "deviation_m": deviation,
-            "deviation_of_values_up_to_m": promise.deviation.map(|deviation| deviation.within),
-            "source_is_exact": is_exact,
-            "lipschitz": promise.lipschitz,
-            "promise": promise.in_words(),
-        }))?;
-        return Ok(());
-    }
-    let counts = lattice.counts.map(|count| count.to_string()).join(" × ");
-    writeln!(
-        out,
-        "{}: {counts} nodes, {} m apart; {}, {}, {} samples",
-        shown(&name),
-        lattice.cell,
-        grid.kernel().name(),
-        grid.store().name(),
-        grid.stored_samples(),
-    )?;
-    match deviation {
-        Some(deviation) => {
-            let within = promise.deviation.map_or(0.0, |deviation| deviation.within);
-            writeln!(
-                out,
-                "  values   up to {within:.3e} m in size: off the scene's by at most {deviation:.3e} m, proven"
-            )?;
-            if is_exact {
-                writeln!(out, "  surface  at most {deviation:.3e} m from the scene's")?;
-            } else {
-                writeln!(
-                    out,
-                    "  surface  may be farther off: the scene's values are bounds of the distance"
-                )?;
-            }
+/// The answer of `palpate grid`.
+#[derive(Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub(crate) struct Answer {
+    /// The file.
+    pub(crate) output: String,
+    /// The distance of neighbouring nodes [m].
+    pub(crate) cell: f64,
+    /// The nodes along each axis.
+    pub(crate) counts: Vec<usize>,
+    /// The place of the first node [m].
+    pub(crate) origin: Vec<f64>,
+    /// How many samples are stored.
+    pub(crate) stored_samples: usize,
+    /// How samples become values: `quadratic` or `trilinear`.
+    pub(crate) kernel: &'static str,
+    /// How samples are stored.
+    pub(crate) store: &'static str,
+    /// How far values are from the scene's at most, proven [m]; `null` if nothing is known.
+    pub(crate) deviation: Option<f64>,
+    /// The size of the values that the deviation holds for [m]; others are bounds alone.
+    pub(crate) within: Option<f64>,
+    /// `true` if the scene's values are distances.
+    pub(crate) source_is_exact: bool,
+    /// The steepest slope of the values.
+    pub(crate) lipschitz: f64,
+    /// What the values promise, in words.
+    pub(crate) promise: String,
+}
+
+impl Answer {
+    fn of<const D: usize>(output: &Path, shape: &Shape<D>, grid: &Grid<D>) -> Self {
+        let (lattice, promise) = (grid.lattice(), grid.promise());
+        Self {
+            output: output.display().to_string(),
+            cell: lattice.cell,
+            counts: lattice.counts.to_vec(),
+            origin: lattice.origin.0.to_vec(),
+            stored_samples: grid.stored_samples(),
+            kernel: grid.kernel().name(),
+            store: grid.store().name(),
+            deviation: Some(grid.deviation()).filter(|deviation| deviation.is_finite()),
+            within: promise.deviation.map(|deviation| deviation.within),
+            source_is_exact: shape.promise().is_exact(),
+            lipschitz: promise.lipschitz,
+            promise: promise.in_words(),
         }
-        None => writeln!(
-            out,
-            "  values   off the scene's by an unknown amount: take smaller cells, or a wider --band"
-        )?,
     }
-    writeln!(out, "  slope    at most {:.4}", promise.lipschitz)?;
-    Ok(())
+}
+
+impl fmt::Display for Answer {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { cell, kernel, store, stored_samples, .. } = self;
+        let counts: Vec<_> = self.counts.iter().map(usize::to_string).collect();
+        let counts = counts.join(" × ");
+        writeln!(
+            f,
+            "{}: {counts} nodes, {cell} m apart; {kernel}, {store}, {stored_samples} samples",
+            shown(&self.output)
+        )?;
+        match self.deviation {
+            Some(deviation) => {
+                let within = self.within.unwrap_or_default();
+                writeln!(
+                    f,
+                    "  values   up to {within:.3e} m in size: off the scene's by at most {deviation:.3e} m, proven"
+                )?;
+                if self.source_is_exact {
+                    writeln!(f, "  surface  at most {deviation:.3e} m from the scene's")?;
+                } else {
+                    writeln!(
+                        f,
+                        "  surface  may be farther off: the scene's values are bounds of the distance"
+                    )?;
+                }
+            }
+            None => writeln!(
+                f,
+                "  values   off the scene's by an unknown amount: take smaller cells, or a wider --band"
+            )?,
+        }
+        writeln!(f, "  slope    at most {:.4}", self.lipschitz)
+    }
 }

@@ -6,6 +6,7 @@
 //! [`run`] runs a command line as `palpate` does, on the standard output and error of the
 //! process. The caller chooses the allocator and handles signals.
 
+mod answers;
 mod arguments;
 mod ask;
 mod check;
@@ -34,6 +35,8 @@ mod picture;
 mod plane;
 mod plot;
 mod progress;
+#[cfg(test)]
+mod renamed;
 mod render;
 mod schema;
 mod shapes;
@@ -115,7 +118,7 @@ fn obey(command: &Command, interrupt: &Interrupt) -> Result<Outcome, Failure> {
         Command::Mass(options) => mass::run(options, interrupt),
         Command::Grid(options) => grid::run(options, interrupt),
         Command::Mesh(options) => mesh::run(options, interrupt),
-        Command::Schema => schema::run(),
+        Command::Schema(options) => schema::run(options),
         Command::Shapes(options) => shapes::run(options),
         Command::Devices(options) => devices::run(options),
         Command::Identify(options) => identify::run(options, interrupt),

@@ -40,14 +40,14 @@ fn report<const D: usize>(
             break;
         };
         if !options.json {
-            ask::print(&answer, false)?;
+            output::answer().print(&answer, false)?;
         }
         all.bodies.extend(ask::mass(&answer).bodies.iter().cloned());
     }
     let is_good = all.bodies.iter().all(|body| body.weighed.is_some_and(|mass| !mass.open));
     let is_whole = all.is_whole;
     if options.json {
-        ask::print(&Answer::Mass(all), true)?;
+        output::answer().print(&Answer::Mass(all), true)?;
     }
     Ok(match (is_whole, is_good) {
         (false, _) => Outcome::Interrupted,

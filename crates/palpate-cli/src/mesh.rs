@@ -3,16 +3,19 @@
 
 //! `palpate mesh`: checks a mesh file, or makes one of a scene.
 
-mod contour;
+pub(crate) mod contour;
 
+use std::fmt;
 use std::fs::File;
-use std::io::{Read, Write};
+use std::io::Read;
 use std::path::Path;
 
 use palpate::grid::Volume;
-use palpate::mesh::{Format, ReadError, ReadProblem, Report, Solid, TriangleMesh, read_file};
-use serde_json::json;
+use palpate::mesh::{Findings, Format, ReadError, ReadProblem, Solid, TriangleMesh, read_file};
+use serde::Serialize;
+use serde_json::Value;
 
+use crate::answers::Bounds;
 use crate::arguments::MeshOptions;
 use crate::input::longest_edge;
 use crate::interrupt::Interrupt;
@@ -27,44 +30,156 @@ pub(crate) fn run(options: &MeshOptions, interrupt: &Interrupt) -> Result<Outcom
     if let Some(output) = &options.output {
         return contour::run(options, output, interrupt);
     }
-    let mesh = mesh(options)?;
-    let report = mesh.report();
-    let solid = Solid::from_mesh(&mesh);
-    let crosses = solid.as_ref().is_ok_and(|(_, found)| found.crossings + found.touching > 0);
-    let overlaps = solid.as_ref().is_ok_and(|(_, found)| found.crossings + found.nested > 0);
-    let is_good = report.is_watertight() && report.degenerate == 0 && !crosses;
-    let mut out = output::answer();
-    let hint = hint(longest_edge(&report.bounds), "--scale", options.scale);
-    if options.json {
-        let mut answer = as_json(&report, is_good);
-        answer["hint"] = hint.into();
-        answer["solid"] = match &solid {
-            Ok((solid, found)) => json!({
-                "promise": solid.promise().in_words(),
-                "crossing_pairs": found.crossings,
-                "touching_pairs": found.touching,
-                "findings": found.to_string(),
-            }),
-            Err(error) => json!({ "error": error.to_string() }),
+    let checked = Checked::of(&mesh(options)?, options);
+    output::answer().print(&checked, options.json)?;
+    Ok(if checked.ok { Outcome::Yes } else { Outcome::No })
+}
+
+/// The answer of `palpate mesh FILE`.
+#[derive(Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub(crate) struct Checked {
+    #[serde(skip)]
+    name: String,
+    /// `true` if the mesh is watertight, no triangle is degenerate, and none cross or touch.
+    pub(crate) ok: bool,
+    /// The number of triangles.
+    pub(crate) elements: usize,
+    /// The number of vertices, unused ones included.
+    pub(crate) vertices: usize,
+    /// `true` if each edge joins two triangles that agree on the inside.
+    pub(crate) is_watertight: bool,
+    /// Edges of one triangle only.
+    pub(crate) boundary: usize,
+    /// Edges of more than two triangles.
+    pub(crate) non_manifold: usize,
+    /// Edges between triangles that disagree on the inside.
+    pub(crate) inconsistent: usize,
+    /// Triangles without area.
+    pub(crate) degenerate: usize,
+    /// Triangles with the vertices of an earlier one.
+    pub(crate) duplicates: usize,
+    /// Vertices of no triangle.
+    pub(crate) unreferenced: usize,
+    /// Vertices at the position of another.
+    pub(crate) coincident: usize,
+    /// The box around the triangles.
+    pub(crate) bounds: Bounds,
+    /// The area of all triangles [m²].
+    pub(crate) surface: f64,
+    /// The enclosed volume [m³]; negative if the mesh is inside out, `null` if it is not watertight.
+    pub(crate) enclosed: Option<f64>,
+    /// What to do if the file seems to be in another unit than metres.
+    pub(crate) hint: Option<String>,
+    /// The solid that the mesh bounds; `null` if there is none.
+    pub(crate) solid: Option<Bounded>,
+    /// Why there is no solid.
+    pub(crate) error: Option<String>,
+}
+
+/// The solid of a mesh.
+#[derive(Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub(crate) struct Bounded {
+    /// What the distance to it promises, in words.
+    pub(crate) promise: String,
+    /// Pairs of triangles that cross.
+    pub(crate) crossings: usize,
+    /// Pairs of triangles that touch without a common corner.
+    pub(crate) touching: usize,
+    /// What was found, in words.
+    pub(crate) findings: String,
+    #[serde(skip)]
+    found: Findings<3>,
+}
+
+impl Checked {
+    fn of(mesh: &TriangleMesh, options: &MeshOptions) -> Self {
+        let report = mesh.report();
+        let solid = Solid::from_mesh(mesh);
+        let crosses =
+            solid.as_ref().is_ok_and(|(_, found)| found.crossings + found.touching > 0);
+        let bounded = |(solid, found): (Solid<3, 3>, Findings<3>)| Bounded {
+            promise: solid.promise().in_words(),
+            crossings: found.crossings,
+            touching: found.touching,
+            findings: found.to_string(),
+            found,
         };
-        out.json(&answer)?;
-    } else {
-        let name = options.file.display().to_string();
-        let verdict = if is_good { "good" } else { "not good" };
-        writeln!(out, "{}: {verdict}, {}", shown(&name), in_words(&report, overlaps))?;
-        match &solid {
-            Ok((solid, found)) => {
-                let separator = if found.is_clean() { "" } else { ": " };
-                let found = if found.is_clean() { String::new() } else { found.to_string() };
-                writeln!(out, "  solid    {}{separator}{found}", solid.promise().in_words())?;
-            }
-            Err(error) => writeln!(out, "  solid    none: {error}")?,
-        }
-        if let Some(hint) = hint {
-            writeln!(out, "  hint     {hint}")?;
+        let (solid, error) = match solid {
+            Ok(solid) => (Some(bounded(solid)), None),
+            Err(error) => (None, Some(error.to_string())),
+        };
+        Self {
+            name: options.file.display().to_string(),
+            ok: report.is_watertight() && report.degenerate == 0 && !crosses,
+            elements: report.elements,
+            vertices: report.vertices,
+            is_watertight: report.is_watertight(),
+            boundary: report.boundary,
+            non_manifold: report.non_manifold,
+            inconsistent: report.inconsistent,
+            degenerate: report.degenerate,
+            duplicates: report.duplicates,
+            unreferenced: report.unreferenced,
+            coincident: report.coincident,
+            hint: hint(longest_edge(&report.bounds), "--scale", options.scale),
+            bounds: report.bounds.into(),
+            surface: report.surface,
+            enclosed: report.enclosed,
+            solid,
+            error,
         }
     }
-    Ok(if is_good { Outcome::Yes } else { Outcome::No })
+}
+
+impl fmt::Display for Checked {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let overlaps = |Bounded { found, .. }: &Bounded| found.crossings + found.nested > 0;
+        let overlaps = self.solid.as_ref().is_some_and(overlaps);
+        let twice = if overlaps { ": what overlaps is counted twice" } else { "" };
+        let verdict = if self.ok { "good" } else { "not good" };
+        let (elements, vertices) = (self.elements, self.vertices);
+        writeln!(
+            f,
+            "{}: {verdict}, {elements} triangles, {vertices} vertices",
+            shown(&self.name)
+        )?;
+        let size: Vec<_> = self.bounds.size().into_iter().map(rounded).collect();
+        writeln!(f, "  size     {} m", size.join(" × "))?;
+        writeln!(f, "  area     {:.6e} m²{twice}", self.surface)?;
+        match self.enclosed {
+            Some(volume) if volume < 0.0 => {
+                writeln!(f, "  volume   {volume:.6e} m³: inside out")?;
+            }
+            Some(volume) => writeln!(f, "  volume   {volume:.6e} m³{twice}")?,
+            None => writeln!(f, "  volume   none: not watertight")?,
+        }
+        let flaws = [
+            (self.boundary, "edges of one triangle only"),
+            (self.non_manifold, "edges of more than two triangles"),
+            (self.inconsistent, "edges between triangles that disagree on the inside"),
+            (self.degenerate, "triangles without area"),
+            (self.duplicates, "triangles that repeat an earlier one"),
+            (self.unreferenced, "vertices of no triangle"),
+            (self.coincident, "vertices at the position of another: --weld joins them"),
+        ];
+        for (count, what) in flaws.into_iter().filter(|(count, _)| *count > 0) {
+            writeln!(f, "  {count:<8} {what}")?;
+        }
+        if let Some(Bounded { promise, findings, found, .. }) = &self.solid {
+            let findings =
+                if found.is_clean() { String::new() } else { format!(": {findings}") };
+            writeln!(f, "  solid    {promise}{findings}")?;
+        }
+        if let Some(error) = &self.error {
+            writeln!(f, "  solid    none: {error}")?;
+        }
+        match &self.hint {
+            Some(hint) => writeln!(f, "  hint     {hint}"),
+            None => Ok(()),
+        }
+    }
 }
 
 /// The mesh of the file, as the options change it.
@@ -123,57 +238,8 @@ fn as_volume(path: &Path) -> Option<Failure> {
         format_args!(
             "it is a volume of {x} × {y} × {z} samples from {least} to {largest}, not a mesh; a scene takes \
              a surface in it: {{ \"volume\": {{ \"file\": {}, \"value\": {} }} }}",
-            json!(file),
+            Value::from(file),
             rounded(0.5 * (f64::from(least) + f64::from(largest))),
         ),
     ))
-}
-
-fn as_json(report: &Report<3>, is_good: bool) -> serde_json::Value {
-    json!({
-        "ok": is_good,
-        "triangles": report.elements,
-        "vertices": report.vertices,
-        "watertight": report.is_watertight(),
-        "boundary_edges": report.boundary,
-        "non_manifold_edges": report.non_manifold,
-        "inconsistent_edges": report.inconsistent,
-        "degenerate_triangles": report.degenerate,
-        "duplicate_triangles": report.duplicates,
-        "unreferenced_vertices": report.unreferenced,
-        "coincident_vertices": report.coincident,
-        "bounds": { "min_m": report.bounds.min.0, "max_m": report.bounds.max.0 },
-        "area_m2": report.surface,
-        "volume_m3": report.enclosed,
-    })
-}
-
-fn in_words(report: &Report<3>, overlaps: bool) -> String {
-    let size = (report.bounds.half_extents() * 2.0).0.map(rounded);
-    let twice = if overlaps { ": what overlaps is counted twice" } else { "" };
-    let mut words = format!(
-        "{} triangles, {} vertices\n  size     {} m\n  area     {:.6e} m²{twice}\n",
-        report.elements,
-        report.vertices,
-        size.join(" × "),
-        report.surface,
-    );
-    words += &match report.enclosed {
-        Some(volume) if volume < 0.0 => format!("  volume   {volume:.6e} m³: inside out"),
-        Some(volume) => format!("  volume   {volume:.6e} m³{twice}"),
-        None => "  volume   none: not watertight".to_owned(),
-    };
-    let flaws = [
-        (report.boundary, "edges of one triangle only"),
-        (report.non_manifold, "edges of more than two triangles"),
-        (report.inconsistent, "edges between triangles that disagree on the inside"),
-        (report.degenerate, "triangles without area"),
-        (report.duplicates, "triangles that repeat an earlier one"),
-        (report.unreferenced, "vertices of no triangle"),
-        (report.coincident, "vertices at the position of another: --weld joins them"),
-    ];
-    for (count, what) in flaws.into_iter().filter(|(count, _)| *count > 0) {
-        words += &format!("\n  {count:<8} {what}");
-    }
-    words
 }

@@ -3,13 +3,13 @@
 
 //! `palpate plot`: draws isolines, gradients and promises on a plane.
 
-use std::io::Write;
+use std::fmt;
 use std::path::{Path, PathBuf};
 
 use palpate::field::{Aabb, Vector};
 use palpate::plot::{Figure, Isolines, Measured, PlaneView, PlotError, Sampling, Slice};
 use palpate::scene::{AnyScene, BuiltScene, WrittenView};
-use serde_json::{Value, json};
+use serde::Serialize;
 
 use crate::arguments::{PlotMap, PlotOptions};
 use crate::contact::Touched;
@@ -157,11 +157,7 @@ where
             output::remark("interrupted: there is no picture");
             return Ok(Outcome::Interrupted);
         };
-        let drawn = Drawn {
-            step: isolines.step(),
-            range: isolines.range(),
-            measured: isolines.measured(),
-        };
+        let answer = self.answer(&isolines, plane);
         let isolines = match &self.touched {
             Some(touched) => touched.draw(isolines, plane)?,
             None => isolines,
@@ -170,12 +166,7 @@ where
             .with_caption(self.caption(plane))
             .with_isolines(isolines);
         self.picture.save(&figure, options.width.unwrap_or(picture::WIDTH))?;
-        if options.json {
-            output::answer().json(&self.described(&drawn, plane))?;
-        } else {
-            let name = self.picture.path().display().to_string();
-            writeln!(output::answer(), "{}: {}", shown(&name), self.in_words(&drawn))?;
-        }
+        output::answer().print(&answer, options.json)?;
         Ok(Outcome::Yes)
     }
 
@@ -220,78 +211,121 @@ where
         said.into_iter().flatten().collect::<Vec<_>>().join("; ")
     }
 
-    fn described(&self, drawn: &Drawn, plane: &Slice) -> Value {
-        let mut answer = json!({
-            "output": self.picture.path(),
-            "map": self.options.map.name(),
-            "smallest_m": drawn.range.0,
-            "largest_m": drawn.range.1,
-        });
-        if self.options.map == PlotMap::Distance {
-            answer["step_m"] = json!(drawn.step);
-        }
-        let point = |st| <Dimensions as Drawable<D>>::point(plane, st).0.to_vec();
-        if let Some(measured) = &drawn.measured {
-            answer[self.measured_key()] = json!({
-                "smallest": measured.smallest,
-                "smallest_at_m": point(measured.smallest_at),
-                "largest": measured.largest,
-                "largest_at_m": point(measured.largest_at),
-                "open_share": measured.open,
-            });
-        }
-        if let Some(touched) = &self.touched {
-            let (touching, boxes) = touched.counts();
-            answer["touching_pairs"] = json!(touching);
-            answer["proof_boxes"] = json!(boxes);
-        }
+    /// The answer about a picture.
+    fn answer(&self, isolines: &Isolines, plane: &Slice) -> Answer {
+        let (smallest, largest) = isolines.range();
+        let place = |st| <Dimensions as Drawable<D>>::point(plane, st).0.to_vec();
+        let extremes = |measured: Measured| Extremes {
+            smallest: measured.smallest,
+            smallest_at: place(measured.smallest_at),
+            largest: measured.largest,
+            largest_at: place(measured.largest_at),
+            open: measured.open,
+        };
+        let (map, measured) = (self.options.map, isolines.measured().map(extremes));
+        let is_difference = matches!(self.compared, Compared::Other(_));
+        let counts = self.touched.as_ref().map(Touched::counts);
+        let mut answer = Answer {
+            output: self.picture.path().display().to_string(),
+            map: map.name(),
+            smallest,
+            largest,
+            step: (map == PlotMap::Distance).then(|| isolines.step()),
+            value_over_distance: None,
+            error_degrees: None,
+            difference: None,
+            touching: counts.map(|(touching, _)| touching),
+            boxes: counts.map(|(_, boxes)| boxes),
+            shown: map,
+            is_difference,
+        };
+        *match map {
+            PlotMap::Error if is_difference => &mut answer.difference,
+            PlotMap::Error => &mut answer.error_degrees,
+            _ => &mut answer.value_over_distance,
+        } = measured;
         answer
     }
+}
 
-    fn in_words(&self, drawn: &Drawn) -> String {
-        match (self.options.map, &drawn.measured) {
-            (PlotMap::Distance, _) => format!("isolines every {} m", drawn.step),
-            (PlotMap::Gradient, _) => "directions of the gradient".to_owned(),
-            (PlotMap::Promise, None) => "promises; value over distance is open".to_owned(),
-            (PlotMap::Promise, Some(Measured { smallest, largest, open, .. })) => {
+/// The answer of `palpate plot`.
+#[derive(Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub(crate) struct Answer {
+    /// The file.
+    pub(crate) output: String,
+    /// What the picture shows: `distance`, `gradient`, `promise` or `error`.
+    pub(crate) map: &'static str,
+    /// The smallest value that was sampled [m].
+    pub(crate) smallest: f64,
+    /// The largest value that was sampled [m].
+    pub(crate) largest: f64,
+    /// Between isolines [m]; `null` where there are none.
+    pub(crate) step: Option<f64>,
+    /// With `--map promise` values over true distances; `null` if all are open.
+    pub(crate) value_over_distance: Option<Extremes>,
+    /// With `--map error --gradient` angles from the exact gradient [degrees].
+    pub(crate) error_degrees: Option<Extremes>,
+    /// With `--map error --against` differences of values [m].
+    pub(crate) difference: Option<Extremes>,
+    /// With `--contacts` how many pairs touch.
+    pub(crate) touching: Option<usize>,
+    /// With `--contacts` how many boxes prove that pairs are apart.
+    pub(crate) boxes: Option<usize>,
+    #[serde(skip)]
+    shown: PlotMap,
+    #[serde(skip)]
+    is_difference: bool,
+}
+
+/// The extremes of what the colours of a picture show.
+#[derive(Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub(crate) struct Extremes {
+    /// The smallest number.
+    pub(crate) smallest: f64,
+    /// The first place where it was found [m].
+    pub(crate) smallest_at: Vec<f64>,
+    /// The largest number.
+    pub(crate) largest: f64,
+    /// The first place where it was found [m].
+    pub(crate) largest_at: Vec<f64>,
+    /// The share of the picture without a number.
+    pub(crate) open: f64,
+}
+
+impl fmt::Display for Answer {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}: ", shown(&self.output))?;
+        let measured = self.value_over_distance.as_ref().or(self.error_degrees.as_ref());
+        match (self.shown, measured.or(self.difference.as_ref())) {
+            (PlotMap::Distance, _) => {
+                writeln!(f, "isolines every {} m", self.step.unwrap_or_default())
+            }
+            (PlotMap::Gradient, _) => writeln!(f, "directions of the gradient"),
+            (PlotMap::Promise, None) => writeln!(f, "promises; value over distance is open"),
+            (PlotMap::Promise, Some(Extremes { smallest, largest, open, .. })) => {
                 let open = if *open > 0.0 {
                     format!(", open in {:.1} % of the picture", 100.0 * open)
                 } else {
                     String::new()
                 };
-                format!(
+                writeln!(
+                    f,
                     "promises; value over distance from {smallest:.3} to {largest:.3}{open}"
                 )
             }
-            (PlotMap::Error, None) => "errors: there is no direction in view".to_owned(),
-            (PlotMap::Error, Some(Measured { smallest, largest, .. })) => {
-                let (what, unit) = match self.compared {
-                    Compared::Other(_) => ("differences of values", "m"),
-                    _ => ("angles from the exact gradient", "degrees"),
+            (PlotMap::Error, None) => writeln!(f, "errors: there is no direction in view"),
+            (PlotMap::Error, Some(Extremes { smallest, largest, .. })) => {
+                let (what, unit) = if self.is_difference {
+                    ("differences of values", "m")
+                } else {
+                    ("angles from the exact gradient", "degrees")
                 };
-                format!("{what} from {smallest:.6} to {largest:.6} {unit}")
+                writeln!(f, "{what} from {smallest:.6} to {largest:.6} {unit}")
             }
         }
     }
-
-    /// The JSON key of the number that colours show.
-    fn measured_key(&self) -> &'static str {
-        match (&self.compared, self.options.map) {
-            (Compared::Other(_), _) => "difference_m",
-            (Compared::Gradient(_), PlotMap::Error) => "error_degrees",
-            _ => "value_over_distance",
-        }
-    }
-}
-
-/// The numbers of a picture.
-struct Drawn {
-    /// Between isolines [m].
-    step: f64,
-    /// The smallest and the largest value [m].
-    range: (f64, f64),
-    /// The extremes of what the colours show, if they show numbers.
-    measured: Option<Measured>,
 }
 
 /// The file of `--output`; the scene's name with .svg if left out.

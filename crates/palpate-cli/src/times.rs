@@ -3,7 +3,7 @@
 
 //! Times, as text.
 
-/// A time as text.
-pub(crate) fn microseconds(ns: u64) -> String {
-    format!("{:.2} µs", 1e-3 * ns as f64)
+/// A time [s] as text.
+pub(crate) fn microseconds(time: f64) -> String {
+    format!("{:.2} µs", 1e6 * time)
 }

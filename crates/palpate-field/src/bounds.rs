@@ -10,6 +10,7 @@ use crate::vector::{Point, Vector, array, unrolled};
 /// A box along the axes, `min ≤ p ≤ max` in each coordinate [m].
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Aabb<const D: usize> {
     /// The corner with the smallest coordinates.
     pub min: Point<D>,

@@ -45,6 +45,9 @@ mod machine;
 mod mass;
 pub mod node;
 pub mod operator;
+#[cfg(feature = "oracle")]
+#[doc(hidden)]
+pub mod oracle;
 mod pose;
 mod promise;
 mod rotation_vector;

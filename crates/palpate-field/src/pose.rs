@@ -265,6 +265,7 @@ impl Rotation<3> {
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Pose<const D: usize> {
     /// The rotation, applied first.
     pub rotation: Rotation<D>,

@@ -46,13 +46,13 @@ fn measure(
         run(&mut servo, &mut device, RunOptions { pace, ..RunOptions::new(DURATION) })?;
     let cost = report.cost.ok_or("there was no tick")?;
     println!(
-        "{name:<8} {points:>6} {:>7.0}% {:>16.2} {:>4} {:>10} {:>4} {:>6}",
+        "{name:<8} {points:>6} {:>7.0}% {:>16.2} {:>4} {:>10.0} {:>4.0} {:>6.0}",
         100.0 * report.contact_time / report.duration,
         report.evaluations.mean,
         report.evaluations.max,
-        cost.p50_ns,
-        cost.p99_ns,
-        cost.p999_ns,
+        1e9 * cost.p50,
+        1e9 * cost.p99,
+        1e9 * cost.p999,
     );
     Ok(())
 }

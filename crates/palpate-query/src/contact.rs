@@ -14,6 +14,7 @@ use palpate_field::{Point, Pose, Vector};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(feature = "serde", serde(rename_all = "snake_case"))]
 pub enum NormalSource {
     /// The gradients of both fields at the contact.
@@ -61,6 +62,7 @@ impl fmt::Display for NormalSource {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Contact<const D: usize> {
     /// The point on the surface of body `a` [m]; see [`on_surfaces`](Self::on_surfaces).
     pub point_a: Point<D>,

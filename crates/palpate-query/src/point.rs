@@ -12,6 +12,7 @@ use crate::sampler::normal;
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct AtPoint<const D: usize> {
     /// The point [m].
     pub point: Point<D>,

@@ -8,6 +8,7 @@ use crate::passivity::InnerProduct;
 /// What a stage of the safety chain did.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct Effect {
     /// Ticks in which the stage changed the force.

@@ -35,6 +35,7 @@ const HIGHEST: f64 = 1e3;
 /// What sampling generates with forces that have a potential, and what was done about it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct FreeForceReport {
     /// Ticks in which the force was made less, and the largest change.

@@ -14,6 +14,7 @@ use palpate_device::NumberError;
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Impedance {
     stiffness: f64,
     damping: f64,

@@ -201,6 +201,7 @@ impl<V: InnerProduct> CycleInput<V> {
 /// Limit cycles that were found, and what was done about them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct LimitCycleReport {
     /// Ticks in which a force was made softer, and the largest change.

@@ -121,6 +121,7 @@ impl<V> PortMotion<V> {
 /// Energies that the passivity observer measured, and the controller's interventions.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct PassivityReport {
     /// Interventions, and the largest change of the force.

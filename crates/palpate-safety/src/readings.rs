@@ -16,6 +16,7 @@ const STEPS: f64 = 3.0;
 /// Readings that were held back.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct ReadingsReport {
     /// Ticks whose position was held back.

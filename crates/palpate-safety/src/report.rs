@@ -14,6 +14,7 @@ use crate::readings::ReadingsReport;
 /// Actions of every stage of a safety chain since it was made.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct SafetyReport {
     /// Ticks done.
@@ -54,6 +55,7 @@ pub struct SafetyReport {
 /// Passivity covers force and torque together: see [`SafetyReport::passivity`].
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct TurningReport {
     /// The accepted angular stiffness and damping of the coupling.
@@ -79,6 +81,7 @@ pub struct TurningReport {
 /// Actions of the limit on the continuous force.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct ContinuousReport {
     /// Actions of the stage.
@@ -91,6 +94,7 @@ pub struct ContinuousReport {
 /// Actions of the deadline watchdog.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct WatchdogReport {
     /// Actions of the stage.

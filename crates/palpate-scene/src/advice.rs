@@ -112,10 +112,10 @@ pub(crate) fn unknown_shape(name: &str, named: &[&str], dimension: Dimension) ->
 /// A primitive with the arguments of its example, or the form of an operator: `None` if there is
 /// none of that name in the dimension.
 pub(crate) fn form(name: &str, dimension: Dimension) -> Option<String> {
-    if keys::is_one_of(&keys::LISTS, name) {
+    if keys::is_list(name) {
         return Some(format!("{{ \"{name}\": [ …, … ] }}"));
     }
-    if keys::is_one_of(&keys::UNARY, name) {
+    if keys::is_unary(name) {
         return Some(format!("{{ \"{name}\": …, \"of\": … }}"));
     }
     let arguments = arguments(name, dimension)?;

@@ -4,6 +4,8 @@
 //! The keys of a shape's object that are not primitives: one list for reading, writing
 //! and the schema.
 
+use palpate_field::operator::Operator;
+
 use crate::catalogue;
 use crate::scene::Dimension;
 
@@ -43,10 +45,6 @@ pub(crate) const ROTATION: &str = "rotation";
 pub(crate) const SCALE: &str = "scale";
 /// `{ "offset": .., "of": .. }`.
 pub(crate) const OFFSET: &str = "offset";
-/// `{ "shell": .., "of": .. }`.
-pub(crate) const SHELL: &str = "shell";
-/// `{ "elongate": [..], "of": .. }`.
-pub(crate) const ELONGATE: &str = "elongate";
 /// `{ "mirror": "x", "of": .. }`.
 pub(crate) const MIRROR: &str = "mirror";
 /// `{ "repeat": { "x": { "spacing": .. }, .. }, "of": .. }`.
@@ -97,15 +95,13 @@ pub(crate) const LISTS: [(&str, &str); 9] = [
     (MORPH, "A shape on the way from the first to the second."),
 ];
 
-/// The operators with one operand, under [`OF`]; the first three go together.
-pub(crate) const UNARY: [(&str, &str); 16] = [
+/// The operators with one operand that are not in the catalogue; the first three go together.
+const UNARY: [(&str, &str); 14] = [
     (TRANSLATE, "Moves the shape [m]; after the rotation, if there is one."),
     (ROTATE_DEGREES, "Turns the shape: degrees in 2D, axis and angle in 3D."),
     (ROTATION, "Turns the shape: the rows of a matrix, or in 3D a quaternion [x, y, z, w]."),
     (SCALE, "Scales the shape: a factor, or one for each axis."),
     (OFFSET, "Grows the shape by a length [m], or shrinks it if negative."),
-    (SHELL, "Makes a wall of this thickness on the surface of the shape [m]."),
-    (ELONGATE, "Pulls the shape apart at the coordinate planes [m]."),
     (MIRROR, "Adds the mirror image of the part at positive coordinates of an axis."),
     (REPEAT, "Repeats the shape along axes: spacing [m], first and last number of the copies."),
     (
@@ -122,6 +118,13 @@ pub(crate) const UNARY: [(&str, &str); 16] = [
     (EXTRUDE, "Gives a 2D shape, drawn in x and z, a height along y [m]."),
     (REVOLVE, "Turns a 2D shape about y, its x the distance from the axis."),
 ];
+
+/// The operators with one operand, under [`OF`].
+pub(crate) fn unary() -> impl Iterator<Item = (&'static str, &'static str)> {
+    UNARY
+        .into_iter()
+        .chain(Operator::ALL.iter().map(|operator| (operator.name, operator.about)))
+}
 
 /// The operators of [`UNARY`] that may be there together.
 pub(crate) const MOVES: [&str; 3] = [TRANSLATE, ROTATE_DEGREES, ROTATION];
@@ -151,9 +154,14 @@ pub(crate) const WITH_LISTS: [(&str, bool, &[&str], &str); 4] = [
     (PROGRESS, true, &[MORPH], "how far on the way, from 0 to 1"),
 ];
 
-/// `true` if `key` is in a list of operators.
-pub(crate) fn is_one_of(operators: &[(&str, &str)], key: &str) -> bool {
-    operators.iter().any(|(operator, _)| *operator == key)
+/// `true` if `key` is an operator with one operand.
+pub(crate) fn is_unary(key: &str) -> bool {
+    unary().any(|(operator, _)| operator == key)
+}
+
+/// `true` if `key` is an operator on a list of shapes.
+pub(crate) fn is_list(key: &str) -> bool {
+    LISTS.iter().any(|(operator, _)| *operator == key)
 }
 
 /// Every key that the object of a shape of a dimension may have, the primitives' names included.
@@ -162,7 +170,7 @@ pub(crate) fn all_keys(dimension: Dimension) -> Vec<&'static str> {
         dimension == Dimension::Three || !SOLID.contains(key) && ![MESH, VOLUME].contains(key)
     };
     let lists = LISTS.iter().map(|(key, _)| *key);
-    let unary = UNARY.iter().map(|(key, _)| *key).filter(is_there);
+    let unary = unary().map(|(key, _)| key).filter(is_there);
     let primitives = catalogue::signatures().filter(|s| s.dimension == dimension);
     let others = OTHERS
         .into_iter()

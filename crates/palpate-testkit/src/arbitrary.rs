@@ -8,7 +8,7 @@
 
 use arbitrary::{Result, Unstructured};
 use palpate_field::kernel::{Argument, Parameter, ParameterKind};
-use palpate_field::operator::{Copies, Profile};
+use palpate_field::operator::{Copies, Operator, Profile};
 use palpate_field::{Point, Pose, Rotation, Screw, Shape, Vector};
 
 use crate::kernels::{Dimension, IntoShape, Space};
@@ -336,13 +336,22 @@ where
             let sign = if u.arbitrary()? { 1.0 } else { -0.2 };
             Tree::Offset(child(u)?, sign * length(u)?)
         }
-        8 => Tree::Shell(child(u)?, 0.3 * length(u)?),
-        9 => {
-            let mut lengths = [0.0; D];
-            for x in &mut lengths {
-                *x = if u.arbitrary()? { length(u)? } else { 0.0 };
+        which @ (8 | 9) => {
+            // The first operator of the catalogue, or one of the others.
+            let [first, others @ ..] = Operator::ALL else {
+                unreachable!("there are operators")
+            };
+            let operator = *if which == 8 { first } else { u.choose(others)? };
+            if operator.is_per_axis {
+                let mut lengths = vec![0.0; D];
+                for x in &mut lengths {
+                    *x = if u.arbitrary()? { length(u)? } else { 0.0 };
+                }
+                Tree::Operated(child(u)?, operator, Argument::Vector(lengths))
+            } else {
+                let tree = child(u)?;
+                Tree::Operated(tree, operator, Argument::Number(0.3 * length(u)?))
             }
-            Tree::Elongated(child(u)?, lengths)
         }
         10 => Tree::Mirrored(child(u)?, u.int_in_range(0..=D - 1)?),
         11 => Tree::Scaled(child(u)?, factor(u)?),

@@ -19,11 +19,11 @@ pub mod arbitrary;
 pub mod cases;
 pub mod double;
 pub mod hard;
-pub mod kernels;
 pub mod laws;
 pub mod models;
-pub mod oracle;
 pub mod recall;
 pub mod separation;
 pub mod soup;
 pub mod tree;
+
+pub use palpate_field::oracle::{self, kernels};

@@ -7,9 +7,9 @@
 //! of the operators directly, in any number; the fields of `palpate-field` must agree with it.
 
 use palpate_field::kernel::{Argument, NamedKernel};
-use palpate_field::operator::{Copies, Profile};
+use palpate_field::operator::{Child, Copies, Operator, Profile};
 use palpate_field::scalar::{Circular, Cubic, Exponential, Quadratic, Quartic, Root, Scalar};
-use palpate_field::{Pose, Shape, ShapeError, Vector};
+use palpate_field::{Node, Pose, Shape, ShapeError, Vector};
 
 use crate::kernels::{Dimension, IntoShape, Space, Visit};
 
@@ -39,10 +39,8 @@ pub enum Tree<const D: usize> {
     Smooth(Boolean, Vec<Self>, Profile, f64),
     /// Grown by a distance [m].
     Offset(Box<Self>, f64),
-    /// A shell of a thickness [m].
-    Shell(Box<Self>, f64),
-    /// Pulled apart by lengths [m].
-    Elongated(Box<Self>, [f64; D]),
+    /// An operator of the catalogue with its argument.
+    Operated(Box<Self>, Operator, Argument),
     /// Mirrored along an axis.
     Mirrored(Box<Self>, usize),
     /// Repeated along the axes.
@@ -195,8 +193,11 @@ where
                 }
             }
             Self::Offset(tree, distance) => tree.shape()?.offset(*distance),
-            Self::Shell(tree, thickness) => tree.shape()?.shell(*thickness),
-            Self::Elongated(tree, lengths) => tree.shape()?.elongated(*lengths),
+            Self::Operated(tree, operator, argument) => Shape::from_node(Node::Operated {
+                operator: *operator,
+                argument: argument.clone(),
+                of: tree.shape()?,
+            }),
             Self::Mirrored(tree, axis) => tree.shape()?.mirrored(*axis),
             Self::Repeated(tree, copies) => tree.shape()?.repeated(*copies),
             Self::Bent(tree, rate) => tree.shape()?.bent(*rate),
@@ -224,8 +225,7 @@ where
             | Self::Smooth(_, trees, ..) => deepest(trees),
             Self::Difference(first, others) => first.depth().max(deepest(others)),
             Self::Offset(tree, _)
-            | Self::Shell(tree, _)
-            | Self::Elongated(tree, _)
+            | Self::Operated(tree, ..)
             | Self::Mirrored(tree, _)
             | Self::Repeated(tree, _)
             | Self::Bent(tree, _)
@@ -274,10 +274,11 @@ where
                 let child = if *distance > 0.0 { tree.guarded(p) } else { tree.distance(p) };
                 child - number(*distance)
             }
-            Self::Shell(tree, thickness) => tree.guarded(p).abs() - number(0.5 * thickness),
-            Self::Elongated(tree, lengths) => tree.distance(Vector(std::array::from_fn(|i| {
-                p.0[i] - p.0[i].clamp(-0.5 * lengths[i], 0.5 * lengths[i])
-            }))),
+            Self::Operated(tree, operator, argument) => {
+                let child =
+                    Child { value: &|p| tree.distance(p), guarded: &|p| tree.guarded(p) };
+                operator.definition(&child, argument, p)
+            }
             Self::Mirrored(tree, axis) => {
                 let mut q = p;
                 q[*axis] = q[*axis].abs();

@@ -21,6 +21,7 @@ mod numbers;
 mod plot;
 mod profile;
 mod render;
+mod schema;
 mod shapes;
 mod sweep;
 
@@ -43,6 +44,7 @@ pub(crate) use mesh::MeshOptions;
 pub(crate) use plot::{Map, PlotMap, PlotOptions};
 pub(crate) use profile::ProfileChoice;
 pub(crate) use render::{RenderOptions, ShadowChoice};
+pub(crate) use schema::{SchemaOf, SchemaOptions};
 pub(crate) use shapes::{Dimension, ShapesOptions};
 pub(crate) use sweep::SweepOptions;
 
@@ -110,9 +112,10 @@ pub(crate) enum Command {
     /// Check whether a mesh file (OBJ, STL, PLY, GLB) is watertight, and list its defects.
     #[command(after_help = mesh::EXAMPLES)]
     Mesh(MeshOptions),
-    /// Print the JSON schema of scene files.
-    #[command(after_help = "Examples:\n  palpate schema > scene.schema.json")]
-    Schema,
+    /// Print the JSON schema of scene files, or of questions and answers.
+    #[command(after_help = "Examples:\n  palpate schema > scene.schema.json\n  \
+                            palpate schema answers > answers.schema.json")]
+    Schema(SchemaOptions),
     /// List the primitives with parameters, origins and promises, or draw one.
     #[command(after_help = shapes::EXAMPLES)]
     Shapes(ShapesOptions),

@@ -49,7 +49,7 @@ fn answer<const D: usize>(
     };
     let found = ask::contacts(&answer);
     emptiness::warn_of(&found.empty);
-    ask::print(&answer, options.json)?;
+    output::answer().print(&answer, options.json)?;
     if !found.is_whole {
         output::remark("interrupted: some pairs that are apart are not listed");
         return Ok(Outcome::Interrupted);

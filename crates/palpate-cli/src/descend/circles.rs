@@ -3,28 +3,38 @@
 
 //! The circles around an element, and whether they exclude it: memoir 3.2, last paragraph.
 
-use palpate::field::{BoundingBall, Shape};
+use palpate::field::{BoundingBall, Point, Shape};
 use palpate::query::Element;
-use serde_json::{Value, json};
+use serde::Serialize;
 
 use palpate::scene::text::joined;
 
-/// The smallest ball around an element and the one through its corners; circles in the plane.
-#[derive(Debug)]
-pub(super) struct Circles<const D: usize> {
+/// Balls around an element; circles in the plane.
+#[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub(crate) struct Circles<const D: usize> {
+    /// The smallest ball.
     smallest: Circle<D>,
-    /// `None` of a segment, for which it is the smallest, and of corners on a line.
+    /// The ball through the corners; `null` of a segment, for which it is the smallest, and of
+    /// corners on a line.
     circumscribed: Option<Circle<D>>,
 }
 
 /// A ball around an element, and what the field says at its centre.
-#[derive(Debug)]
-pub(super) struct Circle<const D: usize> {
+#[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub(crate) struct Circle<const D: usize> {
+    #[serde(skip)]
     pub(super) name: &'static str,
-    pub(super) ball: BoundingBall<D>,
-    /// The field at the centre [m].
+    /// The centre [m].
+    pub(super) centre: Point<D>,
+    /// The radius [m].
+    pub(super) radius: f64,
+    /// The field's value at the centre [m].
     value: f64,
-    /// Whether the field's promise proves that the ball does not meet the shape.
+    /// The memoir's test, f(C) > r: `true` if the value exceeds the radius.
+    excludes: bool,
+    /// `true` if the field's promise proves that the ball does not meet the shape.
     is_proven: bool,
 }
 
@@ -45,43 +55,21 @@ impl<const D: usize> Circles<D> {
     pub(super) fn all(&self) -> impl Iterator<Item = &Circle<D>> {
         [&self.smallest].into_iter().chain(&self.circumscribed)
     }
-
-    /// As JSON.
-    pub(super) fn described(&self) -> Value {
-        json!({
-            "smallest": self.smallest.described(),
-            "circumscribed": self.circumscribed.as_ref().map(Circle::described),
-        })
-    }
 }
 
 impl<const D: usize> Circle<D> {
     fn of(name: &'static str, shape: &Shape<D>, ball: BoundingBall<D>) -> Self {
-        let value = shape.distance(ball.centre);
-        let is_proven = value > 0.0 && shape.safe_radius(ball.centre) > ball.radius;
-        Self { name, ball, value, is_proven }
-    }
-
-    /// The memoir's test, f(C) > r.
-    fn excludes(&self) -> bool {
-        self.value > self.ball.radius
-    }
-
-    fn described(&self) -> Value {
-        json!({
-            "centre_m": self.ball.centre.0.to_vec(),
-            "radius_m": self.ball.radius,
-            "value_m": self.value,
-            "excludes": self.excludes(),
-            "proven": self.is_proven,
-        })
+        let BoundingBall { centre, radius } = ball;
+        let value = shape.distance(centre);
+        let is_proven = value > 0.0 && shape.safe_radius(centre) > radius;
+        Self { name, centre, radius, value, excludes: value > radius, is_proven }
     }
 
     /// The comparison in words, with lengths as `length` writes them.
     pub(super) fn in_words(&self, what: &str, length: impl Fn(f64) -> String) -> String {
-        let sign = if self.excludes() { ">" } else { "≤" };
-        let [value, radius] = [self.value, self.ball.radius].map(length);
-        let verdict = match (self.excludes(), self.is_proven) {
+        let sign = if self.excludes { ">" } else { "≤" };
+        let [value, radius] = [self.value, self.radius].map(length);
+        let verdict = match (self.excludes, self.is_proven) {
             (true, true) => "excludes",
             // Too steep a field, or a difference within rounding.
             (true, false) => "excludes, without a proof,",
@@ -92,6 +80,6 @@ impl<const D: usize> Circle<D> {
 
     /// The centre as text.
     pub(super) fn centre(&self) -> String {
-        joined(&self.ball.centre.0)
+        joined(&self.centre.0)
     }
 }

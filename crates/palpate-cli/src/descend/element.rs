@@ -3,21 +3,20 @@
 
 //! A local search over a segment or a triangle, beside the proven minimum.
 
-use std::io::Write;
+use std::fmt;
 use std::time::{Duration, Instant};
 
 use palpate::field::{Point, Vector};
 use palpate::local::{Descent, ElementMethod, NaiveDescent};
 use palpate::query::{Certified, Element, ElementWorkspace, minimum};
 use palpate::scene::BuiltScene;
-use serde_json::json;
+use palpate::scene::text::joined;
+use serde::Serialize;
 
 use super::circles::Circles;
-use super::ending::Ending;
+use super::ending::EndOfPath;
 use super::search::Search;
-use super::{described, figure, limits};
-use palpate::scene::text::joined;
-
+use super::{Found, figure, limits};
 use crate::arguments::DescendOptions;
 use crate::input::{self, longest_edge};
 use crate::outcome::{Failure, Outcome};
@@ -31,14 +30,14 @@ pub(super) struct Answer<const N: usize, const D: usize> {
     pub(super) search: Search<N>,
     pub(super) found: Timed<Descent<D>>,
     pub(super) certified: Timed<Certified<Point<D>>>,
-    pub(super) ending: Ending<D>,
+    pub(super) ending: EndOfPath<D>,
     pub(super) circles: Circles<D>,
 }
 
-/// A result, and the time that it takes [ns].
+/// A result, and the time that it takes [s].
 pub(super) struct Timed<T> {
     pub(super) result: T,
-    ns: u64,
+    time: f64,
 }
 
 impl<T> Timed<T> {
@@ -55,8 +54,7 @@ impl<T> Timed<T> {
             least = least.min(start.elapsed());
             runs += 1;
             if runs == MOST_RUNS || begin.elapsed() > ENOUGH {
-                let ns = u64::try_from(least.as_nanos()).unwrap_or(u64::MAX);
-                return Self { result, ns };
+                return Self { result, time: least.as_secs_f64() };
             }
         }
     }
@@ -86,17 +84,17 @@ where
     let shape = &scene.whole;
     let mut workspace = ElementWorkspace::new();
     let proof = Timed::of(|| minimum(shape, &element, &limits, &mut workspace));
-    let certified = Timed { result: proof.result.map_err(Failure::input)?, ns: proof.ns };
+    let certified = Timed { result: proof.result.map_err(Failure::input)?, time: proof.time };
     let found = Timed::of(|| search.run(shape, &element));
     let answer = Answer {
-        ending: Ending::of(shape, &found.result, &certified.result, size),
+        ending: EndOfPath::of(shape, &found.result, &certified.result, size),
         circles: Circles::of(shape, &element),
         certified,
         element,
         search,
         found,
     };
-    answer.print(options.json)?;
+    output::answer().print(&answer.report(), options.json)?;
     if let Some(picture) = picture {
         let figure = figure::of(shape, &answer, &options.scene);
         picture.save(&figure.map_err(Failure::input)?, picture::WIDTH)?;
@@ -132,58 +130,110 @@ impl<const N: usize, const D: usize> Answer<N, D> {
         is_memoirs.then(|| NaiveDescent::MEMOIR_EVALUATIONS * self.found.result.steps)
     }
 
-    fn print(&self, as_json: bool) -> Result<(), Failure> {
-        if as_json { self.print_json() } else { self.print_text() }
-    }
-
-    fn print_json(&self) -> Result<(), Failure> {
+    fn report(&self) -> Report<'_, D> {
         let Self { element, search, found, certified, .. } = self;
-        let mut answer = described(&found.result);
-        answer["method"] = search.method.name().into();
-        if search.method == ElementMethod::Naive {
-            answer["alpha"] = search.naive.alpha.into();
-            answer["mu_m"] = search.naive.mu_for(element).into();
-            answer["gradient"] = search.naive.gradient_in::<D>().name().into();
-            answer["memoir_evaluations"] = self.memoir_count().into();
-        }
-        answer["time_ns"] = found.ns.into();
-        answer["missed_by_m"] = self.missed_by().into();
-        answer["ending"] = self.ending.described();
-        answer["circles"] = self.circles.described();
-        answer["certified"] = json!({
-            "best_point_m": certified.result.best.0.to_vec(),
-            "lower_m": certified.result.lower,
-            "upper_m": certified.result.upper,
-            "evaluations": certified.result.evaluations,
-            "time_ns": certified.ns,
+        let naive = &search.naive;
+        let naive = self.memoir_count().map(|memoir_evaluations| Naive {
+            alpha: naive.alpha,
+            mu: naive.mu_for(element),
+            gradient: naive.gradient_in::<D>().name(),
+            memoir_evaluations,
         });
-        output::answer().json(&answer)?;
-        Ok(())
+        Report {
+            method: search.method.name(),
+            naive,
+            found: Found::from(&found.result),
+            time: found.time,
+            missed_by: self.missed_by(),
+            ending: &self.ending,
+            circles: &self.circles,
+            certified: ProvenMinimum {
+                minimum: certified.result.map(|best| best.0.to_vec()),
+                time: certified.time,
+            },
+            search: search.in_words(element),
+            element: name_of::<N>(),
+        }
     }
+}
 
-    fn print_text(&self) -> Result<(), Failure> {
-        let (found, certified) = (&self.found.result, &self.certified.result);
-        let [time, proof_time] = [self.found.ns, self.certified.ns].map(microseconds);
+/// The answer of `palpate descend` over a segment or a triangle.
+#[derive(Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub(crate) struct Report<'a, const D: usize> {
+    /// The name of the search.
+    method: &'static str,
+    /// The constants of the naive search.
+    #[serde(flatten)]
+    naive: Option<Naive>,
+    #[serde(flatten)]
+    found: Found,
+    /// The time that the search takes [s].
+    time: f64,
+    /// How far the value is above one that is proven to be taken [m].
+    missed_by: f64,
+    /// The end of the path.
+    ending: &'a EndOfPath<D>,
+    /// The circles around the element, and whether they exclude it.
+    circles: &'a Circles<D>,
+    /// The search with a proof.
+    certified: ProvenMinimum,
+    /// The method, with its constants.
+    #[serde(skip)]
+    search: String,
+    /// What the search is over.
+    #[serde(skip)]
+    element: &'static str,
+}
+
+/// With the method `naive` alone.
+#[derive(Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+struct Naive {
+    /// The factor of a step.
+    alpha: f64,
+    /// The step of a search [m].
+    mu: f64,
+    /// The way to gradients.
+    gradient: &'static str,
+    /// Ten evaluations for each step, as the memoir counts.
+    memoir_evaluations: u32,
+}
+
+/// The proven minimum.
+#[derive(Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+struct ProvenMinimum {
+    #[serde(flatten)]
+    minimum: Certified<Vec<f64>>,
+    /// The time that the search takes [s].
+    time: f64,
+}
+
+impl<const D: usize> fmt::Display for Report<'_, D> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { found, certified: ProvenMinimum { minimum, time: proof_time }, .. } = self;
+        let [time, proof_time] = [self.time, *proof_time].map(microseconds);
         let metres = |length: f64| format!("{length} m");
-        let mut out = output::answer();
-        writeln!(out, "method       {}", self.search.in_words(&self.element))?;
-        writeln!(out, "best point   {} m", joined(&found.best.0))?;
-        writeln!(out, "value        {} m, an upper bound", found.value)?;
-        write!(out, "steps        {} ({} evaluations, {time}", found.steps, found.evaluations)?;
-        match self.memoir_count() {
-            Some(count) => writeln!(out, "; the memoir counts 10 a gradient: {count})")?,
-            None => writeln!(out, ")")?,
+        writeln!(f, "method       {}", self.search)?;
+        writeln!(f, "best point   {} m", joined(&found.best))?;
+        writeln!(f, "value        {} m, an upper bound", found.value)?;
+        write!(f, "steps        {} ({} evaluations, {time}", found.steps, found.evaluations)?;
+        match &self.naive {
+            Some(Naive { memoir_evaluations, .. }) => {
+                writeln!(f, "; the memoir counts 10 a gradient: {memoir_evaluations})")?;
+            }
+            None => writeln!(f, ")")?,
         }
-        writeln!(out, "ended        {}", self.ending.in_words(metres))?;
-        let bounds = joined(&[certified.lower, certified.upper]);
-        let evaluations = certified.evaluations;
-        writeln!(out, "proven       [{bounds}] m ({evaluations} evaluations, {proof_time})")?;
-        writeln!(out, "lowest at    {} m", joined(&certified.best.0))?;
-        writeln!(out, "missed by    {} m, with the best point", self.missed_by())?;
-        for circle in self.circles.all() {
-            let words = circle.in_words(name_of::<N>(), metres);
-            writeln!(out, "{} about {} m: {words}", circle.name, circle.centre())?;
-        }
-        Ok(())
+        writeln!(f, "ended        {}", self.ending.in_words(metres))?;
+        let bounds = joined(&[minimum.lower, minimum.upper]);
+        let evaluations = minimum.evaluations;
+        writeln!(f, "proven       [{bounds}] m ({evaluations} evaluations, {proof_time})")?;
+        writeln!(f, "lowest at    {} m", joined(&minimum.best))?;
+        writeln!(f, "missed by    {} m, with the best point", self.missed_by)?;
+        self.circles.all().try_for_each(|circle| {
+            let words = circle.in_words(self.element, metres);
+            writeln!(f, "{} about {} m: {words}", circle.name, circle.centre())
+        })
     }
 }

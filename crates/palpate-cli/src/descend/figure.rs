@@ -45,7 +45,7 @@ where
     let outline = corners.into_iter().chain([corners[0]]);
     isolines = isolines.with_polyline(Polyline::new(name_of::<N>(), outline)?.faint());
     for (circle, dash) in answer.circles.all().zip([Dash::Dashed, Dash::Dotted]) {
-        isolines = with_circle(isolines, circle, on_plane(&circle.ball.centre), dash)?;
+        isolines = with_circle(isolines, circle, on_plane(&circle.centre), dash)?;
     }
     let (found, certified) = (&answer.found.result, &answer.certified.result);
     let isolines = isolines
@@ -93,7 +93,7 @@ fn with_circle<const D: usize>(
 ) -> Result<Isolines, PlotError> {
     /// Corners of the drawn polygon, whose sides are off by 1/5000 of the radius.
     const CORNERS: u32 = 160;
-    let radius = circle.ball.radius;
+    let radius = circle.radius;
     let corner = |i: u32| {
         let (sine, cosine) = (TAU * f64::from(i) / f64::from(CORNERS)).sin_cos();
         [centre[0] + radius * cosine, centre[1] + radius * sine]

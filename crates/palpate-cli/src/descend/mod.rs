@@ -5,10 +5,10 @@
 //! proven minimum.
 
 mod circles;
-mod element;
+pub(crate) mod element;
 mod ending;
 mod figure;
-mod pair;
+pub(crate) mod pair;
 mod search;
 
 use std::path::Path;
@@ -19,7 +19,7 @@ use palpate::field::{Aabb, Vector};
 use palpate::local::Descent;
 use palpate::query::Limits;
 use palpate::scene::{AnyScene, BuiltScene};
-use serde_json::{Value, json};
+use serde::Serialize;
 
 use crate::arguments::DescendOptions;
 use crate::input;
@@ -98,16 +98,32 @@ fn limits(tolerance: Option<f64>, size: f64) -> Limits {
     Limits::new(tolerance.unwrap_or(TOLERANCE * size))
 }
 
-/// The result of a local search, as JSON.
-fn described<const D: usize>(found: &Descent<D>) -> Value {
-    let path: Vec<_> = found.path.iter().map(|p| p.0.to_vec()).collect();
-    json!({
-        "best_point_m": found.best.0.to_vec(),
-        "value_m": found.value,
-        "steps": found.steps,
-        "evaluations": found.evaluations,
-        "path_m": path,
-    })
+/// The result of a local search.
+#[derive(Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub(crate) struct Found {
+    /// The best point [m].
+    pub(crate) best: Vec<f64>,
+    /// Its value, an upper bound of the minimum [m]; between two bodies, the larger value of both fields.
+    pub(crate) value: f64,
+    /// Steps that were taken.
+    pub(crate) steps: u32,
+    /// How often fields were evaluated; a gradient counts twice.
+    pub(crate) evaluations: u32,
+    /// The points of the path, from the start on [m].
+    pub(crate) path: Vec<Vec<f64>>,
+}
+
+impl<const D: usize> From<&Descent<D>> for Found {
+    fn from(found: &Descent<D>) -> Self {
+        Self {
+            best: found.best.0.to_vec(),
+            value: found.value,
+            steps: found.steps,
+            evaluations: found.evaluations,
+            path: found.path.iter().map(|p| p.0.to_vec()).collect(),
+        }
+    }
 }
 
 /// A length as figures write it.

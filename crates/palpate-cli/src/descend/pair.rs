@@ -3,7 +3,7 @@
 
 //! Local searches for a point in two bodies, beside their proven separation.
 
-use std::io::Write;
+use std::fmt;
 use std::path::Path;
 
 use palpate::field::{Aabb, Point};
@@ -11,12 +11,11 @@ use palpate::local::{Descent, ElementMethod, PairMethod, halton_starts};
 use palpate::plot::{Figure, Markers, PlotError, Polyline, Slice};
 use palpate::query::{Certified, Nearest, PairWorkspace, separation};
 use palpate::scene::BuiltScene;
-use serde_json::json;
+use palpate::scene::text::joined;
+use serde::Serialize;
 
 use super::search::refuse_naive;
-use super::{described, limits, method, written};
-use palpate::scene::text::joined;
-
+use super::{Found, limits, method, written};
 use crate::arguments::DescendOptions;
 use crate::input::{self, longest_edge};
 use crate::outcome::{Failure, Outcome};
@@ -73,7 +72,13 @@ where
     let certified = separation(&a.shape, &b.shape, &limits, &mut workspace);
     let certified = certified.map_err(Failure::input)?;
     let answer = Answer { method, bodies: [&a.name, &b.name], found, certified };
-    answer.print(options.json)?;
+    let report = Report {
+        method: answer.method.name(),
+        bodies: answer.bodies.map(str::to_owned),
+        descents: answer.found.iter().map(Found::from).collect(),
+        certified: answer.certified,
+    };
+    output::answer().print(&report, options.json)?;
     if let Some(picture) = picture {
         let figure = answer.figure(scene, &bounds, &options.scene).map_err(Failure::input)?;
         picture.save(&figure, picture::WIDTH)?;
@@ -82,46 +87,6 @@ where
 }
 
 impl<const D: usize> Answer<'_, D> {
-    fn print(&self, as_json: bool) -> Result<(), Failure> {
-        let Self { method, bodies, found, certified } = self;
-        let mut out = output::answer();
-        if as_json {
-            let answer = json!({
-                "method": method.name(),
-                "bodies": bodies,
-                "descents": found.iter().map(described).collect::<Vec<_>>(),
-                "certified": {
-                    "point_m": certified.best.point.0.to_vec(),
-                    "separation_lower_m": certified.lower,
-                    "separation_upper_m": certified.upper,
-                    "evaluations": certified.evaluations,
-                },
-            });
-            out.json(&answer)?;
-            return Ok(());
-        }
-        writeln!(out, "method       {method}, between {:?} and {:?}", bodies[0], bodies[1])?;
-        for found in found {
-            let start = found.path.first().map_or_else(String::new, |p| joined(&p.0));
-            let kind = if found.value <= 0.0 { "a point in both" } else { "no point in both" };
-            writeln!(out, "from         {start} m: {kind}")?;
-            writeln!(out, "  best point {} m", joined(&found.best.0))?;
-            writeln!(
-                out,
-                "  value      {} m, the larger of both fields; where both are exact, the separation is at most twice \
-                 that, {} m",
-                found.value,
-                2.0 * found.value
-            )?;
-            writeln!(out, "  steps      {} ({} evaluations)", found.steps, found.evaluations)?;
-        }
-        let bounds = joined(&[certified.lower, certified.upper]);
-        let evaluations = certified.evaluations;
-        writeln!(out, "proven       separation [{bounds}] m ({evaluations} evaluations)")?;
-        writeln!(out, "at           {} m", joined(&certified.best.point.0))?;
-        Ok(())
-    }
-
     /// The paths over the isolines; in space, on the plane xy through the point at which the
     /// separation is proven.
     fn figure(
@@ -158,5 +123,44 @@ impl<const D: usize> Answer<'_, D> {
             found.join(", ")
         );
         Ok(Figure::new(title(name)).with_caption(caption).with_isolines(isolines))
+    }
+}
+
+/// The answer of `palpate descend` between two bodies.
+#[derive(Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub(crate) struct Report<const D: usize> {
+    /// The name of the search.
+    method: &'static str,
+    /// The names of the bodies.
+    bodies: [String; 2],
+    /// What was found from each start.
+    descents: Vec<Found>,
+    /// The proven separation.
+    certified: Certified<Nearest<D>>,
+}
+
+impl<const D: usize> fmt::Display for Report<D> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { method, bodies: [a, b], descents, certified } = self;
+        writeln!(f, "method       {method}, between {a:?} and {b:?}")?;
+        for found in descents {
+            let start = found.path.first().map_or_else(String::new, |p| joined(p));
+            let kind = if found.value <= 0.0 { "a point in both" } else { "no point in both" };
+            writeln!(f, "from         {start} m: {kind}")?;
+            writeln!(f, "  best point {} m", joined(&found.best))?;
+            writeln!(
+                f,
+                "  value      {} m, the larger of both fields; where both are exact, the separation is at most twice \
+                 that, {} m",
+                found.value,
+                2.0 * found.value
+            )?;
+            writeln!(f, "  steps      {} ({} evaluations)", found.steps, found.evaluations)?;
+        }
+        let bounds = joined(&[certified.lower, certified.upper]);
+        let evaluations = certified.evaluations;
+        writeln!(f, "proven       separation [{bounds}] m ({evaluations} evaluations)")?;
+        writeln!(f, "at           {} m", joined(&certified.best.point.0))
     }
 }

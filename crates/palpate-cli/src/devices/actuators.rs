@@ -3,11 +3,13 @@
 
 //! The profiles of known actuators.
 
+use std::collections::BTreeMap;
 use std::io::Write;
 
 use palpate::vibration::{ACTUATORS, Actuator};
-use serde_json::{Map, Value, json};
+use serde::Serialize;
 
+use super::Figure;
 use crate::outcome::{Failure, Outcome};
 use crate::output;
 use palpate::scene::text::rounded;
@@ -16,8 +18,8 @@ use palpate::scene::text::rounded;
 pub(super) fn report(as_json: bool) -> Result<Outcome, Failure> {
     let mut out = output::answer();
     if as_json {
-        let rows = ACTUATORS.iter().map(|(name, actuator)| described(name, actuator));
-        out.json(&Value::Array(rows.collect()))?;
+        let actuators = ACTUATORS.iter().map(|(name, actuator)| Described::of(name, actuator));
+        out.json(&Answer { actuators: actuators.collect() })?;
         return Ok(Outcome::Yes);
     }
     writeln!(out, "actuators that shake; levels are parts of the rated level; ~ assumed")?;
@@ -37,16 +39,41 @@ pub(super) fn report(as_json: bool) -> Result<Outcome, Failure> {
     Ok(Outcome::Yes)
 }
 
-fn described(name: &str, actuator: &Actuator) -> Value {
-    let mut row = Map::new();
-    row.insert("name".to_owned(), name.into());
-    row.insert("actuator".to_owned(), actuator.name.as_ref().into());
-    row.insert("kind".to_owned(), actuator.mechanism.kind_name().into());
-    for (field, value, unit) in actuator.mechanism.figures() {
-        let assumed = actuator.assumed.contains(&field);
-        let figure = json!({ "value": value, "unit": unit, "assumed": assumed });
-        row.insert(field.to_owned(), figure);
+/// The answer of `palpate devices --actuators`.
+#[derive(Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub(crate) struct Answer {
+    /// The actuators.
+    actuators: Vec<Described>,
+}
+
+/// An actuator, with a figure for each number of its profile.
+#[derive(Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+struct Described {
+    /// Its name on the command line.
+    name: &'static str,
+    /// Its name.
+    actuator: String,
+    /// What makes it shake.
+    kind: &'static str,
+    #[serde(flatten)]
+    figures: BTreeMap<&'static str, Figure>,
+    /// Where the numbers are from.
+    source: String,
+}
+
+impl Described {
+    fn of(name: &'static str, actuator: &Actuator) -> Self {
+        let figures = actuator.mechanism.figures().into_iter().map(|(field, value, unit)| {
+            (field, Figure { value, unit, is_assumed: actuator.assumed.contains(&field) })
+        });
+        Self {
+            name,
+            actuator: actuator.name.to_string(),
+            kind: actuator.mechanism.kind_name(),
+            figures: figures.collect(),
+            source: actuator.source.to_string(),
+        }
     }
-    row.insert("source".to_owned(), actuator.source.as_ref().into());
-    Value::Object(row)
 }

@@ -3,14 +3,15 @@
 
 //! `palpate devices`: the profiles of known devices and actuators.
 
-mod actuators;
-mod rendered;
-mod stability;
+pub(crate) mod actuators;
+pub(crate) mod rendered;
+pub(crate) mod stability;
 
+use std::collections::BTreeMap;
 use std::io::Write;
 
 use palpate::device::{DeviceProfile, GripperProfile, PROFILES, TurningProfile};
-use serde_json::{Map, Value, json};
+use serde::Serialize;
 
 use crate::arguments::DevicesOptions;
 use crate::outcome::{Failure, Outcome};
@@ -156,8 +157,8 @@ pub(crate) fn run(options: &DevicesOptions) -> Result<Outcome, Failure> {
     let listed = listed(options);
     let mut out = output::answer();
     if options.json {
-        let rows = listed.iter().map(|(name, profile)| described(name, profile)).collect();
-        out.json(&Value::Array(rows))?;
+        let devices = listed.iter().map(|(name, profile)| Device::of(name, profile)).collect();
+        out.json(&Answer { devices })?;
         return Ok(Outcome::Yes);
     }
     let along: Vec<_> =
@@ -250,39 +251,82 @@ fn cell(value: f64, is_assumed: bool) -> String {
     format!("{mark}{number}")
 }
 
-fn described(name: &str, profile: &DeviceProfile) -> Value {
-    let mut row = Map::new();
-    row.insert("name".to_owned(), name.into());
-    row.insert("device".to_owned(), profile.name.as_ref().into());
-    row.extend(numbers(&COLUMNS, profile, &profile.assumed));
-    row.insert("source".to_owned(), profile.source.as_ref().into());
-    if let Some(turning) = &profile.turning {
-        let mut about: Map<_, _> = numbers(&TURNING, turning, &turning.assumed).collect();
-        about.insert("source".to_owned(), turning.source.as_ref().into());
-        row.insert("turning".to_owned(), about.into());
+/// The answer of `palpate devices`.
+#[derive(Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub(crate) struct Answer {
+    /// The devices.
+    devices: Vec<Device>,
+}
+
+/// A device, with a figure for each number of its profile.
+#[derive(Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+struct Device {
+    /// Its name on the command line.
+    name: String,
+    /// Its name.
+    device: String,
+    #[serde(flatten)]
+    figures: BTreeMap<&'static str, Figure>,
+    /// Where the numbers are from.
+    source: String,
+    /// About its axes; `null` without rotation.
+    turning: Option<Turning>,
+    /// Between its fingers; `null` without a gripper.
+    gripper: Option<BTreeMap<&'static str, Figure>>,
+    /// The names of its buttons.
+    buttons: Vec<String>,
+}
+
+/// A device about its axes.
+#[derive(Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+struct Turning {
+    #[serde(flatten)]
+    figures: BTreeMap<&'static str, Figure>,
+    /// Where the numbers are from.
+    source: String,
+}
+
+/// A number of a profile.
+#[derive(Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+struct Figure {
+    /// The number.
+    value: f64,
+    /// Its unit.
+    unit: &'static str,
+    /// `true` if it is not from the source.
+    is_assumed: bool,
+}
+
+impl Device {
+    fn of(name: &str, profile: &DeviceProfile) -> Self {
+        let turning = profile.turning.as_ref().map(|turning| Turning {
+            figures: figures(&TURNING, turning, &turning.assumed),
+            source: turning.source.to_string(),
+        });
+        Self {
+            name: name.to_owned(),
+            device: profile.name.to_string(),
+            figures: figures(&COLUMNS, profile, &profile.assumed),
+            source: profile.source.to_string(),
+            turning,
+            gripper: profile.gripper.as_ref().map(|gripper| figures(&GRIPPER, gripper, &[])),
+            buttons: profile.buttons.iter().map(ToString::to_string).collect(),
+        }
     }
-    if let Some(gripper) = &profile.gripper {
-        let numbers: Map<_, _> = numbers(&GRIPPER, gripper, &[]).collect();
-        row.insert("gripper".to_owned(), numbers.into());
-    }
-    if !profile.buttons.is_empty() {
-        row.insert("buttons".to_owned(), json!(profile.buttons));
-    }
-    Value::Object(row)
 }
 
 /// The numbers of a profile with their units.
-fn numbers<P>(
+fn figures<P>(
     columns: &[Column<P>],
     profile: &P,
     assumed: &[&str],
-) -> impl Iterator<Item = (String, Value)> {
-    columns.iter().map(move |column| {
-        let number = json!({
-            "value": (column.of)(profile),
-            "unit": column.unit,
-            "assumed": assumed.contains(&column.key),
-        });
-        (column.key.to_owned(), number)
-    })
+) -> BTreeMap<&'static str, Figure> {
+    let figures = columns.iter().map(|Column { key, unit, of, .. }| {
+        (*key, Figure { value: of(profile), unit, is_assumed: assumed.contains(key) })
+    });
+    figures.collect()
 }

@@ -9,7 +9,7 @@ use palpate::device::DeviceProfile;
 use palpate::field::Shape;
 use palpate::haptics::{Bodies, Body, Material, Protection, Surface};
 use palpate::safety::Accepted;
-use serde_json::{Value, json};
+use serde::Serialize;
 
 use super::with_forces;
 use crate::arguments::DevicesOptions;
@@ -26,16 +26,17 @@ pub(super) fn report(options: &DevicesOptions) -> Result<Outcome, Failure> {
     let mut out = output::answer();
     if options.json {
         let of = |(name, accepted): &(&str, Vec<Accepted>)| {
-            let materials = names.iter().zip(accepted).map(|(material, accepted)| {
-                let mut json = serde_json::to_value(accepted)?;
-                json["name"] = (*material).into();
-                Ok(json)
-            });
-            let materials = materials.collect::<Result<Vec<_>, serde_json::Error>>()?;
-            Ok(json!({ "device": name, "rate": options.rate, "materials": materials }))
+            let named = |(name, accepted): (&&'static str, &Accepted)| Rendered {
+                accepted: accepted.clone(),
+                name,
+            };
+            RenderedDevice {
+                device: (*name).to_owned(),
+                rate: options.rate,
+                materials: names.iter().zip(accepted).map(named).collect(),
+            }
         };
-        let rows = rows.iter().map(of).collect::<Result<Vec<_>, serde_json::Error>>()?;
-        out.json(&Value::Array(rows))?;
+        out.json(&Answer { devices: rows.iter().map(of).collect() })?;
         return Ok(Outcome::Yes);
     }
     writeln!(out, "| | {} |", names.join(" | ").replace('_', " "))?;
@@ -74,4 +75,34 @@ fn stiffest(material: &Material) -> f64 {
 
 fn cell(stiffness: f64, damping: f64) -> String {
     format!("{} / {}", rounded(stiffness), rounded(damping))
+}
+
+/// The answer of `palpate devices --materials`.
+#[derive(Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub(crate) struct Answer {
+    /// The devices that give forces.
+    devices: Vec<RenderedDevice>,
+}
+
+/// What a device renders of each material.
+#[derive(Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+struct RenderedDevice {
+    /// Its name on the command line.
+    device: String,
+    /// Ticks a second [Hz].
+    rate: f64,
+    /// The materials.
+    materials: Vec<Rendered>,
+}
+
+/// What a device renders of a material.
+#[derive(Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+struct Rendered {
+    #[serde(flatten)]
+    accepted: Accepted,
+    /// The name of the material.
+    name: &'static str,
 }

@@ -10,7 +10,7 @@ use palpate::device::DeviceProfile;
 use palpate::haptics::Material;
 use palpate::stability::{Plant, Press, Rest};
 use rayon::prelude::*;
-use serde_json::{Value, json};
+use serde::Serialize;
 
 use super::with_forces;
 use crate::arguments::DevicesOptions;
@@ -25,8 +25,10 @@ const DELAYS: [usize; 3] = [0, 1, 2];
 const MOST_GIVEN: f64 = 1e-3;
 
 /// The worst of many presses.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug, Default, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 struct Worst {
+    /// How many presses there were.
     presses: usize,
     /// Presses in which the hand did not come to rest.
     restless: usize,
@@ -35,13 +37,13 @@ struct Worst {
     /// Presses after which the wall was softer.
     softer: usize,
     /// The largest swing [m].
-    swing: f64,
+    largest_swing: f64,
     /// The largest swing of the force [N].
-    force_swing: f64,
+    largest_force_swing: f64,
     /// The most energy given [J].
-    energy_given: f64,
+    most_energy_given: f64,
     /// The largest change of what the controller took [N].
-    controller_step: f64,
+    largest_controller_step: f64,
 }
 
 impl Worst {
@@ -51,43 +53,51 @@ impl Worst {
             restless: self.restless + usize::from(!rest.is_at_rest()),
             giving: self.giving + usize::from(rest.energy_given > MOST_GIVEN),
             softer: self.softer + usize::from(rest.stiffness_part < 1.0),
-            swing: self.swing.max(rest.swing),
-            force_swing: self.force_swing.max(rest.force_swing),
-            energy_given: self.energy_given.max(rest.energy_given),
-            controller_step: self.controller_step.max(rest.controller_step),
+            largest_swing: self.largest_swing.max(rest.swing),
+            largest_force_swing: self.largest_force_swing.max(rest.force_swing),
+            most_energy_given: self.most_energy_given.max(rest.energy_given),
+            largest_controller_step: self.largest_controller_step.max(rest.controller_step),
         }
     }
 
     fn cell(&self) -> String {
         let mut parts = Vec::new();
         if self.restless > 0 {
-            let (swing, force) = (rounded(1e3 * self.swing), rounded(self.force_swing));
+            let (swing, force) =
+                (rounded(1e3 * self.largest_swing), rounded(self.largest_force_swing));
             parts.push(format!("{} swing, to {swing} mm, {force} N", self.restless));
         }
         if self.giving > 0 {
             parts.push(format!(
                 "{} give, to {} mJ",
                 self.giving,
-                rounded(1e3 * self.energy_given)
+                rounded(1e3 * self.most_energy_given)
             ));
         }
         if parts.is_empty() { "all rest".to_owned() } else { parts.join("; ") }
     }
+}
 
-    fn described(&self, device: &str, delay: usize) -> Value {
-        json!({
-            "device": device,
-            "delay": delay,
-            "presses": self.presses,
-            "restless": self.restless,
-            "giving": self.giving,
-            "softer": self.softer,
-            "largest_swing": self.swing,
-            "largest_force_swing": self.force_swing,
-            "most_energy_given": self.energy_given,
-            "largest_controller_step": self.controller_step,
-        })
-    }
+/// The answer of `palpate devices --stability`.
+#[derive(Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub(crate) struct Answer {
+    /// The presses by each device on each material with each delay.
+    presses: Vec<Pressed>,
+}
+
+/// The presses by a device on a material with a delay.
+#[derive(Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+struct Pressed {
+    /// The name of the device on the command line.
+    device: String,
+    /// The name of the material.
+    material: String,
+    /// The delay of forces [ticks].
+    delay: usize,
+    #[serde(flatten)]
+    worst: Worst,
 }
 
 /// Prints a table, of which a page can be made, or JSON.
@@ -113,14 +123,15 @@ pub(super) fn report(options: &DevicesOptions) -> Result<Outcome, Failure> {
     let mut out = output::answer();
     if options.json {
         let of = |(device, material, cells): &(&str, &str, Vec<Worst>)| {
-            let described = |(worst, delay): (&Worst, usize)| {
-                let mut row = worst.described(device, delay);
-                row["material"] = (*material).into();
-                row
+            let pressed = |(worst, delay): (&Worst, usize)| Pressed {
+                device: (*device).to_owned(),
+                material: (*material).to_owned(),
+                delay,
+                worst: *worst,
             };
-            cells.iter().zip(DELAYS).map(described).collect::<Vec<_>>()
+            cells.iter().zip(DELAYS).map(pressed).collect::<Vec<_>>()
         };
-        out.json(&Value::Array(found.iter().flat_map(of).collect()))?;
+        out.json(&Answer { presses: found.iter().flat_map(of).collect() })?;
         return Ok(Outcome::Yes);
     }
     writeln!(

@@ -4,7 +4,7 @@
 //! `palpate eval`: evaluates a scene at points.
 
 mod answer;
-mod stream;
+pub(crate) mod stream;
 
 use palpate::scene::{AnyScene, Balls, BuiltScene, PointQuestion, Question};
 
@@ -13,7 +13,7 @@ use crate::ask;
 use crate::input;
 use crate::interrupt::Interrupt;
 use crate::outcome::{Failure, Outcome};
-use crate::output::{Destination, Files};
+use crate::output::{self, Destination, Files};
 
 pub(crate) fn run(options: &EvalOptions, interrupt: &Interrupt) -> Result<Outcome, Failure> {
     let inputs = [Some(options.scene.as_path()), options.points.as_deref()];
@@ -59,7 +59,7 @@ fn evaluate<const D: usize>(
         ..PointQuestion::default()
     });
     let answer = scene.ask(&question).map_err(ask::failure)?;
-    ask::print(&answer, options.json)?;
+    output::answer().print(&answer, options.json)?;
     Ok(match &ask::point(&answer).ball {
         Some(ball) if ball.touches != Some(true) => Outcome::No,
         _ => Outcome::Yes,

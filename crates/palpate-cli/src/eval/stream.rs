@@ -187,10 +187,11 @@ impl<const D: usize> Job<'_, D> {
 
 /// The answer for a point, and for the ball around it if that is asked about.
 #[derive(Serialize)]
-struct Line<const D: usize> {
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub(crate) struct Line<const D: usize> {
     #[serde(flatten)]
     at: AtPoint<D>,
-    #[serde(skip_serializing_if = "Option::is_none")]
+    /// What is known of the ball, if one was asked about.
     ball: Option<BallAnswer<D>>,
 }
 

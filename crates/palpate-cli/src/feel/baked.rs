@@ -6,7 +6,7 @@
 use std::fmt::Write;
 
 use palpate::scene::{BakedBody, BakedGrid, BuiltScene};
-use serde_json::{Value, json};
+use serde::Serialize;
 
 use crate::arguments::FeelOptions;
 use crate::check::unit_hint;
@@ -54,12 +54,28 @@ pub(super) fn write(out: &mut String, bodies: &[BakedBody]) -> std::fmt::Result 
     Ok(())
 }
 
-pub(super) fn json(bodies: &[BakedBody]) -> Value {
-    let told = |BakedBody { name, grid, .. }: &BakedBody| match grid {
-        Ok(BakedGrid { cell, deviation, .. }) => {
-            json!({ "name": name, "cell_m": cell, "deviation_m": deviation })
+/// A body of meshes, and the grid by which it is touched.
+#[derive(Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub(crate) struct AsGrid {
+    /// The name of the body.
+    name: String,
+    /// The size of the grid's cells [m].
+    cell: Option<f64>,
+    /// How far its values are off the mesh's at most [m].
+    deviation: Option<f64>,
+    /// Why there is no grid.
+    error: Option<String>,
+}
+
+impl From<&BakedBody> for AsGrid {
+    fn from(BakedBody { name, grid, .. }: &BakedBody) -> Self {
+        let (made, error) = (grid.as_ref().ok(), grid.as_ref().err());
+        Self {
+            name: name.clone(),
+            cell: made.map(|grid| grid.cell),
+            deviation: made.map(|grid| grid.deviation),
+            error: error.map(ToString::to_string),
         }
-        Err(why) => json!({ "name": name, "error": why.to_string() }),
-    };
-    bodies.iter().map(told).collect()
+    }
 }

@@ -9,7 +9,7 @@ use palpate::haptics::Tool;
 use palpate::safety::WorkspaceMap;
 use palpate::scene::BuiltScene;
 use palpate::sim::{Glove, Hand, HandPath, RecordedDevice, SimulatedDevice, SimulationError};
-use serde_json::{Value, json};
+use serde::Serialize;
 
 use crate::arguments::DeviceChoice;
 use crate::outcome::Failure;
@@ -40,7 +40,10 @@ pub(super) fn is_fitted<const D: usize>(scene: &BuiltScene<D>, choice: &DeviceCh
 }
 
 /// How far paths leave the workspace of a simulated device.
-pub(super) struct Beyond {
+#[derive(Clone, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub(crate) struct Beyond {
+    #[serde(skip)]
     device: String,
     /// The largest distance from the workspace, at the device [m].
     distance: f64,
@@ -89,16 +92,6 @@ impl Beyond {
             center.join(", "),
             rounded(*sufficient_scale),
         )
-    }
-
-    pub(super) fn json(&self) -> Value {
-        let Self { distance, scale, sufficient_scale, center, .. } = self;
-        json!({
-            "distance": distance,
-            "scale": scale,
-            "sufficient_scale": sufficient_scale,
-            "center": center,
-        })
     }
 }
 

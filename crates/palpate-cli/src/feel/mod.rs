@@ -13,7 +13,7 @@ mod moved;
 mod nearness;
 mod outputs;
 mod paths;
-mod report;
+pub(crate) mod report;
 mod slices;
 mod tool;
 mod vibration;

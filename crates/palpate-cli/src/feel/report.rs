@@ -12,17 +12,17 @@ use palpate::haptics::{Body, Progress, Servo, Surface, Texture, TextureKind};
 use palpate::safety::{Acceptance, Accepted, DeviceLimits, Rule};
 use palpate::scene::{BakedBody, BuiltScene};
 use palpate::servo_loop::RunReport;
-use serde_json::Value;
+use serde::Serialize;
 
 use crate::outcome::Failure;
 use crate::output::{self, counted, shown};
 use palpate::scene::text::rounded;
 
 use super::asked::{self, range};
-use super::baked;
+use super::baked::{self, AsGrid};
 use super::held::Beyond;
 use super::inside;
-use super::vibration::Played;
+use super::vibration::{Played, Vibrated};
 
 /// The line that is shown while the servo runs.
 pub(crate) fn live_line(progress: &Progress) -> String {
@@ -81,7 +81,7 @@ impl<const D: usize> Felt<'_, D> {
     pub(super) fn print(&self, as_json: bool) -> Result<(), Failure> {
         let mut out = output::answer();
         if as_json {
-            out.json(&self.json()?)?;
+            out.json(&self.answer())?;
         } else {
             let mut text = String::new();
             write_report(&mut text, self).unwrap_or_default();
@@ -90,49 +90,27 @@ impl<const D: usize> Felt<'_, D> {
         Ok(())
     }
 
-    fn json(&self) -> Result<Value, serde_json::Error> {
-        let mut json = serde_json::to_value(self.report)?;
-        json["device"] = self.device.name.as_ref().into();
-        if let Some(file) = self.device_file {
-            json["device_file"] = file.display().to_string().into();
+    fn answer(&self) -> Answer<'_> {
+        let is_tool = self.servo.tool().is_some();
+        let of_tool = |entry: usize| self.accepted.get(entry).filter(|_| is_tool);
+        let of_body = |body: usize| self.accepted.get(body).filter(|_| !is_tool);
+        let bodies = self.scene.bodies.iter().enumerate();
+        Answer {
+            report: self.report,
+            device: self.device.name.to_string(),
+            device_file: self.device_file.map(|file| file.display().to_string()),
+            workspace_scale: self.workspace_scale,
+            beyond_workspace: self.beyond.as_ref(),
+            as_grids: self.baked.iter().map(AsGrid::from).collect(),
+            played: self.played.map(Played::answer),
+            coupling: of_tool(0),
+            angular_coupling: of_tool(1),
+            accepted_guides: self.servo.accepted_guides(),
+            bodies: bodies
+                .map(|(body, built)| FeltBody { name: &built.name, accepted: of_body(body) })
+                .collect(),
+            moving: self.moving().map(str::to_owned).collect(),
         }
-        for (start, told) in
-            self.report.starts_inside.iter().zip(json_items(&mut json, "starts_inside"))
-        {
-            told["name"] = self.name_of(start.body).into();
-        }
-        if let Some(scale) = self.workspace_scale {
-            json["workspace_scale"] = scale.into();
-        }
-        if let Some(beyond) = &self.beyond {
-            json["beyond_workspace"] = beyond.json();
-        }
-        let guides = self.servo.accepted_guides();
-        for (accepted, told) in guides.iter().zip(json_items(&mut json, "guides")) {
-            if let (Value::Object(told), Value::Object(accepted)) =
-                (told, serde_json::to_value(accepted)?)
-            {
-                told.extend(accepted);
-            }
-        }
-        if !self.baked.is_empty() {
-            json["as_grids"] = baked::json(self.baked);
-        }
-        if let Some(played) = self.played {
-            json["vibration"] = played.json();
-        }
-        if self.servo.tool().is_some() {
-            json["coupling"] = serde_json::to_value(self.accepted.first())?;
-            if let Some(turning) = self.accepted.get(1) {
-                json["angular_coupling"] = serde_json::to_value(turning)?;
-            }
-        } else {
-            json["bodies"] = self.bodies_json()?;
-        }
-        if !self.scene.motions.is_empty() {
-            json["moving"] = self.moving().collect();
-        }
-        Ok(json)
     }
 
     /// The name of a body; empty for one that is not there.
@@ -144,21 +122,46 @@ impl<const D: usize> Felt<'_, D> {
     fn moving(&self) -> impl Iterator<Item = &str> {
         self.scene.moving().map(|body| self.scene.bodies[body].name.as_str())
     }
-
-    /// The accepted stiffness and damping of each body.
-    fn bodies_json(&self) -> Result<Value, serde_json::Error> {
-        let bodies = self.scene.bodies.iter().zip(self.accepted).map(|(body, accepted)| {
-            let mut json = serde_json::to_value(accepted)?;
-            json["name"] = body.name.as_str().into();
-            Ok(json)
-        });
-        bodies.collect()
-    }
 }
 
-/// The items of a list of a JSON object.
-fn json_items<'a>(json: &'a mut Value, key: &str) -> impl Iterator<Item = &'a mut Value> {
-    json.get_mut(key).and_then(Value::as_array_mut).into_iter().flatten()
+/// The answer of `palpate feel`: the run's report, and what the program knows beside it.
+#[derive(Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub(crate) struct Answer<'a> {
+    #[serde(flatten)]
+    report: &'a RunReport,
+    /// The name of the device.
+    device: String,
+    /// The file that the device's profile is from.
+    device_file: Option<String>,
+    /// World metres for each metre of the device, if the program chose them.
+    workspace_scale: Option<f64>,
+    /// How far a path leaves the workspace of the device, if it does.
+    beyond_workspace: Option<&'a Beyond>,
+    /// The bodies of meshes.
+    as_grids: Vec<AsGrid>,
+    /// What actuators played, if that was written to a file.
+    played: Option<Vibrated>,
+    /// The coupling of a tool along axes.
+    coupling: Option<&'a Accepted>,
+    /// The coupling of a tool about axes.
+    angular_coupling: Option<&'a Accepted>,
+    /// The accepted stiffness and damping of each guide, in the order of `guides`.
+    accepted_guides: &'a [Accepted],
+    /// The bodies of the scene; their places in this list are their numbers.
+    bodies: Vec<FeltBody<'a>>,
+    /// The names of the bodies that have motions.
+    moving: Vec<String>,
+}
+
+/// A body of the scene.
+#[derive(Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub(crate) struct FeltBody<'a> {
+    /// The name of the body.
+    name: &'a str,
+    /// Its accepted stiffness and damping; `None` if a tool with a coupling touches it.
+    accepted: Option<&'a Accepted>,
 }
 
 fn write_report<const D: usize>(out: &mut String, felt: &Felt<'_, D>) -> std::fmt::Result {

@@ -13,7 +13,7 @@ use palpate::vibration::{
     Actuator, ActuatorModel, Cue, Limiting, Mapping, MappingOptions, Sensation, Synthesiser,
     Tap, Tones, Voice, sensation_level, write_wav,
 };
-use serde_json::{Value, json};
+use serde::Serialize;
 
 use crate::outcome::Failure;
 use crate::output::{Destination, counted, shown};
@@ -195,16 +195,37 @@ impl Played {
         Ok(())
     }
 
-    pub(super) fn json(&self) -> Value {
-        json!({
-            "actuator": self.actuator.as_ref().map(|actuator| actuator.name.as_ref()),
-            "kind": self.actuator.as_ref().map(|actuator| actuator.mechanism.kind_name()),
-            "channels": self.levels.len(),
-            "limited_ticks": self.limiting.ticks,
-            "largest_reduction_db": self.limiting.largest_reduction_db(),
-            "sensation_levels_db": self.levels,
-        })
+    /// The part of the answer.
+    pub(super) fn answer(&self) -> Vibrated {
+        let actuator = self.actuator.as_ref();
+        Vibrated {
+            actuator: actuator.map(|actuator| actuator.name.to_string()),
+            kind: actuator.map(|actuator| actuator.mechanism.kind_name()),
+            channels: self.levels.len(),
+            limited_ticks: self.limiting.ticks,
+            largest_reduction: self.limiting.largest_reduction_db(),
+            sensation_levels: self.levels.clone(),
+        }
     }
+}
+
+/// What actuators played.
+#[derive(Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub(crate) struct Vibrated {
+    /// The actuator; `null` for one that plays every frequency.
+    actuator: Option<String>,
+    /// Its kind.
+    kind: Option<&'static str>,
+    /// How many actuators there are.
+    channels: usize,
+    /// Ticks in which the vibration was made smaller.
+    limited_ticks: u64,
+    /// By how much at most [dB].
+    largest_reduction: f64,
+    /// How far each actuator's strongest moment is above the threshold of the skin [dB]; `null` for
+    /// one that was silent.
+    sensation_levels: Vec<Option<f64>>,
 }
 
 /// Where a body takes a point between two times [s].

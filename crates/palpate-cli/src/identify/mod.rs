@@ -3,7 +3,7 @@
 
 //! `palpate identify`: moves a device, says what it is made of, and writes its profile.
 
-mod report;
+pub(crate) mod report;
 
 use std::io::{self, IsTerminal};
 use std::time::{Duration, Instant};

@@ -3,11 +3,12 @@
 
 //! What `palpate identify` prints.
 
+use std::collections::BTreeMap;
 use std::io::{self, Write};
 
 use palpate::device::DeviceProfile;
 use palpate::sim::{DeviceAxis, EncoderStep, Estimate, Identified, IdentifiedAxis};
-use serde_json::{Value, json};
+use serde::Serialize;
 
 use crate::arguments::IdentifyOptions;
 use crate::outcome::Failure;
@@ -65,7 +66,7 @@ impl Report<'_> {
     pub(super) fn print(&self) -> Result<(), Failure> {
         let mut out = output::answer();
         if self.options.json {
-            out.json(&self.described())?;
+            out.json(&self.answer())?;
             return Ok(());
         }
         writeln!(
@@ -178,47 +179,117 @@ impl Report<'_> {
         rows
     }
 
-    fn described(&self) -> Value {
-        let axes = self.found.axes.iter().map(|axis| {
-            let mut described = json!({
-                "axis": axis.axis.to_string(),
-                "strokes": axis.strokes,
-                "time": axis.time,
-                "misfit": axis.misfit,
-                "softest_spring": axis.softest_spring,
-                "offset": {
-                    "value": axis.offset.value,
-                    "error": axis.offset.error,
-                    "unit": axis.axis.force_unit(),
+    fn answer(&self) -> Answer {
+        let axis = |axis: &IdentifiedAxis| {
+            let number = |row: Row| Number {
+                value: row.found.value,
+                error: row.found.error,
+                unit: row.unit,
+                is_seen: row.is_seen,
+                profile: row.profile,
+                made_with: row.made_with,
+            };
+            Axis {
+                axis: axis.axis.to_string(),
+                strokes: axis.strokes,
+                time: axis.time,
+                misfit: axis.misfit,
+                softest_spring: axis.softest_spring,
+                offset: Offset {
+                    value: axis.offset.value,
+                    error: axis.offset.error,
+                    unit: axis.axis.force_unit(),
                 },
-                "has_weight": axis.has_weight(),
-                "steps": match axis.encoder_step {
+                has_weight: axis.has_weight(),
+                steps: match axis.encoder_step {
                     EncoderStep::Even(_) => "even",
                     EncoderStep::Uneven(_) => "uneven",
                     EncoderStep::Unseen(_) => "unseen",
                 },
-            });
-            for row in self.rows(axis) {
-                described[row.key] = json!({
-                    "value": row.found.value,
-                    "error": row.found.error,
-                    "unit": row.unit,
-                    "is_seen": row.is_seen,
-                    "profile": row.profile,
-                    "made_with": row.made_with,
-                });
+                numbers: self.rows(axis).map(|row| (row.key, number(row))).into(),
             }
-            described
-        });
-        json!({
-            "device": self.profile.name,
-            "rate": self.options.rate,
-            "seed": self.options.seed,
-            "axes": axes.collect::<Vec<_>>(),
-            "is_turning_unknown": self.found.is_turning_unknown,
-            "written": self.out.map(|out| out.name().display().to_string()),
-        })
+        };
+        Answer {
+            device: self.profile.name.to_string(),
+            rate: self.options.rate,
+            seed: self.options.seed,
+            axes: self.found.axes.iter().map(axis).collect(),
+            is_turning_unknown: self.found.is_turning_unknown,
+            written: self.out.map(|out| out.name().display().to_string()),
+        }
     }
+}
+
+/// The answer of `palpate identify`.
+#[derive(Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub(crate) struct Answer {
+    /// The name of the device.
+    device: String,
+    /// Ticks a second [Hz].
+    rate: f64,
+    /// The seed of the motions.
+    seed: u64,
+    /// The axes, those of translation first.
+    axes: Vec<Axis>,
+    /// `true` if the device senses its orientation but gives no torque.
+    is_turning_unknown: bool,
+    /// The profile that was written.
+    written: Option<String>,
+}
+
+/// What was found of an axis: mass or inertia, damping, friction and encoder step.
+#[derive(Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+struct Axis {
+    /// The axis.
+    axis: String,
+    /// Strokes that were evaluated.
+    strokes: u64,
+    /// The time of all motions [s].
+    time: f64,
+    /// The misfit of the model: about 1 where it is right.
+    misfit: f64,
+    /// The softest spring by which a hand may hold the handle and be noticed [N/m], or [N·m/rad].
+    softest_spring: Option<f64>,
+    /// A constant force beside the motors'.
+    offset: Offset,
+    /// `true` if that force is weight that is not balanced.
+    has_weight: bool,
+    /// The steps of the encoder: `even`, `uneven` or `unseen`.
+    steps: &'static str,
+    #[serde(flatten)]
+    numbers: BTreeMap<&'static str, Number>,
+}
+
+/// A constant force [N], or torque [N·m].
+#[derive(Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+struct Offset {
+    /// The number.
+    value: f64,
+    /// Two standard deviations.
+    error: f64,
+    /// The unit.
+    unit: &'static str,
+}
+
+/// A number that was found.
+#[derive(Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+struct Number {
+    /// The number.
+    value: f64,
+    /// Two standard deviations.
+    error: f64,
+    /// The unit.
+    unit: &'static str,
+    /// `true` if the motions tell the number.
+    is_seen: bool,
+    /// The number of the profile.
+    profile: f64,
+    /// The number of the simulated device.
+    made_with: f64,
 }
 
 impl Row {

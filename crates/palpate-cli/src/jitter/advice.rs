@@ -16,41 +16,41 @@ const STEADY: f64 = 0.1;
 /// One loop is better than another if its lateness is at most this share of the other's.
 const BETTER: f64 = 0.5;
 
-/// The system throttled a loop that was late by this much [ns]: Linux throttles real-time
+/// The system throttled a loop that was late by this much [s]: Linux throttles real-time
 /// threads for 50 ms.
-const HELD_BACK_NS: u64 = 45_000_000;
+const HELD_BACK: f64 = 0.045;
 
 /// Fewer ticks do not give a quantile of 99.9 %.
 const ENOUGH: u64 = 1000;
 
 /// Advice in sentences, at least one.
 pub(super) fn advice(measured: &[Measured], priority: &Priority, rate: f64) -> Vec<String> {
-    let period_ns = 1e9 / rate;
+    let period = 1.0 / rate;
     let [Some(normal), raised] = [false, true].map(|is_raised| Ways::of(measured, is_raised))
     else {
         return vec!["measure for longer: the loops had no tick".to_owned()];
     };
-    let is_worth_it = |raised: &Ways<'_>| is_better(raised.mixed.p999_ns, normal.mixed.p999_ns);
+    let is_worth_it = |raised: &Ways<'_>| is_better(raised.mixed.p999, normal.mixed.p999);
     let mut advice = vec![about_priority(&normal, raised.as_ref(), priority)];
     // Further advice is for the priority advised here.
     let best = raised.as_ref().filter(|raised| is_worth_it(raised)).unwrap_or(&normal);
-    advice.push(way_to_wait(best, period_ns));
+    advice.push(way_to_wait(best, period));
     // A loop that does not sleep is late only if the system takes its processor away.
-    let taken_ns = best.spin.max_ns.min(best.mixed.max_ns);
-    if taken_ns as f64 > period_ns {
+    let taken = best.spin.max.min(best.mixed.max);
+    if taken > period {
         advice.push(format!(
             "the processor was taken away for {} from loops that did not sleep: stop other \
              programs; give a virtual machine its own processors, or use a physical one",
-            microseconds(taken_ns),
+            microseconds(taken),
         ));
     }
-    if let Some(held_back_ns) = raised.map(|raised| raised.spin.max_ns)
-        && held_back_ns >= HELD_BACK_NS
+    if let Some(held_back) = raised.map(|raised| raised.spin.max)
+        && held_back >= HELD_BACK
     {
         advice.push(format!(
             "never spin alone with a raised priority: the system stopped the loop for {}, as \
              Linux does to real-time threads that do not sleep (sched_rt_runtime_us)",
-            microseconds(held_back_ns),
+            microseconds(held_back),
         ));
     }
     if normal.sleep.count < ENOUGH {
@@ -85,21 +85,19 @@ impl<'a> Ways<'a> {
     }
 }
 
-fn is_better(a_ns: u64, b_ns: u64) -> bool {
-    a_ns as f64 <= BETTER * b_ns as f64
+fn is_better(a: f64, b: f64) -> bool {
+    a <= BETTER * b
 }
 
 /// Chooses by the 99 % quantiles the steady way to wait that costs the least power.
-fn way_to_wait(ways: &Ways<'_>, period_ns: f64) -> String {
+fn way_to_wait(ways: &Ways<'_>, period: f64) -> String {
     let Ways { sleep, mixed, spin, is_raised } = ways;
-    let is_steady = |times: &Distribution| {
-        times.p99_ns as f64 <= STEADY * period_ns && times.p999_ns as f64 <= period_ns
-    };
-    let p99 = |times: &Distribution| microseconds(times.p99_ns);
+    let is_steady = |times: &Distribution| times.p99 <= STEADY * period && times.p999 <= period;
+    let p99 = |times: &Distribution| microseconds(times.p99);
     let with = if *is_raised { "with it, " } else { "" };
     // What is told of a way to wait that is left for another.
     let both = |times: &Distribution| {
-        format!("{} (99 %) and {} (99.9 %)", p99(times), microseconds(times.p999_ns))
+        format!("{} (99 %) and {} (99.9 %)", p99(times), microseconds(times.p999))
     };
     if is_steady(sleep) {
         let (sleep, mixed) = (p99(sleep), p99(mixed));
@@ -110,18 +108,18 @@ fn way_to_wait(ways: &Ways<'_>, period_ns: f64) -> String {
     } else if is_steady(mixed) {
         let (from, to) = (both(sleep), both(mixed));
         format!("{with}sleep, then spin, as the servo does: lateness is {to}, not {from}")
-    } else if is_steady(spin) || is_better(spin.p99_ns, mixed.p99_ns) {
+    } else if is_steady(spin) || is_better(spin.p99, mixed.p99) {
         let (from, to) = (both(mixed), both(spin));
         format!("{with}spin alone: lateness is {to}, not {from}; it occupies a processor")
     } else {
         let least =
-            |of: fn(&Distribution) -> u64| microseconds(of(sleep).min(of(mixed)).min(of(spin)));
+            |of: fn(&Distribution) -> f64| microseconds(of(sleep).min(of(mixed)).min(of(spin)));
         format!(
             "{with}no way to wait is steady here: 1 % of the ticks are more than {} late, and 0.1 % \
              more than {}, for a period of {}; stop other programs, or lower the rate",
-            least(|times| times.p99_ns),
-            least(|times| times.p999_ns),
-            microseconds(period_ns as u64),
+            least(|times| times.p99),
+            least(|times| times.p999),
+            microseconds(period),
         )
     }
 }
@@ -129,9 +127,10 @@ fn way_to_wait(ways: &Ways<'_>, period_ns: f64) -> String {
 fn about_priority(normal: &Ways<'_>, raised: Option<&Ways<'_>>, priority: &Priority) -> String {
     match (raised, priority) {
         (Some(raised), _) => {
-            let [from_ns, to_ns] = [normal, raised].map(|ways| ways.mixed.p999_ns);
-            let (from, to) = (microseconds(from_ns), microseconds(to_ns));
-            if is_better(to_ns, from_ns) {
+            let [from, to] = [normal, raised].map(|ways| ways.mixed.p999);
+            let is_lower = is_better(to, from);
+            let (from, to) = (microseconds(from), microseconds(to));
+            if is_lower {
                 format!(
                     "raise the priority (`with_raised_priority` of `ThreadOptions`, which is on by \
                      default; `raise_priority` in a thread of your own): lateness (99.9 %) falls from \
@@ -159,13 +158,13 @@ mod tests {
     use super::*;
 
     fn loop_of(waiting: Waiting, is_raised: bool, us: [u64; 3]) -> Measured {
-        let [p99_ns, p999_ns, max_ns] = us.map(|us| 1000 * us);
+        let [p99, p999, max] = us.map(|us| us as f64 / 1e6);
         let mut times = Distribution::default();
         times.count = 5000;
-        (times.p99_ns, times.p999_ns, times.max_ns) = (p99_ns, p999_ns, max_ns);
+        (times.p99, times.p999, times.max) = (p99, p999, max);
         let mut lateness = Lateness::default();
         lateness.times = Some(times);
-        lateness.missed = u64::from(max_ns > 1_000_000);
+        lateness.missed = u64::from(max > 1e-3);
         Measured { waiting, is_raised, lateness }
     }
 

@@ -5,14 +5,13 @@
 
 mod advice;
 
-use std::fmt::Write as _;
-use std::io::Write as _;
+use std::fmt;
 use std::time::Duration;
 
 use palpate::device::NumberError;
 use palpate::haptics::HapticsError;
 use palpate::servo_loop::{Lateness, Priority, WallClock, raise_priority};
-use serde_json::{Value, json};
+use serde::Serialize;
 
 use crate::arguments::JitterOptions;
 use crate::outcome::{Failure, Outcome};
@@ -26,7 +25,9 @@ const MOST_RATE: f64 = 10_000.0;
 const MOST_DURATION: f64 = 28_800.0;
 
 /// How a loop waits for its next tick.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 enum Waiting {
     Sleep,
     SleepThenSpin,
@@ -56,10 +57,14 @@ impl Waiting {
 }
 
 /// A loop that was measured.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 struct Measured {
+    /// How it waits.
     waiting: Waiting,
+    /// `true` with a raised priority.
     is_raised: bool,
+    /// How late it woke: the distribution of `times`, and the ticks `missed`.
     lateness: Lateness,
 }
 
@@ -106,20 +111,8 @@ pub(crate) fn run(options: &JitterOptions) -> Result<Outcome, Failure> {
         }
     }
     let advice = advice::advice(&measured, &priority, rate);
-    let mut out = output::answer();
-    if options.json {
-        let described: Vec<_> = measured.iter().map(described).collect();
-        let answer = json!({
-            "rate_hz": rate,
-            "duration_s": duration,
-            "raised_priority": priority,
-            "loops": described,
-            "advice": advice,
-        });
-        out.json(&answer)?;
-    } else {
-        write!(out, "{}", text(&measured, &priority, &advice, rate))?;
-    }
+    let answer = Answer { rate, duration, priority, loops: measured, advice };
+    output::answer().print(&answer, options.json)?;
     Ok(Outcome::Yes)
 }
 
@@ -141,45 +134,39 @@ fn in_thread<T: Send>(work: impl FnOnce() -> T + Send) -> T {
     joined.unwrap_or_else(|panic| std::panic::resume_unwind(panic))
 }
 
-fn described(measured: &Measured) -> Value {
-    json!({
-        "waits_by": measured.waiting.name(),
-        "is_raised": measured.is_raised,
-        "lateness": measured.lateness.times,
-        "missed": measured.lateness.missed,
-    })
-}
-
-fn text(measured: &[Measured], priority: &Priority, advice: &[String], rate: f64) -> String {
-    let mut out = String::new();
-    write_text(&mut out, measured, priority, advice, rate).unwrap_or_default();
-    out
-}
-
-fn write_text(
-    out: &mut String,
-    measured: &[Measured],
-    priority: &Priority,
-    advice: &[String],
+/// The answer of `palpate jitter`.
+#[derive(Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub(crate) struct Answer {
+    /// Ticks a second [Hz].
     rate: f64,
-) -> std::fmt::Result {
-    writeln!(out, "how late a loop of {rate} Hz wakes on this machine")?;
-    for loop_measured in measured {
-        let Lateness { times, missed, .. } = &loop_measured.lateness;
-        writeln!(out, "{}", loop_measured.title())?;
-        let Some(times) = times else {
-            writeln!(out, "  no tick: raise --duration")?;
-            continue;
-        };
-        writeln!(out, "  lateness       {times:#}")?;
-        writeln!(out, "  missed         {missed} of {} ticks", times.count)?;
+    /// The time of all loops together [s].
+    duration: f64,
+    /// Whether the system raised the priority.
+    priority: Priority,
+    /// The loops that were measured.
+    loops: Vec<Measured>,
+    /// What to do, in sentences.
+    advice: Vec<String>,
+}
+
+impl fmt::Display for Answer {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(f, "how late a loop of {} Hz wakes on this machine", self.rate)?;
+        for measured in &self.loops {
+            let Lateness { times, missed, .. } = &measured.lateness;
+            writeln!(f, "{}", measured.title())?;
+            let Some(times) = times else {
+                writeln!(f, "  no tick: raise --duration")?;
+                continue;
+            };
+            writeln!(f, "  lateness       {times:#}")?;
+            writeln!(f, "  missed         {missed} of {} ticks", times.count)?;
+        }
+        if let Priority::Refused { reason } = &self.priority {
+            writeln!(f, "the system does not allow a raised priority: {reason}")?;
+        }
+        writeln!(f, "advice")?;
+        self.advice.iter().try_for_each(|sentence| writeln!(f, "  - {sentence}"))
     }
-    if let Priority::Refused { reason } = priority {
-        writeln!(out, "the system does not allow a raised priority: {reason}")?;
-    }
-    writeln!(out, "advice")?;
-    for sentence in advice {
-        writeln!(out, "  - {sentence}")?;
-    }
-    Ok(())
 }

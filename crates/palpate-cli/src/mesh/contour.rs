@@ -4,8 +4,7 @@
 //! A mesh of a scene, or of another mesh: of one whose faces bound its solid these faces, mended, else a surface made
 //! anew.
 
-use std::fmt::Display;
-use std::io::Write;
+use std::fmt::{self, Display};
 use std::ops::ControlFlow;
 use std::path::Path;
 
@@ -14,7 +13,7 @@ use palpate::mesh::{
     ContourError, ContourOptions, FitProgress, FittedMesh, Format, Report, Solid, TriangleMesh,
 };
 use palpate::scene::AnyScene;
-use serde_json::json;
+use serde::Serialize;
 
 use crate::arguments::MeshOptions;
 use crate::input::{self, longest_edge};
@@ -69,7 +68,9 @@ pub(super) fn run(
         return Ok(Outcome::Interrupted);
     };
     destination.write(|out| Ok(made.mesh.write(format, out)?))?;
-    report(options, output, shape.promise().is_exact(), &made, &judgement)
+    let answer = Answer::of(options, output, shape.promise().is_exact(), &made, &judgement);
+    output::answer().print(&answer, options.json)?;
+    Ok(if answer.ok { Outcome::Yes } else { Outcome::No })
 }
 
 /// Whether a mesh bounds a solid.
@@ -190,78 +191,124 @@ impl Work<'_> {
     }
 }
 
-fn report(
-    options: &MeshOptions,
-    output: &Path,
-    is_exact: bool,
-    made: &Made,
-    Judgement { report: mesh_report, crosses, is_good }: &Judgement,
-) -> Result<Outcome, Failure> {
-    let Made { mesh, cell, error: [found, proven], lost } = made;
-    let is_reached = options.tolerance.is_none_or(|tolerance| *proven <= tolerance);
-    let (is_good, is_whole) = (*is_good, lost.is_none());
-    let mut out = output::answer();
-    let name = output.display().to_string();
-    if options.json {
-        out.json(&json!({
-            "ok": is_good && is_reached && is_whole,
-            "output": name,
-            "cell_m": cell,
-            "triangles": mesh.elements().len(),
-            "vertices": mesh.vertices().len(),
-            "watertight": mesh_report.is_watertight(),
-            "crossing_pairs": crosses,
-            "degenerate_triangles": mesh_report.degenerate,
-            "enclosed_m3": mesh_report.enclosed,
-            "field_on_triangles_m": { "found": found, "at_most": proven },
-            "field_is_distance": is_exact,
-            "lost_at_m": lost.map(|point| point.0),
-        }))?;
-    } else {
-        let closed = if is_good {
+/// The answer of `palpate mesh SCENE --output FILE`.
+#[derive(Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub(crate) struct Answer {
+    /// `true` if the mesh is good, its error is within the tolerance, and no part is lost.
+    pub(crate) ok: bool,
+    /// The file.
+    pub(crate) output: String,
+    /// The size of the cells [m]; `null` where the faces are those of a mesh.
+    pub(crate) cell: Option<f64>,
+    /// The number of triangles.
+    pub(crate) elements: usize,
+    /// The number of vertices.
+    pub(crate) vertices: usize,
+    /// `true` if each edge joins two triangles that agree on the inside.
+    pub(crate) is_watertight: bool,
+    /// Pairs of triangles that cross or touch.
+    pub(crate) crossings: usize,
+    /// Triangles without area.
+    pub(crate) degenerate: usize,
+    /// The enclosed volume [m³]; `null` if the mesh is not watertight.
+    pub(crate) enclosed: Option<f64>,
+    /// The largest size of the field's value on a triangle that was found [m].
+    pub(crate) found: f64,
+    /// The largest size of the field's value on a triangle that is possible, proven [m].
+    pub(crate) error: f64,
+    /// `true` if the field is the distance, so that every triangle is within the error of the surface.
+    pub(crate) is_exact: bool,
+    /// A point of a part, or of a cavity, that has no triangle, since the cells are too large for it
+    /// [m]; `null` if none was found.
+    pub(crate) lost: Option<[f64; 3]>,
+    /// The mesh or scene.
+    #[serde(skip)]
+    input: String,
+    #[serde(skip)]
+    is_good: bool,
+    /// The tolerance that is missed [m].
+    #[serde(skip)]
+    missed: Option<f64>,
+}
+
+impl Answer {
+    fn of(
+        options: &MeshOptions,
+        output: &Path,
+        is_exact: bool,
+        made: &Made,
+        Judgement { report, crosses, is_good }: &Judgement,
+    ) -> Self {
+        let Made { mesh, cell, error: [found, proven], lost } = made;
+        let is_reached = options.tolerance.is_none_or(|tolerance| *proven <= tolerance);
+        let missed = options.tolerance.filter(|_| !is_reached);
+        Self {
+            ok: *is_good && missed.is_none() && lost.is_none(),
+            output: output.display().to_string(),
+            cell: *cell,
+            elements: mesh.elements().len(),
+            vertices: mesh.vertices().len(),
+            is_watertight: report.is_watertight(),
+            crossings: *crosses,
+            degenerate: report.degenerate,
+            enclosed: report.enclosed,
+            found: *found,
+            error: *proven,
+            is_exact,
+            lost: lost.map(|point| point.0),
+            input: options.file.display().to_string(),
+            is_good: *is_good,
+            missed,
+        }
+    }
+}
+
+impl fmt::Display for Answer {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let closed = if self.is_good {
             "closed, none cross"
         } else {
             "not good: check it with `palpate mesh`"
         };
-        let by = match cell {
+        let by = match self.cell {
             Some(cell) => format!("with cells of {cell:.3e} m"),
-            None => {
-                format!("as {} has them, mended", shown(&options.file.display().to_string()))
-            }
+            None => format!("as {} has them, mended", shown(&self.input)),
         };
         writeln!(
-            out,
+            f,
             "{}: {} {by}, in metres, {closed}",
-            shown(&name),
-            counted(mesh.elements().len(), "triangle", "triangles"),
+            shown(&self.output),
+            counted(self.elements, "triangle", "triangles"),
         )?;
-        if is_exact {
+        let proven = self.error;
+        if self.is_exact {
             // A bound may be smaller than the distance.
             writeln!(
-                out,
+                f,
                 "  error    every triangle is within {proven:.3e} m of the surface, proven"
             )?;
         } else {
             writeln!(
-                out,
+                f,
                 "  error    the field is at most {proven:.3e} m in size on every triangle, proven; it is \
                  a bound, so the surface may be farther away"
             )?;
         }
-        if let Some(point) = lost {
+        if let Some(point) = self.lost {
             writeln!(
-                out,
+                f,
                 "  lost     a part or a cavity at ({}) m has no triangle, and others may have none: the cells are too large",
-                point.0.map(rounded).join(", ")
+                point.map(rounded).join(", ")
             )?;
         }
-        if let Some(tolerance) = options.tolerance.filter(|_| !is_reached) {
+        if let Some(tolerance) = self.missed {
             writeln!(
-                out,
+                f,
                 "  open     more than --tolerance {tolerance} m, after as many tries as are made: allow more, or ask \
                  for a smaller --cell instead"
             )?;
         }
+        Ok(())
     }
-    Ok(if is_good && is_reached && is_whole { Outcome::Yes } else { Outcome::No })
 }

@@ -6,8 +6,9 @@
 use std::fmt;
 use std::io::{self, Write};
 
-use serde_json::Value;
+use serde::Serialize;
 
+use palpate::scene::Versioned;
 use palpate::scene::text::{shown, shown_json, shown_lines};
 
 use crate::outcome::{Failure, Outcome};
@@ -25,9 +26,19 @@ pub(crate) fn answer() -> Answer {
 }
 
 impl Answer {
-    /// Writes an object, and ends the line.
-    pub(crate) fn json(&mut self, value: &Value) -> io::Result<()> {
-        writeln!(self.out, "{}", shown_json(&format!("{value:#}")))
+    /// Writes an answer as an object that begins with its version, and ends the line.
+    pub(crate) fn json(&mut self, answer: &impl Serialize) -> io::Result<()> {
+        let json = serde_json::to_string_pretty(&Versioned::new(answer))?;
+        writeln!(self.out, "{}", shown_json(&json))
+    }
+
+    /// Writes an answer, as JSON or in words.
+    pub(crate) fn print(
+        &mut self,
+        answer: &(impl Serialize + fmt::Display),
+        as_json: bool,
+    ) -> io::Result<()> {
+        if as_json { self.json(answer) } else { write!(self, "{answer}") }
     }
 }
 

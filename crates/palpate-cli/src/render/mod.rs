@@ -6,7 +6,7 @@
 mod camera;
 mod frames;
 mod overlay;
-mod report;
+pub(crate) mod report;
 mod stage;
 
 use palpate::scene::AnyScene;
@@ -33,8 +33,7 @@ pub(crate) fn run(options: &RenderOptions, interrupt: &Interrupt) -> Result<Outc
     let pool = threads::pool(options.threads)?;
     interrupt.heed();
     let drawn = pool.install(|| frames.draw(&stage, interrupt))?;
-    let report = report::Report { stage: &stage, drawn: &drawn };
-    report.print(options.json)?;
+    output::answer().print(&report::Answer::of(&stage, &drawn), options.json)?;
     if drawn.is_interrupted() {
         output::remark(drawn.what_is_left());
         return Ok(Outcome::Interrupted);

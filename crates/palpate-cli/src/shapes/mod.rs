@@ -7,10 +7,11 @@ mod drawing;
 mod named;
 mod planes;
 
-use std::io::Write;
+use std::fmt;
 
 use palpate::field::catalogue::Entry;
 use palpate::scene::described_primitive;
+use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 use crate::arguments::{Dimension, ShapesOptions};
@@ -27,41 +28,99 @@ pub(crate) fn run(options: &ShapesOptions) -> Result<Outcome, Failure> {
         let problem = format!("{option} is for the picture of one primitive: {example}");
         return Err(Failure::input(problem));
     }
-    let mut rows = Vec::new();
+    let mut primitives = Vec::new();
     if options.dimension != Some(Dimension::Three) {
-        rows.extend(list(Entry::<2>::ALL)?);
+        primitives.extend(list(Entry::<2>::ALL)?);
     }
     if options.dimension != Some(Dimension::Two) {
-        rows.extend(list(Entry::<3>::ALL)?);
+        primitives.extend(list(Entry::<3>::ALL)?);
     }
-    let mut out = output::answer();
-    if options.json {
-        out.json(&Value::Array(rows))?;
-        return Ok(Outcome::Yes);
-    }
-    rows.iter().try_for_each(|row| say(&mut out, row))?;
-    writeln!(out, "{} primitives", rows.len())?;
+    output::answer().print(&Answer { primitives }, options.json)?;
     Ok(Outcome::Yes)
 }
 
-fn list<const D: usize>(entries: &[Entry<D>]) -> Result<Vec<Value>, Failure> {
-    let described = |entry| described_primitive(entry).map_err(Failure::input);
-    entries.iter().map(described).collect()
+fn list<const D: usize>(entries: &[Entry<D>]) -> Result<Vec<Primitive>, Failure> {
+    entries.iter().map(Primitive::of).collect()
 }
 
-/// Prints a [`described_primitive`].
-fn say(out: &mut impl Write, row: &Value) -> Result<(), Failure> {
-    let text = |key: &str| row[key].as_str().unwrap_or_default().to_owned();
-    writeln!(out, "{} ({}D): {}", text("name"), row["dimension"], text("about"))?;
-    for parameter in row["parameters"].as_array().into_iter().flatten() {
-        let text = |key: &str| parameter[key].as_str().unwrap_or_default().to_owned();
-        let unit = match text("unit").as_str() {
-            "" => String::new(),
-            unit => format!(" [{unit}]"),
-        };
-        writeln!(out, "    {}{unit}: {}", text("key"), text("about"))?;
+/// The answer of `palpate shapes`.
+#[derive(Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub(crate) struct Answer {
+    /// The primitives; with a name, one for each dimension that has it.
+    pub(crate) primitives: Vec<Primitive>,
+}
+
+/// A primitive of the catalogue.
+#[derive(Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub(crate) struct Primitive {
+    /// Its name in scenes.
+    pub(crate) name: String,
+    /// 2 for the plane, 3 for space.
+    pub(crate) dimension: usize,
+    /// A sentence about it.
+    pub(crate) about: String,
+    /// Where its origin is.
+    pub(crate) origin: String,
+    /// Its parameters, in their order.
+    pub(crate) parameters: Vec<Parameter>,
+    /// What its distance promises, in words.
+    pub(crate) promise: String,
+    /// What its distance promises outside: `exact`, `bound` or `lipschitz`.
+    pub(crate) outside: String,
+    /// What its distance promises inside: `exact`, `bound` or `lipschitz`.
+    pub(crate) inside: String,
+    /// The steepest slope of its distance.
+    pub(crate) lipschitz: f64,
+    /// `true` if the example is convex.
+    pub(crate) convex: bool,
+    /// `true` if the example has a box around it.
+    pub(crate) bounded: bool,
+    /// A shape as scenes write it.
+    pub(crate) example: Value,
+    /// The picture that was written.
+    #[serde(default)]
+    pub(crate) output: Option<String>,
+}
+
+/// A parameter of a primitive.
+#[derive(Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub(crate) struct Parameter {
+    /// Its key in scenes.
+    pub(crate) key: String,
+    /// The unit of its numbers; empty for a number without one.
+    pub(crate) unit: String,
+    /// A sentence about it.
+    pub(crate) about: String,
+}
+
+impl Primitive {
+    fn of<const D: usize>(entry: &Entry<D>) -> Result<Self, Failure> {
+        let described = described_primitive(entry).map_err(Failure::input)?;
+        let mut primitive: Self = serde_json::from_value(described).map_err(Failure::input)?;
+        primitive.outside.make_ascii_lowercase();
+        primitive.inside.make_ascii_lowercase();
+        Ok(primitive)
     }
-    writeln!(out, "    origin: {}", text("origin"))?;
-    writeln!(out, "    promise: {}", text("promise"))?;
-    Ok(())
+}
+
+impl fmt::Display for Answer {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.primitives.iter().try_for_each(|primitive| primitive.fmt(f))?;
+        writeln!(f, "{} primitives", self.primitives.len())
+    }
+}
+
+impl fmt::Display for Primitive {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(f, "{} ({}D): {}", self.name, self.dimension, self.about)?;
+        for Parameter { key, unit, about } in &self.parameters {
+            let unit = if unit.is_empty() { String::new() } else { format!(" [{unit}]") };
+            writeln!(f, "    {key}{unit}: {about}")?;
+        }
+        writeln!(f, "    origin: {}", self.origin)?;
+        writeln!(f, "    promise: {}", self.promise)
+    }
 }

@@ -7,10 +7,9 @@ use std::io::Write;
 
 use palpate::field::catalogue::{ALIASES, Alias, Entry};
 use palpate::plot::Figure;
-use palpate::scene::{WrittenShape, described_primitive, unknown_name};
-use serde_json::{Value, json};
+use palpate::scene::{WrittenShape, unknown_name};
 
-use super::drawing;
+use super::{Answer, Primitive, drawing};
 use crate::arguments::{Dimension, ShapesOptions};
 use crate::outcome::{Failure, Outcome};
 use crate::output::{self, Files, shown};
@@ -39,18 +38,19 @@ pub(super) fn run(options: &ShapesOptions, name: &str) -> Result<Outcome, Failur
         }
         (None, None) => {}
     }
-    let mut rows = named.described()?;
+    let mut primitives = named.described()?;
     if let Some(picture) = &picture {
         let width = options.width.unwrap_or(picture::WIDTH);
         picture.save(&named.figure()?, width)?;
-        rows.iter_mut().for_each(|row| row["output"] = json!(picture.path()));
+        let output = picture.path().display().to_string();
+        primitives.iter_mut().for_each(|row| row.output = Some(output.clone()));
     }
     let mut out = output::answer();
     if options.json {
-        out.json(&Value::Array(rows))?;
+        out.json(&Answer { primitives })?;
         return Ok(Outcome::Yes);
     }
-    named.say(&mut out, &rows)?;
+    named.say(&mut out, &primitives)?;
     if let Some(picture) = picture {
         let path = picture.path().display().to_string();
         writeln!(out, "{}: {name} with its parameters", shown(&path))?;
@@ -84,11 +84,10 @@ impl Named {
         }))
     }
 
-    fn described(&self) -> Result<Vec<Value>, Failure> {
-        let mut rows = Vec::new();
-        rows.extend(self.planar.map(described_primitive).transpose().map_err(Failure::input)?);
-        rows.extend(self.spatial.map(described_primitive).transpose().map_err(Failure::input)?);
-        Ok(rows)
+    fn described(&self) -> Result<Vec<Primitive>, Failure> {
+        let (planar, spatial) =
+            (self.planar.map(Primitive::of), self.spatial.map(Primitive::of));
+        planar.into_iter().chain(spatial).collect()
     }
 
     fn figure(&self) -> Result<Figure, Failure> {
@@ -106,7 +105,7 @@ impl Named {
         }
     }
 
-    fn say(&self, out: &mut impl Write, rows: &[Value]) -> Result<(), Failure> {
+    fn say(&self, out: &mut impl Write, rows: &[Primitive]) -> Result<(), Failure> {
         if let Some(Alias { name, of, dimension, parameters, .. }) = self.alias {
             write!(out, "`{name}` is another name of `{of}` in {dimension}D")?;
             for parameter in parameters.unwrap_or_default() {
@@ -115,8 +114,8 @@ impl Named {
             writeln!(out)?;
         }
         for row in rows {
-            super::say(out, row)?;
-            let example = WrittenShape::from_json(&row["example"].to_string());
+            write!(out, "{row}")?;
+            let example = WrittenShape::from_json(&row.example.to_string());
             let example = example.map_err(Failure::input)?.to_json();
             writeln!(out, "    example: {}", example.trim_end().replace('\n', "\n    "))?;
         }

@@ -86,7 +86,7 @@ where
         picture.save(&figure, picture::WIDTH)?;
     }
     let touch = found.pairs.iter().any(|pair| pair.verdict == Verdict::Touching);
-    ask::print(&Answer::Sweep(found), options.json)?;
+    output::answer().print(&Answer::Sweep(found), options.json)?;
     if interrupt.is_asked() {
         output::remark(
             "interrupted: some pairs, or what --method finds of them, are not listed",

@@ -91,11 +91,12 @@ fn guides_are_told_as_the_device_renders_them() {
     let guides = "\n  guides         stiffness 400 (asked 3000) N/m, damping 0 (asked 1) N·s/m\n    \
                   \u{20}            1 of 1 guide softer than asked, 0.1333 of the stiffness: K ≤ ";
     assert!(said.contains(guides), "{said}");
-    let guide = &json(&[&feel[..], &["--json"]].concat())["guides"][0];
+    let report = json(&[&feel[..], &["--json"]].concat());
+    let guide = &report["accepted_guides"][0];
     assert_eq!(guide["requested_stiffness"], 3000.0);
     assert_eq!(guide["device_stiffness"], 400.0);
     assert_eq!(
-        (&guide["stiffness_rule"], &guide["kind"]),
+        (&guide["stiffness_rule"], &report["guides"][0]["kind"]),
         (&"max_stiffness".into(), &"line".into())
     );
     let strict = [&feel[..], &["--strict"]].concat();

@@ -314,8 +314,8 @@ fn pictures_show_contacts_and_their_proof() {
         &name,
         "--json",
     ]);
-    assert_eq!(answer["touching_pairs"], 1);
-    assert!(answer["proof_boxes"].as_u64().unwrap() > 50, "{answer}");
+    assert_eq!(answer["touching"], 1);
+    assert!(answer["boxes"].as_u64().unwrap() > 50, "{answer}");
     let svg = std::fs::read_to_string(folder.path("gears.svg")).unwrap();
     for word in ["ruled out", "normal", "contact"] {
         assert!(svg.contains(word), "{word} is missing");

@@ -48,10 +48,10 @@ fn the_naive_descent_takes_the_steps_that_are_asked_for() {
         "--json",
     ]);
     assert_eq!(
-        answer["path_m"],
+        answer["path"],
         serde_json::json!([[0.0, 3.0], [0.0, 2.0], [0.0, 1.5], [0.0, 1.25]])
     );
-    assert_eq!((&answer["alpha"], &answer["mu_m"]), (&0.5.into(), &0.25.into()));
+    assert_eq!((&answer["alpha"], &answer["mu"]), (&0.5.into(), &0.25.into()));
     assert_eq!((&answer["steps"], &answer["evaluations"]), (&3.into(), &10.into()));
     assert_eq!(
         (&answer["gradient"], &answer["memoir_evaluations"]),
@@ -59,7 +59,7 @@ fn the_naive_descent_takes_the_steps_that_are_asked_for() {
     );
     assert_eq!(answer["ending"]["at"], "elsewhere");
     // The least value, −1 at the centre, is proven to within a ten-thousandth of 4 m.
-    assert!((number(&answer["ending"]["above_minimum_m"]) - 1.25).abs() < 4e-4);
+    assert!((number(&answer["ending"]["above_minimum"]) - 1.25).abs() < 4e-4);
 }
 
 #[test]
@@ -70,12 +70,12 @@ fn the_naive_descent_counts_its_evaluations_and_those_of_the_memoir() {
         (&answer["memoir_evaluations"], &answer["gradient"]),
         (&640.into(), &"dichotomy".into())
     );
-    assert_eq!(answer["path_m"].as_array().unwrap().len(), 65);
+    assert_eq!(answer["path"].as_array().unwrap().len(), 65);
     // From the centroid, with a tenth of the longest edge for µ: that of 0.6·√2 m.
-    assert!((number(&answer["path_m"][0][0]) - 2.2 / 3.0).abs() < 1e-15, "{answer}");
-    assert!((number(&answer["mu_m"]) - 0.06 * 2.0_f64.sqrt()).abs() < 1e-15, "{answer}");
-    for time in [&answer["time_ns"], &answer["certified"]["time_ns"]] {
-        assert!(time.is_u64(), "{answer}");
+    assert!((number(&answer["path"][0][0]) - 2.2 / 3.0).abs() < 1e-15, "{answer}");
+    assert!((number(&answer["mu"]) - 0.06 * 2.0_f64.sqrt()).abs() < 1e-15, "{answer}");
+    for time in [&answer["time"], &answer["certified"]["time"]] {
+        assert!((1e-9..10.0).contains(&number(time)), "{answer}");
     }
 }
 
@@ -85,7 +85,7 @@ fn an_oscillation_is_named_with_its_amplitude() {
     let folder = Folder::new();
     let plot = folder.name("oscillation.svg");
     let answer = naive(&DEEP, &["--mu", "1", "--start", "0.6,0.2,0.2", "--plot", &plot]);
-    assert!((number(&answer["ending"]["oscillation_m"]) - 0.1).abs() < 1e-12, "{answer}");
+    assert!((number(&answer["ending"]["oscillation"]) - 0.1).abs() < 1e-12, "{answer}");
     let svg = std::fs::read_to_string(&plot).unwrap();
     let words = words(&svg);
     for word in ["naive", "step", "start", "smallest circle", "circumscribed circle"] {
@@ -94,18 +94,18 @@ fn an_oscillation_is_named_with_its_amplitude() {
     let caption = words.join(" ");
     assert!(caption.contains("oscillating by 0.10000 m."), "{caption}");
     let fine = naive(&DEEP, &["--alpha", "0.02", "--iterations", "500", "--mu", "0.1"]);
-    assert!((number(&fine["ending"]["oscillation_m"]) - 0.002).abs() < 1e-12, "{fine}");
+    assert!((number(&fine["ending"]["oscillation"]) - 0.002).abs() < 1e-12, "{fine}");
     let found = json(&[&STAR[..], &DEEP, &["--json"]].concat());
-    assert_eq!(found["ending"]["oscillation_m"], Value::Null);
+    assert_eq!(found["ending"]["oscillation"], Value::Null);
 }
 
 #[test]
 fn without_mu_a_descent_ends_at_the_surface() {
     let answer = naive(&ACROSS, &["--mu", "0"]);
     let ending = &answer["ending"];
-    assert_eq!((&ending["at"], &ending["oscillation_m"]), (&"surface".into(), &Value::Null));
-    assert!(number(&ending["value_m"]) > 0.0 && number(&ending["value_m"]) < 1e-4, "{ending}");
-    assert!(number(&ending["above_minimum_m"]) > 0.139, "{ending}");
+    assert_eq!((&ending["at"], &ending["oscillation"]), (&"surface".into(), &Value::Null));
+    assert!(number(&ending["value"]) > 0.0 && number(&ending["value"]) < 1e-4, "{ending}");
+    assert!(number(&ending["above_minimum"]) > 0.139, "{ending}");
     let output = palpate(&[&STAR[..], &ACROSS, &["--method", "naive", "--mu", "0"]].concat());
     let said = text(&output);
     assert!(said.contains("ended        at the surface, 0.1397"), "{said}");
@@ -121,16 +121,13 @@ fn the_smallest_circle_excludes_a_sliver_that_the_circumscribed_one_does_not() {
     let plot = folder.name("sliver.svg");
     let answer = json(&[&STAR[..], &SLIVER, &["--json", "--plot", &plot]].concat());
     let [smallest, around] = ["smallest", "circumscribed"].map(|key| &answer["circles"][key]);
-    assert_eq!((&smallest["excludes"], &smallest["proven"]), (&true.into(), &true.into()));
-    assert_eq!((&around["excludes"], &around["proven"]), (&false.into(), &false.into()));
-    assert!(
-        (number(&smallest["radius_m"]) - 0.5 * 1.01_f64.sqrt()).abs() < 1e-12,
-        "{smallest}"
-    );
+    assert_eq!((&smallest["excludes"], &smallest["is_proven"]), (&true.into(), &true.into()));
+    assert_eq!((&around["excludes"], &around["is_proven"]), (&false.into(), &false.into()));
+    assert!((number(&smallest["radius"]) - 0.5 * 1.01_f64.sqrt()).abs() < 1e-12, "{smallest}");
     // R = abc/4A.
     let sides = [1.01_f64.sqrt(), 0.2516_f64.sqrt(), 0.2536_f64.sqrt()];
     let radius = sides.iter().product::<f64>() / (4.0 * 0.005);
-    assert!((number(&around["radius_m"]) - radius).abs() < 1e-9 * radius, "{around} {radius}");
+    assert!((number(&around["radius"]) - radius).abs() < 1e-9 * radius, "{around} {radius}");
     let svg = std::fs::read_to_string(&plot).unwrap();
     let caption = words(&svg).join(" ");
     assert!(
@@ -162,7 +159,7 @@ fn every_search_over_an_element_starts_where_it_is_told() {
     for method in ["naive", "projected_gradient", "frank_wolfe", "golden_section", "macklin"] {
         let start = ["--start", "0.5,0.25,0.25", "--method", method, "--json"];
         let answer = json(&[&STAR[..], &DEEP, &start].concat());
-        let first = [0, 1].map(|i| number(&answer["path_m"][0][i]));
+        let first = [0, 1].map(|i| number(&answer["path"][0][i]));
         assert!(
             (first[0] - 0.675).abs() < 1e-15 && (first[1] - 0.65).abs() < 1e-15,
             "{first:?}"
@@ -256,8 +253,8 @@ fn starts_of_halton_find_the_overlap() {
         json(&["descend", scene, "--method", "sum_descent", "--halton", "40", "--json"]);
     let descents = found["descents"].as_array().unwrap();
     assert_eq!(descents.len(), 40);
-    let inside = descents.iter().filter(|descent| descent["value_m"].as_f64().unwrap() <= 0.0);
-    let right = |descent: &Value| descent["best_point_m"][0].as_f64().unwrap() > 0.0;
+    let inside = descents.iter().filter(|descent| descent["value"].as_f64().unwrap() <= 0.0);
+    let right = |descent: &Value| descent["best"][0].as_f64().unwrap() > 0.0;
     let inside: Vec<_> = inside.collect();
     assert!(inside.len() > 10 && inside.iter().all(|descent| right(descent)), "{found}");
 }

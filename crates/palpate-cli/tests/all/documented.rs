@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! What `docs/formats.md` says of the output of `feel`, `devices`, `identify` and `jitter` is what they print.
+//! Programs print what their schema and `docs/formats.md` say.
 
 use std::collections::BTreeSet;
 
@@ -9,10 +9,6 @@ use crate::common::{Folder, json, palpate, root, text};
 use serde_json::Value;
 
 type Names = BTreeSet<String>;
-
-/// Keys of failures that no test can bring about, and the reason of a refused priority, which
-/// depends on the machine.
-const OF_FAILURES: [&str; 4] = ["reason", "message", "last_loss", "not_closed"];
 
 /// A section of the page, from its heading to the next.
 fn section(heading: &str) -> String {
@@ -28,43 +24,41 @@ fn words(cell: &str) -> impl Iterator<Item = &str> {
     words.filter(|word| word.chars().all(|c| c.is_ascii_alphanumeric() || c == '_'))
 }
 
-/// The names in the tables of a section: those of the first cells, or of all.
-fn documented(heading: &str, in_all_cells: bool) -> Names {
+/// The columns in the tables of a section.
+fn documented(heading: &str) -> Names {
     let section = section(heading);
     let rows = section.lines().filter(|line| line.starts_with("| `"));
-    let cells = rows.flat_map(|row| {
-        let cells = row.trim_matches('|').split('|');
-        cells.take(if in_all_cells { usize::MAX } else { 1 }).collect::<Vec<_>>()
-    });
-    cells.flat_map(words).filter(|word| !is_value(word)).map(str::to_owned).collect()
+    let cells = rows.filter_map(|row| row.split('|').nth(1));
+    cells.flat_map(words).map(str::to_owned).collect()
 }
 
-/// Words in backticks that are values of JSON.
-fn is_value(word: &str) -> bool {
-    ["true", "false", "null"].contains(&word)
-}
-
-/// All keys of a value, at any depth.
-fn keys(value: &Value, found: &mut Names) {
-    match value {
-        Value::Object(object) => {
-            for (key, value) in object {
-                found.insert(key.clone());
-                keys(value, found);
-            }
+/// Checks answers against the schema of a command, in which no other key may stand.
+fn assert_valid(command: &str, answers: &[Value]) {
+    let text = std::fs::read_to_string(root("crates/palpate-cli/schema/answers.schema.json"));
+    let mut schema: Value = serde_json::from_str(&text.unwrap()).unwrap();
+    let mut asked = schema["properties"][command].take();
+    // An alternative adds its keys to those of the object that it names.
+    let alternatives = asked.get("oneOf").and_then(Value::as_array).into_iter().flatten();
+    let named: Vec<_> = alternatives.filter_map(|of| of["$ref"].as_str()).collect();
+    for (name, object) in schema["$defs"].as_object_mut().unwrap() {
+        if !named.iter().any(|of| of.ends_with(&format!("/{name}"))) {
+            close(object);
         }
-        Value::Array(items) => items.iter().for_each(|item| keys(item, found)),
-        _ => {}
+    }
+    close(&mut asked);
+    asked["$defs"] = schema["$defs"].take();
+    let validator = jsonschema::validator_for(&asked).unwrap();
+    for answer in answers {
+        let wrong: Vec<_> = validator.iter_errors(answer).map(|e| e.to_string()).collect();
+        assert!(wrong.is_empty(), "palpate {command}: {wrong:?}");
     }
 }
 
-/// Compares names in both directions.
-fn assert_same(documented: &Names, printed: &Names) {
-    let missing: Vec<_> = printed.difference(documented).collect();
-    assert!(missing.is_empty(), "not documented: {missing:?}");
-    let surplus = documented.difference(printed);
-    let surplus: Vec<_> = surplus.filter(|key| !OF_FAILURES.contains(&key.as_str())).collect();
-    assert!(surplus.is_empty(), "documented, but not printed: {surplus:?}");
+/// Allows no key beside those of an object, or of its alternatives.
+fn close(object: &mut Value) {
+    if object["type"] == "object" || object.get("oneOf").is_some() {
+        object["unevaluatedProperties"] = (!object["additionalProperties"].is_null()).into();
+    }
 }
 
 /// A ball that rises, a guide, a hand that begins inside and leaves the workspace.
@@ -73,8 +67,8 @@ const RISING: &str = r#"{ "palpate": 1, "dimension": 3,
   "guides": [ { "point": [0, 0.1, 0] } ],
   "motions": [ { "body": "ball", "to": { "translation": [0, 0.01, 0] } } ] }"#;
 
-/// Runs that print every key, with the traces that they write.
-fn runs() -> (Names, Names) {
+/// Runs that print every key, and the columns of the traces that they write.
+fn runs() -> (Vec<Value>, Names) {
     let folder = Folder::new();
     let scene = folder.write("rising.json", RISING);
     let flat = RISING.replace("\"dimension\": 3", "\"dimension\": 2");
@@ -86,7 +80,7 @@ fn runs() -> (Names, Names) {
     let omega = folder.write("omega.json", &palpate::scene::device_to_json(&omega).unwrap());
     let omega = format!("simulated:{omega}");
     let [trace, wav] = ["trace.csv", "touch.wav"].map(|name| folder.name(name));
-    let (mut printed, mut columns) = (Names::new(), Names::new());
+    let (mut printed, mut columns) = (Vec::new(), Names::new());
     let stylus = ["scenes/stylus_in_cup.json", "--fast", "--duration", "0.1"];
     for run in [
         &[&stylus[..], &["--device", "simulated:sigma7"]].concat()[..],
@@ -95,7 +89,7 @@ fn runs() -> (Names, Names) {
         &["scenes/materials.json", "--fast", "--duration", "2", "--wav", &wav],
     ] {
         let feel = [&["feel"], run, &["--json", "--trace", &trace]].concat();
-        keys(&json(&feel), &mut printed);
+        printed.push(json(&feel));
         let trace = std::fs::read_to_string(&trace).unwrap();
         let header = trace.lines().next().unwrap().replace("body_0_", "body_N_");
         columns.extend(header.split(',').map(str::to_owned));
@@ -104,14 +98,14 @@ fn runs() -> (Names, Names) {
 }
 
 #[test]
-fn the_keys_and_columns_of_feel_are_documented() {
+fn feel_prints_the_keys_of_its_schema_and_the_columns_of_the_page() {
     let (printed, columns) = runs();
-    assert_same(&documented("Reports of runs", true), &printed);
-    assert_same(&documented("Traces", false), &columns);
+    assert_valid("feel", &printed);
+    assert_eq!(documented("Traces"), columns);
 }
 
 #[test]
-fn the_keys_of_devices_identify_and_jitter_are_documented() {
+fn answers_are_as_their_schema_says() {
     let folder = Folder::new();
     let profile = palpate::device::profile_named("omega7").unwrap();
     let gripper = palpate::device::GripperProfile {
@@ -123,24 +117,22 @@ fn the_keys_of_devices_identify_and_jitter_are_documented() {
     let profile = palpate::scene::device_to_json(&profile).unwrap();
     let profile = folder.write("omega.json", &profile);
     let fall = folder.write("fall.json", crate::sweep::FALL);
-    for (heading, commands) in [
-        (
-            "Devices",
-            &[
-                &["devices", "--json"][..],
-                &["devices", "--profile", &profile, "--json"],
-                &["devices", "--materials", "--profile", "touch", "--json"],
-                &["devices", "--actuators", "--json"],
-                &["devices", "--stability", "--profile", "touch", "--json"],
-            ][..],
-        ),
-        ("First touches", &[&["sweep", &fall, "--method", "sum_descent", "--json"]]),
-        ("Identified devices", &[&["identify", "--device", "premium15", "--json"]]),
-        ("Lateness", &[&["jitter", "--duration", "0.03", "--json"]]),
+    for (command, arguments) in [
+        ("answer", &["contact", "scenes/gears.json"][..]),
+        ("answer", &["eval", "scenes/cup.json", "--at", "0,0.1,0", "--radius", "0.1"]),
+        ("answer", &["mass", "scenes/cup.json"]),
+        ("answer", &["sweep", &fall, "--method", "sum_descent"]),
+        ("check", &["check", "scenes/gears.json"]),
+        ("devices", &["devices"]),
+        ("devices", &["devices", "--profile", &profile]),
+        ("devices --actuators", &["devices", "--actuators"]),
+        ("devices --materials", &["devices", "--materials", "--profile", "touch"]),
+        ("devices --stability", &["devices", "--stability", "--profile", "touch"]),
+        ("identify", &["identify", "--device", "premium15"]),
+        ("jitter", &["jitter", "--duration", "0.03"]),
+        ("shapes", &["shapes", "torus"]),
     ] {
-        let mut printed = Names::new();
-        commands.iter().for_each(|command| keys(&json(command), &mut printed));
-        assert_same(&documented(heading, true), &printed);
+        assert_valid(command, &[json(&[arguments, &["--json"]].concat())]);
     }
 }
 
@@ -174,7 +166,7 @@ fn the_table_of_materials_on_devices_is_current() {
     );
     let faster = json(&["devices", "--materials", "--rate", "4000", "--json"]);
     let of = |rows: &Value, device: &str, material: &str| {
-        let rows = rows.as_array().unwrap();
+        let rows = rows["devices"].as_array().unwrap();
         let row = rows.iter().find(|row| row["device"] == device).unwrap().clone();
         let materials = row["materials"].as_array().unwrap();
         let found = materials.iter().find(|found| found["name"] == material).unwrap();

@@ -21,7 +21,7 @@ fn the_difference_of_two_discs_is_that_of_their_radii() {
         let answer = plot(scene, other);
         assert_eq!(answer["map"], "error");
         for end in ["smallest", "largest"] {
-            let found = number(&answer["difference_m"][end]);
+            let found = number(&answer["difference"][end]);
             assert!((found - expected).abs() < 1e-15, "{answer}");
         }
     }
@@ -69,7 +69,7 @@ fn the_angles_of_a_gradient_are_drawn() {
     let dichotomy = plot("dichotomy");
     let largest = number(&dichotomy["error_degrees"]["largest"]);
     assert!(largest > 0.99 * most && largest < most + 1e-5, "{dichotomy}");
-    assert_eq!(dichotomy["error_degrees"]["largest_at_m"].as_array().unwrap().len(), 2);
+    assert_eq!(dichotomy["error_degrees"]["largest_at"].as_array().unwrap().len(), 2);
     let picture = std::fs::read_to_string(&svg).unwrap();
     assert!(words(&picture).contains(&"angle from the exact gradient [degrees]"));
     let caption = words(&picture).join(" ");

@@ -81,7 +81,8 @@ fn a_path_that_starts_inside_a_body_is_said() {
     let soft = [&feel[..], &["--stiffness", "0", "--damping", "0"]].concat();
     let report = json(&[&soft[..], &["--json"]].concat());
     let start = &report["starts_inside"][0];
-    assert_eq!(start["name"], "ball");
+    assert_eq!(report["bodies"][0]["name"], "ball");
+    assert_eq!(start["body"], 0);
     let ticks = start["ticks_without_force"].as_u64().unwrap();
     assert!((405..=415).contains(&ticks), "{start}");
     let time = start["time_without_force"].as_f64().unwrap();
@@ -188,12 +189,12 @@ fn the_scale_that_the_program_chose_is_told() {
     assert!((scale - 0.75_f64.sqrt() / radius).abs() < 1e-12, "{scale}");
     let said = "  workspace      11.55 m of the scene for each metre of the device\n";
     assert!(text(&palpate(&omega)).contains(said), "{}", text(&palpate(&omega)));
-    assert!(json(&[&feel[..], &["--json"]].concat()).get("workspace_scale").is_none());
+    assert!(json(&[&feel[..], &["--json"]].concat())["workspace_scale"].is_null());
     let given =
         BALL.replace("\"bodies\"", r#""tool": { "workspace": { "scale": 9 } }, "bodies""#);
     let given = folder.write("given.json", &given);
     let omega = ["feel", &given, "--fast", "--duration", "0.1", "--device", "simulated:omega"];
-    assert!(json(&[&omega[..], &["--json"]].concat()).get("workspace_scale").is_none());
+    assert!(json(&[&omega[..], &["--json"]].concat())["workspace_scale"].is_null());
 }
 
 /// A path led the first point alone, and the others were not there.

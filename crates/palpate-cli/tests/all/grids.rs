@@ -34,7 +34,7 @@ fn a_grid_is_made_and_used() {
         &grid,
         "--json",
     ]);
-    assert!(number(&made["deviation_m"]) <= 1e-3, "{made}");
+    assert!(number(&made["deviation"]) <= 1e-3, "{made}");
     let used = r#"{ "palpate": 1, "dimension": 3, "bodies": [
       { "name": "baked", "shape": { "grid": { "file": "ball.grid" } } } ] }"#;
     let used = folder.write("used.json", used);
@@ -107,7 +107,7 @@ fn what_was_scanned_is_checked_and_felt() {
     let felt = text(&folder.run(&felt));
     let felt: serde_json::Value = serde_json::from_str(&felt).unwrap();
     assert_eq!(felt["as_grids"][0]["name"], "bone", "{felt}");
-    assert!(number(&felt["as_grids"][0]["deviation_m"]) < 2e-3, "{felt}");
+    assert!(number(&felt["as_grids"][0]["deviation"]) < 2e-3, "{felt}");
     let exact = ["feel", "bunny.json", "--fast", "--duration", "1", "--exact"];
     assert!(!text(&folder.run(&exact)).contains("as a grid"));
 }

@@ -56,13 +56,13 @@ fn what_is_found_is_a_profile_that_devices_feel_and_identify_read() {
     assert!(errors(&output).starts_with(told), "{}", errors(&output));
 
     let rows = json(&["devices", "--profile", file, "--json"]);
-    let row = &rows[0];
+    let row = &rows["devices"][0];
     assert!((number(&row["friction"]["value"]) / 0.2 - 1.0).abs() < 0.02, "{row}");
     assert_eq!(
-        (&row["friction"]["assumed"], number(&row["max_force"]["value"])),
+        (&row["friction"]["is_assumed"], number(&row["max_force"]["value"])),
         (&false.into(), 12.0)
     );
-    assert_eq!(row["continuous_force"]["assumed"], true);
+    assert_eq!(row["continuous_force"]["is_assumed"], true);
     let source = row["source"].as_str().unwrap();
     assert!(source.contains("palpate identify ") && source.contains(", 1000 Hz, seed 0"));
 
@@ -75,7 +75,10 @@ fn what_is_found_is_a_profile_that_devices_feel_and_identify_read() {
     let [found, usual] = [felt(&device), felt("simulated:omega")];
     assert_eq!(found["device"], usual["device"]);
     // Once nothing told a profile of a file from the one of that name in the list.
-    assert_eq!((&found["device_file"], usual.get("device_file")), (&file.into(), None));
+    assert_eq!(
+        (&found["device_file"], &usual["device_file"]),
+        (&file.into(), &serde_json::Value::Null)
+    );
     let device = ["feel", "--fast", "--duration", "0.1", "--device", &device];
     let said = text(&palpate(&device));
     assert!(
@@ -236,6 +239,6 @@ fn the_gripper_and_the_buttons_of_a_file_are_listed() {
     let words: Vec<_> = listed.split_whitespace().collect();
     assert!(words.windows(3).any(|row| row == ["0.025", "8", "2000"]), "{listed}");
     let rows = json(&["devices", "--profile", &file, "--json"]);
-    assert_eq!(rows[0]["gripper"]["max_force"]["unit"], "N");
-    assert_eq!(rows[0]["buttons"][1], "rear");
+    assert_eq!(rows["devices"][0]["gripper"]["max_force"]["unit"], "N");
+    assert_eq!(rows["devices"][0]["buttons"][1], "rear");
 }

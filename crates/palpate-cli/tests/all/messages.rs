@@ -45,7 +45,8 @@ fn every_problem_of_a_scene_is_told() {
     let name = problem("bodies[0].name", 17, "name must not be empty");
     let radius = "radius must be positive, got -0.5 m";
     let radius = problem("bodies[0].shape.ball.radius", 50, radius);
-    let expected = json!({ "ok": false, "problems": [name, radius], "maybe_more": false });
+    let expected =
+        json!({ "palpate": 2, "ok": false, "problems": [name, radius], "maybe_more": false });
     assert_eq!(answer, expected);
     let plot = folder.run(&["plot", "bad.json"]);
     assert_eq!(status(&plot), 2);
@@ -182,7 +183,7 @@ fn a_body_without_any_point_is_told_of() {
     );
     let answer = folder.run(&["check", "hollow.json", "--json"]);
     let answer: Value = serde_json::from_slice(&answer.stdout).unwrap();
-    let empty: Vec<_> = (0..3).map(|i| answer["bodies"][i]["empty"].clone()).collect();
+    let empty: Vec<_> = (0..3).map(|i| answer["bodies"][i]["is_empty"].clone()).collect();
     assert_eq!(empty, [json!(true), Value::Null, json!(false)]);
     let mass = folder.run(&["mass", "hollow.json", "--cells", "1000"]);
     assert_eq!(status(&mass), 1);

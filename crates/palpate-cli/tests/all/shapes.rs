@@ -24,7 +24,7 @@ capped_cone (3D): A cone about the y axis with its tip cut off.
     assert!(both.contains("ball (2D)") && both.contains("ball (3D)"), "{both}");
     let planar = text(&palpate(&["shapes", "ball", "--dimension", "2"]));
     assert!(planar.contains("ball (2D)") && !planar.contains("ball (3D)"), "{planar}");
-    let rows = json(&["shapes", "torus", "--json"]);
+    let rows = json(&["shapes", "torus", "--json"])["primitives"].clone();
     assert_eq!(rows.as_array().map(Vec::len), Some(1));
     assert_eq!(rows[0]["origin"], "centred; axis along y");
     assert_eq!(rows[0]["example"]["torus"]["ring_radius"], 0.6);
@@ -93,7 +93,7 @@ fn a_picture_is_written_and_named() {
     assert!(text(&output).ends_with("\negg.png: egg with its parameters\n"), "{output:?}");
     assert_eq!(&std::fs::read(folder.path("egg.png")).unwrap()[1..4], b"PNG");
     let svg = folder.name("egg.svg");
-    let rows = json(&["shapes", "egg", "--output", &svg, "--json"]);
+    let rows = json(&["shapes", "egg", "--output", &svg, "--json"])["primitives"].clone();
     assert_eq!(rows[0]["output"], svg.as_str());
 }
 

@@ -7,5 +7,7 @@
 mod glam;
 #[cfg(feature = "mint")]
 mod mint;
+#[cfg(feature = "schema")]
+mod schema;
 #[cfg(feature = "serde")]
 pub(crate) mod serde;

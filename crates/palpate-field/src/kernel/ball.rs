@@ -61,3 +61,39 @@ primitive! {
     marks: |kernel| vec![Mark::from_origin("radius", at(kernel.radius, 0.0))],
     example: (0.7),
 }
+
+#[cfg(feature = "oracle")]
+mod evidence {
+    use std::f64::consts::TAU;
+
+    use super::*;
+    use crate::oracle::{Definition, Evidence, Row, arc, ellipsoid};
+
+    impl Evidence<2> for Ball {
+        const SAMPLE: &'static str = r#"{ "radius": 0.05 }"#;
+        const GUIDE: &'static [Row] = &[Row::new("Circle", "`radius`", "exact, convex")];
+
+        fn definition(&self) -> Definition<2> {
+            let r = self.radius();
+            Definition::new(vec![arc([0.0; 2], r, [0.0, TAU])], move |p| p.norm() < r)
+        }
+    }
+
+    impl Evidence<3> for Ball {
+        const SAMPLE: &'static str = r#"{ "radius": 0.05 }"#;
+        const GUIDE: &'static [Row] = &[Row::new("Sphere", "`radius`", "exact, convex")];
+
+        fn definition(&self) -> Definition<3> {
+            ellipsoid(Vector([self.radius(); 3]))
+        }
+
+        fn refused() -> Vec<Result<Self, ShapeError>> {
+            vec![
+                Self::new(-0.02),
+                Self::new(f64::NAN),
+                Self::new(f64::INFINITY),
+                Self::new(1e-20),
+            ]
+        }
+    }
+}

@@ -164,3 +164,93 @@ primitive! {
         0.2,
     ),
 }
+
+#[cfg(feature = "oracle")]
+mod evidence {
+    use std::f64::consts::{FRAC_PI_2, PI, TAU};
+
+    use super::*;
+    use crate::oracle::{AXES, Definition, Evidence, Patch, Row, cross, from_segment};
+
+    impl Evidence<2> for Segment<2> {
+        const SAMPLE: &'static str =
+            r#"{ "from": [-0.04, -0.03], "to": [0.04, 0.03], "radius": 0.01 }"#;
+        const GUIDE: &'static [Row] =
+            &[Row::new("Segment", "`from`, `to`, `radius` 0", "exact, convex")];
+
+        fn definition(&self) -> Definition<2> {
+            stadium(self.from(), self.to(), self.radius())
+        }
+    }
+
+    impl Evidence<3> for Segment<3> {
+        const SAMPLE: &'static str =
+            r#"{ "from": [-0.04, -0.03, -0.02], "to": [0.04, 0.03, 0.02], "radius": 0.01 }"#;
+        const GUIDE: &'static [Row] =
+            &[Row::new("Capsule, arbitrary", "`from`, `to`, `radius`", "exact, convex")];
+
+        fn definition(&self) -> Definition<3> {
+            rod(self.from(), self.to(), self.radius())
+        }
+    }
+
+    impl Evidence<2> for Capsule {
+        const SAMPLE: &'static str = r#"{ "radius": 0.025, "height": 0.1 }"#;
+
+        fn definition(&self) -> Definition<2> {
+            let end = Vector([0.0, 0.5 * self.height() - self.radius()]);
+            stadium(-end, end, self.radius())
+        }
+
+        fn refused() -> Vec<Result<Self, ShapeError>> {
+            vec![Self::new(0.5, 0.25)]
+        }
+    }
+
+    impl Evidence<3> for Capsule {
+        const SAMPLE: &'static str = r#"{ "radius": 0.025, "height": 0.1 }"#;
+        const GUIDE: &'static [Row] = &[Row::new(
+            "Capsule, vertical",
+            "`radius`, `height` from tip to tip",
+            "exact, convex",
+        )];
+
+        fn definition(&self) -> Definition<3> {
+            let end = Vector([0.0, 0.5 * self.height() - self.radius(), 0.0]);
+            rod(-end, end, self.radius())
+        }
+    }
+
+    /// All points within `radius` of a segment.
+    fn stadium(a: Point<2>, b: Point<2>, radius: f64) -> Definition<2> {
+        let along = (b - a).normalized().unwrap_or(AXES[0]);
+        let across = Vector([-along[1], along[0]]);
+        let caps = [(b, [along, across]), (a, [-along, -across])];
+        let sides = [across * radius, across * -radius];
+        let mut boundary: Vec<_> = sides.map(|s| Patch::segment(a + s, b + s)).into();
+        boundary.extend(
+            caps.map(|(end, axes)| Patch::arc(end, axes, radius, [-0.5 * PI, 0.5 * PI])),
+        );
+        Definition::new(boundary, move |p| from_segment(a, b, p) < radius)
+    }
+
+    /// All points within `r` of a segment.
+    fn rod(a: Point<3>, b: Point<3>, r: f64) -> Definition<3> {
+        let along = (b - a).normalized().unwrap_or(Vector::unit(1));
+        let least =
+            (0..3).min_by(|i, j| along[*i].abs().total_cmp(&along[*j].abs())).unwrap_or(0);
+        let across = cross(along, Vector::unit(least)).normalized().unwrap_or(Vector::unit(0));
+        let other = cross(along, across);
+        let around = move |v: f64| across * (TAU * v).cos() + other * (TAU * v).sin();
+        let mut boundary = vec![Patch::surface([(b - a).norm(), TAU * r], move |u, v| {
+            a + (b - a) * u + around(v) * r
+        })];
+        for (end, out) in [(b, along), (a, -along)] {
+            boundary.push(Patch::surface([FRAC_PI_2 * r, TAU * r], move |u, v| {
+                let up = FRAC_PI_2 * u;
+                end + out * (r * up.sin()) + around(v) * (r * up.cos())
+            }));
+        }
+        Definition::new(boundary, move |p| from_segment(a, b, p) < r)
+    }
+}

@@ -152,3 +152,53 @@ primitive! {
     },
     example: (Vector(std::array::from_fn(|i| [1.2, 0.8, 0.6][i])), 0.15),
 }
+
+#[cfg(feature = "oracle")]
+mod evidence {
+    use super::*;
+    use crate::oracle::{Definition, Evidence, Row, rounded_area, rounded_box};
+
+    impl Evidence<2> for Cuboid<2> {
+        const SAMPLE: &'static str = r#"{ "size": [0.1, 0.07] }"#;
+        const GUIDE: &'static [Row] = &[Row::new("Box", "`size`", "exact, convex")];
+
+        fn definition(&self) -> Definition<2> {
+            rounded_area(self.size() * 0.5, 0.0, 2.0)
+        }
+    }
+
+    impl Evidence<2> for RoundedCuboid<2> {
+        const SAMPLE: &'static str = r#"{ "size": [0.1, 0.07], "rounding": 0.015 }"#;
+
+        fn definition(&self) -> Definition<2> {
+            rounded_area(self.size() * 0.5, self.rounding(), 2.0)
+        }
+
+        fn refused() -> Vec<Result<Self, ShapeError>> {
+            vec![Self::new(Vector([1.0, 0.2]), 0.3)]
+        }
+    }
+
+    impl Evidence<3> for Cuboid<3> {
+        const SAMPLE: &'static str = r#"{ "size": [0.1, 0.07, 0.05] }"#;
+        const GUIDE: &'static [Row] = &[Row::new("Box", "`size`", "exact, convex")];
+
+        fn definition(&self) -> Definition<3> {
+            rounded_box(self.size() * 0.5, 0.0, 2.0)
+        }
+
+        fn refused() -> Vec<Result<Self, ShapeError>> {
+            vec![Self::new(Vector([1.0, 0.0, 1.0]))]
+        }
+    }
+
+    impl Evidence<3> for RoundedCuboid<3> {
+        const SAMPLE: &'static str = r#"{ "size": [0.1, 0.07, 0.05], "rounding": 0.015 }"#;
+        const GUIDE: &'static [Row] =
+            &[Row::new("Round Box", "`size` with the rounding, `rounding`", "exact, convex")];
+
+        fn definition(&self) -> Definition<3> {
+            rounded_box(self.size() * 0.5, self.rounding(), 2.0)
+        }
+    }
+}

@@ -181,3 +181,41 @@ primitive! {
     marks: |kernel| Mark::radii(kernel.radii()),
     example: (Vector([0.9, 0.6, 0.3])),
 }
+
+#[cfg(feature = "oracle")]
+mod evidence {
+    use std::f64::consts::TAU;
+
+    use super::*;
+    use crate::oracle::{Definition, Evidence, Patch, Row, ellipsoid};
+
+    impl Evidence<2> for Ellipsoid<2> {
+        const SAMPLE: &'static str = r#"{ "radii": [0.05, 0.03] }"#;
+        const GUIDE: &'static [Row] = &[Row::new("Ellipse", "`radii`", "exact, convex")];
+
+        fn definition(&self) -> Definition<2> {
+            let r = self.radii();
+            let curve = Patch::curve(TAU * r[0].max(r[1]), move |t| {
+                Vector([r[0] * (TAU * t).cos(), r[1] * (TAU * t).sin()])
+            });
+            Definition::new(vec![curve], move |p| (p[0] / r[0]).hypot(p[1] / r[1]) < 1.0)
+        }
+
+        fn refused() -> Vec<Result<Self, ShapeError>> {
+            vec![Self::new(Vector([1.0, 1e-7]))]
+        }
+    }
+
+    impl Evidence<3> for Ellipsoid<3> {
+        const SAMPLE: &'static str = r#"{ "radii": [0.05, 0.03, 0.04] }"#;
+        const GUIDE: &'static [Row] = &[Row::new(
+            "Ellipsoid",
+            "`radii`; the nearest point is solved for",
+            "exact, convex",
+        )];
+
+        fn definition(&self) -> Definition<3> {
+            ellipsoid(self.radii())
+        }
+    }
+}

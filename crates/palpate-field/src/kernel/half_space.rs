@@ -74,3 +74,52 @@ primitive! {
     },
     example: (Vector(std::array::from_fn(|i| [0.3, 1.0, -0.2][i])), 0.1),
 }
+
+#[cfg(feature = "oracle")]
+mod evidence {
+    use super::*;
+    use crate::oracle::{Definition, Evidence, FAR, Patch, Row, cross};
+    use crate::vector::Point;
+
+    impl Evidence<2> for HalfSpace<2> {
+        const SAMPLE: &'static str = r#"{ "normal": [1, 2], "offset": 0.01 }"#;
+
+        fn definition(&self) -> Definition<2> {
+            let normal = self.normal().normalized().unwrap_or(Vector::unit(0));
+            let offset = self.offset();
+            let along = Vector([-normal[1], normal[0]]) * FAR;
+            let foot = normal * offset;
+            let line = Patch::segment(foot - along, foot + along);
+            Definition::new(vec![line], move |p| p.dot(normal) < offset)
+        }
+    }
+
+    impl Evidence<3> for HalfSpace<3> {
+        const SAMPLE: &'static str = r#"{ "normal": [1, 2, 0.5], "offset": 0.01 }"#;
+        const GUIDE: &'static [Row] = &[Row::new(
+            "Plane",
+            "`normal` of any length, `offset`",
+            "exact, convex, unbounded",
+        )];
+
+        fn definition(&self) -> Definition<3> {
+            half_space(self.normal(), self.offset())
+        }
+
+        fn refused() -> Vec<Result<Self, ShapeError>> {
+            vec![Self::new(Vector([0.0, 0.0, 0.0]), 0.0)]
+        }
+    }
+
+    fn half_space(normal: Point<3>, offset: f64) -> Definition<3> {
+        let normal = normal.normalized().unwrap_or(Vector::unit(0));
+        let least =
+            (0..3).min_by(|i, j| normal[*i].abs().total_cmp(&normal[*j].abs())).unwrap_or(0);
+        let x = cross(normal, Vector::unit(least)).normalized().unwrap_or(Vector::unit(0));
+        let y = cross(normal, x);
+        let plane = Patch::surface([2.0 * FAR; 2], move |u, v| {
+            normal * offset + x * (FAR * (2.0 * u - 1.0)) + y * (FAR * (2.0 * v - 1.0))
+        });
+        Definition::new(vec![plane], move |p| p.dot(normal) < offset)
+    }
+}

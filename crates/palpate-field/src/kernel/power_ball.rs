@@ -81,3 +81,58 @@ primitive! {
     marks: |kernel| vec![Mark::from_origin("radius", at(kernel.radius, 0.0))],
     example: (0.8, 4),
 }
+
+#[cfg(feature = "oracle")]
+mod evidence {
+    use std::f64::consts::{PI, TAU};
+
+    use super::*;
+    use crate::oracle::{Definition, Evidence, Patch, Row, bound, norm, on_ball, speed};
+
+    impl Evidence<2> for PowerBall {
+        const SAMPLE: &'static str = r#"{ "radius": 0.045, "exponent": 4 }"#;
+        const GUIDE: &'static [Row] = &[Row::new(
+            "Sphere, by another length",
+            "`radius` along the axes, `exponent`",
+            "bound, convex",
+        )];
+
+        fn definition(&self) -> Definition<2> {
+            disc(self.radius(), f64::from(self.exponent()))
+        }
+
+        fn refused() -> Vec<Result<Self, ShapeError>> {
+            vec![Self::new(-0.5, 4), Self::new(0.5, 2)]
+        }
+    }
+
+    impl Evidence<3> for PowerBall {
+        const SAMPLE: &'static str = r#"{ "radius": 0.04, "exponent": 6 }"#;
+        const GUIDE: &'static [Row] = &[Row::new(
+            "Sphere, by another length",
+            "`radius` along the axes, `exponent`",
+            "bound, convex",
+        )];
+
+        fn definition(&self) -> Definition<3> {
+            ball(self.radius(), f64::from(self.exponent()))
+        }
+    }
+
+    fn disc(radius: f64, exponent: f64) -> Definition<2> {
+        let circle = Patch::curve(TAU * radius * speed::<2>(exponent), move |t| {
+            let (sin, cos) = (TAU * t).sin_cos();
+            on_ball(Vector([cos, sin]), exponent) * radius
+        });
+        bound(Definition::new(vec![circle], move |p| norm(p, exponent) < radius))
+    }
+
+    fn ball(radius: f64, exponent: f64) -> Definition<3> {
+        let speed = radius * speed::<3>(exponent);
+        let surface = Patch::surface([PI * speed, TAU * speed], move |u, v| {
+            let ((up, across), (sin, cos)) = ((PI * (u - 0.5)).sin_cos(), (TAU * v).sin_cos());
+            on_ball(Vector([across * cos, up, across * sin]), exponent) * radius
+        });
+        bound(Definition::new(vec![surface], move |p| norm(p, exponent) < radius))
+    }
+}

@@ -98,3 +98,41 @@ primitive! {
     },
     example: (Vector(std::array::from_fn(|i| [1.4, 1.1, 0.9][i])), 0.4, 6),
 }
+
+#[cfg(feature = "oracle")]
+mod evidence {
+    use super::*;
+    use crate::oracle::{Definition, Evidence, Row, bound, rounded_area, rounded_box};
+
+    impl Evidence<2> for PowerCuboid<2> {
+        const SAMPLE: &'static str =
+            r#"{ "size": [0.1, 0.07], "rounding": 0.03, "exponent": 8 }"#;
+        const GUIDE: &'static [Row] = &[Row::new(
+            "Round Box, by another length",
+            "`size` with the rounding, `rounding`, `exponent`",
+            "bound, convex",
+        )];
+
+        fn definition(&self) -> Definition<2> {
+            bound(rounded_area(self.size() * 0.5, self.rounding(), f64::from(self.exponent())))
+        }
+
+        fn refused() -> Vec<Result<Self, ShapeError>> {
+            vec![Self::new(Vector([1.0, 0.5]), 0.3, 4), Self::new(Vector([1.0, 0.5]), 0.1, 7)]
+        }
+    }
+
+    impl Evidence<3> for PowerCuboid<3> {
+        const SAMPLE: &'static str =
+            r#"{ "size": [0.1, 0.07, 0.05], "rounding": 0.025, "exponent": 4 }"#;
+        const GUIDE: &'static [Row] = &[Row::new(
+            "Round Box, by another length",
+            "`size` with the rounding, `rounding`, `exponent`",
+            "bound, convex",
+        )];
+
+        fn definition(&self) -> Definition<3> {
+            bound(rounded_box(self.size() * 0.5, self.rounding(), f64::from(self.exponent())))
+        }
+    }
+}

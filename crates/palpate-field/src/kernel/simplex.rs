@@ -255,3 +255,42 @@ primitive! {
         Vector([0.0, 0.7, 0.1]),
     ]),
 }
+
+#[cfg(feature = "oracle")]
+mod evidence {
+    use super::*;
+    use crate::oracle::{Definition, Evidence, Row, hull, polygon};
+
+    impl Evidence<2> for Simplex<2> {
+        const SAMPLE: &'static str =
+            r#"{ "points": [[-0.05, -0.04], [0.05, -0.02], [0.01, 0.05]] }"#;
+        const GUIDE: &'static [Row] =
+            &[Row::new("Triangle", "three `points`", "exact, convex")];
+
+        fn definition(&self) -> Definition<2> {
+            polygon(vec![self.points().to_vec()])
+        }
+
+        fn refused() -> Vec<Result<Self, ShapeError>> {
+            let on_a_line = [[0.0, 0.0], [1.0, 1.0], [3.0, 3.0]].map(Vector).to_vec();
+            vec![Self::new(vec![Vector([0.0, 0.0])]), Self::new(on_a_line)]
+        }
+    }
+
+    impl Evidence<3> for Simplex<3> {
+        const SAMPLE: &'static str = r#"{ "points": [[-0.05, -0.04, -0.03], [0.05, -0.04, -0.03],
+             [0, -0.04, 0.05], [0, 0.05, 0]] }"#;
+
+        fn definition(&self) -> Definition<3> {
+            tetrahedron(self.points())
+        }
+    }
+
+    fn tetrahedron(corners: &[Point<3>]) -> Definition<3> {
+        let centre = corners.iter().fold(Vector::ZERO, |sum, c| sum + *c * 0.25);
+        let triangles = (0..4)
+            .map(|i| [corners[(i + 1) % 4], corners[(i + 2) % 4], corners[(i + 3) % 4]])
+            .collect();
+        hull(triangles, centre)
+    }
+}

@@ -14,7 +14,7 @@ use super::Node;
 use crate::error::ShapeError;
 use crate::field::{SharedField, placed};
 use crate::operator::{
-    boolean, distortion, domain, mixture, repetition, smooth, surface, transform,
+    boolean, catalogue, distortion, domain, mixture, repetition, smooth, surface, transform,
 };
 use crate::pose::Pose;
 use crate::shape::Shape;
@@ -217,8 +217,9 @@ fn field<S: Dimension<D>, const D: usize>(
         Node::Scaled { factor, of } => transform::scaled(own(of), *factor),
         Node::Stretched { factors, of } => transform::stretched(own(of), *factors),
         Node::Offset { distance, of } => surface::offset(own(of), *distance),
-        Node::Shell { thickness, of } => surface::shell(own(of), *thickness),
-        Node::Elongated { lengths, of } => domain::elongated(own(of), *lengths),
+        Node::Operated { operator, argument, of } => {
+            catalogue::field(operator, own(of), argument)
+        }
         Node::Mirrored { axis, of } => domain::mirrored(own(of), *axis),
         Node::Repeated { copies, of } => repetition::repeated(own(of), *copies),
         Node::Bent { rate, of } => distortion::bent(own(of), *rate),

@@ -72,8 +72,7 @@ impl<const D: usize> Shape<D> {
             | Node::Scaled { of, .. }
             | Node::Stretched { of, .. }
             | Node::Offset { of, .. }
-            | Node::Shell { of, .. }
-            | Node::Elongated { of, .. }
+            | Node::Operated { of, .. }
             | Node::Mirrored { of, .. }
             | Node::Repeated { of, .. }
             | Node::Bent { of, .. }

@@ -13,7 +13,9 @@ use std::fmt;
 use std::sync::Arc;
 
 use crate::field::{CustomField, SharedField};
-use crate::operator::Copies;
+use crate::kernel::Argument;
+use crate::operator::catalogue::Declared;
+use crate::operator::{Copies, Operator};
 use crate::pose::Pose;
 use crate::shape::Shape;
 
@@ -125,17 +127,12 @@ pub enum Node<const D: usize> {
         /// The shape.
         of: Shape<D>,
     },
-    /// A shell about the surface of a shape.
-    Shell {
-        /// The thickness of the wall [m].
-        thickness: f64,
-        /// The shape.
-        of: Shape<D>,
-    },
-    /// A shape cut at the coordinate planes and pulled apart.
-    Elongated {
-        /// The length of the gap along each axis [m].
-        lengths: [f64; D],
+    /// A shape under an operator of the catalogue.
+    Operated {
+        /// The operator.
+        operator: Operator,
+        /// A number, or a vector where the operator has one for each axis.
+        argument: Argument,
         /// The shape.
         of: Shape<D>,
     },
@@ -181,6 +178,13 @@ pub enum Node<const D: usize> {
     },
     /// A kernel, field or closure of a user: it can be evaluated, not looked into.
     Opaque(Opaque<D>),
+}
+
+impl<const D: usize> Node<D> {
+    /// The node of an operator of the catalogue.
+    pub(crate) fn operated<O: Declared>(argument: Argument, of: Shape<D>) -> Self {
+        Self::Operated { operator: O::OPERATOR, argument, of }
+    }
 }
 
 /// A kernel, field or closure of a user.

@@ -101,9 +101,8 @@ impl<const D: usize> Text<'_, D> {
                 write!(f, "{}.stretched({factors:?})", before(of))
             }
             Node::Offset { distance, of } => write!(f, "{}.offset({distance:?})", before(of)),
-            Node::Shell { thickness, of } => write!(f, "{}.shell({thickness:?})", before(of)),
-            Node::Elongated { lengths, of } => {
-                write!(f, "{}.elongated({lengths:?})", before(of))
+            Node::Operated { operator, argument, of } => {
+                write!(f, "{}.{}({argument})", before(of), operator.method)
             }
             Node::Mirrored { axis, of } => write!(f, "{}.mirrored({axis})", before(of)),
             Node::Repeated { copies, of } => write!(f, "{}.repeated({copies:?})", before(of)),
@@ -171,15 +170,21 @@ impl<const D: usize> Display for Primitive<D> {
         write!(f, "{}(", self.name())?;
         for (i, argument) in self.arguments().iter().enumerate() {
             f.write_str(if i == 0 { "" } else { ", " })?;
-            match argument {
-                Argument::Number(number) => write!(f, "{number:?}")?,
-                Argument::Count(count) => write!(f, "{count}")?,
-                Argument::Vector(vector) => write!(f, "{vector:?}")?,
-                Argument::Points(points) => write!(f, "{points:?}")?,
-                Argument::Rings(rings) => write!(f, "{rings:?}")?,
-            }
+            write!(f, "{argument}")?;
         }
         f.write_str(")")
+    }
+}
+
+impl Display for Argument {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Number(number) => write!(f, "{number:?}"),
+            Self::Count(count) => write!(f, "{count}"),
+            Self::Vector(vector) => write!(f, "{vector:?}"),
+            Self::Points(points) => write!(f, "{points:?}"),
+            Self::Rings(rings) => write!(f, "{rings:?}"),
+        }
     }
 }
 

@@ -4,11 +4,17 @@
 //! Operators that fold or stretch space: mirror, elongation, extrusion,
 //! revolution.
 
+#[cfg(feature = "oracle")]
+use super::catalogue::{Child, Evidence};
+use super::catalogue::{Declared, Operator};
 use crate::bounds::{Aabb, BoundingBall, Bounds};
 use crate::error::{ShapeError, Unit, not_negative, positive};
 use crate::field::{SharedField, Warp, Warped};
+use crate::kernel::{Argument, ParameterKind};
+use crate::node::Node;
 use crate::promise::{Promise, Rounding};
 use crate::scalar::Scalar;
+use crate::shape::Shape;
 use crate::vector::{Vector, array, unrolled};
 
 /// `f(|pₐ|, …)` along axis a.
@@ -127,8 +133,66 @@ pub(crate) fn mirrored<const D: usize>(
     Warped::shared(Mirror { axis }, child, promise)
 }
 
+/// Pulls a shape apart.
+pub(crate) struct Elongate;
+
+impl Declared for Elongate {
+    const OPERATOR: Operator = Operator {
+        name: "elongate",
+        method: "elongated",
+        about: "Pulls the shape apart at the coordinate planes [m].",
+        kind: ParameterKind::LengthOrZero,
+        is_per_axis: true,
+        first: [0.05, 0.0, 0.0],
+    };
+
+    fn field<const D: usize>(
+        child: SharedField<D>,
+        argument: &Argument,
+    ) -> Result<SharedField<D>, ShapeError> {
+        let Argument::Vector(lengths) = argument else { return Self::OPERATOR.unsuitable() };
+        match lengths[..].try_into() {
+            Ok(lengths) => elongated(child, lengths),
+            Err(_) => Self::OPERATOR.unsuitable(),
+        }
+    }
+}
+
+impl<const D: usize> Shape<D> {
+    /// The shape cut at the coordinate planes and pulled apart by `lengths` [m],
+    /// the gap filled with the cross-section: `f(p − clamp(p, −l/2, l/2))`.
+    ///
+    /// Outside, exact where the shape is if it is convex and symmetric about
+    /// each cut, else a bound; inside, a bound, since the ends are not as near
+    /// in the elongated shape as they were.
+    ///
+    /// # Errors
+    ///
+    /// If a length is negative, or shapes are nested too deeply.
+    pub fn elongated(self, lengths: impl Into<Vector<f64, D>>) -> Result<Self, ShapeError> {
+        let lengths = Argument::Vector(lengths.into().0.to_vec());
+        Self::from_node(Node::operated::<Elongate>(lengths, self))
+    }
+}
+
+#[cfg(feature = "oracle")]
+impl Evidence for Elongate {
+    fn definition<S: Scalar, const D: usize>(
+        child: &Child<'_, S, D>,
+        argument: &Argument,
+        p: Vector<S, D>,
+    ) -> S {
+        let Argument::Vector(lengths) = argument else {
+            unreachable!("a number for each axis")
+        };
+        (child.value)(Vector(std::array::from_fn(|i| {
+            p.0[i] - p.0[i].clamp(-0.5 * lengths[i], 0.5 * lengths[i])
+        })))
+    }
+}
+
 /// The `child` cut at the coordinate planes and pulled apart by `lengths`.
-pub(crate) fn elongated<const D: usize>(
+fn elongated<const D: usize>(
     child: SharedField<D>,
     lengths: [f64; D],
 ) -> Result<SharedField<D>, ShapeError> {

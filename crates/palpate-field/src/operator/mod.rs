@@ -8,6 +8,7 @@
 //! methods of [`Shape`](crate::Shape) make a [`Node`](crate::Node), which calls them.
 
 pub(crate) mod boolean;
+pub(crate) mod catalogue;
 pub(crate) mod distortion;
 pub(crate) mod domain;
 mod guard;
@@ -17,5 +18,8 @@ pub(crate) mod smooth;
 pub(crate) mod surface;
 pub(crate) mod transform;
 
+#[cfg(feature = "oracle")]
+pub use catalogue::Child;
+pub use catalogue::Operator;
 pub use repetition::Copies;
 pub use smooth::{Boolean, Profile};

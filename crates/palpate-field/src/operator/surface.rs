@@ -3,11 +3,17 @@
 
 //! Operators that move the surface: offset and shell.
 
+#[cfg(feature = "oracle")]
+use super::catalogue::{Child, Evidence};
+use super::catalogue::{Declared, Operator};
 use super::guard::guarded;
 use crate::error::{ShapeError, Unit, finite, positive};
 use crate::field::{Remap, Remapped, SharedField};
+use crate::kernel::{Argument, ParameterKind};
+use crate::node::Node;
 use crate::promise::{Promise, Quality, Rounding};
 use crate::scalar::Scalar;
+use crate::shape::Shape;
 use crate::vector::Vector;
 
 /// `f − r`.
@@ -78,8 +84,59 @@ pub(crate) fn offset<const D: usize>(
     Remapped::shared(Offset { distance }, child, promise)
 }
 
+impl Declared for Shell {
+    const OPERATOR: Operator = Operator {
+        name: "shell",
+        method: "shell",
+        about: "Makes a wall of this thickness on the surface of the shape [m].",
+        kind: ParameterKind::Length,
+        is_per_axis: false,
+        first: [0.01; 3],
+    };
+
+    fn field<const D: usize>(
+        child: SharedField<D>,
+        argument: &Argument,
+    ) -> Result<SharedField<D>, ShapeError> {
+        match argument {
+            Argument::Number(thickness) => shell(child, *thickness),
+            _ => Self::OPERATOR.unsuitable(),
+        }
+    }
+}
+
+impl<const D: usize> Shape<D> {
+    /// A shell of `thickness` [m], half of it on either side of the surface:
+    /// `|f| − t/2`.
+    ///
+    /// Outside, and in the cavity, exact if the shape is convex and exact on
+    /// both sides; in the wall a bound, since the nearest point of the inner
+    /// face of a corner is not straight inwards.
+    ///
+    /// # Errors
+    ///
+    /// If the thickness is not positive.
+    pub fn shell(self, thickness: f64) -> Result<Self, ShapeError> {
+        Self::from_node(Node::operated::<Shell>(Argument::Number(thickness), self))
+    }
+}
+
+#[cfg(feature = "oracle")]
+impl Evidence for Shell {
+    fn definition<S: Scalar, const D: usize>(
+        child: &Child<'_, S, D>,
+        argument: &Argument,
+        p: Vector<S, D>,
+    ) -> S {
+        let Argument::Number(thickness) = argument else {
+            unreachable!("a shell has a number")
+        };
+        (child.guarded)(p).abs() - S::constant(0.5 * thickness)
+    }
+}
+
 /// `|child| − thickness/2`.
-pub(crate) fn shell<const D: usize>(
+fn shell<const D: usize>(
     child: SharedField<D>,
     thickness: f64,
 ) -> Result<SharedField<D>, ShapeError> {

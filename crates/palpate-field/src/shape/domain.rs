@@ -1,14 +1,13 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! Shapes in space that is folded, stretched or turned: mirror, repetition, elongation,
-//! bend, twist, extrusion, revolution.
+//! Shapes in space that is folded, stretched or turned: mirror, repetition, bend,
+//! twist, extrusion, revolution.
 
 use super::Shape;
 use crate::error::ShapeError;
 use crate::node::Node;
 use crate::operator::Copies;
-use crate::vector::Vector;
 
 impl<const D: usize> Shape<D> {
     /// The part at positive coordinates of `axis`, and its mirror image:
@@ -22,20 +21,6 @@ impl<const D: usize> Shape<D> {
     /// If there is no such axis, or shapes are nested too deeply.
     pub fn mirrored(self, axis: usize) -> Result<Self, ShapeError> {
         Self::from_node(Node::Mirrored { axis, of: self })
-    }
-
-    /// The shape cut at the coordinate planes and pulled apart by `lengths` [m],
-    /// the gap filled with the cross-section: `f(p − clamp(p, −l/2, l/2))`.
-    ///
-    /// Outside, exact where the shape is if it is convex and symmetric about
-    /// each cut, else a bound; inside, a bound, since the ends are not as near
-    /// in the elongated shape as they were.
-    ///
-    /// # Errors
-    ///
-    /// If a length is negative, or shapes are nested too deeply.
-    pub fn elongated(self, lengths: impl Into<Vector<f64, D>>) -> Result<Self, ShapeError> {
-        Self::from_node(Node::Elongated { lengths: lengths.into().0, of: self })
     }
 }
 

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! Shapes with their surface moved: offset, shell, displacement, morphing.
+//! Shapes with their surface moved: offset, displacement, morphing.
 
 use super::Shape;
 use crate::error::ShapeError;
@@ -19,20 +19,6 @@ impl<const D: usize> Shape<D> {
     /// box.
     pub fn offset(self, distance: f64) -> Result<Self, ShapeError> {
         Self::from_node(Node::Offset { distance, of: self })
-    }
-
-    /// A shell of `thickness` [m], half of it on either side of the surface:
-    /// `|f| − t/2`.
-    ///
-    /// Outside, and in the cavity, exact if the shape is convex and exact on
-    /// both sides; in the wall a bound, since the nearest point of the inner
-    /// face of a corner is not straight inwards.
-    ///
-    /// # Errors
-    ///
-    /// If the thickness is not positive.
-    pub fn shell(self, thickness: f64) -> Result<Self, ShapeError> {
-        Self::from_node(Node::Shell { thickness, of: self })
     }
 }
 

@@ -25,8 +25,8 @@ fn quoted(cell: &str) -> Vec<&str> {
 }
 
 /// The rows of a section are as many as the list has, and each names a primitive whose
-/// parameters are the first ones quoted in the next cell; all promises begin alike.
-fn check<const D: usize>(section: &str, count: usize, promise: &str, catalogue: &[Entry<D>]) {
+/// parameters are the first ones quoted in the next cell; promises begin as they should.
+fn check<const D: usize>(section: &str, count: usize, catalogue: &[Entry<D>]) {
     let rows = rows(section);
     assert_eq!(rows.len(), count, "rows{section}");
     let mut unknown = Vec::new();
@@ -43,27 +43,23 @@ fn check<const D: usize>(section: &str, count: usize, promise: &str, catalogue: 
         let wrong: Vec<_> =
             named.iter().filter(|q| !is_parameter(q) && !other.contains(q)).collect();
         assert!(wrong.is_empty(), "{name} has no {wrong:?}");
+        let promise = if BOUNDS.contains(&name) { "bound" } else { "exact" };
         assert!(row[3].starts_with(promise), "{name}: {}", row[3]);
     }
     assert!(unknown.is_empty(), "not in the catalogue: {unknown:?}");
 }
 
+/// Primitives that are no more than a bound; all others in the guide are exact.
+const BOUNDS: [&str; 4] = ["power_ball", "power_cuboid", "power_torus", "screw_thread"];
+
 #[test]
 fn the_guide_names_primitives_of_the_plane_that_there_are() {
-    check("\n## Of the plane\n", 44, "exact", Entry::<2>::ALL);
+    // 44 of the list, and two in other norms.
+    check("\n## Of the plane\n", 46, Entry::<2>::ALL);
 }
 
 #[test]
 fn the_guide_names_primitives_of_space_that_there_are() {
-    check("\n## Of space\n", 35, "exact", Entry::<3>::ALL);
-}
-
-#[test]
-fn the_guide_names_the_threads_that_there_are() {
-    check("\n## Threads\n", 1, "bound", Entry::<3>::ALL);
-}
-
-#[test]
-fn the_guide_names_primitives_of_other_norms_that_there_are() {
-    check("\n## Change of metric\n", 3, "bound", Entry::<3>::ALL);
+    // 35 of the list, three in other norms, and the thread.
+    check("\n## Of space\n", 39, Entry::<3>::ALL);
 }

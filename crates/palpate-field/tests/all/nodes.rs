@@ -42,11 +42,9 @@ fn rebuilt<const D: usize>(shape: &Shape<D>) -> Result<Shape<D>, ShapeError> {
             Node::Stretched { factors: *factors, of: rebuilt(of)? }
         }
         Node::Offset { distance, of } => Node::Offset { distance: *distance, of: rebuilt(of)? },
-        Node::Shell { thickness, of } => {
-            Node::Shell { thickness: *thickness, of: rebuilt(of)? }
-        }
-        Node::Elongated { lengths, of } => {
-            Node::Elongated { lengths: *lengths, of: rebuilt(of)? }
+        Node::Operated { operator, argument, of } => {
+            let argument = argument.clone();
+            Node::Operated { operator: *operator, argument, of: rebuilt(of)? }
         }
         Node::Mirrored { axis, of } => Node::Mirrored { axis: *axis, of: rebuilt(of)? },
         Node::Repeated { copies, of } => Node::Repeated { copies: *copies, of: rebuilt(of)? },

@@ -7,8 +7,8 @@
 use palpate_field::Quality;
 use palpate_testkit::arbitrary as draw;
 use palpate_testkit::cases;
-use palpate_testkit::kernels::{Dimension, IntoShape, Space};
-use palpate_testkit::oracle::{Defined, Outside};
+use palpate_testkit::kernels::{Defined, Dimension, IntoShape, Space};
+use palpate_testkit::oracle::Outside;
 
 /// Spacing of the samples, of the size of the shape.
 const SPACING: f64 = 1e-3;
@@ -25,7 +25,7 @@ const NEAR: f64 = 4.0;
 /// Compares the primitives of one dimension with their definitions.
 fn agree<const D: usize>()
 where
-    Space: Defined<D>,
+    Space: Dimension<D>,
 {
     let catalogue = <Space as Dimension<D>>::CATALOGUE;
     let mut counts = vec![(0, 0); catalogue.len()];
@@ -39,8 +39,9 @@ where
             Ok(shape) => shape,
             Err(error) => return Ok(Err(error.to_string())),
         };
-        let Some(definition) = Space::definition(entry.name, &arguments) else {
-            return Ok(Err(format!("{} has no definition", entry.name)));
+        let definition = match Space::with_kernel(entry.name, &arguments, Defined) {
+            Ok(definition) => definition,
+            Err(error) => return Ok(Err(error.to_string())),
         };
         let size = draw::size(&shape);
         for _ in 0..POINTS {

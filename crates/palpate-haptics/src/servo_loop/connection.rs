@@ -73,6 +73,7 @@ impl Reconnection {
 /// What a run saw of the connection to its device.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct ConnectionReport {
     /// The time after which the device takes its forces away by itself when the program dies [s];
@@ -91,10 +92,8 @@ pub struct ConnectionReport {
     /// The time without the device [s].
     pub lost_time: f64,
     /// Why it was lost the last time, or not found again; `None` if it never was.
-    #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Option::is_none"))]
     pub last_loss: Option<String>,
     /// Why the device was not closed; `None` if it was, or was not open.
-    #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Option::is_none"))]
     pub not_closed: Option<String>,
 }
 

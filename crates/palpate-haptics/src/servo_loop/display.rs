@@ -130,17 +130,17 @@ impl Display for ToolReport {
 impl Display for Distribution {
     /// The quantiles; with `{:#}` a line with a bar for each bucket follows.
     fn fmt(&self, f: &mut Formatter<'_>) -> Result {
-        let times = [self.p50_ns, self.p99_ns, self.p999_ns, self.max_ns];
-        let [p50, p99, p999, max] = times.map(|ns| 1e-3 * ns as f64);
+        let times = [self.p50, self.p99, self.p999, self.max];
+        let [p50, p99, p999, max] = times.map(|time| 1e6 * time);
         write!(f, "p50 {p50:.2} µs, p99 {p99:.2} µs, p99.9 {p999:.2} µs, max {max:.2} µs")?;
         if !f.alternate() {
             return Ok(());
         }
         let most = self.buckets.iter().map(|bucket| bucket.count).max().unwrap_or(1).max(1);
-        for Bucket { up_to_ns, count } in &self.buckets {
+        for Bucket { up_to, count } in &self.buckets {
             // A bucket that is not empty has a bar of at least one block.
             let bar = "█".repeat((count * WIDEST_BAR).div_ceil(most) as usize);
-            write!(f, "\n    up to {:>8} µs {count:>8} {bar}", up_to_ns / 1000)?;
+            write!(f, "\n    up to {:>8.0} µs {count:>8} {bar}", 1e6 * up_to)?;
         }
         Ok(())
     }
@@ -243,11 +243,10 @@ mod tests {
 
     #[test]
     fn times_are_quantiles_and_bars() {
-        let (p50_ns, p99_ns, p999_ns, max_ns) = (1000, 2500, 2900, 3000);
-        let bucket = |up_to_ns, count| Bucket { up_to_ns, count };
-        let buckets = vec![bucket(1000, 79), bucket(2000, 1), bucket(4000, 0)];
-        let times =
-            Distribution { count: 80, mean_ns: 0.0, p50_ns, p99_ns, p999_ns, max_ns, buckets };
+        let (p50, p99, p999, max) = (1e-6, 2.5e-6, 2.9e-6, 3e-6);
+        let bucket = |up_to, count| Bucket { up_to, count };
+        let buckets = vec![bucket(1e-6, 79), bucket(2e-6, 1), bucket(4e-6, 0)];
+        let times = Distribution { count: 80, mean: 0.0, p50, p99, p999, max, buckets };
         let said = "p50 1.00 µs, p99 2.50 µs, p99.9 2.90 µs, max 3.00 µs";
         assert_eq!(times.to_string(), said);
         let bars = format!(

@@ -14,6 +14,7 @@ use palpate_field::{Point, Vector};
 /// not count them.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct GuideReport {
     /// What the guide is, as [`Guide::kind_name`](crate::Guide::kind_name) says.

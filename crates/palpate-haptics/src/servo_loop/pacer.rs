@@ -176,6 +176,7 @@ pub(crate) fn nanoseconds(duration: Duration) -> u64 {
 /// How late an idle loop wakes.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct Lateness {
     /// The distribution of lateness; `None` if the loop had no tick.
@@ -199,7 +200,7 @@ impl Lateness {
     /// # fn main() -> Result<(), palpate_haptics::HapticsError> {
     /// let lateness = Lateness::measure(&mut VirtualClock::new(), 1000.0, 2.0)?;
     /// let times = lateness.times.expect("there are ticks");
-    /// assert_eq!((times.count, times.max_ns, lateness.missed), (2000, 0, 0));
+    /// assert_eq!((times.count, times.max, lateness.missed), (2000, 0.0, 0));
     /// # Ok(())
     /// # }
     /// ```

@@ -13,6 +13,7 @@ const PERCENT: u8 = 70;
 /// Whether a thread is scheduled before others.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(feature = "serde", serde(tag = "kind", rename_all = "snake_case"))]
 pub enum Priority {
     /// The normal priority; no other was requested.

@@ -18,6 +18,7 @@ use palpate_safety::SafetyReport;
 /// The report of a run of a servo.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct RunReport {
     /// Why the run ended.
@@ -61,13 +62,10 @@ pub struct RunReport {
     /// The report of each guide of the servo; none if the device gives no force.
     pub guides: Vec<GuideReport>,
     /// The report of height textures; `None` if none was touched.
-    #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Option::is_none"))]
     pub texture: Option<TextureReport>,
     /// The report of the tool; `None` if the servo renders contact points.
-    #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Option::is_none"))]
     pub tool: Option<ToolReport>,
     /// The report of a device that vibrates; `None` without one.
-    #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Option::is_none"))]
     pub vibration: Option<VibrationReport>,
 }
 
@@ -113,6 +111,7 @@ pub enum RunError {
 /// How often the shape was evaluated.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct EvaluationCounts {
     /// In all ticks.
@@ -128,6 +127,7 @@ pub struct EvaluationCounts {
 /// Why a run ended.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(feature = "serde", serde(tag = "kind", rename_all = "snake_case"))]
 #[non_exhaustive]
 pub enum Ending {

@@ -17,6 +17,7 @@ const FELT: f64 = 1e-4;
 /// is none.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct StartInside {
     /// The number of the contact point, from 0.

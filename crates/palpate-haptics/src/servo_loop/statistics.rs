@@ -14,32 +14,38 @@ const DIGITS: u8 = 3;
 /// A distribution of times.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct Distribution {
     /// The number of measured times.
     pub count: u64,
-    /// The mean [ns].
-    pub mean_ns: f64,
-    /// The median: half of the times are at most this [ns].
-    pub p50_ns: u64,
-    /// 99 % of the times are at most this [ns].
-    pub p99_ns: u64,
-    /// 99.9 % of the times are at most this [ns].
-    pub p999_ns: u64,
-    /// The largest time [ns].
-    pub max_ns: u64,
+    /// The mean [s].
+    pub mean: f64,
+    /// The median: half of the times are at most this [s].
+    pub p50: f64,
+    /// 99 % of the times are at most this [s].
+    pub p99: f64,
+    /// 99.9 % of the times are at most this [s].
+    pub p999: f64,
+    /// The largest time [s].
+    pub max: f64,
     /// A histogram: times up to 1, 2, 4, 8 … µs, up to the longest.
     pub buckets: Vec<Bucket>,
 }
 
 /// A bar of a histogram: how many times lie above the bucket before and up to a bound.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Bucket {
-    /// The largest time of the bucket [ns].
-    pub up_to_ns: u64,
+    /// The largest time of the bucket [s].
+    pub up_to: f64,
     /// The number of times in the bucket.
     pub count: u64,
+}
+
+fn seconds(ns: f64) -> f64 {
+    ns / 1e9
 }
 
 /// Collects times in preallocated memory.
@@ -68,17 +74,21 @@ impl Times {
         let mut up_to_ns = 1000;
         while counted < times.len() {
             let below = times.count_between(0, up_to_ns);
-            buckets.push(Bucket { up_to_ns, count: below.saturating_sub(counted) });
+            buckets.push(Bucket {
+                up_to: seconds(up_to_ns as f64),
+                count: below.saturating_sub(counted),
+            });
             counted = counted.max(below);
             up_to_ns *= 2;
         }
+        let quantile = |part| seconds(times.value_at_quantile(part) as f64);
         Some(Distribution {
             count: times.len(),
-            mean_ns: times.mean(),
-            p50_ns: times.value_at_quantile(0.5),
-            p99_ns: times.value_at_quantile(0.99),
-            p999_ns: times.value_at_quantile(0.999),
-            max_ns: times.max(),
+            mean: seconds(times.mean()),
+            p50: quantile(0.5),
+            p99: quantile(0.99),
+            p999: quantile(0.999),
+            max: seconds(times.max() as f64),
             buckets,
         })
     }
@@ -94,8 +104,8 @@ mod tests {
         assert_eq!(times.distribution(), None);
         (1..=1000).for_each(|ns| times.record(ns));
         let d = times.distribution().unwrap();
-        assert_eq!((d.count, d.p50_ns, d.p99_ns, d.max_ns), (1000, 500, 990, 1000));
-        assert_eq!(d.buckets, [Bucket { up_to_ns: 1000, count: 1000 }]);
+        assert_eq!((d.count, d.p50, d.p99, d.max), (1000, 500e-9, 990e-9, 1e-6));
+        assert_eq!(d.buckets, [Bucket { up_to: 1e-6, count: 1000 }]);
     }
 
     #[test]

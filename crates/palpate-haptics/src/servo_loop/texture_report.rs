@@ -13,6 +13,7 @@ use crate::Servo;
 /// ([`Passing`](crate::Passing)).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct TextureReport {
     /// Ticks in which a contact point touched a height texture.

@@ -12,6 +12,7 @@ use crate::Tool;
 /// The report of a rigid tool in a run.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct ToolReport {
     /// Points of its shell.
@@ -26,7 +27,6 @@ pub struct ToolReport {
     pub largest_torque: f64,
     /// The largest torque written to a device with rotation [N·m], in device coordinates;
     /// `None` for other devices.
-    #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Option::is_none"))]
     pub largest_torque_written: Option<f64>,
     /// The most contacts that pushed in a tick.
     pub most_contacts: u32,

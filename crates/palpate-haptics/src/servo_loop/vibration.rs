@@ -123,6 +123,7 @@ impl std::fmt::Debug for Vibration<'_> {
 /// What a run played on a device that vibrates.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct VibrationReport {
     /// How often commands were sent.
@@ -130,7 +131,6 @@ pub struct VibrationReport {
     /// The strongest amplitude, as a part of the actuators' largest.
     pub strongest: f64,
     /// Why the device plays no more; `None` if it does.
-    #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Option::is_none"))]
     pub lost: Option<String>,
 }
 

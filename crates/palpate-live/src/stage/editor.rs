@@ -9,6 +9,7 @@ use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, sync_channel};
 use std::time::{Duration, Instant, SystemTime};
 
 use palpate::field::catalogue::Entry;
+use palpate::field::operator::Operator;
 use palpate::haptics::Material;
 use palpate::scene::{AnyScene, Scene, described_primitive, schema};
 use serde_json::{Map, Value, json};
@@ -224,6 +225,7 @@ impl Editor {
                 "version": VERSION,
                 "rate": self.terms.rate,
                 "catalogue": catalogue()?,
+                "operators": operators(),
                 "materials": Material::preset_names().collect::<Vec<_>>(),
                 "presets": presets()?,
                 "schema": schema(),
@@ -488,6 +490,16 @@ fn presets() -> Result<Map<String, Value>, Refusal> {
         Ok::<_, String>((name.to_owned(), numbers))
     });
     Ok(named.collect::<Result<_, _>>()?)
+}
+
+/// The operators on one shape with the numbers to begin with, on a shape 1 m wide.
+fn operators() -> Vec<Value> {
+    let described = |operator: &Operator| {
+        let first = operator.first;
+        let first = if operator.is_per_axis { json!(first) } else { json!(first[0]) };
+        json!({ "name": operator.name, "first": first })
+    };
+    Operator::ALL.iter().map(described).collect()
 }
 
 fn catalogue() -> Result<Vec<Value>, Refusal> {

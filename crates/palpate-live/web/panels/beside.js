@@ -8,7 +8,7 @@ import { SCENE, frameIn, placed } from '../scene/frames.js';
 import { boxOf, centreOf } from '../scene/setting.js';
 import { inSpace, mean } from '../scene/vectors.js';
 import { state } from '../state.js';
-import { ONE, listOf, makerOf } from './nodes.js';
+import { listOf, makerOf, onOne } from './nodes.js';
 import { extent } from './numbers.js';
 
 /** Keys that are lengths from end to end; other lengths are radii. */
@@ -42,7 +42,7 @@ export function aboutShape(shape, depth = 0) {
     return { centre: placed(frame, inSpace(centre)).slice(0, dimension), reach: frame.scale * reach };
   }
   const maker = makerOf(shape);
-  if (!maker || ONE.includes(maker)) return none;
+  if (!maker || onOne().includes(maker)) return none;
   const entry = state.welcome?.catalogue?.find((/** @type {any} */ one) => one.name === maker && one.dimension === dimension);
   const lengths = (entry?.parameters ?? []).filter((/** @type {any} */ one) => one.unit === 'm')
     .flatMap((/** @type {any} */ { key }) => [shape[maker]?.[key]].flat(9)

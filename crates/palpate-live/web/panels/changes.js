@@ -7,7 +7,7 @@
 import { select, state } from '../state.js';
 import { aboutShape, besideBodies, besideOperands, moved } from './beside.js';
 import { edit } from './edits.js';
-import { ONE, SEVERAL, listOf } from './nodes.js';
+import { SEVERAL, listOf, onOne, operators } from './nodes.js';
 import { extent } from './numbers.js';
 import { holder, parts, valueAt, within } from './schema.js';
 
@@ -134,7 +134,10 @@ function firstParameters() {
   const zero = Array(state.scene?.dimension ?? 3).fill(0);
   return {
     translate: zero, rotate_degrees: isPlane ? 15 : { axis: [0, 1, 0], angle: 15 }, scale: 1.2,
-    offset: length(0.01), shell: length(0.01), elongate: zero.map((_, axis) => (axis === 0 ? length(0.05) : 0)),
+    offset: length(0.01),
+    ...Object.fromEntries(operators().map(({ name, first }) => [
+      name, Array.isArray(first) ? first.slice(0, zero.length).map(length) : length(first),
+    ])),
     mirror: 'x', repeat: { x: { spacing: length(0.3), first: 0, last: 2 } },
     bend_degrees: Number((30 / extent(state.scene?.bounds)).toPrecision(2)),
     twist_degrees: Number((90 / extent(state.scene?.bounds)).toPrecision(2)),
@@ -144,7 +147,7 @@ function firstParameters() {
 /** Operators that a shape can be wrapped in. @returns {string[]} */
 export function wrappers() {
   const first = firstParameters();
-  const one = ONE.filter((key) => key in first && (key !== 'twist_degrees' || state.scene?.dimension === 3));
+  const one = onOne().filter((key) => key in first && (key !== 'twist_degrees' || state.scene?.dimension === 3));
   return [...Object.keys(SEVERAL).filter((key) => key !== 'displace'), ...one];
 }
 

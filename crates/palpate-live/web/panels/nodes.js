@@ -30,11 +30,21 @@ export const SEVERAL = /** @type {const} */ ({
   morph: 'progress',
 });
 
-/** Operators on one shape. */
-export const ONE = [
-  'translate', 'rotate_degrees', 'rotation', 'scale', 'offset', 'shell', 'elongate', 'mirror',
+/** Operators on one shape that are not in the program's catalogue. */
+const OTHERS = [
+  'translate', 'rotate_degrees', 'rotation', 'scale', 'offset', 'mirror',
   'repeat', 'bend_degrees', 'bend', 'twist_degrees', 'twist', 'extrude', 'revolve',
 ];
+
+/** The program's catalogue of operators on one shape. @returns {{ name: string, first: number | number[] }[]} */
+export function operators() {
+  return state.welcome?.operators ?? [];
+}
+
+/** Operators on one shape. @returns {string[]} */
+export function onOne() {
+  return [...OTHERS, ...operators().map(({ name }) => name)];
+}
 
 /** Signs that stand before the names of operators. @type {Record<string, string>} */
 const SIGNS = {
@@ -48,7 +58,7 @@ const PLACES = ['translate', 'rotate_degrees', 'rotation'];
 export function makerOf(shape) {
   if (typeof shape !== 'object' || !shape) return null;
   const keys = Object.keys(shape);
-  const operator = keys.find((key) => key in SEVERAL || ONE.includes(key));
+  const operator = keys.find((key) => key in SEVERAL || onOne().includes(key));
   const others = ['description', 'width', 'height', 'profile', 'progress', 'of'];
   return operator ?? keys.find((key) => !others.includes(key)) ?? null;
 }

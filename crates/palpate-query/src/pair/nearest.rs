@@ -13,6 +13,7 @@ use crate::placed::Placed;
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Nearest<const D: usize> {
     /// The point between the bodies, or in both [m].
     pub point: Point<D>,

@@ -18,6 +18,7 @@ use crate::placed::Placed;
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Proof<const D: usize> {
     /// The answer, as [`separation`](crate::separation) gives it.
     pub answer: Certified<Nearest<D>>,
@@ -32,6 +33,7 @@ pub struct Proof<const D: usize> {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct ProofBox<const D: usize> {
     /// The box, in the first body's coordinates.
     pub aabb: Aabb<D>,

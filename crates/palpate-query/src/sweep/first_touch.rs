@@ -16,6 +16,7 @@ const SLIDES: f64 = 1e-3;
 /// How bodies that touch at the start move on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(feature = "serde", serde(rename_all = "snake_case"))]
 pub enum Start {
     /// Into each other.
@@ -56,6 +57,7 @@ impl fmt::Display for Start {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct FirstTouch<const D: usize> {
     /// Before this time the bodies are proven apart, rounding included: two bodies by more than half
     /// of the gap; and of an element or a mesh, the field is more than half of the gap at every point.

@@ -99,6 +99,7 @@ impl<'a, const D: usize> Balls<'a, D> {
 
 /// Whether a ball touches a scene.
 #[derive(Clone, Debug, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct BallAnswer<const D: usize> {
     /// The radius of the ball [m].

@@ -21,6 +21,7 @@ use crate::text::{counted, decimal, decimals, shown};
 
 /// Where do bodies touch?
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields, default)]
 pub struct ContactsQuestion {
     /// Only pairs with one of these bodies; all pairs if there are none.
@@ -30,21 +31,16 @@ pub struct ContactsQuestion {
     pub every_pair: bool,
     /// The largest gap at which bodies count as touching [m]; 0.2 % of the smallest body if left
     /// out.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub margin: Option<f64>,
     /// The size of the smallest boxes in a region of contact [m]; 4 % of the smallest body if
     /// left out.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub spacing: Option<f64>,
     /// How far apart the bounds of a separation may be [m]; if left out half the margin, or of
     /// the usual one if that is zero.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub tolerance: Option<f64>,
     /// The most evaluations of fields for each pair; [`Limits::BUDGET`] if left out.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub budget: Option<u32>,
     /// The time at which motions have moved the bodies [s]; their own poses if left out.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub time: Option<f64>,
     /// Whether the boxes that prove each separation are wanted.
     pub proof: bool,
@@ -52,6 +48,7 @@ pub struct ContactsQuestion {
 
 /// Where the bodies of a scene touch.
 #[derive(Clone, Debug, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct ContactsAnswer<const D: usize> {
     /// The largest gap at which bodies count as touching [m].
@@ -63,7 +60,6 @@ pub struct ContactsAnswer<const D: usize> {
     /// The most evaluations for each pair.
     pub budget: u32,
     /// The time that was asked about [s].
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub time: Option<f64>,
     /// Whether no body of the scene moves.
     pub still: bool,
@@ -90,6 +86,7 @@ pub struct ContactsAnswer<const D: usize> {
 
 /// The bounds of the separation of two bodies: negative if they overlap.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct Separation {
     /// The separation is at least this [m].
@@ -104,6 +101,7 @@ pub struct Separation {
 
 /// What is known of two bodies.
 #[derive(Clone, Debug, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct PairContacts<const D: usize> {
     /// Their names.
@@ -114,7 +112,6 @@ pub struct PairContacts<const D: usize> {
     /// Whether they touch.
     pub verdict: Verdict,
     /// The one that is proven to have no point: nothing touches it.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub empty: Option<String>,
     /// Their separation; `None` if neither has bounds, or one has no point.
     pub separation: Option<Separation>,
@@ -131,7 +128,6 @@ pub struct PairContacts<const D: usize> {
     /// Why the search of the region of contact ended.
     pub region_stop: Stop,
     /// The boxes that prove the separation, if they were asked for.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub proof: Option<Proof<D>>,
 }
 

@@ -19,6 +19,7 @@ const WATER: f64 = 1000.0;
 
 /// What are the masses of the bodies?
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields, default)]
 pub struct MassQuestion {
     /// The bodies that are asked about; all if there are none.
@@ -41,6 +42,7 @@ impl Default for MassQuestion {
 
 /// Volume, mass and moments of each body.
 #[derive(Clone, Debug, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct MassAnswer<const D: usize> {
     /// The density of all bodies [kg/m³].
     pub density: f64,
@@ -54,12 +56,12 @@ pub struct MassAnswer<const D: usize> {
 
 /// The mass of a body, or why it has none.
 #[derive(Clone, Debug, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct BodyMass<const D: usize> {
     /// The name of the body.
     pub name: String,
     /// Why it has no mass, such as a body without bounds.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub problem: Option<String>,
     /// Its mass.
     #[serde(flatten)]
@@ -68,6 +70,7 @@ pub struct BodyMass<const D: usize> {
 
 /// A mass with its errors. In the plane a body is one metre thick.
 #[derive(Clone, Copy, Debug, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct Weighed<const D: usize> {
     /// The volume [m³], or area [m²].
@@ -89,6 +92,7 @@ pub struct Weighed<const D: usize> {
     pub centroid_error: f64,
     /// `∫ ρ (p − c)(p − c)ᵀ` about the centroid `c` [kg·m²].
     #[serde(serialize_with = "rows")]
+    #[cfg_attr(feature = "schema", schemars(with = "Vec<Vec<f64>>"))]
     pub second_moments: [[f64; D]; D],
     /// The largest error of each second moment [kg·m²].
     pub second_moments_error: f64,

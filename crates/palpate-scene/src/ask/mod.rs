@@ -60,6 +60,7 @@ pub const FEW_PAIRS: usize = 66;
 
 /// A question about a scene.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(tag = "question", rename_all = "snake_case")]
 pub enum Question {
     /// What the field says at a point; and whether a ball about it touches.
@@ -74,6 +75,7 @@ pub enum Question {
 
 /// The answer to a [`Question`] of the same name.
 #[derive(Clone, Debug, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(tag = "answer", rename_all = "snake_case")]
 pub enum Answer<const D: usize> {
     /// What the field says at a point.
@@ -88,6 +90,7 @@ pub enum Answer<const D: usize> {
 
 /// An answer with its version, as it is written.
 #[derive(Debug, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Versioned<T> {
     palpate: u32,
     #[serde(flatten)]

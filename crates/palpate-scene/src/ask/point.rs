@@ -15,20 +15,22 @@ use crate::text::joined;
 
 /// What does the field of a scene say at a point?
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct PointQuestion {
     /// The point [m].
     pub at: Vec<f64>,
     /// The body that is asked about; all bodies as one if left out.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[serde(default)]
     pub body: Option<String>,
     /// Asks too whether the ball of this radius about the point touches all bodies [m].
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[serde(default)]
     pub radius: Option<f64>,
 }
 
 /// What a field says at a point.
 #[derive(Clone, Debug, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct PointAnswer<const D: usize> {
     /// Value, gradient and nearest point.
@@ -41,7 +43,6 @@ pub struct PointAnswer<const D: usize> {
     /// The largest difference of two values over the distance of their points.
     pub lipschitz: f64,
     /// What is known of the ball, if one was asked about.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub ball: Option<BallAnswer<D>>,
 }
 

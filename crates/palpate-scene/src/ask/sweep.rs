@@ -27,6 +27,7 @@ const MOST_PARTS: f64 = 1e5;
 
 /// When do bodies that move touch first?
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields, default)]
 pub struct SweepQuestion {
     /// Only pairs with one of these bodies; all pairs if there are none.
@@ -36,24 +37,21 @@ pub struct SweepQuestion {
     pub every_pair: bool,
     /// The end of the time that is looked at [s]; if left out, the end of the last motion, of
     /// which one that repeats counts once, there and back.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub until: Option<f64>,
     /// The largest separation at which bodies touch [m], a millionth of the smallest body if left
     /// out. Bodies that are more than half of it apart may be called apart.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub gap: Option<f64>,
     /// How far apart the bounds of a time may be [s]; if left out, 1e-4 of the part of a motion
     /// that is searched.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub tolerance: Option<f64>,
     /// The most evaluations for each pair and part of a motion; [`SweepSettings::BUDGET`] if left
     /// out.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub budget: Option<u32>,
 }
 
 /// When bodies that move touch first.
 #[derive(Clone, Debug, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct SweepAnswer<const D: usize> {
     /// The end of the time that was looked at [s].
@@ -79,6 +77,7 @@ pub struct SweepAnswer<const D: usize> {
 
 /// When two bodies touch first.
 #[derive(Clone, Debug, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct SweepPair<const D: usize> {
     /// Their names.
@@ -97,7 +96,6 @@ pub struct SweepPair<const D: usize> {
     #[serde(skip)]
     pub part: SweptPart,
     /// What a local search found, if one ran beside.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub local: Option<LocalFinding>,
 }
 
@@ -112,6 +110,7 @@ pub struct SweptPart {
 
 /// The first touch that a local search of the literature found, which proves nothing.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct LocalFinding {
     /// The name of the method.
     pub method: String,

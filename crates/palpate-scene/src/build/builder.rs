@@ -256,8 +256,8 @@ impl<'a> Builder<'a> {
             MESH | VOLUME => {
                 self.mesh(&object, level).map_err(|problems| problems.under(object.head))
             }
-            head if keys::is_one_of(&keys::UNARY, head) => self.unary(&object, level),
-            head if keys::is_one_of(&keys::LISTS, head) => self.list(&object, level),
+            head if keys::is_unary(head) => self.unary(&object, level),
+            head if keys::is_list(head) => self.list(&object, level),
             name => {
                 let (shape, nodes) = primitive(name, object.value(name)?)?;
                 let size = Size { nodes, depth: 0 };

@@ -38,7 +38,7 @@ impl<'a> Object<'a> {
         let meant = meant(entries, dimension, wrong);
         let head = wrong.kept(head(entries, wrong.is_failed()))?;
         wrong.kept(check_description(entries));
-        let is_unary = keys::is_one_of(&keys::UNARY, head);
+        let is_unary = keys::is_unary(head);
         let goes = |(key, lists): (&str, &[&str])| match key {
             OF => is_unary,
             _ => lists.contains(&head),
@@ -109,8 +109,8 @@ impl<'a> Object<'a> {
 fn is_head(key: &str) -> bool {
     key == keys::SHAPE
         || [keys::MESH, keys::VOLUME, keys::GRID].contains(&key)
-        || keys::is_one_of(&keys::LISTS, key)
-        || keys::is_one_of(&keys::UNARY, key)
+        || keys::is_list(key)
+        || keys::is_unary(key)
         || !catalogue::named(key).is_empty()
 }
 

@@ -3,8 +3,9 @@
 
 //! An operator with its numbers and the shapes it is applied to.
 
-use palpate_field::operator::{Copies, Profile};
-use palpate_field::{Shape, ShapeError};
+use palpate_field::kernel::Argument;
+use palpate_field::operator::{Copies, Operator, Profile};
+use palpate_field::{Node, Shape, ShapeError};
 use serde::Deserialize;
 use serde_json::Value;
 
@@ -160,6 +161,15 @@ impl<'a> Builder<'a> {
         Turns: Turning<D>,
     {
         let key = object.head;
+        if let Some(operator) = Operator::find(key) {
+            let argument = if operator.is_per_axis {
+                Argument::Vector(vector::<D>(object)?.to_vec())
+            } else {
+                Argument::Number(object.read(key)?)
+            };
+            let shape = Shape::from_node(Node::Operated { operator, argument, of: child });
+            return shape.map_err(|error| refused(key, error).into());
+        }
         let shape = match key {
             keys::SCALE => match object.value(key)? {
                 Value::Number(_) => child.scaled(object.read(key)?),
@@ -173,8 +183,6 @@ impl<'a> Builder<'a> {
                 }
             },
             keys::OFFSET => child.offset(object.read(key)?),
-            keys::SHELL => child.shell(object.read(key)?),
-            keys::ELONGATE => child.elongated(vector(object)?),
             keys::MIRROR => {
                 let axis = object.word(key, &keys::AXES)?;
                 if axis >= D {

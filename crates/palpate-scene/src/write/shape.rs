@@ -74,8 +74,7 @@ impl Writer {
             | Node::Scaled { of, .. }
             | Node::Stretched { of, .. }
             | Node::Offset { of, .. }
-            | Node::Shell { of, .. }
-            | Node::Elongated { of, .. }
+            | Node::Operated { of, .. }
             | Node::Mirrored { of, .. }
             | Node::Repeated { of, .. }
             | Node::Bent { of, .. }
@@ -171,8 +170,9 @@ impl Writer {
             Node::Scaled { factor, of } => (json!({ keys::SCALE: factor }), of),
             Node::Stretched { factors, of } => (json!({ keys::SCALE: &factors[..] }), of),
             Node::Offset { distance, of } => (json!({ keys::OFFSET: distance }), of),
-            Node::Shell { thickness, of } => (json!({ keys::SHELL: thickness }), of),
-            Node::Elongated { lengths, of } => (json!({ keys::ELONGATE: &lengths[..] }), of),
+            Node::Operated { operator, argument, of } => {
+                (json!({ operator.name: value(argument) }), of)
+            }
             Node::Mirrored { axis, of } => (json!({ keys::MIRROR: keys::AXES[*axis] }), of),
             Node::Repeated { copies, of } => (json!({ keys::REPEAT: rows(copies) }), of),
             Node::Bent { rate, of } => {
@@ -253,15 +253,21 @@ fn arguments<const D: usize>(primitive: &node::Primitive<D>) -> Value {
             Argument::Number(number) if parameter.kind == ParameterKind::Angle => {
                 angle(&file_key(parameter), parameter.name, *number)
             }
-            Argument::Number(number) => (parameter.name.to_owned(), json!(number)),
-            Argument::Count(count) => (parameter.name.to_owned(), json!(count)),
-            Argument::Vector(vector) => (parameter.name.to_owned(), json!(vector)),
-            Argument::Points(points) => (parameter.name.to_owned(), json!(points)),
-            Argument::Rings(rings) => (parameter.name.to_owned(), json!(rings)),
+            other => (parameter.name.to_owned(), value(other)),
         };
         object.insert(key, value);
     }
     Value::Object(object)
+}
+
+fn value(argument: &Argument) -> Value {
+    match argument {
+        Argument::Number(number) => json!(number),
+        Argument::Count(count) => json!(count),
+        Argument::Vector(vector) => json!(vector),
+        Argument::Points(points) => json!(points),
+        Argument::Rings(rings) => json!(rings),
+    }
 }
 
 /// An angle [rad] with the one of two keys that keeps its bits.

@@ -6,6 +6,7 @@
 use arbitrary::{Result, Unstructured};
 use palpate_field::catalogue::Entry;
 use palpate_field::kernel::{Argument, Parameter, ParameterKind};
+use palpate_field::operator::Operator;
 use palpate_haptics::{Impact, Layer, Magnet, Material, PopThrough, Texture, TextureKind};
 use palpate_scene::{
     AxisAngle, Dimension, FreePlane, GuideCurve, GuideLine, GuidePlane, GuideSegment,
@@ -217,8 +218,15 @@ impl Generator {
             8 if u.arbitrary()? => put("scale", json!(length(u)?)),
             8 => put("scale", json!(lengths(u, d)?)),
             9 => put("offset", json!(0.1 * number(u)?)),
-            10 => put("shell", json!(length(u)?)),
-            11 => put("elongate", json!(lengths(u, d)?)),
+            10 | 11 => {
+                let operator = u.choose(Operator::ALL)?;
+                let argument = if operator.is_per_axis {
+                    json!(lengths(u, d)?)
+                } else {
+                    json!(length(u)?)
+                };
+                put(operator.name, argument);
+            }
             12 => put("mirror", json!(u.choose(&["x", "y"])?)),
             13 => put(u.choose(&["bend", "bend_degrees"])?, json!(number(u)?)),
             14 => put("repeat", rows(u, d)?),

@@ -103,3 +103,61 @@ primitive! {
     },
     example: (0.7, 4.0, 0.12),
 }
+
+#[cfg(feature = "oracle")]
+mod evidence {
+    use std::f64::consts::{PI, TAU};
+
+    use super::*;
+    use crate::oracle::{Definition, Evidence, Row, arc};
+    use crate::vector::Point;
+
+    impl Evidence<2> for Arc {
+        const SAMPLE: &'static str =
+            r#"{ "ring_radius": 0.04, "angle_degrees": 240, "radius": 0.01 }"#;
+        const GUIDE: &'static [Row] = &[Row::new(
+            "Arc",
+            "`ring_radius`, `angle`, `radius`",
+            "exact; inside a bound where the tube meets itself",
+        )];
+
+        fn definition(&self) -> Definition<2> {
+            tube(self.ring_radius(), self.angle(), self.radius())
+        }
+
+        fn refused() -> Vec<Result<Self, ShapeError>> {
+            vec![Self::new(1.0, 6.5, 0.1)]
+        }
+    }
+
+    /// All points within `r` of an arc. Where the tube meets itself, parts of these pieces lie
+    /// inside.
+    fn tube(ring: f64, angle: f64, r: f64) -> Definition<2> {
+        let half = 0.5 * angle;
+        // Angles here are from +x, those of the arc from +y.
+        let span = [0.5 * PI - half, 0.5 * PI + half];
+        let ends = span.map(|a| [ring * a.cos(), ring * a.sin()]);
+        let mut boundary = Vec::new();
+        for radius in [ring - r, ring + r] {
+            boundary.push(arc([0.0; 2], radius.abs(), span));
+        }
+        if angle < TAU {
+            for (end, from) in ends.into_iter().zip([span[0] - PI, span[1]]) {
+                boundary.push(arc(end, r, [from, from + PI]));
+            }
+        }
+        let gap = 2.0 * ring * half.sin();
+        let overlaps_itself = r > ring || (half > 0.5 * PI && angle < TAU && gap < 2.0 * r);
+        let tube = Definition::new(boundary, move |p: Point<2>| {
+            let turned = p[0].abs().atan2(p[1]);
+            let on_arc = Vector([half.sin(), half.cos()]) * ring;
+            let from_arc = if turned <= half {
+                (p.norm() - ring).abs()
+            } else {
+                (Vector([p[0].abs(), p[1]]) - on_arc).norm()
+            };
+            from_arc < r
+        });
+        Definition { overlaps_itself, ..tube }
+    }
+}

@@ -156,3 +156,70 @@ primitive! {
     },
     example: (0.31, 4.0, 0.08),
 }
+
+#[cfg(feature = "oracle")]
+mod evidence {
+    use super::*;
+    use crate::oracle::{Definition, Evidence, FAR, Patch, Row};
+    use crate::vector::Point;
+
+    impl Evidence<2> for CircleWave {
+        const SAMPLE: &'static str =
+            r#"{ "ring_radius": 0.015, "angle_degrees": 200, "radius": 0.003 }"#;
+        const GUIDE: &'static [Row] = &[Row::new(
+            "Circle Wave",
+            "`ring_radius`, `angle` up to 300°, `radius` 0",
+            "exact, unbounded; inside a bound where the tube meets itself",
+        )];
+
+        fn definition(&self) -> Definition<2> {
+            circle_wave(self.ring_radius(), self.angle(), self.radius())
+        }
+
+        fn refused() -> Vec<Result<Self, ShapeError>> {
+            vec![Self::new(0.5, 5.5, 0.1)]
+        }
+    }
+
+    /// Equal arcs about points on either side of the x axis in turn.
+    fn circle_wave(ring: f64, angle: f64, r: f64) -> Definition<2> {
+        let half = 0.5 * angle;
+        let pitch = 2.0 * ring * half.sin();
+        // The centre of an arc, and which way it bulges.
+        let arc_of = move |index: f64| {
+            let up = if index.rem_euclid(2.0) == 0.0 { 1.0 } else { -1.0 };
+            (Vector([pitch * index, -up * ring * half.cos()]), up)
+        };
+        let last = (FAR / pitch).ceil() + 1.0;
+        let count = 2.0 * last + 1.0;
+        let mut boundary = Vec::new();
+        for side in [r, -r] {
+            let speed = count * angle * (ring + r);
+            boundary.push(Patch::curve(speed, move |t| {
+                let place = t * count;
+                let index = place.floor().min(count - 1.0);
+                let (centre, up) = arc_of(index - last);
+                let turned = (place - index - 0.5) * angle;
+                centre + Vector([turned.sin(), up * turned.cos()]) * (ring + up * side)
+            }));
+        }
+        let wave = Definition::new(boundary, move |p: Point<2>| {
+            let nearest = (p[0] / pitch).round();
+            (-3..=3_i32).any(|i| {
+                let (centre, up) = arc_of(nearest + f64::from(i));
+                let [x, y] = (p - centre).0;
+                let end = Vector([half.sin(), half.cos()]) * ring;
+                let distance = if x.abs().atan2(y * up) <= half {
+                    (x.hypot(y) - ring).abs()
+                } else {
+                    (Vector([x.abs(), y * up]) - end).norm()
+                };
+                distance < r
+            })
+        });
+        Definition {
+            overlaps_itself: r > ring || (half > 0.5 * PI && pitch - ring < r),
+            ..wave
+        }
+    }
+}

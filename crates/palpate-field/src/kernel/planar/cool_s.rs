@@ -114,3 +114,57 @@ primitive! {
     marks: |kernel| vec![Mark::height(kernel.height(), 0.0, 0.0)],
     example: (1.8),
 }
+
+#[cfg(feature = "oracle")]
+mod evidence {
+    use super::*;
+    use crate::oracle::{Definition, Evidence, Patch, Row, even_odd};
+
+    impl Evidence<2> for CoolS {
+        const SAMPLE: &'static str = r#"{ "height": 0.1 }"#;
+        const GUIDE: &'static [Row] = &[Row::new("Cool S", "`height`", "exact")];
+
+        fn definition(&self) -> Definition<2> {
+            cool_s(self.height())
+        }
+    }
+
+    /// The fourteen strokes of the Cool S, two units high, as drawn on paper: three lines above,
+    /// three below, each joined to the next, and roofs.
+    fn cool_s(height: f64) -> Definition<2> {
+        let at = |x: f64, y: f64| Vector([x, y]) * (0.5 * height);
+        let columns = [-0.4, 0.0, 0.4];
+        let mut strokes = Vec::new();
+        for x in columns {
+            strokes.push((at(x, 0.2), at(x, 0.6)));
+            strokes.push((at(x, -0.2), at(x, -0.6)));
+        }
+        for side in [1.0, -1.0] {
+            for x in [-0.4, 0.4] {
+                strokes.push((at(x, 0.6 * side), at(0.0, side)));
+            }
+        }
+        strokes.push((at(-0.4, 0.2), at(0.0, -0.2)));
+        strokes.push((at(0.0, 0.2), at(0.4, -0.2)));
+        // The visible parts of the two strokes that pass behind.
+        strokes.push((at(0.4, 0.2), at(0.2, 0.0)));
+        strokes.push((at(-0.4, -0.2), at(-0.2, 0.0)));
+        let outline = [
+            (0.0, 1.0),
+            (0.4, 0.6),
+            (0.4, 0.2),
+            (0.2, 0.0),
+            (0.4, -0.2),
+            (0.4, -0.6),
+            (0.0, -1.0),
+            (-0.4, -0.6),
+            (-0.4, -0.2),
+            (-0.2, 0.0),
+            (-0.4, 0.2),
+            (-0.4, 0.6),
+        ];
+        let outline = vec![outline.map(|(x, y)| at(x, y)).to_vec()];
+        let boundary = strokes.into_iter().map(|(a, b)| Patch::segment(a, b)).collect();
+        Definition::new(boundary, move |p| even_odd(&outline, p))
+    }
+}

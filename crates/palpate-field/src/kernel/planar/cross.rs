@@ -224,3 +224,78 @@ primitive! {
     },
     example: (1.7, 0.22),
 }
+
+#[cfg(feature = "oracle")]
+mod evidence {
+    use std::f64::consts::{FRAC_1_SQRT_2, FRAC_PI_2, FRAC_PI_4};
+
+    use super::*;
+    use crate::oracle::{
+        AXES, Definition, Evidence, Patch, Row, both_sides, corners_of, from_segment, line,
+    };
+
+    impl Evidence<2> for Cross {
+        const SAMPLE: &'static str = r#"{ "length": 0.1, "width": 0.03 }"#;
+        const GUIDE: &'static [Row] =
+            &[Row::new("Cross", "`length`, `width`", "exact, inside too")];
+
+        fn definition(&self) -> Definition<2> {
+            let (l, w) = (0.5 * self.length(), 0.5 * self.width());
+            corners_of(&[
+                [l, w],
+                [w, w],
+                [w, l],
+                [-w, l],
+                [-w, w],
+                [-l, w],
+                [-l, -w],
+                [-w, -w],
+                [-w, -l],
+                [w, -l],
+                [w, -w],
+                [l, -w],
+            ])
+        }
+
+        fn refused() -> Vec<Result<Self, ShapeError>> {
+            vec![Self::new(0.5, 0.5)]
+        }
+    }
+
+    impl Evidence<2> for RoundedX {
+        const SAMPLE: &'static str = r#"{ "size": 0.1, "radius": 0.01 }"#;
+        const GUIDE: &'static [Row] = &[Row::new("Rounded X", "`size`, `radius`", "exact")];
+
+        fn definition(&self) -> Definition<2> {
+            rounded_x(self.size(), self.radius())
+        }
+
+        fn refused() -> Vec<Result<Self, ShapeError>> {
+            vec![Self::new(0.5, 0.3)]
+        }
+    }
+
+    fn rounded_x(size: f64, r: f64) -> Definition<2> {
+        let end = 0.5 * size - r;
+        let straight = end >= r * FRAC_1_SQRT_2;
+        // A half turn about the diagonal, extended to where the arc crosses the axes.
+        let reach = if straight { FRAC_PI_4 } else { (end / r).asin() };
+        let from = if straight { -FRAC_PI_4 } else { -reach };
+        let to = FRAC_PI_2 - from;
+        let mut right = Vec::new();
+        for sign in [1.0, -1.0] {
+            let up = Vector([0.0, sign]);
+            right.push(Patch::arc(Vector([end, sign * end]), [AXES[0], up], r, [from, to]));
+            if straight {
+                let s = r * FRAC_1_SQRT_2;
+                let inner = r / FRAC_1_SQRT_2;
+                right.push(line([inner, 0.0], [end + s, sign * (end - s)]));
+                right.push(line([0.0, sign * inner], [end - s, sign * (end + s)]));
+            }
+        }
+        both_sides(right, move |p| {
+            let stroke = |y: f64| from_segment(Vector([-end, -y]), Vector([end, y]), p) < r;
+            stroke(end) || stroke(-end)
+        })
+    }
+}

@@ -193,3 +193,60 @@ primitive! {
     marks: |kernel| sets::bite(kernel.radius(), kernel.cut_radius(), kernel.distance()),
     example: (0.9, 0.7, 0.45),
 }
+
+#[cfg(feature = "oracle")]
+mod evidence {
+    use std::f64::consts::FRAC_PI_2;
+
+    use super::*;
+    use crate::oracle::{Definition, Evidence, Row, arc, both_sides, line};
+
+    impl Evidence<2> for CutDisk {
+        const SAMPLE: &'static str = r#"{ "radius": 0.05, "cut_height": -0.02 }"#;
+        const GUIDE: &'static [Row] =
+            &[Row::new("Cut Disk", "`radius`, `cut_height`", "exact, convex")];
+
+        fn definition(&self) -> Definition<2> {
+            cut_disk(self.radius(), self.cut_height())
+        }
+
+        fn refused() -> Vec<Result<Self, ShapeError>> {
+            vec![Self::new(0.5, -0.5)]
+        }
+    }
+
+    impl Evidence<2> for Moon {
+        const SAMPLE: &'static str =
+            r#"{ "radius": 0.05, "cut_radius": 0.04, "distance": 0.025 }"#;
+        const GUIDE: &'static [Row] =
+            &[Row::new("Moon", "`radius`, `cut_radius`, `distance`", "exact")];
+
+        fn definition(&self) -> Definition<2> {
+            moon(self.radius(), self.cut_radius(), self.distance())
+        }
+
+        fn refused() -> Vec<Result<Self, ShapeError>> {
+            vec![Self::new(0.5, 0.25, 0.75), Self::new(0.5, 0.25, 0.125)]
+        }
+    }
+
+    fn cut_disk(r: f64, height: f64) -> Definition<2> {
+        let from = (height / r).asin();
+        let corner = [r * from.cos(), height];
+        let right = vec![arc([0.0; 2], r, [from, FRAC_PI_2]), line([0.0, height], corner)];
+        both_sides(right, move |p| p.norm() < r && p[1] > height)
+    }
+
+    fn moon(r: f64, cut: f64, distance: f64) -> Definition<2> {
+        let cosine =
+            |a: f64, b: f64| (a * a + distance * distance - b * b) / (2.0 * a * distance);
+        // At the disc's centre from +y to the tip, at the other's from −y.
+        let (at_disc, at_cut) = (cosine(r, cut).acos(), cosine(cut, r).acos());
+        let right = vec![
+            arc([0.0; 2], r, [-FRAC_PI_2, FRAC_PI_2 - at_disc]),
+            arc([0.0, distance], cut, [-FRAC_PI_2, at_cut - FRAC_PI_2]),
+        ];
+        let centre = Vector([0.0, distance]);
+        both_sides(right, move |p| p.norm() < r && (p - centre).norm() > cut)
+    }
+}

@@ -127,3 +127,49 @@ primitive! {
     },
     example: (0.7, 0.25),
 }
+
+#[cfg(feature = "oracle")]
+mod evidence {
+    use std::f64::consts::PI;
+
+    use super::*;
+    use crate::oracle::{Definition, Evidence, Row, arc};
+    use crate::vector::Point;
+
+    impl Evidence<2> for Egg {
+        const SAMPLE: &'static str = r#"{ "bottom_radius": 0.04, "top_radius": 0.015 }"#;
+        const GUIDE: &'static [Row] =
+            &[Row::new("Simple Egg", "`bottom_radius`, `top_radius`", "exact, convex")];
+
+        fn definition(&self) -> Definition<2> {
+            egg(self.bottom_radius(), self.top_radius())
+        }
+
+        fn refused() -> Vec<Result<Self, ShapeError>> {
+            vec![Self::new(0.25, 0.5)]
+        }
+    }
+
+    /// Half a circle below, a smaller arc on top, and two arcs that join them. The corners of an
+    /// equilateral triangle are the centres of the top and of the joining arcs.
+    fn egg(bottom: f64, top: f64) -> Definition<2> {
+        let c = bottom - top;
+        let high = c * 3.0_f64.sqrt();
+        let side = 2.0 * c + top;
+        let boundary = vec![
+            arc([0.0; 2], bottom, [PI, 2.0 * PI]),
+            arc([-c, 0.0], side, [0.0, PI / 3.0]),
+            arc([c, 0.0], side, [2.0 * PI / 3.0, PI]),
+            arc([0.0, high], top, [PI / 3.0, 2.0 * PI / 3.0]),
+        ];
+        let junction = high + top * (PI / 3.0).sin();
+        let in_disc = |p: Point<2>, x: f64, y: f64, r: f64| (p - Vector([x, y])).norm() < r;
+        Definition::new(boundary, move |p| {
+            let between = p[1] >= 0.0
+                && p[1] <= junction
+                && in_disc(p, c, 0.0, side)
+                && in_disc(p, -c, 0.0, side);
+            (p[1] < 0.0 && p.norm() < bottom) || between || in_disc(p, 0.0, high, top)
+        })
+    }
+}

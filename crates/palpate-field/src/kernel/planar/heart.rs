@@ -110,3 +110,44 @@ primitive! {
     },
     example: (1.7),
 }
+
+#[cfg(feature = "oracle")]
+mod evidence {
+    use std::f64::consts::FRAC_PI_4;
+
+    use super::*;
+    use crate::oracle::{Definition, Evidence, Patch, Row, arc};
+
+    impl Evidence<2> for Heart {
+        const SAMPLE: &'static str = r#"{ "height": 0.1 }"#;
+        const GUIDE: &'static [Row] = &[Row::new("Heart", "`height`", "exact")];
+
+        fn definition(&self) -> Definition<2> {
+            heart(self.height())
+        }
+
+        fn refused() -> Vec<Result<Self, ShapeError>> {
+            vec![Self::new(-1.0)]
+        }
+    }
+
+    /// A square on its corner and the discs over its upper edges.
+    fn heart(height: f64) -> Definition<2> {
+        let edge = height / (0.75 * SQRT_2 + 0.5);
+        let half = edge * FRAC_1_SQRT_2;
+        let low = -0.5 * height;
+        let (middle, lobe) = (low + half, low + 1.5 * half);
+        let tip = Vector([0.0, low]);
+        let boundary = vec![
+            Patch::segment(tip, Vector([half, middle])),
+            Patch::segment(tip, Vector([-half, middle])),
+            arc([0.5 * half, lobe], 0.5 * edge, [-FRAC_PI_4, 3.0 * FRAC_PI_4]),
+            arc([-0.5 * half, lobe], 0.5 * edge, [FRAC_PI_4, 5.0 * FRAC_PI_4]),
+        ];
+        Definition::new(boundary, move |p| {
+            let in_square = p[0].abs() + (p[1] - middle).abs() < half;
+            let in_lobe = (Vector([p[0].abs(), p[1]]) - Vector([0.5 * half, lobe])).norm();
+            in_square || in_lobe < 0.5 * edge
+        })
+    }
+}

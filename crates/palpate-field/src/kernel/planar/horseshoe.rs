@@ -159,3 +159,43 @@ primitive! {
     },
     example: (0.7, 3.7, 0.55, 0.3),
 }
+
+#[cfg(feature = "oracle")]
+mod evidence {
+    use super::*;
+    use crate::oracle::{Definition, Evidence, Patch, Row, arc, both_sides};
+
+    impl Evidence<2> for Horseshoe {
+        const SAMPLE: &'static str =
+            r#"{ "ring_radius": 0.035, "angle_degrees": 200, "length": 0.03, "width": 0.015 }"#;
+        const GUIDE: &'static [Row] =
+            &[Row::new("Horseshoe", "`ring_radius`, `angle`, `length`, `width`", "exact")];
+
+        fn definition(&self) -> Definition<2> {
+            horseshoe(self.ring_radius(), self.angle(), self.length(), self.width())
+        }
+
+        fn refused() -> Vec<Result<Self, ShapeError>> {
+            vec![Self::new(0.5, 1.0, 0.25, 1.0), Self::new(0.5, 5.0, 0.75, 0.25)]
+        }
+    }
+
+    fn horseshoe(ring: f64, angle: f64, length: f64, width: f64) -> Definition<2> {
+        let half = 0.5 * angle;
+        let (inner, outer) = (ring - 0.5 * width, ring + 0.5 * width);
+        let angles = [FRAC_PI_2 - half, FRAC_PI_2];
+        let (out, along) =
+            (Vector([half.sin(), half.cos()]), Vector([half.cos(), -half.sin()]));
+        let at = |r: f64, t: f64| out * r + along * t;
+        let mut right = vec![Patch::segment(at(inner, length), at(outer, length))];
+        for r in [inner, outer] {
+            right.push(arc([0.0; 2], r, angles));
+            right.push(Patch::segment(at(r, 0.0), at(r, length)));
+        }
+        both_sides(right, move |p| {
+            let p = Vector([p[0].abs(), p[1]]);
+            let r = if p[0].atan2(p[1]) < half { p.norm() } else { p.dot(out) };
+            inner < r && r < outer && p.dot(along) < length
+        })
+    }
+}

@@ -171,3 +171,29 @@ primitive! {
     marks: |kernel| Mark::radii(kernel.radii()),
     example: (Vector([0.45, 0.31])),
 }
+
+#[cfg(feature = "oracle")]
+mod evidence {
+    use super::*;
+    use crate::oracle::{Definition, Evidence, FAR, Row, over};
+
+    impl Evidence<2> for Hyperbola {
+        const SAMPLE: &'static str = r#"{ "radii": [0.02, 0.01] }"#;
+        const GUIDE: &'static [Row] = &[Row::new(
+            "Hyperbola",
+            "`radii` both √(2k) for xy = k turned by 45°; one branch, and `mirrored` for both",
+            "exact, convex, unbounded",
+        )];
+
+        fn definition(&self) -> Definition<2> {
+            let [a, b] = self.radii().0;
+            // The vertex may be some way up.
+            let reach = (FAR + b).min(a * (FAR + b) / b);
+            over(move |x| b * (x / a).hypot(1.0), reach, b / a)
+        }
+
+        fn refused() -> Vec<Result<Self, ShapeError>> {
+            vec![Self::new(Vector([1.0, 1e-7]))]
+        }
+    }
+}

@@ -53,3 +53,58 @@ pub use sector::{Pie, RingSector};
 pub use stairs::Stairs;
 pub use tunnel::{Tunnel, UnevenCapsule};
 pub use vesica::{OrientedVesica, Vesica};
+
+/// Calls the macro `$then` with the primitives of the plane, after what is given for it.
+macro_rules! primitives {
+    ($then:ident, $($before:tt)*) => {
+        $then! {
+            $($before)*
+            Ball,
+            Cuboid<2>,
+            RoundedCuboid<2>,
+            Capsule,
+            Segment<2>,
+            HalfSpace<2>,
+            Simplex<2>,
+            Ellipsoid<2>,
+            Ring,
+            Arc,
+            RegularPolygon,
+            RegularStar,
+            Polygon,
+            CoolS,
+            RoundedRectangle,
+            ChamferedRectangle,
+            OrientedRectangle,
+            Rhombus,
+            IsoscelesTrapezoid,
+            Parallelogram,
+            IsoscelesTriangle,
+            Stairs,
+            Cross,
+            RoundedX,
+            Tunnel,
+            UnevenCapsule,
+            Pie,
+            CutDisk,
+            RingSector,
+            Horseshoe,
+            Vesica,
+            OrientedVesica,
+            Moon,
+            Egg,
+            Heart,
+            RoundedCross,
+            BobblyCross,
+            Parabola,
+            ParabolaSegment,
+            QuadraticBezier,
+            QuadraticCircle,
+            Hyperbola,
+            CircleWave,
+            PowerBall,
+            PowerCuboid<2>,
+        }
+    };
+}
+pub(crate) use primitives;

@@ -228,3 +228,60 @@ primitive! {
     marks: |kernel| sets::arch("width", kernel.width(), kernel.height()),
     example: (1.3, 1.7),
 }
+
+#[cfg(feature = "oracle")]
+mod evidence {
+    use super::*;
+    use crate::oracle::{Definition, Evidence, FAR, Patch, Row, over};
+
+    impl Evidence<2> for Parabola {
+        const SAMPLE: &'static str = r#"{ "focal_length": 0.01 }"#;
+        const GUIDE: &'static [Row] = &[Row::new(
+            "Parabola",
+            "y = kx² has the `focal_length` 1/4k",
+            "exact, convex, unbounded",
+        )];
+
+        fn definition(&self) -> Definition<2> {
+            let focal = self.focal_length();
+            let reach = FAR.min((4.0 * focal * FAR).sqrt());
+            over(move |x| x * x / (4.0 * focal), reach, reach / (2.0 * focal))
+        }
+
+        fn refused() -> Vec<Result<Self, ShapeError>> {
+            vec![Self::new(0.0)]
+        }
+    }
+
+    impl Evidence<2> for ParabolaSegment {
+        const SAMPLE: &'static str = r#"{ "width": 0.08, "height": 0.1 }"#;
+        const GUIDE: &'static [Row] = &[Row::new(
+            "Parabola Segment",
+            "`width`, `height`; closed by its chord",
+            "exact, convex",
+        )];
+
+        fn definition(&self) -> Definition<2> {
+            parabola_segment(self.width(), self.height())
+        }
+
+        fn refused() -> Vec<Result<Self, ShapeError>> {
+            vec![Self::new(1.0, f64::NAN)]
+        }
+    }
+
+    fn parabola_segment(width: f64, height: f64) -> Definition<2> {
+        let half = 0.5 * width;
+        let top = move |x: f64| height * (0.5 - (x / half) * (x / half));
+        let speed = 2.0 * half.hypot(2.0 * height);
+        let ends = [-half, half].map(|x| Vector([x, -0.5 * height]));
+        let boundary = vec![
+            Patch::segment(ends[0], ends[1]),
+            Patch::curve(speed, move |t| {
+                let x = half * (2.0 * t - 1.0);
+                Vector([x, top(x)])
+            }),
+        ];
+        Definition::new(boundary, move |p| -0.5 * height < p[1] && p[1] < top(p[0]))
+    }
+}

@@ -311,3 +311,89 @@ primitive! {
     },
     example: (1.9, 0.2, 0.15),
 }
+
+#[cfg(feature = "oracle")]
+mod evidence {
+    use std::f64::consts::{FRAC_PI_4, PI};
+
+    use super::*;
+    use crate::oracle::{Definition, Evidence, Patch, Row, arc, bezier, from_curve};
+    use crate::vector::Point;
+
+    impl Evidence<2> for QuadraticCircle {
+        const SAMPLE: &'static str = r#"{ "radius": 0.05 }"#;
+        const GUIDE: &'static [Row] =
+            &[Row::new("Quadratic Circle", "`radius`", "exact, convex")];
+
+        fn definition(&self) -> Definition<2> {
+            quadratic_circle(self.radius())
+        }
+
+        fn refused() -> Vec<Result<Self, ShapeError>> {
+            vec![Self::new(-0.5)]
+        }
+    }
+
+    impl Evidence<2> for BobblyCross {
+        const SAMPLE: &'static str = r#"{ "width": 0.09, "dip": 0.012, "rounding": 0.005 }"#;
+        const GUIDE: &'static [Row] = &[Row::new(
+            "Bobbly Cross",
+            "`width` 2, `dip`, `rounding` 0 or more",
+            "exact; inside a bound where the rounding exceeds the radius of curvature",
+        )];
+
+        fn definition(&self) -> Definition<2> {
+            bobbly_cross(self.width(), self.dip(), self.rounding())
+        }
+
+        fn refused() -> Vec<Result<Self, ShapeError>> {
+            vec![Self::new(1.0, 0.2, 0.0), Self::new(1.0, 0.1, 0.5)]
+        }
+    }
+
+    /// Four concave arcs of parabolas between the tips, grown.
+    fn bobbly_cross(width: f64, dip: f64, r: f64) -> Definition<2> {
+        let tip = 0.5 * width - r;
+        let half_chord = tip * FRAC_1_SQRT_2;
+        // In the frame of the diagonal (1, 1): the offset beside it, the place along it.
+        let turned = |s: f64, t: f64| Vector([t + s, t - s]) * FRAC_1_SQRT_2;
+        let on_arc = move |u: f64| turned(half_chord * u, half_chord - dip + dip * u * u);
+        let grown = move |u: f64| {
+            let slope = 2.0 * dip * u / half_chord;
+            on_arc(u) + turned(-slope, 1.0) * (r / slope.hypot(1.0))
+        };
+        let steepest = 2.0 * dip / half_chord;
+        let speed = 2.0 * half_chord * steepest.hypot(1.0) + 2.0 * r * steepest;
+        let reach = FRAC_PI_4 + steepest.atan();
+        let mut boundary = Vec::new();
+        for quarter in 0..4 {
+            let angle = 0.5 * PI * f64::from(quarter);
+            let (sin, cos) = angle.sin_cos();
+            let turn =
+                move |p: Point<2>| Vector([cos * p[0] - sin * p[1], sin * p[0] + cos * p[1]]);
+            boundary.push(Patch::curve(speed, move |t| turn(grown(2.0 * t - 1.0))));
+            let end = turn(Vector([tip, 0.0]));
+            boundary.push(arc(end.0, r, [angle - reach, angle + reach]));
+        }
+        let curvature_radius = half_chord * half_chord / (2.0 * dip);
+        let cross = Definition::new(boundary, move |p| {
+            let q = Vector([p[0].abs(), p[1].abs()]);
+            let [s, t] = [q[0] - q[1], q[0] + q[1]].map(|x| x * FRAC_1_SQRT_2 / half_chord);
+            let within = s.abs() < 1.0 && t * half_chord < half_chord + dip * (s * s - 1.0);
+            within || from_curve(q, |u| on_arc(2.0 * u - 1.0)) < r
+        });
+        Definition { overlaps_itself: r > curvature_radius, ..cross }
+    }
+
+    fn quadratic_circle(r: f64) -> Definition<2> {
+        let mut boundary = Vec::new();
+        for [x, y] in [[r, r], [-r, r], [-r, -r], [r, -r]] {
+            let points = [Vector([x, 0.0]), Vector([x, y]), Vector([0.0, y])];
+            boundary.push(Patch::curve(2.0 * r, move |t| bezier(points, t)[0]));
+        }
+        Definition::new(boundary, move |p| {
+            let (sum, difference) = (p[0].abs() + p[1].abs(), p[0].abs() - p[1].abs());
+            sum < 1.5 * r - difference * difference / (2.0 * r)
+        })
+    }
+}

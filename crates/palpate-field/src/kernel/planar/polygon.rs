@@ -268,3 +268,36 @@ primitive! {
         vec![Vector([-0.4, -0.3]), Vector([0.1, -0.4]), Vector([-0.2, 0.2])],
     ]),
 }
+
+#[cfg(feature = "oracle")]
+mod evidence {
+    use super::*;
+    use crate::oracle::{Definition, Evidence, Row, polygon};
+
+    impl Evidence<2> for Polygon {
+        const SAMPLE: &'static str = r#"{ "rings": [
+             [[-0.05, -0.05], [0.05, -0.05], [0.05, 0.01], [0, 0.05], [-0.05, 0.01]],
+             [[-0.015, -0.03], [0.015, -0.03], [0.015, 0], [-0.015, 0]]] }"#;
+        const GUIDE: &'static [Row] =
+            &[Row::new("Polygon", "`rings`: one, or several with holes", "exact")];
+
+        fn definition(&self) -> Definition<2> {
+            polygon(self.rings().to_vec())
+        }
+
+        fn refused() -> Vec<Result<Self, ShapeError>> {
+            let square = |half: f64| {
+                [[half, half], [-half, half], [-half, -half], [half, -half]]
+                    .map(Vector)
+                    .to_vec()
+            };
+            vec![
+                Self::new(vec![]),
+                Self::new(vec![vec![]]),
+                Self::new(vec![square(1.0), square(f64::NAN)]),
+                Self::new(vec![vec![Vector([1.0, 2.0]); 3]]),
+                Self::new(vec![square(1.0); 30_000]),
+            ]
+        }
+    }
+}

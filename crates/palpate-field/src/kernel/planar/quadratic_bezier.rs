@@ -337,3 +337,86 @@ primitive! {
     },
     example: (Vector([-0.8, -0.6]), Vector([0.5, 1.1]), Vector([0.9, -0.4]), 0.12),
 }
+
+#[cfg(feature = "oracle")]
+mod evidence {
+    use std::f64::consts::PI;
+
+    use super::*;
+    use crate::oracle::{Definition, Evidence, Patch, Row, arc, bezier, from_curve};
+
+    impl Evidence<2> for QuadraticBezier {
+        const SAMPLE: &'static str = r#"{ "from": [-0.04, -0.04], "control": [0, 0.08], "to": [0.04, -0.02], "radius": 0.008 }"#;
+        const GUIDE: &'static [Row] = &[Row::new(
+            "Quadratic Bezier",
+            "`from`, `control`, `to`, `radius` 0",
+            "exact; inside a bound where the radius exceeds that of curvature",
+        )];
+
+        fn definition(&self) -> Definition<2> {
+            bezier_tube([self.from(), self.control(), self.to()], self.radius())
+        }
+
+        fn refused() -> Vec<Result<Self, ShapeError>> {
+            vec![
+                Self::new(
+                    Vector([0.25, 0.5]),
+                    Vector([f64::NAN, 0.0]),
+                    Vector([0.25, 0.5]),
+                    0.1,
+                ),
+                Self::new(Vector([0.25, 0.5]), Vector([0.25, 0.5]), Vector([0.25, 0.5]), -0.1),
+            ]
+        }
+    }
+
+    /// A tube around a curve: parallels on either side, and round ends.
+    fn bezier_tube(points: [Point<2>; 3], r: f64) -> Definition<2> {
+        let [a, b, c] = points;
+        let across =
+            |v: Point<2>| v.normalized().map_or(Vector([0.0, 1.0]), |v| Vector([-v[1], v[0]]));
+        let second = (a - b * 2.0 + c) * 2.0;
+        let fastest = (b - a).norm().max((c - b).norm()) * 2.0;
+        let slowest = from_curve(Vector::ZERO, |t| bezier(points, t)[1]);
+        let turning = (second[0] * (b - a)[1] - second[1] * (b - a)[0]).abs() * 2.0;
+        // A curve that turns back on itself is a hairpin with a round end.
+        let hairpin = turning * r > 1e3 * fastest * slowest * slowest;
+        let turned =
+            if hairpin || turning == 0.0 { 0.0 } else { turning / (slowest * slowest) };
+        // The parameter of the least speed, at which a hairpin turns.
+        let square = second.dot(second);
+        let place = if square > 0.0 { -2.0 * (b - a).dot(second) / square } else { 0.5 };
+        let place = place.clamp(0.0, 1.0);
+        let mut boundary = Vec::new();
+        for side in [r, -r] {
+            for [from, to] in [[0.0, place], [place, 1.0]] {
+                boundary.push(Patch::curve(fastest + r * turned, move |t| {
+                    let [p, v] = bezier(points, from + (to - from) * t);
+                    p + across(v) * side
+                }));
+            }
+        }
+        if hairpin || slowest <= 1e-9 * fastest {
+            boundary.push(arc(bezier(points, place)[0].0, r, [0.0, 2.0 * PI]));
+        }
+        // Half circles, away from the curve.
+        // The control point may be an end too.
+        let tangent =
+            |near: Point<2>, far: Point<2>| if near.norm() > 0.0 { near } else { far };
+        for (end, away) in [(a, tangent(a - b, a - c)), (c, tangent(c - b, c - a))] {
+            let [x, y] = away.0;
+            let away = y.atan2(x);
+            // The whole circle if all three points are equal.
+            let reach = if x == 0.0 && y == 0.0 { PI } else { 0.5 * PI };
+            boundary.push(arc(end.0, r, [away - reach, away + reach]));
+        }
+        let tube =
+            Definition::new(boundary, move |p| from_curve(p, |t| bezier(points, t)[0]) < r);
+        // With a smaller radius the parallels have no cusps.
+        let curvature_radius = slowest.powi(3) / turning;
+        Definition {
+            overlaps_itself: turning == 0.0 || hairpin || r > 0.999 * curvature_radius,
+            ..tube
+        }
+    }
+}

@@ -347,3 +347,62 @@ primitive! {
     marks: |kernel| sets::arch("base", kernel.base(), kernel.height()),
     example: (1.1, 1.3),
 }
+
+#[cfg(feature = "oracle")]
+mod evidence {
+    use super::*;
+    use crate::oracle::{Definition, Evidence, Row, corners_of};
+
+    impl Evidence<2> for Rhombus {
+        const SAMPLE: &'static str = r#"{ "size": [0.1, 0.06] }"#;
+        const GUIDE: &'static [Row] =
+            &[Row::new("Rhombus", "`size`: the full diagonals", "exact, convex")];
+
+        fn definition(&self) -> Definition<2> {
+            let [x, y] = (self.size() * 0.5).0;
+            corners_of(&[[x, 0.0], [0.0, y], [-x, 0.0], [0.0, -y]])
+        }
+    }
+
+    impl Evidence<2> for Parallelogram {
+        const SAMPLE: &'static str = r#"{ "width": 0.07, "height": 0.06, "skew": 0.03 }"#;
+        const GUIDE: &'static [Row] =
+            &[Row::new("Parallelogram", "`width`, `height`, `skew`", "exact, convex")];
+
+        fn definition(&self) -> Definition<2> {
+            let (w, h, s) = (0.5 * self.width(), 0.5 * self.height(), 0.5 * self.skew());
+            corners_of(&[[w - s, -h], [w + s, h], [s - w, h], [-w - s, -h]])
+        }
+    }
+
+    impl Evidence<2> for IsoscelesTrapezoid {
+        const SAMPLE: &'static str =
+            r#"{ "bottom_width": 0.1, "top_width": 0.05, "height": 0.07 }"#;
+        const GUIDE: &'static [Row] = &[Row::new(
+            "Isosceles Trapezoid",
+            "`bottom_width`, `top_width`, `height`",
+            "exact, convex",
+        )];
+
+        fn definition(&self) -> Definition<2> {
+            let (bottom, top, half) =
+                (0.5 * self.bottom_width(), 0.5 * self.top_width(), 0.5 * self.height());
+            corners_of(&[[bottom, -half], [top, half], [-top, half], [-bottom, -half]])
+        }
+
+        fn refused() -> Vec<Result<Self, ShapeError>> {
+            vec![Self::new(0.0, 0.0, 1.0)]
+        }
+    }
+
+    impl Evidence<2> for IsoscelesTriangle {
+        const SAMPLE: &'static str = r#"{ "base": 0.08, "height": 0.1 }"#;
+        const GUIDE: &'static [Row] =
+            &[Row::new("Isosceles Triangle", "`base`, `height`", "exact, convex")];
+
+        fn definition(&self) -> Definition<2> {
+            let (foot, half) = (0.5 * self.base(), 0.5 * self.height());
+            corners_of(&[[foot, -half], [0.0, half], [-foot, -half]])
+        }
+    }
+}

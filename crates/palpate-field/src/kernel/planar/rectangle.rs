@@ -325,3 +325,115 @@ primitive! {
     marks: |kernel| sets::between(kernel.from(), kernel.to(), kernel.width()),
     example: (Vector([-0.7, -0.5]), Vector([0.6, 0.4]), 0.5),
 }
+
+#[cfg(feature = "oracle")]
+mod evidence {
+    use std::f64::consts::{FRAC_PI_2, PI};
+
+    use super::*;
+    use crate::oracle::{Definition, Evidence, Patch, Row, arc, corners_of, polygon};
+
+    impl Evidence<2> for RoundedRectangle {
+        const SAMPLE: &'static str = r#"{ "size": [0.1, 0.08], "top_left_radius": 0, "top_right_radius": 0.01,
+             "bottom_right_radius": 0.02, "bottom_left_radius": 0.04 }"#;
+        const GUIDE: &'static [Row] = &[Row::new(
+            "Rounded Box",
+            "`size`, and a radius for each corner; `rounded_cuboid` if all are equal",
+            "exact",
+        )];
+
+        fn definition(&self) -> Definition<2> {
+            rounded_rectangle(
+                self.size(),
+                [
+                    self.top_left_radius(),
+                    self.top_right_radius(),
+                    self.bottom_right_radius(),
+                    self.bottom_left_radius(),
+                ],
+            )
+        }
+
+        fn refused() -> Vec<Result<Self, ShapeError>> {
+            vec![
+                Self::new(Vector([1.0, 0.5]), 0.1, -0.02, 0.1, 0.1),
+                Self::new(Vector([1.0, 0.5]), 0.25, 0.1, 0.45, 0.1),
+            ]
+        }
+    }
+
+    impl Evidence<2> for ChamferedRectangle {
+        const SAMPLE: &'static str = r#"{ "size": [0.1, 0.07], "chamfer": 0.02 }"#;
+        const GUIDE: &'static [Row] =
+            &[Row::new("Chamfer Box", "`size`, `chamfer`", "exact, convex")];
+
+        fn definition(&self) -> Definition<2> {
+            let ([x, y], c) = ((self.size() * 0.5).0, self.chamfer());
+            corners_of(&[
+                [x, y - c],
+                [x - c, y],
+                [c - x, y],
+                [-x, y - c],
+                [-x, c - y],
+                [c - x, -y],
+                [x - c, -y],
+                [x, c - y],
+            ])
+        }
+
+        fn refused() -> Vec<Result<Self, ShapeError>> {
+            vec![Self::new(Vector([1.0, 0.5]), 0.3)]
+        }
+    }
+
+    impl Evidence<2> for OrientedRectangle {
+        const SAMPLE: &'static str =
+            r#"{ "from": [-0.03, -0.03], "to": [0.03, 0.03], "width": 0.03 }"#;
+        const GUIDE: &'static [Row] =
+            &[Row::new("Oriented Box", "`from`, `to`, `width`", "exact, convex")];
+
+        fn definition(&self) -> Definition<2> {
+            oriented_rectangle(self.from(), self.to(), self.width())
+        }
+
+        fn refused() -> Vec<Result<Self, ShapeError>> {
+            vec![
+                Self::new(Vector([0.25, 0.5]), Vector([0.25, 0.5]), 0.1),
+                Self::new(Vector([0.25, 0.5]), Vector([f64::NAN, 0.5]), 0.1),
+            ]
+        }
+    }
+
+    /// A rectangle with its corners cut by arcs: top left, top right, bottom right, bottom left.
+    fn rounded_rectangle(size: Point<2>, radii: [f64; 4]) -> Definition<2> {
+        let half = size * 0.5;
+        let signs = [[-1.0, 1.0], [1.0, 1.0], [1.0, -1.0], [-1.0, -1.0]];
+        let centre = move |i: usize| {
+            let [sx, sy] = signs[i];
+            Vector([sx * (half[0] - radii[i]), sy * (half[1] - radii[i])])
+        };
+        let mut boundary = Vec::new();
+        for (i, from) in [FRAC_PI_2, 0.0, -FRAC_PI_2, PI].into_iter().enumerate() {
+            boundary.push(arc(centre(i).0, radii[i], [from, from + FRAC_PI_2]));
+            let next = (i + 1) % 4;
+            // The edge's normal is the mean of its corners' signs.
+            let out = (Vector(signs[i]) + Vector(signs[next])) * 0.5;
+            let ends = [i, next].map(|k| centre(k) + out * radii[k]);
+            boundary.push(Patch::segment(ends[0], ends[1]));
+        }
+        Definition::new(boundary, move |p| {
+            let in_corner = |i: usize| {
+                let q = p - centre(i);
+                q[0] * signs[i][0] > 0.0 && q[1] * signs[i][1] > 0.0
+            };
+            let cut = (0..4).any(|i| in_corner(i) && (p - centre(i)).norm() >= radii[i]);
+            p[0].abs() < half[0] && p[1].abs() < half[1] && !cut
+        })
+    }
+
+    fn oriented_rectangle(from: Point<2>, to: Point<2>, width: f64) -> Definition<2> {
+        let along = (to - from).normalized().unwrap_or(Vector::unit(0));
+        let across = Vector([-along[1], along[0]]) * (0.5 * width);
+        polygon(vec![vec![from - across, to - across, to + across, from + across]])
+    }
+}

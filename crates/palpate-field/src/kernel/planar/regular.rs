@@ -297,3 +297,65 @@ primitive! {
     },
     example: (7, 0.9, 0.5),
 }
+
+#[cfg(feature = "oracle")]
+mod evidence {
+    use super::*;
+    use crate::oracle::{Definition, Evidence, Row, corners, polygon};
+
+    impl Evidence<2> for RegularPolygon {
+        const SAMPLE: &'static str = r#"{ "sides": 6, "radius": 0.05 }"#;
+        const GUIDE: &'static [Row] = &[
+            Row::new(
+                "Equilateral Triangle",
+                "`sides` 3; `radius` is to a corner",
+                "exact, convex",
+            ),
+            Row::new("Regular Pentagon", "`sides` 5", "exact, convex"),
+            Row::new("Regular Hexagon", "`sides` 6", "exact, convex"),
+            Row::new("Regular Octogon", "`sides` 8", "exact, convex"),
+        ];
+
+        fn definition(&self) -> Definition<2> {
+            polygon(vec![corners(f64::from(self.sides()), &[self.radius()])])
+        }
+
+        fn refused() -> Vec<Result<Self, ShapeError>> {
+            vec![Self::new(2, 1.0)]
+        }
+    }
+
+    impl Evidence<2> for RegularStar {
+        const SAMPLE: &'static str =
+            r#"{ "branches": 5, "outer_radius": 0.05, "inner_radius": 0.02 }"#;
+        const GUIDE: &'static [Row] = &[
+            Row::new("Hexagram", "`branches` 6, `inner_radius` the outer over √3", "exact"),
+            Row::new(
+                "Pentagram",
+                "`branches` 5, `inner_radius` the outer over 2.618 034, the square of the golden ratio",
+                "exact",
+            ),
+            Row::new(
+                "Regular Star",
+                "`branches`, `outer_radius`, `inner_radius` in place of an angle",
+                "exact",
+            ),
+        ];
+
+        fn definition(&self) -> Definition<2> {
+            polygon(vec![corners(
+                f64::from(self.branches()),
+                &[self.outer_radius(), self.inner_radius()],
+            )])
+        }
+
+        fn refused() -> Vec<Result<Self, ShapeError>> {
+            vec![
+                Self::new(1_000_000, 1.0, 0.5),
+                Self::new(5, 1.0, 1.0),
+                Self::hexagram(0.0),
+                Self::pentagram(f64::NAN),
+            ]
+        }
+    }
+}

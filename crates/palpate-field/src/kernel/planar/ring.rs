@@ -94,3 +94,27 @@ primitive! {
     },
     example: (0.4, 0.8),
 }
+
+#[cfg(feature = "oracle")]
+mod evidence {
+    use std::f64::consts::TAU;
+
+    use super::*;
+    use crate::oracle::{Definition, Evidence, arc};
+    use crate::vector::Point;
+
+    impl Evidence<2> for Ring {
+        const SAMPLE: &'static str = r#"{ "inner_radius": 0.03, "outer_radius": 0.05 }"#;
+
+        fn definition(&self) -> Definition<2> {
+            let (inner, outer) = (self.inner_radius(), self.outer_radius());
+            let circles = [inner, outer].map(|r| arc([0.0; 2], r, [0.0, TAU]));
+            let between = move |p: Point<2>| inner < p.norm() && p.norm() < outer;
+            Definition::new(circles.into(), between)
+        }
+
+        fn refused() -> Vec<Result<Self, ShapeError>> {
+            vec![Self::new(0.2, 0.1)]
+        }
+    }
+}

@@ -125,3 +125,56 @@ primitive! {
     },
     example: (Vector([1.9, 1.5]), 1.1),
 }
+
+#[cfg(feature = "oracle")]
+mod evidence {
+    use std::f64::consts::PI;
+
+    use super::*;
+    use crate::oracle::{Definition, Evidence, Patch, Row};
+    use crate::vector::Point;
+
+    impl Evidence<2> for RoundedCross {
+        const SAMPLE: &'static str = r#"{ "size": [0.1, 0.1], "arc_radius": 0.06 }"#;
+        const GUIDE: &'static [Row] = &[Row::new(
+            "Circle Cross",
+            "`size` (2, 2h), `arc_radius` (h + 1/h)/2; larger radii have flatter sides",
+            "exact",
+        )];
+
+        fn definition(&self) -> Definition<2> {
+            rounded_cross(self.size(), self.arc_radius())
+        }
+
+        fn refused() -> Vec<Result<Self, ShapeError>> {
+            vec![Self::new(Vector([1.0, 0.5]), 0.5)]
+        }
+    }
+
+    /// A rhombus without four discs over its edges.
+    fn rounded_cross(size: Point<2>, r: f64) -> Definition<2> {
+        let [a, b] = (size * 0.5).0;
+        let chord = a.hypot(b);
+        let beyond = (r * r - 0.25 * chord * chord).max(0.0).sqrt();
+        let centre = [0.5 * a + beyond * b / chord, 0.5 * b + beyond * a / chord];
+        let angle = |x: f64, y: f64| (y - centre[1]).atan2(x - centre[0]);
+        // From the tip on y, to the left of the centre, to the tip on x, below it.
+        let (mut from, to) = (angle(0.0, b), angle(a, 0.0));
+        if from > 0.0 {
+            from -= 2.0 * PI;
+        }
+        let mut boundary = Vec::new();
+        for signs in [[1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0], [1.0, -1.0]] {
+            boundary.push(Patch::curve(r * (to - from).abs(), move |t| {
+                let angle = from + (to - from) * t;
+                let x = centre[0] + r * angle.cos();
+                let y = centre[1] + r * angle.sin();
+                Vector([signs[0] * x, signs[1] * y])
+            }));
+        }
+        Definition::new(boundary, move |p| {
+            let [x, y] = [p[0].abs(), p[1].abs()];
+            x / a + y / b < 1.0 && (Vector([x, y]) - Vector(centre)).norm() > r
+        })
+    }
+}

@@ -198,3 +198,58 @@ primitive! {
     },
     example: (0.5, 0.9, 4.2),
 }
+
+#[cfg(feature = "oracle")]
+mod evidence {
+    use std::f64::consts::FRAC_PI_2;
+
+    use super::*;
+    use crate::oracle::{Definition, Evidence, Row, arc, both_sides, line};
+
+    impl Evidence<2> for Pie {
+        const SAMPLE: &'static str = r#"{ "radius": 0.05, "angle_degrees": 100 }"#;
+        const GUIDE: &'static [Row] = &[Row::new("Pie", "`radius`, `angle`", "exact")];
+
+        fn definition(&self) -> Definition<2> {
+            sector(0.0, self.radius(), self.angle())
+        }
+
+        fn refused() -> Vec<Result<Self, ShapeError>> {
+            vec![Self::new(0.5, 7.0)]
+        }
+    }
+
+    impl Evidence<2> for RingSector {
+        const SAMPLE: &'static str =
+            r#"{ "inner_radius": 0.03, "outer_radius": 0.05, "angle_degrees": 250 }"#;
+        const GUIDE: &'static [Row] = &[Row::new(
+            "Ring",
+            "`inner_radius`, `outer_radius`, `angle`; `ring` for a full turn",
+            "exact",
+        )];
+
+        fn definition(&self) -> Definition<2> {
+            sector(self.inner_radius(), self.outer_radius(), self.angle())
+        }
+
+        fn refused() -> Vec<Result<Self, ShapeError>> {
+            vec![Self::new(0.5, 0.25, 1.0)]
+        }
+    }
+
+    /// The part of a ring within half the angle from +y.
+    fn sector(inner: f64, outer: f64, angle: f64) -> Definition<2> {
+        let half = 0.5 * angle;
+        let angles = [FRAC_PI_2 - half, FRAC_PI_2];
+        let at = |r: f64| [r * half.sin(), r * half.cos()];
+        let right = vec![
+            arc([0.0; 2], inner, angles),
+            arc([0.0; 2], outer, angles),
+            line(at(inner), at(outer)),
+        ];
+        both_sides(right, move |p| {
+            let r = p.norm();
+            inner < r && r < outer && p[0].abs().atan2(p[1]) < half
+        })
+    }
+}

@@ -234,3 +234,42 @@ primitive! {
     },
     example: (0.42, 0.3, 4),
 }
+
+#[cfg(feature = "oracle")]
+mod evidence {
+    use super::*;
+    use crate::oracle::{Definition, Evidence, Row, polygon};
+
+    impl Evidence<2> for Stairs {
+        const SAMPLE: &'static str =
+            r#"{ "step_width": 0.025, "step_height": 0.02, "steps": 4 }"#;
+        const GUIDE: &'static [Row] =
+            &[Row::new("Stairs", "`step_width`, `step_height`, `steps`", "exact")];
+
+        fn definition(&self) -> Definition<2> {
+            stairs(self.step_width(), self.step_height(), self.steps() as usize)
+        }
+
+        fn refused() -> Vec<Result<Self, ShapeError>> {
+            vec![
+                Self::new(0.25, 0.125, 0),
+                Self::new(0.25, 0.125, 1000),
+                Self::new(1e14, 0.125, 100),
+            ]
+        }
+    }
+
+    fn stairs(w: f64, h: f64, steps: usize) -> Definition<2> {
+        let n = steps as f64;
+        let at = |x: f64, y: f64| Vector([(x - 0.5 * n) * w, (y - 0.5 * n) * h]);
+        let mut ring = vec![at(0.0, 0.0), at(n, 0.0), at(n, n)];
+        for k in (0..steps).rev() {
+            let k = k as f64;
+            ring.push(at(k, k + 1.0));
+            if k > 0.0 {
+                ring.push(at(k, k));
+            }
+        }
+        polygon(vec![ring])
+    }
+}

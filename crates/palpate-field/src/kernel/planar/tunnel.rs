@@ -188,3 +188,87 @@ primitive! {
     },
     example: (0.5, 0.25, 0.8),
 }
+
+#[cfg(feature = "oracle")]
+mod evidence {
+    use std::f64::consts::FRAC_PI_2;
+
+    use super::*;
+    use crate::oracle::{Definition, Evidence, Row, arc, both_sides, line};
+
+    impl Evidence<2> for Tunnel {
+        const SAMPLE: &'static str = r#"{ "width": 0.07, "height": 0.1 }"#;
+        const GUIDE: &'static [Row] =
+            &[Row::new("Tunnel", "`width`, `height` with the half disc", "exact")];
+
+        fn definition(&self) -> Definition<2> {
+            tunnel(self.width(), self.height())
+        }
+
+        fn refused() -> Vec<Result<Self, ShapeError>> {
+            vec![Self::new(1.0, 0.25)]
+        }
+    }
+
+    impl Evidence<2> for UnevenCapsule {
+        const SAMPLE: &'static str =
+            r#"{ "bottom_radius": 0.03, "top_radius": 0.015, "height": 0.05 }"#;
+        const GUIDE: &'static [Row] = &[Row::new(
+            "Uneven Capsule",
+            "`bottom_radius`, `top_radius`, `height` between the centres",
+            "exact, convex",
+        )];
+
+        fn definition(&self) -> Definition<2> {
+            uneven_capsule(self.bottom_radius(), self.top_radius(), self.height())
+        }
+
+        fn refused() -> Vec<Result<Self, ShapeError>> {
+            vec![Self::new(0.75, 0.25, 0.5)]
+        }
+    }
+
+    fn tunnel(width: f64, height: f64) -> Definition<2> {
+        let (r, floor) = (0.5 * width, -0.5 * height);
+        let spring = 0.5 * height - r;
+        let right = vec![
+            arc([0.0, spring], r, [0.0, FRAC_PI_2]),
+            line([r, spring], [r, floor]),
+            line([0.0, floor], [r, floor]),
+        ];
+        both_sides(right, move |p| {
+            let in_arch = (p - Vector([0.0, spring])).norm() < r;
+            p[1] > floor && (in_arch || (p[1] < spring && p[0].abs() < r))
+        })
+    }
+
+    /// All discs between two on the y axis, whose centre and radius are interpolated linearly.
+    fn uneven_capsule(bottom: f64, top: f64, height: f64) -> Definition<2> {
+        let half = 0.5 * height;
+        // From the axis to where the tangent touches the discs.
+        let angle = FRAC_PI_2 - ((bottom - top) / height).acos();
+        let touch = |y: f64, r: f64| [r * angle.cos(), y + r * angle.sin()];
+        let right = vec![
+            arc([0.0, -half], bottom, [-FRAC_PI_2, angle]),
+            line(touch(-half, bottom), touch(half, top)),
+            arc([0.0, half], top, [angle, FRAC_PI_2]),
+        ];
+        both_sides(right, move |p| {
+            let beyond = |t: f64| {
+                let centre = Vector([0.0, -half + t * height]);
+                (p - centre).norm() - (bottom + t * (top - bottom))
+            };
+            // Convex in t, so a ternary search finds the minimum.
+            let (mut low, mut high) = (0.0, 1.0);
+            for _ in 0..200 {
+                let (a, b) = (low + (high - low) / 3.0, high - (high - low) / 3.0);
+                if beyond(a) < beyond(b) {
+                    high = b;
+                } else {
+                    low = a;
+                }
+            }
+            beyond(low).min(beyond(0.0)).min(beyond(1.0)) < 0.0
+        })
+    }
+}

@@ -162,3 +162,59 @@ primitive! {
     marks: |kernel| sets::between(kernel.from(), kernel.to(), kernel.width()),
     example: (Vector([-0.7, -0.4]), Vector([0.6, 0.5]), 0.6),
 }
+
+#[cfg(feature = "oracle")]
+mod evidence {
+    use super::*;
+    use crate::oracle::{Definition, Evidence, Patch, Row};
+
+    impl Evidence<2> for Vesica {
+        const SAMPLE: &'static str = r#"{ "width": 0.05, "height": 0.1 }"#;
+        const GUIDE: &'static [Row] =
+            &[Row::new("Vesica", "`width`, `height` from tip to tip", "exact, convex")];
+
+        fn definition(&self) -> Definition<2> {
+            let tip = Vector([0.0, 0.5 * self.height()]);
+            lens(-tip, tip, self.width())
+        }
+
+        fn refused() -> Vec<Result<Self, ShapeError>> {
+            vec![Self::new(0.5, 0.25)]
+        }
+    }
+
+    impl Evidence<2> for OrientedVesica {
+        const SAMPLE: &'static str =
+            r#"{ "from": [-0.035, -0.035], "to": [0.035, 0.035], "width": 0.04 }"#;
+        const GUIDE: &'static [Row] =
+            &[Row::new("Oriented Vesica", "`from`, `to`, `width`", "exact, convex")];
+
+        fn definition(&self) -> Definition<2> {
+            lens(self.from(), self.to(), self.width())
+        }
+
+        fn refused() -> Vec<Result<Self, ShapeError>> {
+            vec![Self::new(Vector([0.25, 0.5]), Vector([1.25, 0.5]), 1.5)]
+        }
+    }
+
+    /// The intersection of two discs whose circles meet at `from` and `to`, `width` across.
+    fn lens(from: Point<2>, to: Point<2>, width: f64) -> Definition<2> {
+        let along = (to - from).normalized().unwrap_or(Vector::unit(0));
+        let across = Vector([along[1], -along[0]]);
+        let half = 0.5 * (to - from).norm();
+        // Half the angle that the arcs span, which is the angle between tangent and chord at the
+        // tip.
+        let span = 2.0 * (width / (2.0 * half)).atan();
+        let r = half / span.sin();
+        let middle = (from + to) * 0.5;
+        let inward = r - 0.5 * width;
+        let centres = [middle - across * inward, middle + across * inward];
+        let boundary = [1.0, -1.0]
+            .into_iter()
+            .zip(centres)
+            .map(|(sign, centre)| Patch::arc(centre, [across * sign, along], r, [-span, span]));
+        let boundary = boundary.collect();
+        Definition::new(boundary, move |p| centres.iter().all(|c| (p - *c).norm() < r))
+    }
+}

@@ -276,3 +276,43 @@ primitive! {
     marks: |kernel| sets::arch("side", kernel.side(), kernel.height()),
     example: (1.0, 0.9),
 }
+
+#[cfg(feature = "oracle")]
+mod evidence {
+    use super::*;
+    use crate::oracle::{
+        Definition, Evidence, bound, capped_cone, cylinder, pyramid, rounded_box,
+    };
+
+    impl Evidence<3> for CubeApproximation {
+        const SAMPLE: &'static str = r#"{ "side": 0.08 }"#;
+
+        fn definition(&self) -> Definition<3> {
+            bound(rounded_box(Vector([0.5 * self.side(); 3]), 0.0, 2.0))
+        }
+    }
+
+    impl Evidence<3> for CylinderApproximation {
+        const SAMPLE: &'static str = r#"{ "radius": 0.035, "height": 0.1 }"#;
+
+        fn definition(&self) -> Definition<3> {
+            bound(cylinder(self.radius(), 0.5 * self.height()))
+        }
+    }
+
+    impl Evidence<3> for ConeApproximation {
+        const SAMPLE: &'static str = r#"{ "radius": 0.04, "height": 0.1 }"#;
+
+        fn definition(&self) -> Definition<3> {
+            bound(capped_cone(self.radius(), 0.0, self.height()))
+        }
+    }
+
+    impl Evidence<3> for PyramidApproximation {
+        const SAMPLE: &'static str = r#"{ "side": 0.08, "height": 0.1 }"#;
+
+        fn definition(&self) -> Definition<3> {
+            bound(pyramid(self.side(), self.height()))
+        }
+    }
+}

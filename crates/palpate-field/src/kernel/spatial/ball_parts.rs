@@ -359,3 +359,114 @@ primitive! {
     marks: |kernel| sets::bite(kernel.radius(), kernel.cut_radius(), kernel.distance()),
     example: (0.9, 0.6, 1.1),
 }
+
+#[cfg(feature = "oracle")]
+mod evidence {
+    use std::f64::consts::{FRAC_PI_2, PI};
+
+    use super::*;
+    use crate::oracle::{Definition, Evidence, Row, arc, line, turned};
+
+    impl Evidence<3> for SolidAngle {
+        const SAMPLE: &'static str = r#"{ "radius": 0.06, "angle_degrees": 70 }"#;
+        const GUIDE: &'static [Row] = &[Row::new("Solid Angle", "`radius`, `angle`", "exact")];
+
+        fn definition(&self) -> Definition<3> {
+            solid_angle(self.radius(), self.angle())
+        }
+
+        fn refused() -> Vec<Result<Self, ShapeError>> {
+            vec![Self::new(1.0, std::f64::consts::TAU)]
+        }
+    }
+
+    impl Evidence<3> for CutBall {
+        const SAMPLE: &'static str = r#"{ "radius": 0.05, "cut_height": -0.02 }"#;
+        const GUIDE: &'static [Row] =
+            &[Row::new("Cut Sphere", "`radius`, `cut_height`", "exact, convex")];
+
+        fn definition(&self) -> Definition<3> {
+            cut_ball(self.radius(), self.cut_height())
+        }
+
+        fn refused() -> Vec<Result<Self, ShapeError>> {
+            vec![Self::new(0.5, -0.5)]
+        }
+    }
+
+    impl Evidence<3> for CutHollowSphere {
+        const SAMPLE: &'static str =
+            r#"{ "radius": 0.045, "cut_height": 0.02, "thickness": 0.01 }"#;
+        const GUIDE: &'static [Row] =
+            &[Row::new("Cut Hollow Sphere", "`radius`, `cut_height`, `thickness`", "exact")];
+
+        fn definition(&self) -> Definition<3> {
+            bowl(self.radius(), self.cut_height(), self.thickness())
+        }
+
+        fn refused() -> Vec<Result<Self, ShapeError>> {
+            vec![Self::new(0.5, 0.4, 0.75)]
+        }
+    }
+
+    impl Evidence<3> for DeathStar {
+        const SAMPLE: &'static str =
+            r#"{ "radius": 0.05, "cut_radius": 0.035, "distance": 0.055 }"#;
+        const GUIDE: &'static [Row] =
+            &[Row::new("Death Star", "`radius`, `cut_radius`, `distance`", "exact")];
+
+        fn definition(&self) -> Definition<3> {
+            death_star(self.radius(), self.cut_radius(), self.distance())
+        }
+
+        fn refused() -> Vec<Result<Self, ShapeError>> {
+            vec![Self::new(0.5, 0.25, 0.25), Self::new(0.5, 0.25, 0.75)]
+        }
+    }
+
+    fn solid_angle(radius: f64, angle: f64) -> Definition<3> {
+        let half = 0.5 * angle;
+        let rim = [radius * half.sin(), radius * half.cos()];
+        let profile =
+            vec![line([0.0; 2], rim), arc([0.0; 2], radius, [FRAC_PI_2 - half, FRAC_PI_2])];
+        turned(profile, radius, move |rho, y| rho.hypot(y) < radius && rho.atan2(y) < half)
+    }
+
+    fn cut_ball(radius: f64, height: f64) -> Definition<3> {
+        let rim = (height / radius).asin();
+        let width = radius * rim.cos();
+        let profile =
+            vec![arc([0.0; 2], radius, [rim, FRAC_PI_2]), line([0.0, height], [width, height])];
+        turned(profile, radius, move |rho, y| rho.hypot(y) < radius && y > height)
+    }
+
+    /// The middle of the wall and its rim, thickened.
+    fn bowl(radius: f64, height: f64, thickness: f64) -> Definition<3> {
+        let (rim, half) = ((height / radius).asin(), 0.5 * thickness);
+        let on_rim = [radius * rim.cos(), radius * rim.sin()];
+        let profile = vec![
+            arc([0.0; 2], radius - half, [-FRAC_PI_2, rim]),
+            arc([0.0; 2], radius + half, [-FRAC_PI_2, rim]),
+            arc(on_rim, half, [rim, rim + PI]),
+        ];
+        turned(profile, radius + half, move |rho, y| {
+            let angle = y.atan2(rho).min(rim);
+            (rho - radius * angle.cos()).hypot(y - radius * angle.sin()) < half
+        })
+    }
+
+    fn death_star(radius: f64, cut_radius: f64, distance: f64) -> Definition<3> {
+        // By the cosine rule, about either centre.
+        let opposite =
+            |a: f64, b: f64, c: f64| ((b - c).mul_add(b + c, a * a) / (2.0 * a * b)).acos();
+        let rim = FRAC_PI_2 - opposite(distance, radius, cut_radius);
+        let bite = opposite(distance, cut_radius, radius) - FRAC_PI_2;
+        let profile = vec![
+            arc([0.0; 2], radius, [-FRAC_PI_2, rim]),
+            arc([0.0, distance], cut_radius, [-FRAC_PI_2, bite]),
+        ];
+        turned(profile, radius, move |rho, y| {
+            rho.hypot(y) < radius && rho.hypot(y - distance) > cut_radius
+        })
+    }
+}

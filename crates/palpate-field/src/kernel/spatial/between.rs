@@ -190,3 +190,52 @@ primitive! {
     },
     example: (Vector([-0.5, -0.4, 0.2]), Vector([0.6, 0.5, -0.1]), 0.45, 0.15),
 }
+
+#[cfg(feature = "oracle")]
+mod evidence {
+    use super::*;
+    use crate::oracle::{Definition, Evidence, Row, between, capped_cone, cylinder};
+
+    impl Evidence<3> for CylinderBetween {
+        const SAMPLE: &'static str =
+            r#"{ "from": [-0.03, -0.03, -0.01], "to": [0.03, 0.03, 0.01], "radius": 0.02 }"#;
+        const GUIDE: &'static [Row] = &[Row::new(
+            "Capped Cylinder, arbitrary",
+            "`from`, `to`, `radius`",
+            "exact, convex",
+        )];
+
+        fn definition(&self) -> Definition<3> {
+            let (from, to) = (self.from(), self.to());
+            let length = (to - from).norm();
+            between(from, to, cylinder(self.radius(), 0.5 * length))
+        }
+
+        fn refused() -> Vec<Result<Self, ShapeError>> {
+            vec![Self::new(Vector([0.5, 0.25, 0.0]), Vector([0.5, 0.25, 0.0]), 0.1)]
+        }
+    }
+
+    impl Evidence<3> for CappedConeBetween {
+        const SAMPLE: &'static str = r#"{ "from": [-0.03, -0.03, -0.01], "to": [0.03, 0.03, 0.01],
+             "from_radius": 0.025, "to_radius": 0.01 }"#;
+        const GUIDE: &'static [Row] = &[Row::new(
+            "Capped Cone, arbitrary",
+            "`from`, `to`, `from_radius`, `to_radius`",
+            "exact, convex",
+        )];
+
+        fn definition(&self) -> Definition<3> {
+            let (from, to) = (self.from(), self.to());
+            let length = (to - from).norm();
+            between(from, to, capped_cone(self.from_radius(), self.to_radius(), length))
+        }
+
+        fn refused() -> Vec<Result<Self, ShapeError>> {
+            vec![
+                Self::new(Vector([0.5, 0.25, 0.0]), Vector([0.5, 0.25, 0.75]), -0.1, 0.2),
+                Self::new(Vector([0.5, 0.25, 0.0]), Vector([0.5, 0.25, 0.75]), 0.0, 0.0),
+            ]
+        }
+    }
+}

@@ -260,3 +260,71 @@ primitive! {
     marks: |kernel| vec![Mark::angle("angle", |share| turned(PI + share * kernel.angle(), 0.5))],
     example: (0.9),
 }
+
+#[cfg(feature = "oracle")]
+mod evidence {
+    use super::*;
+    use crate::oracle::{Definition, Evidence, FAR, Row, capped_cone, line};
+    use crate::vector::Point;
+
+    impl Evidence<3> for CappedCone {
+        const SAMPLE: &'static str =
+            r#"{ "bottom_radius": 0.05, "top_radius": 0.02, "height": 0.08 }"#;
+        const GUIDE: &'static [Row] = &[Row::new(
+            "Capped Cone, vertical",
+            "`bottom_radius`, `top_radius`, `height`",
+            "exact, convex",
+        )];
+
+        fn definition(&self) -> Definition<3> {
+            capped_cone(self.bottom_radius(), self.top_radius(), self.height())
+        }
+
+        fn refused() -> Vec<Result<Self, ShapeError>> {
+            vec![Self::new(0.0, 0.0, 1.0)]
+        }
+    }
+
+    impl Evidence<3> for Cone {
+        const SAMPLE: &'static str = r#"{ "radius": 0.04, "height": 0.1 }"#;
+        const GUIDE: &'static [Row] = &[
+            Row::new("Cone", "`radius`, `height`; centred at half its height", "exact, convex"),
+            Row::new("Cone, cheap", "the same: there is no cheap one", "exact, convex"),
+        ];
+
+        fn definition(&self) -> Definition<3> {
+            capped_cone(self.radius(), 0.0, self.height())
+        }
+    }
+
+    impl Evidence<3> for InfiniteCone {
+        const SAMPLE: &'static str = r#"{ "angle_degrees": 60 }"#;
+        const GUIDE: &'static [Row] =
+            &[Row::new("Infinite Cone", "`angle`", "exact, convex, unbounded")];
+
+        fn definition(&self) -> Definition<3> {
+            infinite_cone(self.angle())
+        }
+
+        fn refused() -> Vec<Result<Self, ShapeError>> {
+            vec![Self::new(std::f64::consts::PI)]
+        }
+    }
+
+    /// Pieces of the surface of a cone without a base, each half as long towards the tip.
+    const PIECES: i32 = 12;
+
+    /// In pieces, each reaching twice as far out as the one before, so that samples near the tip
+    /// are dense.
+    fn infinite_cone(angle: f64) -> Definition<3> {
+        let half = 0.5 * angle;
+        let at = |along: f64| [along * half.sin(), -along * half.cos()];
+        let piece = |k: i32| {
+            let far = FAR * 0.5_f64.powi(k);
+            let near = if k < PIECES { 0.5 * far } else { 0.0 };
+            line(at(near), at(far)).turned(far * half.sin())
+        };
+        let boundary = (0..=PIECES).map(piece).collect();
+        Definition::new(boundary, move |p: Point<3>| p[0].hypot(p[2]).atan2(-p[1]) < half)
+    }
+}

@@ -218,3 +218,67 @@ primitive! {
     marks: |kernel| vec![Mark::from_origin("radius", at(kernel.radius(), 0.0))],
     example: (0.3),
 }
+
+#[cfg(feature = "oracle")]
+mod evidence {
+    use super::*;
+    use crate::oracle::{
+        Definition, Evidence, FAR, Patch, Row, cylinder, in_rounded_box, rounded_rectangle,
+    };
+
+    impl Evidence<3> for Cylinder {
+        const SAMPLE: &'static str = r#"{ "radius": 0.035, "height": 0.1 }"#;
+        const GUIDE: &'static [Row] =
+            &[Row::new("Capped Cylinder, vertical", "`radius`, `height`", "exact, convex")];
+
+        fn definition(&self) -> Definition<3> {
+            cylinder(self.radius(), 0.5 * self.height())
+        }
+
+        fn refused() -> Vec<Result<Self, ShapeError>> {
+            vec![Self::new(0.1, -1e300)]
+        }
+    }
+
+    impl Evidence<3> for RoundedCylinder {
+        const SAMPLE: &'static str = r#"{ "radius": 0.035, "height": 0.1, "rounding": 0.01 }"#;
+        const GUIDE: &'static [Row] = &[Row::new(
+            "Rounded Cylinder",
+            "`radius` with the rounding, `height`, `rounding`",
+            "exact, convex",
+        )];
+
+        fn definition(&self) -> Definition<3> {
+            rounded_cylinder(self.radius(), 0.5 * self.height(), self.rounding())
+        }
+
+        fn refused() -> Vec<Result<Self, ShapeError>> {
+            vec![Self::new(0.1, 1.0, 0.2)]
+        }
+    }
+
+    impl Evidence<3> for InfiniteCylinder {
+        const SAMPLE: &'static str = r#"{ "radius": 0.03 }"#;
+        const GUIDE: &'static [Row] = &[Row::new(
+            "Infinite Cylinder",
+            "`radius`; about the y axis, then `placed`",
+            "exact, convex, unbounded",
+        )];
+
+        fn definition(&self) -> Definition<3> {
+            let r = self.radius();
+            let wall = Patch::segment(Vector([r, -FAR]), Vector([r, FAR])).turned(r);
+            Definition::new(vec![wall], move |p| p[0].hypot(p[2]) < r)
+        }
+    }
+
+    fn rounded_cylinder(r: f64, half: f64, rounding: f64) -> Definition<3> {
+        let profile = rounded_rectangle(Vector([r, half]), rounding, 2.0);
+        // Turning the whole cross-section covers the surface twice.
+        let boundary = profile.into_iter().map(|piece| piece.turned(r)).collect();
+        Definition::new(boundary, move |p| {
+            let q = Vector([p[0].hypot(p[2]), p[1]]);
+            in_rounded_box(Vector([r, half]), rounding, 2.0, q)
+        })
+    }
+}

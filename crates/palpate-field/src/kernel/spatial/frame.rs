@@ -118,3 +118,57 @@ primitive! {
     },
     example: (Vector([1.4, 1.1, 0.8]), 0.2),
 }
+
+#[cfg(feature = "oracle")]
+mod evidence {
+    use super::*;
+    use crate::oracle::{Definition, Evidence, Patch, Row};
+    use crate::vector::Point;
+
+    impl Evidence<3> for CuboidFrame {
+        const SAMPLE: &'static str = r#"{ "size": [0.1, 0.08, 0.06], "thickness": 0.01 }"#;
+        const GUIDE: &'static [Row] = &[Row::new("Box Frame", "`size`, `thickness`", "exact")];
+
+        fn definition(&self) -> Definition<3> {
+            frame(self.size() * 0.5, self.thickness())
+        }
+
+        fn refused() -> Vec<Result<Self, ShapeError>> {
+            vec![Self::new(Vector([1.0, 0.5, 2.0]), 0.25)]
+        }
+    }
+
+    /// The bars along the edges of a box: in each octant, the four rectangles across each axis that
+    /// bound them.
+    fn frame(half: Point<3>, thickness: f64) -> Definition<3> {
+        let hole = half - Vector([thickness; 3]);
+        let mut boundary = Vec::new();
+        for octant in 0..8_u8 {
+            let sign = move |axis: usize| if octant >> axis & 1 == 1 { 1.0 } else { -1.0 };
+            for axis in 0..3 {
+                let others = [(axis + 1) % 3, (axis + 2) % 3];
+                let mut rectangle = |at: f64, ranges: [[f64; 2]; 2]| {
+                    let [[a, b], [c, d]] = ranges;
+                    boundary.push(Patch::surface([b - a, d - c], move |u, v| {
+                        let mut p = Vector::ZERO;
+                        p[axis] = at * sign(axis);
+                        p[others[0]] = (a + (b - a) * u) * sign(others[0]);
+                        p[others[1]] = (c + (d - c) * v) * sign(others[1]);
+                        p
+                    }));
+                };
+                let [i, j] = others;
+                // The face of the box, without its window.
+                rectangle(half[axis], [[hole[i], half[i]], [0.0, half[j]]]);
+                rectangle(half[axis], [[0.0, hole[i]], [hole[j], half[j]]]);
+                // Behind it, the faces of the bars that are visible through another window.
+                rectangle(hole[axis], [[hole[i], half[i]], [0.0, hole[j]]]);
+                rectangle(hole[axis], [[0.0, hole[i]], [hole[j], half[j]]]);
+            }
+        }
+        Definition::new(boundary, move |p| {
+            let in_box = (0..3).all(|i| p[i].abs() < half[i]);
+            in_box && (0..3).filter(|i| p[*i].abs() > hole[*i]).count() >= 2
+        })
+    }
+}

@@ -116,3 +116,36 @@ primitive! {
     marks: |kernel| sets::between(kernel.from(), kernel.to(), kernel.width()),
     example: (Vector([-0.7, -0.5, 0.2]), Vector([0.8, 0.6, -0.1]), 0.7),
 }
+
+#[cfg(feature = "oracle")]
+mod evidence {
+    use super::*;
+    use crate::oracle::{Definition, Evidence, Row, arc, between, turned};
+
+    impl Evidence<3> for VesicaSegment {
+        const SAMPLE: &'static str =
+            r#"{ "from": [-0.035, -0.035, -0.01], "to": [0.035, 0.035, 0.01], "width": 0.04 }"#;
+        const GUIDE: &'static [Row] =
+            &[Row::new("Revolved Vesica", "`from`, `to`, `width`", "exact, convex")];
+
+        fn definition(&self) -> Definition<3> {
+            let (from, to) = (self.from(), self.to());
+            let length = (to - from).norm();
+            between(from, to, spindle(length, self.width()))
+        }
+
+        fn refused() -> Vec<Result<Self, ShapeError>> {
+            vec![Self::new(Vector([0.5, 0.25, 0.0]), Vector([0.5, 0.25, 0.75]), 0.8)]
+        }
+    }
+
+    fn spindle(length: f64, width: f64) -> Definition<3> {
+        let (h, w) = (0.5 * length, 0.5 * width);
+        let centre = (h - w) * (h + w) / (2.0 * w);
+        let radius = centre + w;
+        let tip = h.atan2(centre);
+        turned(vec![arc([-centre, 0.0], radius, [-tip, tip])], w, move |rho, y| {
+            (rho + centre).hypot(y) < radius
+        })
+    }
+}

@@ -38,3 +38,55 @@ pub use round_cone::{RoundCone, RoundConeBetween};
 pub use screw_thread::ScrewThread;
 pub use sheet::Sheet;
 pub use torus::{CappedTorus, Link, Torus};
+
+/// Calls the macro `$then` with the primitives of space, after what is given for it.
+macro_rules! primitives {
+    ($then:ident, $($before:tt)*) => {
+        $then! {
+            $($before)*
+            Ball,
+            Cuboid<3>,
+            RoundedCuboid<3>,
+            Capsule,
+            Segment<3>,
+            HalfSpace<3>,
+            Simplex<3>,
+            Ellipsoid<3>,
+            Cylinder,
+            RoundedCylinder,
+            InfiniteCylinder,
+            CappedCone,
+            Cone,
+            Pyramid,
+            Torus,
+            HexagonalPrism,
+            TriangularPrism,
+            Octahedron,
+            CuboidFrame,
+            CappedTorus,
+            Link,
+            InfiniteCone,
+            CylinderBetween,
+            CappedConeBetween,
+            SolidAngle,
+            CutBall,
+            CutHollowSphere,
+            DeathStar,
+            RoundCone,
+            RoundConeBetween,
+            VesicaSegment,
+            RhombusPrism,
+            Sheet<3>,
+            Sheet<4>,
+            CubeApproximation,
+            CylinderApproximation,
+            ConeApproximation,
+            PyramidApproximation,
+            PowerBall,
+            PowerCuboid<3>,
+            PowerTorus,
+            ScrewThread,
+        }
+    };
+}
+pub(crate) use primitives;

@@ -91,3 +91,37 @@ primitive! {
     marks: |kernel| vec![Mark::from_origin("radius", at(kernel.radius(), 0.0))],
     example: (0.8),
 }
+
+#[cfg(feature = "oracle")]
+mod evidence {
+    use super::*;
+    use crate::oracle::{Definition, Evidence, Row, hull};
+
+    impl Evidence<3> for Octahedron {
+        const SAMPLE: &'static str = r#"{ "radius": 0.05 }"#;
+        const GUIDE: &'static [Row] = &[
+            Row::new("Octahedron", "`radius` to a corner", "exact, convex"),
+            Row::new("Octahedron, cheap", "the same", "exact, convex"),
+        ];
+
+        fn definition(&self) -> Definition<3> {
+            octahedron(self.radius())
+        }
+    }
+
+    fn octahedron(r: f64) -> Definition<3> {
+        let mut triangles = Vec::new();
+        for x in [-r, r] {
+            for y in [-r, r] {
+                for z in [-r, r] {
+                    triangles.push([
+                        Vector([x, 0.0, 0.0]),
+                        Vector([0.0, y, 0.0]),
+                        Vector([0.0, 0.0, z]),
+                    ]);
+                }
+            }
+        }
+        hull(triangles, Vector::ZERO)
+    }
+}

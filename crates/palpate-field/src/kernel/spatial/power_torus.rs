@@ -124,3 +124,57 @@ primitive! {
     marks: |kernel| sets::ring(kernel.ring_radius(), kernel.radius()),
     example: (0.6, 0.25, 4, 8),
 }
+
+#[cfg(feature = "oracle")]
+mod evidence {
+    use std::f64::consts::TAU;
+
+    use super::*;
+    use crate::oracle::{Definition, Evidence, Patch, Row, bound, norm, on_ball, speed};
+    use crate::vector::Point;
+
+    impl Evidence<3> for PowerTorus {
+        const SAMPLE: &'static str = r#"{ "ring_radius": 0.035, "radius": 0.015, "ring_exponent": 2, "tube_exponent": 8 }"#;
+        const GUIDE: &'static [Row] = &[Row::new(
+            "Torus82, Torus88",
+            "`ring_radius`, `radius`; `ring_exponent` and `tube_exponent` 2 and 8, or both 8",
+            "bound; exact if both are 2",
+        )];
+
+        fn definition(&self) -> Definition<3> {
+            torus(
+                self.ring_radius(),
+                self.radius(),
+                [f64::from(self.ring_exponent()), f64::from(self.tube_exponent())],
+            )
+        }
+
+        fn refused() -> Vec<Result<Self, ShapeError>> {
+            vec![
+                Self::new(0.1, 0.25, 8, 8),
+                Self::new(0.5, 0.25, 3, 8),
+                Self::new(0.5, 0.25, 2, 10),
+            ]
+        }
+    }
+
+    fn torus(ring: f64, r: f64, [about, across]: [f64; 2]) -> Definition<3> {
+        // Along the diagonals of the ring, its points move farther than those of the tube.
+        let wider = speed::<2>(about).sqrt();
+        let along = TAU * (ring + r) * speed::<2>(about);
+        let around = TAU * r * speed::<2>(across) * wider;
+        let surface = Patch::surface([along, around], move |u, v| {
+            let ((sin, cos), (up, out)) = ((TAU * u).sin_cos(), (TAU * v).sin_cos());
+            let [x, z] = on_ball(Vector([cos, sin]), about).0;
+            let [out, up] = on_ball(Vector([out, up]), across).0;
+            let from_axis = ring + r * out;
+            Vector([x * from_axis, r * up, z * from_axis])
+        });
+        let inside = move |p: Point<3>| {
+            let from_ring = norm(Vector([p[0], p[2]]), about) - ring;
+            norm(Vector([from_ring, p[1]]), across) < r
+        };
+        let definition = Definition::new(vec![surface], inside);
+        if about.max(across) > 2.0 { bound(definition) } else { definition }
+    }
+}

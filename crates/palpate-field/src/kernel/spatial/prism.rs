@@ -164,3 +164,45 @@ primitive! {
     },
     example: (1.0, 0.6),
 }
+
+#[cfg(feature = "oracle")]
+mod evidence {
+    use super::*;
+    use crate::oracle::{Definition, Evidence, Patch, Row, corners, edges, even_odd};
+
+    impl Evidence<3> for HexagonalPrism {
+        const SAMPLE: &'static str = r#"{ "radius": 0.05, "height": 0.06 }"#;
+        const GUIDE: &'static [Row] =
+            &[Row::new("Hexagonal Prism", "`radius` to a corner, `height`", "exact, convex")];
+
+        fn definition(&self) -> Definition<3> {
+            prism(6.0, self.radius(), self.height())
+        }
+    }
+
+    impl Evidence<3> for TriangularPrism {
+        const SAMPLE: &'static str = r#"{ "side": 0.08, "height": 0.06 }"#;
+        const GUIDE: &'static [Row] =
+            &[Row::new("Triangular Prism", "`side`, `height`", "exact, convex")];
+
+        fn definition(&self) -> Definition<3> {
+            prism(3.0, self.side() / 3.0_f64.sqrt(), self.height())
+        }
+    }
+
+    fn prism(sides: f64, radius: f64, height: f64) -> Definition<3> {
+        let half = 0.5 * height;
+        let ring = corners(sides, &[radius]);
+        let mut boundary: Vec<_> = edges(&ring).into_iter().map(|e| e.raised(half)).collect();
+        for y in [-half, half] {
+            for (a, b) in ring.iter().zip(ring.iter().cycle().skip(1)) {
+                let [a, b, o] = [*a, *b, Vector([0.0, 0.0])].map(|q| Vector([q[0], y, q[1]]));
+                boundary.push(Patch::triangle([o, a, b]));
+            }
+        }
+        let rings = [ring];
+        Definition::new(boundary, move |p| {
+            p[1].abs() < half && even_odd(&rings, Vector([p[0], p[2]]))
+        })
+    }
+}

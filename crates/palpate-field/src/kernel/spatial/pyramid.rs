@@ -135,3 +135,19 @@ primitive! {
     marks: |kernel| sets::arch("side", kernel.side(), kernel.height()),
     example: (1.0, 0.9),
 }
+
+#[cfg(feature = "oracle")]
+mod evidence {
+    use super::*;
+    use crate::oracle::{Definition, Evidence, Row, pyramid};
+
+    impl Evidence<3> for Pyramid {
+        const SAMPLE: &'static str = r#"{ "side": 0.08, "height": 0.1 }"#;
+        const GUIDE: &'static [Row] =
+            &[Row::new("Pyramid", "`side`, `height`", "exact, convex")];
+
+        fn definition(&self) -> Definition<3> {
+            pyramid(self.side(), self.height())
+        }
+    }
+}

@@ -124,3 +124,39 @@ primitive! {
     },
     example: (Vector([1.6, 0.6, 1.0]), 0.08),
 }
+
+#[cfg(feature = "oracle")]
+mod evidence {
+    use super::*;
+    use crate::oracle::{Definition, Evidence, Row, slab};
+    use crate::vector::Point;
+
+    impl Evidence<3> for RhombusPrism {
+        const SAMPLE: &'static str = r#"{ "size": [0.1, 0.06, 0.07], "rounding": 0.005 }"#;
+        const GUIDE: &'static [Row] = &[Row::new(
+            "Rhombus",
+            "`size`: the full diagonals and the height; `rounding`",
+            "exact, convex",
+        )];
+
+        fn definition(&self) -> Definition<3> {
+            rhombus_prism(self.size(), self.rounding())
+        }
+
+        fn refused() -> Vec<Result<Self, ShapeError>> {
+            vec![Self::new(Vector([0.6, 1.0, 0.8]), 0.25)]
+        }
+    }
+
+    /// The rhombus with its faces moved inwards by `r`, then grown by `r`.
+    fn rhombus_prism(size: Point<3>, r: f64) -> Definition<3> {
+        let [a, half, b] = (size * 0.5).0;
+        let slope = b.atan2(a);
+        let face = a * slope.sin() - r;
+        let (a, b) = (face / slope.sin(), face / slope.cos());
+        // About y, from z to x.
+        let corners =
+            [[0.0, b], [a, 0.0], [0.0, -b], [-a, 0.0]].map(|[x, z]| Vector([x, 0.0, z]));
+        slab(corners.to_vec(), Vector::unit(1), half - r, r)
+    }
+}

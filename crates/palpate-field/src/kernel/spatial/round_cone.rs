@@ -221,3 +221,77 @@ primitive! {
     },
     example: (Vector([-0.4, -0.3, 0.2]), Vector([0.5, 0.4, -0.1]), 0.4, 0.2),
 }
+
+#[cfg(feature = "oracle")]
+mod evidence {
+    use std::f64::consts::FRAC_PI_2;
+
+    use super::*;
+    use crate::oracle::{Definition, Evidence, Row, arc, between, line, turned};
+
+    impl Evidence<3> for RoundCone {
+        const SAMPLE: &'static str =
+            r#"{ "bottom_radius": 0.03, "top_radius": 0.015, "height": 0.05 }"#;
+        const GUIDE: &'static [Row] = &[Row::new(
+            "Round Cone, vertical",
+            "`bottom_radius`, `top_radius`, `height` between the centres",
+            "exact, convex",
+        )];
+
+        fn definition(&self) -> Definition<3> {
+            round_cone(self.bottom_radius(), self.top_radius(), self.height())
+        }
+
+        fn refused() -> Vec<Result<Self, ShapeError>> {
+            vec![Self::new(0.75, 0.25, 0.5)]
+        }
+    }
+
+    impl Evidence<3> for RoundConeBetween {
+        const SAMPLE: &'static str = r#"{ "from": [-0.02, -0.02, -0.01], "to": [0.03, 0.03, 0.01],
+             "from_radius": 0.025, "to_radius": 0.015 }"#;
+        const GUIDE: &'static [Row] = &[Row::new(
+            "Round Cone, arbitrary",
+            "`from`, `to`, `from_radius`, `to_radius`",
+            "exact, convex",
+        )];
+
+        fn definition(&self) -> Definition<3> {
+            let (from, to) = (self.from(), self.to());
+            let length = (to - from).norm();
+            between(from, to, round_cone(self.from_radius(), self.to_radius(), length))
+        }
+
+        fn refused() -> Vec<Result<Self, ShapeError>> {
+            vec![Self::new(Vector([0.5, 0.25, 0.0]), Vector([0.5, 0.25, 0.75]), 1.0, 0.25)]
+        }
+    }
+
+    /// Halvings of the range that holds the minimum of a convex function.
+    const STEPS: usize = 200;
+
+    /// All balls between two, whose centre and radius are interpolated linearly.
+    fn round_cone(bottom: f64, top: f64, height: f64) -> Definition<3> {
+        let low = -0.5 * height;
+        let lean = ((bottom - top) / height).asin();
+        let touch = |centre: f64, r: f64| [r * lean.cos(), centre + r * lean.sin()];
+        let profile = vec![
+            arc([0.0, low], bottom, [-FRAC_PI_2, lean]),
+            arc([0.0, -low], top, [lean, FRAC_PI_2]),
+            line(touch(low, bottom), touch(-low, top)),
+        ];
+        turned(profile, bottom.max(top), move |rho, y| {
+            let out_of = |t: f64| rho.hypot(y - low - height * t) - bottom - (top - bottom) * t;
+            let (mut from, mut to) = (0.0, 1.0);
+            for _ in 0..STEPS {
+                let third = (to - from) / 3.0;
+                if out_of(from + third) < out_of(to - third) {
+                    to -= third;
+                } else {
+                    from += third;
+                }
+            }
+            out_of(from).min(out_of(0.0)).min(out_of(1.0)) < 0.0
+        })
+    }
+}

@@ -308,3 +308,134 @@ primitive! {
     },
     example: (0.7, 1.7, 0.5, 2, Vector([0.1, 0.17, 0.15])),
 }
+
+#[cfg(feature = "oracle")]
+mod evidence {
+    use super::*;
+    use crate::oracle::{Definition, Evidence, Patch, Row, bound};
+    use crate::vector::Point;
+
+    impl Evidence<3> for ScrewThread {
+        const SAMPLE: &'static str = r#"{ "radius": 0.035, "height": 0.09, "pitch": -0.02, "starts": 2,
+             "profile": [0.004, 0.006, 0.007] }"#;
+        const GUIDE: &'static [Row] = &[Row::new(
+            "–",
+            "`radius` of the crests, `height`, `pitch`, `starts`, `profile`: the widths of a crest and of a root along the axis, and the depth",
+            "bound",
+        )];
+
+        fn definition(&self) -> Definition<3> {
+            bound(thread(self))
+        }
+
+        fn refused() -> Vec<Result<Self, ShapeError>> {
+            let profile = Vector([0.1, 0.2, 0.3]);
+            let thread = |pitch, starts, profile| Self::new(1.0, 2.0, pitch, starts, profile);
+            vec![
+                Self::new(f64::NAN, 2.0, 0.5, 1, profile),
+                Self::new(1.0, -2.0, 0.5, 1, profile),
+                thread(0.0, 1, profile),
+                thread(-1e-20, 1, profile),
+                thread(f64::NAN, 1, profile),
+                thread(0.5, 0, profile),
+                thread(0.5, 1001, profile),
+                thread(0.25, 1, profile),
+                thread(-0.25, 1, profile),
+                thread(0.5, 1, Vector([-0.1, 0.2, 0.3])),
+                thread(0.5, 1, Vector([0.1, f64::NAN, 0.3])),
+                thread(0.5, 1, Vector([0.1, 0.2, 0.0])),
+                thread(0.5, 1, Vector([0.1, 0.2, 1.0])),
+            ]
+        }
+    }
+
+    /// The profile of a thread along its axis.
+    #[derive(Clone, Copy)]
+    struct Thread {
+        radius: f64,
+        half: f64,
+        pitch: f64,
+        lead: f64,
+        crest: f64,
+        root: f64,
+        depth: f64,
+    }
+
+    impl Thread {
+        /// The radius at `h` along the profile, of which a crest's middle is at zero.
+        fn radius(&self, h: f64) -> f64 {
+            let from_crest = (h - self.pitch * (h / self.pitch).round()).abs();
+            let past = from_crest - 0.5 * self.crest;
+            let width = 0.5 * (self.pitch - self.crest - self.root);
+            if past <= 0.0 {
+                self.radius
+            } else if past >= width {
+                self.radius - self.depth
+            } else {
+                self.radius - self.depth * past / width
+            }
+        }
+
+        fn contains(&self, p: Point<3>) -> bool {
+            // Right-handed: from +x towards −z while it climbs.
+            let turn = (-p[2]).atan2(p[0]) / TAU;
+            p[1].abs() < self.half && p[0].hypot(p[2]) < self.radius(p[1] - self.lead * turn)
+        }
+
+        /// Where the helix of the place `h` along the profile is at the height `y`, at `radius`.
+        fn at(&self, h: f64, radius: f64, y: f64) -> Point<3> {
+            let angle = TAU * (y - h) / self.lead;
+            Vector([radius * angle.cos(), y, -radius * angle.sin()])
+        }
+
+        /// What the segment of the profile from one place and radius to another sweeps along the
+        /// thread, and on both ends.
+        fn swept(self, [from, to]: [[f64; 2]; 2]) -> [Patch<3>; 3] {
+            let on = move |share: f64| [0, 1].map(|k| from[k] + (to[k] - from[k]) * share);
+            let around = TAU * self.radius / self.lead.abs();
+            let across = (to[1] - from[1]).hypot((to[0] - from[0]) * around);
+            let along = 2.0 * self.half * 1.0_f64.hypot(around);
+            let side = Patch::surface([across, along], move |u, v| {
+                let [h, radius] = on(u);
+                self.at(h, radius, self.half * (2.0 * v - 1.0))
+            });
+            let end = |y: f64| {
+                Patch::surface([across, self.radius], move |u, v| {
+                    let [h, radius] = on(u);
+                    self.at(h, radius * v, y)
+                })
+            };
+            [side, end(self.half), end(-self.half)]
+        }
+    }
+
+    fn thread(kernel: &ScrewThread) -> Definition<3> {
+        let [crest, root, depth] = kernel.profile().0;
+        let (pitch, starts) = (kernel.pitch(), kernel.starts());
+        let thread = Thread {
+            radius: kernel.radius(),
+            half: 0.5 * kernel.height(),
+            pitch: pitch.abs(),
+            lead: pitch * f64::from(starts),
+            crest,
+            root,
+            depth,
+        };
+        let (high, low) = (thread.radius, thread.radius - depth);
+        let mut boundary = Vec::new();
+        for start in 0..starts {
+            let middle = f64::from(start) * thread.pitch;
+            let corners = [
+                [middle - 0.5 * crest, high],
+                [middle + 0.5 * crest, high],
+                [middle + 0.5 * (thread.pitch - root), low],
+                [middle + 0.5 * (thread.pitch + root), low],
+                [middle + thread.pitch - 0.5 * crest, high],
+            ];
+            for ends in corners.windows(2) {
+                boundary.extend(thread.swept([ends[0], ends[1]]));
+            }
+        }
+        Definition::new(boundary, move |p| thread.contains(p))
+    }
+}

@@ -272,3 +272,76 @@ primitive! {
         0.15,
     ),
 }
+
+#[cfg(feature = "oracle")]
+mod evidence {
+    use super::*;
+    use crate::oracle::{Definition, Evidence, Row, cross, slab};
+
+    impl Evidence<3> for Sheet<3> {
+        const SAMPLE: &'static str = r#"{ "points": [[-0.04, -0.03, -0.03], [0.04, -0.03, 0], [0, 0.04, 0.03]],
+             "radius": 0.006 }"#;
+        const GUIDE: &'static [Row] =
+            &[Row::new("Triangle", "three `points`, `radius` 0", "exact, convex")];
+
+        fn definition(&self) -> Definition<3> {
+            sheet(self.points(), self.radius())
+        }
+
+        fn refused() -> Vec<Result<Self, ShapeError>> {
+            let at = |x: f64, y: f64, z: f64| Vector([x, y, z]);
+            vec![
+                Self::new(
+                    vec![
+                        at(0.0, 0.0, 0.0),
+                        at(1.0, 0.0, 0.0),
+                        at(1.0, 1.0, 0.0),
+                        at(0.0, 1.0, 0.0),
+                    ],
+                    0.1,
+                ),
+                Self::new(vec![at(1.0, 1.0, 1.0), at(2.0, 2.0, 2.0), at(5.0, 5.0, 5.0)], 0.1),
+            ]
+        }
+    }
+
+    impl Evidence<3> for Sheet<4> {
+        const SAMPLE: &'static str = r#"{ "points": [[-0.04, -0.03, -0.03], [0.04, -0.03, -0.03],
+             [0.03, 0.03, 0.03], [-0.03, 0.03, 0.03]], "radius": 0.006 }"#;
+        const GUIDE: &'static [Row] =
+            &[Row::new("Quad", "four `points` in one plane, `radius` 0", "exact, convex")];
+
+        fn definition(&self) -> Definition<3> {
+            sheet(self.points(), self.radius())
+        }
+
+        fn refused() -> Vec<Result<Self, ShapeError>> {
+            let corners = |last: [f64; 3]| {
+                let square = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], last];
+                square.map(Vector).to_vec()
+            };
+            let crossed = [[0.0, 0.0, 0.0], [1.0, 1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
+            vec![
+                Self::new(corners([0.0, 1.0, 0.25]), 0.1),
+                Self::new(corners([0.75, 0.5, 0.0]), 0.1),
+                Self::new(crossed.map(Vector).to_vec(), 0.1),
+                Self::new(corners([0.0, 1.0, 0.0]), -0.1),
+            ]
+        }
+    }
+
+    /// The slab without height on `corners`, in their own plane.
+    fn sheet(corners: &[Point<3>], r: f64) -> Definition<3> {
+        let origin = corners[0];
+        let crossing = (2..corners.len())
+            .map(|i| cross(corners[i - 1] - origin, corners[i] - origin))
+            .fold(Vector::ZERO, |sum, area| sum + area);
+        let normal = crossing.normalized().unwrap_or(Vector::unit(0));
+        let flat = corners.iter().map(|c| *c - origin).collect();
+        let slab = slab(flat, normal, 0.0, r);
+        let boundary =
+            slab.boundary.into_iter().map(|piece| piece.moved(move |p| p + origin)).collect();
+        let contains = slab.contains;
+        Definition::new(boundary, move |p| contains(p - origin))
+    }
+}

@@ -4,13 +4,13 @@
 //! The schema of a shape: its keys, and which go together.
 
 use palpate_field::kernel::{Parameter, ParameterKind};
-use palpate_field::operator::Profile;
+use palpate_field::operator::{Operator, Profile};
 use palpate_grid::{GridKernel, GridOptions, Inside, Store};
 use serde_json::{Map, Value, json};
 
 use super::{place, reference};
 use crate::catalogue::{self, Signature, file_key};
-use crate::keys::{self, DESCRIPTION, LISTS, OF, UNARY};
+use crate::keys::{self, DESCRIPTION, LISTS, OF};
 use crate::scene::Dimension;
 
 /// A shape: the name of another shape, or an object.
@@ -39,7 +39,7 @@ pub(super) fn schema(dimension: Dimension) -> Value {
         makers.push(requires(key));
     }
     let mut with_of = Vec::new();
-    for (key, about) in UNARY {
+    for (key, about) in keys::unary() {
         let Some(value) = operator(key, dimension) else { continue };
         let mut value = value;
         value["description"] = about.into();
@@ -191,14 +191,20 @@ fn rows(dimension: Dimension) -> Value {
 fn operator(key: &str, dimension: Dimension) -> Option<Value> {
     let is_solid = dimension == Dimension::Three;
     let factor = json!({ "type": "number", "exclusiveMinimum": 0 });
+    if let Some(operator) = Operator::find(key) {
+        let number = match operator.kind {
+            ParameterKind::Length => factor,
+            ParameterKind::LengthOrZero => json!({ "type": "number", "minimum": 0 }),
+            _ => json!({ "type": "number" }),
+        };
+        return Some(if operator.is_per_axis { factors(&number, dimension) } else { number });
+    }
     Some(match key {
         keys::TRANSLATE => json!({ "$ref": "#/$defs/Vector" }),
         keys::ROTATE_DEGREES => json!({ "$ref": "#/$defs/Turn" }),
         keys::ROTATION => json!({ "$ref": "#/$defs/Rotation" }),
         keys::SCALE => json!({ "anyOf": [factor, factors(&factor, dimension)] }),
         keys::OFFSET => json!({ "type": "number" }),
-        keys::SHELL => factor,
-        keys::ELONGATE => factors(&json!({ "type": "number", "minimum": 0 }), dimension),
         keys::MIRROR => json!({ "enum": keys::AXES[..dimension.count()] }),
         keys::REPEAT => rows(dimension),
         keys::BEND_DEGREES | keys::BEND => json!({ "type": "number" }),

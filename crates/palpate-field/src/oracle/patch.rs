@@ -7,7 +7,7 @@ use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 use std::rc::Rc;
 
-use palpate_field::{Point, Vector};
+use crate::vector::{Point, Vector};
 
 /// The most samples for one distance.
 const MOST_SAMPLES: usize = 40_000;

@@ -1,0 +1,166 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! The page of all answers, written from their schema.
+
+use serde_json::Value;
+
+/// What the page begins with.
+const HEAD: &str = "\
+# Questions and answers
+
+<!-- `cargo xtask renew` writes this page from the types of the answers. -->
+
+`palpate COMMAND --json` prints an answer: an object in SI units (metres, seconds, kilograms, \
+radians). It begins with its version, `\"palpate\": 2`. A value that is not known is `null`, and \
+so is an infinite number. `palpate schema answers` prints the schema of this page.
+
+The commands `eval`, `contact`, `sweep` and `mass` ask a [question](#question) and print the \
+[answer](#answer). The live page, Python and `scene.ask` in Rust use the same two objects. \
+`eval --points` prints an object a line.
+";
+
+/// The keys of an alternative that are told in a line.
+const MOST_IN_A_LINE: usize = 2;
+
+/// The page, as far as it is written.
+///
+/// The schema is that of [`schemars`]: definitions in `$defs`, lists of alternatives in `oneOf` or
+/// `anyOf`, and descriptions from doc comments.
+pub(super) struct Page<'a> {
+    schema: &'a Value,
+    text: String,
+}
+
+impl Page<'_> {
+    pub(super) fn of(schema: &Value) -> String {
+        let mut page = Page { schema, text: HEAD.to_owned() };
+        for (command, schema) in entries(&schema["properties"]) {
+            let is_command = command != "question" && command != "answer";
+            let title =
+                if is_command { format!("`palpate {command}`") } else { command.clone() };
+            page.object(2, &title, schema);
+        }
+        page.text.push_str("\n## Objects\n");
+        for (name, schema) in entries(&schema["$defs"]) {
+            page.object(3, name, schema);
+        }
+        page.text
+    }
+
+    /// A section about an object, or about each of its alternatives.
+    fn object(&mut self, level: usize, title: &str, schema: &Value) {
+        let hashes = "#".repeat(level);
+        self.text.push_str(&format!("\n{hashes} {title}\n\n{}\n", described(schema)));
+        let alternatives = schema["oneOf"].as_array().or_else(|| schema["anyOf"].as_array());
+        match alternatives {
+            Some(alternatives) => self.alternatives(alternatives),
+            None => self.keys(schema),
+        }
+    }
+
+    fn keys(&mut self, schema: &Value) {
+        let mut rows = entries(&schema["properties"]).peekable();
+        if rows.peek().is_some() {
+            self.text.push_str("\n| key | value | |\n|---|---|---|\n");
+        }
+        for (key, value) in rows {
+            let row = format!("| `{key}` | {} | {} |\n", self.kind(value), described(value));
+            self.text.push_str(&row);
+        }
+    }
+
+    /// A line for each alternative, and a table of its keys where they do not fit in the line.
+    fn alternatives(&mut self, alternatives: &[Value]) {
+        for alternative in alternatives {
+            let keys = entries(&alternative["properties"]).count();
+            let (kind, described) = (self.kind(alternative), described(alternative));
+            if keys > MOST_IN_A_LINE {
+                let tags = entries(&alternative["properties"]);
+                let mut tags = tags.filter(|(_, value)| value.get("const").is_some());
+                let tag = tags
+                    .next()
+                    .map_or(kind, |(key, value)| format!("`{key}` {}", self.kind(value)));
+                self.text.push_str(&format!("\n{tag}: {described}\n"));
+                self.keys(alternative);
+            } else {
+                self.text.push_str(&format!("\n- {kind}: {described}"));
+            }
+        }
+        self.text.push('\n');
+    }
+
+    /// What a value may be, in words.
+    fn kind(&self, schema: &Value) -> String {
+        if let Some(value) = schema.get("const") {
+            return format!("`{value}`");
+        }
+        if let Some(values) = schema["enum"].as_array() {
+            return listed(values.iter().map(|value| format!("`{value}`")));
+        }
+        let alternatives = schema["oneOf"].as_array().or_else(|| schema["anyOf"].as_array());
+        if let Some(alternatives) = alternatives {
+            return listed(alternatives.iter().map(|alternative| self.kind(alternative)));
+        }
+        let tags: Vec<_> = entries(&schema["properties"])
+            .map(|(key, value)| format!("`{key}` {}", self.kind(value)))
+            .collect();
+        if let Some(reference) = schema["$ref"].as_str() {
+            let name = reference.trim_start_matches("#/$defs/");
+            // A small enumeration is told where it stands.
+            let definition = &self.schema["$defs"][name];
+            let link = format!("[{name}](#{})", name.to_lowercase());
+            let with = if tags.is_empty() { String::new() } else { tags.join(", ") + ", and " };
+            return if definition["enum"].is_array() {
+                self.kind(definition)
+            } else {
+                with + &link
+            };
+        }
+        match &schema["type"] {
+            Value::Array(kinds) => {
+                let of = |kind: &Value| {
+                    let mut one = schema.clone();
+                    one["type"] = kind.clone();
+                    self.kind(&one)
+                };
+                listed(kinds.iter().map(of))
+            }
+            Value::String(kind) => match kind.as_str() {
+                "array" => match self.kind(&schema["items"]).as_str() {
+                    one @ ("number" | "integer" | "text") => format!("list of {one}s"),
+                    other => format!("list of {other}"),
+                },
+                "boolean" => "`true` or `false`".to_owned(),
+                "object" if !tags.is_empty() => tags.join(", "),
+                "string" => "text".to_owned(),
+                "null" => "`null`".to_owned(),
+                kind => kind.to_owned(),
+            },
+            _ => "any".to_owned(),
+        }
+    }
+}
+
+/// The entries of an object; none of anything else.
+fn entries(value: &Value) -> impl Iterator<Item = (&String, &Value)> {
+    value.as_object().into_iter().flatten()
+}
+
+/// The description of a schema on one line, as Markdown without links to Rust.
+fn described(schema: &Value) -> String {
+    let text = schema["description"].as_str().unwrap_or_default();
+    let line = text.split_whitespace().collect::<Vec<_>>().join(" ");
+    let mut parts = line.split("`](");
+    let mut plain = parts.next().unwrap_or_default().to_owned();
+    for part in parts {
+        plain.push('`');
+        plain.push_str(part.split_once(')').map_or("", |(_, after)| after));
+    }
+    plain.replace("`None`", "`null`").replace("[`", "`").replace("`]", "`").replace('|', "\\|")
+}
+
+/// Alternatives in a sentence.
+fn listed(alternatives: impl Iterator<Item = String>) -> String {
+    alternatives.collect::<Vec<_>>().join(" or ")
+}
