@@ -155,7 +155,7 @@ impl Body {
     ///     direction: Some(vec![1.0, 0.0, 0.0]),
     /// };
     /// let grooved = Material { texture: Some(texture), ..Material::default() };
-    /// let plate = Body::new(Shape::ball(1.0)?, Surface::new(&grooved)?)?;
+    /// let plate = Body::new(Shape::sphere(1.0)?, Surface::new(&grooved)?)?;
     /// let (hand, up) = (Vector([0.375, -0.1, 0.0]), Vector([0.0, 1.0, 0.0]));
     /// let passing = plate.passing(hand, up, 1000.0).ok_or("no texture")?;
     /// assert!((passing.frequency - 375.0).abs() < 1e-9 && (passing.part - 0.5).abs() < 1e-9);
@@ -366,7 +366,7 @@ pub(crate) fn is_usable(pose: &Pose<3>) -> bool {
 /// use palpate_haptics::{Bodies, Body, Surface};
 ///
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
-/// let ball = Shape::from_kernel(Ball::new(0.05)?);
+/// let ball = Shape::<3>::from_kernel(Ball::new(0.05)?);
 /// let soft = Body::new(ball.clone(), Surface::smooth(200.0, 0.5)?)?;
 /// let hard = Body::new(ball, Surface::smooth(900.0, 2.0)?)?;
 /// let bodies = Bodies::new(vec![soft, hard.at(Pose::translation(Vector([0.2, 0.0, 0.0])))?])?;

@@ -159,7 +159,7 @@ pub enum Edited {
 /// use palpate_haptics::{Bodies, Probe, Proxy};
 ///
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
-/// let ball = Bodies::from(Shape::from_kernel(Ball::new(0.05)?));
+/// let ball = Bodies::from(Shape::<3>::from_kernel(Ball::new(0.05)?));
 /// let mut proxy = Proxy::new(Probe::new(0.0)?);
 /// proxy.follow(&ball.everything(), Vector([0.0, 0.06, 0.0]));
 /// let device = Vector([0.048 * 0.6, 0.048 * 0.8, 0.0]);

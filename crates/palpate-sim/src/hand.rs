@@ -106,7 +106,7 @@ impl Hand {
     /// ```
     /// use palpate_sim::Hand;
     ///
-    /// let free = Hand::free([0.0, 0.1]).unwrap();
+    /// let free = Hand::free([0.0, 0.1, 0.0]).unwrap();
     /// assert_eq!((free.mass(), free.stiffness(), free.damping()), (0.0, 0.0, 0.0));
     /// ```
     pub fn free(place: impl Into<Point<3>>) -> Result<Self, SimulationError> {

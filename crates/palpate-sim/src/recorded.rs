@@ -66,10 +66,10 @@ impl RecordedDevice {
     }
 
     /// This device with a path of orientations: rotation vectors [rad] relative to the device's
-    /// own axes; in the plane along z.
+    /// own axes.
     ///
     /// ```
-    /// use palpate_field::Vector;
+    /// use palpate_field::{Rotation, Vector};
     /// use palpate_device::{Device, PointState};
     /// use palpate_sim::{HandPath, Interpolation, RecordedDevice};
     ///
@@ -80,7 +80,8 @@ impl RecordedDevice {
     /// let mut device = RecordedDevice::new(vec![rest])?.with_turns(turns);
     /// device.read(1.0, &mut [PointState::at_rest(Vector::ZERO)])?;
     /// let turn = device.read_turn()?.ok_or("it turns")?;
-    /// assert!((turn.orientation.angle() - 0.5).abs() < 1e-15);
+    /// let turned = Rotation::identity().turn_to(&turn.orientation);
+    /// assert!((turned - Vector([0.0, 0.0, 0.5])).norm() < 1e-15);
     /// assert!((turn.angular_velocity - Vector([0.0, 0.0, 0.5])).norm() < 1e-9);
     /// # Ok(())
     /// # }

@@ -85,7 +85,9 @@ where
     let ticks = limits::ticks(duration, options.rate)?;
     let contacts = paths.len();
     let turns = match &tool {
-        Some(_) if options.path.is_none() => Some(swing::<D>(duration).map_err(Failure::input)?),
+        Some(_) if options.path.is_none() => {
+            Some(swing::<D>(duration).map_err(Failure::input)?)
+        }
         _ => None,
     };
     let map = held::map(scene, tool.as_ref(), &choice)?;

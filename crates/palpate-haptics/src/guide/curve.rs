@@ -33,7 +33,7 @@ const PIECES: usize = 16;
 /// use palpate_haptics::{Curve, Guide, GuideOptions};
 ///
 /// # fn main() -> Result<(), palpate_haptics::HapticsError> {
-/// let corner = [[0.0, 1.0], [0.0, 0.0], [1.0, 0.0]].map(Vector);
+/// let corner = [[0.0, 1.0, 0.0], [0.0; 3], [1.0, 0.0, 0.0]].map(Vector);
 /// let mut guide = Guide::along_curve(Curve::polyline(&corner)?, GuideOptions::default())?;
 /// let force = guide.force(Vector([0.5, 0.00390625, 0.0]), Vector([0.25, 0.0, 0.0]));
 /// assert_eq!(force, Vector([0.0, -1.171875, 0.0])); // 300/256 N

@@ -25,7 +25,7 @@ impl Guide {
     ///
     /// ```
     /// use palpate_haptics::{Guide, GuideOptions};
-    /// let well = Guide::well([0.0, 0.1], 0.05, GuideOptions::default())?;
+    /// let well = Guide::well([0.0, 0.1, 0.0], 0.05, GuideOptions::default())?;
     /// assert_eq!(well.kind_name(), "well");
     /// # Ok::<(), palpate_haptics::HapticsError>(())
     /// ```
@@ -50,7 +50,7 @@ impl Guide {
     /// use palpate_field::{Aabb, Vector};
     /// use palpate_haptics::{Guide, GuideOptions};
     /// let options = GuideOptions::default();
-    /// let guide = Guide::along_line([0.0, 0.5], [2.0, 0.0], options)?;
+    /// let guide = Guide::along_line([0.0, 0.5, 0.0], [2.0, 0.0, 0.0], options)?;
     /// let lines = guide.lines_within(&Aabb::centred(Vector([1.0, 2.0, 0.0])));
     /// assert_eq!(lines, [[Vector([-1.0, 0.5, 0.0]), Vector([1.0, 0.5, 0.0])]]);
     /// # Ok::<(), palpate_haptics::HapticsError>(())

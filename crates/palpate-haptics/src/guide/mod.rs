@@ -353,7 +353,7 @@ impl Guide {
     /// ```
     /// use palpate_field::Vector;
     /// use palpate_haptics::{Guide, GuideOptions};
-    /// let mut guide = Guide::to_point([0.0, 0.0], GuideOptions::default())?;
+    /// let mut guide = Guide::to_point([0.0, 0.0, 0.0], GuideOptions::default())?;
     /// assert_eq!(guide.last_force(), Vector::ZERO);
     /// let force = guide.force(Vector([0.0, 0.001, 0.0]), Vector::ZERO);
     /// assert_eq!(guide.last_force(), force);

@@ -32,7 +32,7 @@ use palpate_device::NumberError;
 /// use palpate_haptics::{Guide, GuideOptions, Slope};
 ///
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
-/// let ball = Shape::from_kernel(Ball::new(0.5)?);
+/// let ball = Shape::<3>::from_kernel(Ball::new(0.5)?);
 /// let slope = Slope::new(ball, 1.5, [-0.125, 0.25])?.with_edge(0.125)?;
 /// let mut guide = Guide::down(slope, GuideOptions::default())?;
 /// let mut pull = |y: f64| guide.force(Vector([0.0, y, 0.0]), Vector::ZERO);

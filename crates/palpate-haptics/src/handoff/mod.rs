@@ -62,7 +62,7 @@ impl Default for HandoffOptions {
 /// use palpate_haptics::{HandoffOptions, Progress, ServoOptions, Servo, handoff};
 ///
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
-/// let ball = Shape::from_kernel(Ball::new(0.5)?);
+/// let ball = Shape::<3>::from_kernel(Ball::new(0.5)?);
 /// let mut servo = Servo::new(ball, 1, ServoOptions::default())?;
 /// let (mut control, mut end) = handoff(&servo, HandoffOptions::default());
 ///

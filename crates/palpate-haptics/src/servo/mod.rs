@@ -41,7 +41,7 @@ use crate::protection::Protection;
 /// use palpate_haptics::{Bodies, Body, Probe, Protection, Servo, ServoOptions, Surface};
 ///
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
-/// let ball = Shape::from_kernel(Ball::new(0.5)?);
+/// let ball = Shape::<3>::from_kernel(Ball::new(0.5)?);
 /// let bodies = Bodies::new(vec![Body::new(ball, Surface::smooth(512.0, 0.0)?)?])?;
 /// let profile = DeviceProfile { max_force: 1.0, ..DeviceProfile::unlimited("example") };
 /// let options = ServoOptions { probe: Probe::new(0.0)?, ..ServoOptions::default() };

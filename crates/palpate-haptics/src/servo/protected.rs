@@ -41,7 +41,7 @@ impl Servo<Protected> {
     /// let ends = vec![[0.0, 0.08, 0.0].into(), [0.0, 0.05, 0.0].into()];
     /// let press = HandPath::new(vec![0.0, 1.0], ends, Interpolation::Smooth)?;
     /// let mut device = RecordedDevice::new(vec![press])?;
-    /// let mut servo = Servo::for_device(Shape::from_kernel(Ball::new(0.05)?), &device)?;
+    /// let mut servo = Servo::for_device(Shape::<3>::from_kernel(Ball::new(0.05)?), &device)?;
     /// let options = RunOptions { pace: Pace::AsFastAsPossible, ..RunOptions::new(1.0) };
     /// assert_eq!(run(&mut servo, &mut device, options)?.ticks, 1000);
     /// # Ok(())

@@ -85,7 +85,7 @@ impl Servo<Unprotected> {
     /// let mut servo = Servo::with_tool(ground, tool, ServoOptions::default())?;
     /// servo.step(&[PointState::at_rest(Vector([0.0, 0.01, 0.0]))]);
     /// for tick in 1..=100 {
-    ///     let orientation = Rotation::from_angle(0.001 * f64::from(tick))?;
+    ///     let orientation = Rotation::from_angle(0.001 * f64::from(tick))?.in_space();
     ///     servo.set_turn(Some(TurnState::at_rest(orientation)));
     ///     servo.step(&[PointState::at_rest(Vector([0.0, -0.009, 0.0]))]);
     /// }

@@ -155,7 +155,7 @@ pub trait Run {
     /// use palpate_haptics::servo_loop::{Run as _, Seconds};
     ///
     /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
-    /// let ends = vec![[0.0, 0.08].into(), [0.0, 0.05].into()];
+    /// let ends = vec![[0.0, 0.08, 0.0].into(), [0.0, 0.05, 0.0].into()];
     /// let press = HandPath::new(vec![0.0, 0.05], ends, Interpolation::Smooth)?;
     /// let mut device = RecordedDevice::new(vec![press])?;
     /// let mut servo = Servo::for_device(Shape::circle(0.05)?, &device)?;
@@ -226,7 +226,7 @@ impl std::fmt::Debug for RunOptions<'_> {
 /// let ends = vec![Vector([0.0, 0.08, 0.0]), Vector([0.0, 0.05, 0.0])];
 /// let press = HandPath::new(vec![0.0, 1.0], ends, Interpolation::Smooth)?;
 /// let mut device = RecordedDevice::new(vec![press])?;
-/// let ball = Shape::from_kernel(Ball::new(0.05)?);
+/// let ball = Shape::<3>::from_kernel(Ball::new(0.05)?);
 /// let mut servo = Servo::for_device(ball, &device)?;
 ///
 /// let options = RunOptions { pace: Pace::AsFastAsPossible, ..RunOptions::new(1.0) };
@@ -246,7 +246,7 @@ impl std::fmt::Debug for RunOptions<'_> {
 /// use palpate_haptics::servo_loop::{RunOptions, run};
 ///
 /// fn feel(device: &mut dyn Device) -> Result<(), Box<dyn std::error::Error>> {
-///     let ball = Shape::from_kernel(Ball::new(0.05)?);
+///     let ball = Shape::<3>::from_kernel(Ball::new(0.05)?);
 ///     let mut servo = Servo::new(ball, 1, ServoOptions::default())?;
 ///     run(&mut servo, device, RunOptions::new(1.0))?;
 ///     Ok(())

@@ -107,7 +107,7 @@ impl ThreadOptions {
     ///     duration: Some(0.01),
     ///     ..ThreadOptions::default()
     /// }
-    /// .with_motion(|time, set_pose| set_pose(0, Pose::translation([0.0, time])));
+    /// .with_motion(|time, set_pose| set_pose(0, Pose::translation([0.0, time, 0.0])));
     /// let thread = ServoThread::start_on(VirtualClock::new(), servo, device, options)?;
     /// let report = thread.join().report;
     /// assert!((report.largest_depth - 0.006).abs() < 1e-9); // after 9 ms
@@ -184,7 +184,7 @@ impl From<NumberError> for StartError {
 /// let rest = vec![Vector([0.0, 0.5 + 1.0 / 128.0, 0.0]); 2];
 /// let hand = HandPath::new(vec![0.0, 1.0], rest, Interpolation::Linear)?;
 /// let device = Box::new(RecordedDevice::new(vec![hand])?);
-/// let ball = Shape::from_kernel(Ball::new(0.5)?);
+/// let ball = Shape::<3>::from_kernel(Ball::new(0.5)?);
 /// let servo = Servo::for_device(ball, &*device)?;
 ///
 /// let (clock, mut driver) = VirtualClock::driven();
@@ -352,7 +352,7 @@ impl ServoThread {
     /// use palpate_haptics::servo_loop::{ServoThread, ThreadOptions, VirtualClock};
     ///
     /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
-    /// let ends = vec![[0.0, 0.08].into(), [0.0, 0.05].into()];
+    /// let ends = vec![[0.0, 0.08, 0.0].into(), [0.0, 0.05, 0.0].into()];
     /// let press = HandPath::new(vec![0.0, 0.25], ends, Interpolation::Smooth)?;
     /// let device = Box::new(RecordedDevice::new(vec![press])?);
     /// let servo = Servo::for_device(Shape::circle(0.05)?, &*device)?;

@@ -30,7 +30,7 @@ const COMMAND_RATE: f64 = 50.0;
 /// use palpate_vibration::{Mapping, MappingOptions};
 ///
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
-/// let ends = vec![[0.0, 0.03].into(), [0.0, -0.001].into()];
+/// let ends = vec![[0.0, 0.03, 0.0].into(), [0.0, -0.001, 0.0].into()];
 /// let mut glove = Glove::new(vec![HandPath::new(vec![0.0, 0.5], ends, Interpolation::Smooth)?])?;
 /// let wood = Material::preset("wood")?;
 /// let table = Body::new(Shape::half_space([0.0, 1.0], 0.0)?, Surface::new(&wood)?)?;

@@ -110,7 +110,7 @@ mod tests {
 
     #[test]
     fn a_ball_and_a_capsule_are_felt_as_they_are() {
-        let ball = Shell::of_shape(&Shape::<3>::ball(0.02).unwrap(), 500, 0.001).unwrap();
+        let ball = Shell::of_shape(Shape::<3>::ball(0.02).unwrap(), 500, 0.001).unwrap();
         let radii: Vec<_> = ball.points().iter().map(|point| point.radius).collect();
         assert_eq!(radii, [0.021]);
         let up =

@@ -54,7 +54,7 @@ fn round(radius: f64, from: f64) -> impl Fn(f64) -> Point<3> {
 #[test]
 fn one_evaluation_is_enough_on_a_ball() {
     let closest = |device: Point<3>| device.normalized().unwrap() * 0.052;
-    let seen = slides(&ball::<3>(0.05), proxy(0.002), round(0.048, 0.055), closest);
+    let seen = slides(ball::<3>(0.05), proxy(0.002), round(0.048, 0.055), closest);
     assert!(seen.mean <= 1.01 && seen.most <= 2, "{} {}", seen.mean, seen.most);
     assert!(seen.off < 1e-7, "{}", seen.off);
 }
@@ -75,7 +75,7 @@ fn two_bends_at_once_are_learnt() {
         let out = Vector([x, y, z]) - centre;
         centre + out * (0.014 / out.norm())
     };
-    let seen = slides(&torus(0.04, 0.012), proxy(0.002), hand, closest);
+    let seen = slides(torus(0.04, 0.012), proxy(0.002), hand, closest);
     assert!(seen.mean <= 2.0 && seen.most <= 4, "{} {}", seen.mean, seen.most);
     assert!(seen.off < 3e-7, "{}", seen.off);
 }
@@ -95,7 +95,7 @@ fn a_hollow_much_sharper_than_the_probe_is_followed() {
         let centre = Vector([0.0, 0.01, 0.0]);
         centre + (device - centre).normalized().unwrap() * 0.00025
     };
-    let seen = slides(&gutter(), proxy(0.002), hand, closest);
+    let seen = slides(gutter(), proxy(0.002), hand, closest);
     assert!(seen.mean <= 3.0 && seen.most <= 12, "{} {}", seen.mean, seen.most);
     assert!(seen.off < 1e-7, "{}", seen.off);
 }

@@ -37,7 +37,7 @@ fn rough(stiffness: f64) -> Surface {
 
 #[test]
 fn a_body_that_moves_carries_the_hand_by_friction() {
-    let mut servo = Servo::new(body(&cuboid([1.0, 0.125, 1.0]), rough(512.0)), 1, options(0.0));
+    let mut servo = Servo::new(body(cuboid([1.0, 0.125, 1.0]), rough(512.0)), 1, options(0.0));
     let servo = servo.as_mut().unwrap();
     let device = Vector([0.0, 0.0625 - 0.0078125, 0.0]);
     touch(servo, Vector([0.0, 0.5, 0.0]));
@@ -60,7 +60,7 @@ fn a_body_that_moves_carries_the_hand_by_friction() {
 
 #[test]
 fn a_body_that_turns_takes_the_hand_round() {
-    let mut servo = Servo::new(body(&ball::<3>(0.05), rough(512.0)), 1, options(0.0)).unwrap();
+    let mut servo = Servo::new(body(ball::<3>(0.05), rough(512.0)), 1, options(0.0)).unwrap();
     touch(&mut servo, Vector([0.1, 0.0, 0.0]));
     let mut held = touch(&mut servo, Vector([0.049, 0.0, 0.0]));
     for tick in 1..=100 {
@@ -107,7 +107,7 @@ fn a_plate_that_strikes_the_hand_does_not_pass_it() {
 
 #[test]
 fn a_body_that_moves_onto_the_hand_presses_gently() {
-    let mut servo = Servo::new(body(&cuboid([0.1; 3]), rough(512.0)), 1, options(0.0)).unwrap();
+    let mut servo = Servo::new(body(cuboid([0.1; 3]), rough(512.0)), 1, options(0.0)).unwrap();
     let hand = Vector([0.0, 0.0625, 0.0]);
     assert!(!touch(&mut servo, hand).contact);
     servo.set_pose(0, Pose::translation(Vector([0.0, 0.02, 0.0])));
@@ -131,7 +131,7 @@ fn many_bodies_feel_like_their_union() {
             let body = Body::new(shape, rough(512.0)).unwrap();
             bodies.push(body.at(Pose::translation(place)).unwrap());
         }
-        let union = body(&Shape::union(shapes).unwrap(), rough(512.0));
+        let union = body(Shape::union(shapes).unwrap(), rough(512.0));
         let mut many = Servo::new(Bodies::new(bodies).unwrap(), 2, options(0.002)).unwrap();
         let mut one = Servo::new(union, 2, options(0.002)).unwrap();
         let from: Vector<f64, 3> = vector(u)?;

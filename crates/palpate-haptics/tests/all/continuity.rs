@@ -56,17 +56,17 @@ fn is_continuous(name: &str, shape: impl Into<SpaceShape>, (radius, bend): (f64,
 fn on_smooth_shapes_of_space_the_force_is_continuous() {
     let apart = ball(0.03).translated(Vector([0.035, 0.0, 0.0])).unwrap();
     let flowing = Shape::smooth_union([ball(0.04), apart], Profile::Cubic, 0.01).unwrap();
-    is_continuous("a ball", &ball::<3>(0.05), (0.0, 0.05));
-    is_continuous("a ball", &ball::<3>(0.05), (0.002, 0.052));
-    is_continuous("a ring", &torus(0.04, 0.015), (0.002, 0.017));
+    is_continuous("a ball", ball::<3>(0.05), (0.0, 0.05));
+    is_continuous("a ball", ball::<3>(0.05), (0.002, 0.052));
+    is_continuous("a ring", torus(0.04, 0.015), (0.002, 0.017));
     is_continuous("two balls that flow together", &flowing, (0.002, 0.02));
-    is_continuous("a box", &cuboid([0.05, 0.07, 0.06]), (0.008, 0.008));
+    is_continuous("a box", cuboid([0.05, 0.07, 0.06]), (0.008, 0.008));
 }
 
 #[test]
 fn on_smooth_shapes_of_the_plane_the_force_is_continuous() {
-    is_continuous("a disc", &ball::<2>(0.05), (0.0, 0.05));
-    is_continuous("a rectangle", &cuboid([0.05, 0.07]), (0.008, 0.008));
+    is_continuous("a disc", ball::<2>(0.05), (0.0, 0.05));
+    is_continuous("a rectangle", cuboid([0.05, 0.07]), (0.008, 0.008));
 }
 
 #[test]

@@ -28,7 +28,7 @@ fn miss<const D: usize>(
 ) -> arbitrary::Result<f64> {
     let (static_friction, dynamic_friction) = (friction, friction);
     let material = Material { static_friction, dynamic_friction, ..Material::default() };
-    let bodies = body(&walls(normals), Surface::new(&material).unwrap());
+    let bodies = body(walls(normals), Surface::new(&material).unwrap());
     let probe = Probe::new(radius).unwrap();
     let options = ServoOptions { probe, ..ServoOptions::default() };
     let mut servo = Servo::new(bodies, 1, options).unwrap();

@@ -326,7 +326,7 @@ fn a_layer_that_gave_way_stays_so_in_an_edit() {
             layers: vec![deeper],
             ..smooth()
         };
-        body(&cuboid([0.1, 2.0 * height, 0.1]), Surface::new(&material).unwrap())
+        body(cuboid([0.1, 2.0 * height, 0.1]), Surface::new(&material).unwrap())
     };
     let mut servo = point(layered(0.02, 0.1), 0.002, Recovery::OnceOut);
     let place = Vector([0.01, 0.02 + 0.002 - 0.005, -0.005]);

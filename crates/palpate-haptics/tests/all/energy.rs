@@ -208,7 +208,7 @@ fn a_grooved_wall_gives_back_what_it_took() {
             gains_nothing(name, &bodies, (0.002, 0.006), 4);
         }
     }
-    let bodies = body(&half_space([0.0, 1.0], 0.003), surface(&grooved(Some(vec![1.0, 0.2]))));
+    let bodies = body(half_space([0.0, 1.0], 0.003), surface(&grooved(Some(vec![1.0, 0.2]))));
     gains_nothing("a line", &bodies, (0.002, 0.006), 4);
 }
 
@@ -225,7 +225,7 @@ fn grooves_on_what_is_bent_give_back_what_they_took() {
     }
     let hollow = cuboid([0.3; 3]).difference([ball(0.1)]).unwrap();
     gains_nothing("a hollow", &body(&hollow, surface(&grooved(along()))), (0.002, 0.006), 2);
-    let disc = body(&ball::<2>(0.05), surface(&grooved(Some(vec![1.0, 0.2]))));
+    let disc = body(ball::<2>(0.05), surface(&grooved(Some(vec![1.0, 0.2]))));
     gains_nothing("a disc", &disc, (0.002, 0.006), 4);
 }
 
@@ -288,5 +288,5 @@ fn magnets_give_back_what_they_took() {
     for (name, shape) in [("a ball", ball(0.05)), ("a ring", torus(0.04, 0.012))] {
         gains_nothing(name, &body(&shape, surface(&magnetic())), (0.002, 0.012), 3);
     }
-    gains_nothing("a disc", &body(&ball::<2>(0.05), surface(&magnetic())), (0.002, 0.012), 3);
+    gains_nothing("a disc", &body(ball::<2>(0.05), surface(&magnetic())), (0.002, 0.012), 3);
 }

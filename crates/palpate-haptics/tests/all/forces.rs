@@ -67,7 +67,7 @@ fn on_a_sphere_the_force_is_radial_and_steady() {
     // turn 3 N by 0.0039 N a tick.
     const STEADIEST: f64 = 0.0039;
     for probe in [0.0, 0.002] {
-        let mut servo = servo(&ball::<3>(RADIUS), probe, spring_alone(STIFFNESS));
+        let mut servo = servo(ball::<3>(RADIUS), probe, spring_alone(STIFFNESS));
         touch(&mut servo, orbit(0, 2.0 * RADIUS));
         let mut last: Option<Vector<f64, 3>> = None;
         for tick in 0..20_000 {
@@ -92,7 +92,7 @@ fn largest_jump_over_an_edge(probe: f64) -> f64 {
     const HALF: f64 = 0.03;
     const DEPTH: f64 = 0.003;
     let level = HALF + probe - DEPTH;
-    let mut servo = servo(&cuboid([2.0 * HALF; 3]), probe, spring_alone(STIFFNESS));
+    let mut servo = servo(cuboid([2.0 * HALF; 3]), probe, spring_alone(STIFFNESS));
     for tick in 0..400 {
         let height = 0.045 + (level - 0.045) * f64::from(tick) / 400.0;
         touch(&mut servo, Vector([-0.02, height, 0.0]));
@@ -149,7 +149,7 @@ fn the_largest_force_bounds_the_force_and_keeps_its_direction() {
 fn a_hand_that_starts_inside_is_led_out_gently() {
     // 8 ticks of 1/8 each.
     let options = ServoOptions { rate: 64.0, rise_time: 0.125, ..spring_alone(512.0).1 };
-    let mut servo = servo(&cuboid([0.5, 0.5, 0.5]), 0.0, (512.0, options));
+    let mut servo = servo(cuboid([0.5, 0.5, 0.5]), 0.0, (512.0, options));
     let device = Vector([0.0, 0.2421875, 0.125]);
     for tick in 0..12 {
         let touch = touch(&mut servo, device);
@@ -162,7 +162,7 @@ fn a_hand_that_starts_inside_is_led_out_gently() {
 
 #[test]
 fn a_hand_at_a_centre_without_gradient_is_led_out_too() {
-    let mut servo = servo(&ball::<3>(0.05), 0.002, (500.0, ServoOptions::default()));
+    let mut servo = servo(ball::<3>(0.05), 0.002, (500.0, ServoOptions::default()));
     let touch = touch(&mut servo, Vector::ZERO);
     assert!(touch.contact);
     assert!((touch.proxy.norm() - 0.052).abs() < 1e-9);
@@ -170,11 +170,11 @@ fn a_hand_at_a_centre_without_gradient_is_led_out_too() {
 
 #[test]
 fn a_shape_that_moves_over_the_hand_pushes_gently() {
-    let mut servo = servo(&half_space([0.0, 1.0], 0.0), 0.0, spring_alone(512.0));
+    let mut servo = servo(half_space([0.0, 1.0], 0.0), 0.0, spring_alone(512.0));
     let device = Vector([0.0, 0.0625, 0.0]);
     assert!(!touch(&mut servo, device).contact);
     let surface = Surface::smooth(512.0, 0.0).unwrap();
-    let old = servo.replace_bodies(body(&half_space([0.0, 1.0], 0.125), surface));
+    let old = servo.replace_bodies(body(half_space([0.0, 1.0], 0.125), surface));
     assert_eq!(old.everything().look(device).0, 0.0625);
     let first = touch(&mut servo, device);
     assert_eq!((first.proxy, first.force), (Vector([0.0, 0.125, 0.0]), Vector::ZERO));
@@ -223,9 +223,9 @@ fn a_tiny_probe_is_felt_as_a_point() {
             let radius = if time < 0.01 { 0.06 - 1.1 * time } else { 0.049 };
             Vector([sin * radius, cos * radius, 0.0])
         };
-        check(&ball::<3>(0.05), around);
+        check(ball::<3>(0.05), around);
         let along = |time: f64| Vector([speed * time - 0.07, 0.006 - time.min(0.002), 0.01]);
-        check(&cuboid([0.2, 0.01, 0.2]), along);
+        check(cuboid([0.2, 0.01, 0.2]), along);
     }
 }
 
@@ -298,7 +298,7 @@ fn a_relative_stiffness_is_a_part_of_what_the_device_renders() {
         ..Material::default()
     };
     let accepted = |device: DeviceProfile, rate: f64, scale: f64| {
-        let bodies = body(&ball::<3>(0.05), Surface::new(&half).unwrap());
+        let bodies = body(ball::<3>(0.05), Surface::new(&half).unwrap());
         let options = ServoOptions { rate, ..ServoOptions::default() };
         let servo = Servo::new(bodies, 1, options).unwrap();
         let map = WorkspaceMap::new(Pose::identity(), scale).unwrap();
@@ -330,7 +330,7 @@ fn a_device_without_damping_takes_a_material_as_it_is() {
     let device = DeviceProfile { least_damping: 0.0, ..DeviceProfile::unlimited("bare") };
     let accepted = |relative_stiffness, acceptance| {
         let material = Material { relative_stiffness, ..Material::default() };
-        let bodies = body(&ball::<3>(0.05), Surface::new(&material).unwrap());
+        let bodies = body(ball::<3>(0.05), Surface::new(&material).unwrap());
         let servo = Servo::new(bodies, 1, ServoOptions::default()).unwrap();
         let protection = Protection::new(device.clone()).with(|s| s.acceptance = acceptance);
         servo.protected(&protection).map(|servo| servo.accepted()[0].stiffness_factor)

@@ -35,7 +35,7 @@ fn touch(servo: &mut Servo<Unprotected>, device: Point<3>) -> Touch {
 
 #[test]
 fn a_hand_sticks_within_the_cone_and_slips_beyond_it() {
-    let mut servo = rough(&half_space([0.0, 1.0, 0.0], 0.0), [0.5, 0.25], 0.0);
+    let mut servo = rough(half_space([0.0, 1.0, 0.0], 0.0), [0.5, 0.25], 0.0);
     let depth = 0.0078125;
     let at = |x: f64| Vector([x, -depth, 0.0]);
     touch(&mut servo, Vector([0.0, 0.1, 0.0]));
@@ -98,7 +98,7 @@ fn loops(seed: u32) -> impl Fn(f64) -> Point<3> {
 #[test]
 fn without_friction_a_closed_path_gives_no_energy() {
     for seed in 0..4 {
-        let mut servo = rough(&ball::<3>(0.05), [0.0, 0.0], 0.002);
+        let mut servo = rough(ball::<3>(0.05), [0.0, 0.0], 0.002);
         let work = work(&mut servo, loops(seed));
         assert!(work.abs() < 1e-9, "{work:e} J");
     }

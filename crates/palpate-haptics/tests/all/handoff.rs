@@ -88,7 +88,7 @@ fn servo(bodies: impl Into<Bodies>, points: usize) -> Servo {
 
 /// All points with y ≤ `height`, at 512 N/m.
 fn floor(height: f64) -> Bodies {
-    body(&half_space([0.0, 1.0], height), Surface::smooth(512.0, 0.0).unwrap())
+    body(half_space([0.0, 1.0], height), Surface::smooth(512.0, 0.0).unwrap())
 }
 
 fn start(servo: Servo, hand: &Hand, options: ThreadOptions) -> (ServoThread, ClockDriver) {
@@ -113,7 +113,7 @@ fn bodies_handed_to_a_protected_servo_are_as_soft_as_its_device_needs() {
     let profile = DeviceProfile { least_damping: 0.064, ..DeviceProfile::unlimited("gentle") };
     for is_strict in [false, true] {
         let servo = unprotected(
-            body(&half_space([0.0, 1.0], 0.0), Surface::smooth(64.0, 0.0).unwrap()),
+            body(half_space([0.0, 1.0], 0.0), Surface::smooth(64.0, 0.0).unwrap()),
             1,
         );
         let protection = Protection::new(profile.clone()).with(|s| {

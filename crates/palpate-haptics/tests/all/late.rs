@@ -21,7 +21,7 @@ const RISE: f64 = 20.0;
 fn ground(stiffness: f64, height: f64) -> Bodies {
     let material =
         Material { stiffness, static_friction: 0.4, dynamic_friction: 0.3, ..smooth() };
-    body(&half_space([0.0, 1.0, 0.0], height), Surface::new(&material).unwrap())
+    body(half_space([0.0, 1.0, 0.0], height), Surface::new(&material).unwrap())
 }
 
 /// What holds the device.

@@ -15,7 +15,7 @@ use palpate_safety::{Acceptance, Recovery};
 
 /// A slab of ±1 cm around y = 0.
 fn slab() -> Bodies {
-    body(&cuboid([1.0, 0.02, 1.0]), Surface::new(&smooth()).unwrap())
+    body(cuboid([1.0, 0.02, 1.0]), Surface::new(&smooth()).unwrap())
 }
 
 fn options() -> ServoOptions {

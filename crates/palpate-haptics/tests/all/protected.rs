@@ -87,7 +87,7 @@ impl Device for Fragile {
 
 /// Harder than the device can render.
 fn floor() -> Bodies {
-    body(&half_space([0.0, 1.0], 0.0), Surface::smooth(50_000.0, 10.0).unwrap())
+    body(half_space([0.0, 1.0], 0.0), Surface::smooth(50_000.0, 10.0).unwrap())
 }
 
 #[test]

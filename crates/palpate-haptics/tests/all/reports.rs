@@ -70,7 +70,7 @@ fn a_point_that_begins_inside_is_told_with_its_depth_and_its_time_without_force(
 #[test]
 fn a_point_that_is_led_out_is_felt() {
     let surface = Surface::smooth(500.0, 0.0).unwrap();
-    let bodies = body(&ball::<2>(0.5), surface);
+    let bodies = body(ball::<2>(0.5), surface);
     let servo = || Servo::new(bodies.clone(), 1, Default::default()).unwrap();
     let still = || vec![hand(&[0.0, 1.0], &[0.4988, 0.4988])];
     let report = told(&mut without_limits(servo()), still(), 0.1);

@@ -16,7 +16,7 @@ use palpate_haptics::{
 const DEPTH: f64 = 1.0 / 256.0;
 
 fn ground(material: Material) -> Bodies {
-    body(&half_space([0.0, 1.0, 0.0], 0.0), Surface::new(&material).unwrap())
+    body(half_space([0.0, 1.0, 0.0], 0.0), Surface::new(&material).unwrap())
 }
 
 fn of_stiffness(stiffness: f64) -> Bodies {

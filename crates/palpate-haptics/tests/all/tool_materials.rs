@@ -40,7 +40,7 @@ fn a_box_tells_where_it_slips_and_where_it_sticks_again() {
 /// A tool on ground of a material, after it was pressed to `depth` there.
 fn pressed(material: &Material, depth: f64, velocity: [f64; 3]) -> ToolTouch {
     let surface = Surface::new(material).unwrap();
-    let mut bodies = body(&half_space([0.0, 1.0, 0.0], 0.0), surface);
+    let mut bodies = body(half_space([0.0, 1.0, 0.0], 0.0), surface);
     let shell = Shell::from_mesh(&box_mesh([0.06, 0.04, 0.05]), 600, 0.0).unwrap();
     let mut tool = Tool::new(shell, springs()).unwrap();
     tool.step(&mut bodies, &at([0.0, 0.03, 0.0]));
@@ -77,7 +77,7 @@ fn the_layers_of_a_body_are_felt_as_far_as_the_coupling_bears_them() {
 fn a_closed_path_over_a_soft_layered_body_gives_no_energy() {
     let layer = Layer { depth: 0.003, stiffness: Some(400.0), ..Layer::default() };
     let material = Material { stiffness: 150.0, layers: vec![layer], ..smooth() };
-    let mut bodies = body(&ball::<3>(0.05), Surface::new(&material).unwrap());
+    let mut bodies = body(ball::<3>(0.05), Surface::new(&material).unwrap());
     let shell = Shell::from_mesh(&box_mesh([0.03, 0.02, 0.04]), 300, 0.001).unwrap();
     let mut tool = Tool::new(shell, springs()).unwrap();
     let ticks = 20_000;
@@ -117,7 +117,7 @@ fn what_is_dragged_below_the_hand_turns_it() {
     let options = ToolOptions { angular_stiffness: Some(50.0), ..springs() };
     let mut tool = Tool::new(shell, options).unwrap();
     let viscous = Material { viscosity: 2.0, ..smooth() };
-    let mut bodies = body(&half_space([0.0, 1.0, 0.0], 0.0), Surface::new(&viscous).unwrap());
+    let mut bodies = body(half_space([0.0, 1.0, 0.0], 0.0), Surface::new(&viscous).unwrap());
     tool.step(&mut bodies, &at([0.0, 0.2, 0.0]));
     rest(&mut tool, &mut bodies, &at([0.0, 0.106, 0.0]));
     let along = Vector([0.1, 0.0, 0.0]);
@@ -212,7 +212,7 @@ fn the_friction_is_that_of_the_layer_at_the_depth_of_the_hand() {
     };
     let slick = Material { static_friction: 0.1, dynamic_friction: 0.1, ..smooth() };
     let layered = Material { layers: vec![layer], ..slick };
-    let mut bodies = body(&half_space([0.0, 1.0, 0.0], 0.0), Surface::new(&layered).unwrap());
+    let mut bodies = body(half_space([0.0, 1.0, 0.0], 0.0), Surface::new(&layered).unwrap());
     for (depth, is_slipping) in [(0.0015, true), (0.004, false)] {
         let mut tool = Tool::new(Shell::ball(0.01).unwrap(), springs()).unwrap();
         tool.step(&mut bodies, &at([0.0, 0.02, 0.0]));
@@ -228,7 +228,7 @@ fn the_friction_is_that_of_the_layer_at_the_depth_of_the_hand() {
 #[test]
 fn a_tool_that_sticks_under_a_hand_straight_above_keeps_its_contact() {
     let material = Material { static_friction: 0.4, dynamic_friction: 0.3, ..smooth() };
-    let mut bodies = body(&half_space([0.0, 1.0, 0.0], 0.0), Surface::new(&material).unwrap());
+    let mut bodies = body(half_space([0.0, 1.0, 0.0], 0.0), Surface::new(&material).unwrap());
     let mut tool = Tool::new(Shell::ball(0.01).unwrap(), springs()).unwrap();
     tool.step(&mut bodies, &at([0.0, 0.02, 0.0]));
     for tick in 0..10 {

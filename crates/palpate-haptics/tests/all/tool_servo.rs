@@ -37,7 +37,7 @@ fn options() -> ToolOptions {
 }
 
 fn ground(material: Material) -> Bodies {
-    body(&half_space([0.0, 1.0, 0.0], 0.0), Surface::new(&material).unwrap())
+    body(half_space([0.0, 1.0, 0.0], 0.0), Surface::new(&material).unwrap())
 }
 
 fn at(x: f64, y: f64) -> PointState {

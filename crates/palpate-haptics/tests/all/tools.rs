@@ -240,7 +240,7 @@ fn a_rectangle_lies_on_a_line_in_the_plane() {
     let tilted = Pose::new(Rotation::from_angle(0.3).unwrap().in_space(), [0.0, 0.025, 0.0]);
     let touch = rest(&mut tool, &mut bodies, &ToolState::at_rest(tilted));
     assert!(touch.torque[2] < 0.0 && touch.torque[0] == 0.0 && touch.torque[1] == 0.0);
-    assert!(least_gap(&shell, &touch.pose, &half_space([0.0, 1.0], 0.0)) >= -1e-9);
+    assert!(least_gap(&shell, &touch.pose, half_space([0.0, 1.0], 0.0)) >= -1e-9);
 }
 
 #[test]
@@ -261,7 +261,7 @@ fn fields_and_capsules_are_tools_too() {
 #[test]
 fn touching_and_leaving_is_told() {
     let surface = Surface::smooth(STIFFNESS, 0.0).unwrap();
-    let mut bodies = body(&half_space([0.0, 1.0, 0.0], 0.0), surface);
+    let mut bodies = body(half_space([0.0, 1.0, 0.0], 0.0), surface);
     let mut tool = Tool::new(Shell::ball(0.01).unwrap(), springs()).unwrap();
     let mut told = Vec::new();
     for height in [0.03, 0.009, 0.008, 0.02] {

@@ -81,12 +81,12 @@ fn a_tour_is_in_contact_for_a_good_part_of_the_time() {
         assert!(report.largest_depth < 0.0025, "{} m deep", report.largest_depth);
         assert_eq!(report.evaluations.budget_spent, 0);
     }
-    check(&ball::<3>(0.05));
-    check(&cuboid([0.1, 0.1, 0.1]));
-    check(&torus(0.05, 0.02));
-    check(&row_of_bodies());
-    check(&ball::<2>(0.05));
-    check(&cuboid([0.1, 0.06]));
+    check(ball::<3>(0.05));
+    check(cuboid([0.1, 0.1, 0.1]));
+    check(torus(0.05, 0.02));
+    check(row_of_bodies());
+    check(ball::<2>(0.05));
+    check(cuboid([0.1, 0.06]));
 }
 
 /// Friction held the proxy on a side of a cube when the hand had gone round the edge: 0.3 m deep.
@@ -101,11 +101,11 @@ fn friction_leaves_no_proxy_behind_at_edges() {
     }
     let cone = Shape::from_kernel(Cone::new(0.035, 0.09).unwrap());
     let cube = cuboid([0.05; 3]);
-    check(&cuboid([0.1, 0.1, 0.1]));
-    check(&Shape::union([cone.clone(), cube.clone()]).unwrap());
-    check(&cube.difference([cone]).unwrap());
-    check(&row_of_bodies());
-    check(&cuboid([0.1, 0.06]));
+    check(cuboid([0.1, 0.1, 0.1]));
+    check(Shape::union([cone.clone(), cube.clone()]).unwrap());
+    check(cube.difference([cone]).unwrap());
+    check(row_of_bodies());
+    check(cuboid([0.1, 0.06]));
 }
 
 #[test]
@@ -132,10 +132,10 @@ fn the_hand_of_a_tour_is_nowhere_much_deeper_than_asked() {
         assert!((0.35..0.9).contains(&share), "{name}: {share} of the time in contact");
         assert!(report.largest_depth < 0.00225, "{name}: {} m", report.largest_depth);
     }
-    check("star", &star());
-    check("angle", &angle());
-    check("bored cube", &bored_cube());
-    check("row", &row_of_bodies());
+    check("star", star());
+    check("angle", angle());
+    check("bored cube", bored_cube());
+    check("row", row_of_bodies());
 }
 
 #[test]
@@ -345,7 +345,7 @@ fn the_hand_of_a_tour_goes_at_a_steady_speed() {
 
 #[test]
 fn a_tour_is_made_the_same_twice() {
-    assert_eq!(tour(&row_of_bodies()), tour(&row_of_bodies()));
+    assert_eq!(tour(row_of_bodies()), tour(row_of_bodies()));
 }
 
 #[test]

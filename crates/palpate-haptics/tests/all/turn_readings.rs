@@ -41,7 +41,7 @@ impl Held {
     }
 
     fn with(protection: Protection) -> Self {
-        let ground = body(&half_space([0.0, 1.0, 0.0], 0.0), Surface::new(&smooth()).unwrap());
+        let ground = body(half_space([0.0, 1.0, 0.0], 0.0), Surface::new(&smooth()).unwrap());
         let end = Vector::unit(0) * HALF;
         let options = ToolOptions {
             stiffness: 500.0,

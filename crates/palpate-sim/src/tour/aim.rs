@@ -110,7 +110,7 @@ impl Tour {
     ///
     /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
     /// let table = Shape::from_kernel(Cuboid::new(Vector([1.0, 0.04, 1.0]))?);
-    /// let ball = Shape::from_kernel(Ball::new(0.01)?).translated(Vector([0.31, 0.03, -0.17]))?;
+    /// let ball = Shape::<3>::from_kernel(Ball::new(0.01)?).translated(Vector([0.31, 0.03, -0.17]))?;
     /// let whole = Shape::union([table.clone(), ball.clone()])?;
     /// let bounds = whole.promise().bounds.ok_or("both have bounds")?.aabb;
     /// let path = Tour::new(bounds, 10.0)?.over_each(&whole, &[table.into(), ball.clone().into()])?;

@@ -19,7 +19,7 @@ impl Renderer {
     /// use palpate_device::PointState;
     /// use palpate_haptics::{Guide, GuideOptions, Servo};
     /// let mut servo = Servo::new(Shape::circle(0.05)?, 1, Default::default())?;
-    /// servo.guide(&[Guide::to_point([0.0, 0.1], GuideOptions::default())?]);
+    /// servo.guide(&[Guide::to_point([0.0, 0.1, 0.0], GuideOptions::default())?]);
     /// servo.step(&[PointState::at_rest(Vector([0.0, 0.103, 0.0]))]);
     /// assert!(servo.guides(0)[0].is_engaged());
     /// assert!((servo.guides(0)[0].last_force() - Vector([0.0, -0.9, 0.0])).norm() < 1e-12);
