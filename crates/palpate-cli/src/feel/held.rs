@@ -56,7 +56,8 @@ pub(crate) struct Beyond {
 }
 
 impl Beyond {
-    pub(super) fn of(
+    /// For a scene of `D` dimensions.
+    pub(super) fn of<const D: usize>(
         choice: &DeviceChoice,
         paths: &[HandPath],
         map: &WorkspaceMap,
@@ -74,7 +75,7 @@ impl Beyond {
             distance,
             scale,
             sufficient_scale: rounded_up(scale * farthest / radius),
-            center: map.point_to_world(Vector::ZERO).0.to_vec(),
+            center: map.point_to_world(Vector::ZERO).truncated::<D>().0.to_vec(),
         })
     }
 

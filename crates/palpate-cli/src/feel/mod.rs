@@ -91,7 +91,8 @@ where
         _ => None,
     };
     let map = held::map(scene, tool.as_ref(), &choice)?;
-    let beyond = options.path.as_ref().and_then(|_| held::Beyond::of(&choice, &paths, &map));
+    let beyond =
+        options.path.as_ref().and_then(|_| held::Beyond::of::<D>(&choice, &paths, &map));
     if let Some(beyond) = beyond.as_ref().filter(|_| !options.json) {
         output::remark(beyond.warning());
     }
