@@ -6,7 +6,7 @@
 use arbitrary::{Result, Unstructured};
 use palpate_device::{DeviceProfile, PointState};
 use palpate_field::kernel::{Ball, Cuboid, HalfSpace};
-use palpate_field::{Point, Pose, Rotation, Shape, Vector};
+use palpate_field::{Point, Pose, Rotation, Shape, SpaceShape, Vector};
 use palpate_haptics::{
     Bodies, Body, Guide, GuideOptions, Impact, Layer, Magnet, Material, PopThrough, Probe,
     Protection, Renderer, Servo, ServoOptions, Surface, Texture, TextureKind, Touch,
@@ -43,16 +43,16 @@ const TICKS: usize = 96;
 
 /// A scene in the plane and in space.
 pub trait Dimension<const D: usize> {
-    fn pose(u: &mut Unstructured<'_>) -> Result<Pose<D>>;
+    fn pose(u: &mut Unstructured<'_>) -> Result<Pose<3>>;
     fn special(u: &mut Unstructured<'_>) -> Result<Option<Shape<D>>>;
 }
 
 struct Here;
 
 impl Dimension<2> for Here {
-    fn pose(u: &mut Unstructured<'_>) -> Result<Pose<2>> {
+    fn pose(u: &mut Unstructured<'_>) -> Result<Pose<3>> {
         let turn = Rotation::from_angle(4.0 * unit(u)?).unwrap_or(Rotation::identity());
-        Ok(Pose::new(turn, vector(u)? * 0.1))
+        Ok(Pose::new(turn, vector::<2>(u)? * 0.1).in_space())
     }
     fn special(u: &mut Unstructured<'_>) -> Result<Option<Shape<2>>> {
         Ok(cuboid([0.1, 0.01]).bent(20.0 * unit(u)?).ok())
@@ -86,6 +86,11 @@ fn unit(u: &mut Unstructured<'_>) -> Result<f64> {
     Ok(f64::from(u.int_in_range(-10_000..=10_000)?) * 1e-4)
 }
 
+/// A vector along the first D axes of space.
+fn spatial<const D: usize>(u: &mut Unstructured<'_>) -> Result<Vector<f64, 3>> {
+    Ok(vector::<D>(u)?.in_space())
+}
+
 fn vector<const D: usize>(u: &mut Unstructured<'_>) -> Result<Vector<f64, D>> {
     let mut v = [0.0; D];
     for x in &mut v {
@@ -94,8 +99,8 @@ fn vector<const D: usize>(u: &mut Unstructured<'_>) -> Result<Vector<f64, D>> {
     Ok(Vector(v))
 }
 
-fn junk<const D: usize>(u: &mut Unstructured<'_>) -> Result<Vector<f64, D>> {
-    let mut v = vector(u)? * 0.1;
+fn junk<const D: usize>(u: &mut Unstructured<'_>) -> Result<Vector<f64, 3>> {
+    let mut v = spatial::<D>(u)? * 0.1;
     for _ in 0..u.int_in_range(0..=D)? {
         v[u.choose_index(D)?] = *u.choose(&JUNK)?;
     }
@@ -182,23 +187,24 @@ fn material(u: &mut Unstructured<'_>, pops: bool) -> Result<Material> {
     Ok(material)
 }
 
-fn bodies<const D: usize>(u: &mut Unstructured<'_>, pops: bool) -> Result<Bodies<D>>
+fn bodies<const D: usize>(u: &mut Unstructured<'_>, pops: bool) -> Result<Bodies>
 where
     Here: Dimension<D>,
+    SpaceShape: From<Shape<D>>,
 {
     let mut bodies = Vec::new();
     for _ in 0..u.int_in_range(1..=8)? {
         let surface = Surface::new(&material(u, pops)?).expect("numbers that are allowed");
-        let Ok(body) = Body::new(shape(u)?, surface) else { continue };
-        bodies.push(body.at(Here::pose(u)?).expect("a finite pose"));
+        let Ok(body) = Body::new(shape::<D>(u)?, surface) else { continue };
+        bodies.push(body.at(<Here as Dimension<D>>::pose(u)?).expect("a finite pose"));
     }
-    Ok(Bodies::new(bodies).unwrap_or_else(|_| Bodies::from(ball(0.05))))
+    Ok(Bodies::new(bodies).unwrap_or_else(|_| Bodies::from(SpaceShape::from(ball::<D>(0.05)))))
 }
 
 /// A servo with or without a safety chain.
-enum AnyServo<const D: usize> {
-    Protected(Box<Servo<D>>),
-    Unprotected(Box<Servo<D, Unprotected>>),
+enum AnyServo {
+    Protected(Box<Servo>),
+    Unprotected(Box<Servo<Unprotected>>),
 }
 
 /// Does the same with either kind of servo.
@@ -211,12 +217,12 @@ macro_rules! either {
     };
 }
 
-impl<const D: usize> AnyServo<D> {
-    fn seen(&self) -> &Renderer<D> {
+impl AnyServo {
+    fn seen(&self) -> &Renderer {
         either!(self, servo => servo)
     }
 
-    fn swap_bodies(&mut self, bodies: Bodies<D>) {
+    fn swap_bodies(&mut self, bodies: Bodies) {
         match self {
             Self::Protected(servo) => {
                 if let Ok(mut bodies) = servo.accept(bodies) {
@@ -228,9 +234,10 @@ impl<const D: usize> AnyServo<D> {
     }
 }
 
-fn servo<const D: usize>(u: &mut Unstructured<'_>, pops: bool) -> Result<AnyServo<D>>
+fn servo<const D: usize>(u: &mut Unstructured<'_>, pops: bool) -> Result<AnyServo>
 where
     Here: Dimension<D>,
+    SpaceShape: From<Shape<D>>,
 {
     let probe = Probe::new(*u.choose(&[0.0, 1e-9, 0.0005, 0.002, 0.01])?);
     let probe =
@@ -242,10 +249,10 @@ where
         rate: *u.choose(&[1000.0, 10.0, 1e5])?,
     };
     let points = *u.choose(&[1, 2, 5, 24])?;
-    let mut servo = Servo::new(bodies(u, pops)?, points, options).expect("options");
+    let mut servo = Servo::new(bodies::<D>(u, pops)?, points, options).expect("options");
     if u.ratio(1, 3)? {
         let options = GuideOptions::default();
-        if let Ok(guide) = Guide::to_point(vector(u)? * 0.05, options) {
+        if let Ok(guide) = Guide::to_point(spatial::<D>(u)? * 0.05, options) {
             servo.guide(&[guide]);
         }
     }
@@ -271,26 +278,27 @@ where
 fn play<const D: usize>(u: &mut Unstructured<'_>) -> Result<()>
 where
     Here: Dimension<D>,
+    SpaceShape: From<Shape<D>>,
 {
     let pops = u.ratio(1, 4)?;
     let mut servo = servo::<D>(u, pops)?;
     let points = servo.seen().touches().len();
-    let mut hand: Vec<Point<D>> = vec![vector(u)? * 0.1; points];
+    let mut hand: Vec<Point<3>> = vec![spatial::<D>(u)? * 0.1; points];
     let mut before = 0.0;
     for _ in 0..TICKS {
         if u.is_empty() {
             break;
         }
-        act(u, &mut servo, pops)?;
+        act::<D>(u, &mut servo, pops)?;
         let mut states = Vec::new();
         for place in &mut hand {
             *place = match u.choose_index(24)? {
-                0 => vector(u)? * 0.1,
+                0 => spatial::<D>(u)? * 0.1,
                 1 => *place,
-                _ => *place + vector(u)? * 0.004,
+                _ => *place + spatial::<D>(u)? * 0.004,
             };
-            let position = if u.ratio(1, 32)? { junk(u)? } else { *place };
-            let velocity = if u.ratio(1, 32)? { junk(u)? } else { vector(u)? * 0.5 };
+            let position = if u.ratio(1, 32)? { junk::<D>(u)? } else { *place };
+            let velocity = if u.ratio(1, 32)? { junk::<D>(u)? } else { spatial::<D>(u)? * 0.5 };
             states.push(PointState { position, velocity });
         }
         if u.ratio(1, 32)? {
@@ -306,33 +314,30 @@ where
 }
 
 /// What else may happen between two ticks.
-fn act<const D: usize>(
-    u: &mut Unstructured<'_>,
-    any: &mut AnyServo<D>,
-    pops: bool,
-) -> Result<()>
+fn act<const D: usize>(u: &mut Unstructured<'_>, any: &mut AnyServo, pops: bool) -> Result<()>
 where
     Here: Dimension<D>,
+    SpaceShape: From<Shape<D>>,
 {
     let body = u.choose_index(10)?;
     match u.choose_index(24)? {
         0..4 => {
-            let pose = Here::pose(u)?;
+            let pose = <Here as Dimension<D>>::pose(u)?;
             either!(any, servo => servo.set_pose(body, pose));
         }
         4..8 => {
             // A small motion.
             let bodies = any.seen().bodies().bodies();
             if let Some(at) = bodies.get(body).map(|b| *b.world_from_body()) {
-                let translation = at.translation + vector(u)? * 0.003;
+                let translation = at.translation + spatial::<D>(u)? * 0.003;
                 either!(any, servo => servo.set_pose(body, Pose { translation, ..at }));
             }
         }
         8 => {
-            let pose = Pose { translation: junk(u)?, ..Here::pose(u)? };
+            let pose = Pose { translation: junk::<D>(u)?, ..<Here as Dimension<D>>::pose(u)? };
             either!(any, servo => servo.set_pose(body, pose));
         }
-        9 => any.swap_bodies(bodies(u, pops)?),
+        9 => any.swap_bodies(bodies::<D>(u, pops)?),
         10 => {
             let late = f64::from(u.int_in_range(0..=100_u8)?) * 1e-3;
             either!(any, servo => servo.set_late(late));
@@ -353,7 +358,7 @@ where
 }
 
 /// The length of a vector whose square may be too large.
-fn length<const D: usize>(v: Vector<f64, D>) -> f64 {
+fn length(v: Vector<f64, 3>) -> f64 {
     let largest = v.0.iter().fold(0.0_f64, |largest, x| largest.max(x.abs()));
     if largest > 0.0 {
         largest * v.0.map(|x| (x / largest).powi(2)).iter().sum::<f64>().sqrt()
@@ -363,7 +368,7 @@ fn length<const D: usize>(v: Vector<f64, D>) -> f64 {
 }
 
 /// How far from the origin anything is [m].
-fn extent<const D: usize>(servo: &Renderer<D>) -> f64 {
+fn extent(servo: &Renderer) -> f64 {
     let bodies = servo.bodies().bodies().iter().map(|b| b.world_from_body().translation.norm());
     let touches = servo.touches().iter();
     let touches = touches.flat_map(|t| [t.device.norm(), t.proxy.norm()]);
@@ -371,7 +376,7 @@ fn extent<const D: usize>(servo: &Renderer<D>) -> f64 {
     finite.fold(0.2, f64::max)
 }
 
-fn promises_hold<const D: usize>(servo: &Renderer<D>, farthest: f64, pops: bool) {
+fn promises_hold(servo: &Renderer, farthest: f64, pops: bool) {
     // Squares of forces smaller than this vanish.
     let most = servo.options().max_force * (1.0 + 1e-12) + 1e-150;
     for (touch, force) in servo.touches().iter().zip(servo.forces()) {
@@ -389,15 +394,14 @@ fn promises_hold<const D: usize>(servo: &Renderer<D>, farthest: f64, pops: bool)
 }
 
 /// No body holds the proxy's ball.
-fn is_outside<const D: usize>(servo: &Renderer<D>, touch: &Touch<D>, farthest: f64) {
-    let size = |body: &Body<D>| body.shape().promise().bounds.map_or(0.0, |b| b.ball.radius);
+fn is_outside(servo: &Renderer, touch: &Touch, farthest: f64) {
+    let size = |body: &Body| body.bounds().map_or(0.0, |b| b.ball.radius);
     let bodies = servo.bodies().bodies();
     let tolerance = INSIDE * bodies.iter().map(size).fold(farthest, f64::max);
     for (index, body) in bodies.iter().enumerate() {
         let in_body = body.world_from_body().inverse().transform_point(touch.proxy);
-        let promise = body.shape().promise();
         // What has bounds is not closer than its ball is, whatever its field says.
-        let above = promise.bounds.map_or(f64::NEG_INFINITY, |bounds| {
+        let above = body.bounds().map_or(f64::NEG_INFINITY, |bounds| {
             (in_body - bounds.ball.centre).norm() - bounds.ball.radius
         });
         let gap = body.shape().distance(in_body).max(above) - servo.options().probe.radius();

@@ -89,7 +89,7 @@ pub(crate) fn measure(runs: u32) -> Result<Rows, Box<dyn Error>> {
 fn ticks<'a>(key: &'a str, shape: &'a Shape<3>, points: usize) -> Case<'a> {
     let paths: Vec<Vec<Point<3>>> =
         (0..points).map(|hand| orbit::around(shape, hand)).collect();
-    let states: Vec<Vec<PointState<3>>> = (0..LANDING + TICKS)
+    let states: Vec<Vec<PointState>> = (0..LANDING + TICKS)
         .map(|tick| paths.iter().map(|path| state(path, tick)).collect())
         .collect();
     Box::new(move |rows| {
@@ -122,13 +122,13 @@ fn ticks<'a>(key: &'a str, shape: &'a Shape<3>, points: usize) -> Case<'a> {
 }
 
 /// Where a hand is in a tick, and how fast.
-fn state(path: &[Point<3>], tick: usize) -> PointState<3> {
+fn state(path: &[Point<3>], tick: usize) -> PointState {
     let velocity = (path[tick] - path[tick.saturating_sub(1)]) * 1000.0;
     PointState { position: path[tick], velocity }
 }
 
 /// A servo of one body with friction.
-fn servo(shape: &Shape<3>, points: usize) -> Result<Servo<3, Unprotected>, Box<dyn Error>> {
+fn servo(shape: &Shape<3>, points: usize) -> Result<Servo<Unprotected>, Box<dyn Error>> {
     let material = Material {
         stiffness: 1000.0,
         static_friction: 0.5,

@@ -64,10 +64,10 @@ pub(super) fn ticks<'a>(key: &'a str, shape: &'a Shape<3>) -> Result<Case<'a>, B
 /// The hand in a tick: turned a little further, and so high above the path that the deepest
 /// point of the tool is as deep as hands press.
 fn state(
-    shell: &Shell<3>,
+    shell: &Shell,
     shape: &Shape<3>,
     (tick, place): (usize, Point<3>),
-) -> Result<ToolState<3>, Box<dyn Error>> {
+) -> Result<ToolState, Box<dyn Error>> {
     let time = tick as f64;
     let [a, b, c] = TURNS.map(|turn| turn * time);
     let about = |axis, angle| Rotation::from_axis_angle(Vector(axis), angle);
@@ -110,7 +110,7 @@ fn options() -> ToolOptions {
 }
 
 /// One body with friction.
-fn bodies(shape: &Shape<3>) -> Result<Bodies<3>, Box<dyn Error>> {
+fn bodies(shape: &Shape<3>) -> Result<Bodies, Box<dyn Error>> {
     let material =
         Material { static_friction: 0.5, dynamic_friction: 0.3, ..Material::default() };
     Ok(Bodies::new(vec![Body::new(shape.clone(), Surface::new(&material)?)?])?)

@@ -22,7 +22,7 @@ pub(crate) fn simulated<const D: usize>(
     hand: Option<&Bound<'_, PyAny>>,
     (points, duration): (usize, f64),
     py: Python<'_>,
-) -> PyResult<Box<dyn Device<D> + Send>> {
+) -> PyResult<Box<dyn Device + Send>> {
     check_points(points)?;
     let profile = profile_named(profile).or_raise(py)?;
     let tool = scene.tool.as_ref().map_or(Ok(None), BuiltTool::in_hand).or_raise(py)?;
@@ -39,7 +39,7 @@ pub(crate) fn simulated<const D: usize>(
         }
         None => {
             let way = py.detach(|| HandWay::tour(scene, duration, points)).or_raise(py)?;
-            let turns = tool.is_some().then(|| swing(duration)).transpose();
+            let turns = tool.is_some().then(|| swing::<D>(duration)).transpose();
             (way.paths().or_raise(py)?, turns.or_raise(py)?)
         }
     };
@@ -71,7 +71,7 @@ fn given<const D: usize>(
     scene: &BuiltScene<D>,
     hand: &Bound<'_, PyAny>,
     points: usize,
-) -> PyResult<Vec<HandPath<D>>> {
+) -> PyResult<Vec<HandPath>> {
     let py = hand.py();
     if points != 1 {
         let problem = "points= is about the tour of a hand: give an array of shape (points, n, …) instead";
@@ -79,16 +79,17 @@ fn given<const D: usize>(
     }
     let array = numbers(hand, "hand")?;
     let all = array.as_doubles()?;
+    let place = |row: &[f64]| Vector::<f64, D>(std::array::from_fn(|i| row[i])).in_space();
     let path = |rows: &[f64]| {
         let rows = rows.chunks_exact(D + 1);
         let times = rows.clone().map(|row| row[0]).collect();
-        let places = rows.map(|row| Vector(std::array::from_fn(|i| row[i + 1]))).collect();
+        let places = rows.map(|row| place(&row[1..])).collect();
         HandPath::new(times, places, Interpolation::Monotone).or_raise(py)
     };
     match array.shape() {
         [columns] if *columns == D => {
-            let place = Vector(std::array::from_fn(|i| all[i]));
-            let rest = HandPath::new(vec![0.0, 1.0], vec![place; 2], Interpolation::Linear);
+            let places = vec![place(&all); 2];
+            let rest = HandPath::new(vec![0.0, 1.0], places, Interpolation::Linear);
             HandWay::along(scene, rest.or_raise(py)?).paths().or_raise(py)
         }
         [_, columns] if *columns == D + 1 => {

@@ -15,51 +15,7 @@ use crate::error::OrRaise;
 use crate::hand::check_points;
 
 /// A device for a servo.
-pub(crate) type Own<const D: usize> = Box<dyn Device<D> + Send>;
-
-/// Both ends of a mailbox; that of the servo until it takes it.
-pub(crate) struct Post<const D: usize> {
-    device: Mutex<Option<Own<D>>>,
-    mailbox: Mutex<Mailbox<D>>,
-}
-
-impl<const D: usize> Post<D> {
-    /// The driver's end: not held while code of Python may run.
-    fn locked(&self) -> MutexGuard<'_, Mailbox<D>> {
-        self.mailbox.lock().unwrap_or_else(PoisonError::into_inner)
-    }
-
-    /// The servo's end.
-    pub(crate) fn take(&self) -> PyResult<Own<D>> {
-        let device = self.device.lock().unwrap_or_else(PoisonError::into_inner).take();
-        device.ok_or_else(|| PyRuntimeError::new_err("a mailbox has one servo: make another"))
-    }
-
-    /// Takes the servo's end back, from one that could not be made.
-    pub(crate) fn give_back(&self, device: Own<D>) {
-        *self.device.lock().unwrap_or_else(PoisonError::into_inner) = Some(device);
-    }
-}
-
-/// The coordinates of a vector.
-const fn columns<const D: usize>(_: &Post<D>) -> usize {
-    D
-}
-
-enum AnyPost {
-    Planar(Post<2>),
-    Spatial(Post<3>),
-}
-
-/// Does the same with the mailbox of either dimension.
-macro_rules! of_either {
-    ($any:expr, $post:ident => $done:expr) => {
-        match $any {
-            AnyPost::Planar($post) => $done,
-            AnyPost::Spatial($post) => $done,
-        }
-    };
-}
+pub(crate) type Own = Box<dyn Device + Send>;
 
 /// A device of your own: its driver sets where the points are, as often as it likes, and takes the newest forces.
 ///
@@ -80,20 +36,28 @@ macro_rules! of_either {
 /// ...     mailbox.forces.shape
 /// (1, 3)
 #[pyclass(frozen, module = "palpate", name = "Mailbox")]
-pub(crate) struct PyMailbox(AnyPost);
+pub(crate) struct PyMailbox {
+    /// The servo's end, until a servo takes it.
+    device: Mutex<Option<Own>>,
+    mailbox: Mutex<Mailbox>,
+    /// The dimension of the scenes that it touches.
+    dimension: usize,
+}
 
 #[pymethods]
 impl PyMailbox {
     #[new]
     #[pyo3(signature = (profile = "omega", *, points = 1, dimension = 3))]
     fn new(py: Python<'_>, profile: &str, points: usize, dimension: usize) -> PyResult<Self> {
-        match dimension {
-            2 => Ok(Self(AnyPost::Planar(post(py, profile, points)?))),
-            3 => Ok(Self(AnyPost::Spatial(post(py, profile, points)?))),
-            _ => {
-                Err(PyValueError::new_err(format!("dimension must be 2 or 3, got {dimension}")))
-            }
+        if !(2..=3).contains(&dimension) {
+            let problem = format!("dimension must be 2 or 3, got {dimension}");
+            return Err(PyValueError::new_err(problem));
         }
+        check_points(points)?;
+        let profile = profile_named(profile).or_raise(py)?;
+        let (device, mailbox) = MailboxDevice::new(profile, points).or_raise(py)?;
+        let device: Own = Box::new(device);
+        Ok(Self { device: Mutex::new(Some(device)), mailbox: Mutex::new(mailbox), dimension })
     }
 
     /// Sets where the points are, shape (points, D) [m] at the device, at `time` [s] if it is known.
@@ -105,7 +69,30 @@ impl PyMailbox {
     /// >>> pp.Mailbox().set([[0, 0.1, 0]])
     #[pyo3(signature = (positions, *, time = None))]
     fn set(&self, positions: &Bound<'_, PyAny>, time: Option<f64>) -> PyResult<()> {
-        of_either!(&self.0, post => set(post, positions, time))
+        let (array, columns) = (numbers(positions, "positions")?, self.dimension);
+        if !matches!(array.shape(), [_, given] if *given == columns) {
+            return Err(misshapen("positions", &format!("(points, {columns})"), array.shape()));
+        }
+        let given = array.as_doubles()?;
+        if let Some(place) = given.iter().position(|x| !x.is_finite()) {
+            let problem = format!(
+                "positions[{}, {}] must be finite, got {} m",
+                place / columns,
+                place % columns,
+                given[place]
+            );
+            return Err(PyValueError::new_err(problem));
+        }
+        let state = |row: &[f64]| {
+            let place = |axis| row.get(axis).copied().unwrap_or(0.0);
+            PointState::at_rest(Vector(std::array::from_fn(place)))
+        };
+        let states: Vec<PointState> = given.chunks_exact(columns).map(state).collect();
+        let done = match time {
+            None => self.locked().set(&states),
+            Some(time) => self.locked().set_at(time, &states),
+        };
+        done.or_raise(positions.py())
     }
 
     /// The newest forces, shape (points, D) [N]; shape (0, D) before the first tick.
@@ -115,10 +102,9 @@ impl PyMailbox {
     /// (0, 3)
     #[getter]
     fn forces<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        of_either!(&self.0, post => {
-            let forces: Vec<Vector<f64, _>> = post.locked().forces().to_vec();
-            table(py, forces.iter().flat_map(|force| force.0).collect(), columns(post))
-        })
+        let forces = self.locked().forces().to_vec();
+        let along = |force: &Vector<f64, 3>| force.0.into_iter().take(self.dimension);
+        table(py, forces.iter().flat_map(along).collect(), self.dimension)
     }
 
     /// How often the servo has written forces: if that no longer grows, motors must be set to zero.
@@ -128,9 +114,7 @@ impl PyMailbox {
     /// 0
     #[getter]
     fn ticks(&self) -> u64 {
-        of_either!(&self.0, post => {
-            post.locked().ticks()
-        })
+        self.locked().ticks()
     }
 
     /// Says that the device no longer answers.
@@ -138,61 +122,34 @@ impl PyMailbox {
     /// >>> import palpate as pp
     /// >>> pp.Mailbox().lose()
     fn lose(&self) {
-        of_either!(&self.0, post => {
-            post.locked().lose();
-        });
+        self.locked().lose();
     }
 }
 
 impl PyMailbox {
-    /// Both ends, in the plane.
-    pub(crate) fn planar(&self) -> PyResult<&Post<2>> {
-        match &self.0 {
-            AnyPost::Planar(post) => Ok(post),
-            AnyPost::Spatial(_) => Err(PyTypeError::new_err("the scene is 2D, the mailbox 3D")),
+    /// Refuses a scene of another dimension.
+    pub(crate) fn check(&self, dimension: usize) -> PyResult<()> {
+        if self.dimension == dimension {
+            return Ok(());
         }
+        let own = self.dimension;
+        let problem = format!("the scene is {dimension}D, the mailbox {own}D");
+        Err(PyTypeError::new_err(problem))
     }
 
-    /// Both ends, in space.
-    pub(crate) fn spatial(&self) -> PyResult<&Post<3>> {
-        match &self.0 {
-            AnyPost::Spatial(post) => Ok(post),
-            AnyPost::Planar(_) => Err(PyTypeError::new_err("the scene is 3D, the mailbox 2D")),
-        }
+    /// The driver's end: not held while code of Python may run.
+    fn locked(&self) -> MutexGuard<'_, Mailbox> {
+        self.mailbox.lock().unwrap_or_else(PoisonError::into_inner)
     }
-}
 
-fn post<const D: usize>(py: Python<'_>, profile: &str, points: usize) -> PyResult<Post<D>> {
-    check_points(points)?;
-    let profile = profile_named(profile).or_raise(py)?;
-    let (device, mailbox) = MailboxDevice::new(profile, points).or_raise(py)?;
-    Ok(Post { device: Mutex::new(Some(Box::new(device))), mailbox: Mutex::new(mailbox) })
-}
+    /// The servo's end.
+    pub(crate) fn take(&self) -> PyResult<Own> {
+        let device = self.device.lock().unwrap_or_else(PoisonError::into_inner).take();
+        device.ok_or_else(|| PyRuntimeError::new_err("a mailbox has one servo: make another"))
+    }
 
-fn set<const D: usize>(
-    post: &Post<D>,
-    positions: &Bound<'_, PyAny>,
-    time: Option<f64>,
-) -> PyResult<()> {
-    let array = numbers(positions, "positions")?;
-    if !matches!(array.shape(), [_, columns] if *columns == D) {
-        return Err(misshapen("positions", &format!("(points, {D})"), array.shape()));
+    /// Takes the servo's end back, from one that could not be made.
+    pub(crate) fn give_back(&self, device: Own) {
+        *self.device.lock().unwrap_or_else(PoisonError::into_inner) = Some(device);
     }
-    let given = array.as_doubles()?;
-    if let Some(place) = given.iter().position(|x| !x.is_finite()) {
-        let problem = format!(
-            "positions[{}, {}] must be finite, got {} m",
-            place / D,
-            place % D,
-            given[place]
-        );
-        return Err(PyValueError::new_err(problem));
-    }
-    let state = |row: &[f64]| PointState::at_rest(Vector(std::array::from_fn(|i| row[i])));
-    let states: Vec<PointState<D>> = given.chunks_exact(D).map(state).collect();
-    let done = match time {
-        None => post.locked().set(&states),
-        Some(time) => post.locked().set_at(time, &states),
-    };
-    done.or_raise(positions.py())
 }

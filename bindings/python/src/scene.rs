@@ -331,13 +331,13 @@ pub(crate) fn matrix<'py, const D: usize>(
     py: Python<'py>,
     pose: &Pose<D>,
 ) -> PyResult<Bound<'py, PyAny>> {
-    matrices(py, [pose])?.get_item(0)
+    matrices(py, [*pose])?.get_item(0)
 }
 
 /// Poses as an array of matrices.
-pub(crate) fn matrices<'a, 'py, const D: usize>(
+pub(crate) fn matrices<'py, const D: usize>(
     py: Python<'py>,
-    poses: impl IntoIterator<Item = &'a Pose<D>>,
+    poses: impl IntoIterator<Item = Pose<D>>,
 ) -> PyResult<Bound<'py, PyAny>> {
     let mut numbers = Vec::new();
     for pose in poses {

@@ -3,6 +3,7 @@
 
 //! Touch: a servo in a thread of its own, which never waits for Python, and runs on a virtual clock.
 
+use palpate::field::Pose;
 use palpate::scene::{AnyScene, BuiltScene, ServoSettings};
 use palpate::servo_loop::{Ending, Pace, Recorder, RunOptions, ThreadOptions, run};
 use pyo3::exceptions::{PyRuntimeError, PyTypeError, PyValueError};
@@ -13,11 +14,11 @@ use crate::answers::Fields;
 use crate::error::OrRaise;
 use crate::hand::{check_points, simulated};
 use crate::interrupt::interruptible;
-use crate::mailbox::{Post, PyMailbox};
+use crate::mailbox::PyMailbox;
 use crate::pool;
 use crate::poses;
 use crate::scene::PyScene;
-use crate::stage::{Ready, Staged};
+use crate::stage::{Motion, Ready, Staged};
 use crate::touched::{event, read, snapshot, trace};
 
 /// The most rows that are kept: some 3 GB.
@@ -34,21 +35,6 @@ const DEVICE: &str = "omega";
 
 /// How long a tour takes if the servo does not end by itself [s].
 const TOUR: f64 = 10.0;
-
-enum AnyServo {
-    Planar(Staged<2>),
-    Spatial(Staged<3>),
-}
-
-/// Does the same with a servo of either dimension.
-macro_rules! of_either {
-    ($any:expr, $staged:ident => $done:expr) => {
-        match $any {
-            AnyServo::Planar($staged) => $done,
-            AnyServo::Spatial($staged) => $done,
-        }
-    };
-}
 
 /// A servo in a thread of its own: it touches the bodies of a scene with a device, a thousand times a second and more,
 /// and never waits for Python. `scene` is a `Scene`, or what makes one: a shape, or a dict of names and shapes.
@@ -71,7 +57,9 @@ macro_rules! of_either {
 /// (50, 50)
 #[pyclass(frozen, module = "palpate", name = "Servo")]
 pub(crate) struct PyServo {
-    servo: AnyServo,
+    servo: Staged,
+    /// The dimension of the scene.
+    dimension: usize,
     /// The names of the bodies, in their order.
     names: Vec<String>,
 }
@@ -94,22 +82,16 @@ impl PyServo {
         let asked = Asked { device, hand, points, duration, record, rate };
         let mailbox = device.and_then(|device| device.cast::<PyMailbox>().ok());
         let mailbox = mailbox.map(Bound::get);
-        let servo = match scene.get().built() {
-            AnyScene::Planar(scene) => {
-                let own = mailbox.map(PyMailbox::planar).transpose()?;
-                AnyServo::Planar(Staged::new(asked.ready(py, scene, own)?))
-            }
-            AnyScene::Spatial(scene) => {
-                let own = mailbox.map(PyMailbox::spatial).transpose()?;
-                AnyServo::Spatial(Staged::new(asked.ready(py, scene, own)?))
-            }
+        let (ready, dimension) = match scene.get().built() {
+            AnyScene::Planar(scene) => (asked.ready(py, scene, mailbox)?, 2),
+            AnyScene::Spatial(scene) => (asked.ready(py, scene, mailbox)?, 3),
         };
-        Ok(Self { servo, names: scene.get().body_names() })
+        Ok(Self { servo: Staged::new(ready), dimension, names: scene.get().body_names() })
     }
 
     fn __enter__(slf: PyRef<'_, Self>) -> PyResult<PyRef<'_, Self>> {
         let py = slf.py();
-        of_either!(&slf.servo, servo => servo.start(py)?);
+        slf.servo.start(py)?;
         Ok(slf)
     }
 
@@ -122,7 +104,7 @@ impl PyServo {
         self.end(py);
         let is_raised = exception.iter().any(|part| !part.is_none());
         // What the block itself raises says more.
-        let broken = of_either!(&self.servo, servo => servo.broken());
+        let broken = self.servo.broken();
         match broken {
             Some(ending) if !is_raised => Err(ended_early(py, &ending)),
             _ => Ok(()),
@@ -137,7 +119,7 @@ impl PyServo {
     /// >>> servo.has_ended
     /// True
     fn end(&self, py: Python<'_>) {
-        of_either!(&self.servo, servo => servo.end(py));
+        self.servo.end(py);
     }
 
     /// Whether its thread has ended.
@@ -148,7 +130,7 @@ impl PyServo {
     /// False
     #[getter]
     fn has_ended(&self) -> bool {
-        of_either!(&self.servo, servo => servo.has_ended())
+        self.servo.has_ended()
     }
 
     /// The newest state: time, force and touches; None before the first tick and after the end.
@@ -160,9 +142,8 @@ impl PyServo {
     /// ...     servo.latest().touches[0].device.shape
     /// (3,)
     fn latest<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyAny>>> {
-        of_either!(&self.servo, servo => {
-            servo.latest().map(|now| snapshot(py, &now, &self.names)).transpose()
-        })
+        let now = self.servo.latest();
+        now.map(|now| snapshot(py, &now, &self.names, self.dimension)).transpose()
     }
 
     /// The events since the last call: what began and ended to touch, slip and stick.
@@ -172,7 +153,7 @@ impl PyServo {
     /// ...     servo.take_events()
     /// []
     fn take_events<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyAny>>> {
-        let events = of_either!(&self.servo, servo => servo.take_events());
+        let events = self.servo.take_events();
         events.iter().map(|found| event(py, found, &self.names)).collect()
     }
 
@@ -185,7 +166,7 @@ impl PyServo {
     /// ...     "touch" in [event.kind for event in servo.events()]
     /// True
     fn events<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
-        of_either!(&slf.get().servo, servo => servo.begun()?);
+        slf.get().servo.begun()?;
         slf.py().import("palpate._servo")?.call_method1("events", (slf,))
     }
 
@@ -199,7 +180,7 @@ impl PyServo {
     /// True
     #[pyo3(signature = (timeout = None))]
     fn wait(slf: &Bound<'_, Self>, timeout: Option<f64>) -> PyResult<bool> {
-        of_either!(&slf.get().servo, servo => servo.begun()?);
+        slf.get().servo.begun()?;
         let wait = slf.py().import("palpate._servo")?.getattr("wait")?;
         wait.call1((slf, timeout))?.extract()
     }
@@ -213,12 +194,15 @@ impl PyServo {
     /// >>> with pp.Servo(pp.Scene({"ball": pp.ball(0.05)}), hand=[0, 0.1, 0]) as servo:
     /// ...     servo.set_poses({"ball": [0, 0.01, 0]})
     fn set_poses(&self, poses: &Bound<'_, PyDict>) -> PyResult<()> {
-        of_either!(&self.servo, servo => {
-            let numbered: Vec<(String, usize)> = self.names.iter().cloned().zip(0..).collect();
-            let all = poses::named(poses, &numbered)?;
-            let done = servo.running(|own| own.thread.control().set_poses(&all))?;
-            done.or_raise(poses.py())
-        })
+        let numbered: Vec<(String, usize)> = self.names.iter().cloned().zip(0..).collect();
+        let all = if self.dimension == 2 {
+            let all = poses::named::<_, Pose<2>>(poses, &numbered)?.into_iter();
+            all.map(|(body, pose)| (body, pose.in_space())).collect()
+        } else {
+            poses::named(poses, &numbered)?
+        };
+        let done = self.servo.running(|own| own.thread.control().set_poses(&all))?;
+        done.or_raise(poses.py())
     }
 
     /// Limits the force from the next tick on [N], below what device and safety chain allow.
@@ -229,9 +213,7 @@ impl PyServo {
     /// >>> with pp.Servo(pp.Scene(pp.ball(0.05)), hand=[0, 0.049, 0]) as servo:
     /// ...     servo.limit_force(0.5)
     fn limit_force(&self, py: Python<'_>, newtons: f64) -> PyResult<()> {
-        of_either!(&self.servo, servo => {
-            servo.running(|own| own.thread.control().limit_force(newtons))?.or_raise(py)
-        })
+        self.servo.running(|own| own.thread.control().limit_force(newtons))?.or_raise(py)
     }
 
     /// Sets all forces to zero from the next tick on, until `release`.
@@ -243,9 +225,7 @@ impl PyServo {
     /// ...     servo.stop()
     /// ...     servo.release()
     fn stop(&self) -> PyResult<()> {
-        of_either!(&self.servo, servo => {
-            servo.running(|own| _ = own.thread.control().stop_switch().stop())
-        })
+        self.servo.running(|own| _ = own.thread.control().stop_switch().stop())
     }
 
     /// Lets forces rise from zero after a `stop`.
@@ -256,9 +236,7 @@ impl PyServo {
     /// >>> with pp.Servo(pp.Scene(pp.ball(0.05)), hand=[0, 0.049, 0]) as servo:
     /// ...     servo.release()
     fn release(&self) -> PyResult<()> {
-        of_either!(&self.servo, servo => {
-            servo.running(|own| own.thread.control().stop_switch().release())
-        })
+        self.servo.running(|own| own.thread.control().stop_switch().release())
     }
 
     /// What the run was like, of a servo that has ended: why it ended, ticks, lateness, forces, safety, as
@@ -274,7 +252,7 @@ impl PyServo {
     /// 20
     #[getter]
     fn report<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        of_either!(&self.servo, servo => read(py, &servo.ended(py)?.report))
+        read(py, &self.servo.ended(py)?.report)
     }
 
     /// The ticks that were recorded, of a servo that has ended. Each access makes new arrays: keep them.
@@ -289,15 +267,12 @@ impl PyServo {
     /// (10, 10)
     #[getter]
     fn trace<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        of_either!(&self.servo, servo => {
-            let ended = servo.ended(py)?;
-            if ended.rows.is_empty() && ended.lost == 0 {
-                let problem =
-                    "no tick was recorded: tell for how long ticks are kept, by record=";
-                return Err(PyRuntimeError::new_err(problem));
-            }
-            trace(py, &ended.rows, ended.lost)
-        })
+        let ended = self.servo.ended(py)?;
+        if ended.rows.is_empty() && ended.lost == 0 {
+            let problem = "no tick was recorded: tell for how long ticks are kept, by record=";
+            return Err(PyRuntimeError::new_err(problem));
+        }
+        trace(py, &ended.rows, ended.lost, self.dimension)
     }
 }
 
@@ -331,8 +306,9 @@ impl Asked<'_, '_> {
         &self,
         py: Python<'_>,
         scene: &BuiltScene<D>,
-        mailbox: Option<&Post<D>>,
-    ) -> PyResult<Ready<D>> {
+        mailbox: Option<&PyMailbox>,
+    ) -> PyResult<Ready> {
+        mailbox.map_or(Ok(()), |mailbox| mailbox.check(D))?;
         if !(self.rate > 0.0 && self.rate.is_finite()) {
             let problem = format!("rate must be positive and finite, got {} Hz", self.rate);
             return Err(PyValueError::new_err(problem));
@@ -390,7 +366,11 @@ impl Asked<'_, '_> {
             rows: (rows > 0).then_some(rows),
             ..ThreadOptions::default()
         };
-        Ok(Ready { servo, device, options, scene: scene.clone() })
+        let motion = (!scene.motions.is_empty()).then(|| -> Motion {
+            let scene = scene.clone();
+            Box::new(move |time, set_pose| scene.motion()(time, set_pose))
+        });
+        Ok(Ready { servo, device, options, motion })
     }
 
     /// How many rows are kept, of so many contact points.
@@ -435,20 +415,20 @@ pub(crate) fn feel<'py>(
     let asked =
         Asked { device, hand, points, duration: Some(duration), record: Some(duration), rate };
     match scene.get().built() {
-        AnyScene::Planar(scene) => felt(py, asked.ready(py, scene, None)?, &asked),
-        AnyScene::Spatial(scene) => felt(py, asked.ready(py, scene, None)?, &asked),
+        AnyScene::Planar(scene) => felt(py, asked.ready(py, scene, None)?, &asked, 2),
+        AnyScene::Spatial(scene) => felt(py, asked.ready(py, scene, None)?, &asked, 3),
     }
 }
 
-fn felt<'py, const D: usize>(
+fn felt<'py>(
     py: Python<'py>,
-    ready: Ready<D>,
+    ready: Ready,
     asked: &Asked<'_, '_>,
+    dimension: usize,
 ) -> PyResult<Bound<'py, PyAny>> {
-    let Ready { mut servo, mut device, scene, .. } = ready;
+    let Ready { mut servo, mut device, mut motion, .. } = ready;
     let seconds = asked.duration.unwrap_or_default();
     let mut recorder = Recorder::new(asked.rows(device.points())?);
-    let mut motion = scene.motion();
     let report = interruptible(py, &*pool::of_at_least_one(1)?, |stop| {
         let mut options = RunOptions {
             pace: Pace::AsFastAsPossible,
@@ -456,14 +436,14 @@ fn felt<'py, const D: usize>(
             recorder: Some(&mut recorder),
             ..RunOptions::new(seconds)
         };
-        if !scene.motions.is_empty() {
-            options = RunOptions { motion: Some(&mut motion), ..options };
+        if let Some(motion) = &mut motion {
+            options = RunOptions { motion: Some(motion.as_mut()), ..options };
         }
         run(&mut servo, device.as_mut(), options)
     })?;
     let report = report.or_raise(py)?;
     Fields::new(py)
         .with("report", read(py, &report)?)?
-        .with("trace", trace(py, recorder.rows(), recorder.dropped())?)?
+        .with("trace", trace(py, recorder.rows(), recorder.dropped(), dimension)?)?
         .of_class("Felt")
 }

@@ -7,8 +7,8 @@
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 
 use palpate::device::Device;
+use palpate::field::Pose;
 use palpate::haptics::{Event, Servo, Snapshot};
-use palpate::scene::BuiltScene;
 use palpate::servo_loop::{
     EndedThread, Ending, Records, RunReport, ServoThread, ThreadOptions, TraceRow,
 };
@@ -17,44 +17,48 @@ use pyo3::prelude::*;
 
 use crate::error::OrRaise;
 
+/// Moves bodies to where they are at a time [s], by their numbers.
+pub(crate) type Motion = Box<dyn FnMut(f64, &mut dyn FnMut(usize, Pose<3>)) + Send>;
+
 /// What runs.
-pub(crate) struct Ready<const D: usize> {
-    pub(crate) servo: Servo<D>,
-    pub(crate) device: Box<dyn Device<D> + Send>,
-    pub(crate) options: ThreadOptions<D>,
-    pub(crate) scene: BuiltScene<D>,
+pub(crate) struct Ready {
+    pub(crate) servo: Servo,
+    pub(crate) device: Box<dyn Device + Send>,
+    pub(crate) options: ThreadOptions,
+    /// What moves the bodies, if anything does.
+    pub(crate) motion: Option<Motion>,
 }
 
 /// What runs in a thread.
-pub(crate) struct Running<const D: usize> {
-    pub(crate) thread: ServoThread<D>,
-    records: Option<Records<D>>,
+pub(crate) struct Running {
+    pub(crate) thread: ServoThread,
+    records: Option<Records>,
 }
 
 /// What has run.
-pub(crate) struct Ended<const D: usize> {
+pub(crate) struct Ended {
     pub(crate) report: RunReport,
-    pub(crate) rows: Vec<TraceRow<D>>,
+    pub(crate) rows: Vec<TraceRow>,
     /// Rows for which there was no room.
     pub(crate) lost: u64,
 }
 
 /// Where a servo is between its making and its end.
-enum Stage<const D: usize> {
-    Ready(Box<Ready<D>>),
-    Running(Box<Running<D>>),
+enum Stage {
+    Ready(Box<Ready>),
+    Running(Box<Running>),
     /// A thread waits for its end.
     Ending,
-    Ended(Arc<Ended<D>>, Vec<Event>),
+    Ended(Arc<Ended>, Vec<Event>),
     /// Its thread did not start, or panicked.
     Failed,
 }
 
 /// A servo that runs once.
-pub(crate) struct Staged<const D: usize> {
+pub(crate) struct Staged {
     /// The process in which its thread is: a child of `fork` has a copy without one.
     process: u32,
-    stage: Mutex<Stage<D>>,
+    stage: Mutex<Stage>,
     /// Tells those who wait for the end.
     has_ended: Condvar,
 }
@@ -69,8 +73,8 @@ const NOT_BEGUN: &str = "the servo has not begun: use it in a with statement";
 const HAS_ENDED: &str = "the servo has ended";
 const DID_NOT_START: &str = "the servo did not start";
 
-impl<const D: usize> Staged<D> {
-    pub(crate) fn new(ready: Ready<D>) -> Self {
+impl Staged {
+    pub(crate) fn new(ready: Ready) -> Self {
         let stage = Mutex::new(Stage::Ready(Box::new(ready)));
         Self { process: std::process::id(), stage, has_ended: Condvar::new() }
     }
@@ -79,7 +83,7 @@ impl<const D: usize> Staged<D> {
         self.process != std::process::id()
     }
 
-    fn locked(&self) -> MutexGuard<'_, Stage<D>> {
+    fn locked(&self) -> MutexGuard<'_, Stage> {
         self.stage.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
@@ -92,11 +96,9 @@ impl<const D: usize> Staged<D> {
             let mut stage = self.locked();
             match std::mem::replace(&mut *stage, Stage::Failed) {
                 Stage::Ready(ready) => {
-                    let Ready { servo, device, mut options, scene } = *ready;
-                    if !scene.motions.is_empty() {
-                        options = options.with_motion(move |time, set_pose| {
-                            scene.motion()(time, set_pose);
-                        });
+                    let Ready { servo, device, mut options, motion } = *ready;
+                    if let Some(motion) = motion {
+                        options = options.with_motion(motion);
                     }
                     ServoThread::start(servo, device, options).map(|mut thread| {
                         let records = thread.take_records();
@@ -136,7 +138,7 @@ impl<const D: usize> Staged<D> {
     }
 
     /// Does something with the thread that runs; `None` if none does.
-    fn with_running<T>(&self, work: impl FnOnce(&mut Running<D>) -> T) -> Option<T> {
+    fn with_running<T>(&self, work: impl FnOnce(&mut Running) -> T) -> Option<T> {
         if self.is_copy() {
             return None;
         }
@@ -147,7 +149,7 @@ impl<const D: usize> Staged<D> {
     }
 
     /// Does something with the thread that runs.
-    pub(crate) fn running<T>(&self, work: impl FnOnce(&mut Running<D>) -> T) -> PyResult<T> {
+    pub(crate) fn running<T>(&self, work: impl FnOnce(&mut Running) -> T) -> PyResult<T> {
         if self.is_copy() {
             return Err(refused(IS_COPY));
         }
@@ -159,8 +161,8 @@ impl<const D: usize> Staged<D> {
     }
 
     /// The newest state of a servo that runs.
-    pub(crate) fn latest(&self) -> Option<Snapshot<D>> {
-        let newest = |own: &mut Running<D>| {
+    pub(crate) fn latest(&self) -> Option<Snapshot> {
+        let newest = |own: &mut Running| {
             (!own.thread.has_ended()).then(|| own.thread.control().latest().cloned())
         };
         self.with_running(newest).flatten().flatten()
@@ -205,7 +207,7 @@ impl<const D: usize> Staged<D> {
     }
 
     /// What has run.
-    pub(crate) fn ended(&self, py: Python<'_>) -> PyResult<Arc<Ended<D>>> {
+    pub(crate) fn ended(&self, py: Python<'_>) -> PyResult<Arc<Ended>> {
         if self.is_copy() {
             return Err(refused(IS_COPY));
         }
@@ -236,7 +238,7 @@ impl<const D: usize> Staged<D> {
     }
 }
 
-impl<const D: usize> Drop for Staged<D> {
+impl Drop for Staged {
     fn drop(&mut self) {
         if self.is_copy() {
             // Its thread, which would be waited for, is not in this process.
@@ -247,9 +249,9 @@ impl<const D: usize> Drop for Staged<D> {
 }
 
 /// Tells those who wait that a servo has ended, also if its thread panicked.
-struct Told<'a, const D: usize>(&'a Staged<D>);
+struct Told<'a>(&'a Staged);
 
-impl<const D: usize> Drop for Told<'_, D> {
+impl Drop for Told<'_> {
     fn drop(&mut self) {
         let mut stage = self.0.locked();
         if matches!(&*stage, Stage::Ending) {
@@ -260,8 +262,8 @@ impl<const D: usize> Drop for Told<'_, D> {
     }
 }
 
-impl<const D: usize> Running<D> {
-    fn ended(self) -> Stage<D> {
+impl Running {
+    fn ended(self) -> Stage {
         let EndedThread { report, mut control, .. } = self.thread.end();
         let events = std::iter::from_fn(|| control.next_event()).collect();
         let (rows, lost) = self.records.map_or((Vec::new(), 0), |mut records| {

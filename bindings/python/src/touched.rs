@@ -10,29 +10,32 @@ use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
 use serde::Serialize;
 
-use crate::answers::{Fields, vector};
+use crate::answers::Fields;
 use crate::arrays::{row, table};
 use crate::scene::matrices;
 
-pub(crate) fn snapshot<'py, const D: usize>(
+/// The newest state of a servo of a scene of so many dimensions.
+pub(crate) fn snapshot<'py>(
     py: Python<'py>,
-    now: &Snapshot<D>,
+    now: &Snapshot,
     names: &[String],
+    dimension: usize,
 ) -> PyResult<Bound<'py, PyAny>> {
-    let touch = |touch: &palpate::haptics::Touch<D>| {
+    let vector = |v: Vector<f64, 3>| row(py, v.0[..dimension].to_vec());
+    let touch = |touch: &palpate::haptics::Touch| {
         Fields::new(py)
-            .with("device", vector(py, touch.device))?
-            .with("velocity", vector(py, touch.velocity))?
-            .with("proxy", vector(py, touch.proxy))?
-            .with("wanted", vector(py, touch.wanted))?
-            .with("force", vector(py, touch.force))?
-            .with("normal", vector(py, touch.normal))?
+            .with("device", vector(touch.device))?
+            .with("velocity", vector(touch.velocity))?
+            .with("proxy", vector(touch.proxy))?
+            .with("wanted", vector(touch.wanted))?
+            .with("force", vector(touch.force))?
+            .with("normal", vector(touch.normal))?
             .with("body", touch.contact.then(|| names.get(touch.body as usize)).flatten())?
             .with("is_slipping", touch.is_slipping)?
             .of_class("Touch")
     };
     let touches: PyResult<Vec<_>> = now.touches.iter().map(touch).collect();
-    let tool = tools(py, now.tool.as_slice())?;
+    let tool = tools(py, now.tool.as_slice(), dimension)?;
     let tool = tool.map(|all| all.first()?.of_class("HeldTool")).transpose()?;
     Fields::new(py)
         .with("time", now.progress.time)?
@@ -89,16 +92,19 @@ pub(crate) fn read<'py>(py: Python<'py>, data: &impl Serialize) -> PyResult<Boun
     py.import("json")?.call_method1("loads", (text,))
 }
 
-pub(crate) fn trace<'py, const D: usize>(
+/// The ticks of a servo of a scene of so many dimensions.
+pub(crate) fn trace<'py>(
     py: Python<'py>,
-    rows: &[TraceRow<D>],
+    rows: &[TraceRow],
     lost: u64,
+    dimension: usize,
 ) -> PyResult<Bound<'py, PyAny>> {
-    let vectors = |of: fn(&TraceRow<D>) -> Vector<f64, D>| {
-        table(py, rows.iter().flat_map(|row| of(row).0).collect(), D)
+    let vectors = |of: fn(&TraceRow) -> Vector<f64, 3>| {
+        let along = |row| of(row).0.into_iter().take(dimension);
+        table(py, rows.iter().flat_map(along).collect(), dimension)
     };
     let held: Vec<_> = rows.iter().filter_map(|row| row.tool).collect();
-    let tool = tools(py, &held)?.map(|all| all.of_class("HeldTool")).transpose()?;
+    let tool = tools(py, &held, dimension)?.map(|all| all.of_class("HeldTool")).transpose()?;
     Fields::new(py)
         .with("time", row(py, rows.iter().map(|row| row.time_s).collect()))?
         .with("point", row(py, rows.iter().map(|row| row.point).collect()))?
@@ -122,23 +128,31 @@ pub(crate) fn trace<'py, const D: usize>(
         .of_class("Trace")
 }
 
-/// Tools as arrays with a row for each; `None` if there are none.
-fn tools<'py, const D: usize>(
+/// Tools of a scene of so many dimensions as arrays with a row for each; `None` if there are none.
+fn tools<'py>(
     py: Python<'py>,
-    all: &[HeldTool<D>],
+    all: &[HeldTool],
+    dimension: usize,
 ) -> PyResult<Option<Fields<'py>>> {
     if all.is_empty() {
         return Ok(None);
     }
     // In the plane, turns and torques are about z alone.
-    let about = |of: fn(&HeldTool<D>) -> Vector<f64, 3>| {
-        if D == 2 {
+    let is_flat = dimension == 2;
+    let about = |of: fn(&HeldTool) -> Vector<f64, 3>| {
+        if is_flat {
             return Ok(row(py, all.iter().map(|tool| of(tool).0[2]).collect()));
         }
         table(py, all.iter().flat_map(|tool| of(tool).0).collect(), 3)
     };
+    let poses = all.iter().map(|tool| tool.pose);
+    let poses = if is_flat {
+        matrices(py, poses.map(|pose| pose.truncated::<2>()))?
+    } else {
+        matrices(py, poses)?
+    };
     Fields::new(py)
-        .with("pose", matrices(py, all.iter().map(|tool| &tool.pose))?)?
+        .with("pose", poses)?
         .with("turn", about(|tool| tool.turn)?)?
         .with("torque", about(|tool| tool.torque)?)?
         .with("given_torque", about(|tool| tool.given.unwrap_or(Vector([f64::NAN; 3])))?)?

@@ -12,15 +12,15 @@ use crate::outcome::Failure;
 use crate::table::{Table, coordinates};
 
 /// The times [s] and positions [m] of a contact point.
-type Samples<const D: usize> = (Vec<f64>, Vec<Vector<f64, D>>);
+type Samples = (Vec<f64>, Vec<Vector<f64, 3>>);
 
-/// Reads a path for each contact point from the columns `time_s,x_m,y_m[,z_m]` and, optionally,
+/// Reads a path for each contact point of a scene of `D` dimensions from the columns `time_s,x_m,y_m[,z_m]` and, optionally,
 /// `point`, the number of the row's contact point.
-pub(crate) fn read<const D: usize>(path: &Path) -> Result<Vec<HandPath<D>>, Failure> {
+pub(crate) fn read<const D: usize>(path: &Path) -> Result<Vec<HandPath>, Failure> {
     let mut table = Table::open(path)?;
     let columns = coordinates::<D>(&table, &format!("a hand path in {D}D"), &["time_s"])?;
     let point = table.column("point");
-    let mut paths: Vec<Samples<D>> = Vec::new();
+    let mut paths: Vec<Samples> = Vec::new();
     while table.advance()? {
         let index = match point {
             None => Some(0),
@@ -40,13 +40,15 @@ pub(crate) fn read<const D: usize>(path: &Path) -> Result<Vec<HandPath<D>>, Fail
             table.note_at(columns[0], &format!("{rule}, got {time} s"));
         }
         paths[index].0.push(*time);
-        paths[index].1.push(Vector(std::array::from_fn(|axis| position[axis])));
+        paths[index]
+            .1
+            .push(Vector::<_, D>(std::array::from_fn(|axis| position[axis])).in_space());
     }
     table.finish()?;
     if paths.is_empty() {
         return Err(table.failure("there are no rows"));
     }
-    let path = |(times, positions): Samples<D>| {
+    let path = |(times, positions): Samples| {
         HandPath::new(times, positions, Interpolation::Monotone)
             .map_err(|error| table.failure(error))
     };

@@ -48,7 +48,7 @@ impl DeviceLost {
 /// [`write_gripper_force`](Self::write_gripper_force); and however the run ends, also by a panic, the
 /// writes once more with zeros, and [`close`](Self::close). After a [`DeviceLost`], a loop that may
 /// reconnect begins again with [`open`](Self::open).
-pub trait Device<const D: usize> {
+pub trait Device {
     /// The number of contact points; it never changes.
     fn points(&self) -> usize;
 
@@ -70,7 +70,7 @@ pub trait Device<const D: usize> {
     ///
     /// [`DeviceLost`] if the device must be [opened](Self::open) again before it can be read. A
     /// transfer that fails once is a [stale](Reading::Stale) reading.
-    fn read(&mut self, time: f64, points: &mut [PointState<D>]) -> Result<Reading, DeviceLost>;
+    fn read(&mut self, time: f64, points: &mut [PointState]) -> Result<Reading, DeviceLost>;
 
     /// Writes one force on the hand for every contact point [N].
     ///
@@ -80,7 +80,7 @@ pub trait Device<const D: usize> {
     /// # Errors
     ///
     /// As [`read`](Self::read).
-    fn write(&mut self, forces: &[Vector<f64, D>]) -> Result<(), DeviceLost>;
+    fn write(&mut self, forces: &[Vector<f64, 3>]) -> Result<(), DeviceLost>;
 
     /// Orientation and angular velocity at the time of the last [`read`](Self::read); always
     /// `None` for a device without rotation.
@@ -90,7 +90,7 @@ pub trait Device<const D: usize> {
     /// # Errors
     ///
     /// As [`read`](Self::read).
-    fn read_turn(&mut self) -> Result<Option<TurnState<D>>, DeviceLost> {
+    fn read_turn(&mut self) -> Result<Option<TurnState>, DeviceLost> {
         Ok(None)
     }
 

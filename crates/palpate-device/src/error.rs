@@ -10,7 +10,7 @@ use crate::number::NumberError;
 /// ```
 /// use palpate_device::{DeviceError, DeviceProfile, MailboxDevice};
 ///
-/// let none = MailboxDevice::<3>::new(DeviceProfile::unlimited("of my own"), 0);
+/// let none = MailboxDevice::new(DeviceProfile::unlimited("of my own"), 0);
 /// assert_eq!(none.err(), Some(DeviceError::NoContactPoint));
 /// ```
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]

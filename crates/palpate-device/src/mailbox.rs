@@ -47,42 +47,42 @@ use std::time::Duration;
 /// # }
 /// ```
 #[derive(Debug)]
-pub struct MailboxDevice<const D: usize> {
+pub struct MailboxDevice {
     profile: DeviceProfile,
     points: usize,
     rate: Option<f64>,
     /// The longest time that the driver's device watches for; `None` if it does not.
     watchdog: Option<Duration>,
-    messages: LatestReader<Message<D>>,
+    messages: LatestReader<Message>,
     /// The last message that was new, and when it came [s].
     seen: Option<(u64, f64)>,
     /// The message at which the device was lost: it and those before are old.
     lost: u64,
-    turn: Option<TurnState<D>>,
+    turn: Option<TurnState>,
     buttons: Buttons,
     gripper: Option<GripperState>,
     patience: f64,
-    orders: Orders<D>,
-    sent: LatestWriter<Orders<D>>,
+    orders: Orders,
+    sent: LatestWriter<Orders>,
 }
 
 /// The driver's end of a [`MailboxDevice`].
 #[derive(Debug)]
-pub struct Mailbox<const D: usize> {
-    message: Message<D>,
-    messages: LatestWriter<Message<D>>,
-    orders: LatestReader<Orders<D>>,
+pub struct Mailbox {
+    message: Message,
+    messages: LatestWriter<Message>,
+    orders: LatestReader<Orders>,
 }
 
 /// What the driver says of its device.
 #[derive(Clone, Debug)]
-struct Message<const D: usize> {
+struct Message {
     /// How many messages were sent, with this one.
     number: u64,
     /// When the states were measured [s]; `None` for when the servo takes them.
     time: Option<f64>,
-    points: Vec<PointState<D>>,
-    turn: Option<TurnState<D>>,
+    points: Vec<PointState>,
+    turn: Option<TurnState>,
     buttons: Buttons,
     gripper: Option<GripperState>,
     is_ready: bool,
@@ -91,17 +91,17 @@ struct Message<const D: usize> {
 
 /// What the servo wants of the device.
 #[derive(Clone, Debug)]
-struct Orders<const D: usize> {
+struct Orders {
     /// How often the servo has written forces.
     ticks: u64,
-    forces: Vec<Vector<f64, D>>,
+    forces: Vec<Vector<f64, 3>>,
     torque: Vector<f64, 3>,
     gripper_force: f64,
     is_enabled: bool,
     watchdog: Option<Duration>,
 }
 
-impl<const D: usize> MailboxDevice<D> {
+impl MailboxDevice {
     /// How long the driver may set nothing unless [`with_patience`](Self::with_patience) says
     /// otherwise [s].
     pub const PATIENCE: f64 = 0.1;
@@ -111,10 +111,7 @@ impl<const D: usize> MailboxDevice<D> {
     /// # Errors
     ///
     /// [`DeviceError::NoContactPoint`] if there are none.
-    pub fn new(
-        profile: DeviceProfile,
-        points: usize,
-    ) -> Result<(Self, Mailbox<D>), DeviceError> {
+    pub fn new(profile: DeviceProfile, points: usize) -> Result<(Self, Mailbox), DeviceError> {
         if points == 0 {
             return Err(DeviceError::NoContactPoint);
         }
@@ -191,14 +188,14 @@ impl<const D: usize> MailboxDevice<D> {
     }
 }
 
-impl<const D: usize> Mailbox<D> {
+impl Mailbox {
     /// Sets where every point is and how fast it moves, in the coordinates of the device, as of when
     /// the servo takes it.
     ///
     /// # Errors
     ///
     /// [`DeviceError::OneForEach`] if there is not one state for each point.
-    pub fn set(&mut self, states: &[PointState<D>]) -> Result<(), DeviceError> {
+    pub fn set(&mut self, states: &[PointState]) -> Result<(), DeviceError> {
         self.send(None, states)
     }
 
@@ -209,13 +206,13 @@ impl<const D: usize> Mailbox<D> {
     /// # Errors
     ///
     /// As [`set`](Self::set).
-    pub fn set_at(&mut self, time: f64, states: &[PointState<D>]) -> Result<(), DeviceError> {
+    pub fn set_at(&mut self, time: f64, states: &[PointState]) -> Result<(), DeviceError> {
         self.send(Some(time), states)
     }
 
     /// Sets the orientation and the angular velocity of a device with rotation, from the next
     /// [`set`](Self::set) on.
-    pub fn set_turn(&mut self, turn: TurnState<D>) {
+    pub fn set_turn(&mut self, turn: TurnState) {
         self.message.turn = Some(turn);
     }
 
@@ -246,7 +243,7 @@ impl<const D: usize> Mailbox<D> {
 
     /// The newest forces on the hand [N], one for each point; empty before the first tick.
     #[must_use]
-    pub fn forces(&mut self) -> &[Vector<f64, D>] {
+    pub fn forces(&mut self) -> &[Vector<f64, 3>] {
         let orders = self.orders.latest().filter(|orders| orders.ticks > 0);
         orders.map_or(&[], |orders| &orders.forces)
     }
@@ -284,7 +281,7 @@ impl<const D: usize> Mailbox<D> {
         self.orders.latest().and_then(|orders| orders.watchdog)
     }
 
-    fn send(&mut self, time: Option<f64>, states: &[PointState<D>]) -> Result<(), DeviceError> {
+    fn send(&mut self, time: Option<f64>, states: &[PointState]) -> Result<(), DeviceError> {
         let message = &mut self.message;
         let points = message.points.len();
         if states.len() != points {
@@ -312,13 +309,13 @@ impl<const D: usize> Mailbox<D> {
 }
 
 /// Copies as many states as both have.
-fn write_states<const D: usize>(points: &mut [PointState<D>], states: &[PointState<D>]) {
+fn write_states(points: &mut [PointState], states: &[PointState]) {
     for (point, state) in points.iter_mut().zip(states) {
         *point = *state;
     }
 }
 
-impl<const D: usize> Device<D> for MailboxDevice<D> {
+impl Device for MailboxDevice {
     fn points(&self) -> usize {
         self.points
     }
@@ -332,7 +329,7 @@ impl<const D: usize> Device<D> for MailboxDevice<D> {
     }
 
     /// Real-time: allocates nothing until the device is lost, takes no lock, cannot panic.
-    fn read(&mut self, time: f64, points: &mut [PointState<D>]) -> Result<Reading, DeviceLost> {
+    fn read(&mut self, time: f64, points: &mut [PointState]) -> Result<Reading, DeviceLost> {
         let Some(message) = self.messages.latest() else { return Ok(Reading::NotReady) };
         let number = message.number;
         if number <= self.lost {
@@ -365,7 +362,7 @@ impl<const D: usize> Device<D> for MailboxDevice<D> {
     }
 
     /// Real-time: allocates nothing, takes no lock, cannot panic.
-    fn write(&mut self, forces: &[Vector<f64, D>]) -> Result<(), DeviceLost> {
+    fn write(&mut self, forces: &[Vector<f64, 3>]) -> Result<(), DeviceLost> {
         self.orders.ticks += 1;
         for (written, force) in self.orders.forces.iter_mut().zip(forces) {
             *written = *force;
@@ -375,7 +372,7 @@ impl<const D: usize> Device<D> for MailboxDevice<D> {
     }
 
     /// Real-time: allocates nothing, takes no lock, cannot panic.
-    fn read_turn(&mut self) -> Result<Option<TurnState<D>>, DeviceLost> {
+    fn read_turn(&mut self) -> Result<Option<TurnState>, DeviceLost> {
         Ok(self.turn)
     }
 

@@ -43,17 +43,17 @@ impl Reading {
 /// One contact point of a device, as read in a tick, in device coordinates. They equal world
 /// coordinates unless the servo's protection has a workspace map.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct PointState<const D: usize> {
+pub struct PointState {
     /// The device point: where the hand holds the device [m].
-    pub position: Point<D>,
+    pub position: Point<3>,
     /// The velocity of the device point [m/s].
-    pub velocity: Vector<f64, D>,
+    pub velocity: Vector<f64, 3>,
 }
 
-impl<const D: usize> PointState<D> {
+impl PointState {
     /// A point at rest at `position` [m].
     #[must_use]
-    pub fn at_rest(position: impl Into<Point<D>>) -> Self {
+    pub fn at_rest(position: impl Into<Point<3>>) -> Self {
         Self { position: position.into(), velocity: Vector::ZERO }
     }
 
@@ -66,18 +66,18 @@ impl<const D: usize> PointState<D> {
 
 /// Orientation and angular velocity of a device, as read in a tick, in device coordinates.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct TurnState<const D: usize> {
+pub struct TurnState {
     /// The orientation of the handle in device coordinates.
-    pub orientation: Rotation<D>,
+    pub orientation: Rotation<3>,
     /// The angular velocity in device coordinates [rad/s], a vector along the axis; in the
     /// plane only z is used.
     pub angular_velocity: Vector<f64, 3>,
 }
 
-impl<const D: usize> TurnState<D> {
+impl TurnState {
     /// A device at rest in an orientation.
     #[must_use]
-    pub fn at_rest(orientation: Rotation<D>) -> Self {
+    pub fn at_rest(orientation: Rotation<3>) -> Self {
         Self { orientation, angular_velocity: Vector::ZERO }
     }
 }

@@ -68,7 +68,7 @@ pub use mass::{Mass, MassLimits};
 pub use node::Node;
 pub use pose::{Pose, Rotation, Screw};
 pub use promise::{Deviation, Promise, Quality, Rounding};
-pub use shape::Shape;
+pub use shape::{Shape, SpaceShape};
 pub use strided::{Layout, Strided, StridedMut};
 pub use unknown_name::UnknownName;
 pub use vector::{Point, Vector};

@@ -106,6 +106,21 @@ impl<const D: usize> Rotation<D> {
         Self { matrix }
     }
 
+    /// The same rotation in space: that of a plane is about the z axis.
+    #[must_use]
+    pub fn in_space(&self) -> Rotation<3> {
+        self.resized()
+    }
+
+    /// The first rows and columns; those that this rotation lacks are of the identity.
+    fn resized<const N: usize>(&self) -> Rotation<N> {
+        let entry = |i: usize, k: usize| {
+            let entry = self.matrix.get(i).and_then(|row| row.get(k));
+            entry.copied().unwrap_or(f64::from(u8::from(i == k)))
+        };
+        Rotation { matrix: std::array::from_fn(|i| std::array::from_fn(|k| entry(i, k))) }
+    }
+
     /// Applies the rotation.
     #[inline]
     #[must_use]
@@ -325,6 +340,33 @@ impl<const D: usize> Pose<D> {
     pub fn is_finite(&self) -> bool {
         self.translation.is_finite()
             && self.rotation.matrix.iter().flatten().all(|x| x.is_finite())
+    }
+
+    /// The same motion in space: that of the plane is one of the plane z = 0.
+    ///
+    /// ```
+    /// use palpate_field::{Pose, Rotation, Vector};
+    ///
+    /// # fn main() -> Result<(), palpate_field::ShapeError> {
+    /// let flat = Pose::new(Rotation::from_angle(0.5)?, [1.0, 2.0]);
+    /// let point = flat.in_space().transform_point(Vector([3.0, 4.0, 5.0]));
+    /// assert_eq!(point.truncated(), flat.transform_point(Vector([3.0, 4.0])));
+    /// assert_eq!((point[2], flat.in_space().truncated()), (5.0, flat));
+    /// # Ok(())
+    /// # }
+    /// ```
+    #[must_use]
+    pub fn in_space(&self) -> Pose<3> {
+        Pose::new(self.rotation.in_space(), self.translation.in_space())
+    }
+}
+
+impl Pose<3> {
+    /// The part of this motion in the first coordinates, as [`Vector::truncated`]: of a motion that keeps the
+    /// plane z = 0, that in this plane.
+    #[must_use]
+    pub fn truncated<const D: usize>(&self) -> Pose<D> {
+        Pose::new(self.rotation.resized(), self.translation.truncated::<D>())
     }
 }
 

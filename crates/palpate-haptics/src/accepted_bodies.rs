@@ -20,8 +20,8 @@ use palpate_safety::{Acceptance, Accepted, DeviceLimits, Impedance, Requester};
 /// [`Servo::accept`](crate::Servo::accept) makes them for
 /// [`replace_bodies`](crate::Servo::replace_bodies) of the same servo.
 #[derive(Clone, Debug)]
-pub struct AcceptedBodies<const D: usize> {
-    pub(crate) bodies: Bodies<D>,
+pub struct AcceptedBodies {
+    pub(crate) bodies: Bodies,
     /// The accepted coupling of the tool; `None` if the servo renders contact points.
     pub(crate) coupling: Option<Coupling>,
     /// Contact points: one entry per body. Tool: the translational entry, then the rotational
@@ -29,12 +29,12 @@ pub struct AcceptedBodies<const D: usize> {
     pub(crate) accepted: Vec<Accepted>,
     /// The protection of the servo, and of its clones, that they were accepted for; `None`
     /// without protection.
-    pub(crate) protection: Option<Arc<Protection<D>>>,
+    pub(crate) protection: Option<Arc<Protection>>,
 }
 
-impl<const D: usize> AcceptedBodies<D> {
+impl AcceptedBodies {
     /// Unchanged bodies, for a servo without protection.
-    pub(crate) fn unchanged(bodies: Bodies<D>) -> Self {
+    pub(crate) fn unchanged(bodies: Bodies) -> Self {
         Self { bodies, coupling: None, accepted: Vec::new(), protection: None }
     }
 
@@ -51,7 +51,7 @@ impl<const D: usize> AcceptedBodies<D> {
 
     /// The bodies.
     #[must_use]
-    pub fn bodies(&self) -> &Bodies<D> {
+    pub fn bodies(&self) -> &Bodies {
         &self.bodies
     }
 
@@ -84,16 +84,16 @@ impl<const D: usize> AcceptedBodies<D> {
     }
 }
 
-impl<const D: usize> Protection<D> {
+impl Protection {
     /// Accepts everything that a servo renders: its bodies, and with a tool the requested
     /// virtual coupling. A device that gives no force takes bodies as they are.
     #[inline(never)]
     pub(crate) fn accepted_bodies(
         self: &Arc<Self>,
-        bodies: Bodies<D>,
+        bodies: Bodies,
         requested: Option<Coupling>,
         rate: f64,
-    ) -> Result<AcceptedBodies<D>, HapticsError> {
+    ) -> Result<AcceptedBodies, HapticsError> {
         let protection = Some(self.clone());
         if self.profile.max_force == 0.0 {
             return Ok(AcceptedBodies { protection, ..AcceptedBodies::unchanged(bodies) });
@@ -116,10 +116,10 @@ impl<const D: usize> Protection<D> {
     /// damping.
     fn accept_tool(
         &self,
-        mut bodies: Bodies<D>,
+        mut bodies: Bodies,
         mut coupling: Coupling,
         rate: f64,
-    ) -> Result<(Bodies<D>, Coupling, Vec<Accepted>), HapticsError> {
+    ) -> Result<(Bodies, Coupling, Vec<Accepted>), HapticsError> {
         let mut refusals = self.refusals();
         self.accept_magnets(&mut bodies, rate, &mut refusals)?;
         self.stiffen(&mut bodies, rate)?;
@@ -142,7 +142,7 @@ impl<const D: usize> Protection<D> {
     /// Refuses the coupling on each body, and about axes, of which the device renders less than all.
     fn refuse_tool(
         &self,
-        bodies: &Bodies<D>,
+        bodies: &Bodies,
         coupling: &Coupling,
         rate: f64,
         refusals: &mut Refusals,
@@ -212,7 +212,7 @@ impl<const D: usize> Protection<D> {
 }
 
 /// Stiffness and damping of every layer of every body.
-fn layers<const D: usize>(bodies: &Bodies<D>) -> Result<Vec<Impedance>, HapticsError> {
+fn layers(bodies: &Bodies) -> Result<Vec<Impedance>, HapticsError> {
     bodies.bodies().iter().flat_map(|body| body.surface().impedances()).collect()
 }
 

@@ -6,7 +6,8 @@
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use palpate_field::{
-    BoundingBall, LARGEST_LENGTH, Point, Pose, Quality, Rounding, Shape, Vector,
+    BoundingBall, Bounds, LARGEST_LENGTH, Point, Pose, Quality, Rounding, Shape, SpaceShape,
+    Vector,
 };
 
 use crate::error::HapticsError;
@@ -18,24 +19,29 @@ use crate::surface::{Passing, Surface};
 const PLACE_ROUNDINGS: f64 = 8.0;
 
 /// A shape with a pose and a surface.
+///
+/// A planar shape is felt in space as endless along z ([`Shape::endless`]).
 #[derive(Clone, Debug)]
-pub struct Body<const D: usize> {
-    shape: Shape<D>,
-    surface: Surface<D>,
-    world_from_body: Pose<D>,
-    body_from_world: Pose<D>,
+pub struct Body {
+    shape: SpaceShape,
+    surface: Surface,
+    world_from_body: Pose<3>,
+    body_from_world: Pose<3>,
     /// The pose in the tick before; the present pose if the body did not move.
-    world_from_before: Pose<D>,
+    world_from_before: Pose<3>,
     has_moved: bool,
     /// Whether the pose differs from the identity.
     is_placed: bool,
-    /// The bounding ball in world coordinates; `None` for an unbounded shape.
-    pub(crate) ball: Option<BoundingBall<D>>,
+    /// The bounding ball in world coordinates; `None` for an unbounded shape. That of a planar shape
+    /// is the cross-section of the endless cylinder that bounds it.
+    pub(crate) ball: Option<BoundingBall<3>>,
+    /// The direction in world coordinates in which a planar shape is endless.
+    endless: Option<Vector<f64, 3>>,
     /// Whether the field may be less than the distance to the bounding ball.
     pub(crate) is_below_ball: bool,
     /// The region in which the field's promise holds, in world coordinates; `None` means
     /// everywhere.
-    pub(crate) region: Option<BoundingBall<D>>,
+    pub(crate) region: Option<BoundingBall<3>>,
     /// The rounding error of the body's distances at points of the world.
     rounding: Rounding,
     /// The distance from the world's origin to the bounding ball [m]; negative if the ball
@@ -43,7 +49,7 @@ pub struct Body<const D: usize> {
     off_origin: f64,
 }
 
-impl<const D: usize> Body<D> {
+impl Body {
     /// A body at the origin.
     ///
     /// # Errors
@@ -51,21 +57,22 @@ impl<const D: usize> Body<D> {
     /// [`HapticsError::Shape`] if the shape cannot carry the texture of the surface; as
     /// [`Surface::new`] for a material.
     pub fn new(
-        shape: Shape<D>,
-        surface: impl TryInto<Surface<D>, Error: Into<HapticsError>>,
+        shape: impl Into<SpaceShape>,
+        surface: impl TryInto<Surface, Error: Into<HapticsError>>,
     ) -> Result<Self, HapticsError> {
-        let surface = surface.try_into().map_err(Into::into)?;
+        let (shape, surface) = (shape.into(), surface.try_into().map_err(Into::into)?);
+        let surface = surface.on_body(if shape.is_endless() { 2 } else { 3 })?;
         let shape = surface.carved(shape)?;
         Ok(Self::of(shape, surface))
     }
 
     /// A body whose shape already includes the texture.
-    fn of(shape: Shape<D>, surface: Surface<D>) -> Self {
+    fn of(shape: SpaceShape, surface: Surface) -> Self {
         // A tick must not allocate, so tapes are recorded here.
         shape.prepare();
         let identity = Pose::identity();
-        let is_below_ball = !shape.promise().above_bounds;
-        let rounding = shape.promise().rounding;
+        let promise = shape.shape().promise();
+        let (is_below_ball, rounding) = (!promise.above_bounds, promise.rounding);
         let mut body = Self {
             shape,
             surface,
@@ -75,6 +82,7 @@ impl<const D: usize> Body<D> {
             has_moved: false,
             is_placed: false,
             ball: None,
+            endless: None,
             is_below_ball,
             region: None,
             rounding,
@@ -90,7 +98,7 @@ impl<const D: usize> Body<D> {
     ///
     /// [`HapticsError::Pose`] if a number of the pose is not finite or beyond 1e15.
     #[inline(never)]
-    pub fn at(mut self, world_from_body: Pose<D>) -> Result<Self, HapticsError> {
+    pub fn at(mut self, world_from_body: Pose<3>) -> Result<Self, HapticsError> {
         if !is_usable(&world_from_body) {
             return Err(HapticsError::Pose);
         }
@@ -101,19 +109,30 @@ impl<const D: usize> Body<D> {
 
     /// The shape in the body's coordinates.
     #[must_use]
-    pub fn shape(&self) -> &Shape<D> {
-        &self.shape
+    pub fn shape(&self) -> &Shape<3> {
+        self.shape.shape()
+    }
+
+    /// Bounds of the shape in the body's coordinates, as [`SpaceShape::bounds`].
+    #[must_use]
+    pub fn bounds(&self) -> Option<Bounds<3>> {
+        self.shape.bounds()
+    }
+
+    /// Whether the shape is a planar one.
+    pub(crate) fn is_endless(&self) -> bool {
+        self.shape.is_endless()
     }
 
     /// The surface: what the body feels like.
     #[must_use]
-    pub fn surface(&self) -> &Surface<D> {
+    pub fn surface(&self) -> &Surface {
         &self.surface
     }
 
     /// The pose.
     #[must_use]
-    pub fn world_from_body(&self) -> &Pose<D> {
+    pub fn world_from_body(&self) -> &Pose<3> {
         &self.world_from_body
     }
 
@@ -136,7 +155,7 @@ impl<const D: usize> Body<D> {
     ///     direction: Some(vec![1.0, 0.0, 0.0]),
     /// };
     /// let grooved = Material { texture: Some(texture), ..Material::default() };
-    /// let plate = Body::new(Shape::ball(1.0)?, Surface::new(&grooved)?)?;
+    /// let plate = Body::new(Shape::sphere(1.0)?, Surface::new(&grooved)?)?;
     /// let (hand, up) = (Vector([0.375, -0.1, 0.0]), Vector([0.0, 1.0, 0.0]));
     /// let passing = plate.passing(hand, up, 1000.0).ok_or("no texture")?;
     /// assert!((passing.frequency - 375.0).abs() < 1e-9 && (passing.part - 0.5).abs() < 1e-9);
@@ -148,8 +167,8 @@ impl<const D: usize> Body<D> {
     #[inline(never)]
     pub fn passing(
         &self,
-        velocity: Vector<f64, D>,
-        normal: Vector<f64, D>,
+        velocity: Vector<f64, 3>,
+        normal: Vector<f64, 3>,
         rate: f64,
     ) -> Option<Passing> {
         let [velocity, normal] = [velocity, normal].map(|v| self.vector_in_body(v));
@@ -174,13 +193,13 @@ impl<const D: usize> Body<D> {
 
     /// A vector of the world in the body's coordinates.
     #[inline]
-    pub(crate) fn vector_in_body(&self, v: Vector<f64, D>) -> Vector<f64, D> {
+    pub(crate) fn vector_in_body(&self, v: Vector<f64, 3>) -> Vector<f64, 3> {
         if self.is_placed { self.body_from_world.transform_vector(v) } else { v }
     }
 
     /// A vector of the body's coordinates in the world.
     #[inline]
-    pub(crate) fn vector_in_world(&self, v: Vector<f64, D>) -> Vector<f64, D> {
+    pub(crate) fn vector_in_world(&self, v: Vector<f64, 3>) -> Vector<f64, 3> {
         if self.is_placed { self.world_from_body.transform_vector(v) } else { v }
     }
 
@@ -190,14 +209,14 @@ impl<const D: usize> Body<D> {
     }
 
     /// Where the body's motion of this tick takes a point of the world.
-    pub(crate) fn carried(&self, point: Point<D>) -> Point<D> {
+    pub(crate) fn carried(&self, point: Point<3>) -> Point<3> {
         let in_body = self.world_from_before.inverse().transform_point(point);
         self.world_from_body.transform_point(in_body)
     }
 
     /// Where the body's motion of this tick takes a pose of the world; `None` if the body does
     /// not move.
-    pub(crate) fn carried_pose(&self, pose: &Pose<D>) -> Option<Pose<D>> {
+    pub(crate) fn carried_pose(&self, pose: &Pose<3>) -> Option<Pose<3>> {
         let in_body = self.world_from_before.inverse() * *pose;
         self.has_moved.then(|| self.world_from_body * in_body)
     }
@@ -206,13 +225,16 @@ impl<const D: usize> Body<D> {
     /// another; `None` if the point stays more than `margin` [m] away from the body.
     pub(crate) fn way_in_body(
         &self,
-        [from, to]: [Point<D>; 2],
+        [from, to]: [Point<3>; 2],
         margin: f64,
-    ) -> Option<[Point<D>; 2]> {
+    ) -> Option<[Point<3>; 2]> {
         let from = self.world_from_before.inverse().transform_point(from);
         let to = self.body_from_world.transform_point(to);
-        let Some(bounds) = self.shape.promise().bounds else { return Some([from, to]) };
-        let (way, to_centre) = (to - from, bounds.ball.centre - from);
+        let Some(bounds) = self.bounds() else { return Some([from, to]) };
+        let across = |v: Vector<f64, 3>| {
+            if self.is_endless() { v - Vector::unit(2) * v[2] } else { v }
+        };
+        let (way, to_centre) = (across(to - from), across(bounds.ball.centre - from));
         let part = (way.dot(to_centre) / way.dot(way)).clamp(0.0, 1.0);
         let nearest = if part > 0.0 { way * part } else { Vector::ZERO };
         // Written so that NaN counts as near.
@@ -221,46 +243,61 @@ impl<const D: usize> Body<D> {
     }
 
     /// A point of the world in the body's coordinates.
-    pub(crate) fn in_body(&self, point: Point<D>) -> Point<D> {
+    pub(crate) fn in_body(&self, point: Point<3>) -> Point<3> {
         if self.is_placed { self.body_from_world.transform_point(point) } else { point }
     }
 
     /// The distance from a point of the world to the bounding ball [m]; negative inside the
     /// ball.
     #[inline]
-    pub(crate) fn above_ball(&self, point: Point<D>) -> f64 {
-        self.ball.map_or(f64::NEG_INFINITY, |ball| (point - ball.centre).norm() - ball.radius)
+    pub(crate) fn above_ball(&self, point: Point<3>) -> f64 {
+        self.ball.map_or(f64::NEG_INFINITY, |ball| {
+            self.across(point - ball.centre).norm() - ball.radius
+        })
+    }
+
+    /// The shortest way from the centre of the bounding ball to a point of the world, for a planar
+    /// shape from the axis through it; `None` if the shape is unbounded.
+    #[inline]
+    pub(crate) fn off_centre(&self, point: Point<3>) -> Option<Vector<f64, 3>> {
+        self.ball.map(|ball| self.across(point - ball.centre))
+    }
+
+    /// The part of a vector of the world across the direction in which the shape is endless.
+    #[inline]
+    fn across(&self, v: Vector<f64, 3>) -> Vector<f64, 3> {
+        self.endless.map_or(v, |along| v - along * v.dot(along))
     }
 
     /// The distance from a point of the world to the bounding balls before and after the motion
     /// of this tick [m].
     #[inline]
-    pub(crate) fn above_way(&self, point: Point<D>) -> f64 {
+    pub(crate) fn above_way(&self, point: Point<3>) -> f64 {
         if self.has_moved { self.above_moved(point) } else { self.above_ball(point) }
     }
 
     #[inline(never)]
-    fn above_moved(&self, point: Point<D>) -> f64 {
+    fn above_moved(&self, point: Point<3>) -> f64 {
         let Some(now) = self.ball else { return f64::NEG_INFINITY };
         let before = self.world_from_before.transform_point(self.in_body(now.centre));
         let all = now.union(&BoundingBall { centre: before, ..now });
-        (point - all.centre).norm() - all.radius
+        self.across(point - all.centre).norm() - all.radius
     }
 
     /// The field at a point of the world [m].
     #[inline]
-    pub(crate) fn distance(&self, p: Point<D>) -> f64 {
-        self.shape.distance(self.in_body(p))
+    pub(crate) fn distance(&self, p: Point<3>) -> f64 {
+        self.shape().distance(self.in_body(p))
     }
 
     /// The field at a point of the world [m], and the gradient.
     #[inline]
-    pub(crate) fn distance_gradient(&self, p: Point<D>) -> (f64, Vector<f64, D>) {
-        let (distance, gradient) = self.shape.distance_gradient(self.in_body(p));
+    pub(crate) fn distance_gradient(&self, p: Point<3>) -> (f64, Vector<f64, 3>) {
+        let (distance, gradient) = self.shape().distance_gradient(self.in_body(p));
         (distance, self.vector_in_world(gradient))
     }
 
-    fn place(&mut self, world_from_body: Pose<D>) {
+    fn place(&mut self, world_from_body: Pose<3>) {
         self.has_moved = world_from_body != self.world_from_before;
         self.is_placed = world_from_body != Pose::identity();
         self.world_from_body = world_from_body;
@@ -275,13 +312,15 @@ impl<const D: usize> Body<D> {
     }
 
     fn find_balls(&mut self) {
-        let promise = self.shape.promise();
-        let placed = |ball: BoundingBall<D>| BoundingBall {
+        let promise = *self.shape().promise();
+        let along = world_axis(&self.world_from_body);
+        self.endless = self.is_endless().then_some(along);
+        let placed = |ball: BoundingBall<3>| BoundingBall {
             centre: self.world_from_body.transform_point(ball.centre),
             radius: ball.radius,
         };
-        self.ball = promise.bounds.map(|bounds| placed(bounds.ball));
-        let off_origin = |ball: BoundingBall<D>| ball.centre.norm() - ball.radius;
+        self.ball = self.bounds().map(|bounds| placed(bounds.ball));
+        let off_origin = |ball: BoundingBall<3>| self.across(ball.centre).norm() - ball.radius;
         self.off_origin = self.ball.map_or(f64::NEG_INFINITY, off_origin);
         // Distances that are exact or bounds need no constant.
         let region = promise.region.filter(|_| promise.outside == Quality::Lipschitz);
@@ -300,12 +339,17 @@ impl<const D: usize> Body<D> {
     }
 }
 
+/// The z axis of a body at this pose, in the world.
+fn world_axis(world_from_body: &Pose<3>) -> Vector<f64, 3> {
+    world_from_body.transform_vector(Vector::unit(2))
+}
+
 /// Scratch memory of a tick for this number of bodies.
-fn scratch<const D: usize>(bodies: usize) -> (Vec<Reaction<D>>, Box<[u32]>) {
+fn scratch(bodies: usize) -> (Vec<Reaction>, Box<[u32]>) {
     (vec![Reaction::NONE; bodies], vec![0; bodies].into_boxed_slice())
 }
 
-pub(crate) fn is_usable<const D: usize>(pose: &Pose<D>) -> bool {
+pub(crate) fn is_usable(pose: &Pose<3>) -> bool {
     // Written so that NaN fails.
     pose.is_finite() && pose.translation.0.iter().all(|x| x.abs() <= LARGEST_LENGTH)
 }
@@ -322,7 +366,7 @@ pub(crate) fn is_usable<const D: usize>(pose: &Pose<D>) -> bool {
 /// use palpate_haptics::{Bodies, Body, Surface};
 ///
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
-/// let ball = Shape::from_kernel(Ball::new(0.05)?);
+/// let ball = Shape::<3>::from_kernel(Ball::new(0.05)?);
 /// let soft = Body::new(ball.clone(), Surface::smooth(200.0, 0.5)?)?;
 /// let hard = Body::new(ball, Surface::smooth(900.0, 2.0)?)?;
 /// let bodies = Bodies::new(vec![soft, hard.at(Pose::translation(Vector([0.2, 0.0, 0.0])))?])?;
@@ -331,55 +375,65 @@ pub(crate) fn is_usable<const D: usize>(pose: &Pose<D>) -> bool {
 /// # }
 /// ```
 #[derive(Clone, Debug)]
-pub struct Bodies<const D: usize> {
-    bodies: Vec<Body<D>>,
+pub struct Bodies {
+    bodies: Vec<Body>,
     /// The radius of the ball around all bodies at their first poses [m]; `None` if a body is
     /// unbounded.
     pub(crate) size: Option<f64>,
     pub(crate) lipschitz: f64,
     pub(crate) has_regions: bool,
+    /// Whether all shapes are planar.
+    pub(crate) is_flat: bool,
     pub(crate) has_moved: bool,
     /// Force and torque on each body in the last tick.
-    reactions: Vec<Reaction<D>>,
+    reactions: Vec<Reaction>,
     /// Force and torque on each body in a rehearsed tick.
-    rehearsed: Vec<Reaction<D>>,
+    rehearsed: Vec<Reaction>,
     /// Memory for the indices of near bodies. A box, because cloning a vector drops its spare
     /// capacity.
     list: Box<[u32]>,
 }
 
-impl<const D: usize> Bodies<D> {
+impl Bodies {
     /// All bodies of `bodies`, in this order.
     ///
     /// # Errors
     ///
     /// [`HapticsError::NoBody`] if there is none.
     #[inline(never)]
-    pub fn new(bodies: Vec<Body<D>>) -> Result<Self, HapticsError> {
+    pub fn new(bodies: Vec<Body>) -> Result<Self, HapticsError> {
         let first = bodies.first().ok_or(HapticsError::NoBody)?;
         let mut bounds = first.ball;
         for body in bodies.iter().skip(1) {
             bounds = bounds.zip(body.ball).map(|(all, ball)| all.union(&ball));
         }
-        let lipschitz = bodies.iter().map(|body| body.shape.promise().lipschitz);
+        let lipschitz = bodies.iter().map(|body| body.shape().promise().lipschitz);
         // Beyond the near bodies, the distance to the horizon bounds the field; its slope is
         // one.
         let lipschitz = lipschitz.fold(if bodies.len() > 1 { 1.0 } else { 0.0 }, f64::max);
         let size = bounds.map(|ball| ball.radius);
         let has_regions = bodies.iter().any(|body| body.region.is_some());
         let (reactions, list) = scratch(bodies.len());
-        let has_moved = false;
-        let rehearsed = reactions.clone();
-        Ok(Self { bodies, size, lipschitz, has_regions, has_moved, reactions, rehearsed, list })
+        Ok(Self {
+            size,
+            lipschitz,
+            has_regions,
+            is_flat: bodies.iter().all(Body::is_endless),
+            has_moved: false,
+            rehearsed: reactions.clone(),
+            reactions,
+            list,
+            bodies,
+        })
     }
 
     /// The bodies.
     #[must_use]
-    pub fn bodies(&self) -> &[Body<D>] {
+    pub fn bodies(&self) -> &[Body] {
         &self.bodies
     }
 
-    pub(crate) fn bodies_mut(&mut self) -> &mut [Body<D>] {
+    pub(crate) fn bodies_mut(&mut self) -> &mut [Body] {
         &mut self.bodies
     }
 
@@ -387,7 +441,7 @@ impl<const D: usize> Bodies<D> {
     /// is not finite is ignored, and so is a body index that is out of range.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
-    pub fn set_pose(&mut self, body: usize, world_from_body: Pose<D>) {
+    pub fn set_pose(&mut self, body: usize, world_from_body: Pose<3>) {
         let Some(body) = self.bodies.get_mut(body) else { return };
         if !is_usable(&world_from_body) || world_from_body == body.world_from_body {
             return;
@@ -398,7 +452,7 @@ impl<const D: usize> Bodies<D> {
 
     /// The force and torque of all contact points on each body in the last tick.
     #[must_use]
-    pub fn reactions(&self) -> &[Reaction<D>] {
+    pub fn reactions(&self) -> &[Reaction] {
         &self.reactions
     }
 
@@ -406,14 +460,14 @@ impl<const D: usize> Bodies<D> {
     /// body.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
-    pub(crate) fn take_scratch(&mut self) -> (Box<[u32]>, Vec<Reaction<D>>) {
+    pub(crate) fn take_scratch(&mut self) -> (Box<[u32]>, Vec<Reaction>) {
         (std::mem::take(&mut self.list), std::mem::take(&mut self.reactions))
     }
 
     /// Returns the [scratch memory](Self::take_scratch).
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
-    pub(crate) fn put_back(&mut self, list: Box<[u32]>, reactions: Vec<Reaction<D>>) {
+    pub(crate) fn put_back(&mut self, list: Box<[u32]>, reactions: Vec<Reaction>) {
         (self.list, self.reactions) = (list, reactions);
     }
 
@@ -434,32 +488,46 @@ impl<const D: usize> Bodies<D> {
     }
 }
 
-impl<const D: usize> TryFrom<Vec<Body<D>>> for Bodies<D> {
+impl TryFrom<Vec<Body>> for Bodies {
     type Error = HapticsError;
 
-    fn try_from(bodies: Vec<Body<D>>) -> Result<Self, HapticsError> {
+    fn try_from(bodies: Vec<Body>) -> Result<Self, HapticsError> {
         Self::new(bodies)
     }
 }
 
-impl<const D: usize, const N: usize> TryFrom<[Body<D>; N]> for Bodies<D> {
+impl<const N: usize> TryFrom<[Body; N]> for Bodies {
     type Error = HapticsError;
 
-    fn try_from(bodies: [Body<D>; N]) -> Result<Self, HapticsError> {
+    fn try_from(bodies: [Body; N]) -> Result<Self, HapticsError> {
         Self::new(bodies.into())
     }
 }
 
-impl<const D: usize> From<Shape<D>> for Bodies<D> {
+impl From<Shape<2>> for Bodies {
+    /// As of a [`SpaceShape`].
+    fn from(shape: Shape<2>) -> Self {
+        SpaceShape::from(shape).into()
+    }
+}
+
+impl From<Shape<3>> for Bodies {
+    /// As of a [`SpaceShape`].
+    fn from(shape: Shape<3>) -> Self {
+        SpaceShape::from(shape).into()
+    }
+}
+
+impl From<SpaceShape> for Bodies {
     /// One body at the origin with the default surface, which is smooth.
-    fn from(shape: Shape<D>) -> Self {
+    fn from(shape: SpaceShape) -> Self {
         let body = Body::of(shape, Surface::default());
-        let promise = *body.shape.promise();
         let (reactions, list) = scratch(1);
         Self {
             size: body.ball.map(|ball| ball.radius),
-            lipschitz: promise.lipschitz,
+            lipschitz: body.shape().promise().lipschitz,
             has_regions: body.region.is_some(),
+            is_flat: body.is_endless(),
             has_moved: false,
             rehearsed: reactions.clone(),
             reactions,

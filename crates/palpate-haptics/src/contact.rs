@@ -98,21 +98,21 @@ const ALONG: f64 = 0.01;
 
 /// The local model of the surface near a proxy: tangent planes and curvature.
 #[derive(Clone, Debug)]
-pub(crate) struct LocalSurface<const D: usize> {
+pub(crate) struct LocalSurface {
     /// The tangent planes seen in this tick.
-    planes: Planes<D>,
+    planes: Planes,
     /// The curvature.
-    curvature: Curvature<D>,
+    curvature: Curvature,
 }
 
-impl<const D: usize> LocalSurface<D> {
+impl LocalSurface {
     /// A model without planes, of a flat surface.
     pub(crate) fn new() -> Self {
         Self { planes: Planes::new(), curvature: Curvature::FLAT }
     }
 
     /// The unit vector away from all planes of the last slide; `None` if they face each other.
-    pub(crate) fn up(&self) -> Option<Vector<f64, D>> {
+    pub(crate) fn up(&self) -> Option<Vector<f64, 3>> {
         self.planes.up()
     }
 
@@ -124,18 +124,18 @@ impl<const D: usize> LocalSurface<D> {
 }
 
 /// Where a proxy is; a slide updates both parts.
-pub(crate) struct Place<'a, const D: usize> {
+pub(crate) struct Place<'a> {
     /// The evaluated point.
-    pub(crate) here: &'a mut Sample<D>,
+    pub(crate) here: &'a mut Sample,
     /// The unit normal of the surface that the proxy last reached.
-    pub(crate) normal: &'a mut Vector<f64, D>,
+    pub(crate) normal: &'a mut Vector<f64, 3>,
 }
 
 /// Where a proxy is to go.
 #[derive(Clone, Copy)]
-pub(crate) struct Goal<const D: usize> {
+pub(crate) struct Goal {
     /// The device point, or the point to which friction shifts it [m].
-    pub(crate) device: Point<D>,
+    pub(crate) device: Point<3>,
     /// How far the device point moved in this tick [m].
     pub(crate) motion: f64,
 }
@@ -154,11 +154,11 @@ pub(crate) struct Goal<const D: usize> {
 ///
 /// Real-time: allocates nothing, takes no lock, cannot panic; at most the sampler's budget of
 /// evaluations.
-pub(crate) fn slide<const D: usize>(
-    sampler: &mut Sampler<'_, D>,
-    place: Place<'_, D>,
-    goal: Goal<D>,
-    LocalSurface { planes, curvature }: &mut LocalSurface<D>,
+pub(crate) fn slide(
+    sampler: &mut Sampler<'_>,
+    place: Place<'_>,
+    goal: Goal,
+    LocalSurface { planes, curvature }: &mut LocalSurface,
 ) -> bool {
     let Place { here, normal } = place;
     let Goal { device, motion } = goal;
@@ -210,21 +210,21 @@ pub(crate) fn slide<const D: usize>(
     }
 }
 
-fn squared<const D: usize>(way: Vector<f64, D>) -> f64 {
+fn squared(way: Vector<f64, 3>) -> f64 {
     way.dot(way)
 }
 
-struct Slide<'a, const D: usize> {
-    curvature: &'a mut Curvature<D>,
-    here: &'a mut Sample<D>,
+struct Slide<'a> {
+    curvature: &'a mut Curvature,
+    here: &'a mut Sample,
     /// Of the points visited and left again, the closest to the device that is on or above the
     /// surface.
-    best: Sample<D>,
+    best: Sample,
     /// The squared distance from the best point to the device [m²].
     least: f64,
-    normal: &'a mut Vector<f64, D>,
-    device: Point<D>,
-    planes: &'a mut Planes<D>,
+    normal: &'a mut Vector<f64, 3>,
+    device: Point<3>,
+    planes: &'a mut Planes,
     /// How many lifts met a ceiling or an unknown wall.
     failed_lifts: u8,
     /// How far the device point moved in this tick [m].
@@ -236,8 +236,8 @@ struct Slide<'a, const D: usize> {
     /// Whether no tangent plane is known yet.
     is_first: bool,
     /// The foot of the last tangent plane.
-    last_foot: Point<D>,
-    last_normal: Vector<f64, D>,
+    last_foot: Point<3>,
+    last_normal: Vector<f64, 3>,
 }
 
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -250,10 +250,10 @@ enum Outcome {
     Spent,
 }
 
-impl<const D: usize> Slide<'_, D> {
+impl Slide<'_> {
     /// Learns the tangent plane at the present point, then moves towards the goal.
     #[inline(always)]
-    fn advance(&mut self, sampler: &mut Sampler<'_, D>) -> Outcome {
+    fn advance(&mut self, sampler: &mut Sampler<'_>) -> Outcome {
         let (here, device) = (self.here.point, self.device);
         let (normal, gap) = sampler.tangent(self.here, *self.normal);
         let is_new = self.is_first;
@@ -289,7 +289,7 @@ impl<const D: usize> Slide<'_, D> {
             || is_to_go(2.0)
             || is_to_go(MOST_GAIN) && !self.curvature.at_most_doubles(stretch)
         {
-            goal = self.along_the_curvature(foot, normal, goal, sampler.tolerance());
+            goal = self.along_the_curvature(sampler, [foot, goal], normal);
         }
         let is_at_rest = is_outside && squared(goal - here) <= at_rest;
         if is_only {
@@ -334,7 +334,7 @@ impl<const D: usize> Slide<'_, D> {
 
     /// Moves to a point and evaluates the field there.
     #[inline(always)]
-    fn go(&mut self, sampler: &mut Sampler<'_, D>, point: Point<D>) -> Outcome {
+    fn go(&mut self, sampler: &mut Sampler<'_>, point: Point<3>) -> Outcome {
         let Some(sample) = sampler.gradient(point) else { return Outcome::Spent };
         self.keep_best(sampler);
         *self.here = sample;
@@ -343,7 +343,7 @@ impl<const D: usize> Slide<'_, D> {
 
     /// Remembers the present point, before it is left, if it is the best so far.
     #[inline(always)]
-    fn keep_best(&mut self, sampler: &Sampler<'_, D>) {
+    fn keep_best(&mut self, sampler: &Sampler<'_>) {
         let distance = squared(self.here.point - self.device);
         if distance < self.least && self.here.gap >= -sampler.tolerance() {
             (self.best, self.least) = (*self.here, distance);
@@ -355,9 +355,9 @@ impl<const D: usize> Slide<'_, D> {
     /// same wall.
     fn learn_curvature(
         &mut self,
-        sampler: &Sampler<'_, D>,
-        foot: Point<D>,
-        normal: Vector<f64, D>,
+        sampler: &Sampler<'_>,
+        foot: Point<3>,
+        normal: Vector<f64, 3>,
     ) {
         let (way, turn) = (foot - self.last_foot, normal - self.last_normal);
         let last_normal = self.last_normal;
@@ -391,19 +391,19 @@ impl<const D: usize> Slide<'_, D> {
     /// The goal on a tangent plane, corrected along and below the plane for the curvature.
     fn along_the_curvature(
         &self,
-        foot: Point<D>,
-        normal: Vector<f64, D>,
-        goal: Point<D>,
-        tolerance: f64,
-    ) -> Point<D> {
+        sampler: &Sampler<'_>,
+        [foot, goal]: [Point<3>; 2],
+        normal: Vector<f64, 3>,
+    ) -> Point<3> {
         let depth = normal.dot(foot - self.device);
         let side = goal - foot;
         let length = squared(side);
         let is_on_plane = normal.dot(side).powi(2) <= AT_REST * AT_REST * length;
-        if !is_on_plane || depth <= tolerance || depth.is_nan() {
+        if !is_on_plane || depth <= sampler.tolerance() || depth.is_nan() {
             return goal;
         }
-        match self.curvature.way(side, depth) {
+        let dimensions = if sampler.nearby().is_flat() { 1 } else { 2 };
+        match self.curvature.way(side, depth, dimensions) {
             Some(way) if squared(way) <= MOST_GAIN * MOST_GAIN * length => {
                 // wᵀ S w / 2, because the displacement solves (1 − d S) w = side.
                 let fall = 0.5 * way.dot(way - side) / depth;
@@ -416,7 +416,7 @@ impl<const D: usize> Slide<'_, D> {
     }
 
     /// Returns to the best point found; `true` if the device is below the surface.
-    fn rest_at_best(&mut self, sampler: &mut Sampler<'_, D>) -> bool {
+    fn rest_at_best(&mut self, sampler: &mut Sampler<'_>) -> bool {
         *self.here = self.best;
         *self.normal = sampler.tangent(self.here, *self.normal).0;
         sampler.is_below(self.device).unwrap_or(false)
@@ -429,12 +429,12 @@ impl<const D: usize> Slide<'_, D> {
 /// end of that part proves the next part, until the rest is within a skin of the surface. Over
 /// a plane one sample suffices; in the middle of a crease each sample proves the same fraction
 /// of the rest.
-fn lift<const D: usize>(
-    sampler: &mut Sampler<'_, D>,
-    here: &Sample<D>,
-    up: Vector<f64, D>,
+fn lift(
+    sampler: &mut Sampler<'_>,
+    here: &Sample,
+    up: Vector<f64, 3>,
     height: f64,
-) -> Option<Sample<D>> {
+) -> Option<Sample> {
     let above = sampler.gradient(here.point + up * height)?;
     let covered = sampler.clear_radius(&above);
     if covered < LEAST_COVERED * height {

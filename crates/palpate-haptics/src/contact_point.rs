@@ -27,21 +27,21 @@ use palpate_safety::{Approach, Arrival, Change, WorkspaceMap};
 /// One contact point after a tick. World coordinates.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
-pub struct Touch<const D: usize> {
+pub struct Touch {
     /// The device point (haptic interface point) [m]; as read, even if it is not finite.
-    pub device: Point<D>,
+    pub device: Point<3>,
     /// The velocity of the device point [m/s]: relative to the touched body, or to the world in
     /// free space.
-    pub velocity: Vector<f64, D>,
+    pub velocity: Vector<f64, 3>,
     /// The proxy (god-object) [m]; the device point itself in free space.
-    pub proxy: Point<D>,
+    pub proxy: Point<3>,
     /// The force of the touched body on the hand [N], before any limit; the hand exerts the
     /// opposite force on the body.
-    pub wanted: Vector<f64, D>,
+    pub wanted: Vector<f64, 3>,
     /// The force on the hand [N], always finite.
-    pub force: Vector<f64, D>,
+    pub force: Vector<f64, 3>,
     /// The unit normal of the surface that the proxy last reached, pointing out.
-    pub normal: Vector<f64, D>,
+    pub normal: Vector<f64, 3>,
     /// `true` if the surface keeps the proxy from the device point.
     pub contact: bool,
     /// The index of the body whose surface the proxy last reached; of several that hold the proxy,
@@ -53,7 +53,7 @@ pub struct Touch<const D: usize> {
     pub evaluations: u32,
 }
 
-impl<const D: usize> Touch<D> {
+impl Touch {
     pub(crate) const NONE: Self = Self {
         device: Vector::ZERO,
         velocity: Vector::ZERO,
@@ -80,32 +80,32 @@ pub(crate) const MOST_EVENTS: usize = 3 * CAPACITY + 1;
 
 /// A contact point of the hand, with its state from tick to tick.
 #[derive(Clone, Debug)]
-pub(crate) struct ContactPoint<const D: usize> {
-    pub(crate) proxy: Proxy<D>,
+pub(crate) struct ContactPoint {
+    pub(crate) proxy: Proxy,
     /// The rendered part of the force, in [0, 1].
     rise: f64,
     /// The force of the replaced bodies in the tick before [N]; infinite if the bodies are the
     /// same.
     of_others: f64,
     /// The force after an edit that carried the proxy; with a port, the safety chain does this.
-    approach: Approach<D>,
+    approach: Approach,
     ringing: Ringing,
     /// The bodies that touch the proxy.
-    crease: Crease<D>,
+    crease: Crease,
     /// The force of their springs over the depth, in the last contact [N/m]; infinite before the first.
     pub(crate) stiffness: f64,
-    pub(crate) guides: Vec<Guide<D>>,
+    pub(crate) guides: Vec<Guide>,
     /// The rendered part of the force of the guides, in [0, 1]: it rises from zero where the hand is set down.
     guided: f64,
     /// The port to the device; `None` without protection.
-    pub(crate) port: Option<Port<D>>,
+    pub(crate) port: Option<Port>,
 }
 
 /// Settings that all contact points share.
 #[derive(Clone, Debug)]
-pub(crate) struct Setting<const D: usize> {
+pub(crate) struct Setting {
     pub(crate) options: ServoOptions,
-    pub(crate) map: WorkspaceMap<D>,
+    pub(crate) map: WorkspaceMap,
     /// The increase of [`ContactPoint::rise`] in a tick.
     pub(crate) rise_step: f64,
     /// How the states of this tick came.
@@ -115,18 +115,18 @@ pub(crate) struct Setting<const D: usize> {
 }
 
 /// The state of a tick that all contact points share.
-pub(crate) struct Tick<'a, const D: usize> {
-    nearby: &'a Nearby<'a, D>,
-    setting: &'a Setting<D>,
+pub(crate) struct Tick<'a> {
+    nearby: &'a Nearby<'a>,
+    setting: &'a Setting,
     /// A template for events: tick and contact point are filled in.
     event: Event,
     events: &'a mut Vec<Event>,
 }
 
-impl<'a, const D: usize> Tick<'a, D> {
+impl<'a> Tick<'a> {
     pub(crate) fn new(
-        nearby: &'a Nearby<'a, D>,
-        setting: &'a Setting<D>,
+        nearby: &'a Nearby<'a>,
+        setting: &'a Setting,
         tick: u64,
         events: &'a mut Vec<Event>,
     ) -> Self {
@@ -167,7 +167,7 @@ struct Before {
 }
 
 impl Before {
-    fn of<const D: usize>(touch: &Touch<D>) -> Self {
+    fn of(touch: &Touch) -> Self {
         let Touch { contact, body, is_slipping, .. } = *touch;
         Self { contact, body, is_slipping }
     }
@@ -175,7 +175,7 @@ impl Before {
 
 /// Tells what an edit did to the proxy at a body.
 #[cold]
-fn tell_edited<const D: usize>(tick: &mut Tick<'_, D>, body: u32, edited: Edited) -> Change {
+fn tell_edited(tick: &mut Tick<'_>, body: u32, edited: Edited) -> Change {
     let (kind, change) = match edited {
         Edited::Carried { distance } => (EventKind::Carried { distance }, Change::Carried),
         Edited::Placed => (EventKind::Placed, Change::None),
@@ -184,7 +184,7 @@ fn tell_edited<const D: usize>(tick: &mut Tick<'_, D>, body: u32, edited: Edited
     change
 }
 
-impl<const D: usize> ContactPoint<D> {
+impl ContactPoint {
     pub(crate) fn new(probe: Probe) -> Self {
         let (proxy, guides) = (Proxy::new(probe), Vec::new());
         let (rise, of_others, ringing) = (1.0, f64::INFINITY, Ringing::SILENT);
@@ -232,10 +232,10 @@ impl<const D: usize> ContactPoint<D> {
     /// Real-time: as [`Servo::step`](crate::Servo::step).
     pub(crate) fn tick(
         &mut self,
-        tick: &mut Tick<'_, D>,
-        state: PointState<D>,
-        touch: &mut Touch<D>,
-    ) -> Vector<f64, D> {
+        tick: &mut Tick<'_>,
+        state: PointState,
+        touch: &mut Touch,
+    ) -> Vector<f64, 3> {
         let at_device = self
             .port
             .as_mut()
@@ -249,10 +249,10 @@ impl<const D: usize> ContactPoint<D> {
     /// whether the force must rise from zero.
     fn feel(
         &mut self,
-        tick: &mut Tick<'_, D>,
-        state: &PointState<D>,
-        touch: &mut Touch<D>,
-    ) -> FreeForce<D> {
+        tick: &mut Tick<'_>,
+        state: &PointState,
+        touch: &mut Touch,
+    ) -> FreeForce {
         let device = state.position;
         if tick.setting.is_lifted {
             return self.hover(tick, state, touch);
@@ -298,10 +298,10 @@ impl<const D: usize> ContactPoint<D> {
     #[inline(never)]
     fn hover(
         &mut self,
-        tick: &mut Tick<'_, D>,
-        state: &PointState<D>,
-        touch: &mut Touch<D>,
-    ) -> FreeForce<D> {
+        tick: &mut Tick<'_>,
+        state: &PointState,
+        touch: &mut Touch,
+    ) -> FreeForce {
         let before = Before::of(touch);
         self.fall_silent(tick, before);
         self.proxy.lift();
@@ -322,7 +322,7 @@ impl<const D: usize> ContactPoint<D> {
     }
 
     /// Ends the contact of the tick before and its ringing.
-    fn fall_silent(&mut self, tick: &mut Tick<'_, D>, before: Before) {
+    fn fall_silent(&mut self, tick: &mut Tick<'_>, before: Before) {
         self.ringing = Ringing::SILENT;
         if before.contact {
             self.leave(tick, before, &Crease::NONE);
@@ -347,7 +347,7 @@ impl<const D: usize> ContactPoint<D> {
     }
 
     /// Tells that the proxy left the bodies that touched it before and do not touch it now.
-    fn leave(&self, tick: &mut Tick<'_, D>, before: Before, now: &Crease<D>) {
+    fn leave(&self, tick: &mut Tick<'_>, before: Before, now: &Crease) {
         if self.crease.count() == 0 && !now.has(before.body) {
             tick.tell(before.body, EventKind::Leave);
         }
@@ -359,11 +359,11 @@ impl<const D: usize> ContactPoint<D> {
     /// The force of the bodies that hold the proxy [N], of which `body` has the least field.
     fn held(
         &mut self,
-        tick: &mut Tick<'_, D>,
-        touch: &mut Touch<D>,
+        tick: &mut Tick<'_>,
+        touch: &mut Touch,
         before: Before,
-        body: &Body<D>,
-    ) -> Vector<f64, D> {
+        body: &Body,
+    ) -> Vector<f64, 3> {
         let rate = tick.setting.options.rate;
         if tick.nearby.bodies.bodies().len() > 1 {
             let crease = self.crease_at(tick, touch, before);
@@ -386,7 +386,7 @@ impl<const D: usize> ContactPoint<D> {
     }
 
     /// The bodies that touch the proxy.
-    fn crease_at(&self, tick: &Tick<'_, D>, touch: &mut Touch<D>, before: Before) -> Crease<D> {
+    fn crease_at(&self, tick: &Tick<'_>, touch: &mut Touch, before: Before) -> Crease {
         let Touch { proxy, body, normal, .. } = *touch;
         let radius = tick.setting.options.probe.radius();
         let stretch = proxy - touch.device - self.proxy.held();
@@ -406,11 +406,11 @@ impl<const D: usize> ContactPoint<D> {
     /// [`Shared::most`]. Textures come on top.
     fn held_by_several(
         &mut self,
-        tick: &mut Tick<'_, D>,
-        touch: &mut Touch<D>,
+        tick: &mut Tick<'_>,
+        touch: &mut Touch,
         before: Before,
-        mut crease: Crease<D>,
-    ) -> Vector<f64, D> {
+        mut crease: Crease,
+    ) -> Vector<f64, 3> {
         let stretch = touch.proxy - touch.device;
         let (depth, whole) = (stretch.norm(), crease.whole());
         let rest = crease.walls().fold(stretch, |rest, wall| rest - wall.normal * wall.push);
@@ -460,10 +460,10 @@ impl<const D: usize> ContactPoint<D> {
     /// that touch the proxy.
     fn tell_changes(
         &mut self,
-        tick: &mut Tick<'_, D>,
-        touch: &Touch<D>,
+        tick: &mut Tick<'_>,
+        touch: &Touch,
         before: Before,
-        now: &Crease<D>,
+        now: &Crease,
     ) {
         if before.contact {
             self.leave(tick, before, now);
@@ -488,17 +488,17 @@ impl<const D: usize> ContactPoint<D> {
     /// The force of a body whose part of the stretch is `stretch` [N].
     fn pressed(
         &self,
-        touch: &mut Touch<D>,
-        body: &Body<D>,
-        stretch: Vector<f64, D>,
+        touch: &mut Touch,
+        body: &Body,
+        stretch: Vector<f64, 3>,
         Pressing { rate, has_dampers }: Pressing,
-    ) -> Vector<f64, D> {
+    ) -> Vector<f64, 3> {
         let level = self.proxy.level(touch.body);
         let in_body = body.in_body(touch.proxy);
         let (pull, velocity) =
             (body.vector_in_body(stretch), body.vector_in_body(touch.velocity));
         let normal = body.vector_in_body(touch.normal);
-        let turn = |way: Vector<f64, D>, far: f64| {
+        let turn = |way: Vector<f64, 3>, far: f64| {
             let Some(direction) = way.normalized() else { return Vector::ZERO };
             touch.evaluations += 1;
             let (_, gradient) = body.shape().distance_gradient(in_body + direction * far);
@@ -510,7 +510,7 @@ impl<const D: usize> ContactPoint<D> {
     }
 
     /// Punctures the top layer of a body that is pressed by `depth` [m], if it gives way.
-    fn pop(&mut self, tick: &mut Tick<'_, D>, index: u32, depth: f64) {
+    fn pop(&mut self, tick: &mut Tick<'_>, index: u32, depth: f64) {
         let Some(body) = tick.nearby.body(index) else { return };
         let (strata, level) = (&body.surface().strata, self.proxy.level(index));
         if let Some(pop) = strata.top(level).and_then(|top| top.pop_through) {
@@ -523,15 +523,12 @@ impl<const D: usize> ContactPoint<D> {
 
     /// The force of this tick's ringing beside the `force` of the bodies [N]. It shakes the hand, but
     /// never pulls it into the body.
-    fn ring(&mut self, touch: &Touch<D>, force: Vector<f64, D>) -> Vector<f64, D> {
+    fn ring(&mut self, touch: &Touch, force: Vector<f64, 3>) -> Vector<f64, 3> {
         touch.normal * self.ringing.step().max(-force.dot(touch.normal).max(0.0))
     }
 
     /// The force of each body on the hand in the tick [N]; their sum is the wanted force.
-    pub(crate) fn pushes(
-        &self,
-        touch: &Touch<D>,
-    ) -> impl Iterator<Item = (u32, Vector<f64, D>)> {
+    pub(crate) fn pushes(&self, touch: &Touch) -> impl Iterator<Item = (u32, Vector<f64, 3>)> {
         let others = self.crease.walls().filter(|wall| wall.body != touch.body);
         let of_others = others.clone().fold(Vector::ZERO, |sum, wall| sum + wall.force);
         let hardest = (touch.body, touch.wanted - of_others);
@@ -541,7 +538,7 @@ impl<const D: usize> ContactPoint<D> {
 
     /// The force of all magnets but the touched body's, which is zero at its own surface [N].
     /// Each acts down the gradient of its field, so the sum is the force of a potential.
-    fn pull(&self, tick: &Tick<'_, D>, touch: &mut Touch<D>) -> Vector<f64, D> {
+    fn pull(&self, tick: &Tick<'_>, touch: &mut Touch) -> Vector<f64, 3> {
         let mut force = Vector::ZERO;
         for (index, body) in tick.nearby.all() {
             let Some(magnet) = &body.surface().magnet else { continue };

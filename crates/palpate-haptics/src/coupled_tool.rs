@@ -18,21 +18,21 @@ use palpate_device::{PointState, TurnState, limited};
 use palpate_safety::{Change, SpatialVector, WrenchChain, WrenchState};
 
 /// The two sides of a tool: the contact point that holds it, and the bodies that stop it.
-pub(crate) struct Sides<'a, const D: usize> {
-    pub(crate) point: &'a mut ContactPoint<D>,
-    pub(crate) bodies: &'a mut Bodies<D>,
+pub(crate) struct Sides<'a> {
+    pub(crate) point: &'a mut ContactPoint,
+    pub(crate) bodies: &'a mut Bodies,
 }
 
 /// A tool coupled to the contact point of a servo, with the rotation of the device.
 #[derive(Clone, Debug)]
-pub(crate) struct CoupledTool<const D: usize> {
-    pub(crate) tool: Tool<D>,
+pub(crate) struct CoupledTool {
+    pub(crate) tool: Tool,
     /// The requested coupling, before device limits.
     pub(crate) requested: Coupling,
     /// Orientation and angular velocity of the device; `None` for a device without rotation.
-    pub(crate) turn: Option<TurnState<D>>,
+    pub(crate) turn: Option<TurnState>,
     /// The rotational port to the device; `None` without protection.
-    pub(crate) port: Option<TurningPort<D>>,
+    pub(crate) port: Option<TurningPort>,
     /// The torque limit set by the caller [N·m]; a safety chain has the device's too.
     max_torque: f64,
     /// The torque to write to the device [N·m].
@@ -41,8 +41,8 @@ pub(crate) struct CoupledTool<const D: usize> {
     given: Option<Vector<f64, 3>>,
 }
 
-impl<const D: usize> CoupledTool<D> {
-    pub(crate) fn new(tool: Tool<D>) -> Self {
+impl CoupledTool {
+    pub(crate) fn new(tool: Tool) -> Self {
         let (max_torque, torque) = (f64::INFINITY, Vector::ZERO);
         let requested = tool.coupling;
         Self { tool, requested, turn: None, port: None, max_torque, torque, given: None }
@@ -51,12 +51,12 @@ impl<const D: usize> CoupledTool<D> {
     /// The tool after the last tick.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
-    pub(crate) fn held(&self) -> HeldTool<D> {
+    pub(crate) fn held(&self) -> HeldTool {
         HeldTool { given: self.given, ..self.tool.held() }
     }
 
     /// The safety chain of force and torque; `None` for a device that gives no torque.
-    pub(crate) fn chain(&mut self) -> Option<&mut WrenchChain<D>> {
+    pub(crate) fn chain(&mut self) -> Option<&mut WrenchChain> {
         self.port.as_mut().and_then(|port| port.chain.as_mut())
     }
 
@@ -64,7 +64,7 @@ impl<const D: usize> CoupledTool<D> {
     /// point without a radius by `most_of_point` [m] at most.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
-    pub(crate) fn adopt(&mut self, bodies: &AcceptedBodies<D>, most_of_point: f64) {
+    pub(crate) fn adopt(&mut self, bodies: &AcceptedBodies, most_of_point: f64) {
         self.tool.forget_bodies();
         self.tool.most_of_point = most_of_point;
         if let Some(coupling) = bodies.coupling {
@@ -119,11 +119,11 @@ impl<const D: usize> CoupledTool<D> {
     /// Real-time: as [`Tool::step`].
     pub(crate) fn tick(
         &mut self,
-        sides: Sides<'_, D>,
-        setting: &Setting<D>,
-        state: PointState<D>,
-        touch: &mut Touch<D>,
-    ) -> Vector<f64, D> {
+        sides: Sides<'_>,
+        setting: &Setting,
+        state: PointState,
+        touch: &mut Touch,
+    ) -> Vector<f64, 3> {
         let Sides { point, bodies } = sides;
         let Setting { map, arrival, is_lifted, rise_step, .. } = setting;
         let is_turn_sound = self

@@ -22,18 +22,18 @@ const LEAST_PUSH: f64 = 1e-6;
 
 /// A body that touches the proxy.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Wall<const D: usize> {
+pub(crate) struct Wall {
     pub(crate) body: u32,
     /// The unit normal of its surface at the proxy, pointing out.
-    pub(crate) normal: Vector<f64, D>,
+    pub(crate) normal: Vector<f64, 3>,
     /// How far it pushes the proxy along its normal from the device point [m]; zero if other
     /// bodies keep the proxy there.
     pub(crate) push: f64,
     /// Its part of the force on the hand [N].
-    pub(crate) force: Vector<f64, D>,
+    pub(crate) force: Vector<f64, 3>,
 }
 
-impl<const D: usize> Wall<D> {
+impl Wall {
     const NONE: Self = Self { body: 0, normal: Vector::ZERO, push: 0.0, force: Vector::ZERO };
 }
 
@@ -43,30 +43,30 @@ impl<const D: usize> Wall<D> {
 /// proxy, but for what friction holds, is `Σ λᵢ nᵢ` with the pushes `λᵢ ≥ 0`: the conditions of
 /// Karush, Kuhn and Tucker of the closest point above all walls (Zilles and Salisbury 1995).
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Crease<const D: usize> {
-    walls: [Wall<D>; CAPACITY],
+pub(crate) struct Crease {
+    walls: [Wall; CAPACITY],
     count: usize,
 }
 
 /// A proxy that is held by the body whose field is least there, and by others perhaps.
 #[derive(Clone, Copy)]
-pub(crate) struct Place<const D: usize> {
-    pub(crate) proxy: Point<D>,
+pub(crate) struct Place {
+    pub(crate) proxy: Point<3>,
     /// From the device point to the proxy, but for what friction holds [m].
-    pub(crate) stretch: Vector<f64, D>,
+    pub(crate) stretch: Vector<f64, 3>,
     /// The body whose field is least.
     pub(crate) body: u32,
     /// The unit normal of its surface.
-    pub(crate) normal: Vector<f64, D>,
+    pub(crate) normal: Vector<f64, 3>,
     /// The probe's radius [m].
     pub(crate) radius: f64,
 }
 
-impl<const D: usize> Crease<D> {
+impl Crease {
     pub(crate) const NONE: Self = Self { walls: [Wall::NONE; CAPACITY], count: 0 };
 
     /// A proxy that one body holds.
-    pub(crate) fn of_one(body: u32, normal: Vector<f64, D>) -> Self {
+    pub(crate) fn of_one(body: u32, normal: Vector<f64, 3>) -> Self {
         let mut crease = Self::NONE;
         crease.add(body, normal);
         crease
@@ -77,8 +77,8 @@ impl<const D: usize> Crease<D> {
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     pub(crate) fn at(
-        nearby: &Nearby<'_, D>,
-        place: &Place<D>,
+        nearby: &Nearby<'_>,
+        place: &Place,
         punctured: &Punctured,
         was_touched: impl Fn(u32) -> bool,
         evaluations: &mut u32,
@@ -105,7 +105,7 @@ impl<const D: usize> Crease<D> {
         found
     }
 
-    fn add(&mut self, body: u32, normal: Vector<f64, D>) {
+    fn add(&mut self, body: u32, normal: Vector<f64, 3>) {
         if let Some(wall) = self.walls.get_mut(self.count) {
             *wall = Wall { body, normal, ..Wall::NONE };
             self.count += 1;
@@ -113,7 +113,7 @@ impl<const D: usize> Crease<D> {
     }
 
     /// Parts `stretch` among the walls.
-    fn push(&mut self, stretch: Vector<f64, D>) {
+    fn push(&mut self, stretch: Vector<f64, 3>) {
         let length = stretch.norm();
         if self.count < 2 {
             self.walls_mut().for_each(|wall| wall.push = length);
@@ -125,7 +125,7 @@ impl<const D: usize> Crease<D> {
         }
     }
 
-    pub(crate) fn walls(&self) -> impl Iterator<Item = &Wall<D>> + Clone {
+    pub(crate) fn walls(&self) -> impl Iterator<Item = &Wall> + Clone {
         self.walls.iter().take(self.count)
     }
 
@@ -134,12 +134,12 @@ impl<const D: usize> Crease<D> {
         self.count
     }
 
-    fn walls_mut(&mut self) -> impl Iterator<Item = &mut Wall<D>> {
+    fn walls_mut(&mut self) -> impl Iterator<Item = &mut Wall> {
         self.walls.iter_mut().take(self.count)
     }
 
     /// The bodies that push.
-    pub(crate) fn pushing_mut(&mut self) -> impl Iterator<Item = &mut Wall<D>> {
+    pub(crate) fn pushing_mut(&mut self) -> impl Iterator<Item = &mut Wall> {
         self.walls_mut().filter(|wall| wall.push > 0.0)
     }
 
@@ -161,7 +161,7 @@ impl<const D: usize> Crease<D> {
     }
 
     /// The body that pushes hardest.
-    pub(crate) fn hardest(&self) -> Option<&Wall<D>> {
+    pub(crate) fn hardest(&self) -> Option<&Wall> {
         self.walls().max_by(|a, b| a.push.total_cmp(&b.push)).filter(|wall| wall.push > 0.0)
     }
 
@@ -204,11 +204,11 @@ impl Shared {
 
     /// The force of the dampers [N] at the `velocity` of the device point relative to the bodies
     /// [m/s], with the direction `along` of the stretch; as for one [`Surface`](crate::Surface).
-    pub(crate) fn dampers<const D: usize>(
+    pub(crate) fn dampers(
         &self,
-        velocity: Vector<f64, D>,
-        along: Vector<f64, D>,
-    ) -> Vector<f64, D> {
+        velocity: Vector<f64, 3>,
+        along: Vector<f64, 3>,
+    ) -> Vector<f64, 3> {
         let approach = (-velocity.dot(along)).max(0.0);
         along * (self.damping * approach) - velocity * self.viscosity
     }
@@ -219,7 +219,7 @@ mod tests {
     use super::*;
 
     /// The crease of walls with these normals.
-    fn crease<const D: usize>(stretch: [f64; D], normals: &[[f64; D]]) -> Crease<D> {
+    fn crease(stretch: [f64; 3], normals: &[[f64; 3]]) -> Crease {
         let mut crease = Crease::NONE;
         for (body, normal) in (0..).zip(normals) {
             crease.add(body, Vector(*normal).normalized().unwrap());
@@ -238,7 +238,7 @@ mod tests {
 
     #[test]
     fn a_wall_that_only_stands_by_does_not_push() {
-        let mut alone = crease([-1.0, 2.0], &[[1.0, 0.0], [0.0, 1.0]]);
+        let mut alone = crease([-1.0, 2.0, 0.0], &[[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]);
         assert_eq!(alone.walls().map(|wall| wall.push).collect::<Vec<_>>(), [0.0, 2.0]);
         alone.retain(|_| false);
         assert!(alone.has(1) && !alone.has(0));

@@ -16,7 +16,7 @@ impl From<&Impact> for Tap {
     }
 }
 
-impl<const D: usize> Touch<D> {
+impl Touch {
     /// The cue of this touch on a smooth and mute surface; it does not depend on the force that
     /// the device gives. Set `began` if there was no contact in the tick before.
     ///

@@ -20,25 +20,25 @@ const SOLVED: f64 = 1e-4;
 /// change of the normal. The estimate is kept between ticks, because the curvature under a
 /// proxy changes little in a tick.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Curvature<const D: usize> {
+pub(crate) struct Curvature {
     /// The rows of the symmetric matrix [1/m].
-    rows: [Vector<f64, D>; D],
+    rows: [Vector<f64, 3>; 3],
 }
 
-impl<const D: usize> Curvature<D> {
+impl Curvature {
     /// The curvature of a plane: zero.
-    pub(crate) const FLAT: Self = Self { rows: [Vector::ZERO; D] };
+    pub(crate) const FLAT: Self = Self { rows: [Vector::ZERO; 3] };
 
     /// The change of the normal along a displacement.
     #[inline]
-    fn turn(&self, way: Vector<f64, D>) -> Vector<f64, D> {
+    fn turn(&self, way: Vector<f64, 3>) -> Vector<f64, 3> {
         Vector(self.rows.map(|row| row.dot(way)))
     }
 
     /// The residual: the part of the observed `turn` of the normal that this estimate does not
     /// predict.
     #[inline]
-    pub(crate) fn residual(&self, way: Vector<f64, D>, turn: Vector<f64, D>) -> Vector<f64, D> {
+    pub(crate) fn residual(&self, way: Vector<f64, 3>, turn: Vector<f64, 3>) -> Vector<f64, 3> {
         turn - self.turn(way)
     }
 
@@ -49,8 +49,8 @@ impl<const D: usize> Curvature<D> {
     #[inline]
     pub(crate) fn learn(
         &mut self,
-        way: Vector<f64, D>,
-        residual: Vector<f64, D>,
+        way: Vector<f64, 3>,
+        residual: Vector<f64, 3>,
         squared: f64,
     ) {
         let per_squared = 1.0 / squared;
@@ -73,10 +73,26 @@ impl<const D: usize> Curvature<D> {
     /// The displacement along the surface to the point closest to a device `depth` [m] below
     /// the surface; on the tangent plane this displacement would be `along`. `None` if the
     /// closest point is not near.
+    /// `dimensions` are those of [`Solver`].
     #[inline]
-    pub(crate) fn way(&self, along: Vector<f64, D>, depth: f64) -> Option<Vector<f64, D>> {
-        surface_displacement(|way| self.turn(way), along, depth, SOLVED)
+    pub(crate) fn way(
+        &self,
+        along: Vector<f64, 3>,
+        depth: f64,
+        dimensions: usize,
+    ) -> Option<Vector<f64, 3>> {
+        let solver = Solver { solved: SOLVED, dimensions };
+        surface_displacement(|way| self.turn(way), along, depth, solver)
     }
+}
+
+/// When [`surface_displacement`] stops.
+#[derive(Clone, Copy)]
+pub(crate) struct Solver {
+    /// The relative residual.
+    pub(crate) solved: f64,
+    /// The dimensions of the surface: one for planar shapes, which are straight along z.
+    pub(crate) dimensions: usize,
 }
 
 /// The displacement over a surface that a point `depth` [m] below the surface sees as `along`;
@@ -85,20 +101,20 @@ impl<const D: usize> Curvature<D> {
 ///
 /// Where the curvature is `κ`, displacements at depth `d` are `1 − κ d` times those on the
 /// surface, so `(1 − d S) w = along`. Conjugate gradients solve this equation to the relative
-/// residual `solved`; they are exact after as many steps as the surface has dimensions. They
+/// residual of the solver; they are exact after as many steps as the surface has dimensions. They
 /// stop where the matrix is not positive definite: beyond a centre of curvature there is no
 /// closest point.
 #[inline]
-pub(crate) fn surface_displacement<const D: usize>(
-    mut turn: impl FnMut(Vector<f64, D>) -> Vector<f64, D>,
-    along: Vector<f64, D>,
+pub(crate) fn surface_displacement(
+    mut turn: impl FnMut(Vector<f64, 3>) -> Vector<f64, 3>,
+    along: Vector<f64, 3>,
     depth: f64,
-    solved: f64,
-) -> Option<Vector<f64, D>> {
+    Solver { solved, dimensions }: Solver,
+) -> Option<Vector<f64, 3>> {
     let (mut way, mut rest, mut step) = (Vector::ZERO, along, along);
     let mut left = rest.dot(rest);
     let solved = solved * solved * left;
-    for _ in 1..D {
+    for _ in 0..dimensions {
         let seen = step - turn(step) * depth;
         let steepness = step.dot(seen);
         // A zero residual needs no step.
@@ -123,7 +139,7 @@ mod tests {
     use super::*;
 
     /// The curvature of a cylinder of radius 1/4 m along the third axis.
-    fn cylinder() -> Curvature<3> {
+    fn cylinder() -> Curvature {
         let mut curvature = Curvature::FLAT;
         let way = Vector([0.125, 0.0, 0.0]);
         curvature.learn(way, curvature.residual(way, way * 4.0), way.dot(way));
@@ -144,11 +160,11 @@ mod tests {
     fn the_closest_point_turns_about_the_centre() {
         // At half the radius deep: twice the displacement across the axis, the same along the
         // axis.
-        let way = cylinder().way(Vector([0.001, 0.0, 0.002]), 0.125).unwrap();
+        let way = cylinder().way(Vector([0.001, 0.0, 0.002]), 0.125, 2).unwrap();
         assert!((way - Vector([0.002, 0.0, 0.002])).norm() < 1e-15);
         assert!(cylinder().at_most_doubles(0.125 * 0.125));
         assert!(!cylinder().at_most_doubles(0.126 * 0.126));
         // Beyond the axis there is no closest point.
-        assert_eq!(cylinder().way(Vector([0.001, 0.0, 0.0]), 0.5), None);
+        assert_eq!(cylinder().way(Vector([0.001, 0.0, 0.0]), 0.5, 2), None);
     }
 }

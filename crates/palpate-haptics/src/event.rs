@@ -131,21 +131,21 @@ impl fmt::Display for EventCounts {
 /// a physics engine that moves the body.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
-pub struct Reaction<const D: usize> {
+pub struct Reaction {
     /// The force [N].
-    pub force: Vector<f64, D>,
+    pub force: Vector<f64, 3>,
     /// The torque about the body's origin [N·m]; in the plane about z alone.
     pub torque: Vector<f64, 3>,
 }
 
-impl<const D: usize> Reaction<D> {
+impl Reaction {
     pub(crate) const NONE: Self = Self { force: Vector::ZERO, torque: Vector::ZERO };
 
     /// Adds a force that acts at `arm` from the body's origin, if the sum is finite.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
-    pub(crate) fn add(&mut self, force: Vector<f64, D>, arm: Point<D>) {
-        let torque = arm.in_space().cross(force.in_space());
+    pub(crate) fn add(&mut self, force: Vector<f64, 3>, arm: Point<3>) {
+        let torque = arm.cross(force);
         let sum = Self { force: self.force + force, torque: self.torque + torque };
         if sum.force.is_finite() && sum.torque.is_finite() {
             *self = sum;

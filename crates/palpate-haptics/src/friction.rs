@@ -49,13 +49,13 @@ pub(crate) struct Held {
 
 /// What became of a dragged proxy.
 #[derive(Clone, Copy)]
-pub(crate) struct Dragged<const D: usize> {
+pub(crate) struct Dragged {
     /// Whether the surface keeps the proxy from the device.
     pub(crate) contact: bool,
     pub(crate) hold: Hold,
     /// The part of the stretch from device to proxy that friction holds [m]; `None` if static
     /// friction leaves it open, because the proxy sticks or several walls hold it.
-    pub(crate) held: Option<Vector<f64, D>>,
+    pub(crate) held: Option<Vector<f64, 3>>,
 }
 
 /// [Slides](slide) the proxy from `here` towards the point closest to `device`, as far as
@@ -63,13 +63,13 @@ pub(crate) struct Dragged<const D: usize> {
 ///
 /// Real-time: allocates nothing, takes no lock, cannot panic; at most the sampler's budget of
 /// evaluations.
-pub(crate) fn drag<const D: usize>(
-    sampler: &mut Sampler<'_, D>,
-    place: Place<'_, D>,
-    goal: Goal<D>,
+pub(crate) fn drag(
+    sampler: &mut Sampler<'_>,
+    place: Place<'_>,
+    goal: Goal,
     held: Held,
-    local: &mut LocalSurface<D>,
-) -> Dragged<D> {
+    local: &mut LocalSurface,
+) -> Dragged {
     let Place { here, normal } = place;
     let Goal { device, motion } = goal;
     let Held { friction, hold } = held;
@@ -127,13 +127,13 @@ pub(crate) fn drag<const D: usize>(
 /// The device point shifted by friction towards the proxy's old place; `along` is the
 /// displacement along the surface without friction. `None` if `most` times the depth is enough
 /// to hold the proxy.
-fn held_back<const D: usize>(
-    device: Point<D>,
-    along: Vector<f64, D>,
+fn held_back(
+    device: Point<3>,
+    along: Vector<f64, 3>,
     depth: f64,
     most: f64,
     slipping: f64,
-) -> Option<Point<D>> {
+) -> Option<Point<3>> {
     let squared = along.dot(along);
     // Written so that NaN sticks.
     let is_loose = squared > most * most * depth * depth;

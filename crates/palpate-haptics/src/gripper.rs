@@ -21,8 +21,9 @@ pub(crate) struct GripperPort {
     pub(crate) wanted: f64,
     /// The force to write [N].
     pub(crate) force: f64,
-    /// `None` for a gripper without a motor, and without protection.
-    chain: Option<SafetyChain<1>>,
+    /// Of the opening, which is along x. `None` for a gripper without a motor, and without
+    /// protection.
+    chain: Option<SafetyChain>,
 }
 
 impl GripperPort {
@@ -37,14 +38,14 @@ impl GripperPort {
             state.unwrap_or(GripperState::at_rest(f64::NAN));
         let late = arrival.late + if arrival.elapsed.is_some() { 0.0 } else { chain.period() };
         let state = PortState {
-            position: Vector([opening]),
-            velocity: Vector([velocity]),
+            position: Vector([opening, 0.0, 0.0]),
+            velocity: Vector([velocity, 0.0, 0.0]),
             late,
             elapsed: arrival.elapsed,
             change: if arrival.is_ready { Change::None } else { Change::Begins },
             ..PortState::at_rest()
         };
-        let Vector([force]) = chain.step(Vector([self.wanted]), &state);
+        let Vector([force, ..]) = chain.step(Vector([self.wanted, 0.0, 0.0]), &state);
         self.force = force;
     }
 
@@ -58,7 +59,7 @@ impl GripperPort {
     }
 }
 
-impl<const D: usize> Protection<D> {
+impl Protection {
     /// Makes the port of the device's gripper.
     pub(crate) fn gripper(&self, rate: f64) -> Result<GripperPort, HapticsError> {
         let gripper = self.profile.gripper.as_ref().filter(|gripper| gripper.max_force > 0.0);

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! Compiles servos, proxies and tools in this crate, for the plane and for space.
+//! Compiles servos, proxies and tools in this crate.
 //! [`compile`] says why.
 
 use palpate_field::compile;
@@ -12,70 +12,70 @@ use crate::{
     Tool, Unprotected,
 };
 
-fn in_dimension<const D: usize>() {
+fn touch() {
     compile![
-        Body::<D>::at,
-        Body::<D>::passing,
-        Bodies::<D>::new,
-        Nearby::<D>::look,
-        Nearby::<D>::nearest,
-        Nearby::<D>::gradient,
-        Proxy::<D>::new,
-        Proxy::<D>::forget_bodies,
-        Proxy::<D>::follow,
-        Proxy::<D>::carry_out,
-        Shell::<D>::capsule,
-        Shell::<D>::from_field,
-        Shell::<D>::from_mesh::<D>,
-        Shell::<D>::of_shape,
-        Tool::<D>::new,
-        Tool::<D>::hover,
-        Tool::<D>::step,
-        Curve::<D>::polyline,
-        Curve::<D>::smooth,
-        Guide::<D>::along_curve,
-        Guide::<D>::down,
-        Guide::<D>::force,
-        Guide::<D>::lines_within,
-        Protection::<D>::accept,
-        Protection::<D>::accept_guides,
-        Protection::<D>::accepted_bodies,
-        Renderer::<D>::of_points,
-        Renderer::<D>::of_tool,
-        Renderer::<D>::requested_coupling,
-        Renderer::<D>::set_map,
-        Renderer::<D>::set_ports,
-        Renderer::<D>::set_pose,
-        Renderer::<D>::adopt,
-        Renderer::<D>::exchange,
-        Renderer::<D>::guide,
-        Renderer::<D>::exchange_guides,
-        Renderer::<D>::limit_force,
-        Renderer::<D>::limit_torque,
-        Renderer::<D>::lift,
-        Renderer::<D>::stop,
-        Renderer::<D>::step,
-        Renderer::<D>::rehearse,
-        Renderer::<D>::safety,
-        Renderer::<D>::stage_ticks,
-        Servo::<D, Unprotected>::protected,
-        Servo::<D, Protected<D>>::guide,
-        Control::<D>::set_poses,
-        Control::<D>::replace_guides,
-        Control::<D>::latest,
+        Body::at,
+        Body::passing,
+        Bodies::new,
+        Nearby::look,
+        Nearby::nearest,
+        Nearby::gradient,
+        Proxy::new,
+        Proxy::forget_bodies,
+        Proxy::follow,
+        Proxy::carry_out,
+        Shell::capsule,
+        Shell::from_field::<3>,
+        Shell::from_mesh::<3, 3>,
+        Shell::from_field::<2>,
+        Tool::new,
+        Tool::hover,
+        Tool::step,
+        Curve::polyline,
+        Curve::smooth,
+        Guide::along_curve,
+        Guide::down,
+        Guide::force,
+        Guide::lines_within,
+        Protection::accept,
+        Protection::accept_guides,
+        Protection::accepted_bodies,
+        Renderer::of_points,
+        Renderer::of_tool,
+        Renderer::requested_coupling,
+        Renderer::set_map,
+        Renderer::set_ports,
+        Renderer::set_pose,
+        Renderer::adopt,
+        Renderer::exchange,
+        Renderer::guide,
+        Renderer::exchange_guides,
+        Renderer::limit_force,
+        Renderer::limit_torque,
+        Renderer::lift,
+        Renderer::stop,
+        Renderer::step,
+        Renderer::rehearse,
+        Renderer::safety,
+        Renderer::stage_ticks,
+        Servo::<Unprotected>::protected,
+        Servo::<Protected>::guide,
+        Control::set_poses,
+        Control::replace_guides,
+        Control::latest,
     ];
 }
 
 #[cfg(feature = "loop")]
-fn loops_in_dimension<const D: usize>() {
+fn loops() {
     use crate::servo_loop::{ServoThread, run_on, ticks::ServoLoop};
     compile![
-        ServoLoop::<D>::new,
-        ServoLoop::<D>::run,
-        run_on::<D>,
-        ServoThread::<D>::start,
-        ServoThread::<D>::end,
-        ServoThread::<D>::join,
+        ServoLoop::new,
+        ServoLoop::run,
+        run_on,
+        ServoThread::start,
+        ServoThread::end,
+        ServoThread::join,
     ];
 }
 
@@ -83,11 +83,7 @@ fn loops_in_dimension<const D: usize>() {
 #[doc(hidden)]
 #[inline(never)]
 pub fn instances() {
-    in_dimension::<2>();
-    in_dimension::<3>();
+    touch();
     #[cfg(feature = "loop")]
-    {
-        loops_in_dimension::<2>();
-        loops_in_dimension::<3>();
-    }
+    loops();
 }

@@ -32,13 +32,13 @@ pub struct Progress {
 /// The state of a servo after one tick: all parts are of the same tick.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
-pub struct Snapshot<const D: usize> {
+pub struct Snapshot {
     /// Counts and largest values.
     pub progress: Progress,
     /// Every contact point.
-    pub touches: Vec<Touch<D>>,
+    pub touches: Vec<Touch>,
     /// The tool; `None` if the servo renders contact points.
-    pub tool: Option<HeldTool<D>>,
+    pub tool: Option<HeldTool>,
     /// `true` while all written forces are held at zero: by an emergency stop, or because the bodies
     /// that were sent last were accepted for another servo.
     pub is_stopped: bool,
@@ -53,7 +53,7 @@ pub struct Snapshot<const D: usize> {
     /// The force on the fingers in the gripper [N].
     pub gripper_force: f64,
     /// Force and torque on each body.
-    pub reactions: Vec<Reaction<D>>,
+    pub reactions: Vec<Reaction>,
     /// Events so far for which the queue had no room.
     pub events_lost: u64,
 }

@@ -66,11 +66,11 @@ impl Punctured {
 
 /// The field at a place.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct FieldValue<const D: usize> {
+pub(crate) struct FieldValue {
     /// The field [m].
     pub(crate) distance: f64,
     /// The gradient of the field.
-    pub(crate) gradient: Vector<f64, D>,
+    pub(crate) gradient: Vector<f64, 3>,
     /// The index of the body whose field is least.
     pub(crate) body: u32,
 }
@@ -78,19 +78,19 @@ pub(crate) struct FieldValue<const D: usize> {
 /// The bodies near a place, as one field: the least of their fields and of the distance to the
 /// horizon. All other bodies lie beyond the horizon.
 #[derive(Clone, Copy, Debug)]
-pub struct Nearby<'a, const D: usize> {
-    pub(crate) bodies: &'a Bodies<D>,
+pub struct Nearby<'a> {
+    pub(crate) bodies: &'a Bodies,
     /// Indices of the near bodies; `None` means all bodies.
     pub(crate) list: Option<&'a [u32]>,
-    pub(crate) centre: Point<D>,
+    pub(crate) centre: Point<3>,
     /// The radius of the horizon about the centre [m]: bodies not in the list are farther away.
     pub(crate) horizon: f64,
 }
 
-impl<const D: usize> Bodies<D> {
+impl Bodies {
     /// All bodies, however far away.
     #[must_use]
-    pub fn everything(&self) -> Nearby<'_, D> {
+    pub fn everything(&self) -> Nearby<'_> {
         Nearby { bodies: self, list: None, centre: Vector::ZERO, horizon: f64::INFINITY }
     }
 
@@ -101,10 +101,10 @@ impl<const D: usize> Bodies<D> {
     #[must_use]
     pub fn nearby<'a>(
         &'a self,
-        centre: Point<D>,
+        centre: Point<3>,
         radius: f64,
         list: &'a mut [u32],
-    ) -> Nearby<'a, D> {
+    ) -> Nearby<'a> {
         let (mut horizon, mut count) = (f64::INFINITY, 0);
         for (index, body) in (0..).zip(self.bodies()) {
             let away = body.above_way(centre);
@@ -122,16 +122,16 @@ impl<const D: usize> Bodies<D> {
     }
 }
 
-impl<'a, const D: usize> Nearby<'a, D> {
+impl<'a> Nearby<'a> {
     /// The body with this index.
-    pub(crate) fn body(&self, body: u32) -> Option<&'a Body<D>> {
+    pub(crate) fn body(&self, body: u32) -> Option<&'a Body> {
         self.bodies.bodies().get(body as usize)
     }
 
     /// The field at a point and its gradient.
     #[must_use]
     #[inline(never)]
-    pub fn look(&self, p: Point<D>) -> (f64, Vector<f64, D>) {
+    pub fn look(&self, p: Point<3>) -> (f64, Vector<f64, 3>) {
         let seen = self.gradient(p, &Punctured::default());
         (seen.distance, seen.gradient)
     }
@@ -146,18 +146,18 @@ impl<'a, const D: usize> Nearby<'a, D> {
     /// use palpate_field::{Pose, Shape, Vector};
     /// use palpate_haptics::{Bodies, Body, Surface};
     /// let disc = || Body::new(Shape::circle(0.5)?, Surface::default());
-    /// let right = disc()?.at(Pose::translation(Vector([2.0, 0.0])))?;
+    /// let right = disc()?.at(Pose::translation(Vector([2.0, 0.0, 0.0])))?;
     /// let bodies = Bodies::new(vec![disc()?, right])?;
-    /// assert_eq!(bodies.everything().nearest(Vector([1.75, 0.0])), (-0.25, 1));
+    /// assert_eq!(bodies.everything().nearest(Vector([1.75, 0.0, 0.0])), (-0.25, 1));
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     #[must_use]
     #[inline(never)]
-    pub fn nearest(&self, p: Point<D>) -> (f64, u32) {
+    pub fn nearest(&self, p: Point<3>) -> (f64, u32) {
         self.distance(p, &Punctured::default())
     }
 
-    pub(crate) fn all(&self) -> impl Iterator<Item = (u32, &'a Body<D>)> {
+    pub(crate) fn all(&self) -> impl Iterator<Item = (u32, &'a Body)> {
         let bodies = self.bodies.bodies();
         let count = self.list.map_or(bodies.len(), <[u32]>::len);
         let list = self.list;
@@ -180,6 +180,11 @@ impl<'a, const D: usize> Nearby<'a, D> {
         self.all().map(|(_, body)| body.rounding_within(extent)).fold(0.0, f64::max)
     }
 
+    /// Whether all bodies are planar shapes.
+    pub(crate) fn is_flat(&self) -> bool {
+        self.bodies.is_flat
+    }
+
     /// Whether any body moved in this tick.
     pub(crate) fn has_moved(&self) -> bool {
         self.bodies.has_moved
@@ -187,7 +192,7 @@ impl<'a, const D: usize> Nearby<'a, D> {
 
     /// The field at a point, and the body whose field is least there.
     #[inline]
-    pub(crate) fn distance(&self, p: Point<D>, punctured: &Punctured) -> (f64, u32) {
+    pub(crate) fn distance(&self, p: Point<3>, punctured: &Punctured) -> (f64, u32) {
         if let ([body], true) = (self.bodies.bodies(), punctured.is_empty()) {
             return (body.distance(p), 0);
         }
@@ -215,7 +220,7 @@ impl<'a, const D: usize> Nearby<'a, D> {
 
     /// The field and its gradient at a point, and the body whose field is least there.
     #[inline(never)]
-    pub(crate) fn gradient(&self, p: Point<D>, punctured: &Punctured) -> FieldValue<D> {
+    pub(crate) fn gradient(&self, p: Point<3>, punctured: &Punctured) -> FieldValue {
         if let ([body], true) = (self.bodies.bodies(), punctured.is_empty()) {
             let (distance, gradient) = body.distance_gradient(p);
             return FieldValue { distance, gradient, body: 0 };
@@ -249,10 +254,10 @@ impl<'a, const D: usize> Nearby<'a, D> {
     /// touch leave no way between them for a point.
     pub(crate) fn gradient_filled(
         &self,
-        p: Point<D>,
+        p: Point<3>,
         punctured: &Punctured,
         crack: f64,
-    ) -> FieldValue<D> {
+    ) -> FieldValue {
         let least = self.gradient(p, punctured);
         let near = |body| (body != least.body).then_some(least.distance + crack);
         let others = self.each_within(p, punctured, near);
@@ -271,10 +276,10 @@ impl<'a, const D: usize> Nearby<'a, D> {
     /// than.
     pub(crate) fn each_within(
         &self,
-        p: Point<D>,
+        p: Point<3>,
         punctured: &Punctured,
         most: impl Fn(u32) -> Option<f64>,
-    ) -> impl Iterator<Item = FieldValue<D>> {
+    ) -> impl Iterator<Item = FieldValue> {
         self.all().filter_map(move |(index, body)| {
             let above = body.above_ball(p);
             let is_near = most(index).is_some_and(|most| above <= most);
@@ -283,7 +288,7 @@ impl<'a, const D: usize> Nearby<'a, D> {
     }
 
     /// `true` if the promise of every near body holds at a point.
-    pub(crate) fn is_proven(&self, p: Point<D>) -> bool {
+    pub(crate) fn is_proven(&self, p: Point<3>) -> bool {
         if !self.bodies.has_regions {
             return true;
         }
@@ -294,7 +299,7 @@ impl<'a, const D: usize> Nearby<'a, D> {
 
     /// The point closest to `goal` at which the promises hold. With several regions, `goal` is
     /// projected on one after another, which gives a nearby point.
-    pub(crate) fn within_regions(&self, goal: Point<D>, edge: f64) -> Point<D> {
+    pub(crate) fn within_regions(&self, goal: Point<3>, edge: f64) -> Point<3> {
         if !self.bodies.has_regions {
             return goal;
         }
@@ -313,22 +318,22 @@ impl<'a, const D: usize> Nearby<'a, D> {
 /// The field of one body at a point that is `above` its ball; `None` if all its layers are
 /// punctured.
 #[inline(always)]
-fn field_of<const D: usize>(
-    body: &Body<D>,
+fn field_of(
+    body: &Body,
     index: u32,
-    p: Point<D>,
+    p: Point<3>,
     above: f64,
     punctured: &Punctured,
-) -> Option<FieldValue<D>> {
+) -> Option<FieldValue> {
     let layer_depth = layer_depth(body, punctured.level(index))?;
     let (distance, gradient) = body.distance_gradient(p);
     let mut seen = FieldValue { distance: distance + layer_depth, gradient, body: index };
     if body.is_below_ball
         && above > seen.distance
-        && let Some(ball) = body.ball
+        && let Some(outwards) = body.off_centre(p)
     {
         seen.distance = above;
-        seen.gradient = (p - ball.centre).normalized().unwrap_or(Vector::ZERO);
+        seen.gradient = outwards.normalized().unwrap_or(Vector::ZERO);
     }
     Some(seen)
 }
@@ -336,6 +341,6 @@ fn field_of<const D: usize>(
 /// The depth of the layer that constrains the proxy after `level` layers were punctured [m];
 /// `None` if no layer is left.
 #[inline]
-fn layer_depth<const D: usize>(body: &Body<D>, level: usize) -> Option<f64> {
+fn layer_depth(body: &Body, level: usize) -> Option<f64> {
     if level == 0 { Some(0.0) } else { body.surface().strata.top(level).map(|top| top.depth) }
 }

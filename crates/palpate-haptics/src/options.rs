@@ -62,13 +62,13 @@ impl ServoOptions {
     /// use palpate_device::{Device, DeviceProfile, MailboxDevice};
     /// use palpate_haptics::ServoOptions;
     ///
-    /// let (slow, _driver) = MailboxDevice::<3>::new(DeviceProfile::unlimited("slow"), 1)?;
+    /// let (slow, _driver) = MailboxDevice::new(DeviceProfile::unlimited("slow"), 1)?;
     /// let options = ServoOptions::default().at_rate_of(&slow.with_rate(250.0));
     /// assert_eq!(options.rate, 250.0);
     /// # Ok::<(), palpate_device::DeviceError>(())
     /// ```
     #[must_use]
-    pub fn at_rate_of<const D: usize>(self, device: &(impl Device<D> + ?Sized)) -> Self {
+    pub fn at_rate_of(self, device: &(impl Device + ?Sized)) -> Self {
         let is_own = |rate: &f64| *rate < self.rate || device.paces();
         Self { rate: device.rate().filter(is_own).unwrap_or(self.rate), ..self }
     }

@@ -19,9 +19,9 @@ const LEFT_BEHIND: f64 = 0.25;
 
 /// A plane and the point of the surface at which it was tangent.
 #[derive(Clone, Copy, Debug)]
-struct Wall<const D: usize> {
-    half_space: PlaneConstraint<D>,
-    foot: Point<D>,
+struct Wall {
+    half_space: PlaneConstraint<3>,
+    foot: Point<3>,
     /// How far the plane was lowered since it was learnt [m].
     lowered: f64,
 }
@@ -32,12 +32,12 @@ struct Wall<const D: usize> {
 /// the planes of one tick are kept. A plane of a convex neighbour no longer constrains the
 /// proxy and is dropped.
 #[derive(Clone, Debug)]
-pub(crate) struct Planes<const D: usize> {
-    walls: [Wall<D>; CAPACITY],
+pub(crate) struct Planes {
+    walls: [Wall; CAPACITY],
     count: usize,
 }
 
-impl<const D: usize> Planes<D> {
+impl Planes {
     pub(crate) fn new() -> Self {
         let half_space = PlaneConstraint { point: Vector::ZERO, normal: Vector::ZERO };
         let none = Wall { half_space, foot: Vector::ZERO, lowered: 0.0 };
@@ -64,20 +64,20 @@ impl<const D: usize> Planes<D> {
     /// between the two feet.
     pub(crate) fn forget_wall(
         &mut self,
-        foot: Point<D>,
-        normal: Vector<f64, D>,
-        is_turn: impl Fn(Vector<f64, D>, Vector<f64, D>) -> bool,
+        foot: Point<3>,
+        normal: Vector<f64, 3>,
+        is_turn: impl Fn(Vector<f64, 3>, Vector<f64, 3>) -> bool,
     ) {
         self.retain(|wall| !is_turn(foot - wall.foot, normal - wall.half_space.normal));
     }
 
-    fn known(&self) -> &[Wall<D>] {
+    fn known(&self) -> &[Wall] {
         self.walls.get(..self.count).unwrap_or(&[])
     }
 
     /// Passes each plane to `keep`, which may change it, and drops the planes for which `keep`
     /// returns `false`.
-    fn retain(&mut self, mut keep: impl FnMut(&mut Wall<D>) -> bool) {
+    fn retain(&mut self, mut keep: impl FnMut(&mut Wall) -> bool) {
         let mut kept = 0;
         for i in 0..self.count {
             let Some(wall) = self.walls.get_mut(i) else { break };
@@ -102,8 +102,8 @@ impl<const D: usize> Planes<D> {
     #[inline(always)]
     pub(crate) fn learn(
         &mut self,
-        seen_from: Point<D>,
-        half_space: PlaneConstraint<D>,
+        seen_from: Point<3>,
+        half_space: PlaneConstraint<3>,
         gap: f64,
     ) {
         let PlaneConstraint { point: foot, normal } = half_space;
@@ -131,7 +131,7 @@ impl<const D: usize> Planes<D> {
     #[inline(always)]
     pub(crate) fn add(
         &mut self,
-        PlaneConstraint { point: foot, normal }: PlaneConstraint<D>,
+        PlaneConstraint { point: foot, normal }: PlaneConstraint<3>,
     ) -> bool {
         let Some(place) = self.walls.get_mut(self.count) else { return false };
         // Field by field, because copying the whole struct would stall on store forwarding.
@@ -144,8 +144,8 @@ impl<const D: usize> Planes<D> {
     }
 
     /// Replaces the plane that lies farthest below the foot of `wall`.
-    fn replace_loosest(&mut self, wall: Wall<D>) {
-        let height = |t: &Wall<D>| t.half_space.height(wall.foot);
+    fn replace_loosest(&mut self, wall: Wall) {
+        let height = |t: &Wall| t.half_space.height(wall.foot);
         let loosest = self.walls.iter_mut().max_by(|a, b| height(a).total_cmp(&height(b)));
         if let Some(place) = loosest {
             *place = wall;
@@ -170,13 +170,13 @@ impl<const D: usize> Planes<D> {
 
     /// The unit vector away from all planes, along the mean of their normals; `None` if the
     /// planes face each other.
-    pub(crate) fn up(&self) -> Option<Vector<f64, D>> {
+    pub(crate) fn up(&self) -> Option<Vector<f64, 3>> {
         let normals = self.known().iter().map(|t| t.half_space.normal);
         normals.fold(Vector::ZERO, |sum, normal| sum + normal).normalized()
     }
 
     /// The point closest to `x` above all planes; `None` if the planes have no common point.
-    pub(crate) fn closest(&self, x: Point<D>) -> Option<Point<D>> {
+    pub(crate) fn closest(&self, x: Point<3>) -> Option<Point<3>> {
         let none = PlaneConstraint { point: Vector::ZERO, normal: Vector::ZERO };
         let mut half_spaces = [none; CAPACITY];
         for (place, wall) in half_spaces.iter_mut().zip(self.known()) {

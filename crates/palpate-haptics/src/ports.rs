@@ -16,13 +16,13 @@ use palpate_safety::{
     SafetySettings, StageTicks, TurnReadings, VelocityEstimator, WrenchChain,
 };
 
-impl<const D: usize> Protection<D> {
+impl Protection {
     /// Makes the port of one contact point.
     pub(crate) fn port(
         &self,
-        bodies: &AcceptedBodies<D>,
+        bodies: &AcceptedBodies,
         rate: f64,
-    ) -> Result<Port<D>, HapticsError> {
+    ) -> Result<Port, HapticsError> {
         let along = bodies.along().map(|accepted| accepted.impedance);
         let options = self.safety_options(along.unwrap_or_default());
         Ok(Port {
@@ -40,9 +40,9 @@ impl<const D: usize> Protection<D> {
     /// Makes the port between a tool and a device with rotation; `None` for other devices.
     pub(crate) fn turning(
         &self,
-        bodies: &AcceptedBodies<D>,
+        bodies: &AcceptedBodies,
         rate: f64,
-    ) -> Result<Option<TurningPort<D>>, HapticsError> {
+    ) -> Result<Option<TurningPort>, HapticsError> {
         let Some(turning) = &self.profile.turning else { return Ok(None) };
         let chain = if let Some((along, about)) = bodies.wrench() {
             let (along_limits, about_limits) =
@@ -74,11 +74,11 @@ impl<const D: usize> Protection<D> {
 
 /// The port between one contact point and the device.
 #[derive(Clone, Debug)]
-pub(crate) struct Port<const D: usize> {
-    chain: SafetyChain<D>,
-    readings: Readings<D>,
+pub(crate) struct Port {
+    chain: SafetyChain,
+    readings: Readings,
     /// The state in the tick before.
-    last: Option<PointState<D>>,
+    last: Option<PointState>,
     /// The time between the last reading that counted and that of this tick [s]; `None` if this
     /// tick has none.
     elapsed: Option<f64>,
@@ -86,12 +86,12 @@ pub(crate) struct Port<const D: usize> {
     uncounted: f64,
     /// The duration of a tick [s].
     period: f64,
-    estimator: VelocityEstimator<D>,
+    estimator: VelocityEstimator,
     /// Whether encoder steps make it necessary to estimate the velocity.
     has_steps: bool,
 }
 
-impl<const D: usize> Port<D> {
+impl Port {
     /// The state of the device in a tick: that of the tick before if nothing was measured, or
     /// nothing that a hand can have made; `is_turn_sound` says so of the orientation that was read
     /// beside it. Its velocity is estimated from positions if the device has encoder steps, and is
@@ -103,10 +103,10 @@ impl<const D: usize> Port<D> {
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     pub(crate) fn state(
         &mut self,
-        state: PointState<D>,
+        state: PointState,
         arrival: Arrival,
         is_turn_sound: bool,
-    ) -> PointState<D> {
+    ) -> PointState {
         let counted = arrival
             .elapsed
             .filter(|time| self.readings.counts(state.position, *time) && is_turn_sound);
@@ -114,7 +114,7 @@ impl<const D: usize> Port<D> {
             self.uncounted += arrival.elapsed.unwrap_or(0.0);
             self.elapsed = None;
             // What repeats before the first reading is no state.
-            return self.last.unwrap_or(PointState::at_rest(Vector([f64::NAN; D])));
+            return self.last.unwrap_or(PointState::at_rest(Vector([f64::NAN; 3])));
         };
         let elapsed = std::mem::take(&mut self.uncounted) + elapsed;
         self.elapsed = Some(elapsed);
@@ -140,10 +140,10 @@ impl<const D: usize> Port<D> {
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     pub(crate) fn write(
         &mut self,
-        wanted: Vector<f64, D>,
+        wanted: Vector<f64, 3>,
         max_force: f64,
-        state: &PortState<D>,
-    ) -> Vector<f64, D> {
+        state: &PortState,
+    ) -> Vector<f64, 3> {
         let (late, elapsed) = (self.late(state.late), self.elapsed);
         self.chain.step_within(wanted, max_force, &PortState { late, elapsed, ..*state })
     }
@@ -202,29 +202,29 @@ impl<const D: usize> Port<D> {
 
 /// The rotational port between a tool and a device, beside the [`Port`] of its contact point.
 #[derive(Clone, Debug)]
-pub(crate) struct TurningPort<const D: usize> {
+pub(crate) struct TurningPort {
     /// The safety chain of force and torque, which replaces the chain of the [`Port`]; `None`
     /// for a device that gives no torque.
-    pub(crate) chain: Option<WrenchChain<D>>,
-    readings: TurnReadings<D>,
-    estimator: VelocityEstimator<3>,
+    pub(crate) chain: Option<WrenchChain>,
+    readings: TurnReadings,
+    estimator: VelocityEstimator,
     /// Whether the orientation has encoder steps.
     has_steps: bool,
     /// The state in the tick before.
-    last: Option<TurnState<D>>,
+    last: Option<TurnState>,
     /// The sum of all rotation vectors so far [rad].
     angle: Vector<f64, 3>,
 }
 
-impl<const D: usize> TurningPort<D> {
+impl TurningPort {
     /// Whether what was read of the orientation, beside a position, counts. A position that is no
     /// number is that of a device which was lost: its orientation may be any once it is found.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     pub(crate) fn counts(
         &mut self,
-        turn: Option<TurnState<D>>,
-        position: Point<D>,
+        turn: Option<TurnState>,
+        position: Point<3>,
         elapsed: Option<f64>,
     ) -> bool {
         if !position.is_finite() {
@@ -253,9 +253,9 @@ impl<const D: usize> TurningPort<D> {
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     pub(crate) fn state(
         &mut self,
-        turn: Option<TurnState<D>>,
+        turn: Option<TurnState>,
         elapsed: Option<f64>,
-    ) -> (Option<TurnState<D>>, Vector<f64, 3>) {
+    ) -> (Option<TurnState>, Vector<f64, 3>) {
         let Some((mut turn, elapsed)) = turn.zip(elapsed) else {
             return (turn.and(self.last), self.angle);
         };

@@ -31,16 +31,16 @@ use palpate_safety::{
 /// # }
 /// ```
 #[derive(Clone, Debug)]
-pub struct Protection<const D: usize> {
+pub struct Protection {
     /// The limits and properties of the device.
     pub profile: DeviceProfile,
     /// The map between device and world coordinates.
-    pub map: WorkspaceMap<D>,
+    pub map: WorkspaceMap,
     /// How the safety chains protect.
     pub settings: SafetySettings,
 }
 
-impl<const D: usize> Protection<D> {
+impl Protection {
     /// Protection with the identity map and the [default settings](SafetySettings::default): every
     /// stage acts.
     #[must_use]
@@ -57,7 +57,7 @@ impl<const D: usize> Protection<D> {
 
     /// This protection with another map between device and world coordinates.
     #[must_use]
-    pub fn with_map(self, map: WorkspaceMap<D>) -> Self {
+    pub fn with_map(self, map: WorkspaceMap) -> Self {
         Self { map, ..self }
     }
 
@@ -71,9 +71,9 @@ impl<const D: usize> Protection<D> {
     #[inline(never)]
     pub fn accept(
         &self,
-        mut bodies: Bodies<D>,
+        mut bodies: Bodies,
         rate: f64,
-    ) -> Result<(Bodies<D>, Vec<Accepted>), HapticsError> {
+    ) -> Result<(Bodies, Vec<Accepted>), HapticsError> {
         let mut all = Vec::with_capacity(bodies.bodies().len());
         let mut refusals = self.refusals();
         self.accept_magnets(&mut bodies, rate, &mut refusals)?;
@@ -98,9 +98,9 @@ impl<const D: usize> Protection<D> {
     #[inline(never)]
     pub fn accept_guides(
         &self,
-        guides: &[Guide<D>],
+        guides: &[Guide],
         rate: f64,
-    ) -> Result<(Vec<Guide<D>>, Vec<Accepted>), HapticsError> {
+    ) -> Result<(Vec<Guide>, Vec<Accepted>), HapticsError> {
         if self.profile.max_force == 0.0 {
             return Ok((guides.to_vec(), Vec::new()));
         }
@@ -120,7 +120,7 @@ impl<const D: usize> Protection<D> {
     /// Softens the magnets of bodies to what the device renders, as if they were materials.
     pub(crate) fn accept_magnets(
         &self,
-        bodies: &mut Bodies<D>,
+        bodies: &mut Bodies,
         rate: f64,
         refusals: &mut Refusals,
     ) -> Result<(), HapticsError> {
@@ -135,13 +135,9 @@ impl<const D: usize> Protection<D> {
     }
 
     /// Gives surfaces of a relative stiffness that which they have on the device.
-    pub(crate) fn stiffen(
-        &self,
-        bodies: &mut Bodies<D>,
-        rate: f64,
-    ) -> Result<(), HapticsError> {
+    pub(crate) fn stiffen(&self, bodies: &mut Bodies, rate: f64) -> Result<(), HapticsError> {
         // Where nothing is relative, the device need not have a largest stiffness.
-        let is_relative = |body: &Body<D>| body.surface().is_relative();
+        let is_relative = |body: &Body| body.surface().is_relative();
         if bodies.bodies().iter().any(is_relative) {
             let most = Accepted::most_stiffness(
                 &DeviceLimits::along(&self.profile),

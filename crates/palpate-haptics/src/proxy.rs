@@ -114,13 +114,13 @@ impl Default for Probe {
 /// The state of a proxy after a tick, in world coordinates.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
-pub struct Following<const D: usize> {
+pub struct Following {
     /// The proxy [m], on or outside the surface offset by the probe's radius. Without contact
     /// it is the device point, unless the device point lies outside the region of the field's
     /// promise.
-    pub proxy: Point<D>,
+    pub proxy: Point<3>,
     /// The unit normal of the surface that the proxy last reached, pointing out.
-    pub normal: Vector<f64, D>,
+    pub normal: Vector<f64, 3>,
     /// `true` if the surface keeps the proxy from the device point.
     pub contact: bool,
     /// The index of the body whose surface the proxy last reached.
@@ -159,7 +159,7 @@ pub enum Edited {
 /// use palpate_haptics::{Bodies, Probe, Proxy};
 ///
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
-/// let ball = Bodies::from(Shape::from_kernel(Ball::new(0.05)?));
+/// let ball = Bodies::from(Shape::<3>::from_kernel(Ball::new(0.05)?));
 /// let mut proxy = Proxy::new(Probe::new(0.0)?);
 /// proxy.follow(&ball.everything(), Vector([0.0, 0.06, 0.0]));
 /// let device = Vector([0.048 * 0.6, 0.048 * 0.8, 0.0]);
@@ -171,10 +171,10 @@ pub enum Edited {
 /// # }
 /// ```
 #[derive(Clone, Debug)]
-pub struct Proxy<const D: usize> {
+pub struct Proxy {
     probe: Probe,
     /// The last point found on or outside the offset surface; `None` before the first tick.
-    at: Option<Sample<D>>,
+    at: Option<Sample>,
     /// Whether the sample in `at` was taken from a field that has changed since.
     is_stale: bool,
     /// Whether there was no place in any tick so far, or since the proxy was lifted.
@@ -182,22 +182,22 @@ pub struct Proxy<const D: usize> {
     /// Whether bodies were replaced since the last tick.
     is_edited: bool,
     /// Where an edit since the last tick carries the proxy.
-    carried_out: Option<CarriedOut<D>>,
+    carried_out: Option<CarriedOut>,
     /// The device point of the last tick [m].
-    device: Point<D>,
-    normal: Vector<f64, D>,
+    device: Point<3>,
+    normal: Vector<f64, 3>,
     contact: bool,
     hold: Hold,
     /// The local model of the surface near the proxy.
-    local: LocalSurface<D>,
+    local: LocalSurface,
     punctured: Punctured,
     /// The friction of all bodies that held the proxy in the last tick; `None` if one held it.
     shared_friction: Option<Friction>,
     /// The part of the stretch from device to proxy that friction holds [m].
-    held: Vector<f64, D>,
+    held: Vector<f64, 3>,
 }
 
-impl<const D: usize> Proxy<D> {
+impl Proxy {
     /// A proxy that starts at the first device point.
     #[must_use]
     #[inline(never)]
@@ -224,12 +224,12 @@ impl<const D: usize> Proxy<D> {
 
     /// The part of the stretch from device to proxy that friction holds [m]. Where static friction
     /// leaves it open, it is as [`hold`](Self::hold) last set it: friction bears what it bore.
-    pub(crate) fn held(&self) -> Vector<f64, D> {
+    pub(crate) fn held(&self) -> Vector<f64, 3> {
         self.held
     }
 
     /// Sets the part of the stretch that friction holds [m].
-    pub(crate) fn hold(&mut self, held: Vector<f64, D>) {
+    pub(crate) fn hold(&mut self, held: Vector<f64, 3>) {
         self.held = held;
     }
 
@@ -312,7 +312,7 @@ impl<const D: usize> Proxy<D> {
     /// Real-time: allocates nothing, takes no lock, cannot panic; evaluates the field at most
     /// [`Probe::budget`] times.
     #[inline(never)]
-    pub fn follow(&mut self, nearby: &Nearby<'_, D>, device: Point<D>) -> Following<D> {
+    pub fn follow(&mut self, nearby: &Nearby<'_>, device: Point<3>) -> Following {
         let last = self.at.as_ref().map_or(device, |at| at.point);
         // Written so that NaN fails.
         if !device.0.iter().all(|x| x.abs() <= LARGEST_LENGTH) {
@@ -335,7 +335,7 @@ impl<const D: usize> Proxy<D> {
             if nearby.has_moved() { self.carried(nearby, [last, device]) } else { last };
         let farther = carried.dot(carried).max(device.dot(device)).sqrt();
         let extent = farther + 2.0 * self.probe.radius;
-        let squared = |way: Vector<f64, D>| way.dot(way);
+        let squared = |way: Vector<f64, 3>| way.dot(way);
         let moved = if self.at.is_some() { squared(device - self.device) } else { 0.0 };
         self.device = device;
         let moved = moved.max(squared(carried - last)).sqrt();
@@ -382,7 +382,7 @@ impl<const D: usize> Proxy<D> {
         Following { edited, ..self.following(proxy, placed, sampler.evaluations()) }
     }
 
-    fn following(&self, proxy: Point<D>, placed: bool, evaluations: u32) -> Following<D> {
+    fn following(&self, proxy: Point<3>, placed: bool, evaluations: u32) -> Following {
         Following {
             proxy,
             normal: self.normal,
@@ -398,7 +398,7 @@ impl<const D: usize> Proxy<D> {
     /// Where the touched body carries the proxy from `last`; at most [`FARTHEST_CARRIED`] times
     /// as far from the origin as proxy, device and bodies.
     #[inline(never)]
-    fn carried(&mut self, nearby: &Nearby<'_, D>, [last, device]: [Point<D>; 2]) -> Point<D> {
+    fn carried(&mut self, nearby: &Nearby<'_>, [last, device]: [Point<3>; 2]) -> Point<3> {
         let touched = self.at.filter(|_| self.contact).and_then(|at| nearby.body(at.body));
         let Some(body) = touched.filter(|body| body.has_moved()) else { return last };
         let carried = body.carried(last);
@@ -412,7 +412,7 @@ impl<const D: usize> Proxy<D> {
 
     /// Evaluates the field at `at` again, because the old sample is stale.
     #[inline(never)]
-    fn look_again(&self, sampler: &mut Sampler<'_, D>, at: Point<D>) -> Option<Sample<D>> {
+    fn look_again(&self, sampler: &mut Sampler<'_>, at: Point<3>) -> Option<Sample> {
         let body = self.at.map_or(0, |at| at.body);
         let unknown = Sample { point: at, gap: f64::NEG_INFINITY, tangent: None, body };
         Some(sampler.gradient(at).unwrap_or(unknown))
@@ -420,7 +420,7 @@ impl<const D: usize> Proxy<D> {
 
     /// Restores the punctured layers that the hand has left.
     #[inline(never)]
-    fn restore(&mut self, sampler: &mut Sampler<'_, D>) {
+    fn restore(&mut self, sampler: &mut Sampler<'_>) {
         let (device, radius) = (self.device, self.probe.radius);
         let before = self.punctured;
         self.punctured.restore(|index, level| {
@@ -438,11 +438,7 @@ impl<const D: usize> Proxy<D> {
     /// Where other bodies stop or push a proxy that its own body carries from one place to
     /// another; `None` if the proxy meets no other body.
     #[inline(never)]
-    fn pushed(
-        &self,
-        sampler: &mut Sampler<'_, D>,
-        [from, to]: [Point<D>; 2],
-    ) -> Option<Point<D>> {
+    fn pushed(&self, sampler: &mut Sampler<'_>, [from, to]: [Point<3>; 2]) -> Option<Point<3>> {
         let nearby = sampler.nearby();
         let touched = self.at.filter(|_| self.contact).map(|at| at.body);
         let is_carried = from != to;
@@ -463,11 +459,7 @@ impl<const D: usize> Proxy<D> {
     /// `from`. The point moves up the gradient by `(r − f) / ‖∇f‖` until it is outside; `None`
     /// if half the budget does not suffice.
     #[inline(never)]
-    fn place(
-        &mut self,
-        sampler: &mut Sampler<'_, D>,
-        from: Point<D>,
-    ) -> (Option<Sample<D>>, bool) {
+    fn place(&mut self, sampler: &mut Sampler<'_>, from: Point<3>) -> (Option<Sample>, bool) {
         let mut point = from;
         while sampler.evaluations() < self.probe.budget / 2 {
             let Some(sample) = sampler.gradient(point) else { break };
@@ -483,7 +475,7 @@ impl<const D: usize> Proxy<D> {
 
     /// Moves the proxy straight to the device while the path is free, then slides. A proxy
     /// without a place touches nothing.
-    fn pursue(&mut self, sampler: &mut Sampler<'_, D>, goal: Goal<D>) {
+    fn pursue(&mut self, sampler: &mut Sampler<'_>, goal: Goal) {
         let Self { at, normal, contact, hold, local, punctured, shared_friction, .. } = self;
         let (mut was_held, how) = (std::mem::take(contact), std::mem::take(hold));
         let Some(here) = at else { return };
@@ -539,11 +531,11 @@ impl<const D: usize> Proxy<D> {
 /// point is not in contact.
 #[cold]
 #[inline(never)]
-fn is_held_still<const D: usize>(
-    sampler: &Sampler<'_, D>,
-    here: &Sample<D>,
-    normal: &Vector<f64, D>,
-    device: Point<D>,
+fn is_held_still(
+    sampler: &Sampler<'_>,
+    here: &Sample,
+    normal: &Vector<f64, 3>,
+    device: Point<3>,
 ) -> bool {
     let (normal, gap) = sampler.tangent(here, *normal);
     normal.dot(device - here.point) + gap < -2.0 * sampler.tolerance()
@@ -551,9 +543,9 @@ fn is_held_still<const D: usize>(
 
 /// The friction of the surface at a sample; the device is at distance `depth` [m] from the
 /// sample.
-fn friction<const D: usize>(
-    sampler: &Sampler<'_, D>,
-    at: &Sample<D>,
+fn friction(
+    sampler: &Sampler<'_>,
+    at: &Sample,
     depth: f64,
     punctured: &Punctured,
 ) -> Option<Friction> {
@@ -567,11 +559,11 @@ fn friction<const D: usize>(
 /// this line (Mirtich 1996) misses no surface; where it nearly reaches the surface, the body
 /// takes the proxy along. A proxy that misses the body's bounding ball costs no evaluation:
 /// otherwise twenty moving bodies would use up the budget.
-fn met<const D: usize>(
-    sampler: &mut Sampler<'_, D>,
-    body: &Body<D>,
-    [before, point]: [Point<D>; 2],
-) -> Option<Point<D>> {
+fn met(
+    sampler: &mut Sampler<'_>,
+    body: &Body,
+    [before, point]: [Point<3>; 2],
+) -> Option<Point<3>> {
     let margin = sampler.radius() + sampler.skin();
     let [from, to] = body.way_in_body([before, point], margin)?;
     let way = to - from;

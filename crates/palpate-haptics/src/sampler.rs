@@ -42,22 +42,22 @@ const IN_RESERVE: u32 = 1;
 
 /// An evaluated point.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Sample<const D: usize> {
+pub(crate) struct Sample {
     /// The place [m].
-    pub(crate) point: Point<D>,
+    pub(crate) point: Point<3>,
     /// The field's value minus the probe's radius [m]: zero on the offset surface.
     pub(crate) gap: f64,
     /// The tangent plane; `None` if no gradient was evaluated.
-    pub(crate) tangent: Option<Tangent<D>>,
+    pub(crate) tangent: Option<Tangent>,
     /// The index of the body whose field is least.
     pub(crate) body: u32,
 }
 
 /// The tangent plane of the offset surface, to first order.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Tangent<const D: usize> {
+pub(crate) struct Tangent {
     /// The unit normal; zero if the gradient is too small to have a direction.
-    pub(crate) normal: Vector<f64, D>,
+    pub(crate) normal: Vector<f64, 3>,
     /// How far the plane lies below the point, along the normal [m].
     pub(crate) gap: f64,
 }
@@ -73,8 +73,8 @@ pub(crate) struct Tangent<const D: usize> {
 /// convex: straight moves between evaluated points stay inside, and the constant holds along
 /// them.
 #[derive(Debug)]
-pub(crate) struct Sampler<'a, const D: usize> {
-    nearby: &'a Nearby<'a, D>,
+pub(crate) struct Sampler<'a> {
+    nearby: &'a Nearby<'a>,
     punctured: Punctured,
     radius: f64,
     skin: f64,
@@ -88,11 +88,11 @@ pub(crate) struct Sampler<'a, const D: usize> {
     evaluations: u32,
 }
 
-impl<'a, const D: usize> Sampler<'a, D> {
+impl<'a> Sampler<'a> {
     /// A sampler for a probe of `radius` [m] that moves between points at most `extent` [m]
     /// from the origin.
     pub(crate) fn new(
-        nearby: &'a Nearby<'a, D>,
+        nearby: &'a Nearby<'a>,
         punctured: Punctured,
         radius: f64,
         budget: u32,
@@ -124,7 +124,7 @@ impl<'a, const D: usize> Sampler<'a, D> {
     }
 
     /// The near bodies.
-    pub(crate) fn nearby(&self) -> &'a Nearby<'a, D> {
+    pub(crate) fn nearby(&self) -> &'a Nearby<'a> {
         self.nearby
     }
 
@@ -169,13 +169,13 @@ impl<'a, const D: usize> Sampler<'a, D> {
     }
 
     /// The point closest to `goal` at which the promises of the near bodies hold.
-    pub(crate) fn within_region(&self, goal: Point<D>) -> Point<D> {
+    pub(crate) fn within_region(&self, goal: Point<3>) -> Point<3> {
         self.nearby.within_regions(goal, REGION_EDGE)
     }
 
     /// The value at `point`; `None` if the budget is spent, the value is not finite, or no
     /// promise holds there.
-    pub(crate) fn distance(&mut self, point: Point<D>) -> Option<Sample<D>> {
+    pub(crate) fn distance(&mut self, point: Point<3>) -> Option<Sample> {
         self.spend(point)?;
         let (value, body) = self.value(point);
         let gap = value - self.radius;
@@ -185,7 +185,7 @@ impl<'a, const D: usize> Sampler<'a, D> {
     /// The value and the gradient at `point`; `None` in the cases of
     /// [`distance`](Self::distance).
     #[inline(always)]
-    pub(crate) fn gradient(&mut self, point: Point<D>) -> Option<Sample<D>> {
+    pub(crate) fn gradient(&mut self, point: Point<3>) -> Option<Sample> {
         self.spend(point)?;
         let seen = if self.crack > 0.0 {
             self.nearby.gradient_filled(point, &self.punctured, self.crack)
@@ -209,7 +209,7 @@ impl<'a, const D: usize> Sampler<'a, D> {
     }
 
     /// The field at a point, and the body whose field is least.
-    fn value(&self, point: Point<D>) -> (f64, u32) {
+    fn value(&self, point: Point<3>) -> (f64, u32) {
         if self.crack > 0.0 {
             let seen = self.nearby.gradient_filled(point, &self.punctured, self.crack);
             return (seen.distance, seen.body);
@@ -219,7 +219,7 @@ impl<'a, const D: usize> Sampler<'a, D> {
 
     /// Counts an evaluation at `point`; `None` if the budget is spent or no promise holds
     /// there.
-    pub(crate) fn spend(&mut self, point: Point<D>) -> Option<()> {
+    pub(crate) fn spend(&mut self, point: Point<3>) -> Option<()> {
         if self.evaluations + IN_RESERVE >= self.budget || !self.nearby.is_proven(point) {
             return None;
         }
@@ -229,7 +229,7 @@ impl<'a, const D: usize> Sampler<'a, D> {
 
     /// Whether a point is below the offset surface. This uses the evaluation in reserve, which
     /// serves no other purpose; `None` if no promise holds there.
-    pub(crate) fn is_below(&mut self, point: Point<D>) -> Option<bool> {
+    pub(crate) fn is_below(&mut self, point: Point<3>) -> Option<bool> {
         if !self.nearby.is_proven(point) {
             return None;
         }
@@ -242,7 +242,7 @@ impl<'a, const D: usize> Sampler<'a, D> {
     /// offset surface.
     ///
     /// `(f − r − ε) / L` with the rounding `ε`.
-    pub(crate) fn free_radius(&self, sample: &Sample<D>) -> f64 {
+    pub(crate) fn free_radius(&self, sample: &Sample) -> f64 {
         (sample.gap - self.tolerance) * self.per_slope
     }
 
@@ -251,14 +251,14 @@ impl<'a, const D: usize> Sampler<'a, D> {
     ///
     /// Far from the surface: down to half a skin below it. From below: half of the way to a
     /// whole skin, so that repeated moves never arrive there.
-    pub(crate) fn reach(&self, sample: &Sample<D>) -> f64 {
+    pub(crate) fn reach(&self, sample: &Sample) -> f64 {
         let to_half = sample.gap + 0.5 * self.skin;
         let half_way = 0.5 * (sample.gap + self.skin);
         to_half.max(half_way) * self.per_slope
     }
 
     /// A straight move in the region by less than this length stays less than a skin deep [m].
-    pub(crate) fn clear_radius(&self, sample: &Sample<D>) -> f64 {
+    pub(crate) fn clear_radius(&self, sample: &Sample) -> f64 {
         ((sample.gap + self.skin) * self.per_slope).max(0.0)
     }
 
@@ -268,9 +268,9 @@ impl<'a, const D: usize> Sampler<'a, D> {
     #[inline]
     pub(crate) fn tangent(
         &self,
-        sample: &Sample<D>,
-        previous: Vector<f64, D>,
-    ) -> (Vector<f64, D>, f64) {
+        sample: &Sample,
+        previous: Vector<f64, 3>,
+    ) -> (Vector<f64, 3>, f64) {
         match sample.tangent {
             Some(Tangent { normal, gap }) if normal != Vector::ZERO => (normal, gap),
             Some(Tangent { gap, .. }) => (previous, gap),

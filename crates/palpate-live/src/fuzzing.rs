@@ -27,7 +27,7 @@ const SPACE: &str = include_str!("../../../scenes/s3.json");
 /// If reading or answering does, or one of these does not hold.
 pub fn hear(text: &str) {
     // A trace may be anything, and so may a request.
-    let _ = (trace::read::<2>(text.as_bytes()), trace::read::<3>(text.as_bytes()));
+    let _ = [2, 3].map(|dimension| trace::read(text.as_bytes(), dimension));
     server::take_head(text.as_bytes());
     let envelope = Envelope::read(text);
     let Ok(Question { ask, id }) = Question::read(text) else { return };

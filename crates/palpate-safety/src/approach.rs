@@ -17,14 +17,14 @@ const STEP: f64 = 0.3;
 /// A force of zero is followed at once: then nothing pushes, and what lingered would push a hand
 /// that nothing touches.
 #[derive(Clone, Copy, Debug)]
-pub struct Approach<const D: usize> {
+pub struct Approach {
     /// The most by which the force changes in a tick [N]; for a torque [N·m].
     step: f64,
-    last: Vector<f64, D>,
+    last: Vector<f64, 3>,
     is_on: bool,
 }
 
-impl<const D: usize> Approach<D> {
+impl Approach {
     /// For forces, or for torques where a radian counts as the length `unit` [m].
     #[must_use]
     pub fn new(unit: f64) -> Self {
@@ -49,7 +49,7 @@ impl<const D: usize> Approach<D> {
     /// One tick: the force for the force `wanted`; `None` if the force had caught up before.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
-    pub fn step(&mut self, wanted: Vector<f64, D>) -> Option<Vector<f64, D>> {
+    pub fn step(&mut self, wanted: Vector<f64, 3>) -> Option<Vector<f64, 3>> {
         if !self.is_on {
             self.last = wanted;
             return None;
@@ -70,21 +70,21 @@ mod tests {
     #[test]
     fn a_force_goes_straight_to_the_wanted_one_and_is_free_then() {
         let mut approach = Approach::new(1.0);
-        assert_eq!(approach.step(Vector([0.0, 1.0])), None);
+        assert_eq!(approach.step(Vector([0.0, 1.0, 0.0])), None);
         approach.begin();
-        let along = [0.6, 0.2].map(|x| Vector([x, 1.0]));
-        assert_eq!(approach.step(along[0]), Some(Vector([0.3, 1.0])));
+        let along = [0.6, 0.2].map(|x| Vector([x, 1.0, 0.0]));
+        assert_eq!(approach.step(along[0]), Some(Vector([0.3, 1.0, 0.0])));
         assert_eq!(approach.step(along[1]), Some(along[1]));
-        assert_eq!(approach.step(Vector([0.0, 9.0])), None);
+        assert_eq!(approach.step(Vector([0.0, 9.0, 0.0])), None);
     }
 
     #[test]
     fn a_force_that_ends_ends_at_once() {
         let mut approach = Approach::new(0.5);
-        assert_eq!(approach.step(Vector([0.0, 1.0])), None);
+        assert_eq!(approach.step(Vector([0.0, 1.0, 0.0])), None);
         approach.begin();
-        assert_eq!(approach.step(Vector([0.0, 2.0])), Some(Vector([0.0, 1.15])));
+        assert_eq!(approach.step(Vector([0.0, 2.0, 0.0])), Some(Vector([0.0, 1.15, 0.0])));
         assert_eq!(approach.step(Vector::ZERO), Some(Vector::ZERO));
-        assert_eq!(approach.step(Vector([0.0, 2.0])), None);
+        assert_eq!(approach.step(Vector([0.0, 2.0, 0.0])), None);
     }
 }

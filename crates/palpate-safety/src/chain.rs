@@ -24,12 +24,12 @@ use palpate_device::{DeviceProfile, NumberError};
 /// The input of a contact point's safety chain in a tick, beside the wanted force. In device
 /// coordinates ([`WorkspaceMap`](crate::WorkspaceMap)), because the limits are the device's.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct PortState<const D: usize> {
+pub struct PortState {
     /// The device point [m], unfiltered.
-    pub position: Point<D>,
+    pub position: Point<3>,
     /// The velocity of the device point [m/s], for example from a
     /// [`VelocityEstimator`](crate::VelocityEstimator).
-    pub velocity: Vector<f64, D>,
+    pub velocity: Vector<f64, 3>,
     /// A force on the hand that is added to the wanted force [N]: that of guides and magnets. It may
     /// release its potential energy. Any further energy that it releases is bounded by what the
     /// device's damping dissipates, plus the [reserve](crate::SafetySettings::reserve), plus 0.25 mJ
@@ -37,7 +37,7 @@ pub struct PortState<const D: usize> {
     /// hand at rest or rises again, is [reported](crate::FreeForceReport::credited). The chain does
     /// not know a delay of the transport. Encoder steps make motions seem to dissipate more than they
     /// do; guides up to `2 b / T` and `2 f_c / Δ` release no more for it.
-    pub free_force: Vector<f64, D>,
+    pub free_force: Vector<f64, 3>,
     /// By how much the tick began too late [s]; zero in time. A tick without a new reading is as
     /// good as late.
     pub late: f64,
@@ -54,7 +54,7 @@ pub struct PortState<const D: usize> {
     pub stiffness: f64,
 }
 
-impl<const D: usize> PortState<D> {
+impl PortState {
     /// A point at rest at the origin, in a tick that is not late.
     #[must_use]
     pub fn at_rest() -> Self {
@@ -148,10 +148,10 @@ impl SafetyOptions {
 /// let options = SafetyOptions::new(Impedance::default()).with(|s| s.rise_rate = f64::INFINITY);
 /// let mut chain = SafetyChain::new(&device, 1000.0, options)?;
 /// let state = PortState::at_rest();
-/// assert_eq!(chain.step(Vector([0.0, 1.0]), &state), Vector([0.0, 1.0]));
-/// assert_eq!(chain.step(Vector([3.0, 4.0]), &state), Vector([1.5, 2.0]));
+/// assert_eq!(chain.step(Vector([0.0, 1.0, 0.0]), &state), Vector([0.0, 1.0, 0.0]));
+/// assert_eq!(chain.step(Vector([3.0, 4.0, 0.0]), &state), Vector([1.5, 2.0, 0.0]));
 /// chain.stop();
-/// assert_eq!(chain.step(Vector([0.0, 1.0]), &state), Vector([0.0, 0.0]));
+/// assert_eq!(chain.step(Vector([0.0, 1.0, 0.0]), &state), Vector([0.0, 0.0, 0.0]));
 ///
 /// let report = chain.report();
 /// assert_eq!((report.force_limit.ticks, report.force_limit.largest), (1, 2.5));
@@ -160,15 +160,15 @@ impl SafetyOptions {
 /// # }
 /// ```
 #[derive(Clone, Debug)]
-pub struct SafetyChain<const D: usize> {
+pub struct SafetyChain {
     accepted: Accepted,
-    cycle: LimitCycle<Vector<f64, D>>,
-    free: FreeEnergy<Vector<f64, D>>,
-    passivity: Passivity<Vector<f64, D>>,
-    channel: Channel<D>,
+    cycle: LimitCycle<Vector<f64, 3>>,
+    free: FreeEnergy<Vector<f64, 3>>,
+    passivity: Passivity<Vector<f64, 3>>,
+    channel: Channel,
 }
 
-impl<const D: usize> SafetyChain<D> {
+impl SafetyChain {
     /// A chain for `device` at `rate` [Hz].
     ///
     /// # Errors
@@ -242,7 +242,7 @@ impl<const D: usize> SafetyChain<D> {
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     #[must_use]
-    pub fn step(&mut self, wanted: Vector<f64, D>, state: &PortState<D>) -> Vector<f64, D> {
+    pub fn step(&mut self, wanted: Vector<f64, 3>, state: &PortState) -> Vector<f64, 3> {
         self.tick(Wanted { force: wanted, effort: wanted.norm(), cut: 0.0 }, state)
     }
 
@@ -260,8 +260,8 @@ impl<const D: usize> SafetyChain<D> {
     /// let device = DeviceProfile::unlimited("example");
     /// let options = SafetyOptions::new(Impedance::default()).with(|s| s.rise_rate = f64::INFINITY);
     /// let mut chain = SafetyChain::new(&device, 1000.0, options)?;
-    /// let force = chain.step_within(Vector([3.0, 4.0]), 1.0, &PortState::at_rest());
-    /// assert_eq!(force, Vector([0.6, 0.8]));
+    /// let force = chain.step_within(Vector([3.0, 4.0, 0.0]), 1.0, &PortState::at_rest());
+    /// assert_eq!(force, Vector([0.6, 0.8, 0.0]));
     /// let limit = chain.report().force_limit;
     /// assert_eq!((limit.ticks, limit.largest), (1, 4.0));
     /// # Ok(())
@@ -270,10 +270,10 @@ impl<const D: usize> SafetyChain<D> {
     #[must_use]
     pub fn step_within(
         &mut self,
-        wanted: Vector<f64, D>,
+        wanted: Vector<f64, 3>,
         max_force: f64,
-        state: &PortState<D>,
-    ) -> Vector<f64, D> {
+        state: &PortState,
+    ) -> Vector<f64, 3> {
         let effort = wanted.norm();
         // Leave NaN unclamped: the guard stage detects it and zeroes the force.
         let (force, cut) =
@@ -281,7 +281,7 @@ impl<const D: usize> SafetyChain<D> {
         self.tick(Wanted { force, effort, cut }, state)
     }
 
-    fn tick(&mut self, wanted: Wanted<Vector<f64, D>>, state: &PortState<D>) -> Vector<f64, D> {
+    fn tick(&mut self, wanted: Wanted<Vector<f64, 3>>, state: &PortState) -> Vector<f64, 3> {
         let Wanted { force: wanted, effort, cut } = wanted;
         // Stages with a state never see numbers that are not finite; the guard then writes
         // zero.

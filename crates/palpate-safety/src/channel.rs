@@ -38,9 +38,9 @@ const HELD: f64 = 1e-9;
 
 /// What is left of a wanted force after it was zeroed, or after an edit.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Risen<const D: usize> {
+pub(crate) struct Risen {
     /// The force of the bodies.
-    pub(crate) wanted: Vector<f64, D>,
+    pub(crate) wanted: Vector<f64, 3>,
     /// The part, in [0, 1], that may pass while the force rises after it was zeroed.
     pub(crate) part: f64,
     /// Whether the force rises, or follows an edit.
@@ -49,11 +49,11 @@ pub(crate) struct Risen<const D: usize> {
 
 /// What a [`Channel`] gives in a tick.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Given<const D: usize> {
+pub(crate) struct Given {
     /// The force to write.
-    pub(crate) force: Vector<f64, D>,
+    pub(crate) force: Vector<f64, 3>,
     /// The part of it that the bodies give; guides and magnets give the rest.
-    pub(crate) of_bodies: Vector<f64, D>,
+    pub(crate) of_bodies: Vector<f64, 3>,
     /// The share that the limits of its size, watchdog and stop left, from 0 to 1.
     pub(crate) share: f64,
 }
@@ -62,23 +62,23 @@ pub(crate) struct Given<const D: usize> {
 /// continuous limit, guard against numbers that are not finite, watchdog and emergency stop. It also
 /// holds the rise of a force that was zeroed, which acts before the passivity stage.
 #[derive(Clone, Debug)]
-pub(crate) struct Channel<const D: usize> {
-    slew: SlewLimit<D>,
+pub(crate) struct Channel {
+    slew: SlewLimit,
     force_limit: ForceLimit,
     continuous: ContinuousLimit,
     rise: Rise,
-    approach: Approach<D>,
+    approach: Approach,
     watchdog: Watchdog,
     is_stopped: bool,
     /// Whether the last force is of bodies in part.
     has_bodies: bool,
     /// A second slew limit at the end, because the stages after the first also change the
     /// force.
-    closing: SlewLimit<D>,
+    closing: SlewLimit,
     pub(crate) effects: Effects,
 }
 
-impl<const D: usize> Channel<D> {
+impl Channel {
     /// A channel for forces, or for torques, where a radian counts as the length `unit` [m].
     ///
     /// # Errors
@@ -119,10 +119,10 @@ impl<const D: usize> Channel<D> {
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     pub(crate) fn risen(
         &mut self,
-        wanted: Vector<f64, D>,
-        free: Vector<f64, D>,
+        wanted: Vector<f64, 3>,
+        free: Vector<f64, 3>,
         input: &TickInput,
-    ) -> Risen<D> {
+    ) -> Risen {
         if input.change == Change::Carried {
             self.approach.begin();
         }
@@ -143,8 +143,8 @@ impl<const D: usize> Channel<D> {
     /// after it was zeroed; `None` if it has risen before.
     fn risen_part(
         &mut self,
-        wanted: Vector<f64, D>,
-        free: Vector<f64, D>,
+        wanted: Vector<f64, 3>,
+        free: Vector<f64, 3>,
         input: &TickInput,
     ) -> Option<f64> {
         if self.watchdog.step(input.late) {
@@ -172,10 +172,10 @@ impl<const D: usize> Channel<D> {
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     pub(crate) fn step(
         &mut self,
-        observed: Vector<f64, D>,
-        free: Vector<f64, D>,
+        observed: Vector<f64, 3>,
+        free: Vector<f64, 3>,
         input: &TickInput,
-    ) -> Given<D> {
+    ) -> Given {
         self.effects.ticks += 1;
         let is_sound = input.is_sound;
         let all = with_free(observed, free);
@@ -267,12 +267,12 @@ impl<const D: usize> Channel<D> {
     }
 
     /// A force after the limit on its change.
-    fn slewed(&mut self, force: Vector<f64, D>) -> Vector<f64, D> {
+    fn slewed(&mut self, force: Vector<f64, 3>) -> Vector<f64, 3> {
         self.effects.slew.count(force, self.slew.limit(force))
     }
 
     /// A force after the limits on its size, of which `cut` was taken before.
-    fn limited(&mut self, force: Vector<f64, D>, cut: f64) -> Vector<f64, D> {
+    fn limited(&mut self, force: Vector<f64, 3>, cut: f64) -> Vector<f64, 3> {
         let effects = &mut self.effects;
         let limit = self.force_limit.limit(force);
         if limit.is_none() && cut > 0.0 {
@@ -283,7 +283,7 @@ impl<const D: usize> Channel<D> {
     }
 
     /// A force after watchdog and emergency stop.
-    fn faded(&mut self, force: Vector<f64, D>) -> Vector<f64, D> {
+    fn faded(&mut self, force: Vector<f64, 3>) -> Vector<f64, 3> {
         let effects = &mut self.effects;
         let force = effects.watchdog.count(force, part(force, self.watchdog.factor()));
         effects.emergency_stop.count(force, self.is_stopped.then_some(Vector::ZERO))
@@ -291,11 +291,11 @@ impl<const D: usize> Channel<D> {
 }
 
 /// `factor` times a force; `None` if the factor is one.
-fn part<const D: usize>(force: Vector<f64, D>, factor: f64) -> Option<Vector<f64, D>> {
+fn part(force: Vector<f64, 3>, factor: f64) -> Option<Vector<f64, 3>> {
     (factor != 1.0).then(|| force * factor)
 }
 
 /// The sum of both forces; if one is zero, the other bit for bit.
-fn with_free<const D: usize>(observed: Vector<f64, D>, free: Vector<f64, D>) -> Vector<f64, D> {
+fn with_free(observed: Vector<f64, 3>, free: Vector<f64, 3>) -> Vector<f64, 3> {
     if free == Vector::ZERO { observed } else { observed + free }
 }

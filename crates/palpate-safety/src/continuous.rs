@@ -38,10 +38,7 @@ impl ContinuousLimit {
     /// The limited force; `None` if it is unchanged.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
-    pub(crate) fn limit<const D: usize>(
-        &self,
-        force: Vector<f64, D>,
-    ) -> Option<Vector<f64, D>> {
+    pub(crate) fn limit(&self, force: Vector<f64, 3>) -> Option<Vector<f64, 3>> {
         let norm = force.norm();
         if norm <= self.continuous_force {
             return None;
@@ -57,7 +54,7 @@ impl ContinuousLimit {
     /// Updates the heat by the force that was written.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
-    pub(crate) fn written<const D: usize>(&mut self, force: Vector<f64, D>) {
+    pub(crate) fn written(&mut self, force: Vector<f64, 3>) {
         // An infinite square would never cool down.
         let square = force.dot(force).min(f64::MAX);
         self.heat += self.part * (square - self.heat);
@@ -76,7 +73,7 @@ mod tests {
     #[test]
     fn a_burst_passes_and_a_long_press_does_not() {
         let mut limit = ContinuousLimit::new(2.0, 1.0, 1000.0);
-        let wanted = Vector([0.0, 6.0]);
+        let wanted = Vector([0.0, 6.0, 0.0]);
         let mut written = wanted;
         for tick in 0..20_000 {
             let next = limit.limit(wanted).unwrap_or(wanted);
@@ -93,7 +90,7 @@ mod tests {
     #[test]
     fn what_may_last_is_never_changed() {
         let mut limit = ContinuousLimit::new(2.0, 0.1, 1000.0);
-        let wanted = Vector([2.0, 0.0]);
+        let wanted = Vector([2.0, 0.0, 0.0]);
         for _ in 0..2000 {
             assert_eq!(limit.limit(wanted), None);
             limit.written(wanted);
@@ -104,7 +101,7 @@ mod tests {
     #[test]
     fn without_a_continuous_force_nothing_is_changed() {
         let mut limit = ContinuousLimit::new(f64::INFINITY, 0.1, 1000.0);
-        limit.written(Vector([1e200, 0.0]));
-        assert_eq!(limit.limit(Vector([1e200, 1.0])), None);
+        limit.written(Vector([1e200, 0.0, 0.0]));
+        assert_eq!(limit.limit(Vector([1e200, 1.0, 0.0])), None);
     }
 }

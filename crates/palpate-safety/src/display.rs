@@ -92,8 +92,8 @@ mod tests {
         let device = DeviceProfile { max_force: 1.0, ..DeviceProfile::unlimited("example") };
         let options =
             SafetyOptions::new(Impedance::default()).with(|s| s.rise_rate = f64::INFINITY);
-        let mut chain = SafetyChain::<2>::new(&device, 1000.0, options)?;
-        let mut step = |force| chain.step(Vector([force, 0.0]), &PortState::at_rest());
+        let mut chain = SafetyChain::new(&device, 1000.0, options)?;
+        let mut step = |force| chain.step(Vector([force, 0.0, 0.0]), &PortState::at_rest());
         step(0.5);
         step(2.0);
         let said = "2 ticks, changed by: force limit 1";

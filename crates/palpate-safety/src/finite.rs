@@ -10,7 +10,7 @@ use crate::PortState;
 /// `true` if forces, position and velocity are finite.
 ///
 /// Real-time: allocates nothing, takes no lock, cannot panic.
-pub(crate) fn is_sound<const D: usize>(wanted: Vector<f64, D>, state: &PortState<D>) -> bool {
+pub(crate) fn is_sound(wanted: Vector<f64, 3>, state: &PortState) -> bool {
     // Zero times a finite number is zero; zero times infinity or NaN is NaN.
     let vectors = [state.position, state.velocity, state.free_force];
     let nothing = vectors.into_iter().fold(wanted * 0.0, |sum, vector| sum + vector * 0.0);
@@ -20,10 +20,7 @@ pub(crate) fn is_sound<const D: usize>(wanted: Vector<f64, D>, state: &PortState
 /// `force`, or zero if an input or `force` is not finite.
 ///
 /// Real-time: allocates nothing, takes no lock, cannot panic.
-pub(crate) fn guarded<const D: usize>(
-    force: Vector<f64, D>,
-    sound: bool,
-) -> Option<Vector<f64, D>> {
+pub(crate) fn guarded(force: Vector<f64, 3>, sound: bool) -> Option<Vector<f64, 3>> {
     (!(sound && force.is_finite())).then_some(Vector::ZERO)
 }
 

@@ -30,10 +30,7 @@ impl ForceLimit {
     /// The limited force; `None` if it is unchanged.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
-    pub(crate) fn limit<const D: usize>(
-        &self,
-        force: Vector<f64, D>,
-    ) -> Option<Vector<f64, D>> {
+    pub(crate) fn limit(&self, force: Vector<f64, 3>) -> Option<Vector<f64, 3>> {
         shortened(force, self.max_force)
     }
 }

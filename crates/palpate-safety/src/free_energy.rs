@@ -294,7 +294,7 @@ mod tests {
     use palpate_field::Vector;
 
     /// A whole force at a position, a tick of 1 ms after the one before.
-    fn input(force: Vector<f64, 2>, position: Vector<f64, 2>) -> FreeInput<Vector<f64, 2>> {
+    fn input(force: Vector<f64, 3>, position: Vector<f64, 3>) -> FreeInput<Vector<f64, 3>> {
         FreeInput { force, position, scale: 1.0, elapsed: 1e-3, is_sound: true }
     }
 
@@ -321,7 +321,7 @@ mod tests {
         let mut free = FreeEnergy::new(options.reserve, max_force);
         let (mut x, mut v, mut most, mut energy) = (start, 0.0, 0.0_f64, 0.0);
         for _ in 0..60_000 {
-            let at = Vector([x, 0.0]);
+            let at = Vector([x, 0.0, 0.0]);
             let Passed { force, .. } = free.step(input(at * -stiffness, at), &options);
             let force = force[0].clamp(-max_force, max_force);
             // m v' = F − b v, exactly.
@@ -385,8 +385,8 @@ mod tests {
         let options = options(0.0);
         let mut free = FreeEnergy::new(options.reserve, f64::INFINITY);
         let mut at = |x: f64| {
-            let force = Vector([-1000.0 * x, 0.0]);
-            free.step(input(force, Vector([x, 0.0])), &options).force[0]
+            let force = Vector([-1000.0 * x, 0.0, 0.0]);
+            free.step(input(force, Vector([x, 0.0, 0.0])), &options).force[0]
         };
         let shaken: Vec<_> =
             (0..200).map(|tick| at(if tick % 2 == 0 { 2e-3 } else { 1e-3 })).collect();
@@ -405,8 +405,8 @@ mod tests {
         let options = options(f64::INFINITY);
         let mut free = FreeEnergy::new(options.reserve, f64::INFINITY);
         for x in [0.0, 0.0, 0.01, -0.02] {
-            let force = Vector([-1e4 * x - 1.0, 0.0]);
-            let passed = free.step(input(force, Vector([x, 0.0])), &options);
+            let force = Vector([-1e4 * x - 1.0, 0.0, 0.0]);
+            let passed = free.step(input(force, Vector([x, 0.0, 0.0])), &options);
             assert_eq!((passed.force, passed.spent), (force, 0.0));
         }
         assert_eq!(free.report(), FreeForceReport::default());
@@ -417,7 +417,8 @@ mod tests {
         let options = options(0.0);
         let mut free = FreeEnergy::new(options.reserve, f64::INFINITY);
         let mut at = |x: f64, force: f64| {
-            free.step(input(Vector([force, 0.0]), Vector([x, 0.0])), &options).force[0]
+            free.step(input(Vector([force, 0.0, 0.0]), Vector([x, 0.0, 0.0])), &options).force
+                [0]
         };
         // Pulled in by a steady 2 N: the potential falls by what is given out.
         assert!((0..100).all(|k| at(1e-4 * f64::from(k), 2.0) == 2.0));
@@ -442,10 +443,10 @@ mod tests {
             let (mut x, mut v, mut most) = (0.03_f64, 0.0_f64, 0.0_f64);
             let first = 0.5 * spring * x * x;
             for _ in 0..60_000 {
-                let at = Vector([x, 0.0]);
+                let at = Vector([x, 0.0, 0.0]);
                 // 20 kN/m in the middle, and nothing beyond the reach.
                 let full = if x.abs() < reach { (-2e4 * x).clamp(-pull, pull) } else { 0.0 };
-                let force = free.step(input(Vector([full, 0.0]), at), &options).force[0];
+                let force = free.step(input(Vector([full, 0.0, 0.0]), at), &options).force[0];
                 for _ in 0..10 {
                     let pushed = force - spring * x - damping * v;
                     v += pushed / mass * 0.1 * period;
@@ -470,10 +471,10 @@ mod tests {
         let mut free = FreeEnergy::new(options.reserve, 10.0);
         let (mut x, mut v, mut written) = (0.01, 0.0, 0.0_f64);
         for _ in 0..60_000 {
-            let at = Vector([x, 0.0]);
+            let at = Vector([x, 0.0, 0.0]);
             let wanted = free.step(input(at * -stiffness, at), &options).force[0];
             written += (wanted - written).clamp(-0.2, 0.2);
-            free.written(Vector([written, 0.0]), 1.0);
+            free.written(Vector([written, 0.0, 0.0]), 1.0);
             let (rate, steady) = (damping / mass, written / damping);
             let decay = (-rate * period).exp();
             x += steady * period + (v - steady) * (1.0 - decay) / rate;
@@ -490,8 +491,8 @@ mod tests {
         let mut free = FreeEnergy::new(0.0, f64::INFINITY);
         for tick in 0..5000 {
             let x = 1e-3 * (0.05 * f64::from(tick)).sin();
-            let force = Vector([-2000.0 * x, 0.0]);
-            let passed = free.step(input(force, Vector([x, 0.0])), &options);
+            let force = Vector([-2000.0 * x, 0.0, 0.0]);
+            let passed = free.step(input(force, Vector([x, 0.0, 0.0])), &options);
             assert_eq!(passed.force, force, "{tick}");
         }
     }

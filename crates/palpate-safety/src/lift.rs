@@ -77,16 +77,16 @@ mod tests {
     fn a_lift_waits_for_rest_and_twice_as_long_the_next_time() {
         let mut lift = Lift::new();
         let ticks = |lift: &mut Lift<_>, x: f64| {
-            let begins = (0..).find(|_| lift.step(Vector([x, 0.0]), 0.125, Some(true)));
+            let begins = (0..).find(|_| lift.step(Vector([x, 0.0, 0.0]), 0.125, Some(true)));
             begins.unwrap_or_default()
         };
         assert_eq!(ticks(&mut lift, 0.0), 2);
         // It goes on while the hand is moved.
-        assert!(lift.step(Vector([0.01, 0.0]), 0.125, Some(true)));
+        assert!(lift.step(Vector([0.01, 0.0, 0.0]), 0.125, Some(true)));
         lift.end();
         assert_eq!(ticks(&mut lift, 0.02), 4);
-        assert!(!lift.step(Vector([0.02, 0.0]), 0.125, Some(false)));
-        assert!(!lift.step(Vector([0.02, 0.0]), 0.125, None));
+        assert!(!lift.step(Vector([0.02, 0.0, 0.0]), 0.125, Some(false)));
+        assert!(!lift.step(Vector([0.02, 0.0, 0.0]), 0.125, None));
         assert_eq!(ticks(&mut lift, 0.02), 2);
     }
 }

@@ -11,10 +11,7 @@ use palpate_field::Vector;
 ///
 /// Real-time: allocates nothing, takes no lock, cannot panic.
 #[inline]
-pub(crate) fn cut<const D: usize>(
-    force: Vector<f64, D>,
-    max_force: f64,
-) -> (Vector<f64, D>, f64) {
+pub(crate) fn cut(force: Vector<f64, 3>, max_force: f64) -> (Vector<f64, 3>, f64) {
     match shortened(force, max_force) {
         None => (force, 0.0),
         Some(short) => {

@@ -53,7 +53,7 @@ pub(crate) trait InnerProduct:
     fn is_finite(&self) -> bool;
 }
 
-impl<const D: usize> InnerProduct for Vector<f64, D> {
+impl InnerProduct for Vector<f64, 3> {
     const ZERO: Self = Vector::ZERO;
 
     fn dot(self, other: Self) -> f64 {
@@ -500,7 +500,7 @@ mod tests {
         });
         let held = [(0.0, 2.0), (0.5, 4.0), (-0.25, 0.0), (1.0, 0.0)];
         for (position, force) in held {
-            let position = Vector([position, 0.0]);
+            let position = Vector([position, 0.0, 0.0]);
             let state = PortMotion {
                 position,
                 velocity: Vector::ZERO,
@@ -511,8 +511,8 @@ mod tests {
                 spent: 0.0,
                 stiffness: 100.0,
             };
-            let _ = passivity.limit(Vector([force, 0.0]), &state);
-            passivity.written(Vector([force, 0.0]));
+            let _ = passivity.limit(Vector([force, 0.0, 0.0]), &state);
+            passivity.written(Vector([force, 0.0, 0.0]));
         }
         // 2 N over 0.5 m given, 4 N over 0.75 m taken.
         let report = passivity.report();

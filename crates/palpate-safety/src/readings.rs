@@ -34,7 +34,7 @@ impl ReadingsReport {
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     #[must_use]
-    pub fn with_turns<const D: usize>(self, turns: &TurnReadings<D>) -> Self {
+    pub fn with_turns(self, turns: &TurnReadings) -> Self {
         let Held { ticks, farthest } = turns.held();
         Self { turns_held: ticks, farthest_turn: farthest, ..self }
     }
@@ -146,40 +146,40 @@ impl Reach {
 /// # fn main() -> Result<(), palpate_safety::SafetyError> {
 /// let device = DeviceProfile { max_speed: 5.0, ..DeviceProfile::unlimited("example") };
 /// let mut readings = Readings::new(&device)?;
-/// assert!(readings.counts(Vector([0.0, 0.0]), 1e-3));
-/// assert!(!readings.counts(Vector([0.05, 0.0]), 1e-3)); // 50 m/s
-/// assert_eq!(readings.last(), Some(Vector([0.0, 0.0])));
-/// assert!(readings.counts(Vector([0.002, 0.0]), 1e-3));
+/// assert!(readings.counts(Vector([0.0, 0.0, 0.0]), 1e-3));
+/// assert!(!readings.counts(Vector([0.05, 0.0, 0.0]), 1e-3)); // 50 m/s
+/// assert_eq!(readings.last(), Some(Vector([0.0, 0.0, 0.0])));
+/// assert!(readings.counts(Vector([0.002, 0.0, 0.0]), 1e-3));
 /// assert_eq!((readings.report().held, readings.report().farthest), (1, 0.05));
 /// # Ok(())
 /// # }
 /// ```
 #[derive(Clone, Debug)]
-pub struct Readings<const D: usize> {
+pub struct Readings {
     reach: Reach,
     /// The last position that counted.
-    last: Option<Counted<D>>,
+    last: Option<Counted>,
     held: Held,
 }
 
 #[derive(Clone, Copy, Debug)]
-struct Counted<const D: usize> {
-    position: Point<D>,
-    velocity: Vector<f64, D>,
+struct Counted {
+    position: Point<3>,
+    velocity: Vector<f64, 3>,
     /// The time over which the velocity was measured [s]; infinite if it is not known.
     over: f64,
     /// The time since then [s].
     since: f64,
 }
 
-impl<const D: usize> Counted<D> {
+impl Counted {
     /// A position of unknown velocity.
-    fn unknown(position: Point<D>) -> Self {
+    fn unknown(position: Point<3>) -> Self {
         Self { position, velocity: Vector::ZERO, over: f64::INFINITY, since: 0.0 }
     }
 }
 
-impl<const D: usize> Readings<D> {
+impl Readings {
     /// For the readings of `device`.
     ///
     /// # Errors
@@ -201,7 +201,7 @@ impl<const D: usize> Readings<D> {
     /// those that are not finite do; after the latter, the next is the first again.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
-    pub fn counts(&mut self, position: Point<D>, elapsed: f64) -> bool {
+    pub fn counts(&mut self, position: Point<3>, elapsed: f64) -> bool {
         if self.reach.is_unlimited() {
             return true;
         }
@@ -237,7 +237,7 @@ impl<const D: usize> Readings<D> {
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     #[must_use]
-    pub fn last(&self) -> Option<Point<D>> {
+    pub fn last(&self) -> Option<Point<3>> {
         self.last.map(|last| last.position)
     }
 
@@ -258,7 +258,7 @@ mod tests {
 
     const PERIOD: f64 = 1e-3;
 
-    fn readings() -> Readings<2> {
+    fn readings() -> Readings {
         let device = DeviceProfile {
             max_speed: 5.0,
             max_acceleration: 500.0,
@@ -277,7 +277,7 @@ mod tests {
             let forwards = 249.0 * time * time;
             let back = 249.0 * (1.6e-5 + since * (0.008 - since));
             let x = if since < 0.0 { forwards } else { back };
-            assert!(readings.counts(Vector([x, 0.0]), PERIOD), "{tick}");
+            assert!(readings.counts(Vector([x, 0.0, 0.0]), PERIOD), "{tick}");
         }
     }
 
@@ -285,13 +285,16 @@ mod tests {
     fn a_jump_is_held_back_until_a_hand_can_have_made_it() {
         let mut readings = readings();
         for _ in 0..2 {
-            assert!(readings.counts(Vector([0.1, 0.1]), PERIOD));
+            assert!(readings.counts(Vector([0.1, 0.1, 0.0]), PERIOD));
         }
         let held =
-            (0..100).take_while(|_| !readings.counts(Vector([0.15, 0.1]), PERIOD)).count();
+            (0..100).take_while(|_| !readings.counts(Vector([0.15, 0.1, 0.0]), PERIOD)).count();
         // ½ a t (t + 1 ms) reaches 50 mm after 13.7 ms, and 5 m/s after 10 ms.
         assert_eq!(held, 13);
-        assert_eq!((readings.report().held, readings.last()), (13, Some(Vector([0.15, 0.1]))));
+        assert_eq!(
+            (readings.report().held, readings.last()),
+            (13, Some(Vector([0.15, 0.1, 0.0])))
+        );
     }
 
     /// Once it was held back until it could have come from rest.
@@ -300,17 +303,17 @@ mod tests {
         let mut readings = readings();
         for tick in 0..10 {
             let x = 4.9e-3 * f64::from(tick);
-            assert!(readings.counts(Vector([x, -0.1]), PERIOD), "{tick}");
+            assert!(readings.counts(Vector([x, -0.1, 0.0]), PERIOD), "{tick}");
         }
     }
 
     #[test]
     fn after_a_gap_the_hand_may_be_farther() {
         let mut readings = readings();
-        assert!(readings.counts(Vector([0.0, 0.0]), PERIOD));
-        assert!(readings.counts(Vector([0.05, 0.0]), 0.021));
-        assert!(readings.counts(Vector([f64::NAN, 0.0]), PERIOD));
-        assert!(readings.counts(Vector([3.0, 0.0]), PERIOD), "found again anywhere");
+        assert!(readings.counts(Vector([0.0, 0.0, 0.0]), PERIOD));
+        assert!(readings.counts(Vector([0.05, 0.0, 0.0]), 0.021));
+        assert!(readings.counts(Vector([f64::NAN, 0.0, 0.0]), PERIOD));
+        assert!(readings.counts(Vector([3.0, 0.0, 0.0]), PERIOD), "found again anywhere");
     }
 
     /// A velocity from a short time is off by more than one from a long time. Once a reading after a
@@ -329,7 +332,7 @@ mod tests {
         for tick in 0..10_000 {
             let elapsed = [1e-3, 2e-5, 2e-3, 1e-5, 0.0, 9e-4, 1e-6][tick % 7];
             time += elapsed;
-            let there = Vector([0.05 * (9.0 * time).sin(), 0.05 * (9.0 * time).cos()]);
+            let there = Vector([0.05 * (9.0 * time).sin(), 0.05 * (9.0 * time).cos(), 0.0]);
             let read = Vector(there.0.map(|x| (x / step).round() * step));
             assert!(readings.counts(read, elapsed), "{tick}");
         }
@@ -349,7 +352,7 @@ mod tests {
             let mut readings = Readings::new(&device).unwrap();
             for elapsed in [0.0, 0.0, PERIOD, 0.0] {
                 assert!(
-                    readings.counts(Vector([0.1, 0.1]), elapsed),
+                    readings.counts(Vector([0.1, 0.1, 0.0]), elapsed),
                     "{speed}, {acceleration}"
                 );
             }
@@ -362,10 +365,10 @@ mod tests {
     fn readings_at_one_time_leave_the_velocity_as_it_was() {
         let mut readings = readings();
         for elapsed in [PERIOD, PERIOD, 0.0, -1.0, f64::MIN_POSITIVE, PERIOD, 0.0, PERIOD] {
-            assert!(readings.counts(Vector([0.1, 0.1]), elapsed), "{elapsed}");
+            assert!(readings.counts(Vector([0.1, 0.1, 0.0]), elapsed), "{elapsed}");
         }
-        assert!(!readings.counts(Vector([0.15, 0.1]), 0.0));
-        assert!(readings.counts(Vector([0.1, 0.1]), PERIOD));
+        assert!(!readings.counts(Vector([0.15, 0.1, 0.0]), 0.0));
+        assert!(readings.counts(Vector([0.1, 0.1, 0.0]), PERIOD));
     }
 
     /// Once the later of two readings at one time was forgotten, its way made a velocity, and a hand at
@@ -374,8 +377,8 @@ mod tests {
     fn of_two_readings_at_one_time_the_later_is_the_last() {
         let device = DeviceProfile { max_acceleration: 500.0, ..DeviceProfile::unlimited("") };
         let mut readings = Readings::new(&device).unwrap();
-        assert!(readings.counts(Vector([0.0, 0.0]), PERIOD));
-        let there = Vector([0.1, 0.0]);
+        assert!(readings.counts(Vector([0.0, 0.0, 0.0]), PERIOD));
+        let there = Vector([0.1, 0.0, 0.0]);
         assert!(readings.counts(there, 0.0));
         assert_eq!(readings.last(), Some(there));
         assert!((0..400).all(|_| readings.counts(there, PERIOD)));

@@ -136,10 +136,10 @@ impl SafetyReport {
     }
 
     /// The report of a chain of forces.
-    pub(crate) fn of<const D: usize>(
+    pub(crate) fn of(
         accepted: &Accepted,
         passivity: PassivityReport,
-        channel: &Channel<D>,
+        channel: &Channel,
     ) -> Self {
         let effects = channel.effects;
         Self {
@@ -164,7 +164,7 @@ impl SafetyReport {
 
 impl TurningReport {
     /// The report of a chain of torques.
-    pub(crate) fn of(accepted: &Accepted, largest_torque: f64, channel: &Channel<3>) -> Self {
+    pub(crate) fn of(accepted: &Accepted, largest_torque: f64, channel: &Channel) -> Self {
         let effects = channel.effects;
         Self {
             impedance: accepted.clone(),

@@ -106,16 +106,12 @@ impl Rise {
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     #[inline]
-    pub(crate) fn step<const D: usize>(
-        &mut self,
-        wanted: Vector<f64, D>,
-        free: Vector<f64, D>,
-    ) -> Option<f64> {
+    pub(crate) fn step(&mut self, wanted: Vector<f64, 3>, free: Vector<f64, 3>) -> Option<f64> {
         (self.limit < f64::INFINITY).then(|| self.rise(wanted, free))
     }
 
     #[cold]
-    fn rise<const D: usize>(&mut self, wanted: Vector<f64, D>, free: Vector<f64, D>) -> f64 {
+    fn rise(&mut self, wanted: Vector<f64, 3>, free: Vector<f64, 3>) -> f64 {
         let has_begun = std::mem::take(&mut self.has_begun);
         self.is_waiting &= has_begun || wanted != Vector::ZERO;
         let force = (wanted + free).norm();
@@ -138,7 +134,7 @@ mod tests {
 
     fn steps(rise: &mut Rise, forces: &[f64]) -> Vec<f64> {
         let part =
-            |rise: &mut Rise, x| rise.step(Vector([x, 0.0]), Vector::ZERO).unwrap_or(1.0);
+            |rise: &mut Rise, x| rise.step(Vector([x, 0.0, 0.0]), Vector::ZERO).unwrap_or(1.0);
         forces.iter().map(|x| x * part(rise, *x)).collect()
     }
 
@@ -146,7 +142,7 @@ mod tests {
     fn it_rises_until_it_has_caught_up() {
         let mut rise = Rise::new(20.0, Recovery::Rise, 10.0);
         assert_eq!(steps(&mut rise, &[8.0, 8.0, 5.0, 9.0]), [2.0, 4.0, 5.0, 9.0]);
-        assert_eq!(rise.step(Vector([0.0, 9.0]), Vector::ZERO), None);
+        assert_eq!(rise.step(Vector([0.0, 9.0, 0.0]), Vector::ZERO), None);
         rise.restart(3.0);
         assert_eq!(steps(&mut rise, &[8.0, 8.0]), [5.0, 7.0]);
         rise.restart(f64::NAN);
@@ -160,7 +156,7 @@ mod tests {
         rise.begin();
         // A body that covers the hand may push it in the next tick.
         assert_eq!(steps(&mut rise, &[0.0, 8.0]), [0.0, 0.0]);
-        assert_eq!(rise.step(Vector::ZERO, Vector([0.0, 4.0])), Some(0.5));
+        assert_eq!(rise.step(Vector::ZERO, Vector([0.0, 4.0, 0.0])), Some(0.5));
         assert_eq!(steps(&mut rise, &[16.0, 4.0]), [4.0, 4.0]);
     }
 

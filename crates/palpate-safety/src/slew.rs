@@ -9,13 +9,13 @@ use palpate_device::shortened;
 
 /// Follows a force on a straight line, by at most a fixed step a tick.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct SlewLimit<const D: usize> {
+pub(crate) struct SlewLimit {
     /// The largest change a tick [N].
     step: f64,
-    last: Vector<f64, D>,
+    last: Vector<f64, 3>,
 }
 
-impl<const D: usize> SlewLimit<D> {
+impl SlewLimit {
     /// A limit of `max_rate` [N/s] at `rate` [Hz].
     pub(crate) fn new(max_rate: f64, rate: f64) -> Self {
         Self { step: max_rate / rate, last: Vector::ZERO }
@@ -24,7 +24,7 @@ impl<const D: usize> SlewLimit<D> {
     /// The limited force; `None` if it is unchanged.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
-    pub(crate) fn limit(&mut self, force: Vector<f64, D>) -> Option<Vector<f64, D>> {
+    pub(crate) fn limit(&mut self, force: Vector<f64, 3>) -> Option<Vector<f64, 3>> {
         match shortened(force - self.last, self.step) {
             None => {
                 self.last = force;
@@ -38,7 +38,7 @@ impl<const D: usize> SlewLimit<D> {
     }
 
     /// The last force [N].
-    pub(crate) fn last(&self) -> Vector<f64, D> {
+    pub(crate) fn last(&self) -> Vector<f64, 3> {
         self.last
     }
 
@@ -55,11 +55,11 @@ mod tests {
     #[test]
     fn a_force_is_reached_in_equal_steps() {
         let mut slew = SlewLimit::new(1000.0, 1000.0);
-        let wanted = Vector([0.0, 2.5]);
+        let wanted = Vector([0.0, 2.5, 0.0]);
         let steps: Vec<_> = (0..4).map(|_| slew.limit(wanted).unwrap_or(wanted).0[1]).collect();
         assert_eq!(steps, [1.0, 2.0, 2.5, 2.5]);
         slew.restart();
-        assert_eq!(slew.limit(wanted), Some(Vector([0.0, 1.0])));
+        assert_eq!(slew.limit(wanted), Some(Vector([0.0, 1.0, 0.0])));
         let mut free = SlewLimit::new(f64::INFINITY, 1000.0);
         assert_eq!(free.limit(wanted), None);
     }

@@ -46,7 +46,7 @@ use palpate_device::{NumberError, TurningProfile};
 ///
 /// # fn main() -> Result<(), palpate_safety::SafetyError> {
 /// let device = TurningProfile { max_speed: 50.0, ..TurningProfile::unlimited() };
-/// let mut readings = TurnReadings::<3>::new(&device)?;
+/// let mut readings = TurnReadings::new(&device)?;
 /// let about_x = |angle: f64| Rotation::identity().turned(Vector([angle, 0.0, 0.0]));
 /// assert!(readings.counts(about_x(0.25), 1e-3));
 /// assert!(!readings.counts(about_x(0.375), 1e-3)); // 125 rad/s
@@ -58,16 +58,16 @@ use palpate_device::{NumberError, TurningProfile};
 /// # }
 /// ```
 #[derive(Clone, Debug)]
-pub struct TurnReadings<const D: usize> {
+pub struct TurnReadings {
     reach: Reach,
     /// The last orientation that counted.
-    last: Option<Counted<D>>,
+    last: Option<Counted>,
     held: Held,
 }
 
 #[derive(Clone, Copy, Debug)]
-struct Counted<const D: usize> {
-    orientation: Rotation<D>,
+struct Counted {
+    orientation: Rotation<3>,
     angular_velocity: Vector<f64, 3>,
     /// The time over which the angular velocity was measured [s]; infinite if it is not known.
     over: f64,
@@ -75,7 +75,7 @@ struct Counted<const D: usize> {
     since: f64,
 }
 
-impl<const D: usize> TurnReadings<D> {
+impl TurnReadings {
     /// For the readings of a device with this rotation.
     ///
     /// # Errors
@@ -98,7 +98,7 @@ impl<const D: usize> TurnReadings<D> {
     /// Whether a reading counts, made `elapsed` after the one before [s]. The first one does.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
-    pub fn counts(&mut self, orientation: Rotation<D>, elapsed: f64) -> bool {
+    pub fn counts(&mut self, orientation: Rotation<3>, elapsed: f64) -> bool {
         if self.reach.is_unlimited() {
             return true;
         }
@@ -154,7 +154,7 @@ impl<const D: usize> TurnReadings<D> {
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     #[must_use]
-    pub fn last(&self) -> Option<Rotation<D>> {
+    pub fn last(&self) -> Option<Rotation<3>> {
         self.last.map(|last| last.orientation)
     }
 
@@ -171,7 +171,7 @@ mod tests {
 
     const PERIOD: f64 = 1e-3;
 
-    fn readings() -> TurnReadings<3> {
+    fn readings() -> TurnReadings {
         let device = TurningProfile {
             max_speed: 50.0,
             max_acceleration: 1e4,
@@ -232,7 +232,7 @@ mod tests {
             max_acceleration: 1e4,
             ..TurningProfile::unlimited()
         };
-        let mut readings = TurnReadings::<3>::new(&device).unwrap();
+        let mut readings = TurnReadings::new(&device).unwrap();
         let mut time = 0.0_f64;
         for elapsed in [0.001, 0.001, 0.02, 0.001, 0.001, 0.02, 0.001] {
             time += elapsed;
@@ -250,7 +250,7 @@ mod tests {
             encoder_step: step,
             ..TurningProfile::unlimited()
         };
-        let mut readings = TurnReadings::<3>::new(&device).unwrap();
+        let mut readings = TurnReadings::new(&device).unwrap();
         let mut time = 0.0_f64;
         for tick in 0..10_000 {
             let elapsed = [1e-3, 2e-5, 2e-3, 1e-5, 0.0, f64::MIN_POSITIVE, 9e-4][tick % 7];
@@ -265,7 +265,7 @@ mod tests {
     fn limits_that_are_no_limits_are_refused() {
         let base = TurningProfile::unlimited;
         let refused =
-            |device: &TurningProfile| TurnReadings::<2>::new(device).unwrap_err().to_string();
+            |device: &TurningProfile| TurnReadings::new(device).unwrap_err().to_string();
         assert_eq!(
             refused(&TurningProfile { max_speed: 0.0, ..base() }),
             "angular_max_speed must be positive, got 0 rad/s"

@@ -42,18 +42,18 @@ const SLACK: f64 = 1e-6;
 ///
 /// # fn main() -> Result<(), palpate_safety::SafetyError> {
 /// let mut estimator = VelocityEstimator::new(1000.0, 0.0)?;
-/// assert_eq!(estimator.update(Vector([0.5, 0.25])), Vector([0.0, 0.0]));
-/// assert_eq!(estimator.update(Vector([0.75, 0.25])), Vector([250.0, 0.0]));
+/// assert_eq!(estimator.update(Vector([0.5, 0.25, 0.0])), Vector([0.0, 0.0, 0.0]));
+/// assert_eq!(estimator.update(Vector([0.75, 0.25, 0.0])), Vector([250.0, 0.0, 0.0]));
 /// # Ok(())
 /// # }
 /// ```
 #[derive(Clone, Debug)]
-pub struct VelocityEstimator<const D: usize> {
+pub struct VelocityEstimator {
     rate: f64,
     /// How far from the line a position may be [m].
     step: f64,
     /// A ring buffer: from the newest position on, each next one is older.
-    positions: [Point<D>; LONGEST],
+    positions: [Point<3>; LONGEST],
     /// For each position the time since the one before it, in periods.
     waits: [f64; LONGEST],
     newest: usize,
@@ -61,7 +61,7 @@ pub struct VelocityEstimator<const D: usize> {
     window: usize,
 }
 
-impl<const D: usize> VelocityEstimator<D> {
+impl VelocityEstimator {
     /// An estimator for positions read at `rate` [Hz] and quantised to `encoder_step` [m].
     ///
     /// # Errors
@@ -90,7 +90,7 @@ impl<const D: usize> VelocityEstimator<D> {
     /// Real-time: allocates nothing, takes no lock, cannot panic; at most 16 positions
     /// an axis.
     #[must_use]
-    pub fn update(&mut self, position: Point<D>) -> Vector<f64, D> {
+    pub fn update(&mut self, position: Point<3>) -> Vector<f64, 3> {
         self.add(position, 1.0)
     }
 
@@ -105,14 +105,14 @@ impl<const D: usize> VelocityEstimator<D> {
     ///
     /// # fn main() -> Result<(), palpate_safety::SafetyError> {
     /// let mut estimator = VelocityEstimator::new(1000.0, 0.0)?;
-    /// let _ = estimator.update(Vector([0.5, 0.25]));
+    /// let _ = estimator.update(Vector([0.5, 0.25, 0.0]));
     /// // 250 mm in four periods.
-    /// assert_eq!(estimator.update_after(Vector([0.75, 0.25]), 0.004), Vector([62.5, 0.0]));
+    /// assert_eq!(estimator.update_after(Vector([0.75, 0.25, 0.0]), 0.004), Vector([62.5, 0.0, 0.0]));
     /// # Ok(())
     /// # }
     /// ```
     #[must_use]
-    pub fn update_after(&mut self, position: Point<D>, elapsed: f64) -> Vector<f64, D> {
+    pub fn update_after(&mut self, position: Point<3>, elapsed: f64) -> Vector<f64, 3> {
         // A rate times its period is not one for every rate.
         let is_period = elapsed == 1.0 / self.rate;
         self.add(position, if is_period { 1.0 } else { elapsed * self.rate })
@@ -120,7 +120,7 @@ impl<const D: usize> VelocityEstimator<D> {
 
     /// Adds a position `wait` periods after the one before.
     #[inline]
-    fn add(&mut self, position: Point<D>, wait: f64) -> Vector<f64, D> {
+    fn add(&mut self, position: Point<3>, wait: f64) -> Vector<f64, 3> {
         // Written so that a wait of NaN ends here.
         let is_usable = position.is_finite() && wait > 0.0 && wait <= f64::MAX;
         if !is_usable {
@@ -150,10 +150,10 @@ impl<const D: usize> VelocityEstimator<D> {
     /// lie on a line; and the mean displacement a period over that window, zero for a window of
     /// zero.
     #[inline]
-    fn fit(&self, position: Point<D>, wait: f64, longest: usize) -> (usize, Vector<f64, D>) {
+    fn fit(&self, position: Point<3>, wait: f64, longest: usize) -> (usize, Vector<f64, 3>) {
         // A line from the newest position passes within a step of every position of the window
         // if its displacement per period lies between these bounds.
-        let (mut least, mut most) = ([f64::NEG_INFINITY; D], [f64::INFINITY; D]);
+        let (mut least, mut most) = ([f64::NEG_INFINITY; 3], [f64::INFINITY; 3]);
         let (mut fitting, mut age) = (Vector::ZERO, wait);
         for window in 1..=longest {
             let place = (self.newest + window - 1) % LONGEST;
@@ -222,7 +222,7 @@ mod tests {
                 let mut estimator = VelocityEstimator::new(RATE, step).unwrap();
                 for tick in 0..500 {
                     let x = velocity * f64::from(tick) / RATE;
-                    let seen = Vector([quantise(x / step) * step, 0.0]);
+                    let seen = Vector([quantise(x / step) * step, 0.0, 0.0]);
                     let error = (estimator.update(seen).0[0] - velocity).abs();
                     let n = estimator.window();
                     assert_eq!(n, LONGEST.min(tick as usize));
@@ -245,7 +245,7 @@ mod tests {
                     2.0_f64.powi((tick.wrapping_mul(2_654_435_761) >> 13) as i32 % 5 - 2);
                 time += wait / RATE;
                 times.push(time);
-                let seen = Vector([(velocity * time / step).round() * step, 0.0]);
+                let seen = Vector([(velocity * time / step).round() * step, 0.0, 0.0]);
                 let found = estimator.update_after(seen, wait / RATE);
                 let n = estimator.window();
                 assert_eq!(n, LONGEST.min(tick as usize));
@@ -262,7 +262,7 @@ mod tests {
             [(); 2].map(|()| VelocityEstimator::new(RATE, 1e-5).unwrap());
         for tick in 0..2000 {
             let x = (0.01 * (f64::from(tick) * 0.013).sin() / 1e-5).round() * 1e-5;
-            let position = Vector([x, -0.5 * x]);
+            let position = Vector([x, -0.5 * x, 0.0]);
             assert_eq!(plain.update(position), timed.update_after(position, 1.0 / RATE));
         }
     }
@@ -271,9 +271,9 @@ mod tests {
     fn a_time_that_is_none_clears_the_window() {
         for elapsed in [0.0, -1e-3, f64::NAN, f64::INFINITY] {
             let mut estimator = VelocityEstimator::new(RATE, 1e-5).unwrap();
-            let _ = estimator.update(Vector([0.0, 0.0]));
-            assert_eq!(estimator.update_after(Vector([0.1, 0.0]), elapsed), Vector::ZERO);
-            assert_eq!(estimator.update(Vector([0.2, 0.0])), Vector::ZERO);
+            let _ = estimator.update(Vector([0.0, 0.0, 0.0]));
+            assert_eq!(estimator.update_after(Vector([0.1, 0.0, 0.0]), elapsed), Vector::ZERO);
+            assert_eq!(estimator.update(Vector([0.2, 0.0, 0.0])), Vector::ZERO);
         }
     }
 
@@ -281,31 +281,31 @@ mod tests {
     fn a_large_step_shows_in_the_same_tick() {
         let mut estimator = VelocityEstimator::new(RATE, 1e-5).unwrap();
         for _ in 0..50 {
-            assert_eq!(estimator.update(Vector([0.01, 0.0])), Vector::ZERO);
+            assert_eq!(estimator.update(Vector([0.01, 0.0, 0.0])), Vector::ZERO);
         }
         assert_eq!(estimator.window(), LONGEST);
-        let velocity = estimator.update(Vector([0.011, 0.0]));
-        assert!((velocity - Vector([1.0, 0.0])).norm() < 1e-12);
+        let velocity = estimator.update(Vector([0.011, 0.0, 0.0]));
+        assert!((velocity - Vector([1.0, 0.0, 0.0])).norm() < 1e-12);
         assert_eq!(estimator.window(), 1);
     }
 
     #[test]
     fn a_position_that_is_not_finite_starts_anew() {
         let mut estimator = VelocityEstimator::new(RATE, 1e-5).unwrap();
-        let _ = estimator.update(Vector([0.0, 0.0]));
-        assert!(estimator.update(Vector([0.1, 0.0])).norm() > 1.0);
-        assert_eq!(estimator.update(Vector([f64::NAN, 0.0])), Vector::ZERO);
-        assert_eq!(estimator.update(Vector([5.0, 0.0])), Vector::ZERO);
-        assert_eq!(estimator.update(Vector([5.0, 0.0])), Vector::ZERO);
-        let _ = estimator.update(Vector([f64::MAX, 0.0]));
-        assert_eq!(estimator.update(Vector([-f64::MAX, 0.0])), Vector::ZERO);
+        let _ = estimator.update(Vector([0.0, 0.0, 0.0]));
+        assert!(estimator.update(Vector([0.1, 0.0, 0.0])).norm() > 1.0);
+        assert_eq!(estimator.update(Vector([f64::NAN, 0.0, 0.0])), Vector::ZERO);
+        assert_eq!(estimator.update(Vector([5.0, 0.0, 0.0])), Vector::ZERO);
+        assert_eq!(estimator.update(Vector([5.0, 0.0, 0.0])), Vector::ZERO);
+        let _ = estimator.update(Vector([f64::MAX, 0.0, 0.0]));
+        assert_eq!(estimator.update(Vector([-f64::MAX, 0.0, 0.0])), Vector::ZERO);
     }
 
     #[test]
     fn wrong_numbers_are_named() {
-        let error = VelocityEstimator::<3>::new(0.0, 0.0).unwrap_err();
+        let error = VelocityEstimator::new(0.0, 0.0).unwrap_err();
         assert_eq!(error.to_string(), "rate must be from 1e-6 to 1e9, got 0 Hz");
-        assert!(VelocityEstimator::<3>::new(1e3, -1e-6).is_err());
-        assert!(VelocityEstimator::<3>::new(1e3, f64::NAN).is_err());
+        assert!(VelocityEstimator::new(1e3, -1e-6).is_err());
+        assert!(VelocityEstimator::new(1e3, f64::NAN).is_err());
     }
 }

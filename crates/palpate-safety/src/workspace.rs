@@ -26,23 +26,23 @@ use palpate_device::{NumberError, PointState};
 /// use palpate_safety::WorkspaceMap;
 ///
 /// # fn main() -> Result<(), palpate_safety::SafetyError> {
-/// let map = WorkspaceMap::new(Pose::translation(Vector([1.0, 0.0])), 4.0)?;
-/// assert_eq!(map.point_to_world(Vector([0.5, 0.25])), Vector([3.0, 1.0]));
-/// assert_eq!(map.force_to_device(Vector([0.0, 2.0])), Vector([0.0, 2.0]));
+/// let map = WorkspaceMap::new(Pose::translation(Vector([1.0, 0.0, 0.0])), 4.0)?;
+/// assert_eq!(map.point_to_world(Vector([0.5, 0.25, 0.0])), Vector([3.0, 1.0, 0.0]));
+/// assert_eq!(map.force_to_device(Vector([0.0, 2.0, 0.0])), Vector([0.0, 2.0, 0.0]));
 /// assert_eq!(map.device_stiffness(500.0), 2000.0);
 /// # Ok(())
 /// # }
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct WorkspaceMap<const D: usize> {
-    world_from_device: Pose<D>,
-    device_from_world: Pose<D>,
+pub struct WorkspaceMap {
+    world_from_device: Pose<3>,
+    device_from_world: Pose<3>,
     scale: f64,
     /// Whether the map is the identity.
     is_identity: bool,
 }
 
-impl<const D: usize> Default for WorkspaceMap<D> {
+impl Default for WorkspaceMap {
     /// The identity: world coordinates equal device coordinates.
     fn default() -> Self {
         let identity = Pose::identity();
@@ -55,7 +55,7 @@ impl<const D: usize> Default for WorkspaceMap<D> {
     }
 }
 
-impl<const D: usize> WorkspaceMap<D> {
+impl WorkspaceMap {
     /// The map that multiplies device coordinates by `scale` and then applies the pose
     /// `world_from_device`.
     ///
@@ -63,7 +63,7 @@ impl<const D: usize> WorkspaceMap<D> {
     ///
     /// [`SafetyError::Number`] if the scale is not positive and finite, or the translation not
     /// finite.
-    pub fn new(world_from_device: Pose<D>, scale: f64) -> Result<Self, SafetyError> {
+    pub fn new(world_from_device: Pose<3>, scale: f64) -> Result<Self, SafetyError> {
         let scale = NumberError::check_positive("scale", scale, "(world per device)")?;
         let wrong = world_from_device.translation.0.into_iter().find(|x| !x.is_finite());
         match wrong {
@@ -91,12 +91,12 @@ impl<const D: usize> WorkspaceMap<D> {
     /// use palpate_safety::WorkspaceMap;
     ///
     /// # fn main() -> Result<(), palpate_safety::SafetyError> {
-    /// let scene = Aabb::centred(Vector([3.0, 4.0]));
+    /// let scene = Aabb::centred(Vector([3.0, 4.0, 0.0]));
     /// assert_eq!(WorkspaceMap::fitting(scene, 0.125)?.scale(), 40.0);
     /// # Ok(())
     /// # }
     /// ```
-    pub fn fitting(scene: Aabb<D>, workspace_radius: f64) -> Result<Self, SafetyError> {
+    pub fn fitting(scene: Aabb<3>, workspace_radius: f64) -> Result<Self, SafetyError> {
         let workspace_radius =
             NumberError::check_positive("workspace_radius", workspace_radius, "m")?;
         let half_diagonal = NumberError::check_positive(
@@ -115,37 +115,37 @@ impl<const D: usize> WorkspaceMap<D> {
 
     /// The rotation `R`: the device's axes in world coordinates.
     #[must_use]
-    pub fn rotation(&self) -> Rotation<D> {
+    pub fn rotation(&self) -> Rotation<3> {
         self.world_from_device.rotation
     }
 
     /// Maps a point from device to world coordinates [m]. Real-time.
     #[must_use]
-    pub fn point_to_world(&self, point: Point<D>) -> Point<D> {
+    pub fn point_to_world(&self, point: Point<3>) -> Point<3> {
         self.world_from_device.transform_point(point * self.scale)
     }
 
     /// Maps a point from world to device coordinates [m]. Real-time.
     #[must_use]
-    pub fn point_to_device(&self, point: Point<D>) -> Point<D> {
+    pub fn point_to_device(&self, point: Point<3>) -> Point<3> {
         self.device_from_world.transform_point(point) * (1.0 / self.scale)
     }
 
     /// Maps a velocity from device to world coordinates [m/s]. Real-time.
     #[must_use]
-    pub fn velocity_to_world(&self, velocity: Vector<f64, D>) -> Vector<f64, D> {
+    pub fn velocity_to_world(&self, velocity: Vector<f64, 3>) -> Vector<f64, 3> {
         self.world_from_device.transform_vector(velocity * self.scale)
     }
 
     /// Maps a velocity from world to device coordinates [m/s]. Real-time.
     #[must_use]
-    pub fn velocity_to_device(&self, velocity: Vector<f64, D>) -> Vector<f64, D> {
+    pub fn velocity_to_device(&self, velocity: Vector<f64, 3>) -> Vector<f64, 3> {
         self.device_from_world.transform_vector(velocity) * (1.0 / self.scale)
     }
 
     /// Maps the state of a contact point from device to world coordinates. Real-time.
     #[must_use]
-    pub fn state_to_world(&self, state: PointState<D>) -> PointState<D> {
+    pub fn state_to_world(&self, state: PointState) -> PointState {
         if self.is_identity {
             return state;
         }
@@ -157,26 +157,26 @@ impl<const D: usize> WorkspaceMap<D> {
 
     /// Rotates a force from world to device coordinates [N]; its size stays. Real-time.
     #[must_use]
-    pub fn force_to_device(&self, force: Vector<f64, D>) -> Vector<f64, D> {
+    pub fn force_to_device(&self, force: Vector<f64, 3>) -> Vector<f64, 3> {
         if self.is_identity { force } else { self.device_from_world.transform_vector(force) }
     }
 
     /// Rotates a force from device to world coordinates [N]; its size stays. Real-time.
     #[must_use]
-    pub fn force_to_world(&self, force: Vector<f64, D>) -> Vector<f64, D> {
+    pub fn force_to_world(&self, force: Vector<f64, 3>) -> Vector<f64, 3> {
         if self.is_identity { force } else { self.world_from_device.transform_vector(force) }
     }
 
     /// Maps an orientation from device to world coordinates. Real-time.
     #[must_use]
-    pub fn orientation_to_world(&self, orientation: Rotation<D>) -> Rotation<D> {
+    pub fn orientation_to_world(&self, orientation: Rotation<3>) -> Rotation<3> {
         self.world_from_device.rotation * orientation
     }
 
     /// Rotates an angular velocity from device to world coordinates [rad/s]. Real-time.
     #[must_use]
     pub fn spin_to_world(&self, spin: Vector<f64, 3>) -> Vector<f64, 3> {
-        about_axes(&self.world_from_device, spin)
+        self.world_from_device.transform_vector(spin)
     }
 
     /// Maps a torque from world to device coordinates [N·m]: rotated and divided by `s`.
@@ -187,21 +187,21 @@ impl<const D: usize> WorkspaceMap<D> {
     /// use palpate_safety::WorkspaceMap;
     ///
     /// # fn main() -> Result<(), palpate_safety::SafetyError> {
-    /// let map = WorkspaceMap::<3>::new(Pose::identity(), 4.0)?;
+    /// let map = WorkspaceMap::new(Pose::identity(), 4.0)?;
     /// assert_eq!(map.torque_to_device(Vector([0.0, 2.0, 0.0])), Vector([0.0, 0.5, 0.0]));
     /// # Ok(())
     /// # }
     /// ```
     #[must_use]
     pub fn torque_to_device(&self, torque: Vector<f64, 3>) -> Vector<f64, 3> {
-        about_axes(&self.device_from_world, torque) * (1.0 / self.scale)
+        self.device_from_world.transform_vector(torque) * (1.0 / self.scale)
     }
 
     /// Maps a torque from device to world coordinates [N·m]: rotated and multiplied by `s`.
     /// Real-time.
     #[must_use]
     pub fn torque_to_world(&self, torque: Vector<f64, 3>) -> Vector<f64, 3> {
-        about_axes(&self.world_from_device, torque) * self.scale
+        self.world_from_device.transform_vector(torque) * self.scale
     }
 
     /// The stiffness at the device for a stiffness of the world [N/m]: `s` times as large.
@@ -218,16 +218,11 @@ impl<const D: usize> WorkspaceMap<D> {
     }
 }
 
-/// Rotates a rotation-like vector by the pose; in the plane the vector lies along z and stays.
-fn about_axes<const D: usize>(pose: &Pose<D>, v: Vector<f64, 3>) -> Vector<f64, 3> {
-    if D < 3 { v } else { pose.transform_vector(v.truncated()).in_space() }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    fn map() -> WorkspaceMap<3> {
+    fn map() -> WorkspaceMap {
         let rotation = Rotation::from_axis_angle(Vector([1.0, 2.0, -0.5]), 0.7).unwrap();
         let pose = Pose::new(rotation, Vector([0.3, -1.0, 2.0]));
         WorkspaceMap::new(pose, 2.5).unwrap()
@@ -273,33 +268,35 @@ mod tests {
             map.force_to_device(force).dot(velocity) + map.torque_to_device(torque).dot(spin);
         assert!((2.5 * at_device - power).abs() < 1e-14);
         assert!((map.torque_to_world(map.torque_to_device(torque)) - torque).norm() < 1e-15);
-        let quarter = Rotation::from_angle(0.5).unwrap();
+        let quarter = Rotation::from_angle(0.5).unwrap().in_space();
         let planar = WorkspaceMap::new(Pose::rotation(quarter), 2.0).unwrap();
-        assert_eq!(planar.spin_to_world(spin), spin);
+        let about_z = Vector([0.0, 0.0, 0.5]);
+        assert_eq!(planar.spin_to_world(about_z), about_z);
         assert_eq!(planar.orientation_to_world(quarter), quarter * quarter);
     }
 
     #[test]
     fn a_fitted_workspace_reaches_every_corner_and_no_farther() {
-        let points = [Vector([1.0, -2.0]), Vector([4.0, 2.0])];
+        let points = [Vector([1.0, -2.0, 0.0]), Vector([4.0, 2.0, 0.0])];
         let scene = Aabb::around(points).unwrap();
         let map = WorkspaceMap::fitting(scene, 0.1).unwrap();
-        for corner in [[1.0, -2.0], [4.0, 2.0], [1.0, 2.0], [4.0, -2.0]] {
-            assert!((map.point_to_device(Vector(corner)).norm() - 0.1).abs() < 1e-15);
+        for [x, y] in [[1.0, -2.0], [4.0, 2.0], [1.0, 2.0], [4.0, -2.0]] {
+            assert!((map.point_to_device(Vector([x, y, 0.0])).norm() - 0.1).abs() < 1e-15);
         }
     }
 
     #[test]
     fn wrong_numbers_are_named() {
         for scale in [0.0, -1.0, f64::NAN, f64::INFINITY] {
-            assert!(WorkspaceMap::<2>::new(Pose::identity(), scale).is_err());
+            assert!(WorkspaceMap::new(Pose::identity(), scale).is_err());
         }
-        let far = Pose::translation(Vector([0.0, f64::NAN]));
-        assert!(WorkspaceMap::<2>::new(far, 1.0).is_err());
-        let point = Aabb::centred(Vector([0.0, 0.0]));
+        let far = Pose::translation(Vector([0.0, f64::NAN, 0.0]));
+        assert!(WorkspaceMap::new(far, 1.0).is_err());
+        let point = Aabb::centred(Vector([0.0, 0.0, 0.0]));
         assert!(WorkspaceMap::fitting(point, 0.1).is_err());
         assert!(
-            WorkspaceMap::fitting(Aabb::centred(Vector([1.0, 1.0])), f64::INFINITY).is_err()
+            WorkspaceMap::fitting(Aabb::centred(Vector([1.0, 1.0, 0.0])), f64::INFINITY)
+                .is_err()
         );
     }
 }

@@ -28,21 +28,21 @@ use palpate_device::NumberError;
 /// A translational and a rotational vector: force [N] and torque [N·m], position [m] and angle
 /// [rad], or their velocities.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SpatialVector<const D: usize> {
+pub struct SpatialVector {
     /// The translational part.
-    pub along: Vector<f64, D>,
+    pub along: Vector<f64, 3>,
     /// The rotational part; in the plane only z is used.
     pub about: Vector<f64, 3>,
 }
 
-impl<const D: usize> SpatialVector<D> {
+impl SpatialVector {
     /// The vector with its rotational part multiplied by `factor`.
     fn turning(self, factor: f64) -> Self {
         Self { about: self.about * factor, ..self }
     }
 }
 
-impl<const D: usize> Add for SpatialVector<D> {
+impl Add for SpatialVector {
     type Output = Self;
 
     fn add(self, other: Self) -> Self {
@@ -50,7 +50,7 @@ impl<const D: usize> Add for SpatialVector<D> {
     }
 }
 
-impl<const D: usize> Sub for SpatialVector<D> {
+impl Sub for SpatialVector {
     type Output = Self;
 
     fn sub(self, other: Self) -> Self {
@@ -58,7 +58,7 @@ impl<const D: usize> Sub for SpatialVector<D> {
     }
 }
 
-impl<const D: usize> Mul<f64> for SpatialVector<D> {
+impl Mul<f64> for SpatialVector {
     type Output = Self;
 
     fn mul(self, factor: f64) -> Self {
@@ -66,7 +66,7 @@ impl<const D: usize> Mul<f64> for SpatialVector<D> {
     }
 }
 
-impl<const D: usize> InnerProduct for SpatialVector<D> {
+impl InnerProduct for SpatialVector {
     const ZERO: Self = Self { along: Vector::ZERO, about: Vector::ZERO };
 
     fn dot(self, other: Self) -> f64 {
@@ -84,13 +84,13 @@ impl<const D: usize> InnerProduct for SpatialVector<D> {
 
 /// The input of the chain in a tick, beside force and torque. Device coordinates.
 #[derive(Clone, Copy, Debug)]
-pub struct WrenchState<const D: usize> {
+pub struct WrenchState {
     /// The position [m] and the sum of all rotation vectors so far [rad].
-    pub position: SpatialVector<D>,
+    pub position: SpatialVector,
     /// The velocity [m/s] and the angular velocity [rad/s].
-    pub velocity: SpatialVector<D>,
+    pub velocity: SpatialVector,
     /// As [`PortState::free_force`](crate::PortState::free_force).
-    pub free_force: Vector<f64, D>,
+    pub free_force: Vector<f64, 3>,
     /// As [`PortState::late`](crate::PortState::late).
     pub late: f64,
     /// As [`PortState::elapsed`](crate::PortState::elapsed).
@@ -111,18 +111,18 @@ pub struct WrenchState<const D: usize> {
 /// isotropic spring with the smaller damping `min(b, b_θ / u²)`, the smaller mass and the
 /// slower slew limit: where `K ≤ 2b/T` and `κ ≤ 2b_θ/T`, the controller never changes the force.
 #[derive(Clone, Debug)]
-pub struct WrenchChain<const D: usize> {
+pub struct WrenchChain {
     /// What the device renders.
     accepted: PerMotion<Accepted>,
     /// Properties of the device.
     sides: PerMotion<AxisLimits>,
     /// A radian as a length [m].
     unit: f64,
-    cycle: LimitCycle<SpatialVector<D>>,
-    free: FreeEnergy<Vector<f64, D>>,
-    passivity: Passivity<SpatialVector<D>>,
-    force: Channel<D>,
-    torque: Channel<3>,
+    cycle: LimitCycle<SpatialVector>,
+    free: FreeEnergy<Vector<f64, 3>>,
+    passivity: Passivity<SpatialVector>,
+    force: Channel,
+    torque: Channel,
     /// The largest torque written so far [N·m].
     largest_torque: f64,
 }
@@ -177,7 +177,7 @@ fn unit(along: &Accepted, about: &Accepted) -> f64 {
     (about.device_stiffness / along.device_stiffness).sqrt()
 }
 
-impl<const D: usize> WrenchChain<D> {
+impl WrenchChain {
     /// A chain for a device with these translational and rotational limits, which renders the
     /// accepted impedances at `rate` [Hz].
     ///
@@ -247,11 +247,7 @@ impl<const D: usize> WrenchChain<D> {
     /// One tick: force and torque to write for `wanted`, both in device coordinates.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
-    pub fn step(
-        &mut self,
-        wanted: SpatialVector<D>,
-        state: &WrenchState<D>,
-    ) -> SpatialVector<D> {
+    pub fn step(&mut self, wanted: SpatialVector, state: &WrenchState) -> SpatialVector {
         self.tick(Wanted { force: wanted, effort: self.effort(wanted), cut: 0.0 }, state)
     }
 
@@ -261,10 +257,10 @@ impl<const D: usize> WrenchChain<D> {
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     pub fn step_within(
         &mut self,
-        wanted: SpatialVector<D>,
+        wanted: SpatialVector,
         max_force: f64,
-        state: &WrenchState<D>,
-    ) -> SpatialVector<D> {
+        state: &WrenchState,
+    ) -> SpatialVector {
         let effort = self.effort(wanted);
         // Leave NaN unclamped: the guard stage detects it and zeroes the force.
         let is_number = wanted.along.is_finite();
@@ -274,15 +270,11 @@ impl<const D: usize> WrenchChain<D> {
     }
 
     /// The size of a wrench, where an angle counts as a length [N].
-    fn effort(&self, wanted: SpatialVector<D>) -> f64 {
+    fn effort(&self, wanted: SpatialVector) -> f64 {
         wanted.turning(1.0 / self.unit).norm()
     }
 
-    fn tick(
-        &mut self,
-        wanted: Wanted<SpatialVector<D>>,
-        state: &WrenchState<D>,
-    ) -> SpatialVector<D> {
+    fn tick(&mut self, wanted: Wanted<SpatialVector>, state: &WrenchState) -> SpatialVector {
         let Wanted { force: wanted, effort, cut } = wanted;
         let WrenchState { position, velocity, free_force, late, elapsed, stiffness, .. } =
             *state;

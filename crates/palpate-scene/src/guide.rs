@@ -15,6 +15,7 @@ use crate::error::SceneError;
 use crate::pose::{direction, position};
 use crate::problem::Problem;
 use crate::problems::Problems;
+use crate::scene::Dimension;
 #[cfg(test)]
 use crate::schema::VectorSchema;
 
@@ -332,12 +333,12 @@ impl WrittenGuide {
     ///
     /// # Errors
     ///
-    /// If there is not exactly one target, a vector has not `D` numbers, or the constructor of its
+    /// If there is not exactly one target, a vector has not one number for each dimension, or the constructor of its
     /// kind refuses a number. A scene that was built has none of these.
     ///
     /// ```
     /// use palpate_field::Vector;
-    /// use palpate_scene::Scene;
+    /// use palpate_scene::{Dimension, Scene};
     ///
     /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
     /// let scene = Scene::from_json(
@@ -346,18 +347,19 @@ impl WrittenGuide {
     ///          "guides": [ { "plane": { "through": [0, 0.75], "normal": [0, 2] },
     ///                        "stiffness": 256 } ] }"#,
     /// )?;
-    /// let mut guide = scene.guides[0].guide::<2>()?;
-    /// let force = guide.force(Vector([0.3, 0.75390625]), Vector::ZERO); // 1/256 m above
-    /// assert_eq!(force, Vector([0.0, -1.0]));
+    /// let mut guide = scene.guides[0].guide(Dimension::Two)?;
+    /// let force = guide.force(Vector([0.3, 0.75390625, 0.0]), Vector::ZERO); // 1/256 m above
+    /// assert_eq!(force, Vector([0.0, -1.0, 0.0]));
     /// # Ok(())
     /// # }
     /// ```
-    pub fn guide<const D: usize>(&self) -> Result<Guide<D>, SceneError> {
-        self.built().map_err(|problem| problem.located(None).into())
+    pub fn guide(&self, dimension: Dimension) -> Result<Guide, SceneError> {
+        self.built(dimension).map_err(|problem| problem.located(None).into())
     }
 
     /// The guide with these numbers.
-    pub(crate) fn built<const D: usize>(&self) -> Result<Guide<D>, Problem> {
+    pub(crate) fn built(&self, dimension: Dimension) -> Result<Guide, Problem> {
+        let vector = |parameter, numbers: &[f64]| vector(parameter, numbers, dimension);
         let options = GuideOptions {
             stiffness: self.stiffness,
             damping: self.damping,
@@ -384,7 +386,7 @@ impl WrittenGuide {
             Guide::on_plane(through, vector("normal", &plane.normal)?, options)
         });
         let curve = self.curve.iter().map(|curve| {
-            let points: Result<Vec<Point<D>>, _> =
+            let points: Result<Vec<Point<3>>, _> =
                 curve.points.iter().map(|point| vector("points", point)).collect();
             let points = points?;
             let curve =
@@ -406,19 +408,21 @@ impl WrittenGuide {
     }
 }
 
-fn vector<const D: usize>(
+/// A vector of so many numbers; one of the plane has no z.
+fn vector(
     parameter: &'static str,
     numbers: &[f64],
-) -> Result<Vector<f64, D>, HapticsError> {
-    let components = numbers.try_into().map_err(|_| {
-        HapticsError::Number(NumberError::new(
+    dimension: Dimension,
+) -> Result<Vector<f64, 3>, HapticsError> {
+    if numbers.len() != dimension.count() {
+        return Err(HapticsError::Number(NumberError::new(
             parameter,
             "one number for each dimension",
             numbers.len() as f64,
             "numbers",
-        ))
-    })?;
-    Ok(Vector(components))
+        )));
+    }
+    Ok(Vector(std::array::from_fn(|axis| numbers.get(axis).copied().unwrap_or(0.0))))
 }
 
 #[cfg(test)]
@@ -428,12 +432,12 @@ mod tests {
     #[test]
     fn what_no_guide_can_mean_is_refused() {
         let none = WrittenGuide::default();
-        let error = none.guide::<2>().unwrap_err();
+        let error = none.guide(Dimension::Two).unwrap_err();
         assert_eq!(error.to_string(), "a guide needs one target, got 0");
         let flat = WrittenGuide { point: Some(vec![0.0; 3]), ..none };
-        let error = flat.guide::<2>().unwrap_err();
+        let error = flat.guide(Dimension::Two).unwrap_err();
         let expected = "point must be one number for each dimension, got 3 numbers";
         assert_eq!(error.to_string(), expected);
-        assert!(flat.guide::<3>().is_ok());
+        assert!(flat.guide(Dimension::Three).is_ok());
     }
 }

@@ -47,7 +47,7 @@ impl<const D: usize> BuiltTool<D> {
     ///
     /// As [`Shell::of_shape`] and [`Tool::new`].
     #[inline(never)]
-    pub fn in_hand(&self) -> Result<Option<Tool<D>>, HapticsError> {
+    pub fn in_hand(&self) -> Result<Option<Tool>, HapticsError> {
         let Some(shape) = &self.shape else { return Ok(None) };
         let shell = Shell::of_shape(shape, POINTS, self.radius)?;
         Tool::new(shell, self.options).map(Some)
@@ -67,11 +67,11 @@ impl<const D: usize> BuiltScene<D> {
     /// them: where its origin can be.
     #[must_use]
     #[inline(never)]
-    pub fn bounds_with(&self, tool: &Tool<D>) -> Option<Aabb<D>> {
+    pub fn bounds_with(&self, tool: &Tool) -> Option<Aabb<D>> {
         let bodies = self.bounds()?;
         let rotation = self.device_rotation();
         Some(tool.shell().points().iter().fold(bodies, |all, point| {
-            let arm = rotation.rotate(point.centre);
+            let arm = rotation.rotate(point.centre).truncated();
             all.union(&Aabb { min: bodies.min - arm, max: bodies.max - arm })
         }))
     }
@@ -79,7 +79,7 @@ impl<const D: usize> BuiltScene<D> {
     /// How the device's axes lie in the world.
     #[must_use]
     #[inline(never)]
-    pub fn device_rotation(&self) -> Rotation<D> {
+    pub fn device_rotation(&self) -> Rotation<3> {
         self.workspace.map_or_else(Rotation::identity, |map| map.rotation())
     }
 
@@ -101,13 +101,13 @@ impl<const D: usize> BuiltScene<D> {
     ///          "tool": { "points": [[-0.01, 0], [0.01, 0]] } }"#,
     /// )?;
     /// let AnyScene::Planar(scene) = scene.build()? else { unreachable!("dimension is 2") };
-    /// let places = scene.contact_points().map(|arm| arm + [0.0, 0.1].into());
-    /// let hands: Result<Vec<_>, _> = places.map(Hand::<2>::resting).collect();
+    /// let places = scene.contact_points().map(|arm| arm + [0.0, 0.1, 0.0].into());
+    /// let hands: Result<Vec<_>, _> = places.map(Hand::resting).collect();
     /// assert_eq!(hands?.len(), 2);
     /// # Ok(())
     /// # }
     /// ```
-    pub fn contact_points(&self) -> impl Iterator<Item = Vector<f64, D>> {
+    pub fn contact_points(&self) -> impl Iterator<Item = Vector<f64, 3>> {
         let rotation = self.device_rotation();
         let points = self.tool.iter().flat_map(|tool| &tool.points);
         points.map(move |arm| rotation.rotate(*arm))
@@ -124,15 +124,15 @@ impl<const D: usize> BuiltScene<D> {
     pub fn workspace_of(
         &self,
         device: &DeviceProfile,
-        tool: Option<&Tool<D>>,
-    ) -> Result<WorkspaceMap<D>, HapticsError> {
+        tool: Option<&Tool>,
+    ) -> Result<WorkspaceMap, HapticsError> {
         if let Some(map) = self.workspace {
             return Ok(map);
         }
         let bounds = tool.map_or_else(|| self.bounds(), |tool| self.bounds_with(tool));
         match bounds {
             Some(bounds) if device.workspace_radius < f64::INFINITY => {
-                Ok(WorkspaceMap::fitting(bounds, device.workspace_radius)?)
+                Ok(WorkspaceMap::fitting(bounds.in_space(), device.workspace_radius)?)
             }
             _ => Ok(WorkspaceMap::default()),
         }
@@ -144,10 +144,10 @@ impl<const D: usize> BuiltScene<D> {
     ///
     /// As [`Surface::new`], [`Body::new`] and [`Bodies::new`].
     #[inline(never)]
-    pub fn bodies(&self) -> Result<Bodies<D>, HapticsError> {
+    pub fn bodies(&self) -> Result<Bodies, HapticsError> {
         let body = |body: &crate::BuiltBody<D>| {
-            Body::new(body.shape_in_body.clone(), Surface::new(&body.material)?)?
-                .at(body.world_from_body)
+            Body::new(&body.shape_in_body, Surface::new(&body.material)?)?
+                .at(body.world_from_body.in_space())
         };
         Bodies::new(self.bodies.iter().map(body).collect::<Result<_, _>>()?)
     }
@@ -235,7 +235,7 @@ impl<const D: usize> BuiltScene<D> {
     /// # Ok(())
     /// # }
     /// ```
-    pub fn servo(&self, device: &(impl Device<D> + ?Sized)) -> Result<Servo<D>, HapticsError> {
+    pub fn servo(&self, device: &(impl Device + ?Sized)) -> Result<Servo, HapticsError> {
         self.servo_with(device, ServoSettings::default())
     }
 
@@ -246,9 +246,9 @@ impl<const D: usize> BuiltScene<D> {
     /// As [`servo`](Self::servo).
     pub fn servo_with(
         &self,
-        device: &(impl Device<D> + ?Sized),
+        device: &(impl Device + ?Sized),
         settings: ServoSettings,
-    ) -> Result<Servo<D>, HapticsError> {
+    ) -> Result<Servo, HapticsError> {
         self.servo_for(device.profile(), device.points(), settings)
     }
 
@@ -258,7 +258,7 @@ impl<const D: usize> BuiltScene<D> {
         profile: &DeviceProfile,
         device_points: usize,
         settings: ServoSettings,
-    ) -> Result<Servo<D>, HapticsError> {
+    ) -> Result<Servo, HapticsError> {
         let points = self.contact_points().count();
         if points > 0 && points != device_points {
             return Err(HapticsError::ContactPoints { servo: points, device: device_points });

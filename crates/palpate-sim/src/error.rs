@@ -11,7 +11,7 @@ use palpate_device::{DeviceError, NumberError};
 /// ```
 /// use palpate_sim::{HandPath, Interpolation, SimulationError};
 ///
-/// let alone = HandPath::<3>::new(vec![0.0], vec![[0.0; 3].into()], Interpolation::Linear);
+/// let alone = HandPath::new(vec![0.0], vec![[0.0; 3].into()], Interpolation::Linear);
 /// assert_eq!(alone, Err(SimulationError::TooFewSamples { count: 1 }));
 /// ```
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]

@@ -47,39 +47,39 @@ use palpate_vibration::Actuator;
 /// # }
 /// ```
 #[derive(Clone, Debug)]
-pub struct Glove<const D: usize> {
-    fingers: Vec<Finger<D>>,
+pub struct Glove {
+    fingers: Vec<Finger>,
     profile: DeviceProfile,
 }
 
 #[derive(Clone, Debug)]
-struct Finger<const D: usize> {
-    path: HandPath<D>,
+struct Finger {
+    path: HandPath,
     /// The offset of the finger from the path [m].
-    offset: Vector<f64, D>,
+    offset: Vector<f64, 3>,
     /// Largest force [N].
     limit: f64,
     /// The force written last, clamped to the limit [N].
-    force: Vector<f64, D>,
+    force: Vector<f64, 3>,
     /// What shakes it.
     actuator: Option<Actuator>,
 }
 
-impl<const D: usize> Finger<D> {
+impl Finger {
     /// A finger without force feedback and actuator.
     #[inline(never)]
-    fn new(path: HandPath<D>, offset: Vector<f64, D>) -> Self {
+    fn new(path: HandPath, offset: Vector<f64, 3>) -> Self {
         Self { path, offset, limit: 0.0, force: Vector::ZERO, actuator: None }
     }
 }
 
-impl<const D: usize> Glove<D> {
+impl Glove {
     /// A glove with a path for each finger, without force feedback.
     ///
     /// # Errors
     ///
     /// [`DeviceError::NoContactPoint`] if there are no paths.
-    pub fn new(paths: Vec<HandPath<D>>) -> Result<Self, SimulationError> {
+    pub fn new(paths: Vec<HandPath>) -> Result<Self, SimulationError> {
         Self::of(paths.into_iter().map(|path| Finger::new(path, Vector::ZERO)).collect())
     }
 
@@ -92,8 +92,8 @@ impl<const D: usize> Glove<D> {
     /// is not finite.
     #[inline(never)]
     pub fn from_hand(
-        hand: &HandPath<D>,
-        offsets: &[Vector<f64, D>],
+        hand: &HandPath,
+        offsets: &[Vector<f64, 3>],
     ) -> Result<Self, SimulationError> {
         for component in offsets.iter().flat_map(|offset| offset.0) {
             NumberError::check_not_negative("finger offset", component.abs(), "m")?;
@@ -101,7 +101,7 @@ impl<const D: usize> Glove<D> {
         Self::of(offsets.iter().map(|offset| Finger::new(hand.clone(), *offset)).collect())
     }
 
-    fn of(fingers: Vec<Finger<D>>) -> Result<Self, SimulationError> {
+    fn of(fingers: Vec<Finger>) -> Result<Self, SimulationError> {
         if fingers.is_empty() {
             return Err(DeviceError::NoContactPoint.into());
         }
@@ -172,12 +172,12 @@ impl<const D: usize> Glove<D> {
     }
 
     /// The forces written last, each clamped to its finger's limit [N].
-    pub fn forces(&self) -> impl Iterator<Item = Vector<f64, D>> {
+    pub fn forces(&self) -> impl Iterator<Item = Vector<f64, 3>> {
         self.fingers.iter().map(|finger| finger.force)
     }
 }
 
-impl<const D: usize> Device<D> for Glove<D> {
+impl Device for Glove {
     fn points(&self) -> usize {
         self.fingers.len()
     }
@@ -187,7 +187,7 @@ impl<const D: usize> Device<D> for Glove<D> {
     }
 
     /// Real-time: allocates nothing, takes no lock, cannot panic.
-    fn read(&mut self, time: f64, points: &mut [PointState<D>]) -> Result<Reading, DeviceLost> {
+    fn read(&mut self, time: f64, points: &mut [PointState]) -> Result<Reading, DeviceLost> {
         for (point, finger) in points.iter_mut().zip(&self.fingers) {
             let PointState { position, velocity } = finger.path.state_at(time);
             *point = PointState { position: position + finger.offset, velocity };
@@ -196,7 +196,7 @@ impl<const D: usize> Device<D> for Glove<D> {
     }
 
     /// Real-time: allocates nothing, takes no lock, cannot panic.
-    fn write(&mut self, forces: &[Vector<f64, D>]) -> Result<(), DeviceLost> {
+    fn write(&mut self, forces: &[Vector<f64, 3>]) -> Result<(), DeviceLost> {
         for (finger, force) in self.fingers.iter_mut().zip(forces) {
             finger.force = limited(*force, finger.limit);
         }
@@ -209,8 +209,8 @@ mod tests {
     use super::*;
     use crate::hand_path::Interpolation;
 
-    fn path(height: f64) -> HandPath<2> {
-        let ends = vec![Vector([0.0, height]), Vector([1.0, height])];
+    fn path(height: f64) -> HandPath {
+        let ends = vec![Vector([0.0, height, 0.0]), Vector([1.0, height, 0.0])];
         HandPath::new(vec![0.0, 2.0], ends, Interpolation::Linear).unwrap()
     }
 
@@ -221,11 +221,14 @@ mod tests {
         assert_eq!(glove.profile().max_force, 2.5);
         let mut points = [PointState::at_rest(Vector::ZERO); 3];
         glove.read(1.0, &mut points).unwrap();
-        assert_eq!(points.map(|p| p.position), [0.1, 0.2, 0.3].map(|y| Vector([0.5, y])));
-        assert!(points.iter().all(|p| p.velocity == Vector([0.5, 0.0])));
-        glove.write(&[Vector([3.0, -4.0]); 3]).unwrap();
+        assert_eq!(points.map(|p| p.position), [0.1, 0.2, 0.3].map(|y| Vector([0.5, y, 0.0])));
+        assert!(points.iter().all(|p| p.velocity == Vector([0.5, 0.0, 0.0])));
+        glove.write(&[Vector([3.0, -4.0, 0.0]); 3]).unwrap();
         let forces: Vec<_> = glove.forces().collect();
-        assert_eq!(forces, [Vector([0.6, -0.8]), Vector([0.0, 0.0]), Vector([1.5, -2.0])]);
+        assert_eq!(
+            forces,
+            [Vector([0.6, -0.8, 0.0]), Vector([0.0, 0.0, 0.0]), Vector([1.5, -2.0, 0.0])]
+        );
     }
 
     #[test]
@@ -242,11 +245,8 @@ mod tests {
 
     #[test]
     fn wrong_gloves_are_refused() {
-        assert_eq!(
-            Glove::<2>::new(Vec::new()).unwrap_err(),
-            DeviceError::NoContactPoint.into()
-        );
-        let far = Glove::from_hand(&path(0.0), &[Vector([f64::NAN, 0.0])]).unwrap_err();
+        assert_eq!(Glove::new(Vec::new()).unwrap_err(), DeviceError::NoContactPoint.into());
+        let far = Glove::from_hand(&path(0.0), &[Vector([f64::NAN, 0.0, 0.0])]).unwrap_err();
         assert!(far.to_string().starts_with("finger offset must be"), "{far}");
         let glove = Glove::new(vec![path(0.0)]).unwrap();
         assert!(glove.clone().with_limits(&[]).is_err());

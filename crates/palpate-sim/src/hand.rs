@@ -35,7 +35,7 @@ use palpate_field::{Point, Vector};
 /// use palpate_field::Vector;
 ///
 /// # fn main() -> Result<(), palpate_sim::SimulationError> {
-/// let hand = Hand::resting(Vector([0.0, 0.1]))?.with_mass(0.2)?.with_spring(400.0, 8.0)?;
+/// let hand = Hand::resting(Vector([0.0, 0.1, 0.0]))?.with_mass(0.2)?.with_spring(400.0, 8.0)?;
 /// assert_eq!((hand.mass(), hand.stiffness(), hand.damping()), (0.2, 400.0, 8.0));
 /// let error = hand.with_mass(-1.0).unwrap_err();
 /// assert_eq!(error.to_string(), "mass must be zero or more and finite, got -1 kg");
@@ -43,12 +43,12 @@ use palpate_field::{Point, Vector};
 /// # }
 /// ```
 #[derive(Clone, Debug, PartialEq)]
-pub struct Hand<const D: usize> {
-    path: HandPath<D>,
+pub struct Hand {
+    path: HandPath,
     mass: f64,
     stiffness: f64,
     damping: f64,
-    push: Vector<f64, D>,
+    push: Vector<f64, 3>,
     wrist: Wrist,
 }
 
@@ -56,7 +56,7 @@ pub struct Hand<const D: usize> {
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Wrist {
     /// The path of target orientations, as rotation vectors [rad]; `None` to hold still.
-    pub(crate) path: Option<HandPath<3>>,
+    pub(crate) path: Option<HandPath>,
     /// The moment of inertia [kg·m²].
     pub(crate) inertia: f64,
     /// The angular stiffness [N·m/rad].
@@ -77,11 +77,11 @@ impl Wrist {
         Self { path: None, inertia: 0.0, stiffness: 0.0, damping: 0.0, push: Vector::ZERO };
 }
 
-impl<const D: usize> Hand<D> {
+impl Hand {
     /// A hand that follows `path`: 0.1 kg, 300 N/m, 5 N·s/m, no push. The hand holds the
     /// orientation still: 1e-4 kg·m², 0.5 N·m/rad, 0.01 N·m·s/rad, no torque.
     #[must_use]
-    pub fn new(path: HandPath<D>) -> Self {
+    pub fn new(path: HandPath) -> Self {
         let (push, wrist) = (Vector::ZERO, Wrist::GRIP);
         Self { path, mass: 0.1, stiffness: 300.0, damping: 5.0, push, wrist }
     }
@@ -92,7 +92,7 @@ impl<const D: usize> Hand<D> {
     ///
     /// [`SimulationError::SampleNotFinite`] if a coordinate of `place` is not finite or exceeds
     /// 1e15 m.
-    pub fn resting(place: impl Into<Point<D>>) -> Result<Self, SimulationError> {
+    pub fn resting(place: impl Into<Point<3>>) -> Result<Self, SimulationError> {
         HandPath::new(vec![0.0, 1.0], vec![place.into(); 2], Interpolation::Linear)
             .map(Self::new)
     }
@@ -106,10 +106,10 @@ impl<const D: usize> Hand<D> {
     /// ```
     /// use palpate_sim::Hand;
     ///
-    /// let free = Hand::free([0.0, 0.1]).unwrap();
+    /// let free = Hand::free([0.0, 0.1, 0.0]).unwrap();
     /// assert_eq!((free.mass(), free.stiffness(), free.damping()), (0.0, 0.0, 0.0));
     /// ```
-    pub fn free(place: impl Into<Point<D>>) -> Result<Self, SimulationError> {
+    pub fn free(place: impl Into<Point<3>>) -> Result<Self, SimulationError> {
         let hand = Self::resting(place)?;
         Ok(Self { mass: 0.0, stiffness: 0.0, damping: 0.0, wrist: Wrist::NONE, ..hand })
     }
@@ -139,7 +139,7 @@ impl<const D: usize> Hand<D> {
     /// # Errors
     ///
     /// [`SimulationError::Number`] if a coordinate is not finite.
-    pub fn with_push(self, push: impl Into<Vector<f64, D>>) -> Result<Self, SimulationError> {
+    pub fn with_push(self, push: impl Into<Vector<f64, 3>>) -> Result<Self, SimulationError> {
         let push = push.into();
         for component in push.0 {
             NumberError::check_not_negative("hand push", component.abs(), "N")?;
@@ -171,7 +171,7 @@ impl<const D: usize> Hand<D> {
     /// # }
     /// ```
     #[must_use]
-    pub fn with_turns(self, turns: HandPath<3>) -> Self {
+    pub fn with_turns(self, turns: HandPath) -> Self {
         Self { wrist: Wrist { path: Some(turns), ..self.wrist }, ..self }
     }
 
@@ -225,7 +225,7 @@ impl<const D: usize> Hand<D> {
 
     /// The path of the target.
     #[must_use]
-    pub fn path(&self) -> &HandPath<D> {
+    pub fn path(&self) -> &HandPath {
         &self.path
     }
 
@@ -249,7 +249,7 @@ impl<const D: usize> Hand<D> {
 
     /// The constant push [N].
     #[must_use]
-    pub fn push(&self) -> Vector<f64, D> {
+    pub fn push(&self) -> Vector<f64, 3> {
         self.push
     }
 }

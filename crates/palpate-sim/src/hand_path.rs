@@ -39,25 +39,25 @@ pub enum Interpolation {
 /// # fn main() -> Result<(), palpate_sim::SimulationError> {
 /// let path = HandPath::new(
 ///     vec![0.0, 1.0, 3.0],
-///     vec![Vector([0.0, 0.0]), Vector([2.0, 0.0]), Vector([2.0, 4.0])],
+///     vec![Vector([0.0, 0.0, 0.0]), Vector([2.0, 0.0, 0.0]), Vector([2.0, 4.0, 0.0])],
 ///     Interpolation::Linear,
 /// )?;
 /// let state = path.state_at(2.0);
-/// assert_eq!(state.position, Vector([2.0, 2.0]));
-/// assert_eq!(state.velocity, Vector([0.0, 2.0]));
+/// assert_eq!(state.position, Vector([2.0, 2.0, 0.0]));
+/// assert_eq!(state.velocity, Vector([0.0, 2.0, 0.0]));
 /// assert_eq!(path.duration(), 3.0);
 /// # Ok(())
 /// # }
 /// ```
 #[derive(Clone, Debug, PartialEq)]
-pub struct HandPath<const D: usize> {
+pub struct HandPath {
     times: Vec<f64>,
-    positions: Vec<Point<D>>,
-    velocities: Vec<Vector<f64, D>>,
+    positions: Vec<Point<3>>,
+    velocities: Vec<Vector<f64, 3>>,
     interpolation: Interpolation,
 }
 
-impl<const D: usize> HandPath<D> {
+impl HandPath {
     /// The path through `positions` [m] at `times` [s].
     ///
     /// # Errors
@@ -67,7 +67,7 @@ impl<const D: usize> HandPath<D> {
     #[inline(never)]
     pub fn new(
         times: Vec<f64>,
-        positions: Vec<Point<D>>,
+        positions: Vec<Point<3>>,
         interpolation: Interpolation,
     ) -> Result<Self, SimulationError> {
         let (count, paired) = (times.len(), positions.len());
@@ -108,7 +108,7 @@ impl<const D: usize> HandPath<D> {
 
     /// The positions of the samples [m].
     #[must_use]
-    pub fn positions(&self) -> &[Point<D>] {
+    pub fn positions(&self) -> &[Point<3>] {
         &self.positions
     }
 
@@ -135,7 +135,7 @@ impl<const D: usize> HandPath<D> {
     /// Real-time: allocates nothing, takes no lock, cannot panic; a binary search.
     #[must_use]
     #[inline(never)]
-    pub fn state_at(&self, time: f64) -> PointState<D> {
+    pub fn state_at(&self, time: f64) -> PointState {
         let last = self.times.len() - 1;
         let after = self.times.partition_point(|t| *t <= time);
         if after == 0 {
@@ -166,7 +166,7 @@ impl<const D: usize> HandPath<D> {
     /// # Errors
     ///
     /// [`SimulationError::SampleNotFinite`] if the map leads beyond any scene.
-    pub fn mapped(&self, map: impl Fn(Point<D>) -> Point<D>) -> Result<Self, SimulationError> {
+    pub fn mapped(&self, map: impl Fn(Point<3>) -> Point<3>) -> Result<Self, SimulationError> {
         let positions: Vec<_> = self.positions.iter().map(|point| map(*point)).collect();
         let mut mapped = Self::new(self.times.clone(), positions, self.interpolation)?;
         // A path is monotone along the axes in which it was made, which the map may turn: its
@@ -189,16 +189,16 @@ impl<const D: usize> HandPath<D> {
 /// ```text
 /// p = from + u s + u² (3w − 2s − e) + u³ (s + e − 2w)
 /// ```
-struct Cubic<const D: usize> {
-    from: Point<D>,
-    way: Vector<f64, D>,
-    start: Vector<f64, D>,
-    end: Vector<f64, D>,
+struct Cubic {
+    from: Point<3>,
+    way: Vector<f64, 3>,
+    start: Vector<f64, 3>,
+    end: Vector<f64, 3>,
 }
 
-impl<const D: usize> Cubic<D> {
+impl Cubic {
     /// Position and velocity at the part `u` of its time `span` [s].
-    fn at(&self, u: f64, span: f64) -> PointState<D> {
+    fn at(&self, u: f64, span: f64) -> PointState {
         let Self { from, way, start, end } = *self;
         let square = way * 3.0 - start * 2.0 - end;
         let cube = start + end - way * 2.0;
@@ -210,10 +210,7 @@ impl<const D: usize> Cubic<D> {
 
 /// At each sample the slope of the parabola through it and its neighbours; zero at both ends,
 /// where the hand rests.
-fn bessel_tangents<const D: usize>(
-    times: &[f64],
-    positions: &[Point<D>],
-) -> Vec<Vector<f64, D>> {
+fn bessel_tangents(times: &[f64], positions: &[Point<3>]) -> Vec<Vector<f64, 3>> {
     let mut tangents = vec![Vector::ZERO; times.len()];
     for i in 1..times.len() - 1 {
         let (left, right) = (times[i] - times[i - 1], times[i + 1] - times[i]);
@@ -229,11 +226,7 @@ fn bessel_tangents<const D: usize>(
 ///
 /// With the tangents `a d` and `b d` at the ends of a piece of slope `d`, the square
 /// `0 ≤ a, b ≤ 3` is enough: it is part of the region of Fritsch and Carlson (1980, section 3).
-fn make_monotone<const D: usize>(
-    tangents: &mut [Vector<f64, D>],
-    times: &[f64],
-    positions: &[Point<D>],
-) {
+fn make_monotone(tangents: &mut [Vector<f64, 3>], times: &[f64], positions: &[Point<3>]) {
     const STEEPEST: f64 = 3.0;
     let slope = |from: usize, axis: usize| {
         (positions[from + 1][axis] - positions[from][axis]) / (times[from + 1] - times[from])
@@ -252,8 +245,8 @@ fn make_monotone<const D: usize>(
 mod tests {
     use super::*;
 
-    fn path(times: &[f64], xs: &[f64]) -> Result<HandPath<2>, SimulationError> {
-        let positions = xs.iter().map(|x| Vector([*x, 0.0])).collect();
+    fn path(times: &[f64], xs: &[f64]) -> Result<HandPath, SimulationError> {
+        let positions = xs.iter().map(|x| Vector([*x, 0.0, 0.0])).collect();
         HandPath::new(times.to_vec(), positions, Interpolation::Smooth)
     }
 
@@ -275,11 +268,14 @@ mod tests {
         let times = [0.0, 1.0, 2.0, 4.0];
         let path = path(&times, &times.map(|t| t * t)).unwrap();
         let state = path.state_at(1.5);
-        assert_eq!((state.position, state.velocity), (Vector([2.25, 0.0]), Vector([3.0, 0.0])));
+        assert_eq!(
+            (state.position, state.velocity),
+            (Vector([2.25, 0.0, 0.0]), Vector([3.0, 0.0, 0.0]))
+        );
     }
 
-    fn monotone(times: &[f64], xs: &[f64]) -> HandPath<2> {
-        let positions = xs.iter().map(|x| Vector([*x, -2.0 * x])).collect();
+    fn monotone(times: &[f64], xs: &[f64]) -> HandPath {
+        let positions = xs.iter().map(|x| Vector([*x, -2.0 * x, 0.0])).collect();
         HandPath::new(times.to_vec(), positions, Interpolation::Monotone).unwrap()
     }
 
@@ -315,7 +311,7 @@ mod tests {
                 for step in 0..=50 {
                     let part = f64::from(step) / 50.0;
                     let time = times[i] + (times[i + 1] - times[i]) * part;
-                    let Vector([x, y]) = path.state_at(time).position;
+                    let Vector([x, y, _]) = path.state_at(time).position;
                     assert!(
                         (least..=most).contains(&x),
                         "seed {seed}, {time} s: {x} of {pair:?}"
@@ -361,12 +357,12 @@ mod tests {
     #[test]
     fn a_path_that_is_mapped_is_the_same_path() {
         let (times, xs) = irregular(7);
-        let turn = palpate_field::Rotation::from_angle(0.7).unwrap();
-        let map = |point: Point<2>| turn.rotate(point) * 0.25 + Vector([1.0, -2.0]);
+        let turn = palpate_field::Rotation::from_angle(0.7).unwrap().in_space();
+        let map = |point: Point<3>| turn.rotate(point) * 0.25 + Vector([1.0, -2.0, 0.0]);
         for interpolation in
             [Interpolation::Linear, Interpolation::Smooth, Interpolation::Monotone]
         {
-            let positions = xs.iter().map(|x| Vector([*x, x * x])).collect();
+            let positions = xs.iter().map(|x| Vector([*x, x * x, 0.0])).collect();
             let path = HandPath::new(times.clone(), positions, interpolation).unwrap();
             let mapped = path.mapped(map).unwrap();
             for i in 0..200 {
@@ -382,9 +378,9 @@ mod tests {
     #[test]
     fn a_hand_rests_before_and_after_its_path() {
         let path = path(&[1.0, 2.0], &[3.0, 5.0]).unwrap();
-        assert_eq!(path.state_at(0.0), PointState::at_rest(Vector([3.0, 0.0])));
-        assert_eq!(path.state_at(9.0), PointState::at_rest(Vector([5.0, 0.0])));
-        assert_eq!(path.state_at(2.0), PointState::at_rest(Vector([5.0, 0.0])));
+        assert_eq!(path.state_at(0.0), PointState::at_rest(Vector([3.0, 0.0, 0.0])));
+        assert_eq!(path.state_at(9.0), PointState::at_rest(Vector([5.0, 0.0, 0.0])));
+        assert_eq!(path.state_at(2.0), PointState::at_rest(Vector([5.0, 0.0, 0.0])));
     }
 
     #[test]

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! Compiles devices and hands in this crate, for the plane and for space.
+//! Compiles devices and hands in this crate.
 //! [`compile`] says why.
 
 use palpate_device::Device;
@@ -9,28 +9,24 @@ use palpate_field::compile;
 
 use crate::{Glove, HandPath, RecordedDevice, SimulatedDevice, SteeredDevice, Tour, identify};
 
-fn in_dimension<const D: usize>() {
-    compile![
-        HandPath::<D>::new,
-        HandPath::<D>::state_at,
-        Tour::<D>::new,
-        Tour::<D>::over,
-        Tour::<D>::over_each,
-        SimulatedDevice::<D>::new,
-        <SimulatedDevice<D> as Device<D>>::read,
-        SteeredDevice::<D>::new,
-        <SteeredDevice<D> as Device<D>>::read,
-        RecordedDevice::<D>::new,
-        Glove::<D>::new,
-        Glove::<D>::from_hand,
-        identify::<D>,
-    ];
-}
-
 /// Never called. It names functions so that this crate compiles them.
 #[doc(hidden)]
 #[inline(never)]
 pub fn instances() {
-    in_dimension::<2>();
-    in_dimension::<3>();
+    compile![
+        HandPath::new,
+        HandPath::state_at,
+        Tour::new::<2>,
+        Tour::new::<3>,
+        Tour::over,
+        Tour::over_each,
+        SimulatedDevice::new,
+        <SimulatedDevice as Device>::read,
+        SteeredDevice::new,
+        <SteeredDevice as Device>::read,
+        RecordedDevice::new,
+        Glove::new,
+        Glove::from_hand,
+        identify,
+    ];
 }

@@ -26,15 +26,15 @@
 //! use palpate_sim::{Hand, SimulatedDevice};
 //!
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
-//! let hand = Hand::resting(Vector([0.0, 0.01]))?
+//! let hand = Hand::resting(Vector([0.0, 0.01, 0.0]))?
 //!     .with_spring(0.0, 5.0)?
-//!     .with_push(Vector([0.0, -1.0]))?;
+//!     .with_push(Vector([0.0, -1.0, 0.0]))?;
 //! let mut device = SimulatedDevice::new(profile_named("omega")?, vec![hand])?;
 //! let mut points = [PointState::at_rest(Vector::ZERO)];
 //! for tick in 0..2000 {
 //!     device.read(1e-3 * f64::from(tick), &mut points)?;
 //!     let depth = (-points[0].position[1]).max(0.0);
-//!     device.write(&[Vector([0.0, 1000.0 * depth])])?;
+//!     device.write(&[Vector([0.0, 1000.0 * depth, 0.0])])?;
 //! }
 //! let force = -1000.0 * points[0].position[1];
 //! assert!((force - 1.0).abs() < device.profile().friction + 0.05);

@@ -34,13 +34,13 @@ use palpate_device::{
 /// # }
 /// ```
 #[derive(Clone, Debug)]
-pub struct RecordedDevice<const D: usize> {
-    paths: Vec<HandPath<D>>,
-    forces: Vec<Vector<f64, D>>,
+pub struct RecordedDevice {
+    paths: Vec<HandPath>,
+    forces: Vec<Vector<f64, 3>>,
     profile: DeviceProfile,
     /// The path of orientations; `None` for a device without rotation.
-    turns: Option<HandPath<3>>,
-    turn: Option<TurnState<D>>,
+    turns: Option<HandPath>,
+    turn: Option<TurnState>,
     torque: Vector<f64, 3>,
 }
 
@@ -48,14 +48,14 @@ pub struct RecordedDevice<const D: usize> {
 /// that rounding does not matter.
 const INSTANT: f64 = 1e-6;
 
-impl<const D: usize> RecordedDevice<D> {
+impl RecordedDevice {
     /// A device with one contact point for each path.
     ///
     /// # Errors
     ///
     /// [`DeviceError::NoContactPoint`] if there are no paths.
     #[inline(never)]
-    pub fn new(paths: Vec<HandPath<D>>) -> Result<Self, SimulationError> {
+    pub fn new(paths: Vec<HandPath>) -> Result<Self, SimulationError> {
         if paths.is_empty() {
             return Err(DeviceError::NoContactPoint.into());
         }
@@ -66,27 +66,28 @@ impl<const D: usize> RecordedDevice<D> {
     }
 
     /// This device with a path of orientations: rotation vectors [rad] relative to the device's
-    /// own axes; in the plane along z.
+    /// own axes.
     ///
     /// ```
-    /// use palpate_field::Vector;
+    /// use palpate_field::{Rotation, Vector};
     /// use palpate_device::{Device, PointState};
     /// use palpate_sim::{HandPath, Interpolation, RecordedDevice};
     ///
     /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
-    /// let rest = HandPath::new(vec![0.0, 2.0], vec![Vector([0.0, 0.0]); 2], Interpolation::Linear)?;
+    /// let rest = HandPath::new(vec![0.0, 2.0], vec![Vector([0.0, 0.0, 0.0]); 2], Interpolation::Linear)?;
     /// let turns = vec![Vector([0.0; 3]), Vector([0.0, 0.0, 1.0])];
     /// let turns = HandPath::new(vec![0.0, 2.0], turns, Interpolation::Linear)?;
     /// let mut device = RecordedDevice::new(vec![rest])?.with_turns(turns);
     /// device.read(1.0, &mut [PointState::at_rest(Vector::ZERO)])?;
     /// let turn = device.read_turn()?.ok_or("it turns")?;
-    /// assert!((turn.orientation.angle() - 0.5).abs() < 1e-15);
+    /// let turned = Rotation::identity().turn_to(&turn.orientation);
+    /// assert!((turned - Vector([0.0, 0.0, 0.5])).norm() < 1e-15);
     /// assert!((turn.angular_velocity - Vector([0.0, 0.0, 0.5])).norm() < 1e-9);
     /// # Ok(())
     /// # }
     /// ```
     #[must_use]
-    pub fn with_turns(self, turns: HandPath<3>) -> Self {
+    pub fn with_turns(self, turns: HandPath) -> Self {
         Self { turns: Some(turns), ..self }
     }
 
@@ -98,7 +99,7 @@ impl<const D: usize> RecordedDevice<D> {
 
     /// The forces written last [N].
     #[must_use]
-    pub fn forces(&self) -> &[Vector<f64, D>] {
+    pub fn forces(&self) -> &[Vector<f64, 3>] {
         &self.forces
     }
 
@@ -115,7 +116,7 @@ impl<const D: usize> RecordedDevice<D> {
     }
 }
 
-impl<const D: usize> Device<D> for RecordedDevice<D> {
+impl Device for RecordedDevice {
     fn points(&self) -> usize {
         self.paths.len()
     }
@@ -124,7 +125,7 @@ impl<const D: usize> Device<D> for RecordedDevice<D> {
         &self.profile
     }
 
-    fn read(&mut self, time: f64, points: &mut [PointState<D>]) -> Result<Reading, DeviceLost> {
+    fn read(&mut self, time: f64, points: &mut [PointState]) -> Result<Reading, DeviceLost> {
         for (point, path) in points.iter_mut().zip(&self.paths) {
             *point = path.state_at(time);
         }
@@ -137,14 +138,14 @@ impl<const D: usize> Device<D> for RecordedDevice<D> {
         Ok(Reading::Fresh { time })
     }
 
-    fn write(&mut self, forces: &[Vector<f64, D>]) -> Result<(), DeviceLost> {
+    fn write(&mut self, forces: &[Vector<f64, 3>]) -> Result<(), DeviceLost> {
         for (kept, force) in self.forces.iter_mut().zip(forces) {
             *kept = *force;
         }
         Ok(())
     }
 
-    fn read_turn(&mut self) -> Result<Option<TurnState<D>>, DeviceLost> {
+    fn read_turn(&mut self) -> Result<Option<TurnState>, DeviceLost> {
         Ok(self.turn)
     }
 

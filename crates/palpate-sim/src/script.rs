@@ -17,7 +17,7 @@ pub(crate) struct Script {
     /// The buttons that are down from a time on [s], in order of time.
     buttons: Vec<(f64, Buttons)>,
     /// The opening of the gripper [m].
-    pub(crate) gripper: Option<HandPath<1>>,
+    pub(crate) gripper: Option<HandPath>,
 }
 
 impl Script {
@@ -55,7 +55,7 @@ impl Script {
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     pub(crate) fn gripper(&self, time: f64) -> Option<GripperState> {
-        let PointState { position: Vector([opening]), velocity: Vector([velocity]) } =
+        let PointState { position: Vector([opening, ..]), velocity: Vector([velocity, ..]) } =
             self.gripper.as_ref()?.state_at(time);
         Some(GripperState { opening, velocity })
     }
@@ -110,15 +110,15 @@ mod tests {
     fn buttons_and_gripper_follow_their_script() {
         let gripper = HandPath::new(
             vec![0.0, 2.0],
-            vec![Vector([0.0]), Vector([0.02])],
+            vec![Vector::ZERO, Vector([0.02, 0.0, 0.0])],
             Interpolation::Linear,
         );
         let limits = GripperProfile::new(0.025, 8.0);
         let profile =
             DeviceProfile { mass: 0.1, least_damping: 0.5, ..DeviceProfile::unlimited("test") };
         let profile = DeviceProfile { friction: 0.0, gripper: Some(limits), ..profile };
-        let hand = Hand::resting(Vector([0.0, 0.0])).unwrap();
-        let device = SimulatedDevice::<2>::new(profile, vec![hand]).unwrap();
+        let hand = Hand::resting(Vector([0.0, 0.0, 0.0])).unwrap();
+        let device = SimulatedDevice::new(profile, vec![hand]).unwrap();
         let device = device.with_gripper(gripper.unwrap());
         let (one, two) = (Buttons::NONE.with(1), Buttons::NONE.with(1).with(4));
         let mut device = device.with_buttons(vec![(0.5, one), (1.0, two)]).unwrap();

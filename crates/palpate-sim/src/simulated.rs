@@ -31,7 +31,7 @@ const SHORTEST: f64 = 1e-9;
 /// places at the two reads; sticking and breakaway within that time are found. A read gives the
 /// position in whole encoder steps.
 ///
-/// The axes move independently, so friction acts on each axis: `f_c` along an axis, up to `√D
+/// The axes move independently, so friction acts on each axis: `f_c` along an axis, up to `√3
 /// f_c` diagonally, as in a machine with one drive per axis.
 ///
 /// The velocity read is the difference of the last two positions read, over the time between
@@ -64,24 +64,24 @@ const SHORTEST: f64 = 1e-9;
 ///     friction: 0.0,
 ///     ..DeviceProfile::unlimited("ideal")
 /// };
-/// let hand = Hand::resting(Vector([0.0, 3.0]))?.with_mass(0.0)?.with_spring(0.0, 0.0)?;
-/// let hand = hand.with_push(Vector([0.0, -1.0]))?;
+/// let hand = Hand::resting(Vector([0.0, 3.0, 0.0]))?.with_mass(0.0)?.with_spring(0.0, 0.0)?;
+/// let hand = hand.with_push(Vector([0.0, -1.0, 0.0]))?;
 /// let mut device = SimulatedDevice::new(ideal, vec![hand])?;
 /// let mut points = [PointState::at_rest(Vector::ZERO)];
 /// device.read(0.0, &mut points)?;
 /// device.read(0.5, &mut points)?;
-/// assert_eq!(points[0].position, Vector([0.0, 2.75])); // −½ (1 N / 0.5 kg) (0.5 s)²
+/// assert_eq!(points[0].position, Vector([0.0, 2.75, 0.0])); // −½ (1 N / 0.5 kg) (0.5 s)²
 /// assert_eq!(device.kinetic_energy(), 0.25); // that of the push over 0.25 m
 /// assert_eq!(device.energy_given(), 0.0);
 /// # Ok(())
 /// # }
 /// ```
 #[derive(Clone, Debug)]
-pub struct SimulatedDevice<const D: usize> {
+pub struct SimulatedDevice {
     profile: DeviceProfile,
-    points: Vec<SimulatedPoint<D>>,
+    points: Vec<SimulatedPoint>,
     /// The rotation; `None` for a device without it.
-    turning: Option<Turning<D>>,
+    turning: Option<Turning>,
     /// The time of the last read [s].
     time: Option<f64>,
     script: Script,
@@ -91,22 +91,22 @@ pub struct SimulatedDevice<const D: usize> {
 }
 
 #[derive(Clone, Debug)]
-struct SimulatedPoint<const D: usize> {
-    hand: Hand<D>,
+struct SimulatedPoint {
+    hand: Hand,
     body: Body,
-    axes: [Axis; D],
+    axes: [Axis; 3],
     /// The force held [N].
-    force: Vector<f64, D>,
+    force: Vector<f64, 3>,
     /// The last reading.
-    reading: PointState<D>,
+    reading: PointState,
     /// The hand's target at the last read [m].
-    target: Point<D>,
+    target: Point<3>,
     /// Where the hand wants to be instead of on its path [m].
-    aim: Option<Point<D>>,
+    aim: Option<Point<3>>,
     energies: Energies,
 }
 
-impl<const D: usize> SimulatedDevice<D> {
+impl SimulatedDevice {
     /// A device with one contact point for each hand.
     ///
     /// # Errors
@@ -117,7 +117,7 @@ impl<const D: usize> SimulatedDevice<D> {
     /// M)` of both together, with the damping `c`, stiffness `k` and mass `M`, is more than 1e4
     /// / s; the same rules hold for rotation.
     #[inline(never)]
-    pub fn new(profile: DeviceProfile, hands: Vec<Hand<D>>) -> Result<Self, SimulationError> {
+    pub fn new(profile: DeviceProfile, hands: Vec<Hand>) -> Result<Self, SimulationError> {
         if hands.is_empty() {
             return Err(DeviceError::NoContactPoint.into());
         }
@@ -141,7 +141,7 @@ impl<const D: usize> SimulatedDevice<D> {
             Ok(SimulatedPoint {
                 hand,
                 body,
-                axes: [Axis { position: 0.0, velocity: 0.0 }; D],
+                axes: [Axis { position: 0.0, velocity: 0.0 }; 3],
                 force: Vector::ZERO,
                 reading: PointState::at_rest(Vector::ZERO),
                 target: Vector::ZERO,
@@ -168,9 +168,9 @@ impl<const D: usize> SimulatedDevice<D> {
         Ok(self)
     }
 
-    /// This device with a gripper that opens as `path` says [m], whatever the force on the fingers.
+    /// This device with a gripper that opens as `path` says along x [m], whatever the force on the fingers.
     #[must_use]
-    pub fn with_gripper(mut self, path: HandPath<1>) -> Self {
+    pub fn with_gripper(mut self, path: HandPath) -> Self {
         self.script.gripper = Some(path);
         self
     }
@@ -224,28 +224,28 @@ impl<const D: usize> SimulatedDevice<D> {
     }
 
     /// Where the hands want to be at first [m].
-    pub(crate) fn start_places(&self) -> Vec<Point<D>> {
+    pub(crate) fn start_places(&self) -> Vec<Point<3>> {
         self.points.iter().map(|point| point.wanted(0.0)).collect()
     }
 
     /// Lets a hand want to be at `place` [m] from now on, whatever its path.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
-    pub(crate) fn aim(&mut self, hand: usize, place: Point<D>) {
+    pub(crate) fn aim(&mut self, hand: usize, place: Point<3>) {
         if let Some(point) = self.points.get_mut(hand) {
             point.aim = Some(place);
         }
     }
 
     /// The true state of each contact point, without encoder steps.
-    pub fn states(&self) -> impl Iterator<Item = PointState<D>> {
+    pub fn states(&self) -> impl Iterator<Item = PointState> {
         self.points.iter().map(SimulatedPoint::state)
     }
 
     /// The true orientation and angular velocity, without encoder steps; `None` for a device
     /// without rotation.
     #[must_use]
-    pub fn turn(&self) -> Option<TurnState<D>> {
+    pub fn turn(&self) -> Option<TurnState> {
         self.turning.as_ref().map(Turning::state)
     }
 
@@ -256,7 +256,7 @@ impl<const D: usize> SimulatedDevice<D> {
     }
 
     /// The held forces [N]: the last ones written, clamped to the largest.
-    pub fn forces(&self) -> impl Iterator<Item = Vector<f64, D>> {
+    pub fn forces(&self) -> impl Iterator<Item = Vector<f64, 3>> {
         self.points.iter().map(|point| point.force)
     }
 
@@ -298,7 +298,7 @@ impl<const D: usize> SimulatedDevice<D> {
     /// The kinetic energy of device and hands, `∑ ½ M v² + ½ I ω²` [J].
     #[must_use]
     pub fn kinetic_energy(&self) -> f64 {
-        let of = |point: &SimulatedPoint<D>| {
+        let of = |point: &SimulatedPoint| {
             let velocity = point.state().velocity;
             0.5 * point.body.mass() * velocity.dot(velocity)
         };
@@ -307,8 +307,8 @@ impl<const D: usize> SimulatedDevice<D> {
     }
 }
 
-impl<const D: usize> SimulatedPoint<D> {
-    fn state(&self) -> PointState<D> {
+impl SimulatedPoint {
+    fn state(&self) -> PointState {
         PointState {
             position: Vector(self.axes.map(|axis| axis.position)),
             velocity: Vector(self.axes.map(|axis| axis.velocity)),
@@ -316,7 +316,7 @@ impl<const D: usize> SimulatedPoint<D> {
     }
 
     /// Where the hand wants to be at a time [s].
-    fn wanted(&self, time: f64) -> Point<D> {
+    fn wanted(&self, time: f64) -> Point<3> {
         self.aim.unwrap_or_else(|| self.hand.path().state_at(time).position)
     }
 
@@ -351,7 +351,7 @@ impl<const D: usize> SimulatedPoint<D> {
     }
 
     /// The position in whole steps of the encoder.
-    fn encoded(&self, step: f64) -> Point<D> {
+    fn encoded(&self, step: f64) -> Point<3> {
         let position = self.state().position;
         if step > 0.0 {
             Vector(position.0.map(|x| (x / step).round() * step))
@@ -361,7 +361,7 @@ impl<const D: usize> SimulatedPoint<D> {
     }
 }
 
-impl<const D: usize> Device<D> for SimulatedDevice<D> {
+impl Device for SimulatedDevice {
     fn points(&self) -> usize {
         self.points.len()
     }
@@ -375,7 +375,7 @@ impl<const D: usize> Device<D> for SimulatedDevice<D> {
     /// more than a tenth of a second, a device with a stiff hand may have stood still for a part
     /// of it.
     #[inline(never)]
-    fn read(&mut self, time: f64, points: &mut [PointState<D>]) -> Result<Reading, DeviceLost> {
+    fn read(&mut self, time: f64, points: &mut [PointState]) -> Result<Reading, DeviceLost> {
         let encoder_step = self.profile.encoder_step;
         let mut is_new = true;
         match self.time {
@@ -408,7 +408,7 @@ impl<const D: usize> Device<D> for SimulatedDevice<D> {
 
     /// Real-time: allocates nothing, takes no lock, cannot panic. A force that is not finite
     /// counts as zero.
-    fn write(&mut self, forces: &[Vector<f64, D>]) -> Result<(), DeviceLost> {
+    fn write(&mut self, forces: &[Vector<f64, 3>]) -> Result<(), DeviceLost> {
         for (point, force) in self.points.iter_mut().zip(forces) {
             point.force = limited(*force, self.profile.max_force);
         }
@@ -417,7 +417,7 @@ impl<const D: usize> Device<D> for SimulatedDevice<D> {
     }
 
     /// Real-time: allocates nothing, takes no lock, cannot panic.
-    fn read_turn(&mut self) -> Result<Option<TurnState<D>>, DeviceLost> {
+    fn read_turn(&mut self) -> Result<Option<TurnState>, DeviceLost> {
         Ok(self.turning.as_ref().map(Turning::reading))
     }
 
@@ -444,7 +444,7 @@ impl<const D: usize> Device<D> for SimulatedDevice<D> {
     /// as zero.
     fn write_gripper_force(&mut self, force: f64) -> Result<(), DeviceLost> {
         let most = self.profile.gripper.map_or(0.0, |gripper| gripper.max_force);
-        let Vector([force]) = limited(Vector([force]), most);
+        let Vector([force, ..]) = limited(Vector([force, 0.0, 0.0]), most);
         self.gripper_force = force;
         Ok(())
     }
@@ -467,7 +467,7 @@ impl<const D: usize> Device<D> for SimulatedDevice<D> {
 mod tests {
     use super::*;
 
-    fn resting(encoder_step: f64) -> SimulatedDevice<2> {
+    fn resting(encoder_step: f64) -> SimulatedDevice {
         let profile = DeviceProfile {
             mass: 0.1,
             least_damping: 0.5,
@@ -476,7 +476,7 @@ mod tests {
             encoder_step,
             ..DeviceProfile::unlimited("test")
         };
-        let hand = Hand::resting(Vector([0.010_4, -0.003])).unwrap();
+        let hand = Hand::resting(Vector([0.010_4, -0.003, 0.0])).unwrap();
         SimulatedDevice::new(profile, vec![hand]).unwrap()
     }
 
@@ -484,10 +484,10 @@ mod tests {
     fn forces_are_cut_to_the_largest_and_what_is_none_is_zero() {
         let mut device = resting(0.0);
         for (written, expected) in [
-            ([3.0, -4.0], [1.5, -2.0]),
-            ([0.6, 0.8], [0.6, 0.8]),
-            ([f64::NAN, 1.0], [0.0, 0.0]),
-            ([f64::INFINITY, 1.0], [0.0, 0.0]),
+            ([3.0, -4.0, 0.0], [1.5, -2.0, 0.0]),
+            ([0.6, 0.8, 0.0], [0.6, 0.8, 0.0]),
+            ([f64::NAN, 1.0, 0.0], [0.0; 3]),
+            ([f64::INFINITY, 1.0, 0.0], [0.0; 3]),
         ] {
             device.write(&[Vector(written)]).unwrap();
             assert_eq!(device.forces().next(), Some(Vector(expected)));
@@ -499,8 +499,8 @@ mod tests {
         let mut device = resting(1e-3);
         let mut points = [PointState::at_rest(Vector::ZERO)];
         device.read(0.0, &mut points).unwrap();
-        assert_eq!(points[0], PointState::at_rest(Vector([10.0 * 1e-3, -3.0 * 1e-3])));
-        device.write(&[Vector([2.0, 0.0])]).unwrap();
+        assert_eq!(points[0], PointState::at_rest(Vector([10.0 * 1e-3, -3.0 * 1e-3, 0.0])));
+        device.write(&[Vector([2.0, 0.0, 0.0])]).unwrap();
         let mut last = points[0].position;
         for tick in 1..=100 {
             device.read(0.001 * f64::from(tick), &mut points).unwrap();
@@ -521,7 +521,7 @@ mod tests {
         let mut points = [PointState::at_rest(Vector::ZERO)];
         device.read(f64::NAN, &mut points).unwrap();
         assert!(points[0].is_finite());
-        device.write(&[Vector([2.0, 0.0])]).unwrap();
+        device.write(&[Vector([2.0, 0.0, 0.0])]).unwrap();
         for time in [0.0, 0.1] {
             device.read(time, &mut points).unwrap();
         }
@@ -536,12 +536,12 @@ mod tests {
 
     #[test]
     fn wrong_profiles_are_refused_with_their_numbers() {
-        let hand = || vec![Hand::resting(Vector([0.0, 0.0])).unwrap()];
+        let hand = || vec![Hand::resting(Vector([0.0, 0.0, 0.0])).unwrap()];
         let profile = resting(0.0).profile;
         let error = |profile: DeviceProfile| {
             SimulatedDevice::new(profile, hand()).unwrap_err().to_string()
         };
-        let none = SimulatedDevice::<2>::new(profile.clone(), Vec::new());
+        let none = SimulatedDevice::new(profile.clone(), Vec::new());
         assert_eq!(none.unwrap_err(), DeviceError::NoContactPoint.into());
         let unlimited = error(DeviceProfile::unlimited("x"));
         assert_eq!(unlimited, "least_damping must be zero or more and finite, got inf N·s/m");
@@ -559,18 +559,19 @@ mod tests {
         // A force of 1 N against a push of 1 N, on 0.1 kg without damping.
         let profile =
             DeviceProfile { mass: 0.1, least_damping: 0.0, ..DeviceProfile::unlimited("test") };
-        let hand = Hand::resting(Vector([0.0, 0.0])).unwrap().with_spring(0.0, 0.0).unwrap();
-        let hand = hand.with_mass(0.0).unwrap().with_push(Vector([0.0, -1.0])).unwrap();
+        let hand =
+            Hand::resting(Vector([0.0, 0.0, 0.0])).unwrap().with_spring(0.0, 0.0).unwrap();
+        let hand = hand.with_mass(0.0).unwrap().with_push(Vector([0.0, -1.0, 0.0])).unwrap();
         let profile = DeviceProfile { friction: 0.0, ..profile };
         let mut device = SimulatedDevice::new(profile, vec![hand]).unwrap();
         let asked = Duration::from_millis(30);
         assert_eq!(device.set_watchdog(asked).unwrap(), Some(asked));
         let mut points = [PointState::at_rest(Vector::ZERO)];
         device.read(0.0, &mut points).unwrap();
-        device.write(&[Vector([0.0, 1.0])]).unwrap();
+        device.write(&[Vector([0.0, 1.0, 0.0])]).unwrap();
         device.read(0.03, &mut points).unwrap();
         assert_eq!((points[0].position, device.watchdog_trips()), (Vector::ZERO, 0));
-        device.write(&[Vector([0.0, 1.0])]).unwrap();
+        device.write(&[Vector([0.0, 1.0, 0.0])]).unwrap();
         device.read(0.08, &mut points).unwrap();
         // Free for 20 of 50 ms: −½ (1 N / 0.1 kg) (20 ms)², a mean of −40 mm/s.
         assert!((points[0].position[1] + 0.002).abs() < 1e-12, "{points:?}");

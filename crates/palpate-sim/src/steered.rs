@@ -55,10 +55,10 @@ const FIRST_WAY: f64 = 1.0 / 60.0;
 /// # }
 /// ```
 #[derive(Debug)]
-pub struct SteeredDevice<const D: usize> {
-    device: SimulatedDevice<D>,
-    targets: LatestReader<Vec<Point<D>>>,
-    ways: Vec<Way<D>>,
+pub struct SteeredDevice {
+    device: SimulatedDevice,
+    targets: LatestReader<Vec<Point<3>>>,
+    ways: Vec<Way>,
     max_speed: f64,
     /// The time of the last read [s].
     time: Option<f64>,
@@ -66,18 +66,18 @@ pub struct SteeredDevice<const D: usize> {
 
 /// The straight way of a hand to its target.
 #[derive(Clone, Copy, Debug)]
-struct Way<const D: usize> {
-    from: Point<D>,
-    to: Point<D>,
+struct Way {
+    from: Point<3>,
+    to: Point<3>,
     /// When it began [s].
     start: f64,
     /// How long it takes [s].
     duration: f64,
     /// Where the hand is on it.
-    at: Point<D>,
+    at: Point<3>,
 }
 
-impl<const D: usize> Way<D> {
+impl Way {
     /// Goes on from the time `last` to `time` [s], by at most `max_speed` [m/s].
     fn go(&mut self, last: f64, time: f64, max_speed: f64) {
         let part = ((time - self.start) / self.duration).clamp(0.0, 1.0);
@@ -95,12 +95,12 @@ impl<const D: usize> Way<D> {
 
 /// Leads the hands of a [`SteeredDevice`], from any thread; the servo never waits for it.
 #[derive(Debug)]
-pub struct Steering<const D: usize> {
-    targets: LatestWriter<Vec<Point<D>>>,
+pub struct Steering {
+    targets: LatestWriter<Vec<Point<3>>>,
     hands: usize,
 }
 
-impl<const D: usize> Steering<D> {
+impl Steering {
     /// Leads each hand to a target [m], in the coordinates of the device.
     ///
     /// # Errors
@@ -109,7 +109,7 @@ impl<const D: usize> Steering<D> {
     /// [`SimulationError::TargetNotFinite`] if one is not finite. No hand is led anywhere then.
     pub fn steer(
         &mut self,
-        targets: &[impl Into<Point<D>> + Copy],
+        targets: &[impl Into<Point<3>> + Copy],
     ) -> Result<(), SimulationError> {
         if targets.len() != self.hands {
             let (items, given) = ("targets", targets.len());
@@ -126,7 +126,7 @@ impl<const D: usize> Steering<D> {
     }
 }
 
-impl<const D: usize> SteeredDevice<D> {
+impl SteeredDevice {
     /// A device whose hands rest where those of `device` begin, until they are led elsewhere by
     /// at most `max_speed` [m/s]; and what leads them.
     ///
@@ -135,9 +135,9 @@ impl<const D: usize> SteeredDevice<D> {
     /// [`SimulationError::Number`] if the speed is not positive.
     #[inline(never)]
     pub fn new(
-        mut device: SimulatedDevice<D>,
+        mut device: SimulatedDevice,
         max_speed: f64,
-    ) -> Result<(Self, Steering<D>), SimulationError> {
+    ) -> Result<(Self, Steering), SimulationError> {
         let max_speed = NumberError::check_positive("max_speed", max_speed, "m/s")?;
         let places = device.start_places();
         let ways = places.iter().map(|at| {
@@ -156,17 +156,17 @@ impl<const D: usize> SteeredDevice<D> {
 
     /// The simulated device.
     #[must_use]
-    pub fn simulated(&self) -> &SimulatedDevice<D> {
+    pub fn simulated(&self) -> &SimulatedDevice {
         &self.device
     }
 
     /// Where each hand is led at the moment [m].
-    pub fn hands(&self) -> impl Iterator<Item = Point<D>> {
+    pub fn hands(&self) -> impl Iterator<Item = Point<3>> {
         self.ways.iter().map(|way| way.at)
     }
 }
 
-impl<const D: usize> Device<D> for SteeredDevice<D> {
+impl Device for SteeredDevice {
     fn points(&self) -> usize {
         self.device.points()
     }
@@ -177,7 +177,7 @@ impl<const D: usize> Device<D> for SteeredDevice<D> {
 
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     #[inline(never)]
-    fn read(&mut self, time: f64, points: &mut [PointState<D>]) -> Result<Reading, DeviceLost> {
+    fn read(&mut self, time: f64, points: &mut [PointState]) -> Result<Reading, DeviceLost> {
         let last = self.time.replace(time).unwrap_or(time);
         if let Some(targets) = self.targets.latest() {
             for (way, target) in self.ways.iter_mut().zip(targets) {
@@ -196,11 +196,11 @@ impl<const D: usize> Device<D> for SteeredDevice<D> {
         self.device.read(time, points)
     }
 
-    fn write(&mut self, forces: &[Vector<f64, D>]) -> Result<(), DeviceLost> {
+    fn write(&mut self, forces: &[Vector<f64, 3>]) -> Result<(), DeviceLost> {
         self.device.write(forces)
     }
 
-    fn read_turn(&mut self) -> Result<Option<TurnState<D>>, DeviceLost> {
+    fn read_turn(&mut self) -> Result<Option<TurnState>, DeviceLost> {
         self.device.read_turn()
     }
 
@@ -234,15 +234,15 @@ mod tests {
     use super::*;
     use crate::hand::Hand;
 
-    fn steered(max_speed: f64) -> (SteeredDevice<2>, Steering<2>) {
+    fn steered(max_speed: f64) -> (SteeredDevice, Steering) {
         let profile = DeviceProfile { friction: 0.0, ..DeviceProfile::unlimited("ideal") };
         let profile = DeviceProfile { mass: 0.1, least_damping: 1.0, ..profile };
-        let hand = Hand::resting(Vector([1.0, 0.0])).unwrap();
+        let hand = Hand::resting(Vector([1.0, 0.0, 0.0])).unwrap();
         let device = SimulatedDevice::new(profile, vec![hand]).unwrap();
         SteeredDevice::new(device, max_speed).unwrap()
     }
 
-    fn hand_at(device: &mut SteeredDevice<2>, time: f64) -> f64 {
+    fn hand_at(device: &mut SteeredDevice, time: f64) -> f64 {
         device.read(time, &mut [PointState::at_rest(Vector::ZERO)]).unwrap();
         device.hands().next().unwrap()[0]
     }
@@ -251,12 +251,12 @@ mod tests {
     fn a_hand_goes_evenly_to_a_target_over_the_last_interval() {
         let (mut device, mut steering) = steered(100.0);
         assert_eq!(hand_at(&mut device, 0.0), 1.0);
-        steering.steer(&[Vector([2.0, 0.0])]).unwrap();
+        steering.steer(&[Vector([2.0, 0.0, 0.0])]).unwrap();
         assert_eq!(hand_at(&mut device, 1.0), 1.0);
         assert!((hand_at(&mut device, 1.0 + 0.5 / 60.0) - 1.5).abs() < 1e-12);
         // The next comes 0.0625 s after the first, and so takes as long.
         assert_eq!(hand_at(&mut device, 1.0625), 2.0);
-        steering.steer(&[Vector([1.0, 0.0])]).unwrap();
+        steering.steer(&[Vector([1.0, 0.0, 0.0])]).unwrap();
         assert_eq!(hand_at(&mut device, 1.0625), 2.0);
         assert_eq!(hand_at(&mut device, 1.0625 + 0.03125), 1.5);
         assert_eq!(hand_at(&mut device, 1.125), 1.0);
@@ -267,7 +267,7 @@ mod tests {
     fn a_hand_is_no_faster_than_its_largest_speed() {
         let (mut device, mut steering) = steered(0.5);
         hand_at(&mut device, 0.0);
-        steering.steer(&[Vector([2.0, 0.0])]).unwrap();
+        steering.steer(&[Vector([2.0, 0.0, 0.0])]).unwrap();
         let mut last = hand_at(&mut device, 0.0);
         for tick in 1..=4000_u32 {
             let now = hand_at(&mut device, 1e-3 * f64::from(tick));
@@ -280,10 +280,10 @@ mod tests {
     #[test]
     fn what_leads_nowhere_is_refused() {
         let (mut device, mut steering) = steered(1.0);
-        let none: [Point<2>; 0] = [];
+        let none: [Point<3>; 0] = [];
         let error = steering.steer(&none).unwrap_err();
         assert_eq!(error.to_string(), "1 contact points need as many targets, got 0");
-        let error = steering.steer(&[Vector([f64::NAN, 0.0])]).unwrap_err();
+        let error = steering.steer(&[Vector([f64::NAN, 0.0, 0.0])]).unwrap_err();
         assert_eq!(error.to_string(), "target 0 must be finite, got NaN m");
         assert_eq!(hand_at(&mut device, 1.0), 1.0);
         assert!(SteeredDevice::new(device.device.clone(), 0.0).is_err());
@@ -293,11 +293,11 @@ mod tests {
     fn a_device_held_back_parts_from_its_hand() {
         let (mut device, mut steering) = steered(1.0);
         hand_at(&mut device, 0.0);
-        steering.steer(&[Vector([1.1, 0.0])]).unwrap();
+        steering.steer(&[Vector([1.1, 0.0, 0.0])]).unwrap();
         let mut points = [PointState::at_rest(Vector::ZERO)];
         for tick in 1..=2000 {
             device.read(1e-3 * f64::from(tick), &mut points).unwrap();
-            device.write(&[Vector([-6.0, 0.0])]).unwrap();
+            device.write(&[Vector([-6.0, 0.0, 0.0])]).unwrap();
         }
         // 6 N against a grip of 300 N/m: 20 mm.
         assert!((points[0].position[0] - 1.08).abs() < 1e-6, "{points:?}");

@@ -132,8 +132,10 @@ const DOWN: f64 = 0.85;
 /// # }
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Tour<const D: usize> {
-    bounds: Aabb<D>,
+pub struct Tour {
+    bounds: Aabb<3>,
+    /// Whether the hand stays in the plane z = 0, in which the box then lies.
+    is_flat: bool,
     duration: f64,
     size: f64,
     probe_radius: f64,
@@ -143,7 +145,7 @@ pub struct Tour<const D: usize> {
     lag: f64,
 }
 
-impl<const D: usize> Tour<D> {
+impl Tour {
     /// The probe radius of a tour that is given no other [m]: that of a servo's default probe.
     pub const PROBE_RADIUS: f64 = 0.002;
 
@@ -155,12 +157,17 @@ impl<const D: usize> Tour<D> {
     /// radius, so that the force is continuous over every edge. A probe with a radius of at
     /// most 2e-5 of half the diagonal of the box is a point, which is pressed `0.01 s` deep.
     ///
+    /// Over planar bodies, whose box is planar, the hand stays in the plane z = 0.
+    ///
     /// # Errors
     ///
     /// [`SimulationError::Number`] if the duration or the size of the box is not positive and
     /// finite.
     #[inline(never)]
-    pub fn new(bounds: Aabb<D>, duration: f64) -> Result<Self, SimulationError> {
+    pub fn new<const D: usize>(
+        bounds: Aabb<D>,
+        duration: f64,
+    ) -> Result<Self, SimulationError> {
         let edges = bounds.half_extents() * 2.0;
         let size = NumberError::check_positive(
             "size of the box",
@@ -170,7 +177,9 @@ impl<const D: usize> Tour<D> {
         let duration = NumberError::check_positive("duration", duration, "s")?;
         let probe_radius = Self::PROBE_RADIUS;
         let speed = 0.3 * size.sqrt();
-        Ok(Self { bounds, duration, size, probe_radius, depth: None, speed, lag: LAG })
+        let (bounds, is_flat) = (bounds.in_space(), D == 2);
+        let (depth, lag) = (None, LAG);
+        Ok(Self { bounds, is_flat, duration, size, probe_radius, depth, speed, lag })
     }
 
     /// This tour with another probe radius [m]; depths are below the surface offset by it.
@@ -224,7 +233,7 @@ impl<const D: usize> Tour<D> {
     ///
     /// [`SimulationError::NothingToTouch`] if no ray meets a surface.
     #[inline(never)]
-    pub fn over(&self, shape: &Shape<D>) -> Result<HandPath<D>, SimulationError> {
+    pub fn over(&self, shape: &Shape<3>) -> Result<HandPath, SimulationError> {
         // The hand is nearer to the shape than its orbit, so its path is shorter; the second
         // orbit is longer by the same factor.
         let way = self.speed * self.duration;
@@ -237,8 +246,14 @@ impl<const D: usize> Tour<D> {
 
     /// The size of the bodies in the box [m].
     fn grain(&self) -> f64 {
-        let shortest = self.bounds.half_extents().0.into_iter().fold(f64::INFINITY, f64::min);
-        (2.0 * shortest).max(FINEST_GRAIN * self.size)
+        (2.0 * self.shortest()).max(FINEST_GRAIN * self.size)
+    }
+
+    /// The shortest half edge of the box in which the hand moves [m].
+    fn shortest(&self) -> f64 {
+        let dimensions = if self.is_flat { 2 } else { 3 };
+        let half = self.bounds.half_extents().0.into_iter().take(dimensions);
+        half.fold(f64::INFINITY, f64::min)
     }
 
     /// The depth to which the hand presses [m].
@@ -257,11 +272,11 @@ impl<const D: usize> Tour<D> {
     }
 
     /// The path of the hand for an orbit of length `way` [m].
-    fn follow(&self, shape: &Shape<D>, way: f64) -> Result<Route<D>, SimulationError> {
+    fn follow(&self, shape: &Shape<3>, way: f64) -> Result<Route, SimulationError> {
         let count = (way / (STEP * self.detail())).clamp(100.0, MOST_POINTS) as usize;
         let step = way / count as f64;
         let height = ORBIT_HEIGHT * self.size + self.probe_radius;
-        let sights = orbit(&self.bounds, height, step, count)
+        let sights = orbit(&self.bounds, self.is_flat, height, step, count)
             .map(|from| self.look(shape, from))
             .collect();
         self.pressed(shape, sights, step)
@@ -270,10 +285,10 @@ impl<const D: usize> Tour<D> {
     /// The path of the hand over what rays see whose feet are `step` apart [m].
     fn pressed(
         &self,
-        shape: &Shape<D>,
-        mut sights: Vec<Sight<D>>,
+        shape: &Shape<3>,
+        mut sights: Vec<Sight>,
         step: f64,
-    ) -> Result<Route<D>, SimulationError> {
+    ) -> Result<Route, SimulationError> {
         if sights.iter().all(|s| s.seen.is_none()) {
             return Err(SimulationError::NothingToTouch);
         }
@@ -300,16 +315,16 @@ impl<const D: usize> Tour<D> {
     /// more over a quarter of the width.
     fn positions(
         &self,
-        shape: &Shape<D>,
-        sights: &[Sight<D>],
+        shape: &Shape<3>,
+        sights: &[Sight],
         press: &[f64],
         window: usize,
-    ) -> Vec<Point<D>> {
+    ) -> Vec<Point<3>> {
         let clearance = CLEARANCE * self.detail();
         let height: Vec<f64> = sights.iter().map(|sight| sight.height).collect();
         // As wide before as after all smoothing, so that the flight is nowhere below the surface.
         let flight = smoothed(&highest(&height, 8 * window), 2 * window);
-        let positions: Vec<Point<D>> = (0..sights.len())
+        let positions: Vec<Point<3>> = (0..sights.len())
             .map(|i| {
                 let touching = height[i] - self.depth();
                 let flying = flight[i] + clearance;
@@ -317,7 +332,7 @@ impl<const D: usize> Tour<D> {
                 sights[i].foot + sights[i].up * height
             })
             .collect();
-        let correct = |positions: Vec<Point<D>>| -> Vec<Point<D>> {
+        let correct = |positions: Vec<Point<3>>| -> Vec<Point<3>> {
             let levels = press.iter().map(|press| -self.depth() * press);
             let positions = positions.into_iter().zip(levels);
             positions.map(|(point, level)| self.corrected(shape, point, level)).collect()
@@ -329,7 +344,7 @@ impl<const D: usize> Tour<D> {
 
     /// `point`, or the point up the gradient from it that is `level` above the offset surface [m]
     /// if it is lower. At most as far away as the hand's detail.
-    fn corrected(&self, shape: &Shape<D>, point: Point<D>, level: f64) -> Point<D> {
+    fn corrected(&self, shape: &Shape<3>, point: Point<3>, level: f64) -> Point<3> {
         let lipschitz = shape.promise().lipschitz;
         let mut corrected = point;
         for _ in 0..CORRECTIONS {
@@ -353,7 +368,7 @@ impl<const D: usize> Tour<D> {
 
     /// 1 for each point that is deeper than it may be, or halfway to its neighbour is, or is
     /// further from it than the surface is steep, or shortly before a lip; 0 for the others.
-    fn too_deep(&self, shape: &Shape<D>, positions: &[Point<D>]) -> Vec<f64> {
+    fn too_deep(&self, shape: &Shape<3>, positions: &[Point<3>]) -> Vec<f64> {
         let deepest = DEEPEST * self.depth() + RAY_TOLERANCE * self.size;
         let lowest = self.probe_radius - deepest;
         let reach = self.lag * self.depth();
@@ -372,9 +387,9 @@ impl<const D: usize> Tour<D> {
 
     /// `true` if the hand touches or nearly touches at both points, and the surface turns by
     /// [`LIP`] between them. Nearly, because a lip may be touched for less than a step.
-    fn crosses_lip(&self, shape: &Shape<D>, here: Point<D>, next: Point<D>) -> bool {
+    fn crosses_lip(&self, shape: &Shape<3>, here: Point<3>, next: Point<3>) -> bool {
         let near = self.probe_radius + 2.0 * STEP * self.detail();
-        let normal = |point: Point<D>| {
+        let normal = |point: Point<3>| {
             let (value, gradient) = shape.distance_gradient(point);
             if value < near { gradient.normalized() } else { None }
         };
@@ -385,11 +400,10 @@ impl<const D: usize> Tour<D> {
     }
 
     /// Casts the ray from a point of the orbit.
-    fn look(&self, shape: &Shape<D>, from: Point<D>) -> Sight<D> {
-        let half = self.bounds.half_extents();
-        let thinnest = half.0.into_iter().fold(f64::INFINITY, f64::min);
+    fn look(&self, shape: &Shape<3>, from: Point<3>) -> Sight {
+        let (half, thinnest) = (self.bounds.half_extents(), self.shortest());
         let centre = self.bounds.centre();
-        let core: Vector<f64, D> = Vector(std::array::from_fn(|i| half.0[i] - thinnest));
+        let core = Vector(half.0.map(|half| (half - thinnest).max(0.0)));
         let foot = centre
             + Vector(std::array::from_fn(|i| {
                 (from.0[i] - centre.0[i]).clamp(-core.0[i], core.0[i])
@@ -405,11 +419,11 @@ impl<const D: usize> Tour<D> {
     /// a body sees nothing.
     fn look_down(
         &self,
-        shape: &Shape<D>,
-        foot: Point<D>,
-        up: Vector<f64, D>,
+        shape: &Shape<3>,
+        foot: Point<3>,
+        up: Vector<f64, 3>,
         length: f64,
-    ) -> Sight<D> {
+    ) -> Sight {
         let seen = self.trace(shape, foot + up * length, up, length);
         let seen = seen.filter(|seen| seen.height < length);
         let height = seen.as_ref().map_or(0.0, |seen| seen.height);
@@ -419,11 +433,11 @@ impl<const D: usize> Tour<D> {
     /// The first offset surface along the ray; `None` if the ray reaches its foot.
     fn trace(
         &self,
-        shape: &Shape<D>,
-        from: Point<D>,
-        up: Vector<f64, D>,
+        shape: &Shape<3>,
+        from: Point<3>,
+        up: Vector<f64, 3>,
         length: f64,
-    ) -> Option<Seen<D>> {
+    ) -> Option<Seen> {
         let lipschitz = shape.promise().lipschitz;
         let tolerance = RAY_TOLERANCE * self.size;
         let mut height = length;
@@ -446,7 +460,7 @@ impl<const D: usize> Tour<D> {
 
     /// The press at each point, from 0 in flight to 1 at full depth: down most of the time, up
     /// where the surface jumps or ends.
-    fn presses(&self, sights: &[Sight<D>], step: f64, window: usize) -> Vec<f64> {
+    fn presses(&self, sights: &[Sight], step: f64, window: usize) -> Vec<f64> {
         let last = sights.len() - 1;
         let jumps = |i: usize| match (&sights[i].seen, &sights[(i + 1).min(last)].seen) {
             (Some(a), Some(b)) => {
@@ -474,12 +488,12 @@ impl<const D: usize> Tour<D> {
 
 /// Positions of the hand, and the length of the path to each [m]; lengths in flight count less,
 /// because the hand is faster there.
-struct Route<const D: usize> {
-    positions: Vec<Point<D>>,
+struct Route {
+    positions: Vec<Point<3>>,
     passed: Vec<f64>,
 }
 
-impl<const D: usize> Route<D> {
+impl Route {
     fn travelled(&self) -> f64 {
         self.passed[self.passed.len() - 1]
     }
@@ -487,22 +501,22 @@ impl<const D: usize> Route<D> {
 
 /// A ray from a point of the orbit: its foot, its direction upwards, the height above which it
 /// is free [m], and the surface at that height, if it meets one.
-struct Sight<const D: usize> {
-    foot: Point<D>,
-    up: Vector<f64, D>,
+struct Sight {
+    foot: Point<3>,
+    up: Vector<f64, 3>,
     height: f64,
-    seen: Option<Seen<D>>,
+    seen: Option<Seen>,
 }
 
 /// A surface: its height above the foot of the ray [m] and its unit normal.
-struct Seen<const D: usize> {
+struct Seen {
     height: f64,
-    normal: Vector<f64, D>,
+    normal: Vector<f64, 3>,
 }
 
 /// Gives rays that meet no surface the heights of a straight line over the gap, so that the
 /// hand does not go down and up again.
-fn bridge<const D: usize>(sights: &mut [Sight<D>]) {
+fn bridge(sights: &mut [Sight]) {
     let seen: Vec<usize> = (0..sights.len()).filter(|&i| sights[i].seen.is_some()).collect();
     let (Some(&first), Some(&last)) = (seen.first(), seen.last()) else { return };
     let (start, end) = (sights[first].height, sights[last].height);
@@ -519,12 +533,7 @@ fn bridge<const D: usize>(sights: &mut [Sight<D>]) {
 
 /// The length of the path to each point [m]; lengths in flight count less, because the hand is
 /// faster there.
-fn passed<const D: usize>(
-    positions: &[Point<D>],
-    press: &[f64],
-    step: f64,
-    window: usize,
-) -> Vec<f64> {
+fn passed(positions: &[Point<3>], press: &[f64], step: f64, window: usize) -> Vec<f64> {
     let last = positions.len() - 2;
     let ways: Vec<f64> = positions.windows(2).map(|pair| (pair[1] - pair[0]).norm()).collect();
     // Where the hand reverses, the path is short, but the hand needs time.

@@ -51,7 +51,7 @@ pub struct Calls {
 /// use palpate_field::Vector;
 ///
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
-/// let ends = vec![Vector([0.0, 0.0]), Vector([1.0, 0.0])];
+/// let ends = vec![Vector([0.0, 0.0, 0.0]), Vector([1.0, 0.0, 0.0])];
 /// let hand = HandPath::new(vec![0.0, 8.0], ends, Interpolation::Linear)?;
 /// let repeats = Fault { start: 2.0, duration: 2.0, kind: FaultKind::Stale };
 /// let mut device = SimulatedTransport::new(RecordedDevice::new(vec![hand])?, vec![repeats])?;
@@ -60,12 +60,12 @@ pub struct Calls {
 /// assert_eq!(device.read(2.0, &mut points)?, Reading::Stale);
 /// assert_eq!(device.read(3.0, &mut points)?, Reading::Stale);
 /// assert_eq!(device.read(4.0, &mut points)?, Reading::Fresh { time: 4.0 });
-/// assert_eq!(points[0].position, Vector([0.5, 0.0]));
+/// assert_eq!(points[0].position, Vector([0.5, 0.0, 0.0]));
 /// # Ok(())
 /// # }
 /// ```
 #[derive(Clone, Debug)]
-pub struct SimulatedTransport<T, const D: usize> {
+pub struct SimulatedTransport<T> {
     device: T,
     faults: Vec<Fault>,
     /// Where the generator of jitter stands.
@@ -77,13 +77,13 @@ pub struct SimulatedTransport<T, const D: usize> {
     /// The time of the last tick [s].
     time: Option<f64>,
     /// The newest measurements, the last of them last.
-    measured: VecDeque<Measured<D>>,
+    measured: VecDeque<Measured>,
     /// How many measurements were made.
     made: u64,
     /// How many measurements the servo has had, or had passed by.
     passed: u64,
     /// What the servo read last beside the points.
-    turn: Option<TurnState<D>>,
+    turn: Option<TurnState>,
     buttons: Buttons,
     gripper: Option<GripperState>,
     /// The losses that are over, in the order of the faults.
@@ -95,15 +95,15 @@ pub struct SimulatedTransport<T, const D: usize> {
 
 /// A measurement on its way.
 #[derive(Clone, Debug)]
-struct Measured<const D: usize> {
+struct Measured {
     reading: Reading,
-    points: Vec<PointState<D>>,
-    turn: Option<TurnState<D>>,
+    points: Vec<PointState>,
+    turn: Option<TurnState>,
     buttons: Buttons,
     gripper: Option<GripperState>,
 }
 
-impl<T: Device<D>, const D: usize> SimulatedTransport<T, D> {
+impl<T: Device> SimulatedTransport<T> {
     /// A device with these faults.
     ///
     /// # Errors
@@ -234,7 +234,7 @@ impl<T: Device<D>, const D: usize> SimulatedTransport<T, D> {
     /// Measures the device at a time `at`, after the one before [s].
     fn make(
         &mut self,
-        next: &mut Measured<D>,
+        next: &mut Measured,
         last: Option<f64>,
         at: f64,
     ) -> Result<(), DeviceLost> {
@@ -254,7 +254,7 @@ impl<T: Device<D>, const D: usize> SimulatedTransport<T, D> {
     }
 }
 
-impl<T: Device<D>, const D: usize> Device<D> for SimulatedTransport<T, D> {
+impl<T: Device> Device for SimulatedTransport<T> {
     fn points(&self) -> usize {
         self.device.points()
     }
@@ -265,9 +265,9 @@ impl<T: Device<D>, const D: usize> Device<D> for SimulatedTransport<T, D> {
 
     /// Real-time: allocates nothing until the device is lost, takes no lock, cannot panic; as far as
     /// the device behind it does.
-    fn read(&mut self, time: f64, points: &mut [PointState<D>]) -> Result<Reading, DeviceLost> {
+    fn read(&mut self, time: f64, points: &mut [PointState]) -> Result<Reading, DeviceLost> {
         // A reading that is not fresh must not be looked at.
-        points.fill(PointState::at_rest(Vector([f64::NAN; D])));
+        points.fill(PointState::at_rest(Vector([f64::NAN; 3])));
         let time = match (self.period, self.tick) {
             (Some(period), Some(last)) => last + period,
             (Some(_), None) => 0.0,
@@ -315,13 +315,13 @@ impl<T: Device<D>, const D: usize> Device<D> for SimulatedTransport<T, D> {
     }
 
     /// Real-time: as [`read`](Self::read).
-    fn write(&mut self, forces: &[Vector<f64, D>]) -> Result<(), DeviceLost> {
+    fn write(&mut self, forces: &[Vector<f64, 3>]) -> Result<(), DeviceLost> {
         self.there()?;
         self.device.write(forces)
     }
 
     /// Real-time: allocates nothing, takes no lock, cannot panic.
-    fn read_turn(&mut self) -> Result<Option<TurnState<D>>, DeviceLost> {
+    fn read_turn(&mut self) -> Result<Option<TurnState>, DeviceLost> {
         Ok(self.turn)
     }
 
@@ -383,7 +383,7 @@ impl<T: Device<D>, const D: usize> Device<D> for SimulatedTransport<T, D> {
     }
 }
 
-impl<T, const D: usize> SimulatedTransport<T, D> {
+impl<T> SimulatedTransport<T> {
     /// Refuses a call while the device is lost.
     fn there(&self) -> Result<(), DeviceLost> {
         match self.attempts {
@@ -400,20 +400,20 @@ mod tests {
     use crate::{HandPath, Interpolation, RecordedDevice};
 
     /// A device whose x is the time [s] times a metre a second.
-    fn clock() -> RecordedDevice<2> {
-        let ends = vec![Vector([0.0, 0.0]), Vector([1000.0, 0.0])];
+    fn clock() -> RecordedDevice {
+        let ends = vec![Vector([0.0, 0.0, 0.0]), Vector([1000.0, 0.0, 0.0])];
         let path = HandPath::new(vec![0.0, 1000.0], ends, Interpolation::Linear).unwrap();
         RecordedDevice::new(vec![path]).unwrap()
     }
 
-    fn with(faults: &[(f64, f64, FaultKind)]) -> SimulatedTransport<RecordedDevice<2>, 2> {
+    fn with(faults: &[(f64, f64, FaultKind)]) -> SimulatedTransport<RecordedDevice> {
         let fault = |&(start, duration, kind): &_| Fault { start, duration, kind };
         SimulatedTransport::new(clock(), faults.iter().map(fault).collect()).unwrap()
     }
 
     /// Reads at whole seconds: what came, and where the device was.
     fn reads(
-        device: &mut SimulatedTransport<RecordedDevice<2>, 2>,
+        device: &mut SimulatedTransport<RecordedDevice>,
         count: u32,
     ) -> Vec<(Reading, f64)> {
         let mut points = [PointState::at_rest(Vector::ZERO)];
@@ -445,7 +445,7 @@ mod tests {
         let inner = SimulatedTransport::new(clock(), vec![lost]).unwrap();
         let mut device = SimulatedTransport::new(inner, Vec::new()).unwrap();
         let mut points = [PointState::at_rest(Vector::ZERO)];
-        let mut is_fresh = |device: &mut SimulatedTransport<_, 2>, time| {
+        let mut is_fresh = |device: &mut SimulatedTransport<_>, time| {
             device.read(time, &mut points).map(|reading| reading == Reading::Fresh { time })
         };
         assert_eq!([0.0, 1.0].map(|t| is_fresh(&mut device, t)), [Ok(true), Ok(true)]);
@@ -533,14 +533,14 @@ mod tests {
         let mut device = with(&[(1.0, 0.0, FaultKind::Lost { attempts: 2 })]);
         let mut points = [PointState::at_rest(Vector::ZERO)];
         device.read(0.5, &mut points).unwrap();
-        device.write(&[Vector([1.0, 0.0])]).unwrap();
+        device.write(&[Vector([1.0, 0.0, 0.0])]).unwrap();
         let error = device.read(1.5, &mut points).unwrap_err();
         assert_eq!(error.reason, "the plan of faults says so at 1.5 s");
         assert!(device.write(&[Vector::ZERO]).is_err() && device.close().is_err());
         assert!(device.open().is_err() && device.enable().is_err());
         device.open().unwrap();
         assert_eq!(device.read(2.0, &mut points).unwrap(), Reading::Fresh { time: 2.0 });
-        assert_eq!(points[0].position, Vector([2.0, 0.0]));
+        assert_eq!(points[0].position, Vector([2.0, 0.0, 0.0]));
         let Calls { opened, failed, enabled, closed } = device.calls();
         assert_eq!((opened, failed, enabled, closed), (1, 1, 0, 1));
     }

@@ -20,33 +20,30 @@ use crate::motion::{Axis, Body, Energies, Load, Parts};
 
 /// The rotational part of a simulated device.
 #[derive(Clone, Debug)]
-pub(crate) struct Turning<const D: usize> {
+pub(crate) struct Turning {
     wrist: Wrist,
     body: Body,
     max_torque: f64,
     encoder_step: f64,
-    orientation: Rotation<D>,
+    orientation: Rotation<3>,
     /// The angular velocity [rad/s].
     spin: Vector<f64, 3>,
     /// The held torque [N·m].
     torque: Vector<f64, 3>,
     /// The last reading.
-    reading: TurnState<D>,
+    reading: TurnState,
     /// The hand's target orientation at the last read.
-    target: Rotation<D>,
+    target: Rotation<3>,
     energies: Energies,
 }
 
-impl<const D: usize> Turning<D> {
+impl Turning {
     /// # Errors
     ///
     /// [`SimulationError::Number`] if the profile's inertia, least damping, friction or encoder
     /// step is negative or not finite, its largest torque is negative or NaN, the total inertia
     /// is zero, or the motion of device and hand is too fast to be integrated.
-    pub(crate) fn new(
-        profile: &TurningProfile,
-        hand: &Hand<D>,
-    ) -> Result<Self, SimulationError> {
+    pub(crate) fn new(profile: &TurningProfile, hand: &Hand) -> Result<Self, SimulationError> {
         let wrist = hand.wrist().clone();
         NumberError::check_not_negative("inertia", profile.inertia, "kg·m²")?;
         NumberError::check_positive(
@@ -92,12 +89,12 @@ impl<const D: usize> Turning<D> {
     }
 
     /// The last reading.
-    pub(crate) fn reading(&self) -> TurnState<D> {
+    pub(crate) fn reading(&self) -> TurnState {
         self.reading
     }
 
     /// The true orientation and angular velocity, without encoder steps.
-    pub(crate) fn state(&self) -> TurnState<D> {
+    pub(crate) fn state(&self) -> TurnState {
         TurnState { orientation: self.orientation, angular_velocity: self.spin }
     }
 
@@ -114,11 +111,11 @@ impl<const D: usize> Turning<D> {
         0.5 * self.body.mass() * self.spin.dot(self.spin)
     }
 
-    /// Holds a torque from now on [N·m]; in the plane only its z part.
+    /// Holds a torque from now on [N·m].
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     pub(crate) fn write(&mut self, torque: Vector<f64, 3>) {
-        self.torque = limited(about_axes::<D>(torque), self.max_torque);
+        self.torque = limited(torque, self.max_torque);
     }
 
     /// Turns the device to the hand's target.
@@ -137,10 +134,10 @@ impl<const D: usize> Turning<D> {
         let stretch = self.orientation.turn_to(&self.target);
         let next = self.orientation.turn_to(&target);
         let rates = (next - stretch) * (1.0 / duration);
-        let push = about_axes::<D>(self.wrist.push);
-        let loads = self.torque.0.into_iter().zip(push.0).zip(stretch.0).zip(rates.0);
+        let loads =
+            self.torque.0.into_iter().zip(self.wrist.push.0).zip(stretch.0).zip(rates.0);
         let mut way = Vector::ZERO;
-        let axes = self.spin.0.iter_mut().zip(&mut way.0).zip(loads).skip(fixed::<D>());
+        let axes = self.spin.0.iter_mut().zip(&mut way.0).zip(loads);
         for ((spin, way), (((force, push), target), target_velocity)) in axes {
             let mut axis = Axis { position: 0.0, velocity: *spin };
             let load = Load { force, push, target, target_velocity };
@@ -162,14 +159,14 @@ impl<const D: usize> Turning<D> {
     }
 
     /// The hand's target orientation.
-    fn wanted(&self, time: f64) -> Rotation<D> {
+    fn wanted(&self, time: f64) -> Rotation<3> {
         let path = self.wrist.path.as_ref();
         let turn = path.map_or(Vector::ZERO, |path| path.state_at(time).position);
-        Rotation::identity().turned(about_axes::<D>(turn))
+        Rotation::identity().turned(turn)
     }
 
     /// The orientation in whole steps of the encoder.
-    fn encoded(&self) -> Rotation<D> {
+    fn encoded(&self) -> Rotation<3> {
         let step = self.encoder_step;
         if step > 0.0 {
             let identity = Rotation::identity();
@@ -179,15 +176,4 @@ impl<const D: usize> Turning<D> {
             self.orientation
         }
     }
-}
-
-/// The part of a rotation vector about axes that exist: z alone in the plane.
-fn about_axes<const D: usize>(mut turn: Vector<f64, 3>) -> Vector<f64, 3> {
-    turn.0.iter_mut().take(fixed::<D>()).for_each(|x| *x = 0.0);
-    turn
-}
-
-/// The number of leading axes without rotation: two in the plane.
-fn fixed<const D: usize>() -> usize {
-    if D < 3 { 2 } else { 0 }
 }

@@ -114,28 +114,28 @@ const NEAREST: usize = 3;
 /// use palpate_vibration::ActuatorArray;
 ///
 /// # fn main() -> Result<(), palpate_device::DeviceError> {
-/// let places = [0.0, 0.25, 0.5, 0.75].map(|x| Vector([x, 0.0]));
+/// let places = [0.0, 0.25, 0.5, 0.75].map(|x| Vector([x, 0.0, 0.0]));
 /// let vest = ActuatorArray::new(places.to_vec(), 0.5)?;
 /// let mut amplitudes = [0.0; 4];
-/// vest.play(Vector([0.25, 0.0]), 0.5, &mut amplitudes);
+/// vest.play(Vector([0.25, 0.0, 0.0]), 0.5, &mut amplitudes);
 /// assert_eq!(amplitudes, [0.25, 0.5, 0.25, 0.0]);
 /// # Ok(())
 /// # }
 /// ```
 #[derive(Clone, Debug)]
-pub struct ActuatorArray<const D: usize> {
-    places: Vec<Point<D>>,
+pub struct ActuatorArray {
+    places: Vec<Point<3>>,
     reach: f64,
 }
 
-impl<const D: usize> ActuatorArray<D> {
+impl ActuatorArray {
     /// Actuators at `places` [m] that play points within `reach` [m].
     ///
     /// # Errors
     ///
     /// [`DeviceError::NoContactPoint`] without a place; [`DeviceError::Number`] if the reach
     /// is not positive, or a coordinate not finite.
-    pub fn new(places: Vec<Point<D>>, reach: f64) -> Result<Self, DeviceError> {
+    pub fn new(places: Vec<Point<3>>, reach: f64) -> Result<Self, DeviceError> {
         if places.is_empty() {
             return Err(DeviceError::NoContactPoint);
         }
@@ -150,7 +150,7 @@ impl<const D: usize> ActuatorArray<D> {
 
     /// The places of the actuators [m].
     #[must_use]
-    pub fn places(&self) -> &[Point<D>] {
+    pub fn places(&self) -> &[Point<3>] {
         &self.places
     }
 
@@ -158,7 +158,7 @@ impl<const D: usize> ActuatorArray<D> {
     /// least the actuator's part of it.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic; looks at each actuator once.
-    pub fn play(&self, point: Point<D>, amplitude: f64, amplitudes: &mut [f64]) {
+    pub fn play(&self, point: Point<3>, amplitude: f64, amplitudes: &mut [f64]) {
         let nearest = self.nearest(point);
         let [(largest, _), ..] = nearest;
         for (weight, actuator) in nearest {
@@ -179,15 +179,15 @@ impl<const D: usize> ActuatorArray<D> {
     /// use palpate_vibration::ActuatorArray;
     ///
     /// # fn main() -> Result<(), palpate_device::DeviceError> {
-    /// let places = [0.0, 0.25, 0.5].map(|x| Vector([x, 0.0]));
+    /// let places = [0.0, 0.25, 0.5].map(|x| Vector([x, 0.0, 0.0]));
     /// let sleeve = ActuatorArray::new(places.to_vec(), 0.5)?;
     /// let mut amplitudes = [0.0; 3];
-    /// sleeve.play_between(Vector([0.3125, 0.125]), 1.0, &mut amplitudes);
+    /// sleeve.play_between(Vector([0.3125, 0.125, 0.0]), 1.0, &mut amplitudes);
     /// assert_eq!(amplitudes, [0.0, 0.75_f64.sqrt(), 0.5]);
     /// # Ok(())
     /// # }
     /// ```
-    pub fn play_between(&self, point: Point<D>, amplitude: f64, amplitudes: &mut [f64]) {
+    pub fn play_between(&self, point: Point<3>, amplitude: f64, amplitudes: &mut [f64]) {
         let [(weight, first), (other_weight, second), _] = self.nearest(point);
         if weight <= 0.0 {
             return;
@@ -208,7 +208,7 @@ impl<const D: usize> ActuatorArray<D> {
 
     /// Weights and indices of the nearest actuators, nearest first; weight zero if missing or
     /// out of reach.
-    fn nearest(&self, point: Point<D>) -> [(f64, usize); NEAREST] {
+    fn nearest(&self, point: Point<3>) -> [(f64, usize); NEAREST] {
         // The largest weights so far with their actuators; the first of equals.
         let mut nearest = [(0.0, usize::MAX); NEAREST];
         for (actuator, place) in self.places.iter().enumerate() {
@@ -300,11 +300,12 @@ mod tests {
 
     #[test]
     fn a_phantom_moves_from_one_actuator_to_the_next() {
-        let array = ActuatorArray::new(vec![Vector([0.0, 0.0]), Vector([1.0, 0.0])], 2.0);
+        let array =
+            ActuatorArray::new(vec![Vector([0.0, 0.0, 0.0]), Vector([1.0, 0.0, 0.0])], 2.0);
         let array = array.unwrap();
         let at = |x: f64| {
             let mut amplitudes = [0.0; 2];
-            array.play_between(Vector([x, 0.1]), 1.0, &mut amplitudes);
+            array.play_between(Vector([x, 0.1, 0.0]), 1.0, &mut amplitudes);
             amplitudes
         };
         assert_eq!((at(-0.2), at(1.2)), ([1.0, 0.0], [0.0, 1.0]));
@@ -315,24 +316,25 @@ mod tests {
             assert!((second - beta.sqrt()).abs() < 1e-12);
         }
         assert_eq!((at(5.0), at(f64::NAN)), ([0.0; 2], [0.0; 2]));
-        let twins = ActuatorArray::new(vec![Vector([0.0, 0.0]); 2], 2.0).unwrap();
+        let twins = ActuatorArray::new(vec![Vector([0.0, 0.0, 0.0]); 2], 2.0).unwrap();
         let mut amplitudes = [0.0; 2];
-        twins.play_between(Vector([0.5, 0.0]), 0.5, &mut amplitudes);
+        twins.play_between(Vector([0.5, 0.0, 0.0]), 0.5, &mut amplitudes);
         assert_eq!(amplitudes, [0.5, 0.0]);
     }
 
     #[test]
     fn points_that_are_no_numbers_and_lists_that_are_short_play_nothing() {
-        let array = ActuatorArray::new(vec![Vector([0.0, 0.0]), Vector([1.0, 0.0])], 2.0);
+        let array =
+            ActuatorArray::new(vec![Vector([0.0, 0.0, 0.0]), Vector([1.0, 0.0, 0.0])], 2.0);
         let array = array.unwrap();
         let mut amplitudes = [0.0; 2];
-        array.play(Vector([f64::NAN, 0.0]), 1.0, &mut amplitudes);
-        array.play(Vector([0.0, 0.0]), f64::NAN, &mut amplitudes);
+        array.play(Vector([f64::NAN, 0.0, 0.0]), 1.0, &mut amplitudes);
+        array.play(Vector([0.0, 0.0, 0.0]), f64::NAN, &mut amplitudes);
         assert_eq!(amplitudes, [0.0, 0.0]);
         let mut short = [0.0];
-        array.play(Vector([1.0, 0.0]), 1.0, &mut short);
+        array.play(Vector([1.0, 0.0, 0.0]), 1.0, &mut short);
         assert_eq!(short, [0.5]);
-        assert!(ActuatorArray::<2>::new(Vec::new(), 1.0).is_err());
-        assert!(ActuatorArray::new(vec![Vector([f64::NAN, 0.0])], 1.0).is_err());
+        assert!(ActuatorArray::new(Vec::new(), 1.0).is_err());
+        assert!(ActuatorArray::new(vec![Vector([f64::NAN, 0.0, 0.0])], 1.0).is_err());
     }
 }

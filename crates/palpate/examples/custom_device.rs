@@ -14,7 +14,7 @@ struct Carriage {
     volts: [f64; 2],
 }
 
-impl Device<2> for Carriage {
+impl Device for Carriage {
     fn points(&self) -> usize {
         1
     }
@@ -23,17 +23,17 @@ impl Device<2> for Carriage {
         &self.profile
     }
 
-    fn read(&mut self, time: f64, points: &mut [PointState<2>]) -> Result<Reading, DeviceLost> {
+    fn read(&mut self, time: f64, points: &mut [PointState]) -> Result<Reading, DeviceLost> {
         let (sin, cos) = (std::f64::consts::PI * time).sin_cos();
         let speed = 0.048 * std::f64::consts::PI;
         for point in points {
-            point.position = Vector([0.048 * cos, 0.048 * sin]);
-            point.velocity = Vector([-speed * sin, speed * cos]);
+            point.position = Vector([0.048 * cos, 0.048 * sin, 0.0]);
+            point.velocity = Vector([-speed * sin, speed * cos, 0.0]);
         }
         Ok(Reading::Fresh { time })
     }
 
-    fn write(&mut self, forces: &[Vector<f64, 2>]) -> Result<(), DeviceLost> {
+    fn write(&mut self, forces: &[Vector<f64, 3>]) -> Result<(), DeviceLost> {
         self.volts = [0.5 * forces[0][0], 0.5 * forces[0][1]];
         Ok(())
     }

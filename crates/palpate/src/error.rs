@@ -43,7 +43,7 @@ use palpate_sim::SimulationError;
 /// use palpate::Error;
 /// use palpate::sim::Hand;
 ///
-/// let hand = Hand::resting([0.0, 0.1]).and_then(|hand| hand.with_mass(-0.1));
+/// let hand = Hand::resting([0.0, 0.1, 0.0]).and_then(|hand| hand.with_mass(-0.1));
 /// let error = Error::from(hand.unwrap_err());
 /// assert_eq!((error.kind().name(), error.parameter()), ("device", Some("mass")));
 /// assert_eq!((error.value(), error.unit()), (Some(-0.1), Some("kg")));

@@ -170,7 +170,7 @@ impl Rest {
 /// ```
 #[derive(Clone, Debug)]
 pub struct Press {
-    servo: Servo<2>,
+    servo: Servo,
     profile: DeviceProfile,
     /// The force with which the hand presses [N].
     force: f64,
@@ -252,12 +252,12 @@ impl Press {
 }
 
 /// The hand, which a wall of a `stiffness` [N/m] holds with a `force` [N].
-fn held(plant: Plant, force: f64, stiffness: f64) -> Result<Hand<2>, SimulationError> {
+fn held(plant: Plant, force: f64, stiffness: f64) -> Result<Hand, SimulationError> {
     let is_gripping = plant.grip > 0.0;
     let depth = if is_gripping { force / stiffness + force / plant.grip } else { 0.0 };
     let push = if is_gripping { 0.0 } else { force };
     let is_stroking = plant.stroke > 0.0 && is_gripping;
-    let at = |time: f64, height: f64| Vector([plant.stroke * time, height]);
+    let at = |time: f64, height: f64| Vector([plant.stroke * time, height, 0.0]);
     let mut times = vec![0.0, APPROACH];
     let mut way = vec![at(0.0, HEIGHT), at(APPROACH, -depth)];
     if is_stroking {
@@ -268,7 +268,9 @@ fn held(plant: Plant, force: f64, stiffness: f64) -> Result<Hand<2>, SimulationE
     let interpolation =
         if is_stroking { Interpolation::Monotone } else { Interpolation::Smooth };
     let path = HandPath::new(times, way, interpolation)?;
-    Hand::new(path).with_spring(plant.grip, plant.hand_damping)?.with_push(Vector([0.0, -push]))
+    Hand::new(path)
+        .with_spring(plant.grip, plant.hand_damping)?
+        .with_push(Vector([0.0, -push, 0.0]))
 }
 
 /// The largest way to and fro: from a value to another, and as far back; infinite if a value is no

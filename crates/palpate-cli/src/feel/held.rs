@@ -19,9 +19,9 @@ use palpate::scene::text::rounded;
 /// holds `bounds`, of the scene or of the places of a tool.
 pub(super) fn map<const D: usize>(
     scene: &BuiltScene<D>,
-    tool: Option<&Tool<D>>,
+    tool: Option<&Tool>,
     choice: &DeviceChoice,
-) -> Result<WorkspaceMap<D>, Failure> {
+) -> Result<WorkspaceMap, Failure> {
     match choice {
         DeviceChoice::Simulated(choice) => {
             scene.workspace_of(&choice.profile, tool).map_err(Failure::input)
@@ -56,10 +56,11 @@ pub(crate) struct Beyond {
 }
 
 impl Beyond {
+    /// For a scene of `D` dimensions.
     pub(super) fn of<const D: usize>(
         choice: &DeviceChoice,
-        paths: &[HandPath<D>],
-        map: &WorkspaceMap<D>,
+        paths: &[HandPath],
+        map: &WorkspaceMap,
     ) -> Option<Self> {
         let DeviceChoice::Simulated(choice) = choice else { return None };
         let profile = &choice.profile;
@@ -74,7 +75,7 @@ impl Beyond {
             distance,
             scale,
             sufficient_scale: rounded_up(scale * farthest / radius),
-            center: map.point_to_world(Vector::ZERO).0.to_vec(),
+            center: map.point_to_world(Vector::ZERO).truncated::<D>().0.to_vec(),
         })
     }
 
@@ -103,12 +104,12 @@ fn rounded_up(number: f64) -> f64 {
 
 /// The device, with a hand for each path in world coordinates. `turns` is the rotation of the
 /// hand over time, for a device with rotation.
-pub(super) fn device<const D: usize>(
+pub(super) fn device(
     choice: &DeviceChoice,
-    paths: &[HandPath<D>],
-    turns: Option<&HandPath<3>>,
-    map: &WorkspaceMap<D>,
-) -> Result<Box<dyn Device<D> + Send>, SimulationError> {
+    paths: &[HandPath],
+    turns: Option<&HandPath>,
+    map: &WorkspaceMap,
+) -> Result<Box<dyn Device + Send>, SimulationError> {
     let paths = paths.iter().map(|path| path.mapped(|point| map.point_to_device(point)));
     let paths = paths.collect::<Result<Vec<_>, _>>()?;
     Ok(match choice {

@@ -3,6 +3,7 @@
 
 //! How many ticks, rows and samples of paths a run may have.
 
+use palpate::field::Point;
 use palpate::servo_loop::TraceRow;
 
 use crate::outcome::Failure;
@@ -36,7 +37,7 @@ pub(super) fn ticks(duration: f64, rate: f64) -> Result<f64, Failure> {
 }
 
 /// The rows of a run that are kept, if they are not too many, and the system has memory for them.
-pub(super) fn rows<const D: usize>(count: f64) -> Result<usize, Failure> {
+pub(super) fn rows(count: f64) -> Result<usize, Failure> {
     const SHORTEN: &str = "shorten --duration, lower --rate, or use fewer contact points";
     if count > MOST_ROWS {
         let problem =
@@ -45,8 +46,8 @@ pub(super) fn rows<const D: usize>(count: f64) -> Result<usize, Failure> {
     }
     let rows = count.max(0.0).ceil() as usize;
     // Memory that is only reserved costs nothing; a recorder that gets none would end the program.
-    if Vec::<TraceRow<D>>::new().try_reserve_exact(rows).is_err() {
-        let memory = 1e-9 * (rows * size_of::<TraceRow<D>>()) as f64;
+    if Vec::<TraceRow>::new().try_reserve_exact(rows).is_err() {
+        let memory = 1e-9 * (rows * size_of::<TraceRow>()) as f64;
         return Err(Failure::input(format!(
             "--plot and --wav keep {rows} rows of this run, {memory:.1} GB of memory, \
              which the system does not give; {SHORTEN}"
@@ -57,8 +58,8 @@ pub(super) fn rows<const D: usize>(count: f64) -> Result<usize, Failure> {
 
 /// Refuses paths for so many contact points along a way of so many samples, if they take too
 /// much memory: time, place and velocity of each sample, in the world and at the device.
-pub(super) fn paths<const D: usize>(points: usize, samples: usize) -> Result<(), Failure> {
-    let bytes = 2 * (1 + 2 * D) * size_of::<f64>();
+pub(super) fn paths(points: usize, samples: usize) -> Result<(), Failure> {
+    let bytes = 2 * (size_of::<f64>() + 2 * size_of::<Point<3>>());
     let memory = bytes as f64 * points as f64 * samples as f64;
     if memory > MOST_PATHS {
         return Err(Failure::input(format!(

@@ -85,11 +85,14 @@ where
     let ticks = limits::ticks(duration, options.rate)?;
     let contacts = paths.len();
     let turns = match &tool {
-        Some(_) if options.path.is_none() => Some(swing(duration).map_err(Failure::input)?),
+        Some(_) if options.path.is_none() => {
+            Some(swing::<D>(duration).map_err(Failure::input)?)
+        }
         _ => None,
     };
     let map = held::map(scene, tool.as_ref(), &choice)?;
-    let beyond = options.path.as_ref().and_then(|_| held::Beyond::of(&choice, &paths, &map));
+    let beyond =
+        options.path.as_ref().and_then(|_| held::Beyond::of::<D>(&choice, &paths, &map));
     if let Some(beyond) = beyond.as_ref().filter(|_| !options.json) {
         output::remark(beyond.warning());
     }
@@ -107,7 +110,7 @@ where
     let accepted = servo.accepted().to_vec();
 
     let keeps_rows = outputs.keep_ticks();
-    let rows = if keeps_rows { limits::rows::<D>(ticks * contacts as f64)? } else { 0 };
+    let rows = if keeps_rows { limits::rows(ticks * contacts as f64)? } else { 0 };
     let mut recorder = Recorder::new(rows);
     let shows_line = io::stderr().is_terminal();
     let mut show = |progress: &Progress| output::live(report::live_line(progress));
@@ -194,9 +197,9 @@ where
 fn hands<const D: usize>(
     scene: &BuiltScene<D>,
     options: &FeelOptions,
-    tool: Option<&Tool<D>>,
+    tool: Option<&Tool>,
     outputs: &Outputs,
-) -> Result<Vec<HandPath<D>>, Failure> {
+) -> Result<Vec<HandPath>, Failure> {
     if let Some(file) = &options.path {
         return paths::in_file(scene, options, file);
     }
@@ -204,7 +207,7 @@ fn hands<const D: usize>(
     let ticks = limits::ticks(duration, options.rate)?;
     let points = if tool.is_some() { 1 } else { paths::count(scene, options) };
     if outputs.keep_ticks() {
-        limits::rows::<D>(ticks * points as f64)?;
+        limits::rows(ticks * points as f64)?;
     }
     paths::on_tour(scene, options, duration)
 }

@@ -6,8 +6,6 @@
 use palpate::field::Vector;
 use palpate::plot::Slice;
 
-use crate::picture::in_space;
-
 /// Pieces of a line, in plane coordinates [m].
 pub(super) type Pieces = Vec<Vec<[f64; 2]>>;
 
@@ -29,8 +27,8 @@ pub(super) enum Side {
 
 /// The side of `plane` on which `point` lies; `near` [m] is the largest distance that counts as
 /// near.
-pub(super) fn side<const D: usize>(plane: &Slice, near: f64, point: Vector<f64, D>) -> Side {
-    let elevation = plane.elevation(in_space(point));
+pub(super) fn side(plane: &Slice, near: f64, point: Vector<f64, 3>) -> Side {
+    let elevation = plane.elevation(point.0);
     if elevation.abs() <= near {
         Side::Near
     } else if elevation > 0.0 {
@@ -42,15 +40,15 @@ pub(super) fn side<const D: usize>(plane: &Slice, near: f64, point: Vector<f64, 
 
 /// Takes the line through `points` apart. Each piece begins where the one before ends, so there
 /// are no gaps.
-pub(super) fn taken_apart<const D: usize>(
+pub(super) fn taken_apart(
     plane: &Slice,
     near: f64,
-    points: impl IntoIterator<Item = Vector<f64, D>>,
+    points: impl IntoIterator<Item = Vector<f64, 3>>,
 ) -> Seen {
     let mut seen = Seen::default();
     let mut last: Option<(Side, [f64; 2])> = None;
     for point in points {
-        let (side, here) = (side(plane, near, point), plane.project(in_space(point)));
+        let (side, here) = (side(plane, near, point), plane.project(point.0));
         let pieces = match side {
             Side::Near => &mut seen.near,
             Side::InFront => &mut seen.in_front,
@@ -94,7 +92,7 @@ mod tests {
 
     #[test]
     fn in_the_plane_all_is_near() {
-        let points = [Vector([1.0, 2.0]), Vector([3.0, -4.0])];
+        let points = [Vector([1.0, 2.0, 0.0]), Vector([3.0, -4.0, 0.0])];
         let seen = taken_apart(&Slice::planar(), f64::INFINITY, points);
         assert_eq!(seen.near, [vec![[1.0, 2.0], [3.0, -4.0]]]);
         assert!(seen.in_front.is_empty() && seen.behind.is_empty());

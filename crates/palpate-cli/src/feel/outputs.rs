@@ -79,15 +79,18 @@ impl Outputs {
     pub(super) fn traced<T, const D: usize>(
         &self,
         scene: &BuiltScene<D>,
-        run: impl FnOnce(Option<Sink<'_, D>>) -> Result<T, Failure>,
+        run: impl FnOnce(Option<Sink<'_>>) -> Result<T, Failure>,
     ) -> Result<(T, Traced), Failure> {
         let Some(to) = &self.trace else { return Ok((run(None)?, Traced(Ok(None)))) };
         let mut ran = None;
         let written = to.write(|out| {
-            let pose_at = |body, time| scene.pose_at(body, time);
+            let pose_at = |body, time| scene.pose_at(body, time).in_space();
             let mut trace = TraceWriter::new(out).with_poses(scene.moving(), pose_at);
+            if D == 2 {
+                trace = trace.in_plane();
+            }
             let mut written = Ok(());
-            let mut sink = |row: &TraceRow<D>| {
+            let mut sink = |row: &TraceRow| {
                 if written.is_ok() {
                     written = trace.write(row);
                 }
@@ -110,7 +113,7 @@ impl Outputs {
     pub(super) fn write<const D: usize>(
         &self,
         scene: &BuiltScene<D>,
-        recorder: &Recorder<D>,
+        recorder: &Recorder,
         traced: Traced,
         ran: &Ran<'_>,
     ) -> (Result<(), Failure>, Option<Played>)

@@ -38,14 +38,14 @@ pub(super) fn on_tour<const D: usize>(
     scene: &BuiltScene<D>,
     options: &FeelOptions,
     duration: f64,
-) -> Result<Vec<HandPath<D>>, Failure> {
+) -> Result<Vec<HandPath>, Failure> {
     let way = HandWay::tour(scene, duration, following(options)).map_err(Failure::input)?;
     paths(&way)
 }
 
 /// The paths of the contact points that go a way, if they do not take too much memory.
-fn paths<const D: usize>(way: &HandWay<D>) -> Result<Vec<HandPath<D>>, Failure> {
-    limits::paths::<D>(way.points(), way.path().times().len())?;
+fn paths(way: &HandWay) -> Result<Vec<HandPath>, Failure> {
+    limits::paths(way.points(), way.path().times().len())?;
     way.paths().map_err(Failure::input)
 }
 
@@ -59,14 +59,14 @@ pub(super) fn in_file<const D: usize>(
     scene: &BuiltScene<D>,
     options: &FeelOptions,
     file: &Path,
-) -> Result<Vec<HandPath<D>>, Failure> {
+) -> Result<Vec<HandPath>, Failure> {
     if options.points.is_some() {
         return Err(Failure::input(
             "--points is about the built-in hand; with --path, the column `point` of the file, or the \
              `points` of the scene's tool, say how many there are",
         ));
     }
-    let all = hand_csv::read(file)?;
+    let all = hand_csv::read::<D>(file)?;
     match (&all[..], scene.contact_points().count()) {
         (_, 0) => Ok(all),
         ([hand], _) => paths(&HandWay::along(scene, hand.clone())),
@@ -83,25 +83,25 @@ pub(super) fn in_file<const D: usize>(
 }
 
 /// How near paths come to the scene, at some of their samples [m].
-pub(super) fn nearest<const D: usize>(scene: &BuiltScene<D>, paths: &[HandPath<D>]) -> f64 {
+pub(super) fn nearest<const D: usize>(scene: &BuiltScene<D>, paths: &[HandPath]) -> f64 {
     /// Samples of a path that are looked at.
     const LOOKED_AT: usize = 1000;
     let seen = paths.iter().flat_map(|path| {
         let step = path.positions().len().div_ceil(LOOKED_AT).max(1);
         path.positions().iter().step_by(step)
     });
-    seen.map(|point| scene.whole.distance(*point)).fold(f64::INFINITY, f64::min)
+    seen.map(|point| scene.whole.distance(point.truncated::<D>())).fold(f64::INFINITY, f64::min)
 }
 
 /// When the last path ends [s].
-pub(super) fn end<const D: usize>(paths: &[HandPath<D>]) -> f64 {
+pub(super) fn end(paths: &[HandPath]) -> f64 {
     paths.iter().map(|path| path.start() + path.duration()).fold(f64::NEG_INFINITY, f64::max)
 }
 
 /// Refuses paths along which the hand does not move in the run.
-pub(super) fn check_times<const D: usize>(
+pub(super) fn check_times(
     file: &Path,
-    paths: &[HandPath<D>],
+    paths: &[HandPath],
     duration: Option<f64>,
 ) -> Result<(), Failure> {
     let first = paths.iter().map(HandPath::start).fold(f64::INFINITY, f64::min);

@@ -59,7 +59,7 @@ pub(super) struct Felt<'a, const D: usize> {
     pub(super) name: &'a str,
     pub(super) scene: &'a BuiltScene<D>,
     pub(super) report: &'a RunReport,
-    pub(super) servo: &'a Servo<D>,
+    pub(super) servo: &'a Servo,
     pub(super) device: &'a DeviceProfile,
     /// The file that the device's profile is from.
     pub(super) device_file: Option<&'a Path>,

@@ -40,7 +40,7 @@ pub(super) struct FeltSlice {
 /// [`PlotError::NotFinite`] for bounds that are not finite.
 pub(super) fn felt_slices<const D: usize>(
     bounds: &Aabb<D>,
-    rows: &[TraceRow<D>],
+    rows: &[TraceRow],
 ) -> Result<Vec<FeltSlice>, PlotError> {
     if D < 3 {
         let plane = Slice::planar();
@@ -50,7 +50,7 @@ pub(super) fn felt_slices<const D: usize>(
     let every = touching.len().div_ceil(MOST_CONTACTS).max(1);
     let contacts: Vec<_> =
         touching.iter().step_by(every).map(|row| (row.proxy, row.normal)).collect();
-    let near = nearness(bounds);
+    let (bounds, near) = (&bounds.in_space(), nearness(&bounds.in_space()));
     let best = |axis: usize| best_place(bounds, &contacts, axis, near);
     let (front, side, level) = (best(2), best(0), best(1));
     let slice = |plane: Slice, seen: &str, place: f64| {
@@ -67,7 +67,7 @@ pub(super) fn felt_slices<const D: usize>(
 }
 
 /// The distance that counts as near a slice of a scene [m]: a round number.
-fn nearness<const D: usize>(bounds: &Aabb<D>) -> f64 {
+fn nearness(bounds: &Aabb<3>) -> f64 {
     let edges = bounds.half_extents().0.map(|half| 2.0 * half);
     let shortest = edges.into_iter().fold(f64::INFINITY, f64::min);
     let longest = edges.into_iter().fold(0.0, f64::max);
@@ -99,9 +99,9 @@ struct Place {
 /// across the normal would only graze the face and not show the force. The weight falls to
 /// [`BORDER`] at the border of the scene, because slices near the middle show most of the
 /// bodies. Of equal places the one nearest the middle is chosen.
-fn best_place<const D: usize>(
-    bounds: &Aabb<D>,
-    contacts: &[(Vector<f64, D>, Vector<f64, D>)],
+fn best_place(
+    bounds: &Aabb<3>,
+    contacts: &[(Vector<f64, 3>, Vector<f64, 3>)],
     axis: usize,
     near: f64,
 ) -> Place {
@@ -135,14 +135,14 @@ mod tests {
         Aabb { min: Vector([-0.2, 0.0, -0.05]), max: Vector([0.2, 0.3, 0.05]) }
     }
 
-    fn contact(proxy: [f64; 3], normal: [f64; 3]) -> TraceRow<3> {
+    fn contact(proxy: [f64; 3], normal: [f64; 3]) -> TraceRow {
         let mut row = TraceRow::free(0.0, 0, Vector(proxy));
         (row.wanted, row.force, row.normal) = (Vector(normal), Vector(normal), Vector(normal));
         row.contact = true;
         row
     }
 
-    fn headings(rows: &[TraceRow<3>]) -> Vec<String> {
+    fn headings(rows: &[TraceRow]) -> Vec<String> {
         let slices = felt_slices(&bounds(), rows).unwrap();
         slices.into_iter().map(|slice| slice.heading).collect()
     }

@@ -13,7 +13,7 @@ use crate::outcome::Failure;
 pub(super) fn of_scene<const D: usize>(
     scene: &BuiltScene<D>,
     options: &FeelOptions,
-) -> Result<Option<Tool<D>>, Failure> {
+) -> Result<Option<Tool>, Failure> {
     let tool = scene.tool.as_ref().map_or(Ok(None), BuiltTool::in_hand);
     let tool = tool.map_err(Failure::input)?;
     if tool.is_some() && options.points.is_some() {

@@ -55,7 +55,7 @@ impl Vibration {
     /// The vibration of a run at `rate` [Hz].
     pub(super) fn of<const D: usize>(
         scene: &BuiltScene<D>,
-        recorder: &Recorder<D>,
+        recorder: &Recorder,
         rate: f64,
         actuator: Option<Actuator>,
     ) -> Result<Self, Failure> {
@@ -66,7 +66,7 @@ impl Vibration {
         let mapping = Mapping::new(options).map_err(Failure::input)?;
         let felt = |point: usize| {
             let of_point = rows.iter().skip(point).step_by(count.max(1));
-            let mut last: Option<&TraceRow<D>> = None;
+            let mut last: Option<&TraceRow> = None;
             let sensations = of_point.map(|row| {
                 let cue = cue(scene, row, last, rate);
                 last = Some(row);
@@ -233,20 +233,21 @@ fn carried<const D: usize>(
     scene: &BuiltScene<D>,
     body: usize,
     times: [f64; 2],
-    point: Point<D>,
-) -> Point<D> {
+    point: Point<3>,
+) -> Point<3> {
     let [before, after] = times.map(|time| scene.pose_at(body, time));
     if before == after {
         return point;
     }
+    let [before, after] = [before, after].map(|pose| pose.in_space());
     after.transform_point(before.inverse().transform_point(point))
 }
 
 /// The cue of a contact point in a tick, which is felt relative to the body.
 fn cue<const D: usize>(
     scene: &BuiltScene<D>,
-    row: &TraceRow<D>,
-    last: Option<&TraceRow<D>>,
+    row: &TraceRow,
+    last: Option<&TraceRow>,
     rate: f64,
 ) -> Cue {
     let Some(body) = scene.bodies.get(row.body as usize).filter(|_| row.contact) else {

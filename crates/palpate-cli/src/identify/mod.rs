@@ -122,7 +122,7 @@ fn plant(options: &IdentifyOptions) -> DeviceProfile {
 fn simulated(
     plant: &DeviceProfile,
     grip: Option<f64>,
-) -> Result<SimulatedDevice<3>, SimulationError> {
+) -> Result<SimulatedDevice, SimulationError> {
     let hand = Hand::free(Vector::ZERO)?;
     let hand = match grip {
         Some(stiffness) => hand.with_mass(HAND.0)?.with_spring(stiffness, HAND.1)?,
@@ -133,7 +133,7 @@ fn simulated(
 
 /// Identifies on virtual time, with a live line.
 fn identified(
-    device: &mut SimulatedDevice<3>,
+    device: &mut SimulatedDevice,
     profile: &DeviceProfile,
     motions: Motions,
     interrupt: &Interrupt,

@@ -140,6 +140,12 @@ fn a_path_beyond_the_workspace_names_the_scale_that_suffices() {
     let enough = folder.write("enough.json", &BALLS.replace("\"scale\": 2", "\"scale\": 4"));
     let feel = ["feel", &enough, "--path", &hand, "--fast", "--device", "simulated:omega"];
     assert_eq!(errors(&palpate(&feel)), "");
+    let flat = r#"{ "palpate": 1, "dimension": 2, "tool": { "workspace": { "scale": 2 } },
+        "bodies": [ { "name": "disc", "shape": { "circle": { "radius": 0.05 } } } ] }"#;
+    let flat = folder.write("flat.json", flat);
+    let hand = folder.write("flat.csv", "time_s,x_m,y_m\n0,0,0.06\n0.1,0,0.3\n");
+    let feel = ["feel", &flat, "--path", &hand, "--fast", "--device", "simulated:omega"];
+    assert!(errors(&palpate(&feel)).contains("around the same centre, [0, 0] m, a scale of 4"));
 }
 
 /// They were taken in silence.

@@ -18,31 +18,31 @@ fn fresh(time: f64) -> Reading {
 #[test]
 fn the_newest_states_and_forces_count() {
     let (mut device, mut mailbox) =
-        MailboxDevice::<2>::new(DeviceProfile::unlimited("two"), 2).unwrap();
-    let mut points = [PointState::at_rest(Vector([9.0; 2])); 2];
+        MailboxDevice::new(DeviceProfile::unlimited("two"), 2).unwrap();
+    let mut points = [PointState::at_rest(Vector([9.0; 3])); 2];
     assert_eq!(device.read(0.0, &mut points).unwrap(), Reading::NotReady);
     assert!(mailbox.forces().is_empty() && mailbox.ticks() == 0);
     for x in [1.0, 2.0] {
-        let state = PointState::at_rest(Vector([x, 0.0]));
+        let state = PointState::at_rest(Vector([x, 0.0, 0.0]));
         mailbox.set(&[state, state]).unwrap();
-        device.write(&[Vector([0.0, x]), Vector::ZERO]).unwrap();
+        device.write(&[Vector([0.0, x, 0.0]), Vector::ZERO]).unwrap();
     }
     assert_eq!(device.read(1.0, &mut points).unwrap(), fresh(1.0));
-    assert_eq!(points[1].position, Vector([2.0, 0.0]));
+    assert_eq!(points[1].position, Vector([2.0, 0.0, 0.0]));
     assert_eq!(device.read(1.001, &mut points).unwrap(), Reading::Stale);
-    assert_eq!(mailbox.forces(), [Vector([0.0, 2.0]), Vector::ZERO]);
+    assert_eq!(mailbox.forces(), [Vector([0.0, 2.0, 0.0]), Vector::ZERO]);
     assert_eq!(mailbox.ticks(), 2);
     mailbox.set_at(77.0, &points).unwrap();
     assert_eq!(device.read(1.002, &mut points).unwrap(), fresh(77.0));
     assert!(mailbox.set(&points[..1]).is_err());
-    assert!(MailboxDevice::<2>::new(DeviceProfile::unlimited("none"), 0).is_err());
+    assert!(MailboxDevice::new(DeviceProfile::unlimited("none"), 0).is_err());
 }
 
 #[test]
 fn a_driver_that_died_is_a_lost_device_until_it_sets_again() {
     let mut points = [PointState::at_rest(Vector::ZERO)];
     let (mut device, mut mailbox) =
-        MailboxDevice::<2>::new(DeviceProfile::unlimited("one"), 1).unwrap();
+        MailboxDevice::new(DeviceProfile::unlimited("one"), 1).unwrap();
     device.read(7.0, &mut points).unwrap(); // a driver that has not begun is no dead one
     mailbox.set(&points).unwrap();
     for time in [7.0, 7.05, 7.1] {
@@ -71,7 +71,7 @@ fn a_driver_that_died_is_a_lost_device_until_it_sets_again() {
 fn turns_buttons_and_grippers_pass_with_the_states() {
     let mut points = [PointState::at_rest(Vector::ZERO)];
     let (mut device, mut mailbox) =
-        MailboxDevice::<3>::new(DeviceProfile::unlimited("seven"), 1).unwrap();
+        MailboxDevice::new(DeviceProfile::unlimited("seven"), 1).unwrap();
     let about_y = Rotation::from_axis_angle(Vector::unit(1), 0.3).unwrap();
     mailbox.set_turn(TurnState::at_rest(about_y));
     mailbox.set_buttons(Buttons::NONE.with(2));
@@ -91,7 +91,7 @@ fn turns_buttons_and_grippers_pass_with_the_states() {
 #[test]
 fn a_driver_hears_of_watchdog_and_motors() {
     let unlimited = || DeviceProfile::unlimited("one");
-    let (device, mut mailbox) = MailboxDevice::<2>::new(unlimited(), 1).unwrap();
+    let (device, mut mailbox) = MailboxDevice::new(unlimited(), 1).unwrap();
     let [asked, longest] = [32, 20].map(Duration::from_millis);
     let mut device = device.with_watchdog(longest).with_rate(500.0);
     assert_eq!((mailbox.is_enabled(), mailbox.watchdog()), (false, None));
@@ -101,6 +101,6 @@ fn a_driver_hears_of_watchdog_and_motors() {
     device.close().unwrap();
     assert!(!mailbox.is_enabled());
     assert_eq!(Device::rate(&device), Some(500.0));
-    let (mut device, _mailbox) = MailboxDevice::<2>::new(unlimited(), 1).unwrap();
+    let (mut device, _mailbox) = MailboxDevice::new(unlimited(), 1).unwrap();
     assert_eq!(device.set_watchdog(asked).unwrap(), None);
 }

@@ -5,10 +5,13 @@
 
 mod boolean;
 mod domain;
+mod in_space;
 mod short;
 mod slices;
 mod surface;
 mod transform;
+
+pub use in_space::SpaceShape;
 
 use std::sync::Arc;
 

@@ -14,16 +14,16 @@ use palpate_safety::{Arrival, Change, PortState};
 
 /// The force in free space, of guides and magnets.
 #[derive(Clone, Copy)]
-pub(crate) struct FreeForce<const D: usize> {
+pub(crate) struct FreeForce {
     /// The force [N].
-    pub(crate) force: Vector<f64, D>,
+    pub(crate) force: Vector<f64, 3>,
     /// Whether the proxy was placed anew: then all forces rise from zero.
     pub(crate) placed: bool,
     /// What happened beside the motion of the hand.
     pub(crate) change: Change,
 }
 
-impl<const D: usize> ContactPoint<D> {
+impl ContactPoint {
     /// Takes note that the bodies `before` are replaced by those of `after` before the next tick;
     /// `wanted` is their last force [N]. The new ones carry the proxy out where they cover it, for a
     /// point by `most_of_point` [m] at most.
@@ -31,8 +31,8 @@ impl<const D: usize> ContactPoint<D> {
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     pub(crate) fn replace_bodies(
         &mut self,
-        [before, after]: [&Nearby<'_, D>; 2],
-        wanted: Vector<f64, D>,
+        [before, after]: [&Nearby<'_>; 2],
+        wanted: Vector<f64, 3>,
         most_of_point: f64,
     ) {
         self.proxy.carry_out(before, after, most_of_point);
@@ -54,11 +54,11 @@ impl<const D: usize> ContactPoint<D> {
     #[inline(always)]
     pub(crate) fn give(
         &mut self,
-        setting: &Setting<D>,
-        at_device: PointState<D>,
-        touch: &mut Touch<D>,
-        free: FreeForce<D>,
-    ) -> Vector<f64, D> {
+        setting: &Setting,
+        at_device: PointState,
+        touch: &mut Touch,
+        free: FreeForce,
+    ) -> Vector<f64, 3> {
         let FreeForce { force: free, placed, change } = free;
         let Setting { options, map, rise_step, arrival, .. } = setting;
         let has_start = placed || self.of_others < f64::INFINITY;
@@ -103,7 +103,7 @@ impl<const D: usize> ContactPoint<D> {
     /// proxy out.
     #[cold]
     #[inline(never)]
-    fn start(&mut self, [placed, carried]: [bool; 2], wanted: Vector<f64, D>) -> f64 {
+    fn start(&mut self, [placed, carried]: [bool; 2], wanted: Vector<f64, 3>) -> f64 {
         let others = std::mem::replace(&mut self.of_others, f64::INFINITY);
         match (placed, carried) {
             (true, _) => 0.0,

@@ -8,17 +8,17 @@ use palpate_field::{Point, Vector};
 use super::ContactPoint;
 use crate::guide::Guide;
 
-impl<const D: usize> ContactPoint<D> {
+impl ContactPoint {
     /// The force of the guides [N]; zero if a number is not finite.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     #[inline]
     pub(crate) fn guided(
         &mut self,
-        position: Point<D>,
-        velocity: Vector<f64, D>,
+        position: Point<3>,
+        velocity: Vector<f64, 3>,
         rise_step: f64,
-    ) -> Vector<f64, D> {
+    ) -> Vector<f64, 3> {
         if self.guides.is_empty() || !(position.is_finite() && velocity.is_finite()) {
             return Vector::ZERO;
         }

@@ -33,29 +33,29 @@ const PIECES: usize = 16;
 /// use palpate_haptics::{Curve, Guide, GuideOptions};
 ///
 /// # fn main() -> Result<(), palpate_haptics::HapticsError> {
-/// let corner = [[0.0, 1.0], [0.0, 0.0], [1.0, 0.0]].map(Vector);
+/// let corner = [[0.0, 1.0, 0.0], [0.0; 3], [1.0, 0.0, 0.0]].map(Vector);
 /// let mut guide = Guide::along_curve(Curve::polyline(&corner)?, GuideOptions::default())?;
-/// let force = guide.force(Vector([0.5, 0.00390625]), Vector([0.25, 0.0]));
-/// assert_eq!(force, Vector([0.0, -1.171875])); // 300/256 N
+/// let force = guide.force(Vector([0.5, 0.00390625, 0.0]), Vector([0.25, 0.0, 0.0]));
+/// assert_eq!(force, Vector([0.0, -1.171875, 0.0])); // 300/256 N
 /// # Ok(())
 /// # }
 /// ```
 #[derive(Clone, Debug)]
-pub struct Curve<const D: usize> {
-    segments: Vec<Segment<D>>,
+pub struct Curve {
+    segments: Vec<Segment>,
     /// Centre and radius of a ball around each [`GROUP`] of segments.
-    balls: Vec<(Point<D>, f64)>,
+    balls: Vec<(Point<3>, f64)>,
     deviation: f64,
 }
 
 #[derive(Clone, Copy, Debug)]
-struct Segment<const D: usize> {
-    from: Point<D>,
-    tangent: Vector<f64, D>,
+struct Segment {
+    from: Point<3>,
+    tangent: Vector<f64, 3>,
     length: f64,
 }
 
-impl<const D: usize> Curve<D> {
+impl Curve {
     /// A polyline through the points [m]; points that repeat their predecessor are left out.
     ///
     /// # Errors
@@ -63,7 +63,7 @@ impl<const D: usize> Curve<D> {
     /// [`HapticsError::NoCurve`] without two different points;
     /// [`HapticsError::Number`] with more than 1025, or if a coordinate is not finite.
     #[inline(never)]
-    pub fn polyline(points: &[Point<D>]) -> Result<Self, HapticsError> {
+    pub fn polyline(points: &[Point<3>]) -> Result<Self, HapticsError> {
         if points.len() > MOST_SEGMENTS + 1 {
             return Err(too_many(points.len(), "at most 1025"));
         }
@@ -95,7 +95,7 @@ impl<const D: usize> Curve<D> {
     ///
     /// As [`polyline`](Self::polyline), with more than 65 points.
     #[inline(never)]
-    pub fn smooth(points: &[Point<D>]) -> Result<Self, HapticsError> {
+    pub fn smooth(points: &[Point<3>]) -> Result<Self, HapticsError> {
         if points.len() > MOST_SEGMENTS / PIECES + 1 {
             return Err(too_many(points.len(), "at most 65"));
         }
@@ -139,7 +139,7 @@ impl<const D: usize> Curve<D> {
     }
 
     /// The ends of all segments, in order [m].
-    pub(super) fn corners(&self) -> Vec<Point<D>> {
+    pub(super) fn corners(&self) -> Vec<Point<3>> {
         let starts = self.segments.iter().map(|segment| segment.from);
         let end = self.segments.last().map(|last| last.from + last.tangent * last.length);
         starts.chain(end).collect()
@@ -149,7 +149,7 @@ impl<const D: usize> Curve<D> {
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic; looks at 64 balls and 1024
     /// segments at most.
-    pub(super) fn closest(&self, position: Point<D>) -> Closest<D> {
+    pub(super) fn closest(&self, position: Point<3>) -> Closest {
         let mut best = (f64::INFINITY, Closest::on_curve(position, None));
         let last = self.segments.len() - 1;
         let groups = self.segments.chunks(GROUP).zip(&self.balls).enumerate();
@@ -180,7 +180,7 @@ fn too_many(count: usize, rule: &'static str) -> HapticsError {
 }
 
 /// A ball around segments that follow one another.
-fn ball_around<const D: usize>(segments: &[Segment<D>]) -> (Point<D>, f64) {
+fn ball_around(segments: &[Segment]) -> (Point<3>, f64) {
     let ends = || segments.iter().flat_map(|s| [s.from, s.from + s.tangent * s.length]);
     let mut centre = Vector::ZERO;
     for end in ends() {
@@ -221,14 +221,15 @@ mod tests {
 
     #[test]
     fn a_smooth_curve_passes_its_points_and_says_how_far_off_it_is() {
-        let points = [[0.0, 0.0], [1.0, 2.0], [3.0, 2.0], [4.0, -1.0]].map(Vector);
+        let points =
+            [[0.0, 0.0, 0.0], [1.0, 2.0, 0.0], [3.0, 2.0, 0.0], [4.0, -1.0, 0.0]].map(Vector);
         let curve = Curve::smooth(&points).unwrap();
         for point in points {
             assert!((curve.closest(point).point - point).norm() < 1e-15);
         }
         // The middle of the second span, by hand: the mean of its ends plus an eighth of the
         // difference of its tangents, (3, 2)/2 and (3, −3)/2.
-        let middle = Vector([2.0, 2.0 + 0.3125]);
+        let middle = Vector([2.0, 2.0 + 0.3125, 0.0]);
         assert!((curve.closest(middle).point - middle).norm() < 1e-14);
         assert!(curve.deviation() > 0.0 && curve.deviation() < 0.01);
         assert_eq!(Curve::polyline(&points).unwrap().deviation(), 0.0);

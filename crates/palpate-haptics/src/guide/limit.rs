@@ -11,11 +11,11 @@ use palpate_device::limited;
 
 /// The two parts of a force [N].
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Motion<const D: usize> {
+pub(crate) struct Motion {
     /// The part that depends on the position alone.
-    pub(crate) spring: Vector<f64, D>,
+    pub(crate) spring: Vector<f64, 3>,
     /// The part that dissipates energy.
-    pub(crate) damper: Vector<f64, D>,
+    pub(crate) damper: Vector<f64, 3>,
 }
 
 /// The sum of spring and damper, at most `max_force`: the spring is limited first, then the
@@ -25,7 +25,7 @@ pub(crate) struct Motion<const D: usize> {
 /// compressed slowly and released fast would give back more energy than it took.
 ///
 /// Real-time: allocates nothing, takes no lock, cannot panic.
-pub(crate) fn damped<const D: usize>(motion: &Motion<D>, max_force: f64) -> Vector<f64, D> {
+pub(crate) fn damped(motion: &Motion, max_force: f64) -> Vector<f64, 3> {
     let spring = limited(motion.spring, max_force);
     let damper = motion.damper;
     let whole = spring + damper;

@@ -87,10 +87,7 @@ impl GuideOptions {
 }
 
 /// Refuses a point that is not finite.
-fn finite<const D: usize>(
-    parameter: &'static str,
-    point: Point<D>,
-) -> Result<Point<D>, HapticsError> {
+fn finite(parameter: &'static str, point: Point<3>) -> Result<Point<3>, HapticsError> {
     match point.0.iter().find(|x| !x.is_finite()) {
         None => Ok(point),
         Some(value) => {
@@ -101,10 +98,10 @@ fn finite<const D: usize>(
 }
 
 /// The unit vector along `direction`; an error if `direction` is zero or not finite.
-fn unit<const D: usize>(
+fn unit(
     parameter: &'static str,
-    direction: Vector<f64, D>,
-) -> Result<Vector<f64, D>, HapticsError> {
+    direction: Vector<f64, 3>,
+) -> Result<Vector<f64, 3>, HapticsError> {
     direction.normalized().ok_or(HapticsError::Number(NumberError::new(
         parameter,
         "a finite direction",
@@ -141,34 +138,34 @@ fn unit<const D: usize>(
 ///
 /// # fn main() -> Result<(), palpate_haptics::HapticsError> {
 /// let options = GuideOptions { stiffness: 256.0, damping: 2.0, ..GuideOptions::default() };
-/// let ruler = Vector([1.0, 0.0]);
+/// let ruler = Vector([1.0, 0.0, 0.0]);
 /// let mut guide = Guide::along_line(Vector::ZERO, ruler, options)?;
 ///
 /// // 1/256 m above the line, sliding along it and rising.
-/// let force = guide.force(Vector([3.0, 0.00390625]), Vector([0.5, 0.25]));
-/// assert_eq!(force, Vector([0.0, -1.5]));
+/// let force = guide.force(Vector([3.0, 0.00390625, 0.0]), Vector([0.5, 0.25, 0.0]));
+/// assert_eq!(force, Vector([0.0, -1.5, 0.0]));
 /// // The largest force limits the spring.
-/// assert_eq!(guide.force(Vector([0.0, 1.0]), Vector::ZERO), Vector([0.0, -2.0]));
+/// assert_eq!(guide.force(Vector([0.0, 1.0, 0.0]), Vector::ZERO), Vector([0.0, -2.0, 0.0]));
 /// # Ok(())
 /// # }
 /// ```
 #[derive(Clone, Debug)]
-pub struct Guide<const D: usize> {
-    kind: Kind<D>,
+pub struct Guide {
+    kind: Kind,
     options: GuideOptions,
     engaged: bool,
     /// The force of the last tick [N].
-    last: Vector<f64, D>,
+    last: Vector<f64, 3>,
 }
 
 #[derive(Clone, Debug)]
-enum Kind<const D: usize> {
-    Target(Target<D>),
-    Well(well::Well<D>),
-    Slope(Slope<D>),
+enum Kind {
+    Target(Target),
+    Well(well::Well),
+    Slope(Slope),
 }
 
-impl<const D: usize> Guide<D> {
+impl Guide {
     /// A guide towards `point` [m].
     ///
     /// # Errors
@@ -176,7 +173,7 @@ impl<const D: usize> Guide<D> {
     /// [`HapticsError::Number`] if an option is outside its range or a coordinate is not
     /// finite.
     pub fn to_point(
-        point: impl Into<Point<D>>,
+        point: impl Into<Point<3>>,
         options: GuideOptions,
     ) -> Result<Self, HapticsError> {
         Self::of(Kind::Target(Target::Point(finite("point", point.into())?)), options)
@@ -189,8 +186,8 @@ impl<const D: usize> Guide<D> {
     ///
     /// As [`to_point`](Self::to_point), and if `direction` is zero.
     pub fn along_line(
-        through: impl Into<Point<D>>,
-        direction: impl Into<Vector<f64, D>>,
+        through: impl Into<Point<3>>,
+        direction: impl Into<Vector<f64, 3>>,
         options: GuideOptions,
     ) -> Result<Self, HapticsError> {
         let through = finite("through", through.into())?;
@@ -204,8 +201,8 @@ impl<const D: usize> Guide<D> {
     ///
     /// As [`to_point`](Self::to_point), and if the ends coincide.
     pub fn along_segment(
-        from: impl Into<Point<D>>,
-        to: impl Into<Point<D>>,
+        from: impl Into<Point<3>>,
+        to: impl Into<Point<3>>,
         options: GuideOptions,
     ) -> Result<Self, HapticsError> {
         Self::along_curve(Curve::polyline(&[from.into(), to.into()])?, options)
@@ -218,8 +215,8 @@ impl<const D: usize> Guide<D> {
     ///
     /// As [`to_point`](Self::to_point), and if `normal` is zero.
     pub fn on_plane(
-        through: impl Into<Point<D>>,
-        normal: impl Into<Vector<f64, D>>,
+        through: impl Into<Point<3>>,
+        normal: impl Into<Vector<f64, 3>>,
         options: GuideOptions,
     ) -> Result<Self, HapticsError> {
         let through = finite("through", through.into())?;
@@ -233,7 +230,7 @@ impl<const D: usize> Guide<D> {
     ///
     /// As [`to_point`](Self::to_point).
     #[inline(never)]
-    pub fn along_curve(curve: Curve<D>, options: GuideOptions) -> Result<Self, HapticsError> {
+    pub fn along_curve(curve: Curve, options: GuideOptions) -> Result<Self, HapticsError> {
         Self::of(Kind::Target(Target::Curve(curve)), options)
     }
 
@@ -256,7 +253,7 @@ impl<const D: usize> Guide<D> {
     /// # fn main() -> Result<(), palpate_haptics::HapticsError> {
     /// let options = GuideOptions { stiffness: 128.0, ..GuideOptions::default() };
     /// let mut well = Guide::well(Vector::ZERO, 0.046875, options)?;
-    /// let mut pull = |x: f64| well.force(Vector([x, 0.0]), Vector::ZERO)[0];
+    /// let mut pull = |x: f64| well.force(Vector([x, 0.0, 0.0]), Vector::ZERO)[0];
     /// assert_eq!(pull(0.0078125), -1.0); // half way to 1/64 m
     /// assert_eq!(pull(0.015625), -2.0);
     /// assert_eq!(pull(0.03125), -1.0); // half way from there to the reach, 3/64 m
@@ -265,7 +262,7 @@ impl<const D: usize> Guide<D> {
     /// # }
     /// ```
     pub fn well(
-        centre: impl Into<Point<D>>,
+        centre: impl Into<Point<3>>,
         reach: f64,
         options: GuideOptions,
     ) -> Result<Self, HapticsError> {
@@ -281,11 +278,11 @@ impl<const D: usize> Guide<D> {
     ///
     /// As [`to_point`](Self::to_point).
     #[inline(never)]
-    pub fn down(slope: Slope<D>, options: GuideOptions) -> Result<Self, HapticsError> {
+    pub fn down(slope: Slope, options: GuideOptions) -> Result<Self, HapticsError> {
         Self::of(Kind::Slope(slope), options)
     }
 
-    fn of(kind: Kind<D>, options: GuideOptions) -> Result<Self, HapticsError> {
+    fn of(kind: Kind, options: GuideOptions) -> Result<Self, HapticsError> {
         Ok(Self { kind, options: options.checked()?, engaged: false, last: Vector::ZERO })
     }
 
@@ -341,7 +338,7 @@ impl<const D: usize> Guide<D> {
     /// Real-time: allocates nothing, takes no lock, cannot panic unless a custom field does. A
     /// curve costs at most 1024 segments, a slope one evaluation of its shape.
     #[inline(never)]
-    pub fn force(&mut self, position: Point<D>, velocity: Vector<f64, D>) -> Vector<f64, D> {
+    pub fn force(&mut self, position: Point<3>, velocity: Vector<f64, 3>) -> Vector<f64, 3> {
         let motion = self.motion(position, velocity);
         self.engaged = motion.is_some();
         let force = motion.map(|motion| damped(&motion, self.options.max_force));
@@ -356,19 +353,19 @@ impl<const D: usize> Guide<D> {
     /// ```
     /// use palpate_field::Vector;
     /// use palpate_haptics::{Guide, GuideOptions};
-    /// let mut guide = Guide::to_point([0.0, 0.0], GuideOptions::default())?;
+    /// let mut guide = Guide::to_point([0.0, 0.0, 0.0], GuideOptions::default())?;
     /// assert_eq!(guide.last_force(), Vector::ZERO);
-    /// let force = guide.force(Vector([0.0, 0.001]), Vector::ZERO);
+    /// let force = guide.force(Vector([0.0, 0.001, 0.0]), Vector::ZERO);
     /// assert_eq!(guide.last_force(), force);
     /// # Ok::<(), palpate_haptics::HapticsError>(())
     /// ```
     #[must_use]
-    pub fn last_force(&self) -> Vector<f64, D> {
+    pub fn last_force(&self) -> Vector<f64, 3> {
         self.last
     }
 
     /// Spring and damper, without the limit; `None` where the guide does not act.
-    fn motion(&self, position: Point<D>, velocity: Vector<f64, D>) -> Option<Motion<D>> {
+    fn motion(&self, position: Point<3>, velocity: Vector<f64, 3>) -> Option<Motion> {
         if !position.is_finite() || !velocity.is_finite() {
             return None;
         }

@@ -32,32 +32,32 @@ use palpate_device::NumberError;
 /// use palpate_haptics::{Guide, GuideOptions, Slope};
 ///
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
-/// let ball = Shape::from_kernel(Ball::new(0.5)?);
+/// let ball = Shape::<3>::from_kernel(Ball::new(0.5)?);
 /// let slope = Slope::new(ball, 1.5, [-0.125, 0.25])?.with_edge(0.125)?;
 /// let mut guide = Guide::down(slope, GuideOptions::default())?;
-/// let mut pull = |y: f64| guide.force(Vector([0.0, y]), Vector::ZERO);
-/// assert_eq!(pull(0.5625), Vector([0.0, -1.5]));
-/// assert_eq!(pull(0.6875), Vector([0.0, -0.75]));
+/// let mut pull = |y: f64| guide.force(Vector([0.0, y, 0.0]), Vector::ZERO);
+/// assert_eq!(pull(0.5625), Vector([0.0, -1.5, 0.0]));
+/// assert_eq!(pull(0.6875), Vector([0.0, -0.75, 0.0]));
 /// assert_eq!(pull(0.75), Vector::ZERO);
 /// # Ok(())
 /// # }
 /// ```
 #[derive(Clone, Debug)]
-pub struct Slope<const D: usize> {
-    shape: Shape<D>,
+pub struct Slope {
+    shape: Shape<3>,
     gain: f64,
     band: [f64; 2],
     edge: f64,
 }
 
-impl<const D: usize> Slope<D> {
+impl Slope {
     /// The slope of `shape` where its field is in `band` [m]; a gradient of length one gives
     /// the force `gain` [N]. Each edge takes a quarter of the band.
     ///
     /// # Errors
     ///
     /// [`HapticsError::Number`] if the band is empty or not finite, or the gain is not finite.
-    pub fn new(shape: Shape<D>, gain: f64, band: [f64; 2]) -> Result<Self, HapticsError> {
+    pub fn new(shape: Shape<3>, gain: f64, band: [f64; 2]) -> Result<Self, HapticsError> {
         if !gain.is_finite() {
             let (parameter, rule, unit) = ("gain", "finite", "N");
             return Err(HapticsError::Number(NumberError::new(parameter, rule, gain, unit)));
@@ -99,10 +99,10 @@ impl<const D: usize> Slope<D> {
     /// evaluation.
     pub(super) fn motion(
         &self,
-        position: Point<D>,
-        velocity: Vector<f64, D>,
+        position: Point<3>,
+        velocity: Vector<f64, 3>,
         damping: f64,
-    ) -> Option<Motion<D>> {
+    ) -> Option<Motion> {
         let (value, gradient) = self.shape.distance_gradient(position);
         let [near, far] = self.band;
         let inside = (value - near).min(far - value);

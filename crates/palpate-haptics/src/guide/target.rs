@@ -10,37 +10,37 @@ use palpate_field::{Point, Vector};
 use super::curve::Curve;
 
 #[derive(Clone, Debug)]
-pub(super) enum Target<const D: usize> {
-    Point(Point<D>),
-    Line { through: Point<D>, direction: Vector<f64, D> },
-    Plane { through: Point<D>, normal: Vector<f64, D> },
-    Curve(Curve<D>),
+pub(super) enum Target {
+    Point(Point<3>),
+    Line { through: Point<3>, direction: Vector<f64, 3> },
+    Plane { through: Point<3>, normal: Vector<f64, 3> },
+    Curve(Curve),
 }
 
 /// The closest point of a target, and the free directions there.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Closest<const D: usize> {
-    pub(super) point: Point<D>,
-    freedom: Freedom<D>,
+pub(super) struct Closest {
+    pub(super) point: Point<3>,
+    freedom: Freedom,
 }
 
 #[derive(Clone, Copy, Debug)]
-enum Freedom<const D: usize> {
+enum Freedom {
     None,
     /// Free along a unit vector.
-    Along(Vector<f64, D>),
+    Along(Vector<f64, 3>),
     /// Free across a unit vector.
-    Across(Vector<f64, D>),
+    Across(Vector<f64, 3>),
 }
 
-impl<const D: usize> Closest<D> {
+impl Closest {
     /// A point of a curve with the unit `tangent`; `None` at its ends.
-    pub(super) fn on_curve(point: Point<D>, tangent: Option<Vector<f64, D>>) -> Self {
+    pub(super) fn on_curve(point: Point<3>, tangent: Option<Vector<f64, 3>>) -> Self {
         Self { point, freedom: tangent.map_or(Freedom::None, Freedom::Along) }
     }
 
     /// The constrained part of `velocity`.
-    pub(super) fn constrained(&self, velocity: Vector<f64, D>) -> Vector<f64, D> {
+    pub(super) fn constrained(&self, velocity: Vector<f64, 3>) -> Vector<f64, 3> {
         match self.freedom {
             Freedom::None => velocity,
             Freedom::Along(tangent) => velocity - tangent * velocity.dot(tangent),
@@ -49,9 +49,9 @@ impl<const D: usize> Closest<D> {
     }
 }
 
-impl<const D: usize> Target<D> {
+impl Target {
     /// Real-time: allocates nothing, takes no lock, cannot panic.
-    pub(super) fn closest(&self, position: Point<D>) -> Closest<D> {
+    pub(super) fn closest(&self, position: Point<3>) -> Closest {
         match self {
             Self::Point(point) => Closest { point: *point, freedom: Freedom::None },
             Self::Line { through, direction } => {

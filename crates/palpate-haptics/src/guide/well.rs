@@ -12,8 +12,8 @@ use crate::error::HapticsError;
 use palpate_device::NumberError;
 
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Well<const D: usize> {
-    pub(super) centre: Point<D>,
+pub(super) struct Well {
+    pub(super) centre: Point<3>,
     /// The distance at which the pull is largest [m].
     inner: f64,
     /// The distance at which the pull ends [m].
@@ -22,9 +22,9 @@ pub(super) struct Well<const D: usize> {
     max_force: f64,
 }
 
-impl<const D: usize> Well<D> {
+impl Well {
     pub(super) fn new(
-        centre: Point<D>,
+        centre: Point<3>,
         reach: f64,
         options: &GuideOptions,
     ) -> Result<Self, HapticsError> {
@@ -47,7 +47,7 @@ impl<const D: usize> Well<D> {
     /// the reach.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
-    pub(super) fn pull(&self, position: Point<D>) -> Option<(Vector<f64, D>, f64)> {
+    pub(super) fn pull(&self, position: Point<3>) -> Option<(Vector<f64, 3>, f64)> {
         let inward = self.centre - position;
         let distance = inward.norm();
         if distance <= self.inner {

@@ -27,9 +27,9 @@ use palpate_safety::Accepted;
 ///
 /// Edits that the servo has not received yet are merged: before its next tick the servo
 /// receives all of them or none. Replaced bodies are dropped on this thread, by the next call.
-pub struct Control<const D: usize> {
-    pub(super) sender: EditSender<Edits<D>>,
-    pub(super) reader: LatestReader<Snapshot<D>>,
+pub struct Control {
+    pub(super) sender: EditSender<Edits>,
+    pub(super) reader: LatestReader<Snapshot>,
     pub(super) events: rtrb::Consumer<Event>,
     pub(super) flags: Arc<Flags>,
     pub(super) stop: StopSwitch,
@@ -40,12 +40,12 @@ pub struct Control<const D: usize> {
     pub(super) points: usize,
     /// The protection of a [`Servo`](crate::Servo) and its rate [Hz]; `None` for an
     /// [unprotected](crate::Unprotected) servo.
-    pub(super) protection: Option<(Arc<Protection<D>>, f64)>,
+    pub(super) protection: Option<(Arc<Protection>, f64)>,
     /// The requested virtual coupling of the tool; `None` for contact points.
     pub(super) requested_coupling: Option<Coupling>,
 }
 
-impl<const D: usize> Control<D> {
+impl Control {
     /// Replaces all bodies from the next tick on. Poses that were set before belong to the old
     /// bodies and are dropped. For what a hand feels that touches them see
     /// [`Servo::replace_bodies`](crate::Servo::replace_bodies).
@@ -62,7 +62,7 @@ impl<const D: usize> Control<D> {
     /// [`Servo::accept`](crate::Servo::accept).
     pub fn replace_bodies(
         &mut self,
-        bodies: impl TryInto<Bodies<D>, Error: Into<HapticsError>>,
+        bodies: impl TryInto<Bodies, Error: Into<HapticsError>>,
     ) -> Result<Vec<Accepted>, HapticsError> {
         let bodies = bodies.try_into().map_err(Into::into)?;
         let count = bodies.bodies().len();
@@ -91,7 +91,7 @@ impl<const D: usize> Control<D> {
     ///
     /// [`HapticsError::NoSuchBody`] or [`HapticsError::Pose`]; then no body moves.
     #[inline(never)]
-    pub fn set_poses(&mut self, poses: &[(usize, Pose<D>)]) -> Result<(), HapticsError> {
+    pub fn set_poses(&mut self, poses: &[(usize, Pose<3>)]) -> Result<(), HapticsError> {
         for (body, pose) in poses {
             if *body >= self.bodies {
                 return Err(HapticsError::NoSuchBody { body: *body, bodies: self.bodies });
@@ -160,10 +160,7 @@ impl<const D: usize> Control<D> {
     ///
     /// As [`Protection::accept_guides`].
     #[inline(never)]
-    pub fn replace_guides(
-        &mut self,
-        guides: &[Guide<D>],
-    ) -> Result<Vec<Accepted>, HapticsError> {
+    pub fn replace_guides(&mut self, guides: &[Guide]) -> Result<Vec<Accepted>, HapticsError> {
         let (guides, accepted) = match &self.protection {
             Some((protection, rate)) => protection.accept_guides(guides, *rate)?,
             None => (guides.to_vec(), Vec::new()),
@@ -195,7 +192,7 @@ impl<const D: usize> Control<D> {
     /// The state of the servo after its last tick; `None` before the first tick.
     #[must_use]
     #[inline(never)]
-    pub fn latest(&mut self) -> Option<&Snapshot<D>> {
+    pub fn latest(&mut self) -> Option<&Snapshot> {
         self.reader.latest()
     }
 
@@ -217,13 +214,13 @@ impl<const D: usize> Control<D> {
         self.flags.ended.load(Ordering::Acquire)
     }
 
-    fn edit(&mut self, edit: impl FnOnce(&mut Edits<D>)) {
+    fn edit(&mut self, edit: impl FnOnce(&mut Edits)) {
         self.collect();
         self.sender.edit(edit);
     }
 }
 
-impl<const D: usize> fmt::Debug for Control<D> {
+impl fmt::Debug for Control {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("Control")
             .field("bodies", &self.bodies)

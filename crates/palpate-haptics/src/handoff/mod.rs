@@ -62,14 +62,14 @@ impl Default for HandoffOptions {
 /// use palpate_haptics::{HandoffOptions, Progress, ServoOptions, Servo, handoff};
 ///
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
-/// let ball = Shape::from_kernel(Ball::new(0.5)?);
+/// let ball = Shape::<3>::from_kernel(Ball::new(0.5)?);
 /// let mut servo = Servo::new(ball, 1, ServoOptions::default())?;
 /// let (mut control, mut end) = handoff(&servo, HandoffOptions::default());
 ///
-/// control.set_poses(&[(0, Pose::translation(Vector([0.0, -1.0])))])?;
+/// control.set_poses(&[(0, Pose::translation(Vector([0.0, -1.0, 0.0])))])?;
 /// // In a tick:
 /// end.receive(&mut servo);
-/// servo.step(&[PointState::at_rest(Vector([0.0, 0.25]))]);
+/// servo.step(&[PointState::at_rest(Vector([0.0, 0.25, 0.0]))]);
 /// let mut progress = Progress::default();
 /// progress.ticks = 1;
 /// end.publish(&servo, &progress);
@@ -80,21 +80,18 @@ impl Default for HandoffOptions {
 /// # }
 /// ```
 #[must_use]
-pub fn handoff<const D: usize>(
-    servo: &Servo<D, impl Kind<D>>,
-    options: HandoffOptions,
-) -> (Control<D>, ServoEnd<D>) {
+pub fn handoff(servo: &Servo<impl Kind>, options: HandoffOptions) -> (Control, ServoEnd) {
     handoff_with(servo, options, StopSwitch::new())
 }
 
 /// As [`handoff`], with an emergency stop that other servos may share: a servo that begins while the
 /// switch is stopped begins without forces.
 #[must_use]
-pub fn handoff_with<const D: usize>(
-    servo: &Servo<D, impl Kind<D>>,
+pub fn handoff_with(
+    servo: &Servo<impl Kind>,
     options: HandoffOptions,
     stop: StopSwitch,
-) -> (Control<D>, ServoEnd<D>) {
+) -> (Control, ServoEnd) {
     let protection = servo.protection_of_any().cloned();
     let servo = servo.renderer();
     let bodies = servo.bodies().bodies().len();
@@ -143,12 +140,12 @@ pub fn handoff_with<const D: usize>(
 }
 
 /// Edits that the servo applies together before a tick.
-struct Edits<const D: usize> {
+struct Edits {
     /// The new bodies; after the tick that applies them, the old bodies, for the sender to
     /// drop.
-    bodies: Option<AcceptedBodies<D>>,
+    bodies: Option<AcceptedBodies>,
     /// New poses, by body index.
-    poses: Vec<Option<Pose<D>>>,
+    poses: Vec<Option<Pose<3>>>,
     /// The largest force on a contact point [N].
     max_force: f64,
     /// The largest torque on a tool's device [N·m].
@@ -159,10 +156,10 @@ struct Edits<const D: usize> {
     is_lifted: Option<bool>,
     /// The new guides of each contact point; after the tick that applies them, the old ones, for the
     /// sender to drop.
-    guides: Option<Vec<Vec<Guide<D>>>>,
+    guides: Option<Vec<Vec<Guide>>>,
 }
 
-impl<const D: usize> Default for Edits<D> {
+impl Default for Edits {
     fn default() -> Self {
         let none = f64::INFINITY;
         Self {

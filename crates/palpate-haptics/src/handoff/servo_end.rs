@@ -19,9 +19,9 @@ use crate::servo::{Kind, Servo};
 
 /// The servo's end of a hand-off: receives edits and publishes the state of the servo. Made by
 /// [`handoff`](crate::handoff).
-pub struct ServoEnd<const D: usize> {
-    pub(super) receiver: EditReceiver<Edits<D>>,
-    pub(super) writer: LatestWriter<Snapshot<D>>,
+pub struct ServoEnd {
+    pub(super) receiver: EditReceiver<Edits>,
+    pub(super) writer: LatestWriter<Snapshot>,
     pub(super) events: rtrb::Producer<Event>,
     pub(super) flags: Arc<Flags>,
     pub(super) stop: StopSwitch,
@@ -31,7 +31,7 @@ pub struct ServoEnd<const D: usize> {
     pub(super) is_foreign: bool,
 }
 
-impl<const D: usize> ServoEnd<D> {
+impl ServoEnd {
     /// Applies the edits of the other end to `servo`; call it before each tick.
     ///
     /// Bodies that were accepted for another servo are not taken, nor their poses. The servo stops as
@@ -39,7 +39,7 @@ impl<const D: usize> ServoEnd<D> {
     /// unprotected servo takes the bodies of any.
     ///
     /// Real-time: allocates nothing, frees nothing, takes no lock, cannot panic.
-    pub fn receive(&mut self, servo: &mut Servo<D, impl Kind<D>>) {
+    pub fn receive(&mut self, servo: &mut Servo<impl Kind>) {
         let servo = servo.renderer_mut();
         let is_stopped = self.stop.is_stopped();
         if is_stopped != self.is_stopped {
@@ -88,7 +88,7 @@ impl<const D: usize> ServoEnd<D> {
     /// Publishes the state of `servo` to the other end; call it after each tick.
     ///
     /// Real-time: allocates nothing, frees nothing, takes no lock, cannot panic.
-    pub fn publish(&mut self, servo: &Servo<D, impl Kind<D>>, progress: &Progress) {
+    pub fn publish(&mut self, servo: &Servo<impl Kind>, progress: &Progress) {
         let servo = servo.renderer();
         for event in servo.events() {
             self.events_lost += u64::from(self.events.push(*event).is_err());
@@ -117,7 +117,7 @@ impl<const D: usize> ServoEnd<D> {
     }
 }
 
-impl<const D: usize> fmt::Debug for ServoEnd<D> {
+impl fmt::Debug for ServoEnd {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("ServoEnd")
             .field("events_lost", &self.events_lost)

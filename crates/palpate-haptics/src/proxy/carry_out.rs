@@ -46,18 +46,18 @@ const MOST_PLANES: u32 = 8;
 
 /// Where an edit carries a proxy.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct CarriedOut<const D: usize> {
+pub(super) struct CarriedOut {
     /// The place, evaluated in the bodies after the edit.
-    pub(super) sample: Sample<D>,
+    pub(super) sample: Sample,
     /// The unit normal of the surface there.
-    normal: Vector<f64, D>,
+    normal: Vector<f64, 3>,
     /// Where the proxy was in the last tick [m].
-    from: Point<D>,
+    from: Point<3>,
     /// How far the place is from there [m].
     pub(super) distance: f64,
 }
 
-impl<const D: usize> Proxy<D> {
+impl Proxy {
     /// Forgets the bodies `before`, which changed to those of `after`. If these cover the proxy, they
     /// carry it out in the next tick, the shortest way. Returns how far [m]; `None` if they do not
     /// cover it, or if the way is longer than the probe's radius. For a probe that moves as a
@@ -85,26 +85,26 @@ impl<const D: usize> Proxy<D> {
     /// use palpate_haptics::{Bodies, Probe, Proxy};
     ///
     /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
-    /// let ground = |y| HalfSpace::new(Vector([0.0, 1.0]), y).map(Shape::from_kernel);
+    /// let ground = |y| HalfSpace::new(Vector([0.0, 1.0, 0.0]), y).map(Shape::from_kernel);
     /// let (before, after) = (Bodies::from(ground(0.0)?), Bodies::from(ground(0.001)?));
     /// let mut proxy = Proxy::new(Probe::new(0.0)?);
-    /// proxy.follow(&before.everything(), Vector([0.0, 0.1]));
-    /// let device = Vector([0.0, -0.002]);
+    /// proxy.follow(&before.everything(), Vector([0.0, 0.1, 0.0]));
+    /// let device = Vector([0.0, -0.002, 0.0]);
     /// proxy.follow(&before.everything(), device);
     ///
     /// let way = proxy.carry_out(&before.everything(), &after.everything(), 0.005);
     /// assert!(way.is_some_and(|way| (way - 0.001).abs() < 1e-9));
     /// let following = proxy.follow(&after.everything(), device);
     /// assert!(following.contact && !following.placed);
-    /// assert!((following.proxy - Vector([0.0, 0.001])).norm() < 1e-9);
+    /// assert!((following.proxy - Vector([0.0, 0.001, 0.0])).norm() < 1e-9);
     /// # Ok(())
     /// # }
     /// ```
     #[inline(never)]
     pub fn carry_out(
         &mut self,
-        before: &Nearby<'_, D>,
-        after: &Nearby<'_, D>,
+        before: &Nearby<'_>,
+        after: &Nearby<'_>,
         most_of_point: f64,
     ) -> Option<f64> {
         let (at, is_stale, last) = (self.at, self.is_stale, self.carried_out);
@@ -130,6 +130,8 @@ impl<const D: usize> Proxy<D> {
         let origin = last.map_or(at.point, |last| last.from);
         let covered = after.gradient(place)?;
         let most = if after.is_point() { most_of_point } else { radius };
+        // Along z planar shapes are endless, and there is no way out.
+        let axes = if after.nearby().is_flat() { 2 } else { 3 };
         let mut way_out = WayOut { before, after, gap, covered, origin, most, best: None };
         // The known planes may lack a wall of a crease; the pull of the hand is between all of them.
         let pull = (at.point - self.device).normalized().unwrap_or(Vector::ZERO);
@@ -147,7 +149,7 @@ impl<const D: usize> Proxy<D> {
             {
                 way_out.take(near, up);
             }
-            for axis in 0..D {
+            for axis in 0..axes {
                 let across = Vector::unit(axis) - up * up.dot(Vector::unit(axis));
                 for across in across.normalized().into_iter().flat_map(|way| [way, -way]) {
                     way_out.leave((up + across) * FRAC_1_SQRT_2, up);
@@ -165,7 +167,7 @@ impl<const D: usize> Proxy<D> {
 
     /// Takes the proxy to where an edit carries it; `None` if none does, or if the body that does
     /// moves in this tick.
-    pub(super) fn take_out(&mut self, nearby: &Nearby<'_, D>) -> Option<CarriedOut<D>> {
+    pub(super) fn take_out(&mut self, nearby: &Nearby<'_>) -> Option<CarriedOut> {
         let out = self.carried_out.take()?;
         nearby.body(out.sample.body).filter(|body| !body.has_moved())?;
         (self.at, self.normal) = (Some(out.sample), out.normal);
@@ -176,30 +178,30 @@ impl<const D: usize> Proxy<D> {
 }
 
 /// The number of layers of a body.
-fn layers<const D: usize>(nearby: &Nearby<'_, D>, body: u32) -> Option<usize> {
+fn layers(nearby: &Nearby<'_>, body: u32) -> Option<usize> {
     nearby.body(body).map(|body| body.surface().strata.count())
 }
 
 /// A point with its gap in the bodies before.
-type Known<const D: usize> = (Point<D>, f64);
+type Known = (Point<3>, f64);
 
 /// The search for the shortest way out.
-struct WayOut<'a, const D: usize> {
+struct WayOut<'a> {
     /// The bodies before and after.
-    before: Sampler<'a, D>,
-    after: Sampler<'a, D>,
+    before: Sampler<'a>,
+    after: Sampler<'a>,
     /// The proxy's gap in the bodies before [m].
     gap: f64,
     /// The proxy in the bodies after.
-    covered: Sample<D>,
+    covered: Sample,
     /// From where the way counts [m].
-    origin: Point<D>,
+    origin: Point<3>,
     /// The longest way [m].
     most: f64,
-    best: Option<CarriedOut<D>>,
+    best: Option<CarriedOut>,
 }
 
-impl<const D: usize> WayOut<'_, D> {
+impl WayOut<'_> {
     fn is_covered(&self) -> bool {
         self.covered.gap < -self.after.tolerance()
     }
@@ -210,7 +212,7 @@ impl<const D: usize> WayOut<'_, D> {
     }
 
     /// The direction away from the bodies before; zero if there is none.
-    fn outwards(&mut self) -> Vector<f64, D> {
+    fn outwards(&mut self) -> Vector<f64, 3> {
         let sample = self.before.gradient(self.covered.point);
         sample.map_or(Vector::ZERO, |sample| self.before.tangent(&sample, Vector::ZERO).0)
     }
@@ -223,7 +225,7 @@ impl<const D: usize> WayOut<'_, D> {
 
     /// Looks for a way out that begins along a unit vector, unless the shortest is known; `up` is
     /// away from the bodies before.
-    fn leave(&mut self, along: Vector<f64, D>, up: Vector<f64, D>) {
+    fn leave(&mut self, along: Vector<f64, 3>, up: Vector<f64, 3>) {
         if along == Vector::ZERO || self.is_shortest() {
             return;
         }
@@ -234,7 +236,7 @@ impl<const D: usize> WayOut<'_, D> {
 
     /// Looks beyond the body `touched` for the place of a proxy that it passed over, along a unit
     /// vector.
-    fn over(&mut self, along: Vector<f64, D>, touched: u32) {
+    fn over(&mut self, along: Vector<f64, 3>, touched: u32) {
         let (place, mut here, mut way) = (self.covered.point, self.covered, 0.0);
         // Conservative advancement to the body (Mirtich 1996).
         while here.gap >= -self.after.tolerance() {
@@ -260,10 +262,10 @@ impl<const D: usize> WayOut<'_, D> {
     /// No surface is within `−f / L` of a point inside. A step to the tangent plane goes farther.
     fn exit(
         &mut self,
-        along: Vector<f64, D>,
-        mut here: Sample<D>,
+        along: Vector<f64, 3>,
+        mut here: Sample,
         mut way: f64,
-    ) -> Option<Sample<D>> {
+    ) -> Option<Sample> {
         let (place, tolerance) = (self.covered.point, self.after.tolerance());
         for _ in 0..MOST_STEPS {
             let sure = -here.gap * self.after.per_slope();
@@ -286,7 +288,7 @@ impl<const D: usize> WayOut<'_, D> {
     }
 
     /// Takes the place nearest to the proxy near `exit`, or `exit` itself if it is outside.
-    fn try_near(&mut self, exit: Sample<D>, up: Vector<f64, D>) {
+    fn try_near(&mut self, exit: Sample, up: Vector<f64, 3>) {
         let near = self.nearest(exit, up);
         if !near.is_some_and(|near| self.take(near, up))
             && near.is_none_or(|near| near.point != exit.point)
@@ -300,9 +302,9 @@ impl<const D: usize> WayOut<'_, D> {
     /// As in a [slide](crate::contact), each sample is the point nearest to the proxy above the
     /// tangent planes of those before. Here the way between them need not be free: whether that
     /// to the place was, [`was_free`](Self::was_free) tells.
-    fn nearest(&mut self, start: Sample<D>, up: Vector<f64, D>) -> Option<Sample<D>> {
+    fn nearest(&mut self, start: Sample, up: Vector<f64, 3>) -> Option<Sample> {
         let (place, tolerance) = (self.covered.point, self.after.tolerance());
-        let (mut planes, mut here, mut best) = (Planes::new(), start, None::<Sample<D>>);
+        let (mut planes, mut here, mut best) = (Planes::new(), start, None::<Sample>);
         for _ in 0..MOST_PLANES {
             let (normal, gap) = self.after.tangent(&here, up);
             let wall = PlaneConstraint { point: here.point - normal * gap, normal };
@@ -319,7 +321,7 @@ impl<const D: usize> WayOut<'_, D> {
             }
             let Some(next) = self.after.gradient(next) else { break };
             here = next;
-            let distance = |sample: &Sample<D>| (sample.point - place).norm();
+            let distance = |sample: &Sample| (sample.point - place).norm();
             let is_better = best.is_none_or(|best| distance(&here) < distance(&best));
             if here.gap >= -tolerance && is_better {
                 best = Some(here);
@@ -329,7 +331,7 @@ impl<const D: usize> WayOut<'_, D> {
     }
 
     /// Takes a sample if it is the best so far, and the way to it was free.
-    fn take(&mut self, sample: Sample<D>, up: Vector<f64, D>) -> bool {
+    fn take(&mut self, sample: Sample, up: Vector<f64, 3>) -> bool {
         let (distance, tolerance) =
             ((sample.point - self.origin).norm(), self.after.tolerance());
         // What is as good is likely to be the same place, whose proof would cost once more.
@@ -347,7 +349,7 @@ impl<const D: usize> WayOut<'_, D> {
 
     /// Whether the way from the proxy to a point was free in the bodies before: straight, or where that
     /// grazes a surface over a point beside its middle, which takes fewer steps to prove.
-    fn was_free(&mut self, to: Point<D>, up: Vector<f64, D>) -> bool {
+    fn was_free(&mut self, to: Point<3>, up: Vector<f64, 3>) -> bool {
         let from = (self.covered.point, self.gap);
         let Some(end) = self.known(to) else { return false };
         let length = (to - from.0).norm();
@@ -367,7 +369,7 @@ impl<const D: usize> WayOut<'_, D> {
     }
 
     /// A point with its gap in the bodies before; `None` inside them, or if it is not known.
-    fn known(&mut self, point: Point<D>) -> Option<Known<D>> {
+    fn known(&mut self, point: Point<3>) -> Option<Known> {
         let sample = self.before.distance(point)?;
         (sample.gap >= -0.5 * self.before.skin()).then_some((point, sample.gap))
     }
@@ -377,7 +379,7 @@ impl<const D: usize> WayOut<'_, D> {
     ///
     /// With the gaps `a` and `b` at its ends and the Lipschitz constant `L`, no point of a way of
     /// length `l` has a gap below `(a + b − L l) / 2`.
-    fn is_proven(&self, [(_, a), (_, b)]: [Known<D>; 2], length: f64) -> bool {
+    fn is_proven(&self, [(_, a), (_, b)]: [Known; 2], length: f64) -> bool {
         (a + b + self.before.skin()) * self.before.per_slope() >= length
     }
 
@@ -385,7 +387,7 @@ impl<const D: usize> WayOut<'_, D> {
     ///
     /// Away from a surface, provable steps grow in proportion to the way that is done. `false` after
     /// [`MOST_STEPS`].
-    fn is_free(&mut self, from: Known<D>, to: Known<D>) -> bool {
+    fn is_free(&mut self, from: Known, to: Known) -> bool {
         let way = to.0 - from.0;
         let length = way.norm();
         let (mut done, mut here) = (0.0, from);

@@ -41,16 +41,16 @@ use crate::protection::Protection;
 /// use palpate_haptics::{Bodies, Body, Probe, Protection, Servo, ServoOptions, Surface};
 ///
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
-/// let ball = Shape::from_kernel(Ball::new(0.5)?);
+/// let ball = Shape::<3>::from_kernel(Ball::new(0.5)?);
 /// let bodies = Bodies::new(vec![Body::new(ball, Surface::smooth(512.0, 0.0)?)?])?;
 /// let profile = DeviceProfile { max_force: 1.0, ..DeviceProfile::unlimited("example") };
 /// let options = ServoOptions { probe: Probe::new(0.0)?, ..ServoOptions::default() };
 /// let mut servo = Servo::new(bodies, 1, options)?
 ///     .protected(&Protection::new(profile).with(|s| s.rise_rate = f64::INFINITY))?;
-/// servo.step(&[PointState::at_rest(Vector([0.0, 1.0]))]);
-/// servo.step(&[PointState::at_rest(Vector([0.0, 0.5 - 1.0 / 256.0]))]);
-/// assert!((servo.touches()[0].wanted - Vector([0.0, 2.0])).norm() < 1e-4); // 2 N are wanted
-/// assert!((servo.forces()[0] - Vector([0.0, 1.0])).norm() < 1e-12); // 1 N is given
+/// servo.step(&[PointState::at_rest(Vector([0.0, 1.0, 0.0]))]);
+/// servo.step(&[PointState::at_rest(Vector([0.0, 0.5 - 1.0 / 256.0, 0.0]))]);
+/// assert!((servo.touches()[0].wanted - Vector([0.0, 2.0, 0.0])).norm() < 1e-4); // 2 N are wanted
+/// assert!((servo.forces()[0] - Vector([0.0, 1.0, 0.0])).norm() < 1e-12); // 1 N is given
 /// # Ok(())
 /// # }
 /// ```
@@ -64,7 +64,7 @@ use crate::protection::Protection;
 /// use palpate_haptics::servo_loop::{Pace, RunOptions, run};
 /// use palpate_sim::{Hand, SimulatedDevice};
 ///
-/// let hand = Hand::resting(Vector([0.0, 0.1]))?;
+/// let hand = Hand::resting(Vector([0.0, 0.1, 0.0]))?;
 /// let mut device = SimulatedDevice::new(palpate_device::profile_named("omega")?, vec![hand])?;
 /// let mut servo = Servo::new(Shape::circle(0.05)?, 1, Default::default())?;
 /// run(&mut servo, &mut device, RunOptions {
@@ -75,15 +75,15 @@ use crate::protection::Protection;
 /// # }
 /// ```
 #[derive(Clone, Debug)]
-pub struct Servo<const D: usize, P = Protected<D>> {
-    renderer: Renderer<D>,
+pub struct Servo<P = Protected> {
+    renderer: Renderer,
     kind: P,
 }
 
 /// The kind of a [`Servo`] that protects a device and the hand that holds it.
 #[derive(Clone, Debug)]
-pub struct Protected<const D: usize> {
-    protection: Arc<Protection<D>>,
+pub struct Protected {
+    protection: Arc<Protection>,
     accepted_guides: Vec<Accepted>,
 }
 
@@ -92,35 +92,35 @@ pub struct Protected<const D: usize> {
 pub struct Unprotected;
 
 /// The two kinds of a [`Servo`]: [`Protected`] and [`Unprotected`]. No other type can be one.
-pub trait Kind<const D: usize>: sealed::Sealed<D> {}
+pub trait Kind: sealed::Sealed {}
 
-impl<const D: usize> Kind<D> for Protected<D> {}
+impl Kind for Protected {}
 
-impl<const D: usize> Kind<D> for Unprotected {}
+impl Kind for Unprotected {}
 
 mod sealed {
     use std::sync::Arc;
 
     use crate::protection::Protection;
 
-    pub trait Sealed<const D: usize> {
-        fn protection(&self) -> Option<&Arc<Protection<D>>>;
+    pub trait Sealed {
+        fn protection(&self) -> Option<&Arc<Protection>>;
     }
 
-    impl<const D: usize> Sealed<D> for super::Protected<D> {
-        fn protection(&self) -> Option<&Arc<Protection<D>>> {
+    impl Sealed for super::Protected {
+        fn protection(&self) -> Option<&Arc<Protection>> {
             Some(&self.protection)
         }
     }
 
-    impl<const D: usize> Sealed<D> for super::Unprotected {
-        fn protection(&self) -> Option<&Arc<Protection<D>>> {
+    impl Sealed for super::Unprotected {
+        fn protection(&self) -> Option<&Arc<Protection>> {
             None
         }
     }
 }
 
-impl<const D: usize, P: Kind<D>> Servo<D, P> {
+impl<P: Kind> Servo<P> {
     /// One tick: for each contact point, takes its state, moves its proxy and computes
     /// its force.
     ///
@@ -132,7 +132,7 @@ impl<const D: usize, P: Kind<D>> Servo<D, P> {
     /// point, once more for each magnet in reach, and once for each dimension of a
     /// textured surface; for a tool,
     /// [`ToolOptions::budget`](crate::ToolOptions::budget) times.
-    pub fn step(&mut self, states: &[PointState<D>]) -> &[Touch<D>] {
+    pub fn step(&mut self, states: &[PointState]) -> &[Touch] {
         self.renderer.step(states)
     }
 
@@ -141,7 +141,7 @@ impl<const D: usize, P: Kind<D>> Servo<D, P> {
     /// the tool keeps the device's axes.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
-    pub fn set_turn(&mut self, turn: Option<TurnState<D>>) {
+    pub fn set_turn(&mut self, turn: Option<TurnState>) {
         self.renderer.set_turn(turn);
     }
 
@@ -216,7 +216,7 @@ impl<const D: usize, P: Kind<D>> Servo<D, P> {
     /// Moves a body before the next tick; see [`Bodies::set_pose`](crate::Bodies::set_pose).
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
-    pub fn set_pose(&mut self, body: usize, world_from_body: Pose<D>) {
+    pub fn set_pose(&mut self, body: usize, world_from_body: Pose<3>) {
         self.renderer.set_pose(body, world_from_body);
     }
 
@@ -237,23 +237,23 @@ impl<const D: usize, P: Kind<D>> Servo<D, P> {
         self.renderer.limit_torque(max_torque);
     }
 
-    pub(crate) fn renderer(&self) -> &Renderer<D> {
+    pub(crate) fn renderer(&self) -> &Renderer {
         &self.renderer
     }
 
-    pub(crate) fn renderer_mut(&mut self) -> &mut Renderer<D> {
+    pub(crate) fn renderer_mut(&mut self) -> &mut Renderer {
         &mut self.renderer
     }
 
-    pub(crate) fn protection_of_any(&self) -> Option<&Arc<Protection<D>>> {
+    pub(crate) fn protection_of_any(&self) -> Option<&Arc<Protection>> {
         self.kind.protection()
     }
 }
 
-impl<const D: usize, P> Deref for Servo<D, P> {
-    type Target = Renderer<D>;
+impl<P> Deref for Servo<P> {
+    type Target = Renderer;
 
-    fn deref(&self) -> &Renderer<D> {
+    fn deref(&self) -> &Renderer {
         &self.renderer
     }
 }

@@ -15,7 +15,7 @@ use crate::options::ServoOptions;
 use crate::protection::Protection;
 use crate::tool::Tool;
 
-impl<const D: usize> Servo<D, Protected<D>> {
+impl Servo<Protected> {
     /// A servo that renders `bodies` to every contact point of `device`, protected by
     /// [`Protection::new`], with [`ServoOptions::of_device`]: 1 kHz, or
     /// the rate of a device that measures more seldom or sets the pace; a ball of 2 mm; forces up to
@@ -41,15 +41,15 @@ impl<const D: usize> Servo<D, Protected<D>> {
     /// let ends = vec![[0.0, 0.08, 0.0].into(), [0.0, 0.05, 0.0].into()];
     /// let press = HandPath::new(vec![0.0, 1.0], ends, Interpolation::Smooth)?;
     /// let mut device = RecordedDevice::new(vec![press])?;
-    /// let mut servo = Servo::for_device(Shape::from_kernel(Ball::new(0.05)?), &device)?;
+    /// let mut servo = Servo::for_device(Shape::<3>::from_kernel(Ball::new(0.05)?), &device)?;
     /// let options = RunOptions { pace: Pace::AsFastAsPossible, ..RunOptions::new(1.0) };
     /// assert_eq!(run(&mut servo, &mut device, options)?.ticks, 1000);
     /// # Ok(())
     /// # }
     /// ```
     pub fn for_device(
-        bodies: impl TryInto<Bodies<D>, Error: Into<HapticsError>>,
-        device: &(impl Device<D> + ?Sized),
+        bodies: impl TryInto<Bodies, Error: Into<HapticsError>>,
+        device: &(impl Device + ?Sized),
     ) -> Result<Self, HapticsError> {
         let options = ServoOptions::of_device(device.profile()).at_rate_of(device);
         Servo::new(bodies, device.points(), options)?.protected_for(device.profile())
@@ -63,9 +63,9 @@ impl<const D: usize> Servo<D, Protected<D>> {
     ///
     /// As [`for_device`](Self::for_device).
     pub fn for_tool(
-        bodies: impl TryInto<Bodies<D>, Error: Into<HapticsError>>,
-        tool: Tool<D>,
-        device: &(impl Device<D> + ?Sized),
+        bodies: impl TryInto<Bodies, Error: Into<HapticsError>>,
+        tool: Tool,
+        device: &(impl Device + ?Sized),
     ) -> Result<Self, HapticsError> {
         let options = ServoOptions::of_device(device.profile()).at_rate_of(device);
         Servo::with_tool(bodies, tool, options)?.protected_for(device.profile())
@@ -73,7 +73,7 @@ impl<const D: usize> Servo<D, Protected<D>> {
 
     /// The protection of the device.
     #[must_use]
-    pub fn protection(&self) -> &Protection<D> {
+    pub fn protection(&self) -> &Protection {
         &self.kind.protection
     }
 
@@ -105,14 +105,14 @@ impl<const D: usize> Servo<D, Protected<D>> {
     /// let servo = Servo::new(disc, 1, Default::default())?;
     /// let mut servo = servo.protected(&Protection::new(device))?;
     /// let options = GuideOptions { stiffness: 4000.0, ..GuideOptions::default() };
-    /// servo.guide(&[Guide::to_point(Vector([0.0, 0.1]), options)?])?;
+    /// servo.guide(&[Guide::to_point(Vector([0.0, 0.1, 0.0]), options)?])?;
     /// assert_eq!(servo.accepted_guides()[0].stiffness_factor, 0.25);
     /// assert_eq!(servo.guides(0)[0].options().stiffness, 1000.0);
     /// # Ok(())
     /// # }
     /// ```
     #[inline(never)]
-    pub fn guide(&mut self, guides: &[Guide<D>]) -> Result<(), HapticsError> {
+    pub fn guide(&mut self, guides: &[Guide]) -> Result<(), HapticsError> {
         let (guides, accepted) =
             self.kind.protection.accept_guides(guides, self.options().rate)?;
         self.renderer.guide(&guides);
@@ -134,8 +134,8 @@ impl<const D: usize> Servo<D, Protected<D>> {
     /// As [`Protection::accept`].
     pub fn accept(
         &self,
-        bodies: impl TryInto<Bodies<D>, Error: Into<HapticsError>>,
-    ) -> Result<AcceptedBodies<D>, HapticsError> {
+        bodies: impl TryInto<Bodies, Error: Into<HapticsError>>,
+    ) -> Result<AcceptedBodies, HapticsError> {
         let coupling = self.renderer.requested_coupling();
         self.kind.protection.accepted_bodies(
             bodies.try_into().map_err(Into::into)?,
@@ -169,10 +169,7 @@ impl<const D: usize> Servo<D, Protected<D>> {
     ///
     /// [`HapticsError::OtherServo`] if the bodies were accepted for a servo of which this is no
     /// clone; then nothing changes.
-    pub fn replace_bodies(
-        &mut self,
-        bodies: &mut AcceptedBodies<D>,
-    ) -> Result<(), HapticsError> {
+    pub fn replace_bodies(&mut self, bodies: &mut AcceptedBodies) -> Result<(), HapticsError> {
         if self.renderer.adopt(bodies) { Ok(()) } else { Err(HapticsError::OtherServo) }
     }
 
@@ -184,7 +181,7 @@ impl<const D: usize> Servo<D, Protected<D>> {
     ///
     /// [`SafetyError::OtherDevice`](palpate_safety::SafetyError), [`HapticsError::ContactPoints`],
     /// [`HapticsError::Rate`].
-    pub fn check_device(&self, device: &(impl Device<D> + ?Sized)) -> Result<(), HapticsError> {
+    pub fn check_device(&self, device: &(impl Device + ?Sized)) -> Result<(), HapticsError> {
         palpate_safety::check_bears(&self.kind.protection.profile, device.profile())?;
         if let Some(of_device) = device.rate() {
             let servo = self.options().rate;
@@ -210,7 +207,7 @@ impl<const D: usize> Servo<D, Protected<D>> {
     /// Each call evaluates the fields once more, custom fields included.
     ///
     /// Real-time: as [`step`](Self::step).
-    pub fn rehearse(&mut self, states: &[PointState<D>]) {
+    pub fn rehearse(&mut self, states: &[PointState]) {
         self.renderer.rehearse(states);
     }
 }

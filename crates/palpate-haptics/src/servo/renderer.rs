@@ -48,11 +48,11 @@ const REACHES: f64 = 4.0;
 /// A [`Servo`](crate::Servo) dereferences to its renderer, which has the methods that read; the
 /// servo has those that change.
 #[derive(Clone, Debug)]
-pub struct Renderer<const D: usize> {
-    accepted: AcceptedBodies<D>,
-    contacts: Contacts<D>,
-    rendered: Rendered<D>,
-    setting: Setting<D>,
+pub struct Renderer {
+    accepted: AcceptedBodies,
+    contacts: Contacts,
+    rendered: Rendered,
+    setting: Setting,
     arrivals: Arrivals,
     buttons: Buttons,
     /// The buttons that were down in the tick before.
@@ -65,27 +65,27 @@ pub struct Renderer<const D: usize> {
 
 /// What is rendered: contact points or a tool.
 #[derive(Clone, Debug)]
-enum Rendered<const D: usize> {
+enum Rendered {
     /// Independent contact points.
     Points {
         /// Copies on which a tick is rehearsed.
-        doubles: Contacts<D>,
+        doubles: Contacts,
     },
     /// A rigid tool, coupled to the one contact point.
-    Tool(Box<CoupledTool<D>>),
+    Tool(Box<CoupledTool>),
 }
 
 /// Contact points with the results of the last tick.
 #[derive(Clone, Debug)]
-struct Contacts<const D: usize> {
-    points: Vec<ContactPoint<D>>,
-    touches: Vec<Touch<D>>,
+struct Contacts {
+    points: Vec<ContactPoint>,
+    touches: Vec<Touch>,
     events: Vec<Event>,
     /// The forces to write [N], in device coordinates.
-    forces: Vec<Vector<f64, D>>,
+    forces: Vec<Vector<f64, 3>>,
 }
 
-impl<const D: usize> Contacts<D> {
+impl Contacts {
     fn new(probe: Probe, points: usize) -> Self {
         Self {
             points: vec![ContactPoint::new(probe); points],
@@ -96,11 +96,11 @@ impl<const D: usize> Contacts<D> {
     }
 }
 
-impl<const D: usize> Renderer<D> {
+impl Renderer {
     /// A renderer of `bodies` to `points` contact points.
     #[inline(never)]
     pub(crate) fn of_points(
-        bodies: Bodies<D>,
+        bodies: Bodies,
         points: usize,
         options: ServoOptions,
     ) -> Result<Self, HapticsError> {
@@ -133,8 +133,8 @@ impl<const D: usize> Renderer<D> {
     /// A renderer of `bodies` to a tool.
     #[inline(never)]
     pub(crate) fn of_tool(
-        bodies: Bodies<D>,
-        tool: Tool<D>,
+        bodies: Bodies,
+        tool: Tool,
         options: ServoOptions,
     ) -> Result<Self, HapticsError> {
         let mut renderer = Self::of_points(bodies, 1, options)?;
@@ -143,14 +143,14 @@ impl<const D: usize> Renderer<D> {
         Ok(Self { rendered: Rendered::Tool(Box::new(CoupledTool::new(tool))), ..renderer })
     }
 
-    fn coupled_tool(&self) -> Option<&CoupledTool<D>> {
+    fn coupled_tool(&self) -> Option<&CoupledTool> {
         match &self.rendered {
             Rendered::Points { .. } => None,
             Rendered::Tool(tool) => Some(tool),
         }
     }
 
-    fn coupled_tool_mut(&mut self) -> Option<&mut CoupledTool<D>> {
+    fn coupled_tool_mut(&mut self) -> Option<&mut CoupledTool> {
         match &mut self.rendered {
             Rendered::Points { .. } => None,
             Rendered::Tool(tool) => Some(tool),
@@ -159,7 +159,7 @@ impl<const D: usize> Renderer<D> {
 
     /// The tool; `None` if the servo renders contact points.
     #[must_use]
-    pub fn tool(&self) -> Option<&Tool<D>> {
+    pub fn tool(&self) -> Option<&Tool> {
         self.coupled_tool().map(|coupled| &coupled.tool)
     }
 
@@ -168,7 +168,7 @@ impl<const D: usize> Renderer<D> {
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     #[must_use]
-    pub fn held_tool(&self) -> Option<HeldTool<D>> {
+    pub fn held_tool(&self) -> Option<HeldTool> {
         self.coupled_tool().map(CoupledTool::held)
     }
 
@@ -187,24 +187,24 @@ impl<const D: usize> Renderer<D> {
 
     /// The bodies, with the stiffness and damping that are rendered.
     #[must_use]
-    pub fn bodies(&self) -> &Bodies<D> {
+    pub fn bodies(&self) -> &Bodies {
         &self.accepted.bodies
     }
 
     /// The bodies with what was accepted for the device.
-    pub(super) fn accepted(&self) -> &AcceptedBodies<D> {
+    pub(super) fn accepted(&self) -> &AcceptedBodies {
         &self.accepted
     }
 
     /// The contact points after the last tick.
     #[must_use]
-    pub fn touches(&self) -> &[Touch<D>] {
+    pub fn touches(&self) -> &[Touch] {
         &self.contacts.touches
     }
 
     /// The forces of the last tick, to be written to the device [N], in device coordinates.
     #[must_use]
-    pub fn forces(&self) -> &[Vector<f64, D>] {
+    pub fn forces(&self) -> &[Vector<f64, 3>] {
         &self.contacts.forces
     }
 
@@ -216,7 +216,7 @@ impl<const D: usize> Renderer<D> {
 
     /// Force and torque on each body in the last tick.
     #[must_use]
-    pub fn reactions(&self) -> &[Reaction<D>] {
+    pub fn reactions(&self) -> &[Reaction] {
         self.bodies().reactions()
     }
 
@@ -276,14 +276,14 @@ impl<const D: usize> Renderer<D> {
 
     /// Sets the map between device and world coordinates.
     #[inline(never)]
-    pub(crate) fn set_map(&mut self, map: WorkspaceMap<D>) {
+    pub(crate) fn set_map(&mut self, map: WorkspaceMap) {
         self.setting.map = map;
     }
 
     /// Sets the port of every contact point, and for a tool the rotational port `turning`. What
     /// was limited or stopped before stays so.
     #[inline(never)]
-    pub(crate) fn set_ports(&mut self, port: &Port<D>, turning: Option<TurningPort<D>>) {
+    pub(crate) fn set_ports(&mut self, port: &Port, turning: Option<TurningPort>) {
         self.contacts.points.iter_mut().for_each(|point| point.port = Some(port.clone()));
         if let Some(coupled) = self.coupled_tool_mut() {
             coupled.port = turning;
@@ -294,7 +294,7 @@ impl<const D: usize> Renderer<D> {
         }
     }
 
-    pub(crate) fn set_turn(&mut self, turn: Option<TurnState<D>>) {
+    pub(crate) fn set_turn(&mut self, turn: Option<TurnState>) {
         if let Some(coupled) = self.coupled_tool_mut() {
             coupled.turn = turn;
         }
@@ -336,12 +336,12 @@ impl<const D: usize> Renderer<D> {
         }
     }
 
-    fn ports(&mut self) -> impl Iterator<Item = &mut Port<D>> {
+    fn ports(&mut self) -> impl Iterator<Item = &mut Port> {
         self.contacts.points.iter_mut().filter_map(|point| point.port.as_mut())
     }
 
     #[inline(never)]
-    pub(crate) fn set_pose(&mut self, body: usize, world_from_body: Pose<D>) {
+    pub(crate) fn set_pose(&mut self, body: usize, world_from_body: Pose<3>) {
         self.accepted.bodies.set_pose(body, world_from_body);
     }
 
@@ -352,7 +352,7 @@ impl<const D: usize> Renderer<D> {
     /// does.
     #[must_use]
     #[inline(never)]
-    pub(crate) fn adopt(&mut self, bodies: &mut AcceptedBodies<D>) -> bool {
+    pub(crate) fn adopt(&mut self, bodies: &mut AcceptedBodies) -> bool {
         let is_own = self.accepted.is_for_servo_of(bodies);
         if is_own {
             self.exchange(bodies);
@@ -366,7 +366,7 @@ impl<const D: usize> Renderer<D> {
     /// Real-time: allocates nothing, frees nothing, takes no lock, cannot panic unless a custom field
     /// does; evaluates the fields at most [`Probe::budget`] times a point.
     #[inline(never)]
-    pub(crate) fn exchange(&mut self, bodies: &mut AcceptedBodies<D>) {
+    pub(crate) fn exchange(&mut self, bodies: &mut AcceptedBodies) {
         let most_of_point = MOST_OF_POINT * self.setting.map.scale();
         let Self { accepted, contacts, rendered, setting, .. } = self;
         let around = REACHES * (setting.options.probe.radius() + most_of_point);
@@ -410,7 +410,7 @@ impl<const D: usize> Renderer<D> {
     }
 
     #[inline(never)]
-    pub(crate) fn step(&mut self, states: &[PointState<D>]) -> &[Touch<D>] {
+    pub(crate) fn step(&mut self, states: &[PointState]) -> &[Touch] {
         let arrival = self.arrivals.arrive();
         self.setting.arrival = arrival;
         // A point without a state touches nothing.
@@ -463,7 +463,7 @@ impl<const D: usize> Renderer<D> {
         }
     }
 
-    fn render_tool(&mut self, states: &[PointState<D>]) {
+    fn render_tool(&mut self, states: &[PointState]) {
         let Rendered::Tool(coupled) = &mut self.rendered else { return };
         let Contacts { points, touches, events, forces } = &mut self.contacts;
         events.clear();
@@ -481,7 +481,7 @@ impl<const D: usize> Renderer<D> {
     /// Never inlined: rehearsal and tick share one code address, so the rehearsal warms the
     /// instruction cache for the tick.
     #[inline(never)]
-    fn render_points(&mut self, states: &[PointState<D>]) {
+    fn render_points(&mut self, states: &[PointState]) {
         let Contacts { points, touches, events, forces } = &mut self.contacts;
         events.clear();
         let bodies = &mut self.accepted.bodies;
@@ -509,7 +509,7 @@ impl<const D: usize> Renderer<D> {
     ///
     /// Real-time: as [`Servo::step`](crate::Servo::step).
     #[inline(never)]
-    pub(crate) fn rehearse(&mut self, states: &[PointState<D>]) {
+    pub(crate) fn rehearse(&mut self, states: &[PointState]) {
         match &mut self.rendered {
             Rendered::Tool(coupled) => {
                 let origin = coupled.tool.touch().pose.translation;
@@ -539,11 +539,11 @@ impl<const D: usize> Renderer<D> {
 }
 
 /// The bodies that a contact can reach in a tick.
-fn nearby<'a, const D: usize>(
-    bodies: &'a Bodies<D>,
-    hand: impl FnOnce() -> (Point<D>, f64),
+fn nearby<'a>(
+    bodies: &'a Bodies,
+    hand: impl FnOnce() -> (Point<3>, f64),
     list: &'a mut [u32],
-) -> Nearby<'a, D> {
+) -> Nearby<'a> {
     if bodies.bodies().len() < FEW {
         return bodies.everything();
     }
@@ -552,17 +552,17 @@ fn nearby<'a, const D: usize>(
 }
 
 /// The state of a contact point; NaN if it is missing.
-fn state<const D: usize>(states: &[PointState<D>], index: usize) -> PointState<D> {
-    states.get(index).copied().unwrap_or(PointState::at_rest(Vector([f64::NAN; D])))
+fn state(states: &[PointState], index: usize) -> PointState {
+    states.get(index).copied().unwrap_or(PointState::at_rest(Vector([f64::NAN; 3])))
 }
 
 /// A ball around all finite contact points and the places that their proxies can reach in this
 /// tick.
-fn hand<const D: usize>(
-    touches: &[Touch<D>],
-    states: &[PointState<D>],
-    Setting { map, options, .. }: &Setting<D>,
-) -> (Point<D>, f64) {
+fn hand(
+    touches: &[Touch],
+    states: &[PointState],
+    Setting { map, options, .. }: &Setting,
+) -> (Point<3>, f64) {
     let known = states.iter().zip(touches).filter(|(state, _)| state.position.is_finite());
     let known = known.map(|(state, touch)| (map.point_to_world(state.position), touch));
     let (mut sum, mut count, mut motion) = (Vector::ZERO, 0.0, 0.0_f64);

@@ -16,7 +16,7 @@ use crate::options::ServoOptions;
 use crate::protection::Protection;
 use crate::tool::Tool;
 
-impl<const D: usize> Servo<D, Unprotected> {
+impl Servo<Unprotected> {
     /// A servo without protection that renders `bodies` to `points` contact points. A plain shape becomes one body
     /// with the default surface.
     ///
@@ -25,7 +25,7 @@ impl<const D: usize> Servo<D, Unprotected> {
     /// [`HapticsError::Device`] if there are none; [`HapticsError::Number`] if the
     /// rate, the rise time or the largest force is not positive.
     pub fn new(
-        bodies: impl TryInto<Bodies<D>, Error: Into<HapticsError>>,
+        bodies: impl TryInto<Bodies, Error: Into<HapticsError>>,
         points: usize,
         options: ServoOptions,
     ) -> Result<Self, HapticsError> {
@@ -78,24 +78,24 @@ impl<const D: usize> Servo<D, Unprotected> {
     /// use palpate_haptics::{Servo, ServoOptions, Shell, Tool, ToolOptions};
     ///
     /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
-    /// let ground = Shape::from_kernel(HalfSpace::new(Vector([0.0, 1.0]), 0.0)?);
-    /// let rod = Shell::capsule([Vector([-0.05, 0.0]), Vector([0.05, 0.0])], 0.001, 101)?;
+    /// let ground = Shape::from_kernel(HalfSpace::new(Vector([0.0, 1.0, 0.0]), 0.0)?);
+    /// let rod = Shell::capsule([Vector([-0.05, 0.0, 0.0]), Vector([0.05, 0.0, 0.0])], 0.001, 101)?;
     /// let coupling = ToolOptions { angular_stiffness: Some(1.0), ..ToolOptions::default() };
     /// let tool = Tool::new(rod, coupling)?;
     /// let mut servo = Servo::with_tool(ground, tool, ServoOptions::default())?;
-    /// servo.step(&[PointState::at_rest(Vector([0.0, 0.01]))]);
+    /// servo.step(&[PointState::at_rest(Vector([0.0, 0.01, 0.0]))]);
     /// for tick in 1..=100 {
-    ///     let orientation = Rotation::from_angle(0.001 * f64::from(tick))?;
+    ///     let orientation = Rotation::from_angle(0.001 * f64::from(tick))?.in_space();
     ///     servo.set_turn(Some(TurnState::at_rest(orientation)));
-    ///     servo.step(&[PointState::at_rest(Vector([0.0, -0.009]))]);
+    ///     servo.step(&[PointState::at_rest(Vector([0.0, -0.009, 0.0]))]);
     /// }
     /// assert!((servo.torque() - Vector([0.0, 0.0, -0.1])).norm() < 1e-6);
     /// # Ok(())
     /// # }
     /// ```
     pub fn with_tool(
-        bodies: impl TryInto<Bodies<D>, Error: Into<HapticsError>>,
-        tool: Tool<D>,
+        bodies: impl TryInto<Bodies, Error: Into<HapticsError>>,
+        tool: Tool,
         options: ServoOptions,
     ) -> Result<Self, HapticsError> {
         let bodies = bodies.try_into().map_err(Into::into)?;
@@ -137,7 +137,7 @@ impl<const D: usize> Servo<D, Unprotected> {
     /// # }
     /// ```
     #[inline(never)]
-    pub fn protected(self, protection: &Protection<D>) -> Result<Servo<D>, HapticsError> {
+    pub fn protected(self, protection: &Protection) -> Result<Servo, HapticsError> {
         let max_force = protection.profile.max_force;
         NumberError::check_zero_or_more("max_force", max_force, "N")?;
         let mut renderer = self.renderer;
@@ -169,15 +169,12 @@ impl<const D: usize> Servo<D, Unprotected> {
     }
 
     /// Sets the guides of every contact point.
-    pub fn guide(&mut self, guides: &[Guide<D>]) {
+    pub fn guide(&mut self, guides: &[Guide]) {
         self.renderer.guide(guides);
     }
 
     /// This servo with the default protection for `profile`.
-    pub(super) fn protected_for(
-        self,
-        profile: &DeviceProfile,
-    ) -> Result<Servo<D>, HapticsError> {
+    pub(super) fn protected_for(self, profile: &DeviceProfile) -> Result<Servo, HapticsError> {
         self.protected(&Protection::new(profile.clone()))
     }
 
@@ -202,7 +199,7 @@ impl<const D: usize> Servo<D, Unprotected> {
     /// Real-time: allocates nothing, frees nothing, takes no lock, cannot panic unless a custom field
     /// does; evaluates the fields at most [`Probe::budget`](crate::Probe::budget) times a point.
     #[must_use]
-    pub fn replace_bodies(&mut self, bodies: Bodies<D>) -> Bodies<D> {
+    pub fn replace_bodies(&mut self, bodies: Bodies) -> Bodies {
         let mut bodies = AcceptedBodies::unchanged(bodies);
         self.renderer.exchange(&mut bodies);
         bodies.bodies

@@ -165,11 +165,11 @@ impl Connection {
     }
 
     /// Opens a device at `time` [s], and enables it if it `fits`.
-    pub(crate) fn open<const D: usize>(
+    pub(crate) fn open(
         &mut self,
-        device: &mut dyn Device<D>,
+        device: &mut dyn Device,
         time: f64,
-        fits: impl FnOnce(&dyn Device<D>) -> Result<(), DeviceLost>,
+        fits: impl FnOnce(&dyn Device) -> Result<(), DeviceLost>,
     ) -> Result<(), DeviceLost> {
         device.open()?;
         self.is_held = true;
@@ -191,9 +191,9 @@ impl Connection {
     /// # Errors
     ///
     /// The loss, if the loop is not to reconnect, or not any more.
-    pub(crate) fn lose<const D: usize>(
+    pub(crate) fn lose(
         &mut self,
-        device: &mut dyn Device<D>,
+        device: &mut dyn Device,
         lost: DeviceLost,
         time: f64,
     ) -> Result<(), DeviceLost> {
@@ -219,7 +219,7 @@ impl Connection {
     }
 
     /// Closes the device, as far as it is open.
-    pub(crate) fn close<const D: usize>(&mut self, device: &mut dyn Device<D>) {
+    pub(crate) fn close(&mut self, device: &mut dyn Device) {
         if std::mem::take(&mut self.is_held) {
             self.state = State::Closed;
             self.report.not_closed = device.close().err().map(|lost| lost.reason);

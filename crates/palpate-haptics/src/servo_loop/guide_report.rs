@@ -33,26 +33,24 @@ pub struct GuideReport {
 
 /// Counts during a run, in preallocated memory.
 #[derive(Clone, Debug)]
-pub(crate) struct GuideTally<const D: usize> {
+pub(crate) struct GuideTally {
     reports: Vec<GuideReport>,
     ticks: Vec<u64>,
     /// The device point of each contact point in the last tick [m].
-    places: Vec<Option<Point<D>>>,
+    places: Vec<Option<Point<3>>>,
     /// The force of each guide at each contact point in the last tick [N], guides of a point
     /// together.
-    forces: Vec<Vector<f64, D>>,
+    forces: Vec<Vector<f64, 3>>,
 }
 
-impl<const D: usize> GuideTally<D> {
-    pub(crate) fn new(servo: &Servo<D>) -> Self {
+impl GuideTally {
+    pub(crate) fn new(servo: &Servo) -> Self {
         // A device that gives no force is not guided.
         let is_felt = servo.protection().profile.max_force > 0.0;
         let all = if is_felt { servo.guides(0) } else { &[] };
         let (points, guides) = (servo.touches().len(), all.len());
-        let report = |guide: &Guide<D>| GuideReport {
-            kind: guide.kind_name(),
-            ..GuideReport::default()
-        };
+        let report =
+            |guide: &Guide| GuideReport { kind: guide.kind_name(), ..GuideReport::default() };
         Self {
             reports: all.iter().map(report).collect(),
             ticks: vec![0; guides],
@@ -64,7 +62,7 @@ impl<const D: usize> GuideTally<D> {
     /// Counts a tick.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
-    pub(crate) fn tick(&mut self, servo: &Servo<D>) {
+    pub(crate) fn tick(&mut self, servo: &Servo) {
         let guides = self.reports.len();
         if guides == 0 {
             return;

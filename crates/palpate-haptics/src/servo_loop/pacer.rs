@@ -29,15 +29,12 @@ pub enum Pace {
 
 impl Pace {
     /// The pace in real time of a device: its own, if it sets one.
-    pub(crate) fn of<const D: usize>(device: &dyn Device<D>) -> Self {
+    pub(crate) fn of(device: &dyn Device) -> Self {
         if device.paces() { Self::Device } else { Self::RealTime }
     }
 
     /// Refuses a device that sets the pace if this is another, and one that does not if it should.
-    pub(crate) fn check<const D: usize>(
-        self,
-        device: &dyn Device<D>,
-    ) -> Result<(), HapticsError> {
+    pub(crate) fn check(self, device: &dyn Device) -> Result<(), HapticsError> {
         let is_device = device.paces();
         if is_device == (self == Self::Device) {
             Ok(())

@@ -9,21 +9,21 @@ use palpate_field::{Point, Vector};
 /// One contact point in one tick: a row of a trace. World coordinates.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
-pub struct TraceRow<const D: usize> {
+pub struct TraceRow {
     /// The time of the tick since the servo started [s].
     pub time_s: f64,
     /// The index of the contact point, from 0.
     pub point: u32,
     /// The device point [m].
-    pub device: Point<D>,
+    pub device: Point<3>,
     /// The proxy [m]; the device point itself in free space.
-    pub proxy: Point<D>,
+    pub proxy: Point<3>,
     /// The force of the touched body, before any limit [N].
-    pub wanted: Vector<f64, D>,
+    pub wanted: Vector<f64, 3>,
     /// The force on the hand [N].
-    pub force: Vector<f64, D>,
+    pub force: Vector<f64, 3>,
     /// The unit normal of the surface that the proxy last reached, pointing out.
-    pub normal: Vector<f64, D>,
+    pub normal: Vector<f64, 3>,
     /// `true` if the surface keeps the proxy from the device point.
     pub contact: bool,
     /// The index of the body whose surface the proxy last reached.
@@ -36,7 +36,7 @@ pub struct TraceRow<const D: usize> {
     /// chain held back [J].
     pub energy: Energy,
     /// The tool coupled to the point; `None` for a contact point.
-    pub tool: Option<HeldTool<D>>,
+    pub tool: Option<HeldTool>,
     /// Evaluations of the shape for this point in this tick.
     pub evaluations: u32,
     /// The duration of the tick, for all points together [ns].
@@ -45,10 +45,10 @@ pub struct TraceRow<const D: usize> {
     pub lateness_ns: u64,
 }
 
-impl<const D: usize> TraceRow<D> {
+impl TraceRow {
     /// A contact point at `device` [m] that touches nothing at this time [s].
     #[must_use]
-    pub fn free(time_s: f64, point: u32, device: Point<D>) -> Self {
+    pub fn free(time_s: f64, point: u32, device: Point<3>) -> Self {
         Self {
             time_s,
             point,
@@ -83,13 +83,13 @@ pub(crate) struct TickTimes {
 /// A run whose rows are more than memory holds goes to a [sink](super::RunOptions::sink);
 /// those of a [`ServoThread`](super::ServoThread) are taken while it runs, as [`Records`].
 #[derive(Clone, Debug)]
-pub struct Recorder<const D: usize> {
-    rows: Vec<TraceRow<D>>,
+pub struct Recorder {
+    rows: Vec<TraceRow>,
     capacity: usize,
     dropped: u64,
 }
 
-impl<const D: usize> Recorder<D> {
+impl Recorder {
     /// A recorder with memory for `capacity` rows, one for each tick and contact point.
     #[must_use]
     pub fn new(capacity: usize) -> Self {
@@ -98,7 +98,7 @@ impl<const D: usize> Recorder<D> {
 
     /// The rows of the run, in order of time, then of contact point.
     #[must_use]
-    pub fn rows(&self) -> &[TraceRow<D>] {
+    pub fn rows(&self) -> &[TraceRow] {
         &self.rows
     }
 
@@ -109,7 +109,7 @@ impl<const D: usize> Recorder<D> {
     }
 
     /// Real-time: allocates nothing, takes no lock, cannot panic.
-    pub(crate) fn keep(&mut self, row: TraceRow<D>) {
+    pub(crate) fn keep(&mut self, row: TraceRow) {
         if self.rows.len() < self.capacity {
             self.rows.push(row);
         } else {
@@ -121,10 +121,7 @@ impl<const D: usize> Recorder<D> {
 /// The rows of contact points after a tick of `servo`, in their order.
 ///
 /// Real-time: allocates nothing, takes no lock, cannot panic.
-pub(crate) fn rows<const D: usize>(
-    times: TickTimes,
-    servo: &Servo<D>,
-) -> impl Iterator<Item = TraceRow<D>> {
+pub(crate) fn rows(times: TickTimes, servo: &Servo) -> impl Iterator<Item = TraceRow> {
     (0..).zip(servo.touches()).map(move |(point, touch)| TraceRow {
         proxy: touch.proxy,
         wanted: touch.wanted,

@@ -17,16 +17,16 @@ use super::recorder::TraceRow;
 /// The servo writes a row for each tick and contact point, and never waits. A row that finds the
 /// queue full is lost, and [counted](Self::lost): take rows before so many are recorded as the
 /// queue has room for. [`ServoThread::take_records`](super::ServoThread::take_records) shows how.
-pub struct Records<const D: usize> {
-    rows: rtrb::Consumer<TraceRow<D>>,
+pub struct Records {
+    rows: rtrb::Consumer<TraceRow>,
     lost: Arc<AtomicU64>,
 }
 
-impl<const D: usize> Records<D> {
+impl Records {
     /// Takes the rows recorded until now, in order of time, then of contact point. Rows that are
     /// recorded meanwhile wait for the next call; those that the caller leaves in the iterator
     /// too.
-    pub fn take(&mut self) -> impl Iterator<Item = TraceRow<D>> {
+    pub fn take(&mut self) -> impl Iterator<Item = TraceRow> {
         (0..self.rows.slots()).map_while(|_| self.rows.pop().ok())
     }
 
@@ -44,7 +44,7 @@ impl<const D: usize> Records<D> {
     }
 }
 
-impl<const D: usize> fmt::Debug for Records<D> {
+impl fmt::Debug for Records {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("Records")
             .field("rows", &self.rows.slots())
@@ -54,22 +54,22 @@ impl<const D: usize> fmt::Debug for Records<D> {
 }
 
 /// The servo's end of a queue of rows.
-pub(crate) struct RowQueue<const D: usize> {
-    rows: rtrb::Producer<TraceRow<D>>,
+pub(crate) struct RowQueue {
+    rows: rtrb::Producer<TraceRow>,
     lost: Arc<AtomicU64>,
 }
 
 /// A queue with room for so many rows.
-pub(crate) fn queue<const D: usize>(capacity: usize) -> (RowQueue<D>, Records<D>) {
+pub(crate) fn queue(capacity: usize) -> (RowQueue, Records) {
     let (producer, consumer) = rtrb::RingBuffer::new(capacity);
     let lost = Arc::new(AtomicU64::new(0));
     let records = Records { rows: consumer, lost: Arc::clone(&lost) };
     (RowQueue { rows: producer, lost }, records)
 }
 
-impl<const D: usize> RowQueue<D> {
+impl RowQueue {
     /// Real-time: allocates nothing, takes no lock, cannot panic.
-    pub(crate) fn push(&mut self, row: TraceRow<D>) {
+    pub(crate) fn push(&mut self, row: TraceRow) {
         if self.rows.push(row).is_err() {
             self.lost.fetch_add(1, Ordering::Relaxed);
         }
@@ -87,8 +87,8 @@ mod tests {
 
     use super::*;
 
-    fn row(number: u32) -> TraceRow<2> {
-        TraceRow::free(f64::from(number), 0, Vector([0.5, 0.25]))
+    fn row(number: u32) -> TraceRow {
+        TraceRow::free(f64::from(number), 0, Vector([0.5, 0.25, 0.0]))
     }
 
     #[test]

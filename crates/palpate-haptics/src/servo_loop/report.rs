@@ -161,7 +161,7 @@ pub(crate) struct Ended {
 
 /// Counts during a run, in preallocated memory.
 #[derive(Debug)]
-pub(crate) struct Tally<const D: usize> {
+pub(crate) struct Tally {
     points: usize,
     rate: f64,
     ticks: u64,
@@ -176,13 +176,13 @@ pub(crate) struct Tally<const D: usize> {
     lateness: Times,
     events: EventCounts,
     starts: StartTally,
-    guides: GuideTally<D>,
+    guides: GuideTally,
     texture: TextureReport,
     tool: Option<ToolTally>,
 }
 
-impl<const D: usize> Tally<D> {
-    pub(crate) fn new(servo: &Servo<D>) -> Self {
+impl Tally {
+    pub(crate) fn new(servo: &Servo) -> Self {
         let points = servo.touches().len();
         Self {
             points,
@@ -216,7 +216,7 @@ impl<const D: usize> Tally<D> {
     /// Counts a tick, and returns the progress for other threads.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
-    pub(crate) fn tick(&mut self, times: TickTimes, servo: &Servo<D>) -> Progress {
+    pub(crate) fn tick(&mut self, times: TickTimes, servo: &Servo) -> Progress {
         let (touches, mut budget) = (servo.touches(), servo.options().probe.budget());
         if let Some(tool) = servo.tool() {
             budget = tool.options().budget;

@@ -49,25 +49,24 @@ impl std::fmt::Debug for Watch<'_> {
 /// tick before.
 ///
 /// Real-time: the closure runs in the loop, and should not allocate, wait or panic.
-pub type BodyMotion<'a, const D: usize> =
-    &'a mut dyn FnMut(f64, &mut dyn FnMut(usize, Pose<D>));
+pub type BodyMotion<'a> = &'a mut dyn FnMut(f64, &mut dyn FnMut(usize, Pose<3>));
 
 /// A closure that receives the rows of all ticks, in order of time, then of contact point.
 ///
 /// In real time another thread calls it, through a queue of a second of rows, at most 100 000;
 /// rows that find the queue full are [counted](RunReport::rows_dropped). Without pacing the
 /// loop calls it and waits for it, so that no row is lost. It should not panic.
-pub type Sink<'a, const D: usize> = &'a mut (dyn FnMut(&TraceRow<D>) + Send);
+pub type Sink<'a> = &'a mut (dyn FnMut(&TraceRow) + Send);
 
 /// Options of a run.
 ///
 /// ```
 /// use palpate_haptics::servo_loop::{Pace, RunOptions};
 ///
-/// let options = RunOptions { pace: Pace::AsFastAsPossible, ..RunOptions::<3>::new(2.0) };
+/// let options = RunOptions { pace: Pace::AsFastAsPossible, ..RunOptions::new(2.0) };
 /// assert_eq!((options.duration, options.pace), (2.0, Pace::AsFastAsPossible));
 /// ```
-pub struct RunOptions<'a, const D: usize> {
+pub struct RunOptions<'a> {
     /// The time the servo runs [s].
     pub duration: f64,
     /// The pace.
@@ -77,13 +76,13 @@ pub struct RunOptions<'a, const D: usize> {
     /// often. Only in real time.
     pub rehearses: bool,
     /// Keeps every tick until its memory is full.
-    pub recorder: Option<&'a mut Recorder<D>>,
+    pub recorder: Option<&'a mut Recorder>,
     /// Receives the rows of all ticks.
-    pub sink: Option<Sink<'a, D>>,
+    pub sink: Option<Sink<'a>>,
     /// A closure that a separate thread calls.
     pub watch: Option<Watch<'a>>,
     /// Moves bodies before each tick.
-    pub motion: Option<BodyMotion<'a, D>>,
+    pub motion: Option<BodyMotion<'a>>,
     /// Ends the run before its next tick once the flag is `true`; a signal handler may set it.
     pub interrupt: Option<&'a AtomicBool>,
     /// How the run goes on when the device is lost; `None` to end it.
@@ -92,7 +91,7 @@ pub struct RunOptions<'a, const D: usize> {
     pub vibration: Option<Vibration<'a>>,
 }
 
-impl<'a, const D: usize> RunOptions<'a, D> {
+impl<'a> RunOptions<'a> {
     /// A run of `duration` [s] in real time that ends when the device is lost, without rehearsals,
     /// recorder, sink, watch and vibration.
     #[must_use]
@@ -127,12 +126,12 @@ impl<'a, const D: usize> RunOptions<'a, D> {
 /// ```
 /// use palpate_haptics::servo_loop::{RunOptions, Seconds};
 ///
-/// assert_eq!(RunOptions::<3>::from(Seconds(10.0)).duration, 10.0);
+/// assert_eq!(RunOptions::from(Seconds(10.0)).duration, 10.0);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Seconds(pub f64);
 
-impl<const D: usize> From<Seconds> for RunOptions<'_, D> {
+impl From<Seconds> for RunOptions<'_> {
     /// In real time, without rehearsals, recorder, sink and watch.
     fn from(duration: Seconds) -> Self {
         Self::new(duration.0)
@@ -140,7 +139,7 @@ impl<const D: usize> From<Seconds> for RunOptions<'_, D> {
 }
 
 /// Adds [`run`] as a method to [`Servo`]; no other type implements it.
-pub trait Run<const D: usize> {
+pub trait Run {
     /// Runs the servo with `device` as [`run`] does; `options` may be a time, [`Seconds`].
     ///
     /// # Errors
@@ -156,7 +155,7 @@ pub trait Run<const D: usize> {
     /// use palpate_haptics::servo_loop::{Run as _, Seconds};
     ///
     /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
-    /// let ends = vec![[0.0, 0.08].into(), [0.0, 0.05].into()];
+    /// let ends = vec![[0.0, 0.08, 0.0].into(), [0.0, 0.05, 0.0].into()];
     /// let press = HandPath::new(vec![0.0, 0.05], ends, Interpolation::Smooth)?;
     /// let mut device = RecordedDevice::new(vec![press])?;
     /// let mut servo = Servo::for_device(Shape::circle(0.05)?, &device)?;
@@ -166,22 +165,22 @@ pub trait Run<const D: usize> {
     /// ```
     fn run<'a>(
         &mut self,
-        device: &mut dyn Device<D>,
-        options: impl Into<RunOptions<'a, D>>,
+        device: &mut dyn Device,
+        options: impl Into<RunOptions<'a>>,
     ) -> Result<RunReport, HapticsError>;
 }
 
-impl<const D: usize> Run<D> for Servo<D> {
+impl Run for Servo {
     fn run<'a>(
         &mut self,
-        device: &mut dyn Device<D>,
-        options: impl Into<RunOptions<'a, D>>,
+        device: &mut dyn Device,
+        options: impl Into<RunOptions<'a>>,
     ) -> Result<RunReport, HapticsError> {
         run(self, device, options.into())
     }
 }
 
-impl<const D: usize> std::fmt::Debug for RunOptions<'_, D> {
+impl std::fmt::Debug for RunOptions<'_> {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.debug_struct("RunOptions")
             .field("duration", &self.duration)
@@ -227,7 +226,7 @@ impl<const D: usize> std::fmt::Debug for RunOptions<'_, D> {
 /// let ends = vec![Vector([0.0, 0.08, 0.0]), Vector([0.0, 0.05, 0.0])];
 /// let press = HandPath::new(vec![0.0, 1.0], ends, Interpolation::Smooth)?;
 /// let mut device = RecordedDevice::new(vec![press])?;
-/// let ball = Shape::from_kernel(Ball::new(0.05)?);
+/// let ball = Shape::<3>::from_kernel(Ball::new(0.05)?);
 /// let mut servo = Servo::for_device(ball, &device)?;
 ///
 /// let options = RunOptions { pace: Pace::AsFastAsPossible, ..RunOptions::new(1.0) };
@@ -246,17 +245,17 @@ impl<const D: usize> std::fmt::Debug for RunOptions<'_, D> {
 /// use palpate_haptics::{ServoOptions, Servo};
 /// use palpate_haptics::servo_loop::{RunOptions, run};
 ///
-/// fn feel(device: &mut dyn Device<3>) -> Result<(), Box<dyn std::error::Error>> {
-///     let ball = Shape::from_kernel(Ball::new(0.05)?);
+/// fn feel(device: &mut dyn Device) -> Result<(), Box<dyn std::error::Error>> {
+///     let ball = Shape::<3>::from_kernel(Ball::new(0.05)?);
 ///     let mut servo = Servo::new(ball, 1, ServoOptions::default())?;
 ///     run(&mut servo, device, RunOptions::new(1.0))?;
 ///     Ok(())
 /// }
 /// ```
-pub fn run<const D: usize>(
-    servo: &mut Servo<D>,
-    device: &mut dyn Device<D>,
-    options: RunOptions<'_, D>,
+pub fn run(
+    servo: &mut Servo,
+    device: &mut dyn Device,
+    options: RunOptions<'_>,
 ) -> Result<RunReport, HapticsError> {
     run_on(&mut WallClock::new(), servo, device, options)
 }
@@ -267,11 +266,11 @@ pub fn run<const D: usize>(
 ///
 /// As [`run`].
 #[inline(never)]
-pub fn run_on<const D: usize>(
+pub fn run_on(
     clock: &mut dyn Clock,
-    servo: &mut Servo<D>,
-    device: &mut dyn Device<D>,
-    options: RunOptions<'_, D>,
+    servo: &mut Servo,
+    device: &mut dyn Device,
+    options: RunOptions<'_>,
 ) -> Result<RunReport, HapticsError> {
     let schedule = Schedule {
         ticks: ticks(
@@ -287,7 +286,7 @@ pub fn run_on<const D: usize>(
     options.pace.check(device)?;
     let mut player = options.vibration.map(|vibration| vibration.start(servo)).transpose()?;
     // Within an option the closure's lifetime would have to be that of the loop.
-    let motion = options.motion.map(|motion| -> BodyMotion<'_, D> { motion });
+    let motion = options.motion.map(|motion| -> BodyMotion<'_> { motion });
     let (rows, queued) = match (options.sink, options.pace) {
         (None, _) => (None, None),
         (Some(sink), Pace::AsFastAsPossible) => (Some(RowSink::Call(sink)), None),
@@ -310,9 +309,9 @@ pub fn run_on<const D: usize>(
 }
 
 /// Runs `work` while other threads call the watch and the sink.
-fn accompanied<T, const D: usize>(
-    watched: Option<(Control<D>, Watch<'_>)>,
-    queued: Option<(Records<D>, Sink<'_, D>)>,
+fn accompanied<T>(
+    watched: Option<(Control, Watch<'_>)>,
+    queued: Option<(Records, Sink<'_>)>,
     work: impl FnOnce() -> T,
 ) -> T {
     std::thread::scope(|scope| {
@@ -327,7 +326,7 @@ fn accompanied<T, const D: usize>(
 }
 
 /// Calls a watch until the loop has ended.
-fn watch<const D: usize>(mut control: Control<D>, watch: Watch<'_>) {
+fn watch(mut control: Control, watch: Watch<'_>) {
     loop {
         // Read before the snapshot, so that the last snapshot is that of the last tick.
         let is_last = control.has_ended();
@@ -342,7 +341,7 @@ fn watch<const D: usize>(mut control: Control<D>, watch: Watch<'_>) {
 }
 
 /// Hands rows to a sink until the loop has ended.
-fn take<const D: usize>(mut records: Records<D>, sink: Sink<'_, D>) {
+fn take(mut records: Records, sink: Sink<'_>) {
     loop {
         // Read before the rows, so that the last rows are not missed.
         let is_last = records.has_ended();

@@ -53,7 +53,7 @@ impl StartTally {
     /// each tick until it has left.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic unless a custom field does.
-    pub(crate) fn tick<const D: usize>(&mut self, servo: &Servo<D>) {
+    pub(crate) fn tick(&mut self, servo: &Servo) {
         let is_first = !std::mem::replace(&mut self.has_begun, true);
         let radius = if servo.tool().is_some() { 0.0 } else { servo.options().probe.radius() };
         for ((point, touch), start) in (0..).zip(servo.touches()).zip(&mut self.starts) {

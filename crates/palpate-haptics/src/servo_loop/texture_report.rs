@@ -30,7 +30,7 @@ impl TextureReport {
     /// Counts a tick.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
-    pub(crate) fn tick<const D: usize>(&mut self, servo: &Servo<D>) {
+    pub(crate) fn tick(&mut self, servo: &Servo) {
         let (bodies, rate) = (servo.bodies().bodies(), servo.options().rate);
         let (mut is_touched, mut is_faded) = (false, false);
         for touch in servo.touches().iter().filter(|touch| touch.contact) {
@@ -58,16 +58,16 @@ mod tests {
     use palpate_field::kernel::HalfSpace;
     use palpate_field::{Shape, Vector};
 
-    fn servo() -> Servo<2> {
+    fn servo() -> Servo {
         let texture = Texture {
             description: None,
             kind: TextureKind::Height,
             amplitude: 1e-5,
             wavelength: 1e-3,
-            direction: Some(vec![1.0, 0.0]),
+            direction: Some(vec![1.0, 0.0, 0.0]),
         };
         let grooved = Material { texture: Some(texture), ..Material::default() };
-        let floor = Shape::from_kernel(HalfSpace::new(Vector([0.0, 1.0]), 0.0).unwrap());
+        let floor = Shape::from_kernel(HalfSpace::new(Vector([0.0, 1.0, 0.0]), 0.0).unwrap());
         let floor = Body::new(floor, Surface::new(&grooved).unwrap()).unwrap();
         let bodies = Bodies::new(vec![floor]).unwrap();
         let servo = Servo::new(bodies, 1, ServoOptions::default()).unwrap();
@@ -79,8 +79,8 @@ mod tests {
         let (mut servo, mut report) = (servo(), TextureReport::default());
         // 10 mm above, then 1 mm deep at 200, 300 and 600 crests a second.
         for (height, speed) in [(0.01, 0.6), (-0.001, 0.2), (-0.001, 0.3), (-0.001, 0.6)] {
-            let velocity = Vector([speed, 0.0]);
-            servo.step(&[PointState { position: Vector([0.0, height]), velocity }]);
+            let velocity = Vector([speed, 0.0, 0.0]);
+            servo.step(&[PointState { position: Vector([0.0, height, 0.0]), velocity }]);
             report.tick(&servo);
         }
         assert_eq!((report.ticks, report.faded_ticks), (3, 2));

@@ -27,8 +27,7 @@ const PATIENCE: Duration = Duration::from_secs(1);
 
 /// A closure that moves bodies before each tick in a servo's thread, as [`BodyMotion`] does in a
 /// call.
-pub type ThreadMotion<const D: usize> =
-    Box<dyn FnMut(f64, &mut dyn FnMut(usize, Pose<D>)) + Send>;
+pub type ThreadMotion = Box<dyn FnMut(f64, &mut dyn FnMut(usize, Pose<3>)) + Send>;
 
 /// How a thread runs a servo.
 ///
@@ -38,11 +37,11 @@ pub type ThreadMotion<const D: usize> =
 /// let options = ThreadOptions {
 ///     duration: Some(2.0),
 ///     rows: Some(2000),
-///     ..ThreadOptions::<3>::default()
+///     ..ThreadOptions::default()
 /// };
 /// assert_eq!((options.duration, options.rows), (Some(2.0), Some(2000)));
 /// ```
-pub struct ThreadOptions<const D: usize> {
+pub struct ThreadOptions {
     /// The time for which the servo runs [s]; `None` means until [`ServoThread::end`].
     pub duration: Option<f64>,
     /// Whether the thread requests a raised priority.
@@ -55,7 +54,7 @@ pub struct ThreadOptions<const D: usize> {
     /// The capacities of the hand-off.
     pub handoff: HandoffOptions,
     /// Moves bodies before each tick.
-    pub motion: Option<ThreadMotion<D>>,
+    pub motion: Option<ThreadMotion>,
     /// How the loop goes on when the device is lost; `None` to end it.
     pub reconnection: Option<Reconnection>,
     /// The emergency stop, if it is shared with other servos; else the thread has its own.
@@ -64,7 +63,7 @@ pub struct ThreadOptions<const D: usize> {
     pub vibration: Option<Vibration<'static>>,
 }
 
-impl<const D: usize> Default for ThreadOptions<D> {
+impl Default for ThreadOptions {
     /// No end but a lost device, raised priority, default hand-off; no rehearsals, recorder, motion
     /// and vibration.
     fn default() -> Self {
@@ -82,7 +81,7 @@ impl<const D: usize> Default for ThreadOptions<D> {
     }
 }
 
-impl<const D: usize> ThreadOptions<D> {
+impl ThreadOptions {
     /// The same options with a closure that moves bodies before each tick, as [`BodyMotion`] does in a
     /// call. That of a built scene of `palpate-scene` is `move |time, set_pose|
     /// scene.motion()(time, set_pose)`.
@@ -98,7 +97,7 @@ impl<const D: usize> ThreadOptions<D> {
     /// use palpate_haptics::servo_loop::{ServoThread, ThreadOptions, VirtualClock};
     ///
     /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
-    /// let rest = vec![Vector([0.0, 0.005]); 2];
+    /// let rest = vec![Vector([0.0, 0.005, 0.0]); 2];
     /// let hand = HandPath::new(vec![0.0, 0.01], rest, Interpolation::Linear)?;
     /// let device = Box::new(RecordedDevice::new(vec![hand])?);
     /// let floor = Shape::half_space([0.0, 1.0], 0.0)?;
@@ -108,7 +107,7 @@ impl<const D: usize> ThreadOptions<D> {
     ///     duration: Some(0.01),
     ///     ..ThreadOptions::default()
     /// }
-    /// .with_motion(|time, set_pose| set_pose(0, Pose::translation([0.0, time])));
+    /// .with_motion(|time, set_pose| set_pose(0, Pose::translation([0.0, time, 0.0])));
     /// let thread = ServoThread::start_on(VirtualClock::new(), servo, device, options)?;
     /// let report = thread.join().report;
     /// assert!((report.largest_depth - 0.006).abs() < 1e-9); // after 9 ms
@@ -118,13 +117,13 @@ impl<const D: usize> ThreadOptions<D> {
     #[must_use]
     pub fn with_motion(
         self,
-        motion: impl FnMut(f64, &mut dyn FnMut(usize, Pose<D>)) + Send + 'static,
+        motion: impl FnMut(f64, &mut dyn FnMut(usize, Pose<3>)) + Send + 'static,
     ) -> Self {
         Self { motion: Some(Box::new(motion)), ..self }
     }
 }
 
-impl<const D: usize> fmt::Debug for ThreadOptions<D> {
+impl fmt::Debug for ThreadOptions {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("ThreadOptions")
             .field("duration", &self.duration)
@@ -182,10 +181,10 @@ impl From<NumberError> for StartError {
 ///
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
 /// // A hand that rests 1/128 m above a ball.
-/// let rest = vec![Vector([0.0, 0.5 + 1.0 / 128.0]); 2];
+/// let rest = vec![Vector([0.0, 0.5 + 1.0 / 128.0, 0.0]); 2];
 /// let hand = HandPath::new(vec![0.0, 1.0], rest, Interpolation::Linear)?;
 /// let device = Box::new(RecordedDevice::new(vec![hand])?);
-/// let ball = Shape::from_kernel(Ball::new(0.5)?);
+/// let ball = Shape::<3>::from_kernel(Ball::new(0.5)?);
 /// let servo = Servo::for_device(ball, &*device)?;
 ///
 /// let (clock, mut driver) = VirtualClock::driven();
@@ -195,7 +194,7 @@ impl From<NumberError> for StartError {
 /// let snapshot = thread.control().latest().ok_or("tick 0 is over")?;
 /// assert_eq!((snapshot.progress.ticks, snapshot.touches[0].contact), (1, false));
 ///
-/// thread.control().set_poses(&[(0, Pose::translation(Vector([0.0, 1.0 / 64.0])))])?;
+/// thread.control().set_poses(&[(0, Pose::translation(Vector([0.0, 1.0 / 64.0, 0.0])))])?;
 /// driver.advance(Duration::from_millis(1));
 /// let snapshot = thread.control().latest().ok_or("tick 1 is over")?;
 /// assert_eq!((snapshot.progress.ticks, snapshot.touches[0].contact), (2, true));
@@ -206,17 +205,17 @@ impl From<NumberError> for StartError {
 /// # Ok(())
 /// # }
 /// ```
-pub struct ServoThread<const D: usize> {
+pub struct ServoThread {
     /// Dropped before the handle: that ends the loop, for which the handle then waits.
-    control: Control<D>,
-    thread: Handle<D>,
-    records: Option<Records<D>>,
+    control: Control,
+    thread: Handle,
+    records: Option<Records>,
 }
 
 /// The thread; `None` once it is joined.
-struct Handle<const D: usize>(Option<JoinHandle<Left<D>>>);
+struct Handle(Option<JoinHandle<Left>>);
 
-impl<const D: usize> Drop for Handle<D> {
+impl Drop for Handle {
     fn drop(&mut self) {
         let Some(thread) = &self.0 else { return };
         let start = Instant::now();
@@ -228,37 +227,37 @@ impl<const D: usize> Drop for Handle<D> {
 
 /// What remains of a servo thread that has ended.
 #[non_exhaustive]
-pub struct EndedThread<const D: usize> {
+pub struct EndedThread {
     /// The servo after its last tick.
-    pub servo: Servo<D>,
+    pub servo: Servo,
     /// The device; zero was written to it.
-    pub device: Box<dyn Device<D> + Send>,
+    pub device: Box<dyn Device + Send>,
     /// What played the touches, if anything did, with its device, which was silenced; it can play
     /// those of another run.
     pub vibration: Option<Vibration<'static>>,
     /// The hand-off, with the last snapshot and the events not taken yet.
-    pub control: Control<D>,
+    pub control: Control,
     /// The report of the run.
     pub report: RunReport,
     /// The recorded rows not taken yet, if a recorder was requested and left to the thread.
-    pub records: Option<Records<D>>,
+    pub records: Option<Records>,
     /// The priority that the thread had.
     pub priority: Priority,
 }
 
 /// The results that the thread returns.
-struct Left<const D: usize> {
-    servo: Servo<D>,
-    device: Box<dyn Device<D> + Send>,
+struct Left {
+    servo: Servo,
+    device: Box<dyn Device + Send>,
     player: Option<Player<'static>>,
     /// Returned, as the motion is, so that its content is not freed in the servo's thread.
-    _end: ServoEnd<D>,
-    _motion: Option<ThreadMotion<D>>,
+    _end: ServoEnd,
+    _motion: Option<ThreadMotion>,
     report: RunReport,
     priority: Priority,
 }
 
-impl<const D: usize> ServoThread<D> {
+impl ServoThread {
     /// Starts a thread that runs `servo` with `device` in real time, at the pace of a device that
     /// [sets it](Pace::Device).
     ///
@@ -267,9 +266,9 @@ impl<const D: usize> ServoThread<D> {
     /// [`StartError::Haptics`] as [`run`](super::run()); [`StartError::ThreadNotStarted`].
     #[inline(never)]
     pub fn start(
-        servo: Servo<D>,
-        device: Box<dyn Device<D> + Send>,
-        options: ThreadOptions<D>,
+        servo: Servo,
+        device: Box<dyn Device + Send>,
+        options: ThreadOptions,
     ) -> Result<Self, StartError> {
         Self::start_with(WallClock::suited_to, servo, device, options)
     }
@@ -281,18 +280,18 @@ impl<const D: usize> ServoThread<D> {
     /// As [`start`](Self::start).
     pub fn start_on(
         clock: impl Clock + Send + 'static,
-        servo: Servo<D>,
-        device: Box<dyn Device<D> + Send>,
-        options: ThreadOptions<D>,
+        servo: Servo,
+        device: Box<dyn Device + Send>,
+        options: ThreadOptions,
     ) -> Result<Self, StartError> {
         Self::start_with(|_| clock, servo, device, options)
     }
 
     fn start_with<C: Clock>(
         clock: impl FnOnce(&Priority) -> C + Send + 'static,
-        mut servo: Servo<D>,
-        mut device: Box<dyn Device<D> + Send>,
-        options: ThreadOptions<D>,
+        mut servo: Servo,
+        mut device: Box<dyn Device + Send>,
+        options: ThreadOptions,
     ) -> Result<Self, StartError> {
         servo.check_device(&*device)?;
         let ticks = match options.duration {
@@ -315,7 +314,7 @@ impl<const D: usize> ServoThread<D> {
             let mut clock = clock(&priority);
             let report = ServoLoop::new(&mut servo, &mut *device)
                 .sending(rows.map(RowSink::Queue))
-                .moving(motion.as_deref_mut().map(|motion| -> BodyMotion<'_, D> { motion }))
+                .moving(motion.as_deref_mut().map(|motion| -> BodyMotion<'_> { motion }))
                 .handing_off(Some(&mut end))
                 .reconnecting(reconnection)
                 .vibrating(player.as_mut())
@@ -332,7 +331,7 @@ impl<const D: usize> ServoThread<D> {
 
     /// The hand-off to the servo: edits what is rendered, and reads its state.
     #[must_use]
-    pub fn control(&mut self) -> &mut Control<D> {
+    pub fn control(&mut self) -> &mut Control {
         &mut self.control
     }
 
@@ -353,7 +352,7 @@ impl<const D: usize> ServoThread<D> {
     /// use palpate_haptics::servo_loop::{ServoThread, ThreadOptions, VirtualClock};
     ///
     /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
-    /// let ends = vec![[0.0, 0.08].into(), [0.0, 0.05].into()];
+    /// let ends = vec![[0.0, 0.08, 0.0].into(), [0.0, 0.05, 0.0].into()];
     /// let press = HandPath::new(vec![0.0, 0.25], ends, Interpolation::Smooth)?;
     /// let device = Box::new(RecordedDevice::new(vec![press])?);
     /// let servo = Servo::for_device(Shape::circle(0.05)?, &*device)?;
@@ -380,7 +379,7 @@ impl<const D: usize> ServoThread<D> {
     /// # }
     /// ```
     #[must_use]
-    pub fn take_records(&mut self) -> Option<Records<D>> {
+    pub fn take_records(&mut self) -> Option<Records> {
         self.records.take()
     }
 
@@ -393,7 +392,7 @@ impl<const D: usize> ServoThread<D> {
     /// Ends the loop before its next tick; see [`join`](Self::join).
     #[must_use]
     #[inline(never)]
-    pub fn end(self) -> EndedThread<D> {
+    pub fn end(self) -> EndedThread {
         self.control.end();
         self.join()
     }
@@ -408,7 +407,7 @@ impl<const D: usize> ServoThread<D> {
         reason = "only this method takes the thread, and it consumes the handle"
     )]
     #[inline(never)]
-    pub fn join(self) -> EndedThread<D> {
+    pub fn join(self) -> EndedThread {
         let Self { control, mut thread, records } = self;
         let thread = thread.0.take().expect("a thread that was not joined");
         // Panics in the loop are part of the report.
@@ -419,13 +418,13 @@ impl<const D: usize> ServoThread<D> {
     }
 }
 
-impl<const D: usize> fmt::Debug for ServoThread<D> {
+impl fmt::Debug for ServoThread {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("ServoThread").field("control", &self.control).finish_non_exhaustive()
     }
 }
 
-impl<const D: usize> fmt::Debug for EndedThread<D> {
+impl fmt::Debug for EndedThread {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("EndedThread")
             .field("report", &self.report)

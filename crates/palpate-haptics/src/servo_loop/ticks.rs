@@ -28,27 +28,27 @@ use super::vibration::Player;
 const REHEARSAL: Duration = Duration::from_micros(60);
 
 /// Where the rows of ticks go, beside a recorder.
-pub(crate) enum RowSink<'a, const D: usize> {
+pub(crate) enum RowSink<'a> {
     /// To another thread, which may fall behind.
-    Queue(RowQueue<D>),
+    Queue(RowQueue),
     /// To a closure in the loop, which the loop waits for.
-    Call(&'a mut (dyn FnMut(&TraceRow<D>) + Send)),
+    Call(&'a mut (dyn FnMut(&TraceRow) + Send)),
 }
 
 /// A servo with its device, recorder and hand-off, and a player whose device lives for `'v`.
-pub(crate) struct ServoLoop<'a, 'v, const D: usize> {
-    servo: &'a mut Servo<D>,
-    device: &'a mut dyn Device<D>,
-    recorder: Option<&'a mut Recorder<D>>,
-    sink: Option<RowSink<'a, D>>,
-    end: Option<&'a mut ServoEnd<D>>,
-    motion: Option<BodyMotion<'a, D>>,
+pub(crate) struct ServoLoop<'a, 'v> {
+    servo: &'a mut Servo,
+    device: &'a mut dyn Device,
+    recorder: Option<&'a mut Recorder>,
+    sink: Option<RowSink<'a>>,
+    end: Option<&'a mut ServoEnd>,
+    motion: Option<BodyMotion<'a>>,
     interrupt: Option<&'a AtomicBool>,
-    states: Vec<PointState<D>>,
+    states: Vec<PointState>,
     /// The states with which the next tick is rehearsed.
-    expected: Vec<PointState<D>>,
+    expected: Vec<PointState>,
     /// Zero forces, written at the end.
-    no_forces: Vec<Vector<f64, D>>,
+    no_forces: Vec<Vector<f64, 3>>,
     connection: Connection,
     vibration: Option<&'a mut Player<'v>>,
     /// Whether the servo limits the force of a gripper.
@@ -57,7 +57,7 @@ pub(crate) struct ServoLoop<'a, 'v, const D: usize> {
     time: f64,
     /// Whether the device has rotation, and so takes a torque.
     is_turned: bool,
-    tally: Tally<D>,
+    tally: Tally,
 }
 
 /// The pace and the number of ticks.
@@ -69,10 +69,10 @@ pub(crate) struct Schedule {
     pub(crate) rehearses: bool,
 }
 
-impl<'a, 'v, const D: usize> ServoLoop<'a, 'v, D> {
+impl<'a, 'v> ServoLoop<'a, 'v> {
     /// A loop with a device that was [checked](Servo::check_device).
     #[inline(never)]
-    pub(crate) fn new(servo: &'a mut Servo<D>, device: &'a mut dyn Device<D>) -> Self {
+    pub(crate) fn new(servo: &'a mut Servo, device: &'a mut dyn Device) -> Self {
         let points = device.points();
         let has_gripper = servo.protection().profile.gripper.is_some();
         let (tally, servo_rate) = (Tally::new(servo), servo.options().rate);
@@ -96,22 +96,22 @@ impl<'a, 'v, const D: usize> ServoLoop<'a, 'v, D> {
         }
     }
 
-    pub(crate) fn recording(mut self, recorder: Option<&'a mut Recorder<D>>) -> Self {
+    pub(crate) fn recording(mut self, recorder: Option<&'a mut Recorder>) -> Self {
         self.recorder = recorder;
         self
     }
 
-    pub(crate) fn sending(mut self, sink: Option<RowSink<'a, D>>) -> Self {
+    pub(crate) fn sending(mut self, sink: Option<RowSink<'a>>) -> Self {
         self.sink = sink;
         self
     }
 
-    pub(crate) fn handing_off(mut self, end: Option<&'a mut ServoEnd<D>>) -> Self {
+    pub(crate) fn handing_off(mut self, end: Option<&'a mut ServoEnd>) -> Self {
         self.end = end;
         self
     }
 
-    pub(crate) fn moving(mut self, motion: Option<BodyMotion<'a, D>>) -> Self {
+    pub(crate) fn moving(mut self, motion: Option<BodyMotion<'a>>) -> Self {
         self.motion = motion;
         self
     }
@@ -232,7 +232,7 @@ impl<'a, 'v, const D: usize> ServoLoop<'a, 'v, D> {
     fn connect(&mut self) -> Result<(), DeviceLost> {
         let servo = &*self.servo;
         // Another device may have been plugged in.
-        let fits = |device: &dyn Device<D>| {
+        let fits = |device: &dyn Device| {
             servo.check_device(device).map_err(|error| DeviceLost::new(error.to_string()))
         };
         let opened = self.connection.open(&mut *self.device, self.time, fits);

@@ -53,11 +53,7 @@ impl ToolTally {
     /// Counts a tick with the torque written to a device with rotation.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
-    pub(crate) fn tick<const D: usize>(
-        &mut self,
-        tool: &Tool<D>,
-        written: Option<Vector<f64, 3>>,
-    ) {
+    pub(crate) fn tick(&mut self, tool: &Tool, written: Option<Vector<f64, 3>>) {
         let (held, shell, report) = (tool.held(), tool.shell(), &mut self.report);
         report.points = shell.points().len() as u32;
         report.resolution = shell.resolution(shell.points().len());

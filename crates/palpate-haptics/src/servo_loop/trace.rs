@@ -30,27 +30,29 @@ const AXES: [&str; 3] = ["x", "y", "z"];
 /// use palpate_haptics::servo_loop::{TraceRow, TraceWriter};
 ///
 /// # fn main() -> std::io::Result<()> {
-/// let mut trace = TraceWriter::new(Vec::new());
-/// trace.write(&TraceRow::free(0.001, 0, Vector([0.25, 0.5])))?;
+/// let mut trace = TraceWriter::new(Vec::new()).in_plane();
+/// trace.write(&TraceRow::free(0.001, 0, Vector([0.25, 0.5, 0.0])))?;
 /// let csv = String::from_utf8(trace.finish()?).unwrap_or_default();
 /// assert!(csv.starts_with("time_s,point,device_x_m,device_y_m,proxy_x_m,proxy_y_m,"));
 /// assert!(csv.contains("\n0.001,0,0.25,0.5,0.25,0.5,"));
 /// # Ok(())
 /// # }
 /// ```
-pub struct TraceWriter<'a, const D: usize, W: io::Write> {
+pub struct TraceWriter<'a, W: io::Write> {
     csv: csv::Writer<W>,
     /// The columns, once they are written.
     columns: Option<Columns>,
     bodies: Vec<usize>,
-    pose_at: PoseAt<'a, D>,
+    pose_at: PoseAt<'a>,
+    /// The number of axes along which positions and forces have columns.
+    dimension: usize,
     /// The text of a field, kept to save its memory.
     field: String,
     rows: u64,
 }
 
 /// The pose of a body by its number and the time [s].
-type PoseAt<'a, const D: usize> = Box<dyn Fn(usize, f64) -> Pose<D> + Send + 'a>;
+type PoseAt<'a> = Box<dyn Fn(usize, f64) -> Pose<3> + Send + 'a>;
 
 /// Which columns a trace has beside those that all have.
 #[derive(Clone, Copy)]
@@ -59,7 +61,7 @@ struct Columns {
     turns_hand: bool,
 }
 
-impl<'a, const D: usize, W: io::Write> TraceWriter<'a, D, W> {
+impl<'a, W: io::Write> TraceWriter<'a, W> {
     /// A trace that goes to `out`, which is flushed by [`finish`](Self::finish).
     #[must_use]
     pub fn new(out: W) -> Self {
@@ -68,9 +70,17 @@ impl<'a, const D: usize, W: io::Write> TraceWriter<'a, D, W> {
             columns: None,
             bodies: Vec::new(),
             pose_at: Box::new(|_, _| Pose::identity()),
+            dimension: 3,
             field: String::new(),
             rows: 0,
         }
+    }
+
+    /// The same trace of a planar scene: without the columns of what is zero in it, along z and about
+    /// x and y.
+    #[must_use]
+    pub fn in_plane(self) -> Self {
+        Self { dimension: 2, ..self }
     }
 
     /// The same trace with the pose of each of these bodies, by their numbers from 0, at the times
@@ -79,7 +89,7 @@ impl<'a, const D: usize, W: io::Write> TraceWriter<'a, D, W> {
     pub fn with_poses(
         self,
         bodies: impl IntoIterator<Item = usize>,
-        pose_at: impl Fn(usize, f64) -> Pose<D> + Send + 'a,
+        pose_at: impl Fn(usize, f64) -> Pose<3> + Send + 'a,
     ) -> Self {
         Self { bodies: bodies.into_iter().collect(), pose_at: Box::new(pose_at), ..self }
     }
@@ -89,7 +99,7 @@ impl<'a, const D: usize, W: io::Write> TraceWriter<'a, D, W> {
     /// # Errors
     ///
     /// That `out` cannot be written.
-    pub fn write(&mut self, row: &TraceRow<D>) -> io::Result<()> {
+    pub fn write(&mut self, row: &TraceRow) -> io::Result<()> {
         let columns = match self.columns {
             Some(columns) => columns,
             None => self.write_names(Columns {
@@ -100,7 +110,7 @@ impl<'a, const D: usize, W: io::Write> TraceWriter<'a, D, W> {
         self.field(row.time_s)?;
         self.field(row.point)?;
         for Vector(components) in [row.device, row.proxy, row.wanted, row.force, row.normal] {
-            self.fields(components)?;
+            self.fields(self.along(components))?;
         }
         self.field(row.contact)?;
         self.field(row.body)?;
@@ -114,12 +124,12 @@ impl<'a, const D: usize, W: io::Write> TraceWriter<'a, D, W> {
             self.write_tool(row.tool.as_ref())?;
         }
         if columns.turns_hand {
-            self.optional(turns::<_, D>(given(row.tool.as_ref())))?;
+            self.optional(self.turns(given(row.tool.as_ref())))?;
         }
         for body in 0..self.bodies.len() {
             let pose = (self.pose_at)(self.bodies[body], row.time_s);
-            self.fields(pose.translation.0)?;
-            self.fields(turns::<_, D>(Rotation::identity().turn_to(&pose.rotation).0))?;
+            self.fields(self.along(pose.translation.0))?;
+            self.fields(self.turns(Rotation::identity().turn_to(&pose.rotation).0))?;
         }
         self.end_row()?;
         self.rows += 1;
@@ -157,11 +167,11 @@ impl<'a, const D: usize, W: io::Write> TraceWriter<'a, D, W> {
             ("force", "_n"),
             ("normal", ""),
         ] {
-            self.names(&format!("{vector}_"), &AXES[..D], unit)?;
+            self.names(&format!("{vector}_"), &AXES[..self.dimension], unit)?;
         }
         self.fields(["contact", "body", "slipping", "lifted", "taken_j", "given_j", "kept_j"])?;
         self.fields(["evaluations", "cost_ns", "lateness_ns"])?;
-        let about: Vec<_> = turns::<_, D>(AXES).collect();
+        let about: Vec<_> = self.turns(AXES).collect();
         if columns.has_tool {
             self.names("torque_", &about, "_nm")?;
             self.names("turn_", &about, "_rad")?;
@@ -171,7 +181,7 @@ impl<'a, const D: usize, W: io::Write> TraceWriter<'a, D, W> {
             self.names("given_torque_", &about, "_nm")?;
         }
         for body in self.bodies.clone() {
-            self.names(&format!("body_{body}_"), &AXES[..D], "_m")?;
+            self.names(&format!("body_{body}_"), &AXES[..self.dimension], "_m")?;
             self.names(&format!("body_{body}_turn_"), &about, "_rad")?;
         }
         self.end_row()?;
@@ -179,13 +189,23 @@ impl<'a, const D: usize, W: io::Write> TraceWriter<'a, D, W> {
         Ok(columns)
     }
 
+    /// The components along the axes that have columns.
+    fn along<T>(&self, axes: [T; 3]) -> impl Iterator<Item = T> + use<T, W> {
+        axes.into_iter().take(self.dimension)
+    }
+
+    /// The components of a rotation: about all axes in space, about z in the plane.
+    fn turns<T>(&self, axes: [T; 3]) -> impl Iterator<Item = T> + use<T, W> {
+        axes.into_iter().skip(if self.dimension == 2 { 2 } else { 0 })
+    }
+
     /// Writes the columns of a tool, empty ones for a row without a tool.
-    fn write_tool(&mut self, tool: Option<&HeldTool<D>>) -> io::Result<()> {
-        let of = |vector: fn(&HeldTool<D>) -> Vector<f64, 3>| {
+    fn write_tool(&mut self, tool: Option<&HeldTool>) -> io::Result<()> {
+        let of = |vector: fn(&HeldTool) -> Vector<f64, 3>| {
             tool.map_or([None; 3], |tool| vector(tool).0.map(Some))
         };
-        self.optional(turns::<_, D>(of(|tool| tool.torque)))?;
-        self.optional(turns::<_, D>(of(|tool| tool.turn)))?;
+        self.optional(self.turns(of(|tool| tool.torque)))?;
+        self.optional(self.turns(of(|tool| tool.turn)))?;
         self.optional([tool.map(|tool| tool.contacts)])?;
         self.optional([tool.map(|tool| tool.resolution)])?;
         self.optional([tool.map(|tool| tool.is_degraded)])
@@ -225,7 +245,7 @@ impl<'a, const D: usize, W: io::Write> TraceWriter<'a, D, W> {
     }
 }
 
-impl<const D: usize, W: io::Write> fmt::Debug for TraceWriter<'_, D, W> {
+impl<W: io::Write> fmt::Debug for TraceWriter<'_, W> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("TraceWriter")
             .field("rows", &self.rows)
@@ -235,13 +255,8 @@ impl<const D: usize, W: io::Write> fmt::Debug for TraceWriter<'_, D, W> {
 }
 
 /// The torque on the hand about each axis; `None` where the row has none.
-fn given<const D: usize>(tool: Option<&HeldTool<D>>) -> [Option<f64>; 3] {
+fn given(tool: Option<&HeldTool>) -> [Option<f64>; 3] {
     tool.and_then(|tool| tool.given).map_or([None; 3], |Vector(torque)| torque.map(Some))
-}
-
-/// The components of a rotation: about all axes in space, about z in the plane.
-fn turns<T, const D: usize>(axes: [T; 3]) -> impl Iterator<Item = T> {
-    axes.into_iter().skip(if D == 2 { 2 } else { 0 })
 }
 
 #[cfg(test)]
@@ -250,9 +265,10 @@ mod tests {
 
     use super::*;
 
-    fn written<const D: usize>(
-        trace: impl FnOnce(&mut TraceWriter<'_, D, Vec<u8>>),
-        poses: &[(usize, Pose<D>)],
+    fn written(
+        trace: impl FnOnce(&mut TraceWriter<'_, Vec<u8>>),
+        is_flat: bool,
+        poses: &[(usize, Pose<3>)],
     ) -> Vec<String> {
         let pose_at = |body, time: f64| {
             let (_, pose) = poses.iter().find(|(number, _)| *number == body).unwrap();
@@ -260,6 +276,9 @@ mod tests {
         };
         let mut writer = TraceWriter::new(Vec::new())
             .with_poses(poses.iter().map(|(body, _)| *body), pose_at);
+        if is_flat {
+            writer = writer.in_plane();
+        }
         trace(&mut writer);
         let text = String::from_utf8(writer.finish().unwrap()).unwrap();
         text.lines().map(str::to_owned).collect()
@@ -268,19 +287,19 @@ mod tests {
     #[test]
     fn every_column_has_its_number() {
         let row = TraceRow {
-            proxy: Vector([0.5, 0.75]),
-            wanted: Vector([1.0, 2.0]),
-            force: Vector([3.0, 4.0]),
-            normal: Vector([0.0, 1.0]),
+            proxy: Vector([0.5, 0.75, 0.0]),
+            wanted: Vector([1.0, 2.0, 0.0]),
+            force: Vector([3.0, 4.0, 0.0]),
+            normal: Vector([0.0, 1.0, 0.0]),
             contact: true,
             body: 7,
             is_slipping: true,
             evaluations: 11,
             cost_ns: 12,
             lateness_ns: 13,
-            ..TraceRow::free(0.1, 6, Point::from([-0.1, 1e-20]))
+            ..TraceRow::free(0.1, 6, Point::from([-0.1, 1e-20, 0.0]))
         };
-        let lines = written(|trace| trace.write(&row).unwrap(), &[]);
+        let lines = written(|trace| trace.write(&row).unwrap(), true, &[]);
         let names = "time_s,point,device_x_m,device_y_m,proxy_x_m,proxy_y_m,wanted_x_n,wanted_y_n,\
                      force_x_n,force_y_n,normal_x,normal_y,contact,body,slipping,lifted,taken_j,given_j,\
                      kept_j,evaluations,cost_ns,lateness_ns";
@@ -291,7 +310,7 @@ mod tests {
 
     #[test]
     fn a_trace_without_rows_has_the_names_of_columns() {
-        let lines = written::<3>(|_| {}, &[]);
+        let lines = written(|_| {}, false, &[]);
         assert_eq!(lines.len(), 1);
         assert!(lines[0].starts_with("time_s,point,device_x_m,device_y_m,device_z_m,"));
         assert!(lines[0].ends_with(",lateness_ns"));
@@ -300,11 +319,11 @@ mod tests {
     #[test]
     fn bodies_that_move_come_last_at_the_time_of_the_row() {
         let pose = Pose {
-            rotation: Rotation::from_angle(0.5).unwrap(),
-            ..Pose::translation(Vector([2.0, -4.0]))
+            rotation: Rotation::from_angle(0.5).unwrap().in_space(),
+            ..Pose::translation(Vector([2.0, -4.0, 0.0]))
         };
-        let row = TraceRow::free(0.5, 0, Vector([0.0, 0.0]));
-        let lines = written(|trace| trace.write(&row).unwrap(), &[(3, pose)]);
+        let row = TraceRow::free(0.5, 0, Vector([0.0, 0.0, 0.0]));
+        let lines = written(|trace| trace.write(&row).unwrap(), true, &[(3, pose)]);
         assert!(lines[0].ends_with(",lateness_ns,body_3_x_m,body_3_y_m,body_3_turn_z_rad"));
         assert!(lines[1].ends_with(",0,1,-2,0.5"), "{}", lines[1]);
     }

@@ -30,7 +30,7 @@ const COMMAND_RATE: f64 = 50.0;
 /// use palpate_vibration::{Mapping, MappingOptions};
 ///
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
-/// let ends = vec![[0.0, 0.03].into(), [0.0, -0.001].into()];
+/// let ends = vec![[0.0, 0.03, 0.0].into(), [0.0, -0.001, 0.0].into()];
 /// let mut glove = Glove::new(vec![HandPath::new(vec![0.0, 0.5], ends, Interpolation::Smooth)?])?;
 /// let wood = Material::preset("wood")?;
 /// let table = Body::new(Shape::half_space([0.0, 1.0], 0.0)?, Surface::new(&wood)?)?;
@@ -93,10 +93,7 @@ impl<'a> Vibration<'a> {
     }
 
     /// Begins to play the touches of `servo`.
-    pub(crate) fn start<const D: usize>(
-        self,
-        servo: &Servo<D>,
-    ) -> Result<Player<'a>, HapticsError> {
+    pub(crate) fn start(self, servo: &Servo) -> Result<Player<'a>, HapticsError> {
         let (points, rate) = (servo.touches().len(), servo.options().rate);
         let channels = self.device.channels();
         if channels != points {
@@ -155,7 +152,7 @@ impl<'a> Player<'a> {
     ///
     /// Real-time: allocates nothing until the device is lost, takes no lock, cannot panic unless
     /// the device does.
-    pub(crate) fn tick<const D: usize>(&mut self, servo: &Servo<D>) {
+    pub(crate) fn tick(&mut self, servo: &Servo) {
         let Self { vibration, voices, publisher, tones, touched, report, .. } = self;
         if report.lost.is_some() {
             return;
@@ -195,7 +192,7 @@ impl Vibration<'_> {
     /// The cue of a touch, on the material of its body.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
-    fn cue<const D: usize>(&self, touch: &Touch<D>, began: bool) -> Cue {
+    fn cue(&self, touch: &Touch, began: bool) -> Cue {
         let cue = touch.cue(began);
         match self.materials.get(touch.body as usize).filter(|_| touch.contact) {
             Some(&(wavelength, impact)) => Cue { wavelength, impact, ..cue },
@@ -241,7 +238,7 @@ mod tests {
         for tick in 0..1000 {
             // In and out of the circle, ten times.
             let height = if tick % 100 < 50 { 0.06 } else { 0.045 };
-            let at = [PointState::at_rest(Vector([0.0, height]))];
+            let at = [PointState::at_rest(Vector([0.0, height, 0.0]))];
             assert_no_alloc(|| {
                 servo.step(&at);
                 player.tick(&servo);

@@ -11,9 +11,9 @@ mod ripples;
 mod strata;
 
 use crate::{Material, TextureKind};
-use palpate_field::{Point, Shape, Vector};
+use palpate_field::{Point, Shape, SpaceShape, Vector};
 
-use crate::curvature::surface_displacement;
+use crate::curvature::{Solver, surface_displacement};
 use crate::error::HapticsError;
 use palpate_device::{NumberError, limited};
 use palpate_safety::Impedance;
@@ -37,13 +37,13 @@ const STEEPER: f64 = 8.0;
 
 /// How a hand presses on a body, in body coordinates.
 #[derive(Clone, Copy)]
-pub(crate) struct Press<const D: usize> {
+pub(crate) struct Press {
     /// From the device point to the proxy [m].
-    pub(crate) stretch: Vector<f64, D>,
+    pub(crate) stretch: Vector<f64, 3>,
     /// The velocity of the device point relative to the body [m/s].
-    pub(crate) velocity: Vector<f64, D>,
+    pub(crate) velocity: Vector<f64, 3>,
     /// The proxy [m].
-    pub(crate) proxy: Point<D>,
+    pub(crate) proxy: Point<3>,
     /// Ticks a second [Hz].
     pub(crate) rate: f64,
     /// Whether the dampers act.
@@ -87,24 +87,24 @@ pub(crate) struct Press<const D: usize> {
 /// use palpate_haptics::{Material, Surface};
 ///
 /// # fn main() -> Result<(), palpate_haptics::HapticsError> {
-/// let wood = Surface::<3>::new(&Material { stiffness: 800.0, ..Material::default() })?;
+/// let wood = Surface::new(&Material { stiffness: 800.0, ..Material::default() })?;
 /// assert_eq!(wood.stiffness(), 800.0);
 /// # Ok(())
 /// # }
 /// ```
 #[derive(Clone, Debug, PartialEq)]
-pub struct Surface<const D: usize> {
+pub struct Surface {
     pub(crate) strata: Strata,
     relative_stiffness: Option<f64>,
     pub(crate) magnet: Option<Pull>,
     /// A texture of kind *height*.
-    ripples: Option<Ripples<D>>,
+    ripples: Option<Ripples>,
     /// A texture of kind *displacement*.
-    relief: Option<Ripples<D>>,
+    relief: Option<Ripples>,
     impact: Option<Ring>,
 }
 
-impl<const D: usize> TryFrom<&Material> for Surface<D> {
+impl TryFrom<&Material> for Surface {
     type Error = HapticsError;
 
     fn try_from(material: &Material) -> Result<Self, HapticsError> {
@@ -112,7 +112,7 @@ impl<const D: usize> TryFrom<&Material> for Surface<D> {
     }
 }
 
-impl<const D: usize> TryFrom<Material> for Surface<D> {
+impl TryFrom<Material> for Surface {
     type Error = HapticsError;
 
     fn try_from(material: Material) -> Result<Self, HapticsError> {
@@ -120,7 +120,7 @@ impl<const D: usize> TryFrom<Material> for Surface<D> {
     }
 }
 
-impl<const D: usize> Surface<D> {
+impl Surface {
     /// Prepares a material.
     ///
     /// # Errors
@@ -161,7 +161,7 @@ impl<const D: usize> Surface<D> {
     /// ```
     /// use palpate_haptics::Surface;
     ///
-    /// let error = Surface::<3>::smooth(-3.0, 0.0).unwrap_err();
+    /// let error = Surface::smooth(-3.0, 0.0).unwrap_err();
     /// assert_eq!(error.to_string(), "stiffness must be positive and finite, got -3 N/m");
     /// ```
     pub fn smooth(stiffness: f64, damping: f64) -> Result<Self, HapticsError> {
@@ -216,15 +216,33 @@ impl<const D: usize> Surface<D> {
         Self { strata: self.strata.scaled(stiffness, damping), ..self.clone() }
     }
 
+    /// The surface with its textures on a body of so many dimensions, 2 for a planar shape.
+    ///
+    /// # Errors
+    ///
+    /// If the direction of a texture has another dimension.
+    pub(crate) fn on_body(self, dimension: usize) -> Result<Self, HapticsError> {
+        let fit = |waves: Option<Ripples>| waves.map(|w| w.on_body(dimension)).transpose();
+        Ok(Self { ripples: fit(self.ripples)?, relief: fit(self.relief)?, ..self })
+    }
+
     /// The shape with the surface's texture of kind *displacement*, if there is one.
     ///
     /// # Errors
     ///
     /// If the shape cannot be displaced.
-    pub(crate) fn carved(&self, shape: Shape<D>) -> Result<Shape<D>, HapticsError> {
+    pub(crate) fn carved(&self, shape: SpaceShape) -> Result<SpaceShape, HapticsError> {
         let Some(relief) = &self.relief else { return Ok(shape) };
         let height = relief.height();
-        Ok(shape.displaced(Shape::from_kernel(relief.clone()), height)?)
+        Ok(match shape.flat() {
+            Some(flat) => {
+                flat.clone().displaced(Shape::from_kernel(relief.clone()), height)?.into()
+            }
+            None => {
+                let shape = shape.shape().clone();
+                shape.displaced(Shape::from_kernel(relief.clone()), height)?.into()
+            }
+        })
     }
 
     /// The force on the hand [N], in body coordinates.
@@ -239,9 +257,9 @@ impl<const D: usize> Surface<D> {
     pub(crate) fn force(
         &self,
         level: usize,
-        press: Press<D>,
-        mut turn: impl FnMut(Vector<f64, D>, f64) -> Vector<f64, D>,
-    ) -> Vector<f64, D> {
+        press: Press,
+        mut turn: impl FnMut(Vector<f64, 3>, f64) -> Vector<f64, 3>,
+    ) -> Vector<f64, 3> {
         let Press { stretch, velocity, proxy, rate, has_dampers } = press;
         let depth = stretch.norm();
         let layer = self.strata.at(level, depth);
@@ -262,7 +280,9 @@ impl<const D: usize> Surface<D> {
             let along = gradient - normal * gradient.dot(normal);
             // Below a curved surface the proxy moves farther than the hand, or less far.
             let far = FAR * ripples.wavelength();
-            let seen = surface_displacement(|way| turn(way, far), along, depth, SOLVED);
+            let dimensions = ripples.dimension() - 1;
+            let solver = Solver { solved: SOLVED, dimensions };
+            let seen = surface_displacement(|way| turn(way, far), along, depth, solver);
             slope = limited(seen.unwrap_or(along), STEEPER * along.norm()) * part;
         }
         let spring = self.strata.force(level, push);
@@ -277,8 +297,8 @@ impl<const D: usize> Surface<D> {
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     pub(crate) fn passing(
         &self,
-        velocity: Vector<f64, D>,
-        normal: Vector<f64, D>,
+        velocity: Vector<f64, 3>,
+        normal: Vector<f64, 3>,
         rate: f64,
     ) -> Option<Passing> {
         self.ripples.as_ref().map(|ripples| ripples.passing(velocity, normal, rate))
@@ -292,7 +312,7 @@ impl<const D: usize> Surface<D> {
     }
 }
 
-impl<const D: usize> Default for Surface<D> {
+impl Default for Surface {
     /// Smooth, 500 N/m and 1 N·s/m: firm, and passive at 1 kHz on a device with 1.25 N·s/m of
     /// physical damping.
     fn default() -> Self {

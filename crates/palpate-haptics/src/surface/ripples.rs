@@ -60,22 +60,22 @@ impl Passing {
 /// A wave through space, in a body's coordinates: `a · sin(2π u·p / λ)` along a direction `u`,
 /// or `a · Π sin(2π pᵢ / λ)` along all axes.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Ripples<const D: usize> {
+pub(crate) struct Ripples {
     amplitude: f64,
     wavelength: f64,
     /// Radians a metre along each wave vector.
-    waves: Waves<D>,
+    waves: Waves,
 }
 
 #[derive(Clone, Debug, PartialEq)]
-enum Waves<const D: usize> {
-    /// Along one wave vector [rad/m].
-    Plane([f64; D]),
-    /// Along all axes, with this wave number [rad/m].
-    Product(f64),
+enum Waves {
+    /// Along one wave vector [rad/m], whose direction was given in so many numbers.
+    Plane { along: [f64; 3], dimension: usize },
+    /// Along the first `axes` axes, with this wave number [rad/m].
+    Product { number: f64, axes: usize },
 }
 
-impl<const D: usize> Ripples<D> {
+impl Ripples {
     pub(crate) fn new(texture: &Texture) -> Result<Self, HapticsError> {
         let amplitude =
             NumberError::check_positive("texture.amplitude", texture.amplitude, "m")?;
@@ -83,22 +83,45 @@ impl<const D: usize> Ripples<D> {
             NumberError::check_positive("texture.wavelength", texture.wavelength, "m")?;
         let number = 2.0 * std::f64::consts::PI / wavelength;
         let Some(direction) = &texture.direction else {
-            return Ok(Self { amplitude, wavelength, waves: Waves::Product(number) });
+            return Ok(Self {
+                amplitude,
+                wavelength,
+                waves: Waves::Product { number, axes: 3 },
+            });
         };
-        let components: Result<[f64; D], _> = direction.as_slice().try_into();
-        let unit = components.ok().and_then(|components| Vector(components).normalized());
-        let unit = unit.ok_or(HapticsError::Number(NumberError::new(
-            "texture.direction",
-            "a direction of the scene's dimension",
-            direction.len() as f64,
-            "numbers",
-        )))?;
-        Ok(Self { amplitude, wavelength, waves: Waves::Plane((unit * number).0) })
+        let dimension = direction.len();
+        let unit = match *direction.as_slice() {
+            [x, y] => Vector([x, y, 0.0]).normalized(),
+            [x, y, z] => Vector([x, y, z]).normalized(),
+            _ => None,
+        };
+        let along = (unit.ok_or_else(|| wrong_direction(dimension))? * number).0;
+        Ok(Self { amplitude, wavelength, waves: Waves::Plane { along, dimension } })
+    }
+
+    /// The waves on a body of so many dimensions, 2 for a planar shape.
+    pub(crate) fn on_body(self, dimension: usize) -> Result<Self, HapticsError> {
+        let waves = match self.waves {
+            Waves::Plane { dimension: given, .. } if given != dimension => {
+                return Err(wrong_direction(given));
+            }
+            Waves::Plane { .. } => self.waves,
+            Waves::Product { number, .. } => Waves::Product { number, axes: dimension },
+        };
+        Ok(Self { waves, ..self })
     }
 
     /// The amplitude of the wave [m].
     pub(crate) fn height(&self) -> f64 {
         self.amplitude
+    }
+
+    /// The number of dimensions of the body that has the waves.
+    pub(crate) fn dimension(&self) -> usize {
+        match self.waves {
+            Waves::Plane { dimension, .. } => dimension,
+            Waves::Product { axes, .. } => axes,
+        }
     }
 
     /// The distance between crests [m].
@@ -110,10 +133,10 @@ impl<const D: usize> Ripples<D> {
     /// one of them.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
-    fn frequency(&self, velocity: Vector<f64, D>) -> f64 {
+    fn frequency(&self, velocity: Vector<f64, 3>) -> f64 {
         let radians = match &self.waves {
-            Waves::Plane(along) => velocity.dot(Vector(*along)).abs(),
-            Waves::Product(number) => {
+            Waves::Plane { along, .. } => velocity.dot(Vector(*along)).abs(),
+            Waves::Product { number, .. } => {
                 number * velocity.0.iter().fold(0.0, |most: f64, v| most.max(v.abs()))
             }
         };
@@ -125,8 +148,8 @@ impl<const D: usize> Ripples<D> {
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     pub(crate) fn passing(
         &self,
-        velocity: Vector<f64, D>,
-        normal: Vector<f64, D>,
+        velocity: Vector<f64, 3>,
+        normal: Vector<f64, 3>,
         rate: f64,
     ) -> Passing {
         let frequency = self.frequency(velocity - normal * velocity.dot(normal));
@@ -136,19 +159,27 @@ impl<const D: usize> Ripples<D> {
     /// The height of the wave [m] and its gradient.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
-    pub(crate) fn at(&self, p: Point<D>) -> (f64, Vector<f64, D>) {
+    pub(crate) fn at(&self, p: Point<3>) -> (f64, Vector<f64, 3>) {
         self.distance_gradient(p)
     }
 }
 
-impl<const D: usize> Kernel<D> for Ripples<D> {
+fn wrong_direction(numbers: usize) -> HapticsError {
+    let rule = "a direction of the scene's dimension";
+    NumberError::new("texture.direction", rule, numbers as f64, "numbers").into()
+}
+
+impl<const D: usize> Kernel<D> for Ripples {
     #[inline(always)]
     fn distance<S: Scalar>(&self, p: Vector<S, D>) -> S {
         let wave = match &self.waves {
-            Waves::Plane(along) => p.dot_constant(along).sin(),
-            Waves::Product(number) => {
+            Waves::Plane { along, .. } => p.dot_constant(&Vector(*along).truncated().0).sin(),
+            Waves::Product { number, axes } => {
                 let factor = |x: S| (x * S::constant(*number)).sin();
-                p.0.into_iter().map(factor).fold(S::constant(1.0), |wave, x| wave * x)
+                p.0.into_iter()
+                    .take(*axes)
+                    .map(factor)
+                    .fold(S::constant(1.0), |wave, x| wave * x)
             }
         };
         wave * S::constant(self.amplitude)
@@ -159,8 +190,8 @@ impl<const D: usize> Kernel<D> for Ripples<D> {
         // the squares of the cosines, each times the squared sines of the other axes, sum to at
         // most 1.
         let number = match &self.waves {
-            Waves::Plane(along) => Vector(*along).norm(),
-            Waves::Product(number) => *number,
+            Waves::Plane { along, .. } => Vector(*along).norm(),
+            Waves::Product { number, .. } => *number,
         };
         let steepness = self.amplitude * number * (1.0 + 1e-12);
         let rounding = palpate_field::Rounding::of_operations(ROUNDINGS * steepness, 0.0);
@@ -186,18 +217,18 @@ mod tests {
 
     #[test]
     fn a_quarter_of_a_wave_is_a_crest() {
-        let plane = Ripples::<3>::new(&texture(Some(vec![0.0, 3.0, 0.0]))).unwrap();
+        let plane = Ripples::new(&texture(Some(vec![0.0, 3.0, 0.0]))).unwrap();
         let (height, slope) = plane.at(Vector([7.0, 2.0, 9.0]));
         assert!((height - 0.5).abs() < 1e-15 && slope.norm() < 1e-15);
-        let product = Ripples::<2>::new(&texture(None)).unwrap();
-        assert!((product.at(Vector([2.0, -2.0])).0 + 0.5).abs() < 1e-15);
-        assert!(Ripples::<2>::new(&texture(Some(vec![0.0, 3.0, 0.0]))).is_err());
+        let product = Ripples::new(&texture(None)).unwrap().on_body(2).unwrap();
+        assert!((product.at(Vector([2.0, -2.0, 0.0])).0 + 0.5).abs() < 1e-15);
+        assert!(plane.on_body(2).is_err());
     }
 
     #[test]
     fn no_wave_is_steeper_than_promised() {
-        let product = Ripples::<3>::new(&texture(None)).unwrap();
-        let promised = Shape::from_kernel(product.clone()).promise().lipschitz;
+        let product = Ripples::new(&texture(None)).unwrap();
+        let promised = Shape::<3>::from_kernel(product.clone()).promise().lipschitz;
         cases(500, |u| {
             let mut unit = || u.int_in_range(-1000..=1000).map(|i: i32| f64::from(i) * 0.02);
             let p = Vector([unit()?, unit()?, unit()?]);
@@ -212,12 +243,12 @@ mod tests {
 
     #[test]
     fn crests_pass_as_often_as_the_hand_crosses_them() {
-        let plane = Ripples::<2>::new(&texture(Some(vec![3.0, 4.0]))).unwrap();
+        let plane = Ripples::new(&texture(Some(vec![3.0, 4.0]))).unwrap();
         // 8 m from crest to crest: 16 m/s along the wave are two a second.
-        assert!((plane.frequency(Vector([9.6, 12.8])) - 2.0).abs() < 1e-15);
-        assert!(plane.frequency(Vector([-4.0, 3.0])).abs() < 1e-15);
-        let product = Ripples::<2>::new(&texture(None)).unwrap();
-        assert!((product.frequency(Vector([4.0, -16.0])) - 2.0).abs() < 1e-15);
+        assert!((plane.frequency(Vector([9.6, 12.8, 0.0])) - 2.0).abs() < 1e-15);
+        assert!(plane.frequency(Vector([-4.0, 3.0, 0.0])).abs() < 1e-15);
+        let product = Ripples::new(&texture(None)).unwrap();
+        assert!((product.frequency(Vector([4.0, -16.0, 0.0])) - 2.0).abs() < 1e-15);
     }
 
     #[test]

@@ -12,29 +12,29 @@ use crate::nearby::Nearby;
 
 /// The last evaluation of a shell point, in world coordinates.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Evaluation<const D: usize> {
+pub(super) struct Evaluation {
     /// Its centre [m].
-    pub(super) centre: Point<D>,
+    pub(super) centre: Point<3>,
     /// The field less the point's radius [m].
     pub(super) gap: f64,
-    pub(super) gradient: Vector<f64, D>,
+    pub(super) gradient: Vector<f64, 3>,
     pub(super) body: u32,
 }
 
 /// Points that are evaluated together.
 #[derive(Clone, Debug)]
-pub(super) struct Batch<const D: usize> {
+pub(super) struct Batch {
     pub(super) count: usize,
     numbers: [u32; BLOCK],
     radii: [f64; BLOCK],
-    seen: [Evaluation<D>; BLOCK],
-    block: Block<f64, D, BLOCK>,
-    answers: Gradients<f64, D, BLOCK>,
+    seen: [Evaluation; BLOCK],
+    block: Block<f64, 3, BLOCK>,
+    answers: Gradients<f64, 3, BLOCK>,
     /// The points for which a body is evaluated.
     lanes: [usize; BLOCK],
 }
 
-impl<const D: usize> Batch<D> {
+impl Batch {
     pub(super) fn boxed() -> Box<Self> {
         let nothing =
             Evaluation { centre: Vector::ZERO, gap: 0.0, gradient: Vector::ZERO, body: 0 };
@@ -52,8 +52,8 @@ impl<const D: usize> Batch<D> {
     /// Takes the next points.
     pub(super) fn gather(
         &mut self,
-        shell: &Shell<D>,
-        pose: &Pose<D>,
+        shell: &Shell,
+        pose: &Pose<3>,
         numbers: &mut impl Iterator<Item = u32>,
     ) {
         self.count = 0;
@@ -69,16 +69,16 @@ impl<const D: usize> Batch<D> {
     }
 
     /// Evaluates all near bodies with gradients: [`Nearby::gradient`] in blocks.
-    pub(super) fn evaluate(&mut self, nearby: &Nearby<'_, D>) {
+    pub(super) fn evaluate(&mut self, nearby: &Nearby<'_>) {
         self.evaluate_with(nearby, true);
     }
 
     /// Evaluates gaps only, which costs less; gradients are left undefined.
-    pub(super) fn evaluate_gaps(&mut self, nearby: &Nearby<'_, D>) {
+    pub(super) fn evaluate_gaps(&mut self, nearby: &Nearby<'_>) {
         self.evaluate_with(nearby, false);
     }
 
-    fn evaluate_with(&mut self, nearby: &Nearby<'_, D>, has_gradients: bool) {
+    fn evaluate_with(&mut self, nearby: &Nearby<'_>, has_gradients: bool) {
         let is_all = nearby.horizon == f64::INFINITY;
         for seen in self.seen.iter_mut().take(self.count) {
             (seen.gap, seen.gradient, seen.body) = (f64::INFINITY, Vector::ZERO, 0);
@@ -120,7 +120,7 @@ impl<const D: usize> Batch<D> {
                 let above = is_bounded.then(|| body.above_ball(seen.centre));
                 let (gap, gradient) = match above.filter(|above| *above > distance) {
                     Some(above) => {
-                        let outwards = body.ball.map(|ball| seen.centre - ball.centre);
+                        let outwards = body.off_centre(seen.centre);
                         (above, outwards.and_then(Vector::normalized).unwrap_or(Vector::ZERO))
                     }
                     None if !has_gradients => (distance, Vector::ZERO),
@@ -140,7 +140,7 @@ impl<const D: usize> Batch<D> {
         }
     }
 
-    pub(super) fn results(&self) -> impl Iterator<Item = (u32, &Evaluation<D>)> {
+    pub(super) fn results(&self) -> impl Iterator<Item = (u32, &Evaluation)> {
         self.numbers.iter().copied().zip(&self.seen).take(self.count)
     }
 }

@@ -21,20 +21,20 @@ const SHARE: f64 = 0.25;
 /// now: so far away, rounding would hide the bodies.
 const FARTHEST: f64 = 1e3;
 
-impl<const D: usize> Tool<D> {
+impl Tool {
     /// The motion that the body under the tool gives to a tool at `start`; `None` if the body
     /// did not move, or moved too far.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     pub(super) fn carrier(
         &self,
-        nearby: &Nearby<'_, D>,
-        start: &Pose<D>,
-        device: &Pose<D>,
-    ) -> Option<Twist<D>> {
+        nearby: &Nearby<'_>,
+        start: &Pose<3>,
+        device: &Pose<3>,
+    ) -> Option<Twist> {
         let body = nearby.body(self.carrier?)?;
         let carried = body.carried_pose(start)?;
-        let far = |pose: &Pose<D>| pose.translation.norm();
+        let far = |pose: &Pose<3>| pose.translation.norm();
         let here = far(start).max(far(device)).max(nearby.size().unwrap_or(0.0));
         // Written so that NaN is not carried.
         let is_near = far(&carried) <= FARTHEST * (here + self.shell().reach());
@@ -49,11 +49,11 @@ impl<const D: usize> Tool<D> {
     /// the budget has left.
     pub(super) fn carried(
         &mut self,
-        nearby: &Nearby<'_, D>,
-        start: Pose<D>,
-        carry: &Twist<D>,
+        nearby: &Nearby<'_>,
+        start: Pose<3>,
+        carry: &Twist,
         lengths: Lengths,
-    ) -> Pose<D> {
+    ) -> Pose<3> {
         let length = carry.way(self.shell.reach());
         let horizon = length + lengths.skin;
         let surroundings = Surroundings { shell: &self.shell, nearby };

@@ -24,16 +24,16 @@ const SHARE: f64 = 0.25;
 const LEAST_SLOPE: f64 = 0.1;
 
 /// What new bodies do to a tool.
-pub(super) enum Covering<const D: usize> {
+pub(super) enum Covering {
     /// They do not cover it, or the budget is too small to tell.
     None,
     /// They carry it to a pose, so far [m].
-    Carried(Pose<D>, f64),
+    Carried(Pose<3>, f64),
     /// They cover it by more than they may carry it.
     Deep,
 }
 
-impl<const D: usize> Tool<D> {
+impl Tool {
     /// What new bodies do to a tool at `start`: they carry it to the nearest pose outside of them, in
     /// the metric of the coupling, if no point is covered by more than the least radius of the
     /// tool's points, or the longest way of a point without a radius.
@@ -46,10 +46,10 @@ impl<const D: usize> Tool<D> {
     /// the budget has left.
     pub(super) fn carry_out(
         &mut self,
-        nearby: &Nearby<'_, D>,
-        start: &Pose<D>,
+        nearby: &Nearby<'_>,
+        start: &Pose<3>,
         lengths: Lengths,
-    ) -> Covering<D> {
+    ) -> Covering {
         let is_ball = self.radius >= lengths.skin;
         let most = if is_ball { self.radius } else { self.most_of_point };
         let surroundings = Surroundings { shell: &self.shell, nearby };

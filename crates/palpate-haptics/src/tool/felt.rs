@@ -19,11 +19,11 @@ use crate::proxy::Edited;
 use palpate_device::shortening;
 
 /// The response of the pushing bodies to the coupling.
-struct BodyResponse<const D: usize> {
+struct BodyResponse {
     /// The part of the coupling's force that the bodies bear, in [0, 1].
     part: f64,
     /// The force of the bodies' own dampers [N].
-    force: Vector<f64, D>,
+    force: Vector<f64, 3>,
     /// The torque of this force about the tool's origin [N·m].
     torque: Vector<f64, 3>,
 }
@@ -36,20 +36,20 @@ pub(super) struct Before {
 }
 
 impl Before {
-    pub(super) fn of<const D: usize>(touch: &ToolTouch<D>) -> Self {
+    pub(super) fn of(touch: &ToolTouch) -> Self {
         let body = touch.body.filter(|_| touch.contact);
         Self { body, is_slipping: touch.is_slipping }
     }
 }
 
-impl<const D: usize> Tool<D> {
+impl Tool {
     /// Writes force and torque of the tool at its new rest pose; its pose in the last tick was
     /// `before`.
     pub(super) fn write_touch(
         &mut self,
-        nearby: &Nearby<'_, D>,
-        device: &ToolState<D>,
-        before: &Pose<D>,
+        nearby: &Nearby<'_>,
+        device: &ToolState,
+        before: &Pose<3>,
     ) {
         let was = Before::of(&self.touch);
         self.write_rest(device);
@@ -73,7 +73,7 @@ impl<const D: usize> Tool<D> {
     }
 
     /// Writes the rest pose and the contacts, and what is proven about them.
-    fn write_rest(&mut self, device: &ToolState<D>) {
+    fn write_rest(&mut self, device: &ToolState) {
         let (rest, touch) = (&self.rest_search.rest, &mut self.touch);
         touch.device = device.pose;
         touch.pose = rest.pose;
@@ -106,7 +106,7 @@ impl<const D: usize> Tool<D> {
     }
 
     /// Writes force and torque of a tool that moved by `moved` in this tick.
-    fn write_force(&mut self, nearby: &Nearby<'_, D>, device: &ToolState<D>, moved: &Twist<D>) {
+    fn write_force(&mut self, nearby: &Nearby<'_>, device: &ToolState, moved: &Twist) {
         let has_new_bodies = std::mem::take(&mut self.has_new_bodies);
         let before = self.effort();
         if !self.touch.contact {
@@ -160,10 +160,10 @@ impl<const D: usize> Tool<D> {
     /// force of one body has a potential, and is no stiffer than the coupling.
     fn body_response(
         &self,
-        nearby: &Nearby<'_, D>,
-        device: &ToolState<D>,
-        stretch: &Twist<D>,
-    ) -> BodyResponse<D> {
+        nearby: &Nearby<'_>,
+        device: &ToolState,
+        stretch: &Twist,
+    ) -> BodyResponse {
         let (mut part, mut force, mut torque) = (0.0, Vector::ZERO, Vector::ZERO);
         let Coupling { stiffness, arms, .. } = self.coupling;
         let depth = self.depth(stretch);
@@ -180,38 +180,38 @@ impl<const D: usize> Tool<D> {
             let velocity = self.speed_at(nearby, push, device, arms);
             let approach = (-velocity.dot(push.normal)).max(0.0);
             let damper = push.normal * (layer.damping * approach) - velocity * layer.viscosity;
-            let arm = (push.centre - self.touch.pose.translation).in_space() * arms;
+            let arm = (push.centre - self.touch.pose.translation) * arms;
             force += damper * share;
-            torque += arm.cross((damper * share).in_space());
+            torque += arm.cross(damper * share);
         }
         BodyResponse { part, force, torque }
     }
 
     /// The norm of a stretch of the coupling, where a radian counts as a length [m].
-    fn depth(&self, stretch: &Twist<D>) -> f64 {
+    fn depth(&self, stretch: &Twist) -> f64 {
         stretch.stacked(self.coupling.unit()).iter().map(|x| x * x).sum::<f64>().sqrt()
     }
 
     /// The velocity of the hand at a contact relative to its body, on a scaled lever arm [m/s].
     fn speed_at(
         &self,
-        nearby: &Nearby<'_, D>,
-        push: &Push<D>,
-        device: &ToolState<D>,
+        nearby: &Nearby<'_>,
+        push: &Push,
+        device: &ToolState,
         arms: f64,
-    ) -> Vector<f64, D> {
-        let arm = (push.centre - self.touch.pose.translation).in_space() * arms;
-        let turning = device.angular_velocity.cross(arm).truncated();
+    ) -> Vector<f64, 3> {
+        let arm = (push.centre - self.touch.pose.translation) * arms;
+        let turning = device.angular_velocity.cross(arm);
         device.velocity + turning - self.body_velocity(nearby, push.body, push.centre)
     }
 
     /// The velocity of a body at a place [m/s].
     fn body_velocity(
         &self,
-        nearby: &Nearby<'_, D>,
+        nearby: &Nearby<'_>,
         body: u32,
-        place: Vector<f64, D>,
-    ) -> Vector<f64, D> {
+        place: Vector<f64, 3>,
+    ) -> Vector<f64, 3> {
         match nearby.body(body).filter(|body| body.has_moved()) {
             Some(body) => (body.carried(place) - place) * self.options.rate,
             None => Vector::ZERO,
@@ -256,7 +256,7 @@ impl<const D: usize> Tool<D> {
 
     /// Applies the opposite of the hand's force and torque to the bodies: to each the push of
     /// its contacts, and its share of what dampers and limits change.
-    pub(super) fn react(&self, nearby: &Nearby<'_, D>, reactions: &mut [Reaction<D>]) {
+    pub(super) fn react(&self, nearby: &Nearby<'_>, reactions: &mut [Reaction]) {
         if !self.touch.contact {
             return;
         }
@@ -269,7 +269,7 @@ impl<const D: usize> Tool<D> {
         for push in pushes {
             let pushed = push.normal * (stiffness * push.push);
             force -= pushed;
-            torque -= (push.centre - origin).in_space().cross(pushed.in_space());
+            torque -= (push.centre - origin).cross(pushed);
         }
         for push in pushes {
             let place = nearby.body(push.body).map(|body| body.world_from_body().translation);
@@ -284,15 +284,15 @@ impl<const D: usize> Tool<D> {
 }
 
 /// The contact that pushes hardest.
-fn hardest<const D: usize>(pushes: &[Push<D>]) -> Option<&Push<D>> {
-    pushes.iter().fold(None, |hardest: Option<&Push<D>>, push| match hardest {
+fn hardest(pushes: &[Push]) -> Option<&Push> {
+    pushes.iter().fold(None, |hardest: Option<&Push>, push| match hardest {
         Some(hardest) if hardest.push >= push.push => Some(hardest),
         _ => Some(push),
     })
 }
 
 /// The motion with its damper limited so that it at most cancels the spring's push.
-fn not_pulling<const N: usize>(motion: Motion<N>) -> Motion<N> {
+fn not_pulling(motion: Motion) -> Motion {
     let Some(along) = motion.spring.normalized() else {
         return Motion { damper: Vector::ZERO, ..motion };
     };
@@ -302,6 +302,6 @@ fn not_pulling<const N: usize>(motion: Motion<N>) -> Motion<N> {
 }
 
 /// The motion with one more damper.
-fn and_damper<const N: usize>(motion: Motion<N>, damper: Vector<f64, N>) -> Motion<N> {
+fn and_damper(motion: Motion, damper: Vector<f64, 3>) -> Motion {
     Motion { damper: motion.damper + damper, ..motion }
 }

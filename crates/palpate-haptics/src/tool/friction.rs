@@ -48,36 +48,36 @@ const STUCK: f64 = 1e-9;
 
 /// The effect of friction in a tick.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Hold<const D: usize> {
+pub(super) enum Hold {
     /// No friction acts.
     None,
     /// The tool does not move.
     Stick,
     /// The tool slips towards another goal.
-    Slip(Pose<D>),
+    Slip(Pose<3>),
 }
 
 /// A contact with friction.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Cone<const D: usize> {
-    push: Push<D>,
+pub(super) struct Cone {
+    push: Push,
     friction: Friction,
-    /// Orthonormal directions along the surface.
-    sides: [Vector<f64, D>; 2],
+    /// Orthonormal directions along the surface; the second is zero for a planar tool.
+    sides: [Vector<f64, 3>; 2],
 }
 
-impl<const D: usize> RestSearch<D> {
+impl RestSearch {
     /// The friction of the last tick's contacts on a tool that would move along `path`, for
     /// which all rows were made.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     pub(super) fn hold_back(
         &mut self,
-        scan: &Scan<D>,
-        nearby: &Nearby<'_, D>,
-        path: Path<'_, D>,
+        scan: &Scan,
+        nearby: &Nearby<'_>,
+        path: Path<'_>,
         lengths: Lengths,
-    ) -> Hold<D> {
+    ) -> Hold {
         let Path { pose, twist: wish } = path;
         let away = wish.stacked(lengths.unit);
         if !self.find_cones(scan, nearby, path, length(&away)) {
@@ -112,8 +112,8 @@ impl<const D: usize> RestSearch<D> {
     }
 
     /// The cone that a row belongs to.
-    fn cone_of(&self, row: usize) -> Option<(&Cone<D>, &Row)> {
-        let index = row.checked_sub(self.plain)? / around::<D>();
+    fn cone_of(&self, row: usize) -> Option<(&Cone, &Row)> {
+        let index = row.checked_sub(self.plain)? / self.around();
         Some((self.cones.get(index)?, self.rows.get(row)?))
     }
 
@@ -121,9 +121,9 @@ impl<const D: usize> RestSearch<D> {
     /// friction at this depth [m].
     fn find_cones(
         &mut self,
-        scan: &Scan<D>,
-        nearby: &Nearby<'_, D>,
-        path: Path<'_, D>,
+        scan: &Scan,
+        nearby: &Nearby<'_>,
+        path: Path<'_>,
         depth: f64,
     ) -> bool {
         let Path { pose, twist: wish } = path;
@@ -139,7 +139,10 @@ impl<const D: usize> RestSearch<D> {
             }
             let friction = body.surface().strata.at(0, depth).friction;
             has_friction |= friction.fixed.max(friction.slipping) > 0.0;
-            let sides = along_surface(normal, wish, seen.centre - pose.translation);
+            let arm = seen.centre - pose.translation;
+            let first = along_surface(normal, wish, arm);
+            let sides =
+                if self.is_flat { [first, Vector::ZERO] } else { [first, normal.cross(first)] };
             let (point, centre, body) = (*number, seen.centre, seen.body);
             let push = Push { point, centre, normal, gap, body, push: 0.0 };
             self.cones.push(Cone { push, friction, sides });
@@ -150,18 +153,19 @@ impl<const D: usize> RestSearch<D> {
     /// The closest motion to the desired one under friction cones.
     fn solve(
         &mut self,
-        pose: &Pose<D>,
+        pose: &Pose<3>,
         wish: [f64; FREEDOMS],
         lengths: Lengths,
         is_slipping: bool,
     ) -> Closest {
         self.rows.truncate(self.plain);
+        let around = self.around();
         for cone in &self.cones {
             let Friction { fixed, slipping } = cone.friction;
             let friction = if is_slipping { slipping } else { fixed };
             let Push { centre, normal, gap, .. } = cone.push;
             let [first, second] = cone.sides;
-            for (a, b) in AROUND.into_iter().take(around::<D>()) {
+            for (a, b) in AROUND.into_iter().take(around) {
                 let pushed = normal + (first * a + second * b) * friction;
                 let along = stacked_along(centre - pose.translation, pushed, lengths.unit);
                 self.rows.push(Row { along, least: -gap });
@@ -170,12 +174,17 @@ impl<const D: usize> RestSearch<D> {
         closest(wish, &self.rows, lengths.slack())
     }
 
+    /// The number of directions along a surface.
+    fn around(&self) -> usize {
+        if self.is_flat { 2 } else { MOST_AROUND }
+    }
+
     /// Records the pushes on a tool that sticks.
     fn list_pushes(&mut self, found: &Closest) {
         for held in found.held() {
             // Against a hand that presses straight in, the tangent plane itself holds.
             let index = match held.row.checked_sub(self.plain) {
-                Some(row) => Some(row / around::<D>()),
+                Some(row) => Some(row / self.around()),
                 None => self.numbers.get(held.row).and_then(|point| {
                     self.cones.iter().position(|cone| cone.push.point == *point)
                 }),
@@ -191,30 +200,14 @@ impl<const D: usize> RestSearch<D> {
     }
 }
 
-/// The number of directions along a surface.
-fn around<const D: usize>() -> usize {
-    if D == 2 { 2 } else { MOST_AROUND }
-}
-
-/// Two unit vectors along a surface, the first along the desired motion of a point; in the
-/// plane the second is zero.
-fn along_surface<const D: usize>(
-    normal: Vector<f64, D>,
-    wish: &Twist<D>,
-    arm: Vector<f64, D>,
-) -> [Vector<f64, D>; 2] {
+/// A unit vector along a surface, along the desired motion of a point if it has one.
+fn along_surface(normal: Vector<f64, 3>, wish: &Twist, arm: Vector<f64, 3>) -> Vector<f64, 3> {
     let way = wish.of_point(arm);
-    let flat = |v: Vector<f64, D>| (v - normal * v.dot(normal)).normalized();
+    let flat = |v: Vector<f64, 3>| (v - normal * v.dot(normal)).normalized();
     // The coordinate axis farthest from the normal.
     let steepest = |k: usize| normal.0.get(k).copied().unwrap_or(1.0).abs();
-    let axis = (1..D).fold(0, |best, k| if steepest(k) < steepest(best) { k } else { best });
-    let first = flat(way).or_else(|| flat(Vector::unit(axis))).unwrap_or(Vector::ZERO);
-    let second = if D == 2 {
-        Vector::ZERO
-    } else {
-        normal.in_space().cross(first.in_space()).truncated()
-    };
-    [first, second]
+    let axis = (1..3).fold(0, |best, k| if steepest(k) < steepest(best) { k } else { best });
+    flat(way).or_else(|| flat(Vector::unit(axis))).unwrap_or(Vector::ZERO)
 }
 
 fn sum(a: [f64; FREEDOMS], b: [f64; FREEDOMS], part: f64) -> [f64; FREEDOMS] {

@@ -12,9 +12,9 @@ use crate::options::ServoOptions;
 /// A tool after a tick, for traces and snapshots. World coordinates.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
-pub struct HeldTool<const D: usize> {
+pub struct HeldTool {
     /// The pose of the tool: `world_from_tool`.
-    pub pose: Pose<D>,
+    pub pose: Pose<3>,
     /// The rotation vector of the device relative to the tool [rad]; in the plane only z is
     /// used.
     pub turn: Vector<f64, 3>,
@@ -34,12 +34,12 @@ pub struct HeldTool<const D: usize> {
     pub is_covered: bool,
 }
 
-impl<const D: usize> Tool<D> {
+impl Tool {
     /// The tool after the last tick.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     #[must_use]
-    pub fn held(&self) -> HeldTool<D> {
+    pub fn held(&self) -> HeldTool {
         let touch = self.touch();
         HeldTool {
             pose: touch.pose,

@@ -157,14 +157,14 @@ const MOST_EVENTS: usize = 3;
 /// # }
 /// ```
 #[derive(Clone, Debug)]
-pub struct Tool<const D: usize> {
-    shell: Shell<D>,
+pub struct Tool {
+    shell: Shell,
     options: ToolOptions,
     pub(crate) coupling: Coupling,
-    scan: Scan<D>,
-    rest_search: RestSearch<D>,
+    scan: Scan,
+    rest_search: RestSearch,
     /// The pose of the tool; `None` before the first tick.
-    pose: Option<Pose<D>>,
+    pose: Option<Pose<3>>,
     /// The rendered part of the force, in [0, 1].
     rise: f64,
     /// The part of the coupling's force that the bodies bear, in [0, 1].
@@ -182,9 +182,9 @@ pub struct Tool<const D: usize> {
     pub(crate) is_protected: bool,
     /// How far new bodies carry points without a radius [m].
     pub(crate) most_of_point: f64,
-    touch: ToolTouch<D>,
+    touch: ToolTouch,
     /// The velocity of the device relative to the body that pushes hardest [m/s].
-    pub(crate) hand_velocity: Vector<f64, D>,
+    pub(crate) hand_velocity: Vector<f64, 3>,
     /// The body that the tool rests on.
     carrier: Option<u32>,
     events: FixedList<Event>,
@@ -193,21 +193,21 @@ pub struct Tool<const D: usize> {
     radius: f64,
 }
 
-impl<const D: usize> Tool<D> {
+impl Tool {
     /// A tool that starts at the device's first pose.
     ///
     /// # Errors
     ///
     /// [`HapticsError::Number`] if a number of the options breaks its rule.
     #[inline(never)]
-    pub fn new(shell: Shell<D>, options: ToolOptions) -> Result<Self, HapticsError> {
+    pub fn new(shell: Shell, options: ToolOptions) -> Result<Self, HapticsError> {
         let coupling = Coupling::new(&options, shell.reach())?;
         options.check()?;
         let radii = shell.points().iter().map(|point| point.radius);
         Ok(Self {
             coupling,
             scan: Scan::new(&shell),
-            rest_search: RestSearch::new(shell.points().len()),
+            rest_search: RestSearch::new(&shell),
             pose: None,
             rise: 1.0,
             part: 1.0,
@@ -241,7 +241,7 @@ impl<const D: usize> Tool<D> {
 
     /// The shell.
     #[must_use]
-    pub fn shell(&self) -> &Shell<D> {
+    pub fn shell(&self) -> &Shell {
         &self.shell
     }
 
@@ -259,7 +259,7 @@ impl<const D: usize> Tool<D> {
 
     /// The tool after the last tick.
     #[must_use]
-    pub fn touch(&self) -> &ToolTouch<D> {
+    pub fn touch(&self) -> &ToolTouch {
         &self.touch
     }
 
@@ -287,7 +287,7 @@ impl<const D: usize> Tool<D> {
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     #[inline(never)]
-    pub fn hover(&mut self, device: &ToolState<D>) {
+    pub fn hover(&mut self, device: &ToolState) {
         self.events.clear();
         (self.edited, self.begins, self.is_beginning) = (None, false, false);
         self.lose_bodies();
@@ -321,7 +321,7 @@ impl<const D: usize> Tool<D> {
     /// Real-time: allocates nothing, takes no lock, cannot panic unless a custom field does; at
     /// most [`ToolOptions::budget`] evaluations.
     #[inline(never)]
-    pub fn step(&mut self, bodies: &mut Bodies<D>, device: &ToolState<D>) -> &ToolTouch<D> {
+    pub fn step(&mut self, bodies: &mut Bodies, device: &ToolState) -> &ToolTouch {
         self.events.clear();
         (self.edited, self.begins) = (None, false);
         let (mut list, mut reactions) = bodies.take_scratch();
@@ -346,10 +346,10 @@ impl<const D: usize> Tool<D> {
 
     fn follow(
         &mut self,
-        bodies: &Bodies<D>,
+        bodies: &Bodies,
         list: &mut [u32],
-        reactions: &mut [Reaction<D>],
-        device: &ToolState<D>,
+        reactions: &mut [Reaction],
+        device: &ToolState,
     ) {
         let start = self.pose.unwrap_or(device.pose);
         let motion = Twist::between(&start, &device.pose);
@@ -400,10 +400,10 @@ impl<const D: usize> Tool<D> {
     /// The pose from which a tool at `start` goes on: new bodies may carry it.
     fn edited_start(
         &mut self,
-        nearby: &Nearby<'_, D>,
-        start: Pose<D>,
+        nearby: &Nearby<'_>,
+        start: Pose<3>,
         lengths: Lengths,
-    ) -> Pose<D> {
+    ) -> Pose<3> {
         if !self.has_new_bodies || self.pose.is_none() || nearby.has_moved() {
             return start;
         }
@@ -423,9 +423,9 @@ impl<const D: usize> Tool<D> {
     /// The lengths that follow from bodies, tool and motion.
     fn lengths(
         &self,
-        nearby: &Nearby<'_, D>,
-        start: &Pose<D>,
-        motion: &Twist<D>,
+        nearby: &Nearby<'_>,
+        start: &Pose<3>,
+        motion: &Twist,
         moved: f64,
     ) -> Lengths {
         let reach = self.shell.reach();

@@ -3,12 +3,12 @@
 
 //! The configuration-space obstacle of a tool of fixed orientation.
 
-use palpate_field::{Rotation, Shape};
+use palpate_field::{Rotation, Shape, ShapeError, SpaceShape, Vector};
 
 use super::Shell;
 use crate::error::HapticsError;
 
-impl<const D: usize> Shell<D> {
+impl Shell {
     /// The configuration-space obstacle of this shell turned by `rotation`: a field `g` of the
     /// tool's origin. The tool touches the shape where `g` is at most the
     /// [radius](crate::ShellPoint::radius) of its points.
@@ -32,24 +32,35 @@ impl<const D: usize> Shell<D> {
     /// use palpate_haptics::Shell;
     ///
     /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
-    /// let ball = Shape::from_kernel(Ball::new(0.05)?);
-    /// let rod = Shell::capsule([Vector([0.0, 0.0]), Vector([0.0, 0.1])], 0.01, 11)?;
-    /// let obstacle = rod.obstacle(&Rotation::identity(), &ball, 11)?;
+    /// let ball = Shape::<3>::from_kernel(Ball::new(0.05)?);
+    /// let rod = Shell::capsule([Vector::ZERO, Vector([0.0, 0.1, 0.0])], 0.01, 11)?;
+    /// let obstacle = rod.obstacle(&Rotation::identity(), &ball.into(), 11)?;
     /// // The upper end of the rod is 0.02 m below the lower end of the ball.
-    /// assert!((obstacle.distance(Vector([0.0, -0.17])) - 0.02).abs() < 1e-15);
-    /// assert!((obstacle.distance(Vector([0.0, 0.07])) - 0.02).abs() < 1e-15);
+    /// assert!((obstacle.shape().distance(Vector([0.0, -0.17, 0.0])) - 0.02).abs() < 1e-15);
+    /// assert!((obstacle.shape().distance(Vector([0.0, 0.07, 0.0])) - 0.02).abs() < 1e-15);
     /// # Ok(())
     /// # }
     /// ```
     pub fn obstacle(
         &self,
-        rotation: &Rotation<D>,
-        shape: &Shape<D>,
+        rotation: &Rotation<3>,
+        shape: &SpaceShape,
         points: usize,
-    ) -> Result<Shape<D>, HapticsError> {
+    ) -> Result<SpaceShape, HapticsError> {
         let points = self.points().iter().take(points.max(1));
-        let moved =
-            points.map(|point| shape.clone().translated(-rotation.rotate(point.centre)));
-        Ok(Shape::union(moved.collect::<Result<Vec<_>, _>>()?)?)
+        let ways = points.map(|point| -rotation.rotate(point.centre));
+        Ok(match shape.flat() {
+            Some(flat) => at_all(flat, ways.map(Vector::truncated))?.into(),
+            None => at_all(shape.shape(), ways)?.into(),
+        })
     }
+}
+
+/// A shape at all of these places at once.
+fn at_all<const D: usize>(
+    shape: &Shape<D>,
+    places: impl Iterator<Item = Vector<f64, D>>,
+) -> Result<Shape<D>, ShapeError> {
+    let moved = places.map(|place| shape.clone().translated(place));
+    Shape::union(moved.collect::<Result<Vec<_>, _>>()?)
 }

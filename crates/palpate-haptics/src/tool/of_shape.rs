@@ -5,7 +5,7 @@
 
 use palpate_field::kernel::Argument;
 use palpate_field::node::Primitive;
-use palpate_field::{Node, Point, Pose, Shape, Vector};
+use palpate_field::{Node, Point, Pose, Shape, SpaceShape, Vector};
 
 use super::Shell;
 use crate::error::HapticsError;
@@ -17,7 +17,7 @@ const SPACING: f64 = 0.5;
 /// The most balls of a capsule; those of a capsule thinner than a hair are farther apart.
 const MOST_BALLS: f64 = 512.0;
 
-impl<const D: usize> Shell<D> {
+impl Shell {
     /// The shell of `shape`, thickened by `radius` [m].
     ///
     /// A ball or a capsule, placed or not, becomes an exact shell; any other shape becomes
@@ -42,22 +42,31 @@ impl<const D: usize> Shell<D> {
     /// ```
     #[inline(never)]
     pub fn of_shape(
-        shape: &Shape<D>,
+        shape: impl Into<SpaceShape>,
         points: usize,
         radius: f64,
     ) -> Result<Self, HapticsError> {
-        match segment_of(shape, Pose::identity()) {
-            Some((ends, own_radius)) => rod(ends, own_radius + radius),
-            None => Self::from_field(shape, points, radius),
+        let shape = shape.into();
+        match shape.flat() {
+            Some(flat) => Ok(of_shape(flat, points, radius)?.in_plane()),
+            None => of_shape(shape.shape(), points, radius),
         }
     }
 }
 
-/// All points within a radius [m] of a segment.
-fn rod<const D: usize>(
-    [from, to]: [Point<D>; 2],
+fn of_shape<const D: usize>(
+    shape: &Shape<D>,
+    points: usize,
     radius: f64,
-) -> Result<Shell<D>, HapticsError> {
+) -> Result<Shell, HapticsError> {
+    match segment_of(shape, Pose::identity()) {
+        Some((ends, own_radius)) => rod(ends.map(Vector::in_space), own_radius + radius),
+        None => Shell::from_field(shape, points, radius),
+    }
+}
+
+/// All points within a radius [m] of a segment.
+fn rod([from, to]: [Point<3>; 2], radius: f64) -> Result<Shell, HapticsError> {
     let length = (to - from).norm();
     if length == 0.0 && from == Vector::ZERO {
         return Shell::ball(radius);
@@ -101,7 +110,7 @@ mod tests {
 
     #[test]
     fn a_ball_and_a_capsule_are_felt_as_they_are() {
-        let ball = Shell::of_shape(&Shape::<3>::ball(0.02).unwrap(), 500, 0.001).unwrap();
+        let ball = Shell::of_shape(Shape::<3>::ball(0.02).unwrap(), 500, 0.001).unwrap();
         let radii: Vec<_> = ball.points().iter().map(|point| point.radius).collect();
         assert_eq!(radii, [0.021]);
         let up =

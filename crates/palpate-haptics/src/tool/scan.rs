@@ -66,18 +66,18 @@ impl ClusterMark {
 
 /// The shell that moves, and the bodies near it.
 #[derive(Clone, Copy)]
-pub(super) struct Surroundings<'a, const D: usize> {
-    pub(super) shell: &'a Shell<D>,
-    pub(super) nearby: &'a Nearby<'a, D>,
+pub(super) struct Surroundings<'a> {
+    pub(super) shell: &'a Shell,
+    pub(super) nearby: &'a Nearby<'a>,
 }
 
 /// A motion of the tool.
 #[derive(Clone, Copy)]
-pub(super) struct Path<'a, const D: usize> {
+pub(super) struct Path<'a> {
     /// The pose at the start.
-    pub(super) pose: &'a Pose<D>,
+    pub(super) pose: &'a Pose<3>,
     /// The motion from there.
-    pub(super) twist: &'a Twist<D>,
+    pub(super) twist: &'a Twist,
 }
 
 /// A cluster to evaluate now.
@@ -101,7 +101,7 @@ struct Clock {
 
 impl Clock {
     /// The translation and rotation of one motion.
-    fn of<const D: usize>(twist: &Twist<D>) -> Self {
+    fn of(twist: &Twist) -> Self {
         Self { way: twist.linear.norm(), turn: twist.angular.norm() }
     }
 
@@ -113,8 +113,8 @@ impl Clock {
 
 /// The evaluations of a shell.
 #[derive(Clone, Debug)]
-pub(super) struct Scan<const D: usize> {
-    points: Vec<Evaluation<D>>,
+pub(super) struct Scan {
+    points: Vec<Evaluation>,
     marks: Vec<PointMark>,
     looks: Vec<ClusterMark>,
     clock: Clock,
@@ -130,11 +130,11 @@ pub(super) struct Scan<const D: usize> {
     evaluations: u32,
     /// Points whose motion is swept.
     pub(super) swept_points: FixedList<SweptPoint>,
-    pub(super) batch: Box<Batch<D>>,
+    pub(super) batch: Box<Batch>,
 }
 
-impl<const D: usize> Scan<D> {
-    pub(super) fn new(shell: &Shell<D>) -> Self {
+impl Scan {
+    pub(super) fn new(shell: &Shell) -> Self {
         let zero = Vector::ZERO;
         let nothing =
             Evaluation { centre: zero, gap: f64::NEG_INFINITY, gradient: zero, body: 0 };
@@ -155,7 +155,7 @@ impl<const D: usize> Scan<D> {
     }
 
     /// Begins a tick with all levels and a budget.
-    pub(super) fn begin(&mut self, shell: &Shell<D>, budget: u32) {
+    pub(super) fn begin(&mut self, shell: &Shell, budget: u32) {
         (self.levels, self.budget, self.evaluations) = (shell.levels.len(), budget, 0);
     }
 
@@ -167,7 +167,7 @@ impl<const D: usize> Scan<D> {
     }
 
     /// Records a motion of the tool.
-    pub(super) fn moved(&mut self, twist: &Twist<D>) {
+    pub(super) fn moved(&mut self, twist: &Twist) {
         let motion = Clock::of(twist);
         self.clock.way += motion.way;
         self.clock.turn += motion.turn;
@@ -201,7 +201,7 @@ impl<const D: usize> Scan<D> {
     }
 
     /// The last evaluation of a point.
-    pub(super) fn point(&self, number: u32) -> Option<&Evaluation<D>> {
+    pub(super) fn point(&self, number: u32) -> Option<&Evaluation> {
         self.points.get(number as usize)
     }
 
@@ -213,8 +213,8 @@ impl<const D: usize> Scan<D> {
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     pub(super) fn look(
         &mut self,
-        surroundings: Surroundings<'_, D>,
-        path: Path<'_, D>,
+        surroundings: Surroundings<'_>,
+        path: Path<'_>,
         horizon: f64,
         share: f64,
     ) -> bool {
@@ -274,13 +274,7 @@ impl<const D: usize> Scan<D> {
     }
 
     /// Evaluates the near points from index `begin` on, of the clusters that are due.
-    fn evaluate(
-        &mut self,
-        shell: &Shell<D>,
-        nearby: &Nearby<'_, D>,
-        pose: &Pose<D>,
-        begin: usize,
-    ) {
+    fn evaluate(&mut self, shell: &Shell, nearby: &Nearby<'_>, pose: &Pose<3>, begin: usize) {
         let lipschitz = nearby.lipschitz().max(f64::MIN_POSITIVE);
         let mut numbers = self.near.iter().skip(begin).copied();
         let batch = &mut *self.batch;
@@ -319,7 +313,7 @@ impl<const D: usize> Scan<D> {
     }
 
     /// The points that were evaluated at the present pose, with their numbers.
-    pub(super) fn seen(&self) -> impl Iterator<Item = (u32, &Evaluation<D>)> {
+    pub(super) fn seen(&self) -> impl Iterator<Item = (u32, &Evaluation)> {
         self.near.iter().filter_map(|i| Some((*i, self.points.get(*i as usize)?)))
     }
 
@@ -330,7 +324,7 @@ impl<const D: usize> Scan<D> {
 
     /// The part of a motion in which no point can touch that was not evaluated at the present
     /// pose.
-    pub(super) fn free_part(&self, shell: &Shell<D>, twist: &Twist<D>) -> f64 {
+    pub(super) fn free_part(&self, shell: &Shell, twist: &Twist) -> f64 {
         let (mut part, motion) = (1.0_f64, Clock::of(twist));
         for (cluster, look) in shell.clusters.iter().zip(&self.looks) {
             if cluster.level >= self.levels {
@@ -348,7 +342,7 @@ impl<const D: usize> Scan<D> {
     }
 
     /// The number of points that are proven outside at the present pose.
-    pub(super) fn known(&self, shell: &Shell<D>) -> u32 {
+    pub(super) fn known(&self, shell: &Shell) -> u32 {
         let known = shell.clusters.iter().zip(&self.looks).filter(|(cluster, look)| {
             look.stamp == self.stamp || look.free_until >= self.clock.at(cluster.arm)
         });
@@ -362,7 +356,7 @@ fn least(a: f64, b: f64) -> f64 {
     if a.is_nan() || b >= a { a } else { b }
 }
 
-impl<const D: usize> Shell<D> {
+impl Shell {
     /// The numbers of the points of a cluster.
     fn members(&self, cluster: &Cluster) -> impl Iterator<Item = u32> + '_ {
         self.order.get(cluster.members.clone()).unwrap_or(&[]).iter().copied()

@@ -21,6 +21,7 @@ use super::closest::{Closest, FREEDOMS, Row, closest};
 use super::fixed_list::FixedList;
 use super::friction::{Cone, Hold, MOST_AROUND};
 use super::scan::{Path, Scan, Surroundings};
+use super::shell::Shell;
 use super::twist::Twist;
 use crate::nearby::Nearby;
 
@@ -81,11 +82,11 @@ impl Lengths {
 
 /// A point that pushes the tool. World coordinates.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Push<const D: usize> {
+pub(super) struct Push {
     pub(super) point: u32,
-    pub(super) centre: Point<D>,
+    pub(super) centre: Point<3>,
     /// The unit normal of the body, pointing out.
-    pub(super) normal: Vector<f64, D>,
+    pub(super) normal: Vector<f64, 3>,
     /// The distance from the ball to the body, to first order [m].
     pub(super) gap: f64,
     pub(super) body: u32,
@@ -95,10 +96,10 @@ pub(super) struct Push<const D: usize> {
 
 /// A rest pose of a tool.
 #[derive(Clone, Debug)]
-pub(super) struct Rest<const D: usize> {
-    pub(super) pose: Pose<D>,
+pub(super) struct Rest {
+    pub(super) pose: Pose<3>,
     /// The points that push the tool there.
-    pub(super) pushes: FixedList<Push<D>>,
+    pub(super) pushes: FixedList<Push>,
     /// The number of points proven outside.
     pub(super) known: u32,
     /// `true` if every evaluated point is outside.
@@ -107,7 +108,7 @@ pub(super) struct Rest<const D: usize> {
     energy: f64,
 }
 
-impl<const D: usize> Rest<D> {
+impl Rest {
     pub(super) fn new() -> Self {
         Self {
             pose: Pose::identity(),
@@ -121,17 +122,17 @@ impl<const D: usize> Rest<D> {
 
 /// The ends of a motion.
 #[derive(Clone, Copy)]
-pub(super) struct Ends<const D: usize> {
+pub(super) struct Ends {
     /// The pose from which the tool starts.
-    pub(super) start: Pose<D>,
+    pub(super) start: Pose<3>,
     /// The pose towards which the tool moves.
-    pub(super) goal: Pose<D>,
+    pub(super) goal: Pose<3>,
 }
 
 /// A free pose that may become the rest pose.
 #[derive(Clone, Copy)]
-struct Candidate<'a, const D: usize> {
-    pose: &'a Pose<D>,
+struct Candidate<'a> {
+    pose: &'a Pose<3>,
     /// The squared distance from the goal [m²].
     energy: f64,
     /// The number of points proven outside.
@@ -140,7 +141,7 @@ struct Candidate<'a, const D: usize> {
 
 /// The search, with memory for a tick.
 #[derive(Clone, Debug)]
-pub(super) struct RestSearch<const D: usize> {
+pub(super) struct RestSearch {
     pub(super) rows: FixedList<Row>,
     /// The points of the first rows; the later rows belong to friction cones.
     pub(super) numbers: FixedList<u32>,
@@ -149,14 +150,17 @@ pub(super) struct RestSearch<const D: usize> {
     /// Points that pushed in the last tick.
     pub(super) held: FixedList<u32>,
     /// The friction cones of contacts.
-    pub(super) cones: FixedList<Cone<D>>,
+    pub(super) cones: FixedList<Cone>,
     /// `true` if the tool moved against friction.
     pub(super) is_slipping: bool,
-    pub(super) rest: Rest<D>,
+    /// `true` if the tool stays in the plane z = 0.
+    pub(super) is_flat: bool,
+    pub(super) rest: Rest,
 }
 
-impl<const D: usize> RestSearch<D> {
-    pub(super) fn new(points: usize) -> Self {
+impl RestSearch {
+    pub(super) fn new(shell: &Shell) -> Self {
+        let points = shell.points().len();
         Self {
             rows: FixedList::with_capacity(points + FREEDOMS * MOST_AROUND),
             numbers: FixedList::with_capacity(points),
@@ -164,6 +168,7 @@ impl<const D: usize> RestSearch<D> {
             held: FixedList::with_capacity(FREEDOMS),
             cones: FixedList::with_capacity(FREEDOMS),
             is_slipping: false,
+            is_flat: shell.is_flat,
             rest: Rest::new(),
         }
     }
@@ -175,9 +180,9 @@ impl<const D: usize> RestSearch<D> {
     /// iterations, and the evaluations that `scan` has left.
     pub(super) fn settle(
         &mut self,
-        scan: &mut Scan<D>,
-        surroundings: Surroundings<'_, D>,
-        ends: Ends<D>,
+        scan: &mut Scan,
+        surroundings: Surroundings<'_>,
+        ends: Ends,
         mut lengths: Lengths,
     ) {
         let Surroundings { shell, nearby } = surroundings;
@@ -270,9 +275,9 @@ impl<const D: usize> RestSearch<D> {
     /// The tangent planes of all points that the desired motion could bring to the surface.
     fn make_rows(
         &mut self,
-        scan: &Scan<D>,
-        nearby: &Nearby<'_, D>,
-        path: Path<'_, D>,
+        scan: &Scan,
+        nearby: &Nearby<'_>,
+        path: Path<'_>,
         lengths: Lengths,
     ) {
         let Path { pose, twist: wish } = path;
@@ -298,7 +303,7 @@ impl<const D: usize> RestSearch<D> {
     }
 
     /// Keeps a free pose if it is the closest so far.
-    fn keep(&mut self, scan: &Scan<D>, found: &Closest, candidate: Candidate<'_, D>) {
+    fn keep(&mut self, scan: &Scan, found: &Closest, candidate: Candidate<'_>) {
         let Candidate { pose, energy, known } = candidate;
         if energy.is_nan() || energy >= self.rest.energy {
             return;
@@ -324,12 +329,12 @@ impl<const D: usize> RestSearch<D> {
 }
 
 /// The row that gives the motion along `normal` of a point at `arm` from the tool's origin.
-pub(super) fn stacked_along<const D: usize>(
-    arm: Point<D>,
-    normal: Vector<f64, D>,
+pub(super) fn stacked_along(
+    arm: Point<3>,
+    normal: Vector<f64, 3>,
     unit: f64,
 ) -> [f64; FREEDOMS] {
-    let [x, y, z] = normal.in_space().0;
-    let [a, b, c] = (arm.in_space().cross(normal.in_space()) * (1.0 / unit)).0;
+    let [x, y, z] = normal.0;
+    let [a, b, c] = (arm.cross(normal) * (1.0 / unit)).0;
     [x, y, z, a, b, c]
 }

@@ -30,9 +30,9 @@ const CLUSTER: usize = 16;
 
 /// One of the balls of a shell, in the tool's coordinates.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ShellPoint<const D: usize> {
+pub struct ShellPoint {
     /// The centre [m].
-    pub centre: Point<D>,
+    pub centre: Point<3>,
     /// The radius [m].
     pub radius: f64,
 }
@@ -72,8 +72,8 @@ pub(super) struct Cluster {
 /// # }
 /// ```
 #[derive(Clone, Debug)]
-pub struct Shell<const D: usize> {
-    points: Vec<ShellPoint<D>>,
+pub struct Shell {
+    points: Vec<ShellPoint>,
     /// The resolution of each prefix [m].
     resolutions: Vec<f64>,
     /// The number of points up to the end of each level.
@@ -83,9 +83,11 @@ pub struct Shell<const D: usize> {
     pub(super) order: Vec<u32>,
     /// The largest distance of a ball's far side from the tool's origin [m].
     pub(super) reach: f64,
+    /// Whether the tool stays in the plane z = 0.
+    pub(super) is_flat: bool,
 }
 
-impl<const D: usize> Shell<D> {
+impl Shell {
     /// A ball of `radius` about the tool's origin [m]: one point.
     ///
     /// # Errors
@@ -93,7 +95,7 @@ impl<const D: usize> Shell<D> {
     /// [`HapticsError::Number`] if the radius is not positive.
     ///
     /// ```
-    /// let ball = palpate_haptics::Shell::<3>::ball(0.01)?;
+    /// let ball = palpate_haptics::Shell::ball(0.01)?;
     /// assert_eq!((ball.points().len(), ball.resolution(1)), (1, 0.0));
     /// # Ok::<(), palpate_haptics::HapticsError>(())
     /// ```
@@ -116,14 +118,14 @@ impl<const D: usize> Shell<D> {
     /// use palpate_field::Vector;
     /// use palpate_haptics::Shell;
     ///
-    /// let ends = [Vector([0.0, -0.03]), Vector([0.0, 0.03])];
+    /// let ends = [Vector([0.0, -0.03, 0.0]), Vector([0.0, 0.03, 0.0])];
     /// let stylus = Shell::capsule(ends, 0.004, 11)?;
     /// assert!((stylus.resolution(11) - 0.001).abs() < 1e-15); // √(4² + 3²) − 4
     /// # Ok::<(), palpate_haptics::HapticsError>(())
     /// ```
     #[inline(never)]
     pub fn capsule(
-        ends: [Point<D>; 2],
+        ends: [Point<3>; 2],
         radius: f64,
         count: usize,
     ) -> Result<Self, HapticsError> {
@@ -148,14 +150,15 @@ impl<const D: usize> Shell<D> {
     /// [`HapticsError::Number`] if the radius is negative or not finite, or the count not in 1
     /// to 8192.
     #[inline(never)]
-    pub fn from_mesh<const N: usize>(
+    pub fn from_mesh<const N: usize, const D: usize>(
         mesh: &Mesh<N, D>,
         count: usize,
         radius: f64,
     ) -> Result<Self, HapticsError> {
         let radius = NumberError::check_not_negative("radius", radius, "m")?;
         check_count(count, 1)?;
-        Self::sampled(&of_mesh(mesh, count), count, radius)
+        let shell = Self::sampled(&of_mesh(mesh, count), count, radius)?;
+        Ok(Self { is_flat: D == 2, ..shell })
     }
 
     /// The surface of a field, as `count` balls of `radius` [m] about points of the surface;
@@ -169,7 +172,7 @@ impl<const D: usize> Shell<D> {
     /// to 8192; [`HapticsError::NothingToTouchWith`] if the field is unbounded or no surface
     /// was found.
     #[inline(never)]
-    pub fn from_field(
+    pub fn from_field<const D: usize>(
         shape: &Shape<D>,
         count: usize,
         radius: f64,
@@ -177,17 +180,18 @@ impl<const D: usize> Shell<D> {
         let radius = NumberError::check_not_negative("radius", radius, "m")?;
         check_count(count, 1)?;
         let bounds = shape.promise().bounds.ok_or(HapticsError::NothingToTouchWith)?;
-        Self::sampled(&of_field(shape, &bounds.aabb, count), count, radius)
+        let shell = Self::sampled(&of_field(shape, &bounds.aabb, count), count, radius)?;
+        Ok(Self { is_flat: D == 2, ..shell })
     }
 
-    fn sampled(samples: &Samples<D>, count: usize, radius: f64) -> Result<Self, HapticsError> {
+    fn sampled(samples: &Samples, count: usize, radius: f64) -> Result<Self, HapticsError> {
         let (points, covers) = chosen(samples, count, radius);
         // The balls reach beyond the sampled surface by their radius.
         Self::new(points, covers.into_iter().map(|cover| (cover - radius).max(0.0)).collect())
     }
 
     /// A shell of points in their order, with the resolution of each prefix.
-    fn new(points: Vec<ShellPoint<D>>, resolutions: Vec<f64>) -> Result<Self, HapticsError> {
+    fn new(points: Vec<ShellPoint>, resolutions: Vec<f64>) -> Result<Self, HapticsError> {
         if points.is_empty() {
             return Err(HapticsError::NothingToTouchWith);
         }
@@ -218,12 +222,19 @@ impl<const D: usize> Shell<D> {
             levels.push(end);
             (begin, end) = (end, end * FINER);
         }
-        Ok(Self { points, resolutions, levels, clusters, order, reach })
+        Ok(Self { points, resolutions, levels, clusters, order, reach, is_flat: false })
+    }
+
+    /// This shell as that of a planar tool, which friction holds in the plane z = 0 alone. All points
+    /// lie in that plane.
+    #[must_use]
+    pub fn in_plane(self) -> Self {
+        Self { is_flat: true, ..self }
     }
 
     /// The points, each the farthest from those before.
     #[must_use]
-    pub fn points(&self) -> &[ShellPoint<D>] {
+    pub fn points(&self) -> &[ShellPoint] {
         &self.points
     }
 
@@ -252,21 +263,13 @@ fn check_count(count: usize, least: usize) -> Result<(), HapticsError> {
 }
 
 /// Points in farthest-first order, and the distance of the surface from each prefix [m].
-fn chosen<const D: usize>(
-    samples: &Samples<D>,
-    count: usize,
-    radius: f64,
-) -> (Vec<ShellPoint<D>>, Vec<f64>) {
+fn chosen(samples: &Samples, count: usize, radius: f64) -> (Vec<ShellPoint>, Vec<f64>) {
     let order = farthest_first(&samples.points, count).into_iter();
     order.map(|(centre, away)| (ShellPoint { centre, radius }, away + samples.spacing)).unzip()
 }
 
 /// Splits points along their widest axis until they fit a cluster.
-fn split<const D: usize>(
-    points: &[ShellPoint<D>],
-    numbers: &mut [u32],
-    found: &mut impl FnMut(&[u32]),
-) {
+fn split(points: &[ShellPoint], numbers: &mut [u32], found: &mut impl FnMut(&[u32])) {
     if numbers.len() <= CLUSTER {
         found(numbers);
         return;
@@ -280,7 +283,7 @@ fn split<const D: usize>(
         range.1 - range.0
     };
     let widest =
-        (1..D).fold(0, |best, axis| if width(axis) > width(best) { axis } else { best });
+        (1..3).fold(0, |best, axis| if width(axis) > width(best) { axis } else { best });
     numbers.sort_by(|a, b| along(*a, widest).total_cmp(&along(*b, widest)));
     let (low, high) = numbers.split_at_mut(numbers.len() / 2);
     split(points, low, found);
@@ -318,11 +321,11 @@ mod tests {
 
     #[test]
     fn numbers_that_make_no_tool_are_refused() {
-        let error = Shell::<3>::ball(0.0).unwrap_err();
+        let error = Shell::ball(0.0).unwrap_err();
         assert_eq!(error.to_string(), "radius must be positive and finite, got 0 m");
-        let ends = [Vector([f64::NAN, 0.0]), Vector([0.0, 1.0])];
+        let ends = [Vector([f64::NAN, 0.0, 0.0]), Vector([0.0, 1.0, 0.0])];
         assert!(Shell::capsule(ends, 0.1, 3).is_err());
-        let error = Shell::capsule([Vector([0.0, 0.0]); 2], 0.1, 1).unwrap_err();
+        let error = Shell::capsule([Vector::ZERO; 2], 0.1, 1).unwrap_err();
         assert_eq!(error.to_string(), "number of points must be from 2 to 8192, got 1 points");
     }
 }

@@ -23,9 +23,9 @@ const FROM_CORNERS: f64 = 0.577_350_27;
 
 /// Samples of a surface.
 #[derive(Debug)]
-pub(super) struct Samples<const D: usize> {
+pub(super) struct Samples {
     /// The samples [m].
-    pub(super) points: Vec<Point<D>>,
+    pub(super) points: Vec<Point<3>>,
     /// Every point of the surface is within this distance of a sample [m].
     pub(super) spacing: f64,
 }
@@ -34,8 +34,9 @@ pub(super) struct Samples<const D: usize> {
 pub(super) fn of_mesh<const N: usize, const D: usize>(
     mesh: &Mesh<N, D>,
     count: usize,
-) -> Samples<D> {
-    let corners = (0..mesh.elements().len()).map(|element| mesh.corners(element));
+) -> Samples {
+    let corners = (0..mesh.elements().len())
+        .map(|element| mesh.corners(element).map(|corner| corner.in_space()));
     let extent: f64 = corners.clone().map(|corners| extent(&corners)).sum();
     let wanted = CHOICE * count as f64;
     let edge = if N == 2 { extent / wanted } else { (extent / wanted).sqrt() };
@@ -69,7 +70,7 @@ pub(super) fn of_mesh<const N: usize, const D: usize>(
 }
 
 /// The length of a segment or the area of a triangle.
-fn extent<const N: usize, const D: usize>(corners: &[Point<D>; N]) -> f64 {
+fn extent<const N: usize>(corners: &[Point<3>; N]) -> f64 {
     match *corners.as_slice() {
         [a, b] => (b - a).norm(),
         [a, b, c] => {
@@ -81,7 +82,7 @@ fn extent<const N: usize, const D: usize>(corners: &[Point<D>; N]) -> f64 {
     }
 }
 
-fn longest_edge<const N: usize, const D: usize>(corners: &[Point<D>; N]) -> f64 {
+fn longest_edge<const N: usize>(corners: &[Point<3>; N]) -> f64 {
     let ends = corners.iter().flat_map(|a| corners.iter().map(move |b| (*a - *b).norm()));
     ends.fold(0.0, f64::max)
 }
@@ -94,7 +95,7 @@ pub(super) fn of_field<const D: usize>(
     shape: &Shape<D>,
     bounds: &Aabb<D>,
     count: usize,
-) -> Samples<D> {
+) -> Samples {
     let half = bounds.half_extents();
     let faces: f64 = (0..D)
         .map(|axis| {
@@ -121,7 +122,8 @@ pub(super) fn of_field<const D: usize>(
             continue;
         }
         let on_surface = shape.surface_point(place);
-        points.extend(on_surface.filter(|q| (*q - place).norm() <= diagonal));
+        let on_surface = on_surface.filter(|q| (*q - place).norm() <= diagonal);
+        points.extend(on_surface.map(Vector::in_space));
     }
     Samples { points, spacing: diagonal }
 }
@@ -132,13 +134,10 @@ pub(super) fn of_field<const D: usize>(
 ///
 /// Gonzalez, "Clustering to minimize the maximum intercluster distance" (1985): the first `k`
 /// points cover the samples within twice the smallest radius that any `k` points achieve.
-pub(super) fn farthest_first<const D: usize>(
-    samples: &[Point<D>],
-    count: usize,
-) -> Vec<(Point<D>, f64)> {
+pub(super) fn farthest_first(samples: &[Point<3>], count: usize) -> Vec<(Point<3>, f64)> {
     let middle = Aabb::around(samples.iter().copied()).map_or(Vector::ZERO, |all| all.centre());
     let mut away: Vec<f64> = samples.iter().map(|p| (*p - middle).norm()).collect();
-    let mut chosen: Vec<(Point<D>, f64)> = Vec::with_capacity(count);
+    let mut chosen: Vec<(Point<3>, f64)> = Vec::with_capacity(count);
     for round in 0..=count {
         let mut farthest = (0.0, None);
         for (p, away) in samples.iter().zip(&away) {
@@ -170,10 +169,10 @@ mod tests {
 
     #[test]
     fn the_farthest_come_first() {
-        let samples: Vec<_> = (0..=8).map(|i| Vector([f64::from(i), 0.0])).collect();
+        let samples: Vec<_> = (0..=8).map(|i| Vector([f64::from(i), 0.0, 0.0])).collect();
         let order = farthest_first(&samples, 5);
         let expected = [(0.0, 8.0), (8.0, 4.0), (4.0, 2.0), (2.0, 2.0), (6.0, 1.0)];
-        assert_eq!(order, expected.map(|(x, away)| (Vector([x, 0.0]), away * MORE)));
+        assert_eq!(order, expected.map(|(x, away)| (Vector([x, 0.0, 0.0]), away * MORE)));
         assert_eq!(farthest_first(&samples, 100).len(), 9);
     }
 

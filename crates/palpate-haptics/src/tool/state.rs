@@ -73,7 +73,7 @@ impl ToolOptions {
     /// use palpate_haptics::{Handle, Shell, ToolOptions};
     ///
     /// # fn main() -> Result<(), palpate_haptics::HapticsError> {
-    /// let shell = Shell::<3>::ball(0.5)?;
+    /// let shell = Shell::ball(0.5)?;
     /// let handle = Handle { mass: 0.01, inertia: 0.02 };
     /// let options = ToolOptions { stiffness: 400.0, ..ToolOptions::default() };
     /// let critical = options.with_damping_ratio(1.0, handle, shell.reach());
@@ -145,19 +145,19 @@ impl Default for ToolOptions {
 
 /// The state of the device that holds a tool, as read in a tick. World coordinates.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ToolState<const D: usize> {
+pub struct ToolState {
     /// The goal of the tool, the device's pose: `world_from_tool`.
-    pub pose: Pose<D>,
+    pub pose: Pose<3>,
     /// The velocity of the origin [m/s].
-    pub velocity: Vector<f64, D>,
+    pub velocity: Vector<f64, 3>,
     /// The angular velocity [rad/s]; in the plane only z is used.
     pub angular_velocity: Vector<f64, 3>,
 }
 
-impl<const D: usize> ToolState<D> {
+impl ToolState {
     /// A device at rest.
     #[must_use]
-    pub fn at_rest(pose: Pose<D>) -> Self {
+    pub fn at_rest(pose: Pose<3>) -> Self {
         Self { pose, velocity: Vector::ZERO, angular_velocity: Vector::ZERO }
     }
 
@@ -174,15 +174,15 @@ impl<const D: usize> ToolState<D> {
 /// A tool after a tick. World coordinates.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
-pub struct ToolTouch<const D: usize> {
+pub struct ToolTouch {
     /// The device's pose: the goal of the tool.
-    pub device: Pose<D>,
+    pub device: Pose<3>,
     /// The tool's pose; equal to the device's pose in free space.
-    pub pose: Pose<D>,
+    pub pose: Pose<3>,
     /// The velocity of the tool's origin in this tick [m/s].
-    pub velocity: Vector<f64, D>,
+    pub velocity: Vector<f64, 3>,
     /// The force on the hand [N], always finite.
-    pub force: Vector<f64, D>,
+    pub force: Vector<f64, 3>,
     /// The torque on the hand about the tool's origin [N·m], always finite; in the plane only z
     /// is used.
     pub torque: Vector<f64, 3>,
@@ -191,9 +191,9 @@ pub struct ToolTouch<const D: usize> {
     /// The index of the body that pushes hardest; `None` without contact.
     pub body: Option<u32>,
     /// The outward unit normal of that body at the contact; zero without contact.
-    pub normal: Vector<f64, D>,
+    pub normal: Vector<f64, 3>,
     /// The contacts that push, at most six: from the tool (a) to a body (b).
-    pub contacts: Vec<Contact<D>>,
+    pub contacts: Vec<Contact<3>>,
     /// `true` if the tool slips; `false` if it sticks, or if there is no friction.
     pub is_slipping: bool,
     /// `true` if the tool is inside bodies and did not get out in this tick; it then gives no
@@ -216,7 +216,7 @@ pub struct ToolTouch<const D: usize> {
     pub evaluations: u32,
 }
 
-impl<const D: usize> ToolTouch<D> {
+impl ToolTouch {
     pub(super) fn new(points: usize) -> Self {
         Self {
             device: Pose::identity(),

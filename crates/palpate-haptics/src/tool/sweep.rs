@@ -51,15 +51,15 @@ struct Limits {
     lipschitz: f64,
 }
 
-impl<const D: usize> Scan<D> {
+impl Scan {
     /// The part of a motion, at most `most`, in which no point dips deeper than the skin.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic; at most 64 evaluations a point,
     /// and what the budget has left.
     pub(super) fn sweep(
         &mut self,
-        surroundings: Surroundings<'_, D>,
-        path: Path<'_, D>,
+        surroundings: Surroundings<'_>,
+        path: Path<'_>,
         skin: f64,
         most: f64,
     ) -> f64 {
@@ -96,8 +96,8 @@ impl<const D: usize> Scan<D> {
     /// Sweeps points until `limits` end it, and returns the proven part of the motion.
     fn follow(
         &mut self,
-        surroundings: Surroundings<'_, D>,
-        path: Path<'_, D>,
+        surroundings: Surroundings<'_>,
+        path: Path<'_>,
         swept_points: &mut [SweptPoint],
         limits: Limits,
     ) -> f64 {

@@ -11,18 +11,18 @@ use palpate_field::{Pose, Vector};
 
 /// A change of a pose: the origin moves, then the pose rotates about it. World axes.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Twist<const D: usize> {
+pub(super) struct Twist {
     /// The displacement of the origin [m].
-    pub(super) linear: Vector<f64, D>,
+    pub(super) linear: Vector<f64, 3>,
     /// The rotation vector [rad]; in the plane only z is used.
     pub(super) angular: Vector<f64, 3>,
 }
 
-impl<const D: usize> Twist<D> {
+impl Twist {
     /// The twist from one pose to another.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
-    pub(super) fn between(from: &Pose<D>, to: &Pose<D>) -> Self {
+    pub(super) fn between(from: &Pose<3>, to: &Pose<3>) -> Self {
         let linear = to.translation - from.translation;
         if from.rotation == to.rotation {
             return Self { linear, angular: Vector::ZERO };
@@ -45,7 +45,7 @@ impl<const D: usize> Twist<D> {
     /// The pose after the motion.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
-    pub(super) fn moved(&self, pose: &Pose<D>) -> Pose<D> {
+    pub(super) fn moved(&self, pose: &Pose<3>) -> Pose<3> {
         let rotation = pose.rotation.turned(self.angular);
         Pose::new(rotation, pose.translation + self.linear)
     }
@@ -57,13 +57,13 @@ impl<const D: usize> Twist<D> {
     }
 
     /// The displacement of a point at `arm` from the origin, to first order [m].
-    pub(super) fn of_point(&self, arm: Vector<f64, D>) -> Vector<f64, D> {
-        self.linear + self.angular.cross(arm.in_space()).truncated()
+    pub(super) fn of_point(&self, arm: Vector<f64, 3>) -> Vector<f64, 3> {
+        self.linear + self.angular.cross(arm)
     }
 
     /// The motion as one vector, in which a radian counts as the length `unit` [m].
     pub(super) fn stacked(&self, unit: f64) -> [f64; 6] {
-        let ([x, y, z], [a, b, c]) = (self.linear.in_space().0, (self.angular * unit).0);
+        let ([x, y, z], [a, b, c]) = (self.linear.0, (self.angular * unit).0);
         [x, y, z, a, b, c]
     }
 
@@ -75,7 +75,7 @@ impl<const D: usize> Twist<D> {
     /// The inverse of [`stacked`](Self::stacked).
     pub(super) fn unstacked([x, y, z, a, b, c]: [f64; 6], unit: f64) -> Self {
         let angular = Vector([a, b, c]) * (1.0 / unit);
-        Self { linear: Vector([x, y, z]).truncated(), angular }
+        Self { linear: Vector([x, y, z]), angular }
     }
 }
 
@@ -99,16 +99,17 @@ mod tests {
 
     #[test]
     fn in_the_plane_a_twist_turns_about_z() {
-        let to = Pose::rotation(Rotation::from_angle(0.25).unwrap());
-        let twist = Twist::<2>::between(&Pose::identity(), &to);
+        let to = Pose::rotation(Rotation::from_angle(0.25).unwrap().in_space());
+        let twist = Twist::between(&Pose::identity(), &to);
         assert!((twist.angular - Vector([0.0, 0.0, 0.25])).norm() < 1e-15);
         let moved = twist.moved(&Pose::identity());
-        assert!((moved.rotation.angle() - 0.25).abs() < 1e-15);
+        assert!((moved.truncated::<2>().rotation.angle() - 0.25).abs() < 1e-15);
     }
 
     #[test]
     fn stacking_is_undone() {
-        let twist = Twist { linear: Vector([1.0, -2.0]), angular: Vector([0.0, 0.0, 0.5]) };
+        let twist =
+            Twist { linear: Vector([1.0, -2.0, 0.0]), angular: Vector([0.0, 0.0, 0.5]) };
         assert_eq!(twist.stacked(4.0), [1.0, -2.0, 0.0, 0.0, 0.0, 2.0]);
         assert_eq!(Twist::unstacked(twist.stacked(4.0), 4.0), twist);
     }

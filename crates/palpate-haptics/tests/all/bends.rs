@@ -5,7 +5,7 @@
 
 use crate::common::{ball, cuboid, half_space, proxy, scaled, torus};
 use palpate_field::operator::{Copies, Profile};
-use palpate_field::{Point, Shape, Vector};
+use palpate_field::{Point, Shape, SpaceShape, Vector};
 use palpate_haptics::{Bodies, Following, Probe, Proxy};
 
 /// Evaluations of a tick on average and at most, once the hand has landed, and how far the
@@ -17,12 +17,13 @@ struct Seen {
 }
 
 /// Follows a hand over a shape at 0.1 mm a tick; `closest` is where the proxy should be.
-fn slides<const D: usize>(
-    shape: &Shape<D>,
-    mut proxy: Proxy<D>,
-    hand: impl Fn(f64) -> Point<D>,
-    closest: impl Fn(Point<D>) -> Point<D>,
+fn slides(
+    shape: impl Into<SpaceShape>,
+    mut proxy: Proxy,
+    hand: impl Fn(f64) -> Point<3>,
+    closest: impl Fn(Point<3>) -> Point<3>,
 ) -> Seen {
+    let shape: SpaceShape = shape.into();
     const LANDING: u32 = 20;
     const TICKS: u32 = 500;
     let bodies = Bodies::from(shape.clone());
@@ -53,7 +54,7 @@ fn round(radius: f64, from: f64) -> impl Fn(f64) -> Point<3> {
 #[test]
 fn one_evaluation_is_enough_on_a_ball() {
     let closest = |device: Point<3>| device.normalized().unwrap() * 0.052;
-    let seen = slides(&ball(0.05), proxy(0.002), round(0.048, 0.055), closest);
+    let seen = slides(ball::<3>(0.05), proxy(0.002), round(0.048, 0.055), closest);
     assert!(seen.mean <= 1.01 && seen.most <= 2, "{} {}", seen.mean, seen.most);
     assert!(seen.off < 1e-7, "{}", seen.off);
 }
@@ -74,7 +75,7 @@ fn two_bends_at_once_are_learnt() {
         let out = Vector([x, y, z]) - centre;
         centre + out * (0.014 / out.norm())
     };
-    let seen = slides(&torus(0.04, 0.012), proxy(0.002), hand, closest);
+    let seen = slides(torus(0.04, 0.012), proxy(0.002), hand, closest);
     assert!(seen.mean <= 2.0 && seen.most <= 4, "{} {}", seen.mean, seen.most);
     assert!(seen.off < 3e-7, "{}", seen.off);
 }
@@ -85,15 +86,16 @@ fn a_hollow_much_sharper_than_the_probe_is_followed() {
     // taken for a crease, whose planes left no room: all the budget, and no way out.
     let gutter = || {
         let block = cuboid([0.02, 0.02]);
-        block.difference([ball(0.00225).translated(Vector([0.0, 0.01])).unwrap()]).unwrap()
+        block.difference([ball(0.00225).translated([0.0, 0.01]).unwrap()]).unwrap()
     };
-    let hand =
-        |way: f64| Vector([0.002 * (40.0 * way).sin(), 0.0095 - 0.003 * (way / 1e-3).min(1.0)]);
-    let closest = |device: Point<2>| {
-        let centre = Vector([0.0, 0.01]);
+    let hand = |way: f64| {
+        Vector([0.002 * (40.0 * way).sin(), 0.0095 - 0.003 * (way / 1e-3).min(1.0), 0.0])
+    };
+    let closest = |device: Point<3>| {
+        let centre = Vector([0.0, 0.01, 0.0]);
         centre + (device - centre).normalized().unwrap() * 0.00025
     };
-    let seen = slides(&gutter(), proxy(0.002), hand, closest);
+    let seen = slides(gutter(), proxy(0.002), hand, closest);
     assert!(seen.mean <= 3.0 && seen.most <= 12, "{} {}", seen.mean, seen.most);
     assert!(seen.off < 1e-7, "{}", seen.off);
 }
@@ -136,9 +138,9 @@ fn a_hand_that_spends_its_budget_in_a_body_stays_in_contact() {
     let rough = Shape::union([floor, wave]).unwrap();
     let bodies = Bodies::from(rough);
     let mut proxy = Proxy::new(Probe::new(0.0).unwrap().with_budget(8).unwrap());
-    proxy.follow(&bodies.everything(), Vector([0.0, 0.01]));
+    proxy.follow(&bodies.everything(), Vector([0.0, 0.01, 0.0]));
     for tick in 0..300 {
-        let device = Vector([3e-4 * f64::from(tick), -0.002]);
+        let device = Vector([3e-4 * f64::from(tick), -0.002, 0.0]);
         assert!(proxy.follow(&bodies.everything(), device).contact, "{tick}");
     }
 }

@@ -19,11 +19,11 @@ fn options(radius: f64) -> ServoOptions {
     }
 }
 
-fn touch(servo: &mut Servo<3, Unprotected>, device: Vector<f64, 3>) -> Touch<3> {
+fn touch(servo: &mut Servo<Unprotected>, device: Vector<f64, 3>) -> Touch {
     servo.step(&[PointState::at_rest(device)])[0]
 }
 
-fn rough(stiffness: f64) -> Surface<3> {
+fn rough(stiffness: f64) -> Surface {
     let (static_friction, dynamic_friction) = (0.8, 0.6);
     let material = Material {
         stiffness,
@@ -37,7 +37,7 @@ fn rough(stiffness: f64) -> Surface<3> {
 
 #[test]
 fn a_body_that_moves_carries_the_hand_by_friction() {
-    let mut servo = Servo::new(body(&cuboid([1.0, 0.125, 1.0]), rough(512.0)), 1, options(0.0));
+    let mut servo = Servo::new(body(cuboid([1.0, 0.125, 1.0]), rough(512.0)), 1, options(0.0));
     let servo = servo.as_mut().unwrap();
     let device = Vector([0.0, 0.0625 - 0.0078125, 0.0]);
     touch(servo, Vector([0.0, 0.5, 0.0]));
@@ -60,7 +60,7 @@ fn a_body_that_moves_carries_the_hand_by_friction() {
 
 #[test]
 fn a_body_that_turns_takes_the_hand_round() {
-    let mut servo = Servo::new(body(&ball(0.05), rough(512.0)), 1, options(0.0)).unwrap();
+    let mut servo = Servo::new(body(ball::<3>(0.05), rough(512.0)), 1, options(0.0)).unwrap();
     touch(&mut servo, Vector([0.1, 0.0, 0.0]));
     let mut held = touch(&mut servo, Vector([0.049, 0.0, 0.0]));
     for tick in 1..=100 {
@@ -107,7 +107,7 @@ fn a_plate_that_strikes_the_hand_does_not_pass_it() {
 
 #[test]
 fn a_body_that_moves_onto_the_hand_presses_gently() {
-    let mut servo = Servo::new(body(&cuboid([0.1; 3]), rough(512.0)), 1, options(0.0)).unwrap();
+    let mut servo = Servo::new(body(cuboid([0.1; 3]), rough(512.0)), 1, options(0.0)).unwrap();
     let hand = Vector([0.0, 0.0625, 0.0]);
     assert!(!touch(&mut servo, hand).contact);
     servo.set_pose(0, Pose::translation(Vector([0.0, 0.02, 0.0])));
@@ -131,7 +131,7 @@ fn many_bodies_feel_like_their_union() {
             let body = Body::new(shape, rough(512.0)).unwrap();
             bodies.push(body.at(Pose::translation(place)).unwrap());
         }
-        let union = body(&Shape::union(shapes).unwrap(), rough(512.0));
+        let union = body(Shape::union(shapes).unwrap(), rough(512.0));
         let mut many = Servo::new(Bodies::new(bodies).unwrap(), 2, options(0.002)).unwrap();
         let mut one = Servo::new(union, 2, options(0.002)).unwrap();
         let from: Vector<f64, 3> = vector(u)?;
@@ -161,7 +161,7 @@ fn many_bodies_feel_like_their_union() {
 fn a_body_far_away_is_not_in_the_way() {
     // Broad phase: nothing is near at first, and the hand is fast.
     let place = |i: i32| Pose::translation(Vector([0.1 * f64::from(i), 0.0, 0.0]));
-    let bodies = (1..=20).map(|i| Body::new(ball(0.04), rough(512.0))?.at(place(i)));
+    let bodies = (1..=20).map(|i| Body::new(ball::<3>(0.04), rough(512.0))?.at(place(i)));
     let bodies = Bodies::new(bodies.collect::<Result<_, _>>().unwrap()).unwrap();
     // A clone once had no room for the numbers of what is near, and felt nothing.
     let mut servo = Servo::new(bodies.clone(), 1, options(0.001)).unwrap().clone();
@@ -223,7 +223,8 @@ fn a_magnet_pulls_from_outside_alone() {
 fn touches_and_leaves_come_in_pairs() {
     // From one body to the next in one tick, and a reading that is lost, once left no leave.
     let place = |x: f64| Pose::translation(Vector([x, 0.0, 0.0]));
-    let bodies = [0.0, 0.1].map(|x| Body::new(ball(0.05), rough(512.0)).unwrap().at(place(x)));
+    let bodies =
+        [0.0, 0.1].map(|x| Body::new(ball::<3>(0.05), rough(512.0)).unwrap().at(place(x)));
     let bodies = Bodies::new(bodies.into_iter().collect::<Result<_, _>>().unwrap()).unwrap();
     let mut servo = Servo::new(bodies, 1, options(0.001)).unwrap();
     let (mut touches, mut leaves) = (0, 0);

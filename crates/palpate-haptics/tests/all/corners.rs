@@ -28,14 +28,15 @@ fn miss<const D: usize>(
 ) -> arbitrary::Result<f64> {
     let (static_friction, dynamic_friction) = (friction, friction);
     let material = Material { static_friction, dynamic_friction, ..Material::default() };
-    let bodies = body(&walls(normals), Surface::new(&material).unwrap());
+    let bodies = body(walls(normals), Surface::new(&material).unwrap());
     let probe = Probe::new(radius).unwrap();
     let options = ServoOptions { probe, ..ServoOptions::default() };
     let mut servo = Servo::new(bodies, 1, options).unwrap();
-    let up = normals.iter().fold(Vector::ZERO, |sum, n| sum + *n).normalized().unwrap();
+    let (normals, corner) = (normals.iter().map(|n| n.in_space()), corner.in_space());
+    let up = normals.clone().fold(Vector::ZERO, |sum, n| sum + n).normalized().unwrap();
     let mut press = Vector::ZERO;
     for n in normals {
-        press -= *n * (0.004 + 0.002 * unit(u)?.abs());
+        press -= n * (0.004 + 0.002 * unit(u)?.abs());
     }
     let from = corner + up * 0.02;
     let mut last = corner;

@@ -17,7 +17,7 @@ const RADIUS: f64 = 0.002;
 /// Walls through the origin for the probe's centre, with these inner normals, stiffnesses [N/m] and
 /// frictions.
 #[expect(clippy::unwrap_used, reason = "a test that cannot be set up fails")]
-fn walls<const D: usize>(walls: &[([f64; D], f64, f64)]) -> Bodies<D> {
+fn walls<const D: usize>(walls: &[([f64; D], f64, f64)]) -> Bodies {
     let bodies = walls.iter().map(|(normal, stiffness, friction)| {
         let normal = Vector(*normal).normalized().unwrap();
         let shape = Shape::from_kernel(HalfSpace::new(normal, -RADIUS).unwrap());
@@ -34,7 +34,7 @@ fn walls<const D: usize>(walls: &[([f64; D], f64, f64)]) -> Bodies<D> {
 }
 
 #[expect(clippy::unwrap_used, reason = "a test that cannot be set up fails")]
-fn servo<const D: usize>(bodies: Bodies<D>) -> Servo<D, Unprotected> {
+fn servo(bodies: Bodies) -> Servo<Unprotected> {
     let options = ServoOptions {
         probe: Probe::new(RADIUS).unwrap(),
         max_force: f64::INFINITY,
@@ -45,13 +45,13 @@ fn servo<const D: usize>(bodies: Bodies<D>) -> Servo<D, Unprotected> {
 }
 
 /// The largest change of the wanted force in a tick [N], and all events, of a device point on a path.
-fn felt<const D: usize>(
-    servo: &mut Servo<D, Unprotected>,
+fn felt(
+    servo: &mut Servo<Unprotected>,
     ticks: u32,
-    path: impl Fn(f64) -> Vector<f64, D>,
-    mut motion: impl FnMut(&mut Servo<D, Unprotected>, f64),
+    path: impl Fn(f64) -> Vector<f64, 3>,
+    mut motion: impl FnMut(&mut Servo<Unprotected>, f64),
 ) -> (f64, Vec<Event>) {
-    let (mut last, mut step, mut events) = (None::<Vector<f64, D>>, 0.0_f64, Vec::new());
+    let (mut last, mut step, mut events) = (None::<Vector<f64, 3>>, 0.0_f64, Vec::new());
     for tick in 0..ticks {
         let time = 1e-3 * f64::from(tick);
         motion(servo, time);
@@ -89,14 +89,14 @@ fn each_body_pushes_with_its_own_stiffness() {
 #[test]
 fn the_force_is_the_sum_over_oblique_walls() {
     // λ₁ = 3 mm and λ₂ = 1 mm.
-    let second = Vector([0.6, 0.8]);
-    let mut servo = servo(walls(&[([0.0, 1.0], 500.0, 0.0), (second.0, 300.0, 0.0)]));
-    servo.step(&[PointState::at_rest(Vector([0.01, 0.01]))]);
-    let device = -(Vector([0.0, 1.0]) * 0.003 + second * 0.001);
+    let second = Vector([0.6, 0.8, 0.0]);
+    let mut servo = servo(walls(&[([0.0, 1.0], 500.0, 0.0), ([0.6, 0.8], 300.0, 0.0)]));
+    servo.step(&[PointState::at_rest(Vector([0.01, 0.01, 0.0]))]);
+    let device = -(Vector([0.0, 1.0, 0.0]) * 0.003 + second * 0.001);
     for _ in 0..3 {
         servo.step(&[PointState::at_rest(device)]);
     }
-    let wanted = Vector([0.0, 1.0]) * 1.5 + second * 0.3;
+    let wanted = Vector([0.0, 1.0, 0.0]) * 1.5 + second * 0.3;
     assert!((servo.touches()[0].wanted - wanted).norm() < 1e-8, "{:?}", servo.touches());
 }
 
@@ -110,7 +110,7 @@ fn a_trembling_hand_in_a_corner_of_two_materials_feels_smooth() {
             * (50.0 * time).min(1.0)
             + Vector([0.001, 0.001, 0.0]) * (1.0 - 50.0 * time).max(0.0)
     };
-    let still = |_: &mut Servo<3, Unprotected>, _| {};
+    let still = |_: &mut Servo<Unprotected>, _| {};
     let pairs = [(1000.0, 200.0), (800.0, 300.0), (2000.0, 100.0)];
     for (a, b) in pairs {
         for friction in [0.0, 0.4] {
@@ -136,7 +136,7 @@ fn a_box_on_a_table_of_other_material_is_felt_as_smoothly() {
         let swing = 2e-4 * (30.0 * time).sin();
         Vector([0.004 - 0.007 * gone + swing, 0.004 - 0.006 * gone, 3e-4 * (50.0 * time).sin()])
     };
-    let still = |_: &mut Servo<3, Unprotected>, _| {};
+    let still = |_: &mut Servo<Unprotected>, _| {};
     let pairs = [
         (Material::rubber(), Material::glass()),
         (Material::skin(), Material::glass()),
@@ -197,7 +197,7 @@ fn wedges_of_several_materials_are_smooth() {
                 + Vector([0.0, 0.02, 0.02]) * (1.0 - gone)
                 + Vector(sway)
         };
-        let motion = |servo: &mut Servo<3, Unprotected>, time: f64| {
+        let motion = |servo: &mut Servo<Unprotected>, time: f64| {
             if moves > 0.0 {
                 let pose = Pose::translation(carry(time));
                 (0..of.len()).for_each(|body| servo.set_pose(body, pose));

@@ -56,7 +56,7 @@ fn plays<const D: usize>(name: &str, material: &Material, radius: f64) {
     let mut contacts = 0;
     for tick in 0..3000 {
         let time = f64::from(tick) / 1500.0;
-        let mut position = Vector([0.0; D]);
+        let mut position = Vector::<f64, 3>::ZERO;
         (position[0], position[1]) = (0.07 * wave(time), 0.02 + 0.003 * wave(5.0 * time));
         let velocity = Vector::unit(1) * -0.1;
         let touch = servo.step(&[PointState { position, velocity }])[0];
@@ -87,7 +87,7 @@ fn a_floor_without_bounds_is_felt_among_many_bodies() {
     let mut bodies = vec![Body::new(half_space([0.0, 1.0, 0.0], 0.0), surface()).unwrap()];
     for i in 0..30 {
         let at = Pose::translation(Vector([0.05 * f64::from(i), 0.1, 0.3]));
-        bodies.push(Body::new(ball(0.02), surface()).unwrap().at(at).unwrap());
+        bodies.push(Body::new(ball::<3>(0.02), surface()).unwrap().at(at).unwrap());
     }
     let probe = Probe::new(0.002).unwrap();
     let options = ServoOptions { probe, ..ServoOptions::default() };

@@ -55,7 +55,7 @@ impl Called {
     }
 }
 
-impl Device<2> for Called {
+impl Device for Called {
     fn points(&self) -> usize {
         1
     }
@@ -74,12 +74,12 @@ impl Device<2> for Called {
     fn enable(&mut self) -> Result<(), DeviceLost> {
         self.call("enable")
     }
-    fn read(&mut self, time: f64, points: &mut [PointState<2>]) -> Result<Reading, DeviceLost> {
-        points[0] = PointState::at_rest(Vector([0.0, 0.01]));
+    fn read(&mut self, time: f64, points: &mut [PointState]) -> Result<Reading, DeviceLost> {
+        points[0] = PointState::at_rest(Vector([0.0, 0.01, 0.0]));
         self.call("read")?;
         Ok(Reading::Fresh { time })
     }
-    fn write(&mut self, forces: &[Vector<f64, 2>]) -> Result<(), DeviceLost> {
+    fn write(&mut self, forces: &[Vector<f64, 3>]) -> Result<(), DeviceLost> {
         assert_eq!(forces, [Vector::ZERO]);
         self.call("write")
     }
@@ -100,7 +100,7 @@ fn wall() -> Shape<2> {
     Shape::half_space([0.0, 1.0], 0.0).unwrap()
 }
 
-fn fast<'a>(duration: f64) -> RunOptions<'a, 2> {
+fn fast<'a>(duration: f64) -> RunOptions<'a> {
     RunOptions { pace: Pace::AsFastAsPossible, ..RunOptions::new(duration) }
 }
 
@@ -171,12 +171,12 @@ fn what_cannot_be_opened_gets_no_forces_and_what_opens_in_part_is_closed() {
 }
 
 /// A hand that presses the wall by 1 mm after half a second.
-fn press() -> HandPath<2> {
-    let places = [0.01, -0.003, -0.003].map(|y| Vector([0.0, y]));
+fn press() -> HandPath {
+    let places = [0.01, -0.003, -0.003].map(|y| Vector([0.0, y, 0.0]));
     HandPath::new(vec![0.0, 0.5, 100.0], places.to_vec(), Interpolation::Linear).unwrap()
 }
 
-fn pressing(faults: Vec<Fault>) -> SimulatedTransport<RecordedDevice<2>, 2> {
+fn pressing(faults: Vec<Fault>) -> SimulatedTransport<RecordedDevice> {
     SimulatedTransport::new(RecordedDevice::new(vec![press()]).unwrap(), faults).unwrap()
 }
 
@@ -221,21 +221,21 @@ fn a_thread_finds_its_device_again() {
 /// A device that comes back as another one must not get the forces of the first.
 #[derive(Debug)]
 struct Swapped {
-    device: SimulatedTransport<RecordedDevice<2>, 2>,
+    device: SimulatedTransport<RecordedDevice>,
     profile: DeviceProfile,
 }
 
-impl Device<2> for Swapped {
+impl Device for Swapped {
     fn points(&self) -> usize {
         self.device.points()
     }
     fn profile(&self) -> &DeviceProfile {
         &self.profile
     }
-    fn read(&mut self, time: f64, points: &mut [PointState<2>]) -> Result<Reading, DeviceLost> {
+    fn read(&mut self, time: f64, points: &mut [PointState]) -> Result<Reading, DeviceLost> {
         self.device.read(time, points)
     }
-    fn write(&mut self, forces: &[Vector<f64, 2>]) -> Result<(), DeviceLost> {
+    fn write(&mut self, forces: &[Vector<f64, 3>]) -> Result<(), DeviceLost> {
         self.device.write(forces)
     }
     fn open(&mut self) -> Result<(), DeviceLost> {
@@ -299,7 +299,7 @@ fn a_pacing_device_gives_the_time_and_the_lateness() {
     let mut servo = Servo::for_device(wall(), &device).unwrap();
     assert_eq!(servo.options().rate, 500.0);
     let mut times = Vec::new();
-    let mut sink = |row: &palpate_haptics::servo_loop::TraceRow<2>| times.push(row.time_s);
+    let mut sink = |row: &palpate_haptics::servo_loop::TraceRow| times.push(row.time_s);
     let options =
         RunOptions { pace: Pace::Device, sink: Some(&mut sink), ..RunOptions::new(1.0) };
     let report = run_on(&mut VirtualClock::new(), &mut servo, &mut device, options).unwrap();
@@ -329,7 +329,7 @@ fn a_measurement_that_comes_late_is_a_late_tick() {
 
 /// A device of which the time of a measurement changes after 50 ticks.
 struct Jumping<'a> {
-    device: &'a mut SimulatedTransport<RecordedDevice<2>, 2>,
+    device: &'a mut SimulatedTransport<RecordedDevice>,
     ticks: u32,
     /// By so much [s].
     jump: f64,
@@ -337,14 +337,14 @@ struct Jumping<'a> {
     is_once: bool,
 }
 
-impl Device<2> for Jumping<'_> {
+impl Device for Jumping<'_> {
     fn points(&self) -> usize {
         self.device.points()
     }
     fn profile(&self) -> &DeviceProfile {
         self.device.profile()
     }
-    fn read(&mut self, time: f64, points: &mut [PointState<2>]) -> Result<Reading, DeviceLost> {
+    fn read(&mut self, time: f64, points: &mut [PointState]) -> Result<Reading, DeviceLost> {
         self.ticks += 1;
         Ok(match self.device.read(time, points)? {
             Reading::Fresh { time } if self.ticks == 51 || self.ticks > 51 && !self.is_once => {
@@ -353,7 +353,7 @@ impl Device<2> for Jumping<'_> {
             reading => reading,
         })
     }
-    fn write(&mut self, forces: &[Vector<f64, 2>]) -> Result<(), DeviceLost> {
+    fn write(&mut self, forces: &[Vector<f64, 3>]) -> Result<(), DeviceLost> {
         self.device.write(forces)
     }
     fn paces(&self) -> bool {
@@ -380,13 +380,13 @@ fn a_pace_or_a_rate_that_does_not_fit_is_refused() {
         let error = servo.protected(&protection).unwrap().check_device(&pacing).unwrap_err();
         assert_eq!(error, HapticsError::Rate { servo: rate, device: 500.0 });
     }
-    let (slow, _driver) = MailboxDevice::<2>::new(DeviceProfile::unlimited("slow"), 1).unwrap();
+    let (slow, _driver) = MailboxDevice::new(DeviceProfile::unlimited("slow"), 1).unwrap();
     let slow = slow.with_rate(60.0);
     let servo = Servo::for_device(wall(), &slow).unwrap();
     assert_eq!((servo.options().rate, servo.check_device(&slow)), (60.0, Ok(())));
 }
 
-fn gripping() -> SimulatedDevice<2> {
+fn gripping() -> SimulatedDevice {
     let profile = (DeviceProfile {
         mass: 0.1,
         least_damping: 1.0,
@@ -399,10 +399,10 @@ fn gripping() -> SimulatedDevice<2> {
         ..DeviceProfile::unlimited("gripping")
     })
     .with_buttons(["front", "rear"]);
-    let jaws = vec![Vector([0.0]), Vector([0.02])];
+    let jaws = vec![Vector::ZERO, Vector([0.02, 0.0, 0.0])];
     let jaws = HandPath::new(vec![0.0, 1.0], jaws, Interpolation::Linear).unwrap();
     let device =
-        SimulatedDevice::new(profile, vec![Hand::resting(Vector([0.0, 0.1])).unwrap()]);
+        SimulatedDevice::new(profile, vec![Hand::resting(Vector([0.0, 0.1, 0.0])).unwrap()]);
     let one = Buttons::NONE.with(1);
     let presses = vec![(0.1, one), (0.2, one.with(0)), (0.3, Buttons::NONE)];
     device.unwrap().with_gripper(jaws).with_buttons(presses).unwrap()
@@ -473,7 +473,7 @@ fn a_gripper_gets_a_limited_force_that_stops_and_rises() {
 fn without_a_state_a_gripper_has_no_force() {
     let device = gripping();
     let mut servo = Servo::for_device(wall(), &device).unwrap();
-    let states = [PointState::at_rest(Vector([0.0, 0.1]))];
+    let states = [PointState::at_rest(Vector([0.0, 0.1, 0.0]))];
     servo.set_gripper_force(3.0);
     servo.set_gripper(Some(GripperState::at_rest(0.01)));
     for _ in 0..200 {
@@ -489,7 +489,7 @@ fn without_a_state_a_gripper_has_no_force() {
     }
     assert_eq!(servo.gripper_force(), 0.0);
     let other = DeviceProfile { max_force: 3.0, ..DeviceProfile::unlimited("none") };
-    let (other, _driver) = MailboxDevice::<2>::new(other, 1).unwrap();
+    let (other, _driver) = MailboxDevice::new(other, 1).unwrap();
     let error = servo.check_device(&other).unwrap_err();
     assert!(error.to_string().contains("gripper_max_force of 5 N"), "{error}");
 }
@@ -497,15 +497,15 @@ fn without_a_state_a_gripper_has_no_force() {
 #[test]
 fn a_driver_that_is_not_ready_is_waited_for_and_its_repeats_are_counted() {
     let profile = DeviceProfile { max_force: 3.0, ..DeviceProfile::unlimited("mail") };
-    let (device, mut mailbox) = MailboxDevice::<2>::new(profile, 1).unwrap();
+    let (device, mut mailbox) = MailboxDevice::new(profile, 1).unwrap();
     let mut device = device.with_watchdog(Duration::from_millis(20));
     let mut servo = Servo::for_device(wall(), &device).unwrap();
-    let mut sets = |time: f64, _: &mut dyn FnMut(usize, palpate_field::Pose<2>)| {
+    let mut sets = |time: f64, _: &mut dyn FnMut(usize, palpate_field::Pose<3>)| {
         // From the tenth tick on every second tick has a new state.
         let tick = (time * 1000.0).round() as u32;
         if tick >= 10 && tick.is_multiple_of(2) {
             let y = 0.05 - time;
-            mailbox.set_at(time, &[PointState::at_rest(Vector([0.0, y]))]).unwrap();
+            mailbox.set_at(time, &[PointState::at_rest(Vector([0.0, y, 0.0]))]).unwrap();
         }
     };
     let options = RunOptions { motion: Some(&mut sets), ..fast(0.04) };

@@ -9,7 +9,7 @@ use crate::common::{AnyServo, ball, body, cases, cuboid, direction, unit};
 use arbitrary::Unstructured;
 use assert_no_alloc::assert_no_alloc;
 use palpate_device::{PointState, profile_named};
-use palpate_field::{Point, Pose, Shape, Vector};
+use palpate_field::{Point, Pose, Shape, SpaceShape, Vector};
 use palpate_haptics::{
     Bodies, Body, Event, EventKind, Layer, Material, PopThrough, Probe, Protection, Servo,
     ServoOptions, Shell, Surface, Tool, ToolOptions,
@@ -25,7 +25,7 @@ const LONGER: f64 = 1.2;
 
 const RECOVERIES: [Recovery; 2] = [Recovery::Rise, Recovery::OnceOut];
 
-fn rough(stiffness: f64) -> Surface<3> {
+fn rough(stiffness: f64) -> Surface {
     let material = Material {
         stiffness,
         damping: 1.0,
@@ -37,7 +37,7 @@ fn rough(stiffness: f64) -> Surface<3> {
 }
 
 /// A plate of so many metres, with its lower side at y = −0.02.
-fn plate(height: f64) -> Bodies<3> {
+fn plate(height: f64) -> Bodies {
     let lower = Pose::translation(Vector([0.0, 0.5 * height - 0.02, 0.0]));
     let shape = cuboid([0.1, height, 0.1]);
     Bodies::new(vec![Body::new(shape, rough(1000.0)).unwrap().at(lower).unwrap()]).unwrap()
@@ -51,25 +51,25 @@ fn options(radius: f64) -> ServoOptions {
     }
 }
 
-fn protection(recovery: Recovery) -> Protection<3> {
+fn protection(recovery: Recovery) -> Protection {
     Protection::new(profile_named("omega").unwrap()).with(|s| s.recovery = recovery)
 }
 
-fn point(bodies: Bodies<3>, radius: f64, recovery: Recovery) -> Servo<3> {
+fn point(bodies: Bodies, radius: f64, recovery: Recovery) -> Servo {
     let plain = Servo::new(bodies, 1, options(radius)).unwrap();
     plain.protected(&protection(recovery)).unwrap()
 }
 
-fn stiffness(servo: &Servo<3>) -> f64 {
+fn stiffness(servo: &Servo) -> f64 {
     servo.bodies().bodies()[0].surface().stiffness()
 }
 
-fn at<const D: usize>(place: Point<D>) -> [PointState<D>; 1] {
+fn at(place: Point<3>) -> [PointState; 1] {
     [PointState::at_rest(place)]
 }
 
 /// Lets a hand come down along y and rest so deep in what is at y = 0 [m].
-fn press(servo: &mut Servo<3>, depth: f64, radius: f64) -> Point<3> {
+fn press(servo: &mut Servo, depth: f64, radius: f64) -> Point<3> {
     for tick in 0..=1000 {
         let part = f64::from(tick) / 1000.0;
         let y = 0.03 + (radius - depth - 0.03) * part;
@@ -82,7 +82,7 @@ fn press(servo: &mut Servo<3>, depth: f64, radius: f64) -> Point<3> {
     place
 }
 
-fn edit(servo: &mut Servo<3>, bodies: Bodies<3>) {
+fn edit(servo: &mut Servo, bodies: Bodies) {
     let mut bodies = servo.accept(bodies).unwrap();
     assert_no_alloc(|| servo.replace_bodies(&mut bodies)).unwrap();
 }
@@ -326,7 +326,7 @@ fn a_layer_that_gave_way_stays_so_in_an_edit() {
             layers: vec![deeper],
             ..smooth()
         };
-        body(&cuboid([0.1, 2.0 * height, 0.1]), Surface::new(&material).unwrap())
+        body(cuboid([0.1, 2.0 * height, 0.1]), Surface::new(&material).unwrap())
     };
     let mut servo = point(layered(0.02, 0.1), 0.002, Recovery::OnceOut);
     let place = Vector([0.01, 0.02 + 0.002 - 0.005, -0.005]);
@@ -368,7 +368,8 @@ fn grown<const D: usize>(sort: u8, size: f64, growth: f64) -> Shape<D> {
     }
 }
 
-fn bodies_of<const D: usize>(shape: Shape<D>, place: Point<D>) -> Bodies<D> {
+fn bodies_of(shape: impl Into<SpaceShape>, place: Point<3>) -> Bodies {
+    let shape: SpaceShape = shape.into();
     let surface = Surface::smooth(500.0, 0.0).unwrap();
     let body = Body::new(shape, surface).unwrap().at(Pose::translation(place)).unwrap();
     Bodies::new(vec![body]).unwrap()
@@ -385,11 +386,12 @@ fn a_random_edit<const D: usize>(u: &mut Unstructured<'_>) -> arbitrary::Result<
     let way = 1.3 * longest * unit(u)?;
     let (growth, motion) = match u.arbitrary()? {
         true => (way.abs(), Vector::ZERO),
-        false => (0.0, direction::<D>(u)? * way),
+        false => (0.0, direction::<D>(u)?.in_space() * way),
     };
     let after = || bodies_of(grown::<D>(sort, size, growth), motion);
     let depth = 0.0015 + 0.001 * unit(u)?;
-    let (inwards, aim) = (-direction::<D>(u)?, direction::<D>(u)? * (0.5 * size));
+    let (inwards, aim) =
+        (-direction::<D>(u)?.in_space(), direction::<D>(u)?.in_space() * (0.5 * size));
     let servo = Servo::new(before(), 1, ServoOptions { rate: 1000.0, ..options(radius) });
     let mut plain = servo.unwrap();
     let (mut place, mut pressed) = (aim - inwards * 0.08, false);
@@ -416,7 +418,7 @@ fn a_random_edit<const D: usize>(u: &mut Unstructured<'_>) -> arbitrary::Result<
             "sort {sort}, radius {radius}, grown {growth}, moved {motion:?}, {proxy:?}, {touch:?}"
         )
     };
-    let most = nearest([&before(), &after()], (proxy, radius), 1.5 * longest);
+    let most = nearest::<D>([&before(), &after()], (proxy, radius), 1.5 * longest);
     if gap(proxy) >= -1e-9 {
         let is_over = kinds.iter().any(|kind| matches!(kind, EventKind::Carried { .. }));
         // Only a point can be passed over.

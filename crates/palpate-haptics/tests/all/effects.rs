@@ -14,7 +14,7 @@ use palpate_vibration::{
 };
 
 /// A guide of each kind.
-fn guides() -> Vec<Guide<3>> {
+fn guides() -> Vec<Guide> {
     let place = Vector([0.0, 0.06, 0.0]);
     let bends = [place, Vector([0.05, 0.07, 0.0]), Vector([0.1, 0.05, 0.0])];
     let options = GuideOptions::default();
@@ -35,7 +35,7 @@ fn guides() -> Vec<Guide<3>> {
 }
 
 /// The hand at a time [s]: it taps on a ball of 50 mm from above 5 times a second, and slides.
-fn hand(time: f64) -> PointState<3> {
+fn hand(time: f64) -> PointState {
     let turn = 10.0 * std::f64::consts::PI * time;
     let (sin, cos) = turn.sin_cos();
     let position = Vector([0.01 * time, 0.053 + 0.004 * cos, 0.0]);
@@ -48,7 +48,7 @@ fn a_tick_with_guides_and_vibration_allocates_nothing() {
     let wood = Material::preset("wood").unwrap();
     let impact = wood.impact.as_ref().map(Tap::from);
     let mut guides = guides();
-    let mut servo = Servo::new(ball(0.05), 1, ServoOptions::default()).unwrap();
+    let mut servo = Servo::new(ball::<3>(0.05), 1, ServoOptions::default()).unwrap();
     let mapping = Mapping::new(MappingOptions::default()).unwrap();
     let mut voice = Voice::new(&mapping, 1000.0).unwrap();
     let mut synthesiser = Synthesiser::new(&mapping, 8000.0, 1).unwrap();
@@ -100,9 +100,12 @@ fn a_tick_with_guides_and_vibration_allocates_nothing() {
 fn a_cue_is_what_the_touch_is() {
     let shape: Shape<2> = ball(0.5);
     let mut servo = Servo::new(shape, 1, ServoOptions::default()).unwrap();
-    servo.step(&[PointState::at_rest(Vector([0.0, 0.6]))]);
+    servo.step(&[PointState::at_rest(Vector([0.0, 0.6, 0.0]))]);
     // The probe has a radius of 2 mm: 1 mm below where it rests.
-    let state = PointState { position: Vector([0.0, 0.501]), velocity: Vector([0.25, -0.125]) };
+    let state = PointState {
+        position: Vector([0.0, 0.501, 0.0]),
+        velocity: Vector([0.25, -0.125, 0.0]),
+    };
     let [touch] = servo.step(&[state]) else { panic!("one point") };
     let cue = touch.cue(true);
     assert!((cue.depth - 1e-3).abs() < 1e-7);
@@ -110,6 +113,6 @@ fn a_cue_is_what_the_touch_is() {
     assert!((cue.normal_force - 0.625).abs() < 1e-4);
     assert!((cue.normal_speed - 0.125).abs() < 1e-4 && (cue.slide_speed - 0.25).abs() < 1e-4);
     assert!(cue.began);
-    let [free] = servo.step(&[PointState::at_rest(Vector([0.0, 0.6]))]) else { panic!() };
+    let [free] = servo.step(&[PointState::at_rest(Vector([0.0, 0.6, 0.0]))]) else { panic!() };
     assert_eq!(free.cue(false), Cue::default());
 }

@@ -33,11 +33,11 @@ fn spring() -> Material {
     }
 }
 
-fn surface<const D: usize>(material: &Material) -> Surface<D> {
+fn surface(material: &Material) -> Surface {
     Surface::new(material).unwrap()
 }
 
-fn servo<const D: usize>(bodies: Bodies<D>, radius: f64) -> Servo<D, Unprotected> {
+fn servo(bodies: Bodies, radius: f64) -> Servo<Unprotected> {
     let probe = Probe::new(radius).unwrap();
     let options = ServoOptions { probe, max_force: f64::INFINITY, ..ServoOptions::default() };
     Servo::new(bodies, 1, options).unwrap()
@@ -47,10 +47,7 @@ fn servo<const D: usize>(bodies: Bodies<D>, radius: f64) -> Servo<D, Unprotected
 /// trapezoidal rule, after one turn that nobody counts: it may begin inside.
 ///
 /// The rule errs by about `K Δ² / 12` wherever the stiffness sets in, for steps of `Δ`.
-fn work<const D: usize>(
-    servo: &mut Servo<D, Unprotected>,
-    path: impl Fn(f64) -> Point<D>,
-) -> f64 {
+fn work(servo: &mut Servo<Unprotected>, path: impl Fn(f64) -> Point<3>) -> f64 {
     let mut last = None;
     let mut work = 0.0;
     for tick in 0..=2 * TICKS {
@@ -58,7 +55,7 @@ fn work<const D: usize>(
         let touch = servo.step(&[PointState::at_rest(device)])[0];
         if let Some((force, place)) = last.filter(|_| tick > TICKS) {
             let way = device - place;
-            let change: Vector<f64, D> = touch.force - force;
+            let change: Vector<f64, 3> = touch.force - force;
             work += if change.norm() <= STEEPEST * way.norm() {
                 0.5 * (touch.force + force).dot(way)
             } else {
@@ -71,11 +68,11 @@ fn work<const D: usize>(
 }
 
 /// A closed curve of two turns and their overtones about a place, as wide as `width` [m].
-fn closed<const D: usize>(
-    centre: Point<D>,
+fn closed(
+    centre: Point<3>,
     width: f64,
-    turns: [[Vector<f64, D>; 2]; 2],
-) -> impl Fn(f64) -> Point<D> {
+    turns: [[Vector<f64, 3>; 2]; 2],
+) -> impl Fn(f64) -> Point<3> {
     move |time: f64| {
         let angle = 2.0 * std::f64::consts::PI * time;
         let mut place = centre;
@@ -87,23 +84,16 @@ fn closed<const D: usize>(
     }
 }
 
-fn turns<const D: usize>(
-    u: &mut arbitrary::Unstructured<'_>,
-) -> arbitrary::Result<[[Vector<f64, D>; 2]; 2]> {
+fn turns(u: &mut arbitrary::Unstructured<'_>) -> arbitrary::Result<[[Vector<f64, 3>; 2]; 2]> {
     Ok([[vector(u)?, vector(u)?], [vector(u)?, vector(u)?]])
 }
 
 /// Plays loops at the surface of some bodies, and checks what they gain.
-fn gains_nothing<const D: usize>(
-    name: &str,
-    bodies: &Bodies<D>,
-    (radius, width): (f64, f64),
-    loops: u64,
-) {
+fn gains_nothing(name: &str, bodies: &Bodies, (radius, width): (f64, f64), loops: u64) {
     cases(2 * loops, |u| {
         let mut servo = servo(bodies.clone(), radius);
         // Down the field to the surface.
-        let mut centre: Vector<f64, D> = crate::common::direction(u)? * 0.1;
+        let mut centre: Vector<f64, 3> = crate::common::direction(u)? * 0.1;
         for _ in 0..200 {
             let (distance, gradient) = bodies.everything().look(centre);
             centre -= gradient * (0.3 * (distance - radius));
@@ -139,7 +129,7 @@ fn shapes_of_space() -> Vec<(&'static str, Shape<3>)> {
 }
 
 fn shapes_of_the_plane() -> Vec<(&'static str, Shape<2>)> {
-    let bite = ball(0.02).translated(Vector([0.03, 0.03])).unwrap();
+    let bite = ball(0.02).translated([0.03, 0.03]).unwrap();
     vec![
         ("a disc", ball(0.05)),
         ("a rectangle", cuboid([0.06, 0.08])),
@@ -218,7 +208,7 @@ fn a_grooved_wall_gives_back_what_it_took() {
             gains_nothing(name, &bodies, (0.002, 0.006), 4);
         }
     }
-    let bodies = body(&half_space([0.0, 1.0], 0.003), surface(&grooved(Some(vec![1.0, 0.2]))));
+    let bodies = body(half_space([0.0, 1.0], 0.003), surface(&grooved(Some(vec![1.0, 0.2]))));
     gains_nothing("a line", &bodies, (0.002, 0.006), 4);
 }
 
@@ -235,7 +225,7 @@ fn grooves_on_what_is_bent_give_back_what_they_took() {
     }
     let hollow = cuboid([0.3; 3]).difference([ball(0.1)]).unwrap();
     gains_nothing("a hollow", &body(&hollow, surface(&grooved(along()))), (0.002, 0.006), 2);
-    let disc = body(&ball(0.05), surface::<2>(&grooved(Some(vec![1.0, 0.2]))));
+    let disc = body(ball::<2>(0.05), surface(&grooved(Some(vec![1.0, 0.2]))));
     gains_nothing("a disc", &disc, (0.002, 0.006), 4);
 }
 
@@ -298,5 +288,5 @@ fn magnets_give_back_what_they_took() {
     for (name, shape) in [("a ball", ball(0.05)), ("a ring", torus(0.04, 0.012))] {
         gains_nothing(name, &body(&shape, surface(&magnetic())), (0.002, 0.012), 3);
     }
-    gains_nothing("a disc", &body(&ball(0.05), surface::<2>(&magnetic())), (0.002, 0.012), 3);
+    gains_nothing("a disc", &body(ball::<2>(0.05), surface(&magnetic())), (0.002, 0.012), 3);
 }

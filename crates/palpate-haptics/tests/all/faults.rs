@@ -35,10 +35,10 @@ const BACK: f64 = 2.0;
 /// A device that keeps what is written to it.
 struct Seen<T> {
     device: T,
-    forces: Vec<Vector<f64, 2>>,
+    forces: Vec<Vector<f64, 3>>,
 }
 
-impl<T: Device<2>> Device<2> for Seen<T> {
+impl<T: Device> Device for Seen<T> {
     fn points(&self) -> usize {
         self.device.points()
     }
@@ -48,11 +48,11 @@ impl<T: Device<2>> Device<2> for Seen<T> {
     fn read(
         &mut self,
         time: f64,
-        points: &mut [PointState<2>],
+        points: &mut [PointState],
     ) -> std::result::Result<Reading, DeviceLost> {
         self.device.read(time, points)
     }
-    fn write(&mut self, forces: &[Vector<f64, 2>]) -> std::result::Result<(), DeviceLost> {
+    fn write(&mut self, forces: &[Vector<f64, 3>]) -> std::result::Result<(), DeviceLost> {
         self.forces.push(forces[0]);
         self.device.write(forces)
     }
@@ -81,8 +81,8 @@ impl<T: Device<2>> Device<2> for Seen<T> {
 
 /// A hand that presses a wall of all the stiffness that its device renders.
 struct Held {
-    servo: Servo<2>,
-    device: Seen<SimulatedTransport<SimulatedDevice<2>, 2>>,
+    servo: Servo,
+    device: Seen<SimulatedTransport<SimulatedDevice>>,
     stiffness: f64,
     /// The force at which wall and hand rest [N].
     at_rest: f64,
@@ -91,14 +91,15 @@ struct Held {
 /// What a run did.
 struct Felt {
     report: RunReport,
-    rows: Vec<TraceRow<2>>,
+    rows: Vec<TraceRow>,
 }
 
 impl Held {
     /// A hand of this grip [N/m] that presses with `part` of what the device bears for long.
     fn new(profile: &DeviceProfile, [grip, part]: [f64; 2], faults: Vec<Fault>) -> Self {
         let radius = 0.002;
-        let wall = Shape::from_kernel(HalfSpace::new(Vector([0.0, 1.0]), -radius).unwrap());
+        let wall =
+            Shape::from_kernel(HalfSpace::new(Vector([0.0, 1.0, 0.0]), -radius).unwrap());
         let wall = Body::new(wall, Surface::smooth(1e5, 0.0).unwrap()).unwrap();
         let options = ServoOptions {
             rate: RATE,
@@ -111,7 +112,7 @@ impl Held {
         let servo = servo.protected(&Protection::new(profile.clone())).unwrap();
         let stiffness = servo.bodies().bodies()[0].surface().stiffness();
         let at_rest = part * profile.max_force.min(profile.continuous_force);
-        let way = [0.01, -at_rest / stiffness - at_rest / grip].map(|y| Vector([0.0, y]));
+        let way = [0.01, -at_rest / stiffness - at_rest / grip].map(|y| Vector([0.0, y, 0.0]));
         let path = HandPath::new(vec![0.0, 0.5], way.to_vec(), Interpolation::Linear).unwrap();
         let hand = Hand::new(path).with_spring(grip, 5.0).unwrap();
         let device = SimulatedDevice::new(profile.clone(), vec![hand]).unwrap();
@@ -141,7 +142,7 @@ impl Held {
 
     /// What rises after `begin` [s] faster than a force may that was zeroed before, until it has
     /// caught up with the wall.
-    fn too_fast(&self, rows: &[TraceRow<2>], begin: f64) -> Option<String> {
+    fn too_fast(&self, rows: &[TraceRow], begin: f64) -> Option<String> {
         let gentle = RISE * PERIOD * (1.0 + 1e-9);
         let mut is_rising = false;
         for pair in rows.windows(2) {
@@ -156,7 +157,7 @@ impl Held {
     }
 
     /// The force of the spring at the depth of a row, up to the device's largest [N].
-    fn full(&self, row: &TraceRow<2>) -> f64 {
+    fn full(&self, row: &TraceRow) -> f64 {
         let depth = if row.contact { (row.proxy - row.device).norm() } else { 0.0 };
         (self.stiffness * depth).min(self.device.profile().max_force)
     }
@@ -187,7 +188,7 @@ fn end_of(faults: &[Fault]) -> f64 {
 
 /// What the servo promises for any input: forces within the limits of the device, that change no
 /// faster than it bears but for falls to zero, and zero last.
-fn broken_limits(forces: &[Vector<f64, 2>], profile: &DeviceProfile) -> Option<String> {
+fn broken_limits(forces: &[Vector<f64, 3>], profile: &DeviceProfile) -> Option<String> {
     if forces.last() != Some(&Vector::ZERO) {
         return Some(format!("last was {:?}", forces.last()));
     }
@@ -305,7 +306,7 @@ fn repeats_do_not_kick() {
 fn velocities_are_over_real_times() {
     let profile = profile_named("omega").unwrap();
     let step = profile.encoder_step;
-    let way = [0.05, 0.03].map(|y| Vector([0.0, y]));
+    let way = [0.05, 0.03].map(|y| Vector([0.0, y, 0.0]));
     let path = HandPath::new(vec![0.0, 1.0], way.to_vec(), Interpolation::Linear).unwrap();
     let hand = Hand::new(path).with_spring(5000.0, 20.0).unwrap();
     let device = SimulatedDevice::new(profile.clone(), vec![hand]).unwrap();

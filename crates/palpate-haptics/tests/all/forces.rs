@@ -5,7 +5,7 @@
 
 use crate::common::{ball, body, cuboid, half_space};
 use palpate_device::{DeviceError, DeviceProfile, PointState};
-use palpate_field::{Point, Pose, Shape, Vector};
+use palpate_field::{Point, Pose, SpaceShape, Vector};
 use palpate_haptics::{
     HapticsError, Layer, Material, Probe, Protection, Servo, ServoOptions, Surface, Touch,
     Unprotected,
@@ -15,11 +15,12 @@ use palpate_safety::{Acceptance, WorkspaceMap};
 const STIFFNESS: f64 = 1000.0;
 
 /// A servo of one body that is a spring alone.
-fn servo<const D: usize>(
-    shape: &Shape<D>,
+fn servo(
+    shape: impl Into<SpaceShape>,
     radius: f64,
     (stiffness, options): (f64, ServoOptions),
-) -> Servo<D, Unprotected> {
+) -> Servo<Unprotected> {
+    let shape: SpaceShape = shape.into();
     let options = ServoOptions { probe: Probe::new(radius).unwrap(), ..options };
     let surface = Surface::smooth(stiffness, 0.0).unwrap();
     Servo::new(body(shape, surface), 1, options).unwrap()
@@ -29,7 +30,7 @@ fn spring_alone(stiffness: f64) -> (f64, ServoOptions) {
     (stiffness, ServoOptions { max_force: f64::INFINITY, ..ServoOptions::default() })
 }
 
-fn touch<const D: usize>(servo: &mut Servo<D, Unprotected>, device: Point<D>) -> Touch<D> {
+fn touch(servo: &mut Servo<Unprotected>, device: Point<3>) -> Touch {
     servo.step(&[PointState::at_rest(device)])[0]
 }
 
@@ -66,7 +67,7 @@ fn on_a_sphere_the_force_is_radial_and_steady() {
     // turn 3 N by 0.0039 N a tick.
     const STEADIEST: f64 = 0.0039;
     for probe in [0.0, 0.002] {
-        let mut servo = servo(&ball(RADIUS), probe, spring_alone(STIFFNESS));
+        let mut servo = servo(ball::<3>(RADIUS), probe, spring_alone(STIFFNESS));
         touch(&mut servo, orbit(0, 2.0 * RADIUS));
         let mut last: Option<Vector<f64, 3>> = None;
         for tick in 0..20_000 {
@@ -91,7 +92,7 @@ fn largest_jump_over_an_edge(probe: f64) -> f64 {
     const HALF: f64 = 0.03;
     const DEPTH: f64 = 0.003;
     let level = HALF + probe - DEPTH;
-    let mut servo = servo(&cuboid([2.0 * HALF; 3]), probe, spring_alone(STIFFNESS));
+    let mut servo = servo(cuboid([2.0 * HALF; 3]), probe, spring_alone(STIFFNESS));
     for tick in 0..400 {
         let height = 0.045 + (level - 0.045) * f64::from(tick) / 400.0;
         touch(&mut servo, Vector([-0.02, height, 0.0]));
@@ -148,7 +149,7 @@ fn the_largest_force_bounds_the_force_and_keeps_its_direction() {
 fn a_hand_that_starts_inside_is_led_out_gently() {
     // 8 ticks of 1/8 each.
     let options = ServoOptions { rate: 64.0, rise_time: 0.125, ..spring_alone(512.0).1 };
-    let mut servo = servo(&cuboid([0.5, 0.5, 0.5]), 0.0, (512.0, options));
+    let mut servo = servo(cuboid([0.5, 0.5, 0.5]), 0.0, (512.0, options));
     let device = Vector([0.0, 0.2421875, 0.125]);
     for tick in 0..12 {
         let touch = touch(&mut servo, device);
@@ -161,7 +162,7 @@ fn a_hand_that_starts_inside_is_led_out_gently() {
 
 #[test]
 fn a_hand_at_a_centre_without_gradient_is_led_out_too() {
-    let mut servo = servo(&ball::<3>(0.05), 0.002, (500.0, ServoOptions::default()));
+    let mut servo = servo(ball::<3>(0.05), 0.002, (500.0, ServoOptions::default()));
     let touch = touch(&mut servo, Vector::ZERO);
     assert!(touch.contact);
     assert!((touch.proxy.norm() - 0.052).abs() < 1e-9);
@@ -169,29 +170,30 @@ fn a_hand_at_a_centre_without_gradient_is_led_out_too() {
 
 #[test]
 fn a_shape_that_moves_over_the_hand_pushes_gently() {
-    let mut servo = servo(&half_space([0.0, 1.0], 0.0), 0.0, spring_alone(512.0));
-    let device = Vector([0.0, 0.0625]);
+    let mut servo = servo(half_space([0.0, 1.0], 0.0), 0.0, spring_alone(512.0));
+    let device = Vector([0.0, 0.0625, 0.0]);
     assert!(!touch(&mut servo, device).contact);
     let surface = Surface::smooth(512.0, 0.0).unwrap();
-    let old = servo.replace_bodies(body(&half_space([0.0, 1.0], 0.125), surface));
+    let old = servo.replace_bodies(body(half_space([0.0, 1.0], 0.125), surface));
     assert_eq!(old.everything().look(device).0, 0.0625);
     let first = touch(&mut servo, device);
-    assert_eq!((first.proxy, first.force), (Vector([0.0, 0.125]), Vector::ZERO));
+    assert_eq!((first.proxy, first.force), (Vector([0.0, 0.125, 0.0]), Vector::ZERO));
     for _ in 0..100 {
         touch(&mut servo, device);
     }
-    assert_eq!(touch(&mut servo, device).force, Vector([0.0, 32.0]));
+    assert_eq!(touch(&mut servo, device).force, Vector([0.0, 32.0, 0.0]));
 }
 
 /// A skin of 1e-7 m allowed only tiny steps: a probe that slid at 1 m/s over a ball spent its budget
 /// and was left behind.
 #[test]
 fn a_tiny_probe_is_felt_as_a_point() {
-    fn forces<const D: usize>(
-        shape: &Shape<D>,
+    fn forces(
+        shape: impl Into<SpaceShape>,
         radius: f64,
-        hand: impl Fn(f64) -> Point<D>,
+        hand: impl Fn(f64) -> Point<3>,
     ) -> Vec<f64> {
+        let shape: SpaceShape = shape.into();
         let mut servo = servo(shape, radius, spring_alone(512.0));
         let force = |tick: i32| {
             let touch = touch(&mut servo, hand(0.001 * f64::from(tick)));
@@ -200,11 +202,12 @@ fn a_tiny_probe_is_felt_as_a_point() {
         };
         (0..150).map(force).collect()
     }
-    fn check<const D: usize>(shape: &Shape<D>, hand: impl Fn(f64) -> Point<D> + Copy) {
-        let points = forces(shape, 0.0, hand);
+    fn check(shape: impl Into<SpaceShape>, hand: impl Fn(f64) -> Point<3> + Copy) {
+        let shape: SpaceShape = shape.into();
+        let points = forces(shape.clone(), 0.0, hand);
         assert!(points.iter().fold(0.0_f64, |most, force| most.max(*force)) > 0.4);
         for radius in [1e-7, 1e-6, 5e-6] {
-            for (force, point) in forces(shape, radius, hand).into_iter().zip(&points) {
+            for (force, point) in forces(shape.clone(), radius, hand).into_iter().zip(&points) {
                 // Besides 1 %, the radius, by which the probe touches before the point.
                 let most = 0.01 * point + 1.01 * 512.0 * radius;
                 assert!(
@@ -220,9 +223,9 @@ fn a_tiny_probe_is_felt_as_a_point() {
             let radius = if time < 0.01 { 0.06 - 1.1 * time } else { 0.049 };
             Vector([sin * radius, cos * radius, 0.0])
         };
-        check(&ball::<3>(0.05), around);
+        check(ball::<3>(0.05), around);
         let along = |time: f64| Vector([speed * time - 0.07, 0.006 - time.min(0.002), 0.01]);
-        check(&cuboid([0.2, 0.01, 0.2]), along);
+        check(cuboid([0.2, 0.01, 0.2]), along);
     }
 }
 
@@ -254,7 +257,7 @@ fn numbers_that_are_not_finite_give_no_force_and_are_survived() {
 fn every_point_of_a_servo_is_its_own() {
     let options = ServoOptions { probe: Probe::new(0.0).unwrap(), ..spring_alone(500.0).1 };
     let mut servo = Servo::new(half_space([0.0, 1.0], 0.0), 3, options).unwrap();
-    let at = |y: f64| PointState::at_rest(Vector([0.0, y]));
+    let at = |y: f64| PointState::at_rest(Vector([0.0, y, 0.0]));
     servo.step(&[at(1.0), at(1.0), at(1.0)]);
     let touches = servo.step(&[at(-0.5), at(1.0), at(-0.25)]);
     let forces: Vec<_> = touches.iter().map(|t| t.force[1]).collect();
@@ -278,8 +281,8 @@ fn wrong_options_are_refused_with_their_numbers() {
 #[test]
 fn every_preset_can_be_felt() {
     for name in Material::preset_names() {
-        Surface::<3>::new(&Material::preset(name).unwrap()).unwrap();
-        Surface::<2>::new(&Material::preset(name).unwrap()).unwrap();
+        Surface::new(&Material::preset(name).unwrap()).unwrap();
+        Surface::new(&Material::preset(name).unwrap()).unwrap();
     }
 }
 
@@ -295,7 +298,7 @@ fn a_relative_stiffness_is_a_part_of_what_the_device_renders() {
         ..Material::default()
     };
     let accepted = |device: DeviceProfile, rate: f64, scale: f64| {
-        let bodies = body(&ball::<3>(0.05), Surface::new(&half).unwrap());
+        let bodies = body(ball::<3>(0.05), Surface::new(&half).unwrap());
         let options = ServoOptions { rate, ..ServoOptions::default() };
         let servo = Servo::new(bodies, 1, options).unwrap();
         let map = WorkspaceMap::new(Pose::identity(), scale).unwrap();
@@ -314,7 +317,7 @@ fn a_relative_stiffness_is_a_part_of_what_the_device_renders() {
     assert_eq!((accepted.device_stiffness, outermost), (900.0, 300.0));
     for part in [0.0, -0.5, 1.5, f64::NAN] {
         let wrong = Material { relative_stiffness: Some(part), ..Material::default() };
-        let said = Surface::<3>::new(&wrong).unwrap_err().to_string();
+        let said = Surface::new(&wrong).unwrap_err().to_string();
         let expected =
             format!("relative_stiffness must be more than 0 and at most 1, got {part}");
         assert_eq!(said, expected);
@@ -327,7 +330,7 @@ fn a_device_without_damping_takes_a_material_as_it_is() {
     let device = DeviceProfile { least_damping: 0.0, ..DeviceProfile::unlimited("bare") };
     let accepted = |relative_stiffness, acceptance| {
         let material = Material { relative_stiffness, ..Material::default() };
-        let bodies = body(&ball::<3>(0.05), Surface::new(&material).unwrap());
+        let bodies = body(ball::<3>(0.05), Surface::new(&material).unwrap());
         let servo = Servo::new(bodies, 1, ServoOptions::default()).unwrap();
         let protection = Protection::new(device.clone()).with(|s| s.acceptance = acceptance);
         servo.protected(&protection).map(|servo| servo.accepted()[0].stiffness_factor)

@@ -5,18 +5,15 @@
 
 use crate::common::{ball, body, cuboid, half_space, torus};
 use palpate_device::PointState;
-use palpate_field::{Point, Shape, Vector};
+use palpate_field::{Point, Shape, SpaceShape, Vector};
 use palpate_haptics::{
     EventKind, Material, Probe, Servo, ServoOptions, Surface, Touch, Unprotected,
 };
 
 const STIFFNESS: f64 = 512.0;
 
-fn rough<const D: usize>(
-    shape: &Shape<D>,
-    friction: [f64; 2],
-    radius: f64,
-) -> Servo<D, Unprotected> {
+fn rough(shape: impl Into<SpaceShape>, friction: [f64; 2], radius: f64) -> Servo<Unprotected> {
+    let shape: SpaceShape = shape.into();
     let material = Material {
         stiffness: STIFFNESS,
         damping: 0.0,
@@ -32,13 +29,13 @@ fn rough<const D: usize>(
     Servo::new(body(shape, Surface::new(&material).unwrap()), 1, options).unwrap()
 }
 
-fn touch<const D: usize>(servo: &mut Servo<D, Unprotected>, device: Point<D>) -> Touch<D> {
+fn touch(servo: &mut Servo<Unprotected>, device: Point<3>) -> Touch {
     servo.step(&[PointState::at_rest(device)])[0]
 }
 
 #[test]
 fn a_hand_sticks_within_the_cone_and_slips_beyond_it() {
-    let mut servo = rough(&half_space([0.0, 1.0, 0.0], 0.0), [0.5, 0.25], 0.0);
+    let mut servo = rough(half_space([0.0, 1.0, 0.0], 0.0), [0.5, 0.25], 0.0);
     let depth = 0.0078125;
     let at = |x: f64| Vector([x, -depth, 0.0]);
     touch(&mut servo, Vector([0.0, 0.1, 0.0]));
@@ -69,12 +66,9 @@ fn a_hand_sticks_within_the_cone_and_slips_beyond_it() {
 
 /// The work that the force does on a hand over a closed path [J], and what is taken of it as
 /// heat if there is friction. The force is held over a tick, as a device holds it.
-fn work<const D: usize>(
-    servo: &mut Servo<D, Unprotected>,
-    path: impl Fn(f64) -> Point<D>,
-) -> f64 {
+fn work(servo: &mut Servo<Unprotected>, path: impl Fn(f64) -> Point<3>) -> f64 {
     const TICKS: u32 = 40_000;
-    let mut last: Option<Touch<D>> = None;
+    let mut last: Option<Touch> = None;
     let mut work = 0.0;
     for tick in 0..=3 * TICKS {
         let touch = touch(servo, path(f64::from(tick) / f64::from(TICKS)));
@@ -104,7 +98,7 @@ fn loops(seed: u32) -> impl Fn(f64) -> Point<3> {
 #[test]
 fn without_friction_a_closed_path_gives_no_energy() {
     for seed in 0..4 {
-        let mut servo = rough(&ball(0.05), [0.0, 0.0], 0.002);
+        let mut servo = rough(ball::<3>(0.05), [0.0, 0.0], 0.002);
         let work = work(&mut servo, loops(seed));
         assert!(work.abs() < 1e-9, "{work:e} J");
     }

@@ -11,22 +11,24 @@ use palpate_field::Vector;
 const TICKS: u32 = 6000;
 
 /// FNV-1a of every proxy, force and evaluation of a run.
-fn hash<const D: usize>(servo: &mut impl AnyServo<D>) -> u64 {
+fn hash<const D: usize>(servo: &mut impl AnyServo) -> u64 {
     let mut states = vec![PointState::at_rest(Vector::ZERO); servo.touches().len()];
     let mut hash = 0xcbf2_9ce4_8422_2325_u64;
     let mut add = |number: u64| hash = (hash ^ number).wrapping_mul(0x0100_0000_01b3);
     let count = servo.bodies().bodies().len();
     for tick in 0..TICKS {
-        step(servo, &mut states, (tick, 1.0));
+        step::<D>(servo, &mut states, (tick, 1.0));
         for touch in servo.touches() {
-            for x in touch.proxy.0.iter().chain(&touch.force.0).chain(&touch.normal.0) {
+            let felt = [touch.proxy, touch.force, touch.normal];
+            for x in felt.iter().flat_map(|vector| &vector.0[..D]) {
                 // A zero of either sign is the same zero.
                 add((x + 0.0).to_bits());
             }
+            assert!(felt.iter().all(|vector| D == 3 || vector[2] == 0.0), "{touch:?}");
             add(u64::from(touch.evaluations) << 1 | u64::from(touch.contact));
         }
         if tick % 1000 == 999 {
-            servo.swap_bodies(bodies(count, 1.0));
+            servo.swap_bodies(bodies::<D>(count, 1.0));
         }
     }
     hash
@@ -39,16 +41,18 @@ fn is_as_it_was<const N: usize>(hashes: [u64; N], stored: [u64; N]) {
 
 #[test]
 fn in_the_plane_every_bit_is_as_it_was() {
-    let hashes =
-        [hash(&mut servo::<2>(9, 3, 1.0)), hash(&mut protected(servo::<2>(9, 3, 1.0)))];
+    let hashes = [
+        hash::<2>(&mut servo::<2>(9, 3, 1.0)),
+        hash::<2>(&mut protected(servo::<2>(9, 3, 1.0))),
+    ];
     is_as_it_was(hashes, [0xdf7c_0975_dc7b_3b8c, 0x2081_2887_ed9a_f10d]);
 }
 
 #[test]
 fn in_space_every_bit_is_as_it_was() {
-    let few = hash(&mut servo::<3>(4, 10, 1.0));
-    let many = hash(&mut servo::<3>(20, 3, 1.0));
-    let safe = hash(&mut protected(servo::<3>(20, 3, 1.0)));
+    let few = hash::<3>(&mut servo::<3>(4, 10, 1.0));
+    let many = hash::<3>(&mut servo::<3>(20, 3, 1.0));
+    let safe = hash::<3>(&mut protected(servo::<3>(20, 3, 1.0)));
     is_as_it_was(
         [few, many, safe],
         [0x4357_b65f_c9bd_e10a, 0xaafc_a61f_de39_ccb0, 0x37e2_bbc6_ba9e_76a7],

@@ -37,7 +37,7 @@ struct Case {
 fn guided(profile: &DeviceProfile, case: &Case) -> Guided {
     let Case { times, max_force, grip, start } = *case;
     let stiffness = times * 2.0 * profile.least_damping / PERIOD;
-    let hand = Hand::resting(Vector([start, 0.0])).unwrap();
+    let hand = Hand::resting(Vector([start, 0.0, 0.0])).unwrap();
     let hand = hand.with_mass(0.0).unwrap().with_spring(0.0, grip).unwrap();
     let mut device = SimulatedDevice::new(profile.clone(), vec![hand]).unwrap();
     let far = Shape::half_space([0.0, 1.0], -10.0).unwrap();

@@ -19,7 +19,7 @@ fn vector(u: Random, most: f64) -> arbitrary::Result<Vector<f64, 3>> {
 }
 
 /// A guide of any kind without a snap distance, with the given damping.
-fn any_guide(u: Random, damping: f64) -> arbitrary::Result<Guide<3>> {
+fn any_guide(u: Random, damping: f64) -> arbitrary::Result<Guide> {
     let options = GuideOptions { stiffness: 200.0, damping, ..GuideOptions::default() };
     let ball = || Shape::from_kernel(Ball::new(0.02).unwrap());
     let (a, b) = (vector(u, 0.05)?, vector(u, 0.05)? + Vector([0.1, 0.0, 0.0]));
@@ -116,7 +116,7 @@ fn a_guide_that_snaps_lets_go_farther_out() {
         ..GuideOptions::default()
     };
     let mut guide = Guide::to_point(Vector::ZERO, options).unwrap();
-    let mut at = |x: f64| guide.force(Vector([x, 0.0]), Vector::ZERO)[0];
+    let mut at = |x: f64| guide.force(Vector([x, 0.0, 0.0]), Vector::ZERO)[0];
     assert_eq!(at(0.01), 0.0);
     assert_eq!(at(0.0078125), -2.0);
     assert_eq!(at(0.01171875), -3.0);
@@ -148,13 +148,13 @@ fn numbers_that_are_none_let_go() {
 #[test]
 fn along_a_curve_nothing_is_damped_and_at_its_ends_everything() {
     let options = GuideOptions { damping: 2.0, ..GuideOptions::default() };
-    let (from, to) = (Vector([0.0, 0.0]), Vector([1.0, 0.0]));
+    let (from, to) = (Vector([0.0, 0.0, 0.0]), Vector([1.0, 0.0, 0.0]));
     let mut guide = Guide::along_segment(from, to, options).unwrap();
-    let speed = Vector([0.25, 0.0]);
-    assert_eq!(guide.force(Vector([0.5, 0.0]), speed), Vector::ZERO);
-    assert_eq!(guide.force(Vector([1.0, 0.0]), speed), Vector::ZERO);
-    let beyond = guide.force(Vector([1.0 + 1.0 / 1024.0, 0.0]), speed);
-    assert_eq!(beyond, Vector([-300.0 / 1024.0 - 0.5, 0.0]));
+    let speed = Vector([0.25, 0.0, 0.0]);
+    assert_eq!(guide.force(Vector([0.5, 0.0, 0.0]), speed), Vector::ZERO);
+    assert_eq!(guide.force(Vector([1.0, 0.0, 0.0]), speed), Vector::ZERO);
+    let beyond = guide.force(Vector([1.0 + 1.0 / 1024.0, 0.0, 0.0]), speed);
+    assert_eq!(beyond, Vector([-300.0 / 1024.0 - 0.5, 0.0, 0.0]));
 }
 
 #[test]
@@ -162,7 +162,7 @@ fn wrong_numbers_are_named() {
     let at = |change: fn(&mut GuideOptions)| {
         let mut options = GuideOptions { snap_distance: 0.01, ..GuideOptions::default() };
         change(&mut options);
-        Guide::to_point(Vector([0.0, 0.0]), options).map(|_| ()).map_err(|e| e.to_string())
+        Guide::to_point(Vector([0.0, 0.0, 0.0]), options).map(|_| ()).map_err(|e| e.to_string())
     };
     assert_eq!(at(|_| ()), Ok(()));
     assert_eq!(
@@ -176,14 +176,14 @@ fn wrong_numbers_are_named() {
     assert_eq!(at(|o| o.max_force = -1.0), Err("max_force must be positive, got -1 N".into()));
     assert!(at(|o| o.snap_distance = f64::NAN).is_err());
     let options = GuideOptions::default();
-    let error = Guide::well(Vector([0.0, 0.0]), 0.005, options).unwrap_err();
+    let error = Guide::well(Vector([0.0, 0.0, 0.0]), 0.005, options).unwrap_err();
     assert_eq!(error.to_string(), "reach must be more than max_force / stiffness, got 0.005 m");
-    assert!(Guide::along_line(Vector([0.0, 0.0]), Vector::ZERO, options).is_err());
-    assert!(Guide::to_point(Vector([f64::NAN, 0.0]), options).is_err());
-    assert!(Curve::polyline(&[Vector([1.0, 0.0]); 3]).is_err());
-    assert!(Curve::<2>::polyline(&[]).is_err());
-    assert!(Curve::smooth(&vec![Vector([1.0, 0.0]); 66]).is_err());
-    let ball = || Shape::<2>::from_kernel(Ball::new(1.0).unwrap());
+    assert!(Guide::along_line(Vector([0.0, 0.0, 0.0]), Vector::ZERO, options).is_err());
+    assert!(Guide::to_point(Vector([f64::NAN, 0.0, 0.0]), options).is_err());
+    assert!(Curve::polyline(&[Vector([1.0, 0.0, 0.0]); 3]).is_err());
+    assert!(Curve::polyline(&[]).is_err());
+    assert!(Curve::smooth(&vec![Vector([1.0, 0.0, 0.0]); 66]).is_err());
+    let ball = || Shape::<3>::from_kernel(Ball::new(1.0).unwrap());
     assert!(Slope::new(ball(), 1.0, [1.0, 1.0]).is_err());
     assert!(Slope::new(ball(), f64::NAN, [0.0, 1.0]).is_err());
     assert!(Slope::new(ball(), 1.0, [0.0, 1.0]).unwrap().with_edge(0.6).is_err());
@@ -215,8 +215,8 @@ fn a_plane_is_two_lines_in_it() {
         assert!((line[1] - line[0]).dot(normal).abs() < 1e-14);
         assert!((line[0] - Vector([0.1, 1.5, 0.2])).dot(normal).abs() < 1e-14);
     }
-    let flat = Guide::on_plane([0.0, 0.0], [0.0, 1.0], GuideOptions::default()).unwrap();
-    assert_eq!(flat.lines_within(&Aabb::centred(Vector([1.0; 2]))).len(), 1);
+    let flat = Guide::on_plane([0.0; 3], [0.0, 1.0, 0.0], GuideOptions::default()).unwrap();
+    assert_eq!(flat.lines_within(&Aabb::centred(Vector([1.0, 1.0, 0.0]))).len(), 1);
 }
 
 #[test]
@@ -225,9 +225,9 @@ fn points_curves_and_wells_are_drawn_where_they_are() {
     let point = Guide::to_point([0.5, 1.0, 0.0], options).unwrap();
     let cross = point.lines_within(&within());
     assert_eq!((cross.len(), cross[1][0][0]), (3, 0.5));
-    let corners = [[0.0, 1.0], [0.0, 0.0], [1.0, 0.0]].map(Vector);
+    let corners = [[0.0, 1.0, 0.0], [0.0, 0.0, 0.0], [1.0, 0.0, 0.0]].map(Vector);
     let curve = Guide::along_curve(Curve::polyline(&corners).unwrap(), options).unwrap();
-    let flat = Aabb::centred(Vector([1.0; 2]));
+    let flat = Aabb::centred(Vector([1.0, 1.0, 0.0]));
     assert_eq!(
         (curve.kind_name(), curve.lines_within(&flat)),
         ("curve", vec![corners.to_vec()])

@@ -23,8 +23,8 @@ const TICK: Duration = Duration::from_millis(1);
 /// A device whose points are moved by the test, and that keeps what is written.
 #[derive(Clone)]
 struct Hand {
-    at: Arc<Mutex<Vec<Point<2>>>>,
-    written: Arc<Mutex<Vec<Vec<Vector<f64, 2>>>>>,
+    at: Arc<Mutex<Vec<Point<3>>>>,
+    written: Arc<Mutex<Vec<Vec<Vector<f64, 3>>>>>,
     profile: DeviceProfile,
     /// When it is unplugged [s].
     until: f64,
@@ -33,7 +33,9 @@ struct Hand {
 impl Hand {
     fn at(points: &[[f64; 2]]) -> Self {
         Self {
-            at: Arc::new(Mutex::new(points.iter().copied().map(Vector).collect())),
+            at: Arc::new(Mutex::new(
+                points.iter().map(|point| Vector(*point).in_space()).collect(),
+            )),
             written: Arc::default(),
             profile: DeviceProfile::unlimited("hand"),
             until: f64::INFINITY,
@@ -41,22 +43,22 @@ impl Hand {
     }
 
     fn move_to(&self, point: [f64; 2]) {
-        self.at.lock().unwrap()[0] = Vector(point);
+        self.at.lock().unwrap()[0] = Vector(point).in_space();
     }
 
-    fn last_forces(&self) -> Vec<Vector<f64, 2>> {
+    fn last_forces(&self) -> Vec<Vector<f64, 3>> {
         self.written.lock().unwrap().last().unwrap().clone()
     }
 }
 
-impl Device<2> for Hand {
+impl Device for Hand {
     fn points(&self) -> usize {
         self.at.lock().unwrap().len()
     }
     fn profile(&self) -> &DeviceProfile {
         &self.profile
     }
-    fn read(&mut self, time: f64, points: &mut [PointState<2>]) -> Result<Reading, DeviceLost> {
+    fn read(&mut self, time: f64, points: &mut [PointState]) -> Result<Reading, DeviceLost> {
         if time >= self.until {
             return Err(DeviceLost { reason: "unplugged".to_owned() });
         }
@@ -65,13 +67,13 @@ impl Device<2> for Hand {
         }
         Ok(Reading::Fresh { time })
     }
-    fn write(&mut self, forces: &[Vector<f64, 2>]) -> Result<(), DeviceLost> {
+    fn write(&mut self, forces: &[Vector<f64, 3>]) -> Result<(), DeviceLost> {
         self.written.lock().unwrap().push(forces.to_vec());
         Ok(())
     }
 }
 
-fn unprotected(bodies: impl Into<Bodies<2>>, points: usize) -> Servo<2, Unprotected> {
+fn unprotected(bodies: impl Into<Bodies>, points: usize) -> Servo<Unprotected> {
     let options = ServoOptions {
         probe: Probe::new(0.0).unwrap(),
         max_force: f64::INFINITY,
@@ -80,20 +82,16 @@ fn unprotected(bodies: impl Into<Bodies<2>>, points: usize) -> Servo<2, Unprotec
     Servo::new(bodies, points, options).unwrap()
 }
 
-fn servo(bodies: impl Into<Bodies<2>>, points: usize) -> Servo<2> {
+fn servo(bodies: impl Into<Bodies>, points: usize) -> Servo {
     without_limits(unprotected(bodies, points))
 }
 
 /// All points with y ≤ `height`, at 512 N/m.
-fn floor(height: f64) -> Bodies<2> {
-    body(&half_space([0.0, 1.0], height), Surface::smooth(512.0, 0.0).unwrap())
+fn floor(height: f64) -> Bodies {
+    body(half_space([0.0, 1.0], height), Surface::smooth(512.0, 0.0).unwrap())
 }
 
-fn start(
-    servo: Servo<2>,
-    hand: &Hand,
-    options: ThreadOptions<2>,
-) -> (ServoThread<2>, ClockDriver) {
+fn start(servo: Servo, hand: &Hand, options: ThreadOptions) -> (ServoThread, ClockDriver) {
     let (clock, mut driver) = VirtualClock::driven();
     let thread = ServoThread::start_on(clock, servo, Box::new(hand.clone()), options).unwrap();
     // Tick 0 is over.
@@ -101,12 +99,12 @@ fn start(
     (thread, driver)
 }
 
-fn plain() -> ThreadOptions<2> {
+fn plain() -> ThreadOptions {
     ThreadOptions { raises_priority: false, ..ThreadOptions::default() }
 }
 
-fn up(way: f64) -> Pose<2> {
-    Pose::translation(Vector([0.0, way]))
+fn up(way: f64) -> Pose<3> {
+    Pose::translation(Vector([0.0, way, 0.0]))
 }
 
 #[test]
@@ -115,7 +113,7 @@ fn bodies_handed_to_a_protected_servo_are_as_soft_as_its_device_needs() {
     let profile = DeviceProfile { least_damping: 0.064, ..DeviceProfile::unlimited("gentle") };
     for is_strict in [false, true] {
         let servo = unprotected(
-            body(&half_space([0.0, 1.0], 0.0), Surface::smooth(64.0, 0.0).unwrap()),
+            body(half_space([0.0, 1.0], 0.0), Surface::smooth(64.0, 0.0).unwrap()),
             1,
         );
         let protection = Protection::new(profile.clone()).with(|s| {
@@ -142,7 +140,7 @@ fn edits_are_seen_in_the_next_tick() {
     let (mut thread, mut driver) = start(servo(floor(0.0), 1), &hand, plain());
     hand.move_to([0.0, -0.0078125]);
     driver.advance(TICK);
-    assert!((hand.last_forces()[0] - Vector([0.0, 4.0])).norm() < 1e-6);
+    assert!((hand.last_forces()[0] - Vector([0.0, 4.0, 0.0])).norm() < 1e-6);
 
     thread.control().set_poses(&[(0, up(-1.0))]).unwrap();
     driver.advance(TICK);
@@ -160,13 +158,13 @@ fn edits_are_seen_in_the_next_tick() {
     assert_eq!(hand.last_forces(), [Vector::ZERO]);
     hand.move_to([0.0, -0.25 - 2.0 * 0.0078125]);
     driver.advance(TICK);
-    assert!((hand.last_forces()[0] - Vector([0.0, 4.0])).norm() < 1e-6);
+    assert!((hand.last_forces()[0] - Vector([0.0, 4.0, 0.0])).norm() < 1e-6);
     let snapshot = thread.control().latest().unwrap();
-    assert!((snapshot.reactions[0].force - Vector([0.0, -4.0])).norm() < 1e-6);
+    assert!((snapshot.reactions[0].force - Vector([0.0, -4.0, 0.0])).norm() < 1e-6);
 
     thread.control().limit_force(1.0).unwrap();
     driver.advance(TICK);
-    assert!((hand.last_forces()[0] - Vector([0.0, 1.0])).norm() < 1e-9);
+    assert!((hand.last_forces()[0] - Vector([0.0, 1.0, 0.0])).norm() < 1e-9);
     drop(driver);
     let ended = thread.end();
     assert_eq!((ended.report.ending, ended.priority), (Ending::Finished, Priority::Normal));
@@ -246,7 +244,7 @@ fn scenes_come_back_and_are_dropped_by_the_next_call() {
         driver.advance(TICK);
         assert!(Arc::strong_count(&count) <= 4);
     }
-    let many = || (0..1025).map(|_| Body::new(ball(0.1), Surface::default()).unwrap());
+    let many = || (0..1025).map(|_| Body::new(ball::<2>(0.1), Surface::default()).unwrap());
     let error = thread.control().replace_bodies(Bodies::new(many().collect()).unwrap());
     assert_eq!(error, Err(HapticsError::TooManyBodies { bodies: 1025, most: 1024 }));
     drop(driver);

@@ -20,7 +20,7 @@ fn events_are_in_order<const D: usize>(count: usize) {
     let mut told = [(None, false); POINTS];
     let mut counts = [0; 5];
     for tick in 0..12_000 {
-        step(&mut servo, &mut states, (tick, 1.0));
+        step::<D>(&mut servo, &mut states, (tick, 1.0));
         for event in servo.events() {
             assert_eq!(event.tick, u64::from(tick));
             let (touched, slips) = &mut told[event.point as usize];
@@ -103,8 +103,8 @@ fn in_the_plane_a_torque_is_about_z() {
     let surface = Surface::smooth(512.0, 0.0).unwrap();
     let floor = Body::new(half_space([0.0, 1.0], 0.0), surface).unwrap();
     let mut servo = Servo::new(Bodies::new(vec![floor]).unwrap(), 1, options()).unwrap();
-    servo.step(&[PointState::at_rest(Vector([0.5, 0.5]))]);
-    servo.step(&[PointState::at_rest(Vector([0.5, -0.0078125]))]);
+    servo.step(&[PointState::at_rest(Vector([0.5, 0.5, 0.0]))]);
+    servo.step(&[PointState::at_rest(Vector([0.5, -0.0078125, 0.0]))]);
     let off = servo.reactions()[0].torque - Vector([0.0, 0.0, -2.0]);
     assert!(off.norm() < 1e-6, "{off:?}");
 }

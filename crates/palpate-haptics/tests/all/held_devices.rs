@@ -10,7 +10,7 @@ use palpate_haptics::servo_loop::{Pace, RunOptions, run};
 use palpate_haptics::{Protection, Servo, ServoOptions, Shell, Tool, ToolOptions};
 use palpate_sim::{Glove, Hand, HandPath, Interpolation, SimulatedDevice};
 
-fn stroke() -> HandPath<3> {
+fn stroke() -> HandPath {
     let places =
         vec![Vector([0.02, 0.08, 0.01]), Vector([0.0, 0.03, 0.0]), Vector([-0.03, 0.06, 0.0])];
     HandPath::new(vec![0.0, 0.7, 1.5], places, Interpolation::Smooth).unwrap()
@@ -22,7 +22,7 @@ fn fingers(side: f64) -> Vec<Vector<f64, 3>> {
     (0..12).map(place).collect()
 }
 
-fn both_hands() -> Glove<3> {
+fn both_hands() -> Glove {
     let [left, right] =
         [-0.03, 0.03].map(|x| Glove::from_hand(&stroke(), &fingers(x)).unwrap());
     left.joined(right)
@@ -35,7 +35,7 @@ fn a_tick_of_a_tool_that_turns_allocates_nothing() {
     let hand = Hand::new(stroke()).with_turns(turns);
     let mut device =
         SimulatedDevice::new(profile_named("sigma7").unwrap(), vec![hand]).unwrap();
-    let ball = Shape::from_kernel(Ball::new(0.05).unwrap());
+    let ball = Shape::<3>::from_kernel(Ball::new(0.05).unwrap());
     let rod = Shell::capsule([Vector([-0.05, 0.0, 0.0]), Vector([0.05, 0.0, 0.0])], 4e-3, 21);
     let tool = Tool::new(rod.unwrap(), ToolOptions::default()).unwrap();
     let mut servo = Servo::for_tool(ball, tool, &device).unwrap();
@@ -61,7 +61,7 @@ fn every_known_device_rests_on_a_ball() {
         let hand = Hand::resting(Vector([0.0, 0.06, 0.0])).unwrap();
         let hand = hand.with_push(Vector([0.0, -5.0, 0.0])).unwrap();
         let mut device = SimulatedDevice::new(profile.clone(), vec![hand]).unwrap();
-        let ball = Shape::from_kernel(Ball::new(0.05).unwrap());
+        let ball = Shape::<3>::from_kernel(Ball::new(0.05).unwrap());
         // A force that rises from nothing under the hand would lift it, which takes energy.
         let protection = Protection::new(profile.clone()).with(|s| s.rise_rate = f64::INFINITY);
         let servo = Servo::new(ball, 1, ServoOptions::of_device(profile)).unwrap();
@@ -82,7 +82,7 @@ fn every_known_device_rests_on_a_ball() {
 fn two_gloves_feel_with_24_points() {
     let mut gloves = both_hands();
     assert_eq!(gloves.points(), 24);
-    let ball = Shape::from_kernel(Ball::new(0.05).unwrap());
+    let ball = Shape::<3>::from_kernel(Ball::new(0.05).unwrap());
     let mut servo = Servo::for_device(ball, &gloves).unwrap();
     let options = RunOptions { pace: Pace::AsFastAsPossible, ..RunOptions::new(1.5) };
     let report = run(&mut servo, &mut gloves, options).unwrap();

@@ -18,10 +18,10 @@ const PERIOD: f64 = 1e-3;
 /// How fast a force rises [N/s].
 const RISE: f64 = 20.0;
 
-fn ground(stiffness: f64, height: f64) -> Bodies<3> {
+fn ground(stiffness: f64, height: f64) -> Bodies {
     let material =
         Material { stiffness, static_friction: 0.4, dynamic_friction: 0.3, ..smooth() };
-    body(&half_space([0.0, 1.0, 0.0], height), Surface::new(&material).unwrap())
+    body(half_space([0.0, 1.0, 0.0], height), Surface::new(&material).unwrap())
 }
 
 /// What holds the device.
@@ -36,7 +36,7 @@ enum Held {
 
 const ALL: [Held; 3] = [Held::Point, Held::Tool, Held::Turning];
 
-fn servo(held: Held, stiffness: f64, recovery: Recovery) -> Servo<3> {
+fn servo(held: Held, stiffness: f64, recovery: Recovery) -> Servo {
     let options = ServoOptions {
         probe: Probe::new(0.002).unwrap(),
         max_force: f64::INFINITY,
@@ -84,7 +84,7 @@ const STROKES: Motion = Motion { deeper: 0.0, along: 0.05 };
 
 /// A hand in the ground, on a virtual clock.
 struct Press {
-    servo: Servo<3>,
+    servo: Servo,
     /// The part of the stiffness that the device renders [N/m].
     stiffness: f64,
     along: f64,
@@ -116,11 +116,11 @@ impl Press {
         press
     }
 
-    fn at(servo: Servo<3>, depth: f64) -> Self {
+    fn at(servo: Servo, depth: f64) -> Self {
         Self { servo, stiffness: 0.0, along: 0.0, depth }
     }
 
-    fn states(&self) -> [PointState<3>; 1] {
+    fn states(&self) -> [PointState; 1] {
         // The centre of a ball of 2 mm.
         [PointState::at_rest(Vector([self.along, 0.002 - self.depth, 0.0]))]
     }
@@ -278,7 +278,7 @@ fn a_body_that_an_edit_or_a_motion_places_over_the_hand_lets_the_force_rise_at_o
         press.rises(motion, 1.0, "stiffer");
     }
     for (held, motion) in [(Held::Point, HOLDS), (Held::Point, DEEPER)] {
-        let ball = crate::common::ball(0.05);
+        let ball = crate::common::ball::<3>(0.05);
         let surface = Surface::smooth(300.0, 0.0).unwrap();
         let mut press = Press::new(held, 300.0, Recovery::OnceOut);
         let mut bodies = press.servo.accept(body(&ball, surface)).unwrap();

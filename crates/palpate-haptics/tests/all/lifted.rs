@@ -14,25 +14,25 @@ use palpate_haptics::{
 use palpate_safety::{Acceptance, Recovery};
 
 /// A slab of ±1 cm around y = 0.
-fn slab() -> Bodies<3> {
-    body(&cuboid([1.0, 0.02, 1.0]), Surface::new(&smooth()).unwrap())
+fn slab() -> Bodies {
+    body(cuboid([1.0, 0.02, 1.0]), Surface::new(&smooth()).unwrap())
 }
 
 fn options() -> ServoOptions {
     ServoOptions { max_force: f64::INFINITY, ..ServoOptions::default() }
 }
 
-fn with_points() -> Servo<3, Unprotected> {
+fn with_points() -> Servo<Unprotected> {
     Servo::new(slab(), 2, options()).unwrap()
 }
 
-fn with_tool() -> Servo<3, Unprotected> {
+fn with_tool() -> Servo<Unprotected> {
     let ends = [Vector([-0.04, 0.0, 0.0]), Vector([0.04, 0.0, 0.0])];
     let tool = Tool::new(Shell::capsule(ends, 0.01, 41).unwrap(), ToolOptions::default());
     Servo::with_tool(slab(), tool.unwrap(), options()).unwrap()
 }
 
-fn at(y: f64) -> [PointState<3>; 2] {
+fn at(y: f64) -> [PointState; 2] {
     [PointState::at_rest(Vector([0.0, y, 0.0])), PointState::at_rest(Vector([0.2, y, 0.0]))]
 }
 
@@ -141,7 +141,7 @@ fn a_state_that_is_not_finite_leaves_a_lifted_proxy_where_it_was() {
 fn lift_and_guides_are_handed_off() {
     let device = DeviceProfile { least_damping: 0.064, ..DeviceProfile::unlimited("gentle") };
     let protection = Protection::new(device).with(|s| s.acceptance = Acceptance::Passive);
-    let mut servo: Servo<3> = with_points().protected(&protection).unwrap();
+    let mut servo: Servo = with_points().protected(&protection).unwrap();
     let guide = Guide::to_point(
         Vector([0.0, 0.1, 0.0]),
         GuideOptions { stiffness: 1000.0, damping: 0.0, ..GuideOptions::default() },

@@ -10,7 +10,7 @@ use palpate_haptics::{Bodies, Body, Probe, Servo, ServoOptions, Surface, Touch, 
 
 const STIFFNESS: f64 = 512.0;
 
-fn servo(shapes: Vec<(Shape<3>, Point<3>)>, radius: f64) -> Servo<3, Unprotected> {
+fn servo(shapes: Vec<(Shape<3>, Point<3>)>, radius: f64) -> Servo<Unprotected> {
     let surface = || Surface::smooth(STIFFNESS, 0.0).unwrap();
     let bodies = shapes
         .into_iter()
@@ -21,7 +21,7 @@ fn servo(shapes: Vec<(Shape<3>, Point<3>)>, radius: f64) -> Servo<3, Unprotected
     Servo::new(bodies, 1, options).unwrap()
 }
 
-fn touch(servo: &mut Servo<3, Unprotected>, device: Point<3>) -> Touch<3> {
+fn touch(servo: &mut Servo<Unprotected>, device: Point<3>) -> Touch {
     servo.step(&[PointState::at_rest(device)])[0]
 }
 

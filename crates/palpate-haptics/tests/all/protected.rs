@@ -27,7 +27,7 @@ const RATE: f64 = 1000.0;
 #[derive(Clone)]
 struct Fragile {
     profile: DeviceProfile,
-    written: Arc<Mutex<Vec<Vector<f64, 2>>>>,
+    written: Arc<Mutex<Vec<Vector<f64, 3>>>>,
 }
 
 impl Fragile {
@@ -42,13 +42,13 @@ impl Fragile {
         Self { profile, written: Arc::default() }
     }
 
-    fn place(tick: u32) -> Point<2> {
+    fn place(tick: u32) -> Point<3> {
         let height = match tick % 700 {
             0..200 => 0.1 - 0.001 * f64::from(tick % 700),
             200..500 => -0.1,
             _ => 0.05,
         };
-        Vector([0.0, height])
+        Vector([0.0, height, 0.0])
     }
 
     /// Every force and every change of force is within the limits, and some are large.
@@ -68,26 +68,26 @@ impl Fragile {
     }
 }
 
-impl Device<2> for Fragile {
+impl Device for Fragile {
     fn points(&self) -> usize {
         1
     }
     fn profile(&self) -> &DeviceProfile {
         &self.profile
     }
-    fn read(&mut self, time: f64, points: &mut [PointState<2>]) -> Result<Reading, DeviceLost> {
+    fn read(&mut self, time: f64, points: &mut [PointState]) -> Result<Reading, DeviceLost> {
         points[0] = PointState::at_rest(Self::place((time * RATE).round() as u32));
         Ok(Reading::Fresh { time })
     }
-    fn write(&mut self, forces: &[Vector<f64, 2>]) -> Result<(), DeviceLost> {
+    fn write(&mut self, forces: &[Vector<f64, 3>]) -> Result<(), DeviceLost> {
         self.written.lock().unwrap().push(forces[0]);
         Ok(())
     }
 }
 
 /// Harder than the device can render.
-fn floor() -> Bodies<2> {
-    body(&half_space([0.0, 1.0], 0.0), Surface::smooth(50_000.0, 10.0).unwrap())
+fn floor() -> Bodies {
+    body(half_space([0.0, 1.0], 0.0), Surface::smooth(50_000.0, 10.0).unwrap())
 }
 
 #[test]
@@ -148,8 +148,8 @@ fn a_loop_of_ones_own_keeps_the_limits_and_stops() {
 fn a_stop_holds_without_a_safety_chain_too() {
     // Once a stop went over the safety chains, and did nothing where there were none.
     let mut servo = Servo::new(floor(), 1, ServoOptions::default()).unwrap();
-    let inside = [PointState::at_rest(Vector([0.0, -0.001]))];
-    servo.step(&[PointState::at_rest(Vector([0.0, 0.1]))]);
+    let inside = [PointState::at_rest(Vector([0.0, -0.001, 0.0]))];
+    servo.step(&[PointState::at_rest(Vector([0.0, 0.1, 0.0]))]);
     servo.step(&inside);
     assert!(servo.forces()[0].norm() > 3.0);
     servo.stop(true);
@@ -223,7 +223,7 @@ fn what_was_stopped_before_it_was_protected_is_released_gently() {
     let profile = Fragile::new().profile;
     let rate = profile.max_force_rate;
     let mut servo = servo.protected(&Protection::new(profile)).unwrap();
-    let at = |y: f64| [PointState::at_rest(Vector([0.0, y]))];
+    let at = |y: f64| [PointState::at_rest(Vector([0.0, y, 0.0]))];
     servo.step(&at(0.01));
     for _ in 0..200 {
         servo.step(&at(-0.005));
@@ -248,13 +248,17 @@ fn a_magnet_pulls_no_steeper_than_the_device_renders() {
     // 30 N at 0.25 mm are 120 kN/m, of which the device renders 1 kN/m.
     let magnet = Magnet { description: None, force: 30.0, distance: 0.001 };
     let material = Material { magnet: Some(magnet), ..Material::default() };
-    let shape = Shape::from_kernel(HalfSpace::new(Vector([0.0, 1.0]), -0.002).unwrap());
+    let shape = Shape::from_kernel(HalfSpace::new(Vector([0.0, 1.0, 0.0]), -0.002).unwrap());
     let body = Body::new(shape, Surface::new(&material).unwrap()).unwrap();
     let bodies = Bodies::new(vec![body]).unwrap();
     let device = DeviceProfile { max_stiffness: 1000.0, ..DeviceProfile::unlimited("example") };
     let servo = Servo::new(bodies, 1, ServoOptions::default()).unwrap();
     let protection = Protection::new(device).with(|s| s.rise_rate = f64::INFINITY);
     let mut servo = servo.protected(&protection).unwrap();
-    servo.step(&[PointState::at_rest(Vector([0.0, 0.00025]))]);
-    assert!((servo.forces()[0] - Vector([0.0, -0.25])).norm() < 1e-9, "{:?}", servo.forces());
+    servo.step(&[PointState::at_rest(Vector([0.0, 0.00025, 0.0]))]);
+    assert!(
+        (servo.forces()[0] - Vector([0.0, -0.25, 0.0])).norm() < 1e-9,
+        "{:?}",
+        servo.forces()
+    );
 }

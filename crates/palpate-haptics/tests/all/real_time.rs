@@ -99,7 +99,7 @@ fn a_step_of_a_tool_allocates_and_frees_nothing() {
     let rough = Surface::new(&Material::default()).unwrap();
     let bodies = (0..6).map(|i| {
         let place = Pose::translation(Vector([0.05 * f64::from(i), 0.0, 0.0]));
-        Body::new(ball(0.04), rough.clone()).unwrap().at(place).unwrap()
+        Body::new(ball::<3>(0.04), rough.clone()).unwrap().at(place).unwrap()
     });
     let mut bodies = Bodies::new(bodies.collect()).unwrap();
     let shell = Shell::from_field(&torus(0.03, 0.01), 700, 0.0).unwrap();
@@ -191,7 +191,7 @@ fn a_step_with_everything_at_once_allocates_and_frees_nothing() {
                 servo.stop(tick % 1000 == 250);
             }
             servo.rehearse(&states);
-            step(&mut servo, &mut states, (tick, 1.0));
+            step::<3>(&mut servo, &mut states, (tick, 1.0));
             if tick % 300 == 0 {
                 assert_eq!(servo.replace_bodies(&mut next), Ok(()));
             }

@@ -17,7 +17,7 @@ use palpate_haptics::servo_loop::{
 use palpate_sim::{HandPath, Interpolation, RecordedDevice};
 
 /// Two contact points on their way into a ball, for a second.
-fn device() -> RecordedDevice<3> {
+fn device() -> RecordedDevice {
     let press = |x: f64| {
         let places = vec![Vector([x, 0.08, 0.0]), Vector([x, 0.04, 0.0])];
         HandPath::new(vec![0.0, 1.0], places, Interpolation::Smooth).unwrap()
@@ -25,12 +25,12 @@ fn device() -> RecordedDevice<3> {
     RecordedDevice::new(vec![press(0.0), press(0.01)]).unwrap()
 }
 
-fn servo(device: &impl Device<3>) -> Servo<3> {
-    Servo::for_device(ball(0.05), device).unwrap()
+fn servo(device: &impl Device) -> Servo {
+    Servo::for_device(ball::<2>(0.05), device).unwrap()
 }
 
 /// Time, contact point and forces: what two runs have in common, whatever they cost.
-fn what_is_felt(rows: &[TraceRow<3>]) -> Vec<(f64, u32, Point<3>, Vector<f64, 3>)> {
+fn what_is_felt(rows: &[TraceRow]) -> Vec<(f64, u32, Point<3>, Vector<f64, 3>)> {
     rows.iter().map(|row| (row.time_s, row.point, row.proxy, row.force)).collect()
 }
 
@@ -41,7 +41,7 @@ fn a_sink_gets_every_row_in_order_at_either_pace() {
         let mut servo = servo(&device);
         let mut recorder = Recorder::new(2000);
         let mut rows = Vec::new();
-        let mut sink = |row: &TraceRow<3>| rows.push(*row);
+        let mut sink = |row: &TraceRow| rows.push(*row);
         let options = RunOptions {
             pace,
             recorder: Some(&mut recorder),
@@ -64,7 +64,7 @@ fn an_interrupted_run_keeps_what_it_has() {
     let mut device = device();
     let mut servo = servo(&device);
     let mut rows = Vec::new();
-    let mut sink = |row: &TraceRow<3>| {
+    let mut sink = |row: &TraceRow| {
         rows.push(*row);
         left.store(row.time_s >= 0.25, Ordering::Relaxed);
     };
@@ -80,16 +80,16 @@ fn an_interrupted_run_keeps_what_it_has() {
 }
 
 /// A device that is unplugged after a quarter of a second.
-struct Unplugged(RecordedDevice<3>);
+struct Unplugged(RecordedDevice);
 
-impl Device<3> for Unplugged {
+impl Device for Unplugged {
     fn points(&self) -> usize {
         self.0.points()
     }
     fn profile(&self) -> &DeviceProfile {
         self.0.profile()
     }
-    fn read(&mut self, time: f64, points: &mut [PointState<3>]) -> Result<Reading, DeviceLost> {
+    fn read(&mut self, time: f64, points: &mut [PointState]) -> Result<Reading, DeviceLost> {
         if time >= 0.25 {
             return Err(DeviceLost { reason: "unplugged".to_owned() });
         }

@@ -35,11 +35,11 @@ const EDITED_TICKS: u32 = 130;
 
 /// A hand that presses a wall through the safety chain of a device.
 struct Held {
-    device: SimulatedDevice<2>,
-    servo: Servo<2>,
+    device: SimulatedDevice,
+    servo: Servo,
     tick: u32,
     /// Where the hand wants to be [m].
-    target: Vector<f64, 2>,
+    target: Vector<f64, 3>,
     grip: f64,
     /// Of the wall [m].
     height: f64,
@@ -57,8 +57,8 @@ struct Felt {
     full: f64,
 }
 
-fn wall(stiffness: f64, height: f64) -> Bodies<2> {
-    let half_space = HalfSpace::new(Vector([0.0, 1.0]), height - 0.002).unwrap();
+fn wall(stiffness: f64, height: f64) -> Bodies {
+    let half_space = HalfSpace::new(Vector([0.0, 1.0, 0.0]), height - 0.002).unwrap();
     let surface = Surface::smooth(stiffness, 0.0).unwrap();
     Bodies::new(vec![Body::new(Shape::from_kernel(half_space), surface).unwrap()]).unwrap()
 }
@@ -66,10 +66,10 @@ fn wall(stiffness: f64, height: f64) -> Bodies<2> {
 /// A device whose hand goes from one place to another in half a second.
 fn held_at(
     profile: &DeviceProfile,
-    from: Vector<f64, 2>,
-    to: Vector<f64, 2>,
+    from: Vector<f64, 3>,
+    to: Vector<f64, 3>,
     grip: f64,
-) -> SimulatedDevice<2> {
+) -> SimulatedDevice {
     let path = HandPath::new(vec![0.0, 0.5], vec![from, to], Interpolation::Linear).unwrap();
     let hand = Hand::new(path).with_spring(grip, 5.0).unwrap();
     SimulatedDevice::new(profile.clone(), vec![hand]).unwrap()
@@ -78,7 +78,7 @@ fn held_at(
 impl Held {
     /// A wall at height zero, and a hand with a `grip` [N/m] that wants to be so far below it that the
     /// wall gives `part` of the force that the device bears for long when both rest.
-    fn new(profile: &DeviceProfile, protection: Protection<2>, grip: f64, part: f64) -> Self {
+    fn new(profile: &DeviceProfile, protection: Protection, grip: f64, part: f64) -> Self {
         let options = ServoOptions {
             rate: RATE,
             probe: Probe::new(0.002).unwrap(),
@@ -89,7 +89,7 @@ impl Held {
         let servo = servo.protected(&protection).unwrap();
         let stiffness = servo.bodies().bodies()[0].surface().stiffness();
         let at_rest = part * profile.max_force.min(profile.continuous_force);
-        let target = Vector([0.0, -at_rest / stiffness - at_rest / grip]);
+        let target = Vector([0.0, -at_rest / stiffness - at_rest / grip, 0.0]);
         let device = held_at(profile, target, target, grip);
         Self { device, servo, tick: 0, target, grip, height: 0.0, is_lost: false, off: 0.0 }
     }
@@ -106,7 +106,7 @@ impl Held {
 
     /// Puts the hand above the wall, from where it comes down within half a second.
     fn start_outside(&mut self) {
-        let above = Vector([0.0, self.height + 0.01]);
+        let above = Vector([0.0, self.height + 0.01, 0.0]);
         self.device = held_at(self.device.profile(), above, self.target, self.grip);
         self.tick = 0;
         self.step();
@@ -117,7 +117,7 @@ impl Held {
         self.device.read(f64::from(self.tick) * PERIOD, &mut points).unwrap();
         points[0].position[1] -= self.off;
         if self.is_lost {
-            points[0].position = Vector([f64::NAN; 2]);
+            points[0].position = Vector([f64::NAN; 3]);
         }
         let touch = self.servo.step(&points)[0];
         self.device.write(self.servo.forces()).unwrap();

@@ -9,12 +9,12 @@ use palpate_haptics::servo_loop::{Pace, RunOptions, RunReport, run};
 use palpate_haptics::{Bodies, Body, Guide, GuideOptions, Servo, Surface};
 use palpate_sim::{HandPath, Interpolation, RecordedDevice};
 
-fn hand(times: &[f64], heights: &[f64]) -> HandPath<2> {
-    let positions = heights.iter().map(|y| Vector([0.0, *y])).collect();
+fn hand(times: &[f64], heights: &[f64]) -> HandPath {
+    let positions = heights.iter().map(|y| Vector([0.0, *y, 0.0])).collect();
     HandPath::new(times.to_vec(), positions, Interpolation::Linear).unwrap()
 }
 
-fn told(servo: &mut Servo<2>, hands: Vec<HandPath<2>>, duration: f64) -> RunReport {
+fn told(servo: &mut Servo, hands: Vec<HandPath>, duration: f64) -> RunReport {
     let mut device = RecordedDevice::new(hands).unwrap();
     let options = RunOptions { pace: Pace::AsFastAsPossible, ..RunOptions::new(duration) };
     run(servo, &mut device, options).unwrap()
@@ -70,7 +70,7 @@ fn a_point_that_begins_inside_is_told_with_its_depth_and_its_time_without_force(
 #[test]
 fn a_point_that_is_led_out_is_felt() {
     let surface = Surface::smooth(500.0, 0.0).unwrap();
-    let bodies = body(&ball::<2>(0.5), surface);
+    let bodies = body(ball::<2>(0.5), surface);
     let servo = || Servo::new(bodies.clone(), 1, Default::default()).unwrap();
     let still = || vec![hand(&[0.0, 1.0], &[0.4988, 0.4988])];
     let report = told(&mut without_limits(servo()), still(), 0.1);
@@ -91,8 +91,9 @@ fn guides_tell_their_time_force_and_work() {
     let options = GuideOptions { stiffness: 100.0, damping: 0.0, ..GuideOptions::default() };
     let near = GuideOptions { snap_distance: 0.0105, ..options };
     let guides = [
-        Guide::on_plane([0.0, 1.0], [0.0, 1.0], near).unwrap(),
-        Guide::to_point([0.0, -5.0], GuideOptions { snap_distance: 0.01, ..options }).unwrap(),
+        Guide::on_plane([0.0, 1.0, 0.0], [0.0, 1.0, 0.0], near).unwrap(),
+        Guide::to_point([0.0, -5.0, 0.0], GuideOptions { snap_distance: 0.01, ..options })
+            .unwrap(),
     ];
     let ground = half_space([0.0, 1.0], 0.0);
     let mut servo = without_limits(Servo::new(ground, 1, Default::default()).unwrap());

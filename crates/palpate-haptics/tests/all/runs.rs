@@ -45,19 +45,19 @@ impl Clock for TestClock {
     }
 }
 
-fn press() -> HandPath<2> {
+fn press() -> HandPath {
     let positions =
-        [0.25, 0.0, -0.0078125, -0.0078125, 0.25].map(|y| Vector([0.0, y])).to_vec();
+        [0.25, 0.0, -0.0078125, -0.0078125, 0.25].map(|y| Vector([0.0, y, 0.0])).to_vec();
     HandPath::new(vec![0.0, 1.0, 2.0, 3.0, 4.0], positions, Interpolation::Linear).unwrap()
 }
 
-fn wall_servo(options: ServoOptions) -> Servo<2> {
+fn wall_servo(options: ServoOptions) -> Servo {
     let options = ServoOptions { probe: Probe::new(0.0).unwrap(), ..options };
     let wall = half_space([0.0, 1.0], 0.0);
     without_limits(Servo::new(wall, 1, options).unwrap())
 }
 
-fn fast<'a, const D: usize>(duration: f64) -> RunOptions<'a, D> {
+fn fast<'a>(duration: f64) -> RunOptions<'a> {
     RunOptions { pace: Pace::AsFastAsPossible, ..RunOptions::new(duration) }
 }
 
@@ -86,14 +86,17 @@ fn a_report_counts_what_happened() {
     assert_eq!(recorder.rows().len(), 512);
     let row = recorder.rows()[2 * 128];
     assert_eq!((row.time_s, row.point, row.cost_ns, row.lateness_ns), (2.0, 0, 1000, 0));
-    assert_eq!((row.device, row.proxy), (Vector([0.0, -0.0078125]), Vector([0.0, 0.0])));
-    assert_eq!((row.force, row.contact), (Vector([0.0, 3.90625]), true));
+    assert_eq!(
+        (row.device, row.proxy),
+        (Vector([0.0, -0.0078125, 0.0]), Vector([0.0, 0.0, 0.0]))
+    );
+    assert_eq!((row.force, row.contact), (Vector([0.0, 3.90625, 0.0]), true));
     assert_eq!(device.forces(), [Vector::ZERO]);
 }
 
 /// A hand that stays at this height.
-fn still(height: f64, duration: f64) -> RecordedDevice<2> {
-    let places = vec![Vector([0.0, height]); 2];
+fn still(height: f64, duration: f64) -> RecordedDevice {
+    let places = vec![Vector([0.0, height, 0.0]); 2];
     let path = HandPath::new(vec![0.0, duration], places, Interpolation::Linear).unwrap();
     RecordedDevice::new(vec![path]).unwrap()
 }
@@ -112,8 +115,8 @@ fn a_body_that_moves_pushes_a_hand_at_rest_with_its_speed() {
     let bodies = Bodies::new(vec![wall]).unwrap();
     let mut servo = without_limits(Servo::new(bodies, 1, options).unwrap());
     let mut recorder = Recorder::new(64);
-    let mut rise = |time: f64, set_pose: &mut dyn FnMut(usize, Pose<2>)| {
-        set_pose(0, Pose::translation(Vector([0.0, 0.125 * time.min(0.25)])));
+    let mut rise = |time: f64, set_pose: &mut dyn FnMut(usize, Pose<3>)| {
+        set_pose(0, Pose::translation(Vector([0.0, 0.125 * time.min(0.25), 0.0])));
     };
     let options =
         RunOptions { recorder: Some(&mut recorder), motion: Some(&mut rise), ..fast(0.5) };
@@ -123,9 +126,13 @@ fn a_body_that_moves_pushes_a_hand_at_rest_with_its_speed() {
     // After 24 ticks the wall is 1/128 m above the hand; damping resists its approach.
     let moving = row(24);
     assert_eq!((moving.contact, moving.proxy[1]), (true, 24.0 / 1024.0));
-    assert!((moving.wanted - Vector([0.0, 4.0 + 0.5])).norm() < 1e-9, "{:?}", moving.wanted);
+    assert!(
+        (moving.wanted - Vector([0.0, 4.0 + 0.5, 0.0])).norm() < 1e-9,
+        "{:?}",
+        moving.wanted
+    );
     // After 32 ticks it stops, 1/64 m above the hand.
-    assert!((row(40).wanted - Vector([0.0, 8.0])).norm() < 1e-9, "{:?}", row(40).wanted);
+    assert!((row(40).wanted - Vector([0.0, 8.0, 0.0])).norm() < 1e-9, "{:?}", row(40).wanted);
 }
 
 #[test]
@@ -137,10 +144,10 @@ fn a_body_that_slides_past_drags_a_hand_at_rest() {
     let bodies = Bodies::new(vec![floor]).unwrap();
     let mut servo = without_limits(Servo::new(bodies, 1, options).unwrap());
     let mut recorder = Recorder::new(1000);
-    let mut slide = |time: f64, set_pose: &mut dyn FnMut(usize, Pose<2>)| {
+    let mut slide = |time: f64, set_pose: &mut dyn FnMut(usize, Pose<3>)| {
         set_pose(
             0,
-            Pose::translation(Vector([0.2 * time, if time > 0.0 { 0.0 } else { -0.1 }])),
+            Pose::translation(Vector([0.2 * time, if time > 0.0 { 0.0 } else { -0.1 }, 0.0])),
         );
     };
     let options =
@@ -157,7 +164,7 @@ fn a_panic_of_a_motion_ends_the_run_with_zero_forces() {
     let mut servo = wall_servo(ServoOptions::default());
     let mut device = still(-0.001, 0.1);
     let mut bad =
-        |time: f64, _: &mut dyn FnMut(usize, Pose<2>)| assert!(time < 0.05, "too late");
+        |time: f64, _: &mut dyn FnMut(usize, Pose<3>)| assert!(time < 0.05, "too late");
     let report =
         run(&mut servo, &mut device, RunOptions { motion: Some(&mut bad), ..fast(0.1) })
             .unwrap();
@@ -197,7 +204,7 @@ fn a_paced_run_waits_for_every_tick_and_does_not_hurry_after_lost_time() {
 }
 
 /// A body that remembers: it rings, sticks, and gives way.
-fn lively_servo() -> Servo<3> {
+fn lively_servo() -> Servo {
     let shape = cuboid([0.1, 0.1, 0.1]).difference([ball(0.06)]).unwrap();
     let material = Material {
         static_friction: 0.5,
@@ -293,7 +300,7 @@ fn a_panic_stops_the_run_with_no_force() {
 /// A device that falls for two seconds and is unplugged then.
 struct Watched {
     profile: DeviceProfile,
-    written: Option<Vector<f64, 2>>,
+    written: Option<Vector<f64, 3>>,
 }
 
 impl Watched {
@@ -303,21 +310,21 @@ impl Watched {
     }
 }
 
-impl Device<2> for Watched {
+impl Device for Watched {
     fn points(&self) -> usize {
         1
     }
     fn profile(&self) -> &DeviceProfile {
         &self.profile
     }
-    fn read(&mut self, time: f64, points: &mut [PointState<2>]) -> Result<Reading, DeviceLost> {
+    fn read(&mut self, time: f64, points: &mut [PointState]) -> Result<Reading, DeviceLost> {
         if time >= 2.0 {
             return Err(DeviceLost { reason: "unplugged".to_owned() });
         }
-        points[0] = PointState::at_rest(Vector([0.0, 0.5 - time]));
+        points[0] = PointState::at_rest(Vector([0.0, 0.5 - time, 0.0]));
         Ok(Reading::Fresh { time })
     }
-    fn write(&mut self, forces: &[Vector<f64, 2>]) -> Result<(), DeviceLost> {
+    fn write(&mut self, forces: &[Vector<f64, 3>]) -> Result<(), DeviceLost> {
         self.written = forces.first().copied();
         Ok(())
     }
@@ -337,17 +344,17 @@ fn a_lost_device_ends_the_run_with_its_reason() {
 /// A device that takes every force but none of zero.
 struct Stuck(Watched);
 
-impl Device<2> for Stuck {
+impl Device for Stuck {
     fn points(&self) -> usize {
         self.0.points()
     }
     fn profile(&self) -> &DeviceProfile {
         self.0.profile()
     }
-    fn read(&mut self, time: f64, points: &mut [PointState<2>]) -> Result<Reading, DeviceLost> {
+    fn read(&mut self, time: f64, points: &mut [PointState]) -> Result<Reading, DeviceLost> {
         self.0.read(time, points)
     }
-    fn write(&mut self, forces: &[Vector<f64, 2>]) -> Result<(), DeviceLost> {
+    fn write(&mut self, forces: &[Vector<f64, 3>]) -> Result<(), DeviceLost> {
         let is_zero = forces.iter().all(|force| *force == Vector::ZERO);
         if is_zero && self.0.written.is_some_and(|force| force != Vector::ZERO) {
             return Err(DeviceLost { reason: "stuck".to_owned() });
@@ -383,7 +390,7 @@ fn what_cannot_run_is_refused() {
     let error = run(&mut servo, &mut two, fast(1.0)).unwrap_err();
     assert_eq!(error, HapticsError::ContactPoints { servo: 1, device: 2 });
     assert!(run(&mut servo, &mut Watched::new(), fast(f64::NAN)).is_err());
-    assert!(RecordedDevice::<2>::new(vec![]).is_err());
+    assert!(RecordedDevice::new(vec![]).is_err());
 }
 
 /// A device whose user leaves as soon as a force is felt.
@@ -392,17 +399,17 @@ struct Leaving<'a> {
     left: &'a AtomicBool,
 }
 
-impl Device<2> for Leaving<'_> {
+impl Device for Leaving<'_> {
     fn points(&self) -> usize {
         self.device.points()
     }
     fn profile(&self) -> &DeviceProfile {
         self.device.profile()
     }
-    fn read(&mut self, time: f64, points: &mut [PointState<2>]) -> Result<Reading, DeviceLost> {
+    fn read(&mut self, time: f64, points: &mut [PointState]) -> Result<Reading, DeviceLost> {
         self.device.read(time, points)
     }
-    fn write(&mut self, forces: &[Vector<f64, 2>]) -> Result<(), DeviceLost> {
+    fn write(&mut self, forces: &[Vector<f64, 3>]) -> Result<(), DeviceLost> {
         if forces[0].norm() > 0.0 {
             self.left.store(true, Ordering::Relaxed);
         }

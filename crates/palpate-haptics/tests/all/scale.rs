@@ -12,12 +12,12 @@ const TICKS: u32 = 8000;
 const POINTS: usize = 5;
 
 /// Every touch of a run, and how many events of each kind there were.
-fn run<const D: usize>(scale: f64) -> (Vec<Touch<D>>, [u32; 5]) {
+fn run<const D: usize>(scale: f64) -> (Vec<Touch>, [u32; 5]) {
     let mut servo = servo::<D>(if D == 2 { 9 } else { 20 }, POINTS, scale);
     let mut states = [PointState::at_rest(Vector::ZERO); POINTS];
     let (mut touches, mut events) = (Vec::new(), [0; 5]);
     for tick in 0..TICKS {
-        step(&mut servo, &mut states, (tick, scale));
+        step::<D>(&mut servo, &mut states, (tick, scale));
         touches.extend_from_slice(servo.touches());
         for event in servo.events() {
             let kind = match event.kind {

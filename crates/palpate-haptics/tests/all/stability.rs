@@ -30,15 +30,15 @@ fn smooth(profile: &DeviceProfile) -> DeviceProfile {
 /// Pushed with 1 N onto a wall of `stiffness`, from rest `height` [m] above where the wall bears
 /// it.
 struct Pressed {
-    device: SimulatedDevice<2>,
-    servo: Servo<2, Unprotected>,
+    device: SimulatedDevice,
+    servo: Servo<Unprotected>,
     tick: u32,
 }
 
 impl Pressed {
     fn new(profile: &DeviceProfile, stiffness: f64, height: f64) -> Self {
         let radius = 0.002;
-        let wall = HalfSpace::new(Vector([0.0, 1.0]), -radius).unwrap();
+        let wall = HalfSpace::new(Vector([0.0, 1.0, 0.0]), -radius).unwrap();
         let options = ServoOptions {
             rate: 1.0 / PERIOD,
             probe: Probe::new(radius).unwrap(),
@@ -50,10 +50,10 @@ impl Pressed {
         let bodies = Bodies::new(vec![wall]).unwrap();
         let mut servo = Servo::new(bodies, 1, options).unwrap();
         // It comes from outside, so that its force need not rise.
-        servo.step(&[PointState::at_rest(Vector([0.0, 1e-3]))]);
-        let hand = Hand::resting(Vector([0.0, height - 1.0 / stiffness])).unwrap();
+        servo.step(&[PointState::at_rest(Vector([0.0, 1e-3, 0.0]))]);
+        let hand = Hand::resting(Vector([0.0, height - 1.0 / stiffness, 0.0])).unwrap();
         let hand = hand.with_mass(0.0).unwrap().with_spring(0.0, 0.0).unwrap();
-        let hand = hand.with_push(Vector([0.0, -1.0])).unwrap();
+        let hand = hand.with_push(Vector([0.0, -1.0, 0.0])).unwrap();
         let device = SimulatedDevice::new(profile.clone(), vec![hand]).unwrap();
         Self { device, servo, tick: 0 }
     }
@@ -155,9 +155,10 @@ fn a_passive_wall_gives_no_energy_to_any_grip() {
     for grip in [0.0, 0.5, 2.0, 10.0] {
         for spring in [0.0, 50.0, 800.0] {
             let mut pressed = Pressed::new(&profile, stiffness, 0.02);
-            let hand = Hand::resting(Vector([0.0, 0.01])).unwrap().with_mass(0.03).unwrap();
+            let hand =
+                Hand::resting(Vector([0.0, 0.01, 0.0])).unwrap().with_mass(0.03).unwrap();
             let hand = hand.with_spring(spring, grip).unwrap();
-            let hand = hand.with_push(Vector([0.1, -12.0])).unwrap();
+            let hand = hand.with_push(Vector([0.1, -12.0, 0.0])).unwrap();
             pressed.device = SimulatedDevice::new(profile.clone(), vec![hand]).unwrap();
             for _ in 0..2000 {
                 pressed.span(1);
@@ -182,9 +183,9 @@ fn given_by_a_stiff_wall(profile: &DeviceProfile, grip: f64, height: f64) -> (f6
         }))
         .unwrap();
     assert_eq!(servo.accepted()[0].stiffness_factor, 1.0);
-    let hand = Hand::resting(Vector([0.0, height])).unwrap();
+    let hand = Hand::resting(Vector([0.0, height, 0.0])).unwrap();
     let hand = hand.with_mass(0.0).unwrap().with_spring(0.0, grip).unwrap();
-    let hand = hand.with_push(Vector([0.0, -1.0])).unwrap();
+    let hand = hand.with_push(Vector([0.0, -1.0, 0.0])).unwrap();
     let mut device = SimulatedDevice::new(profile.clone(), vec![hand]).unwrap();
     let mut points = [PointState::at_rest(Vector::ZERO)];
     let mut most = 0.0_f64;

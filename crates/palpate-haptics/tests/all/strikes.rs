@@ -98,7 +98,7 @@ fn what_a_difference_leaves_holds() {
 
 /// A point pressed through a plate of 0.1 mm, 14 mm beyond it, and then moved along it by 20 mm, by
 /// `step` [m] a tick: what is felt in each.
-fn beyond(friction: f64, budget: u32, step: f64) -> Vec<Touch<3>> {
+fn beyond(friction: f64, budget: u32, step: f64) -> Vec<Touch> {
     let material = Material {
         static_friction: friction,
         dynamic_friction: 0.7 * friction,

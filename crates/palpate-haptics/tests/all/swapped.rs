@@ -15,11 +15,11 @@ use palpate_haptics::{
 
 const DEPTH: f64 = 1.0 / 256.0;
 
-fn ground(material: Material) -> Bodies<3> {
-    body(&half_space([0.0, 1.0, 0.0], 0.0), Surface::new(&material).unwrap())
+fn ground(material: Material) -> Bodies {
+    body(half_space([0.0, 1.0, 0.0], 0.0), Surface::new(&material).unwrap())
 }
 
-fn of_stiffness(stiffness: f64) -> Bodies<3> {
+fn of_stiffness(stiffness: f64) -> Bodies {
     ground(Material { stiffness, ..smooth() })
 }
 
@@ -33,13 +33,13 @@ fn coupling() -> ToolOptions {
     }
 }
 
-fn rod() -> Tool<3> {
+fn rod() -> Tool {
     let end = Vector([0.05, 0.0, 0.0]);
     Tool::new(Shell::capsule([-end, end], 1e-4, 2).unwrap(), coupling()).unwrap()
 }
 
 /// The forces of 300 ticks at rest in the ground, up to the first tick with that of the new one.
-fn forces(mut servo: Box<dyn AnyServo<3>>, soft: f64, stiff: f64) -> Vec<f64> {
+fn forces(mut servo: Box<dyn AnyServo>, soft: f64, stiff: f64) -> Vec<f64> {
     let mut states = [PointState::at_rest(Vector([0.0, 0.1, 0.0]))];
     servo.swap_bodies(of_stiffness(soft));
     servo.step(&states);
@@ -56,7 +56,7 @@ fn forces(mut servo: Box<dyn AnyServo<3>>, soft: f64, stiff: f64) -> Vec<f64> {
 }
 
 /// All that renders forces: points with and without a safety chain, and a tool.
-fn servos() -> Vec<(&'static str, Box<dyn AnyServo<3>>)> {
+fn servos() -> Vec<(&'static str, Box<dyn AnyServo>)> {
     let options = ServoOptions {
         probe: Probe::new(0.0).unwrap(),
         max_force: f64::INFINITY,
@@ -117,12 +117,12 @@ fn device() -> DeviceProfile {
     }
 }
 
-fn with_rod(bodies: Bodies<3>) -> Servo<3> {
+fn with_rod(bodies: Bodies) -> Servo {
     let servo = Servo::with_tool(bodies, rod(), ServoOptions::default()).unwrap();
     servo.protected(&Protection::new(device())).unwrap()
 }
 
-fn damped(damping: f64) -> Bodies<3> {
+fn damped(damping: f64) -> Bodies {
     ground(Material { stiffness: 1e4, damping, ..smooth() })
 }
 
@@ -131,7 +131,7 @@ fn a_tool_hangs_on_new_bodies_as_if_it_had_been_protected_on_them() {
     // Once each new body was made ready alone, and the coupling and the arms of its dampers
     // stayed as they were: what turned the hand was not as passive as the device needs.
     let soft = || of_stiffness(100.0);
-    let scenes: [&dyn Fn() -> Bodies<3>; 4] =
+    let scenes: [&dyn Fn() -> Bodies; 4] =
         [&soft, &|| damped(0.0), &|| damped(0.4), &|| damped(4.0)];
     let mut seen = Vec::new();
     for before in scenes {
@@ -148,7 +148,7 @@ fn a_tool_hangs_on_new_bodies_as_if_it_had_been_protected_on_them() {
             assert_eq!(report, expected);
             assert_eq!(accepted[0], expected[0].impedance);
             assert_eq!(accepted[1], expected[0].turning.as_ref().unwrap().impedance);
-            let surfaces = |servo: &Servo<3>| {
+            let surfaces = |servo: &Servo| {
                 let bodies = servo.bodies().bodies().iter();
                 bodies.map(|body| body.surface().stiffness()).collect::<Vec<_>>()
             };

@@ -15,7 +15,7 @@ use palpate_haptics::{
 fn a_box_tells_where_it_slips_and_where_it_sticks_again() {
     let (mut bodies, mut tool) = rough(&half_space([0.0, 1.0, 0.0], 0.0));
     let mut told = Vec::new();
-    let mut go = |tool: &mut Tool<3>, x: f64, y: f64| {
+    let mut go = |tool: &mut Tool, x: f64, y: f64| {
         tool.step(&mut bodies, &at([x, y, 0.0]));
         told.extend(tool.events().iter().map(|event| (event.tick, event.body, event.kind)));
     };
@@ -38,9 +38,9 @@ fn a_box_tells_where_it_slips_and_where_it_sticks_again() {
 }
 
 /// A tool on ground of a material, after it was pressed to `depth` there.
-fn pressed(material: &Material, depth: f64, velocity: [f64; 3]) -> ToolTouch<3> {
+fn pressed(material: &Material, depth: f64, velocity: [f64; 3]) -> ToolTouch {
     let surface = Surface::new(material).unwrap();
-    let mut bodies = body(&half_space([0.0, 1.0, 0.0], 0.0), surface);
+    let mut bodies = body(half_space([0.0, 1.0, 0.0], 0.0), surface);
     let shell = Shell::from_mesh(&box_mesh([0.06, 0.04, 0.05]), 600, 0.0).unwrap();
     let mut tool = Tool::new(shell, springs()).unwrap();
     tool.step(&mut bodies, &at([0.0, 0.03, 0.0]));
@@ -77,7 +77,7 @@ fn the_layers_of_a_body_are_felt_as_far_as_the_coupling_bears_them() {
 fn a_closed_path_over_a_soft_layered_body_gives_no_energy() {
     let layer = Layer { depth: 0.003, stiffness: Some(400.0), ..Layer::default() };
     let material = Material { stiffness: 150.0, layers: vec![layer], ..smooth() };
-    let mut bodies = body(&ball(0.05), Surface::new(&material).unwrap());
+    let mut bodies = body(ball::<3>(0.05), Surface::new(&material).unwrap());
     let shell = Shell::from_mesh(&box_mesh([0.03, 0.02, 0.04]), 300, 0.001).unwrap();
     let mut tool = Tool::new(shell, springs()).unwrap();
     let ticks = 20_000;
@@ -117,7 +117,7 @@ fn what_is_dragged_below_the_hand_turns_it() {
     let options = ToolOptions { angular_stiffness: Some(50.0), ..springs() };
     let mut tool = Tool::new(shell, options).unwrap();
     let viscous = Material { viscosity: 2.0, ..smooth() };
-    let mut bodies = body(&half_space([0.0, 1.0, 0.0], 0.0), Surface::new(&viscous).unwrap());
+    let mut bodies = body(half_space([0.0, 1.0, 0.0], 0.0), Surface::new(&viscous).unwrap());
     tool.step(&mut bodies, &at([0.0, 0.2, 0.0]));
     rest(&mut tool, &mut bodies, &at([0.0, 0.106, 0.0]));
     let along = Vector([0.1, 0.0, 0.0]);
@@ -191,7 +191,7 @@ fn a_body_that_moves_while_the_device_is_nowhere_is_touched_after() {
 /// A tool that lost its device in contact touched again later without ever having left.
 #[test]
 fn a_device_that_gets_lost_leaves() {
-    let mut bodies = Bodies::from(ball(0.05));
+    let mut bodies = Bodies::from(ball::<3>(0.05));
     let mut tool = Tool::new(Shell::ball(0.01).unwrap(), springs()).unwrap();
     let mut told = Vec::new();
     for height in [0.2, 0.05, f64::NAN, 0.05] {
@@ -212,7 +212,7 @@ fn the_friction_is_that_of_the_layer_at_the_depth_of_the_hand() {
     };
     let slick = Material { static_friction: 0.1, dynamic_friction: 0.1, ..smooth() };
     let layered = Material { layers: vec![layer], ..slick };
-    let mut bodies = body(&half_space([0.0, 1.0, 0.0], 0.0), Surface::new(&layered).unwrap());
+    let mut bodies = body(half_space([0.0, 1.0, 0.0], 0.0), Surface::new(&layered).unwrap());
     for (depth, is_slipping) in [(0.0015, true), (0.004, false)] {
         let mut tool = Tool::new(Shell::ball(0.01).unwrap(), springs()).unwrap();
         tool.step(&mut bodies, &at([0.0, 0.02, 0.0]));
@@ -228,7 +228,7 @@ fn the_friction_is_that_of_the_layer_at_the_depth_of_the_hand() {
 #[test]
 fn a_tool_that_sticks_under_a_hand_straight_above_keeps_its_contact() {
     let material = Material { static_friction: 0.4, dynamic_friction: 0.3, ..smooth() };
-    let mut bodies = body(&half_space([0.0, 1.0, 0.0], 0.0), Surface::new(&material).unwrap());
+    let mut bodies = body(half_space([0.0, 1.0, 0.0], 0.0), Surface::new(&material).unwrap());
     let mut tool = Tool::new(Shell::ball(0.01).unwrap(), springs()).unwrap();
     tool.step(&mut bodies, &at([0.0, 0.02, 0.0]));
     for tick in 0..10 {

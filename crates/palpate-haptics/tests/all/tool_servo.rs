@@ -23,11 +23,11 @@ use palpate_sim::{HandPath, Interpolation, RecordedDevice};
 const STIFFNESS: f64 = 500.0;
 
 /// A rod that lies along x, of radius 1 cm.
-fn rod() -> Tool<3> {
+fn rod() -> Tool {
     rod_with(options())
 }
 
-fn rod_with(options: ToolOptions) -> Tool<3> {
+fn rod_with(options: ToolOptions) -> Tool {
     let ends = [Vector([-0.04, 0.0, 0.0]), Vector([0.04, 0.0, 0.0])];
     Tool::new(Shell::capsule(ends, 0.01, 41).unwrap(), options).unwrap()
 }
@@ -36,15 +36,15 @@ fn options() -> ToolOptions {
     ToolOptions { stiffness: STIFFNESS, damping: 0.0, ..ToolOptions::default() }
 }
 
-fn ground(material: Material) -> Bodies<3> {
-    body(&half_space([0.0, 1.0, 0.0], 0.0), Surface::new(&material).unwrap())
+fn ground(material: Material) -> Bodies {
+    body(half_space([0.0, 1.0, 0.0], 0.0), Surface::new(&material).unwrap())
 }
 
-fn at(x: f64, y: f64) -> PointState<3> {
+fn at(x: f64, y: f64) -> PointState {
     PointState::at_rest(Vector([x, y, 0.0]))
 }
 
-fn press(positions: Vec<[f64; 3]>) -> RecordedDevice<3> {
+fn press(positions: Vec<[f64; 3]>) -> RecordedDevice {
     let times = (0..positions.len()).map(|i| 0.5 * i as f64).collect();
     let positions = positions.into_iter().map(Vector).collect();
     let path = HandPath::new(times, positions, Interpolation::Linear).unwrap();
@@ -151,7 +151,7 @@ fn a_tool_is_guided_and_limited() {
 
 /// The largest force written while `servo` presses its tool 15 mm deep, which its coupling
 /// answers with 7.5 N.
-fn hardest(servo: &mut Servo<3>) -> f64 {
+fn hardest(servo: &mut Servo) -> f64 {
     let pressed = (0..1000).map(|_| {
         servo.step(&[at(0.0, -0.005)]);
         servo.forces()[0].norm()
@@ -210,7 +210,7 @@ fn a_force_limit_that_is_no_number_is_refused_with_a_tool_too() {
     assert_eq!(refused(f64::NAN), "max_force must be positive, got NaN N");
     assert_eq!(refused(-1.0), "max_force must be positive, got -1 N");
     let tool = Tool::new(
-        Shell::<3>::ball(0.01).unwrap(),
+        Shell::ball(0.01).unwrap(),
         ToolOptions { max_force: Some(0.0), ..options() },
     );
     assert_eq!(tool.unwrap_err().to_string(), "max_force must be positive, got 0 N");
@@ -244,7 +244,7 @@ fn a_run_reports_what_the_tool_felt() {
 
 #[test]
 fn a_tool_with_too_small_a_budget_says_so() {
-    let shell = Shell::from_field(&ball(0.02), 600, 0.0).unwrap();
+    let shell = Shell::from_field(&ball::<3>(0.02), 600, 0.0).unwrap();
     let options = ToolOptions { budget: 100, ..ToolOptions::default() };
     let tool = Tool::new(shell, options).unwrap();
     let servo = Servo::with_tool(ground(smooth()), tool, ServoOptions::default()).unwrap();

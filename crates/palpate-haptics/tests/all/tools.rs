@@ -5,15 +5,16 @@
 
 use crate::common::tools::{STIFFNESS, at, box_mesh, on_a_loop, rest, rough, springs, turned};
 use crate::common::{ball, body, cuboid, half_space};
-use palpate_field::{Point, Pose, Rotation, Shape, Vector};
+use palpate_field::{Point, Pose, Rotation, Shape, SpaceShape, Vector};
 use palpate_haptics::{Bodies, EventKind, Shell, Surface, Tool, ToolOptions, ToolState};
 use palpate_mesh::Outline;
 
 /// The least of the field less the radius over all points of the shell.
-fn least_gap<const D: usize>(shell: &Shell<D>, pose: &Pose<D>, shape: &Shape<D>) -> f64 {
+fn least_gap(shell: &Shell, pose: &Pose<3>, shape: impl Into<SpaceShape>) -> f64 {
+    let shape: SpaceShape = shape.into();
     let points = shell.points().iter();
     points
-        .map(|point| shape.distance(pose.transform_point(point.centre)) - point.radius)
+        .map(|point| shape.shape().distance(pose.transform_point(point.centre)) - point.radius)
         .fold(f64::INFINITY, f64::min)
 }
 
@@ -232,19 +233,19 @@ fn a_rectangle_lies_on_a_line_in_the_plane() {
     let outline = Outline::new(corners.map(Vector).to_vec(), sides).unwrap();
     let shell = Shell::from_mesh(&outline, 100, 0.0).unwrap();
     let mut tool = Tool::new(shell.clone(), springs()).unwrap();
-    tool.step(&mut bodies, &at([0.0, 0.1]));
-    let touch = tool.step(&mut bodies, &at([0.0, 0.015])).clone();
-    assert!((touch.force - Vector([0.0, 0.005 * STIFFNESS])).norm() < 1e-9);
+    tool.step(&mut bodies, &at([0.0, 0.1, 0.0]));
+    let touch = tool.step(&mut bodies, &at([0.0, 0.015, 0.0])).clone();
+    assert!((touch.force - Vector([0.0, 0.005 * STIFFNESS, 0.0])).norm() < 1e-9);
     assert!(touch.torque.norm() < 1e-11);
-    let tilted = Pose::new(Rotation::from_angle(0.3).unwrap(), Vector([0.0, 0.025]));
+    let tilted = Pose::new(Rotation::from_angle(0.3).unwrap().in_space(), [0.0, 0.025, 0.0]);
     let touch = rest(&mut tool, &mut bodies, &ToolState::at_rest(tilted));
     assert!(touch.torque[2] < 0.0 && touch.torque[0] == 0.0 && touch.torque[1] == 0.0);
-    assert!(least_gap(&shell, &touch.pose, &half_space([0.0, 1.0], 0.0)) >= -1e-9);
+    assert!(least_gap(&shell, &touch.pose, half_space([0.0, 1.0], 0.0)) >= -1e-9);
 }
 
 #[test]
 fn fields_and_capsules_are_tools_too() {
-    let mut bodies = Bodies::from(ball(0.05));
+    let mut bodies = Bodies::from(ball::<3>(0.05));
     let cone = cuboid([0.02, 0.02, 0.02]).offset(0.002).unwrap();
     let mut tool = Tool::new(Shell::from_field(&cone, 400, 0.0).unwrap(), springs()).unwrap();
     tool.step(&mut bodies, &at([0.0, 0.1, 0.0]));
@@ -260,7 +261,7 @@ fn fields_and_capsules_are_tools_too() {
 #[test]
 fn touching_and_leaving_is_told() {
     let surface = Surface::smooth(STIFFNESS, 0.0).unwrap();
-    let mut bodies = body(&half_space([0.0, 1.0, 0.0], 0.0), surface);
+    let mut bodies = body(half_space([0.0, 1.0, 0.0], 0.0), surface);
     let mut tool = Tool::new(Shell::ball(0.01).unwrap(), springs()).unwrap();
     let mut told = Vec::new();
     for height in [0.03, 0.009, 0.008, 0.02] {
@@ -274,7 +275,7 @@ fn touching_and_leaving_is_told() {
 
 #[test]
 fn a_device_that_is_nowhere_touches_nothing() {
-    let mut bodies = Bodies::from(ball(0.05));
+    let mut bodies = Bodies::from(ball::<3>(0.05));
     let mut tool = Tool::new(Shell::ball(0.01).unwrap(), springs()).unwrap();
     tool.step(&mut bodies, &at([0.0, 0.2, 0.0]));
     assert!(tool.step(&mut bodies, &at([0.0, 0.05, 0.0])).contact);
@@ -344,7 +345,7 @@ fn a_clone_feels_what_the_tool_feels() {
 
 #[test]
 fn a_tool_that_slides_asks_only_the_points_that_could_touch() {
-    let hill = ball(0.5);
+    let hill = ball::<3>(0.5);
     let mut bodies = Bodies::from(hill.clone());
     let shell = Shell::from_mesh(&box_mesh([0.06, 0.04, 0.05]), 1000, 0.0005).unwrap();
     let mut tool = Tool::new(shell.clone(), springs()).unwrap();

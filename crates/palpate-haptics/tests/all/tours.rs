@@ -6,26 +6,36 @@
 use crate::common::{ball, cuboid, half_space, torus, without_limits};
 use palpate_field::kernel::{Cone, Cylinder, Polygon, RegularStar};
 use palpate_field::operator::Profile;
-use palpate_field::{Aabb, Rotation, Shape, Vector};
+use palpate_field::{Aabb, Rotation, Shape, SpaceShape, Vector};
 use palpate_haptics::servo_loop::{Pace, RunOptions, RunReport, run};
 use palpate_haptics::{Bodies, Body, Material, Probe, Servo, ServoOptions, Surface};
 use palpate_sim::{HandPath, RecordedDevice, SimulationError, Tour};
 
 const DURATION: f64 = 20.0;
 
-fn tour<const D: usize>(shape: &Shape<D>) -> HandPath<D> {
-    let bounds = shape.promise().bounds.unwrap().aabb;
-    Tour::new(bounds, DURATION).unwrap().over(shape).unwrap()
+/// A tour of a shape, in the plane if it is planar.
+fn tour_of(shape: &SpaceShape, duration: f64) -> Tour {
+    let tour = match shape.flat() {
+        Some(flat) => Tour::new(flat.promise().bounds.unwrap().aabb, duration),
+        None => Tour::new(shape.bounds().unwrap().aabb, duration),
+    };
+    tour.unwrap()
 }
 
-fn toured<const D: usize>(shape: &Shape<D>) -> RunReport {
+fn tour(shape: impl Into<SpaceShape>) -> HandPath {
+    let shape = shape.into();
+    tour_of(&shape, DURATION).over(shape.shape()).unwrap()
+}
+
+fn toured(shape: impl Into<SpaceShape>) -> RunReport {
     toured_as(shape, &Material::default())
 }
 
-fn toured_as<const D: usize>(shape: &Shape<D>, material: &Material) -> RunReport {
-    let mut device = RecordedDevice::new(vec![tour(shape)]).unwrap();
+fn toured_as(shape: impl Into<SpaceShape>, material: &Material) -> RunReport {
+    let shape: SpaceShape = shape.into();
+    let mut device = RecordedDevice::new(vec![tour(shape.clone())]).unwrap();
     let options = ServoOptions { max_force: f64::INFINITY, ..ServoOptions::default() };
-    let body = Body::new(shape.clone(), Surface::new(material).unwrap()).unwrap();
+    let body = Body::new(shape, Surface::new(material).unwrap()).unwrap();
     let bodies = Bodies::new(vec![body]).unwrap();
     let mut servo = without_limits(Servo::new(bodies, 1, options).unwrap());
     let options = RunOptions { pace: Pace::AsFastAsPossible, ..RunOptions::new(DURATION) };
@@ -43,7 +53,7 @@ fn row_of_bodies() -> Shape<3> {
 /// A star of 12 branches with notches as deep as its tips, grown together with a ball.
 fn star() -> Shape<2> {
     let star = Shape::from_kernel(RegularStar::new(12, 0.3, 0.212).unwrap());
-    let disc = ball(0.2).translated(Vector([-0.25, 0.15])).unwrap();
+    let disc = ball(0.2).translated([-0.25, 0.15]).unwrap();
     Shape::smooth_union([star, disc], Profile::Quadratic, 0.00025).unwrap()
 }
 
@@ -63,7 +73,7 @@ fn bored_cube() -> Shape<3> {
 
 #[test]
 fn a_tour_is_in_contact_for_a_good_part_of_the_time() {
-    fn check<const D: usize>(shape: &Shape<D>) {
+    fn check(shape: impl Into<SpaceShape>) {
         let report = toured(shape);
         let share = report.contact_time / report.duration;
         assert!((0.4..0.9).contains(&share), "{share}");
@@ -71,18 +81,18 @@ fn a_tour_is_in_contact_for_a_good_part_of_the_time() {
         assert!(report.largest_depth < 0.0025, "{} m deep", report.largest_depth);
         assert_eq!(report.evaluations.budget_spent, 0);
     }
-    check(&ball::<3>(0.05));
-    check(&cuboid([0.1, 0.1, 0.1]));
-    check(&torus(0.05, 0.02));
-    check(&row_of_bodies());
-    check(&ball::<2>(0.05));
-    check(&cuboid([0.1, 0.06]));
+    check(ball::<3>(0.05));
+    check(cuboid([0.1, 0.1, 0.1]));
+    check(torus(0.05, 0.02));
+    check(row_of_bodies());
+    check(ball::<2>(0.05));
+    check(cuboid([0.1, 0.06]));
 }
 
 /// Friction held the proxy on a side of a cube when the hand had gone round the edge: 0.3 m deep.
 #[test]
 fn friction_leaves_no_proxy_behind_at_edges() {
-    fn check<const D: usize>(shape: &Shape<D>) {
+    fn check(shape: impl Into<SpaceShape>) {
         let material =
             Material { static_friction: 0.6, dynamic_friction: 0.5, ..Material::default() };
         let report = toured_as(shape, &material);
@@ -91,26 +101,27 @@ fn friction_leaves_no_proxy_behind_at_edges() {
     }
     let cone = Shape::from_kernel(Cone::new(0.035, 0.09).unwrap());
     let cube = cuboid([0.05; 3]);
-    check(&cuboid([0.1, 0.1, 0.1]));
-    check(&Shape::union([cone.clone(), cube.clone()]).unwrap());
-    check(&cube.difference([cone]).unwrap());
-    check(&row_of_bodies());
-    check(&cuboid([0.1, 0.06]));
+    check(cuboid([0.1, 0.1, 0.1]));
+    check(Shape::union([cone.clone(), cube.clone()]).unwrap());
+    check(cube.difference([cone]).unwrap());
+    check(row_of_bodies());
+    check(cuboid([0.1, 0.06]));
 }
 
 #[test]
 fn the_hand_of_a_tour_is_nowhere_much_deeper_than_asked() {
-    fn check<const D: usize>(name: &str, shape: &Shape<D>) {
-        let bounds = shape.promise().bounds.unwrap().aabb;
+    fn check(name: &str, shape: impl Into<SpaceShape>) {
+        let shape: SpaceShape = shape.into();
+        let bounds = shape.bounds().unwrap().aabb;
         let size = bounds.half_extents().0.into_iter().fold(0.0, f64::max) * 2.0;
         for radius in [0.002, 0.003] {
             let depth = f64::min(0.01 * size, 0.75 * radius);
-            let tour = Tour::new(bounds, DURATION).unwrap().with_probe_radius(radius).unwrap();
-            let path = tour.over(shape).unwrap();
-            assert_eq!(path, tour.over(shape).unwrap());
+            let tour = tour_of(&shape, DURATION).with_probe_radius(radius).unwrap();
+            let path = tour.over(shape.shape()).unwrap();
+            assert_eq!(path, tour.over(shape.shape()).unwrap());
             for tick in 0..200_000 {
                 let state = path.state_at(f64::from(tick) * 1e-4);
-                let deep = radius - shape.distance(state.position);
+                let deep = radius - shape.shape().distance(state.position);
                 assert!(deep <= 1.5 * depth, "{name}: {deep} m deep at {tick}e-4 s");
                 let speed = state.velocity.norm() / (0.3 * size.sqrt());
                 assert!(speed < 2.5, "{name}: {speed} times the speed at {tick}e-4 s");
@@ -121,10 +132,10 @@ fn the_hand_of_a_tour_is_nowhere_much_deeper_than_asked() {
         assert!((0.35..0.9).contains(&share), "{name}: {share} of the time in contact");
         assert!(report.largest_depth < 0.00225, "{name}: {} m", report.largest_depth);
     }
-    check("star", &star());
-    check("angle", &angle());
-    check("bored cube", &bored_cube());
-    check("row", &row_of_bodies());
+    check("star", star());
+    check("angle", angle());
+    check("bored cube", bored_cube());
+    check("row", row_of_bodies());
 }
 
 #[test]
@@ -191,10 +202,13 @@ fn at(shape: Shape<3>, place: [f64; 3]) -> Shape<3> {
 }
 
 /// Which of the bodies a tour touches that visits each.
-fn visited<const D: usize>(bodies: &[Shape<D>], bounds: Aabb<D>, duration: f64) -> Vec<bool> {
-    let whole = Shape::union(bodies.iter().cloned()).unwrap();
+fn visited<const D: usize>(shapes: &[Shape<D>], duration: f64) -> Vec<bool> {
+    let space = SpaceShape::from(Shape::union(shapes.iter().cloned()).unwrap());
+    let (bodies, whole) = (each(shapes), space.shape());
+    let Aabb { min, max } = bounds(&bodies);
+    let bounds = Aabb { min: min.truncated::<D>(), max: max.truncated() };
     let tour = Tour::new(bounds, duration).unwrap();
-    let path = tour.over_each(&whole, bodies).unwrap();
+    let path = tour.over_each(whole, &bodies).unwrap();
     assert_eq!((path.start(), path.duration()), (0.0, duration));
     // Pressed to 1.5 mm of the probe's 2 mm, and between two points a little more.
     for tick in 0..=(duration * 1e3) as u32 {
@@ -210,15 +224,20 @@ fn visited<const D: usize>(bodies: &[Shape<D>], bounds: Aabb<D>, duration: f64) 
     let mut device = RecordedDevice::new(vec![path.clone()]).unwrap();
     let options = RunOptions { pace: Pace::AsFastAsPossible, ..RunOptions::new(duration) };
     let report = run(&mut without_limits(servo), &mut device, options).unwrap();
-    let is_visit = tour.over(&whole).as_ref() != Ok(&path);
+    let is_visit = tour.over(whole).as_ref() != Ok(&path);
     let deep = report.largest_depth;
     assert!(deep < 0.003 || !is_visit, "{deep} m deep in {duration} s");
-    let touches = |body: &Shape<D>| path.positions().iter().any(|p| body.distance(*p) < 0.0019);
+    let touches =
+        |body: &SpaceShape| path.positions().iter().any(|p| body.shape().distance(*p) < 0.0019);
     bodies.iter().map(touches).collect()
 }
 
-fn bounds<const D: usize>(bodies: &[Shape<D>]) -> Aabb<D> {
-    let boxes = bodies.iter().filter_map(|body| body.promise().bounds);
+fn each<const D: usize>(shapes: &[Shape<D>]) -> Vec<SpaceShape> {
+    shapes.iter().map(|shape| SpaceShape::from(shape.clone())).collect()
+}
+
+fn bounds(bodies: &[SpaceShape]) -> Aabb<3> {
+    let boxes = bodies.iter().filter_map(SpaceShape::bounds);
     boxes.map(|bounds| bounds.aabb).reduce(|a, b| a.union(&b)).unwrap()
 }
 
@@ -241,7 +260,7 @@ fn a_tour_visits_every_body_on_a_table() {
         [("ball", ball_on_table), ("two", two), ("corner", corner), ("row", row)]
     {
         for duration in [5.0, 10.0, 30.0] {
-            let visited = visited(&bodies, bounds(&bodies), duration);
+            let visited = visited(&bodies, duration);
             assert!(visited.iter().all(|is| *is), "{name} in {duration} s: {visited:?}");
         }
     }
@@ -249,14 +268,14 @@ fn a_tour_visits_every_body_on_a_table() {
 
 #[test]
 fn a_tour_visits_bodies_in_the_plane() {
-    let floor = cuboid([1.0, 0.02]).translated(Vector([0.0, -0.01])).unwrap();
-    let disc = |x: f64| ball::<2>(0.01).translated(Vector([x, 0.01])).unwrap();
+    let floor = cuboid([1.0, 0.02]).translated([0.0, -0.01]).unwrap();
+    let disc = |x: f64| ball::<2>(0.01).translated([x, 0.01]).unwrap();
     let bodies = vec![disc(-0.37), floor, disc(0.21)];
-    assert_eq!(visited(&bodies, bounds(&bodies), 10.0), [true; 3]);
+    assert_eq!(visited(&bodies, 10.0), [true; 3]);
     // Between floor and roof, the disc is seen from the side alone.
     let mut bodies = bodies;
-    bodies.push(cuboid([1.0, 0.02]).translated(Vector([0.0, 0.1])).unwrap());
-    assert_eq!(visited(&bodies, bounds(&bodies), 10.0), [true; 4]);
+    bodies.push(cuboid([1.0, 0.02]).translated([0.0, 0.1]).unwrap());
+    assert_eq!(visited(&bodies, 10.0), [true; 4]);
 }
 
 /// Below a table top, and in a box that is open on one side.
@@ -264,11 +283,11 @@ fn a_tour_visits_bodies_in_the_plane() {
 fn a_tour_reaches_bodies_from_where_they_are_free() {
     let top = at(cuboid([0.6, 0.02, 0.6]), [0.0, 0.3, 0.0]);
     let below = vec![top, at(ball(0.02), [0.05, 0.02, 0.03]), at(ball(0.03), [0.1, 0.34, 0.1])];
-    assert_eq!(visited(&below, bounds(&below), 10.0), [true; 3]);
+    assert_eq!(visited(&below, 10.0), [true; 3]);
     let room = at(cuboid([0.28; 3]), [0.1, 0.0, 0.0]);
     let shelf = cuboid([0.3; 3]).difference([room]).unwrap();
     let inside = vec![shelf, at(ball(0.02), [0.06, -0.1, 0.02])];
-    assert_eq!(visited(&inside, bounds(&inside), 10.0), [true; 2]);
+    assert_eq!(visited(&inside, 10.0), [true; 2]);
 }
 
 #[test]
@@ -279,7 +298,7 @@ fn a_tour_visits_what_stands_on_the_ground() {
         at(ball(0.02), [0.4, 0.02, 0.3]),
         at(cuboid([0.03; 3]), [-0.4, 0.015, -0.3]),
     ];
-    let visited = visited(&bodies, bounds(&bodies), 10.0);
+    let visited = visited(&bodies, 10.0);
     assert_eq!(visited, [true; 3]);
 }
 
@@ -288,7 +307,7 @@ fn a_tour_visits_what_stands_on_the_ground() {
 fn a_body_that_is_closed_in_is_left_out() {
     let shell = ball::<3>(0.05).shell(0.01).unwrap();
     let bodies = vec![table(), at(shell, [0.2, 0.055, 0.1]), at(ball(0.01), [0.2, 0.055, 0.1])];
-    assert_eq!(visited(&bodies, bounds(&bodies), 10.0), [true, true, false]);
+    assert_eq!(visited(&bodies, 10.0), [true, true, false]);
 }
 
 #[test]
@@ -296,14 +315,14 @@ fn a_tour_of_what_is_touched_on_the_way_round_is_that_way() {
     let bodies: Vec<_> =
         (0..3).map(|i| at(ball(0.05), [0.12 * f64::from(i), 0.0, 0.0])).collect();
     let whole = Shape::union(bodies.iter().cloned()).unwrap();
-    let tour = Tour::new(bounds(&bodies), DURATION).unwrap();
-    assert_eq!(tour.over_each(&whole, &bodies), tour.over(&whole));
+    let tour = Tour::new(bounds(&each(&bodies)), DURATION).unwrap();
+    assert_eq!(tour.over_each(&whole, &each(&bodies)), tour.over(&whole));
     // A hundred visits in a second are none.
     let mut many = vec![table()];
     many.extend((0..99).map(|i| at(ball(0.001), [0.009 * f64::from(i) - 0.45, 0.001, 0.0])));
     let whole = Shape::union(many.iter().cloned()).unwrap();
-    let tour = Tour::new(bounds(&many), 1.0).unwrap();
-    assert_eq!(tour.over_each(&whole, &many), tour.over(&whole));
+    let tour = Tour::new(bounds(&each(&many)), 1.0).unwrap();
+    assert_eq!(tour.over_each(&whole, &each(&many)), tour.over(&whole));
 }
 
 #[test]
@@ -326,7 +345,7 @@ fn the_hand_of_a_tour_goes_at_a_steady_speed() {
 
 #[test]
 fn a_tour_is_made_the_same_twice() {
-    assert_eq!(tour(&row_of_bodies()), tour(&row_of_bodies()));
+    assert_eq!(tour(row_of_bodies()), tour(row_of_bodies()));
 }
 
 #[test]
@@ -369,5 +388,5 @@ fn nothing_to_touch_is_an_error() {
 
 #[test]
 fn a_tour_is_made_for_the_default_probe() {
-    assert_eq!(Tour::<3>::PROBE_RADIUS, palpate_haptics::Probe::default().radius());
+    assert_eq!(Tour::PROBE_RADIUS, palpate_haptics::Probe::default().radius());
 }

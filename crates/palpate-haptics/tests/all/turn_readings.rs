@@ -28,7 +28,7 @@ const LEAN: Vector<f64, 3> = Vector([0.0, 0.0, -0.3]);
 
 /// A rod along x whose right end leans into the ground, in a hand on a device.
 struct Held {
-    servo: Servo<3>,
+    servo: Servo,
     /// Of the coupling, as accepted [N·m/rad].
     stiffness: f64,
     tick: u32,
@@ -40,8 +40,8 @@ impl Held {
         Self::with(Protection::new(profile.clone()).with(|s| s.rise_rate = f64::INFINITY))
     }
 
-    fn with(protection: Protection<3>) -> Self {
-        let ground = body(&half_space([0.0, 1.0, 0.0], 0.0), Surface::new(&smooth()).unwrap());
+    fn with(protection: Protection) -> Self {
+        let ground = body(half_space([0.0, 1.0, 0.0], 0.0), Surface::new(&smooth()).unwrap());
         let end = Vector::unit(0) * HALF;
         let options = ToolOptions {
             stiffness: 500.0,
@@ -204,7 +204,7 @@ fn no_rotation_within_the_limits_is_held_back() {
         let max_acceleration = 10.0_f64.powf(draw::within(u, 2.0, 5.0)?);
         let profile =
             TurningProfile { max_speed, max_acceleration, ..TurningProfile::unlimited() };
-        let mut readings = TurnReadings::<3>::new(&profile).unwrap();
+        let mut readings = TurnReadings::new(&profile).unwrap();
         let mut swing = Swing {
             orientation: Rotation::identity(),
             angular_velocity: draw::direction::<3>(u)? * (WITHIN * max_speed * draw::unit(u)?),

@@ -44,14 +44,15 @@ fn coupling() -> ToolOptions {
 }
 
 /// A rod along x of two points at its ends, without a radius.
-fn rod<const D: usize>(options: ToolOptions) -> Tool<D> {
+fn rod(options: ToolOptions, is_flat: bool) -> Tool {
     let end = Vector::unit(0) * HALF;
-    Tool::new(Shell::capsule([-end, end], 1e-4, 2).unwrap(), options).unwrap()
+    let shell = Shell::capsule([-end, end], 1e-4, 2).unwrap();
+    Tool::new(if is_flat { shell.in_plane() } else { shell }, options).unwrap()
 }
 
 /// What is below a wall of unit normal (0, 1, 0…) at y = 0.
-fn ground<const D: usize>(material: Material) -> Bodies<D> {
-    body(&half_space(Vector::<f64, D>::unit(1).0, 0.0), Surface::new(&material).unwrap())
+fn ground<const D: usize>(material: Material) -> Bodies {
+    body(half_space(Vector::<f64, D>::unit(1).0, 0.0), Surface::new(&material).unwrap())
 }
 
 /// Stiffer than every coupling.
@@ -59,17 +60,18 @@ fn rigid() -> Material {
     Material { stiffness: 1e6, ..smooth() }
 }
 
-fn servo<const D: usize>(material: Material, options: ToolOptions) -> Servo<D, Unprotected> {
+fn servo<const D: usize>(material: Material, options: ToolOptions) -> Servo<Unprotected> {
     let free = ServoOptions { max_force: f64::INFINITY, ..ServoOptions::default() };
-    Servo::with_tool(ground(material), rod(options), free).unwrap()
+    let tool = rod(options, D == 2);
+    Servo::with_tool(ground::<D>(material), tool, free).unwrap()
 }
 
 /// Moves the device to a place and an orientation, in small ticks; the force and the torque there.
-fn brought<const D: usize>(
-    servo: &mut impl AnyServo<D>,
-    (from, to): (Vector<f64, D>, Vector<f64, D>),
+fn brought(
+    servo: &mut impl AnyServo,
+    (from, to): (Vector<f64, 3>, Vector<f64, 3>),
     turn: Vector<f64, 3>,
-) -> (Vector<f64, D>, Vector<f64, 3>) {
+) -> (Vector<f64, 3>, Vector<f64, 3>) {
     for tick in 0..=400 {
         let part = (f64::from(tick) / 200.0).min(1.0);
         let orientation = Rotation::identity().turned(turn * part);
@@ -79,7 +81,7 @@ fn brought<const D: usize>(
     (servo.forces()[0], servo.torque())
 }
 
-fn up<const D: usize>(height: f64) -> Vector<f64, D> {
+fn up(height: f64) -> Vector<f64, 3> {
     Vector::unit(1) * height
 }
 
@@ -166,7 +168,7 @@ fn device(turning: TurningProfile) -> DeviceProfile {
 }
 
 /// The same servo for a device that it moves from the first tick on.
-fn for_device(servo: Servo<3, Unprotected>, device: &dyn Device<3>) -> Servo<3> {
+fn for_device(servo: Servo<Unprotected>, device: &dyn Device) -> Servo {
     let protection = Protection::new(device.profile().clone());
     servo.protected(&protection.with(|s| s.rise_rate = f64::INFINITY)).unwrap()
 }
@@ -373,12 +375,12 @@ fn dampers_of_bodies_turn_the_hand_no_harder_than_the_device_bears() {
     assert!(damped[2] > 0.5e-4 && damped[2] <= 1.001e-4, "{damped:?}");
 }
 
-fn resting(height: f64) -> HandPath<3> {
+fn resting(height: f64) -> HandPath {
     let places = vec![up(0.1), up(height), up(height)];
     HandPath::new(vec![0.0, 0.5, 1.0], places, Interpolation::Linear).unwrap()
 }
 
-fn swing() -> HandPath<3> {
+fn swing() -> HandPath {
     let turns = vec![Vector::ZERO, Vector::ZERO, Vector([0.1, 0.0, -0.3])];
     HandPath::new(vec![0.0, 0.4, 1.0], turns, Interpolation::Linear).unwrap()
 }
@@ -409,13 +411,13 @@ fn a_run_turns_the_tool_and_reports_the_torque() {
 
 /// Answers for a while only, and remembers what was written last.
 struct Fragile {
-    inner: RecordedDevice<3>,
+    inner: RecordedDevice,
     ticks: u32,
     panics: bool,
     largest: f64,
 }
 
-impl Device<3> for Fragile {
+impl Device for Fragile {
     fn points(&self) -> usize {
         1
     }
@@ -424,7 +426,7 @@ impl Device<3> for Fragile {
         self.inner.profile()
     }
 
-    fn read(&mut self, time: f64, points: &mut [PointState<3>]) -> Result<Reading, DeviceLost> {
+    fn read(&mut self, time: f64, points: &mut [PointState]) -> Result<Reading, DeviceLost> {
         self.inner.read(time, points)
     }
 
@@ -432,7 +434,7 @@ impl Device<3> for Fragile {
         self.inner.write(forces)
     }
 
-    fn read_turn(&mut self) -> Result<Option<TurnState<3>>, DeviceLost> {
+    fn read_turn(&mut self) -> Result<Option<TurnState>, DeviceLost> {
         self.ticks += 1;
         assert!(!(self.panics && self.ticks > 900), "a driver's defect");
         if self.ticks > 900 {
@@ -485,9 +487,9 @@ fn a_device_that_senses_turns_alone_gets_none_of_the_torque() {
 }
 
 /// Shows what is written, from wherever it runs.
-struct Shown(RecordedDevice<3>, Arc<Mutex<Vector<f64, 3>>>);
+struct Shown(RecordedDevice, Arc<Mutex<Vector<f64, 3>>>);
 
-impl Device<3> for Shown {
+impl Device for Shown {
     fn points(&self) -> usize {
         1
     }
@@ -496,7 +498,7 @@ impl Device<3> for Shown {
         self.0.profile()
     }
 
-    fn read(&mut self, time: f64, points: &mut [PointState<3>]) -> Result<Reading, DeviceLost> {
+    fn read(&mut self, time: f64, points: &mut [PointState]) -> Result<Reading, DeviceLost> {
         self.0.read(time, points)
     }
 
@@ -504,7 +506,7 @@ impl Device<3> for Shown {
         self.0.write(forces)
     }
 
-    fn read_turn(&mut self) -> Result<Option<TurnState<3>>, DeviceLost> {
+    fn read_turn(&mut self) -> Result<Option<TurnState>, DeviceLost> {
         self.0.read_turn()
     }
 

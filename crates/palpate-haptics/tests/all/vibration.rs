@@ -20,14 +20,14 @@ use palpate_sim::{
 use palpate_vibration::{Command, Mapping, MappingOptions, Vibrates};
 
 /// A hand that comes to a floor after 0.31 s, presses it and slides along it for ever.
-fn hand(faults: Vec<Fault>) -> SimulatedTransport<RecordedDevice<2>, 2> {
-    let places = [[0.0, 0.01], [0.0, -0.003], [5.0, -0.003]].map(Vector);
+fn hand(faults: Vec<Fault>) -> SimulatedTransport<RecordedDevice> {
+    let places = [[0.0, 0.01, 0.0], [0.0, -0.003, 0.0], [5.0, -0.003, 0.0]].map(Vector);
     let times = vec![0.0, 0.5, 100.0];
     let path = HandPath::new(times, places.to_vec(), Interpolation::Linear).unwrap();
     SimulatedTransport::new(RecordedDevice::new(vec![path]).unwrap(), faults).unwrap()
 }
 
-fn servo(material: &Material) -> Servo<2> {
+fn servo(material: &Material) -> Servo {
     let floor = Shape::half_space([0.0, 1.0], 0.0).unwrap();
     let floor = Body::new(floor, Surface::new(material).unwrap()).unwrap();
     Servo::for_device(Bodies::new(vec![floor]).unwrap(), &hand(Vec::new())).unwrap()
@@ -41,11 +41,11 @@ fn mapping() -> Mapping {
     Mapping::new(MappingOptions::default()).unwrap()
 }
 
-fn fast<'a>(duration: f64) -> RunOptions<'a, 2> {
+fn fast<'a>(duration: f64) -> RunOptions<'a> {
     RunOptions { pace: Pace::AsFastAsPossible, ..RunOptions::new(duration) }
 }
 
-fn plain() -> ThreadOptions<2> {
+fn plain() -> ThreadOptions {
     ThreadOptions { raises_priority: false, ..ThreadOptions::default() }
 }
 

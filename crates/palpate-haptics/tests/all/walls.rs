@@ -150,15 +150,15 @@ fn a_fast_slide_is_stopped_by_a_thin_wall() {
 #[test]
 fn a_slot_narrower_than_the_probe_stops_it_at_its_mouth() {
     // Two plates 2 mm apart, a probe of 4 mm: it rests on both edges, sqrt(3) mm above.
-    let plate = |x: f64| cuboid([0.05, 0.05]).translated(Vector([x, -0.025])).unwrap();
+    let plate = |x: f64| cuboid([0.05, 0.05]).translated([x, -0.025]).unwrap();
     let slot = Shape::union([plate(-0.026), plate(0.026)]).unwrap();
-    let bottom = Vector([0.0, 3.0_f64.sqrt() * 1e-3]);
+    let bottom = Vector([0.0, 3.0_f64.sqrt() * 1e-3, 0.0]);
     cases(200, |u| {
         let mut part =
             || Ok::<_, arbitrary::Error>(f64::from(u.int_in_range(-1000..=1000)?) * 1e-3);
         let mut proxy = proxy(0.002);
-        let from = Vector([0.005 * part()?, 0.01]);
-        let to = Vector([0.0008 * part()?, -0.011 + 0.01 * part()?]);
+        let from = Vector([0.005 * part()?, 0.01, 0.0]);
+        let to = Vector([0.0008 * part()?, -0.011 + 0.01 * part()?, 0.0]);
         let mut last = stroke(&mut proxy, &slot, (from, to), 200);
         for _ in 0..50 {
             last = proxy.follow_shape(&slot, to);

@@ -5,11 +5,10 @@
 
 use std::collections::BTreeSet;
 
-use palpate::field::{Aabb, Vector};
+use palpate::field::Aabb;
 use palpate::render::SrgbColor;
 use palpate::scene::{AnyScene, BuiltBody, BuiltScene};
 
-use super::points::in_space;
 use crate::shader::{Formulas, MOST_OPERATIONS, Slot};
 use crate::wire::{BodyTold, BuiltTold, Way};
 
@@ -88,5 +87,5 @@ fn of_scene<const D: usize>(scene: &BuiltScene<D>) -> BuiltTold {
 }
 
 fn box_in_space<const D: usize>(Aabb { min, max }: Aabb<D>) -> Aabb<3> {
-    Aabb { min: Vector(in_space(min)), max: Vector(in_space(max)) }
+    Aabb { min: min.in_space(), max: max.in_space() }
 }

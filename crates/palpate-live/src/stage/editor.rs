@@ -20,7 +20,7 @@ use super::file::read_file;
 use super::hand::tour;
 use super::message::Received;
 use super::pages::{PageId, Pages};
-use super::performance::{AnyTour, Changed, Order, Showing};
+use super::performance::{Changed, Order, Showing};
 use super::room::Terms;
 use super::unsaved::LatestScene;
 use super::work::{Watch, Work};
@@ -407,8 +407,8 @@ fn send_tour(
     pages: &Pages,
 ) {
     let path = match scene {
-        AnyScene::Planar(scene) => tour(scene, points).map(|path| path.map(AnyTour::Planar)),
-        AnyScene::Spatial(scene) => tour(scene, points).map(|path| path.map(AnyTour::Spatial)),
+        AnyScene::Planar(scene) => tour(scene, points),
+        AnyScene::Spatial(scene) => tour(scene, points),
     };
     match path {
         Some(Ok(path)) => {

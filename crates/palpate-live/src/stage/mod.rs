@@ -52,7 +52,7 @@ use message::Received;
 pub(crate) use message::Waiting;
 pub(crate) use pages::{Opened, Out, Outbox, PageId, Pages};
 use performance::Order;
-use recording::{AnyReplay, Trace};
+use recording::Trace;
 use room::Terms;
 pub(crate) use room::{GivenClock, MOST_POINTS};
 pub(crate) use stop::{Presser, Stop};
@@ -244,10 +244,11 @@ impl Stage {
     pub(crate) fn take_trace(&self, bytes: &[u8]) -> Result<(), String> {
         let (scene, _) =
             self.shown.get().ok_or("there is no scene yet: open the page first")?;
-        let replay = match &*scene {
-            AnyScene::Planar(_) => AnyReplay::Planar(Arc::new(trace::read(bytes)?)),
-            AnyScene::Spatial(_) => AnyReplay::Spatial(Arc::new(trace::read(bytes)?)),
+        let dimension = match &*scene {
+            AnyScene::Planar(_) => 2,
+            AnyScene::Spatial(_) => 3,
         };
+        let replay = trace::read(bytes, dimension)?;
         let sent = self.orders.try_send(Order::TakeReplay(replay));
         sent.map_err(|_| "the program is busy: send the trace again".to_owned())
     }

@@ -18,9 +18,10 @@ use super::Shared;
 use super::heartbeat::Heartbeat;
 use super::inquiry::Inquiries;
 use super::pages::{PageId, Pages};
-use super::recording::{AnyReplay, MOST_ROWS, Recording, Trace};
-use super::room::{AnyRoom, Room, Terms, of_either};
+use super::recording::{MOST_ROWS, Recording, Trace};
+use super::room::{Room, Terms};
 use super::stop::Stops;
+use super::trace::Replay;
 use crate::wire::{Frame, StageTold, Told};
 
 /// How often the hand is led on.
@@ -62,7 +63,7 @@ pub(crate) enum Order {
     Tour(bool),
     /// The tour of the scene of a revision.
     TakeTour {
-        path: AnyTour,
+        path: HandPath,
         revision: u32,
     },
     Clock {
@@ -79,7 +80,7 @@ pub(crate) enum Order {
         on: bool,
     },
     /// Takes what is to be replayed.
-    TakeReplay(AnyReplay),
+    TakeReplay(Replay),
     /// What was recorded, as a file.
     Trace(SyncSender<Option<Trace>>),
     /// Renders another scene.
@@ -116,13 +117,6 @@ pub(crate) enum Showing {
     Refused(String),
 }
 
-/// A hand path of either dimension.
-#[derive(Debug)]
-pub(crate) enum AnyTour {
-    Planar(HandPath<2>),
-    Spatial(HandPath<3>),
-}
-
 /// The state of the thread.
 #[derive(Debug)]
 pub(super) struct Performance {
@@ -136,7 +130,7 @@ pub(super) struct Performance {
     inquiries: Arc<Inquiries>,
     /// The last frame, which goes on beating when its servo has ended.
     frame: Option<Frame>,
-    room: Option<AnyRoom>,
+    room: Option<Room>,
     revision: u32,
     /// The revision with which the servo began.
     began: u32,
@@ -204,7 +198,7 @@ impl Performance {
                     return self.pages.refuse(page, id, NO_SERVO, &[]);
                 };
                 let from = from.as_deref();
-                match of_either!(AnyRoom, room, room => room.lead(&target, point, from)) {
+                match room.lead(&target, point, from) {
                     Ok(()) => self.leader = Some(page),
                     Err(why) => return self.pages.refuse(page, id, &why, &[]),
                 }
@@ -220,20 +214,19 @@ impl Performance {
             Order::TellStop(page) => self.stops.tell(page, Instant::now(), &self.pages),
             Order::Tour(is_touring) => {
                 if let Some(room) = &mut self.room {
-                    of_either!(AnyRoom, room, room => room.set_touring(is_touring));
+                    room.set_touring(is_touring);
                 }
             }
-            Order::TakeTour { path, revision } => match (&mut self.room, path) {
-                _ if revision < self.began => {}
-                (Some(AnyRoom::Planar(room)), AnyTour::Planar(path)) => room.take_tour(path),
-                (Some(AnyRoom::Spatial(room)), AnyTour::Spatial(path)) => room.take_tour(path),
-                _ => {}
-            },
+            Order::TakeTour { path, revision } => {
+                if let Some(room) = self.room.as_mut().filter(|_| revision >= self.began) {
+                    room.take_tour(path);
+                }
+            }
             Order::Clock { page, id, speed, step } => {
                 let Some(room) = &self.room else {
                     return self.pages.refuse(page, id, NO_SERVO, &[]);
                 };
-                let clock = of_either!(AnyRoom, room, room => room.speed());
+                let clock = room.speed();
                 match speed.map_or(Ok(()), |speed| clock.set(speed)) {
                     Ok(()) => {
                         self.ticks = u64::from(step.unwrap_or_default());
@@ -273,7 +266,7 @@ impl Performance {
     fn replay(&mut self, is_on: bool) -> Result<(), String> {
         let Some(room) = &mut self.room else { return Err(NO_SERVO.to_owned()) };
         if !is_on {
-            return of_either!(AnyRoom, room, room => room.replay(None));
+            return room.replay(None);
         }
         self.recording.replay(room)?;
         self.leader = None;
@@ -283,23 +276,20 @@ impl Performance {
     fn let_go(&mut self) {
         self.leader = None;
         if let Some(room) = &mut self.room {
-            of_either!(AnyRoom, room, room => room.let_go());
+            room.let_go();
         }
     }
 
     /// Hands a scene to the servo that runs; whether it goes on with it.
     fn replace(&mut self, scene: &AnyScene, change: Changed) -> bool {
         let has_new_guides = change == Changed::Guides;
-        match (&mut self.room, scene) {
-            _ if change >= Changed::Servo => false,
-            (Some(AnyRoom::Planar(room)), AnyScene::Planar(scene)) => {
-                room.replace(Arc::new(scene.clone()), has_new_guides).is_ok()
-            }
-            (Some(AnyRoom::Spatial(room)), AnyScene::Spatial(scene)) => {
-                room.replace(Arc::new(scene.clone()), has_new_guides).is_ok()
-            }
-            _ => false,
-        }
+        let room = self.room.as_mut().filter(|_| change < Changed::Servo);
+        let Some(room) = room else { return false };
+        let replaced = match scene {
+            AnyScene::Planar(scene) => room.replace(scene, has_new_guides),
+            AnyScene::Spatial(scene) => room.replace(scene, has_new_guides),
+        };
+        replaced.is_ok()
     }
 
     fn show(&mut self, scene: &AnyScene, change: Changed) -> Showing {
@@ -309,19 +299,13 @@ impl Performance {
         }
         // Another scene has its own places.
         let before = self.room.as_ref().filter(|_| change != Changed::Scene);
-        let began = match (scene, before) {
-            (AnyScene::Planar(scene), Some(AnyRoom::Planar(before))) => {
-                self.begun(scene, Some(before)).map(AnyRoom::Planar)
-            }
-            (AnyScene::Planar(scene), _) => self.begun(scene, None).map(AnyRoom::Planar),
-            (AnyScene::Spatial(scene), Some(AnyRoom::Spatial(before))) => {
-                self.begun(scene, Some(before)).map(AnyRoom::Spatial)
-            }
-            (AnyScene::Spatial(scene), _) => self.begun(scene, None).map(AnyRoom::Spatial),
+        let began = match scene {
+            AnyScene::Planar(scene) => self.begun(scene, before),
+            AnyScene::Spatial(scene) => self.begun(scene, before),
         };
         match began {
             Ok(room) => {
-                let points = of_either!(AnyRoom, &room, room => room.points());
+                let points = room.points();
                 self.room = Some(room);
                 if let Some(rows) = self.recording.end() {
                     self.notice(&format!(
@@ -337,12 +321,11 @@ impl Performance {
     fn begun<const D: usize>(
         &self,
         scene: &BuiltScene<D>,
-        before: Option<&Room<D>>,
-    ) -> Result<Room<D>, String> {
-        let kept =
-            self.room.as_ref().map(|room| of_either!(AnyRoom, room, room => room.kept()));
-        let stop = self.stops.switch();
-        Room::begin(Arc::new(scene.clone()), &self.terms, before, kept, stop)
+        before: Option<&Room>,
+    ) -> Result<Room, String> {
+        let before = before.filter(|room| room.dimension() == D);
+        let kept = self.room.as_ref().map(Room::kept);
+        Room::begin(scene, &self.terms, before, kept, self.stops.switch())
     }
 
     /// Tells all pages what a person should read.
@@ -360,30 +343,28 @@ impl Performance {
             self.pages.broadcast(Told::Clients { count: clients });
         }
         let Some(room) = self.room.take() else { return self.rest(is_frame) };
-        if of_either!(AnyRoom, &room, room => room.has_ended()) {
-            let why = of_either!(AnyRoom, room, room => room.ending());
+        if room.has_ended() {
+            let why = room.ending();
             self.recording.end();
             self.notice(&format!("the servo has ended: {why}; the next edit begins another"));
             return self.rest(is_frame);
         }
         let room = self.room.insert(room);
         let is_stopped = self.stops.is_stopped();
-        of_either!(AnyRoom, &mut *room, room => room.set_stopped(is_stopped));
-        let speed = of_either!(AnyRoom, &*room, room => room.speed().get());
+        room.set_stopped(is_stopped);
+        let speed = room.speed().get();
         // At most the ticks of a step are released, so that the hand is led as often as in real time.
         let ticks = self.ticks.min((self.terms.rate * STEP.as_secs_f64()).ceil() as u64);
         self.ticks -= ticks;
         let (mut events, mut frame): (Vec<Event>, Option<Frame>) = (Vec::new(), None);
         let mut safety = self.safety.0;
         let is_full = self.recording.go_on(room);
-        of_either!(AnyRoom, room, room => {
-            room.speed().step(ticks);
-            if is_frame {
-                events.extend(std::iter::from_fn(|| room.next_event()).take(MOST_EVENTS));
-                frame = room.frame();
-                safety = room.safety();
-            }
-        });
+        room.speed().step(ticks);
+        if is_frame {
+            events.extend(std::iter::from_fn(|| room.next_event()).take(MOST_EVENTS));
+            frame = room.frame();
+            safety = room.safety();
+        }
         if is_full {
             self.notice(&format!("the recording is full: {MOST_ROWS} rows"));
         }

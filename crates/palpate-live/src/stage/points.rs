@@ -8,18 +8,20 @@ use palpate::scene::BuiltScene;
 
 /// A point of the page.
 pub(super) fn point_of<const D: usize>(numbers: &[f64]) -> Result<Point<D>, String> {
-    let wrong = || format!("a point of this scene is {D} numbers, got {}", numbers.len());
-    let point: [f64; D] = numbers.try_into().map_err(|_| wrong())?;
-    let is_usable = |x: &f64| x.abs() <= LARGEST_LENGTH;
-    match point.iter().find(|x| !is_usable(x)) {
-        None => Ok(Vector(point)),
-        Some(x) => Err(format!("a coordinate is at most {LARGEST_LENGTH:e} m, got {x} m")),
-    }
+    point_in_space(numbers, D).map(Vector::truncated)
 }
 
-/// A vector in space: in the plane, the third coordinate is zero.
-pub(super) fn in_space<const D: usize>(vector: Vector<f64, D>) -> [f64; 3] {
-    std::array::from_fn(|axis| vector.0.get(axis).copied().unwrap_or_default())
+/// A point of the page, of a scene of so many dimensions. One of the plane has z = 0.
+pub(super) fn point_in_space(numbers: &[f64], dimension: usize) -> Result<Point<3>, String> {
+    if numbers.len() != dimension {
+        let given = numbers.len();
+        return Err(format!("a point of this scene is {dimension} numbers, got {given}"));
+    }
+    let is_usable = |x: &f64| x.abs() <= LARGEST_LENGTH;
+    match numbers.iter().find(|x| !is_usable(x)) {
+        None => Ok(Vector(std::array::from_fn(|k| numbers.get(k).copied().unwrap_or(0.0)))),
+        Some(x) => Err(format!("a coordinate is at most {LARGEST_LENGTH:e} m, got {x} m")),
+    }
 }
 
 /// The longest edge of a scene's bounds [m]; 1 m for a scene without.

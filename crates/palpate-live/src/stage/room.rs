@@ -18,7 +18,7 @@ use palpate::servo_loop::{
 };
 
 use super::hand::{Lead, Leader};
-use super::points::{in_space, point_of};
+use super::points::point_in_space;
 use super::trace::Replay;
 use crate::wire::{Frame, FramePoint};
 
@@ -33,15 +33,16 @@ const KEPT: f64 = 1.0;
 
 /// A scene that is felt.
 #[derive(Debug)]
-pub(super) struct Room<const D: usize> {
-    scene: Arc<BuiltScene<D>>,
+pub(super) struct Room {
+    /// The dimension of its scene.
+    dimension: usize,
     /// Dropped before the thread, so that a clock that is held lets it end.
     speed: ClockSpeed,
-    thread: ServoThread<D>,
-    records: Records<D>,
-    steering: Steering<D>,
-    map: WorkspaceMap<D>,
-    lead: Lead<D>,
+    thread: ServoThread,
+    records: Records,
+    steering: Steering,
+    map: WorkspaceMap,
+    lead: Lead,
     /// The largest values since the last frame.
     peaks: Peaks,
     leader: Leader,
@@ -50,24 +51,6 @@ pub(super) struct Room<const D: usize> {
     /// What the safety chain had done by the last frame.
     safety: StageTicks,
 }
-
-/// A scene of either dimension that is felt.
-#[derive(Debug)]
-pub(super) enum AnyRoom {
-    Planar(Room<2>),
-    Spatial(Room<3>),
-}
-
-/// Runs an expression for what has either dimension.
-macro_rules! of_either {
-    ($kind:ident, $any:expr, $one:ident => $work:expr) => {
-        match $any {
-            $kind::Planar($one) => $work,
-            $kind::Spatial($one) => $work,
-        }
-    };
-}
-pub(super) use of_either;
 
 /// The largest values since the last frame.
 #[derive(Debug, Default)]
@@ -103,11 +86,11 @@ pub(super) struct Terms {
     pub(super) clock: GivenClock,
 }
 
-impl<const D: usize> Room<D> {
+impl Room {
     /// Begins to feel a scene, with what is kept of the room before; by its hand, if the room of the same
     /// scene is there.
-    pub(super) fn begin(
-        scene: Arc<BuiltScene<D>>,
+    pub(super) fn begin<const D: usize>(
+        scene: &BuiltScene<D>,
         terms: &Terms,
         before: Option<&Self>,
         kept: Option<Kept>,
@@ -116,7 +99,7 @@ impl<const D: usize> Room<D> {
         let said = |error: HapticsError| error.to_string();
         let tool = scene.tool.as_ref().map_or(Ok(None), BuiltTool::in_hand).map_err(said)?;
         let map = scene.workspace_of(&terms.profile, tool.as_ref()).map_err(said)?;
-        let mut lead = Lead::new(&scene, terms.points, map.scale());
+        let mut lead = Lead::new(scene, terms.points, map.scale());
         let points = lead.targets().len();
         if points > MOST_POINTS {
             return Err(format!(
@@ -148,7 +131,7 @@ impl<const D: usize> Room<D> {
             ..ThreadOptions::default()
         };
         if !scene.motions.is_empty() {
-            let moving = Arc::clone(&scene);
+            let moving = scene.clone();
             options =
                 options.with_motion(move |time, set_pose| moving.motion()(time, set_pose));
         }
@@ -163,7 +146,7 @@ impl<const D: usize> Room<D> {
         let (peaks, leader, is_lifted) = (Peaks::default(), Leader::default(), false);
         let safety = StageTicks::default();
         let mut room = Self {
-            scene,
+            dimension: D,
             speed,
             thread,
             records,
@@ -185,10 +168,15 @@ impl<const D: usize> Room<D> {
         if std::mem::replace(&mut self.is_lifted, is_lifted) != is_lifted {
             self.thread.control().lift(is_lifted);
         }
-        let place = |target: &Point<D>| self.map.point_to_device(*target);
+        let place = |target: &Point<3>| self.map.point_to_device(*target);
         let targets: Vec<_> = self.lead.targets().iter().map(place).collect();
         // There is a target for each hand, and all are finite.
         let _ = self.steering.steer(&targets);
+    }
+
+    /// The dimension of its scene.
+    pub(super) fn dimension(&self) -> usize {
+        self.dimension
     }
 
     pub(super) fn speed(&self) -> &ClockSpeed {
@@ -210,9 +198,9 @@ impl<const D: usize> Room<D> {
 
     /// Hands the bodies of another scene to the servo, which goes on; and its guides, if they are new:
     /// guides that stay keep their hold of the hand.
-    pub(super) fn replace(
+    pub(super) fn replace<const D: usize>(
         &mut self,
-        scene: Arc<BuiltScene<D>>,
+        scene: &BuiltScene<D>,
         has_new_guides: bool,
     ) -> Result<(), String> {
         let said = |error: HapticsError| error.to_string();
@@ -221,8 +209,7 @@ impl<const D: usize> Room<D> {
         if has_new_guides {
             control.replace_guides(&scene.guides).map_err(said)?;
         }
-        self.lead.take_scene(&scene);
-        self.scene = scene;
+        self.lead.take_scene(scene);
         Ok(())
     }
 
@@ -233,8 +220,9 @@ impl<const D: usize> Room<D> {
         point: Option<usize>,
         from: Option<&[f64]>,
     ) -> Result<(), String> {
-        let from = from.map(point_of).transpose()?;
-        self.lead.lead(point_of(target)?, point, from)?;
+        let place = |numbers| point_in_space(numbers, self.dimension);
+        let (target, from) = (place(target)?, from.map(place).transpose()?);
+        self.lead.lead(target, point, from)?;
         self.steer();
         Ok(())
     }
@@ -250,7 +238,7 @@ impl<const D: usize> Room<D> {
     }
 
     /// Starts to lead the hand along a path of each contact point, or ends it.
-    pub(super) fn replay(&mut self, replay: Option<Arc<Replay<D>>>) -> Result<(), String> {
+    pub(super) fn replay(&mut self, replay: Option<Arc<Replay>>) -> Result<(), String> {
         self.lead.replay(replay)
     }
 
@@ -259,7 +247,7 @@ impl<const D: usize> Room<D> {
         self.thread.control().latest().map_or(StageTicks::default(), |latest| latest.safety)
     }
 
-    pub(super) fn take_tour(&mut self, tour: HandPath<D>) {
+    pub(super) fn take_tour(&mut self, tour: HandPath) {
         self.lead.take_tour(tour);
     }
 
@@ -286,7 +274,7 @@ impl<const D: usize> Room<D> {
     }
 
     /// Leads the hand on, and takes the rows of the ticks since; `row` gets each.
-    pub(super) fn go_on(&mut self, mut row: impl FnMut(&TraceRow<D>)) {
+    pub(super) fn go_on(&mut self, mut row: impl FnMut(&TraceRow)) {
         let (time, devices) = match self.thread.control().latest() {
             Some(snapshot) => {
                 let devices = snapshot.touches.iter().map(|touch| touch.device);
@@ -319,9 +307,9 @@ impl<const D: usize> Room<D> {
         let snapshot = self.thread.control().latest()?;
         let peaks = std::mem::take(&mut self.peaks);
         let safety = std::mem::replace(&mut self.safety, snapshot.safety);
-        let point = |(number, touch): (usize, &palpate::haptics::Touch<D>)| FramePoint {
+        let point = |(number, touch): (usize, &palpate::haptics::Touch)| FramePoint {
             vectors: [touch.device, touch.proxy, touch.force, touch.wanted, touch.normal]
-                .map(in_space),
+                .map(|vector| vector.0),
             depth: touch.depth(),
             largest_force: peaks.forces.get(number).copied().unwrap_or_default(),
             body: touch.body,
@@ -332,7 +320,7 @@ impl<const D: usize> Room<D> {
             std::array::from_fn(|kind| all[kind] + of_point[kind])
         });
         let frame = Frame {
-            dimension: D as u8,
+            dimension: self.dimension as u8,
             is_stopped: snapshot.is_stopped,
             is_lifted: snapshot.is_lifted,
             is_held,
@@ -358,7 +346,7 @@ impl<const D: usize> Room<D> {
 }
 
 impl Peaks {
-    fn take<const D: usize>(&mut self, row: &TraceRow<D>) {
+    fn take(&mut self, row: &TraceRow) {
         let point = row.point as usize;
         if self.forces.len() <= point {
             self.forces.resize(point + 1, 0.0);
@@ -377,15 +365,15 @@ impl Peaks {
     }
 }
 
-type Steered<const D: usize> = (SteeredDevice<D>, Steering<D>);
+type Steered = (SteeredDevice, Steering);
 
 /// The device, with a hand for each contact point.
-fn device<const D: usize>(
-    lead: &Lead<D>,
-    map: &WorkspaceMap<D>,
+fn device(
+    lead: &Lead,
+    map: &WorkspaceMap,
     terms: &Terms,
-) -> Result<Steered<D>, palpate::sim::SimulationError> {
-    let hand = |place: &Point<D>| Hand::resting(map.point_to_device(*place));
+) -> Result<Steered, palpate::sim::SimulationError> {
+    let hand = |place: &Point<3>| Hand::resting(map.point_to_device(*place));
     let hands = lead.targets().iter().map(hand).collect::<Result<_, _>>()?;
     SteeredDevice::new(SimulatedDevice::new(terms.profile.clone(), hands)?, FASTEST)
 }

@@ -19,19 +19,23 @@ const AXES: [&str; 3] = ["x", "y", "z"];
 pub(crate) const NOTHING: &str = "there are no rows to replay";
 
 /// Times [s] and places [m] of a contact point.
-type Places<const D: usize> = (Vec<f64>, Vec<Point<D>>);
+type Places = (Vec<f64>, Vec<Point<3>>);
 
-/// What a hand is led along: a path of each contact point, and the times [s] between which the hand is lifted.
+/// What a hand is led along.
 #[derive(Clone, Debug)]
-pub(crate) struct Replay<const D: usize> {
-    pub(crate) paths: Vec<HandPath<D>>,
+pub(crate) struct Replay {
+    /// The dimension of the scenes in which it is replayed.
+    pub(crate) dimension: usize,
+    /// The path of each contact point.
+    pub(crate) paths: Vec<HandPath>,
+    /// The times [s] between which the hand is lifted.
     pub(crate) lifts: Vec<[f64; 2]>,
 }
 
-impl<const D: usize> Replay<D> {
+impl Replay {
     /// The places of the contact points at a time from the beginning on [m].
-    pub(crate) fn places(&self, time: f64) -> Vec<Point<D>> {
-        let place = |path: &HandPath<D>| path.state_at(path.start() + time).position;
+    pub(crate) fn places(&self, time: f64) -> Vec<Point<3>> {
+        let place = |path: &HandPath| path.state_at(path.start() + time).position;
         self.paths.iter().map(place).collect()
     }
 
@@ -48,22 +52,25 @@ impl<const D: usize> Replay<D> {
     }
 }
 
-/// Rows as a file.
-pub(crate) fn written<const D: usize>(rows: &[TraceRow<D>]) -> Vec<u8> {
+/// Rows of a scene of so many dimensions as a file.
+pub(crate) fn written(rows: &[TraceRow], dimension: usize) -> Vec<u8> {
     let mut out = TraceWriter::new(Vec::new());
+    if dimension == 2 {
+        out = out.in_plane();
+    }
     // Writing to memory has no way to fail.
     let written = rows.iter().try_for_each(|row| out.write(row));
     written.and_then(|()| out.finish()).unwrap_or_default()
 }
 
-/// The replay of rows.
-pub(crate) fn replay<const D: usize>(rows: &[TraceRow<D>]) -> Result<Replay<D>, String> {
+/// The replay of rows of a scene of so many dimensions.
+pub(crate) fn replay(rows: &[TraceRow], dimension: usize) -> Result<Replay, String> {
     let (mut all, mut lifts) = (Vec::new(), Vec::new());
     for row in rows {
         add(&mut all, row.point as usize, row.time_s, row.device)?;
         add_lift(&mut lifts, row.time_s, row.is_lifted);
     }
-    finished(all, lifts)
+    finished(all, lifts, dimension)
 }
 
 /// Adds what a row says of the lifts; one that goes on ends at the last row.
@@ -75,23 +82,24 @@ fn add_lift(lifts: &mut Vec<(bool, [f64; 2])>, time: f64, is_lifted: bool) {
     }
 }
 
-/// The replay of a file: `time_s`, `point` if there are several, `lifted` if it says so, and `device_x_m` … or,
+/// The replay of a file in a scene of so many dimensions: `time_s`, `point` if there are several, `lifted` if it says so, and `device_x_m` … or,
 /// as in the paths of `palpate feel`, `x_m` ….
-pub(crate) fn read<const D: usize>(bytes: &[u8]) -> Result<Replay<D>, String> {
+pub(crate) fn read(bytes: &[u8], dimension: usize) -> Result<Replay, String> {
     let mut reader = csv::Reader::from_reader(bytes);
     let said = |error: csv::Error| error.to_string();
     let names = reader.headers().map_err(said)?.clone();
     let column = |name: &str| names.iter().position(|other| other == name);
     let needed = |name: &str| {
-        column(name)
-            .ok_or_else(|| format!("there is no column {name}: a trace in {D}D has one"))
+        column(name).ok_or_else(|| {
+            format!("there is no column {name}: a trace in {dimension}D has one")
+        })
     };
     let prefix = if column("device_x_m").is_some() { "device_" } else { "" };
     let mut places = Vec::new();
-    for axis in &AXES[..D] {
+    for axis in &AXES[..dimension] {
         places.push(needed(&format!("{prefix}{axis}_m"))?);
     }
-    if D == 2 && column(&format!("{prefix}z_m")).is_some() {
+    if dimension == 2 && column(&format!("{prefix}z_m")).is_some() {
         return Err("the trace is of a scene in space, this one is in the plane".to_owned());
     }
     let (time, point, lifted) = (needed("time_s")?, column("point"), column("lifted"));
@@ -120,16 +128,11 @@ pub(crate) fn read<const D: usize>(bytes: &[u8]) -> Result<Replay<D>, String> {
         let is_lifted = lifted.is_some_and(|column| row.get(column) == Some("true"));
         add_lift(&mut lifts, time, is_lifted);
     }
-    finished(all, lifts)
+    finished(all, lifts, dimension)
 }
 
 /// Adds a place of a contact point, unless it comes too soon after the last one.
-fn add<const D: usize>(
-    all: &mut Vec<Places<D>>,
-    point: usize,
-    time: f64,
-    place: Point<D>,
-) -> Result<(), String> {
+fn add(all: &mut Vec<Places>, point: usize, time: f64, place: Point<3>) -> Result<(), String> {
     if point >= MOST_POINTS {
         return Err(format!(
             "a hand has at most {MOST_POINTS} contact points, got the number {point}"
@@ -149,19 +152,20 @@ fn add<const D: usize>(
     Ok(())
 }
 
-fn finished<const D: usize>(
-    all: Vec<Places<D>>,
+fn finished(
+    all: Vec<Places>,
     lifts: Vec<(bool, [f64; 2])>,
-) -> Result<Replay<D>, String> {
+    dimension: usize,
+) -> Result<Replay, String> {
     if all.is_empty() {
         return Err(NOTHING.to_owned());
     }
-    let path = |(point, (times, places)): (usize, Places<D>)| {
+    let path = |(point, (times, places)): (usize, Places)| {
         HandPath::new(times, places, Interpolation::Monotone)
             .map_err(|error| format!("contact point {point}: {error}"))
     };
     let paths = all.into_iter().enumerate().map(path).collect::<Result<_, _>>()?;
-    Ok(Replay { paths, lifts: lifts.into_iter().map(|(_, lift)| lift).collect() })
+    Ok(Replay { dimension, paths, lifts: lifts.into_iter().map(|(_, lift)| lift).collect() })
 }
 
 #[cfg(test)]
@@ -172,12 +176,12 @@ mod tests {
     fn paths_are_read_from_traces_and_from_paths() {
         let trace = "time_s,point,device_x_m,device_y_m,proxy_x_m\n\
                      0.001,0,0.5,0.25,9\n0.002,0,7,7,9\n0.011,0,0.75,0.25,9\n";
-        let paths = read::<2>(trace.as_bytes()).unwrap().paths;
+        let paths = read(trace.as_bytes(), 2).unwrap().paths;
         assert_eq!(paths.len(), 1);
         assert!((paths[0].duration() - 0.01).abs() < 1e-15);
-        assert_eq!(paths[0].state_at(0.011).position, Vector([0.75, 0.25]));
+        assert_eq!(paths[0].state_at(0.011).position, Vector([0.75, 0.25, 0.0]));
         let path = "time_s,x_m,y_m,z_m\n0,1,2,3\n1,1,2,4\n";
-        let found = read::<3>(path.as_bytes()).unwrap();
+        let found = read(path.as_bytes(), 3).unwrap();
         assert_eq!(found.paths[0].state_at(1.0).position, Vector([1.0, 2.0, 4.0]));
     }
 
@@ -185,7 +189,7 @@ mod tests {
     fn lifts_are_read_from_traces() {
         let trace = "time_s,x_m,y_m,lifted\n5,0,0,false\n5.1,0,0,true\n5.2,1,0,true\n\
                      5.3,1,0,false\n5.4,2,0,true\n5.5,2,0,true\n";
-        let replay = read::<2>(trace.as_bytes()).unwrap();
+        let replay = read(trace.as_bytes(), 2).unwrap();
         assert_eq!(replay.lifts, [[5.1, 5.3], [5.4, 5.5]]);
         assert_eq!(replay.lifted_until(0.05), None);
         assert!((replay.lifted_until(0.15).unwrap() - 0.3).abs() < 1e-12);
@@ -200,14 +204,14 @@ mod tests {
     }
 
     /// A recording of ten seconds.
-    fn long(start: f64) -> Replay<2> {
+    fn long(start: f64) -> Replay {
         let text = format!("time_s,x_m,y_m\n{start},0,0\n{},1,0\n", start + 10.0);
-        read(text.as_bytes()).unwrap()
+        read(text.as_bytes(), 2).unwrap()
     }
 
     #[test]
     fn what_is_no_trace_is_told_with_its_line() {
-        let why = |text: &str| read::<2>(text.as_bytes()).unwrap_err();
+        let why = |text: &str| read(text.as_bytes(), 2).unwrap_err();
         assert_eq!(why("a,b\n1,2\n"), "there is no column x_m: a trace in 2D has one");
         assert_eq!(
             why("time_s,x_m,y_m\n0,0,0\n1,east,0\n"),

@@ -11,7 +11,7 @@ const PERIOD: f64 = 1e-3;
 
 /// The stage of a device of 0.1 kg at a wall of 1000 N/m: with a hand of 0.1 kg, half cycles up
 /// to 89 ms are quick.
-fn stage() -> LimitCycle<Vector<f64, 2>> {
+fn stage() -> LimitCycle<Vector<f64, 3>> {
     LimitCycle::new(LimitCycleOptions {
         is_on: true,
         stiffness: 1000.0,
@@ -23,11 +23,11 @@ fn stage() -> LimitCycle<Vector<f64, 2>> {
 }
 
 /// Moves a device to `depth(t)` for two seconds at a wall that is `stiff` [N/m].
-fn moved(stage: &mut LimitCycle<Vector<f64, 2>>, stiff: f64, depth: impl Fn(f64) -> f64) {
+fn moved(stage: &mut LimitCycle<Vector<f64, 3>>, stiff: f64, depth: impl Fn(f64) -> f64) {
     for tick in 0..2000 {
         let depth = depth(f64::from(tick) * PERIOD);
-        let force = Vector([0.0, stiff * depth.max(0.0)]);
-        let position = Vector([0.0, -depth]);
+        let force = Vector([0.0, stiff * depth.max(0.0), 0.0]);
+        let position = Vector([0.0, -depth, 0.0]);
         let input = CycleInput::of(
             ForcesOf { bodies: force, guides: Vector::ZERO },
             force.norm(),
@@ -68,8 +68,8 @@ fn a_trembling_hand_gets_its_wall_back() {
         let mut soft = 0;
         for tick in 0..60_000 {
             let depth = 5e-3 + way * (TAU * frequency * f64::from(tick) * PERIOD).sin();
-            let force = Vector([0.0, 1000.0 * depth]);
-            let position = Vector([0.0, -depth]);
+            let force = Vector([0.0, 1000.0 * depth, 0.0]);
+            let position = Vector([0.0, -depth, 0.0]);
             let part = stage.step(&CycleInput::of(
                 ForcesOf { bodies: force, guides: Vector::ZERO },
                 force.norm(),
@@ -105,8 +105,8 @@ fn a_wall_beyond_the_force_limit_is_halved_smoothly_too() {
     let mut last = limit;
     for tick in 0..800 {
         let depth = 5e-3 + 1e-3 * (TAU * 20.0 * f64::from(tick) * PERIOD).sin();
-        let (effort, position) = (1000.0 * depth, Vector([0.0, -depth]));
-        let force = Vector([0.0, effort.min(limit)]);
+        let (effort, position) = (1000.0 * depth, Vector([0.0, -depth, 0.0]));
+        let force = Vector([0.0, effort.min(limit), 0.0]);
         let part = stage.step(&CycleInput::of(
             ForcesOf { bodies: force, guides: Vector::ZERO },
             effort,
@@ -127,8 +127,8 @@ fn a_wall_is_halved_smoothly_and_comes_back_when_nothing_touches() {
     let mut least = 1.0_f64;
     for tick in 0..250 {
         let depth = 2e-3 + 1e-3 * (TAU * 20.0 * f64::from(tick) * PERIOD).sin();
-        let force = Vector([0.0, 1000.0 * depth]);
-        let position = Vector([0.0, -depth]);
+        let force = Vector([0.0, 1000.0 * depth, 0.0]);
+        let position = Vector([0.0, -depth, 0.0]);
         let part = stage.step(&CycleInput::of(
             ForcesOf { bodies: force, guides: Vector::ZERO },
             force.norm(),

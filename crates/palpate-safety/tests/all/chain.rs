@@ -37,11 +37,11 @@ fn at_once(stiffness: f64) -> SafetyOptions {
     })
 }
 
-fn chain<const D: usize>(device: &DeviceProfile, options: SafetyOptions) -> SafetyChain<D> {
+fn chain(device: &DeviceProfile, options: SafetyOptions) -> SafetyChain {
     SafetyChain::new(device, RATE, options).unwrap()
 }
 
-fn at<const D: usize>(position: [f64; D]) -> PortState<D> {
+fn at(position: [f64; 3]) -> PortState {
     PortState { position: Vector(position), ..PortState::at_rest() }
 }
 
@@ -110,16 +110,16 @@ impl Wall {
         };
         let options =
             at_once(self.stiffness).with(|s| s.has_passivity_control = self.has_control);
-        let mut chain = chain::<2>(&device, options);
+        let mut chain = chain(&device, options);
         let mut estimator = VelocityEstimator::new(RATE, self.encoder_step).unwrap();
         let damping = 0.5 + self.grip;
         let mut plant = Plant { mass: self.mass, damping, x: self.start, v: 0.0 };
         let (mut balance, mut least_balance) = (0.0, 0.0_f64);
         for _ in 0..10_000 {
             let seen = reading(plant.x, self.encoder_step);
-            let position = Vector([0.0, seen]);
+            let position = Vector([0.0, seen, 0.0]);
             let velocity = estimator.update(position);
-            let wanted = Vector([0.0, self.stiffness * (-seen).max(0.0)]);
+            let wanted = Vector([0.0, self.stiffness * (-seen).max(0.0), 0.0]);
             let state = PortState { position, velocity, ..PortState::at_rest() };
             let force = chain.step(wanted, &state).0[1];
             // A tenth of a tick at a time, as the balance may be least between ticks.
@@ -225,19 +225,19 @@ fn a_material_that_was_accepted_is_never_touched() {
                 ..DeviceProfile::unlimited("wall")
             };
             let wanted = SafetyOptions::new(Impedance::new(stiffness, damping).unwrap());
-            let mut chain = chain::<2>(&device, wanted.with(|s| s.rise_rate = f64::INFINITY));
+            let mut chain = chain(&device, wanted.with(|s| s.rise_rate = f64::INFINITY));
             let impedance = chain.accepted().impedance;
             let mut estimator = VelocityEstimator::new(RATE, encoder_step).unwrap();
             // A hand of 0.5 N·s/m: without one, a wall of 2 b / T is a spring without loss.
             let mut plant = Plant { mass: 0.05, damping: 1.0, x: 0.01, v: 0.0 };
             for _ in 0..5000 {
-                let position = Vector([0.0, reading(plant.x, encoder_step)]);
+                let position = Vector([0.0, reading(plant.x, encoder_step), 0.0]);
                 let velocity = estimator.update(position);
                 let depth = (-position.0[1]).max(0.0);
                 // A spring, and a damper against the approach.
                 let approach = if depth > 0.0 { (-velocity.0[1]).max(0.0) } else { 0.0 };
                 let push = impedance.stiffness() * depth + impedance.damping() * approach;
-                let wanted = Vector([0.0, push]);
+                let wanted = Vector([0.0, push, 0.0]);
                 let state = PortState { position, velocity, ..PortState::at_rest() };
                 let force = chain.step(wanted, &state);
                 assert_eq!(force, wanted);
@@ -252,14 +252,14 @@ fn a_material_that_was_accepted_is_never_touched() {
 fn a_stiff_wall_still_feels_like_one() {
     let device =
         DeviceProfile { mass: 0.05, least_damping: 0.5, ..DeviceProfile::unlimited("") };
-    let mut chain = chain::<2>(&device, at_once(3000.0));
+    let mut chain = chain(&device, at_once(3000.0));
     let mut least = f64::INFINITY;
     for tick in 0..=2000 {
         // To a depth of 2 mm in a second, and held for another.
         let depth = 2e-6 * f64::from(tick.min(1000));
         let speed = if tick < 1000 { -2e-3 } else { 0.0 };
-        let state = PortState { velocity: Vector([0.0, speed]), ..at([0.0, -depth]) };
-        let force = chain.step(Vector([0.0, 3000.0 * depth]), &state).0[1];
+        let state = PortState { velocity: Vector([0.0, speed, 0.0]), ..at([0.0, -depth, 0.0]) };
+        let force = chain.step(Vector([0.0, 3000.0 * depth, 0.0]), &state).0[1];
         if tick >= 1000 {
             least = least.min(force);
         }
@@ -271,17 +271,17 @@ fn a_stiff_wall_still_feels_like_one() {
 fn a_long_rub_does_not_pay_for_an_oscillation() {
     let device =
         DeviceProfile { mass: 0.05, least_damping: 0.5, ..DeviceProfile::unlimited("") };
-    let mut chain = chain::<2>(&device, at_once(1000.0));
+    let mut chain = chain(&device, at_once(1000.0));
     // Ten metres against 1 N take 10 J.
     for tick in 0..10_000 {
-        let _ = chain.step(Vector([-1.0, 0.0]), &at([1e-3 * f64::from(tick), 0.0]));
+        let _ = chain.step(Vector([-1.0, 0.0, 0.0]), &at([1e-3 * f64::from(tick), 0.0, 0.0]));
     }
     // Along the way, the same force gives out what its spring, the reserve and the damping of
     // the device, 0.5 N·s/m and a hundredth at 1 m/s over 1 m, allow.
     let (mut x, mut given) = (9.999, 0.0);
     for _ in 0..1000 {
-        let state = PortState { velocity: Vector([-1.0, 0.0]), ..at([x, 0.0]) };
-        given += chain.step(Vector([-1.0, 0.0]), &state).0[0] * -1e-3;
+        let state = PortState { velocity: Vector([-1.0, 0.0, 0.0]), ..at([x, 0.0, 0.0]) };
+        given += chain.step(Vector([-1.0, 0.0, 0.0]), &state).0[0] * -1e-3;
         x -= 1e-3;
     }
     let allowed = 0.5 / 1000.0 + 1e-4 + 0.505;
@@ -294,14 +294,14 @@ fn what_is_placed_inside_a_passive_shape_is_pushed_out_in_full() {
     let device =
         DeviceProfile { mass: 0.05, least_damping: 0.5, ..DeviceProfile::unlimited("") };
     let pushed_out = |is_placed: bool| {
-        let mut chain = chain::<2>(&device, at_once(500.0));
+        let mut chain = chain(&device, at_once(500.0));
         let mut plant = Plant { mass: 0.05, damping: 0.5, x: -0.002, v: 0.0 };
-        let _ = chain.step(Vector::ZERO, &at([0.0, plant.x]));
+        let _ = chain.step(Vector::ZERO, &at([0.0, plant.x, 0.0]));
         for tick in 0..100 {
-            let velocity = Vector([0.0, plant.v]);
+            let velocity = Vector([0.0, plant.v, 0.0]);
             let start = if is_placed && tick == 0 { 0.0 } else { 1.0 };
-            let state = PortState { velocity, start, ..at([0.0, plant.x]) };
-            let wanted = Vector([0.0, 500.0 * (-plant.x).max(0.0)]);
+            let state = PortState { velocity, start, ..at([0.0, plant.x, 0.0]) };
+            let wanted = Vector([0.0, 500.0 * (-plant.x).max(0.0), 0.0]);
             plant.hold(chain.step(wanted, &state).0[1], PERIOD);
         }
         (plant.x > 0.0, chain.report().passivity.effect.ticks)
@@ -312,7 +312,7 @@ fn what_is_placed_inside_a_passive_shape_is_pushed_out_in_full() {
 
 #[test]
 fn where_nothing_is_wrong_nothing_is_changed() {
-    let mut chain = chain::<3>(
+    let mut chain = chain(
         &device(),
         at_once(500.0).with(|s| (s.acceptance, s.is_strict) = (Acceptance::Passive, true)),
     );
@@ -345,26 +345,26 @@ fn every_stage_can_be_made_to_act() {
     // The controller would not let a force rise that far on a hand at rest.
     let stiff =
         SafetyOptions { impedance, ..options }.with(|s| s.has_passivity_control = false);
-    let mut chain = chain::<2>(&device(), stiff.with(|s| s.acceptance = Acceptance::Passive));
+    let mut chain = chain(&device(), stiff.with(|s| s.acceptance = Acceptance::Passive));
     assert_eq!(chain.report().impedance.stiffness_factor, 0.25);
-    let mut run = |ticks: u32, force: [f64; 2], state: PortState<2>| {
+    let mut run = |ticks: u32, force: [f64; 3], state: PortState| {
         (0..ticks).map(|_| chain.step(Vector(force), &state)).last().unwrap()
     };
     // The start's ramp; the slew limit; the largest force; then the continuous one.
-    assert_eq!(run(1, [0.0, 1.0], at([0.0, 0.0])), Vector([0.0, 0.1]));
-    assert_eq!(run(20, [0.0, 1.0], at([0.0, 0.0])), Vector([0.0, 1.0]));
-    assert_eq!(run(20, [6.0, 8.0], at([0.0, 0.0])), Vector([4.8, 6.4]));
-    assert!(run(20_000, [6.0, 8.0], at([0.0, 0.0])).norm() < 2.2);
+    assert_eq!(run(1, [0.0, 1.0, 0.0], at([0.0, 0.0, 0.0])), Vector([0.0, 0.1, 0.0]));
+    assert_eq!(run(20, [0.0, 1.0, 0.0], at([0.0, 0.0, 0.0])), Vector([0.0, 1.0, 0.0]));
+    assert_eq!(run(20, [6.0, 8.0, 0.0], at([0.0, 0.0, 0.0])), Vector([4.8, 6.4, 0.0]));
+    assert!(run(20_000, [6.0, 8.0, 0.0], at([0.0, 0.0, 0.0])).norm() < 2.2);
     // The guard; the watchdog; the emergency stop.
-    assert_eq!(run(1, [1.0, f64::NAN], at([0.0, 0.0])), Vector::ZERO);
-    let late = PortState { late: 2.0 * PERIOD, ..at([0.0, 0.0]) };
-    assert_eq!(run(50, [1.0, 0.0], late), Vector::ZERO);
-    assert_eq!(run(50, [1.0, 0.0], at([0.0, 0.0])), Vector([1.0, 0.0]));
+    assert_eq!(run(1, [1.0, f64::NAN, 0.0], at([0.0, 0.0, 0.0])), Vector::ZERO);
+    let late = PortState { late: 2.0 * PERIOD, ..at([0.0, 0.0, 0.0]) };
+    assert_eq!(run(50, [1.0, 0.0, 0.0], late), Vector::ZERO);
+    assert_eq!(run(50, [1.0, 0.0, 0.0], at([0.0, 0.0, 0.0])), Vector([1.0, 0.0, 0.0]));
     chain.stop();
     assert!(chain.is_stopped());
-    assert_eq!(chain.step(Vector([1.0, 0.0]), &at([0.0, 0.0])), Vector::ZERO);
+    assert_eq!(chain.step(Vector([1.0, 0.0, 0.0]), &at([0.0, 0.0, 0.0])), Vector::ZERO);
     chain.release();
-    let rising = chain.step(Vector([1.0, 0.0]), &at([0.0, 0.0])).0[0];
+    let rising = chain.step(Vector([1.0, 0.0, 0.0]), &at([0.0, 0.0, 0.0])).0[0];
     assert!(rising > 0.0 && rising <= 0.1);
 
     let report = chain.report();
@@ -384,9 +384,9 @@ fn every_stage_can_be_made_to_act() {
 #[test]
 fn what_is_no_number_is_guarded_before_it_is_cut_and_the_force_rises_again() {
     let options = SafetyOptions::new(Impedance::default()).with(|s| s.rise_rate = 20.0);
-    let mut chain = chain::<2>(&device(), options);
-    let state = at([0.0, 0.0]);
-    let mut step = |y: f64| chain.step_within(Vector([0.0, y]), 8.0, &state).0[1];
+    let mut chain = chain(&device(), options);
+    let state = at([0.0, 0.0, 0.0]);
+    let mut step = |y: f64| chain.step_within(Vector([0.0, y, 0.0]), 8.0, &state).0[1];
     (0..100).for_each(|_| assert!(step(1.0) <= 1.0));
     assert_eq!(step(f64::NAN), 0.0);
     assert!((step(1.0) - 0.02).abs() < 1e-12);
@@ -402,7 +402,7 @@ fn whatever_comes_in_the_force_is_finite_and_within_every_limit() {
         let options = SafetyOptions::new(impedance).with(|s| s.rise_rate = 200.0);
         let acceptance =
             *u.choose(&[Acceptance::Passive, Acceptance::Device, Acceptance::AsIs])?;
-        let mut chain = chain::<3>(&device, options.with(|s| s.acceptance = acceptance));
+        let mut chain = chain(&device, options.with(|s| s.acceptance = acceptance));
         let mut last = Vector::ZERO;
         for _ in 0..150 {
             let mut wanted = vector(u)? * 20.0;
@@ -447,7 +447,7 @@ fn whatever_comes_in_the_force_is_finite_and_within_every_limit() {
 
 #[test]
 fn a_step_allocates_and_frees_nothing() {
-    let mut chain = chain::<3>(&device(), at_once(3000.0));
+    let mut chain = chain(&device(), at_once(3000.0));
     let mut estimator = VelocityEstimator::new(RATE, 1e-5).unwrap();
     for tick in 0..5000 {
         let position = Vector([0.0, 0.01 * (0.01 * f64::from(tick)).sin(), 0.0]);
@@ -464,7 +464,7 @@ fn a_step_allocates_and_frees_nothing() {
 fn wrong_numbers_are_named() {
     let options = SafetyOptions::new(Impedance::default());
     let refuses = |device: DeviceProfile, options: SafetyOptions| {
-        SafetyChain::<3>::new(&device, RATE, options).unwrap_err().to_string()
+        SafetyChain::new(&device, RATE, options).unwrap_err().to_string()
     };
     let fine = DeviceProfile::unlimited("fine");
     assert_eq!(
@@ -483,5 +483,5 @@ fn wrong_numbers_are_named() {
         refuses(weak, strict.with(|s| s.acceptance = Acceptance::Passive))
             .ends_with("K ≤ 2 b / T")
     );
-    assert!(SafetyChain::<3>::new(&fine, f64::INFINITY, options).is_err());
+    assert!(SafetyChain::new(&fine, f64::INFINITY, options).is_err());
 }

@@ -18,19 +18,19 @@ fn device() -> DeviceProfile {
     DeviceProfile { least_damping: 0.5, mass: 0.2, ..DeviceProfile::unlimited("test") }
 }
 
-fn chain(device: &DeviceProfile) -> SafetyChain<2> {
+fn chain(device: &DeviceProfile) -> SafetyChain {
     let options = SafetyOptions::new(Impedance::new(1.0, 0.0).unwrap());
     SafetyChain::new(device, RATE, options).unwrap()
 }
 
 /// The guide's written force in a tick of a hand at `y`.
-fn guided(chain: &mut SafetyChain<2>, wall: f64, y: f64) -> f64 {
+fn guided(chain: &mut SafetyChain, wall: f64, y: f64) -> f64 {
     let state = PortState {
-        position: Vector([0.0, y]),
-        free_force: Vector([0.0, -GUIDE * y]),
+        position: Vector([0.0, y, 0.0]),
+        free_force: Vector([0.0, -GUIDE * y, 0.0]),
         ..PortState::at_rest()
     };
-    -chain.step(Vector([wall, 0.0]), &state)[1]
+    -chain.step(Vector([wall, 0.0, 0.0]), &state)[1]
 }
 
 /// Once a hand that moved away from the middle while the motors were hot seemed to be given what
@@ -72,8 +72,8 @@ fn a_jump_whose_square_overflows_is_no_panic() {
         chain(&DeviceProfile { least_damping: 0.0, max_stiffness: 1000.0, ..device() });
     for y in [0.0, 1e200, -1e200, 0.0] {
         let state = PortState {
-            position: Vector([0.0, y]),
-            free_force: Vector([0.0, -1.0]),
+            position: Vector([0.0, y, 0.0]),
+            free_force: Vector([0.0, -1.0, 0.0]),
             ..PortState::at_rest()
         };
         assert!(chain.step(Vector::ZERO, &state).is_finite());
@@ -90,17 +90,17 @@ fn a_guide_at_the_force_limit_is_no_body_after_a_touch() {
             ..DeviceProfile { max_force: 3.0, ..device() }
         };
         let mut chain = chain(&device);
-        let mut step = |wanted: [f64; 2], free: [f64; 2], y: f64| {
+        let mut step = |wanted: [f64; 3], free: [f64; 3], y: f64| {
             let state = PortState {
-                position: Vector([0.0, y]),
+                position: Vector([0.0, y, 0.0]),
                 free_force: Vector(free),
                 ..PortState::at_rest()
             };
             let _ = chain.step(Vector(wanted), &state);
         };
-        step([touched, 0.0], [1.7, 5.1], 0.0);
-        (0..500).for_each(|_| step([0.0; 2], [1.7, 5.1], 0.0));
-        (0..20).for_each(|tick| step([0.0; 2], [0.0; 2], 1e-3 * f64::from(tick)));
+        step([touched, 0.0, 0.0], [1.7, 5.1, 0.0], 0.0);
+        (0..500).for_each(|_| step([0.0; 3], [1.7, 5.1, 0.0], 0.0));
+        (0..20).for_each(|tick| step([0.0; 3], [0.0; 3], 1e-3 * f64::from(tick)));
         chain.report().passivity.energy_out
     };
     assert_eq!(energy(1e-3), energy(0.0));

@@ -52,13 +52,13 @@ pub struct BuiltScene<const D: usize> {
     /// The tool, if the scene has one.
     pub tool: Option<BuiltTool<D>>,
     /// The guides of the hand in free space.
-    pub guides: Vec<Guide<D>>,
+    pub guides: Vec<Guide>,
     /// The motions of its bodies, in the order of the scene.
     pub motions: Vec<BuiltMotion<D>>,
     /// The pictures worth making of it.
     pub views: Vec<WrittenView>,
     /// The map from the device's space to the world; `None` if the scene gives none.
-    pub workspace: Option<WorkspaceMap<D>>,
+    pub workspace: Option<WorkspaceMap>,
     /// The mesh files that its shapes are made of, and what was found in each.
     pub meshes: Vec<BuiltMesh>,
 }
@@ -70,7 +70,7 @@ pub struct BuiltTool<const D: usize> {
     /// The radius of each contact point, or the offset added to the shape [m].
     pub radius: f64,
     /// The contact points in the tool's own coordinates [m]; empty for one at the origin.
-    pub points: Vec<Point<D>>,
+    pub points: Vec<Point<3>>,
     /// The shape in the tool's own coordinates, instead of points.
     pub shape: Option<Shape<D>>,
     /// The coupling of a tool with a shape, and the largest force on the hand, which the scene may
@@ -221,7 +221,7 @@ where
 }
 
 /// The map from the device's space to the world, if the tool has one.
-fn workspace<const D: usize>(scene: &Scene) -> Result<Option<WorkspaceMap<D>>, Problems>
+fn workspace<const D: usize>(scene: &Scene) -> Result<Option<WorkspaceMap>, Problems>
 where
     Turns: Turning<D>,
 {
@@ -231,7 +231,10 @@ where
     let pose = pose.map_err(|problems| problems.under("pose"));
     let scale = crate::check::positive("scale", workspace.scale, "");
     let made = Problems::both(pose, scale).and_then(|(pose, ())| {
-        let map = WorkspaceMap::new(pose.unwrap_or_else(Pose::identity), workspace.scale);
+        let map = WorkspaceMap::new(
+            pose.map_or_else(Pose::identity, |pose| pose.in_space()),
+            workspace.scale,
+        );
         map.map_err(|error| Problem::new(error.to_string()).into())
     });
     made.map(Some).map_err(|problems| problems.under("workspace"))
@@ -249,9 +252,10 @@ where
     let shape = tool.shape.as_ref().map(|written| builder.shape(written)).transpose();
     let shape = shape.map_err(|problems| problems.under("shape"));
     let (shape, ()) = Problems::both(shape, tool.check(D))?;
+    let points = tool.points.iter().map(|point| Ok(vector::<D>(point)?.in_space()));
     Ok(Some(BuiltTool {
         radius: tool.probe_radius(),
-        points: tool.points.iter().map(|point| vector(point)).collect::<Result<_, _>>()?,
+        points: points.collect::<Result<_, Problem>>()?,
         shape,
         options: tool.options(),
         acceptance: tool.acceptance.map(Into::into),
@@ -259,11 +263,14 @@ where
     }))
 }
 
-fn guides<const D: usize>(scene: &Scene) -> Result<Vec<Guide<D>>, Problems> {
+fn guides(scene: &Scene) -> Result<Vec<Guide>, Problems> {
+    let dimension = scene.dimension();
     let mut wrong = Problems::default();
     let mut guides = Vec::with_capacity(scene.guides.len());
     for (i, guide) in scene.guides.iter().enumerate() {
-        let made = guide.check(D).and_then(|()| guide.built().map_err(Into::into));
+        let made = guide
+            .check(dimension.count())
+            .and_then(|()| guide.built(dimension).map_err(Into::into));
         guides.extend(wrong.kept(made.map_err(|problems| problems.at(i))));
     }
     wrong.end(Ok(guides))

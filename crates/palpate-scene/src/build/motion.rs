@@ -227,17 +227,17 @@ impl<const D: usize> BuiltScene<D> {
     /// )?;
     /// let AnyScene::Planar(scene) = scene.build()? else { unreachable!("dimension is 2") };
     /// let mut moved = Vec::new();
-    /// let mut set_pose = |body: usize, pose: Pose<2>| moved.push((body, pose.translation.0));
+    /// let mut set_pose = |body: usize, pose: Pose<3>| moved.push((body, pose.translation.0));
     /// scene.motion()(2.0, &mut set_pose);
-    /// assert_eq!(moved, [(1, [0.0, 0.5])]);
+    /// assert_eq!(moved, [(1, [0.0, 0.5, 0.0])]);
     /// # Ok(())
     /// # }
     /// ```
     ///
     /// Real-time: the closure allocates nothing, takes no lock, cannot panic.
-    pub fn motion(&self) -> impl FnMut(f64, &mut dyn FnMut(usize, Pose<D>)) {
+    pub fn motion(&self) -> impl FnMut(f64, &mut dyn FnMut(usize, Pose<3>)) {
         |time, set_pose| {
-            self.moving().for_each(|body| set_pose(body, self.pose_at(body, time)));
+            self.moving().for_each(|body| set_pose(body, self.pose_at(body, time).in_space()));
         }
     }
 

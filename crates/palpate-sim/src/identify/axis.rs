@@ -37,8 +37,8 @@ const DEVIATIONS: f64 = 2.0;
 const DECAY: f64 = 5.0;
 
 /// Moves an axis until its numbers are known, or stay unknown.
-pub(super) fn identify_axis<const D: usize>(
-    port: &mut Port<'_, D>,
+pub(super) fn identify_axis(
+    port: &mut Port<'_>,
     seed: u64,
 ) -> Result<IdentifiedAxis, IdentifyError> {
     let (axis, bounds, period) = (port.axis(), port.bounds, 1.0 / port.rate());

@@ -93,7 +93,7 @@ pub struct IdentifyProgress {
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
 /// let profile = profile_named("omega")?;
 /// let built = DeviceProfile { mass: 0.3, least_damping: 1.2, friction: 0.15, ..profile.clone() };
-/// let free = Hand::free(Vector([0.0, 0.0]))?;
+/// let free = Hand::free(Vector([0.0, 0.0, 0.0]))?;
 /// let mut device = SimulatedDevice::new(built, vec![free])?;
 ///
 /// let mut tick = 0.0;
@@ -113,18 +113,17 @@ pub struct IdentifyProgress {
 /// # }
 /// ```
 #[inline(never)]
-pub fn identify<const D: usize>(
-    device: &mut dyn Device<D>,
+pub fn identify(
+    device: &mut dyn Device,
     options: IdentifyOptions,
     next_tick: &mut NextTick<'_>,
 ) -> Result<Identified, IdentifyError> {
     let profile = device.profile().clone();
     options.check(&profile)?;
     check_forces(&profile)?;
-    let along = (0..D).map(|i| (DeviceAxis::Along(i), options.along(&profile)));
+    let along = (0..3).map(|i| (DeviceAxis::Along(i), options.along(&profile)));
     let about = options.about(&profile);
-    let turns = if D < 3 { 2..3 } else { 0..3 };
-    let turns = turns.filter_map(|i| about.map(|bounds| (DeviceAxis::About(i), bounds)));
+    let turns = (0..3).filter_map(|i| about.map(|bounds| (DeviceAxis::About(i), bounds)));
     let axes: Vec<_> = along.chain(turns).collect();
     let mut port = Port::new(device, options, next_tick);
     port.progress.axes = axes.len();

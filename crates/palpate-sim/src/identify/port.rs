@@ -46,18 +46,18 @@ pub(super) struct Reading {
 }
 
 /// A device of which one axis is pushed. Once it is open, zero forces are written when it is dropped.
-pub(super) struct Port<'a, const D: usize> {
-    device: &'a mut dyn Device<D>,
+pub(super) struct Port<'a> {
+    device: &'a mut dyn Device,
     next_tick: &'a mut NextTick<'a>,
     pub(super) progress: IdentifyProgress,
     options: IdentifyOptions,
     pub(super) bounds: Bounds,
-    points: Vec<PointState<D>>,
-    forces: Vec<Vector<f64, D>>,
+    points: Vec<PointState>,
+    forces: Vec<Vector<f64, 3>>,
     /// The time of the first tick [s].
     first_tick: Option<f64>,
-    start: Option<PointState<D>>,
-    start_turn: Option<Rotation<D>>,
+    start: Option<PointState>,
+    start_turn: Option<Rotation<3>>,
     /// Angles from the start of the identification [rad].
     turned: Vector<f64, 3>,
     /// The angle about the other axes at the start of the axis [rad].
@@ -72,9 +72,9 @@ pub(super) struct Port<'a, const D: usize> {
     recent: VecDeque<Reading>,
 }
 
-impl<'a, const D: usize> Port<'a, D> {
+impl<'a> Port<'a> {
     pub(super) fn new(
-        device: &'a mut dyn Device<D>,
+        device: &'a mut dyn Device,
         options: IdentifyOptions,
         next_tick: &'a mut NextTick<'a>,
     ) -> Self {
@@ -288,7 +288,7 @@ impl<'a, const D: usize> Port<'a, D> {
     /// Refuses a handle that left its range along or about any axis.
     fn check_range(
         &self,
-        moved: Vector<f64, D>,
+        moved: Vector<f64, 3>,
         turned: Vector<f64, 3>,
     ) -> Result<(), IdentifyError> {
         let along = moved.0.iter().enumerate();
@@ -356,7 +356,7 @@ impl Sums {
     }
 }
 
-impl<const D: usize> Drop for Port<'_, D> {
+impl Drop for Port<'_> {
     fn drop(&mut self) {
         if !self.is_open {
             return;

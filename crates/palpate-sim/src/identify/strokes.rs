@@ -95,8 +95,8 @@ impl Breakaway {
 }
 
 /// The motions of one axis.
-pub(super) struct Motions<'p, 'a, const D: usize> {
-    port: &'p mut Port<'a, D>,
+pub(super) struct Motions<'p, 'a> {
+    port: &'p mut Port<'a>,
     pub(super) strokes: Vec<Stroke>,
     breakaway: Breakaway,
     /// The largest force above breakaway.
@@ -110,9 +110,9 @@ pub(super) struct Motions<'p, 'a, const D: usize> {
     seed: u64,
 }
 
-impl<'p, 'a, const D: usize> Motions<'p, 'a, D> {
+impl<'p, 'a> Motions<'p, 'a> {
     /// Waits for a rest, and raises the force in each direction until the handle moves.
-    pub(super) fn begin(port: &'p mut Port<'a, D>, seed: u64) -> Result<Self, IdentifyError> {
+    pub(super) fn begin(port: &'p mut Port<'a>, seed: u64) -> Result<Self, IdentifyError> {
         let no_forces = Breakaway { up: 0.0, down: 0.0 };
         let mut motions = Self {
             port,

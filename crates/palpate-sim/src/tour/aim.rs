@@ -7,7 +7,7 @@
 //! which enough of it is seen. The hand winds over the part that is seen, and flies from body to
 //! body above all that lies between.
 
-use palpate_field::{Aabb, Point, Shape, Vector};
+use palpate_field::{Aabb, Point, Shape, SpaceShape, Vector};
 
 use super::smoothing::smoothed_points;
 use super::{
@@ -24,7 +24,10 @@ const SHORTEST_VISIT: f64 = 0.1;
 /// Rays along which a body is looked at from a direction: 81 in a row in the plane, nine rows of
 /// nine in space. A body of which less than an 81st of the width is free in the plane, or less
 /// than a ninth in space, may be missed.
-const ROW: [usize; 2] = [81, 9];
+const ROW: usize = 9;
+
+/// As [`ROW`], in the plane.
+const ROW_IN_PLANE: usize = 81;
 
 /// The part of these rays that must see a body at first; then any will do.
 const ENOUGH: f64 = 0.1;
@@ -67,23 +70,23 @@ const ROUNDED: usize = 8;
 const ARC_POINTS: u32 = 64;
 
 /// What is seen of a body along parallel rays.
-struct Target<const D: usize> {
+struct Target {
     /// From the body to where the rays come from; of length one.
-    up: Vector<f64, D>,
+    up: Vector<f64, 3>,
     /// The middle of what is seen, at the body's foot [m].
-    foot: Point<D>,
+    foot: Point<3>,
     /// Axes across the rays, each as long as half of what is seen along it [m].
-    across: Vec<Vector<f64, D>>,
+    across: Vec<Vector<f64, 3>>,
 }
 
-impl<const D: usize> Target<D> {
+impl Target {
     /// Half the longest extent of what is seen [m].
     fn reach(&self) -> f64 {
         self.across.iter().map(|axis| axis.norm()).fold(0.0, f64::max)
     }
 }
 
-impl<const D: usize> Tour<D> {
+impl Tour {
     /// The path over a scene, `whole`, that touches as many of its `bodies` as it can.
     ///
     /// If the path of [`over`](Self::over) touches all of them, it is that path. Otherwise the
@@ -107,10 +110,10 @@ impl<const D: usize> Tour<D> {
     ///
     /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
     /// let table = Shape::from_kernel(Cuboid::new(Vector([1.0, 0.04, 1.0]))?);
-    /// let ball = Shape::from_kernel(Ball::new(0.01)?).translated(Vector([0.31, 0.03, -0.17]))?;
+    /// let ball = Shape::<3>::from_kernel(Ball::new(0.01)?).translated(Vector([0.31, 0.03, -0.17]))?;
     /// let whole = Shape::union([table.clone(), ball.clone()])?;
     /// let bounds = whole.promise().bounds.ok_or("both have bounds")?.aabb;
-    /// let path = Tour::new(bounds, 10.0)?.over_each(&whole, &[table, ball.clone()])?;
+    /// let path = Tour::new(bounds, 10.0)?.over_each(&whole, &[table.into(), ball.clone().into()])?;
     /// assert!(path.positions().iter().any(|hand| ball.distance(*hand) < 0.002));
     /// # Ok(())
     /// # }
@@ -118,9 +121,9 @@ impl<const D: usize> Tour<D> {
     #[inline(never)]
     pub fn over_each(
         &self,
-        whole: &Shape<D>,
-        bodies: &[Shape<D>],
-    ) -> Result<HandPath<D>, SimulationError> {
+        whole: &Shape<3>,
+        bodies: &[SpaceShape],
+    ) -> Result<HandPath, SimulationError> {
         let around = self.over(whole);
         let touched =
             around.as_ref().map_or(0, |path| self.touched(whole, bodies, path.positions()));
@@ -139,7 +142,7 @@ impl<const D: usize> Tour<D> {
     }
 
     /// How many of the bodies a path touches.
-    fn touched(&self, whole: &Shape<D>, bodies: &[Shape<D>], path: &[Point<D>]) -> usize {
+    fn touched(&self, whole: &Shape<3>, bodies: &[SpaceShape], path: &[Point<3>]) -> usize {
         let tolerance = RAY_TOLERANCE * self.size;
         let mut is_touched = vec![false; bodies.len()];
         for point in path {
@@ -148,14 +151,16 @@ impl<const D: usize> Tour<D> {
                 continue;
             }
             let missing = bodies.iter().zip(&mut is_touched).filter(|(_, is)| !**is);
-            missing.for_each(|(body, is)| *is = body.distance(*point) <= nearest + tolerance);
+            missing.for_each(|(body, is)| {
+                *is = body.shape().distance(*point) <= nearest + tolerance
+            });
         }
         is_touched.iter().filter(|is| **is).count()
     }
 
     /// Visits of all bodies that are seen from outside; `None` if none is. What has been passed
     /// is in seconds at the hand's own speed.
-    fn visits(&self, whole: &Shape<D>, bodies: &[Shape<D>]) -> Option<Route<D>> {
+    fn visits(&self, whole: &Shape<3>, bodies: &[SpaceShape]) -> Option<Route> {
         let boxes: Vec<_> = bodies.iter().map(|body| self.box_of(body)).collect();
         let outer = boxes.iter().fold(self.bounds, |all, aabb| all.union(aabb));
         let scene = Outlook { tour: self, whole, outer };
@@ -166,7 +171,7 @@ impl<const D: usize> Tour<D> {
             .sum();
         let share = self.duration / targets.len().max(1) as f64;
         let time = (share - flights / targets.len().max(1) as f64).max(LEAST_SHARE * share);
-        let mut all: Option<(Route<D>, Vector<f64, D>)> = None;
+        let mut all: Option<(Route, Vector<f64, 3>)> = None;
         for target in &targets {
             let Some(visit) = scene.visit(target, time) else { continue };
             let Some((route, up)) = &mut all else {
@@ -186,13 +191,16 @@ impl<const D: usize> Tour<D> {
     }
 
     /// The box of a body; of one without bounds, the part of it in and about the scene.
-    fn box_of(&self, body: &Shape<D>) -> Aabb<D> {
-        let part = self.bounds.grown(ORBIT_HEIGHT * self.size);
-        body.promise().bounds.map_or(part, |bounds| bounds.aabb)
+    fn box_of(&self, body: &SpaceShape) -> Aabb<3> {
+        let mut part = self.bounds.grown(ORBIT_HEIGHT * self.size);
+        if self.is_flat {
+            (part.min[2], part.max[2]) = (0.0, 0.0);
+        }
+        body.bounds().map_or(part, |bounds| bounds.aabb)
     }
 }
 
-impl<const D: usize> Route<D> {
+impl Route {
     /// Goes on with `next`, which begins where this ends.
     fn append(&mut self, next: Self) {
         let before = self.travelled();
@@ -202,16 +210,16 @@ impl<const D: usize> Route<D> {
 }
 
 /// A scene that is looked at from outside.
-struct Outlook<'a, const D: usize> {
-    tour: &'a Tour<D>,
-    whole: &'a Shape<D>,
+struct Outlook<'a> {
+    tour: &'a Tour,
+    whole: &'a Shape<3>,
     /// The box around all bodies.
-    outer: Aabb<D>,
+    outer: Aabb<3>,
 }
 
-impl<const D: usize> Outlook<'_, D> {
+impl Outlook<'_> {
     /// The ray that comes down to `foot` from above the scene.
-    fn look(&self, foot: Point<D>, up: Vector<f64, D>) -> Sight<D> {
+    fn look(&self, foot: Point<3>, up: Vector<f64, 3>) -> Sight {
         let [_, top] = extent(&self.outer, up);
         let length = top + self.clearance() + self.tour.probe_radius - foot.dot(up);
         self.tour.look_down(self.whole, foot, up, length)
@@ -224,13 +232,13 @@ impl<const D: usize> Outlook<'_, D> {
 
     /// What is seen of each body: in the first direction from which enough of it is seen, else in
     /// the first from which any of it is.
-    fn targets(&self, bodies: &[Shape<D>], boxes: &[Aabb<D>]) -> Vec<Target<D>> {
+    fn targets(&self, bodies: &[SpaceShape], boxes: &[Aabb<3>]) -> Vec<Target> {
         let mut missing: Vec<usize> = (0..bodies.len()).collect();
         let mut targets = Vec::new();
         for enough in [ENOUGH, 0.0] {
-            for up in directions() {
+            for up in directions(self.tour.is_flat) {
                 missing.retain(|&body| {
-                    let target = self.target(&bodies[body], &boxes[body], up, enough);
+                    let target = self.target(bodies[body].shape(), &boxes[body], up, enough);
                     let is_missing = target.is_none();
                     targets.extend(target);
                     is_missing
@@ -244,13 +252,13 @@ impl<const D: usize> Outlook<'_, D> {
     /// `enough` of the rays.
     fn target(
         &self,
-        body: &Shape<D>,
-        aabb: &Aabb<D>,
-        up: Vector<f64, D>,
+        body: &Shape<3>,
+        aabb: &Aabb<3>,
+        up: Vector<f64, 3>,
         enough: f64,
-    ) -> Option<Target<D>> {
+    ) -> Option<Target> {
         let [low, _] = extent(aabb, up);
-        let axes = across(up);
+        let axes = across(up, self.tour.is_flat);
         let centre = aabb.centre() + up * (low - aabb.centre().dot(up));
         let halves: Vec<f64> = axes
             .iter()
@@ -259,7 +267,7 @@ impl<const D: usize> Outlook<'_, D> {
                 0.5 * (high - low)
             })
             .collect();
-        let row = if D > 2 { ROW[1] } else { ROW[0] };
+        let row = if self.tour.is_flat { ROW_IN_PLANE } else { ROW };
         let place = |i: usize| (2 * i + 1) as f64 / row as f64 - 1.0;
         let mut found = vec![[f64::INFINITY, f64::NEG_INFINITY]; axes.len()];
         let (mut seen, count) = (0_usize, row.pow(axes.len() as u32));
@@ -291,18 +299,21 @@ impl<const D: usize> Outlook<'_, D> {
     }
 
     /// `true` if the surface that a ray sees is that of `body`.
-    fn meets(&self, body: &Shape<D>, sight: &Sight<D>) -> bool {
+    fn meets(&self, body: &Shape<3>, sight: &Sight) -> bool {
         let reached = self.tour.probe_radius + 2.0 * RAY_TOLERANCE * self.tour.size;
         let at = sight.foot + sight.up * sight.height;
         sight.seen.is_some() && body.distance(at) <= reached
     }
 
     /// The way over what is seen of a body, for about `time` [s].
-    fn visit(&self, target: &Target<D>, time: f64) -> Option<Route<D>> {
+    fn visit(&self, target: &Target, time: f64) -> Option<Route> {
         let reach = target.reach();
-        let sizes = Vector(std::array::from_fn(|axis| {
+        let mut sizes = Vector(std::array::from_fn(|axis| {
             target.across.get(axis).map_or(reach, |axis| axis.norm())
         }));
+        if self.tour.is_flat {
+            sizes[2] = 0.0;
+        }
         let size = 2.0 * reach;
         let tour = Tour {
             bounds: Aabb::centred(sizes * (2.0 * VISIT_GRAIN)),
@@ -328,7 +339,7 @@ impl<const D: usize> Outlook<'_, D> {
     /// The flight between two places above which rays in these directions are free: above all
     /// that lies between if the directions are equal, else round the scene. `None` if a body
     /// without bounds is in the way.
-    fn flight(&self, ends: [Point<D>; 2], ups: [Vector<f64, D>; 2]) -> Option<Route<D>> {
+    fn flight(&self, ends: [Point<3>; 2], ups: [Vector<f64, 3>; 2]) -> Option<Route> {
         let corners = if ups[0] == ups[1] {
             self.over_between(ends, ups[0])
         } else {
@@ -345,7 +356,7 @@ impl<const D: usize> Outlook<'_, D> {
     }
 
     /// Up, across above the highest place between, and down.
-    fn over_between(&self, [from, to]: [Point<D>; 2], up: Vector<f64, D>) -> Vec<Point<D>> {
+    fn over_between(&self, [from, to]: [Point<3>; 2], up: Vector<f64, 3>) -> Vec<Point<3>> {
         let [low, _] = extent(&self.outer, up);
         let way = (to - from) - up * (to - from).dot(up);
         let count = (way.norm() / (STEP * self.tour.detail())).min(MOST_FLIGHT_POINTS).ceil();
@@ -357,21 +368,21 @@ impl<const D: usize> Outlook<'_, D> {
             })
             .fold(low, f64::max);
         let height = from.dot(up).max(to.dot(up)).max(highest + self.clearance());
-        let above = |point: Point<D>| point + up * (height - point.dot(up));
+        let above = |point: Point<3>| point + up * (height - point.dot(up));
         vec![from, above(from), above(to), to]
     }
 
     /// Out to a ball around the scene, on it, and in again.
     fn round_between(
         &self,
-        [from, to]: [Point<D>; 2],
-        ups: [Vector<f64, D>; 2],
-    ) -> Option<Vec<Point<D>>> {
+        [from, to]: [Point<3>; 2],
+        ups: [Vector<f64, 3>; 2],
+    ) -> Option<Vec<Point<3>>> {
         let centre = self.outer.centre();
         let radius =
             self.outer.half_extents().norm() + 2.0 * self.tour.probe_radius + self.clearance();
         // The larger root of ‖p + t u − c‖ = r.
-        let leave = |point: Point<D>, up: Vector<f64, D>| {
+        let leave = |point: Point<3>, up: Vector<f64, 3>| {
             let off = point - centre;
             let along = off.dot(up);
             let root = along * along - off.dot(off) + radius * radius;
@@ -379,9 +390,11 @@ impl<const D: usize> Outlook<'_, D> {
         };
         let (out, back) = (leave(from, ups[0]), leave(to, ups[1]));
         let top = centre + Vector::unit(1) * radius;
-        let arc = |from: Point<D>, to: Point<D>| on_ball([from, to], centre, radius);
+        let arc = |from: Point<3>, to: Point<3>| {
+            on_ball([from, to], centre, radius, self.tour.is_flat)
+        };
         let ways = [arc(out, back), [arc(out, top), arc(top, back)].concat()];
-        let is_free = |way: &Vec<Point<D>>| {
+        let is_free = |way: &Vec<Point<3>>| {
             way.iter().all(|p| self.whole.distance(*p) > self.tour.probe_radius)
         };
         let round = ways.into_iter().find(is_free)?;
@@ -391,13 +404,13 @@ impl<const D: usize> Outlook<'_, D> {
 
 /// The targets in the order of visits: those of a direction together, and each next to the one
 /// before.
-fn in_turn<const D: usize>(mut targets: Vec<Target<D>>) -> Vec<Target<D>> {
-    let mut ordered: Vec<Target<D>> = Vec::with_capacity(targets.len());
+fn in_turn(mut targets: Vec<Target>) -> Vec<Target> {
+    let mut ordered: Vec<Target> = Vec::with_capacity(targets.len());
     while !targets.is_empty() {
         let next = ordered.last().map_or(0, |last| {
-            let way = |target: &Target<D>| (target.foot - last.foot).norm();
-            let turned = |target: &Target<D>| u8::from(target.up != last.up);
-            let order = |a: &Target<D>, b: &Target<D>| {
+            let way = |target: &Target| (target.foot - last.foot).norm();
+            let turned = |target: &Target| u8::from(target.up != last.up);
+            let order = |a: &Target, b: &Target| {
                 turned(a).cmp(&turned(b)).then(way(a).total_cmp(&way(b)))
             };
             let least = targets.iter().enumerate().min_by(|a, b| order(a.1, b.1));
@@ -409,7 +422,7 @@ fn in_turn<const D: usize>(mut targets: Vec<Target<D>>) -> Vec<Target<D>> {
 }
 
 /// The least and the largest coordinate of a box along `axis` [m].
-fn extent<const D: usize>(aabb: &Aabb<D>, axis: Vector<f64, D>) -> [f64; 2] {
+fn extent(aabb: &Aabb<3>, axis: Vector<f64, 3>) -> [f64; 2] {
     let (middle, half) = (aabb.centre().dot(axis), aabb.half_extents());
     let reach: f64 = half.0.iter().zip(axis.0).map(|(half, part)| half * part.abs()).sum();
     [middle - reach, middle + reach]
@@ -417,25 +430,26 @@ fn extent<const D: usize>(aabb: &Aabb<D>, axis: Vector<f64, D>) -> [f64; 2] {
 
 /// The directions to look from, of length one: from above, from above at a slant, from the
 /// sides, and from below last.
-fn directions<const D: usize>() -> Vec<Vector<f64, D>> {
+fn directions(is_flat: bool) -> Vec<Vector<f64, 3>> {
     let signs = [1.0, 0.0, -1.0];
-    let mut all: Vec<Vector<f64, D>> = (0..3_usize.pow(D as u32))
+    let mut all: Vec<Vector<f64, 3>> = (0..27)
         .map(|i| Vector(std::array::from_fn(|axis| signs[i / 3_usize.pow(axis as u32) % 3])))
         .collect();
-    all.retain(|direction| *direction != Vector::ZERO);
+    all.retain(|direction| *direction != Vector::ZERO && !(is_flat && direction[2] != 0.0));
     all.sort_by(|a, b| b[1].total_cmp(&a[1]).then(a.norm().total_cmp(&b.norm())));
     all.into_iter().map(|direction| direction * (1.0 / direction.norm())).collect()
 }
 
 /// Axes across a direction, of length one and perpendicular to each other.
-fn across<const D: usize>(up: Vector<f64, D>) -> Vec<Vector<f64, D>> {
+fn across(up: Vector<f64, 3>, is_flat: bool) -> Vec<Vector<f64, 3>> {
     let mut axes = vec![up];
     // x and z before y: seen from above, they are the axes themselves.
-    for axis in [0, 2, 1] {
+    let most = if is_flat { 2 } else { 3 };
+    for axis in [0, 2, 1].into_iter().filter(|axis| *axis < most) {
         let rest = axes
             .iter()
             .fold(Vector::unit(axis), |rest, other| rest - *other * rest.dot(*other));
-        if rest.norm() > 0.5 && axes.len() < D {
+        if rest.norm() > 0.5 && axes.len() < most {
             axes.push(rest * (1.0 / rest.norm()));
         }
     }
@@ -444,7 +458,7 @@ fn across<const D: usize>(up: Vector<f64, D>) -> Vec<Vector<f64, D>> {
 
 /// The places of a way about `way` long [m] that winds over a target, from its middle to its
 /// middle: `sin(2πmt)` along the first axis and `sin(2πt)` along the second.
-fn wound<const D: usize>(target: &Target<D>, way: f64) -> Vec<Point<D>> {
+fn wound(target: &Target, way: f64) -> Vec<Point<3>> {
     let reach = target.reach();
     let sweeps = (way / (4.0 * reach)).round().clamp(FEWEST_SWEEPS, MOST_SWEEPS);
     let place = |i: usize| {
@@ -458,7 +472,7 @@ fn wound<const D: usize>(target: &Target<D>, way: f64) -> Vec<Point<D>> {
 
 /// Removes each sight that lies lower than a neighbour by more than `fall` [m] for each ray between
 /// them.
-fn hide<const D: usize>(sights: &mut [Sight<D>], fall: f64) {
+fn hide(sights: &mut [Sight], fall: f64) {
     let mut cover: Vec<f64> = sights.iter().map(|sight| sight.height).collect();
     for i in 1..cover.len() {
         cover[i] = cover[i].max(cover[i - 1] - fall);
@@ -474,7 +488,7 @@ fn hide<const D: usize>(sights: &mut [Sight<D>], fall: f64) {
 }
 
 /// `count + 1` places at equal distances along a line.
-fn evenly<const D: usize>(line: &[Point<D>], count: usize) -> Vec<Point<D>> {
+fn evenly(line: &[Point<3>], count: usize) -> Vec<Point<3>> {
     let sums = line.windows(2).scan(0.0, |sum, pair| {
         *sum += (pair[1] - pair[0]).norm();
         Some(*sum)
@@ -492,15 +506,16 @@ fn evenly<const D: usize>(line: &[Point<D>], count: usize) -> Vec<Point<D>> {
 }
 
 /// The shorter arc between two places on a ball; over one of its sides if they are opposite.
-fn on_ball<const D: usize>(
-    [from, to]: [Point<D>; 2],
-    centre: Point<D>,
+fn on_ball(
+    [from, to]: [Point<3>; 2],
+    centre: Point<3>,
     radius: f64,
-) -> Vec<Point<D>> {
+    is_flat: bool,
+) -> Vec<Point<3>> {
     let (a, b) = ((from - centre) * (1.0 / radius), (to - centre) * (1.0 / radius));
     let angle = libm::acos(a.dot(b).clamp(-1.0, 1.0));
     let side = (b - a * a.dot(b)).normalized();
-    let side = side.or_else(|| across(a).first().copied()).unwrap_or(a);
+    let side = side.or_else(|| across(a, is_flat).first().copied()).unwrap_or(a);
     let place = |i: u32| {
         let (sin, cos) = libm::sincos(angle * (f64::from(i) / f64::from(ARC_POINTS)));
         centre + (a * cos + side * sin) * radius

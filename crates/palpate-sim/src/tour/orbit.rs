@@ -35,19 +35,23 @@ const LOWEST_LATITUDE: f64 = 0.39;
 ///
 /// An orbit too short for a pass of [`MOST_TURNS`] is one pass with fewer turns, so that the
 /// hand reaches the sides and the top of the shape in any time.
-pub(super) fn orbit<const D: usize>(
-    bounds: &Aabb<D>,
+pub(super) fn orbit(
+    bounds: &Aabb<3>,
+    is_flat: bool,
     height: f64,
     step: f64,
     count: usize,
-) -> impl Iterator<Item = Point<D>> {
+) -> impl Iterator<Item = Point<3>> {
     let grown = bounds.grown(height);
     let (mut centre, mut half) = (grown.centre(), grown.half_extents());
-    if D > 2 {
+    let turns = if is_flat {
+        half.0[2] = 0.0;
+        None
+    } else {
         centre.0[1] += 0.5 * height;
         half.0[1] -= 0.5 * height;
-    }
-    let turns = turns_a_pass(centre, half, step * count as f64);
+        Some(turns_a_pass(centre, half, step * count as f64))
+    };
     // The step in angle is adapted to the distance of the last step.
     let mut angle = 0.0;
     let mut rate = step / half.norm();
@@ -64,14 +68,11 @@ pub(super) fn orbit<const D: usize>(
 }
 
 /// The number of turns that makes a pass `way` long [m].
-fn turns_a_pass<const D: usize>(centre: Point<D>, half: Vector<f64, D>, way: f64) -> f64 {
-    if D < 3 {
-        return MOST_TURNS; // it goes round, without passes
-    }
+fn turns_a_pass(centre: Point<3>, half: Vector<f64, 3>, way: f64) -> f64 {
     let length = |turns: f64| -> f64 {
         let at = |i: u32| {
             let part = f64::from(i) / f64::from(PASS_POINTS);
-            on_box(direction(TAU * turns * part, turns), centre, half)
+            on_box(direction(TAU * turns * part, Some(turns)), centre, half)
         };
         (0..PASS_POINTS).map(|i| (at(i + 1) - at(i)).norm()).sum()
     };
@@ -90,31 +91,21 @@ fn turns_a_pass<const D: usize>(centre: Point<D>, half: Vector<f64, D>, way: f64
     low
 }
 
-/// The unit vector of the orbit at `angle` [rad], with `turns` turns in a pass.
-fn direction<const D: usize>(angle: f64, turns: f64) -> Vector<f64, D> {
+/// The unit vector of the orbit at `angle` [rad], with `turns` turns in a pass; round in the plane,
+/// without passes, if that is `None`.
+fn direction(angle: f64, turns: Option<f64>) -> Vector<f64, 3> {
     let (sin, cos) = libm::sincos(angle);
-    let mut direction = [0.0; D];
-    match &mut direction[..] {
-        [x, y] => (*x, *y) = (sin, cos),
-        [x, y, z] => {
-            // From the foot up to the pole and back.
-            let pass = angle / (TAU * turns);
-            let risen = 1.0 - 2.0 * ((0.5 * pass).fract() - 0.5).abs();
-            let part = risen * (HIGHEST_LATITUDE + LOWEST_LATITUDE) - LOWEST_LATITUDE;
-            let (height, radius) = libm::sincos(0.25 * TAU * part);
-            (*x, *y, *z) = (radius * sin, height, radius * cos);
-        }
-        _ => {}
-    }
-    Vector(direction)
+    let Some(turns) = turns else { return Vector([sin, cos, 0.0]) };
+    // From the foot up to the pole and back.
+    let pass = angle / (TAU * turns);
+    let risen = 1.0 - 2.0 * ((0.5 * pass).fract() - 0.5).abs();
+    let part = risen * (HIGHEST_LATITUDE + LOWEST_LATITUDE) - LOWEST_LATITUDE;
+    let (height, radius) = libm::sincos(0.25 * TAU * part);
+    Vector([radius * sin, height, radius * cos])
 }
 
 /// The point of the box `|pᵢ − cᵢ| ≤ hᵢ` in `direction`, with the box stretched to a cube.
-fn on_box<const D: usize>(
-    direction: Vector<f64, D>,
-    centre: Point<D>,
-    half: Vector<f64, D>,
-) -> Point<D> {
+fn on_box(direction: Vector<f64, 3>, centre: Point<3>, half: Vector<f64, 3>) -> Point<3> {
     let largest = direction.0.into_iter().fold(0.0_f64, |m, x| m.max(x.abs()));
     centre + Vector(std::array::from_fn(|i| half.0[i] * direction.0[i] / largest))
 }
@@ -126,7 +117,7 @@ mod tests {
     /// The heights of the lowest and the highest point of an orbit `way` long [m].
     fn heights(way: f64) -> (f64, f64) {
         let bounds = Aabb { min: Vector([-0.3, 0.0, -0.05]), max: Vector([0.3, 0.1, 0.05]) };
-        let points = orbit(&bounds, 0.1, 0.001, (way / 0.001) as usize).map(|p| p[1]);
+        let points = orbit(&bounds, false, 0.1, 0.001, (way / 0.001) as usize).map(|p| p[1]);
         points.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), y| (l.min(y), h.max(y)))
     }
 

@@ -32,7 +32,7 @@ fn force(tick: usize) -> f64 {
 }
 
 /// The device of a case in the plane, at rest along y.
-fn device(case: &Case) -> SimulatedDevice<2> {
+fn device(case: &Case) -> SimulatedDevice {
     let profile = DeviceProfile {
         mass: case.mass,
         least_damping: case.damping,
@@ -40,16 +40,16 @@ fn device(case: &Case) -> SimulatedDevice<2> {
         ..DeviceProfile::unlimited("case")
     };
     let times = (0..=TICKS).map(|tick| tick as f64 * TICK).collect();
-    let places = (0..=TICKS).map(|tick| Vector([target(tick), 0.0])).collect();
+    let places = (0..=TICKS).map(|tick| Vector([target(tick), 0.0, 0.0])).collect();
     let path = HandPath::new(times, places, Interpolation::Linear).unwrap();
     let hand = Hand::new(path).with_mass(0.02).unwrap();
     let hand = hand.with_spring(case.grip.0, case.grip.1).unwrap();
-    let hand = hand.with_push(Vector([case.push, 0.0])).unwrap();
+    let hand = hand.with_push(Vector([case.push, 0.0, 0.0])).unwrap();
     SimulatedDevice::new(profile, vec![hand]).unwrap()
 }
 
 /// Runs a case tick by tick; calls `see` with every tick's true state.
-fn simulated(case: &Case, mut see: impl FnMut(usize, f64, f64, &SimulatedDevice<2>)) {
+fn simulated(case: &Case, mut see: impl FnMut(usize, f64, f64, &SimulatedDevice)) {
     let mut device = device(case);
     let mut points = [PointState::at_rest(Vector::ZERO)];
     for tick in 0..=TICKS {
@@ -57,7 +57,7 @@ fn simulated(case: &Case, mut see: impl FnMut(usize, f64, f64, &SimulatedDevice<
         let state = device.states().next().unwrap();
         assert_eq!((state.position[1], state.velocity[1]), (0.0, 0.0));
         see(tick, state.position[0], state.velocity[0], &device);
-        device.write(&[Vector([force(tick), 0.0])]).unwrap();
+        device.write(&[Vector([force(tick), 0.0, 0.0])]).unwrap();
     }
 }
 
@@ -219,19 +219,19 @@ fn a_sliding_mass_stops_where_friction_has_taken_its_energy() {
         friction: 0.5,
         ..DeviceProfile::unlimited("slider")
     };
-    let hand = Hand::resting(Vector([0.0, 0.0])).unwrap().with_mass(0.0).unwrap();
+    let hand = Hand::resting(Vector([0.0, 0.0, 0.0])).unwrap().with_mass(0.0).unwrap();
     let hand = hand.with_spring(0.0, 0.0).unwrap();
     let mut device = SimulatedDevice::new(profile, vec![hand]).unwrap();
     let mut points = [PointState::at_rest(Vector::ZERO)];
     device.read(0.0, &mut points).unwrap();
-    device.write(&[Vector([1.0, 0.0])]).unwrap();
+    device.write(&[Vector([1.0, 0.0, 0.0])]).unwrap();
     device.read(0.1, &mut points).unwrap();
-    assert!((points[0].position - Vector([0.005, 0.0])).norm() < 1e-16);
+    assert!((points[0].position - Vector([0.005, 0.0, 0.0])).norm() < 1e-16);
     device.write(&[Vector::ZERO]).unwrap();
     for time in [0.15, 0.25, 9.0] {
         device.read(time, &mut points).unwrap();
     }
-    assert!((points[0].position - Vector([0.01, 0.0])).norm() < 1e-15);
+    assert!((points[0].position - Vector([0.01, 0.0, 0.0])).norm() < 1e-15);
     assert_eq!(device.kinetic_energy(), 0.0);
     let energies = device.energies();
     assert!(

@@ -11,7 +11,7 @@ use palpate_sim::{Glove, Hand, HandPath, Interpolation, SimulatedDevice};
 #[global_allocator]
 static ALLOCATOR: AllocDisabler = AllocDisabler;
 
-fn stroke() -> HandPath<3> {
+fn stroke() -> HandPath {
     let places =
         vec![Vector([0.02, 0.08, 0.01]), Vector([0.0, 0.03, 0.0]), Vector([-0.03, 0.06, 0.0])];
     HandPath::new(vec![0.0, 0.7, 1.5], places, Interpolation::Smooth).unwrap()
@@ -23,7 +23,7 @@ fn fingers(side: f64) -> Vec<Vector<f64, 3>> {
     (0..12).map(place).collect()
 }
 
-fn both_hands() -> Glove<3> {
+fn both_hands() -> Glove {
     let [left, right] =
         [-0.03, 0.03].map(|x| Glove::from_hand(&stroke(), &fingers(x)).unwrap());
     left.joined(right)

@@ -14,7 +14,7 @@ fn plate() -> Result<Shape<3>, Error> {
     Ok(Shape::cuboid([0.2, 0.02, 0.2])?)
 }
 
-fn device() -> Result<SimulatedDevice<3>, Error> {
+fn device() -> Result<SimulatedDevice, Error> {
     let hand = Hand::resting([0.0, 0.05, 0.0])?;
     Ok(SimulatedDevice::new(profile_named("omega")?, vec![hand])?)
 }
@@ -33,11 +33,11 @@ fn chai3d() -> Outcome {
     let bounds = plate.promise().bounds.ok_or_else(none)?.aabb;
     let bodies = Bodies::new(vec![Body::new(plate, Material::wood())?])?;
     let profile = device.profile().clone();
-    let _ = Proxy::<3>::new(Probe::default());
+    let _ = Proxy::new(Probe::default());
     let _ = ServoOptions { probe: Probe::new(0.002)?, ..ServoOptions::default() };
     let _ = Material { stiffness: 800.0, static_friction: 0.5, ..Material::wood() };
     let _ = (Material::magnet(), Material::sandpaper());
-    let mut protection = Protection::<3>::new(profile.clone());
+    let mut protection = Protection::new(profile.clone());
     protection.settings.recovery = Recovery::OnceOut;
     protection.settings.rise_rate = 20.0;
     let _ = Protection::new(profile).with_map(WorkspaceMap::fitting(bounds, 0.075)?);
@@ -83,7 +83,7 @@ fn openhaptics() -> Outcome {
     let _ = Guide::to_point([0.0; 3], GuideOptions::default())?;
     assert!(servo.events().is_empty());
     let _ = servo.buttons();
-    let _: ThreadOptions<3> = ThreadOptions {
+    let _: ThreadOptions = ThreadOptions {
         reconnection: Some(Reconnection::every(0.5)?),
         ..ThreadOptions::default()
     };

@@ -7,4 +7,5 @@
 
 mod coming_from;
 mod examples;
+mod planar_scenes;
 mod wrong_plants;

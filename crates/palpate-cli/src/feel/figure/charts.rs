@@ -25,10 +25,7 @@ fn over_time(name: &str, unit: &str) -> Chart {
 }
 
 /// `figure` with the forces of all contact points.
-pub(super) fn with_forces<const D: usize>(
-    figure: Figure,
-    points: &Points<'_, D>,
-) -> Result<Figure, PlotError> {
+pub(super) fn with_forces(figure: Figure, points: &Points<'_>) -> Result<Figure, PlotError> {
     let count = points.count();
     if count > MOST_PANELS {
         let name = format!("largest force on one of {count} points");
@@ -65,9 +62,9 @@ const KINDS: [(&str, Dash, Level); 3] = [
 ];
 
 /// `figure` with the levels of all actuators, one a contact point.
-pub(super) fn with_levels<const D: usize>(
+pub(super) fn with_levels(
     figure: Figure,
-    points: &Points<'_, D>,
+    points: &Points<'_>,
     vibration: &Vibration,
 ) -> Result<Figure, Failure> {
     let (times, tones) = (vibration.times(), vibration.tones()?);
@@ -110,12 +107,10 @@ fn levels(times: &[f64], actuators: &[&[Tones]], color: Color) -> Result<Chart, 
 
 /// The torque of a tool over time, and the torque written to a device with rotation. `None` for
 /// contact points.
-pub(super) fn torques<const D: usize>(
-    rows: &[TraceRow<D>],
-) -> Result<Option<Chart>, PlotError> {
+pub(super) fn torques(rows: &[TraceRow]) -> Result<Option<Chart>, PlotError> {
     let every = every(rows.len());
-    let of = |torque: fn(&HeldTool<D>) -> Option<Vector<f64, 3>>| {
-        let torque = |row: &TraceRow<D>| {
+    let of = |torque: fn(&HeldTool) -> Option<Vector<f64, 3>>| {
+        let torque = |row: &TraceRow| {
             Some([row.time_s, 1e3 * row.tool.as_ref().and_then(torque)?.norm()])
         };
         rows.iter().step_by(every).filter_map(torque).collect::<Vec<_>>()
@@ -133,16 +128,13 @@ pub(super) fn torques<const D: usize>(
 }
 
 /// The energies of all contact points together over time; `None` if there are none.
-pub(super) fn energies<const D: usize>(
-    rows: &[TraceRow<D>],
-    points: usize,
-) -> Result<Option<Chart>, PlotError> {
+pub(super) fn energies(rows: &[TraceRow], points: usize) -> Result<Option<Chart>, PlotError> {
     if rows.iter().all(|row| row.energy == Energy::default()) {
         return Ok(None);
     }
     let names = ["taken from the hand", "given to it", "kept back"];
     let dashes = [Dash::Solid, Dash::Dashed, Dash::Dotted];
-    let ticks: Vec<&[TraceRow<D>]> = rows.chunks_exact(points.max(1)).collect();
+    let ticks: Vec<&[TraceRow]> = rows.chunks_exact(points.max(1)).collect();
     let every = every(ticks.len());
     let mut chart = over_time("energy", "mJ");
     for (curve, (name, dash)) in names.into_iter().zip(dashes).enumerate() {

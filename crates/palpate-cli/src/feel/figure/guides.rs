@@ -8,7 +8,6 @@ use palpate::plot::{Color, Dash, Isolines, PlotError, Polyline};
 use palpate::scene::BuiltScene;
 
 use crate::feel::slices::FeltSlice;
-use crate::picture::in_space;
 
 /// The isolines with the lines of all guides, seen across the slice.
 pub(super) fn drawn<const D: usize>(
@@ -17,8 +16,9 @@ pub(super) fn drawn<const D: usize>(
     slice: &FeltSlice,
     bounds: &Aabb<D>,
 ) -> Result<Isolines, PlotError> {
-    let flat = |point: Point<D>| slice.plane.project(in_space(point));
-    let lines = scene.guides.iter().flat_map(|guide| guide.lines_within(bounds));
+    let bounds = bounds.in_space();
+    let flat = |point: Point<3>| slice.plane.project(point.0);
+    let lines = scene.guides.iter().flat_map(|guide| guide.lines_within(&bounds));
     let lines: Vec<Vec<_>> = lines.map(|line| line.into_iter().map(flat).collect()).collect();
     if lines.is_empty() {
         return Ok(isolines);

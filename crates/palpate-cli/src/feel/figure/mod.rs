@@ -30,7 +30,7 @@ use points::Points;
 /// A run to be drawn.
 pub(super) struct Run<'a, const D: usize> {
     pub(super) scene: &'a BuiltScene<D>,
-    pub(super) recorder: &'a Recorder<D>,
+    pub(super) recorder: &'a Recorder,
     pub(super) title: &'a str,
     /// The stiffness of each body as the device renders it [N/m].
     pub(super) rendered: &'a [f64],
@@ -86,7 +86,7 @@ where
         &self,
         slice: &FeltSlice,
         bounds: &Aabb<D>,
-        points: &Points<'_, D>,
+        points: &Points<'_>,
         tools: &[tools::Placed<'_, D>],
     ) -> Result<Isolines, Failure> {
         let view = Dimensions::view(&slice.plane, bounds, picture::MARGIN);

@@ -9,7 +9,6 @@ use palpate::servo_loop::TraceRow;
 use super::points::Points;
 use crate::feel::nearness::{Pieces, Side, side};
 use crate::feel::slices::FeltSlice;
-use crate::picture::in_space;
 
 /// The distance between arrows of force, as a share of the picture's sides; closer ones
 /// overlap.
@@ -20,10 +19,10 @@ const ARROWS_OF_VIEWS: f64 = 1.6;
 
 /// The isolines with the lines of the contact points. Pieces far from the slice are faint, and
 /// lie below those near it.
-pub(super) fn drawn<const D: usize>(
+pub(super) fn drawn(
     mut isolines: Isolines,
     slice: &FeltSlice,
-    points: &Points<'_, D>,
+    points: &Points<'_>,
     spacing: f64,
 ) -> Result<Isolines, PlotError> {
     let (mut in_front, mut behind) = (Pieces::new(), Pieces::new());
@@ -50,7 +49,7 @@ pub(super) fn drawn<const D: usize>(
     }
     let all = || (0..points.count()).flat_map(|number| points.rows(number));
     let followed = if all().any(|row| row.tool.is_some()) { "tool's origin" } else { "proxy" };
-    let shortened = if D < 3 { 1.0 } else { ARROWS_OF_VIEWS };
+    let shortened = if slice.near.is_finite() { ARROWS_OF_VIEWS } else { 1.0 };
     let full_length = shortened * all().map(|row| row.force.norm()).fold(0.0, f64::max);
     for (group, near) in proxies {
         let color = points.color(group[0]);
@@ -75,28 +74,21 @@ pub(super) fn drawn<const D: usize>(
 }
 
 /// What the points have in common, each in its colour: one entry in the legend for all.
-fn of_each<const D: usize>(what: &str, points: &Points<'_, D>) -> String {
+fn of_each(what: &str, points: &Points<'_>) -> String {
     if points.groups().len() > 1 { format!("{what} of each") } else { what.to_owned() }
 }
 
 /// The parts in the slice of forces near it on a group of points, at places `spacing` apart [m].
-fn arrows<const D: usize>(
-    slice: &FeltSlice,
-    points: &Points<'_, D>,
-    group: &[usize],
-    spacing: f64,
-) -> Vec<Arrow> {
-    let is_seen = |row: &TraceRow<D>| {
-        row.contact && side(&slice.plane, slice.near, row.proxy) == Side::Near
-    };
+fn arrows(slice: &FeltSlice, points: &Points<'_>, group: &[usize], spacing: f64) -> Vec<Arrow> {
+    let is_seen =
+        |row: &TraceRow| row.contact && side(&slice.plane, slice.near, row.proxy) == Side::Near;
     let mut arrows: Vec<Arrow> = Vec::new();
     let rows = group.iter().map(|&number| points.rows(number));
     let touches = rows.flat_map(|rows| rows.chunk_by(|a, b| is_seen(a) == is_seen(b)));
     for touch in touches.filter(|touch| touch.iter().all(|row| is_seen(row))) {
-        let tails: Vec<_> =
-            touch.iter().map(|row| slice.plane.project(in_space(row.proxy))).collect();
+        let tails: Vec<_> = touch.iter().map(|row| slice.plane.project(row.proxy.0)).collect();
         for i in evenly(&tails, spacing) {
-            let vector = slice.plane.project_vector(in_space(touch[i].force));
+            let vector = slice.plane.project_vector(touch[i].force.0);
             // The hand may return to a place, which has its arrow already.
             if arrows.iter().all(|arrow| apart(arrow.tail, tails[i]) >= 0.6 * spacing) {
                 arrows.push(Arrow { tail: tails[i], vector });

@@ -22,12 +22,12 @@ pub(super) fn every(count: usize) -> usize {
 }
 
 /// The rows of each contact point.
-pub(super) struct Points<'a, const D: usize> {
-    points: Vec<Vec<&'a TraceRow<D>>>,
+pub(super) struct Points<'a> {
+    points: Vec<Vec<&'a TraceRow>>,
 }
 
-impl<'a, const D: usize> Points<'a, D> {
-    pub(super) fn of(rows: &'a [TraceRow<D>]) -> Self {
+impl<'a> Points<'a> {
+    pub(super) fn of(rows: &'a [TraceRow]) -> Self {
         let count = rows.iter().map(|row| row.point).max().map_or(0, |last| last + 1);
         let of_point = |point| rows.iter().filter(|row| row.point == point).collect();
         Self { points: (0..count).map(of_point).collect() }
@@ -58,7 +58,7 @@ impl<'a, const D: usize> Points<'a, D> {
     }
 
     /// All rows of a point.
-    pub(super) fn rows(&self, number: usize) -> &[&'a TraceRow<D>] {
+    pub(super) fn rows(&self, number: usize) -> &[&'a TraceRow] {
         &self.points[number]
     }
 
@@ -67,19 +67,19 @@ impl<'a, const D: usize> Points<'a, D> {
         &self,
         number: usize,
         slice: &FeltSlice,
-        place: fn(&TraceRow<D>) -> Point<D>,
+        place: fn(&TraceRow) -> Point<3>,
     ) -> Seen {
         let rows = self.rows(number);
         let every = every(rows.len());
         let line: Vec<_> = rows.iter().step_by(every).map(|row| place(row)).collect();
-        taken_apart::<D>(&slice.plane, slice.near, line)
+        taken_apart(&slice.plane, slice.near, line)
     }
 
     /// The force on a point over time: the largest until the next place [N].
     pub(super) fn force(&self, number: usize) -> Vec<[f64; 2]> {
         let rows = self.rows(number);
         let every = every(rows.len());
-        let largest = |rows: &[&TraceRow<D>]| {
+        let largest = |rows: &[&TraceRow]| {
             [rows[0].time_s, rows.iter().map(|row| row.force.norm()).fold(0.0, f64::max)]
         };
         rows.chunks(every).map(largest).collect()

@@ -10,7 +10,7 @@ use palpate::servo_loop::TraceRow;
 
 use crate::feel::slices::FeltSlice;
 use crate::outcome::Failure;
-use crate::picture::{self, Dimensions, Drawable, in_space};
+use crate::picture::{self, Dimensions, Drawable};
 
 /// A tool at a time.
 pub(super) struct Placed<'a, const D: usize> {
@@ -18,18 +18,18 @@ pub(super) struct Placed<'a, const D: usize> {
     dash: Dash,
     /// In the world.
     shape: Shape<D>,
-    row: &'a TraceRow<D>,
+    row: &'a TraceRow,
 }
 
 /// The tool at its times; none without a shape, or if it touched nothing.
 pub(super) fn placed<'a, const D: usize>(
     tool: Option<&BuiltTool<D>>,
-    rows: &'a [TraceRow<D>],
+    rows: &'a [TraceRow],
 ) -> Result<Vec<Placed<'a, D>>, Failure> {
     let Some((tool, shape)) = tool.and_then(|tool| Some((tool, tool.shape.as_ref()?))) else {
         return Ok(Vec::new());
     };
-    let depth = |row: &TraceRow<D>| (row.proxy - row.device).norm();
+    let depth = |row: &TraceRow| (row.proxy - row.device).norm();
     let touches = || rows.iter().filter(|row| row.contact && row.tool.is_some());
     let times = [
         ("first touch", Dash::Dotted, touches().next()),
@@ -45,7 +45,9 @@ pub(super) fn placed<'a, const D: usize>(
             radius if radius > 0.0 => shape.clone().offset(radius),
             _ => Ok(shape.clone()),
         };
-        let shape = shape.and_then(|shape| shape.placed(&held.pose)).map_err(Failure::input)?;
+        let shape = shape
+            .and_then(|shape| shape.placed(&held.pose.truncated()))
+            .map_err(Failure::input)?;
         let name = format!("tool, {what}: {:.2} s", row.time_s);
         placed.push(Placed { name, dash, shape, row });
     }
@@ -70,7 +72,7 @@ where
     Dimensions: Drawable<D>,
 {
     for tool in tools {
-        let plane = slice.plane.parallel(in_space(tool.row.proxy));
+        let plane = slice.plane.parallel(tool.row.proxy.0);
         let outline = picture::outline(&tool.shape, &plane, view, Sampling::default())?;
         let line = Polyline::of_pieces(&tool.name, outline.lines().iter().cloned())?;
         let line = line.with_color(Color::NAVY).with_dash(tool.dash);

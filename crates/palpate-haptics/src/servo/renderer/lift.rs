@@ -5,7 +5,7 @@
 
 use super::Renderer;
 
-impl<const D: usize> Renderer<D> {
+impl Renderer {
     /// Whether the hand is [lifted](crate::Servo::lift) off the bodies.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.

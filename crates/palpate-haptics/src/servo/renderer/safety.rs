@@ -8,7 +8,7 @@ use palpate_safety::{ReadingsReport, SafetyReport, StageTicks, WrenchChain};
 use super::Renderer;
 use crate::ports::Port;
 
-impl<const D: usize> Renderer<D> {
+impl Renderer {
     /// The report of every contact point's safety chain so far; empty for an
     /// [unprotected](crate::Unprotected) servo.
     #[must_use]
@@ -23,8 +23,8 @@ impl<const D: usize> Renderer<D> {
     /// torque, and the readings that were held back before it.
     fn with_ports<'a, T: 'a>(
         &'a self,
-        of_port: fn(&Port<D>) -> T,
-        of_chain: fn(&WrenchChain<D>) -> T,
+        of_port: fn(&Port) -> T,
+        of_chain: fn(&WrenchChain) -> T,
     ) -> impl Iterator<Item = (T, ReadingsReport)> + 'a {
         let turning = self.coupled_tool().and_then(|coupled| coupled.port.as_ref());
         let chain = turning.and_then(|turning| turning.chain.as_ref());

@@ -12,7 +12,7 @@ use std::ops::Deref;
 use arbitrary::Unstructured;
 use palpate_device::{DeviceProfile, PointState, TurnState};
 use palpate_field::kernel::{Ball, Cuboid, HalfSpace, Torus};
-use palpate_field::{CustomField, Point, Pose, Promise, Rotation, Shape, Vector};
+use palpate_field::{CustomField, Point, Pose, Promise, Rotation, Shape, SpaceShape, Vector};
 use palpate_haptics::{
     Bodies, Body, Following, Probe, Protection, Proxy, Renderer, Servo, Surface, Unprotected,
 };
@@ -71,7 +71,7 @@ pub(crate) fn scaled<const D: usize>(
 }
 
 /// The same servo behind a device that sees steps, with a safety chain.
-pub(crate) fn protected<const D: usize>(servo: Servo<D, Unprotected>) -> Servo<D> {
+pub(crate) fn protected(servo: Servo<Unprotected>) -> Servo {
     let profile = DeviceProfile {
         max_force: 4.0,
         continuous_force: 1.5,
@@ -86,81 +86,83 @@ pub(crate) fn protected<const D: usize>(servo: Servo<D, Unprotected>) -> Servo<D
 }
 
 /// What several tests do with either kind of servo.
-pub(crate) trait AnyServo<const D: usize>: Deref<Target = Renderer<D>> {
-    fn step(&mut self, states: &[PointState<D>]);
-    fn set_turn(&mut self, turn: Option<TurnState<D>>);
-    fn set_pose(&mut self, body: usize, world_from_body: Pose<D>);
-    fn swap_bodies(&mut self, bodies: Bodies<D>);
+pub(crate) trait AnyServo: Deref<Target = Renderer> {
+    fn step(&mut self, states: &[PointState]);
+    fn set_turn(&mut self, turn: Option<TurnState>);
+    fn set_pose(&mut self, body: usize, world_from_body: Pose<3>);
+    fn swap_bodies(&mut self, bodies: Bodies);
 }
 
-impl<const D: usize> AnyServo<D> for Servo<D> {
-    fn step(&mut self, states: &[PointState<D>]) {
+impl AnyServo for Servo {
+    fn step(&mut self, states: &[PointState]) {
         self.step(states);
     }
-    fn set_turn(&mut self, turn: Option<TurnState<D>>) {
+    fn set_turn(&mut self, turn: Option<TurnState>) {
         self.set_turn(turn);
     }
-    fn set_pose(&mut self, body: usize, world_from_body: Pose<D>) {
+    fn set_pose(&mut self, body: usize, world_from_body: Pose<3>) {
         self.set_pose(body, world_from_body);
     }
-    fn swap_bodies(&mut self, bodies: Bodies<D>) {
+    fn swap_bodies(&mut self, bodies: Bodies) {
         let mut bodies = self.accept(bodies).unwrap();
         self.replace_bodies(&mut bodies).unwrap();
     }
 }
 
-impl<const D: usize> AnyServo<D> for Servo<D, Unprotected> {
-    fn step(&mut self, states: &[PointState<D>]) {
+impl AnyServo for Servo<Unprotected> {
+    fn step(&mut self, states: &[PointState]) {
         self.step(states);
     }
-    fn set_turn(&mut self, turn: Option<TurnState<D>>) {
+    fn set_turn(&mut self, turn: Option<TurnState>) {
         self.set_turn(turn);
     }
-    fn set_pose(&mut self, body: usize, world_from_body: Pose<D>) {
+    fn set_pose(&mut self, body: usize, world_from_body: Pose<3>) {
         self.set_pose(body, world_from_body);
     }
-    fn swap_bodies(&mut self, bodies: Bodies<D>) {
+    fn swap_bodies(&mut self, bodies: Bodies) {
         drop(self.replace_bodies(bodies));
     }
 }
 
 /// The same servo for a device without limits: what it wants is given, from the first tick on.
-pub(crate) fn without_limits<const D: usize>(servo: Servo<D, Unprotected>) -> Servo<D> {
+pub(crate) fn without_limits(servo: Servo<Unprotected>) -> Servo {
     let protection = Protection::new(DeviceProfile::unlimited("without limits"));
     servo.protected(&protection.with(|s| s.rise_rate = f64::INFINITY)).unwrap()
 }
 
-pub(crate) fn proxy<const D: usize>(radius: f64) -> Proxy<D> {
+pub(crate) fn proxy(radius: f64) -> Proxy {
     Proxy::new(Probe::new(radius).unwrap())
 }
 
 /// A proxy that knows one shape.
-pub(crate) trait FollowShape<const D: usize> {
-    fn follow_shape(&mut self, shape: &Shape<D>, device: Point<D>) -> Following<D>;
+pub(crate) trait FollowShape {
+    fn follow_shape(&mut self, shape: impl Into<SpaceShape>, device: Point<3>) -> Following;
 }
 
-impl<const D: usize> FollowShape<D> for Proxy<D> {
-    fn follow_shape(&mut self, shape: &Shape<D>, device: Point<D>) -> Following<D> {
-        self.follow(&Bodies::from(shape.clone()).everything(), device)
+impl FollowShape for Proxy {
+    fn follow_shape(&mut self, shape: impl Into<SpaceShape>, device: Point<3>) -> Following {
+        self.follow(&Bodies::from(shape.into()).everything(), device)
     }
 }
 
 /// One body with a surface.
-pub(crate) fn body<const D: usize>(shape: &Shape<D>, surface: Surface<D>) -> Bodies<D> {
-    Bodies::new(vec![Body::new(shape.clone(), surface).unwrap()]).unwrap()
+pub(crate) fn body(shape: impl Into<SpaceShape>, surface: Surface) -> Bodies {
+    let shape: SpaceShape = shape.into();
+    Bodies::new(vec![Body::new(shape, surface).unwrap()]).unwrap()
 }
 
 /// Follows a straight line in `ticks` ticks; the last tick.
-pub(crate) fn stroke<const D: usize>(
-    proxy: &mut Proxy<D>,
-    shape: &Shape<D>,
-    (from, to): (Point<D>, Point<D>),
+pub(crate) fn stroke(
+    proxy: &mut Proxy,
+    shape: impl Into<SpaceShape>,
+    (from, to): (Point<3>, Point<3>),
     ticks: u32,
-) -> Following<D> {
-    let mut last = proxy.follow_shape(shape, from);
+) -> Following {
+    let shape: SpaceShape = shape.into();
+    let mut last = proxy.follow_shape(shape.clone(), from);
     for tick in 1..=ticks {
         let part = f64::from(tick) / f64::from(ticks);
-        last = proxy.follow_shape(shape, from + (to - from) * part);
+        last = proxy.follow_shape(shape.clone(), from + (to - from) * part);
     }
     last
 }
@@ -170,7 +172,7 @@ pub(crate) fn unit(u: &mut Unstructured<'_>) -> arbitrary::Result<f64> {
     Ok(f64::from(u.int_in_range(-1_000_000..=1_000_000)?) * 1e-6)
 }
 
-/// A vector in the cube [−1, 1]^D.
+/// A vector in the cube [−1, 1]^D of the first D axes.
 pub(crate) fn vector<const D: usize>(
     u: &mut Unstructured<'_>,
 ) -> arbitrary::Result<Vector<f64, D>> {

@@ -9,11 +9,11 @@ use palpate_haptics::Bodies;
 /// The nearest of many points outside to which the straight way was free before, in many
 /// directions; `None` within `most`.
 pub(crate) fn nearest<const D: usize>(
-    [before, after]: [&Bodies<D>; 2],
-    (from, radius): (Point<D>, f64),
+    [before, after]: [&Bodies; 2],
+    (from, radius): (Point<3>, f64),
     most: f64,
 ) -> Option<f64> {
-    let gap = |bodies: &Bodies<D>, p| bodies.everything().look(p).0 - radius;
+    let gap = |bodies: &Bodies, p| bodies.everything().look(p).0 - radius;
     let mut best = None;
     for way in directions::<D>() {
         let mut length = 0.0;
@@ -37,7 +37,7 @@ pub(crate) fn nearest<const D: usize>(
 }
 
 /// Directions all around.
-fn directions<const D: usize>() -> Vec<Vector<f64, D>> {
+fn directions<const D: usize>() -> Vec<Vector<f64, 3>> {
     let spiral = |k: u32, of: f64| {
         let y = 1.0 - 2.0 * (f64::from(k) + 0.5) / of;
         let (turn, around) = (2.399_963_229_728_653 * f64::from(k), (1.0 - y * y).sqrt());
@@ -50,8 +50,7 @@ fn directions<const D: usize>() -> Vec<Vector<f64, D>> {
     let count = if D == 2 { 720 } else { 2000 };
     let all = (0..count).map(|k| {
         let of = f64::from(count);
-        let way = if D == 2 { circle(k, of) } else { spiral(k, of) };
-        Vector(std::array::from_fn(|axis| way[axis]))
+        Vector(if D == 2 { circle(k, of) } else { spiral(k, of) })
     });
     all.chain((0..D).flat_map(|axis| [Vector::unit(axis), -Vector::unit(axis)])).collect()
 }

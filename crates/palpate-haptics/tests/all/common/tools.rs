@@ -37,21 +37,17 @@ pub(crate) fn box_mesh(edges: [f64; 3]) -> TriangleMesh {
     Mesh::new((0..8).map(corner).collect(), triangles).unwrap()
 }
 
-pub(crate) fn at<const D: usize>(place: [f64; D]) -> ToolState<D> {
+pub(crate) fn at(place: [f64; 3]) -> ToolState {
     ToolState::at_rest(Pose::translation(Vector(place)))
 }
 
-pub(crate) fn turned(axis: [f64; 3], angle: f64, place: [f64; 3]) -> ToolState<3> {
+pub(crate) fn turned(axis: [f64; 3], angle: f64, place: [f64; 3]) -> ToolState {
     let rotation = Rotation::from_axis_angle(Vector(axis), angle).unwrap();
     ToolState::at_rest(Pose::new(rotation, Vector(place)))
 }
 
 /// Stays at a state until the tool rests.
-pub(crate) fn rest<const D: usize>(
-    tool: &mut Tool<D>,
-    bodies: &mut Bodies<D>,
-    state: &ToolState<D>,
-) -> ToolTouch<D> {
+pub(crate) fn rest(tool: &mut Tool, bodies: &mut Bodies, state: &ToolState) -> ToolTouch {
     for _ in 0..200 {
         tool.step(bodies, state);
     }
@@ -69,14 +65,14 @@ pub(crate) fn smooth() -> Material {
 }
 
 /// Where a tool is at a part of a closed path over the top of a ball of 50 mm.
-pub(crate) fn on_a_loop(part: f64) -> (Vector<f64, 3>, ToolState<3>) {
+pub(crate) fn on_a_loop(part: f64) -> (Vector<f64, 3>, ToolState) {
     let t = std::f64::consts::TAU * part;
     let place = Vector([0.012 * t.sin(), 0.055 + 0.004 * t.cos(), 0.01 * (2.0 * t).sin()]);
     (place, turned([0.0, 0.0, 1.0], 0.0, place.0))
 }
 
 /// A flat box on rough ground.
-pub(crate) fn rough(shape: &Shape<3>) -> (Bodies<3>, Tool<3>) {
+pub(crate) fn rough(shape: &Shape<3>) -> (Bodies, Tool) {
     let material = Material {
         static_friction: 0.5,
         dynamic_friction: 0.25,

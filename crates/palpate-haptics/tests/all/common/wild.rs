@@ -99,18 +99,18 @@ fn place<const D: usize>(i: usize) -> Point<D> {
 }
 
 /// Where body `i` is at a tick: every other one goes to and fro.
-pub(crate) fn pose<const D: usize>(i: usize, tick: u32, scale: f64) -> Pose<D> {
+pub(crate) fn pose<const D: usize>(i: usize, tick: u32, scale: f64) -> Pose<3> {
     let mut at = place::<D>(i);
     if i.is_multiple_of(2) {
         at[i % D] += 0.01 * wave(f64::from(tick) / 900.0 + 0.1 * i as f64);
     }
-    Pose::translation(at * scale)
+    Pose::translation((at * scale).in_space())
 }
 
-pub(crate) fn bodies<const D: usize>(count: usize, scale: f64) -> Bodies<D> {
+pub(crate) fn bodies<const D: usize>(count: usize, scale: f64) -> Bodies {
     let body = |i: usize| {
         let surface = Surface::new(&material(i, scale)).unwrap();
-        Body::new(shape(i, scale), surface).unwrap().at(pose(i, 0, scale)).unwrap()
+        Body::new(shape::<D>(i, scale), surface).unwrap().at(pose::<D>(i, 0, scale)).unwrap()
     };
     Bodies::new((0..count).map(body).collect()).unwrap()
 }
@@ -120,14 +120,14 @@ pub(crate) fn servo<const D: usize>(
     count: usize,
     points: usize,
     scale: f64,
-) -> Servo<D, Unprotected> {
+) -> Servo<Unprotected> {
     let options = ServoOptions {
         rate: RATE,
         probe: Probe::new(0.002 * scale).unwrap(),
         max_force: 5.0 * scale,
         ..ServoOptions::default()
     };
-    let mut servo = Servo::new(bodies(count, scale), points, options).unwrap();
+    let mut servo = Servo::new(bodies::<D>(count, scale), points, options).unwrap();
     let options = GuideOptions {
         stiffness: 50.0,
         max_force: 0.2 * scale,
@@ -140,15 +140,16 @@ pub(crate) fn servo<const D: usize>(
 }
 
 /// The hands at a tick: each on a path of its own through the scene.
-pub(crate) fn hands<const D: usize>(tick: u32, states: &mut [PointState<D>], scale: f64) {
+pub(crate) fn hands<const D: usize>(tick: u32, states: &mut [PointState], scale: f64) {
     for (i, state) in states.iter_mut().enumerate() {
         let at = |tick: f64| {
-            Vector(std::array::from_fn(|axis| {
+            let place: Point<D> = Vector(std::array::from_fn(|axis| {
                 let pace = 1.0 + 0.37 * axis as f64 + 0.11 * i as f64;
                 0.095
                     * scale
                     * wave(pace * tick / 3000.0 + 0.13 * i as f64 + 0.29 * axis as f64)
-            }))
+            }));
+            place.in_space()
         };
         let (now, before) = (at(f64::from(tick)), at(f64::from(tick) - 1.0));
         *state = PointState { position: now, velocity: (now - before) * RATE };
@@ -157,14 +158,14 @@ pub(crate) fn hands<const D: usize>(tick: u32, states: &mut [PointState<D>], sca
 
 /// Moves what moves and takes a step.
 pub(crate) fn step<const D: usize>(
-    servo: &mut impl AnyServo<D>,
-    states: &mut [PointState<D>],
+    servo: &mut impl AnyServo,
+    states: &mut [PointState],
     (tick, scale): (u32, f64),
 ) {
     for i in (0..servo.bodies().bodies().len()).step_by(2) {
-        servo.set_pose(i, pose(i, tick, scale));
+        servo.set_pose(i, pose::<D>(i, tick, scale));
     }
-    hands(tick, states, scale);
+    hands::<D>(tick, states, scale);
     for state in &mut *states {
         // No hand goes deeper than 3 mm.
         let (distance, gradient) = servo.bodies().everything().look(state.position);

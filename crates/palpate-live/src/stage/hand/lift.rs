@@ -19,35 +19,35 @@ const SET_DOWN: f64 = 0.02;
 
 /// A hand that is lifted, until the servo knows that it was set down.
 #[derive(Debug)]
-pub(super) struct Lift<const D: usize> {
+pub(super) struct Lift {
     /// Where it is brought [m].
-    places: Vec<Point<D>>,
+    places: Vec<Point<3>>,
     /// When it was lifted [s].
     since: f64,
     /// Where the device points were last [m].
-    devices: Vec<Point<D>>,
+    devices: Vec<Point<3>>,
     /// When it was set down [s].
     set_down: Option<f64>,
 }
 
 /// What is to be done for a hand that is lifted.
 #[derive(Debug)]
-pub(super) enum Step<const D: usize> {
+pub(super) enum Step {
     OnTheWay,
     /// Friction keeps the device short of the place by so much [m]: it is led farther.
-    Short(Vec<Vector<f64, D>>),
+    Short(Vec<Vector<f64, 3>>),
     /// It is set down, and rests here: where it was brought, or if it took too long where it is [m].
-    SetDown(Vec<Point<D>>),
+    SetDown(Vec<Point<3>>),
     Over,
 }
 
-impl<const D: usize> Lift<D> {
+impl Lift {
     /// A hand that is lifted at a time [s].
-    pub(super) fn to(places: Vec<Point<D>>, since: f64) -> Self {
+    pub(super) fn to(places: Vec<Point<3>>, since: f64) -> Self {
         Self { places, since, devices: Vec::new(), set_down: None }
     }
 
-    pub(super) fn places(&self) -> &[Point<D>] {
+    pub(super) fn places(&self) -> &[Point<3>] {
         &self.places
     }
 
@@ -56,7 +56,7 @@ impl<const D: usize> Lift<D> {
     }
 
     /// Brings one contact point elsewhere.
-    pub(super) fn redirect(&mut self, point: usize, place: Point<D>) {
+    pub(super) fn redirect(&mut self, point: usize, place: Point<3>) {
         if let Some(old) = self.places.get_mut(point) {
             *old = place;
         }
@@ -68,13 +68,13 @@ impl<const D: usize> Lift<D> {
         &mut self,
         time: f64,
         passed: f64,
-        devices: &[Point<D>],
+        devices: &[Point<3>],
         [size, scale]: [f64; 2],
-    ) -> Step<D> {
+    ) -> Step {
         if let Some(at) = self.set_down {
             return if time - at >= SET_DOWN { Step::Over } else { Step::OnTheWay };
         }
-        let is_within = |a: &[Point<D>], b: &[Point<D>], most: f64| {
+        let is_within = |a: &[Point<3>], b: &[Point<3>], most: f64| {
             a.len() == b.len() && a.iter().zip(b).all(|(a, b)| (*a - *b).norm() <= most)
         };
         let last = std::mem::replace(&mut self.devices, devices.to_vec());

@@ -10,7 +10,7 @@ use std::f64::consts::TAU;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use palpate::field::{Aabb, Point, Vector};
+use palpate::field::{Aabb, Point, SpaceShape, Vector};
 use palpate::scene::BuiltScene;
 use palpate::sim::HandPath;
 
@@ -51,55 +51,52 @@ pub(super) enum Leader {
 
 /// Leads the contact points of a hand: along a tour or a recording, or where the page says.
 #[derive(Debug)]
-pub(super) struct Lead<const D: usize> {
-    scene: Arc<BuiltScene<D>>,
-    /// The longest edge of the scene's bounds [m]; 1 m for a scene without.
-    size: f64,
+pub(super) struct Lead {
+    ground: Ground,
     /// Metres of the scene for a metre of the device.
     scale: f64,
     /// The contact points beside the hand [m].
-    arms: Vec<Vector<f64, D>>,
+    arms: Vec<Vector<f64, 3>>,
     /// Whether the arms are those of the scene's tool, which go side by side on a tour.
     is_tool: bool,
-    tour: Option<HandPath<D>>,
+    tour: Option<HandPath>,
     is_touring: bool,
     /// Whether forces are stopped: a tour waits.
     is_stopped: bool,
     /// The time on the tour [s]; `None` if the hand is not on it yet.
     tour_time: Option<f64>,
     /// What is replayed, and the time on it [s], `None` before it begins.
-    replay: Option<(Arc<Replay<D>>, Option<f64>)>,
+    replay: Option<(Arc<Replay>, Option<f64>)>,
     /// The hand is brought to another place.
-    lift: Option<Lift<D>>,
+    lift: Option<Lift>,
     /// Where a hand is led once it is set down [m].
-    goal: Option<Point<D>>,
+    goal: Option<Point<3>>,
     /// The time of the servo [s].
     time: f64,
     /// Where each contact point is led [m].
-    targets: Vec<Point<D>>,
+    targets: Vec<Point<3>>,
     /// When the hand was led or let go last; `None` if it never was.
     led: Option<Instant>,
     is_held: bool,
 }
 
-impl<const D: usize> Lead<D> {
+impl Lead {
     /// For a scene whose hand has `count` contact points, unless its tool says how many. It rests
     /// above the scene until it gets a tour.
-    pub(super) fn new(scene: &Arc<BuiltScene<D>>, count: usize, scale: f64) -> Self {
+    pub(super) fn new<const D: usize>(scene: &BuiltScene<D>, count: usize, scale: f64) -> Self {
+        let ground = Ground::of(scene);
         let mut arms: Vec<_> = scene.contact_points().collect();
         let has_shape = scene.tool.as_ref().is_some_and(|tool| tool.shape.is_some());
         let is_tool = !arms.is_empty() || has_shape;
-        let size = size(scene);
         if !is_tool {
-            arms = around(count, size * SPREAD);
+            arms = around(count, ground.size * SPREAD, D - 1);
         } else if has_shape {
             arms = vec![Vector::ZERO];
         }
-        let rest = scene.bounds().map_or(Vector::ZERO, |bounds| above(&bounds, size));
+        let rest = ground.rest();
         let targets = arms.iter().map(|arm| rest + *arm).collect();
         Self {
-            scene: Arc::clone(scene),
-            size,
+            ground,
             scale,
             arms,
             is_tool,
@@ -118,7 +115,7 @@ impl<const D: usize> Lead<D> {
     }
 
     /// Takes the tour of its scene.
-    pub(super) fn take_tour(&mut self, tour: HandPath<D>) {
+    pub(super) fn take_tour(&mut self, tour: HandPath) {
         (self.tour, self.tour_time) = (Some(tour), None);
     }
 
@@ -131,13 +128,13 @@ impl<const D: usize> Lead<D> {
         self.lift.as_ref().is_some_and(Lift::is_lifted)
     }
 
-    pub(super) fn targets(&self) -> &[Point<D>] {
+    pub(super) fn targets(&self) -> &[Point<3>] {
         &self.targets
     }
 
     /// Goes on in a scene with other bodies. A hand that is lifted is set down beside them.
-    pub(super) fn take_scene(&mut self, scene: &Arc<BuiltScene<D>>) {
-        (self.scene, self.size) = (Arc::clone(scene), size(scene));
+    pub(super) fn take_scene<const D: usize>(&mut self, scene: &BuiltScene<D>) {
+        self.ground = Ground::of(scene);
         if self.is_lifted()
             && let Some(lift) = self.lift.take()
         {
@@ -159,7 +156,7 @@ impl<const D: usize> Lead<D> {
     }
 
     /// Starts to follow what was recorded or read, or ends it.
-    pub(super) fn replay(&mut self, replay: Option<Arc<Replay<D>>>) -> Result<(), String> {
+    pub(super) fn replay(&mut self, replay: Option<Arc<Replay>>) -> Result<(), String> {
         if let Some(replay) = &replay
             && replay.paths.len() != self.arms.len()
         {
@@ -191,7 +188,7 @@ impl<const D: usize> Lead<D> {
 
     /// Lets go of the hand, which rests at `places`: where bodies hold it back, there. A hand that is
     /// lifted is still set down where it is brought.
-    pub(super) fn let_go(&mut self, places: &[Point<D>]) {
+    pub(super) fn let_go(&mut self, places: &[Point<3>]) {
         (self.led, self.is_held) = (Some(Instant::now()), false);
         if self.lift.is_none() && places.len() == self.targets.len() {
             self.targets.copy_from_slice(places);
@@ -203,9 +200,9 @@ impl<const D: usize> Lead<D> {
     /// the target, if that is far.
     pub(super) fn lead(
         &mut self,
-        target: Point<D>,
+        target: Point<3>,
         point: Option<usize>,
-        from: Option<Point<D>>,
+        from: Option<Point<3>>,
     ) -> Result<(), String> {
         let points = self.targets.len();
         if let Some(point) = point.filter(|point| *point >= points) {
@@ -225,7 +222,8 @@ impl<const D: usize> Lead<D> {
         }
         let goals = self.beside(target);
         let mut ways = self.targets.iter().zip(&goals);
-        let is_far = ways.any(|(place, goal)| (*place - *goal).norm() > NEAR * self.size);
+        let is_far =
+            ways.any(|(place, goal)| (*place - *goal).norm() > NEAR * self.ground.size);
         if begins && (from.is_some() || is_far) {
             let places = from.map_or(goals, |from| self.beside(from));
             self.bring(&places);
@@ -236,49 +234,21 @@ impl<const D: usize> Lead<D> {
     }
 
     /// The contact points of a hand in a place.
-    fn beside(&self, place: Point<D>) -> Vec<Point<D>> {
+    fn beside(&self, place: Point<3>) -> Vec<Point<3>> {
         self.arms.iter().map(|arm| place + *arm).collect()
     }
 
     /// Lifts the hand, and brings its contact points to other places, or to free ones beside them.
-    fn bring(&mut self, places: &[Point<D>]) {
-        let places: Vec<_> = places.iter().map(|place| self.free_beside(*place)).collect();
+    fn bring(&mut self, places: &[Point<3>]) {
+        let free = |place: &Point<3>| self.ground.free_beside(*place);
+        let places: Vec<_> = places.iter().map(free).collect();
         self.targets.clone_from(&places);
         self.lift = Some(Lift::to(places, self.time));
     }
 
-    /// A place without bodies: as near as steps along the gradient find one, or else over the scene.
-    fn free_beside(&self, place: Point<D>) -> Point<D> {
-        let clearance = radius(&self.scene) + CLEARANCE * self.size;
-        let mut free = place;
-        for _ in 0..STEPS_OUT {
-            let (distance, gradient) = self.scene.whole.distance_gradient(free);
-            if distance >= clearance {
-                return free;
-            }
-            // At least as long as in a field of slope 1/2: in the middle of a body the gradient
-            // may vanish.
-            let squared = gradient.dot(gradient).max(0.5 * gradient.norm());
-            free += gradient * ((clearance - distance) / squared);
-            // Written so that NaN ends it.
-            let is_near = (free - place).norm() <= self.size;
-            if !is_near {
-                break;
-            }
-        }
-        match self.scene.bounds() {
-            Some(bounds) => {
-                let mut over = place;
-                over[1] = over[1].max(bounds.max[1] + clearance);
-                over
-            }
-            None => place,
-        }
-    }
-
     /// Goes on to the time of the servo [s], whose device points are at `devices`; what leads the hand
     /// there.
-    pub(super) fn go_on(&mut self, time: f64, devices: &[Point<D>]) -> Leader {
+    pub(super) fn go_on(&mut self, time: f64, devices: &[Point<3>]) -> Leader {
         let passed = (time - self.time).max(0.0);
         self.time = time;
         let leader = self.leader();
@@ -311,9 +281,9 @@ impl<const D: usize> Lead<D> {
     }
 
     /// Leads the device to where the hand is set down.
-    fn go_on_lifted(&mut self, passed: f64, devices: &[Point<D>]) {
+    fn go_on_lifted(&mut self, passed: f64, devices: &[Point<3>]) {
         let Some(lift) = &mut self.lift else { return };
-        match lift.go_on(self.time, passed, devices, [self.size, self.scale]) {
+        match lift.go_on(self.time, passed, devices, [self.ground.size, self.scale]) {
             Step::OnTheWay => {}
             Step::Short(short) => {
                 self.targets.iter_mut().zip(short).for_each(|(target, short)| *target += short);
@@ -362,8 +332,8 @@ impl<const D: usize> Lead<D> {
     }
 
     /// Where the contact points are at a time of a tour [s].
-    fn on_tour(&self, tour: &HandPath<D>, time: f64) -> Vec<Point<D>> {
-        let place = |(point, arm): (usize, &Vector<f64, D>)| {
+    fn on_tour(&self, tour: &HandPath, time: f64) -> Vec<Point<3>> {
+        let place = |(point, arm): (usize, &Vector<f64, 3>)| {
             let (behind, beside) =
                 if self.is_tool { (0.0, *arm) } else { (LAG * point as f64, Vector::ZERO) };
             // Before the tour begins and after it ends, a point rests there.
@@ -373,21 +343,70 @@ impl<const D: usize> Lead<D> {
     }
 }
 
-/// Points on a circle, in space in the plane xz; one is in the middle.
-fn around<const D: usize>(count: usize, radius: f64) -> Vec<Vector<f64, D>> {
-    let place = |point: usize| {
-        let (up, across) = (TAU * point as f64 / count as f64).sin_cos();
-        let mut arm = Vector::ZERO;
-        arm[0] = radius * across;
-        arm[D - 1] = radius * up;
-        arm
-    };
-    if count < 2 { vec![Vector::ZERO] } else { (0..count).map(place).collect() }
+/// What a hand feels of a scene, as far as it is led by that.
+#[derive(Debug)]
+struct Ground {
+    shape: SpaceShape,
+    bounds: Option<Aabb<3>>,
+    /// The longest edge of the bounds [m]; 1 m for a scene without.
+    size: f64,
+    /// The radius of what touches the scene [m].
+    radius: f64,
 }
 
-/// A place over a box, as high over it as the circle of contact points is wide.
-fn above<const D: usize>(bounds: &Aabb<D>, size: f64) -> Point<D> {
-    let mut place = bounds.centre();
-    place[1] = bounds.max[1] + 2.0 * SPREAD * size;
-    place
+impl Ground {
+    fn of<const D: usize>(scene: &BuiltScene<D>) -> Self {
+        Self {
+            shape: (&scene.whole).into(),
+            bounds: scene.bounds().map(|bounds| bounds.in_space()),
+            size: size(scene),
+            radius: radius(scene),
+        }
+    }
+
+    /// A place over the scene, as high over it as the circle of contact points is wide.
+    fn rest(&self) -> Point<3> {
+        let Some(bounds) = &self.bounds else { return Vector::ZERO };
+        let mut place = bounds.centre();
+        place[1] = bounds.max[1] + 2.0 * SPREAD * self.size;
+        place
+    }
+
+    /// A place without bodies: as near as steps along the gradient find one, or else over the scene.
+    fn free_beside(&self, place: Point<3>) -> Point<3> {
+        let clearance = self.radius + CLEARANCE * self.size;
+        let mut free = place;
+        for _ in 0..STEPS_OUT {
+            let (distance, gradient) = self.shape.shape().distance_gradient(free);
+            if distance >= clearance {
+                return free;
+            }
+            // At least as long as in a field of slope 1/2: in the middle of a body the gradient
+            // may vanish.
+            let squared = gradient.dot(gradient).max(0.5 * gradient.norm());
+            free += gradient * ((clearance - distance) / squared);
+            // Written so that NaN ends it.
+            let is_near = (free - place).norm() <= self.size;
+            if !is_near {
+                break;
+            }
+        }
+        match &self.bounds {
+            Some(bounds) => {
+                let mut over = place;
+                over[1] = over[1].max(bounds.max[1] + clearance);
+                over
+            }
+            None => place,
+        }
+    }
+}
+
+/// Points on a circle, one in the middle; the axes of its plane are x and `up`.
+fn around(count: usize, radius: f64, up: usize) -> Vec<Vector<f64, 3>> {
+    let place = |point: usize| {
+        let (sin, cos) = (TAU * point as f64 / count as f64).sin_cos();
+        Vector::unit(0) * (radius * cos) + Vector::unit(up) * (radius * sin)
+    };
+    if count < 2 { vec![Vector::ZERO] } else { (0..count).map(place).collect() }
 }

@@ -3,6 +3,7 @@
 
 //! The tour of a scene.
 
+use palpate::field::SpaceShape;
 use palpate::haptics::Probe;
 use palpate::scene::BuiltScene;
 use palpate::sim::{HandPath, SimulationError, Tour};
@@ -18,13 +19,14 @@ pub(super) const LAG: f64 = 0.5;
 pub(in crate::stage) fn tour<const D: usize>(
     scene: &BuiltScene<D>,
     count: usize,
-) -> Option<Result<HandPath<D>, SimulationError>> {
+) -> Option<Result<HandPath, SimulationError>> {
     let bounds = scene.bounds()?;
-    let shapes: Vec<_> = scene.bodies.iter().map(|body| body.shape.clone()).collect();
+    let shapes: Vec<_> =
+        scene.bodies.iter().map(|body| SpaceShape::from(&body.shape)).collect();
     let duration = TOUR + LAG * count as f64;
     let ball = scene.tool.as_ref().map_or(Probe::default().radius(), |tool| tool.radius);
     let tour = Tour::new(bounds, duration).and_then(|tour| tour.with_probe_radius(ball));
-    Some(tour.and_then(|tour| tour.over_each(&scene.whole, &shapes)))
+    Some(tour.and_then(|tour| tour.over_each(SpaceShape::from(&scene.whole).shape(), &shapes)))
 }
 
 /// The radius of what touches a scene [m]: of the balls at its contact points, or of a ball around the

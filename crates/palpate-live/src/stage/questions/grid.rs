@@ -7,7 +7,7 @@ use palpate::field::{Point, Shape, Vector};
 use palpate::scene::BuiltScene;
 
 use super::{Cancel, shape};
-use crate::stage::points::{in_space, longest_edge, point_of};
+use crate::stage::points::{longest_edge, point_of};
 use crate::wire::{Ask, Grid, GridPlace};
 
 /// By how much samples reach over the bounds of the scene on each side, as a share of its longest edge.
@@ -66,7 +66,7 @@ pub(super) fn samples<const D: usize>(
         return Err(format!("samples lie in 2 to 2048 cells, got {cells}"));
     }
     let step = (longest + 2.0 * grown) / cells as f64;
-    let (min, max) = (in_space(bounds.min), in_space(bounds.max));
+    let (min, max) = (bounds.min.in_space().0, bounds.max.in_space().0);
     let grow = |axis: usize, side: f64| if axis < D { side * grown } else { 0.0 };
     let first: [f64; 3] = std::array::from_fn(|axis| min[axis] + grow(axis, -1.0));
     let last: [f64; 3] = std::array::from_fn(|axis| max[axis] + grow(axis, 1.0));

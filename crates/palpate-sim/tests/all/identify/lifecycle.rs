@@ -16,7 +16,7 @@ use super::{free, identify};
 
 /// A device that counts what a loop owes it.
 struct Counted {
-    device: SimulatedDevice<2>,
+    device: SimulatedDevice,
     profile: DeviceProfile,
     calls: Vec<&'static str>,
     opens: bool,
@@ -26,7 +26,7 @@ struct Counted {
     torques: u64,
 }
 
-impl Device<2> for Counted {
+impl Device for Counted {
     fn points(&self) -> usize {
         1
     }
@@ -56,15 +56,15 @@ impl Device<2> for Counted {
         Ok(())
     }
 
-    fn read(&mut self, time: f64, points: &mut [PointState<2>]) -> Result<Reading, DeviceLost> {
+    fn read(&mut self, time: f64, points: &mut [PointState]) -> Result<Reading, DeviceLost> {
         self.device.read(time, points)
     }
 
-    fn read_turn(&mut self) -> Result<Option<TurnState<2>>, DeviceLost> {
+    fn read_turn(&mut self) -> Result<Option<TurnState>, DeviceLost> {
         if self.senses_turns { self.device.read_turn() } else { Ok(None) }
     }
 
-    fn write(&mut self, forces: &[Vector<f64, 2>]) -> Result<(), DeviceLost> {
+    fn write(&mut self, forces: &[Vector<f64, 3>]) -> Result<(), DeviceLost> {
         self.writes += 1;
         if !self.takes_forces {
             return Err(DeviceLost::new("the motors are off"));
