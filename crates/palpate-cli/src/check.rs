@@ -4,21 +4,22 @@
 //! `palpate check`: checks a scene file.
 
 use std::fmt;
+use std::path::PathBuf;
 
+use clap::Args;
 use palpate::field::Vector;
 use palpate::mesh::Findings;
+use palpate::scene::text::rounded;
 use palpate::scene::{
     AnyScene, BuiltMesh, BuiltScene, Samples, Scene, SceneError, SceneProblem, is_empty,
 };
 use serde::Serialize;
 
 use crate::answers::Bounds;
-use crate::arguments::CheckOptions;
 use crate::input::{Bakes, bytes, folder, longest_edge, other_than_scene};
 use crate::outcome::{Failure, Outcome};
 use crate::output::{self, counted, shown};
 use crate::units::hint;
-use palpate::scene::text::rounded;
 
 pub(crate) fn run(options: &CheckOptions) -> Result<Outcome, Failure> {
     let bytes = bytes(&options.scene)?;
@@ -382,4 +383,17 @@ pub(crate) fn unit_hint(mesh: &BuiltMesh) -> Option<String> {
     let file = mesh.file.as_ref()?;
     let is_without_unit = mesh.samples.is_none() || file.to_ascii_lowercase().ends_with(".npy");
     is_without_unit.then(|| hint(longest_edge(&aabb), "\"scale\":", scale)).flatten()
+}
+
+pub(crate) const EXAMPLES: &str =
+    "Examples:\n  palpate check scenes/cup.json\n  palpate check scenes/cup.json --json";
+
+/// The options of `palpate check`.
+#[derive(Args, Debug)]
+pub(crate) struct CheckOptions {
+    /// The scene file.
+    pub(crate) scene: PathBuf,
+    /// Print JSON.
+    #[arg(long)]
+    pub(crate) json: bool,
 }

@@ -13,12 +13,11 @@ use palpate::query::BallWorkspace;
 use palpate::scene::BuiltScene;
 use rayon::prelude::*;
 
-use crate::arguments::{PlotMap, PlotOptions};
 use crate::input::{self, longest_edge};
+use crate::interrupt;
 use crate::outcome::Failure;
 use crate::picture::{self, Dimensions, Drawable, values};
-use crate::plot::title;
-use crate::progress;
+use crate::plot::{PlotMap, PlotOptions, title};
 
 /// The smallest angle of the scale [degrees]: finer than any picture shows a direction.
 const SMALLEST: f64 = 1e-3;
@@ -243,7 +242,7 @@ where
         isolines: Isolines,
         plane: &Slice,
     ) -> Result<Isolines, PlotError> {
-        let bar = progress::bar();
+        let bar = interrupt::bar();
         let drawn = match self {
             Self::Nothing => Ok(isolines),
             Self::Gradient(gradient) if map == PlotMap::Error => {

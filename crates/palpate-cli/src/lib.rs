@@ -20,7 +20,6 @@ mod feel;
 mod gallery;
 mod gradients;
 mod grid;
-mod hand_csv;
 mod identify;
 mod input;
 mod interrupt;
@@ -34,16 +33,11 @@ mod output;
 mod picture;
 mod plane;
 mod plot;
-mod progress;
-#[cfg(test)]
-mod renamed;
 mod render;
 mod schema;
 mod shapes;
 mod sweep;
 mod table;
-mod threads;
-mod times;
 mod units;
 mod views;
 

@@ -5,7 +5,8 @@
 
 use std::io::Write;
 
-use crate::arguments::{SchemaOf, SchemaOptions};
+use clap::{Args, ValueEnum};
+
 use crate::outcome::{Failure, Outcome};
 use crate::output;
 
@@ -19,4 +20,21 @@ pub(crate) fn run(options: &SchemaOptions) -> Result<Outcome, Failure> {
     };
     write!(output::answer(), "{text}")?;
     Ok(Outcome::Yes)
+}
+
+/// The options of `palpate schema`.
+#[derive(Args, Debug)]
+pub(crate) struct SchemaOptions {
+    /// What the schema is of.
+    #[arg(value_enum, default_value = "scenes")]
+    pub(crate) of: SchemaOf,
+}
+
+/// What a schema is of.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub(crate) enum SchemaOf {
+    /// Scene files.
+    Scenes,
+    /// What `--json` prints, and the questions of other programs.
+    Answers,
 }

@@ -18,6 +18,7 @@
 pub mod arbitrary;
 pub mod cases;
 pub mod double;
+pub mod hard;
 pub mod laws;
 pub mod models;
 pub mod recall;

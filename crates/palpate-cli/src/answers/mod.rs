@@ -3,11 +3,13 @@
 
 //! What answers of several commands have in common.
 
-#[cfg(test)]
-mod page;
-
 use palpate::field::Aabb;
 use serde::Serialize;
+
+#[cfg(test)]
+mod page;
+#[cfg(test)]
+mod renamed;
 
 /// The corners of a box [m].
 #[derive(Serialize)]
@@ -45,7 +47,6 @@ mod tests {
     use crate::devices::{self, actuators, rendered, stability};
 
     use super::page::Page;
-    use crate::renamed::RENAMED;
     use crate::{
         check, eval, feel, gallery, gradients, grid, identify, jitter, mesh, plot, render,
         shapes,
@@ -80,7 +81,7 @@ mod tests {
             ("mesh", of::<mesh::Checked>(generator)),
             ("mesh --output", of::<mesh::contour::Answer>(generator)),
             ("plot", of::<plot::Answer>(generator)),
-            ("render", of::<render::report::Answer>(generator)),
+            ("render", of::<render::Answer>(generator)),
             ("shapes", of::<shapes::Answer>(generator)),
         ]
     }
@@ -149,7 +150,7 @@ mod tests {
         let (before, rest) = page.split_once(begin).unwrap();
         let (_, after) = rest.split_once(end).unwrap();
         let mut table = "\n| command | old | new |\n|---|---|---|\n".to_owned();
-        for row in RENAMED {
+        for row in super::renamed::RENAMED {
             writeln!(table, "| `{}` | `{}` | `{}` |", row.command, row.old, row.new).unwrap();
         }
         compare("../../CHANGELOG.md", &format!("{before}{begin}{table}\n{end}{after}"));

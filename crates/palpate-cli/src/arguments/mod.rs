@@ -3,50 +3,31 @@
 
 //! The command line: each command's options and examples are in a file of its name.
 
-mod check;
-mod contact;
-mod descend;
-mod devices;
-mod eval;
-mod feel;
-mod gallery;
-mod gradients;
-mod grid;
-mod identify;
-mod jitter;
-mod live;
-mod mass;
-mod mesh;
-mod numbers;
-mod plot;
+pub(crate) mod numbers;
 mod profile;
-mod render;
-mod schema;
-mod shapes;
-mod sweep;
 
 use clap::{Parser, Subcommand};
 
-pub(crate) use check::CheckOptions;
-pub(crate) use contact::{ContactOptions, ContactQuestion};
-pub(crate) use descend::DescendOptions;
-pub(crate) use devices::DevicesOptions;
-pub(crate) use eval::EvalOptions;
-pub(crate) use feel::{DeviceChoice, FeelOptions, RecoveryChoice};
-pub(crate) use gallery::{Format, GalleryOptions, Plane};
-pub(crate) use gradients::GradientsOptions;
-pub(crate) use grid::GridOptions;
-pub(crate) use identify::IdentifyOptions;
-pub(crate) use jitter::JitterOptions;
-pub(crate) use live::{LiveOptions, PageOptions};
-pub(crate) use mass::MassOptions;
-pub(crate) use mesh::MeshOptions;
-pub(crate) use plot::{Map, PlotMap, PlotOptions};
+pub(crate) use crate::check::CheckOptions;
+pub(crate) use crate::contact::ContactOptions;
+pub(crate) use crate::descend::DescendOptions;
+pub(crate) use crate::devices::DevicesOptions;
+pub(crate) use crate::eval::EvalOptions;
+pub(crate) use crate::feel::FeelOptions;
+pub(crate) use crate::gallery::GalleryOptions;
+pub(crate) use crate::gradients::GradientsOptions;
+pub(crate) use crate::grid::GridOptions;
+pub(crate) use crate::identify::IdentifyOptions;
+pub(crate) use crate::jitter::JitterOptions;
+pub(crate) use crate::live::LiveOptions;
+pub(crate) use crate::mass::MassOptions;
+pub(crate) use crate::mesh::MeshOptions;
+pub(crate) use crate::plot::PlotOptions;
+pub(crate) use crate::render::RenderOptions;
+pub(crate) use crate::schema::SchemaOptions;
+pub(crate) use crate::shapes::ShapesOptions;
+pub(crate) use crate::sweep::SweepOptions;
 pub(crate) use profile::ProfileChoice;
-pub(crate) use render::{RenderOptions, ShadowChoice};
-pub(crate) use schema::{SchemaOf, SchemaOptions};
-pub(crate) use shapes::{Dimension, ShapesOptions};
-pub(crate) use sweep::SweepOptions;
 
 const EXAMPLES: &str = "\
 Examples:
@@ -73,64 +54,64 @@ pub(crate) struct Arguments {
 #[derive(Debug, Subcommand)]
 pub(crate) enum Command {
     /// Feel a scene with a simulated hand in a servo loop, and report (the default).
-    #[command(after_help = feel::EXAMPLES)]
+    #[command(after_help = crate::feel::EXAMPLES)]
     Feel(FeelOptions),
     /// Print distance, gradient and nearest surface point, at one point or many.
-    #[command(after_help = eval::EXAMPLES)]
+    #[command(after_help = crate::eval::EXAMPLES)]
     Eval(EvalOptions),
     /// Find where the bodies of a scene touch, with a proof; status 1 if none do.
-    #[command(after_help = contact::EXAMPLES)]
+    #[command(after_help = crate::contact::EXAMPLES)]
     Contact(ContactOptions),
     /// Find when bodies that move touch first, with a proof; status 1 if none do.
-    #[command(after_help = sweep::EXAMPLES)]
+    #[command(after_help = crate::sweep::EXAMPLES)]
     Sweep(SweepOptions),
     /// Compare a local search over a triangle or a segment, or between two bodies, with the
     /// proven minimum.
-    #[command(after_help = descend::EXAMPLES)]
+    #[command(after_help = crate::descend::EXAMPLES)]
     Descend(DescendOptions),
     /// Compare ways to the gradient of a field with the exact one.
-    #[command(after_help = gradients::EXAMPLES)]
+    #[command(after_help = crate::gradients::EXAMPLES)]
     Gradients(GradientsOptions),
     /// Draw a scene on a plane, as SVG or PNG: isolines, gradients, promises or errors.
-    #[command(after_help = plot::EXAMPLES)]
+    #[command(after_help = crate::plot::EXAMPLES)]
     Plot(PlotOptions),
     /// Draw a scene in space, lit, as PNG; no surface is missed.
-    #[command(after_help = render::EXAMPLES)]
+    #[command(after_help = crate::render::EXAMPLES)]
     Render(RenderOptions),
     /// Draw every primitive and operator as small pictures on a few sheets.
-    #[command(after_help = gallery::EXAMPLES)]
+    #[command(after_help = crate::gallery::EXAMPLES)]
     Gallery(GalleryOptions),
     /// Check a scene file; status 1, with the line, if it is wrong.
-    #[command(after_help = check::EXAMPLES)]
+    #[command(after_help = crate::check::EXAMPLES)]
     Check(CheckOptions),
     /// Compute volume, mass, centroid and moments of the bodies, with error bounds.
-    #[command(after_help = mass::EXAMPLES)]
+    #[command(after_help = crate::mass::EXAMPLES)]
     Mass(MassOptions),
     /// Sample a scene on a grid, with a certified deviation, and write it as a file.
-    #[command(after_help = grid::EXAMPLES)]
+    #[command(after_help = crate::grid::EXAMPLES)]
     Grid(GridOptions),
     /// Check whether a mesh file (OBJ, STL, PLY, GLB) is watertight, and list its defects.
-    #[command(after_help = mesh::EXAMPLES)]
+    #[command(after_help = crate::mesh::EXAMPLES)]
     Mesh(MeshOptions),
     /// Print the JSON schema of scene files, or of questions and answers.
     #[command(after_help = "Examples:\n  palpate schema > scene.schema.json\n  \
                             palpate schema answers > answers.schema.json")]
     Schema(SchemaOptions),
     /// List the primitives with parameters, origins and promises, or draw one.
-    #[command(after_help = shapes::EXAMPLES)]
+    #[command(after_help = crate::shapes::EXAMPLES)]
     Shapes(ShapesOptions),
     /// List the devices that can be simulated: limits, sources, assumed numbers.
-    #[command(after_help = devices::EXAMPLES)]
+    #[command(after_help = crate::devices::EXAMPLES)]
     Devices(DevicesOptions),
     /// Find mass, damping, friction and encoder step of a device by small motions of its own, and
     /// write its profile; status 1 if a number cannot be told.
-    #[command(after_help = identify::EXAMPLES)]
+    #[command(after_help = crate::identify::EXAMPLES)]
     Identify(Box<IdentifyOptions>),
     /// Serve a page on which a scene is seen, touched, edited and measured, until Ctrl-C.
-    #[command(after_help = live::EXAMPLES)]
+    #[command(after_help = crate::live::EXAMPLES)]
     Live(LiveOptions),
     /// Measure how late a loop wakes on this machine, and advise how to wait.
-    #[command(after_help = jitter::EXAMPLES)]
+    #[command(after_help = crate::jitter::EXAMPLES)]
     Jitter(JitterOptions),
 }
 

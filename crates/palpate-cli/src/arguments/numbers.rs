@@ -11,39 +11,39 @@ use palpate::field::LARGEST_LENGTH;
 use palpate::scene::text::plain;
 
 /// A positive number in `unit`.
-pub(super) fn positive(
+pub(crate) fn positive(
     unit: &'static str,
 ) -> impl Fn(&str) -> Result<f64, String> + Clone + Send + Sync + 'static {
     move |text| ruled(text, "positive and finite", unit, |x| x > 0.0 && x.is_finite())
 }
 
 /// A number of zero or more in `unit`.
-pub(super) fn zero_or_more(
+pub(crate) fn zero_or_more(
     unit: &'static str,
 ) -> impl Fn(&str) -> Result<f64, String> + Clone + Send + Sync + 'static {
     move |text| ruled(text, "zero or more and finite", unit, |x| x >= 0.0 && x.is_finite())
 }
 
 /// A positive length [m].
-pub(super) fn length(text: &str) -> Result<f64, String> {
+pub(crate) fn length(text: &str) -> Result<f64, String> {
     let rule = format!("positive and at most {LARGEST_LENGTH:e} m");
     ruled(text, &rule, "m", |x| x > 0.0 && x <= LARGEST_LENGTH)
 }
 
 /// A length of zero or more [m].
-pub(super) fn length_or_zero(text: &str) -> Result<f64, String> {
+pub(crate) fn length_or_zero(text: &str) -> Result<f64, String> {
     let rule = format!("zero or more and at most {LARGEST_LENGTH:e} m");
     ruled(text, &rule, "m", |x| (0.0..=LARGEST_LENGTH).contains(&x))
 }
 
 /// A coordinate [m].
-pub(super) fn coordinate(text: &str) -> Result<f64, String> {
+pub(crate) fn coordinate(text: &str) -> Result<f64, String> {
     let rule = format!("finite and at most {LARGEST_LENGTH:e} m in size");
     ruled(text, &rule, "m", |x| x.abs() <= LARGEST_LENGTH)
 }
 
 /// A number from `least` to `most` in `unit`.
-pub(super) fn within(
+pub(crate) fn within(
     least: f64,
     most: f64,
     unit: &'static str,
@@ -55,7 +55,7 @@ pub(super) fn within(
 }
 
 /// A whole number from `least` to `most`.
-pub(super) fn count<T>(
+pub(crate) fn count<T>(
     least: T,
     most: T,
 ) -> impl Fn(&str) -> Result<T, String> + Clone + Send + Sync + 'static

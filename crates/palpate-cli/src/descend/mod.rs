@@ -1,31 +1,26 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! `palpate descend`: a local search over an element or between two bodies, compared with the
-//! proven minimum.
+//! `palpate descend`: local searches beside the proven ones.
 
-mod circles;
-pub(crate) mod element;
-mod ending;
-mod figure;
-pub(crate) mod pair;
-mod search;
-
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
-use palpate::field::UnknownName;
-use palpate::field::{Aabb, Vector};
-use palpate::local::Descent;
-use palpate::query::Limits;
+use clap::Args;
+use palpate::field::{Aabb, LARGEST_LENGTH, Shape, UnknownName, Vector};
+use palpate::local::{Descent, ElementMethod, NaiveDescent, PairMethod, Weights};
+use palpate::query::{Element, Limits};
 use palpate::scene::{AnyScene, BuiltScene};
 use serde::Serialize;
 
-use crate::arguments::DescendOptions;
+use crate::arguments::numbers::{count, length_or_zero};
 use crate::input;
 use crate::outcome::{Failure, Outcome};
 use crate::output::Files;
 use crate::picture::{Dimensions, Drawable, Picture};
+
+pub(crate) mod element;
+pub(crate) mod pair;
 
 /// How far apart the bounds of the minimum may be, as a share of the longest edge.
 const TOLERANCE: f64 = 1e-4;
@@ -133,4 +128,187 @@ fn written(length: f64) -> String {
     // Adding zero turns −0 into 0.
     let rounded = (length * ROUND).round() / ROUND + 0.0;
     format!("{rounded:.5} m").replace('-', "−")
+}
+
+pub(crate) const EXAMPLES: &str = "\
+Examples:
+  palpate descend scenes/memoir_star.json --triangle 1.35,1.1 1.8,0.45 1.0,0.99
+  palpate descend scenes/memoir_star.json --triangle 1.35,1.1 1.8,0.45 1.0,0.99 \\
+    --method naive --alpha 0.1 --mu 0.1 --start 0.2,0.2,0.6 --plot descent.png
+  palpate descend scenes/s3.json --segment -1,0,0 1,0.2,0.1 --method golden_section --json
+  palpate descend scenes/memoir_two_bodies.json --start -0.2,0.5 --start 0.15,0.4
+  palpate descend scenes/memoir_two_bodies.json --method sum_descent --halton 40
+
+Without --triangle and --segment the search is for a point inside the first two bodies of the
+scene, from each --start or from --halton starts. A local search finds an upper bound of the least value and proves
+nothing; the answer says by how much it missed the proven minimum, where it ended, what both
+searches cost, and whether the circles around the element exclude it.";
+
+/// The options of `palpate descend`.
+#[derive(Args, Debug)]
+pub(crate) struct DescendOptions {
+    /// The scene file.
+    pub(crate) scene: PathBuf,
+    /// The corners of a triangle, each with its coordinates joined by commas [m].
+    #[arg(long, value_name = "POINT", num_args = 3, allow_hyphen_values = true)]
+    pub(crate) triangle: Vec<String>,
+    /// The ends of a segment [m].
+    #[arg(
+        long,
+        value_name = "POINT",
+        num_args = 2,
+        conflicts_with = "triangle",
+        allow_hyphen_values = true
+    )]
+    pub(crate) segment: Vec<String>,
+    /// Where the search starts. Over a triangle or a segment: the barycentric weights of its
+    /// corners, u,v,w or u,v, whose sum is 1; the method's own start if left out. Between bodies:
+    /// a point [m]; may be given more than once.
+    #[arg(long, value_name = "NUMBERS", allow_hyphen_values = true)]
+    pub(crate) start: Vec<String>,
+    /// Between bodies: this many starts of Halton's sequence, evenly over the common part of both
+    /// boxes; MuJoCo has 40.
+    #[arg(long, conflicts_with = "start", allow_negative_numbers = true, value_parser = count(1, 100_000_u32))]
+    pub(crate) halton: Option<u32>,
+    /// The search: projected_gradient, frank_wolfe, golden_section, macklin (as PhysX ships it) or
+    /// naive (the memoir's, as printed) over an element; alternating_projection, minimax_proximal or
+    /// sum_descent (MuJoCo's) between bodies; the first of these if left out.
+    #[arg(long)]
+    pub(crate) method: Option<String>,
+    /// The factor α of the steps of --method naive, α·max(f, µ); 0.1 if left out.
+    #[arg(long, allow_negative_numbers = true)]
+    pub(crate) alpha: Option<f64>,
+    /// The least value µ in the steps of --method naive [m]; a tenth of the longest edge if left
+    /// out.
+    #[arg(long, allow_negative_numbers = true)]
+    pub(crate) mu: Option<f64>,
+    /// The number of steps of --method naive; 64 if left out.
+    #[arg(long)]
+    pub(crate) iterations: Option<u32>,
+    /// How --method naive finds gradients: dichotomy or adaptive_dichotomy (in the plane),
+    /// differences, closest_vector, exact; dichotomy if left out, in space differences.
+    #[arg(long)]
+    pub(crate) gradient: Option<String>,
+    /// How far apart the proven bounds may be [m]; a ten-thousandth of the longest edge of the
+    /// element or of the scene's box if left out.
+    #[arg(long, allow_negative_numbers = true, value_parser = length_or_zero)]
+    pub(crate) tolerance: Option<f64>,
+    /// Draw the path over the isolines, on the element's plane: .svg or .png.
+    #[arg(long, value_name = "PICTURE")]
+    pub(crate) plot: Option<PathBuf>,
+    /// Print JSON, with the points of the path.
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+/// Most steps of the naive descent, whose path is kept.
+const MOST_ITERATIONS: u32 = 100_000;
+
+/// A search over an element.
+#[derive(Debug)]
+struct Search<const N: usize> {
+    method: ElementMethod,
+    /// The constants of [`ElementMethod::Naive`].
+    naive: NaiveDescent,
+    /// Where it starts, if that is asked for.
+    start: Option<Weights<N>>,
+}
+
+impl<const N: usize> Search<N> {
+    fn of<const D: usize>(options: &DescendOptions) -> Result<Self, Failure> {
+        let needs = "searches between two bodies: leave out --triangle and --segment";
+        let method = method::<_, PairMethod>(options, ElementMethod::ProjectedGradient, needs)?;
+        if method != ElementMethod::Naive {
+            refuse_naive(options)?;
+        }
+        Ok(Self { method, naive: naive::<D>(options)?, start: start(options)? })
+    }
+
+    fn run<const D: usize>(&self, shape: &Shape<D>, element: &Element<N, D>) -> Descent<D> {
+        match (self.method, &self.start) {
+            (ElementMethod::Naive, None) => self.naive.descend(shape, element),
+            (ElementMethod::Naive, Some(start)) => {
+                self.naive.descend_from(shape, element, start)
+            }
+            (method, None) => method.descend(shape, element),
+            (method, Some(start)) => method.descend_from(shape, element, start),
+        }
+    }
+
+    /// The method in words, with its constants.
+    fn in_words<const D: usize>(&self, element: &Element<N, D>) -> String {
+        if self.method != ElementMethod::Naive {
+            return self.method.to_string();
+        }
+        let (alpha, mu) = (self.naive.alpha, self.naive.mu_for(element));
+        let gradient = self.naive.gradient_in::<D>();
+        format!("naive, alpha {alpha}, mu {mu} m, gradients by {gradient}")
+    }
+}
+
+/// Refuses options of the naive descent for other searches.
+fn refuse_naive(options: &DescendOptions) -> Result<(), Failure> {
+    let given = [
+        ("--alpha", options.alpha.is_some()),
+        ("--mu", options.mu.is_some()),
+        ("--iterations", options.iterations.is_some()),
+        ("--gradient", options.gradient.is_some()),
+    ];
+    match given.iter().find(|(_, is_given)| *is_given) {
+        Some((name, _)) => Err(Failure::input(format!("{name} is only for --method naive"))),
+        None => Ok(()),
+    }
+}
+
+/// The naive descent with the constants that are asked for.
+fn naive<const D: usize>(options: &DescendOptions) -> Result<NaiveDescent, Failure> {
+    let mut naive = NaiveDescent::default();
+    if let Some(alpha) = options.alpha {
+        // Written so that NaN is refused.
+        if !(alpha > 0.0 && alpha.is_finite()) {
+            let problem = format!("--alpha must be positive and finite, got {alpha:?}");
+            return Err(Failure::input(problem));
+        }
+        naive = naive.with_alpha(alpha);
+    }
+    if let Some(mu) = options.mu {
+        if !(0.0..=LARGEST_LENGTH).contains(&mu) {
+            let rule = format!("from 0 m to {LARGEST_LENGTH:e} m, got {mu:?} m");
+            return Err(Failure::input(format!("--mu must be {rule}")));
+        }
+        naive = naive.with_mu(mu);
+    }
+    if let Some(iterations) = options.iterations {
+        if iterations > MOST_ITERATIONS {
+            let rule = format!("at most {MOST_ITERATIONS}, got {iterations}");
+            return Err(Failure::input(format!("--iterations must be {rule}")));
+        }
+        naive = naive.with_steps(iterations);
+    }
+    match &options.gradient {
+        Some(name) => Ok(naive.with_gradient(input::gradient::<D>(name)?)),
+        None => Ok(naive),
+    }
+}
+
+/// The weights of `--start`.
+fn start<const N: usize>(options: &DescendOptions) -> Result<Option<Weights<N>>, Failure> {
+    let [given] = options.start.as_slice() else {
+        return match options.start.len() {
+            0 => Ok(None),
+            count => Err(Failure::input(format!(
+                "a search over an element has one --start, got {count}"
+            ))),
+        };
+    };
+    let numbers = input::numbers(given).ok_or_else(|| {
+        let (element, letters) =
+            if N == 2 { ("segment", "u,v") } else { ("triangle", "u,v,w") };
+        Failure::input(format!(
+            "--start of a {element} is the barycentric weights {letters} of its corners, got {given:?}; \
+             a point in metres starts a search between two bodies, without --triangle and --segment"
+        ))
+    })?;
+    let weights = Weights::new(numbers);
+    weights.map(Some).map_err(|error| Failure::input(format!("--start: {error}")))
 }

@@ -14,9 +14,8 @@ use palpate::scene::BuiltScene;
 use palpate::scene::text::joined;
 use serde::Serialize;
 
-use super::search::refuse_naive;
-use super::{Found, limits, method, written};
-use crate::arguments::DescendOptions;
+use super::{Found, limits, method, refuse_naive, written};
+use crate::descend::DescendOptions;
 use crate::input::{self, longest_edge};
 use crate::outcome::{Failure, Outcome};
 use crate::output;

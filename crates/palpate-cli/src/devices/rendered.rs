@@ -12,7 +12,7 @@ use palpate::safety::Accepted;
 use serde::Serialize;
 
 use super::with_forces;
-use crate::arguments::DevicesOptions;
+use crate::devices::DevicesOptions;
 use crate::outcome::{Failure, Outcome};
 use crate::output;
 use palpate::scene::text::rounded;

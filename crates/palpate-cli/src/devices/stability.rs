@@ -13,7 +13,7 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use super::with_forces;
-use crate::arguments::DevicesOptions;
+use crate::devices::DevicesOptions;
 use crate::outcome::{Failure, Outcome};
 use crate::output;
 use palpate::scene::text::rounded;

@@ -13,14 +13,12 @@ use palpate::scene::{BallAnswer, Balls, Versioned};
 use rayon::prelude::*;
 use serde::Serialize;
 
-use super::answer;
-use crate::arguments::EvalOptions;
 use crate::ask;
-use crate::interrupt::Interrupt;
+use crate::eval::EvalOptions;
+use crate::interrupt::{self, Interrupt};
 use crate::outcome::{Failure, Outcome};
 use crate::output::{self, Destination};
 use crate::table::{Table, coordinates};
-use crate::threads;
 
 /// Points read before they are evaluated: enough to keep all cores busy, few
 /// enough to stay in their caches.
@@ -46,7 +44,7 @@ impl<const D: usize> Job<'_, D> {
         destination: &Destination,
         interrupt: &Interrupt,
     ) -> Result<Outcome, Failure> {
-        let pool = threads::pool(options.threads)?;
+        let pool = interrupt::pool(options.threads)?;
         let stream = Stream { job: self, as_json: options.json, pool, interrupt };
         let is_whole = |(outcome, _): &(Outcome, usize)| *outcome != Outcome::Interrupted;
         let (outcome, done) = destination.write_whole(|out| stream.evaluate(out), is_whole)?;
@@ -83,9 +81,9 @@ impl<const D: usize> Stream<'_, D> {
         let bar = bar(size);
         self.interrupt.heed();
         if !self.as_json {
-            let mut header = answer::header::<D>();
+            let mut header = super::header::<D>();
             if self.job.balls.is_some() {
-                header.extend(answer::header_of_ball::<D>());
+                header.extend(super::header_of_ball::<D>());
             }
             writeln!(out, "{}", header.join(","))?;
         }
@@ -200,8 +198,8 @@ impl<const D: usize> Line<D> {
         if as_json {
             return serde_json::to_string(&Versioned::new(self)).map_err(Failure::input);
         }
-        let mut row = answer::row(&self.at);
-        row.extend(self.ball.as_ref().map(answer::row_of_ball).unwrap_or_default());
+        let mut row = super::row(&self.at);
+        row.extend(self.ball.as_ref().map(super::row_of_ball).unwrap_or_default());
         Ok(row.join(","))
     }
 }

@@ -8,8 +8,8 @@ use std::fmt::Write;
 use palpate::scene::{BakedBody, BakedGrid, BuiltScene};
 use serde::Serialize;
 
-use crate::arguments::FeelOptions;
 use crate::check::unit_hint;
+use crate::feel::FeelOptions;
 use crate::input::Bakes;
 use crate::outcome::Failure;
 use crate::output::{self, shown};

@@ -10,7 +10,7 @@ use palpate::vibration::Actuator;
 
 use super::figure::Run;
 use super::vibration::{Played, Vibration};
-use crate::arguments::{DeviceChoice, FeelOptions};
+use crate::feel::{DeviceChoice, FeelOptions};
 use crate::outcome::Failure;
 use crate::output::{self, Destination, Files};
 use crate::picture::{Dimensions, Drawable, Picture};

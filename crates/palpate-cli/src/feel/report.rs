@@ -1,28 +1,26 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! The report of a run, as text.
+//! The report of a run, as text and JSON.
 
 use std::fmt::Write;
 use std::io::Write as _;
 use std::path::Path;
 
 use palpate::device::DeviceProfile;
-use palpate::haptics::{Body, Progress, Servo, Surface, Texture, TextureKind};
+use palpate::haptics::{Body, Material, Progress, Servo, Surface, Texture, TextureKind};
 use palpate::safety::{Acceptance, Accepted, DeviceLimits, Rule};
+use palpate::scene::text::rounded;
 use palpate::scene::{BakedBody, BuiltScene};
 use palpate::servo_loop::RunReport;
 use serde::Serialize;
 
+use super::baked::{self, AsGrid};
+use super::inside;
+use super::paths::Beyond;
+use super::vibration::{Played, Vibrated};
 use crate::outcome::Failure;
 use crate::output::{self, counted, shown};
-use palpate::scene::text::rounded;
-
-use super::asked::{self, range};
-use super::baked::{self, AsGrid};
-use super::held::Beyond;
-use super::inside;
-use super::vibration::{Played, Vibrated};
 
 /// The line that is shown while the servo runs.
 pub(crate) fn live_line(progress: &Progress) -> String {
@@ -182,7 +180,7 @@ fn write_report<const D: usize>(out: &mut String, felt: &Felt<'_, D>) -> std::fm
     let materials = felt.scene.bodies.iter().map(|body| &body.material);
     let stiffness = of_asked(
         &range(surfaces().map(Surface::stiffness).map(unfelt_as_zero)),
-        &asked::stiffness(materials.clone(), device),
+        &stiffness(materials.clone(), device),
     );
     let damping = of_asked(
         &range(surfaces().map(Surface::damping)),
@@ -396,4 +394,41 @@ fn of_asked(rendered: &str, asked: &str) -> String {
 /// The stiffness [N/m], or zero for one below a millionth, which stands in for no spring at all.
 fn unfelt_as_zero(stiffness: f64) -> f64 {
     if stiffness < 1e-6 { 0.0 } else { stiffness }
+}
+
+/// The part of what the device renders that a material asks for; `None` if it asks for a stiffness
+/// in N/m, or the device has no largest.
+pub(super) fn part(material: &Material, device: &DeviceProfile) -> Option<f64> {
+    // Whether there is a largest depends on no rate.
+    let most =
+        Accepted::most_stiffness(&DeviceLimits::along(device), Acceptance::Device, 1000.0);
+    let is_limited = device.max_force > 0.0 && most.is_ok_and(f64::is_finite);
+    material.relative_stiffness.filter(|_| is_limited)
+}
+
+/// The stiffness that materials ask for [N/m], and the part of the device's that others do.
+pub(super) fn stiffness<'a>(
+    materials: impl Iterator<Item = &'a Material> + Clone,
+    device: &DeviceProfile,
+) -> String {
+    let parts = materials.clone().filter_map(|material| part(material, device));
+    let own = materials.filter(|material| part(material, device).is_none());
+    let own = own.map(|material| material.stiffness);
+    let of_device = || format!("{} of what the device renders", range(parts.clone()));
+    match (own.clone().next(), parts.clone().next()) {
+        (_, None) => range(own),
+        (None, Some(_)) => of_device(),
+        (Some(_), Some(_)) => format!("{}, and {}", range(own), of_device()),
+    }
+}
+
+/// The numbers of all bodies: one number if they are equal, else their range.
+pub(super) fn range(numbers: impl Iterator<Item = f64> + Clone) -> String {
+    let least = numbers.clone().fold(f64::INFINITY, f64::min);
+    let largest = numbers.fold(f64::NEG_INFINITY, f64::max);
+    if least < largest {
+        format!("{} to {}", rounded(least), rounded(largest))
+    } else {
+        rounded(least)
+    }
 }

@@ -6,7 +6,7 @@
 use palpate::haptics::Tool;
 use palpate::scene::{BuiltScene, BuiltTool};
 
-use crate::arguments::FeelOptions;
+use crate::feel::FeelOptions;
 use crate::outcome::Failure;
 
 /// The tool of the scene; `None` if contact points touch.

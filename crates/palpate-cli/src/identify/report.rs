@@ -10,7 +10,7 @@ use palpate::device::DeviceProfile;
 use palpate::sim::{DeviceAxis, EncoderStep, Estimate, Identified, IdentifiedAxis};
 use serde::Serialize;
 
-use crate::arguments::IdentifyOptions;
+use crate::identify::IdentifyOptions;
 use crate::outcome::Failure;
 use crate::output::{self, Destination};
 use palpate::scene::text::{measured, rounded};

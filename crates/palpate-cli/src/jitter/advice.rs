@@ -6,7 +6,7 @@
 use palpate::servo_loop::{Distribution, Priority};
 
 use super::{Measured, Waiting};
-use crate::times::microseconds;
+use crate::output::microseconds;
 
 /// A loop is steady if 99 % of its ticks are late by at most this share of a period, and 99.9 % by
 /// at most a period. Then forces are held for about the period that the passivity of a wall

@@ -1,22 +1,23 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! `palpate jitter`: measures how late a loop wakes on this machine.
-
-mod advice;
+//! `palpate jitter`: measures how late ticks start.
 
 use std::fmt;
 use std::time::Duration;
 
+use clap::Args;
 use palpate::device::NumberError;
 use palpate::haptics::HapticsError;
+use palpate::scene::text::plain;
 use palpate::servo_loop::{Lateness, Priority, WallClock, raise_priority};
 use serde::Serialize;
 
-use crate::arguments::JitterOptions;
+use crate::arguments::numbers::positive;
 use crate::outcome::{Failure, Outcome};
 use crate::output;
-use palpate::scene::text::plain;
+
+mod advice;
 
 /// The highest rate [Hz], which is that of the fastest servo.
 const MOST_RATE: f64 = 10_000.0;
@@ -169,4 +170,21 @@ impl fmt::Display for Answer {
         writeln!(f, "advice")?;
         self.advice.iter().try_for_each(|sentence| writeln!(f, "  - {sentence}"))
     }
+}
+
+pub(crate) const EXAMPLES: &str =
+    "Examples:\n  palpate jitter\n  palpate jitter --rate 4000 --duration 20 --json";
+
+/// The options of `palpate jitter`.
+#[derive(Args, Debug)]
+pub(crate) struct JitterOptions {
+    /// Ticks a second, at most 10 kHz [Hz].
+    #[arg(long, allow_negative_numbers = true, default_value = "1000", value_parser = positive("Hz"))]
+    pub(crate) rate: f64,
+    /// How long to measure in all, shared by the ways to wait [s]: each has at least a tick.
+    #[arg(long, allow_negative_numbers = true, default_value = "5", value_parser = positive("s"))]
+    pub(crate) duration: f64,
+    /// Print JSON.
+    #[arg(long)]
+    pub(crate) json: bool,
 }

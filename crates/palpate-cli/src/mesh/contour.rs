@@ -15,12 +15,11 @@ use palpate::mesh::{
 use palpate::scene::AnyScene;
 use serde::Serialize;
 
-use crate::arguments::MeshOptions;
 use crate::input::{self, longest_edge};
-use crate::interrupt::Interrupt;
+use crate::interrupt::{Interrupt, Progress};
+use crate::mesh::MeshOptions;
 use crate::outcome::{Failure, Outcome};
 use crate::output::{self, Files, counted, shown};
-use crate::progress::Progress;
 use palpate::scene::text::rounded;
 
 /// Cells along the longest side of the scene unless the options say another number.

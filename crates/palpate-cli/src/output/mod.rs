@@ -1,6 +1,8 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
+//! What a run writes: files, answers, remarks.
+//!
 //! All output of the program: files, standard output, messages.
 //!
 //! Before it begins, a run names the files that it reads and writes to [`Files`], which refuses
@@ -8,20 +10,22 @@
 //! temporary file in the same folder and renamed when complete, so a failed run leaves the old
 //! file.
 
-mod files;
-mod terminal;
-
+use std::fmt;
 use std::fs::{self, OpenOptions};
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
+use palpate::scene::Versioned;
+use palpate::scene::text::shown_json;
+use serde::Serialize;
 use tempfile::NamedTempFile;
 
-use crate::outcome::Failure;
+use crate::outcome::{Failure, Outcome};
 
 pub(crate) use files::{Files, ending};
 pub(crate) use palpate::scene::text::{counted, shown, shown_lines};
-pub(crate) use terminal::{answer, complain, ended, live, remark, usage};
+
+mod files;
 
 /// Where an output goes.
 #[derive(Debug)]
@@ -164,6 +168,88 @@ fn folder(place: &Path) -> &Path {
         Some(parent) if !parent.as_os_str().is_empty() => parent,
         _ => Path::new("."),
     }
+}
+
+/// A time [s] as text.
+pub(crate) fn microseconds(time: f64) -> String {
+    format!("{:.2} µs", 1e6 * time)
+}
+
+/// Standard output for an answer in words or JSON. It escapes characters that a terminal would
+/// obey.
+#[derive(Debug)]
+pub(crate) struct Answer {
+    out: io::StdoutLock<'static>,
+}
+
+/// The standard output, for the answer of a command.
+pub(crate) fn answer() -> Answer {
+    Answer { out: io::stdout().lock() }
+}
+
+impl Answer {
+    /// Writes an answer as an object that begins with its version, and ends the line.
+    pub(crate) fn json(&mut self, answer: &impl Serialize) -> io::Result<()> {
+        let json = serde_json::to_string_pretty(&Versioned::new(answer))?;
+        writeln!(self.out, "{}", shown_json(&json))
+    }
+
+    /// Writes an answer, as JSON or in words.
+    pub(crate) fn print(
+        &mut self,
+        answer: &(impl Serialize + fmt::Display),
+        as_json: bool,
+    ) -> io::Result<()> {
+        if as_json { self.json(answer) } else { write!(self, "{answer}") }
+    }
+}
+
+impl Write for Answer {
+    /// Writes the whole of `text`. Formatting passes whole strings, so no character is cut in
+    /// two.
+    fn write(&mut self, text: &[u8]) -> io::Result<usize> {
+        self.out.write_all(shown_lines(&String::from_utf8_lossy(text)).as_bytes())?;
+        Ok(text.len())
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.out.flush()
+    }
+}
+
+/// Flushes standard output at the end of a command; the command fails if that fails.
+pub(crate) fn ended(outcome: Outcome) -> Result<Outcome, Failure> {
+    io::stdout().flush()?;
+    Ok(outcome)
+}
+
+/// Prints help on standard output, or an error of the command line on standard error; returns
+/// the exit status.
+pub(crate) fn usage(refused: &clap::Error) -> Result<u8, Failure> {
+    let printed = refused.print().and_then(|()| io::stdout().flush());
+    // Without standard error there is nowhere to report that an error could not be printed.
+    if !refused.use_stderr() {
+        printed?;
+    }
+    Ok(u8::try_from(refused.exit_code()).unwrap_or(Failure::STATUS))
+}
+
+/// Prints on standard error why a command fails, in one line or several.
+pub(crate) fn complain(problem: impl fmt::Display) {
+    // Ignored: there is nowhere else to say it.
+    let _ = writeln!(io::stderr(), "palpate: {}", shown_lines(&problem.to_string()));
+}
+
+/// Prints a remark beside the answer, on standard error.
+pub(crate) fn remark(text: impl fmt::Display) {
+    // Ignored: a remark does not change the answer.
+    let _ = writeln!(io::stderr(), "{}", shown(&text.to_string()));
+}
+
+/// Writes over the last live line on standard error.
+pub(crate) fn live(line: impl fmt::Display) {
+    // Ignored: the line does not change the answer.
+    let _ = write!(io::stderr(), "\r{}\x1b[K", shown(&line.to_string()));
 }
 
 #[cfg(test)]

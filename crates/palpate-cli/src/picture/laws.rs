@@ -10,8 +10,7 @@ use palpate::plot::{PlaneView, Sampling, Slice, SurfaceLines};
 use palpate::query::BallWorkspace;
 use palpate_testkit::cases::on_trees;
 
-use super::flat::outline;
-use super::truth::compare;
+use super::flat::{compare, outline};
 use super::{Dimensions, Drawable};
 
 const CELLS: usize = 60;

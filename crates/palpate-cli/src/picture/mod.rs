@@ -6,7 +6,6 @@
 mod flat;
 #[cfg(test)]
 mod laws;
-mod truth;
 
 use std::path::Path;
 
@@ -14,9 +13,10 @@ use palpate::field::{Aabb, Pose, Rotation, Shape, Vector};
 use palpate::plot::{Figure, Isolines, PlaneView, PlotError, Sampling, Slice};
 use palpate::scene::{AnyScene, BuiltScene};
 
-use crate::arguments::{Format, Map};
+use crate::gallery::Format;
 use crate::outcome::Failure;
 use crate::output::{self, Destination, Files};
+use crate::plot::Map;
 
 use flat::slopes;
 pub(crate) use flat::{isolines, noted, outline, scene, values};
@@ -176,7 +176,7 @@ where
     match colours.map {
         Map::Distance => Ok(Some(isolines)),
         Map::Gradient => isolines.with_gradient(slopes(shape, plane)).map(Some),
-        Map::Promise => truth::with_promise(shape, plane, isolines, colours),
+        Map::Promise => flat::with_promise(shape, plane, isolines, colours),
     }
 }
 

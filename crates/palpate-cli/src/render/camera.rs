@@ -10,10 +10,9 @@ use palpate::plot::PlaneView as Window;
 use palpate::render::{Camera, Lens, Sight, Subject};
 use palpate::scene::WrittenView;
 
-use crate::arguments::RenderOptions;
-use crate::input;
 use crate::outcome::Failure;
-use crate::{picture, views};
+use crate::render::RenderOptions;
+use crate::{input, picture, views};
 
 /// How many sides a turntable shows, to find a distance from which it shows all.
 const SIDES: u32 = 16;

@@ -10,11 +10,11 @@ use std::path::{Path, PathBuf};
 use indicatif::{ProgressBar, ProgressStyle};
 use palpate::render::{Camera, Image, RenderError, Rendering, Work, render, write_animation};
 
-use super::stage::Stage;
-use crate::arguments::RenderOptions;
+use super::Stage;
 use crate::interrupt::Interrupt;
 use crate::outcome::Failure;
 use crate::output::{self, Destination, Files, shown};
+use crate::render::RenderOptions;
 
 /// The most pixels of an animated PNG, whose pictures wait in memory: 600 megabytes.
 const MOST_PIXELS: u64 = 200_000_000;

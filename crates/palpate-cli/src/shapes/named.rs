@@ -10,10 +10,10 @@ use palpate::plot::Figure;
 use palpate::scene::{WrittenShape, unknown_name};
 
 use super::{Answer, Primitive, drawing};
-use crate::arguments::{Dimension, ShapesOptions};
 use crate::outcome::{Failure, Outcome};
 use crate::output::{self, Files, shown};
 use crate::picture::{self, Picture};
+use crate::shapes::{Dimension, ShapesOptions};
 
 /// A primitive in the dimensions in which it has this name.
 struct Named {

@@ -11,12 +11,12 @@ use palpate::mesh::{Mesh, Outline, TriangleMesh};
 use palpate::query::{Motion, Moving};
 use palpate::scene::{BuiltScene, LocalFinding, SweptPart};
 
-use super::surface;
-use crate::arguments::SweepOptions;
+use super::figure;
 use crate::ask;
 use crate::outcome::Failure;
 use crate::output::{self, shown};
 use crate::picture::Dimensions;
+use crate::sweep::SweepOptions;
 
 /// Steps of time.
 const SAMPLES: u32 = 60;
@@ -198,7 +198,7 @@ impl Surfaced<2> for Dimensions {
     type Surface = Outline;
 
     fn surface(solid: &Shape<2>, cells: u32) -> Option<Outline> {
-        surface::outline(solid, cells)
+        figure::outline(solid, cells)
     }
 
     fn touch(
@@ -215,7 +215,7 @@ impl Surfaced<3> for Dimensions {
     type Surface = TriangleMesh;
 
     fn surface(solid: &Shape<3>, cells: u32) -> Option<TriangleMesh> {
-        surface::triangles(solid, cells)
+        figure::triangles(solid, cells)
     }
 
     fn touch(

@@ -5,7 +5,6 @@
 
 use std::collections::BTreeSet;
 
-use palpate::field::Aabb;
 use palpate::render::SrgbColor;
 use palpate::scene::{AnyScene, BuiltBody, BuiltScene};
 
@@ -75,17 +74,13 @@ fn of_scene<const D: usize>(scene: &BuiltScene<D>) -> BuiltTold {
         name: name.clone(),
         color: SrgbColor::of_body(number).0,
         promise: shape.promise().in_words(),
-        bounds: shape.promise().bounds.map(|bounds| box_in_space(bounds.aabb)),
+        bounds: shape.promise().bounds.map(|bounds| bounds.aabb.in_space()),
     };
     BuiltTold {
         dimension: D,
         bodies: scene.bodies.iter().enumerate().map(body).collect(),
-        bounds: scene.bounds().map(box_in_space),
+        bounds: scene.bounds().map(|bounds| bounds.in_space()),
         lipschitz: promise.lipschitz,
         promise: promise.in_words(),
     }
-}
-
-fn box_in_space<const D: usize>(Aabb { min, max }: Aabb<D>) -> Aabb<3> {
-    Aabb { min: min.in_space(), max: max.in_space() }
 }

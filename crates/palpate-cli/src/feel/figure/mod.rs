@@ -17,10 +17,9 @@ use palpate::plot::{Figure, Isolines};
 use palpate::scene::{BuiltBody, BuiltScene};
 use palpate::servo_loop::Recorder;
 
-use super::asked;
-use super::moved;
 use super::slices::{FeltSlice, felt_slices};
 use super::vibration::Vibration;
+use super::{paths, report};
 use crate::input;
 use crate::outcome::Failure;
 use crate::picture::{self, Dimensions, Drawable, Picture};
@@ -54,7 +53,7 @@ where
         // The unit box stands for a scene without bounds.
         let bounds =
             input::bounds(scene).unwrap_or_else(|_| Aabb::centred(Vector::constant(0.5)));
-        let moved = moved::bounds(scene, end);
+        let moved = paths::bounds(scene, end);
         let bounds = moved.map_or(bounds, |moved| bounds.union(&moved));
         let slices = felt_slices(&bounds, rows).map_err(Failure::input)?;
         let bounds = tools::around(bounds, &tools);
@@ -100,7 +99,7 @@ where
         let isolines = scene.map_err(Failure::input)?.in_ink().with_title(&slice.heading);
         let spacing = overlays::ARROW_SPACING * (view.width() * view.height()).sqrt();
         let end = self.recorder.rows().last().map_or(0.0, |row| row.time_s);
-        moved::drawn_over(isolines, self.scene, &slice.plane, &view, end)
+        paths::drawn_over(isolines, self.scene, &slice.plane, &view, end)
             .and_then(|isolines| guides::drawn(isolines, self.scene, slice, bounds))
             .and_then(|isolines| overlays::drawn(isolines, slice, points, spacing))
             .and_then(|isolines| tools::drawn(isolines, slice, &view, tools))
@@ -132,7 +131,7 @@ fn material<const D: usize>(
     let is_it = |name: &&str| Material::preset(name).is_ok_and(|known| known == body.material);
     let preset = Material::preset_names().find(is_it);
     let name = preset.filter(|name| **name != body.name);
-    if let Some(part) = asked::part(&body.material, device) {
+    if let Some(part) = report::part(&body.material, device) {
         let (rendered, part) = (rounded(rendered), rounded(part));
         return format!("{rendered} N/m, asked {part} of the device's");
     }

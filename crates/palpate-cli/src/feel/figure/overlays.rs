@@ -6,8 +6,8 @@
 use palpate::plot::{Arrow, Arrows, Dash, Isolines, PlotError, Polyline};
 use palpate::servo_loop::TraceRow;
 
+use super::super::paths::{Pieces, Side, side};
 use super::points::Points;
-use crate::feel::nearness::{Pieces, Side, side};
 use crate::feel::slices::FeltSlice;
 
 /// The distance between arrows of force, as a share of the picture's sides; closer ones

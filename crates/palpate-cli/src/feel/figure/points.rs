@@ -7,7 +7,7 @@ use palpate::field::Point;
 use palpate::plot::Color;
 use palpate::servo_loop::TraceRow;
 
-use crate::feel::nearness::{Seen, taken_apart};
+use super::super::paths::{Seen, taken_apart};
 use crate::feel::slices::FeltSlice;
 
 /// The most points of a line: more than a picture has columns.
