@@ -6,8 +6,8 @@
 use std::path::PathBuf;
 
 use palpate::field::Pose;
-use palpate::scene::{AnyScene, BuiltScene, Dimension, Scene, SceneBody};
-use pyo3::exceptions::{PyTypeError, PyValueError};
+use palpate::scene::{AnyScene, AskError, BuiltScene, Dimension, Scene, SceneBody};
+use pyo3::exceptions::{PyKeyError, PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 
@@ -15,6 +15,7 @@ use crate::answers::Fields;
 use crate::arrays::row;
 use crate::call::detached_in;
 use crate::error::OrRaise;
+use crate::interrupt::abandonable;
 use crate::mesh::replace;
 use crate::pool;
 use crate::poses::{self, Posed};
@@ -203,6 +204,31 @@ impl PyScene {
             }
         };
         Self::of(py, scene.or_raise(py)?, folder)
+    }
+
+    /// Answers a question, with the keys of `docs/answers.md`: a dict, or its text in JSON. The answer
+    /// is a dict with the keys that the program prints with `--json`, in SI units.
+    ///
+    /// Raises `ValueError` if the question cannot be read or does not fit the scene, `KeyError` if it names no body.
+    /// After Ctrl-C the search goes on in a thread that nobody waits for.
+    ///
+    /// >>> import palpate as pp
+    /// >>> scene = pp.Scene({"left": pp.ball(0.5), "right": pp.ball(0.5).translated([2, 0, 0])})
+    /// >>> answer = scene.ask({"question": "contacts"})
+    /// >>> answer["pairs"][0]["verdict"], answer["apart"]
+    /// ('apart', 1)
+    /// >>> scene.ask({"question": "point", "at": [0, 0, 0]})["distance"]
+    /// -0.5
+    fn ask<'py>(&self, question: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+        let py = question.py();
+        let text = py.import("palpate._scenes")?.call_method1("question", (question,))?;
+        let (built, text) = (self.built.clone(), text.extract::<String>()?);
+        let answer = abandonable(py, move || built.ask_json(&text))?;
+        let answer = answer.map_err(|error| match error {
+            AskError::UnknownBody(problem) => PyKeyError::new_err(problem),
+            error => PyValueError::new_err(error.to_string()),
+        })?;
+        py.import("json")?.call_method1("loads", (answer,))
     }
 
     /// The text of the scene, as a file holds it.

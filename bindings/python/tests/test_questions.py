@@ -18,6 +18,17 @@ PLATE = pp.cuboid([0.6, 0.4, 0.6]) - pp.cylinder(radius=0.1005, height=1.0)
 PEG = pp.cylinder(radius=0.1, height=0.6)
 
 
+def test_a_scene_answers_questions_by_the_keys_of_the_program() -> None:
+    scene = pp.Scene({"left": pp.ball(0.5), "right": pp.ball(0.5).translated([2, 0, 0])})
+    answer = scene.ask({"question": "point", "at": np.array([0.0, 2.0, 0.0]), "body": "left"})
+    assert (answer["palpate"], answer["answer"], answer["distance"]) == (2, "point", 1.5)
+    assert scene.ask('{"question": "mass"}')["bodies"][0]["name"] == "left"
+    with pytest.raises(KeyError, match="lefd"):
+        scene.ask({"question": "point", "at": [0, 0, 0], "body": "lefd"})
+    with pytest.raises(ValueError, match="unknown field `margin_m`"):
+        scene.ask({"question": "contacts", "margin_m": 1})
+
+
 def test_known_separations_lie_between_the_bounds() -> None:
     for gap in [-0.3, -1e-3, 1e-3, 0.5]:
         other = BALL.translated([1 + gap, 0, 0])

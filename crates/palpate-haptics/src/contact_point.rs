@@ -1,28 +1,24 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! One contact point in a tick: its proxy, its force, and its port to the device.
+//! A contact point.
 
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-mod given;
-mod guided;
-
+use palpate_device::{PointState, limited, shortening};
 use palpate_field::{Point, Vector};
 use palpate_query::constraints::CAPACITY;
+use palpate_safety::{Approach, Arrival, Change, PortState, WorkspaceMap};
 
 use crate::bodies::Body;
 use crate::crease::{Crease, Place, Shared};
+use crate::error::ServoOptions;
 use crate::event::{Event, EventKind};
 use crate::guide::Guide;
 use crate::nearby::Nearby;
-use crate::options::ServoOptions;
 use crate::ports::Port;
 use crate::proxy::{Edited, Probe, Proxy};
 use crate::surface::{Press, Ringing};
-pub(crate) use given::FreeForce;
-use palpate_device::{PointState, shortening};
-use palpate_safety::{Approach, Arrival, Change, WorkspaceMap};
 
 /// One contact point after a tick. World coordinates.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -554,5 +550,146 @@ impl ContactPoint {
             force -= gradient * pull;
         }
         force
+    }
+}
+
+/// The force in free space, of guides and magnets.
+#[derive(Clone, Copy)]
+pub(crate) struct FreeForce {
+    /// The force [N].
+    pub(crate) force: Vector<f64, 3>,
+    /// Whether the proxy was placed anew: then all forces rise from zero.
+    pub(crate) placed: bool,
+    /// What happened beside the motion of the hand.
+    pub(crate) change: Change,
+}
+
+impl ContactPoint {
+    /// Takes note that the bodies `before` are replaced by those of `after` before the next tick;
+    /// `wanted` is their last force [N]. The new ones carry the proxy out where they cover it, for a
+    /// point by `most_of_point` [m] at most.
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    pub(crate) fn replace_bodies(
+        &mut self,
+        [before, after]: [&Nearby<'_>; 2],
+        wanted: Vector<f64, 3>,
+        most_of_point: f64,
+    ) {
+        self.proxy.carry_out(before, after, most_of_point);
+        self.of_others = wanted.norm();
+    }
+
+    /// Lets the force rise from zero; with a port, the safety chain does this.
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    pub(crate) fn rise_anew(&mut self) {
+        self.rise = 0.0;
+    }
+
+    /// Sets the rendered force of `touch` from its wanted force and the force in free space.
+    /// Returns the force to write [N], in device coordinates. If `placed`, the force rises from
+    /// zero.
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    #[inline(always)]
+    pub(crate) fn give(
+        &mut self,
+        setting: &Setting,
+        at_device: PointState,
+        touch: &mut Touch,
+        free: FreeForce,
+    ) -> Vector<f64, 3> {
+        let FreeForce { force: free, placed, change } = free;
+        let Setting { options, map, rise_step, arrival, .. } = setting;
+        let has_start = placed || self.of_others < f64::INFINITY;
+        let start = if has_start {
+            self.start([placed, change == Change::Carried], touch.wanted)
+        } else {
+            1.0
+        };
+        if let Some(port) = &mut self.port {
+            let wanted = map.force_to_device(touch.wanted);
+            let PointState { position, velocity } = at_device;
+            let free_force = map.force_to_device(free);
+            let Arrival { late, elapsed, is_ready } = *arrival;
+            let change = if is_ready { change } else { Change::Begins };
+            let stiffness = self.stiffness * map.scale();
+            let state = PortState {
+                position,
+                velocity,
+                free_force,
+                late,
+                elapsed,
+                start,
+                change,
+                stiffness,
+            };
+            let force = port.write(wanted, options.max_force, &state);
+            touch.force = map.force_to_world(force);
+            force
+        } else {
+            let rise = self.rise(start, touch.contact, *rise_step);
+            if change == Change::Carried {
+                self.approach.begin();
+            }
+            let wanted = self.approach.step(touch.wanted).unwrap_or(touch.wanted);
+            touch.force = limited(wanted + free, options.max_force) * rise;
+            map.force_to_device(touch.force)
+        }
+    }
+
+    /// The part of the force at which the rise begins: zero after a placement; after bodies
+    /// were replaced, the part that equals the force of the old bodies, unless they carried the
+    /// proxy out.
+    #[cold]
+    #[inline(never)]
+    fn start(&mut self, [placed, carried]: [bool; 2], wanted: Vector<f64, 3>) -> f64 {
+        let others = std::mem::replace(&mut self.of_others, f64::INFINITY);
+        match (placed, carried) {
+            (true, _) => 0.0,
+            (false, true) => 1.0,
+            (false, false) => shortening(wanted.norm(), others),
+        }
+    }
+
+    /// The rendered part of the force, which rises from `start`.
+    fn rise(&mut self, start: f64, contact: bool, step: f64) -> f64 {
+        self.rise = match (start < 1.0, contact) {
+            (true, _) => self.rise * start,
+            (false, true) => (self.rise + step).min(1.0),
+            (false, false) => 1.0,
+        };
+        self.rise
+    }
+}
+
+impl ContactPoint {
+    /// The force of the guides [N]; zero if a number is not finite.
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    #[inline]
+    pub(crate) fn guided(
+        &mut self,
+        position: Point<3>,
+        velocity: Vector<f64, 3>,
+        rise_step: f64,
+    ) -> Vector<f64, 3> {
+        if self.guides.is_empty() || !(position.is_finite() && velocity.is_finite()) {
+            return Vector::ZERO;
+        }
+        let guides = self.guides.iter_mut();
+        let all = guides.fold(Vector::ZERO, |sum, guide| sum + guide.force(position, velocity));
+        let part = self.guided;
+        self.guided = (part + rise_step).min(1.0);
+        all * part
+    }
+
+    /// Lets go of the guides, as a hand that is lifted does.
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    pub(crate) fn let_go(&mut self) {
+        self.guides.iter_mut().for_each(Guide::let_go);
+        self.guided = 0.0;
     }
 }

@@ -1,13 +1,17 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! Events at contact points, and reactions of bodies.
+//! Events and energies of touch.
 
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use std::fmt;
 
 use palpate_field::{Point, Vector};
+use palpate_vibration::{Cue, Tap};
+
+use crate::contact_point::Touch;
+use crate::material::Impact;
 
 /// An event at a contact point, or of a button.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -149,6 +153,51 @@ impl Reaction {
         let sum = Self { force: self.force + force, torque: self.torque + torque };
         if sum.force.is_finite() && sum.torque.is_finite() {
             *self = sum;
+        }
+    }
+}
+
+/// Energy at a contact point since the start [J].
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[non_exhaustive]
+pub struct Energy {
+    /// Energy that the rendered forces took from the hand.
+    pub taken: f64,
+    /// Energy that the rendered forces gave to the hand.
+    pub given: f64,
+    /// Energy that the wanted forces would have given, but the rendered forces did not: what the
+    /// safety chain held back (passivity controller, limits, ramps, stops).
+    pub kept: f64,
+}
+
+impl From<&Impact> for Tap {
+    /// The ringing of a tap on a material.
+    fn from(impact: &Impact) -> Self {
+        let Impact { amplitude, frequency, decay, .. } = *impact;
+        Self { amplitude, frequency, decay }
+    }
+}
+
+impl Touch {
+    /// The cue of this touch on a smooth and mute surface; it does not depend on the force that
+    /// the device gives. Set `began` if there was no contact in the tick before.
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    #[must_use]
+    pub fn cue(&self, began: bool) -> Cue {
+        if !self.contact {
+            return Cue::default();
+        }
+        let outward = self.velocity.dot(self.normal);
+        Cue {
+            depth: self.depth(),
+            normal_force: self.wanted.dot(self.normal),
+            normal_speed: -outward,
+            slide_speed: (self.velocity - self.normal * outward).norm(),
+            wavelength: None,
+            impact: None,
+            began,
         }
     }
 }

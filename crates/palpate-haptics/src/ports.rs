@@ -5,10 +5,9 @@
 
 use palpate_field::{Point, Vector};
 
-use crate::accepted_bodies::AcceptedBodies;
-use crate::energy::Energy;
+use crate::accepted_bodies::{AcceptedBodies, Protection};
 use crate::error::HapticsError;
-use crate::protection::Protection;
+use crate::event::Energy;
 use palpate_device::{PointState, TurnState};
 use palpate_safety::{
     Acceptance, Accepted, Arrival, DeviceLimits, Impedance, PassivityReport, PerMotion,

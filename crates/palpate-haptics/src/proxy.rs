@@ -20,9 +20,8 @@ use palpate_field::{LARGEST_LENGTH, Point, Vector};
 
 use crate::bodies::Body;
 
-use crate::contact::{Goal, LocalSurface, Place, slide};
+use crate::contact::{Goal, Held, Hold, LocalSurface, Place, drag, slide};
 use crate::error::HapticsError;
-use crate::friction::{Held, Hold, drag};
 use crate::nearby::{Nearby, Punctured};
 use crate::sampler::{Sample, Sampler};
 use crate::surface::Friction;

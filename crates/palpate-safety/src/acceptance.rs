@@ -15,8 +15,7 @@
 use std::sync::Arc;
 
 use crate::error::SafetyError;
-use crate::impedance::Impedance;
-use crate::limits::DeviceLimits;
+use crate::limits::{DeviceLimits, Impedance};
 use crate::refused::{Refused, Requester};
 use palpate_device::{DeviceProfile, NumberError};
 

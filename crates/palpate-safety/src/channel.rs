@@ -5,17 +5,14 @@
 
 use palpate_field::Vector;
 
-use crate::approach::Approach;
-use crate::continuous::ContinuousLimit;
+use crate::approach::{Approach, Change, Rise};
+use crate::continuous::{ContinuousLimit, Watchdog};
 use crate::error::SafetyError;
 use crate::finite;
 use crate::force_limit::ForceLimit;
-use crate::limits::DeviceLimits;
+use crate::limits::{DeviceLimits, SafetySettings};
 use crate::report::{ContinuousReport, Effects, WatchdogReport};
-use crate::rise::{Change, Rise};
-use crate::settings::SafetySettings;
 use crate::slew::SlewLimit;
-use crate::watchdog::Watchdog;
 use palpate_device::NumberError;
 
 /// Properties of a tick that every stage sees.

@@ -1,11 +1,10 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! The limit on the continuous force, which protects motors from heat.
-
-use palpate_field::Vector;
+//! Heat of continuous forces, and the watchdog.
 
 use palpate_device::shortened;
+use palpate_field::Vector;
 
 /// The part of the continuous force at which the limit begins to act. Nearer to one, it acts
 /// later and more abruptly.
@@ -66,6 +65,66 @@ impl ContinuousLimit {
     }
 }
 
+/// Lowers the force to zero while ticks are late.
+///
+/// A force that is held for too long is stale. The time by which ticks are late adds up, and each
+/// tick in time takes a period from the sum. When the sum reaches a limit, the watchdog trips: the
+/// force falls to zero, in ticks in time too, until the sum is zero. Meanwhile a tick in time takes
+/// two periods from the sum: with a device of half the loop's rate every second tick has no new
+/// reading, and its force must come back too.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Watchdog {
+    /// The sum at which it trips [s].
+    limit: f64,
+    /// The duration of a tick [s].
+    period: f64,
+    /// The decrease of the factor in a tick.
+    fall: f64,
+    /// The sum of late times, at most `limit` [s].
+    late: f64,
+    is_tripped: bool,
+    factor: f64,
+    trips: u64,
+}
+
+impl Watchdog {
+    /// A watchdog that trips when ticks are late by `late_time` [s] together, and then lowers the
+    /// force to zero in `fall_time` [s], at `rate` [Hz].
+    pub(crate) fn new(late_time: f64, fall_time: f64, rate: f64) -> Self {
+        // A time of zero gives an infinite decrease.
+        let (limit, period, fall) = (late_time, 1.0 / rate, 1.0 / (fall_time * rate));
+        Self { limit, period, fall, late: 0.0, is_tripped: false, factor: 1.0, trips: 0 }
+    }
+
+    /// One tick that is `late` by so much [s]; `true` if the watchdog trips in it.
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    pub(crate) fn step(&mut self, late: f64) -> bool {
+        // Written so that NaN counts as late.
+        let taken = if self.is_tripped { 2.0 * self.period } else { self.period };
+        let change = if late <= 0.0 { -taken } else { late };
+        let sum = self.late + change;
+        self.late = if sum < self.limit { sum.max(0.0) } else { self.limit };
+        let was_tripped = self.is_tripped;
+        self.is_tripped = self.late >= self.limit || was_tripped && self.late > 0.0;
+        self.factor = if self.is_tripped { (self.factor - self.fall).max(0.0) } else { 1.0 };
+        let trips = self.is_tripped && !was_tripped;
+        self.trips += u64::from(trips);
+        trips
+    }
+
+    /// The factor on the force in this tick: it falls while the watchdog is tripped. Afterwards it is
+    /// one at once, because the force [rises](crate::approach::Rise) from where it fell to.
+    pub(crate) fn factor(&self) -> f64 {
+        self.factor
+    }
+
+    /// The number of times the watchdog tripped.
+    pub(crate) fn trips(&self) -> u64 {
+        self.trips
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -103,5 +162,45 @@ mod tests {
         let mut limit = ContinuousLimit::new(f64::INFINITY, 0.1, 1000.0);
         limit.written(Vector([1e200, 0.0, 0.0]));
         assert_eq!(limit.limit(Vector([1e200, 1.0, 0.0])), None);
+    }
+}
+
+#[cfg(test)]
+mod watchdog_tests {
+    use super::*;
+
+    fn factors(dog: &mut Watchdog, late: &[f64]) -> Vec<f64> {
+        let step = |late: &f64| {
+            dog.step(*late);
+            dog.factor()
+        };
+        late.iter().map(step).collect()
+    }
+
+    #[test]
+    fn it_trips_after_late_time_and_recovers_after_half_as_much_in_time() {
+        let mut dog = Watchdog::new(4.0, 2.0, 1.0);
+        let late = [1.0, 0.0, 3.5, 0.5, 0.0, 1.5, 0.0, 0.0, 0.0];
+        assert_eq!(factors(&mut dog, &late), [1.0, 1.0, 1.0, 0.5, 0.0, 0.0, 0.0, 1.0, 1.0]);
+        assert_eq!(dog.trips(), 1);
+    }
+
+    /// A stall counted as one late tick, however long it lasted.
+    #[test]
+    fn a_stall_counts_by_its_time() {
+        let mut dog = Watchdog::new(0.005, 0.0, 1000.0);
+        assert!(dog.step(0.03));
+        assert_eq!(factors(&mut dog, &[0.0; 4]), [0.0, 0.0, 1.0, 1.0]);
+        assert!(dog.step(f64::NAN));
+    }
+
+    /// Once its sum never came back to zero, and the force stayed away for good.
+    #[test]
+    fn a_device_of_half_the_rate_gets_its_force_back() {
+        let mut dog = Watchdog::new(0.005, 0.0, 1000.0);
+        assert!(dog.step(0.03));
+        assert_eq!(factors(&mut dog, &[0.001, 0.0].repeat(5)).last(), Some(&1.0));
+        assert_eq!(factors(&mut dog, &[0.001, 0.0].repeat(1000)).last(), Some(&1.0));
+        assert_eq!(dog.trips(), 1);
     }
 }

@@ -6,8 +6,8 @@
 //! They may pull a hand in, which gives out energy that the hand did not put in. So this stage does
 //! not balance their energy, as that of walls is balanced, but the energy that sampling adds to it.
 
+use crate::approach::Lift;
 use crate::effect::Effect;
-use crate::lift::Lift;
 use crate::passivity::{InnerProduct, MEMORY, PassivityOptions, SLACK, SPARE, STEP};
 
 /// The part of what damping covers that passes.

@@ -13,8 +13,8 @@ use std::ops::{Add, Mul, Sub};
 
 use palpate_field::Vector;
 
+use crate::approach::Lift;
 use crate::effect::Effect;
-use crate::lift::Lift;
 
 /// The factor by which past leaks and losses decay in each tick of contact, when they are
 /// compared: a memory of 100 ticks, which spans several impacts.
@@ -172,7 +172,7 @@ pub struct PassivityReport {
 /// source of constant force that must give back more than that cannot use this stage.
 ///
 /// **Lift.** While a force that the controller took comes back to a hand at rest ([`Lift`]), the
-/// balance is at least `U`, and the force grows by the rate of a [rise](crate::rise::Rise).
+/// balance is at least `U`, and the force grows by the rate of a [rise](crate::approach::Rise).
 ///
 /// **Softer walls.** Forces, leaks and `U` are those of the wall that is rendered, which may have
 /// become softer after a limit cycle.

@@ -11,17 +11,17 @@ use std::ops::{Add, Mul, Sub};
 
 use palpate_field::Vector;
 
+use crate::chain::BeforeLimits;
 use crate::channel::{Channel, Given, Risen, TickInput};
 use crate::error::SafetyError;
-use crate::finite;
 use crate::free_energy::{FreeEnergy, FreeInput, Passed};
 use crate::limit::{Wanted, cut};
 use crate::limit_cycle::{CycleInput, ForcesOf, LimitCycle, LimitCycleOptions};
 use crate::limits::DeviceLimits;
 use crate::passivity::{InnerProduct, Passivity, PassivityOptions, PortMotion};
-use crate::stage_ticks::BeforeLimits;
 use crate::{
     Accepted, Change, PassivityReport, SafetyReport, SafetySettings, StageTicks, TurningReport,
+    finite,
 };
 use palpate_device::NumberError;
 

@@ -10,8 +10,7 @@ use palpate_field::catalogue::{ALIASES, Alias, Entry};
 use palpate_field::kernel::{Parameter, ParameterKind};
 use serde_json::{Value, json};
 
-use crate::error::SceneError;
-use crate::problem::Problem;
+use crate::problem::{Problem, SceneError};
 use crate::scene::Dimension;
 use crate::shape::WrittenShape;
 

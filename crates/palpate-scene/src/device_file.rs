@@ -6,13 +6,10 @@
 use palpate_device::{Buttons, DeviceProfile, GripperProfile, TurningProfile};
 use serde::{Deserialize, Serialize};
 
-use crate::check::{at_least, positive, version};
 use crate::encoding::utf8;
-use crate::error::SceneError;
 use crate::json::{self, Document, Source};
 use crate::names::unknown as unknown_name;
-use crate::problem::Problem;
-use crate::problems::Problems;
+use crate::problem::{Problem, Problems, SceneError, at_least, positive, version};
 
 /// The version of the format.
 const VERSION: u64 = 1;

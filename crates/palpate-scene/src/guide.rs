@@ -10,11 +10,8 @@ use palpate_haptics::{Curve, Guide, GuideOptions, HapticsError};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::check::{at_least, positive, positive_if};
-use crate::error::SceneError;
 use crate::pose::{direction, position};
-use crate::problem::Problem;
-use crate::problems::Problems;
+use crate::problem::{Problem, Problems, SceneError, at_least, positive, positive_if};
 use crate::scene::Dimension;
 #[cfg(test)]
 use crate::schema::VectorSchema;
@@ -165,7 +162,7 @@ pub struct GuideCurve {
     #[cfg_attr(test, schemars(with = "Vec<VectorSchema>", length(min = 2, max = 1025)))]
     pub points: Vec<Vec<f64>>,
     /// Smooth through the points (Catmull and Rom 1974) instead of straight between them.
-    #[serde(default, skip_serializing_if = "crate::check::is_default")]
+    #[serde(default, skip_serializing_if = "crate::problem::is_default")]
     pub smooth: bool,
 }
 

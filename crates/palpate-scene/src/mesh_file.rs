@@ -1,16 +1,19 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! Shapes of meshes, in files and in scenes, and of surfaces in volumes.
+//! Files beside a scene.
 
-use std::path::{Path, PathBuf};
+use std::fmt;
+use std::ops::ControlFlow;
+use std::path::{Component, Path, PathBuf};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::SystemTime;
 
 use palpate_field::{LARGEST_LENGTH, Point, SMALLEST_LENGTH, Shape, Vector};
-use palpate_grid::{Inside, Volume};
+use palpate_grid::{Grid, GridCache, GridError, GridOptions, GridProgress, Inside, Volume};
 use palpate_mesh::{Findings, MeshSheet, Solid, SolidError, TriangleMesh, read_file};
 use serde::Deserialize;
 
-use crate::beside::{Beside, Kept, Stamp};
 use crate::grids::named;
 use crate::problem::Problem;
 
@@ -299,4 +302,211 @@ fn built(
         findings: findings.scaled(scale),
         shape: scaled.map_err(|error| Problem::new(error.to_string()).under("scale"))?,
     })
+}
+
+/// Who is told how a grid is made, and can stop it.
+pub type BakeProgress = Arc<dyn Fn(GridProgress) -> ControlFlow<()> + Send + Sync>;
+
+/// What a scene uses beside its text: the folder of its files, a folder of grids that were baked before, and who is
+/// told how a grid is made. A folder alone [becomes](From) resources.
+///
+/// ```
+/// use palpate_scene::{Resources, Scene};
+///
+/// # fn main() -> Result<(), palpate_scene::SceneError> {
+/// let text = r#"{ "palpate": 1, "dimension": 2, "bodies": [ { "name": "disc",
+///     "shape": { "bake": { "cell": 0.002 }, "of": { "ball": { "radius": 0.02 } } } } ] }"#;
+/// # let folder = tempfile::tempdir().expect("a folder");
+/// let resources = Resources::default().with_cache(folder.path().join("grids"));
+/// Scene::from_json_in(text, resources)?.build()?;
+/// // The next run reads the grid from the folder.
+/// # assert_eq!(std::fs::read_dir(folder.path().join("grids")).expect("is made").count(), 1);
+/// # Ok(())
+/// # }
+/// ```
+#[derive(Clone, Default)]
+#[non_exhaustive]
+pub struct Resources {
+    /// The folder in which files of meshes, volumes and grids are looked for; a scene without one has none.
+    pub folder: Option<PathBuf>,
+    /// Where grids that are baked are kept from run to run; `None` keeps them in memory alone.
+    pub cache: Option<GridCache>,
+    /// Who is told how a grid is made.
+    pub progress: Option<BakeProgress>,
+}
+
+impl Resources {
+    /// The same with files in a folder.
+    #[must_use]
+    pub fn in_folder(self, folder: impl Into<PathBuf>) -> Self {
+        Self { folder: Some(folder.into()), ..self }
+    }
+
+    /// The same with grids kept in a folder, of up to 2 GiB.
+    #[must_use]
+    pub fn with_cache(self, folder: impl Into<PathBuf>) -> Self {
+        Self { cache: Some(GridCache::in_folder(folder)), ..self }
+    }
+
+    /// The same, telling how a grid is made.
+    #[must_use]
+    pub fn with_progress(self, progress: BakeProgress) -> Self {
+        Self { progress: Some(progress), ..self }
+    }
+
+    /// The grid of a shape, kept or made.
+    pub(crate) fn bake<const D: usize>(
+        &self,
+        shape: &Shape<D>,
+        options: &GridOptions,
+    ) -> Result<Grid<D>, GridError> {
+        let silent = |_| ControlFlow::Continue(());
+        let progress: &(dyn Fn(GridProgress) -> ControlFlow<()> + Sync) = match &self.progress {
+            Some(progress) => &**progress,
+            None => &silent,
+        };
+        match &self.cache {
+            Some(cache) => cache.bake(shape, options, progress).map(|(grid, _)| grid),
+            None => Grid::bake_with(shape, options, progress),
+        }
+    }
+}
+
+impl From<PathBuf> for Resources {
+    fn from(folder: PathBuf) -> Self {
+        Self::default().in_folder(folder)
+    }
+}
+
+impl From<&Path> for Resources {
+    fn from(folder: &Path) -> Self {
+        Self::default().in_folder(folder)
+    }
+}
+
+impl PartialEq for Resources {
+    /// Who is told does not count.
+    fn eq(&self, other: &Self) -> bool {
+        (&self.folder, &self.cache) == (&other.folder, &other.cache)
+    }
+}
+
+impl fmt::Debug for Resources {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { folder, cache, progress: _ } = self;
+        f.debug_struct("Resources")
+            .field("folder", folder)
+            .field("cache", cache)
+            .finish_non_exhaustive()
+    }
+}
+
+/// A file in the scene's folder or below it.
+#[derive(Clone, Debug)]
+pub(crate) struct Beside {
+    /// Where it is, as messages tell it.
+    pub(crate) path: PathBuf,
+    /// What tells whether it is as it was.
+    pub(crate) stamp: Stamp,
+}
+
+/// What tells whether a file is as it was.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Stamp {
+    path: PathBuf,
+    /// When it was written, and its bytes; the same of files that it names.
+    states: Vec<State>,
+}
+
+type State = Option<(Option<SystemTime>, u64)>;
+
+impl Stamp {
+    /// The same, with files that this one names.
+    pub(crate) fn with(mut self, files: &[PathBuf]) -> Self {
+        self.states.extend(files.iter().map(|file| state(file)));
+        self
+    }
+
+    /// Whether it is of the same file, as it is or as it was.
+    pub(crate) fn is_of_same_file(&self, other: &Self) -> bool {
+        self.path == other.path
+    }
+}
+
+impl Beside {
+    /// The file that a scene in `folder` names; `what` is it: "a mesh". A problem is about the file's name.
+    pub(crate) fn of(what: &str, file: &str, folder: Option<&Path>) -> Result<Self, Problem> {
+        let Some(folder) = folder else {
+            return Err(Problem::new(format!(
+                "{what} is a file beside the scene's: this scene is in no file"
+            )));
+        };
+        let named = Path::new(file);
+        let is_below = named.components().all(|part| matches!(part, Component::Normal(_)));
+        if file.is_empty() || !is_below {
+            return Err(Problem::new(format!(
+                "{what} is a file in the scene's folder or below it, got {file:?}"
+            )));
+        }
+        let path = folder.join(named);
+        let cannot =
+            |error: std::io::Error| Problem::new(format!("{}: {error}", path.display()));
+        let real = path.canonicalize().map_err(cannot)?;
+        // The folder of a file that is named alone is empty.
+        let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
+        if !real.starts_with(folder.canonicalize().map_err(cannot)?) {
+            let shown = path.display();
+            return Err(Problem::new(format!(
+                "{shown}: it is a link out of the scene's folder"
+            )));
+        }
+        let states = vec![state(&real)];
+        Ok(Self { path, stamp: Stamp { path: real, states } })
+    }
+}
+
+/// When a file was written, and its bytes; `None` where there is no file.
+fn state(path: &Path) -> State {
+    let metadata = std::fs::metadata(path).ok()?;
+    Some((metadata.modified().ok(), metadata.len()))
+}
+
+/// What was made, by what it was made of: those used last, up to a weight in all.
+#[derive(Debug)]
+pub(crate) struct Kept<K, T> {
+    /// With their weights, the last used last.
+    made: Mutex<Vec<(K, T, usize)>>,
+    most: usize,
+}
+
+impl<K: PartialEq, T: Clone> Kept<K, T> {
+    pub(crate) const fn new(most: usize) -> Self {
+        Self { made: Mutex::new(Vec::new()), most }
+    }
+
+    pub(crate) fn of(&self, key: &K) -> Option<T> {
+        let mut made = self.made.lock().unwrap_or_else(PoisonError::into_inner);
+        let found = made.iter().position(|(known, ..)| known == key)?;
+        let used = made.remove(found);
+        let value = used.1.clone();
+        made.push(used);
+        Some(value)
+    }
+
+    /// Keeps a value, and drops those that are of no use any more, and what is too much.
+    pub(crate) fn keep(
+        &self,
+        key: K,
+        value: &T,
+        weight: usize,
+        is_of_no_use: impl Fn(&K) -> bool,
+    ) {
+        let mut made = self.made.lock().unwrap_or_else(PoisonError::into_inner);
+        made.retain(|(known, ..)| !is_of_no_use(known));
+        made.push((key, value.clone(), weight));
+        let mut all: usize = made.iter().map(|(_, _, weight)| weight).sum();
+        while all > self.most && made.len() > 1 {
+            all -= made.remove(0).2;
+        }
+    }
 }

@@ -13,8 +13,7 @@ use serde::de::{Deserializer, MapAccess, Visitor};
 use serde::{Deserialize, Serialize, Serializer};
 
 pub(crate) use crate::attitude::Attitude;
-use crate::problem::Problem;
-use crate::problems::Problems;
+use crate::problem::{Problem, Problems};
 #[cfg(test)]
 use crate::schema::{TurnSchema, VectorSchema};
 

@@ -1,15 +1,13 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! An error on its way up: each level adds its step to the path.
+//! Problems of scenes.
 
 use std::fmt;
 
+use palpate_field::ShapeError;
 use serde::de::{self, Expected, Unexpected};
 
-use palpate_field::ShapeError;
-
-use crate::error::{SceneCause, SceneError, SceneProblem};
 use crate::json::Position;
 use crate::names::{shortened, unknown};
 
@@ -251,6 +249,310 @@ fn quoted(found: Unexpected<'_>) -> String {
         Unexpected::Map => "an object".into(),
         Unexpected::Unit => "null".into(),
         other => other.to_string(),
+    }
+}
+
+/// All that is wrong with a part of a scene.
+///
+/// As an error it may be empty: then what is wrong is told elsewhere.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Problems {
+    found: Vec<Problem>,
+    is_failed: bool,
+}
+
+impl Problems {
+    /// An error that is told elsewhere.
+    pub(crate) fn told() -> Self {
+        Self { found: Vec::new(), is_failed: true }
+    }
+
+    /// All errors of some results.
+    pub(crate) fn all<E: Into<Self>>(
+        results: impl IntoIterator<Item = Result<(), E>>,
+    ) -> Result<(), Self> {
+        let mut problems = Self::default();
+        for result in results {
+            problems.kept(result);
+        }
+        problems.end(Ok(()))
+    }
+
+    /// Two values, or the problems of both.
+    pub(crate) fn both<A, B>(
+        first: Result<A, impl Into<Self>>,
+        second: Result<B, impl Into<Self>>,
+    ) -> Result<(A, B), Self> {
+        let mut problems = Self::default();
+        match (problems.kept(first), problems.kept(second)) {
+            (Some(first), Some(second)) => Ok((first, second)),
+            _ => Err(problems),
+        }
+    }
+
+    /// Adds what is wrong. Beyond one more than can be told, only the failure is kept.
+    pub(crate) fn add(&mut self, others: impl Into<Self>) {
+        let others = others.into();
+        self.is_failed |= others.is_failed;
+        let room = (MOST + 1).saturating_sub(self.found.len());
+        self.found.extend(others.found.into_iter().take(room));
+    }
+
+    /// The value of a result, whose error is added.
+    pub(crate) fn kept<T, E: Into<Self>>(&mut self, result: Result<T, E>) -> Option<T> {
+        result.map_err(|error| self.add(error)).ok()
+    }
+
+    /// The result of a part whose other problems these are.
+    pub(crate) fn end<T>(mut self, result: Result<T, Self>) -> Result<T, Self> {
+        match self.kept(result) {
+            Some(value) if !self.is_failed => Ok(value),
+            _ => Err(self),
+        }
+    }
+
+    /// `true` if anything is wrong.
+    pub(crate) fn is_failed(&self) -> bool {
+        self.is_failed
+    }
+
+    /// `true` if more is wrong than can be told.
+    pub(crate) fn is_full(&self) -> bool {
+        self.found.len() > MOST
+    }
+
+    /// The same problems, seen from the object that has them under `key`.
+    pub(crate) fn under(self, key: &str) -> Self {
+        self.map(|problem| problem.under(key))
+    }
+
+    /// The same problems, seen from the list that has them at `index`.
+    pub(crate) fn at(self, index: usize) -> Self {
+        self.map(|problem| problem.at(index))
+    }
+
+    /// The same problems, at a place whose dimension is fixed.
+    pub(crate) fn in_any_dimension(self) -> Self {
+        self.map(Problem::in_any_dimension)
+    }
+
+    /// A problem that the other dimension may not have.
+    pub(crate) fn of_dimension(&self) -> Option<&Problem> {
+        self.found.iter().find(|problem| problem.is_of_dimension())
+    }
+
+    /// The same problems without those that a shape found.
+    pub(crate) fn of_the_text(mut self) -> Self {
+        self.found.retain(|problem| !problem.is_of_shape());
+        self
+    }
+
+    /// The problems.
+    pub(crate) fn into_vec(self) -> Vec<Problem> {
+        self.found
+    }
+
+    fn map(self, change: impl FnMut(Problem) -> Problem) -> Self {
+        Self { found: self.found.into_iter().map(change).collect(), ..self }
+    }
+}
+
+impl From<Problem> for Problems {
+    fn from(problem: Problem) -> Self {
+        Self { found: vec![problem], is_failed: true }
+    }
+}
+
+impl From<Problems> for SceneError {
+    /// Of a scene that does not come from a file.
+    fn from(problems: Problems) -> Self {
+        Self::of(problems.found.into_iter().map(|problem| problem.located(None)))
+    }
+}
+
+/// The version of a format, of which one is read.
+pub(crate) fn version(key: &str, got: u64, read: u64) -> Result<(), Problem> {
+    if got == read {
+        return Ok(());
+    }
+    Err(Problem::about(format!("must be {read}, got {got}")).under(key))
+}
+
+/// Checks that `value` is finite and at least `least`.
+pub(crate) fn at_least(key: &str, value: f64, least: f64, unit: &str) -> Result<(), Problem> {
+    // Written so that NaN fails.
+    if value >= least && value.is_finite() {
+        return Ok(());
+    }
+    let rule = if least == 0.0 { "zero or more".into() } else { format!("at least {least}") };
+    refused(key, &rule, value, unit)
+}
+
+/// Checks that `value` is finite and positive.
+pub(crate) fn positive(key: &str, value: f64, unit: &str) -> Result<(), Problem> {
+    if value > 0.0 && value.is_finite() {
+        return Ok(());
+    }
+    refused(key, "positive", value, unit)
+}
+
+/// Checks that `value` is positive, if it is there.
+pub(crate) fn positive_if(key: &str, value: Option<f64>, unit: &str) -> Result<(), Problem> {
+    value.map_or(Ok(()), |value| positive(key, value, unit))
+}
+
+fn refused(key: &str, rule: &str, value: f64, unit: &str) -> Result<(), Problem> {
+    let space = if unit.is_empty() { "" } else { " " };
+    let finite = if value.is_infinite() { " and finite" } else { "" };
+    Err(Problem::about(format!("must be {rule}{finite}, got {value}{space}{unit}")).under(key))
+}
+
+/// Checks that `value`, if it is given, is a part of a whole: more than 0 and at most 1.
+pub(crate) fn part_if(key: &str, value: Option<f64>) -> Result<(), Problem> {
+    match value {
+        // Written so that NaN fails.
+        Some(part) if !(part > 0.0 && part <= 1.0) => {
+            refused(key, "more than 0 and at most 1", part, "")
+        }
+        _ => Ok(()),
+    }
+}
+
+/// `true` if `value` is the default of its key, which is then left out.
+pub(crate) fn is_default<T: Default + PartialEq>(value: &T) -> bool {
+    *value == T::default()
+}
+
+/// The most problems that an error tells of.
+pub(crate) const MOST: usize = 20;
+
+/// Why a scene cannot be read or built: everything that is wrong, at least one problem.
+///
+/// What is wrong only because something else is, such as a reference to a shape that cannot be
+/// built, is left out. At most 20 problems are told, in their order in the file.
+///
+/// ```
+/// use palpate_scene::{Scene, SceneCause};
+///
+/// let text = r#"{ "palpate": 1, "dimension": 3,
+///   "bodies": [ { "name": "ball", "shape": { "ball": { "radius": -0.02 } } } ] }"#;
+/// let error = Scene::from_json(text).unwrap_err();
+/// assert_eq!(
+///     error.to_string(),
+///     "bodies[0].shape.ball.radius, line 2: radius must be positive, got -0.02 m",
+/// );
+/// let problem = error.first();
+/// assert_eq!((problem.line, problem.column), (2, 54));
+/// assert!(matches!(problem.cause.as_deref(), Some(SceneCause::Shape(_))));
+///
+/// let error = Scene::from_json(&text.replace("\"ball\",", "\"\", \"colour\": 3,")).unwrap_err();
+/// assert_eq!(error.problems().count(), 3);
+/// ```
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub struct SceneError {
+    first: Box<SceneProblem>,
+    others: Vec<SceneProblem>,
+    is_all: bool,
+}
+
+/// One thing that is wrong with a scene.
+#[derive(Clone, Debug, Default, PartialEq)]
+#[non_exhaustive]
+pub struct SceneProblem {
+    /// Where in the scene: keys joined by dots, places in lists in brackets;
+    /// empty for the whole.
+    pub path: String,
+    /// The line, from 1; 0 if the scene does not come from a file.
+    pub line: usize,
+    /// The column in characters, from 1; 0 if the scene does not come from a
+    /// file.
+    pub column: usize,
+    /// What is wrong there.
+    pub problem: String,
+    /// Of a text that is no JSON: the line, or the part of it around the place, and below it a
+    /// line with a caret at the place. Empty for all other problems.
+    pub excerpt: String,
+    /// The error behind the problem, if another crate found it.
+    pub cause: Option<Box<SceneCause>>,
+}
+
+/// The error behind a [`SceneProblem`].
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum SceneCause {
+    /// The file cannot be read.
+    File(std::io::ErrorKind),
+    /// A shape cannot be built.
+    Shape(ShapeError),
+}
+
+impl SceneError {
+    /// All these problems, which are sorted by place, or the first [`MOST`] of them.
+    pub(crate) fn of(problems: impl IntoIterator<Item = SceneProblem>) -> Self {
+        let mut problems = problems.into_iter();
+        let first = problems.next().unwrap_or_else(|| SceneProblem {
+            problem: "the scene cannot be built".into(),
+            ..SceneProblem::default()
+        });
+        let others: Vec<_> = problems.by_ref().take(MOST - 1).collect();
+        Self { first: Box::new(first), others, is_all: problems.next().is_none() }
+    }
+
+    /// The same error of a file that was not read to its end.
+    pub(crate) fn and_maybe_more(self) -> Self {
+        Self { is_all: false, ..self }
+    }
+
+    /// The first problem in the file.
+    #[must_use]
+    pub fn first(&self) -> &SceneProblem {
+        &self.first
+    }
+
+    /// The problems, in their order in the file.
+    pub fn problems(&self) -> impl Iterator<Item = &SceneProblem> {
+        std::iter::once(&*self.first).chain(&self.others)
+    }
+
+    /// `false` if there may be further problems: more than are told, or in parts of a text that
+    /// cannot be read.
+    #[must_use]
+    pub fn is_all(&self) -> bool {
+        self.is_all
+    }
+}
+
+impl From<SceneProblem> for SceneError {
+    fn from(problem: SceneProblem) -> Self {
+        Self::of([problem])
+    }
+}
+
+impl fmt::Display for SceneError {
+    /// One problem, or a line that counts them and each on a line of its own.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if self.others.is_empty() {
+            return write!(f, "{}", self.first);
+        }
+        let more = if self.is_all { "" } else { ", and maybe more" };
+        write!(f, "{} problems{more}:", 1 + self.others.len())?;
+        for problem in self.problems() {
+            write!(f, "\n  {}", problem.to_string().replace('\n', "\n  "))?;
+        }
+        Ok(())
+    }
+}
+
+impl fmt::Display for SceneProblem {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { path, line, column, problem, excerpt, .. } = self;
+        match (path.is_empty(), *line) {
+            (true, 0) => write!(f, "{problem}"),
+            (true, line) if excerpt.is_empty() => write!(f, "line {line}: {problem}"),
+            (true, line) => write!(f, "line {line}, column {column}: {problem}\n{excerpt}"),
+            (false, 0) => write!(f, "{path}: {problem}"),
+            (false, line) => write!(f, "{path}, line {line}: {problem}"),
+        }
     }
 }
 

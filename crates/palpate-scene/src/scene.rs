@@ -14,17 +14,16 @@ use serde::{Deserialize, Serialize, Serializer};
 
 use crate::build::{self, AnyScene};
 use crate::encoding::utf8;
-use crate::error::{SceneCause, SceneError, SceneProblem};
 use crate::guide::WrittenGuide;
 use crate::json::{self, Document, Source};
+use crate::material::WrittenMaterial;
+use crate::mesh_file::Resources;
 use crate::motion::WrittenMotion;
 use crate::pose::WrittenPose;
-use crate::problem::Problem;
-use crate::resources::Resources;
+use crate::problem::{Problem, SceneCause, SceneError, SceneProblem};
 use crate::shape::WrittenShape;
 use crate::tool::WrittenTool;
 use crate::view::WrittenView;
-use crate::written_material::WrittenMaterial;
 
 /// The number of dimensions of a scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

@@ -9,8 +9,8 @@ use serde::{Deserialize, Deserializer, Serialize};
 use serde_json::Value;
 
 use crate::build;
-use crate::error::SceneError;
 use crate::json::{self, Document, Source};
+use crate::problem::SceneError;
 use crate::write::Writer;
 
 /// A shape as a file gives it: an object that makes it, or the name of another shape.

@@ -11,11 +11,9 @@ use palpate_vibration::{ACTUATORS, Actuator, actuator_named};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::check::{at_least, positive_if};
 use crate::names::unknown as unknown_name;
 use crate::pose::WrittenPose;
-use crate::problem::Problem;
-use crate::problems::Problems;
+use crate::problem::{Problem, Problems, at_least, positive_if};
 #[cfg(test)]
 use crate::schema::{ActuatorSchema, VectorSchema};
 use crate::shape::WrittenShape;

@@ -12,9 +12,7 @@ use serde::de::value::{MapAccessDeserializer, StrDeserializer};
 use serde::de::{Deserializer, Error, IntoDeserializer, MapAccess, Visitor};
 use serde::{Deserialize, Serialize, Serializer};
 
-use crate::check::positive_if;
-use crate::problem::Problem;
-use crate::problems::Problems;
+use crate::problem::{Problem, Problems, positive_if};
 
 /// A picture of a scene: a window on a plane through it.
 ///

@@ -46,7 +46,6 @@
 #![cfg_attr(test, allow(clippy::float_cmp, reason = "tests compare exact numbers"))]
 
 mod error;
-mod fault;
 mod glove;
 mod hand;
 mod hand_path;
@@ -55,16 +54,13 @@ mod instances;
 mod motion;
 mod oscillator;
 mod recorded;
-mod script;
 mod simulated;
 mod steered;
 mod tour;
 mod transport;
 mod turning;
-mod vibration_recorder;
 
-pub use error::SimulationError;
-pub use fault::{Fault, FaultKind};
+pub use error::{Fault, FaultKind, SimulationError};
 pub use glove::Glove;
 pub use hand::Hand;
 pub use hand_path::{HandPath, Interpolation};
@@ -75,9 +71,8 @@ pub use identify::{
 #[doc(hidden)]
 pub use instances::instances;
 pub use motion::Energies;
-pub use recorded::RecordedDevice;
+pub use recorded::{RecordedDevice, VibrationRecorder};
 pub use simulated::SimulatedDevice;
 pub use steered::{SteeredDevice, Steering};
 pub use tour::Tour;
 pub use transport::{Calls, SimulatedTransport};
-pub use vibration_recorder::VibrationRecorder;

@@ -16,7 +16,7 @@ use std::time::Duration;
 use crate::hand::Hand;
 use crate::hand_path::HandPath;
 use crate::motion::{Axis, Body, Energies, Load, Parts};
-use crate::script::{Script, Watchdog};
+use crate::recorded::{Script, Watchdog};
 use crate::turning::Turning;
 
 /// Reads closer in time than this count as one [s]: a shorter difference gives no velocity.

@@ -5,8 +5,7 @@
 
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-use crate::error::SimulationError;
-use crate::fault::{Fault, FaultKind};
+use crate::error::{Fault, FaultKind, SimulationError};
 use palpate_device::{
     Buttons, Device, DeviceLost, DeviceProfile, GripperState, NumberError, PointState, Reading,
     TurnState,

@@ -9,7 +9,7 @@
 
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-use super::threshold::perceptual_weight;
+use crate::sensation_level::perceptual_weight;
 use palpate_device::NumberError;
 
 /// A decaying sinusoid: `a exp(−d t) sin(2π f t)`.

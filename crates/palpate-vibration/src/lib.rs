@@ -22,7 +22,6 @@
 #![cfg_attr(test, allow(clippy::float_cmp, reason = "tests compare exact numbers"))]
 
 mod actuator;
-mod adaptation;
 mod audio;
 mod channels;
 mod cue;
@@ -31,19 +30,14 @@ mod publisher;
 mod ringing;
 mod sensation_level;
 mod strength;
-mod threshold;
-mod vibrates;
-mod wav;
 
 pub use actuator::{ACTUATORS, Actuator, ActuatorModel, Mechanism, actuator_named};
-pub use adaptation::{Adaptation, Faded};
-pub use audio::Synthesiser;
-pub use channels::{ActuatorArray, TwoChannels, one_channel, phantom, two_channels};
+pub use audio::{Synthesiser, write_wav};
+pub use channels::{ActuatorArray, TwoChannels, Vibrates, one_channel, phantom, two_channels};
 pub use cue::{Cue, Mapping, MappingOptions, Sensation, Tap, Tone};
 pub use limiter::Limiting;
 pub use publisher::{Command, Publisher};
 pub use ringing::{Tones, Voice};
-pub use sensation_level::sensation_level;
-pub use threshold::{perceptual_weight, threshold_db};
-pub use vibrates::Vibrates;
-pub use wav::write_wav;
+pub use sensation_level::{
+    Adaptation, Faded, perceptual_weight, sensation_level, threshold_db,
+};

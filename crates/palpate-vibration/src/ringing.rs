@@ -5,8 +5,8 @@
 
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-use super::adaptation::Adaptation;
 use super::cue::{Mapping, Sensation, Tap, Tone};
+use crate::sensation_level::Adaptation;
 use palpate_device::NumberError;
 
 /// The amplitude below which a tap ends: a tenth of the threshold at 250 Hz, where the skin is

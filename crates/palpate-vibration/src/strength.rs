@@ -10,10 +10,9 @@
 
 use std::f64::consts::TAU;
 
-use crate::adaptation::Adaptation;
 use crate::cue::{MappingOptions, Sensation, Tap, Tone, level};
 use crate::ringing::Ringing;
-use crate::threshold::{BEST_FREQUENCY, perceptual_weight};
+use crate::sensation_level::{Adaptation, BEST_FREQUENCY, perceptual_weight};
 
 /// The least strength with which a touch begins on an actuator, and a slide goes on: 10 dB above
 /// the threshold, which everybody feels who feels the actuator at all.

@@ -25,6 +25,11 @@ def furnished(text: str, materials: Mapping[str, Any], parts: Mapping[str, Any])
     return json.dumps(scene | dict(parts), default=_written)
 
 
+def question(asked: Mapping[str, Any] | str) -> str:
+    """A question to a scene as JSON."""
+    return asked if isinstance(asked, str) else json.dumps(asked, default=_written)
+
+
 def _written(value: Any) -> Any:
     """What is no JSON by itself."""
     match value:

@@ -18,6 +18,7 @@ pub(crate) mod surface;
 pub(crate) mod transform;
 
 #[cfg(feature = "oracle")]
-pub use catalogue::{Child, Operator};
+pub use catalogue::Child;
+pub use catalogue::Operator;
 pub use repetition::Copies;
 pub use smooth::{Boolean, Profile};

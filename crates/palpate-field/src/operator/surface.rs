@@ -4,7 +4,8 @@
 //! Operators that move a surface.
 
 #[cfg(feature = "oracle")]
-use super::catalogue::{Child, Declared, Evidence, Operator};
+use super::catalogue::{Child, Evidence};
+use super::catalogue::{Declared, Operator};
 use crate::bounds::{Aabb, Bounds};
 use crate::error::{ShapeError, Unit, finite, positive};
 use crate::field::{Remap, Remapped, SharedField};

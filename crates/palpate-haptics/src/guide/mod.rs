@@ -10,7 +10,6 @@
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 mod curve;
-mod drawn;
 pub(crate) mod limit;
 mod slope;
 mod target;

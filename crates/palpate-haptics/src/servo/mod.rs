@@ -18,8 +18,8 @@ use palpate_safety::Accepted;
 
 pub use renderer::Renderer;
 
+use crate::accepted_bodies::Protection;
 use crate::contact_point::Touch;
-use crate::protection::Protection;
 
 /// Renders bodies to the contact points of a device, or to a tool.
 ///
@@ -101,7 +101,7 @@ impl Kind for Unprotected {}
 mod sealed {
     use std::sync::Arc;
 
-    use crate::protection::Protection;
+    use crate::accepted_bodies::Protection;
 
     pub trait Sealed {
         fn protection(&self) -> Option<&Arc<Protection>>;

@@ -7,12 +7,10 @@ use palpate_device::{Device, PointState};
 use palpate_safety::Accepted;
 
 use super::{Protected, Servo};
-use crate::accepted_bodies::AcceptedBodies;
+use crate::accepted_bodies::{AcceptedBodies, Protection};
 use crate::bodies::Bodies;
-use crate::error::HapticsError;
+use crate::error::{HapticsError, ServoOptions};
 use crate::guide::Guide;
-use crate::options::ServoOptions;
-use crate::protection::Protection;
 use crate::tool::Tool;
 
 impl Servo<Protected> {

@@ -1,36 +1,33 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! The tick that both kinds of servo share: device points in, forces out.
+//! What a servo renders.
 
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
-
-mod guides;
-mod lift;
-mod safety;
 
 use std::hint::black_box;
 use std::mem::swap;
 
+use palpate_device::{
+    Buttons, DeviceError, GripperState, NumberError, PointState, Reading, TurnState,
+};
 use palpate_field::{Point, Pose, Vector};
+use palpate_safety::{
+    Arrival, Arrivals, ReadingsReport, SafetyReport, StageTicks, WorkspaceMap, WrenchChain,
+};
 
 use crate::accepted_bodies::AcceptedBodies;
 use crate::bodies::Bodies;
 use crate::contact_point::{ContactPoint, MOST_EVENTS, Setting, Tick, Touch};
 use crate::coupled_tool::{CoupledTool, Sides};
-use crate::energy::Energy;
-use crate::error::HapticsError;
-use crate::event::{Event, EventKind, Reaction};
-use crate::gripper::GripperPort;
+use crate::error::{HapticsError, ServoOptions};
+use crate::event::{Energy, Event, EventKind, Reaction};
+use crate::guide::Guide;
+use crate::live::GripperPort;
 use crate::nearby::Nearby;
-use crate::options::ServoOptions;
 use crate::ports::{Port, TurningPort};
 use crate::proxy::{MOST_OF_POINT, Probe};
 use crate::tool::{Coupling, HeldTool, Tool};
-use palpate_device::{
-    Buttons, DeviceError, GripperState, NumberError, PointState, Reading, TurnState,
-};
-use palpate_safety::{Arrival, Arrivals, WorkspaceMap};
 
 /// Fewer bodies than this all count as near: selecting would cost more than it saves.
 const FEW: usize = 5;
@@ -580,4 +577,103 @@ fn hand(
         }
     }
     (centre, radius + WAYS * (motion + options.probe.radius()))
+}
+
+impl Renderer {
+    /// The guides of a contact point, as the last tick left them; none for a point that is not
+    /// there.
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    ///
+    /// ```
+    /// use palpate_field::{Shape, Vector};
+    /// use palpate_device::PointState;
+    /// use palpate_haptics::{Guide, GuideOptions, Servo};
+    /// let mut servo = Servo::new(Shape::circle(0.05)?, 1, Default::default())?;
+    /// servo.guide(&[Guide::to_point([0.0, 0.1, 0.0], GuideOptions::default())?]);
+    /// servo.step(&[PointState::at_rest(Vector([0.0, 0.103, 0.0]))]);
+    /// assert!(servo.guides(0)[0].is_engaged());
+    /// assert!((servo.guides(0)[0].last_force() - Vector([0.0, -0.9, 0.0])).norm() < 1e-12);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    #[must_use]
+    pub fn guides(&self, point: u32) -> &[Guide] {
+        self.contacts.points.get(point as usize).map_or(&[], |point| &point.guides)
+    }
+
+    /// Sets the guides of every contact point.
+    #[inline(never)]
+    pub(crate) fn guide(&mut self, guides: &[Guide]) {
+        for point in &mut self.contacts.points {
+            point.guides = guides.to_vec();
+        }
+    }
+
+    /// Swaps the guides of each contact point with those of a list.
+    ///
+    /// Real-time: allocates nothing, frees nothing, takes no lock, cannot panic.
+    #[inline(never)]
+    pub(crate) fn exchange_guides(&mut self, guides: &mut [Vec<Guide>]) {
+        let points = self.contacts.points.iter_mut();
+        points.zip(guides).for_each(|(point, new)| swap(&mut point.guides, new));
+    }
+}
+
+impl Renderer {
+    /// Whether the hand is [lifted](crate::Servo::lift) off the bodies.
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    #[must_use]
+    pub fn is_lifted(&self) -> bool {
+        self.setting.is_lifted
+    }
+
+    /// Lifts the hand off the bodies, or sets it down.
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    #[inline(never)]
+    pub(crate) fn lift(&mut self, is_lifted: bool) {
+        self.setting.is_lifted = is_lifted;
+    }
+}
+
+impl Renderer {
+    /// The report of every contact point's safety chain so far; empty for an
+    /// [unprotected](crate::Unprotected) servo.
+    #[must_use]
+    #[inline(never)]
+    pub fn safety(&self) -> Vec<SafetyReport> {
+        self.with_ports(Port::report, WrenchChain::report)
+            .map(|(report, readings)| report.with_readings(readings))
+            .collect()
+    }
+
+    /// What the safety chain of each contact point says, that of force alone or that of force and
+    /// torque, and the readings that were held back before it.
+    fn with_ports<'a, T: 'a>(
+        &'a self,
+        of_port: fn(&Port) -> T,
+        of_chain: fn(&WrenchChain) -> T,
+    ) -> impl Iterator<Item = (T, ReadingsReport)> + 'a {
+        let turning = self.coupled_tool().and_then(|coupled| coupled.port.as_ref());
+        let chain = turning.and_then(|turning| turning.chain.as_ref());
+        let ports = self.contacts.points.iter().filter_map(|point| point.port.as_ref());
+        ports.map(move |port| {
+            let readings = port.readings();
+            let readings = turning.map_or(readings, |turning| turning.with_turns(readings));
+            (chain.map_or_else(|| of_port(port), of_chain), readings)
+        })
+    }
+
+    /// In how many ticks each stage of the safety chains of all contact points has acted; zero for an
+    /// [unprotected](crate::Unprotected) servo.
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    #[must_use]
+    #[inline(never)]
+    pub fn stage_ticks(&self) -> StageTicks {
+        self.with_ports(Port::stage_ticks, WrenchChain::stage_ticks)
+            .map(|(ticks, readings)| ticks.with_readings(&readings))
+            .sum()
+    }
 }

@@ -8,12 +8,10 @@ use std::sync::Arc;
 use palpate_device::{DeviceProfile, NumberError};
 
 use super::{Protected, Renderer, Servo, Unprotected};
-use crate::accepted_bodies::AcceptedBodies;
+use crate::accepted_bodies::{AcceptedBodies, Protection};
 use crate::bodies::Bodies;
-use crate::error::HapticsError;
+use crate::error::{HapticsError, ServoOptions};
 use crate::guide::Guide;
-use crate::options::ServoOptions;
-use crate::protection::Protection;
 use crate::tool::Tool;
 
 impl Servo<Unprotected> {

@@ -6,13 +6,12 @@
 use std::fmt::{Display, Formatter, Result};
 
 use super::connection::ConnectionReport;
-use super::guide_report::GuideReport;
 use super::lines;
 use super::pacer::Lateness;
-use super::report::{Ending, EvaluationCounts, RunReport};
+use super::report::{
+    Ending, EvaluationCounts, GuideReport, RunReport, TextureReport, ToolReport,
+};
 use super::statistics::{Bucket, Distribution};
-use super::texture_report::TextureReport;
-use super::tool_report::ToolReport;
 use super::vibration::VibrationReport;
 
 /// What a report says if the device refused the last forces.

@@ -9,8 +9,7 @@ use palpate_safety::{PassivityReport, SafetyReport, StageTicks};
 
 use super::connection::ConnectionReport;
 use super::display::NOT_RELEASED;
-use super::report::{Ending, RunReport};
-use super::tool_report::ToolReport;
+use super::report::{Ending, RunReport, ToolReport};
 
 /// A line that begins with what it is about; one that continues the line before has no label.
 pub(crate) fn line(f: &mut Formatter<'_>, label: &str, what: impl Display) -> Result {

@@ -44,38 +44,29 @@
 mod clock;
 mod connection;
 mod display;
-mod guide_report;
 mod lines;
 mod pacer;
-mod priority;
 mod recorder;
 mod records;
 mod report;
 mod run;
-mod scaled_clock;
-mod start_report;
 mod statistics;
-mod texture_report;
 mod thread;
 pub(crate) mod ticks;
-mod tool_report;
 mod trace;
 mod vibration;
 
-pub use clock::{Clock, ClockDriver, VirtualClock, WallClock};
+pub use clock::{Clock, ClockDriver, ClockSpeed, ScaledClock, VirtualClock, WallClock};
 pub use connection::{ConnectionReport, Reconnection};
-pub use guide_report::GuideReport;
-pub use pacer::{Lateness, Pace};
-pub use priority::{Priority, raise_priority};
+pub use pacer::{Lateness, Pace, Priority, raise_priority};
 pub use recorder::{Recorder, TraceRow};
 pub use records::Records;
-pub use report::{Ending, EvaluationCounts, RunError, RunReport};
+pub use report::{
+    Ending, EvaluationCounts, GuideReport, RunError, RunReport, StartInside, TextureReport,
+    ToolReport,
+};
 pub use run::{BodyMotion, Run, RunOptions, Seconds, Sink, Watch, run, run_on};
-pub use scaled_clock::{ClockSpeed, ScaledClock};
-pub use start_report::StartInside;
 pub use statistics::{Bucket, Distribution};
-pub use texture_report::TextureReport;
 pub use thread::{EndedThread, ServoThread, StartError, ThreadMotion, ThreadOptions};
-pub use tool_report::ToolReport;
 pub use trace::TraceWriter;
 pub use vibration::{Vibration, VibrationReport};

@@ -13,8 +13,7 @@ use std::time::{Duration, Instant};
 
 use super::clock::{Clock, WallClock};
 use super::connection::Reconnection;
-use super::pacer::{Pace, ticks};
-use super::priority::{Priority, raise_priority};
+use super::pacer::{Pace, Priority, raise_priority, ticks};
 use super::records::{Records, queue};
 use super::report::RunReport;
 use super::run::BodyMotion;

@@ -1,28 +1,24 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! The surface of a body: a [`Material`] prepared for the servo.
+//! Surfaces of bodies.
 
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-mod magnet;
-mod ring;
-mod ripples;
-mod strata;
-
-use crate::{Material, TextureKind};
+use palpate_device::{NumberError, limited};
 use palpate_field::{Point, Shape, SpaceShape, Vector};
+use palpate_safety::Impedance;
 
 use crate::curvature::{Solver, surface_displacement};
 use crate::error::HapticsError;
-use palpate_device::{NumberError, limited};
-use palpate_safety::Impedance;
+use crate::{Impact, Magnet, Material, TextureKind};
 
-pub(crate) use magnet::Pull;
-pub(crate) use ring::{Ring, Ringing};
 pub use ripples::Passing;
 pub(crate) use ripples::Ripples;
 pub(crate) use strata::{Friction, Strata, Stratum};
+
+mod ripples;
+mod strata;
 
 /// The distance at which the curvature below a texture is measured, as a part of the
 /// wavelength: truncation and rounding then stay far below a nanojoule.
@@ -326,6 +322,181 @@ impl Default for Surface {
             ripples: None,
             relief: None,
             impact: None,
+        }
+    }
+}
+
+/// The height of the largest pull, as a part of the reach.
+const PEAK: f64 = 0.25;
+
+/// A pull that snaps the hand onto a surface.
+///
+/// With height above the surface, the pull rises linearly from zero to its largest value at a
+/// quarter of the reach, and falls linearly to zero at the reach. The pull depends on the
+/// height alone, so it does no work over a closed path.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Pull {
+    force: f64,
+    /// The height at which the pull ends [m].
+    pub(crate) reach: f64,
+}
+
+impl Pull {
+    pub(crate) fn new(magnet: &Magnet) -> Result<Self, HapticsError> {
+        let force = NumberError::check_positive("magnet.force", magnet.force, "N")?;
+        Ok(Self {
+            force,
+            reach: NumberError::check_positive("magnet.distance", magnet.distance, "m")?,
+        })
+    }
+
+    /// The steepest change of the pull, next to the surface [N/m].
+    pub(crate) fn stiffness(&self) -> f64 {
+        self.force / (PEAK * self.reach)
+    }
+
+    /// This pull with `part` of its force.
+    pub(crate) fn scaled(&self, part: f64) -> Self {
+        Self { force: self.force * part, ..*self }
+    }
+
+    /// The pull at `height` above the surface [N].
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    pub(crate) fn at(&self, height: f64) -> f64 {
+        let part = height / self.reach;
+        let share = (part / PEAK).min((1.0 - part) / (1.0 - PEAK));
+        // Written so that NaN gives no pull.
+        if share > 0.0 { self.force * share } else { 0.0 }
+    }
+}
+
+/// Ringing ends below this part of its first amplitude.
+const SILENCE: f64 = 1e-4;
+
+/// A decaying sinusoid for each tap: `a · v · exp(−d·t) · sin(2π·f·t)` for a tap at normal
+/// speed `v` (Okamura, Cutkosky and Dennerlein 2001).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Ring {
+    amplitude: f64,
+    frequency: f64,
+    decay: f64,
+}
+
+impl Ring {
+    pub(crate) fn new(impact: &Impact) -> Result<Self, HapticsError> {
+        Ok(Self {
+            amplitude: NumberError::check_not_negative(
+                "impact.amplitude",
+                impact.amplitude,
+                "N·s/m",
+            )?,
+            frequency: NumberError::check_positive("impact.frequency", impact.frequency, "Hz")?,
+            decay: NumberError::check_not_negative("impact.decay", impact.decay, "1/s")?,
+        })
+    }
+
+    /// The ringing that a tap at `speed` [m/s] starts, at `rate` [Hz].
+    ///
+    /// A frequency above half the rate would only produce its alias, so the tap is silent; so
+    /// is a tap whose amplitude overflows.
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    pub(crate) fn struck(&self, speed: f64, rate: f64) -> Ringing {
+        let loudest = self.amplitude * speed;
+        // Both parts of the phasor may add up to twice the amplitude.
+        if self.frequency >= 0.5 * rate || !(2.0 * loudest).is_finite() {
+            return Ringing::SILENT;
+        }
+        let angle = 2.0 * std::f64::consts::PI * self.frequency / rate;
+        let shrink = libm::exp(-self.decay / rate);
+        Ringing {
+            force: 0.0,
+            quadrature: loudest,
+            turn: (libm::sin(angle) * shrink, libm::cos(angle) * shrink),
+            silence: SILENCE * loudest,
+        }
+    }
+}
+
+/// Ringing in progress: a phasor that rotates and decays with each tick.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Ringing {
+    /// The force along the normal [N].
+    force: f64,
+    quadrature: f64,
+    turn: (f64, f64),
+    silence: f64,
+}
+
+impl Ringing {
+    pub(crate) const SILENT: Self =
+        Self { force: 0.0, quadrature: 0.0, turn: (0.0, 0.0), silence: 0.0 };
+
+    /// The force of this tick along the normal [N]; advances to the next tick.
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    pub(crate) fn step(&mut self) -> f64 {
+        let force = self.force;
+        if force.abs() + self.quadrature.abs() <= self.silence {
+            *self = Self::SILENT;
+            return force;
+        }
+        let (sin, cos) = self.turn;
+        self.force = force * cos + self.quadrature * sin;
+        self.quadrature = self.quadrature * cos - force * sin;
+        force
+    }
+}
+
+#[cfg(test)]
+mod magnet_tests {
+    use super::*;
+
+    #[test]
+    fn the_pull_is_greatest_at_a_quarter_of_its_reach() {
+        let pull = Pull { force: 3.0, reach: 0.5 };
+        let pulls = [-0.1, 0.0, 0.0625, 0.125, 0.3125, 0.5, 0.6, f64::NAN].map(|h| pull.at(h));
+        assert_eq!(pulls, [0.0, 0.0, 1.5, 3.0, 1.5, 0.0, 0.0, 0.0]);
+    }
+}
+
+#[cfg(test)]
+mod ring_tests {
+    use super::*;
+
+    #[test]
+    fn a_tap_rings_as_its_formula_says() {
+        let impact =
+            Impact { description: None, amplitude: 3.0, frequency: 100.0, decay: 40.0 };
+        let ring = Ring::new(&impact).unwrap();
+        let mut ringing = ring.struck(0.5, 1000.0);
+        for tick in 0..200 {
+            let time = 1e-3 * f64::from(tick);
+            let turn = 2.0 * std::f64::consts::PI * 100.0 * time;
+            let expected = 1.5 * (-40.0 * time).exp() * turn.sin();
+            assert!((ringing.step() - expected).abs() < 1e-12, "{tick}");
+        }
+        for _ in 0..1000 {
+            ringing.step();
+        }
+        assert_eq!(ringing, Ringing::SILENT);
+        assert_eq!(ring.struck(0.5, 150.0), Ringing::SILENT);
+    }
+
+    /// A tap at nearly the largest number, as from a broken device, would ring as NaN without
+    /// end and remove the force of the spring. Found by fuzzing.
+    #[test]
+    fn no_blow_rings_without_end() {
+        let impact =
+            Impact { description: None, amplitude: 2.0, frequency: 100.0, decay: 30.0 };
+        let ring = Ring::new(&impact).unwrap();
+        for speed in [0.2 * f64::MAX, 0.45 * f64::MAX, f64::MAX, f64::INFINITY, f64::NAN] {
+            let mut ringing = ring.struck(speed, 1000.0);
+            for _ in 0..1000 {
+                assert!(ringing.step().is_finite(), "{speed}");
+            }
+            assert_eq!(ringing, Ringing::SILENT, "{speed}");
         }
     }
 }

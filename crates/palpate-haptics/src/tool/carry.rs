@@ -8,9 +8,9 @@
 use palpate_field::Pose;
 
 use super::Tool;
+use super::coupling::Twist;
 use super::scan::{Path, Surroundings};
 use super::settle::Lengths;
-use super::twist::Twist;
 use crate::nearby::Nearby;
 
 /// The part of the budget for evaluations before the carried motion; the tool must come to rest

@@ -9,9 +9,9 @@ use palpate_field::{Pose, Vector};
 
 use super::Tool;
 use super::closest::{Row, closest};
+use super::coupling::Twist;
 use super::scan::{Path, Surroundings};
 use super::settle::{Lengths, stacked_along};
-use super::twist::Twist;
 use crate::nearby::Nearby;
 
 /// The most iterations: a flat wall takes one, an edge or a corner a few.

@@ -8,9 +8,9 @@
 use palpate_field::{Pose, Vector};
 use palpate_query::Contact;
 
+use super::coupling::Twist;
 use super::settle::Push;
 use super::state::{ToolState, ToolTouch};
-use super::twist::Twist;
 use super::{Coupling, Tool};
 use crate::event::{Event, EventKind, Reaction};
 use crate::guide::limit::{Motion, damped};

@@ -21,9 +21,9 @@ use std::f64::consts::FRAC_1_SQRT_2;
 use palpate_field::{Pose, Vector};
 
 use super::closest::{Closest, FREEDOMS, Row, closest};
+use super::coupling::Twist;
 use super::scan::{Path, Scan};
 use super::settle::{Lengths, Push, RestSearch, stacked_along};
-use super::twist::Twist;
 use crate::nearby::Nearby;
 use crate::surface::Friction;
 

@@ -11,16 +11,12 @@
 
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-mod batch;
 mod carry;
 mod carry_out;
 mod closest;
 mod coupling;
 mod felt;
-mod fixed_list;
 mod friction;
-mod held;
-mod obstacle;
 mod of_shape;
 mod scan;
 mod settle;
@@ -29,7 +25,6 @@ mod shell;
 mod spread;
 mod state;
 mod sweep;
-mod twist;
 
 use palpate_field::{Pose, Vector};
 
@@ -40,15 +35,13 @@ use crate::nearby::{Nearby, Punctured};
 use crate::proxy::{Edited, MOST_OF_POINT};
 use crate::sampler::Sampler;
 use carry_out::Covering;
-pub use coupling::Coupling;
+use coupling::Twist;
+pub use coupling::{Coupling, HeldTool};
 use felt::Before;
-use fixed_list::FixedList;
-pub use held::HeldTool;
-use scan::{Scan, Surroundings};
+use scan::{FixedList, Scan, Surroundings};
 use settle::{Ends, Lengths, RestSearch};
 pub use shell::{MOST_POINTS, Shell, ShellPoint};
 pub use state::{Handle, ToolOptions, ToolState, ToolTouch};
-use twist::Twist;
 
 /// Fewer bodies than this all count as near: selecting would cost more than it saves.
 const FEW: usize = 5;

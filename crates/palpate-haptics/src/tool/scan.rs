@@ -1,6 +1,8 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
+//! Scans of a shell.
+//!
 //! The distances of a shell's points from the bodies, and how long each remains valid.
 //!
 //! A rigid motion that moves the tool's origin by `v` and rotates the tool by `ω` moves a point
@@ -14,13 +16,13 @@
 
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-use palpate_field::{Pose, Vector};
+use std::ops::{Deref, DerefMut};
 
-use super::batch::{Batch, Evaluation};
-use super::fixed_list::FixedList;
+use palpate_field::{BLOCK, Block, Gradients, Point, Pose, Vector};
+
+use super::coupling::Twist;
 use super::shell::{Cluster, Shell};
 use super::sweep::SweptPoint;
-use super::twist::Twist;
 use crate::nearby::Nearby;
 
 /// When a point was evaluated.
@@ -360,6 +362,184 @@ impl Shell {
     /// The numbers of the points of a cluster.
     fn members(&self, cluster: &Cluster) -> impl Iterator<Item = u32> + '_ {
         self.order.get(cluster.members.clone()).unwrap_or(&[]).iter().copied()
+    }
+}
+
+/// The last evaluation of a shell point, in world coordinates.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Evaluation {
+    /// Its centre [m].
+    pub(super) centre: Point<3>,
+    /// The field less the point's radius [m].
+    pub(super) gap: f64,
+    pub(super) gradient: Vector<f64, 3>,
+    pub(super) body: u32,
+}
+
+/// Points that are evaluated together.
+#[derive(Clone, Debug)]
+pub(super) struct Batch {
+    pub(super) count: usize,
+    numbers: [u32; BLOCK],
+    radii: [f64; BLOCK],
+    seen: [Evaluation; BLOCK],
+    block: Block<f64, 3, BLOCK>,
+    answers: Gradients<f64, 3, BLOCK>,
+    /// The points for which a body is evaluated.
+    lanes: [usize; BLOCK],
+}
+
+impl Batch {
+    pub(super) fn boxed() -> Box<Self> {
+        let nothing =
+            Evaluation { centre: Vector::ZERO, gap: 0.0, gradient: Vector::ZERO, body: 0 };
+        Box::new(Self {
+            count: 0,
+            numbers: [0; BLOCK],
+            radii: [0.0; BLOCK],
+            seen: [nothing; BLOCK],
+            block: Block::zero(),
+            answers: Gradients::zero(),
+            lanes: [0; BLOCK],
+        })
+    }
+
+    /// Takes the next points.
+    pub(super) fn gather(
+        &mut self,
+        shell: &Shell,
+        pose: &Pose<3>,
+        numbers: &mut impl Iterator<Item = u32>,
+    ) {
+        self.count = 0;
+        let places = self.numbers.iter_mut().zip(&mut self.radii).zip(&mut self.seen);
+        // Places come first in the zip: otherwise a number would be consumed when no place is
+        // left.
+        for (((number, radius), seen), next) in places.zip(numbers) {
+            let Some(point) = shell.points().get(next as usize) else { continue };
+            (*number, *radius) = (next, point.radius);
+            seen.centre = pose.transform_point(point.centre);
+            self.count += 1;
+        }
+    }
+
+    /// Evaluates all near bodies with gradients: [`Nearby::gradient`] in blocks.
+    pub(super) fn evaluate(&mut self, nearby: &Nearby<'_>) {
+        self.evaluate_with(nearby, true);
+    }
+
+    /// Evaluates gaps only, which costs less; gradients are left undefined.
+    pub(super) fn evaluate_gaps(&mut self, nearby: &Nearby<'_>) {
+        self.evaluate_with(nearby, false);
+    }
+
+    fn evaluate_with(&mut self, nearby: &Nearby<'_>, has_gradients: bool) {
+        let is_all = nearby.horizon == f64::INFINITY;
+        for seen in self.seen.iter_mut().take(self.count) {
+            (seen.gap, seen.gradient, seen.body) = (f64::INFINITY, Vector::ZERO, 0);
+            if !is_all {
+                let way = seen.centre - nearby.centre;
+                seen.gap = nearby.horizon - way.norm();
+                seen.gradient = -way.normalized().unwrap_or(Vector::ZERO);
+            }
+        }
+        for (index, body) in nearby.all() {
+            let mut asked = 0;
+            let points = self.seen.iter().take(self.count).enumerate();
+            for (lane, seen) in points {
+                // Written so that NaN is evaluated.
+                if seen.gap < f64::INFINITY && body.above_ball(seen.centre) >= seen.gap {
+                    continue;
+                }
+                self.block.set(asked, body.in_body(seen.centre));
+                if let Some(place) = self.lanes.get_mut(asked) {
+                    *place = lane;
+                }
+                asked += 1;
+            }
+            if asked == 0 {
+                continue;
+            }
+            if has_gradients {
+                body.shape().block_gradients(&self.block, asked, &mut self.answers);
+            } else {
+                body.shape().block_distances(&self.block, asked, &mut self.answers.distance);
+            }
+            let turn = body.world_from_body();
+            for (answer, lane) in self.lanes.iter().take(asked).enumerate() {
+                let Some(seen) = self.seen.get_mut(*lane) else { continue };
+                let distance = self.answers.distance.get(answer);
+                let beyond =
+                    body.region.is_some_and(|r| (seen.centre - r.centre).norm() > r.radius);
+                let is_bounded = body.is_below_ball || beyond;
+                let above = is_bounded.then(|| body.above_ball(seen.centre));
+                let (gap, gradient) = match above.filter(|above| *above > distance) {
+                    Some(above) => {
+                        let outwards = body.off_centre(seen.centre);
+                        (above, outwards.and_then(Vector::normalized).unwrap_or(Vector::ZERO))
+                    }
+                    None if !has_gradients => (distance, Vector::ZERO),
+                    None => {
+                        let gradient = self.answers.gradient.get(answer);
+                        (distance, turn.transform_vector(gradient))
+                    }
+                };
+                // Written so that NaN stays.
+                if gap.is_nan() || gap < seen.gap {
+                    (seen.gap, seen.gradient, seen.body) = (gap, gradient, index);
+                }
+            }
+        }
+        for (seen, radius) in self.seen.iter_mut().zip(&self.radii).take(self.count) {
+            seen.gap -= radius;
+        }
+    }
+
+    pub(super) fn results(&self) -> impl Iterator<Item = (u32, &Evaluation)> {
+        self.numbers.iter().copied().zip(&self.seen).take(self.count)
+    }
+}
+
+/// A list with a fixed capacity that its clones keep; a cloned `Vec` has capacity only for its
+/// content.
+#[derive(Debug, Default)]
+pub(super) struct FixedList<T>(Vec<T>);
+
+impl<T> FixedList<T> {
+    /// An empty list with this capacity.
+    pub(super) fn with_capacity(count: usize) -> Self {
+        Self(Vec::with_capacity(count))
+    }
+}
+
+impl<T: Clone> Clone for FixedList<T> {
+    fn clone(&self) -> Self {
+        let mut list = Self::with_capacity(self.capacity());
+        list.extend_from_slice(self);
+        list
+    }
+}
+
+impl<T> Deref for FixedList<T> {
+    type Target = Vec<T>;
+
+    fn deref(&self) -> &Vec<T> {
+        &self.0
+    }
+}
+
+impl<T> DerefMut for FixedList<T> {
+    fn deref_mut(&mut self) -> &mut Vec<T> {
+        &mut self.0
+    }
+}
+
+impl<'a, T> IntoIterator for &'a FixedList<T> {
+    type Item = &'a T;
+    type IntoIter = std::slice::Iter<'a, T>;
+
+    fn into_iter(self) -> Self::IntoIter {
+        self.0.iter()
     }
 }
 

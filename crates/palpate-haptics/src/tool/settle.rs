@@ -16,13 +16,11 @@
 
 use palpate_field::{Point, Pose, Vector};
 
-use super::batch::Evaluation;
 use super::closest::{Closest, FREEDOMS, Row, closest};
-use super::fixed_list::FixedList;
+use super::coupling::Twist;
 use super::friction::{Cone, Hold, MOST_AROUND};
-use super::scan::{Path, Scan, Surroundings};
+use super::scan::{Evaluation, FixedList, Path, Scan, Surroundings};
 use super::shell::Shell;
-use super::twist::Twist;
 use crate::nearby::Nearby;
 
 /// The most iterations in a tick. Sliding takes three or four; the rest is for impacts and

@@ -13,7 +13,7 @@ use socket2::SockRef;
 use tokio::net::TcpStream;
 use tokio::time::timeout;
 
-use super::limits::{CHUNK, MOST_STRANGERS, PATIENCE, TURN};
+use super::guard::{CHUNK, MOST_STRANGERS, PATIENCE, TURN};
 
 /// A connection of a client, which carries one request, or the socket of a page.
 #[derive(Debug)]

@@ -8,7 +8,6 @@ mod answers;
 mod connections;
 mod files;
 mod guard;
-mod limits;
 mod reader;
 mod request;
 mod writer;
@@ -24,9 +23,8 @@ use tokio::runtime::Runtime;
 use tokio::sync::{Semaphore, oneshot};
 
 use crate::stage::Stage;
-use guard::Guard;
+use guard::{BACKLOG, Guard, MOST_KNOWN, MOST_REQUESTS, MOST_TRACES};
 pub(crate) use guard::{is_token, new_token};
-use limits::{BACKLOG, MOST_KNOWN, MOST_REQUESTS, MOST_TRACES};
 use reader::Reader;
 
 /// The server, until it is dropped.

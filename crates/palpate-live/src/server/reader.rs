@@ -5,7 +5,7 @@
 //! for no other thread, but for a short lock on the list of pages; a stop takes no lock. So a stop that
 //! was sent acts at once, whatever the rest of the program does.
 //!
-//! A turn reads at most [`TURN`](super::limits::TURN) bytes of a connection; then the others have
+//! A turn reads at most [`TURN`](super::guard::TURN) bytes of a connection; then the others have
 //! theirs.
 
 use std::convert::Infallible;
@@ -26,9 +26,8 @@ use tungstenite::{Bytes, Error, Message, Utf8Bytes};
 
 use super::answers::{Answer, Asked, What, refused, words};
 use super::connections::{Connection, Strangers};
-use super::guard::Guard;
-use super::limits::{
-    ACCEPT_RETRY, ACCEPTED, Budget, LARGEST_MESSAGE, LONGEST_HEAD, MOST_PAGES, PATIENCE,
+use super::guard::{
+    ACCEPT_RETRY, ACCEPTED, Budget, Guard, LARGEST_MESSAGE, LONGEST_HEAD, MOST_PAGES, PATIENCE,
     TRACE_PATIENCE, TURN,
 };
 use super::request::{Head, Route, is_whole, read, takes_gzip, waits_for_leave};

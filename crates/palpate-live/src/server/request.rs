@@ -7,8 +7,7 @@ use tungstenite::handshake::server::create_response;
 use tungstenite::http::header::{ACCEPT_ENCODING, CONTENT_LENGTH, EXPECT};
 use tungstenite::http::{HeaderName, HeaderValue, Method, Request, Response, StatusCode};
 
-use super::guard::Guard;
-use super::limits::{LARGEST_TRACE, LONGEST_HEAD};
+use super::guard::{Guard, LARGEST_TRACE, LONGEST_HEAD};
 
 /// The most headers of a request.
 const MOST_HEADERS: usize = 64;

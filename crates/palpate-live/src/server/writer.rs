@@ -16,7 +16,7 @@ use tungstenite::protocol::frame::{Frame, FrameHeader};
 
 use super::answers::{Answer, head};
 use super::connections::Connection;
-use super::limits::{MOST_PAGES, PATIENCE};
+use super::guard::{MOST_PAGES, PATIENCE};
 use crate::stage::{Out, Outbox};
 use crate::wire::Told;
 
@@ -114,7 +114,7 @@ async fn write(connection: &Connection, message: Out) -> std::io::Result<()> {
     let mut head = Vec::new();
     // A vector takes all that is written.
     let _ = header.format(bytes.len() as u64, &mut head);
-    if bytes.len() <= super::limits::TURN {
+    if bytes.len() <= super::guard::TURN {
         // In one packet.
         head.extend(&bytes);
         return connection.write(&head).await;

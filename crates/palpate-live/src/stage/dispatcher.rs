@@ -9,11 +9,9 @@ use std::sync::mpsc::{Receiver, SyncSender, TrySendError};
 use super::Shared;
 use super::editor::Edit;
 use super::inquiry::Asked;
-use super::message::Received;
-use super::pages::PageId;
+use super::pages::{PageId, Received, Work};
 use super::performance::Order;
 use super::stop::{Presser, Stop};
-use super::work::Work;
 use crate::wire::{Ask, Envelope, Kind, Question, Unreadable};
 
 /// Why a message is refused for which there is no room.

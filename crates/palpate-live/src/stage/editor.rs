@@ -18,12 +18,10 @@ use super::described::{Drawing, described};
 use super::document::{Document, Refusal};
 use super::file::read_file;
 use super::hand::tour;
-use super::message::Received;
-use super::pages::{PageId, Pages};
+use super::pages::{PageId, Pages, Received, Watch, Work};
 use super::performance::{Changed, Order, Showing};
 use super::room::Terms;
 use super::unsaved::LatestScene;
-use super::work::{Watch, Work};
 use super::{Shared, Shown};
 use crate::wire::{
     About, Ask, By, Change, DeviceTold, First, OperatorTold, Part, Question, SceneTold, Told,

@@ -12,11 +12,8 @@ use palpate::render::{Camera, Lens, Settings, Shadows, SrgbColor, Subject, rende
 use palpate::scene::{AnyScene, BuiltScene};
 
 use super::Shared;
-use super::message::Received;
-use super::pages::{Out, PageId, Pages};
-use super::points::point_of;
+use super::pages::{Out, PageId, Pages, Received, Work, point_of};
 use super::questions::{Answer, CANCELLED, Cancel, answer};
-use super::work::Work;
 use crate::wire::{Ask, Unreadable, picture};
 
 /// The threads, beside those of the servo, of the hand and of the editor.

@@ -15,17 +15,14 @@ mod file;
 mod hand;
 mod heartbeat;
 mod inquiry;
-mod message;
 mod pages;
 mod performance;
-mod points;
 mod questions;
 mod recording;
 mod room;
 mod stop;
 pub(crate) mod trace;
 mod unsaved;
-mod work;
 
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -48,9 +45,9 @@ use editor::Edit;
 use inquiry::Inquiries;
 #[cfg(any(test, feature = "fuzzing"))]
 pub(crate) use inquiry::answer_alone;
-use message::Received;
-pub(crate) use message::Waiting;
-pub(crate) use pages::{Opened, Out, Outbox, PageId, Pages};
+use pages::Received;
+pub use pages::Work;
+pub(crate) use pages::{Opened, Out, Outbox, PageId, Pages, Waiting, Watch};
 use performance::Order;
 use recording::Trace;
 use room::Terms;
@@ -58,8 +55,6 @@ pub(crate) use room::{GivenClock, MOST_POINTS};
 pub(crate) use stop::{Presser, Stop};
 use unsaved::LatestScene;
 pub use unsaved::{Unsaved, UnsavedError};
-pub(crate) use work::Watch;
-pub use work::Work;
 
 /// Messages of all pages that may wait to be read: more end their page.
 const MESSAGES: usize = 4096;

@@ -1,17 +1,19 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! The pages that are open, and what waits to be sent to them.
+//! Pages.
 
 use std::collections::BTreeMap;
+use std::fmt;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
 
+use palpate::field::{Aabb, LARGEST_LENGTH, Point, Vector};
+use palpate::scene::BuiltScene;
 use tokio::sync::mpsc;
 use tungstenite::{Bytes, Utf8Bytes};
 
-use super::message::Waiting;
-use crate::wire::{Problem, Told, written};
+use crate::wire::{Problem, Question, Told, Unreadable, written};
 
 /// Messages that may wait for a page: a page that takes fewer is closed.
 pub(crate) const WAITING: usize = 256;
@@ -246,6 +248,114 @@ impl Opened {
     }
 }
 
+/// The bytes of a page's messages that may wait: a page that sends more is closed.
+pub(crate) const MOST_WAITING: usize = 4 << 20;
+
+/// The bytes of a page's messages that wait.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Waiting(Arc<AtomicUsize>);
+
+impl Waiting {
+    /// A message of the page that waits from now on; `None` if there is no room for it.
+    pub(crate) fn message(&self, page: PageId, text: Utf8Bytes) -> Option<Received> {
+        let before = self.0.fetch_add(text.len(), Ordering::Relaxed);
+        let message = Received { page, text, waiting: self.clone() };
+        (before + message.text.len() <= MOST_WAITING).then_some(message)
+    }
+}
+
+/// A message of a page.
+///
+/// It waits as its text, which takes less memory than the message that is read.
+#[derive(Debug)]
+pub(crate) struct Received {
+    pub(super) page: PageId,
+    pub(super) text: Utf8Bytes,
+    waiting: Waiting,
+}
+
+impl Received {
+    /// Reads it.
+    ///
+    /// # Errors
+    ///
+    /// As [`Question::read`].
+    pub(super) fn read(&self) -> Result<Question, Unreadable> {
+        Question::read(&self.text)
+    }
+}
+
+impl Drop for Received {
+    fn drop(&mut self) {
+        self.waiting.0.fetch_sub(self.text.len(), Ordering::Relaxed);
+    }
+}
+
+/// A point of the page.
+pub(super) fn point_of<const D: usize>(numbers: &[f64]) -> Result<Point<D>, String> {
+    point_in_space(numbers, D).map(Vector::truncated)
+}
+
+/// A point of the page, of a scene of so many dimensions. One of the plane has z = 0.
+pub(super) fn point_in_space(numbers: &[f64], dimension: usize) -> Result<Point<3>, String> {
+    if numbers.len() != dimension {
+        let given = numbers.len();
+        return Err(format!("a point of this scene is {dimension} numbers, got {given}"));
+    }
+    let is_usable = |x: &f64| x.abs() <= LARGEST_LENGTH;
+    match numbers.iter().find(|x| !is_usable(x)) {
+        None => Ok(Vector(std::array::from_fn(|k| numbers.get(k).copied().unwrap_or(0.0)))),
+        Some(x) => Err(format!("a coordinate is at most {LARGEST_LENGTH:e} m, got {x} m")),
+    }
+}
+
+/// The longest edge of a scene's bounds [m]; 1 m for a scene without.
+pub(super) fn size<const D: usize>(scene: &BuiltScene<D>) -> f64 {
+    scene.bounds().as_ref().map_or(1.0, longest_edge).max(f64::MIN_POSITIVE)
+}
+
+/// The longest edge of a box [m].
+pub(super) fn longest_edge<const D: usize>(bounds: &Aabb<D>) -> f64 {
+    2.0 * bounds.half_extents().0.into_iter().fold(0.0, f64::max)
+}
+
+/// What a thread of the program begins to do, beside the servo and the threads that read and write
+/// sockets.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum Work {
+    /// To answer a request: a file of the page, the scene, or a trace.
+    Request,
+    /// To read a message of a page.
+    Message,
+    /// To edit or build the scene.
+    Edit,
+    /// To answer a question about the scene.
+    Question,
+}
+
+/// Is called by each thread that begins to work, if anybody watches.
+#[derive(Clone, Default)]
+pub(crate) struct Watch(Option<Arc<dyn Fn(Work) + Send + Sync>>);
+
+impl Watch {
+    pub(crate) fn new(watch: impl Fn(Work) + Send + Sync + 'static) -> Self {
+        Self(Some(Arc::new(watch)))
+    }
+
+    pub(crate) fn begins(&self, work: Work) {
+        if let Some(watch) = &self.0 {
+            watch(work);
+        }
+    }
+}
+
+impl fmt::Debug for Watch {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_tuple("Watch").field(&self.0.is_some()).finish()
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -302,5 +412,24 @@ mod tests {
             outbox.bytes.fetch_sub(taken.unwrap(), Ordering::Relaxed);
         }
         assert!(pages.is_open(page));
+    }
+}
+
+#[cfg(test)]
+mod message_tests {
+    use super::*;
+    use crate::stage::pages::Pages;
+
+    #[test]
+    fn so_many_bytes_wait_and_no_more() {
+        let opened = Pages::default().add(1).unwrap();
+        let (page, waiting) = (opened.page, opened.waiting);
+        let message = |length: usize| waiting.message(page, "x".repeat(length).into());
+        let half = message(MOST_WAITING / 2).unwrap();
+        assert!(message(MOST_WAITING / 2 + 1).is_none(), "there is no room");
+        let other = message(MOST_WAITING / 2).unwrap();
+        assert!(message(1).is_none());
+        drop((half, other));
+        assert_eq!(waiting.0.load(Ordering::Relaxed), 0);
     }
 }

@@ -18,7 +18,7 @@ use palpate::servo_loop::{
 };
 
 use super::hand::{Lead, Leader};
-use super::points::point_in_space;
+use super::pages::point_in_space;
 use super::trace::Replay;
 use crate::wire::{Frame, FramePoint};
 

@@ -8,10 +8,9 @@ use std::collections::HashMap;
 use palpate_field::Shape;
 use serde_json::Value;
 
-use super::object::Object;
+use super::object::{Allowance, Object, Size};
 use super::operator::{over, refused};
 use super::primitive::primitive;
-use super::size::{Allowance, Size};
 use crate::advice;
 use crate::grids::{KeptGrids, PLANAR, SPATIAL, WrittenGrid};
 use crate::json::{self, found};
@@ -19,8 +18,7 @@ use crate::keys::{self, EXTRUDE, GRID, MESH, OF, REVOLVE, VOLUME};
 use crate::mesh_file::{BuiltMesh, WrittenMesh, WrittenVolume};
 use crate::names::shortened;
 use crate::pose::{Turning, Turns};
-use crate::problem::Problem;
-use crate::problems::Problems;
+use crate::problem::{Problem, Problems};
 use crate::scene::{Dimension, Scene};
 use crate::shape::WrittenShape;
 

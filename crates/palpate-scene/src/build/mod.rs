@@ -8,7 +8,6 @@ mod motion;
 mod object;
 mod operator;
 mod primitive;
-mod size;
 
 use std::any::Any;
 use std::collections::HashMap;
@@ -23,14 +22,13 @@ use palpate_vibration::Actuator;
 use crate::mesh_file::BuiltMesh;
 use crate::names::shortened;
 use crate::pose::{Turning, Turns, vector};
-use crate::problem::Problem;
-use crate::problems::Problems;
+use crate::problem::{Problem, Problems};
 use crate::scene::{Dimension, Scene, WrittenBody};
 use crate::shape::WrittenShape;
 use crate::view::WrittenView;
 use builder::{Builder, Space};
 pub use motion::BuiltMotion;
-pub(crate) use size::MOST;
+pub(crate) use object::MOST;
 
 /// A built scene, in its dimension.
 #[derive(Clone, Debug)]
@@ -229,7 +227,7 @@ where
     let Some(workspace) = workspace else { return Ok(None) };
     let pose = workspace.pose.as_ref().map(|pose| pose.built::<D>()).transpose();
     let pose = pose.map_err(|problems| problems.under("pose"));
-    let scale = crate::check::positive("scale", workspace.scale, "");
+    let scale = crate::problem::positive("scale", workspace.scale, "");
     let made = Problems::both(pose, scale).and_then(|(pose, ())| {
         let map = WorkspaceMap::new(
             pose.map_or_else(Pose::identity, |pose| pose.in_space()),

@@ -9,8 +9,7 @@ use super::{BuiltBody, BuiltScene};
 use crate::motion::{Repeat, WrittenMotion};
 use crate::names::unknown;
 use crate::pose::{Turning, Turns};
-use crate::problem::Problem;
-use crate::problems::Problems;
+use crate::problem::{Problem, Problems};
 use crate::scene::Scene;
 
 /// The largest angle between two times of a motion [rad]: less than half a turn.

@@ -10,14 +10,12 @@ use serde::Deserialize;
 use serde_json::Value;
 
 use super::builder::{Builder, Built, Space};
-use super::object::Object;
-use super::size::Size;
+use super::object::{Object, Size};
 use crate::grids::WrittenBake;
 use crate::json::{self, found};
 use crate::keys;
 use crate::pose::{self, Turning, Turns};
-use crate::problem::Problem;
-use crate::problems::Problems;
+use crate::problem::{Problem, Problems};
 
 /// The problem of an operator whose number is under `key`.
 pub(super) fn refused(key: &str, error: ShapeError) -> Problem {

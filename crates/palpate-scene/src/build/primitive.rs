@@ -9,15 +9,13 @@ use palpate_field::{Shape, ShapeError, Unit};
 use serde_json::{Map, Value};
 
 use super::object::check_description;
-use crate::advice;
 use crate::catalogue::{self, Signature, file_key};
 use crate::json::{self, found};
 use crate::keys::DESCRIPTION;
 use crate::names::{nearest, shortened, unknown};
-use crate::pose;
-use crate::problem::Problem;
-use crate::problems::Problems;
+use crate::problem::{Problem, Problems};
 use crate::scene::Dimension;
+use crate::{advice, pose};
 
 /// Makes the primitive called `name`; its weight is the number of nodes it counts as.
 pub(super) fn primitive<const D: usize>(

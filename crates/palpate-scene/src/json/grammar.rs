@@ -8,10 +8,10 @@
 
 use std::ops::Range;
 
-use super::tokens::{Kind, Token, tokens};
+use super::source::{Kind, Token, tokens};
 use super::word;
-use crate::error::MOST;
 use crate::names::shortened;
+use crate::problem::MOST;
 
 /// Something that is no JSON.
 #[derive(Debug)]

@@ -3,17 +3,12 @@
 
 //! JSON with places: reading that knows lines, writing that people like to read.
 
-mod deserialize;
 mod document;
 mod grammar;
-mod reading;
 mod source;
-mod tokens;
 mod word;
 mod write;
 
-pub(crate) use deserialize::found;
-pub(crate) use document::Document;
-pub(crate) use reading::read;
+pub(crate) use document::{Document, read};
 pub(crate) use source::{Position, Source};
-pub(crate) use write::write;
+pub(crate) use write::{found, write};

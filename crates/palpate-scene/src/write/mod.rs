@@ -9,11 +9,10 @@ mod shape;
 use palpate_field::{Pose, Shape, Vector};
 use palpate_haptics::Material;
 
-use crate::error::SceneError;
+use crate::material::WrittenMaterial;
 use crate::pose::WrittenPose;
-use crate::problem::Problem;
+use crate::problem::{Problem, SceneError};
 use crate::scene::{Dimension, Scene, WrittenBody};
-use crate::written_material::WrittenMaterial;
 pub(crate) use shape::Writer;
 
 /// A shape made in code as a body of a scene: with its name, and where and of what it is.

@@ -4,13 +4,11 @@
 //! One axis: rounds of strokes until its numbers are known.
 
 use super::IdentifyError;
-use super::fit::{Fit, fit};
-use super::observed::{Model, Observed};
+use super::fit::{Fit, fit, steps};
 use super::options::Bounds;
 use super::port::Port;
 use super::report::{EncoderStep, Estimate, IdentifiedAxis};
-use super::steps::steps;
-use super::strokes::{Breakaway, Motions, Stroke};
+use super::strokes::{Breakaway, Model, Motions, Observed, Stroke};
 
 /// The least and the most rounds of strokes, of which the most are for an axis whose numbers stay
 /// uncertain.

@@ -23,11 +23,9 @@
 mod axis;
 mod error;
 mod fit;
-mod observed;
 mod options;
 mod port;
 mod report;
-mod steps;
 mod strokes;
 
 use palpate_device::{Device, DeviceProfile, NumberError};

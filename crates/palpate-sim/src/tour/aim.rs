@@ -9,10 +9,9 @@
 
 use palpate_field::{Aabb, Point, Shape, SpaceShape, Vector};
 
-use super::smoothing::smoothed_points;
 use super::{
     CLEARANCE, FLIGHT_SPEED, MOST_POINTS, ORBIT_HEIGHT, RAY_TOLERANCE, Route, STEP, Sight,
-    Tour, passed,
+    Tour, passed, smoothed_points,
 };
 use crate::error::SimulationError;
 use crate::hand_path::{HandPath, Interpolation};

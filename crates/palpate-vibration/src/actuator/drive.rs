@@ -15,10 +15,10 @@
 
 use std::f64::consts::{PI, TAU};
 
-use super::rotor::Rotor;
+use super::model::Rotor;
 use crate::cue::level;
+use crate::sensation_level::perceptual_weight;
 use crate::strength::CLEARLY_FELT;
-use crate::threshold::perceptual_weight;
 
 /// The speeds of a motor whose strengths are listed: between two of them the strength is a straight
 /// line to a part in a thousand.

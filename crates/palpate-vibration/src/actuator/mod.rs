@@ -8,7 +8,6 @@
 mod drive;
 mod model;
 mod profiles;
-mod rotor;
 
 use std::borrow::Cow;
 

@@ -14,7 +14,7 @@ use palpate::field::{Aabb, Point, SpaceShape, Vector};
 use palpate::scene::BuiltScene;
 use palpate::sim::HandPath;
 
-use super::points::size;
+use super::pages::size;
 use super::trace::Replay;
 use lift::{Lift, Step};
 pub(super) use tour::tour;

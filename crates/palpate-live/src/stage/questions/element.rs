@@ -11,8 +11,8 @@ use palpate::query::{
 };
 use palpate::scene::BuiltScene;
 
+use super::super::pages::{point_of, size};
 use super::{TOLERANCE, limits};
-use crate::stage::points::{point_of, size};
 use crate::wire::{Answered, Ask, Enclosing, Local, Swept, Timed};
 
 /// The most steps of a local search, whose path is told.

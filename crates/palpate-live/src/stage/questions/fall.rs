@@ -11,8 +11,8 @@ use palpate::field::{Aabb, LARGEST_LENGTH, Point, Shape, Vector};
 use palpate::query::{BallWorkspace, Limits, Ray, Stop, cast_ball};
 use palpate::scene::BuiltScene;
 
+use super::super::pages::{point_of, size};
 use super::{Cancel, TOLERANCE};
-use crate::stage::points::{point_of, size};
 use crate::wire::{Answered, Bounce, FallEnd, Fell, Timed};
 
 /// Steps in the time in which the ball would fall by the size of the scene, and of a way at most.
