@@ -25,6 +25,8 @@
 
 mod bake;
 mod blocks;
+#[cfg(feature = "files")]
+mod cache;
 mod certificate;
 mod error;
 #[cfg(feature = "files")]
@@ -37,15 +39,13 @@ mod spline;
 #[cfg(feature = "volumes")]
 mod volume;
 
-pub use bake::GridProgress;
-pub use bake::{GridOptions, Resolution};
+pub use bake::{GridOptions, GridProgress, Resolution};
 #[cfg(feature = "files")]
-pub use blocks::{Found, GridCache};
+pub use cache::{Found, GridCache};
 pub use error::GridError;
 #[cfg(feature = "files")]
 pub use file::{GridFileError, GridFileProblem, LARGEST_FILE};
-pub use grid::Grid;
-pub use grid::Lattice;
+pub use grid::{Grid, Lattice};
 #[doc(hidden)]
 pub use instances::instances;
 pub use samples::Store;

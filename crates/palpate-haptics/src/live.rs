@@ -3,6 +3,8 @@
 
 //! Live poses and grippers.
 
+#![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
 use palpate_device::{Buttons, GripperState};
 use palpate_field::Vector;
 use palpate_safety::{Arrival, Change, Impedance, PortState, SafetyChain, StageTicks};

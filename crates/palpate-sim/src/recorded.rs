@@ -3,6 +3,8 @@
 
 //! Recorded hands and devices.
 
+#![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
 use std::time::Duration;
 
 use palpate_device::{

@@ -16,6 +16,8 @@
 //! less. A hold therefore fades by itself; time, fraction and revival are choices, not
 //! measurements.
 
+#![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
 use std::f64::consts::TAU;
 
 use palpate_device::NumberError;
@@ -232,6 +234,7 @@ impl Adaptation {
 }
 
 #[cfg(test)]
+#[expect(clippy::indexing_slicing, reason = "tests know their lengths")]
 mod tests {
     use super::*;
 

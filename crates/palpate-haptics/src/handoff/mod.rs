@@ -3,6 +3,8 @@
 
 //! The hand-off between a servo and other threads.
 
+#![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
 use std::fmt;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
@@ -449,6 +451,7 @@ impl Control {
     ///
     /// [`HapticsError::NoSuchBody`] or [`HapticsError::Pose`]; then no body moves.
     #[inline(never)]
+    #[expect(clippy::indexing_slicing, reason = "the bodies are checked before")]
     pub fn set_poses(&mut self, poses: &[(usize, Pose<3>)]) -> Result<(), HapticsError> {
         for (body, pose) in poses {
             if *body >= self.bodies {

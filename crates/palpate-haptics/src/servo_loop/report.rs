@@ -3,6 +3,8 @@
 
 //! Reports of runs.
 
+#![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
 use palpate_device::DeviceLost;
 use palpate_field::{Point, Vector};
 use palpate_safety::SafetyReport;

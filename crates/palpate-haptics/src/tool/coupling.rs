@@ -7,6 +7,8 @@
 //!
 //! A rotation vector lies along the axis with the angle as length [rad]; in the plane along z.
 
+#![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
 use palpate_device::NumberError;
 use palpate_field::{Pose, Rotation, Shape, ShapeError, SpaceShape, Vector};
 use palpate_safety::Impedance;

@@ -5,10 +5,11 @@
 
 use super::IdentifyError;
 use super::fit::{Fit, fit, steps};
+use super::observed::{Model, Observed};
 use super::options::Bounds;
 use super::port::Port;
 use super::report::{EncoderStep, Estimate, IdentifiedAxis};
-use super::strokes::{Breakaway, Model, Motions, Observed, Stroke};
+use super::strokes::{Breakaway, Motions, Stroke};
 
 /// The least and the most rounds of strokes, of which the most are for an axis whose numbers stay
 /// uncertain.

@@ -15,8 +15,9 @@
 //! Readings of an encoder with the step Δ lie in whole steps, so Δ divides their differences:
 //! it is their greatest common divisor, by Euclid's algorithm with a tolerance for rounding.
 
+use super::observed::{Model, Observed, PARAMETERS};
 use super::report::{EncoderStep, IdentifiedAxis};
-use super::strokes::{Model, Observed, PARAMETERS, Stroke};
+use super::strokes::Stroke;
 
 /// Parameters whose least value is zero.
 const NOT_NEGATIVE: [bool; PARAMETERS] = [false, true, true, false, true];

@@ -23,6 +23,7 @@
 mod axis;
 mod error;
 mod fit;
+mod observed;
 mod options;
 mod port;
 mod report;
