@@ -50,7 +50,7 @@ pub(crate) fn run(options: &CheckOptions) -> Result<Outcome, Failure> {
 pub(crate) struct Refused {
     #[serde(skip)]
     name: String,
-    /// `false`.
+    /// Always `false`: the scene cannot be used.
     pub(crate) ok: bool,
     /// What is wrong.
     pub(crate) problems: Vec<Problem>,
@@ -106,7 +106,7 @@ impl fmt::Display for Refused {
 pub(crate) struct Answer {
     #[serde(skip)]
     name: String,
-    /// `true`.
+    /// Always `true`: the scene can be used.
     pub(crate) ok: bool,
     /// 2 for the plane, 3 for space.
     pub(crate) dimension: usize,

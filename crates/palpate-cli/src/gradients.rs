@@ -213,7 +213,7 @@ pub(crate) struct Answer {
     pub(crate) gradient: Vec<f64>,
     /// `true` if the gradient jumps at the point.
     pub(crate) gradient_jumps: bool,
-    /// From the point to the places that are compared [m].
+    /// The distance of the sample points from `point` [m].
     pub(crate) offset: f64,
     /// The offset of the adaptive dichotomy [m].
     pub(crate) adaptive_offset: f64,
@@ -223,7 +223,7 @@ pub(crate) struct Answer {
     pub(crate) methods: Vec<Method>,
 }
 
-/// What a way to a gradient found.
+/// The result of one method.
 #[derive(Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub(crate) struct Method {

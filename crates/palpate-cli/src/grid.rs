@@ -96,9 +96,10 @@ pub(crate) struct Answer {
     pub(crate) kernel: &'static str,
     /// How samples are stored.
     pub(crate) store: &'static str,
-    /// How far values are from the scene's at most, proven [m]; `null` if nothing is known.
+    /// The proven largest difference between a value of the grid and that of the scene [m].
     pub(crate) deviation: Option<f64>,
-    /// The size of the values that the deviation holds for [m]; others are bounds alone.
+    /// `deviation` holds for values whose size is at most this [m]. Larger values are bounds
+    /// alone.
     pub(crate) within: Option<f64>,
     /// `true` if the scene's values are distances.
     pub(crate) source_is_exact: bool,

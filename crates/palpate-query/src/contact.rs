@@ -68,10 +68,9 @@ pub struct Contact<const D: usize> {
     pub point_a: Point<D>,
     /// The point on the surface of body `b` [m].
     pub point_b: Point<D>,
-    /// The unit vector from body `a` to body `b`, along which a solver separates them. Where the
-    /// fields give no direction, as in the middle of a ball, a manifold takes the line between
-    /// the centres of the bodies; where that has no direction, and for elements, it is the y
-    /// axis.
+    /// The unit vector from the first body to the second. Where the fields give no direction,
+    /// as at the centre of a ball, it is the line between the centres of the bodies; where that
+    /// is none, and for elements, the y axis. See `normal_from`.
     pub normal: Vector<f64, D>,
     /// What the normal was taken from.
     pub normal_from: NormalSource,

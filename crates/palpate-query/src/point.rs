@@ -18,14 +18,14 @@ use crate::sampler::{Placed, normal};
 pub struct AtPoint<const D: usize> {
     /// The point [m].
     pub point: Point<D>,
-    /// The field's value [m]; [`quality`](Self::quality) says whether it is the distance.
+    /// The value of the field [m]. `quality` says whether it is the distance.
     pub distance: f64,
     /// The gradient of the field.
     pub gradient: Vector<f64, D>,
     /// The gradient's unit vector; `None` where it is shorter than 1e-6.
     pub normal: Option<Vector<f64, D>>,
-    /// Where the promise is exact the nearest point of the surface, else a place close by where
-    /// the field is zero; `None` if the way there was not found ([`Shape::surface_point`]) [m].
+    /// Where the promise is exact the nearest point of the surface, else a zero of the field
+    /// nearby. `None` if none was found [m].
     pub surface: Option<Point<D>>,
     /// `true` if the value is negative.
     pub is_inside: bool,

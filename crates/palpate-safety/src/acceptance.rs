@@ -194,11 +194,11 @@ pub struct Accepted {
     pub device_damping: f64,
     /// The share of the stiffness that the device renders, in (0, 1].
     pub stiffness_factor: f64,
-    /// The rule that determined that share; `None` if it is one.
+    /// The rule that limits the stiffness; `None` if `stiffness_factor` is 1.
     pub stiffness_rule: Option<Rule>,
     /// The share of the damping that the device renders, in [0, 1]; one without damping.
     pub damping_factor: f64,
-    /// The rule that determined that share; `None` if it is one.
+    /// The rule that limits the damping; `None` if `damping_factor` is 1.
     pub damping_rule: Option<Rule>,
     /// Names of the device's numbers that are assumed.
     #[cfg_attr(feature = "serde", serde(serialize_with = "as_list"))]
@@ -335,9 +335,11 @@ impl Accepted {
 
     /// The stiffness and the damping that were asked for, in the world [N/m, N·s/m], or about axes.
     #[must_use]
-    pub fn requested(&self) -> [f64; 2] {
-        [self.requested_stiffness, self.requested_damping]
-            .map(|at_device| at_device / self.scale)
+    pub fn requested(&self) -> Impedance {
+        Impedance {
+            stiffness: self.requested_stiffness / self.scale,
+            damping: self.requested_damping / self.scale,
+        }
     }
 
     /// This, unless the device renders less than was asked for.

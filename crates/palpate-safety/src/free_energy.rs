@@ -32,7 +32,8 @@ const MOST_OWED: f64 = 1e-3;
 /// No hand climbs higher in a potential [J].
 const HIGHEST: f64 = 1e3;
 
-/// What sampling generates with forces that have a potential, and what was done about it.
+/// Energy that sampling generates in forces that have a potential (guides, magnets), and how it
+/// was limited.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
@@ -41,12 +42,12 @@ pub struct FreeForceReport {
     /// Ticks in which the force was made less, and the largest change.
     #[cfg_attr(feature = "serde", serde(flatten))]
     pub effect: Effect,
-    /// The least energy balance, which begins at zero [J]: what the device's damping dissipates minus
-    /// what sampling and the slew limit generate, and minus what the returning force adds, without
-    /// what is [credited](Self::credited).
+    /// The least energy balance [J]. It begins at zero. It adds the energy that the device's
+    /// damping dissipates, and subtracts the energy that sampling, the slew limit and the
+    /// returning force generate, except `credited`.
     pub least_balance: f64,
-    /// Energy that is given on purpose [J]: when the force comes back to a hand at rest, or rises
-    /// after it was zeroed or made softer; and what the balance would owe beyond a millijoule.
+    /// Energy that the forces may add [J]: when the force returns to a hand at rest, when it
+    /// rises after it was zeroed or made softer, and what the balance would owe beyond 1 mJ.
     pub credited: f64,
 }
 

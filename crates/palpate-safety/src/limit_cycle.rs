@@ -207,9 +207,9 @@ pub struct LimitCycleReport {
     /// Ticks in which a force was made softer, and the largest change.
     #[cfg_attr(feature = "serde", serde(flatten))]
     pub effect: Effect,
-    /// How often an oscillation was found and the stiffness halved.
+    /// Limit cycles that were detected; each one halves the stiffness.
     pub found: u64,
-    /// The least part of the accepted stiffness that was rendered.
+    /// The least rendered stiffness over the accepted stiffness.
     pub least_part: f64,
 }
 

@@ -200,8 +200,8 @@ impl Default for SafetySettings {
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Impedance {
-    stiffness: f64,
-    damping: f64,
+    pub(crate) stiffness: f64,
+    pub(crate) damping: f64,
 }
 
 impl Impedance {

@@ -131,16 +131,17 @@ pub struct PassivityReport {
     pub energy_in: f64,
     /// Energy that the written forces gave to the hand [J].
     pub energy_out: f64,
-    /// The least value of taken minus given energy at any time [J]; if negative, its size is
-    /// the net energy given out, which may be what the device's damping dissipates, as the encoders
-    /// show it.
+    /// The least value of `energy_in − energy_out` in the run [J]. A negative value is net
+    /// energy given to the hand; the damping of the device may dissipate that much, as the
+    /// encoders measure it.
     pub least_balance: f64,
     /// Energy that the wanted forces would have given out, but the written forces did not [J].
     pub dissipated: f64,
-    /// The largest change, from a tick to the next, of what the controller took from a force [N].
+    /// The largest change between two ticks of the force that the passivity controller removes
+    /// [N].
     pub largest_step: f64,
-    /// Energy that the forces were allowed to give out beyond what they took, to lift the hand out
-    /// of a body after they were zeroed or a body moved onto it [J].
+    /// Energy that the forces may give the hand beyond what they took, to push it out of a body
+    /// after they were zeroed or a body moved onto it [J].
     pub credited: f64,
 }
 

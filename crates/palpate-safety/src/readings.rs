@@ -21,11 +21,11 @@ const STEPS: f64 = 3.0;
 pub struct ReadingsReport {
     /// Ticks whose position was held back.
     pub held: u64,
-    /// The farthest of them from the last position that counted [m].
+    /// The largest distance of a rejected position from the last accepted one [m].
     pub farthest: f64,
     /// Ticks whose orientation was held back.
     pub turns_held: u64,
-    /// The farthest of them from the last orientation that counted [rad].
+    /// The largest angle of a rejected orientation from the last accepted one [rad].
     pub farthest_turn: f64,
 }
 

@@ -6,6 +6,7 @@
 use std::fmt;
 
 use crate::acceptance::{Accepted, Rule};
+use crate::limits::Impedance;
 use palpate_device::Short;
 
 /// What asks a device for a stiffness and a damping. Numbers are places among the bodies, or among
@@ -32,11 +33,10 @@ pub enum Requester {
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Refused {
-    /// The stiffness and the damping that are asked for, in the world [N/m, N·s/m]; angular about
-    /// axes [N·m/rad, N·m·s/rad].
-    pub asked: [f64; 2],
+    /// The stiffness and the damping that are requested, in the world; angular about axes.
+    pub requested: Impedance,
     /// The stiffness and the damping that the device renders, in the world.
-    pub rendered: [f64; 2],
+    pub rendered: Impedance,
     /// Stiffness at the device over stiffness in the world, and damping likewise.
     pub scale: f64,
     /// The rule that leaves no more.
@@ -48,8 +48,8 @@ pub struct Refused {
 impl Refused {
     pub(crate) fn new(accepted: &Accepted, rule: Rule, requester: Requester) -> Self {
         Self {
-            asked: accepted.requested(),
-            rendered: [accepted.impedance.stiffness(), accepted.impedance.damping()],
+            requested: accepted.requested(),
+            rendered: accepted.impedance,
             scale: accepted.scale,
             rule,
             requester,
@@ -97,10 +97,10 @@ impl Refused {
             ("", ["N/m", "N·s/m"])
         };
         let numbers = |scale: f64| {
-            let ([stiffness, damping], [asked, asked_damping]) = (self.rendered, self.asked);
+            let [rendered, requested] = [self.rendered, self.requested];
             [
-                distinct([scale * stiffness, scale * asked]),
-                distinct([scale * damping, scale * asked_damping]),
+                distinct([scale * rendered.stiffness, scale * requested.stiffness]),
+                distinct([scale * rendered.damping, scale * requested.damping]),
             ]
         };
         let [[stiffness, asked], [damping, asked_damping]] = numbers(1.0);

@@ -47,7 +47,6 @@ pub struct SafetyReport {
     /// The number of emergency stops.
     pub stops: u64,
     /// The stages of the torque; `None` for a device that gives no torque.
-    #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Option::is_none"))]
     pub turning: Option<TurningReport>,
 }
 

@@ -11,8 +11,8 @@ const HEAD: &str = "\
 
 <!-- `cargo xtask renew` writes this page from the types of the answers. -->
 
-`palpate COMMAND --json` prints an answer: an object in SI units (metres, seconds, kilograms, \
-radians). It begins with its version, `\"palpate\": 2`. A value that is not known is `null`, and \
+`palpate COMMAND --json` prints an answer: an object. Its numbers are in SI units (metres, \
+seconds, kilograms, radians), except where the table names another unit. It begins with its version, `\"palpate\": 2`. A value that is not known is `null`, and \
 so is an infinite number. `palpate schema answers` prints the schema of this page.
 
 The commands `eval`, `contact`, `sweep` and `mass` ask a [question](#question) and print the \
@@ -129,6 +129,7 @@ impl Page<'_> {
             Value::String(kind) => match kind.as_str() {
                 "array" => match self.kind(&schema["items"]).as_str() {
                     one @ ("number" | "integer" | "text") => format!("list of {one}s"),
+                    other if other.contains(" or ") => format!("list of ({other})"),
                     other => format!("list of {other}"),
                 },
                 "boolean" => "`true` or `false`".to_owned(),
@@ -147,15 +148,25 @@ fn entries(value: &Value) -> impl Iterator<Item = (&String, &Value)> {
     value.as_object().into_iter().flatten()
 }
 
-/// The description of a schema on one line, as Markdown without links to Rust.
+/// The first paragraph of a schema's description on one line, as Markdown without links to Rust.
 fn described(schema: &Value) -> String {
     let text = schema["description"].as_str().unwrap_or_default();
-    let line = text.split_whitespace().collect::<Vec<_>>().join(" ");
-    let mut parts = line.split("`](");
+    let paragraph = text.split("\n\n").next().unwrap_or_default();
+    let line = paragraph.split_whitespace().collect::<Vec<_>>().join(" ");
+    let mut parts = line.split("](");
     let mut plain = parts.next().unwrap_or_default().to_owned();
     for part in parts {
-        plain.push('`');
-        plain.push_str(part.split_once(')').map_or("", |(_, after)| after));
+        // The words of a link stay; a place in Rust goes.
+        let (target, after) = part.split_once(')').unwrap_or((part, ""));
+        let is_rust = target.contains("::") || target.starts_with("Self");
+        let open = plain.rfind('[').filter(|_| is_rust);
+        match open {
+            Some(open) => {
+                plain.remove(open);
+            }
+            None => plain.push_str(&format!("]({target})")),
+        }
+        plain.push_str(after);
     }
     plain.replace("`None`", "`null`").replace("[`", "`").replace("`]", "`").replace('|', "\\|")
 }

@@ -197,7 +197,7 @@ struct Naive {
     alpha: f64,
     /// The step of a search [m].
     mu: f64,
-    /// The way to gradients.
+    /// The method of gradients.
     gradient: &'static str,
     /// Ten evaluations for each step, as the memoir counts.
     memoir_evaluations: u32,

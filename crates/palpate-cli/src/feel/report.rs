@@ -355,8 +355,9 @@ fn write_guides(out: &mut String, accepted: &[Accepted]) -> std::fmt::Result {
         return Ok(());
     }
     let of = |number: fn(&Accepted) -> f64| range(accepted.iter().map(number));
-    let stiffness = of_asked(&of(|a| a.impedance.stiffness()), &of(|a| a.requested()[0]));
-    let damping = of_asked(&of(|a| a.impedance.damping()), &of(|a| a.requested()[1]));
+    let stiffness =
+        of_asked(&of(|a| a.impedance.stiffness()), &of(|a| a.requested().stiffness()));
+    let damping = of_asked(&of(|a| a.impedance.damping()), &of(|a| a.requested().damping()));
     writeln!(out, "  guides         stiffness {stiffness} N/m, damping {damping} N·s/m")?;
     let all = counted(accepted.len(), "guide", "guides");
     write_accepted(out, accepted, |count| format!("{count} of {all}"))

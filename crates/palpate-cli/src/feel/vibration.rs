@@ -221,7 +221,7 @@ pub(crate) struct Vibrated {
     channels: usize,
     /// Ticks in which the vibration was made smaller.
     limited_ticks: u64,
-    /// By how much at most [dB].
+    /// The largest reduction of the vibration [dB].
     largest_reduction: f64,
     /// How far each actuator's strongest moment is above the threshold of the skin [dB]; `null` for
     /// one that was silent.

@@ -212,9 +212,9 @@ pub(crate) struct Answer {
     pub(crate) degenerate: usize,
     /// The enclosed volume [m³]; `null` if the mesh is not watertight.
     pub(crate) enclosed: Option<f64>,
-    /// The largest size of the field's value on a triangle that was found [m].
+    /// The largest |f| that was found on a triangle [m].
     pub(crate) found: f64,
-    /// The largest size of the field's value on a triangle that is possible, proven [m].
+    /// A proven upper bound of |f| on all triangles [m].
     pub(crate) error: f64,
     /// `true` if the field is the distance, so that every triangle is within the error of the surface.
     pub(crate) is_exact: bool,

@@ -128,7 +128,7 @@ fn a_coupling_is_made_as_soft_as_the_device_needs() {
     let HapticsError::Safety(SafetyError::MaterialRefused(refused)) = refused else {
         panic!("{refused}");
     };
-    assert_eq!(refused[0].asked[1], 0.3);
+    assert_eq!(refused[0].requested.damping(), 0.3);
     assert_eq!(refused[0].requester, Requester::Body(0));
 }
 

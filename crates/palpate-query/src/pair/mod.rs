@@ -158,8 +158,9 @@ pub struct Proof<const D: usize> {
     pub answer: Certified<Nearest<D>>,
     /// From the coordinates of the boxes, which are the first body's, to the world's.
     pub world_from_boxes: Pose<D>,
-    /// Boxes that cover the searched region without gaps: in them, as outside, twice the larger
-    /// `g` is at least the answer's lower bound.
+    /// Boxes that cover the searched region without gaps. In each box the separation bound
+    /// `2·max(g_a, g_b)` is at least the lower bound of the answer, with `g = max(f/L, distance
+    /// to the body's box)`. The same holds outside of all boxes.
     pub boxes: Vec<ProofBox<D>>,
 }
 
@@ -171,7 +172,7 @@ pub struct Proof<const D: usize> {
 pub struct ProofBox<const D: usize> {
     /// The box, in the first body's coordinates.
     pub aabb: Aabb<D>,
-    /// Proven lower bound of twice the larger `g` in the box [m].
+    /// Proven lower bound of `2·max(g_a, g_b)` in the box [m].
     pub lower: f64,
 }
 

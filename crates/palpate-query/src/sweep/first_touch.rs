@@ -62,18 +62,18 @@ impl fmt::Display for Start {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct FirstTouch<const D: usize> {
-    /// Before this time the bodies are proven apart, rounding included: two bodies by more than half
-    /// of the gap; and of an element or a mesh, the field is more than half of the gap at every point.
+    /// Before this time the bodies are proven apart, rounding included: their separation is
+    /// more than half of the gap. Of an element or a mesh, the field is more than half of the
+    /// gap at every point.
     pub lower: f64,
-    /// At this time their separation is at most the gap, or the field at a point of the element or
-    /// the mesh; infinite if no such time was found, and 1 if they are proven to be apart all the time.
+    /// At this time the separation is at most the gap. Infinite if no touch was found; the end
+    /// of the time if the bodies are proven apart all the time.
     pub upper: f64,
-    /// The contact at `upper`, that of bodies the deepest as a [`manifold`](crate::manifold) has it; `None`
-    /// if there is none, or no surface of an element was found there.
+    /// The deepest contact at `upper`; `None` if there is none.
     pub contact: Option<Contact<D>>,
     /// How the bodies move on, if they touch at the start and a field gives the normal there.
     pub start: Option<Start>,
-    /// Why the search stopped: [`Stop::Converged`] at a touch, [`Stop::SignKnown`] if there is none.
+    /// Why the search stopped: `converged` at a touch, `sign_known` if there is none.
     pub stop: Stop,
     /// How often fields were evaluated; a gradient counts twice.
     pub evaluations: u32,

@@ -35,10 +35,10 @@ pub struct ContactsQuestion {
     /// The size of the smallest boxes in a region of contact [m]; 4 % of the smallest body if
     /// left out.
     pub spacing: Option<f64>,
-    /// How far apart the bounds of a separation may be [m]; if left out half the margin, or of
-    /// the usual one if that is zero.
+    /// How far apart the bounds of a separation may be [m]. Default: half of `margin`; if
+    /// `margin` is zero, half of the default margin.
     pub tolerance: Option<f64>,
-    /// The most evaluations of fields for each pair; [`Limits::BUDGET`] if left out.
+    /// The most evaluations of fields for each pair. Default: 200 000 ([`Limits::BUDGET`]).
     pub budget: Option<u32>,
     /// The time at which motions have moved the bodies [s]; their own poses if left out.
     pub time: Option<f64>,

@@ -61,7 +61,8 @@ pub struct MassAnswer<const D: usize> {
 pub struct BodyMass<const D: usize> {
     /// The name of the body.
     pub name: String,
-    /// Why it has no mass, such as a body without bounds.
+    /// Why the body has no mass, such as a body without bounds. If it is set, no other key
+    /// except `name` is present.
     pub problem: Option<String>,
     /// Its mass.
     #[serde(flatten)]
@@ -73,16 +74,15 @@ pub struct BodyMass<const D: usize> {
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct Weighed<const D: usize> {
-    /// The volume [m³], or area [m²].
+    /// The volume [m³]; in the plane the area [m²].
     pub volume: f64,
     /// The largest error of the volume.
     pub volume_error: f64,
-    /// The mass [kg], in the plane for each metre.
+    /// The mass [kg]; in the plane the mass of a body 1 m thick.
     pub mass: f64,
     /// The largest error of the mass.
     pub mass_error: f64,
-    /// Whether the body is proven to have no point; `None` if no point was found, and none is
-    /// not proven.
+    /// `true`: proven to have no point. `false`: a point was found. `None`: neither.
     pub empty: Option<bool>,
     /// Whether points with negative values may exist: curves and sheets have none.
     pub has_interior: bool,

@@ -40,7 +40,7 @@ pub struct PointAnswer<const D: usize> {
     pub body: Option<String>,
     /// What the field promises, in words.
     pub promise: String,
-    /// The largest difference of two values over the distance of their points.
+    /// The Lipschitz constant of the field.
     pub lipschitz: f64,
     /// What is known of the ball, if one was asked about.
     pub ball: Option<BallAnswer<D>>,

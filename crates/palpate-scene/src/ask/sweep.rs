@@ -32,20 +32,20 @@ const MOST_PARTS: f64 = 1e5;
 pub struct SweepQuestion {
     /// Only pairs with one of these bodies; all pairs if there are none.
     pub bodies: Vec<String>,
-    /// Whether pairs that are apart are listed too. They always are where at most [`FEW_PAIRS`]
-    /// pairs are asked about.
+    /// Whether pairs that are apart are listed too. They always are where at most 66 pairs are
+    /// asked about ([`FEW_PAIRS`]).
     pub every_pair: bool,
-    /// The end of the time that is looked at [s]; if left out, the end of the last motion, of
-    /// which one that repeats counts once, there and back.
+    /// The end of the time that is looked at [s]. Default: the end of the last motion. A motion
+    /// that repeats counts as one period, there and back.
     pub until: Option<f64>,
-    /// The largest separation at which bodies touch [m], a millionth of the smallest body if left
-    /// out. Bodies that are more than half of it apart may be called apart.
+    /// The largest separation at which bodies touch [m]. Default: a millionth of the smallest
+    /// body. Separations between half of `gap` and `gap` may be reported as apart.
     pub gap: Option<f64>,
     /// How far apart the bounds of a time may be [s]; if left out, 1e-4 of the part of a motion
     /// that is searched.
     pub tolerance: Option<f64>,
-    /// The most evaluations for each pair and part of a motion; [`SweepSettings::BUDGET`] if left
-    /// out.
+    /// The most evaluations for each pair and part of a motion. Default: 5 000 000
+    /// ([`SweepSettings::BUDGET`]).
     pub budget: Option<u32>,
 }
 
