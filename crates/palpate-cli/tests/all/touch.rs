@@ -467,7 +467,7 @@ fn a_stylus_turns_with_a_device_that_turns() {
     // One that senses turns alone, one that does not turn.
     let senses = on("simulated:omega6", &[]);
     assert_eq!(senses["tool"]["largest_torque_written"], 0.0);
-    assert!(senses["safety"][0].get("turning").is_none());
+    assert!(senses["safety"][0]["turning"].is_null());
     let still = on("simulated:omega", &[]);
     assert!(still["tool"]["largest_torque_written"].is_null());
     let text = text(&palpate(&[&arguments[..], &["--device", "simulated:sigma7"]].concat()));
