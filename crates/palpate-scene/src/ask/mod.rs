@@ -73,6 +73,42 @@ pub enum Question {
     Mass(MassQuestion),
 }
 
+impl Question {
+    /// Reads a question in JSON.
+    ///
+    /// ```
+    /// use palpate_scene::Question;
+    ///
+    /// let refused = Question::from_json(r#"{ "question": "contacts", "margin_m": 0.1 }"#);
+    /// let why = refused.unwrap_err().to_string();
+    /// assert!(why.ends_with("keys have no units: write `margin` [m]"), "{why}");
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// [`AskError::Refused`] for a text that is no question. A key with a unit, as in version 1, is
+    /// refused with its new name.
+    pub fn from_json(text: &str) -> Result<Self, AskError> {
+        serde_json::from_str(text).map_err(|error| {
+            let problem = error.to_string();
+            let advice = without_unit(&problem).unwrap_or_default();
+            AskError::Refused(format!("the question cannot be read: {problem}{advice}"))
+        })
+    }
+}
+
+/// Names the key that is meant, if an unknown one is a known one with a unit.
+fn without_unit(problem: &str) -> Option<String> {
+    let (key, expected) = problem.strip_prefix("unknown field `")?.split_once('`')?;
+    let (name, unit) = key.rsplit_once('_')?;
+    let is_known =
+        ["m", "mm", "s", "ms"].contains(&unit) && expected.contains(&format!("`{name}`"));
+    is_known.then(|| {
+        let base = if unit.ends_with('s') { "s" } else { "m" };
+        format!("; keys have no units: write `{name}` [{base}]")
+    })
+}
+
 /// The answer to a [`Question`] of the same name.
 #[derive(Clone, Debug, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
@@ -160,9 +196,7 @@ impl AnyScene {
     ///
     /// As [`BuiltScene::ask`]; [`AskError::Refused`] for a question that cannot be read.
     pub fn ask_json(&self, question: &str) -> Result<String, AskError> {
-        let question: Question = serde_json::from_str(question).map_err(|error| {
-            AskError::Refused(format!("the question cannot be read: {error}"))
-        })?;
+        let question = Question::from_json(question)?;
         let answer = match self {
             Self::Planar(scene) => scene.ask(&question)?.to_json(),
             Self::Spatial(scene) => scene.ask(&question)?.to_json(),
