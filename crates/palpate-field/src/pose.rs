@@ -623,8 +623,8 @@ impl<const D: usize> Screw<D> {
         self.from * Pose::new(rotation, translation)
     }
 
-    /// The part of the motion between two shares, of which the first may be the later; beyond 0 and 1
-    /// the body rests.
+    /// The part of the motion between two shares. If the first share is the later one, the part runs
+    /// backwards. Below 0 and above 1 the body rests.
     ///
     /// ```
     /// use palpate_field::{Pose, Screw};

@@ -20,7 +20,7 @@ The commands `eval`, `contact`, `sweep` and `mass` ask a [question](#question) a
 `eval --points` prints an object a line.
 ";
 
-/// The keys of an alternative that are told in a line.
+/// The most keys of an alternative that fit in a line.
 const MOST_IN_A_LINE: usize = 2;
 
 /// The page, as far as it is written.
@@ -107,7 +107,7 @@ impl Page<'_> {
             .collect();
         if let Some(reference) = schema["$ref"].as_str() {
             let name = reference.trim_start_matches("#/$defs/");
-            // A small enumeration is told where it stands.
+            // List the values of a small enumeration in place.
             let definition = &self.schema["$defs"][name];
             let link = format!("[{name}](#{})", name.to_lowercase());
             let with = if tags.is_empty() { String::new() } else { tags.join(", ") + ", and " };

@@ -217,8 +217,8 @@ pub(crate) struct PageOptions {
     /// The port of the page; that of the scene's last run, or else any that is free, if left out.
     #[arg(long)]
     pub(crate) port: Option<u16>,
-    /// The address of the page, for other machines to reach it. What it sends is not encrypted:
-    /// who can read the network can move the hand. This machine alone if left out.
+    /// Serve the page on this address, so that other machines reach it. The connection is not
+    /// encrypted: anyone who can read the network can move the hand. Default: this machine alone.
     #[arg(long, value_name = "ADDRESS")]
     pub(crate) bind: Option<IpAddr>,
     /// A file with the token of the page, 32 hexadecimal digits; written if it does not exist.

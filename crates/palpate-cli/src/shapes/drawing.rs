@@ -227,7 +227,8 @@ impl Named {
 }
 
 /// The planes that show all of `marks`: those along the axes, if these are enough, or else planes
-/// through the marks. What is seen from above is cut at half its height, if that holds them too.
+/// through the marks. If the plane z = 0 holds all marks, the view from above is at half the
+/// height.
 fn planes_of<const D: usize>(
     marks: &[Mark<D>],
     bounds: &Aabb<D>,

@@ -136,7 +136,7 @@ enum Tightness {
     Call,
 }
 
-/// A shape to be written, of which as many parts are shown as there is room.
+/// Writes a shape, and leaves out the parts that do not fit.
 struct Text<'a, const D: usize> {
     shape: &'a Shape<D>,
     /// The operator around it: the shape is put in brackets if it is no tighter.

@@ -362,7 +362,7 @@ mod evidence {
     }
 
     impl Thread {
-        /// The radius at `h` along the profile, of which a crest's middle is at zero.
+        /// The radius at `h` along the profile. The middle of a crest is at `h = 0`.
         fn radius(&self, h: f64) -> f64 {
             let from_crest = (h - self.pitch * (h / self.pitch).round()).abs();
             let past = from_crest - 0.5 * self.crest;

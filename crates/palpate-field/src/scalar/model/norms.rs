@@ -261,7 +261,7 @@ const ROUNDINGS: f64 = 8.0;
 
 /// The angle is the imaginary part of a logarithm: with the cell's centre as the complex
 /// number `z` and a point of the cell as `z(1 + w)`, it grows by that of
-/// `ln(1 + w) = w − w²/2 + …`, of which all but the first term is at most
+/// `ln(1 + w) = w − w²/2 + …`. All terms but the first together are at most
 /// `|w|²/2(1 − |w|)`. A cell that reaches the origin has all angles.
 #[inline(always)]
 pub(super) fn turn<const N: usize>(x: AffineModel<N>, y: AffineModel<N>) -> AffineModel<N> {
