@@ -32,5 +32,5 @@ mod stage;
 mod wire;
 
 pub use live::{Live, LiveError, LiveOptions};
-pub use stage::{Unsaved, UnsavedError, Work};
+pub use stage::{GivenClock, Unsaved, UnsavedError, Watch, Work};
 pub use wire::VERSION;

@@ -6,22 +6,27 @@
 use std::fmt;
 use std::net::{IpAddr, Ipv4Addr, Ipv6Addr, SocketAddr, UdpSocket};
 use std::path::PathBuf;
-use std::sync::{Arc, Mutex};
+use std::sync::Arc;
 use std::time::Duration;
 
 use palpate::device::{DeviceProfile, profile_named};
 use palpate::haptics::StopSwitch;
-use palpate::servo_loop::VirtualClock;
 
 use crate::server::{self, Server};
-use crate::stage::{GivenClock, MOST_POINTS, Program, Refusal, Stage, Unsaved, Watch, Work};
+use crate::stage::{GivenClock, MOST_POINTS, Program, Refusal, Stage, Unsaved, Watch};
 
 /// The device of the page unless another is chosen.
 const DEVICE: &str = "omega";
 
 /// How a page is served.
+///
+/// ```
+/// use palpate_live::LiveOptions;
+///
+/// let options = LiveOptions { port: 8000, points: 2, ..LiveOptions::default() };
+/// assert_eq!(options.rate, 1000.0);
+/// ```
 #[derive(Clone, Debug)]
-#[non_exhaustive]
 pub struct LiveOptions {
     /// The address to listen at. Other machines reach any but a loopback address, without encryption.
     pub address: IpAddr,
@@ -35,12 +40,14 @@ pub struct LiveOptions {
     pub rate: f64,
     /// The contact points of the hand, where the scene's tool does not say how many.
     pub points: usize,
-    /// The clock of the first servo, for tests; the machine's if there is none.
-    clock: GivenClock,
-    /// The emergency stop of the servo.
-    stop: StopSwitch,
-    /// Who watches the threads begin to work, for tests.
-    watch: Watch,
+    /// The clock of the servo that the first page begins: a test gives a virtual one, and so knows its ticks. The
+    /// machine's clock by default.
+    pub clock: GivenClock,
+    /// The emergency stop of the servo. A signal handler or a button may press it too.
+    pub stop: StopSwitch,
+    /// Called by each thread that begins to work: a test holds the thread there. The threads of the servo and of the
+    /// sockets call nothing.
+    pub watch: Watch,
 }
 
 impl Default for LiveOptions {
@@ -57,64 +64,6 @@ impl Default for LiveOptions {
             stop: StopSwitch::new(),
             watch: Watch::default(),
         }
-    }
-}
-
-impl LiveOptions {
-    /// With another port.
-    #[must_use]
-    pub fn with_port(self, port: u16) -> Self {
-        Self { port, ..self }
-    }
-
-    /// With another address.
-    #[must_use]
-    pub fn with_address(self, address: IpAddr) -> Self {
-        Self { address, ..self }
-    }
-
-    /// With this token.
-    #[must_use]
-    pub fn with_token(self, token: impl Into<String>) -> Self {
-        Self { token: Some(token.into()), ..self }
-    }
-
-    /// With another simulated device.
-    #[must_use]
-    pub fn with_device(self, device: DeviceProfile) -> Self {
-        Self { device: Some(device), ..self }
-    }
-
-    /// With another rate [Hz].
-    #[must_use]
-    pub fn with_rate(self, rate: f64) -> Self {
-        Self { rate, ..self }
-    }
-
-    /// With a virtual clock for the servo that the first page begins: for tests, which must know
-    /// its ticks.
-    #[must_use]
-    pub fn with_clock(self, clock: VirtualClock) -> Self {
-        Self { clock: Arc::new(Mutex::new(Some(clock))), ..self }
-    }
-
-    /// With this emergency stop, which others may press too: the handler of a signal, or a button.
-    #[must_use]
-    pub fn with_stop_switch(self, stop: StopSwitch) -> Self {
-        Self { stop, ..self }
-    }
-
-    /// With a function that each thread of the program calls when it begins to work, beside the servo
-    /// and those that read and write sockets: for tests, which hold them there.
-    #[must_use]
-    pub fn with_watch(self, watch: impl Fn(Work) + Send + Sync + 'static) -> Self {
-        Self { watch: Watch::new(watch), ..self }
-    }
-
-    /// With so many contact points.
-    #[must_use]
-    pub fn with_points(self, points: usize) -> Self {
-        Self { points, ..self }
     }
 }
 

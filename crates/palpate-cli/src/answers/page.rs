@@ -65,8 +65,19 @@ impl Page<'_> {
             self.text.push_str("\n| key | value | |\n|---|---|---|\n");
         }
         for (key, value) in rows {
-            let row = format!("| `{key}` | {} | {} |\n", self.kind(value), described(value));
-            self.text.push_str(&row);
+            let kind = self.kind(value);
+            // A key that may be `null` is always written.
+            let is_written = kind.ends_with("`null`")
+                || schema["required"]
+                    .as_array()
+                    .is_none_or(|keys| keys.iter().any(|always| always.as_str() == Some(key)));
+            let absent = if is_written { "" } else { ", or absent" };
+            self.text
+                .push_str(&format!("| `{key}` | {kind}{absent} | {} |\n", described(value)));
+        }
+        if schema["additionalProperties"].is_object() {
+            let kind = self.kind(&schema["additionalProperties"]);
+            self.text.push_str(&format!("| every other key | {kind} | By its name. |\n"));
         }
     }
 

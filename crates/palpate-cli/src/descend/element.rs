@@ -193,13 +193,13 @@ pub(crate) struct Report<'a, const D: usize> {
 #[derive(Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 struct Naive {
-    /// The factor of a step.
+    /// The factor of a step, with the method `naive` alone.
     alpha: f64,
-    /// The step of a search [m].
+    /// The step of a search [m], with the method `naive` alone.
     mu: f64,
-    /// The method of gradients.
+    /// The method of gradients, with the method `naive` alone.
     gradient: &'static str,
-    /// Ten evaluations for each step, as the memoir counts.
+    /// Ten evaluations for each step, as the memoir counts, with the method `naive` alone.
     memoir_evaluations: u32,
 }
 

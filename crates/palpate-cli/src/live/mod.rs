@@ -38,13 +38,13 @@ pub(crate) fn run(options: &LiveOptions, interrupt: &Interrupt) -> Result<Outcom
     input::scene(options.scene.as_deref())?;
     let (name, text) = input::scene_text(options.scene.as_deref())?;
     let points = options.points.unwrap_or(if options.scene.is_none() { FINGERS } else { 1 });
-    let mut served = palpate_live::LiveOptions::default()
-        .with_points(points)
-        .with_rate(options.rate)
-        .with_stop_switch(interrupt.stop_switch());
-    if let Some(device) = &options.device {
-        served = served.with_device(device.profile.clone());
-    }
+    let served = palpate_live::LiveOptions {
+        points,
+        rate: options.rate,
+        stop: interrupt.stop_switch(),
+        device: options.device.as_ref().map(|device| device.profile.clone()),
+        ..palpate_live::LiveOptions::default()
+    };
     let short = options.scene.as_deref().and_then(Path::file_name);
     let name = short.map_or(name, |short| short.to_string_lossy().into_owned());
     let live =
@@ -113,13 +113,13 @@ impl Page {
         }
         let mut options = options;
         if let Some(token) = &place.token {
-            options = options.with_token(token.as_str());
+            options.token = Some(token.clone());
         }
         if let Some(address) = asked.bind {
-            options = options.with_address(address);
+            options.address = address;
         }
         let start = |port| {
-            let options = options.clone().with_port(port);
+            let options = palpate_live::LiveOptions { port, ..options.clone() };
             Live::start(self.name.as_str(), self.file.clone(), &self.text, options)
         };
         let live = match (asked.port, place.port) {
@@ -145,10 +145,12 @@ pub(crate) fn beside(
     interrupt: &Interrupt,
 ) -> Result<Option<Served>, Failure> {
     let (name, text) = input::scene_text(None)?;
-    let options = palpate_live::LiveOptions::default()
-        .with_points(FINGERS)
-        .with_rate(rate)
-        .with_stop_switch(interrupt.stop_switch());
+    let options = palpate_live::LiveOptions {
+        points: FINGERS,
+        rate,
+        stop: interrupt.stop_switch(),
+        ..palpate_live::LiveOptions::default()
+    };
     match (Page { name, file: None, text }).served(asked, options) {
         Ok(live) => {
             output::remark(format_args!("live at {}", live.url()));

@@ -46,12 +46,14 @@ use inquiry::Inquiries;
 #[cfg(any(test, feature = "fuzzing"))]
 pub(crate) use inquiry::answer_alone;
 use pages::Received;
+pub use pages::Watch;
 pub use pages::Work;
-pub(crate) use pages::{Opened, Out, Outbox, PageId, Pages, Waiting, Watch};
+pub(crate) use pages::{Opened, Out, Outbox, PageId, Pages, Waiting};
 use performance::Order;
 use recording::Trace;
+pub use room::GivenClock;
+pub(crate) use room::MOST_POINTS;
 use room::Terms;
-pub(crate) use room::{GivenClock, MOST_POINTS};
 pub(crate) use stop::{Presser, Stop};
 use unsaved::LatestScene;
 pub use unsaved::{Unsaved, UnsavedError};

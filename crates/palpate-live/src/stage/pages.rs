@@ -336,10 +336,12 @@ pub enum Work {
 
 /// Is called by each thread that begins to work, if anybody watches.
 #[derive(Clone, Default)]
-pub(crate) struct Watch(Option<Arc<dyn Fn(Work) + Send + Sync>>);
+pub struct Watch(Option<Arc<dyn Fn(Work) + Send + Sync>>);
 
 impl Watch {
-    pub(crate) fn new(watch: impl Fn(Work) + Send + Sync + 'static) -> Self {
+    /// Calls this function.
+    #[must_use]
+    pub fn new(watch: impl Fn(Work) + Send + Sync + 'static) -> Self {
         Self(Some(Arc::new(watch)))
     }
 

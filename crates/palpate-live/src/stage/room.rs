@@ -72,8 +72,15 @@ pub(super) struct Kept {
     is_touring: bool,
 }
 
-/// A clock that is taken once.
-pub(crate) type GivenClock = Arc<Mutex<Option<VirtualClock>>>;
+/// A clock that the first servo takes; the machine's clock where none is given.
+#[derive(Clone, Debug, Default)]
+pub struct GivenClock(Arc<Mutex<Option<VirtualClock>>>);
+
+impl From<VirtualClock> for GivenClock {
+    fn from(clock: VirtualClock) -> Self {
+        Self(Arc::new(Mutex::new(Some(clock))))
+    }
+}
 
 /// What a room is made for.
 #[derive(Clone, Debug)]
@@ -135,7 +142,7 @@ impl Room {
             options =
                 options.with_motion(move |time, set_pose| moving.motion()(time, set_pose));
         }
-        let given = terms.clock.lock().unwrap_or_else(PoisonError::into_inner).take();
+        let given = terms.clock.0.lock().unwrap_or_else(PoisonError::into_inner).take();
         let device = Box::new(device);
         let thread = match given {
             Some(given) => ServoThread::start_on(given, servo, device, options),

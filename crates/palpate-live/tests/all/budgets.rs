@@ -7,7 +7,7 @@ use std::io::{Read, Write};
 use std::net::TcpStream;
 use std::sync::{Arc, Condvar, Mutex};
 
-use palpate_live::{Live, LiveOptions, Work};
+use palpate_live::{Live, LiveOptions, Watch, Work};
 use serde_json::json;
 use tungstenite::Message;
 
@@ -18,11 +18,12 @@ use crate::talk::{BALL, Page, served};
 fn bytes_that_wait_are_bounded() {
     let gate = Arc::new((Mutex::new(true), Condvar::new()));
     let held = Arc::clone(&gate);
-    let options = LiveOptions::default().with_watch(move |work| {
+    let watch = Watch::new(move |work| {
         let (is_open, changed) = &*held;
         let guard = is_open.lock().unwrap();
         drop(changed.wait_while(guard, |is_open| work == Work::Message && !*is_open).unwrap());
     });
+    let options = LiveOptions { watch, ..LiveOptions::default() };
     let live = Live::start("ball", None, BALL, options).unwrap();
     let mut page = Page::open(&live);
     *gate.0.lock().unwrap() = false;

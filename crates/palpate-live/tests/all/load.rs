@@ -32,8 +32,8 @@ const TICKS: u32 = 50;
 /// The rows of a run in which a hand presses the ground, without the times that they took.
 fn rows(is_under_load: bool) -> Vec<String> {
     let (clock, mut driver) = VirtualClock::driven();
-    let live =
-        Live::start("ground", None, GROUND, LiveOptions::default().with_clock(clock)).unwrap();
+    let options = LiveOptions { clock: clock.into(), ..LiveOptions::default() };
+    let live = Live::start("ground", None, GROUND, options).unwrap();
     let mut page = Page::open(&live);
     // The first tick comes by itself, at time zero.
     page.binary(1);

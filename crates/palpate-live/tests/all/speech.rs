@@ -16,7 +16,7 @@ fn number(value: &Value) -> f64 {
 
 #[test]
 fn hello_is_answered_by_what_there_is() {
-    let live = served(LiveOptions::default().with_points(3));
+    let live = served(LiveOptions { points: 3, ..LiveOptions::default() });
     let mut page = Page::silent(&live);
     page.say(&json!({ "do": "hello", "version": 2, "id": 0 }));
     let welcome = page.text(|message| message["do"] == "welcome");

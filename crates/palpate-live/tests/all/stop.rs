@@ -11,7 +11,7 @@ use std::time::{Duration, Instant};
 
 use palpate::haptics::StopSwitch;
 use palpate::servo_loop::VirtualClock;
-use palpate_live::{Live, LiveOptions, Work};
+use palpate_live::{Live, LiveOptions, Watch, Work};
 use serde_json::{Value, json};
 
 use crate::load::{GROUND, PRESSED};
@@ -86,10 +86,12 @@ fn a_stop_waits_for_no_other_thread() {
         let gates = Arc::new(Gates::default());
         let (clock, mut driver) = VirtualClock::driven();
         let (switch, watched) = (StopSwitch::new(), Arc::clone(&gates));
-        let options = LiveOptions::default()
-            .with_clock(clock)
-            .with_stop_switch(switch.clone())
-            .with_watch(move |work| watched.pass(work));
+        let options = LiveOptions {
+            clock: clock.into(),
+            stop: switch.clone(),
+            watch: Watch::new(move |work| watched.pass(work)),
+            ..LiveOptions::default()
+        };
         let live = Live::start("ground", None, GROUND, options).unwrap();
         let _opens = Opens(&gates);
         let mut page = Page::open(&live);
