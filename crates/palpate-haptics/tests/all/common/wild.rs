@@ -139,6 +139,22 @@ pub(crate) fn servo<const D: usize>(
     servo
 }
 
+/// The same shapes in the same places with one surface, for hands without guides.
+pub(crate) fn plain<const D: usize>(
+    count: usize,
+    points: usize,
+    surface: &Surface,
+) -> Servo<Unprotected> {
+    let body = |i: usize| {
+        let body = Body::new(shape::<D>(i, 1.0), surface.clone()).unwrap();
+        body.at(pose::<D>(i, 0, 1.0)).unwrap()
+    };
+    let bodies = Bodies::new((0..count).map(body).collect()).unwrap();
+    let probe = Probe::new(0.002).unwrap();
+    let options = ServoOptions { rate: RATE, probe, max_force: 5.0, ..ServoOptions::default() };
+    Servo::new(bodies, points, options).unwrap()
+}
+
 /// The hands at a tick: each on a path of its own through the scene.
 pub(crate) fn hands<const D: usize>(tick: u32, states: &mut [PointState], scale: f64) {
     for (i, state) in states.iter_mut().enumerate() {
@@ -165,6 +181,15 @@ pub(crate) fn step<const D: usize>(
     for i in (0..servo.bodies().bodies().len()).step_by(2) {
         servo.set_pose(i, pose::<D>(i, tick, scale));
     }
+    step_hands::<D>(servo, states, (tick, scale));
+}
+
+/// Takes a step in which no body moves.
+pub(crate) fn step_hands<const D: usize>(
+    servo: &mut impl AnyServo,
+    states: &mut [PointState],
+    (tick, scale): (u32, f64),
+) {
     hands::<D>(tick, states, scale);
     for state in &mut *states {
         // No hand goes deeper than 3 mm.
