@@ -16,7 +16,7 @@ use palpate_safety::{
 use crate::bodies::{Bodies, Body};
 use crate::error::HapticsError;
 use crate::guide::Guide;
-use crate::tool::Coupling;
+use crate::tool::{Borne, Coupling};
 
 /// Bodies, and the virtual coupling of a tool, with stiffness and damping that a device can
 /// render.
@@ -160,8 +160,7 @@ impl Protection {
             refusals.look(&self.accepted(&in_series(coupling, &own)?, rate)?, requester);
         }
         if let Some(turning) = self.torques() {
-            let (part, damping) = coupling.borne(&layers(bodies)?);
-            let asked = coupling.turning_on(part, damping)?;
+            let asked = coupling.turning_on(coupling.borne(&layers(bodies)?))?;
             refusals.look(&self.turned(asked, turning, rate)?, Requester::AngularCoupling);
         }
         Ok(())
@@ -182,12 +181,13 @@ impl Protection {
         turning: &TurningProfile,
         rate: f64,
     ) -> Result<Accepted, HapticsError> {
-        let (part, damping) = coupling.borne(layers);
+        let borne = coupling.borne(layers);
         if self.settings.is_strict {
             // Strict protection has refused a coupling of which less than all is rendered.
-            return self.turned(coupling.turning_on(part, damping)?, turning, rate);
+            return self.turned(coupling.turning_on(borne)?, turning, rate);
         }
-        let accepted = self.turned(coupling.turning_on(part, 0.0)?, turning, rate)?;
+        let undamped = Borne { damping: 0.0, ..borne };
+        let accepted = self.turned(coupling.turning_on(undamped)?, turning, rate)?;
         let (stiffness, own_damping) = (accepted.stiffness_factor, accepted.damping_factor);
         *coupling = coupling.softened_about_axes(stiffness, own_damping);
         if self.settings.acceptance != Acceptance::AsIs {
@@ -195,7 +195,7 @@ impl Protection {
             let left = (turning.least_damping - taken)
                 .min(turning.max_damping - accepted.device_damping)
                 .max(0.0);
-            let needed = accepted.scale * coupling.damping_on_arms(damping);
+            let needed = accepted.scale * coupling.damping_on_arms(borne.damping);
             coupling.arms = if needed > left { (left / needed).sqrt() } else { 1.0 };
         }
         Ok(accepted)

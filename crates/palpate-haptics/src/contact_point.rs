@@ -603,11 +603,7 @@ impl ContactPoint {
         let FreeForce { force: free, placed, change } = free;
         let Setting { options, map, rise_step, arrival, .. } = setting;
         let has_start = placed || self.of_others < f64::INFINITY;
-        let start = if has_start {
-            self.start([placed, change == Change::Carried], touch.wanted)
-        } else {
-            1.0
-        };
+        let start = if has_start { self.start(placed, change, touch.wanted) } else { 1.0 };
         if let Some(port) = &mut self.port {
             let wanted = map.force_to_device(touch.wanted);
             let PointState { position, velocity } = at_device;
@@ -644,12 +640,12 @@ impl ContactPoint {
     /// proxy out.
     #[cold]
     #[inline(never)]
-    fn start(&mut self, [placed, carried]: [bool; 2], wanted: Vector<f64, 3>) -> f64 {
+    fn start(&mut self, placed: bool, change: Change, wanted: Vector<f64, 3>) -> f64 {
         let others = std::mem::replace(&mut self.of_others, f64::INFINITY);
-        match (placed, carried) {
-            (true, _) => 0.0,
-            (false, true) => 1.0,
-            (false, false) => shortening(wanted.norm(), others),
+        match change {
+            _ if placed => 0.0,
+            Change::Carried => 1.0,
+            _ => shortening(wanted.norm(), others),
         }
     }
 

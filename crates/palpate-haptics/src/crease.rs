@@ -175,8 +175,10 @@ impl Crease {
 /// body's part of all pushes.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Shared {
-    /// The sums of the squared weights, and of the squared products of weight and force [N²].
-    squares: [f64; 2],
+    /// The sum of the squared weights.
+    squared_weights: f64,
+    /// The sum of the squared products of weight and force [N²].
+    squared_forces: f64,
     pub(crate) friction: Friction,
     damping: f64,
     viscosity: f64,
@@ -186,8 +188,8 @@ impl Shared {
     /// Adds a body's layer and its force at the depth of the whole stretch [N], with the weight
     /// `part`.
     pub(crate) fn add(&mut self, layer: &Stratum, force: f64, part: f64) {
-        let [pushes, forces] = self.squares;
-        self.squares = [pushes + part * part, forces + (part * force).powi(2)];
+        self.squared_weights += part * part;
+        self.squared_forces += (part * force).powi(2);
         self.friction.fixed += layer.friction.fixed * part;
         self.friction.slipping += layer.friction.slipping * part;
         self.damping += layer.damping * part;
@@ -198,8 +200,7 @@ impl Shared {
     /// the depth of the whole stretch, weighted by the squares of their pushes. Springs at right
     /// angles give just that.
     pub(crate) fn most(&self) -> f64 {
-        let [pushes, forces] = self.squares;
-        (forces / pushes).sqrt()
+        (self.squared_forces / self.squared_weights).sqrt()
     }
 
     /// The force of the dampers [N] at the `velocity` of the device point relative to the bodies

@@ -193,9 +193,19 @@ pub(crate) struct Rise {
     has_begun: bool,
 }
 
+/// How a force rises from zero.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct RiseOptions {
+    /// The change of the force [N/s].
+    pub(crate) rise_rate: f64,
+    /// When it rises.
+    pub(crate) recovery: Recovery,
+    /// Ticks a second [Hz].
+    pub(crate) rate: f64,
+}
+
 impl Rise {
-    /// A rise from zero by `rise_rate` [N/s], at `rate` [Hz].
-    pub(crate) fn new(rise_rate: f64, recovery: Recovery, rate: f64) -> Self {
+    pub(crate) fn new(RiseOptions { rise_rate, recovery, rate }: RiseOptions) -> Self {
         let is_waiting = recovery == Recovery::OnceOut;
         let step = rise_rate / rate;
         Self { step, recovery, limit: 0.0, is_waiting, has_begun: false }
@@ -393,6 +403,10 @@ mod lift_tests {
 mod rise_tests {
     use super::*;
 
+    fn rise(recovery: Recovery) -> Rise {
+        Rise::new(RiseOptions { rise_rate: 20.0, recovery, rate: 10.0 })
+    }
+
     fn steps(rise: &mut Rise, forces: &[f64]) -> Vec<f64> {
         let part =
             |rise: &mut Rise, x| rise.step(Vector([x, 0.0, 0.0]), Vector::ZERO).unwrap_or(1.0);
@@ -401,7 +415,7 @@ mod rise_tests {
 
     #[test]
     fn it_rises_until_it_has_caught_up() {
-        let mut rise = Rise::new(20.0, Recovery::Rise, 10.0);
+        let mut rise = rise(Recovery::Rise);
         assert_eq!(steps(&mut rise, &[8.0, 8.0, 5.0, 9.0]), [2.0, 4.0, 5.0, 9.0]);
         assert_eq!(rise.step(Vector([0.0, 9.0, 0.0]), Vector::ZERO), None);
         rise.restart(3.0);
@@ -412,7 +426,7 @@ mod rise_tests {
 
     #[test]
     fn it_waits_until_the_hand_is_out() {
-        let mut rise = Rise::new(20.0, Recovery::OnceOut, 10.0);
+        let mut rise = rise(Recovery::OnceOut);
         assert_eq!(steps(&mut rise, &[8.0, 8.0, 0.0, 8.0]), [0.0, 0.0, 0.0, 8.0]);
         rise.begin();
         // A body that covers the hand may push it in the next tick.
@@ -423,7 +437,7 @@ mod rise_tests {
 
     #[test]
     fn a_restart_neither_begins_nor_ends_a_wait() {
-        let mut rise = Rise::new(20.0, Recovery::OnceOut, 10.0);
+        let mut rise = rise(Recovery::OnceOut);
         rise.restart(5.0);
         assert_eq!(steps(&mut rise, &[8.0, 8.0, 0.0, 8.0]), [0.0, 0.0, 0.0, 8.0]);
         rise.restart(3.0);

@@ -14,8 +14,8 @@ use crate::channel::{Channel, Given, Risen, TickInput};
 use crate::effect::Effect;
 use crate::error::SafetyError;
 use crate::finite;
-use crate::free_energy::{FreeEnergy, FreeInput, Passed};
-use crate::limit::{Wanted, cut};
+use crate::free_energy::{FreeEnergy, FreeEnergyOptions, FreeInput, Passed};
+use crate::limit::{Cut, Wanted, cut};
 use crate::limit_cycle::{CycleInput, ForcesOf, LimitCycle, LimitCycleOptions};
 use crate::limits::{DeviceLimits, Impedance, SafetySettings};
 use crate::passivity::{Passivity, PassivityOptions, PassivityReport, PortMotion};
@@ -206,7 +206,10 @@ impl SafetyChain {
         Ok(Self {
             accepted,
             cycle: LimitCycle::new(cycle),
-            free: FreeEnergy::new(passivity.reserve, passivity.max_force),
+            free: FreeEnergy::new(FreeEnergyOptions {
+                reserve: passivity.reserve,
+                max_force: passivity.max_force,
+            }),
             passivity: Passivity::new(passivity),
             channel: Channel::new(&limits, &settings, 1.0, rate)?,
         })
@@ -277,9 +280,10 @@ impl SafetyChain {
     ) -> Vector<f64, 3> {
         let effort = wanted.norm();
         // Leave NaN unclamped: the guard stage detects it and zeroes the force.
-        let (force, cut) =
-            if wanted.is_finite() { cut(wanted, max_force) } else { (wanted, 0.0) };
-        self.tick(Wanted { force, effort, cut }, state)
+        let uncut = Cut { force: wanted, taken: 0.0 };
+        let Cut { force, taken } =
+            if wanted.is_finite() { cut(wanted, max_force) } else { uncut };
+        self.tick(Wanted { force, effort, cut: taken }, state)
     }
 
     fn tick(&mut self, wanted: Wanted<Vector<f64, 3>>, state: &PortState) -> Vector<f64, 3> {

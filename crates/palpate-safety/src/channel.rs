@@ -5,14 +5,14 @@
 
 use palpate_field::Vector;
 
-use crate::approach::{Approach, Change, Rise};
-use crate::continuous::{ContinuousLimit, Watchdog};
+use crate::approach::{Approach, Change, Rise, RiseOptions};
+use crate::continuous::{ContinuousLimit, CoolingOptions, Watchdog, WatchdogOptions};
 use crate::error::SafetyError;
 use crate::finite;
 use crate::force_limit::ForceLimit;
 use crate::limits::{DeviceLimits, SafetySettings};
 use crate::report::{ContinuousReport, Effects, WatchdogReport};
-use crate::slew::SlewLimit;
+use crate::slew::{SlewLimit, SlewOptions};
 use palpate_device::NumberError;
 
 /// Properties of a tick that every stage sees.
@@ -88,7 +88,8 @@ impl Channel {
         unit: f64,
         rate: f64,
     ) -> Result<Self, SafetyError> {
-        let slew = SlewLimit::new(limits.max_force_rate.positive()?, rate);
+        let max_force_rate = limits.max_force_rate.positive()?;
+        let slew = SlewLimit::new(SlewOptions { max_force_rate, rate });
         let continuous_force = limits.continuous_force.positive()?;
         let cooling_time =
             NumberError::check_positive("cooling_time", settings.cooling_time, "s")?;
@@ -96,13 +97,16 @@ impl Channel {
             NumberError::check_positive_or_infinite("rise_rate", settings.rise_rate, "N/s")?;
         let late_time = NumberError::check_positive("late_time", settings.late_time, "s")?;
         let fall_time = NumberError::check_not_negative("fall_time", settings.fall_time, "s")?;
+        let cooling = CoolingOptions { continuous_force, cooling_time, rate };
+        let rise =
+            RiseOptions { rise_rate: rise_rate * unit, recovery: settings.recovery, rate };
         Ok(Self {
             slew,
             force_limit: ForceLimit::new(limits.max_force.positive()?),
-            continuous: ContinuousLimit::new(continuous_force, cooling_time, rate),
-            rise: Rise::new(rise_rate * unit, settings.recovery, rate),
+            continuous: ContinuousLimit::new(cooling),
+            rise: Rise::new(rise),
             approach: Approach::new(unit),
-            watchdog: Watchdog::new(late_time, fall_time, rate),
+            watchdog: Watchdog::new(WatchdogOptions { late_time, fall_time, rate }),
             is_stopped: false,
             has_bodies: false,
             closing: slew,

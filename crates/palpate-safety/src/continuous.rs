@@ -27,10 +27,21 @@ pub(crate) struct ContinuousLimit {
     heat: f64,
 }
 
+/// The motors that a [`ContinuousLimit`] keeps cool.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct CoolingOptions {
+    /// The largest lasting force [N].
+    pub(crate) continuous_force: f64,
+    /// The time constant of the heat [s].
+    pub(crate) cooling_time: f64,
+    /// Ticks a second [Hz].
+    pub(crate) rate: f64,
+}
+
 impl ContinuousLimit {
-    /// A limit for `continuous_force` [N], a time constant [s] and `rate` [Hz].
-    pub(crate) fn new(continuous_force: f64, time_constant: f64, rate: f64) -> Self {
-        let part = -libm::expm1(-1.0 / (time_constant * rate));
+    pub(crate) fn new(options: CoolingOptions) -> Self {
+        let CoolingOptions { continuous_force, cooling_time, rate } = options;
+        let part = -libm::expm1(-1.0 / (cooling_time * rate));
         Self { continuous_force, part, heat: 0.0 }
     }
 
@@ -87,10 +98,20 @@ pub(crate) struct Watchdog {
     trips: u64,
 }
 
+/// When a [`Watchdog`] trips, and how fast the force falls then.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct WatchdogOptions {
+    /// By how much ticks are late together when it trips [s].
+    pub(crate) late_time: f64,
+    /// The time in which the force falls to zero [s].
+    pub(crate) fall_time: f64,
+    /// Ticks a second [Hz].
+    pub(crate) rate: f64,
+}
+
 impl Watchdog {
-    /// A watchdog that trips when ticks are late by `late_time` [s] together, and then lowers the
-    /// force to zero in `fall_time` [s], at `rate` [Hz].
-    pub(crate) fn new(late_time: f64, fall_time: f64, rate: f64) -> Self {
+    pub(crate) fn new(options: WatchdogOptions) -> Self {
+        let WatchdogOptions { late_time, fall_time, rate } = options;
         // A time of zero gives an infinite decrease.
         let (limit, period, fall) = (late_time, 1.0 / rate, 1.0 / (fall_time * rate));
         Self { limit, period, fall, late: 0.0, is_tripped: false, factor: 1.0, trips: 0 }
@@ -131,7 +152,11 @@ mod tests {
 
     #[test]
     fn a_burst_passes_and_a_long_press_does_not() {
-        let mut limit = ContinuousLimit::new(2.0, 1.0, 1000.0);
+        let mut limit = ContinuousLimit::new(CoolingOptions {
+            continuous_force: 2.0,
+            cooling_time: 1.0,
+            rate: 1000.0,
+        });
         let wanted = Vector([0.0, 6.0, 0.0]);
         let mut written = wanted;
         for tick in 0..20_000 {
@@ -148,7 +173,11 @@ mod tests {
 
     #[test]
     fn what_may_last_is_never_changed() {
-        let mut limit = ContinuousLimit::new(2.0, 0.1, 1000.0);
+        let mut limit = ContinuousLimit::new(CoolingOptions {
+            continuous_force: 2.0,
+            cooling_time: 0.1,
+            rate: 1000.0,
+        });
         let wanted = Vector([2.0, 0.0, 0.0]);
         for _ in 0..2000 {
             assert_eq!(limit.limit(wanted), None);
@@ -159,7 +188,11 @@ mod tests {
 
     #[test]
     fn without_a_continuous_force_nothing_is_changed() {
-        let mut limit = ContinuousLimit::new(f64::INFINITY, 0.1, 1000.0);
+        let mut limit = ContinuousLimit::new(CoolingOptions {
+            continuous_force: f64::INFINITY,
+            cooling_time: 0.1,
+            rate: 1000.0,
+        });
         limit.written(Vector([1e200, 0.0, 0.0]));
         assert_eq!(limit.limit(Vector([1e200, 1.0, 0.0])), None);
     }
@@ -179,7 +212,8 @@ mod watchdog_tests {
 
     #[test]
     fn it_trips_after_late_time_and_recovers_after_half_as_much_in_time() {
-        let mut dog = Watchdog::new(4.0, 2.0, 1.0);
+        let mut dog =
+            Watchdog::new(WatchdogOptions { late_time: 4.0, fall_time: 2.0, rate: 1.0 });
         let late = [1.0, 0.0, 3.5, 0.5, 0.0, 1.5, 0.0, 0.0, 0.0];
         assert_eq!(factors(&mut dog, &late), [1.0, 1.0, 1.0, 0.5, 0.0, 0.0, 0.0, 1.0, 1.0]);
         assert_eq!(dog.trips(), 1);
@@ -188,7 +222,8 @@ mod watchdog_tests {
     /// A stall counted as one late tick, however long it lasted.
     #[test]
     fn a_stall_counts_by_its_time() {
-        let mut dog = Watchdog::new(0.005, 0.0, 1000.0);
+        let mut dog =
+            Watchdog::new(WatchdogOptions { late_time: 0.005, fall_time: 0.0, rate: 1000.0 });
         assert!(dog.step(0.03));
         assert_eq!(factors(&mut dog, &[0.0; 4]), [0.0, 0.0, 1.0, 1.0]);
         assert!(dog.step(f64::NAN));
@@ -197,7 +232,8 @@ mod watchdog_tests {
     /// Once its sum never came back to zero, and the force stayed away for good.
     #[test]
     fn a_device_of_half_the_rate_gets_its_force_back() {
-        let mut dog = Watchdog::new(0.005, 0.0, 1000.0);
+        let mut dog =
+            Watchdog::new(WatchdogOptions { late_time: 0.005, fall_time: 0.0, rate: 1000.0 });
         assert!(dog.step(0.03));
         assert_eq!(factors(&mut dog, &[0.001, 0.0].repeat(5)).last(), Some(&1.0));
         assert_eq!(factors(&mut dog, &[0.001, 0.0].repeat(1000)).last(), Some(&1.0));

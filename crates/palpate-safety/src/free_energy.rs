@@ -128,9 +128,17 @@ pub(crate) struct Passed<V> {
     pub(crate) spent: f64,
 }
 
+/// What a [`FreeEnergy`] is made for.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct FreeEnergyOptions {
+    /// The energy that it may give out [J].
+    pub(crate) reserve: f64,
+    /// The largest force of the device [N].
+    pub(crate) max_force: f64,
+}
+
 impl<V: InnerProduct> FreeEnergy<V> {
-    /// A stage that may give out `reserve` [J], for a device that gives at most `max_force` [N].
-    pub(crate) fn new(reserve: f64, max_force: f64) -> Self {
+    pub(crate) fn new(FreeEnergyOptions { reserve, max_force }: FreeEnergyOptions) -> Self {
         Self {
             last: None,
             max_force,
@@ -313,13 +321,35 @@ mod tests {
         }
     }
 
-    /// A mass with damping in a spring of a largest force [N] that is held over ticks of 1 ms, let
-    /// go at `start` [m], for 60 s: the largest sum of kinetic and potential energy at any time, and
-    /// that in the end [J]; and the report.
-    fn swings([stiffness, damping, max_force, start]: [f64; 4]) -> ([f64; 2], FreeForceReport) {
+    /// A spring that is held over ticks of 1 ms, with a damped mass.
+    #[derive(Clone, Copy, Debug)]
+    struct Swing {
+        /// [N/m].
+        stiffness: f64,
+        /// [N·s/m].
+        damping: f64,
+        /// The largest force of the spring [N].
+        max_force: f64,
+        /// Where the mass is let go [m].
+        start: f64,
+    }
+
+    /// How a mass swung.
+    struct Swung {
+        /// The largest sum of kinetic and potential energy at any time [J].
+        most: f64,
+        /// That sum in the end [J].
+        last: f64,
+        report: FreeForceReport,
+    }
+
+    /// Lets the mass swing for 60 s.
+    fn swings(swing: Swing) -> Swung {
+        let Swing { stiffness, damping, max_force, start } = swing;
         let (mass, period) = (0.1, 1e-3);
         let options = options(damping);
-        let mut free = FreeEnergy::new(options.reserve, max_force);
+        let mut free =
+            FreeEnergy::new(FreeEnergyOptions { reserve: options.reserve, max_force });
         let (mut x, mut v, mut most, mut energy) = (start, 0.0, 0.0_f64, 0.0);
         for _ in 0..60_000 {
             let at = Vector([x, 0.0, 0.0]);
@@ -333,7 +363,7 @@ mod tests {
             energy = 0.5 * mass * v * v + free.part * stored(stiffness, max_force, x);
             most = most.max(energy);
         }
-        ([most, energy], free.report())
+        Swung { most, last: energy, report: free.report() }
     }
 
     /// The potential of a spring of a largest force [J].
@@ -348,7 +378,8 @@ mod tests {
     fn springs_up_to_twice_the_damping_over_the_period_pass() {
         for damping in [0.2, 1.0, 3.0] {
             let stiffness = 2.0 * damping / 1e-3;
-            let ([most, _], report) = swings([stiffness, damping, f64::INFINITY, 1e-3]);
+            let swing = Swing { stiffness, damping, max_force: f64::INFINITY, start: 1e-3 };
+            let Swung { most, report, .. } = swings(swing);
             assert_eq!((report.effect.ticks, report.least_balance), (0, 0.0), "{damping}");
             assert!(most <= 0.5 * stiffness * 1e-6, "{damping}: {most} J");
         }
@@ -359,15 +390,18 @@ mod tests {
     /// for the leaks of the swing after it.
     #[test]
     fn a_stiffer_spring_gives_out_its_reserve_beyond_its_potential() {
-        for case @ [stiffness, _, max_force, start] in [
-            [2000.0, 0.2, f64::INFINITY, 1e-3],
-            [4000.0, 0.5, f64::INFINITY, 1e-3],
-            [1000.0, 0.02, f64::INFINITY, 1e-3],
-            [1000.0, 0.2, f64::INFINITY, 4e-3],
-            [3000.0, 0.2, 1.0, 5e-2],
-            [1e6, 0.5, 3.0, 1e-2],
+        let usual =
+            Swing { stiffness: 1000.0, damping: 0.2, max_force: f64::INFINITY, start: 1e-3 };
+        for case in [
+            Swing { stiffness: 2000.0, ..usual },
+            Swing { stiffness: 4000.0, damping: 0.5, ..usual },
+            Swing { damping: 0.02, ..usual },
+            Swing { start: 4e-3, ..usual },
+            Swing { stiffness: 3000.0, max_force: 1.0, start: 5e-2, ..usual },
+            Swing { stiffness: 1e6, damping: 0.5, max_force: 3.0, start: 1e-2 },
         ] {
-            let ([most, last], report) = swings(case);
+            let Swung { most, last, report } = swings(case);
+            let Swing { stiffness, max_force, start, .. } = case;
             let first = stored(stiffness, max_force, start);
             assert!(report.effect.ticks > 0, "{case:?}: {report:?}");
             // The reserve, what is given out while the part falls smoothly, and one tick's leak, `½
@@ -384,7 +418,10 @@ mod tests {
     #[test]
     fn a_hand_at_rest_feels_the_whole_force_again() {
         let options = options(0.0);
-        let mut free = FreeEnergy::new(options.reserve, f64::INFINITY);
+        let mut free = FreeEnergy::new(FreeEnergyOptions {
+            reserve: options.reserve,
+            max_force: f64::INFINITY,
+        });
         let mut at = |x: f64| {
             let force = Vector([-1000.0 * x, 0.0, 0.0]);
             free.step(input(force, Vector([x, 0.0, 0.0])), &options).force[0]
@@ -404,7 +441,10 @@ mod tests {
     #[test]
     fn a_device_of_infinite_damping_is_passive() {
         let options = options(f64::INFINITY);
-        let mut free = FreeEnergy::new(options.reserve, f64::INFINITY);
+        let mut free = FreeEnergy::new(FreeEnergyOptions {
+            reserve: options.reserve,
+            max_force: f64::INFINITY,
+        });
         for x in [0.0, 0.0, 0.01, -0.02] {
             let force = Vector([-1e4 * x - 1.0, 0.0, 0.0]);
             let passed = free.step(input(force, Vector([x, 0.0, 0.0])), &options);
@@ -416,7 +456,10 @@ mod tests {
     #[test]
     fn a_pull_that_begins_is_no_leak_and_jolts_fade() {
         let options = options(0.0);
-        let mut free = FreeEnergy::new(options.reserve, f64::INFINITY);
+        let mut free = FreeEnergy::new(FreeEnergyOptions {
+            reserve: options.reserve,
+            max_force: f64::INFINITY,
+        });
         let mut at = |x: f64, force: f64| {
             free.step(input(Vector([force, 0.0, 0.0]), Vector([x, 0.0, 0.0])), &options).force
                 [0]
@@ -440,7 +483,10 @@ mod tests {
         for (damping, reach) in [(0.0, 0.01), (0.02, 0.01), (0.02, 0.003), (0.2, 0.003)] {
             let (mass, period, pull, spring) = (0.1, 1e-3, 3.0, 20.0);
             let options = options(damping);
-            let mut free = FreeEnergy::new(options.reserve, 10.0);
+            let mut free = FreeEnergy::new(FreeEnergyOptions {
+                reserve: options.reserve,
+                max_force: 10.0,
+            });
             let (mut x, mut v, mut most) = (0.03_f64, 0.0_f64, 0.0_f64);
             let first = 0.5 * spring * x * x;
             for _ in 0..60_000 {
@@ -469,7 +515,8 @@ mod tests {
     fn a_spring_behind_a_slew_limit_does_not_grow() {
         let (mass, period, stiffness, damping) = (0.1, 1e-3, 400.0, 0.5);
         let options = options(damping);
-        let mut free = FreeEnergy::new(options.reserve, 10.0);
+        let mut free =
+            FreeEnergy::new(FreeEnergyOptions { reserve: options.reserve, max_force: 10.0 });
         let (mut x, mut v, mut written) = (0.01, 0.0, 0.0_f64);
         for _ in 0..60_000 {
             let at = Vector([x, 0.0, 0.0]);
@@ -489,7 +536,8 @@ mod tests {
     #[test]
     fn a_stage_without_a_reserve_lets_passive_springs_pass() {
         let options = PassivityOptions { reserve: 0.0, ..options(1.0) };
-        let mut free = FreeEnergy::new(0.0, f64::INFINITY);
+        let mut free =
+            FreeEnergy::new(FreeEnergyOptions { reserve: 0.0, max_force: f64::INFINITY });
         for tick in 0..5000 {
             let x = 1e-3 * (0.05 * f64::from(tick)).sin();
             let force = Vector([-2000.0 * x, 0.0, 0.0]);

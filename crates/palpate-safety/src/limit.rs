@@ -6,17 +6,25 @@
 use palpate_device::shortened;
 use palpate_field::Vector;
 
-/// `force` shortened to `max_force` [N], and how much that took from its length [N]; what is not
-/// finite becomes zero, and counts as nothing.
+/// A force that a limit shortened.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Cut {
+    /// What is left of it [N].
+    pub(crate) force: Vector<f64, 3>,
+    /// What was taken from its length [N].
+    pub(crate) taken: f64,
+}
+
+/// `force` shortened to `max_force` [N]; what is not finite becomes zero, and counts as nothing taken.
 ///
 /// Real-time: allocates nothing, takes no lock, cannot panic.
 #[inline]
-pub(crate) fn cut(force: Vector<f64, 3>, max_force: f64) -> (Vector<f64, 3>, f64) {
+pub(crate) fn cut(force: Vector<f64, 3>, max_force: f64) -> Cut {
     match shortened(force, max_force) {
-        None => (force, 0.0),
+        None => Cut { force, taken: 0.0 },
         Some(short) => {
             let taken = force.norm() - short.norm();
-            (short, if taken <= f64::MAX { taken } else { 0.0 })
+            Cut { force: short, taken: if taken <= f64::MAX { taken } else { 0.0 } }
         }
     }
 }

@@ -15,10 +15,18 @@ pub(crate) struct SlewLimit {
     last: Vector<f64, 3>,
 }
 
+/// How fast a force may change.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct SlewOptions {
+    /// The largest change of the force [N/s].
+    pub(crate) max_force_rate: f64,
+    /// Ticks a second [Hz].
+    pub(crate) rate: f64,
+}
+
 impl SlewLimit {
-    /// A limit of `max_rate` [N/s] at `rate` [Hz].
-    pub(crate) fn new(max_rate: f64, rate: f64) -> Self {
-        Self { step: max_rate / rate, last: Vector::ZERO }
+    pub(crate) fn new(SlewOptions { max_force_rate, rate }: SlewOptions) -> Self {
+        Self { step: max_force_rate / rate, last: Vector::ZERO }
     }
 
     /// The limited force; `None` if it is unchanged.
@@ -54,13 +62,14 @@ mod tests {
 
     #[test]
     fn a_force_is_reached_in_equal_steps() {
-        let mut slew = SlewLimit::new(1000.0, 1000.0);
+        let mut slew = SlewLimit::new(SlewOptions { max_force_rate: 1000.0, rate: 1000.0 });
         let wanted = Vector([0.0, 2.5, 0.0]);
         let steps: Vec<_> = (0..4).map(|_| slew.limit(wanted).unwrap_or(wanted).0[1]).collect();
         assert_eq!(steps, [1.0, 2.0, 2.5, 2.5]);
         slew.restart();
         assert_eq!(slew.limit(wanted), Some(Vector([0.0, 1.0, 0.0])));
-        let mut free = SlewLimit::new(f64::INFINITY, 1000.0);
+        let mut free =
+            SlewLimit::new(SlewOptions { max_force_rate: f64::INFINITY, rate: 1000.0 });
         assert_eq!(free.limit(wanted), None);
     }
 }

@@ -14,8 +14,8 @@ use palpate_field::Vector;
 use crate::chain::BeforeLimits;
 use crate::channel::{Channel, Given, Risen, TickInput};
 use crate::error::SafetyError;
-use crate::free_energy::{FreeEnergy, FreeInput, Passed};
-use crate::limit::{Wanted, cut};
+use crate::free_energy::{FreeEnergy, FreeEnergyOptions, FreeInput, Passed};
+use crate::limit::{Cut, Wanted, cut};
 use crate::limit_cycle::{CycleInput, ForcesOf, LimitCycle, LimitCycleOptions};
 use crate::limits::DeviceLimits;
 use crate::passivity::{InnerProduct, Passivity, PassivityOptions, PortMotion};
@@ -216,7 +216,10 @@ impl WrenchChain {
             sides,
             unit,
             cycle: LimitCycle::new(cycle),
-            free: FreeEnergy::new(passivity.reserve, along.max_force.positive()?),
+            free: FreeEnergy::new(FreeEnergyOptions {
+                reserve: passivity.reserve,
+                max_force: along.max_force.positive()?,
+            }),
             passivity: Passivity::new(passivity),
             force: Channel::new(along, settings, 1.0, rate)?,
             torque: Channel::new(about, settings, unit, rate)?,
@@ -264,9 +267,11 @@ impl WrenchChain {
         let effort = self.effort(wanted);
         // Leave NaN unclamped: the guard stage detects it and zeroes the force.
         let is_number = wanted.along.is_finite();
-        let (along, cut) =
-            if is_number { cut(wanted.along, max_force) } else { (wanted.along, 0.0) };
-        self.tick(Wanted { force: SpatialVector { along, ..wanted }, effort, cut }, state)
+        let uncut = Cut { force: wanted.along, taken: 0.0 };
+        let Cut { force: along, taken } =
+            if is_number { cut(wanted.along, max_force) } else { uncut };
+        let force = SpatialVector { along, ..wanted };
+        self.tick(Wanted { force, effort, cut: taken }, state)
     }
 
     /// The size of a wrench, where an angle counts as a length [N].

@@ -44,41 +44,104 @@ macro_rules! presets {
 
 presets! {
     /// Soft rubber. Its tap is low and short, in the order of Okamura, Cutkosky and Dennerlein (2001); dry friction near 1 is usual in tables; the rest is chosen.
-    rubber => tapped(contact(300.0, 2.0, (1.0, 0.8)), (0.5, 30.0, 60.0)),
+    rubber => Material {
+        stiffness: 300.0,
+        damping: 2.0,
+        static_friction: 1.0,
+        dynamic_friction: 0.8,
+        impact: Some(Impact { amplitude: 0.5, frequency: 30.0, decay: 60.0, description: None }),
+        ..Material::default()
+    },
     /// Planed wood. Its tap is between those of rubber and metal, in the order of Okamura, Cutkosky and Dennerlein (2001); friction 0.4 and 0.3 are usual in tables for dry wood; the rest is chosen.
-    wood => tapped(contact(700.0, 1.5, (0.4, 0.3)), (1.5, 100.0, 80.0)),
+    wood => Material {
+        stiffness: 700.0,
+        damping: 1.5,
+        static_friction: 0.4,
+        dynamic_friction: 0.3,
+        impact: Some(Impact { amplitude: 1.5, frequency: 100.0, decay: 80.0, description: None }),
+        ..Material::default()
+    },
     /// Bare aluminium. Its tap is high and long, in the order of Okamura, Cutkosky and Dennerlein (2001); the rest is chosen.
-    aluminium => tapped(contact(900.0, 1.0, (0.35, 0.25)), (3.0, 300.0, 90.0)),
+    aluminium => Material {
+        stiffness: 900.0,
+        damping: 1.0,
+        static_friction: 0.35,
+        dynamic_friction: 0.25,
+        impact: Some(Impact { amplitude: 3.0, frequency: 300.0, decay: 90.0, description: None }),
+        ..Material::default()
+    },
     /// Polished steel. All numbers are chosen: as aluminium, stiffer, smoother, and ringing longer.
-    steel => tapped(contact(1000.0, 1.0, (0.25, 0.15)), (3.5, 350.0, 60.0)),
+    steel => Material {
+        stiffness: 1000.0,
+        damping: 1.0,
+        static_friction: 0.25,
+        dynamic_friction: 0.15,
+        impact: Some(Impact { amplitude: 3.5, frequency: 350.0, decay: 60.0, description: None }),
+        ..Material::default()
+    },
     /// Clean glass. All numbers are chosen: hard, slippery, a high and clear tap.
-    glass => tapped(contact(1000.0, 0.8, (0.15, 0.1)), (3.0, 400.0, 70.0)),
+    glass => Material {
+        stiffness: 1000.0,
+        damping: 0.8,
+        static_friction: 0.15,
+        dynamic_friction: 0.1,
+        impact: Some(Impact { amplitude: 3.0, frequency: 400.0, decay: 70.0, description: None }),
+        ..Material::default()
+    },
     /// Upholstery foam. All numbers are chosen: soft, slow to give, mute.
-    foam => Material { viscosity: 0.5, ..contact(120.0, 3.0, (0.6, 0.5)) },
+    foam => Material {
+        viscosity: 0.5,
+        stiffness: 120.0,
+        damping: 3.0,
+        static_friction: 0.6,
+        dynamic_friction: 0.5,
+        ..Material::default()
+    },
     /// Skin over soft tissue. All numbers are chosen: soft, stiffer once it is pressed in, mute; measured skin varies by more than a factor of ten with site and person.
     skin => Material {
         layers: vec![layer(0.004, 400.0)],
-        ..contact(200.0, 1.5, (0.6, 0.5))
+        stiffness: 200.0,
+        damping: 1.5,
+        static_friction: 0.6,
+        dynamic_friction: 0.5,
+        ..Material::default()
     },
     /// Corrugated cardboard. All numbers are chosen; flutes 6.5 mm apart are those of grade B.
     cardboard => Material {
         texture: Some(texture(TextureKind::Height, 1e-4, 6.5e-3)),
-        ..tapped(contact(450.0, 1.5, (0.45, 0.35)), (0.8, 70.0, 120.0))
+        stiffness: 450.0,
+        damping: 1.5,
+        static_friction: 0.45,
+        dynamic_friction: 0.35,
+        impact: Some(Impact { amplitude: 0.8, frequency: 70.0, decay: 120.0, description: None }),
+        ..Material::default()
     },
     /// Coarse sandpaper. Grains 0.3 mm apart are those of grit P60 to P80; the rest is chosen.
     sandpaper => Material {
         texture: Some(texture(TextureKind::Height, 5e-5, 3e-4)),
-        ..contact(700.0, 1.0, (0.9, 0.75))
+        stiffness: 700.0,
+        damping: 1.0,
+        static_friction: 0.9,
+        dynamic_friction: 0.75,
+        ..Material::default()
     },
     /// A surface that draws the hand on from 5 mm away. All numbers are chosen.
     magnet => Material {
         magnet: Some(Magnet { description: None, force: 1.0, distance: 5e-3 }),
-        ..contact(700.0, 1.0, (0.4, 0.3))
+        stiffness: 700.0,
+        damping: 1.0,
+        static_friction: 0.4,
+        dynamic_friction: 0.3,
+        ..Material::default()
     },
     /// A membrane that gives way at 1.5 N, as a needle goes through it. All numbers are chosen, in the order of the needle forces of Okamura, Simone and O'Leary (2004).
     membrane => Material {
         pop_through: Some(pop_through(1.5)),
-        ..contact(500.0, 1.0, (0.3, 0.2))
+        stiffness: 500.0,
+        damping: 1.0,
+        static_friction: 0.3,
+        dynamic_friction: 0.2,
+        ..Material::default()
     },
     /// Skin that gives way, fat that does not hold a tool, muscle below. All numbers are chosen, in the order of the needle forces of Okamura, Simone and O'Leary (2004).
     layered_tissue => Material {
@@ -91,7 +154,11 @@ presets! {
                 ..layer(0.012, 350.0)
             },
         ],
-        ..contact(300.0, 1.0, (0.5, 0.4))
+        stiffness: 300.0,
+        damping: 1.0,
+        static_friction: 0.5,
+        dynamic_friction: 0.4,
+        ..Material::default()
     },
 }
 
@@ -129,18 +196,6 @@ impl Material {
             preset.ok_or_else(|| UnknownName::new("material", name, Self::preset_names()))?;
         Ok((preset.material)())
     }
-}
-
-/// Stiffness [N/m], damping [N·s/m], static and dynamic friction.
-fn contact(stiffness: f64, damping: f64, frictions: (f64, f64)) -> Material {
-    let (static_friction, dynamic_friction) = frictions;
-    Material { stiffness, damping, static_friction, dynamic_friction, ..Material::default() }
-}
-
-/// The material with a tap: amplitude [N·s/m], frequency [Hz], decay [1/s].
-fn tapped(material: Material, (amplitude, frequency, decay): (f64, f64, f64)) -> Material {
-    let impact = Impact { description: None, amplitude, frequency, decay };
-    Material { impact: Some(impact), ..material }
 }
 
 fn texture(kind: TextureKind, amplitude: f64, wavelength: f64) -> Texture {

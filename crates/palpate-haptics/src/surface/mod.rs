@@ -413,7 +413,8 @@ impl Ring {
         Ringing {
             force: 0.0,
             quadrature: loudest,
-            turn: (libm::sin(angle) * shrink, libm::cos(angle) * shrink),
+            sin: libm::sin(angle) * shrink,
+            cos: libm::cos(angle) * shrink,
             silence: SILENCE * loudest,
         }
     }
@@ -425,13 +426,16 @@ pub(crate) struct Ringing {
     /// The force along the normal [N].
     force: f64,
     quadrature: f64,
-    turn: (f64, f64),
+    /// The sine and the cosine of the angle of a tick, both shrunk by the decay in a tick.
+    sin: f64,
+    cos: f64,
+    /// The amplitude at which it ends [N].
     silence: f64,
 }
 
 impl Ringing {
     pub(crate) const SILENT: Self =
-        Self { force: 0.0, quadrature: 0.0, turn: (0.0, 0.0), silence: 0.0 };
+        Self { force: 0.0, quadrature: 0.0, sin: 0.0, cos: 0.0, silence: 0.0 };
 
     /// The force of this tick along the normal [N]; advances to the next tick.
     ///
@@ -442,7 +446,7 @@ impl Ringing {
             *self = Self::SILENT;
             return force;
         }
-        let (sin, cos) = self.turn;
+        let Self { sin, cos, .. } = *self;
         self.force = force * cos + self.quadrature * sin;
         self.quadrature = self.quadrature * cos - force * sin;
         force

@@ -73,21 +73,20 @@ impl Coupling {
         Ok(Impedance::new(stiffness, self.damping + body.damping())?)
     }
 
-    /// The largest part of the coupling that a layer bears, and the largest damping of a layer
-    /// [N·s/m].
-    pub(crate) fn borne(&self, layers: &[Impedance]) -> (f64, f64) {
-        layers.iter().fold((0.0, 0.0), |(part, damping): (f64, f64), layer| {
+    /// What the bodies' layers bear.
+    pub(crate) fn borne(&self, layers: &[Impedance]) -> Borne {
+        let nothing = Borne { part: 0.0, damping: 0.0 };
+        layers.iter().fold(nothing, |Borne { part, damping }, layer| {
             let borne = (layer.stiffness() / self.stiffness).min(1.0);
-            (part.max(borne), damping.max(layer.damping()))
+            Borne { part: part.max(borne), damping: damping.max(layer.damping()) }
         })
     }
 
-    /// The angular stiffness and damping that the hand feels, if bodies bear `part` of the
-    /// coupling and have a `damping` [N·s/m] on the longest lever arm.
+    /// The angular stiffness and damping that the hand feels, if bodies bear so much on the longest
+    /// lever arm.
     pub(crate) fn turning_on(
         &self,
-        part: f64,
-        damping: f64,
+        Borne { part, damping }: Borne,
     ) -> Result<Impedance, HapticsError> {
         let damping = self.angular_damping + self.damping_on_arms(damping);
         Ok(Impedance::new(self.angular_stiffness * part, damping)?)
@@ -118,6 +117,15 @@ impl Coupling {
             ..self
         }
     }
+}
+
+/// What bodies bear of a coupling.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Borne {
+    /// The largest part of the coupling that a layer bears.
+    pub(crate) part: f64,
+    /// The largest damping of a layer [N·s/m].
+    pub(crate) damping: f64,
 }
 
 /// A change of a pose: the origin moves, then the pose rotates about it. World axes.

@@ -35,6 +35,7 @@ use crate::nearby::{Nearby, Punctured};
 use crate::proxy::{Edited, MOST_OF_POINT};
 use crate::sampler::Sampler;
 use carry_out::Covering;
+pub(crate) use coupling::Borne;
 use coupling::Twist;
 pub use coupling::{Coupling, HeldTool};
 use felt::Before;

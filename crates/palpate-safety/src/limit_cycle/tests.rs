@@ -3,23 +3,30 @@
 
 //! Which motions are limit cycles, and how a wall becomes softer and stiffer.
 
+use std::f64::consts::TAU;
+
 use palpate_field::Vector;
 
+use super::governor::STEP;
 use super::*;
 
-const PERIOD: f64 = 1e-3;
+pub(super) const PERIOD: f64 = 1e-3;
 
-/// The stage of a device of 0.1 kg at a wall of 1000 N/m: with a hand of 0.1 kg, half cycles up
-/// to 89 ms are quick.
-fn stage() -> LimitCycle<Vector<f64, 3>> {
-    LimitCycle::new(LimitCycleOptions {
+/// A device of 0.1 kg at a wall of 1000 N/m: with a hand of 0.1 kg, half cycles up to 89 ms are
+/// quick.
+pub(super) fn options() -> LimitCycleOptions {
+    LimitCycleOptions {
         is_on: true,
         stiffness: 1000.0,
         mass: 0.1,
         encoder_step: 0.0,
         damping: 0.5,
         period: PERIOD,
-    })
+    }
+}
+
+fn stage() -> LimitCycle<Vector<f64, 3>> {
+    LimitCycle::new(options())
 }
 
 /// Moves a device to `depth(t)` for two seconds at a wall that is `stiff` [N/m].
@@ -142,9 +149,13 @@ fn a_wall_is_halved_smoothly_and_comes_back_when_nothing_touches() {
     assert_eq!((least, stage.report().least_part, stage.report().found), (0.5, 0.5, 1));
     // By a factor of e in 20 s: e^0.1 in two, and all of it after 14.
     moved(&mut stage, 0.0, |_| -0.01);
-    assert!((stage.part - 0.5 * 0.1_f64.exp()).abs() < 1e-5, "{}", stage.part);
+    assert!(
+        (stage.governor.part() - 0.5 * 0.1_f64.exp()).abs() < 1e-5,
+        "{}",
+        stage.governor.part()
+    );
     (0..6).for_each(|_| moved(&mut stage, 0.0, |_| -0.01));
-    assert_eq!(stage.part, 1.0);
+    assert_eq!(stage.governor.part(), 1.0);
 }
 
 /// A hand that taps eight times a second on a wall that cannot oscillate in it had a thirty-second of
@@ -155,7 +166,7 @@ fn a_tapping_hand_gets_its_wall_back() {
     let mut soft = 0;
     for _ in 0..30 {
         moved(&mut stage, 1000.0, |t| 3e-3 * (TAU * 8.0 * t).sin());
-        soft += i32::from(stage.part < 0.9);
+        soft += i32::from(stage.governor.part() < 0.9);
     }
     assert!(soft < 10, "{soft} of 30 times");
 }

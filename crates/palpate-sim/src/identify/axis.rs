@@ -4,7 +4,7 @@
 //! One axis: rounds of strokes until its numbers are known.
 
 use super::IdentifyError;
-use super::fit::{Fit, fit, steps};
+use super::fit::{Fit, Start, fit, steps};
 use super::observed::{Model, Observed};
 use super::options::Bounds;
 use super::port::Port;
@@ -51,7 +51,7 @@ pub(super) fn identify_axis(
         let observe = |stroke| Observed::of(stroke, step, bounds.travel, period);
         let observed: Vec<_> = motions.strokes.iter().map(observe).collect();
         let guess = guess(&motions.strokes, motions.breakaway(), &bounds);
-        let sprung = fit(&observed, [&guess; 2], true);
+        let sprung = fit(&observed, Start { usual: &guess, guess: &guess }, true);
         let softest_spring = sprung.as_ref().map(|sprung| {
             let felt = FELT * sprung.model.friction / bounds.travel;
             felt.max(SURE * sprung.deviations.stiffness)
@@ -64,7 +64,7 @@ pub(super) fn identify_axis(
         }
         let near = sprung.map_or(guess, |fit| Model { stiffness: 0.0, ..fit.model });
         // A fit may end at a friction or a damping of zero, which is no size for the steps of the next.
-        let plain = fit(&observed, [&guess, &near], false);
+        let plain = fit(&observed, Start { usual: &guess, guess: &near }, false);
         let (limit, none) = (MOST_MISFIT, f64::INFINITY);
         let misfit = plain.as_ref().map_or(none, |fit| fit.misfit);
         let Some(fit) = plain.filter(|fit| fit.misfit <= MOST_MISFIT) else {

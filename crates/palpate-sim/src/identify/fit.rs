@@ -28,8 +28,11 @@ const MOST_STEPS: usize = 60;
 /// The method ends when a step makes the sum of squares less by less than this part.
 const SETTLED: f64 = 1e-6;
 
-/// The first and the largest damping of the method.
-const DAMPING: (f64, f64) = (1e-3, 1e12);
+/// The first damping of the method.
+const FIRST_DAMPING: f64 = 1e-3;
+
+/// The largest damping of the method.
+const LARGEST_DAMPING: f64 = 1e12;
 
 /// A fitted model.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -49,11 +52,19 @@ struct Linear {
     slopes: [Vec<f64>; PARAMETERS],
 }
 
-/// Fits a model to strokes, from starts about `guess`, the best first, until one fits. `usual` has
-/// the sizes of the numbers, none of which is zero.
+/// Where a fit starts.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Start<'a> {
+    /// A model with the sizes of the numbers, none of which is zero.
+    pub(super) usual: &'a Model,
+    /// The model about which the starts are.
+    pub(super) guess: &'a Model,
+}
+
+/// Fits a model to strokes, from starts about the guess, the best first, until one fits.
 pub(super) fn fit(
     observed: &[Observed],
-    [usual, guess]: [&Model; 2],
+    Start { usual, guess }: Start<'_>,
     has_spring: bool,
 ) -> Option<Fit> {
     let free = [true, true, true, true, has_spring];
@@ -133,14 +144,14 @@ fn descend(
     scales: [f64; PARAMETERS],
 ) -> Option<Fit> {
     let mut model = *start;
-    let mut damping = DAMPING.0;
+    let mut damping = FIRST_DAMPING;
     let mut at = linear(observed, &model, free, scales)?;
     let mut sum = squares(&at.misses);
     for _ in 0..MOST_STEPS {
         let (normal, right) = normal_equations(&at);
         let mut is_better = false;
-        while damping < DAMPING.1 && !is_better {
-            let next = step(&model, &normal, &right, (free, damping));
+        while damping < LARGEST_DAMPING && !is_better {
+            let next = step(&model, &normal, &right, Step { free, damping });
             let tried = next.and_then(|next| Some((squares(&misses(observed, &next)?), next)));
             match tried {
                 Some((less, next)) if less < sum => {
@@ -150,14 +161,14 @@ fn descend(
                     let is_settled = gain < SETTLED * sum;
                     sum = less;
                     if is_settled {
-                        damping = DAMPING.1;
+                        damping = LARGEST_DAMPING;
                     }
                 }
                 _ => damping *= 10.0,
             }
         }
         at = linear(observed, &model, free, scales)?;
-        if damping >= DAMPING.1 {
+        if damping >= LARGEST_DAMPING {
             break;
         }
     }
@@ -175,12 +186,20 @@ fn normal_equations(at: &Linear) -> (Matrix, [f64; PARAMETERS]) {
     (normal, std::array::from_fn(|i| product(&at.slopes[i], &at.misses)))
 }
 
+/// How a step of the method is made.
+#[derive(Clone, Copy, Debug)]
+struct Step {
+    /// The parameters that may move.
+    free: [bool; PARAMETERS],
+    damping: f64,
+}
+
 /// The model after a step of the method; parameters at their least value that would fall stay.
 fn step(
     model: &Model,
     normal: &Matrix,
     right: &[f64; PARAMETERS],
-    (free, damping): ([bool; PARAMETERS], f64),
+    Step { free, damping }: Step,
 ) -> Option<Model> {
     let parameters = model.parameters();
     let moves: [bool; PARAMETERS] = std::array::from_fn(|i| {

@@ -59,9 +59,11 @@ const BRAKES: [f64; 2] = [1.0, 0.0];
 /// Strokes of each level and brake in a round: one each way.
 const WAYS: usize = 2;
 
-/// The least part of the available way that is pushed, and by how much it varies, so that strokes
-/// meet encoder steps at different places.
-const PUSHED: (f64, f64) = (0.2, 0.25);
+/// The least part of the available way that is pushed.
+const LEAST_PUSHED: f64 = 0.2;
+
+/// By how much that part varies, so that strokes meet encoder steps at different places.
+const PUSHED_RANGE: f64 = 0.25;
 
 /// Readings beyond those of the longest stroke, for ticks that round up.
 const SPARE: usize = 16;
@@ -194,7 +196,7 @@ impl<'p, 'a> Motions<'p, 'a> {
         let force = self.breakaway.towards(way) + level * self.excess;
         let available = USED * bounds.travel - way * start.place;
         // Less than half of the way is pushed: a brake of the same force needs as much.
-        let push = available * (PUSHED.0 + PUSHED.1 * self.next_part());
+        let push = available * (LEAST_PUSHED + PUSHED_RANGE * self.next_part());
         let mut stroke = Stroke::default();
         // What is recorded allocates nothing during a stroke.
         let longest = 2.0 * LONGEST_PUSH + LONGEST_WAIT + REST;
