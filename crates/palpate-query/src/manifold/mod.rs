@@ -70,6 +70,7 @@ impl ManifoldSettings {
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Manifold<const D: usize> {
     /// The contacts, by group; in each group the deepest comes first, by the fields' values.
     pub contacts: Vec<Contact<D>>,
