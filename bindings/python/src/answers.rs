@@ -6,8 +6,7 @@
 //! An answer that other doors give too has the fields that serde writes. Fields are set by hand in classes without such
 //! a twin: arrays of many answers, which would be slow as objects first; and answers with names or shapes of Python.
 
-use numpy::IntoPyArray;
-use palpate::field::{Promise, Vector};
+use palpate::field::Promise;
 use palpate::query::{Contact, Stop};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -64,13 +63,8 @@ pub(crate) fn contacts<'py, const D: usize>(
     all: &[Contact<D>],
 ) -> PyResult<Bound<'py, PyAny>> {
     let palpate = py.import("palpate")?;
-    let classes = (palpate.getattr("Contacts")?, palpate.getattr("Contact")?);
-    py.import(BASE)?.call_method1("columns", (classes.0, classes.1, read(py, &all)?, D))
-}
-
-/// A vector as an array.
-pub(crate) fn vector<const D: usize>(py: Python<'_>, v: Vector<f64, D>) -> Bound<'_, PyAny> {
-    v.0.to_vec().into_pyarray(py).into_any()
+    let (many, one) = (palpate.getattr("Contacts")?, palpate.getattr("Contact")?);
+    py.import(BASE)?.call_method1("columns", (many, one, read(py, &all)?, D))
 }
 
 /// The reasons to end a search, in the order of their numbers in arrays.

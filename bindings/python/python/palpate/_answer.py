@@ -4,7 +4,6 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Mapping, Sequence
 from dataclasses import fields, is_dataclass
 from functools import cache
@@ -108,7 +107,7 @@ def _filled(kind: Any, value: Any) -> Any:
 @cache
 def _kinds(kind: type) -> dict[str, Any]:
     """The types of the fields of a class; of what may be None, the type of what is not."""
-    hints = get_type_hints(kind, vars(sys.modules[kind.__module__]))
+    hints = get_type_hints(kind)
     return {name: _known(hints[name]) for name in names(kind)}
 
 

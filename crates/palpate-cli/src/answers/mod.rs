@@ -36,7 +36,7 @@ impl<const D: usize> From<Aabb<D>> for Bounds {
 
 #[cfg(test)]
 mod tests {
-    use std::collections::{BTreeMap, BTreeSet};
+    use std::collections::BTreeSet;
     use std::fmt::Write;
 
     use palpate::field::{Mass, Promise};
@@ -131,7 +131,8 @@ mod tests {
     }
 
     /// The schema of the answers of Python, by their classes, and the renamed keys: the last part of
-    /// the old and of the new one. Python's `generate.py` writes the classes from it.
+    /// the old one and of the new one. `generate_answers.py` writes the
+    /// classes from it.
     fn python() -> Value {
         let mut generator = SchemaSettings::draft2020_12().into_generator();
         let own = &mut generator;
@@ -146,6 +147,8 @@ mod tests {
             ("Manifold", of::<Manifold<3>>(own)),
             ("FirstTouch", of::<FirstTouch<3>>(own)),
         ];
+        let classes: Map<_, _> =
+            classes.map(|(class, of)| (class.to_owned(), of.to_value())).into_iter().collect();
         let last = |key: &str| key.rsplit('.').next().unwrap_or_default().to_owned();
         let renamed = super::renamed::RENAMED.iter().map(|row| [last(row.old), last(row.new)]);
         let renamed: BTreeSet<_> = renamed.filter(|[old, new]| old != new).collect();
@@ -153,7 +156,7 @@ mod tests {
             "$schema": "https://json-schema.org/draft/2020-12/schema",
             "title": "answers of Python",
             "description": "The classes of answers that Rust has too. Generated.",
-            "properties": classes.into_iter().collect::<BTreeMap<_, _>>(),
+            "properties": classes,
             "$defs": generator.take_definitions(true),
             "renamed": renamed,
         })
