@@ -46,7 +46,7 @@ RENAMED = f'''\
 
 from __future__ import annotations
 
-KEYS: dict[str, tuple[str, ...]] = {{
+KEYS = {{
 '''
 
 SINGLE = {"number": "float", "integer": "int", "boolean": "bool", "string": "str", "array": "Floats"}
@@ -150,11 +150,8 @@ def read_examples() -> dict[str, str]:
 
 def renamed(rows: list[list[str]]) -> str:
     """The table of new names."""
-    table: dict[str, list[str]] = {}
-    for old, new in rows:
-        if old.isidentifier() and new.isidentifier():
-            table.setdefault(old, []).append(new)
-    return RENAMED + "".join(f'    "{old}": ({quoted(new)},),\n' for old, new in table.items()) + "}\n"
+    table = {old: new for old, new in rows if old.isidentifier() and new.isidentifier()}
+    return RENAMED + "".join(f'    "{old}": "{new}",\n' for old, new in table.items()) + "}\n"
 
 
 def files() -> dict[str, str]:

@@ -51,7 +51,7 @@ class Answer:
     def __eq__(self, other: object) -> bool:
         if type(self) is not type(other):
             return NotImplemented
-        return all(_equal(getattr(self, name), getattr(other, name)) for name in names(type(self)))
+        return all(_equal(value, vars(other)[name]) for name, value in vars(self).items())
 
     __hash__ = None  # type: ignore[assignment]
 
@@ -59,9 +59,9 @@ class Answer:
     if not TYPE_CHECKING:
 
         def __getattr__(self, name: str) -> NoReturn:
-            own, kind = names(type(self)), type(self).__name__
-            known = [new for new in KEYS.get(name, ()) if new in own]
-            new = _ATTRIBUTES.get(kind, {}).get(name) or next(iter(known), None)
+            kind = type(self).__name__
+            key = KEYS.get(name)
+            new = _ATTRIBUTES.get(kind, {}).get(name) or (key if key in names(type(self)) else None)
             problem = f"`{name}` is now `{new}`" if new else f"{kind!r} object has no attribute {name!r}"
             raise AttributeError(problem, name=name, obj=self)
 
