@@ -324,7 +324,7 @@ class Bounds(_examples.Bounds):
 
     >>> import palpate as pp
     >>> bounds = pp.cuboid([6, 4, 12]).promise.bounds
-    >>> bounds.aabb.max, bounds.ball.radius
+    >>> bounds.aabb.max, round(bounds.ball.radius, 9)
     (array([3., 2., 6.]), 7.0)
     """
 

@@ -130,9 +130,8 @@ mod tests {
         })
     }
 
-    /// The schema of the answers of Python, by their classes, and the renamed keys: the last part of
-    /// the old one and of the new one. `generate_answers.py` writes the
-    /// classes from it.
+    /// The schema of the answers that Python has as classes, and the last parts of the renamed keys.
+    /// `generate_answers.py` writes the classes from it.
     fn python() -> Value {
         let mut generator = SchemaSettings::draft2020_12().into_generator();
         let own = &mut generator;
