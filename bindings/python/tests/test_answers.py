@@ -60,8 +60,12 @@ def test_numbers_become_what_the_class_says() -> None:
 
 
 def test_infinite_numbers_stay() -> None:
-    [pair] = pp.Scene({"one": BALL, "two": APART}).ask({"question": "contacts"})["pairs"]
-    assert pair["distance_at_most"] == math.inf
+    plate, peg = pp.cuboid([0.6, 0.4, 0.6]) - pp.cylinder(radius=0.1005, height=1.0), pp.cylinder(radius=0.1, height=0.6)
+    assert pp.sweep(plate, peg, start=[0, 3, 0], end=[0, 0, 0], budget=3).upper == math.inf
+    down = [{"body": "peg", "from": {"translation": [0, 3, 0]}, "to": {"translation": [0, 0, 0]}}]
+    scene = pp.Scene({"plate": plate, "peg": peg}, motions=down)
+    [pair] = scene.ask({"question": "sweep", "budget": 3})["pairs"]
+    assert pair["verdict"] == "undecided" and pair["upper"] == math.inf
     assert pp.manifold(BALL, APART).distance_at_most == math.inf
 
 
