@@ -1,6 +1,9 @@
 # SPDX-FileCopyrightText: The palpate authors
 # SPDX-License-Identifier: MIT OR Apache-2.0
-"""Answers that only Python has: arrays of many answers, and bodies by their names. Lengths are in metres."""
+"""Answers that only Python has. Lengths are in metres.
+
+Arrays of many answers are filled in Rust, without an object for each; bodies have names instead of numbers.
+"""
 
 from __future__ import annotations
 

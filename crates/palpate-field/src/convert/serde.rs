@@ -76,7 +76,7 @@ impl<'de, T: Deserialize<'de>, const N: usize> Deserialize<'de> for Vector<T, N>
 impl<const N: usize> Serialize for Rotation<N> {
     /// As the rows of its matrix.
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        rows(&self.matrix(), serializer)
+        rows(self.matrix(), serializer)
     }
 }
 
