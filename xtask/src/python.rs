@@ -19,10 +19,14 @@ pub(crate) fn test() -> Result<(), Failure> {
     run(pytest.args(["-m", "pytest", "-q"]).current_dir(root().join(PACKAGE)))
 }
 
-/// Writes the constructors of all primitives, from the catalogue of a wheel that is made for it.
+/// Writes the classes of answers from their schema, and the constructors of all primitives from the catalogue of a
+/// wheel that is made for it.
 pub(crate) fn renew() -> Result<(), Failure> {
-    let python = installed()?;
-    run(Command::new(python).arg("generate.py").current_dir(root().join(PACKAGE)))
+    let write = |python, program| {
+        run(Command::new(python).arg(program).current_dir(root().join(PACKAGE)))
+    };
+    write(environment()?, "generate_answers.py")?;
+    write(installed()?, "generate.py")
 }
 
 /// The interpreter of an environment where the wheel is installed with what its tests need.

@@ -59,13 +59,13 @@ print(f"proven: they overlap: {met.overlaps}, after {met.evaluations} evaluation
 corners = np.array([[0.3, 0.1], [0.9, 0.15], [0.7, 0.7]])
 triangle = pp.Mesh(corners, [[0, 1], [1, 2], [2, 0]])
 touch = pp.mesh_contacts(field, triangle)
-print(f"sides that touch: {touch.hits.tolist()}; contacts: {touch.points_b.round(4).tolist()}")
+print(f"sides that touch: {touch.hits.tolist()}; contacts: {touch.contacts.point_b.round(4).tolist()}")
 
 # %%
 fig, ax = plt.subplots(figsize=(7, 5))
 field.plot(ax=ax)
 ax.plot(*np.vstack([corners, corners[:1]]).T, color="#2a9d8f")
-ax.plot(*touch.points_b.T, "o", color="#d1495b")
+ax.plot(*touch.contacts.point_b.T, "o", color="#d1495b")
 
 # %% [markdown]
 # ## Field and field

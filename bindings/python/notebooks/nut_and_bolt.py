@@ -56,7 +56,7 @@ ax.set(xlabel="nut moved up [mm]", ylabel="separation [mm]")
 # %%
 lower = nut.translated([0, -0.00015, 0])
 touch = pp.manifold(bolt, lower, margin=1e-4)
-print(f"{len(touch)} contacts, the deepest {1e3 * touch.gaps.min():.3f} mm; whole: {touch.is_whole}")
+print(f"{len(touch)} contacts, the deepest {1e3 * touch.contacts.gap.min():.3f} mm; whole: {touch.is_whole}")
 
 # %%
 fig, ax = plt.subplots(figsize=(5, 6))

@@ -44,12 +44,12 @@ print(part.distance([0, 0.03, 0]), part.distance(np.zeros((2, 3))))
 peg = pp.cylinder(radius=0.0195, height=0.06).rotated([0, 0, 1], degrees=4)
 peg = peg.translated([-0.03, 0, 0]).mesh(cell=0.002)
 touch = pp.mesh_contacts(part, peg)
-print(f"{len(touch)} contacts on {len(touch.hits)} faces, the deepest {touch.gaps.min():.6f} m")
+print(f"{len(touch)} contacts on {len(touch.hits)} faces, the deepest {touch.contacts.gap.min():.6f} m")
 
 # %%
 fig, ax = plt.subplots(figsize=(7, 4))
 part.plot(ax=ax)
-ax.plot(touch.points_a[:, 0], touch.points_a[:, 1], ".", color="#d1495b")
+ax.plot(touch.contacts.point_a[:, 0], touch.contacts.point_a[:, 1], ".", color="#d1495b")
 ax.set_title("The part and where the peg touches it")
 
 # %% [markdown]

@@ -7,7 +7,7 @@ use palpate::device::PROFILES;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use crate::touched::read;
+use crate::answers::read;
 
 /// The profiles of known devices by their names, as `device=` of `Servo` and `feel` takes them: dicts with the limits
 /// and the dynamics of each, in SI units.

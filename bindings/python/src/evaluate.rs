@@ -11,7 +11,7 @@ use palpate::query::evaluate_point;
 use pyo3::prelude::*;
 use rayon::prelude::*;
 
-use crate::answers;
+use crate::answers::Fields;
 use crate::arrays::{Numbers, few, misshapen, numbers, place, writable};
 use crate::call::Call;
 use crate::error::OrRaise;
@@ -146,7 +146,7 @@ pub(crate) fn at<'py>(
         let call = Call::default();
         let found = call.run(|| evaluate_point(shape, point));
         call.ended()?;
-        answers::at_point(py, &found.or_raise(py)?)
+        Fields::of(py, &found.or_raise(py)?)?.of_class("AtPoint")
     })
 }
 

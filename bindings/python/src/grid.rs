@@ -39,7 +39,7 @@ impl PyShape {
     ///
     /// >>> import palpate as pp
     /// >>> grid = pp.ball(0.05).baked(tolerance=2e-4)
-    /// >>> grid.promise.deviation[0] <= 2e-4, bool(abs(grid.distance([0.06, 0, 0]) - 0.01) <= 2e-4)
+    /// >>> grid.promise.deviation.value <= 2e-4, bool(abs(grid.distance([0.06, 0, 0]) - 0.01) <= 2e-4)
     /// (True, True)
     #[pyo3(signature = (*, tolerance = None, cell = None, kernel = "quadratic", store = "f32", band = None, most_nodes = None, threads = 1))]
     fn baked(

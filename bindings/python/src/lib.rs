@@ -42,9 +42,8 @@ use pyo3::prelude::*;
 #[pymodule]
 mod _palpate {
     use pyo3::prelude::*;
-    use pyo3::types::PyTuple;
 
-    use super::answers::{STOPS, stop};
+    use super::answers::{STOPS, read};
 
     #[pymodule_export]
     use super::batch::{cast_rays, overlaps, separations};
@@ -84,6 +83,6 @@ mod _palpate {
 
     #[pymodule_init]
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
-        module.add("STOPS", PyTuple::new(module.py(), STOPS.map(stop))?)
+        module.add("STOPS", read(module.py(), &STOPS)?)
     }
 }

@@ -6,7 +6,7 @@
 use palpate::field::{Mass, MassLimits};
 use pyo3::prelude::*;
 
-use crate::answers::{Fields, vector};
+use crate::answers::Fields;
 use crate::arrays::table;
 use crate::error::OrRaise;
 use crate::interrupt::abandonable;
@@ -82,16 +82,5 @@ impl PyShape {
 }
 
 fn told<'py, const D: usize>(py: Python<'py>, found: &Mass<D>) -> PyResult<Fields<'py>> {
-    let moments: Vec<f64> = found.second_moments.iter().flatten().copied().collect();
-    Fields::new(py)
-        .with("mass", found.mass())?
-        .with("mass_error", found.mass_error())?
-        .with("volume", found.volume)?
-        .with("volume_error", found.volume_error)?
-        .with("density", found.density)?
-        .with("centroid", vector(py, found.centroid))?
-        .with("centroid_error", found.centroid_error)?
-        .with("second_moments", table(py, moments, D)?)?
-        .with("second_moments_error", found.second_moments_error)?
-        .with("cells", found.cells)
+    Fields::of(py, found)?.with("mass", found.mass())?.with("mass_error", found.mass_error())
 }

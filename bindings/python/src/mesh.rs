@@ -16,7 +16,7 @@ use palpate::query::{ElementMemory, PlacedMesh, Query, Undecided};
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 
-use crate::answers::Fields;
+use crate::answers::{self, Fields};
 use crate::arrays::{misshapen, numbers, row, table};
 use crate::error::OrRaise;
 use crate::grid::{along_the_first, named};
@@ -444,7 +444,7 @@ macro_rules! of_shape_and_mesh {
 ///
 /// >>> import palpate as pp
 /// >>> found = pp.mesh_contacts(pp.ball(0.5).translated([0, 0.95, 0]), pp.cuboid([1, 1, 1]).mesh(cell=0.3))
-/// >>> len(found) > 0, bool(abs(found.gaps.min() + 0.05) < 1e-3)
+/// >>> len(found) > 0, bool(abs(found.contacts.gap.min() + 0.05) < 1e-3)
 /// (True, True)
 #[pyfunction]
 #[pyo3(signature = (shape, mesh, *, pose = None, gap = 0.0, tolerance = None, budget = None))]
@@ -518,15 +518,9 @@ where
     let (shape, mesh) = (shape.clone(), Arc::clone(mesh));
     let work = move || query.mesh_contacts(&shape, PlacedMesh::new(&mesh, pose));
     let found = abandonable(py, work)?.or_raise(py)?;
-    let all = &found.contacts;
-    let points = |of: fn(&palpate::query::Contact<D>) -> [f64; D]| {
-        table(py, all.iter().flat_map(|found| of(&found.contact)).collect(), D)
-    };
+    let all: Vec<_> = found.contacts.iter().map(|found| found.contact).collect();
     hits(py, &found.hits, &found.undecided, found.evaluations)?
-        .with("points_a", points(|contact| contact.point_a.0)?)?
-        .with("points_b", points(|contact| contact.point_b.0)?)?
-        .with("normals", points(|contact| contact.normal.0)?)?
-        .with("gaps", row(py, all.iter().map(|found| found.contact.gap).collect()))?
-        .with("faces", row(py, all.iter().map(|found| found.element).collect()))?
+        .with("contacts", answers::contacts(py, &all)?)?
+        .with("elements", row(py, found.contacts.iter().map(|found| found.element).collect()))?
         .of_class("MeshContacts")
 }

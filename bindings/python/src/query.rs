@@ -4,11 +4,10 @@
 //! Where two shapes touch, and how far apart they are.
 
 use palpate::field::Shape;
-use palpate::query::{Certified, Manifold, ManifoldSettings, Nearest, Query, Ray, Tolerance};
+use palpate::query::{Manifold, ManifoldSettings, Query, Ray, Tolerance};
 use pyo3::prelude::*;
 
-use crate::answers::{Fields, certified, contact, stop, vector};
-use crate::arrays::{row, table};
+use crate::answers::{Fields, contacts};
 use crate::call::detached;
 use crate::error::OrRaise;
 use crate::poses;
@@ -47,16 +46,6 @@ pub(crate) fn query<const D: usize>(tolerance: Option<f64>, budget: Option<u32>)
     }
 }
 
-/// A point between the bodies, and the way from the first to the second.
-pub(crate) fn nearest<'py, const D: usize>(
-    py: Python<'py>,
-    found: &Certified<Nearest<D>>,
-) -> PyResult<Fields<'py>> {
-    certified(py, found)?
-        .with("point", vector(py, found.best.point))?
-        .with("normal", found.best.normal.map(|normal| vector(py, normal)))
-}
-
 /// How far apart two bodies are, between proven bounds: negative if they overlap, by how far one must be moved at least.
 ///
 /// `tolerance` is how far apart the bounds may be [m], a ten-thousandth of the smaller body if left out; `budget` how
@@ -80,7 +69,7 @@ pub(crate) fn separation<'py>(
 ) -> PyResult<Bound<'py, PyAny>> {
     of_both!(py, a, b, |a, b| {
         let found = detached(py, || query(tolerance, budget).separation(a, b))?.or_raise(py)?;
-        nearest(py, &found)?.of_class("Separation")
+        Fields::of(py, &found)?.of_class("Separation")
     })
 }
 
@@ -101,7 +90,7 @@ pub(crate) fn overlap<'py>(
 ) -> PyResult<Bound<'py, PyAny>> {
     of_both!(py, a, b, |a, b| {
         let found = detached(py, || query(None, budget).overlap(a, b))?.or_raise(py)?;
-        nearest(py, &found)?.with("overlaps", found.is_hit())?.of_class("Overlap")
+        Fields::of(py, &found)?.with("overlaps", found.is_hit())?.of_class("Overlap")
     })
 }
 
@@ -115,7 +104,7 @@ pub(crate) fn overlap<'py>(
 ///
 /// >>> import palpate as pp
 /// >>> found = pp.closest_points(pp.ball(0.5), pp.ball(0.5).translated([1.5, 0, 0]))
-/// >>> found.contact.point_a.round(3)
+/// >>> found.best.point_a.round(3)
 /// array([0.5, 0. , 0. ])
 #[pyfunction]
 #[pyo3(signature = (a, b, *, tolerance = None, budget = None))]
@@ -129,8 +118,7 @@ pub(crate) fn closest_points<'py>(
     of_both!(py, a, b, |a, b| {
         let found =
             detached(py, || query(tolerance, budget).closest_points(a, b))?.or_raise(py)?;
-        let best = found.best.as_ref().map(|best| contact(py, best)).transpose()?;
-        certified(py, &found)?.with("contact", best)?.of_class("ClosestPoints")
+        Fields::of(py, &found)?.of_class("ClosestPoints")
     })
 }
 
@@ -147,7 +135,7 @@ pub(crate) fn closest_points<'py>(
 ///
 /// >>> import palpate as pp
 /// >>> found = pp.manifold(pp.cuboid([1, 1, 1]), pp.cuboid([1, 1, 1]).translated([0, 0.999, 0]))
-/// >>> len(found) >= 4, bool((abs(found.gaps + 0.001) < 2e-4).all())
+/// >>> len(found) >= 4, bool((abs(found.contacts.gap + 0.001) < 2e-4).all())
 /// (True, True)
 #[pyfunction]
 #[pyo3(signature = (a, b, *, margin = None, spacing = None, most = None, tolerance = None, budget = None))]
@@ -188,24 +176,8 @@ pub(crate) fn manifold_of<'py, const D: usize>(
     py: Python<'py>,
     found: &Manifold<D>,
 ) -> PyResult<Bound<'py, PyAny>> {
-    let all = &found.contacts;
-    let points = |of: fn(&palpate::query::Contact<D>) -> [f64; D]| {
-        table(py, all.iter().flat_map(of).collect(), D)
-    };
-    Fields::new(py)
-        .with("lower", found.separation.lower)?
-        .with("upper", found.distance_at_most)?
-        .with("stop", stop(found.region_stop))?
-        .with("evaluations", found.separation.evaluations)?
-        .with("points_a", points(|contact| contact.point_a.0)?)?
-        .with("points_b", points(|contact| contact.point_b.0)?)?
-        .with("normals", points(|contact| contact.normal.0)?)?
-        .with("gaps", row(py, all.iter().map(|contact| contact.gap).collect()))?
-        .with("ids", row(py, all.iter().map(|contact| contact.id).collect()))?
-        .with("groups", row(py, found.groups.iter().map(|group| *group as u64).collect()))?
-        .with("separation", nearest(py, &found.separation)?.of_class("Separation")?)?
-        .with("dropped", found.dropped)?
-        .with("is_whole", found.is_whole)?
+    Fields::of(py, found)?
+        .with("contacts", contacts(py, &found.contacts)?)?
         .of_class("Manifold")
 }
 
@@ -218,7 +190,7 @@ pub(crate) fn manifold_of<'py, const D: usize>(
 /// Raises `QueryError` if the direction is zero, or the length or the tolerance is negative.
 ///
 /// >>> import palpate as pp
-/// >>> pp.cast_ray(pp.ball(0.5), [0, 2, 0], [0, -1, 0]).point.round(3)
+/// >>> pp.cast_ray(pp.ball(0.5), [0, 2, 0], [0, -1, 0]).best.point.round(3)
 /// array([0. , 0.5, 0. ])
 #[pyfunction]
 #[pyo3(signature = (shape, origin, direction, length = 1e3, *, tolerance = None, budget = None))]
@@ -245,9 +217,5 @@ fn cast<'py, const D: usize>(
         (poses::point(origin, "origin")?, poses::point(direction, "direction")?);
     let ray = Ray::new(origin, direction, length).or_raise(py)?;
     let found = detached(py, || query.cast_ray(shape, &ray))?.or_raise(py)?;
-    let hit = found.best;
-    certified(py, &found)?
-        .with("point", hit.map(|hit| vector(py, hit.point)))?
-        .with("normal", hit.and_then(|hit| hit.normal).map(|normal| vector(py, normal)))?
-        .of_class("RayHit")
+    Fields::of(py, &found)?.of_class("RayCast")
 }

@@ -6,12 +6,14 @@
 use std::path::PathBuf;
 
 use palpate::field::Pose;
-use palpate::scene::{AnyScene, AskError, BuiltScene, Dimension, Scene, SceneBody};
+use palpate::scene::{
+    AnyScene, AskError, BuiltScene, Dimension, Question, Scene, SceneBody, Versioned,
+};
 use pyo3::exceptions::{PyKeyError, PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 
-use crate::answers::Fields;
+use crate::answers::{Fields, read};
 use crate::arrays::row;
 use crate::call::detached_in;
 use crate::error::OrRaise;
@@ -30,6 +32,7 @@ macro_rules! of_either {
         }
     };
 }
+
 /// Bodies with names, and what touches them and how that feels.
 ///
 /// Of shapes in a dict, with their names; a shape alone gets the name "body". `poses` are where bodies are, by their
@@ -207,7 +210,7 @@ impl PyScene {
     }
 
     /// Answers a question, with the keys of `docs/answers.md`: a dict, or its text in JSON. The answer
-    /// is a dict with the keys that the program prints with `--json`, in SI units.
+    /// is a dict with the keys that the program prints with `--json`, in SI units; infinite numbers stay numbers.
     ///
     /// Raises `ValueError` if the question cannot be read or does not fit the scene, `KeyError` if it names no body.
     /// After Ctrl-C the search goes on in a thread that nobody waits for.
@@ -222,13 +225,11 @@ impl PyScene {
     fn ask<'py>(&self, question: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
         let py = question.py();
         let text = py.import("palpate._scenes")?.call_method1("question", (question,))?;
-        let (built, text) = (self.built.clone(), text.extract::<String>()?);
-        let answer = abandonable(py, move || built.ask_json(&text))?;
-        let answer = answer.map_err(|error| match error {
-            AskError::UnknownBody(problem) => PyKeyError::new_err(problem),
-            error => PyValueError::new_err(error.to_string()),
-        })?;
-        py.import("json")?.call_method1("loads", (answer,))
+        let question = Question::from_json(&text.extract::<String>()?).map_err(refused)?;
+        of_either!(self.built.clone(), scene => {
+            let answer = abandonable(py, move || scene.ask(&question))?.map_err(refused)?;
+            read(py, &Versioned::new(answer))
+        })
     }
 
     /// The text of the scene, as a file holds it.
@@ -315,6 +316,13 @@ impl PyScene {
         let rebuild = py.import("palpate._pickled")?.getattr("scene")?;
         let parts = (scene.to_json(), scene.folder.clone());
         Ok((rebuild, parts).into_pyobject(py)?.into_any())
+    }
+}
+
+fn refused(error: AskError) -> PyErr {
+    match error {
+        AskError::UnknownBody(problem) => PyKeyError::new_err(problem),
+        error => PyValueError::new_err(error.to_string()),
     }
 }
 

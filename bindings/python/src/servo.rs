@@ -10,7 +10,7 @@ use pyo3::exceptions::{PyRuntimeError, PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use crate::answers::Fields;
+use crate::answers::{Fields, read};
 use crate::error::OrRaise;
 use crate::hand::{check_points, simulated};
 use crate::interrupt::interruptible;
@@ -19,7 +19,7 @@ use crate::pool;
 use crate::poses;
 use crate::scene::PyScene;
 use crate::stage::{Motion, Ready, Staged};
-use crate::touched::{event, read, snapshot, trace};
+use crate::touched::{event, snapshot, trace};
 
 /// The most rows that are kept: some 3 GB.
 const MOST_ROWS: f64 = 1e7;

@@ -6,9 +6,7 @@
 use palpate::field::Vector;
 use palpate::haptics::{Event, EventKind, HeldTool, Snapshot};
 use palpate::servo_loop::TraceRow;
-use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
-use serde::Serialize;
 
 use crate::answers::Fields;
 use crate::arrays::{row, table};
@@ -83,13 +81,6 @@ pub(crate) fn event<'py>(
         .with("force", force)?
         .with("distance", distance)?
         .of_class("Event")
-}
-
-/// Data as the dict that its JSON is.
-pub(crate) fn read<'py>(py: Python<'py>, data: &impl Serialize) -> PyResult<Bound<'py, PyAny>> {
-    let text = serde_json::to_string(data)
-        .map_err(|error| PyRuntimeError::new_err(error.to_string()))?;
-    py.import("json")?.call_method1("loads", (text,))
 }
 
 /// The ticks of a servo of a scene of so many dimensions.

@@ -7,10 +7,11 @@ use palpate::field::Shape;
 use palpate::query::{Limits, ManifoldSettings, PairWorkspace, Tolerance, Track};
 use pyo3::prelude::*;
 
+use crate::answers::Fields;
 use crate::error::OrRaise;
 use crate::guarded::Guarded;
 use crate::poses;
-use crate::query::{manifold_of, nearest, of_both, settings};
+use crate::query::{manifold_of, of_both, settings};
 use crate::shape::PyShape;
 
 /// What a pair knows from step to step.
@@ -84,19 +85,19 @@ impl PyTrack {
                 let Pair { track, workspace } = &mut **own;
                 track.separation(poses, &limits(track.size(), tolerance, budget), workspace)
             })?;
-            nearest(py, &found.or_raise(py)?)?.of_class("Separation")
+            Fields::of(py, &found.or_raise(py)?)?.of_class("Separation")
         })
     }
 
     /// The contacts of the bodies at these poses; see `manifold`. A contact near one of the last question, on either
-    /// body, has its number among `ids` again.
+    /// body, has its number among `contacts.id` again.
     ///
     /// Raises `QueryError` if neither body has bounds or a pose is not finite.
     ///
     /// >>> import palpate as pp
     /// >>> track = pp.Track(pp.cuboid([1, 1, 1]), pp.cuboid([1, 1, 1]))
     /// >>> first = track.manifold(b=[0, 0.999, 0])
-    /// >>> bool((track.manifold(b=[1e-4, 0.999, 0]).ids == first.ids).all())
+    /// >>> bool((track.manifold(b=[1e-4, 0.999, 0]).contacts.id == first.contacts.id).all())
     /// True
     #[pyo3(signature = (*, a = None, b = None, margin = None, spacing = None, most = None, tolerance = None, budget = None))]
     fn manifold<'py>(

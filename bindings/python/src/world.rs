@@ -5,14 +5,14 @@
 
 use palpate::field::{Pose, Screw, Shape};
 use palpate::query::{
-    BodyId, BodyImpact, FirstTouch, ManifoldSettings, Motion, Moving, Neighbours, Query, Start,
+    BodyId, BodyImpact, FirstTouch, ManifoldSettings, Motion, Moving, Neighbours, Query,
     SweepSettings, World, WorldSettings,
 };
 use palpate::scene::{AnyScene, BuiltScene};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use crate::answers::{Fields, contact, stop};
+use crate::answers::Fields;
 use crate::call::Call;
 use crate::call::detached;
 use crate::error::OrRaise;
@@ -83,21 +83,7 @@ fn first_touch<'py, const D: usize>(
     py: Python<'py>,
     found: &FirstTouch<D>,
 ) -> PyResult<Fields<'py>> {
-    let start = found.start.map(|start| match start {
-        Start::Approaching => "approaching",
-        Start::Receding => "receding",
-        Start::Sliding => "sliding",
-        Start::Resting => "resting",
-    });
-    let best = found.contact.as_ref().map(|best| contact(py, best)).transpose()?;
-    Fields::new(py)
-        .with("lower", found.lower)?
-        .with("upper", found.upper)?
-        .with("stop", stop(found.stop))?
-        .with("evaluations", found.evaluations)?
-        .with("touches", found.touches())?
-        .with("contact", best)?
-        .with("start", start)
+    Fields::of(py, found)?.with("touches", found.touches())
 }
 
 /// A world with the names of its bodies.
@@ -109,8 +95,11 @@ struct Named<const D: usize> {
 }
 
 impl<const D: usize> Named<D> {
-    fn name(&self, body: BodyId) -> &str {
-        self.bodies.iter().find(|(_, own)| *own == body).map_or("", |(name, _)| name.as_str())
+    /// The names of two bodies.
+    fn names(&self, bodies: [BodyId; 2]) -> (&str, &str) {
+        let name = |body| self.bodies.iter().find(|(_, own)| *own == body);
+        let [a, b] = bodies.map(|body| name(body).map_or("", |(name, _)| name.as_str()));
+        (a, b)
     }
 }
 
@@ -136,8 +125,8 @@ macro_rules! of_either {
 /// >>> import palpate as pp
 /// >>> world = pp.World({"table": pp.cuboid([1, 0.1, 1]), "ball": pp.ball(0.05)}, margin=1e-3)
 /// >>> world.set_poses({"ball": [0, 0.0995, 0]})
-/// >>> [(near.a, near.b, near.verdict) for near in world.step()]
-/// [('table', 'ball', 'touching')]
+/// >>> [(near.bodies, near.verdict) for near in world.step()]
+/// [(('table', 'ball'), 'touching')]
 #[pyclass(frozen, module = "palpate", name = "World")]
 pub(crate) struct PyWorld(AnyWorld);
 
@@ -200,8 +189,8 @@ impl PyWorld {
     ///
     /// >>> import palpate as pp
     /// >>> world = pp.World({"table": pp.cuboid([1, 0.1, 1]), "ball": pp.ball(0.05).translated([0, 0.2, 0])})
-    /// >>> [(hit.a, hit.b, round(hit.upper, 3)) for hit in world.first_impacts({"ball": [0, -0.2, 0]})]
-    /// [('table', 'ball', 0.5)]
+    /// >>> [(hit.bodies, round(hit.upper, 3)) for hit in world.first_impacts({"ball": [0, -0.2, 0]})]
+    /// [(('table', 'ball'), 0.5)]
     #[pyo3(signature = (ends, *, gap = None, budget = None))]
     fn first_impacts<'py>(
         &self,
@@ -264,11 +253,8 @@ where
         Ok::<_, palpate::Error>(world.first_impact(&motions, &settings)?)
     })?;
     let found = found.or_raise(py)?;
-    let told = |BodyImpact { bodies: [a, b], touch, .. }: &BodyImpact<D>| {
-        first_touch(py, touch)?
-            .with("a", named.name(*a))?
-            .with("b", named.name(*b))?
-            .of_class("BodyImpact")
+    let told = |BodyImpact { bodies, touch, .. }: &BodyImpact<D>| {
+        first_touch(py, touch)?.with("bodies", named.names(*bodies))?.of_class("BodyImpact")
     };
     found.iter().map(told).collect()
 }
@@ -284,13 +270,11 @@ fn stepped<'py, const D: usize>(
         (found, world.settings().manifold.margin)
     })?;
     let told = |near: &Neighbours<D>| {
-        let [a, b] = near.bodies.map(|body| named.name(body));
         let [lower, upper] = near.bounds();
         let manifold =
             near.manifold.as_ref().map(|found| manifold_of(py, found)).transpose()?;
         Fields::new(py)
-            .with("a", a)?
-            .with("b", b)?
+            .with("bodies", named.names(near.bodies))?
             .with("lower", lower)?
             .with("upper", upper)?
             .with("verdict", near.verdict(margin).to_string())?

@@ -36,7 +36,7 @@ def test_known_separations_lie_between_the_bounds() -> None:
         assert found.lower - 1e-12 <= gap <= found.upper + 1e-12 and found.upper - found.lower <= 2e-6
         assert pp.overlap(BALL, other).overlaps == (gap < 0)
         points = pp.closest_points(BALL, other, tolerance=1e-6)
-        assert points.contact is not None and points.contact.gap == pytest.approx(gap, abs=1e-5)
+        assert points.best is not None and points.best.gap == pytest.approx(gap, abs=1e-5)
 
 
 def test_batches_have_the_bits_of_single_questions() -> None:
@@ -60,11 +60,11 @@ def test_a_batch_of_rays_has_the_bits_of_single_rays() -> None:
     for i, origin in enumerate(origins):
         one = pp.cast_ray(PLATE, origin, down, 5.0, tolerance=1e-5)
         assert (one.lower, one.upper) == (many.lower[i], many.upper[i])
-        assert pp.STOPS[many.stops[i]] == one.stop and (one.point is not None) == (many.hits[i] == 1)
-        if one.point is None:
+        assert pp.STOPS[many.stops[i]] == one.stop and (one.best is not None) == (many.hits[i] == 1)
+        if one.best is None:
             assert np.isnan(many.points[i]).all() and one.upper == 5.0
         else:
-            assert np.array_equal(one.point, many.points[i]) and np.array_equal(one.normal, many.normals[i])
+            assert np.array_equal(one.best.point, many.points[i]) and np.array_equal(one.best.normal, many.normals[i])
     assert pp.cast_rays(PLATE, origins, np.tile(down, (60, 1)), 5.0, tolerance=1e-5, threads=2) == many
     fan = pp.cast_rays(PLATE, [0.25, 2, 0], [[0, -1, 0], [0, 1, 0]])
     assert fan.hits.tolist() == [1, 0]
@@ -123,10 +123,10 @@ def test_contacts_keep_their_names_from_step_to_step() -> None:
     assert len(first) >= 4
     # Without a track, ids are those of places.
     anew = pp.manifold(plate, pp.cuboid([0.2, 0.2, 0.2]).translated([0, 0.1495, 0]))
-    assert np.allclose(np.sort(anew.gaps), np.sort(first.gaps), atol=1e-4)
+    assert np.allclose(np.sort(anew.contacts.gap), np.sort(first.contacts.gap), atol=1e-4)
     for i in range(1, 20):
         again = track.manifold(b=[1e-4 * i, 0.1495, 0])
-        assert set(again.ids.tolist()) == set(first.ids.tolist())
+        assert set(again.contacts.id.tolist()) == set(first.contacts.id.tolist())
     assert len(track.manifold(b=[0, 0.3, 0])) == 0
     assert len(track.manifold(b=[0, 0.151, 0], margin=0.01, most=2)) == 2
     with pytest.raises(pp.QueryError, match="spacing"):
@@ -137,7 +137,7 @@ def test_a_world_knows_what_is_hit_first() -> None:
     world = pp.World({"floor": pp.half_space([0, 1, 0], 0.0), "shelf": pp.cuboid([1, 0.1, 1]), "ball": BALL})
     world.set_poses({"shelf": [0, 2, 0], "ball": [0, 4, 0]})
     hits = world.first_impacts({"ball": [0, 0, 0]})
-    assert [(hit.a, hit.b) for hit in hits] == [("shelf", "ball"), ("floor", "ball")]
+    assert [hit.bodies for hit in hits] == [("shelf", "ball"), ("floor", "ball")]
     # 4 - 0.5 - 2.05 m of 4 m, then 3.5 m.
     assert [hit.upper for hit in hits] == pytest.approx([0.3625, 0.875], abs=1e-4)
     assert hits[0].touches and hits[0].contact.normal[1] == pytest.approx(1, abs=1e-3)
@@ -174,11 +174,11 @@ def test_a_world_finds_its_pairs() -> None:
     world = pp.World(scene, margin=1e-3)
     world.set_poses({"a": [0, 0.0995, 0], "b": [0.5, 3, 0]})
     [near] = world.step()
-    assert (near.a, near.b, near.verdict) == ("table", "a", "touching")
+    assert (near.bodies, near.verdict) == (("table", "a"), "touching")
     assert near.lower <= -0.0005 <= near.upper and len(near.manifold) >= 1
-    assert near.stop == near.manifold.stop
+    assert near.manifold.region_stop == "converged"
     world.set_poses({"b": [0.09, 0.0995, 0]})
-    assert {(near.a, near.b) for near in world.step(threads=2)} == {("table", "a"), ("table", "b"), ("a", "b")}
+    assert {near.bodies for near in world.step(threads=2)} == {("table", "a"), ("table", "b"), ("a", "b")}
     with pytest.raises(KeyError, match="there are table, a, b"):
         world.set_poses({"c": [0, 0, 0]})
 
@@ -186,7 +186,7 @@ def test_a_world_finds_its_pairs() -> None:
 def test_the_end_of_a_search_is_told_for_neighbours_without_contacts_too() -> None:
     world = pp.World({"a": BALL, "b": BALL}, margin=0.3)
     world.set_poses({"b": [1.29, 0, 0]})
-    assert all(near.stop is not None for near in world.step() if near.manifold is not None)
+    assert all(near.manifold.region_stop is not None for near in world.step() if near.manifold is not None)
 
 
 def test_each_number_of_a_stop_has_its_word() -> None:

@@ -90,6 +90,7 @@ impl<const D: usize> Aabb<D> {
 /// A ball that bounds a shape.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct BoundingBall<const D: usize> {
     /// The centre [m].
     pub centre: Point<D>,
@@ -118,6 +119,7 @@ impl<const D: usize> BoundingBall<D> {
 /// A box and a ball, each of which holds the set `f ≤ 0`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Bounds<const D: usize> {
     /// The box.
     pub aabb: Aabb<D>,

@@ -71,6 +71,8 @@ impl Default for MassLimits {
 /// In the plane a body is one metre thick: mass is in kg for each metre.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Mass<const D: usize> {
     /// The volume [m³], or area [m²].
     pub volume: f64,
@@ -84,6 +86,8 @@ pub struct Mass<const D: usize> {
     /// zero.
     pub centroid_error: f64,
     /// `∫ ρ (p − c)(p − c)ᵀ` about the centroid `c` [kg·m²].
+    #[cfg_attr(feature = "serde", serde(serialize_with = "crate::convert::serde::rows"))]
+    #[cfg_attr(feature = "schema", schemars(with = "Vec<Vec<f64>>"))]
     pub second_moments: [[f64; D]; D],
     /// The largest error of each second moment [kg·m²].
     pub second_moments_error: f64,

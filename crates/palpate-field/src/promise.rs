@@ -70,6 +70,7 @@ impl Quality {
 /// against double-double arithmetic on random trees.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Rounding {
     /// The error at the origin [m].
     pub constant: f64,
@@ -139,6 +140,7 @@ impl Rounding {
 /// larger than `value`, nothing is known.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Deviation {
     /// The largest difference of the values [m].
     pub value: f64,
@@ -185,6 +187,7 @@ impl Deviation {
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct Promise<const D: usize> {
     /// The quality where `f > 0`.
@@ -205,6 +208,7 @@ pub struct Promise<const D: usize> {
     pub convex: bool,
     /// For each axis, `true` if mirroring the axis changes nothing.
     #[cfg_attr(feature = "serde", serde(with = "crate::convert::serde"))]
+    #[cfg_attr(feature = "schema", schemars(with = "Vec<bool>"))]
     pub symmetric: [bool; D],
     /// `true` if points with `f < 0` may exist.
     pub has_interior: bool,

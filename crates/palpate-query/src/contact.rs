@@ -44,7 +44,7 @@ impl fmt::Display for NormalSource {
 
 /// One place where two bodies touch, or nearly do, in world coordinates.
 ///
-/// Every question of this crate that finds contacts answers with this type. Which body is
+/// Every question that finds contacts answers with this type. Which body is
 /// `a` and which is `b` follows from the order of the arguments.
 ///
 /// ```

@@ -74,6 +74,7 @@ impl<const D: usize> Ray<D> {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct RayHit<const D: usize> {
     /// The point [m].
     pub point: Point<D>,

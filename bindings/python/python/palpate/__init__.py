@@ -18,21 +18,24 @@ from importlib.metadata import version as _version
 
 from palpate import _shapes, batch
 from palpate._answers import (
+    Aabb,
     AtPoint,
-    Body,
-    BodyImpact,
+    BoundingBall,
+    Bounds,
     ClosestPoints,
     Contact,
+    Contacts,
+    Deviation,
     FirstTouch,
     Manifold,
     Mass,
-    Neighbours,
+    Nearest,
     Overlap,
     Promise,
+    RayCast,
     RayHit,
-    RayHits,
+    Rounding,
     Separation,
-    Separations,
 )
 from palpate._errors import (
     DeviceError,
@@ -50,6 +53,7 @@ from palpate._errors import (
     UnknownNameError,
 )
 from palpate._felt import Event, Felt, HeldTool, Snapshot, Touch, Trace
+from palpate._many import Body, BodyImpact, Neighbours, RayHits, Separations
 from palpate._meshes import MeshContacts, MeshHits, MeshReport
 from palpate._palpate import (
     STOPS,
@@ -92,11 +96,16 @@ __version__ = _version("palpate")
 
 __all__ = [
     "STOPS",
+    "Aabb",
     "AtPoint",
     "Body",
     "BodyImpact",
+    "BoundingBall",
+    "Bounds",
     "ClosestPoints",
     "Contact",
+    "Contacts",
+    "Deviation",
     "DeviceError",
     "DeviceLostError",
     "Error",
@@ -118,13 +127,16 @@ __all__ = [
     "MeshError",
     "MeshReport",
     "MissingFileError",
+    "Nearest",
     "Neighbours",
     "Overlap",
     "PlotError",
     "Promise",
     "QueryError",
+    "RayCast",
     "RayHit",
     "RayHits",
+    "Rounding",
     "Scene",
     "SceneError",
     "Separation",

@@ -1,96 +1,42 @@
 # SPDX-FileCopyrightText: The palpate authors
 # SPDX-License-Identifier: MIT OR Apache-2.0
-"""Answers: frozen objects with names, with arrays where there are many.
+"""Answers that Rust has too, made by generate_answers.py: what is changed here is lost.
 
-Lengths are in metres. Where an answer has ``lower`` and ``upper``, the true value is between them, rounding included;
-``stop`` says why the search ended: "converged" (the bounds are as close as was asked), "sign_known" (that was the
-question), "budget_spent", "memory_full" or "rounding_reached".
+Lengths are in metres. Where an answer has ``lower`` and ``upper``, the true value is between them, rounding included.
+Points and vectors have the shape (D,), matrices (D, D).
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
-from typing import TYPE_CHECKING, TypeAlias
+from dataclasses import dataclass
+from typing import Literal, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
-if TYPE_CHECKING:
-    from palpate._palpate import Shape
+from palpate import _examples
+from palpate._answer import Floats
 
-Floats: TypeAlias = NDArray[np.float64]
-
-
-class Answer:
-    """Equality of fields that may be arrays."""
-
-    def __eq__(self, other: object) -> bool:
-        if type(self) is not type(other):
-            return NotImplemented
-        return all(
-            _equal(getattr(self, field.name), getattr(other, field.name))
-            for field in fields(self)  # type: ignore[arg-type]
-        )
-
-    __hash__ = None  # type: ignore[assignment]
-
-
-def _equal(one: object, two: object) -> bool:
-    if isinstance(one, np.ndarray) and isinstance(two, np.ndarray):
-        return bool(np.array_equal(one, two, equal_nan=one.dtype.kind == "f"))
-    if isinstance(one, np.ndarray) or isinstance(two, np.ndarray):
-        return False
-    # NaN stands for what is not known.
-    return bool(one == two or (one != one and two != two))
+NormalSource: TypeAlias = Literal["gradients", "thicker_body", "history", "assumed"]
+Quality: TypeAlias = Literal["exact", "bound", "lipschitz"]
+Start: TypeAlias = Literal["approaching", "receding", "sliding", "resting"]
+Stop: TypeAlias = Literal["converged", "sign_known", "budget_spent", "memory_full", "rounding_reached"]
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Promise(Answer):
-    """What a field promises of its values.
+class AtPoint(_examples.AtPoint):
+    """The value of a field at a point, with what it promises there.
 
     Fields:
-        outside: "exact" (the distance), "bound" (at most the distance) or "lipschitz" (divide by ``lipschitz``)
-            where positive.
-        inside: The same where the field is negative.
-        lipschitz: The largest difference of two values over the distance of their points.
-        bounds: The corners of a box that holds the body, shape (2, D) [m]; None if it has none.
-        convex: Whether the field is a convex function.
-        has_interior: Whether points with negative values may exist.
-        deviation: How far a sampled field may be from its source, and the values up to which that holds [m];
-            None of formulas.
-        in_words: The whole in words.
-
-    >>> import palpate as pp
-    >>> (pp.ball(0.5) | pp.cuboid([1, 1, 1])).promise.inside
-    'bound'
-    """
-
-    outside: str
-    inside: str
-    lipschitz: float
-    bounds: Floats | None
-    convex: bool
-    has_interior: bool
-    deviation: tuple[float, float] | None
-    in_words: str
-
-    def __str__(self) -> str:
-        return self.in_words
-
-
-@dataclass(frozen=True, eq=False, kw_only=True)
-class AtPoint(Answer):
-    """What a field says at a point, by :meth:`Shape.at`.
-
-    Fields:
-        point: The point [m], shape (D,).
-        distance: The value of the field [m]: negative inside.
-        gradient: The gradient of the field, shape (D,).
-        normal: The gradient's unit vector, shape (D,); None where it vanishes.
-        surface: The nearest point of the surface, or of a field that is no distance one close by [m]; None if
-            none was found.
-        safe_radius: The radius of a ball about the point that is sure to hold no surface [m].
-        quality: What the value is here: "exact", "bound" or "lipschitz".
+        point: The point [m].
+        distance: The value of the field [m]. ``quality`` says whether it is the distance.
+        gradient: The gradient of the field.
+        normal: The gradient's unit vector; None where it is shorter than 1e-6.
+        surface: Where the promise is exact the nearest point of the surface, else a zero of the field nearby. None if
+            none was found [m].
+        is_inside: ``True`` if the value is negative.
+        safe_radius: The radius of a ball that is sure to hold no surface, rounding included [m].
+        quality: What the distance promises on this side of the surface.
         rounding: The largest rounding of the value [m].
 
     >>> import palpate as pp
@@ -104,276 +50,72 @@ class AtPoint(Answer):
     gradient: Floats
     normal: Floats | None
     surface: Floats | None
+    is_inside: bool
     safe_radius: float
-    quality: str
+    quality: Quality
     rounding: float
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Separation(Answer):
-    """How far apart two bodies are, by :func:`separation`: negative if they overlap.
-
-    Where a field is a bound, this is the separation of the fields, which is at most that of the bodies.
+class Promise(_examples.Promise):
+    """All that a field promises about its values.
 
     Fields:
-        lower: The separation is at least this [m].
-        upper: The separation is at most this [m].
-        stop: Why the search ended.
-        evaluations: How often the fields were evaluated.
-        point: A point between the bodies, or in both [m], shape (D,).
-        normal: The unit vector from the first to the second there, shape (D,); None where the gradients vanish.
+        outside: The quality where ``f > 0``.
+        inside: The quality where ``f < 0``.
+        lipschitz: The least known ``L`` with ``|f(p) − f(q)| ≤ L‖p − q‖``.
+        region: The ball in which ``lipschitz`` holds; everywhere if None.
+        bounds: Bounds of the set ``f ≤ 0``; None if it has none.
+        above_bounds: ``True`` if ``f`` is at least the distance to both bounds, everywhere outside them. Exact fields
+            are; others are raised to the distance to their box where an operator needs it.
+        convex: ``True`` if ``f`` is a convex function.
+        symmetric: For each axis, ``True`` if mirroring the axis changes nothing.
+        has_interior: ``True`` if points with ``f < 0`` may exist.
+        reach: The largest difference of two fields over which an operator in this tree still blends them [m]; zero if
+            all are sharp.
+        rounding: The absolute error of ``distance`` in double precision.
+        deviation: How far the field may be from the one that it stands in for; None if it stands for itself, as
+            formulas do.
+        in_words: The whole in words.
 
     >>> import palpate as pp
-    >>> found = pp.separation(pp.ball(0.5), pp.ball(0.5).translated([2, 0, 0]), tolerance=1e-3)
-    >>> found.lower <= 1.0 <= found.upper, found.stop
-    (True, 'converged')
+    >>> (pp.ball(0.5) | pp.cuboid([1, 1, 1])).promise.inside
+    'bound'
     """
 
-    lower: float
-    upper: float
-    stop: str
-    evaluations: int
-    point: Floats
-    normal: Floats | None
+    outside: Quality
+    inside: Quality
+    lipschitz: float
+    region: BoundingBall | None
+    bounds: Bounds | None
+    above_bounds: bool
+    convex: bool
+    symmetric: NDArray[np.bool_]
+    has_interior: bool
+    reach: float
+    rounding: Rounding
+    deviation: Deviation | None
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Overlap(Answer):
-    """Whether two bodies overlap, by :func:`overlap`.
+class Mass(_examples.Mass):
+    """Mass, centroid and second moments of a body of one density.
+
+    In the plane a body is one metre thick: mass is in kg for each metre.
 
     Fields:
-        overlaps: Whether they do, proven; None if the search ended before that was known.
-        lower: The separation is at least this [m].
-        upper: The separation is at most this [m].
-        stop: Why the search ended.
-        evaluations: How often the fields were evaluated.
-        point: A point between the bodies, or in both [m], shape (D,).
-        normal: The unit vector from the first to the second there, shape (D,); None where the gradients vanish.
-
-    >>> import palpate as pp
-    >>> found = pp.overlap(pp.ball(0.5), pp.ball(0.5).translated([2, 0, 0]))
-    >>> found.overlaps, bool(found), found.lower > 0
-    (False, False, True)
-    """
-
-    overlaps: bool | None
-    lower: float
-    upper: float
-    stop: str
-    evaluations: int
-    point: Floats
-    normal: Floats | None
-
-    def __bool__(self) -> bool:
-        if self.overlaps is None:
-            raise ValueError("undecided: ask with a larger budget, or look at .overlaps, which is None")
-        return self.overlaps
-
-
-@dataclass(frozen=True, eq=False, kw_only=True)
-class Contact(Answer):
-    """A pair of points at which two bodies touch or are nearest.
-
-    Fields:
-        point_a: The point of the first body [m], shape (D,).
-        point_b: The point of the second body [m], shape (D,).
-        normal: The unit vector from the first to the second, shape (D,).
-        gap: How far apart they are along the normal [m]: negative if they overlap.
-        normal_from: What the normal is taken from: "gradients", "thicker_body", "history" or "assumed".
-        on_surfaces: Whether both points are on surfaces; else they are estimated.
-        id: A name that stays while bodies move.
-
-    >>> import palpate as pp
-    >>> touch = pp.closest_points(pp.ball(0.5), pp.ball(0.5).translated([2, 0, 0])).contact
-    >>> touch.point_a.round(3), round(touch.gap, 3), touch.normal_from
-    (array([0.5, 0. , 0. ]), 1.0, 'gradients')
-    """
-
-    point_a: Floats
-    point_b: Floats
-    normal: Floats
-    gap: float
-    normal_from: str
-    on_surfaces: bool
-    id: int
-
-
-@dataclass(frozen=True, eq=False, kw_only=True)
-class ClosestPoints(Answer):
-    """Where two bodies are nearest to each other, by :func:`closest_points`.
-
-    Fields:
-        lower: The separation is at least this [m].
-        upper: The separation is at most this [m].
-        stop: Why the search ended.
-        evaluations: How often the fields were evaluated.
-        contact: The points; None where no way to the surfaces was found.
-
-    >>> import palpate as pp
-    >>> found = pp.closest_points(pp.ball(0.5), pp.ball(0.5).translated([2, 0, 0]))
-    >>> found.stop, found.contact.point_b.round(3)
-    ('converged', array([1.5, 0. , 0. ]))
-    """
-
-    lower: float
-    upper: float
-    stop: str
-    evaluations: int
-    contact: Contact | None
-
-
-@dataclass(frozen=True, eq=False, kw_only=True)
-class Manifold(Answer):
-    """Contacts that span where two bodies touch, the deepest first, by :func:`manifold`.
-
-    Fields:
-        lower: The separation is at least this [m].
-        upper: The distance of the bodies is at most this [m]: 0 if they overlap, infinite if none is known or it is
-            more than the margin.
-        stop: Why the search for more contacts ended.
-        evaluations: How often the fields were evaluated, for the separation and the contacts.
-        points_a: The points of the first body [m], shape (n, D).
-        points_b: The points of the second body [m], shape (n, D).
-        normals: The unit vectors from the first to the second, shape (n, D).
-        gaps: How far apart the points are along the normals [m], shape (n,): negative where the bodies overlap.
-        ids: Names that stay while bodies move, shape (n,).
-        groups: Which of the separate places where the bodies touch each contact is of, shape (n,).
-        separation: The separation with its bounds.
-        dropped: How many contacts were left out because there were more than ``most``.
-        is_whole: Whether every place where the bodies touch that is larger than the spacing has its contacts.
-
-    >>> import palpate as pp
-    >>> touch = pp.manifold(pp.cuboid([1, 1, 1]), pp.ball(0.5).translated([0, 0.99, 0]))
-    >>> len(touch), touch.normals.round(3), touch.is_whole
-    (1, array([[0., 1., 0.]]), True)
-    """
-
-    lower: float
-    upper: float
-    stop: str
-    evaluations: int
-    points_a: Floats
-    points_b: Floats
-    normals: Floats
-    gaps: Floats
-    ids: NDArray[np.uint64]
-    groups: NDArray[np.uint64]
-    separation: Separation
-    dropped: int
-    is_whole: bool
-
-    def __len__(self) -> int:
-        return len(self.gaps)
-
-
-@dataclass(frozen=True, eq=False, kw_only=True)
-class RayHit(Answer):
-    """The first place of a ray at which the field is at most the tolerance, by :func:`cast_ray`.
-
-    A ray that passes the surface at less than the tolerance is one that meets it.
-
-    Fields:
-        lower: Up to this way [m] the field is positive, proven.
-        upper: At this way [m] the field is at most the tolerance; the length of a ray that is free, infinite if the search
-            ended before either was known.
-        stop: Why the search ended.
-        evaluations: How often the field was evaluated.
-        point: The place at ``upper`` [m], shape (D,); None if the ray is free.
-        normal: The outward unit normal there, shape (D,); None where the gradient vanishes.
-
-    >>> import palpate as pp
-    >>> hit = pp.cast_ray(pp.ball(0.5), [0, 2, 0], [0, -1, 0])
-    >>> hit.stop, round(hit.upper, 3), hit.normal.round(3)
-    ('converged', 1.5, array([0., 1., 0.]))
-    """
-
-    lower: float
-    upper: float
-    stop: str
-    evaluations: int
-    point: Floats | None
-    normal: Floats | None
-
-
-@dataclass(frozen=True, eq=False, kw_only=True)
-class RayHits(Answer):
-    """The first places of n rays at which the field is at most the tolerance, by :func:`cast_rays`; see :class:`RayHit`.
-
-    Fields:
-        lower: Up to these ways [m] the field is positive, proven, shape (n,).
-        upper: At these ways [m] the field is at most the tolerance, shape (n,); the length of a ray that is free, infinite
-            if a search ended before either was known.
-        stops: Why each search ended, as places in ``STOPS``, shape (n,).
-        evaluations: How often the field was evaluated, shape (n,).
-        hits: 1 where the field is at most the tolerance somewhere along the ray, 0 where it is positive all along, proven,
-            -1 where neither is known, shape (n,).
-        points: The places at ``upper`` [m], shape (n, D); NaN of rays that are free.
-        normals: The outward unit normals there, shape (n, D); NaN where the gradient vanishes.
-
-    >>> import palpate as pp
-    >>> hits = pp.cast_rays(pp.ball(0.5), [[0, 2, 0], [1, 2, 0]], [0, -1, 0])
-    >>> hits.hits, hits.upper.round(3)
-    (array([1, 0], dtype=int8), array([   1.5, 1000. ]))
-    """
-
-    lower: Floats
-    upper: Floats
-    stops: NDArray[np.uint8]
-    evaluations: NDArray[np.uint32]
-    hits: NDArray[np.int8]
-    points: Floats
-    normals: Floats
-
-    def __len__(self) -> int:
-        return len(self.lower)
-
-
-@dataclass(frozen=True, eq=False, kw_only=True)
-class Separations(Answer):
-    """How far apart two bodies are at each of n poses, by :func:`separations`.
-
-    Fields:
-        lower: The separations are at least these [m], shape (n,).
-        upper: The separations are at most these [m], shape (n,).
-        points: Points between the bodies, or in both [m], in the frame of the first, shape (n, D).
-        normals: The unit vectors from the first to the second, shape (n, D); NaN where the gradients vanish.
-        stops: Why each search ended, as places in ``STOPS``, shape (n,).
-        evaluations: How often the fields were evaluated, shape (n,).
-
-    >>> import palpate as pp
-    >>> found = pp.separations(pp.ball(0.5), pp.ball(0.5), [[2, 0, 0], [3, 0, 0]])
-    >>> found.upper.round(3), [pp.STOPS[number] for number in found.stops]
-    (array([1., 2.]), ['converged', 'converged'])
-    """
-
-    lower: Floats
-    upper: Floats
-    points: Floats
-    normals: Floats
-    stops: NDArray[np.uint8]
-    evaluations: NDArray[np.uint32]
-
-    def __len__(self) -> int:
-        return len(self.lower)
-
-
-@dataclass(frozen=True, eq=False, kw_only=True)
-class Mass(Answer):
-    """Mass, centroid and moments of a body, with bounds on their errors, by :meth:`Shape.mass`.
-
-    Fields:
+        volume: The volume [m³], or area [m²].
+        volume_error: The largest error of the volume.
+        density: The density [kg/m³].
+        centroid: The centre of mass [m].
+        centroid_error: The largest error of each of its coordinates [m]; infinite if the volume may be zero.
+        second_moments: ``∫ ρ (p − c)(p − c)ᵀ`` about the centroid ``c`` [kg·m²].
+        second_moments_error: The largest error of each second moment [kg·m²].
+        cells: The cells that were looked at; none of a polyhedron, whose faces tell.
         mass: The mass [kg].
-        mass_error: How far it may be off [kg].
-        volume: The volume [m³], in the plane the area [m²].
-        volume_error: How far it may be off [m³], in the plane [m²].
-        density: The density that was given [kg/m³], in the plane [kg/m²].
-        centroid: The centroid [m], shape (D,).
-        centroid_error: How far it may be off [m].
-        second_moments: The integrals of density · x · y about the centroid [kg·m²], shape (D, D).
-        second_moments_error: How far each may be off [kg·m²].
-        inertia: In space the inertia tensor about the centroid [kg·m²], shape (3, 3); in the plane the moment of inertia
-            about it.
-        cells: How many cells were cut.
+        mass_error: The largest error of the mass [kg].
+        inertia: In space the inertia tensor about the centroid [kg·m²], shape (3, 3); in the plane the moment of
+            inertia about it.
 
     >>> import palpate as pp
     >>> mass = pp.cuboid([1, 1, 1]).mass(density=1000)
@@ -381,8 +123,6 @@ class Mass(Answer):
     (1000, array([167., 167., 167.]), True)
     """
 
-    mass: float
-    mass_error: float
     volume: float
     volume_error: float
     density: float
@@ -390,44 +130,158 @@ class Mass(Answer):
     centroid_error: float
     second_moments: Floats
     second_moments_error: float
-    inertia: Floats | float
     cells: int
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Body(Answer):
-    """A body of a scene, by ``scene[name]``.
+class Separation(_examples.Separation):
+    """How far apart two bodies are, by :func:`separation`: negative if they overlap.
+
+    Where a field is a bound, this is the separation of the fields, which is at most that of the bodies.
 
     Fields:
-        name: Its name.
-        shape: Its shape where it is in the scene.
-        shape_in_body: Its shape in its own frame.
-        pose: Where it is: a matrix of shape (D + 1, D + 1).
+        best: The best point or contact that was found.
+        lower: Proven lower bound [m].
+        upper: Upper bound, attained at ``best`` [m].
+        stop: Why the search stopped.
+        evaluations: How often fields were evaluated; a gradient counts twice.
 
     >>> import palpate as pp
-    >>> body = pp.Scene({"ball": pp.ball(0.5)}, poses={"ball": [0, 1, 0]})["ball"]
-    >>> body.shape_in_body, body.pose[:3, 3]
-    (ball(radius=0.5), array([0., 1., 0.]))
+    >>> found = pp.separation(pp.ball(0.5), pp.ball(0.5).translated([2, 0, 0]), tolerance=1e-3)
+    >>> found.lower <= 1.0 <= found.upper, found.stop
+    (True, 'converged')
     """
 
-    name: str
-    shape: Shape
-    shape_in_body: Shape
-    pose: Floats
+    best: Nearest
+    lower: float
+    upper: float
+    stop: Stop
+    evaluations: int
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class FirstTouch(Answer):
-    """When two bodies that move touch first, by :func:`sweep`: times from 0 to 1.
+class Overlap(_examples.Overlap):
+    """Whether two bodies overlap, by :func:`overlap`: the bounds are those of their separation.
 
     Fields:
-        lower: Before this time the bodies are proven apart.
-        upper: At this time they touch; infinite if no such time was found, 1 if they are apart all the time.
-        stop: Why the search ended: "converged" at a touch, "sign_known" if there is none.
-        evaluations: How often the fields were evaluated.
+        best: The best point or contact that was found.
+        lower: Proven lower bound [m].
+        upper: Upper bound, attained at ``best`` [m].
+        stop: Why the search stopped.
+        evaluations: How often fields were evaluated; a gradient counts twice.
+        overlaps: Whether they do, proven; None if the search ended before that was known.
+
+    >>> import palpate as pp
+    >>> found = pp.overlap(pp.ball(0.5), pp.ball(0.5).translated([2, 0, 0]))
+    >>> found.overlaps, bool(found), found.lower > 0
+    (False, False, True)
+    """
+
+    best: Nearest
+    lower: float
+    upper: float
+    stop: Stop
+    evaluations: int
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class ClosestPoints(_examples.ClosestPoints):
+    """Where two bodies are nearest to each other, by :func:`closest_points`: the bounds are those of their separation.
+
+    Fields:
+        best: The best point or contact that was found.
+        lower: Proven lower bound [m].
+        upper: Upper bound, attained at ``best`` [m].
+        stop: Why the search stopped.
+        evaluations: How often fields were evaluated; a gradient counts twice.
+
+    >>> import palpate as pp
+    >>> found = pp.closest_points(pp.ball(0.5), pp.ball(0.5).translated([2, 0, 0]))
+    >>> found.stop, found.best.point_b.round(3)
+    ('converged', array([1.5, 0. , 0. ]))
+    """
+
+    best: Contact | None
+    lower: float
+    upper: float
+    stop: Stop
+    evaluations: int
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class RayCast(_examples.RayCast):
+    """The first place of a ray at which the field is at most the tolerance, by :func:`cast_ray`.
+
+    Up to the way ``lower`` [m] the field is positive, proven. At the way ``upper`` it is at most the tolerance; of a
+    ray that is free, ``best`` is None and ``upper`` the length.
+
+    Fields:
+        best: The best point or contact that was found.
+        lower: Proven lower bound [m].
+        upper: Upper bound, attained at ``best`` [m].
+        stop: Why the search stopped.
+        evaluations: How often fields were evaluated; a gradient counts twice.
+
+    >>> import palpate as pp
+    >>> hit = pp.cast_ray(pp.ball(0.5), [0, 2, 0], [0, -1, 0])
+    >>> hit.stop, round(hit.upper, 3), hit.best.normal.round(3)
+    ('converged', 1.5, array([0., 1., 0.]))
+    """
+
+    best: RayHit | None
+    lower: float
+    upper: float
+    stop: Stop
+    evaluations: int
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Manifold(_examples.Manifold):
+    """The contacts of two bodies.
+
+    Fields:
+        contacts: The contacts, by group; in each group the deepest comes first, by the fields' values.
+        groups: The number of contacts in each group. A group is one patch with like normals.
+        separation: The separation. Its point is the deepest contact, except when (a) the separation exceeds the
+            margin, (b) the contact was moved to an edge, or (c) ``normal_from`` is not the gradients. Its evaluations
+            are those of both searches; steps to points of surfaces do not count.
+        distance_at_most: The distance of the bodies is at most this [m]: zero if they overlap, the separation where
+            both fields are exact outside, else that of two points found in the bodies. Infinite where none of these is
+            known, as a separation made of bounds does not tell how far the bodies are apart at most, and of bodies
+            that are proven farther apart than the margin.
+        dropped: How many contacts were left out beyond the most that were asked for.
+        is_whole: ``False`` if the search ended before it had seen the whole region.
+        region_stop: Why the search of the region ended: ``converged`` if it is whole.
+
+    >>> import palpate as pp
+    >>> touch = pp.manifold(pp.cuboid([1, 1, 1]), pp.ball(0.5).translated([0, 0.99, 0]))
+    >>> len(touch), touch.contacts.normal.round(3), touch.is_whole
+    (1, array([[0., 1., 0.]]), True)
+    """
+
+    contacts: Contacts
+    groups: NDArray[np.uint64]
+    separation: Separation
+    distance_at_most: float
+    dropped: int
+    is_whole: bool
+    region_stop: Stop
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class FirstTouch(_examples.FirstTouch):
+    """When two bodies touch first, of a motion over the time from 0 to 1.
+
+    Fields:
+        lower: Before this time the bodies are proven apart, rounding included: their separation is more than half of
+            the gap. Of an element or a mesh, the field is more than half of the gap at every point.
+        upper: At this time the separation is at most the gap. Infinite if no touch was found; the end of the time if
+            the bodies are proven apart all the time.
+        contact: The deepest contact at ``upper``; None if there is none.
+        start: How the bodies move on, if they touch at the start and a field gives the normal there.
+        stop: Why the search stopped: ``converged`` at a touch, ``sign_known`` if there is none.
+        evaluations: How often fields were evaluated; a gradient counts twice.
         touches: Whether they touch, proven; None if the search ended before that was known.
-        contact: Where they touch at ``upper``; None if they do not.
-        start: How they move on if they touch at the start: "approaching", "receding", "sliding" or "resting".
 
     >>> import palpate as pp
     >>> touch = pp.sweep(pp.ball(0.5), pp.ball(0.5), start=[3, 0, 0], end=[0, 0, 0])
@@ -437,64 +291,211 @@ class FirstTouch(Answer):
 
     lower: float
     upper: float
-    stop: str
-    evaluations: int
-    touches: bool | None
     contact: Contact | None
-    start: str | None
+    start: Start | None
+    stop: Stop
+    evaluations: int
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class BodyImpact(FirstTouch):
-    """When two bodies of a world touch first, by :meth:`World.first_impacts`.
-
-    Fields are those of :class:`FirstTouch`, and:
-        a: The name of the first body.
-        b: The name of the second.
-
-    >>> import palpate as pp
-    >>> world = pp.World({"a": pp.ball(0.5), "b": pp.ball(0.5).translated([3, 0, 0])})
-    >>> [hit] = world.first_impacts({"b": [-3, 0, 0]})
-    >>> hit.a, hit.b, round(hit.upper, 3)
-    ('a', 'b', 0.667)
-    """
-
-    a: str
-    b: str
-
-
-@dataclass(frozen=True, eq=False, kw_only=True)
-class Neighbours(Answer):
-    """Two bodies of a world that are near each other, by :meth:`World.step`.
+class BoundingBall(_examples.BoundingBall):
+    """A ball that bounds a shape.
 
     Fields:
-        a: The name of the first body.
-        b: The name of the second.
-        lower: The separation is at least this [m].
-        upper: The separation is at most this [m].
-        verdict: "touching" if their distance is proven to be at most the margin, "apart" if it is more, else
-            "undecided".
-        manifold: Their contacts; None if neither is bounded.
+        centre: The centre [m].
+        radius: The radius [m].
 
     >>> import palpate as pp
-    >>> [near] = pp.World({"a": pp.ball(0.5), "b": pp.ball(0.4)}).step()
-    >>> near.a, near.b, near.verdict, near.upper < 0
-    ('a', 'b', 'touching', True)
+    >>> pp.ball(0.5).translated([2, 0, 0]).promise.bounds.ball.centre
+    array([2., 0., 0.])
     """
 
-    a: str
-    b: str
-    lower: float
-    upper: float
-    verdict: str
-    manifold: Manifold | None
+    centre: Floats
+    radius: float
 
-    @property
-    def stop(self) -> str | None:
-        """Why the search for contacts ended.
 
-        >>> import palpate as pp
-        >>> [near.stop for near in pp.World({"a": pp.ball(0.5), "b": pp.ball(0.4)}).step()]
-        ['converged']
-        """
-        return None if self.manifold is None else self.manifold.stop
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Bounds(_examples.Bounds):
+    """A box and a ball, each of which holds the set ``f ≤ 0``.
+
+    Fields:
+        aabb: The box.
+        ball: The ball; often tighter than the one around the box.
+
+    >>> import palpate as pp
+    >>> bounds = pp.cuboid([6, 4, 12]).promise.bounds
+    >>> bounds.aabb.max, round(bounds.ball.radius, 9)
+    (array([3., 2., 6.]), 7.0)
+    """
+
+    aabb: Aabb
+    ball: BoundingBall
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Aabb(_examples.Aabb):
+    """A box along the axes, ``min ≤ p ≤ max`` in each coordinate [m].
+
+    Fields:
+        min: The corner with the smallest coordinates.
+        max: The corner with the largest coordinates.
+
+    >>> import palpate as pp
+    >>> pp.ball(0.5).promise.bounds.aabb.min
+    array([-0.5, -0.5, -0.5])
+    """
+
+    min: Floats
+    max: Floats
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Rounding(_examples.Rounding):
+    """The absolute error of ``distance``, as a function of how far the point is from the origin.
+
+    Composed per node from the count of its rounded operations, and checked against double-double arithmetic on random
+    trees.
+
+    Fields:
+        constant: The error at the origin [m].
+        per_metre: The further error for each metre from the origin.
+
+    >>> import palpate as pp
+    >>> 0 < pp.ball(0.5).promise.rounding.constant < 1e-14
+    True
+    """
+
+    constant: float
+    per_metre: float
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Deviation(_examples.Deviation):
+    """How far a field may be from the one that it stands in for, as a grid for the shape that was baked.
+
+    With both clamped to ``within`` on both sides, their values differ by at most ``value`` everywhere. So the surface
+    of each lies where the size of the other's values is at most ``value``: of an exact source, nowhere farther than
+    ``value`` from its surface. Where the source is a bound, places may be farther off. (Where the source is a bound
+    that falls below the distance to its box, that distance is meant.) Where ``within`` is not larger than ``value``,
+    nothing is known.
+
+    Fields:
+        value: The largest difference of the values [m].
+        within: The values to which both are clamped [m].
+
+    >>> import palpate as pp
+    >>> deviation = pp.ball(0.5).baked(cell=0.05).promise.deviation
+    >>> 0 < deviation.value < deviation.within
+    True
+    """
+
+    value: float
+    within: float
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Nearest(_examples.Nearest):
+    """Where two bodies are nearest, or overlap most, in world coordinates.
+
+    Fields:
+        point: The point between the bodies, or in both [m].
+        normal: The unit vector from the first body to the second; None where the gradients of both are equal or
+            vanish.
+
+    >>> import palpate as pp
+    >>> pp.separation(pp.ball(0.5), pp.ball(0.5).translated([2, 0, 0])).best.normal.round(3)
+    array([1., 0., 0.])
+    """
+
+    point: Floats
+    normal: Floats | None
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Contact(_examples.Contact):
+    """One place where two bodies touch, or nearly do, in world coordinates.
+
+    Every question that finds contacts answers with this type. Which body is ``a`` and which is ``b`` follows from the
+    order of the arguments.
+
+    Fields:
+        point_a: The point on the surface of body ``a`` [m]; see ``on_surfaces``.
+        point_b: The point on the surface of body ``b`` [m].
+        normal: The unit vector from the first body to the second. Where the fields give no direction, as at the centre
+            of a ball, it is the line between the centres of the bodies; where that is none, and for elements, the y
+            axis. See ``normal_from``.
+        normal_from: What the normal was taken from.
+        on_surfaces: ``False`` where a point is not found on its surface, but estimated along the normal from the
+            values of both fields: where a field is a bound, the surfaces may be farther apart than the gap.
+        gap: The distance from ``point_a`` to ``point_b`` along the normal, ``(point_b − point_a)·normal`` [m];
+            negative where the bodies overlap.
+        id: Tells this contact from the others of the same answer. Where a ``Track`` or a ``World`` follows the bodies,
+            a contact that lasts keeps its id from step to step. So it does at a tool of ``palpate-haptics``, where the
+            id is ``body << 32 | point``, of a body and a point of the tool's shell. Elsewhere the id is the contact's
+            index in the answer.
+
+    >>> import palpate as pp
+    >>> touch = pp.closest_points(pp.ball(0.5), pp.ball(0.5).translated([2, 0, 0])).best
+    >>> touch.point_a.round(3), round(touch.gap, 3), touch.normal_from
+    (array([0.5, 0. , 0. ]), 1.0, 'gradients')
+    """
+
+    point_a: Floats
+    point_b: Floats
+    normal: Floats
+    normal_from: NormalSource
+    on_surfaces: bool
+    gap: float
+    id: int
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class RayHit(_examples.RayHit):
+    """Where a ray meets a surface.
+
+    Fields:
+        point: The point [m].
+        normal: The gradient's unit vector there; None where it is shorter than 1e-6.
+
+    >>> import palpate as pp
+    >>> pp.cast_ray(pp.ball(0.5), [0, 2, 0], [0, -1, 0]).best.point.round(3)
+    array([0. , 0.5, 0. ])
+    """
+
+    point: Floats
+    normal: Floats | None
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Contacts(_examples.Contacts):
+    """Contacts as arrays, with a row for each :class:`Contact`.
+
+    Fields:
+        point_a: The point on the surface of body ``a`` [m]; see ``on_surfaces``.
+        point_b: The point on the surface of body ``b`` [m].
+        normal: The unit vector from the first body to the second. Where the fields give no direction, as at the centre
+            of a ball, it is the line between the centres of the bodies; where that is none, and for elements, the y
+            axis. See ``normal_from``.
+        normal_from: What the normal was taken from.
+        on_surfaces: ``False`` where a point is not found on its surface, but estimated along the normal from the
+            values of both fields: where a field is a bound, the surfaces may be farther apart than the gap.
+        gap: The distance from ``point_a`` to ``point_b`` along the normal, ``(point_b − point_a)·normal`` [m];
+            negative where the bodies overlap.
+        id: Tells this contact from the others of the same answer. Where a ``Track`` or a ``World`` follows the bodies,
+            a contact that lasts keeps its id from step to step. So it does at a tool of ``palpate-haptics``, where the
+            id is ``body << 32 | point``, of a body and a point of the tool's shell. Elsewhere the id is the contact's
+            index in the answer.
+
+    >>> import palpate as pp
+    >>> touch = pp.manifold(pp.cuboid([1, 1, 1]), pp.ball(0.5).translated([0, 0.99, 0])).contacts
+    >>> touch.normal.round(3), touch.gap.round(3)
+    (array([[0., 1., 0.]]), array([-0.01]))
+    """
+
+    point_a: Floats
+    point_b: Floats
+    normal: Floats
+    normal_from: NDArray[np.str_]
+    on_surfaces: NDArray[np.bool_]
+    gap: Floats
+    id: NDArray[np.uint64]

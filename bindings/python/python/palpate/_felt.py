@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from palpate._answers import Answer, Floats
+from palpate._answer import Answer, Floats
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)

@@ -9,7 +9,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from palpate._answers import Answer, Floats
+from palpate._answer import Answer, Floats
+from palpate._answers import Contacts
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -89,23 +90,17 @@ class MeshContacts(MeshHits):
     """Where the faces of a mesh touch a shape, by :func:`mesh_contacts`.
 
     Fields are those of :class:`MeshHits`, and:
-        points_a: The points of the shape [m], shape (n, D).
-        points_b: The points of the mesh [m], shape (n, D).
-        normals: The unit vectors from the shape to the mesh, shape (n, D).
-        gaps: How far apart the points are [m], shape (n,): negative where they overlap.
-        faces: The face of each contact, shape (n,).
+        contacts: The contacts, from the shape to the mesh.
+        elements: The face of each contact, shape (n,).
 
     >>> import palpate as pp
     >>> found = pp.mesh_contacts(pp.ball(0.5), pp.cuboid([1, 1, 1]).mesh(cell=0.3), pose=[0, 0.95, 0])
-    >>> found.points_a.shape == found.points_b.shape, bool(found.gaps.min() < 0)
+    >>> len(found) == len(found.elements), bool(found.contacts.gap.min() < 0)
     (True, True)
     """
 
-    points_a: Floats
-    points_b: Floats
-    normals: Floats
-    gaps: Floats
-    faces: NDArray[np.uint32]
+    contacts: Contacts
+    elements: NDArray[np.uint32]
 
     def __len__(self) -> int:
-        return len(self.gaps)
+        return len(self.contacts)

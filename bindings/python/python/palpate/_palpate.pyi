@@ -11,21 +11,17 @@ from numpy.typing import ArrayLike, NDArray
 
 from palpate._answers import (
     AtPoint,
-    Body,
     ClosestPoints,
     FirstTouch,
-    BodyImpact,
     Manifold,
     Mass,
-    Neighbours,
     Overlap,
     Promise,
-    RayHit,
-    RayHits,
+    RayCast,
     Separation,
-    Separations,
 )
 from palpate._felt import Event, Felt, Snapshot, Trace
+from palpate._many import Body, BodyImpact, Neighbours, RayHits, Separations
 from palpate._meshes import MeshContacts, MeshHits, MeshReport
 from palpate._types import Plane, Profile, Row
 
@@ -422,7 +418,7 @@ def cast_ray(
     *,
     tolerance: float | None = None,
     budget: int | None = None,
-) -> RayHit: ...
+) -> RayCast: ...
 def cast_rays(
     shape: Shape,
     origins: ArrayLike,

@@ -90,7 +90,7 @@ def plot_contacts(manifold: Manifold | MeshContacts, *, plane: str = "xy", ax: A
     """
     import matplotlib.pyplot as plt
 
-    points, normals = manifold.points_a, manifold.normals
+    points, normals = manifold.contacts.point_a, manifold.contacts.normal
     right, up, _ = _axes(plane, points.shape[1])
     if ax is None:
         _, ax = plt.subplots()

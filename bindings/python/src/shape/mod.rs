@@ -11,7 +11,7 @@ use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 
-use crate::answers;
+use crate::answers::{self, Fields};
 use crate::call::detached_in;
 use crate::chain::Chain;
 use crate::error::OrRaise;
@@ -196,7 +196,10 @@ impl PyShape {
     /// 'exact outside, exact inside'
     #[getter]
     fn promise<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        of_either!(self.made(py)?, shape => answers::promise(py, shape.promise()))
+        of_either!(self.made(py)?, shape => {
+            let promise = shape.promise();
+            Fields::of(py, promise)?.with("in_words", promise.in_words())?.of_class("Promise")
+        })
     }
 
     /// The corners of a box that holds the body, shape (2, D) [m]; None if it has none.

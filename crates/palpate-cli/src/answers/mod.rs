@@ -36,8 +36,11 @@ impl<const D: usize> From<Aabb<D>> for Bounds {
 
 #[cfg(test)]
 mod tests {
+    use std::collections::BTreeSet;
     use std::fmt::Write;
 
+    use palpate::field::{Mass, Promise};
+    use palpate::query::{AtPoint, Certified, Contact, FirstTouch, Manifold, Nearest, RayHit};
     use palpate::scene::{ANSWER_VERSION, Question};
     use schemars::generate::SchemaSettings;
     use schemars::{JsonSchema, SchemaGenerator};
@@ -55,11 +58,12 @@ mod tests {
     /// Set to write what is generated instead of comparing it.
     const RENEW: &str = "PALPATE_RENEW";
 
+    fn of<T: JsonSchema>(generator: &mut SchemaGenerator) -> schemars::Schema {
+        T::json_schema(generator)
+    }
+
     /// The schema of each answer, by the command that prints it.
     fn answers(generator: &mut SchemaGenerator) -> Vec<(&'static str, schemars::Schema)> {
-        fn of<T: JsonSchema>(generator: &mut SchemaGenerator) -> schemars::Schema {
-            T::json_schema(generator)
-        }
         vec![
             ("question", of::<Question>(generator)),
             ("answer", of::<palpate::scene::Answer<3>>(generator)),
@@ -126,6 +130,37 @@ mod tests {
         })
     }
 
+    /// The schema of the answers that Python has as classes, and the last parts of the renamed keys.
+    /// `generate_answers.py` writes the classes from it.
+    fn python() -> Value {
+        let mut generator = SchemaSettings::draft2020_12().into_generator();
+        let own = &mut generator;
+        let classes = [
+            ("AtPoint", of::<AtPoint<3>>(own)),
+            ("Promise", of::<Promise<3>>(own)),
+            ("Mass", of::<Mass<3>>(own)),
+            ("Separation", of::<Certified<Nearest<3>>>(own)),
+            ("Overlap", of::<Certified<Nearest<3>>>(own)),
+            ("ClosestPoints", of::<Certified<Option<Contact<3>>>>(own)),
+            ("RayCast", of::<Certified<Option<RayHit<3>>>>(own)),
+            ("Manifold", of::<Manifold<3>>(own)),
+            ("FirstTouch", of::<FirstTouch<3>>(own)),
+        ];
+        let classes: Map<_, _> =
+            classes.map(|(class, of)| (class.to_owned(), of.to_value())).into_iter().collect();
+        let last = |key: &str| key.rsplit('.').next().unwrap_or_default().to_owned();
+        let renamed = super::renamed::RENAMED.iter().map(|row| [last(row.old), last(row.new)]);
+        let renamed: BTreeSet<_> = renamed.filter(|[old, new]| old != new).collect();
+        serde_json::json!({
+            "$schema": "https://json-schema.org/draft/2020-12/schema",
+            "title": "answers of Python",
+            "description": "The classes of answers that Rust has too. Generated.",
+            "properties": classes,
+            "$defs": generator.take_definitions(true),
+            "renamed": renamed,
+        })
+    }
+
     /// Writes a generated text if that is asked for, and else compares it.
     fn compare(file: &str, current: &str) {
         let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join(file);
@@ -141,6 +176,8 @@ mod tests {
         let schema = schema();
         compare("schema/answers.schema.json", &format!("{schema:#}\n"));
         compare("../../docs/answers.md", &Page::of(&schema));
+        let python = python();
+        compare("../../bindings/python/answers.schema.json", &format!("{python:#}\n"));
     }
 
     #[test]

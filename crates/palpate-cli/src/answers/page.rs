@@ -13,7 +13,7 @@ const HEAD: &str = "\
 
 `palpate COMMAND --json` prints an answer: an object. Its numbers are in SI units (metres, \
 seconds, kilograms, radians), except where the table names another unit. It begins with its version, `\"palpate\": 2`. A value that is not known is `null`, and \
-so is an infinite number. `palpate schema answers` prints the schema of this page.
+so is an infinite number, except in Python. `palpate schema answers` prints the schema of this page.
 
 The commands `eval`, `contact`, `sweep` and `mass` ask a [question](#question) and print the \
 [answer](#answer). The live page, Python and `scene.ask` in Rust use the same two objects. \

@@ -25,6 +25,14 @@ pub(crate) fn serialize<S: Serializer, T: Serialize, const N: usize>(
     tuple.end()
 }
 
+/// Writes a matrix as a tuple of its rows.
+pub(crate) fn rows<S: Serializer, const N: usize>(
+    rows: &[[f64; N]; N],
+    serializer: S,
+) -> Result<S::Ok, S::Error> {
+    serialize(&rows.map(Vector), serializer)
+}
+
 /// Reads an array from a tuple.
 pub(crate) fn deserialize<'de, D: Deserializer<'de>, T: Deserialize<'de>, const N: usize>(
     deserializer: D,
@@ -68,7 +76,7 @@ impl<'de, T: Deserialize<'de>, const N: usize> Deserialize<'de> for Vector<T, N>
 impl<const N: usize> Serialize for Rotation<N> {
     /// As the rows of its matrix.
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        serialize(&self.matrix().map(Vector), serializer)
+        rows(self.matrix(), serializer)
     }
 }
 

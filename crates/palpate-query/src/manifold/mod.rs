@@ -70,6 +70,7 @@ impl ManifoldSettings {
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Manifold<const D: usize> {
     /// The contacts, by group; in each group the deepest comes first, by the fields' values.
     pub contacts: Vec<Contact<D>>,
@@ -85,11 +86,11 @@ pub struct Manifold<const D: usize> {
     /// these is known, as a separation made of bounds does not tell how far the bodies are apart at most,
     /// and of bodies that are proven farther apart than the margin.
     pub distance_at_most: f64,
-    /// How many contacts were left out beyond [`ManifoldSettings::most`].
+    /// How many contacts were left out beyond the most that were asked for.
     pub dropped: usize,
     /// `false` if the search ended before it had seen the whole region.
     pub is_whole: bool,
-    /// Why the search of the region ended: [`Stop::Converged`] if it is whole.
+    /// Why the search of the region ended: `converged` if it is whole.
     pub region_stop: Stop,
 }
 
