@@ -6,7 +6,46 @@
 use palpate_field::{Point, Vector};
 use palpate_query::{DistanceBound, Element, Placed, QueryError, minimax_step};
 
-use crate::{Descent, check_start};
+use crate::Descent;
+use crate::descent::Step;
+
+/// Both values at a point, with their gradients.
+type Slopes<const D: usize> = [(f64, Vector<f64, D>); 2];
+
+/// The larger of both values.
+fn larger<const D: usize>([(a, _), (b, _)]: Slopes<D>) -> f64 {
+    a.max(b)
+}
+
+/// Two bodies that a search asks together.
+struct Pair<'a, const D: usize> {
+    bodies: [DistanceBound<'a, D>; 2],
+    /// Where the search goes on from.
+    here: Slopes<D>,
+}
+
+impl<'a, const D: usize> Pair<'a, D> {
+    /// The bodies, and a search from `start` with the larger of both values there. Refuses a start or a
+    /// tolerance that cannot be computed with.
+    fn begin(
+        a: impl Into<Placed<'a, D>>,
+        b: impl Into<Placed<'a, D>>,
+        start: Point<D>,
+        tolerance: f64,
+    ) -> Result<(Self, Descent<D>), QueryError> {
+        QueryError::check_point("start", start)?;
+        QueryError::check_length(tolerance)?;
+        let bodies = DistanceBound::of_both(a, b)?;
+        let here = bodies.each_ref().map(|body| body.distance_gradient(start));
+        Ok((Self { bodies, here }, Descent::from_start(start, larger(here), 4)))
+    }
+
+    /// Both values and gradients at a point, counted.
+    fn slopes(&self, p: Point<D>, descent: &mut Descent<D>) -> Slopes<D> {
+        descent.evaluations += 4;
+        self.bodies.each_ref().map(|body| body.distance_gradient(p))
+    }
+}
 
 /// Newton steps of a projection at most.
 const PROJECTION: u32 = 16;
@@ -79,28 +118,27 @@ impl AlternatingProjection {
         start: Point<D>,
         tolerance: f64,
     ) -> Result<Descent<D>, QueryError> {
-        check_start(start, tolerance)?;
-        let [a, b] = DistanceBound::of_both(a, b)?;
-        let value = |p| a.distance_gradient(p).0.max(b.distance_gradient(p).0);
+        let (pair, mut descent) = Pair::begin(a, b, start, tolerance)?;
         let visit = |descent: &mut Descent<D>, p| {
-            descent.evaluations += 4;
-            descent.visit(p, value(p));
+            let value = larger(pair.slopes(p, descent));
+            descent.visit(p, value);
         };
-        let mut descent = Descent::from_start(start, value(start), 4);
-        let mut p = project(&a, start, tolerance, &mut descent);
+        let [a, b] = &pair.bodies;
+        let mut p = project(a, start, tolerance, &mut descent);
         visit(&mut descent, p);
-        while descent.value > 0.0 && descent.steps < self.steps {
-            descent.steps += 1;
-            let there = onto(&b, p, PAST * tolerance, &mut descent);
-            visit(&mut descent, there);
-            let back = project(&a, there, tolerance, &mut descent);
-            visit(&mut descent, back);
-            if (back - p).norm() < tolerance {
-                break;
+        Ok(descent.run(self.steps, |descent| {
+            let is_out = descent.value > 0.0;
+            if !is_out {
+                return Step::None;
             }
+            let there = onto(b, p, PAST * tolerance, descent);
+            visit(descent, there);
+            let back = project(a, there, tolerance, descent);
+            visit(descent, back);
+            let is_still = (back - p).norm() < tolerance;
             p = back;
-        }
-        Ok(descent)
+            if is_still { Step::Last } else { Step::Next }
+        }))
     }
 }
 
@@ -199,33 +237,28 @@ impl MinimaxProximal {
         start: Point<D>,
         tolerance: f64,
     ) -> Result<Descent<D>, QueryError> {
-        check_start(start, tolerance)?;
-        let bodies = DistanceBound::of_both(a, b)?;
-        let slopes = |p: Point<D>| bodies.map(|body| body.distance_gradient(p));
-        let mut here = slopes(start);
-        let mut descent = Descent::from_start(start, here[0].0.max(here[1].0), 4);
+        let (mut pair, descent) = Pair::begin(a, b, start, tolerance)?;
         let mut size = descent.value.abs().max(tolerance);
-        while descent.steps < self.steps && size >= tolerance && size > 0.0 {
-            descent.steps += 1;
-            let [(a, slope_a), (b, slope_b)] = here;
+        Ok(descent.run(self.steps, |descent| {
+            let is_long = size >= tolerance && size > 0.0;
+            if !is_long {
+                return Step::None;
+            }
+            let [(a, slope_a), (b, slope_b)] = pair.here;
             let next = descent.best - minimax_step([a, b], [slope_a, slope_b], size);
-            let there = slopes(next);
-            descent.evaluations += 4;
-            let value = there[0].0.max(there[1].0);
+            let there = pair.slopes(next, descent);
+            let value = larger(there);
             if value < descent.value {
                 descent.visit(next, value);
-                here = there;
+                pair.here = there;
                 size *= GROW;
             } else {
                 size *= SHRINK;
             }
-        }
-        Ok(descent)
+            Step::Next
+        }))
     }
 }
-
-/// Both values at a point, with their gradients.
-type Slopes<const D: usize> = [(f64, Vector<f64, D>); 2];
 
 /// The share of the promised descent that a step must keep (Armijo 1966).
 const KEPT: f64 = 0.1;
@@ -280,16 +313,6 @@ impl Default for SumDescent {
     }
 }
 
-impl<const D: usize> Descent<D> {
-    /// Goes on to a point, which is the answer so far.
-    fn take(&mut self, p: Point<D>, value: f64, evaluations: u32) {
-        self.path.push(p);
-        (self.best, self.value) = (p, value);
-        self.evaluations += evaluations;
-        self.steps += 1;
-    }
-}
-
 impl SumDescent {
     /// How many starts `MuJoCo` tries, its `sdf_initpoints`.
     pub const STARTS: u32 = 40;
@@ -307,53 +330,47 @@ impl SumDescent {
         start: Point<D>,
         tolerance: f64,
     ) -> Result<Descent<D>, QueryError> {
-        check_start(start, tolerance)?;
-        let bodies = DistanceBound::of_both(a, b)?;
-        let slopes = |p: Point<D>| bodies.map(|body| body.distance_gradient(p));
-        let larger = |[(a, _), (b, _)]: [(f64, _); 2]| a.max(b);
-        let sum = |[(a, _), (b, _)]: [(f64, _); 2]| a + b + a.max(b).abs();
-        let mut p = start;
-        let mut here = slopes(p);
-        let mut descent = Descent::from_start(start, larger(here), 4);
-        // Halved until it leads down; at last it may lead up.
-        let step = |p: Point<D>,
-                    gradient: Vector<f64, D>,
-                    promised: &dyn Fn(Slopes<D>, f64) -> bool| {
-            let (mut factor, mut evaluations) = (self.largest, 0);
-            loop {
-                let next = p - gradient * factor;
-                let there = slopes(next);
-                evaluations += 4;
-                if promised(there, factor) || factor <= self.smallest {
-                    return (next, there, factor, evaluations);
-                }
-                factor *= 0.5;
-            }
-        };
-        while descent.steps < self.steps {
-            let [(a, slope_a), (b, slope_b)] = here;
+        let (mut pair, descent) = Pair::begin(a, b, start, tolerance)?;
+        let sum = |[(a, _), (b, _)]: Slopes<D>| a + b + a.max(b).abs();
+        let mut descent = descent.run(self.steps, |descent| {
+            let [(a, slope_a), (b, slope_b)] = pair.here;
             let (greater, its_slope) = if a > b { (a, slope_a) } else { (b, slope_b) };
             let gradient = slope_a + slope_b + its_slope * greater.signum();
-            let squared = gradient.dot(gradient);
-            let before = sum(here);
-            let leads_down =
-                |there, factor: f64| sum(there) - before <= -KEPT * factor * squared;
-            let (next, there, factor, evaluations) = step(p, gradient, &leads_down);
-            (p, here) = (next, there);
-            descent.take(p, larger(here), evaluations);
-            if sum(here) >= before || factor * squared.sqrt() <= tolerance {
-                break;
-            }
-        }
-        let before = larger(here);
-        let [(a, slope_a), (b, slope_b)] = here;
+            let before = sum(pair.here);
+            let length = self.step(&mut pair, sum, gradient, descent);
+            let is_last = sum(pair.here) >= before || length <= tolerance;
+            if is_last { Step::Last } else { Step::Next }
+        });
+        let [(a, slope_a), (b, slope_b)] = pair.here;
         let gradient = if a > b { slope_a } else { slope_b };
-        let squared = gradient.dot(gradient);
-        let leads_down =
-            |there, factor: f64| larger(there) - before <= -KEPT * factor * squared;
-        let (next, there, _, evaluations) = step(p, gradient, &leads_down);
-        descent.take(next, larger(there), evaluations);
+        let _ = self.step(&mut pair, larger, gradient, &mut descent);
+        descent.steps += 1;
         Ok(descent)
+    }
+
+    /// Goes down the gradient of a goal, by a step that is halved until it leads down, and at last may
+    /// lead up; the length of the step [m].
+    fn step<const D: usize>(
+        &self,
+        pair: &mut Pair<'_, D>,
+        goal: impl Fn(Slopes<D>) -> f64,
+        gradient: Vector<f64, D>,
+        descent: &mut Descent<D>,
+    ) -> f64 {
+        let (before, squared) = (goal(pair.here), gradient.dot(gradient));
+        let mut factor = self.largest;
+        loop {
+            let next = descent.best - gradient * factor;
+            let there = pair.slopes(next, descent);
+            let leads_down = goal(there) - before <= -KEPT * factor * squared;
+            if leads_down || factor <= self.smallest {
+                pair.here = there;
+                descent.path.push(next);
+                (descent.best, descent.value) = (next, larger(there));
+                return factor * squared.sqrt();
+            }
+            factor *= 0.5;
+        }
     }
 }
 

@@ -55,6 +55,7 @@
 mod named;
 
 mod alternating_projection;
+mod descent;
 mod gradient;
 mod instances;
 mod naive;
@@ -62,13 +63,12 @@ mod projected_gradient;
 mod sweep;
 mod weights;
 
-use std::fmt;
-
 use palpate_field::{Point, Shape};
 use palpate_query::{Element, Placed, QueryError};
 
 pub use alternating_projection::AlternatingProjection;
 pub use alternating_projection::{MinimaxProximal, SumDescent};
+pub use descent::Descent;
 pub use gradient::{
     FoundDirection, GradientMethod, GradientSampler, adaptive_offset, angle_between,
     central_differences, closest_vector, dichotomy,
@@ -81,61 +81,6 @@ pub use projected_gradient::{MacklinDescent, ProjectedGradient};
 pub use sweep::{LocalSweep, LocalTouch, SampledSweep, SpaceTimeGoldenSection};
 pub use weights::halton_starts;
 pub use weights::{Weights, WeightsError};
-
-/// What a local search found, and how it came there.
-#[derive(Clone, Debug, PartialEq)]
-#[non_exhaustive]
-pub struct Descent<const D: usize> {
-    /// The best point on the way, or the last where the method returns that [m].
-    pub best: Point<D>,
-    /// The value there: nothing says that it is the least [m].
-    pub value: f64,
-    /// Steps that were taken.
-    pub steps: u32,
-    /// How often fields were asked; a gradient counts twice.
-    pub evaluations: u32,
-    /// The points at which the search was, from its start on [m].
-    pub path: Vec<Point<D>>,
-}
-
-impl<const D: usize> Descent<D> {
-    /// A search that starts at a point with this value, for which the fields were asked
-    /// so often.
-    fn from_start(start: Point<D>, value: f64, evaluations: u32) -> Self {
-        Self { best: start, value, steps: 0, evaluations, path: vec![start] }
-    }
-
-    /// A search that starts at this point of an element.
-    fn from_weights<const N: usize>(
-        shape: &Shape<D>,
-        element: &Element<N, D>,
-        start: &Weights<N>,
-    ) -> Self {
-        let start = element.at(start.of_vertices());
-        Self::from_start(start, shape.distance(start), 1)
-    }
-
-    /// The search is at `p`.
-    fn visit(&mut self, p: Point<D>, value: f64) {
-        self.path.push(p);
-        if value < self.value {
-            (self.best, self.value) = (p, value);
-        }
-    }
-}
-
-impl<const D: usize> fmt::Display for Descent<D> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { best, value, steps, evaluations, .. } = self;
-        write!(f, "{value} m at {:?} m, {steps} steps, {evaluations} evaluations", best.0)
-    }
-}
-
-/// Refuses a start or a tolerance that cannot be computed with.
-fn check_start<const D: usize>(start: Point<D>, tolerance: f64) -> Result<(), QueryError> {
-    QueryError::check_point("start", start)?;
-    QueryError::check_length(tolerance)
-}
 
 /// A local search for the least value of a field over an element.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -169,13 +114,7 @@ impl ElementMethod {
         shape: &Shape<D>,
         element: &Element<N, D>,
     ) -> Descent<D> {
-        match self {
-            Self::Naive => NaiveDescent::default().descend(shape, element),
-            Self::ProjectedGradient => ProjectedGradient::default().descend(shape, element),
-            Self::FrankWolfe => FrankWolfe::default().descend(shape, element),
-            Self::GoldenSection => GoldenSection::default().descend(shape, element),
-            Self::Macklin => MacklinDescent::default().descend(shape, element),
-        }
+        self.search(shape, element, None)
     }
 
     /// The same search from another point of the element than its usual start.
@@ -187,14 +126,23 @@ impl ElementMethod {
         element: &Element<N, D>,
         start: &Weights<N>,
     ) -> Descent<D> {
+        self.search(shape, element, Some(start))
+    }
+
+    fn search<const N: usize, const D: usize>(
+        self,
+        shape: &Shape<D>,
+        element: &Element<N, D>,
+        start: Option<&Weights<N>>,
+    ) -> Descent<D> {
         match self {
-            Self::Naive => NaiveDescent::default().descend_from(shape, element, start),
+            Self::Naive => NaiveDescent::default().search(shape, element, start),
             Self::ProjectedGradient => {
-                ProjectedGradient::default().descend_from(shape, element, start)
+                ProjectedGradient::default().search(shape, element, start)
             }
-            Self::FrankWolfe => FrankWolfe::default().descend_from(shape, element, start),
-            Self::GoldenSection => GoldenSection::default().descend_from(shape, element, start),
-            Self::Macklin => MacklinDescent::default().descend_from(shape, element, start),
+            Self::FrankWolfe => FrankWolfe::default().search(shape, element, start),
+            Self::GoldenSection => GoldenSection::default().search(shape, element, start),
+            Self::Macklin => MacklinDescent::default().search(shape, element, start),
         }
     }
 }
@@ -243,31 +191,6 @@ impl PairMethod {
             Self::SumDescent => SumDescent::default().descend(a, b, start, tolerance),
         }
     }
-}
-
-/// The vertex with the least value, its number first, at which a search may start; all
-/// vertices are asked.
-fn least_vertex<const N: usize, const D: usize>(
-    shape: &Shape<D>,
-    element: &Element<N, D>,
-) -> (usize, Descent<D>) {
-    let values = element.vertices().map(|vertex| shape.distance(vertex));
-    let least = (1..N).fold(0, |k, i| if values[i] < values[k] { i } else { k });
-    (least, Descent::from_start(element.vertices()[least], values[least], N as u32))
-}
-
-/// The number of the vertex that is farthest against a gradient, and by how much the
-/// tangent plane at `p` is lower there, at least zero [m].
-///
-/// That much a convex field may be below its value at `p` somewhere on the element.
-fn support<const N: usize, const D: usize>(
-    element: &Element<N, D>,
-    p: Point<D>,
-    gradient: Point<D>,
-) -> (usize, f64) {
-    let drops = element.vertices().map(|vertex| gradient.dot(p - vertex));
-    let farthest = (1..N).fold(0, |k, i| if drops[i] > drops[k] { i } else { k });
-    (farthest, drops[farthest].max(0.0))
 }
 
 #[cfg(test)]

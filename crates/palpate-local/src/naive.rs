@@ -7,6 +7,7 @@ use palpate_field::{LARGEST_LENGTH, Shape, Vector};
 use palpate_query::Element;
 
 use crate::alternating_projection::nearest;
+use crate::descent::Step;
 use crate::{Descent, GradientMethod, GradientSampler, Weights};
 
 /// Steps down the gradient from the centroid of the element, with a length that follows the
@@ -113,48 +114,39 @@ impl NaiveDescent {
         self.gradient.unwrap_or(usual)
     }
 
-    /// The search for the least value of a field over an element, from its centroid.
-    #[must_use]
-    pub fn descend<const N: usize, const D: usize>(
+    /// The search from a point of the element, or from its centroid.
+    pub(crate) fn search<const N: usize, const D: usize>(
         &self,
         shape: &Shape<D>,
         element: &Element<N, D>,
+        start: Option<&Weights<N>>,
     ) -> Descent<D> {
-        self.descend_from(shape, element, &Weights::centroid())
-    }
-
-    /// The same search from another point of the element.
-    #[must_use]
-    pub fn descend_from<const N: usize, const D: usize>(
-        &self,
-        shape: &Shape<D>,
-        element: &Element<N, D>,
-        start: &Weights<N>,
-    ) -> Descent<D> {
-        let mut descent = Descent::from_weights(shape, element, start);
+        let start = start.copied().unwrap_or_else(Weights::centroid);
+        let descent = Descent::from_weights(shape, element, &start);
         let offset = GradientSampler::OFFSET_SHARE * element.longest_edge();
         // An element without extent is its point.
         let Ok(sampler) = GradientSampler::new(offset) else { return descent };
         let (mu, method) = (self.mu_for(element), self.gradient_in::<D>());
         let (mut p, mut value) = (descent.best, descent.value);
-        for _ in 0..self.steps {
+        descent.run(self.steps, |descent| {
             let step = self.alpha * value.max(mu);
             // Written so that NaN ends the descent; zero is for ever.
             if !(step > 0.0 && step <= LARGEST_LENGTH) {
-                break;
+                return Step::None;
             }
             let found = sampler.find(method, shape, p);
             descent.evaluations += found.evaluations;
-            let Some(upwards) = found.direction else { break };
+            let Some(upwards) = found.direction else { return Step::None };
             p = nearest(element, p - upwards * step);
             value = shape.distance(p);
             descent.evaluations += 1;
-            descent.steps += 1;
             descent.visit(p, value);
-        }
-        descent
+            Step::Next
+        })
     }
 }
+
+element_search!(NaiveDescent, ", from its centroid");
 
 /// The last steps of a path that are looked at.
 const LAST: usize = 8;

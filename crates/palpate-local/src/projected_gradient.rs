@@ -6,7 +6,8 @@
 use palpate_field::{Point, Shape, Vector};
 use palpate_query::Element;
 
-use crate::{Descent, Weights, central_differences, least_vertex, support};
+use crate::descent::Step;
+use crate::{Descent, Weights, central_differences};
 
 /// The share of the promised descent that a step must keep.
 const KEPT: f64 = 0.5;
@@ -64,62 +65,32 @@ impl Default for ProjectedGradient {
     }
 }
 
+element_search!(ProjectedGradient, ", from the lowest of its vertices and its centroid");
+
 impl ProjectedGradient {
-    /// The search for the least value of a field over an element, from the lowest of its
-    /// vertices and its centroid.
-    #[must_use]
-    pub fn descend<const N: usize, const D: usize>(
+    /// The search from a point of the element, or from its usual start.
+    pub(crate) fn search<const N: usize, const D: usize>(
         &self,
         shape: &Shape<D>,
         element: &Element<N, D>,
+        start: Option<&Weights<N>>,
     ) -> Descent<D> {
-        let (weights, descent) = start(shape, element);
-        self.follow(shape, element, weights, descent)
-    }
-
-    /// The same search from another point of the element.
-    #[must_use]
-    pub fn descend_from<const N: usize, const D: usize>(
-        &self,
-        shape: &Shape<D>,
-        element: &Element<N, D>,
-        start: &Weights<N>,
-    ) -> Descent<D> {
-        let descent = Descent::from_weights(shape, element, start);
-        self.follow(shape, element, *start.of_vertices(), descent)
-    }
-
-    /// The search from the point with these weights, which `descent` has visited.
-    fn follow<const N: usize, const D: usize>(
-        &self,
-        shape: &Shape<D>,
-        element: &Element<N, D>,
-        mut weights: [f64; N],
-        mut descent: Descent<D>,
-    ) -> Descent<D> {
+        let (mut weights, mut descent) = begin(shape, element, start);
         let mut p = descent.best;
         let farthest = element.farthest(p);
         if farthest == 0.0 {
             return descent;
         }
         let mut step = 0.5 / farthest;
-        let mut gradient = shape.distance_gradient(p).1;
-        descent.evaluations += 2;
-        for _ in 0..self.steps {
+        let mut gradient = descent.ask_slope(shape, p).1;
+        descent.run(self.steps, |descent| {
             let downwards = gradient.normalized().unwrap_or(Vector::ZERO);
-            let mut next = weights;
-            for (weight, vertex) in next.iter_mut().zip(element.vertices()) {
-                *weight -= step * downwards.dot(*vertex - p);
+            let next = moved(&weights, element, p, downwards, step);
+            if are_near(&next, &weights, self.tolerance) {
+                return Step::None;
             }
-            let next = onto_simplex(next);
-            let squared: f64 = next.iter().zip(&weights).map(|(a, b)| (a - b) * (a - b)).sum();
-            if squared < self.tolerance * self.tolerance {
-                break;
-            }
-            descent.steps += 1;
             let there = element.at(&next);
-            let (value, slope) = shape.distance_gradient(there);
-            descent.evaluations += 2;
+            let (value, slope) = descent.ask_slope(shape, there);
             if value < descent.value - KEPT * gradient.dot(p - there) {
                 descent.visit(there, value);
                 (p, weights, gradient) = (there, next, slope);
@@ -127,33 +98,58 @@ impl ProjectedGradient {
             } else {
                 step *= self.decay;
             }
-        }
-        descent
+            Step::Next
+        })
     }
 }
 
-/// The lowest of the vertices and the centroid, as weights.
-pub(crate) fn start<const N: usize, const D: usize>(
+/// The weights of `p`, moved against a unit gradient, and back to where none is negative.
+fn moved<const N: usize, const D: usize>(
+    weights: &[f64; N],
+    element: &Element<N, D>,
+    p: Point<D>,
+    gradient: Vector<f64, D>,
+    step: f64,
+) -> [f64; N] {
+    let mut next = *weights;
+    for (weight, vertex) in next.iter_mut().zip(element.vertices()) {
+        *weight -= step * gradient.dot(*vertex - p);
+    }
+    onto_simplex(next)
+}
+
+/// Whether weights differ by less than the tolerance.
+fn are_near<const N: usize>(a: &[f64; N], b: &[f64; N], tolerance: f64) -> bool {
+    let squared: f64 = a.iter().zip(b).map(|(a, b)| (a - b) * (a - b)).sum();
+    squared < tolerance * tolerance
+}
+
+/// The weights at which a search starts: those that are given, or those of the lowest of the vertices
+/// and the centroid.
+fn begin<const N: usize, const D: usize>(
     shape: &Shape<D>,
     element: &Element<N, D>,
+    given: Option<&Weights<N>>,
 ) -> ([f64; N], Descent<D>) {
-    let mut weights = [1.0 / N as f64; N];
-    let centroid: Point<D> = element.at(&weights);
-    let mut best = (centroid, shape.distance(centroid));
+    if let Some(given) = given {
+        return (*given.of_vertices(), Descent::from_weights(shape, element, given));
+    }
+    let mut weights = *Weights::centroid().of_vertices();
+    let mut descent = Descent::from_weights(shape, element, &Weights::centroid());
     for (i, vertex) in element.vertices().iter().enumerate() {
         let value = shape.distance(*vertex);
-        if value < best.1 {
-            best = (*vertex, value);
-            weights = [0.0; N];
-            weights[i] = 1.0;
+        if value < descent.value {
+            descent = Descent::from_start(*vertex, value, 0);
+            weights = std::array::from_fn(|k| if k == i { 1.0 } else { 0.0 });
         }
     }
-    (weights, Descent::from_start(best.0, best.1, N as u32 + 1))
+    descent.evaluations = N as u32 + 1;
+    (weights, descent)
 }
 
 /// The nearest weights of which none is negative and the sum is one: all less the same,
 /// and those that would be negative zero.
-pub(crate) fn onto_simplex<const N: usize>(weights: [f64; N]) -> [f64; N] {
+fn onto_simplex<const N: usize>(weights: [f64; N]) -> [f64; N] {
     let mut sorted = weights;
     sorted.sort_by(|a, b| b.total_cmp(a));
     let (mut sum, mut less) = (0.0, 0.0);
@@ -210,54 +206,76 @@ impl Default for FrankWolfe {
     }
 }
 
+element_search!(FrankWolfe, ", from its lowest vertex");
+
 impl FrankWolfe {
-    /// The search for the least value of a field over an element, from its lowest vertex.
-    #[must_use]
-    pub fn descend<const N: usize, const D: usize>(
+    /// The search from a point of the element, or from its lowest vertex.
+    pub(crate) fn search<const N: usize, const D: usize>(
         &self,
         shape: &Shape<D>,
         element: &Element<N, D>,
+        start: Option<&Weights<N>>,
     ) -> Descent<D> {
-        self.follow(shape, element, least_vertex(shape, element).1)
-    }
-
-    /// The same search from another point of the element.
-    #[must_use]
-    pub fn descend_from<const N: usize, const D: usize>(
-        &self,
-        shape: &Shape<D>,
-        element: &Element<N, D>,
-        start: &Weights<N>,
-    ) -> Descent<D> {
-        self.follow(shape, element, Descent::from_weights(shape, element, start))
-    }
-
-    /// The search from the point that `descent` has visited.
-    fn follow<const N: usize, const D: usize>(
-        &self,
-        shape: &Shape<D>,
-        element: &Element<N, D>,
-        mut descent: Descent<D>,
-    ) -> Descent<D> {
-        let mut p = descent.best;
-        for k in 0..self.steps {
-            let (value, gradient) = shape.distance_gradient(p);
-            descent.evaluations += 2;
-            if k > 0 {
+        let descent = match start {
+            Some(start) => Descent::from_weights(shape, element, start),
+            None => least_vertex(shape, element).1,
+        };
+        let (mut p, mut is_settled) = (descent.best, false);
+        let mut descent = descent.run(self.steps, |descent| {
+            let (value, gradient) = descent.ask_slope(shape, p);
+            if descent.steps > 0 {
                 descent.visit(p, value);
             }
-            let (vertex, drop) = support(element, p, gradient);
-            if drop <= self.tolerance * element.farthest(p) {
-                return descent;
-            }
-            descent.steps += 1;
-            let share = 2.0 / (f64::from(k) + 2.0);
-            p += (element.vertices()[vertex] - p) * share;
+            let Some(vertex) = downwards(element, p, gradient, self.tolerance) else {
+                is_settled = true;
+                return Step::None;
+            };
+            let share = 2.0 / (f64::from(descent.steps) + 2.0);
+            p += (vertex - p) * share;
+            Step::Next
+        });
+        if !is_settled {
+            descent.visit(p, shape.distance(p));
+            descent.evaluations += 1;
         }
-        descent.visit(p, shape.distance(p));
-        descent.evaluations += 1;
         descent
     }
+}
+
+/// The vertex with the least value, its number first, at which a search may start; all
+/// vertices are asked.
+fn least_vertex<const N: usize, const D: usize>(
+    shape: &Shape<D>,
+    element: &Element<N, D>,
+) -> (usize, Descent<D>) {
+    let values = element.vertices().map(|vertex| shape.distance(vertex));
+    let least = (1..N).fold(0, |k, i| if values[i] < values[k] { i } else { k });
+    (least, Descent::from_start(element.vertices()[least], values[least], N as u32))
+}
+
+/// The vertex that is farthest against a gradient at `p`.
+pub(crate) fn support<const N: usize, const D: usize>(
+    element: &Element<N, D>,
+    p: Point<D>,
+    gradient: Vector<f64, D>,
+) -> Point<D> {
+    let drops = element.vertices().map(|vertex| gradient.dot(p - vertex));
+    let farthest = (1..N).fold(0, |k, i| if drops[i] > drops[k] { i } else { k });
+    element.vertices()[farthest]
+}
+
+/// That vertex, unless the tangent plane at `p` is lower there by at most `tolerance` of the longest way to
+/// a vertex: so much a convex field may be below its value at `p` somewhere on the element.
+fn downwards<const N: usize, const D: usize>(
+    element: &Element<N, D>,
+    p: Point<D>,
+    gradient: Vector<f64, D>,
+    tolerance: f64,
+) -> Option<Point<D>> {
+    let vertex = support(element, p, gradient);
+    let drop = gradient.dot(p - vertex).max(0.0);
+    let is_settled = drop <= tolerance * element.farthest(p);
+    (!is_settled).then_some(vertex)
 }
 
 /// What stands for the direction of a gradient that vanishes, in `PhysX`.
@@ -267,7 +285,7 @@ const FALLBACK: [f64; 3] = [0.5718, 0.7055, 0.4186];
 /// the lowest of the corners and the centroid, of 16 steps, whose length falls by 0.8 each time and of
 /// which the first is half the way to the farthest corner. Gradients are central differences over a
 /// voxel, made a unit long. Every step is taken, and the last point is the answer. Over a segment: 16
-/// golden sections with two samples each, and the middle of what is left.
+/// golden sections with two samples each, and the middle of what is left; a start does not matter there.
 ///
 /// At most 107 samples a triangle, the last gradient for a contact's normal included, and 39 a segment
 /// in space. [`ProjectedGradient`](crate::ProjectedGradient) and
@@ -325,35 +343,6 @@ impl MacklinDescent {
         Self { steps, ..self }
     }
 
-    /// The search for the least value of a field over an element.
-    #[must_use]
-    pub fn descend<const N: usize, const D: usize>(
-        &self,
-        shape: &Shape<D>,
-        element: &Element<N, D>,
-    ) -> Descent<D> {
-        if N == 2 {
-            return self.along(shape, element);
-        }
-        let (weights, descent) = start(shape, element);
-        self.follow(shape, element, weights, descent)
-    }
-
-    /// The same search from another point of the element; of a segment, it has no start.
-    #[must_use]
-    pub fn descend_from<const N: usize, const D: usize>(
-        &self,
-        shape: &Shape<D>,
-        element: &Element<N, D>,
-        start: &Weights<N>,
-    ) -> Descent<D> {
-        if N == 2 {
-            return self.along(shape, element);
-        }
-        let descent = Descent::from_weights(shape, element, start);
-        self.follow(shape, element, *start.of_vertices(), descent)
-    }
-
     /// The offset of differences [m].
     fn offset<const N: usize, const D: usize>(
         &self,
@@ -386,20 +375,24 @@ impl MacklinDescent {
         descent
     }
 
-    fn follow<const N: usize, const D: usize>(
+    /// The search from a point of the element, or from its usual start.
+    pub(crate) fn search<const N: usize, const D: usize>(
         &self,
         shape: &Shape<D>,
         element: &Element<N, D>,
-        mut weights: [f64; N],
-        mut descent: Descent<D>,
+        start: Option<&Weights<N>>,
     ) -> Descent<D> {
+        if N == 2 {
+            return self.along(shape, element);
+        }
+        let (mut weights, descent) = begin(shape, element, start);
         let (mut p, farthest) = (descent.best, element.farthest(descent.best));
         let offset = self.offset(shape, element);
         if farthest == 0.0 {
             return descent;
         }
         let mut step = 0.5 / farthest;
-        for _ in 0..self.steps {
+        let mut descent = descent.run(self.steps, |descent| {
             let gradient = central_differences(|p| shape.distance(p), p, offset);
             descent.evaluations += 2 * D as u32;
             let direction = gradient.unwrap_or_else(|| {
@@ -407,25 +400,20 @@ impl MacklinDescent {
                     .normalized()
                     .unwrap_or(Vector::ZERO)
             });
-            let mut next = weights;
-            for (weight, vertex) in next.iter_mut().zip(element.vertices()) {
-                *weight -= step * direction.dot(*vertex - p);
-            }
-            let next = onto_simplex(next);
-            let squared: f64 = next.iter().zip(&weights).map(|(a, b)| (a - b) * (a - b)).sum();
+            let next = moved(&weights, element, p, direction, step);
+            let is_last = are_near(&next, &weights, self.tolerance);
             (weights, p) = (next, element.at(&next));
-            descent.steps += 1;
             descent.path.push(p);
             step *= self.decay;
-            if squared < self.tolerance * self.tolerance {
-                break;
-            }
-        }
+            if is_last { Step::Last } else { Step::Next }
+        });
         (descent.best, descent.value) = (p, shape.distance(p));
         descent.evaluations += 1 + 2 * D as u32;
         descent
     }
 }
+
+element_search!(MacklinDescent, ", from the lowest of its vertices and its centroid");
 
 /// From the lowest vertex, goes to the least value that golden sections find on the line
 /// to the vertex that lies farthest against the gradient, and so on from there. On a
@@ -476,62 +464,39 @@ impl Default for GoldenSection {
     }
 }
 
+element_search!(GoldenSection, ", from its lowest vertex");
+
 impl GoldenSection {
-    /// The search for the least value of a field over an element, from its lowest vertex.
-    #[must_use]
-    pub fn descend<const N: usize, const D: usize>(
+    /// The search from a point of the element, or from its lowest vertex. The first line from one end of a
+    /// segment is all of it; all others lead against the gradient.
+    pub(crate) fn search<const N: usize, const D: usize>(
         &self,
         shape: &Shape<D>,
         element: &Element<N, D>,
+        start: Option<&Weights<N>>,
     ) -> Descent<D> {
-        let (least, descent) = least_vertex(shape, element);
-        // The line from one end of a segment is all of it.
-        let other_end = (N == 2).then(|| element.vertices()[(least + 1) % N]);
-        self.follow(shape, element, descent, other_end)
-    }
-
-    /// The same search from another point of the element.
-    #[must_use]
-    pub fn descend_from<const N: usize, const D: usize>(
-        &self,
-        shape: &Shape<D>,
-        element: &Element<N, D>,
-        start: &Weights<N>,
-    ) -> Descent<D> {
-        self.follow(shape, element, Descent::from_weights(shape, element, start), None)
-    }
-
-    /// The search from the point that `descent` has visited; its first line leads to `first`, if
-    /// that is given, and the others against the gradient.
-    fn follow<const N: usize, const D: usize>(
-        &self,
-        shape: &Shape<D>,
-        element: &Element<N, D>,
-        mut descent: Descent<D>,
-        mut first: Option<Point<D>>,
-    ) -> Descent<D> {
-        for _ in 0..self.steps {
+        let (descent, mut other_end) = match start {
+            Some(start) => (Descent::from_weights(shape, element, start), None),
+            None => {
+                let (least, descent) = least_vertex(shape, element);
+                (descent, (N == 2).then(|| element.vertices()[(least + 1) % N]))
+            }
+        };
+        descent.run(self.steps, |descent| {
             let p = descent.best;
-            let towards = if let Some(first) = first.take() {
-                first
-            } else {
-                let (_, gradient) = shape.distance_gradient(p);
-                descent.evaluations += 2;
-                let (vertex, drop) = support(element, p, gradient);
-                if drop <= self.tolerance * element.farthest(p) {
-                    break;
-                }
-                element.vertices()[vertex]
-            };
-            descent.steps += 1;
+            let towards = other_end.take().or_else(|| {
+                let (_, gradient) = descent.ask_slope(shape, p);
+                downwards(element, p, gradient, self.tolerance)
+            });
+            let Some(towards) = towards else { return Step::None };
             let (lowest, value) = self.line(shape, p, towards - p);
             descent.evaluations += self.sections + 1;
             if value >= descent.value {
-                break;
+                return Step::Last;
             }
             descent.visit(lowest, value);
-        }
-        descent
+            Step::Next
+        })
     }
 
     /// The lowest of the points that sections of a line ask, and its value.

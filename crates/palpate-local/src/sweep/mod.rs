@@ -9,8 +9,8 @@ use palpate_field::{Point, Vector};
 use palpate_mesh::Mesh;
 use palpate_query::{Element, Motion, Moving, QueryError, parts_of_one};
 
-use crate::projected_gradient::least_on_unit;
-use crate::{ElementMethod, PairMethod, SumDescent, halton_starts, support};
+use crate::projected_gradient::{least_on_unit, support};
+use crate::{ElementMethod, PairMethod, SumDescent, halton_starts};
 
 /// A touch that a local search found, of a motion over the time from 0 to 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -552,8 +552,7 @@ impl<const D: usize> Search<'_, D> {
                     (time, slope) = (time + inward, there);
                 }
             }
-            let (vertex, _) = support(part, p, slope.gradient);
-            let towards = part.vertices()[vertex] - p;
+            let towards = support(part, p, slope.gradient) - p;
             let (share, value) =
                 least_on_unit(sections, |share| course.value(p + towards * share, time));
             self.found.asked(4 + 2 * (sections + 1));
