@@ -8,7 +8,7 @@
 use palpate_device::{PointState, limited, shortening};
 use palpate_field::{Point, Vector};
 use palpate_query::constraints::CAPACITY;
-use palpate_safety::{Approach, Arrival, Change, PortState, WorkspaceMap};
+use palpate_safety::{Approach, Arrival, BodyMotion, Change, PortState, WorkspaceMap};
 
 use crate::bodies::Body;
 use crate::crease::{Crease, Place, Shared};
@@ -254,6 +254,7 @@ impl ContactPoint {
             return self.hover(tick, state, touch);
         }
         let begins = self.proxy.begins();
+        let held = self.carried(tick.nearby, touch);
         // The proxy stays where it is if the device point is not finite.
         let following = self.proxy.follow(tick.nearby, device);
         let placed = following.placed;
@@ -277,7 +278,8 @@ impl ContactPoint {
         let Some(body) = body.filter(|_| state.is_finite()) else {
             touch.velocity = Vector::ZERO;
             self.fall_silent(tick, before);
-            return FreeForce { force: Vector::ZERO, placed, change };
+            let carried = Vector::ZERO;
+            return FreeForce { force: Vector::ZERO, placed, change, carried };
         };
         let mut free = self.guided(device, state.velocity, tick.setting.rise_step);
         if following.contact {
@@ -286,7 +288,34 @@ impl ContactPoint {
             self.fall_silent(tick, before);
         }
         free += self.pull(tick, touch);
-        FreeForce { force: free, placed, change }
+        let carried = match held {
+            _ if placed => Vector::ZERO,
+            Some(held) => held,
+            // A body that moved onto the hand carries it from this tick on.
+            None => self.carried(tick.nearby, touch).unwrap_or(Vector::ZERO),
+        };
+        FreeForce { force: free, placed, change, carried }
+    }
+
+    /// How far the bodies that push the hand in `touch` carry it in this tick [m]: the mean of the
+    /// motions of their material points at the hand, weighted by the sizes of their forces. `None` if
+    /// none pushes.
+    fn carried(&self, nearby: &Nearby<'_>, touch: &Touch) -> Option<Vector<f64, 3>> {
+        if !nearby.has_moved() {
+            return touch.contact.then_some(Vector::ZERO);
+        }
+        let (mut sum, mut whole) = (Vector::ZERO, 0.0);
+        for (index, push) in self.pushes(touch) {
+            let Some(body) = nearby.body(index) else { continue };
+            let share = push.norm();
+            whole += share;
+            if body.has_moved() {
+                sum += (body.carried(touch.device) - touch.device) * share;
+            }
+        }
+        // Written so that NaN carries nothing.
+        let is_pushed = whole > 0.0 && sum.is_finite() && whole.is_finite();
+        is_pushed.then(|| sum * (1.0 / whole))
     }
 
     /// A tick of a hand that is lifted: the proxy is at the device, and nothing is touched.
@@ -314,7 +343,8 @@ impl ContactPoint {
             evaluations: 0,
             ..*touch
         };
-        FreeForce { force: Vector::ZERO, placed: false, change: Change::None }
+        let (force, carried) = (Vector::ZERO, Vector::ZERO);
+        FreeForce { force, placed: false, change: Change::None, carried }
     }
 
     /// Ends the contact of the tick before and its ringing.
@@ -562,6 +592,8 @@ pub(crate) struct FreeForce {
     pub(crate) placed: bool,
     /// What happened beside the motion of the hand.
     pub(crate) change: Change,
+    /// How far the touched bodies carry the hand in this tick [m].
+    pub(crate) carried: Vector<f64, 3>,
 }
 
 impl ContactPoint {
@@ -600,7 +632,7 @@ impl ContactPoint {
         touch: &mut Touch,
         free: FreeForce,
     ) -> Vector<f64, 3> {
-        let FreeForce { force: free, placed, change } = free;
+        let FreeForce { force: free, placed, change, carried } = free;
         let Setting { options, map, rise_step, arrival, .. } = setting;
         let has_start = placed || self.of_others < f64::INFINITY;
         let start = if has_start { self.start(placed, change, touch.wanted) } else { 1.0 };
@@ -620,6 +652,10 @@ impl ContactPoint {
                 start,
                 change,
                 stiffness,
+                bodies: BodyMotion {
+                    driven: map.velocity_to_device(carried),
+                    ..BodyMotion::default()
+                },
             };
             let force = port.write(wanted, options.max_force, &state);
             touch.force = map.force_to_world(force);

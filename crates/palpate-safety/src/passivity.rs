@@ -39,7 +39,7 @@ pub(crate) const SPARE: f64 = 2.5e-4;
 
 /// A force, displacement or velocity with the inner product that gives energy: a vector, or a
 /// [spatial vector](super::SpatialVector) of translation and rotation.
-pub(crate) trait InnerProduct:
+pub trait InnerProduct:
     Copy + PartialEq + Add<Output = Self> + Sub<Output = Self> + Mul<f64, Output = Self>
 {
     const ZERO: Self;
@@ -87,7 +87,7 @@ struct Moved<V> {
     way: V,
 }
 
-/// Position and velocity of a device in a tick.
+/// Position and velocity of a device in a tick, relative to the bodies that it touches.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PortMotion<V> {
     pub(crate) position: V,
@@ -99,6 +99,9 @@ pub(crate) struct PortMotion<V> {
     pub(crate) is_rising: bool,
     /// The time since the tick before [s].
     pub(crate) elapsed: f64,
+    /// What bodies that move by physics owe for this tick [J]: their work on the hand, less their
+    /// credit.
+    pub(crate) owed: f64,
     /// The part of the stiffness that is rendered; less than 1 after a
     /// [limit cycle](crate::limit_cycle::LimitCycle).
     pub(crate) softness: f64,
@@ -127,9 +130,11 @@ pub struct PassivityReport {
     /// Interventions, and the largest change of the force.
     #[cfg_attr(feature = "serde", serde(flatten))]
     pub effect: Effect,
-    /// Energy that the written forces took from the hand [J].
+    /// Energy that the written forces took from the hand, as it moves relative to the touched bodies
+    /// [J].
     pub energy_in: f64,
-    /// Energy that the written forces gave to the hand [J].
+    /// Energy that the written forces gave to the hand, as it moves relative to the touched bodies
+    /// [J]. The work of bodies that move is [counted apart](crate::DriveReport::driven).
     pub energy_out: f64,
     /// The least value of `energy_in − energy_out` in the run [J]. A negative value is net
     /// energy given to the hand; the damping of the device may dissipate that much, as the
@@ -377,7 +382,7 @@ impl<V: InnerProduct> Passivity<V> {
         let net = report.energy_in - report.energy_out;
         report.least_balance = report.least_balance.min(net);
         report.dissipated += (last.wanted.dot(way).max(0.0) - given.max(0.0)).max(0.0);
-        self.balance -= given;
+        self.balance -= given + state.owed;
         if last.wanted != V::ZERO || wanted != V::ZERO {
             let loss = SLACK * damping * way.dot(way) / state.elapsed - state.spent;
             let leak = -0.5 * (wanted - last.wanted).dot(way);
@@ -508,6 +513,7 @@ mod tests {
                 effort: force,
                 is_rising: false,
                 elapsed: 1e-3,
+                owed: 0.0,
                 softness: 1.0,
                 spent: 0.0,
                 stiffness: 100.0,

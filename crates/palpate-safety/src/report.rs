@@ -5,6 +5,7 @@
 
 use crate::Accepted;
 use crate::channel::Channel;
+use crate::drive::DriveReport;
 use crate::effect::Effect;
 use crate::free_energy::FreeForceReport;
 use crate::limit_cycle::LimitCycleReport;
@@ -29,6 +30,8 @@ pub struct SafetyReport {
     pub free_forces: FreeForceReport,
     /// Passivity observer and controller.
     pub passivity: PassivityReport,
+    /// The work of moving bodies, and the limit on its power.
+    pub drives: DriveReport,
     /// The slew limit. A tick counts twice if the force had to be limited again after the later
     /// stages.
     pub slew: Effect,
@@ -134,6 +137,11 @@ impl SafetyReport {
         Self { free_forces, ..self }
     }
 
+    /// This report with the work of moving bodies.
+    pub(crate) fn with_drives(self, drives: DriveReport) -> Self {
+        Self { drives, ..self }
+    }
+
     /// The report of a chain of forces.
     pub(crate) fn of(
         accepted: &Accepted,
@@ -148,6 +156,7 @@ impl SafetyReport {
             limit_cycles: LimitCycleReport::default(),
             free_forces: FreeForceReport::default(),
             passivity,
+            drives: DriveReport::default(),
             slew: effects.slew,
             force_limit: effects.force_limit,
             continuous: channel.continuous_report(),
