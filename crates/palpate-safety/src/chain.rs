@@ -11,7 +11,7 @@ use palpate_field::{Point, Vector};
 use crate::acceptance::Accepted;
 use crate::approach::Change;
 use crate::channel::{Channel, Given, Risen, TickInput};
-use crate::drive::{BodyMotion, Drive};
+use crate::drive::{BodyMotion, Drive, DriveReport};
 use crate::effect::Effect;
 use crate::error::SafetyError;
 use crate::finite;
@@ -378,6 +378,14 @@ impl SafetyChain {
     #[must_use]
     pub fn passivity(&self) -> PassivityReport {
         self.passivity.report()
+    }
+
+    /// The work of moving bodies so far.
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    #[must_use]
+    pub fn drives(&self) -> DriveReport {
+        self.drive.report()
     }
 
     /// In how many ticks each stage has acted, as in [`report`](Self::report).

@@ -13,7 +13,7 @@ use palpate_field::Vector;
 
 use crate::chain::BeforeLimits;
 use crate::channel::{Channel, Given, Risen, TickInput};
-use crate::drive::{BodyMotion, Drive};
+use crate::drive::{BodyMotion, Drive, DriveReport};
 use crate::error::SafetyError;
 use crate::free_energy::{FreeEnergy, FreeEnergyOptions, FreeInput, Passed};
 use crate::limit::{Cut, Wanted, cut};
@@ -394,6 +394,14 @@ impl WrenchChain {
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     pub fn passivity(&self) -> PassivityReport {
         self.passivity.report()
+    }
+
+    /// The work of moving bodies so far.
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    #[must_use]
+    pub fn drives(&self) -> DriveReport {
+        self.drive.report()
     }
 
     /// In how many ticks each stage has acted, as in [`report`](Self::report).

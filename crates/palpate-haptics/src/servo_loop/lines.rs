@@ -120,6 +120,10 @@ fn write_safety(f: &mut Formatter<'_>, safety: &[SafetyReport]) -> Result {
         energy(|p| p.dissipated),
     );
     line(f, "energy", said)?;
+    let driven = 1e3 * safety.iter().map(|point| point.drives.driven).sum::<f64>();
+    if driven != 0.0 {
+        line(f, "", format_args!("bodies that move did {driven:.3} mJ of work on the hand"))?;
+    }
     let ticks = |of: fn(&SafetyReport) -> u64| safety.iter().map(of).sum::<u64>();
     let stages: StageTicks = safety.iter().map(StageTicks::from).sum();
     let acted = stages.named().filter(|(_, ticks)| *ticks > 0);

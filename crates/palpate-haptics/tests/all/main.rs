@@ -17,6 +17,7 @@ mod corners;
 mod creases;
 mod degenerate;
 mod devices;
+mod drives;
 mod edited;
 mod effects;
 mod energy;
