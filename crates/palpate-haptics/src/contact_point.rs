@@ -439,8 +439,7 @@ impl ContactPoint {
         self.tell_changes(tick, touch, before, &crease);
         let fit = shortening(plain.norm(), shared.most());
         self.stiffness = fit * plain.norm() / depth;
-        let along = stretch.normalized().unwrap_or(Vector::ZERO);
-        let dampers = shared.dampers(touch.velocity, along);
+        let dampers = shared.dampers(touch.velocity, stretch, rest);
         for wall in crease.pushing_mut() {
             wall.force = wall.force * fit + dampers * (wall.push / whole);
             self.pop(tick, wall.body, wall.push);
@@ -501,7 +500,8 @@ impl ContactPoint {
             let there = gradient.normalized().unwrap_or(normal);
             (there - normal) * (way.norm() / far)
         };
-        let press = Press { stretch: pull, velocity, proxy: in_body, rate, has_dampers };
+        let press =
+            Press { stretch: pull, normal, velocity, proxy: in_body, rate, has_dampers };
         body.vector_in_world(body.surface().force(level, press, turn))
     }
 

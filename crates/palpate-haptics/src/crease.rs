@@ -203,12 +203,17 @@ impl Shared {
     }
 
     /// The force of the dampers [N] at the `velocity` of the device point relative to the bodies
-    /// [m/s], with the direction `along` of the stretch; as for one [`Surface`](crate::Surface).
+    /// [m/s], along the part of the `stretch` [m] that friction does not hold; as for one
+    /// [`Surface`](crate::Surface).
     pub(crate) fn dampers(
         &self,
         velocity: Vector<f64, 3>,
-        along: Vector<f64, 3>,
+        stretch: Vector<f64, 3>,
+        held: Vector<f64, 3>,
     ) -> Vector<f64, 3> {
+        // Without friction, what is held is rounding.
+        let pressed = if self.friction.fixed > 0.0 { stretch - held } else { stretch };
+        let along = pressed.normalized().unwrap_or(Vector::ZERO);
         let approach = (-velocity.dot(along)).max(0.0);
         along * (self.damping * approach) - velocity * self.viscosity
     }

@@ -36,6 +36,8 @@ const STEEPER: f64 = 8.0;
 pub(crate) struct Press {
     /// From the device point to the proxy [m].
     pub(crate) stretch: Vector<f64, 3>,
+    /// The unit normal of the touched face.
+    pub(crate) normal: Vector<f64, 3>,
     /// The velocity of the device point relative to the body [m/s].
     pub(crate) velocity: Vector<f64, 3>,
     /// The proxy [m].
@@ -49,17 +51,18 @@ pub(crate) struct Press {
 /// A material prepared for the servo.
 ///
 /// With the proxy `p`, the device point `x`, the stretch `s = p − x`, its direction
-/// `n = s / ‖s‖` and the velocity `v` of the device point relative to the body, the force on
-/// the hand is
+/// `u = s / ‖s‖`, the unit normal `n` of the touched face and the velocity `v` of the device point
+/// relative to the body, the force on the hand is
 ///
 /// ```text
-/// F = N(‖s‖) n − B min(v·n, 0) n − V v + texture + ring
+/// F = N(‖s‖) u − B min(v·n, 0) n − V v + texture + ring
 /// ```
 ///
 /// - `N(d) = ∫ K`, with the stiffness `K` of the layer at each depth: the spring of Zilles and
 ///   Salisbury, "A constraint-based god-object method for haptic display" (1995), section 3.
-/// - The damper `B` acts on the approach alone, so it never pulls the hand in. `B` and the
-///   viscosity `V` are those of the layer at the depth of the hand.
+/// - The damper `B` acts on the approach alone, so it never pulls the hand in, and along the
+///   normal, so a hand that slides at a constant depth does not feel it. `B` and the viscosity
+///   `V` are those of the layer at the depth of the hand.
 /// - A texture of kind *height* is the force of the potential `∫ N` at the depth `‖s‖ + w(p) −
 ///   a`, with the height `w` of the wave of amplitude `a` at the proxy: the hand is pushed
 ///   harder over a crest, and sideways down its slope (Minsky, "Computational haptics", 1995,
@@ -256,7 +259,7 @@ impl Surface {
         press: Press,
         mut turn: impl FnMut(Vector<f64, 3>, f64) -> Vector<f64, 3>,
     ) -> Vector<f64, 3> {
-        let Press { stretch, velocity, proxy, rate, has_dampers } = press;
+        let Press { stretch, normal: face, velocity, proxy, rate, has_dampers } = press;
         let depth = stretch.norm();
         let layer = self.strata.at(level, depth);
         let drag = if has_dampers { velocity * -layer.viscosity } else { Vector::ZERO };
@@ -282,8 +285,11 @@ impl Surface {
             slope = limited(seen.unwrap_or(along), STEEPER * along.norm()) * part;
         }
         let spring = self.strata.force(level, push);
-        let approach = if has_dampers { (-velocity.dot(normal)).max(0.0) } else { 0.0 };
-        normal * (spring + layer.damping * approach) - slope * spring + drag
+        // Without friction the stretch is along the normal, and holds also in a corner.
+        let face = if layer.friction.tilts(stretch, face) { face } else { normal };
+        let approach = if has_dampers { (-velocity.dot(face)).max(0.0) } else { 0.0 };
+        let damper = layer.damping * approach;
+        normal * (spring + damper) + (face - normal) * damper - slope * spring + drag
     }
 
     /// How the crests of the surface's height texture pass under a hand of this velocity [m/s]

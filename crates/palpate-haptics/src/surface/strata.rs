@@ -9,6 +9,7 @@ use crate::Material;
 
 use crate::error::HapticsError;
 use palpate_device::NumberError;
+use palpate_field::Vector;
 use palpate_safety::Impedance;
 
 /// The stiffness used for a layer without a spring [N/m]: too small for a hand to feel.
@@ -21,6 +22,22 @@ pub(crate) struct Friction {
     pub(crate) fixed: f64,
     /// Ratio of tangential to normal force while slipping.
     pub(crate) slipping: f64,
+}
+
+/// A stretch in the cone of friction may be beyond it by this part, from the search for the proxy.
+const CONE: f64 = 1e-3;
+
+impl Friction {
+    /// Whether friction alone explains that a stretch is not along the unit `normal` of a face. A
+    /// stretch beyond the cone of friction is held by a second face too.
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    pub(crate) fn tilts(&self, stretch: Vector<f64, 3>, normal: Vector<f64, 3>) -> bool {
+        let height = stretch.dot(normal);
+        let along = (stretch - normal * height).norm();
+        let most = self.fixed.max(self.slipping) * (1.0 + CONE) * height;
+        along < most
+    }
 }
 
 /// The condition under which a layer gives way.
