@@ -65,7 +65,7 @@ pub mod servo_loop;
 mod surface;
 mod tool;
 
-pub use accepted_bodies::{AcceptedBodies, Protection};
+pub use accepted_bodies::{AcceptedBodies, AcceptedTexture, Protection};
 pub use bodies::{Bodies, Body};
 pub use contact_point::Touch;
 pub use error::{HapticsError, ServoOptions};

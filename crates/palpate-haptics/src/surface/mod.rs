@@ -215,6 +215,30 @@ impl Surface {
         Self { strata: self.strata.scaled(stiffness, damping), ..self.clone() }
     }
 
+    /// The amplitude of the texture of kind *height* [m]; `None` without one.
+    #[must_use]
+    pub fn wave_height(&self) -> Option<f64> {
+        self.ripples.as_ref().map(Ripples::height)
+    }
+
+    /// The largest lateral stiffness of the texture of kind *height* under a normal force [N/m];
+    /// `None` without such a texture.
+    ///
+    /// The lateral force is `−N w'(x)`, with the normal force `N` and the wave `w`, so the stiffness
+    /// is at most `N a (2π / λ)²`, with the amplitude `a` and the wavelength `λ`. With `N = K d` it
+    /// grows with the depth `d` of the hand. Under the largest force of a device it does not depend on
+    /// `K`: a softer body lets the hand sink in until the force is the same. So only a lower wave is
+    /// less stiff.
+    pub(crate) fn lateral_stiffness(&self, force: f64) -> Option<f64> {
+        self.ripples.as_ref().map(|ripples| force * ripples.bend())
+    }
+
+    /// This surface with `part` of the amplitude of its texture of kind *height*.
+    pub(crate) fn with_lower_waves(&self, part: f64) -> Self {
+        let ripples = self.ripples.as_ref().map(|ripples| ripples.lowered(part));
+        Self { ripples, ..self.clone() }
+    }
+
     /// The surface with its textures on a body of so many dimensions, 2 for a planar shape.
     ///
     /// # Errors

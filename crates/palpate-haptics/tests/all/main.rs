@@ -39,6 +39,7 @@ mod real_time;
 mod records;
 mod recovery;
 mod reports;
+mod resting;
 mod runs;
 mod scale;
 mod stability;
