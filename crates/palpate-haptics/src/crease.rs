@@ -17,6 +17,9 @@ const NEAR: f64 = 1e-3;
 /// The same for a body that touched in the tick before: a hand that trembles does not leave.
 const STILL_NEAR: f64 = 0.02;
 
+/// Walls whose normals have at least this cosine are level: the hand cannot tell them apart.
+const ALIGNED: f64 = 0.99;
+
 /// A body begins to push with this part of the stretch: less is rounding.
 const LEAST_PUSH: f64 = 1e-6;
 
@@ -163,6 +166,13 @@ impl Crease {
     /// The body that pushes hardest.
     pub(crate) fn hardest(&self) -> Option<&Wall> {
         self.walls().max_by(|a, b| a.push.total_cmp(&b.push)).filter(|wall| wall.push > 0.0)
+    }
+
+    /// Whether all bodies that push are level with one another.
+    pub(crate) fn is_level(&self) -> bool {
+        let Some(hardest) = self.hardest() else { return true };
+        let mut pushing = self.walls().filter(|wall| wall.push > 0.0);
+        pushing.all(|wall| wall.normal.dot(hardest.normal) >= ALIGNED)
     }
 
     /// The sum of all pushes [m].

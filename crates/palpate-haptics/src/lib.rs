@@ -59,6 +59,7 @@ mod planes;
 mod ports;
 mod proxy;
 mod sampler;
+mod seam;
 mod servo;
 #[cfg(feature = "loop")]
 pub mod servo_loop;

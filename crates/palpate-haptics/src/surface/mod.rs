@@ -78,6 +78,9 @@ pub(crate) struct Press {
 /// - An impact rings as a decaying sinusoid along the normal (Okamura, Cutkosky and
 ///   Dennerlein, "Reality-based models for vibration feedback", 2001).
 ///
+/// Beside a body of another stiffness, `N` blends with that of the other, over a length at their
+/// seam, and a sideways force keeps the energy.
+///
 /// Friction is not a force of its own: it holds the proxy back (see [`Proxy`](crate::Proxy)).
 ///
 /// # Examples
@@ -101,6 +104,8 @@ pub struct Surface {
     /// A texture of kind *displacement*.
     relief: Option<Ripples>,
     impact: Option<Ring>,
+    /// The least length of a seam with another body [m].
+    pub(crate) seam: Option<f64>,
 }
 
 impl TryFrom<&Material> for Surface {
@@ -147,6 +152,10 @@ impl Surface {
             ripples,
             relief,
             impact: material.impact.as_ref().map(Ring::new).transpose()?,
+            seam: material
+                .seam
+                .map(|seam| NumberError::check_not_negative("seam", seam, "m"))
+                .transpose()?,
         })
     }
 
@@ -352,6 +361,7 @@ impl Default for Surface {
             ripples: None,
             relief: None,
             impact: None,
+            seam: None,
         }
     }
 }

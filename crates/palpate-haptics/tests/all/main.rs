@@ -42,6 +42,7 @@ mod reports;
 mod resting;
 mod runs;
 mod scale;
+mod seams;
 mod stability;
 mod strikes;
 mod swapped;
