@@ -179,7 +179,8 @@ mod tests {
     #[test]
     fn a_seam_is_as_long_as_its_sideways_force_needs() {
         let plate = |stiffness| {
-            Body::new(Shape::sphere(0.05).unwrap(), Surface::smooth(stiffness, 0.0).unwrap()).unwrap()
+            Body::new(Shape::sphere(0.05).unwrap(), Surface::smooth(stiffness, 0.0).unwrap())
+                .unwrap()
         };
         let (foam, steel) = (plate(120.0), plate(1000.0));
         let of = |force| length([&foam, &steel], 0.002, force);
