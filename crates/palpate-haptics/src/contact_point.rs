@@ -18,6 +18,7 @@ use crate::guide::Guide;
 use crate::nearby::Nearby;
 use crate::ports::Port;
 use crate::proxy::{Edited, Probe, Proxy};
+use crate::seam::Seam;
 use crate::surface::{Press, Ringing};
 
 /// One contact point after a tick. World coordinates.
@@ -393,7 +394,8 @@ impl ContactPoint {
         let rate = tick.setting.options.rate;
         if tick.nearby.bodies.bodies().len() > 1 {
             let crease = self.crease_at(tick, touch, before);
-            if crease.count() > 1 && crease.whole() > 0.0 {
+            let is_several = crease.count() > 1 && crease.whole() > 0.0;
+            if is_several && !(crease.is_level() && self.is_seam(tick, &crease)) {
                 return self.held_by_several(tick, touch, before, crease);
             }
         }
@@ -408,7 +410,37 @@ impl ContactPoint {
         let level = self.proxy.level(touch.body);
         self.stiffness = body.surface().strata.secant(level, stretch.norm());
         self.pop(tick, touch.body, stretch.norm());
+        let force = force + self.blend(tick, touch, stretch);
         force + self.ring(touch, force)
+    }
+
+    /// Whether bodies of a crease have different springs.
+    fn is_seam(&self, tick: &Tick<'_>, crease: &Crease) -> bool {
+        let strata = |body| tick.nearby.body(body).map(|body| &body.surface().strata);
+        let mut all = crease.walls().filter_map(|wall| strata(wall.body));
+        let first = all.next();
+        first.is_some_and(|first| all.any(|other| !other.has_springs_of(first)))
+    }
+
+    /// What the bodies beside the touched one change of its force [N].
+    fn blend(
+        &mut self,
+        tick: &Tick<'_>,
+        touch: &mut Touch,
+        stretch: Vector<f64, 3>,
+    ) -> Vector<f64, 3> {
+        if tick.nearby.bodies.bodies().len() < 2 {
+            return Vector::ZERO;
+        }
+        let Touch { proxy, body, normal, .. } = *touch;
+        let options = &tick.setting.options;
+        let place = Place { proxy, stretch, body, normal, radius: options.probe.radius() };
+        let punctured = self.proxy.punctured();
+        let (most_force, evaluations) = (options.max_force, &mut touch.evaluations);
+        let seam = Seam::at(tick.nearby, &place, punctured, most_force, evaluations);
+        let Some((seam, along)) = seam.zip(stretch.normalized()) else { return Vector::ZERO };
+        self.stiffness += seam.springs / stretch.norm();
+        along * seam.springs + seam.sideways
     }
 
     /// The bodies that touch the proxy.
@@ -469,8 +501,7 @@ impl ContactPoint {
         self.tell_changes(tick, touch, before, &crease);
         let fit = shortening(plain.norm(), shared.most());
         self.stiffness = fit * plain.norm() / depth;
-        let along = stretch.normalized().unwrap_or(Vector::ZERO);
-        let dampers = shared.dampers(touch.velocity, along);
+        let dampers = shared.dampers(touch.velocity, stretch, rest);
         for wall in crease.pushing_mut() {
             wall.force = wall.force * fit + dampers * (wall.push / whole);
             self.pop(tick, wall.body, wall.push);
@@ -531,7 +562,8 @@ impl ContactPoint {
             let there = gradient.normalized().unwrap_or(normal);
             (there - normal) * (way.norm() / far)
         };
-        let press = Press { stretch: pull, velocity, proxy: in_body, rate, has_dampers };
+        let press =
+            Press { stretch: pull, normal, velocity, proxy: in_body, rate, has_dampers };
         body.vector_in_world(body.surface().force(level, press, turn))
     }
 

@@ -42,7 +42,7 @@ mod velocity;
 mod workspace;
 mod wrench;
 
-pub use acceptance::{Acceptance, Accepted, Rule};
+pub use acceptance::{AS_IS_MOST, Acceptance, Accepted, Rule};
 pub use approach::{Approach, Change, Recovery, check_bears};
 pub use chain::{PortState, SafetyChain, SafetyOptions, StageTicks};
 pub use drive::{BodyMotion, DriveReport};

@@ -8,7 +8,9 @@ use std::io::Write as _;
 use std::path::Path;
 
 use palpate::device::DeviceProfile;
-use palpate::haptics::{Body, Material, Progress, Servo, Surface, Texture, TextureKind};
+use palpate::haptics::{
+    AcceptedTexture, Body, Material, Progress, Servo, Surface, Texture, TextureKind,
+};
 use palpate::safety::{Acceptance, Accepted, DeviceLimits, Rule};
 use palpate::scene::text::rounded;
 use palpate::scene::{BakedBody, BuiltScene};
@@ -253,8 +255,10 @@ fn write_report<const D: usize>(out: &mut String, felt: &Felt<'_, D>) -> std::fm
         }
     }
     let guides = servo.accepted_guides();
-    write_beyond(out, along, device, report.rate)?;
+    let of_textures = servo.accepted_textures().iter().map(|texture| &texture.lateral);
+    write_beyond(out, along.iter().chain(of_textures), device, report.rate)?;
     write_guides(out, guides)?;
+    write_waves(out, felt)?;
     inside::write(out, felt)?;
     match felt.missed {
         None => {}
@@ -363,10 +367,33 @@ fn write_guides(out: &mut String, accepted: &[Accepted]) -> std::fmt::Result {
     write_accepted(out, accepted, |count| format!("{count} of {all}"))
 }
 
+/// Which waves of height textures are lower than asked for, and why.
+fn write_waves<const D: usize>(out: &mut String, felt: &Felt<'_, D>) -> std::fmt::Result {
+    for AcceptedTexture { body, lateral, .. } in felt.servo.accepted_textures() {
+        let body = felt.scene.bodies.get(*body);
+        let asked = body.and_then(|body| Some((&body.name, body.material.texture.as_ref()?)));
+        let Some(((name, asked), rule)) = asked.zip(lateral.stiffness_rule) else { continue };
+        let rendered = lateral.stiffness_factor * asked.amplitude;
+        let [rendered, asked] = [rendered, asked.amplitude].map(|height| rounded(1e3 * height));
+        let [stiffness, steep] =
+            [lateral.device_stiffness, lateral.requested_stiffness].map(rounded);
+        writeln!(
+            out,
+            "  texture        waves of body \"{}\" are {rendered} mm high (asked {asked}); their \
+             slopes have a stiffness of {stiffness} N/m (asked {steep}) under the largest force: \
+             {}{}",
+            shown(name),
+            rule.condition(),
+            assumed(rule, &lateral.assumed)
+        )?;
+    }
+    Ok(())
+}
+
 /// How stiff the stiffest is, if that is more than the device renders stably.
-fn write_beyond(
+fn write_beyond<'a>(
     out: &mut String,
-    accepted: &[Accepted],
+    accepted: impl Iterator<Item = &'a Accepted>,
     device: &DeviceProfile,
     rate: f64,
 ) -> std::fmt::Result {
@@ -375,7 +402,7 @@ fn write_beyond(
     else {
         return Ok(());
     };
-    let stiffest = accepted.iter().map(|a| a.device_stiffness).fold(0.0, f64::max);
+    let stiffest = accepted.map(|a| a.device_stiffness).fold(0.0, f64::max);
     // What rounding adds to the most is no more.
     if stiffest <= most * (1.0 + 1e-12) {
         return Ok(());

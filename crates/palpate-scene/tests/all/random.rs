@@ -421,6 +421,7 @@ fn material(u: Random, d: usize) -> Result<Material> {
                 decay: length(u)?,
             })
         })?,
+        seam: maybe(u, length)?,
     })
 }
 
