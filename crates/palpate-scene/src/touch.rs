@@ -284,6 +284,9 @@ impl<const D: usize> BuiltScene<D> {
         let mut protection = Protection::new(profile.clone()).with_map(map);
         protection.settings = settings.safety;
         protection.settings.acceptance = acceptance.unwrap_or(settings.safety.acceptance);
+        if let Some(power) = self.tool.as_ref().and_then(|tool| tool.drive_power) {
+            protection.settings.drive_power = power;
+        }
         let guided = || protection.accept_guides(&self.guides, settings.rate).err();
         let servo = servo.protected(&protection);
         let mut servo = servo.map_err(|error| all_refused(error, guided()))?;

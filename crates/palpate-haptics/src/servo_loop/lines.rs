@@ -130,6 +130,16 @@ fn write_safety(f: &mut Formatter<'_>, safety: &[SafetyReport]) -> Result {
     let acted: Vec<_> = acted.map(|(stage, ticks)| format!("{stage} {ticks}")).collect();
     let acted = if acted.is_empty() { "nothing to do".to_owned() } else { acted.join(", ") };
     line(f, "safety, ticks", acted)?;
+    let most = |of: fn(&SafetyReport) -> f64| safety.iter().map(of).fold(0.0, f64::max);
+    for (stage, taken) in [
+        ("passivity", most(|point| point.passivity.effect.largest)),
+        ("passivity of guides", most(|point| point.free_forces.effect.largest)),
+        ("power of drives", most(|point| point.drives.effect.largest)),
+    ] {
+        if taken > 0.0 {
+            line(f, "", format_args!("{stage} took away {taken:.3} N at most"))?;
+        }
+    }
     let least = safety.iter().map(|point| point.limit_cycles.least_part).fold(1.0, f64::min);
     if least < 1.0 {
         let said = "oscillated against bodies, which became softer: check its profile";
