@@ -282,7 +282,7 @@ impl ContactPoint {
             let carried = Vector::ZERO;
             return FreeForce { force: Vector::ZERO, placed, change, carried };
         };
-        let mut free = self.guided(device, state.velocity, tick.setting.rise_step);
+        let mut free = self.guided(device, state.velocity, tick.setting);
         if following.contact {
             touch.wanted = self.held(tick, touch, before, body);
         } else {
@@ -737,15 +737,17 @@ impl ContactPoint {
         &mut self,
         position: Point<3>,
         velocity: Vector<f64, 3>,
-        rise_step: f64,
+        setting: &Setting,
     ) -> Vector<f64, 3> {
         if self.guides.is_empty() || !(position.is_finite() && velocity.is_finite()) {
             return Vector::ZERO;
         }
-        let guides = self.guides.iter_mut();
-        let all = guides.fold(Vector::ZERO, |sum, guide| sum + guide.force(position, velocity));
+        let rate = setting.options.rate;
+        let forces =
+            self.guides.iter_mut().map(|guide| guide.rising_force(position, velocity, rate));
+        let all = forces.fold(Vector::ZERO, |sum, force| sum + force);
         let part = self.guided;
-        self.guided = (part + rise_step).min(1.0);
+        self.guided = (part + setting.rise_step).min(1.0);
         all * part
     }
 

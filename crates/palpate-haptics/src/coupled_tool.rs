@@ -125,7 +125,7 @@ impl CoupledTool {
         touch: &mut Touch,
     ) -> Vector<f64, 3> {
         let Sides { point, bodies } = sides;
-        let Setting { map, arrival, is_lifted, rise_step, .. } = setting;
+        let Setting { map, arrival, is_lifted, .. } = setting;
         let is_turn_sound = self
             .port
             .as_mut()
@@ -156,7 +156,7 @@ impl CoupledTool {
             self.tool.hover(&state);
             point.let_go();
         } else {
-            free = point.guided(position, velocity, *rise_step);
+            free = point.guided(position, velocity, setting);
             self.tool.step(bodies, &state);
         }
         let felt = self.tool.touch();
