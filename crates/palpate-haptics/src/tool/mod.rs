@@ -58,7 +58,8 @@ const LIKELY: f64 = 1.0;
 /// The least expected motion, in skins, for a tool that still moves while the device rests.
 const LIKELY_SKINS: f64 = 0.25;
 
-/// The tool rests when its next motion is below this part of the device's motion in this tick.
+/// A tool outside the bodies rests when its next motion is below this part of the device's motion
+/// in this tick.
 /// The next tick corrects the remainder, which is zero when the hand rests.
 const AT_REST: f64 = 1e-3;
 

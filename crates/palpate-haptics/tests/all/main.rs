@@ -44,6 +44,7 @@ mod scale;
 mod stability;
 mod strikes;
 mod swapped;
+mod tool_faces;
 mod tool_materials;
 mod tool_servo;
 mod tools;
