@@ -231,7 +231,7 @@ impl RestSearch {
             let is_free = !goes_out && found.held().next().is_none();
             let twist =
                 if is_free { wish } else { Twist::unstacked(found.motion, lengths.unit) };
-            // A pose inside is kept as no rest pose, however short the way out is.
+            // A tool inside goes on, however short the way out is.
             let may_rest = is_outside && !is_free;
             // Written so that NaN rests.
             let goes_on = twist.way(shell.reach) > if may_rest { lengths.still } else { 0.0 };
