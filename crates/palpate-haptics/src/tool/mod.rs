@@ -58,8 +58,8 @@ const LIKELY: f64 = 1.0;
 /// The least expected motion, in skins, for a tool that still moves while the device rests.
 const LIKELY_SKINS: f64 = 0.25;
 
-/// The tool rests when its next motion is below this part of the device's motion in this tick.
-/// The next tick corrects the remainder, which is zero when the hand rests.
+/// A tool outside the bodies rests when its next motion is below this part of the device's motion
+/// in this tick. The next tick corrects the remainder, which is zero when the hand rests.
 const AT_REST: f64 = 1e-3;
 
 /// The skin of points without a radius, as a part of the tool's reach. A larger skin speeds up
@@ -118,8 +118,8 @@ const MOST_EVENTS: usize = 3;
 /// - *No surface is crossed.* At any speed, no point of the evaluated shell dips deeper than
 ///   its radius, or, without a radius, than 1e-3 of the tool's reach. At rest every evaluated
 ///   ball is outside up to 1e-9 of the size of the scene.
-/// - *The tool may lag.* A tick takes at most six iterations, and stops when the next motion is
-///   below a thousandth of the device's; the next tick continues from there.
+/// - *The tool may lag.* A tick takes at most six iterations, and stops when the tool is outside
+///   and its next motion is below a thousandth of the device's; the next tick continues from there.
 /// - *With too small a budget the tool gets coarser.* The tick evaluates fewer levels of the
 ///   shell, and reports this: [`ToolTouch::points_known`], [`ToolTouch::resolution`],
 ///   [`ToolTouch::is_degraded`].

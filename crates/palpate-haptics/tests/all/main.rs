@@ -47,6 +47,7 @@ mod seams;
 mod stability;
 mod strikes;
 mod swapped;
+mod tool_faces;
 mod tool_materials;
 mod tool_servo;
 mod tools;
