@@ -11,6 +11,7 @@ import subprocess
 import sys
 import threading
 import time
+import wave
 from pathlib import Path
 
 import numpy as np
@@ -223,6 +224,16 @@ def test_a_driver_in_python_is_felt() -> None:
         mailbox.set([0, 0, 0])
     with pytest.raises(TypeError, match="the scene is 3D, the mailbox 2D"):
         pp.Servo(SCENE, device=pp.Mailbox(dimension=2))
+
+
+def test_a_vibration_of_ten_channels_is_read_by_wave(tmp_path: Path) -> None:
+    file, sound = tmp_path / "scene.json", tmp_path / "glove.wav"
+    SCENE.save(file)
+    command = [sys.executable, "-m", "palpate", "feel", str(file), "--fast", "--duration", "0.1", "--device", "glove"]
+    done = subprocess.run([*command, "--points", "10", "--wav", str(sound)], capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    with wave.open(str(sound), "rb") as read:
+        assert (read.getnchannels(), read.getsampwidth(), read.getframerate(), read.getnframes()) == (10, 2, 8000, 800)
 
 
 def driven(mailbox: pp.Mailbox, hertz: float, seconds: float, **settings: float) -> tuple[pp.Servo, float]:
