@@ -113,8 +113,7 @@ where
     let servo = scene.servo_with(device.as_ref(), settings);
     let mut servo = servo.map_err(|error| refused(error, scene))?;
     let accepted = servo.accepted().to_vec();
-    let force = servo.options().max_force;
-    if let Some(less) = report::less_than_asked(scene, &accepted, force, device.profile()) {
+    if let Some(less) = report::less_than_asked(scene, &accepted, device.profile()) {
         output::remark(less);
     }
 

@@ -192,8 +192,8 @@ fn write_report<const D: usize>(out: &mut String, felt: &Felt<'_, D>) -> std::fm
             out,
             "  stiffness {stiffness} N/m, damping {damping} N·s/m, at most {} N, ",
             of_asked(
-                &rounded(options.max_force.min(device.max_force)),
-                &rounded(options.max_force)
+                &rounded(options.max_force),
+                &rounded(asked_force(felt.scene).unwrap_or(options.max_force))
             ),
         )?;
     } else {
@@ -345,16 +345,12 @@ fn write_accepted(
 pub(super) fn less_than_asked<const D: usize>(
     scene: &BuiltScene<D>,
     accepted: &[Accepted],
-    max_force: f64,
     device: &DeviceProfile,
 ) -> Option<String> {
     let mut less = Vec::new();
-    if device.max_force > 0.0 && max_force > device.max_force {
-        less.push(format!(
-            "at most {} N of {} N",
-            rounded(device.max_force),
-            rounded(max_force)
-        ));
+    let most = device.max_force;
+    if let Some(asked) = asked_force(scene).filter(|asked| most > 0.0 && *asked > most) {
+        less.push(format!("at most {} N of {} N", rounded(most), rounded(asked)));
     }
     let softer = accepted.iter().enumerate().filter(|(_, a)| a.stiffness_rule.is_some());
     // A tool has its coupling along axes, and then about axes.
@@ -373,6 +369,11 @@ pub(super) fn less_than_asked<const D: usize>(
     }
     let less = (!less.is_empty()).then(|| less.join(", and "))?;
     Some(format!("warning: the {} renders less than asked: {less}", shown(&device.name)))
+}
+
+/// The largest force that the scene or the command line asks for [N]; `None` for that of the device.
+fn asked_force<const D: usize>(scene: &BuiltScene<D>) -> Option<f64> {
+    scene.tool.as_ref()?.options.max_force
 }
 
 /// Which numbers that a rule uses are `assumed`.

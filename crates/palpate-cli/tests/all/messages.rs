@@ -220,7 +220,7 @@ fn a_left_handed_frame_is_called_a_reflection() {
                 right-handed, so mirror one axis of a left-handed frame before, for instance in the \
                 device's driver\n";
     let checked = checked(&folder, "left.json", scene.as_bytes());
-    assert_eq!(checked, format!("left.json: tool.workspace.pose.rotation, line 4: {said}"));
+    assert_eq!(checked, format!("left.json: tool.workspace.pose.rotation, line 3: {said}"));
     let felt = folder.run(&["feel", "left.json", "--fast", "--duration", "0.01"]);
     assert!(errors(&felt).ends_with(said), "{}", errors(&felt));
 }
