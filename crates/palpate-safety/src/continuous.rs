@@ -234,7 +234,7 @@ mod watchdog_tests {
             let (mut dog, period) = (Watchdog::new(options), 1.0 / rate);
             let jitter = [period, 0.0, period, period, 0.0, 0.0, 0.0].repeat(100);
             assert_eq!(factors(&mut dog, &jitter), [1.0; 700], "{rate}");
-            assert!(factors(&mut dog, &[period; 3])[2] < 1.0, "{rate}");
+            assert!(factors(&mut dog, &[period; 3]).last() < Some(&1.0), "{rate}");
         }
     }
 

@@ -571,6 +571,7 @@ mod tests {
 }
 
 #[cfg(test)]
+#[expect(clippy::indexing_slicing, reason = "tests know their lengths")]
 mod wav_tests {
     use super::*;
 
