@@ -168,9 +168,9 @@ pub struct SafetySettings {
     /// placement, late ticks, lost readings, an input that is not finite, or an emergency stop. A
     /// torque rises as fast in the units of its coupling, `√(κ/K)` metres a radian.
     pub rise_rate: f64,
-    /// The time by which ticks are late together when the force falls to zero [s]. Each tick in
-    /// time takes a period from that sum, and two once the force falls; when the sum is zero, the
-    /// force rises again.
+    /// The time by which ticks are late together when the force falls to zero [s], but for 2.5
+    /// periods at least. Each tick in time takes a period from that sum, and two once the force
+    /// falls; when the sum is zero, the force rises again.
     pub late_time: f64,
     /// The time over which late ticks lower the force to zero [s].
     pub fall_time: f64,

@@ -53,7 +53,8 @@ pub struct SafetyReport {
     pub turning: Option<TurningReport>,
 }
 
-/// Actions of the stages of the torque, for a device with rotation; changes are in N·m.
+/// Actions of the stages of the torque, for a device with rotation; changes are in N·m. Torques are
+/// those at the device: in the world they are as many times as large as the workspace is.
 /// Passivity covers force and torque together: see [`SafetyReport::passivity`].
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
@@ -62,7 +63,7 @@ pub struct SafetyReport {
 pub struct TurningReport {
     /// The accepted angular stiffness and damping of the coupling.
     pub impedance: Accepted,
-    /// The largest torque that was written [N·m].
+    /// The largest torque that was written [N·m], at the device.
     pub largest_torque: f64,
     /// The slew limit.
     pub slew: Effect,

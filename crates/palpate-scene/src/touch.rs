@@ -236,7 +236,8 @@ impl<const D: usize> BuiltScene<D> {
     /// # }
     /// ```
     pub fn servo(&self, device: &(impl Device + ?Sized)) -> Result<Servo, HapticsError> {
-        self.servo_with(device, ServoSettings::default())
+        let rate = ServoOptions::default().at_rate_of(device).rate;
+        self.servo_with(device, ServoSettings { rate, ..ServoSettings::default() })
     }
 
     /// The same with settings of one's own.

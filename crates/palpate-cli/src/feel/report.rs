@@ -193,7 +193,10 @@ fn write_report<const D: usize>(out: &mut String, felt: &Felt<'_, D>) -> std::fm
         write!(
             out,
             "  stiffness {stiffness} N/m, damping {damping} N·s/m, at most {} N, ",
-            options.max_force,
+            of_asked(
+                &rounded(options.max_force),
+                &rounded(asked_force(felt.scene).unwrap_or(options.max_force))
+            ),
         )?;
     } else {
         write!(out, "  vibration alone, as the device gives no force; ")?;
@@ -339,6 +342,42 @@ fn write_accepted(
         )?;
     }
     Ok(())
+}
+
+/// What a device renders less of than the scene or the command line asks for, in a sentence; `None`
+/// if it renders all.
+pub(super) fn less_than_asked<const D: usize>(
+    scene: &BuiltScene<D>,
+    accepted: &[Accepted],
+    device: &DeviceProfile,
+) -> Option<String> {
+    let mut less = Vec::new();
+    let most = device.max_force;
+    if let Some(asked) = asked_force(scene).filter(|asked| most > 0.0 && *asked > most) {
+        less.push(format!("at most {} N of {} N", rounded(most), rounded(asked)));
+    }
+    let softer = accepted.iter().enumerate().filter(|(_, a)| a.stiffness_rule.is_some());
+    // A tool has its coupling along axes, and then about axes.
+    let is_tool = scene.tool.as_ref().is_some_and(|tool| tool.shape.is_some());
+    let along = softer.filter(|(entry, _)| !is_tool || *entry == 0);
+    let softest =
+        along.min_by(|(_, a), (_, b)| a.stiffness_factor.total_cmp(&b.stiffness_factor));
+    if let Some((entry, softest)) = softest {
+        let whose = match scene.bodies.get(entry) {
+            Some(body) if !is_tool => format!("body \"{}\"", shown(&body.name)),
+            _ => "the tool's coupling".to_owned(),
+        };
+        let [rendered, asked] =
+            [softest.device_stiffness, softest.requested_stiffness].map(rounded);
+        less.push(format!("{rendered} N/m of {asked} N/m of {whose}"));
+    }
+    let less = (!less.is_empty()).then(|| less.join(", and "))?;
+    Some(format!("warning: the {} renders less than asked: {less}", shown(&device.name)))
+}
+
+/// The largest force that the scene or the command line asks for [N]; `None` for that of the device.
+fn asked_force<const D: usize>(scene: &BuiltScene<D>) -> Option<f64> {
+    scene.tool.as_ref()?.options.max_force
 }
 
 /// Which numbers that a rule uses are `assumed`.

@@ -39,7 +39,7 @@ pub(crate) fn write(f: &mut Formatter<'_>, report: &RunReport) -> Result {
     }
     line(f, "largest depth", format_args!("{:.3} mm", 1e3 * report.largest_depth))?;
     if let Some(tool) = &report.tool {
-        write_tool(f, tool)?;
+        write_tool(f, tool, &report.safety)?;
     }
     line(f, "evaluations", report.evaluations)?;
     if report.evaluations.budget_spent > 0 {
@@ -78,16 +78,19 @@ pub(crate) fn write(f: &mut Formatter<'_>, report: &RunReport) -> Result {
 }
 
 /// The lines of a tool that contact points do not have.
-fn write_tool(f: &mut Formatter<'_>, tool: &ToolReport) -> Result {
+fn write_tool(f: &mut Formatter<'_>, tool: &ToolReport, safety: &[SafetyReport]) -> Result {
     let torque = 1e3 * tool.largest_torque;
     match tool.largest_torque_written {
         Some(written) => {
             let written = 1e3 * written;
+            let turning = safety.iter().filter_map(|point| point.turning.as_ref());
+            let at_device = 1e3 * turning.map(|t| t.largest_torque).fold(0.0, f64::max);
             let said =
-                format_args!("{torque:.3} mN·m, {written:.3} mN·m written to the device");
+                format_args!("{torque:.3} mN·m, {written:.3} mN·m written, in the world");
             line(f, "largest torque", said)?;
+            line(f, "", format_args!("{at_device:.3} mN·m written to the device"))?;
         }
-        None => line(f, "largest torque", format_args!("{torque:.3} mN·m"))?,
+        None => line(f, "largest torque", format_args!("{torque:.3} mN·m, in the world"))?,
     }
     let (mean, most) = (tool.mean_contacts, tool.most_contacts);
     let said = format_args!("{mean:.2} on average in contact, {most} at most");
