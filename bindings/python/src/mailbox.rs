@@ -19,13 +19,16 @@ pub(crate) type Own = Box<dyn Device + Send>;
 
 /// A device of your own: its driver sets where the points are, as often as it likes, and takes the newest forces.
 ///
-/// The servo never waits for the driver. If nothing more is set for 0.1 s, or after `lose`, the device is lost: forces go to
-/// zero, the servo ends, and its `with` block raises `DeviceLostError`. `profile` is the name of the profile whose limits
+/// The servo never waits for the driver. `rate` is how often a second the driver sets positions [Hz]: tell it if that is less
+/// than 1000, as of a game with 90 frames a second. The servo ticks as often then, and bodies are as stiff as that rate allows.
+/// A driver that sets less than half of what the servo takes would get no force: after half a second the device is lost. So it
+/// is if nothing more is set for 0.1 s (for five periods of a rate below 50 Hz), or after `lose`: forces go to zero, the servo
+/// ends, and its `with` block raises `DeviceLostError`, which says why, with both rates. `profile` is the name of the profile whose limits
 /// hold, `points` how many contact points the device has. Positions and forces are those of the device: unless the tool of
 /// the scene has a `workspace`, the one of the profile is scaled so that it holds the scene; with
 /// `tool={"workspace": {"scale": 1}}` they are those of the world.
 ///
-/// Raises `UnknownNameError` if no profile has the name, `ValueError` if `points` or `dimension` is out of range.
+/// Raises `UnknownNameError` if no profile has the name, `ValueError` if `points`, `rate` or `dimension` is out of range.
 ///
 /// >>> import palpate as pp, time
 /// >>> mailbox = pp.Mailbox("omega")
@@ -35,6 +38,11 @@ pub(crate) type Own = Box<dyn Device + Send>;
 /// ...         time.sleep(0.001)
 /// ...     mailbox.forces.shape
 /// (1, 3)
+///
+/// A driver with 90 frames a second:
+///
+/// >>> pp.Mailbox("omega", rate=90).rate
+/// 90.0
 #[pyclass(frozen, module = "palpate", name = "Mailbox")]
 pub(crate) struct PyMailbox {
     /// The servo's end, until a servo takes it.
@@ -42,13 +50,21 @@ pub(crate) struct PyMailbox {
     mailbox: Mutex<Mailbox>,
     /// The dimension of the scenes that it touches.
     dimension: usize,
+    /// How often its driver sets positions [Hz], if it is told.
+    rate: Option<f64>,
 }
 
 #[pymethods]
 impl PyMailbox {
     #[new]
-    #[pyo3(signature = (profile = "omega", *, points = 1, dimension = 3))]
-    fn new(py: Python<'_>, profile: &str, points: usize, dimension: usize) -> PyResult<Self> {
+    #[pyo3(signature = (profile = "omega", *, points = 1, rate = None, dimension = 3))]
+    fn new(
+        py: Python<'_>,
+        profile: &str,
+        points: usize,
+        rate: Option<f64>,
+        dimension: usize,
+    ) -> PyResult<Self> {
         if !(2..=3).contains(&dimension) {
             let problem = format!("dimension must be 2 or 3, got {dimension}");
             return Err(PyValueError::new_err(problem));
@@ -56,8 +72,12 @@ impl PyMailbox {
         check_points(points)?;
         let profile = profile_named(profile).or_raise(py)?;
         let (device, mailbox) = MailboxDevice::new(profile, points).or_raise(py)?;
-        let device: Own = Box::new(device);
-        Ok(Self { device: Mutex::new(Some(device)), mailbox: Mutex::new(mailbox), dimension })
+        let device: Own = match rate {
+            Some(rate) => Box::new(device.with_rate(check_rate(rate)?)),
+            None => Box::new(device),
+        };
+        let (device, mailbox) = (Mutex::new(Some(device)), Mutex::new(mailbox));
+        Ok(Self { device, mailbox, dimension, rate })
     }
 
     /// Sets where the points are, shape (points, D) [m] at the device, at `time` [s] if it is known.
@@ -107,6 +127,16 @@ impl PyMailbox {
         table(py, forces.iter().flat_map(along).collect(), self.dimension)
     }
 
+    /// How often a second the driver sets positions, as it was told [Hz]; None if it was not.
+    ///
+    /// >>> import palpate as pp
+    /// >>> pp.Mailbox(rate=250).rate
+    /// 250.0
+    #[getter]
+    pub(crate) fn rate(&self) -> Option<f64> {
+        self.rate
+    }
+
     /// How often the servo has written forces: if that no longer grows, motors must be set to zero.
     ///
     /// >>> import palpate as pp
@@ -124,6 +154,15 @@ impl PyMailbox {
     fn lose(&self) {
         self.locked().lose();
     }
+}
+
+/// Refuses a rate [Hz] that is none.
+pub(crate) fn check_rate(rate: f64) -> PyResult<f64> {
+    if rate > 0.0 && rate.is_finite() {
+        return Ok(rate);
+    }
+    let problem = format!("rate must be positive and finite, got {rate} Hz");
+    Err(PyValueError::new_err(problem))
 }
 
 impl PyMailbox {

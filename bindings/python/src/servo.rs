@@ -14,7 +14,7 @@ use crate::answers::{Fields, read};
 use crate::error::OrRaise;
 use crate::hand::{check_points, simulated};
 use crate::interrupt::interruptible;
-use crate::mailbox::PyMailbox;
+use crate::mailbox::{PyMailbox, check_rate};
 use crate::pool;
 use crate::poses;
 use crate::scene::PyScene;
@@ -33,6 +33,9 @@ const MOST_TICKS: f64 = 1e9;
 /// The device that is simulated unless the caller names another.
 const DEVICE: &str = "omega";
 
+/// Ticks a second unless the caller or a slower device says otherwise [Hz].
+const RATE: f64 = 1000.0;
+
 /// How long a tour takes if the servo does not end by itself [s].
 const TOUR: f64 = 10.0;
 
@@ -45,7 +48,7 @@ const TOUR: f64 = 10.0;
 /// out, it is a tour over all bodies, of `points` contact points one behind the other, or of the scene's tool.
 /// `duration` [s] ends the servo by itself. `record` is for how long ticks are kept [s], for `trace`: left out, for the
 /// duration, but no longer than 600 s and 10 million rows, and without a duration not at all. `rate` is how many ticks a
-/// second has. It runs inside of `with`, which raises `DeviceLostError` at its end if the device was lost meanwhile.
+/// second has [Hz]: left out, 1000, or as many as a slower `Mailbox` tells. It runs inside of `with`, which raises `DeviceLostError` at its end if the device was lost meanwhile.
 ///
 /// Raises `UnknownNameError` if no profile has the name, `DeviceError`, `HapticsError` or `SceneError` if the hand, the
 /// tool or a body cannot be, `ValueError` if a number is out of range, `RuntimeError` if another servo has the mailbox.
@@ -67,7 +70,7 @@ pub(crate) struct PyServo {
 #[pymethods]
 impl PyServo {
     #[new]
-    #[pyo3(signature = (scene, *, device = None, hand = None, points = 1, duration = None, record = None, rate = 1000.0))]
+    #[pyo3(signature = (scene, *, device = None, hand = None, points = 1, duration = None, record = None, rate = None))]
     fn new(
         py: Python<'_>,
         scene: &Bound<'_, PyAny>,
@@ -76,12 +79,14 @@ impl PyServo {
         points: usize,
         duration: Option<f64>,
         record: Option<f64>,
-        rate: f64,
+        rate: Option<f64>,
     ) -> PyResult<Self> {
         let scene = PyScene::given(scene)?;
-        let asked = Asked { device, hand, points, duration, record, rate };
         let mailbox = device.and_then(|device| device.cast::<PyMailbox>().ok());
         let mailbox = mailbox.map(Bound::get);
+        let of_mailbox = mailbox.and_then(PyMailbox::rate).unwrap_or(RATE);
+        let rate = rate.unwrap_or(of_mailbox.min(RATE));
+        let asked = Asked { device, hand, points, duration, record, rate };
         let (ready, dimension) = match scene.get().built() {
             AnyScene::Planar(scene) => (asked.ready(py, scene, mailbox)?, 2),
             AnyScene::Spatial(scene) => (asked.ready(py, scene, mailbox)?, 3),
@@ -309,10 +314,7 @@ impl Asked<'_, '_> {
         mailbox: Option<&PyMailbox>,
     ) -> PyResult<Ready> {
         mailbox.map_or(Ok(()), |mailbox| mailbox.check(D))?;
-        if !(self.rate > 0.0 && self.rate.is_finite()) {
-            let problem = format!("rate must be positive and finite, got {} Hz", self.rate);
-            return Err(PyValueError::new_err(problem));
-        }
+        check_rate(self.rate)?;
         let is_run = |duration: f64| {
             let ticks = (duration * self.rate).round();
             (1.0..=MOST_TICKS).contains(&ticks)

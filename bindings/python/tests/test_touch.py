@@ -11,6 +11,7 @@ import subprocess
 import sys
 import threading
 import time
+import wave
 from pathlib import Path
 
 import numpy as np
@@ -223,6 +224,49 @@ def test_a_driver_in_python_is_felt() -> None:
         mailbox.set([0, 0, 0])
     with pytest.raises(TypeError, match="the scene is 3D, the mailbox 2D"):
         pp.Servo(SCENE, device=pp.Mailbox(dimension=2))
+
+
+def test_a_vibration_of_ten_channels_is_read_by_wave(tmp_path: Path) -> None:
+    file, sound = tmp_path / "scene.json", tmp_path / "glove.wav"
+    SCENE.save(file)
+    command = [sys.executable, "-m", "palpate", "feel", str(file), "--fast", "--duration", "0.1", "--device", "glove"]
+    done = subprocess.run([*command, "--points", "10", "--wav", str(sound)], capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    with wave.open(str(sound), "rb") as read:
+        assert (read.getnchannels(), read.getsampwidth(), read.getframerate(), read.getnframes()) == (10, 2, 8000, 800)
+
+
+def driven(mailbox: pp.Mailbox, hertz: float, seconds: float, **settings: float) -> tuple[pp.Servo, float]:
+    """A driver that goes 4 mm into a plate, and the force on it at the end."""
+    plate = pp.Scene(
+        {"plate": pp.cuboid([0.1, 0.02, 0.1])},
+        materials={"plate": {"stiffness": 800, "damping": 1}},
+        tool={"workspace": {"scale": 1}},
+    )
+    servo, start = pp.Servo(plate, device=mailbox, record=seconds + 1, **settings), time.perf_counter()
+    with servo:
+        for n in range(int(seconds * hertz)):
+            mailbox.set([[0, max(0.014 - 0.02 * n / hertz, 0.010), 0]], time=n / hertz)
+            time.sleep(max(0, start + (n + 1) / hertz - time.perf_counter()))
+        force = float(mailbox.forces[0][1])
+    return servo, force
+
+
+@pytest.mark.parametrize("hertz", [12, 30, 60, 90, 250])
+def test_a_slow_driver_is_felt_as_its_rate_allows_or_told(hertz: int) -> None:
+    servo, force = driven(mailbox := pp.Mailbox(rate=hertz), hertz, 1.5)
+    assert mailbox.rate == hertz and servo.report["rate"] == hertz
+    # The omega is passive up to 2 b / T of its damping; 2 mm of the probe are in the plate.
+    assert force > 0.0005 * 2 * hertz, force
+    with pytest.raises(pp.DeviceLostError, match=r"states a second, but the servo takes .*, and would give no force.*rate="):
+        driven(pp.Mailbox(), hertz, 1.5)
+
+
+def test_a_servo_faster_than_its_mailbox_is_refused() -> None:
+    with pytest.raises(pp.HapticsError, match="measures 90 times a second, but the servo ticks 1000 times"):
+        driven(pp.Mailbox(rate=90), 90, 0.1, rate=1000.0)
+    with pytest.raises(ValueError, match="rate must be positive and finite, got -5 Hz"):
+        pp.Mailbox(rate=-5)
 
 
 def test_python_that_holds_its_lock_delays_no_tick() -> None:

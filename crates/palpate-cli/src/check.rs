@@ -19,6 +19,7 @@ use crate::answers::Bounds;
 use crate::input::{Bakes, bytes, folder, longest_edge, other_than_scene};
 use crate::outcome::{Failure, Outcome};
 use crate::output::{self, counted, shown};
+use crate::unfelt;
 use crate::units::hint;
 
 pub(crate) fn run(options: &CheckOptions) -> Result<Outcome, Failure> {
@@ -132,6 +133,9 @@ pub(crate) struct Body {
     pub(crate) depth: usize,
     /// `true` if it is proven that no point is in the body, `null` if none was found.
     pub(crate) is_empty: Option<bool>,
+    /// The name of a body within which it is proven to lie wholly, so that it cannot be felt; `null`
+    /// if there is none, or none is proven.
+    pub(crate) hidden_in: Option<String>,
 }
 
 /// A mesh or a volume of a scene.
@@ -221,8 +225,10 @@ pub(crate) struct Sampled {
 
 impl Answer {
     fn of<const D: usize>(name: String, scene: &BuiltScene<D>) -> Self {
-        let bodies = scene.bodies.iter().map(|body| {
+        let hidden = scene.hidden();
+        let bodies = scene.bodies.iter().enumerate().map(|(number, body)| {
             let promise = body.shape.promise();
+            let around = hidden.iter().find(|hidden| hidden.body == number);
             Body {
                 name: body.name.clone(),
                 promise: promise.in_words(),
@@ -230,6 +236,7 @@ impl Answer {
                 bounds: promise.bounds.map(|bounds| bounds.aabb.into()),
                 depth: body.shape.depth(),
                 is_empty: is_empty(&body.shape_in_body),
+                hidden_in: around.map(|hidden| scene.bodies[hidden.within].name.clone()),
             }
         });
         let bodies = bodies.collect();
@@ -309,13 +316,16 @@ impl fmt::Display for Answer {
             self.dimension,
             counted(self.bodies.len(), "body", "bodies")
         )?;
-        for Body { name, promise, is_empty, .. } in &self.bodies {
+        for Body { name, promise, is_empty, hidden_in, .. } in &self.bodies {
             let empty = match is_empty {
                 Some(false) => "",
                 Some(true) => "; empty: no point is in it, which is proven",
                 None => "; may be empty: no point was found in it",
             };
             writeln!(f, "  {}: {promise}{empty}", shown(name))?;
+            if let Some(outer) = hidden_in {
+                writeln!(f, "    warning: {}", unfelt::Told { inner: name, outer })?;
+            }
         }
         self.meshes.iter().try_for_each(|mesh| mesh.fmt(f))
     }

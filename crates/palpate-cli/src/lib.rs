@@ -38,6 +38,7 @@ mod schema;
 mod shapes;
 mod sweep;
 mod table;
+mod unfelt;
 mod units;
 mod views;
 

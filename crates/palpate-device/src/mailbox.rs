@@ -17,8 +17,11 @@ use std::time::Duration;
 /// The driver [sets](Mailbox::set) where the points are and [takes](Mailbox::forces) the newest
 /// forces, as often as it likes; the servo never waits for it. Before the first states the device is
 /// [not ready](Reading::NotReady), and a tick that finds none that are new has a
-/// [stale](Reading::Stale) reading: a driver that is too slow does not make ticks late, but the
-/// force falls to zero where it lasts.
+/// [stale](Reading::Stale) reading, which holds the force for some ticks. A driver that sets states
+/// less often than a servo of 1 kHz takes them tells [how often](Self::with_rate): the servo ticks as
+/// often then, with the stiffness that this rate allows. One that sets less than half of what the
+/// servo takes would get no force; after half a second the device is lost, and the error names both
+/// rates.
 ///
 /// Each side watches the other. A driver that sets nothing for longer than its
 /// [`patience`](Self::with_patience) has died: the device is lost, until it is opened again and the
@@ -61,7 +64,9 @@ pub struct MailboxDevice {
     turn: Option<TurnState>,
     buttons: Buttons,
     gripper: Option<GripperState>,
-    patience: f64,
+    /// The time for which the driver may set nothing [s]; `None` for that of its rate.
+    patience: Option<f64>,
+    pace: Pace,
     orders: Orders,
     sent: LatestWriter<Orders>,
 }
@@ -103,8 +108,12 @@ struct Orders {
 
 impl MailboxDevice {
     /// How long the driver may set nothing unless [`with_patience`](Self::with_patience) says
-    /// otherwise [s].
+    /// otherwise [s]; at a [rate](Self::with_rate) below 50 Hz five periods, which are longer.
     pub const PATIENCE: f64 = 0.1;
+
+    /// How many periods the driver may set nothing at a low rate: a thread that sleeps between its
+    /// states is late by a period or two.
+    const PATIENT_PERIODS: f64 = 5.0;
 
     /// A device with so many contact points, and its driver's end.
     ///
@@ -147,7 +156,8 @@ impl MailboxDevice {
             turn: None,
             buttons: Buttons::NONE,
             gripper: None,
-            patience: Self::PATIENCE,
+            patience: None,
+            pace: Pace::default(),
             orders,
             sent,
         };
@@ -155,13 +165,24 @@ impl MailboxDevice {
     }
 
     /// The device with another time for which the driver may set nothing [s], infinite for a
-    /// driver that only sets what changes. The servo's ticks measure that time.
+    /// driver that only sets what changes, whose rate is not watched. The servo's ticks measure that
+    /// time.
     #[must_use]
     pub fn with_patience(self, patience: f64) -> Self {
-        Self { patience, ..self }
+        Self { patience: Some(patience), ..self }
     }
 
-    /// The device with so many states a second [Hz], as [`Device::rate`] tells the servo.
+    /// The device with so many states a second [Hz], as [`Device::rate`] tells the servo: needed of a
+    /// driver that sets fewer than 1000.
+    ///
+    /// ```
+    /// use palpate_device::{Device, DeviceProfile, MailboxDevice};
+    ///
+    /// // From the frames of a game.
+    /// let (device, _mailbox) = MailboxDevice::new(DeviceProfile::unlimited("of my own"), 1)?;
+    /// assert_eq!(device.with_rate(90.0).rate(), Some(90.0));
+    /// # Ok::<(), palpate_device::DeviceError>(())
+    /// ```
     #[must_use]
     pub fn with_rate(self, rate: f64) -> Self {
         Self { rate: Some(rate), ..self }
@@ -172,6 +193,18 @@ impl MailboxDevice {
     #[must_use]
     pub fn with_watchdog(self, longest: Duration) -> Self {
         Self { watchdog: Some(longest), ..self }
+    }
+
+    /// The time for which the driver may set nothing [s].
+    fn patience(&self) -> f64 {
+        let of_rate = |rate: f64| (Self::PATIENT_PERIODS / rate).max(Self::PATIENCE);
+        self.patience.unwrap_or_else(|| self.rate.map_or(Self::PATIENCE, of_rate))
+    }
+
+    /// The device is lost as of the message of this number.
+    fn lose(&mut self, number: u64, reason: impl Into<String>) -> DeviceLost {
+        (self.lost, self.pace) = (number, Pace::default());
+        DeviceLost { reason: reason.into() }
     }
 
     /// Sends the orders to the driver.
@@ -308,6 +341,85 @@ impl Mailbox {
     }
 }
 
+/// How often the driver sets states, beside how often the servo takes them.
+#[derive(Clone, Copy, Debug, Default)]
+struct Pace {
+    /// When the watch began, with the first states [s].
+    since: Option<f64>,
+    /// Ticks since then.
+    ticks: u32,
+    /// States that came since then.
+    states: u32,
+    /// Ticks since the last states.
+    gap: u32,
+    /// The sum of the gaps between states, in ticks, each of [`LONGEST_GAP`](Self::LONGEST_GAP) at
+    /// most.
+    gaps: u32,
+}
+
+/// A driver that sets states too seldom for the servo.
+#[derive(Clone, Copy, Debug)]
+struct TooSlow {
+    /// States a second [Hz].
+    driver: f64,
+    /// Ticks a second [Hz].
+    servo: f64,
+}
+
+impl Pace {
+    /// The time over which the driver is watched [s]: a machine that is busy for a moment is not slow.
+    const WATCHED: f64 = 0.5;
+
+    /// The fewest gaps by which a driver is judged.
+    const FEWEST: u32 = 6;
+
+    /// The longest gap that counts, in ticks: one pause does not make a driver slow.
+    const LONGEST_GAP: u32 = 4;
+
+    /// The largest mean of the gaps, in ticks. A device of half the servo's rate keeps its force;
+    /// what is more than that is jitter.
+    const MOST: f64 = 2.1;
+
+    /// One tick with states, at `time` [s]. `Some` if the driver was too slow for as long as it is
+    /// watched.
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    fn tick(&mut self, time: f64, is_new: bool) -> Option<TooSlow> {
+        let Some(since) = self.since else {
+            self.since = Some(time);
+            return None;
+        };
+        self.ticks += 1;
+        self.gap += 1;
+        if !is_new {
+            return None;
+        }
+        self.states += 1;
+        self.gaps += std::mem::take(&mut self.gap).min(Self::LONGEST_GAP);
+        let watched = time - since;
+        if watched < Self::WATCHED || self.states < Self::FEWEST {
+            return None;
+        }
+        let of = |count: u32| f64::from(count) / watched;
+        let found = TooSlow { driver: of(self.states), servo: of(self.ticks) };
+        let is_slow = f64::from(self.gaps) > Self::MOST * f64::from(self.states);
+        *self = Self { since: Some(time), ..Self::default() };
+        is_slow.then_some(found)
+    }
+}
+
+impl std::fmt::Display for TooSlow {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let Self { driver, servo } = self;
+        write!(
+            f,
+            "its driver sets {driver:.0} states a second, but the servo takes {servo:.0}, and would \
+             give no force: tell the mailbox its rate, `with_rate({driver:.1})`, or in Python \
+             `Mailbox(…, rate={driver:.0})`"
+        )
+    }
+}
+
 /// Copies as many states as both have.
 fn write_states(points: &mut [PointState], states: &[PointState]) {
     for (point, state) in points.iter_mut().zip(states) {
@@ -336,8 +448,7 @@ impl Device for MailboxDevice {
             return Ok(Reading::NotReady);
         }
         if message.is_lost {
-            self.lost = number;
-            return Err(DeviceLost::new(SAYS_SO));
+            return Err(self.lose(number, SAYS_SO));
         }
         write_states(points, &message.points);
         (self.turn, self.buttons, self.gripper) =
@@ -348,11 +459,18 @@ impl Device for MailboxDevice {
             self.seen = Some((number, time));
         }
         let since = self.seen.map_or(0.0, |(_, since)| time - since);
+        let patience = self.patience();
         // NaN counts as no patience.
-        let is_patient = since <= self.patience;
+        let is_patient = since <= patience;
         if !is_patient {
-            self.lost = number;
-            return Err(DeviceLost::new("its driver sets nothing any more"));
+            return Err(self.lose(number, "its driver sets nothing any more"));
+        }
+        if !is_ready {
+            self.pace = Pace::default();
+        } else if patience < f64::INFINITY
+            && let Some(slow) = self.pace.tick(time, is_new)
+        {
+            return Err(self.lose(number, slow.to_string()));
         }
         Ok(match (is_ready, is_new) {
             (false, _) => Reading::NotReady,

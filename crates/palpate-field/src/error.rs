@@ -90,6 +90,16 @@ pub enum ShapeError {
         /// The number given.
         value: Quantity,
     },
+    /// A matrix mirrors, and is given as a rotation.
+    #[error(
+        "{parameter} must not mirror: the matrix is a reflection, with determinant -1; palpate is \
+         right-handed, so mirror one axis of a left-handed frame before, for instance in the \
+         device's driver"
+    )]
+    Reflection {
+        /// The parameter's name, as in scene files.
+        parameter: &'static str,
+    },
     /// A list is too short or too long.
     #[error("{parameter} must have {rule}, got {count}")]
     Count {
@@ -133,7 +143,7 @@ impl ShapeError {
     #[must_use]
     pub const fn kind(&self) -> ShapeErrorKind {
         match self {
-            Self::Number { .. } => ShapeErrorKind::Number,
+            Self::Number { .. } | Self::Reflection { .. } => ShapeErrorKind::Number,
             Self::Count { .. } => ShapeErrorKind::Count,
             Self::TooDeep { .. } => ShapeErrorKind::TooDeep,
             Self::Unsuitable { .. } => ShapeErrorKind::Unsuitable,

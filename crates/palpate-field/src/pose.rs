@@ -53,26 +53,33 @@ impl<const D: usize> Rotation<D> {
     /// If a row or column is not of length one or not square to the others
     /// within 1e-6, or if the matrix mirrors.
     pub fn from_matrix(rows: [[f64; D]; D]) -> Result<Self, ShapeError> {
-        let wrong =
-            |value| ShapeError::number("rotation", "an orthonormal matrix", value, Unit::One);
+        let wrong = |value, which: String| {
+            let rule = format!("an orthonormal matrix: {which} within 1e-6");
+            Err(ShapeError::number("rotation", rule, value, Unit::One))
+        };
         let mut matrix = rows;
         for i in 0..D {
             for k in 0..i {
                 let skew = Vector(matrix[i]).dot(Vector(matrix[k]));
                 // NaN is beyond every tolerance too.
                 if skew.is_nan() || skew.abs() > ORTHONORMAL_TOLERANCE {
-                    return Err(wrong(skew));
+                    let (first, second) = (k + 1, i + 1);
+                    let which = format!("the product of rows {first} and {second} must be 0");
+                    return wrong(skew, which);
                 }
                 matrix[i] = (Vector(matrix[i]) - Vector(matrix[k]) * skew).0;
             }
             let length = Vector(matrix[i]).norm();
             if length.is_nan() || (length - 1.0).abs() > ORTHONORMAL_TOLERANCE {
-                return Err(wrong(length));
+                return wrong(length, format!("the length of row {} must be 1", i + 1));
             }
             matrix[i] = (Vector(matrix[i]) * (1.0 / length)).0;
         }
-        let determinant = determinant(&matrix);
-        if determinant > 0.0 { Ok(Self { matrix }) } else { Err(wrong(determinant)) }
+        if determinant(&matrix) > 0.0 {
+            Ok(Self { matrix })
+        } else {
+            Err(ShapeError::Reflection { parameter: "rotation" })
+        }
     }
 
     /// The rotation with the given rows: to the bit if they are orthonormal to rounding, as those

@@ -31,6 +31,8 @@ pub struct AcceptedBodies {
     /// Contact points: one entry per body. Tool: the translational entry, then the rotational
     /// one if the device gives a torque. Empty without protection.
     pub(crate) accepted: Vec<Accepted>,
+    /// The lateral stiffness of each height texture.
+    pub(crate) textures: Vec<AcceptedTexture>,
     /// The protection of the servo, and of its clones, that they were accepted for; `None`
     /// without protection.
     pub(crate) protection: Option<Arc<Protection>>,
@@ -39,7 +41,13 @@ pub struct AcceptedBodies {
 impl AcceptedBodies {
     /// Unchanged bodies, for a servo without protection.
     pub(crate) fn unchanged(bodies: Bodies) -> Self {
-        Self { bodies, coupling: None, accepted: Vec::new(), protection: None }
+        Self {
+            bodies,
+            coupling: None,
+            accepted: Vec::new(),
+            textures: Vec::new(),
+            protection: None,
+        }
     }
 
     /// `true` if both were accepted for the same servo.
@@ -66,7 +74,13 @@ impl AcceptedBodies {
         &self.accepted
     }
 
-    /// The stiffest translational entry; `None` without protection.
+    /// The height textures as the device renders them; a tool with a shape feels none.
+    #[must_use]
+    pub fn textures(&self) -> &[AcceptedTexture] {
+        &self.textures
+    }
+
+    /// The stiffest translational entry, of bodies and of textures; `None` without protection.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     pub(crate) fn along(&self) -> Option<&Accepted> {
@@ -74,7 +88,9 @@ impl AcceptedBodies {
             return self.accepted.first();
         }
         let stiffness = |accepted: &Accepted| accepted.impedance.stiffness();
-        self.accepted.iter().max_by(|a, b| stiffness(a).total_cmp(&stiffness(b)))
+        let of_textures = self.textures.iter().map(|texture| &texture.lateral);
+        let all = self.accepted.iter().chain(of_textures);
+        all.max_by(|a, b| stiffness(a).total_cmp(&stiffness(b)))
     }
 
     /// The translational and the rotational entry of a tool on a device that gives a torque.
@@ -86,6 +102,20 @@ impl AcceptedBodies {
             _ => None,
         }
     }
+}
+
+/// The height texture of a body as a device renders it.
+///
+/// Down the slopes of the waves a hand feels a lateral stiffness, of at most `F a (2π / λ)²` under
+/// the device's largest force `F`, with the amplitude `a` and the wavelength `λ` of the texture. By
+/// the rules of a material, a device that renders less renders lower waves.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct AcceptedTexture {
+    /// The place of its body among the bodies.
+    pub body: usize,
+    /// The lateral stiffness; its share is that of the amplitude.
+    pub lateral: Accepted,
 }
 
 impl Protection {
@@ -108,11 +138,12 @@ impl Protection {
                 bodies,
                 coupling: Some(coupling),
                 accepted,
+                textures: Vec::new(),
                 protection,
             });
         }
-        let (bodies, accepted) = self.accept(bodies, rate)?;
-        Ok(AcceptedBodies { bodies, coupling: None, accepted, protection })
+        let accepted = self.accept_points(bodies, rate)?;
+        Ok(AcceptedBodies { protection, ..accepted })
     }
 
     /// Accepts bodies and the coupling of a tool together: as layers in series with the coupling.
@@ -131,7 +162,8 @@ impl Protection {
             self.refuse_tool(&bodies, &coupling, rate, &mut refusals)?;
             refusals.end()?;
         }
-        let along = self.accepted(&in_series(&coupling, &layers(&bodies)?)?, rate)?;
+        let all = in_series(&coupling, &layers(&bodies)?)?;
+        let along = self.accepted(&all, rate, Requester::Material)?;
         let (stiffness, damping) = (along.stiffness_factor, along.damping_factor);
         bodies.bodies_mut().iter_mut().for_each(|body| body.scale_surface(stiffness, damping));
         coupling = coupling.softened(stiffness, damping);
@@ -157,7 +189,8 @@ impl Protection {
             let is_softer = coupling.stiffness < stiffest;
             let requester =
                 if is_softer { Requester::Coupling(number) } else { Requester::Body(number) };
-            refusals.look(&self.accepted(&in_series(coupling, &own)?, rate)?, requester);
+            let accepted = self.accepted(&in_series(coupling, &own)?, rate, requester)?;
+            refusals.look(&accepted, requester);
         }
         if let Some(turning) = self.torques() {
             let asked = coupling.turning_on(coupling.borne(&layers(bodies)?))?;
@@ -278,7 +311,8 @@ impl Protection {
     }
 
     /// The bodies as the device renders them at `rate` [Hz]: all layers of a body have the share of
-    /// stiffness and the share of damping that [`Accepted::of_layers`] gives.
+    /// stiffness and the share of damping that [`Accepted::of_layers`] gives, and its height texture
+    /// the share of the amplitude that [`AcceptedTexture`] has.
     ///
     /// # Errors
     ///
@@ -287,22 +321,59 @@ impl Protection {
     #[inline(never)]
     pub fn accept(
         &self,
-        mut bodies: Bodies,
+        bodies: Bodies,
         rate: f64,
     ) -> Result<(Bodies, Vec<Accepted>), HapticsError> {
+        let AcceptedBodies { bodies, accepted, .. } = self.accept_points(bodies, rate)?;
+        Ok((bodies, accepted))
+    }
+
+    /// Accepts the bodies that contact points touch.
+    fn accept_points(
+        &self,
+        mut bodies: Bodies,
+        rate: f64,
+    ) -> Result<AcceptedBodies, HapticsError> {
         let mut all = Vec::with_capacity(bodies.bodies().len());
         let mut refusals = self.refusals();
         self.accept_magnets(&mut bodies, rate, &mut refusals)?;
         self.stiffen(&mut bodies, rate)?;
         for (number, body) in bodies.bodies_mut().iter_mut().enumerate() {
             let layers: Vec<_> = body.surface().impedances().collect::<Result<_, _>>()?;
-            let accepted = self.accepted(&layers, rate)?;
-            refusals.look(&accepted, Requester::Body(number));
+            let requester = Requester::Body(number);
+            let accepted = self.accepted(&layers, rate, requester)?;
+            refusals.look(&accepted, requester);
             body.scale_surface(accepted.stiffness_factor, accepted.damping_factor);
             all.push(accepted);
         }
+        let textures = self.accept_textures(&mut bodies, rate, &mut refusals)?;
         refusals.end()?;
-        Ok((bodies, all))
+        Ok(AcceptedBodies { accepted: all, textures, ..AcceptedBodies::unchanged(bodies) })
+    }
+
+    /// Lowers the waves of height textures to what the device renders of their lateral stiffness.
+    fn accept_textures(
+        &self,
+        bodies: &mut Bodies,
+        rate: f64,
+        refusals: &mut Refusals,
+    ) -> Result<Vec<AcceptedTexture>, HapticsError> {
+        let mut textures = Vec::new();
+        // Without a largest force nothing limits how deep a hand presses, nor what it feels.
+        if self.profile.max_force == f64::INFINITY {
+            return Ok(textures);
+        }
+        for (number, body) in bodies.bodies_mut().iter_mut().enumerate() {
+            let stiffness = body.surface().lateral_stiffness(self.profile.max_force);
+            let Some(stiffness) = stiffness else { continue };
+            let requester = Requester::Texture(number);
+            let layer = Impedance::new(stiffness, 0.0)?;
+            let lateral = self.accepted(&[layer], rate, requester)?;
+            refusals.look(&lateral, requester);
+            body.lower_waves(lateral.stiffness_factor);
+            textures.push(AcceptedTexture { body: number, lateral });
+        }
+        Ok(textures)
     }
 
     /// The guides as the device renders them at `rate` [Hz], each by the rules of a material. A
@@ -323,8 +394,9 @@ impl Protection {
         let mut all = (Vec::with_capacity(guides.len()), Vec::with_capacity(guides.len()));
         let mut refusals = self.refusals();
         for (number, guide) in guides.iter().enumerate() {
-            let accepted = self.accepted(&[guide.impedance()?], rate)?;
-            refusals.look(&accepted, Requester::Guide(number));
+            let requester = Requester::Guide(number);
+            let accepted = self.accepted(&[guide.impedance()?], rate, requester)?;
+            refusals.look(&accepted, requester);
             let (stiffness, damping) = (accepted.stiffness_factor, accepted.damping_factor);
             all.0.push(guide.clone().softened(stiffness, damping));
             all.1.push(accepted);
@@ -343,8 +415,9 @@ impl Protection {
         for (number, body) in bodies.bodies_mut().iter_mut().enumerate() {
             let Some(magnet) = &body.surface().magnet else { continue };
             let impedance = Impedance::new(magnet.stiffness(), 0.0)?;
-            let accepted = self.accepted(&[impedance], rate)?;
-            refusals.look(&accepted, Requester::Magnet(number));
+            let requester = Requester::Magnet(number);
+            let accepted = self.accepted(&[impedance], rate, requester)?;
+            refusals.look(&accepted, requester);
             body.scale_magnet(accepted.stiffness_factor);
         }
         Ok(())
@@ -365,15 +438,23 @@ impl Protection {
         Ok(())
     }
 
-    /// What the device renders of layers.
-    pub(crate) fn accepted(
+    /// What the device renders of layers that `requester` asks for.
+    fn accepted(
         &self,
         layers: &[Impedance],
         rate: f64,
+        requester: Requester,
     ) -> Result<Accepted, HapticsError> {
         let scale = self.map.scale();
         let limits = DeviceLimits::along(&self.profile);
-        Ok(Accepted::of_layers(layers, scale, &limits, self.settings.acceptance, rate)?)
+        let accepted =
+            Accepted::of_layers(layers, scale, &limits, self.settings.acceptance, rate);
+        Ok(accepted.map_err(|error| match error {
+            SafetyError::MaterialRefused(all) => SafetyError::MaterialRefused(
+                all.into_iter().map(|refused| refused.by(requester)).collect(),
+            ),
+            error => error,
+        })?)
     }
 
     /// Where strict protection collects what it refuses.

@@ -186,6 +186,11 @@ impl Body {
         self.surface.magnet = magnet;
     }
 
+    /// Multiplies the amplitude of the surface's texture of kind *height*.
+    pub(crate) fn lower_waves(&mut self, part: f64) {
+        self.surface = self.surface.with_lower_waves(part);
+    }
+
     /// Leaves these shares of the surface's stiffness and of its damping.
     pub(crate) fn scale_surface(&mut self, stiffness: f64, damping: f64) {
         self.surface = self.surface.scaled(stiffness, damping);

@@ -8,7 +8,7 @@
 use palpate_device::{PointState, limited, shortening};
 use palpate_field::{Point, Vector};
 use palpate_query::constraints::CAPACITY;
-use palpate_safety::{Approach, Arrival, Change, PortState, WorkspaceMap};
+use palpate_safety::{Approach, Arrival, BodyMotion, Change, PortState, WorkspaceMap};
 
 use crate::bodies::Body;
 use crate::crease::{Crease, Place, Shared};
@@ -18,6 +18,7 @@ use crate::guide::Guide;
 use crate::nearby::Nearby;
 use crate::ports::Port;
 use crate::proxy::{Edited, Probe, Proxy};
+use crate::seam::Seam;
 use crate::surface::{Press, Ringing};
 
 /// One contact point after a tick. World coordinates.
@@ -254,6 +255,7 @@ impl ContactPoint {
             return self.hover(tick, state, touch);
         }
         let begins = self.proxy.begins();
+        let held = self.carried(tick.nearby, touch);
         // The proxy stays where it is if the device point is not finite.
         let following = self.proxy.follow(tick.nearby, device);
         let placed = following.placed;
@@ -277,16 +279,44 @@ impl ContactPoint {
         let Some(body) = body.filter(|_| state.is_finite()) else {
             touch.velocity = Vector::ZERO;
             self.fall_silent(tick, before);
-            return FreeForce { force: Vector::ZERO, placed, change };
+            let carried = Vector::ZERO;
+            return FreeForce { force: Vector::ZERO, placed, change, carried };
         };
-        let mut free = self.guided(device, state.velocity, tick.setting.rise_step);
+        let mut free = self.guided(device, state.velocity, tick.setting);
         if following.contact {
             touch.wanted = self.held(tick, touch, before, body);
         } else {
             self.fall_silent(tick, before);
         }
         free += self.pull(tick, touch);
-        FreeForce { force: free, placed, change }
+        let carried = match held {
+            _ if placed => Vector::ZERO,
+            Some(held) => held,
+            // A body that moved onto the hand carries it from this tick on.
+            None => self.carried(tick.nearby, touch).unwrap_or(Vector::ZERO),
+        };
+        FreeForce { force: free, placed, change, carried }
+    }
+
+    /// How far the bodies that push the hand in `touch` carry it in this tick [m]: the mean of the
+    /// motions of their material points at the hand, weighted by the sizes of their forces. `None` if
+    /// none pushes.
+    fn carried(&self, nearby: &Nearby<'_>, touch: &Touch) -> Option<Vector<f64, 3>> {
+        if !nearby.has_moved() {
+            return touch.contact.then_some(Vector::ZERO);
+        }
+        let (mut sum, mut whole) = (Vector::ZERO, 0.0);
+        for (index, push) in self.pushes(touch) {
+            let Some(body) = nearby.body(index) else { continue };
+            let share = push.norm();
+            whole += share;
+            if body.has_moved() {
+                sum += (body.carried(touch.device) - touch.device) * share;
+            }
+        }
+        // Written so that NaN carries nothing.
+        let is_pushed = whole > 0.0 && sum.is_finite() && whole.is_finite();
+        is_pushed.then(|| sum * (1.0 / whole))
     }
 
     /// A tick of a hand that is lifted: the proxy is at the device, and nothing is touched.
@@ -314,7 +344,8 @@ impl ContactPoint {
             evaluations: 0,
             ..*touch
         };
-        FreeForce { force: Vector::ZERO, placed: false, change: Change::None }
+        let (force, carried) = (Vector::ZERO, Vector::ZERO);
+        FreeForce { force, placed: false, change: Change::None, carried }
     }
 
     /// Ends the contact of the tick before and its ringing.
@@ -363,7 +394,8 @@ impl ContactPoint {
         let rate = tick.setting.options.rate;
         if tick.nearby.bodies.bodies().len() > 1 {
             let crease = self.crease_at(tick, touch, before);
-            if crease.count() > 1 && crease.whole() > 0.0 {
+            let is_several = crease.count() > 1 && crease.whole() > 0.0;
+            if is_several && !(crease.is_level() && self.is_seam(tick, &crease)) {
                 return self.held_by_several(tick, touch, before, crease);
             }
         }
@@ -378,7 +410,37 @@ impl ContactPoint {
         let level = self.proxy.level(touch.body);
         self.stiffness = body.surface().strata.secant(level, stretch.norm());
         self.pop(tick, touch.body, stretch.norm());
+        let force = force + self.blend(tick, touch, stretch);
         force + self.ring(touch, force)
+    }
+
+    /// Whether bodies of a crease have different springs.
+    fn is_seam(&self, tick: &Tick<'_>, crease: &Crease) -> bool {
+        let strata = |body| tick.nearby.body(body).map(|body| &body.surface().strata);
+        let mut all = crease.walls().filter_map(|wall| strata(wall.body));
+        let first = all.next();
+        first.is_some_and(|first| all.any(|other| !other.has_springs_of(first)))
+    }
+
+    /// What the bodies beside the touched one change of its force [N].
+    fn blend(
+        &mut self,
+        tick: &Tick<'_>,
+        touch: &mut Touch,
+        stretch: Vector<f64, 3>,
+    ) -> Vector<f64, 3> {
+        if tick.nearby.bodies.bodies().len() < 2 {
+            return Vector::ZERO;
+        }
+        let Touch { proxy, body, normal, .. } = *touch;
+        let options = &tick.setting.options;
+        let place = Place { proxy, stretch, body, normal, radius: options.probe.radius() };
+        let punctured = self.proxy.punctured();
+        let (most_force, evaluations) = (options.max_force, &mut touch.evaluations);
+        let seam = Seam::at(tick.nearby, &place, punctured, most_force, evaluations);
+        let Some((seam, along)) = seam.zip(stretch.normalized()) else { return Vector::ZERO };
+        self.stiffness += seam.springs / stretch.norm();
+        along * seam.springs + seam.sideways
     }
 
     /// The bodies that touch the proxy.
@@ -439,8 +501,7 @@ impl ContactPoint {
         self.tell_changes(tick, touch, before, &crease);
         let fit = shortening(plain.norm(), shared.most());
         self.stiffness = fit * plain.norm() / depth;
-        let along = stretch.normalized().unwrap_or(Vector::ZERO);
-        let dampers = shared.dampers(touch.velocity, along);
+        let dampers = shared.dampers(touch.velocity, stretch, rest);
         for wall in crease.pushing_mut() {
             wall.force = wall.force * fit + dampers * (wall.push / whole);
             self.pop(tick, wall.body, wall.push);
@@ -501,7 +562,8 @@ impl ContactPoint {
             let there = gradient.normalized().unwrap_or(normal);
             (there - normal) * (way.norm() / far)
         };
-        let press = Press { stretch: pull, velocity, proxy: in_body, rate, has_dampers };
+        let press =
+            Press { stretch: pull, normal, velocity, proxy: in_body, rate, has_dampers };
         body.vector_in_world(body.surface().force(level, press, turn))
     }
 
@@ -562,6 +624,8 @@ pub(crate) struct FreeForce {
     pub(crate) placed: bool,
     /// What happened beside the motion of the hand.
     pub(crate) change: Change,
+    /// How far the touched bodies carry the hand in this tick [m].
+    pub(crate) carried: Vector<f64, 3>,
 }
 
 impl ContactPoint {
@@ -600,7 +664,7 @@ impl ContactPoint {
         touch: &mut Touch,
         free: FreeForce,
     ) -> Vector<f64, 3> {
-        let FreeForce { force: free, placed, change } = free;
+        let FreeForce { force: free, placed, change, carried } = free;
         let Setting { options, map, rise_step, arrival, .. } = setting;
         let has_start = placed || self.of_others < f64::INFINITY;
         let start = if has_start { self.start(placed, change, touch.wanted) } else { 1.0 };
@@ -620,6 +684,10 @@ impl ContactPoint {
                 start,
                 change,
                 stiffness,
+                bodies: BodyMotion {
+                    driven: map.velocity_to_device(carried),
+                    ..BodyMotion::default()
+                },
             };
             let force = port.write(wanted, options.max_force, &state);
             touch.force = map.force_to_world(force);
@@ -669,15 +737,17 @@ impl ContactPoint {
         &mut self,
         position: Point<3>,
         velocity: Vector<f64, 3>,
-        rise_step: f64,
+        setting: &Setting,
     ) -> Vector<f64, 3> {
         if self.guides.is_empty() || !(position.is_finite() && velocity.is_finite()) {
             return Vector::ZERO;
         }
-        let guides = self.guides.iter_mut();
-        let all = guides.fold(Vector::ZERO, |sum, guide| sum + guide.force(position, velocity));
+        let rate = setting.options.rate;
+        let forces =
+            self.guides.iter_mut().map(|guide| guide.rising_force(position, velocity, rate));
+        let all = forces.fold(Vector::ZERO, |sum, force| sum + force);
         let part = self.guided;
-        self.guided = (part + rise_step).min(1.0);
+        self.guided = (part + setting.rise_step).min(1.0);
         all * part
     }
 

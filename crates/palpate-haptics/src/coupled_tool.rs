@@ -15,7 +15,7 @@ use crate::ports::{Port, TurningPort};
 use crate::proxy::Edited;
 use crate::tool::{Coupling, HeldTool, Tool, ToolState};
 use palpate_device::{PointState, TurnState, limited};
-use palpate_safety::{Change, SpatialVector, WrenchChain, WrenchState};
+use palpate_safety::{BodyMotion, Change, SpatialVector, WrenchChain, WrenchState};
 
 /// The two sides of a tool: the contact point that holds it, and the bodies that stop it.
 pub(crate) struct Sides<'a> {
@@ -125,7 +125,7 @@ impl CoupledTool {
         touch: &mut Touch,
     ) -> Vector<f64, 3> {
         let Sides { point, bodies } = sides;
-        let Setting { map, arrival, is_lifted, rise_step, .. } = setting;
+        let Setting { map, arrival, is_lifted, .. } = setting;
         let is_turn_sound = self
             .port
             .as_mut()
@@ -156,7 +156,7 @@ impl CoupledTool {
             self.tool.hover(&state);
             point.let_go();
         } else {
-            free = point.guided(position, velocity, *rise_step);
+            free = point.guided(position, velocity, setting);
             self.tool.step(bodies, &state);
         }
         let felt = self.tool.touch();
@@ -176,6 +176,7 @@ impl CoupledTool {
         point.stiffness = self.tool.secant();
         let stiffness = point.stiffness * map.scale();
         let (start, change) = self.change();
+        let moved = self.tool.bodies_moved;
         let change = if arrival.is_ready { change } else { Change::Begins };
         let force = if let Some(chain) = self.chain() {
             let force = map.force_to_device(touch.wanted);
@@ -189,6 +190,13 @@ impl CoupledTool {
                 start,
                 change,
                 stiffness,
+                bodies: BodyMotion {
+                    driven: SpatialVector {
+                        along: map.velocity_to_device(moved.linear),
+                        about: map.spin_to_device(moved.angular),
+                    },
+                    ..BodyMotion::default()
+                },
             };
             let wanted = SpatialVector { along: force, about: torque };
             let given = chain.step_within(wanted, setting.options.max_force, &state);
@@ -201,7 +209,8 @@ impl CoupledTool {
             self.torque = limited(torque, most);
             // Without protection the tool's own rise is that of a placement.
             let placed = point.port.is_some() && start == 0.0;
-            let free = FreeForce { force: free, placed, change };
+            let carried = moved.linear;
+            let free = FreeForce { force: free, placed, change, carried };
             point.give(setting, at_device, touch, free)
         };
         self.given = turn.map(|_| map.torque_to_world(self.torque));

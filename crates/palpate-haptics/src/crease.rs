@@ -17,6 +17,9 @@ const NEAR: f64 = 1e-3;
 /// The same for a body that touched in the tick before: a hand that trembles does not leave.
 const STILL_NEAR: f64 = 0.02;
 
+/// Walls whose normals have at least this cosine are level: the hand cannot tell them apart.
+const ALIGNED: f64 = 0.99;
+
 /// A body begins to push with this part of the stretch: less is rounding.
 const LEAST_PUSH: f64 = 1e-6;
 
@@ -165,6 +168,13 @@ impl Crease {
         self.walls().max_by(|a, b| a.push.total_cmp(&b.push)).filter(|wall| wall.push > 0.0)
     }
 
+    /// Whether all bodies that push are level with one another.
+    pub(crate) fn is_level(&self) -> bool {
+        let Some(hardest) = self.hardest() else { return true };
+        let mut pushing = self.walls().filter(|wall| wall.push > 0.0);
+        pushing.all(|wall| wall.normal.dot(hardest.normal) >= ALIGNED)
+    }
+
     /// The sum of all pushes [m].
     pub(crate) fn whole(&self) -> f64 {
         self.walls().map(|wall| wall.push).sum()
@@ -204,12 +214,17 @@ impl Shared {
     }
 
     /// The force of the dampers [N] at the `velocity` of the device point relative to the bodies
-    /// [m/s], with the direction `along` of the stretch; as for one [`Surface`](crate::Surface).
+    /// [m/s], along the part of the `stretch` [m] that friction does not hold; as for one
+    /// [`Surface`](crate::Surface).
     pub(crate) fn dampers(
         &self,
         velocity: Vector<f64, 3>,
-        along: Vector<f64, 3>,
+        stretch: Vector<f64, 3>,
+        held: Vector<f64, 3>,
     ) -> Vector<f64, 3> {
+        // Without friction, what is held is rounding.
+        let pressed = if self.friction.fixed > 0.0 { stretch - held } else { stretch };
+        let along = pressed.normalized().unwrap_or(Vector::ZERO);
         let approach = (-velocity.dot(along)).max(0.0);
         along * (self.damping * approach) - velocity * self.viscosity
     }

@@ -166,6 +166,9 @@ pub struct Energy {
     pub taken: f64,
     /// Energy that the rendered forces gave to the hand.
     pub given: f64,
+    /// The work on the hand of bodies that are moved from outside. The energies above are those of the
+    /// hand's motion relative to the bodies.
+    pub driven: f64,
     /// Energy that the wanted forces would have given, but the rendered forces did not: what the
     /// safety chain held back (passivity controller, limits, ramps, stops).
     pub kept: f64,

@@ -59,13 +59,14 @@ mod planes;
 mod ports;
 mod proxy;
 mod sampler;
+mod seam;
 mod servo;
 #[cfg(feature = "loop")]
 pub mod servo_loop;
 mod surface;
 mod tool;
 
-pub use accepted_bodies::{AcceptedBodies, Protection};
+pub use accepted_bodies::{AcceptedBodies, AcceptedTexture, Protection};
 pub use bodies::{Bodies, Body};
 pub use contact_point::Touch;
 pub use error::{HapticsError, ServoOptions};

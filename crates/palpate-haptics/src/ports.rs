@@ -10,8 +10,8 @@ use crate::error::HapticsError;
 use crate::event::Energy;
 use palpate_device::{PointState, TurnState};
 use palpate_safety::{
-    Acceptance, Accepted, Arrival, DeviceLimits, Impedance, PassivityReport, PerMotion,
-    PortState, Readings, ReadingsReport, SafetyChain, SafetyOptions, SafetyReport,
+    Acceptance, Accepted, Arrival, DeviceLimits, DriveReport, Impedance, PassivityReport,
+    PerMotion, PortState, Readings, ReadingsReport, SafetyChain, SafetyOptions, SafetyReport,
     SafetySettings, StageTicks, TurnReadings, VelocityEstimator, WrenchChain,
 };
 
@@ -170,7 +170,7 @@ impl Port {
 
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     pub(crate) fn energy(&self) -> Energy {
-        energy(&self.chain.passivity())
+        energy(&self.chain.passivity(), &self.chain.drives())
     }
 
     /// In how many ticks each stage of the safety chain has acted, without the readings.
@@ -269,10 +269,15 @@ impl TurningPort {
 
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     pub(crate) fn energy(&self) -> Option<Energy> {
-        self.chain.as_ref().map(|chain| energy(&chain.passivity()))
+        self.chain.as_ref().map(|chain| energy(&chain.passivity(), &chain.drives()))
     }
 }
 
-fn energy(seen: &PassivityReport) -> Energy {
-    Energy { taken: seen.energy_in, given: seen.energy_out, kept: seen.dissipated }
+fn energy(seen: &PassivityReport, drives: &DriveReport) -> Energy {
+    Energy {
+        taken: seen.energy_in,
+        given: seen.energy_out,
+        driven: drives.driven,
+        kept: seen.dissipated,
+    }
 }

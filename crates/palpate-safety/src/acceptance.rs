@@ -22,6 +22,13 @@ use palpate_device::{DeviceProfile, NumberError};
 /// The rate for which profiles state the largest stiffness and damping [Hz].
 const STATED_RATE: f64 = 1000.0;
 
+/// So many times the stiffness that a device renders is taken [as it is](Acceptance::AsIs).
+///
+/// The stage of limit cycles brings every device with a profile to rest against a wall of 20 times
+/// its stiffness. Against 25 times, the force of some is at its limit in most of a swing: the swing
+/// is then not that of a spring, which the stage looks for, and never ends.
+pub const AS_IS_MOST: f64 = 20.0;
+
 /// What a device renders of a material.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
@@ -35,7 +42,8 @@ pub enum Acceptance {
     /// states no largest stiffness, that of [`Passive`](Self::Passive) counts.
     #[default]
     Device,
-    /// As it is: the passivity controller alone keeps the hand safe.
+    /// As it is, up to [`AS_IS_MOST`] times the stiffness of [`Device`](Self::Device), and refused
+    /// beyond: the passivity controller and the stage of limit cycles keep the hand safe.
     AsIs,
 }
 
@@ -254,7 +262,8 @@ impl Accepted {
     ///
     /// # Errors
     ///
-    /// As [`new`](Self::new), or if there is no layer.
+    /// As [`new`](Self::new), or if there is no layer; [`SafetyError::MaterialRefused`] if a device
+    /// is to take more than [`AS_IS_MOST`] times what it renders [as it is](Acceptance::AsIs).
     pub fn of_layers(
         layers: &[Impedance],
         scale: f64,
@@ -268,6 +277,17 @@ impl Accepted {
             |a: Impedance, b: Impedance| if b.stiffness() > a.stiffness() { b } else { a };
         let stiffest = layers.iter().copied().reduce(stiffer);
         let stiffest = stiffest.ok_or(NumberError::new("layers", "at least 1", 0.0, ""))?;
+        // What a device without sound numbers renders is not known.
+        if acceptance == Acceptance::AsIs
+            && let Ok(renders) =
+                Self::of_layers(layers, scale, limits, Acceptance::Device, rate)
+            && let Some(rule) = renders.stiffness_rule
+            && renders.stiffness_factor < (1.0 - 4.0 * f64::EPSILON) / AS_IS_MOST
+        {
+            let refused = Refused::new(&renders, rule, Requester::Material);
+            let refused = Refused { is_as_it_is: true, ..refused };
+            return Err(SafetyError::MaterialRefused(vec![refused]));
+        }
         let (mut of_stiffness, mut of_damping) = (Share::WHOLE, Share::WHOLE);
         if acceptance != Acceptance::AsIs {
             let bounds = stiffness_bounds(limits, acceptance, rate)?;
@@ -570,11 +590,37 @@ mod tests {
 
     #[test]
     fn a_material_as_it_is_keeps_every_number() {
-        let impedance = Impedance::new(1e6, 1e3).unwrap();
+        let impedance = Impedance::new(5e4, 1e3).unwrap();
         let limits = DeviceLimits::along(&device());
         let accepted = Accepted::of(impedance, 1.0, &limits, Acceptance::AsIs, 1000.0).unwrap();
         assert_eq!((accepted.impedance, accepted.stiffness_rule), (impedance, None));
         accepted.unchanged().unwrap();
+    }
+
+    /// An omega swung by 2.3 mm for ever against walls of 1e6 and 1e9 N/m.
+    #[test]
+    fn a_stiffness_that_no_limit_cycle_ends_is_refused_with_its_number() {
+        let of = |stiffness: f64| {
+            let asked = Impedance::new(stiffness, 0.0).unwrap();
+            let limits = DeviceLimits::along(&device());
+            Accepted::of(asked, 1.0, &limits, Acceptance::AsIs, 1000.0)
+        };
+        for stiffness in [5e4 * (1.0 + 1e-9), 1e6, 1e9] {
+            assert!(
+                matches!(of(stiffness), Err(SafetyError::MaterialRefused(_))),
+                "{stiffness}"
+            );
+        }
+        assert_eq!(
+            of(1e6).unwrap_err().to_string(),
+            "the device renders stiffness 2500 N/m (asked 1000000) and damping 0 N·s/m (asked 0): \
+             K ≤ the device's largest stiffness at this rate; as it is, at most 20 times the \
+             stiffness that it renders comes to rest: ask for less, or for what the device renders"
+        );
+        // Of a device whose numbers are not known, nothing is.
+        let unknown = DeviceLimits::along(&DeviceProfile::unlimited("unknown"));
+        let stiff = Impedance::new(1e9, 0.0).unwrap();
+        Accepted::of(stiff, 1.0, &unknown, Acceptance::AsIs, 1000.0).unwrap();
     }
 
     #[test]

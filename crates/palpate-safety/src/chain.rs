@@ -11,6 +11,7 @@ use palpate_field::{Point, Vector};
 use crate::acceptance::Accepted;
 use crate::approach::Change;
 use crate::channel::{Channel, Given, Risen, TickInput};
+use crate::drive::{BodyMotion, Drive, DriveReport};
 use crate::effect::Effect;
 use crate::error::SafetyError;
 use crate::finite;
@@ -53,6 +54,8 @@ pub struct PortState {
     /// The stiffness behind the wanted force [N/m]: force over depth. That of the accepted impedance
     /// counts if this is more, or infinite.
     pub stiffness: f64,
+    /// How the bodies that push the hand moved since the tick before.
+    pub bodies: BodyMotion<Vector<f64, 3>>,
 }
 
 impl PortState {
@@ -69,6 +72,7 @@ impl PortState {
             start: 1.0,
             change: Change::None,
             stiffness: f64::INFINITY,
+            bodies: BodyMotion::NONE,
         }
     }
 }
@@ -166,6 +170,7 @@ pub struct SafetyChain {
     cycle: LimitCycle<Vector<f64, 3>>,
     free: FreeEnergy<Vector<f64, 3>>,
     passivity: Passivity<Vector<f64, 3>>,
+    drive: Drive<Vector<f64, 3>>,
     channel: Channel,
 }
 
@@ -211,6 +216,7 @@ impl SafetyChain {
                 max_force: passivity.max_force,
             }),
             passivity: Passivity::new(passivity),
+            drive: Drive::new(settings.max_drive_power()?),
             channel: Channel::new(&limits, &settings, 1.0, rate)?,
         })
     }
@@ -292,7 +298,7 @@ impl SafetyChain {
         // zero.
         let is_sound = finite::is_sound(wanted, state);
         let PortState { position, velocity, free_force, late, elapsed, stiffness, .. } = *state;
-        let PortState { start, change, .. } = *state;
+        let PortState { start, change, bodies, .. } = *state;
         let input = TickInput { is_sound, late, start, change, cut };
         let Risen { wanted, part: rise, is_rising } =
             self.channel.risen(wanted, free_force, &input);
@@ -300,8 +306,11 @@ impl SafetyChain {
         let elapsed = finite::elapsed(elapsed, self.period() + late.max(0.0));
         let options = self.passivity.options();
         let stiffness = options.stiffness_of(stiffness);
+        let bodies = if is_sound { bodies } else { BodyMotion::NONE };
+        let frame = self.drive.enter(&bodies);
+        let in_frame = position - frame.origin;
         let forces = ForcesOf { bodies: wanted, guides: rising };
-        let seen = CycleInput::of(forces, effort, position, stiffness);
+        let seen = CycleInput::of(forces, effort, in_frame, stiffness);
         let is_disturbed = self.channel.is_late() || is_rising;
         let softness = self.cycle.observed(&seen.disturbed(is_disturbed), is_sound);
         let is_rising = is_rising || self.cycle.is_returning();
@@ -310,8 +319,9 @@ impl SafetyChain {
             .free
             .step(FreeInput { force: free_force, position, scale, elapsed, is_sound }, options);
         let seen = PortMotion {
-            position,
-            velocity,
+            position: in_frame,
+            velocity: velocity - frame.way * (1.0 / elapsed),
+            owed: frame.owed,
             effort,
             is_rising,
             elapsed,
@@ -320,8 +330,10 @@ impl SafetyChain {
             stiffness,
         };
         let observed = self.passivity.observed(wanted, &seen, is_sound);
+        let observed = self.drive.limit(observed, &bodies, elapsed);
         let Given { force, of_bodies, share } = self.channel.step(observed, free_force, &input);
         self.passivity.written(of_bodies);
+        self.drive.written(of_bodies);
         self.free.written(force - of_bodies, share);
         force
     }
@@ -368,6 +380,14 @@ impl SafetyChain {
         self.passivity.report()
     }
 
+    /// The work of moving bodies so far.
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    #[must_use]
+    pub fn drives(&self) -> DriveReport {
+        self.drive.report()
+    }
+
     /// In how many ticks each stage has acted, as in [`report`](Self::report).
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
@@ -377,6 +397,7 @@ impl SafetyChain {
             cycles: self.cycle.report().effect,
             guides: self.free.report().effect,
             passivity: self.passivity.report().effect,
+            drives: self.drive.report().effect,
         };
         StageTicks::of(first, &self.channel.effects, None)
     }
@@ -387,15 +408,17 @@ impl SafetyChain {
         SafetyReport::of(&self.accepted, self.passivity.report(), &self.channel)
             .with_limit_cycles(self.cycle.report())
             .with_free_forces(self.free.report())
+            .with_drives(self.drive.report())
     }
 }
 
 /// The stages in their order, in words.
-const STAGES: [&str; 14] = [
+const STAGES: [&str; 15] = [
     "held readings",
     "limit cycles",
     "passivity of guides",
     "passivity",
+    "power of drives",
     "force rate",
     "largest force",
     "lasting force",
@@ -414,7 +437,7 @@ const STAGES: [&str; 14] = [
 /// use palpate_safety::StageTicks;
 ///
 /// let quiet = StageTicks::default();
-/// assert_eq!(quiet.named().count(), 14);
+/// assert_eq!(quiet.named().count(), 15);
 /// assert!(quiet.named().all(|(_, ticks)| ticks == 0));
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -425,6 +448,7 @@ pub(crate) struct BeforeLimits {
     pub(crate) cycles: Effect,
     pub(crate) guides: Effect,
     pub(crate) passivity: Effect,
+    pub(crate) drives: Effect,
 }
 
 impl StageTicks {
@@ -437,7 +461,7 @@ impl StageTicks {
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     pub(crate) fn of(
-        BeforeLimits { cycles, guides, passivity }: BeforeLimits,
+        BeforeLimits { cycles, guides, passivity, drives }: BeforeLimits,
         force: &Effects,
         torque: Option<&Effects>,
     ) -> Self {
@@ -447,6 +471,7 @@ impl StageTicks {
             cycles.ticks,
             guides.ticks,
             passivity.ticks,
+            drives.ticks,
             force.slew.ticks,
             force.force_limit.ticks,
             force.continuous.ticks,
@@ -493,6 +518,7 @@ impl From<&SafetyReport> for StageTicks {
             cycles: report.limit_cycles.effect,
             guides: report.free_forces.effect,
             passivity: report.passivity.effect,
+            drives: report.drives.effect,
         };
         Self::of(first, &force, torque.as_ref()).with_readings(&report.readings)
     }

@@ -76,10 +76,16 @@ impl ContinuousLimit {
     }
 }
 
+/// How many periods ticks may be late together at a low rate. A device with a clock of its own has
+/// nothing new in a tick now and then, and with jitter in two ticks together: a force that fell
+/// each time would never be felt.
+const LATE_PERIODS: f64 = 2.5;
+
 /// Lowers the force to zero while ticks are late.
 ///
 /// A force that is held for too long is stale. The time by which ticks are late adds up, and each
-/// tick in time takes a period from the sum. When the sum reaches a limit, the watchdog trips: the
+/// tick in time takes a period from the sum. When the sum reaches a limit, of at least
+/// [some periods](LATE_PERIODS), the watchdog trips: the
 /// force falls to zero, in ticks in time too, until the sum is zero. Meanwhile a tick in time takes
 /// two periods from the sum: with a device of half the loop's rate every second tick has no new
 /// reading, and its force must come back too.
@@ -101,7 +107,7 @@ pub(crate) struct Watchdog {
 /// When a [`Watchdog`] trips, and how fast the force falls then.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct WatchdogOptions {
-    /// By how much ticks are late together when it trips [s].
+    /// By how much ticks are late together when it trips [s], but for 2.5 periods at least.
     pub(crate) late_time: f64,
     /// The time in which the force falls to zero [s].
     pub(crate) fall_time: f64,
@@ -113,7 +119,8 @@ impl Watchdog {
     pub(crate) fn new(options: WatchdogOptions) -> Self {
         let WatchdogOptions { late_time, fall_time, rate } = options;
         // A time of zero gives an infinite decrease.
-        let (limit, period, fall) = (late_time, 1.0 / rate, 1.0 / (fall_time * rate));
+        let (period, fall) = (1.0 / rate, 1.0 / (fall_time * rate));
+        let limit = late_time.max(LATE_PERIODS * period);
         Self { limit, period, fall, late: 0.0, is_tripped: false, factor: 1.0, trips: 0 }
     }
 
@@ -217,6 +224,18 @@ mod watchdog_tests {
         let late = [1.0, 0.0, 3.5, 0.5, 0.0, 1.5, 0.0, 0.0, 0.0];
         assert_eq!(factors(&mut dog, &late), [1.0, 1.0, 1.0, 0.5, 0.0, 0.0, 0.0, 1.0, 1.0]);
         assert_eq!(dog.trips(), 1);
+    }
+
+    /// At 90 Hz, 11 ms without a reading were more than 5 ms: each took the force away.
+    #[test]
+    fn a_slow_servo_waits_for_two_readings() {
+        for rate in [12.0, 30.0, 60.0, 90.0, 250.0] {
+            let options = WatchdogOptions { late_time: 0.005, fall_time: 0.02, rate };
+            let (mut dog, period) = (Watchdog::new(options), 1.0 / rate);
+            let jitter = [period, 0.0, period, period, 0.0, 0.0, 0.0].repeat(100);
+            assert_eq!(factors(&mut dog, &jitter), [1.0; 700], "{rate}");
+            assert!(factors(&mut dog, &[period; 3]).last() < Some(&1.0), "{rate}");
+        }
     }
 
     /// A stall counted as one late tick, however long it lasted.

@@ -30,6 +30,7 @@ impl Display for SafetyReport {
             ("limit cycles", self.limit_cycles.effect.ticks),
             ("passivity of guides", self.free_forces.effect.ticks),
             ("passivity", self.passivity.effect.ticks),
+            ("power of drives", self.drives.effect.ticks),
             ("slew limit", self.slew.ticks),
             ("force limit", self.force_limit.ticks),
             ("continuous limit", self.continuous.effect.ticks),

@@ -7,14 +7,14 @@ use palpate_field::Vector;
 
 use crate::PortState;
 
-/// `true` if forces, position and velocity are finite.
+/// `true` if forces, position, velocity and the motion of bodies are finite.
 ///
 /// Real-time: allocates nothing, takes no lock, cannot panic.
 pub(crate) fn is_sound(wanted: Vector<f64, 3>, state: &PortState) -> bool {
     // Zero times a finite number is zero; zero times infinity or NaN is NaN.
     let vectors = [state.position, state.velocity, state.free_force];
     let nothing = vectors.into_iter().fold(wanted * 0.0, |sum, vector| sum + vector * 0.0);
-    nothing == Vector::ZERO
+    nothing == Vector::ZERO && state.bodies.is_finite()
 }
 
 /// `force`, or zero if an input or `force` is not finite.

@@ -133,6 +133,9 @@ const LATE_TIME: f64 = 0.005;
 /// A force that falls in this time is felt as soft [s].
 const FALL_TIME: f64 = 0.02;
 
+/// A hand that leans against it feels a strong drive, and can still stop its arm [W].
+const DRIVE_POWER: f64 = 1.0;
+
 /// How a safety chain protects, beside the limits of its device.
 ///
 /// ```
@@ -154,6 +157,8 @@ pub struct SafetySettings {
     pub has_passivity_control: bool,
     /// Energy that each controller lets out before the hand has put any in [J].
     pub reserve: f64,
+    /// The largest power of bodies that are moved from outside, on the hand [W].
+    pub drive_power: f64,
     /// The time constant with which the motors cool [s].
     pub cooling_time: f64,
     /// How a force comes back after a beginning in a body: the start, an emergency stop, a hand
@@ -163,17 +168,28 @@ pub struct SafetySettings {
     /// placement, late ticks, lost readings, an input that is not finite, or an emergency stop. A
     /// torque rises as fast in the units of its coupling, `√(κ/K)` metres a radian.
     pub rise_rate: f64,
-    /// The time by which ticks are late together when the force falls to zero [s]. Each tick in
-    /// time takes a period from that sum, and two once the force falls; when the sum is zero, the
-    /// force rises again.
+    /// The time by which ticks are late together when the force falls to zero [s], but for 2.5
+    /// periods at least. Each tick in time takes a period from that sum, and two once the force
+    /// falls; when the sum is zero, the force rises again.
     pub late_time: f64,
     /// The time over which late ticks lower the force to zero [s].
     pub fall_time: f64,
 }
 
+impl SafetySettings {
+    /// The largest power of drives [W].
+    ///
+    /// # Errors
+    ///
+    /// [`SafetyError::Number`] if it is not positive; it may be infinite.
+    pub(crate) fn max_drive_power(&self) -> Result<f64, SafetyError> {
+        Ok(NumberError::check_positive_or_infinite("drive_power", self.drive_power, "W")?)
+    }
+}
+
 impl Default for SafetySettings {
     /// Every stage acts. The device renders what it can ([`Acceptance::Device`]); the reserve is
-    /// 0.1 mJ, which a hand does not feel; motors cool within 2 s; forces rise by 20 N/s, and fall
+    /// 0.1 mJ, which a hand does not feel; drives give 1 W; motors cool within 2 s; forces rise by 20 N/s, and fall
     /// within 0.02 s when ticks are late by 5 ms.
     fn default() -> Self {
         Self {
@@ -181,6 +197,7 @@ impl Default for SafetySettings {
             is_strict: false,
             has_passivity_control: true,
             reserve: RESERVE,
+            drive_power: DRIVE_POWER,
             cooling_time: COOLING_TIME,
             recovery: Recovery::Rise,
             rise_rate: RISE_RATE,

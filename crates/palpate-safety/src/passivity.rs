@@ -39,7 +39,7 @@ pub(crate) const SPARE: f64 = 2.5e-4;
 
 /// A force, displacement or velocity with the inner product that gives energy: a vector, or a
 /// [spatial vector](super::SpatialVector) of translation and rotation.
-pub(crate) trait InnerProduct:
+pub trait InnerProduct:
     Copy + PartialEq + Add<Output = Self> + Sub<Output = Self> + Mul<f64, Output = Self>
 {
     const ZERO: Self;
@@ -87,7 +87,7 @@ struct Moved<V> {
     way: V,
 }
 
-/// Position and velocity of a device in a tick.
+/// Position and velocity of a device in a tick, relative to the bodies that it touches.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PortMotion<V> {
     pub(crate) position: V,
@@ -99,6 +99,9 @@ pub(crate) struct PortMotion<V> {
     pub(crate) is_rising: bool,
     /// The time since the tick before [s].
     pub(crate) elapsed: f64,
+    /// What bodies that move by physics owe for this tick [J]: their work on the hand, less their
+    /// credit.
+    pub(crate) owed: f64,
     /// The part of the stiffness that is rendered; less than 1 after a
     /// [limit cycle](crate::limit_cycle::LimitCycle).
     pub(crate) softness: f64,
@@ -127,9 +130,11 @@ pub struct PassivityReport {
     /// Interventions, and the largest change of the force.
     #[cfg_attr(feature = "serde", serde(flatten))]
     pub effect: Effect,
-    /// Energy that the written forces took from the hand [J].
+    /// Energy that the written forces took from the hand, as it moves relative to the touched bodies
+    /// [J].
     pub energy_in: f64,
-    /// Energy that the written forces gave to the hand [J].
+    /// Energy that the written forces gave to the hand, as it moves relative to the touched bodies
+    /// [J]. The work of bodies that move is [counted apart](crate::DriveReport::driven).
     pub energy_out: f64,
     /// The least value of `energy_in − energy_out` in the run [J]. A negative value is net
     /// energy given to the hand; the damping of the device may dissipate that much, as the
@@ -140,9 +145,30 @@ pub struct PassivityReport {
     /// The largest change between two ticks of the force that the passivity controller removes
     /// [N].
     pub largest_step: f64,
-    /// Energy that the forces may give the hand beyond what they took, to push it out of a body
-    /// after they were zeroed or a body moved onto it [J].
+    /// Energy that the forces may give the hand beyond what they took [J]: to push it out of a body
+    /// after they were zeroed or a body moved onto it, and what the part of a force that the controller
+    /// always leaves gave out.
     pub credited: f64,
+    /// Energy that the device's least damping dissipates in contact, as the hand moves relative to the
+    /// touched bodies [J].
+    pub damped: f64,
+    /// How often the controller began to take a force away. It does so smoothly, and each time may let
+    /// out 0.25 mJ meanwhile.
+    pub cuts: u64,
+    /// The largest energy that a force gave to the hand in a tick [J].
+    pub largest_tick: f64,
+}
+
+impl PassivityReport {
+    /// The most energy [J] that the forces may have given beyond what they took: what damping
+    /// dissipates, a `reserve`, 0.25 mJ for each smooth cut, one tick, and what was credited.
+    ///
+    /// `energy_out − energy_in` is never more.
+    #[must_use]
+    pub fn most_given(&self, reserve: f64) -> f64 {
+        let cuts = SPARE * self.cuts as f64;
+        SLACK * self.damped + reserve + cuts + self.largest_tick + self.credited
+    }
 }
 
 /// The passivity observer and controller of one contact point.
@@ -196,6 +222,8 @@ pub(crate) struct Passivity<V> {
     /// What the controller took from the last force [N].
     taken: f64,
     lift: Lift<V>,
+    /// The largest energy so far that the controller's [`FLOOR`] gave out beyond the balance [J].
+    floored: f64,
     report: PassivityReport,
 }
 
@@ -254,6 +282,7 @@ impl<V: InnerProduct> Passivity<V> {
             last: None,
             taken: 0.0,
             lift: Lift::new(),
+            floored: 0.0,
             report: PassivityReport::default(),
         }
     }
@@ -335,6 +364,7 @@ impl<V: InnerProduct> Passivity<V> {
         self.taken = taken.max(force * (1.0 - hard)).min(force);
         if self.taken > before {
             self.lift.end();
+            self.report.cuts += u64::from(before == 0.0);
         }
         self.report.largest_step = self.report.largest_step.max((self.taken - before).abs());
         // Written so that NaN takes all.
@@ -359,7 +389,8 @@ impl<V: InnerProduct> Passivity<V> {
     }
 
     pub(crate) fn report(&self) -> PassivityReport {
-        self.report
+        let credited = self.report.credited + self.floored;
+        PassivityReport { credited, ..self.report }
     }
 
     /// Updates the balance for the tick that ends now, in which the device moved by `way`.
@@ -374,10 +405,12 @@ impl<V: InnerProduct> Passivity<V> {
         let report = &mut self.report;
         report.energy_in += (-given).max(0.0);
         report.energy_out += given.max(0.0);
+        report.largest_tick = report.largest_tick.max(given);
+        report.damped += damping * way.dot(way) / state.elapsed;
         let net = report.energy_in - report.energy_out;
         report.least_balance = report.least_balance.min(net);
         report.dissipated += (last.wanted.dot(way).max(0.0) - given.max(0.0)).max(0.0);
-        self.balance -= given;
+        self.balance -= given + state.owed;
         if last.wanted != V::ZERO || wanted != V::ZERO {
             let loss = SLACK * damping * way.dot(way) / state.elapsed - state.spent;
             let leak = -0.5 * (wanted - last.wanted).dot(way);
@@ -392,6 +425,8 @@ impl<V: InnerProduct> Passivity<V> {
             // Numbers overflowed: assume that no energy was taken in.
             (self.balance, self.leaks, self.losses) = (-reserve, 1.0, 0.0);
         }
+        let allowed = reserve + SPARE + given.max(0.0);
+        self.floored = self.floored.max(-self.balance - allowed);
     }
 
     /// Raises the balance to `energy` [J], and forgets the leaks before: a force that was held in a
@@ -508,6 +543,7 @@ mod tests {
                 effort: force,
                 is_rising: false,
                 elapsed: 1e-3,
+                owed: 0.0,
                 softness: 1.0,
                 spent: 0.0,
                 stiffness: 100.0,

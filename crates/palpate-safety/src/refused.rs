@@ -5,7 +5,7 @@
 
 use std::fmt;
 
-use crate::acceptance::{Accepted, Rule};
+use crate::acceptance::{AS_IS_MOST, Accepted, Rule};
 use crate::limits::Impedance;
 use palpate_device::Short;
 
@@ -21,6 +21,8 @@ pub enum Requester {
     Body(usize),
     /// The magnet of a body.
     Magnet(usize),
+    /// The height texture of a body, by the lateral stiffness of its slopes.
+    Texture(usize),
     /// The coupling of a tool, on a body that is stiffer.
     Coupling(usize),
     /// The coupling of a tool about axes.
@@ -43,6 +45,8 @@ pub struct Refused {
     pub rule: Rule,
     /// What asks for it.
     pub requester: Requester,
+    /// Whether it was to be taken [as it is](crate::Acceptance::AsIs), and is too stiff for that.
+    pub is_as_it_is: bool,
 }
 
 impl Refused {
@@ -53,7 +57,14 @@ impl Refused {
             scale: accepted.scale,
             rule,
             requester,
+            is_as_it_is: false,
         }
+    }
+
+    /// This refusal of what `requester` asks for.
+    #[must_use]
+    pub fn by(self, requester: Requester) -> Self {
+        Self { requester, ..self }
     }
 
     /// The refusal as a sentence, with the names that `name` gives to bodies.
@@ -85,6 +96,9 @@ impl Refused {
             Requester::Material => String::new(),
             Requester::Body(body) => format!("body {}: ", name(body)),
             Requester::Magnet(body) => format!("magnet of body {}: ", name(body)),
+            Requester::Texture(body) => {
+                format!("height texture of body {}, across its waves: ", name(body))
+            }
             Requester::Coupling(body) => {
                 format!("coupling of the tool, which is softer than body {}: ", name(body))
             }
@@ -114,9 +128,18 @@ impl Refused {
                 digits(self.scale, 4),
             )
         };
+        let advice = if self.is_as_it_is {
+            format!(
+                "; as it is, at most {AS_IS_MOST} times the stiffness that it renders comes to \
+                 rest: ask for less, or for what the device renders"
+            )
+        } else {
+            String::new()
+        };
         format!(
             "{requester}the device renders {angular}stiffness {stiffness} {of_stiffness} (asked \
-             {asked}) and damping {damping} {of_damping} (asked {asked_damping}){at_device}: {}",
+             {asked}) and damping {damping} {of_damping} (asked {asked_damping}){at_device}: \
+             {}{advice}",
             self.rule.condition()
         )
     }

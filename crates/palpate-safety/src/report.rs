@@ -5,6 +5,7 @@
 
 use crate::Accepted;
 use crate::channel::Channel;
+use crate::drive::DriveReport;
 use crate::effect::Effect;
 use crate::free_energy::FreeForceReport;
 use crate::limit_cycle::LimitCycleReport;
@@ -29,6 +30,8 @@ pub struct SafetyReport {
     pub free_forces: FreeForceReport,
     /// Passivity observer and controller.
     pub passivity: PassivityReport,
+    /// The work of moving bodies, and the limit on its power.
+    pub drives: DriveReport,
     /// The slew limit. A tick counts twice if the force had to be limited again after the later
     /// stages.
     pub slew: Effect,
@@ -50,7 +53,8 @@ pub struct SafetyReport {
     pub turning: Option<TurningReport>,
 }
 
-/// Actions of the stages of the torque, for a device with rotation; changes are in N·m.
+/// Actions of the stages of the torque, for a device with rotation; changes are in N·m. Torques are
+/// those at the device: in the world they are as many times as large as the workspace is.
 /// Passivity covers force and torque together: see [`SafetyReport::passivity`].
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
@@ -59,7 +63,7 @@ pub struct SafetyReport {
 pub struct TurningReport {
     /// The accepted angular stiffness and damping of the coupling.
     pub impedance: Accepted,
-    /// The largest torque that was written [N·m].
+    /// The largest torque that was written [N·m], at the device.
     pub largest_torque: f64,
     /// The slew limit.
     pub slew: Effect,
@@ -134,6 +138,11 @@ impl SafetyReport {
         Self { free_forces, ..self }
     }
 
+    /// This report with the work of moving bodies.
+    pub(crate) fn with_drives(self, drives: DriveReport) -> Self {
+        Self { drives, ..self }
+    }
+
     /// The report of a chain of forces.
     pub(crate) fn of(
         accepted: &Accepted,
@@ -148,6 +157,7 @@ impl SafetyReport {
             limit_cycles: LimitCycleReport::default(),
             free_forces: FreeForceReport::default(),
             passivity,
+            drives: DriveReport::default(),
             slew: effects.slew,
             force_limit: effects.force_limit,
             continuous: channel.continuous_report(),

@@ -179,6 +179,12 @@ impl WorkspaceMap {
         self.world_from_device.transform_vector(spin)
     }
 
+    /// Rotates an angular velocity from world to device coordinates [rad/s]. Real-time.
+    #[must_use]
+    pub fn spin_to_device(&self, spin: Vector<f64, 3>) -> Vector<f64, 3> {
+        self.device_from_world.transform_vector(spin)
+    }
+
     /// Maps a torque from world to device coordinates [N·m]: rotated and divided by `s`.
     /// Real-time.
     ///

@@ -13,6 +13,7 @@ use palpate_field::Vector;
 
 use crate::chain::BeforeLimits;
 use crate::channel::{Channel, Given, Risen, TickInput};
+use crate::drive::{BodyMotion, Drive, DriveReport};
 use crate::error::SafetyError;
 use crate::free_energy::{FreeEnergy, FreeEnergyOptions, FreeInput, Passed};
 use crate::limit::{Cut, Wanted, cut};
@@ -39,6 +40,14 @@ impl SpatialVector {
     /// The vector with its rotational part multiplied by `factor`.
     fn turning(self, factor: f64) -> Self {
         Self { about: self.about * factor, ..self }
+    }
+}
+
+impl BodyMotion<SpatialVector> {
+    /// The motion with its rotational part multiplied by `factor`.
+    fn turning(self, factor: f64) -> Self {
+        let (driven, dynamic) = (self.driven.turning(factor), self.dynamic.turning(factor));
+        Self { driven, dynamic, ..self }
     }
 }
 
@@ -101,6 +110,8 @@ pub struct WrenchState {
     pub change: Change,
     /// As [`PortState::stiffness`](crate::PortState::stiffness), with an angle as a length.
     pub stiffness: f64,
+    /// As [`PortState::bodies`](crate::PortState::bodies), with the bodies' rotation [rad].
+    pub bodies: BodyMotion<SpatialVector>,
 }
 
 /// The safety chain of a device with rotation: [`SafetyChain`](crate::SafetyChain) for a force
@@ -121,6 +132,7 @@ pub struct WrenchChain {
     cycle: LimitCycle<SpatialVector>,
     free: FreeEnergy<Vector<f64, 3>>,
     passivity: Passivity<SpatialVector>,
+    drive: Drive<SpatialVector>,
     force: Channel,
     torque: Channel,
     /// The largest torque written so far [N·m].
@@ -221,6 +233,7 @@ impl WrenchChain {
                 max_force: along.max_force.positive()?,
             }),
             passivity: Passivity::new(passivity),
+            drive: Drive::new(settings.max_drive_power()?),
             force: Channel::new(along, settings, 1.0, rate)?,
             torque: Channel::new(about, settings, unit, rate)?,
             largest_torque: 0.0,
@@ -236,6 +249,7 @@ impl WrenchChain {
         let unit = unit(along, about);
         let longer = unit / self.unit;
         self.passivity.in_units(|way| way.turning(longer), |force| force.turning(1.0 / longer));
+        self.drive.in_units(|way| way.turning(longer), |force| force.turning(1.0 / longer));
         self.unit = unit;
         let stiffness = along.device_stiffness;
         let AxisLimits { damping, mass, max_rate, encoder_step } =
@@ -283,11 +297,12 @@ impl WrenchChain {
         let Wanted { force: wanted, effort, cut } = wanted;
         let WrenchState { position, velocity, free_force, late, elapsed, stiffness, .. } =
             *state;
-        let WrenchState { start, change, .. } = *state;
+        let WrenchState { start, change, bodies, .. } = *state;
         // Stages with a state never see numbers that are not finite; the guards then write
         // zero.
         let is_sound = [wanted, position, velocity].iter().all(SpatialVector::is_finite)
-            && free_force.is_finite();
+            && free_force.is_finite()
+            && bodies.is_finite();
         let unit = self.unit;
         let (position, velocity) = (position.turning(unit), velocity.turning(unit));
         let input = TickInput { is_sound, late, start, change, cut };
@@ -301,8 +316,11 @@ impl WrenchChain {
         let as_lengths = wanted.turning(1.0 / unit);
         let free = SpatialVector { along: free_force * rise, about: Vector::ZERO };
         let stiffness = options.stiffness_of(stiffness);
+        let bodies = if is_sound { bodies.turning(unit) } else { BodyMotion::NONE };
+        let frame = self.drive.enter(&bodies);
+        let in_frame = position - frame.origin;
         let forces = ForcesOf { bodies: as_lengths, guides: free };
-        let seen = CycleInput::of(forces, effort, position, stiffness);
+        let seen = CycleInput::of(forces, effort, in_frame, stiffness);
         let is_disturbed = self.force.is_late() || !has_risen;
         let softness = self.cycle.observed(&seen.disturbed(is_disturbed), is_sound);
         let is_rising = !has_risen || self.cycle.is_returning();
@@ -314,8 +332,9 @@ impl WrenchChain {
         // The walls' damping may be less: the same part of it is spent.
         let spent = if spent > 0.0 { spent * options.damping / of_guides.damping } else { 0.0 };
         let seen = PortMotion {
-            position,
-            velocity,
+            position: in_frame,
+            velocity: velocity - frame.way * (1.0 / elapsed),
+            owed: frame.owed,
             effort,
             is_rising,
             elapsed,
@@ -324,6 +343,7 @@ impl WrenchChain {
             stiffness,
         };
         let allowed = self.passivity.observed(as_lengths, &seen, is_sound);
+        let allowed = self.drive.limit(allowed, &bodies, elapsed);
         // An unchanged wrench keeps its bits.
         let allowed = if allowed == as_lengths { wanted } else { allowed.turning(unit) };
         let Given { force: along, of_bodies: force_left, share } =
@@ -333,7 +353,9 @@ impl WrenchChain {
             self.torque.step(allowed.about, Vector::ZERO, &input);
         self.free.written(along - force_left, share);
         let left = SpatialVector { along: force_left, about: torque_left };
-        self.passivity.written(left.turning(1.0 / unit));
+        let left = left.turning(1.0 / unit);
+        self.passivity.written(left);
+        self.drive.written(left);
         self.largest_torque = self.largest_torque.max(about.norm());
         SpatialVector { along, about }
     }
@@ -374,6 +396,14 @@ impl WrenchChain {
         self.passivity.report()
     }
 
+    /// The work of moving bodies so far.
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    #[must_use]
+    pub fn drives(&self) -> DriveReport {
+        self.drive.report()
+    }
+
     /// In how many ticks each stage has acted, as in [`report`](Self::report).
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
@@ -383,6 +413,7 @@ impl WrenchChain {
             cycles: self.cycle.report().effect,
             guides: self.free.report().effect,
             passivity: self.passivity.report().effect,
+            drives: self.drive.report().effect,
         };
         let torque = Some(&self.torque.effects);
         StageTicks::of(first, &self.force.effects, torque)
@@ -398,6 +429,7 @@ impl WrenchChain {
             ..SafetyReport::of(along, self.passivity.report(), &self.force)
                 .with_limit_cycles(self.cycle.report())
                 .with_free_forces(self.free.report())
+                .with_drives(self.drive.report())
         }
     }
 }

@@ -49,6 +49,7 @@ mod emptiness;
 mod encoding;
 mod grids;
 mod guide;
+mod hidden;
 mod instances;
 mod json;
 mod keys;
@@ -80,6 +81,7 @@ pub use emptiness::is_empty;
 pub use encoding::{NotUtf8, utf8};
 pub use grids::{BakedBody, BakedGrid, MeshesBaked};
 pub use guide::{GuideCurve, GuideLine, GuidePlane, GuideSegment, GuideWell, WrittenGuide};
+pub use hidden::Hidden;
 #[doc(hidden)]
 pub use instances::instances;
 pub use material::WrittenMaterial;

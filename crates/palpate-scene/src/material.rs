@@ -28,6 +28,7 @@ pub(crate) fn check(material: &Material, dimension: usize) -> Result<(), Problem
         part_if("relative_stiffness", material.relative_stiffness),
         at_least("viscosity", material.viscosity, 0.0, DAMPING),
         check_frictions(material.static_friction, material.dynamic_friction),
+        at_least("seam", material.seam.unwrap_or(0.0), 0.0, "m"),
     ];
     let parts = [
         ("magnet", material.magnet.as_ref().map_or(Ok(()), check_magnet)),

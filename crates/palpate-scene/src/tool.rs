@@ -66,6 +66,10 @@ pub struct WrittenTool {
     #[serde(skip_serializing_if = "Option::is_none")]
     #[cfg_attr(test, schemars(extend("exclusiveMinimum" = 0)))]
     pub max_force: Option<f64>,
+    /// The largest power of bodies that move on the hand [W]; 1 W if left out.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[cfg_attr(test, schemars(extend("exclusiveMinimum" = 0)))]
+    pub drive_power: Option<f64>,
     /// What a device renders of materials; `device` if left out.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub acceptance: Option<WrittenAcceptance>,
@@ -172,6 +176,7 @@ impl WrittenTool {
             if radius > LARGEST_LENGTH { Err(far) } else { Ok(()) },
             if is_both { Err(both) } else { Ok(()) },
             positive_if("max_force", self.max_force, "N"),
+            positive_if("drive_power", self.drive_power, "W"),
             self.actuator().map(drop).map_err(|problem| problem.under("actuator")),
         ];
         let coupling = self.coupling.as_ref().map_or(Ok(()), WrittenCoupling::check);

@@ -236,7 +236,8 @@ impl<const D: usize> BuiltScene<D> {
     /// # }
     /// ```
     pub fn servo(&self, device: &(impl Device + ?Sized)) -> Result<Servo, HapticsError> {
-        self.servo_with(device, ServoSettings::default())
+        let rate = ServoOptions::default().at_rate_of(device).rate;
+        self.servo_with(device, ServoSettings { rate, ..ServoSettings::default() })
     }
 
     /// The same with settings of one's own.
@@ -284,6 +285,9 @@ impl<const D: usize> BuiltScene<D> {
         let mut protection = Protection::new(profile.clone()).with_map(map);
         protection.settings = settings.safety;
         protection.settings.acceptance = acceptance.unwrap_or(settings.safety.acceptance);
+        if let Some(power) = self.tool.as_ref().and_then(|tool| tool.drive_power) {
+            protection.settings.drive_power = power;
+        }
         let guided = || protection.accept_guides(&self.guides, settings.rate).err();
         let servo = servo.protected(&protection);
         let mut servo = servo.map_err(|error| all_refused(error, guided()))?;

@@ -377,6 +377,9 @@ impl Player {
 /// The samples that fit into a WAV file: its header counts bytes in 32 bits.
 const MOST_SAMPLES: usize = (1 << 31) - 1024;
 
+/// The bytes of a sample.
+const SAMPLE_BYTES: u16 = 2;
+
 /// Writes `samples` as a WAV file of 16 bits with some `channels`: a sample of each channel in
 /// turn. Samples are clamped to [−1, 1]; NaN becomes silence.
 ///
@@ -386,7 +389,8 @@ const MOST_SAMPLES: usize = (1 << 31) - 1024;
 /// # Errors
 ///
 /// The errors of `file`, and an error if there is no channel, if a channel lacks its last sample,
-/// or if there are more than 2³¹ − 1024 samples, the most that fit into a WAV file.
+/// if there are more than 2³¹ − 1024 samples, the most that fit into a WAV file, or if the channels
+/// or the sample rate are too many for its header.
 ///
 /// ```
 /// use palpate_vibration::write_wav;
@@ -395,7 +399,7 @@ const MOST_SAMPLES: usize = (1 << 31) - 1024;
 /// let mut file = std::io::Cursor::new(Vec::new());
 /// // Two fingers, three samples each.
 /// write_wav(&mut file, 8000, 2, [0.0, 0.1, 0.5, 0.2, -1.0, 0.3])?;
-/// // A header of 44 bytes for up to two channels, then two for each sample.
+/// // A header of 44 bytes, then two for each sample.
 /// assert_eq!(file.get_ref().len(), 44 + 12);
 /// # Ok(())
 /// # }
@@ -409,36 +413,62 @@ pub fn write_wav(
     if channels == 0 {
         return Err(io::Error::other("a WAV file needs a channel"));
     }
-    let format = hound::WavSpec {
-        channels,
-        sample_rate,
-        bits_per_sample: 16,
-        sample_format: hound::SampleFormat::Int,
-    };
-    let mut writer = hound::WavWriter::new(file, format).map_err(io_error)?;
+    let mut file = io::BufWriter::new(file);
+    let start = file.stream_position()?;
+    file.write_all(&header(sample_rate, channels, 0)?)?;
     let mut written = 0;
     for (count, sample) in samples.into_iter().enumerate() {
-        // The writer's count of bytes would begin again at zero.
+        // The header's count of bytes would begin again at zero.
         if count >= MOST_SAMPLES {
             return Err(io::Error::other("a WAV file holds at most 2³¹ − 1024 samples"));
         }
         // `as` cuts off, and makes NaN zero.
         let rounded = (f64::from(sample) * f64::from(i16::MAX)).round() as i16;
-        writer.write_sample(rounded).map_err(io_error)?;
+        file.write_all(&rounded.to_le_bytes())?;
         written = count + 1;
     }
     if written % usize::from(channels) != 0 {
         let problem = format!("{written} samples do not fill {channels} channels");
         return Err(io::Error::other(problem));
     }
-    writer.finalize().map_err(io_error)
+    let end = file.stream_position()?;
+    file.seek(io::SeekFrom::Start(start))?;
+    file.write_all(&header(sample_rate, channels, written)?)?;
+    file.seek(io::SeekFrom::Start(end))?;
+    file.flush()
 }
 
-fn io_error(error: hound::Error) -> io::Error {
-    match error {
-        hound::Error::IoError(error) => error,
-        other => io::Error::other(other),
-    }
+/// The header of a WAV file with so many samples: of plain PCM, format tag 1, for any number of
+/// channels. The extensible format is meant for more than two, but common readers refuse that
+/// format, such as Python's `wave` before 3.12.
+///
+/// # References
+///
+/// IBM and Microsoft, Multimedia Programming Interface and Data Specifications 1.0 (1991),
+/// chapter 3, Waveform Audio File Format.
+fn header(sample_rate: u32, channels: u16, samples: usize) -> io::Result<[u8; 44]> {
+    let beyond = || {
+        let rule = "beyond the header of a WAV file";
+        io::Error::other(format!("{channels} channels at {sample_rate} Hz are {rule}"))
+    };
+    let block = channels.checked_mul(SAMPLE_BYTES).ok_or_else(beyond)?;
+    let rate = sample_rate.checked_mul(u32::from(block)).ok_or_else(beyond)?;
+    let bytes = u32::try_from(samples).map_err(io::Error::other)? * u32::from(SAMPLE_BYTES);
+    let mut header = [0; 44];
+    let mut rest = header.as_mut_slice();
+    rest.write_all(b"RIFF")?;
+    rest.write_all(&(bytes + 36).to_le_bytes())?;
+    rest.write_all(b"WAVEfmt ")?;
+    rest.write_all(&16_u32.to_le_bytes())?;
+    rest.write_all(&1_u16.to_le_bytes())?;
+    rest.write_all(&channels.to_le_bytes())?;
+    rest.write_all(&sample_rate.to_le_bytes())?;
+    rest.write_all(&rate.to_le_bytes())?;
+    rest.write_all(&block.to_le_bytes())?;
+    rest.write_all(&(8 * SAMPLE_BYTES).to_le_bytes())?;
+    rest.write_all(b"data")?;
+    rest.write_all(&bytes.to_le_bytes())?;
+    Ok(header)
 }
 
 #[cfg(test)]
@@ -541,6 +571,7 @@ mod tests {
 }
 
 #[cfg(test)]
+#[expect(clippy::indexing_slicing, reason = "tests know their lengths")]
 mod wav_tests {
     use super::*;
 
@@ -567,6 +598,43 @@ mod wav_tests {
             let samples: Vec<i16> = reader.samples().map(Result::unwrap).collect();
             assert_eq!(samples, (0..2 * channels as i16).collect::<Vec<_>>());
         }
+    }
+
+    #[test]
+    fn the_header_is_of_plain_pcm_for_any_number_of_channels() {
+        for channels in [1, 2, 10_u16] {
+            let mut file = io::Cursor::new(vec![7; 100]);
+            // The file begins where the writer stands.
+            file.set_position(6);
+            let samples = std::iter::repeat_n(0.5, 3 * usize::from(channels));
+            write_wav(&mut file, 8000, channels, samples).unwrap();
+            let end = 6 + 44 + 6 * u64::from(channels);
+            assert_eq!(file.position(), end);
+            let bytes = &file.get_ref()[6..];
+            let short = |at: usize| u16::from_le_bytes(bytes[at..at + 2].try_into().unwrap());
+            let long = |at: usize| u32::from_le_bytes(bytes[at..at + 4].try_into().unwrap());
+            assert_eq!((&bytes[..4], &bytes[8..16]), (&b"RIFF"[..], &b"WAVEfmt "[..]));
+            assert_eq!((long(16), short(20), short(22)), (16, 1, channels));
+            assert_eq!((long(24), long(28)), (8000, 16000 * u32::from(channels)));
+            assert_eq!((short(32), short(34)), (2 * channels, 16));
+            assert_eq!((&bytes[36..40], long(40)), (&b"data"[..], 6 * u32::from(channels)));
+            assert_eq!(long(4), 36 + long(40));
+        }
+    }
+
+    #[test]
+    fn what_the_header_cannot_say_is_refused() {
+        let write = |sample_rate, channels| {
+            let file = io::Cursor::new(Vec::new());
+            write_wav(file, sample_rate, channels, []).unwrap_err().to_string()
+        };
+        let message = |channels: u16, sample_rate: u32| {
+            format!(
+                "{channels} channels at {sample_rate} Hz are beyond the header of a WAV file"
+            )
+        };
+        assert_eq!(write(8000, 40_000), message(40_000, 8000));
+        assert_eq!(write(u32::MAX, 1), message(1, u32::MAX));
     }
 
     #[test]

@@ -57,8 +57,8 @@ class HeldTool(Answer):
     Fields:
         pose: Where the tool is, which enters no body: a matrix of shape (D + 1, D + 1).
         turn: How the device is turned relative to the tool, as a rotation vector [rad].
-        torque: The torque that the contacts want about the origin of the tool [N m].
-        given_torque: The torque that was written [N m]; NaN of a device without rotation.
+        torque: The torque that the contacts want about the origin of the tool [N m], in the world.
+        given_torque: The torque that was written [N m], in the world; NaN of a device without rotation.
         contacts: How many contacts push.
         resolution: How far the surface of the tool may be from the balls that stand for it [m].
         is_degraded: Whether the time of a tick did not suffice for all balls.

@@ -29,7 +29,7 @@ use crate::live::PageOptions;
 use crate::outcome::{Failure, Outcome};
 use crate::output::{self, shown};
 use crate::picture::{Dimensions, Drawable};
-use crate::{emptiness, live};
+use crate::{emptiness, live, unfelt};
 
 mod baked;
 mod figure;
@@ -71,6 +71,7 @@ where
     Dimensions: Drawable<D>,
 {
     emptiness::warn(scene);
+    unfelt::warn(scene);
     let name = named.name.as_str();
     let choice = choice(options)?;
     check_forces(&choice, options)?;
@@ -112,6 +113,9 @@ where
     let servo = scene.servo_with(device.as_ref(), settings);
     let mut servo = servo.map_err(|error| refused(error, scene))?;
     let accepted = servo.accepted().to_vec();
+    if let Some(less) = report::less_than_asked(scene, &accepted, device.profile()) {
+        output::remark(less);
+    }
 
     let keeps_rows = outputs.keep_ticks();
     let rows = if keeps_rows { limits::rows(ticks * contacts as f64)? } else { 0 };

@@ -8,7 +8,9 @@ use std::io::Write as _;
 use std::path::Path;
 
 use palpate::device::DeviceProfile;
-use palpate::haptics::{Body, Material, Progress, Servo, Surface, Texture, TextureKind};
+use palpate::haptics::{
+    AcceptedTexture, Body, Material, Progress, Servo, Surface, Texture, TextureKind,
+};
 use palpate::safety::{Acceptance, Accepted, DeviceLimits, Rule};
 use palpate::scene::text::rounded;
 use palpate::scene::{BakedBody, BuiltScene};
@@ -191,7 +193,10 @@ fn write_report<const D: usize>(out: &mut String, felt: &Felt<'_, D>) -> std::fm
         write!(
             out,
             "  stiffness {stiffness} N/m, damping {damping} N·s/m, at most {} N, ",
-            options.max_force,
+            of_asked(
+                &rounded(options.max_force),
+                &rounded(asked_force(felt.scene).unwrap_or(options.max_force))
+            ),
         )?;
     } else {
         write!(out, "  vibration alone, as the device gives no force; ")?;
@@ -253,8 +258,10 @@ fn write_report<const D: usize>(out: &mut String, felt: &Felt<'_, D>) -> std::fm
         }
     }
     let guides = servo.accepted_guides();
-    write_beyond(out, along, device, report.rate)?;
+    let of_textures = servo.accepted_textures().iter().map(|texture| &texture.lateral);
+    write_beyond(out, along.iter().chain(of_textures), device, report.rate)?;
     write_guides(out, guides)?;
+    write_waves(out, felt)?;
     inside::write(out, felt)?;
     match felt.missed {
         None => {}
@@ -337,6 +344,42 @@ fn write_accepted(
     Ok(())
 }
 
+/// What a device renders less of than the scene or the command line asks for, in a sentence; `None`
+/// if it renders all.
+pub(super) fn less_than_asked<const D: usize>(
+    scene: &BuiltScene<D>,
+    accepted: &[Accepted],
+    device: &DeviceProfile,
+) -> Option<String> {
+    let mut less = Vec::new();
+    let most = device.max_force;
+    if let Some(asked) = asked_force(scene).filter(|asked| most > 0.0 && *asked > most) {
+        less.push(format!("at most {} N of {} N", rounded(most), rounded(asked)));
+    }
+    let softer = accepted.iter().enumerate().filter(|(_, a)| a.stiffness_rule.is_some());
+    // A tool has its coupling along axes, and then about axes.
+    let is_tool = scene.tool.as_ref().is_some_and(|tool| tool.shape.is_some());
+    let along = softer.filter(|(entry, _)| !is_tool || *entry == 0);
+    let softest =
+        along.min_by(|(_, a), (_, b)| a.stiffness_factor.total_cmp(&b.stiffness_factor));
+    if let Some((entry, softest)) = softest {
+        let whose = match scene.bodies.get(entry) {
+            Some(body) if !is_tool => format!("body \"{}\"", shown(&body.name)),
+            _ => "the tool's coupling".to_owned(),
+        };
+        let [rendered, asked] =
+            [softest.device_stiffness, softest.requested_stiffness].map(rounded);
+        less.push(format!("{rendered} N/m of {asked} N/m of {whose}"));
+    }
+    let less = (!less.is_empty()).then(|| less.join(", and "))?;
+    Some(format!("warning: the {} renders less than asked: {less}", shown(&device.name)))
+}
+
+/// The largest force that the scene or the command line asks for [N]; `None` for that of the device.
+fn asked_force<const D: usize>(scene: &BuiltScene<D>) -> Option<f64> {
+    scene.tool.as_ref()?.options.max_force
+}
+
 /// Which numbers that a rule uses are `assumed`.
 fn assumed(rule: Rule, assumed: &[&str]) -> String {
     let angular = if rule.is_angular() { "angular " } else { "" };
@@ -363,10 +406,33 @@ fn write_guides(out: &mut String, accepted: &[Accepted]) -> std::fmt::Result {
     write_accepted(out, accepted, |count| format!("{count} of {all}"))
 }
 
+/// Which waves of height textures are lower than asked for, and why.
+fn write_waves<const D: usize>(out: &mut String, felt: &Felt<'_, D>) -> std::fmt::Result {
+    for AcceptedTexture { body, lateral, .. } in felt.servo.accepted_textures() {
+        let body = felt.scene.bodies.get(*body);
+        let asked = body.and_then(|body| Some((&body.name, body.material.texture.as_ref()?)));
+        let Some(((name, asked), rule)) = asked.zip(lateral.stiffness_rule) else { continue };
+        let rendered = lateral.stiffness_factor * asked.amplitude;
+        let [rendered, asked] = [rendered, asked.amplitude].map(|height| rounded(1e3 * height));
+        let [stiffness, steep] =
+            [lateral.device_stiffness, lateral.requested_stiffness].map(rounded);
+        writeln!(
+            out,
+            "  texture        waves of body \"{}\" are {rendered} mm high (asked {asked}); their \
+             slopes have a stiffness of {stiffness} N/m (asked {steep}) under the largest force: \
+             {}{}",
+            shown(name),
+            rule.condition(),
+            assumed(rule, &lateral.assumed)
+        )?;
+    }
+    Ok(())
+}
+
 /// How stiff the stiffest is, if that is more than the device renders stably.
-fn write_beyond(
+fn write_beyond<'a>(
     out: &mut String,
-    accepted: &[Accepted],
+    accepted: impl Iterator<Item = &'a Accepted>,
     device: &DeviceProfile,
     rate: f64,
 ) -> std::fmt::Result {
@@ -375,7 +441,7 @@ fn write_beyond(
     else {
         return Ok(());
     };
-    let stiffest = accepted.iter().map(|a| a.device_stiffness).fold(0.0, f64::max);
+    let stiffest = accepted.map(|a| a.device_stiffness).fold(0.0, f64::max);
     // What rounding adds to the most is no more.
     if stiffest <= most * (1.0 + 1e-12) {
         return Ok(());

@@ -208,6 +208,79 @@ fn a_body_without_any_point_is_told_of() {
     }
 }
 
+/// The message said that the matrix is not orthonormal, which it is.
+#[test]
+fn a_left_handed_frame_is_called_a_reflection() {
+    let folder = Folder::new();
+    let end = BALL.trim_end().strip_suffix('}').unwrap();
+    let frame = r#""tool": { "workspace": { "pose": {
+        "rotation": [[1, 0, 0], [0, 1, 0], [0, 0, -1]] } } } }"#;
+    let scene = format!("{end}, {frame}");
+    let said = "rotation must not mirror: the matrix is a reflection, with determinant -1; palpate is \
+                right-handed, so mirror one axis of a left-handed frame before, for instance in the \
+                device's driver\n";
+    let checked = checked(&folder, "left.json", scene.as_bytes());
+    assert_eq!(checked, format!("left.json: tool.workspace.pose.rotation, line 3: {said}"));
+    let felt = folder.run(&["feel", "left.json", "--fast", "--duration", "0.01"]);
+    assert!(errors(&felt).ends_with(said), "{}", errors(&felt));
+}
+
+/// A soft skin with a hard ball in it, which a hand never reaches.
+const NODULE: &str = r#"{ "palpate": 1, "dimension": 3, "bodies": [
+  { "name": "skin", "shape": { "cuboid": { "size": [0.1, 0.04, 0.1] } } },
+  { "name": "nodule", "shape": { "ball": { "radius": 0.012 } },
+    "pose": { "translation": [0, 0.006, 0] } } ] }"#;
+
+#[test]
+fn a_body_wholly_within_another_is_told() {
+    let folder = Folder::new();
+    folder.write("nodule.json", NODULE);
+    folder.write("bump.json", &NODULE.replace("0.006", "0.0081"));
+    let told = "warning: body \"nodule\" lies wholly within body \"skin\": it cannot be felt, because \
+                a hand stays on the surface of \"skin\"; let it come out there, or give the material of \
+                \"skin\" \"layers\", with \"pop_through\" if the hand is to reach what lies within\n";
+    let feel =
+        |scene: &str| errors(&folder.run(&["feel", scene, "--fast", "--duration", "0.01"]));
+    assert_eq!(feel("nodule.json"), told);
+    assert_eq!(feel("bump.json"), "");
+    let check = |scene: &str, rest: &[&str]| {
+        let output = folder.run(&[&["check", scene], rest].concat());
+        assert_eq!(status(&output), 0);
+        text(&output)
+    };
+    assert!(check("nodule.json", &[]).ends_with(&format!("    {told}")));
+    assert!(!check("bump.json", &[]).contains("warning"));
+    let answer: Value = serde_json::from_str(&check("nodule.json", &["--json"])).unwrap();
+    assert_eq!(answer["bodies"][1]["hidden_in"], "skin");
+    assert!(answer["bodies"][0]["hidden_in"].is_null());
+}
+
+#[test]
+fn a_device_that_renders_less_than_asked_is_told() {
+    let folder = Folder::new();
+    let end = BALL.trim_end().strip_suffix('}').unwrap();
+    folder.write("strong.json", &format!(r#"{end}, "tool": {{ "max_force": 100 }} }}"#));
+    folder.write("ball.json", BALL);
+    let feel = |scene: &str, rest: &[&str]| {
+        let omega =
+            ["feel", scene, "--fast", "--duration", "0.01", "--device", "simulated:omega"];
+        let output = folder.run(&[&omega[..], rest].concat());
+        (status(&output), errors(&output), text(&output))
+    };
+    let (_, said, report) = feel("strong.json", &["--stiffness", "9000"]);
+    let start = "warning: the Force Dimension omega renders less than asked: at most 12 N of 100 N, \
+                 and ";
+    assert!(said.starts_with(start) && said.ends_with(" N/m of body \"ball\"\n"), "{said}");
+    assert_eq!(said.lines().count(), 1, "{said}");
+    assert!(report.contains("at most 12 (asked 100) N"), "{report}");
+    let (code, said, _) = feel("ball.json", &["--max-force", "100"]);
+    let refused = "palpate: --max-force must be at most 12 N, the largest force of the Force Dimension \
+                   omega, got 100 N\n";
+    assert_eq!((code, said.as_str()), (2, refused));
+    let (_, said, _) = feel("ball.json", &["--stiffness", "1"]);
+    assert_eq!(said, "");
+}
+
 /// A floor without end, a curve, and a ball.
 const ENDLESS: &str = r#"{ "palpate": 1, "dimension": 3, "bodies": [
   { "name": "floor", "shape": { "half_space": { "normal": [0, 1, 0], "offset": 0 } } },

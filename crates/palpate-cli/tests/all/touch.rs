@@ -3,7 +3,7 @@
 
 //! `palpate feel`, `devices` and `jitter`.
 
-use crate::common::{Folder, errors, json, palpate, status, text};
+use crate::common::{Folder, errors, json, number, palpate, status, text};
 use crate::pictures::words;
 
 const BALL: &str = r#"{ "palpate": 1, "dimension": 3,
@@ -181,11 +181,11 @@ fn a_glove_feels_what_it_vibrates_like() {
     ]);
     assert_eq!((&report["points"], &report["largest_force"]), (&10.into(), &0.0.into()));
     let bytes = std::fs::read(&wav).unwrap();
-    // A header of 68 bytes, and for each actuator 8000 samples of two bytes a second.
+    // A header of 44 bytes, and for each actuator 8000 samples of two bytes a second.
     assert_eq!((&bytes[..4], &bytes[22..24]), (&b"RIFF"[..], &[10, 0][..]));
     let seconds = report["duration"].as_f64().unwrap();
-    assert_eq!(bytes.len(), 68 + 10 * 2 * (8000.0 * seconds) as usize);
-    let (samples, _) = bytes[68..].as_chunks::<2>();
+    assert_eq!(bytes.len(), 44 + 10 * 2 * (8000.0 * seconds) as usize);
+    let (samples, _) = bytes[44..].as_chunks::<2>();
     let channel = |number: usize| {
         let samples = samples.iter().skip(number).step_by(10);
         Vec::from_iter(samples.map(|sample| i16::from_le_bytes(*sample)))
@@ -230,7 +230,7 @@ fn ten_fingers_are_felt_on_every_actuator_and_none_is_clipped() {
     assert!(vibration["limited_ticks"].as_u64().unwrap() > 0);
     assert!(vibration["largest_reduction"].as_f64().unwrap() > 1.0);
     let bytes = std::fs::read(&wav).unwrap();
-    let (samples, _) = bytes[68..].as_chunks::<2>();
+    let (samples, _) = bytes[44..].as_chunks::<2>();
     let samples: Vec<i16> = samples.iter().map(|bytes| i16::from_le_bytes(*bytes)).collect();
     let channel = |number: usize| samples.iter().skip(number).step_by(10).copied();
     for number in 0..10 {
@@ -421,7 +421,9 @@ fn a_stylus_tours_a_cup_and_is_drawn() {
     assert!(tool["largest_torque"].as_f64().unwrap() > 0.01, "{tool}");
     let svg = std::fs::read_to_string(&plot).unwrap();
     let words = words(&svg);
-    for word in ["stylus in cup, felt with a tool", "tool's origin", "torque [mN·m]"] {
+    for word in
+        ["stylus in cup, felt with a tool", "tool's origin", "torque in the world [mN·m]"]
+    {
         assert!(words.contains(&word), "{word} is not among {words:?}");
     }
     for start in ["tool, first touch: ", "tool, deepest: ", "tool, last touch: "] {
@@ -452,9 +454,12 @@ fn a_stylus_turns_with_a_device_that_turns() {
     };
     let report = on("simulated:sigma7", &["--trace", &trace, "--plot", &plot]);
     let written = report["tool"]["largest_torque_written"].as_f64().unwrap();
-    assert!(written > 0.01 && written <= 0.2, "{report}");
     let turning = &report["safety"][0]["turning"];
-    assert_eq!(turning["largest_torque"], written);
+    let (at_device, scale) =
+        (number(&turning["largest_torque"]), number(&report["workspace_scale"]));
+    assert!(at_device > 0.01 && at_device <= 0.2, "{report}");
+    // In the world, as all torques but those of the safety chain.
+    assert!((written - scale * at_device).abs() < 1e-12 && scale != 1.0, "{scale} {report}");
     assert_eq!(report["angular_coupling"]["stiffness_rule"], "max_angular_stiffness");
     assert_eq!(report["angular_coupling"], turning["impedance"]);
     let rows = std::fs::read_to_string(&trace).unwrap();

@@ -7,7 +7,8 @@
 use std::time::Duration;
 
 use palpate_device::{
-    Buttons, Device, DeviceProfile, GripperState, MailboxDevice, PointState, Reading, TurnState,
+    Buttons, Device, DeviceProfile, GripperState, Mailbox, MailboxDevice, PointState, Reading,
+    TurnState,
 };
 use palpate_field::{Rotation, Vector};
 
@@ -103,4 +104,60 @@ fn a_driver_hears_of_watchdog_and_motors() {
     assert_eq!(Device::rate(&device), Some(500.0));
     let (mut device, _mailbox) = MailboxDevice::new(unlimited(), 1).unwrap();
     assert_eq!(device.set_watchdog(asked).unwrap(), None);
+}
+
+/// Why a device is lost that is read so many times a second for 3 s, by a driver that sets states so
+/// often.
+fn lost(rate: u32, driver: u32, device: &mut MailboxDevice, mailbox: &mut Mailbox) -> String {
+    let mut points = [PointState::at_rest(Vector::ZERO)];
+    let mut set = 0;
+    for tick in 0..3 * rate {
+        while set * rate <= tick * driver {
+            mailbox.set(&points).unwrap();
+            set += 1;
+        }
+        if let Err(lost) = device.read(f64::from(tick) / f64::from(rate), &mut points) {
+            return lost.reason;
+        }
+    }
+    String::new()
+}
+
+#[test]
+fn a_driver_too_slow_for_the_servo_is_told_with_both_rates() {
+    let mailbox = || MailboxDevice::new(DeviceProfile::unlimited("slow"), 1).unwrap();
+    for driver in [12, 30, 60, 90, 250, 400] {
+        let (mut device, mut driven) = mailbox();
+        let said = format!(
+            "its driver sets {driver} states a second, but the servo takes 1000, and would give no \
+             force: tell the mailbox its rate, `with_rate({driver}."
+        );
+        let reason = lost(1000, driver, &mut device, &mut driven);
+        assert!(reason.starts_with(&said), "{driver}: {reason}");
+        let (device, mut driven) = mailbox();
+        let mut told = device.with_rate(f64::from(driver));
+        assert_eq!(lost(driver, driver, &mut told, &mut driven), "");
+    }
+    for driver in [500, 700, 1000, 2000] {
+        let (mut device, mut driven) = mailbox();
+        assert_eq!(lost(1000, driver, &mut device, &mut driven), "");
+    }
+    // One that only sets what changes has no rate.
+    let (device, mut driven) = mailbox();
+    let mut changes = device.with_patience(f64::INFINITY);
+    assert_eq!(lost(1000, 90, &mut changes, &mut driven), "");
+}
+
+#[test]
+fn one_pause_makes_no_driver_slow() {
+    let (mut device, mut mailbox) =
+        MailboxDevice::new(DeviceProfile::unlimited("busy"), 1).unwrap();
+    let mut points = [PointState::at_rest(Vector::ZERO)];
+    for tick in 0..3000 {
+        // 80 ms of each 250 ms without states.
+        if tick % 250 >= 80 {
+            mailbox.set(&points).unwrap();
+        }
+        device.read(f64::from(tick) * 1e-3, &mut points).unwrap();
+    }
 }

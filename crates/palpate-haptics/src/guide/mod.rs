@@ -25,6 +25,10 @@ use palpate_safety::Impedance;
 pub use slope::Slope;
 use target::Target;
 
+/// The time over which the force of a guide rises that engages within its snap distance [s]: all of it
+/// at once is a blow.
+const SNAP_TIME: f64 = 0.02;
+
 /// Stiffness, damping and limits of a guide.
 ///
 /// ```
@@ -125,7 +129,8 @@ fn unit(
 ///
 /// The spring force is zero on the target and continuous wherever the closest point is. With a
 /// snap distance, the force jumps by at most `min(K d, F_max)` where the guide engages and
-/// where it releases at distance d. Because the release distance is at least the snap distance,
+/// where it releases at distance d; in a servo, the force of a guide that engages rises over
+/// 20 ms. Because the release distance is at least the snap distance,
 /// the energy that the hand gains at the snap is at most the energy that it pays until the
 /// release.
 ///
@@ -153,6 +158,8 @@ pub struct Guide {
     kind: Kind,
     options: GuideOptions,
     engaged: bool,
+    /// The rendered part of the force of a guide that snapped, in [0, 1].
+    snapped: f64,
     /// The force of the last tick [N].
     last: Vector<f64, 3>,
 }
@@ -282,7 +289,13 @@ impl Guide {
     }
 
     fn of(kind: Kind, options: GuideOptions) -> Result<Self, HapticsError> {
-        Ok(Self { kind, options: options.checked()?, engaged: false, last: Vector::ZERO })
+        Ok(Self {
+            kind,
+            options: options.checked()?,
+            engaged: false,
+            snapped: 1.0,
+            last: Vector::ZERO,
+        })
     }
 
     /// The options.
@@ -342,6 +355,31 @@ impl Guide {
         self.engaged = motion.is_some();
         let force = motion.map(|motion| damped(&motion, self.options.max_force));
         self.last = force.filter(Vector::is_finite).unwrap_or(Vector::ZERO);
+        self.last
+    }
+
+    /// As [`force`](Self::force) in a servo of `rate` [Hz]: the force of a guide that engages rises
+    /// over [`SNAP_TIME`].
+    ///
+    /// Real-time: as `force`.
+    #[inline]
+    pub(crate) fn rising_force(
+        &mut self,
+        position: Point<3>,
+        velocity: Vector<f64, 3>,
+        rate: f64,
+    ) -> Vector<f64, 3> {
+        let was_engaged = self.engaged;
+        let force = self.force(position, velocity);
+        let snaps =
+            matches!(self.kind, Kind::Target(_)) && self.options.snap_distance < f64::INFINITY;
+        if snaps && self.engaged && !was_engaged {
+            self.snapped = 0.0;
+        }
+        if self.snapped < 1.0 {
+            self.snapped = (self.snapped + 1.0 / (SNAP_TIME * rate)).min(1.0);
+            self.last = force * self.snapped;
+        }
         self.last
     }
 

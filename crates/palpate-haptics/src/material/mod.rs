@@ -70,6 +70,12 @@ pub struct Material {
     /// The vibration of a tap on the surface.
     #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Option::is_none"))]
     pub impact: Option<Impact>,
+    /// How far a seam reaches at least into this body and into its neighbour [m]: beside a body
+    /// whose surface is level with this one, one stiffness blends into the other. If left out, as far
+    /// as the probe's radius and the device's largest force need.
+    #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Option::is_none"))]
+    #[cfg_attr(feature = "schema", schemars(range(min = 0.0)))]
+    pub seam: Option<f64>,
 }
 
 impl Default for Material {
@@ -87,6 +93,7 @@ impl Default for Material {
             layers: Vec::new(),
             texture: None,
             impact: None,
+            seam: None,
         }
     }
 }

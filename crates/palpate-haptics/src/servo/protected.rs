@@ -7,7 +7,7 @@ use palpate_device::{Device, PointState};
 use palpate_safety::Accepted;
 
 use super::{Protected, Servo};
-use crate::accepted_bodies::{AcceptedBodies, Protection};
+use crate::accepted_bodies::{AcceptedBodies, AcceptedTexture, Protection};
 use crate::bodies::Bodies;
 use crate::error::{HapticsError, ServoOptions};
 use crate::guide::Guide;
@@ -81,6 +81,13 @@ impl Servo<Protected> {
     #[must_use]
     pub fn accepted(&self) -> &[Accepted] {
         self.renderer.accepted().accepted()
+    }
+
+    /// The height textures of bodies as the device renders them: each with the lateral stiffness of
+    /// its slopes, and its share of the amplitude.
+    #[must_use]
+    pub fn accepted_textures(&self) -> &[AcceptedTexture] {
+        self.renderer.accepted().textures()
     }
 
     /// Sets the guides of every contact point, as soft as the device requires.

@@ -39,7 +39,7 @@ pub(crate) fn write(f: &mut Formatter<'_>, report: &RunReport) -> Result {
     }
     line(f, "largest depth", format_args!("{:.3} mm", 1e3 * report.largest_depth))?;
     if let Some(tool) = &report.tool {
-        write_tool(f, tool)?;
+        write_tool(f, tool, &report.safety)?;
     }
     line(f, "evaluations", report.evaluations)?;
     if report.evaluations.budget_spent > 0 {
@@ -78,16 +78,19 @@ pub(crate) fn write(f: &mut Formatter<'_>, report: &RunReport) -> Result {
 }
 
 /// The lines of a tool that contact points do not have.
-fn write_tool(f: &mut Formatter<'_>, tool: &ToolReport) -> Result {
+fn write_tool(f: &mut Formatter<'_>, tool: &ToolReport, safety: &[SafetyReport]) -> Result {
     let torque = 1e3 * tool.largest_torque;
     match tool.largest_torque_written {
         Some(written) => {
             let written = 1e3 * written;
+            let turning = safety.iter().filter_map(|point| point.turning.as_ref());
+            let at_device = 1e3 * turning.map(|t| t.largest_torque).fold(0.0, f64::max);
             let said =
-                format_args!("{torque:.3} mN·m, {written:.3} mN·m written to the device");
+                format_args!("{torque:.3} mN·m, {written:.3} mN·m written, in the world");
             line(f, "largest torque", said)?;
+            line(f, "", format_args!("{at_device:.3} mN·m written to the device"))?;
         }
-        None => line(f, "largest torque", format_args!("{torque:.3} mN·m"))?,
+        None => line(f, "largest torque", format_args!("{torque:.3} mN·m, in the world"))?,
     }
     let (mean, most) = (tool.mean_contacts, tool.most_contacts);
     let said = format_args!("{mean:.2} on average in contact, {most} at most");
@@ -120,12 +123,26 @@ fn write_safety(f: &mut Formatter<'_>, safety: &[SafetyReport]) -> Result {
         energy(|p| p.dissipated),
     );
     line(f, "energy", said)?;
+    let driven = 1e3 * safety.iter().map(|point| point.drives.driven).sum::<f64>();
+    if driven != 0.0 {
+        line(f, "", format_args!("bodies that move did {driven:.3} mJ of work on the hand"))?;
+    }
     let ticks = |of: fn(&SafetyReport) -> u64| safety.iter().map(of).sum::<u64>();
     let stages: StageTicks = safety.iter().map(StageTicks::from).sum();
     let acted = stages.named().filter(|(_, ticks)| *ticks > 0);
     let acted: Vec<_> = acted.map(|(stage, ticks)| format!("{stage} {ticks}")).collect();
     let acted = if acted.is_empty() { "nothing to do".to_owned() } else { acted.join(", ") };
     line(f, "safety, ticks", acted)?;
+    let most = |of: fn(&SafetyReport) -> f64| safety.iter().map(of).fold(0.0, f64::max);
+    for (stage, taken) in [
+        ("passivity", most(|point| point.passivity.effect.largest)),
+        ("passivity of guides", most(|point| point.free_forces.effect.largest)),
+        ("power of drives", most(|point| point.drives.effect.largest)),
+    ] {
+        if taken > 0.0 {
+            line(f, "", format_args!("{stage} took away {taken:.3} N at most"))?;
+        }
+    }
     let least = safety.iter().map(|point| point.limit_cycles.least_part).fold(1.0, f64::min);
     if least < 1.0 {
         let said = "oscillated against bodies, which became softer: check its profile";

@@ -18,9 +18,10 @@ pub struct TraceRow {
     pub device: Point<3>,
     /// The proxy [m]; the device point itself in free space.
     pub proxy: Point<3>,
-    /// The force of the touched body, before any limit [N].
+    /// The force of the touched body, before the limits of the device and the rest of the safety
+    /// chain [N]; its stiffness is the accepted one.
     pub wanted: Vector<f64, 3>,
-    /// The force on the hand [N].
+    /// The written force on the hand [N].
     pub force: Vector<f64, 3>,
     /// The unit normal of the surface that the proxy last reached, pointing out.
     pub normal: Vector<f64, 3>,
@@ -33,7 +34,7 @@ pub struct TraceRow {
     /// `true` if the hand is lifted off the bodies, and passes through them.
     pub is_lifted: bool,
     /// Energy that the forces took from the hand and gave to it so far, and what the safety
-    /// chain held back [J].
+    /// chain held back [J], at the device.
     pub energy: Energy,
     /// The tool coupled to the point; `None` for a contact point.
     pub tool: Option<HeldTool>,

@@ -16,6 +16,11 @@ use super::vibration::VibrationReport;
 use crate::{EventCounts, Guide, Progress, Servo, Tool};
 
 /// The report of a run of a servo.
+///
+/// Forces and torques on the hand are those in the world, as in a [trace](super::TraceWriter). A force
+/// is as large at the device. A torque at the device is that in the world over the scale of the
+/// workspace: a device of a small scale turns more easily than it pushes. The reports of safety
+/// chains, and all energies, are at the device.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
@@ -35,7 +40,7 @@ pub struct RunReport {
     pub duration: f64,
     /// The time during which at least one point was in contact [s].
     pub contact_time: f64,
-    /// The largest force on a contact point [N].
+    /// The largest written force on a contact point [N].
     pub largest_force: f64,
     /// The largest depth of a contact point [m]; for a tool, the largest distance of its origin
     /// from the device point.
@@ -53,7 +58,8 @@ pub struct RunReport {
     pub rows_dropped: u64,
     /// Counts of events at the contact points.
     pub events: EventCounts,
-    /// The report of each contact point's safety chain; empty for a device that gives no force.
+    /// The report of each contact point's safety chain, whose forces, torques and energies are those
+    /// at the device; empty for a device that gives no force.
     pub safety: Vec<SafetyReport>,
     /// The contact points that were inside a body in the first tick.
     pub starts_inside: Vec<StartInside>,
@@ -220,8 +226,7 @@ impl Tally {
         let (touches, mut budget) = (servo.touches(), servo.options().probe.budget());
         if let Some(tool) = servo.tool() {
             budget = tool.options().budget;
-            let is_turned = servo.held_tool().is_some_and(|held| held.given.is_some());
-            let written = is_turned.then(|| servo.torque());
+            let written = servo.held_tool().and_then(|held| held.given);
             self.tool.get_or_insert_default().tick(tool, written);
         }
         self.starts.tick(servo);
@@ -520,10 +525,11 @@ pub struct ToolReport {
     pub stiffness: f64,
     /// The coupling's damping [N·s/m].
     pub damping: f64,
-    /// The largest torque that was wanted on the hand [N·m].
+    /// The largest torque that was wanted on the hand [N·m], in the world.
     pub largest_torque: f64,
-    /// The largest torque written to a device with rotation [N·m], in device coordinates;
-    /// `None` for other devices.
+    /// The largest torque written to a device with rotation [N·m], in the world as well: at the
+    /// device it is as [`TurningReport`](palpate_safety::TurningReport) says. `None` for other
+    /// devices.
     pub largest_torque_written: Option<f64>,
     /// The most contacts that pushed in a tick.
     pub most_contacts: u32,
@@ -547,7 +553,7 @@ pub(crate) struct ToolTally {
 }
 
 impl ToolTally {
-    /// Counts a tick with the torque written to a device with rotation.
+    /// Counts a tick with the torque written to a device with rotation, in the world.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     pub(crate) fn tick(&mut self, tool: &Tool, written: Option<Vector<f64, 3>>) {

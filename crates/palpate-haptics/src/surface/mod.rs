@@ -36,6 +36,8 @@ const STEEPER: f64 = 8.0;
 pub(crate) struct Press {
     /// From the device point to the proxy [m].
     pub(crate) stretch: Vector<f64, 3>,
+    /// The unit normal of the touched face.
+    pub(crate) normal: Vector<f64, 3>,
     /// The velocity of the device point relative to the body [m/s].
     pub(crate) velocity: Vector<f64, 3>,
     /// The proxy [m].
@@ -49,17 +51,18 @@ pub(crate) struct Press {
 /// A material prepared for the servo.
 ///
 /// With the proxy `p`, the device point `x`, the stretch `s = p − x`, its direction
-/// `n = s / ‖s‖` and the velocity `v` of the device point relative to the body, the force on
-/// the hand is
+/// `u = s / ‖s‖`, the unit normal `n` of the touched face and the velocity `v` of the device point
+/// relative to the body, the force on the hand is
 ///
 /// ```text
-/// F = N(‖s‖) n − B min(v·n, 0) n − V v + texture + ring
+/// F = N(‖s‖) u − B min(v·n, 0) n − V v + texture + ring
 /// ```
 ///
 /// - `N(d) = ∫ K`, with the stiffness `K` of the layer at each depth: the spring of Zilles and
 ///   Salisbury, "A constraint-based god-object method for haptic display" (1995), section 3.
-/// - The damper `B` acts on the approach alone, so it never pulls the hand in. `B` and the
-///   viscosity `V` are those of the layer at the depth of the hand.
+/// - The damper `B` acts on the approach alone, so it never pulls the hand in, and along the
+///   normal, so a hand that slides at a constant depth does not feel it. `B` and the viscosity
+///   `V` are those of the layer at the depth of the hand.
 /// - A texture of kind *height* is the force of the potential `∫ N` at the depth `‖s‖ + w(p) −
 ///   a`, with the height `w` of the wave of amplitude `a` at the proxy: the hand is pushed
 ///   harder over a crest, and sideways down its slope (Minsky, "Computational haptics", 1995,
@@ -74,6 +77,9 @@ pub(crate) struct Press {
 ///   force.
 /// - An impact rings as a decaying sinusoid along the normal (Okamura, Cutkosky and
 ///   Dennerlein, "Reality-based models for vibration feedback", 2001).
+///
+/// Beside a body of another stiffness, `N` blends with that of the other, over a length at their
+/// seam, and a sideways force keeps the energy.
 ///
 /// Friction is not a force of its own: it holds the proxy back (see [`Proxy`](crate::Proxy)).
 ///
@@ -98,6 +104,8 @@ pub struct Surface {
     /// A texture of kind *displacement*.
     relief: Option<Ripples>,
     impact: Option<Ring>,
+    /// The least length of a seam with another body [m].
+    pub(crate) seam: Option<f64>,
 }
 
 impl TryFrom<&Material> for Surface {
@@ -144,6 +152,10 @@ impl Surface {
             ripples,
             relief,
             impact: material.impact.as_ref().map(Ring::new).transpose()?,
+            seam: material
+                .seam
+                .map(|seam| NumberError::check_not_negative("seam", seam, "m"))
+                .transpose()?,
         })
     }
 
@@ -212,6 +224,30 @@ impl Surface {
         Self { strata: self.strata.scaled(stiffness, damping), ..self.clone() }
     }
 
+    /// The amplitude of the texture of kind *height* [m]; `None` without one.
+    #[must_use]
+    pub fn wave_height(&self) -> Option<f64> {
+        self.ripples.as_ref().map(Ripples::height)
+    }
+
+    /// The largest lateral stiffness of the texture of kind *height* under a normal force [N/m];
+    /// `None` without such a texture.
+    ///
+    /// The lateral force is `−N w'(x)`, with the normal force `N` and the wave `w`, so the stiffness
+    /// is at most `N a (2π / λ)²`, with the amplitude `a` and the wavelength `λ`. With `N = K d` it
+    /// grows with the depth `d` of the hand. Under the largest force of a device it does not depend on
+    /// `K`: a softer body lets the hand sink in until the force is the same. So only a lower wave is
+    /// less stiff.
+    pub(crate) fn lateral_stiffness(&self, force: f64) -> Option<f64> {
+        self.ripples.as_ref().map(|ripples| force * ripples.bend())
+    }
+
+    /// This surface with `part` of the amplitude of its texture of kind *height*.
+    pub(crate) fn with_lower_waves(&self, part: f64) -> Self {
+        let ripples = self.ripples.as_ref().map(|ripples| ripples.lowered(part));
+        Self { ripples, ..self.clone() }
+    }
+
     /// The surface with its textures on a body of so many dimensions, 2 for a planar shape.
     ///
     /// # Errors
@@ -256,7 +292,7 @@ impl Surface {
         press: Press,
         mut turn: impl FnMut(Vector<f64, 3>, f64) -> Vector<f64, 3>,
     ) -> Vector<f64, 3> {
-        let Press { stretch, velocity, proxy, rate, has_dampers } = press;
+        let Press { stretch, normal: face, velocity, proxy, rate, has_dampers } = press;
         let depth = stretch.norm();
         let layer = self.strata.at(level, depth);
         let drag = if has_dampers { velocity * -layer.viscosity } else { Vector::ZERO };
@@ -282,8 +318,11 @@ impl Surface {
             slope = limited(seen.unwrap_or(along), STEEPER * along.norm()) * part;
         }
         let spring = self.strata.force(level, push);
-        let approach = if has_dampers { (-velocity.dot(normal)).max(0.0) } else { 0.0 };
-        normal * (spring + layer.damping * approach) - slope * spring + drag
+        // Without friction the stretch is along the normal, and holds also in a corner.
+        let face = if layer.friction.tilts(stretch, face) { face } else { normal };
+        let approach = if has_dampers { (-velocity.dot(face)).max(0.0) } else { 0.0 };
+        let damper = layer.damping * approach;
+        normal * (spring + damper) + (face - normal) * damper - slope * spring + drag
     }
 
     /// How the crests of the surface's height texture pass under a hand of this velocity [m/s]
@@ -322,6 +361,7 @@ impl Default for Surface {
             ripples: None,
             relief: None,
             impact: None,
+            seam: None,
         }
     }
 }

@@ -111,6 +111,19 @@ impl Ripples {
         Ok(Self { waves, ..self })
     }
 
+    /// The steepest change of the wave's slope [1/m]: `a (2π / λ)²`.
+    ///
+    /// That of a product of three waves is up to 1.09 times as large, between crest and saddle.
+    pub(crate) fn bend(&self) -> f64 {
+        let number = 2.0 * std::f64::consts::PI / self.wavelength;
+        self.amplitude * number * number
+    }
+
+    /// This wave with `part` of its amplitude.
+    pub(crate) fn lowered(&self, part: f64) -> Self {
+        Self { amplitude: part * self.amplitude, ..self.clone() }
+    }
+
     /// The amplitude of the wave [m].
     pub(crate) fn height(&self) -> f64 {
         self.amplitude

@@ -9,6 +9,7 @@ use crate::Material;
 
 use crate::error::HapticsError;
 use palpate_device::NumberError;
+use palpate_field::Vector;
 use palpate_safety::Impedance;
 
 /// The stiffness used for a layer without a spring [N/m]: too small for a hand to feel.
@@ -21,6 +22,22 @@ pub(crate) struct Friction {
     pub(crate) fixed: f64,
     /// Ratio of tangential to normal force while slipping.
     pub(crate) slipping: f64,
+}
+
+/// A stretch in the cone of friction may be beyond it by this part, from the search for the proxy.
+const CONE: f64 = 1e-3;
+
+impl Friction {
+    /// Whether friction alone explains that a stretch is not along the unit `normal` of a face. A
+    /// stretch beyond the cone of friction is held by a second face too.
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    pub(crate) fn tilts(&self, stretch: Vector<f64, 3>, normal: Vector<f64, 3>) -> bool {
+        let height = stretch.dot(normal);
+        let along = (stretch - normal * height).norm();
+        let most = self.fixed.max(self.slipping) * (1.0 + CONE) * height;
+        along < most
+    }
 }
 
 /// The condition under which a layer gives way.
@@ -188,6 +205,30 @@ impl Strata {
         self.integral(level, f64::INFINITY, depth)
     }
 
+    /// The energy that the springs store `depth` [m] below the surface [J].
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    pub(crate) fn energy(&self, depth: f64) -> f64 {
+        let (mut energy, mut above) = (0.0, &self.outermost);
+        let stored = |layer: &Stratum, below: f64| {
+            let way = below - layer.depth;
+            way * (self.force(0, layer.depth) + 0.5 * layer.stiffness * way)
+        };
+        for layer in self.deeper.iter().take_while(|layer| layer.depth < depth) {
+            energy += stored(above, layer.depth);
+            above = layer;
+        }
+        energy + stored(above, depth)
+    }
+
+    /// Whether the springs of all layers are those of `other`.
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    pub(crate) fn has_springs_of(&self, other: &Self) -> bool {
+        let springs = |layer: &Stratum| (layer.depth, layer.stiffness);
+        self.all().map(springs).eq(other.all().map(springs))
+    }
+
     /// The force of the springs over the depth, `depth` [m] below the top of layer `level` [N/m].
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
@@ -242,6 +283,9 @@ mod tests {
         }
         assert_eq!([0.1, 0.5, 1.0].map(|depth| strata.secant(0, depth)), [4.0, 10.0, 6.0]);
         assert_eq!([0.1, 0.5].map(|depth| strata.secant(1, depth)), [16.0, 9.0]);
+        for (depth, energy) in [(0.0, 0.0), (0.25, 0.125), (0.5, 0.875), (1.5, 6.875)] {
+            assert_eq!(strata.energy(depth), energy);
+        }
         // From the top of the second layer on.
         for (depth, force) in [(0.0, 0.0), (0.25, 4.0), (0.5, 4.5)] {
             assert_eq!(strata.force(1, depth), force);

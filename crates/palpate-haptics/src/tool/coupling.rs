@@ -130,14 +130,16 @@ pub(crate) struct Borne {
 
 /// A change of a pose: the origin moves, then the pose rotates about it. World axes.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Twist {
+pub(crate) struct Twist {
     /// The displacement of the origin [m].
-    pub(super) linear: Vector<f64, 3>,
+    pub(crate) linear: Vector<f64, 3>,
     /// The rotation vector [rad]; in the plane only z is used.
-    pub(super) angular: Vector<f64, 3>,
+    pub(crate) angular: Vector<f64, 3>,
 }
 
 impl Twist {
+    pub(crate) const NONE: Self = Self { linear: Vector::ZERO, angular: Vector::ZERO };
+
     /// The twist from one pose to another.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.

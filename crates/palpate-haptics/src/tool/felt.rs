@@ -205,6 +205,32 @@ impl Tool {
         device.velocity + turning - self.body_velocity(nearby, push.body, push.centre)
     }
 
+    /// How far the bodies that push the tool carry the hand in this tick: the mean of the motions that
+    /// they give to the device's pose, weighted by how much each pushes. `None` if none pushes.
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    pub(super) fn bodies_moved(&self, nearby: &Nearby<'_>) -> Option<Twist> {
+        if !self.touch.contact {
+            return None;
+        }
+        if !nearby.has_moved() {
+            return Some(Twist::NONE);
+        }
+        let pushes = &self.rest_search.rest.pushes;
+        let whole: f64 = pushes.iter().map(|push| push.push).sum();
+        let (mut linear, mut angular) = (Vector::ZERO, Vector::ZERO);
+        for push in pushes {
+            let carried =
+                nearby.body(push.body).and_then(|b| b.carried_pose(&self.touch.device));
+            let Some(carried) = carried else { continue };
+            let twist = Twist::between(&self.touch.device, &carried);
+            linear += twist.linear * (push.push / whole);
+            angular += twist.angular * (push.push / whole);
+        }
+        // Written so that NaN carries nothing.
+        (linear.is_finite() && angular.is_finite()).then_some(Twist { linear, angular })
+    }
+
     /// The velocity of a body at a place [m/s].
     fn body_velocity(
         &self,

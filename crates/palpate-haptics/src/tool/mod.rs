@@ -58,8 +58,8 @@ const LIKELY: f64 = 1.0;
 /// The least expected motion, in skins, for a tool that still moves while the device rests.
 const LIKELY_SKINS: f64 = 0.25;
 
-/// The tool rests when its next motion is below this part of the device's motion in this tick.
-/// The next tick corrects the remainder, which is zero when the hand rests.
+/// A tool outside the bodies rests when its next motion is below this part of the device's motion
+/// in this tick. The next tick corrects the remainder, which is zero when the hand rests.
 const AT_REST: f64 = 1e-3;
 
 /// The skin of points without a radius, as a part of the tool's reach. A larger skin speeds up
@@ -118,8 +118,8 @@ const MOST_EVENTS: usize = 3;
 /// - *No surface is crossed.* At any speed, no point of the evaluated shell dips deeper than
 ///   its radius, or, without a radius, than 1e-3 of the tool's reach. At rest every evaluated
 ///   ball is outside up to 1e-9 of the size of the scene.
-/// - *The tool may lag.* A tick takes at most six iterations, and stops when the next motion is
-///   below a thousandth of the device's; the next tick continues from there.
+/// - *The tool may lag.* A tick takes at most six iterations, and stops when the tool is outside
+///   and its next motion is below a thousandth of the device's; the next tick continues from there.
 /// - *With too small a budget the tool gets coarser.* The tick evaluates fewer levels of the
 ///   shell, and reports this: [`ToolTouch::points_known`], [`ToolTouch::resolution`],
 ///   [`ToolTouch::is_degraded`].
@@ -179,6 +179,8 @@ pub struct Tool {
     touch: ToolTouch,
     /// The velocity of the device relative to the body that pushes hardest [m/s].
     pub(crate) hand_velocity: Vector<f64, 3>,
+    /// How far the bodies that push the tool carry the hand in this tick.
+    pub(crate) bodies_moved: Twist,
     /// The body that the tool rests on.
     carrier: Option<u32>,
     events: FixedList<Event>,
@@ -213,6 +215,7 @@ impl Tool {
             most_of_point: MOST_OF_POINT,
             touch: ToolTouch::new(shell.points().len()),
             hand_velocity: Vector::ZERO,
+            bodies_moved: Twist::NONE,
             carrier: None,
             events: FixedList::with_capacity(MOST_EVENTS),
             tick: 0,
@@ -284,6 +287,7 @@ impl Tool {
     pub fn hover(&mut self, device: &ToolState) {
         self.events.clear();
         (self.edited, self.begins, self.is_beginning) = (None, false, false);
+        self.bodies_moved = Twist::NONE;
         self.lose_bodies();
         let was = Before::of(&self.touch);
         self.touch.lose();
@@ -318,6 +322,7 @@ impl Tool {
     pub fn step(&mut self, bodies: &mut Bodies, device: &ToolState) -> &ToolTouch {
         self.events.clear();
         (self.edited, self.begins) = (None, false);
+        self.bodies_moved = Twist::NONE;
         let (mut list, mut reactions) = bodies.take_scratch();
         reactions.fill(Reaction::NONE);
         if device.is_usable() {
@@ -357,6 +362,7 @@ impl Tool {
         if nearby.has_moved() {
             self.scan.forget();
         }
+        let held = self.bodies_moved(&nearby);
         let carry = self.carrier(&nearby, &start, &device.pose);
         let moved = Twist::between(&self.touch.device, &device.pose).way(reach);
         let moved = carry.map_or(moved, |carry| moved.max(carry.way(reach)));
@@ -387,6 +393,9 @@ impl Tool {
         let before = self.pose.unwrap_or(rest.pose);
         self.pose = Some(rest.pose);
         self.write_touch(&nearby, device, &before);
+        // Bodies that move onto the tool carry the hand from this tick on.
+        let moved = held.or_else(|| self.bodies_moved(&nearby));
+        self.bodies_moved = moved.filter(|_| !is_placed).unwrap_or(Twist::NONE);
         self.tell_edited();
         self.react(&nearby, reactions);
     }

@@ -62,7 +62,7 @@ pub(super) struct Lengths {
     pub(super) unit: f64,
     /// The largest depth of a point at rest [m].
     pub(super) tolerance: f64,
-    /// The tool rests when its next motion is shorter than this [m].
+    /// A tool outside rests when its next motion is shorter than this [m].
     pub(super) still: f64,
     /// The largest depth of a point during a motion [m].
     pub(super) skin: f64,
@@ -231,8 +231,10 @@ impl RestSearch {
             let is_free = !goes_out && found.held().next().is_none();
             let twist =
                 if is_free { wish } else { Twist::unstacked(found.motion, lengths.unit) };
+            // A tool inside goes on, however short the way out is.
+            let may_rest = is_outside && !is_free;
             // Written so that NaN rests.
-            let goes_on = twist.way(shell.reach) > if is_free { 0.0 } else { lengths.still };
+            let goes_on = twist.way(shell.reach) > if may_rest { lengths.still } else { 0.0 };
             if !goes_on || iteration + 1 == MOST_ITERATIONS {
                 break;
             }

@@ -386,6 +386,37 @@ fn a_pace_or_a_rate_that_does_not_fit_is_refused() {
     assert_eq!((servo.options().rate, servo.check_device(&slow)), (60.0, Ok(())));
 }
 
+/// A hand that goes 2 mm into a wall within 0.5 s, by a driver with a clock of its own: of ticks in a
+/// row, two had nothing new now and then. One stale tick took the force away for good.
+#[test]
+fn a_slow_driver_gets_the_force_that_its_rate_allows() {
+    for rate in [12.0, 30.0, 60.0, 90.0, 250.0, 500.0] {
+        let profile =
+            DeviceProfile { mass: 0.2, least_damping: 2.0, ..DeviceProfile::unlimited("slow") };
+        let (device, mut mailbox) = MailboxDevice::new(profile, 1).unwrap();
+        let mut device = device.with_rate(rate);
+        let mut servo = Servo::for_device(wall(), &device).unwrap();
+        let stiffness = servo.accepted()[0].device_stiffness;
+        let (mut ticks, mut least) = (0, f64::INFINITY);
+        let mut drive = |time: f64, _: &mut dyn FnMut(usize, palpate_field::Pose<3>)| {
+            let depth = (0.004 * time - 0.001).min(0.002);
+            // What the passivity controller takes on the way in comes back to a hand at rest.
+            if time > 2.0 {
+                least = least.min(mailbox.forces()[0][1] / (stiffness * 0.002));
+            }
+            if ![1, 3, 4].contains(&(ticks % 9)) {
+                let place = Vector([0.0, 0.002 - depth, 0.0]);
+                mailbox.set(&[PointState::at_rest(place)]).unwrap();
+            }
+            ticks += 1;
+        };
+        let options = RunOptions { motion: Some(&mut drive), ..fast(4.0) };
+        let report = run(&mut servo, &mut device, options).unwrap();
+        assert_eq!(report.ending, Ending::Finished, "{rate} Hz");
+        assert!((least - 1.0).abs() < 0.02, "{rate} Hz: {least} of the force");
+    }
+}
+
 fn gripping() -> SimulatedDevice {
     let profile = (DeviceProfile {
         mass: 0.1,

@@ -7,7 +7,7 @@ use crate::common::{ball, body, cuboid, half_space, torus};
 use palpate_device::PointState;
 use palpate_field::{Point, Shape, SpaceShape, Vector};
 use palpate_haptics::{
-    EventKind, Material, Probe, Servo, ServoOptions, Surface, Touch, Unprotected,
+    Bodies, Body, EventKind, Material, Probe, Servo, ServoOptions, Surface, Touch, Unprotected,
 };
 
 const STIFFNESS: f64 = 512.0;
@@ -137,4 +137,60 @@ fn along_a_crease_both_walls_hold_back() {
     let along = held.force[2] / (STIFFNESS * depth * std::f64::consts::SQRT_2);
     assert!((along + 0.25).abs() < 1e-6, "{along}");
     assert!((held.proxy[0] - radius).abs() < 1e-9 && (held.proxy[1] - radius).abs() < 1e-9);
+}
+
+/// The force of a damped and rough body in a hand that slides by `velocity` [m/s], after it has
+/// slipped for a while.
+fn dragged(bodies: Bodies, start: Point<3>, velocity: Vector<f64, 3>) -> Touch {
+    let options = ServoOptions {
+        probe: Probe::new(0.002).unwrap(),
+        max_force: f64::INFINITY,
+        rise_time: 1e-9,
+        ..ServoOptions::default()
+    };
+    let mut servo = Servo::new(bodies, 1, options).unwrap();
+    servo.step(&[PointState::at_rest(Vector([0.1, 0.1, 0.0]))]);
+    servo.step(&[PointState::at_rest(start)]);
+    for tick in 1..=200 {
+        let position = start + velocity * (1e-3 * f64::from(tick));
+        servo.step(&[PointState { position, velocity }]);
+    }
+    servo.touches()[0]
+}
+
+fn rubber() -> Surface {
+    let (static_friction, dynamic_friction) = (0.9, 0.75);
+    let rubber = Material { static_friction, dynamic_friction, ..Material::default() };
+    Surface::new(&Material { stiffness: 300.0, damping: 2.0, ..rubber }).unwrap()
+}
+
+/// Once the damper acted along the stretch, which friction tilts: 0.55 N at 0.2 mm and 0.5 m/s.
+#[test]
+fn a_slide_at_a_constant_depth_feels_no_damper() {
+    let floor = || body(half_space([0.0, 1.0, 0.0], 0.0), rubber());
+    let start = Vector([0.0, 0.0018, 0.0]);
+    for speed in [0.01, 0.1, 0.5] {
+        let force = dragged(floor(), start, Vector([speed, 0.0, 0.0])).force;
+        // K d, and the friction of a slip times that.
+        let expected = Vector([-0.75, 1.0, 0.0]) * 0.06;
+        assert!((force - expected).norm() < 1e-6, "{speed} m/s: {force:?}");
+    }
+    // The damper takes the speed towards the surface, and pushes along its normal.
+    let slow = Vector([0.5, -0.001, 0.0]);
+    let touch = dragged(floor(), start, slow);
+    let depth = 0.002 - touch.device[1];
+    let expected = Vector([-0.75, 1.0, 0.0]) * (300.0 * depth) + Vector([0.0, 0.002, 0.0]);
+    assert!((touch.force - expected).norm() < 1e-6, "{:?}", touch.force);
+}
+
+#[test]
+fn a_slide_along_a_crease_of_two_bodies_feels_no_damper() {
+    let normals = [[0.0, 1.0, 0.0], [1.0, 0.0, 0.0]];
+    let walls = normals.map(|normal| Body::new(half_space(normal, 0.0), rubber()).unwrap());
+    let start = Vector([0.0018, 0.0018, 0.0]);
+    let walls = Bodies::new(walls.into()).unwrap();
+    let force = dragged(walls, start, Vector([0.0, 0.0, 0.5])).force;
+    // Friction holds 0.75 of the press of both walls together.
+    let expected = Vector([0.06, 0.06, -0.75 * 0.06 * std::f64::consts::SQRT_2]);
+    assert!((force - expected).norm() < 1e-5, "{force:?}");
 }

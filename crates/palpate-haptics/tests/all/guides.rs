@@ -4,8 +4,9 @@
 //! Guides: laws of their forces, exact forces, and wrong numbers.
 
 use arbitrary::Unstructured;
+use palpate_device::PointState;
 use palpate_field::{Aabb, Point, Shape, Vector, kernel::Ball};
-use palpate_haptics::{Curve, Guide, GuideOptions, Slope};
+use palpate_haptics::{Curve, Guide, GuideOptions, Servo, ServoOptions, Slope};
 use palpate_testkit::cases::each as cases;
 
 type Random<'a, 'b> = &'a mut Unstructured<'b>;
@@ -238,4 +239,26 @@ fn points_curves_and_wells_are_drawn_where_they_are() {
     let centre = Vector([0.1, 0.2, 0.3]);
     let is_on = |p: &Point<3>| ((*p - centre).norm() - 0.05).abs() < 1e-15;
     assert!(circles.iter().flatten().all(is_on));
+}
+
+/// A guide of 300 N/m that snaps at 10 mm once gave 3 N in one tick.
+#[test]
+fn a_guide_that_snaps_rises_over_20_ms() {
+    let mut servo =
+        Servo::new(Shape::sphere(0.05).unwrap(), 1, ServoOptions::default()).unwrap();
+    let options =
+        GuideOptions { snap_distance: 0.01, max_force: 5.0, ..GuideOptions::default() };
+    servo.guide(&[Guide::to_point([0.0, 0.1, 0.0], options).unwrap()]);
+    let mut step = |height| {
+        let hand = PointState::at_rest(Vector([0.0, 0.1 + height, 0.0]));
+        -servo.step(&[hand])[0].force[1]
+    };
+    assert_eq!(step(0.02), 0.0);
+    // 3 N at 10 mm, in twenty steps; then all of it at once.
+    for tick in 1..=25 {
+        let expected = 3.0 * (f64::from(tick) / 20.0).min(1.0);
+        assert!((step(0.01) - expected).abs() < 1e-12, "tick {tick}");
+    }
+    assert_eq!(step(0.011), 0.0);
+    assert!((step(0.008) - 0.12).abs() < 1e-12);
 }

@@ -89,9 +89,8 @@ fn a_point_that_is_led_out_is_felt() {
 #[test]
 fn guides_tell_their_time_force_and_work() {
     let options = GuideOptions { stiffness: 100.0, damping: 0.0, ..GuideOptions::default() };
-    let near = GuideOptions { snap_distance: 0.0105, ..options };
     let guides = [
-        Guide::on_plane([0.0, 1.0, 0.0], [0.0, 1.0, 0.0], near).unwrap(),
+        Guide::on_plane([0.0, 1.0, 0.0], [0.0, 1.0, 0.0], options).unwrap(),
         Guide::to_point([0.0, -5.0, 0.0], GuideOptions { snap_distance: 0.01, ..options })
             .unwrap(),
     ];

@@ -16,8 +16,8 @@ use palpate_haptics::servo_loop::{
     Ending, Pace, Recorder, RunOptions, ServoThread, ThreadOptions, VirtualClock, run,
 };
 use palpate_haptics::{
-    Bodies, HapticsError, Material, Protection, Servo, ServoOptions, Shell, Surface, Tool,
-    ToolOptions, Unprotected,
+    Bodies, HapticsError, HeldTool, Material, Protection, Servo, ServoOptions, Shell, Surface,
+    Tool, ToolOptions, Unprotected,
 };
 use palpate_safety::{Acceptance, Accepted, Rule, SafetyError, WorkspaceMap};
 use palpate_sim::{HandPath, Interpolation, RecordedDevice};
@@ -373,6 +373,34 @@ fn dampers_of_bodies_turn_the_hand_no_harder_than_the_device_bears() {
     servo.step(&[state]);
     let damped = servo.torque() - still;
     assert!(damped[2] > 0.5e-4 && damped[2] <= 1.001e-4, "{damped:?}");
+}
+
+/// What was written was told as at the device, beside what was wanted, as in the world.
+#[test]
+fn the_torques_of_a_report_are_those_of_the_trace() {
+    let turning = TurningProfile { max_torque: 0.1, ..TurningProfile::unlimited() };
+    let mut device = RecordedDevice::new(vec![resting(0.005)]).unwrap().with_turns(swing());
+    device = device.with_profile(self::device(turning));
+    let map = WorkspaceMap::new(Pose::identity(), 0.5).unwrap();
+    let protection = Protection::new(device.profile().clone()).with_map(map);
+    let mut servo = servo::<3>(rigid(), coupling()).protected(&protection).unwrap();
+    let mut recorder = Recorder::new(1001);
+    let options = RunOptions {
+        pace: Pace::AsFastAsPossible,
+        recorder: Some(&mut recorder),
+        ..RunOptions::new(1.001)
+    };
+    let report = run(&mut servo, &mut device, options).unwrap();
+    let largest = |of: fn(&HeldTool) -> Vector<f64, 3>| {
+        let tools = recorder.rows().iter().filter_map(|row| row.tool);
+        tools.map(|tool| of(&tool).norm()).fold(0.0, f64::max)
+    };
+    let tool = report.tool.unwrap();
+    assert_eq!(tool.largest_torque, largest(|tool| tool.torque));
+    assert_eq!(tool.largest_torque_written, Some(largest(|tool| tool.given.unwrap())));
+    let at_device = report.safety[0].turning.as_ref().unwrap().largest_torque;
+    assert!(at_device > 0.01, "{at_device}");
+    assert!((tool.largest_torque_written.unwrap() - 0.5 * at_device).abs() < 1e-12);
 }
 
 fn resting(height: f64) -> HandPath {

@@ -74,6 +74,8 @@ pub struct BuiltTool<const D: usize> {
     /// The coupling of a tool with a shape, and the largest force on the hand, which the scene may
     /// leave to the device.
     pub options: ToolOptions,
+    /// The largest power of bodies that move on the hand, if the scene says so [W].
+    pub drive_power: Option<f64>,
     /// What a device renders of materials, if the scene says so.
     pub acceptance: Option<Acceptance>,
     /// What shakes each contact point, if the scene says so.
@@ -89,6 +91,7 @@ impl<const D: usize> BuiltTool<D> {
             points: Vec::new(),
             shape: None,
             options: ToolOptions::default(),
+            drive_power: None,
             acceptance: None,
             actuator: None,
         }
@@ -256,6 +259,7 @@ where
         points: points.collect::<Result<_, Problem>>()?,
         shape,
         options: tool.options(),
+        drive_power: tool.drive_power,
         acceptance: tool.acceptance.map(Into::into),
         actuator: tool.actuator()?,
     }))

@@ -398,7 +398,17 @@ fn bad_shapes_are_refused_with_their_place() {
             ),
             (
                 r#"{ "rotation": [[1, 0, 0], [0, 1, 0], [0, 0, 2]], "of": { "ball": { "radius": 1 } } }"#,
-                "shapes.a.rotation, line 4: rotation must be an orthonormal matrix, got 2",
+                "shapes.a.rotation, line 4: rotation must be an orthonormal matrix: the length of row 3 must be 1 within 1e-6, got 2",
+                Accepts,
+            ),
+            (
+                r#"{ "rotation": [[1, 0, 0], [0.6, 0.8, 0], [0, 0, 1]], "of": { "ball": { "radius": 1 } } }"#,
+                "shapes.a.rotation, line 4: rotation must be an orthonormal matrix: the product of rows 1 and 2 must be 0 within 1e-6, got 0.6",
+                Accepts,
+            ),
+            (
+                r#"{ "rotation": [[1, 0, 0], [0, 1, 0], [0, 0, -1]], "of": { "ball": { "radius": 1 } } }"#,
+                "shapes.a.rotation, line 4: rotation must not mirror: the matrix is a reflection, with determinant -1; palpate is right-handed, so mirror one axis of a left-handed frame before, for instance in the device's driver",
                 Accepts,
             ),
             (

@@ -112,6 +112,11 @@ fn bad_bodies_tools_motions_and_views_are_refused_with_their_place() {
                 Refuses,
             ),
             (
+                r#""bodies": [{ "name": "b", "shape": "x", "material": { "seam": -0.01 } }]"#,
+                "bodies[0].material.seam, line 2: seam must be zero or more, got -0.01 m",
+                Refuses,
+            ),
+            (
                 r#""bodies": [{ "name": "b", "shape": "x", "material": { "static_friction": 0.2 } }]"#,
                 "bodies[0].material.dynamic_friction, line 2: dynamic_friction must be at most the static friction 0.2, got 0.3",
                 Accepts,

@@ -259,6 +259,7 @@ impl Generator {
         tool.coupling = maybe(u, coupling)?;
         tool.workspace = maybe(u, |u| workspace(u, d))?;
         tool.max_force = maybe(u, length)?;
+        tool.drive_power = maybe(u, length)?;
         tool.actuator = maybe(u, |u| Ok(u.choose(&["erm", "lra"])?.to_string()))?;
         Ok(tool)
     }
@@ -421,6 +422,7 @@ fn material(u: Random, d: usize) -> Result<Material> {
                 decay: length(u)?,
             })
         })?,
+        seam: maybe(u, length)?,
     })
 }
 

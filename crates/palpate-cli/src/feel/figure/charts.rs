@@ -105,8 +105,8 @@ fn levels(times: &[f64], actuators: &[&[Tones]], color: Color) -> Result<Chart, 
     Ok(chart)
 }
 
-/// The torque of a tool over time, and the torque written to a device with rotation. `None` for
-/// contact points.
+/// The torque of a tool over time, and the torque written to a device with rotation, both in the
+/// world. `None` for contact points.
 pub(super) fn torques(rows: &[TraceRow]) -> Result<Option<Chart>, PlotError> {
     let every = every(rows.len());
     let of = |torque: fn(&HeldTool) -> Option<Vector<f64, 3>>| {
@@ -119,7 +119,8 @@ pub(super) fn torques(rows: &[TraceRow]) -> Result<Option<Chart>, PlotError> {
     if wanted.is_empty() {
         return Ok(None);
     }
-    let chart = over_time("torque", "mN·m").with_series(Series::new("torque", wanted)?);
+    let chart =
+        over_time("torque in the world", "mN·m").with_series(Series::new("torque", wanted)?);
     Ok(Some(if given.is_empty() {
         chart
     } else {

@@ -1,0 +1,252 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! Bodies that are moved from outside, under a hand on a simulated device.
+
+use std::collections::VecDeque;
+
+use palpate_device::{Device, DeviceProfile, PointState, profile_named};
+use palpate_field::{Pose, Vector};
+use palpate_haptics::{
+    Bodies, Body, Material, Probe, Protection, Servo, ServoOptions, Surface,
+};
+use palpate_safety::SafetyReport;
+use palpate_sim::{Hand, HandPath, Interpolation, SimulatedDevice};
+
+use crate::common::{cases, cuboid};
+
+const PERIOD: f64 = 1e-3;
+
+/// A plate whose top is at the height zero, under a hand of 300 N/m.
+struct Plate {
+    servo: Servo,
+    device: SimulatedDevice,
+    /// The forces that the device has not yet received.
+    delayed: VecDeque<Vector<f64, 3>>,
+    /// The height of the plate at a time [s].
+    height: fn(f64) -> f64,
+    tick: u32,
+}
+
+/// A tick of a hand on a plate.
+#[derive(Clone, Copy, Debug)]
+struct Felt {
+    wanted: f64,
+    force: f64,
+    /// How far the hand and the plate moved relative to each other [m].
+    relative: f64,
+}
+
+impl Plate {
+    /// Under a hand that goes down to `depth` [m] within 0.6 s.
+    fn new(
+        material: &Material,
+        profile: &DeviceProfile,
+        depth: f64,
+        height: fn(f64) -> f64,
+    ) -> Self {
+        let body =
+            Body::new(cuboid([0.2, 0.02, 0.2]), Surface::new(material).unwrap()).unwrap();
+        let body = body.at(at(height(0.0))).unwrap();
+        let options = ServoOptions {
+            probe: Probe::new(0.002).unwrap(),
+            max_force: f64::INFINITY,
+            ..ServoOptions::default()
+        };
+        let servo = Servo::new(Bodies::new(vec![body]).unwrap(), 1, options).unwrap();
+        let servo = servo.protected(&Protection::new(profile.clone())).unwrap();
+        let end = [0.0, 0.002 - depth, 0.0];
+        let hand = Hand::new(path(&[(0.0, [0.0, 0.02, 0.0]), (0.6, end), (60.0, end)]));
+        let device = SimulatedDevice::new(profile.clone(), vec![hand]);
+        Self { servo, device: device.unwrap(), delayed: VecDeque::new(), height, tick: 0 }
+    }
+
+    /// The same with another plant, whose forces come so many ticks late.
+    fn on(self, plant: &DeviceProfile, hand: Hand, delay: usize) -> Self {
+        let device = SimulatedDevice::new(plant.clone(), vec![hand]).unwrap();
+        Self { device, delayed: vec![Vector::ZERO; delay].into(), ..self }
+    }
+
+    fn step(&mut self) -> Felt {
+        let mut points = [PointState::at_rest(Vector::ZERO)];
+        let time = f64::from(self.tick) * PERIOD;
+        self.device.read(time, &mut points).unwrap();
+        let before = self.servo.touches()[0].device[1];
+        self.servo.set_pose(0, at((self.height)(time)));
+        let touch = self.servo.step(&points)[0];
+        self.delayed.push_back(touch.force);
+        self.device.write(&[self.delayed.pop_front().unwrap()]).unwrap();
+        self.tick += 1;
+        let moved = (self.height)(time) - (self.height)(time - PERIOD);
+        let relative = touch.device[1] - before - moved;
+        Felt { wanted: touch.wanted[1], force: touch.force[1], relative }
+    }
+
+    fn run(&mut self, seconds: f64) -> Vec<Felt> {
+        (0..(seconds / PERIOD) as u32).map(|_| self.step()).collect()
+    }
+
+    fn report(&self) -> SafetyReport {
+        self.servo.safety().remove(0)
+    }
+}
+
+/// The path through these places [m] at these times [s].
+fn path(samples: &[(f64, [f64; 3])]) -> HandPath {
+    let (times, places) = samples.iter().map(|(time, place)| (*time, Vector(*place))).unzip();
+    HandPath::new(times, places, Interpolation::Monotone).unwrap()
+}
+
+fn at(height: f64) -> Pose<3> {
+    Pose::translation(Vector([0.0, height - 0.01, 0.0]))
+}
+
+fn hard() -> Material {
+    Material {
+        stiffness: 1000.0,
+        damping: 1.0,
+        static_friction: 0.4,
+        dynamic_friction: 0.3,
+        ..Material::default()
+    }
+}
+
+fn omega() -> DeviceProfile {
+    profile_named("omega").unwrap()
+}
+
+/// The largest step of the force [N] beyond the stiffness times the relative motion.
+fn largest_step(felt: &[Felt], stiffness: f64) -> f64 {
+    felt.windows(2).fold(0.0, |most, pair| {
+        let step = (pair[1].force - pair[0].force).abs();
+        f64::max(most, step - stiffness * pair[1].relative.abs())
+    })
+}
+
+fn mean(felt: &[Felt], of: fn(&Felt) -> f64) -> f64 {
+    felt.iter().map(of).sum::<f64>() / felt.len() as f64
+}
+
+/// The root mean square of what is left of the force beside its mean over 40 ticks [N].
+fn ripple(felt: &[Felt]) -> f64 {
+    let rest: Vec<_> =
+        felt.windows(41).map(|near| near[20].force - mean(near, |f| f.force)).collect();
+    (rest.iter().map(|rest| rest * rest).sum::<f64>() / rest.len() as f64).sqrt()
+}
+
+/// A linear motion to and fro over `way` [m] that takes `duration` [s] each way and begins after 1 s.
+fn to_and_fro(time: f64, way: f64, duration: f64) -> f64 {
+    let part = ((time - 1.0).max(0.0) / duration).rem_euclid(2.0);
+    way * part.min(2.0 - part)
+}
+
+/// A plate at 4 mm/s once buzzed by 0.38 N, and gave half of the force.
+#[test]
+fn a_plate_that_moves_slowly_does_not_buzz() {
+    let mut plate = Plate::new(&hard(), &omega(), 0.006, |time| to_and_fro(time, 0.004, 1.0));
+    plate.run(2.0);
+    let felt = plate.run(4.0);
+    let (wanted, force) = (mean(&felt, |f| f.wanted), mean(&felt, |f| f.force));
+    assert!(wanted > 1.5 && force >= 0.95 * wanted, "{force} of {wanted} N");
+    assert!(ripple(&felt) <= 0.03, "{} N", ripple(&felt));
+    assert!(largest_step(&felt, 1000.0) <= 0.3);
+}
+
+/// A lift at 10 mm/s once gave 3 N of 14 N, and let the hand sink to 14 mm.
+#[test]
+fn a_lift_carries_the_hand() {
+    for name in ["omega", "falcon"] {
+        let profile = profile_named(name).unwrap();
+        let mut plate =
+            Plate::new(&hard(), &profile, 0.014, |time| to_and_fro(time, 0.02, 2.0) - 0.02);
+        plate.run(1.5);
+        let felt = plate.run(4.5);
+        let most = felt.iter().map(|f| f.wanted).fold(0.0, f64::max);
+        assert!(most > 3.3, "{most}");
+        for (tick, f) in felt.iter().enumerate() {
+            assert!(f.force >= 0.95 * f.wanted, "{name}: {f:?} at {tick}");
+        }
+        let step = largest_step(&felt, 1000.0);
+        assert!(step <= 0.3, "{name}: {step} N");
+        let report = plate.report();
+        let acted = (report.limit_cycles.found, report.passivity.cuts);
+        assert_eq!(acted, (0, 0), "{name}: {report:?}");
+        assert!(report.drives.driven.abs() > 0.001, "{name}: {:?}", report.drives);
+    }
+}
+
+/// A wall at 50 mm/s once gave 3 N of 22 N.
+#[test]
+fn a_wall_pushes_the_hand_along() {
+    let mut plate =
+        Plate::new(&hard(), &omega(), 0.004, |time| 0.05 * (time - 1.0).clamp(0.0, 0.5));
+    plate.run(0.9);
+    let felt = plate.run(1.0);
+    assert!(felt.iter().any(|f| f.wanted > 5.0));
+    let limit = omega().max_force;
+    for (tick, f) in felt.iter().enumerate() {
+        assert!(f.force >= 0.95 * f.wanted.min(limit), "{f:?} at {tick}");
+    }
+    assert!(largest_step(&felt, 1000.0) <= 0.3);
+    assert_eq!(plate.report().limit_cycles.found, 0);
+}
+
+/// A hand of 3000 N/m would be moved with 4 N at 0.5 m/s: 2 W.
+#[test]
+fn a_drive_gives_at_most_its_power() {
+    let undamped = Material { damping: 0.0, ..hard() };
+    let mut plate =
+        Plate::new(&undamped, &omega(), 0.003, |time| 0.5 * (time - 1.0).clamp(0.0, 0.1));
+    plate.run(1.0);
+    let felt = plate.run(0.1);
+    for (tick, f) in felt.iter().enumerate().skip(40) {
+        assert!(f.force * 0.5 <= 1.0 + 1e-9, "{f:?} at {tick}");
+    }
+    let step = largest_step(&felt, 1000.0);
+    assert!(step <= 0.3 + 1e-12, "{step} N");
+    let drives = plate.report().drives;
+    assert!(drives.effect.ticks > 40 && drives.effect.largest > 1.0, "{drives:?}");
+}
+
+/// On plants that differ from their profile: with other mass, damping and friction, with delays, and in
+/// a loose or firm grip.
+#[test]
+fn no_plant_gets_more_energy_than_the_report_allows() {
+    cases(400, |u| {
+        let names = ["touch", "omni", "desktop", "falcon", "omega", "sigma", "delta"];
+        let name = *u.choose(&names)?;
+        let profile = profile_named(name).unwrap();
+        let mut factor = |most| Ok(0.1 * f64::from(u.int_in_range(1..=most)?));
+        let stiffness = 500.0 * factor(80)?;
+        let plant = DeviceProfile {
+            mass: profile.mass * factor(30)?,
+            least_damping: profile.least_damping * factor(30)?,
+            friction: profile.friction * factor(30)?,
+            ..profile.clone()
+        };
+        let (delay, grip) = (u.int_in_range(0..=2)?, f64::from(u.int_in_range(0..=10)?));
+        let heights: [fn(f64) -> f64; 4] = [
+            |time| to_and_fro(time, 0.004, 1.0),
+            |time| to_and_fro(time, 0.02, 0.4),
+            |time| 0.002 * (40.0 * (time - 1.0).max(0.0)).sin(),
+            |_| 0.0,
+        ];
+        let height = *u.choose(&heights)?;
+        let material = Material { stiffness, ..hard() };
+        let path = path(&[
+            (0.0, [0.0, 0.02, 0.0]),
+            (0.6, [0.0, -0.004, 0.0]),
+            (2.5, [0.01, -0.004, 0.0]),
+            (3.0, [0.01, 0.03, 0.0]),
+        ]);
+        let hand = Hand::new(path).with_spring(300.0, grip).unwrap();
+        let mut plate = Plate::new(&material, &profile, 0.006, height).on(&plant, hand, delay);
+        for _ in 0..3200 {
+            plate.step();
+            let seen = plate.servo.safety().remove(0).passivity;
+            let given = seen.energy_out - seen.energy_in;
+            assert!(given <= seen.most_given(1e-4) + 1e-12, "{name}: {seen:?}");
+        }
+        Ok(())
+    });
+}
