@@ -8,7 +8,7 @@
 use palpate_device::{PointState, limited, shortening};
 use palpate_field::{Point, Vector};
 use palpate_query::constraints::CAPACITY;
-use palpate_safety::{Approach, Arrival, BodyMotion, Change, PortState, WorkspaceMap};
+use palpate_safety::{Approach, Arrival, Change, MovingBodies, PortState, WorkspaceMap};
 
 use crate::bodies::Body;
 use crate::crease::{Crease, Place, Shared};
@@ -684,9 +684,9 @@ impl ContactPoint {
                 start,
                 change,
                 stiffness,
-                bodies: BodyMotion {
+                bodies: MovingBodies {
                     driven: map.velocity_to_device(carried),
-                    ..BodyMotion::default()
+                    ..MovingBodies::default()
                 },
             };
             let force = port.write(wanted, options.max_force, &state);

@@ -15,7 +15,7 @@ use crate::ports::{Port, TurningPort};
 use crate::proxy::Edited;
 use crate::tool::{Coupling, HeldTool, Tool, ToolState};
 use palpate_device::{PointState, TurnState, limited};
-use palpate_safety::{BodyMotion, Change, SpatialVector, WrenchChain, WrenchState};
+use palpate_safety::{Change, MovingBodies, SpatialVector, WrenchChain, WrenchState};
 
 /// The two sides of a tool: the contact point that holds it, and the bodies that stop it.
 pub(crate) struct Sides<'a> {
@@ -190,12 +190,12 @@ impl CoupledTool {
                 start,
                 change,
                 stiffness,
-                bodies: BodyMotion {
+                bodies: MovingBodies {
                     driven: SpatialVector {
                         along: map.velocity_to_device(moved.linear),
                         about: map.spin_to_device(moved.angular),
                     },
-                    ..BodyMotion::default()
+                    ..MovingBodies::default()
                 },
             };
             let wanted = SpatialVector { along: force, about: torque };

@@ -11,7 +11,7 @@ use palpate_field::{Point, Vector};
 use crate::acceptance::Accepted;
 use crate::approach::Change;
 use crate::channel::{Channel, Given, Risen, TickInput};
-use crate::drive::{BodyMotion, Drive, DriveReport};
+use crate::drive::{Drive, DriveReport, MovingBodies};
 use crate::effect::Effect;
 use crate::error::SafetyError;
 use crate::finite;
@@ -55,7 +55,7 @@ pub struct PortState {
     /// counts if this is more, or infinite.
     pub stiffness: f64,
     /// How the bodies that push the hand moved since the tick before.
-    pub bodies: BodyMotion<Vector<f64, 3>>,
+    pub bodies: MovingBodies<Vector<f64, 3>>,
 }
 
 impl PortState {
@@ -72,7 +72,7 @@ impl PortState {
             start: 1.0,
             change: Change::None,
             stiffness: f64::INFINITY,
-            bodies: BodyMotion::NONE,
+            bodies: MovingBodies::NONE,
         }
     }
 }
@@ -306,7 +306,7 @@ impl SafetyChain {
         let elapsed = finite::elapsed(elapsed, self.period() + late.max(0.0));
         let options = self.passivity.options();
         let stiffness = options.stiffness_of(stiffness);
-        let bodies = if is_sound { bodies } else { BodyMotion::NONE };
+        let bodies = if is_sound { bodies } else { MovingBodies::NONE };
         let frame = self.drive.enter(&bodies);
         let in_frame = position - frame.origin;
         let forces = ForcesOf { bodies: wanted, guides: rising };

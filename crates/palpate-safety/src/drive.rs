@@ -16,7 +16,7 @@ use crate::passivity::{InnerProduct, STEP};
 /// The motion of a body is that of its material point at the hand [m]. Where several bodies push, it is
 /// the mean of theirs, weighted by the sizes of their forces. A body that stands still moves by zero.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct BodyMotion<V> {
+pub struct MovingBodies<V> {
     /// The share that is moved from outside, as by a scene's motions: its work is that of a drive.
     pub driven: V,
     /// The share that moves by physics: its work must be covered by `credit`.
@@ -25,7 +25,7 @@ pub struct BodyMotion<V> {
     pub credit: f64,
 }
 
-impl<V: InnerProduct> BodyMotion<V> {
+impl<V: InnerProduct> MovingBodies<V> {
     /// Bodies that stand still.
     pub(crate) const NONE: Self = Self { driven: V::ZERO, dynamic: V::ZERO, credit: 0.0 };
 
@@ -39,7 +39,7 @@ impl<V: InnerProduct> BodyMotion<V> {
     }
 }
 
-impl<V: InnerProduct> Default for BodyMotion<V> {
+impl<V: InnerProduct> Default for MovingBodies<V> {
     fn default() -> Self {
         Self::NONE
     }
@@ -104,7 +104,7 @@ impl<V: InnerProduct> Drive<V> {
     /// Counts the work of the force that was held over this tick, and moves the frame along.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
-    pub(crate) fn enter(&mut self, motion: &BodyMotion<V>) -> Frame<V> {
+    pub(crate) fn enter(&mut self, motion: &MovingBodies<V>) -> Frame<V> {
         let dynamic = self.written.dot(motion.dynamic);
         self.report.driven += self.written.dot(motion.driven);
         self.report.dynamic += dynamic;
@@ -117,7 +117,7 @@ impl<V: InnerProduct> Drive<V> {
     /// [s].
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
-    pub(crate) fn limit(&mut self, wanted: V, motion: &BodyMotion<V>, elapsed: f64) -> V {
+    pub(crate) fn limit(&mut self, wanted: V, motion: &MovingBodies<V>, elapsed: f64) -> V {
         let power = wanted.dot(motion.driven) / elapsed;
         // Written so that NaN is not above the limit: the guard zeroes the force.
         let is_above = power > self.max_power;
@@ -159,8 +159,8 @@ mod tests {
 
     const PERIOD: f64 = 1.0 / 1024.0;
 
-    fn driven(way: f64) -> BodyMotion<Vector<f64, 3>> {
-        BodyMotion { driven: Vector([0.0, way, 0.0]), ..BodyMotion::NONE }
+    fn driven(way: f64) -> MovingBodies<Vector<f64, 3>> {
+        MovingBodies { driven: Vector([0.0, way, 0.0]), ..MovingBodies::NONE }
     }
 
     fn up(force: f64) -> Vector<f64, 3> {
@@ -194,11 +194,11 @@ mod tests {
         let mut drive = Drive::new(1.0);
         drive.written(up(2.0));
         let (way, credit) = (up(0.25), 0.125);
-        let frame = drive.enter(&BodyMotion { driven: up(0.5), dynamic: way, credit });
+        let frame = drive.enter(&MovingBodies { driven: up(0.5), dynamic: way, credit });
         assert_eq!((frame.origin, frame.way, frame.owed), (up(0.75), up(0.75), 0.375));
         let report = drive.report();
         assert_eq!((report.driven, report.dynamic), (1.0, 0.5));
-        let frame = drive.enter(&BodyMotion::NONE);
+        let frame = drive.enter(&MovingBodies::NONE);
         assert_eq!((frame.origin, frame.way, frame.owed), (up(0.75), up(0.0), 0.0));
     }
 

@@ -45,7 +45,7 @@ mod wrench;
 pub use acceptance::{AS_IS_MOST, Acceptance, Accepted, Rule};
 pub use approach::{Approach, Change, Recovery, check_bears};
 pub use chain::{PortState, SafetyChain, SafetyOptions, StageTicks};
-pub use drive::{BodyMotion, DriveReport};
+pub use drive::{DriveReport, MovingBodies};
 pub use effect::Effect;
 pub use error::SafetyError;
 pub use free_energy::FreeForceReport;

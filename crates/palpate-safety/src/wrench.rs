@@ -13,7 +13,7 @@ use palpate_field::Vector;
 
 use crate::chain::BeforeLimits;
 use crate::channel::{Channel, Given, Risen, TickInput};
-use crate::drive::{BodyMotion, Drive, DriveReport};
+use crate::drive::{Drive, DriveReport, MovingBodies};
 use crate::error::SafetyError;
 use crate::free_energy::{FreeEnergy, FreeEnergyOptions, FreeInput, Passed};
 use crate::limit::{Cut, Wanted, cut};
@@ -43,7 +43,7 @@ impl SpatialVector {
     }
 }
 
-impl BodyMotion<SpatialVector> {
+impl MovingBodies<SpatialVector> {
     /// The motion with its rotational part multiplied by `factor`.
     fn turning(self, factor: f64) -> Self {
         let (driven, dynamic) = (self.driven.turning(factor), self.dynamic.turning(factor));
@@ -111,7 +111,7 @@ pub struct WrenchState {
     /// As [`PortState::stiffness`](crate::PortState::stiffness), with an angle as a length.
     pub stiffness: f64,
     /// As [`PortState::bodies`](crate::PortState::bodies), with the bodies' rotation [rad].
-    pub bodies: BodyMotion<SpatialVector>,
+    pub bodies: MovingBodies<SpatialVector>,
 }
 
 /// The safety chain of a device with rotation: [`SafetyChain`](crate::SafetyChain) for a force
@@ -316,7 +316,7 @@ impl WrenchChain {
         let as_lengths = wanted.turning(1.0 / unit);
         let free = SpatialVector { along: free_force * rise, about: Vector::ZERO };
         let stiffness = options.stiffness_of(stiffness);
-        let bodies = if is_sound { bodies.turning(unit) } else { BodyMotion::NONE };
+        let bodies = if is_sound { bodies.turning(unit) } else { MovingBodies::NONE };
         let frame = self.drive.enter(&bodies);
         let in_frame = position - frame.origin;
         let forces = ForcesOf { bodies: as_lengths, guides: free };
