@@ -46,7 +46,7 @@ pub struct HandoffOptions {
 }
 
 /// Faster than a hand follows, slower than a body that is put somewhere else between two frames [m/s].
-const LARGEST_SPEED: f64 = 2.0;
+pub(crate) const LARGEST_SPEED: f64 = 2.0;
 
 impl Default for HandoffOptions {
     /// 4096 events, 1024 bodies, 2 m/s.
