@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! The project's own chores: `cargo xtask test`, `python`, `check`, `api`, `lines` and `oracle`.
+//! The project's own chores: `cargo xtask test`, `python`, `check`, `renew`, `api`, `lines` and `oracle`.
 
 mod api;
 mod builds;

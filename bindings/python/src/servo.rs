@@ -3,6 +3,8 @@
 
 //! Touch: a servo in a thread of its own, which never waits for Python, and runs on a virtual clock.
 
+use std::time::Duration;
+
 use palpate::field::Pose;
 use palpate::scene::{AnyScene, BuiltScene, ServoSettings};
 use palpate::servo_loop::{Ending, Pace, Recorder, RunOptions, ThreadOptions, run};
@@ -190,15 +192,22 @@ impl PyServo {
         wait.call1((slf, timeout))?.extract()
     }
 
-    /// Moves bodies: a dict of their names and poses, as of `Shape.placed`.
+    /// Moves bodies to new poses over a time: a dict of their names and poses, as of `Shape.placed`, and `over` [s].
     ///
-    /// Raises `KeyError` if a name is that of no body, `ValueError` if a pose has another shape or is not finite,
-    /// `RuntimeError` unless the servo runs.
+    /// A physics engine that sets poses at 60 Hz passes `over=1/60`: bodies then move smoothly, and arrive one call
+    /// late. A body that would move a contact point faster than 2 m/s jumps instead: the force rises from what it was.
+    ///
+    /// Raises `KeyError` if a name is that of no body, `ValueError` if a pose has another shape or is not finite, or
+    /// `over` is negative or not finite, `RuntimeError` unless the servo runs.
     ///
     /// >>> import palpate as pp
     /// >>> with pp.Servo(pp.Scene({"ball": pp.ball(0.05)}), hand=[0, 0.1, 0]) as servo:
     /// ...     servo.set_poses({"ball": [0, 0.01, 0]})
-    fn set_poses(&self, poses: &Bound<'_, PyDict>) -> PyResult<()> {
+    #[pyo3(signature = (poses, over = 0.0))]
+    fn set_poses(&self, poses: &Bound<'_, PyDict>, over: f64) -> PyResult<()> {
+        let over = Duration::try_from_secs_f64(over).map_err(|_| {
+            PyValueError::new_err(format!("over must be zero or more and finite, got {over} s"))
+        })?;
         let numbered: Vec<(String, usize)> = self.names.iter().cloned().zip(0..).collect();
         let all = if self.dimension == 2 {
             let all = poses::named::<_, Pose<2>>(poses, &numbered)?.into_iter();
@@ -206,7 +215,7 @@ impl PyServo {
         } else {
             poses::named(poses, &numbered)?
         };
-        let done = self.servo.running(|own| own.thread.control().set_poses(&all))?;
+        let done = self.servo.running(|own| own.thread.control().set_poses(&all, over))?;
         done.or_raise(poses.py())
     }
 

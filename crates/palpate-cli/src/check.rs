@@ -115,6 +115,34 @@ pub(crate) struct Answer {
     pub(crate) bodies: Vec<Body>,
     /// The meshes and volumes.
     pub(crate) meshes: Vec<Mesh>,
+    /// The moments at which motions put a body somewhere else at once.
+    pub(crate) jumps: Vec<Jump>,
+}
+
+/// A moment at which a motion puts a body somewhere else at once.
+#[derive(Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub(crate) struct Jump {
+    /// The name of the body.
+    pub(crate) body: String,
+    /// When it jumps first [s].
+    pub(crate) time: f64,
+    /// How far its origin jumps [m].
+    pub(crate) distance: f64,
+    /// By what angle it jumps [rad].
+    pub(crate) angle: f64,
+}
+
+impl fmt::Display for Jump {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { body, time, distance, angle } = self;
+        write!(
+            f,
+            "body \"{}\" jumps at {time} s, by {distance} m and {angle} rad: the motion begins elsewhere \
+             than where the body is, or a loop does not end where it begins",
+            shown(body)
+        )
+    }
 }
 
 /// A body of a scene.
@@ -240,12 +268,19 @@ impl Answer {
             }
         });
         let bodies = bodies.collect();
+        let jumps = scene.jumps().into_iter().map(|jump| Jump {
+            body: scene.bodies[jump.body].name.clone(),
+            time: jump.time,
+            distance: jump.distance,
+            angle: jump.angle,
+        });
         Self {
             name,
             ok: true,
             dimension: D,
             bodies,
             meshes: scene.meshes.iter().map(Mesh::of).collect(),
+            jumps: jumps.collect(),
         }
     }
 }
@@ -327,6 +362,7 @@ impl fmt::Display for Answer {
                 writeln!(f, "    warning: {}", unfelt::Told { inner: name, outer })?;
             }
         }
+        self.jumps.iter().try_for_each(|jump| writeln!(f, "  warning: {jump}"))?;
         self.meshes.iter().try_for_each(|mesh| mesh.fmt(f))
     }
 }

@@ -6,8 +6,8 @@
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use palpate_field::{
-    BoundingBall, Bounds, LARGEST_LENGTH, Point, Pose, Quality, Rounding, Shape, SpaceShape,
-    Vector,
+    BoundingBall, Bounds, LARGEST_LENGTH, Point, Pose, Quality, Rounding, Screw, Shape,
+    SpaceShape, Vector,
 };
 
 use crate::error::HapticsError;
@@ -30,6 +30,8 @@ pub struct Body {
     /// The pose in the tick before; the present pose if the body did not move.
     world_from_before: Pose<3>,
     has_moved: bool,
+    /// The rest of a motion that takes several ticks.
+    travel: Option<Travel>,
     /// Whether the pose differs from the identity.
     is_placed: bool,
     /// The bounding ball in world coordinates; `None` for an unbounded shape. That of a planar shape
@@ -47,6 +49,16 @@ pub struct Body {
     /// The distance from the world's origin to the bounding ball [m]; negative if the ball
     /// contains the origin or the shape is unbounded.
     off_origin: f64,
+}
+
+/// A motion along a screw that takes several ticks.
+#[derive(Clone, Copy, Debug)]
+struct Travel {
+    screw: Screw<3>,
+    /// The share that is done.
+    done: f64,
+    /// The share of a tick.
+    step: f64,
 }
 
 impl Body {
@@ -80,6 +92,7 @@ impl Body {
             body_from_world: identity,
             world_from_before: identity,
             has_moved: false,
+            travel: None,
             is_placed: false,
             ball: None,
             endless: None,
@@ -310,6 +323,15 @@ impl Body {
         self.find_balls();
     }
 
+    /// Moves on along a motion that takes several ticks; `true` if it goes on after this tick.
+    fn advance(&mut self) -> bool {
+        let Some(mut travel) = self.travel.take() else { return false };
+        travel.done += travel.step;
+        self.place(travel.screw.pose(travel.done));
+        self.travel = (travel.done < 1.0).then_some(travel);
+        self.travel.is_some()
+    }
+
     /// Ends the motion: the pose before becomes the present pose.
     fn settle(&mut self) {
         self.world_from_before = self.world_from_body;
@@ -390,6 +412,8 @@ pub struct Bodies {
     /// Whether all shapes are planar.
     pub(crate) is_flat: bool,
     pub(crate) has_moved: bool,
+    /// Whether a body is on a motion that takes several ticks.
+    is_travelling: bool,
     /// Force and torque on each body in the last tick.
     reactions: Vec<Reaction>,
     /// Force and torque on each body in a rehearsed tick.
@@ -425,6 +449,7 @@ impl Bodies {
             has_regions,
             is_flat: bodies.iter().all(Body::is_endless),
             has_moved: false,
+            is_travelling: false,
             rehearsed: reactions.clone(),
             reactions,
             list,
@@ -451,8 +476,58 @@ impl Bodies {
         if !is_usable(&world_from_body) || world_from_body == body.world_from_body {
             return;
         }
+        body.travel = None;
         body.place(world_from_body);
         self.has_moved = true;
+    }
+
+    /// Moves a body along a screw to a pose, in so many ticks from the next one on; at once in one
+    /// tick or less. What [`set_pose`](Self::set_pose) ignores is ignored.
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    pub(crate) fn move_to(&mut self, body: usize, world_from_body: Pose<3>, ticks: f64) {
+        let moving = self.bodies.get_mut(body).filter(|_| is_usable(&world_from_body));
+        let screw = |from| Screw::new(from, world_from_body, 0).ok();
+        match moving.and_then(|body| Some((screw(body.world_from_body)?, body))) {
+            Some((screw, body)) if ticks > 1.0 => {
+                body.travel = Some(Travel { screw, done: 0.0, step: 1.0 / ticks });
+                self.is_travelling = true;
+            }
+            _ => self.set_pose(body, world_from_body),
+        }
+    }
+
+    /// Sets the pose of a body that jumps there: it neither carries nor pushes a proxy.
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    pub(crate) fn jump_to(&mut self, body: usize, world_from_body: Pose<3>) {
+        let Some(body) = self.bodies.get_mut(body) else { return };
+        body.travel = None;
+        body.place(world_from_body);
+        body.settle();
+    }
+
+    /// How far a body would carry a point of the world if it had this pose [m].
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    pub(crate) fn way_to(&self, body: usize, pose: &Pose<3>, point: Point<3>) -> f64 {
+        let Some(body) = self.bodies.get(body) else { return 0.0 };
+        (pose.transform_point(body.in_body(point)) - point).norm()
+    }
+
+    /// Moves bodies on along motions that take several ticks.
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    pub(crate) fn advance(&mut self) {
+        if !self.is_travelling {
+            return;
+        }
+        let mut goes_on = false;
+        for body in &mut self.bodies {
+            self.has_moved |= body.travel.is_some();
+            goes_on |= body.advance();
+        }
+        self.is_travelling = goes_on;
     }
 
     /// The force and torque of all contact points on each body in the last tick.
@@ -534,6 +609,7 @@ impl From<SpaceShape> for Bodies {
             has_regions: body.region.is_some(),
             is_flat: body.is_endless(),
             has_moved: false,
+            is_travelling: false,
             rehearsed: reactions.clone(),
             reactions,
             list,

@@ -84,6 +84,8 @@ pub(crate) struct ContactPoint {
     /// The force of the replaced bodies in the tick before [N]; infinite if the bodies are the
     /// same.
     of_others: f64,
+    /// Whether a body jumped since the last tick.
+    has_jumped: bool,
     /// The force after an edit that carried the proxy; with a port, the safety chain does this.
     approach: Approach,
     ringing: Ringing,
@@ -187,10 +189,12 @@ impl ContactPoint {
         let (rise, of_others, ringing) = (1.0, f64::INFINITY, Ringing::SILENT);
         let (crease, stiffness) = (Crease::NONE, f64::INFINITY);
         let (guided, approach, port) = (1.0, Approach::new(1.0), None);
+        let has_jumped = false;
         Self {
             proxy,
             rise,
             of_others,
+            has_jumped,
             approach,
             ringing,
             crease,
@@ -207,11 +211,12 @@ impl ContactPoint {
     pub(crate) fn double(&self) -> Self {
         let (proxy, port) = (self.proxy.clone(), self.port.clone());
         let Self { rise, of_others, approach, ringing, crease, stiffness, guided, .. } = *self;
-        let guides = Vec::new();
+        let (guides, has_jumped) = (Vec::new(), self.has_jumped);
         Self {
             proxy,
             rise,
             of_others,
+            has_jumped,
             approach,
             ringing,
             crease,
@@ -644,6 +649,15 @@ impl ContactPoint {
         self.of_others = wanted.norm();
     }
 
+    /// Takes note that a body jumped; `wanted` is the last force [N]. Where the body covers the proxy
+    /// now, the proxy is placed anew, and the force rises from the last one.
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    pub(crate) fn see_jump(&mut self, wanted: Vector<f64, 3>) {
+        self.proxy.forget_bodies();
+        (self.of_others, self.has_jumped) = (wanted.norm(), true);
+    }
+
     /// Lets the force rise from zero; with a port, the safety chain does this.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
@@ -704,14 +718,15 @@ impl ContactPoint {
     }
 
     /// The part of the force at which the rise begins: zero after a placement; after bodies
-    /// were replaced, the part that equals the force of the old bodies, unless they carried the
+    /// were replaced or one jumped, the part that equals the force before, unless they carried the
     /// proxy out.
     #[cold]
     #[inline(never)]
     fn start(&mut self, placed: bool, change: Change, wanted: Vector<f64, 3>) -> f64 {
         let others = std::mem::replace(&mut self.of_others, f64::INFINITY);
+        let has_jumped = std::mem::take(&mut self.has_jumped);
         match change {
-            _ if placed => 0.0,
+            _ if placed && !has_jumped => 0.0,
             Change::Carried => 1.0,
             _ => shortening(wanted.norm(), others),
         }

@@ -19,7 +19,8 @@ use crate::passivity::{InnerProduct, STEP};
 pub struct MovingBodies<V> {
     /// The share that is moved from outside, as by a scene's motions: its work is that of a drive.
     pub driven: V,
-    /// The share that moves by physics: its work must be covered by `credit`.
+    /// The share that moves by physics. `credit` pays for its work first, the balance of the contact for
+    /// the rest.
     pub dynamic: V,
     /// The energy that bodies moving by physics lost in this tick, and may give to the hand [J].
     pub credit: f64,
@@ -64,8 +65,8 @@ pub struct DriveReport {
 /// The motion of a tick, as the stages see it.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Frame<V> {
-    /// The sum of all motions of touched bodies [m]. Positions relative to it do not change where the
-    /// hand moves with the body.
+    /// The sum of the motions of touched bodies so far [m]. If the hand moves with the body, its position
+    /// relative to this stays constant.
     pub(crate) origin: V,
     /// The motion of the touched bodies in this tick [m].
     pub(crate) way: V,

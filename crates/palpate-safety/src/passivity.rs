@@ -145,12 +145,12 @@ pub struct PassivityReport {
     /// The largest change between two ticks of the force that the passivity controller removes
     /// [N].
     pub largest_step: f64,
-    /// Energy that the forces may give the hand beyond what they took [J]: to push it out of a body
-    /// after they were zeroed or a body moved onto it, and what the part of a force that the controller
-    /// always leaves gave out.
+    /// Energy that the forces may give the hand beyond what they took [J]: while a force rises after it
+    /// was zeroed or edited, while a hand at rest is lifted, while a wall gets its stiffness back, and what
+    /// the controller's least part of a force gave out.
     pub credited: f64,
     /// Energy that the device's least damping dissipates in contact, as the hand moves relative to the
-    /// touched bodies [J].
+    /// touched bodies [J]. Zero where no controller acts.
     pub damped: f64,
     /// How often the controller began to take a force away. It does so smoothly, and each time may let
     /// out 0.25 mJ meanwhile.
@@ -163,7 +163,8 @@ impl PassivityReport {
     /// The most energy [J] that the forces may have given beyond what they took: what damping
     /// dissipates, a `reserve`, 0.25 mJ for each smooth cut, one tick, and what was credited.
     ///
-    /// `energy_out − energy_in` is never more.
+    /// `energy_out − energy_in` is never more, where bodies that move by physics have no more credit than
+    /// their work takes, and where the controller acts.
     #[must_use]
     pub fn most_given(&self, reserve: f64) -> f64 {
         let cuts = SPARE * self.cuts as f64;
@@ -406,7 +407,10 @@ impl<V: InnerProduct> Passivity<V> {
         report.energy_in += (-given).max(0.0);
         report.energy_out += given.max(0.0);
         report.largest_tick = report.largest_tick.max(given);
-        report.damped += damping * way.dot(way) / state.elapsed;
+        let damped = damping * way.dot(way) / state.elapsed;
+        if self.options.is_on && damped.is_finite() {
+            report.damped += damped;
+        }
         let net = report.energy_in - report.energy_out;
         report.least_balance = report.least_balance.min(net);
         report.dissipated += (last.wanted.dot(way).max(0.0) - given.max(0.0)).max(0.0);

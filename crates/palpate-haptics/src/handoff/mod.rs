@@ -8,6 +8,7 @@
 use std::fmt;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::time::Duration;
 
 use palpate_device::{
     EditReceiver, EditSender, LatestReader, LatestWriter, NumberError, edit_channel,
@@ -22,7 +23,7 @@ use crate::error::HapticsError;
 use crate::event::Event;
 use crate::guide::Guide;
 use crate::live::{Progress, Snapshot};
-use crate::servo::{Kind, Servo};
+use crate::servo::{Kind, Placement, Servo};
 use crate::tool::Coupling;
 
 /// Capacities of a hand-off, allocated when it is made; the servo allocates nothing later.
@@ -33,18 +34,24 @@ use crate::tool::Coupling;
 /// let options = HandoffOptions { events: 64, ..HandoffOptions::default() };
 /// assert_eq!((options.events, options.bodies), (64, 1024));
 /// ```
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HandoffOptions {
     /// The most events in the queue.
     pub events: usize,
     /// The most bodies in a scene.
     pub bodies: usize,
+    /// A body that [`Control::set_poses`] would move faster than this at a contact point jumps instead
+    /// [m/s].
+    pub largest_speed: f64,
 }
 
+/// Faster than a hand follows, slower than a body that is put somewhere else between two frames [m/s].
+pub(crate) const LARGEST_SPEED: f64 = 2.0;
+
 impl Default for HandoffOptions {
-    /// 4096 events, 1024 bodies.
+    /// 4096 events, 1024 bodies, 2 m/s.
     fn default() -> Self {
-        Self { events: 4096, bodies: 1024 }
+        Self { events: 4096, bodies: 1024, largest_speed: LARGEST_SPEED }
     }
 }
 
@@ -60,6 +67,8 @@ impl Default for HandoffOptions {
 /// # Examples
 ///
 /// ```
+/// use std::time::Duration;
+///
 /// use palpate_field::{Pose, Shape, Vector, kernel::Ball};
 /// use palpate_device::PointState;
 /// use palpate_haptics::{HandoffOptions, Progress, ServoOptions, Servo, handoff};
@@ -69,7 +78,7 @@ impl Default for HandoffOptions {
 /// let mut servo = Servo::new(ball, 1, ServoOptions::default())?;
 /// let (mut control, mut end) = handoff(&servo, HandoffOptions::default());
 ///
-/// control.set_poses(&[(0, Pose::translation(Vector([0.0, -1.0, 0.0])))])?;
+/// control.set_poses(&[(0, Pose::translation(Vector([0.0, -1.0, 0.0])))], Duration::ZERO)?;
 /// // In a tick:
 /// end.receive(&mut servo);
 /// servo.step(&[PointState::at_rest(Vector([0.0, 0.25, 0.0]))]);
@@ -135,6 +144,7 @@ pub fn handoff_with(
         events: producer,
         flags,
         stop,
+        largest_speed: options.largest_speed,
         events_lost: 0,
         is_stopped: false,
         is_foreign: false,
@@ -148,7 +158,7 @@ struct Edits {
     /// drop.
     bodies: Option<AcceptedBodies>,
     /// New poses, by body index.
-    poses: Vec<Option<Pose<3>>>,
+    poses: Vec<Option<Placement>>,
     /// The largest force on a contact point [N].
     max_force: f64,
     /// The largest torque on a tool's device [N·m].
@@ -274,6 +284,7 @@ pub struct ServoEnd {
     events: rtrb::Producer<Event>,
     flags: Arc<Flags>,
     stop: StopSwitch,
+    largest_speed: f64,
     events_lost: u64,
     is_stopped: bool,
     /// The bodies sent last were accepted for another servo.
@@ -307,9 +318,9 @@ impl ServoEnd {
         }
         // Poses are those of the bodies that were sent last.
         let poses = edits.poses.iter().enumerate().filter(|_| !self.is_foreign);
-        for (body, pose) in poses {
-            if let Some(pose) = pose {
-                servo.set_pose(body, *pose);
+        for (body, placement) in poses {
+            if let Some(placement) = placement {
+                servo.move_body(body, placement, self.largest_speed);
             }
         }
         servo.limit_force(edits.max_force);
@@ -444,15 +455,27 @@ impl Control {
         Ok(accepted)
     }
 
-    /// Moves bodies, all of them before the same tick. If a body gets several poses before a
-    /// tick, the last one holds.
+    /// Moves bodies along screws to these poses, all of them from the same tick on, over the time
+    /// `over`; at once if it is zero. If a body gets several poses before a tick, the last one holds. A body
+    /// that is still on its way goes on from where it is.
+    ///
+    /// A physics engine that sets poses at 60 Hz gives its frame time: a body then arrives one call late,
+    /// and a hand that touches it feels a smooth motion instead of 60 steps a second.
+    ///
+    /// A body that would move a contact point faster than [`HandoffOptions::largest_speed`] jumps: the
+    /// proxy is placed anew where the body covers it, and the force rises from what it was, by
+    /// [`SafetySettings::rise_rate`](palpate_safety::SafetySettings::rise_rate).
     ///
     /// # Errors
     ///
     /// [`HapticsError::NoSuchBody`] or [`HapticsError::Pose`]; then no body moves.
     #[inline(never)]
     #[expect(clippy::indexing_slicing, reason = "the bodies are checked before")]
-    pub fn set_poses(&mut self, poses: &[(usize, Pose<3>)]) -> Result<(), HapticsError> {
+    pub fn set_poses(
+        &mut self,
+        poses: &[(usize, Pose<3>)],
+        over: Duration,
+    ) -> Result<(), HapticsError> {
         for (body, pose) in poses {
             if *body >= self.bodies {
                 return Err(HapticsError::NoSuchBody { body: *body, bodies: self.bodies });
@@ -461,11 +484,11 @@ impl Control {
                 return Err(HapticsError::Pose);
             }
         }
-        let bodies = self.bodies;
+        let (bodies, over) = (self.bodies, over.as_secs_f64());
         self.edit(|edits| {
             edits.poses.resize(bodies, None);
             for (body, pose) in poses {
-                edits.poses[*body] = Some(*pose);
+                edits.poses[*body] = Some(Placement { pose: *pose, over });
             }
         });
         Ok(())

@@ -16,6 +16,7 @@ use palpate_device::{Buttons, GripperState, PointState, Reading, TurnState};
 use palpate_field::Pose;
 use palpate_safety::Accepted;
 
+pub(crate) use renderer::Placement;
 pub use renderer::Renderer;
 
 use crate::accepted_bodies::Protection;

@@ -60,6 +60,13 @@ pub struct Renderer {
     tick: u64,
 }
 
+/// Where a body is to be, and over what time [s] it moves there.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Placement {
+    pub(crate) pose: Pose<3>,
+    pub(crate) over: f64,
+}
+
 /// What is rendered: contact points or a tool.
 #[derive(Clone, Debug)]
 enum Rendered {
@@ -342,6 +349,34 @@ impl Renderer {
         self.accepted.bodies.set_pose(body, world_from_body);
     }
 
+    /// Moves a body along a screw to a pose, over a time [s]. Where it would carry a contact point
+    /// faster than `largest_speed` [m/s], it jumps: the proxy is placed anew, and the force rises from
+    /// what it was.
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    #[inline(never)]
+    pub(crate) fn move_body(&mut self, body: usize, to: &Placement, largest_speed: f64) {
+        let Placement { pose, over } = *to;
+        let ticks = over * self.setting.options.rate;
+        let Self { accepted, contacts, rendered, setting, .. } = self;
+        let bodies = &mut accepted.bodies;
+        let way = |touch: &Touch| bodies.way_to(body, &pose, touch.device);
+        let way = contacts.touches.iter().map(way).fold(0.0, f64::max);
+        // Written so that NaN does not jump: a hand that is lost touches nothing.
+        let jumps = way * setting.options.rate > largest_speed * ticks.max(1.0);
+        if !jumps {
+            bodies.move_to(body, pose, ticks);
+            return;
+        }
+        bodies.jump_to(body, pose);
+        for (point, touch) in contacts.points.iter_mut().zip(&contacts.touches) {
+            point.see_jump(touch.wanted);
+        }
+        if let Rendered::Tool(coupled) = rendered {
+            coupled.tool.forget_bodies();
+        }
+    }
+
     /// Swaps the rendered bodies with `bodies`; the next tick renders the new ones. `false`, and
     /// nothing changes, if `bodies` were accepted for another servo.
     ///
@@ -410,6 +445,7 @@ impl Renderer {
     pub(crate) fn step(&mut self, states: &[PointState]) -> &[Touch] {
         let arrival = self.arrivals.arrive();
         self.setting.arrival = arrival;
+        self.accepted.bodies.advance();
         // A point without a state touches nothing.
         let states = if arrival.is_ready { states } else { &[] };
         if matches!(self.rendered, Rendered::Tool(_)) {

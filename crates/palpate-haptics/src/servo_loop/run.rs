@@ -280,7 +280,7 @@ pub fn run_on(
         pace: options.pace,
         rehearses: options.rehearses,
     };
-    let room = HandoffOptions { events: 0, bodies: 0 };
+    let room = HandoffOptions { events: 0, bodies: 0, ..HandoffOptions::default() };
     let (control, mut end) = options.watch.is_some().then(|| handoff(&*servo, room)).unzip();
     servo.check_device(device)?;
     options.pace.check(device)?;

@@ -193,7 +193,7 @@ impl From<NumberError> for StartError {
 /// let snapshot = thread.control().latest().ok_or("tick 0 is over")?;
 /// assert_eq!((snapshot.progress.ticks, snapshot.touches[0].contact), (1, false));
 ///
-/// thread.control().set_poses(&[(0, Pose::translation(Vector([0.0, 1.0 / 64.0, 0.0])))])?;
+/// thread.control().set_poses(&[(0, Pose::translation(Vector([0.0, 1.0 / 64.0, 0.0])))], Duration::ZERO)?;
 /// driver.advance(Duration::from_millis(1));
 /// let snapshot = thread.control().latest().ok_or("tick 1 is over")?;
 /// assert_eq!((snapshot.progress.ticks, snapshot.touches[0].contact), (2, true));

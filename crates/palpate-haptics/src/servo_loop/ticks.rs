@@ -5,6 +5,8 @@
 
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
+use crate::handoff::LARGEST_SPEED;
+use crate::servo::Placement;
 use crate::{Servo, ServoEnd};
 use palpate_device::{Buttons, Device, DeviceLost, PointState, Reading};
 use std::any::Any;
@@ -320,7 +322,10 @@ impl<'a, 'v> ServoLoop<'a, 'v> {
             end.receive(self.servo);
         }
         if let Some(motion) = &mut self.motion {
-            motion(self.time, &mut |body, pose| self.servo.set_pose(body, pose));
+            let servo = self.servo.renderer_mut();
+            motion(self.time, &mut |body, pose| {
+                servo.move_body(body, &Placement { pose, over: 0.0 }, LARGEST_SPEED);
+            });
         }
         self.servo.set_reading(reading);
         let start = clock.now();

@@ -4,11 +4,13 @@
 //! Bodies that are moved from outside, under a hand on a simulated device.
 
 use std::collections::VecDeque;
+use std::time::Duration;
 
 use palpate_device::{Device, DeviceProfile, PointState, profile_named};
 use palpate_field::{Pose, Vector};
 use palpate_haptics::{
-    Bodies, Body, Material, Probe, Protection, Servo, ServoOptions, Surface,
+    Bodies, Body, HandoffOptions, Material, Probe, Protection, Servo, ServoOptions, Surface,
+    handoff,
 };
 use palpate_safety::SafetyReport;
 use palpate_sim::{Hand, HandPath, Interpolation, SimulatedDevice};
@@ -189,6 +191,67 @@ fn a_wall_pushes_the_hand_along() {
     }
     assert!(largest_step(&felt, 1000.0) <= 0.3);
     assert_eq!(plate.report().limit_cycles.found, 0);
+}
+
+/// The forces of a plate that moves up and down at 8 mm/s and sideways at 50 mm/s under a finger, with
+/// poses set at 60 Hz.
+fn posed_at_60_hz(over: Duration) -> Vec<Vector<f64, 3>> {
+    let plate = Plate::new(&hard(), &omega(), 0.004, |_| 0.0);
+    let Plate { mut servo, mut device, .. } = plate;
+    let (mut control, mut end) = handoff(&servo, HandoffOptions::default());
+    let mut points = [PointState::at_rest(Vector::ZERO)];
+    let mut forces = Vec::new();
+    let mut frame = 0;
+    for tick in 0..2500 {
+        let time = f64::from(tick) * PERIOD;
+        while f64::from(frame) / 60.0 <= time {
+            let now = f64::from(frame) / 60.0;
+            let place = Vector([0.05 * now - 0.06, to_and_fro(now, 0.002, 0.25) - 0.01, 0.0]);
+            control.set_poses(&[(0, Pose::translation(place))], over).unwrap();
+            frame += 1;
+        }
+        end.receive(&mut servo);
+        device.read(time, &mut points).unwrap();
+        let force = servo.step(&points)[0].force;
+        device.write(&[force]).unwrap();
+        if tick > 1500 {
+            forces.push(force);
+        }
+    }
+    forces
+}
+
+/// Poses that were set at 60 Hz once gave a step of 0.25 N with each.
+#[test]
+fn poses_at_60_hz_feel_smooth_over_the_time_of_a_frame() {
+    let largest = |forces: &[Vector<f64, 3>]| {
+        forces.windows(2).map(|pair| (pair[1] - pair[0]).norm()).fold(0.0, f64::max)
+    };
+    let (smooth, steps) =
+        (posed_at_60_hz(Duration::from_secs_f64(1.0 / 60.0)), posed_at_60_hz(Duration::ZERO));
+    assert!(smooth.iter().all(|force| force[0] > 0.1), "it is dragged along");
+    assert!(largest(&smooth) < 0.05, "{} N", largest(&smooth));
+    assert!(largest(&steps) > 0.1, "{} N", largest(&steps));
+}
+
+/// A body that is put 5 mm into the hand in one call once kicked with all of its force.
+#[test]
+fn a_body_that_jumps_lets_the_force_rise() {
+    let mut plate = Plate::new(&hard(), &omega(), 0.004, |_| 0.0);
+    plate.run(1.0);
+    let before = plate.servo.touches()[0].force[1];
+    let (mut control, mut end) = handoff(&plate.servo, HandoffOptions::default());
+    control.set_poses(&[(0, at(0.005))], Duration::ZERO).unwrap();
+    end.receive(&mut plate.servo);
+    plate.height = |_| 0.005;
+    let (mut last, mut most) = (before, 0.0_f64);
+    for tick in 0..400 {
+        let felt = plate.step();
+        assert!((felt.force - last).abs() < 0.1, "{felt:?} after {last} N in tick {tick}");
+        (last, most) = (felt.force, most.max(felt.force));
+    }
+    assert!(most > before + 0.5, "{most} N after {before} N");
+    assert_eq!(plate.report().drives.driven, 0.0);
 }
 
 /// A hand of 3000 N/m would be moved with 4 N at 0.5 m/s: 2 W.

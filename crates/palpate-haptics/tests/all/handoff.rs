@@ -142,18 +142,18 @@ fn edits_are_seen_in_the_next_tick() {
     driver.advance(TICK);
     assert!((hand.last_forces()[0] - Vector([0.0, 4.0, 0.0])).norm() < 1e-6);
 
-    thread.control().set_poses(&[(0, up(-1.0))]).unwrap();
+    thread.control().set_poses(&[(0, up(-1.0))], Duration::ZERO).unwrap();
     driver.advance(TICK);
     assert_eq!(hand.last_forces(), [Vector::ZERO]);
     let snapshot = thread.control().latest().unwrap();
     assert_eq!((snapshot.progress.ticks, snapshot.progress.contacts), (3, 0));
 
     // The last of several poses counts; of a scene replaced, none does.
-    thread.control().set_poses(&[(0, up(3.0)), (0, up(-1.0))]).unwrap();
-    thread.control().set_poses(&[(0, up(0.5))]).unwrap();
+    thread.control().set_poses(&[(0, up(3.0)), (0, up(-1.0))], Duration::ZERO).unwrap();
+    thread.control().set_poses(&[(0, up(0.5))], Duration::ZERO).unwrap();
     thread.control().replace_bodies(floor(-0.0078125)).unwrap();
-    thread.control().set_poses(&[(0, up(3.0))]).unwrap();
-    thread.control().set_poses(&[(0, up(-0.25))]).unwrap();
+    thread.control().set_poses(&[(0, up(3.0))], Duration::ZERO).unwrap();
+    thread.control().set_poses(&[(0, up(-0.25))], Duration::ZERO).unwrap();
     driver.advance(TICK);
     assert_eq!(hand.last_forces(), [Vector::ZERO]);
     hand.move_to([0.0, -0.25 - 2.0 * 0.0078125]);
@@ -184,17 +184,21 @@ fn a_batch_of_poses_is_seen_whole() {
     let (mut thread, mut driver) = start(servo(two(), 1), &hand, plain());
     for tick in 1..=100 {
         let way = -0.001 * f64::from(tick);
-        thread.control().set_poses(&[(0, up(-way)), (1, up(way))]).unwrap();
-        thread.control().set_poses(&[(1, up(way)), (0, up(way))]).unwrap();
+        thread.control().set_poses(&[(0, up(-way)), (1, up(way))], Duration::ZERO).unwrap();
+        thread.control().set_poses(&[(1, up(way)), (0, up(way))], Duration::ZERO).unwrap();
         hand.move_to([0.0, way + 0.0005]);
         driver.advance(TICK);
         let snapshot = thread.control().latest().unwrap();
         assert_eq!(snapshot.progress.contacts, 0, "tick {tick}");
         assert_eq!(snapshot.reactions.len(), 2);
     }
-    let error = thread.control().set_poses(&[(0, up(0.0)), (2, up(0.0))]).unwrap_err();
+    let error =
+        thread.control().set_poses(&[(0, up(0.0)), (2, up(0.0))], Duration::ZERO).unwrap_err();
     assert_eq!(error, HapticsError::NoSuchBody { body: 2, bodies: 2 });
-    assert_eq!(thread.control().set_poses(&[(0, up(f64::NAN))]), Err(HapticsError::Pose));
+    assert_eq!(
+        thread.control().set_poses(&[(0, up(f64::NAN))], Duration::ZERO),
+        Err(HapticsError::Pose)
+    );
     assert!(thread.control().limit_force(f64::NAN).is_err());
     drop(driver);
     // What was refused moved nothing.

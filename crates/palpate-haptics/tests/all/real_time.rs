@@ -3,6 +3,8 @@
 
 //! The servo's step allocates nothing and stays in its budget.
 
+use std::time::Duration;
+
 use crate::common::wild::{bodies, servo, step};
 use crate::common::{ball, cuboid, protected, torus};
 use assert_no_alloc::assert_no_alloc;
@@ -53,7 +55,7 @@ fn a_tick_with_its_hand_off_allocates_and_frees_nothing() {
         Bodies::new((0..count).map(body).collect::<Result<_, _>>().unwrap()).unwrap()
     };
     let mut servo = Servo::new(scene(1), 2, ServoOptions::default()).unwrap();
-    let room = HandoffOptions { events: 10, bodies: 100 };
+    let room = HandoffOptions { events: 10, bodies: 100, ..HandoffOptions::default() };
     let (mut control, mut end) = handoff(&servo, room);
     let switch = control.stop_switch();
     for tick in 0..2000_usize {
@@ -63,7 +65,7 @@ fn a_tick_with_its_hand_off_allocates_and_frees_nothing() {
         }
         if tick % 2 == 0 {
             let pose = Pose::translation(Vector([0.0, 1e-5 * tick as f64, 0.0]));
-            control.set_poses(&[(0, pose)]).unwrap();
+            control.set_poses(&[(0, pose)], Duration::ZERO).unwrap();
         }
         if tick % 5 == 0 {
             control.lift(tick % 10 == 0);
@@ -143,7 +145,7 @@ fn a_servo_with_a_tool_allocates_and_frees_nothing() {
         ..DeviceProfile::unlimited("example")
     };
     let mut servo = servo.protected(&Protection::new(profile)).unwrap();
-    let room = HandoffOptions { events: 10, bodies: 10 };
+    let room = HandoffOptions { events: 10, bodies: 10, ..HandoffOptions::default() };
     let (mut control, mut end) = handoff(&servo, room);
     let (mut contacts, mut events) = (0, 0);
     for tick in 0..2000_usize {
@@ -152,7 +154,7 @@ fn a_servo_with_a_tool_allocates_and_frees_nothing() {
             control.replace_bodies(scene(4 + tick % 3)).unwrap();
         }
         let lift = Pose::translation(Vector([0.1, 0.01 * (7.0 * t).sin(), 0.0]));
-        control.set_poses(&[(2, lift)]).unwrap();
+        control.set_poses(&[(2, lift)], Duration::ZERO).unwrap();
         let height = if tick % 500 == 0 { f64::NAN } else { 0.05 + 0.03 * (5.0 * t).sin() };
         let states = [PointState::at_rest(Vector([0.1 * t, height, 0.0]))];
         assert_no_alloc(|| {

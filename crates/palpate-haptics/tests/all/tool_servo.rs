@@ -270,7 +270,7 @@ fn a_thread_hands_off_what_the_tool_does() {
     assert_eq!((held.contacts, held.pose.translation), (0, Vector([0.0, 0.02, 0.0])));
     // The ground rises by 1.2 cm, and pushes the tool up by 2 mm.
     let raised = Pose::translation(Vector([0.0, 0.012, 0.0]));
-    thread.control().set_poses(&[(0, raised)]).unwrap();
+    thread.control().set_poses(&[(0, raised)], Duration::ZERO).unwrap();
     driver.advance(Duration::from_millis(1));
     let snapshot = thread.control().latest().unwrap();
     let (held, touch) = (snapshot.tool.unwrap(), snapshot.touches[0]);

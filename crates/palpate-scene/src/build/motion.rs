@@ -84,7 +84,77 @@ impl<const D: usize> BuiltMotion<D> {
     }
 }
 
+/// A moment at which a motion puts a body somewhere else at once.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct MotionJump {
+    /// The number of the body in the scene.
+    pub body: usize,
+    /// When it jumps first [s].
+    pub time: f64,
+    /// How far its origin jumps [m].
+    pub distance: f64,
+    /// By what angle it jumps [rad].
+    pub angle: f64,
+}
+
+impl MotionJump {
+    /// The jump of a body from one pose to another; `None` if they differ by rounding alone.
+    fn between<const D: usize>(
+        body: usize,
+        time: f64,
+        [from, to]: [&Pose<D>; 2],
+    ) -> Option<Self> {
+        let [from, to] = [from.in_space(), to.in_space()];
+        let distance = (to.translation - from.translation).norm();
+        let angle = from.rotation.turn_to(&to.rotation).norm();
+        let size = from.translation.norm().max(to.translation.norm());
+        let is_there = distance <= ROUNDING * size && angle <= ROUNDING;
+        (!is_there).then_some(Self { body, time, distance, angle })
+    }
+}
+
 impl<const D: usize> BuiltScene<D> {
+    /// The moments at which motions jump: a motion that begins elsewhere than where the body is
+    /// before it, and the end of a loop that does not meet its beginning. A hand that touches the body
+    /// then feels a force that rises by 20 N/s.
+    ///
+    /// ```
+    /// use palpate_scene::{AnyScene, Scene};
+    ///
+    /// # fn main() -> Result<(), palpate_scene::SceneError> {
+    /// let scene = Scene::from_json(
+    ///     r#"{ "palpate": 1, "dimension": 2,
+    ///          "bodies": [ { "name": "belt", "shape": { "ball": { "radius": 0.01 } } } ],
+    ///          "motions": [ { "body": "belt", "from": { "translation": [0, 0.03] },
+    ///                         "to": { "translation": [0.1, 0.03] },
+    ///                         "start": 1, "duration": 2, "repeat": "loop" } ] }"#,
+    /// )?;
+    /// let AnyScene::Planar(scene) = scene.build()? else { unreachable!("dimension is 2") };
+    /// let jumps: Vec<_> = scene.jumps().iter().map(|jump| (jump.time, jump.distance)).collect();
+    /// assert_eq!(jumps, [(1.0, 0.03), (3.0, 0.1)]);
+    /// # Ok(())
+    /// # }
+    /// ```
+    #[must_use]
+    pub fn jumps(&self) -> Vec<MotionJump> {
+        let mut jumps = Vec::new();
+        for motion in &self.motions {
+            let BuiltMotion { body, screw, start, duration, .. } = motion;
+            let earlier =
+                self.motions.iter().filter(|other| other.body == *body && other.start < *start);
+            let before = earlier.max_by(|a, b| a.start.total_cmp(&b.start));
+            let before = before.and_then(|before| before.pose(*start));
+            let before = before.unwrap_or(self.bodies[*body].world_from_body);
+            jumps.extend(MotionJump::between(*body, *start, [&before, screw.from()]));
+            if motion.repeat == Repeat::Loop {
+                let end = start + duration;
+                jumps.extend(MotionJump::between(*body, end, [screw.to(), screw.from()]));
+            }
+        }
+        jumps
+    }
+
     /// The pose of a body at a time [s], by its number: where the motion that began last has taken
     /// it, or its own pose if none has begun.
     ///
