@@ -50,7 +50,7 @@ pub(crate) struct PyMailbox {
     mailbox: Mutex<Mailbox>,
     /// The dimension of the scenes that it touches.
     dimension: usize,
-    /// How often its driver sets positions [Hz], if it is told.
+    /// The rate at which its driver sets positions [Hz]; `None` if nobody gave one.
     rate: Option<f64>,
 }
 

@@ -482,7 +482,7 @@ impl Bodies {
     }
 
     /// Moves a body along a screw to a pose, in so many ticks from the next one on; at once in one
-    /// tick or less. What [`set_pose`](Self::set_pose) ignores is ignored.
+    /// tick or less. Ignores the same poses as [`set_pose`](Self::set_pose).
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     pub(crate) fn move_to(&mut self, body: usize, world_from_body: Pose<3>, ticks: f64) {
@@ -507,12 +507,22 @@ impl Bodies {
         body.settle();
     }
 
-    /// How far a body would carry a point of the world if it had this pose [m].
+    /// How far a body would carry a point of the world if it had this pose [m]; zero if the point is
+    /// farther than `reach` [m] from the body's bounding ball, at both poses.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
-    pub(crate) fn way_to(&self, body: usize, pose: &Pose<3>, point: Point<3>) -> f64 {
+    pub(crate) fn way_to(
+        &self,
+        body: usize,
+        pose: &Pose<3>,
+        (point, reach): (Point<3>, f64),
+    ) -> f64 {
         let Some(body) = self.bodies.get(body) else { return 0.0 };
-        (pose.transform_point(body.in_body(point)) - point).norm()
+        // The body is as far from the point at the new pose as from this one at the present pose.
+        let seen = pose.inverse().transform_point(point);
+        let seen = body.world_from_body.transform_point(seen);
+        let is_near = [point, seen].iter().any(|place| body.above_ball(*place) <= reach);
+        if is_near { (pose.transform_point(body.in_body(point)) - point).norm() } else { 0.0 }
     }
 
     /// Moves bodies on along motions that take several ticks.

@@ -649,11 +649,15 @@ impl ContactPoint {
         self.of_others = wanted.norm();
     }
 
-    /// Takes note that a body jumped; `wanted` is the last force [N]. Where the body covers the proxy
-    /// now, the proxy is placed anew, and the force rises from the last one.
+    /// Takes note that a body jumped, which is or was near; `wanted` is the last force [N]. Where the
+    /// body covers the proxy now, the proxy is placed anew, and the force rises from the last one.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
-    pub(crate) fn see_jump(&mut self, wanted: Vector<f64, 3>) {
+    pub(crate) fn see_jump(&mut self, is_near: bool, wanted: Vector<f64, 3>) {
+        if !is_near {
+            self.proxy.look_anew();
+            return;
+        }
         self.proxy.forget_bodies();
         (self.of_others, self.has_jumped) = (wanted.norm(), true);
     }

@@ -259,6 +259,13 @@ impl Proxy {
         self.shared_friction = None;
     }
 
+    /// Evaluates the bodies anew at the proxy in the next tick, because one of them jumped.
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    pub(crate) fn look_anew(&mut self) {
+        self.is_stale = true;
+    }
+
     /// Lifts the proxy off the bodies: the next tick places it anew, as the first one did.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.

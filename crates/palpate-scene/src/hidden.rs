@@ -28,7 +28,7 @@ pub struct Hidden {
 
 impl<const D: usize> BuiltScene<D> {
     /// The bodies that cannot be felt, because they lie wholly within another: a contact stays on the
-    /// surface of all bodies together. Each is told with the first body around it.
+    /// surface of all bodies together. Each entry names the first body around it.
     ///
     /// What is not proven is not told. Bodies that move are left out, a magnet, which pulls from
     /// afar, and what lies in a body that a hand punctures.

@@ -360,18 +360,23 @@ impl Renderer {
         let ticks = over * self.setting.options.rate;
         let Self { accepted, contacts, rendered, setting, .. } = self;
         let bodies = &mut accepted.bodies;
-        let way = |touch: &Touch| bodies.way_to(body, &pose, touch.device);
-        let way = contacts.touches.iter().map(way).fold(0.0, f64::max);
+        let radius = setting.options.probe.radius();
+        let way = |bodies: &Bodies, touch: &Touch| {
+            let reach = REACHES * (radius + touch.depth());
+            bodies.way_to(body, &pose, (touch.device, reach))
+        };
+        let way_of_any = contacts.touches.iter().map(|touch| way(bodies, touch));
+        let way_of_any = way_of_any.fold(0.0, f64::max);
         // Written so that NaN does not jump: a hand that is lost touches nothing.
-        let jumps = way * setting.options.rate > largest_speed * ticks.max(1.0);
+        let jumps = way_of_any * setting.options.rate > largest_speed * ticks.max(1.0);
         if !jumps {
             bodies.move_to(body, pose, ticks);
             return;
         }
-        bodies.jump_to(body, pose);
         for (point, touch) in contacts.points.iter_mut().zip(&contacts.touches) {
-            point.see_jump(touch.wanted);
+            point.see_jump(way(bodies, touch) > 0.0, touch.wanted);
         }
+        bodies.jump_to(body, pose);
         if let Rendered::Tool(coupled) = rendered {
             coupled.tool.forget_bodies();
         }

@@ -254,6 +254,36 @@ fn a_body_that_jumps_lets_the_force_rise() {
     assert_eq!(plate.report().drives.driven, 0.0);
 }
 
+/// The hand is as free to press as before, if a body far away turns fast or is put elsewhere.
+#[test]
+fn a_body_that_jumps_far_away_is_not_felt() {
+    let surface = || Surface::new(&hard()).unwrap();
+    let run = |moves: bool| {
+        let plate =
+            Body::new(cuboid([0.2, 0.02, 0.2]), surface()).unwrap().at(at(0.0)).unwrap();
+        let far = |x: f64| Pose::translation(Vector([x, 0.0, 0.0]));
+        let other =
+            Body::new(cuboid([0.1, 0.1, 0.1]), surface()).unwrap().at(far(1.0)).unwrap();
+        let bodies = Bodies::new(vec![plate, other]).unwrap();
+        let servo = Servo::new(bodies, 1, ServoOptions::default()).unwrap();
+        let mut servo = servo.protected(&Protection::new(omega())).unwrap();
+        let (mut control, mut end) = handoff(&servo, HandoffOptions::default());
+        let mut forces = Vec::new();
+        for tick in 0..400 {
+            let x = if tick % 2 == 0 { 1.0 } else { 1.5 };
+            if moves {
+                control.set_poses(&[(1, far(x))], Duration::ZERO).unwrap();
+            }
+            end.receive(&mut servo);
+            let height = 0.004 - 2e-5 * f64::from(tick);
+            forces
+                .push(servo.step(&[PointState::at_rest(Vector([0.0, height, 0.0]))])[0].force);
+        }
+        forces
+    };
+    assert_eq!(run(true), run(false));
+}
+
 /// A hand of 3000 N/m would be moved with 4 N at 0.5 m/s: 2 W.
 #[test]
 fn a_drive_gives_at_most_its_power() {

@@ -14,7 +14,7 @@ use super::repetition::Oscillation;
 /// A hand drives an oscillation that keeps its frequency while the stiffness is halved so many times.
 const UNMOVED_HALVINGS: usize = 2;
 
-/// It is told after so many halvings at the earliest.
+/// The least number of halvings after which an oscillation may count as the hand's.
 const TOLD_HALVINGS: usize = 3;
 
 /// A damping of half of the weakest hand that the stage is made for [N·s/m].
