@@ -377,10 +377,8 @@ impl Asked<'_, '_> {
             rows: (rows > 0).then_some(rows),
             ..ThreadOptions::default()
         };
-        let motion = (!scene.motions.is_empty()).then(|| -> Motion {
-            let scene = scene.clone();
-            Box::new(move |time, set_pose| scene.motion()(time, set_pose))
-        });
+        let motion =
+            (!scene.motions.is_empty()).then(|| -> Motion { Box::new(scene.motion()) });
         Ok(Ready { servo, device, options, motion })
     }
 

@@ -7,8 +7,7 @@
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 
 use palpate::device::Device;
-use palpate::field::Pose;
-use palpate::haptics::{Event, Servo, Snapshot};
+use palpate::haptics::{Event, NextPose, Servo, Snapshot};
 use palpate::servo_loop::{
     EndedThread, Ending, Records, RunReport, ServoThread, ThreadOptions, TraceRow,
 };
@@ -18,7 +17,7 @@ use pyo3::prelude::*;
 use crate::error::OrRaise;
 
 /// Moves bodies to where they are at a time [s], by their numbers.
-pub(crate) type Motion = Box<dyn FnMut(f64, &mut dyn FnMut(usize, Pose<3>)) + Send>;
+pub(crate) type Motion = Box<dyn FnMut(f64, &mut dyn FnMut(usize, NextPose)) + Send>;
 
 /// What runs.
 pub(crate) struct Ready {

@@ -61,6 +61,7 @@ pub(crate) fn event<'py>(
         EventKind::Pop { force } => ("pop", None, Some(force), None),
         EventKind::Carried { .. } => ("carried", None, None, None),
         EventKind::Placed => ("placed", None, None, None),
+        EventKind::Squeezed => ("squeezed", None, None, None),
         EventKind::ButtonDown { button } => ("button_down", None, None, Some(button)),
         EventKind::ButtonUp { button } => ("button_up", None, None, Some(button)),
         _ => ("other", None, None, None),

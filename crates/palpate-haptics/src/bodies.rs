@@ -578,6 +578,23 @@ impl Bodies {
     }
 }
 
+/// Where a body goes in a tick.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct NextPose {
+    /// From body to world.
+    pub pose: Pose<3>,
+    /// Whether it jumps there: a proxy is then placed anew where the body covers it, and the force
+    /// rises from what it was. Else the body moves there, and carries and pushes what it meets.
+    pub jumps: bool,
+}
+
+impl From<Pose<3>> for NextPose {
+    /// A body that moves to a pose.
+    fn from(pose: Pose<3>) -> Self {
+        Self { pose, jumps: false }
+    }
+}
+
 impl TryFrom<Vec<Body>> for Bodies {
     type Error = HapticsError;
 

@@ -19,6 +19,7 @@ use crate::nearby::Nearby;
 use crate::ports::Port;
 use crate::proxy::{Edited, Probe, Proxy};
 use crate::seam::Seam;
+use crate::squeeze::{Against, Squeeze};
 use crate::surface::{Press, Ringing};
 
 /// One contact point after a tick. World coordinates.
@@ -72,8 +73,8 @@ impl Touch {
 }
 
 /// The most events of a contact point in a tick: a leave, a touch and a layer that gives way for
-/// each of the bodies that can hold it, and what an edit did.
-pub(crate) const MOST_EVENTS: usize = 3 * CAPACITY + 1;
+/// each of the bodies that can hold it, what an edit did, and a squeeze.
+pub(crate) const MOST_EVENTS: usize = 3 * CAPACITY + 2;
 
 /// A contact point of the hand, with its state from tick to tick.
 #[derive(Clone, Debug)]
@@ -91,6 +92,8 @@ pub(crate) struct ContactPoint {
     ringing: Ringing,
     /// The bodies that touch the proxy.
     crease: Crease,
+    /// The bodies that the proxy lies in, because they moved and left it no room.
+    squeeze: Squeeze,
     /// The force of their springs over the depth, in the last contact [N/m]; infinite before the first.
     pub(crate) stiffness: f64,
     pub(crate) guides: Vec<Guide>,
@@ -115,7 +118,9 @@ pub(crate) struct Setting {
 
 /// The state of a tick that all contact points share.
 pub(crate) struct Tick<'a> {
-    nearby: &'a Nearby<'a>,
+    everything: &'a Nearby<'a>,
+    /// The bodies that do not yield to the contact point.
+    nearby: Nearby<'a>,
     setting: &'a Setting,
     /// A template for events: tick and contact point are filled in.
     event: Event,
@@ -124,13 +129,13 @@ pub(crate) struct Tick<'a> {
 
 impl<'a> Tick<'a> {
     pub(crate) fn new(
-        nearby: &'a Nearby<'a>,
+        everything: &'a Nearby<'a>,
         setting: &'a Setting,
         tick: u64,
         events: &'a mut Vec<Event>,
     ) -> Self {
         let event = Event { tick, point: 0, body: 0, kind: EventKind::Leave };
-        Self { nearby, setting, event, events }
+        Self { everything, nearby: *everything, setting, event, events }
     }
 
     /// This tick, with events of the contact point `point`.
@@ -189,7 +194,7 @@ impl ContactPoint {
         let (rise, of_others, ringing) = (1.0, f64::INFINITY, Ringing::SILENT);
         let (crease, stiffness) = (Crease::NONE, f64::INFINITY);
         let (guided, approach, port) = (1.0, Approach::new(1.0), None);
-        let has_jumped = false;
+        let (has_jumped, squeeze) = (false, Squeeze::NONE);
         Self {
             proxy,
             rise,
@@ -198,6 +203,7 @@ impl ContactPoint {
             approach,
             ringing,
             crease,
+            squeeze,
             stiffness,
             guides,
             guided,
@@ -211,7 +217,7 @@ impl ContactPoint {
     pub(crate) fn double(&self) -> Self {
         let (proxy, port) = (self.proxy.clone(), self.port.clone());
         let Self { rise, of_others, approach, ringing, crease, stiffness, guided, .. } = *self;
-        let (guides, has_jumped) = (Vec::new(), self.has_jumped);
+        let (guides, has_jumped, squeeze) = (Vec::new(), self.has_jumped, self.squeeze);
         Self {
             proxy,
             rise,
@@ -220,6 +226,7 @@ impl ContactPoint {
             approach,
             ringing,
             crease,
+            squeeze,
             stiffness,
             guides,
             guided,
@@ -260,13 +267,17 @@ impl ContactPoint {
             return self.hover(tick, state, touch);
         }
         let begins = self.proxy.begins();
-        let held = self.carried(tick.nearby, touch);
+        let held = self.carried(tick.everything, touch);
         // The proxy stays where it is if the device point is not finite.
-        let following = self.proxy.follow(tick.nearby, device);
+        let following = self.proxy.follow(tick.everything, device);
+        tick.nearby = tick.everything.without(self.proxy.yielding());
         let placed = following.placed;
         let mut change = if begins && placed { Change::Begins } else { Change::None };
         if let Some(edited) = following.edited {
             change = tell_edited(tick, following.body, edited);
+        }
+        if following.squeezed != self.squeeze.body() {
+            change = self.tell_squeezed(tick, following.squeezed, change);
         }
         let before = Before::of(touch);
         let body = tick.nearby.body(following.body);
@@ -293,12 +304,16 @@ impl ContactPoint {
         } else {
             self.fall_silent(tick, before);
         }
+        if following.squeezed.is_some() {
+            let pushed = self.squeezed(tick, touch);
+            touch.wanted += pushed;
+        }
         free += self.pull(tick, touch);
         let carried = match held {
             _ if placed => Vector::ZERO,
             Some(held) => held,
             // A body that moved onto the hand carries it from this tick on.
-            None => self.carried(tick.nearby, touch).unwrap_or(Vector::ZERO),
+            None => self.carried(tick.everything, touch).unwrap_or(Vector::ZERO),
         };
         FreeForce { force: free, placed, change, carried }
     }
@@ -368,6 +383,35 @@ impl ContactPoint {
             self.crease = Crease::NONE;
             self.proxy.share_friction(None);
         }
+    }
+
+    /// Tells that a body leaves the proxy no room; `None` if there is room again. Returns what
+    /// happened in this tick, beside `change`.
+    #[cold]
+    fn tell_squeezed(
+        &mut self,
+        tick: &mut Tick<'_>,
+        body: Option<u32>,
+        change: Change,
+    ) -> Change {
+        self.squeeze = Squeeze::by(body);
+        if let Some(body) = body {
+            tick.tell(body, EventKind::Squeezed);
+        }
+        if change == Change::None { Change::Squeezed } else { change }
+    }
+
+    /// The force of the bodies that the proxy lies in [N].
+    #[cold]
+    #[inline(never)]
+    fn squeezed(&mut self, tick: &Tick<'_>, touch: &mut Touch) -> Vector<f64, 3> {
+        let radius = tick.setting.options.probe.radius();
+        let against = Against { device: touch.device, radius, wanted: touch.wanted };
+        let yielding = self.proxy.yielding();
+        let evaluations = &mut touch.evaluations;
+        self.squeeze.press(tick.everything, &yielding, &against, evaluations);
+        self.stiffness += self.squeeze.stiffness();
+        self.squeeze.force()
     }
 
     /// Whether a body touched the proxy in the tick before.
@@ -442,7 +486,7 @@ impl ContactPoint {
         let place = Place { proxy, stretch, body, normal, radius: options.probe.radius() };
         let punctured = self.proxy.punctured();
         let (most_force, evaluations) = (options.max_force, &mut touch.evaluations);
-        let seam = Seam::at(tick.nearby, &place, punctured, most_force, evaluations);
+        let seam = Seam::at(&tick.nearby, &place, punctured, most_force, evaluations);
         let Some((seam, along)) = seam.zip(stretch.normalized()) else { return Vector::ZERO };
         self.stiffness += seam.springs / stretch.norm();
         along * seam.springs + seam.sideways
@@ -456,7 +500,7 @@ impl ContactPoint {
         let place = Place { proxy, stretch, body, normal, radius };
         let was_touched = |body| self.was_touched(before, body);
         let punctured = self.proxy.punctured();
-        Crease::at(tick.nearby, &place, punctured, was_touched, &mut touch.evaluations)
+        Crease::at(&tick.nearby, &place, punctured, was_touched, &mut touch.evaluations)
     }
 
     /// The force of several bodies that hold the proxy together [N].
@@ -593,6 +637,7 @@ impl ContactPoint {
     /// The force of each body on the hand in the tick [N]; their sum is the wanted force.
     pub(crate) fn pushes(&self, touch: &Touch) -> impl Iterator<Item = (u32, Vector<f64, 3>)> {
         let others = self.crease.walls().filter(|wall| wall.body != touch.body);
+        let others = others.chain(self.squeeze.walls());
         let of_others = others.clone().fold(Vector::ZERO, |sum, wall| sum + wall.force);
         let hardest = (touch.body, touch.wanted - of_others);
         let others = others.map(|wall| (wall.body, wall.force));
@@ -712,9 +757,7 @@ impl ContactPoint {
             force
         } else {
             let rise = self.rise(start, touch.contact, *rise_step);
-            if change == Change::Carried {
-                self.approach.begin();
-            }
+            self.approach.begin(change);
             let wanted = self.approach.step(touch.wanted).unwrap_or(touch.wanted);
             touch.force = limited(wanted + free, options.max_force) * rise;
             map.force_to_device(touch.force)
@@ -731,7 +774,7 @@ impl ContactPoint {
         let has_jumped = std::mem::take(&mut self.has_jumped);
         match change {
             _ if placed && !has_jumped => 0.0,
-            Change::Carried => 1.0,
+            Change::Carried | Change::Squeezed => 1.0,
             _ => shortening(wanted.norm(), others),
         }
     }

@@ -115,6 +115,19 @@ impl Crease {
         }
     }
 
+    /// Adds a wall whose push and force are known, if there is room.
+    pub(crate) fn add_pushing(&mut self, wall: Wall) {
+        if let Some(place) = self.walls.get_mut(self.count) {
+            *place = wall;
+            self.count += 1;
+        }
+    }
+
+    /// Multiplies all forces by `factor`.
+    pub(crate) fn scale_forces(&mut self, factor: f64) {
+        self.walls_mut().for_each(|wall| wall.force = wall.force * factor);
+    }
+
     /// Parts `stretch` among the walls.
     fn push(&mut self, stretch: Vector<f64, 3>) {
         let length = stretch.norm();

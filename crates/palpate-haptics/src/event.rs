@@ -59,6 +59,9 @@ pub enum EventKind {
     /// An edit of the bodies covered the proxy, or the tool, by more than it may be carried: it was
     /// placed anew, and the force rises from zero.
     Placed,
+    /// The body moved, and left the proxy or the tool no room beside bodies that stand still. It
+    /// yields: the proxy lies in it until there is room.
+    Squeezed,
     /// A button of the device was pressed. Contact point and body are 0.
     ButtonDown {
         /// The index of the button.
@@ -91,6 +94,8 @@ pub struct EventCounts {
     pub carries: u64,
     /// Edits after which a proxy or a tool was placed anew.
     pub placements: u64,
+    /// Bodies that moved and left a proxy or a tool no room.
+    pub squeezes: u64,
     /// Buttons that were pressed.
     pub presses: u64,
     /// Buttons that were released.
@@ -110,6 +115,7 @@ impl EventCounts {
             EventKind::Pop { .. } => &mut self.pops,
             EventKind::Carried { .. } => &mut self.carries,
             EventKind::Placed => &mut self.placements,
+            EventKind::Squeezed => &mut self.squeezes,
             EventKind::ButtonDown { .. } => &mut self.presses,
             EventKind::ButtonUp { .. } => &mut self.releases,
         } += 1;
@@ -119,13 +125,16 @@ impl EventCounts {
 impl fmt::Display for EventCounts {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { touches, leaves: _, slips, sticks, pops, presses, releases: _, .. } = self;
-        let Self { carries, placements, .. } = self;
+        let Self { carries, placements, squeezes, .. } = self;
         write!(f, "{touches} touches, {slips} slips, {sticks} sticks, {pops} pops")?;
         if *carries > 0 {
             write!(f, ", {carries} carried by edits")?;
         }
         if *placements > 0 {
             write!(f, ", {placements} placed anew after edits")?;
+        }
+        if *squeezes > 0 {
+            write!(f, ", {squeezes} squeezed without room")?;
         }
         if *presses > 0 { write!(f, ", {presses} presses of buttons") } else { Ok(()) }
     }
@@ -222,9 +231,9 @@ mod tests {
         assert_eq!(counts.to_string(), "5 touches, 3 slips, 2 sticks, 1 pops");
         let said = EventCounts { presses: 7, ..counts }.to_string();
         assert_eq!(said, "5 touches, 3 slips, 2 sticks, 1 pops, 7 presses of buttons");
-        let said = EventCounts { carries: 8, placements: 6, ..counts }.to_string();
-        let edits = ", 8 carried by edits, 6 placed anew after edits";
-        assert_eq!(said, format!("5 touches, 3 slips, 2 sticks, 1 pops{edits}"));
+        let said = EventCounts { carries: 8, placements: 6, squeezes: 9, ..counts }.to_string();
+        let more = ", 8 carried by edits, 6 placed anew after edits, 9 squeezed without room";
+        assert_eq!(said, format!("5 touches, 3 slips, 2 sticks, 1 pops{more}"));
     }
 
     /// The sum of finite forces may overflow. Found by fuzzing.

@@ -57,7 +57,7 @@ fn touch() {
         Renderer::step,
         Renderer::rehearse,
         Renderer::safety,
-        Renderer::stage_ticks,
+        Renderer::stage_effects,
         Servo::<Unprotected>::protected,
         Servo::<Protected>::guide,
         Control::set_poses,

@@ -63,11 +63,12 @@ mod seam;
 mod servo;
 #[cfg(feature = "loop")]
 pub mod servo_loop;
+mod squeeze;
 mod surface;
 mod tool;
 
 pub use accepted_bodies::{AcceptedBodies, AcceptedTexture, Protection};
-pub use bodies::{Bodies, Body};
+pub use bodies::{Bodies, Body, NextPose};
 pub use contact_point::Touch;
 pub use error::{HapticsError, ServoOptions};
 pub use event::{Energy, Event, EventCounts, EventKind, Reaction};

@@ -7,7 +7,7 @@
 
 use palpate_device::{Buttons, GripperState};
 use palpate_field::Vector;
-use palpate_safety::{Arrival, Change, Impedance, PortState, SafetyChain, StageTicks};
+use palpate_safety::{Arrival, Change, Impedance, PortState, SafetyChain, StageEffects};
 
 use crate::accepted_bodies::Protection;
 use crate::contact_point::Touch;
@@ -51,7 +51,7 @@ pub struct Snapshot {
     /// Whether the hand is [lifted](crate::Servo::lift) off the bodies.
     pub is_lifted: bool,
     /// In how many ticks each stage of the safety chains has acted since the start.
-    pub safety: StageTicks,
+    pub safety: StageEffects,
     /// The buttons of the device that are held down.
     pub buttons: Buttons,
     /// The gripper of the device; `None` for a device without one.

@@ -5,7 +5,7 @@
 
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-use palpate_field::{Point, Vector};
+use palpate_field::{LARGEST_LENGTH, Point, Vector};
 
 use crate::bodies::{Bodies, Body};
 
@@ -64,6 +64,55 @@ impl Punctured {
     }
 }
 
+/// Bodies that yield: they moved, and left a probe no room beside bodies that did not. They do not
+/// constrain it.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Yielding {
+    bodies: [u32; Self::CAPACITY],
+    count: usize,
+    /// Whether every body that moved in this tick yields.
+    has_all_moved: bool,
+}
+
+impl Yielding {
+    /// The most bodies that yield at a time.
+    const CAPACITY: usize = 8;
+
+    /// Whether no body yields.
+    #[inline]
+    pub(crate) fn is_empty(&self) -> bool {
+        self.count == 0 && !self.has_all_moved
+    }
+
+    /// These bodies, and every body that moved in this tick.
+    pub(crate) fn and_all_moved(self) -> Self {
+        Self { has_all_moved: true, ..self }
+    }
+
+    /// The bodies by their indices.
+    pub(crate) fn bodies(&self) -> impl Iterator<Item = u32> + Clone {
+        self.bodies.into_iter().take(self.count)
+    }
+
+    /// Whether a body yields.
+    #[inline]
+    pub(crate) fn has(&self, index: u32, body: &Body) -> bool {
+        !self.is_empty()
+            && (self.has_all_moved && body.has_moved() || self.bodies().any(|it| it == index))
+    }
+
+    /// Adds a body; `false` if no more can be recorded.
+    pub(crate) fn add(&mut self, body: u32) -> bool {
+        if self.bodies().any(|it| it == body) {
+            return true;
+        }
+        let Some(place) = self.bodies.get_mut(self.count) else { return false };
+        *place = body;
+        self.count += 1;
+        true
+    }
+}
+
 /// The field at a place.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct FieldValue {
@@ -85,13 +134,17 @@ pub struct Nearby<'a> {
     pub(crate) centre: Point<3>,
     /// The radius of the horizon about the centre [m]: bodies not in the list are farther away.
     pub(crate) horizon: f64,
+    /// The bodies that do not count.
+    yielding: Yielding,
 }
 
 impl Bodies {
     /// All bodies, however far away.
     #[must_use]
     pub fn everything(&self) -> Nearby<'_> {
-        Nearby { bodies: self, list: None, centre: Vector::ZERO, horizon: f64::INFINITY }
+        let yielding = Yielding::default();
+        let (centre, horizon) = (Vector::ZERO, f64::INFINITY);
+        Nearby { bodies: self, list: None, centre, horizon, yielding }
     }
 
     /// The bodies within `radius` of `centre` [m]; `list` receives their indices. If `list` is
@@ -118,11 +171,28 @@ impl Bodies {
                 _ => horizon = horizon.min(away),
             }
         }
-        Nearby { bodies: self, list: list.get(..count), centre, horizon }
+        let yielding = Yielding::default();
+        Nearby { bodies: self, list: list.get(..count), centre, horizon, yielding }
     }
 }
 
 impl<'a> Nearby<'a> {
+    /// These bodies, of which those of `yielding` do not count.
+    pub(crate) fn without(&self, yielding: Yielding) -> Self {
+        // Where no body counts, the field is finite too.
+        let most = if yielding.is_empty() { f64::INFINITY } else { LARGEST_LENGTH };
+        Self { yielding, horizon: self.horizon.min(most), ..*self }
+    }
+
+    /// The only body, if there is one and it counts.
+    #[inline(always)]
+    fn only(&self) -> Option<&'a Body> {
+        match self.bodies.bodies() {
+            [body] if self.yielding.is_empty() => Some(body),
+            _ => None,
+        }
+    }
+
     /// The body with this index.
     pub(crate) fn body(&self, body: u32) -> Option<&'a Body> {
         self.bodies.bodies().get(body as usize)
@@ -160,10 +230,11 @@ impl<'a> Nearby<'a> {
     pub(crate) fn all(&self) -> impl Iterator<Item = (u32, &'a Body)> {
         let bodies = self.bodies.bodies();
         let count = self.list.map_or(bodies.len(), <[u32]>::len);
-        let list = self.list;
+        let (list, yielding) = (self.list, &self.yielding);
         (0..count).filter_map(move |i| {
             let index = list.map_or(Some(i as u32), |list| list.get(i).copied())?;
-            Some((index, bodies.get(index as usize)?))
+            let body = bodies.get(index as usize)?;
+            (!yielding.has(index, body)).then_some((index, body))
         })
     }
 
@@ -193,7 +264,7 @@ impl<'a> Nearby<'a> {
     /// The field at a point, and the body whose field is least there.
     #[inline]
     pub(crate) fn distance(&self, p: Point<3>, punctured: &Punctured) -> (f64, u32) {
-        if let ([body], true) = (self.bodies.bodies(), punctured.is_empty()) {
+        if let (Some(body), true) = (self.only(), punctured.is_empty()) {
             return (body.distance(p), 0);
         }
         let mut least = (self.horizon - (p - self.centre).norm(), 0);
@@ -221,7 +292,7 @@ impl<'a> Nearby<'a> {
     /// The field and its gradient at a point, and the body whose field is least there.
     #[inline(never)]
     pub(crate) fn gradient(&self, p: Point<3>, punctured: &Punctured) -> FieldValue {
-        if let ([body], true) = (self.bodies.bodies(), punctured.is_empty()) {
+        if let (Some(body), true) = (self.only(), punctured.is_empty()) {
             let (distance, gradient) = body.distance_gradient(p);
             return FieldValue { distance, gradient, body: 0 };
         }

@@ -12,7 +12,7 @@ use palpate_device::{PointState, TurnState};
 use palpate_safety::{
     Acceptance, Accepted, Arrival, DeviceLimits, DriveReport, Impedance, PassivityReport,
     PerMotion, PortState, Readings, ReadingsReport, SafetyChain, SafetyOptions, SafetyReport,
-    SafetySettings, StageTicks, TurnReadings, VelocityEstimator, WrenchChain,
+    SafetySettings, StageEffects, TurnReadings, VelocityEstimator, WrenchChain,
 };
 
 impl Protection {
@@ -176,8 +176,8 @@ impl Port {
     /// In how many ticks each stage of the safety chain has acted, without the readings.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
-    pub(crate) fn stage_ticks(&self) -> StageTicks {
-        self.chain.stage_ticks()
+    pub(crate) fn stage_effects(&self) -> StageEffects {
+        self.chain.stage_effects()
     }
 
     /// What the safety chain did, without the readings.

@@ -15,6 +15,7 @@
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 mod carry_out;
+mod squeezed;
 
 use palpate_field::{LARGEST_LENGTH, Point, Vector};
 
@@ -22,10 +23,11 @@ use crate::bodies::Body;
 
 use crate::contact::{Goal, Held, Hold, LocalSurface, Place, drag, slide};
 use crate::error::HapticsError;
-use crate::nearby::{Nearby, Punctured};
+use crate::nearby::{Nearby, Punctured, Yielding};
 use crate::sampler::{Sample, Sampler};
 use crate::surface::Friction;
 use carry_out::CarriedOut;
+use squeezed::Way;
 pub(crate) use carry_out::MOST_OF_POINT;
 use palpate_device::NumberError;
 
@@ -131,6 +133,9 @@ pub struct Following {
     pub placed: bool,
     /// What became of a proxy that an edit covered since the tick before; `None` if none did.
     pub edited: Option<Edited>,
+    /// A body that the proxy lies in, because it moved and left the proxy no room beside bodies that
+    /// stand still; `None` if there is room.
+    pub squeezed: Option<u32>,
     /// Evaluations of the field in this tick.
     pub evaluations: u32,
 }
@@ -190,6 +195,8 @@ pub struct Proxy {
     /// The local model of the surface near the proxy.
     local: LocalSurface,
     punctured: Punctured,
+    /// The bodies that the proxy lies in, because they moved and left it no room.
+    yielding: Yielding,
     /// The friction of all bodies that held the proxy in the last tick; `None` if one held it.
     shared_friction: Option<Friction>,
     /// The part of the stretch from device to proxy that friction holds [m].
@@ -216,6 +223,7 @@ impl Proxy {
             hold: Hold::None,
             local: LocalSurface::new(),
             punctured: Punctured::default(),
+            yielding: Yielding::default(),
             shared_friction: None,
             held: Vector::ZERO,
         }
@@ -255,7 +263,7 @@ impl Proxy {
     pub fn forget_bodies(&mut self) {
         // Where the proxy has no place yet, an edit changes none.
         (self.is_stale, self.is_edited, self.carried_out) = (true, !self.begins, None);
-        self.punctured = Punctured::default();
+        (self.punctured, self.yielding) = (Punctured::default(), Yielding::default());
         self.shared_friction = None;
     }
 
@@ -292,6 +300,11 @@ impl Proxy {
     /// The punctured layers of all bodies.
     pub(crate) fn punctured(&self) -> &Punctured {
         &self.punctured
+    }
+
+    /// The bodies that do not constrain the proxy, because they moved and left it no room.
+    pub(crate) fn yielding(&self) -> Yielding {
+        self.yielding
     }
 
     /// The number of punctured layers of a body.
@@ -347,6 +360,8 @@ impl Proxy {
         let moved = moved.max(squared(carried - last)).sqrt();
         let moved = out.map_or(moved, |out| moved.max(out.distance));
         let Probe { radius, budget } = self.probe;
+        let everything = nearby;
+        let nearby = &everything.without(self.yielding);
         let mut sampler = Sampler::new(nearby, self.punctured, radius, budget, extent);
 
         if !self.punctured.is_empty() {
@@ -368,15 +383,30 @@ impl Proxy {
         // The tolerance of an edit may be that of other lengths.
         let tolerance = if out.is_some() { 2.0 } else { 1.0 } * sampler.tolerance();
         let is_known = self.at.as_ref().is_some_and(|at| at.gap >= -tolerance);
-        let mut placed = is_pushed;
+        let mut placed = is_pushed && !self.contact;
+        let mut has_room = true;
         if !is_known {
+            let pushed = self.at.filter(|_| nearby.has_moved());
             let from = self.at.as_ref().map_or(device, |at| at.point);
             let (start, is_moved) = self.place(&mut sampler, from);
             self.at = start;
-            placed |= is_moved;
+            match pushed {
+                Some(pushed) if !self.is_beside(&mut sampler, last, is_moved) => {
+                    let way = Way { from: last, to: pushed.point };
+                    has_room = self.make_room(&mut sampler, way);
+                }
+                // What pushes a hand that is in contact changes its force by as much as it moves.
+                Some(_) if self.contact => {}
+                _ => placed |= is_moved,
+            }
         }
+        let nearby = &everything.without(self.yielding);
+        let mut sampler = if has_room { sampler } else { sampler.among(nearby) };
         let goal = sampler.within_region(device);
         self.pursue(&mut sampler, Goal { device: goal, motion: moved });
+        if !self.yielding.is_empty() {
+            self.look_for_room(&mut sampler, everything);
+        }
         let proxy = self.at.as_ref().map_or(device, |at| at.point);
         // A proxy without a place is placed in a later tick.
         let is_lost = self.at.is_none();
@@ -397,6 +427,7 @@ impl Proxy {
             is_slipping: self.hold == Hold::Slip,
             placed,
             edited: None,
+            squeezed: self.yielding.bodies().next(),
             evaluations,
         }
     }
@@ -483,48 +514,67 @@ impl Proxy {
     /// without a place touches nothing.
     fn pursue(&mut self, sampler: &mut Sampler<'_>, goal: Goal) {
         let Self { at, normal, contact, hold, local, punctured, shared_friction, .. } = self;
-        let (mut was_held, how) = (std::mem::take(contact), std::mem::take(hold));
+        let (was_held, how) = (std::mem::take(contact), std::mem::take(hold));
         let Some(here) = at else { return };
-        loop {
-            let way = goal.device - here.point;
-            let squared = way.dot(way);
-            let free = sampler.free_radius(here);
-            let is_free = free > 0.0 && free * free > squared;
-            let next = if is_free {
-                goal.device
-            } else if free > 0.0 && free * free > WORTH_FLYING * WORTH_FLYING * squared {
-                // Conservative advancement (Mirtich 1996): no surface is within `free`.
-                here.point + way * (free / squared.sqrt())
-            } else {
-                let friction = shared_friction
-                    .or_else(|| friction(sampler, here, squared.sqrt(), punctured));
-                match friction.filter(|_| was_held) {
-                    Some(friction) => {
-                        let held = Held { friction, hold: how };
-                        let dragged = drag(sampler, Place { here, normal }, goal, held, local);
-                        (*contact, *hold) = (dragged.contact, dragged.hold);
-                        self.held = dragged.held.unwrap_or(self.held);
-                    }
-                    None => {
-                        *contact = slide(sampler, Place { here, normal }, goal, local);
-                        self.held = Vector::ZERO;
-                    }
-                }
-                *contact =
-                    *contact || was_held && is_held_still(sampler, here, normal, goal.device);
-                if !*contact {
-                    *hold = Hold::None;
-                }
-                return;
-            };
-            was_held = false;
-            match sampler.distance(next) {
-                Some(sample) if sample.gap >= -sampler.tolerance() => *here = sample,
-                _ => return,
+        let flight = fly(sampler, here, goal.device);
+        if !flight.is_stopped {
+            return;
+        }
+        let was_held = was_held && !flight.has_flown;
+        let depth = || (goal.device - here.point).norm();
+        let friction =
+            shared_friction.or_else(|| friction(sampler, here, depth(), punctured));
+        match friction.filter(|_| was_held) {
+            Some(friction) => {
+                let held = Held { friction, hold: how };
+                let dragged = drag(sampler, Place { here, normal }, goal, held, local);
+                (*contact, *hold) = (dragged.contact, dragged.hold);
+                self.held = dragged.held.unwrap_or(self.held);
             }
-            if is_free {
-                return;
+            None => {
+                *contact = slide(sampler, Place { here, normal }, goal, local);
+                self.held = Vector::ZERO;
             }
+        }
+        *contact = *contact || was_held && is_held_still(sampler, here, normal, goal.device);
+        if !*contact {
+            *hold = Hold::None;
+        }
+    }
+}
+
+/// How a proxy flew.
+struct Flight {
+    /// Whether a surface stopped it, along which it must slide.
+    is_stopped: bool,
+    has_flown: bool,
+}
+
+/// Moves the proxy `here` straight to a point, up to the first surface.
+///
+/// Conservative advancement (Mirtich 1996): no surface is within the free radius.
+#[inline(always)]
+fn fly(sampler: &mut Sampler<'_>, here: &mut Sample, to: Point<3>) -> Flight {
+    let mut has_flown = false;
+    loop {
+        let way = to - here.point;
+        let squared = way.dot(way);
+        let free = sampler.free_radius(here);
+        let is_free = free > 0.0 && free * free > squared;
+        let next = if is_free {
+            to
+        } else if free > 0.0 && free * free > WORTH_FLYING * WORTH_FLYING * squared {
+            here.point + way * (free / squared.sqrt())
+        } else {
+            return Flight { is_stopped: true, has_flown };
+        };
+        has_flown = true;
+        match sampler.distance(next) {
+            Some(sample) if sample.gap >= -sampler.tolerance() => *here = sample,
+            _ => return Flight { is_stopped: false, has_flown },
+        }
+        if is_free {
+            return Flight { is_stopped: false, has_flown };
         }
     }
 }

@@ -128,6 +128,19 @@ impl<'a> Sampler<'a> {
         self.nearby
     }
 
+    /// This sampler, with the budget that it has left, among other bodies.
+    pub(crate) fn among<'b>(&self, nearby: &'b Nearby<'b>) -> Sampler<'b>
+    where
+        'a: 'b,
+    {
+        Sampler { nearby, ..*self }
+    }
+
+    /// Counts the evaluations of a sampler that began with this one's budget.
+    pub(crate) fn spent_by(&mut self, other: &Sampler<'_>) {
+        self.evaluations = self.evaluations.max(other.evaluations);
+    }
+
     /// Sets the punctured layers.
     pub(crate) fn puncture(&mut self, punctured: Punctured) {
         self.punctured = punctured;

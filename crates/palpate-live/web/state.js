@@ -45,7 +45,7 @@ export const state = {
   events: [],
   /** The stages of the safety chain in their order: in how many ticks each has acted, and when
    * that was seen to grow last, on the clock of `performance.now()`.
-   * @type {{ name: string, ticks: number, acted: number }[]} */
+   * @type {{ name: string, ticks: number, largest: number, acted: number }[]} */
   safety: [],
   /** Whether the page draws by itself: else the program draws space, and the page maps of planes. */
   hasCard: true,

@@ -21,7 +21,8 @@
 //! In the first four the hand may be anywhere, and in a body for any reason: these are beginnings. In
 //! the others a hand is at work, and what zeroed the force is not its doing: a wall that stayed soft
 //! would let it through. Neither of them ends a wait that goes on. An edit that carries a proxy out
-//! of a body restarts no rise: see [`Change::Carried`].
+//! of a body restarts no rise, nor do bodies that close on the hand: see [`Change::Carried`] and
+//! [`Change::Squeezed`].
 
 use palpate_device::{DeviceProfile, GripperProfile, TurningProfile, shortened};
 use palpate_field::Vector;
@@ -34,23 +35,26 @@ use crate::passivity::InnerProduct;
 /// the hand meanwhile.
 const STEP: f64 = 0.3;
 
-/// Follows a wanted force by 0.3 N a tick, from an edit on until it has caught up.
+/// Follows a wanted force by 0.3 N a tick, from an edit or a squeeze on until it has caught up.
 ///
-/// A force of zero is followed at once: then nothing pushes, and what lingered would push a hand
-/// that nothing touches.
+/// After an edit a force of zero is followed at once: then nothing pushes, and what lingered would
+/// push a hand that nothing touches. In a squeeze bodies still hold the hand, so the force falls by
+/// 0.3 N a tick.
 #[derive(Clone, Copy, Debug)]
 pub struct Approach {
     /// The most by which the force changes in a tick [N]; for a torque [N·m].
     step: f64,
     last: Vector<f64, 3>,
     is_on: bool,
+    /// Whether a force of zero is followed step by step too.
+    falls_slowly: bool,
 }
 
 impl Approach {
     /// For forces, or for torques where a radian counts as the length `unit` [m].
     #[must_use]
     pub fn new(unit: f64) -> Self {
-        Self { step: STEP * unit, last: Vector::ZERO, is_on: false }
+        Self { step: STEP * unit, last: Vector::ZERO, is_on: false, falls_slowly: false }
     }
 
     /// Takes as large steps as before where a radian counts as a length that is so many times
@@ -61,11 +65,20 @@ impl Approach {
         self.step *= longer;
     }
 
-    /// Begins, from the last force on.
+    /// Begins, from the last force on, if a change asks for it.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
-    pub fn begin(&mut self) {
-        self.is_on = true;
+    pub fn begin(&mut self, change: Change) {
+        match change {
+            Change::Carried => self.is_on = true,
+            Change::Squeezed => (self.is_on, self.falls_slowly) = (true, true),
+            Change::None | Change::Begins => {}
+        }
+    }
+
+    /// Whether a force of zero is followed step by step too.
+    pub(crate) fn falls_slowly(&self) -> bool {
+        self.falls_slowly
     }
 
     /// One tick: the force for the force `wanted`; `None` if the force had caught up before.
@@ -77,9 +90,9 @@ impl Approach {
             return None;
         }
         let change = shortened(wanted - self.last, self.step);
-        match change.filter(|_| wanted != Vector::ZERO) {
+        match change.filter(|_| self.falls_slowly || wanted != Vector::ZERO) {
             Some(change) => self.last += change,
-            None => (self.last, self.is_on) = (wanted, false),
+            None => (self.last, self.is_on, self.falls_slowly) = (wanted, false, false),
         }
         Some(self.last)
     }
@@ -177,6 +190,9 @@ pub enum Change {
     /// An edit of the bodies carried the proxy, or the tool, out of them: the wanted force follows at
     /// once, and the force changes by at most 0.3 N a tick until it is there.
     Carried,
+    /// Bodies that close left the hand no room, or it has room again: as for
+    /// [`Carried`](Self::Carried), also where the force becomes zero.
+    Squeezed,
 }
 
 /// A limit on a force that was zeroed, which rises until the force is below it.

@@ -300,8 +300,9 @@ impl SafetyChain {
         let PortState { position, velocity, free_force, late, elapsed, stiffness, .. } = *state;
         let PortState { start, change, bodies, .. } = *state;
         let input = TickInput { is_sound, late, start, change, cut };
-        let Risen { wanted, part: rise, is_rising } =
-            self.channel.risen(wanted, free_force, &input);
+        let risen = self.channel.risen(wanted, free_force, &input);
+        let Risen { wanted, part: rise, is_rising, .. } = risen;
+        let effort = risen.effort(effort, wanted.norm());
         let rising = if rise < 1.0 { free_force * rise } else { free_force };
         let elapsed = finite::elapsed(elapsed, self.period() + late.max(0.0));
         let options = self.passivity.options();
@@ -388,18 +389,18 @@ impl SafetyChain {
         self.drive.report()
     }
 
-    /// In how many ticks each stage has acted, as in [`report`](Self::report).
+    /// What each stage has done, as in [`report`](Self::report).
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     #[must_use]
-    pub fn stage_ticks(&self) -> StageTicks {
+    pub fn stage_effects(&self) -> StageEffects {
         let first = BeforeLimits {
             cycles: self.cycle.report().effect,
             guides: self.free.report().effect,
             passivity: self.passivity.report().effect,
             drives: self.drive.report().effect,
         };
-        StageTicks::of(first, &self.channel.effects, None)
+        StageEffects::of(first, &self.channel.effects, None)
     }
 
     /// The report of every stage so far.
@@ -431,17 +432,17 @@ const STAGES: [&str; 15] = [
     "lasting torque",
 ];
 
-/// In how many ticks each stage of a safety chain, or of several together, has acted.
+/// What each stage of a safety chain, or of several together, has done.
 ///
 /// ```
-/// use palpate_safety::StageTicks;
+/// use palpate_safety::StageEffects;
 ///
-/// let quiet = StageTicks::default();
+/// let quiet = StageEffects::default();
 /// assert_eq!(quiet.named().count(), 15);
-/// assert!(quiet.named().all(|(_, ticks)| ticks == 0));
+/// assert!(quiet.named().all(|(_, effect)| effect.ticks == 0));
 /// ```
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct StageTicks([u64; STAGES.len()]);
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct StageEffects([Effect; STAGES.len()]);
 
 /// What the stages before the limits have done.
 pub(crate) struct BeforeLimits {
@@ -451,13 +452,14 @@ pub(crate) struct BeforeLimits {
     pub(crate) drives: Effect,
 }
 
-impl StageTicks {
-    /// Each stage in words with its ticks, in the order in which the stages act.
-    pub fn named(&self) -> impl Iterator<Item = (&'static str, u64)> + '_ {
+impl StageEffects {
+    /// Each stage in words with what it has done, in the order in which the stages act. How much held
+    /// readings change a force is not known.
+    pub fn named(&self) -> impl Iterator<Item = (&'static str, Effect)> + '_ {
         STAGES.into_iter().zip(self.0)
     }
 
-    /// The ticks of a chain: of the stages before its limits, of its force, and of its torque.
+    /// What a chain has done: the stages before its limits, of its force, and of its torque.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     pub(crate) fn of(
@@ -465,23 +467,23 @@ impl StageTicks {
         force: &Effects,
         torque: Option<&Effects>,
     ) -> Self {
-        let turning = |of: fn(&Effects) -> u64| torque.map_or(0, of);
+        let turning = |of: fn(&Effects) -> Effect| torque.map_or(Effect::default(), of);
         Self([
-            0,
-            cycles.ticks,
-            guides.ticks,
-            passivity.ticks,
-            drives.ticks,
-            force.slew.ticks,
-            force.force_limit.ticks,
-            force.continuous.ticks,
-            force.guard.ticks,
-            force.ramp.ticks,
-            force.watchdog.ticks,
-            force.emergency_stop.ticks,
-            turning(|torque| torque.slew.ticks),
-            turning(|torque| torque.force_limit.ticks),
-            turning(|torque| torque.continuous.ticks),
+            Effect::default(),
+            cycles,
+            guides,
+            passivity,
+            drives,
+            force.slew,
+            force.force_limit,
+            force.continuous,
+            force.guard,
+            force.ramp,
+            force.watchdog,
+            force.emergency_stop,
+            turning(|torque| torque.slew),
+            turning(|torque| torque.force_limit),
+            turning(|torque| torque.continuous),
         ])
     }
 
@@ -491,12 +493,12 @@ impl StageTicks {
     #[must_use]
     pub fn with_readings(mut self, readings: &ReadingsReport) -> Self {
         let [held, ..] = &mut self.0;
-        *held = readings.held + readings.turns_held;
+        held.ticks = readings.held + readings.turns_held;
         self
     }
 }
 
-impl From<&SafetyReport> for StageTicks {
+impl From<&SafetyReport> for StageEffects {
     fn from(report: &SafetyReport) -> Self {
         let force = Effects {
             slew: report.slew,
@@ -524,10 +526,10 @@ impl From<&SafetyReport> for StageTicks {
     }
 }
 
-impl Sum for StageTicks {
+impl Sum for StageEffects {
     fn sum<I: Iterator<Item = Self>>(all: I) -> Self {
         all.fold(Self::default(), |mut sum, one| {
-            sum.0.iter_mut().zip(one.0).for_each(|(sum, ticks)| *sum += ticks);
+            sum.0.iter_mut().zip(one.0).for_each(|(sum, effect)| sum.add(effect));
             sum
         })
     }

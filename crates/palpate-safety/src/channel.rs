@@ -42,6 +42,15 @@ pub(crate) struct Risen {
     pub(crate) part: f64,
     /// Whether the force rises, or follows an edit.
     pub(crate) is_rising: bool,
+    /// Whether it falls slowly to what is wanted, in a squeeze.
+    pub(crate) is_falling: bool,
+}
+
+impl Risen {
+    /// The size of what is wanted, `effort`, or of what is left to fall.
+    pub(crate) fn effort(&self, effort: f64, left: f64) -> f64 {
+        if self.is_falling { effort.max(left) } else { effort }
+    }
 }
 
 /// What a [`Channel`] gives in a tick.
@@ -124,9 +133,7 @@ impl Channel {
         free: Vector<f64, 3>,
         input: &TickInput,
     ) -> Risen {
-        if input.change == Change::Carried {
-            self.approach.begin();
-        }
+        self.approach.begin(input.change);
         let near = if input.is_sound { self.approach.step(wanted) } else { None };
         let (aim, follows) = (wanted, near.is_some());
         let wanted = near.unwrap_or(aim);
@@ -137,7 +144,8 @@ impl Channel {
         let is_rising = part.is_some() || follows;
         let part = part.unwrap_or(1.0);
         let wanted = if part < 1.0 { wanted * part } else { wanted };
-        Risen { wanted, part, is_rising }
+        let is_falling = follows && self.approach.falls_slowly();
+        Risen { wanted, part, is_rising, is_falling }
     }
 
     /// The part of `wanted` and `free`, in [0, 1], that may pass in this tick while the force rises

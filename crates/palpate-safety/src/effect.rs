@@ -38,6 +38,14 @@ impl Effect {
         self.largest = self.largest.max(change);
     }
 
+    /// Adds the actions of the same stage in another chain.
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    pub(crate) fn add(&mut self, other: Self) {
+        self.ticks += other.ticks;
+        self.largest = self.largest.max(other.largest);
+    }
+
     /// Out of line, because forces usually pass unchanged.
     #[cold]
     fn note<V: InnerProduct>(&mut self, before: V, after: V) -> V {

@@ -44,7 +44,7 @@ mod wrench;
 
 pub use acceptance::{AS_IS_MOST, Acceptance, Accepted, Rule};
 pub use approach::{Approach, Change, Recovery, check_bears};
-pub use chain::{PortState, SafetyChain, SafetyOptions, StageTicks};
+pub use chain::{PortState, SafetyChain, SafetyOptions, StageEffects};
 pub use drive::{DriveReport, MovingBodies};
 pub use effect::Effect;
 pub use error::SafetyError;

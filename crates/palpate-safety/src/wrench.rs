@@ -21,7 +21,7 @@ use crate::limit_cycle::{CycleInput, ForcesOf, LimitCycle, LimitCycleOptions};
 use crate::limits::DeviceLimits;
 use crate::passivity::{InnerProduct, Passivity, PassivityOptions, PortMotion};
 use crate::{
-    Accepted, Change, PassivityReport, SafetyReport, SafetySettings, StageTicks, TurningReport,
+    Accepted, Change, PassivityReport, SafetyReport, SafetySettings, StageEffects, TurningReport,
     finite,
 };
 use palpate_device::NumberError;
@@ -311,6 +311,8 @@ impl WrenchChain {
         let has_risen = !along.is_rising && !about.is_rising;
         let Risen { part: rise, .. } = along;
         let wanted = SpatialVector { along: along.wanted, about: about.wanted };
+        let left = self.effort(wanted);
+        let effort = along.effort(effort, left).max(about.effort(effort, left));
         let options = *self.passivity.options();
         let elapsed = finite::elapsed(elapsed, options.period + late.max(0.0));
         let as_lengths = wanted.turning(1.0 / unit);
@@ -404,11 +406,11 @@ impl WrenchChain {
         self.drive.report()
     }
 
-    /// In how many ticks each stage has acted, as in [`report`](Self::report).
+    /// What each stage has done, as in [`report`](Self::report).
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     #[must_use]
-    pub fn stage_ticks(&self) -> StageTicks {
+    pub fn stage_effects(&self) -> StageEffects {
         let first = BeforeLimits {
             cycles: self.cycle.report().effect,
             guides: self.free.report().effect,
@@ -416,7 +418,7 @@ impl WrenchChain {
             drives: self.drive.report().effect,
         };
         let torque = Some(&self.torque.effects);
-        StageTicks::of(first, &self.force.effects, torque)
+        StageEffects::of(first, &self.force.effects, torque)
     }
 
     /// What every stage did so far, in translation and rotation.

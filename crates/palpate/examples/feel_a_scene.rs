@@ -35,10 +35,9 @@ fn main() -> Result<(), Error> {
         TraceWriter::new(file).with_poses(moving, |body, time| scene.pose_at(body, time));
 
     // The servo never waits for the file: rows wait for it, for up to half a second.
-    let moved = scene.clone();
     let options =
         ThreadOptions { duration: Some(SECONDS), rows: Some(500), ..ThreadOptions::default() }
-            .with_motion(move |time, set_pose| moved.motion()(time, set_pose));
+            .with_motion(scene.motion());
     let mut thread = ServoThread::start(servo, Box::new(device), options)?;
     let records = thread.take_records();
     let mut records =

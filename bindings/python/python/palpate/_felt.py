@@ -125,8 +125,9 @@ class Event(Answer):
         point: The contact point.
         body: The name of the body; None of a button.
         button: The number of the button, from 0; None of what is no button.
-        kind: "touch", "leave", "slip", "stick", "pop", "carried", "placed", "button_down" or
-            "button_up". An edit carries what it covers, or places it anew.
+        kind: "touch", "leave", "slip", "stick", "pop", "carried", "placed", "squeezed", "button_down"
+            or "button_up". An edit carries what it covers, or places it anew. A body that moves
+            squeezes a hand that it leaves no room.
         speed: Of a touch, the speed along the normal, relative to the body [m/s].
         force: Of a pop, the force that broke the layer [N].
         distance: Of what is carried, how far [m].

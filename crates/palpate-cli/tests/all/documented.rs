@@ -140,7 +140,7 @@ fn answers_are_as_their_schema_says() {
 #[test]
 fn the_table_of_devices_that_differ_from_their_profiles_is_current() {
     let page =
-        std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/guide/touch.md");
+        std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/guide/rendered.md");
     let written = std::fs::read_to_string(page).unwrap();
     let row = text(&palpate(&["devices", "--stability", "--profile", "omni"]));
     assert!(written.contains(row.lines().last().unwrap()), "{row}");
@@ -150,7 +150,7 @@ fn the_table_of_devices_that_differ_from_their_profiles_is_current() {
 #[test]
 fn the_table_of_materials_on_devices_is_current() {
     let page =
-        std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/guide/touch.md");
+        std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/guide/rendered.md");
     let written = std::fs::read_to_string(&page).unwrap();
     let (begin, end) = ("<!-- palpate devices --materials -->\n", "<!-- end -->\n");
     let (before, rest) = written.split_once(begin).unwrap();

@@ -115,7 +115,7 @@ pub fn handoff_with(
         tool: servo.held_tool(),
         is_stopped: servo.is_stopped(),
         is_lifted: servo.is_lifted(),
-        safety: servo.stage_ticks(),
+        safety: servo.stage_effects(),
         buttons: servo.buttons(),
         gripper: servo.gripper(),
         gripper_force: servo.gripper_force(),
@@ -360,7 +360,7 @@ impl ServoEnd {
             snapshot.tool = servo.held_tool();
             snapshot.is_stopped = servo.is_stopped();
             snapshot.is_lifted = servo.is_lifted();
-            snapshot.safety = servo.stage_ticks();
+            snapshot.safety = servo.stage_effects();
             snapshot.buttons = servo.buttons();
             snapshot.gripper = servo.gripper();
             snapshot.gripper_force = servo.gripper_force();

@@ -185,6 +185,44 @@ fn layers(nearby: &Nearby<'_>, body: u32) -> Option<usize> {
 /// A point with its gap in the bodies before.
 type Known = (Point<3>, f64);
 
+/// The place outside all bodies that is nearest to `place`, near the sample `start`; `None` if none is
+/// found soon. `up` replaces the normal where there is none.
+///
+/// As in a [slide](crate::contact), each sample is the point nearest to `place` above the tangent
+/// planes of those before. Here the way between them need not be free.
+pub(super) fn nearest_free(
+    sampler: &mut Sampler<'_>,
+    place: Point<3>,
+    start: Sample,
+    up: Vector<f64, 3>,
+) -> Option<Sample> {
+    let tolerance = sampler.tolerance();
+    let (mut planes, mut here, mut best) = (Planes::new(), start, None::<Sample>);
+    for _ in 0..MOST_PLANES {
+        let (normal, gap) = sampler.tangent(&here, up);
+        let wall = PlaneConstraint { point: here.point - normal * gap, normal };
+        if planes.is_empty() {
+            planes.add(wall);
+        } else {
+            planes.learn(here.point, wall, gap);
+        }
+        let Some(next) = planes.closest(place) else { break };
+        let way = (next - here.point).norm();
+        let is_there = here.gap >= -tolerance && way <= SHORTEST * (next - place).norm();
+        if is_there {
+            return Some(here);
+        }
+        let Some(next) = sampler.gradient(next) else { break };
+        here = next;
+        let distance = |sample: &Sample| (sample.point - place).norm();
+        let is_better = best.is_none_or(|best| distance(&here) < distance(&best));
+        if here.gap >= -tolerance && is_better {
+            best = Some(here);
+        }
+    }
+    best
+}
+
 /// The search for the shortest way out.
 struct WayOut<'a> {
     /// The bodies before and after.
@@ -297,37 +335,10 @@ impl WayOut<'_> {
         }
     }
 
-    /// The place nearest to the proxy near a sample; `None` if none is found soon.
-    ///
-    /// As in a [slide](crate::contact), each sample is the point nearest to the proxy above the
-    /// tangent planes of those before. Here the way between them need not be free: whether that
-    /// to the place was, [`was_free`](Self::was_free) tells.
+    /// The place nearest to the proxy near a sample; `None` if none is found soon. Whether the way to
+    /// it was free, [`was_free`](Self::was_free) tells.
     fn nearest(&mut self, start: Sample, up: Vector<f64, 3>) -> Option<Sample> {
-        let (place, tolerance) = (self.covered.point, self.after.tolerance());
-        let (mut planes, mut here, mut best) = (Planes::new(), start, None::<Sample>);
-        for _ in 0..MOST_PLANES {
-            let (normal, gap) = self.after.tangent(&here, up);
-            let wall = PlaneConstraint { point: here.point - normal * gap, normal };
-            if planes.is_empty() {
-                planes.add(wall);
-            } else {
-                planes.learn(here.point, wall, gap);
-            }
-            let Some(next) = planes.closest(place) else { break };
-            let way = (next - here.point).norm();
-            let is_there = here.gap >= -tolerance && way <= SHORTEST * (next - place).norm();
-            if is_there {
-                return Some(here);
-            }
-            let Some(next) = self.after.gradient(next) else { break };
-            here = next;
-            let distance = |sample: &Sample| (sample.point - place).norm();
-            let is_better = best.is_none_or(|best| distance(&here) < distance(&best));
-            if here.gap >= -tolerance && is_better {
-                best = Some(here);
-            }
-        }
-        best
+        nearest_free(&mut self.after, self.covered.point, start, up)
     }
 
     /// Takes a sample if it is the best so far, and the way to it was free.

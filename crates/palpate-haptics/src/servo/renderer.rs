@@ -13,7 +13,7 @@ use palpate_device::{
 };
 use palpate_field::{Point, Pose, Vector};
 use palpate_safety::{
-    Arrival, Arrivals, ReadingsReport, SafetyReport, StageTicks, WorkspaceMap, WrenchChain,
+    Arrival, Arrivals, ReadingsReport, SafetyReport, StageEffects, WorkspaceMap, WrenchChain,
 };
 
 use crate::accepted_bodies::AcceptedBodies;
@@ -358,23 +358,34 @@ impl Renderer {
     pub(crate) fn move_body(&mut self, body: usize, to: &Placement, largest_speed: f64) {
         let Placement { pose, over } = *to;
         let ticks = over * self.setting.options.rate;
-        let Self { accepted, contacts, rendered, setting, .. } = self;
+        let Self { accepted, contacts, setting, .. } = self;
         let bodies = &mut accepted.bodies;
         let radius = setting.options.probe.radius();
-        let way = |bodies: &Bodies, touch: &Touch| {
-            let reach = REACHES * (radius + touch.depth());
-            bodies.way_to(body, &pose, (touch.device, reach))
-        };
-        let way_of_any = contacts.touches.iter().map(|touch| way(bodies, touch));
+        let way =
+            |touch: &Touch| bodies.way_to(body, &pose, (touch.device, reach(radius, touch)));
+        let way_of_any = contacts.touches.iter().map(way);
         let way_of_any = way_of_any.fold(0.0, f64::max);
         // Written so that NaN does not jump: a hand that is lost touches nothing.
         let jumps = way_of_any * setting.options.rate > largest_speed * ticks.max(1.0);
-        if !jumps {
+        if jumps {
+            self.jump(body, pose);
+        } else {
             bodies.move_to(body, pose, ticks);
-            return;
         }
+    }
+
+    /// Lets a body jump to a pose: the proxies that are or were near it are placed anew, and the force
+    /// rises from what it was.
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    #[inline(never)]
+    pub(crate) fn jump(&mut self, body: usize, pose: Pose<3>) {
+        let Self { accepted, contacts, rendered, setting, .. } = self;
+        let bodies = &mut accepted.bodies;
+        let radius = setting.options.probe.radius();
         for (point, touch) in contacts.points.iter_mut().zip(&contacts.touches) {
-            point.see_jump(way(bodies, touch) > 0.0, touch.wanted);
+            let way = bodies.way_to(body, &pose, (touch.device, reach(radius, touch)));
+            point.see_jump(way > 0.0, touch.wanted);
         }
         bodies.jump_to(body, pose);
         if let Rendered::Tool(coupled) = rendered {
@@ -576,6 +587,11 @@ impl Renderer {
     }
 }
 
+/// How near a body is to a contact point that feels it [m].
+fn reach(radius: f64, touch: &Touch) -> f64 {
+    REACHES * (radius + touch.depth())
+}
+
 /// The bodies that a contact can reach in a tick.
 fn nearby<'a>(
     bodies: &'a Bodies,
@@ -706,15 +722,15 @@ impl Renderer {
         })
     }
 
-    /// In how many ticks each stage of the safety chains of all contact points has acted; zero for an
+    /// What each stage of the safety chains of all contact points has done; nothing for an
     /// [unprotected](crate::Unprotected) servo.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     #[must_use]
     #[inline(never)]
-    pub fn stage_ticks(&self) -> StageTicks {
-        self.with_ports(Port::stage_ticks, WrenchChain::stage_ticks)
-            .map(|(ticks, readings)| ticks.with_readings(&readings))
+    pub fn stage_effects(&self) -> StageEffects {
+        self.with_ports(Port::stage_effects, WrenchChain::stage_effects)
+            .map(|(effects, readings)| effects.with_readings(&readings))
             .sum()
     }
 }

@@ -5,7 +5,7 @@
 
 use std::fmt::{Display, Formatter, Result};
 
-use palpate_safety::{PassivityReport, SafetyReport, StageTicks};
+use palpate_safety::{Effect, PassivityReport, SafetyReport, StageEffects};
 
 use super::connection::ConnectionReport;
 use super::display::NOT_RELEASED;
@@ -128,21 +128,11 @@ fn write_safety(f: &mut Formatter<'_>, safety: &[SafetyReport]) -> Result {
         line(f, "", format_args!("bodies that move did {driven:.3} mJ of work on the hand"))?;
     }
     let ticks = |of: fn(&SafetyReport) -> u64| safety.iter().map(of).sum::<u64>();
-    let stages: StageTicks = safety.iter().map(StageTicks::from).sum();
-    let acted = stages.named().filter(|(_, ticks)| *ticks > 0);
-    let acted: Vec<_> = acted.map(|(stage, ticks)| format!("{stage} {ticks}")).collect();
+    let stages: StageEffects = safety.iter().map(StageEffects::from).sum();
+    let acted = stages.named().filter(|(_, effect)| effect.ticks > 0);
+    let acted: Vec<_> = acted.map(|(stage, effect)| acted_in_words(stage, effect)).collect();
     let acted = if acted.is_empty() { "nothing to do".to_owned() } else { acted.join(", ") };
     line(f, "safety, ticks", acted)?;
-    let most = |of: fn(&SafetyReport) -> f64| safety.iter().map(of).fold(0.0, f64::max);
-    for (stage, taken) in [
-        ("passivity", most(|point| point.passivity.effect.largest)),
-        ("passivity of guides", most(|point| point.free_forces.effect.largest)),
-        ("power of drives", most(|point| point.drives.effect.largest)),
-    ] {
-        if taken > 0.0 {
-            line(f, "", format_args!("{stage} took away {taken:.3} N at most"))?;
-        }
-    }
     let least = safety.iter().map(|point| point.limit_cycles.least_part).fold(1.0, f64::min);
     if least < 1.0 {
         let said = "oscillated against bodies, which became softer: check its profile";
@@ -154,5 +144,15 @@ fn write_safety(f: &mut Formatter<'_>, safety: &[SafetyReport]) -> Result {
         0 => line(f, "", format_args!("{trips} watchdog trips")),
         1 => line(f, "", format_args!("{trips} watchdog trips, 1 emergency stop")),
         stops => line(f, "", format_args!("{trips} watchdog trips, {stops} emergency stops")),
+    }
+}
+
+/// A stage with its ticks, and the most that it changed a force or a torque by.
+fn acted_in_words(stage: &str, Effect { ticks, largest, .. }: Effect) -> String {
+    let unit = if stage.contains("torque") { "N·m" } else { "N" };
+    if largest > 0.0 {
+        format!("{stage} {ticks} (up to {largest:.3} {unit})")
+    } else {
+        format!("{stage} {ticks}")
     }
 }

@@ -3,9 +3,8 @@
 
 //! Running a servo with a device for a time.
 
-use crate::{Control, HandoffOptions, HapticsError, Progress, Servo, handoff};
+use crate::{Control, HandoffOptions, HapticsError, NextPose, Progress, Servo, handoff};
 use palpate_device::{Device, NumberError};
-use palpate_field::Pose;
 use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 
@@ -43,13 +42,14 @@ impl std::fmt::Debug for Watch<'_> {
 }
 
 /// A closure that moves bodies before each tick: it gets the time of the tick [s] and a function
-/// that sets the pose of a body by its index, as [`Servo::set_pose`] does.
+/// that sets the pose of a body by its index, as [`Servo::set_pose`] does, or lets the body jump
+/// there.
 ///
 /// Set the poses of moving bodies at every tick: the velocity of a body is its motion since the
 /// tick before.
 ///
 /// Real-time: the closure runs in the loop, and should not allocate, wait or panic.
-pub type BodyMotion<'a> = &'a mut dyn FnMut(f64, &mut dyn FnMut(usize, Pose<3>));
+pub type BodyMotion<'a> = &'a mut dyn FnMut(f64, &mut dyn FnMut(usize, NextPose));
 
 /// A closure that receives the rows of all ticks, in order of time, then of contact point.
 ///

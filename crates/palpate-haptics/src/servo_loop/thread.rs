@@ -3,9 +3,10 @@
 
 //! A servo in a thread of its own.
 
-use crate::{Control, HandoffOptions, HapticsError, Servo, ServoEnd, StopSwitch, handoff_with};
+use crate::{
+    Control, HandoffOptions, HapticsError, NextPose, Servo, ServoEnd, StopSwitch, handoff_with,
+};
 use palpate_device::{Device, NumberError};
-use palpate_field::Pose;
 use std::fmt;
 use std::panic::resume_unwind;
 use std::thread::JoinHandle;
@@ -26,7 +27,7 @@ const PATIENCE: Duration = Duration::from_secs(1);
 
 /// A closure that moves bodies before each tick in a servo's thread, as [`BodyMotion`] does in a
 /// call.
-pub type ThreadMotion = Box<dyn FnMut(f64, &mut dyn FnMut(usize, Pose<3>)) + Send>;
+pub type ThreadMotion = Box<dyn FnMut(f64, &mut dyn FnMut(usize, NextPose)) + Send>;
 
 /// How a thread runs a servo.
 ///
@@ -106,7 +107,7 @@ impl ThreadOptions {
     ///     duration: Some(0.01),
     ///     ..ThreadOptions::default()
     /// }
-    /// .with_motion(|time, set_pose| set_pose(0, Pose::translation([0.0, time, 0.0])));
+    /// .with_motion(|time, set_pose| set_pose(0, Pose::translation([0.0, time, 0.0]).into()));
     /// let thread = ServoThread::start_on(VirtualClock::new(), servo, device, options)?;
     /// let report = thread.join().report;
     /// assert!((report.largest_depth - 0.006).abs() < 1e-9); // after 9 ms
@@ -116,7 +117,7 @@ impl ThreadOptions {
     #[must_use]
     pub fn with_motion(
         self,
-        motion: impl FnMut(f64, &mut dyn FnMut(usize, Pose<3>)) + Send + 'static,
+        motion: impl FnMut(f64, &mut dyn FnMut(usize, NextPose)) + Send + 'static,
     ) -> Self {
         Self { motion: Some(Box::new(motion)), ..self }
     }

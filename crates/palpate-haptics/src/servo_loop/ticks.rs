@@ -5,9 +5,7 @@
 
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-use crate::handoff::LARGEST_SPEED;
-use crate::servo::Placement;
-use crate::{Servo, ServoEnd};
+use crate::{NextPose, Servo, ServoEnd};
 use palpate_device::{Buttons, Device, DeviceLost, PointState, Reading};
 use std::any::Any;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -323,8 +321,8 @@ impl<'a, 'v> ServoLoop<'a, 'v> {
         }
         if let Some(motion) = &mut self.motion {
             let servo = self.servo.renderer_mut();
-            motion(self.time, &mut |body, pose| {
-                servo.move_body(body, &Placement { pose, over: 0.0 }, LARGEST_SPEED);
+            motion(self.time, &mut |body, NextPose { pose, jumps }| {
+                if jumps { servo.jump(body, pose) } else { servo.set_pose(body, pose) }
             });
         }
         self.servo.set_reading(reading);

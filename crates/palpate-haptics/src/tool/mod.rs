@@ -23,6 +23,7 @@ mod settle;
 #[expect(clippy::indexing_slicing, reason = "made at set-up, never in a tick")]
 mod shell;
 mod spread;
+mod squeezed;
 mod state;
 mod sweep;
 
@@ -31,7 +32,7 @@ use palpate_field::{Pose, Vector};
 use crate::bodies::Bodies;
 use crate::error::HapticsError;
 use crate::event::{Event, Reaction};
-use crate::nearby::{Nearby, Punctured};
+use crate::nearby::{Nearby, Punctured, Yielding};
 use crate::proxy::{Edited, MOST_OF_POINT};
 use crate::sampler::Sampler;
 use carry_out::Covering;
@@ -66,9 +67,9 @@ const AT_REST: f64 = 1e-3;
 /// slides, but the tool crosses walls thinner than two skins.
 const SKIN: f64 = 1e-3;
 
-/// The most events of a tool in a tick: a leave and a touch, or a slip or stick; and what an edit
-/// did.
-const MOST_EVENTS: usize = 3;
+/// The most events of a tool in a tick: a leave and a touch, or a slip or stick; what an edit did; and
+/// a squeeze.
+const MOST_EVENTS: usize = 4;
 
 /// A rigid tool that is coupled to the hand and stopped by bodies: a god-object with six
 /// degrees of freedom.
@@ -183,6 +184,10 @@ pub struct Tool {
     pub(crate) bodies_moved: Twist,
     /// The body that the tool rests on.
     carrier: Option<u32>,
+    /// The bodies that the tool lies in, because they moved and left it no room.
+    yielding: Yielding,
+    /// Whether the tool lost its room in this tick, or has room again.
+    pub(crate) is_squeezing: bool,
     events: FixedList<Event>,
     tick: u64,
     /// The least radius of the shell's points [m].
@@ -217,6 +222,8 @@ impl Tool {
             hand_velocity: Vector::ZERO,
             bodies_moved: Twist::NONE,
             carrier: None,
+            yielding: Yielding::default(),
+            is_squeezing: false,
             events: FixedList::with_capacity(MOST_EVENTS),
             tick: 0,
             radius: radii.fold(f64::INFINITY, f64::min),
@@ -287,6 +294,7 @@ impl Tool {
     pub fn hover(&mut self, device: &ToolState) {
         self.events.clear();
         (self.edited, self.begins, self.is_beginning) = (None, false, false);
+        self.is_squeezing = false;
         self.bodies_moved = Twist::NONE;
         self.lose_bodies();
         let was = Before::of(&self.touch);
@@ -304,7 +312,7 @@ impl Tool {
     /// Discards all evaluations of the bodies.
     fn lose_bodies(&mut self) {
         self.scan.forget();
-        self.carrier = None;
+        (self.carrier, self.yielding) = (None, Yielding::default());
     }
 
     /// One tick: moves the tool towards `device` as far as `bodies` let it, and computes force
@@ -321,7 +329,7 @@ impl Tool {
     #[inline(never)]
     pub fn step(&mut self, bodies: &mut Bodies, device: &ToolState) -> &ToolTouch {
         self.events.clear();
-        (self.edited, self.begins) = (None, false);
+        (self.edited, self.begins, self.is_squeezing) = (None, false, false);
         self.bodies_moved = Twist::NONE;
         let (mut list, mut reactions) = bodies.take_scratch();
         reactions.fill(Reaction::NONE);
@@ -368,11 +376,18 @@ impl Tool {
         let moved = carry.map_or(moved, |carry| moved.max(carry.way(reach)));
         let lengths = self.lengths(&nearby, &start, &motion, moved);
         self.scan.begin(&self.shell, self.options.budget);
+        let (everything, was, was_yielding) = (nearby, start, self.yielding);
+        self.look_for_room(&everything, &start, lengths);
+        let nearby = everything.without(self.yielding);
         let start = carry.map_or(start, |carry| self.carried(&nearby, start, &carry, lengths));
         let start = self.edited_start(&nearby, start, lengths);
         let surroundings = Surroundings { shell: &self.shell, nearby: &nearby };
         let ends = Ends { start, goal: device.pose };
         self.rest_search.settle(&mut self.scan, surroundings, ends, lengths);
+        let is_stuck = !self.rest_search.rest.is_outside && nearby.has_moved();
+        if is_stuck && self.touch.contact {
+            self.make_room(&nearby, Ends { start: was, ..ends }, lengths);
+        }
         let rest = &self.rest_search.rest;
         self.is_beginning |= self.pose.is_none();
         let is_placed = self.pose.is_none() && rest.pose != device.pose;
@@ -397,6 +412,7 @@ impl Tool {
         let moved = held.or_else(|| self.bodies_moved(&nearby));
         self.bodies_moved = moved.filter(|_| !is_placed).unwrap_or(Twist::NONE);
         self.tell_edited();
+        self.tell_squeezed(was_yielding);
         self.react(&nearby, reactions);
     }
 

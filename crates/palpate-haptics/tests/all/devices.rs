@@ -4,7 +4,7 @@
 //! What loops do around a device: opened, watched, paced, lost, found, closed; and what else than
 //! contact points a device has.
 
-use palpate_haptics::{EventKind, HapticsError, Servo, ServoOptions};
+use palpate_haptics::{EventKind, HapticsError, NextPose, Servo, ServoOptions};
 use std::time::Duration;
 
 use palpate_device::{
@@ -398,7 +398,7 @@ fn a_slow_driver_gets_the_force_that_its_rate_allows() {
         let mut servo = Servo::for_device(wall(), &device).unwrap();
         let stiffness = servo.accepted()[0].device_stiffness;
         let (mut ticks, mut least) = (0, f64::INFINITY);
-        let mut drive = |time: f64, _: &mut dyn FnMut(usize, palpate_field::Pose<3>)| {
+        let mut drive = |time: f64, _: &mut dyn FnMut(usize, NextPose)| {
             let depth = (0.004 * time - 0.001).min(0.002);
             // What the passivity controller takes on the way in comes back to a hand at rest.
             if time > 2.0 {
@@ -531,7 +531,7 @@ fn a_driver_that_is_not_ready_is_waited_for_and_its_repeats_are_counted() {
     let (device, mut mailbox) = MailboxDevice::new(profile, 1).unwrap();
     let mut device = device.with_watchdog(Duration::from_millis(20));
     let mut servo = Servo::for_device(wall(), &device).unwrap();
-    let mut sets = |time: f64, _: &mut dyn FnMut(usize, palpate_field::Pose<3>)| {
+    let mut sets = |time: f64, _: &mut dyn FnMut(usize, NextPose)| {
         // From the tenth tick on every second tick has a new state.
         let tick = (time * 1000.0).round() as u32;
         if tick >= 10 && tick.is_multiple_of(2) {

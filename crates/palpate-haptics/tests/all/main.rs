@@ -44,6 +44,7 @@ mod resting;
 mod runs;
 mod scale;
 mod seams;
+mod squeezed;
 mod stability;
 mod strikes;
 mod swapped;

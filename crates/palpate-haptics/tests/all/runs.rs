@@ -13,8 +13,8 @@ use palpate_haptics::servo_loop::{
     Clock, Ending, Pace, Recorder, RunOptions, VirtualClock, run, run_on,
 };
 use palpate_haptics::{
-    Bodies, Body, HapticsError, Impact, Layer, Material, PopThrough, Probe, Protection, Servo,
-    ServoOptions, Surface,
+    Bodies, Body, HapticsError, Impact, Layer, Material, NextPose, PopThrough, Probe,
+    Protection, Servo, ServoOptions, Surface,
 };
 use palpate_sim::{HandPath, Interpolation, RecordedDevice, Tour};
 
@@ -115,8 +115,8 @@ fn a_body_that_moves_pushes_a_hand_at_rest_with_its_speed() {
     let bodies = Bodies::new(vec![wall]).unwrap();
     let mut servo = without_limits(Servo::new(bodies, 1, options).unwrap());
     let mut recorder = Recorder::new(64);
-    let mut rise = |time: f64, set_pose: &mut dyn FnMut(usize, Pose<3>)| {
-        set_pose(0, Pose::translation(Vector([0.0, 0.125 * time.min(0.25), 0.0])));
+    let mut rise = |time: f64, set_pose: &mut dyn FnMut(usize, NextPose)| {
+        set_pose(0, Pose::translation(Vector([0.0, 0.125 * time.min(0.25), 0.0])).into());
     };
     let options =
         RunOptions { recorder: Some(&mut recorder), motion: Some(&mut rise), ..fast(0.5) };
@@ -144,11 +144,9 @@ fn a_body_that_slides_past_drags_a_hand_at_rest() {
     let bodies = Bodies::new(vec![floor]).unwrap();
     let mut servo = without_limits(Servo::new(bodies, 1, options).unwrap());
     let mut recorder = Recorder::new(1000);
-    let mut slide = |time: f64, set_pose: &mut dyn FnMut(usize, Pose<3>)| {
-        set_pose(
-            0,
-            Pose::translation(Vector([0.2 * time, if time > 0.0 { 0.0 } else { -0.1 }, 0.0])),
-        );
+    let mut slide = |time: f64, set_pose: &mut dyn FnMut(usize, NextPose)| {
+        let height = if time > 0.0 { 0.0 } else { -0.1 };
+        set_pose(0, Pose::translation(Vector([0.2 * time, height, 0.0])).into());
     };
     let options =
         RunOptions { recorder: Some(&mut recorder), motion: Some(&mut slide), ..fast(1.0) };
@@ -164,7 +162,7 @@ fn a_panic_of_a_motion_ends_the_run_with_zero_forces() {
     let mut servo = wall_servo(ServoOptions::default());
     let mut device = still(-0.001, 0.1);
     let mut bad =
-        |time: f64, _: &mut dyn FnMut(usize, Pose<3>)| assert!(time < 0.05, "too late");
+        |time: f64, _: &mut dyn FnMut(usize, NextPose)| assert!(time < 0.05, "too late");
     let report =
         run(&mut servo, &mut device, RunOptions { motion: Some(&mut bad), ..fast(0.1) })
             .unwrap();

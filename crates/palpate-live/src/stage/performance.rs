@@ -8,7 +8,7 @@ use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender};
 use std::time::{Duration, Instant};
 
 use palpate::haptics::Event;
-use palpate::safety::StageTicks;
+use palpate::safety::StageEffects;
 use palpate::scene::{AnyScene, BuiltScene};
 use palpate::sim::HandPath;
 use tokio::sync::watch;
@@ -138,7 +138,7 @@ pub(super) struct Performance {
     /// Ticks that a clock that is held still has to go.
     ticks: u64,
     /// What the pages were told last of the safety chain, and how many frames ago.
-    safety: (StageTicks, u32),
+    safety: (StageEffects, u32),
     /// The page that leads the hand.
     leader: Option<PageId>,
 }
@@ -165,7 +165,7 @@ impl Performance {
             began: 0,
             recording: Recording::default(),
             ticks: 0,
-            safety: (StageTicks::default(), 0),
+            safety: (StageEffects::default(), 0),
             leader: None,
         }
     }
@@ -402,14 +402,14 @@ impl Performance {
     }
 
     /// Tells the pages what the safety chain did, if that is new and not told too often.
-    fn tell_safety(&mut self, now: StageTicks, is_frame: bool) {
+    fn tell_safety(&mut self, now: StageEffects, is_frame: bool) {
         let (told, frames) = &mut self.safety;
         *frames = frames.saturating_add(u32::from(is_frame));
         if *frames < SAFETY_FRAMES || *told == now && *frames < AGAIN_FRAMES {
             return;
         }
         self.safety = (now, 0);
-        let stage = |(name, ticks)| StageTold { name, ticks };
+        let stage = |(name, effect)| StageTold::new(name, effect);
         self.pages.broadcast(Told::Safety { stages: now.named().map(stage).collect() });
     }
 }

@@ -8,7 +8,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use palpate::device::DeviceProfile;
 use palpate::field::Point;
 use palpate::haptics::{Event, HapticsError, StopSwitch};
-use palpate::safety::{Recovery, SafetySettings, StageTicks, WorkspaceMap};
+use palpate::safety::{Recovery, SafetySettings, StageEffects, WorkspaceMap};
 use palpate::sim::{Hand, HandPath, SimulatedDevice, SteeredDevice, Steering};
 
 use palpate::scene::{BuiltScene, BuiltTool, ServoSettings};
@@ -49,7 +49,7 @@ pub(super) struct Room {
     /// Whether the servo was told that the hand is lifted.
     is_lifted: bool,
     /// What the safety chain had done by the last frame.
-    safety: StageTicks,
+    safety: StageEffects,
 }
 
 /// The largest values since the last frame.
@@ -138,9 +138,7 @@ impl Room {
             ..ThreadOptions::default()
         };
         if !scene.motions.is_empty() {
-            let moving = scene.clone();
-            options =
-                options.with_motion(move |time, set_pose| moving.motion()(time, set_pose));
+            options = options.with_motion(scene.motion());
         }
         let given = terms.clock.0.lock().unwrap_or_else(PoisonError::into_inner).take();
         let device = Box::new(device);
@@ -151,7 +149,7 @@ impl Room {
         let mut thread = thread.map_err(|error| error.to_string())?;
         let records = thread.take_records().ok_or("the servo keeps no rows")?;
         let (peaks, leader, is_lifted) = (Peaks::default(), Leader::default(), false);
-        let safety = StageTicks::default();
+        let safety = StageEffects::default();
         let mut room = Self {
             dimension: D,
             speed,
@@ -250,8 +248,8 @@ impl Room {
     }
 
     /// In how many ticks each stage of the safety chain has acted.
-    pub(super) fn safety(&mut self) -> StageTicks {
-        self.thread.control().latest().map_or(StageTicks::default(), |latest| latest.safety)
+    pub(super) fn safety(&mut self) -> StageEffects {
+        self.thread.control().latest().map_or(StageEffects::default(), |latest| latest.safety)
     }
 
     pub(super) fn take_tour(&mut self, tour: HandPath) {

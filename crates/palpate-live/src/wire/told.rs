@@ -5,6 +5,7 @@
 
 use palpate::field::Aabb;
 use palpate::haptics::Event;
+use palpate::safety::Effect;
 use palpate::scene::Scene;
 use serde::Serialize;
 use serde_json::{Map, Value};
@@ -104,6 +105,14 @@ pub(crate) struct StageTold {
     pub(crate) name: &'static str,
     /// In how many ticks it has changed a force.
     pub(crate) ticks: u64,
+    /// The largest change of the force [N] or of the torque [N·m].
+    pub(crate) largest: f64,
+}
+
+impl StageTold {
+    pub(crate) fn new(name: &'static str, Effect { ticks, largest, .. }: Effect) -> Self {
+        Self { name, ticks, largest }
+    }
 }
 
 /// A scene as it is edited and rendered.

@@ -5,7 +5,7 @@
 /**
  * The stages between the force that is wanted and the hand: what each does, and which act.
  *
- * @typedef {{ name: string, ticks: number }} Stage
+ * @typedef {{ name: string, ticks: number, largest: number }} Stage
  */
 
 import { norm } from '../scene/vectors.js';
@@ -44,10 +44,10 @@ const WORDS = {
 export function takeSafety(stages) {
   const now = performance.now();
   const before = new Map(state.safety.map((stage) => [stage.name, stage]));
-  state.safety = stages.map(({ name, ticks }) => {
+  state.safety = stages.map(({ name, ticks, largest }) => {
     const last = before.get(name);
     const acted = last && ticks > last.ticks ? now : last && ticks === last.ticks ? last.acted : -Infinity;
-    return { name, ticks, acted };
+    return { name, ticks, largest, acted };
   });
   changed('safety');
 }
@@ -97,6 +97,14 @@ export function useClock() {
   }, []);
 }
 
+/** How often a stage acted, and the most that it took from the force.
+ * @param {Stage} stage @param {number} rate ticks a second */
+function done({ name, ticks, largest }, rate) {
+  if (ticks === 0) return 'never';
+  const most = largest > 0 ? `, up to ${short(largest)} ${name.includes('torque') ? 'N·m' : 'N'}` : '';
+  return `${count(ticks)} ${ticks === 1 ? 'tick' : 'ticks'}, ${short(ticks / rate)} s${most}`;
+}
+
 export function Safety() {
   useTopics(['safety', 'scene'], LOOK);
   useClock();
@@ -107,11 +115,12 @@ export function Safety() {
     <p>Each force passes these stages, from the first to the last, before it reaches the hand.
       ${limit !== undefined && html` The largest force is ${short(limit)} N.`} So far ${short(1000 * kept)} mJ were kept back.</p>
     ${state.safety.length === 0 && html`<p class="quiet">No stage has changed a force since this page came.</p>`}
-    <ol>${state.safety.map(({ name, ticks, acted }) => {
+    <ol>${state.safety.map((stage) => {
+      const { name, acted } = stage;
       const isActing = isNow(acted);
       const acts = name === RISE && isWithheld(state.newest) ? 'waits' : 'acts';
       return html`<li key=${name} class=${isActing ? 'acting' : ''}>
-        <b>${name}</b> <span class="quiet">${WORDS[name]?.[1] ?? ''}</span> <span class="stage-ticks">· ${isActing ? `${acts}: ` : ''}${ticks === 0 ? 'never' : `${count(ticks)} ${ticks === 1 ? 'tick' : 'ticks'}, ${short(ticks / rate)} s`}</span>
+        <b>${name}</b> <span class="quiet">${WORDS[name]?.[1] ?? ''}</span> <span class="stage-ticks">· ${isActing ? `${acts}: ` : ''}${done(stage, rate)}</span>
       </li>`;
     })}</ol>
   </div>`;

@@ -51,11 +51,16 @@ export class Source {
     this.ask = newest(() => this.fetch());
   }
 
+  /** Whether the program draws the scene: for a browser that cannot, or until its samples are here. */
+  get isDrawn() {
+    return this.kind === 'drawn' || (this.kind === 'samples' && this.spacing === 0);
+  }
+
   /** The way that the scene is drawn, in words. */
   get words() {
     if (this.kind === 'formula') return 'formula, exact';
     if (this.kind === 'drawn') return 'drawn by the program';
-    return this.spacing > 0 ? `drawn from samples ${length(this.spacing)} apart` : 'waiting for samples';
+    return this.isDrawn ? 'drawn by the program, waiting for samples' : `drawn from samples ${length(this.spacing)} apart`;
   }
 
   get why() {

@@ -126,19 +126,19 @@ export function createStage(container, wire) {
       if (fitLegend(views[0].lens.rect)) changed('view');
       if (state.hasCard && field) layer.show(views.map(({ panel }) => panel), field);
       // Before the first scene nobody knows how it is to be drawn.
-      const isDrawn = source.kind === 'drawn' && state.connection === 'live' && state.scene !== null;
-      elements.useCard(source.kind !== 'drawn');
+      const isDrawn = source.isDrawn && state.connection === 'live' && state.scene !== null;
+      elements.useCard(!source.isDrawn);
       if (isDrawn) pictures.ask({ views, flat: cameras.flat, setting: setting() });
       if (views.some(hasMap)) labels.renew(views, cameras.flat);
     }
-    if (source.kind !== 'drawn' && layer.step(isPressed)) request();
+    if (!source.isDrawn && layer.step(isPressed)) request();
     if (isOverlayChanged) {
       isOverlayChanged = false;
       elements.note(source.words, source.why);
       elements.read(probe.words);
       const shown = {
         target, contacts, labels, probe: probe.probed, notes: elements.notes,
-        isDrawn: source.kind === 'drawn',
+        isDrawn: source.isDrawn,
         hides: veil.hides,
         legendTop: elements.legendTop,
       };
@@ -338,8 +338,8 @@ export function createStage(container, wire) {
     },
     /** The picture with all that lies over it. @returns {Promise<Blob>} */
     exportPng() {
-      if (source.kind !== 'drawn' && layer.gl) layer.present();
-      return elements.export(source.kind === 'drawn');
+      if (!source.isDrawn && layer.gl) layer.present();
+      return elements.export(source.isDrawn);
     },
     /** How fast the scene is drawn: the time of a moving picture [ms], the part of the pixels
      * that it has along each side, and whether it is complete. */

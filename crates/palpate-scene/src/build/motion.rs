@@ -4,6 +4,7 @@
 //! Bodies that move, and where they are at a time.
 
 use palpate_field::{Pose, Screw, Shape, ShapeError};
+use palpate_haptics::NextPose;
 
 use super::{BuiltBody, BuiltScene};
 use crate::motion::{Repeat, WrittenMotion};
@@ -96,6 +97,10 @@ pub struct MotionJump {
     pub distance: f64,
     /// By what angle it jumps [rad].
     pub angle: f64,
+    /// The time between two jumps of a loop [s]; `None` if it jumps once.
+    pub period: Option<f64>,
+    /// When another motion of the body begins [s], infinite if none does: a loop jumps until then.
+    pub until: f64,
 }
 
 impl MotionJump {
@@ -110,7 +115,16 @@ impl MotionJump {
         let angle = from.rotation.turn_to(&to.rotation).norm();
         let size = from.translation.norm().max(to.translation.norm());
         let is_there = distance <= ROUNDING * size && angle <= ROUNDING;
-        (!is_there).then_some(Self { body, time, distance, angle })
+        let (period, until) = (None, f64::INFINITY);
+        (!is_there).then_some(Self { body, time, distance, angle, period, until })
+    }
+
+    /// Whether the body jumps after one time and not after another [s].
+    fn is_within(&self, from: f64, to: f64) -> bool {
+        let Some(period) = self.period else { return from < self.time && self.time <= to };
+        // As `BuiltMotion::pose` counts them.
+        let loops = |time: f64| ((time.min(self.until) - (self.time - period)) / period).floor();
+        loops(to) > loops(from).max(0.0)
     }
 }
 
@@ -141,15 +155,20 @@ impl<const D: usize> BuiltScene<D> {
         let mut jumps = Vec::new();
         for motion in &self.motions {
             let BuiltMotion { body, screw, start, duration, .. } = motion;
-            let earlier =
-                self.motions.iter().filter(|other| other.body == *body && other.start < *start);
+            let same = self.motions.iter().filter(|other| other.body == *body);
+            let later = same.clone().map(|other| other.start).filter(|other| other > start);
+            let until = later.fold(f64::INFINITY, f64::min);
+            let earlier = same.filter(|other| other.start < *start);
             let before = earlier.max_by(|a, b| a.start.total_cmp(&b.start));
             let before = before.and_then(|before| before.pose(*start));
             let before = before.unwrap_or(self.bodies[*body].world_from_body);
             jumps.extend(MotionJump::between(*body, *start, [&before, screw.from()]));
             if motion.repeat == Repeat::Loop {
                 let end = start + duration;
-                jumps.extend(MotionJump::between(*body, end, [screw.to(), screw.from()]));
+                let jump = MotionJump::between(*body, end, [screw.to(), screw.from()]);
+                let period = Some(*duration);
+                let jump = jump.filter(|jump| jump.time < until);
+                jumps.extend(jump.map(|jump| MotionJump { period, until, ..jump }));
             }
         }
         jumps
@@ -187,11 +206,7 @@ impl<const D: usize> BuiltScene<D> {
     #[must_use]
     #[inline(never)]
     pub fn pose_at(&self, body: usize, time: f64) -> Pose<D> {
-        let moved = self.motions.iter().filter(|motion| motion.body == body);
-        let begun = moved.filter_map(|motion| Some((motion.start, motion.pose(time)?)));
-        // Of motions that begin together, the last of the file holds.
-        let last = begun.max_by(|a, b| a.0.total_cmp(&b.0));
-        last.map_or(self.bodies[body].world_from_body, |(_, pose)| pose)
+        pose_at(&self.motions, (body, self.bodies[body].world_from_body), time)
     }
 
     /// Times [s] from 0 to `until` between which every body either rests or goes on along one screw,
@@ -279,12 +294,13 @@ impl<const D: usize> BuiltScene<D> {
 
     /// Moves the bodies of a servo as the scene says: a closure for
     /// `palpate_haptics::servo_loop::RunOptions::with_motion`, which gets the time of a tick [s] and a function
-    /// that sets the pose of a body by its number.
+    /// that sets the pose of a body by its number. Bodies [jump](Self::jumps) at the first time that it
+    /// gets, and where time goes back.
     ///
     /// # Examples
     ///
     /// ```
-    /// use palpate_field::Pose;
+    /// use palpate_haptics::NextPose;
     /// use palpate_scene::{AnyScene, Scene};
     ///
     /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -296,7 +312,7 @@ impl<const D: usize> BuiltScene<D> {
     /// )?;
     /// let AnyScene::Planar(scene) = scene.build()? else { unreachable!("dimension is 2") };
     /// let mut moved = Vec::new();
-    /// let mut set_pose = |body: usize, pose: Pose<3>| moved.push((body, pose.translation.0));
+    /// let mut set_pose = |body, next: NextPose| moved.push((body, next.pose.translation.0));
     /// scene.motion()(2.0, &mut set_pose);
     /// assert_eq!(moved, [(1, [0.0, 0.5, 0.0])]);
     /// # Ok(())
@@ -304,9 +320,22 @@ impl<const D: usize> BuiltScene<D> {
     /// ```
     ///
     /// Real-time: the closure allocates nothing, takes no lock, cannot panic.
-    pub fn motion(&self) -> impl FnMut(f64, &mut dyn FnMut(usize, Pose<3>)) {
-        |time, set_pose| {
-            self.moving().for_each(|body| set_pose(body, self.pose_at(body, time).in_space()));
+    pub fn motion(
+        &self,
+    ) -> impl FnMut(f64, &mut dyn FnMut(usize, NextPose)) + Send + use<D> + 'static {
+        let own = |body: usize| self.bodies[body].world_from_body;
+        let moving: Vec<_> = self.moving().map(|body| (body, own(body))).collect();
+        let (motions, jumps) = (self.motions.clone(), self.jumps());
+        let mut before = f64::NEG_INFINITY;
+        move |time, set_pose| {
+            for (body, own) in &moving {
+                let pose = pose_at(&motions, (*body, *own), time).in_space();
+                let of_body = |jump: &&MotionJump| jump.body == *body;
+                let mut of_body = jumps.iter().filter(of_body);
+                let jumps = time < before || of_body.any(|jump| jump.is_within(before, time));
+                set_pose(*body, NextPose { pose, jumps });
+            }
+            before = time;
         }
     }
 
@@ -332,6 +361,19 @@ impl<const D: usize> BuiltScene<D> {
         }
         Ok(scene)
     }
+}
+
+/// The pose of a body at a time [s], given by its number and its own pose.
+fn pose_at<const D: usize>(
+    motions: &[BuiltMotion<D>],
+    (body, own): (usize, Pose<D>),
+    time: f64,
+) -> Pose<D> {
+    let moved = motions.iter().filter(|motion| motion.body == body);
+    let begun = moved.filter_map(|motion| Some((motion.start, motion.pose(time)?)));
+    // Of motions that begin together, the last of the file holds.
+    let last = begun.max_by(|a, b| a.0.total_cmp(&b.0));
+    last.map_or(own, |(_, pose)| pose)
 }
 
 /// Checks and builds the motions of a scene; `bodies` are `None` if they have problems.

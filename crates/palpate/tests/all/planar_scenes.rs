@@ -6,7 +6,7 @@
 use palpate::device::profile_named;
 use palpate::field::{Pose, Rotation, Shape, Vector};
 use palpate::hands::{HandWay, swing};
-use palpate::haptics::{Guide, GuideOptions};
+use palpate::haptics::{Guide, GuideOptions, NextPose};
 use palpate::scene::{AnyScene, BuiltScene, BuiltTool, Scene};
 use palpate::servo_loop::{Pace, Recorder, RunOptions, TraceRow, run};
 use palpate::sim::{Hand, SimulatedDevice};
@@ -65,10 +65,10 @@ fn felt(scene: &BuiltScene<2>) -> Vec<TraceRow> {
     let mut servo = scene.servo(&device).unwrap();
     let mut recorder = Recorder::new(2 * 1000 * DURATION as usize);
     let (way, start) = (0.05 * size(scene), scene.bodies[0].world_from_body);
-    let mut motion = |time: f64, set_pose: &mut dyn FnMut(usize, Pose<3>)| {
+    let mut motion = |time: f64, set_pose: &mut dyn FnMut(usize, NextPose)| {
         let turn = Rotation::from_angle(0.1 * time.sin()).unwrap();
         let moved = Pose::new(turn, [way * time.sin(), 0.5 * way * time.sin()]);
-        set_pose(0, (moved * start).in_space());
+        set_pose(0, (moved * start).in_space().into());
     };
     let options = RunOptions {
         pace: Pace::AsFastAsPossible,

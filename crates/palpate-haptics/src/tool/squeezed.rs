@@ -1,0 +1,79 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! Bodies that close on a tool and leave it no room: those that moved yield, as for a
+//! [proxy](crate::Proxy).
+
+#![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+use palpate_field::Pose;
+
+use super::Tool;
+use super::coupling::Twist;
+use super::scan::{Path, Surroundings};
+use super::settle::{Ends, Lengths};
+use crate::event::{Event, EventKind};
+use crate::nearby::{Nearby, Yielding};
+
+/// The part of the remaining budget of each look at the bodies.
+const SHARE: f64 = 0.25;
+
+impl Tool {
+    /// Lets no body yield any more that left a tool at `pose` room again. `nearby` are all bodies.
+    pub(super) fn look_for_room(
+        &mut self,
+        nearby: &Nearby<'_>,
+        pose: &Pose<3>,
+        lengths: Lengths,
+    ) {
+        if self.yielding.is_empty() {
+            return;
+        }
+        self.scan.forget();
+        let path = Path { pose, twist: &Twist::NONE };
+        let surroundings = Surroundings { shell: &self.shell, nearby };
+        let is_known = self.scan.look(surroundings, path, lengths.skin, SHARE);
+        if is_known && self.scan.least_gap() >= -lengths.tolerance {
+            self.yielding = Yielding::default();
+            self.is_squeezing = true;
+        }
+        self.scan.forget();
+    }
+
+    /// Settles a tool that the bodies of `nearby` cover among those of them that stood still, if any
+    /// of these is near; the bodies that moved and cover it there yield.
+    #[cold]
+    #[inline(never)]
+    pub(super) fn make_room(&mut self, nearby: &Nearby<'_>, ends: Ends, lengths: Lengths) {
+        self.is_squeezing = true;
+        let still = nearby.without(self.yielding.and_all_moved());
+        let surroundings = Surroundings { shell: &self.shell, nearby: &still };
+        let path = Path { pose: &ends.start, twist: &Twist::NONE };
+        self.scan.forget();
+        let is_known = self.scan.look(surroundings, path, lengths.skin, SHARE);
+        if is_known && self.scan.least_gap() <= lengths.skin {
+            self.rest_search.settle(&mut self.scan, surroundings, ends, lengths);
+            self.scan.forget();
+            let rest = &self.rest_search.rest;
+            let path = Path { pose: &rest.pose, twist: &Twist::NONE };
+            let surroundings = Surroundings { shell: &self.shell, nearby };
+            if rest.is_outside && self.scan.look(surroundings, path, lengths.skin, SHARE) {
+                for (_, seen) in self.scan.seen() {
+                    let has_moved = nearby.body(seen.body).is_some_and(|it| it.has_moved());
+                    if has_moved && seen.gap < -lengths.tolerance {
+                        self.yielding.add(seen.body);
+                    }
+                }
+            }
+        }
+        self.scan.forget();
+    }
+
+    /// Tells that a body leaves the tool no room.
+    pub(super) fn tell_squeezed(&mut self, was: Yielding) {
+        if let (true, Some(body)) = (was.is_empty(), self.yielding.bodies().next()) {
+            let (tick, kind) = (self.tick, EventKind::Squeezed);
+            self.events.push(Event { tick, point: 0, body, kind });
+        }
+    }
+}
