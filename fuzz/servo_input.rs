@@ -379,13 +379,13 @@ fn extent(servo: &Renderer) -> f64 {
 fn promises_hold(servo: &Renderer, farthest: f64, pops: bool) {
     // Squares of forces smaller than this vanish.
     let most = servo.options().max_force * (1.0 + 1e-12) + 1e-150;
-    for (touch, force) in servo.touches().iter().zip(servo.forces()) {
+    for (point, (touch, force)) in (0..).zip(servo.touches().iter().zip(servo.forces())) {
         assert!(touch.force.is_finite() && length(touch.force) <= most, "{touch:?}");
         assert!(force.is_finite() && length(*force) <= most, "{touch:?} wrote {force:?}");
         assert!(touch.proxy.is_finite() || !touch.device.is_finite(), "{touch:?}");
         assert!(touch.normal.is_finite() && touch.velocity.is_finite(), "{touch:?}");
         if touch.contact && !pops {
-            is_outside(servo, touch, farthest);
+            is_outside(servo, (point, touch), farthest);
         }
     }
     assert!(servo.reactions().iter().all(|r| r.force.is_finite()), "{:?}", servo.reactions());
@@ -393,12 +393,14 @@ fn promises_hold(servo: &Renderer, farthest: f64, pops: bool) {
     assert!(servo.touches().iter().all(|t| (t.body as usize) < servo.bodies().bodies().len()));
 }
 
-/// No body holds the proxy's ball.
-fn is_outside(servo: &Renderer, touch: &Touch, farthest: f64) {
+/// No body holds the proxy's ball, but for those that moved and left it no room.
+fn is_outside(servo: &Renderer, (point, touch): (u32, &Touch), farthest: f64) {
+    let yielding: Vec<_> = servo.squeezed_by(point).collect();
     let size = |body: &Body| body.bounds().map_or(0.0, |b| b.ball.radius);
     let bodies = servo.bodies().bodies();
     let tolerance = INSIDE * bodies.iter().map(size).fold(farthest, f64::max);
-    for (index, body) in bodies.iter().enumerate() {
+    let firm = (0..).zip(bodies).filter(|(index, _)| !yielding.contains(index));
+    for (index, body) in firm {
         let in_body = body.world_from_body().inverse().transform_point(touch.proxy);
         // What has bounds is not closer than its ball is, whatever its field says.
         let above = body.bounds().map_or(f64::NEG_INFINITY, |bounds| {

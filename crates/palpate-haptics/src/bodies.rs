@@ -226,6 +226,12 @@ impl Body {
         self.has_moved
     }
 
+    /// Whether the promise of the field holds at a point.
+    pub(crate) fn is_proven(&self, p: Point<3>) -> bool {
+        // Written so that NaN fails.
+        self.region.is_none_or(|region| (p - region.centre).norm() <= region.radius)
+    }
+
     /// Where the body's motion of this tick takes a point of the world.
     pub(crate) fn carried(&self, point: Point<3>) -> Point<3> {
         let in_body = self.world_from_before.inverse().transform_point(point);

@@ -27,7 +27,7 @@
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use palpate_field::{Point, Vector};
-use palpate_query::constraints::PlaneConstraint;
+use palpate_query::constraints::{CAPACITY, PlaneConstraint, pushes};
 
 use crate::curvature::Curvature;
 use crate::planes::Planes;
@@ -569,6 +569,66 @@ pub(crate) fn drag(
             let way = Goal { device: goal, motion };
             let contact = slide(sampler, Place { here, normal }, way, local);
             Dragged { contact, hold: Hold::Slip, held: None }
+        }
+    }
+}
+
+/// The walls that hold a proxy together, and their friction.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Walls {
+    pub(crate) friction: Friction,
+    /// The unit normals of the first `count` walls.
+    pub(crate) normals: [Vector<f64, 3>; CAPACITY],
+    pub(crate) count: usize,
+}
+
+impl Walls {
+    /// A single wall.
+    pub(crate) fn of_one(friction: Friction, normal: Vector<f64, 3>) -> Self {
+        let mut normals = [Vector::ZERO; CAPACITY];
+        if let Some(first) = normals.first_mut() {
+            *first = normal;
+        }
+        Self { friction, normals, count: 1 }
+    }
+}
+
+/// [Drags](drag) a proxy that several walls hold, or that a body pushes along one of them.
+///
+/// The walls press with `N = Σ λᵢ` where the stretch is `Σ λᵢ nᵢ + t`, and friction holds `t`. So a
+/// proxy that sticks to one wall goes on sticking when another body touches it.
+///
+/// Real-time: allocates nothing, takes no lock, cannot panic; at most the sampler's budget of
+/// evaluations.
+pub(crate) fn drag_along(
+    sampler: &mut Sampler<'_>,
+    place: Place<'_>,
+    goal: Goal,
+    (walls, hold): (&Walls, Hold),
+    local: &mut LocalSurface,
+) -> Dragged {
+    let Goal { device, motion } = goal;
+    let stretch = place.here.point - device;
+    let pushes = pushes(stretch, walls.normals, walls.count);
+    let whole: f64 = pushes.iter().sum();
+    let rest =
+        pushes.iter().zip(&walls.normals).fold(stretch, |rest, (push, n)| rest - *n * *push);
+    let Friction { fixed, slipping, .. } = walls.friction;
+    let (normal, gap) = sampler.tangent(place.here, *place.normal);
+    *place.normal = normal;
+    let is_near = gap <= sampler.near() && place.here.tangent.is_some();
+    if fixed <= 0.0 || whole <= 0.0 || !is_near {
+        let contact = slide(sampler, place, goal, local);
+        return Dragged { contact, hold: Hold::None, held: Some(Vector::ZERO) };
+    }
+    let most = if hold == Hold::Slip { slipping } else { fixed };
+    match held_back(device, rest, whole, most, slipping) {
+        None => Dragged { contact: true, hold: Hold::Stick, held: None },
+        Some(goal) => {
+            let held = Some(goal - device);
+            let way = Goal { device: goal, motion };
+            let contact = slide(sampler, place, way, local);
+            Dragged { contact, hold: Hold::Slip, held }
         }
     }
 }

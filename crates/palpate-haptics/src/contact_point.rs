@@ -72,6 +72,10 @@ impl Touch {
     }
 }
 
+/// Bodies that squeeze a hand out of a wedge carry it by at most this multiple of their motion: the
+/// sides of the wedge then meet at 7 degrees or more. In a narrower one the hand has no room.
+pub(crate) const LARGEST_GAIN: f64 = 16.0;
+
 /// The most events of a contact point in a tick: a leave, a touch and a layer that gives way for
 /// each of the bodies that can hold it, what an edit did, and a squeeze.
 pub(crate) const MOST_EVENTS: usize = 3 * CAPACITY + 2;
@@ -280,6 +284,7 @@ impl ContactPoint {
             change = self.tell_squeezed(tick, following.squeezed, change);
         }
         let before = Before::of(touch);
+        let (was_at, wanted_before) = (touch.device, touch.wanted);
         let body = tick.nearby.body(following.body);
         // Field by field, because copying the whole struct would stall on store forwarding.
         touch.device = device;
@@ -315,28 +320,48 @@ impl ContactPoint {
             // A body that moved onto the hand carries it from this tick on.
             None => self.carried(tick.everything, touch).unwrap_or(Vector::ZERO),
         };
+        if before.contact && self.proxy.is_moved() && self.port.is_some() {
+            let moved = self.stiffness * (device - was_at - carried).norm();
+            change = change.or_handed_over((touch.wanted - wanted_before).norm(), moved);
+        }
         FreeForce { force: free, placed, change, carried }
     }
 
-    /// How far the bodies that push the hand in `touch` carry it in this tick [m]: the mean of the
-    /// motions of their material points at the hand, weighted by the sizes of their forces. `None` if
-    /// none pushes.
+    /// How far the bodies that push the hand in `touch` carry it in this tick [m]; `None` if none pushes.
+    ///
+    /// With the forces `Fᵢ` of the bodies, their sum `F`, and the motions `uᵢ` of their material points at
+    /// the hand, it is the vector `u` nearest to the mean of the `uᵢ`, weighted by the sizes of the
+    /// forces, for which `F·u` is the work `Σ Fᵢ·uᵢ` of the bodies.
     fn carried(&self, nearby: &Nearby<'_>, touch: &Touch) -> Option<Vector<f64, 3>> {
         if !nearby.has_moved() {
             return touch.contact.then_some(Vector::ZERO);
         }
         let (mut sum, mut whole) = (Vector::ZERO, 0.0);
+        let (mut force, mut work, mut fastest) = (Vector::ZERO, 0.0, 0.0_f64);
         for (index, push) in self.pushes(touch) {
             let Some(body) = nearby.body(index) else { continue };
             let share = push.norm();
             whole += share;
+            force += push;
             if body.has_moved() {
-                sum += (body.carried(touch.device) - touch.device) * share;
+                let way = body.carried(touch.device) - touch.device;
+                sum += way * share;
+                work += way.dot(push);
+                fastest = fastest.max(way.norm());
             }
         }
+        let mean = sum * (1.0 / whole);
+        let lacking = work - mean.dot(force);
+        // Where the bodies push against each other, their work is none of the hand.
+        let is_of_hand = lacking.abs() <= LARGEST_GAIN * fastest * force.norm();
+        let carried = if is_of_hand && lacking != 0.0 {
+            mean + force * (lacking / force.dot(force))
+        } else {
+            mean
+        };
         // Written so that NaN carries nothing.
-        let is_pushed = whole > 0.0 && sum.is_finite() && whole.is_finite();
-        is_pushed.then(|| sum * (1.0 / whole))
+        let is_pushed = whole > 0.0 && carried.is_finite();
+        is_pushed.then_some(carried)
     }
 
     /// A tick of a hand that is lifted: the proxy is at the device, and nothing is touched.
@@ -381,8 +406,8 @@ impl ContactPoint {
     fn release_others(&mut self) {
         if self.crease.count() > 0 {
             self.crease = Crease::NONE;
-            self.proxy.share_friction(None);
         }
+        self.proxy.hold_between(None);
     }
 
     /// Tells that a body leaves the proxy no room; `None` if there is room again. Returns what
@@ -398,7 +423,7 @@ impl ContactPoint {
         if let Some(body) = body {
             tick.tell(body, EventKind::Squeezed);
         }
-        if change == Change::None { Change::Squeezed } else { change }
+        if change == Change::None { Change::HandedOver } else { change }
     }
 
     /// The force of the bodies that the proxy lies in [N].
@@ -432,20 +457,28 @@ impl ContactPoint {
         }
     }
 
-    /// The force of the bodies that hold the proxy [N], of which `body` has the least field.
+    /// The force of the bodies that hold the proxy [N], of which `least` has the least field.
     fn held(
         &mut self,
         tick: &mut Tick<'_>,
         touch: &mut Touch,
         before: Before,
-        body: &Body,
+        least: &Body,
     ) -> Vector<f64, 3> {
         let rate = tick.setting.options.rate;
+        let mut body = least;
+        let nearby = tick.nearby;
         if tick.nearby.bodies.bodies().len() > 1 {
             let crease = self.crease_at(tick, touch, before);
             let is_several = crease.count() > 1 && crease.whole() > 0.0;
             if is_several && !(crease.is_level() && self.is_seam(tick, &crease)) {
                 return self.held_by_several(tick, touch, before, crease);
+            }
+            // The body with the least field may only stand by.
+            let hardest = crease.hardest().filter(|_| is_several && !crease.pushes(touch.body));
+            let hardest = hardest.and_then(|wall| Some((nearby.body(wall.body)?, wall)));
+            if let Some((hardest, wall)) = hardest {
+                (body, touch.body, touch.normal) = (hardest, wall.body, wall.normal);
             }
         }
         if body.has_moved() {
@@ -510,7 +543,8 @@ impl ContactPoint {
     /// Dampers, and friction in the next tick, are those of all bodies with these weights. So bodies
     /// of one material feel like one body, and the force does not jump when a body begins or ceases
     /// to push. Behind oblique walls the springs work against each other; their force is at most
-    /// [`Shared::most`]. Textures come on top.
+    /// [`Shared::most`]. The more two bodies [face](Crease::facing) each other, the more the force is the
+    /// mean of their springs along the stretch. Textures come on top.
     fn held_by_several(
         &mut self,
         tick: &mut Tick<'_>,
@@ -522,14 +556,16 @@ impl ContactPoint {
         let (depth, whole) = (stretch.norm(), crease.whole());
         let rest = crease.walls().fold(stretch, |rest, wall| rest - wall.normal * wall.push);
         let (mut springs, mut plain, mut carried) = (Vector::ZERO, Vector::ZERO, Vector::ZERO);
-        let mut shared = Shared::default();
+        let (mut shared, mut mean) = (Shared::default(), 0.0);
         let (velocity, rate) = (touch.velocity, tick.setting.options.rate);
         for wall in crease.pushing_mut() {
             let Some(body) = tick.nearby.body(wall.body) else { continue };
             let part = wall.push / whole;
             let own = wall.normal * wall.push + rest * part;
             let (strata, level) = (&body.surface().strata, self.proxy.level(wall.body));
-            shared.add(strata.at(level, own.norm()), strata.force(level, depth), part);
+            let whole_force = strata.force(level, depth);
+            shared.add(strata.at(level, own.norm()), whole_force, part);
+            mean += whole_force * part;
             touch.velocity = velocity;
             if body.has_moved() {
                 let way = body.carried(touch.device) - touch.device;
@@ -548,6 +584,12 @@ impl ContactPoint {
             (touch.body, touch.normal) = (hardest.body, hardest.normal);
         }
         self.tell_changes(tick, touch, before, &crease);
+        let facing = crease.facing();
+        if facing > 0.0 {
+            // Springs of bodies that face each other would push across the stretch.
+            springs = springs * (1.0 - facing) + stretch * (mean / depth * facing);
+            plain = plain * (1.0 - facing) + stretch * (mean / depth * facing);
+        }
         let fit = shortening(plain.norm(), shared.most());
         self.stiffness = fit * plain.norm() / depth;
         let dampers = shared.dampers(touch.velocity, stretch, rest);
@@ -555,7 +597,7 @@ impl ContactPoint {
             wall.force = wall.force * fit + dampers * (wall.push / whole);
             self.pop(tick, wall.body, wall.push);
         }
-        self.proxy.share_friction(Some(shared.friction));
+        self.proxy.hold_between(Some(crease.walls_with(shared.friction)));
         self.crease = crease;
         self.proxy.hold(rest);
         let force = springs * fit + dampers;
@@ -757,7 +799,9 @@ impl ContactPoint {
             force
         } else {
             let rise = self.rise(start, touch.contact, *rise_step);
-            self.approach.begin(change);
+            if change == Change::Carried {
+                self.approach.begin(change);
+            }
             let wanted = self.approach.step(touch.wanted).unwrap_or(touch.wanted);
             touch.force = limited(wanted + free, options.max_force) * rise;
             map.force_to_device(touch.force)
@@ -774,7 +818,7 @@ impl ContactPoint {
         let has_jumped = std::mem::take(&mut self.has_jumped);
         match change {
             _ if placed && !has_jumped => 0.0,
-            Change::Carried | Change::Squeezed => 1.0,
+            Change::Carried | Change::HandedOver => 1.0,
             _ => shortening(wanted.norm(), others),
         }
     }

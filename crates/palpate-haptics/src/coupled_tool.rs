@@ -223,7 +223,7 @@ impl CoupledTool {
             Some(Edited::Carried { .. }) => (1.0, Change::Carried),
             Some(Edited::Placed) => (0.0, Change::None),
             None if self.tool.begins => (1.0, Change::Begins),
-            None if self.tool.is_squeezing => (1.0, Change::Squeezed),
+            None if self.tool.hands_over => (1.0, Change::HandedOver),
             None => (1.0, Change::None),
         }
     }

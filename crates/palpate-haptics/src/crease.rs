@@ -8,6 +8,7 @@
 use palpate_field::{Point, Vector};
 use palpate_query::constraints::{CAPACITY, pushes};
 
+use crate::contact::Walls;
 use crate::nearby::{FieldValue, Nearby, Punctured};
 use crate::surface::{Friction, Stratum};
 
@@ -159,9 +160,25 @@ impl Crease {
         self.walls_mut().filter(|wall| wall.push > 0.0)
     }
 
+    /// The walls that push, with their friction.
+    pub(crate) fn walls_with(&self, friction: Friction) -> Walls {
+        let mut walls = Walls { friction, normals: [Vector::ZERO; CAPACITY], count: 0 };
+        let pushing = self.walls().filter(|wall| wall.push > 0.0);
+        for (place, wall) in walls.normals.iter_mut().zip(pushing) {
+            *place = wall.normal;
+            walls.count += 1;
+        }
+        walls
+    }
+
     /// Whether a body touches the proxy.
     pub(crate) fn has(&self, body: u32) -> bool {
         self.walls().any(|wall| wall.body == body)
+    }
+
+    /// Whether a body pushes the proxy.
+    pub(crate) fn pushes(&self, body: u32) -> bool {
+        self.walls().any(|wall| wall.body == body && wall.push > 0.0)
     }
 
     /// Drops the bodies that neither push nor pushed before: they are only near.
@@ -186,6 +203,18 @@ impl Crease {
         let Some(hardest) = self.hardest() else { return true };
         let mut pushing = self.walls().filter(|wall| wall.push > 0.0);
         pushing.all(|wall| wall.normal.dot(hardest.normal) >= ALIGNED)
+    }
+
+    /// How much two bodies that push face each other: the most that the cosine of two normals is below
+    /// zero.
+    pub(crate) fn facing(&self) -> f64 {
+        let mut facing = 0.0_f64;
+        let mut pushing = self.walls().filter(|wall| wall.push > 0.0);
+        while let Some(wall) = pushing.next() {
+            let against = pushing.clone().map(|other| -wall.normal.dot(other.normal));
+            facing = against.fold(facing, f64::max);
+        }
+        facing
     }
 
     /// The sum of all pushes [m].

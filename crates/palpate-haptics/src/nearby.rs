@@ -90,7 +90,7 @@ impl Yielding {
     }
 
     /// The bodies by their indices.
-    pub(crate) fn bodies(&self) -> impl Iterator<Item = u32> + Clone {
+    pub(crate) fn bodies(&self) -> impl Iterator<Item = u32> + Clone + use<> {
         self.bodies.into_iter().take(self.count)
     }
 
@@ -363,9 +363,7 @@ impl<'a> Nearby<'a> {
         if !self.bodies.has_regions {
             return true;
         }
-        let regions = self.all().filter_map(|(_, body)| body.region);
-        // Written so that NaN fails.
-        regions.into_iter().all(|region| (p - region.centre).norm() <= region.radius)
+        self.all().all(|(_, body)| body.is_proven(p))
     }
 
     /// The point closest to `goal` at which the promises hold. With several regions, `goal` is

@@ -21,15 +21,17 @@ use palpate_field::{LARGEST_LENGTH, Point, Vector};
 
 use crate::bodies::Body;
 
-use crate::contact::{Goal, Held, Hold, LocalSurface, Place, drag, slide};
+use crate::contact::{
+    Dragged, Goal, Held, Hold, LocalSurface, Place, Walls, drag, drag_along, slide,
+};
 use crate::error::HapticsError;
 use crate::nearby::{Nearby, Punctured, Yielding};
 use crate::sampler::{Sample, Sampler};
 use crate::surface::Friction;
 use carry_out::CarriedOut;
-use squeezed::Way;
 pub(crate) use carry_out::MOST_OF_POINT;
 use palpate_device::NumberError;
+use squeezed::Way;
 
 /// The default budget of evaluations in a tick. Sliding takes one to three, a corner up to
 /// eight, an impact about ten; the rest is for grazing motions, slots and fast hands.
@@ -45,6 +47,9 @@ const WORTH_FLYING: f64 = 0.1;
 
 /// A moving body meets the proxy where the next safe step is below this part of a skin.
 const WORTH_ADVANCING: f64 = 0.01;
+
+/// The most evaluations that place a proxy outside a body that pushes it.
+const MOST_PLACING: u32 = 6;
 
 /// A body does not carry the proxy to a place this many times as far from the origin as proxy,
 /// device and bodies are: so far away, rounding would hide their walls.
@@ -197,8 +202,10 @@ pub struct Proxy {
     punctured: Punctured,
     /// The bodies that the proxy lies in, because they moved and left it no room.
     yielding: Yielding,
-    /// The friction of all bodies that held the proxy in the last tick; `None` if one held it.
-    shared_friction: Option<Friction>,
+    /// The walls of all bodies that held the proxy in the last tick; `None` if one held it.
+    walls: Option<Walls>,
+    /// Whether bodies moved in this contact.
+    is_moved: bool,
     /// The part of the stretch from device to proxy that friction holds [m].
     held: Vector<f64, 3>,
 }
@@ -224,7 +231,8 @@ impl Proxy {
             local: LocalSurface::new(),
             punctured: Punctured::default(),
             yielding: Yielding::default(),
-            shared_friction: None,
+            walls: None,
+            is_moved: false,
             held: Vector::ZERO,
         }
     }
@@ -240,11 +248,11 @@ impl Proxy {
         self.held = held;
     }
 
-    /// Sets the friction of several bodies that hold the proxy together; `None` if one holds it.
+    /// Sets the walls of several bodies that hold the proxy together; `None` if one holds it.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
-    pub(crate) fn share_friction(&mut self, friction: Option<Friction>) {
-        self.shared_friction = friction;
+    pub(crate) fn hold_between(&mut self, walls: Option<Walls>) {
+        self.walls = walls;
     }
 
     /// The ball that touches.
@@ -264,7 +272,7 @@ impl Proxy {
         // Where the proxy has no place yet, an edit changes none.
         (self.is_stale, self.is_edited, self.carried_out) = (true, !self.begins, None);
         (self.punctured, self.yielding) = (Punctured::default(), Yielding::default());
-        self.shared_friction = None;
+        self.walls = None;
     }
 
     /// Evaluates the bodies anew at the proxy in the next tick, because one of them jumped.
@@ -300,6 +308,11 @@ impl Proxy {
     /// The punctured layers of all bodies.
     pub(crate) fn punctured(&self) -> &Punctured {
         &self.punctured
+    }
+
+    /// Whether bodies moved in this contact.
+    pub(crate) fn is_moved(&self) -> bool {
+        self.is_moved
     }
 
     /// The bodies that do not constrain the proxy, because they moved and left it no room.
@@ -369,8 +382,12 @@ impl Proxy {
         }
         let mut is_pushed = false;
         if nearby.has_moved() && self.at.is_some() {
+            self.is_moved = true;
             let pushed = self.pushed(&mut sampler, [last, carried]);
             is_pushed = pushed.is_some();
+            if is_pushed && self.contact && self.walls.is_none() {
+                self.walls = self.wall(&sampler);
+            }
             let at = pushed.unwrap_or(carried);
             self.at = self.look_again(&mut sampler, at);
         } else if self.is_stale && self.at.is_some() {
@@ -388,7 +405,11 @@ impl Proxy {
         if !is_known {
             let pushed = self.at.filter(|_| nearby.has_moved());
             let from = self.at.as_ref().map_or(device, |at| at.point);
-            let (start, is_moved) = self.place(&mut sampler, from);
+            let half = self.probe.budget / 2;
+            // Between bodies, room is searched for below.
+            let most = sampler.evaluations() + MOST_PLACING;
+            let most = if pushed.is_some() { half.min(most) } else { half };
+            let (start, is_moved) = self.place(&mut sampler, from, most);
             self.at = start;
             match pushed {
                 Some(pushed) if !self.is_beside(&mut sampler, last, is_moved) => {
@@ -402,6 +423,9 @@ impl Proxy {
         }
         let nearby = &everything.without(self.yielding);
         let mut sampler = if has_room { sampler } else { sampler.among(nearby) };
+        if let Some(at) = self.at.filter(|_| !has_room) {
+            self.at = self.look_again(&mut sampler, at.point);
+        }
         let goal = sampler.within_region(device);
         self.pursue(&mut sampler, Goal { device: goal, motion: moved });
         if !self.yielding.is_empty() {
@@ -455,6 +479,14 @@ impl Proxy {
         Some(sampler.gradient(at).unwrap_or(unknown))
     }
 
+    /// The wall of the only body that held the proxy in the last tick.
+    fn wall(&self, sampler: &Sampler<'_>) -> Option<Walls> {
+        let at = self.at.as_ref()?;
+        let depth = (at.point - self.device).norm();
+        let friction = friction(sampler, at, depth, &self.punctured)?;
+        Some(Walls::of_one(friction, self.normal))
+    }
+
     /// Restores the punctured layers that the hand has left.
     #[inline(never)]
     fn restore(&mut self, sampler: &mut Sampler<'_>) {
@@ -494,11 +526,16 @@ impl Proxy {
 
     /// A point on or outside the offset surface near `from`, and whether it differs from
     /// `from`. The point moves up the gradient by `(r − f) / ‖∇f‖` until it is outside; `None`
-    /// if half the budget does not suffice.
+    /// after `most` evaluations.
     #[inline(never)]
-    fn place(&mut self, sampler: &mut Sampler<'_>, from: Point<3>) -> (Option<Sample>, bool) {
+    fn place(
+        &mut self,
+        sampler: &mut Sampler<'_>,
+        from: Point<3>,
+        most: u32,
+    ) -> (Option<Sample>, bool) {
         let mut point = from;
-        while sampler.evaluations() < self.probe.budget / 2 {
+        while sampler.evaluations() < most {
             let Some(sample) = sampler.gradient(point) else { break };
             let (normal, gap) = sampler.tangent(&sample, self.normal);
             if sample.gap >= -sampler.tolerance() {
@@ -513,7 +550,7 @@ impl Proxy {
     /// Moves the proxy straight to the device while the path is free, then slides. A proxy
     /// without a place touches nothing.
     fn pursue(&mut self, sampler: &mut Sampler<'_>, goal: Goal) {
-        let Self { at, normal, contact, hold, local, punctured, shared_friction, .. } = self;
+        let Self { at, normal, contact, hold, local, punctured, walls, is_moved, .. } = self;
         let (was_held, how) = (std::mem::take(contact), std::mem::take(hold));
         let Some(here) = at else { return };
         let flight = fly(sampler, here, goal.device);
@@ -521,21 +558,25 @@ impl Proxy {
             return;
         }
         let was_held = was_held && !flight.has_flown;
-        let depth = || (goal.device - here.point).norm();
-        let friction =
-            shared_friction.or_else(|| friction(sampler, here, depth(), punctured));
-        match friction.filter(|_| was_held) {
-            Some(friction) => {
-                let held = Held { friction, hold: how };
-                let dragged = drag(sampler, Place { here, normal }, goal, held, local);
-                (*contact, *hold) = (dragged.contact, dragged.hold);
-                self.held = dragged.held.unwrap_or(self.held);
+        let depth = (goal.device - here.point).norm();
+        let place = Place { here, normal };
+        *is_moved &= was_held;
+        let shared = walls.map(|walls| walls.friction);
+        let friction = shared.or_else(|| friction(sampler, place.here, depth, punctured));
+        let dragged = match (*walls, friction.filter(|_| was_held)) {
+            (Some(walls), Some(_)) if *is_moved => {
+                drag_along(sampler, place, goal, (&walls, how), local)
             }
-            None => {
-                *contact = slide(sampler, Place { here, normal }, goal, local);
-                self.held = Vector::ZERO;
+            (_, Some(friction)) => {
+                drag(sampler, place, goal, Held { friction, hold: how }, local)
             }
-        }
+            (_, None) => {
+                let contact = slide(sampler, place, goal, local);
+                Dragged { contact, hold: Hold::None, held: Some(Vector::ZERO) }
+            }
+        };
+        (*contact, *hold) = (dragged.contact, dragged.hold);
+        self.held = dragged.held.unwrap_or(self.held);
         *contact = *contact || was_held && is_held_still(sampler, here, normal, goal.device);
         if !*contact {
             *hold = Hold::None;

@@ -136,6 +136,20 @@ impl<'a> Sampler<'a> {
         Sampler { nearby, ..*self }
     }
 
+    /// Runs `work` with at most so many evaluations.
+    pub(crate) fn at_most<T>(&mut self, most: u32, work: impl FnOnce(&mut Self) -> T) -> T {
+        let budget = self.budget;
+        self.budget = budget.min(self.evaluations + most + IN_RESERVE);
+        let done = work(self);
+        self.budget = budget;
+        done
+    }
+
+    /// Counts an evaluation beside the budget.
+    pub(crate) fn count(&mut self) {
+        self.evaluations += 1;
+    }
+
     /// Counts the evaluations of a sampler that began with this one's budget.
     pub(crate) fn spent_by(&mut self, other: &Sampler<'_>) {
         self.evaluations = self.evaluations.max(other.evaluations);

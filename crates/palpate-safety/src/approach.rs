@@ -22,7 +22,7 @@
 //! the others a hand is at work, and what zeroed the force is not its doing: a wall that stayed soft
 //! would let it through. Neither of them ends a wait that goes on. An edit that carries a proxy out
 //! of a body restarts no rise, nor do bodies that close on the hand: see [`Change::Carried`] and
-//! [`Change::Squeezed`].
+//! [`Change::HandedOver`].
 
 use palpate_device::{DeviceProfile, GripperProfile, TurningProfile, shortened};
 use palpate_field::Vector;
@@ -35,11 +35,22 @@ use crate::passivity::InnerProduct;
 /// the hand meanwhile.
 const STEP: f64 = 0.3;
 
-/// Follows a wanted force by 0.3 N a tick, from an edit or a squeeze on until it has caught up.
+impl Change {
+    /// [`HandedOver`](Self::HandedOver) if a force changes by more in a tick than 0.3 N beyond `moved`
+    /// [N], what the motion of hand and bodies makes of it; else this change.
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    #[must_use]
+    pub fn or_handed_over(self, change: f64, moved: f64) -> Self {
+        if self == Self::None && change > STEP + moved { Self::HandedOver } else { self }
+    }
+}
+
+/// Follows a wanted force by 0.3 N a tick, from an edit or a handover on until it has caught up.
 ///
 /// After an edit a force of zero is followed at once: then nothing pushes, and what lingered would
-/// push a hand that nothing touches. In a squeeze bodies still hold the hand, so the force falls by
-/// 0.3 N a tick.
+/// push a hand that nothing touches. After a handover bodies still hold the hand, so the force falls
+/// by 0.3 N a tick.
 #[derive(Clone, Copy, Debug)]
 pub struct Approach {
     /// The most by which the force changes in a tick [N]; for a torque [N·m].
@@ -71,7 +82,7 @@ impl Approach {
     pub fn begin(&mut self, change: Change) {
         match change {
             Change::Carried => self.is_on = true,
-            Change::Squeezed => (self.is_on, self.falls_slowly) = (true, true),
+            Change::HandedOver => (self.is_on, self.falls_slowly) = (true, true),
             Change::None | Change::Begins => {}
         }
     }
@@ -190,9 +201,10 @@ pub enum Change {
     /// An edit of the bodies carried the proxy, or the tool, out of them: the wanted force follows at
     /// once, and the force changes by at most 0.3 N a tick until it is there.
     Carried,
-    /// Bodies that close left the hand no room, or it has room again: as for
+    /// Among bodies that move, the force changes by more than the hand moves, because others hold it
+    /// than before: they left it no room, one came or left, or it began to slip. As for
     /// [`Carried`](Self::Carried), also where the force becomes zero.
-    Squeezed,
+    HandedOver,
 }
 
 /// A limit on a force that was zeroed, which rises until the force is below it.
@@ -373,7 +385,7 @@ mod tests {
     fn a_force_goes_straight_to_the_wanted_one_and_is_free_then() {
         let mut approach = Approach::new(1.0);
         assert_eq!(approach.step(Vector([0.0, 1.0, 0.0])), None);
-        approach.begin();
+        approach.begin(Change::Carried);
         let along = [0.6, 0.2].map(|x| Vector([x, 1.0, 0.0]));
         assert_eq!(approach.step(along[0]), Some(Vector([0.3, 1.0, 0.0])));
         assert_eq!(approach.step(along[1]), Some(along[1]));
@@ -384,10 +396,30 @@ mod tests {
     fn a_force_that_ends_ends_at_once() {
         let mut approach = Approach::new(0.5);
         assert_eq!(approach.step(Vector([0.0, 1.0, 0.0])), None);
-        approach.begin();
+        approach.begin(Change::Carried);
         assert_eq!(approach.step(Vector([0.0, 2.0, 0.0])), Some(Vector([0.0, 1.15, 0.0])));
         assert_eq!(approach.step(Vector::ZERO), Some(Vector::ZERO));
         assert_eq!(approach.step(Vector([0.0, 2.0, 0.0])), None);
+    }
+
+    #[test]
+    fn a_force_that_is_handed_over_ends_step_by_step() {
+        let mut approach = Approach::new(1.0);
+        assert_eq!(approach.step(Vector([0.0, 1.0, 0.0])), None);
+        approach.begin(Change::HandedOver);
+        for left in [0.7, 0.4, 0.1] {
+            let step = approach.step(Vector::ZERO).unwrap();
+            assert!((step - Vector([0.0, left, 0.0])).norm() < 1e-15, "{step:?}");
+        }
+        assert_eq!(approach.step(Vector::ZERO), Some(Vector::ZERO));
+        assert_eq!(approach.step(Vector([0.0, 2.0, 0.0])), None);
+    }
+
+    #[test]
+    fn a_change_is_handed_over_beyond_three_tenths_of_a_newton() {
+        assert_eq!(Change::None.or_handed_over(0.5, 0.2), Change::None);
+        assert_eq!(Change::None.or_handed_over(0.51, 0.2), Change::HandedOver);
+        assert_eq!(Change::Carried.or_handed_over(9.0, 0.0), Change::Carried);
     }
 }
 

@@ -42,7 +42,7 @@ pub(crate) struct Risen {
     pub(crate) part: f64,
     /// Whether the force rises, or follows an edit.
     pub(crate) is_rising: bool,
-    /// Whether it falls slowly to what is wanted, in a squeeze.
+    /// Whether it falls slowly to what is wanted, after a handover.
     pub(crate) is_falling: bool,
 }
 

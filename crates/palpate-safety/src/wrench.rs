@@ -21,8 +21,8 @@ use crate::limit_cycle::{CycleInput, ForcesOf, LimitCycle, LimitCycleOptions};
 use crate::limits::DeviceLimits;
 use crate::passivity::{InnerProduct, Passivity, PassivityOptions, PortMotion};
 use crate::{
-    Accepted, Change, PassivityReport, SafetyReport, SafetySettings, StageEffects, TurningReport,
-    finite,
+    Accepted, Change, PassivityReport, SafetyReport, SafetySettings, StageEffects,
+    TurningReport, finite,
 };
 use palpate_device::NumberError;
 

@@ -14,12 +14,12 @@ use palpate_field::Point;
 use super::carry_out::nearest_free;
 use super::{Proxy, fly};
 use crate::contact::{Goal, LocalSurface, Place, slide};
+use crate::contact_point::LARGEST_GAIN;
 use crate::nearby::{Nearby, Yielding};
 use crate::sampler::{Sample, Sampler};
 
-/// A proxy is squeezed out along a wedge by at most this multiple of the motion that pushes it. Its
-/// sides then meet at 7 degrees or more.
-const LARGEST_GAIN: f64 = 16.0;
+/// The most evaluations that lead a proxy to a place, so that some are left for its tick.
+const MOST_LEADING: u32 = 12;
 
 /// The way on which a body that moved pushes a proxy [m].
 #[derive(Clone, Copy)]
@@ -45,9 +45,7 @@ impl Proxy {
         let mut among = sampler.among(&still);
         let sample = among.distance(last);
         sampler.spent_by(&among);
-        sample.is_some_and(|sample| {
-            (at.point - last).norm() <= sampler.clear_radius(&sample)
-        })
+        sample.is_some_and(|sample| (at.point - last).norm() <= sampler.clear_radius(&sample))
     }
 
     /// Takes a proxy that bodies push along `way` to the nearest place outside all bodies. If there
@@ -79,11 +77,7 @@ impl Proxy {
     /// Takes the proxy out of the bodies that yield, if there is room; `rest` are the bodies that do
     /// not yield.
     #[inline(never)]
-    pub(super) fn look_for_room(
-        &mut self,
-        rest: &mut Sampler<'_>,
-        everything: &Nearby<'_>,
-    ) {
+    pub(super) fn look_for_room(&mut self, rest: &mut Sampler<'_>, everything: &Nearby<'_>) {
         let Some(mut here) = self.at else { return };
         let mut all = rest.among(everything);
         let free = self.free_near(&mut all, rest, &mut here, self.probe.radius);
@@ -130,20 +124,24 @@ impl Proxy {
     /// Takes the proxy `here` towards a point, as far as bodies let it.
     fn lead(&self, sampler: &mut Sampler<'_>, here: &mut Sample, to: Point<3>) {
         let motion = (to - here.point).norm();
-        if fly(sampler, here, to).is_stopped {
-            let (mut normal, mut local) = (self.normal, LocalSurface::new());
-            let place = Place { here, normal: &mut normal };
-            slide(sampler, place, Goal { device: to, motion }, &mut local);
-        }
+        sampler.at_most(MOST_LEADING, |sampler| {
+            if fly(sampler, here, to).is_stopped {
+                let (mut normal, mut local) = (self.normal, LocalSurface::new());
+                let place = Place { here, normal: &mut normal };
+                slide(sampler, place, Goal { device: to, motion }, &mut local);
+            }
+        });
     }
 
-    /// Lets the bodies yield that moved in this tick and cover the proxy at a point.
+    /// Lets the bodies yield that moved in this tick and cover the proxy at a point, or promise
+    /// nothing there.
     fn yield_to(&mut self, sampler: &mut Sampler<'_>, at: Point<3>) {
         let most = sampler.radius() - sampler.tolerance();
         let nearby = sampler.nearby();
         for seen in nearby.each_within(at, &self.punctured, |_| Some(most)) {
-            let moved = nearby.body(seen.body).is_some_and(|body| body.has_moved());
-            if moved && seen.distance < most && sampler.spend(at).is_some() {
+            sampler.count();
+            let body = nearby.body(seen.body).filter(|body| body.has_moved());
+            if body.is_some_and(|body| seen.distance < most || !body.is_proven(at)) {
                 self.yielding.add(seen.body);
             }
         }

@@ -658,6 +658,36 @@ impl Renderer {
         self.contacts.points.get(point as usize).map_or(&[], |point| &point.guides)
     }
 
+    /// The bodies, by their indices, that the proxy of a contact point lies in, because they moved and
+    /// left it no room beside bodies that stand still; none if there is room, and for a tool.
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    ///
+    /// ```
+    /// use palpate_device::PointState;
+    /// use palpate_field::{Pose, Shape, Vector};
+    /// use palpate_haptics::{Bodies, Body, Material, Servo, ServoOptions};
+    ///
+    /// let plate = |y: f64| -> Result<Body, palpate_haptics::HapticsError> {
+    ///     let plate = Shape::cuboid([0.1, 0.02, 0.1])?;
+    ///     Body::new(plate, Material::default())?.at(Pose::translation([0.0, y, 0.0]))
+    /// };
+    /// let bodies = Bodies::new(vec![plate(-0.01)?, plate(0.0141)?])?;
+    /// let mut servo = Servo::new(bodies, 1, ServoOptions::default())?;
+    /// let hand = [PointState::at_rest(Vector([0.0, 0.002, 0.0]))];
+    /// servo.step(&hand);
+    /// assert_eq!(servo.squeezed_by(0).count(), 0);
+    /// // The gap for a ball of 4 mm becomes 3.9 mm.
+    /// servo.set_pose(1, Pose::translation([0.0, 0.0139, 0.0]));
+    /// servo.step(&hand);
+    /// assert_eq!(servo.squeezed_by(0).collect::<Vec<_>>(), [1]);
+    /// # Ok::<(), palpate_haptics::HapticsError>(())
+    /// ```
+    pub fn squeezed_by(&self, point: u32) -> impl Iterator<Item = u32> {
+        let point = self.contacts.points.get(point as usize);
+        point.into_iter().flat_map(|point| point.proxy.yielding().bodies())
+    }
+
     /// Sets the guides of every contact point.
     #[inline(never)]
     pub(crate) fn guide(&mut self, guides: &[Guide]) {

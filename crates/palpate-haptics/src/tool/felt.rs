@@ -8,15 +8,18 @@
 use palpate_field::{Pose, Vector};
 use palpate_query::Contact;
 
+use super::closest::FREEDOMS;
 use super::coupling::Twist;
-use super::settle::Push;
+use super::settle::{Push, stacked_along};
 use super::state::{ToolState, ToolTouch};
 use super::{Coupling, Tool};
+use crate::contact_point::LARGEST_GAIN;
 use crate::event::{Event, EventKind, Reaction};
 use crate::guide::limit::{Motion, damped};
 use crate::nearby::Nearby;
 use crate::proxy::Edited;
 use palpate_device::shortening;
+use palpate_safety::Change;
 
 /// The response of the pushing bodies to the coupling.
 struct BodyResponse {
@@ -42,7 +45,30 @@ impl Before {
     }
 }
 
+/// What was felt in the tick before.
+pub(super) struct Felt {
+    contact: bool,
+    device: Pose<3>,
+    force: Vector<f64, 3>,
+}
+
+impl Felt {
+    pub(super) fn of(touch: &ToolTouch) -> Self {
+        Self { contact: touch.contact, device: touch.device, force: touch.force }
+    }
+}
+
 impl Tool {
+    /// Whether the force changes by more than 0.3 N beyond what the motion of hand and bodies makes of
+    /// it.
+    pub(super) fn has_stepped(&self, before: &Felt) -> bool {
+        let way = Twist::between(&before.device, &self.touch.device);
+        let (way, carried) = (way.linear, self.bodies_moved.linear);
+        let moved = self.coupling.stiffness * (way - carried).norm();
+        let change = (self.touch.force - before.force).norm();
+        before.contact && Change::None.or_handed_over(change, moved) != Change::None
+    }
+
     /// Writes force and torque of the tool at its new rest pose; its pose in the last tick was
     /// `before`.
     pub(super) fn write_touch(
@@ -205,8 +231,11 @@ impl Tool {
         device.velocity + turning - self.body_velocity(nearby, push.body, push.centre)
     }
 
-    /// How far the bodies that push the tool carry the hand in this tick: the mean of the motions that
-    /// they give to the device's pose, weighted by how much each pushes. `None` if none pushes.
+    /// How far the bodies that push the tool carry the hand in this tick; `None` if none pushes.
+    ///
+    /// It is the motion nearest to the mean of the motions that they give to the device's pose,
+    /// weighted by how much each pushes, for which the work of the whole wrench is that of the bodies
+    /// at their contacts.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     pub(super) fn bodies_moved(&self, nearby: &Nearby<'_>) -> Option<Twist> {
@@ -218,17 +247,33 @@ impl Tool {
         }
         let pushes = &self.rest_search.rest.pushes;
         let whole: f64 = pushes.iter().map(|push| push.push).sum();
-        let (mut linear, mut angular) = (Vector::ZERO, Vector::ZERO);
+        let unit = self.coupling.unit();
+        let (mut mean, mut wrench) = ([0.0; FREEDOMS], [0.0; FREEDOMS]);
+        let (mut work, mut fastest) = (0.0, 0.0_f64);
         for push in pushes {
-            let carried =
-                nearby.body(push.body).and_then(|b| b.carried_pose(&self.touch.device));
-            let Some(carried) = carried else { continue };
+            let arm = push.centre - self.touch.pose.translation;
+            let along = stacked_along(arm, push.normal, unit);
+            add(&mut wrench, &along, push.push);
+            let body = nearby.body(push.body);
+            let Some((body, carried)) =
+                body.and_then(|body| Some((body, body.carried_pose(&self.touch.device)?)))
+            else {
+                continue;
+            };
             let twist = Twist::between(&self.touch.device, &carried);
-            linear += twist.linear * (push.push / whole);
-            angular += twist.angular * (push.push / whole);
+            add(&mut mean, &twist.stacked(unit), push.push / whole);
+            fastest = fastest.max(twist.squared(unit).sqrt());
+            work += (body.carried(push.centre) - push.centre).dot(push.normal) * push.push;
+        }
+        let lacking = work - dot(&mean, &wrench);
+        let squared = dot(&wrench, &wrench);
+        // Where the bodies push against each other, their work is none of the hand.
+        if lacking != 0.0 && lacking.abs() <= LARGEST_GAIN * fastest * squared.sqrt() {
+            add(&mut mean, &wrench, lacking / squared);
         }
         // Written so that NaN carries nothing.
-        (linear.is_finite() && angular.is_finite()).then_some(Twist { linear, angular })
+        let is_finite = mean.iter().all(|x| x.is_finite());
+        is_finite.then(|| Twist::unstacked(mean, unit))
     }
 
     /// The velocity of a body at a place [m/s].
@@ -307,6 +352,15 @@ impl Tool {
             reaction.torque -= torque * share;
         }
     }
+}
+
+/// Adds a multiple of stacked numbers.
+fn add(sum: &mut [f64; FREEDOMS], other: &[f64; FREEDOMS], factor: f64) {
+    sum.iter_mut().zip(other).for_each(|(sum, x)| *sum += x * factor);
+}
+
+fn dot(a: &[f64; FREEDOMS], b: &[f64; FREEDOMS]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
 /// The contact that pushes hardest.

@@ -88,6 +88,9 @@ impl RestSearch {
         // Written so that NaN sticks.
         if moves.is_nan() || moves <= (STUCK * length(&away)).max(lengths.tolerance) {
             self.list_pushes(&found);
+            if nearby.has_moved() {
+                self.list_new_pushes(scan, &found);
+            }
             return Hold::Stick;
         }
         // A tool that slipped in the last tick was already solved with its dynamic friction.
@@ -197,6 +200,20 @@ impl RestSearch {
         let room = self.rest.pushes.capacity();
         let pushing = self.cones.iter().map(|cone| cone.push).filter(|push| push.push > 0.0);
         self.rest.pushes.extend(pushing.take(room));
+    }
+
+    /// Records what holds a tool that sticks since this tick: a body that moved onto it.
+    fn list_new_pushes(&mut self, scan: &Scan, found: &Closest) {
+        for held in found.held().filter(|held| held.row < self.plain && held.push > 0.0) {
+            let Some(point) = self.numbers.get(held.row).copied() else { continue };
+            let is_known = self.cones.iter().any(|cone| cone.push.point == point);
+            let seen = scan.point(point).filter(|_| !is_known);
+            if let Some(push) = seen.map(|seen| Push::of(point, seen, held.push))
+                && self.rest.pushes.len() < self.rest.pushes.capacity()
+            {
+                self.rest.pushes.push(push);
+            }
+        }
     }
 }
 

@@ -39,7 +39,7 @@ use carry_out::Covering;
 pub(crate) use coupling::Borne;
 use coupling::Twist;
 pub use coupling::{Coupling, HeldTool};
-use felt::Before;
+use felt::{Before, Felt};
 use scan::{FixedList, Scan, Surroundings};
 use settle::{Ends, Lengths, RestSearch};
 pub use shell::{MOST_POINTS, Shell, ShellPoint};
@@ -186,8 +186,10 @@ pub struct Tool {
     carrier: Option<u32>,
     /// The bodies that the tool lies in, because they moved and left it no room.
     yielding: Yielding,
-    /// Whether the tool lost its room in this tick, or has room again.
-    pub(crate) is_squeezing: bool,
+    /// Whether the force changes by more in this tick than hand and bodies move.
+    pub(crate) hands_over: bool,
+    /// Whether bodies moved in this contact.
+    is_moved: bool,
     events: FixedList<Event>,
     tick: u64,
     /// The least radius of the shell's points [m].
@@ -223,7 +225,8 @@ impl Tool {
             bodies_moved: Twist::NONE,
             carrier: None,
             yielding: Yielding::default(),
-            is_squeezing: false,
+            hands_over: false,
+            is_moved: false,
             events: FixedList::with_capacity(MOST_EVENTS),
             tick: 0,
             radius: radii.fold(f64::INFINITY, f64::min),
@@ -294,7 +297,7 @@ impl Tool {
     pub fn hover(&mut self, device: &ToolState) {
         self.events.clear();
         (self.edited, self.begins, self.is_beginning) = (None, false, false);
-        self.is_squeezing = false;
+        self.hands_over = false;
         self.bodies_moved = Twist::NONE;
         self.lose_bodies();
         let was = Before::of(&self.touch);
@@ -329,7 +332,7 @@ impl Tool {
     #[inline(never)]
     pub fn step(&mut self, bodies: &mut Bodies, device: &ToolState) -> &ToolTouch {
         self.events.clear();
-        (self.edited, self.begins, self.is_squeezing) = (None, false, false);
+        (self.edited, self.begins, self.hands_over) = (None, false, false);
         self.bodies_moved = Twist::NONE;
         let (mut list, mut reactions) = bodies.take_scratch();
         reactions.fill(Reaction::NONE);
@@ -370,6 +373,7 @@ impl Tool {
         if nearby.has_moved() {
             self.scan.forget();
         }
+        self.is_moved = nearby.has_moved() || self.is_moved && self.touch.contact;
         let held = self.bodies_moved(&nearby);
         let carry = self.carrier(&nearby, &start, &device.pose);
         let moved = Twist::between(&self.touch.device, &device.pose).way(reach);
@@ -382,7 +386,7 @@ impl Tool {
         let start = carry.map_or(start, |carry| self.carried(&nearby, start, &carry, lengths));
         let start = self.edited_start(&nearby, start, lengths);
         let surroundings = Surroundings { shell: &self.shell, nearby: &nearby };
-        let ends = Ends { start, goal: device.pose };
+        let ends = Ends { start, goal: device.pose, is_out: false };
         self.rest_search.settle(&mut self.scan, surroundings, ends, lengths);
         let is_stuck = !self.rest_search.rest.is_outside && nearby.has_moved();
         if is_stuck && self.touch.contact {
@@ -407,10 +411,12 @@ impl Tool {
         }
         let before = self.pose.unwrap_or(rest.pose);
         self.pose = Some(rest.pose);
+        let felt = Felt::of(&self.touch);
         self.write_touch(&nearby, device, &before);
         // Bodies that move onto the tool carry the hand from this tick on.
         let moved = held.or_else(|| self.bodies_moved(&nearby));
         self.bodies_moved = moved.filter(|_| !is_placed).unwrap_or(Twist::NONE);
+        self.hands_over |= self.is_moved && self.has_stepped(&felt);
         self.tell_edited();
         self.tell_squeezed(was_yielding);
         self.react(&nearby, reactions);

@@ -92,6 +92,16 @@ pub(super) struct Push {
     pub(super) push: f64,
 }
 
+impl Push {
+    /// The push of an evaluated point.
+    pub(super) fn of(point: u32, seen: &Evaluation, push: f64) -> Self {
+        let Evaluation { centre, body, .. } = *seen;
+        let slope = seen.gradient.norm();
+        let (normal, gap) = (seen.gradient * (1.0 / slope), seen.gap / slope);
+        Self { point, centre, normal, gap, body, push }
+    }
+}
+
 /// A rest pose of a tool.
 #[derive(Clone, Debug)]
 pub(super) struct Rest {
@@ -125,6 +135,8 @@ pub(super) struct Ends {
     pub(super) start: Pose<3>,
     /// The pose towards which the tool moves.
     pub(super) goal: Pose<3>,
+    /// Whether it moves out of the bodies alone, and not on towards the goal.
+    pub(super) is_out: bool,
 }
 
 /// A free pose that may become the rest pose.
@@ -184,12 +196,13 @@ impl RestSearch {
         mut lengths: Lengths,
     ) {
         let Surroundings { shell, nearby } = surroundings;
-        let Ends { start: mut pose, mut goal } = ends;
+        let Ends { start: mut pose, mut goal, is_out } = ends;
         self.held.clear();
         self.held.extend(self.rest.pushes.iter().map(|push| push.point));
         self.rest.pushes.clear();
         self.rest.energy = f64::INFINITY;
         self.rest.is_outside = false;
+        let mut has_held = false;
         for iteration in 0..MOST_ITERATIONS {
             let mut wish = Twist::between(&pose, &goal);
             let share = if iteration == 0 { FIRST_SHARE } else { SHARE };
@@ -199,7 +212,10 @@ impl RestSearch {
             }
             let is_outside = scan.least_gap() >= -lengths.tolerance;
             self.make_rows(scan, nearby, path, lengths);
-            if iteration == 0 && is_outside {
+            // Friction holds back a tool that is outside. A body that moved onto it first pushes it out.
+            let may_hold = !has_held && !is_out && (iteration == 0 || nearby.has_moved());
+            if may_hold && is_outside {
+                has_held = true;
                 match self.hold_back(scan, nearby, path, lengths) {
                     Hold::None => self.is_slipping = false,
                     Hold::Stick => {
@@ -221,7 +237,9 @@ impl RestSearch {
                 }
                 self.rows.truncate(self.plain);
             }
-            let goes_out = !is_outside && iteration + LAST_ITERATIONS >= MOST_ITERATIONS;
+            let is_pushed = nearby.has_moved() && !has_held && !self.held.is_empty();
+            let is_last = iteration + LAST_ITERATIONS >= MOST_ITERATIONS;
+            let goes_out = !is_outside && (is_last || is_pushed || is_out);
             let target = if goes_out { [0.0; FREEDOMS] } else { wish.stacked(lengths.unit) };
             let found = closest(target, &self.rows, lengths.slack());
             if is_outside {
@@ -235,7 +253,7 @@ impl RestSearch {
             let may_rest = is_outside && !is_free;
             // Written so that NaN rests.
             let goes_on = twist.way(shell.reach) > if may_rest { lengths.still } else { 0.0 };
-            if !goes_on || iteration + 1 == MOST_ITERATIONS {
+            if !goes_on || iteration + 1 == MOST_ITERATIONS || is_out && is_outside {
                 break;
             }
             let is_all = lengths.horizon >= wish.way(shell.reach);
@@ -319,11 +337,7 @@ impl RestSearch {
             if held.push <= 0.0 || self.rest.pushes.len() == self.rest.pushes.capacity() {
                 continue;
             }
-            let Evaluation { centre, body, .. } = *seen;
-            let slope = seen.gradient.norm();
-            let (normal, gap) = (seen.gradient * (1.0 / slope), seen.gap / slope);
-            let push = held.push;
-            self.rest.pushes.push(Push { point, centre, normal, gap, body, push });
+            self.rest.pushes.push(Push::of(point, seen, held.push));
         }
     }
 }

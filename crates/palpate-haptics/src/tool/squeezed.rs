@@ -35,17 +35,25 @@ impl Tool {
         let is_known = self.scan.look(surroundings, path, lengths.skin, SHARE);
         if is_known && self.scan.least_gap() >= -lengths.tolerance {
             self.yielding = Yielding::default();
-            self.is_squeezing = true;
+            self.hands_over = true;
         }
         self.scan.forget();
     }
 
-    /// Settles a tool that the bodies of `nearby` cover among those of them that stood still, if any
-    /// of these is near; the bodies that moved and cover it there yield.
+    /// Moves a tool that the bodies of `nearby` cover straight out of them. If that fails, settles it
+    /// among those of them that stood still, if any of these is near; the bodies that moved and cover it
+    /// there yield.
     #[cold]
     #[inline(never)]
     pub(super) fn make_room(&mut self, nearby: &Nearby<'_>, ends: Ends, lengths: Lengths) {
-        self.is_squeezing = true;
+        let surroundings = Surroundings { shell: &self.shell, nearby };
+        self.scan.forget();
+        let out = Ends { is_out: true, ..ends };
+        self.rest_search.settle(&mut self.scan, surroundings, out, lengths);
+        if self.rest_search.rest.is_outside {
+            return;
+        }
+        self.hands_over = true;
         let still = nearby.without(self.yielding.and_all_moved());
         let surroundings = Surroundings { shell: &self.shell, nearby: &still };
         let path = Path { pose: &ends.start, twist: &Twist::NONE };

@@ -123,7 +123,8 @@ impl MotionJump {
     fn is_within(&self, from: f64, to: f64) -> bool {
         let Some(period) = self.period else { return from < self.time && self.time <= to };
         // As `BuiltMotion::pose` counts them.
-        let loops = |time: f64| ((time.min(self.until) - (self.time - period)) / period).floor();
+        let loops =
+            |time: f64| ((time.min(self.until) - (self.time - period)) / period).floor();
         loops(to) > loops(from).max(0.0)
     }
 }
