@@ -435,8 +435,14 @@ impl ContactPoint {
         let yielding = self.proxy.yielding();
         let evaluations = &mut touch.evaluations;
         self.squeeze.press(tick.everything, &yielding, &against, evaluations);
-        self.stiffness += self.squeeze.stiffness();
-        self.squeeze.force()
+        let force = self.squeeze.force();
+        // The springs push against each other, and store more than their sum tells.
+        let stored = touch.wanted.dot(touch.wanted) / self.stiffness + self.squeeze.stored();
+        let sum = touch.wanted + force;
+        if stored > 0.0 {
+            self.stiffness = sum.dot(sum) / stored;
+        }
+        force
     }
 
     /// Whether a body touched the proxy in the tick before.

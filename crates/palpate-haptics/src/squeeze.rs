@@ -32,12 +32,12 @@ pub(crate) struct Squeeze {
     body: Option<u32>,
     /// Those that push.
     walls: Crease,
-    /// The sum of their springs [N/m].
-    stiffness: f64,
+    /// Twice the energy in their springs [J].
+    stored: f64,
 }
 
 impl Squeeze {
-    pub(crate) const NONE: Self = Self { body: None, walls: Crease::NONE, stiffness: 0.0 };
+    pub(crate) const NONE: Self = Self { body: None, walls: Crease::NONE, stored: 0.0 };
 
     /// A squeeze by a body; `None` if there is room.
     pub(crate) fn by(body: Option<u32>) -> Self {
@@ -54,9 +54,9 @@ impl Squeeze {
         self.walls.walls()
     }
 
-    /// The sum of the springs of the bodies that push [N/m].
-    pub(crate) fn stiffness(&self) -> f64 {
-        self.stiffness
+    /// Twice the energy in the springs of the bodies that push [J].
+    pub(crate) fn stored(&self) -> f64 {
+        self.stored
     }
 
     /// The sum of the forces [N].
@@ -75,7 +75,7 @@ impl Squeeze {
         evaluations: &mut u32,
     ) {
         let &Against { device, radius, wanted } = against;
-        (self.walls, self.stiffness) = (Crease::NONE, 0.0);
+        (self.walls, self.stored) = (Crease::NONE, 0.0);
         let Some(along) = wanted.normalized() else { return };
         let most = |body| yielding.bodies().any(|it| it == body).then_some(radius);
         for seen in everything.each_within(device, &Punctured::default(), most) {
@@ -87,9 +87,10 @@ impl Squeeze {
             // Written so that NaN does not push.
             if depth > 0.0 && resisted > 0.0 {
                 let strata = &body.surface().strata;
-                let force = normal * strata.force(0, depth).min(resisted);
+                let pushed = strata.force(0, depth).min(resisted);
+                let force = normal * pushed;
                 self.walls.add_pushing(Wall { body: seen.body, normal, push: depth, force });
-                self.stiffness += strata.secant(0, depth);
+                self.stored += pushed * pushed / strata.secant(0, depth);
             }
         }
         let back = -self.force().dot(along);
