@@ -8,12 +8,13 @@ use std::time::Duration;
 
 use palpate_device::{Device, DeviceProfile, PointState, profile_named};
 use palpate_field::{Pose, Vector};
+use palpate_haptics::servo_loop::{Pace, Recorder, RunOptions, run};
 use palpate_haptics::{
-    Bodies, Body, HandoffOptions, Material, Probe, Protection, Servo, ServoOptions, Surface,
-    handoff,
+    Bodies, Body, HandoffOptions, Material, NextPose, Probe, Protection, Servo, ServoOptions,
+    Surface, handoff,
 };
 use palpate_safety::SafetyReport;
-use palpate_sim::{Hand, HandPath, Interpolation, SimulatedDevice};
+use palpate_sim::{Hand, HandPath, Interpolation, RecordedDevice, SimulatedDevice};
 
 use crate::common::{cases, cuboid};
 
@@ -342,4 +343,40 @@ fn no_plant_gets_more_energy_than_the_report_allows() {
         }
         Ok(())
     });
+}
+
+/// A motion that is told to jump restarts the rise, however short it is; one that is not told pushes
+/// the hand, however fast it is.
+#[test]
+fn a_motion_jumps_where_it_says_so_alone() {
+    for jumps in [false, true] {
+        let profile = DeviceProfile::unlimited("still");
+        let body = Body::new(cuboid([0.2, 0.02, 0.2]), Surface::smooth(1000.0, 0.0).unwrap());
+        let bodies = Bodies::new(vec![body.unwrap().at(at(0.0)).unwrap()]).unwrap();
+        let options = ServoOptions { max_force: f64::INFINITY, ..ServoOptions::default() };
+        let servo = Servo::new(bodies, 1, options).unwrap();
+        let mut servo = servo.protected(&Protection::new(profile)).unwrap();
+        let hand = Vector([0.0, 0.001, 0.0]);
+        let path = HandPath::new(vec![0.0, 1.0], vec![hand; 2], Interpolation::Linear).unwrap();
+        let mut device = RecordedDevice::new(vec![path]).unwrap();
+        let mut recorder = Recorder::new(1000);
+        // The plate is 1 mm under the hand's ball for half a second, then 3 mm higher at once.
+        let mut motion = |time: f64, set_pose: &mut dyn FnMut(usize, NextPose)| {
+            let is_up = time > 0.4995;
+            let pose = at(if is_up { 0.003 } else { 0.0 });
+            set_pose(0, NextPose { pose, jumps: jumps && is_up && time < 0.5005 });
+        };
+        let options = RunOptions {
+            pace: Pace::AsFastAsPossible,
+            recorder: Some(&mut recorder),
+            motion: Some(&mut motion),
+            ..RunOptions::new(1.0)
+        };
+        run(&mut servo, &mut device, options).unwrap();
+        let force = |tick: usize| recorder.rows()[tick].force[1];
+        assert!((force(499) - 1.0).abs() < 1e-9 && (force(999) - 4.0).abs() < 1e-6);
+        let ticks = (500..999).filter(|tick| force(*tick) < 3.99).count();
+        let slowest = if jumps { 140..160 } else { 0..20 };
+        assert!(slowest.contains(&ticks), "{jumps}: {ticks}");
+    }
 }

@@ -434,3 +434,49 @@ where
     }
     Ok(built)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::AnyScene;
+
+    /// The ticks of 0.25 s in which the only body of a scene jumps, in 8 s.
+    fn jumps(motions: &str) -> Vec<usize> {
+        let text = format!(
+            r#"{{ "palpate": 1, "dimension": 2,
+                 "bodies": [ {{ "name": "belt", "shape": {{ "ball": {{ "radius": 0.01 }} }} }} ],
+                 "motions": {motions} }}"#
+        );
+        let scene = Scene::from_json(&text).unwrap().build().unwrap();
+        let AnyScene::Planar(scene) = scene else { unreachable!("dimension is 2") };
+        let mut motion = scene.motion();
+        let mut found = Vec::new();
+        for tick in 0..32 {
+            motion(0.25 * tick as f64, &mut |_, next| found.extend(next.jumps.then_some(tick)));
+        }
+        found
+    }
+
+    #[test]
+    fn a_body_jumps_where_poses_before_and_after_a_moment_differ() {
+        let to = r#""to": { "translation": [0.1, 0] }, "duration": 1"#;
+        let from = r#""from": { "translation": [0.03, 0] }"#;
+        assert!(jumps(&format!(r#"[{{ "body": "belt", {to}, "start": 1 }}]"#)).is_empty());
+        assert_eq!(jumps(&format!(r#"[{{ "body": "belt", {from}, {to}, "start": 1 }}]"#)), [4]);
+        let begins = jumps(&format!(r#"[{{ "body": "belt", {from}, {to} }}]"#));
+        assert_eq!(begins, [0]);
+        let back = jumps(&format!(
+            r#"[{{ "body": "belt", {to}, "start": 1, "repeat": "back_and_forth" }}]"#
+        ));
+        assert!(back.is_empty());
+        let loops =
+            jumps(&format!(r#"[{{ "body": "belt", {to}, "start": 1, "repeat": "loop" }}]"#));
+        assert_eq!(loops, [8, 12, 16, 20, 24, 28]);
+        // Another motion ends the loop: it begins where the loop does not end.
+        let ended = jumps(&format!(
+            r#"[{{ "body": "belt", {to}, "start": 1, "repeat": "loop" }},
+                {{ "body": "belt", {from}, {to}, "start": 4.5 }}]"#
+        ));
+        assert_eq!(ended, [8, 12, 16, 18]);
+    }
+}
