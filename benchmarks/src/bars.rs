@@ -85,6 +85,8 @@ pub(crate) const HAPTICS: &[Bar] = &[
     ("tick.tool_1000_points_S3.p50.over_S3", 4600.0),
     ("tick.tool_1000_points_S3.p99.over_S3", 26_000.0),
     ("tick.grid_S3.p50.over_tick_S3", 1.2),
+    ("tick.moving_S3.p50.over_tick_S3", 1.5),
+    ("tick.tool_moving.p50.over_tool_at_rest", 1.5),
 ];
 
 /// Those of meshes and grids.

@@ -17,7 +17,7 @@ use std::error::Error;
 use std::hint::black_box;
 
 use palpate::device::PointState;
-use palpate::field::{Point, Shape, Vector, kernel::Ball};
+use palpate::field::{Point, Pose, Shape, Vector, kernel::Ball};
 use palpate::grid::{Grid, GridOptions};
 use palpate::haptics::{
     Bodies, Body, Material, Probe, Servo, ServoOptions, Surface, Unprotected,
@@ -61,13 +61,15 @@ pub(crate) fn measure(runs: u32) -> Result<Rows, Box<dyn Error>> {
     let longest = 2.0 * RADIUS;
     let grid = Grid::bake(&s3, &GridOptions::with_cell(longest / CELLS))?.into();
     let mut cases = vec![
-        ticks("tick.sphere", &sphere, 1),
-        ticks("tick.S3", &s3, 1),
-        ticks("tick.grid_S3", &grid, 1),
-        ticks("tick.union_1000", &thousand, 1),
-        ticks("tick.ten_fingers_S3", &s3, 10),
-        ticks("tick.24_points_union_1000", &thousand, 24),
-        tool::ticks("tick.tool_1000_points_S3", &s3)?,
+        ticks("tick.sphere", &sphere, 1, rest),
+        ticks("tick.S3", &s3, 1, rest),
+        ticks("tick.moving_S3", &s3, 1, to_and_fro),
+        ticks("tick.grid_S3", &grid, 1, rest),
+        ticks("tick.union_1000", &thousand, 1, rest),
+        ticks("tick.ten_fingers_S3", &s3, 10, rest),
+        ticks("tick.24_points_union_1000", &thousand, 24, rest),
+        tool::ticks("tick.tool_1000_points_S3", &s3, rest)?,
+        tool::ticks("tick.tool_moving", &s3, to_and_fro)?,
     ];
     let mut all = Vec::new();
     for run in 1..=runs {
@@ -77,20 +79,40 @@ pub(crate) fn measure(runs: u32) -> Result<Rows, Box<dyn Error>> {
         }
     }
     let mut rows = rounds::medians(all);
-    let [grid, formula] = ["tick.grid_S3", "tick.S3"].map(|key| format!("{key}.p50_ns"));
-    if let Some((grid, formula)) = rows.get(&grid).zip(rows.get(&formula)) {
-        let ratio = grid / formula;
-        rows.insert("tick.grid_S3.p50.over_tick_S3".to_owned(), ratio);
+    for (key, other, over) in [
+        ("tick.grid_S3", "tick.S3", "tick_S3"),
+        ("tick.moving_S3", "tick.S3", "tick_S3"),
+        ("tick.tool_moving", "tick.tool_1000_points_S3", "tool_at_rest"),
+    ] {
+        let [of, beside] = [key, other].map(|key| format!("{key}.p50_ns"));
+        if let Some((of, beside)) = rows.get(&of).zip(rows.get(&beside)) {
+            let ratio = of / beside;
+            rows.insert(format!("{key}.p50.over_{over}"), ratio);
+        }
     }
     Ok(rows)
 }
 
+/// Where the body is in a tick [m].
+type Motion = fn(usize) -> Vector<f64, 3>;
+
+/// A body that does not move.
+fn rest(_: usize) -> Vector<f64, 3> {
+    Vector::ZERO
+}
+
+/// A body that goes to and fro by 10 mm, once a second; hands go with it.
+fn to_and_fro(tick: usize) -> Vector<f64, 3> {
+    let angle = 2.0 * std::f64::consts::PI * 1e-3 * tick as f64;
+    Vector([0.01 * angle.sin(), 0.005 * angle.cos() - 0.005, 0.0])
+}
+
 /// What a tick costs with so many contact points.
-fn ticks<'a>(key: &'a str, shape: &'a Shape<3>, points: usize) -> Case<'a> {
+fn ticks<'a>(key: &'a str, shape: &'a Shape<3>, points: usize, motion: Motion) -> Case<'a> {
     let paths: Vec<Vec<Point<3>>> =
         (0..points).map(|hand| orbit::around(shape, hand)).collect();
     let states: Vec<Vec<PointState>> = (0..LANDING + TICKS)
-        .map(|tick| paths.iter().map(|path| state(path, tick)).collect())
+        .map(|tick| paths.iter().map(|path| carried(state(path, tick), motion, tick)).collect())
         .collect();
     Box::new(move |rows| {
         let mut times = Times::new();
@@ -99,10 +121,15 @@ fn ticks<'a>(key: &'a str, shape: &'a Shape<3>, points: usize) -> Case<'a> {
         let mut read = vec![PointState::at_rest(Vector::ZERO); points];
         for pass in 0..PASSES {
             let mut servo = servo(shape, points)?;
-            for (tick, states) in states.iter().enumerate() {
+            for (number, states) in states.iter().enumerate() {
                 read.copy_from_slice(states);
-                let tick = tick.checked_sub(LANDING);
-                let touches = times.time(tick, || black_box(servo.step(black_box(&read))));
+                let tick = number.checked_sub(LANDING);
+                let way = motion(number);
+                let touches = times.time(tick, || {
+                    // A pose that stays is no motion.
+                    servo.set_pose(0, Pose::translation(way));
+                    black_box(servo.step(black_box(&read)))
+                });
                 if pass == 0 && tick.is_some() {
                     for touch in touches {
                         evaluations += u64::from(touch.evaluations);
@@ -125,6 +152,13 @@ fn ticks<'a>(key: &'a str, shape: &'a Shape<3>, points: usize) -> Case<'a> {
 fn state(path: &[Point<3>], tick: usize) -> PointState {
     let velocity = (path[tick] - path[tick.saturating_sub(1)]) * 1000.0;
     PointState { position: path[tick], velocity }
+}
+
+/// A state of a hand that goes with the body.
+fn carried(state: PointState, motion: Motion, tick: usize) -> PointState {
+    let (way, before) = (motion(tick), motion(tick.saturating_sub(1)));
+    let velocity = state.velocity + (way - before) * 1000.0;
+    PointState { position: state.position + way, velocity }
 }
 
 /// A servo of one body with friction.

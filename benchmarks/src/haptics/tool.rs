@@ -13,7 +13,7 @@ use palpate::field::{Point, Pose, Rotation, Shape, Vector, kernel::RoundedCuboid
 use palpate::haptics::{Bodies, Body, Material, Shell, Surface, Tool, ToolOptions, ToolState};
 
 use super::times::Times;
-use super::{Case, DEPTH, LANDING, PASSES, TICKS, orbit};
+use super::{Case, DEPTH, LANDING, Motion, PASSES, TICKS, orbit};
 
 /// Points of the tool.
 const POINTS: usize = 1000;
@@ -25,13 +25,19 @@ const BALLS: f64 = 5e-4;
 const TURNS: [f64; 3] = [2.3e-4, 3.1e-4, 1.7e-4];
 
 /// What a tick of a tool costs that touches `shape`.
-pub(super) fn ticks<'a>(key: &'a str, shape: &'a Shape<3>) -> Result<Case<'a>, Box<dyn Error>> {
+pub(super) fn ticks<'a>(
+    key: &'a str,
+    shape: &'a Shape<3>,
+    motion: Motion,
+) -> Result<Case<'a>, Box<dyn Error>> {
     let block = RoundedCuboid::new(Vector([0.04, 0.024, 0.03]), 0.004)?;
     let shell = Shell::from_field(&Shape::from_kernel(block), POINTS, BALLS)?;
     let path = orbit::around(shape, 0);
     let mut states = Vec::with_capacity(path.len());
     for (tick, place) in path.iter().enumerate() {
-        states.push(state(&shell, shape, (tick, *place))?);
+        let ToolState { pose, .. } = state(&shell, shape, (tick, *place))?;
+        let translation = pose.translation + motion(tick);
+        states.push(ToolState::at_rest(Pose { translation, ..pose }));
     }
     Ok(Box::new(move |rows| {
         let mut times = Times::new();
@@ -40,10 +46,13 @@ pub(super) fn ticks<'a>(key: &'a str, shape: &'a Shape<3>) -> Result<Case<'a>, B
         for pass in 0..PASSES {
             let mut bodies = bodies(shape)?;
             let mut tool = Tool::new(shell.clone(), options())?;
-            for (tick, state) in states.iter().enumerate() {
-                let tick = tick.checked_sub(LANDING);
-                let touch =
-                    times.time(tick, || black_box(tool.step(&mut bodies, black_box(state))));
+            for (number, state) in states.iter().enumerate() {
+                let tick = number.checked_sub(LANDING);
+                let way = motion(number);
+                let touch = times.time(tick, || {
+                    bodies.set_pose(0, Pose::translation(way));
+                    black_box(tool.step(&mut bodies, black_box(state)))
+                });
                 if pass == 0 && tick.is_some() {
                     evaluations += u64::from(touch.evaluations);
                     contacts += touch.contacts.len() as u64;
