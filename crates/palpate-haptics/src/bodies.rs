@@ -238,6 +238,17 @@ impl Body {
         self.world_from_body.transform_point(in_body)
     }
 
+    /// The motion of this tick, in the world; `None` if the body does not move.
+    pub(crate) fn motion(&self) -> Option<Pose<3>> {
+        self.has_moved.then(|| self.world_from_body * self.world_from_before.inverse())
+    }
+
+    /// Where the body's motion of this tick turns a vector of the world.
+    pub(crate) fn carried_vector(&self, v: Vector<f64, 3>) -> Vector<f64, 3> {
+        let in_body = self.world_from_before.inverse().transform_vector(v);
+        self.world_from_body.transform_vector(in_body)
+    }
+
     /// Where the body's motion of this tick takes a pose of the world; `None` if the body does
     /// not move.
     pub(crate) fn carried_pose(&self, pose: &Pose<3>) -> Option<Pose<3>> {

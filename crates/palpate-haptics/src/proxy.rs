@@ -26,7 +26,7 @@ use crate::contact::{
 };
 use crate::error::HapticsError;
 use crate::nearby::{Nearby, Punctured, Yielding};
-use crate::sampler::{Sample, Sampler};
+use crate::sampler::{Sample, Sampler, Tangent};
 use crate::surface::Friction;
 use carry_out::CarriedOut;
 pub(crate) use carry_out::MOST_OF_POINT;
@@ -47,6 +47,9 @@ const WORTH_FLYING: f64 = 0.1;
 
 /// A moving body meets the proxy where the next safe step is below this part of a skin.
 const WORTH_ADVANCING: f64 = 0.01;
+
+/// The most ticks in which a proxy rides on a body without a new sample.
+const MOST_RIDDEN: u32 = 64;
 
 /// The most evaluations that place a proxy outside a body that pushes it.
 const MOST_PLACING: u32 = 6;
@@ -206,6 +209,8 @@ pub struct Proxy {
     walls: Option<Walls>,
     /// Whether bodies moved in this contact.
     is_moved: bool,
+    /// In how many ticks the proxy rode on a body since its sample was taken.
+    ridden: u32,
     /// The part of the stretch from device to proxy that friction holds [m].
     held: Vector<f64, 3>,
 }
@@ -233,6 +238,7 @@ impl Proxy {
             yielding: Yielding::default(),
             walls: None,
             is_moved: false,
+            ridden: 0,
             held: Vector::ZERO,
         }
     }
@@ -381,7 +387,10 @@ impl Proxy {
             self.restore(&mut sampler);
         }
         let mut is_pushed = false;
-        if nearby.has_moved() && self.at.is_some() {
+        let ridden = self.ridden(&sampler, [last, carried]);
+        if let Some(ridden) = ridden {
+            (self.at, self.is_moved) = (Some(ridden), true);
+        } else if nearby.has_moved() && self.at.is_some() {
             self.is_moved = true;
             let pushed = self.pushed(&mut sampler, [last, carried]);
             is_pushed = pushed.is_some();
@@ -393,7 +402,7 @@ impl Proxy {
         } else if self.is_stale && self.at.is_some() {
             self.at = self.look_again(&mut sampler, last);
         }
-        if self.is_stale || nearby.has_moved() {
+        if self.is_stale || nearby.has_moved() && ridden.is_none() {
             self.local.forget();
         }
         self.is_stale = false;
@@ -477,6 +486,40 @@ impl Proxy {
         let body = self.at.map_or(0, |at| at.body);
         let unknown = Sample { point: at, gap: f64::NEG_INFINITY, tangent: None, body };
         Some(sampler.gradient(at).unwrap_or(unknown))
+    }
+
+    /// The sample of a proxy that rides on a body from `last` to `carried`: it is as it was in the
+    /// body. `None` where it must be taken anew: where the proxy rides on no body, where another one is
+    /// near, and after [`MOST_RIDDEN`] ticks, so that roundings do not add up.
+    #[inline(never)]
+    fn ridden(
+        &mut self,
+        sampler: &Sampler<'_>,
+        [last, carried]: [Point<3>; 2],
+    ) -> Option<Sample> {
+        let nearby = sampler.nearby();
+        let at = self.at.filter(|_| nearby.has_moved() && self.contact && !self.is_stale)?;
+        let body = nearby.body(at.body).filter(|body| body.has_moved())?;
+        let tangent = at.tangent.filter(|tangent| tangent.normal != Vector::ZERO)?;
+        self.ridden += 1;
+        let is_known = self.ridden < MOST_RIDDEN
+            && last == at.point
+            && carried == body.carried(last)
+            && (carried - last).norm() <= sampler.skin()
+            && at.gap >= -sampler.tolerance()
+            && self.punctured.is_empty()
+            && self.yielding.is_empty()
+            && !sampler.is_point();
+        let near = at.gap + sampler.radius() + sampler.skin() + (carried - last).norm();
+        let is_alone = nearby
+            .all()
+            .all(|(index, other)| index == at.body || other.above_way(carried) > near);
+        if !is_known || !is_alone || !body.is_proven(carried) {
+            self.ridden = 0;
+            return None;
+        }
+        let normal = body.carried_vector(tangent.normal);
+        Some(Sample { point: carried, tangent: Some(Tangent { normal, ..tangent }), ..at })
     }
 
     /// The wall of the only body that held the proxy in the last tick.

@@ -17,6 +17,13 @@ use crate::nearby::Nearby;
 /// with the remainder.
 const SHARE: f64 = 0.25;
 
+/// Another body is near if it is within so many reaches of the tool: then it may be the nearest to a
+/// point of a tool that touches its carrier.
+const NEARNESS: f64 = 4.0;
+
+/// The most ticks in which a tool rides on a body before all of its points are evaluated anew.
+const MOST_RIDDEN: u32 = 1024;
+
 /// A body does not carry the tool to a place this many times as far from the origin as it is
 /// now: so far away, rounding would hide the bodies.
 const FARTHEST: f64 = 1e3;
@@ -39,6 +46,34 @@ impl Tool {
         // Written so that NaN is not carried.
         let is_near = far(&carried) <= FARTHEST * (here + self.shell().reach());
         is_near.then(|| Twist::between(start, &carried))
+    }
+
+    /// Whether a tool at `start`, which would move like `motion`, rides on the body under it: nothing
+    /// else is near. Its evaluations then stay what they are in the body.
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    pub(super) fn rides(
+        &mut self,
+        nearby: &Nearby<'_>,
+        start: &Pose<3>,
+        motion: &Twist,
+    ) -> bool {
+        let reach = self.shell.reach();
+        let Some(carrier) = self.carrier.filter(|_| self.touch.contact) else { return false };
+        let moved = nearby.body(carrier).and_then(|body| body.motion());
+        let Some(moved) = moved.filter(|_| self.yielding.is_empty()) else { return false };
+        let way = (moved.transform_point(start.translation) - start.translation).norm();
+        let far = NEARNESS * reach + motion.way(reach) + way;
+        let is_alone = nearby
+            .all()
+            .all(|(index, body)| index == carrier || body.above_way(start.translation) > far);
+        self.ridden = if is_alone { self.ridden + 1 } else { 0 };
+        // Roundings must not add up.
+        let rides = is_alone && way <= reach && self.ridden % MOST_RIDDEN > 0;
+        if rides {
+            self.scan.ride(&moved);
+        }
+        rides
     }
 
     /// The pose of a tool carried from `start`, up to the first body in the way. Bodies have

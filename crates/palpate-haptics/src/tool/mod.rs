@@ -190,6 +190,8 @@ pub struct Tool {
     pub(crate) hands_over: bool,
     /// Whether bodies moved in this contact.
     is_moved: bool,
+    /// In how many ticks the tool rode on a body.
+    ridden: u32,
     events: FixedList<Event>,
     tick: u64,
     /// The least radius of the shell's points [m].
@@ -227,6 +229,7 @@ impl Tool {
             yielding: Yielding::default(),
             hands_over: false,
             is_moved: false,
+            ridden: 0,
             events: FixedList::with_capacity(MOST_EVENTS),
             tick: 0,
             radius: radii.fold(f64::INFINITY, f64::min),
@@ -370,12 +373,13 @@ impl Tool {
             let way = WAYS * motion.way(reach);
             bodies.nearby(start.translation, reach + way, list)
         };
-        if nearby.has_moved() {
-            self.scan.forget();
-        }
         self.is_moved = nearby.has_moved() || self.is_moved && self.touch.contact;
         let held = self.bodies_moved(&nearby);
         let carry = self.carrier(&nearby, &start, &device.pose);
+        let rides = carry.is_some() && self.rides(&nearby, &start, &motion);
+        if nearby.has_moved() && !rides {
+            self.scan.forget();
+        }
         let moved = Twist::between(&self.touch.device, &device.pose).way(reach);
         let moved = carry.map_or(moved, |carry| moved.max(carry.way(reach)));
         let lengths = self.lengths(&nearby, &start, &motion, moved);
@@ -383,7 +387,11 @@ impl Tool {
         let (everything, was, was_yielding) = (nearby, start, self.yielding);
         self.look_for_room(&everything, &start, lengths);
         let nearby = everything.without(self.yielding);
-        let start = carry.map_or(start, |carry| self.carried(&nearby, start, &carry, lengths));
+        let start = match carry {
+            Some(carry) if rides => carry.moved(&start),
+            Some(carry) => self.carried(&nearby, start, &carry, lengths),
+            None => start,
+        };
         let start = self.edited_start(&nearby, start, lengths);
         let surroundings = Surroundings { shell: &self.shell, nearby: &nearby };
         let ends = Ends { start, goal: device.pose, is_out: false };

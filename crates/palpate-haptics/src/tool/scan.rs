@@ -118,6 +118,10 @@ impl Clock {
 pub(super) struct Scan {
     points: Vec<Evaluation>,
     marks: Vec<PointMark>,
+    /// Where the points were evaluated, in the frame that rides on the body: see [`Scan::ride`].
+    places: Vec<Point<3>>,
+    /// From that frame to the world; `None` while no body carries the tool.
+    frame: Option<Pose<3>>,
     looks: Vec<ClusterMark>,
     clock: Clock,
     /// The number of the present pose.
@@ -143,6 +147,8 @@ impl Scan {
         Self {
             points: vec![nothing; shell.points().len()],
             marks: vec![PointMark::NONE; shell.points().len()],
+            places: vec![Vector::ZERO; shell.points().len()],
+            frame: None,
             looks: vec![ClusterMark::NONE; shell.clusters.len()],
             clock: Clock::default(),
             stamp: 1,
@@ -161,8 +167,29 @@ impl Scan {
         (self.levels, self.budget, self.evaluations) = (shell.levels.len(), budget, 0);
     }
 
+    /// Keeps all evaluations of a tool that rides on the only body near: this moved by `motion` in the
+    /// world, and the tool with it.
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    pub(super) fn ride(&mut self, motion: &Pose<3>) {
+        if self.frame.is_none() {
+            self.places
+                .iter_mut()
+                .zip(&self.points)
+                .for_each(|(place, seen)| *place = seen.centre);
+        }
+        self.frame = Some(self.frame.map_or(*motion, |frame| *motion * frame));
+        for number in &self.near {
+            if let Some(seen) = self.points.get_mut(*number as usize) {
+                seen.centre = motion.transform_point(seen.centre);
+                seen.gradient = motion.transform_vector(seen.gradient);
+            }
+        }
+    }
+
     /// Discards all evaluations, because the bodies changed.
     pub(super) fn forget(&mut self) {
+        self.frame = None;
         self.looks.fill(ClusterMark::NONE);
         self.marks.fill(PointMark::NONE);
         self.leave();
@@ -249,8 +276,11 @@ impl Scan {
                 if !is_free(mark.free_until) && mark.is_known() {
                     let i = number as usize;
                     let known = shell.points().get(i).zip(self.points.get(i));
-                    let went = known.map_or(f64::INFINITY, |(point, seen)| {
-                        let way = pose.transform_point(point.centre) - seen.centre;
+                    let known = known.zip(self.places.get(i));
+                    let went = known.map_or(f64::INFINITY, |((point, seen), place)| {
+                        let frame = self.frame.as_ref();
+                        let was = frame.map_or(seen.centre, |it| it.transform_point(*place));
+                        let way = pose.transform_point(point.centre) - was;
                         way.norm() - seen.gap / lipschitz
                     });
                     mark.free_until = mark.free_until.max(now - went);
@@ -280,6 +310,7 @@ impl Scan {
         let lipschitz = nearby.lipschitz().max(f64::MIN_POSITIVE);
         let mut numbers = self.near.iter().skip(begin).copied();
         let batch = &mut *self.batch;
+        let to_frame = self.frame.map(|frame| frame.inverse());
         loop {
             batch.gather(shell, pose, &mut numbers);
             if batch.count == 0 {
@@ -288,8 +319,12 @@ impl Scan {
             batch.evaluate(nearby);
             self.evaluations += batch.count as u32;
             for (number, seen) in batch.results() {
-                if let Some(point) = self.points.get_mut(number as usize) {
+                let i = number as usize;
+                if let Some(point) = self.points.get_mut(i) {
                     *point = *seen;
+                }
+                if let Some((to_frame, place)) = to_frame.as_ref().zip(self.places.get_mut(i)) {
+                    *place = to_frame.transform_point(seen.centre);
                 }
             }
         }
