@@ -15,7 +15,7 @@ use crate::crease::{Crease, Place, Shared};
 use crate::error::ServoOptions;
 use crate::event::{Event, EventKind};
 use crate::guide::Guide;
-use crate::nearby::Nearby;
+use crate::nearby::{Nearby, Yielding};
 use crate::ports::Port;
 use crate::proxy::{Edited, Probe, Proxy};
 use crate::seam::Seam;
@@ -123,8 +123,8 @@ pub(crate) struct Setting {
 /// The state of a tick that all contact points share.
 pub(crate) struct Tick<'a> {
     everything: &'a Nearby<'a>,
-    /// The bodies that do not yield to the contact point.
-    nearby: Nearby<'a>,
+    /// The bodies that do not yield to the contact point; `None` if none yields.
+    firm: Option<Nearby<'a>>,
     setting: &'a Setting,
     /// A template for events: tick and contact point are filled in.
     event: Event,
@@ -139,7 +139,18 @@ impl<'a> Tick<'a> {
         events: &'a mut Vec<Event>,
     ) -> Self {
         let event = Event { tick, point: 0, body: 0, kind: EventKind::Leave };
-        Self { everything, nearby: *everything, setting, event, events }
+        Self { everything, firm: None, setting, event, events }
+    }
+
+    /// Leaves out the bodies that yield to the contact point.
+    fn leave_out(&mut self, yielding: Yielding) {
+        let yields = !yielding.is_empty();
+        self.firm = yields.then(|| self.everything.without(yielding));
+    }
+
+    /// The bodies that do not yield to the contact point.
+    fn nearby(&self) -> &Nearby<'a> {
+        self.firm.as_ref().unwrap_or(self.everything)
     }
 
     /// This tick, with events of the contact point `point`.
@@ -274,7 +285,7 @@ impl ContactPoint {
         let held = self.carried(tick.everything, touch);
         // The proxy stays where it is if the device point is not finite.
         let following = self.proxy.follow(tick.everything, device);
-        tick.nearby = tick.everything.without(self.proxy.yielding());
+        tick.leave_out(self.proxy.yielding());
         let placed = following.placed;
         let mut change = if begins && placed { Change::Begins } else { Change::None };
         if let Some(edited) = following.edited {
@@ -285,7 +296,7 @@ impl ContactPoint {
         }
         let before = Before::of(touch);
         let (was_at, wanted_before) = (touch.device, touch.wanted);
-        let body = tick.nearby.body(following.body);
+        let body = tick.nearby().body(following.body);
         // Field by field, because copying the whole struct would stall on store forwarding.
         touch.device = device;
         touch.velocity = state.velocity;
@@ -473,8 +484,7 @@ impl ContactPoint {
     ) -> Vector<f64, 3> {
         let rate = tick.setting.options.rate;
         let mut body = least;
-        let nearby = tick.nearby;
-        if tick.nearby.bodies.bodies().len() > 1 {
+        if tick.nearby().bodies.bodies().len() > 1 {
             let crease = self.crease_at(tick, touch, before);
             let is_several = crease.count() > 1 && crease.whole() > 0.0;
             if is_several && !(crease.is_level() && self.is_seam(tick, &crease)) {
@@ -482,7 +492,8 @@ impl ContactPoint {
             }
             // The body with the least field may only stand by.
             let hardest = crease.hardest().filter(|_| is_several && !crease.pushes(touch.body));
-            let hardest = hardest.and_then(|wall| Some((nearby.body(wall.body)?, wall)));
+            let everything = tick.everything;
+            let hardest = hardest.and_then(|wall| Some((everything.body(wall.body)?, wall)));
             if let Some((hardest, wall)) = hardest {
                 (body, touch.body, touch.normal) = (hardest, wall.body, wall.normal);
             }
@@ -504,7 +515,7 @@ impl ContactPoint {
 
     /// Whether bodies of a crease have different springs.
     fn is_seam(&self, tick: &Tick<'_>, crease: &Crease) -> bool {
-        let strata = |body| tick.nearby.body(body).map(|body| &body.surface().strata);
+        let strata = |body| tick.nearby().body(body).map(|body| &body.surface().strata);
         let mut all = crease.walls().filter_map(|wall| strata(wall.body));
         let first = all.next();
         first.is_some_and(|first| all.any(|other| !other.has_springs_of(first)))
@@ -517,7 +528,7 @@ impl ContactPoint {
         touch: &mut Touch,
         stretch: Vector<f64, 3>,
     ) -> Vector<f64, 3> {
-        if tick.nearby.bodies.bodies().len() < 2 {
+        if tick.nearby().bodies.bodies().len() < 2 {
             return Vector::ZERO;
         }
         let Touch { proxy, body, normal, .. } = *touch;
@@ -525,7 +536,7 @@ impl ContactPoint {
         let place = Place { proxy, stretch, body, normal, radius: options.probe.radius() };
         let punctured = self.proxy.punctured();
         let (most_force, evaluations) = (options.max_force, &mut touch.evaluations);
-        let seam = Seam::at(&tick.nearby, &place, punctured, most_force, evaluations);
+        let seam = Seam::at(tick.nearby(), &place, punctured, most_force, evaluations);
         let Some((seam, along)) = seam.zip(stretch.normalized()) else { return Vector::ZERO };
         self.stiffness += seam.springs / stretch.norm();
         along * seam.springs + seam.sideways
@@ -539,7 +550,7 @@ impl ContactPoint {
         let place = Place { proxy, stretch, body, normal, radius };
         let was_touched = |body| self.was_touched(before, body);
         let punctured = self.proxy.punctured();
-        Crease::at(&tick.nearby, &place, punctured, was_touched, &mut touch.evaluations)
+        Crease::at(tick.nearby(), &place, punctured, was_touched, &mut touch.evaluations)
     }
 
     /// The force of several bodies that hold the proxy together [N].
@@ -565,7 +576,7 @@ impl ContactPoint {
         let (mut shared, mut mean) = (Shared::default(), 0.0);
         let (velocity, rate) = (touch.velocity, tick.setting.options.rate);
         for wall in crease.pushing_mut() {
-            let Some(body) = tick.nearby.body(wall.body) else { continue };
+            let Some(body) = tick.nearby().body(wall.body) else { continue };
             let part = wall.push / whole;
             let own = wall.normal * wall.push + rest * part;
             let (strata, level) = (&body.surface().strata, self.proxy.level(wall.body));
@@ -627,7 +638,7 @@ impl ContactPoint {
             if self.was_touched(before, wall.body) {
                 continue;
             }
-            let Some(body) = tick.nearby.body(wall.body) else { continue };
+            let Some(body) = tick.nearby().body(wall.body) else { continue };
             let speed = (-touch.velocity.dot(wall.normal)).max(0.0);
             self.ringing = body.surface().ringing(speed, tick.setting.options.rate);
             tick.tell(wall.body, EventKind::Touch { speed });
@@ -666,7 +677,7 @@ impl ContactPoint {
 
     /// Punctures the top layer of a body that is pressed by `depth` [m], if it gives way.
     fn pop(&mut self, tick: &mut Tick<'_>, index: u32, depth: f64) {
-        let Some(body) = tick.nearby.body(index) else { return };
+        let Some(body) = tick.nearby().body(index) else { return };
         let (strata, level) = (&body.surface().strata, self.proxy.level(index));
         if let Some(pop) = strata.top(level).and_then(|top| top.pop_through) {
             let held = strata.force(level, depth);
@@ -683,20 +694,27 @@ impl ContactPoint {
     }
 
     /// The force of each body on the hand in the tick [N]; their sum is the wanted force.
+    #[inline]
     pub(crate) fn pushes(&self, touch: &Touch) -> impl Iterator<Item = (u32, Vector<f64, 3>)> {
         let others = self.crease.walls().filter(|wall| wall.body != touch.body);
         let others = others.chain(self.squeeze.walls());
-        let of_others = others.clone().fold(Vector::ZERO, |sum, wall| sum + wall.force);
+        let is_alone = self.crease.count() == 0 && self.squeeze.body().is_none();
+        let of_others = if is_alone {
+            Vector::ZERO
+        } else {
+            others.clone().fold(Vector::ZERO, |sum, wall| sum + wall.force)
+        };
         let hardest = (touch.body, touch.wanted - of_others);
         let others = others.map(|wall| (wall.body, wall.force));
-        std::iter::once(hardest).chain(others).take(if touch.contact { CAPACITY } else { 0 })
+        let most = if is_alone { 1 } else { 2 * CAPACITY };
+        std::iter::once(hardest).chain(others).take(if touch.contact { most } else { 0 })
     }
 
     /// The force of all magnets but the touched body's, which is zero at its own surface [N].
     /// Each acts down the gradient of its field, so the sum is the force of a potential.
     fn pull(&self, tick: &Tick<'_>, touch: &mut Touch) -> Vector<f64, 3> {
         let mut force = Vector::ZERO;
-        for (index, body) in tick.nearby.all() {
+        for (index, body) in tick.nearby().all() {
             let Some(magnet) = &body.surface().magnet else { continue };
             let is_far = body.above_ball(touch.device)
                 > magnet.reach + tick.setting.options.probe.radius();

@@ -69,14 +69,14 @@ impl Punctured {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Yielding {
     bodies: [u32; Self::CAPACITY],
-    count: usize,
+    count: u8,
     /// Whether every body that moved in this tick yields.
     has_all_moved: bool,
 }
 
 impl Yielding {
     /// The most bodies that yield at a time.
-    const CAPACITY: usize = 8;
+    const CAPACITY: usize = 4;
 
     /// Whether no body yields.
     #[inline]
@@ -91,7 +91,7 @@ impl Yielding {
 
     /// The bodies by their indices.
     pub(crate) fn bodies(&self) -> impl Iterator<Item = u32> + Clone + use<> {
-        self.bodies.into_iter().take(self.count)
+        self.bodies.into_iter().take(usize::from(self.count))
     }
 
     /// Whether a body yields.
@@ -106,7 +106,7 @@ impl Yielding {
         if self.bodies().any(|it| it == body) {
             return true;
         }
-        let Some(place) = self.bodies.get_mut(self.count) else { return false };
+        let Some(place) = self.bodies.get_mut(usize::from(self.count)) else { return false };
         *place = body;
         self.count += 1;
         true

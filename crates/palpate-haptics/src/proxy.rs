@@ -258,7 +258,9 @@ impl Proxy {
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     pub(crate) fn hold_between(&mut self, walls: Option<Walls>) {
-        self.walls = walls;
+        if walls.is_some() || self.walls.is_some() {
+            self.walls = walls;
+        }
     }
 
     /// The ball that touches.
@@ -379,15 +381,23 @@ impl Proxy {
         let moved = moved.max(squared(carried - last)).sqrt();
         let moved = out.map_or(moved, |out| moved.max(out.distance));
         let Probe { radius, budget } = self.probe;
-        let everything = nearby;
-        let nearby = &everything.without(self.yielding);
+        // Copying the bodies costs as much as an evaluation, and few hands are squeezed.
+        let (everything, firm, firmer);
+        everything = nearby;
+        let nearby = if self.yielding.is_empty() {
+            everything
+        } else {
+            firm = everything.without(self.yielding);
+            &firm
+        };
         let mut sampler = Sampler::new(nearby, self.punctured, radius, budget, extent);
 
         if !self.punctured.is_empty() {
             self.restore(&mut sampler);
         }
         let mut is_pushed = false;
-        let ridden = self.ridden(&sampler, [last, carried]);
+        let has_moved = nearby.has_moved();
+        let ridden = if has_moved { self.ridden(&sampler, [last, carried]) } else { None };
         if let Some(ridden) = ridden {
             (self.at, self.is_moved) = (Some(ridden), true);
         } else if nearby.has_moved() && self.at.is_some() {
@@ -430,10 +440,11 @@ impl Proxy {
                 _ => placed |= is_moved,
             }
         }
-        let nearby = &everything.without(self.yielding);
-        let mut sampler = if has_room { sampler } else { sampler.among(nearby) };
-        if let Some(at) = self.at.filter(|_| !has_room) {
-            self.at = self.look_again(&mut sampler, at.point);
+        if !has_room {
+            firmer = everything.without(self.yielding);
+            sampler = sampler.among(&firmer);
+            let at = self.at.as_ref().map_or(device, |at| at.point);
+            self.at = self.look_again(&mut sampler, at);
         }
         let goal = sampler.within_region(device);
         self.pursue(&mut sampler, Goal { device: goal, motion: moved });
@@ -604,11 +615,11 @@ impl Proxy {
         let depth = (goal.device - here.point).norm();
         let place = Place { here, normal };
         *is_moved &= was_held;
-        let shared = walls.map(|walls| walls.friction);
+        let shared = walls.as_ref().map(|walls| walls.friction);
         let friction = shared.or_else(|| friction(sampler, place.here, depth, punctured));
-        let dragged = match (*walls, friction.filter(|_| was_held)) {
+        let dragged = match (walls.as_ref(), friction.filter(|_| was_held)) {
             (Some(walls), Some(_)) if *is_moved => {
-                drag_along(sampler, place, goal, (&walls, how), local)
+                drag_along(sampler, place, goal, (walls, how), local)
             }
             (_, Some(friction)) => {
                 drag(sampler, place, goal, Held { friction, hold: how }, local)

@@ -59,7 +59,8 @@ fn share(part: f64) -> (f64, f64) {
 
 /// How far a seam reaches into each of two bodies [m]: the probe's radius at least, and so far that
 /// the sideways force `½ K' d²` is at most [`SIDEWAYS`] of `K d` at the depth `d` where the stiffer
-/// body gives the largest force; more if a material asks for it.
+/// body gives the largest force, but no farther than [`INTO`] the smaller body; more if a material asks
+/// for it.
 fn length(pair: [&Body; 2], radius: f64, most_force: f64) -> f64 {
     let [a, b] = pair.map(|body| body.surface().strata.stiffness());
     let stiffer = a.max(b);

@@ -116,9 +116,9 @@ pub struct BallAnswer<const D: usize> {
     pub stop: Stop,
     /// How often the field was evaluated.
     pub evaluations: u32,
-    /// The field at the centre [m].
+    /// The field of the body at the centre [m].
     pub value: f64,
-    /// What the field promises at the centre.
+    /// What the field of the body promises at the centre.
     pub quality: Quality,
     /// The memoir's test: the value at the centre is less than the radius.
     pub memoir_test: bool,

@@ -38,7 +38,8 @@ pub struct ContactsQuestion {
     /// How far apart the bounds of a separation may be [m]. Default: half of `margin`; if
     /// `margin` is zero, half of the default margin.
     pub tolerance: Option<f64>,
-    /// The most evaluations of fields for each pair. Default: 200 000 ([`Limits::BUDGET`]).
+    /// The most evaluations of fields in each search: a pair takes one for its separation and one for
+    /// its contacts. Default: 200 000 ([`Limits::BUDGET`]).
     pub budget: Option<u32>,
     /// The time at which motions have moved the bodies [s]; their own poses if left out.
     pub time: Option<f64>,
@@ -57,7 +58,7 @@ pub struct ContactsAnswer<const D: usize> {
     pub spacing: f64,
     /// How far apart the bounds of a separation may be [m].
     pub tolerance: f64,
-    /// The most evaluations for each pair.
+    /// The most evaluations in each search: of a separation, or of contacts.
     pub budget: u32,
     /// The time that was asked about [s].
     pub time: Option<f64>,

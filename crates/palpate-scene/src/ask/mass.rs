@@ -82,7 +82,8 @@ pub struct Weighed<const D: usize> {
     pub mass: f64,
     /// The largest error of the mass.
     pub mass_error: f64,
-    /// `true`: proven to have no point. `false`: a point was found. `None`: neither.
+    /// `true`: proven to have no point. `false`: it has points, as its volume shows or one that was
+    /// found. `None`: neither.
     pub empty: Option<bool>,
     /// Whether points with negative values may exist: curves and sheets have none.
     pub has_interior: bool,

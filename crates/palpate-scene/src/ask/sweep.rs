@@ -36,7 +36,8 @@ pub struct SweepQuestion {
     /// asked about ([`FEW_PAIRS`]).
     pub every_pair: bool,
     /// The end of the time that is looked at [s]. Default: the end of the last motion. A motion
-    /// that repeats counts as one period, there and back.
+    /// that repeats counts as one period: a loop once through, one that goes back and forth there and
+    /// back.
     pub until: Option<f64>,
     /// The largest separation at which bodies touch [m]. Default: a millionth of the smallest
     /// body. Separations between half of `gap` and `gap` may be reported as apart.
@@ -44,7 +45,7 @@ pub struct SweepQuestion {
     /// How far apart the bounds of a time may be [s]; if left out, 1e-4 of the part of a motion
     /// that is searched.
     pub tolerance: Option<f64>,
-    /// The most evaluations for each pair and part of a motion. Default: 5 000 000
+    /// The most evaluations in the search of each pair in each part of a motion. Default: 5 000 000
     /// ([`SweepSettings::BUDGET`]).
     pub budget: Option<u32>,
 }

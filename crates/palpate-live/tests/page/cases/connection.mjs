@@ -7,6 +7,24 @@ import { join } from 'node:path';
 import { check, scratch, start, until } from '../harness.mjs';
 import { BALL, opened, state, serving, written, ask, violations, pictures, program, withOwnBrowser } from '../shared.mjs';
 
+/** Whether the second canvas, which holds what the program drew, has more than one colour. */
+const isDrawn = (page) => page.evaluate(() => {
+  const canvas = document.querySelectorAll('#stage canvas')[1];
+  const { data } = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height);
+  return new Set(new Uint32Array(data.buffer)).size > 50;
+});
+
+/** A scene of so many small balls: its formula is too long for a browser. */
+const crowd = (count) => JSON.stringify({
+  palpate: 1,
+  dimension: 3,
+  bodies: Array.from({ length: count }, (_, i) => ({
+    name: `b${i}`,
+    shape: { ball: { radius: 0.004 } },
+    pose: { translation: [0.02 * (i % 12), 0.02 * (Math.floor(i / 12) % 12), 0.02 * Math.floor(i / 144)] },
+  })),
+});
+
 export default [
   ['the gallery loads without a complaint, in both themes and sizes, and can be used by all', () => serving([], async ({ url }) => {
     for (const [width, height] of [[1280, 720], [820, 1180]]) {
@@ -58,12 +76,7 @@ export default [
         return kind.startsWith('webgl') ? null : get.call(this, kind, ...more);
       };
     });
-    await until('a picture of the program', () => without.page.evaluate(() => {
-      // The second canvas holds what the program drew: more than one colour.
-      const canvas = document.querySelectorAll('#stage canvas')[1];
-      const { data } = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height);
-      return new Set(new Uint32Array(data.buffer)).size > 50;
-    }));
+    await until('a picture of the program', () => isDrawn(without.page));
     await without.page.screenshot({ path: join(pictures, 'drawn.png') });
     // Bodies once could not be pressed where no card draws them.
     const stage = await without.page.locator('#stage').boundingBox();
@@ -75,6 +88,21 @@ export default [
     await without.page.mouse.up();
     await without.context.close();
   }))],
+
+  ['the program draws the scene while its samples are awaited', () => serving([written(crowd(1500))], async ({ url }) => {
+    const { page, context } = await opened(url, {}, () => {}, (page) => page.routeWebSocket(/socket/, (socket) => {
+      const server = socket.connectToServer();
+      // The samples are never asked for.
+      socket.onMessage((message) => {
+        if (typeof message === 'string' && JSON.parse(message).do === 'samples') return;
+        server.send(message);
+      });
+    }));
+    await until('words that say so', () => page.getByText('drawn by the program, waiting for samples').isVisible());
+    await until('a picture of the program', () => isDrawn(page));
+    await page.screenshot({ path: join(pictures, 'awaited.png') });
+    await context.close();
+  })],
 
   ['two tabs see the same scene, and a hidden one gets one frame a second', () => serving([written(BALL)], async ({ url }) => {
     const [one, two] = [await opened(url), await opened(url)];
