@@ -69,7 +69,7 @@ impl Tool {
             .all(|(index, body)| index == carrier || body.above_way(start.translation) > far);
         self.ridden = if is_alone { self.ridden + 1 } else { 0 };
         // Roundings must not add up.
-        let rides = is_alone && way <= reach && self.ridden % MOST_RIDDEN > 0;
+        let rides = is_alone && way <= reach && !self.ridden.is_multiple_of(MOST_RIDDEN);
         if rides {
             self.scan.ride(&moved);
         }
