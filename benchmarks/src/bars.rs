@@ -213,6 +213,7 @@ mod tests {
             ".over_loop",
             ".over_samples",
             ".over_tick_S3",
+            ".over_tool_at_rest",
             "_over_open3d",
             "_over_libigl",
             "_over_libigl_winding",
