@@ -22,8 +22,11 @@ import { along, clamp, cross, norm, subtract } from './vectors.js';
 
 /** Values along the longer side of a map. */
 const CELLS = 320;
-/** Pixels of a picture at most. */
+/** Pixels of a picture at most, and of the coarse one that comes before a slow one. */
 const MOST_PIXELS = 640 * 400;
+const FEW_PIXELS = 80 * 50;
+/** A picture that takes longer is slow [ms]. */
+const SLOW = 1000;
 
 /** The names of the colours of promises, by the numbers that bodies have. */
 const PROMISES = /** @type {const} */ (['exact', 'bound', 'lipschitz']);
@@ -93,6 +96,8 @@ export class Pictures {
     this.questions = asking(wire);
     this.canvas = canvas;
     this.changed = changed;
+    /** How long the last picture took [ms]. */
+    this.lastTime = Infinity;
     this.ask = newest(this.fetch.bind(this), this.questions.giveUp);
   }
 
@@ -104,9 +109,21 @@ export class Pictures {
 
   /** @param {{ views: View[], flat: import('./camera.js').Flat, setting: Setting }} asked */
   async fetch({ views, flat, setting }) {
+    const isSlow = this.lastTime > SLOW && views.some(({ isFlat }) => !isFlat);
+    if (isSlow) await this.draw({ views, flat, setting }, FEW_PIXELS);
+    const begin = performance.now();
+    await this.draw({ views, flat, setting }, MOST_PIXELS);
+    this.lastTime = performance.now() - begin;
+  }
+
+  /** @param {{ views: View[], flat: import('./camera.js').Flat, setting: Setting }} asked
+   * @param {number} pixels of a picture, at most */
+  async draw({ views, flat, setting }, pixels) {
     /** @type {[ImageBitmap, View][]} */
     const made = [];
-    for (const view of views) made.push([await (view.isFlat ? this.map(view, flat, setting) : this.picture(view)), view]);
+    for (const view of views) {
+      made.push([await (view.isFlat ? this.map(view, flat, setting) : this.picture(view, pixels)), view]);
+    }
     const context = this.canvas.getContext('2d');
     context?.clearRect(0, 0, this.canvas.width, this.canvas.height);
     for (const [image, { lens: { rect } }] of made) {
@@ -116,10 +133,10 @@ export class Pictures {
     this.changed();
   }
 
-  /** @param {View} view */
-  async picture({ lens: { rect, basis } }) {
+  /** @param {View} view @param {number} pixels at most */
+  async picture({ lens: { rect, basis } }, pixels) {
     const { eye, forward } = basis;
-    const part = Math.min(1, Math.sqrt(MOST_PIXELS / (rect.width * rect.height)));
+    const part = Math.min(1, Math.sqrt(pixels / (rect.width * rect.height)));
     const { png } = await this.questions.ask({
       do: 'picture',
       eye,

@@ -89,7 +89,7 @@ export default [
     await without.context.close();
   }))],
 
-  ['the program draws the scene while its samples are awaited', () => serving([written(crowd(1500))], async ({ url }) => {
+  ['the program draws the scene while its samples are awaited', () => serving([written(crowd(800))], async ({ url }) => {
     const { page, context } = await opened(url, {}, () => {}, (page) => page.routeWebSocket(/socket/, (socket) => {
       const server = socket.connectToServer();
       // The samples are never asked for.
