@@ -474,7 +474,7 @@ impl ContactPoint {
         }
     }
 
-    /// The force of the bodies that hold the proxy [N], of which `least` has the least field.
+    /// The force of the bodies that hold the proxy [N]. The body `least` has the least field there.
     fn held(
         &mut self,
         tick: &mut Tick<'_>,

@@ -177,7 +177,7 @@ impl Bodies {
 }
 
 impl<'a> Nearby<'a> {
-    /// These bodies, of which those of `yielding` do not count.
+    /// These bodies without those of `yielding`.
     pub(crate) fn without(&self, yielding: Yielding) -> Self {
         // Where no body counts, the field is finite too.
         let most = if yielding.is_empty() { f64::INFINITY } else { LARGEST_LENGTH };

@@ -341,6 +341,10 @@ impl Proxy {
     /// field's value `f`, the probe's radius `r` and the radius `R` of the ball around all
     /// bodies.
     ///
+    /// A moving body carries the proxy that touches it, and pushes the one that it meets. Where it
+    /// leaves the proxy no room beside bodies that stand still, it yields: the proxy then lies in it
+    /// until there is room ([`Following::squeezed`]).
+    ///
     /// Some fields promise a Lipschitz constant outside their surface only in a region
     /// ([`Promise::region`](palpate_field::Promise::region)). The proxy then stays in the
     /// region, at the free point closest to the device. A device point that starts outside the

@@ -345,8 +345,8 @@ fn no_plant_gets_more_energy_than_the_report_allows() {
     });
 }
 
-/// A motion that is told to jump restarts the rise, however short it is; one that is not told pushes
-/// the hand, however fast it is.
+/// A jump lets the force rise from what it was, at any distance. A motion without a jump pushes the
+/// hand, at any speed.
 #[test]
 fn a_motion_jumps_where_it_says_so_alone() {
     for jumps in [false, true] {
