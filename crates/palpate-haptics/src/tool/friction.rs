@@ -23,7 +23,7 @@ use palpate_field::{Pose, Vector};
 use super::closest::{Closest, FREEDOMS, Row, closest};
 use super::coupling::Twist;
 use super::scan::{Path, Scan};
-use super::settle::{Lengths, Push, RestSearch, stacked_along};
+use super::settle::{Lengths, Near, Push, RestSearch, stacked_along};
 use crate::nearby::Nearby;
 use crate::surface::Friction;
 
@@ -89,7 +89,7 @@ impl RestSearch {
         if moves.is_nan() || moves <= (STUCK * length(&away)).max(lengths.tolerance) {
             self.list_pushes(&found);
             if nearby.has_moved() {
-                self.list_new_pushes(scan, &found);
+                self.list_new_pushes(&found);
             }
             return Hold::Stick;
         }
@@ -132,22 +132,19 @@ impl RestSearch {
         let Path { pose, twist: wish } = path;
         self.cones.clear();
         let mut has_friction = false;
-        for number in self.held.iter().take(FREEDOMS) {
-            let Some(seen) = scan.point(*number) else { continue };
-            let Some(body) = nearby.body(seen.body) else { continue };
-            let slope = seen.gradient.norm();
-            let (normal, gap) = (seen.gradient * (1.0 / slope), seen.gap / slope);
-            if !(normal.is_finite() && gap.is_finite()) {
+        for held in self.held.iter().take(FREEDOMS) {
+            let same = self.near.iter().find(|near| near.is_of(held)).copied();
+            let least = || Some(Near { point: held.point, seen: *scan.point(held.point)? });
+            let Some(push) = same.or_else(least).map(|near| near.push(0.0)) else { continue };
+            let Some(body) = nearby.body(push.body) else { continue };
+            if !(push.normal.is_finite() && push.gap.is_finite()) {
                 continue;
             }
             let friction = body.surface().strata.at(0, depth).friction;
             has_friction |= friction.fixed.max(friction.slipping) > 0.0;
-            let arm = seen.centre - pose.translation;
-            let first = along_surface(normal, wish, arm);
-            let sides =
-                if self.is_flat { [first, Vector::ZERO] } else { [first, normal.cross(first)] };
-            let (point, centre, body) = (*number, seen.centre, seen.body);
-            let push = Push { point, centre, normal, gap, body, push: 0.0 };
+            let first = along_surface(push.normal, wish, push.centre - pose.translation);
+            let second = if self.is_flat { Vector::ZERO } else { push.normal.cross(first) };
+            let sides = [first, second];
             self.cones.push(Cone { push, friction, sides });
         }
         has_friction
@@ -188,9 +185,10 @@ impl RestSearch {
             // Against a hand that presses straight in, the tangent plane itself holds.
             let index = match held.row.checked_sub(self.plain) {
                 Some(row) => Some(row / self.around()),
-                None => self.numbers.get(held.row).and_then(|point| {
-                    self.cones.iter().position(|cone| cone.push.point == *point)
-                }),
+                None => self
+                    .near
+                    .get(held.row)
+                    .and_then(|near| self.cones.iter().position(|cone| near.is_of(&cone.push))),
             };
             if let Some(cone) = index.and_then(|index| self.cones.get_mut(index)) {
                 cone.push.push += held.push;
@@ -203,15 +201,12 @@ impl RestSearch {
     }
 
     /// Records what holds a tool that sticks since this tick: a body that moved onto it.
-    fn list_new_pushes(&mut self, scan: &Scan, found: &Closest) {
+    fn list_new_pushes(&mut self, found: &Closest) {
         for held in found.held().filter(|held| held.row < self.plain && held.push > 0.0) {
-            let Some(point) = self.numbers.get(held.row).copied() else { continue };
-            let is_known = self.cones.iter().any(|cone| cone.push.point == point);
-            let seen = scan.point(point).filter(|_| !is_known);
-            if let Some(push) = seen.map(|seen| Push::of(point, seen, held.push))
-                && self.rest.pushes.len() < self.rest.pushes.capacity()
-            {
-                self.rest.pushes.push(push);
+            let Some(near) = self.near.get(held.row) else { continue };
+            let is_known = self.cones.iter().any(|cone| near.is_of(&cone.push));
+            if !is_known && self.rest.pushes.len() < self.rest.pushes.capacity() {
+                self.rest.pushes.push(near.push(held.push));
             }
         }
     }

@@ -14,6 +14,8 @@
 
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
+use std::cell::Cell;
+
 use palpate_field::{Point, Pose, Vector};
 
 use super::closest::{Closest, FREEDOMS, Row, closest};
@@ -21,7 +23,7 @@ use super::coupling::Twist;
 use super::friction::{Cone, Hold, MOST_AROUND};
 use super::scan::{Evaluation, FixedList, Path, Scan, Surroundings};
 use super::shell::Shell;
-use crate::nearby::Nearby;
+use crate::nearby::Punctured;
 
 /// The most iterations in a tick. Sliding takes three or four; the rest is for impacts and
 /// creases.
@@ -44,6 +46,14 @@ const FARTHER: f64 = 4.0;
 /// smaller factor would limit more often, a larger one would evaluate points that nothing
 /// reaches.
 const NEXT: f64 = 1.5;
+
+/// The most tangent planes of second bodies.
+const MOST_SECOND: usize = 256;
+
+/// A second body constrains a point if the cosine of the angle between its normal and the normal of
+/// the nearest body is below this number. Iterations that see the nearest body alone converge by
+/// this factor or faster between others. The edge of a body that continues a level face is none.
+const FACING: f64 = -0.1;
 
 /// The accuracy of constraints, as a part of the tolerance.
 const SLACK: f64 = 1e-3;
@@ -92,13 +102,30 @@ pub(super) struct Push {
     pub(super) push: f64,
 }
 
-impl Push {
-    /// The push of an evaluated point.
-    pub(super) fn of(point: u32, seen: &Evaluation, push: f64) -> Self {
-        let Evaluation { centre, body, .. } = *seen;
-        let slope = seen.gradient.norm();
-        let (normal, gap) = (seen.gradient * (1.0 / slope), seen.gap / slope);
-        Self { point, centre, normal, gap, body, push }
+/// A point of the shell near a body.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Near {
+    pub(super) point: u32,
+    pub(super) seen: Evaluation,
+}
+
+impl Near {
+    /// The push of the body on the point.
+    pub(super) fn push(&self, push: f64) -> Push {
+        let Self { point, seen: Evaluation { centre, body, gap, gradient } } = *self;
+        let slope = gradient.norm();
+        Push { point, centre, normal: gradient * (1.0 / slope), gap: gap / slope, body, push }
+    }
+
+    /// Whether the point is between two faces: this one, and the one that was seen there.
+    fn faces(&self, seen: &Evaluation) -> bool {
+        let (here, there) = (self.seen.gradient, seen.gradient);
+        here.dot(there) < FACING * (here.norm() * there.norm())
+    }
+
+    /// Whether it is the contact of a push.
+    pub(super) fn is_of(&self, push: &Push) -> bool {
+        (self.point, self.seen.body) == (push.point, push.body)
     }
 }
 
@@ -153,12 +180,14 @@ struct Candidate<'a> {
 #[derive(Clone, Debug)]
 pub(super) struct RestSearch {
     pub(super) rows: FixedList<Row>,
-    /// The points of the first rows; the later rows belong to friction cones.
-    pub(super) numbers: FixedList<u32>,
+    /// The contacts of the first rows; the later rows belong to friction cones.
+    pub(super) near: FixedList<Near>,
     /// The number of rows before those of friction.
     pub(super) plain: usize,
-    /// Points that pushed in the last tick.
-    pub(super) held: FixedList<u32>,
+    /// The contacts that pushed in this tick, as they were seen then.
+    pushed: FixedList<Near>,
+    /// The pushes of the last tick.
+    pub(super) held: FixedList<Push>,
     /// The friction cones of contacts.
     pub(super) cones: FixedList<Cone>,
     /// `true` if the tool moved against friction.
@@ -172,9 +201,10 @@ impl RestSearch {
     pub(super) fn new(shell: &Shell) -> Self {
         let points = shell.points().len();
         Self {
-            rows: FixedList::with_capacity(points + FREEDOMS * MOST_AROUND),
-            numbers: FixedList::with_capacity(points),
+            rows: FixedList::with_capacity(points + MOST_SECOND + FREEDOMS * MOST_AROUND),
+            near: FixedList::with_capacity(points + MOST_SECOND),
             plain: 0,
+            pushed: FixedList::with_capacity(FREEDOMS * MOST_ITERATIONS),
             held: FixedList::with_capacity(FREEDOMS),
             cones: FixedList::with_capacity(FREEDOMS),
             is_slipping: false,
@@ -198,7 +228,8 @@ impl RestSearch {
         let Surroundings { shell, nearby } = surroundings;
         let Ends { start: mut pose, mut goal, is_out } = ends;
         self.held.clear();
-        self.held.extend(self.rest.pushes.iter().map(|push| push.point));
+        self.held.extend_from_slice(&self.rest.pushes);
+        self.pushed.clear();
         self.rest.pushes.clear();
         self.rest.energy = f64::INFINITY;
         self.rest.is_outside = false;
@@ -211,7 +242,7 @@ impl RestSearch {
                 break;
             }
             let is_outside = scan.least_gap() >= -lengths.tolerance;
-            self.make_rows(scan, nearby, path, lengths);
+            self.make_rows(scan, surroundings, path, lengths);
             // Friction holds back a tool that is outside. A body that moved onto it first pushes it out.
             let may_hold = !has_held && !is_out && (iteration == 0 || nearby.has_moved());
             if may_hold && is_outside {
@@ -232,7 +263,7 @@ impl RestSearch {
                         if !scan.look(surroundings, path, lengths.horizon, SHARE) {
                             break;
                         }
-                        self.make_rows(scan, nearby, path, lengths);
+                        self.make_rows(scan, surroundings, path, lengths);
                     }
                 }
                 self.rows.truncate(self.plain);
@@ -242,9 +273,10 @@ impl RestSearch {
             let goes_out = !is_outside && (is_last || is_pushed || is_out);
             let target = if goes_out { [0.0; FREEDOMS] } else { wish.stacked(lengths.unit) };
             let found = closest(target, &self.rows, lengths.slack());
+            self.remember(&found);
             if is_outside {
                 let (energy, known) = (wish.squared(lengths.unit), scan.known(shell));
-                self.keep(scan, &found, Candidate { pose: &pose, energy, known });
+                self.keep(&found, Candidate { pose: &pose, energy, known });
             }
             let is_free = !goes_out && found.held().next().is_none();
             let twist =
@@ -267,7 +299,7 @@ impl RestSearch {
                     // No point could touch: the goal is proven free without further evaluation.
                     let energy = Twist::between(&pose, &goal).squared(1.0);
                     let known = scan.known(shell);
-                    self.keep(scan, &found, Candidate { pose: &pose, energy, known });
+                    self.keep(&found, Candidate { pose: &pose, energy, known });
                     break;
                 }
             } else {
@@ -290,38 +322,89 @@ impl RestSearch {
         }
     }
 
-    /// The tangent planes of all points that the desired motion could bring to the surface.
+    /// The tangent planes of all points that the desired motion could bring to the surface: of the
+    /// nearest body, and of each body in reach that faces it.
     fn make_rows(
         &mut self,
-        scan: &Scan,
-        nearby: &Nearby<'_>,
+        scan: &mut Scan,
+        surroundings: Surroundings<'_>,
         path: Path<'_>,
         lengths: Lengths,
     ) {
+        let Surroundings { shell, nearby } = surroundings;
         let Path { pose, twist: wish } = path;
         self.rows.clear();
-        self.numbers.clear();
+        self.near.clear();
         let lipschitz = nearby.lipschitz();
         let (linear, angular) = (wish.linear.norm(), wish.angular.norm());
-        for (number, seen) in scan.seen() {
+        let (evaluations, left) = (Cell::new(0), scan.left());
+        for (point, seen) in scan.seen() {
             let arm = seen.centre - pose.translation;
-            if seen.gap > lipschitz * (linear + angular * arm.norm()).min(lengths.horizon) {
+            let reach = lipschitz * (linear + angular * arm.norm()).min(lengths.horizon);
+            if seen.gap > reach {
                 continue;
             }
-            let slope = seen.gradient.norm();
-            // Written so that NaN is left out.
-            if slope > LEAST_SLOPE * lipschitz && self.numbers.len() < self.numbers.capacity() {
-                let normal = seen.gradient * (1.0 / slope);
-                let along = stacked_along(arm, normal, lengths.unit);
-                self.rows.push(Row { along, least: -seen.gap / slope });
-                self.numbers.push(number);
+            self.add_row(Near { point, seen: *seen }, arm, lipschitz, lengths);
+            let radius = shell.points().get(point as usize).map_or(0.0, |point| point.radius);
+            let most = reach + radius;
+            let other = |body| (body != seen.body && evaluations.get() < left).then_some(most);
+            for value in nearby.each_within(seen.centre, &Punctured::default(), other) {
+                evaluations.set(evaluations.get() + 1);
+                let (gap, gradient) = (value.distance - radius, value.gradient);
+                let other = Evaluation { gap, gradient, body: value.body, ..*seen };
+                let near = Near { point, seen: other };
+                if gap <= reach && near.faces(seen) {
+                    self.add_row(near, arm, lipschitz, lengths);
+                }
             }
         }
+        scan.spend(evaluations.get());
+        self.add_pushed(scan, path, lipschitz, lengths);
         self.plain = self.rows.len();
     }
 
+    /// Adds the tangent planes that pushed earlier in this tick, of points that now see a face on
+    /// the other side of them: in a groove, a point sees one of its two sides at a time.
+    fn add_pushed(&mut self, scan: &Scan, path: Path<'_>, lipschitz: f64, lengths: Lengths) {
+        for index in 0..self.pushed.len() {
+            let Some(near) = self.pushed.get(index).copied() else { continue };
+            let Some(seen) = scan.point(near.point) else { continue };
+            let gap = near.seen.gap + near.seen.gradient.dot(seen.centre - near.seen.centre);
+            if near.faces(seen) && gap >= -lengths.tolerance {
+                let near =
+                    Near { seen: Evaluation { gap, centre: seen.centre, ..near.seen }, ..near };
+                self.add_row(near, seen.centre - path.pose.translation, lipschitz, lengths);
+            }
+        }
+    }
+
+    /// Remembers the contacts that push.
+    fn remember(&mut self, found: &Closest) {
+        for held in found.held().filter(|held| held.push > 0.0) {
+            let Some(near) = self.near.get(held.row) else { continue };
+            let same = |it: &&mut Near| it.point == near.point && !it.faces(&near.seen);
+            if let Some(known) = self.pushed.iter_mut().find(same) {
+                *known = *near;
+            } else if self.pushed.len() < self.pushed.capacity() {
+                self.pushed.push(*near);
+            }
+        }
+    }
+
+    /// Adds the tangent plane of a body at a point.
+    fn add_row(&mut self, near: Near, arm: Vector<f64, 3>, lipschitz: f64, lengths: Lengths) {
+        let slope = near.seen.gradient.norm();
+        // Written so that NaN is left out.
+        if slope > LEAST_SLOPE * lipschitz && self.near.len() < self.near.capacity() {
+            let normal = near.seen.gradient * (1.0 / slope);
+            let along = stacked_along(arm, normal, lengths.unit);
+            self.rows.push(Row { along, least: -near.seen.gap / slope });
+            self.near.push(near);
+        }
+    }
+
     /// Keeps a free pose if it is the closest so far.
-    fn keep(&mut self, scan: &Scan, found: &Closest, candidate: Candidate<'_>) {
+    fn keep(&mut self, found: &Closest, candidate: Candidate<'_>) {
         let Candidate { pose, energy, known } = candidate;
         if energy.is_nan() || energy >= self.rest.energy {
             return;
@@ -330,14 +413,11 @@ impl RestSearch {
         (self.rest.known, self.rest.is_outside) = (known, true);
         self.rest.pushes.clear();
         for held in found.held() {
-            let number = self.numbers.get(held.row).copied();
-            let Some((point, seen)) = number.and_then(|n| Some((n, scan.point(n)?))) else {
-                continue;
-            };
+            let Some(near) = self.near.get(held.row) else { continue };
             if held.push <= 0.0 || self.rest.pushes.len() == self.rest.pushes.capacity() {
                 continue;
             }
-            self.rest.pushes.push(Push::of(point, seen, held.push));
+            self.rest.pushes.push(near.push(held.push));
         }
     }
 }

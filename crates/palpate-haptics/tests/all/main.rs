@@ -51,6 +51,7 @@ mod swapped;
 mod tool_faces;
 mod tool_materials;
 mod tool_servo;
+mod tool_wedges;
 mod tools;
 mod tours;
 mod turn_readings;
