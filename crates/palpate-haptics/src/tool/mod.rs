@@ -318,6 +318,7 @@ impl Tool {
     /// Discards all evaluations of the bodies.
     fn lose_bodies(&mut self) {
         self.scan.forget();
+        self.rest_search.forget();
         (self.carrier, self.yielding) = (None, Yielding::default());
     }
 
@@ -384,6 +385,7 @@ impl Tool {
         let moved = carry.map_or(moved, |carry| moved.max(carry.way(reach)));
         let lengths = self.lengths(&nearby, &start, &motion, moved);
         self.scan.begin(&self.shell, self.options.budget);
+        self.rest_search.begin(&nearby);
         let (everything, was, was_yielding) = (nearby, start, self.yielding);
         self.look_for_room(&everything, &start, lengths);
         let nearby = everything.without(self.yielding);

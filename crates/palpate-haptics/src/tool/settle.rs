@@ -23,7 +23,7 @@ use super::coupling::Twist;
 use super::friction::{Cone, Hold, MOST_AROUND};
 use super::scan::{Evaluation, FixedList, Path, Scan, Surroundings};
 use super::shell::Shell;
-use crate::nearby::Punctured;
+use crate::nearby::{Nearby, Punctured};
 
 /// The most iterations in a tick. Sliding takes three or four; the rest is for impacts and
 /// creases.
@@ -184,7 +184,7 @@ pub(super) struct RestSearch {
     pub(super) near: FixedList<Near>,
     /// The number of rows before those of friction.
     pub(super) plain: usize,
-    /// The contacts that pushed in this tick, as they were seen then.
+    /// The contacts that pushed in this tick or at the end of the last, as they were seen then.
     pushed: FixedList<Near>,
     /// The pushes of the last tick.
     pub(super) held: FixedList<Push>,
@@ -213,6 +213,25 @@ impl RestSearch {
         }
     }
 
+    /// Forgets the contacts, because the bodies changed.
+    pub(super) fn forget(&mut self) {
+        self.pushed.clear();
+    }
+
+    /// Begins a tick: keeps the contacts that push the tool at rest, and moves them with their bodies.
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    pub(super) fn begin(&mut self, nearby: &Nearby<'_>) {
+        let pushes = &self.rest.pushes;
+        self.pushed.retain(|near| pushes.iter().any(|push| near.is_of(push)));
+        for Near { seen, .. } in self.pushed.iter_mut() {
+            if let Some(motion) = nearby.body(seen.body).and_then(|body| body.motion()) {
+                seen.centre = motion.transform_point(seen.centre);
+                seen.gradient = motion.transform_vector(seen.gradient);
+            }
+        }
+    }
+
     /// Moves the tool from `start` towards `goal`; [`rest`](Self::rest) then holds the rest
     /// pose.
     ///
@@ -229,7 +248,6 @@ impl RestSearch {
         let Ends { start: mut pose, mut goal, is_out } = ends;
         self.held.clear();
         self.held.extend_from_slice(&self.rest.pushes);
-        self.pushed.clear();
         self.rest.pushes.clear();
         self.rest.energy = f64::INFINITY;
         self.rest.is_outside = false;
