@@ -47,14 +47,13 @@ impl Before {
 
 /// What was felt in the tick before.
 pub(super) struct Felt {
-    contact: bool,
     device: Pose<3>,
     force: Vector<f64, 3>,
 }
 
 impl Felt {
     pub(super) fn of(touch: &ToolTouch) -> Self {
-        Self { contact: touch.contact, device: touch.device, force: touch.force }
+        Self { device: touch.device, force: touch.force }
     }
 }
 
@@ -66,7 +65,7 @@ impl Tool {
         let (way, carried) = (way.linear, self.bodies_moved.linear);
         let moved = self.coupling.stiffness * (way - carried).norm();
         let change = (self.touch.force - before.force).norm();
-        before.contact && Change::None.or_handed_over(change, moved) != Change::None
+        Change::None.or_handed_over(change, moved) != Change::None
     }
 
     /// Writes force and torque of the tool at its new rest pose; its pose in the last tick was

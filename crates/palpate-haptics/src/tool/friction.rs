@@ -110,6 +110,8 @@ impl RestSearch {
         let flat = closest(sum(away, friction, 1.0), &self.rows, lengths.slack());
         // Written so that NaN, from zero push, gives zero.
         let part = (pushes(&flat) / pushes(&found)).clamp(0.0, 1.0).max(0.0);
+        // Between faces that jam the tool, pushes have no bound; friction is no greater than its cause.
+        let part = part * (length(&away) / length(&friction).max(length(&away)));
         let target = sum(away, friction, part);
         Hold::Slip(Twist::unstacked(target, lengths.unit).moved(pose))
     }

@@ -188,7 +188,7 @@ pub struct Tool {
     yielding: Yielding,
     /// Whether the force changes by more in this tick than hand and bodies move.
     pub(crate) hands_over: bool,
-    /// Whether bodies moved in this contact.
+    /// Whether bodies moved since the tool was last at the device.
     is_moved: bool,
     /// In how many ticks the tool rode on a body.
     ridden: u32,
@@ -374,7 +374,8 @@ impl Tool {
             let way = WAYS * motion.way(reach);
             bodies.nearby(start.translation, reach + way, list)
         };
-        self.is_moved = nearby.has_moved() || self.is_moved && self.touch.contact;
+        let is_held = self.touch.pose != self.touch.device;
+        self.is_moved = nearby.has_moved() || self.is_moved && is_held;
         let held = self.bodies_moved(&nearby);
         let carry = self.carrier(&nearby, &start, &device.pose);
         let rides = carry.is_some() && self.rides(&nearby, &start, &motion);

@@ -184,6 +184,8 @@ pub(super) struct RestSearch {
     pub(super) near: FixedList<Near>,
     /// The number of rows before those of friction.
     pub(super) plain: usize,
+    /// The pushes that stopped the last motion of this tick.
+    stopped: FixedList<Push>,
     /// The contacts that pushed in this tick or at the end of the last, as they were seen then.
     pushed: FixedList<Near>,
     /// The pushes of the last tick.
@@ -205,6 +207,7 @@ impl RestSearch {
             near: FixedList::with_capacity(points + MOST_SECOND),
             plain: 0,
             pushed: FixedList::with_capacity(FREEDOMS * MOST_ITERATIONS),
+            stopped: FixedList::with_capacity(FREEDOMS),
             held: FixedList::with_capacity(FREEDOMS),
             cones: FixedList::with_capacity(FREEDOMS),
             is_slipping: false,
@@ -249,6 +252,7 @@ impl RestSearch {
         self.held.clear();
         self.held.extend_from_slice(&self.rest.pushes);
         self.rest.pushes.clear();
+        self.stopped.clear();
         self.rest.energy = f64::INFINITY;
         self.rest.is_outside = false;
         let mut has_held = false;
@@ -292,6 +296,9 @@ impl RestSearch {
             let target = if goes_out { [0.0; FREEDOMS] } else { wish.stacked(lengths.unit) };
             let found = closest(target, &self.rows, lengths.slack());
             self.remember(&found);
+            if found.held().next().is_some() {
+                list(&mut self.stopped, &self.near, &found);
+            }
             if is_outside {
                 let (energy, known) = (wish.squared(lengths.unit), scan.known(shell));
                 self.keep(&found, Candidate { pose: &pose, energy, known });
@@ -307,7 +314,10 @@ impl RestSearch {
                 break;
             }
             let is_all = lengths.horizon >= wish.way(shell.reach);
-            let most = if is_free { 1.0 } else { twist.part_up_to(MOST_ANGLE) };
+            // Planes that face each other and are nearly parallel meet far away.
+            let farthest = wish.way(shell.reach) + shell.reach;
+            let near = farthest / twist.way(shell.reach).max(farthest);
+            let most = if is_free { 1.0 } else { twist.part_up_to(MOST_ANGLE).min(near) };
             let path = Path { pose: &pose, twist: &twist };
             let part = scan.sweep(surroundings, path, lengths.skin, most);
             scan.moved(&twist.part(part));
@@ -331,6 +341,9 @@ impl RestSearch {
             }
         }
         if self.rest.is_outside {
+            if self.rest.pushes.is_empty() && self.rest.pose != goal {
+                self.rest.pushes.extend_from_slice(&self.stopped);
+            }
             if self.rest.pose != pose {
                 scan.moved(&Twist::between(&pose, &self.rest.pose));
             }
@@ -429,13 +442,17 @@ impl RestSearch {
         }
         (self.rest.pose, self.rest.energy) = (*pose, energy);
         (self.rest.known, self.rest.is_outside) = (known, true);
-        self.rest.pushes.clear();
-        for held in found.held() {
-            let Some(near) = self.near.get(held.row) else { continue };
-            if held.push <= 0.0 || self.rest.pushes.len() == self.rest.pushes.capacity() {
-                continue;
-            }
-            self.rest.pushes.push(near.push(held.push));
+        list(&mut self.rest.pushes, &self.near, found);
+    }
+}
+
+/// Lists the pushes of a solution.
+fn list(pushes: &mut FixedList<Push>, near: &[Near], found: &Closest) {
+    pushes.clear();
+    for held in found.held().filter(|held| held.push > 0.0) {
+        let Some(near) = near.get(held.row) else { continue };
+        if pushes.len() < pushes.capacity() {
+            pushes.push(near.push(held.push));
         }
     }
 }

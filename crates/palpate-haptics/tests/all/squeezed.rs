@@ -357,7 +357,7 @@ fn whatever_closes_the_force_does_not_jump() {
             Ok(Vector([along(u)?, along(u)?, along(u)?]))
         };
         let places = [place()? + Vector([0.0, 0.008, 0.0]), place()?];
-        let tip = *u.choose(&[Tip::Ball(0.002), Tip::Ball(0.004)])?;
+        let tip = *u.choose(&[Tip::Ball(0.002), Tip::Ball(0.004), Tip::Rod])?;
         let run = Run::new(&bodies, tip, places, Held::ByOmega, 4.0);
         let (step, tick) = run.largest_free_step();
         assert!(step <= LARGEST_DRAWN_STEP, "{tip:?}: {step} N in tick {tick}");
