@@ -524,22 +524,30 @@ impl Bodies {
         body.settle();
     }
 
-    /// How far a body would carry a point of the world if it had this pose [m]; zero if the point is
-    /// farther than `reach` [m] from the body's bounding ball, at both poses.
+    /// How far a body would carry a hand, at most, if it went to this pose [m]; zero if its bounding
+    /// ball stays out of the hand's reach on the way there.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
-    pub(crate) fn way_to(
-        &self,
-        body: usize,
-        pose: &Pose<3>,
-        (point, reach): (Point<3>, f64),
-    ) -> f64 {
+    pub(crate) fn way_to(&self, body: usize, pose: &Pose<3>, hand: Reach) -> f64 {
         let Some(body) = self.bodies.get(body) else { return 0.0 };
-        // The body is as far from the point at the new pose as from this one at the present pose.
-        let seen = pose.inverse().transform_point(point);
-        let seen = body.world_from_body.transform_point(seen);
-        let is_near = [point, seen].iter().any(|place| body.above_ball(*place) <= reach);
-        if is_near { (pose.transform_point(body.in_body(point)) - point).norm() } else { 0.0 }
+        let Reach { place, spread, reach } = hand;
+        let carried = pose.transform_point(body.in_body(place));
+        let turn = body.world_from_body.rotation.turn_to(&pose.rotation).norm();
+        if let Some(ball) = body.ball {
+            let end = pose.transform_point(body.in_body(ball.centre));
+            let chord = body.across(end - ball.centre);
+            let from = body.across(place - ball.centre);
+            let part = (from.dot(chord) / chord.dot(chord)).clamp(0.0, 1.0);
+            // NaN, from a body that turns in place, is its start.
+            let part = if part >= 0.0 { part } else { 0.0 };
+            // The rise of an arc over its chord.
+            let rise = 0.5 * chord.norm() * (0.25 * turn).tan();
+            // Written so that NaN is near.
+            if (from - chord * part).norm() - ball.radius - rise > reach + spread {
+                return 0.0;
+            }
+        }
+        (carried - place).norm() + turn * spread
     }
 
     /// Moves bodies on along motions that take several ticks.
@@ -593,6 +601,17 @@ impl Bodies {
             self.bodies.iter_mut().for_each(Body::settle);
         }
     }
+}
+
+/// What a body that jumps may meet.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Reach {
+    /// The device point, or the origin of a tool.
+    pub(crate) place: Point<3>,
+    /// How far the points of a tool are from its origin [m]; zero for a point.
+    pub(crate) spread: f64,
+    /// How near to these a body is felt [m].
+    pub(crate) reach: f64,
 }
 
 /// Where a body goes in a tick.

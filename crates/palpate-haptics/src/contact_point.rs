@@ -91,6 +91,8 @@ pub(crate) struct ContactPoint {
     of_others: f64,
     /// Whether a body jumped since the last tick.
     has_jumped: bool,
+    /// Whether bodies that moved handed a force over.
+    has_handed_over: bool,
     /// The force after an edit that carried the proxy; with a port, the safety chain does this.
     approach: Approach,
     ringing: Ringing,
@@ -209,12 +211,13 @@ impl ContactPoint {
         let (rise, of_others, ringing) = (1.0, f64::INFINITY, Ringing::SILENT);
         let (crease, stiffness) = (Crease::NONE, f64::INFINITY);
         let (guided, approach, port) = (1.0, Approach::new(1.0), None);
-        let (has_jumped, squeeze) = (false, Squeeze::NONE);
+        let (has_jumped, has_handed_over, squeeze) = (false, false, Squeeze::NONE);
         Self {
             proxy,
             rise,
             of_others,
             has_jumped,
+            has_handed_over,
             approach,
             ringing,
             crease,
@@ -232,12 +235,14 @@ impl ContactPoint {
     pub(crate) fn double(&self) -> Self {
         let (proxy, port) = (self.proxy.clone(), self.port.clone());
         let Self { rise, of_others, approach, ringing, crease, stiffness, guided, .. } = *self;
-        let (guides, has_jumped, squeeze) = (Vec::new(), self.has_jumped, self.squeeze);
+        let (guides, squeeze) = (Vec::new(), self.squeeze);
+        let Self { has_jumped, has_handed_over, .. } = *self;
         Self {
             proxy,
             rise,
             of_others,
             has_jumped,
+            has_handed_over,
             approach,
             ringing,
             crease,
@@ -283,6 +288,10 @@ impl ContactPoint {
         }
         let begins = self.proxy.begins();
         let held = self.carried(tick.everything, touch);
+        let has_moved = tick.everything.has_moved() || self.proxy.is_moved();
+        let watches = self.port.is_some() && (has_moved || self.has_handed_over);
+        let way = device - touch.device;
+        let slid = if watches { self.slides(tick.everything, touch, way) } else { 0.0 };
         // The proxy stays where it is if the device point is not finite.
         let following = self.proxy.follow(tick.everything, device);
         tick.leave_out(self.proxy.yielding());
@@ -295,7 +304,7 @@ impl ContactPoint {
             change = self.tell_squeezed(tick, following.squeezed, change);
         }
         let before = Before::of(touch);
-        let (was_at, wanted_before) = (touch.device, touch.wanted);
+        let wanted_before = touch.wanted;
         let body = tick.nearby().body(following.body);
         // Field by field, because copying the whole struct would stall on store forwarding.
         touch.device = device;
@@ -311,8 +320,8 @@ impl ContactPoint {
         let Some(body) = body.filter(|_| state.is_finite()) else {
             touch.velocity = Vector::ZERO;
             self.fall_silent(tick, before);
-            let carried = Vector::ZERO;
-            return FreeForce { force: Vector::ZERO, placed, change, carried };
+            let (carried, explained) = (Vector::ZERO, 0.0);
+            return FreeForce { force: Vector::ZERO, placed, change, explained, carried };
         };
         let mut free = self.guided(device, state.velocity, tick.setting);
         if following.contact {
@@ -331,11 +340,36 @@ impl ContactPoint {
             // A body that moved onto the hand carries it from this tick on.
             None => self.carried(tick.everything, touch).unwrap_or(Vector::ZERO),
         };
-        if before.contact && self.proxy.is_moved() && self.port.is_some() {
-            let moved = self.stiffness * (device - was_at - carried).norm();
-            change = change.or_handed_over((touch.wanted - wanted_before).norm(), moved);
+        let mut explained = 0.0;
+        if watches {
+            let slides = self.slides(tick.everything, touch, way);
+            explained = self.stiffness * slides.max(slid);
+            if before.contact && has_moved {
+                let moved = (touch.wanted - wanted_before).norm();
+                change = change.or_handed_over(moved, explained);
+                self.has_handed_over |= change == Change::HandedOver;
+            }
         }
-        FreeForce { force: free, placed, change, carried }
+        if self.has_jumped && before.contact && following.edited.is_none() {
+            let moved = (touch.wanted - wanted_before).norm();
+            if Change::None.or_handed_over(moved, self.stiffness * way.norm()) != Change::None {
+                tick.tell(before.body, EventKind::Placed);
+            }
+        }
+        FreeForce { force: free, placed, change, explained, carried }
+    }
+
+    /// How far a hand that goes by `way` from where it is in `touch` moves relative to the bodies that push
+    /// it there, at most [m].
+    fn slides(&self, nearby: &Nearby<'_>, touch: &Touch, way: Vector<f64, 3>) -> f64 {
+        let bodies = self.pushes(touch).filter_map(|(index, _)| nearby.body(index));
+        let slides = bodies.map(|body| {
+            let carried = body.carried(touch.device) - touch.device;
+            if body.has_moved() { (way - carried).norm() } else { way.norm() }
+        });
+        slides
+            .fold(None, |most: Option<f64>, way| Some(most.map_or(way, |most| most.max(way))))
+            .unwrap_or_else(|| way.norm())
     }
 
     /// How far the bodies that push the hand in `touch` carry it in this tick [m]; `None` if none pushes.
@@ -401,7 +435,7 @@ impl ContactPoint {
             ..*touch
         };
         let (force, carried) = (Vector::ZERO, Vector::ZERO);
-        FreeForce { force, placed: false, change: Change::None, carried }
+        FreeForce { force, placed: false, change: Change::None, explained: 0.0, carried }
     }
 
     /// Ends the contact of the tick before and its ringing.
@@ -740,6 +774,8 @@ pub(crate) struct FreeForce {
     pub(crate) placed: bool,
     /// What happened beside the motion of the hand.
     pub(crate) change: Change,
+    /// By how much motion changes the force, at most [N].
+    pub(crate) explained: f64,
     /// How far the touched bodies carry the hand in this tick [m].
     pub(crate) carried: Vector<f64, 3>,
 }
@@ -793,7 +829,7 @@ impl ContactPoint {
         touch: &mut Touch,
         free: FreeForce,
     ) -> Vector<f64, 3> {
-        let FreeForce { force: free, placed, change, carried } = free;
+        let FreeForce { force: free, placed, change, explained, carried } = free;
         let Setting { options, map, rise_step, arrival, .. } = setting;
         let has_start = placed || self.of_others < f64::INFINITY;
         let start = if has_start { self.start(placed, change, touch.wanted) } else { 1.0 };
@@ -812,6 +848,7 @@ impl ContactPoint {
                 elapsed,
                 start,
                 change,
+                explained,
                 stiffness,
                 bodies: MovingBodies {
                     driven: map.velocity_to_device(carried),
@@ -826,7 +863,7 @@ impl ContactPoint {
             if change == Change::Carried {
                 self.approach.begin(change);
             }
-            let wanted = self.approach.step(touch.wanted).unwrap_or(touch.wanted);
+            let wanted = self.approach.step(touch.wanted, explained).unwrap_or(touch.wanted);
             touch.force = limited(wanted + free, options.max_force) * rise;
             map.force_to_device(touch.force)
         }

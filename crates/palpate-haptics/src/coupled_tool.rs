@@ -176,7 +176,7 @@ impl CoupledTool {
         point.stiffness = self.tool.secant();
         let stiffness = point.stiffness * map.scale();
         let (start, change) = self.change();
-        let moved = self.tool.bodies_moved;
+        let (moved, explained) = (self.tool.bodies_moved, self.tool.explained);
         let change = if arrival.is_ready { change } else { Change::Begins };
         let force = if let Some(chain) = self.chain() {
             let force = map.force_to_device(touch.wanted);
@@ -189,6 +189,7 @@ impl CoupledTool {
                 elapsed,
                 start,
                 change,
+                explained,
                 stiffness,
                 bodies: MovingBodies {
                     driven: SpatialVector {
@@ -210,7 +211,7 @@ impl CoupledTool {
             // Without protection the tool's own rise is that of a placement.
             let placed = point.port.is_some() && start == 0.0;
             let carried = moved.linear;
-            let free = FreeForce { force: free, placed, change, carried };
+            let free = FreeForce { force: free, placed, change, explained, carried };
             point.give(setting, at_device, touch, free)
         };
         self.given = turn.map(|_| map.torque_to_world(self.torque));
@@ -220,8 +221,9 @@ impl CoupledTool {
     /// What happened to the tool in this tick, and the part of its force to render.
     fn change(&self) -> (f64, Change) {
         match self.tool.edited {
-            Some(Edited::Carried { .. }) => (1.0, Change::Carried),
             Some(Edited::Placed) => (0.0, Change::None),
+            _ if self.tool.start < 1.0 => (self.tool.start, Change::None),
+            Some(Edited::Carried { .. }) => (1.0, Change::Carried),
             None if self.tool.begins => (1.0, Change::Begins),
             None if self.tool.hands_over => (1.0, Change::HandedOver),
             None => (1.0, Change::None),

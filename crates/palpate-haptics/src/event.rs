@@ -56,8 +56,8 @@ pub enum EventKind {
         /// How far it was carried, the shortest way [m].
         distance: f64,
     },
-    /// An edit of the bodies covered the proxy, or the tool, by more than it may be carried: it was
-    /// placed anew, and the force rises from zero.
+    /// An edit of the bodies covered the proxy, or the tool, by more than it may be carried, or a body
+    /// jumped to it or away from it: it was placed anew. The force falls at once, and rises slowly.
     Placed,
     /// The body moved, and left the proxy or the tool no room beside bodies that stand still. It
     /// yields: the proxy lies in it until there is room.

@@ -92,15 +92,19 @@ impl Approach {
         self.falls_slowly
     }
 
-    /// One tick: the force for the force `wanted`; `None` if the force had caught up before.
+    /// One tick: the force for the force `wanted`; `None` if the force had caught up before. After a
+    /// handover it also follows what motion `explains` of the change [N], so that a hand that leaves the
+    /// bodies leaves their force.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
-    pub fn step(&mut self, wanted: Vector<f64, 3>) -> Option<Vector<f64, 3>> {
+    pub fn step(&mut self, wanted: Vector<f64, 3>, explains: f64) -> Option<Vector<f64, 3>> {
         if !self.is_on {
             self.last = wanted;
             return None;
         }
-        let change = shortened(wanted - self.last, self.step);
+        // `max` ignores NaN.
+        let explained = if self.falls_slowly { explains.max(0.0) / STEP } else { 0.0 };
+        let change = shortened(wanted - self.last, self.step * (1.0 + explained));
         match change.filter(|_| self.falls_slowly || wanted != Vector::ZERO) {
             Some(change) => self.last += change,
             None => (self.last, self.is_on, self.falls_slowly) = (wanted, false, false),
@@ -384,35 +388,48 @@ mod tests {
     #[test]
     fn a_force_goes_straight_to_the_wanted_one_and_is_free_then() {
         let mut approach = Approach::new(1.0);
-        assert_eq!(approach.step(Vector([0.0, 1.0, 0.0])), None);
+        assert_eq!(approach.step(Vector([0.0, 1.0, 0.0]), 0.0), None);
         approach.begin(Change::Carried);
         let along = [0.6, 0.2].map(|x| Vector([x, 1.0, 0.0]));
-        assert_eq!(approach.step(along[0]), Some(Vector([0.3, 1.0, 0.0])));
-        assert_eq!(approach.step(along[1]), Some(along[1]));
-        assert_eq!(approach.step(Vector([0.0, 9.0, 0.0])), None);
+        assert_eq!(approach.step(along[0], 0.0), Some(Vector([0.3, 1.0, 0.0])));
+        assert_eq!(approach.step(along[1], 0.0), Some(along[1]));
+        assert_eq!(approach.step(Vector([0.0, 9.0, 0.0]), 0.0), None);
     }
 
     #[test]
     fn a_force_that_ends_ends_at_once() {
         let mut approach = Approach::new(0.5);
-        assert_eq!(approach.step(Vector([0.0, 1.0, 0.0])), None);
+        assert_eq!(approach.step(Vector([0.0, 1.0, 0.0]), 0.0), None);
         approach.begin(Change::Carried);
-        assert_eq!(approach.step(Vector([0.0, 2.0, 0.0])), Some(Vector([0.0, 1.15, 0.0])));
-        assert_eq!(approach.step(Vector::ZERO), Some(Vector::ZERO));
-        assert_eq!(approach.step(Vector([0.0, 2.0, 0.0])), None);
+        assert_eq!(approach.step(Vector([0.0, 2.0, 0.0]), 0.0), Some(Vector([0.0, 1.15, 0.0])));
+        assert_eq!(approach.step(Vector::ZERO, 0.0), Some(Vector::ZERO));
+        assert_eq!(approach.step(Vector([0.0, 2.0, 0.0]), 0.0), None);
     }
 
     #[test]
     fn a_force_that_is_handed_over_ends_step_by_step() {
         let mut approach = Approach::new(1.0);
-        assert_eq!(approach.step(Vector([0.0, 1.0, 0.0])), None);
+        assert_eq!(approach.step(Vector([0.0, 1.0, 0.0]), 0.0), None);
         approach.begin(Change::HandedOver);
         for left in [0.7, 0.4, 0.1] {
-            let step = approach.step(Vector::ZERO).unwrap();
+            let step = approach.step(Vector::ZERO, 0.0).unwrap();
             assert!((step - Vector([0.0, left, 0.0])).norm() < 1e-15, "{step:?}");
         }
-        assert_eq!(approach.step(Vector::ZERO), Some(Vector::ZERO));
-        assert_eq!(approach.step(Vector([0.0, 2.0, 0.0])), None);
+        assert_eq!(approach.step(Vector::ZERO, 0.0), Some(Vector::ZERO));
+        assert_eq!(approach.step(Vector([0.0, 2.0, 0.0]), 0.0), None);
+    }
+
+    #[test]
+    fn after_a_handover_a_force_follows_the_hand_too() {
+        let mut approach = Approach::new(1.0);
+        assert_eq!(approach.step(Vector([0.0, 5.0, 0.0]), 1.0), None);
+        approach.begin(Change::HandedOver);
+        let steps = [3.7, 2.4, 1.1, 0.0].map(|left| Some(Vector([0.0, left, 0.0])));
+        for step in steps {
+            let given = approach.step(Vector::ZERO, 1.0);
+            assert!((given.unwrap() - step.unwrap()).norm() < 1e-15, "{given:?}");
+        }
+        assert_eq!(approach.step(Vector::ZERO, 1.0), None);
     }
 
     #[test]

@@ -51,6 +51,9 @@ pub struct PortState {
     pub start: f64,
     /// What happened to the contact point in this tick beside the motion of the hand.
     pub change: Change,
+    /// By how much the motion of the hand relative to the bodies that push it changes the force in this
+    /// tick, at most [N]. After a handover the force follows that much beyond its step.
+    pub explained: f64,
     /// The stiffness behind the wanted force [N/m]: force over depth. That of the accepted impedance
     /// counts if this is more, or infinite.
     pub stiffness: f64,
@@ -71,6 +74,7 @@ impl PortState {
             elapsed: None,
             start: 1.0,
             change: Change::None,
+            explained: 0.0,
             stiffness: f64::INFINITY,
             bodies: MovingBodies::NONE,
         }
@@ -298,8 +302,8 @@ impl SafetyChain {
         // zero.
         let is_sound = finite::is_sound(wanted, state);
         let PortState { position, velocity, free_force, late, elapsed, stiffness, .. } = *state;
-        let PortState { start, change, bodies, .. } = *state;
-        let input = TickInput { is_sound, late, start, change, cut };
+        let PortState { start, change, explained, bodies, .. } = *state;
+        let input = TickInput { is_sound, late, start, change, explained, cut };
         let risen = self.channel.risen(wanted, free_force, &input);
         let Risen { wanted, part: rise, is_rising, .. } = risen;
         let effort = risen.effort(effort, wanted.norm());

@@ -26,6 +26,8 @@ pub(crate) struct TickInput {
     pub(crate) start: f64,
     /// As [`PortState::change`](super::PortState::change).
     pub(crate) change: Change,
+    /// As [`PortState::explained`](super::PortState::explained) [N].
+    pub(crate) explained: f64,
     /// How much a limit took from the wanted force before the stages.
     pub(crate) cut: f64,
 }
@@ -134,16 +136,17 @@ impl Channel {
         input: &TickInput,
     ) -> Risen {
         self.approach.begin(input.change);
-        let near = if input.is_sound { self.approach.step(wanted) } else { None };
+        let near =
+            if input.is_sound { self.approach.step(wanted, input.explained) } else { None };
         let (aim, follows) = (wanted, near.is_some());
         let wanted = near.unwrap_or(aim);
         let part = self.risen_part(wanted, free, input);
-        if wanted != aim && part.is_none() {
-            self.effects.ramp.count_size((aim - wanted).norm());
-        }
         let is_rising = part.is_some() || follows;
         let part = part.unwrap_or(1.0);
         let wanted = if part < 1.0 { wanted * part } else { wanted };
+        if wanted != aim || part < 1.0 {
+            self.effects.ramp.count_size((aim - wanted + free * (1.0 - part)).norm());
+        }
         let is_falling = follows && self.approach.falls_slowly();
         Risen { wanted, part, is_rising, is_falling }
     }
@@ -169,11 +172,7 @@ impl Channel {
         if !input.is_sound {
             return None;
         }
-        let part = self.rise.step(wanted, free)?;
-        if part < 1.0 {
-            self.effects.ramp.count_size((wanted + free).norm() * (1.0 - part));
-        }
-        Some(part)
+        self.rise.step(wanted, free)
     }
 
     /// The force to write for `observed`, which passed the passivity stage, plus `free`.
@@ -284,7 +283,7 @@ impl Channel {
     fn limited(&mut self, force: Vector<f64, 3>, cut: f64) -> Vector<f64, 3> {
         let effects = &mut self.effects;
         let limit = self.force_limit.limit(force);
-        if limit.is_none() && cut > 0.0 {
+        if cut > 0.0 && limit.is_none_or(|limited| limited == force) {
             effects.force_limit.count_size(cut);
         }
         let force = effects.force_limit.count(force, limit);

@@ -108,6 +108,9 @@ pub struct WrenchState {
     pub start: f64,
     /// As [`PortState::change`](crate::PortState::change), for force and torque.
     pub change: Change,
+    /// By how much the motion of the hand relative to the bodies that push it changes the force in this
+    /// tick, at most [N]. After a handover the force follows that much beyond its step.
+    pub explained: f64,
     /// As [`PortState::stiffness`](crate::PortState::stiffness), with an angle as a length.
     pub stiffness: f64,
     /// As [`PortState::bodies`](crate::PortState::bodies), with the bodies' rotation [rad].
@@ -297,7 +300,7 @@ impl WrenchChain {
         let Wanted { force: wanted, effort, cut } = wanted;
         let WrenchState { position, velocity, free_force, late, elapsed, stiffness, .. } =
             *state;
-        let WrenchState { start, change, bodies, .. } = *state;
+        let WrenchState { start, change, explained, bodies, .. } = *state;
         // Stages with a state never see numbers that are not finite; the guards then write
         // zero.
         let is_sound = [wanted, position, velocity].iter().all(SpatialVector::is_finite)
@@ -305,7 +308,7 @@ impl WrenchChain {
             && bodies.is_finite();
         let unit = self.unit;
         let (position, velocity) = (position.turning(unit), velocity.turning(unit));
-        let input = TickInput { is_sound, late, start, change, cut };
+        let input = TickInput { is_sound, late, start, change, explained, cut };
         let along = self.force.risen(wanted.along, free_force, &input);
         let about = self.torque.risen(wanted.about, Vector::ZERO, &input);
         let has_risen = !along.is_rising && !about.is_rising;

@@ -41,7 +41,7 @@ pub struct HandoffOptions {
     /// The most bodies in a scene.
     pub bodies: usize,
     /// A body that [`Control::set_poses`] would move faster than this at a contact point jumps instead
-    /// [m/s].
+    /// [m/s]. Infinite for none, NaN for each.
     pub largest_speed: f64,
 }
 

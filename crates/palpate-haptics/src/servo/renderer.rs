@@ -17,7 +17,7 @@ use palpate_safety::{
 };
 
 use crate::accepted_bodies::AcceptedBodies;
-use crate::bodies::Bodies;
+use crate::bodies::{Bodies, Reach};
 use crate::contact_point::{ContactPoint, MOST_EVENTS, Setting, Tick, Touch};
 use crate::coupled_tool::{CoupledTool, Sides};
 use crate::error::{HapticsError, ServoOptions};
@@ -358,19 +358,15 @@ impl Renderer {
     pub(crate) fn move_body(&mut self, body: usize, to: &Placement, largest_speed: f64) {
         let Placement { pose, over } = *to;
         let ticks = over * self.setting.options.rate;
-        let Self { accepted, contacts, setting, .. } = self;
-        let bodies = &mut accepted.bodies;
-        let radius = setting.options.probe.radius();
-        let way =
-            |touch: &Touch| bodies.way_to(body, &pose, (touch.device, reach(radius, touch)));
-        let way_of_any = contacts.touches.iter().map(way);
-        let way_of_any = way_of_any.fold(0.0, f64::max);
-        // Written so that NaN does not jump: a hand that is lost touches nothing.
-        let jumps = way_of_any * setting.options.rate > largest_speed * ticks.max(1.0);
+        let way = |touch| self.accepted.bodies.way_to(body, &pose, self.reach(touch));
+        let way_of_any = self.contacts.touches.iter().map(way).fold(0.0, f64::max);
+        // A hand that is lost, with a way of NaN, touches nothing. A speed of NaN allows none.
+        let speed = way_of_any * self.setting.options.rate / ticks.max(1.0);
+        let jumps = speed > 0.0 && (speed > largest_speed || largest_speed.is_nan());
         if jumps {
             self.jump(body, pose);
         } else {
-            bodies.move_to(body, pose, ticks);
+            self.accepted.bodies.move_to(body, pose, ticks);
         }
     }
 
@@ -380,17 +376,29 @@ impl Renderer {
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     #[inline(never)]
     pub(crate) fn jump(&mut self, body: usize, pose: Pose<3>) {
-        let Self { accepted, contacts, rendered, setting, .. } = self;
-        let bodies = &mut accepted.bodies;
-        let radius = setting.options.probe.radius();
-        for (point, touch) in contacts.points.iter_mut().zip(&contacts.touches) {
-            let way = bodies.way_to(body, &pose, (touch.device, reach(radius, touch)));
-            point.see_jump(way > 0.0, touch.wanted);
+        let mut is_near_any = false;
+        for index in 0..self.contacts.touches.len() {
+            let Some(touch) = self.contacts.touches.get(index) else { continue };
+            let is_near = self.accepted.bodies.way_to(body, &pose, self.reach(touch)) > 0.0;
+            is_near_any |= is_near;
+            if let Some(point) = self.contacts.points.get_mut(index) {
+                point.see_jump(is_near, touch.wanted);
+            }
         }
-        bodies.jump_to(body, pose);
-        if let Rendered::Tool(coupled) = rendered {
-            coupled.tool.forget_bodies();
+        self.accepted.bodies.jump_to(body, pose);
+        if let Rendered::Tool(coupled) = &mut self.rendered {
+            coupled.tool.see_jump(is_near_any);
         }
+    }
+
+    /// What a body that jumps may meet of a hand.
+    fn reach(&self, touch: &Touch) -> Reach {
+        let radius = self.setting.options.probe.radius();
+        let spread = match &self.rendered {
+            Rendered::Tool(coupled) => coupled.tool.shell().reach(),
+            _ => 0.0,
+        };
+        Reach { place: touch.device, spread, reach: REACHES * (radius + touch.depth()) }
     }
 
     /// Swaps the rendered bodies with `bodies`; the next tick renders the new ones. `false`, and
@@ -585,11 +593,6 @@ impl Renderer {
         }
         self.accepted.bodies.swap_reactions();
     }
-}
-
-/// How near a body is to a contact point that feels it [m].
-fn reach(radius: f64, touch: &Touch) -> f64 {
-    REACHES * (radius + touch.depth())
 }
 
 /// The bodies that a contact can reach in a tick.

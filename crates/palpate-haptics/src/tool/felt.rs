@@ -47,7 +47,7 @@ impl Before {
 
 /// What was felt in the tick before.
 pub(super) struct Felt {
-    device: Pose<3>,
+    pub(super) device: Pose<3>,
     force: Vector<f64, 3>,
 }
 
@@ -58,23 +58,33 @@ impl Felt {
 }
 
 impl Tool {
-    /// Whether the force changes by more than 0.3 N beyond what the motion of hand and bodies makes of
-    /// it.
+    /// How far a hand that goes from `from` to `to` moves relative to the bodies that push, at most [m].
+    pub(super) fn slides(&self, nearby: &Nearby<'_>, from: &Pose<3>, to: &Pose<3>) -> f64 {
+        let way = to.translation - from.translation;
+        let slides = self.rest_search.rest.pushes.iter().map(|push| {
+            let carried = nearby.body(push.body).and_then(|body| body.carried_pose(from));
+            let carried = carried.map_or(Vector::ZERO, |it| it.translation - from.translation);
+            (way - carried).norm()
+        });
+        let most = slides
+            .fold(None, |most: Option<f64>, way| Some(most.map_or(way, |most| most.max(way))));
+        most.unwrap_or_else(|| way.norm())
+    }
+
+    /// Whether the force changes by more than 0.3 N beyond what motion explains.
     pub(super) fn has_stepped(&self, before: &Felt) -> bool {
-        let way = Twist::between(&before.device, &self.touch.device);
-        let (way, carried) = (way.linear, self.bodies_moved.linear);
-        let moved = self.coupling.stiffness * (way - carried).norm();
         let change = (self.touch.force - before.force).norm();
-        Change::None.or_handed_over(change, moved) != Change::None
+        Change::None.or_handed_over(change, self.explained) != Change::None
     }
 
     /// Writes force and torque of the tool at its new rest pose; its pose in the last tick was
-    /// `before`.
+    /// `before`, and hand and bodies moved its points by `way` at most [m].
     pub(super) fn write_touch(
         &mut self,
         nearby: &Nearby<'_>,
         device: &ToolState,
         before: &Pose<3>,
+        way: f64,
     ) {
         let was = Before::of(&self.touch);
         self.write_rest(device);
@@ -90,7 +100,9 @@ impl Tool {
             self.hand_velocity -=
                 self.body_velocity(nearby, push.body, device.pose.translation);
         }
-        self.write_force(nearby, device, &moved);
+        // A tool that snaps to another face or edge does not move the damper.
+        let slow = moved.part((way / moved.way(self.shell.reach())).min(1.0));
+        self.write_force(nearby, device, &slow);
         let speed = hardest.map_or(0.0, |push| {
             (-self.speed_at(nearby, &push, device, 1.0).dot(push.normal)).max(0.0)
         });
@@ -130,9 +142,10 @@ impl Tool {
         }
     }
 
-    /// Writes force and torque of a tool that moved by `moved` in this tick.
+    /// Writes force and torque of a tool whose damper moved by `moved` in this tick.
     fn write_force(&mut self, nearby: &Nearby<'_>, device: &ToolState, moved: &Twist) {
         let has_new_bodies = std::mem::take(&mut self.has_new_bodies);
+        let has_jumped = std::mem::take(&mut self.has_jumped);
         let before = self.effort();
         if !self.touch.contact {
             (self.touch.force, self.touch.torque) = (Vector::ZERO, Vector::ZERO);
@@ -144,7 +157,7 @@ impl Tool {
         let (options, coupling) = (&self.options, &self.coupling);
         let stretch = Twist::between(&device.pose, &self.touch.pose);
         let body_response = self.body_response(nearby, device, &stretch);
-        let velocity = device.velocity - self.touch.velocity;
+        let velocity = device.velocity - moved.linear * options.rate;
         let spins = device.angular_velocity - moved.angular * options.rate;
         let part = body_response.part;
         let force = Motion {
@@ -159,11 +172,15 @@ impl Tool {
         let torque = and_damper(not_pulling(torque), body_response.torque);
         self.touch.force = damped(&force, options.force_limit()) * self.rise;
         self.touch.torque = damped(&torque, options.max_torque) * self.rise;
-        if has_new_bodies && self.edited.is_none() {
+        if has_new_bodies && (self.edited.is_none() || has_jumped) {
             let start = shortening(self.effort(), before);
-            self.rise *= start;
-            self.touch.force = self.touch.force * start;
-            self.touch.torque = self.touch.torque * start;
+            if has_jumped && self.is_protected {
+                self.start = start;
+            } else {
+                self.rise *= start;
+                self.touch.force = self.touch.force * start;
+                self.touch.torque = self.touch.torque * start;
+            }
         }
         let step = 1.0 / (options.rate * options.rise_time);
         self.rise = (self.rise + step).min(1.0);
@@ -309,8 +326,9 @@ impl Tool {
     }
 
     /// Tells what new bodies did to the tool.
-    pub(super) fn tell_edited(&mut self) {
+    pub(super) fn tell_edited(&mut self, has_jumped: bool, before: &Felt) {
         let kind = match self.edited {
+            None if has_jumped && self.has_stepped(before) => EventKind::Placed,
             None => return,
             Some(Edited::Carried { distance }) => EventKind::Carried { distance },
             Some(Edited::Placed) => EventKind::Placed,

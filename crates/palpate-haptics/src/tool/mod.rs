@@ -166,6 +166,10 @@ pub struct Tool {
     part: f64,
     /// Whether the bodies were replaced since the last tick.
     has_new_bodies: bool,
+    /// Whether one of them jumped.
+    has_jumped: bool,
+    /// The part of the force from which it rises in this tick, because a body jumped.
+    pub(crate) start: f64,
     /// What new bodies did to the tool in this tick; `None` if they did not cover it.
     pub(crate) edited: Option<Edited>,
     /// Whether the tool began in bodies, in the first tick or set down, and its force from zero.
@@ -188,6 +192,8 @@ pub struct Tool {
     yielding: Yielding,
     /// Whether the force changes by more in this tick than hand and bodies move.
     pub(crate) hands_over: bool,
+    /// By how much motion changes the force in this tick, at most [N].
+    pub(crate) explained: f64,
     /// Whether bodies moved since the tool was last at the device.
     is_moved: bool,
     /// In how many ticks the tool rode on a body.
@@ -217,6 +223,8 @@ impl Tool {
             rise: 1.0,
             part: 1.0,
             has_new_bodies: false,
+            has_jumped: false,
+            start: 1.0,
             edited: None,
             begins: false,
             is_beginning: false,
@@ -228,6 +236,7 @@ impl Tool {
             carrier: None,
             yielding: Yielding::default(),
             hands_over: false,
+            explained: 0.0,
             is_moved: false,
             ridden: 0,
             events: FixedList::with_capacity(MOST_EVENTS),
@@ -292,6 +301,16 @@ impl Tool {
         self.has_new_bodies = true;
     }
 
+    /// Takes note that a body jumped, which is or was near, or far away. Where it covers the tool now, the
+    /// tool is placed outside, and the force rises from the last one.
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    pub(crate) fn see_jump(&mut self, is_near: bool) {
+        self.lose_bodies();
+        self.has_new_bodies |= is_near;
+        self.has_jumped |= is_near;
+    }
+
     /// A tick of a tool that is lifted off the bodies: it is at the device, and touches nothing. The
     /// next [`step`](Self::step) places it anew, as the first one did.
     ///
@@ -300,7 +319,7 @@ impl Tool {
     pub fn hover(&mut self, device: &ToolState) {
         self.events.clear();
         (self.edited, self.begins, self.is_beginning) = (None, false, false);
-        self.hands_over = false;
+        (self.hands_over, self.explained) = (false, 0.0);
         self.bodies_moved = Twist::NONE;
         self.lose_bodies();
         let was = Before::of(&self.touch);
@@ -337,6 +356,7 @@ impl Tool {
     pub fn step(&mut self, bodies: &mut Bodies, device: &ToolState) -> &ToolTouch {
         self.events.clear();
         (self.edited, self.begins, self.hands_over) = (None, false, false);
+        (self.explained, self.start) = (0.0, 1.0);
         self.bodies_moved = Twist::NONE;
         let (mut list, mut reactions) = bodies.take_scratch();
         reactions.fill(Reaction::NONE);
@@ -377,6 +397,7 @@ impl Tool {
         let is_held = self.touch.pose != self.touch.device;
         self.is_moved = nearby.has_moved() || self.is_moved && is_held;
         let held = self.bodies_moved(&nearby);
+        let slid = self.slides(&nearby, &self.touch.device, &device.pose);
         let carry = self.carrier(&nearby, &start, &device.pose);
         let rides = carry.is_some() && self.rides(&nearby, &start, &motion);
         if nearby.has_moved() && !rides {
@@ -397,7 +418,8 @@ impl Tool {
         };
         let start = self.edited_start(&nearby, start, lengths);
         let surroundings = Surroundings { shell: &self.shell, nearby: &nearby };
-        let ends = Ends { start, goal: device.pose, is_out: false };
+        let is_out = self.edited == Some(Edited::Placed);
+        let ends = Ends { start, goal: device.pose, is_out };
         self.rest_search.settle(&mut self.scan, surroundings, ends, lengths);
         let is_stuck = !self.rest_search.rest.is_outside && nearby.has_moved();
         if is_stuck && self.touch.contact {
@@ -422,13 +444,15 @@ impl Tool {
         }
         let before = self.pose.unwrap_or(rest.pose);
         self.pose = Some(rest.pose);
-        let felt = Felt::of(&self.touch);
-        self.write_touch(&nearby, device, &before);
+        let (felt, has_jumped) = (Felt::of(&self.touch), self.has_jumped);
+        self.write_touch(&nearby, device, &before, moved);
         // Bodies that move onto the tool carry the hand from this tick on.
         let moved = held.or_else(|| self.bodies_moved(&nearby));
         self.bodies_moved = moved.filter(|_| !is_placed).unwrap_or(Twist::NONE);
+        let slides = self.slides(&nearby, &felt.device, &device.pose).max(slid);
+        self.explained = self.coupling.stiffness * slides;
         self.hands_over |= self.is_moved && self.has_stepped(&felt);
-        self.tell_edited();
+        self.tell_edited(has_jumped, &felt);
         self.tell_squeezed(was_yielding);
         self.react(&nearby, reactions);
     }

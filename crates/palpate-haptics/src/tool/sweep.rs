@@ -71,14 +71,17 @@ impl Scan {
         let (mut proven, mut swept_points) = (whole, std::mem::take(&mut self.swept_points));
         swept_points.clear();
         for (number, seen) in self.seen() {
-            // Points that are already deeper than a skin are moving out.
-            if seen.gap <= -skin {
+            // Points that are already deeper than a skin are moving out. Points half as deep that
+            // move out would stop others that are deeper.
+            let arm = seen.centre - pose.translation;
+            let goes_out = || twist.of_point(arm).dot(seen.gradient) > 0.0;
+            if seen.gap <= -skin || seen.gap < -0.5 * skin && goes_out() {
                 continue;
             }
             // A point may go down to half a skin; from below that, half of the way to a whole
             // skin.
             let room = (seen.gap + 0.5 * skin).max(0.5 * (seen.gap + skin)) / lipschitz;
-            let way = linear + angle * (seen.centre - pose.translation).norm();
+            let way = linear + angle * arm.norm();
             if way * whole > room && swept_points.len() < swept_points.capacity() {
                 let covered = room / way;
                 proven = proven.min(covered);

@@ -29,6 +29,7 @@ mod golden;
 mod guide_stability;
 mod guides;
 mod handoff;
+mod handovers;
 mod happenings;
 mod held_devices;
 mod late;

@@ -113,14 +113,16 @@ impl Governor {
         if self.part <= self.target {
             let rise = if effort > 0.0 { RETURN * period / effort } else { 1.0 };
             self.part = (self.part + rise).min(self.target);
-            return self.part;
+        } else {
+            // As long as the wall gives more than the force limit, less of it changes nothing.
+            let free = if force < effort { force / effort } else { 1.0 };
+            self.part = (self.part.min(free) - STEP / effort).max(self.target);
+            self.report.least_part = self.report.least_part.min(self.part);
         }
-        // As long as the wall gives more than the force limit, less of it changes nothing.
-        let free = if force < effort { force / effort } else { 1.0 };
-        self.part = (self.part.min(free) - STEP / effort).max(self.target);
-        let left = (self.part * effort).min(force);
-        self.report.effect.count_size(force - left);
-        self.report.least_part = self.report.least_part.min(self.part);
+        let left = self.part * effort;
+        if left < force {
+            self.report.effect.count_size(force - left);
+        }
         self.part
     }
 
