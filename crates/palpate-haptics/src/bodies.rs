@@ -498,8 +498,8 @@ impl Bodies {
         self.has_moved = true;
     }
 
-    /// Moves a body along a screw to a pose, in so many ticks from the next one on; at once in one
-    /// tick or less. Ignores the same poses as [`set_pose`](Self::set_pose).
+    /// Moves a body along a screw to a pose, over `ticks` ticks, from the next one on; at once with
+    /// one tick or less. Ignores the same poses as [`set_pose`](Self::set_pose).
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     pub(crate) fn move_to(&mut self, body: usize, world_from_body: Pose<3>, ticks: f64) {

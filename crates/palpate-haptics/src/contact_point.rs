@@ -86,14 +86,14 @@ pub(crate) struct ContactPoint {
     pub(crate) proxy: Proxy,
     /// The rendered part of the force, in [0, 1].
     rise: f64,
-    /// The force of the replaced bodies in the tick before [N]; infinite if the bodies are the
-    /// same.
+    /// The force before bodies were replaced or one jumped [N]; infinite if neither happened.
     of_others: f64,
     /// Whether a body jumped since the last tick.
     has_jumped: bool,
     /// Whether bodies that moved handed a force over.
     has_handed_over: bool,
-    /// The force after an edit that carried the proxy; with a port, the safety chain does this.
+    /// How the force follows after an edit carried the proxy. With a port the safety chain has its
+    /// own.
     approach: Approach,
     ringing: Ringing,
     /// The bodies that touch the proxy.
@@ -359,8 +359,8 @@ impl ContactPoint {
         FreeForce { force: free, placed, change, explained, carried }
     }
 
-    /// How far a hand that goes by `way` from where it is in `touch` moves relative to the bodies that push
-    /// it there, at most [m].
+    /// The largest motion of the hand relative to a body that pushes it in `touch`, if the hand
+    /// goes by `way` [m].
     fn slides(&self, nearby: &Nearby<'_>, touch: &Touch, way: Vector<f64, 3>) -> f64 {
         let bodies = self.pushes(touch).filter_map(|(index, _)| nearby.body(index));
         let slides = bodies.map(|body| {
@@ -397,7 +397,8 @@ impl ContactPoint {
         }
         let mean = sum * (1.0 / whole);
         let lacking = work - mean.dot(force);
-        // Where the bodies push against each other, their work is none of the hand.
+        // Where bodies push against each other, most of their work is on each other: the mean then
+        // counts alone.
         let is_of_hand = lacking.abs() <= LARGEST_GAIN * fastest * force.norm();
         let carried = if is_of_hand && lacking != 0.0 {
             mean + force * (lacking / force.dot(force))
@@ -455,8 +456,8 @@ impl ContactPoint {
         self.proxy.hold_between(None);
     }
 
-    /// Tells that a body leaves the proxy no room; `None` if there is room again. Returns what
-    /// happened in this tick, beside `change`.
+    /// Tells which body leaves the proxy no room; `None` if there is room again. Returns `change`,
+    /// or a handover if it is none.
     #[cold]
     fn tell_squeezed(
         &mut self,
@@ -770,7 +771,8 @@ impl ContactPoint {
 pub(crate) struct FreeForce {
     /// The force [N].
     pub(crate) force: Vector<f64, 3>,
-    /// Whether the proxy was placed anew: then all forces rise from zero.
+    /// Whether the proxy was placed anew: forces then rise from zero, or after a jump from the last
+    /// force.
     pub(crate) placed: bool,
     /// What happened beside the motion of the hand.
     pub(crate) change: Change,
@@ -818,7 +820,7 @@ impl ContactPoint {
 
     /// Sets the rendered force of `touch` from its wanted force and the force in free space.
     /// Returns the force to write [N], in device coordinates. If `placed`, the force rises from
-    /// zero.
+    /// zero, or after a jump from the last one.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     #[inline(always)]

@@ -220,9 +220,11 @@ impl CoupledTool {
 
     /// What happened to the tool in this tick, and the part of its force to render.
     fn change(&self) -> (f64, Change) {
+        if let Some(start) = self.tool.start {
+            return (start, Change::None);
+        }
         match self.tool.edited {
             Some(Edited::Placed) => (0.0, Change::None),
-            _ if self.tool.start < 1.0 => (self.tool.start, Change::None),
             Some(Edited::Carried { .. }) => (1.0, Change::Carried),
             None if self.tool.begins => (1.0, Change::Begins),
             None if self.tool.hands_over => (1.0, Change::HandedOver),

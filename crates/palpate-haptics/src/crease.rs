@@ -205,8 +205,8 @@ impl Crease {
         pushing.all(|wall| wall.normal.dot(hardest.normal) >= ALIGNED)
     }
 
-    /// How much two bodies that push face each other: the most that the cosine of two normals is below
-    /// zero.
+    /// How much two bodies that push face each other: the largest `−cos` between two of their
+    /// normals, or zero.
     pub(crate) fn facing(&self) -> f64 {
         let mut facing = 0.0_f64;
         let mut pushing = self.walls().filter(|wall| wall.push > 0.0);

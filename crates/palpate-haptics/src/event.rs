@@ -56,8 +56,9 @@ pub enum EventKind {
         /// How far it was carried, the shortest way [m].
         distance: f64,
     },
-    /// An edit of the bodies covered the proxy, or the tool, by more than it may be carried, or a body
-    /// jumped to it or away from it: it was placed anew. The force falls at once, and rises slowly.
+    /// An edit of the bodies covered the proxy, or the tool, by more than it may be carried, or a
+    /// body jumped to it or away from it: it was placed anew. A larger force then rises slowly:
+    /// from zero after an edit, from the last force after a jump.
     Placed,
     /// The body moved, and left the proxy or the tool no room beside bodies that stand still. It
     /// yields: the proxy lies in it until there is room.
@@ -92,7 +93,7 @@ pub struct EventCounts {
     pub pops: u64,
     /// Edits that carried a proxy or a tool.
     pub carries: u64,
-    /// Edits after which a proxy or a tool was placed anew.
+    /// Edits and jumps that placed a proxy or a tool anew.
     pub placements: u64,
     /// Bodies that moved and left a proxy or a tool no room.
     pub squeezes: u64,

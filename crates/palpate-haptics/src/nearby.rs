@@ -343,8 +343,8 @@ impl<'a> Nearby<'a> {
         FieldValue { distance: filled, gradient, body: least.body }
     }
 
-    /// The field of each body at a point for which `most` gives a value that the field may be less
-    /// than.
+    /// The fields at a point of the bodies whose bounding balls are at most `most` away; a body for
+    /// which it is `None` is left out.
     pub(crate) fn each_within(
         &self,
         p: Point<3>,

@@ -24,8 +24,8 @@ pub(crate) struct Against {
 /// The bodies that a proxy lies in, because they moved and left it no room.
 ///
 /// Each gives the force of its springs at its own depth at the device point, `r − f`, along its
-/// gradient there, and at most what the bodies that stand still give against it. All together they
-/// never push the hand into those.
+/// gradient there, and at most what the bodies that stand still give against it. Their sum never
+/// pushes the hand into the bodies that stand still.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Squeeze {
     /// The first of the bodies; `None` if the proxy has room.

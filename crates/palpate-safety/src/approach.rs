@@ -3,8 +3,6 @@
 
 //! How a force comes back: approaches, lifts, rises.
 //!
-//! The rise of a force that was zeroed.
-//!
 //! Each place that restarts a rise, from which force, and what lets the force rise again:
 //!
 //! | what happens | from | lets it rise |
@@ -15,12 +13,12 @@
 //! | a device is not ready: it has no state yet, or was lost | zero | [`Recovery`] |
 //! | late ticks, and ticks without a new reading, trip the watchdog | the force that was written | at once |
 //! | an input is not finite | zero | at once |
-//! | a proxy or a tool is placed anew, by an edit or since a body moves onto it | zero | at once |
-//! | bodies are replaced by ones that push harder | the force before | at once |
+//! | a proxy or a tool is placed anew, by an edit or since a body moves onto it, without a jump | zero | at once |
+//! | bodies are replaced by ones that push harder, or one jumps | the force before | at once |
 //!
-//! In the first four the hand may be anywhere, and in a body for any reason: these are beginnings. In
-//! the others a hand is at work, and what zeroed the force is not its doing: a wall that stayed soft
-//! would let it through. Neither of them ends a wait that goes on. An edit that carries a proxy out
+//! In the first four the hand may be anywhere, and in a body for any reason: these are beginnings.
+//! In the others a hand is at work, and what zeroed the force is not its doing: a wall that stayed
+//! soft would let it through. None of the last four ends a wait. An edit that carries a proxy out
 //! of a body restarts no rise, nor do bodies that close on the hand: see [`Change::Carried`] and
 //! [`Change::HandedOver`].
 
@@ -126,8 +124,7 @@ const LONGEST: f64 = 8.0;
 ///
 /// What the controller took from a wall stays taken while nothing moves, because a resting hand
 /// puts no energy in. So once a hand has rested in a wall for a quarter of a second, the force is
-/// lifted. If the controller acts again meanwhile, the next lift waits twice as long, until the
-/// hand leaves the wall.
+/// lifted. Each lift doubles the wait for the next, up to 8 s, until the hand leaves the wall.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Lift<V> {
     /// Where the hand began to rest.
@@ -205,9 +202,10 @@ pub enum Change {
     /// An edit of the bodies carried the proxy, or the tool, out of them: the wanted force follows at
     /// once, and the force changes by at most 0.3 N a tick until it is there.
     Carried,
-    /// Among bodies that move, the force changes by more than the hand moves, because others hold it
-    /// than before: they left it no room, one came or left, or it began to slip. As for
-    /// [`Carried`](Self::Carried), also where the force becomes zero.
+    /// Among bodies that move, the force changes by more than motion explains, because others hold
+    /// it than before: they left it no room, one came or left, or it began to slip. The force
+    /// follows as for [`Carried`](Self::Carried), but faster where motion explains more, and also
+    /// down to zero.
     HandedOver,
 }
 

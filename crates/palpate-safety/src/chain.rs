@@ -43,7 +43,7 @@ pub struct PortState {
     /// By how much the tick began too late [s]; zero in time. A tick without a new reading is as
     /// good as late.
     pub late: f64,
-    /// The time between the last two positions [s]; `None` for a period and what the tick is late.
+    /// The time between the last two positions [s]; `None`: a period plus the lateness.
     pub elapsed: Option<f64>,
     /// The part of the force to render in this tick, from which the force
     /// [rises](crate::SafetySettings::rise_rate) again, at once. Normally 1; 0 after the proxy was placed
@@ -118,8 +118,9 @@ impl SafetyOptions {
 /// The safety chain of one contact point, from the wanted force to the written force.
 ///
 /// The stages, in this order: stiffness and damping ([`Accepted`], at set-up), the rise of a force
-/// that was zeroed, limit cycles ([`LimitCycleReport`](crate::LimitCycleReport)), passivity of
-/// guides and magnets ([`FreeForceReport`](crate::FreeForceReport)), passivity of walls, slew limit,
+/// that was zeroed and the approach after an edit or a handover, limit cycles
+/// ([`LimitCycleReport`](crate::LimitCycleReport)), passivity of guides and magnets
+/// ([`FreeForceReport`](crate::FreeForceReport)), passivity of walls, power of drives, slew limit,
 /// force limit, continuous limit, guard against numbers that are not finite, deadline watchdog and
 /// emergency stop. If no stage has to act, the written force equals the wanted force bit for bit.
 ///

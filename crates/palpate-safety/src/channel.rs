@@ -221,7 +221,7 @@ impl Channel {
         Given { force, of_bodies, share }
     }
 
-    /// Rises as fast as before where a radian counts as a length that is so many times `longer`.
+    /// Keeps its rates when the length of a radian is multiplied by `longer`.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     pub(crate) fn in_units(&mut self, longer: f64) {

@@ -40,8 +40,9 @@ pub struct HandoffOptions {
     pub events: usize,
     /// The most bodies in a scene.
     pub bodies: usize,
-    /// A body that [`Control::set_poses`] would move faster than this at a contact point jumps instead
-    /// [m/s]. Infinite for none, NaN for each.
+    /// A body that [`Control::set_poses`] would move faster than this at a contact point jumps
+    /// instead [m/s]. With infinity no body jumps; with NaN every body that would move a contact
+    /// point.
     pub largest_speed: f64,
 }
 

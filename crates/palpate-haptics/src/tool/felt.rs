@@ -58,7 +58,8 @@ impl Felt {
 }
 
 impl Tool {
-    /// How far a hand that goes from `from` to `to` moves relative to the bodies that push, at most [m].
+    /// The largest motion of a hand that goes from `from` to `to` relative to a body that pushes it
+    /// [m].
     pub(super) fn slides(&self, nearby: &Nearby<'_>, from: &Pose<3>, to: &Pose<3>) -> f64 {
         let way = to.translation - from.translation;
         let slides = self.rest_search.rest.pushes.iter().map(|push| {
@@ -100,7 +101,7 @@ impl Tool {
             self.hand_velocity -=
                 self.body_velocity(nearby, push.body, device.pose.translation);
         }
-        // A tool that snaps to another face or edge does not move the damper.
+        // A tool that snaps to another face or edge moves its damper by at most `way`.
         let slow = moved.part((way / moved.way(self.shell.reach())).min(1.0));
         self.write_force(nearby, device, &slow);
         let speed = hardest.map_or(0.0, |push| {
@@ -175,7 +176,7 @@ impl Tool {
         if has_new_bodies && (self.edited.is_none() || has_jumped) {
             let start = shortening(self.effort(), before);
             if has_jumped && self.is_protected {
-                self.start = start;
+                self.start = Some(start);
             } else {
                 self.rise *= start;
                 self.touch.force = self.touch.force * start;
@@ -283,7 +284,8 @@ impl Tool {
         }
         let lacking = work - dot(&mean, &wrench);
         let squared = dot(&wrench, &wrench);
-        // Where the bodies push against each other, their work is none of the hand.
+        // Where bodies push against each other, most of their work is on each other: the mean then
+        // counts alone.
         if lacking != 0.0 && lacking.abs() <= LARGEST_GAIN * fastest * squared.sqrt() {
             add(&mut mean, &wrench, lacking / squared);
         }

@@ -202,7 +202,7 @@ impl RestSearch {
         self.rest.pushes.extend(pushing.take(room));
     }
 
-    /// Records what holds a tool that sticks since this tick: a body that moved onto it.
+    /// Records the pushes of bodies that moved onto a sticking tool in this tick.
     fn list_new_pushes(&mut self, found: &Closest) {
         for held in found.held().filter(|held| held.row < self.plain && held.push > 0.0) {
             let Some(near) = self.near.get(held.row) else { continue };

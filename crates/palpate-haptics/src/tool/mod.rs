@@ -168,13 +168,14 @@ pub struct Tool {
     has_new_bodies: bool,
     /// Whether one of them jumped.
     has_jumped: bool,
-    /// The part of the force from which it rises in this tick, because a body jumped.
-    pub(crate) start: f64,
+    /// The part of the force from which it rises in this tick; `None` if no body jumped.
+    pub(crate) start: Option<f64>,
     /// What new bodies did to the tool in this tick; `None` if they did not cover it.
     pub(crate) edited: Option<Edited>,
-    /// Whether the tool began in bodies, in the first tick or set down, and its force from zero.
+    /// Whether the tool began inside bodies, in the first tick or when it was set down, so that its
+    /// force rises from zero.
     pub(crate) begins: bool,
-    /// Whether it was in bodies since then.
+    /// Whether it has not been outside since it began.
     is_beginning: bool,
     /// Whether a safety chain lets the force rise after a beginning or a placement, in place of
     /// [`ToolOptions::rise_time`].
@@ -190,7 +191,8 @@ pub struct Tool {
     carrier: Option<u32>,
     /// The bodies that the tool lies in, because they moved and left it no room.
     yielding: Yielding,
-    /// Whether the force changes by more in this tick than hand and bodies move.
+    /// Whether the force changes in this tick by more than 0.3 N beyond what motion explains, or
+    /// bodies begin or cease to yield.
     pub(crate) hands_over: bool,
     /// By how much motion changes the force in this tick, at most [N].
     pub(crate) explained: f64,
@@ -224,7 +226,7 @@ impl Tool {
             part: 1.0,
             has_new_bodies: false,
             has_jumped: false,
-            start: 1.0,
+            start: None,
             edited: None,
             begins: false,
             is_beginning: false,
@@ -301,8 +303,8 @@ impl Tool {
         self.has_new_bodies = true;
     }
 
-    /// Takes note that a body jumped, which is or was near, or far away. Where it covers the tool now, the
-    /// tool is placed outside, and the force rises from the last one.
+    /// Takes note that a body jumped; `is_near`: near the tool, before, on its way or after. Where
+    /// it covers the tool now, the tool is placed outside. A larger force rises from the last one.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     pub(crate) fn see_jump(&mut self, is_near: bool) {
@@ -356,7 +358,7 @@ impl Tool {
     pub fn step(&mut self, bodies: &mut Bodies, device: &ToolState) -> &ToolTouch {
         self.events.clear();
         (self.edited, self.begins, self.hands_over) = (None, false, false);
-        (self.explained, self.start) = (0.0, 1.0);
+        (self.explained, self.start) = (0.0, None);
         self.bodies_moved = Twist::NONE;
         let (mut list, mut reactions) = bodies.take_scratch();
         reactions.fill(Reaction::NONE);

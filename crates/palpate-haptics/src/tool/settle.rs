@@ -51,8 +51,9 @@ const NEXT: f64 = 1.5;
 const MOST_SECOND: usize = 256;
 
 /// A second body constrains a point if the cosine of the angle between its normal and the normal of
-/// the nearest body is below this number. Iterations that see the nearest body alone converge by
-/// this factor or faster between others. The edge of a body that continues a level face is none.
+/// the nearest body is below this number. For other pairs, iterations that see only the nearest
+/// body converge by this factor or faster. So the edge of a body that continues a level face adds
+/// no plane.
 const FACING: f64 = -0.1;
 
 /// The accuracy of constraints, as a part of the tolerance.

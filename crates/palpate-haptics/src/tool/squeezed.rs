@@ -19,7 +19,7 @@ use crate::nearby::{Nearby, Yielding};
 const SHARE: f64 = 0.25;
 
 impl Tool {
-    /// Lets no body yield any more that left a tool at `pose` room again. `nearby` are all bodies.
+    /// Ends all yielding once a tool at `pose` is outside of all bodies, `nearby`.
     pub(super) fn look_for_room(
         &mut self,
         nearby: &Nearby<'_>,
@@ -40,9 +40,9 @@ impl Tool {
         self.scan.forget();
     }
 
-    /// Moves a tool that the bodies of `nearby` cover straight out of them. If that fails, settles it
-    /// among those of them that stood still, if any of these is near; the bodies that moved and cover it
-    /// there yield.
+    /// Moves a tool that the bodies of `nearby` cover straight out of them. If that fails and a
+    /// body that stood still is near, settles the tool among those that stood still. Moved bodies
+    /// that cover it there yield.
     #[cold]
     #[inline(never)]
     pub(super) fn make_room(&mut self, nearby: &Nearby<'_>, ends: Ends, lengths: Lengths) {

@@ -71,8 +71,8 @@ impl Scan {
         let (mut proven, mut swept_points) = (whole, std::mem::take(&mut self.swept_points));
         swept_points.clear();
         for (number, seen) in self.seen() {
-            // Points that are already deeper than a skin are moving out. Points half as deep that
-            // move out would stop others that are deeper.
+            // Points deeper than a skin are not swept: they are moving out. Nor are points half as
+            // deep that move out: they would stop deeper ones.
             let arm = seen.centre - pose.translation;
             let goes_out = || twist.of_point(arm).dot(seen.gradient) > 0.0;
             if seen.gap <= -skin || seen.gap < -0.5 * skin && goes_out() {
