@@ -117,6 +117,41 @@ pub(crate) struct Answer {
     pub(crate) meshes: Vec<Mesh>,
     /// The moments at which motions put a body somewhere else at once.
     pub(crate) jumps: Vec<Jump>,
+    /// Motions that go nowhere, and motions faster than a hand follows.
+    pub(crate) odd_motions: Vec<OddMotion>,
+}
+
+/// Faster than this, a body that meets a hand gives it a blow [m/s].
+const FAST: f64 = 2.0;
+
+/// A motion that goes nowhere, or one faster than a hand follows.
+#[derive(Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub(crate) struct OddMotion {
+    /// The name of the body.
+    pub(crate) body: String,
+    /// When the motion begins [s].
+    pub(crate) start: f64,
+    /// The fastest speed of a point of the body [m/s]; zero if the motion goes nowhere.
+    pub(crate) speed: f64,
+}
+
+impl fmt::Display for OddMotion {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { body, start, speed } = self;
+        write!(f, "the motion of body \"{}\" from {start} s on ", shown(body))?;
+        if *speed == 0.0 {
+            return write!(
+                f,
+                "goes nowhere: its ends are one pose; \"turns\" gives whole turns"
+            );
+        }
+        write!(
+            f,
+            "moves points of the body at up to {speed:.3} m/s: a hand that it meets faster than {FAST} m/s \
+             gets a blow"
+        )
+    }
 }
 
 /// A moment at which a motion puts a body somewhere else at once.
@@ -131,17 +166,30 @@ pub(crate) struct Jump {
     pub(crate) distance: f64,
     /// By what angle it jumps [rad].
     pub(crate) angle: f64,
+    /// The time between two jumps of a loop [s]; `null` if it jumps once.
+    pub(crate) period: Option<f64>,
 }
 
 impl fmt::Display for Jump {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { body, time, distance, angle } = self;
+        let Self { body, time, distance, angle, period } = self;
         write!(
             f,
-            "body \"{}\" jumps at {time} s, by {distance} m and {angle} rad: the motion begins elsewhere \
-             than where the body is, or a loop does not end where it begins",
+            "body \"{}\" jumps at {time} s, by {distance:.6} m and {angle:.6} rad",
             shown(body)
-        )
+        )?;
+        match period {
+            Some(period) => write!(
+                f,
+                ", and again each {period} s: the loop does not end where it begins; \
+                 \"repeat\": \"back_and_forth\" goes back without a jump"
+            ),
+            None => write!(
+                f,
+                ": the motion begins elsewhere than where the body is then; without \"from\" it begins \
+                 at the body's pose"
+            ),
+        }
     }
 }
 
@@ -273,7 +321,18 @@ impl Answer {
             time: jump.time,
             distance: jump.distance,
             angle: jump.angle,
+            period: jump.period,
         });
+        let odd_motions = scene
+            .motion_speeds()
+            .into_iter()
+            .filter(|motion| motion.speed == 0.0 || motion.speed > FAST)
+            .map(|motion| OddMotion {
+                body: scene.bodies[motion.body].name.clone(),
+                start: motion.start,
+                speed: motion.speed,
+            })
+            .collect();
         Self {
             name,
             ok: true,
@@ -281,6 +340,7 @@ impl Answer {
             bodies,
             meshes: scene.meshes.iter().map(Mesh::of).collect(),
             jumps: jumps.collect(),
+            odd_motions,
         }
     }
 }
@@ -363,6 +423,7 @@ impl fmt::Display for Answer {
             }
         }
         self.jumps.iter().try_for_each(|jump| writeln!(f, "  warning: {jump}"))?;
+        self.odd_motions.iter().try_for_each(|odd| writeln!(f, "  warning: {odd}"))?;
         self.meshes.iter().try_for_each(|mesh| mesh.fmt(f))
     }
 }

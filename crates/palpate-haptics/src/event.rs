@@ -132,7 +132,7 @@ impl fmt::Display for EventCounts {
             write!(f, ", {carries} carried by edits")?;
         }
         if *placements > 0 {
-            write!(f, ", {placements} placed anew after edits")?;
+            write!(f, ", {placements} placed anew")?;
         }
         if *squeezes > 0 {
             write!(f, ", {squeezes} squeezed without room")?;
@@ -233,7 +233,7 @@ mod tests {
         let said = EventCounts { presses: 7, ..counts }.to_string();
         assert_eq!(said, "5 touches, 3 slips, 2 sticks, 1 pops, 7 presses of buttons");
         let said = EventCounts { carries: 8, placements: 6, squeezes: 9, ..counts }.to_string();
-        let more = ", 8 carried by edits, 6 placed anew after edits, 9 squeezed without room";
+        let more = ", 8 carried by edits, 6 placed anew, 9 squeezed without room";
         assert_eq!(said, format!("5 touches, 3 slips, 2 sticks, 1 pops{more}"));
     }
 

@@ -399,7 +399,7 @@ impl Proxy {
         if !self.punctured.is_empty() {
             self.restore(&mut sampler);
         }
-        let mut is_pushed = false;
+        let mut is_placed_on = false;
         let has_moved = nearby.has_moved();
         let ridden = if has_moved { self.ridden(&sampler, [last, carried]) } else { None };
         if let Some(ridden) = ridden {
@@ -407,8 +407,9 @@ impl Proxy {
         } else if nearby.has_moved() && self.at.is_some() {
             self.is_moved = true;
             let pushed = self.pushed(&mut sampler, [last, carried]);
-            is_pushed = pushed.is_some();
-            if is_pushed && self.contact && self.walls.is_none() {
+            let most = if sampler.is_point() { MOST_OF_POINT } else { radius };
+            is_placed_on = pushed.is_some_and(|at| squared(at - last) > most * most);
+            if pushed.is_some() && self.contact && self.walls.is_none() {
                 self.walls = self.wall(&sampler);
             }
             let at = pushed.unwrap_or(carried);
@@ -423,7 +424,7 @@ impl Proxy {
         // The tolerance of an edit may be that of other lengths.
         let tolerance = if out.is_some() { 2.0 } else { 1.0 } * sampler.tolerance();
         let is_known = self.at.as_ref().is_some_and(|at| at.gap >= -tolerance);
-        let mut placed = is_pushed && !self.contact;
+        let mut placed = is_placed_on && !self.contact;
         let mut has_room = true;
         if !is_known {
             let pushed = self.at.filter(|_| nearby.has_moved());

@@ -13,7 +13,7 @@
 //! | a device is not ready: it has no state yet, or was lost | zero | [`Recovery`] |
 //! | late ticks, and ticks without a new reading, trip the watchdog | the force that was written | at once |
 //! | an input is not finite | zero | at once |
-//! | a proxy or a tool is placed anew, by an edit or since a body moves onto it, without a jump | zero | at once |
+//! | a proxy or a tool is placed anew, by an edit, or since a body moves farther onto it in a tick than its radius | zero | at once |
 //! | bodies are replaced by ones that push harder, or one jumps | the force before | at once |
 //!
 //! In the first four the hand may be anywhere, and in a body for any reason: these are beginnings.

@@ -221,7 +221,7 @@ impl SafetyChain {
                 max_force: passivity.max_force,
             }),
             passivity: Passivity::new(passivity),
-            drive: Drive::new(settings.max_drive_power()?),
+            drive: Drive::new(settings.max_drive_power()?, settings.rise_rate),
             channel: Channel::new(&limits, &settings, 1.0, rate)?,
         })
     }
@@ -319,7 +319,8 @@ impl SafetyChain {
         let seen = CycleInput::of(forces, effort, in_frame, stiffness);
         let is_disturbed = self.channel.is_late() || is_rising;
         let softness = self.cycle.observed(&seen.disturbed(is_disturbed), is_sound);
-        let is_rising = is_rising || self.cycle.is_returning();
+        let is_returning = self.cycle.is_returning() || self.drive.is_returning();
+        let is_rising = is_rising || is_returning;
         let scale = rise * softness;
         let Passed { force: free_force, spent } = self
             .free

@@ -76,28 +76,34 @@ pub(crate) struct Frame<V> {
 
 /// The frame of the touched bodies, and the stage that limits the power of drives.
 ///
-/// The power of a drive is the force times the body's velocity. Where it would exceed the limit, the
-/// force becomes smaller. What is taken changes by at most 0.3 N a tick, so that a body that starts
-/// or stops at once does not kick.
+/// The power of a drive is the force times the body's velocity. Where it would exceed the limit,
+/// the force becomes smaller. It falls by at most 0.3 N a tick, so that a body that starts at once
+/// does not kick, and comes back by 20 N/s, because the hand may then be deep in the body.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Drive<V> {
     /// The largest power [W].
     max_power: f64,
+    /// How fast the force comes back that was taken [N/s]: the hand may be deep in the body then.
+    rise_rate: f64,
     origin: V,
     /// The force that was written in the tick before.
     written: V,
     /// What was taken from the last force [N].
     taken: f64,
+    /// Whether it comes back.
+    is_returning: bool,
     report: DriveReport,
 }
 
 impl<V: InnerProduct> Drive<V> {
-    pub(crate) fn new(max_power: f64) -> Self {
+    pub(crate) fn new(max_power: f64, rise_rate: f64) -> Self {
         Self {
             max_power,
+            rise_rate,
             origin: V::ZERO,
             written: V::ZERO,
             taken: 0.0,
+            is_returning: false,
             report: DriveReport::default(),
         }
     }
@@ -127,9 +133,16 @@ impl<V: InnerProduct> Drive<V> {
         }
         let force = wanted.norm();
         let excess = if is_above { force * (1.0 - self.max_power / power) } else { 0.0 };
-        self.taken = excess.clamp(self.taken - STEP, self.taken + STEP).min(force);
+        let rise = self.rise_rate * elapsed;
+        self.is_returning = !is_above;
+        self.taken = excess.clamp(self.taken - rise, self.taken + STEP).min(force);
         let changed = (self.taken > 0.0).then(|| wanted * (1.0 - self.taken / force));
         self.report.effect.count(wanted, changed)
+    }
+
+    /// Whether a force comes back that was taken: the hand that it lifts gets energy for that.
+    pub(crate) fn is_returning(&self) -> bool {
+        self.is_returning && self.taken > 0.0
     }
 
     /// Records the force that was written.
@@ -170,7 +183,7 @@ mod tests {
 
     #[test]
     fn the_power_of_a_drive_is_limited_without_a_kick() {
-        let mut drive = Drive::new(1.0);
+        let mut drive = Drive::new(1.0, 20.0);
         // 4 N at 0.5 m/s are 2 W.
         let motion = driven(0.5 * PERIOD);
         let mut last = up(4.0);
@@ -181,18 +194,19 @@ mod tests {
             assert!((force[1] - (4.0 - 0.3 * f64::from(tick)).max(2.0)).abs() < 1e-12);
             last = force;
         }
-        for tick in 1..20 {
+        for tick in 1..200 {
             let force = drive.limit(up(4.0), &driven(0.0), PERIOD);
-            assert!((force[1] - (2.0 + 0.3 * f64::from(tick)).min(4.0)).abs() < 1e-12);
+            let risen = 2.0 + 20.0 * PERIOD * f64::from(tick);
+            assert!((force[1] - risen.min(4.0)).abs() < 1e-12);
         }
         assert_eq!(drive.limit(up(4.0), &driven(0.0), PERIOD), up(4.0));
         let effect = drive.report().effect;
-        assert_eq!((effect.ticks, effect.largest), (19 + 6, 2.0));
+        assert_eq!((effect.ticks, effect.largest), (19 + 102, 2.0));
     }
 
     #[test]
     fn work_is_counted_by_who_moves_the_body() {
-        let mut drive = Drive::new(1.0);
+        let mut drive = Drive::new(1.0, 20.0);
         drive.written(up(2.0));
         let (way, credit) = (up(0.25), 0.125);
         let frame = drive.enter(&MovingBodies { driven: up(0.5), dynamic: way, credit });
@@ -205,7 +219,7 @@ mod tests {
 
     #[test]
     fn a_drive_that_pulls_away_or_is_not_a_number_is_not_limited() {
-        let mut drive = Drive::new(1.0);
+        let mut drive = Drive::new(1.0, 20.0);
         assert_eq!(drive.limit(up(4.0), &driven(-1.0), PERIOD), up(4.0));
         assert!(drive.limit(up(f64::NAN), &driven(1.0), PERIOD).0[1].is_nan());
     }

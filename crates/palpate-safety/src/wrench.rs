@@ -236,7 +236,7 @@ impl WrenchChain {
                 max_force: along.max_force.positive()?,
             }),
             passivity: Passivity::new(passivity),
-            drive: Drive::new(settings.max_drive_power()?),
+            drive: Drive::new(settings.max_drive_power()?, settings.rise_rate),
             force: Channel::new(along, settings, 1.0, rate)?,
             torque: Channel::new(about, settings, unit, rate)?,
             largest_torque: 0.0,
@@ -328,7 +328,8 @@ impl WrenchChain {
         let seen = CycleInput::of(forces, effort, in_frame, stiffness);
         let is_disturbed = self.force.is_late() || !has_risen;
         let softness = self.cycle.observed(&seen.disturbed(is_disturbed), is_sound);
-        let is_rising = !has_risen || self.cycle.is_returning();
+        let is_returning = self.cycle.is_returning() || self.drive.is_returning();
+        let is_rising = !has_risen || is_returning;
         let of_guides = PassivityOptions { damping: self.sides.along.damping, ..options };
         let scale = rise * softness;
         let of_free =

@@ -74,7 +74,9 @@ pub use ask::{
     PointAnswer, PointQuestion, Question, Separation, SweepAnswer, SweepPair, SweepQuestion,
     SweptPart, Versioned, Weighed,
 };
-pub use build::{AnyScene, BuiltBody, BuiltMotion, BuiltScene, BuiltTool, MotionJump};
+pub use build::{
+    AnyScene, BuiltBody, BuiltMotion, BuiltScene, BuiltTool, MotionJump, MotionSpeed,
+};
 pub use catalogue::described_primitive;
 pub use device_file::{device_from_json, device_to_json};
 pub use emptiness::is_empty;

@@ -225,6 +225,57 @@ fn a_left_handed_frame_is_called_a_reflection() {
     assert!(errors(&felt).ends_with(said), "{}", errors(&felt));
 }
 
+/// Motions that jump, go nowhere, or go faster than a hand follows.
+#[test]
+fn odd_motions_are_told() {
+    let folder = Folder::new();
+    let checked = |motion: &str| {
+        let scene = format!(
+            r#"{{ "palpate": 1, "dimension": 2,
+                 "bodies": [ {{ "name": "arm", "shape": {{ "ball": {{ "radius": 0.01 }} }} }} ],
+                 "motions": [ {{ "body": "arm", {motion} }} ] }}"#
+        );
+        folder.write("arm.json", &scene);
+        text(&folder.run(&["check", "arm.json"]))
+    };
+    let warnings = |motion: &str| {
+        let said = checked(motion);
+        said.lines()
+            .filter_map(|line| line.strip_prefix("  warning: "))
+            .map(str::to_owned)
+            .collect::<Vec<_>>()
+    };
+    assert_eq!(
+        warnings(r#""from": { "translation": [0, 0.1] }, "to": { "translation": [0.1, 0.1] }"#),
+        [
+            "body \"arm\" jumps at 0 s, by 0.100000 m and 0.000000 rad: the motion begins elsewhere than where \
+          the body is then; without \"from\" it begins at the body's pose"
+        ]
+    );
+    assert_eq!(
+        warnings(r#""to": { "translation": [0.1, 0] }, "duration": 2, "repeat": "loop""#),
+        [
+            "body \"arm\" jumps at 2 s, by 0.100000 m and 0.000000 rad, and again each 2 s: the loop does not \
+          end where it begins; \"repeat\": \"back_and_forth\" goes back without a jump"
+        ]
+    );
+    assert_eq!(
+        warnings(r#""to": { "rotate_degrees": 360 }, "repeat": "loop""#),
+        [
+            "the motion of body \"arm\" from 0 s on goes nowhere: its ends are one pose; \"turns\" gives whole \
+          turns"
+        ]
+    );
+    assert_eq!(
+        warnings(r#""to": { "translation": [40, 0] }, "start": 1, "duration": 0.5"#),
+        [
+            "the motion of body \"arm\" from 1 s on moves points of the body at up to 80.000 m/s: a hand that \
+          it meets faster than 2 m/s gets a blow"
+        ]
+    );
+    assert_eq!(warnings(r#""to": { "translation": [0.1, 0] }"#), [""; 0]);
+}
+
 /// A soft skin with a hard ball in it, which a hand never reaches.
 const NODULE: &str = r#"{ "palpate": 1, "dimension": 3, "bodies": [
   { "name": "skin", "shape": { "cuboid": { "size": [0.1, 0.04, 0.1] } } },

@@ -125,7 +125,15 @@ fn write_safety(f: &mut Formatter<'_>, safety: &[SafetyReport]) -> Result {
     line(f, "energy", said)?;
     let driven = 1e3 * safety.iter().map(|point| point.drives.driven).sum::<f64>();
     if driven != 0.0 {
-        line(f, "", format_args!("bodies that move did {driven:.3} mJ of work on the hand"))?;
+        let said =
+            "by the motion of the hand relative to the bodies; the motion of the bodies did";
+        line(f, "", format_args!("{said} {driven:.3} mJ of work on it"))?;
+    }
+    let credited = energy(|p| p.credited);
+    if credited > 0.0 {
+        let said =
+            "mJ may be given beyond that: by forces that rise from zero or are handed over";
+        line(f, "", format_args!("{credited:.3} {said}"))?;
     }
     let ticks = |of: fn(&SafetyReport) -> u64| safety.iter().map(of).sum::<u64>();
     let stages: StageEffects = safety.iter().map(StageEffects::from).sum();

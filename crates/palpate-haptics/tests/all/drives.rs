@@ -48,6 +48,17 @@ impl Plate {
         depth: f64,
         height: fn(f64) -> f64,
     ) -> Self {
+        Self::protected(material, &Protection::new(profile.clone()), depth, height)
+    }
+
+    /// The same with other protection.
+    fn protected(
+        material: &Material,
+        protection: &Protection,
+        depth: f64,
+        height: fn(f64) -> f64,
+    ) -> Self {
+        let profile = &protection.profile;
         let body =
             Body::new(cuboid([0.2, 0.02, 0.2]), Surface::new(material).unwrap()).unwrap();
         let body = body.at(at(height(0.0))).unwrap();
@@ -57,7 +68,7 @@ impl Plate {
             ..ServoOptions::default()
         };
         let servo = Servo::new(Bodies::new(vec![body]).unwrap(), 1, options).unwrap();
-        let servo = servo.protected(&Protection::new(profile.clone())).unwrap();
+        let servo = servo.protected(protection).unwrap();
         let end = [0.0, 0.002 - depth, 0.0];
         let hand = Hand::new(path(&[(0.0, [0.0, 0.02, 0.0]), (0.6, end), (60.0, end)]));
         let device = SimulatedDevice::new(profile.clone(), vec![hand]);
@@ -194,6 +205,24 @@ fn a_wall_pushes_the_hand_along() {
     assert_eq!(plate.report().limit_cycles.found, 0);
 }
 
+/// A hand that touches nothing, above a wall that comes at 400 mm/s. Once, its force rose from zero, by
+/// 20 N/s, while the wall went through the hand.
+#[test]
+fn a_wall_that_meets_a_free_hand_pushes_it() {
+    let mut plate =
+        Plate::new(&hard(), &omega(), -0.004, |time| 0.4 * (time - 1.0).clamp(0.0, 0.05));
+    plate.run(1.0);
+    let felt = plate.run(0.05);
+    let limit = omega().max_force;
+    let pushed: Vec<_> = felt.iter().filter(|f| f.wanted > 0.0).collect();
+    assert!(pushed.len() > 30 && pushed.iter().any(|f| f.wanted > 2.0), "{}", pushed.len());
+    // 1 W at 0.4 m/s are 2.5 N.
+    for f in &pushed {
+        assert!(f.force >= 0.95 * f.wanted.min(limit).min(2.5), "{f:?}");
+    }
+    assert!(largest_step(&felt, 1000.0) <= 0.3);
+}
+
 /// The forces of a plate that moves up and down at 8 mm/s and sideways at 50 mm/s under a finger, with
 /// poses set at 60 Hz.
 fn posed_at_60_hz(over: Duration) -> Vec<Vector<f64, 3>> {
@@ -300,6 +329,25 @@ fn a_drive_gives_at_most_its_power() {
     assert!(step <= 0.3 + 1e-12, "{step} N");
     let drives = plate.report().drives;
     assert!(drives.effect.ticks > 40 && drives.effect.largest > 1.0, "{drives:?}");
+}
+
+/// A plate that may do 10 mW goes 40 mm through the hand and stops. Once, the force then rose by 0.3 N a
+/// tick and threw the hand out.
+#[test]
+fn a_weak_drive_that_stops_lifts_the_hand_gently() {
+    let weak = Protection::new(omega()).with(|safety| safety.drive_power = 0.01);
+    let height = |time: f64| 0.08 * (time - 1.0).clamp(0.0, 0.5);
+    let undamped = Material { damping: 0.0, ..hard() };
+    let mut plate = Plate::protected(&undamped, &weak, 0.001, height);
+    plate.run(1.5);
+    let felt = plate.run(1.5);
+    assert!(felt[0].force < 0.2 && felt[0].wanted > 12.0, "{:?}", felt[0]);
+    assert!(felt.iter().any(|f| f.force > 5.0));
+    for pair in felt.windows(2) {
+        let step = pair[1].force - pair[0].force;
+        let moved = 1000.0 * pair[1].relative.abs();
+        assert!(step <= 20.0 * PERIOD + moved + 1e-9 && step >= -0.3 - moved, "{pair:?}");
+    }
 }
 
 /// On plants that differ from their profile: with other mass, damping and friction, with delays, and in

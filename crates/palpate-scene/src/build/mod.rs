@@ -27,7 +27,7 @@ use crate::scene::{Dimension, Scene, WrittenBody};
 use crate::shape::WrittenShape;
 use crate::view::WrittenView;
 use builder::{Builder, Space};
-pub use motion::{BuiltMotion, MotionJump};
+pub use motion::{BuiltMotion, MotionJump, MotionSpeed};
 pub(crate) use object::MOST;
 
 /// A built scene, in its dimension.

@@ -103,6 +103,20 @@ pub struct MotionJump {
     pub until: f64,
 }
 
+/// How fast a motion is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MotionSpeed {
+    /// The body, by its number.
+    pub body: usize,
+    /// When the motion begins [s].
+    pub start: f64,
+    /// The fastest speed [m/s].
+    pub speed: f64,
+}
+
+/// The steps in which the speed of a motion is looked for.
+const STEPS: u32 = 64;
+
 impl MotionJump {
     /// The jump of a body from one pose to another; `None` if they differ by rounding alone.
     fn between<const D: usize>(
@@ -173,6 +187,50 @@ impl<const D: usize> BuiltScene<D> {
             }
         }
         jumps
+    }
+
+    /// The fastest speed of each motion [m/s]: that of the body's origin and of the farthest point of its
+    /// bounding ball, by poses at 64 steps of the motion. Zero for a motion that leads back to where it
+    /// begins by way of nowhere, such as a turn by 360 degrees without `turns`.
+    ///
+    /// ```
+    /// use palpate_scene::{AnyScene, Scene};
+    ///
+    /// # fn main() -> Result<(), palpate_scene::SceneError> {
+    /// let scene = Scene::from_json(
+    ///     r#"{ "palpate": 1, "dimension": 2,
+    ///          "bodies": [ { "name": "lift", "shape": { "ball": { "radius": 0.01 } } } ],
+    ///          "motions": [ { "body": "lift", "to": { "translation": [0, 0.1] }, "duration": 2 },
+    ///                       { "body": "lift", "to": { "rotate_degrees": 360 }, "start": 3 } ] }"#,
+    /// )?;
+    /// let AnyScene::Planar(scene) = scene.build()? else { unreachable!("dimension is 2") };
+    /// let speeds: Vec<_> = scene.motion_speeds().iter().map(|motion| motion.speed).collect();
+    /// assert!((speeds[0] - 0.05).abs() < 1e-12 && speeds[1] == 0.0);
+    /// # Ok(())
+    /// # }
+    /// ```
+    #[must_use]
+    pub fn motion_speeds(&self) -> Vec<MotionSpeed> {
+        self.motions
+            .iter()
+            .map(|motion| {
+                let BuiltMotion { body, start, duration, screw, .. } = motion;
+                let bounds = self.bodies[*body].shape_in_body.promise().bounds;
+                let reach = bounds.map_or(0.0, |it| it.ball.centre.norm() + it.ball.radius);
+                let pose =
+                    |step: u32| screw.pose(f64::from(step) / f64::from(STEPS)).in_space();
+                let ways = (0..STEPS).map(|step| {
+                    let [from, to] = [step, step + 1].map(pose);
+                    let turn = from.rotation.turn_to(&to.rotation).norm();
+                    (to.translation - from.translation).norm() + turn * reach
+                });
+                let way = ways.fold(0.0, f64::max);
+                let size = reach + screw.from().translation.norm();
+                let is_moving = way > ROUNDING * size;
+                let speed = if is_moving { way * f64::from(STEPS) / duration } else { 0.0 };
+                MotionSpeed { body: *body, start: *start, speed }
+            })
+            .collect()
     }
 
     /// The pose of a body at a time [s], by its number: where the motion that began last has taken
