@@ -343,8 +343,10 @@ impl ContactPoint {
         let mut explained = 0.0;
         if watches {
             let slides = self.slides(tick.everything, touch, way);
-            explained = self.stiffness * slides.max(slid);
-            if before.contact && has_moved {
+            let is_held = touch.contact || following.squeezed.is_some();
+            // A hand that nothing holds is let go at once.
+            explained = if is_held { self.stiffness * slides.max(slid) } else { f64::INFINITY };
+            if before.contact && has_moved && is_held {
                 let moved = (touch.wanted - wanted_before).norm();
                 change = change.or_handed_over(moved, explained);
                 self.has_handed_over |= change == Change::HandedOver;

@@ -132,10 +132,15 @@ impl<V: InnerProduct> Drive<V> {
             return wanted;
         }
         let force = wanted.norm();
-        let excess = if is_above { force * (1.0 - self.max_power / power) } else { 0.0 };
-        let rise = self.rise_rate * elapsed;
         self.is_returning = !is_above;
-        self.taken = excess.clamp(self.taken - rise, self.taken + STEP).min(force);
+        let left = if is_above {
+            let allowed = force * (self.max_power / power);
+            // It falls in steps, and does not rise where the body is pressed on faster than that.
+            allowed.max(self.written.norm() - STEP)
+        } else {
+            force - self.taken + self.rise_rate * elapsed
+        };
+        self.taken = force - left.clamp(0.0, force);
         let changed = (self.taken > 0.0).then(|| wanted * (1.0 - self.taken / force));
         self.report.effect.count(wanted, changed)
     }
@@ -187,6 +192,7 @@ mod tests {
         // 4 N at 0.5 m/s are 2 W.
         let motion = driven(0.5 * PERIOD);
         let mut last = up(4.0);
+        drive.written(last);
         for tick in 1..20 {
             let force = drive.limit(up(4.0), &motion, PERIOD);
             drive.written(force);

@@ -64,7 +64,9 @@ impl Proxy {
         };
         self.lead(&mut among, &mut here, way.to);
         sampler.spent_by(&among);
-        let most = LARGEST_GAIN * (way.to - way.from).norm();
+        // A way that ends where it began leaves the proxy covered by what the body moved.
+        let covered = sampler.gradient(here.point).map_or(0.0, |here| (-here.gap).max(0.0));
+        let most = LARGEST_GAIN * ((way.to - way.from).norm() + covered);
         if let Some(free) = self.free_near(sampler, &mut among, &mut here, most) {
             self.at = Some(free);
             return true;
@@ -113,9 +115,14 @@ impl Proxy {
         still.spent_by(all);
         self.lead(still, &mut there, near.point);
         all.spent_by(still);
-        let found = all.gradient(there.point)?;
+        let mut found = all.gradient(there.point)?;
         if !is_free(&found, all) {
-            return None;
+            // A slide ends near its goal. No wall is thinner than what is left.
+            let is_there = (there.point - near.point).norm() <= all.skin();
+            if !is_there || !is_free(&near, all) {
+                return None;
+            }
+            (there, found) = (still.gradient(near.point)?, near);
         }
         *here = there;
         Some(found)

@@ -424,7 +424,8 @@ impl Tool {
         let ends = Ends { start, goal: device.pose, is_out };
         self.rest_search.settle(&mut self.scan, surroundings, ends, lengths);
         let is_stuck = !self.rest_search.rest.is_outside && nearby.has_moved();
-        if is_stuck && self.touch.contact {
+        let was_held = self.touch.contact;
+        if is_stuck && was_held {
             self.make_room(&nearby, Ends { start: was, ..ends }, lengths);
         }
         let rest = &self.rest_search.rest;
@@ -452,7 +453,9 @@ impl Tool {
         let moved = held.or_else(|| self.bodies_moved(&nearby));
         self.bodies_moved = moved.filter(|_| !is_placed).unwrap_or(Twist::NONE);
         let slides = self.slides(&nearby, &felt.device, &device.pose).max(slid);
-        self.explained = self.coupling.stiffness * slides;
+        let is_held = self.touch.contact || self.touch.is_covered;
+        // A hand that nothing holds is let go at once.
+        self.explained = if is_held { self.coupling.stiffness * slides } else { f64::INFINITY };
         self.hands_over |= self.is_moved && self.has_stepped(&felt);
         self.tell_edited(has_jumped, &felt);
         self.tell_squeezed(was_yielding);
@@ -466,7 +469,10 @@ impl Tool {
         start: Pose<3>,
         lengths: Lengths,
     ) -> Pose<3> {
-        if !self.has_new_bodies || self.pose.is_none() || nearby.has_moved() {
+        // A body that moves while others are edited pushes the tool. One that moves while another jumps
+        // does so too, after the jump.
+        let is_pushed = nearby.has_moved() && !self.has_jumped;
+        if !self.has_new_bodies || self.pose.is_none() || is_pushed {
             return start;
         }
         match self.carry_out(nearby, &start, lengths) {

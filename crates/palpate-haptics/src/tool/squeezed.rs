@@ -6,7 +6,7 @@
 
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-use palpate_field::Pose;
+use palpate_field::{Pose, Vector};
 
 use super::Tool;
 use super::coupling::Twist;
@@ -53,6 +53,14 @@ impl Tool {
         if self.rest_search.rest.is_outside {
             return;
         }
+        if let Some(lifted) = self.lifted(nearby, &ends.start, lengths) {
+            let ends = Ends { start: lifted, ..ends };
+            let surroundings = Surroundings { shell: &self.shell, nearby };
+            self.rest_search.settle(&mut self.scan, surroundings, ends, lengths);
+            if self.rest_search.rest.is_outside {
+                return;
+            }
+        }
         self.hands_over = true;
         let still = nearby.without(self.yielding.and_all_moved());
         let surroundings = Surroundings { shell: &self.shell, nearby: &still };
@@ -75,6 +83,35 @@ impl Tool {
             }
         }
         self.scan.forget();
+    }
+
+    /// The nearest place outside all bodies to which a tool at `start` comes along the force of the last
+    /// tick, by as much as its reach at most. At the seam of two bodies that move, their sides would
+    /// push a point against each other.
+    fn lifted(
+        &mut self,
+        nearby: &Nearby<'_>,
+        start: &Pose<3>,
+        lengths: Lengths,
+    ) -> Option<Pose<3>> {
+        let away = self.touch.contacts.iter().fold(Vector::ZERO, |sum, it| sum - it.normal);
+        let up = away.normalized()?;
+        let mut height = lengths.skin;
+        while height <= self.shell.reach() {
+            let linear = up * height;
+            let pose = Pose::new(start.rotation, start.translation + linear);
+            self.scan.forget();
+            let path = Path { pose: &pose, twist: &Twist::NONE };
+            let surroundings = Surroundings { shell: &self.shell, nearby };
+            if !self.scan.look(surroundings, path, lengths.skin, SHARE) {
+                return None;
+            }
+            if self.scan.least_gap() >= -lengths.tolerance {
+                return Some(pose);
+            }
+            height *= 2.0;
+        }
+        None
     }
 
     /// Tells that a body leaves the tool no room.

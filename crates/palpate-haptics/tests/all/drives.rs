@@ -13,7 +13,7 @@ use palpate_haptics::{
     Bodies, Body, HandoffOptions, Material, NextPose, Probe, Protection, Servo, ServoOptions,
     Surface, handoff,
 };
-use palpate_safety::SafetyReport;
+use palpate_safety::{SafetyReport, SafetySettings};
 use palpate_sim::{Hand, HandPath, Interpolation, RecordedDevice, SimulatedDevice};
 
 use crate::common::{cases, cuboid};
@@ -403,7 +403,9 @@ fn a_motion_jumps_where_it_says_so_alone() {
         let bodies = Bodies::new(vec![body.unwrap().at(at(0.0)).unwrap()]).unwrap();
         let options = ServoOptions { max_force: f64::INFINITY, ..ServoOptions::default() };
         let servo = Servo::new(bodies, 1, options).unwrap();
-        let mut servo = servo.protected(&Protection::new(profile)).unwrap();
+        // At 3 m/s, a drive of 1 W gives a third of a newton.
+        let strong = |settings: &mut SafetySettings| settings.drive_power = f64::INFINITY;
+        let mut servo = servo.protected(&Protection::new(profile).with(strong)).unwrap();
         let hand = Vector([0.0, 0.001, 0.0]);
         let path = HandPath::new(vec![0.0, 1.0], vec![hand; 2], Interpolation::Linear).unwrap();
         let mut device = RecordedDevice::new(vec![path]).unwrap();

@@ -31,6 +31,7 @@ mod guides;
 mod handoff;
 mod handovers;
 mod happenings;
+mod hazards;
 mod held_devices;
 mod late;
 mod lifted;
