@@ -76,6 +76,10 @@ impl Touch {
 /// sides of the wedge then meet at 7 degrees or more. In a narrower one the hand has no room.
 pub(crate) const LARGEST_GAIN: f64 = 16.0;
 
+/// Where bodies that moved let a hand go, its force falls by this much more in a tick than it is handed
+/// over [N]: more would be a kick, and with less it would stay on a hand that nothing holds.
+pub(crate) const LET_GO: f64 = 0.2;
+
 /// The most events of a contact point in a tick: a leave, a touch and a layer that gives way for
 /// each of the bodies that can hold it, what an edit did, and a squeeze.
 pub(crate) const MOST_EVENTS: usize = 3 * CAPACITY + 2;
@@ -343,10 +347,12 @@ impl ContactPoint {
         let mut explained = 0.0;
         if watches {
             let slides = self.slides(tick.everything, touch, way);
+            explained = self.stiffness * slides.max(slid);
             let is_held = touch.contact || following.squeezed.is_some();
-            // A hand that nothing holds is let go at once.
-            explained = if is_held { self.stiffness * slides.max(slid) } else { f64::INFINITY };
-            if before.contact && has_moved && is_held {
+            if !is_held {
+                explained += if self.has_jumped { f64::INFINITY } else { LET_GO };
+            }
+            if before.contact && has_moved && !self.has_jumped {
                 let moved = (touch.wanted - wanted_before).norm();
                 change = change.or_handed_over(moved, explained);
                 self.has_handed_over |= change == Change::HandedOver;

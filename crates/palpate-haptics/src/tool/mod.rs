@@ -30,6 +30,7 @@ mod sweep;
 use palpate_field::{Pose, Vector};
 
 use crate::bodies::Bodies;
+use crate::contact_point::LET_GO;
 use crate::error::HapticsError;
 use crate::event::{Event, Reaction};
 use crate::nearby::{Nearby, Punctured, Yielding};
@@ -453,10 +454,11 @@ impl Tool {
         let moved = held.or_else(|| self.bodies_moved(&nearby));
         self.bodies_moved = moved.filter(|_| !is_placed).unwrap_or(Twist::NONE);
         let slides = self.slides(&nearby, &felt.device, &device.pose).max(slid);
-        let is_held = self.touch.contact || self.touch.is_covered;
-        // A hand that nothing holds is let go at once.
-        self.explained = if is_held { self.coupling.stiffness * slides } else { f64::INFINITY };
-        self.hands_over |= self.is_moved && self.has_stepped(&felt);
+        self.explained = self.coupling.stiffness * slides;
+        if !(self.touch.contact || self.touch.is_covered) {
+            self.explained += if has_jumped { f64::INFINITY } else { LET_GO };
+        }
+        self.hands_over |= self.is_moved && !has_jumped && self.has_stepped(&felt);
         self.tell_edited(has_jumped, &felt);
         self.tell_squeezed(was_yielding);
         self.react(&nearby, reactions);

@@ -23,7 +23,7 @@ const PERIOD: f64 = 1e-3;
 const LARGEST_STEP: f64 = 0.3 + 1e-9;
 
 /// The same among bodies of any shape: where a corner passes the hand, a search may end a tick later.
-const LARGEST_DRAWN_STEP: f64 = 0.5;
+const LARGEST_DRAWN_STEP: f64 = 0.5 + 1e-9;
 
 /// A body that goes through these poses: at a time [s], a pose.
 type Motion<'a> = &'a dyn Fn(f64) -> Pose<3>;
