@@ -3,14 +3,16 @@
 
 //! What must hold for a servo, whatever a device, a physics engine and a user send it.
 
+use std::time::Duration;
+
 use arbitrary::{Result, Unstructured};
 use palpate_device::{DeviceProfile, PointState};
 use palpate_field::kernel::{Ball, Cuboid, HalfSpace};
 use palpate_field::{Point, Pose, Rotation, Shape, SpaceShape, Vector};
 use palpate_haptics::{
-    Bodies, Body, Guide, GuideOptions, Impact, Layer, Magnet, Material, PopThrough, Probe,
-    Protection, Renderer, Servo, ServoOptions, Surface, Texture, TextureKind, Touch,
-    Unprotected,
+    Bodies, Body, Guide, GuideOptions, HandoffOptions, Impact, Layer, Magnet, Material,
+    PopThrough, Probe, Protection, Renderer, Servo, ServoOptions, Surface, Texture,
+    TextureKind, Touch, Unprotected, handoff,
 };
 use palpate_safety::Recovery;
 
@@ -351,6 +353,17 @@ where
             if let AnyServo::Unprotected(servo) = any {
                 servo.limit_force(*u.choose(&JUNK)?);
             }
+        }
+        13 | 14 => {
+            // A physics engine: the body goes there over a time, or jumps.
+            let pose = <Here as Dimension<D>>::pose(u)?;
+            let over = Duration::from_millis(*u.choose(&[0, 5, 16, 100])?);
+            either!(any, servo => {
+                let (mut control, mut end) = handoff(servo, HandoffOptions::default());
+                let is_body = body < servo.bodies().bodies().len();
+                assert_eq!(control.set_poses(&[(body, pose)], over).is_ok(), is_body);
+                end.receive(servo);
+            });
         }
         _ => {}
     }
