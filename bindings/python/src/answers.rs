@@ -68,12 +68,13 @@ pub(crate) fn contacts<'py, const D: usize>(
 }
 
 /// The reasons to end a search, in the order of their numbers in arrays.
-pub(crate) const STOPS: [Stop; 5] = [
+pub(crate) const STOPS: [Stop; 6] = [
     Stop::Converged,
     Stop::SignKnown,
     Stop::BudgetSpent,
     Stop::MemoryFull,
     Stop::RoundingReached,
+    Stop::Unresolved,
 ];
 
 /// The number of a reason to end a search among `palpate.STOPS`.

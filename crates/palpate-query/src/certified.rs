@@ -64,6 +64,9 @@ pub enum Stop {
     MemoryFull,
     /// Rounding allows no closer bounds.
     RoundingReached,
+    /// Bounds leave open whether bodies touch in places far from all contacts that were found: a smaller
+    /// spacing may tell.
+    Unresolved,
 }
 
 impl Stop {
@@ -72,7 +75,9 @@ impl Stop {
     pub fn is_early(self) -> bool {
         match self {
             Self::Converged | Self::SignKnown => false,
-            Self::BudgetSpent | Self::MemoryFull | Self::RoundingReached => true,
+            Self::BudgetSpent | Self::MemoryFull | Self::RoundingReached | Self::Unresolved => {
+                true
+            }
         }
     }
 }

@@ -106,6 +106,7 @@ impl Display for Stop {
             Self::BudgetSpent => "budget_spent",
             Self::MemoryFull => "memory_full",
             Self::RoundingReached => "rounding_reached",
+            Self::Unresolved => "unresolved",
         })
     }
 }

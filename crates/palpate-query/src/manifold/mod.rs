@@ -284,6 +284,7 @@ impl<const D: usize> Spanned<D> {
         }
         let upper = found.separation.upper;
         let places = self.members.iter().map(|member| member.touch.point);
+        let places = std::iter::once(separated.best).chain(places);
         found.distance_at_most = pair.distance_at_most(upper, places, settings.margin);
         found.separation.evaluations += pair.evaluations;
         let contact = |member: &Member<D>| member.touch.contact(&pair, settings.spacing);
@@ -430,6 +431,9 @@ impl<const D: usize> Touch<D> {
         pair: &mut BodyPair<'_, D>,
         settings: &ManifoldSettings,
     ) -> Option<Self> {
+        if self.source == NormalSource::ThickerBody {
+            return None;
+        }
         patch::pushed(pair, self, settings).or_else(|| self.on_face(pair, settings))
     }
 

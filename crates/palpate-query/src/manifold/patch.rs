@@ -20,6 +20,7 @@ use crate::certified::Goal;
 use crate::contact::NormalSource;
 use crate::pair::body_pair::BodyPair;
 use crate::pair::distance_bound::descend;
+use crate::pair::search::BoxCell;
 
 /// Candidates nearer than this many spacings are neighbours.
 const NEIGHBOURS: f64 = 2.0;
@@ -42,6 +43,9 @@ const BEYOND: f64 = 2.0;
 
 /// A corner is moved by at most so many spacings.
 const FAR: f64 = 4.0;
+
+/// A corner gives up as many spacings at most to be at the bottom of a valley.
+const VALLEY: f64 = 1.0;
 
 /// The last step of a corner, as a share of the spacing.
 const SHARP: f64 = 0.06;
@@ -154,7 +158,8 @@ impl<const D: usize> Patches<'_, '_, D> {
                 |other: &Touch<D>| distance(other.point, corners[i].point) > SMALL * spacing;
             if corners[..i].iter().all(is_apart) {
                 let corner = self.by_values(corners[i]);
-                let touch = self.sharpen(corner, centre);
+                let corner = self.sharpen(corner, centre);
+                let touch = self.in_valley(corner, deepest.gap, centre);
                 contacts.push(Member { touch, group });
             }
         }
@@ -163,6 +168,9 @@ impl<const D: usize> Patches<'_, '_, D> {
     /// A candidate with the gap of the fields' values: that of a flat model is too small where bodies are
     /// round.
     fn by_values(&mut self, candidate: Touch<D>) -> Touch<D> {
+        if candidate.source == NormalSource::ThickerBody {
+            return candidate;
+        }
         Touch { gap: self.pair.gap_at(candidate.point), ..candidate }
     }
 
@@ -176,6 +184,18 @@ impl<const D: usize> Patches<'_, '_, D> {
         let is_near = distance(p, start.point) < NEIGHBOURS * self.settings.spacing;
         let found = is_near.then(|| self.settle(p, self.settings.spacing)).flatten();
         found.filter(|found| found.gap < start.gap).unwrap_or(start)
+    }
+
+    /// A corner at the bottom of the valley beside it, as of a rod that lies on a face: the corner is no
+    /// less far out there.
+    fn in_valley(&mut self, corner: Touch<D>, deepest: f64, centre: Point<D>) -> Touch<D> {
+        if corner.gap <= deepest + SLOPE * self.settings.precision_length() {
+            return corner;
+        }
+        let bottom = self.deepest(corner);
+        let outwards = (corner.point - centre).normalized().unwrap_or(Vector::ZERO);
+        let inwards = (corner.point - bottom.point).dot(outwards);
+        if inwards <= VALLEY * self.settings.spacing { bottom } else { corner }
     }
 
     /// Moves a corner outwards along the patch until the gap is the margin or the
@@ -233,6 +253,64 @@ pub(super) fn settled<const D: usize>(
     None
 }
 
+/// A touch in or next to a box that the surface between the bodies may cross, where its centre does not
+/// lead to one: from the nearest points of the bodies' surfaces, from the deepest point near, or where
+/// one body is thin and wholly in the other, along the gradient of that other.
+pub(super) fn seeded<const D: usize>(
+    pair: &mut BodyPair<'_, D>,
+    cell: &BoxCell<D>,
+    settings: &ManifoldSettings,
+) -> Option<Touch<D>> {
+    let far = 2.0 * cell.radius();
+    let is_in = |p: Point<D>| distance(p, cell.centre) <= far;
+    let is_touch = |touch: &Touch<D>| touch.gap <= settings.margin && is_in(touch.point);
+    for body in 0..2 {
+        let start = pair.surface_point(body, cell.centre).filter(|p| is_in(*p));
+        let found = start.and_then(|start| settled(pair, start, far, settings));
+        if found.as_ref().is_some_and(is_touch) {
+            return found;
+        }
+    }
+    let goal = Goal::least(PRECISE * settings.precision_length());
+    let (_, deepest) = descend(pair, cell.centre, Some(cell.radius()), goal, 0.0);
+    if is_in(deepest) {
+        let found = settled(pair, deepest, far, settings).filter(is_touch);
+        return found.or_else(|| swallowed(pair, deepest, settings).filter(is_touch));
+    }
+    None
+}
+
+/// The touch of a thin body that lies wholly in a thick one, at a point in both: along the gradient of the
+/// thick one, at the side of the thin one that is deeper in it.
+fn swallowed<const D: usize>(
+    pair: &mut BodyPair<'_, D>,
+    p: Point<D>,
+    settings: &ManifoldSettings,
+) -> Option<Touch<D>> {
+    let gap = pair.gap_at(p);
+    let inside = Touch { gap, ..Touch::at(pair, p) };
+    let host = (gap < 0.0).then(|| host(pair, &inside)).flatten()?;
+    let outwards = pair.slopes(p)[host].1.normalized()?;
+    // To both sides of the thin body, along the gradient of the thick one and against it.
+    let [mut deeper, mut higher] = [p; 2];
+    for _ in 0..2 {
+        deeper += outwards * pair.slopes(deeper)[1 - host].0.min(0.0);
+        higher -= outwards * pair.slopes(higher)[1 - host].0.min(0.0);
+    }
+    let thickness = distance(deeper, higher);
+    let is_out = |pair: &mut BodyPair<'_, D>, side: Point<D>| {
+        pair.slopes(side)[1 - host].0 >= -SIDE * thickness
+    };
+    if thickness > settings.spacing || !is_out(pair, deeper) || !is_out(pair, higher) {
+        return None;
+    }
+    let depth = pair.slopes(deeper)[host].0;
+    let normal = if host == 0 { outwards } else { -outwards };
+    let (point, source) = (deeper - outwards * (0.5 * depth), NormalSource::ThickerBody);
+    let touch = Touch { point, normal, gap: depth, source };
+    (depth < gap).then_some(touch)
+}
+
 /// A vector square to both, in space; in the plane there is none.
 fn square_to<const D: usize>(a: Vector<f64, D>, b: Vector<f64, D>) -> Option<Vector<f64, D>> {
     (D == 3).then(|| a.in_space().cross(b.in_space()).truncated())
@@ -243,6 +321,9 @@ const THICK: f64 = 0.5;
 
 /// Steps to the deepest point at most.
 const STEPS: usize = 32;
+
+/// A point is at the side of a thin body if it is in the body by less than this share of its thickness.
+const SIDE: f64 = 0.01;
 
 /// A step leads down if it does by this share of the last step's length.
 const DOWN: f64 = 0.5;

@@ -6,7 +6,7 @@
 use palpate_field::scalar::Model;
 use palpate_field::{Aabb, BLOCK, Point, Vector};
 
-use super::patch::Patches;
+use super::patch::{self, Patches};
 use super::{COPIES, LIKE, ManifoldSettings, Member, Touch};
 use crate::certified::Stop;
 use crate::contact::NormalSource;
@@ -29,6 +29,17 @@ const FLAT: f64 = 0.05;
 /// Flat boxes with half a side above this many spacings are halved: points are laid in the others, one
 /// for each few spacings.
 const WIDE: f64 = 4.0;
+
+/// How often boxes are halved that are open far from all candidates: parts of the region that are
+/// thinner than the spacing.
+const HALVINGS: usize = 6;
+
+/// A box is far from all candidates if none is within so many spacings: less than neighbours are apart.
+const SEEDED: f64 = 1.2;
+
+/// The evaluations that thin parts may take, as a multiple of those before, and in addition.
+const THIN_SHARE: u32 = 2;
+const THIN_MORE: u32 = 4096;
 
 /// The region in which two bodies touch, in candidates and flat boxes.
 #[derive(Debug)]
@@ -56,7 +67,7 @@ pub(super) fn find<const D: usize>(
     BoxCell::unknown(&root).grid(&mut frontier.pending);
     let mut search = RegionSearch {
         pair,
-        settings,
+        settings: *settings,
         budget,
         slack,
         open,
@@ -70,10 +81,9 @@ pub(super) fn find<const D: usize>(
         End::Exhausted => Stop::Converged,
         end => end.stop(),
     };
-    let RegionSearch { pair, small, mut candidates, middles, memory, .. } = search;
-    for cells in small.chunks(BLOCK) {
-        settle(pair, cells, settings, memory, &mut candidates);
-    }
+    let left = search.settle();
+    let stop = if stop.is_early() { stop } else { search.find_thin(frontier, left) };
+    let RegionSearch { candidates, middles, .. } = search;
     Region { candidates, middles, stop }
 }
 
@@ -81,7 +91,7 @@ pub(super) fn find<const D: usize>(
 /// It bounds no least value: no box comes before another, and all are searched.
 struct RegionSearch<'s, 'a, const D: usize> {
     pair: &'s mut BodyPair<'a, D>,
-    settings: &'s ManifoldSettings,
+    settings: ManifoldSettings,
     budget: u32,
     slack: f64,
     open: &'s mut Vec<usize>,
@@ -93,6 +103,72 @@ struct RegionSearch<'s, 'a, const D: usize> {
 }
 
 impl<const D: usize> RegionSearch<'_, '_, D> {
+    /// Moves the centres of the small boxes to the surface between, and returns the boxes whose centres do
+    /// not get there.
+    fn settle(&mut self) -> Vec<BoxCell<D>> {
+        let small = std::mem::take(&mut self.small);
+        let mut left = Vec::new();
+        for cells in small.chunks(BLOCK) {
+            self.settle_block(cells, &mut left);
+        }
+        left
+    }
+
+    /// Finds the parts of the region that are thinner than the spacing: in boxes that may hold a part of it
+    /// and are far from all candidates. These are halved as often as it takes.
+    #[inline(never)]
+    fn find_thin(
+        &mut self,
+        frontier: &mut Frontier<Heap<BoxCell<D>>>,
+        left: Vec<BoxCell<D>>,
+    ) -> Stop {
+        let near = SEEDED * self.settings.spacing;
+        let (coarse, mut left) = (self.settings, left);
+        let more = THIN_SHARE.saturating_mul(self.pair.evaluations).saturating_add(THIN_MORE);
+        let most = self.pair.evaluations.saturating_add(more);
+        let is_limited = most < self.budget;
+        self.budget = self.budget.min(most);
+        for halving in 0..=HALVINGS {
+            self.seed(&mut left, near, &coarse);
+            if left.is_empty() {
+                return Stop::Converged;
+            }
+            if halving == HALVINGS {
+                break;
+            }
+            self.settings.spacing *= 0.5;
+            frontier.queue.clear();
+            frontier.pending.clear();
+            left.iter().for_each(|cell| cell.halve(&mut frontier.pending));
+            match engine::search(self, frontier) {
+                End::Exhausted => {}
+                End::Spent if is_limited => return Stop::Unresolved,
+                end => return end.stop(),
+            }
+            left = self.settle();
+        }
+        Stop::Unresolved
+    }
+
+    /// Finds a candidate in or next to each box that is farther than `near` from all of them [m], and keeps
+    /// the boxes where there is none.
+    fn seed(&mut self, left: &mut Vec<BoxCell<D>>, near: f64, coarse: &ManifoldSettings) {
+        if left.is_empty() {
+            return;
+        }
+        let grid = Grid::new(self.candidates.iter().map(|touch| touch.point), near);
+        let known = self.candidates.len();
+        left.retain(|cell| {
+            let is_near = |touch: &Touch<D>| distance(touch.point, cell.centre) < near;
+            if grid.has_near(cell.centre) || self.candidates[known..].iter().any(is_near) {
+                return false;
+            }
+            let found = patch::seeded(self.pair, cell, coarse);
+            self.candidates.extend(found);
+            found.is_none()
+        });
+    }
+
     /// Which boxes of a round the surface between may cross, within the margin, as far as
     /// the values at their centres tell.
     fn is_near(&mut self, round: &[BoxCell<D>]) -> [bool; BLOCK] {
@@ -150,13 +226,13 @@ impl<const D: usize> Problem for RegionSearch<'_, '_, D> {
         }
         for (lane, &i) in self.open.iter().enumerate() {
             let models = [0, 1].map(|body| self.pair.model(body, self.memory, lane));
-            let mut found = look::<D>(&models, self.settings, self.slack);
+            let mut found = look::<D>(&models, &self.settings, self.slack);
             if longest_half(&round[i]) > WIDE * self.settings.spacing && found == Look::Middle {
                 found = Look::Open;
             }
             is_open[i] = found == Look::Open;
             if let (Look::Middle, Some(middle)) = (found, Middle::of(&round[i], &models)) {
-                middle.lay(&round[i], self.settings, &mut self.candidates);
+                middle.lay(&round[i], &self.settings, &mut self.candidates);
                 self.middles.push(middle);
             }
         }
@@ -221,43 +297,47 @@ fn look<const D: usize>([a, b]: &[Model; 2], settings: &ManifoldSettings, slack:
     }
 }
 
-/// Moves the centres of boxes to the surface between, along the gradient of `g_a − g_b`,
-/// and appends those that get there and where the bodies face each other.
-fn settle<const D: usize>(
-    pair: &mut BodyPair<'_, D>,
-    cells: &[BoxCell<D>],
-    settings: &ManifoldSettings,
-    memory: &mut Memory<D>,
-    candidates: &mut Vec<Touch<D>>,
-) {
-    let mut points = [Vector::ZERO; BLOCK];
-    let mut from = [0; BLOCK];
-    for (i, cell) in cells.iter().enumerate() {
-        (points[i], from[i]) = (cell.centre, i);
-    }
-    let mut count = cells.len();
-    let mut slopes = [[(0.0, Vector::ZERO); BLOCK]; 2];
-    for step in 0..STEPS {
-        pair.block_slopes(&points[..count], memory, &mut slopes);
-        let mut left = 0;
-        for i in 0..count {
-            let cell = &cells[from[i]];
-            match towards(points[i], [slopes[0][i], slopes[1][i]], settings) {
-                Towards::Nothing => {}
-                Towards::There(touch) if touch.gap > settings.margin => {}
-                Towards::There(touch) => candidates.push(touch),
-                Towards::Next(next) => {
-                    if step + 1 < STEPS && (next - cell.centre).norm() <= 1.5 * cell.radius() {
-                        (points[left], from[left]) = (next, from[i]);
-                        left += 1;
+impl<const D: usize> RegionSearch<'_, '_, D> {
+    /// Moves the centres of boxes to the surface between, along the gradient of `g_a − g_b`, and appends
+    /// those that get there and where the bodies face each other to the candidates; `left` are the boxes of
+    /// the others.
+    fn settle_block(&mut self, cells: &[BoxCell<D>], left: &mut Vec<BoxCell<D>>) {
+        let mut points = [Vector::ZERO; BLOCK];
+        let mut from = [0; BLOCK];
+        let mut is_settled = [false; BLOCK];
+        for (i, cell) in cells.iter().enumerate() {
+            (points[i], from[i]) = (cell.centre, i);
+        }
+        let mut count = cells.len();
+        let mut slopes = [[(0.0, Vector::ZERO); BLOCK]; 2];
+        for step in 0..STEPS {
+            self.pair.block_slopes(&points[..count], self.memory, &mut slopes);
+            let mut open = 0;
+            for i in 0..count {
+                let cell = &cells[from[i]];
+                match towards(points[i], [slopes[0][i], slopes[1][i]], &self.settings) {
+                    Towards::Nothing => {}
+                    Towards::There(touch) if touch.gap > self.settings.margin => {}
+                    Towards::There(touch) => {
+                        is_settled[from[i]] = true;
+                        self.candidates.push(touch);
+                    }
+                    Towards::Next(next) => {
+                        if step + 1 < STEPS
+                            && (next - cell.centre).norm() <= 1.5 * cell.radius()
+                        {
+                            (points[open], from[open]) = (next, from[i]);
+                            open += 1;
+                        }
                     }
                 }
             }
+            count = open;
+            if count == 0 {
+                break;
+            }
         }
-        count = left;
-        if count == 0 {
-            break;
-        }
+        left.extend(cells.iter().zip(is_settled).filter(|(_, is)| !is).map(|(cell, _)| *cell));
     }
 }
 
@@ -373,6 +453,32 @@ impl<const D: usize> Grid<D> {
             place = place * self.counts[k] + cube[k];
         }
         place
+    }
+
+    /// Whether a point is near `p`, taken out or not.
+    pub(super) fn has_near(&self, p: Point<D>) -> bool {
+        let mut first = [0; D];
+        let mut last = [0; D];
+        for k in 0..D {
+            let place = (p[k] - self.min[k]) * self.per_metre;
+            // Negative numbers saturate at zero, so that a point off the grid looks at its border.
+            let place = place.floor();
+            first[k] = ((place - 1.0).max(0.0) as usize).min(self.counts[k] - 1);
+            last[k] = ((place + 1.0).max(0.0) as usize).min(self.counts[k] - 1);
+        }
+        let mut row = first;
+        loop {
+            let start = self.place_of(row);
+            for place in start..=start + last[0] - first[0] {
+                let all = self.starts[place] as usize..self.starts[place + 1] as usize;
+                if self.members[all].iter().any(|(point, _)| self.is_near(p, *point)) {
+                    return true;
+                }
+            }
+            let Some(k) = (1..D).find(|&k| row[k] < last[k]) else { return false };
+            row[k] += 1;
+            row[1..k].copy_from_slice(&first[1..k]);
+        }
     }
 
     fn is_near(&self, p: Point<D>, other: Point<D>) -> bool {

@@ -375,7 +375,8 @@ impl<const D: usize> Track<D> {
     ///
     /// While the bodies stay within a quarter of the margin of the poses at which the region of contact
     /// was searched, its points are carried with them and put back on the surfaces, and only the
-    /// separation is searched. Parts of the region that are new meanwhile have a gap of more than three
+    /// separation is searched. A contact that overlaps deeper than the margin keeps the normal with which
+    /// it came, unless the contacts would then all be shallower than the separation is proven to be. Parts of the region that are new meanwhile have a gap of more than three
     /// quarters of the margin. Of bodies that move on by no more than 1.5 margins in a step, parts up to a
     /// gap of 2.5 margins are searched too, and all last while the bodies stay within 1.5 margins of those
     /// poses. Where the bodies face each other no longer at a point as they did, all is found anew.
@@ -403,8 +404,17 @@ impl<const D: usize> Track<D> {
             Kept::spanning(&mut self.kept, separated, (settings, limits.budget), workspace)
         };
         self.names.name(&mut found.contacts, poses, settings.spacing);
+        let by_gradients = found.contacts.clone();
         found.separation.evaluations +=
             self.history.follow(&mut found.contacts, pair, poses, settings);
+        let deepest = |contacts: &[Contact<D>]| {
+            contacts.iter().fold(f64::INFINITY, |least, contact| contact.gap.min(least))
+        };
+        let followed = deepest(&found.contacts);
+        if followed > found.separation.upper && followed > deepest(&by_gradients) {
+            // The bodies are proven to overlap deeper: nothing would push them apart that far.
+            (found.contacts, self.history) = (by_gradients, History::default());
+        }
         Ok(found)
     }
 }

@@ -28,6 +28,7 @@ mod separating_translations;
 mod serde;
 mod sweeps;
 mod thin;
+mod thin_parts;
 mod track_costs;
 mod tracks;
 mod worlds;

@@ -428,7 +428,7 @@ impl<const D: usize> ContactsAnswer<D> {
                                  help; another margin may"
                     .to_owned()
             }
-            Stop::RoundingReached => {
+            Stop::RoundingReached | Stop::Unresolved => {
                 "rounding allows no closer bounds; another margin decides".to_owned()
             }
             Stop::Converged | Stop::SignKnown => format!(
@@ -450,6 +450,11 @@ impl<const D: usize> ContactsAnswer<D> {
             Stop::MemoryFull => Some(
                 "the memory of the search is full, and a larger budget does not help; raise the \
                  spacing"
+                    .to_owned(),
+            ),
+            Stop::Unresolved => Some(
+                "bounds leave open whether the bodies touch in thin places far from these contacts; lower \
+                 the spacing"
                     .to_owned(),
             ),
         }
