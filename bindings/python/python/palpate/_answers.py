@@ -20,7 +20,7 @@ from palpate._answer import Floats
 NormalSource: TypeAlias = Literal["gradients", "thicker_body", "history", "assumed"]
 Quality: TypeAlias = Literal["exact", "bound", "lipschitz"]
 Start: TypeAlias = Literal["approaching", "receding", "sliding", "resting"]
-Stop: TypeAlias = Literal["converged", "sign_known", "budget_spent", "memory_full", "rounding_reached"]
+Stop: TypeAlias = Literal["converged", "sign_known", "budget_spent", "memory_full", "rounding_reached", "unresolved"]
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
