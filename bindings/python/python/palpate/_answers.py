@@ -250,7 +250,8 @@ class Manifold(_examples.Manifold):
             known, as a separation made of bounds does not tell how far the bodies are apart at most, and of bodies
             that are proven farther apart than the margin.
         dropped: How many contacts were left out beyond the most that were asked for.
-        is_whole: ``False`` if the search ended before it had seen the whole region.
+        is_whole: ``False`` if the search ended before it had seen the whole region, or bounds leave thin parts of it
+            open.
         region_stop: Why the search of the region ended: ``converged`` if it is whole.
 
     >>> import palpate as pp

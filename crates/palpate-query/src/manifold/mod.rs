@@ -49,9 +49,9 @@ pub struct ManifoldSettings {
     /// The largest gap of a contact [m]. The deepest contact is kept even if its gap exceeds this: by the
     /// tolerance of the search, or by more where a field is a bound.
     pub margin: f64,
-    /// The size of the smallest boxes searched [m]. Parts of the region that are smaller may be
-    /// missed, except for the certified deepest point. Contacts with like normals are at least as
-    /// far apart.
+    /// The size of the smallest boxes searched [m]. Thinner parts of the region are looked for
+    /// farther than 1.2 spacings from all contacts; nearer ones may be missed, except for the
+    /// certified deepest point. Contacts with like normals are at least as far apart.
     pub spacing: f64,
     /// The largest number of contacts: the deepest is kept, and those farthest apart. Zero counts
     /// as one.
@@ -88,7 +88,8 @@ pub struct Manifold<const D: usize> {
     pub distance_at_most: f64,
     /// How many contacts were left out beyond the most that were asked for.
     pub dropped: usize,
-    /// `false` if the search ended before it had seen the whole region.
+    /// `false` if the search ended before it had seen the whole region, or bounds leave thin parts
+    /// of it open.
     pub is_whole: bool,
     /// Why the search of the region ended: `converged` if it is whole.
     pub region_stop: Stop,
@@ -97,10 +98,11 @@ pub struct Manifold<const D: usize> {
 /// Contacts that span the region in which two bodies touch, up to a gap of
 /// `settings.margin`.
 ///
-/// The search finds the separation to `limits.tolerance` first, and stops with no contacts
-/// once it is proven to exceed the margin. The deepest point is certified; other parts of the
-/// region are found if they are larger than the spacing.
-/// [`Track::manifold`](crate::Track::manifold) keeps the ids of contacts from step to step.
+/// The search finds the separation to `limits.tolerance` first, and stops with no contacts once it
+/// is proven to exceed the margin. The deepest point is certified. Other parts of the region are
+/// found, or [`is_whole`](Manifold::is_whole) is `false`, but for parts within 1.2 spacings of a
+/// contact. [`Track::manifold`](crate::Track::manifold) keeps the ids of contacts from step to
+/// step.
 ///
 /// ```
 /// use palpate_field::{Pose, Shape, Vector, kernel::Cuboid};
