@@ -375,9 +375,7 @@ impl ContactPoint {
             let carried = body.carried(touch.device) - touch.device;
             if body.has_moved() { (way - carried).norm() } else { way.norm() }
         });
-        slides
-            .fold(None, |most: Option<f64>, way| Some(most.map_or(way, |most| most.max(way))))
-            .unwrap_or_else(|| way.norm())
+        slides.reduce(f64::max).unwrap_or_else(|| way.norm())
     }
 
     /// How far the bodies that push the hand in `touch` carry it in this tick [m]; `None` if none pushes.

@@ -67,9 +67,7 @@ impl Tool {
             let carried = carried.map_or(Vector::ZERO, |it| it.translation - from.translation);
             (way - carried).norm()
         });
-        let most = slides
-            .fold(None, |most: Option<f64>, way| Some(most.map_or(way, |most| most.max(way))));
-        most.unwrap_or_else(|| way.norm())
+        slides.reduce(f64::max).unwrap_or_else(|| way.norm())
     }
 
     /// Whether the force changes by more than 0.3 N beyond what motion explains.
