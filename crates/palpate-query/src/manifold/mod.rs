@@ -11,9 +11,10 @@
 //! all of it.
 //!
 //! `region` finds the candidates with their normals, `Touch` the normal of a point that is found
-//! otherwise, `patch` and `fill` choose the contacts, `moved` carries them with the bodies; the
-//! separation and its bounds come from `pair/search.rs`.
+//! otherwise, `patch` chooses the contacts, `cover` adds those that they leave out, `moved` carries them
+//! with the bodies; the separation and its bounds come from `pair/search.rs`.
 
+mod cover;
 mod patch;
 mod region;
 
@@ -35,6 +36,9 @@ pub(crate) use region::distance;
 const COPIES: f64 = 1.5;
 const LIKE: f64 = 0.8;
 
+/// The first step to the deepest point of an edge, as a multiple of the gap.
+const EDGE: f64 = 4.0;
+
 /// Contacts whose gaps differ by less than this share of the precision are as deep.
 const SAME_DEPTH: f64 = 1e-3;
 
@@ -49,9 +53,9 @@ pub struct ManifoldSettings {
     /// The largest gap of a contact [m]. The deepest contact is kept even if its gap exceeds this: by the
     /// tolerance of the search, or by more where a field is a bound.
     pub margin: f64,
-    /// The size of the smallest boxes searched [m]. Thinner parts of the region are looked for
-    /// farther than 1.2 spacings from all contacts; nearer ones may be missed, except for the
-    /// certified deepest point. Contacts with like normals are at least as far apart.
+    /// The size of the smallest boxes searched [m]. Thinner parts of the region are looked for where they
+    /// may be farther than two spacings from the convex hull of the contacts; nearer ones may be missed,
+    /// except for the certified deepest point. Contacts with like normals are at least a spacing apart.
     pub spacing: f64,
     /// The largest number of contacts: the deepest is kept, and those farthest apart. Zero counts
     /// as one.
@@ -99,10 +103,10 @@ pub struct Manifold<const D: usize> {
 /// `settings.margin`.
 ///
 /// The search finds the separation to `limits.tolerance` first, and stops with no contacts once it
-/// is proven to exceed the margin. The deepest point is certified. Other parts of the region are
-/// found, or [`is_whole`](Manifold::is_whole) is `false`, but for parts within 1.2 spacings of a
-/// contact. [`Track::manifold`](crate::Track::manifold) keeps the ids of contacts from step to
-/// step.
+/// is proven to exceed the margin. The deepest point is certified. No part of the region is farther
+/// than two spacings from the convex hull of the contacts, or [`is_whole`](Manifold::is_whole) is
+/// `false`; unless more contacts than asked for were left out.
+/// [`Track::manifold`](crate::Track::manifold) keeps the ids of contacts from step to step.
 ///
 /// ```
 /// use palpate_field::{Pose, Shape, Vector, kernel::Cuboid};
@@ -205,14 +209,14 @@ impl<const D: usize> Spanned<D> {
     ) -> Self {
         let SeparatedPair { pair, best, .. } = separated;
         let first = Touch::at(pair, *best);
-        let Region { candidates, mut middles, stop } =
-            region::find(pair, settings, budget, workspace, first);
-        let mut patches = Patches { pair: *pair, settings, candidates: &candidates };
+        let mut region = region::find(pair, settings, budget, workspace, first);
+        let mut patches = Patches { pair: *pair, settings, candidates: &region.candidates };
         let mut members = patches.contacts();
-        patches.fill(&mut middles, &mut members);
+        patches.fill(&mut region.middles, &mut members);
         *pair = patches.pair;
         drop_copies(&mut members, settings.spacing);
-        Self { members, beyond: Vec::new(), stop }
+        let members = whole(pair, settings, (budget, workspace), members, &mut region);
+        Self { members, beyond: Vec::new(), stop: region.stop }
     }
 
     /// The same, with what spans the parts of the region up to a gap of `farther` margins, which bodies
@@ -228,7 +232,7 @@ impl<const D: usize> Spanned<D> {
         let wider = ManifoldSettings { margin: farther * settings.margin, ..*settings };
         let SeparatedPair { pair, best, .. } = separated;
         let first = Touch::at(pair, *best);
-        let Region { mut candidates, mut middles, stop } =
+        let Region { mut candidates, mut middles, stop, .. } =
             region::find(pair, &wider, budget, workspace, first);
         candidates.retain(|touch| touch.gap > settings.margin);
         let mut patches = Patches { pair: *pair, settings: &wider, candidates: &candidates };
@@ -281,8 +285,8 @@ impl<const D: usize> Spanned<D> {
             }
         }
         if are_moved {
-            // Several lead to one deepest point.
-            drop_copies(&mut members, settings.spacing);
+            // Several lead to one deepest point. To drop more would leave parts of the region out.
+            drop_copies(&mut members, settings.spacing / COPIES);
         }
         let upper = found.separation.upper;
         let places = self.members.iter().map(|member| member.touch.point);
@@ -450,7 +454,9 @@ impl<const D: usize> Touch<D> {
         let turned = Self { normal, ..*self };
         if self.gap <= 0.0 {
             // The edge is deeper along the normal than the widest ball in the overlap is wide.
-            let deepest = patch::in_host(pair, body, self.point, settings);
+            // A longer step would lead along the edge.
+            let first = (self.point, EDGE * self.gap.abs());
+            let deepest = patch::in_host(pair, body, first, settings);
             let deepest = deepest.filter(|found| found.gap <= self.gap);
             return Some(deepest.map_or(turned, |Self { point, gap, .. }| Self {
                 point,
@@ -488,6 +494,30 @@ impl<const D: usize> Touch<D> {
         };
         contact.with_normal_from(self.source).placed(&pair.world_from_frame)
     }
+}
+
+/// The contacts, with further ones where they leave out a part of the region: a candidate, or what is in
+/// a box that may hold a part of it.
+fn whole<const D: usize>(
+    pair: &mut BodyPair<'_, D>,
+    settings: &ManifoldSettings,
+    (budget, workspace): (u32, &mut PairWorkspace<D>),
+    members: Vec<Member<D>>,
+    region: &mut Region<D>,
+) -> Vec<Member<D>> {
+    let mut members = members;
+    let mut patches = Patches { pair: *pair, settings, candidates: &region.candidates };
+    patches.cover(&region.candidates, &mut members);
+    *pair = patches.pair;
+    let mut doubtful = std::mem::take(&mut region.doubtful);
+    doubtful.retain(|cell| cover::is_box_left_out(cell, &members, settings.spacing));
+    if !doubtful.is_empty() {
+        let found = region.decide(pair, settings, (budget, workspace), (doubtful, &members));
+        let mut patches = Patches { pair: *pair, settings, candidates: &region.candidates };
+        patches.cover(&found, &mut members);
+        *pair = patches.pair;
+    }
+    members
 }
 
 /// Whether two contacts are next to each other, with like normals.

@@ -158,8 +158,7 @@ impl<const D: usize> Patches<'_, '_, D> {
                 |other: &Touch<D>| distance(other.point, corners[i].point) > SMALL * spacing;
             if corners[..i].iter().all(is_apart) {
                 let corner = self.by_values(corners[i]);
-                let corner = self.sharpen(corner, centre);
-                let touch = self.in_valley(corner, deepest.gap, centre);
+                let touch = self.corner(corner, &deepest, centre);
                 contacts.push(Member { touch, group });
             }
         }
@@ -167,7 +166,7 @@ impl<const D: usize> Patches<'_, '_, D> {
 
     /// A candidate with the gap of the fields' values: that of a flat model is too small where bodies are
     /// round.
-    fn by_values(&mut self, candidate: Touch<D>) -> Touch<D> {
+    pub(super) fn by_values(&mut self, candidate: Touch<D>) -> Touch<D> {
         if candidate.source == NormalSource::ThickerBody {
             return candidate;
         }
@@ -184,6 +183,17 @@ impl<const D: usize> Patches<'_, '_, D> {
         let is_near = distance(p, start.point) < NEIGHBOURS * self.settings.spacing;
         let found = is_near.then(|| self.settle(p, self.settings.spacing)).flatten();
         found.filter(|found| found.gap < start.gap).unwrap_or(start)
+    }
+
+    /// A corner as far out as the patch reaches from its centre.
+    pub(super) fn corner(
+        &mut self,
+        corner: Touch<D>,
+        deepest: &Touch<D>,
+        centre: Point<D>,
+    ) -> Touch<D> {
+        let corner = self.sharpen(corner, centre);
+        self.in_valley(corner, deepest.gap, centre)
     }
 
     /// A corner at the bottom of the valley beside it, as of a rod that lies on a face: the corner is no
@@ -211,7 +221,7 @@ impl<const D: usize> Patches<'_, '_, D> {
         let mut step = 0.5 * self.settings.spacing;
         while step > SHARP * self.settings.spacing {
             let moved = ways.iter().find_map(|way| {
-                let touch = self.settle(corner.point + *way * step, step)?;
+                let touch = self.beside(&corner, corner.point + *way * step, step)?;
                 let is_on = touch.normal.dot(corner.normal) > super::LIKE;
                 let is_out = (touch.point - corner.point).dot(outwards) > 0.3 * step;
                 let is_far = distance(touch.point, start) > FAR * self.settings.spacing;
@@ -223,6 +233,17 @@ impl<const D: usize> Patches<'_, '_, D> {
             }
         }
         corner
+    }
+
+    /// The touch next to `p`, of the kind of `corner`.
+    fn beside(&mut self, corner: &Touch<D>, p: Point<D>, far: f64) -> Option<Touch<D>> {
+        if corner.source != NormalSource::ThickerBody {
+            return self.settle(p, far);
+        }
+        let goal = Goal::least(PRECISE * self.settings.precision_length());
+        let (_, inside) = descend(&mut self.pair, p, Some(far), goal, 0.0);
+        let found = swallowed(&mut self.pair, inside, self.settings);
+        found.filter(|touch| distance(touch.point, p) <= 2.0 * far)
     }
 
     /// The point of the surface between next to `p`, if it is within `far` and the
@@ -357,18 +378,19 @@ pub(super) fn host<const D: usize>(
 }
 
 /// The touch along the gradient of the host, at the point of the guest that lies deepest in it, from a
-/// point of the guest on down. `None` where the host has no gradient, or the point is not in it.
+/// point of the guest on down, with a step of `first` [m] or of its depth. `None` where the host has no
+/// gradient, or the point is not in it.
 pub(super) fn in_host<const D: usize>(
     pair: &mut BodyPair<'_, D>,
     host: usize,
-    from: Point<D>,
+    (from, first): (Point<D>, f64),
     settings: &ManifoldSettings,
 ) -> Option<Touch<D>> {
     let guest = 1 - host;
     let precise = DEEP_PRECISE * settings.precision_length();
     let mut here = from;
     let mut slopes = pair.slopes(here);
-    let mut step = slopes[host].0.abs().max(settings.spacing);
+    let mut step = slopes[host].0.abs().max(first);
     for _ in 0..STEPS {
         if step < precise {
             break;
@@ -411,7 +433,8 @@ pub(super) fn pushed<const D: usize>(
         return None;
     }
     let host = host(pair, touch)?;
-    in_host(pair, host, touch.point, settings).filter(|found| found.gap <= touch.gap)
+    in_host(pair, host, (touch.point, settings.spacing), settings)
+        .filter(|found| found.gap <= touch.gap)
 }
 
 /// The touch of bodies that were followed to where they overlap: along `normals`, those of the first
@@ -431,7 +454,7 @@ pub(crate) fn followed<const D: usize>(
         let side = if host == 0 { 1.0 } else { -1.0 };
         let Some(outwards) = pair.slopes(guest)[host].1.normalized() else { continue };
         if (outwards * side).dot(normals[host]) > super::LIKE
-            && let Some(found) = in_host(pair, host, guest, settings)
+            && let Some(found) = in_host(pair, host, (guest, settings.spacing), settings)
             && found.normal.dot(normals[host]) > super::LIKE
         {
             return Some(Touch { source: NormalSource::History, ..found });

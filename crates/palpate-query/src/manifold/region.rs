@@ -6,6 +6,7 @@
 use palpate_field::scalar::Model;
 use palpate_field::{Aabb, BLOCK, Point, Vector};
 
+use super::cover;
 use super::patch::{self, Patches};
 use super::{COPIES, LIKE, ManifoldSettings, Member, Touch};
 use crate::certified::Stop;
@@ -37,6 +38,9 @@ const HALVINGS: usize = 6;
 /// A box is far from all candidates if none is within so many spacings: less than neighbours are apart.
 const SEEDED: f64 = 1.2;
 
+/// A box is decided by a candidate from which no point of it is farther than so many spacings.
+const DECIDED: f64 = 0.5;
+
 /// The evaluations that thin parts may take, as a multiple of those before, and in addition.
 const THIN_SHARE: u32 = 2;
 const THIN_MORE: u32 = 4096;
@@ -48,6 +52,8 @@ pub(super) struct Region<const D: usize> {
     pub(super) candidates: Vec<Touch<D>>,
     /// Flat boxes in the middle of the region.
     pub(super) middles: Vec<Middle<D>>,
+    /// Boxes near candidates that may hold a part of the region too.
+    pub(super) doubtful: Vec<BoxCell<D>>,
     /// Why the search ended: [`Stop::Converged`] if the region is whole.
     pub(super) stop: Stop,
 }
@@ -61,30 +67,62 @@ pub(super) fn find<const D: usize>(
     first: Touch<D>,
 ) -> Region<D> {
     let root = pair.root(0.5 * settings.margin);
-    let slack = pair.slack(root.radius_about_origin());
-    let PairWorkspace { frontier, open, memory, .. } = workspace;
+    let (mut search, frontier) =
+        RegionSearch::new(pair, settings, &root, (budget, workspace), vec![first]);
     frontier.queue.clear();
     BoxCell::unknown(&root).grid(&mut frontier.pending);
-    let mut search = RegionSearch {
-        pair,
-        settings: *settings,
-        budget,
-        slack,
-        open,
-        memory,
-        small: vec![],
-        candidates: vec![first],
-        middles: vec![],
-    };
     let stop = match engine::search(&mut search, frontier) {
         // No box is left to be halved.
         End::Exhausted => Stop::Converged,
         end => end.stop(),
     };
     let left = search.settle();
-    let stop = if stop.is_early() { stop } else { search.find_thin(frontier, left) };
-    let RegionSearch { candidates, middles, .. } = search;
-    Region { candidates, middles, stop }
+    let stop =
+        if stop.is_early() { stop } else { search.find_thin(frontier, left, Near::Candidates) };
+    search.into_region(stop)
+}
+
+impl<const D: usize> Region<D> {
+    /// Searches boxes that may hold a part of the region that the contacts leave out, and returns the
+    /// candidates that it finds.
+    pub(super) fn decide(
+        &mut self,
+        pair: &mut BodyPair<'_, D>,
+        settings: &ManifoldSettings,
+        (budget, workspace): (u32, &mut PairWorkspace<D>),
+        (left, contacts): (Vec<BoxCell<D>>, &[Member<D>]),
+    ) -> Vec<Touch<D>> {
+        let root = pair.root(0.5 * settings.margin);
+        let known = self.candidates.len();
+        let candidates = std::mem::take(&mut self.candidates);
+        let (mut search, frontier) =
+            RegionSearch::new(pair, settings, &root, (budget, workspace), candidates);
+        let stop = search.find_thin(frontier, left, Near::Contacts(contacts));
+        self.candidates = search.candidates;
+        if !self.stop.is_early() {
+            self.stop = stop;
+        }
+        self.candidates[known..].to_vec()
+    }
+}
+
+/// Which boxes need no candidate of their own.
+#[derive(Clone, Copy)]
+enum Near<'c, const D: usize> {
+    /// Those near a candidate.
+    Candidates,
+    /// Those that these contacts, or a candidate found meanwhile, leave out by no more than promised.
+    Contacts(&'c [Member<D>]),
+}
+
+impl<const D: usize> Near<'_, D> {
+    /// How far a candidate may be from the centre of a box [m].
+    fn limit(self, cell: &BoxCell<D>, spacing: f64) -> f64 {
+        match self {
+            Self::Candidates => SEEDED * spacing,
+            Self::Contacts(_) => DECIDED * spacing - cell.radius(),
+        }
+    }
 }
 
 /// A search for all boxes down to the spacing that the surface between the bodies crosses.
@@ -100,6 +138,40 @@ struct RegionSearch<'s, 'a, const D: usize> {
     small: Vec<BoxCell<D>>,
     candidates: Vec<Touch<D>>,
     middles: Vec<Middle<D>>,
+    /// Boxes that may hold a part of the region, near candidates.
+    doubtful: Vec<BoxCell<D>>,
+}
+
+impl<'s, 'a, const D: usize> RegionSearch<'s, 'a, D> {
+    /// A search of `root`, and the boxes that wait.
+    fn new(
+        pair: &'s mut BodyPair<'a, D>,
+        settings: &ManifoldSettings,
+        root: &Aabb<D>,
+        (budget, workspace): (u32, &'s mut PairWorkspace<D>),
+        candidates: Vec<Touch<D>>,
+    ) -> (Self, &'s mut Frontier<Heap<BoxCell<D>>>) {
+        let slack = pair.slack(root.radius_about_origin());
+        let PairWorkspace { frontier, open, memory, .. } = workspace;
+        let search = Self {
+            pair,
+            settings: *settings,
+            budget,
+            slack,
+            open,
+            memory,
+            small: vec![],
+            candidates,
+            middles: vec![],
+            doubtful: vec![],
+        };
+        (search, frontier)
+    }
+
+    fn into_region(self, stop: Stop) -> Region<D> {
+        let Self { candidates, middles, doubtful, .. } = self;
+        Region { candidates, middles, doubtful, stop }
+    }
 }
 
 impl<const D: usize> RegionSearch<'_, '_, D> {
@@ -115,14 +187,14 @@ impl<const D: usize> RegionSearch<'_, '_, D> {
     }
 
     /// Finds the parts of the region that are thinner than the spacing: in boxes that may hold a part of it
-    /// and are far from all candidates. These are halved as often as it takes.
+    /// and are not `near` candidates. These are halved as often as it takes.
     #[inline(never)]
     fn find_thin(
         &mut self,
         frontier: &mut Frontier<Heap<BoxCell<D>>>,
         left: Vec<BoxCell<D>>,
+        near: Near<'_, D>,
     ) -> Stop {
-        let near = SEEDED * self.settings.spacing;
         let (coarse, mut left) = (self.settings, left);
         let more = THIN_SHARE.saturating_mul(self.pair.evaluations).saturating_add(THIN_MORE);
         let most = self.pair.evaluations.saturating_add(more);
@@ -150,22 +222,49 @@ impl<const D: usize> RegionSearch<'_, '_, D> {
         Stop::Unresolved
     }
 
-    /// Finds a candidate in or next to each box that is farther than `near` from all of them [m], and keeps
-    /// the boxes where there is none.
-    fn seed(&mut self, left: &mut Vec<BoxCell<D>>, near: f64, coarse: &ManifoldSettings) {
+    /// Finds a candidate in or next to each box that is not `near` one, and keeps the boxes where there is
+    /// none.
+    fn seed(
+        &mut self,
+        left: &mut Vec<BoxCell<D>>,
+        near: Near<'_, D>,
+        coarse: &ManifoldSettings,
+    ) {
         if left.is_empty() {
             return;
         }
-        let grid = Grid::new(self.candidates.iter().map(|touch| touch.point), near);
-        let known = self.candidates.len();
+        let far = SEEDED.max(DECIDED) * coarse.spacing;
+        let grid = Grid::new(self.candidates.iter().map(|touch| touch.point), far);
+        let before = self.candidates.len();
         left.retain(|cell| {
-            let is_near = |touch: &Touch<D>| distance(touch.point, cell.centre) < near;
-            if grid.has_near(cell.centre) || self.candidates[known..].iter().any(is_near) {
+            if let Near::Contacts(contacts) = near
+                && !cover::is_box_left_out(cell, contacts, coarse.spacing)
+            {
                 return false;
+            }
+            let limit = near.limit(cell, coarse.spacing);
+            let is_near = |touch: &Touch<D>| distance(touch.point, cell.centre) < limit;
+            if grid.has_within(cell.centre, limit)
+                || self.candidates[before..].iter().any(is_near)
+            {
+                self.doubtful.push(*cell);
+                return false;
+            }
+            if limit <= 0.0 {
+                // No candidate would decide so large a box.
+                return true;
             }
             let found = patch::seeded(self.pair, cell, coarse);
             self.candidates.extend(found);
-            found.is_none()
+            match near {
+                Near::Candidates => {
+                    if found.is_some_and(|touch| !cell.contains(touch.point)) {
+                        self.doubtful.push(*cell);
+                    }
+                    found.is_none()
+                }
+                Near::Contacts(_) => !found.as_ref().is_some_and(is_near),
+            }
         });
     }
 
@@ -321,6 +420,10 @@ impl<const D: usize> RegionSearch<'_, '_, D> {
                     Towards::There(touch) => {
                         is_settled[from[i]] = true;
                         self.candidates.push(touch);
+                        if !cell.contains(touch.point) {
+                            // Another part of the region may be in the box itself.
+                            self.doubtful.push(*cell);
+                        }
                     }
                     Towards::Next(next) => {
                         if step + 1 < STEPS
@@ -455,8 +558,9 @@ impl<const D: usize> Grid<D> {
         place
     }
 
-    /// Whether a point is near `p`, taken out or not.
-    pub(super) fn has_near(&self, p: Point<D>) -> bool {
+    /// Whether a point is within `limit` of `p` [m], which is at most what is near; taken out or not.
+    pub(super) fn has_within(&self, p: Point<D>, limit: f64) -> bool {
+        let is_within = |point: Point<D>| distance(p, point) < limit;
         let mut first = [0; D];
         let mut last = [0; D];
         for k in 0..D {
@@ -471,7 +575,7 @@ impl<const D: usize> Grid<D> {
             let start = self.place_of(row);
             for place in start..=start + last[0] - first[0] {
                 let all = self.starts[place] as usize..self.starts[place + 1] as usize;
-                if self.members[all].iter().any(|(point, _)| self.is_near(p, *point)) {
+                if self.members[all].iter().any(|(point, _)| is_within(*point)) {
                     return true;
                 }
             }
@@ -583,7 +687,7 @@ pub(crate) fn distance<const D: usize>(a: Point<D>, b: Point<D>) -> f64 {
 }
 
 /// How far apart points are laid, in spacings: less than `NEIGHBOURS` of patches.
-const APART: f64 = 1.9;
+const LAID: f64 = 1.9;
 
 /// A flat box in the middle of a region, of which no candidate was made.
 #[derive(Clone, Copy, Debug)]
@@ -624,7 +728,7 @@ impl<const D: usize> Middle<D> {
             (0..D).fold(0, |k, i| if between[i].abs() > between[k].abs() { i } else { k });
         // Of the axis across, the surface tells the place.
         let counts: [usize; D] = std::array::from_fn(|k| {
-            let steps = 2.0 * cell.half[k] / (APART * settings.spacing);
+            let steps = 2.0 * cell.half[k] / (LAID * settings.spacing);
             if k == across { 1 } else { steps.ceil().max(1.0) as usize }
         });
         for index in 0..counts.iter().product() {

@@ -330,8 +330,8 @@ const ALIKE: f64 = 0.99;
 /// The cosine below which a gradient has turned as at an edge, 26°.
 const TURNED: f64 = 0.9;
 
-/// How far around a point a body is asked for edges, as a share of the smaller body; four times the
-/// gap where that is more.
+/// How far around a point a body is asked for edges, as a share of the smaller body; twice the gap
+/// where that is more.
 const AROUND: f64 = 1e-4;
 
 /// A face of one body at which the other has an edge or a corner.
@@ -364,7 +364,7 @@ impl<const D: usize> BodyPair<'_, D> {
         if units[0].dot(units[1]) < -OPPOSITE {
             return None;
         }
-        let far = (8.0 * a.max(b).abs()).max(AROUND * self.smaller_size());
+        let far = (4.0 * a.max(b).abs()).max(AROUND * self.smaller_size());
         let mut least = [1.0_f64; 2];
         for k in 0..D {
             for side in [-far, far] {

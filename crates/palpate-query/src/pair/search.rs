@@ -660,6 +660,10 @@ impl<const D: usize> BoxCell<D> {
         }
     }
 
+    pub(crate) fn contains(&self, p: Point<D>) -> bool {
+        (0..D).all(|k| (p[k] - self.centre[k]).abs() <= self.half[k])
+    }
+
     /// Fills `cells` with the parts of the box, of similar sides, as many as fit into a
     /// block.
     pub(crate) fn grid(&self, cells: &mut Vec<Self>) {

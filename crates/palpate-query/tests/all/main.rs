@@ -12,6 +12,7 @@ mod common_surfaces;
 mod degenerate;
 mod element_sweeps;
 mod elements;
+mod flat_patches;
 mod manifolds;
 mod mesh_memory;
 mod mesh_sweeps;
