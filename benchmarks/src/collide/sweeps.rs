@@ -7,6 +7,7 @@ use std::error::Error;
 use std::hint::black_box;
 
 use palpate::field::{Pose, Screw, Shape, Vector};
+use palpate::mesh::{Solid, TriangleMesh};
 use palpate::query::{
     BallWorkspace, Element, ElementSweep, Limits, Motion, Moving, Placed, Ray, SweepSettings,
     SweepWorkspace, cast_ball, sweep, sweep_element, sweep_mesh,
@@ -52,7 +53,62 @@ pub(super) fn measure(rows: &mut TimedRows) -> Result<(), Box<dyn Error>> {
     let Work { shape, .. } = found.ok_or("no S3")?;
     mesh("sweep.mesh_888.S3", shape, rows)?;
     peers::measure_casts(rows)?;
-    pairs("sweep.pair.S3_S3", shape, rows)
+    pairs("sweep.pair.S3_S3", shape, rows)?;
+    beside_flat_sides(rows)
+}
+
+/// Bodies that go by at 1 mm over flat sides that are meshes, each over the time of the same motion of cuboids.
+fn beside_flat_sides(rows: &mut TimedRows) -> Result<(), Box<dyn Error>> {
+    let ball = Shape::ball(0.1)?;
+    let [floor, cube] = [[4.0, 0.2, 4.0], [1.0; 3]];
+    let [mesh_floor, mesh_cube] = [of_triangles(floor)?, of_triangles(cube)?];
+    let [floor, cube] = [Shape::cuboid(floor)?, Shape::cuboid(cube)?];
+    let over =
+        |far: f64, height: f64| [-far, far].map(|x| Pose::<3>::translation([x, height, 0.0]));
+    let way = over(3.0, 0.201);
+    let times = [(&mesh_floor, &ball), (&floor, &ball)].map(|pair| passing(pair, way));
+    let [(time, undecided), (of_cuboid, _)] = both(times)?;
+    rows.insert("sweep.mesh_floor.ball.over_cuboid".into(), time / of_cuboid);
+    rows.insert("sweep.mesh_floor.ball.undecided".into(), undecided);
+    let way = over(4.0, 1.001);
+    let times = [(&mesh_cube, &mesh_cube), (&cube, &cube)].map(|pair| passing(pair, way));
+    let [(time, undecided), (of_cuboids, _)] = both(times)?;
+    rows.insert("sweep.mesh_cubes.1mm.over_cuboids".into(), time / of_cuboids);
+    rows.insert("sweep.mesh_cubes.1mm.undecided".into(), undecided);
+    Ok(())
+}
+
+/// Both answers, or the first error.
+fn both<T>([a, b]: [Result<T, Box<dyn Error>>; 2]) -> Result<[T; 2], Box<dyn Error>> {
+    Ok([a?, b?])
+}
+
+/// The time of a sweep [ns], and 1 if it is undecided.
+fn passing(
+    (still, moving): (&Shape<3>, &Shape<3>),
+    [from, to]: [Pose<3>; 2],
+) -> Result<(f64, f64), Box<dyn Error>> {
+    let settings = SweepSettings::of_size(1.0);
+    let moving = Moving::new(moving, Screw::new(from, to, 0)?);
+    let mut workspace = SweepWorkspace::new();
+    let answer = sweep(still, moving, &settings, &mut workspace)?;
+    let time = fastest(|| {
+        let _ = black_box(sweep(still, black_box(moving), &settings, &mut workspace));
+    });
+    Ok((time, f64::from(u32::from(answer.touches().is_none()))))
+}
+
+/// A box with these edges [m], of 12 triangles.
+fn of_triangles(size: [f64; 3]) -> Result<Shape<3>, Box<dyn Error>> {
+    let corners = (0..8_u32)
+        .map(|i| Vector(std::array::from_fn(|k| size[k] * (f64::from(i >> k & 1) - 0.5))));
+    // Each as counter-clockwise corners, seen from outside.
+    let sides =
+        [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]];
+    let faces = sides.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]);
+    let mesh = TriangleMesh::new(corners.collect(), faces.collect())?;
+    let (solid, _) = Solid::from_mesh(&mesh)?;
+    Ok(solid.into())
 }
 
 fn cast(

@@ -83,6 +83,69 @@ impl Soup {
         soup
     }
 
+    /// A box about the origin with these edges \[m\], each side of which is `2·steps²` triangles. No vertex is shared
+    /// between sides.
+    #[must_use]
+    pub fn fine_cuboid(size: [f64; 3], steps: u32) -> Self {
+        let at = |i: u32| f64::from(i) / f64::from(steps) - 0.5;
+        let mut soup = Self::default();
+        for (axis, side) in [0, 1, 2].into_iter().flat_map(|axis| [(axis, -0.5), (axis, 0.5)]) {
+            let first = soup.vertices.len() as u32;
+            let name = |i: u32, k: u32| first + i * (steps + 1) + k;
+            for (i, k) in (0..=steps).flat_map(|i| (0..=steps).map(move |k| (i, k))) {
+                let mut p = Vector::ZERO;
+                for (step, share) in [side, at(i), at(k)].into_iter().enumerate() {
+                    let coordinate = (axis + step) % 3;
+                    p[coordinate] = share * size[coordinate];
+                }
+                soup.vertices.push(p);
+            }
+            for (i, k) in (0..steps).flat_map(|i| (0..steps).map(move |k| (i, k))) {
+                let [a, b, c, d] =
+                    [name(i, k), name(i + 1, k), name(i + 1, k + 1), name(i, k + 1)];
+                let [b, d] = if side > 0.0 { [b, d] } else { [d, b] };
+                soup.faces.extend([[a, b, c], [a, c, d]]);
+            }
+        }
+        soup
+    }
+
+    /// A prism over y from 0 to `height` \[m\], whose base is a regular polygon of so many corners, the first at x =
+    /// `radius`.
+    #[must_use]
+    pub fn prism(corners: u32, radius: f64, height: f64) -> Self {
+        let vertices = [0.0, height].map(|y| circle(corners, radius, y));
+        let mut soup =
+            Self { vertices: vertices.into_iter().flatten().collect(), faces: Vec::new() };
+        for a in 0..corners {
+            let b = (a + 1) % corners;
+            let [c, d] = [a, b].map(|i| corners + i);
+            soup.faces.extend([[a, c, d], [a, d, b]]);
+            if a > 0 && b > 0 {
+                soup.faces.extend([[0, a, b], [corners, d, c]]);
+            }
+        }
+        soup
+    }
+
+    /// A prism with a hole: between regular polygons of so many corners, the first at x = `outer` and x = `inner`
+    /// \[m\].
+    #[must_use]
+    pub fn pierced_prism(corners: u32, [outer, inner]: [f64; 2], height: f64) -> Self {
+        let rims = [(outer, 0.0), (outer, height), (inner, 0.0), (inner, height)];
+        let vertices = rims.map(|(radius, y)| circle(corners, radius, y));
+        let mut soup =
+            Self { vertices: vertices.into_iter().flatten().collect(), faces: Vec::new() };
+        for i in 0..corners {
+            let next = (i + 1) % corners;
+            let [a, c, e, g] = [0, 1, 2, 3].map(|rim| rim * corners + i);
+            let [b, d, f, h] = [0, 1, 2, 3].map(|rim| rim * corners + next);
+            soup.faces.extend([[a, c, d], [a, d, b], [e, h, g], [e, f, h]]);
+            soup.faces.extend([[c, g, h], [c, h, d], [a, f, e], [a, b, f]]);
+        }
+        soup
+    }
+
     /// A tube of radius 1 about the axis y, open at y = ±1, whose rims have `sectors` corners each.
     #[must_use]
     pub fn tube(sectors: u32) -> Self {
@@ -286,6 +349,14 @@ fn nearest([a, b, c]: [Point<3>; 3], p: Point<3>) -> Point<3> {
     let feet = [on(a, b), on(b, c), on(c, a)];
     feet.into_iter().fold(feet[0], |best, foot| {
         if (foot - p).norm() < (best - p).norm() { foot } else { best }
+    })
+}
+
+/// The corners of a regular polygon at a height y, the first at x = `radius` \[m\].
+fn circle(corners: u32, radius: f64, y: f64) -> impl Iterator<Item = Point<3>> {
+    (0..corners).map(move |i| {
+        let angle = TAU * f64::from(i) / f64::from(corners);
+        Vector([radius * angle.cos(), y, radius * angle.sin()])
     })
 }
 

@@ -128,20 +128,22 @@ impl<const N: usize, const D: usize> Faces<N, D> {
         }
     }
 
-    /// Calls `visit` with each face of a group that is at most so far from a point [m], and its nearest point.
+    /// Calls `visit` with the corners of each face of a group that is at most so far from a point [m], with its nearest
+    /// point and its distance.
     #[inline]
     pub(super) fn within(
         &self,
         group: usize,
         p: Point<D>,
         farthest: f64,
-        mut visit: impl FnMut(&Foot<D>, f64),
+        mut visit: impl FnMut(&[Point<D>; N], &Foot<D>, f64),
     ) {
         for (face, _) in self.near(group, p, [farthest; 2]) {
-            let found = foot(&self.corners[face], p);
+            let corners = &self.corners[face];
+            let found = foot(corners, p);
             let far = found.squared.sqrt();
             if far <= farthest {
-                visit(&found, far);
+                visit(corners, &found, far);
             }
         }
     }
@@ -614,7 +616,7 @@ mod tests {
                 assert_eq!(nearest.1.squared, least, "{p:?} of {faces:?}");
                 let (mut found, reach) = (0, 1.5 * least.sqrt());
                 for group in 0..2 {
-                    lanes.within(group, p, reach, |_, _| found += 1);
+                    lanes.within(group, p, reach, |_, _, _| found += 1);
                 }
                 let all = faces.iter().filter(|face| foot(face, p).squared.sqrt() <= reach);
                 assert_eq!(found, all.count(), "{p:?} of {faces:?}");

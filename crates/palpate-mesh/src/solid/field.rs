@@ -14,12 +14,13 @@ use palpate_field::{
     Vector,
 };
 
+use super::planes::{Corner, Middle};
 use super::winding::{Winding, WindingTree, share};
 use super::{MOST_GROUPS, OPERATIONS, Ordered, Signs, Solid, SolidError, Surface};
 use crate::mesh::Mesh;
 
 /// The least cosine, of about 80°, between the first normal and any other with which a cell that the surface passes gets
-/// a model.
+/// a model, unless the normals are few.
 const LEAST_COSINE: f64 = 0.17;
 
 /// The same where the winding number tells the sign.
@@ -66,28 +67,28 @@ impl<const N: usize, const D: usize> CustomField<D> for Solid<N, D> {
         }
         let nearest = self.surface.nearest(centre, None);
         let (f, gradient) = self.at_foot(centre, &nearest);
+        let middle = Middle { centre, radius, rounding, f, gradient, foot: nearest.1.point };
         let distance = f.abs();
-        let away = if f < 0.0 { -gradient } else { gradient };
-        if distance <= radius + rounding {
+        let model = if distance <= radius + rounding {
             let lipschitz = AffineModel::lipschitz(f, 1.0, cell, rounding);
             let across = self.model_across(cell, f, radius, rounding);
-            return across.filter(|model| model.lower < lipschitz.lower).unwrap_or(lipschitz);
-        }
-        match self.surface.model_of_distance(
-            cell,
-            (nearest.0, distance, away),
-            radius,
-            rounding,
-        ) {
-            None => AffineModel::lipschitz(f, 1.0, cell, rounding),
-            Some(model) if f < 0.0 => AffineModel {
-                value: -model.value,
-                gradient: model.gradient.map(|side| -side),
-                lower: model.upper,
-                upper: model.lower,
-            },
-            Some(model) => model,
-        }
+            across.filter(|model| model.lower < lipschitz.lower).unwrap_or(lipschitz)
+        } else {
+            let away = if f < 0.0 { -gradient } else { gradient };
+            let nearest = (nearest.0, distance, away);
+            match self.surface.model_of_distance(cell, nearest, radius, rounding) {
+                None => AffineModel::lipschitz(f, 1.0, cell, rounding),
+                Some(model) if f < 0.0 => AffineModel {
+                    value: -model.value,
+                    gradient: model.gradient.map(|side| -side),
+                    lower: model.upper,
+                    upper: model.lower,
+                },
+                Some(model) => model,
+            }
+        };
+        let model = self.model_of_plane(cell, &middle, &model).unwrap_or(model);
+        self.model_of_sides(cell, &middle, &model).unwrap_or(model)
     }
 
     /// The vertices and faces as they were mended, of which all else follows.
@@ -112,7 +113,8 @@ impl<const N: usize, const D: usize> CustomField<D> for Solid<N, D> {
 
 impl<const N: usize, const D: usize> Solid<N, D> {
     /// A model of the signed distance `f` at the centre of a cell that the surface may pass; `None` if too many faces
-    /// may be nearest somewhere in it, if they face too different ways, or if one of them may not be surface.
+    /// may be nearest somewhere in it, if they face too many and too different ways, or if one of them may not be
+    /// surface.
     ///
     /// Wherever the gradient exists, it is a unit vector in the cone of the outward normals of the faces at the
     /// nearest point: a vertex or an edge is nearest only to points whose direction from it is in the polar cone of
@@ -137,6 +139,7 @@ impl<const N: usize, const D: usize> Solid<N, D> {
         let mut ranges = [[f64::INFINITY, f64::NEG_INFINITY]; M];
         // The first normal, and the least cosine of another with it.
         let mut first: Option<Vector<f64, D>> = None;
+        let mut corner = Corner::new();
         let (mut least, mut groups, mut is_known) = (1.0_f64, 0, true);
         let mut walk = self.surface.boxes.from(centre);
         while let Some(group) = walk.next(reach * reach) {
@@ -145,7 +148,9 @@ impl<const N: usize, const D: usize> Solid<N, D> {
             {
                 let (normal, error) = self.normals.of_face(face);
                 let cosine = first.get_or_insert(normal).dot(normal) - 2.0 * error;
-                is_known &= cosine > least_cosine;
+                corner.take(normal, error);
+                let is_of_corner = self.signs.is_none() && corner.shortest() > LEAST_COSINE;
+                is_known &= cosine > least_cosine || is_of_corner;
                 if !is_nearest {
                     continue;
                 }
@@ -166,10 +171,17 @@ impl<const N: usize, const D: usize> Solid<N, D> {
         }
         let mut model = AffineModel { value: f, gradient: [0.0; M], lower: 0.0, upper: 0.0 };
         // A mean of the normals is at least as long as its component along the first, so as the least cosine.
+        let least = least.max(corner.shortest());
+        if least <= LEAST_COSINE {
+            return None;
+        }
         let longest = 1.0 / least;
         let mut remainder = 0.0;
-        for ([low, high], gradient) in ranges.into_iter().zip(&mut model.gradient) {
-            let [low, high] = [low.min(low * longest), high.max(high * longest)];
+        let with_sides = ranges.into_iter().zip(&sides);
+        for (([low, high], side), gradient) in with_sides.zip(&mut model.gradient) {
+            let most = side.norm();
+            let low = low.min(low * longest).max(-most);
+            let high = high.max(high * longest).min(most);
             *gradient = 0.5 * (low + high);
             remainder += 0.5 * (high - low) + 2.0 * f64::EPSILON * (low.abs() + high.abs());
         }

@@ -9,6 +9,7 @@ use palpate_field::scalar::AffineModel;
 use palpate_field::{
     Aabb, LARGEST_LENGTH, Point, Promise, Quality, SMALLEST_LENGTH, Vector, Wide, wide,
 };
+use planes::highest;
 use repair::{Crossings, Known, Repair, by_rim, sides};
 use winding::WindingTree;
 
@@ -26,6 +27,7 @@ pub(crate) use repair::crossing_faces;
 mod faces;
 mod field;
 mod findings;
+mod planes;
 mod repair;
 mod winding;
 
@@ -414,7 +416,8 @@ impl<const N: usize, const D: usize> Surface<N, D> {
     /// somewhere in it.
     ///
     /// The distance to each face is convex. So it is at least its tangent plane, and the nearest face's is
-    /// largest, above a plane, at a corner of the cell.
+    /// largest, above a plane, at a corner of the cell. It is also at least the height over each plane that the face
+    /// does not rise above: so faces in the plane of the nearest one lower nothing.
     fn model_of_distance<const M: usize>(
         &self,
         cell: &[AffineModel<M>; D],
@@ -438,14 +441,18 @@ impl<const N: usize, const D: usize> Surface<N, D> {
             if groups > MOST_GROUPS || model.lower + model.upper > 2.0 * radius {
                 return None;
             }
-            self.faces.within(group, centre, farthest, |found, far| {
+            self.faces.within(group, centre, farthest, |corners, found, far| {
                 let between = away - (centre - found.point) * (1.0 / far);
                 let apart: f64 = (0..M)
                     .map(|k| {
                         (0..D).map(|i| between[i] * cell[i].gradient[k]).sum::<f64>().abs()
                     })
                     .sum();
-                model.lower = model.lower.max(own + distance - far + apart + 2.0 * remainders);
+                let by_tangent = distance - far + apart + 2.0 * remainders;
+                if own + by_tangent > model.lower {
+                    let by_plane = distance + highest(corners, centre, away) + rounding;
+                    model.lower = model.lower.max(own + by_tangent.min(by_plane));
+                }
             });
         }
         Some(model)

@@ -14,8 +14,9 @@
 use palpate_field::scalar::{Model, SpaceTimeModel};
 use palpate_field::{Aabb, BLOCK, Block, Column, Point, Vector};
 
-use super::first_touch::{FreeBox, HALVES, SweepSettings};
+use super::first_touch::{FREE, FreeBox, HALVES, SweepSettings};
 use super::motion::{Moving, Path, Places, Stay, WayBounds, later};
+use super::pair::Region;
 use crate::certified::{Goal, Stop};
 use crate::engine::{Bounded, Frontier, Heap, Problem, Queue, Rebound};
 use crate::pair::body_pair::BodyPair;
@@ -184,7 +185,16 @@ struct Seen<const D: usize> {
     value: f64,
 }
 
-impl<const D: usize> BoxSweep<'_, '_, D> {
+impl<'a, const D: usize> BoxSweep<'_, 'a, D> {
+    /// Goes on from the start in other coordinates.
+    pub(super) fn go_on_in(&mut self, region: Region<'a, D>) {
+        let Region { bodies, bounds, path, way, slack, root } = region;
+        (self.bodies, self.bounds, self.path, self.way) = (bodies, bounds, path, way);
+        (self.level, self.slack) = (FREE * self.touch + slack, slack);
+        self.size = root.half_extents().norm();
+        self.dropped = f64::INFINITY;
+    }
+
     fn latest(&self) -> f64 {
         self.upper.min(1.0)
     }

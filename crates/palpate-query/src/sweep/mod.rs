@@ -3,6 +3,7 @@
 
 //! When moving bodies touch first.
 
+mod axes;
 mod boxes;
 mod elements;
 mod first_touch;

@@ -4,7 +4,7 @@
 //! Motions: bodies that move, their ways as another sees them, how long parts of them are free.
 
 use palpate_field::scalar::SpaceTimeModel;
-use palpate_field::{Aabb, Point, Pose, Screw, Shape, Vector};
+use palpate_field::{Aabb, Point, Pose, Screw, Shape, ShapeError, Vector};
 
 use crate::error::QueryError;
 use crate::sampler::{Placed, check_pose};
@@ -51,6 +51,18 @@ impl<const D: usize> Motion<D> {
             velocity += *slope * x;
         }
         velocity
+    }
+
+    /// The motion of what the body carries at a pose in its coordinates; of a body that turns by less than π.
+    pub(super) fn of_part(&self, body_from_part: &Pose<D>) -> Result<Self, ShapeError> {
+        let carried = |pose: &Pose<D>| *pose * *body_from_part;
+        match &self.screw {
+            None => Ok(carried(&self.first).into()),
+            Some(screw) => {
+                let (from, to) = (carried(screw.from()), carried(screw.to()));
+                Ok(Screw::new(from, to, 0)?.into())
+            }
+        }
     }
 
     /// How far the body turns [rad].

@@ -9,9 +9,10 @@
 //! It goes on where boxes of space and time end early: bodies that pass at a small distance over large
 //! parts of their surfaces need more boxes than memory holds, but few steps of time.
 
-use palpate_field::{Point, Pose, Vector};
+use palpate_field::{Aabb, Point, Pose, Vector};
 use palpate_mesh::{FAN, Mesh};
 
+use super::axes::Turned;
 use super::boxes::{BoxFrontier, BoxMemory, BoxSweep, SpaceCell, frontier};
 use super::first_touch::{FREE, FirstTouch, FreeBox, Start, SweepSettings};
 use super::motion::{Moving, Path, Place, Stay, WayBounds, bend, corners, exit};
@@ -94,27 +95,26 @@ pub(crate) fn swept<const D: usize>(
     let is_swapped = size(&bodies[1]) < size(&bodies[0]);
     let [a, b] = bodies;
     let [still, moving] = if is_swapped { [b, a] } else { [a, b] };
-    let bounds = still.shape.promise().bounds.ok_or(QueryError::Unbounded)?;
+    if still.shape.promise().bounds.is_none() {
+        return Err(QueryError::Unbounded);
+    }
     settings.check()?;
     bodies.iter().enumerate().try_for_each(|(i, body)| body.motion.check(i))?;
-    let path = Path { field: moving.motion, body: still.motion };
     // Where both fields are at most half of the gap, the separation is at most the gap.
     let touch = 0.5 * settings.gap;
-    let root = bounds.aabb.grown(touch);
-    let way = path.bounds(&corners(&root).collect::<Vec<_>>());
-    let bounds = [still, moving].map(|body| DistanceBound::new(body.shape, Pose::identity()));
-    let slack = bounds[0].slack(root.radius_about_origin()).max(bounds[1].slack(way.far))
-        + way.rounding;
-    memory.begin(&root, frontier);
+    let turned;
+    let region = Region::of([still, moving], touch)?;
+    memory.begin(&region.root, frontier);
+    let keeps_boxes = boxes.is_some();
     let mut search = BoxSweep {
-        bodies: [still, moving],
-        bounds,
-        path,
-        way,
-        level: FREE * touch + slack,
+        bodies: region.bodies,
+        bounds: region.bounds,
+        path: region.path,
+        way: region.way,
+        level: FREE * touch + region.slack,
         touch,
-        slack,
-        size: root.half_extents().norm(),
+        slack: region.slack,
+        size: region.root.half_extents().norm(),
         settings,
         budget: settings.budget.min(SOON),
         memory,
@@ -134,9 +134,23 @@ pub(crate) fn swept<const D: usize>(
             search.upper = 0.0;
         } else {
             search.budget = settings.budget;
+            // Boxes that are kept are in the body's own coordinates.
+            if !keeps_boxes {
+                search.evaluations += Turned::<D>::EVALUATIONS;
+                turned = Turned::of(&still, &region.root);
+                if let Some(turned) = &turned
+                    && let Some(body) = turned.moving(&still)
+                {
+                    let region = Region::of([body, moving], touch)?;
+                    search.memory.begin(&region.root, frontier);
+                    search.place = turned.point(search.place);
+                    search.go_on_in(region);
+                }
+            }
             end = engine::search(&mut search, frontier);
         }
     }
+    let way = search.way;
     let mut lower = frontier.lower(search.dropped).min(search.upper).min(1.0);
     if search.upper < f64::INFINITY {
         search.refine(lower);
@@ -168,6 +182,32 @@ pub(crate) fn swept<const D: usize>(
         touch_at(bodies, settings, pair, &mut found)?;
     }
     Ok((found, usize::from(is_swapped)))
+}
+
+/// What is searched: a body that stays, in its coordinates, and one that goes by.
+pub(super) struct Region<'a, const D: usize> {
+    pub(super) bodies: [Moving<'a, D>; 2],
+    pub(super) bounds: [DistanceBound<'a, D>; 2],
+    pub(super) path: Path<D>,
+    pub(super) way: WayBounds,
+    /// The rounding of values and places [m].
+    pub(super) slack: f64,
+    pub(super) root: Aabb<D>,
+}
+
+impl<'a, const D: usize> Region<'a, D> {
+    /// All places that are at most so far from the body that stays [m].
+    fn of([still, moving]: [Moving<'a, D>; 2], touch: f64) -> Result<Self, QueryError> {
+        let bounds = still.shape.promise().bounds.ok_or(QueryError::Unbounded)?;
+        let path = Path { field: moving.motion, body: still.motion };
+        let root = bounds.aabb.grown(touch);
+        let way = path.bounds(&corners(&root).collect::<Vec<_>>());
+        let bounds =
+            [still, moving].map(|body| DistanceBound::new(body.shape, Pose::identity()));
+        let slack = bounds[0].slack(root.radius_about_origin()).max(bounds[1].slack(way.far))
+            + way.rounding;
+        Ok(Self { bodies: [still, moving], bounds, path, way, slack, root })
+    }
 }
 
 /// Whether the separation at a time is found to be at most the gap.

@@ -2,16 +2,23 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
 //! Meshes that move touch when the first of their elements does.
+//!
+//! Solids of meshes that pass each other at a small distance are decided about as soon as analytic bodies are.
 #![expect(clippy::unwrap_used, reason = "these are tests")]
 
-use palpate_field::{Point, Pose, Screw, Shape, Vector};
+use std::error::Error;
+use std::f64::consts::{FRAC_PI_4, PI, SQRT_2};
+
+use palpate_field::{Point, Pose, Rotation, Screw, Shape, Vector};
 use palpate_mesh::{Mesh, Outline, TriangleMesh};
 use palpate_query::{
-    Element, ElementSweep, Moving, Query, Stop, SweepSettings, sweep_element, sweep_mesh,
+    Element, ElementSweep, FirstTouch, Moving, Query, Stop, SweepSettings, SweepWorkspace,
+    sweep, sweep_element, sweep_mesh,
 };
 use palpate_testkit::arbitrary::{self as draw, Turn};
 use palpate_testkit::cases;
 use palpate_testkit::kernels::Space;
+use palpate_testkit::soup::Soup;
 use palpate_testkit::tree::Solid;
 
 /// A sheet of `2 n²` triangles over a square of a metre, bent to a saddle.
@@ -134,4 +141,180 @@ fn a_cube_falls_on_a_plate_that_moves_too() {
     assert!(asked.touches() == Some(true), "{asked:?}");
     let contact = both.contact.unwrap();
     assert!((contact.normal - Vector([0.0, 1.0, 0.0])).norm() < 1e-9);
+}
+
+type Result<T> = std::result::Result<T, Box<dyn Error>>;
+
+/// The solid of triangles.
+fn solid(soup: &Soup) -> Result<Shape<3>> {
+    let mesh = TriangleMesh::new(soup.vertices.clone(), soup.faces.clone())?;
+    let (solid, _) = palpate_mesh::Solid::from_mesh(&mesh)?;
+    Ok(solid.into())
+}
+
+/// The first touch of a body at rest and one that goes from pose to pose, all placed in the world by `world`.
+fn swept(
+    [rests, moves]: [&Shape<3>; 2],
+    [from, to]: [Pose<3>; 2],
+    world: Pose<3>,
+) -> Result<FirstTouch<3>> {
+    let rests = Moving::new(rests, world);
+    let moves = Moving::new(moves, Screw::new(world * from, world * to, 0)?);
+    let settings = SweepSettings::of_size(draw::size(rests.shape).min(draw::size(moves.shape)));
+    Ok(sweep(rests, moves, &settings, &mut SweepWorkspace::new())?)
+}
+
+fn at(p: [f64; 3]) -> Pose<3> {
+    Pose::translation(p)
+}
+
+/// Turned about the axis y.
+fn about_y(angle: f64) -> Result<Pose<3>> {
+    Ok(Pose::new(Rotation::from_axis_angle([0.0, 1.0, 0.0], angle)?, Vector::ZERO))
+}
+
+/// Somewhere, turned about no axis of its own.
+fn aside() -> Result<Pose<3>> {
+    let turn = Rotation::from_axis_angle([0.3, 1.0, 0.2], 0.7)?;
+    Ok(Pose::new(turn, Vector([0.3, -0.2, 0.9])))
+}
+
+/// Apart all the time, by at most `share` times the evaluations of another sweep.
+fn is_apart(found: &FirstTouch<3>, share: f64, other: &FirstTouch<3>) -> bool {
+    found.touches() == Some(false)
+        && other.touches() == Some(false)
+        && f64::from(found.evaluations) <= share * f64::from(other.evaluations)
+}
+
+#[test]
+fn mesh_cubes_that_pass_each_other_take_about_as_long_as_cuboids() {
+    let cuboid = Shape::<3>::cuboid([1.0; 3]).unwrap();
+    let mesh = solid(&Soup::cuboid([0.0; 3], [1.0; 3])).unwrap();
+    let fine = solid(&Soup::fine_cuboid([1.0; 3], 8)).unwrap();
+    let way = |gap: f64| [-4.0, 4.0].map(|x| at([x, 1.0 + gap, 0.0]));
+    for world in [Pose::identity(), aside().unwrap()] {
+        let other = swept([&cuboid, &cuboid], way(1e-2), world).unwrap();
+        let found = swept([&mesh, &cuboid], way(1e-2), world).unwrap();
+        assert!(is_apart(&found, 10.0, &other), "{found:?}, {other:?}");
+        // The smaller the gap, the more boxes it takes between cuboids.
+        for gap in [1e-2, 1e-3, 1e-4] {
+            for pair in [[&mesh, &mesh], [&cuboid, &mesh], [&fine, &fine]] {
+                let found = swept(pair, way(gap), world).unwrap();
+                assert!(is_apart(&found, 10.0, &other), "{gap}: {found:?}, {other:?}");
+            }
+        }
+    }
+}
+
+/// The sides of the meshes are square to no axis of theirs.
+#[test]
+fn turned_mesh_cubes_that_pass_each_other_are_apart() {
+    let turn = aside().unwrap().rotation;
+    let mesh = solid(&Soup::cuboid([0.0; 3], [1.0; 3]).turned(&turn)).unwrap();
+    let cuboid = Shape::<3>::cuboid([1.0; 3]).unwrap();
+    let turned = Pose::new(turn, Vector::ZERO);
+    let way = [-4.0, 4.0].map(|x| turned * at([x, 1.001, 0.0]) * turned.inverse());
+    let found = swept([&mesh, &mesh], way, Pose::identity()).unwrap();
+    let straight = [-4.0, 4.0].map(|x| at([x, 1.001, 0.0]));
+    let other = swept([&cuboid, &cuboid], straight, Pose::identity()).unwrap();
+    assert!(is_apart(&found, 10.0, &other), "{found:?}, {other:?}");
+}
+
+#[test]
+fn a_ball_over_a_mesh_floor_takes_about_as_long_as_over_a_cuboid() {
+    let ball = Shape::<3>::ball(0.1).unwrap();
+    let cuboid = Shape::<3>::cuboid([4.0, 0.2, 4.0]).unwrap();
+    let mesh = solid(&Soup::cuboid([0.0; 3], [4.0, 0.2, 4.0])).unwrap();
+    for gap in [1e-2, 1e-3, 1e-4] {
+        let way = [at([-3.0, 0.2 + gap, 0.3]), at([3.0, 0.2 + gap, 0.1])];
+        let [found, other] =
+            [&mesh, &cuboid].map(|floor| swept([floor, &ball], way, aside().unwrap()).unwrap());
+        assert!(is_apart(&found, 5.0, &other), "{gap}: {found:?}, {other:?}");
+    }
+}
+
+/// A peg of 50 mm over a hole as deep, straight down to the bottom.
+fn down(turned: Pose<3>) -> [Pose<3>; 2] {
+    [0.06, 0.0].map(|y| at([0.0, y, 0.0]) * turned)
+}
+
+/// Half the width of the hole [m].
+const HOLE: f64 = 0.011;
+
+/// A block of 40 mm with a square hole, the first corner at x > 0.
+fn square_hole() -> Result<Shape<3>> {
+    solid(&Soup::pierced_prism(4, [0.02 * SQRT_2, HOLE * SQRT_2], 0.05))
+}
+
+#[test]
+fn a_square_peg_goes_into_a_square_hole() {
+    let hole = square_hole().unwrap();
+    let turned = about_y(FRAC_PI_4).unwrap();
+    for clearance in [1e-3, 1e-2, 3e-2] {
+        let half = HOLE * (1.0 - clearance);
+        let mesh = solid(&Soup::prism(4, half * SQRT_2, 0.05)).unwrap();
+        let found = swept([&hole, &mesh], down(Pose::identity()), Pose::identity()).unwrap();
+        assert_eq!(found.touches(), Some(false), "{clearance}: {found:?}");
+        let found = swept([&hole, &mesh], down(Pose::identity()), aside().unwrap()).unwrap();
+        assert_eq!(found.touches(), Some(false), "aside, {clearance}: {found:?}");
+        let bar = Soup::cuboid([0.0, 0.025, 0.0], [2.0 * half, 0.05, 2.0 * half]);
+        let found =
+            swept([&hole, &solid(&bar).unwrap()], down(turned), Pose::identity()).unwrap();
+        assert_eq!(found.touches(), Some(false), "turned, {clearance}: {found:?}");
+        let cuboid = Shape::<3>::cuboid([2.0 * half, 0.05, 2.0 * half]).unwrap();
+        let up = turned * at([0.0, 0.025, 0.0]);
+        let found = swept([&hole, &cuboid], down(up), Pose::identity()).unwrap();
+        assert_eq!(found.touches(), Some(false), "analytic, {clearance}: {found:?}");
+    }
+}
+
+/// The peg is within the circle that touches the sides of the hole.
+#[test]
+fn a_peg_of_many_sides_goes_into_such_a_hole() {
+    for (corners, clearance) in [(16, 1e-2), (24, 3e-2)] {
+        let flat = HOLE * (PI / f64::from(corners)).cos();
+        let hole = solid(&Soup::pierced_prism(corners, [0.02, HOLE], 0.05)).unwrap();
+        let peg = solid(&Soup::prism(corners, flat * (1.0 - clearance), 0.05)).unwrap();
+        let found = swept([&hole, &peg], down(Pose::identity()), Pose::identity()).unwrap();
+        assert_eq!(found.touches(), Some(false), "{corners}, {clearance}: {found:?}");
+    }
+}
+
+/// The time of a touch that is known, to the tolerance; bodies that come near each other slowly are within the gap so
+/// much earlier.
+fn touches_at(found: &FirstTouch<3>, truth: f64, earlier: f64) -> bool {
+    found.touches() == Some(true)
+        && found.lower <= truth
+        && found.upper >= truth - earlier
+        && found.upper <= truth + 1e-4
+}
+
+#[test]
+fn meshes_that_touch_touch_at_their_time() {
+    let mesh = solid(&Soup::cuboid([0.0; 3], [1.0; 3])).unwrap();
+    let fine = solid(&Soup::fine_cuboid([1.0; 3], 8)).unwrap();
+    for world in [Pose::identity(), aside().unwrap()] {
+        // The lower side falls from 1.5 m to −0.5 m, on a side at 0.5 m.
+        let falls = [at([0.2, 2.0, 0.1]), at([0.2, 0.0, 0.1])];
+        for pair in [[&mesh, &mesh], [&mesh, &fine], [&fine, &fine]] {
+            let found = swept(pair, falls, world).unwrap();
+            assert!(touches_at(&found, 0.5, 1e-6), "{found:?}");
+        }
+        // It comes down by 2 mm from a gap of 1 mm as it goes by.
+        let sinks = [at([-0.5, 1.001, 0.0]), at([0.5, 0.999, 0.0])];
+        let found = swept([&mesh, &mesh], sinks, world).unwrap();
+        assert!(touches_at(&found, 0.5, 5e-4), "{found:?}");
+    }
+    // A peg 1 % too wide goes down by 10 of 60 mm to the rim.
+    let hole = square_hole().unwrap();
+    let wide = solid(&Soup::prism(4, 1.01 * HOLE * SQRT_2, 0.05)).unwrap();
+    let found = swept([&hole, &wide], down(Pose::identity()), Pose::identity()).unwrap();
+    assert!(touches_at(&found, 1.0 / 6.0, 1e-6), "{found:?}");
+    // One with a clearance of 0.11 mm goes aside by 0.22 mm on its way: at half of it, it is at the wall.
+    let peg = solid(&Soup::prism(4, 0.99 * HOLE * SQRT_2, 0.05)).unwrap();
+    let [from, to] = [0.04, 0.0].map(|y| at([0.0, y, 0.0]));
+    let along = Vector([SQRT_2, 0.0, SQRT_2]) * (0.5 * 0.02 * HOLE);
+    let way = [from, to * Pose::translation(along)];
+    let found = swept([&hole, &peg], way, Pose::identity()).unwrap();
+    assert!(touches_at(&found, 0.5, 5e-4), "{found:?}");
 }
