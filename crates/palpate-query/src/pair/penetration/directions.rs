@@ -84,8 +84,11 @@ impl<const D: usize> Cell<D> {
     /// Squares of half the side.
     fn parts(self) -> impl Iterator<Item = Self> {
         let half = 0.5 * self.half;
-        (0..1_usize << (D - 1))
-            .map(move |i| Self { middle: self.corner(i, half), half, ..self })
+        (0..1_usize << (D - 1)).map(move |i| Self {
+            middle: self.corner(i, half),
+            half,
+            ..self
+        })
     }
 
     /// The cap of directions around the cell. A cap is convex, so it holds the cell if it holds the
@@ -219,7 +222,10 @@ impl<'a, const D: usize> DirectionTree<'a, D> {
         let mut is_full = false;
         let (stop, open) = loop {
             let Some(cell) = heap.pop() else {
-                break (if is_full { Stop::MemoryFull } else { Stop::Converged }, f64::INFINITY);
+                break (
+                    if is_full { Stop::MemoryFull } else { Stop::Converged },
+                    f64::INFINITY,
+                );
             };
             if self.upper <= 0.0 {
                 break (Stop::SignKnown, cell.lower);

@@ -15,6 +15,7 @@ use support::Support;
 use translations::{Room, TranslationTree};
 use way_out::WayOut;
 
+mod convexity;
 mod directions;
 mod overlap_ball;
 mod support;
@@ -64,8 +65,9 @@ pub struct Penetration<const D: usize> {
 ///   translations rules out shorter ones. The bounds are often farther apart than the tolerance when the
 ///   budget ends; [`Certified::stop`] says so.
 ///
-/// A field counts as convex where its [promise](palpate_field::Promise::convex) says so. The budget
-/// holds for the whole question.
+/// A body counts as convex where the [promise](palpate_field::Promise::convex) of its field says
+/// so, and so does a polygon or the solid of a small mesh of which no vertex lies before a face. The
+/// budget holds for the whole question.
 ///
 /// ```
 /// use palpate_field::{Shape, Vector, kernel::Cuboid};

@@ -20,6 +20,7 @@
 use palpate_field::{Point, Vector};
 
 use super::super::distance_bound::DistanceBound;
+use super::convexity::is_convex;
 
 /// From how far a convex body is seen, in its radii. From nearer the steps gain less. From farther
 /// the rounding of the field grows.
@@ -86,9 +87,12 @@ impl<'a, const D: usize> Support<'a, D> {
         Some(Self {
             body,
             centre: bounds.ball.centre,
-            radius: bounds.ball.radius.min(half.norm() + (bounds.aabb.centre() - bounds.ball.centre).norm()),
+            radius: bounds
+                .ball
+                .radius
+                .min(half.norm() + (bounds.aabb.centre() - bounds.ball.centre).norm()),
             thickest: half.0.into_iter().fold(f64::INFINITY, f64::min),
-            is_convex: promise.convex,
+            is_convex: is_convex(body.shape),
             evaluations: 0,
         })
     }

@@ -364,12 +364,7 @@ impl<'a, const D: usize> TranslationTree<'a, D> {
 
     /// A common point after a translation at which both depths have a large sum, from `start` on;
     /// `None` if none was found.
-    fn deepest(
-        &mut self,
-        start: Point<D>,
-        t: Vector<f64, D>,
-        enough: f64,
-    ) -> Option<Known<D>> {
+    fn deepest(&mut self, start: Point<D>, t: Vector<f64, D>, enough: f64) -> Option<Known<D>> {
         let mut p = start;
         let mut here = self.slopes(p, t);
         let mut step = here[0].0.abs().max(here[1].0.abs());
