@@ -229,7 +229,8 @@ where
             return complain("the end is not free");
         }
     }
-    for _ in 0..TRIED {
+    let tried = if found.lower > 0.0 { TRIED } else { 0 };
+    for _ in 0..tried {
         let direction = draw::direction::<D>(u)?;
         // Most next to the bound, where it is wrong first.
         let length = found.lower * (1.0 - draw::unit(u)?.powi(3));
@@ -238,7 +239,7 @@ where
             return complain(&format!("{length} along {direction:?} separates"));
         }
     }
-    if found.upper - found.lower > 0.01 && found.stop == Stop::Converged {
+    if found.upper - found.lower > 0.01 + ROUNDING && found.stop == Stop::Converged {
         return complain("the bounds are far apart");
     }
     Ok(Ok(()))

@@ -323,6 +323,7 @@ fn a_small_budget_leaves_bounds_that_hold() -> Result<(), ShapeError> {
         let limits = Limits::new(1e-6).with_budget(budget);
         let found = bounded([&angle, &angle], Pose::identity(), 0.08_f64.sqrt(), &limits);
         assert_eq!(found.stop, Stop::BudgetSpent, "{found:?}");
+        assert!(found.evaluations < budget + 4000, "{found:?}");
         let ask =
             |limits: &Limits| penetration(&cube, &cube, limits, &mut PairWorkspace::new());
         let found = ask(&limits).unwrap();

@@ -185,6 +185,8 @@ pub(super) struct DirectionTree<'a, const D: usize> {
     room: usize,
     upper: f64,
     direction: Vector<f64, D>,
+    /// An overlap ball that every cell knows.
+    common: Option<OverlapBall<D>>,
 }
 
 impl<'a, const D: usize> DirectionTree<'a, D> {
@@ -200,7 +202,14 @@ impl<'a, const D: usize> DirectionTree<'a, D> {
             room,
             upper: f64::INFINITY,
             direction: Vector::unit(0),
+            common: None,
         }
+    }
+
+    /// Every cell will know this ball. A large one about no translation proves at once that around
+    /// an axis of both bodies all directions are alike.
+    pub(super) fn know(&mut self, common: OverlapBall<D>) {
+        self.common = Some(common);
     }
 
     pub(super) fn evaluations(&self) -> u32 {
@@ -259,14 +268,15 @@ impl<'a, const D: usize> DirectionTree<'a, D> {
     fn bounded(&mut self, mut cell: Cell<D>) -> Cell<D> {
         let cap = cell.cap();
         let known = cell.known;
-        let inherited = known[1..].iter().fold(known[0], |a, b| cap.best_mean(&a, b));
+        let others = known[1..].iter().chain(&self.common);
+        let inherited = others.fold(known[0], |a, b| cap.best_mean(&a, b));
         cell.lower = cell.lower.max(cap.bound(&inherited));
         if cell.lower >= self.upper - self.tolerance {
             return cell;
         }
         let (own, is_best) = self.look(cap.axis);
         let mut mean = cap.best_mean(&inherited, &own);
-        for ball in &known {
+        for ball in known.iter().chain(&self.common) {
             mean = cap.best_mean(&mean, ball);
         }
         cell.lower = cell.lower.max(cap.bound(&mean));
@@ -296,7 +306,11 @@ impl<'a, const D: usize> DirectionTree<'a, D> {
     fn look(&mut self, u: Vector<f64, D>) -> (OverlapBall<D>, bool) {
         let fine = FINE * self.tolerance;
         let [a, b] = &mut self.bodies;
-        let reach = [a.along(u, self.last[0], fine), b.along(-u, self.last[1], fine)];
+        let slacks = [a.slack(), b.slack()];
+        let reach = [
+            a.along(u, self.last[0], fine.max(slacks[0])),
+            b.along(-u, self.last[1], fine.max(slacks[1])),
+        ];
         self.last = reach.map(|reach| reach.point);
         let balls = [a.ball_behind(reach[0].point, u), b.ball_behind(reach[1].point, -u)];
         let between = (reach[0].point - reach[1].point).dot(u);

@@ -11,6 +11,7 @@ use crate::error::QueryError;
 use crate::sampler::{Placed, arbitrary};
 
 use directions::{DirectionTree, Found};
+use overlap_ball::{OverlapBall, deepest_common};
 use support::Support;
 use translations::{Room, TranslationTree};
 use way_out::WayOut;
@@ -26,8 +27,8 @@ mod way_out;
 /// proof that no shorter one separates the bodies.
 const SHARE_OF_WAY_OUT: f64 = 0.4;
 
-/// How often the search for a short translation tries the shortest one that is not ruled out.
-const TRIES: u32 = 8;
+/// With fewer evaluations left a search is not worth its start.
+const LEAST: u32 = 500;
 
 /// How a body leaves another.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -144,7 +145,13 @@ fn of_convex<'a, const D: usize>(
     room: usize,
 ) -> Certified<Penetration<D>> {
     let slack = bodies[0].slack() + bodies[1].slack() + pair.slack(0.0);
+    let start = (bodies[0].middle() + bodies[1].middle()) * 0.5;
+    let mut both = *pair;
+    let common = deepest_common(&mut both, start, Vector::ZERO, f64::INFINITY);
     let mut tree = DirectionTree::new(bodies, limits, room);
+    if let Some(inner) = common {
+        tree.know(OverlapBall::of(inner));
+    }
     let Found { lower, upper, direction, stop } = tree.search();
     let bounds = [lower - slack, upper + slack];
     let is_wide = bounds[1] - bounds[0].max(0.0) > limits.tolerance;
@@ -153,7 +160,7 @@ fn of_convex<'a, const D: usize>(
         stop => stop,
     };
     let direction = pair.world_from_frame.transform_vector(direction);
-    answer(bounds, Some(direction), stop, tree.evaluations())
+    answer(bounds, Some(direction), stop, tree.evaluations() + both.evaluations)
 }
 
 /// `true` if a shape is a half-space, moved or scaled or grown.
@@ -206,6 +213,7 @@ fn of_any<'a, const D: usize>(
     if let Some((direction, length)) = beside_box(pair) {
         way_out.best = Some((pair.world_from_frame.transform_vector(direction), length));
     }
+    way_out.shortest = (-here.upper).max(0.0);
     way_out.budget = (SHARE_OF_WAY_OUT * f64::from(limits.budget)) as u32;
     way_out.look_around(here.best.normal.unwrap_or_else(arbitrary))?;
 
@@ -219,28 +227,41 @@ fn of_any<'a, const D: usize>(
     // Without an upper bound, translations up to the sizes of the bounded bodies are ruled out.
     let sizes = pair.boxes().iter().flatten().map(|aabb| 2.0 * aabb.half_extents().norm());
     let longest = if upper.is_finite() { upper } else { sizes.sum() };
+    if way_out.evaluations >= limits.budget {
+        let direction = way_out.best.map(|(direction, _)| direction);
+        let bounds = [-here.upper, upper];
+        return Ok(answer(bounds, direction, Stop::BudgetSpent, way_out.evaluations));
+    }
     let deepest = pair.world_from_frame.inverse().transform_point(here.best.point);
     let mut tree = TranslationTree::new(*pair, longest, deepest);
     if upper.is_infinite() {
         tree.leave_out_beyond(longest);
     }
-    let mut proven = None;
-    for _ in 0..TRIES {
-        let spent = way_out.evaluations.saturating_add(tree.evaluations());
-        let left = limits.budget.saturating_sub(spent);
-        let budget = left / 2;
-        let found = tree.search(upper, Room { tolerance: limits.tolerance, budget, cells });
-        proven = Some(found);
-        if found.stop != Stop::BudgetSpent {
-            break;
-        }
-        let Some(direction) = tree.candidate() else { break };
+    let spent = |way_out: &WayOut<'_, '_, D>, tree: &TranslationTree<'_, D>| {
+        way_out.evaluations.saturating_add(tree.evaluations())
+    };
+    let (mut lower, mut stop) = (0.0, Stop::BudgetSpent);
+    let mut is_waiting = true;
+    while is_waiting {
+        let left = limits.budget.saturating_sub(spent(&way_out, &tree));
+        let room = Room { tolerance: limits.tolerance, budget: left / 2, cells };
+        let found = tree.search(upper, room);
+        (lower, stop) = (found.lower, found.stop);
+        let Some(candidate) = found.candidate else { break };
+        let left = limits.budget.saturating_sub(spent(&way_out, &tree));
         way_out.budget = way_out.evaluations.saturating_add(left / 4);
-        way_out.attempt(pair.world_from_frame.transform_vector(direction))?;
+        way_out.shortest = lower;
+        way_out.attempt(pair.world_from_frame.transform_vector(candidate))?;
+        let before = upper;
         upper = upper_of(way_out.best);
+        // What rounding or memory ended goes on only towards a shorter translation.
+        let goes_on = upper < before || matches!(stop, Stop::BudgetSpent | Stop::Unresolved);
+        is_waiting = goes_on && left > LEAST;
+        if stop == Stop::Unresolved {
+            stop = Stop::BudgetSpent;
+        }
     }
     let evaluations = way_out.evaluations.saturating_add(tree.evaluations());
-    let (lower, stop) = proven.map_or((0.0, Stop::BudgetSpent), |end| (end.lower, end.stop));
     let lower = lower.max(-here.upper).min(upper);
     let stop = if upper - lower <= limits.tolerance { Stop::Converged } else { stop };
     let direction = way_out.best.map(|(direction, _)| direction);

@@ -21,6 +21,7 @@ use palpate_field::{Point, Vector};
 
 use super::super::distance_bound::DistanceBound;
 use super::convexity::is_convex;
+use crate::sampler::unit;
 
 /// From how far a convex body is seen, in its radii. From nearer the steps gain less. From farther
 /// the rounding of the field grows.
@@ -31,7 +32,7 @@ const FAR: f64 = 1024.0;
 const VERY_FAR: f64 = 8_388_608.0;
 
 /// Steps to the farthest point at most.
-const STEPS: usize = 8;
+const STEPS: usize = 12;
 
 /// How much of the rounding of a field at a far point may be in a nearest point and in a normal.
 const ROUNDINGS: f64 = 8.0;
@@ -124,6 +125,7 @@ impl<'a, const D: usize> Support<'a, D> {
         let along = self.body.turn().map_or(u, |turn| turn.rotate(u));
         let (far, mut from) = (self.far(), self.body.local(from));
         let mut best = Reach { point: from, excess: f64::INFINITY };
+        let mut last = f64::INFINITY;
         for _ in 0..STEPS {
             let p = from + along * far;
             let (f, slope) = self.body.shape.distance_gradient(p);
@@ -131,18 +133,20 @@ impl<'a, const D: usize> Support<'a, D> {
             let Some(normal) = slope.normalized() else { break };
             let q = p - normal * f;
             let widest = (q - self.centre).norm() + self.radius;
-            let beside = (along - normal).norm() * widest;
+            let aside = along - normal;
             let behind = if self.is_convex { 0.0 } else { 0.5 * widest * widest / f };
-            let excess = beside + behind;
-            // Also ends with NaN.
-            let is_better = excess < best.excess;
-            if is_better {
+            let excess = aside.norm() * widest + behind;
+            // Written so that NaN is not better.
+            if excess < best.excess {
                 best = Reach { point: q, excess };
             }
-            if !is_better || excess <= fine {
+            if best.excess <= fine {
                 break;
             }
-            from = q;
+            // On a face that leans by little, steps are short: the farthest point is at its border.
+            let is_slow = excess > 0.5 * last;
+            from = if is_slow { q + unit(aside) * (2.0 * self.radius) } else { q };
+            last = if is_slow { f64::INFINITY } else { excess };
         }
         Reach { point: self.body.in_frame(best.point), ..best }
     }

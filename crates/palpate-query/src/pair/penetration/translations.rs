@@ -20,8 +20,7 @@ use std::collections::BinaryHeap;
 use palpate_field::{Aabb, Point, Vector};
 
 use super::super::body_pair::{BodyPair, common};
-use super::super::distance_bound::minimax_step;
-use super::overlap_ball::OverlapBall;
+use super::overlap_ball::{OverlapBall, deepest_common};
 use super::support::InnerBall;
 use crate::certified::Stop;
 use crate::sampler::{larger, unit};
@@ -39,9 +38,6 @@ const APART: f64 = 0.5;
 /// Steps from a point towards the middle of a body.
 const STEPS_INWARDS: u32 = 8;
 
-/// Steps towards the deepest common point under a translation.
-const STEPS: u32 = 16;
-
 /// Overlap balls that are kept at most: all are compared with each cell. The oldest of those that
 /// were found last are replaced.
 const MOST_BALLS: usize = 2048;
@@ -52,6 +48,10 @@ const WORTH: f64 = 0.25;
 
 /// Half the side of a cell from which on rounding hides what a smaller one would show, in slacks.
 const SMALLEST: f64 = 0.25;
+
+/// A cell that resists is a candidate if it is at most this share of the tolerance. Each candidate
+/// that leads to no shorter translation halves the share.
+const CANDIDATE: f64 = 0.25;
 
 /// A cube of translations.
 #[derive(Clone, Copy, Debug)]
@@ -130,10 +130,13 @@ impl<const D: usize> Known<D> {
 
 /// What ended a search, and what it proved.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Proven {
+pub(super) struct Proven<const D: usize> {
     /// No shorter translation separates the bodies [m].
     pub(super) lower: f64,
     pub(super) stop: Stop,
+    /// In the frame, the direction of the shortest translation that is not ruled out, if one
+    /// along it may separate the bodies.
+    pub(super) candidate: Option<Vector<f64, D>>,
 }
 
 /// What a search may use.
@@ -160,6 +163,10 @@ pub(super) struct TranslationTree<'a, const D: usize> {
     closed: f64,
     slack: f64,
     is_full: bool,
+    /// The centre of the cell that was left when rounding reached it.
+    left: Option<Vector<f64, D>>,
+    /// The share of the tolerance from which on cells are candidates.
+    share: f64,
 }
 
 impl<'a, const D: usize> TranslationTree<'a, D> {
@@ -182,6 +189,8 @@ impl<'a, const D: usize> TranslationTree<'a, D> {
             closed: f64::INFINITY,
             slack,
             is_full: false,
+            left: None,
+            share: CANDIDATE,
         };
         let inner = [0, 1].map(|i| tree.inner_balls(i, places[i], deepest));
         for a in &inner[0] {
@@ -275,29 +284,34 @@ impl<'a, const D: usize> TranslationTree<'a, D> {
         InnerBall { centre: p, radius: known.filled(known.local(p), value) }
     }
 
-    /// Goes on with the search, until the lower bound is within the tolerance of `upper` or the room
-    /// ends.
-    pub(super) fn search(&mut self, upper: f64, room: Room) -> Proven {
-        let enough = upper - room.tolerance;
+    /// Goes on with the search, until the lower bound is within the tolerance of `upper`, there is a
+    /// candidate, or the room ends.
+    pub(super) fn search(&mut self, upper: f64, room: Room) -> Proven<D> {
+        let enough = upper - room.tolerance + 4.0 * f64::EPSILON * upper.min(f64::MAX);
         let end = self.evaluations().saturating_add(room.budget);
         loop {
-            let least = self.heap.peek().map_or(f64::INFINITY, |cell| cell.least);
+            let first = self.heap.peek().copied();
+            let least = first.map_or(f64::INFINITY, |cell| cell.least);
             let lower = least.min(self.closed).min(upper).max(0.0);
-            let stop = if lower >= enough {
-                Some(Stop::Converged)
+            let is_small = |cell: Cell<D>| cell.radius() < self.share * room.tolerance;
+            let direction = first.map(|cell| cell.centre).or(self.left);
+            let candidate = direction.and_then(Vector::normalized);
+            if lower >= enough {
+                return Proven { lower, stop: Stop::Converged, candidate: None };
             } else if self.closed <= least {
-                Some(if self.is_full { Stop::MemoryFull } else { Stop::RoundingReached })
+                let stop = if self.is_full { Stop::MemoryFull } else { Stop::RoundingReached };
+                let candidate = self.left.and_then(Vector::normalized).or(candidate);
+                return Proven { lower, stop, candidate };
             } else if self.evaluations() >= end {
-                Some(Stop::BudgetSpent)
-            } else {
-                None
-            };
-            if let Some(stop) = stop {
-                return Proven { lower, stop };
+                return Proven { lower, stop: Stop::BudgetSpent, candidate };
+            } else if first.is_some_and(is_small) {
+                self.share *= 0.5;
+                return Proven { lower, stop: Stop::Unresolved, candidate };
             }
             let Some(cell) = self.heap.pop() else { continue };
             if cell.half < SMALLEST * self.slack {
                 self.closed = self.closed.min(cell.least);
+                self.left = Some(cell.centre);
                 continue;
             }
             for part in cell.parts().filter(|part| part.least < enough) {
@@ -316,11 +330,6 @@ impl<'a, const D: usize> TranslationTree<'a, D> {
         }
     }
 
-    /// The direction of the shortest translation that is not ruled out, in the frame.
-    pub(super) fn candidate(&self) -> Option<Vector<f64, D>> {
-        self.heap.peek().and_then(|cell| cell.centre.normalized())
-    }
-
     /// Whether the bodies are proven to overlap under all translations in a cell.
     fn is_ruled_out(&mut self, cell: &Cell<D>) -> bool {
         let (t, needed) = (cell.centre, cell.radius() + self.slack);
@@ -336,7 +345,10 @@ impl<'a, const D: usize> TranslationTree<'a, D> {
         }
         let Some((_, i)) = best else { return false };
         let start = self.known[i].point(t);
-        let Some(found) = self.deepest(start, t, needed) else { return false };
+        let Some(inner) = deepest_common(&mut self.pair, start, t, needed) else {
+            return false;
+        };
+        let found = Known::of(inner);
         if found.ball.radius > WORTH * needed {
             self.keep(found);
         }
@@ -354,67 +366,4 @@ impl<'a, const D: usize> TranslationTree<'a, D> {
             self.next = self.first;
         }
     }
-
-    /// `g` of both with gradients at a point after a translation.
-    fn slopes(&mut self, p: Point<D>, t: Vector<f64, D>) -> [(f64, Vector<f64, D>); 2] {
-        self.pair.evaluations += 4;
-        let [a, b] = &self.pair.bodies;
-        [a.distance_gradient(p), b.distance_gradient(p - t)]
-    }
-
-    /// A common point after a translation at which both depths have a large sum, from `start` on;
-    /// `None` if none was found.
-    fn deepest(&mut self, start: Point<D>, t: Vector<f64, D>, enough: f64) -> Option<Known<D>> {
-        let mut p = start;
-        let mut here = self.slopes(p, t);
-        let mut step = here[0].0.abs().max(here[1].0.abs());
-        // The sum of the slopes where the last step led, if it gained nothing.
-        let mut beyond: Option<Vector<f64, D>> = None;
-        for _ in 0..STEPS {
-            let [(a, slope_a), (b, slope_b)] = here;
-            let sum = slope_a + slope_b;
-            let is_common = larger(a, b) < 0.0;
-            if is_common && -(a + b) > enough {
-                break;
-            }
-            let step_out = if is_common {
-                // Across a ridge of depths both slopes cancel, and along it they agree.
-                unit(beyond.map_or(sum, |beyond| shortest_between(sum, beyond))) * step
-            } else {
-                minimax_step([a, b], [slope_a, slope_b], step)
-            };
-            let next = p - step_out;
-            let there = self.slopes(next, t);
-            if score(&there) > score(&here) {
-                (p, here, beyond) = (next, there, None);
-                step *= 1.5;
-            } else {
-                beyond = is_common.then(|| there[0].1 + there[1].1);
-                step *= 0.5;
-            }
-        }
-        let [(a, _), (b, _)] = here;
-        (larger(a, b) < 0.0).then(|| {
-            let ball = |body: usize, centre, value| {
-                let body = &self.pair.bodies[body];
-                InnerBall { centre, radius: body.filled(body.local(centre), value) }
-            };
-            Known::of([ball(0, p, a), ball(1, p - t, b)])
-        })
-    }
-}
-
-/// What a search for a deep common point makes large: the sum of both depths where both are
-/// positive, else the smaller of both.
-fn score<const D: usize>(slopes: &[(f64, Vector<f64, D>); 2]) -> f64 {
-    let [(a, _), (b, _)] = *slopes;
-    let larger = larger(a, b);
-    if larger < 0.0 { -(a + b) } else { -larger }
-}
-
-/// The shortest mean of two vectors.
-fn shortest_between<const D: usize>(a: Vector<f64, D>, b: Vector<f64, D>) -> Vector<f64, D> {
-    let between = a - b;
-    let squared = between.dot(between);
-    if squared > 0.0 { a - between * (between.dot(a) / squared).clamp(0.0, 1.0) } else { a }
 }

@@ -41,6 +41,13 @@ const FAR: f64 = 100.0;
 /// The share of the budget that one separation may take.
 const SHARE: u32 = 16;
 
+/// The evaluations after which a separation tells nearly how far the bodies overlap.
+const ROUGH: u32 = 1000;
+
+/// The share of the tolerance to which a sign is decided. Where a way out is narrow, the gap beside
+/// the body is small against the tolerance.
+const FINER: f64 = 1.0 / 16.0;
+
 /// A question about two bodies.
 type Question<'a, const D: usize> = fn(
     Placed<'a, D>,
@@ -57,6 +64,8 @@ pub(super) struct WayOut<'a, 'w, const D: usize> {
     /// The direction in world coordinates and the length of the shortest translation so far.
     pub(super) best: Option<(Vector<f64, D>, f64)>,
     longest: f64,
+    /// No shorter translation separates the bodies.
+    pub(super) shortest: f64,
     pub(super) evaluations: u32,
     /// No separation is begun after so many evaluations.
     pub(super) budget: u32,
@@ -78,6 +87,7 @@ impl<'a, 'w, const D: usize> WayOut<'a, 'w, D> {
             workspace,
             best: None,
             longest: FAR * (size(&bodies[0]) + size(&bodies[1])),
+            shortest: 0.0,
             evaluations: 0,
             budget: limits.budget,
         }
@@ -93,7 +103,17 @@ impl<'a, 'w, const D: usize> WayOut<'a, 'w, D> {
         direction: Vector<f64, D>,
         length: f64,
     ) -> Result<Certified<Nearest<D>>, QueryError> {
-        self.ask(direction, length, separation)
+        self.ask(direction, length, (separation, self.limits))
+    }
+
+    /// An upper bound of it that is not far from it, and perhaps a lower one.
+    fn roughly_at(
+        &mut self,
+        direction: Vector<f64, D>,
+        length: f64,
+    ) -> Result<Certified<Nearest<D>>, QueryError> {
+        let limits = self.limits.with_budget(ROUGH.min(self.limits.budget));
+        self.ask(direction, length, (separation, limits))
     }
 
     /// The same, but only until its sign is known.
@@ -102,20 +122,21 @@ impl<'a, 'w, const D: usize> WayOut<'a, 'w, D> {
         direction: Vector<f64, D>,
         length: f64,
     ) -> Result<Certified<Nearest<D>>, QueryError> {
-        self.ask(direction, length, overlap)
+        let limits = self.limits.with_tolerance(FINER * self.limits.tolerance);
+        self.ask(direction, length, (overlap, limits))
     }
 
     fn ask(
         &mut self,
         direction: Vector<f64, D>,
         length: f64,
-        question: Question<'a, D>,
+        (question, limits): (Question<'a, D>, Limits),
     ) -> Result<Certified<Nearest<D>>, QueryError> {
         let [a, mut b] = self.bodies;
         b.world_from_body.translation += direction * length;
         let left = self.budget.saturating_sub(self.evaluations);
-        let limits = self.limits.with_budget((self.limits.budget / SHARE).min(left));
-        let answer = question(a, b, &limits, self.workspace)?;
+        let most = limits.budget.min(self.limits.budget / SHARE).min(left);
+        let answer = question(a, b, &limits.with_budget(most), self.workspace)?;
         self.evaluations = self.evaluations.saturating_add(answer.evaluations);
         Ok(answer)
     }
@@ -124,7 +145,7 @@ impl<'a, 'w, const D: usize> WayOut<'a, 'w, D> {
     pub(super) fn look_around(&mut self, normal: Vector<f64, D>) -> Result<(), QueryError> {
         self.follow(normal)?;
         for direction in directions::<D>() {
-            self.attempt(direction)?;
+            self.attempt_beyond_best(direction)?;
         }
         let mut spread = WIDEST;
         while spread > NARROWEST && !self.is_spent() {
@@ -133,7 +154,7 @@ impl<'a, 'w, const D: usize> WayOut<'a, 'w, D> {
             for axis in 0..D {
                 for sign in [-1.0, 1.0] {
                     let other = best + Vector::unit(axis) * (sign * spread);
-                    self.attempt(other * (1.0 / other.norm()))?;
+                    self.attempt_beyond_best(other * (1.0 / other.norm()))?;
                 }
             }
             let is_better = self.best.is_some_and(|(_, now)| now < WORTH * length);
@@ -159,24 +180,43 @@ impl<'a, 'w, const D: usize> WayOut<'a, 'w, D> {
         &mut self,
         direction: Vector<f64, D>,
     ) -> Result<Option<Vector<f64, D>>, QueryError> {
+        self.advance(direction, false)
+    }
+
+    /// The same, but only if it is out at a length that is a little less than the best, as most
+    /// directions are that are better.
+    fn attempt_beyond_best(&mut self, direction: Vector<f64, D>) -> Result<(), QueryError> {
+        let Some((_, length)) = self.best else { return self.attempt(direction).map(drop) };
+        let end = length - 2.0 * self.limits.tolerance;
+        if self.is_spent() || end < 0.0 || self.sign_at(direction, end)?.lower < 0.0 {
+            return Ok(());
+        }
+        self.advance(direction, true).map(drop)
+    }
+
+    /// Advances along a direction to the first place without overlap. `is_out` says whether the body
+    /// is out next to the best length.
+    fn advance(
+        &mut self,
+        direction: Vector<f64, D>,
+        mut is_out: bool,
+    ) -> Result<Option<Vector<f64, D>>, QueryError> {
         if self.is_spent() {
             return Ok(None);
         }
         let limit = self.best.map_or(self.longest, |(_, length)| length);
         let tolerance = 2.0 * self.limits.tolerance;
         let mut end = limit - tolerance;
-        // Out at a length that is shorter than the best, or not at all.
-        if self.best.is_some() && (end < 0.0 || self.sign_at(direction, end)?.lower < 0.0) {
-            return Ok(None);
-        }
-        let (mut inside, mut start) = (0.0, 0.0);
+        let (mut inside, mut start) = (self.shortest, self.shortest);
         let mut normal = None;
-        let mut is_out = self.best.is_some();
         for step in 0..STEPS {
             if self.is_spent() || is_out && end - start <= tolerance {
                 break;
             }
-            let here = self.at(direction, start)?;
+            let mut here = self.roughly_at(direction, start)?;
+            if here.lower < 0.0 && -here.upper < tolerance {
+                here = self.sign_at(direction, start)?;
+            }
             if here.lower >= 0.0 {
                 (end, normal, is_out) = (start, here.best.normal, true);
                 break;
