@@ -322,10 +322,7 @@ fn separated<const D: usize>(
         let within = Pose::translation(aside * (share * found.lower));
         let after = case.of(&a, Placed::new(&b, within), 1.0)?;
         let is_apart = found.lower > 0.0 && after.lower > bits;
-        if is_apart
-            || found.lower > found.upper
-            || -case.answer.upper > found.upper + bits
-        {
+        if is_apart || found.lower > found.upper || -case.answer.upper > found.upper + bits {
             return complain("they are apart", after);
         }
         Ok(())

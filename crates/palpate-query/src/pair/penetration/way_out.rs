@@ -225,6 +225,12 @@ impl<'a, 'w, const D: usize> WayOut<'a, 'w, D> {
             let grown = f64::from(1_u32 << step.saturating_sub(PATIENCE));
             let next = start + stride * grown;
             if next >= end {
+                // A way out next to the best length may be less than a stride away.
+                if !is_out && end > start {
+                    let there = self.sign_at(direction, end)?;
+                    is_out = there.lower >= 0.0;
+                    (inside, start, normal) = (start, end, there.best.normal);
+                }
                 break;
             }
             (inside, start) = (start, next);
