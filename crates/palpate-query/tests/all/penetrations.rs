@@ -269,7 +269,7 @@ fn a_cross_leaves_a_cross_between_its_arms() -> Result<(), ShapeError> {
 fn a_star_leaves_a_star() -> Result<(), ShapeError> {
     let corner = |i: u32| {
         let angle = 0.2 * std::f64::consts::PI * f64::from(i);
-        let radius = if i % 2 == 0 { 0.5 } else { 0.2 };
+        let radius = if i.is_multiple_of(2) { 0.5 } else { 0.2 };
         Vector([radius * angle.cos(), radius * angle.sin()])
     };
     let star = Shape::polygon(vec![(0..10).map(corner).collect::<Vec<_>>()])?;
