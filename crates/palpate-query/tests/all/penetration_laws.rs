@@ -125,11 +125,7 @@ fn convex_polygons_penetrate_as_their_minkowski_difference_says() {
         let place = |pose: &Pose<2>, points: &[Point<2>]| -> Vec<_> {
             points.iter().map(|p| pose.transform_point(*p) - other.translation).collect()
         };
-        let placed = [place(&pose, &first), place(&other, &second)];
-        let truth = depth_of_polygons(&placed[0], &placed[1]);
-        if std::env::var_os("PEN_DEBUG").is_some() {
-            println!("{placed:?} {pose:?} {other:?} {tolerance}");
-        }
+        let truth = depth_of_polygons(&place(&pose, &first), &place(&other, &second));
         let [Ok(a), Ok(b)] = [first, second].map(|points| Shape::polygon(vec![points])) else {
             return Ok(Ok(()));
         };

@@ -205,7 +205,8 @@ fn bodies_that_are_apart_or_touch_need_no_way() -> Result<(), ShapeError> {
     assert_eq!((found.lower, found.upper, found.best.direction), (0.0, 0.0, None));
     let cube = Shape::<3>::cuboid([1.0; 3])?;
     let found = asked(&cube, &cube, along(1.0, 0.3, 0.2), &LIMITS);
-    assert!(found.lower == 0.0 && found.upper < 1e-8, "{found:?}");
+    // A normal is known to the root of the roundings, about 1e-7.
+    assert!(found.lower == 0.0 && found.upper < 1e-6, "{found:?}");
     let pair = ball.clone() | ball.clone().translated([0.0, 0.0, 3.0])?;
     let found = asked(&pair, &ball, along(0.3, 0.0, 1.5), &LIMITS);
     assert_eq!((found.lower, found.upper, found.best.direction), (0.0, 0.0, None));

@@ -193,11 +193,12 @@ impl<'a, const D: usize> DirectionTree<'a, D> {
     pub(super) fn new(bodies: [Support<'a, D>; 2], limits: &Limits, room: usize) -> Self {
         let last = [bodies[0].middle(), bodies[1].middle()];
         let slack = bodies[0].slack() + bodies[1].slack();
+        let finest = bodies[0].finest() + bodies[1].finest();
         Self {
             bodies,
             last,
             // The bounds of the answer are farther apart by the slack on both sides.
-            tolerance: (limits.tolerance - 2.0 * slack).max(slack),
+            tolerance: (limits.tolerance - 2.0 * slack).max(slack + finest),
             budget: limits.budget,
             room,
             upper: f64::INFINITY,

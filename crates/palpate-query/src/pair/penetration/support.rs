@@ -16,6 +16,10 @@
 //! n nearly u where R is large. The nearest point from there is the next q: these are the steps of
 //! the proximal point method. For a convex body the error shrinks with the factor r/R in each
 //! step, where r is its radius. It vanishes after a few steps at an edge or a corner.
+//!
+//! Rounding by ε lets a point of the body pass for the nearest one that is farther by ε. It lies up
+//! to `√(2fε)` beside the nearest one, since no point of a convex body is before the plane through
+//! that. So the gradient may be off by `√(2ε/f)`, which is far more than its own rounding.
 
 use palpate_field::{Point, Vector};
 
@@ -119,6 +123,18 @@ impl<'a, const D: usize> Support<'a, D> {
         ROUNDINGS * self.body.slack(reach)
     }
 
+    /// By how much a gradient may miss a normal of a convex body at a point where the field is `f`.
+    fn blur(&self, p: Point<D>, f: f64) -> f64 {
+        (2.0 * self.body.shape.promise().rounding.within(p.norm()) / f).sqrt()
+    }
+
+    /// The least excess that rounding allows [m].
+    pub(super) fn finest(&self) -> f64 {
+        let far = self.far();
+        let p = self.centre + Vector::unit(0) * far;
+        2.0 * self.radius * self.blur(p, far)
+    }
+
     /// How far the body reaches along the unit vector `u`, with an excess of at most `fine` where
     /// that is possible. The search begins at `from`; both in the frame.
     pub(super) fn along(&mut self, u: Vector<f64, D>, from: Point<D>, fine: f64) -> Reach<D> {
@@ -134,13 +150,14 @@ impl<'a, const D: usize> Support<'a, D> {
             let q = p - normal * f;
             let widest = (q - self.centre).norm() + self.radius;
             let aside = along - normal;
-            let behind = if self.is_convex { 0.0 } else { 0.5 * widest * widest / f };
+            let blur = self.blur(p, f);
+            let behind = if self.is_convex { blur * widest } else { 0.5 * widest * widest / f };
             let excess = aside.norm() * widest + behind;
             // Written so that NaN is not better.
             if excess < best.excess {
                 best = Reach { point: q, excess };
             }
-            if best.excess <= fine {
+            if best.excess <= fine || aside.norm() <= blur {
                 break;
             }
             // On a face that leans by little, steps are short: the farthest point is at its border.
