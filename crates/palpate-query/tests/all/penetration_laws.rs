@@ -18,6 +18,9 @@ const FAR: f64 = 100.0;
 /// What places and oracles may round by [m].
 const ROUNDING: f64 = 1e-10;
 
+/// How far apart bounds of convex bodies may be [m]. Rounding allows about 1e-6 of the size.
+const TOLERANCES: [f64; 3] = [1e-2, 1e-4, 1e-5];
+
 type Verdict = arbitrary::Result<Result<(), String>>;
 
 /// A pose at which a body is that overlaps one at `near`, as often as not.
@@ -121,7 +124,7 @@ fn convex_polygons_penetrate_as_their_minkowski_difference_says() {
         let (first, second) = (corners(u)?, corners(u)?);
         let pose = far::<2>(u)?;
         let other = nearby(u, &pose, 1.5)?;
-        let tolerance = [1e-2, 1e-4, 1e-6][u.choose_index(3)?];
+        let tolerance = TOLERANCES[u.choose_index(3)?];
         let place = |pose: &Pose<2>, points: &[Point<2>]| -> Vec<_> {
             points.iter().map(|p| pose.transform_point(*p) - other.translation).collect()
         };
@@ -165,7 +168,7 @@ fn boxes_penetrate_as_fifteen_axes_say() {
         let sizes = [size()?, size()?];
         let pose = far::<3>(u)?;
         let other = nearby(u, &pose, 1.0)?;
-        let tolerance = [1e-2, 1e-4, 1e-6][u.choose_index(3)?];
+        let tolerance = TOLERANCES[u.choose_index(3)?];
         let truth = depth_of_boxes(sizes.map(|size| size * 0.5), &[pose, other]);
         let [Ok(a), Ok(b)] = sizes.map(Shape::<3>::cuboid) else { return Ok(Ok(())) };
         Ok(verdict([Placed::new(&a, pose), Placed::new(&b, other)], truth, tolerance))

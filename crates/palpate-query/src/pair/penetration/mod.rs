@@ -59,7 +59,8 @@ pub struct Penetration<const D: usize> {
 ///
 /// - Of two bounded **convex** bodies with fields that are exact outside, the penetration is the least over unit
 ///   vectors u of `h_a(u) + h_b(−u)`, where `h` says how far a body reaches. A search over
-///   directions ends with bounds that are no farther apart than the tolerance.
+///   directions ends with bounds that are no farther apart than the tolerance, or than about a
+///   millionth of the bodies' size, which is what rounding allows.
 /// - Of a **half-space** and a bounded body that is exact outside, it is how far the body reaches
 ///   behind the plane.
 /// - Of **other** bodies, a search over directions finds a short translation, and a search over
