@@ -69,7 +69,7 @@ mod _palpate {
     #[pymodule_export]
     use super::program::main;
     #[pymodule_export]
-    use super::query::{cast_ray, closest_points, manifold, overlap, separation};
+    use super::query::{cast_ray, closest_points, manifold, overlap, penetration, separation};
     #[pymodule_export]
     use super::scene::PyScene;
     #[pymodule_export]

@@ -46,7 +46,8 @@ pub(crate) fn query<const D: usize>(tolerance: Option<f64>, budget: Option<u32>)
     }
 }
 
-/// How far apart two bodies are, between proven bounds: negative if they overlap, by how far one must be moved at least.
+/// How far apart two bodies are, between proven bounds. Of bodies that overlap it is minus the diameter of the largest
+/// ball in both, and not the penetration; see `penetration`.
 ///
 /// `tolerance` is how far apart the bounds may be [m], a ten-thousandth of the smaller body if left out; `budget` how
 /// often the fields are evaluated at most, 200 000 if left out.
@@ -70,6 +71,39 @@ pub(crate) fn separation<'py>(
     of_both!(py, a, b, |a, b| {
         let found = detached(py, || query(tolerance, budget).separation(a, b))?.or_raise(py)?;
         Fields::of(py, &found)?.of_class("Separation")
+    })
+}
+
+/// How far the second body must move to leave the first, by the shortest way, between proven bounds: zero if they are
+/// apart or only touch.
+///
+/// No translation shorter than `lower` separates the bodies, and one of the length `upper` along `best.direction` does;
+/// `upper` is infinite if none was found. Of convex bodies the bounds are as close as `tolerance`; of others the budget
+/// may end first, as `stop` says.
+///
+/// `tolerance` is how far apart the bounds may be [m], a ten-thousandth of the smaller body if left out; `budget` how
+/// often the fields are evaluated at most, 200 000 if left out.
+///
+/// Raises `QueryError` if neither body has bounds or the tolerance is negative, `ValueError` if the shapes' dimensions
+/// differ.
+///
+/// >>> import palpate as pp
+/// >>> found = pp.penetration(pp.cuboid([1, 1, 1]), pp.ball(0.1), tolerance=1e-4)
+/// >>> found.lower <= 0.6 <= found.upper, found.stop
+/// (True, 'converged')
+#[pyfunction]
+#[pyo3(signature = (a, b, *, tolerance = None, budget = None))]
+pub(crate) fn penetration<'py>(
+    py: Python<'py>,
+    a: &PyShape,
+    b: &PyShape,
+    tolerance: Option<f64>,
+    budget: Option<u32>,
+) -> PyResult<Bound<'py, PyAny>> {
+    of_both!(py, a, b, |a, b| {
+        let found =
+            detached(py, || query(tolerance, budget).penetration(a, b))?.or_raise(py)?;
+        Fields::of(py, &found)?.of_class("PenetrationBounds")
     })
 }
 

@@ -11,7 +11,7 @@ use crate::certified::{Certified, Stop};
 use crate::contacts::ElementContacts;
 use crate::manifold::Manifold;
 use crate::mesh::{MeshContacts, MeshHits};
-use crate::pair::{Nearest, SeparatingTranslation};
+use crate::pair::{Nearest, Penetration};
 use crate::point::AtPoint;
 use crate::ray::RayHit;
 
@@ -134,10 +134,12 @@ impl<const D: usize> Display for RayHit<D> {
     }
 }
 
-impl<const D: usize> Display for SeparatingTranslation<D> {
+impl<const D: usize> Display for Penetration<D> {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        let Self { direction, length, at_least, .. } = self;
-        write!(f, "{length} m along {:?}, at least {at_least} m any way", direction.0)
+        match self.direction {
+            Some(direction) => write!(f, "out along {:?}", direction.0),
+            None => f.write_str("no way out"),
+        }
     }
 }
 

@@ -8,7 +8,7 @@ use palpate_field::compile;
 
 use crate::element_search::{self, ElementWorkspace};
 use crate::mesh::{MeshWorkspace, contacts_of, find};
-use crate::pair::{BodyPair, PairSearch, PairWorkspace, part, prove, rates_of};
+use crate::pair::{BodyPair, PairSearch, PairWorkspace, penetration_of, prove, rates_of};
 use crate::sweep::{ElementSweep, SweepWorkspace, swept};
 use crate::{BallWorkspace, Track, any_point, ball, cast_ball, cast_ray, contacts, manifold};
 
@@ -20,7 +20,7 @@ fn in_dimension<const D: usize>() {
         PairSearch::<D>::run,
         PairSearch::<D>::run_from,
         PairWorkspace::<D>::new,
-        part::<D>,
+        penetration_of::<D>,
         prove::<D>,
         rates_of::<D>,
         any_point::<D>,

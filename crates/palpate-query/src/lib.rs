@@ -27,8 +27,8 @@
 //!
 //! - [`separation`] bounds how far two bodies are apart, or how much they overlap;
 //!   [`overlap`] decides whether they do; [`manifold`] finds the contacts that span the
-//!   region in which they touch; [`separating_translation`] bounds the minimum translation from
-//!   above. [`Track`] follows a pair that moves, [`World`] many bodies.
+//!   region in which they touch; [`penetration`] bounds how far one must move to leave
+//!   the other. [`Track`] follows a pair that moves, [`World`] many bodies.
 //! - [`any_point`] decides whether a shape has any point.
 //! - [`evaluate_point`] evaluates a field at a point; [`contact_ball`] bounds how deep a ball
 //!   is in it, [`touches_ball`] decides whether it touches; [`cast_ray`] finds the first
@@ -85,9 +85,8 @@ pub use mesh::{
     mesh_hits,
 };
 pub use pair::{
-    DistanceBound, Nearest, PairWorkspace, PoseDerivative, Proof, ProofBox, Rates,
-    SeparatingTranslation, minimax_step, overlap, proof, rates, separating_translation,
-    separation,
+    DistanceBound, Nearest, PairWorkspace, Penetration, PoseDerivative, Proof, ProofBox, Rates,
+    minimax_step, overlap, penetration, proof, rates, separation,
 };
 pub use point::{AtPoint, any_point, evaluate_point};
 pub use query::{ElementMemory, Query, Tolerance};

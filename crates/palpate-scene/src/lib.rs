@@ -71,8 +71,8 @@ mod write;
 pub use ask::{
     ANSWER_VERSION, Answer, AskError, BallAnswer, Balls, BodyMass, ContactsAnswer,
     ContactsQuestion, FEW_PAIRS, LocalFinding, MassAnswer, MassQuestion, PairContacts,
-    PointAnswer, PointQuestion, Question, Separation, SweepAnswer, SweepPair, SweepQuestion,
-    SweptPart, Versioned, Weighed,
+    PenetrationBounds, PointAnswer, PointQuestion, Question, Separation, SweepAnswer,
+    SweepPair, SweepQuestion, SweptPart, Versioned, Weighed,
 };
 pub use build::{
     AnyScene, BuiltBody, BuiltMotion, BuiltScene, BuiltTool, MotionJump, MotionSpeed,

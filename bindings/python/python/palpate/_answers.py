@@ -160,6 +160,33 @@ class Separation(_examples.Separation):
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
+class PenetrationBounds(_examples.PenetrationBounds):
+    """How far the second of two bodies must move to leave the first, by :func:`penetration`: zero if they are apart.
+
+    No translation shorter than `lower` separates the bodies. One of the length `upper` along the direction of `best`
+    does; it is infinite if none was found.
+
+    Fields:
+        best: The best point or contact that was found.
+        lower: Proven lower bound [m].
+        upper: Upper bound, attained at ``best`` [m].
+        stop: Why the search stopped.
+        evaluations: How often fields were evaluated; a gradient counts twice.
+
+    >>> import palpate as pp
+    >>> found = pp.penetration(pp.cuboid([1, 1, 1]), pp.ball(0.1).translated([0.2, 0, 0]), tolerance=1e-4)
+    >>> found.lower <= 0.4 <= found.upper, found.best.direction.round(2)
+    (True, array([1., 0., 0.]))
+    """
+
+    best: Penetration
+    lower: float
+    upper: float
+    stop: Stop
+    evaluations: int
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
 class Overlap(_examples.Overlap):
     """Whether two bodies overlap, by :func:`overlap`: the bounds are those of their separation.
 
@@ -410,6 +437,22 @@ class Nearest(_examples.Nearest):
 
     point: Floats
     normal: Floats | None
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Penetration(_examples.Penetration):
+    """How a body leaves another.
+
+    Fields:
+        direction: The direction in which the second body leaves the first one by a translation as long as the upper
+            bound: a unit vector in world coordinates. None if no translation is needed, or none was found.
+
+    >>> import palpate as pp
+    >>> print(pp.penetration(pp.ball(0.5), pp.ball(0.5).translated([2, 0, 0])).best.direction)
+    None
+    """
+
+    direction: Floats | None
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)

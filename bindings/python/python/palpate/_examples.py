@@ -113,6 +113,19 @@ class Separation(Answer):
     """
 
 
+class PenetrationBounds(Answer):
+    """How far the second of two bodies must move to leave the first, by :func:`penetration`: zero if they are apart.
+
+    No translation shorter than `lower` separates the bodies. One of the length `upper` along the direction of `best`
+    does; it is infinite if none was found.
+
+    >>> import palpate as pp
+    >>> found = pp.penetration(pp.cuboid([1, 1, 1]), pp.ball(0.1).translated([0.2, 0, 0]), tolerance=1e-4)
+    >>> found.lower <= 0.4 <= found.upper, found.best.direction.round(2)
+    (True, array([1., 0., 0.]))
+    """
+
+
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Overlap(Answer):
     """Whether two bodies overlap, by :func:`overlap`: the bounds are those of their separation.
@@ -139,6 +152,14 @@ class Nearest(Answer):
     >>> import palpate as pp
     >>> pp.separation(pp.ball(0.5), pp.ball(0.5).translated([2, 0, 0])).best.normal.round(3)
     array([1., 0., 0.])
+    """
+
+
+class Penetration(Answer):
+    """
+    >>> import palpate as pp
+    >>> print(pp.penetration(pp.ball(0.5), pp.ball(0.5).translated([2, 0, 0])).best.direction)
+    None
     """
 
 

@@ -16,6 +16,7 @@ from palpate._answers import (
     Manifold,
     Mass,
     Overlap,
+    PenetrationBounds,
     Promise,
     RayCast,
     Separation,
@@ -54,6 +55,7 @@ __all__ = [
     "mesh_hits",
     "overlap",
     "overlaps",
+    "penetration",
     "primitive",
     "separation",
     "separations",
@@ -400,6 +402,9 @@ def smooth_difference(
 def separation(
     a: Shape, b: Shape, *, tolerance: float | None = None, budget: int | None = None
 ) -> Separation: ...
+def penetration(
+    a: Shape, b: Shape, *, tolerance: float | None = None, budget: int | None = None
+) -> PenetrationBounds: ...
 def overlap(a: Shape, b: Shape, *, budget: int | None = None) -> Overlap: ...
 def closest_points(
     a: Shape, b: Shape, *, tolerance: float | None = None, budget: int | None = None

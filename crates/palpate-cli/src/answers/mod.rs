@@ -40,7 +40,9 @@ mod tests {
     use std::fmt::Write;
 
     use palpate::field::{Mass, Promise};
-    use palpate::query::{AtPoint, Certified, Contact, FirstTouch, Manifold, Nearest, RayHit};
+    use palpate::query::{
+        AtPoint, Certified, Contact, FirstTouch, Manifold, Nearest, Penetration, RayHit,
+    };
     use palpate::scene::{ANSWER_VERSION, Question};
     use schemars::generate::SchemaSettings;
     use schemars::{JsonSchema, SchemaGenerator};
@@ -140,6 +142,7 @@ mod tests {
             ("Promise", of::<Promise<3>>(own)),
             ("Mass", of::<Mass<3>>(own)),
             ("Separation", of::<Certified<Nearest<3>>>(own)),
+            ("PenetrationBounds", of::<Certified<Penetration<3>>>(own)),
             ("Overlap", of::<Certified<Nearest<3>>>(own)),
             ("ClosestPoints", of::<Certified<Option<Contact<3>>>>(own)),
             ("RayCast", of::<Certified<Option<RayHit<3>>>>(own)),

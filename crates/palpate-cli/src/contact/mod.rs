@@ -96,7 +96,8 @@ Examples:
   palpate contact scenes/peg_in_hole.json --time 0.5
 
 The separation of bodies that are exact outside is their distance; that of bodies that
-overlap is minus the diameter of the largest ball inside both. It lies between the
+overlap is minus the diameter of the largest ball inside both. Their penetration, the shortest
+way by which the second body leaves the first, is printed beside it. Each lies between its
 bounds, which include rounding and are printed to the nearest digit; --json has them whole. Of
 other bodies that are apart, separations are lower bounds of distances. A pair touches if its
 distance is proven to be at most the margin: by the upper bound of the separation, or, where that

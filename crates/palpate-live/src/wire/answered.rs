@@ -7,7 +7,7 @@ use std::time::Instant;
 
 use palpate::field::{Point, Vector};
 use palpate::local::Descent;
-use palpate::query::{Certified, Contact, Nearest, Start, Stop};
+use palpate::query::{Certified, Contact, Nearest, Penetration, Start, Stop};
 use palpate::scene::{Answer, Versioned};
 use serde::Serialize;
 
@@ -28,6 +28,8 @@ pub(crate) enum Answered<const D: usize> {
     /// The separation of two bodies.
     Pair {
         certified: Timed<Certified<Nearest<D>>>,
+        /// How far the second must move to leave the first; only of bodies that overlap.
+        penetration: Option<Timed<Certified<Penetration<D>>>>,
         /// The points of both surfaces, if they were found.
         contact: Option<Contact<D>>,
         /// What a local search found from each start.

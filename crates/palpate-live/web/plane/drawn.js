@@ -132,7 +132,7 @@ function paintBall(context, lens, texts, inks) {
 /** @param {Context} context @param {Lens} lens @param {Texts} texts @param {Inks} inks */
 function paintPair(context, lens, texts, inks) {
   const project = (/** @type {number[]} */ point) => lens.project(inSpace(point));
-  const { certified, contact, local } = toys.results.pair ?? {};
+  const { certified, penetration, contact, local } = toys.results.pair ?? {};
   const colors = toys.pair.starts.map((_, number) => {
     const one = local?.[number];
     if (!certified || typeof one?.value !== 'number') return OPEN;
@@ -160,9 +160,15 @@ function paintPair(context, lens, texts, inks) {
     dot(context, a, 5, color, inks.halo);
     dot(context, b, 5, color, inks.halo);
     const bounds = `${length(certified.lower)} to ${length(certified.upper)}`;
-    texts.add(`${word}: ${bounds}`, (a.x + b.x) / 2, Math.min(a.y, b.y) - 14, { rank: VERDICT, color });
+    const [x, y] = [(a.x + b.x) / 2, Math.min(a.y, b.y) - 14];
+    texts.add(penetration ? `${word}, minus the largest ball in both: ${bounds}` : `${word}: ${bounds}`, x, y, { rank: VERDICT, color });
+    if (penetration) texts.add(`penetration, the shortest way out: ${wayOut(penetration)}`, x, y - 18, { rank: VERDICT, color });
   }
 }
+
+/** How far a body must move to leave the other. @param {{ lower: number, upper: number | null }} penetration */
+export const wayOut = ({ lower, upper }) =>
+  (upper === null ? `at least ${length(lower)}` : `${length(lower)} to ${length(upper)}`);
 
 /** @param {Context} context @param {Lens} lens @param {Texts} texts @param {Inks} inks */
 function paintSweep(context, lens, texts, inks) {

@@ -284,6 +284,11 @@ impl<'a, const D: usize> BodyPair<'a, D> {
         self.bodies[body].scaled(memory.models[body].get(lane))
     }
 
+    /// Boxes of the frame that hold the bodies; one of them at least is there.
+    pub(crate) fn boxes(&self) -> &[Option<Aabb<D>>; 2] {
+        &self.aabbs
+    }
+
     /// A box of the frame that holds all points at which both `g` are at most `least`.
     pub(crate) fn root(&self, least: f64) -> Aabb<D> {
         let grown = self.aabbs.iter().flatten().map(|aabb| aabb.grown(least));
@@ -312,7 +317,7 @@ impl<'a, const D: usize> BodyPair<'a, D> {
 }
 
 /// The intersection of two boxes; its corners are swapped along sides where they are apart.
-fn common<const D: usize>(a: &Aabb<D>, b: &Aabb<D>) -> Aabb<D> {
+pub(crate) fn common<const D: usize>(a: &Aabb<D>, b: &Aabb<D>) -> Aabb<D> {
     let mut both = *a;
     for k in 0..D {
         both.min[k] = a.min[k].max(b.min[k]);

@@ -264,6 +264,16 @@ impl<'a, const D: usize> DistanceBound<'a, D> {
         }
     }
 
+    /// The radius of a ball about a point in the shape's coordinates, where `g` is `value`, that lies
+    /// within the shape; negative if there is none.
+    #[inline]
+    pub(crate) fn filled(&self, local: Point<D>, value: f64) -> f64 {
+        match &self.region {
+            None => -value,
+            Some(region) => (-value).min(region.radius - (local - region.centre).norm()),
+        }
+    }
+
     /// A model of `f/L` from one of `f`.
     #[inline]
     pub(crate) fn scaled(&self, model: Model) -> Model {

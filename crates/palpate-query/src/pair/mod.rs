@@ -23,18 +23,18 @@ use crate::sampler::Placed;
 
 pub(crate) use body_pair::BodyPair;
 pub use distance_bound::{DistanceBound, minimax_step};
+pub(crate) use penetration::penetration_of;
+pub use penetration::{Penetration, penetration};
 pub(crate) use rates::rates_of;
 pub use rates::{PoseDerivative, Rates, rates};
 pub(crate) use search::PairSearch;
 pub use search::PairWorkspace;
-pub(crate) use separating_translation::part;
-pub use separating_translation::{SeparatingTranslation, separating_translation};
 
 pub(crate) mod body_pair;
 pub(crate) mod distance_bound;
+mod penetration;
 mod rates;
 pub(crate) mod search;
-mod separating_translation;
 
 /// The separation of two bodies [m], between bounds, to `limits.tolerance`.
 ///
@@ -52,7 +52,7 @@ mod separating_translation;
 /// - **Overlapping**, it is minus the width of the widest ball in the overlap, where both
 ///   fields are exact inside; else it is between that and zero. It has the right sign and is
 ///   continuous as the bodies move. It is never below minus the width of the smaller body.
-///   How far a body must move to leave the other is bounded by [`separating_translation`].
+///   How far a body must move to leave the other is their [`penetration`].
 ///
 /// The answer's point is where the larger `g` is least: between the bodies, or in both.
 /// [`Nearest::contact`] finds the points of both surfaces next to it.

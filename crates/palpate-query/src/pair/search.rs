@@ -50,6 +50,8 @@ struct Known {
 /// Memory of searches between bodies, kept from one to the next.
 #[derive(Debug)]
 pub struct PairWorkspace<const D: usize> {
+    /// The most boxes that may wait.
+    room: usize,
     /// Boxes that may hold less than the best; or all, if they are to be kept.
     pub(crate) frontier: Frontier<Heap<BoxCell<D>>>,
     /// Boxes of a round that are bounded by models.
@@ -88,6 +90,7 @@ impl<const D: usize> PairWorkspace<D> {
     #[must_use]
     pub fn with_room(room: usize) -> Self {
         Self {
+            room,
             frontier: Frontier {
                 queue: Heap::new(room, room),
                 pending: Vec::with_capacity(room),
@@ -101,6 +104,11 @@ impl<const D: usize> PairWorkspace<D> {
                 models: [NOTHING; BLOCK],
             },
         }
+    }
+
+    /// The most boxes that may wait.
+    pub(crate) fn room(&self) -> usize {
+        self.room
     }
 }
 
@@ -235,7 +243,7 @@ impl<'a, const D: usize> PairSearch<'a, D> {
         root: &Aabb<D>,
         workspace: &mut PairWorkspace<D>,
     ) -> Certified<Nearest<D>> {
-        let PairWorkspace { frontier, open, memory, known } = workspace;
+        let PairWorkspace { frontier, open, memory, known, .. } = workspace;
         let largest = SMALL * root.half_extents().norm();
         let end = engine::search(
             &mut PairRounds {

@@ -19,8 +19,7 @@ use crate::mesh::{
     MeshContacts, MeshHits, MeshWorkspace, PlacedMesh, mesh_contacts, mesh_hits,
 };
 use crate::pair::{
-    Nearest, PairWorkspace, Proof, SeparatingTranslation, overlap, proof,
-    separating_translation, separation,
+    Nearest, PairWorkspace, Penetration, Proof, overlap, penetration, proof, separation,
 };
 use crate::ray::{Ray, RayHit, cast_ray};
 use crate::sampler::{Placed, Pool, check_pose};
@@ -189,19 +188,19 @@ impl<const D: usize> Query<D> {
         manifold(a, b, &settings, &self.limits(sizes(&a, &b)), self.scratch.pair())
     }
 
-    /// A translation that separates two bodies, not always the shortest; see
-    /// [`separating_translation`].
+    /// The least translation of the second body that separates two bodies, between bounds; see
+    /// [`penetration`].
     ///
     /// # Errors
     ///
     /// If neither body is bounded, or a pose or the tolerance is NaN or out of range.
-    pub fn separating_translation<'a>(
+    pub fn penetration<'a>(
         &mut self,
         a: impl Into<Placed<'a, D>>,
         b: impl Into<Placed<'a, D>>,
-    ) -> Result<Option<SeparatingTranslation<D>>, QueryError> {
+    ) -> Result<Certified<Penetration<D>>, QueryError> {
         let (a, b) = (a.into(), b.into());
-        separating_translation(a, b, &self.limits(sizes(&a, &b)), self.scratch.pair())
+        penetration(a, b, &self.limits(sizes(&a, &b)), self.scratch.pair())
     }
 
     /// The separation of two bodies with the boxes that prove it; see [`proof`].

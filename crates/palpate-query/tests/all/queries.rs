@@ -12,8 +12,8 @@ use palpate_field::{Pose, Rotation, Screw, Shape, Vector};
 use palpate_mesh::TriangleMesh;
 use palpate_query::{
     BallWorkspace, Certified, Element, ElementContacts, Limits, Manifold, MeshContacts,
-    MeshHits, MeshWorkspace, Moving, Nearest, PairWorkspace, Proof, Query, QueryError, Ray,
-    SeparatingTranslation, Stop, Tolerance, cast_ray, contact_ball, mesh_contacts, minimum,
+    MeshHits, MeshWorkspace, Moving, Nearest, PairWorkspace, Penetration, Proof, Query,
+    QueryError, Ray, Stop, Tolerance, cast_ray, contact_ball, mesh_contacts, minimum,
     separation, touches,
 };
 
@@ -84,7 +84,7 @@ fn an_absolute_tolerance_is_kept_and_a_budget_ends_a_search() -> Test {
 fn answers_may_go_to_other_threads() {
     fn is_owned<T: Clone + Send + Sync + 'static>() {}
     is_owned::<Certified<Nearest<3>>>();
-    is_owned::<(Manifold<3>, SeparatingTranslation<3>, Proof<3>)>();
+    is_owned::<(Manifold<3>, Penetration<3>, Proof<3>)>();
     is_owned::<(MeshHits, MeshContacts<3>, ElementContacts<3>)>();
 }
 
@@ -207,7 +207,7 @@ fn every_question_refuses_a_tolerance_that_is_none() -> Test {
         let errors = [
             query.separation(&ball, &ball).err(),
             query.manifold(&ball, &ball).err(),
-            query.separating_translation(&ball, &ball).err(),
+            query.penetration(&ball, &ball).err(),
             query.proof(&ball, &ball).err(),
             query.contact_ball(&ball, Vector([2.0, 0.0, 0.0]), 0.1).err(),
             query.touches_ball(&ball, Vector([2.0, 0.0, 0.0]), 0.1).err(),

@@ -8,9 +8,10 @@ use std::collections::BTreeSet;
 use std::fmt;
 use std::sync::atomic::AtomicBool;
 
+use palpate_field::Vector;
 use palpate_query::{
     Contact, Limits, ManifoldSettings, Neighbours, NormalSource, PairWorkspace, Placed, Proof,
-    Stop, Verdict, World, WorldSettings, proof, separation,
+    Stop, Verdict, World, WorldSettings, penetration, proof, separation,
 };
 use serde::{Deserialize, Serialize};
 
@@ -85,7 +86,12 @@ pub struct ContactsAnswer<const D: usize> {
     pub is_whole: bool,
 }
 
-/// The bounds of the separation of two bodies: negative if they overlap.
+/// The share of the budget that the penetration of a pair may take: of bodies that are not convex its
+/// bounds come together slowly.
+const SHARE_OF_PENETRATION: u32 = 10;
+
+/// The bounds of the separation of two bodies. It is negative if they overlap: then it is minus the
+/// diameter of the largest ball in both, and not the penetration.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
@@ -97,6 +103,24 @@ pub struct Separation {
     /// Why the search ended.
     pub stop: Stop,
     /// How often the fields were evaluated, contacts included.
+    pub evaluations: u32,
+}
+
+/// The bounds of the penetration of two bodies that overlap: how far the second must move to leave the
+/// first, by the shortest way.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
+pub struct PenetrationBounds<const D: usize> {
+    /// No shorter translation separates the bodies [m].
+    pub lower: f64,
+    /// A translation of this length separates them [m]; `None` if none was found.
+    pub upper: Option<f64>,
+    /// The unit vector along which it does.
+    pub direction: Option<Vector<f64, D>>,
+    /// Why the search ended.
+    pub stop: Stop,
+    /// How often the fields were evaluated.
     pub evaluations: u32,
 }
 
@@ -116,6 +140,8 @@ pub struct PairContacts<const D: usize> {
     pub empty: Option<String>,
     /// Their separation; `None` if neither has bounds, or one has no point.
     pub separation: Option<Separation>,
+    /// Their penetration; `None` if they are not proven to overlap.
+    pub penetration: Option<PenetrationBounds<D>>,
     /// Their distance is at most this, if anything is known [m].
     pub distance_at_most: Option<f64>,
     /// Where they touch or may touch.
@@ -228,6 +254,14 @@ impl<const D: usize> Search<'_, D> {
         let mut world = self.world()?;
         let near = world.step().into_iter();
         let mut pairs: Vec<_> = near.map(|found| self.near(found)).collect();
+        for pair in &mut pairs {
+            if is_set(stop) {
+                return Ok((pairs, false));
+            }
+            if pair.separation.is_some_and(|found| found.upper < 0.0) {
+                pair.penetration = Some(self.penetration(pair.indices)?);
+            }
+        }
         if !is_every {
             return Ok((pairs, true));
         }
@@ -279,6 +313,7 @@ impl<const D: usize> Search<'_, D> {
             verdict,
             empty: None,
             separation: None,
+            penetration: None,
             distance_at_most: None,
             contacts: Vec::new(),
             witness: None,
@@ -331,6 +366,18 @@ impl<const D: usize> Search<'_, D> {
         Ok(pair)
     }
 
+    /// The penetration of two bodies.
+    fn penetration(&self, indices: [usize; 2]) -> Result<PenetrationBounds<D>, AskError> {
+        let [a, b] = indices.map(|i| placed(&self.scene.bodies[i]));
+        let limits = self.settings.limits;
+        let limits = limits.with_budget(limits.budget / SHARE_OF_PENETRATION);
+        let found = penetration(a, b, &limits, &mut PairWorkspace::new())?;
+        let (lower, stop, evaluations) = (found.lower, found.stop, found.evaluations);
+        let upper = found.upper.is_finite().then_some(found.upper);
+        let direction = found.best.direction;
+        Ok(PenetrationBounds { lower, upper, direction, stop, evaluations })
+    }
+
     /// The separation of two bodies with its proof.
     fn proof(&self, indices: [usize; 2]) -> Result<Proof<D>, AskError> {
         let [a, b] = indices.map(|i| placed(&self.scene.bodies[i]));
@@ -360,6 +407,13 @@ impl<const D: usize> fmt::Display for ContactsAnswer<D> {
                 millimetres(self.tolerance)
             )?;
         }
+        if self.pairs.iter().any(|pair| pair.penetration.is_some()) {
+            writeln!(
+                f,
+                "Of bodies that overlap, the separation is minus the diameter of the largest ball in \
+                 both, and not the penetration, which is the shortest way out."
+            )?;
+        }
         let is_above =
             |pair: &&PairContacts<D>| pair.separation.is_some_and(|found| found.upper > 0.0);
         let above = self.pairs.iter().filter(is_above).map(|pair| &pair.bodies);
@@ -374,6 +428,28 @@ impl<const D: usize> fmt::Display for ContactsAnswer<D> {
             self.undecided,
         )
     }
+}
+
+/// The penetration of a pair, and the way out.
+fn write_penetration<const D: usize>(
+    f: &mut fmt::Formatter<'_>,
+    found: &PenetrationBounds<D>,
+) -> fmt::Result {
+    let digits = digits_of(found.upper.map_or(found.lower, |upper| upper - found.lower));
+    let lower = decimal(1e3 * found.lower, digits);
+    let (stop, evaluations) = (found.stop, found.evaluations);
+    match (found.upper, found.direction) {
+        (Some(upper), Some(direction)) => {
+            let upper = decimal(1e3 * upper, digits);
+            let direction = decimals(&direction.0, 3);
+            write!(f, "penetration {lower} to {upper} mm, out along [{direction}]")?;
+        }
+        (Some(upper), None) => {
+            write!(f, "penetration {lower} to {} mm", decimal(1e3 * upper, digits))?;
+        }
+        (None, _) => write!(f, "penetration at least {lower} mm, no way out was found")?,
+    }
+    write!(f, " ({stop}; {evaluations} evaluations)")
 }
 
 impl<const D: usize> ContactsAnswer<D> {
@@ -392,6 +468,10 @@ impl<const D: usize> ContactsAnswer<D> {
                     ", separation {lower} to {upper} mm ({stop}; {evaluations} evaluations with \
                      its contacts)"
                 )?;
+                if let Some(found) = &pair.penetration {
+                    f.write_str("\n       ")?;
+                    write_penetration(f, found)?;
+                }
             }
             (None, Some(empty)) => write!(f, ", {} has no point", shown(empty))?,
             (None, None) => f.write_str(", neither has bounds; intersect one with a box")?,

@@ -46,7 +46,9 @@ use serde::{Deserialize, Serialize};
 use crate::build::{AnyScene, BuiltBody, BuiltScene};
 
 pub use ball::{BallAnswer, Balls};
-pub use contacts::{ContactsAnswer, ContactsQuestion, PairContacts, Separation};
+pub use contacts::{
+    ContactsAnswer, ContactsQuestion, PairContacts, PenetrationBounds, Separation,
+};
 pub use mass::{BodyMass, MassAnswer, MassQuestion, Weighed};
 pub use point::{PointAnswer, PointQuestion};
 pub use sweep::{LocalFinding, SweepAnswer, SweepPair, SweepQuestion, SweptPart};

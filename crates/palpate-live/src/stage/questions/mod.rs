@@ -8,7 +8,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use palpate::field::{Point, Shape, Vector};
 use palpate::local::PairMethod;
-use palpate::query::{Limits, PairWorkspace, Placed, separation};
+use palpate::query::{Limits, PairWorkspace, Placed, penetration, separation};
 use palpate::scene::{self, BuiltBody, BuiltScene, Question, Versioned};
 
 use super::pages::{longest_edge, point_of, size};
@@ -173,7 +173,10 @@ fn limits<const D: usize>(scene: &BuiltScene<D>) -> Limits {
 /// The most starts of local descents.
 const MOST_STARTS: usize = 1000;
 
-/// The separation of two bodies, proven, and by local searches from some starts.
+/// The share of the budget that a penetration may take: a page asks again whenever a body moves.
+const SHARE_OF_PENETRATION: u32 = 10;
+
+/// The separation of two bodies and their penetration, proven, and by local searches from some starts.
 fn between<const D: usize>(
     scene: &BuiltScene<D>,
     bodies: [usize; 2],
@@ -187,6 +190,15 @@ fn between<const D: usize>(
             .map_err(|error| error.to_string())
     })?;
     let contact = certified.result.best.contact(placed(a), placed(b));
+    let is_overlapping = certified.result.upper < 0.0;
+    let penetration = is_overlapping.then(|| {
+        let limits = limits.with_budget(limits.budget / SHARE_OF_PENETRATION);
+        Timed::of(|| {
+            penetration(placed(a), placed(b), &limits, &mut PairWorkspace::new())
+                .map_err(|error| error.to_string())
+        })
+    });
+    let penetration = penetration.transpose()?;
     let method = method.unwrap_or(PairMethod::AlternatingProjection.name());
     let method: PairMethod = method.parse().map_err(|error| format!("{error}"))?;
     if starts.len() > MOST_STARTS {
@@ -203,7 +215,7 @@ fn between<const D: usize>(
         })
     };
     let local = starts.iter().map(descent).collect::<Result<_, String>>()?;
-    Ok(Answered::Pair { certified, contact, local })
+    Ok(Answered::Pair { certified, penetration, contact, local })
 }
 
 fn placed<const D: usize>(body: &BuiltBody<D>) -> Placed<'_, D> {
