@@ -8,8 +8,8 @@ use std::time::Duration;
 use palpate_device::{PointState, profile_named};
 use palpate_field::{Pose, Rotation, Shape, Vector};
 use palpate_haptics::{
-    Bodies, Body, EventKind, HandoffOptions, Material, Probe, Protection, Servo, ServoOptions,
-    Shell, Surface, Tool, ToolOptions, Unprotected, handoff,
+    Bodies, Body, EventKind, HandoffOptions, Material, Probe, Protection, Servo,
+    ServoOptions, Shell, Surface, Tool, ToolOptions, Unprotected, handoff,
 };
 
 use crate::common::cuboid;
@@ -549,4 +549,28 @@ fn a_body_that_moves_far_away_changes_nothing_of_a_jump() {
             assert_eq!(is_told(&alone.0), is_told(&beside.0), "{way} m: {alone:?}, {beside:?}");
         }
     }
+}
+
+/// A plate jumps onto the hand and slides away while the force rises. Once, the force rose on for four ticks
+/// after the hand was free.
+#[test]
+fn a_hand_that_is_free_again_while_the_force_rises_is_let_go() {
+    let plate = body(cuboid([0.02, 0.02, 0.1]), 1000.0, 0.0, at(0.0, -0.01, 0.0));
+    let mut servo = point("omega", vec![plate]);
+    let (mut control, mut end) = handoff(&servo, HandoffOptions::default());
+    let (mut last, mut most) = (0.0_f64, 0.0_f64);
+    for tick in 0..500 {
+        if tick == 300 {
+            control.set_poses(&[(0, at(0.0, 0.005, 0.0))], Duration::ZERO).unwrap();
+        }
+        end.receive(&mut servo);
+        if tick > 339 {
+            servo.set_pose(0, at(1.5e-3 * f64::from(tick - 339), 0.005, 0.0));
+        }
+        let touch = servo.step(&[PointState::at_rest(Vector([0.0, 0.001, 0.0]))])[0];
+        let force = touch.force.norm();
+        assert!(touch.contact || force <= (last - 0.5).max(0.0), "{tick}: {last} N to {force}");
+        (last, most) = (force, most.max(force));
+    }
+    assert!(most > 1.5 && last == 0.0, "{most} N, {last} N");
 }
