@@ -531,6 +531,7 @@ impl Bodies {
     pub(crate) fn way_to(&self, body: usize, pose: &Pose<3>, hand: Reach) -> f64 {
         let Some(body) = self.bodies.get(body) else { return 0.0 };
         let Reach { place, spread, reach } = hand;
+        let reach = reach + body.surface.magnet.map_or(0.0, |magnet| magnet.reach);
         let carried = pose.transform_point(body.in_body(place));
         let turn = body.world_from_body.rotation.turn_to(&pose.rotation).norm();
         if let Some(ball) = body.ball {

@@ -15,6 +15,7 @@ use crate::crease::{Crease, Place, Shared};
 use crate::error::ServoOptions;
 use crate::event::{Event, EventKind};
 use crate::guide::Guide;
+use crate::magnetism::Magnetism;
 use crate::nearby::{Nearby, Yielding};
 use crate::ports::Port;
 use crate::proxy::{Edited, Probe, Proxy};
@@ -90,15 +91,17 @@ pub(crate) struct ContactPoint {
     pub(crate) proxy: Proxy,
     /// The rendered part of the force, in [0, 1].
     rise: f64,
-    /// The force before bodies were replaced or one jumped [N]; infinite if neither happened.
+    /// The force before bodies were replaced, or with that of magnets before one jumped [N]; infinite if
+    /// neither happened.
     of_others: f64,
-    /// Whether a body jumped since the last tick.
-    has_jumped: bool,
+    /// The body that jumped since the last tick; of several, the last.
+    jumped: Option<u32>,
     /// Whether bodies that moved handed a force over.
     has_handed_over: bool,
     /// How the force follows after an edit carried the proxy. With a port the safety chain has its
     /// own.
     approach: Approach,
+    magnetism: Magnetism,
     ringing: Ringing,
     /// The bodies that touch the proxy.
     crease: Crease,
@@ -215,14 +218,16 @@ impl ContactPoint {
         let (rise, of_others, ringing) = (1.0, f64::INFINITY, Ringing::SILENT);
         let (crease, stiffness) = (Crease::NONE, f64::INFINITY);
         let (guided, approach, port) = (1.0, Approach::new(1.0), None);
-        let (has_jumped, has_handed_over, squeeze) = (false, false, Squeeze::NONE);
+        let (jumped, has_handed_over, squeeze) = (None, false, Squeeze::NONE);
+        let magnetism = Magnetism::new();
         Self {
             proxy,
             rise,
             of_others,
-            has_jumped,
+            jumped,
             has_handed_over,
             approach,
+            magnetism,
             ringing,
             crease,
             squeeze,
@@ -240,14 +245,15 @@ impl ContactPoint {
         let (proxy, port) = (self.proxy.clone(), self.port.clone());
         let Self { rise, of_others, approach, ringing, crease, stiffness, guided, .. } = *self;
         let (guides, squeeze) = (Vec::new(), self.squeeze);
-        let Self { has_jumped, has_handed_over, .. } = *self;
+        let Self { jumped, has_handed_over, magnetism, .. } = *self;
         Self {
             proxy,
             rise,
             of_others,
-            has_jumped,
+            jumped,
             has_handed_over,
             approach,
+            magnetism,
             ringing,
             crease,
             squeeze,
@@ -337,7 +343,8 @@ impl ContactPoint {
             let pushed = self.squeezed(tick, touch);
             touch.wanted += pushed;
         }
-        free += self.pull(tick, touch);
+        let (whole, pull_before) = (self.pull(tick, touch), self.magnetism.pull());
+        free += self.magnetism.follow(whole, self.jumped.is_some());
         let carried = match held {
             _ if placed => Vector::ZERO,
             Some(held) => held,
@@ -350,18 +357,23 @@ impl ContactPoint {
             explained = self.stiffness * slides.max(slid);
             let is_held = touch.contact || following.squeezed.is_some();
             if !is_held {
-                explained += if self.has_jumped { f64::INFINITY } else { LET_GO };
+                explained += if self.jumped.is_some() { f64::INFINITY } else { LET_GO };
             }
-            if before.contact && has_moved && !self.has_jumped {
+            if before.contact && has_moved && self.jumped.is_none() {
                 let moved = (touch.wanted - wanted_before).norm();
                 change = change.or_handed_over(moved, explained);
                 self.has_handed_over |= change == Change::HandedOver;
             }
         }
-        if self.has_jumped && before.contact && following.edited.is_none() {
-            let moved = (touch.wanted - wanted_before).norm();
-            if Change::None.or_handed_over(moved, self.stiffness * way.norm()) != Change::None {
+        if let Some(body) = self.jumped.filter(|_| following.edited.is_none()) {
+            let has_stepped = |change: Vector<f64, 3>, moved| {
+                Change::None.or_handed_over(change.norm(), moved) != Change::None
+            };
+            let moved = self.stiffness * way.norm();
+            if before.contact && has_stepped(touch.wanted - wanted_before, moved) {
                 tick.tell(before.body, EventKind::Placed);
+            } else if has_stepped(whole - pull_before, 0.0) {
+                tick.tell(body, EventKind::Placed);
             }
         }
         FreeForce { force: free, placed, change, explained, carried }
@@ -429,6 +441,7 @@ impl ContactPoint {
         self.fall_silent(tick, before);
         self.proxy.lift();
         self.let_go();
+        self.magnetism = Magnetism::new();
         let is_known = state.is_finite();
         *touch = Touch {
             device: state.position,
@@ -804,17 +817,19 @@ impl ContactPoint {
         self.of_others = wanted.norm();
     }
 
-    /// Takes note that a body jumped, which is or was near; `wanted` is the last force [N]. Where the
-    /// body covers the proxy now, the proxy is placed anew, and the force rises from the last one.
+    /// Takes note that a body jumped; `near` is its index if it is or was near, and `wanted` is the last
+    /// force [N]. Where the body covers the proxy now, the proxy is placed anew, and the force rises from
+    /// the last one.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
-    pub(crate) fn see_jump(&mut self, is_near: bool, wanted: Vector<f64, 3>) {
-        if !is_near {
+    pub(crate) fn see_jump(&mut self, near: Option<u32>, wanted: Vector<f64, 3>) {
+        if near.is_none() {
             self.proxy.look_anew();
             return;
         }
         self.proxy.forget_bodies();
-        (self.of_others, self.has_jumped) = (wanted.norm(), true);
+        self.of_others = (wanted + self.magnetism.pull()).norm();
+        self.jumped = near;
     }
 
     /// Lets the force rise from zero; with a port, the safety chain does this.
@@ -884,7 +899,8 @@ impl ContactPoint {
     #[inline(never)]
     fn start(&mut self, placed: bool, change: Change, wanted: Vector<f64, 3>) -> f64 {
         let others = std::mem::replace(&mut self.of_others, f64::INFINITY);
-        let has_jumped = std::mem::take(&mut self.has_jumped);
+        let has_jumped = self.jumped.take().is_some();
+        let wanted = if has_jumped { wanted + self.magnetism.pull() } else { wanted };
         match change {
             _ if placed && !has_jumped => 0.0,
             Change::Carried | Change::HandedOver => 1.0,

@@ -53,6 +53,7 @@ mod guide;
 mod handoff;
 mod instances;
 mod live;
+mod magnetism;
 mod material;
 mod nearby;
 mod planes;

@@ -90,6 +90,13 @@ impl Approach {
         self.falls_slowly
     }
 
+    /// Goes on from a force that passed in place of its own.
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    pub(crate) fn passed(&mut self, force: Vector<f64, 3>) {
+        self.last = force;
+    }
+
     /// One tick: the force for the force `wanted`; `None` if the force had caught up before. After a
     /// handover it also follows what motion `explains` of the change [N], so that a hand that leaves the
     /// bodies leaves their force.
@@ -266,22 +273,33 @@ impl Rise {
     }
 
     /// One tick: the part, in [0, 1], of the sum of a force `wanted` by bodies and a `free` one
-    /// that may pass; `None` if the force had risen before.
+    /// that may pass; `None` if the force had risen before. It rises until it has caught up with
+    /// `aim`, which the force of the bodies may only approach.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     #[inline]
-    pub(crate) fn step(&mut self, wanted: Vector<f64, 3>, free: Vector<f64, 3>) -> Option<f64> {
-        (self.limit < f64::INFINITY).then(|| self.rise(wanted, free))
+    pub(crate) fn step(
+        &mut self,
+        wanted: Vector<f64, 3>,
+        aim: Vector<f64, 3>,
+        free: Vector<f64, 3>,
+    ) -> Option<f64> {
+        (self.limit < f64::INFINITY).then(|| self.rise(wanted, aim, free))
     }
 
     #[cold]
-    fn rise(&mut self, wanted: Vector<f64, 3>, free: Vector<f64, 3>) -> f64 {
+    fn rise(
+        &mut self,
+        wanted: Vector<f64, 3>,
+        aim: Vector<f64, 3>,
+        free: Vector<f64, 3>,
+    ) -> f64 {
         let has_begun = std::mem::take(&mut self.has_begun);
         self.is_waiting &= has_begun || wanted != Vector::ZERO;
         let force = (wanted + free).norm();
         if !self.is_waiting {
             self.limit += self.step;
-            if force <= self.limit {
+            if force.max((aim + free).norm()) <= self.limit {
                 self.limit = f64::INFINITY;
             }
         }
@@ -470,9 +488,14 @@ mod rise_tests {
         Rise::new(RiseOptions { rise_rate: 20.0, recovery, rate: 10.0 })
     }
 
+    fn step(rise: &mut Rise, wanted: Vector<f64, 3>, free: Vector<f64, 3>) -> Option<f64> {
+        rise.step(wanted, wanted, free)
+    }
+
     fn steps(rise: &mut Rise, forces: &[f64]) -> Vec<f64> {
-        let part =
-            |rise: &mut Rise, x| rise.step(Vector([x, 0.0, 0.0]), Vector::ZERO).unwrap_or(1.0);
+        let part = |rise: &mut Rise, x: f64| {
+            step(rise, Vector([x, 0.0, 0.0]), Vector::ZERO).unwrap_or(1.0)
+        };
         forces.iter().map(|x| x * part(rise, *x)).collect()
     }
 
@@ -480,7 +503,7 @@ mod rise_tests {
     fn it_rises_until_it_has_caught_up() {
         let mut rise = rise(Recovery::Rise);
         assert_eq!(steps(&mut rise, &[8.0, 8.0, 5.0, 9.0]), [2.0, 4.0, 5.0, 9.0]);
-        assert_eq!(rise.step(Vector([0.0, 9.0, 0.0]), Vector::ZERO), None);
+        assert_eq!(step(&mut rise, Vector([0.0, 9.0, 0.0]), Vector::ZERO), None);
         rise.restart(3.0);
         assert_eq!(steps(&mut rise, &[8.0, 8.0]), [5.0, 7.0]);
         rise.restart(f64::NAN);
@@ -494,7 +517,7 @@ mod rise_tests {
         rise.begin();
         // A body that covers the hand may push it in the next tick.
         assert_eq!(steps(&mut rise, &[0.0, 8.0]), [0.0, 0.0]);
-        assert_eq!(rise.step(Vector::ZERO, Vector([0.0, 4.0, 0.0])), Some(0.5));
+        assert_eq!(step(&mut rise, Vector::ZERO, Vector([0.0, 4.0, 0.0])), Some(0.5));
         assert_eq!(steps(&mut rise, &[16.0, 4.0]), [4.0, 4.0]);
     }
 

@@ -316,12 +316,12 @@ impl SafetyChain {
         let frame = self.drive.enter(&bodies);
         let in_frame = position - frame.origin;
         let forces = ForcesOf { bodies: wanted, guides: rising };
-        let seen = CycleInput::of(forces, effort, in_frame, stiffness);
+        let seen = CycleInput::of(forces, effort, in_frame, stiffness).changed(&input);
         let is_disturbed = self.channel.is_late() || is_rising;
         let softness = self.cycle.observed(&seen.disturbed(is_disturbed), is_sound);
         let is_returning = self.cycle.is_returning() || self.drive.is_returning();
         let is_rising = is_rising || is_returning;
-        let scale = rise * softness;
+        let scale = rise * self.cycle.part();
         let Passed { force: free_force, spent } = self
             .free
             .step(FreeInput { force: free_force, position, scale, elapsed, is_sound }, options);

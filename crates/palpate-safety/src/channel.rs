@@ -140,10 +140,14 @@ impl Channel {
             if input.is_sound { self.approach.step(wanted, input.explained) } else { None };
         let (aim, follows) = (wanted, near.is_some());
         let wanted = near.unwrap_or(aim);
-        let part = self.risen_part(wanted, free, input);
+        let part = self.risen_part(wanted, aim, free, input);
         let is_rising = part.is_some() || follows;
         let part = part.unwrap_or(1.0);
         let wanted = if part < 1.0 { wanted * part } else { wanted };
+        if part < 1.0 {
+            // A hand that is let go leaves what it felt, and not what it would have felt.
+            self.approach.passed(wanted);
+        }
         if wanted != aim || part < 1.0 {
             self.effects.ramp.count_size((aim - wanted + free * (1.0 - part)).norm());
         }
@@ -151,11 +155,12 @@ impl Channel {
         Risen { wanted, part, is_rising, is_falling }
     }
 
-    /// The part of `wanted` and `free`, in [0, 1], that may pass in this tick while the force rises
-    /// after it was zeroed; `None` if it has risen before.
+    /// The part of `wanted`, which approaches `aim`, and of `free`, in [0, 1], that may pass in this
+    /// tick while the force rises after it was zeroed; `None` if it has risen before.
     fn risen_part(
         &mut self,
         wanted: Vector<f64, 3>,
+        aim: Vector<f64, 3>,
         free: Vector<f64, 3>,
         input: &TickInput,
     ) -> Option<f64> {
@@ -172,7 +177,7 @@ impl Channel {
         if !input.is_sound {
             return None;
         }
-        self.rise.step(wanted, free)
+        self.rise.step(wanted, aim, free)
     }
 
     /// The force to write for `observed`, which passed the passivity stage, plus `free`.

@@ -132,15 +132,16 @@ impl<V: InnerProduct> Drive<V> {
             return wanted;
         }
         let force = wanted.norm();
-        self.is_returning = !is_above;
-        let left = if is_above {
-            let allowed = force * (self.max_power / power);
+        let allowed = if is_above {
             // It falls in steps, and does not rise where the body is pressed on faster than that.
-            allowed.max(self.written.norm() - STEP)
+            (force * (self.max_power / power)).max(self.written.norm() - STEP)
         } else {
-            force - self.taken + self.rise_rate * elapsed
+            f64::INFINITY
         };
-        self.taken = force - left.clamp(0.0, force);
+        // A body that brakes may give more in each tick: what was taken comes back no faster for it.
+        let back = force - self.taken + self.rise_rate * elapsed;
+        self.is_returning = back < allowed;
+        self.taken = force - back.min(allowed).clamp(0.0, force);
         let changed = (self.taken > 0.0).then(|| wanted * (1.0 - self.taken / force));
         self.report.effect.count(wanted, changed)
     }

@@ -18,6 +18,8 @@ use half_cycles::{Ended, HalfCycles};
 use hand::{HandMotion, SoftenedWall};
 use repetition::Repetition;
 
+use crate::approach::Change;
+use crate::channel::TickInput;
 use crate::effect::Effect;
 use crate::passivity::{InnerProduct, PassivityOptions};
 
@@ -84,6 +86,10 @@ pub(crate) struct CycleInput<V> {
     /// Whether the force was zeroed, by late ticks, or rises after it was: an oscillation then has
     /// causes that pass.
     pub(crate) is_disturbed: bool,
+    /// Whether other bodies push from this tick on.
+    pub(crate) is_handed_over: bool,
+    /// By how much motion changes the force, at most [N].
+    pub(crate) explained: f64,
 }
 
 impl<V: InnerProduct> CycleInput<V> {
@@ -107,12 +113,22 @@ impl<V: InnerProduct> CycleInput<V> {
             is_free_of_bodies,
             stiffness,
             is_disturbed: false,
+            is_handed_over: false,
+            explained: 0.0,
         }
     }
 
     /// This input in a tick that is disturbed or not.
     pub(crate) fn disturbed(self, is_disturbed: bool) -> Self {
         Self { is_disturbed, ..self }
+    }
+
+    /// This input with what happened to the bodies in a tick.
+    pub(crate) fn changed(self, tick: &TickInput) -> Self {
+        let is_other = matches!(tick.change, Change::Carried | Change::HandedOver);
+        let is_handed_over = is_other || tick.start < 1.0;
+        // `max` ignores NaN.
+        Self { is_handed_over, explained: tick.explained.max(0.0), ..self }
     }
 }
 
@@ -195,7 +211,13 @@ impl<V: InnerProduct> LimitCycle<V> {
         1.0
     }
 
-    /// One tick: the part of the stiffness to render.
+    /// The part of the stiffness to render in this tick. While a force is handed over, another part of
+    /// the force may pass.
+    pub(crate) fn part(&self) -> f64 {
+        self.governor.part()
+    }
+
+    /// One tick: the part of the force that may pass.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     fn step(&mut self, input: &CycleInput<V>) -> f64 {

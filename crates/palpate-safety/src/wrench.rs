@@ -325,13 +325,13 @@ impl WrenchChain {
         let frame = self.drive.enter(&bodies);
         let in_frame = position - frame.origin;
         let forces = ForcesOf { bodies: as_lengths, guides: free };
-        let seen = CycleInput::of(forces, effort, in_frame, stiffness);
+        let seen = CycleInput::of(forces, effort, in_frame, stiffness).changed(&input);
         let is_disturbed = self.force.is_late() || !has_risen;
         let softness = self.cycle.observed(&seen.disturbed(is_disturbed), is_sound);
         let is_returning = self.cycle.is_returning() || self.drive.is_returning();
         let is_rising = !has_risen || is_returning;
         let of_guides = PassivityOptions { damping: self.sides.along.damping, ..options };
-        let scale = rise * softness;
+        let scale = rise * self.cycle.part();
         let of_free =
             FreeInput { force: free_force, position: position.along, scale, elapsed, is_sound };
         let Passed { force: free_force, spent } = self.free.step(of_free, &of_guides);

@@ -382,7 +382,7 @@ impl Renderer {
             let is_near = self.accepted.bodies.way_to(body, &pose, self.reach(touch)) > 0.0;
             is_near_any |= is_near;
             if let Some(point) = self.contacts.points.get_mut(index) {
-                point.see_jump(is_near, touch.wanted);
+                point.see_jump(is_near.then_some(body as u32), touch.wanted);
             }
         }
         self.accepted.bodies.jump_to(body, pose);

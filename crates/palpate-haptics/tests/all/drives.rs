@@ -350,6 +350,26 @@ fn a_weak_drive_that_stops_lifts_the_hand_gently() {
     }
 }
 
+/// A plate lifts a hand at 0.4 m/s and brakes within 5 ms. Once, the force came back by 3.3 N in a tick.
+#[test]
+fn a_drive_that_brakes_gives_the_force_back_gently() {
+    let height = |time: f64| {
+        let (time, brake) = (time - 1.0, 0.005);
+        let braked = (time - 0.02).clamp(0.0, brake);
+        0.4 * (time.clamp(0.0, 0.02) + braked - braked * braked / (2.0 * brake))
+    };
+    let undamped = Material { damping: 0.0, ..hard() };
+    let mut plate = Plate::new(&undamped, &omega(), 0.004, height);
+    plate.run(1.0);
+    let felt = plate.run(1.0);
+    assert!(felt[25].force < 4.0 && felt[25].wanted > 8.0, "{:?}", felt[25]);
+    for pair in felt.windows(2) {
+        let step = pair[1].force - pair[0].force;
+        let moved = 1000.0 * pair[1].relative.abs();
+        assert!(step <= 20.0 * PERIOD + moved + 1e-9 && step >= -0.3 - moved, "{pair:?}");
+    }
+}
+
 /// On plants that differ from their profile: with other mass, damping and friction, with delays, and in
 /// a loose or firm grip.
 #[test]

@@ -91,7 +91,7 @@ fn in_the_plane_every_bit_is_as_it_was() {
         hash::<2>(&mut servo::<2>(9, 3, 1.0)),
         hash::<2>(&mut protected(servo::<2>(9, 3, 1.0))),
     ];
-    is_as_it_was(hashes, [0x3963_d1a2_27aa_ee9b, 0x1072_1b50_2be9_f9a0]);
+    is_as_it_was(hashes, [0x3963_d1a2_27aa_ee9b, 0xca56_cf2e_57f0_7170]);
 }
 
 #[test]
@@ -101,7 +101,7 @@ fn in_space_every_bit_is_as_it_was() {
     let safe = hash::<3>(&mut protected(servo::<3>(20, 3, 1.0)));
     is_as_it_was(
         [few, many, safe],
-        [0x97b0_851f_8174_e11d, 0xe9e8_027c_8793_3017, 0xb21d_518d_c07f_0fd6],
+        [0x97b0_851f_8174_e11d, 0xe9e8_027c_8793_3017, 0x0d76_32de_4974_eacb],
     );
 }
 

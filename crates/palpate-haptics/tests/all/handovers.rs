@@ -374,3 +374,38 @@ fn a_tool_on_a_soft_and_a_hard_body_is_not_felt_by_turns() {
         last = (touch.force, held);
     }
 }
+
+/// A hand of 0.1 kg without damping swings against a plate with two ticks of delay, until the plate has become
+/// soft; then a softer plate takes over, in the middle of a swing. Once, the force fell by 6 N in a tick.
+#[test]
+fn a_plate_that_takes_over_from_a_softened_one_gives_no_step() {
+    let heights = |tick: i32| {
+        let time = 1e-3 * f64::from(tick);
+        let sunk = (0.02 * (time - 2.5).max(0.0)).min(0.004);
+        [-0.01 - sunk, -0.012 + 0.0005 * (3.0 * time).sin()]
+    };
+    let mut servo = point("omega", vec![plate(1000.0, 0.0, 0.0), plate(300.0, 0.0, 0.0)]);
+    let (mut y, mut speed, mut delayed) = (0.003, 0.0, [0.0; 2]);
+    let (mut before, mut last) = (y, 0.0);
+    for tick in 0..2700 {
+        let ([first, second], earlier) = (heights(tick), heights(tick - 1));
+        servo.set_pose(0, at(0.0, first, 0.0));
+        servo.set_pose(1, at(0.0, second, 0.0));
+        let read = (y / 1e-5_f64).round() * 1e-5;
+        let velocity = Vector([0.0, speed, 0.0]);
+        let position = Vector([0.0, read, 0.0]);
+        let force = servo.step(&[PointState { position, velocity }])[0].force[1];
+        let bodies = f64::max((first - earlier[0]).abs(), (second - earlier[1]).abs());
+        let moved = 1000.0 * ((read - before).abs() + bodies);
+        let step = (force - last).abs() - moved;
+        assert!(tick < 5 || step <= 0.3 + 1e-9, "{tick}: {last} N to {force} N, {moved} N");
+        (before, last) = (read, force);
+        for _ in 0..20 {
+            let pushed = delayed[0] + 300.0 * (-0.003 - y) - 0.3 * speed;
+            speed += pushed / 0.1 * 5e-5;
+            y += speed * 5e-5;
+        }
+        delayed = [delayed[1], force];
+    }
+    assert!(servo.safety()[0].limit_cycles.found > 0);
+}

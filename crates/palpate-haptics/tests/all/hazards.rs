@@ -8,8 +8,8 @@ use std::time::Duration;
 use palpate_device::{PointState, profile_named};
 use palpate_field::{Pose, Rotation, Shape, Vector};
 use palpate_haptics::{
-    Bodies, Body, EventKind, HandoffOptions, Material, Probe, Protection, Servo, ServoOptions,
-    Shell, Surface, Tool, ToolOptions, Unprotected, handoff,
+    Bodies, Body, EventKind, HandoffOptions, Magnet, Material, Probe, Protection, Servo,
+    ServoOptions, Shell, Surface, Tool, ToolOptions, Unprotected, handoff,
 };
 
 use crate::common::cuboid;
@@ -549,4 +549,65 @@ fn a_body_that_moves_far_away_changes_nothing_of_a_jump() {
             assert_eq!(is_told(&alone.0), is_told(&beside.0), "{way} m: {alone:?}, {beside:?}");
         }
     }
+}
+
+/// A plate jumps onto the hand and slides away while the force rises. Once, the force rose on for four ticks
+/// after the hand was free.
+#[test]
+fn a_hand_that_is_free_again_while_the_force_rises_is_let_go() {
+    let plate = body(cuboid([0.02, 0.02, 0.1]), 1000.0, 0.0, at(0.0, -0.01, 0.0));
+    let mut servo = point("omega", vec![plate]);
+    let (mut control, mut end) = handoff(&servo, HandoffOptions::default());
+    let (mut last, mut most) = (0.0_f64, 0.0_f64);
+    for tick in 0..500 {
+        if tick == 300 {
+            control.set_poses(&[(0, at(0.0, 0.005, 0.0))], Duration::ZERO).unwrap();
+        }
+        end.receive(&mut servo);
+        if tick > 339 {
+            servo.set_pose(0, at(1.5e-3 * f64::from(tick - 339), 0.005, 0.0));
+        }
+        let touch = servo.step(&[PointState::at_rest(Vector([0.0, 0.001, 0.0]))])[0];
+        let force = touch.force.norm();
+        assert!(touch.contact || force <= (last - 0.5).max(0.0), "{tick}: {last} N to {force}");
+        (last, most) = (force, most.max(force));
+    }
+    assert!(most > 1.5 && last == 0.0, "{most} N, {last} N");
+}
+
+/// The forces on a hand 2.8 mm above a plate that pulls with 2 N, before which it is put from `from` to `to`
+/// [m] at tick 100, and whether `Placed` was told then.
+fn pulled(from: f64, to: f64) -> (Vec<f64>, bool) {
+    let magnet = Some(Magnet { description: None, force: 2.0, distance: 0.01 });
+    let material = Material { stiffness: 1000.0, magnet, ..Material::default() };
+    let plate = Body::new(cuboid([0.1, 0.02, 0.1]), Surface::new(&material).unwrap()).unwrap();
+    let mut servo = point("omega", vec![plate.at(at(0.0, from, 0.0)).unwrap()]);
+    let (mut control, mut end) = handoff(&servo, HandoffOptions::default());
+    let (mut forces, mut is_told) = (Vec::new(), false);
+    for tick in 0..300 {
+        if tick == 100 {
+            control.set_poses(&[(0, at(0.0, to, 0.0))], Duration::ZERO).unwrap();
+        }
+        end.receive(&mut servo);
+        let touch = servo.step(&[PointState::at_rest(Vector([0.0, 0.0048, 0.0]))])[0];
+        forces.push(-touch.force[1]);
+        is_told |= servo.events().iter().any(|event| event.kind == EventKind::Placed);
+    }
+    (forces, is_told)
+}
+
+/// Once, the whole pull came and went in one tick, and nothing told it.
+#[test]
+fn a_magnet_that_jumps_pulls_step_by_step() {
+    let (leaving, is_told) = pulled(-0.01, -0.04);
+    assert!(is_told && (leaving[99] - 1.92).abs() < 1e-12 && leaving[106] == 0.0);
+    let largest = |forces: &[f64]| {
+        forces.windows(2).map(|pair| (pair[1] - pair[0]).abs()).fold(0.0, f64::max)
+    };
+    let step = largest(&leaving[99..]);
+    assert!(step <= 0.3 + 1e-12, "{step} N");
+    let (coming, is_told) = pulled(-0.06, -0.01);
+    assert!(is_told && coming[99] == 0.0 && (coming[299] - 1.92).abs() < 1e-12);
+    let step = largest(&coming);
+    assert!(step <= 0.02 + 1e-12, "{step} N");
 }

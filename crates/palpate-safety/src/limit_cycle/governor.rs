@@ -44,12 +44,17 @@ pub(super) struct Governor {
     target: f64,
     /// The part of the stiffness in this tick.
     part: f64,
+    /// What it left of the last force [N].
+    left: f64,
+    /// Whether what is left follows a handover.
+    follows: bool,
     report: LimitCycleReport,
 }
 
 impl Governor {
     pub(super) fn new() -> Self {
-        Self { calm: 0.0, target: 1.0, part: 1.0, report: LimitCycleReport::default() }
+        let report = LimitCycleReport::default();
+        Self { calm: 0.0, target: 1.0, part: 1.0, left: 0.0, follows: false, report }
     }
 
     /// Lets a tick of this duration pass [s].
@@ -79,7 +84,6 @@ impl Governor {
     }
 
     /// The part of the stiffness in this tick.
-    #[cfg(test)]
     pub(super) const fn part(&self) -> f64 {
         self.part
     }
@@ -94,9 +98,10 @@ impl Governor {
         self.target == 1.0 && self.part < 1.0
     }
 
-    /// The part of the stiffness to render in a tick of this duration [s].
+    /// The part of the force that may pass in a tick of this duration [s].
     pub(super) fn step<V: InnerProduct>(&mut self, input: &CycleInput<V>, period: f64) -> f64 {
-        if self.target == 1.0 && self.part == 1.0 {
+        if self.target == 1.0 && self.part == 1.0 && !self.follows {
+            self.left = input.effort;
             return 1.0;
         }
         self.soften(input, period)
@@ -119,11 +124,26 @@ impl Governor {
             self.part = (self.part.min(free) - STEP / effort).max(self.target);
             self.report.least_part = self.report.least_part.min(self.part);
         }
-        let left = self.part * effort;
+        let left = self.followed(self.part * effort, input);
         if left < force {
             self.report.effect.count_size(force - left);
         }
-        self.part
+        self.left = left.min(force);
+        if self.follows && effort > 0.0 { (left / effort).min(1.0) } else { self.part }
+    }
+
+    /// What may be left of a force of which the softer wall leaves `left` [N]. A handover changes the
+    /// force at once, so what is left of it follows step by step.
+    fn followed<V: InnerProduct>(&mut self, left: f64, input: &CycleInput<V>) -> f64 {
+        self.follows |= input.is_handed_over;
+        if !self.follows {
+            return left;
+        }
+        let most = STEP + self.part * input.explained;
+        // `max` and `min` ignore NaN.
+        let near = left.max(self.left - most).min(self.left + most);
+        self.follows = near != left;
+        near
     }
 
     pub(super) const fn report(&self) -> LimitCycleReport {
