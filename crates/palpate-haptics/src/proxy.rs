@@ -51,6 +51,10 @@ const WORTH_ADVANCING: f64 = 0.01;
 /// The most ticks in which a proxy rides on a body without a new sample.
 const MOST_RIDDEN: u32 = 64;
 
+/// Looking for bodies that push may use one of so many parts of the budget: a body that grazes the
+/// proxy would use up all of it, and leave none to find the proxy's place.
+const PUSHING: u32 = 2;
+
 /// The most evaluations that place a proxy outside a body that pushes it.
 const MOST_PLACING: u32 = 6;
 
@@ -406,7 +410,9 @@ impl Proxy {
             (self.at, self.is_moved) = (Some(ridden), true);
         } else if nearby.has_moved() && self.at.is_some() {
             self.is_moved = true;
-            let pushed = self.pushed(&mut sampler, [last, carried]);
+            let ways = [last, carried];
+            let pushed =
+                sampler.at_most(budget / PUSHING, |sampler| self.pushed(sampler, ways));
             let most = if sampler.is_point() { MOST_OF_POINT } else { radius };
             is_placed_on = pushed.is_some_and(|at| squared(at - last) > most * most);
             if pushed.is_some() && self.contact && self.walls.is_none() {

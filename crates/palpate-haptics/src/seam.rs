@@ -107,6 +107,59 @@ impl Neighbour {
     }
 }
 
+/// The neighbours of the touched body at `place` that have other springs, each with the length of
+/// its seam [m]. Each evaluation adds to `evaluations`.
+fn beside<'a>(
+    nearby: &'a Nearby<'_>,
+    place: &'a Place,
+    punctured: &'a Punctured,
+    most_force: f64,
+    evaluations: &'a mut u32,
+) -> impl Iterator<Item = (&'a Body, Neighbour, f64)> {
+    let foot = place.proxy - place.normal * place.radius;
+    let touched = nearby.body(place.body);
+    nearby.all().filter_map(move |(index, body)| {
+        let touched = touched?;
+        let own = &touched.surface().strata;
+        let has_own_springs = body.surface().strata.has_springs_of(own);
+        if index == place.body || has_own_springs || punctured.level(index) > 0 {
+            return None;
+        }
+        let length = length([touched, body], place.radius, most_force);
+        // Written so that NaN is no seam.
+        let is_near = body.above_ball(foot) < length;
+        if !is_near {
+            return None;
+        }
+        *evaluations += 2;
+        let seen = Neighbour::seen(body, foot, place, length)?;
+        Some((body, seen, length))
+    })
+}
+
+/// The mean of a number of the touched body and of its neighbours, each with the weight of its share
+/// at `place`. Each evaluation adds to `evaluations`.
+///
+/// Real-time: allocates nothing, takes no lock, cannot panic.
+pub(crate) fn blended(
+    nearby: &Nearby<'_>,
+    place: &Place,
+    most_force: f64,
+    evaluations: &mut u32,
+    of: impl Fn(&Body) -> f64,
+) -> f64 {
+    let own = nearby.body(place.body).map_or(0.0, &of);
+    let (mut whole, mut more) = (1.0, 0.0);
+    let none = Punctured::default();
+    for (body, seen, length) in beside(nearby, place, &none, most_force, evaluations) {
+        let (share, _) = share(seen.distance / length);
+        let weight = seen.level * share / (1.0 - share);
+        whole += weight;
+        more += weight * (of(body) - own);
+    }
+    own + more / whole
+}
+
 impl Seam {
     /// The seam at `place`, where the hand feels at most `most_force` [N]; `None` if all bodies near
     /// have the same springs. Each evaluation adds to `evaluations`.
@@ -125,24 +178,12 @@ impl Seam {
             return None;
         }
         let depth = place.stretch.norm();
-        let foot = place.proxy - place.normal * place.radius;
         let (force, energy) = (own.force(0, depth), own.energy(depth));
         // Sums over the neighbours of weights w = b / (1 − b), with the touched body's weight of 1.
         let (mut whole, mut springs, mut energies) = (1.0, 0.0, 0.0);
         let (mut slope, mut sideways) = (Vector::ZERO, Vector::ZERO);
-        for (index, body) in nearby.all() {
+        for (body, seen, length) in beside(nearby, place, punctured, most_force, evaluations) {
             let strata = &body.surface().strata;
-            if index == place.body || strata.has_springs_of(own) || punctured.level(index) > 0 {
-                continue;
-            }
-            let length = length([touched, body], place.radius, most_force);
-            // Written so that NaN is no seam.
-            let is_near = body.above_ball(foot) < length;
-            if !is_near {
-                continue;
-            }
-            *evaluations += 2;
-            let Some(seen) = Neighbour::seen(body, foot, place, length) else { continue };
             let (share, steepness) = share(seen.distance / length);
             let weight = seen.level * share / (1.0 - share);
             let steepness = seen.level * steepness / (length * (1.0 - share) * (1.0 - share));

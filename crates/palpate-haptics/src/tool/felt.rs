@@ -13,11 +13,14 @@ use super::coupling::Twist;
 use super::settle::{Push, stacked_along};
 use super::state::{ToolState, ToolTouch};
 use super::{Coupling, Tool};
+use crate::bodies::Body;
 use crate::contact_point::LARGEST_GAIN;
+use crate::crease::Place;
 use crate::event::{Event, EventKind, Reaction};
 use crate::guide::limit::{Motion, damped};
 use crate::nearby::Nearby;
 use crate::proxy::Edited;
+use crate::seam::blended;
 use palpate_device::shortening;
 use palpate_safety::Change;
 
@@ -153,9 +156,12 @@ impl Tool {
             }
             return;
         }
-        let (options, coupling) = (&self.options, &self.coupling);
         let stretch = Twist::between(&device.pose, &self.touch.pose);
+        if !self.rest_search.rest.touching.is_empty() {
+            self.spread(self.depth(&stretch));
+        }
         let body_response = self.body_response(nearby, device, &stretch);
+        let (options, coupling) = (&self.options, &self.coupling);
         let velocity = device.velocity - moved.linear * options.rate;
         let spins = device.angular_velocity - moved.angular * options.rate;
         let part = body_response.part;
@@ -199,8 +205,10 @@ impl Tool {
     /// At the depth `d = √(‖v‖² + ℓ²‖ω‖²)` a body bears `∫ min(K, K_body)` over the depth. This
     /// is a function of the distance from the device's pose to the nearest free pose, so the
     /// force of one body has a potential, and is no stiffer than the coupling.
+    ///
+    /// Where level bodies of different springs meet, each point blends them as a probe does.
     fn body_response(
-        &self,
+        &mut self,
         nearby: &Nearby<'_>,
         device: &ToolState,
         stretch: &Twist,
@@ -208,13 +216,29 @@ impl Tool {
         let (mut part, mut force, mut torque) = (0.0, Vector::ZERO, Vector::ZERO);
         let Coupling { stiffness, arms, .. } = self.coupling;
         let depth = self.depth(stretch);
-        let pushes = &self.rest_search.rest.pushes;
+        let pushes = self.pushes();
         let whole: f64 = pushes.iter().map(|push| push.push).sum();
+        let (mut evaluations, left) = (0, self.scan.left());
+        let most_force = self.options.force_limit();
+        let borne_by = |body: &Body| {
+            body.surface().strata.force_up_to(stiffness, depth) / (stiffness * depth)
+        };
+        let is_shared = !self.rest_search.rest.touching.is_empty();
+        let of_seam = 2 * nearby.all().count() as u32;
         for push in pushes {
             let share = push.push / whole;
             let Some(body) = nearby.body(push.body) else { continue };
             let strata = &body.surface().strata;
-            let borne = strata.force_up_to(stiffness, depth) / (stiffness * depth);
+            let borne = if is_shared && evaluations + of_seam <= left {
+                let Push { normal, body, .. } = *push;
+                let proxy = push.centre - normal * push.gap;
+                let radius = self.shell.points().get(push.point as usize);
+                let radius = radius.map_or(0.0, |point| point.radius);
+                let place = Place { proxy, stretch: stretch.linear, body, normal, radius };
+                blended(nearby, &place, most_force, &mut evaluations, borne_by)
+            } else {
+                borne_by(body)
+            };
             // Written so that NaN, from zero depth, gives one.
             part += share * if borne < 1.0 { borne } else { 1.0 };
             let layer = strata.at(0, depth);
@@ -225,6 +249,8 @@ impl Tool {
             force += damper * share;
             torque += arm.cross(damper * share);
         }
+        self.scan.spend(evaluations);
+        self.touch.evaluations += evaluations;
         BodyResponse { part, force, torque }
     }
 
@@ -348,7 +374,7 @@ impl Tool {
         if !self.touch.contact {
             return;
         }
-        let pushes = &self.rest_search.rest.pushes;
+        let pushes = self.pushes();
         let origin = self.touch.pose.translation;
         let stiffness = self.coupling.stiffness * self.part * self.rise;
         let mut force = self.touch.force;

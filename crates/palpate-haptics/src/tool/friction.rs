@@ -88,6 +88,7 @@ impl RestSearch {
         // Written so that NaN sticks.
         if moves.is_nan() || moves <= (STUCK * length(&away)).max(lengths.tolerance) {
             self.list_pushes(&found);
+            self.list_touching(length(&away));
             if nearby.has_moved() {
                 self.list_new_pushes(&found);
             }

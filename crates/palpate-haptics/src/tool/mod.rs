@@ -20,6 +20,7 @@ mod friction;
 mod of_shape;
 mod scan;
 mod settle;
+mod shares;
 #[expect(clippy::indexing_slicing, reason = "made at set-up, never in a tick")]
 mod shell;
 mod spread;
@@ -107,7 +108,7 @@ const MOST_EVENTS: usize = 4;
 /// with the stiffness `K_body` of its layer at each depth: a body softer than the coupling
 /// feels as it does to a contact point, a harder one as stiff as the coupling. The force of one
 /// body without friction therefore has a potential; several bodies are weighted by how much
-/// each pushes. The damping and the viscosity of a layer act at each contact, with the same
+/// each pushes, and where level ones meet, their stiffness blends. The damping and the viscosity of a layer act at each contact, with the same
 /// weight, on the device's velocity relative to the body; friction holds the tool back.
 ///
 /// A tool does not render: pop-through, because a layer would have to give way under a part of

@@ -136,6 +136,8 @@ pub(super) struct Rest {
     pub(super) pose: Pose<3>,
     /// The points that push the tool there.
     pub(super) pushes: FixedList<Push>,
+    /// The points that touch there, where bodies have different springs.
+    pub(super) touching: FixedList<Push>,
     /// The number of points proven outside.
     pub(super) known: u32,
     /// `true` if every evaluated point is outside.
@@ -145,10 +147,12 @@ pub(super) struct Rest {
 }
 
 impl Rest {
-    pub(super) fn new() -> Self {
+    /// The rest pose of a tool with so many contacts at most.
+    pub(super) fn new(contacts: usize) -> Self {
         Self {
             pose: Pose::identity(),
             pushes: FixedList::with_capacity(FREEDOMS),
+            touching: FixedList::with_capacity(contacts),
             known: 0,
             is_outside: false,
             energy: f64::INFINITY,
@@ -197,6 +201,8 @@ pub(super) struct RestSearch {
     pub(super) is_slipping: bool,
     /// `true` if the tool stays in the plane z = 0.
     pub(super) is_flat: bool,
+    /// Whether the bodies near the tool have different springs.
+    has_springs: bool,
     pub(super) rest: Rest,
 }
 
@@ -213,7 +219,8 @@ impl RestSearch {
             cones: FixedList::with_capacity(FREEDOMS),
             is_slipping: false,
             is_flat: shell.is_flat,
-            rest: Rest::new(),
+            has_springs: false,
+            rest: Rest::new(points + MOST_SECOND),
         }
     }
 
@@ -226,6 +233,7 @@ impl RestSearch {
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     pub(super) fn begin(&mut self, nearby: &Nearby<'_>) {
+        self.has_springs = have_different_springs(nearby);
         let pushes = &self.rest.pushes;
         self.pushed.retain(|near| pushes.iter().any(|push| near.is_of(push)));
         for Near { seen, .. } in self.pushed.iter_mut() {
@@ -253,6 +261,7 @@ impl RestSearch {
         self.held.clear();
         self.held.extend_from_slice(&self.rest.pushes);
         self.rest.pushes.clear();
+        self.rest.touching.clear();
         self.stopped.clear();
         self.rest.energy = f64::INFINITY;
         self.rest.is_outside = false;
@@ -444,7 +453,24 @@ impl RestSearch {
         (self.rest.pose, self.rest.energy) = (*pose, energy);
         (self.rest.known, self.rest.is_outside) = (known, true);
         list(&mut self.rest.pushes, &self.near, found);
+        self.list_touching(energy.sqrt());
     }
+
+    /// Lists the points that touch the bodies at the present pose, `depth` from the goal [m].
+    pub(super) fn list_touching(&mut self, depth: f64) {
+        self.rest.touching.clear();
+        if self.has_springs {
+            let all = self.near.iter().map(|near| near.push(0.0));
+            self.rest.touching.extend(all.filter(|push| push.touches(depth) > 0.0));
+        }
+    }
+}
+
+/// Whether bodies have different springs.
+fn have_different_springs(nearby: &Nearby<'_>) -> bool {
+    let mut all = nearby.all().map(|(_, body)| &body.surface().strata);
+    let first = all.next();
+    first.is_some_and(|first| all.any(|strata| !strata.has_springs_of(first)))
 }
 
 /// Lists the pushes of a solution.

@@ -50,7 +50,13 @@ impl Tool {
         self.scan.forget();
         let out = Ends { is_out: true, ..ends };
         self.rest_search.settle(&mut self.scan, surroundings, out, lengths);
-        if self.rest_search.rest.is_outside {
+        let rest = &self.rest_search.rest;
+        if rest.is_outside {
+            if rest.pushes.is_empty() && rest.pose != ends.goal {
+                // No body covers the tool there: it goes on, and finds what keeps it.
+                self.scan.forget();
+                self.rest_search.settle(&mut self.scan, surroundings, ends, lengths);
+            }
             return;
         }
         if let Some(lifted) = self.lifted(nearby, &ends.start, lengths) {

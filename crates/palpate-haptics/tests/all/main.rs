@@ -52,6 +52,7 @@ mod strikes;
 mod swapped;
 mod tool_faces;
 mod tool_materials;
+mod tool_seams;
 mod tool_servo;
 mod tool_wedges;
 mod tools;

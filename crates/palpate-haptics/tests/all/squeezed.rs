@@ -364,3 +364,42 @@ fn whatever_closes_the_force_does_not_jump() {
         Ok(())
     });
 }
+
+/// Once a body that grazed the point used up the evaluations of a tick: the point was dropped onto the
+/// hand, and its force fell from 7.6 N to zero.
+#[test]
+fn a_point_between_two_bodies_that_move_keeps_its_touch() {
+    let floor = |time: f64| {
+        Pose::translation(Vector([0.01 * time, -0.01 + 0.001 * (5.0 * time).sin(), 0.0]))
+    };
+    let rotation = Rotation::from_axis_angle(Vector([0.0, 0.0, 1.0]), 0.4).unwrap();
+    let grazing = |time: f64| Pose::new(rotation, Vector([0.014 - 0.05 * time, 0.004, 0.0]));
+    let spring = Material {
+        stiffness: 1000.0,
+        damping: 0.0,
+        static_friction: 0.0,
+        dynamic_friction: 0.0,
+        ..Material::default()
+    };
+    let surface = || Surface::new(&spring).unwrap();
+    let bodies = Bodies::new(vec![
+        Body::new(cuboid([0.2, 0.02, 0.2]), surface()).unwrap().at(floor(0.0)).unwrap(),
+        Body::new(ball(0.01), surface()).unwrap().at(grazing(0.0)).unwrap(),
+    ]);
+    let mut servo = Tip::Ball(0.0).servo(bodies.unwrap());
+    let mut last = None::<Touch>;
+    for tick in 0..400 {
+        let time = PERIOD * f64::from(tick);
+        servo.set_pose(0, floor(time));
+        servo.set_pose(1, grazing(time));
+        let hand = Vector([-0.002, 0.02 - 1e-4 * f64::from(tick.min(240)), 0.003]);
+        let touch = servo.step(&[PointState::at_rest(hand)])[0];
+        if let Some(last) = last.filter(|last| last.contact) {
+            assert!(touch.contact, "{tick}");
+            let step = (touch.wanted - last.wanted).norm();
+            assert!(step < LARGEST_STEP, "{tick}: {step}");
+        }
+        last = Some(touch);
+    }
+    assert!(last.is_some_and(|last| last.wanted.norm() > 5.0));
+}
