@@ -141,7 +141,6 @@ fn dot(a: &Stacked, b: &Stacked) -> f64 {
 }
 
 #[cfg(test)]
-#[expect(clippy::indexing_slicing, reason = "tests know their lengths")]
 mod tests {
     use super::*;
     use palpate_testkit::cases::each as cases;
