@@ -58,8 +58,6 @@ pub(crate) const COLLIDE: &[Bar] = &[
     ("sweep.mesh_888.S3.p50.over_S3", 35_000.0),
     ("parry.sweep.ball_torus.ours_over_parry", 0.002),
     ("sweep.pair.S3_S3.p50.over_S3", 80_000.0),
-    ("sweep.mesh_floor.ball.over_cuboid", 5.0),
-    ("sweep.mesh_cubes.1mm.over_cuboids", 10.0),
     ("manifold.boxes.p50.over_S3", 22_000.0),
     ("manifold.peg.p50.over_S3", 86_000.0),
     ("manifold.bar_torus.p50.over_S3", 4500.0),
