@@ -532,7 +532,7 @@ class Contacts(_examples.Contacts):
 
     >>> import palpate as pp
     >>> touch = pp.manifold(pp.cuboid([1, 1, 1]), pp.ball(0.5).translated([0, 0.99, 0])).contacts
-    >>> touch.normal.round(3), touch.gap.round(3)
+    >>> touch.normal[:1].round(3), touch.gap[:1].round(3)
     (array([[0., 1., 0.]]), array([-0.01]))
     """
 
