@@ -3,10 +3,9 @@
 
 //! How much each point of a tool pushes, where bodies have different springs.
 //!
-//! A rod that lies flat on the ground may be held by its middle or by its two ends: equal solutions
-//! for the rest pose, of which the search takes one. Where the bodies below have different springs,
-//! the force would jump with the choice. So the pushes are spread over all points that touch, as
-//! evenly as force and torque allow.
+//! A rod that lies flat on the ground may be held by its middle or by its two ends. Both solve for the
+//! same rest pose, and the search takes either. Over different springs the force would jump with that
+//! choice. So the pushes are spread over all points that touch, as evenly as force and torque allow.
 
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 

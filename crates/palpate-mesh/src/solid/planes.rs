@@ -23,7 +23,7 @@ const BEYOND: f64 = 1.5;
 /// Another plane is taken if the cell is at most this share as far below it.
 const LESS_DEEP: f64 = 0.75;
 
-/// The most near faces from which a cell is told apart.
+/// A plane is looked for between a cell and at most this many faces near it.
 const MOST_FACES: usize = MOST_GROUPS * FAN;
 
 /// The most directions in which all faces are looked at.

@@ -13,11 +13,11 @@ use crate::pair::search::BoxCell;
 /// No part of the region is farther than this many spacings from the convex hull of the contacts.
 const MOST: f64 = 2.0;
 
-/// The same of candidates: parts of the region may be half a spacing from them, and contacts move a little
-/// to the surfaces.
+/// No candidate is farther than this many spacings from the hull. Parts of the region may be half a spacing
+/// from a candidate, and contacts move a little to the surfaces.
 const CANDIDATES: f64 = 1.4;
 
-/// Steps to the nearest point of a hull at most: a place that is still undecided is near the limit, and
+/// The most steps to the nearest point of a hull. A place that is still undecided then is near the limit. It
 /// counts as left out.
 const STEPS: usize = 16;
 
@@ -58,8 +58,8 @@ fn nearest<const D: usize>(place: Point<D>, contacts: &[Member<D>]) -> Option<&M
 }
 
 impl<const D: usize> Patches<'_, '_, D> {
-    /// Appends contacts until none of these touches is left out, always the one that is farthest from all,
-    /// but for parts that end next to a contact.
+    /// Appends contacts until none of these touches is left out. The touch that is farthest from all contacts
+    /// comes next. It is moved to the end of its part, and is no contact if another one is near there.
     pub(super) fn cover(&mut self, touches: &[Touch<D>], contacts: &mut Vec<Member<D>>) {
         let spacing = self.settings.spacing;
         let mut left: Vec<&Touch<D>> = touches.iter().collect();

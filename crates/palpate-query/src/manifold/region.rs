@@ -38,7 +38,7 @@ const HALVINGS: usize = 6;
 /// A box is far from all candidates if none is within so many spacings: less than neighbours are apart.
 const SEEDED: f64 = 1.2;
 
-/// A box is decided by a candidate from which no point of it is farther than so many spacings.
+/// A candidate decides a box if no point of the box is farther from it than so many spacings.
 const DECIDED: f64 = 0.5;
 
 /// The evaluations that thin parts may take, as a multiple of those before, and in addition.
@@ -111,7 +111,7 @@ impl<const D: usize> Region<D> {
 enum Near<'c, const D: usize> {
     /// Those near a candidate.
     Candidates,
-    /// Those that these contacts, or a candidate found meanwhile, leave out by no more than promised.
+    /// Those that these contacts leave out by no more than promised, and those decided by a candidate.
     Contacts(&'c [Member<D>]),
 }
 

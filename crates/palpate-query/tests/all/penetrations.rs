@@ -16,8 +16,8 @@ const LIMITS: Limits = Limits::new(1e-4);
 
 type Answer<const D: usize> = Certified<Penetration<D>>;
 
-/// The penetration of two bodies, of which the second is at a pose: a translation as long as the upper
-/// bound is seen to separate them.
+/// The penetration of two bodies, the second at `pose`. Checks that a translation as long as the upper bound
+/// separates them.
 fn asked<const D: usize>(
     a: &Shape<D>,
     b: &Shape<D>,

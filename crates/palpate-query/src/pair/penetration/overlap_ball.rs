@@ -23,7 +23,7 @@ pub(super) struct OverlapBall<const D: usize> {
 }
 
 impl<const D: usize> OverlapBall<D> {
-    /// That of a ball within each body.
+    /// The overlap ball that follows from a ball within each body.
     pub(super) fn of([a, b]: [InnerBall<D>; 2]) -> Self {
         Self { centre: a.centre - b.centre, radius: a.radius + b.radius }
     }

@@ -31,8 +31,8 @@ use crate::sampler::unit;
 /// the rounding of the field grows.
 const FAR: f64 = 1024.0;
 
-/// From how far another body is seen, in its radii. What its field does not tell, a share 1/(2·far)
-/// of the radius, is as large there as the rounding.
+/// From how far a body that is not convex is seen, in its radii. Seen from there, its reach is known but
+/// for a share 1/(2·far) of the radius. At this distance that share is as large as the rounding.
 const VERY_FAR: f64 = 8_388_608.0;
 
 /// Steps to the farthest point at most.

@@ -9,7 +9,7 @@
 //! `g_a(p) = −r` and `g_b(p − t) = −s` at a point p, both negative, a ball of radius r about p lies
 //! within the first body, and one of radius s within the second body after its translation by t. So
 //! the bodies overlap under every translation nearer to t than `r + s`. This sum is large for a thin
-//! body within a thick one, of which the largest common ball is small.
+//! body within a thick one. Their largest common ball is small.
 //!
 //! The cells are cubes of translations. A cell within one such ball is ruled out, and the others
 //! are halved. The least length in a cell that is left is a lower bound of the penetration.
@@ -211,7 +211,7 @@ impl<'a, const D: usize> TranslationTree<'a, D> {
         self.closed = self.closed.min(longest);
     }
 
-    /// Balls within a body, of which the largest are first.
+    /// Balls within a body, the largest first.
     fn inner_balls(
         &mut self,
         body: usize,
