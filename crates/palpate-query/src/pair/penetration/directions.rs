@@ -19,14 +19,15 @@
 //!
 //! The cells are squares on the faces of a cube about the origin, seen from there.
 
-use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
 use palpate_field::Vector;
 
+use super::least_first::LeastFirst;
 use super::overlap_ball::OverlapBall;
 use super::support::Support;
 use crate::certified::{Limits, Stop};
+use crate::engine::Bounded;
 
 /// How many overlap balls a cell passes on to its parts: a mean and those that may be next to it.
 const KEPT: usize = 4;
@@ -103,24 +104,9 @@ impl<const D: usize> Cell<D> {
     }
 }
 
-impl<const D: usize> PartialEq for Cell<D> {
-    fn eq(&self, other: &Self) -> bool {
-        self.cmp(other) == Ordering::Equal
-    }
-}
-
-impl<const D: usize> Eq for Cell<D> {}
-
-impl<const D: usize> PartialOrd for Cell<D> {
-    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
-        Some(self.cmp(other))
-    }
-}
-
-impl<const D: usize> Ord for Cell<D> {
-    /// The cell with the least bound is the greatest: a heap gives it first.
-    fn cmp(&self, other: &Self) -> Ordering {
-        other.lower.total_cmp(&self.lower)
+impl<const D: usize> Bounded for Cell<D> {
+    fn lower(&self) -> f64 {
+        self.lower
     }
 }
 
@@ -224,14 +210,14 @@ impl<'a, const D: usize> DirectionTree<'a, D> {
             for side in [-1.0, 1.0] {
                 let (all, _) = self.look(Vector::unit(axis) * side);
                 let cell = self.bounded(Cell::face(axis, side, all));
-                heap.push(cell);
+                heap.push(LeastFirst(cell));
             }
         }
         // The least bound of the cells that are closed.
         let mut closed = f64::INFINITY;
         let mut is_full = false;
         let (stop, open) = loop {
-            let Some(cell) = heap.pop() else {
+            let Some(LeastFirst(cell)) = heap.pop() else {
                 break (
                     if is_full { Stop::MemoryFull } else { Stop::Converged },
                     f64::INFINITY,
@@ -254,7 +240,7 @@ impl<'a, const D: usize> DirectionTree<'a, D> {
                 if part.lower >= self.upper - self.tolerance {
                     closed = closed.min(part.lower);
                 } else if heap.len() < self.room {
-                    heap.push(part);
+                    heap.push(LeastFirst(part));
                 } else {
                     closed = closed.min(part.lower);
                     is_full = true;

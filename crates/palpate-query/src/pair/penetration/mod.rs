@@ -18,6 +18,7 @@ use way_out::WayOut;
 
 mod convexity;
 mod directions;
+mod least_first;
 mod overlap_ball;
 mod support;
 mod translations;

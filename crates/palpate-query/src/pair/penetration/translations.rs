@@ -14,15 +14,16 @@
 //! The cells are cubes of translations. A cell within one such ball is ruled out, and the others
 //! are halved. The least length in a cell that is left is a lower bound of the penetration.
 
-use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
 use palpate_field::{Aabb, Point, Vector};
 
 use super::super::body_pair::{BodyPair, common};
+use super::least_first::LeastFirst;
 use super::overlap_ball::{OverlapBall, deepest_common};
 use super::support::InnerBall;
 use crate::certified::Stop;
+use crate::engine::Bounded;
 use crate::sampler::{larger, unit};
 
 /// Points along each side of the lattice in which balls within a body are looked for.
@@ -81,24 +82,9 @@ impl<const D: usize> Cell<D> {
     }
 }
 
-impl<const D: usize> PartialEq for Cell<D> {
-    fn eq(&self, other: &Self) -> bool {
-        self.cmp(other) == Ordering::Equal
-    }
-}
-
-impl<const D: usize> Eq for Cell<D> {}
-
-impl<const D: usize> PartialOrd for Cell<D> {
-    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
-        Some(self.cmp(other))
-    }
-}
-
-impl<const D: usize> Ord for Cell<D> {
-    /// The cell with the shortest translation is the greatest: a heap gives it first.
-    fn cmp(&self, other: &Self) -> Ordering {
-        other.least.total_cmp(&self.least)
+impl<const D: usize> Bounded for Cell<D> {
+    fn lower(&self) -> f64 {
+        self.least
     }
 }
 
@@ -158,7 +144,7 @@ pub(super) struct TranslationTree<'a, const D: usize> {
     first: usize,
     /// The place of the ball that is replaced next.
     next: usize,
-    heap: BinaryHeap<Cell<D>>,
+    heap: BinaryHeap<LeastFirst<Cell<D>>>,
     /// The least length in what is not searched any more.
     closed: f64,
     slack: f64,
@@ -198,7 +184,7 @@ impl<'a, const D: usize> TranslationTree<'a, D> {
         }
         tree.first = tree.known.len();
         tree.next = tree.first;
-        tree.heap.push(Cell::new(Vector::ZERO, longest));
+        tree.heap.push(LeastFirst(Cell::new(Vector::ZERO, longest)));
         tree
     }
 
@@ -290,7 +276,7 @@ impl<'a, const D: usize> TranslationTree<'a, D> {
         let enough = upper - room.tolerance + 4.0 * f64::EPSILON * upper.min(f64::MAX);
         let end = self.evaluations().saturating_add(room.budget);
         loop {
-            let first = self.heap.peek().copied();
+            let first = self.heap.peek().map(|first| first.0);
             let least = first.map_or(f64::INFINITY, |cell| cell.least);
             let lower = least.min(self.closed).min(upper).max(0.0);
             let is_small = |cell: Cell<D>| cell.radius() < self.share * room.tolerance;
@@ -308,7 +294,7 @@ impl<'a, const D: usize> TranslationTree<'a, D> {
                 self.share *= 0.5;
                 return Proven { lower, stop: Stop::Unresolved, candidate };
             }
-            let Some(cell) = self.heap.pop() else { continue };
+            let Some(LeastFirst(cell)) = self.heap.pop() else { continue };
             if cell.half < SMALLEST * self.slack {
                 self.closed = self.closed.min(cell.least);
                 self.left = Some(cell.centre);
@@ -319,7 +305,7 @@ impl<'a, const D: usize> TranslationTree<'a, D> {
                     continue;
                 }
                 if self.heap.len() < room.cells {
-                    self.heap.push(part);
+                    self.heap.push(LeastFirst(part));
                 } else {
                     self.closed = self.closed.min(part.least);
                     self.is_full = true;
