@@ -203,6 +203,7 @@ pub(crate) fn settings(
         margin: margin.unwrap_or(own.margin),
         spacing: spacing.unwrap_or(own.spacing),
         most: most.unwrap_or(own.most),
+        ..own
     }
 }
 

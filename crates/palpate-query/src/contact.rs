@@ -86,11 +86,14 @@ pub struct Contact<const D: usize> {
     /// where the id is `body << 32 | point`, of a body and a point of the tool's shell.
     /// Elsewhere the id is the contact's index in the answer.
     pub id: u64,
+    /// For how many steps before this one a [`Track`](crate::Track) or a [`World`](crate::World) has had
+    /// this contact: zero for a new one, and for those that nothing follows.
+    pub age: u32,
 }
 
 impl<const D: usize> Contact<D> {
     /// The contact at these points [m] with this unit `normal`, from body `a` to body `b`.
-    /// The gap is `(point_b − point_a)·normal`; the id is 0, `normal_from` [`NormalSource::Gradients`], and
+    /// The gap is `(point_b − point_a)·normal`; id and age are 0, `normal_from` [`NormalSource::Gradients`], and
     /// `on_surfaces` `true`.
     #[must_use]
     #[inline]
@@ -104,6 +107,7 @@ impl<const D: usize> Contact<D> {
             on_surfaces: true,
             gap,
             id: 0,
+            age: 0,
         }
     }
 

@@ -96,6 +96,6 @@ pub use sweep::{
     ElementSweep, FirstTouch, FreeBox, Motion, Moving, Start, SweepProof, SweepSettings,
     SweepWorkspace, cast_ball, sweep, sweep_element, sweep_mesh, sweep_proof,
 };
-pub use track::Track;
+pub use track::{Track, TrackMemory, TrackedContacts};
 #[cfg(feature = "world")]
 pub use world::{BodyId, BodyImpact, Neighbours, World, WorldSettings};

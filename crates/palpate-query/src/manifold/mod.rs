@@ -16,7 +16,9 @@
 
 mod cover;
 mod patch;
+mod polish;
 mod region;
+mod solver;
 
 use palpate_field::{LARGEST_LENGTH, Point, Vector};
 
@@ -28,9 +30,11 @@ use crate::pair::search::PairSearch;
 use crate::pair::{Nearest, PairWorkspace};
 use crate::sampler::{Placed, arbitrary};
 use patch::Patches;
-pub(crate) use patch::followed;
+pub(crate) use patch::{carried, followed};
+pub(crate) use polish::{Curvature, Edge, Polished, polished, reach};
 use region::Region;
 pub(crate) use region::distance;
+pub(crate) use solver::{Offer, choose};
 
 /// Contacts closer than this many spacings, with normals within 37°, are copies.
 const COPIES: f64 = 1.5;
@@ -60,13 +64,56 @@ pub struct ManifoldSettings {
     /// The largest number of contacts: the deepest is kept, and those farthest apart. Zero counts
     /// as one.
     pub most: usize,
+    /// The penetration that a solver leaves to resting bodies [m], for contacts that a solver can stand on;
+    /// `None` for contacts that span the region. See [`for_solver`](Self::for_solver).
+    pub solver_slop: Option<f64>,
 }
 
 impl ManifoldSettings {
     /// For bodies of about `size` [m]: a margin of 0.2 %, a spacing of 4 %, 32 contacts.
     #[must_use]
     pub const fn of_size(size: f64) -> Self {
-        Self { margin: 0.002 * size, spacing: 0.04 * size, most: 32 }
+        Self { margin: 0.002 * size, spacing: 0.04 * size, most: 32, solver_slop: None }
+    }
+
+    /// Contacts for a solver, of bodies of about `size` [m]: a margin of 1 %, a spacing of 8 %, 32 contacts,
+    /// a slop of 0.2 %.
+    ///
+    /// - Normals of a group are within 5° of that of its deepest contact, which comes first.
+    /// - A group has at most two contacts in the plane and four in space: the deepest, and those that make
+    ///   the patch largest.
+    /// - A further contact is within 1° of the normal of the deepest one, or its gap is larger by at most a
+    ///   quarter of the slop. So a ball on a floor has one contact, and a cube has four.
+    /// - Each contact is where the gap is least: there the unit gradients of both bodies have a sum of length
+    ///   1e-6 at most, whatever the tolerance. Along a direction in which the gap has no least point, as
+    ///   on flat faces, the contact spans the patch. At an edge the normal is that of the other body's face.
+    ///
+    /// ```
+    /// use palpate_field::Shape;
+    /// use palpate_query::{Limits, ManifoldSettings, PairWorkspace, manifold};
+    ///
+    /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+    /// let floor = Shape::<3>::half_space([0.0, 1.0, 0.0], 0.0)?;
+    /// let settings = ManifoldSettings::for_solver(1.0);
+    /// let limits = Limits::new(settings.usual_tolerance());
+    /// let mut workspace = PairWorkspace::new();
+    /// let ball = Shape::ball(0.5)?.translated([0.0, 0.499, 0.0])?;
+    /// let under_ball = manifold(&floor, &ball, &settings, &limits, &mut workspace)?;
+    /// assert_eq!(under_ball.contacts.len(), 1);
+    /// let cube = Shape::cuboid([1.0, 1.0, 1.0])?.translated([0.0, 0.499, 0.0])?;
+    /// let under_cube = manifold(&floor, &cube, &settings, &limits, &mut workspace)?;
+    /// assert_eq!(under_cube.contacts.len(), 4);
+    /// # Ok(())
+    /// # }
+    /// ```
+    #[must_use]
+    pub const fn for_solver(size: f64) -> Self {
+        Self {
+            margin: 0.01 * size,
+            spacing: 0.08 * size,
+            most: 32,
+            solver_slop: Some(0.002 * size),
+        }
     }
 }
 
@@ -191,6 +238,7 @@ pub(crate) fn spanning<const D: usize>(
 
 /// Points that span the region in which two bodies touch, in the pair's frame, the deepest first.
 #[derive(Clone, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Spanned<const D: usize> {
     members: Vec<Member<D>>,
     /// Points that span parts of the region where the gap exceeds the margin, of a search that went
@@ -257,6 +305,11 @@ impl<const D: usize> Spanned<D> {
         Self { members: all, beyond, stop }
     }
 
+    /// The points that span the region, the deepest first.
+    pub(crate) fn touches(&self) -> impl Iterator<Item = &Touch<D>> {
+        self.members.iter().map(|member| &member.touch)
+    }
+
     /// Whether the search ended before it had seen the whole region.
     pub(crate) fn is_cut_off(&self) -> bool {
         self.stop.is_early()
@@ -277,6 +330,11 @@ impl<const D: usize> Spanned<D> {
         if let Some(deepest) = self.members.first() {
             found.deepen(&deepest.touch, &mut pair);
         }
+        if let Some(slop) = settings.solver_slop {
+            found.keep_for_solver(&self.members, &mut pair, (settings, slop));
+            found.bound_distance(&mut pair, separated, (&self.members, settings));
+            return found;
+        }
         let mut members = self.members.clone();
         let mut are_moved = false;
         for member in &mut members {
@@ -288,11 +346,7 @@ impl<const D: usize> Spanned<D> {
             // Several lead to one deepest point. To drop more would leave parts of the region out.
             drop_copies(&mut members, settings.spacing / COPIES);
         }
-        let upper = found.separation.upper;
-        let places = self.members.iter().map(|member| member.touch.point);
-        let places = std::iter::once(separated.best).chain(places);
-        found.distance_at_most = pair.distance_at_most(upper, places, settings.margin);
-        found.separation.evaluations += pair.evaluations;
+        found.bound_distance(&mut pair, separated, (&self.members, settings));
         let contact = |member: &Member<D>| member.touch.contact(&pair, settings.spacing);
         let spanning = members.iter().map(|member| (*member, contact(member)));
         found.keep(spanning.collect(), settings);
@@ -348,6 +402,45 @@ impl<const D: usize> Manifold<D> {
         }
     }
 
+    /// Bounds the distance, and counts the evaluations of the pair.
+    fn bound_distance(
+        &mut self,
+        pair: &mut BodyPair<'_, D>,
+        separated: &SeparatedPair<'_, D>,
+        (members, settings): (&[Member<D>], &ManifoldSettings),
+    ) {
+        let places = members.iter().map(|member| member.touch.point);
+        let places = std::iter::once(separated.best).chain(places);
+        let upper = self.separation.upper;
+        self.distance_at_most = pair.distance_at_most(upper, places, settings.margin);
+        self.separation.evaluations += pair.evaluations;
+    }
+
+    /// Keeps the contacts that a solver needs.
+    fn keep_for_solver(
+        &mut self,
+        members: &[Member<D>],
+        pair: &mut BodyPair<'_, D>,
+        (settings, slop): (&ManifoldSettings, f64),
+    ) {
+        let mut offers = Vec::with_capacity(members.len());
+        for (i, member) in members.iter().enumerate() {
+            let far = reach(i == 0, settings);
+            let found = polished(pair, &member.touch, far, &mut None, settings)
+                .unwrap_or_else(|| member.touch.usual(pair, settings));
+            let contact = found.contact.placed(&pair.world_from_frame);
+            // Where a field is a bound, surfaces may be farther apart than its values.
+            if i == 0 || contact.gap <= settings.margin {
+                offers.push(Offer { contact: contact.with_id(i as u64), is_held: false });
+            }
+        }
+        let chosen = (&mut self.contacts, &mut self.groups);
+        self.dropped = choose(&mut offers, settings, slop, chosen);
+        for (i, contact) in self.contacts.iter_mut().enumerate() {
+            *contact = contact.with_id(i as u64);
+        }
+    }
+
     /// Takes a contact as the best point if it is deeper by the fields' values.
     fn deepen(&mut self, deepest: &Touch<D>, pair: &mut BodyPair<'_, D>) {
         let slack = pair.slack(deepest.point.norm() + deepest.gap.abs());
@@ -389,6 +482,9 @@ impl ManifoldSettings {
         if !is_size {
             return Err(QueryError::Setting { what: "spacing", value: self.spacing });
         }
+        if let Some(slop) = self.solver_slop {
+            QueryError::check_length(slop)?;
+        }
         Ok(())
     }
 
@@ -401,15 +497,17 @@ impl ManifoldSettings {
 
 /// A point between two bodies, in the pair's frame.
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Touch<const D: usize> {
-    point: Point<D>,
-    normal: Vector<f64, D>,
-    gap: f64,
+    pub(crate) point: Point<D>,
+    pub(crate) normal: Vector<f64, D>,
+    pub(crate) gap: f64,
     source: NormalSource,
 }
 
 /// A contact and its patch.
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 struct Member<const D: usize> {
     touch: Touch<D>,
     group: usize,
@@ -440,12 +538,17 @@ impl<const D: usize> Touch<D> {
         if self.source == NormalSource::ThickerBody {
             return None;
         }
-        patch::pushed(pair, self, settings).or_else(|| self.on_face(pair, settings))
+        let on_face = |pair| self.on_face(pair, settings).map(|(_, touch)| touch);
+        patch::pushed(pair, self, settings).or_else(|| on_face(pair))
     }
 
     /// The touch at a face of one body where the other has an edge: along the face's normal, and where
-    /// the bodies are apart, from the edge.
-    fn on_face(&self, pair: &mut BodyPair<'_, D>, settings: &ManifoldSettings) -> Option<Self> {
+    /// the bodies are apart, from the edge. And which body has the face.
+    fn on_face(
+        &self,
+        pair: &mut BodyPair<'_, D>,
+        settings: &ManifoldSettings,
+    ) -> Option<(usize, Self)> {
         if self.source != NormalSource::Gradients {
             return None;
         }
@@ -458,24 +561,31 @@ impl<const D: usize> Touch<D> {
             let first = (self.point, EDGE * self.gap.abs());
             let deepest = patch::in_host(pair, body, first, settings);
             let deepest = deepest.filter(|found| found.gap <= self.gap);
-            return Some(deepest.map_or(turned, |Self { point, gap, .. }| Self {
-                point,
-                gap,
-                ..turned
-            }));
+            let touch =
+                deepest.map_or(turned, |Self { point, gap, .. }| Self { point, gap, ..turned });
+            return Some((body, touch));
         }
         let near = settings.spacing.max(self.gap);
         let edge = pair.surface_point(1 - body, self.point)?;
         let gap = pair.slopes(edge)[body].0;
         let to_face = if body == 0 { -normal } else { normal };
         let point = edge + to_face * (0.5 * gap);
-        (distance(edge, self.point) <= near).then_some(Self { point, gap, ..turned })
+        (distance(edge, self.point) <= near).then_some((body, Self { point, gap, ..turned }))
+    }
+
+    /// The same touch at another place.
+    pub(crate) fn at_place(self, point: Point<D>) -> Self {
+        Self { point, ..self }
     }
 
     /// The contact in world coordinates, where the bodies overlap no less deep than the values say.
     /// Points of the surfaces count only within `near` and 45° of the normal: in the middle of a body
     /// the gradient may lead to any side.
     pub(crate) fn contact(&self, pair: &BodyPair<'_, D>, near: f64) -> Contact<D> {
+        self.contact_in_frame(pair, near).placed(&pair.world_from_frame)
+    }
+
+    fn contact_in_frame(&self, pair: &BodyPair<'_, D>, near: f64) -> Contact<D> {
         let near = near.max(2.0 * self.gap.abs());
         let by_values = Contact::estimated(self.point, self.normal, self.gap);
         let is_near = |p: &Point<D>| {
@@ -492,7 +602,7 @@ impl<const D: usize> Touch<D> {
             NormalSource::ThickerBody | NormalSource::History => by_values,
             _ => by_surfaces().filter(is_deep).unwrap_or(by_values),
         };
-        contact.with_normal_from(self.source).placed(&pair.world_from_frame)
+        contact.with_normal_from(self.source)
     }
 }
 

@@ -18,7 +18,7 @@ use super::{
 };
 use crate::certified::Goal;
 use crate::contact::NormalSource;
-use crate::pair::body_pair::BodyPair;
+use crate::pair::body_pair::{BodyPair, Slopes};
 use crate::pair::distance_bound::descend;
 use crate::pair::search::BoxCell;
 
@@ -262,11 +262,21 @@ pub(super) fn settled<const D: usize>(
     far: f64,
     settings: &ManifoldSettings,
 ) -> Option<Touch<D>> {
+    settled_slopes(pair, p, far, settings).map(|(touch, _)| touch)
+}
+
+/// The same, and both values and gradients there.
+pub(super) fn settled_slopes<const D: usize>(
+    pair: &mut BodyPair<'_, D>,
+    p: Point<D>,
+    far: f64,
+    settings: &ManifoldSettings,
+) -> Option<(Touch<D>, Slopes<D>)> {
     let mut here = p;
     for _ in 0..4 {
         let slopes = pair.slopes(here);
         match towards(here, slopes, settings) {
-            Towards::There(touch) => return Some(touch),
+            Towards::There(touch) => return Some((touch, slopes)),
             Towards::Next(next) if distance(next, p) <= far => here = next,
             _ => return None,
         }
@@ -514,7 +524,7 @@ impl<const D: usize> Spanned<D> {
 
 /// The deepest touch with a normal like `normal` next to the places to which the bodies carried a point;
 /// or farther inwards, where the bodies face each other likewise at none of them.
-fn carried<const D: usize>(
+pub(crate) fn carried<const D: usize>(
     pair: &mut BodyPair<'_, D>,
     places: [Point<D>; 2],
     normal: Vector<f64, D>,

@@ -72,6 +72,9 @@ impl<const D: usize> Memory<D> {
     }
 }
 
+/// `g` of both bodies and its gradients.
+pub(crate) type Slopes<const D: usize> = [(f64, Vector<f64, D>); 2];
+
 /// Two bodies in the frame of the first: bounds of the first body over boxes stay valid while both move.
 #[derive(Clone, Copy)]
 pub(crate) struct BodyPair<'a, const D: usize> {
@@ -115,9 +118,15 @@ impl<'a, const D: usize> BodyPair<'a, D> {
 
     /// `g` of both at a point of the frame, with gradients.
     #[inline]
-    pub(crate) fn slopes(&mut self, p: Point<D>) -> [(f64, Vector<f64, D>); 2] {
-        self.evaluations += 4;
-        [self.bodies[0].distance_gradient(p), self.bodies[1].distance_gradient(p)]
+    pub(crate) fn slopes(&mut self, p: Point<D>) -> Slopes<D> {
+        [self.slope(0, p), self.slope(1, p)]
+    }
+
+    /// `g` of one body at a point of the frame, with its gradient.
+    #[inline]
+    pub(crate) fn slope(&mut self, body: usize, p: Point<D>) -> (f64, Vector<f64, D>) {
+        self.evaluations += 2;
+        self.bodies[body].distance_gradient(p)
     }
 
     /// The separation that the values at a point of the frame show: twice the larger `g` [m].

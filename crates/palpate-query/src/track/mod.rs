@@ -3,18 +3,28 @@
 
 //! Two bodies followed from step to step.
 
+mod contacts;
+mod history;
+mod kept;
+mod names;
+
 use palpate_field::{Aabb, Point, Pose, Shape, Vector};
 
 use crate::certified::{Certified, Goal, Limits, Stop};
-use crate::contact::{Contact, NormalSource};
+use crate::contact::Contact;
 use crate::error::QueryError;
-use crate::manifold::{Manifold, ManifoldSettings, SeparatedPair, Spanned, distance, followed};
+use crate::manifold::{Manifold, ManifoldSettings, SeparatedPair};
 use crate::pair::body_pair::BodyPair;
 use crate::pair::distance_bound::DistanceBound;
 use crate::pair::search::PairSearch;
 use crate::pair::{Nearest, PairWorkspace};
 use crate::query::{size, smallest};
 use crate::sampler::Placed;
+use contacts::Carried;
+pub use contacts::TrackedContacts;
+use history::History;
+use kept::Kept;
+use names::Names;
 
 /// A search for several steps asks for bounds that are this share of the tolerance apart.
 const FINER: f64 = 1.0 / 8.0;
@@ -59,18 +69,44 @@ const ALONE: u32 = 8;
 #[derive(Clone, Debug)]
 pub struct Track<const D: usize> {
     shapes: [Shape<D>; 2],
+    memory: TrackMemory<D>,
+}
+
+/// What a [`Track`] remembers of earlier steps, without its shapes: a snapshot of it.
+///
+/// A track of the same shapes that begins with it goes on as the other did, to the last bit. With the feature
+/// `serde` it can be stored.
+#[derive(Clone, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct TrackMemory<const D: usize> {
     known: Option<Known<D>>,
     /// How many of the next searches are for their steps alone, and how many after the next proof that
     /// does not last.
     alone: u32,
     next_alone: u32,
     kept: Option<Kept<D>>,
+    carried: Option<Carried<D>>,
     names: Names<D>,
     history: History<D>,
 }
 
+impl<const D: usize> Default for TrackMemory<D> {
+    fn default() -> Self {
+        Self {
+            known: None,
+            alone: 0,
+            next_alone: ALONE,
+            kept: None,
+            carried: None,
+            names: Names::default(),
+            history: History::default(),
+        }
+    }
+}
+
 /// What the last search proved, and where the bodies were.
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 struct Known<const D: usize> {
     /// A lower bound of the larger of both values at every point [m].
     lower: f64,
@@ -89,9 +125,20 @@ impl<const D: usize> Track<D> {
     #[must_use]
     #[inline(never)]
     pub fn new(a: Shape<D>, b: Shape<D>) -> Self {
-        let (alone, next_alone) = (0, ALONE);
-        let (known, kept, history) = (None, None, History::default());
-        Self { shapes: [a, b], known, alone, next_alone, kept, names: Names::new(), history }
+        Self { shapes: [a, b], memory: TrackMemory::default() }
+    }
+
+    /// A track that goes on where one of the same shapes was.
+    #[must_use]
+    #[inline(never)]
+    pub fn with_memory(a: Shape<D>, b: Shape<D>, memory: TrackMemory<D>) -> Self {
+        Self { shapes: [a, b], memory }
+    }
+
+    /// What the track remembers of earlier steps.
+    #[must_use]
+    pub fn memory(&self) -> &TrackMemory<D> {
+        &self.memory
     }
 
     /// The shapes.
@@ -120,9 +167,11 @@ impl<const D: usize> Track<D> {
         smallest(self.shapes.each_ref().map(size))
     }
 
-    /// Forgets all bounds: the next search begins anew.
+    /// Forgets all bounds: the next search begins anew. Contacts keep their ids.
     pub fn forget(&mut self) {
-        (self.known, self.kept, self.history) = (None, None, History::default());
+        self.put_down();
+        let TrackMemory { known, kept, history, .. } = &mut self.memory;
+        (*known, *kept, *history) = (None, None, History::default());
     }
 
     /// The separation of both shapes at these poses, `world_from_body`, as
@@ -159,7 +208,7 @@ impl<const D: usize> Track<D> {
         }
         // A region where a steepness holds moves with its body.
         let is_known = search.pair.bodies.iter().all(DistanceBound::is_known_everywhere);
-        let known = self.known.take().filter(|_| is_known);
+        let known = self.memory.known.take().filter(|_| is_known);
         let (mut start, mut is_lasting) = (None, false);
         if let Some(known) = &known {
             let moved = displacement(&known.last, &now, &search.pair.root(0.0));
@@ -168,18 +217,20 @@ impl<const D: usize> Track<D> {
                 let (stop, lower) = known.told(&mut search);
                 if let Some(stop) = stop {
                     let best = search.best;
-                    self.known = Some(Known { last: now, best, has_lasted: true, ..*known });
+                    self.memory.known =
+                        Some(Known { last: now, best, has_lasted: true, ..*known });
                     return Ok((search.answer(stop, lower), best));
                 }
                 start = Some((search.upper, search.best));
             }
             if known.is_lasting && !known.has_lasted {
-                (self.alone, self.next_alone) = (self.next_alone, 2 * self.next_alone);
+                (self.memory.alone, self.memory.next_alone) =
+                    (self.memory.next_alone, 2 * self.memory.next_alone);
             } else if known.is_lasting {
-                self.next_alone = ALONE;
+                self.memory.next_alone = ALONE;
             }
-            is_lasting = is_near && self.alone == 0;
-            self.alone = self.alone.saturating_sub(1);
+            is_lasting = is_near && self.memory.alone == 0;
+            self.memory.alone = self.memory.alone.saturating_sub(1);
             if is_lasting {
                 // The proof of a search to the tolerance would not last.
                 search.go_on(FINER, (0.5 * goal.tolerance / moved).min(1.0));
@@ -189,7 +240,7 @@ impl<const D: usize> Track<D> {
         let lower = 0.5 * answer.lower;
         let (best, has_lasted) = (search.best, false);
         let known = Known { lower, proven_at: now, last: now, best, is_lasting, has_lasted };
-        self.known = (answer.lower > f64::NEG_INFINITY).then_some(known);
+        self.memory.known = (answer.lower > f64::NEG_INFINITY).then_some(known);
         Ok((answer, search.best))
     }
 }
@@ -235,139 +286,6 @@ fn displacement<const D: usize>(before: &Pose<D>, now: &Pose<D>, root: &Aabb<D>)
     (moved.norm() + stretch * radius) * (1.0 + 1e-12)
 }
 
-/// The cosine of how far the normal of a contact may be from that of the step before, 45°.
-const SAME_SIDE: f64 = 0.7;
-
-/// A contact that is less deep than this share of what its history says came out of another side.
-const SHALLOW: f64 = 0.5;
-
-/// A contact takes the side of the one of the step before that is nearest, up to this many spacings and
-/// times its depth.
-const NEAR: f64 = 2.0;
-
-/// Contacts that have been followed since the bodies overlapped by no more than the margin.
-#[derive(Clone, Debug)]
-struct History<const D: usize> {
-    known: Vec<KnownContact<D>>,
-}
-
-/// A contact of the last step, its points and normal in the coordinates of the first body and of the
-/// second.
-#[derive(Clone, Copy, Debug)]
-struct KnownContact<const D: usize> {
-    points: [Point<D>; 2],
-    normals: [Vector<f64, D>; 2],
-}
-
-impl<const D: usize> Default for History<D> {
-    fn default() -> Self {
-        Self { known: Vec::new() }
-    }
-}
-
-impl<const D: usize> History<D> {
-    /// Gives deep contacts whose normals are not those with which they came in the normals and gaps of
-    /// their history, and returns how often fields were evaluated. What was deep when it was seen first
-    /// has no history until it comes out.
-    fn follow(
-        &mut self,
-        contacts: &mut [Contact<D>],
-        pair: BodyPair<'_, D>,
-        poses: [Pose<D>; 2],
-        settings: &ManifoldSettings,
-    ) -> u32 {
-        let mut pair = pair;
-        pair.evaluations = 0;
-        let from_world = poses.map(|pose| pose.inverse());
-        let mut known = Vec::with_capacity(contacts.len());
-        for contact in contacts {
-            if contact.gap < -settings.margin {
-                let Some((last, apart)) = self.nearest(contact, poses) else { continue };
-                let normals = [0, 1].map(|i| poses[i].transform_vector(last.normals[i]));
-                let points = [0, 1].map(|i| poses[i].transform_point(last.points[i]));
-                // How deep the points are that touched, by how they have moved past each other.
-                let carried = (points[1] - points[0]).dot(normals[0]);
-                let is_other_side =
-                    normals.iter().all(|normal| normal.dot(contact.normal) < SAME_SIDE);
-                if is_other_side || contact.gap > SHALLOW * carried {
-                    let far = NEAR * (settings.spacing - contact.gap.min(carried));
-                    // Where no field gives a direction, the place says as little.
-                    if apart > far && contact.normal_from != NormalSource::Assumed {
-                        continue;
-                    }
-                    // The frame of the pair is the first body.
-                    let frame = &from_world[0];
-                    let found = followed(
-                        &mut pair,
-                        points.map(|p| frame.transform_point(p)),
-                        normals.map(|normal| frame.transform_vector(normal)),
-                        settings,
-                    );
-                    let Some(touch) = found else { continue };
-                    let followed = touch.contact(&pair, settings.spacing);
-                    *contact = followed.with_id(contact.id);
-                }
-            }
-            known.push(KnownContact {
-                points: [
-                    from_world[0].transform_point(contact.point_a),
-                    from_world[1].transform_point(contact.point_b),
-                ],
-                normals: from_world
-                    .map(|from_world| from_world.transform_vector(contact.normal)),
-            });
-        }
-        self.known = known;
-        pair.evaluations
-    }
-
-    /// The contact of the last step that is nearest on either body, and how far it is [m].
-    fn nearest(
-        &self,
-        contact: &Contact<D>,
-        poses: [Pose<D>; 2],
-    ) -> Option<(KnownContact<D>, f64)> {
-        let apart = |known: &KnownContact<D>| {
-            let [a, b] = [0, 1].map(|i| poses[i].transform_point(known.points[i]));
-            (a - contact.point_a).norm().min((b - contact.point_b).norm())
-        };
-        let all = self.known.iter().map(|known| (*known, apart(known)));
-        all.min_by(|one, other| one.1.total_cmp(&other.1))
-    }
-}
-
-/// Contacts are kept while the bodies stay within this share of the margin of the poses at which their
-/// region was searched.
-const FARTHER: f64 = 0.25;
-
-/// Of bodies that move on slowly, the region is searched up to a gap that is larger by this share of the
-/// margin, too, and its contacts are kept while the bodies stay within as much of those poses.
-const WIDER: f64 = 1.5;
-
-/// A search that goes farther costs two: it is worth that if it lasts for so many more steps. After one
-/// that does not, so many go no farther, and twice as many each time.
-const WORTH: u32 = 2;
-const MANIFOLD_ALONE: u32 = 4;
-
-/// Contacts of an earlier step, in the first body's coordinates.
-#[derive(Clone, Debug)]
-struct Kept<const D: usize> {
-    /// The second body in these coordinates when the region was searched, and in the last step.
-    found_at: Pose<D>,
-    last: Pose<D>,
-    /// How far the bodies may move from there [m].
-    reach: f64,
-    settings: ManifoldSettings,
-    budget: u32,
-    spanned: Spanned<D>,
-    /// For how many more steps these contacts were used.
-    lasted: u32,
-    /// How many of the next searches go no farther, and how many after the next one that does and is
-    /// not worth it.
-    alone: u32,
-    next_alone: u32,
-}
-
 impl<const D: usize> Track<D> {
     /// The contacts of both shapes at these poses, `world_from_body`, as
     /// [`manifold`](crate::manifold) finds them, with lasting ids: a contact near one of the
@@ -393,6 +311,7 @@ impl<const D: usize> Track<D> {
         workspace: &mut PairWorkspace<D>,
     ) -> Result<Manifold<D>, QueryError> {
         settings.check()?;
+        self.put_down();
         let goal = settings.goal(limits);
         let (separation, best) = self.search(poses, goal, limits, workspace)?;
         let [a, b] = &self.shapes;
@@ -401,148 +320,25 @@ impl<const D: usize> Track<D> {
         let mut found = if separation.lower > settings.margin {
             Manifold::apart(separation)
         } else {
-            Kept::spanning(&mut self.kept, separated, (settings, limits.budget), workspace)
+            Kept::spanning(
+                &mut self.memory.kept,
+                separated,
+                (settings, limits.budget),
+                workspace,
+            )
         };
-        self.names.name(&mut found.contacts, poses, settings.spacing);
+        self.memory.names.name(&mut found.contacts, poses, settings.spacing);
         let by_gradients = found.contacts.clone();
         found.separation.evaluations +=
-            self.history.follow(&mut found.contacts, pair, poses, settings);
+            self.memory.history.follow(&mut found.contacts, pair, poses, settings);
         let deepest = |contacts: &[Contact<D>]| {
             contacts.iter().fold(f64::INFINITY, |least, contact| contact.gap.min(least))
         };
         let followed = deepest(&found.contacts);
         if followed > found.separation.upper && followed > deepest(&by_gradients) {
             // The bodies are proven to overlap deeper: nothing would push them apart that far.
-            (found.contacts, self.history) = (by_gradients, History::default());
+            (found.contacts, self.memory.history) = (by_gradients, History::default());
         }
         Ok(found)
-    }
-}
-
-impl<const D: usize> Kept<D> {
-    /// The contacts of bodies that touch, from those of an earlier step if they last.
-    fn spanning(
-        last: &mut Option<Self>,
-        mut separated: SeparatedPair<'_, D>,
-        (settings, budget): (&ManifoldSettings, u32),
-        workspace: &mut PairWorkspace<D>,
-    ) -> Manifold<D> {
-        let now = separated.pair.second_from_frame;
-        let is_of_these = |kept: &Self| {
-            kept.settings == *settings && !(kept.spanned.is_cut_off() && kept.budget < budget)
-        };
-        let kept = last.take().filter(is_of_these);
-        let farther = 1.0 + WIDER;
-        let root = separated.pair.root(farther * settings.margin);
-        let (mut is_slow, mut alone, mut next_alone) = (false, 0, MANIFOLD_ALONE);
-        if let Some(mut kept) = kept {
-            if displacement(&kept.found_at, &now, &root) <= kept.reach
-                && let Some(spanned) =
-                    kept.spanned.moved(&mut separated, &kept.found_at, settings)
-            {
-                (kept.last, kept.lasted) = (now, kept.lasted.saturating_add(1));
-                *last = Some(kept);
-                return spanned.manifold(&separated, settings);
-            }
-            (alone, next_alone) = (kept.alone.saturating_sub(1), kept.next_alone);
-            let went_farther = kept.reach > FARTHER * settings.margin;
-            if went_farther && kept.lasted < WORTH {
-                (alone, next_alone) = (next_alone, next_alone.saturating_mul(2));
-            } else if went_farther {
-                next_alone = MANIFOLD_ALONE;
-            }
-            is_slow =
-                alone == 0 && displacement(&kept.last, &now, &root) <= WIDER * settings.margin;
-        }
-        let (spanned, share) = if is_slow {
-            let spanned =
-                Spanned::find_farther(&mut separated, settings, farther, budget, workspace);
-            (spanned, WIDER)
-        } else {
-            (Spanned::find(&mut separated, settings, budget, workspace), FARTHER)
-        };
-        let found = spanned.manifold(&separated, settings);
-        let reach = share * settings.margin;
-        let settings = *settings;
-        let (found_at, lasted) = (now, 0);
-        *last = Some(Self {
-            found_at,
-            last: now,
-            reach,
-            settings,
-            budget,
-            spanned,
-            lasted,
-            alone,
-            next_alone,
-        });
-        found
-    }
-}
-
-/// A contact that moved farther than this many spacings on both bodies is a new one.
-const SAME: f64 = 2.0;
-
-/// The cosine of how far its normal may turn, 45°.
-const TURNED: f64 = 0.7;
-
-/// The contacts of the last step, and where they were on both bodies.
-#[derive(Clone, Debug, Default)]
-struct Names<const D: usize> {
-    known: Vec<Named<D>>,
-    next: u64,
-}
-
-#[derive(Clone, Copy, Debug)]
-struct Named<const D: usize> {
-    id: u64,
-    points: [Point<D>; 2],
-    normal: Vector<f64, D>,
-}
-
-impl<const D: usize> Names<D> {
-    fn new() -> Self {
-        Self { known: Vec::new(), next: 0 }
-    }
-
-    /// Gives each contact the id of the nearest contact of the last step, or a new id. Near
-    /// means near on either body: a contact that slides along one may rest on the other.
-    fn name(&mut self, contacts: &mut [Contact<D>], poses: [Pose<D>; 2], spacing: f64) {
-        let from_world = poses.map(|pose| pose.inverse());
-        let now: Vec<Named<D>> = contacts
-            .iter()
-            .map(|contact| Named {
-                id: 0,
-                points: [
-                    from_world[0].transform_point(contact.point_a),
-                    from_world[1].transform_point(contact.point_b),
-                ],
-                normal: from_world[0].transform_vector(contact.normal),
-            })
-            .collect();
-        let mut pairs = Vec::new();
-        for (i, new) in now.iter().enumerate() {
-            for (k, old) in self.known.iter().enumerate() {
-                let apart = distance(new.points[0], old.points[0])
-                    .min(distance(new.points[1], old.points[1]));
-                if apart < SAME * spacing && new.normal.dot(old.normal) > TURNED {
-                    pairs.push((apart, i, k));
-                }
-            }
-        }
-        pairs.sort_by(|one, other| one.0.total_cmp(&other.0));
-        let mut names = vec![None; now.len()];
-        let mut is_taken = vec![false; self.known.len()];
-        for (_, i, k) in pairs {
-            if names[i].is_none() && !is_taken[k] {
-                (names[i], is_taken[k]) = (Some(self.known[k].id), true);
-            }
-        }
-        self.known.clear();
-        for ((contact, new), name) in contacts.iter_mut().zip(now).zip(names) {
-            contact.id = name.unwrap_or(self.next);
-            self.next += u64::from(name.is_none());
-            self.known.push(Named { id: contact.id, ..new });
-        }
     }
 }

@@ -28,6 +28,7 @@ mod recall;
 mod recall_motions;
 mod sampled;
 mod serde;
+mod solver_contacts;
 mod sweeps;
 mod thin;
 mod thin_parts;

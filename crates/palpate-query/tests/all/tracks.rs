@@ -239,7 +239,12 @@ where
         }
         let size = draw::size(&a).min(draw::size(&b));
         let limits = Limits::new(0.02 * size).with_budget(5_000);
-        let settings = ManifoldSettings { margin: 0.02 * size, spacing: 0.15 * size, most: 16 };
+        let settings = ManifoldSettings {
+            margin: 0.02 * size,
+            spacing: 0.15 * size,
+            most: 16,
+            solver_slop: None,
+        };
         let mut track = Track::new(a.clone(), b.clone());
         let start = [Pose::identity(), draw::pose(u)?];
         let mut poses = start;

@@ -1,0 +1,170 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! The few contacts that a solver needs.
+//!
+//! A solver treats the contacts of a group as points of one flat patch, with one normal. Two contacts hold
+//! such a patch in the plane and four in space. A contact where the bodies curve apart is no point of the
+//! patch: it would stop a ball that rolls.
+
+use palpate_field::{Point, Vector};
+
+use super::ManifoldSettings;
+use crate::contact::Contact;
+
+/// The cosine of how far normals of a group are from that of its deepest contact, 5°.
+const GROUP: f64 = 0.996_194_698_091_745_5;
+
+/// The cosine of how far the normal of a contact may be from that of the deepest one, 1°, if its gap is
+/// larger by more than a share of the slop.
+const PARALLEL: f64 = 0.999_847_695_156_391_3;
+const SLOP_SHARE: f64 = 0.25;
+
+/// Contacts are as deep as the deepest if their gaps differ by less than this share of the margin.
+const AS_DEEP: f64 = 1e-3;
+
+/// Contacts nearer to each other than this share of the spacing are one; so are those that widen a patch by
+/// less.
+const ONE: f64 = 0.25;
+
+/// A contact of the step before counts as farther out by this factor, so that equal contacts do not take
+/// turns.
+const HELD: f64 = 1.1;
+
+/// A contact that a solver may get.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Offer<const D: usize> {
+    pub(crate) contact: Contact<D>,
+    /// Whether the solver had it in the step before.
+    pub(crate) is_held: bool,
+}
+
+impl<const D: usize> Offer<D> {
+    fn place(&self) -> Point<D> {
+        (self.contact.point_a + self.contact.point_b) * 0.5
+    }
+
+    /// How much a contact counts that is so far out [m].
+    fn worth(&self, far: f64) -> f64 {
+        if self.is_held { HELD * far } else { far }
+    }
+}
+
+/// Chooses the contacts of a solver, by group, in each the deepest first. Appends them to `contacts`
+/// and the sizes of the groups to `groups`, and returns how many it left out beyond the most that are asked
+/// for. The order of the offers changes.
+pub(crate) fn choose<const D: usize>(
+    offers: &mut [Offer<D>],
+    settings: &ManifoldSettings,
+    slop: f64,
+    (contacts, groups): (&mut Vec<Contact<D>>, &mut Vec<usize>),
+) -> usize {
+    offers.sort_unstable_by(|one, other| {
+        let [one, other] = [one, other].map(|offer| offer.contact);
+        one.gap.total_cmp(&other.gap).then(one.id.cmp(&other.id))
+    });
+    let most = settings.most.max(1);
+    let (mut rest, mut dropped) = (offers, 0);
+    while let Some(deepest) = rest.first().copied() {
+        let is_of_group =
+            |offer: &Offer<D>| offer.contact.normal.dot(deepest.contact.normal) > GROUP;
+        let count = gather(rest, is_of_group);
+        let (group, others) = rest.split_at_mut(count);
+        rest = others;
+        let is_flat = |offer: &Offer<D>| {
+            offer.contact.normal.dot(deepest.contact.normal) > PARALLEL
+                || offer.contact.gap - deepest.contact.gap <= SLOP_SHARE * slop
+        };
+        let flat = gather(group, is_flat);
+        let patch = &mut group[..flat];
+        let count = spread(patch, settings);
+        let room = most - contacts.len();
+        dropped += count.saturating_sub(room);
+        let kept = &patch[..count.min(room)];
+        if !kept.is_empty() {
+            groups.push(kept.len());
+            contacts.extend(kept.iter().map(|offer| offer.contact));
+        }
+    }
+    dropped
+}
+
+/// Moves those that are wanted to the front, in the same order, and returns how many they are.
+fn gather<const D: usize>(
+    offers: &mut [Offer<D>],
+    is_wanted: impl Fn(&Offer<D>) -> bool,
+) -> usize {
+    let mut count = 0;
+    for i in 0..offers.len() {
+        if is_wanted(&offers[i]) {
+            offers[count..=i].rotate_right(1);
+            count += 1;
+        }
+    }
+    count
+}
+
+/// Moves the contacts that hold a patch to the front: the deepest, and those that make the patch largest. At
+/// most two in the plane and four in space. Returns how many they are.
+fn spread<const D: usize>(patch: &mut [Offer<D>], settings: &ManifoldSettings) -> usize {
+    let least = ONE * settings.spacing;
+    let deepest = patch[0].contact.gap + AS_DEEP * settings.margin;
+    let as_deep = patch.iter().take_while(|offer| offer.contact.gap <= deepest).count();
+    let mut centre = Vector::ZERO;
+    for offer in patch.iter() {
+        centre += offer.place() * (1.0 / patch.len() as f64);
+    }
+    take(patch, 0, as_deep, |offer| (offer.place() - centre).norm());
+    let first = patch[0].place();
+    let far = take(patch, 1, patch.len(), |offer| (offer.place() - first).norm());
+    if far < least {
+        return 1;
+    }
+    if D == 2 {
+        return 2;
+    }
+    let normal = patch[0].contact.normal;
+    let side = across(patch[1].place() - first, normal);
+    let wide = take(patch, 2, patch.len(), |offer| (offer.place() - first).dot(side).abs());
+    if wide < least {
+        return 2;
+    }
+    let corners = [first, patch[1].place(), patch[2].place()];
+    let turn = if (corners[2] - first).dot(side) > 0.0 { -1.0 } else { 1.0 };
+    let beyond = take(patch, 3, patch.len(), |offer| {
+        // How much larger the patch is with the contact beyond one of its sides.
+        (0..3).fold(0.0_f64, |most, i| {
+            let (from, to) = (corners[i], corners[(i + 1) % 3]);
+            let outwards = across(to - from, normal) * turn;
+            most.max((offer.place() - from).dot(outwards))
+        })
+    });
+    if beyond < least { 3 } else { 4 }
+}
+
+/// Moves the offer with the largest measure [m] of those from `first` to `end` to `first`, and returns
+/// its measure; zero if there is none. Of equal ones it is the first.
+fn take<const D: usize>(
+    offers: &mut [Offer<D>],
+    first: usize,
+    end: usize,
+    measure: impl Fn(&Offer<D>) -> f64,
+) -> f64 {
+    let mut best: Option<(usize, f64)> = None;
+    for (i, offer) in offers.iter().enumerate().take(end).skip(first) {
+        let worth = offer.worth(measure(offer));
+        if best.is_none_or(|(_, most)| worth > most) {
+            best = Some((i, worth));
+        }
+    }
+    let Some((i, _)) = best else { return 0.0 };
+    let far = measure(&offers[i]);
+    offers[first..=i].rotate_right(1);
+    far
+}
+
+/// The unit vector square to a side of a patch, along the patch.
+fn across<const D: usize>(side: Vector<f64, D>, normal: Vector<f64, D>) -> Vector<f64, D> {
+    let across: Vector<f64, D> = side.in_space().cross(normal.in_space()).truncated();
+    across.normalized().unwrap_or(Vector::ZERO)
+}

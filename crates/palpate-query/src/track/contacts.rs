@@ -1,0 +1,362 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! The contacts of a solver, carried from step to step.
+//!
+//! A solver needs to know once that no contact is missed, and then where the contacts are. So a region is
+//! searched up to a gap beyond the margin. A motion that moves no point by more than δ changes no gap
+//! by more than δ: while the bodies stay within the difference, no part of the region is new. Its contacts
+//! move with the bodies, and Newton's method puts each where the gap is least.
+
+use palpate_field::Pose;
+
+use super::history::KnownContact;
+use super::names::{Named, Names};
+use super::{Track, displacement};
+use crate::certified::Limits;
+use crate::contact::Contact;
+use crate::error::QueryError;
+use crate::manifold::{
+    Curvature, Edge, ManifoldSettings, Offer, Polished, SeparatedPair, Spanned, Touch, carried,
+    choose, distance, polished, reach,
+};
+use crate::pair::PairWorkspace;
+use crate::pair::body_pair::BodyPair;
+use crate::sampler::Placed;
+
+/// The region is searched up to so many margins.
+const FARTHER: f64 = 2.0;
+
+/// The slop of settings without one, as a share of the margin.
+const SLOP: f64 = 0.2;
+
+/// Places to which both bodies carry a contact are one if they differ by less than this share of the
+/// spacing.
+const ONE_PLACE: f64 = 1e-3;
+
+/// The contacts of a step, in memory that is used again.
+#[derive(Clone, Debug, Default, PartialEq)]
+#[non_exhaustive]
+pub struct TrackedContacts<const D: usize> {
+    /// The contacts, by group; in each group the deepest comes first.
+    pub contacts: Vec<Contact<D>>,
+    /// The number of contacts in each group. A group is one flat patch.
+    pub groups: Vec<usize>,
+    /// `false` if the last search ended before it had seen the whole region.
+    pub is_whole: bool,
+    /// A proven lower bound of the separation at this step [m].
+    pub separation_at_least: f64,
+    /// Whether the region was searched in this step.
+    pub is_searched: bool,
+    /// How many field values this step took of both bodies together; a gradient counts twice.
+    pub evaluations: u32,
+    offers: Vec<Offer<D>>,
+}
+
+impl<const D: usize> TrackedContacts<D> {
+    /// Memory for the contacts of a step.
+    #[must_use]
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    fn clear(&mut self) {
+        self.contacts.clear();
+        self.groups.clear();
+        self.offers.clear();
+        (self.is_searched, self.evaluations) = (false, 0);
+    }
+}
+
+/// What a search has proven, and the contacts that it found.
+#[derive(Clone, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub(super) struct Carried<const D: usize> {
+    /// The second body in the first one's coordinates, at the search and in the last step.
+    found_at: Pose<D>,
+    last_at: Pose<D>,
+    /// All parts of the region up to this gap are spanned [m].
+    searched: f64,
+    /// A lower bound of the separation at the search [m].
+    lower: f64,
+    spacing: f64,
+    budget: u32,
+    is_whole: bool,
+    /// Whether the contacts were carried at least once.
+    has_moved: bool,
+    followers: Vec<Follower<D>>,
+}
+
+/// A contact that is carried, in the first body's coordinates.
+#[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+struct Follower<const D: usize> {
+    /// As the search found it, and in the last step.
+    found: Touch<D>,
+    last: Touch<D>,
+    is_deepest: bool,
+    id: u64,
+    /// For how many steps before the last one the solver had it; `None` if it had not in the last one.
+    age: Option<u32>,
+    curvature: Option<Curvature<D>>,
+    edge: Option<Edge<D>>,
+}
+
+impl<const D: usize> Follower<D> {
+    /// The contact where the bodies have moved since the search.
+    fn moved(
+        &mut self,
+        pair: &mut BodyPair<'_, D>,
+        (found_at, second_to_frame, is_new): (Pose<D>, Pose<D>, bool),
+        settings: &ManifoldSettings,
+    ) -> Option<Polished<D>> {
+        if let Some(found) = self.edge.and_then(|edge| edge.contact(pair, settings)) {
+            return Some(found);
+        }
+        let Touch { point, normal, .. } = self.found;
+        let with_second = second_to_frame.transform_point(found_at.transform_point(point));
+        let is_one_place = distance(with_second, point) <= ONE_PLACE * settings.spacing;
+        let start = if is_one_place {
+            self.found.at_place(with_second)
+        } else {
+            carried(pair, [point, with_second], normal, settings)?
+        };
+        let far = reach(self.is_deepest, settings);
+        let found = polished(pair, &start, far, &mut self.curvature, settings);
+        found.or_else(|| is_new.then(|| start.usual(pair, settings)))
+    }
+
+    /// The contacts of a search, with the names of those of the last step that are near.
+    fn named(
+        names: &mut Names<D>,
+        spanned: &Spanned<D>,
+        pair: &BodyPair<'_, D>,
+        (poses, settings): ([Pose<D>; 2], &ManifoldSettings),
+    ) -> Vec<Self> {
+        let touches = || spanned.touches().copied();
+        let mut contacts: Vec<_> =
+            touches().map(|touch| touch.contact(pair, settings.spacing)).collect();
+        names.name(&mut contacts, poses, settings.spacing);
+        let followers = touches().zip(contacts).enumerate().map(|(i, (touch, contact))| Self {
+            found: touch,
+            last: touch,
+            is_deepest: i == 0,
+            id: contact.id,
+            age: contact.age.checked_sub(1),
+            curvature: None,
+            edge: None,
+        });
+        followers.collect()
+    }
+}
+
+impl<const D: usize> Carried<D> {
+    /// Whether the proof of the search lasts for these poses and settings.
+    fn lasts(&self, pair: &BodyPair<'_, D>, settings: &ManifoldSettings, budget: u32) -> bool {
+        let more = !self.is_whole && budget > self.budget;
+        let spare = self.searched - settings.margin;
+        self.spacing == settings.spacing && !more && self.moved(pair) <= spare
+    }
+
+    /// How far the bodies have moved since the search at most [m].
+    fn moved(&self, pair: &BodyPair<'_, D>) -> f64 {
+        displacement(&self.found_at, &pair.second_from_frame, &pair.root(self.searched))
+    }
+
+    /// Moves the contacts with the bodies and chooses those of the solver. `false` if one of them is lost, or
+    /// the bodies overlap by more than the margin.
+    fn follow(
+        &mut self,
+        pair: &mut BodyPair<'_, D>,
+        settings: &ManifoldSettings,
+        slop: f64,
+        into: &mut TrackedContacts<D>,
+    ) -> bool {
+        let now = pair.second_from_frame;
+        let second_to_frame = now.inverse();
+        let (before, is_new) = (pair.evaluations, !self.has_moved);
+        for follower in &mut self.followers {
+            let Some(Polished { touch, contact, edge }) =
+                follower.moved(pair, (self.found_at, second_to_frame, is_new), settings)
+            else {
+                if follower.age.is_some() {
+                    return false;
+                }
+                continue;
+            };
+            follower.edge = edge;
+            if contact.gap < -settings.margin {
+                return false;
+            }
+            follower.last = touch;
+            if contact.gap <= settings.margin {
+                let contact = contact.placed(&pair.world_from_frame).with_id(follower.id);
+                into.offers.push(Offer { contact, is_held: follower.age.is_some() });
+            }
+        }
+        let chosen = (&mut into.contacts, &mut into.groups);
+        choose(&mut into.offers, settings, slop, chosen);
+        for follower in &mut self.followers {
+            let mut contacts = into.contacts.iter_mut();
+            let contact = contacts.find(|contact| contact.id == follower.id);
+            follower.age = contact.map(|contact| {
+                contact.age = follower.age.map_or(0, |age| age.saturating_add(1));
+                contact.age
+            });
+        }
+        let slack = pair.slack(pair.root(self.searched).radius_about_origin());
+        into.separation_at_least = self.lower - self.moved(pair) - 2.0 * slack;
+        into.is_whole = self.is_whole;
+        into.evaluations += pair.evaluations - before;
+        (self.last_at, self.has_moved) = (now, true);
+        true
+    }
+}
+
+impl<const D: usize> Track<D> {
+    /// The contacts of both shapes at these poses for a solver, `world_from_body`, as
+    /// [`ManifoldSettings::for_solver`] describes them, with lasting ids and ages.
+    ///
+    /// A step searches only where the proof of an earlier search has ended: where the bodies have moved, since
+    /// then, by more than the margin. Until then contacts are carried with the bodies and polished, for a
+    /// few evaluations each. No contact within the margin is missed: its gap was within twice
+    /// the margin at the search. Where bodies overlap by more than the margin, each step is one of
+    /// [`manifold`](Self::manifold), with its history.
+    ///
+    /// The margin may change from step to step; a smaller one asks for no search. Equal calls from the first
+    /// one on give equal contacts, ids and ages. `into` takes the contacts. Once it and the workspace
+    /// have grown, a step without a search does not allocate. Without a slop in the settings it is
+    /// a fifth of the margin.
+    ///
+    /// ```
+    /// use palpate_field::{Pose, Shape, Vector};
+    /// use palpate_query::{Limits, ManifoldSettings, PairWorkspace, Track, TrackedContacts};
+    ///
+    /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+    /// let floor = Shape::<3>::half_space([0.0, 1.0, 0.0], 0.0)?;
+    /// let mut track = Track::new(floor, Shape::cuboid([1.0, 1.0, 1.0])?);
+    /// let settings = ManifoldSettings::for_solver(track.size());
+    /// let limits = Limits::new(settings.usual_tolerance());
+    /// let (mut workspace, mut found) = (PairWorkspace::new(), TrackedContacts::new());
+    /// let mut searches = 0;
+    /// for step in 0..100 {
+    ///     let pose = Pose::translation(Vector([1e-5 * f64::from(step), 0.499, 0.0]));
+    ///     track.contacts([Pose::identity(), pose], &settings, &limits, &mut workspace, &mut found)?;
+    ///     searches += u32::from(found.is_searched);
+    ///     assert_eq!(found.contacts.len(), 4);
+    ///     assert!(found.contacts.iter().all(|contact| contact.age == step as u32));
+    /// }
+    /// assert_eq!(searches, 1);
+    /// # Ok(())
+    /// # }
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// As of [`manifold`](crate::manifold).
+    #[inline(never)]
+    pub fn contacts(
+        &mut self,
+        poses: [Pose<D>; 2],
+        settings: &ManifoldSettings,
+        limits: &Limits,
+        workspace: &mut PairWorkspace<D>,
+        into: &mut TrackedContacts<D>,
+    ) -> Result<(), QueryError> {
+        settings.check()?;
+        limits.check()?;
+        let slop = settings.solver_slop.unwrap_or(SLOP * settings.margin);
+        let settings = ManifoldSettings { solver_slop: Some(slop), ..*settings };
+        let [a, b] = &self.shapes;
+        let mut pair = BodyPair::new(Placed::new(a, poses[0]), Placed::new(b, poses[1]))?;
+        into.clear();
+        if let Some(carried) = &mut self.memory.carried
+            && carried.lasts(&pair, &settings, limits.budget)
+            && carried.follow(&mut pair, &settings, slop, into)
+        {
+            return Ok(());
+        }
+        self.search_contacts(poses, (&settings, slop), limits, (workspace, into))
+    }
+
+    /// The same by a search.
+    #[inline(never)]
+    fn search_contacts(
+        &mut self,
+        poses: [Pose<D>; 2],
+        (settings, slop): (&ManifoldSettings, f64),
+        limits: &Limits,
+        (workspace, into): (&mut PairWorkspace<D>, &mut TrackedContacts<D>),
+    ) -> Result<(), QueryError> {
+        self.put_down();
+        into.clear();
+        let wide = ManifoldSettings { margin: FARTHER * settings.margin, ..*settings };
+        let (separation, best) = self.search(poses, wide.goal(limits), limits, workspace)?;
+        let mut spent = separation.evaluations;
+        if separation.upper >= -settings.margin {
+            let [a, b] = &self.shapes;
+            let pair = BodyPair::new(Placed::new(a, poses[0]), Placed::new(b, poses[1]))?;
+            let now = pair.second_from_frame;
+            let mut separated = SeparatedPair { pair, best, separation };
+            let mut carried = Carried {
+                found_at: now,
+                last_at: now,
+                searched: wide.margin.max(separation.lower),
+                lower: separation.lower,
+                spacing: settings.spacing,
+                budget: limits.budget,
+                is_whole: true,
+                has_moved: false,
+                followers: Vec::new(),
+            };
+            if separation.lower <= wide.margin {
+                let spanned = Spanned::find(&mut separated, &wide, limits.budget, workspace);
+                carried.is_whole = !spanned.is_cut_off();
+                let names = &mut self.memory.names;
+                carried.followers =
+                    Follower::named(names, &spanned, &separated.pair, (poses, settings));
+            }
+            spent += separated.pair.evaluations;
+            if carried.follow(&mut separated.pair, settings, slop, into) {
+                self.memory.carried = Some(carried);
+                into.is_searched = true;
+                into.evaluations += spent;
+                return Ok(());
+            }
+        }
+        let found = self.manifold(poses, settings, limits, workspace)?;
+        into.clear();
+        into.contacts.extend_from_slice(&found.contacts);
+        into.groups.extend_from_slice(&found.groups);
+        into.is_whole = found.is_whole;
+        into.separation_at_least = found.separation.lower;
+        into.is_searched = true;
+        into.evaluations = spent + found.separation.evaluations;
+        Ok(())
+    }
+
+    /// Ends to carry contacts: their names and sides are kept for the next search.
+    pub(super) fn put_down(&mut self) {
+        let Some(carried) = self.memory.carried.take() else { return };
+        let second = carried.last_at;
+        let followers = || carried.followers.iter();
+        let named = followers().map(|follower| Named {
+            id: follower.id,
+            points: [follower.last.point, second.transform_point(follower.last.point)],
+            normal: follower.last.normal,
+            age: follower.age,
+        });
+        self.memory.names.replace(named);
+        let known = followers().filter(|follower| follower.age.is_some()).map(|follower| {
+            let Follower { last, id, .. } = follower;
+            let half = last.normal * (0.5 * last.gap);
+            KnownContact {
+                id: *id,
+                points: [last.point - half, second.transform_point(last.point + half)],
+                normals: [last.normal, second.transform_vector(last.normal)],
+                missed: 0,
+            }
+        });
+        self.memory.history.replace(known);
+    }
+}

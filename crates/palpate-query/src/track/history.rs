@@ -1,0 +1,133 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! The sides on which contacts came in.
+
+use palpate_field::{Point, Pose, Vector};
+
+use crate::contact::{Contact, NormalSource};
+use crate::manifold::{ManifoldSettings, followed};
+use crate::pair::body_pair::BodyPair;
+
+/// The cosine of how far the normal of a contact may be from that of the step before, 45°.
+const SAME_SIDE: f64 = 0.7;
+
+/// A contact that is less deep than this share of what its history says came out of another side.
+const SHALLOW: f64 = 0.5;
+
+/// A contact takes the side of the one of the step before that is nearest, up to this many spacings and
+/// times its depth.
+const NEAR: f64 = 2.0;
+
+/// A contact that is lost is remembered for so many steps.
+const REMEMBERED: u32 = 10;
+
+/// Contacts that have been followed since the bodies overlapped by no more than the margin.
+#[derive(Clone, Debug, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub(super) struct History<const D: usize> {
+    known: Vec<KnownContact<D>>,
+}
+
+/// A contact of the last step, its points and normal in the coordinates of the first body and of the
+/// second.
+#[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub(super) struct KnownContact<const D: usize> {
+    pub(super) id: u64,
+    pub(super) points: [Point<D>; 2],
+    pub(super) normals: [Vector<f64, D>; 2],
+    /// In how many of the last steps it was not there.
+    pub(super) missed: u32,
+}
+
+impl<const D: usize> History<D> {
+    /// Takes these as the contacts of the last step. Those that were there before stay for a while.
+    pub(super) fn replace(&mut self, known: impl Iterator<Item = KnownContact<D>>) {
+        let mut known: Vec<_> = known.collect();
+        self.keep_lost(&mut known);
+        self.known = known;
+    }
+
+    /// Appends the contacts that are lost since a few steps at most.
+    fn keep_lost(&self, known: &mut Vec<KnownContact<D>>) {
+        for lost in &self.known {
+            let is_there = known.iter().any(|contact| contact.id == lost.id);
+            if !is_there && lost.missed < REMEMBERED {
+                known.push(KnownContact { missed: lost.missed + 1, ..*lost });
+            }
+        }
+    }
+
+    /// Gives deep contacts whose normals are not those with which they came in the normals and gaps of
+    /// their history, and returns how often fields were evaluated. What was deep when it was seen first
+    /// has no history until it comes out.
+    pub(super) fn follow(
+        &mut self,
+        contacts: &mut [Contact<D>],
+        pair: BodyPair<'_, D>,
+        poses: [Pose<D>; 2],
+        settings: &ManifoldSettings,
+    ) -> u32 {
+        let mut pair = pair;
+        pair.evaluations = 0;
+        let from_world = poses.map(|pose| pose.inverse());
+        let mut known = Vec::with_capacity(contacts.len());
+        for contact in contacts {
+            if contact.gap < -settings.margin {
+                let Some((last, apart)) = self.nearest(contact, poses) else { continue };
+                let normals = [0, 1].map(|i| poses[i].transform_vector(last.normals[i]));
+                let points = [0, 1].map(|i| poses[i].transform_point(last.points[i]));
+                // How deep the points are that touched, by how they have moved past each other.
+                let carried = (points[1] - points[0]).dot(normals[0]);
+                let is_other_side =
+                    normals.iter().all(|normal| normal.dot(contact.normal) < SAME_SIDE);
+                if is_other_side || contact.gap > SHALLOW * carried {
+                    let far = NEAR * (settings.spacing - contact.gap.min(carried));
+                    // Where no field gives a direction, the place says as little.
+                    if apart > far && contact.normal_from != NormalSource::Assumed {
+                        continue;
+                    }
+                    // The frame of the pair is the first body.
+                    let frame = &from_world[0];
+                    let found = followed(
+                        &mut pair,
+                        points.map(|p| frame.transform_point(p)),
+                        normals.map(|normal| frame.transform_vector(normal)),
+                        settings,
+                    );
+                    let Some(touch) = found else { continue };
+                    let followed = touch.contact(&pair, settings.spacing);
+                    *contact = followed.with_id(contact.id);
+                }
+            }
+            known.push(KnownContact {
+                id: contact.id,
+                missed: 0,
+                points: [
+                    from_world[0].transform_point(contact.point_a),
+                    from_world[1].transform_point(contact.point_b),
+                ],
+                normals: from_world
+                    .map(|from_world| from_world.transform_vector(contact.normal)),
+            });
+        }
+        self.keep_lost(&mut known);
+        self.known = known;
+        pair.evaluations
+    }
+
+    /// The contact of the last step that is nearest on either body, and how far it is [m].
+    fn nearest(
+        &self,
+        contact: &Contact<D>,
+        poses: [Pose<D>; 2],
+    ) -> Option<(KnownContact<D>, f64)> {
+        let apart = |known: &KnownContact<D>| {
+            let [a, b] = [0, 1].map(|i| poses[i].transform_point(known.points[i]));
+            (a - contact.point_a).norm().min((b - contact.point_b).norm())
+        };
+        let all = self.known.iter().map(|known| (*known, apart(known)));
+        all.min_by(|one, other| one.1.total_cmp(&other.1))
+    }
+}
