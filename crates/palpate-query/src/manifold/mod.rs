@@ -458,7 +458,8 @@ impl<const D: usize> Manifold<D> {
 }
 
 impl ManifoldSettings {
-    /// The tolerance of the separation that serves these settings [m]: half of the margin.
+    /// The tolerance of the separation that serves these settings [m]: half of the margin, or of the slop
+    /// of a solver if that is less.
     ///
     /// ```
     /// use palpate_query::ManifoldSettings;
@@ -468,7 +469,7 @@ impl ManifoldSettings {
     /// ```
     #[must_use]
     pub fn usual_tolerance(&self) -> f64 {
-        0.5 * self.margin
+        0.5 * self.solver_slop.map_or(self.margin, |slop| slop.min(self.margin))
     }
 
     /// The separation, if it is within the margin.

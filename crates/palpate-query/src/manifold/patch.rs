@@ -396,8 +396,23 @@ pub(super) fn in_host<const D: usize>(
     (from, first): (Point<D>, f64),
     settings: &ManifoldSettings,
 ) -> Option<Touch<D>> {
-    let guest = 1 - host;
     let precise = DEEP_PRECISE * settings.precision_length();
+    let (here, (gap, slope)) = lowest(pair, host, (from, first), precise);
+    let outwards = slope.normalized().filter(|_| gap < 0.0)?;
+    let normal = if host == 0 { outwards } else { -outwards };
+    let point = here - outwards * (0.5 * gap);
+    Some(Touch { point, normal, gap, source: NormalSource::ThickerBody })
+}
+
+/// The point of the guest where the host's value is least, from a point of the guest on down, to `precise`
+/// [m]; and the host's value and gradient there.
+pub(super) fn lowest<const D: usize>(
+    pair: &mut BodyPair<'_, D>,
+    host: usize,
+    (from, first): (Point<D>, f64),
+    precise: f64,
+) -> (Point<D>, (f64, Vector<f64, D>)) {
+    let guest = 1 - host;
     let mut here = from;
     let mut slopes = pair.slopes(here);
     let mut step = slopes[host].0.abs().max(first);
@@ -425,11 +440,7 @@ pub(super) fn in_host<const D: usize>(
             step *= SHRINK;
         }
     }
-    let gap = slopes[host].0;
-    let outwards = slopes[host].1.normalized().filter(|_| gap < 0.0)?;
-    let normal = if host == 0 { outwards } else { -outwards };
-    let point = here - outwards * (0.5 * gap);
-    Some(Touch { point, normal, gap, source: NormalSource::ThickerBody })
+    (here, slopes[host])
 }
 
 /// The touch along the host's gradient, where a touch is deeper than the margin and one of the bodies is

@@ -17,7 +17,8 @@
 
 use palpate_field::{Point, Vector};
 
-use super::patch::settled_slopes;
+use super::patch::{self, settled_slopes};
+use super::region::distance;
 use super::{ManifoldSettings, Touch};
 use crate::contact::{Contact, NormalSource};
 use crate::pair::body_pair::BodyPair;
@@ -39,6 +40,15 @@ const FLAT: f64 = 1e4;
 
 /// Gradients whose sum is longer, 0.8°, may be those of a face and an edge.
 const EDGE: f64 = 0.014;
+
+/// Nothing is exact where the gap is larger than so many margins.
+const BEYOND: f64 = 1.5;
+
+/// The first step to the lowest point of an edge, in spacings.
+const LOWER: f64 = 0.25;
+
+/// An edge is steep if it leads down by more than this share of the way, 6°.
+const STEEP: f64 = 0.1;
 
 /// How far a touch moves to where the gap is least, in spacings: the deepest, and another one, which spans
 /// the patch.
@@ -170,30 +180,32 @@ pub(crate) fn polished<const D: usize>(
     if touch.source != NormalSource::Gradients {
         return None;
     }
-    let Some(Opposed { touch, sum }) = opposed(pair, touch, far, curvature, settings) else {
-        // Next to a corner, the bodies may face each other at no point.
-        let touch = Touch { gap: pair.gap_at(touch.point), ..*touch };
-        let (face, found) = touch.on_face(pair, settings)?;
-        let edge = Some(Edge::of(pair, 1 - face, &found));
-        return Some(Polished {
-            contact: found.contact_in_frame(pair, settings.spacing),
-            touch: found,
-            edge,
-        });
-    };
-    let (mut edge, mut along) = (None, None);
-    if touch.gap < -settings.margin {
-        along = touch.along_surface(pair, settings);
-    } else if sum.norm() > EDGE {
-        if let Some((face, found)) = touch.on_face(pair, settings) {
-            edge = Some(Edge::of(pair, 1 - face, &found));
-            along = Some(found);
-        }
-    } else if let Some(contact) = touch.opposed_contact(pair, settings) {
-        return Some(Polished { touch, contact, edge });
+    let found = opposed(pair, touch, far, curvature, settings);
+    if let Some(Opposed { touch, sum }) = found
+        && touch.gap >= -settings.margin
+        && sum.norm() <= EDGE
+    {
+        let contact = touch.opposed_contact(pair, settings);
+        let contact = contact.unwrap_or_else(|| touch.contact_in_frame(pair, settings.spacing));
+        return Some(Polished { touch, contact, edge: None });
     }
-    let contact = along.unwrap_or(touch).contact_in_frame(pair, settings.spacing);
-    Some(Polished { touch, contact, edge })
+    let is_deepest = far > OTHERS_MOVE * settings.spacing;
+    if let Some(Opposed { touch, .. }) = found
+        && touch.gap > BEYOND * settings.margin
+        && !is_deepest
+    {
+        let contact = Contact::estimated(touch.point, touch.normal, touch.gap);
+        return Some(Polished { touch, contact, edge: None });
+    }
+    // Next to a corner, the bodies may face each other at no point.
+    let here = found
+        .map_or_else(|| Touch { gap: pair.gap_at(touch.point), ..*touch }, |found| found.touch);
+    let edge = Edge::of(pair, &here, far, settings);
+    // A contact is no less deep than the values say.
+    let is_deep = |edge: &Polished<D>| here.gap >= 0.0 || edge.contact.gap <= here.gap;
+    edge.and_then(|edge| edge.contact(pair, settings))
+        .filter(is_deep)
+        .or_else(|| found.map(|found| found.touch.usual(pair, settings)))
 }
 
 /// A point of an edge of one body that touches a face of the other: it stays where it is in its body.
@@ -208,11 +220,49 @@ pub(crate) struct Edge<const D: usize> {
 }
 
 impl<const D: usize> Edge<D> {
-    fn of(pair: &BodyPair<'_, D>, body: usize, touch: &Touch<D>) -> Self {
-        let side = if body == 0 { -0.5 } else { 0.5 };
-        let p = touch.point + touch.normal * (side * touch.gap);
+    /// The edge at a touch: of the body that has one, if the other has a face there, else of the body that
+    /// lies deeper in the other.
+    fn of(
+        pair: &mut BodyPair<'_, D>,
+        touch: &Touch<D>,
+        far: f64,
+        settings: &ManifoldSettings,
+    ) -> Option<Self> {
+        let slopes = pair.slopes(touch.point);
+        if let Some(face) = pair.face(touch.point, slopes) {
+            return Self::on(pair, face.body, touch, (far, settings)).map(|(_, edge)| edge);
+        }
+        let edges = [0, 1].map(|face| Self::on(pair, face, touch, (far, settings)));
+        let deeper = edges.into_iter().flatten().min_by(|one, other| one.0.total_cmp(&other.0));
+        deeper.map(|(_, edge)| edge)
+    }
+
+    /// The edge of one body on a face of the other at a touch, and its height above it [m]: the lowest
+    /// point, if it is within `far` [m] and the way there leads down steeply, or the touch is the deepest; else
+    /// the point next to the touch.
+    fn on(
+        pair: &mut BodyPair<'_, D>,
+        face: usize,
+        touch: &Touch<D>,
+        (far, settings): (f64, &ManifoldSettings),
+    ) -> Option<(f64, Self)> {
+        let body = 1 - face;
+        let next = pair.surface_point(body, touch.point);
+        let near = settings.spacing.max(touch.gap.abs());
+        let start = next.filter(|p| distance(*p, touch.point) <= near)?;
+        let at_start = pair.slope(face, start);
+        let first = LOWER * settings.spacing;
+        let precise = super::SAME_DEPTH * settings.precision_length();
+        let (lowest, at_lowest) = patch::lowest(pair, face, (start, first), precise);
+        let way = distance(lowest, start);
+        let is_far = way > far || at_start.0 - at_lowest.0 < STEEP * way;
+        let is_deepest = far > OTHERS_MOVE * settings.spacing;
+        let (p, (height, slope)) =
+            if is_far && !is_deepest { (start, at_start) } else { (lowest, at_lowest) };
+        let outwards = slope.normalized()?;
+        let normal = if face == 0 { outwards } else { -outwards };
         let point = if body == 0 { p } else { pair.second_from_frame.transform_point(p) };
-        Self { body, point, normal: touch.normal }
+        Some((height, Self { body, point, normal }))
     }
 
     /// The contact of the edge where both bodies are now. `None` where the other body no longer faces it as

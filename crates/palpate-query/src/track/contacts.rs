@@ -8,7 +8,7 @@
 //! by more than δ: while the bodies stay within the difference, no part of the region is new. Its contacts
 //! move with the bodies, and Newton's method puts each where the gap is least.
 
-use palpate_field::Pose;
+use palpate_field::{Point, Pose};
 
 use super::history::KnownContact;
 use super::names::{Named, Names};
@@ -25,16 +25,24 @@ use crate::pair::body_pair::BodyPair;
 use crate::sampler::Placed;
 
 /// The region is searched up to so many margins.
-const FARTHER: f64 = 2.0;
+const FARTHER: f64 = 1.5;
+
+/// Bodies that move by less than this share of the margin in a step are at rest. Their contacts last while they
+/// are within the other share of where they were searched.
+const AT_REST: f64 = 1e-4;
+const SETTLED: f64 = 0.02;
 
 /// The slop of settings without one, as a share of the margin.
 const SLOP: f64 = 0.2;
+
+/// Contacts hide depth if the bodies are proven to overlap deeper by more than this share of the margin.
+const HIDDEN: f64 = 0.05;
 
 /// Places to which both bodies carry a contact are one if they differ by less than this share of the
 /// spacing.
 const ONE_PLACE: f64 = 1e-3;
 
-/// The contacts of a step, in memory that is used again.
+/// The contacts of a step, as [`Track::contacts`] finds them.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub struct TrackedContacts<const D: usize> {
@@ -54,12 +62,6 @@ pub struct TrackedContacts<const D: usize> {
 }
 
 impl<const D: usize> TrackedContacts<D> {
-    /// Memory for the contacts of a step.
-    #[must_use]
-    pub fn new() -> Self {
-        Self::default()
-    }
-
     fn clear(&mut self) {
         self.contacts.clear();
         self.groups.clear();
@@ -75,6 +77,8 @@ pub(super) struct Carried<const D: usize> {
     /// The second body in the first one's coordinates, at the search and in the last step.
     found_at: Pose<D>,
     last_at: Pose<D>,
+    /// Where the search found the bodies nearest or deepest.
+    best: Point<D>,
     /// All parts of the region up to this gap are spanned [m].
     searched: f64,
     /// A lower bound of the separation at the search [m].
@@ -151,11 +155,42 @@ impl<const D: usize> Follower<D> {
 }
 
 impl<const D: usize> Carried<D> {
-    /// Whether the proof of the search lasts for these poses and settings.
+    /// Whether the contacts of the search last for these poses and settings: no part of the region is new,
+    /// and the bodies have not turned by so much that another point is the deepest. Bodies that have come to
+    /// rest elsewhere are searched there.
     fn lasts(&self, pair: &BodyPair<'_, D>, settings: &ManifoldSettings, budget: u32) -> bool {
         let more = !self.is_whole && budget > self.budget;
-        let spare = self.searched - settings.margin;
-        self.spacing == settings.spacing && !more && self.moved(pair) <= spare
+        if self.spacing != settings.spacing || more {
+            return false;
+        }
+        let root = pair.root(self.searched);
+        let now = &pair.second_from_frame;
+        let moved = displacement(&self.found_at, now, &root);
+        if self.followers.is_empty() {
+            return moved <= self.searched - settings.margin;
+        }
+        let limit = (self.searched - settings.margin).min((FARTHER - 1.0) * settings.margin);
+        let is_at_rest = displacement(&self.last_at, now, &root) <= AT_REST * settings.margin;
+        moved <= if is_at_rest { limit.min(SETTLED * settings.margin) } else { limit }
+    }
+
+    /// Whether the bodies are proven to be nearer, or to overlap deeper, than all these contacts say.
+    fn is_hiding(
+        &self,
+        pair: &mut BodyPair<'_, D>,
+        second_to_frame: Pose<D>,
+        settings: &ManifoldSettings,
+        offers: &[Offer<D>],
+    ) -> bool {
+        let with_second =
+            second_to_frame.transform_point(self.found_at.transform_point(self.best));
+        let mut upper = pair.gap_at(with_second);
+        if distance(with_second, self.best) > ONE_PLACE * settings.spacing {
+            upper = upper.min(pair.gap_at(self.best));
+        }
+        let gaps = offers.iter().map(|offer| offer.contact.gap);
+        let deepest = gaps.fold(settings.margin, f64::min);
+        deepest > upper + HIDDEN * settings.margin
     }
 
     /// How far the bodies have moved since the search at most [m].
@@ -194,6 +229,9 @@ impl<const D: usize> Carried<D> {
                 into.offers.push(Offer { contact, is_held: follower.age.is_some() });
             }
         }
+        if self.is_hiding(pair, second_to_frame, settings, &into.offers) {
+            return false;
+        }
         let chosen = (&mut into.contacts, &mut into.groups);
         choose(&mut into.offers, settings, slop, chosen);
         for follower in &mut self.followers {
@@ -218,30 +256,31 @@ impl<const D: usize> Track<D> {
     /// [`ManifoldSettings::for_solver`] describes them, with lasting ids and ages.
     ///
     /// A step searches only where the proof of an earlier search has ended: where the bodies have moved, since
-    /// then, by more than the margin. Until then contacts are carried with the bodies and polished, for a
-    /// few evaluations each. No contact within the margin is missed: its gap was within twice
-    /// the margin at the search. Where bodies overlap by more than the margin, each step is one of
+    /// then, by more than half the margin. Until then contacts are carried with the bodies and polished, for a
+    /// few evaluations each. No contact within the margin is missed: its gap was within 1.5
+    /// margins at the search. Where bodies overlap by more than the margin, each step is one of
     /// [`manifold`](Self::manifold), with its history.
     ///
     /// The margin may change from step to step; a smaller one asks for no search. Equal calls from the first
-    /// one on give equal contacts, ids and ages. `into` takes the contacts. Once it and the workspace
-    /// have grown, a step without a search does not allocate. Without a slop in the settings it is
-    /// a fifth of the margin.
+    /// one on give equal contacts, ids and ages. The answer lies in memory of the track that the next step
+    /// uses again: a step without a search does not allocate. Without a slop in the settings it is a
+    /// fifth of the margin.
     ///
     /// ```
     /// use palpate_field::{Pose, Shape, Vector};
-    /// use palpate_query::{Limits, ManifoldSettings, PairWorkspace, Track, TrackedContacts};
+    /// use palpate_query::{Limits, ManifoldSettings, PairWorkspace, Track};
     ///
     /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
     /// let floor = Shape::<3>::half_space([0.0, 1.0, 0.0], 0.0)?;
     /// let mut track = Track::new(floor, Shape::cuboid([1.0, 1.0, 1.0])?);
     /// let settings = ManifoldSettings::for_solver(track.size());
     /// let limits = Limits::new(settings.usual_tolerance());
-    /// let (mut workspace, mut found) = (PairWorkspace::new(), TrackedContacts::new());
+    /// let mut workspace = PairWorkspace::new();
     /// let mut searches = 0;
     /// for step in 0..100 {
     ///     let pose = Pose::translation(Vector([1e-5 * f64::from(step), 0.499, 0.0]));
-    ///     track.contacts([Pose::identity(), pose], &settings, &limits, &mut workspace, &mut found)?;
+    ///     let poses = [Pose::identity(), pose];
+    ///     let found = track.contacts(poses, &settings, &limits, &mut workspace)?;
     ///     searches += u32::from(found.is_searched);
     ///     assert_eq!(found.contacts.len(), 4);
     ///     assert!(found.contacts.iter().all(|contact| contact.age == step as u32));
@@ -261,22 +300,22 @@ impl<const D: usize> Track<D> {
         settings: &ManifoldSettings,
         limits: &Limits,
         workspace: &mut PairWorkspace<D>,
-        into: &mut TrackedContacts<D>,
-    ) -> Result<(), QueryError> {
+    ) -> Result<&TrackedContacts<D>, QueryError> {
         settings.check()?;
         limits.check()?;
         let slop = settings.solver_slop.unwrap_or(SLOP * settings.margin);
         let settings = ManifoldSettings { solver_slop: Some(slop), ..*settings };
         let [a, b] = &self.shapes;
         let mut pair = BodyPair::new(Placed::new(a, poses[0]), Placed::new(b, poses[1]))?;
-        into.clear();
-        if let Some(carried) = &mut self.memory.carried
-            && carried.lasts(&pair, &settings, limits.budget)
-            && carried.follow(&mut pair, &settings, slop, into)
-        {
-            return Ok(());
+        self.found.clear();
+        let is_carried = self.memory.carried.as_mut().is_some_and(|carried| {
+            carried.lasts(&pair, &settings, limits.budget)
+                && carried.follow(&mut pair, &settings, slop, &mut self.found)
+        });
+        if !is_carried {
+            self.search_contacts(poses, (&settings, slop), limits, workspace)?;
         }
-        self.search_contacts(poses, (&settings, slop), limits, (workspace, into))
+        Ok(&self.found)
     }
 
     /// The same by a search.
@@ -286,10 +325,10 @@ impl<const D: usize> Track<D> {
         poses: [Pose<D>; 2],
         (settings, slop): (&ManifoldSettings, f64),
         limits: &Limits,
-        (workspace, into): (&mut PairWorkspace<D>, &mut TrackedContacts<D>),
+        workspace: &mut PairWorkspace<D>,
     ) -> Result<(), QueryError> {
         self.put_down();
-        into.clear();
+        self.found.clear();
         let wide = ManifoldSettings { margin: FARTHER * settings.margin, ..*settings };
         let (separation, best) = self.search(poses, wide.goal(limits), limits, workspace)?;
         let mut spent = separation.evaluations;
@@ -301,6 +340,7 @@ impl<const D: usize> Track<D> {
             let mut carried = Carried {
                 found_at: now,
                 last_at: now,
+                best,
                 searched: wide.margin.max(separation.lower),
                 lower: separation.lower,
                 spacing: settings.spacing,
@@ -317,21 +357,23 @@ impl<const D: usize> Track<D> {
                     Follower::named(names, &spanned, &separated.pair, (poses, settings));
             }
             spent += separated.pair.evaluations;
-            if carried.follow(&mut separated.pair, settings, slop, into) {
+            let found = &mut self.found;
+            if carried.follow(&mut separated.pair, settings, slop, found) {
                 self.memory.carried = Some(carried);
-                into.is_searched = true;
-                into.evaluations += spent;
+                (found.is_searched, found.evaluations) = (true, found.evaluations + spent);
                 return Ok(());
             }
+            spent += found.evaluations;
         }
-        let found = self.manifold(poses, settings, limits, workspace)?;
-        into.clear();
-        into.contacts.extend_from_slice(&found.contacts);
-        into.groups.extend_from_slice(&found.groups);
-        into.is_whole = found.is_whole;
-        into.separation_at_least = found.separation.lower;
-        into.is_searched = true;
-        into.evaluations = spent + found.separation.evaluations;
+        let manifold = self.manifold(poses, settings, limits, workspace)?;
+        let found = &mut self.found;
+        found.clear();
+        found.contacts.extend_from_slice(&manifold.contacts);
+        found.groups.extend_from_slice(&manifold.groups);
+        found.is_whole = manifold.is_whole;
+        found.separation_at_least = manifold.separation.lower;
+        found.is_searched = true;
+        found.evaluations = spent + manifold.separation.evaluations;
         Ok(())
     }
 

@@ -70,6 +70,8 @@ const ALONE: u32 = 8;
 pub struct Track<const D: usize> {
     shapes: [Shape<D>; 2],
     memory: TrackMemory<D>,
+    /// The contacts of the last step.
+    found: TrackedContacts<D>,
 }
 
 /// What a [`Track`] remembers of earlier steps, without its shapes: a snapshot of it.
@@ -125,14 +127,14 @@ impl<const D: usize> Track<D> {
     #[must_use]
     #[inline(never)]
     pub fn new(a: Shape<D>, b: Shape<D>) -> Self {
-        Self { shapes: [a, b], memory: TrackMemory::default() }
+        Self::with_memory(a, b, TrackMemory::default())
     }
 
     /// A track that goes on where one of the same shapes was.
     #[must_use]
     #[inline(never)]
     pub fn with_memory(a: Shape<D>, b: Shape<D>, memory: TrackMemory<D>) -> Self {
-        Self { shapes: [a, b], memory }
+        Self { shapes: [a, b], memory, found: TrackedContacts::default() }
     }
 
     /// What the track remembers of earlier steps.

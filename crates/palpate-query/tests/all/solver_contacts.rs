@@ -8,9 +8,10 @@ use assert_no_alloc::assert_no_alloc;
 use palpate_field::kernel::{CoolS, RegularStar};
 use palpate_field::{Pose, Rotation, Shape, ShapeError, Vector};
 use palpate_query::{
-    Limits, Manifold, ManifoldSettings, PairWorkspace, Placed, Track, TrackedContacts,
-    manifold, separation,
+    Limits, Manifold, ManifoldSettings, PairWorkspace, Placed, Track, manifold, separation,
 };
+use palpate_testkit::arbitrary::within;
+use palpate_testkit::cases;
 
 /// The largest sum of both unit gradients at a contact.
 const OPPOSITE: f64 = 1e-6;
@@ -173,27 +174,26 @@ fn cost_at_rest<const D: usize>((name, shapes, pose): Pair<D>) -> f64 {
     let mut track = Track::new(a, b);
     let settings = ManifoldSettings::for_solver(track.size());
     let limits = Limits::new(settings.usual_tolerance());
-    let (mut workspace, mut found) = (PairWorkspace::new(), TrackedContacts::new());
-    let mut most = 0.0_f64;
+    let mut workspace = PairWorkspace::new();
+    let (mut most, mut count) = (0.0_f64, 0);
     for step in 0..100 {
         let poses = [Pose::identity(), trembling(&pose, step)];
-        let mut ask = || {
-            track.contacts(poses, &settings, &limits, &mut workspace, &mut found).unwrap();
-        };
-        if step == 0 {
-            ask()
+        let (track, memory) = (&mut track, &mut workspace);
+        let found = if step == 0 {
+            track.contacts(poses, &settings, &limits, memory).unwrap()
         } else {
-            assert_no_alloc(ask)
-        }
+            assert_no_alloc(|| track.contacts(poses, &settings, &limits, memory).unwrap())
+        };
         assert!(found.is_whole && !found.contacts.is_empty(), "{name}");
         assert_eq!(found.is_searched, step == 0, "{name} in step {step}");
         assert!(found.contacts.iter().all(|contact| contact.age == step), "{name}");
+        count = found.contacts.len();
         if step > 0 {
             // A value with its gradient counts twice, for each of both bodies.
-            most = most.max(f64::from(found.evaluations) / 4.0 / found.contacts.len() as f64);
+            most = most.max(f64::from(found.evaluations) / 4.0 / count as f64);
         }
     }
-    println!("{name}: {most} for each of {} contacts", found.contacts.len());
+    println!("{name}: {most} for each of {} contacts", count);
     most
 }
 
@@ -207,4 +207,123 @@ fn a_pair_at_rest_costs_few_evaluations_and_no_allocation() {
         let cost = cost_at_rest(pair);
         assert!(cost <= 6.0, "{cost}");
     }
+}
+
+/// Poses of a cube that slides, sinks and tilts on a floor.
+fn poses_of_a_cube() -> impl Iterator<Item = [Pose<3>; 2]> {
+    (0..200).map(|step| {
+        let t = f64::from(step);
+        let tilt = Rotation::from_axis_angle([0.0, 0.0, 1.0], 2e-5 * t).unwrap();
+        let place = Vector([2e-4 * t, 0.0499 + 2e-6 * t, 1e-4 * t]);
+        [Pose::identity(), Pose::new(tilt, place)]
+    })
+}
+
+fn floor_and_cube() -> [Shape<3>; 2] {
+    let floor = Shape::<3>::half_space([0.0, 1.0, 0.0], 0.0).unwrap();
+    [floor, Shape::<3>::cuboid([0.1; 3]).unwrap()]
+}
+
+#[cfg(feature = "serde")]
+#[test]
+fn equal_calls_give_equal_contacts_ids_and_ages_also_after_a_snapshot() {
+    let [floor, cube] = floor_and_cube();
+    let new = || Track::new(floor.clone(), cube.clone());
+    let (mut one, mut other, mut restored) = (new(), new(), new());
+    let settings = ManifoldSettings::for_solver(one.size());
+    let limits = Limits::new(settings.usual_tolerance());
+    let mut workspace = PairWorkspace::new();
+    for (step, poses) in poses_of_a_cube().enumerate() {
+        let first = one.contacts(poses, &settings, &limits, &mut workspace).unwrap();
+        let second = other.contacts(poses, &settings, &limits, &mut workspace).unwrap();
+        assert_eq!(first, second, "step {step}");
+        let third = restored.contacts(poses, &settings, &limits, &mut workspace).unwrap();
+        assert_eq!(first, third, "step {step}, restored");
+        if step % 37 == 0 {
+            let text = serde_json::to_string(restored.memory()).unwrap();
+            let memory = serde_json::from_str(&text).unwrap();
+            restored = Track::with_memory(floor.clone(), cube.clone(), memory);
+        }
+    }
+}
+
+#[test]
+fn a_smaller_margin_asks_for_no_search_and_a_larger_one_keeps_the_ids() {
+    let [floor, cube] = floor_and_cube();
+    let mut track = Track::new(floor, cube);
+    let own = ManifoldSettings::for_solver(track.size());
+    let limits = Limits::new(own.usual_tolerance());
+    let mut workspace = PairWorkspace::new();
+    let poses = [Pose::identity(), Pose::translation(Vector([0.0, 0.0499, 0.0]))];
+    let mut ids = Vec::new();
+    for (factor, is_searched) in [(1.0, true), (0.5, false), (1.0, false), (4.0, true)] {
+        let settings = ManifoldSettings { margin: factor * own.margin, ..own };
+        let found = track.contacts(poses, &settings, &limits, &mut workspace).unwrap();
+        assert_eq!(found.is_searched, is_searched, "{factor}");
+        let mut now: Vec<u64> = found.contacts.iter().map(|contact| contact.id).collect();
+        now.sort_unstable();
+        if ids.is_empty() {
+            ids.clone_from(&now);
+        }
+        assert_eq!(now, ids, "{factor}");
+    }
+}
+
+/// What the contacts of a moving pair must be: no shallower than the bodies are proven to be, and on
+/// the surfaces with opposite normals or at an edge.
+fn contacts_tell_the_depth<const D: usize>(
+    [a, b]: [Shape<D>; 2],
+    poses: &[Pose<D>],
+) -> Result<(), String> {
+    let mut track = Track::new(a.clone(), b.clone());
+    let settings = ManifoldSettings::for_solver(track.size());
+    let limits = Limits::new(settings.usual_tolerance());
+    let mut workspace = PairWorkspace::new();
+    for (step, pose) in poses.iter().enumerate() {
+        let there = [Pose::identity(), *pose];
+        let found = track.contacts(there, &settings, &limits, &mut workspace);
+        let found = found.map_err(|error| error.to_string())?.clone();
+        let proof = separation(&a, Placed::new(&b, *pose), &limits, &mut workspace);
+        let proof = proof.map_err(|error| error.to_string())?;
+        if found.separation_at_least > proof.upper {
+            let bound = found.separation_at_least;
+            return Err(format!("step {step}: {bound} m is no bound of {} m", proof.upper));
+        }
+        let gaps = found.contacts.iter().map(|contact| contact.gap);
+        let deepest = gaps.fold(settings.margin, f64::min);
+        // What moves may hide a part of the way since the search.
+        let hidden = deepest - proof.upper;
+        if hidden > 0.3 * settings.margin {
+            return Err(format!(
+                "step {step}: the deepest contact is at {deepest} m where the bodies are at {} m",
+                proof.upper
+            ));
+        }
+    }
+    Ok(())
+}
+
+#[test]
+fn contacts_of_moving_stars_and_boxes_tell_their_depth() {
+    let star = Shape::from_kernel(RegularStar::new(5, 0.12, 0.06).unwrap());
+    let cool = Shape::from_kernel(CoolS::new(0.3).unwrap());
+    let plate = Shape::<2>::rectangle([0.3, 0.05]).unwrap();
+    let shapes = [star, cool, plate];
+    cases::check(300, |u| {
+        let mut any = || shapes[u.choose_index(3).unwrap_or(0)].clone();
+        let pair = [any(), any()];
+        let start =
+            in_the_plane(within(u, 0.0, std::f64::consts::TAU)?, [within(u, -0.1, 0.1)?, 0.5]);
+        let pose = onto(&pair[0], &pair[1], start);
+        let way = [within(u, -2e-3, 2e-3)?, within(u, -1e-3, 1e-3)?];
+        let spin = within(u, -0.01, 0.01)?;
+        let poses: Vec<_> = (0..40)
+            .map(|step| {
+                let t = f64::from(step);
+                let turn = Rotation::from_angle(spin * t).unwrap() * pose.rotation;
+                Pose::new(turn, pose.translation + Vector(way) * t)
+            })
+            .collect();
+        Ok(contacts_tell_the_depth(pair, &poses))
+    });
 }
