@@ -13,6 +13,7 @@ mod degenerate;
 mod element_sweeps;
 mod elements;
 mod flat_patches;
+mod flat_patches_2d;
 mod manifolds;
 mod mesh_memory;
 mod mesh_sweeps;
