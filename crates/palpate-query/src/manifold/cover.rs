@@ -68,8 +68,7 @@ fn nearest<const D: usize>(place: Point<D>, contacts: &[Member<D>]) -> Option<&M
 
 impl<const D: usize> Patches<'_, '_, D> {
     /// Appends contacts until none of these touches is left out. The touch that is farthest from all contacts
-    /// comes next, moved to the end of its part. That may be far along a rim: then what is deepest beside the
-    /// touch comes too, or the touch as it is, if it is still left out.
+    /// comes next, moved to the end of its part; and as it is, if it is left out even so.
     pub(super) fn cover(&mut self, touches: &[Touch<D>], contacts: &mut Vec<Member<D>>) {
         let spacing = self.settings.spacing;
         let mut left: Vec<&Touch<D>> = touches.iter().collect();
@@ -91,10 +90,7 @@ impl<const D: usize> Patches<'_, '_, D> {
                 let deepest = &contacts[0].touch;
                 (next.group, self.corner(touch, deepest, next.touch.point))
             });
-            let bottom = next.map_or(touch, |next| {
-                self.in_valley(touch, contacts[0].touch.gap, next.touch.point)
-            });
-            for touch in [end, bottom, touch] {
+            for touch in [end, touch] {
                 if is_left_out(touch.point, contacts, CANDIDATES * spacing) {
                     contacts.push(Member { touch, group });
                 }

@@ -201,12 +201,7 @@ impl<const D: usize> Patches<'_, '_, D> {
 
     /// A corner at the bottom of the valley beside it, as of a rod that lies on a face: the corner is no
     /// less far out there.
-    pub(super) fn in_valley(
-        &mut self,
-        corner: Touch<D>,
-        deepest: f64,
-        centre: Point<D>,
-    ) -> Touch<D> {
+    fn in_valley(&mut self, corner: Touch<D>, deepest: f64, centre: Point<D>) -> Touch<D> {
         if corner.gap <= deepest + SLOPE * self.settings.precision_length() {
             return corner;
         }
