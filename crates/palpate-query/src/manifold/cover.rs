@@ -13,8 +13,8 @@ use crate::pair::search::BoxCell;
 /// No part of the region is farther than this many spacings from the convex hull of the contacts.
 const MOST: f64 = 2.0;
 
-/// No candidate is farther than this many spacings from the hull. Parts of the region may be half a spacing
-/// from a candidate, and contacts move a little to the surfaces.
+/// No candidate is farther than this many spacings from the hull. Parts of the region in doubtful boxes may be
+/// farther from a candidate than the rest, and contacts move a little to the surfaces.
 const CANDIDATES: f64 = 1.4;
 
 /// The most steps to the nearest point of a hull. A place that is still undecided then is near the limit. It
@@ -52,6 +52,15 @@ pub(super) fn is_box_left_out<const D: usize>(
     is_left_out(cell.centre, contacts, MOST * spacing - cell.radius())
 }
 
+/// Whether a place is farther than promised from the convex hull of the contacts.
+pub(super) fn is_place_left_out<const D: usize>(
+    place: Point<D>,
+    contacts: &[Member<D>],
+    spacing: f64,
+) -> bool {
+    is_left_out(place, contacts, MOST * spacing)
+}
+
 fn nearest<const D: usize>(place: Point<D>, contacts: &[Member<D>]) -> Option<&Member<D>> {
     let apart = |member: &Member<D>| distance(member.touch.point, place);
     contacts.iter().min_by(|one, other| apart(one).total_cmp(&apart(other)))
@@ -59,7 +68,7 @@ fn nearest<const D: usize>(place: Point<D>, contacts: &[Member<D>]) -> Option<&M
 
 impl<const D: usize> Patches<'_, '_, D> {
     /// Appends contacts until none of these touches is left out. The touch that is farthest from all contacts
-    /// comes next. It is moved to the end of its part, and is no contact if another one is near there.
+    /// comes next, moved to the end of its part; and as it is, if it is left out even so.
     pub(super) fn cover(&mut self, touches: &[Touch<D>], contacts: &mut Vec<Member<D>>) {
         let spacing = self.settings.spacing;
         let mut left: Vec<&Touch<D>> = touches.iter().collect();
@@ -77,11 +86,18 @@ impl<const D: usize> Patches<'_, '_, D> {
             let new = contacts.iter().map(|member| member.group + 1).max().unwrap_or(0);
             let alike: Vec<_> = contacts.iter().filter(like).copied().collect();
             let next = nearest(touch.point, &alike).copied();
-            let (group, touch) = next.map_or((new, touch), |next| {
+            let (group, end) = next.map_or((new, touch), |next| {
                 let deepest = &contacts[0].touch;
                 (next.group, self.corner(touch, deepest, next.touch.point))
             });
-            if is_left_out(touch.point, contacts, CANDIDATES * spacing) {
+            let is_out = |touch: &Touch<D>, contacts: &[Member<D>]| {
+                is_left_out(touch.point, contacts, CANDIDATES * spacing)
+            };
+            if is_out(&end, contacts) {
+                contacts.push(Member { touch: end, group });
+            }
+            if is_out(&touch, contacts) {
+                contacts.pop_if(|last| last.touch.point == end.point);
                 contacts.push(Member { touch, group });
             }
         }

@@ -40,6 +40,9 @@ pub(crate) use solver::{Offer, choose};
 const COPIES: f64 = 1.5;
 const LIKE: f64 = 0.8;
 
+/// Contacts that were moved are at one place if they are nearer than this many spacings, times [`COPIES`].
+const ONE_PLACE: f64 = 0.1;
+
 /// The first step to the deepest point of an edge, as a multiple of the gap.
 const EDGE: f64 = 4.0;
 
@@ -344,7 +347,7 @@ impl<const D: usize> Spanned<D> {
         }
         if are_moved {
             // Several lead to one deepest point. To drop more would leave parts of the region out.
-            drop_copies(&mut members, settings.spacing / COPIES);
+            drop_inner_copies(&mut members, settings);
         }
         found.bound_distance(&mut pair, separated, (&self.members, settings));
         let contact = |member: &Member<D>| member.touch.contact(&pair, settings.spacing);
@@ -640,6 +643,39 @@ fn is_copy<const D: usize>(one: &Touch<D>, other: &Touch<D>, spacing: f64) -> bo
 /// normal.
 fn drop_copies<const D: usize>(touches: &mut Vec<Member<D>>, spacing: f64) {
     touches.sort_by(|one, other| one.touch.gap.total_cmp(&other.touch.gap));
+    keep_first(touches, spacing);
+}
+
+/// Drops contacts that are nearer than a spacing to a deeper one with a like normal, or to one as deep that
+/// is farther out: the ends of an edge stay. The deepest comes first.
+fn drop_inner_copies<const D: usize>(
+    touches: &mut Vec<Member<D>>,
+    settings: &ManifoldSettings,
+) {
+    // Of those at about one place the deepest stays.
+    drop_copies(touches, ONE_PLACE * settings.spacing);
+    let gap = |member: &Member<D>| member.touch.gap;
+    let deepest = touches.iter().map(gap).fold(f64::INFINITY, f64::min);
+    let precise = patch::DEEP_PRECISE * settings.precision_length();
+    let level = |member: &Member<D>| ((gap(member) - deepest) / precise).floor();
+    let share = 1.0 / touches.len() as f64;
+    let centre =
+        touches.iter().fold(Vector::ZERO, |sum, member| sum + member.touch.point * share);
+    let apart = |member: &Member<D>| distance(member.touch.point, centre);
+    touches.sort_by(|one, other| {
+        let is_deeper = level(one).total_cmp(&level(other));
+        is_deeper.then(apart(other).total_cmp(&apart(one)))
+    });
+    keep_first(touches, settings.spacing / COPIES);
+    let first =
+        (0..touches.len()).min_by(|&i, &k| gap(&touches[i]).total_cmp(&gap(&touches[k])));
+    if let Some(first) = first {
+        touches.swap(0, first);
+    }
+}
+
+/// Drops contacts next to one before them with a like normal.
+fn keep_first<const D: usize>(touches: &mut Vec<Member<D>>, spacing: f64) {
     let mut kept = 0;
     for i in 0..touches.len() {
         let touch = touches[i].touch;

@@ -47,6 +47,10 @@ const FAR: f64 = 4.0;
 /// A corner gives up as many spacings at most to be at the bottom of a valley.
 const VALLEY: f64 = 1.0;
 
+/// The first steps to the bottom of a valley, in spacings: long ones may lead far along it, short ones find
+/// no way in a flat one.
+const VALLEY_STEPS: [f64; 2] = [1.0, 0.1];
+
 /// The last step of a corner, as a share of the spacing.
 const SHARP: f64 = 0.06;
 
@@ -116,7 +120,9 @@ impl<const D: usize> Patches<'_, '_, D> {
     ) {
         let spacing = self.settings.spacing;
         let seed = self.by_values(self.candidates[seed]);
-        let deepest = self.deepest(seed);
+        // Bodies that touch in a valley meet all along it nearly as deep: short steps find
+        // no way down.
+        let deepest = self.deepest(seed, spacing);
         let points = || members.iter().map(|&i| self.candidates[i].point);
         let mut centre = Vector::ZERO;
         for p in points() {
@@ -173,13 +179,10 @@ impl<const D: usize> Patches<'_, '_, D> {
         Touch { gap: self.pair.gap_at(candidate.point), ..candidate }
     }
 
-    /// The deepest point near a candidate.
-    fn deepest(&mut self, start: Touch<D>) -> Touch<D> {
+    /// The deepest point near a candidate, with a first step of `first` [m].
+    fn deepest(&mut self, start: Touch<D>, first: f64) -> Touch<D> {
         let goal = Goal::least(PRECISE * self.settings.precision_length());
-        // Bodies that touch in a valley meet all along it nearly as deep: short steps find
-        // no way down.
-        let first = Some(self.settings.spacing);
-        let (_, p) = descend(&mut self.pair, start.point, first, goal, 0.0);
+        let (_, p) = descend(&mut self.pair, start.point, Some(first), goal, 0.0);
         let is_near = distance(p, start.point) < NEIGHBOURS * self.settings.spacing;
         let found = is_near.then(|| self.settle(p, self.settings.spacing)).flatten();
         found.filter(|found| found.gap < start.gap).unwrap_or(start)
@@ -202,10 +205,15 @@ impl<const D: usize> Patches<'_, '_, D> {
         if corner.gap <= deepest + SLOPE * self.settings.precision_length() {
             return corner;
         }
-        let bottom = self.deepest(corner);
         let outwards = (corner.point - centre).normalized().unwrap_or(Vector::ZERO);
-        let inwards = (corner.point - bottom.point).dot(outwards);
-        if inwards <= VALLEY * self.settings.spacing { bottom } else { corner }
+        for share in VALLEY_STEPS {
+            let bottom = self.deepest(corner, share * self.settings.spacing);
+            let inwards = (corner.point - bottom.point).dot(outwards);
+            if bottom.gap < corner.gap && inwards <= VALLEY * self.settings.spacing {
+                return bottom;
+            }
+        }
+        corner
     }
 
     /// Moves a corner outwards along the patch until the gap is the margin or the
@@ -291,24 +299,37 @@ pub(super) fn seeded<const D: usize>(
     pair: &mut BodyPair<'_, D>,
     cell: &BoxCell<D>,
     settings: &ManifoldSettings,
-) -> Option<Touch<D>> {
+) -> Seeded<D> {
     let far = 2.0 * cell.radius();
     let is_in = |p: Point<D>| distance(p, cell.centre) <= far;
     let is_touch = |touch: &Touch<D>| touch.gap <= settings.margin && is_in(touch.point);
     for body in 0..2 {
         let start = pair.surface_point(body, cell.centre).filter(|p| is_in(*p));
         let found = start.and_then(|start| settled(pair, start, far, settings));
-        if found.as_ref().is_some_and(is_touch) {
-            return found;
+        if let Some(found) = found.filter(is_touch) {
+            return Seeded::Touch(found);
         }
     }
-    let goal = Goal::least(PRECISE * settings.precision_length());
-    let (_, deepest) = descend(pair, cell.centre, Some(cell.radius()), goal, 0.0);
-    if is_in(deepest) {
-        let found = settled(pair, deepest, far, settings).filter(is_touch);
-        return found.or_else(|| swallowed(pair, deepest, settings).filter(is_touch));
+    let precise = PRECISE * settings.precision_length();
+    let (value, deepest) =
+        descend(pair, cell.centre, Some(cell.radius()), Goal::least(precise), 0.0);
+    if !is_in(deepest) {
+        return Seeded::Nothing;
     }
-    None
+    let found = settled(pair, deepest, far, settings).filter(is_touch);
+    match found.or_else(|| swallowed(pair, deepest, settings).filter(is_touch)) {
+        Some(found) => Seeded::Touch(found),
+        None if value < -precise => Seeded::Overlap(deepest),
+        None => Seeded::Nothing,
+    }
+}
+
+/// What is found in or next to a box.
+pub(super) enum Seeded<const D: usize> {
+    Touch(Touch<D>),
+    /// A point in both bodies, where neither's gradient tells the normal: no touch, and yet a part of the region.
+    Overlap(Point<D>),
+    Nothing,
 }
 
 /// The touch of a thin body that lies wholly in a thick one, at a point in both: along the gradient of the
@@ -364,7 +385,7 @@ const GROW: f64 = 1.5;
 const SHRINK: f64 = 0.5;
 
 /// The last step, as a share of [`ManifoldSettings::precision_length`].
-const DEEP_PRECISE: f64 = 0.05;
+pub(super) const DEEP_PRECISE: f64 = 0.05;
 
 /// The host of a touch: the body that is thick where the other is thin; `None` if both are the one or
 /// the other.

@@ -7,7 +7,7 @@ use palpate_field::scalar::Model;
 use palpate_field::{Aabb, BLOCK, Point, Vector};
 
 use super::cover;
-use super::patch::{self, Patches};
+use super::patch::{self, Patches, Seeded};
 use super::{COPIES, LIKE, ManifoldSettings, Member, Touch};
 use crate::certified::Stop;
 use crate::contact::NormalSource;
@@ -140,6 +140,8 @@ struct RegionSearch<'s, 'a, const D: usize> {
     middles: Vec<Middle<D>>,
     /// Boxes that may hold a part of the region, near candidates.
     doubtful: Vec<BoxCell<D>>,
+    /// Points in both bodies that lead to no candidate.
+    overlaps: Vec<Point<D>>,
 }
 
 impl<'s, 'a, const D: usize> RegionSearch<'s, 'a, D> {
@@ -164,6 +166,7 @@ impl<'s, 'a, const D: usize> RegionSearch<'s, 'a, D> {
             candidates,
             middles: vec![],
             doubtful: vec![],
+            overlaps: vec![],
         };
         (search, frontier)
     }
@@ -203,7 +206,7 @@ impl<const D: usize> RegionSearch<'_, '_, D> {
         for halving in 0..=HALVINGS {
             self.seed(&mut left, near, &coarse);
             if left.is_empty() {
-                return Stop::Converged;
+                return self.with_overlaps(near, &coarse);
             }
             if halving == HALVINGS {
                 break;
@@ -220,6 +223,18 @@ impl<const D: usize> RegionSearch<'_, '_, D> {
             left = self.settle();
         }
         Stop::Unresolved
+    }
+
+    /// Why a search of boxes for thin parts ends, of which none is left: bodies that overlap far from all
+    /// candidates, or where the contacts leave it out, touch there, too.
+    fn with_overlaps(&self, near: Near<'_, D>, coarse: &ManifoldSettings) -> Stop {
+        let far = SEEDED * coarse.spacing;
+        let is_open = |p: &Point<D>| {
+            self.candidates.iter().all(|touch| distance(touch.point, *p) > far)
+                && !matches!(near, Near::Contacts(contacts)
+                    if !cover::is_place_left_out(*p, contacts, coarse.spacing))
+        };
+        if self.overlaps.iter().any(is_open) { Stop::Unresolved } else { Stop::Converged }
     }
 
     /// Finds a candidate in or next to each box that is not `near` one, and keeps the boxes where there is
@@ -254,7 +269,14 @@ impl<const D: usize> RegionSearch<'_, '_, D> {
                 // No candidate would decide so large a box.
                 return true;
             }
-            let found = patch::seeded(self.pair, cell, coarse);
+            let found = match patch::seeded(self.pair, cell, coarse) {
+                Seeded::Touch(touch) => Some(touch),
+                Seeded::Overlap(p) => {
+                    self.overlaps.push(p);
+                    None
+                }
+                Seeded::Nothing => None,
+            };
             self.candidates.extend(found);
             match near {
                 Near::Candidates => {

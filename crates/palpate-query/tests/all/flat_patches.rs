@@ -28,7 +28,13 @@ struct Lying {
     feet: Vec<Polygon>,
     /// How thick the body is above its feet [m].
     thickness: f64,
+    /// Whether it lies on an edge of its own.
+    is_edge: bool,
 }
+
+/// Next to the rim of the floor an edge is one of both bodies, and their overlap as wide as the largest ball in
+/// it: less deep than a right angle by this share, 1 − 2/(1 + √2).
+const BLUNTED: f64 = 0.1716;
 
 /// How many corners a round foot is given.
 const ROUND: u32 = 64;
@@ -84,6 +90,10 @@ fn lying(u: &mut Unstructured<'_>) -> Result<std::result::Result<Lying, ShapeErr
     Ok(body(kind, thin, narrow))
 }
 
+fn lies(shape: Shape<3>, feet: Vec<Polygon>, thickness: f64) -> Lying {
+    Lying { shape, feet, thickness, is_edge: false }
+}
+
 fn body(kind: u8, thin: f64, narrow: f64) -> std::result::Result<Lying, ShapeError> {
     let above = |shape: Shape<3>, y: f64| shape.translated([0.0, y, 0.0]);
     let quarter =
@@ -94,28 +104,28 @@ fn body(kind: u8, thin: f64, narrow: f64) -> std::result::Result<Lying, ShapeErr
             let size = [1.0, thin, narrow.max(thin)];
             let shape = if kind == 0 { Shape::cuboid(size)? } else { mesh_cuboid(size)? };
             let feet = vec![rectangle([size[0], size[2]])];
-            Lying { shape: above(shape, 0.5 * thin)?, feet, thickness: thin }
+            lies(above(shape, 0.5 * thin)?, feet, thin)
         }
         2 => {
             let shape = above(Shape::<3>::cylinder(0.5, thin)?, 0.5 * thin)?;
-            Lying { shape, feet: vec![regular(ROUND, 0.5, 0.0)], thickness: thin }
+            lies(shape, vec![regular(ROUND, 0.5, 0.0)], thin)
         }
         3 => {
             let triangle = regular(3, 0.5, 0.3);
             let corners: Vec<_> = triangle.iter().map(|place| Vector(*place)).collect();
             let shape = above(Shape::<2>::polygon([corners])?.extruded(thin)?, 0.5 * thin)?;
-            Lying { shape, feet: vec![triangle], thickness: thin }
+            lies(shape, vec![triangle], thin)
         }
         4 => {
             let radius = thin.max(0.005);
             let shape = above(Shape::<3>::capsule(radius, 1.0)?.rotated(quarter)?, radius)?;
             let feet = vec![vec![[radius - 0.5, 0.0], [0.5 - radius, 0.0]]];
-            Lying { shape, feet, thickness: 2.0 * radius }
+            lies(shape, feet, 2.0 * radius)
         }
         5 => {
             let radius = thin.max(0.005);
             let shape = above(Shape::<3>::cylinder(radius, 1.0)?.rotated(quarter)?, radius)?;
-            Lying { shape, feet: vec![vec![[-0.5, 0.0], [0.5, 0.0]]], thickness: 2.0 * radius }
+            lies(shape, vec![vec![[-0.5, 0.0], [0.5, 0.0]]], 2.0 * radius)
         }
         // A box on its edge.
         6 => {
@@ -126,7 +136,10 @@ fn body(kind: u8, thin: f64, narrow: f64) -> std::result::Result<Lying, ShapeErr
             )?;
             let half = side * 0.5_f64.sqrt();
             let shape = above(Shape::<3>::cuboid([1.0, side, side])?.rotated(turn)?, half)?;
-            Lying { shape, feet: vec![vec![[-0.5, 0.0], [0.5, 0.0]]], thickness: 2.0 * half }
+            Lying {
+                is_edge: true,
+                ..lies(shape, vec![vec![[-0.5, 0.0], [0.5, 0.0]]], 2.0 * half)
+            }
         }
         // A tripod, a table, a comb.
         7 => legs(&regular(3, 0.45, 0.2), thin.max(0.003), true)?,
@@ -161,7 +174,7 @@ fn legs(
     let foot =
         if are_round { regular(ROUND, radius, 0.0) } else { rectangle([2.0 * radius; 2]) };
     let feet = places.iter().map(|place| moved(&foot, *place)).collect();
-    Ok(Lying { shape, feet, thickness: 0.3 })
+    Ok(lies(shape, feet, 0.3))
 }
 
 /// A floor whose top is in the plane y = 0, and the corners of its top.
@@ -225,6 +238,24 @@ fn intersection(polygon: &Polygon, other: &Polygon) -> Polygon {
     })
 }
 
+/// How wide a convex polygon is where it is narrowest; a segment, how long it is [m].
+fn width(polygon: &Polygon) -> f64 {
+    let (mut narrowest, mut longest) = (f64::INFINITY, 0.0_f64);
+    for (i, from) in polygon.iter().enumerate() {
+        let to = polygon[(i + 1) % polygon.len()];
+        let side = [to[0] - from[0], to[1] - from[1]];
+        let length = side[0].hypot(side[1]);
+        longest = longest.max(length);
+        let beside = |p: &Place| (p[1] - from[1]) * side[0] - (p[0] - from[0]) * side[1];
+        let wide = polygon.iter().map(|p| beside(p).abs()).fold(0.0, f64::max);
+        // The sides of a clipped segment that are points, and those on each other, have no width.
+        if wide > 1e-12 {
+            narrowest = narrowest.min(wide / length);
+        }
+    }
+    if narrowest.is_finite() { narrowest } else { longest }
+}
+
 /// How far a place is from the convex hull of others, by the widest strip between them.
 fn away(place: Place, others: &[Place]) -> f64 {
     const DIRECTIONS: u32 = 360;
@@ -245,6 +276,10 @@ struct Case {
     patches: Vec<Polygon>,
     depth: f64,
     thinnest: f64,
+    /// Whether one body is more than half way through the other.
+    is_behind: bool,
+    /// By what share of the depth the deepest gap may be less.
+    blunted: f64,
     size: f64,
 }
 
@@ -277,6 +312,8 @@ fn case(u: &mut Unstructured<'_>) -> Result<Option<Case>> {
         patches,
         depth,
         thinnest: floor.thickness.min(lying.thickness),
+        is_behind: depth > 0.5 * (floor.thickness + lying.thickness),
+        blunted: if lying.is_edge && floor.top.is_some() { BLUNTED } else { 0.0 },
         size,
     }))
 }
@@ -314,28 +351,40 @@ fn complaint(case: &Case, found: &Manifold<3>, settings: &ManifoldSettings) -> O
     }
     let deepest =
         found.contacts.iter().map(|contact| contact.gap).fold(f64::INFINITY, f64::min);
-    // In thin bodies the deepest gap may be the separation alone.
-    let is_thick = case.thinnest > 8.0 * case.depth.abs();
-    if is_thick && (deepest + case.depth).abs() > 0.05 * settings.margin {
+    // In thin bodies the deepest gap may be the separation alone; in narrow patches, it may be that of the sides.
+    let widest = case.patches.iter().map(width).fold(0.0, f64::max);
+    let is_thick = case.thinnest > 8.0 * case.depth.abs()
+        && widest > 8.0 * case.depth.max(settings.margin);
+    let precise = 0.05 * settings.margin;
+    let is_right = deepest > -case.depth - precise
+        && deepest < -case.depth + case.blunted * case.depth.max(0.0) + precise;
+    if is_thick && !is_right {
         return Some(format!("the deepest gap is {deepest}, the depth {}", case.depth));
     }
     None
 }
 
-#[test]
-fn contacts_span_flat_patches() {
-    let (mut all, mut whole, mut workspace) = (0, 0, PairWorkspace::new());
-    cases::check(4000, |u| {
+/// What was asked of the cases so far.
+#[derive(Default)]
+struct Asked {
+    all: u32,
+    whole: u32,
+    workspace: PairWorkspace<3>,
+}
+
+impl Asked {
+    /// What is wrong with the contacts of a case that is drawn.
+    fn ask(&mut self, u: &mut Unstructured<'_>) -> Result<std::result::Result<(), String>> {
         let Some(case) = case(u)? else { return Ok(Ok(())) };
-        if case.patches.is_empty() {
+        if case.patches.is_empty() || case.is_behind {
             return Ok(Ok(()));
         }
         let settings = ManifoldSettings { most: 64, ..ManifoldSettings::of_size(case.size) };
         let limits = Limits::new(settings.usual_tolerance());
         let [a, b] = [0, 1].map(|i| Placed::new(&case.bodies[i], case.poses[i]));
-        let found = manifold(a, b, &settings, &limits, &mut workspace).expect("bounded");
-        all += 1;
-        whole += u32::from(found.is_whole);
+        let found = manifold(a, b, &settings, &limits, &mut self.workspace).expect("bounded");
+        self.all += 1;
+        self.whole += u32::from(found.is_whole);
         if !found.is_whole {
             return Ok(Ok(()));
         }
@@ -351,6 +400,20 @@ fn contacts_span_flat_patches() {
             let spacing = settings.spacing;
             Err(format!("{wrong}: spacing {spacing}, {depth} deep: {places:?}, {bodies:?}"))
         }))
-    });
+    }
+}
+
+#[test]
+fn contacts_span_flat_patches() {
+    let mut asked = Asked::default();
+    cases::check(4000, |u| asked.ask(u));
+    let Asked { all, whole, .. } = asked;
     assert!(whole >= 95 * all / 100, "{whole} of {all} are whole");
+}
+
+/// Once, these cases left out more than two spacings.
+#[test]
+fn contacts_still_span_flat_patches() {
+    let mut asked = Asked::default();
+    cases::these(&[2591, 3149, 20212, 26912, 44049, 108_509], |u| asked.ask(u));
 }

@@ -14,6 +14,7 @@ mod drops;
 mod element_sweeps;
 mod elements;
 mod flat_patches;
+mod flat_patches_2d;
 mod integrator;
 mod manifolds;
 mod mesh_memory;
