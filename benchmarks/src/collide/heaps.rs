@@ -7,7 +7,9 @@ use std::error::Error;
 use std::time::Instant;
 
 use palpate::field::{Pose, Rotation, Shape, ShapeError, Vector};
-use palpate::query::{BodyId, World, WorldSettings};
+use palpate::query::{
+    BodyId, Limits, ManifoldSettings, PairWorkspace, Track, World, WorldSettings,
+};
 use parry3d_f64::math::Pose as ParryPose;
 use parry3d_f64::query::{
     ContactManifold, ContactManifoldsWorkspace, DefaultQueryDispatcher,
@@ -57,8 +59,11 @@ pub(super) fn measure(rows: &mut TimedRows) -> Result<(), Box<dyn Error>> {
 pub(super) fn compare(rows: &mut Rows) {
     for name in ["cubes", "cups", "mixed"] {
         let median = |key: &str| rows.get(&format!("{key}.heap_of_{name}.p50_ns")).copied();
-        if let Some((ours, theirs)) = median("world").zip(median("parry")) {
-            rows.insert(format!("parry.heap_of_{name}.ours_over_parry"), ours / theirs);
+        let [tracks, world, theirs] = ["tracks", "world", "parry"].map(median);
+        for (ours, key) in [(tracks, "ours_over_parry"), (world, "world_over_parry")] {
+            if let Some((ours, theirs)) = ours.zip(theirs) {
+                rows.insert(format!("parry.heap_of_{name}.{key}"), ours / theirs);
+            }
         }
     }
 }
@@ -77,8 +82,10 @@ fn heap(
     rows: &mut TimedRows,
 ) -> Result<(), Box<dyn Error + Send + Sync>> {
     let mut random = Random::new(23);
-    let mut world = World::new(WorldSettings::of_size(SIZE))?;
-    let margin = world.settings().manifold.margin;
+    let settings = ManifoldSettings::for_solver(SIZE);
+    let limits = Limits::new(settings.usual_tolerance());
+    let mut world = World::new(WorldSettings::new(settings, limits))?;
+    let margin = settings.margin;
     let mut bodies: Vec<(BodyId, &Twin, Vector<f64, 3>)> = Vec::new();
     for i in 0..SIDES.iter().product() {
         let [x, y, z] = [i % SIDES[0], i / SIDES[0] % SIDES[1], i / (SIDES[0] * SIDES[1])];
@@ -95,8 +102,14 @@ fn heap(
         (0..bodies.len()).flat_map(|one| (one + 1..bodies.len()).map(move |b| (one, b)));
     let pairs: Vec<_> = pairs.filter(|(one, other)| is_near(*one, *other)).collect();
     let mut kept: Vec<Kept> = pairs.iter().map(|_| Kept::default()).collect();
-    let (mut ours, mut theirs) = (Vec::new(), Vec::new());
+    let new = |one: usize, other: usize| {
+        Track::new(bodies[one].1.field.clone(), bodies[other].1.field.clone())
+    };
+    let mut tracks: Vec<_> = pairs.iter().map(|(one, other)| new(*one, *other)).collect();
+    let mut workspace = PairWorkspace::new();
+    let (mut ours, mut tracked, mut theirs) = (Vec::new(), Vec::new(), Vec::new());
     let (mut touching, mut touching_there) = (0, 0);
+    let mut searches = Vec::new();
     for step in 0..STEPS {
         let mut poses = Vec::new();
         for (body, _, place) in &bodies {
@@ -108,6 +121,14 @@ fn heap(
         let start = Instant::now();
         touching = world.step().len();
         let of_ours = start.elapsed().as_nanos() as f64;
+        let start = Instant::now();
+        let mut searched = 0;
+        for ((one, other), track) in pairs.iter().zip(&mut tracks) {
+            let poses = [poses[*one].1, poses[*other].1];
+            let found = track.contacts(poses, &settings, &limits, &mut workspace)?;
+            searched += u32::from(found.is_searched);
+        }
+        let of_tracks = start.elapsed().as_nanos() as f64;
         let there: Vec<ParryPose> = poses.iter().map(|(_, pose)| placed(pose)).collect();
         let start = Instant::now();
         for ((one, other), kept) in pairs.iter().zip(&mut kept) {
@@ -123,13 +144,18 @@ fn heap(
         let of_theirs = start.elapsed().as_nanos() as f64;
         if step >= WARM {
             ours.push(of_ours);
+            tracked.push(of_tracks);
+            searches.push(f64::from(searched));
             theirs.push(of_theirs);
         }
         let has_points = |kept: &&Kept| kept.manifolds.iter().any(|it| !it.points.is_empty());
         touching_there = kept.iter().filter(has_points).count();
     }
     rows.add_times(&format!("world.heap_of_{name}"), ours);
+    rows.add_times(&format!("tracks.heap_of_{name}"), tracked);
     rows.add_times(&format!("parry.heap_of_{name}"), theirs);
+    let searches = searches.iter().sum::<f64>() / (STEPS - WARM) as f64;
+    rows.insert(format!("tracks.heap_of_{name}.searches"), searches);
     rows.insert(format!("world.heap_of_{name}.pairs"), touching as f64);
     rows.insert(format!("parry.heap_of_{name}.pairs"), touching_there as f64);
     Ok(())

@@ -11,6 +11,7 @@ mod pairs;
 mod peers;
 mod sampled;
 mod sweeps;
+mod tracks;
 mod triangles;
 mod worlds;
 
@@ -37,6 +38,7 @@ const PARTS: &[(&str, Part)] = &[
     ("sweeps", sweeps::measure),
     ("peers", peers::measure),
     ("manifolds", manifolds::measure),
+    ("tracks", tracks::measure),
     ("worlds", worlds::measure),
     ("heaps", heaps::measure),
     ("sampled", sampled::measure),

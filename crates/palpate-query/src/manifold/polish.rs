@@ -202,7 +202,9 @@ pub(crate) fn polished<const D: usize>(
         .map_or_else(|| Touch { gap: pair.gap_at(touch.point), ..*touch }, |found| found.touch);
     let edge = Edge::of(pair, &here, far, settings);
     // A contact is no less deep than the values say.
-    let is_deep = |edge: &Polished<D>| here.gap >= 0.0 || edge.contact.gap <= here.gap;
+    let precise = super::SAME_DEPTH * settings.precision_length();
+    let is_deep =
+        |edge: &Polished<D>| here.gap >= 0.0 || edge.contact.gap <= here.gap + precise;
     edge.and_then(|edge| edge.contact(pair, settings))
         .filter(is_deep)
         .or_else(|| found.map(|found| found.touch.usual(pair, settings)))

@@ -156,7 +156,7 @@ fn onto<const D: usize>(a: &Shape<D>, b: &Shape<D>, above: Pose<D>) -> Pose<D> {
         if apart.upper <= 0.0 {
             return pose;
         }
-        pose.translation[1] -= apart.lower.max(0.0) + 4e-5;
+        pose.translation[1] -= apart.lower.max(0.0) + 5e-5;
     }
 }
 
