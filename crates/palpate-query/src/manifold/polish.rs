@@ -20,8 +20,10 @@ use palpate_field::{Point, Vector};
 use super::patch::{self, settled_slopes};
 use super::region::distance;
 use super::{ManifoldSettings, Touch};
+use crate::certified::Goal;
 use crate::contact::{Contact, NormalSource};
 use crate::pair::body_pair::BodyPair;
+use crate::pair::distance_bound::descend;
 
 /// Gradients are opposite if the length of the sum of the unit vectors is at most this.
 pub(crate) const OPPOSITE: f64 = 1e-6;
@@ -352,6 +354,22 @@ impl<const D: usize> Touch<D> {
         let along = self.along_surface(pair, settings).unwrap_or(*self);
         let contact = along.contact_in_frame(pair, settings.spacing);
         Polished { touch: *self, contact, edge: None }
+    }
+
+    /// The touch at the deepest point near, where the bodies no longer face each other as they did: edges that
+    /// pass each other turn the normal. `None` if there is none near, or no gradient tells the normal.
+    pub(crate) fn found_again(
+        &self,
+        pair: &mut BodyPair<'_, D>,
+        settings: &ManifoldSettings,
+    ) -> Option<Polished<D>> {
+        let goal = Goal::least(super::SAME_DEPTH * settings.precision_length());
+        let first = Some(LOWER * settings.spacing);
+        let (_, p) = descend(pair, self.point, first, goal, 0.0);
+        let touch = Touch::at(pair, p);
+        let is_near = distance(p, self.point) <= settings.spacing;
+        let is_told = touch.source == NormalSource::Gradients;
+        (is_near && is_told).then(|| touch.usual(pair, settings))
     }
 
     /// The contact of a touch whose gradients are opposite: the points of the surfaces are along the

@@ -120,14 +120,23 @@ impl<const D: usize> Follower<D> {
         let Touch { point, normal, .. } = self.found;
         let with_second = second_to_frame.transform_point(found_at.transform_point(point));
         let is_one_place = distance(with_second, point) <= ONE_PLACE * settings.spacing;
-        let start = if is_one_place {
-            self.found.at_place(with_second)
+        let carried = if is_one_place {
+            Some(self.found.at_place(with_second))
         } else {
-            carried(pair, [point, with_second], normal, settings)?
+            carried(pair, [point, with_second], normal, settings)
+        };
+        let Some(start) = carried else {
+            return self.found.at_place(with_second).found_again(pair, settings);
         };
         let far = reach(self.is_deepest, settings);
         let found = polished(pair, &start, far, &mut self.curvature, settings);
-        found.or_else(|| is_new.then(|| start.usual(pair, settings)))
+        found.or_else(|| {
+            if is_new {
+                Some(start.usual(pair, settings))
+            } else {
+                start.found_again(pair, settings)
+            }
+        })
     }
 
     /// The contacts of a search, with the names of those of the last step that are near.
